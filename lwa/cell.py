@@ -1,0 +1,136 @@
+"""The periodic unit cell of a chain: masses, contact stiffnesses, spacing.
+
+A cell of P particles repeats with period P·D. Particle i has mass m_i; contact i joins particle i
+to the next one (the last contact joins the cell to its neighbour) and pushes with F = A_i δ^k.
+Theory and lattice both start from this object.
+
+At leading order in a long wave all contact forces of a cell are equal, so that contact i takes the
+share c_i = P A_i^{-1/k} / Σ_j A_j^{-1/k} of the strain (Σ c_i = P), and the cell responds like one
+with P equal contacts of stiffness A_eff, A_eff^{-1/k} = (1/P) Σ A_i^{-1/k}.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import sympy as sp
+
+from lwa.exact import InputError, exact, positive
+
+D = sp.Symbol("D", positive=True)
+"""The spacing of neighbouring particles, unless the caller names another."""
+
+k = sp.Symbol("k", positive=True)
+"""The exponent of the contact law F = A δ^k, unless the caller names another."""
+
+_RESERVED = {"k": "the exponent", "D": "the spacing", "V_s": "the speed", "tau": "time"}
+
+
+@dataclass(frozen=True)
+class Cell:
+    """A periodic cell of P particles.
+
+    Parameters
+    ----------
+    masses : P numbers or symbols, positive.
+    stiffnesses : P numbers or symbols, the A_i of F = A_i δ^k; all 1 when not given.
+    spacing : distance D of neighbouring particles at rest (the same for all contacts).
+
+    Raises `lwa.InputError` when a value is not positive and finite, or the counts differ.
+
+    >>> Cell([1, 2]).fractions
+    (1/3, 2/3)
+    """
+
+    masses: tuple[sp.Expr, ...]
+    stiffnesses: tuple[sp.Expr, ...] = ()
+    spacing: sp.Expr = D
+
+    def __post_init__(self) -> None:
+        masses = _sequence(self.masses, "masses")
+        stiffnesses = _sequence(self.stiffnesses, "stiffnesses") or (1,) * len(masses)
+        if not masses:
+            raise InputError("a cell needs at least one mass")
+        if len(stiffnesses) != len(masses):
+            raise InputError(
+                f"{len(stiffnesses)} stiffnesses for {len(masses)} masses: a periodic cell has as "
+                "many contacts as particles"
+            )
+        for field, given in (("mass", masses), ("stiffness", stiffnesses)):
+            values = tuple(positive(x, f"{field} {i}") for i, x in enumerate(given, start=1))
+            for symbol in {s.name for value in values for s in value.free_symbols}:
+                if symbol in _RESERVED:
+                    raise InputError(f"{field} {symbol!r}: the name means {_RESERVED[symbol]} here")
+            object.__setattr__(self, "masses" if field == "mass" else "stiffnesses", values)
+        object.__setattr__(self, "spacing", positive(self.spacing, "spacing"))
+
+    @property
+    def size(self) -> int:
+        """P, the number of particles in the cell."""
+        return len(self.masses)
+
+    @cached_property
+    def mass(self) -> sp.Expr:
+        """M, the mass of the cell."""
+        return sp.Add(*self.masses)
+
+    @cached_property
+    def fractions(self) -> tuple[sp.Expr, ...]:
+        """μ_i = m_i / M; they sum to 1."""
+        return tuple(sp.cancel(m / self.mass) for m in self.masses)
+
+    def compliances(self, k: sp.Expr = k) -> tuple[sp.Expr, ...]:
+        """A_i^{-1/k}: how much of the strain contact i takes, up to a common factor."""
+        return tuple(A ** (-1 / k) for A in self.stiffnesses)
+
+    def shares(self, k: sp.Expr = k) -> tuple[sp.Expr, ...]:
+        """c_i = P A_i^{-1/k} / Σ A_j^{-1/k}, the strain of contact i over the mean strain."""
+        if len(set(self.stiffnesses)) == 1:
+            return (sp.Integer(1),) * self.size
+        compliances = self.compliances(k)
+        total = sp.Add(*compliances)
+        return tuple(self.size * a / total for a in compliances)
+
+    def stiffness(self, k: sp.Expr = k) -> sp.Expr:
+        """A_eff, the stiffness of the equal contacts that would respond alike."""
+        if len(set(self.stiffnesses)) == 1:
+            return self.stiffnesses[0]
+        return (sp.Add(*self.compliances(k)) / self.size) ** (-k)
+
+    def time_scale(self, k: sp.Expr = k) -> sp.Expr:
+        """τ/t = √(P k A_eff D^{k+1} / M), which makes the wave equation's leading term u_x^{k-1}u_xx.
+
+        For the paper's dimer it is √(2 k D^{k+1} / (m1 + m2)).
+        """
+        return sp.sqrt(self.size * k * self.stiffness(k) * self.spacing ** (k + 1) / self.mass)
+
+
+def Dimer(m1: Any, m2: Any, *, stiffnesses: Sequence[Any] = (), spacing: Any = D) -> Cell:
+    """The paper's cell: two particles, m1 (field u) and m2 (field w), at distance D.
+
+    >>> m1, m2 = sp.symbols("m1 m2", positive=True)
+    >>> Dimer(m1, m2).fractions
+    (m1/(m1 + m2), m2/(m1 + m2))
+    """
+    return Cell((m1, m2), stiffnesses=tuple(stiffnesses), spacing=spacing)
+
+
+def exponent(value: Any) -> sp.Expr:
+    """Read the exponent k of F = A δ^k exactly; raises `lwa.InputError` unless k > 0.
+
+    >>> exponent(1.5)
+    3/2
+    """
+    result = exact(value, "k")
+    if result.is_number and not result.is_positive:
+        raise InputError(f"k is {result}: the contact force A δ^k needs an exponent k > 0")
+    return result
+
+
+def _sequence(values: Any, name: str) -> tuple[Any, ...]:
+    if isinstance(values, str) or not hasattr(values, "__iter__"):
+        raise InputError(f"{name}: a sequence of numbers or symbols is wanted, not {values!r}")
+    return tuple(values)

@@ -1,0 +1,102 @@
+"""What enters from outside becomes exact here, or is refused.
+
+Numbers are read exactly (a float as the decimal it prints as, so ``0.1`` is 1/10), names become
+positive symbols, and nothing is ever evaluated: a text is matched against the grammar of an
+integer, a decimal, a fraction or a plain name, and anything else is refused.
+"""
+
+from __future__ import annotations
+
+import keyword
+import math
+import re
+from decimal import Decimal
+from fractions import Fraction
+from typing import Any
+
+import sympy as sp
+
+Quantity = int | float | str | Fraction | Decimal | sp.Expr
+"""What a caller may give for an exponent, a mass, a stiffness or a length."""
+
+_NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?")
+_FRACTION = re.compile(r"[+-]?[0-9]+/[0-9]+")
+_NAME = re.compile(r"[A-Za-zα-ωΑ-Ω][A-Za-zα-ωΑ-Ω0-9_]*")
+_NOT_A_NUMBER = {"nan", "inf", "infinity", "none", "null", "true", "false"}
+_LONGEST = 200
+
+
+class InputError(ValueError):
+    """An argument that cannot be meant: the message names it and says what would be right."""
+
+
+def shorten(value: object) -> str:
+    """``repr`` of an offending value, cut to one short line for a message."""
+    text = repr(value)
+    return text if len(text) <= 60 else text[:57] + "..."
+
+
+def exact(value: Any, name: str) -> sp.Expr:
+    """Read ``value`` (see `Quantity`) as an exact SymPy expression.
+
+    ``name`` is what messages call it. Texts are integers, decimals, fractions or plain names;
+    a name becomes a positive symbol.
+
+    Raises `InputError` for NaN, infinities, complex numbers and text that is none of these.
+
+    >>> exact(0.1, "k"), exact("3/2", "k"), exact("m1", "mass")
+    (1/10, 3/2, m1)
+    """
+    if isinstance(value, str):
+        return _from_text(value.strip(), name)
+    if isinstance(value, bool):
+        raise InputError(f"{name} is {value!r}: a number or a symbol is wanted")
+    if isinstance(value, sp.Expr):
+        return _from_expression(value, name)
+    if isinstance(value, Fraction):
+        return sp.Rational(value.numerator, value.denominator)
+    if hasattr(value, "item"):  # NumPy's scalars, without importing NumPy
+        try:
+            value = value.item()
+        except ValueError:
+            raise InputError(f"{name} is {shorten(value)}: one number is wanted") from None
+    if isinstance(value, int) and not isinstance(value, bool):
+        return sp.Integer(value)
+    if isinstance(value, float | Decimal):
+        if not math.isfinite(value):
+            raise InputError(f"{name} is {value}: a finite number is wanted")
+        return sp.Rational(str(value))
+    raise InputError(f"{name} is {shorten(value)}: a number or a symbol is wanted")
+
+
+def positive(value: Any, name: str) -> sp.Expr:
+    """`exact`, and refused unless it is positive (a symbol may be, and is then assumed to be)."""
+    expression = exact(value, name)
+    if expression.is_positive is False or (expression.is_number and not expression.is_positive):
+        raise InputError(f"{name} is {expression}: it must be positive")
+    return expression
+
+
+def _from_text(text: str, name: str) -> sp.Expr:
+    wanted = "an integer, a decimal, a fraction such as 3/2, or a plain name is wanted"
+    if len(text) > _LONGEST:
+        raise InputError(f"{name} is a text of {len(text)} characters: {wanted}")
+    if _FRACTION.fullmatch(text):
+        numerator, denominator = text.split("/")
+        if int(denominator) == 0:
+            raise InputError(f"{name} is {text}: the denominator must not be zero")
+        return sp.Rational(int(numerator), int(denominator))
+    if _NUMBER.fullmatch(text):
+        return sp.Rational(text)
+    if not _NAME.fullmatch(text) or text.lower() in _NOT_A_NUMBER:
+        raise InputError(f"{name} is {shorten(text)}: {wanted}")
+    if keyword.iskeyword(text) or hasattr(sp, text):
+        raise InputError(f"{name} is {text!r}, a word with a meaning of its own: choose another")
+    return sp.Symbol(text, positive=True)
+
+
+def _from_expression(value: sp.Expr, name: str) -> sp.Expr:
+    if value.has(sp.nan, sp.oo, -sp.oo, sp.zoo) or value.is_real is False:
+        raise InputError(f"{name} is {shorten(value)}: a finite real number is wanted")
+    floats = {f: sp.Rational(str(f)) for f in value.atoms(sp.Float)}
+    return value.xreplace(floats)
