@@ -101,7 +101,7 @@ class Cell:
         return (sp.Add(*self.compliances(k)) / self.size) ** (-k)
 
     def time_scale(self, k: sp.Expr = k) -> sp.Expr:
-        """τ/t = √(P k A_eff D^{k+1} / M), which makes the wave equation's leading term u_x^{k-1}u_xx.
+        """τ/t = √(P k A_eff D^{k+1} / M), by which u_ττ = u_x^{k-1} u_xx at leading order.
 
         For the paper's dimer it is √(2 k D^{k+1} / (m1 + m2)).
         """

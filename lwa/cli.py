@@ -1,0 +1,88 @@
+"""The command `lwa`: derivations and waves on the command line."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import click
+import sympy as sp
+
+from lwa.cell import Cell, D, k
+from lwa.closure import BRANCHES
+from lwa.render import FORMATS, THEORY, WAVE
+from lwa.terminal import quantities, quantity, run
+from lwa.theory import Theory, homogenize
+
+Command = Callable[..., None]
+
+
+@click.group()
+def lwa() -> None:
+    """Long-wave theory of granular chains with contact force F = A δ^k.
+
+    Numbers are integers, decimals or fractions (3/2); symbols are plain names.
+    """
+
+
+def _chain(command: Command) -> Command:
+    """The options that name a chain and its theory."""
+    options = [
+        click.option("--k", "exponent", callback=quantity, default=k.name, show_default=True,
+                     help="Exponent of the contact law."),
+        click.option("--masses", callback=quantities, default="m1,m2", show_default=True,
+                     help="Masses of the cell's particles."),
+        click.option("--stiffnesses", callback=quantities,
+                     help="Stiffnesses of its contacts; equal ones by default."),
+        click.option("--spacing", callback=quantity, default=D.name, show_default=True,
+                     help="Distance of neighbouring particles."),
+        click.option("--order", type=int, default=4, show_default=True,
+                     help="Highest power of D in the ansatz."),
+        click.option("--closure", default="linear", show_default=True,
+                     help="The consistency condition: linear (the paper's)."),
+        click.option("--branch", default="acoustic", show_default=True,
+                     help=f"{' or '.join(BRANCHES)}."),
+        click.option("--format", "style", type=click.Choice(FORMATS), default="text",
+                     show_default=True, help="How to print the result."),
+    ]  # fmt: skip
+    for option in reversed(options):
+        command = option(command)
+    return command
+
+
+def _theory(
+    exponent: sp.Expr,
+    masses: Sequence[sp.Expr],
+    stiffnesses: Sequence[sp.Expr],
+    spacing: sp.Expr,
+    order: int,
+    closure: str,
+    branch: str,
+) -> Theory:
+    cell = Cell(tuple(masses), stiffnesses=tuple(stiffnesses), spacing=spacing)
+    return homogenize(cell, order, k=exponent, closure=closure, branch=branch)
+
+
+def _show(result: Any) -> None:
+    click.echo(result if isinstance(result, str) else json.dumps(result, indent=2))
+
+
+@lwa.command()
+@_chain
+def derive(style: str, **chain: Any) -> None:
+    """The ansatz, the wave equation and the defect between the equations of motion."""
+    _show(THEORY[style](_theory(**chain)))
+
+
+@lwa.command()
+@_chain
+def wave(style: str, **chain: Any) -> None:
+    """The compact traveling wave: β, width, FWHM, amplitude and speed."""
+    theory = _theory(**chain)
+    _show(WAVE[style](theory, theory.pde.traveling_wave()))
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Entry point of the command `lwa`."""
+    run(lwa, "lwa", arguments)

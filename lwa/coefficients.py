@@ -1,0 +1,216 @@
+"""The coefficient ring of a derivation, Q[k, μ, c], and its door to SymPy.
+
+Everything the theory derives is a polynomial in the jets of the field whose coefficients are
+polynomials in the exponent k, the mass fractions μ_i = m_i/M and the strain shares c_i of the
+contacts. What is rational among these enters as a number; what is not becomes one generator of a
+python-flint polynomial ring per distinct value (less one, since Σ μ_i = 1 and Σ c_i = P).
+Polynomials leave as factored SymPy expressions in the caller's own symbols.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import sympy as sp
+from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
+
+from lwa.cell import Cell
+
+
+def rational(value: sp.Expr) -> fmpq:
+    """A SymPy rational as a python-flint one."""
+    return fmpq(int(value.p), int(value.q))
+
+
+@dataclass(frozen=True)
+class Partition:
+    """Positive weights w_i that enter only as f_i = total · w_i / Σ_j w_j.
+
+    The masses of a cell are such weights (total 1), and so are the compliances of its contacts
+    (total P).
+    """
+
+    weights: tuple[sp.Expr, ...]
+    total: int
+    letter: str
+
+    @cached_property
+    def distinct(self) -> tuple[sp.Expr, ...]:
+        """The distinct weights, in the order of their first appearance."""
+        return tuple(dict.fromkeys(self.weights))
+
+    @cached_property
+    def sum(self) -> sp.Expr:
+        """Σ w_i."""
+        return sp.Add(*self.weights)
+
+    @cached_property
+    def values(self) -> tuple[sp.Expr, ...] | None:
+        """f of each distinct weight if all of them are rational, else None."""
+        values = tuple(sp.cancel(self.total * w / self.sum) for w in self.distinct)
+        return values if all(value.is_Rational for value in values) else None
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the ring generators: one per distinct weight but the last."""
+        count = 0 if self.values else len(self.distinct) - 1
+        return tuple(f"{self.letter}{i}" for i in range(count))
+
+    def elements(self, context: fmpq_mpoly_ctx) -> list[fmpq_mpoly]:
+        """f_0, f_1, … as elements of a ring that has `names` among its generators."""
+        if self.values:
+            of = {
+                w: context.constant(rational(f))
+                for w, f in zip(self.distinct, self.values, strict=True)
+            }
+        else:
+            free = [context.gen(context.variable_to_index(name)) for name in self.names]
+            of = dict(zip(self.distinct, free, strict=False))
+            rest = context.constant(self.total)
+            for weight, f in of.items():
+                rest = rest - self.weights.count(weight) * f
+            last = self.distinct[-1]
+            of[last] = rest / self.weights.count(last)
+        return [of[w] for w in self.weights]
+
+
+@dataclass(frozen=True)
+class Coefficients:
+    """The ring Q[k, μ, c] for one cell, one exponent and one branch.
+
+    On the optical branch the two contacts move by equal amounts, so that they enter with their
+    shares of the stiffness, A_i / Σ A_j, instead of their shares of the strain.
+    """
+
+    cell: Cell
+    k: sp.Expr
+    branch: str = "acoustic"
+
+    @cached_property
+    def masses(self) -> Partition:
+        """The mass fractions μ_i."""
+        return Partition(self.cell.masses, 1, "mu")
+
+    @cached_property
+    def contacts(self) -> Partition:
+        """The shares c_i of the contacts."""
+        stiffnesses = self.cell.stiffnesses
+        if self.branch == "optical":
+            return Partition(stiffnesses, 1, "c")
+        equal = len(set(stiffnesses)) == 1
+        weights = stiffnesses if equal else self.cell.compliances(self.k)
+        return Partition(weights, self.cell.size, "c")
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the ring's generators."""
+        exponent = () if self.k.is_Rational else ("k",)
+        return (*exponent, *self.masses.names, *self.contacts.names)
+
+    def exponent(self, context: fmpq_mpoly_ctx) -> fmpq_mpoly:
+        """k as an element of a ring that has `names` among its generators."""
+        if self.k.is_Rational:
+            return context.constant(rational(self.k))
+        return context.gen(context.variable_to_index("k"))
+
+    def expression(self, terms: Sequence[tuple[tuple[int, ...], fmpq]]) -> sp.Expr:
+        """Σ coefficient · Π generator^exponent over `terms`, factored, in the caller's symbols.
+
+        The exponents stand in the order of `names`.
+
+        >>> m1, m2, k = sp.symbols("m1 m2 k")
+        >>> Coefficients(Cell((m1, m2)), k).expression([((1, 1), fmpq(1)), ((1, 2), fmpq(-1))])
+        k*m1*m2/(m1 + m2)**2
+        """
+        return self._door(terms)
+
+    @cached_property
+    def _door(self) -> Door:
+        return Door(self)
+
+
+class Door:
+    """Conversion of polynomials in (k, μ, c) to factored SymPy expressions.
+
+    μ_i and c_i are replaced by w_i/Σw with one common denominator per partition, in a second
+    flint ring whose generators are the caller's symbols; the numerator is factored there.
+    """
+
+    def __init__(self, ring: Coefficients) -> None:
+        partitions = [part for part in (ring.masses, ring.contacts) if part.names]
+        values = [w for part in partitions for w in part.distinct]
+        values += [] if ring.k.is_Rational else [ring.k]
+        symbols = sorted(set().union(*(v.free_symbols for v in values)), key=str)
+        polynomial = {v: _as_polynomial(v, symbols) for v in values}
+        opaque = [v for v in dict.fromkeys(values) if polynomial[v] is None and not v.is_Rational]
+        self._generators: list[sp.Expr] = [*symbols, *opaque]
+        context = fmpq_mpoly_ctx.get([f"x{i}" for i in range(len(self._generators))], Ordering.lex)
+        self._context = context
+
+        def element(value: sp.Expr) -> fmpq_mpoly:
+            if value.is_Rational:
+                return context.constant(rational(value))
+            poly = polynomial[value]
+            if poly is None:
+                return context.gen(self._generators.index(value))
+            padding = (0,) * len(opaque)
+            return context.from_dict({(*e, *padding): rational(c) for e, c in poly.terms()})
+
+        self._images = [] if ring.k.is_Rational else [element(ring.k)]
+        self._denominators: list[tuple[slice, fmpq_mpoly]] = []
+        for part in partitions:
+            start = len(self._images)
+            self._images += [part.total * element(w) for w in part.distinct[:-1]]
+            total = sum((element(w) for w in part.weights), context.constant(0))
+            self._denominators.append((slice(start, len(self._images)), total))
+
+    def __call__(self, terms: Sequence[tuple[tuple[int, ...], fmpq]]) -> sp.Expr:
+        degrees = [
+            max((sum(exponents[block]) for exponents, _ in terms), default=0)
+            for block, _ in self._denominators
+        ]
+        numerator = self._context.constant(0)
+        for exponents, coefficient in terms:
+            product = self._context.constant(coefficient)
+            for image, e in zip(self._images, exponents, strict=True):
+                product = product * image**e
+            for (block, total), degree in zip(self._denominators, degrees, strict=True):
+                product = product * total ** (degree - sum(exponents[block]))
+            numerator = numerator + product
+        if numerator.is_zero():
+            return sp.Integer(0)
+        powers = []
+        for (_, total), degree in zip(self._denominators, degrees, strict=True):
+            while degree and (quotient := _quotient(numerator, total)) is not None:
+                numerator, degree = quotient, degree - 1
+            powers.append(self._sum(total) ** -degree)
+        constant, factors = numerator.factor()
+        powers += [self._sum(factor) ** int(multiplicity) for factor, multiplicity in factors]
+        # One product: a number times a lone sum would be multiplied out.
+        return sp.Mul(_number(constant), *powers)
+
+    def _sum(self, polynomial: fmpq_mpoly) -> sp.Expr:
+        return sp.Add(*self._terms(polynomial))
+
+    def _terms(self, polynomial: fmpq_mpoly) -> Iterator[sp.Expr]:
+        for exponents, coefficient in polynomial.terms():
+            powers = (g**e for g, e in zip(self._generators, exponents, strict=True) if e)
+            yield sp.Mul(_number(coefficient), *powers)
+
+
+def _as_polynomial(value: sp.Expr, symbols: list[sp.Symbol]) -> sp.Poly | None:
+    try:
+        return sp.Poly(value, *symbols, domain="QQ")
+    except sp.polys.polyerrors.BasePolynomialError:
+        return None
+
+
+def _number(value: fmpq) -> sp.Rational:
+    return sp.Rational(int(value.p), int(value.q))
+
+
+def _quotient(numerator: fmpq_mpoly, divisor: fmpq_mpoly) -> fmpq_mpoly | None:
+    quotient, remainder = divmod(numerator, divisor)
+    return quotient if remainder.is_zero() else None

@@ -1,0 +1,179 @@
+"""The quasi-continuum wave equation of a chain, at any order.
+
+Acoustic branch (Porter et al. 2008, eq. 6, is order 4 of the dimer), in the time
+τ = t · `Cell.time_scale`:
+
+    u_ττ = u_x^{k-1} u_xx + u_x^k Σ_{n≥2} D^{n-1} Σ_jets coefficient · Π_i (∂_x^i u / u_x)^{e_i},
+
+where n stands at D^{k+n} of the equations of motion; n = 3 holds G, H and I. Optical branch, in
+its own time unit: u_ττ = -u^k + u^k Σ_{n≥1} D^n Σ_jets coefficient · Π_i (∂_x^i u / u)^{e_i}.
+
+Coefficients are converted to SymPy when they are asked for, one by one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import sympy as sp
+from flint import fmpq, fmpq_mpoly
+
+from lwa.cell import Cell
+from lwa.closure import Closure
+from lwa.coefficients import Coefficients
+from lwa.exact import InputError
+from lwa.wave import TravelingWave
+
+Jet = tuple[tuple[int, int], ...]
+"""((i, e), …): the product of (∂_x^i u / base)^e; the base is u_x, on the optical branch u."""
+
+
+class Terms(Mapping[Jet, sp.Expr]):
+    """Jet → coefficient at one order; a coefficient becomes SymPy when it is looked up."""
+
+    def __init__(
+        self, ring: Coefficients, raw: dict[Jet, list[tuple[tuple[int, ...], fmpq]]]
+    ) -> None:
+        self._ring = ring
+        self._raw = raw
+        self._converted: dict[Jet, sp.Expr] = {}
+
+    def __getitem__(self, jet: Jet) -> sp.Expr:
+        if jet not in self._converted:
+            self._converted[jet] = self._ring.expression(self._raw[jet])
+        return self._converted[jet]
+
+    def __iter__(self) -> Iterator[Jet]:
+        return iter(self._raw)
+
+    def __len__(self) -> int:
+        return len(self._raw)
+
+    def __repr__(self) -> str:
+        return repr(dict(self))
+
+
+def terms(closure: Closure, polynomial: fmpq_mpoly) -> Terms:
+    """A polynomial of the closure's algebra as jets of the field with their coefficients."""
+    base = base_order(closure)
+    raw = {
+        tuple((n + base, e) for n, e in monomial): coefficient
+        for monomial, coefficient in closure.algebra.terms(polynomial).items()
+    }
+    return Terms(closure.ring, dict(sorted(raw.items(), key=lambda item: _complexity(item[0]))))
+
+
+def base_order(closure: Closure) -> int:
+    """The order of the derivative that the jets are normalised by: u_x, on the optical branch u."""
+    return 1 if closure.ring.branch == "acoustic" else 0
+
+
+def _complexity(jet: Jet) -> tuple[int, Jet]:
+    return -sum(e for _, e in jet), jet
+
+
+@dataclass(frozen=True)
+class PDE:
+    """The wave equation that a closure leads to (see the module's first lines for its form)."""
+
+    closure: Closure
+
+    @property
+    def cell(self) -> Cell:
+        """The chain."""
+        return self.closure.ring.cell
+
+    @property
+    def k(self) -> sp.Expr:
+        """The exponent of the contact law."""
+        return self.closure.ring.k
+
+    @cached_property
+    def time_scale(self) -> sp.Expr:
+        """τ/t."""
+        if self.closure.ring.branch == "acoustic":
+            return self.cell.time_scale(self.k)
+        # w = λu strains each contact by (λ - 1)u, and 1 - λ = M/m2.
+        m1, m2 = self.cell.masses
+        stretch = (self.cell.mass / m2) ** self.k
+        return sp.sqrt(sp.Add(*self.cell.stiffnesses) * stretch / m1)
+
+    @cached_property
+    def coefficients(self) -> Mapping[int, Terms]:
+        """n → the terms at D^{k+n} (optical: D^n), without the power of D; {} where none stand.
+
+        The leading term is left out: `coefficients` starts behind u_x^{k-1} u_xx (or -u^k).
+        """
+        base = base_order(self.closure)
+        sign = 1 if base else -1
+        acceleration = enumerate(self.closure.acceleration)
+        return {n: terms(self.closure, sign * E) for n, E in acceleration if n > base}
+
+    def _at_third_order(self, jet: Jet) -> sp.Expr:
+        if self.closure.ring.branch != "acoustic":
+            raise InputError("G, H and I belong to the acoustic branch")
+        if self.closure.order < 4:
+            raise InputError(
+                f"order is {self.closure.order}: G, H and I stand at D^(k+3), from order 4 on"
+            )
+        return self.coefficients[3].get(jet, sp.Integer(0)) * self.cell.spacing**2
+
+    @cached_property
+    def G(self) -> sp.Expr:
+        """The coefficient of u_x^{k-3} u_xx^3, D² included."""
+        return self._at_third_order(((2, 3),))
+
+    @cached_property
+    def H(self) -> sp.Expr:
+        """The coefficient of u_x^{k-2} u_xx u_xxx, D² included."""
+        return self._at_third_order(((2, 1), (3, 1)))
+
+    @cached_property
+    def I(self) -> sp.Expr:
+        """The coefficient of u_x^{k-1} u_xxxx, D² included."""
+        return self._at_third_order(((4, 1),))
+
+    @property
+    def vanishing(self) -> tuple[int, ...]:
+        """The n whose order D^{k+n} (optical: D^n) vanishes identically."""
+        return tuple(n for n, found in self.coefficients.items() if not found)
+
+    @cached_property
+    def conservative(self) -> bool:
+        """Whether every order is ∂_x of a flux, so that the momentum ∫ u_τ dx is conserved."""
+        if self.closure.ring.branch != "acoustic":
+            return False
+        algebra = self.closure.algebra
+        k = self.closure.ring.exponent(algebra.context)
+        higher = self.closure.acceleration[2:]
+        return all(algebra.antiderivative(E, k) is not None for E in higher)
+
+    def right_side(self, u: sp.Expr, x: sp.Symbol) -> sp.Expr:
+        """The right-hand side of u_ττ for a field u(x), as a SymPy expression.
+
+        >>> from lwa import homogenize, Cell
+        >>> x = sp.Symbol("x")
+        >>> homogenize(Cell([1]), k=1, order=4).pde.right_side(sp.exp(x), x)
+        D**2*exp(x)/12 + exp(x)
+        """
+        base_derivative = base_order(self.closure)
+        base = u.diff(x, base_derivative) if base_derivative else u
+        k, D = self.k, self.cell.spacing
+        result = base ** (k - 1) * u.diff(x, 2) if base_derivative else -(base**k)
+        for n, found in self.coefficients.items():
+            for jet, coefficient in found.items():
+                product = sp.Mul(*(u.diff(x, i) ** e for i, e in jet))
+                degree = sum(e for _, e in jet)
+                power = D ** (n - base_derivative) * base ** (k - degree)
+                result += coefficient * power * product
+        return result
+
+    def traveling_wave(self) -> TravelingWave:
+        """The compact wave of the equation truncated at D^{k+3}, in closed form.
+
+        Raises `lwa.NoSolitaryWave` where numbers show that there is none, and `lwa.InputError`
+        when the order is below 4 or the branch optical.
+        """
+        return TravelingWave(cell=self.cell, k=self.k, G=self.G, H=self.H, I=self.I)

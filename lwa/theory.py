@@ -1,0 +1,120 @@
+"""From a cell to its theory in one call."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import sympy as sp
+
+from lwa.cell import Cell, exponent
+from lwa.cell import k as symbol_k
+from lwa.closure import BRANCHES, CLOSURES, Closure, linear
+from lwa.coefficients import Coefficients
+from lwa.exact import InputError, shorten
+from lwa.pde import PDE, Terms, terms
+
+HIGHEST_ORDER = 40
+"""Beyond this order the polynomials of a symbolic cell outgrow the memory of a workstation."""
+
+
+@dataclass(frozen=True)
+class Theory:
+    """What the consistency condition gives for a chain (see `homogenize`)."""
+
+    closure: Closure
+
+    @property
+    def cell(self) -> Cell:
+        """The chain."""
+        return self.closure.ring.cell
+
+    @property
+    def k(self) -> sp.Expr:
+        """The exponent of the contact law."""
+        return self.closure.ring.k
+
+    @property
+    def order(self) -> int:
+        """The highest power of D in the ansatz."""
+        return self.closure.order
+
+    @property
+    def amplitude_ratio(self) -> sp.Expr:
+        """λ of the branch: 1 acoustic, -m1/m2 optical."""
+        return self.closure.ratio
+
+    @cached_property
+    def ansatz(self) -> dict[int, sp.Expr]:
+        """n → b_n of w = λ (u + Σ b_n D^n ∂_x^n u); empty for a cell of one particle."""
+        algebra, ring = self.closure.algebra, self.closure.ring
+        return {
+            n: ring.expression(algebra.terms(b).get((), []))
+            for n, b in enumerate(self.closure.ansatz)
+            if n > 0
+        }
+
+    @cached_property
+    def pde(self) -> PDE:
+        """The wave equation."""
+        return PDE(self.closure)
+
+    @cached_property
+    def defect(self) -> dict[int, Terms]:
+        """n → the terms at D^{k+n} of u_ττ by the first equation minus u_ττ by the second.
+
+        Only orders at which they disagree are listed: {} says that the ansatz satisfies both
+        equations of motion to the order derived.
+        """
+        return {
+            n: terms(self.closure, d) for n, d in enumerate(self.closure.defect) if not d.is_zero()
+        }
+
+
+def homogenize(
+    cell: Cell,
+    order: int = 4,
+    *,
+    k: Any = symbol_k,
+    closure: str = "linear",
+    branch: str = "acoustic",
+) -> Theory:
+    """Derive the long-wave theory of a chain.
+
+    Parameters
+    ----------
+    cell : the periodic cell.
+    order : highest power N of D in the ansatz; the wave equation then reaches D^{k+N-1}.
+    k : exponent of the contact law, a number or a symbol.
+    closure : "linear", the paper's.
+    branch : "acoustic" (neighbours move together) or "optical" (against each other).
+
+    Raises `lwa.InputError` for values that make no sense or that the closure does not cover.
+
+    >>> m1, m2 = sp.symbols("m1 m2", positive=True)
+    >>> from lwa import Dimer
+    >>> theory = homogenize(Dimer(m1, m2), order=4)
+    >>> theory.ansatz[4]
+    m1*(m1**2 - m1*m2 + m2**2)/(3*(m1 + m2)**3)
+    >>> theory.pde.H
+    D**2*(k - 1)*(2*m1 - m2)/(3*(m1 + m2))
+    """
+    if not isinstance(cell, Cell):
+        raise InputError(f"cell is {shorten(cell)}: a Cell such as Dimer(m1, m2) is wanted")
+    if isinstance(order, bool) or not isinstance(order, int):
+        raise InputError(f"order is {shorten(order)}: an integer from 1 on is wanted")
+    if not 1 <= order <= HIGHEST_ORDER:
+        raise InputError(f"order is {order}: it must be from 1 to {HIGHEST_ORDER}")
+    _one_of(closure, CLOSURES, "closure")
+    _one_of(branch, BRANCHES, "branch")
+    k = exponent(k)
+    shared = k.free_symbols & set().union(*(x.free_symbols for x in (*cell.masses, cell.spacing)))
+    if shared:
+        raise InputError(f"{shared.pop()} names both the exponent and a property of the cell")
+    return Theory(linear(Coefficients(cell, k, branch), order))
+
+
+def _one_of(value: str, known: tuple[str, ...], name: str) -> None:
+    if value not in known:
+        raise InputError(f"{name} is {shorten(value)}: one of {', '.join(known)} is wanted")

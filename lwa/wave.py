@@ -1,0 +1,304 @@
+"""Traveling waves of the wave equation at D^{k+3}, in closed form.
+
+    u_ττ = u_x^{k-1} u_xx + G u_x^{k-3} u_xx³ + H u_x^{k-2} u_xx u_xxx + I u_x^{k-1} u_4x.
+
+With ξ = x - V τ the strain v = u_ξ obeys a third-order equation. The substitution v = z^p with
+
+    (G + H + I) p² - (H + 3I) p + 2I = 0
+
+removes z_ξ³, the integrating factor z^a makes the rest a total derivative, and what remains is
+z'' = μ z^η - σ z (Porter et al. 2008). Its compact wave is v = B cos^m(βξ) on |ξ| ≤ π/(2β),
+m = 2/(k-1). Either root p leads to the same
+
+    β = (k-1) / (2 √(G+H+I)),    V² = B^{k-1} (1 - β² [(H + 3I) m - 2I]),
+
+so that p may even be complex; what a wave needs is G + H + I > 0 and V² > 0.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cache, cached_property
+from typing import TYPE_CHECKING, Any, Literal
+
+import sympy as sp
+
+from lwa.cell import Cell, exponent
+from lwa.exact import InputError, positive, shorten
+from lwa.jets import JetAlgebra
+
+if TYPE_CHECKING:
+    from lwa.numeric import NumericWave
+
+V = sp.Symbol("V_s", positive=True)
+"""The speed V_s = dx/dτ, where the caller gives none."""
+
+QUANTITIES = ("strain", "force", "velocity")
+
+
+def strain_power(quantity: str, k: Any) -> Any:
+    """The power of the strain to which a quantity of the wave is proportional: k or 1.
+
+    Raises `lwa.InputError` unless the quantity is "strain", "force" or "velocity".
+    """
+    if quantity not in QUANTITIES:
+        raise InputError(
+            f"quantity is {shorten(quantity)}: one of {', '.join(QUANTITIES)} is wanted"
+        )
+    return k if quantity == "force" else 1
+
+
+class NoSolitaryWave(ValueError):
+    """The theory has no compact traveling wave for these parameters; the message says why."""
+
+
+@cache
+def strain_equation() -> dict[str, sp.Expr]:
+    """The equation of z, v = z^p, as the coefficients of its monomials in r_n = ∂^n z / z.
+
+    V² z^p p r_1 = z^{kp} (linear · r_1 + cubic · r_1³ + product · r_1 r_2 + third · r_3),
+    derived in the algebra of the jets of z. SymPy expressions in p, G, H, I.
+    """
+    jets = JetAlgebra(("p", "G", "H", "I"), weight=3)
+    p, G, H, I = jets.context.gens()[:4]
+    v = [jets.one]
+    for _ in range(3):
+        v.append(jets.dx(v[-1], p))  # v_n = ∂^n (z^p) / z^p
+    right = v[1] + G * v[1] ** 3 + H * v[1] * v[2] + I * v[3]
+    symbols = sp.symbols("p G H I")
+    monomials = {
+        ((1, 1),): "linear",
+        ((1, 3),): "cubic",
+        ((1, 1), (2, 1)): "product",
+        ((3, 1),): "third",
+    }
+    return {
+        monomials[jet]: sp.Add(
+            *(sp.Rational(int(c.p), int(c.q)) * sp.Mul(*map(sp.Pow, symbols, e)) for e, c in terms)
+        )
+        for jet, terms in jets.terms(right).items()
+    }
+
+
+@dataclass(frozen=True)
+class Reduction:
+    """The reduction of the strain's equation to z'' = μ z^η - σ z for one root p (speed V)."""
+
+    k: sp.Expr
+    I: sp.Expr
+    p: sp.Expr
+    a: sp.Expr
+    V: sp.Expr
+
+    @property
+    def mu(self) -> sp.Expr:
+        """μ = V² / (I (p + a))."""
+        return self.V**2 / (self.I * (self.p + self.a))
+
+    @property
+    def eta(self) -> sp.Expr:
+        """η = 1 + p - kp."""
+        return 1 + self.p - self.k * self.p
+
+    @property
+    def sigma(self) -> sp.Expr:
+        """σ = 1 / (I (kp + a))."""
+        return 1 / (self.I * (self.k * self.p + self.a))
+
+    @property
+    def s(self) -> sp.Expr:
+        """s = 2 / (1 - η), the power of the cosine in z."""
+        return 2 / (1 - self.eta)
+
+    @property
+    def beta(self) -> sp.Expr:
+        """β = √σ (1 - η) / 2, the paper's form; equal to `TravelingWave.beta` for either root."""
+        return sp.sqrt(self.sigma) * (1 - self.eta) / 2
+
+    @property
+    def B(self) -> sp.Expr:
+        """B = (μ / (β² s (s-1)))^{1/(k-1)}, the paper's form of `TravelingWave.amplitude`."""
+        ratio = self.mu / (self.beta**2 * self.s * (self.s - 1))
+        return ratio ** (1 / (self.k - 1))
+
+
+@dataclass(frozen=True)
+class TravelingWave:
+    """The compact traveling wave v = u_x = B cos^m(βξ), ξ = x - V τ.
+
+    G, H, I are the wave equation's coefficients with their D²; the results are exact SymPy
+    expressions. Lengths are in the unit of the spacing D; B is the peak of the strain u_x, and the
+    speed V = dx/dτ becomes dx/dt by `speed_scale`.
+
+    Raises `NoSolitaryWave` when it is built with numbers for which there is none (k ≤ 1,
+    G + H + I ≤ 0, or V² ≤ 0).
+    """
+
+    cell: Cell
+    k: sp.Expr
+    G: sp.Expr
+    H: sp.Expr
+    I: sp.Expr
+
+    def __post_init__(self) -> None:
+        if self.k.is_number and not self.k > 1:
+            raise NoSolitaryWave(
+                f"k is {self.k}: a compact wave needs k > 1 (at k = 1 the chain is linear)"
+            )
+        if self.dispersion.is_number and not self.dispersion > 0:
+            raise NoSolitaryWave(
+                f"(G+H+I)/D² is {self.dispersion}: there is no compact wave unless G+H+I > 0"
+            )
+        if self.speed_factor.is_number and not self.speed_factor > 0:
+            raise NoSolitaryWave(
+                f"V²/B^(k-1) is {self.speed_factor}: there is no wave with a real speed"
+            )
+
+    @property
+    def D(self) -> sp.Expr:
+        """The spacing."""
+        return self.cell.spacing
+
+    @cached_property
+    def dispersion(self) -> sp.Expr:
+        """(G + H + I) / D²."""
+        return sp.factor(sp.cancel((self.G + self.H + self.I) / self.D**2))
+
+    @property
+    def m(self) -> sp.Expr:
+        """m = 2/(k-1), the power of the cosine in the strain."""
+        return 2 / (self.k - 1)
+
+    @cached_property
+    def beta(self) -> sp.Expr:
+        """β = (k-1) / (2 √(G+H+I))."""
+        return (self.k - 1) / (2 * self.D * _root(self.dispersion))
+
+    @cached_property
+    def width(self) -> sp.Expr:
+        """π/β, the length of the wave's support."""
+        return sp.pi / self.beta
+
+    @property
+    def sites(self) -> sp.Expr:
+        """π/(βD), the number of particles under the wave."""
+        return self.width / self.D
+
+    def fwhm(self, quantity: str = "strain") -> sp.Expr:
+        """Full width at half maximum, a length in x.
+
+        ``quantity`` is "strain" (u_x), "force" (of a contact, A (D u_x)^k) or "velocity"
+        (u_τ = -V u_x, so that in this theory its width is the strain's).
+
+        Raises `lwa.InputError` for any other quantity.
+        """
+        return 2 * sp.acos(2 ** (-1 / (strain_power(quantity, self.k) * self.m))) / self.beta
+
+    @cached_property
+    def speed_factor(self) -> sp.Expr:
+        """V²/B^{k-1} = 1 - β² [(H + 3I) m - 2I]."""
+        # β² and m written out: (k-1) cancels, and the result is rational in k and the masses.
+        k, S = self.k, self.G + self.H + self.I
+        return sp.factor(
+            sp.cancel(
+                1 - (k - 1) * (self.H + 3 * self.I) / (2 * S) + (k - 1) ** 2 * self.I / (2 * S)
+            )
+        )
+
+    def speed(self, B: Any = None) -> sp.Expr:
+        """V = dx/dτ of the wave whose strain peaks at B (a symbol B when not given)."""
+        B = sp.Symbol("B", positive=True) if B is None else positive(B, "B")
+        return _root(self.speed_factor) * B ** ((self.k - 1) / 2)
+
+    def amplitude(self, V: Any = V) -> sp.Expr:
+        """B = (V² / speed_factor)^{1/(k-1)}, the peak strain of the wave of speed V = dx/dτ."""
+        return (positive(V, "V") ** 2 / self.speed_factor) ** (1 / (self.k - 1))
+
+    @property
+    def force_exponent(self) -> sp.Expr:
+        """2k/(k-1), the power of V to which the peak force F_m is proportional."""
+        return 2 * self.k / (self.k - 1)
+
+    @property
+    def speed_scale(self) -> sp.Expr:
+        """τ/t: the speed in space and time is dx/dt = V τ/t."""
+        return self.cell.time_scale(self.k)
+
+    def profile(self, xi: sp.Expr, B: Any = None) -> sp.Expr:
+        """v(ξ) = B cos^m(βξ) on |ξ| ≤ π/(2β) and 0 outside, as a SymPy Piecewise."""
+        B = sp.Symbol("B", positive=True) if B is None else positive(B, "B")
+        arch = B * sp.cos(self.beta * xi) ** self.m
+        return sp.Piecewise((arch, sp.Abs(xi) <= self.width / 2), (0, True))
+
+    @cached_property
+    def roots(self) -> tuple[sp.Expr, sp.Expr]:
+        """Both p for which v = z^p removes z_ξ³, the paper's first (2/(k+1) at equal masses)."""
+        quadratic = sp.Poly(sp.cancel(self._derived("cubic") / sp.Symbol("p")), sp.Symbol("p"))
+        A, B, C = (sp.factor(sp.cancel(c / self.D**2)) for c in quadratic.all_coeffs())
+        root = _root(sp.factor(sp.cancel(B**2 - 4 * A * C)))
+        return (sp.together((-B - root) / (2 * A)), sp.together((-B + root) / (2 * A)))
+
+    def _derived(self, name: str) -> sp.Expr:
+        G, H, I = sp.symbols("G H I")
+        return strain_equation()[name].xreplace({G: self.G, H: self.H, I: self.I})
+
+    def reduction(self, root: int = 0, V: Any = V) -> Reduction:
+        """z'' = μ z^η - σ z for one root p (0: the paper's, 1: the other).
+
+        With p the equation reads V² z^p p r_1 = z^{kp} p (r_1 + I r_3 + q r_1 r_2). Since
+        ∂(z^e r_2) = z^e (r_3 + (e - 1) r_1 r_2), the factor z^a, kp + a = e = q/I + 1, makes it
+        a total derivative; integrated once it is the equation of z.
+        """
+        if root not in (0, 1):
+            raise InputError(f"root is {shorten(root)}: 0 or 1 is wanted")
+        p = sp.Symbol("p")
+        exponent = sp.cancel(self._derived("product") / self._derived("third")) + 1  # e
+        slope, constant = sp.Poly(exponent - self.k * p, p).all_coeffs()
+        a = sp.factor(slope) * self.roots[root] + constant
+        return Reduction(k=self.k, I=self.I, p=self.roots[root], a=a, V=positive(V, "V"))
+
+    def at(self, **values: Any) -> TravelingWave:
+        """The same wave with numbers (or other symbols) for the named symbols.
+
+        Raises `lwa.InputError` for a name that the wave does not contain or a value that is not
+        positive, and `NoSolitaryWave` where the values admit none.
+
+        >>> from lwa import Dimer, homogenize
+        >>> wave = homogenize(Dimer("m1", "m2")).pde.traveling_wave()
+        >>> wave.at(k=sp.Rational(3, 2), m1=1, m2=1).beta
+        sqrt(10)/(5*D)
+        """
+        known = {s.name: s for s in self._symbols}
+        for name in values:
+            if name not in known:
+                raise InputError(f"{name!r} is not among the wave's symbols: {', '.join(known)}")
+        new = {known[name]: positive(value, name) for name, value in values.items()}
+        cell = replace(
+            self.cell,
+            masses=tuple(x.xreplace(new) for x in self.cell.masses),
+            stiffnesses=tuple(x.xreplace(new) for x in self.cell.stiffnesses),
+            spacing=self.cell.spacing.xreplace(new),
+        )
+        G, H, I = (c.xreplace(new) for c in (self.G, self.H, self.I))
+        return TravelingWave(cell=cell, k=exponent(self.k.xreplace(new)), G=G, H=H, I=I)
+
+    @property
+    def _symbols(self) -> list[sp.Symbol]:
+        parts = (self.k, *self.cell.masses, *self.cell.stiffnesses, self.D)
+        return sorted(set().union(*(part.free_symbols for part in parts)), key=str)
+
+    def numeric(self, missing: Literal["raise", "nan"] = "raise") -> NumericWave:
+        """Vectorised float64 functions of (k, ω), ω = m2/m1; see `lwa.numeric.NumericWave`.
+
+        Raises `lwa.InputError` unless k and both masses of a two-particle cell are symbols.
+        """
+        from lwa.numeric import NumericWave  # here, so that `import lwa` does not load NumPy
+
+        return NumericWave.of(self, missing)
+
+
+def _root(value: sp.Expr) -> sp.Expr:
+    """√value of a rational expression in positive quantities, squares taken out of the root."""
+    plain, back = sp.posify(value)
+    numerator, denominator = sp.fraction(plain)
+    return (sp.sqrt(numerator) / sp.sqrt(denominator)).xreplace(back)
