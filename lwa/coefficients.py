@@ -201,6 +201,8 @@ class Door:
 
 
 def _as_polynomial(value: sp.Expr, symbols: list[sp.Symbol]) -> sp.Poly | None:
+    if not symbols:  # SymPy would take an irrational number for the generator
+        return None
     try:
         return sp.Poly(value, *symbols, domain="QQ")
     except sp.polys.polyerrors.BasePolynomialError:

@@ -174,6 +174,9 @@ class PDE:
         """The compact wave of the equation truncated at D^{k+3}, in closed form.
 
         Raises `lwa.NoSolitaryWave` where numbers show that there is none, and `lwa.InputError`
-        when the order is below 4 or the branch optical.
+        when the order is below 4, the branch optical, or D^{k+2} does not vanish (the linear
+        closure with unequal contacts), so that the closed form does not apply.
         """
+        if self.closure.order >= 4 and 2 not in self.vanishing:
+            raise InputError("unequal stiffnesses leave a term at D^(k+2): no wave in closed form")
         return TravelingWave(cell=self.cell, k=self.k, G=self.G, H=self.H, I=self.I)

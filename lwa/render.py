@@ -162,6 +162,8 @@ def theory_text(theory: Theory) -> str:
             + (" + …" if theory.order > 4 else "")
         )
         lines += [f"  {name} = {value}" for name, value in found.items()]
+    elif acoustic and theory.order == 1:
+        lines.append("the wave equation starts at D^(k+1), that is at order 2 of the ansatz")
     elif acoustic:
         lines.append("u_ττ = u_x^(k-1) u_xx" + (" + …" if theory.order > 2 else ""))
     else:
@@ -185,8 +187,8 @@ def _consistency_text(theory: Theory) -> list[str]:
         lines += _terms_text(theory, theory.defect)
     if theory.closure.ring.branch == "acoustic" and not theory.pde.conservative:
         lines.append(
-            "the equation is not in conservation form: for unequal masses the linear closure does "
-            "not conserve momentum"
+            "the equation is not in conservation form: for unequal particles the linear closure "
+            "does not conserve momentum"
         )
     return lines
 

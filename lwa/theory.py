@@ -15,8 +15,8 @@ from lwa.coefficients import Coefficients
 from lwa.exact import InputError, shorten
 from lwa.pde import PDE, Terms, terms
 
-HIGHEST_ORDER = 40
-"""Beyond this order the polynomials of a symbolic cell outgrow the memory of a workstation."""
+MOST_TERMS = 1_000_000
+"""What a derivation may grow to, by the estimate of `_affordable`: some gigabytes of memory."""
 
 
 @dataclass(frozen=True)
@@ -104,15 +104,31 @@ def homogenize(
         raise InputError(f"cell is {shorten(cell)}: a Cell such as Dimer(m1, m2) is wanted")
     if isinstance(order, bool) or not isinstance(order, int):
         raise InputError(f"order is {shorten(order)}: an integer from 1 on is wanted")
-    if not 1 <= order <= HIGHEST_ORDER:
-        raise InputError(f"order is {order}: it must be from 1 to {HIGHEST_ORDER}")
+    if order < 1:
+        raise InputError(f"order is {order}: it must be 1 or more")
     _one_of(closure, CLOSURES, "closure")
     _one_of(branch, BRANCHES, "branch")
     k = exponent(k)
     shared = k.free_symbols & set().union(*(x.free_symbols for x in (*cell.masses, cell.spacing)))
     if shared:
         raise InputError(f"{shared.pop()} names both the exponent and a property of the cell")
-    return Theory(linear(Coefficients(cell, k, branch), order))
+    ring = Coefficients(cell, k, branch)
+    _affordable(order, len(ring.names))
+    return Theory(linear(ring, order))
+
+
+def _affordable(order: int, parameters: int) -> None:
+    """Refuse an order whose result would outgrow memory.
+
+    D^{k+n} has at most one monomial per partition of n, and its coefficient at most about n terms
+    per free parameter and power.
+    """
+    terms = int(sp.functions.combinatorial.numbers.partition(min(order, 100))) * order**parameters
+    if terms > MOST_TERMS:
+        raise InputError(
+            f"order is {order}: about {terms:.0e} terms, beyond memory; give numbers for the "
+            "exponent and the cell, or a lower order"
+        )
 
 
 def _one_of(value: str, known: tuple[str, ...], name: str) -> None:

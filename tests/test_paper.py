@@ -1,0 +1,195 @@
+"""The paper, equation by equation.
+
+Porter, Daraio, Herbold, Szelengowicz and Kevrekidis, "Highly nonlinear solitary waves in periodic
+dimer granular chains" (2008). Each test says which statement of the paper it checks; where the
+paper gives a formula, the formula is written here as it stands there.
+"""
+
+import mpmath
+import pytest
+import sympy as sp
+
+from lwa import D, Dimer, homogenize, k
+from lwa.wave import V
+
+m1, m2 = sp.symbols("m1 m2", positive=True)
+omega = sp.Symbol("omega", positive=True)
+M = m1 + m2
+
+
+@pytest.fixture(scope="module")
+def theory():
+    return homogenize(Dimer(m1, m2), order=4)
+
+
+@pytest.fixture(scope="module")
+def wave(theory):
+    return theory.pde.traveling_wave()
+
+
+def same(first, second):
+    """Equality of two expressions as rational functions."""
+    return sp.cancel(sp.together(first - second)) == 0
+
+
+def test_lambda_is_one_or_minus_the_mass_ratio():
+    ratios = {
+        branch: homogenize(Dimer(m1, m2), order=1, branch=branch).amplitude_ratio
+        for branch in ("acoustic", "optical")
+    }
+    assert ratios == {"acoustic": 1, "optical": -m1 / m2}
+
+
+@pytest.mark.parametrize(
+    ("n", "printed"),
+    [
+        (1, 1),
+        (2, m1 / M),
+        (3, (2 * m1 - m2) / (3 * M)),
+        (4, m1 * (m1**2 - m1 * m2 + m2**2) / (3 * M**3)),
+    ],
+)
+def test_coefficients_of_the_ansatz(theory, n, printed):
+    assert same(theory.ansatz[n], printed)
+
+
+def test_at_equal_masses_the_ansatz_is_the_taylor_expansion_of_radius_D(theory):
+    for n, b in theory.ansatz.items():
+        assert b.subs(m2, m1) == 1 / sp.factorial(n)
+
+
+def test_coefficients_of_the_wave_equation(theory):
+    assert same(theory.pde.G, D**2 * (2 - 3 * k + k**2) * m1**2 / (6 * M**2))
+    assert same(theory.pde.H, 2 * D**2 * (k - 1) * (2 * m1**2 + m1 * m2 - m2**2) / (6 * M**2))
+    assert same(theory.pde.I, 2 * D**2 * (m1**2 - m1 * m2 + m2**2) / (6 * M**2))
+
+
+def test_the_wave_equation_has_no_other_terms_up_to_D_k_plus_3(theory):
+    assert set(theory.pde.coefficients) == {2, 3}
+    assert theory.pde.vanishing == (2,)
+    assert set(theory.pde.coefficients[3]) == {((2, 3),), ((2, 1), (3, 1)), ((4, 1),)}
+
+
+def test_rescaled_time(theory):
+    assert sp.simplify(theory.pde.time_scale**2 - 2 * k * D ** (k + 1) / M) == 0
+
+
+def test_the_uniform_chain_has_nesterenkos_equation():
+    # with m1 = m2 the dimer's field obeys the equation of the chain with one particle per cell
+    dimer = homogenize(Dimer(m1, m1), order=8).pde
+    uniform = homogenize(type(dimer.cell)([m1]), order=8).pde
+    for n in range(2, 8):
+        assert dict(dimer.coefficients[n]) == dict(uniform.coefficients[n])
+
+
+def test_integrating_factor_and_the_equation_of_z(wave):
+    p, a = sp.symbols("p a")
+    for root in (0, 1):
+        found = wave.reduction(root)
+        printed_a = 1 - k * p + 3 * (p - 1) + p * wave.H / wave.I
+        assert sp.simplify(found.a - printed_a.subs(p, found.p)) == 0
+        numbers = {k: sp.Rational(7, 4), m1: 3, m2: 2, D: 1, V: 1}
+        printed = {
+            "mu": V**2 / (wave.I * (p + a)),
+            "eta": 1 + p - k * p,
+            "sigma": 1 / (wave.I * (k * p + a)),
+        }
+        for name, formula in printed.items():
+            expected = formula.subs({p: found.p, a: found.a}).subs(numbers)
+            # 40 of 50 digits: the roots are evaluated from nested square roots
+            assert abs(sp.N(getattr(found, name).subs(numbers) - expected, 50)) < 1e-40
+
+
+def test_both_roots_give_the_short_beta(wave):
+    for root in (0, 1):
+        squared = wave.reduction(root).beta ** 2
+        assert sp.simplify(squared.subs(k, sp.Rational(3, 2)) - wave.at(k="3/2").beta ** 2) == 0
+        assert sp.simplify(squared - wave.beta**2) == 0
+
+
+def test_the_page_wide_beta_of_hertz_contacts(wave):
+    Delta = 4 - 4 * omega + 13 * omega**2 - 18 * omega**3 + 9 * omega**4
+    root = sp.Symbol("root")  # √Δ
+
+    def printed(R):
+        front = sp.sqrt(3) * (8 - 5 * omega + 5 * omega**2 - R) / (30 - 8 * omega + 8 * omega**2)
+        above = (1 + omega) ** 2 * (15 - 4 * omega + 4 * omega**2)
+        below = 34 - 42 * omega + 59 * omega**2 - 34 * omega**3 + 17 * omega**4
+        below += (-8 + 5 * omega - 5 * omega**2) * R
+        return front, above / (D**2 * below)
+
+    beta = wave.at(k="3/2", m1=1, m2=omega).beta
+    front, inside = printed(root)
+    numerator = sp.numer(sp.together(front**2 * inside - beta**2))
+    assert sp.rem(sp.expand(numerator), root**2 - Delta, root) == 0  # the squares are equal
+    front, inside = printed(sp.sqrt(Delta))
+    for ratio in ("1/100", "1/2", 1, 3, 1000):  # and so are the signs
+        value = (front * sp.sqrt(inside) / beta).subs({omega: sp.Rational(ratio), D: 1})
+        assert abs(sp.N(value, 50) - 1) < 1e-40
+
+
+def test_equal_masses_extend_to_five_sites(wave):
+    limit = wave.at(k="3/2", m1=1, m2=1)
+    assert limit.beta == sp.sqrt(10) / (5 * D)
+    assert round(float(limit.sites), 1) == 5.0
+
+
+def test_one_light_mass_extends_to_ten_sites(wave):
+    beta = sp.limit(wave.at(k="3/2", m1=1, m2=omega).beta, omega, 0)
+    assert beta == sp.sqrt(10) / (10 * D)
+    assert round(float(sp.pi / (beta * D)), 0) == 10
+
+
+def test_amplitude_and_speed_scale_as_stated(wave):
+    c = sp.Symbol("c", positive=True)
+    ratio = wave.amplitude(c * V) / wave.amplitude(V)
+    assert sp.simplify(sp.expand_log(sp.log(ratio), force=True) - 2 / (k - 1) * sp.log(c)) == 0
+    assert wave.at(k="3/2").force_exponent == 6
+
+
+def test_amplitude_of_the_paper_agrees_with_direct_insertion(wave):
+    numbers = dict(k="8/5", m1=2, m2=3, D=1)
+    at = wave.at(**numbers)
+    for root in (0, 1):
+        ratio = at.reduction(root, V=2).B / at.amplitude(2)
+        assert abs(sp.N(ratio, 50) - 1) < 1e-40
+
+
+def test_the_wave_solves_the_equation_at_fifty_digits(wave):
+    with mpmath.workdps(50):
+        for values in (
+            dict(k="3/2", m1=1, m2=1, D=1),
+            dict(k="3/2", m1="9/20", m2="123/1000", D="119/25000"),
+            dict(k="7/4", m1=1, m2="1/2", D=2),
+            dict(k="11/10", m1=1, m2=4, D=1),
+            dict(k=3, m1=5, m2=1, D=1),
+        ):
+            at = wave.at(**values)
+            V_s = mpmath.mpf(3) / 2
+            B, beta, m, exponent, G, H, I = (
+                mpmath.mpf(sp.N(value, 60))
+                for value in (at.amplitude("3/2"), at.beta, at.m, at.k, at.G, at.H, at.I)
+            )
+            for phase in (mpmath.mpf(1) / 7, mpmath.mpf(-11) / 10, mpmath.mpf(3) / 2):
+                v, dv, d2v, d3v = _derivatives(B, beta, m, phase)
+                right = (
+                    v ** (exponent - 1) * dv
+                    + G * v ** (exponent - 3) * dv**3
+                    + H * v ** (exponent - 2) * dv * d2v
+                    + I * v ** (exponent - 1) * d3v
+                )
+                # 50 digits less the few that the sum of four terms may cancel
+                assert abs(right / (V_s**2 * dv) - 1) < mpmath.mpf(10) ** -44
+
+
+def _derivatives(B, beta, m, phase):
+    """v = B cos^m(βξ) and its first three derivatives at βξ = phase, by mpmath's Taylor series."""
+    series = mpmath.taylor(lambda t: mpmath.cos(t) ** m, phase, 3)
+    return [B * beta**n * mpmath.factorial(n) * c for n, c in enumerate(series)]
+
+
+def test_where_G_plus_H_plus_I_is_not_positive_there_is_no_wave(wave):
+    from lwa import NoSolitaryWave
+
+    with pytest.raises(NoSolitaryWave, match="G\\+H\\+I"):
+        wave.at(k=3, m1=1, m2=100)
