@@ -1,0 +1,62 @@
+"""The coefficient ring and its door to SymPy."""
+
+import sympy as sp
+from flint import fmpq, fmpq_mpoly_ctx
+from hypothesis import given
+from hypothesis import strategies as st
+
+from lwa import Cell
+from lwa.coefficients import Coefficients
+
+m1, m2, A1, A2, k = sp.symbols("m1 m2 A1 A2 k", positive=True)
+
+
+def elements(ring):
+    context = fmpq_mpoly_ctx.get(ring.names or ("unused",), "lex")
+    return ring.masses.elements(context), ring.contacts.elements(context), ring.exponent(context)
+
+
+def through(ring, polynomial):
+    count = len(ring.names)
+    return ring.expression([(tuple(e[:count]), c) for e, c in polynomial.terms()])
+
+
+def test_every_element_comes_back_as_what_it_stands_for():
+    for cell in (
+        Cell([m1, m2]),
+        Cell([m1, m2], stiffnesses=[A1, A2]),
+        Cell([m1, m1, m2], stiffnesses=[A1, A1, A2]),
+        Cell([m1, 2 * m1, m2, 3]),
+        Cell([1, 2, 3], stiffnesses=[1, 2, 2]),
+        Cell([sp.sqrt(2), 1]),
+    ):
+        for exponent in (k, sp.Rational(3, 2)):
+            ring = Coefficients(cell, exponent)
+            fractions, shares, own = elements(ring)
+            expected = [*cell.fractions, *cell.shares(exponent), exponent]
+            for element, value in zip([*fractions, *shares, own], expected, strict=True):
+                assert sp.simplify(through(ring, element) - value) == 0
+
+
+def test_rational_values_need_no_generator():
+    assert Coefficients(Cell([1, 2]), sp.Rational(3, 2)).names == ()
+    assert Coefficients(Cell([m1, 2 * m1]), k).names == ("k",)
+    # 8^(-2/3) = 1/4
+    assert Coefficients(Cell([1, 1], stiffnesses=[1, 8]), sp.Rational(3, 2)).names == ()
+
+
+@given(
+    st.lists(
+        st.tuples(st.tuples(st.integers(0, 3), st.integers(0, 3)), st.fractions(max_denominator=9)),
+        max_size=5,
+    )
+)
+def test_factored_expressions_equal_the_polynomial(terms):
+    ring = Coefficients(Cell([m1, m2]), k)
+    flint_terms = [(e, fmpq(c.numerator, c.denominator)) for e, c in terms]
+    plain = sum(
+        (sp.Rational(c.numerator, c.denominator) * k**i * (m1 / (m1 + m2)) ** j
+         for (i, j), c in terms),
+        sp.Integer(0),
+    )  # fmt: skip
+    assert sp.cancel(ring.expression(flint_terms) - plain) == 0

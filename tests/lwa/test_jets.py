@@ -1,0 +1,113 @@
+"""The jet algebra against calculus on a concrete function."""
+
+from math import factorial
+
+import mpmath
+import pytest
+import sympy as sp
+from hypothesis import given
+from hypothesis import strategies as st
+
+from lwa.jets import JetAlgebra, Power
+
+x, h = sp.symbols("x h")
+BASE = sp.exp(x) + sp.Rational(1, 3) * sp.exp(3 * x)  # any smooth positive base p
+
+
+def at_zero(algebra, f):
+    """A polynomial in the jets, with r_n = ∂^n p/p of `BASE` at x = 0."""
+    values = [BASE.diff(x, n).subs(x, 0) / BASE.subs(x, 0) for n in range(algebra.weight + 1)]
+    return sum(
+        sp.Rational(int(c.p), int(c.q)) * sp.prod(values[n] ** e for n, e in jet)
+        for jet, terms in algebra.terms(f).items()
+        for _, c in terms
+    )
+
+
+@pytest.mark.parametrize("exponent", [0, 1, 3])
+def test_dx_is_the_derivative(exponent):
+    algebra = JetAlgebra((), weight=4)
+    r = algebra.r
+    f = r[1] ** 2 * r[2] - 3 * r[3] + 2
+    as_function = (
+        (BASE.diff(x) / BASE) ** 2 * BASE.diff(x, 2) / BASE - 3 * BASE.diff(x, 3) / BASE + 2
+    )
+    expected = (BASE**exponent * as_function).diff(x) / BASE**exponent
+    assert at_zero(algebra, algebra.dx(f, exponent)) == sp.simplify(expected.subs(x, 0))
+
+
+def test_dx_beyond_the_weight_of_the_algebra_is_an_error():
+    algebra = JetAlgebra((), weight=2)
+    with pytest.raises(ValueError, match="weight 3"):
+        algebra.dx(algebra.r[2], 0)
+
+
+@given(st.integers(2, 5), st.data())
+def test_antiderivative_undoes_dx(weight, data):
+    algebra = JetAlgebra(("k",), weight + 1)
+    k = algebra.context.gens()[0]
+    jets = [sp.utilities.iterables.partitions(weight)]
+    f = algebra.zero
+    for partition in jets[0]:
+        term = algebra.one * data.draw(st.integers(-5, 5))
+        for n, e in partition.items():
+            term = term * algebra.r[n] ** e
+        f = f + term * (k + 1)
+    assert algebra.antiderivative(algebra.dx(f, k), k) == f
+
+
+def test_antiderivative_of_what_is_no_derivative():
+    algebra = JetAlgebra(("k",), weight=4)
+    k, r = algebra.context.gens()[0], algebra.r
+    assert algebra.antiderivative(r[2] ** 2, k) is None
+    assert algebra.antiderivative(r[1] ** 3, k) is None
+    assert algebra.antiderivative(r[1] * r[2], k) is None  # exact only with k r_1^3/2 beside it
+
+
+@pytest.mark.parametrize("exponent", [sp.Rational(3, 2), 3, sp.Rational(1, 3), -2])
+def test_power_series_against_mpmath(exponent):
+    """(1 + X)^k and its shift, order by order, against Taylor series at 40 digits."""
+    order = 6
+    algebra = JetAlgebra((), weight=order)
+    k = algebra.context.constant(0) + _fmpq(exponent)
+    power = Power(algebra, k)
+    for n in range(1, order + 1):
+        power.append(algebra.r[n] * _fmpq(sp.Rational(1, factorial(n + 1))))
+    with mpmath.workdps(60):
+        p = sp.lambdify(x, BASE, "mpmath")
+        # ∫ p over [x, x + D], over D, is p (1 + Σ r_n D^n/(n+1)!)
+        antiderivative = sp.lambdify(x, sp.integrate(BASE, x), "mpmath")
+        e = mpmath.mpf(sp.Rational(exponent).p) / sp.Rational(exponent).q
+
+        def force(D, shift):
+            if D == 0:
+                return p(mpmath.mpf(0)) ** e
+            start = shift * D
+            return ((antiderivative(start + D) - antiderivative(start)) / D) ** e
+
+        for shift in (0, -2):
+            series = _taylor(lambda D, s=shift: force(D, s), order)
+            for n in range(1, order + 1):
+                found = power.Phi[n] + (power.carried(shift, n) if shift else algebra.zero)
+                value = sp.N(at_zero(algebra, found), 60) * sp.N(exponent, 60)
+                expected = series[n] / p(mpmath.mpf(0)) ** e
+                assert abs(mpmath.mpf(value) - expected) < mpmath.mpf(10) ** -30
+
+
+def _fmpq(value):
+    from flint import fmpq
+
+    value = sp.Rational(value)
+    return fmpq(int(value.p), int(value.q))
+
+
+def _taylor(f, order, points=128, radius="1/16"):
+    """Taylor coefficients by Cauchy's integral on a circle: the error falls geometrically."""
+    r = mpmath.mpf(1) / 16
+    values = [f(r * mpmath.expjpi(mpmath.mpf(2 * j) / points)) for j in range(points)]
+    return [
+        mpmath.fsum(
+            v * mpmath.expjpi(-mpmath.mpf(2 * j * n) / points) for j, v in enumerate(values)
+        ).real / points / r**n
+        for n in range(order + 1)
+    ]  # fmt: skip
