@@ -177,6 +177,7 @@ class PDE:
         when the order is below 4, the branch optical, or D^{k+2} does not vanish (the linear
         closure with unequal contacts), so that the closed form does not apply.
         """
-        if self.closure.order >= 4 and 2 not in self.vanishing:
+        wave = TravelingWave(cell=self.cell, k=self.k, G=self.G, H=self.H, I=self.I)
+        if 2 not in self.vanishing:
             raise InputError("unequal stiffnesses leave a term at D^(k+2): no wave in closed form")
-        return TravelingWave(cell=self.cell, k=self.k, G=self.G, H=self.H, I=self.I)
+        return wave

@@ -33,6 +33,8 @@ if TYPE_CHECKING:
 V = sp.Symbol("V_s", positive=True)
 """The speed V_s = dx/dτ, where the caller gives none."""
 
+_LARGE_POWER = 500
+
 QUANTITIES = ("strain", "force", "velocity")
 
 
@@ -212,7 +214,10 @@ class TravelingWave:
 
     def amplitude(self, V: Any = V) -> sp.Expr:
         """B = (V² / speed_factor)^{1/(k-1)}, the peak strain of the wave of speed V = dx/dτ."""
-        return (positive(V, "V") ** 2 / self.speed_factor) ** (1 / (self.k - 1))
+        base, power = positive(V, "V") ** 2 / self.speed_factor, 1 / (self.k - 1)
+        if power.is_number and power > _LARGE_POWER:
+            base = sp.UnevaluatedExpr(base)  # a number of millions of digits otherwise
+        return base**power
 
     @property
     def force_exponent(self) -> sp.Expr:

@@ -1,0 +1,82 @@
+"""The float64 functions against 50 digits."""
+
+import numpy as np
+import pytest
+import sympy as sp
+
+from lwa import Dimer, InputError, NoSolitaryWave, homogenize
+
+WAVE = homogenize(Dimer("m1", "m2")).pde.traveling_wave()
+NUMERIC = WAVE.numeric()
+
+GRID = [
+    (k, w)
+    for k in (1.0009765625, 1.125, 1.5, 1.5625, 2.0, 2.5, 3.0)
+    for w in (1e-6, 0.01, 0.2733, 1.0, 1.5, 40.0)
+]
+
+
+def exact(expression, k, w):
+    wave = WAVE.at(k=sp.Rational(k), m1=1, m2=sp.Rational(w), D=1)
+    return sp.N(expression(wave), 50)
+
+
+@pytest.mark.parametrize(
+    ("function", "expression"),
+    [
+        (NUMERIC.beta, lambda wave: wave.beta),
+        (NUMERIC.width, lambda wave: wave.width),
+        (lambda k, w: NUMERIC.fwhm(k, w, "strain"), lambda wave: wave.fwhm("strain")),
+        (lambda k, w: NUMERIC.fwhm(k, w, "force"), lambda wave: wave.fwhm("force")),
+        (lambda k, w: NUMERIC.speed(k, w, 2.0), lambda wave: wave.speed(2)),
+        (
+            lambda k, w: NUMERIC.log_amplitude(k, w, 2.0),
+            lambda wave: (sp.log(4) - sp.log(wave.speed_factor)) / (wave.k - 1),
+        ),
+    ],
+)
+def test_closed_forms_to_a_few_ulps(function, expression):
+    checked = 0
+    for k, w in GRID:
+        try:
+            reference = exact(expression, k, w)
+        except NoSolitaryWave:
+            with pytest.raises(NoSolitaryWave):
+                function(k, w)
+            continue
+        error = abs(sp.Rational(float(function(k, w))) - reference)
+        # a dozen roundings; no point of this grid lies near a zero of G+H+I or V²
+        assert error <= 32 * np.spacing(abs(float(reference)))
+        checked += 1
+    assert checked > 30
+
+
+def test_arrays_broadcast():
+    k, w = np.array([[1.25], [1.5]]), np.array([0.1, 1.0, 10.0])
+    beta = NUMERIC.beta(k, w)
+    assert beta.shape == (2, 3)
+    assert beta[1, 1] == NUMERIC.beta(1.5, 1.0)
+
+
+def test_missing_waves_raise_or_are_nan_on_request():
+    with pytest.raises(NoSolitaryWave, match=r"k = 3.0, ω = 100.0"):
+        NUMERIC.width([1.5, 3.0], [1.0, 100.0])
+    found = WAVE.numeric(missing="nan").width([1.5, 3.0, 1.0], [1.0, 100.0, 1.0])
+    assert np.isnan(found).tolist() == [False, True, True]
+
+
+def test_bad_input():
+    for arguments in ((np.nan, 1.0), (1.5, np.inf), (1.5, 0.0), (1.5, -1.0)):
+        with pytest.raises(InputError):
+            NUMERIC.beta(*arguments)
+    with pytest.raises(InputError, match="B must be positive"):
+        NUMERIC.speed(1.5, 1.0, B=-1.0)
+    with pytest.raises(InputError, match="symbols k, m1, m2"):
+        WAVE.at(k="3/2").numeric()
+    with pytest.raises(InputError, match="missing"):
+        WAVE.numeric(missing="zero")
+
+
+def test_amplitudes_beyond_float_have_finite_logarithms():
+    assert np.isfinite(NUMERIC.log_amplitude(1 + 1e-9, 1.0, V=2.0))
+    assert NUMERIC.log_amplitude(1 + 1e-9, 1.0, V=2.0) > 1e9

@@ -1,0 +1,80 @@
+"""The wave equation: its form, conservation, lazy coefficients."""
+
+import pytest
+import sympy as sp
+
+from lwa import Cell, D, Dimer, InputError, homogenize
+
+x = sp.Symbol("x")
+
+
+def euler_operator(density, u, order):
+    """Σ (-∂_x)^j ∂density/∂(∂_x^j u), which vanishes exactly for total derivatives."""
+    jets = [u, *(u.diff(x, j) for j in range(1, order + 1))]
+    names = sp.symbols(f"j:{order + 1}")
+    plain = density
+    for name, jet in reversed(list(zip(names, jets, strict=True))):
+        plain = plain.subs(jet, name)
+    back = dict(zip(names, jets, strict=True))
+    return sum(
+        (-1) ** j * plain.diff(name).subs(back).doit().diff(x, j) for j, name in enumerate(names)
+    )
+
+
+@pytest.mark.parametrize(("masses", "conservative"), [((1, 1), True), ((3, 1), False)])
+def test_conservation_form_agrees_with_the_euler_operator(masses, conservative):
+    pde = homogenize(Dimer(*masses), order=4, k=3).pde
+    u = sp.Function("u")(x)
+    residual = euler_operator(pde.right_side(u, x), u, 4)
+    # at a polynomial with all jets alive: an expression that vanishes does so for any field
+    field = 2 * x + x**2 / 3 + x**3 / 5 + x**4 / 7 + x**5 / 11 + x**6 / 13 + x**7 / 17 + x**8 / 19
+    value = residual.subs(u, field).doit().subs(x, sp.Rational(1, 3)).subs(D, 1)
+    assert (sp.simplify(value) == 0) == conservative == pde.conservative
+
+
+def test_the_conservation_condition_of_the_third_order():
+    # G/(k-2) = (H - (k-1)I)/2 makes the equation a conservation law
+    for masses, holds in (((1, 1), True), ((2, 1), False)):
+        pde = homogenize(Dimer(*masses), order=4).pde
+        k = pde.k
+        condition = pde.G / (k - 2) - (pde.H - (k - 1) * pde.I) / 2
+        assert (sp.cancel(condition) == 0) == holds == pde.conservative
+
+
+def test_the_uniform_chain_is_conservative_at_every_order():
+    assert homogenize(Cell(["m"]), order=10).pde.conservative
+
+
+def test_right_side_of_the_linear_chain_is_its_symbol():
+    a = sp.Symbol("a")
+    pde = homogenize(Cell(["m"]), order=7, k=1).pde
+    symbol = sp.expand(pde.right_side(sp.exp(a * x), x) / sp.exp(a * x))
+    # (e^{aD} - 2 + e^{-aD})/D² = Σ 2 a^{2n} D^{2n-2}/(2n)!
+    expected = sum(2 * a ** (2 * n) * D ** (2 * n - 2) / sp.factorial(2 * n) for n in (1, 2, 3))
+    assert sp.expand(symbol - expected) == 0
+
+
+def test_coefficients_are_converted_one_by_one():
+    found = homogenize(Dimer("m1", "m2"), order=6).pde.coefficients[5]
+    assert not found._converted
+    jet = next(iter(found))
+    assert found[jet] is found[jet]
+    assert list(found._converted) == [jet]
+    assert len(found) == 7  # partitions of 5
+    assert all(sum((i - 1) * e for i, e in jet) == 5 for jet in found)
+
+
+def test_G_H_I_need_order_four_and_the_acoustic_branch():
+    with pytest.raises(InputError, match="from order 4 on"):
+        homogenize(Dimer(1, 2), order=3).pde.G  # noqa: B018
+    with pytest.raises(InputError, match="acoustic"):
+        homogenize(Dimer(1, 2), branch="optical").pde.traveling_wave()
+
+
+def test_G_vanishes_at_k_two():
+    assert homogenize(Dimer("m1", "m2"), k=2).pde.G == 0
+
+
+def test_unequal_contacts_have_no_closed_wave_in_the_linear_closure():
+    with pytest.raises(InputError, match="stiffnesses"):
+        homogenize(Dimer(1, 1, stiffnesses=(1, 2)), k=2).pde.traveling_wave()

@@ -1,0 +1,56 @@
+"""One call from cell to theory, and what it refuses."""
+
+import subprocess
+import sys
+
+import pytest
+import sympy as sp
+
+from lwa import Dimer, InputError, homogenize
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (dict(order=0), "order is 0"),
+        (dict(order=-3), "order is -3"),
+        (dict(order=2.5), "order is 2.5"),
+        (dict(order=True), "order is True"),
+        (dict(order=200), "beyond memory"),
+        (dict(k=0), "k is 0"),
+        (dict(k=-1.5), "k is -3/2"),
+        (dict(k=float("nan")), "k is nan"),
+        (dict(k="m1"), "names both"),
+        (dict(k="k*k"), "k is"),
+        (dict(closure="quadratic"), "closure is 'quadratic'"),
+        (dict(branch="transverse"), "branch is 'transverse'"),
+    ],
+)
+def test_senseless_arguments_are_refused(arguments, words):
+    with pytest.raises(InputError, match=words):
+        homogenize(Dimer("m1", "m2"), **arguments)
+
+
+def test_a_cell_is_wanted():
+    with pytest.raises(InputError, match="Dimer"):
+        homogenize((1, 2))
+
+
+def test_floats_enter_as_their_decimals():
+    assert (
+        homogenize(Dimer(0.45, 0.123), k=1.5).pde.I
+        == homogenize(Dimer("9/20", "123/1000"), k="3/2").pde.I
+    )
+    assert not homogenize(Dimer(0.1, 0.7), k=1.1).pde.G.has(sp.Float)
+
+
+def test_importing_lwa_loads_no_numerics():
+    code = (
+        "import sys, lwa; "
+        "print(sorted({'numpy', 'scipy', 'matplotlib', 'numba', 'validation', 'click'} "
+        "& set(sys.modules)))"
+    )
+    result = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True
+    )
+    assert result.stdout.strip() == "[]"
