@@ -258,8 +258,8 @@ class TravelingWave:
             raise InputError(f"root is {shorten(root)}: 0 or 1 is wanted")
         p = sp.Symbol("p")
         exponent = sp.cancel(self._derived("product") / self._derived("third")) + 1  # e
-        slope, constant = sp.Poly(exponent - self.k * p, p).all_coeffs()
-        a = sp.factor(slope) * self.roots[root] + constant
+        linear = sp.Poly(exponent - self.k * p, p)
+        a = sp.factor(linear.nth(1)) * self.roots[root] + linear.nth(0)
         return Reduction(k=self.k, I=self.I, p=self.roots[root], a=a, V=positive(V, "V"))
 
     def at(self, **values: Any) -> TravelingWave:

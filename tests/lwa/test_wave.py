@@ -79,6 +79,8 @@ def test_complex_roots_do_occur_and_leave_beta_real():
     wave = WAVE.at(k=3, m1=1, m2=2)
     assert not any(sp.N(root).is_real for root in wave.roots)
     assert wave.beta.is_real
+    # here H = 0 as well, so that a = (3 - k + H/I) p - 2 does not depend on p
+    assert wave.reduction().a == -2
 
 
 @given(exponents)
