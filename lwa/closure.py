@@ -1,21 +1,27 @@
 """The consistency condition: slaved fields that satisfy the equations of motion order by order.
 
-The particles of a cell share one position x, that of the first one, whose displacement field is
-u; the field of particle i > 0 is slaved to it. In the units of `Cell.time_scale`, with F_i the
-force of contact i over A_eff D^k, the equations of motion of the P particles are
+All displacement fields w_0 … w_{P-1} of a cell are taken at the position x of its first particle
+and expressed by one field φ: w_i = φ + D φ_x S_i, S_i a series in D of polynomials in the jets of
+φ. In the units of `Cell.time_scale`, with F_i the force of contact i over A_eff D^k, the equations
+of motion of the P particles are
 
     P k D μ_i ∂_ττ w_i = F_i(x) - F_{i-1}(x),    F_{-1}(x) = F_{P-1}(x - P D).
 
-``linear`` is the closure of the paper (Porter et al. 2008, eq. 5): for the dimer
-w = λ (u + Σ b_n D^n ∂_x^n u), with the b_n found from the demand that both equations are identical
-at each order. A linear ansatz has one unknown per order, which settles the monomial ∂_x^n u; the
-wave equation is then read off the first equation, and what the second one says otherwise is kept
-as the defect.
+``linear`` is the closure of the paper (Porter et al. 2008, eq. 5): for the dimer, u = w_0 and
+w = w_1 = λ (u + Σ b_n D^n ∂_x^n u), with the b_n found from the demand that both equations are
+identical at each order. A linear ansatz has one unknown per order, which settles the monomial
+∂_x^n u; the wave equation is then read off the first equation, and what the second one says
+otherwise is kept as the defect.
+
+``full`` lets S_i be any polynomial in the jets of φ and of φ_τ. All P equations can then be
+satisfied at every order, and nothing has to be solved for: their sum (momentum) gives the next term
+of the wave equation from lower orders, their partial sums the differences of the contact forces,
+and these the strains.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import factorial
 
 import sympy as sp
@@ -27,16 +33,19 @@ from lwa.exact import InputError
 from lwa.jets import JetAlgebra, Ladder, Power
 
 BRANCHES = ("acoustic", "optical")
-CLOSURES = ("linear",)
+CLOSURES = ("linear", "full")
+FIELDS = ("first", "center")
 
 
 @dataclass(frozen=True)
 class Closure:
     """The solved consistency condition, as polynomials.
 
-    acceleration : E_n. Acoustic: u_ττ = u_x^k Σ_{n≥1} D^{n-1} E_n, E_1 = r_1 = u_xx/u_x.
+    acceleration : E_n. Acoustic: φ_ττ = φ_x^k Σ_{n≥1} D^{n-1} E_n, E_1 = r_1 = φ_xx/φ_x.
         Optical: u_ττ = -u^k Σ_{n≥0} D^n E_n, E_0 = 1, in its own time unit.
-    ansatz : b_n for n = 0 … order, of w = λ Σ b_n D^n ∂_x^n u (polynomials in the parameters).
+    ansatz : b_n, n = 0 … order: the linear part λ Σ b_n D^n ∂_x^n φ of the second particle's
+        field, which is all of it in the linear closure (polynomials in the parameters).
+    slaved : for each particle S_n, n = 0 … order - 1, of w_i = φ + D φ_x Σ D^n S_n (full only).
     defect : E_n by the first equation minus E_n by the second, for the same ansatz.
     """
 
@@ -44,10 +53,12 @@ class Closure:
     algebra: JetAlgebra
     order: int
     name: str
+    field: str
     ratio: sp.Expr
     acceleration: tuple[fmpq_mpoly, ...]
     ansatz: tuple[fmpq_mpoly, ...]
-    defect: tuple[fmpq_mpoly, ...]
+    slaved: tuple[tuple[fmpq_mpoly, ...], ...] = ()
+    defect: tuple[fmpq_mpoly, ...] = ()
 
 
 def amplitude_ratios(cell: Cell) -> dict[str, sp.Expr]:
@@ -69,6 +80,103 @@ def amplitude_ratios(cell: Cell) -> dict[str, sp.Expr]:
         raise AssertionError("w = u moves the chain as a whole and is always a solution")
     slope, constant = optical.all_coeffs()
     return {"acoustic": sp.Integer(1), "optical": sp.cancel(-constant / slope)}
+
+
+def solve(ring: Coefficients, order: int, closure: str, field: str) -> Closure:
+    """The consistency condition by the named closure, for the named field.
+
+    Raises `lwa.InputError` for the combinations that have no solution.
+    """
+    if closure == "linear" and field != "first":
+        raise InputError(
+            f"field is {field!r}: with the linear closure it is 'first', as in the paper"
+        )
+    if closure == "linear":
+        return linear(ring, order)
+    if ring.branch == "acoustic":
+        return full(ring, order, field)
+    if ring.k == 1 and field == "first":
+        return replace(linear(ring, order), name="full")  # the linear chain has a linear closure
+    raise InputError(
+        "the optical branch oscillates at order D^0 and slaves no field algebraically unless "
+        "k = 1: use the linear closure, or k = 1 with the field 'first'"
+    )
+
+
+def full(ring: Coefficients, order: int, field: str = "first") -> Closure:
+    """The closure that satisfies all equations of motion, to D^order in the slaved fields.
+
+    ``field`` says which φ describes the chain: "first", the displacement of the first particle, or
+    "center", the mean Σ μ_i w_i of the sublattice fields at one point, each w_i shifted back to x
+    from where its particle rests in units of strain, x_i = c_0 + … + c_{i-1}.
+    """
+    algebra = JetAlgebra(ring.names, max(order - 1, 1), ring.exponent)
+    P = ring.cell.size
+    k = ring.exponent(algebra.context)
+    mu = ring.masses.elements(algebra.context)
+    c = ring.contacts.elements(algebra.context)
+    positions = [sum(c[:i], algebra.zero) for i in range(P)]
+    weights = mu if field == "center" else [algebra.one] + [algebra.zero] * (P - 1)
+
+    force = [Power(algebra, k) for _ in range(P)]
+    E = Ladder(algebra, k)
+    E.append(algebra.zero)
+    S = [Ladder(algebra, algebra.one) for _ in range(P)]  # w_i = φ + D φ_x S_i
+    for ladder, x in zip(S, positions, strict=True):
+        ladder.append(x)
+    rate = [Ladder(algebra, algebra.half) for _ in range(P)]  # ∂_τ (D φ_x S_i)
+    for ladder in rate:
+        ladder.append(algebra.zero)
+    for n in range(1, order):
+        r_n = algebra.r[n] * fmpq(1, factorial(n + 1))
+        slaved = [algebra.dt(ladder, E, n) for ladder in rate]
+        for i in range(P):
+            rate[i].append(algebra.dt(S[i], E, n))
+        # momentum: the sum of the equations, whose forces cancel but for the cell's ends
+        E_n = -force[-1].carried(-P, n) / P
+        for mu_i, acceleration in zip(mu, slaved, strict=True):
+            E_n = E_n - mu_i * acceleration
+        E.append(E_n)
+        # partial sums: how the strains of the contacts differ from the first one's, Φ_i - Φ_0
+        difference = [algebra.zero]
+        for i in range(1, P):
+            difference.append(difference[-1] + P * mu[i] * (E_n + slaved[i]))
+        differs = [
+            d + force[0].known(n) - F.known(n) for d, F in zip(difference, force, strict=True)
+        ]
+        # all strains of a cell together: w_0(x + PD) - w_0(x)
+        first = r_n * P ** (n + 1) + S[0].carried(P, n)
+        for c_i, d in zip(c, differs, strict=True):
+            first = first - c_i * d
+        for F, d in zip(force, differs, strict=True):
+            F.append(first / P + d)
+        # what φ is: Σ weight_i w_i(x - x_i D) = φ
+        relative = [algebra.zero]
+        for c_i, F in zip(c[:-1], force[:-1], strict=True):
+            relative.append(relative[-1] + c_i * F.X[n])
+        origin = algebra.zero
+        for weight, x, ladder, own in zip(weights, positions, S, relative, strict=True):
+            if not weight.is_zero():
+                moved = (-x) ** (n + 1) * r_n + ladder.carried(-x, n)
+                origin = origin - weight * (own + moved)
+        for ladder, own in zip(S, relative, strict=True):
+            ladder.append(origin + own)
+    b = [algebra.one, *(_linear_part(algebra, S[1], n) for n in range(order))] if P > 1 else []
+    return Closure(
+        ring=ring,
+        algebra=algebra,
+        order=order,
+        name="full",
+        field=field,
+        ratio=sp.Integer(1),
+        acceleration=tuple(E[n] for n in range(order)),
+        ansatz=tuple(b),
+        slaved=tuple(tuple(ladder[n] for n in range(order)) for ladder in S),
+    )
+
+
+def _linear_part(algebra: JetAlgebra, S: Ladder, n: int) -> fmpq_mpoly:
+    return algebra.linear(S[n], n) if n else S[0]
 
 
 def linear(ring: Coefficients, order: int) -> Closure:
@@ -181,6 +289,7 @@ def _closure(
         algebra=algebra,
         order=order,
         name="linear",
+        field="first",
         ratio=sp.Integer(1) if acoustic else amplitude_ratios(ring.cell)["optical"],
         acceleration=tuple(acceleration),
         ansatz=tuple(b),

@@ -1,4 +1,4 @@
-"""The graded differential algebra of the strain: jets, derivatives, shifts and powers.
+"""The graded differential algebra of the strain: jets, derivatives in x and t, shifts and powers.
 
 A field u enters the long-wave equations through a base p (the strain p = u_x; for the optical
 branch p = u itself) and the normalised jets r_n = ∂_x^n p / p, to which the weight n is given. A
@@ -7,88 +7,149 @@ and ∂_x raises the weight by one:
 
     ∂_x (p^e f) = p^e (e r_1 f + Σ_n ∂f/∂r_n (r_{n+1} - r_1 r_n)).
 
-Since every factor D comes with one ∂_x, a series in the spacing D is a list of polynomials, the
-n-th of weight n. Coefficients live in Q[parameters]; polynomials are python-flint's `fmpq_mpoly`.
+The velocity joins with its own jets s_i = ∂_x^i u_τ / p^{(k+1)/2} of weight i (p = u_x), and where
+u_ττ = p^k Σ_j D^{j-1} E_j is known, so is the derivative in time (`JetAlgebra.dt`). Since every
+factor D comes with one ∂_x, a series in the spacing D is a list of polynomials, the n-th of weight
+n. Coefficients live in Q[parameters]; polynomials are python-flint's `fmpq_mpoly`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Sequence
 from math import factorial
+from typing import NamedTuple
 
 from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
-Monomial = tuple[tuple[int, int], ...]
-"""((n, e), …): the product of r_n^e."""
+Powers = tuple[tuple[int, int], ...]
+"""((n, e), …): the product of the n-th jets to the powers e."""
+
+Term = tuple[tuple[int, ...], fmpq]
+"""One term of a coefficient: the exponents of the parameters, and its rational factor."""
+
+
+class Monomial(NamedTuple):
+    """The product of r_n^e over ``x`` and s_n^e over ``t``."""
+
+    x: Powers
+    t: Powers = ()
 
 
 class JetAlgebra:
     """Polynomials in r_1 … r_weight over Q[parameters], with ∂_x.
+
+    With ``exponent``, which gives k as an element of the ring, the jets s_1 … s_weight of the
+    velocity are there too, and ∂_τ.
 
     >>> jets = JetAlgebra((), weight=2)
     >>> jets.dx(jets.r[1], 0)
     -r1^2 + r2
     """
 
-    def __init__(self, parameters: tuple[str, ...], weight: int) -> None:
+    def __init__(
+        self,
+        parameters: tuple[str, ...],
+        weight: int,
+        exponent: Callable[[fmpq_mpoly_ctx], fmpq_mpoly] | None = None,
+    ) -> None:
         self.parameters = parameters
         self.weight = weight
-        names = [*parameters, *(f"r{n}" for n in range(1, weight + 1))]
-        self.context = fmpq_mpoly_ctx.get(names, Ordering.lex)
+        jets = range(1, weight + 1)
+        names = [*parameters, *(f"r{n}" for n in jets)]
+        names += [f"s{n}" for n in jets] if exponent else []
+        self.context = fmpq_mpoly_ctx.get(names, Ordering.degrevlex)
         self.one = self.context.constant(1)
         self.zero = self.context.constant(0)
-        self.r = [self.one, *self.context.gens()[len(parameters) :]]
+        generators = self.context.gens()
+        self._offset = len(parameters)
+        self.r = [self.one, *generators[self._offset : self._offset + weight]]
+        r1 = self.r[1]
+        # generator → (what ∂_x makes of it; what ∂_τ makes of it without E, over p^{(k-1)/2})
+        self._dx = {self._offset + n - 1: self.r[n + 1] - r1 * self.r[n] for n in jets[:-1]}
+        self._dt: dict[int, fmpq_mpoly] = {}
+        self.s: list[fmpq_mpoly] = []
+        if exponent:
+            self.half = (exponent(self.context) + 1) / 2
+            self.s = [self.zero, *generators[self._offset + weight :]]
+            first = self._offset + weight
+            self._dt = {
+                self._offset + n - 1: self.s[n + 1] - self.s[1] * self.r[n] for n in jets[:-1]
+            }
+            for n in jets:
+                if n < weight:
+                    self._dx[first + n - 1] = self.s[n + 1] - self.half * r1 * self.s[n]
+                self._dt[first + n - 1] = -self.half * self.s[1] * self.s[n]
 
     def dx(self, f: fmpq_mpoly, exponent: fmpq_mpoly | int) -> fmpq_mpoly:
         """p^{-e} ∂_x (p^e f), e the exponent."""
-        result = exponent * self.r[1] * f
-        offset = len(self.parameters) - 1
-        for n in range(1, self.weight + 1):
-            slope = f.derivative(offset + n)
+        return self._derivation(exponent * self.r[1] * f, f, self._dx)
+
+    def dt(self, f: Ladder, E: Ladder, n: int) -> fmpq_mpoly:
+        """The n-th term of ∂_τ (p^e Σ_m D^m f_m), over p^{e + (k-1)/2} and one power of D.
+
+        f is a series or the known beginning of one, f_m for m < n; E is the series of
+        u_ττ = p^k Σ_j D^{j-1} E_j, of which E_1 … E_{n-1} enter.
+        """
+        result = self._derivation(f.exponent * self.s[1] * f[n - 1], f[n - 1], self._dt)
+        velocity = self._offset + self.weight - 1
+        for m in range(1, n):
+            for i in range(1, self.weight + 1):
+                slope = f[m].derivative(velocity + i)
+                if not slope.is_zero():
+                    result = result + slope * E.dx(n - m, i)
+        return result
+
+    def _derivation(
+        self, result: fmpq_mpoly, f: fmpq_mpoly, images: dict[int, fmpq_mpoly]
+    ) -> fmpq_mpoly:
+        """result + Σ ∂f/∂g · image(g) over the generators g."""
+        for index in range(self._offset, self.context.nvars()):
+            slope = f.derivative(index)
             if not slope.is_zero():
-                if n == self.weight:
-                    raise ValueError(f"∂_x r_{n} needs an algebra of weight {n + 1} or more")
-                result = result + slope * (self.r[n + 1] - self.r[1] * self.r[n])
+                if index not in images:
+                    name = self.context.name(index)
+                    raise ValueError(f"the derivative of {name} needs an algebra of more weight")
+                result = result + slope * images[index]
         return result
 
     def linear(self, f: fmpq_mpoly, n: int) -> fmpq_mpoly:
         """The coefficient of the monomial r_n, a polynomial in the parameters."""
-        return sum(
-            (coefficient for jet, coefficient in self.split(f) if jet == ((n, 1),)), self.zero
-        )
+        terms = self.terms(f).get(Monomial(((n, 1),)), [])
+        padding = (0,) * (self.context.nvars() - self._offset)
+        return self.context.from_dict({(*e, *padding): c for e, c in terms})
 
-    def split(self, f: fmpq_mpoly) -> Iterator[tuple[Monomial, fmpq_mpoly]]:
-        """The jet monomials of f, each with its coefficient (a polynomial in the parameters)."""
-        for jet, terms in self.terms(f).items():
-            padding = (0,) * self.weight
-            yield jet, self.context.from_dict({(*e, *padding): c for e, c in terms})
-
-    def terms(self, f: fmpq_mpoly) -> dict[Monomial, list[tuple[tuple[int, ...], fmpq]]]:
-        """Jet monomial → the terms (exponents of the parameters, rational) of its coefficient."""
-        count = len(self.parameters)
-        found: dict[Monomial, list[tuple[tuple[int, ...], fmpq]]] = {}
+    def terms(self, f: fmpq_mpoly) -> dict[Monomial, list[Term]]:
+        """The jet monomials of f, each with the terms of its coefficient."""
+        found: dict[Monomial, list[Term]] = {}
+        middle = self._offset + self.weight
         for exponents, coefficient in f.terms():
-            jet = tuple((n, int(e)) for n, e in enumerate(exponents[count:], start=1) if e)
-            found.setdefault(jet, []).append((tuple(map(int, exponents[:count])), coefficient))
+            jets_x, jets_t = exponents[self._offset : middle], exponents[middle:]
+            monomial = Monomial(_powers(jets_x), _powers(jets_t))
+            own = tuple(map(int, exponents[: self._offset]))
+            found.setdefault(monomial, []).append((own, coefficient))
         return found
 
     def antiderivative(self, f: fmpq_mpoly, exponent: fmpq_mpoly) -> fmpq_mpoly | None:
         """g with ∂_x (p^e g) = p^e f, for f of weight 2 or more; None where there is none.
 
-        The highest jet r_n of a total derivative stands in it linearly, and its coefficient is the
-        slope of g in r_{n-1}; taking that off lowers the highest jet, down to r_1.
+        The highest jet of a total derivative stands in it linearly, and its coefficient is the
+        slope of g in the jet below; taking that off lowers the highest jet, first of the velocity,
+        then of the strain.
         """
-        offset = len(self.parameters) - 1
         total = self.zero
-        for n in range(self.weight, 1, -1):
-            slope = f.derivative(offset + n)
+        for index in reversed(range(self._offset, self.context.nvars())):
+            slope = f.derivative(index)
             if slope.is_zero():
                 continue
-            if not slope.derivative(offset + n).is_zero():
+            if index - 1 not in self._dx or not slope.derivative(index).is_zero():
                 return None
-            part = slope.integral(offset + n - 1)
+            part = slope.integral(index - 1)
             total, f = total + part, f - self.dx(part, exponent)
         return total if f.is_zero() else None
+
+
+def _powers(exponents: Sequence[int]) -> Powers:
+    return tuple((n, int(e)) for n, e in enumerate(exponents, start=1) if e)
 
 
 class Ladder:
@@ -108,6 +169,13 @@ class Ladder:
     def append(self, f_n: fmpq_mpoly) -> None:
         """Give the next term of the series."""
         self._rungs.append([f_n])
+
+    def carried(self, h: fmpq_mpoly | int, n: int) -> fmpq_mpoly:
+        """What the shift by hD adds at D^n: Σ_{0<j≤n} h^j/j! ∂_x^j f_{n-j}."""
+        total = self.algebra.zero
+        for j in range(1, n + 1):
+            total = total + self.dx(n - j, j) * (self.algebra.one * h**j * fmpq(1, factorial(j)))
+        return total
 
     def dx(self, n: int, j: int) -> fmpq_mpoly:
         """p^{-e} ∂_x^j (p^e f_n)."""
@@ -149,12 +217,8 @@ class Power:
         self.X.append(X_n)
 
     def carried(self, h: int, n: int) -> fmpq_mpoly:
-        """The difference that the shift by hD makes to p^k (1 + kΦ) at D^n, over k p^k.
+        """What the shift by hD adds to p^k (1 + kΦ) at D^n, over k p^k.
 
-        Beside Φ_n itself, e^{hD∂_x} p^k (1 + kΦ) has there k p^k times
-        Σ_{0<j<n} h^j/j! ∂^j Φ_{n-j} and, from the leading 1, h^n/n! ∂^{n-1} r_1.
+        From the leading 1 it is h^n/n! ∂_x^{n-1} r_1.
         """
-        total = self._one.dx(0, n - 1) * fmpq(h**n, factorial(n))
-        for j in range(1, n):
-            total = total + self.Phi.dx(n - j, j) * fmpq(h**j, factorial(j))
-        return total
+        return self.Phi.carried(h, n) + self._one.dx(0, n - 1) * fmpq(h**n, factorial(n))

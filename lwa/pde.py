@@ -16,31 +16,44 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import sympy as sp
-from flint import fmpq, fmpq_mpoly
+from flint import fmpq_mpoly
 
 from lwa.cell import Cell
 from lwa.closure import Closure
 from lwa.coefficients import Coefficients
 from lwa.exact import InputError
+from lwa.jets import Term
 from lwa.wave import TravelingWave
 
-Jet = tuple[tuple[int, int], ...]
-"""((i, e), …): the product of (∂_x^i u / base)^e; the base is u_x, on the optical branch u."""
+Powers = tuple[tuple[int, int], ...]
+
+
+class Jet(NamedTuple):
+    """The product of (∂_x^i u / base)^e over ``x`` and (∂_x^i u_τ / base^{(k+1)/2})^e over ``t``.
+
+    Both are tuples of (i, e). The base is u_x, on the optical branch u.
+    """
+
+    x: Powers
+    t: Powers = ()
 
 
 class Terms(Mapping[Jet, sp.Expr]):
-    """Jet → coefficient at one order; a coefficient becomes SymPy when it is looked up."""
+    """Jet → coefficient at one order; a coefficient becomes SymPy when it is looked up.
 
-    def __init__(
-        self, ring: Coefficients, raw: dict[Jet, list[tuple[tuple[int, ...], fmpq]]]
-    ) -> None:
+    A jet without u_τ may also be given by its plain tuple, as in ``terms[(2, 1), (3, 1)]``.
+    """
+
+    def __init__(self, ring: Coefficients, raw: dict[Jet, list[Term]]) -> None:
         self._ring = ring
         self._raw = raw
         self._converted: dict[Jet, sp.Expr] = {}
 
-    def __getitem__(self, jet: Jet) -> sp.Expr:
+    def __getitem__(self, jet: Jet | Powers) -> sp.Expr:
+        jet = jet if isinstance(jet, Jet) else Jet(jet)
         if jet not in self._converted:
             self._converted[jet] = self._ring.expression(self._raw[jet])
         return self._converted[jet]
@@ -59,7 +72,7 @@ def terms(closure: Closure, polynomial: fmpq_mpoly) -> Terms:
     """A polynomial of the closure's algebra as jets of the field with their coefficients."""
     base = base_order(closure)
     raw = {
-        tuple((n + base, e) for n, e in monomial): coefficient
+        Jet(tuple((n + base, e) for n, e in monomial.x), monomial.t): coefficient
         for monomial, coefficient in closure.algebra.terms(polynomial).items()
     }
     return Terms(closure.ring, dict(sorted(raw.items(), key=lambda item: _complexity(item[0]))))
@@ -70,8 +83,8 @@ def base_order(closure: Closure) -> int:
     return 1 if closure.ring.branch == "acoustic" else 0
 
 
-def _complexity(jet: Jet) -> tuple[int, Jet]:
-    return -sum(e for _, e in jet), jet
+def _complexity(jet: Jet) -> tuple[bool, int, Jet]:
+    return bool(jet.t), -sum(e for _, e in jet.x), jet
 
 
 @dataclass(frozen=True)
@@ -111,14 +124,14 @@ class PDE:
         acceleration = enumerate(self.closure.acceleration)
         return {n: terms(self.closure, sign * E) for n, E in acceleration if n > base}
 
-    def _at_third_order(self, jet: Jet) -> sp.Expr:
+    def _at_third_order(self, jet: Powers) -> sp.Expr:
         if self.closure.ring.branch != "acoustic":
             raise InputError("G, H and I belong to the acoustic branch")
         if self.closure.order < 4:
             raise InputError(
                 f"order is {self.closure.order}: G, H and I stand at D^(k+3), from order 4 on"
             )
-        return self.coefficients[3].get(jet, sp.Integer(0)) * self.cell.spacing**2
+        return self.coefficients[3].get(Jet(jet), sp.Integer(0)) * self.cell.spacing**2
 
     @cached_property
     def G(self) -> sp.Expr:
@@ -150,8 +163,8 @@ class PDE:
         higher = self.closure.acceleration[2:]
         return all(algebra.antiderivative(E, k) is not None for E in higher)
 
-    def right_side(self, u: sp.Expr, x: sp.Symbol) -> sp.Expr:
-        """The right-hand side of u_ττ for a field u(x), as a SymPy expression.
+    def right_side(self, u: sp.Expr, x: sp.Symbol, velocity: sp.Expr = sp.S.Zero) -> sp.Expr:
+        """The right-hand side of u_ττ for fields u(x) and u_τ(x), as a SymPy expression.
 
         >>> from lwa import homogenize, Cell
         >>> x = sp.Symbol("x")
@@ -164,10 +177,10 @@ class PDE:
         result = base ** (k - 1) * u.diff(x, 2) if base_derivative else -(base**k)
         for n, found in self.coefficients.items():
             for jet, coefficient in found.items():
-                product = sp.Mul(*(u.diff(x, i) ** e for i, e in jet))
-                degree = sum(e for _, e in jet)
-                power = D ** (n - base_derivative) * base ** (k - degree)
-                result += coefficient * power * product
+                product = sp.Mul(*(u.diff(x, i) ** e for i, e in jet.x))
+                product *= sp.Mul(*(velocity.diff(x, i) ** e for i, e in jet.t))
+                degree = sum(e for _, e in jet.x) + (k + 1) / 2 * sum(e for _, e in jet.t)
+                result += coefficient * D ** (n - base_derivative) * base ** (k - degree) * product
         return result
 
     def traveling_wave(self) -> TravelingWave:

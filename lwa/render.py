@@ -106,8 +106,8 @@ def _terms_json(coefficients: Mapping[int, Terms]) -> list[dict[str, Any]]:
     return [
         {
             "order": n,
-            "jet": [list(power) for power in jet],
-            "jet_t": [],
+            "jet": [list(power) for power in jet.x],
+            "jet_t": [list(power) for power in jet.t],
             "coefficient": str(found[jet]),
         }
         for n, found in coefficients.items()
@@ -207,9 +207,12 @@ def _terms_text(theory: Theory, coefficients: Mapping[int, Terms]) -> list[str]:
 
 def _jet_text(theory: Theory, jet: Jet) -> str:
     """The monomial of a jet as it stands in the equation, such as u_x^(k-3) u_xx^3."""
-    base, degree = "u_x" if base_order(theory.closure) else "u", sum(e for _, e in jet)
-    factors = [f"u_{i}x" + (f"^{e}" if e > 1 else "") for i, e in jet]
-    return " ".join([f"{base}^(k-{degree})", *factors])
+    base, degree = "u_x" if base_order(theory.closure) else "u", sum(e for _, e in jet.x)
+    velocities = sum(e for _, e in jet.t)
+    power = f"k-{degree}" + (f"-{velocities // 2}(k+1)" if velocities else "")
+    factors = [f"u_{i}x" + (f"^{e}" if e > 1 else "") for i, e in jet.x]
+    factors += [f"u_{i}xτ" + (f"^{e}" if e > 1 else "") for i, e in jet.t]
+    return " ".join([f"{base}^({power})", *factors])
 
 
 def wave_text(theory: Theory, wave: TravelingWave) -> str:
@@ -293,12 +296,12 @@ def theory_python(theory: Theory) -> str:
     rows = [f"def coefficients({symbols}):", f'    """{_TABLE}"""', "    return {"]
     for n, found in table.items():
         rows.append(f"        {n}: {{")
-        rows += [f"            {jet}: {sp.pycode(value)}," for jet, value in found.items()]
+        rows += [f"            {tuple(jet)}: {sp.pycode(value)}," for jet, value in found.items()]
         rows.append("        },")
     return _module(functions, [*rows, "    }"])
 
 
-_TABLE = "{n: {((i, e), ...): coefficient}} of the orders D^(k+n), without the power of D."
+_TABLE = "{n: {(jet, jet_t): coefficient}} of the orders D^(k+n), without the power of D."
 
 
 def wave_python(theory: Theory, wave: TravelingWave) -> str:

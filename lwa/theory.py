@@ -10,9 +10,10 @@ import sympy as sp
 
 from lwa.cell import Cell, exponent
 from lwa.cell import k as symbol_k
-from lwa.closure import BRANCHES, CLOSURES, Closure, linear
+from lwa.closure import BRANCHES, CLOSURES, FIELDS, Closure, solve
 from lwa.coefficients import Coefficients
 from lwa.exact import InputError, shorten
+from lwa.jets import Monomial
 from lwa.pde import PDE, Terms, terms
 
 MOST_TERMS = 1_000_000
@@ -47,12 +48,25 @@ class Theory:
 
     @cached_property
     def ansatz(self) -> dict[int, sp.Expr]:
-        """n → b_n of w = λ (u + Σ b_n D^n ∂_x^n u); empty for a cell of one particle."""
+        """n → b_n of w = λ (u + Σ b_n D^n ∂_x^n u); empty for a cell of one particle.
+
+        In the full closure w, the field of the second particle, has nonlinear terms besides; all
+        of them are in `slaved`.
+        """
         algebra, ring = self.closure.algebra, self.closure.ring
         return {
-            n: ring.expression(algebra.terms(b).get((), []))
+            n: ring.expression(algebra.terms(b).get(Monomial(()), []))
             for n, b in enumerate(self.closure.ansatz)
             if n > 0
+        }
+
+    @cached_property
+    def slaved(self) -> dict[int, dict[int, Terms]]:
+        """Particle i → n → the terms W_n of w_i = u + u_x Σ D^n W_n, full closure (u the field)."""
+        return {
+            i: {n: terms(self.closure, S) for n, S in enumerate(series, start=1)}
+            for i, series in enumerate(self.closure.slaved)
+            if any(not S.is_zero() for S in series)
         }
 
     @cached_property
@@ -79,6 +93,7 @@ def homogenize(
     k: Any = symbol_k,
     closure: str = "linear",
     branch: str = "acoustic",
+    field: str = "first",
 ) -> Theory:
     """Derive the long-wave theory of a chain.
 
@@ -87,8 +102,11 @@ def homogenize(
     cell : the periodic cell.
     order : highest power N of D in the ansatz; the wave equation then reaches D^{k+N-1}.
     k : exponent of the contact law, a number or a symbol.
-    closure : "linear", the paper's.
+    closure : "linear", the paper's, or "full", which satisfies every equation of motion.
     branch : "acoustic" (neighbours move together) or "optical" (against each other).
+    field : what the wave equation is about: "first", the first particle's displacement, or
+        "center", the canonical field, the mass-weighted mean of the sublattice fields at one point
+        (full closure).
 
     Raises `lwa.InputError` for values that make no sense or that the closure does not cover.
 
@@ -108,13 +126,14 @@ def homogenize(
         raise InputError(f"order is {order}: it must be 1 or more")
     _one_of(closure, CLOSURES, "closure")
     _one_of(branch, BRANCHES, "branch")
+    _one_of(field, FIELDS, "field")
     k = exponent(k)
     shared = k.free_symbols & set().union(*(x.free_symbols for x in (*cell.masses, cell.spacing)))
     if shared:
         raise InputError(f"{shared.pop()} names both the exponent and a property of the cell")
     ring = Coefficients(cell, k, branch)
     _affordable(order, len(ring.names))
-    return Theory(linear(ring, order))
+    return Theory(solve(ring, order, closure, field))
 
 
 def _affordable(order: int, parameters: int) -> None:

@@ -25,7 +25,7 @@ import sympy as sp
 
 from lwa.cell import Cell, exponent
 from lwa.exact import InputError, positive, shorten
-from lwa.jets import JetAlgebra
+from lwa.jets import JetAlgebra, Monomial
 
 if TYPE_CHECKING:
     from lwa.numeric import NumericWave
@@ -69,16 +69,20 @@ def strain_equation() -> dict[str, sp.Expr]:
     right = v[1] + G * v[1] ** 3 + H * v[1] * v[2] + I * v[3]
     symbols = sp.symbols("p G H I")
     monomials = {
-        ((1, 1),): "linear",
-        ((1, 3),): "cubic",
-        ((1, 1), (2, 1)): "product",
-        ((3, 1),): "third",
+        "linear": ((1, 1),),
+        "cubic": ((1, 3),),
+        "product": ((1, 1), (2, 1)),
+        "third": ((3, 1),),
     }
+    found = jets.terms(right)
     return {
-        monomials[jet]: sp.Add(
-            *(sp.Rational(int(c.p), int(c.q)) * sp.Mul(*map(sp.Pow, symbols, e)) for e, c in terms)
+        name: sp.Add(
+            *(
+                sp.Rational(int(c.p), int(c.q)) * sp.Mul(*map(sp.Pow, symbols, e))
+                for e, c in found[Monomial(monomial)]
+            )
         )
-        for jet, terms in jets.terms(right).items()
+        for name, monomial in monomials.items()
     }
 
 

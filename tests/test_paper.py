@@ -10,6 +10,7 @@ import pytest
 import sympy as sp
 
 from lwa import D, Dimer, homogenize, k
+from lwa.pde import Jet
 from lwa.wave import V
 
 m1, m2 = sp.symbols("m1 m2", positive=True)
@@ -67,7 +68,11 @@ def test_coefficients_of_the_wave_equation(theory):
 def test_the_wave_equation_has_no_other_terms_up_to_D_k_plus_3(theory):
     assert set(theory.pde.coefficients) == {2, 3}
     assert theory.pde.vanishing == (2,)
-    assert set(theory.pde.coefficients[3]) == {((2, 3),), ((2, 1), (3, 1)), ((4, 1),)}
+    assert set(theory.pde.coefficients[3]) == {
+        Jet(((2, 3),)),
+        Jet(((2, 1), (3, 1))),
+        Jet(((4, 1),)),
+    }
 
 
 def test_rescaled_time(theory):

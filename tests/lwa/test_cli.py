@@ -123,7 +123,7 @@ def test_python_source_computes_what_the_theory_says(capsys, command):
         )
         assert module["H"](**values) == pytest.approx(float(expected), rel=1e-14)
         table = module["coefficients"](values["k"], values["m1"], values["m2"])
-        assert table[3][((2, 1), (3, 1))] * values["D"] ** 2 == pytest.approx(float(expected))
+        assert table[3][((2, 1), (3, 1)), ()] * values["D"] ** 2 == pytest.approx(float(expected))
     else:
         wave = theory.pde.traveling_wave().at(k=1.75, m1=2, m2=3, D=0.5)
         assert module["beta"](**values) == pytest.approx(float(wave.beta), rel=1e-14)

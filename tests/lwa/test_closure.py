@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 
 from lwa import Cell, Dimer, InputError, homogenize
 from lwa.closure import amplitude_ratios
+from lwa.pde import Jet
 
 masses = st.fractions(min_value="1/20", max_value=20, max_denominator=20)
 
@@ -63,7 +64,7 @@ def evaluate(terms):
     total = mpmath.mpf(0)
     for jet, coefficient in terms.items():
         product = mpmath.mpf(sp.N(coefficient, 60))
-        for i, e in jet:
+        for i, e in jet.x:
             product *= (derivative(i) / derivative(1)) ** e
         total += product
     return total
@@ -117,11 +118,11 @@ def ansatz_on_second(theory, ansatz, n):
     total = mpmath.mpf(0)
     for j in range(1, n):
         order = n - j
-        parts = dict(theory.pde.coefficients.get(order, {})) if order > 1 else {((2, 1),): 1}
+        parts = dict(theory.pde.coefficients.get(order, {})) if order > 1 else {Jet(((2, 1),)): 1}
         for jet, value in theory.defect.get(order, {}).items():
             parts[jet] = parts.get(jet, 0) - value
         field = sum(
-            c * sp.prod((u.diff(x, i) / base) ** e for i, e in jet) for jet, c in parts.items()
+            c * sp.prod((u.diff(x, i) / base) ** e for i, e in jet.x) for jet, c in parts.items()
         )
         slope = (base**theory.k * field).diff(x, j) / base**theory.k
         total += ansatz[j] * mpmath.mpf(sp.N(slope.subs(x, 0), 60))
@@ -170,7 +171,7 @@ def test_k_equal_one_is_the_exact_dispersion_relation_to_order_12(branch, m1, m2
     s[0 if branch == "optical" else 2] = Fraction(-1 if branch == "optical" else 1)
     for n, terms in theory.pde.coefficients.items():
         for jet, coefficient in terms.items():
-            ((i, e),) = jet  # at k = 1 nothing but linear terms is left
+            ((i, e),) = jet.x  # at k = 1 nothing but linear terms is left
             assert e == 1
             s[i] += fraction(coefficient)
             assert i == n + (branch == "acoustic")
@@ -224,7 +225,7 @@ def test_the_defect_is_what_the_second_equation_says_less_of_G_and_H():
     terms = theory.pde.coefficients[3]
     assert sp.cancel(terms[((2, 3),)] - theory.defect[3][((2, 3),)] - G2) == 0
     assert sp.cancel(terms[((2, 1), (3, 1))] - theory.defect[3][((2, 1), (3, 1))] - H2) == 0
-    assert set(theory.defect[3]) == {((2, 3),), ((2, 1), (3, 1))}
+    assert set(theory.defect[3]) == {Jet(((2, 3),)), Jet(((2, 1), (3, 1)))}
 
 
 @given(masses, masses, st.fractions(min_value="1/3", max_value=5, max_denominator=7))
@@ -267,7 +268,7 @@ def test_unequal_springs_have_their_dispersion_relation(branch):
     A1, A2 = cell.stiffnesses
     s = q**2 if branch == "acoustic" else sp.Integer(-1)
     for terms in theory.pde.coefficients.values():
-        s += sum(coefficient * q ** jet[0][0] for jet, coefficient in terms.items())
+        s += sum(coefficient * q ** jet.x[0][0] for jet, coefficient in terms.items())
     s *= sp.simplify(theory.pde.time_scale**2)
     relation = m1 * m2 * s**2 + (A1 + A2) * (m1 + m2) * s
     relation += A1 * A2 * (2 - sp.exp(2 * q) - sp.exp(-2 * q)).series(q, 0, 7).removeO()

@@ -61,7 +61,7 @@ def test_coefficients_are_converted_one_by_one():
     assert found[jet] is found[jet]
     assert list(found._converted) == [jet]
     assert len(found) == 7  # partitions of 5
-    assert all(sum((i - 1) * e for i, e in jet) == 5 for jet in found)
+    assert all(sum((i - 1) * e for i, e in jet.x) == 5 for jet in found)
 
 
 def test_G_H_I_need_order_four_and_the_acoustic_branch():
