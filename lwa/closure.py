@@ -141,9 +141,7 @@ def full(ring: Coefficients, order: int, field: str = "first") -> Closure:
         difference = [algebra.zero]
         for i in range(1, P):
             difference.append(difference[-1] + P * mu[i] * (E_n + slaved[i]))
-        differs = [
-            d + force[0].known(n) - F.known(n) for d, F in zip(difference, force, strict=True)
-        ]
+        differs = [d + force[0].known - F.known for d, F in zip(difference, force, strict=True)]
         # all strains of a cell together: w_0(x + PD) - w_0(x)
         first = r_n * P ** (n + 1) + S[0].carried(P, n)
         for c_i, d in zip(c, differs, strict=True):
@@ -220,7 +218,7 @@ def _acoustic(ring: Coefficients, order: int) -> Closure:
     for n in range(1, order):
         # The strains of both contacts sum to u(x + 2D) - u(x). Let theirs differ by ξ r_n at D^n;
         # each equation is written as far as it is known, and its ξ r_n has the weight ±1.
-        known = right.known(n) - left.known(n)
+        known = right.known - left.known
         one, two = known - left.carried(-2, n), -known
         condition = mu[1] * one - mu[0] * two + 2 * mu[0] * mu[1] * _applied(b, first, n)
         xi = -algebra.linear(condition, n)

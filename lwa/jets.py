@@ -91,13 +91,16 @@ class JetAlgebra:
         u_ττ = p^k Σ_j D^{j-1} E_j, of which E_1 … E_{n-1} enter.
         """
         result = self._derivation(f.exponent * self.s[1] * f[n - 1], f[n - 1], self._dt)
-        velocity = self._offset + self.weight - 1
         for m in range(1, n):
-            for i in range(1, self.weight + 1):
-                slope = f[m].derivative(velocity + i)
-                if not slope.is_zero():
-                    result = result + slope * E.dx(n - m, i)
+            for i, slope in f.velocity_slopes(m):
+                result = result + slope * E.dx(n - m, i)
         return result
+
+    def velocity_slopes(self, f: fmpq_mpoly) -> list[tuple[int, fmpq_mpoly]]:
+        """(i, ∂f/∂s_i) for the s_i that stand in f."""
+        start = self._offset + self.weight - 1
+        slopes = ((i, f.derivative(start + i)) for i in range(1, self.weight + 1))
+        return [(i, slope) for i, slope in slopes if not slope.is_zero()]
 
     def _derivation(
         self, result: fmpq_mpoly, f: fmpq_mpoly, images: dict[int, fmpq_mpoly]
@@ -113,10 +116,8 @@ class JetAlgebra:
         return result
 
     def linear(self, f: fmpq_mpoly, n: int) -> fmpq_mpoly:
-        """The coefficient of the monomial r_n, a polynomial in the parameters."""
-        terms = self.terms(f).get(Monomial(((n, 1),)), [])
-        padding = (0,) * (self.context.nvars() - self._offset)
-        return self.context.from_dict({(*e, *padding): c for e, c in terms})
+        """The coefficient of r_n in f of weight n: no other jet can stand beside it."""
+        return f.derivative(self._offset + n - 1)
 
     def terms(self, f: fmpq_mpoly) -> dict[Monomial, list[Term]]:
         """The jet monomials of f, each with the terms of its coefficient."""
@@ -159,6 +160,7 @@ class Ladder:
         self.algebra = algebra
         self.exponent = exponent
         self._rungs: list[list[fmpq_mpoly]] = []
+        self._velocity_slopes: dict[int, list[tuple[int, fmpq_mpoly]]] = {}
 
     def __len__(self) -> int:
         return len(self._rungs)
@@ -174,7 +176,7 @@ class Ladder:
         """What the shift by hD adds at D^n: Σ_{0<j≤n} h^j/j! ∂_x^j f_{n-j}."""
         total = self.algebra.zero
         for j in range(1, n + 1):
-            total = total + self.dx(n - j, j) * (self.algebra.one * h**j * fmpq(1, factorial(j)))
+            total = total + self.dx(n - j, j) * (h**j * fmpq(1, factorial(j)))
         return total
 
     def dx(self, n: int, j: int) -> fmpq_mpoly:
@@ -183,6 +185,12 @@ class Ladder:
         while len(rungs) <= j:
             rungs.append(self.algebra.dx(rungs[-1], self.exponent))
         return rungs[j]
+
+    def velocity_slopes(self, n: int) -> list[tuple[int, fmpq_mpoly]]:
+        """`JetAlgebra.velocity_slopes` of f_n."""
+        if n not in self._velocity_slopes:
+            self._velocity_slopes[n] = self.algebra.velocity_slopes(self[n])
+        return self._velocity_slopes[n]
 
 
 class Power:
@@ -193,7 +201,7 @@ class Power:
         Φ_n = X_n + (1/n) Σ_{j<n} (k j - (n - j)) X_j Φ_{n-j},
 
     polynomial in k and without a division by it. p^k (1 + X)^k is the force of a contact whose
-    strain is p (1 + X).
+    strain is p (1 + X). X and Phi hold the terms so far.
     """
 
     def __init__(self, algebra: JetAlgebra, k: fmpq_mpoly) -> None:
@@ -203,18 +211,24 @@ class Power:
         self.Phi.append(algebra.zero)
         self._one = Ladder(algebra, k)
         self._one.append(algebra.r[1])
+        self._known: fmpq_mpoly | None = None
 
-    def known(self, n: int) -> fmpq_mpoly:
-        """Φ_n - X_n, which depends on X_1 … X_{n-1} only."""
-        total = self.Phi[0]
-        for j in range(1, n):
-            total = total + (self.k * j - (n - j)) * self.X[j] * self.Phi[n - j]
-        return total / n
+    @property
+    def known(self) -> fmpq_mpoly:
+        """Of the next Φ_n the part Φ_n - X_n, which depends on X_1 … X_{n-1} only."""
+        if self._known is None:
+            n = len(self.X)
+            total = self.Phi[0]
+            for j in range(1, n):
+                total = total + (self.k * j - (n - j)) * self.X[j] * self.Phi[n - j]
+            self._known = total / n
+        return self._known
 
     def append(self, X_n: fmpq_mpoly) -> None:
         """Give the next term of X."""
-        self.Phi.append(X_n + self.known(len(self.X)))
+        self.Phi.append(X_n + self.known)
         self.X.append(X_n)
+        self._known = None
 
     def carried(self, h: int, n: int) -> fmpq_mpoly:
         """What the shift by hD adds to p^k (1 + kΦ) at D^n, over k p^k.
