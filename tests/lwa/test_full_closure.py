@@ -1,0 +1,198 @@
+"""The full closure, put into every equation of motion by code that shares nothing with it.
+
+The field is a power series in (x, D, τ) with rational coefficients, truncated; the theory's wave
+equation gives its acceleration and the slaved fields the particles' motion; the lattice's equations
+are then evaluated term by term. Where the contact exponent k is an odd integer everything stays
+rational, so that zero means zero.
+"""
+
+from fractions import Fraction
+
+import pytest
+import sympy as sp
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from lwa import Cell, Dimer, InputError, homogenize
+
+TAU = 2  # the second derivative in τ is wanted
+
+
+class Series:
+    """Σ c x^i D^j τ^l, truncated at i + j ≤ degree and l ≤ TAU."""
+
+    def __init__(self, degree, terms=()):
+        self.degree = degree
+        self.terms = {e: c for e, c in dict(terms).items() if c and e[0] + e[1] <= degree}
+
+    def __add__(self, other):
+        terms = dict(self.terms)
+        for e, c in other.terms.items():
+            terms[e] = terms.get(e, 0) + c
+        return Series(min(self.degree, other.degree), terms)
+
+    def __sub__(self, other):
+        return self + other * Fraction(-1)
+
+    def __mul__(self, other):
+        if not isinstance(other, Series):
+            return Series(self.degree, {e: c * other for e, c in self.terms.items()})
+        degree = min(self.degree, other.degree)
+        terms = {}
+        for (i, j, m), a in self.terms.items():
+            for (p, q, n), b in other.terms.items():
+                if i + j + p + q <= degree and m + n <= TAU:
+                    e = (i + p, j + q, m + n)
+                    terms[e] = terms.get(e, 0) + a * b
+        return Series(degree, terms)
+
+    def __pow__(self, n):
+        result = Series(self.degree, {(0, 0, 0): Fraction(1)})
+        for _ in range(n):
+            result = result * self
+        return result
+
+    def dx(self, times=1):
+        """∂_x^times; each costs a degree."""
+        if times == 0:
+            return self
+        terms = {(i - 1, j, m): c * i for (i, j, m), c in self.terms.items() if i}
+        return Series(self.degree - 1, terms).dx(times - 1)
+
+    def inverse(self):
+        constant = self.terms[0, 0, 0]
+        rest = Series(self.degree, {e: -c / constant for e, c in self.terms.items() if any(e)})
+        result = power = Series(self.degree, {(0, 0, 0): Fraction(1)})
+        for _ in range(self.degree + TAU):
+            power = power * rest
+            result = result + power
+        return result * (1 / constant)
+
+    def times_D(self, n):
+        return Series(self.degree + n, {(i, j + n, m): c for (i, j, m), c in self.terms.items()})
+
+    def over_D(self):
+        assert all(j for _, j, _ in self.terms)
+        return Series(self.degree - 1, {(i, j - 1, m): c for (i, j, m), c in self.terms.items()})
+
+    def shifted(self, h):
+        """f(x + hD)."""
+        result = term = self
+        for n in range(1, self.degree + 1):
+            term = term.dx() * Fraction(h, n)
+            result = result + term.times_D(n)
+        return result
+
+    def tau(self, m):
+        """The coefficient of τ^m."""
+        return Series(self.degree, {(i, j, 0): c for (i, j, n), c in self.terms.items() if n == m})
+
+    def at_tau(self, m):
+        """Times τ^m."""
+        return Series(self.degree, {(i, j, n + m): c for (i, j, n), c in self.terms.items()
+                                    if n + m <= TAU})  # fmt: skip
+
+
+def fraction(value):
+    return Fraction(int(value.p), int(value.q))
+
+
+class Jets:
+    """r_n and s_i of a field and its velocity, as series."""
+
+    def __init__(self, k, field, velocity):
+        p = field.dx()
+        self.p, self.field, self.velocity = p, field, velocity
+        self.inverse = p.inverse()
+        self.scale = self.inverse ** ((k + 1) // 2)
+        self.known = {}
+
+    def sum(self, terms):
+        """Σ coefficient · Π jets of one order."""
+        total = Series(self.p.degree)
+        for jet, coefficient in terms.items():
+            product = Series(self.p.degree, {(0, 0, 0): fraction(coefficient)})
+            for i, e in jet.x:
+                product = product * self("x", i) ** e
+            for i, e in jet.t:
+                product = product * self("t", i) ** e
+            total = total + product
+        return total
+
+    def __call__(self, kind, i):
+        if (kind, i) not in self.known:
+            source = self.field if kind == "x" else self.velocity
+            unit = self.inverse if kind == "x" else self.scale
+            self.known[kind, i] = source.dx(i) * unit
+        return self.known[kind, i]
+
+
+def acceleration(theory, k, field, velocity):
+    """φ_ττ by the wave equation."""
+    jets = Jets(k, field, velocity)
+    total = jets("x", 2)
+    for n, terms in theory.pde.coefficients.items():
+        if terms:
+            total = total + jets.sum(terms).times_D(n - 1)
+    return jets.p**k * total
+
+
+def residuals(theory):
+    """The equations of motion, over D^k: what they leave at D^1 … D^{order-1} and x^0, per particle."""
+    cell, order, k = theory.cell, theory.order, int(theory.k)
+    P = cell.size
+    degree = order + 6
+    u = {(i, 0, 0): Fraction(c) for i, c in enumerate([0, 2, 1, -1, 2, 1, -2, 1, 3, -1, 2, 1, 1, -2])}
+    v = {(i, 0, 0): Fraction(c) for i, c in enumerate([1, -1, 2, 1, 1, -3, 2, 1, -1, 1, 2, -1, 1, 1])}
+    u, v = Series(degree, u), Series(degree, v)
+    a = acceleration(theory, k, u, v)
+    # φ_τττ: the wave equation's own derivative along the motion (u + τv, v + τa)
+    da = acceleration(theory, k, u + v.at_tau(1), v + a.at_tau(1)).tau(1)
+    field = u + v.at_tau(1) + (a * Fraction(1, 2)).at_tau(2)
+    velocity = v + a.at_tau(1) + (da * Fraction(1, 2)).at_tau(2)
+
+    jets = Jets(k, field, velocity)
+    w = []
+    for i in range(P):
+        total = field
+        for n, terms in theory.slaved.get(i, {}).items():
+            if terms:
+                total = total + (jets.p * jets.sum(terms)).times_D(n)
+        w.append(total)
+    shares = [fraction(c) for c in cell.shares(theory.k)]
+    strains = [w[i + 1] - w[i] for i in range(P - 1)] + [w[0].shifted(P) - w[-1]]
+    force = [s.over_D().tau(0) ** k * (1 / c**k) for s, c in zip(strains, shares, strict=True)]
+    left = []
+    for i in range(P):
+        inertia = (w[i].tau(2) * 2).times_D(1) * (P * k * fraction(cell.fractions[i]))
+        before = force[i - 1] if i else force[-1].shifted(-P)
+        left.append(inertia - force[i] + before)
+    assert all(residual.degree >= order - 1 for residual in left)
+    return [[residual.terms.get((0, j, 0), 0) for j in range(order)] for residual in left]
+
+
+CELLS = [
+    Cell([1]),
+    Cell([1, 3]),
+    Cell([3, 1], stiffnesses=[1, 8]),
+    Cell([3, 2, 1]),
+    Cell([1, 1, 4], stiffnesses=[1, 8, 27]),
+    Cell([1, 2, 3, 5]),
+]
+
+
+@pytest.mark.parametrize("field", ["first", "center"])
+@pytest.mark.parametrize("cell", CELLS, ids=lambda cell: f"{cell.masses} {cell.stiffnesses}")
+def test_every_equation_of_motion_is_satisfied(cell, field):
+    # order 7 reaches D^{k+6}, where jets of the velocity stand in the fields and the wave equation
+    theory = homogenize(cell, 7, k=3, closure="full", field=field)
+    assert theory.defect == {}
+    assert residuals(theory) == [[0] * 7] * cell.size
+
+
+@pytest.mark.parametrize("k", [1, 5])
+def test_every_equation_of_motion_is_satisfied_at_other_exponents(k):
+    theory = homogenize(Cell([2, 1]), 8, k=k, closure="full")
+    assert residuals(theory) == [[0] * 8] * 2
+
+
