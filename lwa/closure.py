@@ -174,7 +174,7 @@ def full(ring: Coefficients, order: int, field: str = "first") -> Closure:
 
 
 def _linear_part(algebra: JetAlgebra, S: Ladder, n: int) -> fmpq_mpoly:
-    return algebra.linear(S[n], n) if n else S[0]
+    return algebra.slope(S[n], n) if n else S[0]
 
 
 def linear(ring: Coefficients, order: int) -> Closure:
@@ -221,7 +221,7 @@ def _acoustic(ring: Coefficients, order: int) -> Closure:
         known = right.known - left.known
         one, two = known - left.carried(-2, n), -known
         condition = mu[1] * one - mu[0] * two + 2 * mu[0] * mu[1] * _applied(b, first, n)
-        xi = -algebra.linear(condition, n)
+        xi = -algebra.slope(condition, n)
         r_n = algebra.r[n]
         mean = algebra.one * fmpq(2**n, factorial(n + 1))
         right.append((mean + c[1] * xi / 2) * r_n)
@@ -248,7 +248,7 @@ def _optical(ring: Coefficients, order: int) -> Closure:
     for n in range(1, order + 1):
         r_n = algebra.r[n]
         carried = stiffness[1] * left.carried(-2, n)
-        b.append(-algebra.linear(carried + _applied(b, first, n), n))
+        b.append(-algebra.slope(carried + _applied(b, first, n), n))
         right.append(mu[0] * b[n] * r_n)
         left.append((mu[0] * b[n] + mu[1] * fmpq(2**n, factorial(n))) * r_n)
         force = stiffness[0] * right.Phi[n] + stiffness[1] * left.Phi[n]

@@ -81,12 +81,14 @@ class Coefficients:
     """The ring Q[k, μ, c] for one cell, one exponent and one branch.
 
     On the optical branch the two contacts move by equal amounts, so that they enter with their
-    shares of the stiffness, A_i / Σ A_j, instead of their shares of the strain.
+    shares of the stiffness, A_i / Σ A_j, instead of their shares of the strain. ``constants``
+    are further expressions with which the ring is extended.
     """
 
     cell: Cell
     k: sp.Expr
     branch: str = "acoustic"
+    constants: tuple[sp.Expr, ...] = ()
 
     @cached_property
     def masses(self) -> Partition:
@@ -107,13 +109,52 @@ class Coefficients:
     def names(self) -> tuple[str, ...]:
         """Names of the ring's generators."""
         exponent = () if self.k.is_Rational else ("k",)
-        return (*exponent, *self.masses.names, *self.contacts.names)
+        return (*exponent, *self.masses.names, *self.contacts.names, *self._opaque)
 
     def exponent(self, context: fmpq_mpoly_ctx) -> fmpq_mpoly:
         """k as an element of a ring that has `names` among its generators."""
         if self.k.is_Rational:
             return context.constant(rational(self.k))
         return context.gen(context.variable_to_index("k"))
+
+    def constant(self, i: int, context: fmpq_mpoly_ctx) -> fmpq_mpoly:
+        """The i-th constant as an element of a ring that has `names` among its generators."""
+        polynomial = self._constants[i]
+        if polynomial is None:
+            return context.gen(context.variable_to_index(f"a{i}"))
+        generators = [str(g) for g in polynomial.gens]
+        total = context.constant(0)
+        for exponents, coefficient in polynomial.terms():
+            term = context.constant(rational(coefficient))
+            for name, e in zip(generators, exponents, strict=True):
+                if e:
+                    term = term * context.gen(context.variable_to_index(name)) ** e
+            total = total + term
+        return total
+
+    @property
+    def _opaque(self) -> list[str]:
+        return [f"a{i}" for i, known in enumerate(self._constants) if known is None]
+
+    @cached_property
+    def _constants(self) -> tuple[sp.Poly | None, ...]:
+        """The constants as polynomials in k and μ; None for one that is not, a generator then."""
+        weights = self.masses.distinct if self.masses.names else ()
+        free = sp.symbols(self.masses.names)
+        counts = [self.masses.weights.count(w) for w in weights]
+        rest = (1 - sum(n * f for n, f in zip(counts, free, strict=False))) / (counts or [1])[-1]
+        images = dict(zip(weights, (*free, rest), strict=False))
+        generators = [sp.Symbol("k"), *free]
+        scale = sp.Dummy(positive=True)
+        found: list[sp.Poly | None] = []
+        for constant in self.constants:
+            scaled = constant.xreplace({w: scale * w for w in weights})
+            if sp.cancel(scaled - constant) != 0:  # depends on more than the fractions
+                found.append(None)
+                continue
+            renamed = {**images, self.k: generators[0]}
+            found.append(_as_polynomial(sp.cancel(constant.xreplace(renamed)), generators))
+        return tuple(found)
 
     def expression(self, terms: Sequence[tuple[tuple[int, ...], fmpq]]) -> sp.Expr:
         """Σ coefficient · Π generator^exponent over `terms`, factored, in the caller's symbols.
@@ -141,7 +182,8 @@ class Door:
     def __init__(self, ring: Coefficients) -> None:
         partitions = [part for part in (ring.masses, ring.contacts) if part.names]
         values = [w for part in partitions for w in part.distinct]
-        values += [] if ring.k.is_Rational else [ring.k]
+        opaque_constants = [c for i, c in enumerate(ring.constants) if f"a{i}" in ring.names]
+        values += [*([] if ring.k.is_Rational else [ring.k]), *opaque_constants]
         symbols = sorted(set().union(*(v.free_symbols for v in values)), key=str)
         polynomial = {v: _as_polynomial(v, symbols) for v in values}
         opaque = [v for v in dict.fromkeys(values) if polynomial[v] is None and not v.is_Rational]
@@ -165,6 +207,7 @@ class Door:
             self._images += [part.total * element(w) for w in part.distinct[:-1]]
             total = sum((element(w) for w in part.weights), context.constant(0))
             self._denominators.append((slice(start, len(self._images)), total))
+        self._images += [element(c) for c in opaque_constants]
 
     def __call__(self, terms: Sequence[tuple[tuple[int, ...], fmpq]]) -> sp.Expr:
         degrees = [

@@ -99,7 +99,7 @@ class JetAlgebra:
     def velocity_slopes(self, f: fmpq_mpoly) -> list[tuple[int, fmpq_mpoly]]:
         """(i, ∂f/∂s_i) for the s_i that stand in f."""
         start = self._offset + self.weight - 1
-        slopes = ((i, f.derivative(start + i)) for i in range(1, self.weight + 1))
+        slopes = ((i, f.derivative(start + i)) for i in range(1, len(self.s)))
         return [(i, slope) for i, slope in slopes if not slope.is_zero()]
 
     def _derivation(
@@ -115,9 +115,13 @@ class JetAlgebra:
                 result = result + slope * images[index]
         return result
 
-    def linear(self, f: fmpq_mpoly, n: int) -> fmpq_mpoly:
-        """The coefficient of r_n in f of weight n: no other jet can stand beside it."""
+    def slope(self, f: fmpq_mpoly, n: int) -> fmpq_mpoly:
+        """∂f/∂r_n. In f of weight n it is the coefficient of r_n, beside which no jet can stand."""
         return f.derivative(self._offset + n - 1)
+
+    def integral(self, f: fmpq_mpoly, n: int) -> fmpq_mpoly:
+        """∫ f dr_n."""
+        return f.integral(self._offset + n - 1)
 
     def terms(self, f: fmpq_mpoly) -> dict[Monomial, list[Term]]:
         """The jet monomials of f, each with the terms of its coefficient."""

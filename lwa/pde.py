@@ -16,7 +16,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import sympy as sp
 from flint import fmpq_mpoly
@@ -24,7 +24,9 @@ from flint import fmpq_mpoly
 from lwa.cell import Cell
 from lwa.closure import Closure
 from lwa.coefficients import Coefficients
-from lwa.exact import InputError
+from lwa.conservation import flux, potential
+from lwa.exact import InputError, exact
+from lwa.fields import change_field
 from lwa.jets import Term
 from lwa.wave import TravelingWave
 
@@ -158,10 +160,45 @@ class PDE:
         """Whether every order is ∂_x of a flux, so that the momentum ∫ u_τ dx is conserved."""
         if self.closure.ring.branch != "acoustic":
             return False
-        algebra = self.closure.algebra
-        k = self.closure.ring.exponent(algebra.context)
-        higher = self.closure.acceleration[2:]
-        return all(algebra.antiderivative(E, k) is not None for E in higher)
+        return all(flux(self.closure, n) is not None for n in self.coefficients)
+
+    @cached_property
+    def fluxes(self) -> Mapping[int, Terms]:
+        """n → F_n, u_x^k E_n = ∂_x (u_x^k F_n), for the orders D^{k+n}, n ≥ 2, that have one."""
+        found = {n: flux(self.closure, n) for n in self._orders}
+        return {n: terms(self.closure, F) for n, F in found.items() if F is not None}
+
+    @cached_property
+    def potentials(self) -> Mapping[int, Terms]:
+        """n → (k+1) V_n / u_x^{k+1} for the variational orders among D^{k+n}, n ≥ 2.
+
+        Where all orders are there, u_ττ is minus the variational derivative of Σ D^{n-1} V_n with
+        V_1 = u_x^{k+1}/(k(k+1)), and u_τ²/2 + Σ D^{n-1} V_n is the density of a conserved energy.
+        """
+        found = {n: potential(self.closure, n) for n in self._orders}
+        return {n: terms(self.closure, V) for n, V in found.items() if V is not None}
+
+    @property
+    def variational(self) -> bool:
+        """Whether every order derives from a potential (see `potentials`)."""
+        return bool(self._orders) and all(n in self.potentials for n in self._orders)
+
+    @property
+    def _orders(self) -> tuple[int, ...]:
+        return tuple(self.coefficients) if self.closure.ring.branch == "acoustic" else ()
+
+    def in_field(self, alphas: Mapping[int, Any]) -> PDE:
+        """The wave equation of φ = u + Σ α_n D^n ∂_x^n u, for {n: α_n}.
+
+        Raises `lwa.InputError` on the optical branch, for n < 1 or α_n that are no quantities.
+
+        >>> from lwa import Dimer, homogenize
+        >>> pde = homogenize(Dimer(1, 1)).pde
+        >>> pde.H, pde.in_field({2: "alpha"}).H
+        (D**2*(k/6 - 1/6), D**2*(k - 1)*(12*alpha + 1)/6)
+        """
+        exact_alphas = {n: exact(a, f"alpha_{n}") for n, a in alphas.items()}
+        return PDE(change_field(self.closure, exact_alphas))
 
     def right_side(self, u: sp.Expr, x: sp.Symbol, velocity: sp.Expr = sp.S.Zero) -> sp.Expr:
         """The right-hand side of u_ττ for fields u(x) and u_τ(x), as a SymPy expression.

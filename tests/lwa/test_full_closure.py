@@ -9,11 +9,8 @@ rational, so that zero means zero.
 from fractions import Fraction
 
 import pytest
-import sympy as sp
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
-from lwa import Cell, Dimer, InputError, homogenize
+from lwa import Cell, homogenize
 
 TAU = 2  # the second derivative in τ is wanted
 
@@ -138,12 +135,16 @@ def acceleration(theory, k, field, velocity):
 
 
 def residuals(theory):
-    """The equations of motion, over D^k: what they leave at D^1 … D^{order-1} and x^0, per particle."""
+    """What the equations of motion leave at D^{k+1} … D^{k+order-1} and x = 0, per particle."""
     cell, order, k = theory.cell, theory.order, int(theory.k)
     P = cell.size
     degree = order + 6
-    u = {(i, 0, 0): Fraction(c) for i, c in enumerate([0, 2, 1, -1, 2, 1, -2, 1, 3, -1, 2, 1, 1, -2])}
-    v = {(i, 0, 0): Fraction(c) for i, c in enumerate([1, -1, 2, 1, 1, -3, 2, 1, -1, 1, 2, -1, 1, 1])}
+    u = {
+        (i, 0, 0): Fraction(c) for i, c in enumerate([0, 2, 1, -1, 2, 1, -2, 1, 3, -1, 2, 1, 1, -2])
+    }
+    v = {
+        (i, 0, 0): Fraction(c) for i, c in enumerate([1, -1, 2, 1, 1, -3, 2, 1, -1, 1, 2, -1, 1, 1])
+    }
     u, v = Series(degree, u), Series(degree, v)
     a = acceleration(theory, k, u, v)
     # φ_τττ: the wave equation's own derivative along the motion (u + τv, v + τa)
@@ -194,5 +195,3 @@ def test_every_equation_of_motion_is_satisfied(cell, field):
 def test_every_equation_of_motion_is_satisfied_at_other_exponents(k):
     theory = homogenize(Cell([2, 1]), 8, k=k, closure="full")
     assert residuals(theory) == [[0] * 8] * 2
-
-

@@ -1,0 +1,135 @@
+"""Momentum, energy and the potential of the wave equation, against calculus on explicit fields."""
+
+import pytest
+import sympy as sp
+
+from lwa import Cell, Dimer, InputError, homogenize
+from lwa.pde import Jet
+
+x = sp.Symbol("x")
+m1, m2 = sp.symbols("m1 m2", positive=True)
+b = m1 / (m1 + m2)
+
+
+def variational_derivative(density, u, order):
+    """δ/δu of ∫ density dx, Σ (-∂_x)^j ∂density/∂(∂_x^j u), by SymPy's calculus."""
+    names = sp.symbols(f"j:{order + 1}")
+    jets = [u, *(u.diff(x, j) for j in range(1, order + 1))]
+    for name, jet in reversed(list(zip(names, jets, strict=True))):
+        density = density.subs(jet, name)
+    back = dict(zip(names, jets, strict=True))
+    slopes = [density.diff(name).subs(back).doit() for name in names]
+    return sum((-1) ** j * slope.diff(x, j) for j, slope in enumerate(slopes))
+
+
+def at_a_point(expression, u):
+    """The expression for a polynomial u with all jets alive, at x = 1/3."""
+    field = 2 * x + sum(x**n / sp.prime(n) for n in range(2, 11))
+    return sp.nsimplify(expression.subs(u, field).doit().subs(x, sp.Rational(1, 3)))
+
+
+@pytest.mark.parametrize("k", [2, 3])
+def test_fluxes_are_antiderivatives(k):
+    pde = homogenize(Dimer(2, 1, spacing=1), 6, k=k, closure="full", field="center").pde
+    u = sp.Function("u")(x)
+    p = u.diff(x)
+    total = p**k / k
+    for terms in pde.fluxes.values():
+        total += sum(
+            c * p**k * sp.prod((u.diff(x, i) / p) ** e for i, e in jet.x)
+            for jet, c in terms.items()
+        )
+    assert set(pde.fluxes) == set(pde.coefficients)
+    assert at_a_point(total.diff(x) - pde.right_side(u, x), u) == 0
+
+
+@pytest.mark.parametrize("k", [2, 3])
+def test_the_canonical_field_has_an_energy_at_third_order(k):
+    pde = homogenize(Dimer(3, 1, spacing=1), 4, k=k, closure="full", field="center").pde
+    assert pde.variational
+    u = sp.Function("u")(x)
+    p = u.diff(x)
+    # the density with I: φ_x^{k+1}/(k(k+1)) - (I/2) φ_x^{k-1} φ_xx²
+    density = p ** (k + 1) / (k * (k + 1)) - pde.I / 2 * p ** (k - 1) * p.diff(x) ** 2
+    residual = variational_derivative(density, u, 2) + pde.right_side(u, x)
+    assert at_a_point(residual, u) == 0
+    ((jet, coefficient),) = pde.potentials[3].items()
+    assert jet == Jet(((2, 2),))
+    assert coefficient / (k + 1) == -pde.I / 2
+
+
+def test_the_canonical_field_is_in_conservation_form_at_every_order():
+    for cell in (Dimer("m1", "m2"), Cell(["m1", "m1", "m2"])):
+        assert homogenize(cell, 8, closure="full", field="center").pde.conservative
+    # three different masses have no mirror symmetry and even orders from D^{k+4} on
+    chiral = homogenize(Cell([1, 2, 3]), 8, closure="full", field="center").pde
+    assert chiral.conservative
+    assert chiral.vanishing == (2,)
+
+
+def test_the_first_field_of_the_full_closure_conserves_momentum_up_to_third_order_only():
+    assert homogenize(Dimer("m1", "m2"), 4, closure="full").pde.conservative
+    assert not homogenize(Dimer("m1", "m2"), 6, closure="full").pde.conservative
+
+
+@pytest.mark.parametrize(
+    "cell",
+    [
+        Dimer("m1", "m2"),
+        Dimer("m1", "m2", stiffnesses=("A1", "A2")),
+        Cell(["m1", "m1", "m2"]),
+        Cell(["m1", "m2", "m3"]),
+        Cell([1, 2, 3, 4], stiffnesses=[1, 2, 3, 4]),
+    ],
+    ids=str,
+)
+def test_the_canonical_field_is_variational_at_third_order_for_every_cell(cell):
+    pde = homogenize(cell, 4, closure="full", field="center").pde
+    k = pde.k
+    assert pde.variational
+    assert sp.simplify(pde.G - pde.I * (k - 1) * (k - 2) / 2) == 0
+    assert sp.simplify(pde.H - 2 * pde.I * (k - 1)) == 0
+
+
+def test_the_linear_closure_is_not_variational():
+    pde = homogenize(Dimer("m1", "m2")).pde
+    assert not pde.variational
+    assert 3 not in pde.potentials
+
+
+def test_a_redefinition_of_the_field_is_variational_at_fifth_order():
+    """φ̃ = φ + b(1-b)(1-2b)²/8 D⁴ φ_4x: to this order φ̃² is the mean of squares of the w_i."""
+    center = homogenize(Dimer(m1, m2), 6, closure="full", field="center").pde
+    assert not center.variational
+    assert not any(jet.t for jet in center.coefficients[5])
+    shift = b * (1 - b) * (1 - 2 * b) ** 2 / 8
+    changed = center.in_field({4: shift})
+    assert changed.variational
+    assert not center.in_field({4: 2 * shift}).variational
+    assert homogenize(Dimer(1, 1), 6, closure="full", field="center").pde.variational
+
+
+def test_velocity_jets_enter_where_they_should():
+    first = homogenize(Dimer("m1", "m2"), 8, closure="full").pde
+    center = homogenize(Dimer("m1", "m2"), 8, closure="full", field="center").pde
+    enters = {n: any(jet.t for jet in found) for n, found in first.coefficients.items() if found}
+    assert enters == {3: False, 5: True, 7: True}
+    enters = {n: any(jet.t for jet in found) for n, found in center.coefficients.items() if found}
+    assert enters == {3: False, 5: False, 7: True}
+    # as products of two of u_xτ, u_xxτ, u_xxxτ
+    assert {jet.t for jet in first.coefficients[5] if jet.t} == {
+        ((1, 2),),
+        ((1, 1), (2, 1)),
+        ((2, 2),),
+        ((1, 1), (3, 1)),
+        ((2, 1), (3, 1)),
+    }
+
+
+def test_the_optical_branch_has_neither():
+    pde = homogenize(Dimer("m1", "m2"), branch="optical").pde
+    assert not pde.conservative
+    assert not pde.variational
+    assert not pde.fluxes
+    with pytest.raises(InputError, match="acoustic"):
+        pde.in_field({2: 1})

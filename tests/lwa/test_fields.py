@@ -1,0 +1,62 @@
+"""The wave equation in another field."""
+
+import pytest
+import sympy as sp
+
+from lwa import Dimer, InputError, homogenize
+
+m1, m2 = sp.symbols("m1 m2", positive=True)
+b = m1 / (m1 + m2)
+alpha = sp.Symbol("alpha", positive=True)
+
+
+def same(first, second, order):
+    for n in range(2, order):
+        jets = set(first.coefficients[n]) | set(second.coefficients[n])
+        for jet in jets:
+            difference = first.coefficients[n].get(jet, 0) - second.coefficients[n].get(jet, 0)
+            assert sp.cancel(difference) == 0
+
+
+@pytest.mark.parametrize("closure", ["linear", "full"])
+def test_what_a_shift_does_to_G_H_I(closure):
+    pde = homogenize(Dimer(m1, m2), closure=closure).pde
+    changed = pde.in_field({2: alpha})
+    k, D = pde.k, pde.cell.spacing
+    assert sp.cancel(changed.G - pde.G - alpha * (k - 1) * (k - 2) * D**2) == 0
+    assert sp.cancel(changed.H - pde.H - 2 * alpha * (k - 1) * D**2) == 0
+    assert sp.cancel(changed.I - pde.I) == 0
+
+
+def test_from_the_first_to_the_canonical_field_at_third_order():
+    first, center = (
+        homogenize(Dimer(m1, m2), closure="full", field=field).pde for field in ("first", "center")
+    )
+    same(first.in_field({2: (1 - b) * (b - sp.Rational(1, 2))}), center, 4)
+
+
+def test_there_and_back_with_velocities():
+    # (1 + αD²∂² )^{-1} = 1 - αD²∂² + α²D⁴∂⁴ - α³D⁶∂⁶ + …
+    pde = homogenize(Dimer(2, 1), 8, closure="full").pde
+    there = pde.in_field({2: alpha})
+    same(there.in_field({2: -alpha, 4: alpha**2, 6: -(alpha**3)}), pde, 8)
+
+
+def test_a_shift_of_the_origin_changes_nothing():
+    # φ(x) = u(x + hD) = Σ (hD)^n ∂^n u / n! obeys the same equation
+    pde = homogenize(Dimer(2, 1), 7, closure="full").pde
+    h = sp.Rational(1, 3)
+    same(pde.in_field({n: h**n / sp.factorial(n) for n in range(1, 8)}), pde, 7)
+
+
+def test_the_linear_chain_does_not_see_the_field():
+    pde = homogenize(Dimer(m1, m2), 8, k=1).pde
+    same(pde.in_field({2: alpha, 3: alpha**2}), pde, 8)
+
+
+def test_bad_shifts():
+    pde = homogenize(Dimer(1, 2)).pde
+    with pytest.raises(InputError, match="n is 0"):
+        pde.in_field({0: 1})
+    with pytest.raises(InputError, match="alpha_2"):
+        pde.in_field({2: "x+y"})
