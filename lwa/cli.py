@@ -10,12 +10,22 @@ import click
 import sympy as sp
 
 from lwa.cell import Cell, D, k
-from lwa.closure import BRANCHES
-from lwa.render import FORMATS, THEORY, WAVE
+from lwa.closure import BRANCHES, CLOSURES, FIELDS
+from lwa.render import theory_json, wave_json
+from lwa.source import theory_latex, theory_python, wave_latex, wave_python
 from lwa.terminal import quantities, quantity, run
+from lwa.text import theory_text, wave_text
 from lwa.theory import Theory, homogenize
 
 Command = Callable[..., None]
+
+THEORY = {
+    "text": theory_text,
+    "json": theory_json,
+    "latex": theory_latex,
+    "python": theory_python,
+}
+WAVE = {"text": wave_text, "json": wave_json, "latex": wave_latex, "python": wave_python}
 
 
 @click.group()
@@ -40,10 +50,12 @@ def _chain(command: Command) -> Command:
         click.option("--order", type=int, default=4, show_default=True,
                      help="Highest power of D in the ansatz."),
         click.option("--closure", default="linear", show_default=True,
-                     help="The consistency condition: linear (the paper's)."),
+                     help=f"The consistency condition: {' or '.join(CLOSURES)}."),
+        click.option("--field", default="first", show_default=True,
+                     help=f"The field described: {' or '.join(FIELDS)} (closure full)."),
         click.option("--branch", default="acoustic", show_default=True,
                      help=f"{' or '.join(BRANCHES)}."),
-        click.option("--format", "style", type=click.Choice(FORMATS), default="text",
+        click.option("--format", "style", type=click.Choice(list(THEORY)), default="text",
                      show_default=True, help="How to print the result."),
     ]  # fmt: skip
     for option in reversed(options):
@@ -58,10 +70,11 @@ def _theory(
     spacing: sp.Expr,
     order: int,
     closure: str,
+    field: str,
     branch: str,
 ) -> Theory:
     cell = Cell(tuple(masses), stiffnesses=tuple(stiffnesses), spacing=spacing)
-    return homogenize(cell, order, k=exponent, closure=closure, branch=branch)
+    return homogenize(cell, order, k=exponent, closure=closure, branch=branch, field=field)
 
 
 def _show(result: Any) -> None:

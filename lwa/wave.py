@@ -244,7 +244,7 @@ class TravelingWave:
         """Both p for which v = z^p removes z_ξ³, the paper's first (2/(k+1) at equal masses)."""
         quadratic = sp.Poly(sp.cancel(self._derived("cubic") / sp.Symbol("p")), sp.Symbol("p"))
         A, B, C = (sp.factor(sp.cancel(c / self.D**2)) for c in quadratic.all_coeffs())
-        root = _root(sp.factor(sp.cancel(B**2 - 4 * A * C)))
+        root = _root(sp.factor(sp.cancel(B**2 - 4 * A * C))).replace(sp.Abs, lambda x: x)
         return (sp.together((-B - root) / (2 * A)), sp.together((-B + root) / (2 * A)))
 
     def _derived(self, name: str) -> sp.Expr:

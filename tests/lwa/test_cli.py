@@ -151,7 +151,32 @@ def test_text_of_the_paper(capsys):
         "  vanishing identically: D^(k+2)",
     ):
         assert line in out.splitlines()
-    assert "does not conserve momentum" in out
+    assert "does not conserve momentum; see --closure full" in out
+
+
+def test_full_closure(capsys):
+    found = result(capsys, "derive", "--closure", "full", "--order", "6")
+    assert found["defect"] == []
+    assert found["conservative"] is False
+    assert any(term["jet_t"] for term in found["terms"])
+    assert {term["particle"] for term in found["slaved"]} == {2}
+    status, out, _ = run(capsys, "derive", "--closure", "full", "--order", "6")
+    assert status == 0
+    assert "u_x^(k-(k+1)) u_2xτ u_3xτ" in out
+    assert "see --field center" in out
+
+
+def test_canonical_field(capsys):
+    chain = ("--closure", "full", "--field", "center")
+    found = result(capsys, "derive", *chain, "--masses", "m1,m2,m3")
+    assert found["conservative"] is True
+    found = result(capsys, "wave", *chain, "--k", "3/2", "--masses", "1,0.2733")
+    w = 0.2733
+    assert found["beta_value"] == pytest.approx((1 + w) / math.sqrt(10 * (1 - w + w * w)))
+    assert found["p"] == "4/5"
+    found = result(capsys, "wave", *chain)
+    assert found["speed_factor"] == "2/(k*(k + 1))"
+    assert "Abs" not in found["p"]
 
 
 def test_text_of_the_wave(capsys):
@@ -178,6 +203,9 @@ BAD = [
     ("derive", "--order", "2.5"),
     ("derive", "--order", "99999999999999999999"),
     ("derive", "--closure", "none"),
+    ("derive", "--field", "center"),
+    ("derive", "--closure", "full", "--field", "last"),
+    ("derive", "--closure", "full", "--branch", "optical"),
     ("derive", "--branch", "up"),
     ("derive", "--format", "xml"),
     ("derive", "--spacing", "-1"),

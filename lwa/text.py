@@ -1,0 +1,175 @@
+"""A theory and its wave as text for people."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import sympy as sp
+
+from lwa.pde import Jet, base_order
+from lwa.render import in_units, third_order, wave_values
+from lwa.theory import Theory
+from lwa.wave import QUANTITIES, TravelingWave
+
+DIGITS = 15
+"""Significant digits of a printed number; all of them are correct."""
+
+
+def theory_text(theory: Theory) -> str:
+    """What `lwa derive` prints."""
+    ring = theory.closure.ring
+    lines = [
+        f"masses {_list(theory.cell.masses)}; contact force F = A δ^k, k = {theory.k}, "
+        f"A = {_list(theory.cell.stiffnesses)}; spacing D = {theory.cell.spacing}",
+        f"closure {theory.closure.name}, {ring.branch} branch, to D^{theory.order}; "
+        f"τ = t·{theory.pde.time_scale}",
+        _FIELDS[theory.closure.field],
+        "",
+        *_ansatz_text(theory),
+        *_equation_text(theory),
+        "",
+        *_consistency_text(theory),
+    ]
+    return "\n".join(lines)
+
+
+_FIELDS = {
+    "first": "u is the displacement of the cell's first particle",
+    "center": "u is the canonical field, the mass-weighted mean of the fields at one point",
+}
+
+
+def _ansatz_text(theory: Theory) -> list[str]:
+    blocks: list[list[str]] = []
+    for i, series in theory.slaved.items():
+        w = i == 1  # the second particle's field, whose linear part is the ansatz
+        shown = {
+            n: {jet: W[jet] for jet in W if not (w and _is_linear(jet))} for n, W in series.items()
+        }
+        rows = _orders(theory, shown, "1", "D^", "")
+        if rows:
+            name = "nonlinear terms of w" if w else f"field of particle {i + 1}, less u"
+            blocks.append([f"{name}:", *rows, ""])
+    if theory.ansatz:
+        ansatz = ["w = λ (u + Σ b_n D^n ∂_x^n u), the linear part of the second particle's field"]
+        ansatz.append(f"  λ = {theory.amplitude_ratio}")
+        ansatz += [f"  b{n} = {b}" for n, b in theory.ansatz.items()]
+        blocks.insert(0, [*ansatz, ""])
+    return [line for block in blocks for line in block]
+
+
+def _is_linear(jet: Jet) -> bool:
+    return not jet.t and sum(e for _, e in jet.x) <= 1
+
+
+def _equation_text(theory: Theory) -> list[str]:
+    acoustic = theory.closure.ring.branch == "acoustic"
+    found = third_order(theory)
+    more = " + …"
+    if found:
+        lines = [
+            "u_ττ = u_x^(k-1) u_xx + G u_x^(k-3) u_xx^3 + H u_x^(k-2) u_xx u_xxx + I u_x^(k-1) u_4x"
+            + (more if theory.order > 4 else "")
+        ]
+        lines += [f"  {name} = {value}" for name, value in found.items()]
+    elif not acoustic:
+        lines = ["u_ττ = -u^k + …   (contacts that also pull: the odd law |δ|^(k-1) δ)"]
+    elif theory.order == 1:
+        lines = ["the wave equation starts at D^(k+1), that is at order 2 of the ansatz"]
+    else:
+        lines = ["u_ττ = u_x^(k-1) u_xx" + (more if theory.order > 2 else "")]
+    prefix, suffix = ("D^(k+", ")") if acoustic else ("D^", "")
+    shown = {n: c for n, c in theory.pde.coefficients.items() if not (found and n == 3)}
+    lines += _orders(theory, shown, "k", prefix, suffix)
+    vanishing = ", ".join(f"{prefix}{n}{suffix}" for n in theory.pde.vanishing)
+    return [*lines, f"  vanishing identically: {vanishing}"] if vanishing else lines
+
+
+def _consistency_text(theory: Theory) -> list[str]:
+    if not theory.defect:
+        lines = ["all equations of motion are satisfied at every order shown"]
+    else:
+        lines = ["defect: u_ττ by the first equation of motion minus u_ττ by the second"]
+        lines += _orders(theory, theory.defect, "k", "D^(k+", ")")
+    if theory.closure.ring.branch == "acoustic" and not theory.pde.conservative:
+        lines.append(
+            "not in conservation form: the linear closure of unequal particles does not conserve "
+            "momentum; see --closure full"
+            if theory.closure.name == "linear"
+            else "not in conservation form in this field; see --field center"
+        )
+    return lines
+
+
+def _orders(
+    theory: Theory,
+    coefficients: Mapping[int, Mapping[Jet, sp.Expr]],
+    degree: str,
+    prefix: str,
+    suffix: str,
+) -> list[str]:
+    lines = []
+    for n, found in coefficients.items():
+        if found:
+            lines.append(f"  {prefix}{n}{suffix}:")
+            lines += [f"    {_jet_text(theory, jet, degree)}: {found[jet]}" for jet in found]
+    return lines
+
+
+def _jet_text(theory: Theory, jet: Jet, degree: str) -> str:
+    """A jet times base^degree as it stands in the equation, such as u_x^(k-3) u_2x^3."""
+    base, power = "u_x" if base_order(theory.closure) else "u", degree
+    strains, velocities = (sum(e for _, e in powers) for powers in jet)
+    power += f"-{strains}" if strains else ""
+    pairs = velocities // 2
+    power += f"-{pairs if pairs > 1 else ''}(k+1)" if pairs else ""
+    factors = [_power(f"u_{i if i > 1 else ''}x", e) for i, e in jet.x]
+    factors += [_power(f"u_{i if i > 1 else ''}xτ", e) for i, e in jet.t]
+    return " ".join([f"{base}^({power})", *factors])
+
+
+def _power(name: str, e: int) -> str:
+    return f"{name}^{e}" if e > 1 else name
+
+
+def _list(values: tuple[sp.Expr, ...]) -> str:
+    return ", ".join(map(str, values))
+
+
+def wave_text(theory: Theory, wave: TravelingWave) -> str:
+    """What `lwa wave` prints."""
+    values = wave_values(wave)
+    other = wave.reduction(1)
+    lines = [
+        f"masses {_list(theory.cell.masses)}; k = {wave.k}; closure {theory.closure.name}; "
+        + _FIELDS[theory.closure.field],
+        "v = u_x = B cos^(2/(k-1))(β ξ), ξ = x - V_s τ, on |ξ| ≤ π/(2β)",
+        "",
+        *_lines(wave, {"β": values["beta"], "width π/β": values["width"]}),
+        *_lines(wave, {f"FWHM of the {q}": wave.fwhm(q) for q in QUANTITIES}),
+        f"  B = {values['B']}",
+        f"  V_s = {values['speed']}",
+        f"  F_m ∝ V_s^({wave.force_exponent});  dx/dt = V_s · {wave.speed_scale}",
+        "",
+        "v = z^p, integrating factor z^a: z'' = μ z^η - σ z",
+        *_lines(wave, {name: values[name] for name in ("p", "a", "mu", "eta", "sigma", "s")}),
+        *_lines(wave, {"the other root, p": other.p, "with a": other.a}),
+    ]
+    return "\n".join(lines)
+
+
+def _lines(wave: TravelingWave, values: dict[str, sp.Expr]) -> list[str]:
+    lines = []
+    for name, value in values.items():
+        measure = in_units(wave, value)
+        exact = measure.free_symbols or measure.is_Rational
+        number = "" if exact else f" ≈ {sp.N(measure, DIGITS)}{_unit(wave, value)}"
+        lines.append(f"  {name} = {value}{number}")
+    return lines
+
+
+def _unit(wave: TravelingWave, value: sp.Expr) -> str:
+    if not wave.D.is_Symbol or wave.D not in value.free_symbols:
+        return ""
+    power = sp.degree(sp.numer(value), wave.D) - sp.degree(sp.denom(value), wave.D)
+    return f" {wave.D}" if power == 1 else f" {wave.D}^{power}"
