@@ -10,6 +10,7 @@ D**2*(m1**2 - m1*m2 + m2**2)/(3*(m1 + m2)**2)
 
 from lwa.cell import Cell, D, Dimer, k
 from lwa.closure import Closure
+from lwa.dispersion import Dispersion
 from lwa.exact import InputError
 from lwa.pde import PDE
 from lwa.theory import Theory, homogenize
@@ -21,6 +22,7 @@ __all__ = [
     "Closure",
     "D",
     "Dimer",
+    "Dispersion",
     "InputError",
     "NoSolitaryWave",
     "Theory",

@@ -82,11 +82,12 @@ class Cell:
         """μ_i = m_i / M; they sum to 1."""
         return tuple(sp.cancel(m / self.mass) for m in self.masses)
 
-    def compliances(self, k: sp.Expr = k) -> tuple[sp.Expr, ...]:
+    def compliances(self, k: Any = k) -> tuple[sp.Expr, ...]:
         """A_i^{-1/k}: how much of the strain contact i takes, up to a common factor."""
+        k = exponent(k)
         return tuple(A ** (-1 / k) for A in self.stiffnesses)
 
-    def shares(self, k: sp.Expr = k) -> tuple[sp.Expr, ...]:
+    def shares(self, k: Any = k) -> tuple[sp.Expr, ...]:
         """c_i = P A_i^{-1/k} / Σ A_j^{-1/k}, the strain of contact i over the mean strain."""
         if len(set(self.stiffnesses)) == 1:
             return (sp.Integer(1),) * self.size
@@ -94,17 +95,18 @@ class Cell:
         total = sp.Add(*compliances)
         return tuple(self.size * a / total for a in compliances)
 
-    def stiffness(self, k: sp.Expr = k) -> sp.Expr:
+    def stiffness(self, k: Any = k) -> sp.Expr:
         """A_eff, the stiffness of the equal contacts that would respond alike."""
         if len(set(self.stiffnesses)) == 1:
             return self.stiffnesses[0]
-        return (sp.Add(*self.compliances(k)) / self.size) ** (-k)
+        return (sp.Add(*self.compliances(k)) / self.size) ** (-exponent(k))
 
-    def time_scale(self, k: sp.Expr = k) -> sp.Expr:
+    def time_scale(self, k: Any = k) -> sp.Expr:
         """τ/t = √(P k A_eff D^{k+1} / M), by which u_ττ = u_x^{k-1} u_xx at leading order.
 
         For the paper's dimer it is √(2 k D^{k+1} / (m1 + m2)).
         """
+        k = exponent(k)
         return sp.sqrt(self.size * k * self.stiffness(k) * self.spacing ** (k + 1) / self.mass)
 
 

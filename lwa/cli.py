@@ -1,9 +1,9 @@
-"""The command `lwa`: derivations and waves on the command line."""
+"""The command `lwa`: derivations, waves and dispersion relations on the command line."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 import click
@@ -11,13 +11,15 @@ import sympy as sp
 
 from lwa.cell import Cell, D, k
 from lwa.closure import BRANCHES, CLOSURES, FIELDS
-from lwa.render import theory_json, wave_json
+from lwa.dispersion import Dispersion
+from lwa.render import dispersion_json, theory_json, wave_json
 from lwa.source import theory_latex, theory_python, wave_latex, wave_python
 from lwa.terminal import quantities, quantity, run
-from lwa.text import theory_text, wave_text
+from lwa.text import dispersion_text, theory_text, wave_text
 from lwa.theory import Theory, homogenize
 
 Command = Callable[..., None]
+Option = Callable[[Command], Command]
 
 THEORY = {
     "text": theory_text,
@@ -26,6 +28,65 @@ THEORY = {
     "python": theory_python,
 }
 WAVE = {"text": wave_text, "json": wave_json, "latex": wave_latex, "python": wave_python}
+DISPERSION = {"text": dispersion_text, "json": dispersion_json}
+
+
+def _option(name: str, default: Any, help_text: str, **settings: Any) -> Option:
+    return click.option(name, default=default, show_default=True, help=help_text, **settings)
+
+
+def _exponent(default: str) -> Option:
+    return _option("--k", default, "Exponent of the contact law.", callback=quantity)
+
+
+def _order(help_text: str) -> Option:
+    return _option("--order", 4, help_text, type=int)
+
+
+def _style(formats: Iterable[str]) -> Option:
+    return click.option(
+        "--format", "style", type=click.Choice(list(formats)), default="text", show_default=True,
+        help="How to print the result.",
+    )  # fmt: skip
+
+
+MASSES = _option("--masses", "m1,m2", "Masses of the cell's particles.", callback=quantities)
+STIFFNESSES = click.option(
+    "--stiffnesses", callback=quantities, help="Stiffnesses of its contacts; equal by default."
+)
+
+
+def _chain(command: Command) -> Command:
+    """The options that name a chain and its theory."""
+    options = (
+        _exponent(k.name),
+        MASSES,
+        STIFFNESSES,
+        _option("--spacing", D.name, "Distance of neighbouring particles.", callback=quantity),
+        _order("Highest power of D in the ansatz."),
+        _option("--closure", "linear", f"Consistency condition: {' or '.join(CLOSURES)}."),
+        _option("--field", "first", f"Field described: {' or '.join(FIELDS)} (closure full)."),
+        _option("--branch", "acoustic", f"{' or '.join(BRANCHES).capitalize()}."),
+        _style(THEORY),
+    )
+    for option in reversed(options):
+        command = option(command)
+    return command
+
+
+def _theory(
+    k: sp.Expr,
+    masses: tuple[sp.Expr, ...],
+    stiffnesses: tuple[sp.Expr, ...],
+    spacing: sp.Expr,
+    order: int,
+    **kind: str,
+) -> Theory:
+    return homogenize(Cell(masses, stiffnesses, spacing), order, k=k, **kind)
+
+
+def _show(result: Any) -> None:
+    click.echo(result if isinstance(result, str) else json.dumps(result, indent=2))
 
 
 @click.group()
@@ -34,51 +95,6 @@ def lwa() -> None:
 
     Numbers are integers, decimals or fractions (3/2); symbols are plain names.
     """
-
-
-def _chain(command: Command) -> Command:
-    """The options that name a chain and its theory."""
-    options = [
-        click.option("--k", "exponent", callback=quantity, default=k.name, show_default=True,
-                     help="Exponent of the contact law."),
-        click.option("--masses", callback=quantities, default="m1,m2", show_default=True,
-                     help="Masses of the cell's particles."),
-        click.option("--stiffnesses", callback=quantities,
-                     help="Stiffnesses of its contacts; equal ones by default."),
-        click.option("--spacing", callback=quantity, default=D.name, show_default=True,
-                     help="Distance of neighbouring particles."),
-        click.option("--order", type=int, default=4, show_default=True,
-                     help="Highest power of D in the ansatz."),
-        click.option("--closure", default="linear", show_default=True,
-                     help=f"The consistency condition: {' or '.join(CLOSURES)}."),
-        click.option("--field", default="first", show_default=True,
-                     help=f"The field described: {' or '.join(FIELDS)} (closure full)."),
-        click.option("--branch", default="acoustic", show_default=True,
-                     help=f"{' or '.join(BRANCHES)}."),
-        click.option("--format", "style", type=click.Choice(list(THEORY)), default="text",
-                     show_default=True, help="How to print the result."),
-    ]  # fmt: skip
-    for option in reversed(options):
-        command = option(command)
-    return command
-
-
-def _theory(
-    exponent: sp.Expr,
-    masses: Sequence[sp.Expr],
-    stiffnesses: Sequence[sp.Expr],
-    spacing: sp.Expr,
-    order: int,
-    closure: str,
-    field: str,
-    branch: str,
-) -> Theory:
-    cell = Cell(tuple(masses), stiffnesses=tuple(stiffnesses), spacing=spacing)
-    return homogenize(cell, order, k=exponent, closure=closure, branch=branch, field=field)
-
-
-def _show(result: Any) -> None:
-    click.echo(result if isinstance(result, str) else json.dumps(result, indent=2))
 
 
 @lwa.command()
@@ -94,6 +110,26 @@ def wave(style: str, **chain: Any) -> None:
     """The compact traveling wave: β, width, FWHM, amplitude and speed."""
     theory = _theory(**chain)
     _show(WAVE[style](theory, theory.pde.traveling_wave()))
+
+
+@lwa.command()
+@_exponent("1")
+@MASSES
+@STIFFNESSES
+@_order("Highest power of κ in Ω².")
+@_style(DISPERSION)
+def dispersion(
+    k: sp.Expr,
+    masses: tuple[sp.Expr, ...],
+    stiffnesses: tuple[sp.Expr, ...],
+    order: int,
+    style: str,
+) -> None:
+    """The linear chain: the series of Ω²(κ), Ω the frequency in τ and κ the wavenumber, times D.
+
+    The exponent matters for unequal contacts only, which share the strain by it.
+    """
+    _show(DISPERSION[style](Dispersion(Cell(masses, stiffnesses), k), order))
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

@@ -21,6 +21,7 @@ and these the strains.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from math import factorial
 
@@ -82,7 +83,13 @@ def amplitude_ratios(cell: Cell) -> dict[str, sp.Expr]:
     return {"acoustic": sp.Integer(1), "optical": sp.cancel(-constant / slope)}
 
 
-def solve(ring: Coefficients, order: int, closure: str, field: str) -> Closure:
+Progress = Callable[[Iterable[int]], Iterable[int]]
+"""What the orders are run through on their way, such as `tqdm.tqdm`."""
+
+
+def solve(
+    ring: Coefficients, order: int, closure: str, field: str, progress: Progress = iter
+) -> Closure:
     """The consistency condition by the named closure, for the named field.
 
     Raises `lwa.InputError` for the combinations that have no solution.
@@ -92,18 +99,22 @@ def solve(ring: Coefficients, order: int, closure: str, field: str) -> Closure:
             f"field is {field!r}: with the linear closure it is 'first', as in the paper"
         )
     if closure == "linear":
-        return linear(ring, order)
+        return linear(ring, order, progress)
     if ring.branch == "acoustic":
-        return full(ring, order, field)
+        return full(ring, order, field, progress)
     if ring.k == 1 and field == "first":
-        return replace(linear(ring, order), name="full")  # the linear chain has a linear closure
+        return replace(
+            linear(ring, order, progress), name="full"
+        )  # the linear chain has a linear closure
     raise InputError(
         "the optical branch oscillates at order D^0 and slaves no field algebraically unless "
         "k = 1: use the linear closure, or k = 1 with the field 'first'"
     )
 
 
-def full(ring: Coefficients, order: int, field: str = "first") -> Closure:
+def full(
+    ring: Coefficients, order: int, field: str = "first", progress: Progress = iter
+) -> Closure:
     """The closure that satisfies all equations of motion, to D^order in the slaved fields.
 
     ``field`` says which φ describes the chain: "first", the displacement of the first particle, or
@@ -127,11 +138,12 @@ def full(ring: Coefficients, order: int, field: str = "first") -> Closure:
     rate = [Ladder(algebra, algebra.half) for _ in range(P)]  # ∂_τ (D φ_x S_i)
     for ladder in rate:
         ladder.append(algebra.zero)
-    for n in range(1, order):
+    for n in progress(range(1, order)):
         r_n = algebra.r[n] * fmpq(1, factorial(n + 1))
         slaved = [algebra.dt(ladder, E, n) for ladder in rate]
-        for i in range(P):
-            rate[i].append(algebra.dt(S[i], E, n))
+        if n + 1 < order:
+            for i in range(P):
+                rate[i].append(algebra.dt(S[i], E, n))
         # momentum: the sum of the equations, whose forces cancel but for the cell's ends
         E_n = -force[-1].carried(-P, n) / P
         for mu_i, acceleration in zip(mu, slaved, strict=True):
@@ -177,19 +189,20 @@ def _linear_part(algebra: JetAlgebra, S: Ladder, n: int) -> fmpq_mpoly:
     return algebra.slope(S[n], n) if n else S[0]
 
 
-def linear(ring: Coefficients, order: int) -> Closure:
+def linear(ring: Coefficients, order: int, progress: Progress = iter) -> Closure:
     """The paper's closure, to D^order in the ansatz, on the branch of ``ring``.
 
     Raises `lwa.InputError` for cells of more than two particles, which the ansatz does not cover.
     """
     size = ring.cell.size
     if size == 1 and ring.branch == "acoustic":
-        return _uniform(ring, order)
+        return _uniform(ring, order, progress)
     if size != 2:
         raise InputError(
             f"the cell has {size} masses: the linear closure's {ring.branch} branch wants two"
         )
-    return _acoustic(ring, order) if ring.branch == "acoustic" else _optical(ring, order)
+    branch = _acoustic if ring.branch == "acoustic" else _optical
+    return branch(ring, order, progress)
 
 
 def _exact_quotient(numerator: fmpq_mpoly, divisor: fmpq_mpoly) -> fmpq_mpoly:
@@ -205,7 +218,7 @@ def _applied(b: list[fmpq_mpoly], f: Ladder, n: int) -> fmpq_mpoly:
     return sum((b[j] * f.dx(n - j, j) for j in range(1, min(n, len(f)))), f.algebra.zero)
 
 
-def _acoustic(ring: Coefficients, order: int) -> Closure:
+def _acoustic(ring: Coefficients, order: int, progress: Progress) -> Closure:
     algebra = JetAlgebra(ring.names, max(order - 1, 1))
     k = ring.exponent(algebra.context)
     mu = ring.masses.elements(algebra.context)
@@ -215,7 +228,7 @@ def _acoustic(ring: Coefficients, order: int) -> Closure:
     first.append(algebra.zero)
     second.append(algebra.zero)
     b = [algebra.one, c[0]]  # order D^k: equal forces, so the first contact takes its share
-    for n in range(1, order):
+    for n in progress(range(1, order)):
         # The strains of both contacts sum to u(x + 2D) - u(x). Let theirs differ by ξ r_n at D^n;
         # each equation is written as far as it is known, and its ξ r_n has the weight ±1.
         known = right.known - left.known
@@ -232,7 +245,7 @@ def _acoustic(ring: Coefficients, order: int) -> Closure:
     return _closure(ring, algebra, order, b[: order + 1], first, second)
 
 
-def _optical(ring: Coefficients, order: int) -> Closure:
+def _optical(ring: Coefficients, order: int, progress: Progress) -> Closure:
     # Contacts here also pull: the branch belongs to the odd extension of δ^k (or to odd k).
     # w - u = -(u/μ_1)(1 + Y) and u(x + 2D) - w = (u/μ_1)(1 + Z); E = 1 + kε.
     algebra = JetAlgebra(ring.names, max(order, 1))
@@ -245,7 +258,7 @@ def _optical(ring: Coefficients, order: int) -> Closure:
     second.append(algebra.zero)
     leading.append(algebra.r[1])
     b = [algebra.one]
-    for n in range(1, order + 1):
+    for n in progress(range(1, order + 1)):
         r_n = algebra.r[n]
         carried = stiffness[1] * left.carried(-2, n)
         b.append(-algebra.slope(carried + _applied(b, first, n), n))
@@ -257,13 +270,13 @@ def _optical(ring: Coefficients, order: int) -> Closure:
     return _closure(ring, algebra, order, b, first, second)
 
 
-def _uniform(ring: Coefficients, order: int) -> Closure:
+def _uniform(ring: Coefficients, order: int, progress: Progress) -> Closure:
     # One particle per cell: nothing is slaved, and the one equation is the wave equation.
     algebra = JetAlgebra(ring.names, max(order - 1, 1))
     k = ring.exponent(algebra.context)
     force, E = Power(algebra, k), Ladder(algebra, k)
     E.append(algebra.zero)
-    for n in range(1, order):
+    for n in progress(range(1, order)):
         force.append(algebra.r[n] * fmpq(1, factorial(n + 1)))
         E.append(-force.carried(-1, n))
     return _closure(ring, algebra, order, [], E, E)

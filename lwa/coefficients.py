@@ -190,6 +190,7 @@ class Door:
         self._generators: list[sp.Expr] = [*symbols, *opaque]
         context = fmpq_mpoly_ctx.get([f"x{i}" for i in range(len(self._generators))], Ordering.lex)
         self._context = context
+        self._monomials: dict[tuple[int, ...], tuple[sp.Expr, ...]] = {}
 
         def element(value: sp.Expr) -> fmpq_mpoly:
             if value.is_Rational:
@@ -239,8 +240,14 @@ class Door:
 
     def _terms(self, polynomial: fmpq_mpoly) -> Iterator[sp.Expr]:
         for exponents, coefficient in polynomial.terms():
-            powers = (g**e for g, e in zip(self._generators, exponents, strict=True) if e)
-            yield sp.Mul(_number(coefficient), *powers)
+            if exponents not in self._monomials:
+                powers = (g**e for g, e in zip(self._generators, exponents, strict=True) if e)
+                self._monomials[exponents] = sp.Mul.make_args(sp.Mul(*powers))
+            number, monomial = _number(coefficient), self._monomials[exponents]
+            if number == 1 or monomial == (1,):
+                yield sp.Mul(number, *monomial)
+            else:  # in canonical order already; sorting it anew would take most of the time
+                yield sp.Mul(number, *monomial, evaluate=False)
 
 
 def _as_polynomial(value: sp.Expr, symbols: list[sp.Symbol]) -> sp.Poly | None:

@@ -57,7 +57,7 @@ class JetAlgebra:
         jets = range(1, weight + 1)
         names = [*parameters, *(f"r{n}" for n in jets)]
         names += [f"s{n}" for n in jets] if exponent else []
-        self.context = fmpq_mpoly_ctx.get(names, Ordering.degrevlex)
+        self.context = fmpq_mpoly_ctx.get(names, Ordering.lex)
         self.one = self.context.constant(1)
         self.zero = self.context.constant(0)
         generators = self.context.gens()
@@ -82,6 +82,8 @@ class JetAlgebra:
 
     def dx(self, f: fmpq_mpoly, exponent: fmpq_mpoly | int) -> fmpq_mpoly:
         """p^{-e} ∂_x (p^e f), e the exponent."""
+        if f.is_zero():
+            return f
         return self._derivation(exponent * self.r[1] * f, f, self._dx)
 
     def dt(self, f: Ladder, E: Ladder, n: int) -> fmpq_mpoly:
@@ -90,7 +92,9 @@ class JetAlgebra:
         f is a series or the known beginning of one, f_m for m < n; E is the series of
         u_ττ = p^k Σ_j D^{j-1} E_j, of which E_1 … E_{n-1} enter.
         """
-        result = self._derivation(f.exponent * self.s[1] * f[n - 1], f[n - 1], self._dt)
+        result = last = f[n - 1]
+        if not last.is_zero():
+            result = self._derivation(f.exponent * self.s[1] * last, last, self._dt)
         for m in range(1, n):
             for i, slope in f.velocity_slopes(m):
                 result = result + slope * E.dx(n - m, i)
@@ -98,21 +102,23 @@ class JetAlgebra:
 
     def velocity_slopes(self, f: fmpq_mpoly) -> list[tuple[int, fmpq_mpoly]]:
         """(i, ∂f/∂s_i) for the s_i that stand in f."""
-        start = self._offset + self.weight - 1
-        slopes = ((i, f.derivative(start + i)) for i in range(1, len(self.s)))
-        return [(i, slope) for i, slope in slopes if not slope.is_zero()]
+        start = self._offset + self.weight
+        return [(i - start + 1, f.derivative(i)) for i in self._present(f) if i >= start]
+
+    def _present(self, f: fmpq_mpoly) -> list[int]:
+        """The indices of the jets that stand in f."""
+        degrees = f.degrees()
+        return [i for i in range(self._offset, len(degrees)) if degrees[i] > 0]
 
     def _derivation(
         self, result: fmpq_mpoly, f: fmpq_mpoly, images: dict[int, fmpq_mpoly]
     ) -> fmpq_mpoly:
-        """result + Σ ∂f/∂g · image(g) over the generators g."""
-        for index in range(self._offset, self.context.nvars()):
-            slope = f.derivative(index)
-            if not slope.is_zero():
-                if index not in images:
-                    name = self.context.name(index)
-                    raise ValueError(f"the derivative of {name} needs an algebra of more weight")
-                result = result + slope * images[index]
+        """result + Σ ∂f/∂g · image(g) over the jets g."""
+        for index in self._present(f):
+            if index not in images:
+                name = self.context.name(index)
+                raise ValueError(f"the derivative of {name} needs an algebra of more weight")
+            result = result + f.derivative(index) * images[index]
         return result
 
     def slope(self, f: fmpq_mpoly, n: int) -> fmpq_mpoly:
@@ -180,7 +186,9 @@ class Ladder:
         """What the shift by hD adds at D^n: Σ_{0<j≤n} h^j/j! ∂_x^j f_{n-j}."""
         total = self.algebra.zero
         for j in range(1, n + 1):
-            total = total + self.dx(n - j, j) * (h**j * fmpq(1, factorial(j)))
+            part = self.dx(n - j, j)
+            if not part.is_zero():
+                total = total + part * (h**j * fmpq(1, factorial(j)))
         return total
 
     def dx(self, n: int, j: int) -> fmpq_mpoly:
@@ -202,7 +210,7 @@ class Power:
 
     With Y = (1 + X)^k the recurrence n Y_n = Σ_{j=1..n} (k j - (n - j)) X_j Y_{n-j} gives
 
-        Φ_n = X_n + (1/n) Σ_{j<n} (k j - (n - j)) X_j Φ_{n-j},
+        Φ_n = X_n + ((k + 1)/n) Σ_{j<n} j X_j Φ_{n-j} - Σ_{j<n} X_j Φ_{n-j},
 
     polynomial in k and without a division by it. p^k (1 + X)^k is the force of a contact whose
     strain is p (1 + X). X and Phi hold the terms so far.
@@ -222,10 +230,12 @@ class Power:
         """Of the next Φ_n the part Φ_n - X_n, which depends on X_1 … X_{n-1} only."""
         if self._known is None:
             n = len(self.X)
-            total = self.Phi[0]
+            plain = weighted = self.Phi[0]
             for j in range(1, n):
-                total = total + (self.k * j - (n - j)) * self.X[j] * self.Phi[n - j]
-            self._known = total / n
+                product = self.X[j] * self.Phi[n - j]
+                plain = plain + product
+                weighted = weighted + j * product
+            self._known = (self.k + 1) * weighted / n - plain
         return self._known
 
     def append(self, X_n: fmpq_mpoly) -> None:

@@ -195,7 +195,7 @@ class PDE:
         >>> from lwa import Dimer, homogenize
         >>> pde = homogenize(Dimer(1, 1)).pde
         >>> pde.H, pde.in_field({2: "alpha"}).H
-        (D**2*(k/6 - 1/6), D**2*(k - 1)*(12*alpha + 1)/6)
+        (D**2*(k/6 - 1/6), D**2*(12*alpha + 1)*(k - 1)/6)
         """
         exact_alphas = {n: exact(a, f"alpha_{n}") for n, a in alphas.items()}
         return PDE(change_field(self.closure, exact_alphas))

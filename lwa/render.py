@@ -7,6 +7,7 @@ from typing import Any
 
 import sympy as sp
 
+from lwa.dispersion import Dispersion
 from lwa.exact import InputError
 from lwa.pde import Terms
 from lwa.theory import Theory
@@ -48,7 +49,7 @@ def theory_json(theory: Theory) -> dict[str, Any]:
     return {
         **_chain_json(theory),
         "lambda": str(theory.amplitude_ratio),
-        "ansatz": {str(n): str(b) for n, b in theory.ansatz.items()},
+        "ansatz": _series_json(theory.ansatz),
         **{name: str(found[name]) if found else None for name in "GHI"},
         "terms": _terms_json(theory.pde.coefficients),
         "vanishing": list(theory.pde.vanishing),
@@ -90,6 +91,20 @@ def wave_json(theory: Theory, wave: TravelingWave) -> dict[str, Any]:
         result["fwhm_value"] = widths
     _put(result, "log_B_value", _float(-sp.log(wave.speed_factor) / (wave.k - 1)))
     return result
+
+
+def dispersion_json(chain: Dispersion, order: int) -> dict[str, Any]:
+    """The object that `lwa dispersion --format json` prints: Ω² by power of κ.
+
+    ``optical`` is null unless the cell has two particles.
+    """
+    acoustic = chain.acoustic(order)
+    optical = chain.optical(order) if chain.cell.size == 2 else None
+    return {"acoustic": _series_json(acoustic), "optical": optical and _series_json(optical)}
+
+
+def _series_json(coefficients: Mapping[int, sp.Expr]) -> dict[str, str]:
+    return {str(n): str(c) for n, c in coefficients.items()}
 
 
 def _chain_json(theory: Theory) -> dict[str, Any]:

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 import sympy as sp
 
+from lwa.dispersion import Dispersion
 from lwa.pde import Jet, base_order
 from lwa.render import in_units, third_order, wave_values
 from lwa.theory import Theory
@@ -173,3 +174,20 @@ def _unit(wave: TravelingWave, value: sp.Expr) -> str:
         return ""
     power = sp.degree(sp.numer(value), wave.D) - sp.degree(sp.denom(value), wave.D)
     return f" {wave.D}" if power == 1 else f" {wave.D}^{power}"
+
+
+def dispersion_text(chain: Dispersion, order: int) -> str:
+    """What `lwa dispersion` prints."""
+    lines = [
+        f"masses {_list(chain.cell.masses)}, A = {_list(chain.cell.stiffnesses)}; Ω²(κ), κ = qD "
+        "and Ω/D the frequency in τ",
+        "",
+        *_series("acoustic", chain.acoustic(order)),
+    ]
+    if chain.cell.size == 2:
+        lines += _series("optical", chain.optical(order))
+    return "\n".join(lines)
+
+
+def _series(name: str, coefficients: Mapping[int, sp.Expr]) -> list[str]:
+    return [f"{name}:", *(f"  {f'κ^{n}' if n else '1'}: {c}" for n, c in coefficients.items())]

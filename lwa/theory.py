@@ -10,11 +10,14 @@ import sympy as sp
 
 from lwa.cell import Cell, exponent
 from lwa.cell import k as symbol_k
-from lwa.closure import BRANCHES, CLOSURES, FIELDS, Closure, solve
+from lwa.closure import BRANCHES, CLOSURES, FIELDS, Closure, Progress, solve
 from lwa.coefficients import Coefficients
 from lwa.exact import InputError, shorten
 from lwa.jets import Monomial
 from lwa.pde import PDE, Terms, terms
+
+SLOW_ORDER = 12
+"""The order from which a derivation shows its progress."""
 
 MOST_TERMS = 1_000_000
 """What a derivation may grow to, by the estimate of `_affordable`: some gigabytes of memory."""
@@ -133,7 +136,16 @@ def homogenize(
         raise InputError(f"{shared.pop()} names both the exponent and a property of the cell")
     ring = Coefficients(cell, k, branch)
     _affordable(order, len(ring.names))
-    return Theory(solve(ring, order, closure, field))
+    return Theory(solve(ring, order, closure, field, _progress(order)))
+
+
+def _progress(order: int) -> Progress:
+    """A progress bar on a terminal, for orders that take a while."""
+    if order < SLOW_ORDER:
+        return iter
+    from tqdm import tqdm  # here, so that `import lwa` does not load it
+
+    return lambda orders: tqdm(orders, desc="orders", leave=False, disable=None)
 
 
 def _affordable(order: int, parameters: int) -> None:

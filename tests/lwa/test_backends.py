@@ -52,6 +52,9 @@ class Polynomial:
     def is_zero(self):
         return not self.element
 
+    def degrees(self):
+        return [max(d, 0) for d in self.element.degrees()]
+
     def derivative(self, index):
         return Polynomial(self.element.diff(index))
 

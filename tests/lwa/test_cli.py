@@ -187,6 +187,16 @@ def test_text_of_the_wave(capsys):
     assert "the other root, p = 4/3" in out
 
 
+def test_dispersion(capsys):
+    found = result(capsys, "dispersion", "--masses", "3,1", "--order", "6")
+    assert found["acoustic"] == {"2": "1", "4": "-7/48", "6": "-59/5760"}
+    assert found["optical"]["0"] == "16/3"
+    assert result(capsys, "dispersion", "--masses", "1,2,3")["optical"] is None
+    status, out, _ = run(capsys, "dispersion")
+    assert status == 0
+    assert "κ^4: -(m1**2 - m1*m2 + m2**2)/(3*(m1 + m2)**2)" in out
+
+
 BAD = [
     ("derive", "--k", "0"),
     ("derive", "--k", "nan"),
@@ -215,6 +225,8 @@ BAD = [
     ("wave", "--order", "3"),
     ("wave", "--k", "3", "--masses", "1,100"),
     ("wave", "--branch", "optical"),
+    ("dispersion", "--order", "0"),
+    ("dispersion", "--masses", "1,-1"),
     ("explain",),
 ]
 
