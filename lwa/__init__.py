@@ -14,7 +14,7 @@ from lwa.dispersion import Dispersion
 from lwa.exact import InputError
 from lwa.pde import PDE
 from lwa.theory import Theory, homogenize
-from lwa.wave import NoSolitaryWave, TravelingWave
+from lwa.wave import NoSolitaryWave, TravelingWave, canonical_wave
 
 __all__ = [
     "PDE",
@@ -27,6 +27,7 @@ __all__ = [
     "NoSolitaryWave",
     "Theory",
     "TravelingWave",
+    "canonical_wave",
     "homogenize",
     "k",
 ]

@@ -187,6 +187,29 @@ class PDE:
     def _orders(self) -> tuple[int, ...]:
         return tuple(self.coefficients) if self.closure.ring.branch == "acoustic" else ()
 
+    def energy_density(self, u: sp.Expr, x: sp.Symbol, velocity: sp.Expr = sp.S.Zero) -> sp.Expr:
+        """u_τ²/2 + Σ D^{n-1} V_n for fields u(x) and u_τ(x): the density of a conserved energy.
+
+        Raises `lwa.InputError` where an order does not derive from a potential.
+
+        >>> from lwa import Cell, homogenize
+        >>> x = sp.Symbol("x")
+        >>> homogenize(Cell([1]), k=3).pde.energy_density(x**2, x)
+        -2*D**2*x**2/3 + 4*x**4/3
+        """
+        if not self.variational:
+            raise InputError(
+                "the wave equation has no energy in this field: it is variational with closure "
+                "full and field center (see `PDE.variational`)"
+            )
+        k, D, p = self.k, self.cell.spacing, u.diff(x)
+        result = velocity**2 / 2 + p ** (k + 1) / (k * (k + 1))
+        for n, found in self.potentials.items():
+            for jet, coefficient in found.items():
+                jets = sp.Mul(*((u.diff(x, i) / p) ** e for i, e in jet.x))
+                result += coefficient / (k + 1) * D ** (n - 1) * p ** (k + 1) * jets
+        return result
+
     def in_field(self, alphas: Mapping[int, Any]) -> PDE:
         """The wave equation of φ = u + Σ α_n D^n ∂_x^n u, for {n: α_n}.
 

@@ -24,6 +24,8 @@ from typing import TYPE_CHECKING, Any, Literal
 import sympy as sp
 
 from lwa.cell import Cell, exponent
+from lwa.cell import k as symbol_k
+from lwa.dispersion import Dispersion
 from lwa.exact import InputError, positive, shorten
 from lwa.jets import JetAlgebra, Monomial
 
@@ -304,6 +306,21 @@ class TravelingWave:
         from lwa.numeric import NumericWave  # here, so that `import lwa` does not load NumPy
 
         return NumericWave.of(self, missing)
+
+
+def canonical_wave(cell: Cell, k: Any = symbol_k) -> TravelingWave:
+    """The wave of the canonical field of any cell, from the linear chain's dispersion alone.
+
+    With Ω² = κ² (1 - I κ² + …) the equation of the canonical field has G = I (k-1)(k-2)/2 and
+    H = 2I (k-1), hence β = (k-1)/√(2I k(k+1)) and V² = 2 B^{k-1}/(k(k+1)); the same as
+    ``homogenize(cell, closure="full", field="center").pde.traveling_wave()``.
+
+    >>> canonical_wave(Cell((1, 1)), "3/2").beta
+    sqrt(10)/(5*D)
+    """
+    k = exponent(k)
+    I = Dispersion(cell, k).I * cell.spacing**2
+    return TravelingWave(cell=cell, k=k, G=I * (k - 1) * (k - 2) / 2, H=2 * I * (k - 1), I=I)
 
 
 def _root(value: sp.Expr) -> sp.Expr:

@@ -49,8 +49,8 @@ def test_the_canonical_field_has_an_energy_at_third_order(k):
     assert pde.variational
     u = sp.Function("u")(x)
     p = u.diff(x)
-    # the density with I: φ_x^{k+1}/(k(k+1)) - (I/2) φ_x^{k-1} φ_xx²
     density = p ** (k + 1) / (k * (k + 1)) - pde.I / 2 * p ** (k - 1) * p.diff(x) ** 2
+    assert sp.simplify(pde.energy_density(u, x) - density) == 0
     residual = variational_derivative(density, u, 2) + pde.right_side(u, x)
     assert at_a_point(residual, u) == 0
     ((jet, coefficient),) = pde.potentials[3].items()
@@ -95,6 +95,8 @@ def test_the_linear_closure_is_not_variational():
     pde = homogenize(Dimer("m1", "m2")).pde
     assert not pde.variational
     assert 3 not in pde.potentials
+    with pytest.raises(InputError, match="no energy"):
+        pde.energy_density(x**2, x)
 
 
 def test_a_redefinition_of_the_field_is_variational_at_fifth_order():
@@ -105,6 +107,12 @@ def test_a_redefinition_of_the_field_is_variational_at_fifth_order():
     shift = b * (1 - b) * (1 - 2 * b) ** 2 / 8
     changed = center.in_field({4: shift})
     assert changed.variational
+    # the energy of all five orders, whose variational derivative is the equation itself
+    numbers = homogenize(Dimer(3, 1, spacing=1), 6, k=2, closure="full", field="center").pde
+    numbers = numbers.in_field({4: shift.subs({m1: 3, m2: 1})})
+    u = sp.Function("u")(x)
+    density = numbers.energy_density(u, x)
+    assert at_a_point(variational_derivative(density, u, 3) + numbers.right_side(u, x), u) == 0
     assert not center.in_field({4: 2 * shift}).variational
     assert homogenize(Dimer(1, 1), 6, closure="full", field="center").pde.variational
 

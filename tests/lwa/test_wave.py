@@ -6,7 +6,7 @@ import sympy as sp
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from lwa import Dimer, InputError, NoSolitaryWave, homogenize
+from lwa import Cell, Dimer, InputError, NoSolitaryWave, canonical_wave, homogenize
 from lwa.wave import strain_equation
 
 masses = st.fractions(min_value="1/50", max_value=50, max_denominator=50)
@@ -160,3 +160,23 @@ def test_refused_values():
         WAVE.reduction(2)
     with pytest.raises(InputError, match="V is 0"):
         WAVE.amplitude(0)
+
+
+@pytest.mark.parametrize(
+    ("cell", "k"),
+    [
+        (Dimer("m1", "m2"), "k"),
+        (Cell(["m"]), "k"),
+        (Cell(["m1", "m1", "m2"]), "k"),
+        (Cell([1, 2, 3], [1, 8, 27]), 3),
+    ],
+    ids=str,
+)
+def test_the_canonical_wave_needs_the_dispersion_only(cell, k):
+    short = canonical_wave(cell, k)
+    long = homogenize(cell, 4, k=k, closure="full", field="center").pde.traveling_wave()
+    k = short.k
+    assert sp.simplify(short.beta**2 - (k - 1) ** 2 / (2 * long.I * k * (k + 1))) == 0
+    assert sp.simplify(short.beta**2 / long.beta**2) == 1
+    assert short.speed_factor == sp.factor(2 / (k * (k + 1)))
+    assert sp.simplify(long.speed_factor - short.speed_factor) == 0
