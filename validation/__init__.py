@@ -1,0 +1,17 @@
+"""The lattice itself, integrated and measured, to be put beside the theory of `lwa`.
+
+>>> from validation import Scene, measure, simulate
+>>> chain = dict(masses=(1,) * 60, stiffnesses=(1,) * 59, k=1.5, duration=60)
+>>> run = simulate(Scene(**chain, velocities=(1,), contact_sensors=(20, 40)))
+>>> first, second = (measure(run.time, force) for force in run.contact_force)
+>>> speed = 20 / (second.arrival - first.arrival)
+>>> round(second.fwhm * speed, 4)  # sites under the contact force of a Hertz chain's pulse
+1.4119
+"""
+
+from validation.lattice import Run, simulate
+from validation.materials import Bead, Material
+from validation.measure import Pulse, measure
+from validation.scene import Scene, SceneError
+
+__all__ = ["Bead", "Material", "Pulse", "Run", "Scene", "SceneError", "measure", "simulate"]

@@ -1,0 +1,106 @@
+"""The command `lwa-validate`: the lattice, measured against the theory."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Callable, Collection, Sequence
+from pathlib import Path
+from typing import Any
+
+import click
+import sympy as sp
+from tqdm import tqdm
+
+from lwa.terminal import quantities, quantity, run
+from validation import experiments
+from validation.checked import SceneError
+from validation.limits import limits as run_limits
+from validation.plots import SUFFIXES, plot_file, save
+from validation.report import document, text
+
+Command = Callable[..., Any]
+
+
+@click.group()
+def validate() -> None:
+    """The lattice of F = A δ^k contacts, measured against the long-wave theory.
+
+    Ends with 1 when a comparison does not hold and with 2 on bad input.
+    """
+
+
+def _picture(context: click.Context, option: click.Parameter, path: str | None) -> Path | None:
+    return None if path is None else plot_file(path)
+
+
+def _output(command: Command) -> Command:
+    """The options that say where a result goes."""
+    command = click.option(
+        "--plot", "picture", callback=_picture, metavar="FILE",
+        help=f"Draw the result into a file ({', '.join(SUFFIXES)}).",
+    )(command)  # fmt: skip
+    return click.option(
+        "--format", "style", type=click.Choice(("text", "json")), default="text",
+        show_default=True, help="How to print the result.",
+    )(command)  # fmt: skip
+
+
+def _show(result: Any, style: str, picture: Path | None) -> None:
+    if picture is not None:
+        save(result, picture)
+    click.echo(text(result) if style == "text" else json.dumps(document(result), indent=2))
+
+
+def _progress(cases: Collection[Any]) -> tqdm[Any]:
+    # disable=None: only on a terminal
+    return tqdm(cases, desc="lattice runs", disable=None, leave=False, file=sys.stderr)
+
+
+@validate.command()
+@_output
+def limits(style: str, picture: Path | None) -> int:
+    """Equal masses, m1 ≫ m2 and k → 1: widths, speed and amplitude, held to bounds."""
+    result = run_limits(_progress)
+    _show(result, style, picture)
+    return 0 if result.ok else 1
+
+
+@validate.command()
+@click.option(
+    "--velocity",
+    callback=quantity,
+    default="1.37",
+    show_default=True,
+    help="Of the striker, in m/s.",
+)
+@click.option(
+    "--beads", type=int, default=38, show_default=True, help="In the chain, the striker included."
+)
+@click.option(
+    "--sensors",
+    callback=quantities,
+    default="15,34",
+    show_default=True,
+    help="The two beads that are compared, counted from the striker, 1.",
+)
+@click.option("--gravity", is_flag=True, help="Let the chain stand upright, under its own weight.")
+@_output
+def paper(
+    velocity: sp.Expr,
+    beads: int,
+    sensors: tuple[sp.Expr, ...],
+    gravity: bool,
+    style: str,
+    picture: Path | None,
+) -> None:
+    """The steel:PTFE chain of the paper: speed, peak force and FWHM."""  # fmt: skip
+    if not velocity.is_number:
+        raise SceneError(f"velocity is {velocity}: a number is wanted")
+    g = experiments.GRAVITY if gravity else 0.0
+    _show(experiments.paper(float(velocity), beads, sensors, g), style, picture)
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Entry point of the command `lwa-validate`."""
+    run(validate, "lwa-validate", arguments)

@@ -1,0 +1,107 @@
+"""A result as a picture, drawn by Matplotlib without a display.
+
+Matplotlib is imported when a picture is drawn. A file appears only when it is complete.
+"""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from functools import singledispatch
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from lwa.exact import InputError
+from validation.experiments import Paper
+from validation.limits import EQUAL, EXPONENTS, LAWS, LIGHT, Limits
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+SUFFIXES = (".pdf", ".png", ".svg")
+
+
+def plot_file(path: str) -> Path:
+    """A path that a picture can be written to.
+
+    Raises `lwa.InputError` for another suffix than `SUFFIXES` or a folder that does not exist.
+    """
+    file = Path(path)
+    if file.suffix.lower() not in SUFFIXES:
+        raise InputError(f"plot is {path}: a file ending in {', '.join(SUFFIXES)} is wanted")
+    if not file.parent.is_dir():
+        raise InputError(f"plot is {path}: the folder {file.parent} does not exist")
+    if file.is_dir() or not os.access(file.parent, os.W_OK):
+        raise InputError(f"plot is {path}: a file that can be written is wanted")
+    return file
+
+
+def save(result: Any, file: Path) -> None:
+    """Draw a result into a file, which is replaced only by a complete picture."""
+    handle, name = tempfile.mkstemp(suffix=file.suffix.lower(), dir=file.parent)
+    os.close(handle)
+    try:
+        figure(result).savefig(name, dpi=150)
+        umask = os.umask(0)
+        os.umask(umask)
+        os.chmod(name, 0o666 & ~umask)
+        os.replace(name, file)
+    except BaseException:
+        os.unlink(name)
+        raise
+
+
+@singledispatch
+def figure(result: Any) -> Figure:
+    """The picture of a result."""
+    raise NotImplementedError(type(result))
+
+
+@figure.register(Limits)
+def _(result: Limits) -> Figure:
+    """|error| against k - 1, with the leading powers that it must approach."""
+    from matplotlib.figure import Figure
+
+    picture = Figure(figsize=(10, 4.5), layout="constrained")
+    epsilon = np.geomspace(float(EXPONENTS[-1] - 1) / 2, float(EXPONENTS[0] - 1), 2)
+    for axes, omega in zip(picture.subplots(1, 2, sharey=True), (EQUAL, LIGHT), strict=True):
+        for i, (quantity, law) in enumerate(LAWS.items()):
+            rows = [
+                row
+                for row in result.rows
+                if (row.quantity, row.omega) == (quantity, omega) and row.k is not None
+            ]
+            color = f"C{i}"
+            axes.plot(epsilon, abs(float(law.coefficient)) * epsilon**law.order, color=color)
+            axes.errorbar(
+                [float(row.k - 1) for row in rows if row.k is not None],
+                [abs(row.error) for row in rows],
+                [row.lattice.relative_error for row in rows],
+                fmt="osD^"[i],
+                color=color,
+                label=quantity,
+            )
+        axes.set(xscale="log", yscale="log", xlabel="k - 1", title=f"m2/m1 = {omega}")
+        axes.set_xticks([float(k - 1) for k in EXPONENTS], [str(k - 1) for k in EXPONENTS])
+        axes.set_xticks([], minor=True)
+    picture.axes[0].set_ylabel("|theory/lattice - 1|")
+    picture.axes[0].legend(title="lines: leading order in k - 1")
+    return picture
+
+
+@figure.register(Paper)
+def _(result: Paper) -> Figure:
+    """The forces at both sensors over time, the lattice's and the theory's."""
+    from matplotlib.figure import Figure
+
+    picture = Figure(figsize=(8, 4.5), layout="constrained")
+    axes = picture.subplots()
+    for i, record in enumerate(result.records):
+        color, time = f"C{i}", 1e6 * record.time
+        axes.plot(time, record.lattice, color=color, label=f"bead {record.bead}, lattice")
+        axes.plot(time, record.theory, "--", color=color, label="theory, amplitude from F_m")
+    axes.set(xlabel="time (µs)", ylabel="force, mean of the bead's contacts (N)")
+    axes.legend(loc="upper center", ncols=2, bbox_to_anchor=(0.5, 1.17))
+    return picture
