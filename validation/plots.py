@@ -56,7 +56,7 @@ def save(result: Any, file: Path) -> None:
 @singledispatch
 def figure(result: Any) -> Figure:
     """The picture of a result."""
-    raise NotImplementedError(type(result))
+    raise TypeError(f"nothing is known to draw of {type(result).__name__}")
 
 
 @figure.register(Limits)

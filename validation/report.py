@@ -37,7 +37,7 @@ def table(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
 @singledispatch
 def text(result: Any) -> str:
     """The result as a table, with what it takes to read it."""
-    raise NotImplementedError(type(result))
+    raise TypeError(f"nothing is known to print of {type(result).__name__}")
 
 
 @singledispatch
@@ -54,7 +54,7 @@ def document(result: Any) -> dict[str, Any]:
     theory's amplitude (``F_m``, ``speed``, ``striker``) ``theory_value`` {…} and ``error_value``
     {…}.
     """
-    raise NotImplementedError(type(result))
+    raise TypeError(f"nothing is known to print of {type(result).__name__}")
 
 
 def _percent(error: float) -> str:
