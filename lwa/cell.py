@@ -18,7 +18,7 @@ from typing import Any
 
 import sympy as sp
 
-from lwa.exact import InputError, exact, positive
+from lwa.exact import InputError, exact, positive, shorten
 
 D = sp.Symbol("D", positive=True)
 """The spacing of neighbouring particles, unless the caller names another."""
@@ -110,14 +110,20 @@ class Cell:
         return sp.sqrt(self.size * k * self.stiffness(k) * self.spacing ** (k + 1) / self.mass)
 
 
-def Dimer(m1: Any, m2: Any, *, stiffnesses: Sequence[Any] = (), spacing: Any = D) -> Cell:
-    """The paper's cell: two particles, m1 (field u) and m2 (field w), at distance D.
+def Dimer(
+    m1: Any, m2: Any, N: int = 1, *, stiffnesses: Sequence[Any] = (), spacing: Any = D
+) -> Cell:
+    """The paper's N:1 dimer: N particles m1 (the first one's field is u) and one m2, at distance D.
 
     >>> m1, m2 = sp.symbols("m1 m2", positive=True)
     >>> Dimer(m1, m2).fractions
     (m1/(m1 + m2), m2/(m1 + m2))
+    >>> Dimer(m1, m2, N=2).masses
+    (m1, m1, m2)
     """
-    return Cell((m1, m2), stiffnesses=tuple(stiffnesses), spacing=spacing)
+    if isinstance(N, bool) or not isinstance(N, int) or N < 1:
+        raise InputError(f"N is {shorten(N)}: the number of particles m1 is an integer from 1 on")
+    return Cell((m1,) * N + (m2,), stiffnesses=tuple(stiffnesses), spacing=spacing)
 
 
 def exponent(value: Any) -> sp.Expr:

@@ -59,3 +59,10 @@ def test_a_cell_is_a_value():
 def test_impossible_cells_are_refused(arguments, words):
     with pytest.raises(InputError, match=words):
         Cell(**arguments)
+
+
+def test_the_N_to_one_dimer():
+    assert Dimer("a", "b", N=3) == Cell(["a", "a", "a", "b"])
+    for N in (0, -1, 1.5, True):
+        with pytest.raises(InputError, match="N is"):
+            Dimer(1, 2, N=N)
