@@ -1,7 +1,13 @@
 """One call from cell to theory, and what it refuses."""
 
+import fcntl
+import os
+import pty
+import select
+import struct
 import subprocess
 import sys
+import termios
 
 import pytest
 import sympy as sp
@@ -54,3 +60,24 @@ def test_importing_lwa_loads_no_numerics():
         [sys.executable, "-c", code], capture_output=True, text=True, check=True
     )
     assert result.stdout.strip() == "[]"
+
+
+def progress_of(code):
+    """What a child process writes to its terminal's standard error."""
+    controller, terminal = pty.openpty()
+    fcntl.ioctl(terminal, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 80, 0, 0))
+    subprocess.run([sys.executable, "-c", code], stderr=terminal, check=True)
+    written = b""
+    while select.select([controller], [], [], 0)[0]:
+        written += os.read(controller, 4096)
+    os.close(controller)
+    os.close(terminal)
+    return written
+
+
+def test_high_orders_show_their_progress_on_a_terminal():
+    code = "from lwa import *; homogenize(Dimer(1, 2), {}, k='3/2')"
+    assert b"orders:" in progress_of(code.format(12))
+    assert progress_of(code.format(11)) == b""
+    piped = subprocess.run([sys.executable, "-c", code.format(12)], capture_output=True, check=True)
+    assert piped.stderr == b""
