@@ -21,6 +21,7 @@ def test_limits(limits_result):
     assert len(found["rows"]) == len(limits_result.rows)
     for row, told in zip(limits_result.rows, found["rows"], strict=True):
         assert told["lattice_value"] == row.lattice.value
+        assert told["lattice_error_value"] == row.lattice.error
         error = told["theory_value"] / told["lattice_value"] - 1
         assert told["error_value"] == pytest.approx(error, rel=1e-12)
         assert abs(told["error_value"]) <= told["bound_value"]
@@ -43,7 +44,8 @@ def test_paper():
     result = paper(beads=20, sensors=(8, 15))
     found = json.loads(json.dumps(document(result), allow_nan=False))
     assert (found["beads"], found["sensors"], found["gravity_value"]) == (20, [8, 15], 0)
-    for row in found["rows"]:
+    for row, compared in zip(found["rows"], result.rows, strict=True):
+        assert row["lattice_error_value"] == compared.lattice.error
         for source, value in row["theory_value"].items():
             assert row["error_value"][source] == value / row["lattice_value"] - 1
     shown = text(result)
