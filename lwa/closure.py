@@ -103,9 +103,8 @@ def solve(
     if ring.branch == "acoustic":
         return full(ring, order, field, progress)
     if ring.k == 1 and field == "first":
-        return replace(
-            linear(ring, order, progress), name="full"
-        )  # the linear chain has a linear closure
+        # the linear chain has a linear closure
+        return replace(linear(ring, order, progress), name="full")
     raise InputError(
         "the optical branch oscillates at order D^0 and slaves no field algebraically unless "
         "k = 1: use the linear closure, or k = 1 with the field 'first'"

@@ -12,18 +12,26 @@ speed, and from the striker's momentum, as if the pulse took all of it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
-from lwa import Dimer, TravelingWave, homogenize
+from lwa import Cell, Dimer, TravelingWave, homogenize
 from validation.checked import SceneError, integer, items, real
 from validation.compacton import Compacton
 from validation.lattice import Run, simulate
-from validation.materials import DIAMETER, PTFE_BEAD, STEEL, STEEL_BEAD, contact_stiffness
+from validation.materials import (
+    DIAMETER,
+    PTFE_BEAD,
+    STEEL,
+    STEEL_BEAD,
+    Bead,
+    contact_stiffness,
+)
 from validation.measure import Measured, MeasureError, Pulse, measure, speed
 from validation.scene import Scene
 
@@ -91,20 +99,29 @@ class Paper:
     records: tuple[Record, ...]
 
 
+def chain_cell(N: int = 1, ptfe: Bead = PTFE_BEAD) -> Cell:
+    """N steel beads and one of PTFE, in SI units."""
+    row = [STEEL_BEAD] * N + [ptfe, STEEL_BEAD]
+    stiffnesses = [contact_stiffness(*pair) for pair in pairwise(row)]
+    return Dimer(STEEL_BEAD.mass, ptfe.mass, N, stiffnesses=stiffnesses, spacing=DIAMETER)
+
+
 def chain_wave() -> TravelingWave:
     """The paper's theory of the steel:PTFE chain, in SI units."""
-    stiffness = contact_stiffness(STEEL_BEAD, PTFE_BEAD)
-    cell = Dimer(
-        STEEL_BEAD.mass, PTFE_BEAD.mass, stiffnesses=(stiffness, stiffness), spacing=DIAMETER
-    )
-    return homogenize(cell, k=sp.Rational(3, 2)).pde.traveling_wave()
+    return homogenize(chain_cell(), k=sp.Rational(3, 2)).pde.traveling_wave()
 
 
 def chain_scene(
-    velocity: float, beads: int, sensors: tuple[int, int], gravity: float, duration: float
+    velocity: float,
+    beads: int,
+    sensors: Sequence[int],
+    gravity: float,
+    duration: float,
+    N: int = 1,
+    ptfe: Bead = PTFE_BEAD,
 ) -> Scene:
-    """The chain; it records both sensor beads, their two contacts each, and the wall's contact."""
-    row = [PTFE_BEAD if number % 2 == 0 else STEEL_BEAD for number in range(1, beads + 1)]
+    """The N:1 chain; it records the sensor beads, their two contacts each, and the wall's."""
+    row = [STEEL_BEAD if number % (N + 1) else ptfe for number in range(1, beads + 1)]
     around = sorted({bead - 1 + side for bead in sensors for side in (-1, 0)})
     return Scene.of_beads(
         row,
@@ -184,9 +201,11 @@ def _pair(sensors: object, beads: int) -> tuple[int, int]:
 
 def _numbers(run: Run, sensors: tuple[int, int]) -> dict[str, float]:
     """The lattice's `QUANTITIES`."""
-    beads = [_pulse(run, run.bead_force[i], f"bead {bead}") for i, bead in enumerate(sensors)]
+    beads = [
+        pulse_before_wall(run, run.bead_force[i], f"bead {bead}") for i, bead in enumerate(sensors)
+    ]
     contacts = [
-        _pulse(run, force, f"contact {i + 1}")
+        pulse_before_wall(run, force, f"contact {i + 1}")
         for i, force in zip(run.scene.contact_sensors[:-1], run.contact_force[:-1], strict=True)
     ]
     V = speed(beads[0], beads[1], (sensors[1] - sensors[0]) * DIAMETER)
@@ -200,7 +219,7 @@ def _numbers(run: Run, sensors: tuple[int, int]) -> dict[str, float]:
     return dict(zip(QUANTITIES, values, strict=True))
 
 
-def _pulse(run: Run, force: Array, name: str) -> Pulse:
+def pulse_before_wall(run: Run, force: Array, name: str) -> Pulse:
     """The dynamic pulse of a record, before the wall's answer can be in it."""
     wall = run.contact_force[-1]
     end = int(np.argmax(wall)) + 1
@@ -213,6 +232,6 @@ def _pulse(run: Run, force: Array, name: str) -> Pulse:
 def _record(run: Run, sensor: int, compacton: Compacton) -> Record:
     force = run.bead_force[sensor]
     bead = run.scene.bead_sensors[sensor] + 1
-    arrival = _pulse(run, force, f"bead {bead}").arrival
+    arrival = pulse_before_wall(run, force, f"bead {bead}").arrival
     theory = compacton.bead_force(compacton.speed * (run.time - arrival))
     return Record(bead, run.time, force - force[0], theory)
