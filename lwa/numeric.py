@@ -1,15 +1,17 @@
 """The closed forms in float64: vectorised NumPy functions of (k, ω), ω = m2/m1, lengths in D.
 
-The exact coefficients are turned into code in the variable k - 2, which floating point holds
-exactly near k = 2, where the terms of G + H + I cancel for ω ≫ 1. What grows without bound as
-k → 1 is computed from its logarithm.
+G + H + I cancels where k > 2 and ω ≫ 1, and V²/B^{k-1} approaches 1 as k → 1. The exact
+coefficients are therefore evaluated in extended precision (`numpy.longdouble`, 64 bits of
+significand on x86) as polynomials in k - 2, which is exact near k = 2, and the logarithm of
+V²/B^{k-1} near 1 by log1p of the difference, which is computed over k - 1. Results are rounded to
+float64 once, at the end: they are good to 2 ulps wherever the extended precision is there.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 import sympy as sp
@@ -22,7 +24,8 @@ if TYPE_CHECKING:
     from lwa.wave import TravelingWave
 
 Array = NDArray[np.float64]
-Function = Callable[[Array, Array], Any]
+Extended = NDArray[np.longdouble]
+Function = Callable[[Extended, Extended], Extended]
 
 
 @dataclass(frozen=True)
@@ -40,8 +43,9 @@ class NumericWave:
     array([2., 1.])
     """
 
-    dispersion: Function
-    speed_factor: Function
+    _dispersion: Function
+    _factor: Function
+    _excess: Function
     missing: Literal["raise", "nan"] = "raise"
 
     @classmethod
@@ -52,61 +56,79 @@ class NumericWave:
         free = (wave.k, *wave.cell.masses)
         if len(free) != 3 or len(set(free)) != 3 or not all(x.is_Symbol for x in free):
             raise InputError("functions of (k, ω) need the symbols k, m1, m2 in a dimer's theory")
-        return cls(_function(wave.dispersion, *free), _function(wave.speed_factor, *free), missing)
+        factor = wave.speed_factor
+        excess = (factor - 1) / (wave.k - 1)
+        dispersion = _function(wave.dispersion, *free)
+        return cls(dispersion, _function(factor, *free), _function(excess, *free), missing)
 
     def beta(self, k: ArrayLike, omega: ArrayLike) -> Array:
         """β D = (k-1) / (2 √((G+H+I)/D²))."""
-        k, dispersion, _ = self._wave(k, omega)
-        beta: Array = (k - 1) / (2 * np.sqrt(dispersion))
-        return beta
+        return _rounded(self._beta(k, omega))
 
     def width(self, k: ArrayLike, omega: ArrayLike) -> Array:
         """π/(βD), the number of sites under the wave."""
-        return np.pi / self.beta(k, omega)
+        return _rounded(_PI / self._beta(k, omega))
 
     def fwhm(self, k: ArrayLike, omega: ArrayLike, quantity: str = "strain") -> Array:
         """FWHM of strain, contact force or velocity, over D (see `lwa.TravelingWave.fwhm`)."""
-        beta = self.beta(k, omega)
-        k = np.asarray(k, float)
+        beta = self._beta(k, omega)
+        k = np.asarray(k, np.longdouble)
         # arccos(2^-x) = arctan √(4^x - 1), which keeps its digits as x → 0
         x = (k - 1) / (2 * strain_power(quantity, k))
-        fwhm: Array = 2 * np.arctan(np.sqrt(np.expm1(x * np.log(4.0)))) / beta
-        return fwhm
+        return _rounded(2 * np.arctan(np.sqrt(np.expm1(x * _LOG4))) / beta)
 
     def speed(self, k: ArrayLike, omega: ArrayLike, B: ArrayLike = 1.0) -> Array:
         """V = dx/dτ of the wave whose strain peaks at B."""
-        k, _, factor = self._wave(k, omega)
-        return np.sqrt(factor) * _positive(B, "B") ** ((k - 1) / 2)
+        k, omega, _ = self._wave(k, omega)
+        return _rounded(np.sqrt(self._factor(k, omega)) * _positive(B, "B") ** ((k - 1) / 2))
 
     def log_amplitude(self, k: ArrayLike, omega: ArrayLike, V: ArrayLike = 1.0) -> Array:
         """ln B of the wave of speed V; finite where B, its peak strain, over- or underflows."""
-        k, _, factor = self._wave(k, omega)
-        return (2 * np.log(_positive(V, "V")) - np.log(factor)) / (k - 1)
+        k, omega, _ = self._wave(k, omega)
+        less_one = (k - 1) * self._excess(k, omega)  # V²/B^{k-1} - 1
+        near = np.abs(less_one) < 0.5
+        log_factor = np.where(near, np.log1p(less_one), np.log(self._factor(k, omega)))
+        return _rounded((2 * np.log(_positive(V, "V")) - log_factor) / (k - 1))
 
-    def _wave(self, k: ArrayLike, omega: ArrayLike) -> tuple[Array, Array, Array]:
-        k, omega = np.broadcast_arrays(np.asarray(k, float), np.asarray(omega, float))
+    def _beta(self, k: ArrayLike, omega: ArrayLike) -> Extended:
+        k, _, dispersion = self._wave(k, omega)
+        beta: Extended = (k - 1) / (2 * np.sqrt(dispersion))
+        return beta
+
+    def _wave(self, k: ArrayLike, omega: ArrayLike) -> tuple[Extended, Extended, Extended]:
+        """k and ω as arrays of one shape, NaN where there is no wave, and (G+H+I)/D²."""
+        given = (np.asarray(x, np.float64).astype(np.longdouble) for x in (k, omega))
+        k, omega = np.broadcast_arrays(*given)
         if not (np.all(np.isfinite(k)) and np.all(np.isfinite(omega)) and np.all(omega > 0)):
             raise InputError("k and ω = m2/m1 must be finite, and ω positive")
         with np.errstate(all="ignore"):  # outside the domain, which the next lines tell
-            dispersion, factor = self.dispersion(k, omega), self.speed_factor(k, omega)
-            exists = (k > 1) & (dispersion > 0) & (factor > 0)
+            dispersion = self._dispersion(k, omega)
+            exists = (k > 1) & (dispersion > 0) & (self._factor(k, omega) > 0)
         if np.all(exists):
-            return k, dispersion, factor
+            return k, omega, dispersion
         if self.missing == "raise":
             first = np.argmin(exists)
             raise NoSolitaryWave(
-                f"no compact wave at k = {k.flat[first]}, ω = {omega.flat[first]}: it needs "
-                "k > 1, G+H+I > 0 and V² > 0"
+                f"no compact wave at k = {float(k.flat[first])}, ω = {float(omega.flat[first])}: "
+                "it needs k > 1, G+H+I > 0 and V² > 0"
             )
         nan = np.where(exists, 0.0, np.nan)
-        return k + nan, dispersion + nan, factor + nan
+        return k + nan, omega + nan, dispersion + nan
 
 
-def _positive(value: ArrayLike, name: str) -> Array:
-    array = np.asarray(value, float)
+_PI = np.longdouble("3.14159265358979323846264338327950288")
+_LOG4 = np.longdouble("1.38629436111989061883446424291635313")
+
+
+def _rounded(value: Extended) -> Array:
+    return np.asarray(value).astype(np.float64)
+
+
+def _positive(value: ArrayLike, name: str) -> Extended:
+    array = np.asarray(value, np.float64)
     if not np.all((array > 0) & np.isfinite(array)):
         raise InputError(f"{name} must be positive and finite")
-    return array
+    return array.astype(np.longdouble)
 
 
 def _function(ratio: sp.Expr, k: sp.Symbol, m1: sp.Symbol, m2: sp.Symbol) -> Function:
@@ -121,4 +143,10 @@ def _function(ratio: sp.Expr, k: sp.Symbol, m1: sp.Symbol, m2: sp.Symbol) -> Fun
         for part in sp.fraction(sp.cancel(ratio))
     )
     compiled = sp.lambdify((shifted, omega), numerator / denominator, "numpy", cse=True)
-    return lambda k, omega: compiled(k - 2, omega) + 0.0 * k
+
+    def function(k: Extended, omega: Extended) -> Extended:
+        # a theory without ω, or without k, gives a constant: broadcast it
+        result: Extended = compiled(k - 2, omega) + 0 * k
+        return result
+
+    return function
