@@ -12,12 +12,20 @@ import click
 import sympy as sp
 from tqdm import tqdm
 
+from lwa.exact import InputError
 from lwa.terminal import quantities, quantity, run
 from validation import experiments
 from validation.checked import SceneError
+from validation.figures import figures as run_figures
+from validation.files import output_file
+from validation.gallery import Figures
+from validation.lattice import IntegrationError
 from validation.limits import limits as run_limits
 from validation.plots import SUFFIXES, plot_file, save
-from validation.report import document, text
+from validation.record import record
+from validation.report import STORED, document, store, text
+from validation.scene import Scene
+from validation.scenefile import read
 
 Command = Callable[..., Any]
 
@@ -48,8 +56,15 @@ def _output(command: Command) -> Command:
 
 def _show(result: Any, style: str, picture: Path | None) -> None:
     if picture is not None:
-        save(result, picture)
+        _write(save, result, picture)
     click.echo(text(result) if style == "text" else json.dumps(document(result), indent=2))
+
+
+def _write(writer: Callable[[Any, Path], None], result: Any, file: Path) -> None:
+    try:
+        writer(result, file)
+    except OSError as error:
+        raise InputError(f"{file} is not written: {error.strerror or error}") from None
 
 
 def _progress(cases: Collection[Any]) -> tqdm[Any]:
@@ -99,6 +114,42 @@ def paper(
         raise SceneError(f"velocity is {velocity}: a number is wanted")
     g = experiments.GRAVITY if gravity else 0.0
     _show(experiments.paper(float(velocity), beads, sensors, g), style, picture)
+
+
+@validate.command("figures")
+@_output
+def paper_figures(style: str, picture: Path | None) -> None:
+    """The paper's figures: force records, N:1 chains, force against speed, and the FWHM."""
+    result: Figures = run_figures(_progress)
+    _show(result, style, picture)
+
+
+def _read(context: click.Context, argument: click.Parameter, path: str) -> Scene:
+    return read(path)
+
+
+def _store(context: click.Context, option: click.Parameter, path: str | None) -> Path | None:
+    return None if path is None else output_file("out", path, STORED)
+
+
+@validate.command("run")
+@click.argument("scene", callback=_read)
+@click.option(
+    "--out", callback=_store, metavar="FILE",
+    help=f"Store the result, the records and the scene in a file ({', '.join(STORED)}).",
+)  # fmt: skip
+@_output
+def run_scene(scene: Scene, out: Path | None, style: str, picture: Path | None) -> None:
+    """A scene from a file, TOML or JSON: arrival, peak force, FWHM and speed at its sensors."""
+    if picture is not None and not (scene.bead_sensors or scene.contact_sensors):
+        raise SceneError("plot is asked for, but the scene names no sensors")
+    try:
+        result = record(scene)
+    except IntegrationError as error:
+        raise click.ClickException(str(error)) from None
+    if out is not None:
+        _write(store, result, out)
+    _show(result, style, picture)
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

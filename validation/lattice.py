@@ -2,13 +2,14 @@
 
     m_i y_i'' = F_{i-1} - F_i + m_i g,    F_i = A_i [δ_i⁰ + y_i - y_{i+1}]_+^k,
 
-where y counts from the equilibrium, δ_i⁰ is the compression of contact i there (0 without
-gravity) and the wall stands at y_n = 0 (Porter et al. 2008, eq. 1, for k = 3/2). A contact that
-opens carries no tension.
+where F_{-1} is the precompression F0, y counts from the equilibrium, δ_i⁰ is the compression of
+contact i there (0 without gravity and F0) and the wall stands at y_n = 0 (Porter et al. 2008,
+eq. 1, for k = 3/2). A contact that opens carries no tension.
 
-Integration is by SciPy's embedded Runge–Kutta steppers, whose own interpolant gives the samples;
-only the sensors' samples are kept. Tolerances are relative to the scene's own scales of velocity
-and compression, so that a run does not depend on the units.
+One `simulate` stands before two engines. SciPy's adaptive steppers, whose own interpolant gives the
+samples, are the reference; tolerances are relative to the scene's own scales of velocity and
+compression, so that a run does not depend on the units. The compiled symplectic splittings of
+`validation.engine` follow the pulse with a moving window. Either keeps only the sensors' samples.
 """
 
 from __future__ import annotations
@@ -24,15 +25,39 @@ from scipy import integrate
 from lwa.exact import shorten
 from validation.checked import SceneError, real
 from validation.scene import Scene
+from validation.splittings import SCHEMES
 
 Array = NDArray[np.float64]
 
-METHODS = ("DOP853", "RK45", "RK23")
-"""SciPy's explicit Runge–Kutta pairs, of order 8, 5 and 3."""
+METHODS = ("DOP853", "RK45", "RK23", "LSODA")
+"""SciPy's: explicit Runge–Kutta pairs of order 8, 5 and 3, and Adams and BDF of varying order."""
+
+COMPILED = tuple(SCHEMES)
+"""The splittings of `validation.engine`, of order 6, 6, 4, 4, 4 and 2; the first where in doubt."""
 
 
 class IntegrationError(RuntimeError):
     """The integrator could not go on; the message says where and why."""
+
+
+@dataclass(frozen=True, eq=False)
+class Window:
+    """What a compiled run on a moving window followed of the chain.
+
+    Beyond the times given here a sensor's contact counts as open and its beads fly on freely.
+
+    reach : beads that are followed behind the front at least.
+    left : number of beads left behind by the end.
+    decay : smallest ratio of the pulse's peak force to that one reach before; well below 1, the
+        tail may overtake the pulse, and then matters.
+    contact_until, bead_until : times up to which each contact and bead sensor was followed.
+    """
+
+    reach: int
+    left: int
+    decay: float
+    contact_until: Array
+    bead_until: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,9 +73,16 @@ class Run:
     bead_force, bead_velocity : (beads, S), at the bead sensors; the force is the mean of the
         bead's two contacts.
     displacements, velocities : (n,), at the end.
-    energy_drift : change of the energy above equilibrium over its initial value (0 if that is 0).
+    energy_drift : change of the energy above equilibrium over its initial value (0 if that is 0);
+        beads left behind by a window keep what they had.
     momentum_drift : change of the momentum over Σ m|v| at the end; None with a wall.
     evaluations : of the equations of motion.
+    bead_evaluations : the same, times the beads that each one moved.
+    step : mean step.
+    window : None when the whole chain was integrated throughout.
+    step_error, window_error : largest difference of a sensor's force, over the largest force
+        recorded, from a run at twice the step, and from one on the whole chain (while the window
+        follows the sensor); None unless asked for.
     """
 
     scene: Scene
@@ -64,9 +96,14 @@ class Run:
     energy_drift: float
     momentum_drift: float | None
     evaluations: int
+    bead_evaluations: int
+    step: float
+    window: Window | None = None
+    step_error: float | None = None
+    window_error: float | None = None
 
 
-class _Motion:
+class Motion:
     """The right-hand side for one scene, in the state (y_0 … y_{n-1}, v_0 … v_{n-1})."""
 
     def __init__(self, scene: Scene) -> None:
@@ -75,8 +112,7 @@ class _Motion:
         self.masses = np.array(scene.masses)
         self.stiffnesses = np.array(scene.stiffnesses + wall)
         self.k = scene.k
-        weight = scene.gravity * np.cumsum(self.masses)[: len(self.stiffnesses)]
-        self.rest = (weight / self.stiffnesses) ** (1 / self.k)
+        self.rest = (np.array(scene.load) / self.stiffnesses) ** (1 / self.k)
         # The load from the rest compressions, so that equilibrium is an exact zero.
         self.load = self.force(self.rest)
 
@@ -103,15 +139,25 @@ class _Motion:
         push[1:] += excess[: self.size - 1]
         return np.concatenate((v, push / self.masses))
 
-    def energy(self, state: Array) -> float:
-        """Kinetic and elastic energy, less the work of the weights: 0 in equilibrium."""
+    def energy(self, state: Array, first: int = 0) -> float:
+        """Kinetic and elastic energy, less the work of the weights: 0 in equilibrium.
+
+        Contacts before the ``first`` do not count.
+        """
         compression, v = self.compression(state[: self.size]), state[self.size :]
         stored = (self.force(compression) * compression - self.load * self.rest) / (self.k + 1)
         work = self.load * (compression - self.rest)
-        return float(self.masses @ v**2 / 2 + np.sum(stored - work))
+        return float(self.masses @ v**2 / 2 + np.sum((stored - work)[first:]))
 
-    def scales(self, state: Array) -> tuple[float, float]:
-        """The displacement and the velocity that the state's energy could give to a bead.
+    def momentum_drift(self, before: Array, after: Array) -> float | None:
+        """Change of the momentum between two rows of velocities over Σ m|v|; None with a wall."""
+        if len(self.rest) == self.size:
+            return None
+        total = self.masses @ np.abs(after)
+        return float(self.masses @ (after - before) / total) if total else 0.0
+
+    def deepest(self, state: Array) -> tuple[float, float]:
+        """The state's energy, and the compression that it, or the weights, could give a contact.
 
         Raises `SceneError` when floating point cannot hold that energy.
         """
@@ -120,23 +166,49 @@ class _Motion:
         if not np.isfinite(energy) or (energy == 0 and np.any(state[self.size :])):
             raise SceneError(f"the scene's energy comes out as {energy:g}: choose other units")
         if energy <= 0 or not len(self.stiffnesses):
+            return energy, float(self.rest.max(initial=0.0))
+        free = (energy / self.stiffnesses.max()) ** (1 / (self.k + 1))
+        return energy, float(max(free, self.rest.max()))
+
+    def scales(self, state: Array) -> tuple[float, float]:
+        """The displacement and the velocity that the state's energy could give to a bead.
+
+        Raises `SceneError` when floating point cannot hold that energy.
+        """
+        energy, compression = self.deepest(state)
+        if energy <= 0 or not len(self.stiffnesses):
             return 1.0, 1.0
-        stiffness = self.stiffnesses.max()
-        free = (energy / stiffness) ** (1 / (self.k + 1))
-        spring = stiffness * max(free, self.rest.max()) ** (self.k - 1)
+        spring = self.stiffnesses.max() * compression ** (self.k - 1)
         return math.sqrt(energy / spring), math.sqrt(energy / self.masses.mean())
 
 
 def simulate(
-    scene: Scene, *, rtol: float = 1e-9, atol: float = 1e-9, method: str = "DOP853"
+    scene: Scene,
+    *,
+    rtol: float = 1e-9,
+    atol: float = 1e-9,
+    method: str = "DOP853",
+    step: float | None = None,
+    window: bool | int | None = None,
+    check: bool = False,
 ) -> Run:
     """Integrate a scene and return what its sensors recorded.
 
     Parameters
     ----------
-    rtol, atol : local error per step, relative to each component and to the scene's own scale
-        of displacement and velocity.
-    method : one of `METHODS`.
+    rtol, atol : of SciPy's methods: local error per step, relative to each component and to the
+        scene's own scale of displacement and velocity. Of a compiled method: ``rtol`` is the
+        error of a pulse's peak force that its step aims at, ``atol`` does not count.
+    method : one of `METHODS` or of `COMPILED`.
+
+    For compiled methods only:
+
+    step : largest step, in place of that which ``rtol`` gives.
+    window : whether to follow the pulse only. By default wherever the pulse runs away: not with
+        a wall (gravity has one), not at k = 1, and not when it decays fast. False asks for all
+        that happens behind, such as light beads that rattle. A number is that of the beads to
+        follow behind the front.
+    check : whether to measure the errors of step and window by further runs.
 
     A contact that opens within a step is a kink which the error estimate may miss, as the run's
     energy drift then shows.
@@ -144,16 +216,28 @@ def simulate(
     Raises `SceneError` for a tolerance or method that cannot be meant and `IntegrationError`
     when the integrator fails.
 
-    >>> run = simulate(Scene(masses=(1, 1), stiffnesses=(1,), k=1.5, duration=9, velocities=(1,)))
-    >>> run.velocities.round(6) + 0.0  # equal masses exchange their velocities
+    >>> scene = Scene(masses=(1, 1), stiffnesses=(1,), k=1.5, duration=9, velocities=(1,))
+    >>> simulate(scene).velocities.round(6) + 0.0  # equal masses exchange their velocities
+    array([0., 1.])
+    >>> simulate(scene, method="SRKN14").velocities.round(6) + 0.0
     array([0., 1.])
     """
-    if method not in METHODS:
-        raise SceneError(f"method is {shorten(method)}: one of {', '.join(METHODS)} is wanted")
+    if method not in METHODS + COMPILED:
+        raise SceneError(
+            f"method is {shorten(method)}: one of {', '.join(METHODS)} (SciPy) or "
+            f"{', '.join(COMPILED)} (compiled) is wanted"
+        )
     for name, tolerance in (("rtol", rtol), ("atol", atol)):
         if not 1e-13 <= real(tolerance, name) <= 1e-2:
             raise SceneError(f"{name} is {tolerance:g}: it lies between 1e-13 and 0.01")
-    motion = _Motion(scene)
+    if method in COMPILED:
+        from validation.engine import follow  # numba takes its time
+
+        return follow(scene, method, rtol=rtol, step=step, window=window, check=check)
+    for name, value in (("step", step), ("window", window), ("check", check or None)):
+        if value is not None:
+            raise SceneError(f"{name} is {shorten(value)}: it needs one of {', '.join(COMPILED)}")
+    motion = Motion(scene)
     start = np.zeros(2 * scene.size)
     start[: len(scene.displacements)] = scene.displacements
     start[scene.size : scene.size + len(scene.velocities)] = scene.velocities
@@ -169,22 +253,23 @@ def simulate(
     )
     time = np.linspace(0.0, scene.duration, scene.samples)
     recorder = _Recorder(motion, scene)
-    done = 0
+    done = steps = 0
     while stepper.status == "running":
         message = stepper.step()
+        steps += 1
         if stepper.status == "failed":
             raise IntegrationError(f"integration stopped at t = {stepper.t:g}: {message}")
         until = int(np.searchsorted(time, stepper.t, side="right"))
         if recorder.listening and until > done:
             recorder.store(slice(done, until), stepper.dense_output()(time[done:until]))
             done = until
-    return _result(scene, motion, recorder, time, start, stepper)
+    return _result(scene, motion, recorder, time, start, stepper, steps)
 
 
 class _Recorder:
     """The sensors' samples."""
 
-    def __init__(self, motion: _Motion, scene: Scene) -> None:
+    def __init__(self, motion: Motion, scene: Scene) -> None:
         self.motion = motion
         self.contacts = list(scene.contact_sensors)
         self.beads = list(scene.bead_sensors)
@@ -204,30 +289,37 @@ class _Recorder:
 
 
 def _result(
-    scene: Scene, motion: _Motion, recorder: _Recorder, time: Array, start: Array, stepper: Any
+    scene: Scene,
+    motion: Motion,
+    recorder: _Recorder,
+    time: Array,
+    start: Array,
+    stepper: Any,
+    steps: int,
 ) -> Run:
     n, end = scene.size, stepper.y
     before, after = motion.energy(start), motion.energy(end)
-    momentum = None
-    if scene.wall is None:
-        total = motion.masses @ np.abs(end[n:])
-        change = motion.masses @ (end[n:] - start[n:])
-        momentum = float(change / total) if total else 0.0
-    arrays = {
-        "time": time,
-        "contact_force": recorder.contact_force,
-        "compression": recorder.compression,
-        "bead_force": recorder.bead_force,
-        "bead_velocity": recorder.bead_velocity,
-        "displacements": end[:n].copy(),
-        "velocities": end[n:].copy(),
-    }
-    for array in arrays.values():
-        array.setflags(write=False)
     return Run(
         scene=scene,
-        **arrays,
+        **frozen(
+            time=time,
+            contact_force=recorder.contact_force,
+            compression=recorder.compression,
+            bead_force=recorder.bead_force,
+            bead_velocity=recorder.bead_velocity,
+            displacements=end[:n].copy(),
+            velocities=end[n:].copy(),
+        ),
         energy_drift=(after - before) / before if before else 0.0,
-        momentum_drift=momentum,
+        momentum_drift=motion.momentum_drift(start[n:], end[n:]),
         evaluations=int(stepper.nfev),
+        bead_evaluations=int(stepper.nfev) * n,
+        step=scene.duration / steps,
     )
+
+
+def frozen(**arrays: Array) -> dict[str, Any]:
+    """The same arrays, read-only from here on."""
+    for array in arrays.values():
+        array.setflags(write=False)
+    return arrays

@@ -5,17 +5,16 @@ Matplotlib is imported when a picture is drawn. A file appears only when it is c
 
 from __future__ import annotations
 
-import os
-import tempfile
 from functools import singledispatch
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from lwa.exact import InputError
 from validation.experiments import Paper
+from validation.files import output_file, replacing
 from validation.limits import EQUAL, EXPONENTS, LAWS, LIGHT, Limits
+from validation.record import Recording, tracks
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -28,29 +27,13 @@ def plot_file(path: str) -> Path:
 
     Raises `lwa.InputError` for another suffix than `SUFFIXES` or a folder that does not exist.
     """
-    file = Path(path)
-    if file.suffix.lower() not in SUFFIXES:
-        raise InputError(f"plot is {path}: a file ending in {', '.join(SUFFIXES)} is wanted")
-    if not file.parent.is_dir():
-        raise InputError(f"plot is {path}: the folder {file.parent} does not exist")
-    if file.is_dir() or not os.access(file.parent, os.W_OK):
-        raise InputError(f"plot is {path}: a file that can be written is wanted")
-    return file
+    return output_file("plot", path, SUFFIXES)
 
 
 def save(result: Any, file: Path) -> None:
     """Draw a result into a file, which is replaced only by a complete picture."""
-    handle, name = tempfile.mkstemp(suffix=file.suffix.lower(), dir=file.parent)
-    os.close(handle)
-    try:
-        figure(result).savefig(name, dpi=150)
-        umask = os.umask(0)
-        os.umask(umask)
-        os.chmod(name, 0o666 & ~umask)
-        os.replace(name, file)
-    except BaseException:
-        os.unlink(name)
-        raise
+    with replacing(file) as new:
+        figure(result).savefig(new, dpi=150)
 
 
 @singledispatch
@@ -104,4 +87,18 @@ def _(result: Paper) -> Figure:
         axes.plot(time, record.theory, "--", color=color, label="theory, amplitude from F_m")
     axes.set(xlabel="time (µs)", ylabel="force, mean of the bead's contacts (N)")
     axes.legend(loc="upper center", ncols=2, bbox_to_anchor=(0.5, 1.17))
+    return picture
+
+
+@figure.register(Recording)
+def _(result: Recording) -> Figure:
+    """The dynamic force at every sensor over time."""
+    from matplotlib.figure import Figure
+
+    picture = Figure(figsize=(8, 4.5), layout="constrained")
+    axes = picture.subplots()
+    for track in tracks(result.run):
+        axes.plot(track.time, track.force, label=f"{track.kind} {track.number}")
+    axes.set(xlabel="time", ylabel="dynamic force")
+    axes.legend()
     return picture

@@ -3,7 +3,8 @@
 Beads 0 … n-1 lie in a row. Contact i joins bead i to bead i+1, the last one (only with a wall)
 bead n-1 to the wall. Each pushes with F = A_i δ^k when its compression δ is positive and is open
 otherwise. Displacements count from the equilibrium and are positive towards the wall. A scene
-holds only what it names: no wall, no gravity and no sensors unless they are given.
+holds only what it names: no wall, no gravity, no precompression and no sensors unless they are
+given.
 
 Units are the caller's own, as long as they agree (SI for real beads; m1 = A = D = 1 without).
 """
@@ -12,7 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import accumulate, pairwise
 from typing import Any
 
 import sympy as sp
@@ -39,12 +40,16 @@ class Scene:
     wall : stiffness of the contact of the last bead with a fixed wall.
     gravity : acceleration towards the wall. The chain is then in equilibrium under its own
         weight: contact i carries the beads above it.
+    precompression : constant force F0 on bead 0, towards the wall. It is part of the equilibrium:
+        every contact carries F0 besides the beads above it.
     displacements, velocities : initial, from the equilibrium; beads that the sequence does not
         reach start at 0. A striker is ``velocities=(v,)``.
     contact_sensors : sensors of the force and the compression of these contacts.
     bead_sensors : sensors of the force and the velocity of these beads; the force is the mean of a
         bead's two contacts (at an end that touches nothing, of its one contact and 0).
     samples : number of sample times, equidistant from 0 to the duration.
+    spacings : distances of the n-1 pairs of neighbours in equilibrium. The motion does not ask for
+        them; without, a speed is known in sites only.
 
     Raises `SceneError` for whatever cannot be meant.
 
@@ -65,6 +70,8 @@ class Scene:
     contact_sensors: tuple[int, ...] = ()
     bead_sensors: tuple[int, ...] = ()
     samples: int = 1001
+    precompression: float = 0.0
+    spacings: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
         checked: dict[str, Any] = {
@@ -77,25 +84,27 @@ class Scene:
             "displacements": _all(real, self.displacements, "displacements"),
             "velocities": _all(real, self.velocities, "velocities"),
             "samples": integer(self.samples, "samples", 2),
+            "precompression": real(self.precompression, "precompression"),
+            "spacings": _all(positive, self.spacings, "spacings"),
         }
         for name, value in checked.items():
             object.__setattr__(self, name, value)
         n = self.size
         if n == 0:
             raise SceneError("masses is empty: a chain has at least one bead")
-        if len(self.stiffnesses) != n - 1:
-            raise SceneError(
-                f"{len(self.stiffnesses)} stiffnesses for {n} beads: {n - 1} are wanted"
-            )
+        for name in ("stiffnesses", "spacings"):
+            if (given := len(checked[name])) != n - 1 and (given or name == "stiffnesses"):
+                raise SceneError(f"{given} {name} for {n} beads: {n - 1} are wanted")
         for name in ("displacements", "velocities"):
             if len(checked[name]) > n:
                 raise SceneError(f"{len(checked[name])} {name} for {n} beads: at most {n} wanted")
         if self.k < 1:
             raise SceneError(f"k is {self.k:g}: the contact law A δ^k is simulated for k ≥ 1")
-        if self.gravity < 0 or (self.gravity > 0 and self.wall is None):
-            raise SceneError(
-                f"gravity is {self.gravity:g}: it must be positive and needs a wall to pull towards"
-            )
+        for name, act in (("gravity", "pull towards"), ("precompression", "push against")):
+            if (value := checked[name]) < 0 or (value > 0 and self.wall is None):
+                raise SceneError(
+                    f"{name} is {value:g}: it must be positive and needs a wall to {act}"
+                )
         for name, most in (
             ("contact_sensors", self.contact_count - 1),
             ("bead_sensors", n - 1),
@@ -111,6 +120,12 @@ class Scene:
     def contact_count(self) -> int:
         """The number of contacts, that with the wall included."""
         return len(self.stiffnesses) + (self.wall is not None)
+
+    @property
+    def load(self) -> tuple[float, ...]:
+        """The static force of each contact: F0 and the weight of the beads above."""
+        above = accumulate(self.masses[: self.contact_count])
+        return tuple(self.precompression + self.gravity * mass for mass in above)
 
     @classmethod
     def of_cell(cls, cell: Cell, repeats: int, k: Any, **rest: Any) -> Scene:
@@ -131,10 +146,12 @@ class Scene:
             raise SceneError(str(error)) from None
         masses = [_number(m, "mass") for m in cell.masses]
         stiffnesses = [_number(A, "stiffness") for A in cell.stiffnesses]
+        n = len(masses) * repeats
         return cls(
             masses=tuple(masses * repeats),
             stiffnesses=tuple((stiffnesses * repeats)[:-1]),
             k=k_value,
+            spacings=(float(cell.spacing),) * (n - 1) if cell.spacing.is_number else (),
             **rest,
         )
 
@@ -152,6 +169,7 @@ class Scene:
             stiffnesses=tuple(contact_stiffness(a, b) for a, b in pairwise(row)),
             k=1.5,
             wall=None if wall is None else contact_stiffness(row[-1], wall),
+            spacings=tuple(a.radius + b.radius for a, b in pairwise(row)),
             **rest,
         )
 

@@ -6,10 +6,12 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 from click.testing import CliRunner
 
 from validation import cli
+from validation.lattice import IntegrationError
 from validation.limits import Limits
 from validation.report import document, text
 
@@ -61,7 +63,148 @@ def test_limits_that_fail_are_printed_and_end_with_1(capsys, monkeypatch, limits
     assert "FAILS" in out
 
 
+SCENE = """
+duration = 30
+samples = 601
+chain = {cell = [1, 0.5], repeat = 10, k = 1.5, spacings = 2}
+striker = {velocity = 1}
+sensors = {beads = [9], contacts = [4, 12]}
+"""
+
+
+@pytest.fixture
+def scene_file(tmp_path):
+    file = tmp_path / "scene.toml"
+    file.write_text(SCENE)
+    return file
+
+
+def test_run_text(capsys, scene_file):
+    status, out, err = run(capsys, "run", str(scene_file))
+    assert (status, err) == (0, "")
+    head, sensors, speeds, _ = out.split("\n\n")
+    assert head.startswith("20 beads, 19 contacts, k = 1.5; duration 30, energy drift ")
+    assert [line[:10] for line in sensors.splitlines()] == [
+        "sensor    ", "bead 9    ", "contact 4 ", "contact 12",
+    ]  # fmt: skip
+    assert speeds.splitlines()[1].startswith("contact 4 → 12  ")
+
+
+def test_run_says_what_is_missing(capsys, scene_file):
+    scene_file.write_text(SCENE.replace("30", "8"))
+    status, out, err = run(capsys, "run", str(scene_file))
+    assert (status, err) == (0, "")
+    assert "contact 12: the pulse is not wholly in the record" in out
+    assert "contact 4 → 12: one of the two has no pulse" in out
+
+
+def test_run_json_is_what_the_text_says_and_can_be_run_again(capsys, scene_file, tmp_path):
+    status, out, err = run(capsys, "run", str(scene_file), "--format", "json")
+    assert (status, err) == (0, "")
+    found = json.loads(out)
+    assert [(s["kind"], s["number"]) for s in found["sensors"]] == [
+        ("bead", 9), ("contact", 4), ("contact", 12),
+    ]  # fmt: skip
+    for sensor in found["sensors"]:
+        for name in ("arrival", "peak", "fwhm"):
+            assert 0 < sensor[f"{name}_error_value"] < 1e-4 * sensor[f"{name}_value"]
+        assert sensor["missing"] is None
+    (speed,) = found["speeds"]
+    assert (speed["from"], speed["to"], speed["missing"]) == (4, 12, None)
+    time = found["sensors"][2]["arrival_value"] - found["sensors"][1]["arrival_value"]
+    assert speed["speed_sites_value"] == pytest.approx(8 / time, rel=1e-12)
+    assert speed["speed_value"] == pytest.approx(16 / time, rel=1e-12)
+    assert abs(found["energy_drift_value"]) < 1e-6
+    again = tmp_path / "again.json"
+    again.write_text(json.dumps(found["scene"]))
+    assert run(capsys, "run", str(again), "--format", "json") == (0, out, "")
+
+
+def test_run_stores_the_samples(capsys, scene_file, tmp_path):
+    stored, arrays, picture = (tmp_path / name for name in ("o.json", "o.npz", "o.svg"))
+    _, out, _ = run(
+        capsys, "run", str(scene_file), "--out", str(stored), "--plot", str(picture),
+        "--format", "json",
+    )  # fmt: skip
+    assert run(capsys, "run", str(scene_file), "--out", str(arrays))[0] == 0
+    assert picture.read_text().startswith("<?xml")
+    found = json.loads(stored.read_text())
+    records = found.pop("records")
+    assert found == json.loads(out)
+    with np.load(arrays) as held:
+        assert json.loads(str(held["document"])) == found
+        assert set(held) - {"document"} == {name.removesuffix("_value") for name in records}
+        for name, values in records.items():
+            np.testing.assert_array_equal(held[name.removesuffix("_value")], values)
+        assert held["contact_force"].shape == held["compression"].shape == (2, 601)
+        assert held["contact_force"].max(axis=1) == pytest.approx(
+            [sensor["peak_value"] for sensor in found["sensors"][1:]], rel=1e-3
+        )
+
+
+@pytest.mark.parametrize("name", ["out.json", "out.npz"])
+def test_a_result_that_cannot_be_written_leaves_the_old_one(
+    capsys, monkeypatch, scene_file, tmp_path, name
+):
+    file = tmp_path / name
+    file.write_text("old")
+
+    def full(*_):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("os.replace", full)
+    status, out, err = run(capsys, "run", str(scene_file), "--out", str(file))
+    assert (status, out) == (2, "")
+    assert err == f"lwa-validate: {file} is not written: No space left on device\n"
+    assert file.read_text() == "old"
+    assert {f.name for f in tmp_path.iterdir()} == {"scene.toml", name}
+
+
+def test_an_integrator_that_fails_is_one_line(capsys, monkeypatch, scene_file):
+    def fails(scene):
+        raise IntegrationError("integration stopped at t = 1: too small a step")
+
+    monkeypatch.setattr(cli, "record", fails)
+    status, out, err = run(capsys, "run", str(scene_file))
+    assert (status, out) == (2, "")
+    assert err == "lwa-validate: integration stopped at t = 1: too small a step\n"
+
+
+BAD_RUNS = [
+    (("--out", "result.txt"), SCENE, "out is result.txt: a file ending in .json, .npz is wanted"),
+    (("--out", "no/such/o.json"), SCENE, "out is no/such/o.json: the folder no/such does not"),
+    (("--plot", "picture.txt"), SCENE, "plot is picture.txt: a file ending in"),
+    (("--plot", "p.svg"), SCENE.replace("sensors", "#"), "plot is asked for, but the scene names"),
+    (
+        ("--out", "o.json"),
+        SCENE.replace("30", "-1"),
+        "scene.toml: duration is -1: it must be",
+    ),
+    (("--out", "o.json"), SCENE.replace("0.5", "-0.5"), "scene.toml: chain.cell number 2 is -0.5"),
+    (("--out", "o.json"), SCENE[:40], "scene.toml: not TOML: "),
+    (("--out", "o.json"), SCENE + "sensor = 1", "scene.toml: sensor is unknown: did you mean sens"),
+    (("extra",), SCENE, "Got unexpected extra argument (extra)"),
+]
+
+
+@pytest.mark.parametrize(("options", "content", "message"), BAD_RUNS)
+def test_bad_runs_are_one_line_and_leave_nothing(
+    capsys, monkeypatch, tmp_path, options, content, message
+):
+    monkeypatch.chdir(tmp_path)
+    Path("scene.toml").write_text(content)
+    monkeypatch.setattr(cli, "record", lambda scene: pytest.fail("computed first"))
+    status, out, err = run(capsys, "run", "scene.toml", *options)
+    assert (status, out) == (2, "")
+    assert err.startswith(f"lwa-validate: {message}")
+    assert err.count("\n") == 1
+    assert [f.name for f in tmp_path.iterdir()] == ["scene.toml"]
+
+
 BAD = [
+    ("run",),
+    ("run", "missing.toml"),
+    ("run", "scene"),
     ("paper", "--velocity", "fast"),
     ("paper", "--velocity", "-1"),
     ("paper", "--velocity", "1e400"),

@@ -1,5 +1,6 @@
 """The paper's figures: identities, published numbers, and what no definition reproduces."""
 
+import json
 import math
 
 import numpy as np
@@ -7,7 +8,9 @@ import pytest
 
 from validation import figures
 from validation.experiments import paper
-from validation.figures import STATED, chain_speed, forces, scaling, widths
+from validation.figures import STATED, Figures, chain_speed, forces, scaling, widths
+from validation.gallery import document, figure, text
+from validation.plots import save
 
 
 @pytest.fixture(scope="module")
@@ -77,3 +80,37 @@ def test_force_records(N):
     assert np.all(np.diff(fronts) > 0)
     incoming = found.force[0, : fronts[-1]].max()
     assert 4 < incoming < 14  # N, as on the paper's scale of 2 N per division
+
+
+@pytest.fixture(scope="module")
+def whole(scalings, computed):
+    records = tuple(forces(N) for N in figures.SENSORS)
+    return Figures(records, (chain_speed(1), chain_speed(3)), tuple(scalings), computed)
+
+
+def test_all_figures_as_text_and_document(whole):
+    shown = text(whole)
+    assert "No definition meets all three stated errors" in shown
+    assert "0.6 GPa" in shown
+    found = json.loads(json.dumps(document(whole), allow_nan=False))
+    assert found["scaling"]["exponent_value"] == pytest.approx(1 / 6, abs=1e-6)
+    assert found["scaling"] == found["scalings"][0]
+    assert len(found["widths"]["definitions"]) == len(whole.widths.definitions)
+
+
+def test_all_figures_as_a_picture(whole, tmp_path):
+    save(whole, tmp_path / "figures.svg")
+    drawn = (tmp_path / "figures.svg").read_text()
+    assert drawn.count("<svg") == 1
+    assert len(figure(whole).axes) == 4
+
+
+def test_every_figure_is_computed_in_one_call(monkeypatch):
+    monkeypatch.setattr(figures, "MOST", 2)
+    monkeypatch.setattr(figures, "MODULI", figures.MODULI[:1])
+    monkeypatch.setattr(figures, "HEIGHTS", (0.1, 1.0))
+    found = figures.figures()
+    assert [f.N for f in found.forces] == list(figures.SENSORS)
+    assert [s.N for s in found.speeds] == [1, 2]
+    assert len(found.scaling) == 1
+    assert len(found.widths.beads) == len(found.widths.times)

@@ -144,13 +144,15 @@ def test_a_bead_on_a_wall_swings_at_its_own_frequency():
     assert abs(run.velocities[0]) < 1e-7 * swing * rest / period
 
 
+sixtyfourths = st.integers(-64, 25).map(lambda i: i / 64)
 chains = st.integers(2, 6).flatmap(
     lambda n: st.fixed_dictionaries(
         dict(
             masses=st.tuples(*[positive] * n),
             stiffnesses=st.tuples(*[positive] * (n - 1)),
             k=st.floats(1.1, 2.5),
-            velocities=st.tuples(st.floats(0.5, 2), *[st.floats(-1, 0.4)] * (n - 1)),
+            # multiples of 1/64: a denormal would not scale exactly
+            velocities=st.tuples(st.floats(0.5, 2), *[sixtyfourths] * (n - 1)),
             duration=st.just(6.0),
         )
     )
@@ -307,7 +309,7 @@ def test_a_single_bead(scene):
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        (dict(method="Radau"), "method is 'Radau': one of DOP853, RK45, RK23 is wanted"),
+        (dict(method="Radau"), "method is 'Radau': one of DOP853, RK45, RK23, LSODA"),
         (dict(rtol=0), "rtol is 0: it lies between"),
         (dict(atol=1), "atol is 1: it lies between"),
         (dict(rtol=float("nan")), "rtol is nan"),
