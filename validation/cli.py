@@ -22,10 +22,13 @@ from validation.gallery import Figures
 from validation.lattice import IntegrationError
 from validation.limits import limits as run_limits
 from validation.plots import SUFFIXES, plot_file, save
+from validation.portrait import ExactWave, Resonances
 from validation.record import record
 from validation.report import STORED, document, store, text
+from validation.resonances import resonances
 from validation.scene import Scene
 from validation.scenefile import read
+from validation.solitary import exact_wave
 
 Command = Callable[..., Any]
 
@@ -110,10 +113,9 @@ def paper(
     picture: Path | None,
 ) -> None:
     """The steel:PTFE chain of the paper: speed, peak force and FWHM."""  # fmt: skip
-    if not velocity.is_number:
-        raise SceneError(f"velocity is {velocity}: a number is wanted")
     g = experiments.GRAVITY if gravity else 0.0
-    _show(experiments.paper(float(velocity), beads, sensors, g), style, picture)
+    result = experiments.paper(_number(velocity, "velocity"), beads, sensors, g)
+    _show(result, style, picture)
 
 
 @validate.command("figures")
@@ -122,6 +124,40 @@ def paper_figures(style: str, picture: Path | None) -> None:
     """The paper's figures: force records, N:1 chains, force against speed, and the FWHM."""
     result: Figures = run_figures(_progress)
     _show(result, style, picture)
+
+
+EXPONENT = click.option(
+    "--k", callback=quantity, default="3/2", show_default=True, help="Exponent of F = δ^k."
+)
+
+
+@validate.command()
+@EXPONENT
+@click.option(
+    "--masses", callback=quantities, default="1", show_default=True,
+    help="One mass, or the two of a dimer.",
+)  # fmt: skip
+@_output
+def exact(k: sp.Expr, masses: tuple[sp.Expr, ...], style: str, picture: Path | None) -> None:
+    """An exact traveling wave of the lattice: speed, widths, and the tail if it has one."""
+    wave: ExactWave = exact_wave([_number(m, "mass") for m in masses], _number(k, "k"))
+    _show(wave, style, picture)
+
+
+@validate.command("resonances")
+@EXPONENT
+@click.option("--count", type=int, default=3, show_default=True, help="How many, from above.")
+@_output
+def special_mass_ratios(k: sp.Expr, count: int, style: str, picture: Path | None) -> None:
+    """The mass ratios m2/m1 < 1 at which a dimer has a solitary wave."""
+    found: Resonances = resonances(_number(k, "k"), count)
+    _show(found, style, picture)
+
+
+def _number(value: sp.Expr, name: str) -> float:
+    if not value.is_number:
+        raise SceneError(f"{name} is {value}: a number is wanted")
+    return float(value)
 
 
 def _read(context: click.Context, argument: click.Parameter, path: str) -> Scene:

@@ -270,3 +270,43 @@ def test_matplotlib_is_loaded_only_for_a_picture():
     )
     ended = subprocess.run([sys.executable, "-c", code], capture_output=True, check=False)
     assert ended.returncode == 0, ended.stderr
+
+
+def test_exact_and_resonances(capsys, tmp_path):
+    picture = tmp_path / "w.svg"
+    status, out, err = run(capsys, "exact", "--format", "json", "--plot", str(picture))
+    assert (status, err) == (0, "")
+    found = json.loads(out)
+    assert found["fwhm_value"]["force"] == pytest.approx(1.411928, abs=5e-7)
+    assert found["fwhm_value"]["strain"] == pytest.approx(1.725713, abs=5e-7)
+    assert found["solitary"] is True
+    assert picture.read_text().startswith("<?xml")
+    status, out, _ = run(capsys, "exact", "--masses", "1,0.2733")
+    assert status == 0
+    assert "a nanopteron, not solitary" in out
+    status, out, _ = run(capsys, "resonances", "--count", "2", "--format", "json")
+    assert status == 0
+    # published to four digits
+    assert json.loads(out)["mass_ratios"] == pytest.approx([0.3428, 0.1548], abs=6e-5)
+    status, out, _ = run(capsys, "resonances", "--count", "1")
+    assert status == 0
+    assert "0.3428" in out
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ("exact", "--k", "1"),
+        ("exact", "--k", "k"),
+        ("exact", "--masses", "1,2,3"),
+        ("exact", "--masses", "m1,m2"),
+        ("exact", "--masses", "1,-1"),
+        ("resonances", "--count", "0"),
+        ("resonances", "--k", "9"),
+        ("figures", "--plot", "f.txt"),
+    ],
+    ids=" ".join,
+)
+def test_bad_input_of_the_wave_commands(capsys, arguments):
+    status, out, err = run(capsys, *arguments)
+    assert (status, out, err.count("\n")) == (2, "", 1)
