@@ -135,7 +135,7 @@ def homogenize(
     if shared:
         raise InputError(f"{shared.pop()} names both the exponent and a property of the cell")
     ring = Coefficients(cell, k, branch)
-    _affordable(order, len(ring.names))
+    _affordable(order, len(ring.names), closure)
     return Theory(solve(ring, order, closure, field, _progress(order)))
 
 
@@ -148,13 +148,14 @@ def _progress(order: int) -> Progress:
     return lambda orders: tqdm(orders, desc="orders", leave=False, disable=None)
 
 
-def _affordable(order: int, parameters: int) -> None:
+def _affordable(order: int, parameters: int, closure: str) -> None:
     """Refuse an order whose result would outgrow memory.
 
     D^{k+n} has at most one monomial per partition of n, and its coefficient at most about n terms
-    per free parameter and power.
+    per free parameter and power; the jets of the velocity bring about n times as many in all.
     """
     terms = int(sp.functions.combinatorial.numbers.partition(min(order, 100))) * order**parameters
+    terms *= order if closure == "full" else 1
     if terms > MOST_TERMS:
         raise InputError(
             f"order is {order}: about {terms:.0e} terms, beyond memory; give numbers for the "

@@ -23,6 +23,7 @@ from lwa import Dimer, InputError, homogenize
         (dict(order=2.5), "order is 2.5"),
         (dict(order=True), "order is True"),
         (dict(order=200), "beyond memory"),
+        (dict(order=20, closure="full"), "beyond memory"),
         (dict(k=0), "k is 0"),
         (dict(k=-1.5), "k is -3/2"),
         (dict(k=float("nan")), "k is nan"),
