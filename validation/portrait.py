@@ -40,7 +40,12 @@ def _(wave: ExactWave) -> str:
             f"tail {wave.tail:.2e} of the peak strain, residual {wave.residual:.1e}: {kind}",
             "",
             widths,
-            "The velocity is that of a bead m1. Relative errors are of the size of the residual.",
+            "The velocity is that of a bead m1. "
+            + (
+                "Relative errors are of the size of the residual."
+                if wave.solitary
+                else f"One of a family: all depends on its half period, {wave.half_period:g}."
+            ),
         )
     )
 
