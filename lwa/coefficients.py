@@ -24,6 +24,11 @@ def rational(value: sp.Expr) -> fmpq:
     return fmpq(int(value.p), int(value.q))
 
 
+def number(value: fmpq) -> sp.Rational:
+    """A python-flint rational as a SymPy one."""
+    return sp.Rational(int(value.p), int(value.q))
+
+
 @dataclass(frozen=True)
 class Partition:
     """Positive weights w_i that enter only as f_i = total · w_i / Σ_j w_j.
@@ -233,7 +238,7 @@ class Door:
         constant, factors = numerator.factor()
         powers += [self._sum(factor) ** int(multiplicity) for factor, multiplicity in factors]
         # One product: a number times a lone sum would be multiplied out.
-        return sp.Mul(_number(constant), *powers)
+        return sp.Mul(number(constant), *powers)
 
     def _sum(self, polynomial: fmpq_mpoly) -> sp.Expr:
         return sp.Add(*self._terms(polynomial))
@@ -243,11 +248,11 @@ class Door:
             if exponents not in self._monomials:
                 powers = (g**e for g, e in zip(self._generators, exponents, strict=True) if e)
                 self._monomials[exponents] = sp.Mul.make_args(sp.Mul(*powers))
-            number, monomial = _number(coefficient), self._monomials[exponents]
-            if number == 1 or monomial == (1,):
-                yield sp.Mul(number, *monomial)
+            factor, monomial = number(coefficient), self._monomials[exponents]
+            if factor == 1 or monomial == (1,):
+                yield sp.Mul(factor, *monomial)
             else:  # in canonical order already; sorting it anew would take most of the time
-                yield sp.Mul(number, *monomial, evaluate=False)
+                yield sp.Mul(factor, *monomial, evaluate=False)
 
 
 def _as_polynomial(value: sp.Expr, symbols: list[sp.Symbol]) -> sp.Poly | None:
@@ -257,10 +262,6 @@ def _as_polynomial(value: sp.Expr, symbols: list[sp.Symbol]) -> sp.Poly | None:
         return sp.Poly(value, *symbols, domain="QQ")
     except sp.polys.polyerrors.BasePolynomialError:
         return None
-
-
-def _number(value: fmpq) -> sp.Rational:
-    return sp.Rational(int(value.p), int(value.q))
 
 
 def _quotient(numerator: fmpq_mpoly, divisor: fmpq_mpoly) -> fmpq_mpoly | None:

@@ -44,11 +44,13 @@ def variational_derivative(
     return total
 
 
-def potential(closure: Closure, n: int) -> fmpq_mpoly | None:
-    """(k+1) V_n / u_x^{k+1} if order n is variational, else None (velocity jets exclude it)."""
+def potential(closure: Closure, n: int, density: fmpq_mpoly | None) -> fmpq_mpoly | None:
+    """(k+1) V_n / u_x^{k+1} if order n is variational, else None (velocity jets exclude it).
+
+    density : the order's `flux`.
+    """
     algebra = closure.algebra
     k = closure.ring.exponent(algebra.context)
-    density = flux(closure, n)
     if density is None or algebra.velocity_slopes(closure.acceleration[n]):
         return None
     if variational_derivative(algebra, k, density, n - 1) != -(k + 1) * closure.acceleration[n]:

@@ -158,15 +158,18 @@ class PDE:
     @cached_property
     def conservative(self) -> bool:
         """Whether every order is ∂_x of a flux, so that the momentum ∫ u_τ dx is conserved."""
-        if self.closure.ring.branch != "acoustic":
-            return False
-        return all(flux(self.closure, n) is not None for n in self.coefficients)
+        acoustic = self.closure.ring.branch == "acoustic"
+        return acoustic and None not in self._fluxes.values()
+
+    @cached_property
+    def _fluxes(self) -> dict[int, fmpq_mpoly | None]:
+        """n → F_n, None where order D^{k+n} has none."""
+        return {n: flux(self.closure, n) for n in self._orders}
 
     @cached_property
     def fluxes(self) -> Mapping[int, Terms]:
         """n → F_n, u_x^k E_n = ∂_x (u_x^k F_n), for the orders D^{k+n}, n ≥ 2, that have one."""
-        found = {n: flux(self.closure, n) for n in self._orders}
-        return {n: terms(self.closure, F) for n, F in found.items() if F is not None}
+        return {n: terms(self.closure, F) for n, F in self._fluxes.items() if F is not None}
 
     @cached_property
     def potentials(self) -> Mapping[int, Terms]:
@@ -175,7 +178,7 @@ class PDE:
         Where all orders are there, u_ττ is minus the variational derivative of Σ D^{n-1} V_n with
         V_1 = u_x^{k+1}/(k(k+1)), and u_τ²/2 + Σ D^{n-1} V_n is the density of a conserved energy.
         """
-        found = {n: potential(self.closure, n) for n in self._orders}
+        found = {n: potential(self.closure, n, F) for n, F in self._fluxes.items()}
         return {n: terms(self.closure, V) for n, V in found.items() if V is not None}
 
     @property

@@ -25,6 +25,7 @@ import sympy as sp
 
 from lwa.cell import Cell, exponent
 from lwa.cell import k as symbol_k
+from lwa.coefficients import number
 from lwa.dispersion import Dispersion
 from lwa.exact import InputError, positive, shorten
 from lwa.jets import JetAlgebra, Monomial
@@ -79,10 +80,7 @@ def strain_equation() -> dict[str, sp.Expr]:
     found = jets.terms(right)
     return {
         name: sp.Add(
-            *(
-                sp.Rational(int(c.p), int(c.q)) * sp.Mul(*map(sp.Pow, symbols, e))
-                for e, c in found[Monomial(monomial)]
-            )
+            *(number(c) * sp.Mul(*map(sp.Pow, symbols, e)) for e, c in found[Monomial(monomial)])
         )
         for name, monomial in monomials.items()
     }

@@ -1,0 +1,108 @@
+"""Bloch's dispersion relation of the linear chain as polynomials in (μ, c), solved in series.
+
+The particles obey, in the theory's units and with f_i the force of contact i,
+
+    -P μ_i Ω² a_i = f_i - f_{i-1},    a_{i+1} - a_i = c_i f_i,    a_P = e^{iPκ} a_0.
+
+Carrying (a, f) through one cell gives a matrix of determinant 1 whose trace is a polynomial in Ω²,
+and the branches are the roots of 2 cos(Pκ) = trace (Brillouin, *Wave Propagation in Periodic
+Structures*, 1946). Since trace = 2 - P²Ω² + …, the coefficients of the acoustic root follow one
+from another. A dimer's two roots have the sum 1/ν, ν = μ_0 μ_1 c_0 c_1.
+"""
+
+from __future__ import annotations
+
+from math import factorial
+
+from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
+
+from lwa.coefficients import Coefficients
+
+BRANCHES = ("acoustic", "optical")
+
+Polynomial = list[fmpq_mpoly]
+"""A polynomial in Ω², truncated: its coefficients."""
+
+
+class Bloch:
+    """The dispersion relation of a cell and the series of its branches, over a ring Q[k, μ, c]."""
+
+    def __init__(self, ring: Coefficients) -> None:
+        context = fmpq_mpoly_ctx.get(ring.names, Ordering.degrevlex)
+        self.P = ring.cell.size
+        self.mu = ring.masses.elements(context)
+        self.c = ring.contacts.elements(context)
+        self.one, self.zero = context.constant(1), context.constant(0)
+
+    def trace(self, most: int) -> Polynomial:
+        """t_m for m up to P, or up to ``most``: Σ t_m Ω^{2m} is the trace of what takes (a, f) on.
+
+        From a = 1, f = 0 it takes the a of the next cell, from a = 0, f = 1 the f. Both are
+        polynomials in Ω², lists of their coefficients.
+        """
+        powers = range(min(self.P, most) + 1)
+        one = [self.one, *(self.zero for _ in powers[1:])]
+        none = [self.zero for _ in powers]
+        a, _ = self._carried(one, none)
+        _, f = self._carried(none, one)
+        return [a_m + f_m for a_m, f_m in zip(a, f, strict=True)]
+
+    def _carried(self, a: Polynomial, f: Polynomial) -> tuple[Polynomial, Polynomial]:
+        """(a, f) one cell further."""
+        for mu, c in zip(self.mu, self.c, strict=True):
+            inertia = [self.zero, *(self.P * mu * a_m for a_m in a[:-1])]
+            f = [f_m - i_m for f_m, i_m in zip(f, inertia, strict=True)]
+            a = [a_m + c * f_m for a_m, f_m in zip(a, f, strict=True)]
+        return a, f
+
+    @property
+    def nu(self) -> fmpq_mpoly:
+        """ν = μ_0 μ_1 c_0 c_1 of the dimer, whose relation is sin²κ = Ω² - ν Ω⁴."""
+        return self.mu[0] * self.mu[1] * self.c[0] * self.c[1]
+
+    def acoustic(self, order: int) -> list[fmpq_mpoly]:
+        """L_0 … L_order of the root Ω² = Σ L_n κ^{2n} that starts with κ².
+
+        The relation, over -P², reads Ω² = (2 - 2 cos Pκ)/P² + Σ_{m≥2} t_m/P² Ω^{2m}, and in the
+        powers of Ω² on the right stand only earlier L_n.
+        """
+        P = self.P
+        trace = self.trace(order)
+        omega2 = [self.zero]
+        powers = [
+            [],
+            omega2,
+            *([self.zero] for _ in trace[2:]),
+        ]  # powers[m] is the series of Ω^{2m}
+        for n in range(1, order + 1):
+            following = self.one * fmpq(-2 * (-1) ** n * P ** (2 * n - 2), factorial(2 * n))
+            for m in range(2, len(trace)):
+                power = self.zero
+                for j in range(1, n):
+                    power = power + omega2[j] * powers[m - 1][n - j]
+                powers[m].append(power)
+                following = following + trace[m] * power / P**2
+            omega2.append(following)
+        return omega2
+
+    def amplitudes(self, order: int, branch: str) -> list[fmpq_mpoly]:
+        """b_0 … b_order of a dimer's a_1/a_0 = λ Σ b_n q^n, q = iκ.
+
+        The first particle's equation times c_0 c_1 is 2μ_0 c_0 c_1 Ω² = 2 - (c_1 + c_0 e^{-2q}) ρ.
+        With Ω² of the acoustic branch, or 1/ν less it and λ = -μ_0/μ_1 taken out,
+
+            (1 + c_0 (e^{-2q} - 1)/2) Σ b_n q^n = 1 - μ c_0 c_1 Ω²_acoustic,
+
+        μ being μ_0 on the acoustic branch and μ_1 on the optical one.
+        """
+        weight = self.mu[BRANCHES.index(branch)] * self.c[0] * self.c[1]
+        omega2 = self.acoustic(order // 2)
+        b: list[fmpq_mpoly] = []
+        for n in range(order + 1):
+            following = self.one if n == 0 else self.zero
+            if n % 2 == 0:
+                following = following - weight * omega2[n // 2] * (-1) ** (n // 2)
+            for j in range(1, n + 1):
+                following = following - self.c[0] * b[n - j] * fmpq((-2) ** j, 2 * factorial(j))
+            b.append(following)
+        return b
