@@ -12,6 +12,7 @@ from lwa.cell import Cell, D, Dimer, k
 from lwa.closure import Closure
 from lwa.dispersion import Dispersion
 from lwa.exact import InputError
+from lwa.expansion import Expansion, expand
 from lwa.pde import PDE
 from lwa.theory import Theory, homogenize
 from lwa.wave import NoSolitaryWave, TravelingWave, canonical_wave
@@ -23,11 +24,13 @@ __all__ = [
     "D",
     "Dimer",
     "Dispersion",
+    "Expansion",
     "InputError",
     "NoSolitaryWave",
     "Theory",
     "TravelingWave",
     "canonical_wave",
+    "expand",
     "homogenize",
     "k",
 ]

@@ -12,10 +12,11 @@ import sympy as sp
 from lwa.cell import Cell, D, k
 from lwa.closure import BRANCHES, CLOSURES, FIELDS
 from lwa.dispersion import Dispersion
-from lwa.render import dispersion_json, theory_json, wave_json
+from lwa.expansion import expand
+from lwa.render import dispersion_json, expansion_json, theory_json, wave_json
 from lwa.source import theory_latex, theory_python, wave_latex, wave_python
 from lwa.terminal import quantities, quantity, run
-from lwa.text import dispersion_text, theory_text, wave_text
+from lwa.text import dispersion_text, expansion_text, theory_text, wave_text
 from lwa.theory import Theory, homogenize
 
 Command = Callable[..., None]
@@ -29,6 +30,7 @@ THEORY = {
 }
 WAVE = {"text": wave_text, "json": wave_json, "latex": wave_latex, "python": wave_python}
 DISPERSION = {"text": dispersion_text, "json": dispersion_json}
+EXPANSION = {"text": expansion_text, "json": expansion_json}
 
 
 def _option(name: str, default: Any, help_text: str, **settings: Any) -> Option:
@@ -130,6 +132,23 @@ def dispersion(
     The exponent matters for unequal contacts only, which share the strain by it.
     """
     _show(DISPERSION[style](Dispersion(Cell(masses, stiffnesses), k), order))
+
+
+@lwa.command()
+@_exponent(k.name)
+@MASSES
+@STIFFNESSES
+@_order("Highest power of ε = k - 1.")
+@_style(EXPANSION)
+def expansion(
+    k: sp.Expr,
+    masses: tuple[sp.Expr, ...],
+    stiffnesses: tuple[sp.Expr, ...],
+    order: int,
+    style: str,
+) -> None:
+    """The lattice's wave as a series in ε = k - 1, summed where k and the cell are numbers."""
+    _show(EXPANSION[style](expand(Cell(masses, stiffnesses), order, k=k)))
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

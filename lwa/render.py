@@ -7,8 +7,10 @@ from typing import Any
 
 import sympy as sp
 
+from lwa.approximants import EpsilonSeries
 from lwa.dispersion import Dispersion
 from lwa.exact import InputError
+from lwa.expansion import Expansion
 from lwa.pde import Terms
 from lwa.theory import Theory
 from lwa.wave import QUANTITIES, TravelingWave
@@ -101,6 +103,48 @@ def dispersion_json(chain: Dispersion, order: int) -> dict[str, Any]:
     acoustic = chain.acoustic(order)
     optical = chain.optical(order) if chain.cell.size == 2 else None
     return {"acoustic": _series_json(acoustic), "optical": optical and _series_json(optical)}
+
+
+def expansion_json(expansion: Expansion) -> dict[str, Any]:
+    """The object that `lwa expansion --format json` prints.
+
+    c² is the sum of ``c2[n]`` ε^n, ε = k - 1, at peak force 1 on the first contact; widths, energy
+    and momentum are ``prefactor`` ε^``power`` times the sum of ``coefficients[n]`` ε^n. With
+    numbers for k and the cell come the sums, in D, with an estimate of each one's absolute error
+    and ``error_estimate``, the largest of them; ``asymptotic`` where no higher order lessens it.
+    """
+    widths = {quantity: expansion.fwhm(quantity) for quantity in QUANTITIES}
+    result: dict[str, Any] = {
+        "k": str(expansion.k),
+        "masses": [str(m) for m in expansion.cell.masses],
+        "stiffnesses": [str(A) for A in expansion.cell.stiffnesses],
+        "order": expansion.order,
+        "I": str(expansion.I),
+        "c2": [str(expansion.c2.prefactor * a) for a in expansion.c2.coefficients],
+        "fwhm": {quantity: _epsilon_json(series) for quantity, series in widths.items()},
+        "momentum": _epsilon_json(expansion.momentum),
+        "energy": _epsilon_json(expansion.energy),
+    }
+    if expansion.numeric:
+        speed = expansion.c2.at(expansion.k)
+        sums = {quantity: series.at(expansion.k) for quantity, series in widths.items()}
+        result |= {
+            "c2_value": speed.value,
+            "fwhm_value": {quantity: found.value for quantity, found in sums.items()},
+            "error_estimate": max(found.error for found in (speed, *sums.values())),
+            "c2_error_value": speed.error,
+            "fwhm_error_value": {quantity: found.error for quantity, found in sums.items()},
+            "asymptotic": any(found.asymptotic for found in (speed, *sums.values())),
+        }
+    return result
+
+
+def _epsilon_json(series: EpsilonSeries) -> dict[str, Any]:
+    return {
+        "prefactor": str(series.prefactor),
+        "power": str(series.power),
+        "coefficients": [str(a) for a in series.coefficients],
+    }
 
 
 def _series_json(coefficients: Mapping[int, sp.Expr]) -> dict[str, str]:

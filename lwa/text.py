@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 
 import sympy as sp
 
+from lwa.approximants import EpsilonSeries, Resummed
 from lwa.dispersion import Dispersion
+from lwa.expansion import Expansion
 from lwa.pde import Jet, base_order
 from lwa.render import in_units, third_order, wave_values
 from lwa.theory import Theory
@@ -191,3 +194,38 @@ def dispersion_text(chain: Dispersion, order: int) -> str:
 
 def _series(name: str, coefficients: Mapping[int, sp.Expr]) -> list[str]:
     return [f"{name}:", *(f"  {f'κ^{n}' if n else '1'}: {c}" for n, c in coefficients.items())]
+
+
+def expansion_text(expansion: Expansion) -> str:
+    """What `lwa expansion` prints."""
+    cell = expansion.cell
+    series = {"c²": expansion.c2}
+    series |= {f"FWHM of the {q}": expansion.fwhm(q) for q in QUANTITIES}
+    lines = [
+        f"masses {_list(cell.masses)}; F = A δ^k, A = {_list(cell.stiffnesses)}; ε = k - 1; peak "
+        "force 1 on the first contact, lengths in D",
+        "",
+        *_in_epsilon({**series, "momentum": expansion.momentum, "energy": expansion.energy}),
+    ]
+    if expansion.numeric:
+        lines += ["", f"at k = {expansion.k}, with estimates of the error:"]
+        lines += [f"  {name} = {_summed(row.at(expansion.k))}" for name, row in series.items()]
+    return "\n".join(lines)
+
+
+def _in_epsilon(series: Mapping[str, EpsilonSeries]) -> list[str]:
+    lines = []
+    for name, row in series.items():
+        factors = [str(row.prefactor)] if row.prefactor != 1 else []
+        factors += [f"ε^({row.power})"] if row.power else []
+        lines.append(f"{name} = {' '.join([*factors, 'Σ a_n ε^n'])}")
+        lines += [f"  a{n} = {a}" for n, a in enumerate(row.coefficients)]
+    return lines
+
+
+def _summed(found: Resummed) -> str:
+    """As many digits as the error lets stand, and one more."""
+    scale = max(abs(found.value), 1e-300)
+    digits = max(1, min(16, 2 - math.floor(math.log10(found.error / scale))))
+    note = "; higher orders do not help" if found.asymptotic else ""
+    return f"{found.value:.{digits}g} ± {found.error:.1e} (to ε^{found.order}{note})"

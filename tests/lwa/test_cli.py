@@ -187,6 +187,21 @@ def test_text_of_the_wave(capsys):
     assert "the other root, p = 4/3" in out
 
 
+def test_expansion(capsys):
+    found = result(capsys, "expansion", "--k", "3/2", "--masses", "1", "--order", "10")
+    assert [sp.Rational(a) for a in found["c2"][:3]] == [1, -sp.S.Half, sp.Rational(2, 5)]
+    assert len(found["c2"]) == 11
+    assert set(found["fwhm_value"]) == {"strain", "force", "velocity"}
+    assert abs(found["fwhm_value"]["force"] - 1.411928) < found["error_estimate"] < 1e-4
+    assert abs(found["c2_value"] - 0.819959) < found["error_estimate"]
+    symbolic = result(capsys, "expansion", "--masses", "m1,m2", "--order", "2")
+    assert "c2_value" not in symbolic
+    status, out, _ = run(capsys, "expansion", "--k", "2", "--masses", "1", "--order", "3")
+    assert status == 0
+    assert "±" in out
+    assert "c² = Σ a_n ε^n" in out
+
+
 def test_dispersion(capsys):
     found = result(capsys, "dispersion", "--masses", "3,1", "--order", "6")
     assert found["acoustic"] == {"2": "1", "4": "-7/48", "6": "-59/5760"}
@@ -226,6 +241,10 @@ BAD = [
     ("wave", "--k", "3", "--masses", "1,100"),
     ("wave", "--branch", "optical"),
     ("dispersion", "--order", "0"),
+    ("expansion", "--order", "0"),
+    ("expansion", "--k", "1"),
+    ("expansion", "--k", "1/2", "--masses", "1"),
+    ("expansion", "--order", "100"),
     ("dispersion", "--masses", "1,-1"),
     ("explain",),
 ]

@@ -1,0 +1,83 @@
+"""What a wave of unlike beads radiates: the size of the error that no order in ε removes.
+
+The pulse carries the light beads' rattle along, whose wavenumber at rest in the pulse's frame is K,
+
+    K² = K_0² F^{(k-1)/k},    K_0² = Ω_o² - 1,
+
+Ω_o² the lowest optical Ω² at κ = 0 (1/ν for a dimer): contacts are stiffer where they are pressed,
+so the rattle slows down towards the pulse's ends. The slaved motion, of the size F', excites it by
+
+    R = |∫ K^{3/2} F' e^{i∫K} dξ|,
+
+exponentially small in 1/ε where K_0 is large. It is computed with F = exp(φ_0 + ε φ_1), and since
+the integral passes through zero (at the mass ratios without a tail), as the greatest of some K_0.
+
+What the wave's numbers lose by it was fitted to the exact waves of dimers with tails from 1e-9 to
+0.1, as a bound: `Radiation.relative`. It tells an order of magnitude.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+
+POINTS = 8001
+SPAN = 20.0
+"""Half of the range of Z = X/√I that is integrated; F < e^{-100} at its ends."""
+
+PHASES = (0.85, 0.92, 1.0, 1.08, 1.16)
+"""Factors of K_0² that move the integral off its zeros."""
+
+FACTOR, POWER = 2.0, 0.75
+"""Of the bound FACTOR · contrast · R^POWER."""
+
+
+@dataclass(frozen=True)
+class Radiation:
+    """The chain's numbers that radiation wants.
+
+    contrast : 0 for equal beads and contacts, (1 - 2b)² for a dimer of equal contacts.
+    I : of Ω² = κ² - I κ⁴ + …
+    optical : the lowest optical Ω² at κ = 0.
+    lightest : the lightest bead's mass over the mean one.
+    quadratic, quartic : φ_1 = quadratic X² + quartic X⁴ + odd terms.
+    """
+
+    contrast: float
+    I: float
+    optical: float
+    lightest: float
+    quadratic: float
+    quartic: float
+
+    def relative(self, k: float) -> float:
+        """The bound of the relative error of c², widths, momentum and energy at this k."""
+        if self.contrast <= 0:
+            return 0.0
+        return float(FACTOR * self.contrast * self.amplitude(k) ** POWER)
+
+    def amplitude(self, k: float) -> float:
+        """R at this k, over the pulse's peak force."""
+        epsilon = k - 1
+        X = np.linspace(-SPAN, SPAN, POINTS) * np.sqrt(self.I)
+        log = -(X**2) / (4 * self.I) + epsilon * (self.quadratic * X**2 + self.quartic * X**4)
+        half = np.minimum.accumulate(log[POINTS // 2 :])  # φ_1 may turn log F up far outside
+        log = np.concatenate([half[:0:-1], half])
+        step = (X[1] - X[0]) / np.sqrt(epsilon)
+        F, slope = np.exp(log), np.gradient(log, step)
+        wavenumbers = (math.sqrt(factor * max(self.optical - 1, 0.0)) for factor in PHASES)
+        return self.lightest * max(
+            _rattle(K_0 * np.exp(log * epsilon / (2 * k)), F * slope, float(step))
+            for K_0 in wavenumbers
+        )
+
+
+def _rattle(K: FloatArray, slope: FloatArray, step: float) -> float:
+    """|∫ K^{3/2} F' e^{i∫K} dξ| by trapezia, which are exact for what has ended."""
+    phase = np.concatenate([[0.0], np.cumsum((K[1:] + K[:-1]) / 2)]) * step
+    return float(abs(np.sum(K**1.5 * slope * np.exp(1j * phase))) * step)
