@@ -29,7 +29,7 @@ WINDOW = 3
 """Orders of ε that a window holds before its last one."""
 
 SAFETY = 2
-"""Error estimate over the spread of a window, or over the least term."""
+"""Error estimate over the spread of a window."""
 
 DIGITS = 60
 """With which approximants are computed; their linear systems lose some."""
@@ -154,7 +154,7 @@ def _sum(a: Sequence[mpmath.mpf], epsilon: mpmath.mpf) -> _Sum:
     spreads: dict[int, mpmath.mpf] = {}
     for n in line:
         window = [value for m in range(n - WINDOW, n + 1) for value in line.get(m, [])]
-        if n >= WINDOW and len(window) > WINDOW:
+        if n >= min(WINDOW, len(a) - 1) and len(window) > min(WINDOW, n):
             spreads[n] = max(window) - min(window)
     if not spreads:
         return _truncated(a, epsilon)
@@ -165,11 +165,12 @@ def _sum(a: Sequence[mpmath.mpf], epsilon: mpmath.mpf) -> _Sum:
 
 
 def _truncated(a: Sequence[mpmath.mpf], epsilon: mpmath.mpf) -> _Sum:
-    """The sum before the least term."""
+    """The sum before the least term; all of it where the terms fall to the last."""
     terms = [x * epsilon**n for n, x in enumerate(a)]
     least = min((n for n, term in enumerate(terms) if term), key=lambda n: abs(terms[n]))
-    error = SAFETY * abs(terms[least])
-    return _Sum(mpmath.fsum(terms[:least]), error, least - 1, least < len(terms) - 1)
+    grows = least < len(terms) - 1
+    end = least if grows else least + 1
+    return _Sum(mpmath.fsum(terms[:end]), abs(terms[least]), end - 1, grows)
 
 
 def _approximants(a: Sequence[mpmath.mpf], epsilon: mpmath.mpf) -> list[mpmath.mpf]:
@@ -181,7 +182,7 @@ def _approximants(a: Sequence[mpmath.mpf], epsilon: mpmath.mpf) -> list[mpmath.m
         for M in dict.fromkeys((half, n - half, half + (n % 2 == 0 and n > 2)))
         if M and (value := _pade(a, n - M, M, epsilon)) is not None
     ]
-    return found or ([mpmath.polyval(a[::-1], epsilon)] if n < 2 else [])
+    return ([mpmath.polyval(a[::-1], epsilon)] if n < 2 else []) + found
 
 
 def _pade(a: Sequence[mpmath.mpf], L: int, M: int, epsilon: mpmath.mpf) -> mpmath.mpf | None:
