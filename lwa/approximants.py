@@ -18,7 +18,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import mpmath
-import numpy as np
 import sympy as sp
 
 from lwa.cell import exponent
@@ -187,6 +186,8 @@ def _approximants(a: Sequence[mpmath.mpf], epsilon: mpmath.mpf) -> list[mpmath.m
 
 def _pade(a: Sequence[mpmath.mpf], L: int, M: int, epsilon: mpmath.mpf) -> mpmath.mpf | None:
     """[L/M] at ε; None where it does not exist or has a pole near 0 … 3ε/2."""
+    import numpy as np
+
     try:
         p, q = mpmath.pade(list(a), L, M)
     except ZeroDivisionError:

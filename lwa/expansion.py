@@ -15,7 +15,6 @@ from functools import cached_property
 from operator import methodcaller
 from typing import Any
 
-import numpy as np
 import sympy as sp
 from flint import fmpq_mpoly
 
@@ -225,6 +224,8 @@ class Expansion:
         fields, ring = self._fields, self._ring
         if self.I.free_symbols:
             return None
+        import numpy as np
+
         trace = [float(t.leading_coefficient()) for t in Bloch(ring).trace(fields.P)]
         trace[0] = 0.0  # 2 cos(Pκ) = 2 at κ = 0, where one root is 0
         optical = np.roots(trace[:0:-1])

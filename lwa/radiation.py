@@ -21,11 +21,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-import numpy as np
-from numpy.typing import NDArray
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
+    FloatArray = NDArray[np.float64]
 
 POINTS = 8001
 SPAN = 20.0
@@ -64,6 +66,8 @@ class Radiation:
 
     def amplitude(self, k: float) -> float:
         """R at this k, over the pulse's peak force."""
+        import numpy as np
+
         epsilon = k - 1
         X = np.linspace(-SPAN, SPAN, POINTS) * np.sqrt(self.I)
         log = -(X**2) / (4 * self.I) + epsilon * (self.quadratic * X**2 + self.quartic * X**4)
@@ -80,5 +84,7 @@ class Radiation:
 
 def _rattle(K: FloatArray, slope: FloatArray, step: float) -> float:
     """|∫ K^{3/2} F' e^{i∫K} dξ| by trapezia, which are exact for what has ended."""
+    import numpy as np
+
     phase = np.concatenate([[0.0], np.cumsum((K[1:] + K[:-1]) / 2)]) * step
     return float(abs(np.sum(K**1.5 * slope * np.exp(1j * phase))) * step)

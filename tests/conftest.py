@@ -1,6 +1,12 @@
-"""Settings of hypothesis for all tests: no wall time is asserted, on noisy machines."""
+"""Settings for all tests."""
+
+import os
+
+# The tests' linear systems are small: on a busy machine a second thread only waits for the first.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 from hypothesis import settings
 
+# No wall time is asserted, on noisy machines.
 settings.register_profile("lwa", deadline=None, max_examples=40, derandomize=True)
 settings.load_profile("lwa")

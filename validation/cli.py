@@ -15,20 +15,32 @@ from tqdm import tqdm
 from lwa.exact import InputError
 from lwa.terminal import quantities, quantity, run
 from validation import experiments
+from validation.accuracy import NAMES
+from validation.accuracy import accuracy as run_accuracy
+from validation.atlas import Sweep
 from validation.checked import SceneError
+from validation.executors import cluster, processes
 from validation.figures import figures as run_figures
 from validation.files import output_file
 from validation.gallery import Figures
-from validation.lattice import IntegrationError
+from validation.hard import CASES
+from validation.hard import hard as run_hard
+from validation.lattice import COMPILED, METHODS, IntegrationError
 from validation.limits import limits as run_limits
+from validation.peers import PeerError
 from validation.plots import SUFFIXES, plot_file, save
 from validation.portrait import ExactWave, Resonances
-from validation.record import record
+from validation.record import TOLERANCE, record
 from validation.report import STORED, document, store, text
 from validation.resonances import resonances
 from validation.scene import Scene
 from validation.scenefile import read
 from validation.solitary import exact_wave
+from validation.steady import STRETCH
+from validation.sweep import SweepError, axis
+from validation.sweep import sweep as run_sweep
+from validation.verdicts import Hard
+from validation.workprecision import Accuracy
 
 Command = Callable[..., Any]
 
@@ -126,6 +138,10 @@ def paper_figures(style: str, picture: Path | None) -> None:
     _show(result, style, picture)
 
 
+def _wanted(context: click.Context, option: click.Parameter, value: str | None) -> sp.Expr | None:
+    return None if value is None else quantity(context, option, value)
+
+
 EXPONENT = click.option(
     "--k", callback=quantity, default="3/2", show_default=True, help="Exponent of F = δ^k."
 )
@@ -137,10 +153,27 @@ EXPONENT = click.option(
     "--masses", callback=quantities, default="1", show_default=True,
     help="One mass, or the two of a dimer.",
 )  # fmt: skip
+@click.option("--speed", callback=_wanted, help="Scale the wave to this speed, at D = 1.")
+@click.option(
+    "--force", callback=_wanted, help="Scale the wave to this peak force, at A = 1; by default 1."
+)
 @_output
-def exact(k: sp.Expr, masses: tuple[sp.Expr, ...], style: str, picture: Path | None) -> None:
+def exact(
+    k: sp.Expr,
+    masses: tuple[sp.Expr, ...],
+    speed: sp.Expr | None,
+    force: sp.Expr | None,
+    style: str,
+    picture: Path | None,
+) -> None:
     """An exact traveling wave of the lattice: speed, widths, and the tail if it has one."""
+    if speed is not None and force is not None:
+        raise InputError("speed and force: a wave is scaled to one of the two")
     wave: ExactWave = exact_wave([_number(m, "mass") for m in masses], _number(k, "k"))
+    if speed is not None:
+        wave = wave.scaled(speed=_number(speed, "speed"))
+    if force is not None:
+        wave = wave.scaled(force=_number(force, "force"))
     _show(wave, style, picture)
 
 
@@ -152,6 +185,34 @@ def special_mass_ratios(k: sp.Expr, count: int, style: str, picture: Path | None
     """The mass ratios m2/m1 < 1 at which a dimer has a solitary wave."""
     found: Resonances = resonances(_number(k, "k"), count)
     _show(found, style, picture)
+
+
+@validate.command("hard")
+@click.option(
+    "--case", "names", multiple=True, metavar="NAME",
+    help=f"Only this case, may be given again: {', '.join(CASES)}.",
+)  # fmt: skip
+@_output
+def hard_cases(names: tuple[str, ...], style: str, picture: Path | None) -> int:
+    """Extreme k and ω, lost contacts, long runs, float64 against 50 digits: what holds there."""
+    result: Hard = run_hard(names, _progress)
+    _show(result, style, picture)
+    return 0 if result.ok else 1
+
+
+@validate.command()
+@click.option(
+    "--task", "names", multiple=True, metavar="NAME",
+    help=f"Only this task, may be given again: {', '.join(NAMES)}.",
+)  # fmt: skip
+@_output
+def accuracy(names: tuple[str, ...], style: str, picture: Path | None) -> None:
+    """Speed against error: integrators on fixed tasks, and theories against true waves."""
+    try:
+        result: Accuracy = run_accuracy(names, _progress)
+    except (PeerError, IntegrationError) as error:
+        raise click.ClickException(str(error)) from None
+    _show(result, style, picture)
 
 
 def _number(value: sp.Expr, name: str) -> float:
@@ -174,17 +235,86 @@ def _store(context: click.Context, option: click.Parameter, path: str | None) ->
     "--out", callback=_store, metavar="FILE",
     help=f"Store the result, the records and the scene in a file ({', '.join(STORED)}).",
 )  # fmt: skip
+@click.option(
+    "--method", default=METHODS[0], show_default=True, metavar="NAME",
+    help=f"Of integration: {', '.join(METHODS)} (SciPy) or {', '.join(COMPILED)} (compiled).",
+)  # fmt: skip
+@click.option(
+    "--rtol", type=float, default=TOLERANCE, show_default=True,
+    help="Of the method; errors are those from a run at a tolerance 1000 times as large.",
+)  # fmt: skip
 @_output
-def run_scene(scene: Scene, out: Path | None, style: str, picture: Path | None) -> None:
+def run_scene(
+    scene: Scene,
+    out: Path | None,
+    method: str,
+    rtol: float,
+    style: str,
+    picture: Path | None,
+) -> None:
     """A scene from a file, TOML or JSON: arrival, peak force, FWHM and speed at its sensors."""
     if picture is not None and not (scene.bead_sensors or scene.contact_sensors):
         raise SceneError("plot is asked for, but the scene names no sensors")
     try:
-        result = record(scene)
+        result = record(scene, method=method, rtol=rtol)
     except IntegrationError as error:
         raise click.ClickException(str(error)) from None
     if out is not None:
         _write(store, result, out)
+    _show(result, style, picture)
+
+
+def _axis(context: click.Context, option: click.Parameter, text: str) -> tuple[sp.Rational, ...]:
+    return axis(text, option.opts[0].lstrip("-"))
+
+
+@validate.command()
+@click.option(
+    "--k", "ks", callback=_axis, default="5/4:3:8", show_default=True,
+    help="Exponents of F = δ^k: values and ranges start:stop:count, separated by commas.",
+)  # fmt: skip
+@click.option(
+    "--omega", "omegas", callback=_axis, default="1/20:1:20", show_default=True,
+    help="Mass ratios m2/m1, likewise.",
+)  # fmt: skip
+@click.option(
+    "--stretch", type=int, default=STRETCH, show_default=True,
+    help="Cells from one place at which the pulse is measured to the next; more below k = 3/2.",
+)  # fmt: skip
+@click.option(
+    "--file", metavar="FILE",
+    help="Keep finished points (.jsonl); with the same file a sweep goes on where it was left.",
+)  # fmt: skip
+@click.option("--jobs", type=int, help="Processes; by default one for each processor.")
+@click.option(
+    "--cluster", "address", metavar="ADDRESS",
+    help="Compute on a Dask cluster instead, whose scheduler is there, such as tcp://host:8786.",
+)  # fmt: skip
+@_output
+def sweep(
+    ks: tuple[sp.Rational, ...],
+    omegas: tuple[sp.Rational, ...],
+    stretch: int,
+    file: str | None,
+    jobs: int | None,
+    address: str | None,
+    style: str,
+    picture: Path | None,
+) -> None:
+    """Maps over k and m2/m1: width, speed and decay of a struck chain's pulse."""
+    if address is not None and jobs is not None:
+        raise InputError(f"jobs is {jobs}: a cluster has workers of its own")
+    executor = processes(jobs) if address is None else cluster(address)
+    try:
+        result: Sweep = run_sweep(
+            ks, omegas, stretch=stretch, executor=executor, file=file, progress=_progress
+        )
+    except SweepError as error:
+        raise click.ClickException(str(error)) from None
+    except KeyboardInterrupt:
+        if file is not None and Path(file).exists():
+            click.echo(f"finished points are in {file}: the same command goes on", err=True)
+        raise
     _show(result, style, picture)
 
 

@@ -120,7 +120,9 @@ class _Chain:
             raise SceneError(f"step is {self.step:g}: that makes {count:.1e} steps, beyond 1e9")
         y, v = np.zeros((2, self.lattice.shape[1]))
         y[:n], v[:n] = self.start
-        moved = np.flatnonzero(self.start.any(axis=0))
+        size = np.abs(self.start)
+        noise = np.finfo(float).eps * size.max(axis=1, keepdims=True)
+        moved = np.flatnonzero((size > noise).any(axis=0))  # rounding noise is no front
         front = min(n, MARGIN + (moved[-1] + 1 if len(moved) else 0))
         time = np.linspace(0.0, end, scene.samples)
         contacts = np.array(scene.contact_sensors, int)

@@ -25,10 +25,10 @@ def _(result: Figures) -> str:
         [
             (
                 f"{row.N}:1",
-                f"{row.speed:.2f}",
-                f"{row.force:.3f}",
+                str(row.speed),
+                str(row.force),
                 f"{row.theory:.2f}",
-                f"{100 * (row.theory / row.speed - 1):+.1f} %",
+                f"{100 * (row.theory / row.speed.value - 1):+.1f} %",
             )
             for row in result.speeds
         ],
@@ -38,10 +38,10 @@ def _(result: Figures) -> str:
         [
             (
                 f"{row.E / 1e9:g} GPa",
-                f"{row.exponent:.7f}",
-                f"{row.exponent - 1 / 6:+.0e}",
-                f"{row.speeds[0]:.1f} … {row.speeds[-1]:.1f}",
-                f"{row.forces[0]:.2f} … {row.forces[-1]:.2f}",
+                str(row.exponent),
+                f"{row.exponent.value - 1 / 6:+.0e}",
+                f"{row.speeds[0].value:.1f} … {row.speeds[-1].value:.1f}",
+                f"{row.forces[0].value:.2f} … {row.forces[-1].value:.2f}",
             )
             for row in result.scaling
         ],
@@ -55,8 +55,8 @@ def _(result: Figures) -> str:
     stated = ", ".join(f"{100 * e:.1f} % ({line})" for line, e in STATED.items())
     return "\n\n".join(
         (
-            f"N:1 chains; the theory is that of the canonical field at the lattice's peak force\n"
-            f"{speeds}",
+            "N:1 chains; the theory is that of the canonical field at the lattice's peak force; "
+            f"±: by how\nmuch a less accurate run differs\n{speeds}",
             f"drop heights {HEIGHTS[0]:g} … {HEIGHTS[-1]:g} m; the paper fits 0.1666\n{scaling}",
             f"theory over the average from bead {FIRST_BEAD} on, less 1, for equal contacts and "
             f"equal force;\nthe paper states {stated}\n{widths}",
@@ -66,9 +66,8 @@ def _(result: Figures) -> str:
 
 
 def _width_row(definition: Definition) -> list[str]:
-    unit = (
-        f"{1e6 * definition.average:.2f} µs" if definition.time else f"{definition.average:.3f} D"
-    )
+    average = definition.average.value
+    unit = f"{1e6 * average:.2f} µs" if definition.time else f"{average:.3f} D"
     row = [f"{definition.quantity}, in {'time' if definition.time else 'sites'}", unit]
     for errors in definition.errors.values():
         row += [f"{100 * errors[line]:+.1f} %" for line in STATED]
@@ -95,8 +94,10 @@ def _(result: Figures) -> dict[str, Any]:
         "speeds": [
             {
                 "N": row.N,
-                "speed_value": row.speed,
-                "force_value": row.force,
+                "speed_value": row.speed.value,
+                "speed_error_value": row.speed.error,
+                "force_value": row.force.value,
+                "force_error_value": row.force.error,
                 "theory_value": row.theory,
             }
             for row in result.speeds
@@ -108,13 +109,15 @@ def _(result: Figures) -> dict[str, Any]:
         ],
         "widths": {
             "beads": list(result.widths.beads),
-            "fwhm_value": result.widths.times.tolist(),
+            "fwhm_value": [width.value for width in result.widths.times],
+            "fwhm_error_value": [width.error for width in result.widths.times],
             "lines_value": {closure: dict(lines) for closure, lines in result.widths.lines.items()},
             "definitions": [
                 {
                     "quantity": d.quantity,
                     "unit": "s" if d.time else "sites",
-                    "average_value": d.average,
+                    "average_value": d.average.value,
+                    "average_error_value": d.average.error,
                     "error_value": {closure: dict(errors) for closure, errors in d.errors.items()},
                     "reproduced": list(d.reproduced),
                 }
@@ -128,9 +131,12 @@ def _(result: Figures) -> dict[str, Any]:
 def _scaling(row: Scaling) -> dict[str, Any]:
     return {
         "modulus_value": row.E,
-        "exponent_value": row.exponent,
-        "speed_value": list(row.speeds),
-        "force_value": list(row.forces),
+        "exponent_value": row.exponent.value,
+        "exponent_error_value": row.exponent.error,
+        "speed_value": [V.value for V in row.speeds],
+        "speed_error_value": [V.error for V in row.speeds],
+        "force_value": [F.value for F in row.forces],
+        "force_error_value": [F.error for F in row.forces],
     }
 
 
@@ -152,14 +158,16 @@ def _(result: Figures) -> Figure:
 
 def _draw_scaling(axes: Axes, result: Figures) -> None:
     for i, row in enumerate(result.scaling):
-        label = f"E = {row.E / 1e9:g} GPa: exponent {row.exponent:.4f}"
-        axes.loglog(row.forces, row.speeds, "os"[i] + "-", label=label)
+        label = f"E = {row.E / 1e9:g} GPa: exponent {row.exponent.value:.4f}"
+        forces, speeds = ([m.value for m in found] for found in (row.forces, row.speeds))
+        axes.loglog(forces, speeds, "os"[i] + "-", label=label)
     axes.set(xlabel="peak force $F_m$ (N)", ylabel="speed $V_s$ (m/s)")
     axes.legend()
 
 
 def _draw_widths(axes: Axes, widths: Widths) -> None:
-    axes.plot(widths.beads, 1e6 * widths.times, "ko-", ms=3, label="lattice, force of the bead")
+    times = [1e6 * width.value for width in widths.times]
+    axes.plot(widths.beads, times, "ko-", ms=3, label="lattice, force of the bead")
     for style, (closure, lines) in zip(("-", "--"), widths.lines.items(), strict=True):
         for i, (line, width) in enumerate(lines.items()):
             axes.axhline(1e6 * width, ls=style, color=f"C{i}", label=f"{line}, {closure}")

@@ -11,9 +11,9 @@ import numpy as np
 
 from lwa.wave import QUANTITIES
 from validation.plots import figure
+from validation.profile import ExactWave
 from validation.report import document, table, text
 from validation.resonances import Resonances
-from validation.solitary import ExactWave
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -26,21 +26,30 @@ def _(wave: ExactWave) -> str:
     kind = (
         "solitary: nothing is left behind"
         if wave.solitary
-        else "a nanopteron, not solitary: the light beads rattle on both sides, with this tail"
+        else "a nanopteron, not solitary:\nthe light beads rattle on both sides, with this tail"
     )
     widths = table(
-        ("of contact", "FWHM (D)", "rms width (D)"),
-        [(q, f"{wave.fwhm(q):.9g}", f"{wave.rms_width(q):.9g}") for q in QUANTITIES],
+        ("of", "amplitude", "FWHM (D)", "rms width (D)"),
+        [
+            (
+                q,
+                f"{wave.peak(q)[1]:.9g}",
+                f"{wave.fwhm(q):.9g}",
+                f"{wave.rms_width(q):.9g}",
+            )
+            for q in QUANTITIES
+        ],
     )
     return "\n".join(
         (
-            f"masses {wave.masses[0]:g}, {wave.masses[1]:g}; k = {wave.k:g}; contact force 1 at "
-            "its peak, A = D = 1",
-            f"c² = {wave.c2:.12g}",
+            f"masses {wave.masses[0]:g}, {wave.masses[1]:g}; k = {wave.k:g}; A = D = 1",
+            f"c² = {wave.c2:.12g}, c = {wave.c:.12g}",
             f"tail {wave.tail:.2e} of the peak strain, residual {wave.residual:.1e}: {kind}",
             "",
             widths,
-            "The velocity is that of a bead m1. "
+            "Strain and force are those of a contact, the velocity is that of a bead m1. At "
+            "another peak force F\nstrains go as F^(1/k), velocities as F^((k+1)/2k), "
+            "c as F^((k-1)/2k); widths stay.\n"
             + (
                 "Relative errors are of the size of the residual."
                 if wave.solitary
@@ -56,8 +65,11 @@ def _(wave: ExactWave) -> dict[str, Any]:
         "k_value": wave.k,
         "masses_value": list(wave.masses),
         "c2_value": wave.c2,
+        "c_value": wave.c,
+        "half_period_value": wave.half_period,
+        "amplitude_value": {q: wave.peak(q)[1] for q in QUANTITIES},
         "fwhm_value": {q: wave.fwhm(q) for q in QUANTITIES},
-        "rms_width_value": {q: wave.rms_width(q) for q in QUANTITIES},
+        "rms_value": {q: wave.rms_width(q) for q in QUANTITIES},
         "tail_value": wave.tail,
         "residual_value": wave.residual,
         "solitary": wave.solitary,

@@ -72,7 +72,7 @@ def document(result: Any) -> dict[str, Any]:
     ``number``, ``arrival_value``, ``peak_value``, ``fwhm_value``; ``speeds``: ``kind``, ``from``,
     ``to``, ``speed_sites_value``, ``speed_value`` (null without spacings); each value with its
     error, as ``arrival_error_value``, and all null where ``missing`` says why;
-    ``energy_drift_value``.
+    ``energy_drift_value``, and ``momentum_drift_value``, null with a wall.
     """
     raise TypeError(f"nothing is known to print of {type(result).__name__}")
 
@@ -190,9 +190,11 @@ def _(result: Paper) -> dict[str, Any]:
 def _(result: Recording) -> str:
     scene = result.run.scene
     wall = ", the last one the wall's" if scene.wall is not None else ""
+    momentum = result.run.momentum_drift
     head = (
         f"{scene.size} beads, {scene.contact_count} contacts{wall}, k = {scene.k:g}; "
         f"duration {scene.duration:g}, energy drift {result.run.energy_drift:.0e}"
+        + (", momentum not conserved" if momentum is None else f", momentum drift {momentum:.0e}")
     )
     sensors = [(f"{s.kind} {s.number}", s) for s in result.sensors]
     speeds = [(f"{s.kind} {s.start} → {s.end}", s) for s in result.speeds]
@@ -229,6 +231,7 @@ def _(result: Recording) -> dict[str, Any]:
             for s in result.speeds
         ],
         "energy_drift_value": result.run.energy_drift,
+        "momentum_drift_value": result.run.momentum_drift,
     }
 
 

@@ -20,18 +20,26 @@ polynomials on |ξ| ≤ L, so that everything read off them is spectrally accura
 
     c² T = Δ ∫_0^∞ E dξ + 2Σ ∫_0^∞ ξ O dξ.
 
-It is 0 for a wave that ends; `Problem` can hold it there and find the masses at which it is.
+It is 0 for a wave that ends. `Problem` can hold it there, either with m2 as one more unknown, or at
+given masses with a kick in the middle of the pulse, in ξ e^{-2ξ²} to the odd force, whose size the
+equations then ask for. That size depends smoothly on m2/m1 and is 0 exactly where T is 0 without a
+kick: its changes of sign are the special mass ratios.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import dct, dst
 
 Array = NDArray[np.float64]
+
+MOST_STEPS = 40
+"""Of Newton's method."""
 
 
 def widening(masses: tuple[float, float]) -> float:
@@ -103,62 +111,131 @@ def values(even: Array, odd: Array) -> tuple[Array, Array]:
 class Problem:
     """E - (a_+^k + b_+^k)/2 = 0 and O - (a_+^k - b_+^k)/2 = 0 on a grid, with E(0) = 1 for c².
 
-    With ``free`` masses T = 0 too, for the unknown 1/m2, on which the response depends linearly.
+    Unknowns are the forces z (E at ξ = 0 … L, then O between) and c²; the response depends
+    linearly on 1/m2.
     """
 
-    def __init__(
-        self, masses: tuple[float, float], k: float, half_period: float, n: int, free: bool
-    ) -> None:
-        self.k, self.n, self.free = k, n, free
+    def __init__(self, masses: tuple[float, float], k: float, half_period: float, n: int) -> None:
+        self.k, self.n = k, n
         self.xi = half_period * np.arange(n + 1) / n
-        self.count = n + 1 if masses[0] == masses[1] else 2 * n  # o = 0 for equal masses
-        self.first = 1 / masses[0]
-        self.parts = [self._response((1.0, sign)) for sign in (-1.0, 1.0)]
+        self.uniform = masses[0] == masses[1]
+        self.count = n + 1 if self.uniform else 2 * n  # o = 0 for equal masses
+        self.inverse = 1 / masses[0], 1 / masses[1]
 
-    def _response(self, pair: tuple[float, float]) -> tuple[Array, Array, Array]:
-        """e, o and T, times c², of the forces on the grid; for Σ and Δ."""
-        n, L = self.n, self.xi[-1]
-        unit = np.eye(2 * n)[:, : self.count]
-        e, o = values(*respond(*coefficients(unit[: n + 1], unit[n + 1 :]), pair, L))
-        weights = np.full(n + 1, pair[1] * L / n)
-        weights[[0, n]] /= 2
-        T = np.append(weights, 2 * pair[0] * self.xi[1:n] * L / n)[: self.count]
-        return e - e[n], o, T
+    @cached_property
+    def parts(self) -> list[tuple[Array, Array, Array]]:
+        """The response of every force on the grid, in e, o and T, times c²; by 1/m1 and by 1/m2."""
+        n, L, found = self.n, self.xi[-1], []
+        for pair in ((1.0, -1.0), (1.0, 1.0)):
+            e, o = self._strains(np.eye(2 * n)[:, : self.count], pair)
+            weights = np.full(n + 1, pair[1] * L / n)
+            weights[[0, n]] /= 2
+            T = np.append(weights, 2 * pair[0] * self.xi[1:n] * L / n)[: self.count]
+            found.append((e, o, T))
+        return found
 
-    def newton(self, z: Array, c2: float, light: float) -> tuple[Array, float, float]:
-        """Forces, c² and 1/m2, from a first guess."""
-        n, k, count, free = self.n, self.k, self.count, self.free
-        z = z[:count] / z[0]
-        matrix = np.zeros((count + 1 + free, count + 1 + free))
-        for _ in range(40):
-            even, odd, T = (self.first * a + light * b for a, b in zip(*self.parts, strict=True))
-            e, o = even @ z / c2, odd @ z / c2
-            a, b = np.maximum(e + o, 0), np.maximum(e - o, 0)
-            Fa, Fb, da, db = a**k, b**k, k * a ** (k - 1), k * b ** (k - 1)
+    def _strains(self, z: Array, pair: tuple[float, float]) -> tuple[Array, Array]:
+        """c² e and c² o of forces on the grid, all 2n of them, for Σ and Δ."""
+        n = self.n
+        e, o = values(*respond(*coefficients(z[: n + 1], z[n + 1 :]), pair, float(self.xi[-1])))
+        return e - e[n], o
 
-            def joined(mean: Array, half: Array) -> Array:
-                return np.concatenate((mean, half[1:n]))[:count]
+    def fault(self, z: Array, c2: float, light: float) -> Array:
+        """What is left of the equations."""
+        first = self.inverse[0]
+        padded = np.append(z, np.zeros(2 * self.n - self.count))
+        e, o = self._strains(padded, (first + light, light - first))
+        a, b = np.maximum(e + o, 0) / c2, np.maximum(e - o, 0) / c2
+        law = self._rows((a**self.k + b**self.k) / 2, (a**self.k - b**self.k) / 2)
+        return np.append(z - law, z[0] - 1)
 
-            def slope(e: Array, o: Array, da: Array = da, db: Array = db) -> Array:
-                """The change of the law's two rows with the strains."""
-                p, m = ((da + s * db).reshape(-1, *[1] * (e.ndim - 1)) / 2 for s in (1, -1))
-                return joined(p * e + m * o, m * e + p * o)
+    def _rows(self, mean: Array, half: Array) -> Array:
+        return np.concatenate((mean, half[1 : self.n]))[: self.count]
 
-            law = joined((Fa + Fb) / 2, (Fa - Fb) / 2)
-            matrix[:count, :count] = np.eye(count) - slope(even, odd) / c2
-            matrix[:count, count] = slope(e, o) / c2
-            matrix[count, 0] = 1
-            fault = np.append(z - law, z[0] - 1)
-            if free:
-                matrix[:count, -1] = -slope(*(part @ z / c2 for part in self.parts[1][:2]))
-                matrix[-1, :count], matrix[-1, -1] = T, self.parts[1][2] @ z
-                fault = np.append(fault, T @ z)
-            change = np.linalg.solve(matrix, fault)
-            relative = np.abs(change) / ([1.0] * count + [c2] + [light] * free)
-            size = float(relative.max())
-            step = min(1.0, 0.3 / size) if size > 0 else 1.0
-            z, c2 = z - step * change[:count], c2 - step * change[count]
-            light -= step * change[-1] * free
-            if size < 1e-12:
-                return z, c2, light
-        raise np.linalg.LinAlgError("no convergence")
+    def equations(self, z: Array, c2: float, light: float) -> tuple[Array, Array]:
+        """`fault`, and its derivatives by z, c² and 1/m2."""
+        k, count = self.k, self.count
+        even, odd, _ = self._at(light)
+        e, o = even @ z / c2, odd @ z / c2
+        da, db = (k * np.maximum(r, 0) ** (k - 1) for r in (e + o, e - o))
+
+        def slope(e: Array, o: Array) -> Array:
+            """The change of the law's two rows with the strains."""
+            p, m = ((da + s * db).reshape(-1, *[1] * (e.ndim - 1)) / 2 for s in (1, -1))
+            return self._rows(p * e + m * o, m * e + p * o)
+
+        matrix = np.zeros((count + 1, count + 2))
+        matrix[:count, :count] = np.eye(count) - slope(even, odd) / c2
+        matrix[:count, count] = slope(e, o) / c2
+        matrix[:count, count + 1] = -slope(*(part @ z / c2 for part in self.parts[1][:2]))
+        matrix[count, 0] = 1
+        return self.fault(z, c2, light), matrix
+
+    def _at(self, light: float) -> tuple[Array, Array, Array]:
+        first = self.inverse[0]
+        even, odd, T = (first * a + light * b for a, b in zip(*self.parts, strict=True))
+        return even, odd, T
+
+    def wave(self, z: Array, c2: float) -> tuple[Array, float]:
+        """Forces and c² at the given masses."""
+
+        def step(x: Array) -> tuple[Array, Array]:
+            fault, matrix = self.equations(x[:-1], x[-1], self.inverse[1])
+            return fault, matrix[:, :-1]
+
+        x = newton(step, self._start(z, c2), self._sizes(c2))
+        return x[:-1], float(x[-1])
+
+    def ending(self, z: Array, c2: float) -> tuple[Array, float, float]:
+        """Forces, c² and the 1/m2 for which T = 0."""
+
+        def step(x: Array) -> tuple[Array, Array]:
+            fault, matrix = self.equations(x[:-2], x[-2], x[-1])
+            T, by_light = self._at(x[-1])[2], self.parts[1][2] @ x[:-2]
+            row = np.append(T, [0.0, by_light])
+            return np.append(fault, T @ x[:-2]), np.vstack((matrix, row))
+
+        light = self.inverse[1]
+        x = newton(step, self._start(z, c2, light), self._sizes(c2, light))
+        return x[:-2], float(x[-2]), float(x[-1])
+
+    def kicked(self, z: Array, c2: float) -> tuple[Array, float, float]:
+        """Forces, c² and the size of the kick with which T = 0."""
+        inner = self.xi[1 : self.n]
+        kick = np.concatenate((np.zeros(self.n + 1), inner * np.exp(-2 * inner**2), [0.0]))
+        T = np.append(self._at(self.inverse[1])[2], [0.0, 0.0])
+
+        def step(x: Array) -> tuple[Array, Array]:
+            fault, matrix = self.equations(x[:-2], x[-2], self.inverse[1])
+            matrix[:, -1] = -kick
+            return np.append(fault - x[-1] * kick, T @ x), np.vstack((matrix, T))
+
+        x = newton(step, self._start(z, c2, 0.0), self._sizes(c2, 1.0))
+        return x[:-2], float(x[-2]), float(x[-1])
+
+    def _start(self, z: Array, *others: float) -> Array:
+        return np.append(z[: self.count] / z[0], others)
+
+    def _sizes(self, *others: float) -> Array:
+        return np.append(np.ones(self.count), others)
+
+
+def newton(step: Callable[[Array], tuple[Array, Array]], x: Array, sizes: Array) -> Array:
+    """The root of equations near x, whose unknowns are of these sizes, by damped Newton steps.
+
+    ``step`` gives what is left of the equations and its Jacobian. Raises
+    `numpy.linalg.LinAlgError` where the iteration does not converge.
+    """
+    before = math.inf
+    for _ in range(MOST_STEPS):
+        fault, matrix = step(x)
+        change = np.linalg.solve(matrix, fault)
+        size = float(np.max(np.abs(change) / sizes))
+        if not math.isfinite(size):
+            break
+        x = x - change * (min(1.0, 0.3 / size) if size > 0 else 1.0)
+        # What rounding leaves does not fall any further.
+        if size < 1e-12 or (size < 1e-9 and size > before / 4):
+            return x
+        before = size
+    raise np.linalg.LinAlgError("no convergence")

@@ -161,7 +161,7 @@ def test_a_result_that_cannot_be_written_leaves_the_old_one(
 
 
 def test_an_integrator_that_fails_is_one_line(capsys, monkeypatch, scene_file):
-    def fails(scene):
+    def fails(scene, **_):
         raise IntegrationError("integration stopped at t = 1: too small a step")
 
     monkeypatch.setattr(cli, "record", fails)
@@ -272,7 +272,7 @@ def test_matplotlib_is_loaded_only_for_a_picture():
     assert ended.returncode == 0, ended.stderr
 
 
-def test_exact_and_resonances(capsys, tmp_path):
+def test_exact(capsys, tmp_path):
     picture = tmp_path / "w.svg"
     status, out, err = run(capsys, "exact", "--format", "json", "--plot", str(picture))
     assert (status, err) == (0, "")
@@ -281,6 +281,10 @@ def test_exact_and_resonances(capsys, tmp_path):
     assert found["fwhm_value"]["strain"] == pytest.approx(1.725713, abs=5e-7)
     assert found["solitary"] is True
     assert picture.read_text().startswith("<?xml")
+
+
+@pytest.mark.slow
+def test_nanopterons_and_resonances(capsys):
     status, out, _ = run(capsys, "exact", "--masses", "1,0.2733")
     assert status == 0
     assert "a nanopteron, not solitary" in out
@@ -310,3 +314,40 @@ def test_exact_and_resonances(capsys, tmp_path):
 def test_bad_input_of_the_wave_commands(capsys, arguments):
     status, out, err = run(capsys, *arguments)
     assert (status, out, err.count("\n")) == (2, "", 1)
+
+
+def test_run_on_a_compiled_engine(capsys, scene_file):
+    status, out, _ = run(
+        capsys, "run", str(scene_file), "--method", "SRKN14", "--rtol", "1e-9", "--format", "json"
+    )
+    assert status == 0
+    _, other, _ = run(capsys, "run", str(scene_file), "--format", "json")
+    for found, reference in zip(
+        json.loads(out)["sensors"], json.loads(other)["sensors"], strict=True
+    ):
+        bound = found["peak_error_value"] + reference["peak_error_value"]
+        assert abs(found["peak_value"] - reference["peak_value"]) <= bound
+    assert abs(json.loads(out)["momentum_drift_value"]) < 1e-13
+    for options, line in (
+        (("--method", "RK4"), "method is 'RK4': one of DOP853, "),
+        (("--rtol", "1"), "rtol is 1: it lies between 1e-13 and 1e-05"),
+    ):
+        status, out, err = run(capsys, "run", str(scene_file), *options)
+        assert (status, out, err.count("\n")) == (2, "", 1)
+        assert err.startswith(f"lwa-validate: {line}")
+
+
+def test_exact_scaled_to_a_speed_or_a_force(capsys):
+    shown = {}
+    for options in ((), ("--speed", "2"), ("--force", "3")):
+        status, out, _ = run(capsys, "exact", *options, "--format", "json")
+        assert status == 0
+        shown[options[:1]] = json.loads(out)
+    assert shown["--speed",]["c_value"] == pytest.approx(2, rel=1e-14)
+    assert shown["--force",]["amplitude_value"]["force"] == pytest.approx(3, rel=1e-13)
+    for found in shown.values():
+        for name, width in shown[()]["rms_value"].items():
+            assert found["rms_value"][name] == pytest.approx(width, rel=1e-10)
+    status, out, err = run(capsys, "exact", "--speed", "2", "--force", "3")
+    assert (status, out) == (2, "")
+    assert "scaled to one of the two" in err

@@ -3,6 +3,7 @@
 import math
 import subprocess
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -252,3 +253,15 @@ def test_a_wall_needs_the_whole_chain():
 def test_numba_is_imported_for_compiled_methods_only():
     code = "import sys, validation.cli; assert 'numba' not in sys.modules"
     subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def test_rounding_noise_in_a_start_is_no_front():
+    """A window follows the pulse, not the last bead that has a velocity of 1e-17."""
+    chain = Scene(
+        masses=(1.0,) * 200, stiffnesses=(1.0,) * 199, k=1.5, velocities=(1.0,),
+        contact_sensors=(100,), duration=150.0, samples=301,
+    )  # fmt: skip
+    noisy = replace(chain, velocities=(1.0, *((-1) ** i * 1e-17 for i in range(199))))
+    a, b = (simulate(scene, method="SRKN14", window=True) for scene in (chain, noisy))
+    assert a.contact_force.max() > 0.5
+    assert np.abs(a.contact_force - b.contact_force).max() < 1e-9

@@ -12,6 +12,7 @@ from validation.experiments import chain_scene, paper
 from validation.lattice import simulate
 from validation.measure import MeasureError
 from validation.record import first_pulse, record, tracks
+from validation.report import document, text
 from validation.scene import Scene, SceneError
 
 
@@ -161,3 +162,51 @@ def test_small_pulses_travel_at_the_speed_of_sound():
     slower = float(3 * Dispersion(Dimer(1, 0.5)).I / (2 * s**2))
     found = speed.numbers["speed_sites"].value / c - 1
     assert found == pytest.approx(-slower, abs=1 / s**4)
+
+
+@pytest.mark.parametrize("method", ["DOP853", "SRKN14"])
+def test_a_recording_shows_both_drifts_where_both_are_conserved(method):
+    masses, contacts = (1.0, 0.5) * 10, (1.0,) * 19
+    free = Scene(
+        masses=masses, stiffnesses=contacts, k=1.5, duration=20, velocities=(1,),
+        contact_sensors=(8, 12),
+    )  # fmt: skip
+    found = record(free, method=method, rtol=1e-9)
+    shown = document(found)
+    assert abs(shown["energy_drift_value"]) < 1e-5  # contacts open within a step
+    assert abs(shown["momentum_drift_value"]) < 1e-13  # by Newton's third law, to rounding
+    assert "energy drift " in text(found)
+    assert f"momentum drift {found.run.momentum_drift:.0e}" in text(found)
+    walled = Scene(
+        masses=masses, stiffnesses=contacts, k=1.5, duration=20, velocities=(1,), wall=1.0,
+        gravity=0.01,
+    )  # fmt: skip
+    found = record(walled, method=method, rtol=1e-9)
+    assert document(found)["momentum_drift_value"] is None
+    assert "momentum not conserved" in text(found)
+
+
+def test_engines_agree_within_the_errors_they_state():
+    scene = Scene(
+        masses=(1.0, 0.5) * 20, stiffnesses=(1.0,) * 39, k=1.5, duration=35, velocities=(1,),
+        contact_sensors=(8, 20), samples=1501,
+    )  # fmt: skip
+    one, other = (numbers(record(scene, method=m)) for m in ("DOP853", "SRKN14"))
+    for sensor, found in one.items():
+        for name, measured in found.items():
+            bound = measured.error + other[sensor][name].error
+            assert abs(measured.value - other[sensor][name].value) <= bound, (sensor, name)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"method": "RK4"}, "method is .*RK4.*DOP853.*SRKN14"),
+        ({"rtol": 1e-3}, "rtol is 0.001: it lies between 1e-13 and 1e-05"),
+        ({"rtol": 0.0}, "rtol is 0"),
+    ],
+)
+def test_an_engine_that_is_not_there(options, message):
+    scene = Scene(masses=(1, 1), stiffnesses=(1,), k=1.5, duration=1, velocities=(1,))
+    with pytest.raises(SceneError, match=message):
+        record(scene, **options)

@@ -1,0 +1,119 @@
+"""Docstrings are plain text with formulas in Unicode: this makes reStructuredText of them.
+
+What they use, and nothing else: paragraphs, "Parameters" with a line of dashes, ``name : text`` in
+aligned lines, indented blocks (formulas), doctests, and `names` or ``code`` between backticks. All
+else is text, so that a ``*``, ``|`` or trailing ``_`` of a formula stays itself.
+
+The directive ``modules`` documents every module of a package, but for those named after
+``:without:``.
+"""
+
+from __future__ import annotations
+
+import pkgutil
+import re
+from collections.abc import Iterator
+from importlib import import_module
+from typing import ClassVar
+
+from docutils import nodes
+from docutils.parsers.rst import directives
+from sphinx.application import Sphinx
+from sphinx.util.docutils import SphinxDirective
+
+_CODE = re.compile(r"``(.+?)``|`(.+?)`")
+_ENTRY = re.compile(r"([^\W\d][^:()]*?) : (\S.*)")
+_TITLE = re.compile(r"(?<!\S)\\\*([A-Z][^*]*)\\\*")
+
+
+def converted(lines: list[str]) -> list[str]:
+    """The lines of a docstring, indentation removed, as reStructuredText."""
+    result: list[str] = []
+    for block in _blocks(lines):
+        result += [*_block(block), ""]
+    return result
+
+
+def _blocks(lines: list[str]) -> Iterator[list[str]]:
+    block: list[str] = []
+    for line in [*lines, ""]:
+        if line.strip():
+            block.append(line.rstrip())
+        elif block:
+            yield block
+            block = []
+
+
+def _block(block: list[str]) -> list[str]:
+    first = block[0]
+    if len(block) > 1 and re.fullmatch(r"-{3,}", block[1].strip()):
+        return [f".. rubric:: {first.strip()}", "", *_block(block[2:])] if block[2:] else []
+    if first.startswith(">>>"):
+        return block
+    if all(line.startswith(" ") for line in block):
+        return ["::", "", *("    " + line for line in block)]
+    # entries begin at the margin, and what continues them is indented
+    begins = [bool(_ENTRY.match(line)) for line in block]
+    margin = [not line.startswith(" ") for line in block]
+    if all(begin for begin, at in zip(begins, margin, strict=True) if at):
+        return list(_entries(block))
+    # an indented block is literal, with "::" before it or without
+    return [_text(re.sub("::$", ":", " ".join(line.strip() for line in block)))]
+
+
+def _entries(block: list[str]) -> Iterator[str]:
+    for line in block:
+        if not line.startswith(" "):
+            name, text = _ENTRY.match(line).groups()  # type: ignore[union-attr]
+            yield f"``{name.strip('`')}``"
+            yield f"    {_text(text)}"
+        else:
+            yield f"    {_text(line.strip())}"
+
+
+def _text(text: str) -> str:
+    """Text with its code as literals and nothing else that means something to docutils."""
+    parts: list[str] = []
+    last = 0
+    for match in _CODE.finditer(text):
+        parts += [_escaped(text[last : match.start()]), _literal(match[1] or match[2])]
+        last = match.end()
+    # "\ " ends a literal without leaving a space
+    return "\\ ".join([*parts, _escaped(text[last:])])
+
+
+def _literal(code: str) -> str:
+    return f"``{code.strip()}``"
+
+
+def _escaped(text: str) -> str:
+    plain = re.sub(r"([\\*|_`\[\]])", r"\\\1", text)
+    return _TITLE.sub(r"*\1*", plain)  # of a book: *Title*
+
+
+class Modules(SphinxDirective):
+    """A section for every module of a package, in alphabetical order."""
+
+    required_arguments = 1
+    option_spec: ClassVar = {"without": directives.unchanged}
+
+    def run(self) -> list[nodes.Node]:
+        (package,) = self.arguments
+        without = self.options.get("without", "").split()
+        lines: list[str] = []
+        for found in pkgutil.iter_modules(import_module(package).__path__):
+            if found.name not in without:
+                name = f"{package}.{found.name}"
+                lines += [name, "^" * len(name), "", f".. automodule:: {name}", ""]
+        return self.parse_text_to_nodes("\n".join(lines), allow_section_headings=True)
+
+
+def _process(app: Sphinx, what: str, name: str, obj: object, options: object, lines: list) -> None:
+    lines[:] = converted(lines)
+
+
+def setup(app: Sphinx) -> dict[str, bool]:
+    """Sphinx's hook."""
+    app.add_directive("modules", Modules)
+    app.connect("autodoc-process-docstring", _process)
+    return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -1,0 +1,181 @@
+"""Every page of a folder, opened in Chromium from a server of this machine.
+
+The server adds a script to each page. It waits until the page and its mathematics are there, sends
+back what it sees, and goes on to the next page. No other name than 127.0.0.1 resolves, and
+Chromium's own log of the network tells which addresses the pages asked for.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+import subprocess
+import tempfile
+import threading
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from functools import partial
+from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
+from urllib.parse import urlsplit
+
+SECONDS_PER_PAGE = 60
+
+FLAGS = (
+    "--headless",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--remote-debugging-port=0",  # keeps it open until it is ended
+    "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1",
+)
+
+PROBE = r"""<script>
+window.addEventListener("load", async () => {
+  const errors = [];
+  const typeset = window.MathJax && MathJax.startup ? MathJax.startup.promise : null;
+  if (typeset) await typeset.catch(error => errors.push(String(error)));
+  for (const image of document.images) image.loading = "eager";
+  for (const details of document.querySelectorAll("details")) details.open = true;
+  await Promise.all([...document.images].map(image => image.decode().catch(() => 0)));
+  const math = [...document.querySelectorAll(".math")];
+  const body = document.querySelector("article") || document.body;
+  const text = body.cloneNode(true);
+  const apart = "pre, code, script, style, mjx-container";
+  for (const element of text.querySelectorAll(apart)) element.remove();
+  const report = {
+    mathjax: typeset !== null,
+    math: math.length,
+    rendered: document.querySelectorAll("mjx-container").length,
+    unrendered: math.filter(m => !m.querySelector("mjx-container")).map(m => m.textContent),
+    merrors: [...document.querySelectorAll("mjx-merror, [data-mjx-error]")].map(m => m.textContent),
+    raw: text.textContent.match(/\\\(|\\\[|\$\$|\\begin\{|\\frac/g) || [],
+    images: document.images.length,
+    broken: [...document.images].filter(i => !i.naturalWidth || !i.naturalHeight).map(i => i.src),
+    errors: errors,
+  };
+  const answer = await fetch("/probe", {method: "POST", body: JSON.stringify(report)});
+  const next = await answer.text();
+  if (next) location.href = next;
+});
+</script>
+"""
+
+
+@dataclass
+class Visit:
+    """What the pages reported, by their paths, and what was asked of the network.
+
+    missing : paths that the server does not have.
+    foreign : addresses outside this machine that a page tried to reach.
+    """
+
+    pages: dict[str, dict[str, object]] = field(default_factory=dict)
+    missing: list[str] = field(default_factory=list)
+    foreign: list[str] = field(default_factory=list)
+
+
+class _Server(ThreadingHTTPServer):
+    daemon_threads = True
+
+    def __init__(self, folder: Path, pages: Sequence[str], visit: Visit) -> None:
+        self.left = list(pages)
+        self.visit = visit
+        self.progress = threading.Event()
+        super().__init__(("127.0.0.1", 0), partial(_Handler, directory=str(folder)))
+
+    @property
+    def origin(self) -> str:
+        return f"http://127.0.0.1:{self.server_address[1]}"
+
+
+class _Handler(SimpleHTTPRequestHandler):
+    server: _Server
+
+    def do_GET(self) -> None:
+        path = Path(self.translate_path(self.path))
+        if path.suffix != ".html" or not path.is_file():
+            return super().do_GET()
+        page = path.read_text().replace("</body>", PROBE + "</body>").encode()
+        self.send_response(200)
+        self.send_header("Content-Type", "text/html; charset=utf-8")
+        self.send_header("Content-Length", str(len(page)))
+        self.end_headers()
+        self.wfile.write(page)
+
+    def do_POST(self) -> None:
+        report = json.loads(self.rfile.read(int(self.headers["Content-Length"])))
+        self.server.visit.pages[urlsplit(self.headers["Referer"]).path.lstrip("/")] = report
+        following = self.server.left.pop(0) if self.server.left else ""
+        self.send_response(200)
+        self.end_headers()
+        self.wfile.write(following.encode())
+        self.server.progress.set()
+
+    def send_error(self, code: int, *rest: object, **more: object) -> None:
+        self.server.visit.missing.append(self.path)
+        super().send_error(code)
+
+    def log_message(self, *rest: object) -> None:
+        pass
+
+
+@contextmanager
+def _served(folder: Path, pages: Sequence[str], visit: Visit) -> Iterator[_Server]:
+    with _Server(folder, pages, visit) as server:
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        yield server
+        server.shutdown()
+
+
+def visited(folder: Path, pages: Sequence[str]) -> Visit:
+    """Open the pages, one after another, and tell what was seen.
+
+    Raises `FileNotFoundError` without Chromium and `TimeoutError` when a page does not report.
+    """
+    chromium = shutil.which("chromium")
+    if chromium is None:
+        raise FileNotFoundError("chromium is not installed: apt-get install chromium")
+    visit = Visit()
+    first, *rest = ("/" + page for page in pages)
+    with tempfile.TemporaryDirectory() as home, _served(folder, rest, visit) as server:
+        log = Path(home, "net-log.json")
+        options = (f"--user-data-dir={home}/profile", f"--log-net-log={log}")
+        browser = subprocess.Popen(
+            [chromium, *FLAGS, *options, server.origin + first],
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
+        try:
+            while len(visit.pages) < len(pages):
+                server.progress.clear()
+                if not server.progress.wait(SECONDS_PER_PAGE):
+                    todo = [page for page in pages if page not in visit.pages]
+                    raise TimeoutError(f"{todo[0]} did not report in {SECONDS_PER_PAGE} s")
+        finally:
+            browser.terminate()
+            browser.wait(30)
+        visit.foreign = sorted(_asked(log.read_text(), server.origin))
+    return visit
+
+
+def _asked(log: str, origin: str) -> set[str]:
+    """Addresses that the server's pages asked for and that are not its own, by Chromium's log.
+
+    The log has one event a line. Requests of the browser's own (its updates) have another initiator
+    than the page.
+    """
+    of_pages = [line for line in log.splitlines() if f'"initiator":"{origin}"' in line]
+    urls = {
+        url for line in of_pages for url in re.findall(r'"url":"((?:http|ws)s?://[^"]*)"', line)
+    }
+    own = {url for url in urls if url.startswith(origin + "/")}
+    if not own:
+        raise AssertionError("Chromium's log holds no request of the pages")
+    return urls - own

@@ -1,0 +1,80 @@
+"""The built book in a browser without a network: mathematics, pictures, nothing from outside.
+
+Run by its path, after the book is built: ``python -m pytest tests/book``. Without a browser or
+without the book it fails.
+"""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from tests.book.browser import visited
+
+ROOT = Path(__file__).parents[2]
+HTML = ROOT / "book" / "_build" / "html"
+CHAPTERS = re.findall(r"(?:file|root): (\w+)", (ROOT / "book" / "_toc.yml").read_text())
+PAGES = [f"{name}.html" for name in (*CHAPTERS, "genindex", "search")]
+
+SMALLEST = """<html><head><script>
+window.MathJax = {startup: {promise: Promise.resolve()}};
+</script></head><body><article>%s</article></body></html>"""
+
+
+@pytest.fixture(scope="module")
+def visit():
+    missing = [page for page in PAGES if not (HTML / page).is_file()]
+    assert not missing, f"the book is not built: {missing[0]} is missing in {HTML}"
+    return visited(HTML, PAGES)
+
+
+def test_every_page_was_read(visit):
+    assert set(visit.pages) == set(PAGES)
+    assert not [page for page, report in visit.pages.items() if report["errors"]]
+
+
+def test_all_mathematics_is_typeset(visit):
+    for page, report in visit.pages.items():
+        found = report["unrendered"] + report["merrors"] + report["raw"]
+        assert not found, f"{page}: {found}"
+        assert report["mathjax"] or not report["math"]
+    equations = {page: report["rendered"] for page, report in visit.pages.items()}
+    for chapter in CHAPTERS[:9]:
+        assert equations[f"{chapter}.html"] > 5
+
+
+def test_every_picture_is_there(visit):
+    assert not {page: r["broken"] for page, r in visit.pages.items() if r["broken"]}
+    assert sum(report["images"] for report in visit.pages.values()) > 2 * len(
+        PAGES
+    )  # logo, dark too
+    assert not visit.missing
+
+
+def test_no_request_leaves_the_machine(visit):
+    assert not visit.foreign
+
+
+@pytest.mark.parametrize(
+    ("body", "key"),
+    [
+        (r'<span class="math">\(x\)</span>', "unrendered"),
+        (r"<p>\(x\)</p>", "raw"),
+        ("<p>$$x$$</p>", "raw"),
+        (
+            '<span class="math"><mjx-container><mjx-merror>x</mjx-merror></mjx-container></span>',
+            "merrors",
+        ),
+        ('<img src="nowhere.png">', "broken"),
+    ],
+)
+def test_a_fault_is_seen(tmp_path, body, key):
+    (tmp_path / "page.html").write_text(SMALLEST % body)
+    seen = visited(tmp_path, ["page.html"])
+    assert seen.pages["page.html"][key]
+    assert ("/nowhere.png" in seen.missing) == (key == "broken")
+
+
+def test_a_request_is_seen(tmp_path):
+    (tmp_path / "page.html").write_text(SMALLEST % '<img src="https://example.org/picture.png">')
+    assert visited(tmp_path, ["page.html"]).foreign == ["https://example.org/picture.png"]
