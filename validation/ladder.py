@@ -45,6 +45,9 @@ SPECIAL = ("0.3428457811", "0.1547515139", "0.0901277691")
 STRUCK = ("0.01", "0.05", "0.2", "0.55", "0.8", "0.9")
 """Mass ratios at which the Hertz dimer has none."""
 
+OTHERS, ALSO = ("5/4", "2"), ("0.05", "0.2", "0.8")
+"""Exponents besides, and the mass ratios at which they are tried."""
+
 SOLITARY, STRUCK_CHAIN = "solitary wave", "struck chain"
 
 Progress = Callable[[list[Any]], Any]
@@ -89,11 +92,12 @@ class Ladder:
 
 
 def ladder(progress: Progress = list) -> Ladder:
-    """Climb it: the equal chain over `UNIFORM`, the Hertz dimer over `SPECIAL` and `STRUCK`."""
+    """Climb it: equal beads over `UNIFORM`, the Hertz dimer over `SPECIAL` and `STRUCK`."""
     hertz = sp.Rational(3, 2)
     equal = [(sp.Rational(k), sp.S.One, True) for k in UNIFORM]
     dimers = [(hertz, sp.Rational(w), True) for w in SPECIAL]
     dimers += [(hertz, sp.Rational(w), False) for w in STRUCK]
+    dimers += [(sp.Rational(k), sp.Rational(w), False) for k in OTHERS for w in ALSO]
     return Ladder(tuple(place(*at) for at in progress([*equal, *dimers])))
 
 

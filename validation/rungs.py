@@ -8,6 +8,8 @@ from __future__ import annotations
 from statistics import median
 from typing import TYPE_CHECKING, Any
 
+import sympy as sp
+
 from validation.ladder import NAMES, SOLITARY, THEORIES, Ladder, Place, Rung
 from validation.plots import figure
 from validation.report import document, table, text
@@ -105,7 +107,8 @@ def _(result: Ladder) -> Figure:
 def draw(left: Axes, right: Axes, result: Ladder) -> None:
     """Draw it on two axes: equal beads, dimers."""
     equal = [p for p in result.places if p.omega == 1]
-    dimers = sorted((p for p in result.places if p.omega != 1), key=lambda p: float(p.omega))
+    hertz = [p for p in result.places if p.omega != 1 and p.k == sp.Rational(3, 2)]
+    dimers = sorted(hertz, key=lambda p: float(p.omega))
     for axes, places, label in ((left, equal, "k - 1"), (right, dimers, "m2/m1")):
         for i, name in enumerate(THEORIES):
             points = [
