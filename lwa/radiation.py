@@ -14,7 +14,7 @@ the integral passes through zero (at the mass ratios without a tail), as the gre
 
 What c² and the widths lose by it was fitted, as a bound, to exact waves of dimers with tails from
 1e-9 to 0.1 and to pulses of struck chains: `Radiation.relative`. It bounds; a struck chain's pulse
-is closer, by a factor from 3 to 70.
+is closer, by a factor from 10 to 70.
 """
 
 from __future__ import annotations

@@ -13,5 +13,17 @@ from validation.lattice import Run, simulate
 from validation.materials import Bead, Material
 from validation.measure import Pulse, measure
 from validation.scene import Scene, SceneError
+from validation.solitary import ExactWave, exact_wave
 
-__all__ = ["Bead", "Material", "Pulse", "Run", "Scene", "SceneError", "measure", "simulate"]
+__all__ = [
+    "Bead",
+    "ExactWave",
+    "Material",
+    "Pulse",
+    "Run",
+    "Scene",
+    "SceneError",
+    "exact_wave",
+    "measure",
+    "simulate",
+]

@@ -84,7 +84,7 @@ def test_dimer():
     chain = Dispersion(Cell((m1, m2)))
     nu = m1 * m2 / (m1 + m2) ** 2
     assert chain.trace == {0: 2, 1: -4, 2: 4 * nu}
-    sixth = sp.Rational(2, 45) - 2 * nu / 3 + 2 * nu**2  # as theory.md has the term u_6x
+    sixth = sp.Rational(2, 45) - 2 * nu / 3 + 2 * nu**2
     for n, expected in {2: 1, 4: nu - sp.Rational(1, 3), 6: sixth}.items():
         assert sp.cancel(chain.acoustic(6)[n] - expected) == 0
     assert chain.optical(1) == {0: (m1 + m2) ** 2 / (m1 * m2)}
