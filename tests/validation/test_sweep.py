@@ -466,16 +466,25 @@ def test_an_executor_that_fails_is_one_line(capsys, fake, monkeypatch):
     assert run(capsys) == (2, "", "lwa-validate: gone\n")
 
 
+LISTENING = (
+    sys.executable, "-c", "import os, signal, sys; signal.signal(signal.SIGINT, signal.SIG_DFL); "
+    "os.execv(sys.argv[1], sys.argv[1:])",
+)  # fmt: skip
+"""Runs a command that hears Ctrl-C, to which a shell's background jobs are deaf."""
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("blow", [signal.SIGINT, signal.SIGKILL])
 def test_a_process_that_is_stopped_goes_on_and_leaves_no_worker(tmp_path, blow):
     file = tmp_path / "s.jsonl"
     command = [COMMAND, "sweep", "--k", "3/2", "--omega", "1/2:1:30", "--jobs", "2", "--file", file]
     stopped = subprocess.Popen(
-        command, start_new_session=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-        # A shell starts its background jobs deaf to it.
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
-    )  # fmt: skip
+        [*LISTENING, *command],
+        start_new_session=True,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
     while not file.exists() or file.read_text().count("\n") < 4:
         assert stopped.poll() is None
         time.sleep(0.02)
