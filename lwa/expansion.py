@@ -23,7 +23,7 @@ from lwa.bloch import Bloch
 from lwa.cell import Cell, exponent
 from lwa.cell import k as symbol_k
 from lwa.coefficients import Coefficients
-from lwa.exact import InputError, shorten
+from lwa.exact import InputError, exact, shorten
 from lwa.pulse import Series, by_degree, half_width, log_term, moment, root
 from lwa.radiation import Radiation
 from lwa.recursion import Recursion
@@ -104,7 +104,7 @@ class Expansion:
         {0: -3*X**2, 1: -3*X**4/10 + 3*X**2/5}
         """
         X = sp.Symbol("X")
-        if isinstance(contact, bool) or contact not in range(self.cell.size):
+        if type(contact) is not int or contact not in range(self.cell.size):
             last = self.cell.size - 1
             raise InputError(
                 f"contact is {shorten(contact)}: an integer from 0 to {last} is wanted"
@@ -116,6 +116,21 @@ class Expansion:
                     *(self._over(c, (3 * n + d) // 2) * X**d for d, c in by_degree(q).items())
                 )
         return found
+
+    def profile(self, xi: Any, contact: int = 0) -> sp.Expr:
+        """The force of a contact at ξ, exp Σ ε^n φ_n(√ε ξ) to the order ε^order, in D = 1.
+
+        >>> from lwa import Cell
+        >>> expand(Cell([1]), 1, k=2).profile("xi")
+        exp(-3*xi**4/10 - 12*xi**2/5)
+        """
+        xi, epsilon = exact(xi, "xi"), self.k - 1
+        X = sp.Symbol("X")
+        terms = [
+            epsilon**n * phi.subs(X, sp.sqrt(epsilon) * xi)
+            for n, phi in self.log_force(contact).items()
+        ]
+        return sp.exp(sp.expand(sp.Add(*terms)))
 
     def fwhm(self, quantity: str = "strain") -> EpsilonSeries:
         """Full width at half maximum of a contact's strain or force, or the first bead's velocity.

@@ -38,8 +38,9 @@ _SCIPY: Mapping[tuple[str, bool], Sequence[float]] = {
     ("LSODA", False): (1e-6, 1e-7),
     ("DOP853", True): (1e-6, 1e-7, 1e-8, 1e-9),
     ("RK45", True): (1e-7, 1e-8, 1e-9),
+    ("LSODA", True): (1e-6, 1e-7),
 }
-"""(method, window) → tolerances; LSODA, which restarts at order 1, gains little from a window."""
+"""(method, window) → tolerances."""
 
 _SPLITTINGS: Mapping[tuple[str, bool], Sequence[float]] = {
     (BEST, True): (1e-5, 3e-6, 2e-6, 1e-6, 1e-7, 1e-8, 1e-10),

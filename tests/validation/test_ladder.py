@@ -60,6 +60,18 @@ def test_error_of_n_terms_falls_as_the_next_power(omega: str, order: int) -> Non
         assert np.allclose(slopes, order + 1, atol=0.35), (name, slopes)
 
 
+def test_the_profile_is_the_exact_waves() -> None:
+    """At k = 1.05, to ε^4 in the logarithm: what is cut off is some ε^5."""
+    k, wave = sp.Rational(21, 20), true("21/20", "1")
+    force = sp.lambdify("xi", expand(Cell([1]), 4, k=k).profile("xi"))
+    xi = np.linspace(-6, 6, 25)
+    assert np.abs(force(xi) - wave.force(xi)).max() < 2 * 0.05**5
+    dimer, b = true("21/20", "1/20"), sp.Rational(1, 20)
+    top, _ = dimer.peak("force")
+    force = sp.lambdify("xi", expand(Cell([1, b]), 5, k=k).profile("xi"))
+    assert np.abs(force(xi) - dimer.force(top + xi)).max() < 0.05**5
+
+
 @pytest.mark.parametrize("k", ["11/10", "5/4", "3/2", "2", "5/2", "3"])
 def test_estimates_bound_the_errors_of_the_equal_chain(k: str) -> None:
     exact = values(true(k, "1"))
