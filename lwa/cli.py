@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterable, Sequence
+from functools import wraps
 from typing import Any
 
 import click
@@ -76,6 +77,24 @@ def _chain(command: Command) -> Command:
     return command
 
 
+def _series(k: str, order: str, formats: Iterable[str]) -> Option:
+    """The options of a command on a series: its cell, exponent and order; ``k`` by default."""
+
+    def decorated(command: Command) -> Command:
+        @wraps(command)
+        def of_cell(
+            masses: tuple[sp.Expr, ...], stiffnesses: tuple[sp.Expr, ...], **options: Any
+        ) -> None:
+            command(Cell(masses, stiffnesses), **options)
+
+        given: Command = of_cell
+        for option in (_style(formats), _order(order), STIFFNESSES, MASSES, _exponent(k)):
+            given = option(given)
+        return given
+
+    return decorated
+
+
 def _theory(
     k: sp.Expr,
     masses: tuple[sp.Expr, ...],
@@ -115,40 +134,20 @@ def wave(style: str, **chain: Any) -> None:
 
 
 @lwa.command()
-@_exponent("1")
-@MASSES
-@STIFFNESSES
-@_order("Highest power of κ in Ω².")
-@_style(DISPERSION)
-def dispersion(
-    k: sp.Expr,
-    masses: tuple[sp.Expr, ...],
-    stiffnesses: tuple[sp.Expr, ...],
-    order: int,
-    style: str,
-) -> None:
+@_series("1", "Highest power of κ in Ω².", DISPERSION)
+def dispersion(cell: Cell, k: sp.Expr, order: int, style: str) -> None:
     """The linear chain: the series of Ω²(κ), Ω the frequency in τ and κ the wavenumber, times D.
 
     The exponent matters for unequal contacts only, which share the strain by it.
     """
-    _show(DISPERSION[style](Dispersion(Cell(masses, stiffnesses), k), order))
+    _show(DISPERSION[style](Dispersion(cell, k), order))
 
 
 @lwa.command()
-@_exponent(k.name)
-@MASSES
-@STIFFNESSES
-@_order("Highest power of ε = k - 1.")
-@_style(EXPANSION)
-def expansion(
-    k: sp.Expr,
-    masses: tuple[sp.Expr, ...],
-    stiffnesses: tuple[sp.Expr, ...],
-    order: int,
-    style: str,
-) -> None:
+@_series(k.name, "Highest power of ε = k - 1.", EXPANSION)
+def expansion(cell: Cell, k: sp.Expr, order: int, style: str) -> None:
     """The lattice's wave as a series in ε = k - 1, summed where k and the cell are numbers."""
-    _show(EXPANSION[style](expand(Cell(masses, stiffnesses), order, k=k)))
+    _show(EXPANSION[style](expand(cell, order, k=k)))
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
