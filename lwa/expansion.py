@@ -30,8 +30,8 @@ from lwa.recursion import Recursion
 
 QUANTITIES = ("strain", "force", "velocity")
 
-MOST_ORDER = {0: 40, 1: 12}
-"""Of ε, with numbers for the cell and with one symbolic ratio: some ten seconds."""
+MOST_ORDER = {0: 40, 1: 12, 2: 5, 3: 3, 4: 2, 5: 2, 6: 1, 7: 1}
+"""Of ε, by the number of symbolic ratios in the cell: some twenty seconds at most."""
 
 
 @dataclass(frozen=True)
@@ -299,11 +299,11 @@ def expand(cell: Cell, order: int = 4, *, k: Any = symbol_k) -> Expansion:
     if not k.free_symbols and k <= 1:
         raise InputError(f"k is {k}: the expansion in k - 1 wants k > 1")
     symbols = len(Coefficients(cell, k).names) - (0 if k.is_Rational else 1)
-    most = MOST_ORDER.get(symbols, max(2, 8 // symbols if symbols else 40))
-    if order > most:
+    if order > (most := MOST_ORDER.get(symbols, 0)):
+        bound = f"at most {most} is affordable" if most else "no order is affordable"
         raise InputError(
-            f"order is {order}: with {symbols} symbolic ratios in the cell at most {most} is "
-            "affordable; give numbers for the cell, or a lower order"
+            f"order is {order}: with {symbols} symbolic ratios in the cell {bound}; give numbers "
+            "for the cell, or a lower order"
         )
     return Expansion(cell, order, k)
 

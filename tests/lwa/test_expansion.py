@@ -321,6 +321,8 @@ def test_other_bad_input_is_refused() -> None:
         wave("dimer").log_force(2)
     with pytest.raises(InputError, match="at most"):
         expand(Cell(["a", "b", "c", "d"]), 9)
+    with pytest.raises(InputError, match="no order is affordable"):
+        expand(Cell([f"a{i}" for i in range(12)]), 1)
 
 
 def test_radiation_falls_exponentially_and_vanishes_for_equal_beads() -> None:
