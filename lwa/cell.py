@@ -11,7 +11,7 @@ with P equal contacts of stiffness A_eff, A_eff^{-1/k} = (1/P) Σ A_i^{-1/k}.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -19,6 +19,7 @@ from typing import Any
 import sympy as sp
 
 from lwa.exact import InputError, exact, positive, shorten
+from lwa.value import Value
 
 D = sp.Symbol("D", positive=True)
 """The spacing of neighbouring particles, unless the caller names another."""
@@ -26,11 +27,18 @@ D = sp.Symbol("D", positive=True)
 k = sp.Symbol("k", positive=True)
 """The exponent of the contact law F = A δ^k, unless the caller names another."""
 
-_RESERVED = {"k": "the exponent", "D": "the spacing", "V_s": "the speed", "tau": "time"}
+RESERVED = {
+    "k": "the exponent",
+    "D": "the spacing",
+    "B": "the peak strain",
+    "V_s": "the speed",
+    "tau": "time",
+}
+"""Names that stand in results, and what they mean there: they are refused for anything else."""
 
 
 @dataclass(frozen=True)
-class Cell:
+class Cell(Value):
     """A periodic cell of P particles.
 
     Parameters
@@ -61,11 +69,35 @@ class Cell:
             )
         for field, given in (("mass", masses), ("stiffness", stiffnesses)):
             values = tuple(positive(x, f"{field} {i}") for i, x in enumerate(given, start=1))
-            for symbol in {s.name for value in values for s in value.free_symbols}:
-                if symbol in _RESERVED:
-                    raise InputError(f"{field} {symbol!r}: the name means {_RESERVED[symbol]} here")
+            for value in values:
+                _meant(value, field)
             object.__setattr__(self, "masses" if field == "mass" else "stiffnesses", values)
-        object.__setattr__(self, "spacing", positive(self.spacing, "spacing"))
+        spacing = positive(self.spacing, "spacing")
+        object.__setattr__(self, "spacing", _meant(spacing, "spacing", D.name))
+        unmistakable(self.symbols)
+
+    @cached_property
+    def symbols(self) -> tuple[sp.Symbol, ...]:
+        """The symbols of masses, stiffnesses and spacing, by name."""
+        values = (*self.masses, *self.stiffnesses, self.spacing)
+        return tuple(sorted(set().union(*(x.free_symbols for x in values)), key=str))
+
+    def at(self, **values: Any) -> Cell:
+        """The cell with numbers (or other symbols) for the named symbols; see `substitution`.
+
+        >>> m1, m2 = sp.symbols("m1 m2", positive=True)
+        >>> Cell([m1, m1, m2]).at(omega="1/3").masses
+        (m1, m1, m1/3)
+        """
+        return self.replaced(substitution(values, self))
+
+    def replaced(self, new: Mapping[sp.Symbol, sp.Expr]) -> Cell:
+        """The cell with what `substitution` gives for some of its symbols."""
+        return Cell(
+            masses=tuple(x.xreplace(new) for x in self.masses),
+            stiffnesses=tuple(x.xreplace(new) for x in self.stiffnesses),
+            spacing=self.spacing.xreplace(new),
+        )
 
     @property
     def size(self) -> int:
@@ -126,8 +158,10 @@ def Dimer(
     return Cell((m1,) * N + (m2,), stiffnesses=tuple(stiffnesses), spacing=spacing)
 
 
-def exponent(value: Any) -> sp.Expr:
-    """Read the exponent k of F = A δ^k exactly; raises `lwa.InputError` unless k > 0.
+def exponent(value: Any, cell: Cell | None = None) -> sp.Expr:
+    """Read the exponent k of F = A δ^k exactly, for a chain of this cell.
+
+    Raises `lwa.InputError` unless k > 0, and for a name that means something else.
 
     >>> exponent(1.5)
     3/2
@@ -135,7 +169,63 @@ def exponent(value: Any) -> sp.Expr:
     result = exact(value, "k")
     if result.is_number and not result.is_positive:
         raise InputError(f"k is {result}: the contact force A δ^k needs an exponent k > 0")
+    _meant(result, "k", k.name)
+    if cell is not None:
+        shared = {s.name for s in result.free_symbols} & {s.name for s in cell.symbols}
+        if shared:
+            raise InputError(f"{min(shared)} names both the exponent and a property of the cell")
     return result
+
+
+def substitution(
+    values: Mapping[str, Any], cell: Cell, k: sp.Expr = sp.S.One
+) -> dict[sp.Symbol, sp.Expr]:
+    """Symbol → what is given for its name, among the symbols of a cell and its exponent.
+
+    ``omega``, where no symbol is called so, is the ratio m2/m1 of the cell's second mass to its
+    first: it replaces m2, or m1 where m2 has a value.
+
+    Raises `lwa.InputError` for a name that does not occur and a value that is not positive.
+    """
+    known = {s.name: s for s in (*cell.symbols, *sorted(k.free_symbols, key=str))}
+    given = dict(values)
+    omega = given.pop("omega", None) if "omega" not in known else None
+    for name in given:
+        if name not in known:
+            names = ", ".join(known) or "there are none"
+            raise InputError(f"{shorten(name)} is not among the symbols: {names}")
+    new = {known[name]: positive(value, name) for name, value in given.items()}
+    return new if omega is None else new | _from_ratio(positive(omega, "omega"), cell, new)
+
+
+def _from_ratio(
+    omega: sp.Expr, cell: Cell, new: Mapping[sp.Symbol, sp.Expr]
+) -> dict[sp.Symbol, sp.Expr]:
+    masses = tuple(dict.fromkeys(cell.masses))
+    if len(masses) != 2:
+        raise InputError(f"omega is m2/m1 of a cell with two masses; this one has {len(masses)}")
+    first, second = masses
+    if second.is_Symbol and second not in new and second not in first.free_symbols:
+        return {second: omega * first.xreplace(new)}
+    if first.is_Symbol and first not in new and first not in second.free_symbols:
+        return {first: second.xreplace(new) / omega}
+    raise InputError("omega is m2/m1: one of the masses must be a symbol without another value")
+
+
+def unmistakable(symbols: Sequence[sp.Symbol]) -> None:
+    """Refuse two symbols that print alike: one name with different assumptions."""
+    names = [s.name for s in symbols]
+    twice = {name for name in names if names.count(name) > 1}
+    if twice:
+        raise InputError(f"{min(twice)!r} names two symbols, with different assumptions: use one")
+
+
+def _meant(value: sp.Expr, field: str, own: str = "") -> sp.Expr:
+    """The value, refused where a symbol in it has a name that means something else in results."""
+    for name in sorted(s.name for s in value.free_symbols):
+        if name in RESERVED and name != own:
+            raise InputError(f"{field} {name!r}: the name means {RESERVED[name]} here")
+    return value
 
 
 def _sequence(values: Any, name: str) -> tuple[Any, ...]:
