@@ -8,11 +8,13 @@
 D**2*(m1**2 - m1*m2 + m2**2)/(3*(m1 + m2)**2)
 """
 
+from lwa import hertz
 from lwa.cell import Cell, D, Dimer, k
 from lwa.closure import Closure
 from lwa.dispersion import Dispersion
 from lwa.exact import InputError
 from lwa.expansion import Expansion, expand
+from lwa.hertz import Material, Sphere
 from lwa.pde import PDE
 from lwa.theory import Theory, homogenize
 from lwa.wave import NoSolitaryWave, TravelingWave, canonical_wave
@@ -26,11 +28,14 @@ __all__ = [
     "Dispersion",
     "Expansion",
     "InputError",
+    "Material",
     "NoSolitaryWave",
+    "Sphere",
     "Theory",
     "TravelingWave",
     "canonical_wave",
     "expand",
+    "hertz",
     "homogenize",
     "k",
 ]

@@ -19,6 +19,7 @@ from typing import Any
 import sympy as sp
 
 from lwa.exact import InputError, exact, positive, shorten
+from lwa.hertz import Sphere, stiffness
 from lwa.value import Value
 
 D = sp.Symbol("D", positive=True)
@@ -75,6 +76,31 @@ class Cell(Value):
         spacing = positive(self.spacing, "spacing")
         object.__setattr__(self, "spacing", _meant(spacing, "spacing", D.name))
         unmistakable(self.symbols)
+
+    @classmethod
+    def of_spheres(cls, spheres: Sequence[Sphere]) -> Cell:
+        """The cell of spheres in Hertz contact (k = 3/2), in their units: SI throughout, say.
+
+        The spacing of unequal spheres is the mean distance of neighbours' centers, Σ 2 R_i / P.
+        The theory's x counts sites, times D; with this D a cell is as long as its spheres, so that
+        speeds and widths are lengths in space, and D u_x is the mean compression of its contacts.
+
+        >>> from lwa.hertz import Material
+        >>> ball = Sphere("m", "R", Material(E="193e9", nu="0.3"))
+        >>> Cell.of_spheres([ball]).spacing
+        2*R
+        """
+        row = _sequence(spheres, "spheres")
+        for i, sphere in enumerate(row, start=1):
+            if not isinstance(sphere, Sphere):
+                raise InputError(f"sphere {i} is {shorten(sphere)}: a Sphere is wanted")
+        if not row:
+            raise InputError("a cell needs at least one sphere")
+        return cls(
+            masses=tuple(sphere.mass for sphere in row),
+            stiffnesses=tuple(stiffness(a, b) for a, b in zip(row, row[1:] + row[:1], strict=True)),
+            spacing=2 * sp.Add(*(sphere.radius for sphere in row)) / len(row),
+        )
 
     @cached_property
     def symbols(self) -> tuple[sp.Symbol, ...]:

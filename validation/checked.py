@@ -6,55 +6,43 @@ says what would be right.
 
 from __future__ import annotations
 
-import math
-import operator
-from typing import Any
+from collections.abc import Callable
+from functools import wraps
+from typing import Any, ParamSpec, TypeVar
 
+from lwa import tables
 from lwa.exact import InputError, shorten
+
+P = ParamSpec("P")
+T = TypeVar("T")
 
 
 class SceneError(InputError):
     """A scene, or a part of one, that cannot be meant: the message says what would be right."""
 
 
-def real(value: Any, name: str) -> float:
-    """Read one finite number; raises `SceneError` for anything else.
+def of_scene(read: Callable[P, T]) -> Callable[P, T]:
+    """The same function, whose refusals are `SceneError`.
 
-    >>> real("1.5", "duration")
+    >>> positive(-1, "duration")
     Traceback (most recent call last):
         ...
-    validation.checked.SceneError: duration is '1.5': a number is wanted
+    validation.checked.SceneError: duration is -1: it must be positive
     """
-    if not isinstance(value, str | bytes | bool):
+
+    @wraps(read)
+    def checked(*args: P.args, **options: P.kwargs) -> T:
         try:
-            number = float(value)
-        except (TypeError, ValueError, OverflowError):
-            pass
-        else:
-            if math.isfinite(number):
-                return number
-            raise SceneError(f"{name} is {number}: a finite number is wanted")
-    raise SceneError(f"{name} is {shorten(value)}: a number is wanted")
+            return read(*args, **options)
+        except InputError as error:
+            raise SceneError(str(error)) from None
+
+    return checked
 
 
-def positive(value: Any, name: str) -> float:
-    """`real`, and refused unless it is positive."""
-    number = real(value, name)
-    if not number > 0:
-        raise SceneError(f"{name} is {number:g}: it must be positive")
-    return number
-
-
-def integer(value: Any, name: str, least: int, most: int | None = None) -> int:
-    """Read an integer from ``least`` to ``most``; raises `SceneError` for anything else."""
-    wanted = f"an integer from {least} on" if most is None else f"one of {least} … {most}"
-    try:
-        number = operator.index(value)
-    except TypeError:
-        raise SceneError(f"{name} is {shorten(value)}: {wanted} is wanted") from None
-    if isinstance(value, bool) or number < least or (most is not None and number > most):
-        raise SceneError(f"{name} is {shorten(value)}: {wanted} is wanted")
-    return number
+real = of_scene(tables.real)
+positive = of_scene(tables.positive)
+integer = of_scene(tables.integer)
 
 
 def items(values: Any, name: str) -> tuple[Any, ...]:

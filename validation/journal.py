@@ -24,11 +24,11 @@ from typing import Any, BinaryIO
 import sympy as sp
 
 from lwa.exact import InputError, exact, shorten
+from lwa.tables import Table, array, table
 from validation.checked import SceneError, integer, real
 from validation.files import output_file
 from validation.measure import Measured
 from validation.steady import QUANTITIES, Point
-from validation.tables import Table, array, table
 
 SUFFIX = ".jsonl"
 FORMAT = {"format": "lwa sweep", "version": 1}

@@ -1,11 +1,6 @@
-"""Beads, their materials, and the stiffness of the Hertz contact between them.
+"""Beads and materials in floats, with `lwa.hertz` between them; those of the paper's experiment.
 
-Two elastic spheres pressed together by δ repel each other with F = A δ^{3/2},
-
-    A = 4 E1 E2 √(R1 R2 / (R1 + R2)) / (3 [E2 (1 - ν1²) + E1 (1 - ν2²)])
-
-(Porter et al. 2008, eq. 1); a flat wall is the limit R2 → ∞. The beads are those of the same
-paper's experiment. Units are SI.
+The experiment is that of Porter et al. (2008). Units are SI.
 """
 
 from __future__ import annotations
@@ -13,8 +8,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from lwa import hertz
 from lwa.exact import shorten
-from validation.checked import SceneError, positive, real
+from validation.checked import SceneError, of_scene, positive, real
 
 
 @dataclass(frozen=True)
@@ -30,8 +26,12 @@ class Material:
     def __post_init__(self) -> None:
         object.__setattr__(self, "E", positive(self.E, "E"))
         object.__setattr__(self, "nu", real(self.nu, "nu"))
-        if not -1 < self.nu <= 0.5:
-            raise SceneError(f"nu is {self.nu:g}: Poisson's ratio lies between -1 and 1/2")
+        of_scene(hertz.Material)(self.E, self.nu)
+
+    @classmethod
+    def of(cls, material: hertz.Material) -> Material:
+        """A material of the theory, given in numbers."""
+        return cls(float(material.E), float(material.nu))
 
 
 @dataclass(frozen=True)
@@ -51,6 +51,11 @@ class Bead:
         if not isinstance(self.material, Material):
             raise SceneError(f"material is {shorten(self.material)}: a Material is wanted")
 
+    @classmethod
+    def of(cls, sphere: hertz.Sphere) -> Bead:
+        """A sphere of the theory, given in numbers."""
+        return cls(float(sphere.mass), float(sphere.radius), Material.of(sphere.material))
+
 
 def contact_stiffness(bead: Bead, other: Bead | Material) -> float:
     """A of F = A δ^{3/2} between a bead and another one or a flat wall, in N/m^{3/2}.
@@ -59,14 +64,7 @@ def contact_stiffness(bead: Bead, other: Bead | Material) -> float:
     >>> round(contact_stiffness(steel, wall) / contact_stiffness(steel, steel), 12)  # √2
     1.414213562373
     """
-    if isinstance(other, Material):
-        radius, second = bead.radius, other
-    else:
-        radius = bead.radius * other.radius / (bead.radius + other.radius)
-        second = other.material
-    first = bead.material
-    compliance = (1 - first.nu**2) / first.E + (1 - second.nu**2) / second.E
-    return 4 * math.sqrt(radius) / (3 * compliance)
+    return float(hertz.contact(bead, other, math.sqrt))
 
 
 STEEL = Material(E=193e9, nu=0.3)

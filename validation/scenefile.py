@@ -51,27 +51,36 @@ from __future__ import annotations
 
 import json
 import textwrap
-import tomllib
-from collections import Counter
 from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
 
-from lwa.exact import shorten
-from validation.checked import SceneError, integer, positive, real
+from lwa import hertz
+from lwa.beads import read_beads, read_materials
+from lwa.tables import (
+    Table,
+    among,
+    array,
+    each,
+    entries,
+    flag,
+    integer,
+    load,
+    place,
+    places,
+    positive,
+    real,
+    table,
+)
+from validation.checked import SceneError, of_scene
 from validation.files import replacing
 from validation.materials import Bead, Material, contact_stiffness
 from validation.scene import Scene
-from validation.tables import Table, among, array, each, entries, flag, named, place, places, table
-
-SUFFIXES = (".toml", ".json")
 
 MOST_BEADS = 1_000_000
 MOST_SAMPLES = 10_000_000
 """Of all sensors together."""
-MOST_BYTES = 64_000_000
-"""Of a file."""
 
 KEYS = {
     "file": (
@@ -91,27 +100,8 @@ def read(path: str | Path) -> Scene:
 
     Raises `SceneError`, in one line, for a file that cannot be read or is not a scene.
     """
-    file = Path(path)
-    if file.suffix.lower() not in SUFFIXES:
-        raise SceneError(f"{path}: a scene is a file ending in {' or '.join(SUFFIXES)}")
-    parse = tomllib.loads if file.suffix.lower() == ".toml" else _json
-    try:
-        with file.open("rb") as stream:
-            content = stream.read(MOST_BYTES + 1)
-        if len(content) > MOST_BYTES:
-            raise SceneError(f"more than {MOST_BYTES} bytes")
-        return scene(parse(content.decode("utf-8-sig")))
-    except SceneError as error:
-        raise SceneError(f"{path}: {error}") from None
-    except OSError as error:
-        raise SceneError(f"{path}: {error.strerror or error}") from None
-    except UnicodeDecodeError:
-        raise SceneError(f"{path}: not a text in UTF-8") from None
-    except RecursionError:
-        raise SceneError(f"{path}: nested too deeply for a scene") from None
-    except ValueError as error:  # of the parsers
-        reason = str(error).partition(";")[0]
-        raise SceneError(f"{path}: not {file.suffix[1:].upper()}: {reason}") from None
+    result: Scene = of_scene(load)(path, "a scene", scene)
+    return result
 
 
 def write(what: Scene, file: Path) -> None:
@@ -125,6 +115,7 @@ def write(what: Scene, file: Path) -> None:
 # --- what is read ---------------------------------------------------------------------------
 
 
+@of_scene
 def scene(content: Any) -> Scene:
     """The scene of a parsed file, see the module; raises `SceneError`.
 
@@ -136,8 +127,9 @@ def scene(content: Any) -> Scene:
         name: file.read(name, table(KEYS[name]), Table({}, name, KEYS[name]))
         for name in ("wall", "striker", "start", "sensors")
     }
-    materials = file.read("materials", named(_material), {})
-    beads = file.read("beads", named(partial(_bead, materials=materials)), {})
+    materials = read_materials(file)
+    spheres = read_beads(file, materials)
+    beads = {name: Bead.of(sphere) for name, sphere in spheres.items()}
     defects = file.read("defects", each(_defect), ())
     row, chain = _chain(file.read("chain", table(KEYS["chain"])), beads, defects)
     n = len(chain["masses"])
@@ -171,24 +163,6 @@ def scene(content: Any) -> Scene:
             f"start.displacements press bead {pressed} into {other}: start.overlap = true allows it"
         )
     return result
-
-
-def _material(value: Any, name: str) -> Material:
-    given = Table(value, name, ("E", "nu"))
-    E, nu = given.read("E", positive), given.read("nu", real)
-    try:
-        return Material(E, nu)
-    except SceneError as error:
-        raise SceneError(f"{name}.{error}") from None
-
-
-def _bead(value: Any, name: str, materials: Mapping[str, Material]) -> Bead:
-    given = Table(value, name, ("mass", "radius", "material"))
-    return Bead(
-        mass=given.read("mass", positive),
-        radius=given.read("radius", positive),
-        material=given.read("material", among(materials)),
-    )
 
 
 def _defect(value: Any, name: str) -> Table:
@@ -249,12 +223,12 @@ def _of_contacts(value: Any, name: str, period: int, count: int) -> list[float]:
     return numbers if len(value) == count else (numbers * (count // period + 1))[:count]
 
 
-def _wall(given: Table, row: Sequence[Bead], materials: Mapping[str, Material]) -> float:
+def _wall(given: Table, row: Sequence[Bead], materials: Mapping[str, hertz.Material]) -> float:
     if given.one("material", "stiffness") == "stiffness":
         return float(given.read("stiffness", positive))
     if not row:
         raise SceneError("wall.material is given, but a chain of masses needs wall.stiffness")
-    return contact_stiffness(row[-1], given.read("material", among(materials)))
+    return contact_stiffness(row[-1], Material.of(given.read("material", among(materials))))
 
 
 def _overlap(what: Scene) -> int:
@@ -265,18 +239,6 @@ def _overlap(what: Scene) -> int:
             if y[number - 1] > y[number]:
                 return number
     return 0
-
-
-def _json(text: str) -> Any:
-    return json.loads(text, object_pairs_hook=_once)
-
-
-def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    found = dict(pairs)
-    if len(found) < len(pairs):
-        ((key, times),) = Counter(key for key, _ in pairs).most_common(1)
-        raise SceneError(f"{shorten(key)} is there {times} times")
-    return found
 
 
 # --- what is written ------------------------------------------------------------------------

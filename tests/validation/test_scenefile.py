@@ -2,6 +2,7 @@
 
 import copy
 import json
+import os
 import re
 import textwrap
 import tomllib
@@ -10,6 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from lwa import tables
 from validation import scenefile
 from validation.experiments import chain_scene
 from validation.materials import STEEL, Bead, Material, contact_stiffness
@@ -173,7 +175,7 @@ def test_a_scene_written_is_read_back_equal(what):
     assert scene(json.loads(json.dumps(content, allow_nan=False))) == what
 
 
-@pytest.mark.parametrize("suffix", scenefile.SUFFIXES)
+@pytest.mark.parametrize("suffix", tables.SUFFIXES)
 @pytest.mark.parametrize("text", [PAPER, TRIMER])
 def test_files_there_and_back(tmp_path, text, suffix):
     file, first = tmp_path / f"scene{suffix}", tmp_path / "first.toml"
@@ -345,9 +347,15 @@ def test_bad_files(tmp_path, name, content, message):
 
 
 def test_a_file_without_end_is_refused(monkeypatch, tmp_path):
-    monkeypatch.setattr(scenefile, "MOST_BYTES", 10)
+    monkeypatch.setattr(tables, "MOST_BYTES", 10)
     (tmp_path / "s.toml").write_text("duration = 1")
     with pytest.raises(SceneError, match=r"s.toml: more than 10 bytes$"):
+        read(tmp_path / "s.toml")
+
+
+def test_a_pipe_is_not_waited_for(tmp_path):
+    os.mkfifo(tmp_path / "s.toml")
+    with pytest.raises(SceneError, match=r"s.toml: not a regular file$"):
         read(tmp_path / "s.toml")
 
 

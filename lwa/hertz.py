@@ -1,0 +1,93 @@
+"""Hertz's contact between elastic spheres: A of F = A δ^{3/2} from elasticity and shape.
+
+Two spheres pressed together by δ repel each other with F = A δ^{3/2},
+
+    A = 4 E1 E2 √(R1 R2 / (R1 + R2)) / (3 [E2 (1 - ν1²) + E1 (1 - ν2²)])
+
+(Porter et al. 2008, eq. 1); a flat wall is the limit R2 → ∞. In SI units A is in N/m^{3/2}.
+`lwa.Cell.of_spheres` makes the cell of a chain from them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import sympy as sp
+
+from lwa.exact import InputError, exact, positive, shorten
+from lwa.value import Value
+
+EXPONENT = sp.Rational(3, 2)
+"""k of Hertz's contact."""
+
+
+@dataclass(frozen=True)
+class Material(Value):
+    """An isotropic elastic solid: Young's modulus E and Poisson's ratio ν, numbers or symbols.
+
+    Raises `lwa.InputError` unless E > 0 and -1 < ν ≤ 1/2.
+    """
+
+    E: sp.Expr
+    nu: sp.Expr
+
+    def __post_init__(self) -> None:
+        given = self.nu
+        object.__setattr__(self, "E", positive(self.E, "E"))
+        object.__setattr__(self, "nu", exact(self.nu, "nu"))
+        if self.nu.is_number and not -1 < self.nu <= sp.S.Half:
+            raise InputError(f"nu is {shorten(given)}: Poisson's ratio lies between -1 and 1/2")
+
+
+@dataclass(frozen=True)
+class Sphere(Value):
+    """A sphere: mass, radius and material, numbers or symbols.
+
+    Raises `lwa.InputError` unless mass and radius are positive.
+
+    >>> steel = Material(E="193e9", nu="0.3")
+    >>> stiffness(Sphere("m", "R", steel), steel)
+    38600000000000*sqrt(R)/273
+    """
+
+    mass: sp.Expr
+    radius: sp.Expr
+    material: Material
+
+    def __post_init__(self) -> None:
+        for name in ("mass", "radius"):
+            object.__setattr__(self, name, positive(getattr(self, name), name))
+        if not isinstance(self.material, Material):
+            raise InputError(f"material is {shorten(self.material)}: a Material is wanted")
+
+    @classmethod
+    def of_density(cls, density: Any, radius: Any, material: Material) -> Sphere:
+        """The solid sphere of this density, of mass (4π/3) ρ R³."""
+        volume = 4 * sp.pi / 3 * positive(radius, "radius") ** 3
+        return cls(positive(density, "density") * volume, radius, material)
+
+
+def stiffness(sphere: Sphere, other: Sphere | Material) -> sp.Expr:
+    """A of F = A δ^{3/2} between a sphere and another one, or a flat wall of some material.
+
+    >>> R, E, nu = sp.symbols("R E nu", positive=True)
+    >>> ball = Sphere("m", R, Material(E, nu))
+    >>> sp.simplify(stiffness(ball, ball) - E * sp.sqrt(2 * R) / (3 * (1 - nu**2)))
+    0
+    """
+    if not isinstance(sphere, Sphere):
+        raise InputError(f"sphere is {shorten(sphere)}: a Sphere is wanted")
+    if not isinstance(other, Sphere | Material):
+        raise InputError(f"other is {shorten(other)}: a Sphere, or a wall's Material, is wanted")
+    return contact(sphere, other, sp.sqrt)
+
+
+def contact(sphere: Any, other: Any, sqrt: Callable[[Any], Any]) -> Any:
+    """`stiffness` in the arithmetic of ``sqrt``: `math.sqrt` where all that is given is floats."""
+    first, second = sphere.material, getattr(other, "material", other)
+    wall = second is other
+    R = sphere.radius if wall else sphere.radius * other.radius / (sphere.radius + other.radius)
+    compliance = (1 - first.nu**2) / first.E + (1 - second.nu**2) / second.E
+    return 4 * sqrt(R) / (3 * compliance)
