@@ -16,6 +16,7 @@ from lwa.exact import InputError
 from lwa.expansion import Expansion, expand
 from lwa.hertz import Material, Sphere
 from lwa.pde import PDE
+from lwa.physical import PhysicalWave
 from lwa.theory import Theory, homogenize
 from lwa.wave import NoSolitaryWave, TravelingWave, canonical_wave
 
@@ -30,6 +31,7 @@ __all__ = [
     "InputError",
     "Material",
     "NoSolitaryWave",
+    "PhysicalWave",
     "Sphere",
     "Theory",
     "TravelingWave",

@@ -24,8 +24,9 @@ from pathlib import Path
 from typing import Any
 
 from lwa.exact import InputError
+from lwa.files import load
 from lwa.hertz import Material, Sphere
-from lwa.tables import Table, among, array, each, load, named, positive, real, table
+from lwa.tables import Table, among, array, each, named, positive, real, table
 
 SCENE = ("duration", "samples", "gravity", "defects", "wall", "striker", "start", "sensors")
 """Keys of a scene that say nothing about its cell."""
@@ -48,8 +49,7 @@ def read_spheres(path: str | Path) -> list[Sphere]:
 
     Raises `lwa.InputError`, in one line that names file and key, for whatever it cannot mean.
     """
-    found: list[Sphere] = load(path, "a list of spheres", spheres)
-    return found
+    return load(path, "a list of spheres", spheres)
 
 
 def spheres(content: Any) -> list[Sphere]:

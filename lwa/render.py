@@ -12,6 +12,7 @@ from lwa.dispersion import Dispersion
 from lwa.exact import InputError
 from lwa.expansion import Expansion
 from lwa.pde import Terms
+from lwa.physical import PhysicalWave
 from lwa.theory import Theory
 from lwa.wave import QUANTITIES, TravelingWave
 
@@ -38,6 +39,31 @@ def wave_values(wave: TravelingWave) -> dict[str, sp.Expr]:
         "B": wave.amplitude(),
         "width": wave.width,
         "speed": wave.speed(),
+    }
+
+
+SI = {
+    "masses": "kg",
+    "stiffnesses": "N/m^(3/2)",
+    "spacing": "m",
+    **dict.fromkeys(("width", "fwhm", "compression", "compressions"), "m"),
+    "beta": "1/m",
+    **dict.fromkeys(("mu", "sigma"), "1/m^2"),
+    "force": "N",
+    **dict.fromkeys(("speed", "bead_velocity", "time_scale"), "m/s"),
+    "fwhm_time": "s",
+}
+"""Units of a wave in a chain of spheres; what is not named here has none (τ is a length)."""
+
+
+def force_values(answer: PhysicalWave) -> dict[str, sp.Expr]:
+    """What a peak contact force determines, by name."""
+    return {
+        "force": answer.force,
+        "strain": answer.strain,
+        "compression": answer.compression,
+        "speed": answer.speed,
+        "bead_velocity": answer.bead_velocity,
     }
 
 
@@ -92,6 +118,36 @@ def wave_json(theory: Theory, wave: TravelingWave) -> dict[str, Any]:
     if None not in widths.values():
         result["fwhm_value"] = widths
     _put(result, "log_B_value", _float(-sp.log(wave.speed_factor) / (wave.k - 1)))
+    return result
+
+
+def force_json(theory: Theory, answer: PhysicalWave, units: Mapping[str, str]) -> dict[str, Any]:
+    """The object that `lwa wave --force F --format json` prints.
+
+    It is that of `wave_json` for the wave of this peak force: B, V_s and mu are its own, ``speed``
+    is dx/dt, and there are the compressions of the contacts and the widths in time. ``units``, for
+    spheres, are those of the values.
+    """
+    wave = theory.pde.traveling_wave()
+    V = wave.speed(answer.strain)
+    result = wave_json(theory, wave)
+    values = force_values(answer)
+    values |= {"B": answer.strain, "V_s": V, "mu": wave.reduction(V=V).mu}
+    for name, value in values.items():
+        result[name] = str(value)
+        result.pop(f"{name}_value", None)
+        _put(result, f"{name}_value", _float(in_units(wave, value)))
+    result.pop("log_B_value", None)
+    _put(result, "log_B_value", _float(in_units(wave, sp.log(answer.strain))))
+    times = {quantity: answer.fwhm(quantity, "time") for quantity in QUANTITIES}
+    result["fwhm_time"] = {quantity: str(value) for quantity, value in times.items()}
+    found = {quantity: _float(in_units(wave, value)) for quantity, value in times.items()}
+    if None not in found.values():
+        result["fwhm_time_value"] = found
+    result["compressions"] = list(map(str, answer.compressions))
+    ...
+    if units:
+        result["units"] = dict(units)
     return result
 
 

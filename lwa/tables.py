@@ -1,4 +1,4 @@
-"""Files of tables, TOML or JSON, checked entry by entry: each fault is one line with the full key.
+"""Parsed files, checked entry by entry: what is unknown, missing or wrong is told by its full key.
 
 A reader takes a value and what messages call it, and returns the value checked or raises
 `lwa.InputError`. Numbers of a file are floats.
@@ -11,68 +11,15 @@ lwa.exact.InputError: duration is '1.5': a number is wanted
 
 from __future__ import annotations
 
-import json
 import math
 import operator
-import tomllib
-from collections import Counter
 from collections.abc import Callable, Collection, Mapping, Sequence
 from difflib import get_close_matches
-from pathlib import Path
 from typing import Any
 
 from lwa.exact import InputError, shorten
 
 Reader = Callable[[Any, str], Any]
-
-SUFFIXES = (".toml", ".json")
-
-MOST_BYTES = 64_000_000
-"""Of a file."""
-
-
-def load(path: str | Path, what: str, reader: Callable[[Any], Any]) -> Any:
-    """What ``reader`` makes of a parsed file; ``what`` messages say that it should be.
-
-    Raises `lwa.InputError`, in one line that names the file, for one that cannot be read or parsed
-    and for what the reader refuses.
-    """
-    file = Path(path)
-    kind = file.suffix.lower()
-    if kind not in SUFFIXES:
-        raise InputError(f"{path}: {what} is a file ending in {' or '.join(SUFFIXES)}")
-    try:
-        if file.exists() and not file.is_file() and not file.is_dir():
-            raise InputError("not a regular file")  # a pipe may never end
-        with file.open("rb") as stream:
-            content = stream.read(MOST_BYTES + 1)
-        if len(content) > MOST_BYTES:
-            raise InputError(f"more than {MOST_BYTES} bytes")
-        text = content.decode("utf-8-sig")
-        return reader(tomllib.loads(text) if kind == ".toml" else _json(text))
-    except InputError as error:
-        raise InputError(f"{path}: {error}") from None
-    except OSError as error:
-        raise InputError(f"{path}: {error.strerror or error}") from None
-    except UnicodeDecodeError:
-        raise InputError(f"{path}: not a text in UTF-8") from None
-    except RecursionError:
-        raise InputError(f"{path}: nested too deeply for {what}") from None
-    except ValueError as error:  # of the parsers
-        reason = str(error).partition(";")[0]
-        raise InputError(f"{path}: not {kind[1:].upper()}: {reason}") from None
-
-
-def _json(text: str) -> Any:
-    return json.loads(text, object_pairs_hook=_once)
-
-
-def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    found = dict(pairs)
-    if len(found) < len(pairs):
-        ((key, times),) = Counter(key for key, _ in pairs).most_common(1)
-        raise InputError(f"{shorten(key)} is there {times} times")
-    return found
 
 
 def real(value: Any, name: str) -> float:

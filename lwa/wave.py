@@ -29,6 +29,7 @@ from lwa.coefficients import number
 from lwa.dispersion import Dispersion
 from lwa.exact import InputError, positive, shorten
 from lwa.jets import JetAlgebra, Monomial
+from lwa.physical import PhysicalWave
 
 if TYPE_CHECKING:
     from lwa.numeric import NumericWave
@@ -232,6 +233,10 @@ class TravelingWave:
     def speed_scale(self) -> sp.Expr:
         """τ/t: the speed in space and time is dx/dt = V τ/t."""
         return self.cell.time_scale(self.k)
+
+    def at_force(self, F: Any = "F") -> PhysicalWave:
+        """The wave whose contact force peaks at F, in space and time; see `PhysicalWave`."""
+        return PhysicalWave(self, F)
 
     def profile(self, xi: sp.Expr, B: Any = None) -> sp.Expr:
         """v(ξ) = B cos^m(βξ) on |ξ| ≤ π/(2β) and 0 outside, as a SymPy Piecewise."""

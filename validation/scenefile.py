@@ -58,6 +58,7 @@ from typing import Any
 
 from lwa import hertz
 from lwa.beads import read_beads, read_materials
+from lwa.files import load
 from lwa.tables import (
     Table,
     among,
@@ -66,7 +67,6 @@ from lwa.tables import (
     entries,
     flag,
     integer,
-    load,
     place,
     places,
     positive,
@@ -100,8 +100,7 @@ def read(path: str | Path) -> Scene:
 
     Raises `SceneError`, in one line, for a file that cannot be read or is not a scene.
     """
-    result: Scene = of_scene(load)(path, "a scene", scene)
-    return result
+    return of_scene(load)(path, "a scene", scene)
 
 
 def write(what: Scene, file: Path) -> None:

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lwa import tables
+from lwa import files
 from validation import scenefile
 from validation.experiments import chain_scene
 from validation.materials import STEEL, Bead, Material, contact_stiffness
@@ -175,7 +175,7 @@ def test_a_scene_written_is_read_back_equal(what):
     assert scene(json.loads(json.dumps(content, allow_nan=False))) == what
 
 
-@pytest.mark.parametrize("suffix", tables.SUFFIXES)
+@pytest.mark.parametrize("suffix", files.MOST_BYTES)
 @pytest.mark.parametrize("text", [PAPER, TRIMER])
 def test_files_there_and_back(tmp_path, text, suffix):
     file, first = tmp_path / f"scene{suffix}", tmp_path / "first.toml"
@@ -327,7 +327,9 @@ FILES = [
     ("s.json", b"[" * 100_000, "nested too deeply for a scene"),
     ("s.json", b'{"duration": 1' + b"0" * 5000 + b"}", "not JSON: Exceeds the limit"),
     ("s.txt", b"duration = 1", "a scene is a file ending in .toml or .json"),
-    ("folder.toml", None, "Is a directory"),
+    ("s.toml", b"a." * 5_000 + b"b = 1", "nested too deeply for a scene"),
+    ("s.toml", b"[x" + b" . x" * 5_000 + b"]", "nested too deeply for a scene"),
+    ("folder.toml", None, "a folder, and only regular files are read"),
     ("missing.toml", None, "No such file or directory"),
 ]
 
@@ -347,15 +349,15 @@ def test_bad_files(tmp_path, name, content, message):
 
 
 def test_a_file_without_end_is_refused(monkeypatch, tmp_path):
-    monkeypatch.setattr(tables, "MOST_BYTES", 10)
+    monkeypatch.setitem(files.MOST_BYTES, ".toml", 10)
     (tmp_path / "s.toml").write_text("duration = 1")
-    with pytest.raises(SceneError, match=r"s.toml: more than 10 bytes$"):
+    with pytest.raises(SceneError, match=r"s.toml: more than 10 bytes, the most that is read$"):
         read(tmp_path / "s.toml")
 
 
 def test_a_pipe_is_not_waited_for(tmp_path):
     os.mkfifo(tmp_path / "s.toml")
-    with pytest.raises(SceneError, match=r"s.toml: not a regular file$"):
+    with pytest.raises(SceneError, match=r"s.toml: a pipe, and only regular files are read$"):
         read(tmp_path / "s.toml")
 
 
