@@ -9,15 +9,19 @@ from typing import Any
 
 import click
 import sympy as sp
+from click.core import ParameterSource
 
+from lwa.beads import read_spheres
 from lwa.cell import Cell, D, k
 from lwa.closure import BRANCHES, CLOSURES, FIELDS
 from lwa.dispersion import Dispersion
+from lwa.exact import InputError
 from lwa.expansion import expand
-from lwa.render import dispersion_json, expansion_json, theory_json, wave_json
+from lwa.hertz import EXPONENT
+from lwa.render import SI, dispersion_json, expansion_json, force_json, theory_json, wave_json
 from lwa.source import theory_latex, theory_python, wave_latex, wave_python
 from lwa.terminal import quantities, quantity, run
-from lwa.text import dispersion_text, expansion_text, theory_text, wave_text
+from lwa.text import dispersion_text, expansion_text, force_text, theory_text, wave_text
 from lwa.theory import Theory, homogenize
 
 Command = Callable[..., None]
@@ -30,6 +34,7 @@ THEORY = {
     "python": theory_python,
 }
 WAVE = {"text": wave_text, "json": wave_json, "latex": wave_latex, "python": wave_python}
+FORCE = {"text": force_text, "json": force_json}
 DISPERSION = {"text": dispersion_text, "json": dispersion_json}
 EXPANSION = {"text": expansion_text, "json": expansion_json}
 
@@ -127,10 +132,36 @@ def derive(style: str, **chain: Any) -> None:
 
 @lwa.command()
 @_chain
-def wave(style: str, **chain: Any) -> None:
-    """The compact traveling wave: β, width, FWHM, amplitude and speed."""
+@click.option("--force", callback=quantity, help="Peak contact force, for speed, compression, ….")
+@click.option("--spheres", metavar="FILE", help="Beads, a TOML file (`lwa.beads`), in SI units.")
+def wave(style: str, force: sp.Expr | None, spheres: str | None, **chain: Any) -> None:
+    """The compact traveling wave: β, width, FWHM, amplitude and speed.
+
+    With --force, a number or a name, the wave of that peak contact force, in space and time; with
+    --spheres all of it in m, s, kg and N.
+    """
+    if spheres is not None:
+        chain |= _of_spheres(spheres)
     theory = _theory(**chain)
-    _show(WAVE[style](theory, theory.pde.traveling_wave()))
+    found = theory.pde.traveling_wave()
+    if style in FORCE and (force is not None or spheres is not None):
+        answer = found.at_force("F" if force is None else force)
+        _show(FORCE[style](theory, answer, {} if spheres is None else SI))
+    elif force is not None:
+        raise InputError(f"--format {style} is for any force: --force goes with {', '.join(FORCE)}")
+    else:
+        _show(WAVE[style](theory, found))
+
+
+def _of_spheres(file: str) -> dict[str, Any]:
+    """The chain of a file of spheres, which no other option may describe."""
+    context = click.get_current_context()
+    for name in ("k", "masses", "stiffnesses", "spacing"):
+        if context.get_parameter_source(name) is ParameterSource.COMMANDLINE:
+            raise InputError(f"--{name} and --spheres are both given: spheres have their own")
+    cell = Cell.of_spheres(read_spheres(file))
+    parts = {name: getattr(cell, name) for name in ("masses", "stiffnesses", "spacing")}
+    return {"k": EXPONENT, **parts}
 
 
 @lwa.command()

@@ -81,7 +81,7 @@ def reason(error: Exception) -> str:
     return (isinstance(error, OSError) and error.strerror) or str(error)
 
 
-_DEEP = re.compile(r"""(?:\.[ \t]*["'\w-]*[A-Za-z_"'-]["'\w-]*[ \t]*){20}""")
+_DEEP = re.compile(r"""(?:\.[ \t]*+(?=["'\w-]*[A-Za-z_"'-])["'\w-]++[ \t]*+){20}""")
 """Keys within keys: tomllib takes time in proportion to the square of their depth."""
 
 

@@ -59,8 +59,8 @@ class PhysicalWave(Value):
         taken = {s.name for s in (*self.wave.cell.symbols, *self.wave.k.free_symbols)}
         for name in sorted(s.name for s in self.force.free_symbols):
             if name in RESERVED or name in taken:
-                meaning = RESERVED.get(name, "something else")
-                raise InputError(f"force {name!r}: the name means {meaning} in the wave")
+                meaning = RESERVED.get(name, "a property of the chain")
+                raise InputError(f"force {name!r}: the name means {meaning} here")
 
     @cached_property
     def strain(self) -> sp.Expr:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import sympy as sp
@@ -112,11 +112,8 @@ def wave_json(theory: Theory, wave: TravelingWave) -> dict[str, Any]:
         "speed_factor": str(wave.speed_factor),
         "time_scale": str(wave.speed_scale),
     }
-    for name, value in values.items():
-        _put(result, f"{name}_value", _float(in_units(wave, value)))
-    widths = {quantity: _float(in_units(wave, value)) for quantity, value in fwhm.items()}
-    if None not in widths.values():
-        result["fwhm_value"] = widths
+    for name, value in (values | {"fwhm": fwhm}).items():
+        _put(result, f"{name}_value", _each(lambda x: _float(in_units(wave, x)), value))
     _put(result, "log_B_value", _float(-sp.log(wave.speed_factor) / (wave.k - 1)))
     return result
 
@@ -131,24 +128,32 @@ def force_json(theory: Theory, answer: PhysicalWave, units: Mapping[str, str]) -
     wave = theory.pde.traveling_wave()
     V = wave.speed(answer.strain)
     result = wave_json(theory, wave)
-    values = force_values(answer)
-    values |= {"B": answer.strain, "V_s": V, "mu": wave.reduction(V=V).mu}
+    values = {
+        **force_values(answer),
+        **{"B": answer.strain, "V_s": V, "mu": wave.reduction(V=V).mu},
+        "time_scale": wave.speed_scale,
+        "spacing": wave.D,
+        **{"masses": wave.cell.masses, "stiffnesses": wave.cell.stiffnesses},
+        "compressions": answer.compressions,
+        "fwhm_time": {quantity: answer.fwhm(quantity, "time") for quantity in QUANTITIES},
+    }
     for name, value in values.items():
-        result[name] = str(value)
+        result[name] = _each(str, value)
         result.pop(f"{name}_value", None)
-        _put(result, f"{name}_value", _float(in_units(wave, value)))
+        _put(result, f"{name}_value", _each(lambda x: _float(in_units(wave, x)), value))
     result.pop("log_B_value", None)
-    _put(result, "log_B_value", _float(in_units(wave, sp.log(answer.strain))))
-    times = {quantity: answer.fwhm(quantity, "time") for quantity in QUANTITIES}
-    result["fwhm_time"] = {quantity: str(value) for quantity, value in times.items()}
-    found = {quantity: _float(in_units(wave, value)) for quantity, value in times.items()}
-    if None not in found.values():
-        result["fwhm_time_value"] = found
-    result["compressions"] = list(map(str, answer.compressions))
-    ...
-    if units:
-        result["units"] = dict(units)
-    return result
+    _put(result, "log_B_value", _float(sp.log(in_units(wave, answer.strain))))
+    return result | ({"units": dict(units)} if units else {})
+
+
+def _each(read: Callable[[sp.Expr], Any], value: Any) -> Any:
+    """``read`` of an expression, or of those in a table or a row; None where it gives one None."""
+    if isinstance(value, sp.Expr):
+        return read(value)
+    found = [read(x) for x in (value.values() if isinstance(value, Mapping) else value)]
+    if None in found:
+        return None
+    return dict(zip(value, found, strict=True)) if isinstance(value, Mapping) else found
 
 
 def dispersion_json(chain: Dispersion, order: int) -> dict[str, Any]:
@@ -233,7 +238,7 @@ def _terms_json(coefficients: Mapping[int, Terms]) -> list[dict[str, Any]]:
     ]
 
 
-def _put(result: dict[str, Any], name: str, value: float | None) -> None:
+def _put(result: dict[str, Any], name: str, value: Any) -> None:
     if value is not None:
         result[name] = value
 

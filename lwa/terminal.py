@@ -14,9 +14,9 @@ from lwa.exact import InputError, exact
 from lwa.wave import NoSolitaryWave
 
 
-def quantity(context: click.Context, option: click.Parameter, value: str) -> sp.Expr:
+def quantity(context: click.Context, option: click.Parameter, value: str | None) -> sp.Expr | None:
     """Callback of an option that is an integer, a decimal, a fraction or a plain name."""
-    return exact(value, _name(option))
+    return None if value is None else exact(value, _name(option))
 
 
 def quantities(

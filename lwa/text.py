@@ -11,6 +11,7 @@ from lwa.approximants import EpsilonSeries, Resummed
 from lwa.dispersion import Dispersion
 from lwa.expansion import Expansion
 from lwa.pde import Jet, base_order
+from lwa.physical import PhysicalWave
 from lwa.render import in_units, third_order, wave_values
 from lwa.theory import Theory
 from lwa.wave import QUANTITIES, TravelingWave
@@ -160,6 +161,50 @@ def wave_text(theory: Theory, wave: TravelingWave) -> str:
         *_lines(wave, {"the other root, p": other.p, "with a": other.a}),
     ]
     return "\n".join(lines)
+
+
+def force_text(theory: Theory, answer: PhysicalWave, units: Mapping[str, str]) -> str:
+    """What `lwa wave --force F` prints; ``units``, for spheres, are those of the values."""
+    cell, width = theory.cell, answer.wave.fwhm
+
+    def shown(name: str, *values: sp.Expr) -> str:
+        numbers = ", ".join(_value(value, bool(units)) for value in values)
+        return f"{numbers} {units.get(name, '')}".rstrip()
+
+    return "\n".join(
+        [
+            f"closure {theory.closure.name}; {_FIELDS[theory.closure.field]}",
+            f"contact force F = A δ^k, k = {theory.k}; an endless chain without load",
+            f"  masses {shown('masses', *cell.masses)}",
+            f"  A = {shown('stiffnesses', *_distinct(cell.stiffnesses))}",
+            f"  spacing D = {shown('spacing', cell.spacing)}",
+            "",
+            f"peak contact force {shown('force', answer.force)}:",
+            f"  peak strain B = {shown('strain', answer.strain)}",
+            f"  peak compression = {shown('compressions', *_distinct(answer.compressions))}",
+            f"  speed dx/dt = {shown('speed', answer.speed)}",
+            f"  peak velocity of the beads = {shown('bead_velocity', answer.bead_velocity)}",
+            *(
+                f"  FWHM of the {q} = {shown('fwhm', width(q))}, in time "
+                + shown("fwhm_time", answer.fwhm(q, "time"))
+                for q in QUANTITIES
+            ),
+        ]
+    )
+
+
+def _distinct(values: tuple[sp.Expr, ...]) -> tuple[sp.Expr, ...]:
+    """One value where all are the same."""
+    return values[:1] if len(set(values)) == 1 else values
+
+
+def _value(value: sp.Expr, approximate: bool) -> str:
+    """A number in digits; an expression in symbols as it is, or with its numbers in digits."""
+    factor, rest = value.as_independent(*value.free_symbols, as_Add=False)
+    if rest != 1 and not approximate:
+        return str(value)
+    number = sp.sstr(sp.N(factor, DIGITS), full_prec=False)
+    return str(rest) if factor == 1 else number if rest == 1 else f"{number}·{rest}"
 
 
 def _lines(wave: TravelingWave, values: dict[str, sp.Expr]) -> list[str]:

@@ -329,6 +329,7 @@ FILES = [
     ("s.txt", b"duration = 1", "a scene is a file ending in .toml or .json"),
     ("s.toml", b"a." * 5_000 + b"b = 1", "nested too deeply for a scene"),
     ("s.toml", b"[x" + b" . x" * 5_000 + b"]", "nested too deeply for a scene"),
+    ("s.toml", b"x = 1  # ." + b"a" * 300_000, "x is unknown"),  # in time linear in its length
     ("folder.toml", None, "a folder, and only regular files are read"),
     ("missing.toml", None, "No such file or directory"),
 ]
