@@ -15,7 +15,7 @@ from lwa.beads import read_spheres
 from lwa.cell import Cell, D, k
 from lwa.closure import BRANCHES, CLOSURES, FIELDS
 from lwa.dispersion import Dispersion
-from lwa.exact import InputError
+from lwa.exact import InputError, exact
 from lwa.expansion import expand
 from lwa.hertz import EXPONENT
 from lwa.render import SI, dispersion_json, expansion_json, force_json, theory_json, wave_json
@@ -145,8 +145,8 @@ def wave(style: str, force: sp.Expr | None, spheres: str | None, **chain: Any) -
     theory = _theory(**chain)
     found = theory.pde.traveling_wave()
     if style in FORCE and (force is not None or spheres is not None):
-        answer = found.at_force("F" if force is None else force)
-        _show(FORCE[style](theory, answer, {} if spheres is None else SI))
+        units = {} if spheres is None else SI
+        _show(FORCE[style](theory, found, exact("F", "force") if force is None else force, units))
     elif force is not None:
         raise InputError(f"--format {style} is for any force: --force goes with {', '.join(FORCE)}")
     else:

@@ -48,7 +48,7 @@ class PhysicalWave(Value):
     >>> from lwa import Cell, canonical_wave
     >>> wave = canonical_wave(Cell(["m"], ["A"]), "3/2").at_force("F")
     >>> wave.compression, wave.speed
-    ((F/A)**(2/3), 2*sqrt(5)*A**(1/3)*D*F**(1/6)/(5*sqrt(m)))
+    (F**(2/3)/A**(2/3), 2*sqrt(5)*A**(1/3)*D*F**(1/6)/(5*sqrt(m)))
     """
 
     wave: CompactWave

@@ -12,7 +12,6 @@ from lwa.dispersion import Dispersion
 from lwa.exact import InputError
 from lwa.expansion import Expansion
 from lwa.pde import Terms
-from lwa.physical import PhysicalWave
 from lwa.theory import Theory
 from lwa.wave import QUANTITIES, TravelingWave
 
@@ -45,26 +44,13 @@ def wave_values(wave: TravelingWave) -> dict[str, sp.Expr]:
 SI = {
     "masses": "kg",
     "stiffnesses": "N/m^(3/2)",
-    "spacing": "m",
-    **dict.fromkeys(("width", "fwhm", "compression", "compressions"), "m"),
     "beta": "1/m",
-    **dict.fromkeys(("mu", "sigma"), "1/m^2"),
+    **dict.fromkeys(("spacing", "width", "fwhm", "compression", "compressions"), "m"),
+    "fwhm_time": "s",
     "force": "N",
     **dict.fromkeys(("speed", "bead_velocity", "time_scale"), "m/s"),
-    "fwhm_time": "s",
 }
-"""Units of a wave in a chain of spheres; what is not named here has none (τ is a length)."""
-
-
-def force_values(answer: PhysicalWave) -> dict[str, sp.Expr]:
-    """What a peak contact force determines, by name."""
-    return {
-        "force": answer.force,
-        "strain": answer.strain,
-        "compression": answer.compression,
-        "speed": answer.speed,
-        "bead_velocity": answer.bead_velocity,
-    }
+"""Units of a wave in a chain of spheres; what is not named is a number (τ is a length)."""
 
 
 def theory_json(theory: Theory) -> dict[str, Any]:
@@ -118,31 +104,34 @@ def wave_json(theory: Theory, wave: TravelingWave) -> dict[str, Any]:
     return result
 
 
-def force_json(theory: Theory, answer: PhysicalWave, units: Mapping[str, str]) -> dict[str, Any]:
+def force_json(
+    theory: Theory, wave: TravelingWave, F: sp.Expr, units: Mapping[str, str]
+) -> dict[str, Any]:
     """The object that `lwa wave --force F --format json` prints.
 
-    It is that of `wave_json` for the wave of this peak force: B, V_s and mu are its own, ``speed``
-    is dx/dt, and there are the compressions of the contacts and the widths in time. ``units``, for
-    spheres, are those of the values.
+    B and V_s = dx/dτ are those of the wave of peak contact force F, ``speed`` is dx/dt.
+    ``compressions`` are those of the cell's contacts, ``compression`` their mean, ``fwhm`` lengths
+    and ``fwhm_time`` times. ``units``, for spheres, are those of the values.
     """
-    wave = theory.pde.traveling_wave()
-    V = wave.speed(answer.strain)
-    result = wave_json(theory, wave)
+    answer = wave.at_force(F)
+    named = ("force", "strain", "compression", "compressions", "speed", "bead_velocity")
     values = {
-        **force_values(answer),
-        **{"B": answer.strain, "V_s": V, "mu": wave.reduction(V=V).mu},
-        "time_scale": wave.speed_scale,
-        "spacing": wave.D,
-        **{"masses": wave.cell.masses, "stiffnesses": wave.cell.stiffnesses},
-        "compressions": answer.compressions,
+        "beta": wave.beta,
+        "width": wave.width,
+        "fwhm": {quantity: answer.fwhm(quantity) for quantity in QUANTITIES},
         "fwhm_time": {quantity: answer.fwhm(quantity, "time") for quantity in QUANTITIES},
+        "speed_factor": wave.speed_factor,
+        "time_scale": wave.speed_scale,
+        "B": answer.strain,
+        "V_s": wave.speed(answer.strain),
+        **{name: getattr(answer, name) for name in named},
     }
+    if units:
+        cell = theory.cell
+        values |= {name: getattr(cell, name) for name in ("masses", "stiffnesses", "spacing")}
+    result = _chain_json(theory) | {name: _each(str, value) for name, value in values.items()}
     for name, value in values.items():
-        result[name] = _each(str, value)
-        result.pop(f"{name}_value", None)
         _put(result, f"{name}_value", _each(lambda x: _float(in_units(wave, x)), value))
-    result.pop("log_B_value", None)
-    _put(result, "log_B_value", _float(sp.log(in_units(wave, answer.strain))))
     return result | ({"units": dict(units)} if units else {})
 
 
@@ -245,9 +234,9 @@ def _put(result: dict[str, Any], name: str, value: Any) -> None:
 
 def in_units(wave: TravelingWave, value: sp.Expr) -> sp.Expr:
     """With V_s = B = 1, and D = 1 where it is a symbol."""
-    ones = {s: 1 for s in value.free_symbols if s.name in ("V_s", "B")}
+    ones = {s: sp.S.One for s in value.free_symbols if s.name in ("V_s", "B")}
     if wave.D.is_Symbol:
-        ones[wave.D] = 1
+        ones[wave.D] = sp.S.One
     return value.xreplace(ones)
 
 

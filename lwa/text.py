@@ -11,7 +11,6 @@ from lwa.approximants import EpsilonSeries, Resummed
 from lwa.dispersion import Dispersion
 from lwa.expansion import Expansion
 from lwa.pde import Jet, base_order
-from lwa.physical import PhysicalWave
 from lwa.render import in_units, third_order, wave_values
 from lwa.theory import Theory
 from lwa.wave import QUANTITIES, TravelingWave
@@ -163,9 +162,9 @@ def wave_text(theory: Theory, wave: TravelingWave) -> str:
     return "\n".join(lines)
 
 
-def force_text(theory: Theory, answer: PhysicalWave, units: Mapping[str, str]) -> str:
+def force_text(theory: Theory, wave: TravelingWave, F: sp.Expr, units: Mapping[str, str]) -> str:
     """What `lwa wave --force F` prints; ``units``, for spheres, are those of the values."""
-    cell, width = theory.cell, answer.wave.fwhm
+    cell, answer = theory.cell, wave.at_force(F)
 
     def shown(name: str, *values: sp.Expr) -> str:
         numbers = ", ".join(_value(value, bool(units)) for value in values)
@@ -185,7 +184,7 @@ def force_text(theory: Theory, answer: PhysicalWave, units: Mapping[str, str]) -
             f"  speed dx/dt = {shown('speed', answer.speed)}",
             f"  peak velocity of the beads = {shown('bead_velocity', answer.bead_velocity)}",
             *(
-                f"  FWHM of the {q} = {shown('fwhm', width(q))}, in time "
+                f"  FWHM of the {q} = {shown('fwhm', answer.fwhm(q))}, in time "
                 + shown("fwhm_time", answer.fwhm(q, "time"))
                 for q in QUANTITIES
             ),

@@ -2,13 +2,15 @@
 
 import json
 import math
+import os
 import subprocess
 import sys
 
+import numpy as np
 import pytest
 import sympy as sp
 
-from lwa import Dimer, homogenize
+from lwa import Dimer, Material, Sphere, hertz, homogenize
 from lwa.cli import main
 
 
@@ -212,7 +214,178 @@ def test_dispersion(capsys):
     assert "κ^4: -(m1**2 - m1*m2 + m2**2)/(3*(m1 + m2)**2)" in out
 
 
+STEEL_AND_PTFE = """
+[materials]
+steel = {E = 193e9, nu = 0.3}
+ptfe = {E = 1.46e9, nu = 0.46}
+[beads]
+heavy = {mass = 0.45e-3, radius = 2.38e-3, material = "steel"}
+light = {mass = 0.123e-3, radius = 2.38e-3, material = "ptfe"}
+[chain]
+cell = ["heavy", "light"]
+"""
+
+
+@pytest.fixture
+def spheres(tmp_path):
+    """The file of the paper's dimer, with more or other lines where they are given."""
+    file = tmp_path / "spheres.toml"
+
+    def write(old="", new=""):
+        file.write_text(STEEL_AND_PTFE.replace(old, new) if old else STEEL_AND_PTFE + new)
+        return str(file)
+
+    return write
+
+
+def dimer(A):
+    return Dimer("0.45e-3", "0.123e-3", stiffnesses=(A, A), spacing="4.76e-3")
+
+
+def test_spheres_at_a_force_are_in_si_units(capsys, spheres):
+    steel, ptfe = Material("193e9", "0.3"), Material("1.46e9", "0.46")
+    A = hertz.stiffness(Sphere(1, "2.38e-3", steel), Sphere(1, "2.38e-3", ptfe))
+    wave = homogenize(dimer(A), k="3/2").pde.traveling_wave().at_force(10)
+    found = result(capsys, "wave", "--spheres", spheres(), "--force", "10")
+    for name in ("strain", "compression", "speed", "bead_velocity", "force"):
+        assert found[f"{name}_value"] == float(getattr(wave, name))
+        assert abs(sp.N(sp.sympify(found[name]) / getattr(wave, name) - 1, 50)) < 1e-40
+    for quantity in ("strain", "force", "velocity"):
+        assert found["fwhm_value"][quantity] == float(wave.fwhm(quantity))
+        assert found["fwhm_time_value"][quantity] == float(wave.fwhm(quantity, "time"))
+    assert found["stiffnesses_value"] == [float(A)] * 2
+    assert found["masses_value"] == [0.45e-3, 0.123e-3]
+    assert found["compressions_value"] == [found["compression_value"]] * 2
+    assert (found["B_value"], found["spacing_value"]) == (found["strain_value"], 0.00476)
+    assert (found["units"]["speed"], found["units"]["fwhm_time"]) == ("m/s", "s")
+    status, out, _ = run(capsys, "wave", "--spheres", spheres(), "--force", "10")
+    assert status == 0
+    for line in ("  spacing D = 0.00476 m", "  masses 0.00045, 0.000123 kg"):
+        assert line in out.splitlines()
+    assert f"speed dx/dt = {found['speed_value']:.10f}"[:22] in out
+
+
+def test_the_units_are_what_the_values_are_in(capsys, spheres):
+    """The same spheres in grams, millimetres and milliseconds: N are N, and E is in 10^6 Pa."""
+    found = result(capsys, "wave", "--spheres", spheres(), "--force", "10")
+    lines = [
+        ("193e9", "193e3"), ("1.46e9", "1.46e3"), ("2.38e-3", "2.38"), ("0.45e-3", "0.45"),
+        ("0.123e-3", "0.123"),
+    ]  # fmt: skip
+    content = STEEL_AND_PTFE
+    for old, new in lines:
+        content = content.replace(old, new)
+    other = result(capsys, "wave", "--spheres", spheres(STEEL_AND_PTFE, content), "--force", "10")
+    factors = {"kg": 1e3, "m": 1e3, "s": 1e3, "N": 1.0, "m/s": 1.0, "1/m": 1e-3}
+    factors["N/m^(3/2)"] = 1e3**-1.5
+    for name in (name.removesuffix("_value") for name in found if name.endswith("_value")):
+        factor = factors[found["units"][name]] if name in found["units"] else 1.0
+        for a, b in zip(flat(found[f"{name}_value"]), flat(other[f"{name}_value"]), strict=True):
+            assert b == pytest.approx(factor * a, rel=1e-14), name
+
+
+def flat(value):
+    return list(value.values()) if isinstance(value, dict) else np.ravel(value)
+
+
+def test_spheres_without_a_force_have_one_in_symbols(capsys, spheres):
+    found = result(capsys, "wave", "--spheres", spheres())
+    at = result(capsys, "wave", "--spheres", spheres(), "--force", "10")
+    assert found["force"] == "F"
+    assert found["fwhm_value"] == at["fwhm_value"]
+    assert not {"speed_value", "force_value", "fwhm_time_value"} & set(found)
+    speed = sp.sympify(found["speed"]).subs("F", 10)
+    assert float(speed) == pytest.approx(at["speed_value"], rel=1e-15)
+    status, out, _ = run(capsys, "wave", "--spheres", spheres())
+    assert status == 0
+    assert "·F**(1/6) m/s" in out
+
+
+def test_unequal_contacts_are_compressed_unequally(capsys, spheres):
+    file = spheres('["heavy", "light"]', '["heavy", "heavy", "light"]')
+    chain = ("--closure", "full", "--field", "center")
+    found = result(capsys, "wave", "--spheres", file, "--force", "3", *chain)
+    for A, delta in zip(found["stiffnesses_value"], found["compressions_value"], strict=True):
+        assert A * delta**1.5 == pytest.approx(3, rel=1e-14)
+    assert found["compression_value"] == pytest.approx(sum(found["compressions_value"]) / 3)
+
+
+def test_a_force_in_the_cells_own_units(capsys):
+    found = result(capsys, "wave", "--k", "3/2", "--masses", "1,1", "--force", "8")
+    assert (found["compression"], found["B"]) == ("4", "4/D")
+    assert found["speed_value"] == pytest.approx(math.sqrt(1.6), rel=1e-15)  # √(4/5 · 8^{1/3})
+    assert "units" not in found
+    found = result(capsys, "wave", "--force", "f")
+    assert found["strain"] == "f**(1/k)/D"
+    assert not [name for name in found if name.endswith("_value")]
+    status, out, _ = run(capsys, "wave", "--k", "3/2", "--masses", "m", "--force", "f")
+    assert (status, "peak contact force f:" in out) == (0, True)
+
+
+def test_spheres_in_latex_and_python_are_a_wave_as_any_other(capsys, spheres):
+    for style in ("latex", "python"):
+        given = ("--k", "3/2", "--masses", "0.45e-3,0.123e-3", "--spacing", "4.76e-3")
+        wanted = run(capsys, "wave", *given, "--format", style)
+        assert run(capsys, "wave", "--spheres", spheres(), "--format", style) == wanted
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "more", "words"),
+    [
+        ("", "", ("--k", "3/2"), "--k and --spheres are both given"),
+        ("", "", ("--masses", "m1,m2"), "--masses and --spheres are both given"),
+        ("", "", ("--stiffnesses", "1,1"), "--stiffnesses and --spheres are both given"),
+        ("", "", ("--spacing", "1"), "--spacing and --spheres are both given"),
+        ("", "", ("--force", "0"), "force is 0: it must be positive"),
+        ("", "", ("--force", "-1"), "force is -1: it must be positive"),
+        ("", "", ("--force", "1 N"), "force is '1 N': an integer, a decimal"),
+        ("", "", ("--force", ""), "force is '': an integer, a decimal"),
+        ("", "", ("--force", "V_s"), "force 'V_s': the name means the speed"),
+        ("", "", ("--force", "1", "--format", "latex"), "--format latex is for any force"),
+        ("", "", ("--order", "2"), "G"),
+        ('"light"]', '"light", "heavy"]', (), "the cell has 3 masses"),
+        ('"light"]', "1.0]", (), "spheres.toml: chain.cell number 2 is 1.0: one of heavy, light"),
+        ('"light"]', '"ligth"]', (), "chain.cell number 2 is 'ligth': did you mean light"),
+        ('["heavy", "light"]', "[]", (), "chain.cell is empty"),
+        ("[chain]", "[chains]", (), "spheres.toml: chains is unknown: did you mean chain"),
+        ("cell =", "cells =", (), "chain.cells is unknown: did you mean cell"),
+        ("", "k = 1.5", (), "chain.k is unknown: one of cell, repeat"),
+        ("0.3", "0.6", (), "materials.steel.nu is 0.6: Poisson's ratio lies between -1 and 1/2"),
+        ("193e9", "-1", (), "materials.steel.E is -1: it must be positive"),
+        ("193e9", "nan", (), "materials.steel.E is nan: a finite number is wanted"),
+        ("193e9", '"E"', (), "materials.steel.E is 'E': a number is wanted"),
+        ("radius = 2.38e-3", "radius = 0", (), "beads.heavy.radius is 0: it must be positive"),
+        ("[chain]", "precompression = 1\n[chain]", (), "beads.precompression is 1: a table"),
+        ("[materials]", "precompression = 1\n[materials]", (), "precompression is given: the wave"),
+        ("[chain]", "[chain", (), "spheres.toml: not TOML"),
+    ],
+)
+def test_bad_spheres_are_one_line_and_status_two(capsys, spheres, old, new, more, words):
+    status, out, err = run(capsys, "wave", "--spheres", spheres(old, new), *more)
+    assert (status, out) == (2, "")
+    assert err.startswith("lwa: ")
+    assert err.count("\n") == 1
+    assert words in err
+
+
+def test_files_of_spheres_that_are_none(capsys, tmp_path):
+    os.mkfifo(tmp_path / "pipe.toml")
+    for name, words in (
+        ("missing.toml", "No such file"),
+        ("pipe.toml", "a pipe, and only regular files are read"),
+        ("spheres.txt", "a list of spheres is a file ending in .toml or .json"),
+        ("a" * 300 + ".toml", "File name too long"),
+    ):
+        status, out, err = run(capsys, "wave", "--spheres", str(tmp_path / name))
+        assert (status, out, err.count("\n")) == (2, "", 1)
+        assert words in err
+
+
 BAD = [
+    ("wave", "--force", "m1"),
+    ("wave", "--force", "0"),
+    ("wave", "--spheres", ""),
+    ("derive", "--force", "1"),
     ("derive", "--k", "0"),
     ("derive", "--k", "nan"),
     ("derive", "--k", "1/0"),

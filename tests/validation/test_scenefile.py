@@ -11,7 +11,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lwa import files
+from lwa import Cell, beads, files
+from lwa.beads import read_spheres
 from validation import scenefile
 from validation.experiments import chain_scene
 from validation.materials import STEEL, Bead, Material, contact_stiffness
@@ -133,6 +134,16 @@ def test_stiffnesses_of_a_cell_or_of_all_contacts():
     chain = {"cell": [1, 2], "repeat": 2, "k": 1.5}
     for values, found in [(3, (3, 3, 3)), ([1, 2], (1, 2, 1)), ([1, 2, 3], (1, 2, 3))]:
         assert scene({"duration": 1, "chain": chain | {"stiffnesses": values}}).stiffnesses == found
+
+
+def test_the_cell_of_a_scene_is_read_by_the_theory(tmp_path):
+    (tmp_path / "scene.toml").write_text(PAPER)
+    cell, chain = Cell.of_spheres(read_spheres(tmp_path / "scene.toml")), toml_file(PAPER)
+    assert chain.masses[:2] == tuple(map(float, cell.masses))
+    assert chain.stiffnesses[:2] == pytest.approx([float(A) for A in cell.stiffnesses], rel=1e-15)
+    assert chain.spacings[:2] == (float(cell.spacing),) * 2
+    known = {"materials", "beads", "chain", "precompression", *beads.SCENE}
+    assert known == set(scenefile.KEYS["file"])
 
 
 # --- there and back -------------------------------------------------------------------------

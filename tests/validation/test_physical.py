@@ -1,0 +1,97 @@
+"""The theory's physical answers against the lattice of steel spheres, in SI units."""
+
+import math
+
+import pytest
+import sympy as sp
+
+from lwa import Cell, Material, Sphere, canonical_wave, homogenize
+from lwa.hertz import stiffness
+from validation import Scene, exact_wave, measure, simulate
+from validation.materials import PTFE_BEAD, STEEL_BEAD, Bead, contact_stiffness
+from validation.measure import speed
+
+FROM, TO = 50, 60
+"""Contacts between which the pulse is timed; at 50 sites it is the lattice's own wave to 1e-8."""
+
+
+def sphere(bead):
+    return Sphere(bead.mass, bead.radius, Material(bead.material.E, bead.material.nu))
+
+
+@pytest.fixture(scope="module")
+def chain():
+    """The paper's steel beads, struck at 1 m/s, and their pulse at contact and bead `TO`."""
+    scene = Scene.of_beads(
+        [STEEL_BEAD] * 80,
+        velocities=(1.0,),
+        duration=6.7e-4,
+        contact_sensors=(FROM, TO),
+        bead_sensors=(TO,),
+        samples=6001,
+    )
+    run = simulate(scene, rtol=1e-11, atol=1e-11)
+    first, pulse = (measure(run.time, force) for force in run.contact_force)
+    found = {
+        "force": pulse.peak,
+        "speed": speed(first, pulse, math.fsum(scene.spacings[FROM:TO])),
+        "compression": measure(run.time, run.compression[1]).peak,
+        "bead_velocity": measure(run.time, run.bead_velocity[0]).peak,
+        "fwhm": pulse.fwhm,
+    }
+    return scene, found
+
+
+def test_the_lattice_is_the_exact_wave_in_si(chain):
+    """The exact wave of m = A = D = F = 1, by Newton's method, with its units of δ and t."""
+    scene, found = chain
+    wave = exact_wave([1], 1.5)
+    delta = (found["force"] / scene.stiffnesses[0]) ** (2 / 3)
+    time = math.sqrt(STEEL_BEAD.mass * delta / found["force"])
+    scaled = {
+        "speed": wave.c * scene.spacings[0] / time,
+        "compression": delta,
+        "bead_velocity": wave.peak("velocity")[1] * delta / time,
+        "fwhm": wave.fwhm("force") / wave.c * time,
+    }
+    for name, value in scaled.items():
+        assert found[name] == pytest.approx(value, rel=2e-8), name  # the integrator's error
+
+
+def test_the_theory_is_off_the_lattice_in_si_by_what_it_is_off_without_units(chain):
+    """c² by 4/5 : 0.8199588213, the force's width by 1.49094 : 1.411928; no error in δ(F)."""
+    found = chain[1]
+    for wave in (
+        canonical_wave(Cell.of_spheres([sphere(STEEL_BEAD)]), "3/2"),
+        homogenize(Cell.of_spheres([sphere(STEEL_BEAD)] * 2), k="3/2").pde.traveling_wave(),
+    ):
+        answer = wave.at_force(found["force"])
+        slow = math.sqrt(0.8 / 0.8199588213)
+        wide = float(sp.sqrt(10) * sp.acos(2 ** sp.Rational(5, 6) / 2)) / 1.411928
+        assert float(answer.speed) / found["speed"] == pytest.approx(slow, rel=2e-8)
+        assert float(answer.compression) == pytest.approx(found["compression"], rel=2e-9)
+        time = float(answer.fwhm("force", "time")) / found["fwhm"]
+        assert time == pytest.approx(wide / slow, rel=5e-7)  # seven digits are given above
+        # u_x is its mean over a site, the compression, and what the site's ends add: 10 % here
+        assert float(answer.bead_velocity) == pytest.approx(found["bead_velocity"], rel=0.1)
+
+
+def test_the_spacing_of_unequal_spheres_counts_a_cell_as_long_as_it_is():
+    big = Bead(mass=5e-3, radius=5e-3, material=PTFE_BEAD.material)
+    row = [STEEL_BEAD, big, PTFE_BEAD]
+    cell = Cell.of_spheres([sphere(bead) for bead in row])
+    scene = Scene.of_beads(row * 4, duration=1)
+    assert math.fsum(scene.spacings[:9]) == pytest.approx(9 * float(cell.spacing), rel=1e-15)
+    assert scene.stiffnesses[:3] == pytest.approx([float(A) for A in cell.stiffnesses], rel=1e-15)
+    assert scene.masses[:3] == pytest.approx([float(m) for m in cell.masses], rel=1e-15)
+
+
+def test_the_lattices_floats_are_the_theorys_numbers():
+    for a, b in ((STEEL_BEAD, PTFE_BEAD), (PTFE_BEAD, PTFE_BEAD)):
+        A = stiffness(sphere(a), sphere(b))
+        assert contact_stiffness(a, b) == pytest.approx(float(A), rel=1e-15)
+        assert Bead.of(sphere(a)) == a
+    wall = stiffness(sphere(STEEL_BEAD), sphere(PTFE_BEAD).material)
+    assert contact_stiffness(STEEL_BEAD, PTFE_BEAD.material) == pytest.approx(
+        float(wall), rel=1e-15
+    )
