@@ -11,7 +11,6 @@ import click
 import sympy as sp
 from click.core import ParameterSource
 
-from lwa.beads import read_spheres
 from lwa.cell import Cell, D, k
 from lwa.closure import BRANCHES, CLOSURES, FIELDS
 from lwa.dispersion import Dispersion
@@ -155,6 +154,8 @@ def wave(style: str, force: sp.Expr | None, spheres: str | None, **chain: Any) -
 
 def _of_spheres(file: str) -> dict[str, Any]:
     """The chain of a file of spheres, which no other option may describe."""
+    from lwa.beads import read_spheres  # here, so that other commands do not load the parsers
+
     context = click.get_current_context()
     for name in ("k", "masses", "stiffnesses", "spacing"):
         if context.get_parameter_source(name) is ParameterSource.COMMANDLINE:
