@@ -14,6 +14,7 @@ from lwa.dispersion import Dispersion
 from lwa.exact import InputError
 from lwa.expansion import Expansion, expand
 from lwa.pde import PDE
+from lwa.terms import Jet, Terms
 from lwa.theory import Theory, homogenize
 from lwa.wave import NoSolitaryWave, TravelingWave, canonical_wave
 
@@ -26,7 +27,9 @@ __all__ = [
     "Dispersion",
     "Expansion",
     "InputError",
+    "Jet",
     "NoSolitaryWave",
+    "Terms",
     "Theory",
     "TravelingWave",
     "canonical_wave",

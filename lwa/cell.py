@@ -18,7 +18,7 @@ from typing import Any
 
 import sympy as sp
 
-from lwa.exact import InputError, exact, positive, shorten
+from lwa.exact import InputError, exact, integer, positive, shorten
 from lwa.value import Value
 
 D = sp.Symbol("D", positive=True)
@@ -35,6 +35,10 @@ RESERVED = {
     "tau": "time",
 }
 """Names that stand in results, and what they mean there: they are refused for anything else."""
+
+
+MOST_PARTICLES = 1000
+"""In a cell; beyond it even the simplest of its theories takes minutes."""
 
 
 @dataclass(frozen=True)
@@ -153,8 +157,9 @@ def Dimer(
     >>> Dimer(m1, m2, N=2).masses
     (m1, m1, m2)
     """
-    if isinstance(N, bool) or not isinstance(N, int) or N < 1:
-        raise InputError(f"N is {shorten(N)}: the number of particles m1 is an integer from 1 on")
+    N = integer(N, "N", 1)
+    if N > MOST_PARTICLES:
+        raise InputError(f"N is {shorten(N)}: a cell has at most {MOST_PARTICLES} particles")
     return Cell((m1,) * N + (m2,), stiffnesses=tuple(stiffnesses), spacing=spacing)
 
 
@@ -178,23 +183,30 @@ def exponent(value: Any, cell: Cell | None = None) -> sp.Expr:
 
 
 def substitution(
-    values: Mapping[str, Any], cell: Cell, k: sp.Expr = sp.S.One
+    values: Mapping[str, Any],
+    cell: Cell,
+    k: sp.Expr = sp.S.One,
+    more: Sequence[sp.Symbol] = (),
 ) -> dict[sp.Symbol, sp.Expr]:
-    """Symbol → what is given for its name, among the symbols of a cell and its exponent.
+    """Symbol → what is given for its name, among the symbols of a cell, its exponent, and more.
 
     ``omega``, where no symbol is called so, is the ratio m2/m1 of the cell's second mass to its
     first: it replaces m2, or m1 where m2 has a value.
 
-    Raises `lwa.InputError` for a name that does not occur and a value that is not positive.
+    Raises `lwa.InputError` for a name that does not occur, and a value of the cell or the exponent
+    that is not positive.
     """
-    known = {s.name: s for s in (*cell.symbols, *sorted(k.free_symbols, key=str))}
+    known = {s.name: s for s in (*cell.symbols, *sorted(k.free_symbols, key=str), *more)}
     given = dict(values)
     omega = given.pop("omega", None) if "omega" not in known else None
     for name in given:
         if name not in known:
             names = ", ".join(known) or "there are none"
             raise InputError(f"{shorten(name)} is not among the symbols: {names}")
-    new = {known[name]: positive(value, name) for name, value in given.items()}
+    new = {
+        known[name]: (exact if known[name] in more else positive)(value, name)
+        for name, value in given.items()
+    }
     return new if omega is None else new | _from_ratio(positive(omega, "omega"), cell, new)
 
 

@@ -17,6 +17,7 @@ import sympy as sp
 from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
 from lwa.cell import Cell
+from lwa.value import Value
 
 
 def rational(value: sp.Expr) -> fmpq:
@@ -30,7 +31,7 @@ def number(value: fmpq) -> sp.Rational:
 
 
 @dataclass(frozen=True)
-class Partition:
+class Partition(Value):
     """Positive weights w_i that enter only as f_i = total · w_i / Σ_j w_j.
 
     The masses of a cell are such weights (total 1), and so are the compliances of its contacts
@@ -82,7 +83,7 @@ class Partition:
 
 
 @dataclass(frozen=True)
-class Coefficients:
+class Coefficients(Value):
     """The ring Q[k, μ, c] for one cell, one exponent and one branch.
 
     On the optical branch the two contacts move by equal amounts, so that they enter with their
@@ -127,11 +128,11 @@ class Coefficients:
         polynomial = self._constants[i]
         if polynomial is None:
             return context.gen(context.variable_to_index(f"a{i}"))
-        generators = [str(g) for g in polynomial.gens]
+        names = ("k", *self.masses.names)[: len(polynomial.gens)]
         total = context.constant(0)
         for exponents, coefficient in polynomial.terms():
             term = context.constant(rational(coefficient))
-            for name, e in zip(generators, exponents, strict=True):
+            for name, e in zip(names, exponents, strict=True):
                 if e:
                     term = term * context.gen(context.variable_to_index(name)) ** e
             total = total + term
@@ -144,22 +145,20 @@ class Coefficients:
     @cached_property
     def _constants(self) -> tuple[sp.Poly | None, ...]:
         """The constants as polynomials in k and μ; None for one that is not, a generator then."""
+        return tuple(map(self._in_fractions, self.constants))
+
+    def _in_fractions(self, constant: sp.Expr) -> sp.Poly | None:
+        """A function of k and the mass fractions alone, where it is a polynomial in them."""
         weights = self.masses.distinct if self.masses.names else ()
-        free = sp.symbols(self.masses.names)
+        scale = sp.Dummy(positive=True)
+        scaled = constant.xreplace({w: scale * w for w in weights})
+        if sp.cancel(scaled - constant) != 0:
+            return None
+        k, *free = sp.symbols(f"k:{len(self.masses.names) + 1}", cls=sp.Dummy)
         counts = [self.masses.weights.count(w) for w in weights]
         rest = (1 - sum(n * f for n, f in zip(counts, free, strict=False))) / (counts or [1])[-1]
-        images = dict(zip(weights, (*free, rest), strict=False))
-        generators = [sp.Symbol("k"), *free]
-        scale = sp.Dummy(positive=True)
-        found: list[sp.Poly | None] = []
-        for constant in self.constants:
-            scaled = constant.xreplace({w: scale * w for w in weights})
-            if sp.cancel(scaled - constant) != 0:  # depends on more than the fractions
-                found.append(None)
-                continue
-            renamed = {**images, self.k: generators[0]}
-            found.append(_as_polynomial(sp.cancel(constant.xreplace(renamed)), generators))
-        return tuple(found)
+        images = dict(zip(weights, (*free, rest), strict=False)) | {self.k: k}
+        return _as_polynomial(sp.cancel(constant.xreplace(images)), [k, *free])
 
     def expression(self, terms: Sequence[tuple[tuple[int, ...], fmpq]]) -> sp.Expr:
         """Σ coefficient · Π generator^exponent over `terms`, factored, in the caller's symbols.

@@ -11,7 +11,7 @@ from lwa.approximants import EpsilonSeries
 from lwa.dispersion import Dispersion
 from lwa.exact import InputError
 from lwa.expansion import Expansion
-from lwa.pde import Terms
+from lwa.terms import Terms
 from lwa.theory import Theory
 from lwa.wave import QUANTITIES, TravelingWave
 

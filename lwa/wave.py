@@ -17,18 +17,19 @@ so that p may even be complex; what a wave needs is G + H + I > 0 and V² > 0.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from functools import cache, cached_property
+from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal
 
 import sympy as sp
 
-from lwa.cell import Cell, exponent
+from lwa.cell import Cell, exponent, substitution
 from lwa.cell import k as symbol_k
 from lwa.coefficients import number
 from lwa.dispersion import Dispersion
 from lwa.exact import InputError, positive, shorten
 from lwa.jets import JetAlgebra, Monomial
+from lwa.value import Value
 
 if TYPE_CHECKING:
     from lwa.numeric import NumericWave
@@ -57,37 +58,35 @@ class NoSolitaryWave(ValueError):
     """The theory has no compact traveling wave for these parameters; the message says why."""
 
 
-@cache
-def strain_equation() -> dict[str, sp.Expr]:
+def strain_equation(p: sp.Expr, G: sp.Expr, H: sp.Expr, I: sp.Expr) -> dict[str, sp.Expr]:
     """The equation of z, v = z^p, as the coefficients of its monomials in r_n = ∂^n z / z.
 
     V² z^p p r_1 = z^{kp} (linear · r_1 + cubic · r_1³ + product · r_1 r_2 + third · r_3),
-    derived in the algebra of the jets of z. SymPy expressions in p, G, H, I.
+    derived in the algebra of the jets of z.
     """
+    given = (p, G, H, I)
     jets = JetAlgebra(("p", "G", "H", "I"), weight=3)
-    p, G, H, I = jets.context.gens()[:4]
+    p_, G_, H_, I_ = jets.context.gens()[:4]
     v = [jets.one]
     for _ in range(3):
-        v.append(jets.dx(v[-1], p))  # v_n = ∂^n (z^p) / z^p
-    right = v[1] + G * v[1] ** 3 + H * v[1] * v[2] + I * v[3]
-    symbols = sp.symbols("p G H I")
+        v.append(jets.dx(v[-1], p_))  # v_n = ∂^n (z^p) / z^p
+    found = jets.terms(v[1] + G_ * v[1] ** 3 + H_ * v[1] * v[2] + I_ * v[3])
     monomials = {
         "linear": ((1, 1),),
         "cubic": ((1, 3),),
         "product": ((1, 1), (2, 1)),
         "third": ((3, 1),),
     }
-    found = jets.terms(right)
     return {
         name: sp.Add(
-            *(number(c) * sp.Mul(*map(sp.Pow, symbols, e)) for e, c in found[Monomial(monomial)])
+            *(number(c) * sp.Mul(*map(sp.Pow, given, e)) for e, c in found[Monomial(monomial)])
         )
         for name, monomial in monomials.items()
     }
 
 
 @dataclass(frozen=True)
-class Reduction:
+class Reduction(Value):
     """The reduction of the strain's equation to z'' = μ z^η - σ z for one root p (speed V)."""
 
     k: sp.Expr
@@ -129,7 +128,7 @@ class Reduction:
 
 
 @dataclass(frozen=True)
-class TravelingWave:
+class TravelingWave(Value):
     """The compact traveling wave v = u_x = B cos^m(βξ), ξ = x - V τ.
 
     G, H, I are the wave equation's coefficients with their D²; the results are exact SymPy
@@ -166,8 +165,16 @@ class TravelingWave:
         return self.cell.spacing
 
     @cached_property
+    def _shares(self) -> tuple[sp.Expr, sp.Expr]:
+        """G/I and H/I; in the canonical field both depend on k alone."""
+        return sp.cancel(self.G / self.I), sp.cancel(self.H / self.I)
+
+    @cached_property
     def dispersion(self) -> sp.Expr:
         """(G + H + I) / D²."""
+        g, h = self._shares
+        if (g + h).free_symbols <= self.k.free_symbols:  # I need not be taken apart
+            return self.I / self.D**2 * sp.factor(1 + g + h)
         return sp.factor(sp.cancel((self.G + self.H + self.I) / self.D**2))
 
     @property
@@ -204,12 +211,8 @@ class TravelingWave:
     def speed_factor(self) -> sp.Expr:
         """V²/B^{k-1} = 1 - β² [(H + 3I) m - 2I]."""
         # β² and m written out: (k-1) cancels, and the result is rational in k and the masses.
-        k, S = self.k, self.G + self.H + self.I
-        return sp.factor(
-            sp.cancel(
-                1 - (k - 1) * (self.H + 3 * self.I) / (2 * S) + (k - 1) ** 2 * self.I / (2 * S)
-            )
-        )
+        k, (g, h) = self.k, self._shares
+        return sp.factor(sp.cancel(1 - (k - 1) * (h + 4 - k) / (2 * (1 + g + h))))
 
     def speed(self, B: Any = None) -> sp.Expr:
         """V = dx/dτ of the wave whose strain peaks at B (a symbol B when not given)."""
@@ -242,14 +245,14 @@ class TravelingWave:
     @cached_property
     def roots(self) -> tuple[sp.Expr, sp.Expr]:
         """Both p for which v = z^p removes z_ξ³, the paper's first (2/(k+1) at equal masses)."""
-        quadratic = sp.Poly(sp.cancel(self._derived("cubic") / sp.Symbol("p")), sp.Symbol("p"))
-        A, B, C = (sp.factor(sp.cancel(c / self.D**2)) for c in quadratic.all_coeffs())
+        p = sp.Dummy("p")
+        quadratic = sp.Poly(sp.cancel(self._derived(p)["cubic"] / (p * self.I)), p)
+        A, B, C = (sp.factor(sp.cancel(c)) for c in quadratic.all_coeffs())
         root = _root(sp.factor(sp.cancel(B**2 - 4 * A * C))).replace(sp.Abs, lambda x: x)
         return (sp.together((-B - root) / (2 * A)), sp.together((-B + root) / (2 * A)))
 
-    def _derived(self, name: str) -> sp.Expr:
-        G, H, I = sp.symbols("G H I")
-        return strain_equation()[name].xreplace({G: self.G, H: self.H, I: self.I})
+    def _derived(self, p: sp.Symbol) -> dict[str, sp.Expr]:
+        return strain_equation(p, self.G, self.H, self.I)
 
     def reduction(self, root: int = 0, V: Any = V) -> Reduction:
         """z'' = μ z^η - σ z for one root p (0: the paper's, 1: the other).
@@ -260,14 +263,15 @@ class TravelingWave:
         """
         if root not in (0, 1):
             raise InputError(f"root is {shorten(root)}: 0 or 1 is wanted")
-        p = sp.Symbol("p")
-        exponent = sp.cancel(self._derived("product") / self._derived("third")) + 1  # e
+        p = sp.Dummy("p")
+        equation = self._derived(p)
+        exponent = sp.cancel(equation["product"] / equation["third"]) + 1  # e
         linear = sp.Poly(exponent - self.k * p, p)
         a = sp.factor(linear.nth(1)) * self.roots[root] + linear.nth(0)
         return Reduction(k=self.k, I=self.I, p=self.roots[root], a=a, V=positive(V, "V"))
 
     def at(self, **values: Any) -> TravelingWave:
-        """The same wave with numbers (or other symbols) for the named symbols.
+        """The same wave with numbers (or other symbols) for the named symbols, and for ω = m2/m1.
 
         Raises `lwa.InputError` for a name that the wave does not contain or a value that is not
         positive, and `NoSolitaryWave` where the values admit none.
@@ -277,24 +281,11 @@ class TravelingWave:
         >>> wave.at(k=sp.Rational(3, 2), m1=1, m2=1).beta
         sqrt(10)/(5*D)
         """
-        known = {s.name: s for s in self._symbols}
-        for name in values:
-            if name not in known:
-                raise InputError(f"{name!r} is not among the wave's symbols: {', '.join(known)}")
-        new = {known[name]: positive(value, name) for name, value in values.items()}
-        cell = replace(
-            self.cell,
-            masses=tuple(x.xreplace(new) for x in self.cell.masses),
-            stiffnesses=tuple(x.xreplace(new) for x in self.cell.stiffnesses),
-            spacing=self.cell.spacing.xreplace(new),
-        )
+        new = substitution(values, self.cell, self.k)
         G, H, I = (c.xreplace(new) for c in (self.G, self.H, self.I))
-        return TravelingWave(cell=cell, k=exponent(self.k.xreplace(new)), G=G, H=H, I=I)
-
-    @property
-    def _symbols(self) -> list[sp.Symbol]:
-        parts = (self.k, *self.cell.masses, *self.cell.stiffnesses, self.D)
-        return sorted(set().union(*(part.free_symbols for part in parts)), key=str)
+        return TravelingWave(
+            cell=self.cell.replaced(new), k=exponent(self.k.xreplace(new)), G=G, H=H, I=I
+        )
 
     def numeric(self, missing: Literal["raise", "nan"] = "raise") -> NumericWave:
         """Vectorised float64 functions of (k, ω), ω = m2/m1; see `lwa.numeric.NumericWave`.

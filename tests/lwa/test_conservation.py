@@ -3,8 +3,7 @@
 import pytest
 import sympy as sp
 
-from lwa import Cell, Dimer, InputError, homogenize
-from lwa.pde import Jet
+from lwa import Cell, Dimer, InputError, Jet, homogenize
 
 x = sp.Symbol("x")
 m1, m2 = sp.symbols("m1 m2", positive=True)
