@@ -14,9 +14,10 @@ from lwa.dispersion import Dispersion
 from lwa.exact import InputError
 from lwa.expansion import Expansion, expand
 from lwa.pde import PDE
+from lwa.quantities import NoSolitaryWave
 from lwa.terms import Jet, Terms
 from lwa.theory import Theory, homogenize
-from lwa.wave import NoSolitaryWave, TravelingWave, canonical_wave
+from lwa.wave import TravelingWave, canonical_wave
 
 __all__ = [
     "PDE",

@@ -23,16 +23,18 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 from math import factorial
 from typing import Any
 
 import sympy as sp
 from flint import fmpq, fmpq_mpoly
 
+from lwa import latex
 from lwa.cell import Cell, exponent, substitution
 from lwa.coefficients import Coefficients
 from lwa.exact import InputError
-from lwa.jets import JetAlgebra, Ladder, Power, exact_quotient
+from lwa.jets import JetAlgebra, Ladder, Monomial, Power, exact_quotient
 
 BRANCHES = ("acoustic", "optical")
 CLOSURES = ("linear", "full")
@@ -84,6 +86,18 @@ class Closure:
             f"Closure({self.ring.cell!r}, order={self.order}, k={self.ring.k}, "
             f"closure={self.name!r}, branch={self.ring.branch!r}, field={self.field!r})"
         )
+
+    def _repr_latex_(self) -> str:
+        return latex.display(latex.ansatz(self) or [latex.row(r"\lambda", self.ratio)])
+
+    @cached_property
+    def b(self) -> dict[int, sp.Expr]:
+        """n → b_n of the ansatz, n ≥ 1."""
+        return {
+            n: self.ring.expression(self.algebra.terms(b).get(Monomial(()), []))
+            for n, b in enumerate(self.ansatz)
+            if n > 0
+        }
 
     @property
     def fields(self) -> tuple[tuple[fmpq_mpoly, ...], ...]:

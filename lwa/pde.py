@@ -16,18 +16,19 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, ClassVar
 
 import sympy as sp
 from flint import fmpq_mpoly
 
+from lwa import latex
 from lwa.cell import Cell
 from lwa.closure import Closure
 from lwa.conservation import flux, potential
 from lwa.energy import energy
 from lwa.exact import InputError, exact, integer
 from lwa.fields import change_field
-from lwa.terms import ENERGY, Jet, Powers, Terms, base_order, terms
+from lwa.terms import ENERGY, Jet, Terms, base_order, terms
 from lwa.value import Value
 from lwa.wave import TravelingWave
 
@@ -51,7 +52,7 @@ class PDE(Value):
     @cached_property
     def time_scale(self) -> sp.Expr:
         """τ/t."""
-        if self.closure.ring.branch == "acoustic":
+        if self.acoustic:
             return self.cell.time_scale(self.k)
         # w = λu strains each contact by (λ - 1)u, and 1 - λ = M/m2.
         m1, m2 = self.cell.masses
@@ -69,29 +70,50 @@ class PDE(Value):
         acceleration = enumerate(self.closure.acceleration)
         return {n: terms(self.closure, sign * E) for n, E in acceleration if n > base}
 
-    def _at_third_order(self, jet: Powers) -> sp.Expr:
-        if self.closure.ring.branch != "acoustic":
+    LETTERS: ClassVar[Mapping[str, Jet]] = {
+        "G": Jet(((2, 3),)),
+        "H": Jet(((2, 1), (3, 1))),
+        "I": Jet(((4, 1),)),
+    }
+    """The paper's letters for the coefficients at D^{k+3}, and their jets."""
+
+    @property
+    def acoustic(self) -> bool:
+        """Whether it is the acoustic branch's equation."""
+        return self.closure.ring.branch == "acoustic"
+
+    @property
+    def third_order(self) -> dict[str, sp.Expr]:
+        """G, H and I by their letters; {} below order 4 and on the optical branch."""
+        known = self.acoustic and self.closure.order >= 4
+        return {"G": self.G, "H": self.H, "I": self.I} if known else {}
+
+    def _repr_latex_(self) -> str:
+        return latex.display(latex.equation(self, 3))
+
+    def _at_third_order(self, letter: str) -> sp.Expr:
+        if not self.acoustic:
             raise InputError("G, H and I belong to the acoustic branch")
         if self.closure.order < 4:
             raise InputError(
                 f"order is {self.closure.order}: G, H and I stand at D^(k+3), from order 4 on"
             )
-        return self.coefficients[3].get(Jet(jet), sp.Integer(0)) * self.cell.spacing**2
+        return self.coefficients[3].get(self.LETTERS[letter], sp.Integer(0)) * self.cell.spacing**2
 
     @cached_property
     def G(self) -> sp.Expr:
         """The coefficient of u_x^{k-3} u_xx^3, D² included."""
-        return self._at_third_order(((2, 3),))
+        return self._at_third_order("G")
 
     @cached_property
     def H(self) -> sp.Expr:
         """The coefficient of u_x^{k-2} u_xx u_xxx, D² included."""
-        return self._at_third_order(((2, 1), (3, 1)))
+        return self._at_third_order("H")
 
     @cached_property
     def I(self) -> sp.Expr:
         """The coefficient of u_x^{k-1} u_xxxx, D² included."""
-        return self._at_third_order(((4, 1),))
+        return self._at_third_order("I")
 
     @property
     def vanishing(self) -> tuple[int, ...]:
@@ -105,8 +127,7 @@ class PDE(Value):
         What speaks against it stands at D^{k+3} at the earliest, which is asked for an equation of
         lower order too.
         """
-        acoustic = self.closure.ring.branch == "acoustic"
-        return acoustic and None not in self._at_least_to_third_order._fluxes.values()
+        return self.acoustic and None not in self._at_least_to_third_order._fluxes.values()
 
     @property
     def _at_least_to_third_order(self) -> PDE:
@@ -140,7 +161,7 @@ class PDE(Value):
 
     @property
     def _orders(self) -> tuple[int, ...]:
-        return tuple(self.coefficients) if self.closure.ring.branch == "acoustic" else ()
+        return tuple(self.coefficients) if self.acoustic else ()
 
     @cached_property
     def energy(self) -> Mapping[int, Terms]:

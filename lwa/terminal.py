@@ -11,7 +11,7 @@ import click
 import sympy as sp
 
 from lwa.exact import InputError, exact
-from lwa.wave import NoSolitaryWave
+from lwa.quantities import NoSolitaryWave
 
 
 def quantity(context: click.Context, option: click.Parameter, value: str) -> sp.Expr:

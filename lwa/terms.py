@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 import sympy as sp
 from flint import fmpq_mpoly
 
+from lwa import latex
 from lwa.closure import Closure
 from lwa.coefficients import Coefficients
 from lwa.jets import JetAlgebra, Term
@@ -119,8 +120,7 @@ class Terms(Mapping[Jet, sp.Expr]):
         return " ".join(factors) or "1"
 
     def _repr_latex_(self) -> str:
-        rows = [f"{sp.latex(self[jet])} \\, {self.latex(jet)}" for jet in self]
-        return f"$\\displaystyle {' + '.join(rows) or '0'}$"
+        return latex.display(latex.terms(self))
 
     def without(self, left_out: Callable[[Jet], bool]) -> Terms:
         """The terms but those of some jets."""

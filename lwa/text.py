@@ -10,10 +10,11 @@ import sympy as sp
 from lwa.approximants import EpsilonSeries, Resummed
 from lwa.dispersion import Dispersion
 from lwa.expansion import Expansion
+from lwa.quantities import QUANTITIES
 from lwa.render import in_units, third_order, wave_values
 from lwa.terms import Jet, Terms
 from lwa.theory import Theory
-from lwa.wave import QUANTITIES, TravelingWave
+from lwa.wave import TravelingWave
 
 DIGITS = 15
 """Significant digits of a printed number; all of them are correct."""

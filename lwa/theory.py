@@ -8,12 +8,12 @@ from typing import Any
 
 import sympy as sp
 
+from lwa import latex
 from lwa.cell import Cell, exponent
 from lwa.cell import k as symbol_k
 from lwa.closure import BRANCHES, CLOSURES, FIELDS, Closure, Progress, solve
 from lwa.coefficients import Coefficients
 from lwa.exact import InputError, integer, shorten
-from lwa.jets import Monomial
 from lwa.pde import PDE
 from lwa.terms import STRAIN, Terms, terms
 from lwa.value import Value
@@ -51,19 +51,14 @@ class Theory(Value):
         """λ of the branch: 1 acoustic, -m1/m2 optical."""
         return self.closure.ratio
 
-    @cached_property
+    @property
     def ansatz(self) -> dict[int, sp.Expr]:
         """n → b_n of w = λ (u + Σ b_n D^n ∂_x^n u); empty for a cell of one particle.
 
         In the full closure w, the field of the second particle, has nonlinear terms besides; all
         of them are in `slaved`.
         """
-        algebra, ring = self.closure.algebra, self.closure.ring
-        return {
-            n: ring.expression(algebra.terms(b).get(Monomial(()), []))
-            for n, b in enumerate(self.closure.ansatz)
-            if n > 0
-        }
+        return self.closure.b
 
     @cached_property
     def slaved(self) -> dict[int, dict[int, Terms]]:
@@ -89,6 +84,9 @@ class Theory(Value):
         return {
             n: terms(self.closure, d) for n, d in enumerate(self.closure.defect) if not d.is_zero()
         }
+
+    def _repr_latex_(self) -> str:
+        return latex.display([*latex.ansatz(self.closure), *latex.equation(self.pde, 3)])
 
     def at(self, **values: Any) -> Theory:
         """The theory for these values of the named symbols, and of ω = m2/m1 by ``omega``.

@@ -23,12 +23,14 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import sympy as sp
 
+from lwa import latex
 from lwa.cell import Cell, exponent, substitution
 from lwa.cell import k as symbol_k
 from lwa.coefficients import number
 from lwa.dispersion import Dispersion
 from lwa.exact import InputError, positive, shorten
 from lwa.jets import JetAlgebra, Monomial
+from lwa.quantities import NoSolitaryWave, strain_power
 from lwa.value import Value
 
 if TYPE_CHECKING:
@@ -38,24 +40,6 @@ V = sp.Symbol("V_s", positive=True)
 """The speed V_s = dx/dτ, where the caller gives none."""
 
 _LARGE_POWER = 500
-
-QUANTITIES = ("strain", "force", "velocity")
-
-
-def strain_power(quantity: str, k: Any) -> Any:
-    """The power of the strain to which a quantity of the wave is proportional: k or 1.
-
-    Raises `lwa.InputError` unless the quantity is "strain", "force" or "velocity".
-    """
-    if quantity not in QUANTITIES:
-        raise InputError(
-            f"quantity is {shorten(quantity)}: one of {', '.join(QUANTITIES)} is wanted"
-        )
-    return k if quantity == "force" else 1
-
-
-class NoSolitaryWave(ValueError):
-    """The theory has no compact traveling wave for these parameters; the message says why."""
 
 
 def strain_equation(p: sp.Expr, G: sp.Expr, H: sp.Expr, I: sp.Expr) -> dict[str, sp.Expr]:
@@ -127,7 +111,7 @@ class Reduction(Value):
         return ratio ** (1 / (self.k - 1))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class TravelingWave(Value):
     """The compact traveling wave v = u_x = B cos^m(βξ), ξ = x - V τ.
 
@@ -158,6 +142,12 @@ class TravelingWave(Value):
             raise NoSolitaryWave(
                 f"V²/B^(k-1) is {self.speed_factor}: there is no wave with a real speed"
             )
+
+    def __repr__(self) -> str:
+        return f"TravelingWave({self.cell!r}, k={self.k}, β={shorten(self.beta)})"
+
+    def _repr_latex_(self) -> str:
+        return latex.display(latex.wave(self))
 
     @property
     def D(self) -> sp.Expr:
@@ -288,13 +278,13 @@ class TravelingWave(Value):
         )
 
     def numeric(self, missing: Literal["raise", "nan"] = "raise") -> NumericWave:
-        """Vectorised float64 functions of (k, ω), ω = m2/m1; see `lwa.numeric.NumericWave`.
+        """Vectorised float64 functions of (k, ω), ω = m2/m1; see `lwa.NumericWave`.
 
-        Raises `lwa.InputError` unless k and both masses of a two-particle cell are symbols.
+        Raises `lwa.InputError` unless k is a symbol and the masses are two, as in N:1 dimers.
         """
         from lwa.numeric import NumericWave  # here, so that `import lwa` does not load NumPy
 
-        return NumericWave.of(self, missing)
+        return NumericWave(self, missing)
 
 
 def canonical_wave(cell: Cell, k: Any = symbol_k) -> TravelingWave:
