@@ -11,6 +11,7 @@ with P equal contacts of stiffness A_eff, A_eff^{-1/k} = (1/P) Σ A_i^{-1/k}.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -36,6 +37,9 @@ RESERVED = {
 }
 """Names that stand in results, and what they mean there: they are refused for anything else."""
 
+
+MOST_BITS = 4096
+"""By which the shares of contacts may differ; floats end at 1024."""
 
 MOST_PARTICLES = 1000
 """In a cell; beyond it even the simplest of its theories takes minutes."""
@@ -119,9 +123,12 @@ class Cell(Value):
         return tuple(sp.cancel(m / self.mass) for m in self.masses)
 
     def compliances(self, k: Any = k) -> tuple[sp.Expr, ...]:
-        """A_i^{-1/k}: how much of the strain contact i takes, up to a common factor."""
+        """A_i^{-1/k}: how much of the strain contact i takes, up to a common factor.
+
+        Raises `lwa.InputError` where these are numbers beyond what can be written.
+        """
         k = exponent(k)
-        return tuple(A ** (-1 / k) for A in self.stiffnesses)
+        return tuple(_root(A, k, f"stiffness {i}") for i, A in enumerate(self.stiffnesses, 1))
 
     def shares(self, k: Any = k) -> tuple[sp.Expr, ...]:
         """c_i = P A_i^{-1/k} / Σ A_j^{-1/k}, the strain of contact i over the mean strain."""
@@ -222,6 +229,18 @@ def _from_ratio(
     if first.is_Symbol and first not in new and first not in second.free_symbols:
         return {first: second.xreplace(new) / omega}
     raise InputError("omega is m2/m1: one of the masses must be a symbol without another value")
+
+
+def _root(A: sp.Expr, k: sp.Expr, name: str) -> sp.Expr:
+    """A^{-1/k}, refused where it is a number of more than `MOST_BITS`."""
+    if A.is_Rational and k.is_Rational:
+        bits = abs(math.log2(A.p) - math.log2(A.q)) * float(1 / k)
+        if bits > MOST_BITS:
+            raise InputError(
+                f"{name} is {shorten(A)} and k {shorten(k)}: the share of this contact, by A^(-1/k)"
+                f", is beyond 2^±{MOST_BITS}"
+            )
+    return A ** (-1 / k)
 
 
 def unmistakable(symbols: Sequence[sp.Symbol]) -> None:

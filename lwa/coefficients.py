@@ -9,6 +9,7 @@ Polynomials leave as factored SymPy expressions in the caller's own symbols.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -17,7 +18,11 @@ import sympy as sp
 from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
 from lwa.cell import Cell
+from lwa.exact import InputError
 from lwa.value import Value
+
+MOST_DIGITS = 4000
+"""Of a coefficient; Python prints no integers of more than 4,300."""
 
 
 def rational(value: sp.Expr) -> fmpq:
@@ -116,6 +121,17 @@ class Coefficients(Value):
         """Names of the ring's generators."""
         exponent = () if self.k.is_Rational else ("k",)
         return (*exponent, *self.masses.names, *self.contacts.names, *self._opaque)
+
+    def writable(self, order: int) -> None:
+        """Refuse an order whose coefficients, powers of the cell's numbers, Python cannot print."""
+        values = (self.k, *(self.masses.values or ()), *(self.contacts.values or ()))
+        parts = [int(part) for x in values if x.is_Rational for part in (x.p, x.q)]
+        digits = max((part.bit_length() for part in parts), default=0) * math.log10(2)
+        if order * digits > MOST_DIGITS:
+            raise InputError(
+                f"order is {order}: with numbers of {digits:.0f} digits in the cell or the "
+                f"exponent, coefficients have more than {MOST_DIGITS}"
+            )
 
     def exponent(self, context: fmpq_mpoly_ctx) -> fmpq_mpoly:
         """k as an element of a ring that has `names` among its generators."""
@@ -248,7 +264,7 @@ class Door:
                 powers = (g**e for g, e in zip(self._generators, exponents, strict=True) if e)
                 self._monomials[exponents] = sp.Mul.make_args(sp.Mul(*powers))
             factor, monomial = number(coefficient), self._monomials[exponents]
-            if factor == 1 or monomial == (1,):
+            if factor == 1 or monomial[0].is_Number:
                 yield sp.Mul(factor, *monomial)
             else:  # in canonical order already; sorting it anew would take most of the time
                 yield sp.Mul(factor, *monomial, evaluate=False)

@@ -92,6 +92,8 @@ def integer(value: Any, name: str, low: int) -> int:
         raise InputError(f"{name} is {shorten(value)}: an integer from {low} on is wanted")
     if number < low:
         raise InputError(f"{name} is {shorten(number)}: it must be {low} or more")
+    if number.bit_length() > 63:
+        raise InputError(f"{name} is {shorten(number)}: an integer below 2^63 is wanted")
     return number
 
 

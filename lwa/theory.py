@@ -141,6 +141,7 @@ def homogenize(
     k = exponent(k, cell)
     ring = Coefficients(cell, k, branch)
     _affordable(order, len(ring.names), closure)
+    ring.writable(order)
     return Theory(solve(ring, order, closure, field, _progress(order)))
 
 

@@ -41,6 +41,9 @@ V = sp.Symbol("V_s", positive=True)
 
 _LARGE_POWER = 500
 
+MOST_EXPONENT = 1000
+"""Beyond it the exact 2^k of a width has more digits than anyone reads."""
+
 
 def strain_equation(p: sp.Expr, G: sp.Expr, H: sp.Expr, I: sp.Expr) -> dict[str, sp.Expr]:
     """The equation of z, v = z^p, as the coefficients of its monomials in r_n = ∂^n z / z.
@@ -133,6 +136,10 @@ class TravelingWave(Value):
         if self.k.is_number and not self.k > 1:
             raise NoSolitaryWave(
                 f"k is {self.k}: a compact wave needs k > 1 (at k = 1 the chain is linear)"
+            )
+        if self.k.is_number and self.k > MOST_EXPONENT:
+            raise InputError(
+                f"k is {shorten(self.k)}: closed forms are given up to k = {MOST_EXPONENT}"
             )
         if self.dispersion.is_number and not self.dispersion > 0:
             raise NoSolitaryWave(
@@ -297,7 +304,7 @@ def canonical_wave(cell: Cell, k: Any = symbol_k) -> TravelingWave:
     >>> canonical_wave(Cell((1, 1)), "3/2").beta
     sqrt(10)/(5*D)
     """
-    k = exponent(k)
+    k = exponent(k, cell)
     I = Dispersion(cell, k).I * cell.spacing**2
     return TravelingWave(cell=cell, k=k, G=I * (k - 1) * (k - 2) / 2, H=2 * I * (k - 1), I=I)
 

@@ -73,7 +73,7 @@ def test_bad_input():
             NUMERIC.beta(*arguments)
     with pytest.raises(InputError, match="B must be positive"):
         NUMERIC.speed(1.5, 1.0, B=-1.0)
-    with pytest.raises(InputError, match="symbols k, m1, m2"):
+    with pytest.raises(InputError, match="symbol k and a cell of two masses"):
         WAVE.at(k="3/2").numeric()
     with pytest.raises(InputError, match="missing"):
         WAVE.numeric(missing="zero")
