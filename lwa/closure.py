@@ -88,7 +88,7 @@ class Closure:
         )
 
     def _repr_latex_(self) -> str:
-        return latex.display(latex.ansatz(self) or [latex.row(r"\lambda", self.ratio)])
+        return latex.display(latex.ansatz(self, 4) or [latex.row(r"\lambda", self.ratio)])
 
     @cached_property
     def b(self) -> dict[int, sp.Expr]:

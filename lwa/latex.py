@@ -37,16 +37,17 @@ def row(name: str, value: sp.Expr) -> str:
     return f"{name} = {sp.latex(value)}"
 
 
-def ansatz(closure: Closure) -> list[str]:
-    """w = λ (u + b_1 D u_x + …), λ and the b_n."""
-    b = closure.b
-    if not b:
+def ansatz(closure: Closure, most: int | None = None) -> list[str]:
+    """w = λ (u + b_1 D u_x + …), λ and the b_n; to D^most or all."""
+    shown = range(1, min(len(closure.ansatz), (most or len(closure.ansatz)) + 1))
+    if not closure.ansatz:
         return []
     spacing = sp.latex(closure.ring.cell.spacing)
-    parts = [f"b_{{{n}}} {spacing}{f'^{{{n}}}' if n > 1 else ''} {derivative(n)}" for n in b]
-    more = r" + \cdots" if closure.name == "full" else ""
-    first = rf"w = \lambda \left(u + {' + '.join(parts)}{more}\right)"
-    values = [row(f"b_{{{n}}}", value) for n, value in b.items()]
+    parts = [f"b_{{{n}}} {spacing}{f'^{{{n}}}' if n > 1 else ''} {derivative(n)}" for n in shown]
+    if closure.name == "full" or len(shown) < len(closure.ansatz) - 1:
+        parts.append(r"\cdots")
+    first = rf"w = \lambda \left(u + {' + '.join(parts)}\right)"
+    values = [row(f"b_{{{n}}}", closure.b[n]) for n in shown]
     return [first, row(r"\lambda", closure.ratio), *values]
 
 
