@@ -41,6 +41,9 @@ V = sp.Symbol("V_s", positive=True)
 
 _LARGE_POWER = 500
 
+_SHARES = sp.symbols("g h", cls=sp.Dummy)
+"""For G/I and H/I, in the algebra of the strain's equation."""
+
 MOST_EXPONENT = 1000
 """Beyond it the exact 2^k of a width has more digits than anyone reads."""
 
@@ -242,14 +245,20 @@ class TravelingWave(Value):
     @cached_property
     def roots(self) -> tuple[sp.Expr, sp.Expr]:
         """Both p for which v = z^p removes z_ξ³, the paper's first (2/(k+1) at equal masses)."""
-        p = sp.Dummy("p")
-        quadratic = sp.Poly(sp.cancel(self._derived(p)["cubic"] / (p * self.I)), p)
-        A, B, C = (sp.factor(sp.cancel(c)) for c in quadratic.all_coeffs())
-        root = _root(sp.factor(sp.cancel(B**2 - 4 * A * C))).replace(sp.Abs, lambda x: x)
+        p, equation = self._equation
+        quadratic = sp.Poly(sp.cancel(equation["cubic"] / p), p).all_coeffs()
+        A, B, C = (sp.factor(self._with_shares(c)) for c in quadratic)
+        root = _root(sp.factor(B**2 - 4 * A * C)).replace(sp.Abs, lambda x: x)
         return (sp.together((-B - root) / (2 * A)), sp.together((-B + root) / (2 * A)))
 
-    def _derived(self, p: sp.Symbol) -> dict[str, sp.Expr]:
-        return strain_equation(p, self.G, self.H, self.I)
+    @cached_property
+    def _equation(self) -> tuple[sp.Symbol, dict[str, sp.Expr]]:
+        """p and `strain_equation` over I, with symbols for G/I and H/I."""
+        p = sp.Dummy("p")
+        return p, strain_equation(p, _SHARES[0], _SHARES[1], sp.S.One)
+
+    def _with_shares(self, value: sp.Expr) -> sp.Expr:
+        return value.xreplace(dict(zip(_SHARES, self._shares, strict=True)))
 
     def reduction(self, root: int = 0, V: Any = V) -> Reduction:
         """z'' = μ z^η - σ z for one root p (0: the paper's, 1: the other).
@@ -260,11 +269,10 @@ class TravelingWave(Value):
         """
         if root not in (0, 1):
             raise InputError(f"root is {shorten(root)}: 0 or 1 is wanted")
-        p = sp.Dummy("p")
-        equation = self._derived(p)
-        exponent = sp.cancel(equation["product"] / equation["third"]) + 1  # e
-        linear = sp.Poly(exponent - self.k * p, p)
-        a = sp.factor(linear.nth(1)) * self.roots[root] + linear.nth(0)
+        p, equation = self._equation
+        exponent = sp.Poly(sp.cancel(equation["product"] / equation["third"]) + 1, p)  # e
+        slope, constant = (sp.factor(self._with_shares(exponent.nth(n))) for n in (1, 0))
+        a = sp.factor(slope - self.k) * self.roots[root] + constant
         return Reduction(k=self.k, I=self.I, p=self.roots[root], a=a, V=positive(V, "V"))
 
     def at(self, **values: Any) -> TravelingWave:
