@@ -105,6 +105,18 @@ def positive(value: Any, name: str) -> sp.Expr:
     return expression
 
 
+def real(value: Any, name: str) -> sp.Expr:
+    """`exact`, but a plain name becomes a real symbol, of either sign: a place such as ξ.
+
+    >>> real("xi", "xi").is_positive is None
+    True
+    """
+    expression = exact(value, name)
+    if isinstance(value, str) and expression.is_Symbol:
+        return sp.Symbol(expression.name, real=True)
+    return expression
+
+
 def _from_text(text: str, name: str) -> sp.Expr:
     wanted = "an integer, a decimal, a fraction such as 3/2, or a plain name is wanted"
     if len(text) > _LONGEST:

@@ -167,7 +167,7 @@ def _terms_json(coefficients: Mapping[int, Terms]) -> list[dict[str, Any]]:
             "order": n,
             "jet": [list(power) for power in jet.x],
             "jet_t": [list(power) for power in jet.t],
-            "coefficient": str(found[jet]),
+            "coefficient": found.written(jet),
         }
         for n, found in coefficients.items()
         for jet in found

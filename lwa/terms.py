@@ -62,6 +62,7 @@ class Terms(Mapping[Jet, sp.Expr]):
         self._raw = raw
         self._divisor = divisor
         self._converted: dict[Jet, sp.Expr] = {}
+        self._written: dict[Jet, str] = {}
 
     def __getitem__(self, jet: Jet | Powers) -> sp.Expr:
         jet = jet if isinstance(jet, Jet) else Jet(jet)
@@ -97,6 +98,16 @@ class Terms(Mapping[Jet, sp.Expr]):
         rows += [f"{more} more" if rows else f"{more} terms"] if more else []
         return f"{{{', '.join(rows)}}}"
 
+    def length(self, jet: Jet) -> int:
+        """The number of terms of a coefficient."""
+        return len(self._raw[jet])
+
+    def written(self, jet: Jet) -> str:
+        """The coefficient as text, which for long ones takes longest of all; kept."""
+        if jet not in self._written:
+            self._written[jet] = str(self[jet])
+        return self._written[jet]
+
     def text(self, jet: Jet) -> str:
         """The jet as it stands in the equation, such as u_x^(k-3) u_2x^3."""
         base = "u_x" if self.base else "u"
@@ -125,7 +136,9 @@ class Terms(Mapping[Jet, sp.Expr]):
     def without(self, left_out: Callable[[Jet], bool]) -> Terms:
         """The terms but those of some jets."""
         raw = {jet: c for jet, c in self._raw.items() if not left_out(jet)}
-        return Terms(self._ring, raw, self.power, self._divisor)
+        rest = Terms(self._ring, raw, self.power, self._divisor)
+        rest._converted, rest._written = self._converted, self._written
+        return rest
 
     @property
     def base(self) -> int:

@@ -107,7 +107,7 @@ def _consistency_text(theory: Theory) -> list[str]:
 def _orders(coefficients: Mapping[int, Terms], prefix: str, suffix: str) -> list[str]:
     lines = []
     for n, found in coefficients.items():
-        rows = [f"    {found.text(jet)}: {found[jet]}" for jet in found]
+        rows = [f"    {found.text(jet)}: {found.written(jet)}" for jet in found]
         lines += [f"  {prefix}{n}{suffix}:", *rows] if rows else []
     return lines
 

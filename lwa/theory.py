@@ -85,6 +85,12 @@ class Theory(Value):
             n: terms(self.closure, d) for n, d in enumerate(self.closure.defect) if not d.is_zero()
         }
 
+    @property
+    def orders(self) -> tuple[Terms, ...]:
+        """All terms that there are: of the wave equation, the slaved fields and the defect."""
+        slaved = (found for series in self.slaved.values() for found in series.values())
+        return (*self.pde.coefficients.values(), *slaved, *self.defect.values())
+
     def _repr_latex_(self) -> str:
         return latex.display([*latex.ansatz(self.closure, 4), *latex.equation(self.pde, 3)])
 

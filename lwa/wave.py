@@ -28,7 +28,7 @@ from lwa.cell import Cell, exponent, substitution
 from lwa.cell import k as symbol_k
 from lwa.coefficients import number
 from lwa.dispersion import Dispersion
-from lwa.exact import InputError, positive, shorten
+from lwa.exact import InputError, positive, real, shorten
 from lwa.jets import JetAlgebra, Monomial
 from lwa.quantities import NoSolitaryWave, strain_power
 from lwa.value import Value
@@ -236,8 +236,13 @@ class TravelingWave(Value):
         """τ/t: the speed in space and time is dx/dt = V τ/t."""
         return self.cell.time_scale(self.k)
 
-    def profile(self, xi: sp.Expr, B: Any = None) -> sp.Expr:
-        """v(ξ) = B cos^m(βξ) on |ξ| ≤ π/(2β) and 0 outside, as a SymPy Piecewise."""
+    def profile(self, xi: Any, B: Any = None) -> sp.Expr:
+        """v(ξ) = B cos^m(βξ) on |ξ| ≤ π/(2β) and 0 outside, as a SymPy Piecewise.
+
+        >>> canonical_wave(Cell((1,)), 3).profile("xi", B=1)
+        Piecewise((cos(sqrt(2)*xi/D), Abs(xi) <= sqrt(2)*pi*D/4), (0, True))
+        """
+        xi = real(xi, "xi")
         B = sp.Symbol("B", positive=True) if B is None else positive(B, "B")
         arch = B * sp.cos(self.beta * xi) ** self.m
         return sp.Piecewise((arch, sp.Abs(xi) <= self.width / 2), (0, True))
