@@ -8,28 +8,51 @@
 D**2*(m1**2 - m1*m2 + m2**2)/(3*(m1 + m2)**2)
 """
 
+from typing import TYPE_CHECKING, Any
+
+from lwa.approximants import EpsilonSeries, Resummed
 from lwa.cell import Cell, D, Dimer, k
 from lwa.closure import Closure
+from lwa.coefficients import Coefficients, Partition
 from lwa.dispersion import Dispersion
-from lwa.exact import InputError
+from lwa.exact import InputError, Quantity
 from lwa.expansion import Expansion, expand
+from lwa.jets import JetAlgebra, Ladder, Monomial, Term
 from lwa.pde import PDE
 from lwa.quantities import NoSolitaryWave
-from lwa.terms import Jet, Terms
+from lwa.radiation import Radiation
+from lwa.terms import Jet, Powers, Terms
 from lwa.theory import Theory, homogenize
-from lwa.wave import TravelingWave, canonical_wave
+from lwa.wave import Reduction, TravelingWave, canonical_wave
+
+if TYPE_CHECKING:
+    from lwa.numeric import Array, NumericWave
 
 __all__ = [
     "PDE",
+    "Array",
     "Cell",
     "Closure",
+    "Coefficients",
     "D",
     "Dimer",
     "Dispersion",
+    "EpsilonSeries",
     "Expansion",
     "InputError",
     "Jet",
+    "JetAlgebra",
+    "Ladder",
+    "Monomial",
     "NoSolitaryWave",
+    "NumericWave",
+    "Partition",
+    "Powers",
+    "Quantity",
+    "Radiation",
+    "Reduction",
+    "Resummed",
+    "Term",
     "Terms",
     "Theory",
     "TravelingWave",
@@ -38,3 +61,12 @@ __all__ = [
     "homogenize",
     "k",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    """What needs NumPy is loaded when it is asked for."""
+    if name in ("Array", "NumericWave"):
+        from lwa import numeric
+
+        return getattr(numeric, name)
+    raise AttributeError(f"module 'lwa' has no attribute {name!r}")
