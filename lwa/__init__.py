@@ -8,31 +8,59 @@
 D**2*(m1**2 - m1*m2 + m2**2)/(3*(m1 + m2)**2)
 """
 
+from typing import TYPE_CHECKING, Any
+
 from lwa import hertz
+from lwa.approximants import EpsilonSeries, Resummed
 from lwa.cell import Cell, D, Dimer, k
 from lwa.closure import Closure
+from lwa.coefficients import Coefficients, Partition
 from lwa.dispersion import Dispersion
-from lwa.exact import InputError
+from lwa.exact import InputError, Quantity
 from lwa.expansion import Expansion, expand
 from lwa.hertz import Material, Sphere
+from lwa.jets import JetAlgebra, Ladder, Monomial, Term
 from lwa.pde import PDE
-from lwa.physical import PhysicalWave
+from lwa.physical import CompactWave, PhysicalWave
+from lwa.quantities import NoSolitaryWave
+from lwa.radiation import Radiation
+from lwa.terms import Jet, Powers, Terms
 from lwa.theory import Theory, homogenize
-from lwa.wave import NoSolitaryWave, TravelingWave, canonical_wave
+from lwa.wave import Reduction, TravelingWave, canonical_wave
+
+if TYPE_CHECKING:
+    from lwa.numeric import Array, NumericWave
 
 __all__ = [
     "PDE",
+    "Array",
     "Cell",
     "Closure",
+    "Coefficients",
+    "CompactWave",
     "D",
     "Dimer",
     "Dispersion",
+    "EpsilonSeries",
     "Expansion",
     "InputError",
+    "Jet",
+    "JetAlgebra",
+    "Ladder",
     "Material",
+    "Monomial",
     "NoSolitaryWave",
+    "NumericWave",
+    "Partition",
     "PhysicalWave",
+    "Powers",
+    "Quantity",
+    "Radiation",
+    "Reduction",
+    "Resummed",
     "Sphere",
+    "Term",
+    "Terms",
     "Theory",
     "TravelingWave",
     "canonical_wave",
@@ -41,3 +69,12 @@ __all__ = [
     "homogenize",
     "k",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    """What needs NumPy is loaded when it is asked for."""
+    if name in ("Array", "NumericWave"):
+        from lwa import numeric
+
+        return getattr(numeric, name)
+    raise AttributeError(f"module 'lwa' has no attribute {name!r}")

@@ -11,6 +11,7 @@ with P equal contacts of stiffness A_eff, A_eff^{-1/k} = (1/P) Σ A_i^{-1/k}.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -18,7 +19,7 @@ from typing import Any
 
 import sympy as sp
 
-from lwa.exact import InputError, exact, positive, shorten
+from lwa.exact import InputError, exact, integer, positive, shorten
 from lwa.hertz import Sphere, stiffness
 from lwa.value import Value
 
@@ -36,6 +37,13 @@ RESERVED = {
     "tau": "time",
 }
 """Names that stand in results, and what they mean there: they are refused for anything else."""
+
+
+MOST_BITS = 4096
+"""By which the shares of contacts may differ; floats end at 1024."""
+
+MOST_PARTICLES = 1000
+"""In a cell; beyond it even the simplest of its theories takes minutes."""
 
 
 @dataclass(frozen=True)
@@ -141,9 +149,12 @@ class Cell(Value):
         return tuple(sp.cancel(m / self.mass) for m in self.masses)
 
     def compliances(self, k: Any = k) -> tuple[sp.Expr, ...]:
-        """A_i^{-1/k}: how much of the strain contact i takes, up to a common factor."""
+        """A_i^{-1/k}: how much of the strain contact i takes, up to a common factor.
+
+        Raises `lwa.InputError` where these are numbers beyond what can be written.
+        """
         k = exponent(k)
-        return tuple(A ** (-1 / k) for A in self.stiffnesses)
+        return tuple(_root(A, k, f"stiffness {i}") for i, A in enumerate(self.stiffnesses, 1))
 
     def shares(self, k: Any = k) -> tuple[sp.Expr, ...]:
         """c_i = P A_i^{-1/k} / Σ A_j^{-1/k}, the strain of contact i over the mean strain."""
@@ -179,8 +190,9 @@ def Dimer(
     >>> Dimer(m1, m2, N=2).masses
     (m1, m1, m2)
     """
-    if isinstance(N, bool) or not isinstance(N, int) or N < 1:
-        raise InputError(f"N is {shorten(N)}: the number of particles m1 is an integer from 1 on")
+    N = integer(N, "N", 1)
+    if N > MOST_PARTICLES:
+        raise InputError(f"N is {shorten(N)}: a cell has at most {MOST_PARTICLES} particles")
     return Cell((m1,) * N + (m2,), stiffnesses=tuple(stiffnesses), spacing=spacing)
 
 
@@ -204,23 +216,30 @@ def exponent(value: Any, cell: Cell | None = None) -> sp.Expr:
 
 
 def substitution(
-    values: Mapping[str, Any], cell: Cell, k: sp.Expr = sp.S.One
+    values: Mapping[str, Any],
+    cell: Cell,
+    k: sp.Expr = sp.S.One,
+    more: Sequence[sp.Symbol] = (),
 ) -> dict[sp.Symbol, sp.Expr]:
-    """Symbol → what is given for its name, among the symbols of a cell and its exponent.
+    """Symbol → what is given for its name, among the symbols of a cell, its exponent, and more.
 
     ``omega``, where no symbol is called so, is the ratio m2/m1 of the cell's second mass to its
     first: it replaces m2, or m1 where m2 has a value.
 
-    Raises `lwa.InputError` for a name that does not occur and a value that is not positive.
+    Raises `lwa.InputError` for a name that does not occur, and a value of the cell or the exponent
+    that is not positive.
     """
-    known = {s.name: s for s in (*cell.symbols, *sorted(k.free_symbols, key=str))}
+    known = {s.name: s for s in (*cell.symbols, *sorted(k.free_symbols, key=str), *more)}
     given = dict(values)
     omega = given.pop("omega", None) if "omega" not in known else None
     for name in given:
         if name not in known:
             names = ", ".join(known) or "there are none"
             raise InputError(f"{shorten(name)} is not among the symbols: {names}")
-    new = {known[name]: positive(value, name) for name, value in given.items()}
+    new = {
+        known[name]: (exact if known[name] in more else positive)(value, name)
+        for name, value in given.items()
+    }
     return new if omega is None else new | _from_ratio(positive(omega, "omega"), cell, new)
 
 
@@ -236,6 +255,18 @@ def _from_ratio(
     if first.is_Symbol and first not in new and first not in second.free_symbols:
         return {first: second.xreplace(new) / omega}
     raise InputError("omega is m2/m1: one of the masses must be a symbol without another value")
+
+
+def _root(A: sp.Expr, k: sp.Expr, name: str) -> sp.Expr:
+    """A^{-1/k}, refused where it is a number of more than `MOST_BITS`."""
+    if A.is_Rational and k.is_Rational:
+        bits = abs(math.log2(A.p) - math.log2(A.q)) * float(1 / k)
+        if bits > MOST_BITS:
+            raise InputError(
+                f"{name} is {shorten(A)} and k {shorten(k)}: the share of this contact, by A^(-1/k)"
+                f", is beyond 2^±{MOST_BITS}"
+            )
+    return A ** (-1 / k)
 
 
 def unmistakable(symbols: Sequence[sp.Symbol]) -> None:

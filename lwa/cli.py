@@ -19,7 +19,7 @@ from lwa.expansion import expand
 from lwa.hertz import EXPONENT
 from lwa.render import SI, dispersion_json, expansion_json, force_json, theory_json, wave_json
 from lwa.source import theory_latex, theory_python, wave_latex, wave_python
-from lwa.terminal import quantities, quantity, run
+from lwa.terminal import announce, quantities, quantity, run
 from lwa.text import dispersion_text, expansion_text, force_text, theory_text, wave_text
 from lwa.theory import Theory, homogenize
 
@@ -110,6 +110,23 @@ def _theory(
     return homogenize(Cell(masses, stiffnesses, spacing), order, k=k, **kind)
 
 
+SECONDS_A_TERM = 3e-4
+"""To convert and to write a term of a coefficient."""
+
+
+def _write_out(theory: Theory) -> None:
+    """Where that takes long, say so and show the progress; what is written is kept."""
+    length = sum(found.length(jet) for found in theory.orders for jet in found)
+    if announce(f"{length} terms to be written", length * SECONDS_A_TERM):
+        from tqdm import tqdm  # here, for a quick start of the others
+
+        with tqdm(total=length, desc="terms", leave=False, disable=None) as progress:
+            for found in theory.orders:
+                for jet in found:
+                    found.written(jet)
+                    progress.update(found.length(jet))
+
+
 def _show(result: Any) -> None:
     click.echo(result if isinstance(result, str) else json.dumps(result, indent=2))
 
@@ -126,7 +143,9 @@ def lwa() -> None:
 @_chain
 def derive(style: str, **chain: Any) -> None:
     """The ansatz, the wave equation and the defect between the equations of motion."""
-    _show(THEORY[style](_theory(**chain)))
+    theory = _theory(**chain)
+    _write_out(theory)
+    _show(THEORY[style](theory))
 
 
 @lwa.command()

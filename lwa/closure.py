@@ -21,26 +21,32 @@ and these the strains.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 from math import factorial
+from typing import Any
 
 import sympy as sp
 from flint import fmpq, fmpq_mpoly
 
-from lwa.cell import Cell
+from lwa import latex
+from lwa.cell import Cell, exponent, substitution
 from lwa.coefficients import Coefficients
 from lwa.exact import InputError
-from lwa.jets import JetAlgebra, Ladder, Power
+from lwa.jets import JetAlgebra, Ladder, Monomial, Power, exact_quotient
 
 BRANCHES = ("acoustic", "optical")
 CLOSURES = ("linear", "full")
 FIELDS = ("first", "center")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Closure:
     """The solved consistency condition, as polynomials.
+
+    It is known by its cell, exponent, order, closure, branch and field: by these it is compared,
+    and when it is copied or pickled it is derived again from them.
 
     acceleration : E_n. Acoustic: φ_ττ = φ_x^k Σ_{n≥1} D^{n-1} E_n, E_1 = r_1 = φ_xx/φ_x.
         Optical: u_ττ = -u^k Σ_{n≥0} D^n E_n, E_0 = 1, in its own time unit.
@@ -61,6 +67,65 @@ class Closure:
     slaved: tuple[tuple[fmpq_mpoly, ...], ...] = ()
     defect: tuple[fmpq_mpoly, ...] = ()
 
+    @property
+    def key(self) -> tuple[Any, ...]:
+        """What it is known by: the arguments of `solve`."""
+        return (self.ring, self.order, self.name, self.field)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Closure) and self.key == other.key
+
+    def __hash__(self) -> int:
+        return hash(self.key)
+
+    def __reduce__(self) -> tuple[Callable[..., Closure], tuple[Any, ...]]:
+        return solve, self.key
+
+    def __repr__(self) -> str:
+        return (
+            f"Closure({self.ring.cell!r}, order={self.order}, k={self.ring.k}, "
+            f"closure={self.name!r}, branch={self.ring.branch!r}, field={self.field!r})"
+        )
+
+    def _repr_latex_(self) -> str:
+        return latex.display(latex.ansatz(self, 4) or [latex.row(r"\lambda", self.ratio)])
+
+    @cached_property
+    def b(self) -> dict[int, sp.Expr]:
+        """n → b_n of the ansatz, n ≥ 1."""
+        return {
+            n: self.ring.expression(self.algebra.terms(b).get(Monomial(()), []))
+            for n, b in enumerate(self.ansatz)
+            if n > 0
+        }
+
+    @property
+    def fields(self) -> tuple[tuple[fmpq_mpoly, ...], ...]:
+        """`slaved`, and the same of the linear ansatz (acoustic branch)."""
+        if self.slaved:
+            return self.slaved
+        r, zero = self.algebra.r, self.algebra.zero
+        first = tuple(zero for _ in range(self.order))
+        second = tuple(b * r[n] for n, b in enumerate(self.ansatz[1:]))
+        return (first, second) if self.ansatz else (first,)
+
+    @property
+    def symbols(self) -> tuple[sp.Symbol, ...]:
+        """Symbols besides those of the cell and the exponent."""
+        return ()
+
+    def at(self, **values: Any) -> Closure:
+        """The closure for these values of the named symbols; see `lwa.cell.substitution`."""
+        return self.anew(substitution(values, self.ring.cell, self.ring.k, self.symbols))
+
+    def anew(
+        self, new: Mapping[sp.Symbol, sp.Expr] | None = None, order: int | None = None
+    ) -> Closure:
+        """The same derivation with these values of its symbols, or to this order."""
+        cell, k = self.ring.cell.replaced(new or {}), exponent(self.ring.k.xreplace(new or {}))
+        ring = replace(self.ring, cell=cell, k=k)
+        return solve(ring, order or self.order, self.name, self.field)
+
 
 def amplitude_ratios(cell: Cell) -> dict[str, sp.Expr]:
     """λ = w/u of the uniform motions (order D^0) of a two-particle cell, by branch.
@@ -72,15 +137,7 @@ def amplitude_ratios(cell: Cell) -> dict[str, sp.Expr]:
     {'acoustic': 1, 'optical': -m1/m2}
     """
     m1, m2 = cell.masses
-    lam = sp.Symbol("lambda")
-    s = lam - 1  # the force vanishes with the strain, and only there
-    first, second = 2 * s, -2 * s
-    condition = sp.Poly(sp.expand(m2 * lam * first - m1 * second), lam)
-    optical, remainder = sp.div(condition, sp.Poly(lam - 1, lam))
-    if not remainder.is_zero:
-        raise AssertionError("w = u moves the chain as a whole and is always a solution")
-    slope, constant = optical.all_coeffs()
-    return {"acoustic": sp.Integer(1), "optical": sp.cancel(-constant / slope)}
+    return {"acoustic": sp.Integer(1), "optical": -sp.cancel(m1 / m2)}
 
 
 Progress = Callable[[Iterable[int]], Iterable[int]]
@@ -120,68 +177,120 @@ def full(
     "center", the mean Σ μ_i w_i of the sublattice fields at one point, each w_i shifted back to x
     from where its particle rests in units of strain, x_i = c_0 + … + c_{i-1}.
     """
-    algebra = JetAlgebra(ring.names, max(order - 1, 1), ring.exponent)
-    P = ring.cell.size
-    k = ring.exponent(algebra.context)
-    mu = ring.masses.elements(algebra.context)
-    c = ring.contacts.elements(algebra.context)
-    positions = [sum(c[:i], algebra.zero) for i in range(P)]
-    weights = mu if field == "center" else [algebra.one] + [algebra.zero] * (P - 1)
-
-    force = [Power(algebra, k) for _ in range(P)]
-    E = Ladder(algebra, k)
-    E.append(algebra.zero)
-    S = [Ladder(algebra, algebra.one) for _ in range(P)]  # w_i = φ + D φ_x S_i
-    for ladder, x in zip(S, positions, strict=True):
-        ladder.append(x)
-    rate = [Ladder(algebra, algebra.half) for _ in range(P)]  # ∂_τ (D φ_x S_i)
-    for ladder in rate:
-        ladder.append(algebra.zero)
+    chain = _Slaving(ring, order, field)
     for n in progress(range(1, order)):
-        r_n = algebra.r[n] * fmpq(1, factorial(n + 1))
-        slaved = [algebra.dt(ladder, E, n) for ladder in rate]
-        if n + 1 < order:
-            for i in range(P):
-                rate[i].append(algebra.dt(S[i], E, n))
-        # momentum: the sum of the equations, whose forces cancel but for the cell's ends
-        E_n = -force[-1].carried(-P, n) / P
-        for mu_i, acceleration in zip(mu, slaved, strict=True):
-            E_n = E_n - mu_i * acceleration
-        E.append(E_n)
-        # partial sums: how the strains of the contacts differ from the first one's, Φ_i - Φ_0
-        difference = [algebra.zero]
-        for i in range(1, P):
-            difference.append(difference[-1] + P * mu[i] * (E_n + slaved[i]))
-        differs = [d + force[0].known - F.known for d, F in zip(difference, force, strict=True)]
-        # all strains of a cell together: w_0(x + PD) - w_0(x)
-        first = r_n * P ** (n + 1) + S[0].carried(P, n)
-        for c_i, d in zip(c, differs, strict=True):
-            first = first - c_i * d
-        for F, d in zip(force, differs, strict=True):
-            F.append(first / P + d)
-        # what φ is: Σ weight_i w_i(x - x_i D) = φ
-        relative = [algebra.zero]
-        for c_i, F in zip(c[:-1], force[:-1], strict=True):
-            relative.append(relative[-1] + c_i * F.X[n])
-        origin = algebra.zero
-        for weight, x, ladder, own in zip(weights, positions, S, relative, strict=True):
-            if not weight.is_zero():
-                moved = (-x) ** (n + 1) * r_n + ladder.carried(-x, n)
-                origin = origin - weight * (own + moved)
-        for ladder, own in zip(S, relative, strict=True):
-            ladder.append(origin + own)
-    b = [algebra.one, *(_linear_part(algebra, S[1], n) for n in range(order))] if P > 1 else []
+        chain.extend(n)
+    S = [particle.S for particle in chain.particles]
+    b = [_linear_part(chain.algebra, S[1], n) for n in range(order)] if len(S) > 1 else []
     return Closure(
         ring=ring,
-        algebra=algebra,
+        algebra=chain.algebra,
         order=order,
         name="full",
         field=field,
         ratio=sp.Integer(1),
-        acceleration=tuple(E[n] for n in range(order)),
-        ansatz=tuple(b),
+        acceleration=tuple(chain.E[n] for n in range(order)),
+        ansatz=(chain.algebra.one, *b) if b else (),
         slaved=tuple(tuple(ladder[n] for n in range(order)) for ladder in S),
     )
+
+
+class _Particle:
+    """A particle w = φ + D φ_x S of the cell and the contact to the next one.
+
+    mu, c : its mass fraction and the contact's share.
+    x : where it rests, in units of strain.
+    weight : with which it enters φ.
+    rate : the series ∂_τ (D φ_x S).
+    force : that of the contact.
+    """
+
+    def __init__(
+        self, algebra: JetAlgebra, k: fmpq_mpoly, mu: fmpq_mpoly, c: fmpq_mpoly, x: fmpq_mpoly
+    ) -> None:
+        self.mu, self.c, self.x = mu, c, x
+        self.weight = algebra.zero
+        self.S = Ladder(algebra, algebra.one)
+        self.S.append(x)
+        self.rate = Ladder(algebra, algebra.half)
+        self.rate.append(algebra.zero)
+        self.force = Power(algebra, k)
+
+
+class _Slaving:
+    """The recursion of the full closure, one order of D at a time."""
+
+    def __init__(self, ring: Coefficients, order: int, field: str) -> None:
+        self.algebra = algebra = JetAlgebra(ring.names, max(order - 1, 1), ring.exponent)
+        self.order = order
+        k = ring.exponent(algebra.context)
+        self.E = Ladder(algebra, k)
+        self.E.append(algebra.zero)
+        self.particles: list[_Particle] = []
+        x = algebra.zero
+        for mu, c in zip(
+            ring.masses.elements(algebra.context),
+            ring.contacts.elements(algebra.context),
+            strict=True,
+        ):
+            self.particles.append(_Particle(algebra, k, mu, c, x))
+            x = x + c
+        self.particles[0].weight = algebra.one
+        if field == "center":
+            for particle in self.particles:
+                particle.weight = particle.mu
+
+    def extend(self, n: int) -> None:
+        """E_n, and all series to D^n."""
+        accelerations = [self.algebra.dt(particle.rate, self.E, n) for particle in self.particles]
+        if n + 1 < self.order:
+            for particle in self.particles:
+                particle.rate.append(self.algebra.dt(particle.S, self.E, n))
+        self._momentum(n, accelerations)
+        self._strains(n, accelerations)
+        self._origin(n)
+
+    def _momentum(self, n: int, accelerations: list[fmpq_mpoly]) -> None:
+        """The sum of the equations, whose forces cancel but for those at the cell's ends."""
+        P = len(self.particles)
+        E_n = -self.particles[-1].force.carried(-P, n) / P
+        for particle, acceleration in zip(self.particles, accelerations, strict=True):
+            E_n = E_n - particle.mu * acceleration
+        self.E.append(E_n)
+
+    def _strains(self, n: int, accelerations: list[fmpq_mpoly]) -> None:
+        """Partial sums give Φ_i - Φ_0, and all strains together w_0(x + PD) - w_0(x)."""
+        P = len(self.particles)
+        first = self.particles[0]
+        difference = self.algebra.zero
+        differs = []
+        for particle, acceleration in zip(self.particles, accelerations, strict=True):
+            if particle is not first:
+                difference = difference + P * particle.mu * (self.E[n] + acceleration)
+            differs.append(difference + first.force.known - particle.force.known)
+        X = self._shift(n) * P ** (n + 1) + first.S.carried(P, n)
+        for particle, d in zip(self.particles, differs, strict=True):
+            X = X - particle.c * d
+        for particle, d in zip(self.particles, differs, strict=True):
+            particle.force.append(X / P + d)
+
+    def _origin(self, n: int) -> None:
+        """What φ is, Σ weight_i w_i(x - x_i D) = φ, places the first particle."""
+        relative = [self.algebra.zero]
+        for particle in self.particles[:-1]:
+            relative.append(relative[-1] + particle.c * particle.force.X[n])
+        origin = self.algebra.zero
+        for particle, own in zip(self.particles, relative, strict=True):
+            if not particle.weight.is_zero():
+                x = particle.x
+                moved = (-x) ** (n + 1) * self._shift(n) + particle.S.carried(-x, n)
+                origin = origin - particle.weight * (own + moved)
+        for particle, own in zip(self.particles, relative, strict=True):
+            particle.S.append(origin + own)
+
+    def _shift(self, n: int) -> fmpq_mpoly:
+        """What the shift of φ by D adds at D^{n+1}, over φ_x."""
+        return self.algebra.r[n] * fmpq(1, factorial(n + 1))
 
 
 def _linear_part(algebra: JetAlgebra, S: Ladder, n: int) -> fmpq_mpoly:
@@ -198,18 +307,11 @@ def linear(ring: Coefficients, order: int, progress: Progress = iter) -> Closure
         return _uniform(ring, order, progress)
     if size != 2:
         raise InputError(
-            f"the cell has {size} masses: the linear closure's {ring.branch} branch wants two"
+            f"the cell has {size} masses: the linear closure's {ring.branch} branch wants two; "
+            'closure="full" (--closure full) covers the acoustic branch of any cell'
         )
     branch = _acoustic if ring.branch == "acoustic" else _optical
     return branch(ring, order, progress)
-
-
-def _exact_quotient(numerator: fmpq_mpoly, divisor: fmpq_mpoly) -> fmpq_mpoly:
-    """numerator/divisor where the mathematics says that it is a polynomial."""
-    quotient, remainder = divmod(numerator, divisor)
-    if not remainder.is_zero():
-        raise AssertionError("a mass fraction does not divide its own equation of motion")
-    return quotient
 
 
 def _applied(b: list[fmpq_mpoly], f: Ladder, n: int) -> fmpq_mpoly:
@@ -238,8 +340,8 @@ def _acoustic(ring: Coefficients, order: int, progress: Progress) -> Closure:
         mean = algebra.one * fmpq(2**n, factorial(n + 1))
         right.append((mean + c[1] * xi / 2) * r_n)
         left.append((mean - c[0] * xi / 2) * r_n)
-        first.append(_exact_quotient(one + xi * r_n, 2 * mu[0]))
-        second.append(_exact_quotient(two - xi * r_n, 2 * mu[1]) - _applied(b, second, n))
+        first.append(exact_quotient(one + xi * r_n, 2 * mu[0]))
+        second.append(exact_quotient(two - xi * r_n, 2 * mu[1]) - _applied(b, second, n))
         b.append(c[0] * (mean + c[1] * xi / 2))
     return _closure(ring, algebra, order, b[: order + 1], first, second)
 

@@ -9,6 +9,7 @@ Polynomials leave as factored SymPy expressions in the caller's own symbols.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -17,6 +18,11 @@ import sympy as sp
 from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
 from lwa.cell import Cell
+from lwa.exact import InputError
+from lwa.value import Value
+
+MOST_DIGITS = 4000
+"""Of a coefficient; Python prints no integers of more than 4,300."""
 
 
 def rational(value: sp.Expr) -> fmpq:
@@ -30,7 +36,7 @@ def number(value: fmpq) -> sp.Rational:
 
 
 @dataclass(frozen=True)
-class Partition:
+class Partition(Value):
     """Positive weights w_i that enter only as f_i = total · w_i / Σ_j w_j.
 
     The masses of a cell are such weights (total 1), and so are the compliances of its contacts
@@ -82,7 +88,7 @@ class Partition:
 
 
 @dataclass(frozen=True)
-class Coefficients:
+class Coefficients(Value):
     """The ring Q[k, μ, c] for one cell, one exponent and one branch.
 
     On the optical branch the two contacts move by equal amounts, so that they enter with their
@@ -116,6 +122,17 @@ class Coefficients:
         exponent = () if self.k.is_Rational else ("k",)
         return (*exponent, *self.masses.names, *self.contacts.names, *self._opaque)
 
+    def writable(self, order: int) -> None:
+        """Refuse an order whose coefficients, powers of the cell's numbers, Python cannot print."""
+        values = (self.k, *(self.masses.values or ()), *(self.contacts.values or ()))
+        parts = [int(part) for x in values if x.is_Rational for part in (x.p, x.q)]
+        digits = max((part.bit_length() for part in parts), default=0) * math.log10(2)
+        if order * digits > MOST_DIGITS:
+            raise InputError(
+                f"order is {order}: with numbers of {digits:.0f} digits in the cell or the "
+                f"exponent, coefficients have more than {MOST_DIGITS}"
+            )
+
     def exponent(self, context: fmpq_mpoly_ctx) -> fmpq_mpoly:
         """k as an element of a ring that has `names` among its generators."""
         if self.k.is_Rational:
@@ -127,11 +144,11 @@ class Coefficients:
         polynomial = self._constants[i]
         if polynomial is None:
             return context.gen(context.variable_to_index(f"a{i}"))
-        generators = [str(g) for g in polynomial.gens]
+        names = ("k", *self.masses.names)[: len(polynomial.gens)]
         total = context.constant(0)
         for exponents, coefficient in polynomial.terms():
             term = context.constant(rational(coefficient))
-            for name, e in zip(generators, exponents, strict=True):
+            for name, e in zip(names, exponents, strict=True):
                 if e:
                     term = term * context.gen(context.variable_to_index(name)) ** e
             total = total + term
@@ -144,22 +161,20 @@ class Coefficients:
     @cached_property
     def _constants(self) -> tuple[sp.Poly | None, ...]:
         """The constants as polynomials in k and μ; None for one that is not, a generator then."""
+        return tuple(map(self._in_fractions, self.constants))
+
+    def _in_fractions(self, constant: sp.Expr) -> sp.Poly | None:
+        """A function of k and the mass fractions alone, where it is a polynomial in them."""
         weights = self.masses.distinct if self.masses.names else ()
-        free = sp.symbols(self.masses.names)
+        scale = sp.Dummy(positive=True)
+        scaled = constant.xreplace({w: scale * w for w in weights})
+        if sp.cancel(scaled - constant) != 0:
+            return None
+        k, *free = sp.symbols(f"k:{len(self.masses.names) + 1}", cls=sp.Dummy)
         counts = [self.masses.weights.count(w) for w in weights]
         rest = (1 - sum(n * f for n, f in zip(counts, free, strict=False))) / (counts or [1])[-1]
-        images = dict(zip(weights, (*free, rest), strict=False))
-        generators = [sp.Symbol("k"), *free]
-        scale = sp.Dummy(positive=True)
-        found: list[sp.Poly | None] = []
-        for constant in self.constants:
-            scaled = constant.xreplace({w: scale * w for w in weights})
-            if sp.cancel(scaled - constant) != 0:  # depends on more than the fractions
-                found.append(None)
-                continue
-            renamed = {**images, self.k: generators[0]}
-            found.append(_as_polynomial(sp.cancel(constant.xreplace(renamed)), generators))
-        return tuple(found)
+        images = dict(zip(weights, (*free, rest), strict=False)) | {self.k: k}
+        return _as_polynomial(sp.cancel(constant.xreplace(images)), [k, *free])
 
     def expression(self, terms: Sequence[tuple[tuple[int, ...], fmpq]]) -> sp.Expr:
         """Σ coefficient · Π generator^exponent over `terms`, factored, in the caller's symbols.
@@ -249,7 +264,7 @@ class Door:
                 powers = (g**e for g, e in zip(self._generators, exponents, strict=True) if e)
                 self._monomials[exponents] = sp.Mul.make_args(sp.Mul(*powers))
             factor, monomial = number(coefficient), self._monomials[exponents]
-            if factor == 1 or monomial == (1,):
+            if factor == 1 or monomial[0].is_Number:
                 yield sp.Mul(factor, *monomial)
             else:  # in canonical order already; sorting it anew would take most of the time
                 yield sp.Mul(factor, *monomial, evaluate=False)

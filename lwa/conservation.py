@@ -55,12 +55,4 @@ def potential(closure: Closure, n: int, density: fmpq_mpoly | None) -> fmpq_mpol
         return None
     if variational_derivative(algebra, k, density, n - 1) != -(k + 1) * closure.acceleration[n]:
         return None
-    return _by_parts(algebra, density, k + 1)
-
-
-def _by_parts(algebra: JetAlgebra, density: fmpq_mpoly, exponent: fmpq_mpoly) -> fmpq_mpoly:
-    """The density less a derivative, so that no highest jet stands in it linearly."""
-    for n in range(algebra.weight, 1, -1):
-        alone = algebra.slope(density, n).subs({f"r{n}": 0})
-        density = density - algebra.dx(algebra.integral(alone, n - 1), exponent)
-    return density
+    return algebra.by_parts(density, k + 1)

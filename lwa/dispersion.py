@@ -21,10 +21,12 @@ from typing import TYPE_CHECKING, Any
 import sympy as sp
 from flint import fmpq_mpoly
 
+from lwa import latex
 from lwa.bloch import BRANCHES, Bloch
-from lwa.cell import Cell, exponent
+from lwa.cell import Cell, exponent, substitution
 from lwa.coefficients import Coefficients
-from lwa.exact import InputError, shorten
+from lwa.exact import InputError, integer, shorten
+from lwa.value import Value
 
 if TYPE_CHECKING:
     import numpy as np
@@ -37,7 +39,7 @@ MOST_TERMS = 200_000
 
 
 @dataclass(frozen=True)
-class Dispersion:
+class Dispersion(Value):
     """Ω(κ) of the linear chain with a cell's masses and strain shares.
 
     Ω is the frequency in τ times D and κ the wavenumber times D. In time t the frequency is
@@ -62,7 +64,19 @@ class Dispersion:
     def __post_init__(self) -> None:
         if not isinstance(self.cell, Cell):
             raise InputError(f"cell is {shorten(self.cell)}: a Cell such as Cell([1, 2]) is wanted")
-        object.__setattr__(self, "k", exponent(self.k))
+        object.__setattr__(self, "k", exponent(self.k, self.cell))
+
+    def at(self, **values: Any) -> Dispersion:
+        """The chain for these values of the named symbols, and of ω = m2/m1 by ``omega``.
+
+        Raises `lwa.InputError` for a name that does not occur or a value that is not positive.
+        """
+        new = substitution(values, self.cell, self.k)
+        return Dispersion(self.cell.replaced(new), self.k.xreplace(new))
+
+    def _repr_latex_(self) -> str:
+        row = rf"\Omega^{{2}} = \kappa^{{2}} - {sp.latex(self.I)} \, \kappa^{{4}} + \cdots"
+        return latex.display([row])
 
     # --- exact ------------------------------------------------------------------------------
 
@@ -133,11 +147,8 @@ class Dispersion:
         The coefficient of κ^{2n} has the degree 2n - 2 in the masses and in the compliances, and
         comes from about n² products.
         """
-        if isinstance(order, bool) or not isinstance(order, int):
-            raise InputError(f"order is {shorten(order)}: an integer from 1 on is wanted")
-        if order < 1:
-            raise InputError(f"order is {order}: it must be 1 or more")
-        n = order // 2
+        highest = integer(order, "order", 1)
+        n = highest // 2
         terms = n * n
         for part in (self._ring.masses, self._ring.contacts):
             terms *= comb(2 * max(n, 1) - 2 + len(part.names), len(part.names))
@@ -146,6 +157,7 @@ class Dispersion:
                 f"order is {shorten(order)}: about {min(terms, 10**30):.0e} terms, too many; give "
                 "numbers for the cell, or a lower order"
             )
+        self._ring.writable(highest)
         return n
 
     def _demand_dimer(self, what: str) -> None:

@@ -7,8 +7,10 @@ its jets are (r_m + Σ ℓ_n D^n r_{m+n}) / (1 + X), those of its velocity likew
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, fields, replace
+from functools import cached_property
+from typing import Any
 
 import sympy as sp
 from flint import fmpq_mpoly
@@ -20,8 +22,51 @@ from lwa.jets import JetAlgebra, Ladder, Monomial, Power
 Series = list[fmpq_mpoly]
 
 
-def change_field(closure: Closure, alphas: Mapping[int, sp.Expr]) -> Closure:
-    """The closure's wave equation for φ = u + Σ α_n D^n ∂_x^n u, n ≥ 1; the ansatz is left out.
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class ChangedClosure(Closure):
+    """A closure written for φ = u + Σ α_n D^n ∂_x^n u; without the ansatz and the defect.
+
+    alphas : the (n, α_n), n ≥ 1. It is known by them and by the ``origin``, the closure of u.
+    """
+
+    origin: Closure
+    alphas: tuple[tuple[int, sp.Expr], ...]
+
+    @property
+    def key(self) -> tuple[Any, ...]:
+        """What it is known by: the arguments of `change_field`."""
+        return (self.origin, self.alphas)
+
+    def __reduce__(self) -> tuple[Callable[..., Closure], tuple[Any, ...]]:
+        return change_field, (self.origin, dict(self.alphas))
+
+    def __repr__(self) -> str:
+        shifts = ", ".join(f"{n}: {alpha}" for n, alpha in self.alphas)
+        return f"{self.origin!r} in the field {{{shifts}}}"
+
+    @cached_property
+    def fields(self) -> tuple[tuple[fmpq_mpoly, ...], ...]:
+        """The S_i of w_i = φ + D φ_x S_i in the new jets, found when they are asked for."""
+        change = _Change(self.origin, dict(self.alphas))
+        return tuple(map(change.slaved, self.origin.fields))
+
+    @property
+    def symbols(self) -> tuple[sp.Symbol, ...]:
+        """Those of the α_n."""
+        own = set().union(*(alpha.free_symbols for _, alpha in self.alphas))
+        own -= {*self.ring.cell.symbols, *self.ring.k.free_symbols, *self.origin.symbols}
+        return (*self.origin.symbols, *sorted(own, key=str))
+
+    def anew(
+        self, new: Mapping[sp.Symbol, sp.Expr] | None = None, order: int | None = None
+    ) -> Closure:
+        """The same derivation with these values of its symbols, or to this order."""
+        alphas = {n: alpha.xreplace(new or {}) for n, alpha in self.alphas}
+        return change_field(self.origin.anew(new, order), alphas)
+
+
+def change_field(closure: Closure, alphas: Mapping[int, sp.Expr]) -> ChangedClosure:
+    """The closure for φ = u + Σ α_n D^n ∂_x^n u, n ≥ 1.
 
     Raises `lwa.InputError` on the optical branch and for n < 1.
     """
@@ -34,7 +79,7 @@ def change_field(closure: Closure, alphas: Mapping[int, sp.Expr]) -> Closure:
 
 class _Change:
     def __init__(self, closure: Closure, alphas: Mapping[int, sp.Expr]) -> None:
-        self.closure = closure
+        self.closure, self.alphas = closure, alphas
         old = closure.algebra
         self.ring = replace(closure.ring, constants=(*closure.ring.constants, *alphas.values()))
         self.algebra = JetAlgebra(
@@ -49,51 +94,70 @@ class _Change:
             if n <= self.size:
                 self.alpha[n] = self.ring.constant(first + i, self.algebra.context)
         self.inverse = [one]
-        for n in range(1, self.size):
+        for n in range(1, self.size + 1):
             terms = (self.alpha[j] * self.inverse[n - j] for j in range(1, n + 1))
             self.inverse.append(-sum(terms, zero))
 
-    def result(self) -> Closure:
-        acceleration = Ladder(self.algebra, self.k)
-        for n in range(self.size):
-            total = self.algebra.zero
-            for m in range(1, n + 1):
-                total = total + self._replaced(m)[n - m]
-            acceleration.append(total)
-        found = []
-        for n in range(self.size):
-            parts = (self.alpha[j] * acceleration.dx(n - j, j) for j in range(n + 1))
-            found.append(sum(parts, self.algebra.zero))
-        return replace(
-            self.closure,
+    def result(self) -> ChangedClosure:
+        unchanged = {
+            field.name: getattr(self.closure, field.name) for field in fields(Closure) if field.init
+        }
+        changed = dict(
             ring=self.ring,
             algebra=self.algebra,
             field="changed",
-            acceleration=tuple(found),
+            acceleration=self._acceleration(),
             ansatz=(),
             slaved=(),
             defect=(),
         )
+        return ChangedClosure(
+            **(unchanged | changed), origin=self.closure, alphas=tuple(self.alphas.items())
+        )
 
-    def _replaced(self, m: int) -> Series:
-        """E_m in the jets of φ: a series that starts at weight m."""
+    def _acceleration(self) -> tuple[fmpq_mpoly, ...]:
+        """φ_ττ = (1 + Σ α_n D^n ∂_x^n) u_ττ."""
+        acceleration = Ladder(self.algebra, self.k)
+        for term in self._replaced(self.closure.acceleration, self.k):
+            acceleration.append(term)
+        return tuple(
+            sum(
+                (self.alpha[j] * acceleration.dx(n - j, j) for j in range(n + 1)), self.algebra.zero
+            )
+            for n in range(self.size)
+        )
+
+    def slaved(self, S: Sequence[fmpq_mpoly]) -> tuple[fmpq_mpoly, ...]:
+        """w - φ = (u - φ) + D u_x S, over D φ_x."""
+        moved = self._replaced(S, self.algebra.one)
+        return tuple(self.inverse[n + 1] * self.algebra.r[n] + moved[n] for n in range(self.size))
+
+    def _replaced(self, terms: Sequence[fmpq_mpoly], exponent: fmpq_mpoly) -> Series:
+        """The series u_x^e Σ D^m f_m in the jets of φ."""
         total = [self.algebra.zero] * self.size
-        old = self.closure.algebra
-        for monomial, terms in old.terms(self.closure.acceleration[m]).items():
-            padding = (0,) * (self.algebra.context.nvars() - len(old.parameters))
-            coefficient = self.algebra.context.from_dict({(*e, *padding): c for e, c in terms})
-            for j, part in enumerate(self._monomial(monomial, self.size - m)):
-                total[j] = total[j] + coefficient * part
+        for m, f in enumerate(terms):
+            for monomial, coefficient in self._monomials(f):
+                parts = self._monomial(monomial, exponent, self.size - m)
+                for j, part in enumerate(parts):
+                    total[m + j] = total[m + j] + coefficient * part
         return total
 
-    def _monomial(self, monomial: Monomial, size: int) -> Series:
-        """Π jets of u times (1 + X)^k, in the jets of φ, to ``size`` terms."""
+    def _monomials(self, f: fmpq_mpoly) -> list[tuple[Monomial, fmpq_mpoly]]:
+        old = self.closure.algebra
+        padding = (0,) * (self.algebra.context.nvars() - len(old.parameters))
+        return [
+            (monomial, self.algebra.context.from_dict({(*e, *padding): c for e, c in terms}))
+            for monomial, terms in old.terms(f).items()
+        ]
+
+    def _monomial(self, monomial: Monomial, exponent: fmpq_mpoly, size: int) -> Series:
+        """Π jets of u times (1 + X)^e, in the jets of φ, to ``size`` terms."""
         powers_t = sum(e for _, e in monomial.t)
-        exponent = self.k - sum(e for _, e in monomial.x) - powers_t * (self.k + 1) / 2
-        strain = Power(self.algebra, exponent)
+        degree = exponent - sum(e for _, e in monomial.x) - powers_t * (self.k + 1) / 2
+        strain = Power(self.algebra, degree)
         for n in range(1, size):
             strain.append(self.inverse[n] * self.algebra.r[n])
-        series = [self.algebra.one, *(exponent * strain.Phi[n] for n in range(1, size))]
+        series = [self.algebra.one, *(degree * strain.Phi[n] for n in range(1, size))]
         for jets, powers in ((self.algebra.r, monomial.x), (self.algebra.s, monomial.t)):
             for m, e in powers:
                 jet = [self.inverse[n] * jets[m + n] for n in range(size)]

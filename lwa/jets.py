@@ -39,7 +39,7 @@ class JetAlgebra:
     """Polynomials in r_1 … r_weight over Q[parameters], with ∂_x.
 
     With ``exponent``, which gives k as an element of the ring, the jets s_1 … s_weight of the
-    velocity are there too, and ∂_τ.
+    velocity are there too, and ∂_τ; with ``rest`` also s_0 = u_τ / p^{(k+1)/2} itself.
 
     >>> jets = JetAlgebra((), weight=2)
     >>> jets.dx(jets.r[1], 0)
@@ -51,17 +51,20 @@ class JetAlgebra:
         parameters: tuple[str, ...],
         weight: int,
         exponent: Callable[[fmpq_mpoly_ctx], fmpq_mpoly] | None = None,
+        rest: bool = False,
     ) -> None:
         self.parameters = parameters
         self.weight = weight
         jets = range(1, weight + 1)
-        names = [*parameters, *(f"r{n}" for n in jets)]
-        names += [f"s{n}" for n in jets] if exponent else []
+        self._lowest = 0 if rest else 1
+        velocities = range(self._lowest, weight + 1) if exponent else range(0)
+        names = [*parameters, *(f"r{n}" for n in jets), *(f"s{n}" for n in velocities)]
         self.context = fmpq_mpoly_ctx.get(names, Ordering.lex)
         self.one = self.context.constant(1)
         self.zero = self.context.constant(0)
         generators = self.context.gens()
         self._offset = len(parameters)
+        self._velocity = self._offset + weight
         self.r = [self.one, *generators[self._offset : self._offset + weight]]
         r1 = self.r[1]
         # generator → (what ∂_x makes of it; what ∂_τ makes of it without E, over p^{(k-1)/2})
@@ -70,15 +73,14 @@ class JetAlgebra:
         self.s: list[fmpq_mpoly] = []
         if exponent:
             self.half = (exponent(self.context) + 1) / 2
-            self.s = [self.zero, *generators[self._offset + weight :]]
-            first = self._offset + weight
+            self.s = [*([] if rest else [self.zero]), *generators[self._velocity :]]
             self._dt = {
                 self._offset + n - 1: self.s[n + 1] - self.s[1] * self.r[n] for n in jets[:-1]
             }
-            for n in jets:
+            for index, n in enumerate(velocities, start=self._velocity):
                 if n < weight:
-                    self._dx[first + n - 1] = self.s[n + 1] - self.half * r1 * self.s[n]
-                self._dt[first + n - 1] = -self.half * self.s[1] * self.s[n]
+                    self._dx[index] = self.s[n + 1] - self.half * r1 * self.s[n]
+                self._dt[index] = -self.half * self.s[1] * self.s[n]
 
     def dx(self, f: fmpq_mpoly, exponent: fmpq_mpoly | int) -> fmpq_mpoly:
         """p^{-e} ∂_x (p^e f), e the exponent."""
@@ -102,8 +104,8 @@ class JetAlgebra:
 
     def velocity_slopes(self, f: fmpq_mpoly) -> list[tuple[int, fmpq_mpoly]]:
         """(i, ∂f/∂s_i) for the s_i that stand in f."""
-        start = self._offset + self.weight
-        return [(i - start + 1, f.derivative(i)) for i in self._present(f) if i >= start]
+        start = self._velocity
+        return [(i - start + self._lowest, f.derivative(i)) for i in self._present(f) if i >= start]
 
     def _present(self, f: fmpq_mpoly) -> list[int]:
         """The indices of the jets that stand in f."""
@@ -132,10 +134,10 @@ class JetAlgebra:
     def terms(self, f: fmpq_mpoly) -> dict[Monomial, list[Term]]:
         """The jet monomials of f, each with the terms of its coefficient."""
         found: dict[Monomial, list[Term]] = {}
-        middle = self._offset + self.weight
         for exponents, coefficient in f.terms():
-            jets_x, jets_t = exponents[self._offset : middle], exponents[middle:]
-            monomial = Monomial(_powers(jets_x), _powers(jets_t))
+            jets_x = exponents[self._offset : self._velocity]
+            jets_t = exponents[self._velocity :]
+            monomial = Monomial(_powers(jets_x, 1), _powers(jets_t, self._lowest))
             own = tuple(map(int, exponents[: self._offset]))
             found.setdefault(monomial, []).append((own, coefficient))
         return found
@@ -158,9 +160,52 @@ class JetAlgebra:
             total, f = total + part, f - self.dx(part, exponent)
         return total if f.is_zero() else None
 
+    def by_parts(self, f: fmpq_mpoly, exponent: fmpq_mpoly) -> fmpq_mpoly:
+        """f less some p^{-e} ∂_x (p^e g): no highest jet, of the velocity or the strain, is linear.
 
-def _powers(exponents: Sequence[int]) -> Powers:
-    return tuple((n, int(e)) for n, e in enumerate(exponents, start=1) if e)
+        f has one weight. In it s_n stands linearly beside lower jets of the velocity, r_n beside
+        lower ones of the strain where there is no velocity; r_1 alone is the derivative of p^e / e.
+        """
+        names = self.context.names()
+        last = self.context.nvars() - 1
+        for index in range(last, self._velocity, -1):
+            f = self._less(f, index, exponent, names[index:])
+        for index in range(self._velocity - 1, self._offset, -1):
+            f = self._less(f, index, exponent, names[index:])
+        return f - self._alone(f, self._offset, names[self._offset :]) * self.r[1]
+
+    def _less(
+        self, f: fmpq_mpoly, index: int, exponent: fmpq_mpoly, higher: Sequence[str]
+    ) -> fmpq_mpoly:
+        return f - self.dx(self._alone(f, index, higher).integral(index - 1), exponent)
+
+    def _alone(self, f: fmpq_mpoly, index: int, others: Sequence[str]) -> fmpq_mpoly:
+        """The coefficient of the jet ``index`` in f where none of the others is there."""
+        return f.derivative(index).subs(dict.fromkeys(others, 0))
+
+    def taken(self, f: fmpq_mpoly, other: JetAlgebra) -> fmpq_mpoly:
+        """f of another algebra of the same parameters in this one, which has its jets."""
+        more_t = (0,) * (other._lowest - self._lowest)
+        found = {}
+        for exponents, coefficient in f.terms():
+            x, t = exponents[: other._velocity], exponents[other._velocity :]
+            x = (*x, *(0,) * (self._velocity - other._velocity))
+            t = (*more_t, *t)
+            rest = (0,) * (self.context.nvars() - len(x) - len(t))
+            found[*x, *t, *rest] = coefficient
+        return self.context.from_dict(found)
+
+
+def exact_quotient(numerator: fmpq_mpoly, divisor: fmpq_mpoly) -> fmpq_mpoly:
+    """numerator/divisor where the mathematics says that it is a polynomial."""
+    quotient, remainder = divmod(numerator, divisor)
+    if not remainder.is_zero():
+        raise AssertionError(f"{divisor} does not divide what it should")
+    return quotient
+
+
+def _powers(exponents: Sequence[int], lowest: int) -> Powers:
+    return tuple((n, int(e)) for n, e in enumerate(exponents, start=lowest) if e)
 
 
 class Ladder:

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -18,7 +19,8 @@ import sympy as sp
 from numpy.typing import ArrayLike, NDArray
 
 from lwa.exact import InputError, shorten
-from lwa.wave import NoSolitaryWave, strain_power
+from lwa.quantities import NoSolitaryWave, strain_power
+from lwa.value import Value
 
 if TYPE_CHECKING:
     from lwa.wave import TravelingWave
@@ -29,12 +31,15 @@ Function = Callable[[Extended, Extended], Extended]
 
 
 @dataclass(frozen=True)
-class NumericWave:
-    """β, width, FWHM, speed and amplitude of a dimer's wave, for arrays of k and ω.
+class NumericWave(Value):
+    """β, width, FWHM, speed and amplitude of an N:1 dimer's wave, for arrays of k and ω.
 
-    k and ω broadcast against each other. Where there is no wave (k ≤ 1, G + H + I ≤ 0, V² ≤ 0)
-    the functions raise `lwa.NoSolitaryWave` and name the first such point, or, with
+    ``wave`` has the symbol k for its exponent and two symbols m1, m2 for its masses; k and ω
+    broadcast against each other. Where there is no wave (k ≤ 1, G + H + I ≤ 0, V² ≤ 0) the
+    functions raise `lwa.NoSolitaryWave` and name the first such point, or, with
     ``missing="nan"``, return NaN there.
+
+    Raises `lwa.InputError` for any other wave.
 
     >>> import numpy as np
     >>> from lwa import Dimer, homogenize
@@ -43,23 +48,40 @@ class NumericWave:
     array([2., 1.])
     """
 
-    _dispersion: Function
-    _factor: Function
-    _excess: Function
+    wave: TravelingWave
     missing: Literal["raise", "nan"] = "raise"
 
-    @classmethod
-    def of(cls, wave: TravelingWave, missing: Literal["raise", "nan"] = "raise") -> NumericWave:
-        """The functions of a wave whose k, m1 and m2 are three symbols."""
-        if missing not in ("raise", "nan"):
-            raise InputError(f"missing is {shorten(missing)}: 'raise' or 'nan' is wanted")
-        free = (wave.k, *wave.cell.masses)
-        if len(free) != 3 or len(set(free)) != 3 or not all(x.is_Symbol for x in free):
-            raise InputError("functions of (k, ω) need the symbols k, m1, m2 in a dimer's theory")
-        factor = wave.speed_factor
-        excess = (factor - 1) / (wave.k - 1)
-        dispersion = _function(wave.dispersion, *free)
-        return cls(dispersion, _function(factor, *free), _function(excess, *free), missing)
+    def __post_init__(self) -> None:
+        if self.missing not in ("raise", "nan"):
+            raise InputError(f"missing is {shorten(self.missing)}: 'raise' or 'nan' is wanted")
+        free = self._symbols
+        given = set(self.wave.dispersion.free_symbols | self.wave.speed_factor.free_symbols)
+        if len(set(free)) != 3 or not all(x.is_Symbol for x in free) or not given <= set(free):
+            raise InputError(
+                "functions of (k, ω) need a symbol k and a cell of two masses that are symbols, "
+                "m1 and m2, with equal contacts"
+            )
+
+    def _repr_latex_(self) -> str:
+        return self.wave._repr_latex_()
+
+    @property
+    def _symbols(self) -> tuple[sp.Expr, ...]:
+        """k and the distinct masses, in their order."""
+        return (self.wave.k, *dict.fromkeys(self.wave.cell.masses))
+
+    @cached_property
+    def _dispersion(self) -> Function:
+        return _function(self.wave.dispersion, *self._symbols)
+
+    @cached_property
+    def _factor(self) -> Function:
+        return _function(self.wave.speed_factor, *self._symbols)
+
+    @cached_property
+    def _excess(self) -> Function:
+        """(V²/B^{k-1} - 1) / (k - 1)."""
+        return _function((self.wave.speed_factor - 1) / (self.wave.k - 1), *self._symbols)
 
     def beta(self, k: ArrayLike, omega: ArrayLike) -> Array:
         """β D = (k-1) / (2 √((G+H+I)/D²))."""
@@ -133,7 +155,7 @@ def _positive(value: ArrayLike, name: str) -> Extended:
 
 def _function(ratio: sp.Expr, k: sp.Symbol, m1: sp.Symbol, m2: sp.Symbol) -> Function:
     """A function of (k, ω) from a rational expression homogeneous in the masses."""
-    shifted, omega = sp.symbols("kappa omega")
+    shifted, omega = sp.symbols("kappa omega", cls=sp.Dummy)
     ratio = ratio.subs({m1: 1, m2: omega, k: shifted + 2}, simultaneous=True)
     numerator, denominator = (
         sum(

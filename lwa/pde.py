@@ -13,84 +13,28 @@ Coefficients are converted to SymPy when they are asked for, one by one.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any, ClassVar
 
 import sympy as sp
 from flint import fmpq_mpoly
 
+from lwa import latex
 from lwa.cell import Cell
 from lwa.closure import Closure
-from lwa.coefficients import Coefficients
 from lwa.conservation import flux, potential
-from lwa.exact import InputError, exact
+from lwa.energy import energy
+from lwa.exact import InputError, exact, integer
 from lwa.fields import change_field
-from lwa.jets import Term
+from lwa.terms import ENERGY, Jet, Terms, base_order, terms
+from lwa.value import Value
 from lwa.wave import TravelingWave
-
-Powers = tuple[tuple[int, int], ...]
-
-
-class Jet(NamedTuple):
-    """The product of (∂_x^i u / base)^e over ``x`` and (∂_x^i u_τ / base^{(k+1)/2})^e over ``t``.
-
-    Both are tuples of (i, e). The base is u_x, on the optical branch u.
-    """
-
-    x: Powers
-    t: Powers = ()
-
-
-class Terms(Mapping[Jet, sp.Expr]):
-    """Jet → coefficient at one order; a coefficient becomes SymPy when it is looked up.
-
-    A jet without u_τ may also be given by its plain tuple, as in ``terms[(2, 1), (3, 1)]``.
-    """
-
-    def __init__(self, ring: Coefficients, raw: dict[Jet, list[Term]]) -> None:
-        self._ring = ring
-        self._raw = raw
-        self._converted: dict[Jet, sp.Expr] = {}
-
-    def __getitem__(self, jet: Jet | Powers) -> sp.Expr:
-        jet = jet if isinstance(jet, Jet) else Jet(jet)
-        if jet not in self._converted:
-            self._converted[jet] = self._ring.expression(self._raw[jet])
-        return self._converted[jet]
-
-    def __iter__(self) -> Iterator[Jet]:
-        return iter(self._raw)
-
-    def __len__(self) -> int:
-        return len(self._raw)
-
-    def __repr__(self) -> str:
-        return repr(dict(self))
-
-
-def terms(closure: Closure, polynomial: fmpq_mpoly) -> Terms:
-    """A polynomial of the closure's algebra as jets of the field with their coefficients."""
-    base = base_order(closure)
-    raw = {
-        Jet(tuple((n + base, e) for n, e in monomial.x), monomial.t): coefficient
-        for monomial, coefficient in closure.algebra.terms(polynomial).items()
-    }
-    return Terms(closure.ring, dict(sorted(raw.items(), key=lambda item: _complexity(item[0]))))
-
-
-def base_order(closure: Closure) -> int:
-    """The order of the derivative that the jets are normalised by: u_x, on the optical branch u."""
-    return 1 if closure.ring.branch == "acoustic" else 0
-
-
-def _complexity(jet: Jet) -> tuple[bool, int, Jet]:
-    return bool(jet.t), -sum(e for _, e in jet.x), jet
 
 
 @dataclass(frozen=True)
-class PDE:
+class PDE(Value):
     """The wave equation that a closure leads to (see the module's first lines for its form)."""
 
     closure: Closure
@@ -108,7 +52,7 @@ class PDE:
     @cached_property
     def time_scale(self) -> sp.Expr:
         """τ/t."""
-        if self.closure.ring.branch == "acoustic":
+        if self.acoustic:
             return self.cell.time_scale(self.k)
         # w = λu strains each contact by (λ - 1)u, and 1 - λ = M/m2.
         m1, m2 = self.cell.masses
@@ -121,34 +65,55 @@ class PDE:
 
         The leading term is left out: `coefficients` starts behind u_x^{k-1} u_xx (or -u^k).
         """
-        base = base_order(self.closure)
+        base = base_order(self.closure.ring)
         sign = 1 if base else -1
         acceleration = enumerate(self.closure.acceleration)
         return {n: terms(self.closure, sign * E) for n, E in acceleration if n > base}
 
-    def _at_third_order(self, jet: Powers) -> sp.Expr:
-        if self.closure.ring.branch != "acoustic":
+    LETTERS: ClassVar[Mapping[str, Jet]] = {
+        "G": Jet(((2, 3),)),
+        "H": Jet(((2, 1), (3, 1))),
+        "I": Jet(((4, 1),)),
+    }
+    """The paper's letters for the coefficients at D^{k+3}, and their jets."""
+
+    @property
+    def acoustic(self) -> bool:
+        """Whether it is the acoustic branch's equation."""
+        return self.closure.ring.branch == "acoustic"
+
+    @property
+    def third_order(self) -> dict[str, sp.Expr]:
+        """G, H and I by their letters; {} below order 4 and on the optical branch."""
+        known = self.acoustic and self.closure.order >= 4
+        return {"G": self.G, "H": self.H, "I": self.I} if known else {}
+
+    def _repr_latex_(self) -> str:
+        return latex.display(latex.equation(self, 3))
+
+    def _at_third_order(self, letter: str) -> sp.Expr:
+        if not self.acoustic:
             raise InputError("G, H and I belong to the acoustic branch")
         if self.closure.order < 4:
             raise InputError(
                 f"order is {self.closure.order}: G, H and I stand at D^(k+3), from order 4 on"
             )
-        return self.coefficients[3].get(Jet(jet), sp.Integer(0)) * self.cell.spacing**2
+        return self.coefficients[3].get(self.LETTERS[letter], sp.Integer(0)) * self.cell.spacing**2
 
     @cached_property
     def G(self) -> sp.Expr:
         """The coefficient of u_x^{k-3} u_xx^3, D² included."""
-        return self._at_third_order(((2, 3),))
+        return self._at_third_order("G")
 
     @cached_property
     def H(self) -> sp.Expr:
         """The coefficient of u_x^{k-2} u_xx u_xxx, D² included."""
-        return self._at_third_order(((2, 1), (3, 1)))
+        return self._at_third_order("H")
 
     @cached_property
     def I(self) -> sp.Expr:
         """The coefficient of u_x^{k-1} u_xxxx, D² included."""
-        return self._at_third_order(((4, 1),))
+        return self._at_third_order("I")
 
     @property
     def vanishing(self) -> tuple[int, ...]:
@@ -157,9 +122,16 @@ class PDE:
 
     @cached_property
     def conservative(self) -> bool:
-        """Whether every order is ∂_x of a flux, so that the momentum ∫ u_τ dx is conserved."""
-        acoustic = self.closure.ring.branch == "acoustic"
-        return acoustic and None not in self._fluxes.values()
+        """Whether every order is ∂_x of a flux, so that the momentum ∫ u_τ dx is conserved.
+
+        What speaks against it stands at D^{k+3} at the earliest, which is asked for an equation of
+        lower order too.
+        """
+        return self.acoustic and None not in self._at_least_to_third_order._fluxes.values()
+
+    @property
+    def _at_least_to_third_order(self) -> PDE:
+        return self if self.closure.order >= 4 else PDE(self.closure.anew(order=4))
 
     @cached_property
     def _fluxes(self) -> dict[int, fmpq_mpoly | None]:
@@ -181,37 +153,42 @@ class PDE:
         found = {n: potential(self.closure, n, F) for n, F in self._fluxes.items()}
         return {n: terms(self.closure, V) for n, V in found.items() if V is not None}
 
-    @property
+    @cached_property
     def variational(self) -> bool:
-        """Whether every order derives from a potential (see `potentials`)."""
-        return bool(self._orders) and all(n in self.potentials for n in self._orders)
+        """Whether every order (D^{k+3} in any case) derives from a potential; see `potentials`."""
+        pde = self._at_least_to_third_order
+        return bool(pde._orders) and all(n in pde.potentials for n in pde._orders)
 
     @property
     def _orders(self) -> tuple[int, ...]:
-        return tuple(self.coefficients) if self.closure.ring.branch == "acoustic" else ()
+        return tuple(self.coefficients) if self.acoustic else ()
+
+    @cached_property
+    def energy(self) -> Mapping[int, Terms]:
+        """n → e_n / u_x^{k+1} of the energy's density Σ D^n e_n, to n = order - 2.
+
+        It is the chain's own energy in the slaved fields (`lwa.energy`), so that ∂_τ of it is ∂_x
+        of a flux to the order of the closure, in every field. e_0 = u_τ²/2 + u_x^{k+1}/(k(k+1)).
+
+        Raises `lwa.InputError` on the optical branch, and where the closure leaves a defect.
+        """
+        algebra, found = energy(self.closure)
+        divisor = self.k * (self.k + 1)
+        return {n: terms(self.closure, e, ENERGY, divisor, algebra) for n, e in enumerate(found)}
 
     def energy_density(self, u: sp.Expr, x: sp.Symbol, velocity: sp.Expr = sp.S.Zero) -> sp.Expr:
-        """u_τ²/2 + Σ D^{n-1} V_n for fields u(x) and u_τ(x): the density of a conserved energy.
+        """`energy` for fields u(x) and u_τ(x): the density of a conserved energy.
 
-        Raises `lwa.InputError` where an order does not derive from a potential.
+        Raises `lwa.InputError` as `energy` does.
 
         >>> from lwa import Cell, homogenize
         >>> x = sp.Symbol("x")
         >>> homogenize(Cell([1]), k=3).pde.energy_density(x**2, x)
         -2*D**2*x**2/3 + 4*x**4/3
         """
-        if not self.variational:
-            raise InputError(
-                "the wave equation has no energy in this field: it is variational with closure "
-                "full and field center (see `PDE.variational`)"
-            )
-        k, D, p = self.k, self.cell.spacing, u.diff(x)
-        result = velocity**2 / 2 + p ** (k + 1) / (k * (k + 1))
-        for n, found in self.potentials.items():
-            for jet, coefficient in found.items():
-                jets = sp.Mul(*((u.diff(x, i) / p) ** e for i, e in jet.x))
-                result += coefficient / (k + 1) * D ** (n - 1) * p ** (k + 1) * jets
-        return result
+        D = self.cell.spacing
+        found = self.energy.items()
+        return sp.Add(*(D**n * e.of_fields(u, velocity, x) for n, e in found))
 
     def in_field(self, alphas: Mapping[int, Any]) -> PDE:
         """The wave equation of φ = u + Σ α_n D^n ∂_x^n u, for {n: α_n}.
@@ -223,8 +200,15 @@ class PDE:
         >>> pde.H, pde.in_field({2: "alpha"}).H
         (D**2*(k/6 - 1/6), D**2*(12*alpha + 1)*(k - 1)/6)
         """
-        exact_alphas = {n: exact(a, f"alpha_{n}") for n, a in alphas.items()}
-        return PDE(change_field(self.closure, exact_alphas))
+        given = ((integer(n, "n", 1), a) for n, a in alphas.items())
+        return PDE(change_field(self.closure, {n: exact(a, f"alpha_{n}") for n, a in given}))
+
+    def at(self, **values: Any) -> PDE:
+        """The equation for these values of the named symbols, and of ω = m2/m1 by ``omega``.
+
+        Raises `lwa.InputError` for a name that does not occur or a value that cannot be meant.
+        """
+        return PDE(self.closure.at(**values))
 
     def right_side(self, u: sp.Expr, x: sp.Symbol, velocity: sp.Expr = sp.S.Zero) -> sp.Expr:
         """The right-hand side of u_ττ for fields u(x) and u_τ(x), as a SymPy expression.
@@ -234,17 +218,14 @@ class PDE:
         >>> homogenize(Cell([1]), k=1, order=4).pde.right_side(sp.exp(x), x)
         D**2*exp(x)/12 + exp(x)
         """
-        base_derivative = base_order(self.closure)
-        base = u.diff(x, base_derivative) if base_derivative else u
+        base = base_order(self.closure.ring)
         k, D = self.k, self.cell.spacing
-        result = base ** (k - 1) * u.diff(x, 2) if base_derivative else -(base**k)
-        for n, found in self.coefficients.items():
-            for jet, coefficient in found.items():
-                product = sp.Mul(*(u.diff(x, i) ** e for i, e in jet.x))
-                product *= sp.Mul(*(velocity.diff(x, i) ** e for i, e in jet.t))
-                degree = sum(e for _, e in jet.x) + (k + 1) / 2 * sum(e for _, e in jet.t)
-                result += coefficient * D ** (n - base_derivative) * base ** (k - degree) * product
-        return result
+        leading = u.diff(x) ** (k - 1) * u.diff(x, 2) if base else -(u**k)
+        rest = (
+            D ** (n - base) * found.of_fields(u, velocity, x)
+            for n, found in self.coefficients.items()
+        )
+        return sp.Add(leading, *rest)
 
     def traveling_wave(self) -> TravelingWave:
         """The compact wave of the equation truncated at D^{k+3}, in closed form.

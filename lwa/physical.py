@@ -17,7 +17,7 @@ from typing import Any, Protocol, Self
 
 import sympy as sp
 
-from lwa.cell import RESERVED, Cell
+from lwa.cell import RESERVED, Cell, unmistakable
 from lwa.exact import InputError, positive, shorten
 from lwa.value import Value
 
@@ -56,6 +56,7 @@ class PhysicalWave(Value):
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "force", positive(self.force, "force"))
+        unmistakable(list(self.force.free_symbols))
         taken = {s.name for s in (*self.wave.cell.symbols, *self.wave.k.free_symbols)}
         for name in sorted(s.name for s in self.force.free_symbols):
             if name in RESERVED or name in taken:

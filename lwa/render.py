@@ -9,19 +9,16 @@ import sympy as sp
 
 from lwa.approximants import EpsilonSeries
 from lwa.dispersion import Dispersion
-from lwa.exact import InputError
 from lwa.expansion import Expansion
-from lwa.pde import Terms
+from lwa.quantities import QUANTITIES
+from lwa.terms import Terms
 from lwa.theory import Theory
-from lwa.wave import QUANTITIES, TravelingWave
+from lwa.wave import TravelingWave
 
 
 def third_order(theory: Theory) -> dict[str, sp.Expr]:
     """G, H and I, or {} where the theory does not reach them (order < 4, or optical)."""
-    try:
-        return {"G": theory.pde.G, "H": theory.pde.H, "I": theory.pde.I}
-    except InputError:
-        return {}
+    return theory.pde.third_order
 
 
 def wave_values(wave: TravelingWave) -> dict[str, sp.Expr]:
@@ -220,7 +217,7 @@ def _terms_json(coefficients: Mapping[int, Terms]) -> list[dict[str, Any]]:
             "order": n,
             "jet": [list(power) for power in jet.x],
             "jet_t": [list(power) for power in jet.t],
-            "coefficient": str(found[jet]),
+            "coefficient": found.written(jet),
         }
         for n, found in coefficients.items()
         for jet in found

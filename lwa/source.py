@@ -4,37 +4,24 @@ from __future__ import annotations
 
 import sympy as sp
 
+from lwa import latex
+from lwa.quantities import QUANTITIES
 from lwa.render import third_order, wave_values
 from lwa.theory import Theory
-from lwa.wave import QUANTITIES, TravelingWave
+from lwa.wave import TravelingWave
 
 
 def theory_latex(theory: Theory) -> str:
-    """The ansatz and the wave equation as LaTeX, one display line each."""
-    rows = [_equation(sp.Symbol("lambda"), theory.amplitude_ratio)]
-    rows += [_equation(sp.Symbol(f"b_{n}"), b) for n, b in theory.ansatz.items()]
-    rows += [_equation(sp.Symbol(name), value) for name, value in third_order(theory).items()]
-    x = sp.Symbol("x")
-    right = theory.pde.right_side(sp.Function("u")(x), x, sp.Function(r"u_{\tau}")(x))
-    rows.append(rf"u_{{\tau\tau}} = {sp.latex(right)}")
-    return _align(rows)
+    """The ansatz and the wave equation, all orders of it, as LaTeX."""
+    return latex.align([*latex.ansatz(theory.closure), *latex.equation(theory.pde)])
 
 
 def wave_latex(theory: Theory, wave: TravelingWave) -> str:
     """The wave's closed forms as LaTeX."""
     names = {"width": "L", "speed": "V_s"}
-    rows = [_equation(sp.Symbol(names.get(n, n)), value) for n, value in wave_values(wave).items()]
-    rows += [_equation(sp.Symbol(f"FWHM_{q}"), wave.fwhm(q)) for q in QUANTITIES]
-    return _align(rows)
-
-
-def _equation(name: sp.Symbol, value: sp.Expr) -> str:
-    return f"{sp.latex(name)} = {sp.latex(value)}"
-
-
-def _align(rows: list[str]) -> str:
-    body = " \\\\\n".join(row.replace("=", "&=", 1) for row in rows)
-    return f"\\begin{{align}}\n{body}\n\\end{{align}}"
+    found = {names.get(name, name): value for name, value in wave_values(wave).items()}
+    found |= {f"FWHM_{quantity}": wave.fwhm(quantity) for quantity in QUANTITIES}
+    return latex.align(latex.values(found))
 
 
 def theory_python(theory: Theory) -> str:

@@ -11,7 +11,7 @@ import click
 import sympy as sp
 
 from lwa.exact import InputError, exact
-from lwa.wave import NoSolitaryWave
+from lwa.quantities import NoSolitaryWave
 
 
 def quantity(context: click.Context, option: click.Parameter, value: str | None) -> sp.Expr | None:
@@ -28,6 +28,18 @@ def quantities(
 
 def _name(option: click.Parameter) -> str:
     return option.opts[0].lstrip("-")
+
+
+PATIENCE = 10.0
+"""Seconds from which a computation says how long it will take."""
+
+
+def announce(what: str, seconds: float) -> bool:
+    """Say on standard error what will take how long, where it takes long; whether it does."""
+    if seconds > PATIENCE:
+        length = f"{seconds:.0f} seconds" if seconds < 100 else f"{seconds / 60:.0f} minutes"
+        click.echo(f"{what}: about {length}", err=True)
+    return seconds > PATIENCE
 
 
 def run(command: click.Command, name: str, arguments: Sequence[str] | None = None) -> None:

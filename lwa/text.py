@@ -10,10 +10,11 @@ import sympy as sp
 from lwa.approximants import EpsilonSeries, Resummed
 from lwa.dispersion import Dispersion
 from lwa.expansion import Expansion
-from lwa.pde import Jet, base_order
+from lwa.quantities import QUANTITIES
 from lwa.render import in_units, third_order, wave_values
+from lwa.terms import Jet, Terms
 from lwa.theory import Theory
-from lwa.wave import QUANTITIES, TravelingWave
+from lwa.wave import TravelingWave
 
 DIGITS = 15
 """Significant digits of a printed number; all of them are correct."""
@@ -47,10 +48,8 @@ def _ansatz_text(theory: Theory) -> list[str]:
     blocks: list[list[str]] = []
     for i, series in theory.slaved.items():
         w = i == 1  # the second particle's field, whose linear part is the ansatz
-        shown = {
-            n: {jet: W[jet] for jet in W if not (w and _is_linear(jet))} for n, W in series.items()
-        }
-        rows = _orders(theory, shown, "1", "D^", "")
+        shown = {n: W.without(_is_linear) if w else W for n, W in series.items()}
+        rows = _orders(shown, "D^", "")
         if rows:
             name = "nonlinear terms of w" if w else f"field of particle {i + 1}, less u"
             blocks.append([f"{name}:", *rows, ""])
@@ -84,7 +83,7 @@ def _equation_text(theory: Theory) -> list[str]:
         lines = ["u_ττ = u_x^(k-1) u_xx" + (more if theory.order > 2 else "")]
     prefix, suffix = ("D^(k+", ")") if acoustic else ("D^", "")
     shown = {n: c for n, c in theory.pde.coefficients.items() if not (found and n == 3)}
-    lines += _orders(theory, shown, "k", prefix, suffix)
+    lines += _orders(shown, prefix, suffix)
     vanishing = ", ".join(f"{prefix}{n}{suffix}" for n in theory.pde.vanishing)
     return [*lines, f"  vanishing identically: {vanishing}"] if vanishing else lines
 
@@ -94,7 +93,7 @@ def _consistency_text(theory: Theory) -> list[str]:
         lines = ["all equations of motion are satisfied at every order shown"]
     else:
         lines = ["defect: u_ττ by the first equation of motion minus u_ττ by the second"]
-        lines += _orders(theory, theory.defect, "k", "D^(k+", ")")
+        lines += _orders(theory.defect, "D^(k+", ")")
     if theory.closure.ring.branch == "acoustic" and not theory.pde.conservative:
         lines.append(
             "not in conservation form: the linear closure of unequal particles does not conserve "
@@ -105,35 +104,12 @@ def _consistency_text(theory: Theory) -> list[str]:
     return lines
 
 
-def _orders(
-    theory: Theory,
-    coefficients: Mapping[int, Mapping[Jet, sp.Expr]],
-    degree: str,
-    prefix: str,
-    suffix: str,
-) -> list[str]:
+def _orders(coefficients: Mapping[int, Terms], prefix: str, suffix: str) -> list[str]:
     lines = []
     for n, found in coefficients.items():
-        if found:
-            lines.append(f"  {prefix}{n}{suffix}:")
-            lines += [f"    {_jet_text(theory, jet, degree)}: {found[jet]}" for jet in found]
+        rows = [f"    {found.text(jet)}: {found.written(jet)}" for jet in found]
+        lines += [f"  {prefix}{n}{suffix}:", *rows] if rows else []
     return lines
-
-
-def _jet_text(theory: Theory, jet: Jet, degree: str) -> str:
-    """A jet times base^degree as it stands in the equation, such as u_x^(k-3) u_2x^3."""
-    base, power = "u_x" if base_order(theory.closure) else "u", degree
-    strains, velocities = (sum(e for _, e in powers) for powers in jet)
-    power += f"-{strains}" if strains else ""
-    pairs = velocities // 2
-    power += f"-{pairs if pairs > 1 else ''}(k+1)" if pairs else ""
-    factors = [_power(f"u_{i if i > 1 else ''}x", e) for i, e in jet.x]
-    factors += [_power(f"u_{i if i > 1 else ''}xτ", e) for i, e in jet.t]
-    return " ".join([f"{base}^({power})", *factors])
-
-
-def _power(name: str, e: int) -> str:
-    return f"{name}^{e}" if e > 1 else name
 
 
 def _list(values: tuple[sp.Expr, ...]) -> str:

@@ -8,13 +8,15 @@ from typing import Any
 
 import sympy as sp
 
+from lwa import latex
 from lwa.cell import Cell, exponent
 from lwa.cell import k as symbol_k
 from lwa.closure import BRANCHES, CLOSURES, FIELDS, Closure, Progress, solve
 from lwa.coefficients import Coefficients
-from lwa.exact import InputError, shorten
-from lwa.jets import Monomial
-from lwa.pde import PDE, Terms, terms
+from lwa.exact import InputError, integer, shorten
+from lwa.pde import PDE
+from lwa.terms import STRAIN, Terms, terms
+from lwa.value import Value
 
 SLOW_ORDER = 12
 """The order from which a derivation shows its progress."""
@@ -24,7 +26,7 @@ MOST_TERMS = 1_000_000
 
 
 @dataclass(frozen=True)
-class Theory:
+class Theory(Value):
     """What the consistency condition gives for a chain (see `homogenize`)."""
 
     closure: Closure
@@ -49,25 +51,20 @@ class Theory:
         """λ of the branch: 1 acoustic, -m1/m2 optical."""
         return self.closure.ratio
 
-    @cached_property
+    @property
     def ansatz(self) -> dict[int, sp.Expr]:
         """n → b_n of w = λ (u + Σ b_n D^n ∂_x^n u); empty for a cell of one particle.
 
         In the full closure w, the field of the second particle, has nonlinear terms besides; all
         of them are in `slaved`.
         """
-        algebra, ring = self.closure.algebra, self.closure.ring
-        return {
-            n: ring.expression(algebra.terms(b).get(Monomial(()), []))
-            for n, b in enumerate(self.closure.ansatz)
-            if n > 0
-        }
+        return self.closure.b
 
     @cached_property
     def slaved(self) -> dict[int, dict[int, Terms]]:
         """Particle i → n → the terms W_n of w_i = u + u_x Σ D^n W_n, full closure (u the field)."""
         return {
-            i: {n: terms(self.closure, S) for n, S in enumerate(series, start=1)}
+            i: {n: terms(self.closure, S, STRAIN) for n, S in enumerate(series, start=1)}
             for i, series in enumerate(self.closure.slaved)
             if any(not S.is_zero() for S in series)
         }
@@ -87,6 +84,26 @@ class Theory:
         return {
             n: terms(self.closure, d) for n, d in enumerate(self.closure.defect) if not d.is_zero()
         }
+
+    @property
+    def orders(self) -> tuple[Terms, ...]:
+        """All terms that there are: of the wave equation, the slaved fields and the defect."""
+        slaved = (found for series in self.slaved.values() for found in series.values())
+        return (*self.pde.coefficients.values(), *slaved, *self.defect.values())
+
+    def _repr_latex_(self) -> str:
+        return latex.display([*latex.ansatz(self.closure, 4), *latex.equation(self.pde, 3)])
+
+    def at(self, **values: Any) -> Theory:
+        """The theory for these values of the named symbols, and of ω = m2/m1 by ``omega``.
+
+        Raises `lwa.InputError` for a name that does not occur or a value that is not positive.
+
+        >>> from lwa import Dimer
+        >>> homogenize(Dimer("m1", "m2")).at(k="3/2", omega=1).pde.I
+        D**2/12
+        """
+        return Theory(self.closure.at(**values))
 
 
 def homogenize(
@@ -123,19 +140,14 @@ def homogenize(
     """
     if not isinstance(cell, Cell):
         raise InputError(f"cell is {shorten(cell)}: a Cell such as Dimer(m1, m2) is wanted")
-    if isinstance(order, bool) or not isinstance(order, int):
-        raise InputError(f"order is {shorten(order)}: an integer from 1 on is wanted")
-    if order < 1:
-        raise InputError(f"order is {order}: it must be 1 or more")
+    order = integer(order, "order", 1)
     _one_of(closure, CLOSURES, "closure")
     _one_of(branch, BRANCHES, "branch")
     _one_of(field, FIELDS, "field")
-    k = exponent(k)
-    shared = k.free_symbols & set().union(*(x.free_symbols for x in (*cell.masses, cell.spacing)))
-    if shared:
-        raise InputError(f"{shared.pop()} names both the exponent and a property of the cell")
+    k = exponent(k, cell)
     ring = Coefficients(cell, k, branch)
     _affordable(order, len(ring.names), closure)
+    ring.writable(order)
     return Theory(solve(ring, order, closure, field, _progress(order)))
 
 

@@ -17,19 +17,22 @@ so that p may even be complex; what a wave needs is G + H + I > 0 and V² > 0.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from functools import cache, cached_property
+from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal
 
 import sympy as sp
 
-from lwa.cell import Cell, exponent
+from lwa import latex
+from lwa.cell import Cell, exponent, substitution
 from lwa.cell import k as symbol_k
 from lwa.coefficients import number
 from lwa.dispersion import Dispersion
-from lwa.exact import InputError, positive, shorten
+from lwa.exact import InputError, positive, real, shorten
 from lwa.jets import JetAlgebra, Monomial
 from lwa.physical import PhysicalWave
+from lwa.quantities import NoSolitaryWave, strain_power
+from lwa.value import Value
 
 if TYPE_CHECKING:
     from lwa.numeric import NumericWave
@@ -39,56 +42,42 @@ V = sp.Symbol("V_s", positive=True)
 
 _LARGE_POWER = 500
 
-QUANTITIES = ("strain", "force", "velocity")
+_SHARES = sp.symbols("g h", cls=sp.Dummy)
+"""For G/I and H/I, in the algebra of the strain's equation."""
+
+MOST_EXPONENT = 1000
+"""Beyond it the exact 2^k of a width has more digits than anyone reads."""
 
 
-def strain_power(quantity: str, k: Any) -> Any:
-    """The power of the strain to which a quantity of the wave is proportional: k or 1.
-
-    Raises `lwa.InputError` unless the quantity is "strain", "force" or "velocity".
-    """
-    if quantity not in QUANTITIES:
-        raise InputError(
-            f"quantity is {shorten(quantity)}: one of {', '.join(QUANTITIES)} is wanted"
-        )
-    return k if quantity == "force" else 1
-
-
-class NoSolitaryWave(ValueError):
-    """The theory has no compact traveling wave for these parameters; the message says why."""
-
-
-@cache
-def strain_equation() -> dict[str, sp.Expr]:
+def strain_equation(p: sp.Expr, G: sp.Expr, H: sp.Expr, I: sp.Expr) -> dict[str, sp.Expr]:
     """The equation of z, v = z^p, as the coefficients of its monomials in r_n = ∂^n z / z.
 
     V² z^p p r_1 = z^{kp} (linear · r_1 + cubic · r_1³ + product · r_1 r_2 + third · r_3),
-    derived in the algebra of the jets of z. SymPy expressions in p, G, H, I.
+    derived in the algebra of the jets of z.
     """
+    given = (p, G, H, I)
     jets = JetAlgebra(("p", "G", "H", "I"), weight=3)
-    p, G, H, I = jets.context.gens()[:4]
+    p_, G_, H_, I_ = jets.context.gens()[:4]
     v = [jets.one]
     for _ in range(3):
-        v.append(jets.dx(v[-1], p))  # v_n = ∂^n (z^p) / z^p
-    right = v[1] + G * v[1] ** 3 + H * v[1] * v[2] + I * v[3]
-    symbols = sp.symbols("p G H I")
+        v.append(jets.dx(v[-1], p_))  # v_n = ∂^n (z^p) / z^p
+    found = jets.terms(v[1] + G_ * v[1] ** 3 + H_ * v[1] * v[2] + I_ * v[3])
     monomials = {
         "linear": ((1, 1),),
         "cubic": ((1, 3),),
         "product": ((1, 1), (2, 1)),
         "third": ((3, 1),),
     }
-    found = jets.terms(right)
     return {
         name: sp.Add(
-            *(number(c) * sp.Mul(*map(sp.Pow, symbols, e)) for e, c in found[Monomial(monomial)])
+            *(number(c) * sp.Mul(*map(sp.Pow, given, e)) for e, c in found[Monomial(monomial)])
         )
         for name, monomial in monomials.items()
     }
 
 
 @dataclass(frozen=True)
-class Reduction:
+class Reduction(Value):
     """The reduction of the strain's equation to z'' = μ z^η - σ z for one root p (speed V)."""
 
     k: sp.Expr
@@ -129,8 +118,8 @@ class Reduction:
         return ratio ** (1 / (self.k - 1))
 
 
-@dataclass(frozen=True)
-class TravelingWave:
+@dataclass(frozen=True, repr=False)
+class TravelingWave(Value):
     """The compact traveling wave v = u_x = B cos^m(βξ), ξ = x - V τ.
 
     G, H, I are the wave equation's coefficients with their D²; the results are exact SymPy
@@ -152,6 +141,10 @@ class TravelingWave:
             raise NoSolitaryWave(
                 f"k is {self.k}: a compact wave needs k > 1 (at k = 1 the chain is linear)"
             )
+        if self.k.is_number and self.k > MOST_EXPONENT:
+            raise InputError(
+                f"k is {shorten(self.k)}: closed forms are given up to k = {MOST_EXPONENT}"
+            )
         if self.dispersion.is_number and not self.dispersion > 0:
             raise NoSolitaryWave(
                 f"(G+H+I)/D² is {self.dispersion}: there is no compact wave unless G+H+I > 0"
@@ -161,14 +154,28 @@ class TravelingWave:
                 f"V²/B^(k-1) is {self.speed_factor}: there is no wave with a real speed"
             )
 
+    def __repr__(self) -> str:
+        return f"TravelingWave({self.cell!r}, k={self.k}, β={shorten(self.beta)})"
+
+    def _repr_latex_(self) -> str:
+        return latex.display(latex.wave(self))
+
     @property
     def D(self) -> sp.Expr:
         """The spacing."""
         return self.cell.spacing
 
     @cached_property
+    def _shares(self) -> tuple[sp.Expr, sp.Expr]:
+        """G/I and H/I; in the canonical field both depend on k alone."""
+        return sp.cancel(self.G / self.I), sp.cancel(self.H / self.I)
+
+    @cached_property
     def dispersion(self) -> sp.Expr:
         """(G + H + I) / D²."""
+        g, h = self._shares
+        if (g + h).free_symbols <= self.k.free_symbols:  # I need not be taken apart
+            return self.I / self.D**2 * sp.factor(1 + g + h)
         return sp.factor(sp.cancel((self.G + self.H + self.I) / self.D**2))
 
     @property
@@ -205,12 +212,8 @@ class TravelingWave:
     def speed_factor(self) -> sp.Expr:
         """V²/B^{k-1} = 1 - β² [(H + 3I) m - 2I]."""
         # β² and m written out: (k-1) cancels, and the result is rational in k and the masses.
-        k, S = self.k, self.G + self.H + self.I
-        return sp.factor(
-            sp.cancel(
-                1 - (k - 1) * (self.H + 3 * self.I) / (2 * S) + (k - 1) ** 2 * self.I / (2 * S)
-            )
-        )
+        k, (g, h) = self.k, self._shares
+        return sp.factor(sp.cancel(1 - (k - 1) * (h + 4 - k) / (2 * (1 + g + h))))
 
     def speed(self, B: Any = None) -> sp.Expr:
         """V = dx/dτ of the wave whose strain peaks at B (a symbol B when not given)."""
@@ -238,8 +241,13 @@ class TravelingWave:
         """The wave whose contact force peaks at F, in space and time; see `PhysicalWave`."""
         return PhysicalWave(self, F)
 
-    def profile(self, xi: sp.Expr, B: Any = None) -> sp.Expr:
-        """v(ξ) = B cos^m(βξ) on |ξ| ≤ π/(2β) and 0 outside, as a SymPy Piecewise."""
+    def profile(self, xi: Any, B: Any = None) -> sp.Expr:
+        """v(ξ) = B cos^m(βξ) on |ξ| ≤ π/(2β) and 0 outside, as a SymPy Piecewise.
+
+        >>> canonical_wave(Cell((1,)), 3).profile("xi", B=1)
+        Piecewise((cos(sqrt(2)*xi/D), Abs(xi) <= sqrt(2)*pi*D/4), (0, True))
+        """
+        xi = real(xi, "xi")
         B = sp.Symbol("B", positive=True) if B is None else positive(B, "B")
         arch = B * sp.cos(self.beta * xi) ** self.m
         return sp.Piecewise((arch, sp.Abs(xi) <= self.width / 2), (0, True))
@@ -247,14 +255,20 @@ class TravelingWave:
     @cached_property
     def roots(self) -> tuple[sp.Expr, sp.Expr]:
         """Both p for which v = z^p removes z_ξ³, the paper's first (2/(k+1) at equal masses)."""
-        quadratic = sp.Poly(sp.cancel(self._derived("cubic") / sp.Symbol("p")), sp.Symbol("p"))
-        A, B, C = (sp.factor(sp.cancel(c / self.D**2)) for c in quadratic.all_coeffs())
-        root = _root(sp.factor(sp.cancel(B**2 - 4 * A * C))).replace(sp.Abs, lambda x: x)
+        p, equation = self._equation
+        quadratic = sp.Poly(sp.cancel(equation["cubic"] / p), p).all_coeffs()
+        A, B, C = (sp.factor(self._with_shares(c)) for c in quadratic)
+        root = _root(sp.factor(B**2 - 4 * A * C)).replace(sp.Abs, lambda x: x)
         return (sp.together((-B - root) / (2 * A)), sp.together((-B + root) / (2 * A)))
 
-    def _derived(self, name: str) -> sp.Expr:
-        G, H, I = sp.symbols("G H I")
-        return strain_equation()[name].xreplace({G: self.G, H: self.H, I: self.I})
+    @cached_property
+    def _equation(self) -> tuple[sp.Symbol, dict[str, sp.Expr]]:
+        """p and `strain_equation` over I, with symbols for G/I and H/I."""
+        p = sp.Dummy("p")
+        return p, strain_equation(p, _SHARES[0], _SHARES[1], sp.S.One)
+
+    def _with_shares(self, value: sp.Expr) -> sp.Expr:
+        return value.xreplace(dict(zip(_SHARES, self._shares, strict=True)))
 
     def reduction(self, root: int = 0, V: Any = V) -> Reduction:
         """z'' = μ z^η - σ z for one root p (0: the paper's, 1: the other).
@@ -265,14 +279,14 @@ class TravelingWave:
         """
         if root not in (0, 1):
             raise InputError(f"root is {shorten(root)}: 0 or 1 is wanted")
-        p = sp.Symbol("p")
-        exponent = sp.cancel(self._derived("product") / self._derived("third")) + 1  # e
-        linear = sp.Poly(exponent - self.k * p, p)
-        a = sp.factor(linear.nth(1)) * self.roots[root] + linear.nth(0)
+        p, equation = self._equation
+        exponent = sp.Poly(sp.cancel(equation["product"] / equation["third"]) + 1, p)  # e
+        slope, constant = (sp.factor(self._with_shares(exponent.nth(n))) for n in (1, 0))
+        a = sp.factor(slope - self.k) * self.roots[root] + constant
         return Reduction(k=self.k, I=self.I, p=self.roots[root], a=a, V=positive(V, "V"))
 
     def at(self, **values: Any) -> TravelingWave:
-        """The same wave with numbers (or other symbols) for the named symbols.
+        """The same wave with numbers (or other symbols) for the named symbols, and for ω = m2/m1.
 
         Raises `lwa.InputError` for a name that the wave does not contain or a value that is not
         positive, and `NoSolitaryWave` where the values admit none.
@@ -282,33 +296,20 @@ class TravelingWave:
         >>> wave.at(k=sp.Rational(3, 2), m1=1, m2=1).beta
         sqrt(10)/(5*D)
         """
-        known = {s.name: s for s in self._symbols}
-        for name in values:
-            if name not in known:
-                raise InputError(f"{name!r} is not among the wave's symbols: {', '.join(known)}")
-        new = {known[name]: positive(value, name) for name, value in values.items()}
-        cell = replace(
-            self.cell,
-            masses=tuple(x.xreplace(new) for x in self.cell.masses),
-            stiffnesses=tuple(x.xreplace(new) for x in self.cell.stiffnesses),
-            spacing=self.cell.spacing.xreplace(new),
-        )
+        new = substitution(values, self.cell, self.k)
         G, H, I = (c.xreplace(new) for c in (self.G, self.H, self.I))
-        return TravelingWave(cell=cell, k=exponent(self.k.xreplace(new)), G=G, H=H, I=I)
-
-    @property
-    def _symbols(self) -> list[sp.Symbol]:
-        parts = (self.k, *self.cell.masses, *self.cell.stiffnesses, self.D)
-        return sorted(set().union(*(part.free_symbols for part in parts)), key=str)
+        return TravelingWave(
+            cell=self.cell.replaced(new), k=exponent(self.k.xreplace(new)), G=G, H=H, I=I
+        )
 
     def numeric(self, missing: Literal["raise", "nan"] = "raise") -> NumericWave:
-        """Vectorised float64 functions of (k, ω), ω = m2/m1; see `lwa.numeric.NumericWave`.
+        """Vectorised float64 functions of (k, ω), ω = m2/m1; see `lwa.NumericWave`.
 
-        Raises `lwa.InputError` unless k and both masses of a two-particle cell are symbols.
+        Raises `lwa.InputError` unless k is a symbol and the masses are two, as in N:1 dimers.
         """
         from lwa.numeric import NumericWave  # here, so that `import lwa` does not load NumPy
 
-        return NumericWave.of(self, missing)
+        return NumericWave(self, missing)
 
 
 def canonical_wave(cell: Cell, k: Any = symbol_k) -> TravelingWave:
@@ -321,7 +322,7 @@ def canonical_wave(cell: Cell, k: Any = symbol_k) -> TravelingWave:
     >>> canonical_wave(Cell((1, 1)), "3/2").beta
     sqrt(10)/(5*D)
     """
-    k = exponent(k)
+    k = exponent(k, cell)
     I = Dispersion(cell, k).I * cell.spacing**2
     return TravelingWave(cell=cell, k=k, G=I * (k - 1) * (k - 2) / 2, H=2 * I * (k - 1), I=I)
 

@@ -9,8 +9,7 @@ import mpmath
 import pytest
 import sympy as sp
 
-from lwa import D, Dimer, homogenize, k
-from lwa.pde import Jet
+from lwa import D, Dimer, Jet, homogenize, k
 from lwa.wave import V
 
 m1, m2 = sp.symbols("m1 m2", positive=True)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from lwa.wave import QUANTITIES
+from lwa.quantities import QUANTITIES
 from validation.plots import figure
 from validation.profile import ExactWave
 from validation.report import document, table, text

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import brentq, minimize_scalar
 
-from lwa.wave import strain_power
+from lwa.quantities import strain_power
 from validation import spectral
 from validation.checked import SceneError, positive
 from validation.measure import MeasureError

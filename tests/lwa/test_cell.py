@@ -1,11 +1,23 @@
 """The periodic cell: shares, effective stiffness, refusals."""
 
+from fractions import Fraction
+
+import numpy as np
 import pytest
 import sympy as sp
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lwa import Cell, Dimer, InputError
+from lwa import (
+    Cell,
+    Dimer,
+    Dispersion,
+    InputError,
+    canonical_wave,
+    homogenize,
+    k,
+)
+from lwa.cell import RESERVED
 
 positive_fractions = st.fractions(min_value="1/100", max_value=100, max_denominator=100)
 
@@ -66,3 +78,78 @@ def test_the_N_to_one_dimer():
     for N in (0, -1, 1.5, True):
         with pytest.raises(InputError, match="N is"):
             Dimer(1, 2, N=N)
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda n: Cell([1, n]),
+        lambda n: Cell([1, Fraction(1, n)]),
+        lambda n: Cell([1], [n]),
+        lambda n: Dimer(1, 2, N=n),
+        lambda n: Dimer(1, 2, N=-n),
+        lambda n: homogenize(Dimer(1, 2), n),
+        lambda n: homogenize(Dimer(1, 2), k=n),
+        lambda n: Dispersion(Cell([1])).acoustic(n),
+        lambda n: homogenize(Dimer(1, 2)).pde.in_field({n: 1}),
+        lambda n: homogenize(Dimer(1, 2)).pde.traveling_wave().speed(n),
+        lambda n: canonical_wave(Cell([1, n])),
+    ],
+)
+def test_integers_that_python_cannot_print_are_refused(call):
+    with pytest.raises(InputError) as caught:
+        call(10**5000)
+    assert len(str(caught.value)) < 200
+
+
+def test_contacts_whose_shares_cannot_be_written_are_refused():
+    for exponent in ("1e-9", "1e-4"):
+        with pytest.raises(InputError, match="stiffness 2"):
+            Dispersion(Cell([1, 1], [1, 2]), exponent).acoustic()
+    with pytest.raises(InputError, match="digits"):
+        homogenize(Cell([1, "1e999"]), 10)
+
+
+def test_numpy_integers_are_integers():
+    four = np.int64(4)
+    assert homogenize(Dimer(1, 2), four) == homogenize(Dimer(1, 2), 4)
+    assert Dimer(1, 2, N=np.int8(2)) == Dimer(1, 2, N=2)
+    assert Dispersion(Cell([1])).acoustic(four) == Dispersion(Cell([1])).acoustic(4)
+    assert homogenize(Dimer(1, 2)).pde.in_field({np.int64(2): 1}).k == k
+    for wrong in (True, 4.0, np.float64(4), "4"):
+        with pytest.raises(InputError, match="order"):
+            homogenize(Dimer(1, 2), wrong)
+
+
+def test_a_cell_of_three_is_told_of_the_full_closure():
+    with pytest.raises(InputError, match='closure="full"'):
+        homogenize(Cell([1, 2, 3]))
+
+
+def test_names_of_one_symbol_only():
+    a, b = sp.Symbol("a"), sp.Symbol("a", positive=True)
+    with pytest.raises(InputError, match="'a' names two symbols"):
+        Cell([a, b])
+    for name in RESERVED:
+        with pytest.raises(InputError, match=f"{name!r}"):
+            Cell([name, 1])
+    with pytest.raises(InputError, match="names both"):
+        homogenize(Cell(["a"]), k="a")
+    with pytest.raises(InputError, match="names both"):
+        Dispersion(Cell(["a"]), "a")
+
+
+def test_omega_replaces_a_mass():
+    m1, m2, omega = sp.symbols("m1 m2 omega", positive=True)
+    assert Dimer(m1, m2, N=2).at(omega="w").masses[-1] == m1 * sp.Symbol("w", positive=True)
+    assert Dimer(m1, m2).at(m2=6, omega=3).masses == (2, 6)
+    assert Dimer(1, omega).at(omega=3).masses == (1, 3)  # a symbol of the caller's
+    for cell, values in (
+        (Cell([m1]), {"omega": 1}),
+        (Cell([m1, m2, 3]), {"omega": 1}),
+        (Dimer(m1, m2), {"m1": 1, "m2": 2, "omega": 2}),
+        (Dimer(m1, m2), {"omega": -1}),
+        (Dimer(m1, m2), {"m3": 1}),
+    ):
+        with pytest.raises(InputError):
+            cell.at(**values)

@@ -3,8 +3,7 @@
 import pytest
 import sympy as sp
 
-from lwa import Cell, Dimer, InputError, homogenize
-from lwa.pde import Jet
+from lwa import Cell, Dimer, InputError, Jet, homogenize
 
 x = sp.Symbol("x")
 m1, m2 = sp.symbols("m1 m2", positive=True)
@@ -141,3 +140,16 @@ def test_the_optical_branch_has_neither():
     assert not pde.fluxes
     with pytest.raises(InputError, match="acoustic"):
         pde.in_field({2: 1})
+
+
+@pytest.mark.parametrize("order", [1, 2, 3, 4, 5])
+def test_what_conserves_does_not_hinge_on_how_far_it_was_derived(order):
+    """Below D^{k+3} there is nothing to tell by: what stands there decides."""
+    for cell, kind, conservative, variational in (
+        (Dimer(1, 2), {}, False, False),
+        (Dimer(1, 1), {}, True, True),
+        (Dimer(1, 2), {"closure": "full"}, True, False),
+        (Dimer(1, 2), {"closure": "full", "field": "center"}, True, True),
+    ):
+        pde = homogenize(cell, order, **kind).pde
+        assert (pde.conservative, pde.variational) == (conservative, variational)

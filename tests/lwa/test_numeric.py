@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from lwa import Dimer, InputError, NoSolitaryWave, homogenize
+from lwa import Cell, Dimer, InputError, NoSolitaryWave, canonical_wave, homogenize
 
 ULPS = 2 if np.finfo(np.longdouble).nmant > 52 else 256
 
@@ -73,7 +73,7 @@ def test_bad_input():
             NUMERIC.beta(*arguments)
     with pytest.raises(InputError, match="B must be positive"):
         NUMERIC.speed(1.5, 1.0, B=-1.0)
-    with pytest.raises(InputError, match="symbols k, m1, m2"):
+    with pytest.raises(InputError, match="symbol k and a cell of two masses"):
         WAVE.at(k="3/2").numeric()
     with pytest.raises(InputError, match="missing"):
         WAVE.numeric(missing="zero")
@@ -82,3 +82,22 @@ def test_bad_input():
 def test_amplitudes_beyond_float_have_finite_logarithms():
     assert np.isfinite(NUMERIC.log_amplitude(1 + 1e-9, 1.0, V=2.0))
     assert NUMERIC.log_amplitude(1 + 1e-9, 1.0, V=2.0) > 1e9
+
+
+def test_any_cell_of_two_masses_that_are_symbols():
+    """N:1 dimers, against the exact wave at 30 digits."""
+    for cell in (Dimer("m1", "m2", N=3), Dimer("m1", "m2", stiffnesses=("A", "A"))):
+        wave = canonical_wave(cell)
+        numeric = wave.numeric()
+        for k, omega in ((1.25, 0.125), (1.5, 4.0), (3.0, 0.5)):
+            at = wave.at(k=k, m1=1, omega=omega, D=1)
+            for found, expected in (
+                (numeric.width(k, omega), at.width),
+                (numeric.fwhm(k, omega, "force"), at.fwhm("force")),
+                (numeric.speed(k, omega, 2.0), at.speed(2)),
+            ):
+                error = abs(sp.Rational(float(found)) - sp.N(expected, 30))
+                assert error <= ULPS * np.spacing(float(found))
+    for cell in (Cell(["m1", "m2", "m3"]), Cell(["m1", "m2"], ["A1", "A2"]), Cell(["m1"])):
+        with pytest.raises(InputError, match="two masses"):
+            canonical_wave(cell).numeric()

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from lwa import Cell, Dimer, InputError, NoSolitaryWave, canonical_wave, homogenize
-from lwa.wave import QUANTITIES
+from lwa.quantities import QUANTITIES
 
 k = sp.Symbol("k", positive=True)
 
@@ -146,6 +146,7 @@ def test_names_and_numbers_for_the_symbols():
         ("k", "force 'k': the name means the exponent"),
         ("B", "force 'B': the name means the peak strain"),
         ("V_s", "force 'V_s': the name means the speed"),
+        (sp.Symbol("f") + sp.Symbol("f", positive=True), "'f' names two symbols"),
         (2 * sp.Symbol("D"), "force 'D': the name means the spacing"),
     ],
 )

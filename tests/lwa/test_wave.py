@@ -36,7 +36,7 @@ def test_the_strain_equation_by_the_chain_rule():
     v1, v2, v3 = (v.diff(x, n) / v for n in (1, 2, 3))
     expected = v1 + G * v1**3 + H * v1 * v2 + I * v3
     r1, r2, r3 = (z.diff(x, n) / z for n in (1, 2, 3))
-    c = strain_equation()
+    c = strain_equation(p, G, H, I)
     found = c["linear"] * r1 + c["cubic"] * r1**3 + c["product"] * r1 * r2 + c["third"] * r3
     assert sp.simplify((found - expected).subs(x, 0)) == 0
 

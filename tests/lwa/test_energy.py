@@ -1,0 +1,91 @@
+"""The energy of any order: conserved at the rate of its closure, in every field.
+
+What is checked shares nothing with the derivation: for explicit periodic fields the energy of a
+period is differentiated along the wave equation by SymPy's calculus and integrated by trapezia,
+which are exact to the digits carried here. What an energy to D^{order-2} leaves is D^{order-1}.
+"""
+
+import math
+
+import mpmath
+import pytest
+import sympy as sp
+
+from lwa import Cell, Dimer, InputError, homogenize
+
+x, s, D = sp.symbols("x s D")
+FIELD = x + sp.sin(x) / 5 + sp.cos(2 * x) / 17
+VELOCITY = sp.cos(x) / 3 + sp.sin(2 * x) / 4
+
+
+def power_of_what_is_left(pde):
+    """n of d/dτ ∫ e dx ∝ D^n, from two small D; infinite where nothing is left."""
+    spacing = pde.cell.spacing
+    force = pde.right_side(FIELD, x, VELOCITY)
+    density = pde.energy_density(FIELD + s * VELOCITY, x, VELOCITY + s * force)
+    change = sp.lambdify((x, spacing), density.diff(s).subs(s, 0), "mpmath", cse=True)
+    with mpmath.workdps(60):
+        points = [2 * mpmath.pi * i / 200 for i in range(200)]
+        left = [
+            abs(mpmath.fsum(change(point, mpmath.mpf(10) ** -d) for point in points))
+            for d in (3, 4)
+        ]
+        if max(left) < mpmath.mpf(10) ** -50:  # 60 digits, less the trapezia's error
+            return math.inf
+        return float(mpmath.log10(left[0] / left[1]))
+
+
+CASES = [
+    (Cell([1]), 6, "3/2", {}, None),
+    (Cell([1], spacing="h"), 4, 2, {"closure": "full"}, None),
+    (Dimer(2, 2), 5, "5/4", {}, None),
+    (Dimer(3, 1), 4, "3/2", {"closure": "full"}, None),
+    (Dimer(3, 1), 6, 3, {"closure": "full"}, None),
+    (Dimer(3, 1), 6, 2, {"closure": "full", "field": "center"}, None),
+    (Dimer(3, 1), 4, "3/2", {"closure": "full"}, {1: "1/5", 2: "1/3"}),
+    (Dimer(1, 2, N=2), 5, 2, {"closure": "full", "field": "center"}, None),
+    (Cell([1, 2, 3], [1, 2, 3]), 5, 1, {"closure": "full"}, None),
+]
+
+
+@pytest.mark.parametrize(("cell", "order", "k", "kind", "alphas"), CASES)
+def test_it_is_conserved_at_the_rate_of_its_closure(cell, order, k, kind, alphas):
+    pde = homogenize(cell, order, k=k, **kind).pde
+    pde = pde.in_field(alphas) if alphas else pde
+    assert set(pde.energy) == set(range(order - 1))
+    # at least: the next order may vanish
+    assert power_of_what_is_left(pde) > order - 1 - 1e-2  # of the slope between two D
+
+
+def test_a_wrong_coefficient_is_seen():
+    """Momentum alone, or the canonical field's energy in another field, is not conserved."""
+    first = homogenize(Dimer(3, 1), 4, k="3/2", closure="full").pde
+    center = homogenize(Dimer(3, 1), 4, k="3/2", closure="full", field="center").pde
+
+    class Mixed:
+        cell, right_side = first.cell, staticmethod(first.right_side)
+        energy_density = staticmethod(center.energy_density)
+
+    assert power_of_what_is_left(Mixed) == pytest.approx(2, abs=1e-2)
+
+
+def test_where_the_equation_is_variational_it_is_that_of_the_potential():
+    m1, m2 = sp.symbols("m1 m2", positive=True)
+    b = m1 / (m1 + m2)
+    center = homogenize(Dimer(m1, m2), 6, closure="full", field="center").pde
+    pde = center.in_field({4: b * (1 - b) * (1 - 2 * b) ** 2 / 8})
+    for n in (2, 4):
+        for jet, coefficient in pde.potentials[n + 1].items():
+            assert sp.cancel(pde.energy[n][jet] - coefficient / (pde.k + 1)) == 0
+        assert set(pde.energy[n]) == set(pde.potentials[n + 1])
+    # and in the canonical field it is not: u_xxτ² stands in it
+    assert ((2, 2),) in {jet.t for jet in center.energy[4]}
+
+
+def test_none_where_an_equation_of_motion_is_left_unsatisfied():
+    for pde in (homogenize(Dimer(3, 1)).pde, homogenize(Dimer(3, 1), branch="optical").pde):
+        with pytest.raises(InputError, match=r'closure="full"|acoustic'):
+            pde.energy_density(x, x)
+    # below D^{k+3} the linear closure has no defect, and its energy is that of the full one
+    linear, full = (homogenize(Dimer(3, 1), 3, closure=name).pde for name in ("linear", "full"))
+    assert linear.energy == full.energy

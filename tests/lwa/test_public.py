@@ -1,0 +1,68 @@
+"""The package's front door: every name in a public signature can be imported from `lwa`."""
+
+import inspect
+import re
+import subprocess
+import sys
+
+import pytest
+
+import lwa
+
+WORDS = re.compile(r"(?<![.'\"\w])[A-Za-z_]\w*(?:\.\w+)*")
+OTHERS = re.compile(
+    r"(sp|np|click)\.\w+|None|Any|Self|Literal|Mapping|Sequence|Callable|Iterable|Iterator|ClassVar"
+    r"|fmpq|fmpq_mpoly|fmpq_mpoly_ctx|NDArray|ArrayLike|Fraction|Decimal|NamedTuple|int|float|bool|str|tuple|list|dict|set|object"
+)
+
+
+def signatures(name, found):
+    """(where, annotation) of a class or function: its own and its public methods'."""
+    if inspect.isclass(found):
+        for key, annotation in inspect.get_annotations(found).items():
+            yield f"{name}.{key}", annotation
+        members = inspect.getmembers_static(found)
+        for key, member in members:
+            wrapped = getattr(member, "fget", None) or getattr(member, "func", None) or member
+            wrapped = getattr(wrapped, "__func__", wrapped)
+            public = inspect.isfunction(wrapped) and wrapped.__module__.startswith("lwa")
+            if public and (not key.startswith("_") or key == "__init__"):
+                for part, annotation in inspect.get_annotations(wrapped).items():
+                    yield f"{name}.{key}({part})", annotation
+    elif inspect.isfunction(found):
+        for part, annotation in inspect.get_annotations(found).items():
+            yield f"{name}({part})", annotation
+
+
+def plain(annotation):
+    """Its text, without the texts in it."""
+    text = getattr(annotation, "__forward_arg__", str(annotation))
+    return re.sub(r"(['\"]).*?\1", "", text)
+
+
+@pytest.mark.parametrize("name", lwa.__all__)
+def test_every_name_in_a_public_signature_is_importable(name):
+    missing = {
+        (where, word)
+        for where, annotation in signatures(name, getattr(lwa, name))
+        for word in WORDS.findall(plain(annotation))
+        if not OTHERS.fullmatch(word) and word not in lwa.__all__
+    }
+    assert not missing
+
+
+def test_all_is_there_sorted_and_described():
+    assert sorted(lwa.__all__) == sorted(set(lwa.__all__))
+    for name in lwa.__all__:
+        assert getattr(lwa, name) is not None
+    with pytest.raises(AttributeError, match="nothing"):
+        lwa.nothing  # noqa: B018
+
+
+def test_importing_it_loads_no_numbers():
+    code = (
+        "import sys, lwa; "
+        "print({'numpy', 'scipy', 'matplotlib', 'numba', 'tqdm', 'validation'} & set(sys.modules))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "set()"

@@ -1,0 +1,107 @@
+"""Whatever a caller's symbols are called, results mean the same, or the name is refused by name."""
+
+import numpy as np
+import sympy as sp
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+
+from lwa import Cell, Dimer, Dispersion, InputError, canonical_wave, homogenize
+from lwa.cell import RESERVED
+from lwa.numeric import NumericWave
+
+OURS = """
+mu0 mu1 c0 c1 a0 a1 k D B V_s tau lambda p a mu eta sigma s m z v G H I X x u w omega kappa r1 s1
+s0 Z x0 x1 xi epsilon t alpha beta q math b1 phi2 p0
+"""
+"""Names that the derivations, the paper or the printed results use."""
+
+ROLES = {
+    "m1": sp.Rational(5, 3),
+    "m2": sp.Rational(2, 7),
+    "k": sp.Rational(7, 5),
+    "D": sp.Rational(3, 4),
+    "alpha": sp.Rational(1, 9),
+}
+"""The number that stands for each symbol when results are compared."""
+
+assumptions = st.sampled_from([{}, {"real": True}, {"positive": True}])
+symbols = st.builds(
+    lambda name, given: sp.Symbol(name, **given), st.sampled_from(OURS.split()), assumptions
+)
+
+
+def results(m1, m2, k, D, alpha):
+    """By name, what the public functions make of the symbols (α only where it may stand)."""
+    cell = Dimer(m1, m2, spacing=D)
+    theory = homogenize(cell, 4, k=k)
+    yield from theory.ansatz.items()
+    for found in (theory.pde.coefficients[3], theory.defect.get(3, {})):
+        yield from found.items()
+    wave = theory.pde.traveling_wave()
+    yield from (("beta", wave.beta), ("speed", wave.speed(2)), ("B", wave.amplitude(2)))
+    yield from (("roots", root) for root in wave.roots)
+    for name in ("mu", "eta", "sigma", "s", "a"):
+        yield name, getattr(wave.reduction(1, V=3), name)
+    yield "own speed", wave.speed().subs(sp.Symbol("B", positive=True), 2)
+    yield "own amplitude", wave.amplitude().subs(sp.Symbol("V_s", positive=True), 2)
+    yield "profile", wave.profile(sp.Rational(1, 5), 2)
+    yield "scale", wave.speed_scale
+    yield "optical", homogenize(cell, 2, k=k, branch="optical").amplitude_ratio
+    full = homogenize(cell, 4, k=k, closure="full", field="center")
+    yield "I", full.pde.I
+    for n, found in full.pde.energy.items():
+        yield from ((("energy", n, jet), value) for jet, value in found.items())
+    yield from full.slaved[1][3].items()
+    changed = full.pde.in_field({2: alpha})
+    yield from (("G changed", changed.G), ("H changed", changed.H))
+    yield "at", full.at(omega=3).pde.I.subs({m2: 1, m1: 1})
+    chain = Dispersion(Cell((m1, m2), (m2, 2 * m2), D), k)
+    yield "acoustic", chain.acoustic(4)[4]
+    yield from chain.amplitude_ratio(2, "optical").items()
+    yield "canonical", canonical_wave(Cell((m1, m1, m2), spacing=D), k).fwhm("force")
+    numeric = NumericWave(wave)
+    yield "numeric", sp.Float(float(numeric.beta(1.4, 0.2)), 17)
+
+
+NEUTRAL = {role: sp.Symbol(f"role_{role}", positive=True) for role in ROLES}
+
+
+def numbers(given):
+    """The results with a number for each symbol, 30 digits."""
+    values = {given[role]: number for role, number in ROLES.items()}
+    return [(name, sp.N(sp.sympify(x).subs(values), 30)) for name, x in results(**given)]
+
+
+EXPECTED = numbers(NEUTRAL)
+
+
+def may_be_refused(given):
+    """The names that mean something else in results, or name two of the symbols."""
+    own = {"k": "k", "D": "D"}
+    names = [symbol.name for symbol in given.values()]
+    reserved = {s.name for role, s in given.items() if own.get(role) != s.name} & set(RESERVED)
+    return reserved | {name for name in names if names.count(name) > 1}
+
+
+@settings(max_examples=10, deadline=None)
+@given(st.fixed_dictionaries(dict.fromkeys(ROLES, symbols)))
+@example({**NEUTRAL, "alpha": sp.Symbol("mu0")})
+@example({**NEUTRAL, "m1": sp.Symbol("lambda")})
+@example({**NEUTRAL, "m1": sp.Symbol("p"), "m2": sp.Symbol("I")})
+@example({**NEUTRAL, "m2": sp.Symbol("omega"), "k": sp.Symbol("kappa")})
+@example({**NEUTRAL, "m1": sp.Symbol("k")})
+def test_results_do_not_depend_on_names(given):
+    try:
+        found = numbers(given)
+    except InputError as refusal:
+        found, message = [], str(refusal)
+    if not found:
+        assert any(repr(name) in message or f"{name} " in message for name in may_be_refused(given))
+        return
+    if len({symbol.name for symbol in given.values()}) < len(given):
+        return  # α is one of the cell's symbols, as it may be: another question
+    for (name, expected), (same, number) in zip(EXPECTED, found, strict=True):
+        assert name == same
+        # 30 digits, less those that the alternating coefficients lose; doubles to 4 ulps
+        tolerance = 4 * np.finfo(float).eps if name == "numeric" else 1e-25
+        assert abs(number - expected) <= tolerance * max(1, abs(expected)), name

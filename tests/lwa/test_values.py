@@ -1,0 +1,122 @@
+"""Objects behave as SymPy's do: known by what they were derived from, one line to read."""
+
+import copy
+import pickle
+
+import pytest
+import sympy as sp
+
+from lwa import Cell, Dimer, Dispersion, canonical_wave, homogenize
+
+m1, m2 = sp.symbols("m1 m2", positive=True)
+
+
+def theory(order=4, **kind):
+    return homogenize(Dimer(m1, m2), order, **kind)
+
+
+MADE = {
+    "cell": lambda: Dimer(m1, m2, spacing="h"),
+    "linear": theory,
+    "full": lambda: theory(6, closure="full", field="center"),
+    "optical": lambda: theory(branch="optical"),
+    "pde": lambda: theory().pde,
+    "changed": lambda: theory().pde.in_field({2: "alpha"}).in_field({1: "1/2"}),
+    "closure": lambda: theory(5, closure="full").closure,
+    "terms": lambda: theory().pde.coefficients[3],
+    "energy": lambda: theory(closure="full").pde.energy[2],
+    "wave": lambda: theory().pde.traveling_wave(),
+    "physical": lambda: theory().pde.traveling_wave().at_force("F"),
+    "reduction": lambda: theory().pde.traveling_wave().reduction(),
+    "numeric": lambda: theory().pde.traveling_wave().numeric(),
+    "dispersion": lambda: Dispersion(Dimer(m1, m2)),
+}
+
+
+@pytest.mark.parametrize("make", MADE.values(), ids=MADE)
+def test_equal_derivations_are_equal_and_travel(make):
+    one, two = make(), make()
+    assert one is not two
+    assert one == two
+    assert len({one, two}) == 1
+    for attribute in ("pde", "coefficients", "_dispersion", "beta"):
+        getattr(one, attribute, None)  # what it has found by now does not matter
+    for other in (pickle.loads(pickle.dumps(one)), copy.copy(one), copy.deepcopy(one)):
+        assert other == one
+        assert hash(other) == hash(one)
+
+
+@pytest.mark.parametrize("make", MADE.values(), ids=MADE)
+def test_different_ones_are_not(make):
+    others = [other() for name, other in MADE.items() if other is not make]
+    assert make() not in others
+
+
+def test_what_is_derived_differently_differs():
+    found = [
+        theory(),
+        theory(5),
+        theory(k="3/2"),
+        theory(closure="full"),
+        theory(closure="full", field="center"),
+        theory(branch="optical"),
+        homogenize(Dimer(m2, m1)),
+        homogenize(Dimer(m1, m2, stiffnesses=(1, 2))),
+    ]
+    assert len(set(found)) == len({t.pde for t in found}) == len(found)
+    fields = [theory().pde.in_field(alphas) for alphas in ({2: 1}, {2: 2}, {1: 1}, {1: 1, 2: 1})]
+    assert len({theory().pde, *fields}) == 5
+
+
+def test_terms_are_compared_with_mappings():
+    found = theory().pde.coefficients[3]
+    assert found == dict(found)
+    assert found != {**found, next(iter(found)): 0}
+    # the same coefficients from another derivation
+    assert found[((4, 1),)] == theory(5, closure="full").pde.coefficients[3][((4, 1),)]
+
+
+@pytest.mark.parametrize("order", [4, 12])
+def test_repr_is_one_short_line(order):
+    found = homogenize(Dimer(m1, m2), order, closure="full")
+    wave = canonical_wave(Cell(sp.symbols("a1:7")))
+    pieces = [found, found.pde, found.closure, found.pde.coefficients[order - 1], wave]
+    for piece in (*pieces, wave.at(k="3/2", a1=1, a2=2, a3=3, a4=4, a5=5, a6=6)):
+        assert "\n" not in repr(piece)
+        assert len(repr(piece)) < 600
+    assert repr(theory().pde.coefficients[2]) == "{}"
+
+
+def test_latex_is_the_papers_equation_at_any_order():
+    equation = (
+        r"u_{\tau\tau} &= u_{x}^{k-1} u_{xx} + G u_{x}^{k-3} u_{xx}^{3} "
+        r"+ H u_{x}^{k-2} u_{xx} u_{xxx} + I u_{x}^{k-1} u_{4x}"
+    )
+    for order, end in ((4, r" \\"), (6, r" + \cdots \\"), (12, r" + \cdots \\")):
+        for piece in (theory(order), theory(order).pde):
+            shown = piece._repr_latex_()
+            assert equation + end in shown
+            assert len(shown) < 2000
+    optical = theory(branch="optical").pde._repr_latex_()
+    assert r"u_{\tau\tau} &= -u^{k} + D^{2} \Bigl(" in optical
+    for make in MADE.values():
+        shown = getattr(make(), "_repr_latex_", None)
+        assert shown is None or shown().startswith("$")
+
+
+def test_at_substitutes_everywhere():
+    """Specialised afterwards and derived for the numbers are the same."""
+    values = {"k": "3/2", "m1": 2, "m2": 3}
+    cell = Dimer(2, 3)
+    for kind in ({}, {"closure": "full", "field": "center"}, {"branch": "optical"}):
+        assert theory(**kind).at(**values) == homogenize(cell, k="3/2", **kind)
+        assert theory(**kind).pde.at(**values) == homogenize(cell, k="3/2", **kind).pde
+        same = theory(**kind).at(k="3/2", m1=2, omega="3/2")
+        assert same == theory(**kind).at(**values)
+    changed = theory().pde.in_field({2: "alpha"})
+    assert changed.at(alpha=-1) == theory().pde.in_field({2: -1})
+    assert changed.at(alpha="1/3", **values) == homogenize(cell, k="3/2").pde.in_field({2: "1/3"})
+    wave = theory().pde.traveling_wave()
+    assert sp.cancel(wave.at(**values).G - homogenize(cell, k="3/2").pde.G) == 0
+    assert wave.at(omega=1, k="3/2").beta == sp.sqrt(10) / (5 * wave.D)
+    assert sp.Rational(1, 12) == Dispersion(Dimer(m1, m2)).at(omega=1).I
