@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import math
 import operator
+import sys
 from collections.abc import Callable, Collection, Mapping, Sequence
 from difflib import get_close_matches
 from typing import Any
@@ -20,6 +21,9 @@ from typing import Any
 from lwa.exact import InputError, shorten
 
 Reader = Callable[[Any, str], Any]
+
+LEAST = sys.float_info.min
+"""Of what is positive."""
 
 
 def real(value: Any, name: str) -> float:
@@ -37,10 +41,12 @@ def real(value: Any, name: str) -> float:
 
 
 def positive(value: Any, name: str) -> float:
-    """`real`, and refused unless it is positive."""
+    """`real`, and refused unless it is positive and a float of all digits."""
     number = real(value, name)
     if not number > 0:
         raise InputError(f"{name} is {number:g}: it must be positive")
+    if number < LEAST:
+        raise InputError(f"{name} is {number}: floats below {LEAST:.1g} lose their digits")
     return number
 
 

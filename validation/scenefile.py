@@ -59,21 +59,8 @@ from typing import Any
 from lwa import hertz
 from lwa.beads import read_beads, read_materials
 from lwa.files import load
-from lwa.tables import (
-    Table,
-    among,
-    array,
-    each,
-    entries,
-    flag,
-    integer,
-    place,
-    places,
-    positive,
-    real,
-    table,
-)
-from validation.checked import SceneError, of_scene
+from lwa.tables import Table, among, array, each, entries, flag, place, places, table
+from validation.checked import SceneError, integer, of_scene, positive, real
 from validation.files import replacing
 from validation.materials import Bead, Material, contact_stiffness
 from validation.scene import Scene

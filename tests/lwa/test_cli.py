@@ -352,6 +352,7 @@ def test_spheres_in_latex_and_python_are_a_wave_as_any_other(capsys, spheres):
         ("", "k = 1.5", (), "chain.k is unknown: one of cell, repeat"),
         ("0.3", "0.6", (), "materials.steel.nu is 0.6: Poisson's ratio lies between -1 and 1/2"),
         ("193e9", "-1", (), "materials.steel.E is -1: it must be positive"),
+        ("193e9", "1e-320", (), "materials.steel.E is 1e-320: floats below 2e-308 lose"),
         ("193e9", "nan", (), "materials.steel.E is nan: a finite number is wanted"),
         ("193e9", '"E"', (), "materials.steel.E is 'E': a number is wanted"),
         ("radius = 2.38e-3", "radius = 0", (), "beads.heavy.radius is 0: it must be positive"),
