@@ -20,6 +20,7 @@ from lwa.exact import InputError, Quantity
 from lwa.expansion import Expansion, expand
 from lwa.hertz import Material, Sphere
 from lwa.jets import JetAlgebra, Ladder, Monomial, Term
+from lwa.motion import Solution
 from lwa.pde import PDE
 from lwa.physical import CompactWave, PhysicalWave
 from lwa.quantities import NoSolitaryWave
@@ -58,6 +59,7 @@ __all__ = [
     "Radiation",
     "Reduction",
     "Resummed",
+    "Solution",
     "Sphere",
     "Term",
     "Terms",

@@ -8,7 +8,7 @@ its jets are (r_m + Σ ℓ_n D^n r_{m+n}) / (1 + X), those of its velocity likew
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -18,6 +18,7 @@ from flint import fmpq_mpoly
 from lwa.closure import Closure
 from lwa.exact import InputError
 from lwa.jets import JetAlgebra, Ladder, Monomial, Power
+from lwa.motion import Solution
 
 Series = list[fmpq_mpoly]
 
@@ -99,20 +100,16 @@ class _Change:
             self.inverse.append(-sum(terms, zero))
 
     def result(self) -> ChangedClosure:
-        unchanged = {
-            field.name: getattr(self.closure, field.name) for field in fields(Closure) if field.init
-        }
-        changed = dict(
-            ring=self.ring,
-            algebra=self.algebra,
-            field="changed",
-            acceleration=self._acceleration(),
-            ansatz=(),
-            slaved=(),
-            defect=(),
-        )
+        closure = self.closure
         return ChangedClosure(
-            **(unchanged | changed), origin=self.closure, alphas=tuple(self.alphas.items())
+            self.ring,
+            closure.order,
+            closure.name,
+            "changed",
+            closure.ratio,
+            Solution(self.algebra, self._acceleration()),
+            origin=closure,
+            alphas=tuple(self.alphas.items()),
         )
 
     def _acceleration(self) -> tuple[fmpq_mpoly, ...]:

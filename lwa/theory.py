@@ -11,9 +11,10 @@ import sympy as sp
 from lwa import latex
 from lwa.cell import Cell, exponent
 from lwa.cell import k as symbol_k
-from lwa.closure import BRANCHES, CLOSURES, FIELDS, Closure, Progress, solve
+from lwa.closure import BRANCHES, CLOSURES, FIELDS, Closure, solve
 from lwa.coefficients import Coefficients
 from lwa.exact import InputError, integer, shorten
+from lwa.motion import Progress
 from lwa.pde import PDE
 from lwa.terms import STRAIN, Terms, terms
 from lwa.value import Value
@@ -65,7 +66,7 @@ class Theory(Value):
         """Particle i → n → the terms W_n of w_i = u + u_x Σ D^n W_n, full closure (u the field)."""
         return {
             i: {n: terms(self.closure, S, STRAIN) for n, S in enumerate(series, start=1)}
-            for i, series in enumerate(self.closure.slaved)
+            for i, series in enumerate(self.closure.solution.slaved)
             if any(not S.is_zero() for S in series)
         }
 

@@ -23,9 +23,11 @@ from pytest_benchmark.fixture import BenchmarkFixture
 from sympy.core.cache import clear_cache
 
 from lwa import Dimer, homogenize
+from lwa.ansatz import linear
 from lwa.cell import k
-from lwa.closure import Closure, full, linear
 from lwa.coefficients import Coefficients
+from lwa.motion import Solution
+from lwa.slaving import full
 from tests.benchmarks import peers
 
 DIMER = Dimer("m1", "m2")
@@ -45,7 +47,7 @@ def _table(benchmark: BenchmarkFixture, order: int) -> None:
 @both_closures
 @every_order
 def test_kernel(
-    benchmark: BenchmarkFixture, closure: Callable[[Coefficients, int], Closure], order: int
+    benchmark: BenchmarkFixture, closure: Callable[[Coefficients, int], Solution], order: int
 ) -> None:
     benchmark.extra_info["terms"] = len(closure(RING, order).acceleration[-1])
     benchmark(closure, RING, order)
@@ -54,7 +56,7 @@ def test_kernel(
 @both_closures
 @every_order
 def test_converted(
-    benchmark: BenchmarkFixture, closure: Callable[[Coefficients, int], Closure], order: int
+    benchmark: BenchmarkFixture, closure: Callable[[Coefficients, int], Solution], order: int
 ) -> None:
     def convert() -> int:
         theory = homogenize(DIMER, order, closure=closure.__name__)

@@ -1,0 +1,39 @@
+"""The equations of motion of a cell in its displacement fields, and what satisfies them.
+
+All displacement fields w_0 … w_{P-1} of a cell are taken at the position x of its first particle
+and expressed by one field φ: w_i = φ + D φ_x S_i, S_i a series in D of polynomials in the jets of
+φ. In the units of `Cell.time_scale`, with F_i the force of contact i over A_eff D^k, the equations
+of motion of the P particles are
+
+    P k D μ_i ∂_ττ w_i = F_i(x) - F_{i-1}(x),    F_{-1}(x) = F_{P-1}(x - P D).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import NamedTuple
+
+from flint import fmpq_mpoly
+
+from lwa.jets import JetAlgebra
+
+Progress = Callable[[Iterable[int]], Iterable[int]]
+"""What the orders are run through on their way, such as `tqdm.tqdm`."""
+
+
+class Solution(NamedTuple):
+    """What a closure finds, as polynomials.
+
+    acceleration : E_n. Acoustic: φ_ττ = φ_x^k Σ_{n≥1} D^{n-1} E_n, E_1 = r_1 = φ_xx/φ_x.
+        Optical: u_ττ = -u^k Σ_{n≥0} D^n E_n, E_0 = 1, in its own time unit.
+    ansatz : b_n, n = 0 … order: the linear part λ Σ b_n D^n ∂_x^n φ of the second particle's
+        field, which is all of it in the linear closure (polynomials in the parameters).
+    slaved : for each particle S_n, n = 0 … order - 1, of w_i = φ + D φ_x Σ D^n S_n (full only).
+    defect : E_n by the first equation minus E_n by the second, for the same ansatz.
+    """
+
+    algebra: JetAlgebra
+    acceleration: tuple[fmpq_mpoly, ...]
+    ansatz: tuple[fmpq_mpoly, ...] = ()
+    slaved: tuple[tuple[fmpq_mpoly, ...], ...] = ()
+    defect: tuple[fmpq_mpoly, ...] = ()
