@@ -71,15 +71,8 @@ def _output(command: Command) -> Command:
 
 def _show(result: Any, style: str, picture: Path | None) -> None:
     if picture is not None:
-        _write(save, result, picture)
+        save(result, picture)
     click.echo(text(result) if style == "text" else json.dumps(document(result), indent=2))
-
-
-def _write(writer: Callable[[Any, Path], None], result: Any, file: Path) -> None:
-    try:
-        writer(result, file)
-    except OSError as error:
-        raise InputError(f"{file} is not written: {error.strerror or error}") from None
 
 
 def _progress(cases: Collection[Any]) -> tqdm[Any]:
@@ -260,7 +253,7 @@ def run_scene(
     except IntegrationError as error:
         raise click.ClickException(str(error)) from None
     if out is not None:
-        _write(store, result, out)
+        store(result, out)
     _show(result, style, picture)
 
 

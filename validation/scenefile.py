@@ -50,6 +50,7 @@ an equal scene, to the last bit.
 from __future__ import annotations
 
 import json
+import re
 import textwrap
 import tomllib
 from collections import Counter
@@ -58,9 +59,9 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from lwa.exact import shorten
+from lwa.exact import InputError, shorten
 from validation.checked import SceneError, integer, positive, real
-from validation.files import replacing
+from validation.files import content, reason, replacing
 from validation.materials import Bead, Material, contact_stiffness
 from validation.scene import Scene
 from validation.tables import Table, among, array, each, entries, flag, named, place, places, table
@@ -70,8 +71,8 @@ SUFFIXES = (".toml", ".json")
 MOST_BEADS = 1_000_000
 MOST_SAMPLES = 10_000_000
 """Of all sensors together."""
-MOST_BYTES = 64_000_000
-"""Of a file."""
+MOST_BYTES = {".toml": 8_000_000, ".json": 64_000_000}
+"""Of a file; Python reads about 1 MB of TOML a second."""
 
 KEYS = {
     "file": (
@@ -94,30 +95,31 @@ def read(path: str | Path) -> Scene:
     file = Path(path)
     if file.suffix.lower() not in SUFFIXES:
         raise SceneError(f"{path}: a scene is a file ending in {' or '.join(SUFFIXES)}")
-    parse = tomllib.loads if file.suffix.lower() == ".toml" else _json
+    parse = _toml if file.suffix.lower() == ".toml" else _json
     try:
-        with file.open("rb") as stream:
-            content = stream.read(MOST_BYTES + 1)
-        if len(content) > MOST_BYTES:
-            raise SceneError(f"more than {MOST_BYTES} bytes")
-        return scene(parse(content.decode("utf-8-sig")))
-    except SceneError as error:
+        return scene(parse(content(file, MOST_BYTES[file.suffix.lower()]).decode("utf-8-sig")))
+    except InputError as error:
         raise SceneError(f"{path}: {error}") from None
     except OSError as error:
-        raise SceneError(f"{path}: {error.strerror or error}") from None
+        raise SceneError(f"{path}: {reason(error)}") from None
     except UnicodeDecodeError:
         raise SceneError(f"{path}: not a text in UTF-8") from None
     except RecursionError:
         raise SceneError(f"{path}: nested too deeply for a scene") from None
     except ValueError as error:  # of the parsers
-        reason = str(error).partition(";")[0]
-        raise SceneError(f"{path}: not {file.suffix[1:].upper()}: {reason}") from None
+        fault = str(error).partition(";")[0]
+        raise SceneError(f"{path}: not {file.suffix[1:].upper()}: {fault}") from None
 
 
 def write(what: Scene, file: Path) -> None:
     """Write a scene as TOML or JSON, by the suffix; only a complete file replaces an old one."""
-    content = document(what)
-    text = toml(content) if file.suffix.lower() == ".toml" else json.dumps(content, indent=2) + "\n"
+    suffix, entries = file.suffix.lower(), document(what)
+    text = toml(entries) if suffix == ".toml" else json.dumps(entries, indent=2) + "\n"
+    if len(text) > (most := MOST_BYTES[suffix]):
+        raise SceneError(
+            f"{file}: the scene takes {len(text)} bytes, and {most} of {suffix[1:].upper()} are "
+            "the most that is read"
+        )
     with replacing(file) as new:
         new.write_text(text, encoding="utf-8")
 
@@ -138,7 +140,7 @@ def scene(content: Any) -> Scene:
     }
     materials = file.read("materials", named(_material), {})
     beads = file.read("beads", named(partial(_bead, materials=materials)), {})
-    defects = file.read("defects", each(_defect), ())
+    defects = file.read("defects", _defects, ())
     row, chain = _chain(file.read("chain", table(KEYS["chain"])), beads, defects)
     n = len(chain["masses"])
     wall = _wall(tables["wall"], row, materials) if "wall" in file else None
@@ -198,6 +200,19 @@ def _defect(value: Any, name: str) -> Table:
     if not of_contact:
         given.one("like", "mass")
     return given
+
+
+def _defects(value: Any, name: str) -> list[Table]:
+    found: list[Table] = each(_defect)(value, name)
+    first: dict[tuple[str, int], Table] = {}
+    for defect in found:
+        what = "contact" if "contact" in defect else "bead"
+        at = defect.entries[what]  # checked when it is known how many there are
+        if isinstance(at, int) and (other := first.setdefault((what, at), defect)) is not defect:
+            raise SceneError(
+                f"{other.name} and {defect.name} are both of {what} {at}: one is wanted"
+            )
+    return found
 
 
 def _chain(
@@ -265,6 +280,16 @@ def _overlap(what: Scene) -> int:
             if y[number - 1] > y[number]:
                 return number
     return 0
+
+
+_DEEP = re.compile(r"""(?:\.[ \t]*["'\w-]*[A-Za-z_"'-]["'\w-]*[ \t]*){20}""")
+"""Keys within keys: tomllib takes time in proportion to the square of their depth."""
+
+
+def _toml(text: str) -> Any:
+    if _DEEP.search(text):
+        raise RecursionError
+    return tomllib.loads(text)
 
 
 def _json(text: str) -> Any:

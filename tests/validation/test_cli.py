@@ -2,6 +2,7 @@
 
 import dataclasses
 import json
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -158,6 +159,50 @@ def test_a_result_that_cannot_be_written_leaves_the_old_one(
     assert err == f"lwa-validate: {file} is not written: No space left on device\n"
     assert file.read_text() == "old"
     assert {f.name for f in tmp_path.iterdir()} == {"scene.toml", name}
+
+
+LONG = "a" * 300
+
+
+OUTPUTS = [
+    ("run", "scene.toml", "--plot", ".svg"),
+    ("run", "scene.toml", "--out", ".npz"),
+    ("paper", "--plot", ".svg"),
+    ("sweep", "--file", ".jsonl"),
+]
+
+
+@pytest.mark.parametrize("command", OUTPUTS, ids=" ".join)
+@pytest.mark.parametrize("name", [LONG, f"{LONG}/o", "scene.toml/o", "no/o", "folder", "pipe"])
+def test_an_output_that_cannot_be_is_refused_before_the_work(
+    capsys, monkeypatch, tmp_path, command, name
+):
+    *command, option, suffix = command
+    monkeypatch.chdir(tmp_path)
+    Path("scene.toml").write_text(SCENE)
+    Path(f"folder{suffix}").mkdir()
+    os.mkfifo(f"pipe{suffix}")
+    before = sorted(tmp_path.iterdir())
+    monkeypatch.setattr(cli, "record", None)
+    monkeypatch.setattr(cli.experiments, "paper", None)
+    monkeypatch.setattr("validation.sweep._compute", None)
+    status, out, err = run(capsys, *command, option, f"{name}{suffix}")
+    assert (status, out, err.count("\n")) == (2, "", 1)
+    assert err.startswith(f"lwa-validate: {option[2:]} is {name[:50]}")
+    assert sorted(tmp_path.iterdir()) == before
+
+
+def test_output_on_a_full_disk_is_one_line(scene_file):
+    with open("/dev/full", "w") as full:
+        ended = subprocess.run(
+            [COMMAND, "run", scene_file],
+            stdout=full,
+            stderr=subprocess.PIPE,
+            text=True,
+            check=False,
+        )
+    said = "lwa-validate: the output: No space left on device\n"
+    assert (ended.returncode, ended.stderr) == (2, said)
 
 
 def test_an_integrator_that_fails_is_one_line(capsys, monkeypatch, scene_file):
