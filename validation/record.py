@@ -17,7 +17,8 @@ from typing import Any
 import numpy as np
 
 from validation.checked import SceneError, real
-from validation.lattice import METHODS, Array, Run, simulate
+from validation.equations import Array
+from validation.lattice import METHODS, Run, simulate
 from validation.measure import Measured, MeasureError, Pulse, measure, speed
 from validation.scene import Scene
 

@@ -1,0 +1,127 @@
+"""What a run takes, known before it starts: its steps, its time and its memory.
+
+A scene's own time is the shortest √(m/spring) of a bead between its contacts at their deepest
+(`validation.equations.Scales.time`). A compiled method takes equal steps in proportion to it.
+SciPy's choose theirs; counted on uniform chains, dimers and pressed beads, k = 1 … 3, they are
+a rtol^{-1/q} in a time to within a factor of 3, and fewer where the beads part.
+
+What takes minutes is to be told (`LONG`); what takes longer than `LONGEST`, or more memory than
+`LARGEST`, is refused. Times are those of one core of 2020 or so: they say minutes from hours.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import AbstractContextManager, nullcontext
+from dataclasses import dataclass
+
+from validation.checked import SceneError
+from validation.scene import Scene
+from validation.splittings import SCHEMES
+
+LONG = 60.0
+"""Seconds from which a run is said to take long."""
+LONGEST = 6 * 3600.0
+"""Seconds of a run that is not refused."""
+LARGEST = 4e9
+"""Bytes of a run that is not refused."""
+EXCESS = 10
+"""Times as many steps as are expected, beyond which an adaptive method is stopped."""
+
+_SPLITTING = {2: (0.5, 0.5), 4: (0.01, 0.4), 6: (0.01, 0.4)}
+"""By order: c, q of (rtol/c)^q natural times a stage; c of a Hertz dimer of 560 beads."""
+_COARSEST = 0.2
+"""Natural times a stage: all splittings are stable."""
+_ADAPTIVE = {"DOP853": (0.3, 8, 14), "RK45": (0.2, 5, 6), "RK23": (0.2, 3, 3), "LSODA": (1.5, 8, 2)}
+"""(a, q, evaluations a step)."""
+_FEWEST = 100
+"""Steps that an adaptive method takes to find its step, however slow the motion."""
+
+_UNITS = (("years", 3.156e7), ("days", 86400.0), ("hours", 3600.0), ("minutes", 60.0))
+
+
+@dataclass(frozen=True)
+class Effort:
+    """What a run takes: ``steps`` of a ``method`` that move ``beads`` each, ``memory`` in bytes."""
+
+    scene: Scene
+    method: str
+    steps: float
+    beads: int
+    seconds: float
+    memory: float
+
+    @property
+    def time(self) -> str:
+        """The seconds, in round words.
+
+        >>> Effort(Scene(masses=(1,), stiffnesses=(), k=1, duration=1), "S6", 1, 1, 7e3, 0).time
+        'about 2 hours'
+        """
+        if self.seconds > 1000 * _UNITS[0][1]:
+            return "over 1000 years"
+        for name, unit in _UNITS:
+            if self.seconds >= 1.95 * unit:
+                return f"about {self.seconds / unit:.2g} {name}"
+        return f"about {self.seconds:.2g} s"
+
+    def check(self) -> None:
+        """Raise `SceneError` for a run that is beyond `LONGEST` or `LARGEST`."""
+        if self.memory > LARGEST:
+            scene = self.scene
+            listening = len(scene.contact_sensors) + len(scene.bead_sensors)
+            raise SceneError(
+                f"samples is {scene.samples:g}: with {listening} sensors and {scene.size} beads "
+                f"{self.method} takes {self.memory / 1e9:.2g} GB; {LARGEST / 1e9:g} GB are the most"
+            )
+        if self.seconds > LONGEST:
+            raise SceneError(
+                f"duration is {self.scene.duration:g}: this makes {self.steps:.1e} steps of "
+                f"{self.method}, {self.time}; {LONGEST / 3600:g} hours are the most"
+            )
+
+
+Progress = Callable[[Effort], AbstractContextManager[Callable[[float], object]]]
+"""Is shown the effort of a run before it starts; what it gives is told the share that is done."""
+
+
+def silent(effort: Effort) -> AbstractContextManager[Callable[[float], object]]:
+    """The `Progress` that shows none."""
+    return nullcontext(lambda share: None)
+
+
+def step(method: str, rtol: float) -> float:
+    """Natural times a step of a method, in the mean if it is SciPy's.
+
+    >>> step("Verlet", 1e-2), step("SRKN14", 1e-2)
+    (0.1414213562373095, 2.8000000000000003)
+    """
+    if method in SCHEMES:
+        scheme = SCHEMES[method]
+        c, q = _SPLITTING[scheme.order]
+        return float(min((rtol / c) ** q, _COARSEST)) * scheme.stages
+    a, order, _ = _ADAPTIVE[method]
+    return float(rtol ** (1 / order)) / a
+
+
+def compiled(scene: Scene, method: str, steps: float, beads: int, power: bool) -> Effort:
+    """The effort of a splitting, whose forces take a ``power`` or only roots and products."""
+    bead = 9e-9 if power else 2e-9
+    seconds = steps * (3e-7 + SCHEMES[method].stages * max(beads, 32) * bead)
+    return Effort(scene, method, steps, beads, seconds, _memory(scene, 16))
+
+
+def adaptive(scene: Scene, method: str, rtol: float, time: float) -> Effort:
+    """The effort of one of SciPy's methods where the scene's shortest time is ``time``."""
+    n, evaluations = scene.size, _ADAPTIVE[method][2]
+    steps = _FEWEST + scene.duration / time / step(method, rtol)
+    seconds = steps * evaluations * (1.3e-5 + 1.2e-7 * n)
+    if scene.contact_sensors or scene.bead_sensors:
+        seconds += 6e-8 * n * scene.samples
+    jacobian = (2 * n) ** 2 * 8 if method == "LSODA" else 0
+    return Effort(scene, method, steps, n, seconds, _memory(scene, 4) + jacobian)
+
+
+def _memory(scene: Scene, rows: int) -> float:
+    listening = len(scene.contact_sensors) + len(scene.bead_sensors)
+    return 8.0 * (80 * scene.size + scene.samples * (rows * listening + 20))
