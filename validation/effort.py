@@ -13,13 +13,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from validation.checked import SceneError
 from validation.scene import Scene
-from validation.splittings import SCHEMES
+from validation.splittings import LAWS, SCHEMES
 
-LONG = 60.0
+LONG = 30.0
 """Seconds from which a run is said to take long."""
 LONGEST = 6 * 3600.0
 """Seconds of a run that is not refused."""
@@ -37,12 +37,18 @@ _ADAPTIVE = {"DOP853": (0.3, 8, 14), "RK45": (0.2, 5, 6), "RK23": (0.2, 3, 3), "
 _FEWEST = 100
 """Steps that an adaptive method takes to find its step, however slow the motion."""
 
+_SAMPLE = 2e-6
+"""Seconds to measure, draw and write a sample."""
+
 _UNITS = (("years", 3.156e7), ("days", 86400.0), ("hours", 3600.0), ("minutes", 60.0))
 
 
 @dataclass(frozen=True)
 class Effort:
-    """What a run takes: ``steps`` of a ``method`` that move ``beads`` each, ``memory`` in bytes."""
+    """What a run takes: ``steps`` of a ``method`` that move ``beads`` each, ``memory`` in bytes.
+
+    instead : what another method takes, if it is less.
+    """
 
     scene: Scene
     method: str
@@ -50,6 +56,7 @@ class Effort:
     beads: int
     seconds: float
     memory: float
+    instead: str = ""
 
     @property
     def time(self) -> str:
@@ -62,22 +69,30 @@ class Effort:
             return "over 1000 years"
         for name, unit in _UNITS:
             if self.seconds >= 1.95 * unit:
-                return f"about {self.seconds / unit:.2g} {name}"
-        return f"about {self.seconds:.2g} s"
+                return f"about {_round(self.seconds / unit)} {name}"
+        return f"about {_round(self.seconds)} s"
+
+    def __str__(self) -> str:
+        listening = _listening(self.scene)
+        samples = f" and {listening * self.scene.samples:.1e} samples" if listening else ""
+        return (
+            f"{self.steps:.1e} steps of {self.method} with {self.beads} beads{samples} may take "
+            f"{self.time}"
+        )
 
     def check(self) -> None:
         """Raise `SceneError` for a run that is beyond `LONGEST` or `LARGEST`."""
         if self.memory > LARGEST:
             scene = self.scene
-            listening = len(scene.contact_sensors) + len(scene.bead_sensors)
             raise SceneError(
-                f"samples is {scene.samples:g}: with {listening} sensors and {scene.size} beads "
-                f"{self.method} takes {self.memory / 1e9:.2g} GB; {LARGEST / 1e9:g} GB are the most"
+                f"samples is {scene.samples:g}: with {_listening(scene)} sensors and {scene.size} "
+                f"beads {self.method} takes {self.memory / 1e9:.2g} GB; {LARGEST / 1e9:g} GB are "
+                "the most"
             )
         if self.seconds > LONGEST:
             raise SceneError(
                 f"duration is {self.scene.duration:g}: this makes {self.steps:.1e} steps of "
-                f"{self.method}, {self.time}; {LONGEST / 3600:g} hours are the most"
+                f"{self.method}, {self.time}; {LONGEST / 3600:g} hours are the most{self.instead}"
             )
 
 
@@ -104,11 +119,11 @@ def step(method: str, rtol: float) -> float:
     return float(rtol ** (1 / order)) / a
 
 
-def compiled(scene: Scene, method: str, steps: float, beads: int, power: bool) -> Effort:
-    """The effort of a splitting, whose forces take a ``power`` or only roots and products."""
-    bead = 9e-9 if power else 2e-9
+def compiled(scene: Scene, method: str, steps: float, beads: int) -> Effort:
+    """The effort of a splitting."""
+    bead = 2e-9 if scene.k in LAWS else 9e-9  # a power takes its time
     seconds = steps * (3e-7 + SCHEMES[method].stages * max(beads, 32) * bead)
-    return Effort(scene, method, steps, beads, seconds, _memory(scene, 16))
+    return _effort(scene, method, steps, beads, seconds, 16)
 
 
 def adaptive(scene: Scene, method: str, rtol: float, time: float) -> Effort:
@@ -116,12 +131,29 @@ def adaptive(scene: Scene, method: str, rtol: float, time: float) -> Effort:
     n, evaluations = scene.size, _ADAPTIVE[method][2]
     steps = _FEWEST + scene.duration / time / step(method, rtol)
     seconds = steps * evaluations * (1.3e-5 + 1.2e-7 * n)
-    if scene.contact_sensors or scene.bead_sensors:
+    if _listening(scene):
         seconds += 6e-8 * n * scene.samples
     jacobian = (2 * n) ** 2 * 8 if method == "LSODA" else 0
-    return Effort(scene, method, steps, n, seconds, _memory(scene, 4) + jacobian)
+    found = _effort(scene, method, steps, n, seconds, 4, jacobian)
+    other = next(iter(SCHEMES))
+    less = compiled(scene, other, scene.duration / time / step(other, rtol), n)
+    return (
+        replace(found, instead=f"; {other} takes {less.time}") if less.seconds < LONGEST else found
+    )
 
 
-def _memory(scene: Scene, rows: int) -> float:
-    listening = len(scene.contact_sensors) + len(scene.bead_sensors)
-    return 8.0 * (80 * scene.size + scene.samples * (rows * listening + 20))
+def _round(number: float) -> str:
+    return f"{number:.0f}" if number > 10 else f"{number:.2g}"
+
+
+def _listening(scene: Scene) -> int:
+    return len(scene.contact_sensors) + len(scene.bead_sensors)
+
+
+def _effort(
+    scene: Scene, method: str, steps: float, beads: int, seconds: float, rows: int, memory: int = 0
+) -> Effort:
+    """Of the integration, and of the samples: ``rows`` a sensor, and what reads and writes them."""
+    numbers = 80 * scene.size + scene.samples * (rows * _listening(scene) + 20)
+    seconds += _SAMPLE * scene.samples * _listening(scene)
+    return Effort(scene, method, steps, beads, seconds, 8.0 * numbers + memory)

@@ -29,10 +29,10 @@ from validation import effort
 from validation.checked import SceneError, integer, positive
 from validation.effort import Effort, Progress
 from validation.equations import Array, Motion
-from validation.kernel import BLOCK, LAWS, MARGIN, SHORTEST, advance, beginning
+from validation.kernel import BLOCK, MARGIN, SHORTEST, advance, beginning
 from validation.lattice import IntegrationError, Run, Window, frozen
 from validation.scene import Scene
-from validation.splittings import SCHEMES
+from validation.splittings import LAWS, SCHEMES
 
 _SUPPORTS = 4.0
 """Supports of the long-wave pulse that the window reaches back."""
@@ -102,10 +102,8 @@ class _Chain:
         self.scene, self.motion, self.scheme = scene, Motion(scene), SCHEMES[method]
         self.method, self.progress = method, progress
         motion, n = self.motion, scene.size
-        self.start = np.zeros((2, n))
-        self.start[0, : len(scene.displacements)] = scene.displacements
-        self.start[1, : len(scene.velocities)] = scene.velocities
-        scales = motion.scales(self.start.ravel())
+        self.start = motion.start.reshape(2, n)
+        scales = motion.scales(motion.start)
         self.energy, self.deepest = scales.energy, scales.compression
         # inverse masses, stiffnesses, rest compressions, loads
         self.lattice = np.zeros((4, n + 2 * SHORTEST))
@@ -118,10 +116,9 @@ class _Chain:
         self.step = positive(step, "step")
 
     def _effort(self, reach: int | None, step: float) -> Effort:
-        n, k = self.scene.size, self.scene.k
+        n, steps = self.scene.size, self.scene.duration / step
         beads = n if reach is None else min(n, _WINDOW * reach)
-        steps = self.scene.duration / step
-        found = effort.compiled(self.scene, self.method, steps, beads, k not in LAWS)
+        found = effort.compiled(self.scene, self.method, steps, beads)
         found.check()
         return found
 

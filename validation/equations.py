@@ -10,13 +10,12 @@ eq. 1, for k = 3/2). A contact that opens carries no tension.
 from __future__ import annotations
 
 import math
-import sys
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from validation.checked import SceneError
+from validation.checked import LEAST, SceneError
 from validation.scene import Scene
 
 Array = NDArray[np.float64]
@@ -31,6 +30,7 @@ class Scales:
     displacement, velocity : of a bead, 1 where there is no energy.
     time : the shortest √(m/spring) of a bead between its contacts at that compression; infinite
         where nothing presses.
+    rounding : of the static compressions, over the displacement.
     """
 
     energy: float
@@ -38,10 +38,14 @@ class Scales:
     displacement: float
     velocity: float
     time: float
+    rounding: float = 0.0
 
 
 class Motion:
-    """The right-hand side for one scene, in the state (y_0 … y_{n-1}, v_0 … v_{n-1})."""
+    """The right-hand side for one scene, in the state (y_0 … y_{n-1}, v_0 … v_{n-1}).
+
+    start : the initial state.
+    """
 
     def __init__(self, scene: Scene) -> None:
         wall = () if scene.wall is None else (scene.wall,)
@@ -53,6 +57,9 @@ class Motion:
             self.rest = (np.array(scene.load) / self.stiffnesses) ** (1 / self.k)
             # The load from the rest compressions, so that equilibrium is an exact zero.
             self.load = self.force(self.rest)
+        self.start = np.zeros(2 * scene.size)
+        self.start[: len(scene.displacements)] = scene.displacements
+        self.start[scene.size : scene.size + len(scene.velocities)] = scene.velocities
         if scene.gravity or scene.precompression:
             for name, values in (("compression", self.rest), ("force", self.load)):
                 _held(f"static {name}", values.min(), values.max())
@@ -127,11 +134,12 @@ class Motion:
         y, v = np.sqrt(energy / (A.max() * stiffening)), np.sqrt(energy / self.masses.mean())
         _held("displacement", y)
         _held("velocity", v)
-        return Scales(energy, deepest, float(y), float(v), float(time))
+        rounding = np.finfo(float).eps * self.rest.max() / y
+        return Scales(energy, deepest, float(y), float(v), float(time), float(rounding))
 
 
 def _held(name: str, *values: float) -> None:
     """Refuse scales that overflow, or are too small for all digits of a float."""
     for value in values:
-        if not sys.float_info.min <= value < math.inf:
+        if not LEAST <= value < math.inf:
             raise SceneError(f"the scene's {name} comes out as {value:g}: choose other units")

@@ -12,7 +12,7 @@ from typing import Any, TypeVar, cast
 import numpy as np
 from numba import njit
 
-from validation.splittings import Array
+from validation.equations import Array
 
 _Function = TypeVar("_Function", bound=Callable[..., Any])
 
@@ -20,8 +20,6 @@ MARGIN = 4
 """Still beads that the window holds at its front."""
 SHORTEST = 32
 """Beads below which the vector loops take no less time."""
-LAWS = {1.0: 1, 1.25: 2, 1.5: 3, 2.0: 4, 3.0: 5}
-"""Exponents with loops of their own, without a power."""
 _OPEN = 1e-3
 """Of the peak force: what a contact behind may push and count as open."""
 _BLOW = 0.05

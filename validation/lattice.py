@@ -166,17 +166,14 @@ def simulate(
 def _adaptive(scene: Scene, method: str, rtol: float, atol: float, progress: Progress) -> Run:
     """`simulate` by a method of SciPy's."""
     motion = Motion(scene)
-    start = np.zeros(2 * scene.size)
-    start[: len(scene.displacements)] = scene.displacements
-    start[scene.size : scene.size + len(scene.velocities)] = scene.velocities
-    scales = motion.scales(start)
+    scales = motion.scales(motion.start)
     y, v = scales.displacement, scales.velocity
     taken = adaptive(scene, method, rtol, scales.time)
     taken.check()
     stepper = getattr(integrate, method)(
         motion,
         0.0,
-        start,
+        motion.start,
         scene.duration,
         rtol=rtol,
         atol=atol * np.repeat([y, v], scene.size),
@@ -199,7 +196,7 @@ def _adaptive(scene: Scene, method: str, rtol: float, atol: float, progress: Pro
                 raise IntegrationError(f"integration stopped at t = {stepper.t:g}: {message}")
             recorder.record(time, stepper)
             tell(stepper.t / scene.duration)
-    run = _result(scene, motion, recorder, time, start, stepper, steps)
+    run = _result(scene, motion, recorder, time, stepper, steps)
     if not all(np.isfinite(a).all() for a in (stepper.y, run.contact_force, run.bead_force)):
         raise IntegrationError("the motion overflows: choose other units")
     return run
@@ -242,11 +239,10 @@ def _result(
     motion: Motion,
     recorder: _Recorder,
     time: Array,
-    start: Array,
     stepper: Any,
     steps: int,
 ) -> Run:
-    n, end = scene.size, stepper.y
+    n, start, end = scene.size, motion.start, stepper.y
     before, after = motion.energy(start), motion.energy(end)
     return Run(
         scene=scene,

@@ -11,7 +11,7 @@ from difflib import get_close_matches
 from typing import Any
 
 from lwa.exact import shorten
-from validation.checked import SceneError, integer
+from validation.checked import SceneError, integer, row
 
 Reader = Callable[[Any, str], Any]
 
@@ -83,9 +83,7 @@ def array(value: Any, name: str) -> list[Any]:
 
 def each(reader: Reader) -> Reader:
     """Reader of a list whose items are read alike."""
-    return lambda value, name: [
-        reader(item, f"{name} number {i}") for i, item in enumerate(array(value, name), start=1)
-    ]
+    return lambda value, name: row(array(value, name), reader, lambda i: f"{name} number {i + 1}")
 
 
 def among(values: Mapping[str, Any]) -> Reader:
