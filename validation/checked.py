@@ -50,7 +50,7 @@ def positive(value: Any, name: str) -> float:
     if not number > 0:
         raise SceneError(f"{name} is {number:g}: it must be positive")
     if number < LEAST:
-        raise SceneError(f"{name} is {number:g}: floats below {LEAST:.1g} lose their digits")
+        raise SceneError(f"{name} is {number}: floats below {LEAST:.1g} lose their digits")
     return number
 
 

@@ -3,7 +3,7 @@
 A scene's own time is the shortest √(m/spring) of a bead between its contacts at their deepest
 (`validation.equations.Scales.time`). A compiled method takes equal steps in proportion to it.
 SciPy's choose theirs; counted on uniform chains, dimers and pressed beads, k = 1 … 3, they are
-a rtol^{-1/q} in a time to within a factor of 3, and fewer where the beads part.
+a rtol^{-1/q} in a time, at most 3 times as many, and an eighth where beads part.
 
 What takes minutes is to be told (`LONG`); what takes longer than `LONGEST`, or more memory than
 `LARGEST`, is refused. Times are those of one core of 2020 or so: they say minutes from hours.

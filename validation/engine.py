@@ -89,7 +89,8 @@ def _reach(scene: Scene, window: Any) -> int | None:
     masses = np.array(scene.masses)
     masses = masses if moving.all() else masses[~moving]  # a striker may be of any mass
     support = math.pi / (scene.k - 1) * math.sqrt(scene.k * (scene.k + 1) / 6)
-    reach = 2 * MARGIN + math.ceil(_SUPPORTS * support * masses.max() / masses.mean())
+    behind = _SUPPORTS * support * masses.max() / masses.mean()
+    reach = 2 * MARGIN + math.ceil(behind if behind < scene.size else scene.size)
     return None if window is None and reach >= scene.size else reach
 
 

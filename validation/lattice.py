@@ -153,9 +153,10 @@ def simulate(
     if method in COMPILED:
         from validation.engine import follow  # numba takes its time
 
-        return follow(
-            scene, method, rtol=rtol, step=step, window=window, check=check, progress=progress
-        )
+        with np.errstate(over="ignore", invalid="ignore"):  # told by what comes of it
+            return follow(
+                scene, method, rtol=rtol, step=step, window=window, check=check, progress=progress
+            )
     for name, value in (("step", step), ("window", window), ("check", check or None)):
         if value is not None:
             raise SceneError(f"{name} is {shorten(value)}: it needs one of {', '.join(COMPILED)}")

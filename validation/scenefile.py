@@ -223,7 +223,9 @@ def _chain(
     repeat = given.read("repeat", partial(integer, least=1), 1)
     n = len(cell) * repeat
     if not 1 <= n <= MOST_BEADS:
-        raise SceneError(f"chain.cell and repeat make {n} beads: 1 … {MOST_BEADS} are wanted")
+        raise SceneError(
+            f"chain.cell and repeat make {shorten(n)} beads: 1 … {MOST_BEADS} are wanted"
+        )
     row: list[Bead] = []
     if isinstance(cell[0], str):
         for key in ("k", "stiffnesses", "spacings"):
