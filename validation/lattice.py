@@ -31,6 +31,13 @@ COMPILED = tuple(SCHEMES)
 """The splittings of `validation.engine`, of order 6, 6, 4, 4, 4 and 2; the first where in doubt."""
 
 
+_NUMBERS = (
+    "contact_force", "compression", "bead_force", "bead_velocity", "displacements", "velocities",
+    "energy_drift",
+)  # fmt: skip
+"""Of a `Run`, that must be finite."""
+
+
 class IntegrationError(RuntimeError):
     """The integrator could not go on; the message says where and why."""
 
@@ -150,18 +157,23 @@ def simulate(
     for name, tolerance in (("rtol", rtol), ("atol", atol)):
         if not 1e-13 <= real(tolerance, name) <= 1e-2:
             raise SceneError(f"{name} is {tolerance:g}: it lies between 1e-13 and 0.01")
-    if method in COMPILED:
-        from validation.engine import follow  # numba takes its time
+    if method not in COMPILED:
+        for name, value in (("step", step), ("window", window), ("check", check or None)):
+            if value is not None:
+                wanted = f"it needs one of {', '.join(COMPILED)}"
+                raise SceneError(f"{name} is {shorten(value)}: {wanted}")
+    with np.errstate(over="ignore", invalid="ignore"):  # told by what comes of it
+        if method in COMPILED:
+            from validation.engine import follow  # numba takes its time
 
-        with np.errstate(over="ignore", invalid="ignore"):  # told by what comes of it
-            return follow(
+            run = follow(
                 scene, method, rtol=rtol, step=step, window=window, check=check, progress=progress
             )
-    for name, value in (("step", step), ("window", window), ("check", check or None)):
-        if value is not None:
-            raise SceneError(f"{name} is {shorten(value)}: it needs one of {', '.join(COMPILED)}")
-    with np.errstate(over="ignore", invalid="ignore"):  # of a trial step, which is then refused
-        return _adaptive(scene, method, rtol, atol, progress)
+        else:
+            run = _adaptive(scene, method, rtol, atol, progress)
+    if not all(np.isfinite(getattr(run, name)).all() for name in _NUMBERS):
+        raise IntegrationError("the motion overflows: choose other units")
+    return run
 
 
 def _adaptive(scene: Scene, method: str, rtol: float, atol: float, progress: Progress) -> Run:
@@ -197,10 +209,7 @@ def _adaptive(scene: Scene, method: str, rtol: float, atol: float, progress: Pro
                 raise IntegrationError(f"integration stopped at t = {stepper.t:g}: {message}")
             recorder.record(time, stepper)
             tell(stepper.t / scene.duration)
-    run = _result(scene, motion, recorder, time, stepper, steps)
-    if not all(np.isfinite(a).all() for a in (stepper.y, run.contact_force, run.bead_force)):
-        raise IntegrationError("the motion overflows: choose other units")
-    return run
+    return _result(scene, motion, recorder, time, stepper, steps)
 
 
 class _Recorder:
