@@ -30,12 +30,12 @@ def load(path: str | Path, what: str, reader: Callable[[Any], T]) -> T:
     and for what the reader refuses.
     """
     file = Path(path)
-    kind = file.suffix.lower()
-    if kind not in MOST_BYTES:
+    suffix = file.suffix.lower()
+    if suffix not in MOST_BYTES:
         raise InputError(f"{path}: {what} is a file ending in {' or '.join(MOST_BYTES)}")
-    parse = _toml if kind == ".toml" else _json
+    parse = _toml if suffix == ".toml" else _json
     try:
-        return reader(parse(content(file, MOST_BYTES[kind]).decode("utf-8-sig")))
+        return reader(parse(content(file, MOST_BYTES[suffix]).decode("utf-8-sig")))
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
     except OSError as error:
@@ -46,7 +46,7 @@ def load(path: str | Path, what: str, reader: Callable[[Any], T]) -> T:
         raise InputError(f"{path}: nested too deeply for {what}") from None
     except ValueError as error:  # of the parsers
         fault = str(error).partition(";")[0]
-        raise InputError(f"{path}: not {kind[1:].upper()}: {fault}") from None
+        raise InputError(f"{path}: not {suffix[1:].upper()}: {fault}") from None
 
 
 def content(file: Path, most: int) -> bytes:
@@ -67,11 +67,12 @@ def _regular(path: str, flags: int) -> int:
     mode = os.fstat(handle).st_mode
     if not stat.S_ISREG(mode):
         os.close(handle)
-        raise InputError(f"{_kind(mode)}, and only regular files are read")
+        raise InputError(f"{kind(mode)}, and only regular files are read")
     return handle
 
 
-def _kind(mode: int) -> str:
+def kind(mode: int) -> str:
+    """What a file of this mode is called that is not a regular one."""
     named = {stat.S_IFDIR: "a folder", stat.S_IFIFO: "a pipe", stat.S_IFSOCK: "a socket"}
     return named.get(stat.S_IFMT(mode), "a device")
 

@@ -62,9 +62,17 @@ def _status(call: Callable[[], Any], name: str) -> int:
         click.echo(f"{name}: interrupted", err=True)
         return 130
     except BrokenPipeError:  # the reader has seen enough; nothing is left to flush
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _drop_output()
         return 0
+    except OSError as error:  # such as a disk that is full
+        _drop_output()
+        return _complain(name, f"{error.filename or 'the output'}: {error.strerror or error}")
     return result if isinstance(result, int) else 0
+
+
+def _drop_output() -> None:
+    """Nothing is left to flush at the end of the process."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _complain(name: str, message: str) -> int:

@@ -22,8 +22,9 @@ from typing import TypeVar
 import numpy as np
 from scipy import integrate as scipy
 
+from validation.equations import Array, Motion
 from validation.ladder import Ladder, ladder
-from validation.lattice import COMPILED, Array, Motion, simulate
+from validation.lattice import COMPILED, simulate
 from validation.outcome import Finding
 from validation.peers import missing, packages, prepared
 from validation.reference import Reference, integrate, reference

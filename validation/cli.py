@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Callable, Collection, Sequence
+import time
+from collections.abc import Callable, Collection, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +21,7 @@ from validation.accuracy import NAMES
 from validation.accuracy import accuracy as run_accuracy
 from validation.atlas import Sweep
 from validation.checked import SceneError
+from validation.effort import LONG, Effort
 from validation.executors import cluster, processes
 from validation.figures import figures as run_figures
 from validation.files import output_file
@@ -71,20 +74,36 @@ def _output(command: Command) -> Command:
 
 def _show(result: Any, style: str, picture: Path | None) -> None:
     if picture is not None:
-        _write(save, result, picture)
+        save(result, picture)
     click.echo(text(result) if style == "text" else json.dumps(document(result), indent=2))
-
-
-def _write(writer: Callable[[Any, Path], None], result: Any, file: Path) -> None:
-    try:
-        writer(result, file)
-    except OSError as error:
-        raise InputError(f"{file} is not written: {error.strerror or error}") from None
 
 
 def _progress(cases: Collection[Any]) -> tqdm[Any]:
     # disable=None: only on a terminal
     return tqdm(cases, desc="lattice runs", disable=None, leave=False, file=sys.stderr)
+
+
+@contextmanager
+def _run(effort: Effort) -> Iterator[Callable[[float], None]]:
+    """One run's progress; where that takes minutes, and was not expected to, a line says so."""
+    start, said = time.monotonic(), effort.seconds > LONG
+    if said:
+        click.echo(f"lwa-validate: {effort}; Ctrl-C ends it", err=True)
+    with tqdm(
+        total=1.0, desc="lattice run", disable=None, leave=False, file=sys.stderr, delay=1,
+        bar_format="{desc}: {percentage:.1f} %|{bar}| {elapsed}<{remaining}",
+    ) as bar:  # fmt: skip
+
+        def tell(share: float) -> None:
+            nonlocal said
+            bar.update(share - bar.n)
+            if not said and time.monotonic() - start > LONG:
+                said = True
+                click.echo(
+                    f"lwa-validate: {share:.1%} of the run is done; Ctrl-C ends it", err=True
+                )
+
+        yield tell
 
 
 @validate.command()
@@ -126,7 +145,7 @@ def paper(
 ) -> None:
     """The steel:PTFE chain of the paper: speed, peak force and FWHM."""  # fmt: skip
     g = experiments.GRAVITY if gravity else 0.0
-    result = experiments.paper(_number(velocity, "velocity"), beads, sensors, g)
+    result = experiments.paper(_number(velocity, "velocity"), beads, sensors, g, _run)
     _show(result, style, picture)
 
 
@@ -256,11 +275,11 @@ def run_scene(
     if picture is not None and not (scene.bead_sensors or scene.contact_sensors):
         raise SceneError("plot is asked for, but the scene names no sensors")
     try:
-        result = record(scene, method=method, rtol=rtol)
+        result = record(scene, method=method, rtol=rtol, progress=_run)
     except IntegrationError as error:
         raise click.ClickException(str(error)) from None
     if out is not None:
-        _write(store, result, out)
+        store(result, out)
     _show(result, style, picture)
 
 

@@ -25,30 +25,38 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from validation import effort
 from validation.checked import SceneError, integer, positive
-from validation.kernel import BLOCK, LAWS, MARGIN, SHORTEST, advance
-from validation.lattice import Array, IntegrationError, Motion, Run, Window, frozen
+from validation.effort import Effort, Progress
+from validation.equations import Array, Motion
+from validation.kernel import BLOCK, MARGIN, SHORTEST, advance, beginning
+from validation.lattice import IntegrationError, Run, Window, frozen
 from validation.scene import Scene
-from validation.splittings import SCHEMES
+from validation.splittings import LAWS, SCHEMES
 
 _SUPPORTS = 4.0
 """Supports of the long-wave pulse that the window reaches back."""
 _DECAY = 0.9
 """Of a pulse's peak, a reach later: where less is left, the window by default gives way."""
-_STEP = {2: (0.5, 0.5), 4: (0.01, 0.4), 6: (0.01, 0.4)}
-"""(c, q): (rtol/c)^q natural times a stage; c is measured on a Hertz dimer of 560 beads."""
-_COARSEST = 0.2
-"""Natural times a stage: all schemes are stable."""
-_MOST = 1e9
-"""Steps of a run."""
+_WINDOW = 2
+"""Reaches that a window holds, about."""
+_GLANCE = 0.2
+"""Seconds, about, from one look at the progress to the next, or at Ctrl-C."""
 
 
 def follow(
-    scene: Scene, method: str, *, rtol: float, step: float | None, window: Any, check: bool
+    scene: Scene,
+    method: str,
+    *,
+    rtol: float,
+    step: float | None,
+    window: Any,
+    check: bool,
+    progress: Progress,
 ) -> Run:
     """`validation.simulate` for a method of `SCHEMES`."""
     reach = _reach(scene, window)
-    chain = _Chain(scene, method, rtol, step)
+    chain = _Chain(scene, method, rtol, step, progress)
     run = chain.run(reach)
     if window is None and run.window is not None and run.window.decay < _DECAY:
         reach = None
@@ -81,20 +89,23 @@ def _reach(scene: Scene, window: Any) -> int | None:
     masses = np.array(scene.masses)
     masses = masses if moving.all() else masses[~moving]  # a striker may be of any mass
     support = math.pi / (scene.k - 1) * math.sqrt(scene.k * (scene.k + 1) / 6)
-    reach = 2 * MARGIN + math.ceil(_SUPPORTS * support * masses.max() / masses.mean())
+    behind = _SUPPORTS * support * masses.max() / masses.mean()
+    reach = 2 * MARGIN + math.ceil(behind if behind < scene.size else scene.size)
     return None if window is None and reach >= scene.size else reach
 
 
 class _Chain:
     """A scene in the kernel's arrays, padded by beads of infinite mass: the first is the wall."""
 
-    def __init__(self, scene: Scene, method: str, rtol: float, step: float | None) -> None:
+    def __init__(
+        self, scene: Scene, method: str, rtol: float, step: float | None, progress: Progress
+    ) -> None:
         self.scene, self.motion, self.scheme = scene, Motion(scene), SCHEMES[method]
+        self.method, self.progress = method, progress
         motion, n = self.motion, scene.size
-        self.start = np.zeros((2, n))
-        self.start[0, : len(scene.displacements)] = scene.displacements
-        self.start[1, : len(scene.velocities)] = scene.velocities
-        self.energy, self.deepest = motion.deepest(self.start.ravel())
+        self.start = motion.start.reshape(2, n)
+        scales = motion.scales(motion.start)
+        self.energy, self.deepest = scales.energy, scales.compression
         # inverse masses, stiffnesses, rest compressions, loads
         self.lattice = np.zeros((4, n + 2 * SHORTEST))
         self.lattice[0, :n] = 1 / motion.masses
@@ -102,22 +113,21 @@ class _Chain:
             self.lattice[row, : len(values)] = values
         self.adapt = step is None
         if step is None:
-            c, q = _STEP[self.scheme.order]
-            step = min((rtol / c) ** q, _COARSEST) * self._natural() * self.scheme.stages
+            step = effort.step(method, rtol) * min(scales.time, scene.duration)
         self.step = positive(step, "step")
 
-    def _natural(self) -> float:
-        """The shortest √(m/spring) of a bead between its contacts at their deepest."""
-        inverse, springs, k = self.lattice[0], self.lattice[1].copy(), self.scene.k
-        springs[1:] += self.lattice[1, :-1]
-        rate = (inverse * springs).max() * k * self.deepest ** (k - 1)
-        return 1 / math.sqrt(rate) if rate > 0 else self.scene.duration
+    def _effort(self, reach: int | None, step: float) -> Effort:
+        n, steps = self.scene.size, self.scene.duration / step
+        beads = n if reach is None else min(n, _WINDOW * reach)
+        found = effort.compiled(self.scene, self.method, steps, beads)
+        found.check()
+        return found
 
     def run(self, reach: int | None, *, whole: bool = False, coarser: float = 1.0) -> Run:
         """Integrate; ``whole`` takes a window's steps but moves all beads."""
         scene, scheme, n, end = self.scene, self.scheme, self.scene.size, self.scene.duration
-        if (count := math.ceil(end / (self.step * coarser))) > _MOST:
-            raise SceneError(f"step is {self.step:g}: that makes {count:.1e} steps, beyond 1e9")
+        taken = self._effort(None if whole else reach, self.step * coarser)
+        count = math.ceil(taken.steps)
         y, v = np.zeros((2, self.lattice.shape[1]))
         y[:n], v[:n] = self.start
         size = np.abs(self.start)
@@ -132,12 +142,19 @@ class _Chain:
         seen = np.repeat(np.stack((y, v))[:, watched, None], len(time), axis=2)
         left = np.full(len(y), np.inf)
         inverse, A, rest, load = self.lattice
-        steps, evaluations, lost, rear, decay = advance(
-            y, v, inverse, A, rest, load, LAWS.get(scene.k, 0), scene.k,
-            scheme.kicks, scheme.drifts, end / count, end, self.deepest,
-            self.adapt and reach is not None, n, front, reach or n, whole or reach is None,
-            time, watched, seen[0], seen[1], left,
-        )  # fmt: skip
+        force, glance = np.zeros(len(y) + 1), max(1, int(_GLANCE * taken.steps / taken.seconds))
+        at = beginning(front, end / count, A.max(), self.deepest, scene.k)
+        with self.progress(taken) as tell:
+            while (t := at[1][0]) < end:
+                tell(t / end)
+                at = advance(
+                    y, v, inverse, A, rest, load, LAWS.get(scene.k, 0), scene.k,
+                    scheme.kicks, scheme.drifts, end / count, end, self.deepest,
+                    self.adapt and reach is not None, n, reach or n, whole or reach is None,
+                    time, watched, seen[0], seen[1], left, force, at, at[0][0] + glance,
+                )  # fmt: skip
+        steps, evaluations, rear = at[0][0], at[0][1], at[0][4]
+        lost, decay = at[1][-2:]
         if not (np.isfinite(y).all() and np.isfinite(v).all()):
             raise IntegrationError(f"the motion overflows: a step of {end / count:g} is too long")
         state = np.concatenate((y[:n], v[:n]))

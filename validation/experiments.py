@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 from lwa import Cell, Dimer, TravelingWave, homogenize
 from validation.checked import SceneError, integer, items, real
 from validation.compacton import Compacton
+from validation.effort import Progress, silent
 from validation.lattice import Run, simulate
 from validation.materials import (
     DIAMETER,
@@ -140,6 +141,7 @@ def paper(
     beads: int = 38,
     sensors: tuple[int, int] = (15, 34),
     gravity: float = 0.0,
+    progress: Progress = silent,
 ) -> Paper:
     """Simulate the chain and compare it with the theory.
 
@@ -149,6 +151,7 @@ def paper(
     beads : in the chain, the striker included, from 8 to 2000.
     sensors : numbers of two beads, counted from 1, that the pulse passes in this order.
     gravity : in m/s², towards the wall.
+    progress : of the two runs, as for `validation.simulate`.
 
     Raises `SceneError` for values that cannot be meant, `MeasureError` where the pulse is not
     whole at a sensor before the wall throws it back.
@@ -162,8 +165,7 @@ def paper(
     # Ample: the pulse that had all the momentum would need two thirds of this to the wall.
     duration = 1.5 * beads * DIAMETER / Compacton.of_momentum(wave, momentum).speed
     scene = chain_scene(velocity, beads, pair, gravity, duration)
-    run = simulate(scene, rtol=1e-10, atol=1e-10)
-    check = simulate(scene, rtol=1e-7, atol=1e-7)
+    run, check = (simulate(scene, rtol=t, atol=t, progress=progress) for t in (1e-10, 1e-7))
     numbers = {
         name: Measured(value, less)
         for (name, value), less in zip(

@@ -1,34 +1,60 @@
-"""Files that are written: checked before the work, and there only when complete."""
+"""Files that are written: checked before the work, and there only when complete.
+
+Every fault is one line, an `lwa.InputError`, whatever the operating system calls it.
+"""
 
 from __future__ import annotations
 
 import os
+import stat
 import tempfile
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
 from lwa.exact import InputError
+from lwa.files import kind, reason
 
 
 def output_file(name: str, path: str, suffixes: Sequence[str]) -> Path:
     """A path that can be written to; ``name`` is what messages call it.
 
-    Raises `lwa.InputError` for a suffix not among ``suffixes`` or a folder that does not exist.
+    Raises `lwa.InputError` for a suffix not among ``suffixes``, a folder that does not exist or
+    takes no file, a name that the system refuses, and what is there but no regular file.
     """
     file = Path(path)
+    said = f"{name} is {_short(file)}"
     if file.suffix.lower() not in suffixes:
-        raise InputError(f"{name} is {path}: a file ending in {', '.join(suffixes)} is wanted")
-    if not file.parent.is_dir():
-        raise InputError(f"{name} is {path}: the folder {file.parent} does not exist")
-    if file.is_dir() or not os.access(file.parent, os.W_OK):
-        raise InputError(f"{name} is {path}: a file that can be written is wanted")
+        raise InputError(f"{said}: a file ending in {', '.join(suffixes)} is wanted")
+    try:
+        if (folder := _mode(file.parent)) is None:
+            raise InputError(f"{said}: the folder {_short(file.parent)} does not exist")
+        if not stat.S_ISDIR(folder):
+            raise InputError(f"{said}: {_short(file.parent)} is no folder")
+        if (there := _mode(file)) is not None and not stat.S_ISREG(there):
+            raise InputError(f"{said}: a file that can be written is wanted, not {kind(there)}")
+        with tempfile.TemporaryFile(dir=file.parent):
+            pass
+    except (OSError, ValueError) as error:  # ValueError: a name with a null byte
+        if isinstance(error, InputError):
+            raise
+        raise InputError(f"{said}: it cannot be written, {reason(error)}") from None
     return file
+
+
+def _mode(file: Path) -> int | None:
+    """What is there; None for nothing."""
+    try:
+        return file.stat().st_mode
+    except FileNotFoundError:
+        return None
 
 
 @contextmanager
 def replacing(file: Path) -> Iterator[Path]:
     """A temporary file beside ``file``, which takes its place at the end, or vanishes on a failure.
+
+    An `OSError` on the way, such as of a disk that is full, becomes an `lwa.InputError`.
 
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     with replacing(Path(folder, "a.txt")) as new:
@@ -36,6 +62,15 @@ def replacing(file: Path) -> Iterator[Path]:
     ...     Path(folder, "a.txt").read_text()
     'whole'
     """
+    try:
+        with _beside(file) as new:
+            yield new
+    except OSError as error:
+        raise InputError(f"{_short(file)} is not written: {reason(error)}") from None
+
+
+@contextmanager
+def _beside(file: Path) -> Iterator[Path]:
     handle, name = tempfile.mkstemp(suffix=file.suffix.lower(), dir=file.parent)
     os.close(handle)
     try:
@@ -47,3 +82,8 @@ def replacing(file: Path) -> Iterator[Path]:
     except BaseException:
         os.unlink(name)
         raise
+
+
+def _short(file: Path) -> str:
+    name = str(file)
+    return name if len(name) <= 120 else name[:117] + "..."

@@ -24,6 +24,7 @@ from typing import Any, BinaryIO
 import sympy as sp
 
 from lwa.exact import InputError, exact, shorten
+from lwa.files import content, reason
 from lwa.tables import Table, array, table
 from validation.checked import SceneError, integer, real
 from validation.files import output_file
@@ -33,6 +34,9 @@ from validation.steady import QUANTITIES, Point
 SUFFIX = ".jsonl"
 FORMAT = {"format": "lwa sweep", "version": 1}
 """The version counts the definitions of what is measured, too."""
+
+MOST_BYTES = 10**9
+"""Of the file: twice a million points."""
 
 Key = tuple[sp.Rational, sp.Rational]
 """k and ω."""
@@ -57,13 +61,15 @@ class Journal:
         if not os.access(self.file, os.W_OK):
             raise InputError(f"file is {self.file}: one that can be written is wanted")
         try:
-            content = self.file.read_bytes()
+            found = content(self.file, MOST_BYTES)
         except OSError as error:
-            raise InputError(f"{self.file} is not read: {error.strerror or error}") from None
-        self._end = content.rfind(b"\n") + 1
+            raise InputError(f"{self.file} is not read: {reason(error)}") from None
+        except InputError as error:
+            raise InputError(f"{self.file} is not read: {error}") from None
+        self._end = found.rfind(b"\n") + 1
         if self._end:
-            self.points = _read(self.file, content[: self._end], settings)
-        elif not self._header.startswith(content):
+            self.points = _read(self.file, found[: self._end], settings)
+        elif not self._header.startswith(found):
             raise InputError(f"{self.file} is not a sweep's file: choose another name")
 
     def add(self, point: Point) -> None:
@@ -72,8 +78,7 @@ class Journal:
             try:
                 self._append(_line(point))
             except OSError as error:
-                reason = error.strerror or error
-                raise InputError(f"{self.file} is not written: {reason}") from None
+                raise InputError(f"{self.file} is not written: {reason(error)}") from None
         self.points[point.k, point.omega] = point
 
     def close(self) -> None:

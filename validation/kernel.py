@@ -12,7 +12,7 @@ from typing import Any, TypeVar, cast
 import numpy as np
 from numba import njit
 
-from validation.splittings import Array
+from validation.equations import Array
 
 _Function = TypeVar("_Function", bound=Callable[..., Any])
 
@@ -20,8 +20,6 @@ MARGIN = 4
 """Still beads that the window holds at its front."""
 SHORTEST = 32
 """Beads below which the vector loops take no less time."""
-LAWS = {1.0: 1, 1.25: 2, 1.5: 3, 2.0: 4, 3.0: 5}
-"""Exponents with loops of their own, without a power."""
 _OPEN = 1e-3
 """Of the peak force: what a contact behind may push and count as open."""
 _BLOW = 0.05
@@ -98,30 +96,44 @@ def _net(y: Array, A: Array, rest: Array, load: Array, k: float, i: int) -> floa
     return force
 
 
+Counts = tuple[int, int, int, int, int, int, int, int, int, int]
+Reals = tuple[float, float, float, float, float, float, float, float]
+At = tuple[Counts, Reals]
+"""Where `advance` is: numbers of steps and bead evaluations, the front, where it was one reach ago,
+the rear, the samples that are taken, the watched beads that are followed (from, to), the reaches
+passed, the steps of the present length; time, that from which the steps have this length, their
+length, the compression that it is made for, the peak force of this reach and the last, the energy
+of the contacts that were cut, and the smallest ratio of two such peaks."""
+
+
+def beginning(front: int, h: float, stiffest: float, deepest: float, k: float) -> At:
+    """Where `advance` begins."""
+    return (0, 0, front, front, 0, 0, 0, 0, 0, 0), (
+        0.0, 0.0, h, deepest, 0.0, stiffest * deepest**k, 0.0, 1.0
+    )  # fmt: skip
+
+
 @_compiled
 def advance(
     y: Array, v: Array, inverse: Array, A: Array, rest: Array, load: Array, law: int, k: float,
-    kicks: Array, drifts: Array, h: float, end: float, deepest: float, adapt: bool,
-    n: int, front: int, reach: int, whole: bool,
-    times: Array, watched: Array, seen_y: Array, seen_v: Array, left: Array,
-) -> tuple[int, int, float, int, float]:  # fmt: skip
-    """Integrate y and v to the end.
+    kicks: Array, drifts: Array, first_h: float, end: float, deepest: float, adapt: bool,
+    n: int, reach: int, whole: bool, times: Array, watched: Array,
+    seen_y: Array, seen_v: Array, left: Array, f: Array, at: At, until: int,
+) -> At:  # fmt: skip
+    """Integrate y and v on from where they are, to the end or to the step ``until``.
 
     Fills the watched beads' samples while they are followed, and ``left`` with the times at which
-    beads were left behind; their y and v stay as they were then. Returns the numbers of steps and
-    bead evaluations, the energy of the cut contacts, the rear and the smallest ratio of two peaks
-    of force one reach apart.
+    beads were left behind; their y and v stay as they were then.
     """
-    f = np.zeros(len(y) + 1)
-    for i in range(n):
-        f[i + 1] = _net(y, A, rest, load, k, i)
+    counts, reals = at
+    steps, evaluations, front, mark, lo, done, begin, stop, legs, count = counts
+    t, base, h, scale, top, peak, lost, decay = reals
+    if steps == 0:
+        for i in range(n):
+            f[i + 1] = _net(y, A, rest, load, k, i)
     stiffest, heaviest = A.max(), 1 / inverse[min(1, n - 1) : n].min()  # not the striker
-    first_h, scale = h, deepest
-    top, peak, mark = 0.0, stiffest * deepest**k, front
-    lo, done, begin, stop, legs, decay = 0, 0, 0, 0, 0, 1.0
     old, nothing = np.zeros((3, len(watched))), _NOTHING * deepest
-    t, base, count, steps, evaluations, lost = 0.0, 0.0, 0, 0, 0, 0.0
-    while t < end:
+    while t < end and steps < until:
         hi = n if whole else front
         hi = lo + max(SHORTEST, -(-(hi - lo) // BLOCK) * BLOCK)
         while stop < len(watched) and watched[stop] < hi:
@@ -191,4 +203,5 @@ def advance(
             f[lo] = 0.0
         while begin < stop and watched[begin] < lo:
             begin += 1
-    return steps, evaluations, lost, lo, decay
+    counts = steps, evaluations, front, mark, lo, done, begin, stop, legs, count
+    return counts, (t, base, h, scale, top, peak, lost, decay)

@@ -1,10 +1,4 @@
-"""The equations of motion of a scene, integrated.
-
-    m_i y_i'' = F_{i-1} - F_i + m_i g,    F_i = A_i [δ_i⁰ + y_i - y_{i+1}]_+^k,
-
-where F_{-1} is the precompression F0, y counts from the equilibrium, δ_i⁰ is the compression of
-contact i there (0 without gravity and F0) and the wall stands at y_n = 0 (Porter et al. 2008,
-eq. 1, for k = 3/2). A contact that opens carries no tension.
+"""The equations of motion of a scene (`validation.equations`), integrated.
 
 One `simulate` stands before two engines. SciPy's adaptive steppers, whose own interpolant gives the
 samples, are the reference; tolerances are relative to the scene's own scales of velocity and
@@ -14,26 +8,34 @@ compression, so that a run does not depend on the units. The compiled symplectic
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import integrate
 
 from lwa.exact import shorten
 from validation.checked import SceneError, real
+from validation.effort import EXCESS, Progress, adaptive, silent
+from validation.equations import Array, Motion
 from validation.scene import Scene
 from validation.splittings import SCHEMES
 
-Array = NDArray[np.float64]
+_BLOCK = 1_000_000
+"""Numbers that the interpolant gives at a time."""
 
 METHODS = ("DOP853", "RK45", "RK23", "LSODA")
 """SciPy's: explicit Runge–Kutta pairs of order 8, 5 and 3, and Adams and BDF of varying order."""
 
 COMPILED = tuple(SCHEMES)
 """The splittings of `validation.engine`, of order 6, 6, 4, 4, 4 and 2; the first where in doubt."""
+
+
+_NUMBERS = (
+    "contact_force", "compression", "bead_force", "bead_velocity", "displacements", "velocities",
+    "energy_drift",
+)  # fmt: skip
+"""Of a `Run`, that must be finite."""
 
 
 class IntegrationError(RuntimeError):
@@ -103,85 +105,6 @@ class Run:
     window_error: float | None = None
 
 
-class Motion:
-    """The right-hand side for one scene, in the state (y_0 … y_{n-1}, v_0 … v_{n-1})."""
-
-    def __init__(self, scene: Scene) -> None:
-        wall = () if scene.wall is None else (scene.wall,)
-        self.size = scene.size
-        self.masses = np.array(scene.masses)
-        self.stiffnesses = np.array(scene.stiffnesses + wall)
-        self.k = scene.k
-        self.rest = (np.array(scene.load) / self.stiffnesses) ** (1 / self.k)
-        # The load from the rest compressions, so that equilibrium is an exact zero.
-        self.load = self.force(self.rest)
-
-    def compression(self, y: Array) -> Array:
-        """δ_i, for displacements of shape (n,) or (n, S)."""
-        row = np.concatenate((y, np.zeros_like(y[:1]))) if len(self.rest) == len(y) else y
-        result: Array = (self.rest + (row[:-1] - row[1:]).T).T
-        return result
-
-    def force(self, compression: Array) -> Array:
-        """F_i = A_i [δ_i]_+^k."""
-        result: Array = (self.stiffnesses * np.maximum(compression, 0.0).T ** self.k).T
-        return result
-
-    def bead_force(self, bead: int, force: Array) -> Array:
-        """The mean of the forces of a bead's two contacts; an end without one counts as 0."""
-        return np.asarray(force[max(bead - 1, 0) : bead + 1].sum(axis=0) / 2)
-
-    def __call__(self, time: float, state: Array) -> Array:
-        y, v = state[: self.size], state[self.size :]
-        excess = self.force(self.compression(y)) - self.load
-        push = np.zeros(self.size)
-        push[: len(excess)] = -excess
-        push[1:] += excess[: self.size - 1]
-        return np.concatenate((v, push / self.masses))
-
-    def energy(self, state: Array, first: int = 0) -> float:
-        """Kinetic and elastic energy, less the work of the weights: 0 in equilibrium.
-
-        Contacts before the ``first`` do not count.
-        """
-        compression, v = self.compression(state[: self.size]), state[self.size :]
-        stored = (self.force(compression) * compression - self.load * self.rest) / (self.k + 1)
-        work = self.load * (compression - self.rest)
-        return float(self.masses @ v**2 / 2 + np.sum((stored - work)[first:]))
-
-    def momentum_drift(self, before: Array, after: Array) -> float | None:
-        """Change of the momentum between two rows of velocities over Σ m|v|; None with a wall."""
-        if len(self.rest) == self.size:
-            return None
-        total = self.masses @ np.abs(after)
-        return float(self.masses @ (after - before) / total) if total else 0.0
-
-    def deepest(self, state: Array) -> tuple[float, float]:
-        """The state's energy, and the compression that it, or the weights, could give a contact.
-
-        Raises `SceneError` when floating point cannot hold that energy.
-        """
-        with np.errstate(over="ignore", invalid="ignore"):
-            energy = self.energy(state)
-        if not np.isfinite(energy) or (energy == 0 and np.any(state[self.size :])):
-            raise SceneError(f"the scene's energy comes out as {energy:g}: choose other units")
-        if energy <= 0 or not len(self.stiffnesses):
-            return energy, float(self.rest.max(initial=0.0))
-        free = (energy / self.stiffnesses.max()) ** (1 / (self.k + 1))
-        return energy, float(max(free, self.rest.max()))
-
-    def scales(self, state: Array) -> tuple[float, float]:
-        """The displacement and the velocity that the state's energy could give to a bead.
-
-        Raises `SceneError` when floating point cannot hold that energy.
-        """
-        energy, compression = self.deepest(state)
-        if energy <= 0 or not len(self.stiffnesses):
-            return 1.0, 1.0
-        spring = self.stiffnesses.max() * compression ** (self.k - 1)
-        return math.sqrt(energy / spring), math.sqrt(energy / self.masses.mean())
-
-
 def simulate(
     scene: Scene,
     *,
@@ -191,6 +114,7 @@ def simulate(
     step: float | None = None,
     window: bool | int | None = None,
     check: bool = False,
+    progress: Progress = silent,
 ) -> Run:
     """Integrate a scene and return what its sensors recorded.
 
@@ -210,11 +134,14 @@ def simulate(
         follow behind the front.
     check : whether to measure the errors of step and window by further runs.
 
+    progress : is shown what a run takes before it starts, and then how far it is.
+
     A contact that opens within a step is a kink which the error estimate may miss, as the run's
     energy drift then shows.
 
-    Raises `SceneError` for a tolerance or method that cannot be meant and `IntegrationError`
-    when the integrator fails.
+    Raises `SceneError` for a tolerance or method that cannot be meant, and for a run that takes
+    longer or more memory than `validation.effort` allows, and `IntegrationError` when the
+    integrator fails.
 
     >>> scene = Scene(masses=(1, 1), stiffnesses=(1,), k=1.5, duration=9, velocities=(1,))
     >>> simulate(scene).velocities.round(6) + 0.0  # equal masses exchange their velocities
@@ -230,22 +157,36 @@ def simulate(
     for name, tolerance in (("rtol", rtol), ("atol", atol)):
         if not 1e-13 <= real(tolerance, name) <= 1e-2:
             raise SceneError(f"{name} is {tolerance:g}: it lies between 1e-13 and 0.01")
-    if method in COMPILED:
-        from validation.engine import follow  # numba takes its time
+    if method not in COMPILED:
+        for name, value in (("step", step), ("window", window), ("check", check or None)):
+            if value is not None:
+                wanted = f"it needs one of {', '.join(COMPILED)}"
+                raise SceneError(f"{name} is {shorten(value)}: {wanted}")
+    with np.errstate(over="ignore", invalid="ignore"):  # told by what comes of it
+        if method in COMPILED:
+            from validation.engine import follow  # numba takes its time
 
-        return follow(scene, method, rtol=rtol, step=step, window=window, check=check)
-    for name, value in (("step", step), ("window", window), ("check", check or None)):
-        if value is not None:
-            raise SceneError(f"{name} is {shorten(value)}: it needs one of {', '.join(COMPILED)}")
+            run = follow(
+                scene, method, rtol=rtol, step=step, window=window, check=check, progress=progress
+            )
+        else:
+            run = _adaptive(scene, method, rtol, atol, progress)
+    if not all(np.isfinite(getattr(run, name)).all() for name in _NUMBERS):
+        raise IntegrationError("the motion overflows: choose other units")
+    return run
+
+
+def _adaptive(scene: Scene, method: str, rtol: float, atol: float, progress: Progress) -> Run:
+    """`simulate` by a method of SciPy's."""
     motion = Motion(scene)
-    start = np.zeros(2 * scene.size)
-    start[: len(scene.displacements)] = scene.displacements
-    start[scene.size : scene.size + len(scene.velocities)] = scene.velocities
-    y, v = motion.scales(start)
+    scales = motion.scales(motion.start)
+    y, v = scales.displacement, scales.velocity
+    taken = adaptive(scene, method, rtol, scales.time)
+    taken.check()
     stepper = getattr(integrate, method)(
         motion,
         0.0,
-        start,
+        motion.start,
         scene.duration,
         rtol=rtol,
         atol=atol * np.repeat([y, v], scene.size),
@@ -253,17 +194,22 @@ def simulate(
     )
     time = np.linspace(0.0, scene.duration, scene.samples)
     recorder = _Recorder(motion, scene)
-    done = steps = 0
-    while stepper.status == "running":
-        message = stepper.step()
-        steps += 1
-        if stepper.status == "failed":
-            raise IntegrationError(f"integration stopped at t = {stepper.t:g}: {message}")
-        until = int(np.searchsorted(time, stepper.t, side="right"))
-        if recorder.listening and until > done:
-            recorder.store(slice(done, until), stepper.dense_output()(time[done:until]))
-            done = until
-    return _result(scene, motion, recorder, time, start, stepper, steps)
+    steps = 0
+    with progress(taken) as tell:
+        while stepper.status == "running":
+            if steps > EXCESS * taken.steps:
+                raise IntegrationError(
+                    f"{steps} steps of {method} reach t = {stepper.t:g} where {taken.steps:.0f} "
+                    f"are enough for all of {scene.duration:g}: rounding hides the motion, or rtol "
+                    "is too small for it"
+                )
+            message = stepper.step()
+            steps += 1
+            if stepper.status == "failed":
+                raise IntegrationError(f"integration stopped at t = {stepper.t:g}: {message}")
+            recorder.record(time, stepper)
+            tell(stepper.t / scene.duration)
+    return _result(scene, motion, recorder, time, stepper, steps)
 
 
 class _Recorder:
@@ -273,11 +219,21 @@ class _Recorder:
         self.motion = motion
         self.contacts = list(scene.contact_sensors)
         self.beads = list(scene.bead_sensors)
-        self.listening = bool(self.contacts or self.beads)
+        self.listening, self.done = bool(self.contacts or self.beads), 0
         self.contact_force, self.compression = np.empty((2, len(self.contacts), scene.samples))
         self.bead_force, self.bead_velocity = np.empty((2, len(self.beads), scene.samples))
 
-    def store(self, samples: slice, states: Array) -> None:
+    def record(self, time: Array, stepper: Any) -> None:
+        """Keep the samples of the last step."""
+        until = int(np.searchsorted(time, stepper.t, side="right"))
+        if self.listening and until > self.done:
+            state = stepper.dense_output()
+            while self.done < until:  # few at a time, as all beads are computed
+                part = slice(self.done, min(until, self.done + max(1, _BLOCK // len(stepper.y))))
+                self._store(part, state(time[part]))
+                self.done = part.stop
+
+    def _store(self, samples: slice, states: Array) -> None:
         """Keep what the sensors see of the states, of shape (2n, samples)."""
         compression = self.motion.compression(states[: self.motion.size])
         force = self.motion.force(compression)
@@ -293,11 +249,10 @@ def _result(
     motion: Motion,
     recorder: _Recorder,
     time: Array,
-    start: Array,
     stepper: Any,
     steps: int,
 ) -> Run:
-    n, end = scene.size, stepper.y
+    n, start, end = scene.size, motion.start, stepper.y
     before, after = motion.energy(start), motion.energy(end)
     return Run(
         scene=scene,

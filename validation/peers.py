@@ -22,7 +22,7 @@ from typing import Any
 import numpy as np
 
 from validation.checked import SceneError
-from validation.lattice import Array, Motion
+from validation.equations import Array, Motion
 from validation.tasks import Task
 
 Solve = Callable[[float], Array]

@@ -17,7 +17,9 @@ from typing import Any
 import numpy as np
 
 from validation.checked import SceneError, real
-from validation.lattice import METHODS, Array, Run, simulate
+from validation.effort import Progress, silent
+from validation.equations import Array, Motion
+from validation.lattice import METHODS, Run, simulate
 from validation.measure import Measured, MeasureError, Pulse, measure, speed
 from validation.scene import Scene
 
@@ -26,6 +28,9 @@ TOLERANCE = 1e-10
 
 LESS = 1e3
 """By how much that of the run that gives its errors is larger."""
+
+_ROUNDING = 10
+"""Times the tolerance: what rounding may take of a motion, whose noise the steps would follow."""
 
 READINGS = ("arrival", "peak", "fwhm")
 """What is read off a pulse."""
@@ -93,13 +98,16 @@ class Track:
         return first_pulse(self.time, self.force)
 
 
-def record(scene: Scene, *, method: str = METHODS[0], rtol: Any = TOLERANCE) -> Recording:
+def record(
+    scene: Scene, *, method: str = METHODS[0], rtol: Any = TOLERANCE, progress: Progress = silent
+) -> Recording:
     """Simulate a scene and read its sensors.
 
     Parameters
     ----------
     method : of integration, as for `validation.simulate`.
     rtol : its tolerance, from 1e-13 to 1e-5.
+    progress : of the two runs, as for `validation.simulate`.
 
     Raises what `validation.simulate` raises.
 
@@ -110,8 +118,16 @@ def record(scene: Scene, *, method: str = METHODS[0], rtol: Any = TOLERANCE) -> 
     """
     if not 1e-13 <= real(rtol, "rtol") <= 1e-2 / LESS:
         raise SceneError(f"rtol is {rtol:g}: it lies between 1e-13 and {1e-2 / LESS:g}")
-    with np.errstate(over="ignore", invalid="ignore"):  # a failure is told by `simulate` itself
-        run, check = (simulate(scene, rtol=t, atol=t, method=method) for t in (rtol, LESS * rtol))
+    motion = Motion(scene)
+    if (lost := motion.scales(motion.start).rounding) > _ROUNDING * rtol:
+        raise SceneError(
+            f"rtol is {rtol:g}: rounding of the static compression, {motion.rest.max():.1g}, takes "
+            f"{lost:.1g} of the motion; {lost / _ROUNDING:.1g} or more is wanted"
+        )
+    run, check = (
+        simulate(scene, rtol=t, atol=t, method=method, progress=progress)
+        for t in (rtol, LESS * rtol)
+    )
     pairs = tuple(zip(tracks(run), tracks(check), strict=True))
     sensors = tuple(Sensor(t.kind, t.number, *_pulse_numbers(t, c)) for t, c in pairs)
     speeds = tuple(

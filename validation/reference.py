@@ -22,7 +22,8 @@ from scipy import integrate as scipy
 from scipy.optimize import brentq
 
 from validation.checked import SceneError
-from validation.lattice import Array, IntegrationError, Motion, simulate
+from validation.equations import Array, Motion
+from validation.lattice import IntegrationError, simulate
 from validation.measure import Pulse
 from validation.tasks import Task, errors
 

@@ -21,7 +21,7 @@ import sympy as sp
 from lwa import Cell
 from lwa.cell import exponent
 from lwa.exact import InputError, shorten
-from validation.checked import SceneError, integer, items, positive, real
+from validation.checked import SceneError, integer, items, positive, real, row
 from validation.materials import Bead, Material, contact_stiffness
 
 __all__ = ["Scene", "SceneError"]
@@ -175,7 +175,7 @@ class Scene:
 
 
 def _all(read: Callable[[Any, str], float], values: Any, name: str) -> tuple[float, ...]:
-    return tuple(read(value, f"{name}[{i}]") for i, value in enumerate(items(values, name)))
+    return tuple(row(items(values, name), read, lambda i: f"{name}[{i}]"))
 
 
 def _sensors(values: Any, name: str, most: int) -> tuple[int, ...]:

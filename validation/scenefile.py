@@ -58,9 +58,10 @@ from typing import Any
 
 from lwa import hertz
 from lwa.beads import read_beads, read_materials
-from lwa.files import load
-from lwa.tables import Table, among, array, each, entries, flag, place, places, table
-from validation.checked import SceneError, integer, of_scene, positive, real
+from lwa.exact import shorten
+from lwa.files import MOST_BYTES, load
+from lwa.tables import Table, among, array, entries, flag, place, places, table
+from validation.checked import SceneError, each, integer, of_scene, positive, real
 from validation.files import replacing
 from validation.materials import Bead, Material, contact_stiffness
 from validation.scene import Scene
@@ -92,8 +93,13 @@ def read(path: str | Path) -> Scene:
 
 def write(what: Scene, file: Path) -> None:
     """Write a scene as TOML or JSON, by the suffix; only a complete file replaces an old one."""
-    content = document(what)
-    text = toml(content) if file.suffix.lower() == ".toml" else json.dumps(content, indent=2) + "\n"
+    suffix, entries = file.suffix.lower(), document(what)
+    text = toml(entries) if suffix == ".toml" else json.dumps(entries, indent=2) + "\n"
+    if len(text) > (most := MOST_BYTES[suffix]):
+        raise SceneError(
+            f"{file}: the scene takes {len(text)} bytes, and {most} of {suffix[1:].upper()} are "
+            "the most that is read"
+        )
     with replacing(file) as new:
         new.write_text(text, encoding="utf-8")
 
@@ -116,7 +122,7 @@ def scene(content: Any) -> Scene:
     materials = read_materials(file)
     spheres = read_beads(file, materials)
     beads = {name: Bead.of(sphere) for name, sphere in spheres.items()}
-    defects = file.read("defects", each(_defect), ())
+    defects = file.read("defects", _defects, ())
     row, chain = _chain(file.read("chain", table(KEYS["chain"])), beads, defects)
     n = len(chain["masses"])
     wall = _wall(tables["wall"], row, materials) if "wall" in file else None
@@ -160,6 +166,19 @@ def _defect(value: Any, name: str) -> Table:
     return given
 
 
+def _defects(value: Any, name: str) -> list[Table]:
+    found: list[Table] = each(_defect)(value, name)
+    first: dict[tuple[str, int], Table] = {}
+    for defect in found:
+        what = "contact" if "contact" in defect else "bead"
+        at = defect.entries[what]  # checked when it is known how many there are
+        if isinstance(at, int) and (other := first.setdefault((what, at), defect)) is not defect:
+            raise SceneError(
+                f"{other.name} and {defect.name} are both of {what} {at}: one is wanted"
+            )
+    return found
+
+
 def _chain(
     given: Table, beads: Mapping[str, Bead], defects: Sequence[Table]
 ) -> tuple[list[Bead], dict[str, Any]]:
@@ -168,7 +187,9 @@ def _chain(
     repeat = given.read("repeat", partial(integer, least=1), 1)
     n = len(cell) * repeat
     if not 1 <= n <= MOST_BEADS:
-        raise SceneError(f"chain.cell and repeat make {n} beads: 1 … {MOST_BEADS} are wanted")
+        raise SceneError(
+            f"chain.cell and repeat make {shorten(n)} beads: 1 … {MOST_BEADS} are wanted"
+        )
     row: list[Bead] = []
     if isinstance(cell[0], str):
         for key in ("k", "stiffnesses", "spacings"):

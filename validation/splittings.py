@@ -70,3 +70,6 @@ SCHEMES = {
     "Verlet": _scheme(2, [], [], "drift"),
 }
 # fmt: on
+
+LAWS = {1.0: 1, 1.25: 2, 1.5: 3, 2.0: 4, 3.0: 5}
+"""Exponents that have loops of their own in `validation.kernel`, without a power."""

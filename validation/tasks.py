@@ -23,8 +23,8 @@ from scipy.interpolate import make_interp_spline
 
 from lwa.exact import shorten
 from validation.checked import SceneError
+from validation.equations import Array
 from validation.experiments import chain_scene
-from validation.lattice import Array
 from validation.measure import Pulse, measure
 from validation.passage import carrying
 from validation.scene import Scene

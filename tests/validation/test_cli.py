@@ -2,9 +2,13 @@
 
 import dataclasses
 import json
+import os
+import re
+import signal
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -158,6 +162,50 @@ def test_a_result_that_cannot_be_written_leaves_the_old_one(
     assert err == f"lwa-validate: {file} is not written: No space left on device\n"
     assert file.read_text() == "old"
     assert {f.name for f in tmp_path.iterdir()} == {"scene.toml", name}
+
+
+LONG = "a" * 300
+
+
+OUTPUTS = [
+    ("run", "scene.toml", "--plot", ".svg"),
+    ("run", "scene.toml", "--out", ".npz"),
+    ("paper", "--plot", ".svg"),
+    ("sweep", "--file", ".jsonl"),
+]
+
+
+@pytest.mark.parametrize("command", OUTPUTS, ids=" ".join)
+@pytest.mark.parametrize("name", [LONG, f"{LONG}/o", "scene.toml/o", "no/o", "folder", "pipe"])
+def test_an_output_that_cannot_be_is_refused_before_the_work(
+    capsys, monkeypatch, tmp_path, command, name
+):
+    *command, option, suffix = command
+    monkeypatch.chdir(tmp_path)
+    Path("scene.toml").write_text(SCENE)
+    Path(f"folder{suffix}").mkdir()
+    os.mkfifo(f"pipe{suffix}")
+    before = sorted(tmp_path.iterdir())
+    monkeypatch.setattr(cli, "record", None)
+    monkeypatch.setattr(cli.experiments, "paper", None)
+    monkeypatch.setattr("validation.sweep._compute", None)
+    status, out, err = run(capsys, *command, option, f"{name}{suffix}")
+    assert (status, out, err.count("\n")) == (2, "", 1)
+    assert err.startswith(f"lwa-validate: {option[2:]} is {name[:50]}")
+    assert sorted(tmp_path.iterdir()) == before
+
+
+def test_output_on_a_full_disk_is_one_line(scene_file):
+    with open("/dev/full", "w") as full:
+        ended = subprocess.run(
+            [COMMAND, "run", scene_file],
+            stdout=full,
+            stderr=subprocess.PIPE,
+            text=True,
+            check=False,
+        )
+    said = "lwa-validate: the output: No space left on device\n"
+    assert (ended.returncode, ended.stderr) == (2, said)
 
 
 def test_an_integrator_that_fails_is_one_line(capsys, monkeypatch, scene_file):
@@ -335,6 +383,84 @@ def test_run_on_a_compiled_engine(capsys, scene_file):
         status, out, err = run(capsys, "run", str(scene_file), *options)
         assert (status, out, err.count("\n")) == (2, "", 1)
         assert err.startswith(f"lwa-validate: {line}")
+
+
+LONG_RUNS = [
+    (SCENE.replace("0.5", "1e-12"), (), "duration is 30: this makes .* steps of DOP853, about"),
+    (SCENE.replace("0.5", "1e-20"), ("--method", "S6"), "duration is 30: .* of S6, .* years"),
+    (SCENE.replace("0.5", "1e-320"), (), "scene.toml: chain.cell number 2 is 1e-320: floats below"),
+    (SCENE + "wall = {stiffness = 1e-320}", (), "scene.toml: wall.stiffness is 1e-320: floats"),
+    (SCENE.replace("0.5", "1e-300"), (), "duration is 30: .*, over 1000 years"),
+    (SCENE + "gravity = 1e10\nwall = {stiffness = 1}", (), "rtol is 1e-10: rounding of the static"),
+    (SCENE + "gravity = 1e300\nwall = {stiffness = 1}", (), "the scene's .* comes out as .*:"),
+    (SCENE.replace("601", "10_000_000"), (), "scene.toml: samples is 10000000, for each of 3"),
+    (SCENE.replace("= 1}", "= 1e200}"), (), "the scene's energy comes out as inf: choose other"),
+    (SCENE.replace("1.5", "1e308"), ("--method", "S6"), "the scene's .* comes out as 0: choose"),
+    (SCENE.replace("repeat = 10,", "repeat = 10_000,"), ("--method", "LSODA"), "samples .* GB"),
+    (SCENE + "defects = [{bead = 3, mass = 2}, {bead = 3, mass = 4}]", (), "scene.toml: defects"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("content", "options", "message"), LONG_RUNS, ids=[r[2] for r in LONG_RUNS]
+)
+def test_runs_beyond_reason_are_one_line(
+    capsys, monkeypatch, scene_file, content, options, message
+):
+    monkeypatch.chdir(scene_file.parent)
+    scene_file.write_text(content)
+    monkeypatch.setattr("validation.lattice.integrate", None)
+    monkeypatch.setattr("validation.engine.advance", None)
+    status, out, err = run(capsys, "run", "scene.toml", "--out", "o.json", *options)
+    assert (status, out, err.count("\n")) == (2, "", 1)
+    assert re.match(f"lwa-validate: {message}", err), err
+    assert [f.name for f in scene_file.parent.iterdir()] == ["scene.toml"]
+
+
+@pytest.mark.parametrize(
+    "options", [(), ("--method", "Verlet", "--rtol", "1e-13")], ids=["DOP853", "Verlet"]
+)
+def test_a_long_run_says_so_first_and_stops_at_ctrl_c(scene_file, options):
+    """A minute or hours, and stopped at once."""
+    scene_file.write_text(
+        SCENE.replace("repeat = 10,", "repeat = 20_000,").replace("= 30", "= 100")
+    )
+    folder = scene_file.parent
+    command = [COMMAND, "run", scene_file, "--plot", folder / "p.svg", "--out", folder / "o.npz"]
+    with subprocess.Popen(
+        [*command, *options], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    ) as running:
+        assert running.stderr is not None
+        first = running.stderr.readline()
+        running.send_signal(signal.SIGINT)
+        out, rest = running.communicate()
+    assert re.match(
+        r"lwa-validate: .* steps of \w+ with .* may take about .*; Ctrl-C ends it$", first
+    )
+    assert (running.returncode, out) == (130, "")
+    assert rest.splitlines()[-1] == "lwa-validate: interrupted"
+    assert "Traceback" not in rest
+    assert [f.name for f in folder.iterdir()] == ["scene.toml"]
+
+
+def test_a_run_that_takes_longer_than_expected_says_so(capsys, monkeypatch):
+    now = iter([0.0, 1.0, 40.0, 41.0, 99.0])
+    monkeypatch.setattr(cli, "time", SimpleNamespace(monotonic=lambda: next(now)))
+    with cli._run(SimpleNamespace(seconds=1.0)) as tell:
+        for share in (0.0, 0.25, 0.5):
+            tell(share)
+    said = "lwa-validate: 25.0% of the run is done; Ctrl-C ends it\n"
+    assert capsys.readouterr().err == said
+
+
+def test_only_regular_files_are_read(capsys, tmp_path):
+    os.mkfifo(tmp_path / "pipe.toml")
+    (tmp_path / "folder.json").mkdir()
+    (tmp_path / "device.toml").symlink_to("/dev/zero")
+    for name, kind in (("pipe.toml", "a pipe"), ("folder.json", "a f"), ("device.toml", "a dev")):
+        status, out, err = run(capsys, "run", str(tmp_path / name))
+        assert (status, out, err.count("\n")) == (2, "", 1)
+        assert err.startswith(f"lwa-validate: {tmp_path / name}: {kind}")
 
 
 def test_exact_scaled_to_a_speed_or_a_force(capsys):

@@ -232,7 +232,7 @@ def test_a_step_that_is_too_long_is_not_silent():
         (dict(window=True), "window is True: it needs one of"),
         (dict(check=True), "check is True: it needs one of"),
         (dict(method="S6", step=0), "step is 0: it must be positive"),
-        (dict(method="S6", step=1e-300), "step is 1e-300: that makes"),
+        (dict(method="S6", step=1e-300), "duration is 1: this makes 1.0e.300 steps of S6, "),
         (dict(method="S6", rtol=0), "rtol is 0: it lies between"),
         (dict(method="S6", window=3), "window is 3: an integer from 8 on is wanted"),
         (dict(method="S6", window="x"), "window is 'x': an integer from 8 on is wanted"),

@@ -8,7 +8,7 @@ import pytest
 from scipy import integrate as scipy
 
 from validation import peers
-from validation.lattice import Motion
+from validation.equations import Motion
 from validation.peers import PEERS, PeerError, missing, prepared
 from validation.reference import integrate
 from validation.scene import Scene, SceneError

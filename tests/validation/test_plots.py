@@ -50,7 +50,7 @@ def test_a_failure_leaves_the_old_picture(result, tmp_path, monkeypatch):
             raise OSError("disk full")
 
     monkeypatch.setattr(plots, "figure", lambda result: Broken())
-    with pytest.raises(OSError, match=r"^disk full$"):
+    with pytest.raises(InputError, match=r"picture.png is not written: disk full$"):
         plots.save(result, file)
     assert file.read_bytes() == b"old"
     assert list(tmp_path.iterdir()) == [file]

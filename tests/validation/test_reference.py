@@ -7,7 +7,8 @@ import pytest
 from scipy import integrate as scipy
 
 from validation import reference as module
-from validation.lattice import Motion, simulate
+from validation.equations import Motion
+from validation.lattice import simulate
 from validation.reference import Located, Part, integrate, located, reference, symplectic
 from validation.scene import Scene, SceneError
 from validation.tasks import TASKS, Task, errors, exact, experiment, struck

@@ -273,6 +273,12 @@ BAD = [
     ({"defects": [{"bead": 1, "like": "ball"}]}, "defects number 1.like names a bead in"),
     ({"defects": [{"contact": 3, "stiffness": 1}]}, "defects number 1.contact is 3: one of 1 … 2"),
     ({"defects": [{"contact": 1, "mass": 1}]}, "defects number 1.mass is unknown: one of contact"),
+    ({"defects": [{"bead": 3, "mass": 1}, {"contact": 1, "stiffness": 2}, {"bead": 3, "mass": 1}]},
+     "defects number 1 and defects number 3 are both of bead 3: one is wanted"),
+    ({"defects": [{"bead": 1, "like": "ball"}, {"bead": 1, "mass": 2}]} | BALLS,
+     "defects number 1 and defects number 2 are both of bead 1: one is wanted"),
+    ({"defects": [{"contact": 2, "stiffness": 1}] * 2},
+     "defects number 1 and defects number 2 are both of contact 2: one is wanted"),
     ({"wall": {}}, "wall has neither material nor stiffness: one is wanted"),
     ({"wall": {"stiffness": 0}}, "wall.stiffness is 0: it must be positive"),
     ({"wall": {"material": "steel"}}, "wall.material is given, but a chain of masses needs"),
@@ -346,6 +352,8 @@ FILES = [
     ("s.toml", b"[x" + b" . x" * 5_000 + b"]", "nested too deeply for a scene"),
     ("s.toml", b"x = 1  # ." + b"a" * 300_000, "x is unknown"),  # in time linear in its length
     ("folder.toml", None, "a folder, and only regular files are read"),
+    ("pipe.json", None, "a pipe, and only regular files are read"),
+    ("device.json", None, "a device, and only regular files are read"),
     ("missing.toml", None, "No such file or directory"),
 ]
 
@@ -354,6 +362,8 @@ FILES = [
 def test_bad_files(tmp_path, name, content, message):
     file = tmp_path / name
     (tmp_path / "folder.toml").mkdir()
+    (tmp_path / "device.json").symlink_to("/dev/zero")
+    os.mkfifo(tmp_path / "pipe.json")  # which nobody writes to
     if content is not None:
         file.write_bytes(content)
     with pytest.raises(SceneError) as caught:
@@ -369,12 +379,11 @@ def test_a_file_without_end_is_refused(monkeypatch, tmp_path):
     (tmp_path / "s.toml").write_text("duration = 1")
     with pytest.raises(SceneError, match=r"s.toml: more than 10 bytes, the most that is read$"):
         read(tmp_path / "s.toml")
-
-
-def test_a_pipe_is_not_waited_for(tmp_path):
-    os.mkfifo(tmp_path / "s.toml")
-    with pytest.raises(SceneError, match=r"s.toml: a pipe, and only regular files are read$"):
-        read(tmp_path / "s.toml")
+    with pytest.raises(
+        SceneError, match=r"t.toml: the scene takes [0-9]+ bytes, and 10 of TOML are the"
+    ):
+        write(Scene(masses=(1, 2), stiffnesses=(1,), k=2, duration=1), tmp_path / "t.toml")
+    assert not (tmp_path / "t.toml").exists()
 
 
 leaves = st.one_of(
