@@ -15,13 +15,13 @@ import sympy as sp
 from tqdm import tqdm
 
 from lwa.exact import InputError
-from lwa.terminal import quantities, quantity, run
+from lwa.terminal import announce, quantities, quantity, run
 from validation import experiments
 from validation.accuracy import NAMES
 from validation.accuracy import accuracy as run_accuracy
 from validation.atlas import Sweep
 from validation.checked import SceneError
-from validation.effort import LONG, Effort
+from validation.effort import Effort
 from validation.executors import cluster, processes
 from validation.figures import figures as run_figures
 from validation.files import output_file
@@ -83,12 +83,14 @@ def _progress(cases: Collection[Any]) -> tqdm[Any]:
     return tqdm(cases, desc="lattice runs", disable=None, leave=False, file=sys.stderr)
 
 
+SILENCE = 60.0
+"""Seconds after which a run that was not expected to take long says how far it is."""
+
+
 @contextmanager
 def _run(effort: Effort) -> Iterator[Callable[[float], None]]:
-    """One run's progress; where that takes minutes, and was not expected to, a line says so."""
-    start, said = time.monotonic(), effort.seconds > LONG
-    if said:
-        click.echo(f"lwa-validate: {effort}; Ctrl-C ends it", err=True)
+    """What one run takes, and how far it is."""
+    start, said = time.monotonic(), announce(str(effort), effort.seconds)
     with tqdm(
         total=1.0, desc="lattice run", disable=None, leave=False, file=sys.stderr, delay=1,
         bar_format="{desc}: {percentage:.1f} %|{bar}| {elapsed}<{remaining}",
@@ -97,11 +99,9 @@ def _run(effort: Effort) -> Iterator[Callable[[float], None]]:
         def tell(share: float) -> None:
             nonlocal said
             bar.update(share - bar.n)
-            if not said and time.monotonic() - start > LONG:
+            if not said and time.monotonic() - start > SILENCE:
                 said = True
-                click.echo(
-                    f"lwa-validate: {share:.1%} of the run is done; Ctrl-C ends it", err=True
-                )
+                click.echo(f"{share:.1%} of the run is done", err=True)
 
         yield tell
 

@@ -5,8 +5,8 @@ A scene's own time is the shortest √(m/spring) of a bead between its contacts 
 SciPy's choose theirs; counted on uniform chains, dimers and pressed beads, k = 1 … 3, they are
 a rtol^{-1/q} in a time, at most 3 times as many, and an eighth where beads part.
 
-What takes minutes is to be told (`LONG`); what takes longer than `LONGEST`, or more memory than
-`LARGEST`, is refused. Times are those of one core of 2020 or so: they say minutes from hours.
+What takes longer than `LONGEST`, or more memory than `LARGEST`, is refused. Times tell minutes
+from hours, and no more: they are those of one machine.
 """
 
 from __future__ import annotations
@@ -19,8 +19,6 @@ from validation.checked import SceneError
 from validation.scene import Scene
 from validation.splittings import LAWS, SCHEMES
 
-LONG = 30.0
-"""Seconds from which a run is said to take long."""
 LONGEST = 6 * 3600.0
 """Seconds of a run that is not refused."""
 LARGEST = 4e9
@@ -74,11 +72,8 @@ class Effort:
 
     def __str__(self) -> str:
         listening = _listening(self.scene)
-        samples = f" and {listening * self.scene.samples:.1e} samples" if listening else ""
-        return (
-            f"{self.steps:.1e} steps of {self.method} with {self.beads} beads{samples} may take "
-            f"{self.time}"
-        )
+        samples = f", {listening * self.scene.samples:.1e} samples" if listening else ""
+        return f"{self.steps:.1e} steps of {self.method} with {self.beads} beads{samples}"
 
     def check(self) -> None:
         """Raise `SceneError` for a run that is beyond `LONGEST` or `LARGEST`."""

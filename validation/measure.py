@@ -118,6 +118,9 @@ def measure(time: ArrayLike, signal: ArrayLike) -> Pulse:
     stop = top + int(np.argmax(low[top:])) if low[top:].any() else len(f)
     start, stop = max(0, start - _FORGOTTEN), stop + _FORGOTTEN
     t, f, top = t[start:stop], f[start:stop], top - start
+    # Powers of two, which cost no digit: slopes of a spline may overflow where its values do not.
+    pace, height = (2.0 ** (math.frexp(x)[1] - 1) for x in (t[-1] - t[0], f[top]))
+    t, f = t / pace, f / height
     spline = CubicSpline(t, f, extrapolate=False)
     # The peak may lie on either side of the highest sample.
     crest = PPoly(spline.c[:, top - 1 : top + 1], spline.x[top - 1 : top + 2], extrapolate=False)
@@ -137,7 +140,8 @@ def measure(time: ArrayLike, signal: ArrayLike) -> Pulse:
         raise MeasureError(
             f"{inside} samples lie above half the pulse's peak: at least {FEWEST} are wanted"
         )
-    return Pulse(arrival=float(arrival), peak=float(peak), rise=float(rise), fall=float(fall))
+    arrival, rise, fall = (float(x * pace) for x in (arrival, rise, fall))
+    return Pulse(arrival=arrival, peak=float(peak * height), rise=rise, fall=fall)
 
 
 def impulse(time: ArrayLike, signal: ArrayLike, start: float, end: float) -> float:
@@ -166,7 +170,10 @@ def speed(first: Pulse, second: Pulse, distance: float) -> float:
             f"the pulse arrives at {first.arrival:g} and then at {second.arrival:g}: a speed "
             "needs a later second arrival"
         )
-    return distance / (second.arrival - first.arrival)
+    found = float(distance) / (second.arrival - first.arrival)
+    if not math.isfinite(found):
+        raise MeasureError(f"the speed comes out as {found}: choose other units")
+    return found
 
 
 def _record(time: ArrayLike, signal: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

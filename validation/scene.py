@@ -11,6 +11,7 @@ Units are the caller's own, as long as they agree (SI for real beads; m1 = A = D
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import accumulate, pairwise
@@ -98,6 +99,8 @@ class Scene:
         for name in ("displacements", "velocities"):
             if len(checked[name]) > n:
                 raise SceneError(f"{len(checked[name])} {name} for {n} beads: at most {n} wanted")
+        if not math.isfinite(sum(checked["spacings"])):
+            raise SceneError("the chain's length comes out as inf: choose other units")
         if self.k < 1:
             raise SceneError(f"k is {self.k:g}: the contact law A δ^k is simulated for k ≥ 1")
         for name, act in (("gravity", "pull towards"), ("precompression", "push against")):

@@ -118,3 +118,25 @@ def test_a_measured_number_carries_its_error():
     assert str(Measured(1.41192847, 1.41192831)) == "1.4119285 ± 2e-07"
     assert str(Measured(16300.0, 17000.0)) == "16300 ± 7e+02"
     assert str(Measured(1.5, 1.5)) == "1.5 ± 0"
+
+
+@pytest.mark.parametrize(("pace", "height"), [(2.0**-900, 2.0**1000), (2.0**900, 2.0**-1000)])
+def test_units_at_the_ends_of_floating_point_cost_no_digit(pace, height):
+    """There a spline's slopes overflow, or vanish."""
+    t = np.linspace(0.0, 4.0, 401)
+    f = np.exp(-4 * (t - 1.7) ** 2) * (1 + t / 9)
+    pulse, scaled = measure(t, f), measure(t * pace, f * height)
+    for name, unit in (("arrival", pace), ("peak", height), ("rise", pace), ("fall", pace)):
+        assert getattr(scaled, name) == getattr(pulse, name) * unit
+
+
+def test_a_long_record_is_measured_at_its_pulse():
+    """A hundred thousand samples elsewhere change no digit, whatever they are."""
+    t = np.arange(100_000) * 0.01
+    pulse = np.exp(-((t - 500) ** 2))
+    short = slice(49_000, 51_000)
+    rest = 0.4 * np.sin(37 * t) * (np.abs(t - 500) > 8)
+    seen, alone = measure(t, pulse + rest), measure(t[short], pulse[short])
+    assert seen.arrival == pytest.approx(alone.arrival, rel=1e-15)
+    assert seen.peak == pytest.approx(alone.peak, rel=1e-15)
+    assert seen.fwhm == pytest.approx(alone.fwhm, rel=1e-12)

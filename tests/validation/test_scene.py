@@ -55,6 +55,9 @@ BAD = [
         dict(masses=(1,), stiffnesses=(), contact_sensors=(0,)),
         r"contact_sensors is \(0,\): this chain has none",
     ),
+    (dict(masses=(1, 1e-320, 1)), r"masses\[1\] is 1e-320: floats below 2e-308 lose their digits"),
+    (dict(masses=(1, 10**400, 1)), r"masses\[1\] is 1000.*: a number is wanted"),
+    (dict(spacings=(1e308, 1e308)), "the chain's length comes out as inf: choose other units"),
     (dict(samples=1), "samples is 1: an integer from 2 on is wanted"),
     (dict(samples=True), "samples is True: an integer from 2 on is wanted"),
 ]
