@@ -1,28 +1,20 @@
-"""From one traveling wave to the next: near a start, along a path of parameters, to the least tail.
+"""From one traveling wave to the next: near a start, and along a path of parameters.
 
 `solve` takes Newton's method from a near wave, which may end on another branch of waves than that
 of its start. `follow` stays on the branch: a step counts when it changes the wave little and when
 the same step taken back leads to the wave it came from; otherwise it is halved.
-
-The waves of one dimer and one k form a curve along which the half period L changes and, with the
-phase of the rattling light beads, the tail. Where L turns back on it, L cannot be prescribed, so
-`least_tail` walks along it by pseudo-arclength (Keller, 1977): the next wave is that whose
-difference from the last one, on the tangent, has a given length. The least tail itself does not
-depend on how many half oscillations of the light beads fit between two pulses.
 """
 
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import minimize_scalar
 
 from lwa.exact import InputError
 from validation import spectral
 from validation.checked import integer
-from validation.profile import ExactWave, at_unit_force
+from validation.profile import ExactWave, Profile, at_unit_force
 from validation.spectral import Array, Problem
 
 CLOSE = 0.1
@@ -31,9 +23,6 @@ peak strain."""
 
 HALVINGS = 7
 """Of a step, before a branch counts as lost."""
-
-LONGEST = 2.0
-"""Ample half periods up to which the least tail is looked for."""
 
 
 class NoWave(InputError):
@@ -45,7 +34,7 @@ def solve(
     k: float,
     half_period: float | None = None,
     points: int | None = None,
-    start: ExactWave | None = None,
+    start: Profile | None = None,
     free: bool = False,
 ) -> ExactWave:
     """One wave, solved on a grid and scaled to a force 1 at its peak; free: m2 is to be found.
@@ -95,7 +84,7 @@ def _problem(
 
 
 def _guess(
-    masses: tuple[float, float], k: float, xi: Array, start: ExactWave | None
+    masses: tuple[float, float], k: float, xi: Array, start: Profile | None
 ) -> tuple[Array, float]:
     """E, O on the grid and c², from a near wave or from the theory at leading order.
 
@@ -191,106 +180,3 @@ def _apart(wave: ExactWave, other: ExactWave) -> float:
     L = min(wave.half_period, other.half_period)
     xi = np.linspace(-L, L, 401)
     return float(np.abs(wave.strain(xi) - other.strain(xi)).max())
-
-
-# --- along the curve of all half periods ----------------------------------------------------
-
-
-class _Place(NamedTuple):
-    """A point (z, c², L) of the curve, its unit tangent, and the wave there."""
-
-    x: Array
-    tangent: Array
-    wave: ExactWave
-
-
-class _Curve:
-    """The waves of one dimer and one k, on grids of n points whatever L is."""
-
-    def __init__(self, wave: ExactWave) -> None:
-        self.masses, self.k, self.n = wave.masses, wave.k, len(wave.even) - 1
-        # ∫ dξ of the forces' squares, (Δc²)² and (ΔL)²
-        self.weights = np.append(np.full(2 * self.n, wave.half_period / self.n), [1.0, 1.0])
-        z, c2 = _guess(wave.masses, wave.k, self._problem(wave.half_period).xi, wave)
-        self.first = np.concatenate((z / z[0], [c2, wave.half_period]))
-
-    def _problem(self, L: float) -> Problem:
-        return Problem(self.masses, self.k, L, self.n)
-
-    def _equations(self, x: Array) -> tuple[Array, Array]:
-        """What is left of the equations, and its derivatives, that by L from a difference."""
-        z, c2, L = x[:-2], x[-2], x[-1]
-        h = 1e-5 * L
-        light = 1 / self.masses[1]
-        fault, matrix = self._problem(L).equations(z, c2, light)
-        ahead, back = (self._problem(L + d).fault(z, c2, light) for d in (h, -h))
-        matrix[:, -1] = (ahead - back) / (2 * h)
-        return fault, matrix
-
-    def place(self, near: Array, direction: Array, reach: float) -> _Place | None:
-        """The point at ``reach`` along a direction from a point, if Newton's method finds it."""
-        row = direction * self.weights
-
-        def step(x: Array) -> tuple[Array, Array]:
-            fault, matrix = self._equations(x)
-            return np.append(fault, row @ (x - near) - reach), np.vstack((matrix, row))
-
-        sizes = np.append(np.ones(2 * self.n), near[-2:])
-        try:
-            x = spectral.newton(step, near + reach * direction, sizes)
-            matrix = np.vstack((self._equations(x)[1], row))
-            tangent = np.linalg.solve(matrix, np.append(np.zeros(len(x) - 1), 1.0))
-        except np.linalg.LinAlgError:
-            return None
-        tangent /= math.sqrt(self.weights @ tangent**2)
-        problem = self._problem(x[-1])
-        return _Place(x, tangent, _wave(problem, self.masses, x[:-2], float(x[-2])))
-
-
-def least_tail(wave: ExactWave) -> ExactWave:
-    """The dimer's wave with the least tail that is found downhill from this one, whatever its L.
-
-    Where the tail still falls at `LONGEST` ample half periods, as it does next to a special mass
-    ratio, the wave of that length.
-    """
-    ample = spectral.ample_half_period(wave.masses, wave.k)
-    curve = _Curve(wave)
-    up = np.append(np.zeros(len(curve.first) - 1), 1.0)
-    here = curve.place(curve.first, up, 0.0)
-    if here is None:
-        return wave
-    reach = before = 0.3
-    for sign in (1, -1):
-        ahead = curve.place(here.x, sign * here.tangent, reach)
-        if ahead is not None and ahead.wave.tail < here.wave.tail:
-            here = ahead
-            break
-    else:
-        return _refined(curve, here, -reach, reach)
-    while 0.9 * ample < here.wave.half_period < LONGEST * ample:
-        ahead = curve.place(here.x, here.tangent, reach)
-        if ahead is None:
-            reach /= 2
-            if reach < 0.01:
-                break
-        elif ahead.wave.tail < here.wave.tail:
-            here, before, reach = ahead, reach, min(1.5 * reach, 0.6)
-        else:
-            return _refined(curve, here, -before, reach)
-    return here.wave
-
-
-def _refined(curve: _Curve, middle: _Place, back: float, ahead: float) -> ExactWave:
-    """The least tail between two points of the curve, given by their distances from one between."""
-    waves = [middle.wave]
-
-    def tail(reach: float) -> float:
-        place = curve.place(middle.x, middle.tangent, reach)
-        if place is None:
-            return math.inf
-        waves.append(place.wave)
-        return place.wave.tail
-
-    # The tail is flat at its least, where it tells places apart to the root of its own error.
-    minimize_scalar(tail, bounds=(back, ahead), method="bounded", options={"xatol": 1e-3})
-    return min(waves, key=lambda wave: wave.tail)

@@ -2,7 +2,7 @@
 
 The first line names the format and the settings, each other one is a `validation.steady.Point`:
 
-    {"format": "lwa sweep", "version": 1, "settings": {"stretch": 4}}
+    {"format": "lwa sweep", "version": 2, "settings": {"stretch": 4}}
     {"k": "3/2", "omega": "1", "sites": [56, 64], "numbers": {"width": [1.41192837, 1.4119284], …}}
     {"k": "3/2", "omega": "1/9", "missing": "the pulse has not passed 80 sites by t = 1e+05"}
 
@@ -32,7 +32,7 @@ from validation.measure import Measured
 from validation.steady import QUANTITIES, Point
 
 SUFFIX = ".jsonl"
-FORMAT = {"format": "lwa sweep", "version": 1}
+FORMAT = {"format": "lwa sweep", "version": 2}
 """The version counts the definitions of what is measured, too."""
 
 MOST_BYTES = 10**9

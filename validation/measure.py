@@ -56,6 +56,8 @@ class Measured:
 
     >>> Measured(1.4119284, 1.4119277)
     1.4119284 ± 7e-07
+    >>> Measured(2.5e300, 2.50003e300)
+    2.50000e+300 ± 3e+295
     """
 
     value: float
@@ -75,6 +77,10 @@ class Measured:
         if not self.error:
             return f"{self.value!r} ± 0"
         decimals = max(0, -math.floor(math.log10(self.error)))
+        size = abs(self.value)
+        if size > self.error and not 1e-12 < size < 1e16:
+            digits = math.floor(math.log10(size)) - math.floor(math.log10(self.error))
+            return f"{self.value:.{digits}e} ± {self.error:.0e}"
         return f"{self.value:.{min(decimals, 12)}f} ± {self.error:.0e}"
 
     __repr__ = __str__

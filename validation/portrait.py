@@ -14,6 +14,7 @@ from validation.plots import figure
 from validation.profile import ExactWave
 from validation.report import document, table, text
 from validation.resonances import Resonances
+from validation.solitary import measured
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -28,32 +29,28 @@ def _(wave: ExactWave) -> str:
         if wave.solitary
         else "a nanopteron, not solitary:\nthe light beads rattle on both sides, with this tail"
     )
+    found = measured(wave)
     widths = table(
         ("of", "amplitude", "FWHM (D)", "rms width (D)"),
-        [
-            (
-                q,
-                f"{wave.peak(q)[1]:.9g}",
-                f"{wave.fwhm(q):.9g}",
-                f"{wave.rms_width(q):.9g}",
-            )
-            for q in QUANTITIES
-        ],
-    )
+        [(q, *(str(found[f"{what} {q}"]) for what in ("amplitude", "fwhm", "rms")))
+         for q in QUANTITIES],
+    )  # fmt: skip
+    tail = f"{wave.tail:.2e}" if wave.solitary else str(found["tail"])
     return "\n".join(
         (
             f"masses {wave.masses[0]:g}, {wave.masses[1]:g}; k = {wave.k:g}; A = D = 1",
-            f"c² = {wave.c2:.12g}, c = {wave.c:.12g}",
-            f"tail {wave.tail:.2e} of the peak strain, residual {wave.residual:.1e}: {kind}",
+            f"c² = {found['c2']}, c = {found['c']}",
+            f"tail {tail} of the peak strain, residual {wave.residual:.1e}: {kind}",
             "",
             widths,
             "Strain and force are those of a contact, the velocity is that of a bead m1. At "
             "another peak force F\nstrains go as F^(1/k), velocities as F^((k+1)/2k), "
             "c as F^((k-1)/2k); widths stay.\n"
             + (
-                "Relative errors are of the size of the residual."
+                "Errors are those of residual, tail and rounding."
                 if wave.solitary
-                else f"One of a family: all depends on its half period, {wave.half_period:g}."
+                else f"One of a family, of half period {wave.half_period:g}: errors are the "
+                "differences from the pulse of a struck chain."
             ),
         )
     )
@@ -61,16 +58,28 @@ def _(wave: ExactWave) -> str:
 
 @document.register(ExactWave)
 def _(wave: ExactWave) -> dict[str, Any]:
+    found = measured(wave)
+
+    def each(what: str) -> dict[str, Any]:
+        parts = {q: found[f"{what} {q}"] for q in QUANTITIES}
+        return {
+            f"{what}_value": {q: part.value for q, part in parts.items()},
+            f"{what}_error_value": {q: part.error for q, part in parts.items()},
+        }
+
     return {
         "k_value": wave.k,
         "masses_value": list(wave.masses),
         "c2_value": wave.c2,
+        "c2_error_value": found["c2"].error,
         "c_value": wave.c,
+        "c_error_value": found["c"].error,
         "half_period_value": wave.half_period,
-        "amplitude_value": {q: wave.peak(q)[1] for q in QUANTITIES},
-        "fwhm_value": {q: wave.fwhm(q) for q in QUANTITIES},
-        "rms_value": {q: wave.rms_width(q) for q in QUANTITIES},
+        **each("amplitude"),
+        **each("fwhm"),
+        **each("rms"),
         "tail_value": wave.tail,
+        "tail_error_value": found["tail"].error,
         "residual_value": wave.residual,
         "solitary": wave.solitary,
     }

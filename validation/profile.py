@@ -1,4 +1,4 @@
-"""A traveling wave of the lattice as trigonometric polynomials, and what is read off it.
+"""A traveling wave of the lattice as trigonometric polynomials, and what is read off a profile.
 
 The wave is that of `validation.spectral`: contacts push with r_+^k, A = D = 1, and a contact's
 strain is a(ξ) = e + o or b(ξ) = a(-ξ), ξ = x - ct. Equations that hold for a wave hold for its
@@ -9,6 +9,7 @@ contact force 1, and `ExactWave.scaled` gives it at any other speed or force.
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -32,8 +33,103 @@ OUTSIDE = 0.6
 """Of the half period: where the pulse of a dimer has ended, and its tail is looked for."""
 
 
+class Profile(ABC):
+    """A pulse of a chain as a function of ξ = x - ct, mirror symmetric about a bead; A = D = 1."""
+
+    masses: tuple[float, float]
+    k: float
+    c2: float
+    half_period: float
+
+    @property
+    @abstractmethod
+    def samples(self) -> int:
+        """On 0 … L, from which on its humps are told apart."""
+
+    @abstractmethod
+    def strain(self, xi: ArrayLike, contact: int = 0) -> Array:
+        """a(ξ) (contact 0, m1 to its left) or b(ξ) = a(-ξ) (contact 1); a gap is negative."""
+
+    @abstractmethod
+    def velocity(self, xi: ArrayLike, bead: int = 0) -> Array:
+        """Of the beads m1 (bead 0) or m2 (bead 1); far from the pulse a cell has no momentum."""
+
+    @property
+    def c(self) -> float:
+        """The speed dx/dt."""
+        return math.sqrt(self.c2)
+
+    @property
+    def omega(self) -> float:
+        """ω = m2/m1."""
+        return self.masses[1] / self.masses[0]
+
+    @property
+    def pulse(self) -> float:
+        """The |ξ| within which it is read off: a dimer's without its tail."""
+        ample = spectral.ample_half_period((1.0, self.omega), self.k)
+        return min(self.half_period, ample if self.omega == 1 else OUTSIDE * ample)
+
+    def force(self, xi: ArrayLike, contact: int = 0) -> Array:
+        """F_a(ξ) or F_b(ξ), positive."""
+        value: Array = np.maximum(self.strain(xi, contact), 0.0) ** self.k
+        return value
+
+    def quantity(self, name: str, xi: ArrayLike) -> Array:
+        """ "strain", "force" (of contact 0) or "velocity" (of bead m1), as in `lwa`."""
+        strain_power(name, self.k)  # refuses other names
+        value: Array = getattr(self, name)(xi)
+        return value
+
+    def peak(self, name: str) -> tuple[float, float]:
+        """Where a quantity is greatest, and its value there."""
+        xi = np.linspace(-self.half_period, self.half_period, 4 * self.samples + 1)
+        return summit(lambda x: float(self.quantity(name, x)), xi, self.quantity(name, xi))
+
+    def fwhm(self, name: str = "strain") -> float:
+        """Full width at half maximum, in D, of the highest hump: roots of the profile itself.
+
+        At a contact of a dimer a pulse may have several humps, as the light bead hits to and fro;
+        the width jumps where the dip between two of them passes half the maximum.
+
+        Raises `MeasureError` where the quantity does not fall to half its peak.
+        """
+        top, peak = self.peak(name)
+        xi = top + np.linspace(0, self.half_period, 4 * self.samples)
+        width = 0.0
+        for side in (-1, 1):
+            points = top + side * (xi - top)
+            below = int(np.argmax(self.quantity(name, points) < peak / 2))
+            if not below:
+                raise MeasureError(f"the {name} has no FWHM: its tail is above half its peak")
+            ends = points[below - 1], points[below]
+            root = brentq(
+                lambda x: float(self.quantity(name, x)) - peak / 2, *ends, xtol=1e-14, rtol=1e-14
+            )
+            width += abs(float(root) - top)
+        return width
+
+    def rms_width(self, name: str = "strain") -> float:
+        """√(∫ (ξ - mean)² f / ∫ f) over the pulse; positive values only (gaps do not count)."""
+        n = 8 * self.samples
+        xi = self.pulse * np.arange(-n, n) / n  # trapezia: exact for what has ended
+        f = np.maximum(self.quantity(name, xi), 0.0)
+        mean = (f @ xi) / f.sum()
+        return math.sqrt(f @ (xi - mean) ** 2 / f.sum())
+
+    def rattle(self, start: float) -> float:
+        """The largest |o| on start ≤ |ξ| ≤ L: how far light beads are from their places."""
+        outside = np.linspace(start, self.half_period, 2 * self.samples)
+
+        def height(xi: ArrayLike) -> Array:
+            at = np.asarray(xi, float)
+            return np.abs(self.strain(at) - self.strain(-at)) / 2
+
+        return summit(lambda x: float(height(x)), outside, height(outside))[1]
+
+
 @dataclass(frozen=True, eq=False)
-class ExactWave:
+class ExactWave(Profile):
     """One traveling wave; A = D = 1.
 
     masses : (m1, m2); equal for a chain of one mass.
@@ -55,14 +151,9 @@ class ExactWave:
     residual: float
 
     @property
-    def c(self) -> float:
-        """The speed dx/dt."""
-        return math.sqrt(self.c2)
-
-    @property
-    def omega(self) -> float:
-        """ω = m2/m1."""
-        return self.masses[1] / self.masses[0]
+    def samples(self) -> int:
+        """The points of the grid."""
+        return len(self.even)
 
     @property
     def solitary(self) -> bool:
@@ -108,9 +199,12 @@ class ExactWave:
 
     @cached_property
     def _strains(self) -> tuple[Array, Array]:
-        e, o = spectral.respond(self.even, self.odd, spectral.rates(self.masses), self.half_period)
+        # In units of m1, whose reciprocal may be out of range.
+        pair = spectral.rates((1.0, self.omega))
+        e, o = spectral.respond(self.even, self.odd, pair, self.half_period)
         e[0] = -spectral.at_end(e)
-        return np.asarray(e / self.c2), np.asarray(o / self.c2)
+        c2 = self.c2 * self.masses[0]
+        return np.asarray(e / c2), np.asarray(o / c2)
 
     def _inside(self, xi: ArrayLike) -> Array:
         """A solitary wave is not repeated."""
@@ -123,15 +217,10 @@ class ExactWave:
         value: Array = self._sum(-at if contact % 2 else at, *self._strains)
         return value
 
-    def force(self, xi: ArrayLike, contact: int = 0) -> Array:
-        """F_a(ξ) or F_b(ξ), positive."""
-        value: Array = np.maximum(self.strain(xi, contact), 0.0) ** self.k
-        return value
-
     def velocity(self, xi: ArrayLike, bead: int = 0) -> Array:
         """Of the beads m1 (bead 0) or m2 (bead 1); far from the pulse a cell has no momentum."""
-        ends = [float(self._velocity(np.array(self.half_period), i)) for i in (0, 1)]
-        mean = float(np.dot(self.masses, ends) / sum(self.masses))
+        one, two = (float(self._velocity(np.array(self.half_period), i)) for i in (0, 1))
+        mean = (one + self.omega * two) / (1 + self.omega)
         return self._velocity(xi, bead) - mean
 
     def _velocity(self, xi: ArrayLike, bead: int) -> Array:
@@ -145,51 +234,6 @@ class ExactWave:
         value: Array = np.cos(phase) @ even + np.sin(phase) @ odd
         return value
 
-    def quantity(self, name: str, xi: ArrayLike) -> Array:
-        """ "strain", "force" (of contact 0) or "velocity" (of bead m1), as in `lwa`."""
-        strain_power(name, self.k)  # refuses other names
-        value: Array = getattr(self, name)(xi)
-        return value
-
-    def peak(self, name: str) -> tuple[float, float]:
-        """Where a quantity is greatest, and its value there."""
-        xi = np.linspace(-self.half_period, self.half_period, 4 * len(self.even) + 1)
-        return summit(lambda x: float(self.quantity(name, x)), xi, self.quantity(name, xi))
-
-    def fwhm(self, name: str = "strain") -> float:
-        """Full width at half maximum, in D, of the highest hump: roots of the profile itself.
-
-        At a contact of a dimer a pulse may have several humps, as the light bead hits to and fro;
-        the width jumps where the dip between two of them passes half the maximum.
-
-        Raises `MeasureError` where the quantity does not fall to half its peak.
-        """
-        top, peak = self.peak(name)
-        xi = top + np.linspace(0, self.half_period, 4 * len(self.even))
-        width = 0.0
-        for side in (-1, 1):
-            points = top + side * (xi - top)
-            below = int(np.argmax(self.quantity(name, points) < peak / 2))
-            if not below:
-                raise MeasureError(f"the {name} has no FWHM: its tail is above half its peak")
-            ends = points[below - 1], points[below]
-            root = brentq(
-                lambda x: float(self.quantity(name, x)) - peak / 2, *ends, xtol=1e-14, rtol=1e-14
-            )
-            width += abs(float(root) - top)
-        return width
-
-    def rms_width(self, name: str = "strain") -> float:
-        """√(∫ (ξ - mean)² f / ∫ f) over the period; positive values only (gaps do not count).
-
-        Of a nanopteron it holds the tail and so grows with L.
-        """
-        n = 8 * len(self.even)
-        xi = self.half_period * np.arange(-n, n) / n  # trapezia: exact for what has ended
-        f = np.maximum(self.quantity(name, xi), 0.0)
-        mean = (f @ xi) / f.sum()
-        return math.sqrt(f @ (xi - mean) ** 2 / f.sum())
-
 
 def at_unit_force(
     masses: tuple[float, float], k: float, c2: float, half_period: float, even: Array, odd: Array
@@ -198,20 +242,8 @@ def at_unit_force(
     wave = ExactWave(masses, k, c2, half_period, even, odd, 0.0, 0.0)
     s = 1 / wave.peak("strain")[1]
     wave = replace(wave, c2=float(c2 * s ** (k - 1)), even=even * s**k, odd=odd * s**k)
-    return replace(wave, tail=_tail(wave), residual=_residual(wave))
-
-
-def _tail(wave: ExactWave) -> float:
-    """max |o| on OUTSIDE L ≤ |ξ| ≤ L."""
-    if wave.masses[0] == wave.masses[1]:
-        return 0.0
-    outside = np.linspace(OUTSIDE, 1, 2 * len(wave.even)) * wave.half_period
-
-    def height(xi: ArrayLike) -> Array:
-        at = np.asarray(xi, float)
-        return np.abs(wave.strain(at) - wave.strain(-at)) / 2
-
-    return summit(lambda x: float(height(x)), outside, height(outside))[1]
+    tail = 0.0 if masses[0] == masses[1] else wave.rattle(OUTSIDE * half_period)
+    return replace(wave, tail=tail, residual=_residual(wave))
 
 
 def _residual(wave: ExactWave) -> float:

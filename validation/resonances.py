@@ -1,7 +1,7 @@
 """The special mass ratios at which a dimer chain has a solitary wave, whatever the exponent k.
 
 Elsewhere the light beads keep oscillating behind the pulse. At these ratios they come to rest with
-the heavy ones, after one more half oscillation from each ratio to the next smaller one
+the heavy ones, after one more full oscillation from each ratio to the next smaller one
 (Jayaprakash, Starosvetsky & Vakakis, Phys. Rev. E 83, 036606, 2011: 0.3428, 0.1548, 0.0901, … at
 k = 3/2). They are the zeros of the strain T that a wave leaves, of `spectral`; Newton's method
 solves T = 0 with the equations of motion, m2/m1 being one of the unknowns.
@@ -86,7 +86,7 @@ def special_waves(k: Any, count: Any) -> tuple[ExactWave, ...]:
 
 
 def _root(wave: ExactWave) -> float:
-    """√(m1/m2), about the number of the light beads' half oscillations while a pulse passes."""
+    """√(m1/m2), as the light beads' frequency goes."""
     return math.sqrt(1 / wave.omega)
 
 

@@ -11,11 +11,15 @@ m2/m1 only, those of Jayaprakash, Starosvetsky & Vakakis, Phys. Rev. E 83, 03660
 At any other ratio the chain has periodic waves (Betti & Pelinovsky, J. Nonlinear Sci. 23, 689
 (2013)): on both sides of the pulse the light beads rattle between the heavy ones, for ever and at
 an amplitude that does not decay. Such a wave is a nanopteron, its tail the largest |o| on
-0.6 L ≤ |ξ| ≤ L. The strains are 0 at ξ = ±L, half way between two pulses. The tail depends on L
-through its phase; unless L is given, `exact_wave` returns the wave with the least tail, which is
-the same whatever number of the light beads' half oscillations lies between two pulses. Far from the
-special ratios there are several branches of waves, each with a least tail of its own, and what is
-returned is the least of those found.
+0.6 L ≤ |ξ| ≤ L. The strains are 0 at ξ = ±L, half way between two pulses. There are several
+branches of such waves, along each of which L and the tail change.
+
+A struck chain makes none of them, as its light beads are at rest before the pulse; but its pulse,
+made symmetric, is nearly one (`validation.struck`). Newton's method is begun from that pulse (and
+where it finds nothing, from the theory's wave), at several L unless one is given, and of the waves
+found that one is taken whose strain differs least from the struck chain's. How much it still
+differs is its error: that is how well a nanopteron, which depends on L, tells what a chain does
+(`measured`).
 
 A chain of one mass has always a solitary wave (Friesecke & Wattis 1994; English & Pego 2005).
 """
@@ -23,25 +27,34 @@ A chain of one mass has always a solitary wave (Friesecke & Wattis 1994; English
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Iterable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import replace
-from itertools import product
 from typing import Any
 
 import numpy as np
 
+from lwa.exact import InputError
+from lwa.wave import QUANTITIES
 from validation import spectral
-from validation.branch import NoWave, follow, least_tail, named, solve
+from validation.branch import NoWave, follow, named, solve
 from validation.checked import SceneError, items, positive, real
+from validation.lattice import IntegrationError
+from validation.measure import Measured
 from validation.profile import TOLERANCE, ExactWave
+from validation.struck import Struck, struck
 
-__all__ = ["TOLERANCE", "ExactWave", "NoWave", "continuation", "exact_wave", "solve"]
-
-NEAR_FROM = 1.2
-"""The k from which on the special ratio's wave serves as a start."""
+__all__ = ["TOLERANCE", "ExactWave", "NoWave", "continuation", "exact_wave", "measured", "solve"]
 
 STEEP = 2.0
-"""The k up to which waves are looked for from the theory's; above, they are followed from here."""
+"""The k from which waves are followed up where Newton's method finds none."""
+
+PERIODS = np.arange(1.0, 1.8, 0.1)
+"""Ample half periods at which waves are looked for."""
+
+ROUNDING = 1e-12
+"""Of a solitary wave's numbers: that of a strain, over its slope at half maximum."""
 
 
 def exact_wave(
@@ -52,7 +65,7 @@ def exact_wave(
     points: int | None = None,
     start: ExactWave | None = None,
 ) -> ExactWave:
-    """The traveling wave: solitary, or the nanopteron with the least tail.
+    """The traveling wave: solitary, or the nanopteron nearest to the pulse of a struck chain.
 
     Parameters
     ----------
@@ -60,8 +73,9 @@ def exact_wave(
     k : exponent of F = δ^k, from 1.01 to 8.
     half_period : L, where it is to be this one and not chosen.
     points : n, of the grid on [0, L].
-    start : a wave whose branch is followed to these parameters; without, the theory's wave and
-        that of the nearest special ratio are tried as starts for Newton's method.
+    start : a wave whose branch is followed to these parameters; without, a solitary wave that the
+        theory's leads to is taken, and otherwise of all waves found that which is nearest to the
+        pulse of a struck chain.
 
     Raises `SceneError` for parameters that cannot be meant, `NoWave` when Newton's method fails.
 
@@ -71,16 +85,55 @@ def exact_wave(
     """
     pair, k = parameters(masses, k)
     L = None if half_period is None else positive(half_period, "half_period")
+    unit = (1.0, pair[1] / pair[0])
     if start is not None:
-        found = follow(start, pair, k, L, points)
-    elif pair[0] == pair[1]:
-        found = _uniform(pair, k, L, points)
-    elif k > STEEP:
-        found = _steep(pair, k, L, points)
+        c2 = start.c2 * start.masses[0]
+        found = follow(replace(start, masses=(1.0, start.omega), c2=c2), unit, k, L, points)
+    elif unit[1] == 1:
+        found = _uniform(unit, k, L, points)
     else:
-        found = _searched(pair, k, L, points)
-    chosen = L is not None or pair[0] == pair[1] or found.solitary
-    return found if chosen else least_tail(found)
+        found = _dimer(unit, k, L, points)
+    c2 = found.c2 / pair[0]
+    if not sys.float_info.min <= c2 <= sys.float_info.max:
+        raise SceneError(f"mass 1 is {pair[0]:g}: c² leaves the range of floats")
+    return replace(found, masses=pair, c2=c2)
+
+
+def measured(wave: ExactWave) -> dict[str, Measured]:
+    """c², c, tail, and the amplitude, FWHM and rms width of each quantity, each with its error.
+
+    A nanopteron's error is the difference from a struck chain's pulse, made symmetric or (its
+    widths) as it is, so that with it waves of all half periods agree. That of a solitary wave is,
+    relatively, the sum of residual, tail and `ROUNDING`.
+
+    >>> measured(exact_wave([1], 1.5))["fwhm force"]
+    1.411928348539 ± 1e-12
+    """
+    values = _numbers(wave)
+    if wave.solitary:
+        least = ROUNDING + wave.residual + wave.tail
+        errors = {name: least * value for name, value in values.items()} | {"tail": least}
+        return {name: Measured(value, value + errors[name]) for name, value in values.items()}
+    here, pulse = _numbers(wave.scaled(force=1)), struck(wave.k, wave.omega)
+    there = _numbers(pulse, wave.masses[0])
+    off = {name: abs(there[name] / here[name] - 1) for name in here}
+    for name, width in zip(("fwhm force", "fwhm strain"), pulse.widths, strict=True):
+        off[name] = max(off[name], abs(width / here[name] - 1))
+    return {
+        name: Measured(value, value * (1 + off[name] + wave.residual))
+        for name, value in values.items()
+    }
+
+
+def _numbers(wave: ExactWave | Struck, mass: float = 1.0) -> dict[str, float]:
+    """In units in which m1 is ``mass``."""
+    found = {"c2": wave.c2 / mass, "c": wave.c / math.sqrt(mass), "tail": wave.tail}
+    for name in QUANTITIES:
+        unit = math.sqrt(mass) if name == "velocity" else 1.0
+        found[f"amplitude {name}"] = wave.peak(name)[1] / unit
+        found[f"fwhm {name}"] = wave.fwhm(name)
+        found[f"rms {name}"] = wave.rms_width(name)
+    return found
 
 
 def continuation(
@@ -118,43 +171,43 @@ def _uniform(
     return follow(solve(pair, 3.0), pair, k, half_period, points)  # the theory's is too wide
 
 
-def _steep(
+def _dimer(
     pair: tuple[float, float], k: float, half_period: float | None, points: int | None
 ) -> ExactWave:
-    """The wave whose branch leads here from k = `STEEP`, where the theory's wave is near enough."""
-    tried = []
-    for L in dict.fromkeys((half_period, None)):
-        try:
-            return follow(_searched(pair, STEEP, L, None), pair, k, half_period, points)
-        except NoWave as failure:
-            tried.append(str(failure))
-    raise NoWave(f"{named('no wave found', pair, k)}: from k = {STEEP:g}, {'; '.join(tried)}")
-
-
-def _searched(
-    pair: tuple[float, float], k: float, half_period: float | None, points: int | None
-) -> ExactWave:
-    """Of the waves that several starts and half periods lead to, that with the least tail."""
-    near = _near_solitary(pair, k) if k >= NEAR_FROM else None
-    starts = [None] if near is None else [None, near]
+    """The solitary wave that the theory's leads to, or the wave nearest to a struck chain's."""
     ample = spectral.ample_half_period(pair, k)
-    periods = [half_period] if half_period is not None else list(ample * np.arange(1.0, 1.8, 0.1))
+    periods = list(ample * PERIODS) if half_period is None else [half_period]
     waves: list[ExactWave] = []
-    for L, begin in product(periods, starts):
-        try:
-            waves.append(solve(pair, k, L, points, begin))
-        except NoWave:
-            continue
-        if waves[-1].solitary:
-            return waves[-1]
-    if not waves:
-        beginnings = "the theory's wave" + " and the nearest special ratio's" * (near is not None)
-        lengths = f"{periods[0]:.4g}" + f" to {periods[-1]:.4g}" * (len(periods) > 1)
-        raise NoWave(
-            named("no wave found", pair, k) + f": Newton's method was begun from {beginnings}, at "
-            f"half periods {lengths}"
-        )
-    return min(waves, key=lambda wave: wave.tail)
+
+    def look(L: float, start: Struck | None) -> bool:
+        with suppress(NoWave):
+            waves.append(solve(pair, k, L, points, start))
+            return waves[-1].solitary
+        return False
+
+    if look(periods[0], None):
+        return waves[0]
+    try:
+        pulse = struck(k, pair[1])
+    except (InputError, IntegrationError) as error:
+        raise NoWave(f"{named('no pulse of a struck chain', pair, k)}: {error}") from None
+    for start in (pulse, None):
+        for L in periods:
+            if look(L, start):
+                return waves[-1]
+        if waves:
+            return min(waves, key=pulse.distance)
+    lengths = f"{periods[0]:.4g}" + f" to {periods[-1]:.4g}" * (len(periods) > 1)
+    failure = (
+        f"{named('no wave found', pair, k)}: Newton's method was begun from the pulse of a struck "
+        f"chain and from the theory's wave, at half periods {lengths}"
+    )
+    if k <= STEEP:
+        raise NoWave(failure)
+    try:
+        return follow(_dimer(pair, STEEP, half_period, None), pair, k, half_period, points)
+    except NoWave as other:
+        raise NoWave(f"{failure}; {other}") from None
 
 
 def free_wave(masses: tuple[float, float], k: float) -> ExactWave | None:
@@ -163,20 +216,3 @@ def free_wave(masses: tuple[float, float], k: float) -> ExactWave | None:
         return solve(masses, k, free=True)
     except NoWave:
         return None
-
-
-def _near_solitary(masses: tuple[float, float], k: float) -> ExactWave | None:
-    """That of the special ratio next to m2/m1 (or of 1), scaled to m1, if one is found there."""
-    m1, m2 = masses
-    root = math.sqrt(max(m1, m2) / min(m1, m2))
-    found = [
-        wave
-        for shift in (0.0, 0.15)
-        if (wave := free_wave((1.0, (root + shift) ** -2), k)) is not None and wave.solitary
-    ]
-    if not found:
-        return None
-    best = min(found, key=lambda wave: abs(math.sqrt(1 / wave.masses[1]) - root))
-    if m2 <= m1:
-        return replace(best, masses=(m1, best.omega * m1), c2=best.c2 / m1)
-    return replace(best, masses=(best.omega * m2, m2), c2=best.c2 / m2, odd=-best.odd)  # mirrored

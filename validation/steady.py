@@ -11,21 +11,25 @@ F^{(k-1)/(2k)} and its width, in sites, does not change. From one place to the n
 
 T the time between the two peaks: c is the speed at contact force 1, exactly so for a pulse whose
 speed is c F^q all the way. Widths are times at a contact times the speed there. Every number is
-the mean over the two contacts of a cell, on that stretch where the numbers differ least from those
-of the two stretches before. Its error is the largest of these two differences and of that from a
-less accurate run.
+the mean over the two contacts of a cell, on that stretch where its error is least.
+
+A number x_n of stretch n differs from its limit by what the pulse has yet to shed. Its error is
+the largest of |x_n - x_{n-1}|, |x_n - x_{n-2}| and the difference from a less accurate run, and on
+top of it what the differences add up to if they go on to shrink as they do: δ r / (1 - r), δ the
+last one, r its ratio to the one before, of which 0.9 is the most that is believed.
 
 The leading pulse ends at a contact where the compression first falls to a quarter of its highest
 so far. Between special mass ratios the force has several humps, as the light bead hits to and fro;
 a width is that of the highest, so that it jumps where the dip before another hump passes half.
 Where a pulse decays fast, another one may overtake it; which of the two is measured depends on how
-far the chain is followed (k ≥ 2, ω around 0.57).
+far the chain is followed (k ≥ 3/2, ω from 0.53 to 0.65). The errors say nothing of the other one:
+numbers are those of the pulse that leads at the `Point.sites`.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -101,28 +105,49 @@ def point(k: sp.Rational, omega: sp.Rational, stretch: int) -> Point:
 
 
 def _point(k: sp.Rational, omega: sp.Rational, stretch: int) -> Point:
-    chain = _Chain(float(k), float(omega), cells_apart(float(k), stretch))
+    chain = Chain(float(k), float(omega), cells_apart(float(k), stretch))
     rtol, less = TOLERANCES
-    check, until = chain.stretches(chain.crossing, less, _SAMPLES / 2)
-    numbers, _ = chain.stretches(1.05 * until, rtol, _SAMPLES)
-    # What differs from the two stretches before, relatively; of the force where it is its decay.
-    before = np.stack((numbers[:, 1:-1], numbers[:, :-2]))
-    change = np.abs(numbers[:, 2:] - before).max(axis=0)
-    change[:3] /= numbers[:3, 2:]
-    change[3] *= chain.sites
-    worst = change.max(axis=0) + 0 * check[0, 2:]  # NaN where the other run has none
+    rough = chain.passed(chain.crossing, less, _SAMPLES / 2)
+    check = chain.numbers(rough)
+    numbers = chain.numbers(chain.passed(1.05 * rough.until, rtol, _SAMPLES))
+    errors = np.maximum(_unsettled(numbers), np.abs(numbers - check)[:, 2:])
+    # Relatively; of the force where it is its decay.
+    worst = np.vstack((errors[:3] / numbers[:3, 2:], chain.sites * errors[3])).max(axis=0)
     if np.isnan(worst).all():
         raise MeasureError("the pulse does not arrive later at each place than at the one before")
-    best = int(np.nanargmin(worst)) + 2
-    rows = [numbers[:, i].tolist() for i in (best, best - 1, best - 2)]
-    rows.append(check[:, best].tolist())
-    measured = dict(zip(QUANTITIES, map(_with_error, *rows), strict=True))
-    place = chain.sites * (best + 1)
-    return Point(k, omega, (place, place + chain.sites), measured)
+    best = int(np.nanargmin(worst))
+    place = chain.sites * (best + 3)
+    values = zip(numbers[:, best + 2].tolist(), errors[:, best].tolist(), strict=True)
+    measured = (Measured(value, value + error) for value, error in values)
+    names = dict(zip(QUANTITIES, measured, strict=True))
+    return Point(k, omega, (place, place + chain.sites), names)
+
+
+_SLOWEST = 0.9
+"""Ratio of two differences, next to 1 of which nothing can be said of their sum."""
+
+
+def _unsettled(numbers: Array) -> Array:
+    """How far each stretch's numbers, from the third one on, may be from what they settle at."""
+    steps = np.abs(np.diff(numbers))
+    last, before = steps[:, 1:], steps[:, :-1]
+    ratio = np.minimum(last / np.where(before > 0, before, np.inf), _SLOWEST)
+    seen = np.maximum(last, np.abs(numbers[:, 2:] - numbers[:, :-2]))
+    return np.asarray(seen + last * ratio / (1 - ratio))
 
 
 @dataclass(frozen=True)
-class _Chain:
+class Record:
+    """A run in which the pulse has come through, where it is in each contact's record, and the
+    duration that it takes."""
+
+    run: Run
+    parts: tuple[slice, ...]
+    until: float
+
+
+@dataclass(frozen=True)
+class Chain:
     """A dimer chain whose first bead is struck, with ``cells`` from place to place."""
 
     k: float
@@ -139,19 +164,17 @@ class _Chain:
         """About the time of a pulse of force 1, by the long-wave speed 2/√((k+1)(1+ω))."""
         return self.sites * PLACES * math.sqrt((self.k + 1) * (1 + self.omega)) / 1.6
 
-    def stretches(self, duration: float, rtol: float, samples: float) -> tuple[Array, float]:
-        """`QUANTITIES` (rows) of each stretch, and the duration that it takes to measure them.
-
-        ``samples`` per unit of time; more where hits are shorter.
-        """
+    def passed(self, duration: float, rtol: float, samples: float = _SAMPLES) -> Record:
+        """A run of this duration, or longer, with ``samples`` per unit of time; more where hits
+        are shorter. Raises `MeasureError` where the pulse does not come through."""
         samples *= max(1.0, self.k / 1.5) / math.sqrt(min(1.0, 4 * self.omega))
         for _ in range(_LONGEST):
             run = self.run(duration, rtol, math.ceil(samples * duration))
-            parts = [leading_pulse(force, self.k) for force in run.contact_force]
+            parts = tuple(leading_pulse(force, self.k) for force in run.contact_force)
             # One place's time more, lest the front of a pulse yet to come be taken for it.
             until = (1 + 1 / PLACES) * float(run.time[max(part.stop for part in parts) - 1])
             if until <= duration:
-                return self._numbers(run, parts), until
+                return Record(run, parts, until)
             duration *= _GROWTH
         raise MeasureError(
             f"the pulse has not passed {self.sites * PLACES} sites by t = {duration / _GROWTH:.3g}"
@@ -172,11 +195,12 @@ class _Chain:
         )
         return simulate(scene, rtol=rtol, method="SRKN14")
 
-    def _numbers(self, run: Run, parts: Sequence[slice]) -> Array:
-        """NaN where the pulse does not arrive later than at the place before."""
+    def numbers(self, record: Record) -> Array:
+        """`QUANTITIES` (rows) of each stretch; NaN where the pulse does not arrive later than at
+        the place before."""
         rows = []
-        for record, part in zip(run.contact_force, parts, strict=True):
-            time, force = run.time[part], record[part]
+        for signal, part in zip(record.run.contact_force, record.parts, strict=True):
+            time, force = record.run.time[part], signal[part]
             pulse, strain = measure(time, force), measure(time, force ** (1 / self.k))
             rows.append((pulse.arrival, pulse.peak, pulse.fwhm, strain.fwhm))
         # Places down, contacts of a cell across.
@@ -203,7 +227,3 @@ def leading_pulse(force: Array, k: float) -> slice:
     relieved = strain[start:] < np.maximum.accumulate(strain[start:]) / 4
     length = int(np.argmax(relieved)) + 1 if relieved.any() else len(force) - start
     return slice(max(0, start - length), start + length)
-
-
-def _with_error(value: float, *others: float) -> Measured:
-    return Measured(value, max(others, key=lambda other: abs(other - value)))

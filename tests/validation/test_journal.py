@@ -117,7 +117,7 @@ def test_another_sweeps_file_is_refused_and_left_alone(file):
         (
             1,
             '{"format": "lwa sweep", "version": 9, "settings": {"stretch": 4}}',
-            "has version 9 of its format: 1 is wanted",
+            "has version 9 of its format: 2 is wanted",
         ),
         (3, '{"k": "3/2"', "is damaged in line 3: it is not JSON"),
         (3, "", "is damaged in line 3: it is not JSON"),
