@@ -36,7 +36,7 @@ from typing import Any
 import numpy as np
 
 from lwa.exact import InputError
-from lwa.wave import QUANTITIES
+from lwa.quantities import QUANTITIES
 from validation import spectral
 from validation.branch import NoWave, follow, named, solve
 from validation.checked import SceneError, items, positive, real
