@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import keyword
 import math
+import operator
 import re
 from decimal import Decimal
 from fractions import Fraction
@@ -24,6 +25,9 @@ _FRACTION = re.compile(r"[+-]?[0-9]+/[0-9]+")
 _NAME = re.compile(r"[A-Za-zα-ωΑ-Ω][A-Za-zα-ωΑ-Ω0-9_]*")
 _NOT_A_NUMBER = {"nan", "inf", "infinity", "none", "null", "true", "false"}
 _LONGEST = 200
+_DIGITS = 1000
+_BITS = 3322  # of as many digits
+_TOO_LONG = f"at most {_DIGITS} digits are wanted, before the point and behind it"
 
 
 class InputError(ValueError):
@@ -32,7 +36,10 @@ class InputError(ValueError):
 
 def shorten(value: object) -> str:
     """``repr`` of an offending value, cut to one short line for a message."""
-    text = repr(value)
+    try:
+        text = repr(value)
+    except ValueError:  # Python writes no integer of more than some thousand digits
+        return "a number of thousands of digits"
     return text if len(text) <= 60 else text[:57] + "..."
 
 
@@ -54,19 +61,38 @@ def exact(value: Any, name: str) -> sp.Expr:
     if isinstance(value, sp.Expr):
         return _from_expression(value, name)
     if isinstance(value, Fraction):
-        return sp.Rational(value.numerator, value.denominator)
+        return _writable(sp.Rational(value.numerator, value.denominator), name)
     if hasattr(value, "item"):  # NumPy's scalars, without importing NumPy
         try:
             value = value.item()
         except ValueError:
             raise InputError(f"{name} is {shorten(value)}: one number is wanted") from None
     if isinstance(value, int) and not isinstance(value, bool):
-        return sp.Integer(value)
+        return _writable(sp.Integer(value), name)
     if isinstance(value, float | Decimal):
         if not math.isfinite(value):
             raise InputError(f"{name} is {value}: a finite number is wanted")
-        return sp.Rational(str(value))
+        if isinstance(value, Decimal) and abs(value.adjusted()) > _DIGITS:
+            raise InputError(f"{name} is {shorten(value)}: {_TOO_LONG}")
+        return _writable(sp.Rational(str(value)), name)
     raise InputError(f"{name} is {shorten(value)}: a number or a symbol is wanted")
+
+
+def integer(value: Any, name: str, low: int) -> int:
+    """Read an integer (Python's, NumPy's or SymPy's) from ``low`` on.
+
+    >>> integer(4, "order", 1)
+    4
+    """
+    try:
+        number = None if isinstance(value, bool) else operator.index(value)
+    except TypeError:
+        number = None
+    if number is None:
+        raise InputError(f"{name} is {shorten(value)}: an integer from {low} on is wanted")
+    if number < low:
+        raise InputError(f"{name} is {shorten(number)}: it must be {low} or more")
+    return number
 
 
 def positive(value: Any, name: str) -> sp.Expr:
@@ -74,6 +100,18 @@ def positive(value: Any, name: str) -> sp.Expr:
     expression = exact(value, name)
     if expression.is_positive is False or (expression.is_number and not expression.is_positive):
         raise InputError(f"{name} is {expression}: it must be positive")
+    return expression
+
+
+def real(value: Any, name: str) -> sp.Expr:
+    """`exact`, but a plain name becomes a real symbol, of either sign: a place such as ξ.
+
+    >>> real("xi", "xi").is_positive is None
+    True
+    """
+    expression = exact(value, name)
+    if isinstance(value, str) and expression.is_Symbol:
+        return sp.Symbol(expression.name, real=True)
     return expression
 
 
@@ -99,4 +137,13 @@ def _from_expression(value: sp.Expr, name: str) -> sp.Expr:
     if value.has(sp.nan, sp.oo, -sp.oo, sp.zoo) or value.is_real is False:
         raise InputError(f"{name} is {shorten(value)}: a finite real number is wanted")
     floats = {f: sp.Rational(str(f)) for f in value.atoms(sp.Float)}
+    for number in value.atoms(sp.Rational):
+        _writable(number, name)
     return value.xreplace(floats)
+
+
+def _writable(number: sp.Rational, name: str) -> sp.Rational:
+    """Refuse what Python could not print any more after a few multiplications."""
+    if max(int(number.p).bit_length(), int(number.q).bit_length()) > _BITS:
+        raise InputError(f"{name} is a number of too many digits: {_TOO_LONG}")
+    return number

@@ -7,11 +7,11 @@ from typing import Any
 
 import sympy as sp
 
-from lwa.approximants import EpsilonSeries
 from lwa.dispersion import Dispersion
 from lwa.exact import InputError
 from lwa.expansion import Expansion
 from lwa.pde import Terms
+from lwa.series import EpsilonSeries
 from lwa.theory import Theory
 from lwa.wave import QUANTITIES, TravelingWave
 
@@ -126,8 +126,8 @@ def expansion_json(expansion: Expansion) -> dict[str, Any]:
         "energy": _epsilon_json(expansion.energy),
     }
     if expansion.numeric:
-        speed = expansion.c2.at(expansion.k)
-        sums = {quantity: series.at(expansion.k) for quantity, series in widths.items()}
+        speed = expansion.c2.at()
+        sums = {quantity: series.at() for quantity, series in widths.items()}
         result |= {
             "c2_value": speed.value,
             "fwhm_value": {quantity: found.value for quantity, found in sums.items()},

@@ -7,11 +7,12 @@ from collections.abc import Mapping
 
 import sympy as sp
 
-from lwa.approximants import EpsilonSeries, Resummed
+from lwa.approximants import Resummed
 from lwa.dispersion import Dispersion
 from lwa.expansion import Expansion
 from lwa.pde import Jet, base_order
 from lwa.render import in_units, third_order, wave_values
+from lwa.series import EpsilonSeries
 from lwa.theory import Theory
 from lwa.wave import QUANTITIES, TravelingWave
 
@@ -209,7 +210,7 @@ def expansion_text(expansion: Expansion) -> str:
     ]
     if expansion.numeric:
         lines += ["", f"at k = {expansion.k}, with estimates of the error:"]
-        lines += [f"  {name} = {_summed(row.at(expansion.k))}" for name, row in series.items()]
+        lines += [f"  {name} = {_summed(row.at())}" for name, row in series.items()]
     return "\n".join(lines)
 
 
