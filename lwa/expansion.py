@@ -17,6 +17,7 @@ import sympy as sp
 
 from lwa.cell import Cell, exponent, substitution
 from lwa.cell import k as symbol_k
+from lwa.effort import MOST_DIGITS, affordable
 from lwa.exact import InputError, integer, real, shorten
 from lwa.observables import Observables, ring
 from lwa.quantities import QUANTITIES as QUANTITIES
@@ -39,7 +40,9 @@ class Expansion(Value):
 
     @cached_property
     def _read(self) -> Observables:
-        return Observables(ring(self.cell, self.k), self.order)
+        own = ring(self.cell, self.k)
+        effort = affordable(own, self.order)
+        return Observables(own, self.order, effort.progress("lwa: the expansion takes"))
 
     @cached_property
     def numeric(self) -> bool:
@@ -121,7 +124,11 @@ class Expansion(Value):
         {0: -3*X**2, 1: -3*X**4/10 + 3*X**2/5}
         """
         place = sp.Symbol("X") if X is None else real(X, "X")
-        return self._read.log_force(self._contact(contact), self._place(place, "X"))
+        self._place(place, "X")
+        return {
+            n: sp.Add(*(a * place**d for d, a in phi.items()))
+            for n, phi in self._read.log_force(self._contact(contact)).items()
+        }
 
     def profile(self, xi: Any, contact: Any = 0) -> sp.Expr:
         """The force of a contact at ξ, exp Σ ε^n φ_n(√ε ξ) to the order ε^order, in D = 1.
@@ -133,8 +140,11 @@ class Expansion(Value):
         exp(-3*xi**4/10 - 12*xi**2/5)
         """
         place, epsilon = self._place(real(xi, "xi"), "xi"), self.k - 1
-        phi = self._read.log_force(self._contact(contact), sp.sqrt(epsilon) * place)
-        return sp.exp(sp.expand(sp.Add(*(epsilon**n * term for n, term in phi.items()))))
+        powers: dict[int, list[sp.Expr]] = {}
+        for n, phi in self._read.log_force(self._contact(contact)).items():
+            for d, a in phi.items():
+                powers.setdefault(d, []).append(a * epsilon ** (n + sp.Rational(d, 2)))
+        return sp.exp(sp.Add(*(sp.Add(*terms) * place**d for d, terms in powers.items())))
 
     def at(self, **values: Any) -> Expansion:
         """The expansion for these values of the named symbols, and of ω = m2/m1 by ``omega``.
@@ -186,6 +196,20 @@ def expand(cell: Cell, order: Any = 4, *, k: Any = symbol_k) -> Expansion:
         raise InputError(f"cell is {shorten(cell)}: a Cell such as Cell([1, 2]) is wanted")
     order = integer(order, "order", 1)
     k = exponent(k, cell)
+    _writable(cell, k)
     if not k.free_symbols and k <= 1:
         raise InputError(f"k is {k}: the expansion in k - 1 wants k > 1")
+    affordable(ring(cell, k), order)
     return Expansion(cell, order, k)
+
+
+def _writable(cell: Cell, k: sp.Expr) -> None:
+    """Refuse names that a series has a meaning for, and numbers beyond SymPy's roots."""
+    for name in sorted(s.name for s in (*cell.symbols, *k.free_symbols)):
+        if name in ("ε", "varepsilon"):
+            raise InputError(f"{name!r} means k - 1 in a series: choose another name")
+    for name, values in (("mass", cell.masses), ("stiffness", cell.stiffnesses), ("k", (k,))):
+        for value in values:
+            numbers = (abs(int(part)) for x in value.atoms(sp.Rational) for part in (x.p, x.q))
+            if max(numbers, default=0) >= 10**MOST_DIGITS:
+                raise InputError(f"{name} has more than {MOST_DIGITS} digits: give fewer")

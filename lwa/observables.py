@@ -16,8 +16,9 @@ from flint import fmpq, fmpq_mpoly
 
 from lwa.cell import Cell
 from lwa.coefficients import Coefficients, number, rational
+from lwa.effort import Progress
 from lwa.pulse import Series, by_degree, half_width, log_term, moment, product, root, wider
-from lwa.recursion import Progress, Recursion
+from lwa.recursion import Recursion
 
 
 class Observables:
@@ -111,13 +112,13 @@ class Observables:
             found.append(sp.Add(*parts))
         return tuple(found)
 
-    def log_force(self, contact: int, X: sp.Expr) -> dict[sp.Rational, sp.Expr]:
-        """n → φ_n(X), n = 0, 1/2, 1, …; zero ones are left out."""
-        found: dict[sp.Rational, sp.Expr] = {sp.S.Zero: -(X**2) / (4 * self.I)}
+    def log_force(self, contact: int) -> dict[sp.Rational, dict[int, sp.Expr]]:
+        """n → d → the coefficient of X^d in φ_n, n = 0, 1/2, 1, …; zero ones are left out."""
+        found = {sp.S.Zero: {2: -1 / (4 * self.I)}}
         for n, q in enumerate(self.wave.fields.log_force[contact]):
             if q:
-                parts = (self.over(c, (3 * n + d) // 2) * X**d for d, c in by_degree(q).items())
-                found[sp.Rational(n, 2)] = sp.Add(*parts)
+                parts = by_degree(q).items()
+                found[sp.Rational(n, 2)] = {d: self.over(c, (3 * n + d) // 2) for d, c in parts}
         return found
 
     @cached_property

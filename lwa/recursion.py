@@ -25,7 +25,7 @@ that they are computed once, without it, and changed by what it brings when it i
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from math import factorial
 
 from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
@@ -33,13 +33,11 @@ from sympy import bernoulli
 
 from lwa.bloch import Bloch
 from lwa.coefficients import Coefficients, rational
+from lwa.effort import Progress
 from lwa.pulse import Series, by_degree, exp_term, log_term
 
 LINEAR = 3
 """The first n for which q_n² has no place up to t^{n+2}."""
-
-Progress = Callable[[Iterable[int]], Iterable[int]]
-"""Wraps the orders that a recursion goes through."""
 
 Term = Callable[[Series, Series, Series], fmpq_mpoly]
 """The last term of an exponential or a logarithm from two fields and the wave's own."""
