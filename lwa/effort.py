@@ -11,6 +11,8 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from math import comb, lcm
 
+import sympy as sp
+
 from lwa.coefficients import Coefficients, Partition
 from lwa.exact import InputError
 
@@ -72,7 +74,7 @@ class Effort:
         """Say on the standard error that it takes long, where it does, and show how far it is."""
         if self.seconds < LONG:
             return iter
-        print(f"{name}: {self.time}", file=sys.stderr, flush=True)
+        print(f"{name} {self.time}", file=sys.stderr, flush=True)
         from tqdm import tqdm  # here, so that `import lwa` does not load it
 
         return lambda orders: tqdm(orders, desc="orders", leave=False, disable=None)
@@ -97,6 +99,14 @@ def affordable(ring: Coefficients, order: int) -> Effort:
             f"takes {effort.time} and {effort.terms:.0e} terms; {other}"
         )
     return effort
+
+
+def short(value: sp.Expr, name: str) -> sp.Expr:
+    """The value, refused where a number in it has more than `MOST_DIGITS`."""
+    numbers = (abs(int(part)) for x in value.atoms(sp.Rational) for part in (x.p, x.q))
+    if max(numbers, default=0) >= 10**MOST_DIGITS:
+        raise InputError(f"{name} has a number of more than {MOST_DIGITS} digits: give fewer")
+    return value
 
 
 def _integer(part: Partition) -> int:

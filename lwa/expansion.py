@@ -17,7 +17,7 @@ import sympy as sp
 
 from lwa.cell import Cell, exponent, substitution
 from lwa.cell import k as symbol_k
-from lwa.effort import MOST_DIGITS, affordable
+from lwa.effort import affordable, short
 from lwa.exact import InputError, integer, real, shorten
 from lwa.observables import Observables, ring
 from lwa.quantities import QUANTITIES as QUANTITIES
@@ -196,20 +196,18 @@ def expand(cell: Cell, order: Any = 4, *, k: Any = symbol_k) -> Expansion:
         raise InputError(f"cell is {shorten(cell)}: a Cell such as Cell([1, 2]) is wanted")
     order = integer(order, "order", 1)
     k = exponent(k, cell)
-    _writable(cell, k)
+    _no_letter(cell, k)
+    for name, values in (("mass", cell.masses), ("stiffness", cell.stiffnesses), ("k", (k,))):
+        for value in values:
+            short(value, name)
     if not k.free_symbols and k <= 1:
         raise InputError(f"k is {k}: the expansion in k - 1 wants k > 1")
     affordable(ring(cell, k), order)
     return Expansion(cell, order, k)
 
 
-def _writable(cell: Cell, k: sp.Expr) -> None:
-    """Refuse names that a series has a meaning for, and numbers beyond SymPy's roots."""
+def _no_letter(cell: Cell, k: sp.Expr) -> None:
+    """Refuse the name that a series has a meaning for."""
     for name in sorted(s.name for s in (*cell.symbols, *k.free_symbols)):
         if name in ("ε", "varepsilon"):
             raise InputError(f"{name!r} means k - 1 in a series: choose another name")
-    for name, values in (("mass", cell.masses), ("stiffness", cell.stiffnesses), ("k", (k,))):
-        for value in values:
-            numbers = (abs(int(part)) for x in value.atoms(sp.Rational) for part in (x.p, x.q))
-            if max(numbers, default=0) >= 10**MOST_DIGITS:
-                raise InputError(f"{name} has more than {MOST_DIGITS} digits: give fewer")

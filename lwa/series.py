@@ -10,6 +10,7 @@ import sympy as sp
 from lwa.approximants import Resummed, pade, resum
 from lwa.cell import Cell, exponent
 from lwa.cell import k as symbol_k
+from lwa.effort import short
 from lwa.exact import InputError, integer, shorten
 from lwa.observables import equal_beads
 from lwa.radiation import Radiation, radiation
@@ -130,7 +131,7 @@ class EpsilonSeries(Value):
         """The series with this k for its symbol."""
         if k is None:
             return self
-        new = exponent(k, self.cell)
+        new = short(exponent(k, self.cell), "k")
         if not self.k.is_Symbol:
             raise InputError(f"k is {new}, but the series is that of k = {self.k}: leave k out")
         return replace(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from string import ascii_lowercase
 
 import sympy as sp
 
@@ -206,7 +207,10 @@ def expansion_text(expansion: Expansion) -> str:
         f"masses {_list(cell.masses)}; F = A δ^k, A = {_list(cell.stiffnesses)}; ε = k - 1; peak "
         "force 1 on the first contact, lengths in D",
         "",
-        *_in_epsilon({**series, "momentum": expansion.momentum, "energy": expansion.energy}),
+        *_in_epsilon(
+            {**series, "momentum": expansion.momentum, "energy": expansion.energy},
+            _letter(expansion),
+        ),
     ]
     if expansion.numeric:
         lines += ["", f"at k = {expansion.k}, with estimates of the error:"]
@@ -214,13 +218,20 @@ def expansion_text(expansion: Expansion) -> str:
     return "\n".join(lines)
 
 
-def _in_epsilon(series: Mapping[str, EpsilonSeries]) -> list[str]:
+def _letter(expansion: Expansion) -> str:
+    """The first letter a for which no symbol is called a_n, a0, a1, …"""
+    names = {s.name for s in (*expansion.cell.symbols, *expansion.k.free_symbols)}
+    taken = {name[0] for name in names if name[1:] == "_n" or name[1:].isdecimal()}
+    return next(letter for letter in ascii_lowercase if letter not in taken)
+
+
+def _in_epsilon(series: Mapping[str, EpsilonSeries], a: str) -> list[str]:
     lines = []
     for name, row in series.items():
         factors = [str(row.prefactor)] if row.prefactor != 1 else []
         factors += [f"ε^({row.power})"] if row.power else []
-        lines.append(f"{name} = {' '.join([*factors, 'Σ a_n ε^n'])}")
-        lines += [f"  a{n} = {a}" for n, a in enumerate(row.coefficients)]
+        lines.append(f"{name} = {' '.join([*factors, f'Σ {a}_n ε^n'])}")
+        lines += [f"  {a}{n} = {value}" for n, value in enumerate(row.coefficients)]
     return lines
 
 

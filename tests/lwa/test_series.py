@@ -4,6 +4,12 @@ from __future__ import annotations
 
 import copy
 import pickle
+import re
+import signal
+import subprocess
+import sys
+from collections.abc import Callable
+from fractions import Fraction
 
 import numpy as np
 import pytest
@@ -12,6 +18,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lwa import Cell, Dimer, InputError, expand
+from lwa.cli import main
+from lwa.coefficients import Coefficients
+from lwa.effort import Effort, affordable
 from lwa.exact import real
 from lwa.quantities import QUANTITIES
 from lwa.radiation import radiation
@@ -206,3 +215,83 @@ def test_the_series_own_letter_is_refused(name: str) -> None:
         expand(Cell([name, 1]), 1)
     with pytest.raises(InputError, match=r"k - 1"):
         expand(Cell([1, 2]), 1, k=name)
+
+
+# --- effort ---
+
+
+def test_what_takes_minutes_is_said_and_what_takes_hours_refused(capsys) -> None:
+    for cell, order in ((Cell(["a", "b"]), 100), (Cell([1]), 10**30), (Cell([1, "1/50"]), 400)):
+        with pytest.raises(InputError, match=r"this takes (about|over) .* (hours|days|years)"):
+            expand(cell, order)
+    ring = Coefficients(Cell([1, "1/50"]), sp.S.One)
+    assert [*affordable(ring, 16).progress("it takes")(range(3))] == [0, 1, 2]
+    assert capsys.readouterr().err == ""
+    assert [*affordable(ring, 100).progress("it takes")(range(3))] == [0, 1, 2]
+    assert re.fullmatch(r"it takes about .* minutes\n", capsys.readouterr().err)
+
+
+@settings(max_examples=15, deadline=None)
+@given(
+    order=st.integers(1, 200),
+    size=st.integers(1, 12),
+    symbols=st.integers(0, 12),
+    digits=st.integers(1, 99),
+)
+def test_more_never_takes_less(order: int, size: int, symbols: int, digits: int) -> None:
+    def seconds(order: int, size: int, symbols: int, digits: int) -> float:
+        masses = [*(f"n{i}" for i in range(symbols)), *[1] * size, 10**digits]
+        return Effort.of(Coefficients(Cell(masses), sp.S.One), order).seconds
+
+    at = seconds(order, size, symbols, digits)
+    assert seconds(order + 1, size, symbols, digits) > at
+    assert seconds(order, size + 1, symbols, digits) > at
+    assert seconds(order, size, symbols + 1, digits) > at
+    assert seconds(order, size, symbols, digits + 60) >= at
+
+
+@pytest.mark.parametrize(
+    "cell",
+    [
+        lambda: Cell([1, 10**5000]),
+        lambda: Cell([1, Fraction(1, 10**5000)]),
+        lambda: Cell([1], [10**5000 + 1]),
+        lambda: Cell([10**400 + 1]),
+        lambda: Cell([1, 10**200 + 1]),
+        lambda: Cell([1], [Fraction(1, 10**400 + 1)]),
+        lambda: Cell([Fraction(1, 10**40 + i) for i in range(4)]),
+    ],
+)
+def test_numbers_of_thousands_of_digits_are_refused(cell: Callable[[], Cell]) -> None:
+    with pytest.raises(InputError, match="digits"):
+        expand(cell(), 2)
+
+
+def test_k_of_thousands_of_digits_is_refused() -> None:
+    for k in (10**5000, 1 + Fraction(1, 10**400)):
+        with pytest.raises(InputError, match="digits"):
+            expand(Cell([1], [3]), 2, k=k)
+        with pytest.raises(InputError, match="digits"):
+            expand(Cell([1], [3]), 2).c2.at(k)
+
+
+def test_a_long_command_says_so_and_stops_at_an_interrupt() -> None:
+    code = "from lwa.cli import main; main(['expansion', '--masses', '1,1/50', '--order', '100'])"
+    with subprocess.Popen([sys.executable, "-c", code], stderr=subprocess.PIPE, text=True) as run:
+        assert run.stderr is not None
+        first = run.stderr.readline()
+        run.send_signal(signal.SIGINT)
+        rest = run.stderr.read()
+    assert re.fullmatch(r"lwa: the expansion takes about .* minutes\n", first)
+    assert rest.strip() == "lwa: interrupted"
+    assert run.returncode == 130
+
+
+@pytest.mark.parametrize("masses", ["a0,m2", "a_n,m2", "a1,b2"])
+def test_a_letter_prints_for_one_thing(capsys, masses: str) -> None:
+    with pytest.raises(SystemExit):
+        main(["expansion", "--masses", masses, "--order", "1"])
+    out = capsys.readouterr().out
+    letter = "c" if "b" in masses else "b"
+    assert f"Σ {letter}_n ε^n" in out
+    assert f"\n  {letter}1 = " in out
