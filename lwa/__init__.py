@@ -11,7 +11,7 @@ D**2*(m1**2 - m1*m2 + m2**2)/(3*(m1 + m2)**2)
 from typing import TYPE_CHECKING, Any
 
 from lwa import hertz
-from lwa.approximants import EpsilonSeries, Resummed
+from lwa.approximants import Resummed
 from lwa.cell import Cell, D, Dimer, k
 from lwa.closure import Closure
 from lwa.coefficients import Coefficients, Partition
@@ -25,6 +25,7 @@ from lwa.pde import PDE
 from lwa.physical import CompactWave, PhysicalWave
 from lwa.quantities import NoSolitaryWave
 from lwa.radiation import Radiation
+from lwa.series import EpsilonSeries
 from lwa.terms import Jet, Powers, Terms
 from lwa.theory import Theory, homogenize
 from lwa.wave import Reduction, TravelingWave, canonical_wave

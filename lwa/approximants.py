@@ -15,14 +15,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import mpmath
 import sympy as sp
+from flint import acb_poly, arb, arb_mat, ctx
 
-from lwa.cell import exponent
 from lwa.exact import InputError
-from lwa.radiation import Radiation
+from lwa.value import Value
 
 WINDOW = 3
 """Orders of ε that a window holds before its last one."""
@@ -31,11 +30,14 @@ SAFETY = 2
 """Error estimate over the spread of a window."""
 
 DIGITS = 60
-"""With which approximants are computed; their linear systems lose some."""
+"""Of the terms that are summed."""
+
+PRECISION = 300
+"""Bits with which approximants are computed; their linear systems lose some."""
 
 
 @dataclass(frozen=True)
-class Resummed:
+class Resummed(Value):
     """A series summed at one k.
 
     value, error : the sum, and the estimate of its absolute error.
@@ -49,82 +51,55 @@ class Resummed:
     asymptotic: bool
 
 
-@dataclass(frozen=True)
-class EpsilonSeries:
-    """prefactor · ε^power · Σ coefficients[n] ε^n, exact.
+def resum(
+    coefficients: Sequence[sp.Expr],
+    epsilon: sp.Expr,
+    base: Sequence[sp.Expr] = (),
+    unit: sp.Expr = sp.S.One,
+    relative: float = 0.0,
+) -> Resummed:
+    """unit · Σ coefficients[n] ε^n, all of them numbers, with an estimate of its error.
 
-    uniform : the coefficients of the chain of equal beads, which `at` sums apart.
-    radiation : what `at` adds to the error; None for symbolic cells and equal beads.
+    base : another series, with which the sum is begun; what the one adds to it is summed apart.
+    relative : an error, over the sum, that comes on top.
     """
-
-    prefactor: sp.Expr
-    power: sp.Expr
-    coefficients: tuple[sp.Expr, ...]
-    uniform: tuple[sp.Expr, ...] = ()
-    radiation: Radiation | None = None
-
-    def partial_sum(self, k: Any, order: int | None = None) -> sp.Expr:
-        """The series to ε^order at k (a number or a symbol)."""
-        epsilon = exponent(k) - 1
-        terms = self.coefficients if order is None else self.coefficients[: order + 1]
-        total = sp.Add(*(a * epsilon**n for n, a in enumerate(terms)))
-        return self.prefactor * epsilon**self.power * total
-
-    def pade(self, k: Any, numerator: int, denominator: int) -> sp.Expr:
-        """The approximant [numerator/denominator] in ε, exact, for k a number or a symbol.
-
-        Raises `lwa.InputError` where the series is too short, or has none.
-
-        >>> a = EpsilonSeries(sp.S.One, sp.S.Zero, (sp.S.One, -sp.S.Half, sp.Rational(2, 5)))
-        >>> a.pade("k", 1, 1)
-        (3*k + 7)/(2*(4*k + 1))
-        """
-        L, M = numerator, denominator
-        a = self.coefficients
-        if min(L, M) < 0 or len(a) <= L + M:
-            raise InputError(f"[{L}/{M}] is wanted of a series to order {len(a) - 1}")
-        system = sp.Matrix(M, M, lambda i, j: a[L + i - j] if L + i >= j else sp.S.Zero)
-        right = sp.Matrix(M, 1, lambda i, _: -a[L + i + 1])
-        if M and sp.simplify(system.det()) == 0:
-            raise InputError(f"[{L}/{M}] does not exist for this series")
-        q = [sp.S.One, *(system.LUsolve(right) if M else [])]
-        p = [sp.Add(*(q[j] * a[i - j] for j in range(min(i, M) + 1))) for i in range(L + 1)]
-        epsilon = exponent(k) - 1
-        above, below = (sp.Add(*(x * epsilon**n for n, x in enumerate(row))) for row in (p, q))
-        return self.prefactor * epsilon**self.power * sp.factor(above / below)
-
-    def at(self, k: Any) -> Resummed:
-        """The sum at a number k > 1, with an estimate of its error.
-
-        Raises `lwa.InputError` when k or the cell holds symbols, or k ≤ 1.
-        """
-        k = exponent(k)
-        symbols = k.free_symbols.union(
-            self.prefactor.free_symbols, *(a.free_symbols for a in self.coefficients)
+    with mpmath.workdps(DIGITS):
+        small, scale = _mp(epsilon), _mp(unit)
+        whole = [_mp(a) for a in coefficients]
+        begun = [_mp(a) for a in base] if base else whole
+        rest = [a - b for a, b in zip(whole, begun, strict=True)]
+        sums = [_sum(begun, small)]
+        if any(rest):
+            sums.append(_sum(rest[1:], small).times(small))
+        value = scale * mpmath.fsum(s.value for s in sums)
+        error = abs(scale) * mpmath.fsum(s.error for s in sums)
+        least = abs(value) * mpmath.mpf(2) ** -52
+        return Resummed(
+            float(value),
+            float(error + abs(value) * relative + least),
+            min(s.order for s in sums),
+            any(s.asymptotic for s in sums) or bool(abs(value) * relative > error),
         )
-        if symbols:
-            raise InputError(f"{min(map(str, symbols))!r} has no value: a sum needs numbers")
-        if k <= 1:
-            raise InputError(f"k is {k}: the expansion in k - 1 is summed for k > 1")
-        with mpmath.workdps(DIGITS):
-            epsilon = _mp(k) - 1
-            unit = _mp(self.prefactor) * epsilon ** _mp(self.power)
-            whole = [_mp(a) for a in self.coefficients]
-            base = [_mp(a) for a in self.uniform] if self.uniform else whole
-            rest = [a - b for a, b in zip(whole, base, strict=True)]
-            sums = [_sum(base, epsilon)]
-            if any(rest):
-                sums.append(_sum(rest[1:], epsilon).times(epsilon))
-            value = unit * mpmath.fsum(s.value for s in sums)
-            error = abs(unit) * mpmath.fsum(s.error for s in sums)
-            radiated = self.radiation.relative(float(k)) if self.radiation else 0.0
-            least = abs(value) * mpmath.mpf(2) ** -52
-            return Resummed(
-                float(value),
-                float(error + abs(value) * radiated + least),
-                min(s.order for s in sums),
-                any(s.asymptotic for s in sums) or bool(abs(value) * radiated > error),
-            )
+
+
+def pade(a: Sequence[sp.Expr], L: int, M: int, epsilon: sp.Expr) -> sp.Expr:
+    """[L/M] of Σ a_n ε^n, exact.
+
+    Raises `lwa.InputError` where the series is too short, or has none.
+
+    >>> pade((sp.S.One, -sp.S.Half, sp.Rational(2, 5)), 1, 1, sp.Symbol("k") - 1)
+    (3*k + 7)/(2*(4*k + 1))
+    """
+    if len(a) <= L + M:
+        raise InputError(f"[{L}/{M}] is wanted of a series to order {len(a) - 1}")
+    system = sp.Matrix(M, M, lambda i, j: a[L + i - j] if L + i >= j else sp.S.Zero)
+    right = sp.Matrix(M, 1, lambda i, _: -a[L + i + 1])
+    if M and sp.simplify(system.det()) == 0:
+        raise InputError(f"[{L}/{M}] does not exist for this series")
+    q = [sp.S.One, *(system.LUsolve(right) if M else [])]
+    p = [sp.Add(*(q[j] * a[i - j] for j in range(min(i, M) + 1))) for i in range(L + 1)]
+    above, below = (sp.Add(*(x * epsilon**n for n, x in enumerate(row))) for row in (p, q))
+    return sp.factor(above / below)
 
 
 @dataclass(frozen=True)
@@ -149,7 +124,9 @@ def _mp(value: sp.Expr) -> mpmath.mpf:
 
 def _sum(a: Sequence[mpmath.mpf], epsilon: mpmath.mpf) -> _Sum:
     """The approximants of the window that agree best."""
-    line = {n: found for n in range(len(a)) if (found := _approximants(a[: n + 1], epsilon))}
+    with ctx.workprec(PRECISION):
+        terms = [arb(x * epsilon**n) for n, x in enumerate(a)]
+        line = {n: found for n in range(len(a)) if (found := _approximants(terms[: n + 1]))}
     spreads: dict[int, mpmath.mpf] = {}
     for n in line:
         window = [value for m in range(n - WINDOW, n + 1) for value in line.get(m, [])]
@@ -172,31 +149,28 @@ def _truncated(a: Sequence[mpmath.mpf], epsilon: mpmath.mpf) -> _Sum:
     return _Sum(mpmath.fsum(terms[:end]), abs(terms[least]), end - 1, grows)
 
 
-def _approximants(a: Sequence[mpmath.mpf], epsilon: mpmath.mpf) -> list[mpmath.mpf]:
+def _approximants(terms: Sequence[arb]) -> list[mpmath.mpf]:
     """The diagonal approximant of these terms first, then its neighbours; the low partial sums."""
-    n = len(a) - 1
+    n = len(terms) - 1
     half = n // 2
     found = [
         value
         for M in dict.fromkeys((half, n - half, half + (n % 2 == 0 and n > 2)))
-        if M and (value := _pade(a, n - M, M, epsilon)) is not None
+        if M and (value := _pade(terms, n - M, M)) is not None
     ]
-    return ([mpmath.polyval(a[::-1], epsilon)] if n < 2 else []) + found
+    return ([mpmath.mpf(sum(terms, arb(0))._mpf_)] if n < 2 else []) + found
 
 
-def _pade(a: Sequence[mpmath.mpf], L: int, M: int, epsilon: mpmath.mpf) -> mpmath.mpf | None:
-    """[L/M] at ε; None where it does not exist or has a pole near 0 … 3ε/2."""
-    import numpy as np
-
+def _pade(a: Sequence[arb], L: int, M: int) -> mpmath.mpf | None:
+    """[L/M] of Σ a_n x^n at x = 1; None where it does not exist or has a pole near 0 … 3/2."""
+    system = arb_mat(M, M, [a[L + i - j] if L + i >= j else 0 for i in range(M) for j in range(M)])
     try:
-        p, q = mpmath.pade(list(a), L, M)
-    except ZeroDivisionError:
+        found = system.solve(arb_mat(M, 1, [-a[L + i + 1] for i in range(M)]))
+        q = [arb(1), *(x.mid() for x in found.entries())]
+        poles = [complex(pole.mid()) for pole in acb_poly(q).roots()]
+    except (ZeroDivisionError, ValueError):  # singular; poles that coincide
         return None
-    scaled = [float(x * epsilon**n) for n, x in enumerate(q)]
-    if not np.all(np.isfinite(scaled)):
+    if any(abs(pole - min(max(pole.real, 0.0), 1.5)) < 0.25 for pole in poles):
         return None
-    poles = np.roots(np.trim_zeros(scaled[::-1], "f"))  # in units of ε
-    near = np.abs(poles - np.clip(poles.real, 0.0, 1.5))
-    if np.any(near < 0.25):
-        return None
-    return mpmath.polyval(p[::-1], epsilon) / mpmath.polyval(q[::-1], epsilon)
+    p = (q[j] * a[i - j] for i in range(L + 1) for j in range(min(i, M) + 1))
+    return mpmath.mpf((sum(p, arb(0)) / sum(q, arb(0)))._mpf_)

@@ -12,7 +12,8 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, cmp_to_key
+from typing import Any
 
 import sympy as sp
 from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
@@ -256,7 +257,9 @@ class Door:
         return sp.Mul(number(constant), *powers)
 
     def _sum(self, polynomial: fmpq_mpoly) -> sp.Expr:
-        return sp.Add(*self._terms(polynomial))
+        # Its monomials differ and its coefficients are not zero: what SymPy would ask of each.
+        terms = sorted(self._terms(polynomial), key=_canonical)
+        return sp.Add(*terms, evaluate=False) if len(terms) > 1 else terms[0]
 
     def _terms(self, polynomial: fmpq_mpoly) -> Iterator[sp.Expr]:
         for exponents, coefficient in polynomial.terms():
@@ -268,6 +271,11 @@ class Door:
                 yield sp.Mul(factor, *monomial)
             else:  # in canonical order already; sorting it anew would take most of the time
                 yield sp.Mul(factor, *monomial, evaluate=False)
+
+
+def _canonical(term: sp.Expr) -> tuple[bool, Any]:
+    """The key by which SymPy sorts the terms of a sum: a number is the first."""
+    return not term.is_Number, cmp_to_key(sp.Basic.compare)(term)
 
 
 def _as_polynomial(value: sp.Expr, symbols: list[sp.Symbol]) -> sp.Poly | None:

@@ -6,9 +6,12 @@ generator is Z; t is its small parameter. The waves of `lwa.expansion` are such 
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
+from math import factorial, prod
 from typing import Any
 
-from flint import fmpq_mpoly
+from flint import fmpq, fmpq_mpoly
 from sympy import factorial2
 
 Series = list[fmpq_mpoly]
@@ -22,7 +25,8 @@ def log_term(S: Series, log: Series) -> fmpq_mpoly:
         return S[0] - 1
     total = n * S[n]
     for j in range(1, n):
-        total = total - j * log[j] * S[n - j]
+        if log[j]:
+            total = total - j * log[j] * S[n - j]
     return total / n
 
 
@@ -33,7 +37,8 @@ def exp_term(log: Series, S: Series) -> fmpq_mpoly:
         return log[0] + 1
     total = 0 * log[0]
     for j in range(1, n + 1):
-        total = total + j * log[j] * S[n - j]
+        if log[j]:
+            total = total + j * log[j] * S[n - j]
     return total / n
 
 
@@ -59,68 +64,89 @@ def moment(polynomial: fmpq_mpoly, variance: int) -> fmpq_mpoly:
 
 
 def half_width(log: Series) -> Series:
-    """The h_n of the full width 4y Σ h_n t^n at half maximum of e^{-Z²/4 + Σ log_n t^n}.
+    """The h_n of the full width 4y Σ h_n t^n where e^{-Z²/4 + Σ log_n t^n} has e^{-y²} of its peak.
 
-    y² = log 2, and in the result, polynomials in y², Z stands for y. With φ the exponent and ζ the
-    place of its maximum, φ(Z) = φ(ζ) - y² has the solutions Z(±y), Z a series in t and y that
-    starts with 2y; the width is twice its odd part in y.
+    In the result, polynomials in y², Z stands for y. Counted from the peak the exponent is
+    -Z²/4 + p(Z), p = O(t), and Z²/4 = y² + p(Z) is solved by Lagrange's series
+
+        Z/2 = y + Σ_{m≥1} 1/m! (d/dy²)^{m-1} p(2y)^m/(2y),
+
+    whose odd part in y is a quarter of the width. The terms of the sum are kept times y.
     """
-    y = log[0].context().gen(0)
-    zero = 0 * y
-    slopes = [by_degree(2 * term.derivative(0)) for term in log]
-    terms = [by_degree(term) for term in log]
-    peak, place = _Point([zero]), _Point([2 * y])
-    for n in range(1, len(log)):
-        peak.append(peak.value(slopes, n))  # ζ = 2 Σ log_n'(ζ) t^n
-    for n in range(1, len(log)):
-        top = peak.value(terms, n) - peak.power(2, n) / 4
-        place.append(zero)
-        rest = place.value(terms, n) - place.power(2, n) / 4 - top
-        quotient, remainder = divmod(rest, y)
-        if remainder:
-            raise ArithmeticError("the pulse has no quadratic maximum")
-        place.pop()
-        place.append(quotient)
-    odd = [{d - 1: c for d, c in by_degree(z).items() if d % 2} for z in place.z]
-    return [sum((c * y**d for d, c in part.items()), zero) / 2 for part in odd]
+    p = [_reweighted(term, lambda d: fmpq(2) ** d) for term in _from_peak(log)]
+    y = p[0].context().gen(0)
+    powers = [p]
+    while any(powers[-1]):
+        powers.append(product(powers[-1], p))
+    total = powers[-1]
+    for m in range(len(powers) - 1, 0, -1):  # d/dy² of a/y is (y a' - a)/(2y³)
+        slopes = [_over_square(y * a.derivative(0) - a, y) / (2 * m + 2) for a in total]
+        total = [b / 2 + slope for b, slope in zip(powers[m - 1], slopes, strict=True)]
+    even = [_over_square(_reweighted(a, lambda d: fmpq(1 - d % 2)), y) for a in total]
+    return [even[0] + 1, *even[1:]]
 
 
-class _Point:
-    """A place Z = Σ z_n t^n, with the powers of it that polynomials in Z want."""
+def _from_peak(log: Series) -> Series:
+    """-Z²/4 + Σ log_n t^n about its maximum, without -Z²/4 and its value there.
 
-    def __init__(self, z: Series) -> None:
-        self.z = z
-        self._powers: dict[tuple[int, int], fmpq_mpoly] = {}
+    The place of the maximum is moved to 0 order by order, Z → Z + z_n t^n.
+    """
+    Z = log[0].context().gen(0)
+    phi = [log[0] - Z**2 / 4, *log[1:]]
+    for n in range(1, len(phi)):
+        if place := 2 * by_degree(phi[n]).get(1, 0 * Z):
+            moved, derivatives = list(phi), phi
+            for j in range(1, (len(phi) - 1) // n + 1):
+                derivatives = [place * term.derivative(0) / j for term in derivatives]
+                for m in range(j * n, len(phi)):
+                    moved[m] = moved[m] + derivatives[m - j * n]
+            phi = moved
+    if phi[0] != -(Z**2) / 4:
+        raise ArithmeticError("the pulse has no quadratic maximum")
+    return [0 * Z, *(_reweighted(term, lambda d: fmpq(min(d, 1))) for term in phi[1:])]
 
-    def append(self, z: fmpq_mpoly) -> None:
-        self.z.append(z)
 
-    def pop(self) -> None:
-        self.z.pop()
-        last = len(self.z)
-        self._powers = {key: p for key, p in self._powers.items() if key[1] < last}
+def wider(width: Series, epsilon: fmpq_mpoly) -> Series:
+    """`half_width` of the pulse's power 1/(1+ε), at the same height: y² → (1+ε) y², ε of t².
 
-    def power(self, d: int, n: int) -> fmpq_mpoly:
-        """The coefficient of t^n in Z^d."""
-        if d == 0:
-            return self.z[0] ** 0 if n == 0 else 0 * self.z[0]
-        if d == 1:
-            return self.z[n]
-        if (d, n) not in self._powers:
-            total = 0 * self.z[0]
-            for j in range(n + 1):
-                if self.z[j]:
-                    total = total + self.z[j] * self.power(d - 1, n - j)
-            self._powers[d, n] = total
-        return self._powers[d, n]
+    Each y^d of 4y Σ h_n t^n becomes (1+ε)^{(d+1)/2} y^d.
+    """
+    found = list(width)
+    for n, term in enumerate(width):
+        for j in range(1, (len(width) - 1 - n) // 2 + 1):
+            part = _reweighted(term, partial(_binomial_of_root, j=j))
+            found[n + 2 * j] = found[n + 2 * j] + epsilon**j * part
+    return found
 
-    def value(self, terms: list[dict[int, fmpq_mpoly]], n: int) -> fmpq_mpoly:
-        """The coefficient of t^n in Σ_{m≥1} t^m p_m(Z), p_m as `by_degree` gives it."""
-        total = 0 * self.z[0]
-        for m in range(1, n + 1):
-            for d, c in terms[m].items():
-                total = total + c * self.power(d, n - m)
-        return total
+
+def _binomial_of_root(d: int, j: int) -> fmpq:
+    """The binomial coefficient of (d+1)/2 over j."""
+    return fmpq(prod(range(d + 1, d + 1 - 2 * j, -2)), 2**j * factorial(j))
+
+
+def _over_square(polynomial: fmpq_mpoly, y: fmpq_mpoly) -> fmpq_mpoly:
+    return polynomial // y**2 if polynomial else polynomial
+
+
+def _reweighted(polynomial: fmpq_mpoly, weight: Callable[[int], fmpq]) -> fmpq_mpoly:
+    """Σ weight(d) c Z^d of Σ c Z^d."""
+    found = {}
+    for exponents, coefficient in polynomial.terms():
+        d, *rest = map(int, exponents)
+        if factor := weight(d):
+            found[d, *rest] = factor * coefficient
+    return polynomial.context().from_dict(found)
+
+
+def product(a: Series, b: Series, step: int = 1) -> Series:
+    """a · b, as long as they are; of the terms at t^n only those of which ``step`` divides n."""
+    found = [0 * a[0] for _ in a]
+    for n, x in enumerate(a):
+        if x:
+            for m in range(-n % step, len(a) - n, step):
+                if b[m]:
+                    found[n + m] = found[n + m] + x * b[m]
+    return found
 
 
 def root(S: Series) -> Series:

@@ -20,8 +20,20 @@ is closer, by a factor from 10 to 70.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import TYPE_CHECKING
+
+import sympy as sp
+from flint import fmpq_mpoly
+
+from lwa.bloch import Bloch
+from lwa.cell import Cell
+from lwa.coefficients import Coefficients
+from lwa.pulse import by_degree
+from lwa.recursion import Recursion
+from lwa.value import Value
 
 if TYPE_CHECKING:
     import numpy as np
@@ -41,7 +53,7 @@ FACTOR, POWER = 1.0, 0.75
 
 
 @dataclass(frozen=True)
-class Radiation:
+class Radiation(Value):
     """The chain's numbers that radiation wants.
 
     contrast : 0 for equal beads and contacts, (1 - 2b)² for a dimer of equal contacts.
@@ -88,3 +100,50 @@ def _rattle(K: FloatArray, slope: FloatArray, step: float) -> float:
 
     phase = np.concatenate([[0.0], np.cumsum((K[1:] + K[:-1]) / 2)]) * step
     return float(abs(np.sum(K**1.5 * slope * np.exp(1j * phase))) * step)
+
+
+@lru_cache(maxsize=64)
+def radiation(cell: Cell, k: sp.Expr) -> Radiation | None:
+    """What a chain of numbers radiates; None for equal beads and contacts, and for symbols.
+
+    k may be a symbol where contacts are equal; others share the strain by it.
+    """
+    alike = len({*cell.stiffnesses}) == 1
+    if alike and len({*cell.masses}) == 1:
+        return None
+    ring = Coefficients(cell, sp.S.One if alike else k)
+    if any(x.free_symbols for x in (*cell.masses, *cell.stiffnesses, ring.k)):
+        return None
+    import numpy as np
+
+    values = _values(ring)
+    trace = [_float(t, values) for t in Bloch(ring).trace(cell.size)]
+    trace[0] = 0.0  # 2 cos(Pκ) = 2 at κ = 0, where one root is 0
+    wave = Recursion(ring, 2)
+    I = _float(wave.I, (1.0, *values))
+    first = by_degree(wave.fields.log_force[0][2])
+    quadratic, quartic = (_float(first.get(d, wave.zero), (1.0, *values)) for d in (2, 4))
+    return Radiation(
+        contrast=(12 * I - 1) / 3,
+        I=I,
+        optical=float(np.min(np.roots(trace[:0:-1]).real)),
+        lightest=cell.size * min(_float(mu, (1.0, *values)) for mu in wave.mu),
+        quadratic=quadratic / I**4,
+        quartic=quartic / I**5,
+    )
+
+
+def _values(ring: Coefficients) -> tuple[float, ...]:
+    """Those of the ring's generators."""
+    values = [] if ring.k.is_Rational else [ring.k]
+    for part in (ring.masses, ring.contacts):
+        if part.names:
+            values += [part.total * w / part.sum for w in part.distinct[:-1]]
+    return tuple(float(sp.N(value)) for value in values)
+
+
+def _float(polynomial: fmpq_mpoly, values: Sequence[float]) -> float:
+    return math.fsum(
+        float(c) * math.prod(v ** int(e) for v, e in zip(values, exponents, strict=True))
+        for exponents, c in polynomial.terms()
+    )

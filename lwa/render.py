@@ -7,10 +7,10 @@ from typing import Any
 
 import sympy as sp
 
-from lwa.approximants import EpsilonSeries
 from lwa.dispersion import Dispersion
 from lwa.expansion import Expansion
 from lwa.quantities import QUANTITIES
+from lwa.series import EpsilonSeries
 from lwa.terms import Terms
 from lwa.theory import Theory
 from lwa.wave import TravelingWave
@@ -173,8 +173,8 @@ def expansion_json(expansion: Expansion) -> dict[str, Any]:
         "energy": _epsilon_json(expansion.energy),
     }
     if expansion.numeric:
-        speed = expansion.c2.at(expansion.k)
-        sums = {quantity: series.at(expansion.k) for quantity, series in widths.items()}
+        speed = expansion.c2.at()
+        sums = {quantity: series.at() for quantity, series in widths.items()}
         result |= {
             "c2_value": speed.value,
             "fwhm_value": {quantity: found.value for quantity, found in sums.items()},

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from string import ascii_lowercase
 
 import sympy as sp
 
-from lwa.approximants import EpsilonSeries, Resummed
+from lwa.approximants import Resummed
 from lwa.dispersion import Dispersion
 from lwa.expansion import Expansion
 from lwa.quantities import QUANTITIES
 from lwa.render import in_units, third_order, wave_values
+from lwa.series import EpsilonSeries
 from lwa.terms import Jet, Terms
 from lwa.theory import Theory
 from lwa.wave import TravelingWave
@@ -225,21 +227,31 @@ def expansion_text(expansion: Expansion) -> str:
         f"masses {_list(cell.masses)}; F = A δ^k, A = {_list(cell.stiffnesses)}; ε = k - 1; peak "
         "force 1 on the first contact, lengths in D",
         "",
-        *_in_epsilon({**series, "momentum": expansion.momentum, "energy": expansion.energy}),
+        *_in_epsilon(
+            {**series, "momentum": expansion.momentum, "energy": expansion.energy},
+            _letter(expansion),
+        ),
     ]
     if expansion.numeric:
         lines += ["", f"at k = {expansion.k}, with estimates of the error:"]
-        lines += [f"  {name} = {_summed(row.at(expansion.k))}" for name, row in series.items()]
+        lines += [f"  {name} = {_summed(row.at())}" for name, row in series.items()]
     return "\n".join(lines)
 
 
-def _in_epsilon(series: Mapping[str, EpsilonSeries]) -> list[str]:
+def _letter(expansion: Expansion) -> str:
+    """The first letter a for which no symbol is called a_n, a0, a1, …"""
+    names = {s.name for s in (*expansion.cell.symbols, *expansion.k.free_symbols)}
+    taken = {name[0] for name in names if name[1:] == "_n" or name[1:].isdecimal()}
+    return next(letter for letter in ascii_lowercase if letter not in taken)
+
+
+def _in_epsilon(series: Mapping[str, EpsilonSeries], a: str) -> list[str]:
     lines = []
     for name, row in series.items():
         factors = [str(row.prefactor)] if row.prefactor != 1 else []
         factors += [f"ε^({row.power})"] if row.power else []
-        lines.append(f"{name} = {' '.join([*factors, 'Σ a_n ε^n'])}")
-        lines += [f"  a{n} = {a}" for n, a in enumerate(row.coefficients)]
+        lines.append(f"{name} = {' '.join([*factors, f'Σ {a}_n ε^n'])}")
+        lines += [f"  {a}{n} = {value}" for n, value in enumerate(row.coefficients)]
     return lines
 
 

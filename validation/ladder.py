@@ -165,7 +165,7 @@ def _approximant(k: sp.Rational, degree: int) -> Prediction:
 def _summed(cell: Cell, k: sp.Rational, order: int) -> Prediction:
     expansion = expand(cell, order, k=k)
     series = (expansion.fwhm("force"), expansion.fwhm("strain"), expansion.c)
-    sums = {name: row.at(k) for name, row in zip(NAMES, series, strict=True)}
+    sums = {name: row.at() for name, row in zip(NAMES, series, strict=True)}
     values = {name: found.value for name, found in sums.items()}
     return values, {name: abs(found.error / found.value) for name, found in sums.items()}
 
