@@ -13,9 +13,10 @@ from math import factorial
 from flint import fmpq, fmpq_mpoly
 
 from lwa.coefficients import Coefficients
+from lwa.duration import Progress
 from lwa.exact import InputError
 from lwa.jets import JetAlgebra, Ladder, Power, exact_quotient
-from lwa.motion import Progress, Solution
+from lwa.motion import Solution
 
 
 def linear(ring: Coefficients, order: int, progress: Progress = iter) -> Solution:

@@ -14,12 +14,14 @@ from click.core import ParameterSource
 from lwa.cell import Cell, D, k
 from lwa.closure import BRANCHES, CLOSURES, FIELDS
 from lwa.dispersion import Dispersion
+from lwa.duration import announce
 from lwa.exact import InputError, exact
 from lwa.expansion import expand
 from lwa.hertz import EXPONENT
+from lwa.letters import demand_own
 from lwa.render import SI, dispersion_json, expansion_json, force_json, theory_json, wave_json
 from lwa.source import theory_latex, theory_python, wave_latex, wave_python
-from lwa.terminal import announce, quantities, quantity, run
+from lwa.terminal import quantities, quantity, run
 from lwa.text import dispersion_text, expansion_text, force_text, theory_text, wave_text
 from lwa.theory import Theory, homogenize
 
@@ -89,7 +91,9 @@ def _series(k: str, order: str, formats: Iterable[str]) -> Option:
         def of_cell(
             masses: tuple[sp.Expr, ...], stiffnesses: tuple[sp.Expr, ...], **options: Any
         ) -> None:
-            command(Cell(masses, stiffnesses), **options)
+            cell = Cell(masses, stiffnesses)
+            _demand_own(cell, options["k"])
+            command(cell, **options)
 
         given: Command = of_cell
         for option in (_style(formats), _order(order), STIFFNESSES, MASSES, _exponent(k)):
@@ -107,7 +111,14 @@ def _theory(
     order: int,
     **kind: str,
 ) -> Theory:
-    return homogenize(Cell(masses, stiffnesses, spacing), order, k=k, **kind)
+    cell = Cell(masses, stiffnesses, spacing)
+    _demand_own(cell, k)
+    return homogenize(cell, order, k=k, **kind)
+
+
+def _demand_own(cell: Cell, *more: sp.Expr) -> None:
+    """Symbols have names of their own in what the command prints."""
+    demand_own(str(click.get_current_context().info_name), (*cell.symbols, *more))
 
 
 SECONDS_A_TERM = 3e-4

@@ -18,9 +18,10 @@ from lwa import latex
 from lwa.ansatz import linear
 from lwa.cell import Cell, exponent, substitution
 from lwa.coefficients import Coefficients
+from lwa.duration import Progress
 from lwa.exact import InputError
 from lwa.jets import JetAlgebra, Monomial
-from lwa.motion import Progress, Solution
+from lwa.motion import Solution
 from lwa.slaving import full
 
 BRANCHES = ("acoustic", "optical")

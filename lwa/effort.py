@@ -6,29 +6,21 @@ symbolic ratios, to within a factor of about 4: they say minutes from hours.
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from math import comb, lcm
 
 import sympy as sp
 
 from lwa.coefficients import Coefficients, Partition
+from lwa.duration import Progress, announce, shown, words
 from lwa.exact import InputError
 
-LONG = 60.0
-"""Seconds from which it is said that something takes long, with a progress bar on a terminal."""
 LONGEST = 3600.0
 """Seconds of what is not refused."""
 MOST_TERMS = 5_000_000
 """Of all the polynomials that are kept at once: about a gigabyte."""
 MOST_DIGITS = 100
 """Of the ratios of masses, and of stiffnesses, as integers; SymPy's roots want 300 at most."""
-
-Progress = Callable[[Iterable[int]], Iterable[int]]
-"""Wraps the orders that a computation goes through."""
-
-_UNITS = (("years", 3.156e7), ("days", 86400.0), ("hours", 3600.0), ("minutes", 60.0))
 
 
 @dataclass(frozen=True)
@@ -56,28 +48,9 @@ class Effort:
             terms=8.0 * P * order**2 * monomials / (ratios + 2),
         )
 
-    @property
-    def time(self) -> str:
-        """The seconds, in round words.
-
-        >>> Effort(7.2e3, 0).time
-        'about 2 hours'
-        """
-        if self.seconds > 1000 * _UNITS[0][1]:
-            return "over 1000 years"
-        for name, unit in _UNITS:
-            if self.seconds >= 1.95 * unit:
-                return f"about {self.seconds / unit:.2g} {name}"
-        return f"about {self.seconds:.2g} s"
-
-    def progress(self, name: str) -> Progress:
-        """Say on the standard error that it takes long, where it does, and show how far it is."""
-        if self.seconds < LONG:
-            return iter
-        print(f"{name} {self.time}", file=sys.stderr, flush=True)
-        from tqdm import tqdm  # here, so that `import lwa` does not load it
-
-        return lambda orders: tqdm(orders, desc="orders", leave=False, disable=None)
+    def progress(self, what: str) -> Progress:
+        """Say what takes long, where it does, and show how far it is."""
+        return shown if announce(what, self.seconds) else iter
 
 
 def affordable(ring: Coefficients, order: int) -> Effort:
@@ -96,7 +69,7 @@ def affordable(ring: Coefficients, order: int) -> Effort:
         other = "give numbers for the cell, or a lower order" if ratios else "a lower order"
         raise InputError(
             f"order is {order}: with {ratios} symbolic ratios in a cell of {ring.cell.size} this "
-            f"takes {effort.time} and {effort.terms:.0e} terms; {other}"
+            f"takes {words(effort.seconds)} and {effort.terms:.0e} terms; {other}"
         )
     return effort
 

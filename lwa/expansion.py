@@ -42,7 +42,7 @@ class Expansion(Value):
     def _read(self) -> Observables:
         own = ring(self.cell, self.k)
         effort = affordable(own, self.order)
-        return Observables(own, self.order, effort.progress("lwa: the expansion takes"))
+        return Observables(own, self.order, effort.progress(f"the expansion to ε^{self.order}"))
 
     @cached_property
     def numeric(self) -> bool:

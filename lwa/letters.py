@@ -16,11 +16,11 @@ from lwa.exact import InputError
 EQUATION = "u w x t tau τ λ δ F G H"
 LETTERS = {
     "derive": EQUATION,
-    "wave": "u v x z t tau τ δ F G H p a mu μ eta η sigma σ s m xi ξ β π",
+    "wave": "u v x z t tau τ δ F G H p a mu μ eta η sigma σ s xi ξ β π",
     "dispersion": "t tau τ δ kappa κ Omega Ω q",
     "expansion": "t δ F c epsilon ε xi ξ",
 }
-_NUMBERED = {"derive": "b", "expansion": "a"}
+_NUMBERED = {"derive": "b"}
 """Letters that stand there with an index."""
 
 

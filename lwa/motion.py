@@ -10,15 +10,11 @@ of motion of the P particles are
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
 from flint import fmpq_mpoly
 
 from lwa.jets import JetAlgebra
-
-Progress = Callable[[Iterable[int]], Iterable[int]]
-"""What the orders are run through on their way, such as `tqdm.tqdm`."""
 
 
 class Solution(NamedTuple):

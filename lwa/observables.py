@@ -16,7 +16,7 @@ from flint import fmpq, fmpq_mpoly
 
 from lwa.cell import Cell
 from lwa.coefficients import Coefficients, number, rational
-from lwa.effort import Progress
+from lwa.duration import Progress
 from lwa.pulse import Series, by_degree, half_width, log_term, moment, product, root, wider
 from lwa.recursion import Recursion
 

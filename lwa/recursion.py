@@ -33,7 +33,7 @@ from sympy import bernoulli
 
 from lwa.bloch import Bloch
 from lwa.coefficients import Coefficients, rational
-from lwa.effort import Progress
+from lwa.duration import Progress
 from lwa.pulse import Series, by_degree, exp_term, log_term
 
 LINEAR = 3

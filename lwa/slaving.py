@@ -13,8 +13,9 @@ from math import factorial
 from flint import fmpq, fmpq_mpoly
 
 from lwa.coefficients import Coefficients
+from lwa.duration import Progress
 from lwa.jets import JetAlgebra, Ladder, Power
-from lwa.motion import Progress, Solution
+from lwa.motion import Solution
 
 
 def full(

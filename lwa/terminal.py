@@ -30,18 +30,6 @@ def _name(option: click.Parameter) -> str:
     return option.opts[0].lstrip("-")
 
 
-PATIENCE = 10.0
-"""Seconds from which a computation says how long it will take."""
-
-
-def announce(what: str, seconds: float) -> bool:
-    """Say on standard error what will take how long, where it takes long; whether it does."""
-    if seconds > PATIENCE:
-        length = f"{seconds:.0f} seconds" if seconds < 100 else f"{seconds / 60:.0f} minutes"
-        click.echo(f"{what}: about {length}", err=True)
-    return seconds > PATIENCE
-
-
 def run(command: click.Command, name: str, arguments: Sequence[str] | None = None) -> None:
     """Run a command and end the process: 0, or 2 with one line on what was wrong with the input."""
     sys.exit(_status(lambda: command.main(arguments, prog_name=name, standalone_mode=False), name))

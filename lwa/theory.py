@@ -13,8 +13,8 @@ from lwa.cell import Cell, exponent
 from lwa.cell import k as symbol_k
 from lwa.closure import BRANCHES, CLOSURES, FIELDS, Closure, solve
 from lwa.coefficients import Coefficients
+from lwa.duration import shown
 from lwa.exact import InputError, integer, shorten
-from lwa.motion import Progress
 from lwa.pde import PDE
 from lwa.terms import STRAIN, Terms, terms
 from lwa.value import Value
@@ -149,16 +149,7 @@ def homogenize(
     ring = Coefficients(cell, k, branch)
     _affordable(order, len(ring.names), closure)
     ring.writable(order)
-    return Theory(solve(ring, order, closure, field, _progress(order)))
-
-
-def _progress(order: int) -> Progress:
-    """A progress bar on a terminal, for orders that take a while."""
-    if order < SLOW_ORDER:
-        return iter
-    from tqdm import tqdm  # here, so that `import lwa` does not load it
-
-    return lambda orders: tqdm(orders, desc="orders", leave=False, disable=None)
+    return Theory(solve(ring, order, closure, field, iter if order < SLOW_ORDER else shown))
 
 
 def _affordable(order: int, parameters: int, closure: str) -> None:

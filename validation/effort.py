@@ -15,6 +15,7 @@ from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, replace
 
+from lwa.duration import words
 from validation.checked import SceneError
 from validation.scene import Scene
 from validation.splittings import LAWS, SCHEMES
@@ -37,8 +38,6 @@ _FEWEST = 100
 
 _SAMPLE = 2e-6
 """Seconds to measure, draw and write a sample."""
-
-_UNITS = (("years", 3.156e7), ("days", 86400.0), ("hours", 3600.0), ("minutes", 60.0))
 
 
 @dataclass(frozen=True)
@@ -63,12 +62,7 @@ class Effort:
         >>> Effort(Scene(masses=(1,), stiffnesses=(), k=1, duration=1), "S6", 1, 1, 7e3, 0).time
         'about 2 hours'
         """
-        if self.seconds > 1000 * _UNITS[0][1]:
-            return "over 1000 years"
-        for name, unit in _UNITS:
-            if self.seconds >= 1.95 * unit:
-                return f"about {_round(self.seconds / unit)} {name}"
-        return f"about {_round(self.seconds)} s"
+        return words(self.seconds)
 
     def __str__(self) -> str:
         listening = _listening(self.scene)
@@ -135,10 +129,6 @@ def adaptive(scene: Scene, method: str, rtol: float, time: float) -> Effort:
     return (
         replace(found, instead=f"; {other} takes {less.time}") if less.seconds < LONGEST else found
     )
-
-
-def _round(number: float) -> str:
-    return f"{number:.0f}" if number > 10 else f"{number:.2g}"
 
 
 def _listening(scene: Scene) -> int:

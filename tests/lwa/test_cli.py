@@ -3,6 +3,7 @@
 import json
 import math
 import os
+import re
 import subprocess
 import sys
 
@@ -99,7 +100,7 @@ def test_wave_json_in_a_length_unit(capsys):
 
 
 def test_symbols_have_no_values(capsys):
-    found = result(capsys, "wave", "--k", "q", "--masses", "a,b")
+    found = result(capsys, "wave", "--k", "q", "--masses", "c,b")
     assert not [name for name in found if name.endswith("_value")]
     assert "q" in found["beta"]
 
@@ -451,3 +452,59 @@ def test_a_reader_that_stops_early_is_no_fault():
     assert process.stderr.read() == b""
     process.stderr.close()
     assert process.wait() in (0, 1)
+
+
+@pytest.mark.parametrize(
+    ("command", "says"),
+    [
+        ("wave --masses B,m2", "'B': the name means the peak strain"),
+        ("wave --k B", "'B': the name means the peak strain"),
+        ("wave --k V_s", "'V_s': the name means the speed"),
+        ("wave --spacing B", "'B': the name means the peak strain"),
+        ("derive --spacing k", "'k': the name means the exponent"),
+        ("wave --masses p,m2", "'p' has a meaning of its own in what `lwa wave` prints"),
+        ("wave --masses m1,ξ", "'ξ' has a meaning"),
+        ("wave --k eta", "'eta' has a meaning"),
+        ("derive --masses u,m2", "'u' has a meaning"),
+        ("derive --masses m1,b12", "'b12' has a meaning"),
+        ("derive --stiffnesses G,H --closure full", "'G' has a meaning"),
+        ("dispersion --masses kappa,1", "'kappa' has a meaning"),
+        ("expansion --masses epsilon,1", "'epsilon' has a meaning"),
+        ("expansion --masses c,1 --k n", "'c' has a meaning"),
+        (
+            "dispersion --masses 1,2 --stiffnesses 1,2 --k 1e-9",
+            "stiffness 2 is 2 and k 1/10000",
+        ),
+        ("derive --masses 1,1e999 --order 10", "more than 4000"),
+        ("wave --k 29000", "up to k = 1000"),
+        ("derive --masses 1,2,3", "--closure full"),
+    ],
+)
+def test_what_would_print_one_letter_for_two_things_is_refused(capsys, command, says):
+    status, out, err = run(capsys, *command.split())
+    assert (status, out) == (2, "")
+    assert says in err
+    assert err.count("\n") == 1
+
+
+def test_letters_of_other_commands_are_free(capsys):
+    for command in ("derive --masses p,q --k n", "dispersion --masses u,w", "wave --masses b1,c"):
+        status, out, _ = run(capsys, *command.split())
+        assert status == 0
+        assert command.split()[2].split(",")[1] in out
+
+
+def test_conservative_is_told_at_any_order(capsys):
+    for order in "1234":
+        status, out, _ = run(capsys, "derive", "--order", order, "--format", "json")
+        assert status == 0
+        assert json.loads(out)["conservative"] is False
+
+
+def test_what_takes_long_to_write_says_so(capsys, monkeypatch):
+    monkeypatch.setattr("lwa.cli.SECONDS_A_TERM", 10.0)
+    status, out, err = run(capsys, "derive", "--closure", "full")
+    assert status == 0
+    assert re.match(r"\d+ terms to be written: about [\d.]+ minutes\n", err)
+    monkeypatch.undo()
+    assert run(capsys, "derive", "--closure", "full") == (0, out, "")
