@@ -14,6 +14,7 @@ from lwa import (
     Dispersion,
     InputError,
     canonical_wave,
+    expand,
     homogenize,
     k,
 )
@@ -91,6 +92,7 @@ def test_the_N_to_one_dimer():
         lambda n: homogenize(Dimer(1, 2), n),
         lambda n: homogenize(Dimer(1, 2), k=n),
         lambda n: Dispersion(Cell([1])).acoustic(n),
+        lambda n: expand(Cell([1]), n),
         lambda n: homogenize(Dimer(1, 2)).pde.in_field({n: 1}),
         lambda n: homogenize(Dimer(1, 2)).pde.traveling_wave().speed(n),
         lambda n: canonical_wave(Cell([1, n])),

@@ -221,7 +221,7 @@ def test_the_series_own_letter_is_refused(name: str) -> None:
 
 
 def test_what_takes_minutes_is_said_and_what_takes_hours_refused(capsys) -> None:
-    for cell, order in ((Cell(["a", "b"]), 100), (Cell([1]), 10**30), (Cell([1, "1/50"]), 400)):
+    for cell, order in ((Cell(["a", "b"]), 100), (Cell([1]), 10**18), (Cell([1, "1/50"]), 400)):
         with pytest.raises(InputError, match=r"this takes (about|over) .* (hours|days|years)"):
             expand(cell, order)
     ring = Coefficients(Cell([1, "1/50"]), sp.S.One)
