@@ -209,6 +209,7 @@ class Door:
         polynomial = {v: _as_polynomial(v, symbols) for v in values}
         opaque = [v for v in dict.fromkeys(values) if polynomial[v] is None and not v.is_Rational]
         self._generators: list[sp.Expr] = [*symbols, *opaque]
+        self._irrational = any(v.is_number for v in opaque)  # whose powers may be alike
         context = fmpq_mpoly_ctx.get([f"x{i}" for i in range(len(self._generators))], Ordering.lex)
         self._context = context
         self._monomials: dict[tuple[int, ...], tuple[sp.Expr, ...]] = {}
@@ -257,9 +258,11 @@ class Door:
         return sp.Mul(number(constant), *powers)
 
     def _sum(self, polynomial: fmpq_mpoly) -> sp.Expr:
+        terms = list(self._terms(polynomial))
+        if self._irrational or len(terms) == 1:
+            return sp.Add(*terms)
         # Its monomials differ and its coefficients are not zero: what SymPy would ask of each.
-        terms = sorted(self._terms(polynomial), key=_canonical)
-        return sp.Add(*terms, evaluate=False) if len(terms) > 1 else terms[0]
+        return sp.Add(*sorted(terms, key=_canonical), evaluate=False)
 
     def _terms(self, polynomial: fmpq_mpoly) -> Iterator[sp.Expr]:
         for exponents, coefficient in polynomial.terms():
@@ -267,7 +270,7 @@ class Door:
                 powers = (g**e for g, e in zip(self._generators, exponents, strict=True) if e)
                 self._monomials[exponents] = sp.Mul.make_args(sp.Mul(*powers))
             factor, monomial = number(coefficient), self._monomials[exponents]
-            if factor == 1 or monomial[0].is_Number:
+            if factor == 1 or self._irrational or monomial[0].is_Number:
                 yield sp.Mul(factor, *monomial)
             else:  # in canonical order already; sorting it anew would take most of the time
                 yield sp.Mul(factor, *monomial, evaluate=False)

@@ -97,6 +97,20 @@ def test_radiation_of_irrational_shares_is_that_of_their_neighbours() -> None:
             assert getattr(found, name) == pytest.approx(getattr(near, name), rel=1e-7)
 
 
+def test_irrational_shares_leave_no_terms_alike() -> None:
+    """Powers of 3^{1/3} are collected, as SymPy does it: a sum that is built anew is the same."""
+    for a in expand(Cell([1, 2], [1, 3]), 2, k="3/2").c2.coefficients[1:]:
+        for part in a.atoms(sp.Add):
+            assert part == sp.Add(*(sp.Mul(*term.as_ordered_factors()) for term in part.args))
+            assert len(part.args) <= 3
+
+
+def test_an_unlike_contacts_radiation_counts_in_the_error() -> None:
+    """Between rational shares the error is what its neighbours' are."""
+    errors = [expand(Cell([1, 2], [1, A]), 2, k="3/2").c2.at().error for A in ("2.99", 3, "3.01")]
+    assert errors[1] == pytest.approx((errors[0] + errors[2]) / 2, rel=1e-3)
+
+
 # --- values ---
 
 CHAINS = {
