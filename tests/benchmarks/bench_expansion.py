@@ -1,4 +1,4 @@
-"""CPU time of the expansion in k - 1: speed and three widths of a chain, and the command.
+"""CPU time of the expansion in k - 1: speed and three widths of a chain.
 
     python -m pytest tests/benchmarks/bench_expansion.py
 
@@ -9,9 +9,6 @@ beside the new ones. SymPy forgets what it has cached before each round. No time
 
 from __future__ import annotations
 
-import os
-import subprocess
-import sys
 import time
 
 import pytest
@@ -30,15 +27,8 @@ BEFORE = {
     "equal beads to ε^40": 2.9,
     "symbolic dimer to ε^8": 2.0,
     "numeric dimer to ε^16": 0.9,
-    "command beyond its import": 0.64,
 }
 """Seconds, of an idle machine."""
-
-
-def children() -> float:
-    """CPU time of the processes that have ended."""
-    times = os.times()
-    return times.children_user + times.children_system
 
 
 @pytest.mark.benchmark(timer=time.process_time)
@@ -55,17 +45,3 @@ def test_expansion(benchmark: BenchmarkFixture, chain: str) -> None:
     benchmark.group = chain
     benchmark.extra_info["before"] = BEFORE[chain]
     benchmark.pedantic(widths, setup=clear_cache, rounds=5)
-
-
-COMMAND = "from lwa.cli import main; main(['expansion', '--k', '3/2', '--masses', '1', *{}])"
-CODE = {"import": "import lwa", "command": COMMAND.format(["--order", "10"])}
-
-
-@pytest.mark.benchmark(timer=children, group="lwa expansion --order 10, and import lwa")
-@pytest.mark.parametrize("code", CODE)
-def test_command(benchmark: BenchmarkFixture, code: str) -> None:
-    benchmark.extra_info["before"] = BEFORE["command beyond its import"]
-    command = [sys.executable, "-c", CODE[code]]
-    benchmark.pedantic(
-        subprocess.run, (command,), {"check": True, "stdout": subprocess.DEVNULL}, rounds=5
-    )
