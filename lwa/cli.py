@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterable, Sequence
-from functools import wraps
+from functools import reduce, wraps
 from typing import Any
 
 import click
@@ -14,8 +14,9 @@ from lwa.cell import Cell, D, k
 from lwa.closure import BRANCHES, CLOSURES, FIELDS
 from lwa.dispersion import Dispersion
 from lwa.expansion import expand
+from lwa.languages import LANGUAGES
 from lwa.render import dispersion_json, expansion_json, theory_json, wave_json
-from lwa.source import theory_latex, theory_python, wave_latex, wave_python
+from lwa.source import theory_latex, theory_python, wave_latex
 from lwa.terminal import quantities, quantity, run
 from lwa.text import dispersion_text, expansion_text, theory_text, wave_text
 from lwa.theory import Theory, homogenize
@@ -29,7 +30,9 @@ THEORY = {
     "latex": theory_latex,
     "python": theory_python,
 }
-WAVE = {"text": wave_text, "json": wave_json, "latex": wave_latex, "python": wave_python}
+WAVE = {"text": wave_text, "json": wave_json, "latex": wave_latex} | {
+    language: lambda _, wave, language=language: wave.code(language) for language in LANGUAGES
+}
 DISPERSION = {"text": dispersion_text, "json": dispersion_json}
 EXPANSION = {"text": expansion_text, "json": expansion_json}
 
@@ -59,7 +62,7 @@ STIFFNESSES = click.option(
 )
 
 
-def _chain(command: Command) -> Command:
+def _chain(formats: Iterable[str]) -> Option:
     """The options that name a chain and its theory."""
     options = (
         _exponent(k.name),
@@ -70,11 +73,9 @@ def _chain(command: Command) -> Command:
         _option("--closure", "linear", f"Consistency condition: {' or '.join(CLOSURES)}."),
         _option("--field", "first", f"Field described: {' or '.join(FIELDS)} (closure full)."),
         _option("--branch", "acoustic", f"{' or '.join(BRANCHES).capitalize()}."),
-        _style(THEORY),
+        _style(formats),
     )
-    for option in reversed(options):
-        command = option(command)
-    return command
+    return lambda command: reduce(lambda c, option: option(c), reversed(options), command)
 
 
 def _series(k: str, order: str, formats: Iterable[str]) -> Option:
@@ -119,14 +120,14 @@ def lwa() -> None:
 
 
 @lwa.command()
-@_chain
+@_chain(THEORY)
 def derive(style: str, **chain: Any) -> None:
     """The ansatz, the wave equation and the defect between the equations of motion."""
     _show(THEORY[style](_theory(**chain)))
 
 
 @lwa.command()
-@_chain
+@_chain(WAVE)
 def wave(style: str, **chain: Any) -> None:
     """The compact traveling wave: β, width, FWHM, amplitude and speed."""
     theory = _theory(**chain)

@@ -29,6 +29,9 @@ from lwa.coefficients import number
 from lwa.dispersion import Dispersion
 from lwa.exact import InputError, positive, shorten
 from lwa.jets import JetAlgebra, Monomial
+from lwa.quantities import QUANTITIES as QUANTITIES
+from lwa.quantities import NoSolitaryWave as NoSolitaryWave
+from lwa.quantities import strain_power as strain_power
 
 if TYPE_CHECKING:
     from lwa.numeric import NumericWave
@@ -37,24 +40,6 @@ V = sp.Symbol("V_s", positive=True)
 """The speed V_s = dx/dτ, where the caller gives none."""
 
 _LARGE_POWER = 500
-
-QUANTITIES = ("strain", "force", "velocity")
-
-
-def strain_power(quantity: str, k: Any) -> Any:
-    """The power of the strain to which a quantity of the wave is proportional: k or 1.
-
-    Raises `lwa.InputError` unless the quantity is "strain", "force" or "velocity".
-    """
-    if quantity not in QUANTITIES:
-        raise InputError(
-            f"quantity is {shorten(quantity)}: one of {', '.join(QUANTITIES)} is wanted"
-        )
-    return k if quantity == "force" else 1
-
-
-class NoSolitaryWave(ValueError):
-    """The theory has no compact traveling wave for these parameters; the message says why."""
 
 
 @cache
@@ -304,6 +289,18 @@ class TravelingWave:
         from lwa.numeric import NumericWave  # here, so that `import lwa` does not load NumPy
 
         return NumericWave.of(self, missing)
+
+    def code(self, language: str) -> str:
+        """β, widths, speed, amplitude and profile as functions in a program's source text.
+
+        ``language`` is "python" (plain `math`), "numpy", "c", "fortran" or "julia"; arguments and
+        accuracy are told in `lwa.code`.
+
+        Raises `lwa.InputError` for another language, and for numbers beyond a double.
+        """
+        from lwa.code import wave_code  # here: it knows this class
+
+        return wave_code(self, language)
 
 
 def canonical_wave(cell: Cell, k: Any = symbol_k) -> TravelingWave:
