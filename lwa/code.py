@@ -4,7 +4,7 @@ What is written are not the formulas as they stand but forms of them that keep t
 
 - sums that hold k and other symbols are polynomials in k - 2, which is exact where they cancel;
 - arccos(2^{-x}) = arctan √(2^{x+1} sinh(x ln 2)), good as x → 0;
-- ln f = 2 artanh((f-1)/(f+1)), f = V²/B^{k-1}, good as f → 1, that is as k → 1;
+- ln f = 2 arsinh((f-1)/(2√f)), f = V²/B^{k-1}, good as f → 1, that is as k → 1;
 - cos(βξ) on the support and 0 outside of it is sin((h + |h|)/2), h = π/2 - |βξ|.
 
 So the functions are good to 1e-14, relatively, but for three things that no arrangement mends. The
@@ -15,13 +15,15 @@ the end of the support: the profile is good to 1e-14 B at a ξ that is off by 1e
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 import sympy as sp
 
 from lwa.exact import InputError, shorten
-from lwa.languages import LANGUAGES, Function
+from lwa.languages import LANGUAGES, Function, Local
 from lwa.quantities import QUANTITIES, strain_power
 
 if TYPE_CHECKING:
@@ -30,6 +32,8 @@ if TYPE_CHECKING:
 _XI = sp.Dummy("xi", real=True)
 _B, _V = (sp.Dummy(name, positive=True) for name in ("B", "V_s"))
 OWN = (_XI, _B, _V)
+_SHIFT, _INSIDE = (sp.Dummy(name, real=True) for name in ("k_2", "inside"))
+_LONGEST_SUM = 64
 
 _TITLE = (
     "The compact traveling wave v = u_x = B cos^m(beta xi), m = 2/(k - 1),",
@@ -61,66 +65,46 @@ def wave_functions(wave: TravelingWave) -> dict[str, Function]:
     Arguments stand in this order, each where it is used: xi; B or V_s; the symbols of k, of the
     masses, of the stiffnesses and of the spacing.
     """
-    k, f = wave.k, wave.speed_factor
-    S, S_local = _stable(wave.dispersion, k)
-    f_stable, f_local = _stable(f, k)
-    y, y_local = _stable(sp.factor(sp.cancel((f - 1) / (f + 1))), k)
-    order = _symbols(wave)
-
-    beta = function_of(
-        order, "beta", "beta = (k - 1)/(2 sqrt(G + H + I))",
-        (k - 1) / (2 * wave.D * sp.sqrt(S)), S_local,
-    )  # fmt: skip
-    h = sp.Dummy("inside", real=True)
-    functions = [
-        beta,
-        function_of(order, "width", "The length of the support, pi/beta", sp.pi / beta.call),
-        *(
-            function_of(
-                order,
-                f"fwhm_{quantity}",
-                f"Full width at half maximum of the {quantity}",
-                2 * _half_angle((k - 1) / (2 * strain_power(quantity, k))) / beta.call,
-            )
-            for quantity in QUANTITIES
-        ),
-        function_of(
-            order, "speed", "V_s of the wave whose strain peaks at B",
-            sp.sqrt(f_stable) * _B ** ((k - 1) / 2), f_local,
-        ),
-        function_of(
-            order, "amplitude", "B, the peak strain of the wave of speed V_s",
-            _V ** (2 / (k - 1)) * sp.exp(-2 * sp.atanh(y) / (k - 1)), y_local,
-        ),
-        function_of(
-            order, "profile", "v(xi), 0 outside of the support",
-            _B * sp.sin((h + sp.Abs(h)) / 2) ** (2 / (k - 1)),
-            ((h, sp.pi / 2 - sp.Abs(beta.call * _XI)),),
-        ),
-    ]  # fmt: skip
+    k, f, define = wave.k, wave.speed_factor, _functions_of(wave)
+    parts = {k - 2: _SHIFT}
+    S, excess = _stable(wave.dispersion, k, parts), _stable(sp.factor(sp.cancel(f - 1)), k, parts)
+    f = _stable(f, k, parts)
+    local = tuple((symbol, value) for value, symbol in parts.items())
+    beta_value = (k - 1) / (2 * wave.D * sp.sqrt(S))
+    beta = define("beta", "beta = (k - 1)/(2 sqrt(G + H + I))", beta_value, local)
+    functions = [beta, define("width", "Length of the support, pi/beta", sp.pi / beta.call)]
+    for quantity in QUANTITIES:
+        doc = f"Full width at half maximum of the {quantity}"
+        angle = _half_angle((k - 1) / (2 * strain_power(quantity, k)))
+        functions.append(define(f"fwhm_{quantity}", doc, 2 * angle / beta.call))
+    speed = sp.sqrt(f) * _B ** ((k - 1) / 2)
+    amplitude = _V ** (2 / (k - 1)) * sp.exp(-2 * sp.asinh(excess / (2 * sp.sqrt(f))) / (k - 1))
+    profile = _B * sp.sin((_INSIDE + sp.Abs(_INSIDE)) / 2) ** (2 / (k - 1))
+    inside = sp.pi / 2 - sp.Abs(beta.call * _XI)
+    functions += [
+        define("speed", "V_s of the wave whose strain peaks at B", speed, local),
+        define("amplitude", "B, the peak strain of the wave of speed V_s", amplitude, local),
+        define("profile", "v at xi, 0 outside of the support", profile, ((_INSIDE, inside),)),
+    ]
     return {function.name: function for function in functions}
 
 
 def reduction_functions(wave: TravelingWave, amplitude: Function) -> dict[str, Function]:
     """p, a, μ, η, σ, s of `Reduction` as the paper writes them, and B, the amplitude again."""
-    found, order = wave.reduction(V=_V), _symbols(wave)
+    found, define = wave.reduction(V=_V), _functions_of(wave)
     doc = "{} of the reduction v = z^p, z'' = mu z^eta - sigma z"
-    p = function_of(order, "p", doc.format("p"), found.p)
-    a = function_of(order, "a", doc.format("a"), found.a.subs(found.p, p.call))
+    p = define("p", doc.format("p"), found.p)
+    a = define("a", doc.format("a"), found.a.subs(found.p, p.call))
     found = replace(found, p=p.call, a=a.call)
-    functions = [p, a]
-    functions += [
-        function_of(order, name, doc.format(name), getattr(found, name))
-        for name in ("mu", "eta", "sigma", "s")
-    ]
-    functions.append(function_of(order, "B", amplitude.doc, amplitude.call))
+    rest = [define(n, doc.format(n), getattr(found, n)) for n in ("mu", "eta", "sigma", "s")]
+    functions = (p, a, *rest, define("B", amplitude.doc, amplitude.call))
     return {function.name: function for function in functions}
 
 
-def _symbols(wave: TravelingWave) -> tuple[sp.Symbol, ...]:
+def _functions_of(wave: TravelingWave) -> Callable[..., Function]:
     cell = wave.cell
     parts = (wave.k, *cell.masses, *cell.stiffnesses, cell.spacing, wave.dispersion)
-    return in_order(*parts)
+    return partial(function_of, in_order(*parts))
 
 
 def in_order(*parts: sp.Expr) -> tuple[sp.Symbol, ...]:
@@ -129,14 +113,14 @@ def in_order(*parts: sp.Expr) -> tuple[sp.Symbol, ...]:
 
 
 def function_of(
-    order: tuple[sp.Symbol, ...],
-    name: str,
-    doc: str,
-    value: sp.Basic,
-    local: tuple[tuple[sp.Symbol, sp.Expr], ...] = (),
+    order: tuple[sp.Symbol, ...], name: str, doc: str, value: sp.Basic, local: Local = ()
 ) -> Function:
-    used = set().union(value.free_symbols, *(v.free_symbols for _, v in local))
-    return Function(name, doc, tuple(s for s in (*OWN, *order) if s in used), value, local)
+    """A function with those arguments and local variables that its value depends on."""
+    used = value.free_symbols
+    for symbol, part in reversed(local):
+        used |= part.free_symbols if symbol in used else set()
+    arguments = tuple(s for s in (*OWN, *order) if s in used)
+    return Function(name, doc, arguments, value, tuple(row for row in local if row[0] in used))
 
 
 def _half_angle(x: sp.Expr) -> sp.Expr:
@@ -144,24 +128,30 @@ def _half_angle(x: sp.Expr) -> sp.Expr:
     return sp.atan(sp.sqrt(2 ** (x + 1) * sp.sinh(x * sp.log(2))))
 
 
-def _stable(ratio: sp.Expr, k: sp.Expr) -> tuple[sp.Expr, tuple[tuple[sp.Symbol, sp.Expr], ...]]:
-    """A rational expression, sums in powers of k - 2 and each A^{1/k} computed once."""
-    if not k.is_Symbol:
-        return ratio, ()
-    shift = sp.Dummy("k_2", real=True)
-    roots: dict[sp.Expr, sp.Symbol] = {}
+def _stable(ratio: sp.Expr, k: sp.Expr, parts: dict[sp.Expr, sp.Symbol]) -> sp.Expr:
+    """A rational expression, its sums in powers of k - 2.
+
+    What becomes a variable is added to ``parts``: A^{1/k}, and pieces of a sum too long for one
+    statement (Fortran takes 256 lines).
+    """
+
+    def part(value: sp.Expr, name: str) -> sp.Symbol:
+        symbol = sp.Dummy(f"{name}_{len(parts)}", positive=name == "r" or None)
+        return parts.setdefault(value, symbol)
 
     def root(power: sp.Pow) -> sp.Expr:
         n, _ = (power.exp * k).as_coeff_Mul()
-        one = power.base ** (power.exp / n)
-        return roots.setdefault(one, sp.Dummy(f"r_{len(roots) + 1}", positive=True)) ** n
+        return part(power.base ** (power.exp / n), "r") ** n
 
     def about_two(total: sp.Expr) -> sp.Expr:
-        terms = sp.Poly(total.subs(k, shift + 2), shift).terms()
-        return sp.Add(*(sp.factor(c) * shift**n for (n,), c in terms))
+        terms = sp.Poly(total.subs(k, _SHIFT + 2), _SHIFT).terms()
+        return sp.Add(*(sp.factor(c) * _SHIFT**n for (n,), c in terms))
 
-    ratio = ratio.replace(lambda e: e.is_Pow and e.exp.has(k), root)
-    ratio = ratio.replace(lambda e: e.is_Add and e.has(k) and not (e - k).is_number, about_two)
-    local = [(symbol, value) for value, symbol in roots.items()]
-    local += [(shift, k - 2)] if ratio.has(shift) else []
-    return ratio, tuple(local)
+    def pieces(total: sp.Expr) -> sp.Expr:
+        n = range(0, len(total.args), _LONGEST_SUM)
+        return sp.Add(*(part(sp.Add(*total.args[i : i + _LONGEST_SUM]), "sum") for i in n))
+
+    if k.is_Symbol:
+        ratio = ratio.replace(lambda e: e.is_Pow and e.exp.has(k), root)
+        ratio = ratio.replace(lambda e: e.is_Add and e.has(k) and not (e - k).is_number, about_two)
+    return ratio.replace(lambda e: e.is_Add and len(e.args) > _LONGEST_SUM, pieces)

@@ -32,7 +32,7 @@ from lwa.exact import InputError, shorten
 _WIDTH = 79
 _LONGEST_NAME = 31  # letters that C99 guarantees to tell names apart
 
-_MATHEMATICS = frozenset({"abs", "atan", "atanh", "exp", "log", "pow", "sin", "sinh", "sqrt"})
+_MATHEMATICS = frozenset({"abs", "atan", "asinh", "exp", "log", "pow", "sin", "sinh", "sqrt"})
 _NEWER_C = re.findall(
     r"\w+",
     "alignas alignof asm bool constexpr false i386 linux nullptr static_assert thread_local true "
@@ -45,6 +45,9 @@ _JULIA = re.findall(
     "try using where while",
 )
 
+Local = tuple[tuple[sp.Symbol, sp.Expr], ...]
+"""Variables and their values."""
+
 
 @dataclass(frozen=True)
 class Function:
@@ -54,7 +57,7 @@ class Function:
     doc: str
     arguments: tuple[sp.Symbol, ...]
     value: sp.Basic
-    local: tuple[tuple[sp.Symbol, sp.Expr], ...] = ()
+    local: Local = ()
 
     @property
     def call(self) -> sp.Expr:
@@ -202,7 +205,8 @@ class NumPy(Python, NumPyPrinter):  # type: ignore[misc]
         names = self.arguments(function)
         if len(function.arguments) < 2:
             return [f"    {names} = np.float64({names})"] if names else []
-        return wrapped(f"    {names} = map(np.float64, ({names}))")
+        line = f"    {names} = map(np.float64, ({names}))"
+        return wrapped(line if len(line) <= _WIDTH else line.replace(names, f"({names})", 1))
 
     def text(self, value: sp.Basic) -> str:
         """A value on one line."""
@@ -231,8 +235,8 @@ class C(Writer, C99CodePrinter):  # type: ignore[misc]
         ]
 
     def _allows(self, name: str) -> bool:
-        # names in capitals are macros, some of them in <math.h>
-        return super()._allows(name) and not re.fullmatch(r"M_\w*|[A-Z][A-Z0-9_]{2,}", name)
+        # names in capitals are macros, some of them in <math.h>: FP_NAN, M_PI, M_PIf
+        return super()._allows(name) and not re.fullmatch(r"(M_|[A-Z]{2})\w+(?<!_)", name)
 
     def _print_Pi(self, number: sp.Expr) -> str:
         return repr(math.pi)
@@ -258,7 +262,7 @@ class Fortran(Writer, FCodePrinter):  # type: ignore[misc]
     settings: ClassVar[dict[str, Any]] = {
         "source_format": "free",
         "standard": 2008,
-        "user_functions": {"atanh": "atanh"},
+        "user_functions": {"asinh": "asinh"},
     }
 
     def function(self, function: Function) -> list[str]:
