@@ -23,8 +23,9 @@ from typing import TYPE_CHECKING
 import sympy as sp
 
 from lwa.exact import InputError, shorten
-from lwa.languages import LANGUAGES, Function, Local
+from lwa.languages import LANGUAGES
 from lwa.quantities import QUANTITIES, strain_power
+from lwa.writer import Function, Local
 
 if TYPE_CHECKING:
     from lwa.wave import TravelingWave

@@ -7,7 +7,7 @@ import subprocess
 
 import pytest
 
-from lwa.languages import Function
+from lwa.writer import Function
 
 STRICT = ("-O2", "-Wall", "-Wextra", "-pedantic", "-Werror", "-shared", "-fPIC")
 COMMANDS = {

@@ -18,7 +18,8 @@ from hypothesis import strategies as st
 from lwa import Cell, Dimer, InputError, NoSolitaryWave, canonical_wave, homogenize
 from lwa.cli import main
 from lwa.code import in_order, wave_functions
-from lwa.languages import LANGUAGES, Function, wrapped
+from lwa.languages import LANGUAGES
+from lwa.writer import Function, wrapped
 from tests.lwa.compilers import compiled
 
 EXPONENTS = (1.01, 1.02, 1.1, 1.25, 1.5, 1.7, 1.999, 2.0, 2.001, 2.3, 3.0, 3.7, 5.0, 6.1, 8.0)
