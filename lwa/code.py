@@ -2,7 +2,7 @@
 
 What is written are not the formulas as they stand but forms of them that keep their digits:
 
-- sums that hold k and other symbols are polynomials in k - 2, which is exact where they cancel;
+- sums that hold k are polynomials in k - 2, an exact number, in which less cancels than in k;
 - arccos(2^{-x}) = arctan √(2^{x+1} sinh(x ln 2)), good as x → 0;
 - ln f = 2 arsinh((f-1)/(2√f)), f = V²/B^{k-1}, good as f → 1, that is as k → 1;
 - cos(βξ) on the support and 0 outside of it is sin((h + |h|)/2), h = π/2 - |βξ|.

@@ -22,8 +22,42 @@ from lwa.languages import LANGUAGES
 from lwa.writer import Function, wrapped
 from tests.lwa.compilers import compiled
 
-EXPONENTS = (1.01, 1.02, 1.1, 1.25, 1.5, 1.7, 1.999, 2.0, 2.001, 2.3, 3.0, 3.7, 5.0, 6.1, 8.0)
-RATIOS = (1e-3, 3e-3, 0.01, 0.05, 0.1, 0.2733, 0.5, 0.9, 1.0, 1.1, 1.7, 3.0, 10.0, 99.0, 1e3)
+EXPONENTS = (
+    1.01,
+    1.02,
+    1.1,
+    1.25,
+    1.5,
+    1.7,
+    1.999,
+    2.0,
+    2.000001,
+    2.3,
+    3.0,
+    3.7,
+    5.0,
+    6.1,
+    7.875,
+    8.0,
+)
+RATIOS = (
+    1e-3,
+    3e-3,
+    0.01,
+    0.05,
+    0.0977,
+    0.1,
+    0.2733,
+    0.5,
+    0.9,
+    1.0,
+    1.1,
+    1.7,
+    3.0,
+    10.0,
+    99.0,
+    1e3,
+)
 GRID = {"k": EXPONENTS, "m1": (1.0,), "m2": RATIOS, "D": (1.0,)}
 FEW = {"k": (1.01, 1.5, 2.001, 8.0), "m1": (0.3, 7.0), "m2": (2.0,), "m3": (1.1,), "D": (0.7,)}
 STIFF = {**FEW, "A1": (1.0, 50.0), "A2": (0.02, 3.0)}
@@ -170,6 +204,22 @@ def test_near_the_edge_of_existence_the_error_is_that_of_the_arguments(functions
             w = float(edge) * (1 - distance)
             low, high = (exact_beta(exact(w) * (1 + s * exact(2) ** -50)) for s in (-1, 1))
             assert low <= beta(k=3.0, m1=1.0, m2=w, D=1.0) <= high
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_widths_and_speeds_keep_their_digits_as_k_goes_to_one(functions_of, language):
+    found = functions_of("canonical", language)
+    with mpmath.workdps(50):
+        for n in (10, 20, 40):
+            values = {"k": 1 + 2.0**-n, "m1": 1.0, "m2": 1.0, "D": 1.0}
+            k = exact(values["k"])
+            beta = (k - 1) / mpmath.sqrt(k * (k + 1) / 6)  # I = 1/12
+            assert abs(found["beta"](**values) / beta - 1) < 1e-14
+            for quantity, power in (("strain", 1), ("force", k)):
+                width = 2 * mpmath.acos(exact(2) ** (-(k - 1) / (2 * power))) / beta
+                assert abs(found[f"fwhm_{quantity}"](**values) / width - 1) < 1e-14
+            speed = mpmath.sqrt(2 / (k * (k + 1))) * exact(3) ** ((k - 1) / 2)
+            assert abs(found["speed"](B=3.0, k=values["k"]) / speed - 1) < 1e-14
 
 
 @pytest.mark.parametrize("V", [1e-2, 0.9, 1.1, 30.0])
