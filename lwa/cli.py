@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterable, Sequence
-from functools import wraps
+from functools import reduce, wraps
 from typing import Any
 
 import click
@@ -18,9 +18,10 @@ from lwa.duration import announce
 from lwa.exact import InputError, exact
 from lwa.expansion import expand
 from lwa.hertz import EXPONENT
+from lwa.languages import LANGUAGES
 from lwa.letters import demand_own
 from lwa.render import SI, dispersion_json, expansion_json, force_json, theory_json, wave_json
-from lwa.source import theory_latex, theory_python, wave_latex, wave_python
+from lwa.source import theory_latex, theory_python, wave_latex
 from lwa.terminal import quantities, quantity, run
 from lwa.text import dispersion_text, expansion_text, force_text, theory_text, wave_text
 from lwa.theory import Theory, homogenize
@@ -34,7 +35,9 @@ THEORY = {
     "latex": theory_latex,
     "python": theory_python,
 }
-WAVE = {"text": wave_text, "json": wave_json, "latex": wave_latex, "python": wave_python}
+WAVE = {"text": wave_text, "json": wave_json, "latex": wave_latex} | {
+    language: lambda _, wave, language=language: wave.code(language) for language in LANGUAGES
+}
 FORCE = {"text": force_text, "json": force_json}
 DISPERSION = {"text": dispersion_text, "json": dispersion_json}
 EXPANSION = {"text": expansion_text, "json": expansion_json}
@@ -65,7 +68,7 @@ STIFFNESSES = click.option(
 )
 
 
-def _chain(command: Command) -> Command:
+def _chain(formats: Iterable[str]) -> Option:
     """The options that name a chain and its theory."""
     options = (
         _exponent(k.name),
@@ -76,11 +79,9 @@ def _chain(command: Command) -> Command:
         _option("--closure", "linear", f"Consistency condition: {' or '.join(CLOSURES)}."),
         _option("--field", "first", f"Field described: {' or '.join(FIELDS)} (closure full)."),
         _option("--branch", "acoustic", f"{' or '.join(BRANCHES).capitalize()}."),
-        _style(THEORY),
+        _style(formats),
     )
-    for option in reversed(options):
-        command = option(command)
-    return command
+    return lambda command: reduce(lambda c, option: option(c), reversed(options), command)
 
 
 def _series(k: str, order: str, formats: Iterable[str]) -> Option:
@@ -151,7 +152,7 @@ def lwa() -> None:
 
 
 @lwa.command()
-@_chain
+@_chain(THEORY)
 def derive(style: str, **chain: Any) -> None:
     """The ansatz, the wave equation and the defect between the equations of motion."""
     theory = _theory(**chain)
@@ -160,7 +161,7 @@ def derive(style: str, **chain: Any) -> None:
 
 
 @lwa.command()
-@_chain
+@_chain(WAVE)
 @click.option("--force", callback=quantity, help="Peak contact force, for speed, compression, ….")
 @click.option("--spheres", metavar="FILE", help="Beads, a TOML file (`lwa.beads`), in SI units.")
 def wave(style: str, force: sp.Expr | None, spheres: str | None, **chain: Any) -> None:

@@ -311,6 +311,18 @@ class TravelingWave(Value):
 
         return NumericWave(self, missing)
 
+    def code(self, language: str) -> str:
+        """β, widths, speed, amplitude and profile as functions in a program's source text.
+
+        ``language`` is "python" (plain `math`), "numpy", "c", "fortran" or "julia"; arguments and
+        accuracy are told in `lwa.code`.
+
+        Raises `lwa.InputError` for another language, and for numbers beyond a double.
+        """
+        from lwa.code import wave_code  # here: it knows this class
+
+        return wave_code(self, language)
+
 
 def canonical_wave(cell: Cell, k: Any = symbol_k) -> TravelingWave:
     """The wave of the canonical field of any cell, from the linear chain's dispersion alone.

@@ -59,7 +59,7 @@ class Effort:
     def time(self) -> str:
         """The seconds, in round words.
 
-        >>> Effort(Scene(masses=(1,), stiffnesses=(), k=1, duration=1), "S6", 1, 1, 7e3, 0).time
+        >>> Effort(Scene(masses=(1,), stiffnesses=(), k=1, duration=1), "S6", 1, 1, 7.2e3, 0).time
         'about 2 hours'
         """
         return words(self.seconds)

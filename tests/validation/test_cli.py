@@ -434,7 +434,7 @@ def test_a_long_run_says_so_first_and_stops_at_ctrl_c(scene_file, options):
         first = running.stderr.readline()
         running.send_signal(signal.SIGINT)
         out, rest = running.communicate()
-    assert re.match(r".* steps of \w+ with .* beads, .* samples: about \d+ \w+$", first)
+    assert re.match(r".* steps of \w+ with .* beads, .* samples: about [\d.]+ \w+$", first)
     assert (running.returncode, out) == (130, "")
     assert rest.splitlines()[-1] == "lwa-validate: interrupted"
     assert "Traceback" not in rest

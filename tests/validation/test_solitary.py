@@ -436,7 +436,7 @@ def test_the_errors_of_solitary_waves_cover_other_half_periods_and_grids(k, spec
 
 
 @settings(max_examples=25, deadline=None)
-@given(st.floats(5e-324, 1.7e308), st.sampled_from(["uniform", "special"]))
+@given(st.floats(2.3e-308, 1.7e308), st.sampled_from(["uniform", "special"]))
 def test_masses_of_any_size_scale_or_are_refused(hertz, specials, mass, name):
     start = hertz if name == "uniform" else specials[0]
     masses = [mass, mass * start.omega]
@@ -450,7 +450,7 @@ def test_masses_of_any_size_scale_or_are_refused(hertz, specials, mass, name):
 
 
 @settings(max_examples=50, deadline=None)
-@given(st.floats(5e-324, 1.7e308), st.floats(5e-324, 1.7e308))
+@given(st.floats(2.3e-308, 1.7e308), st.floats(2.3e-308, 1.7e308))
 def test_masses_too_unlike_are_refused(one, two):
     assume(not 0.01 <= two / one <= 100)
     with pytest.raises(SceneError, match=r"^m2/m1 is .*: exact waves are found for 0.01 to 100$"):
@@ -522,7 +522,7 @@ def test_a_missing_wave_says_what_was_tried(monkeypatch, k):
         ([1], 9, "k is 9:"),
         ([1, 1e-4], 1.5, "m2/m1 is 0.0001"),
         ([1e-300, 1e300], 1.5, "m2/m1 is inf"),
-        ([5e-324], 1.5, "mass 1 is 4.94066e-324: c² leaves the range of floats"),
+        ([5e-324], 1.5, "mass 1 is 5e-324: floats below 2e-308 lose their digits"),
     ],
 )
 def test_bad_input(masses, k, message):
