@@ -17,7 +17,7 @@ _UNITS = (("years", 3.156e7), ("days", 86400.0), ("hours", 3600.0), ("minutes", 
 def words(seconds: float) -> str:
     """A duration in round words.
 
-    >>> words(7e3), words(3), words(1e12)
+    >>> words(7.2e3), words(3), words(1e12)
     ('about 2 hours', 'about 3 s', 'over 1000 years')
     """
     if seconds > 1000 * _UNITS[0][1]:
