@@ -125,7 +125,7 @@ def resonance() -> Outcome:
     for omega in RESONANT + QUIET:
         sites = _DECAYING if omega in RESONANT else _STEADY
         rate = point(EXPONENT, sp.Rational(str(omega)), STRETCH).numbers["decay"]
-        bounds = (0.01, 0.02) if omega in RESONANT else (-1e-7, 1e-7)
+        bounds = (0.005, 0.02) if omega in RESONANT else (-1e-7, 1e-7)
         findings.append(
             Finding.of(
                 f"ω = {omega:g}: decay of the peak force per site",
