@@ -11,7 +11,7 @@ from lwa.numeric import NumericWave
 
 OURS = """
 mu0 mu1 c0 c1 a0 a1 k D B V_s tau lambda p a mu eta sigma s m z v G H I X x u w omega kappa r1 s1
-s0 Z x0 x1 xi epsilon t alpha beta q math b1 phi2 p0
+s0 Z x0 x1 xi epsilon t alpha beta q math b1 phi2 p0 F
 """
 """Names that the derivations, the paper or the printed results use."""
 
@@ -46,6 +46,9 @@ def results(m1, m2, k, D, alpha):
     yield "own amplitude", wave.amplitude().subs(sp.Symbol("V_s", positive=True), 2)
     yield "profile", wave.profile(sp.Rational(1, 5), 2)
     yield "scale", wave.speed_scale
+    physical = wave.at_force(3)
+    yield from (("dx/dt", physical.speed), ("time", physical.fwhm("force", "time")))
+    yield "own force", wave.at_force().speed.subs(sp.Symbol("F", positive=True), 3)
     yield "optical", homogenize(cell, 2, k=k, branch="optical").amplitude_ratio
     full = homogenize(cell, 4, k=k, closure="full", field="center")
     yield "I", full.pde.I
@@ -80,7 +83,8 @@ def may_be_refused(given):
     own = {"k": "k", "D": "D"}
     names = [symbol.name for symbol in given.values()]
     reserved = {s.name for role, s in given.items() if own.get(role) != s.name} & set(RESERVED)
-    return reserved | {name for name in names if names.count(name) > 1}
+    peak_force = {"F"} & set(names)  # the symbol of `at_force` where none is given
+    return reserved | peak_force | {name for name in names if names.count(name) > 1}
 
 
 @settings(max_examples=10, deadline=None)
@@ -90,6 +94,7 @@ def may_be_refused(given):
 @example({**NEUTRAL, "m1": sp.Symbol("p"), "m2": sp.Symbol("I")})
 @example({**NEUTRAL, "m2": sp.Symbol("omega"), "k": sp.Symbol("kappa")})
 @example({**NEUTRAL, "m1": sp.Symbol("k")})
+@example({**NEUTRAL, "m1": sp.Symbol("F")})
 def test_results_do_not_depend_on_names(given):
     try:
         found = numbers(given)
