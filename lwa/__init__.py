@@ -10,22 +10,22 @@ D**2*(m1**2 - m1*m2 + m2**2)/(3*(m1 + m2)**2)
 
 from typing import TYPE_CHECKING, Any
 
-from lwa import hertz
-from lwa.approximants import Resummed
 from lwa.cell import Cell, D, Dimer, k
-from lwa.closure import Closure
+from lwa.closure.consistency import Closure
+from lwa.closure.motion import Solution
 from lwa.coefficients import Coefficients, Partition
-from lwa.dispersion import Dispersion
 from lwa.exact import InputError, Quantity
-from lwa.expansion import Expansion, expand
-from lwa.hertz import Material, Sphere
+from lwa.expansion.approximants import Resummed
+from lwa.expansion.expand import Expansion, expand
+from lwa.expansion.radiation import Radiation
+from lwa.expansion.series import EpsilonSeries
 from lwa.jets import JetAlgebra, Ladder, Monomial, Term
-from lwa.motion import Solution
+from lwa.linear.dispersion import Dispersion
 from lwa.pde import PDE
 from lwa.physical import CompactWave, PhysicalWave
 from lwa.quantities import NoSolitaryWave
-from lwa.radiation import Radiation
-from lwa.series import EpsilonSeries
+from lwa.spheres import hertz
+from lwa.spheres.hertz import Material, Sphere
 from lwa.terms import Jet, Powers, Terms
 from lwa.theory import Theory, homogenize
 from lwa.wave import Reduction, TravelingWave, canonical_wave

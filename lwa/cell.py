@@ -20,7 +20,7 @@ from typing import Any
 import sympy as sp
 
 from lwa.exact import InputError, exact, integer, positive, shorten
-from lwa.hertz import Sphere, stiffness
+from lwa.spheres.hertz import Sphere, stiffness
 from lwa.value import Value
 
 D = sp.Symbol("D", positive=True)
@@ -93,7 +93,7 @@ class Cell(Value):
         The theory's x counts sites, times D; with this D a cell is as long as its spheres, so that
         speeds and widths are lengths in space, and D u_x is the mean compression of its contacts.
 
-        >>> from lwa.hertz import Material
+        >>> from lwa.spheres.hertz import Material
         >>> ball = Sphere("m", "R", Material(E="193e9", nu="0.3"))
         >>> Cell.of_spheres([ball]).spacing
         2*R

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from flint import fmpq_mpoly
 
-from lwa.closure import Closure
+from lwa.closure.consistency import Closure
 from lwa.jets import JetAlgebra
 
 

@@ -20,7 +20,7 @@ from math import factorial
 
 from flint import fmpq, fmpq_mpoly
 
-from lwa.closure import Closure
+from lwa.closure.consistency import Closure
 from lwa.exact import InputError
 from lwa.jets import JetAlgebra, Ladder, Power, exact_quotient
 

@@ -15,10 +15,10 @@ from typing import Any
 import sympy as sp
 from flint import fmpq_mpoly
 
-from lwa.closure import Closure
+from lwa.closure.consistency import Closure
+from lwa.closure.motion import Solution
 from lwa.exact import InputError
 from lwa.jets import JetAlgebra, Ladder, Monomial, Power
-from lwa.motion import Solution
 
 Series = list[fmpq_mpoly]
 

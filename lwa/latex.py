@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import sympy as sp
 
 if TYPE_CHECKING:
-    from lwa.closure import Closure
+    from lwa.closure.consistency import Closure
     from lwa.pde import PDE
     from lwa.terms import Terms
     from lwa.wave import TravelingWave

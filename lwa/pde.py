@@ -23,7 +23,7 @@ from flint import fmpq_mpoly
 
 from lwa import latex
 from lwa.cell import Cell
-from lwa.closure import Closure
+from lwa.closure.consistency import Closure
 from lwa.conservation import flux, potential
 from lwa.energy import energy
 from lwa.exact import InputError, exact, integer

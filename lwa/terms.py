@@ -15,7 +15,7 @@ import sympy as sp
 from flint import fmpq_mpoly
 
 from lwa import latex
-from lwa.closure import Closure
+from lwa.closure.consistency import Closure
 from lwa.coefficients import Coefficients
 from lwa.jets import JetAlgebra, Term
 

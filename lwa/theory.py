@@ -11,7 +11,7 @@ import sympy as sp
 from lwa import latex
 from lwa.cell import Cell, exponent
 from lwa.cell import k as symbol_k
-from lwa.closure import BRANCHES, CLOSURES, FIELDS, Closure, solve
+from lwa.closure.consistency import BRANCHES, CLOSURES, FIELDS, Closure, solve
 from lwa.coefficients import Coefficients
 from lwa.duration import shown
 from lwa.exact import InputError, integer, shorten

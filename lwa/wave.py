@@ -27,9 +27,9 @@ from lwa import latex
 from lwa.cell import Cell, exponent, substitution
 from lwa.cell import k as symbol_k
 from lwa.coefficients import number
-from lwa.dispersion import Dispersion
 from lwa.exact import InputError, positive, real, shorten
 from lwa.jets import JetAlgebra, Monomial
+from lwa.linear.dispersion import Dispersion
 from lwa.physical import PhysicalWave
 from lwa.quantities import NoSolitaryWave, strain_power
 from lwa.value import Value
@@ -315,11 +315,11 @@ class TravelingWave(Value):
         """β, widths, speed, amplitude and profile as functions in a program's source text.
 
         ``language`` is "python" (plain `math`), "numpy", "c", "fortran" or "julia"; arguments and
-        accuracy are told in `lwa.code`.
+        accuracy are told in `lwa.code.functions`.
 
         Raises `lwa.InputError` for another language, and for numbers beyond a double.
         """
-        from lwa.code import wave_code  # here: it knows this class
+        from lwa.code.functions import wave_code  # here: it knows this class
 
         return wave_code(self, language)
 

@@ -15,7 +15,7 @@ def test_the_python_example(capsys):
 
 
 def test_the_commands_exist():
-    from lwa.cli import lwa
+    from lwa.command.cli import lwa
     from validation.cli import validate
 
     known = {"lwa": lwa.commands, "lwa-validate": validate.commands}

@@ -12,9 +12,9 @@ from typing import Any, ParamSpec, TypeVar
 
 import numpy as np
 
-from lwa import tables
 from lwa.exact import InputError, shorten
-from lwa.tables import LEAST, Reader, array
+from lwa.spheres import tables
+from lwa.spheres.tables import LEAST, Reader, array
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -66,7 +66,7 @@ def row(
 
 
 def each(reader: Reader) -> Reader:
-    """`lwa.tables.each`, by `row`."""
+    """`lwa.spheres.tables.each`, by `row`."""
     return lambda value, name: row(array(value, name), reader, lambda i: f"{name} number {i + 1}")
 
 

@@ -14,9 +14,9 @@ import click
 import sympy as sp
 from tqdm import tqdm
 
+from lwa.command.terminal import quantities, quantity, run
 from lwa.duration import announce
 from lwa.exact import InputError
-from lwa.terminal import quantities, quantity, run
 from validation import experiments
 from validation.accuracy import NAMES
 from validation.accuracy import accuracy as run_accuracy

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from lwa.tables import LEAST
+from lwa.spheres.tables import LEAST
 from validation.checked import SceneError
 from validation.scene import Scene
 

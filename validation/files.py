@@ -13,7 +13,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from lwa.exact import InputError
-from lwa.files import kind, reason
+from lwa.spheres.files import kind, reason
 
 
 def output_file(name: str, path: str, suffixes: Sequence[str]) -> Path:

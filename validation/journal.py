@@ -24,8 +24,8 @@ from typing import Any, BinaryIO
 import sympy as sp
 
 from lwa.exact import InputError, exact, shorten
-from lwa.files import content, reason
-from lwa.tables import Table, array, table
+from lwa.spheres.files import content, reason
+from lwa.spheres.tables import Table, array, table
 from validation.checked import SceneError, integer, real
 from validation.files import output_file
 from validation.measure import Measured

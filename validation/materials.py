@@ -1,4 +1,4 @@
-"""Beads and materials in floats, with `lwa.hertz` between them; those of the paper's experiment.
+"""Beads and materials in floats, by `lwa.spheres.hertz`; those of the paper's experiment.
 
 The experiment is that of Porter et al. (2008). Units are SI.
 """
@@ -8,8 +8,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from lwa import hertz
 from lwa.exact import shorten
+from lwa.spheres import hertz
 from validation.checked import SceneError, of_scene, positive, real
 
 

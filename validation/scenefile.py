@@ -56,11 +56,11 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from lwa import hertz
-from lwa.beads import read_beads, read_materials
 from lwa.exact import shorten
-from lwa.files import MOST_BYTES, load
-from lwa.tables import Table, among, array, entries, flag, place, places, table
+from lwa.spheres import hertz
+from lwa.spheres.beads import read_beads, read_materials
+from lwa.spheres.files import MOST_BYTES, load
+from lwa.spheres.tables import Table, among, array, entries, flag, place, places, table
 from validation.checked import SceneError, each, integer, of_scene, positive, real
 from validation.files import replacing
 from validation.materials import Bead, Material, contact_stiffness

@@ -4,8 +4,8 @@ What they use, and nothing else: paragraphs, "Parameters" with a line of dashes,
 aligned lines, indented blocks (formulas), doctests, and `names` or ``code`` between backticks. All
 else is text, so that a ``*``, ``|`` or trailing ``_`` of a formula stays itself.
 
-The directive ``modules`` documents every module of a package, but for those named after
-``:without:``.
+The directive ``modules`` documents every module of a package, but for the modules and folders named
+after ``:without:``.
 """
 
 from __future__ import annotations
@@ -92,19 +92,18 @@ def _escaped(text: str) -> str:
 
 
 class Modules(SphinxDirective):
-    """A section for every module of a package, in alphabetical order."""
+    """A section for every module of a package and of its folders, in alphabetical order."""
 
     required_arguments = 1
     option_spec: ClassVar = {"without": directives.unchanged}
 
     def run(self) -> list[nodes.Node]:
         (package,) = self.arguments
-        without = self.options.get("without", "").split()
+        hidden = [f"{package}.{name}." for name in self.options.get("without", "").split()]
         lines: list[str] = []
-        for found in pkgutil.iter_modules(import_module(package).__path__):
-            if found.name not in without:
-                name = f"{package}.{found.name}"
-                lines += [name, "^" * len(name), "", f".. automodule:: {name}", ""]
+        for found in pkgutil.walk_packages(import_module(package).__path__, f"{package}."):
+            if not any(f"{found.name}.".startswith(name) for name in hidden):
+                lines += [found.name, "^" * len(found.name), "", f".. automodule:: {found.name}", ""]
         return self.parse_text_to_nodes("\n".join(lines), allow_section_headings=True)
 
 

@@ -27,9 +27,9 @@ CANONICAL = {4: 4.5, 6: 23.7}
 
 COMMANDS = {
     "import lwa": ("import lwa", None),
-    "lwa wave": ("from lwa.cli import main; main(['wave'])", 1.16),
+    "lwa wave": ("from lwa.command.cli import main; main(['wave'])", 1.16),
     "lwa expansion --order 10": (
-        "from lwa.cli import main; "
+        "from lwa.command.cli import main; "
         "main(['expansion', '--k', '3/2', '--masses', '1', '--order', '10'])",
         1.06,
     ),

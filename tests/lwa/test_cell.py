@@ -8,16 +8,7 @@ import sympy as sp
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lwa import (
-    Cell,
-    Dimer,
-    Dispersion,
-    InputError,
-    canonical_wave,
-    expand,
-    homogenize,
-    k,
-)
+from lwa import Cell, Dimer, Dispersion, InputError, canonical_wave, expand, homogenize, k
 from lwa.cell import RESERVED
 
 positive_fractions = st.fractions(min_value="1/100", max_value=100, max_denominator=100)

@@ -8,7 +8,7 @@ import tempfile
 import pytest
 
 from lwa import InputError
-from lwa.files import content
+from lwa.spheres.files import content
 from validation.files import output_file, replacing
 
 

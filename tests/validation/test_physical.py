@@ -6,7 +6,7 @@ import pytest
 import sympy as sp
 
 from lwa import Cell, Material, Sphere, canonical_wave, homogenize
-from lwa.hertz import stiffness
+from lwa.spheres.hertz import stiffness
 from validation import Scene, exact_wave, measure, simulate
 from validation.materials import PTFE_BEAD, STEEL_BEAD, Bead, contact_stiffness
 from validation.measure import speed

@@ -7,7 +7,7 @@ import pytest
 from scipy.special import erf
 
 from lwa import Dimer
-from lwa.dispersion import Dispersion
+from lwa.linear.dispersion import Dispersion
 from validation.experiments import chain_scene, paper
 from validation.lattice import simulate
 from validation.measure import MeasureError

@@ -11,8 +11,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lwa import Cell, beads, files
-from lwa.beads import read_spheres
+from lwa import Cell
+from lwa.spheres import beads, files
+from lwa.spheres.beads import read_spheres
 from validation import scenefile
 from validation.experiments import chain_scene
 from validation.materials import STEEL, Bead, Material, contact_stiffness

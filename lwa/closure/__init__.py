@@ -1,0 +1,1 @@
+"""The consistency condition: slaved fields that satisfy the equations of motion."""

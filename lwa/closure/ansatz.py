@@ -1,0 +1,120 @@
+"""The closure of the paper (Porter et al. 2008, eq. 5): a linear ansatz for the slaved field.
+
+For the dimer, u = w_0 and w = w_1 = λ (u + Σ b_n D^n ∂_x^n u), with the b_n found from the demand
+that both equations of `lwa.closure.motion` are identical at each order. A linear ansatz has one
+unknown per order, which settles the monomial ∂_x^n u; the wave equation is then read off the first
+equation, and what the second one says otherwise is kept as the defect.
+"""
+
+from __future__ import annotations
+
+from math import factorial
+
+from flint import fmpq, fmpq_mpoly
+
+from lwa.closure.motion import Solution
+from lwa.coefficients import Coefficients
+from lwa.duration import Progress
+from lwa.exact import InputError
+from lwa.jets import JetAlgebra, Ladder, Power, exact_quotient
+
+
+def linear(ring: Coefficients, order: int, progress: Progress = iter) -> Solution:
+    """The paper's closure, to D^order in the ansatz, on the branch of ``ring``.
+
+    Raises `lwa.InputError` for cells of more than two particles, which the ansatz does not cover.
+    """
+    size = ring.cell.size
+    if size == 1 and ring.branch == "acoustic":
+        return _uniform(ring, order, progress)
+    if size != 2:
+        raise InputError(
+            f"the cell has {size} masses: the linear closure's {ring.branch} branch wants two; "
+            'closure="full" (--closure full) covers the acoustic branch of any cell'
+        )
+    branch = _acoustic if ring.branch == "acoustic" else _optical
+    return branch(ring, order, progress)
+
+
+def _applied(b: list[fmpq_mpoly], f: Ladder, n: int) -> fmpq_mpoly:
+    """Σ_{0<j<n} b_j ∂_x^j f_{n-j}: what the ansatz adds to a series, short of the newest b_n."""
+    return sum((b[j] * f.dx(n - j, j) for j in range(1, min(n, len(f)))), f.algebra.zero)
+
+
+def _acoustic(ring: Coefficients, order: int, progress: Progress) -> Solution:
+    algebra = JetAlgebra(ring.names, max(order - 1, 1))
+    k = ring.exponent(algebra.context)
+    mu = ring.masses.elements(algebra.context)
+    c = ring.contacts.elements(algebra.context)
+    right, left = Power(algebra, k), Power(algebra, k)  # of w - u, and of u - w one cell on
+    first, second = Ladder(algebra, k), Ladder(algebra, k)  # E by equation 1 and by equation 2
+    first.append(algebra.zero)
+    second.append(algebra.zero)
+    b = [algebra.one, c[0]]  # order D^k: equal forces, so the first contact takes its share
+    for n in progress(range(1, order)):
+        # The strains of both contacts sum to u(x + 2D) - u(x). Let theirs differ by ξ r_n at D^n;
+        # each equation is written as far as it is known, and its ξ r_n has the weight ±1.
+        known = right.known - left.known
+        one, two = known - left.carried(-2, n), -known
+        condition = mu[1] * one - mu[0] * two + 2 * mu[0] * mu[1] * _applied(b, first, n)
+        xi = -algebra.slope(condition, n)
+        r_n = algebra.r[n]
+        mean = algebra.one * fmpq(2**n, factorial(n + 1))
+        right.append((mean + c[1] * xi / 2) * r_n)
+        left.append((mean - c[0] * xi / 2) * r_n)
+        first.append(exact_quotient(one + xi * r_n, 2 * mu[0]))
+        second.append(exact_quotient(two - xi * r_n, 2 * mu[1]) - _applied(b, second, n))
+        b.append(c[0] * (mean + c[1] * xi / 2))
+    return _solution(ring, algebra, b[: order + 1], first, second)
+
+
+def _optical(ring: Coefficients, order: int, progress: Progress) -> Solution:
+    # Contacts here also pull: the branch belongs to the odd extension of δ^k (or to odd k).
+    # w - u = -(u/μ_1)(1 + Y) and u(x + 2D) - w = (u/μ_1)(1 + Z); E = 1 + kε.
+    algebra = JetAlgebra(ring.names, max(order, 1))
+    k = ring.exponent(algebra.context)
+    mu = ring.masses.elements(algebra.context)
+    stiffness = ring.contacts.elements(algebra.context)
+    right, left = Power(algebra, k), Power(algebra, k)  # 1 + Y and 1 + Z
+    first, second, leading = Ladder(algebra, k), Ladder(algebra, k), Ladder(algebra, k)
+    first.append(algebra.zero)
+    second.append(algebra.zero)
+    leading.append(algebra.r[1])
+    b = [algebra.one]
+    for n in progress(range(1, order + 1)):
+        r_n = algebra.r[n]
+        carried = stiffness[1] * left.carried(-2, n)
+        b.append(-algebra.slope(carried + _applied(b, first, n), n))
+        right.append(mu[0] * b[n] * r_n)
+        left.append((mu[0] * b[n] + mu[1] * fmpq(2**n, factorial(n))) * r_n)
+        force = stiffness[0] * right.Phi[n] + stiffness[1] * left.Phi[n]
+        first.append(force + carried)
+        second.append(force - b[n] * leading.dx(0, n - 1) - _applied(b, second, n))
+    return _solution(ring, algebra, b, first, second)
+
+
+def _uniform(ring: Coefficients, order: int, progress: Progress) -> Solution:
+    # One particle per cell: nothing is slaved, and the one equation is the wave equation.
+    algebra = JetAlgebra(ring.names, max(order - 1, 1))
+    k = ring.exponent(algebra.context)
+    force, E = Power(algebra, k), Ladder(algebra, k)
+    E.append(algebra.zero)
+    for n in progress(range(1, order)):
+        force.append(algebra.r[n] * fmpq(1, factorial(n + 1)))
+        E.append(-force.carried(-1, n))
+    return _solution(ring, algebra, [], E, E)
+
+
+def _solution(
+    ring: Coefficients, algebra: JetAlgebra, b: list[fmpq_mpoly], first: Ladder, second: Ladder
+) -> Solution:
+    acceleration = [first[n] for n in range(len(first))]
+    if ring.branch == "optical":
+        k = ring.exponent(algebra.context)
+        acceleration = [algebra.one, *(k * e for e in acceleration[1:])]
+    return Solution(
+        algebra=algebra,
+        acceleration=tuple(acceleration),
+        ansatz=tuple(b),
+        defect=tuple(first[n] - second[n] for n in range(len(first))),
+    )

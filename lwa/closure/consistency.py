@@ -1,0 +1,173 @@
+"""The consistency condition: slaved fields that satisfy the equations of motion order by order.
+
+``linear`` is the closure of the paper (`lwa.closure.ansatz`), ``full`` the one that satisfies all
+equations of motion (`lwa.closure.slaving`). Both solve `lwa.closure.motion` in one algebra,
+`lwa.jets`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import sympy as sp
+from flint import fmpq_mpoly
+
+from lwa import latex
+from lwa.cell import Cell, exponent, substitution
+from lwa.closure.ansatz import linear
+from lwa.closure.motion import Solution
+from lwa.closure.slaving import full
+from lwa.coefficients import Coefficients
+from lwa.duration import Progress
+from lwa.exact import InputError
+from lwa.jets import JetAlgebra, Monomial
+
+BRANCHES = ("acoustic", "optical")
+CLOSURES = ("linear", "full")
+FIELDS = ("first", "center")
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Closure:
+    """The solved consistency condition, as polynomials.
+
+    It is known by its cell, exponent, order, closure, branch and field: by these it is compared,
+    and when it is copied or pickled it is derived again from them.
+
+    ratio : λ of the branch.
+    solution : E_n, b_n, S_n and the defect.
+    """
+
+    ring: Coefficients
+    order: int
+    name: str
+    field: str
+    ratio: sp.Expr
+    solution: Solution
+
+    @property
+    def algebra(self) -> JetAlgebra:
+        """In which the solution's polynomials are."""
+        return self.solution.algebra
+
+    @property
+    def acceleration(self) -> tuple[fmpq_mpoly, ...]:
+        """E_n."""
+        return self.solution.acceleration
+
+    @property
+    def ansatz(self) -> tuple[fmpq_mpoly, ...]:
+        """b_n, n = 0 … order; () for a cell of one particle."""
+        return self.solution.ansatz
+
+    @property
+    def defect(self) -> tuple[fmpq_mpoly, ...]:
+        """E_n by the first equation minus E_n by the second."""
+        return self.solution.defect
+
+    @property
+    def key(self) -> tuple[Any, ...]:
+        """What it is known by: the arguments of `solve`."""
+        return (self.ring, self.order, self.name, self.field)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Closure) and self.key == other.key
+
+    def __hash__(self) -> int:
+        return hash(self.key)
+
+    def __reduce__(self) -> tuple[Callable[..., Closure], tuple[Any, ...]]:
+        return solve, self.key
+
+    def __repr__(self) -> str:
+        return (
+            f"Closure({self.ring.cell!r}, order={self.order}, k={self.ring.k}, "
+            f"closure={self.name!r}, branch={self.ring.branch!r}, field={self.field!r})"
+        )
+
+    def _repr_latex_(self) -> str:
+        return latex.display(latex.ansatz(self, 4) or [latex.row(r"\lambda", self.ratio)])
+
+    @cached_property
+    def b(self) -> dict[int, sp.Expr]:
+        """n → b_n of the ansatz, n ≥ 1."""
+        return {
+            n: self.ring.expression(self.algebra.terms(b).get(Monomial(()), []))
+            for n, b in enumerate(self.ansatz)
+            if n > 0
+        }
+
+    @property
+    def fields(self) -> tuple[tuple[fmpq_mpoly, ...], ...]:
+        """S_n of each particle, w_i = φ + D φ_x Σ D^n S_n (acoustic branch)."""
+        if self.solution.slaved:
+            return self.solution.slaved
+        r, zero = self.algebra.r, self.algebra.zero
+        first = tuple(zero for _ in range(self.order))
+        second = tuple(b * r[n] for n, b in enumerate(self.ansatz[1:]))
+        return (first, second) if self.ansatz else (first,)
+
+    @property
+    def symbols(self) -> tuple[sp.Symbol, ...]:
+        """Symbols besides those of the cell and the exponent."""
+        return ()
+
+    def at(self, **values: Any) -> Closure:
+        """The closure for these values of the named symbols; see `lwa.cell.substitution`."""
+        return self.anew(substitution(values, self.ring.cell, self.ring.k, self.symbols))
+
+    def anew(
+        self, new: Mapping[sp.Symbol, sp.Expr] | None = None, order: int | None = None
+    ) -> Closure:
+        """The same derivation with these values of its symbols, or to this order."""
+        cell, k = self.ring.cell.replaced(new or {}), exponent(self.ring.k.xreplace(new or {}))
+        ring = replace(self.ring, cell=cell, k=k)
+        return solve(ring, order or self.order, self.name, self.field)
+
+
+def amplitude_ratios(cell: Cell) -> dict[str, sp.Expr]:
+    """λ = w/u of the uniform motions (order D^0) of a two-particle cell, by branch.
+
+    With s the force that w = λu puts on a contact, the equations are m1 ü = 2s and m2 λ ü = -2s.
+    They agree where s = 0, that is w = u (acoustic), or where m2 λ + m1 = 0 (optical).
+
+    >>> amplitude_ratios(Cell(sp.symbols("m1 m2", positive=True)))
+    {'acoustic': 1, 'optical': -m1/m2}
+    """
+    m1, m2 = cell.masses
+    return {"acoustic": sp.Integer(1), "optical": -sp.cancel(m1 / m2)}
+
+
+def solve(
+    ring: Coefficients, order: int, closure: str, field: str, progress: Progress = iter
+) -> Closure:
+    """The consistency condition by the named closure, for the named field.
+
+    Raises `lwa.InputError` for the combinations that have no solution.
+    """
+    solution = _solution(ring, order, closure, field, progress)
+    acoustic = ring.branch == "acoustic"
+    ratio = sp.S.One if acoustic else amplitude_ratios(ring.cell)["optical"]
+    return Closure(ring, order, closure, field, ratio, solution)
+
+
+def _solution(
+    ring: Coefficients, order: int, closure: str, field: str, progress: Progress
+) -> Solution:
+    if closure == "linear" and field != "first":
+        raise InputError(
+            f"field is {field!r}: with the linear closure it is 'first', as in the paper"
+        )
+    if closure == "linear":
+        return linear(ring, order, progress)
+    if ring.branch == "acoustic":
+        return full(ring, order, field, progress)
+    if ring.k == 1 and field == "first":
+        return linear(ring, order, progress)  # the linear chain has a linear closure
+    raise InputError(
+        "the optical branch oscillates at order D^0 and slaves no field algebraically unless "
+        "k = 1: use the linear closure, or k = 1 with the field 'first'"
+    )

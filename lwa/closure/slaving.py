@@ -1,0 +1,142 @@
+"""The full closure: slaved fields that satisfy every equation of motion, at every order.
+
+In `lwa.closure.motion` S_i may be any polynomial in the jets of φ and of φ_τ. All P equations can
+then be satisfied, and nothing has to be solved for: their sum (momentum) gives the next term of the
+wave equation from lower orders, their partial sums the differences of the contact forces, and these
+the strains.
+"""
+
+from __future__ import annotations
+
+from math import factorial
+
+from flint import fmpq, fmpq_mpoly
+
+from lwa.closure.motion import Solution
+from lwa.coefficients import Coefficients
+from lwa.duration import Progress
+from lwa.jets import JetAlgebra, Ladder, Power
+
+
+def full(
+    ring: Coefficients, order: int, field: str = "first", progress: Progress = iter
+) -> Solution:
+    """The closure that satisfies all equations of motion, to D^order in the slaved fields.
+
+    ``field`` says which φ describes the chain: "first", the displacement of the first particle, or
+    "center", the mean Σ μ_i w_i of the sublattice fields at one point, each w_i shifted back to x
+    from where its particle rests in units of strain, x_i = c_0 + … + c_{i-1}.
+    """
+    chain = _Slaving(ring, order, field)
+    for n in progress(range(1, order)):
+        chain.extend(n)
+    S = [particle.S for particle in chain.particles]
+    b = [_linear_part(chain.algebra, S[1], n) for n in range(order)] if len(S) > 1 else []
+    return Solution(
+        algebra=chain.algebra,
+        acceleration=tuple(chain.E[n] for n in range(order)),
+        ansatz=(chain.algebra.one, *b) if b else (),
+        slaved=tuple(tuple(ladder[n] for n in range(order)) for ladder in S),
+    )
+
+
+class _Particle:
+    """A particle w = φ + D φ_x S of the cell and the contact to the next one.
+
+    mu, c : its mass fraction and the contact's share.
+    x : where it rests, in units of strain.
+    weight : with which it enters φ.
+    rate : the series ∂_τ (D φ_x S).
+    force : that of the contact.
+    """
+
+    def __init__(
+        self, algebra: JetAlgebra, k: fmpq_mpoly, mu: fmpq_mpoly, c: fmpq_mpoly, x: fmpq_mpoly
+    ) -> None:
+        self.mu, self.c, self.x = mu, c, x
+        self.weight = algebra.zero
+        self.S = Ladder(algebra, algebra.one)
+        self.S.append(x)
+        self.rate = Ladder(algebra, algebra.half)
+        self.rate.append(algebra.zero)
+        self.force = Power(algebra, k)
+
+
+class _Slaving:
+    """The recursion of the full closure, one order of D at a time."""
+
+    def __init__(self, ring: Coefficients, order: int, field: str) -> None:
+        self.algebra = algebra = JetAlgebra(ring.names, max(order - 1, 1), ring.exponent)
+        self.order = order
+        k = ring.exponent(algebra.context)
+        self.E = Ladder(algebra, k)
+        self.E.append(algebra.zero)
+        self.particles: list[_Particle] = []
+        x = algebra.zero
+        for mu, c in zip(
+            ring.masses.elements(algebra.context),
+            ring.contacts.elements(algebra.context),
+            strict=True,
+        ):
+            self.particles.append(_Particle(algebra, k, mu, c, x))
+            x = x + c
+        self.particles[0].weight = algebra.one
+        if field == "center":
+            for particle in self.particles:
+                particle.weight = particle.mu
+
+    def extend(self, n: int) -> None:
+        """E_n, and all series to D^n."""
+        accelerations = [self.algebra.dt(particle.rate, self.E, n) for particle in self.particles]
+        if n + 1 < self.order:
+            for particle in self.particles:
+                particle.rate.append(self.algebra.dt(particle.S, self.E, n))
+        self._momentum(n, accelerations)
+        self._strains(n, accelerations)
+        self._origin(n)
+
+    def _momentum(self, n: int, accelerations: list[fmpq_mpoly]) -> None:
+        """The sum of the equations, whose forces cancel but for those at the cell's ends."""
+        P = len(self.particles)
+        E_n = -self.particles[-1].force.carried(-P, n) / P
+        for particle, acceleration in zip(self.particles, accelerations, strict=True):
+            E_n = E_n - particle.mu * acceleration
+        self.E.append(E_n)
+
+    def _strains(self, n: int, accelerations: list[fmpq_mpoly]) -> None:
+        """Partial sums give Φ_i - Φ_0, and all strains together w_0(x + PD) - w_0(x)."""
+        P = len(self.particles)
+        first = self.particles[0]
+        difference = self.algebra.zero
+        differs = []
+        for particle, acceleration in zip(self.particles, accelerations, strict=True):
+            if particle is not first:
+                difference = difference + P * particle.mu * (self.E[n] + acceleration)
+            differs.append(difference + first.force.known - particle.force.known)
+        X = self._shift(n) * P ** (n + 1) + first.S.carried(P, n)
+        for particle, d in zip(self.particles, differs, strict=True):
+            X = X - particle.c * d
+        for particle, d in zip(self.particles, differs, strict=True):
+            particle.force.append(X / P + d)
+
+    def _origin(self, n: int) -> None:
+        """What φ is, Σ weight_i w_i(x - x_i D) = φ, places the first particle."""
+        relative = [self.algebra.zero]
+        for particle in self.particles[:-1]:
+            relative.append(relative[-1] + particle.c * particle.force.X[n])
+        origin = self.algebra.zero
+        for particle, own in zip(self.particles, relative, strict=True):
+            if not particle.weight.is_zero():
+                x = particle.x
+                moved = (-x) ** (n + 1) * self._shift(n) + particle.S.carried(-x, n)
+                origin = origin - particle.weight * (own + moved)
+        for particle, own in zip(self.particles, relative, strict=True):
+            particle.S.append(origin + own)
+
+    def _shift(self, n: int) -> fmpq_mpoly:
+        """What the shift of φ by D adds at D^{n+1}, over φ_x."""
+        return self.algebra.r[n] * fmpq(1, factorial(n + 1))
+
+
+def _linear_part(algebra: JetAlgebra, S: Ladder, n: int) -> fmpq_mpoly:
+    return algebra.slope(S[n], n) if n else S[0]

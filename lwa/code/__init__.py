@@ -1,0 +1,1 @@
+"""A wave as functions in a program: what they compute, and the languages."""

@@ -1,0 +1,1 @@
+"""The command `lwa`: input at the door, and results as text, JSON, LaTeX and source."""

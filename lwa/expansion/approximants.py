@@ -1,0 +1,177 @@
+"""Series in ε = k - 1 summed at a given k: Padé approximants, with an estimate of their error.
+
+Of a series known to ε^N the approximants [n-m/m], m about n/2, of every n ≤ N are formed; one with
+a pole on or near 0 … 3ε/2 is spurious and left out (Baker & Graves-Morris, *Padé Approximants*,
+1996, section 2.2). Neighbours agree by chance now and then, so the error is not their difference
+but the largest difference within `WINDOW` orders; the order before which it is least is taken.
+
+The chain of equal beads has a series that sums well. What unlike beads add to it is summed apart:
+close to equal masses its terms grow from the first on. Where no approximant is free of poles, the
+sum ends before its least term and the error is that term: the series is only asymptotic there, as
+it is where later windows spread more. What radiation costs (`lwa.expansion.radiation`) comes on
+top.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import mpmath
+import sympy as sp
+from flint import acb_poly, arb, arb_mat, ctx
+
+from lwa.exact import InputError
+from lwa.value import Value
+
+WINDOW = 3
+"""Orders of ε that a window holds before its last one."""
+
+SAFETY = 2
+"""Error estimate over the spread of a window."""
+
+DIGITS = 60
+"""Of the terms that are summed."""
+
+PRECISION = 300
+"""Bits with which approximants are computed; their linear systems lose some."""
+
+
+@dataclass(frozen=True)
+class Resummed(Value):
+    """A series summed at one k.
+
+    value, error : the sum, and the estimate of its absolute error.
+    order : of ε, up to which the series was of use.
+    asymptotic : whether higher orders cannot make it better: they grow, or radiation is larger.
+    """
+
+    value: float
+    error: float
+    order: int
+    asymptotic: bool
+
+
+def resum(
+    coefficients: Sequence[sp.Expr],
+    epsilon: sp.Expr,
+    base: Sequence[sp.Expr] = (),
+    unit: sp.Expr = sp.S.One,
+    relative: float = 0.0,
+) -> Resummed:
+    """unit · Σ coefficients[n] ε^n, all of them numbers, with an estimate of its error.
+
+    base : another series, with which the sum is begun; what the one adds to it is summed apart.
+    relative : an error, over the sum, that comes on top.
+    """
+    with mpmath.workdps(DIGITS):
+        small, scale = _mp(epsilon), _mp(unit)
+        whole = [_mp(a) for a in coefficients]
+        begun = [_mp(a) for a in base] if base else whole
+        rest = [a - b for a, b in zip(whole, begun, strict=True)]
+        sums = [_sum(begun, small)]
+        if any(rest):
+            sums.append(_sum(rest[1:], small).times(small))
+        value = scale * mpmath.fsum(s.value for s in sums)
+        error = abs(scale) * mpmath.fsum(s.error for s in sums)
+        least = abs(value) * mpmath.mpf(2) ** -52
+        return Resummed(
+            float(value),
+            float(error + abs(value) * relative + least),
+            min(s.order for s in sums),
+            any(s.asymptotic for s in sums) or bool(abs(value) * relative > error),
+        )
+
+
+def pade(a: Sequence[sp.Expr], L: int, M: int, epsilon: sp.Expr) -> sp.Expr:
+    """[L/M] of Σ a_n ε^n, exact.
+
+    Raises `lwa.InputError` where the series is too short, or has none.
+
+    >>> pade((sp.S.One, -sp.S.Half, sp.Rational(2, 5)), 1, 1, sp.Symbol("k") - 1)
+    (3*k + 7)/(2*(4*k + 1))
+    """
+    if len(a) <= L + M:
+        raise InputError(f"[{L}/{M}] is wanted of a series to order {len(a) - 1}")
+    system = sp.Matrix(M, M, lambda i, j: a[L + i - j] if L + i >= j else sp.S.Zero)
+    right = sp.Matrix(M, 1, lambda i, _: -a[L + i + 1])
+    if M and sp.simplify(system.det()) == 0:
+        raise InputError(f"[{L}/{M}] does not exist for this series")
+    q = [sp.S.One, *(system.LUsolve(right) if M else [])]
+    p = [sp.Add(*(q[j] * a[i - j] for j in range(min(i, M) + 1))) for i in range(L + 1)]
+    above, below = (sp.Add(*(x * epsilon**n for n, x in enumerate(row))) for row in (p, q))
+    return sp.factor(above / below)
+
+
+@dataclass(frozen=True)
+class _Sum:
+    """As `Resummed`, in mpmath's numbers."""
+
+    value: mpmath.mpf
+    error: mpmath.mpf
+    order: int
+    asymptotic: bool
+
+    def times(self, epsilon: mpmath.mpf) -> _Sum:
+        """Of a series over ε."""
+        return _Sum(epsilon * self.value, epsilon * self.error, self.order + 1, self.asymptotic)
+
+
+def _mp(value: sp.Expr) -> mpmath.mpf:
+    if value.is_Rational:
+        return mpmath.mpf(int(value.p)) / int(value.q)
+    return mpmath.mpf(value.evalf(DIGITS)._mpf_)
+
+
+def _sum(a: Sequence[mpmath.mpf], epsilon: mpmath.mpf) -> _Sum:
+    """The approximants of the window that agree best."""
+    with ctx.workprec(PRECISION):
+        terms = [arb(x * epsilon**n) for n, x in enumerate(a)]
+        line = {n: found for n in range(len(a)) if (found := _approximants(terms[: n + 1]))}
+    spreads: dict[int, mpmath.mpf] = {}
+    for n in line:
+        window = [value for m in range(n - WINDOW, n + 1) for value in line.get(m, [])]
+        if n >= min(WINDOW, len(a) - 1) and len(window) > min(WINDOW, n):
+            spreads[n] = max(window) - min(window)
+    if not spreads:
+        return _truncated(a, epsilon)
+    best = min(spreads, key=lambda n: (spreads[n], n))
+    last = max(spreads)
+    grows = last < len(a) - 1 or spreads[last] > 10 * spreads[best]
+    return _Sum(line[best][0], SAFETY * spreads[best], best, bool(grows))
+
+
+def _truncated(a: Sequence[mpmath.mpf], epsilon: mpmath.mpf) -> _Sum:
+    """The sum before the least term; all of it where the terms fall to the last."""
+    terms = [x * epsilon**n for n, x in enumerate(a)]
+    least = min((n for n, term in enumerate(terms) if term), key=lambda n: abs(terms[n]))
+    grows = least < len(terms) - 1
+    end = least if grows else least + 1
+    return _Sum(mpmath.fsum(terms[:end]), abs(terms[least]), end - 1, grows)
+
+
+def _approximants(terms: Sequence[arb]) -> list[mpmath.mpf]:
+    """The diagonal approximant of these terms first, then its neighbours; the low partial sums."""
+    n = len(terms) - 1
+    half = n // 2
+    found = [
+        value
+        for M in dict.fromkeys((half, n - half, half + (n % 2 == 0 and n > 2)))
+        if M and (value := _pade(terms, n - M, M)) is not None
+    ]
+    return ([mpmath.mpf(sum(terms, arb(0))._mpf_)] if n < 2 else []) + found
+
+
+def _pade(a: Sequence[arb], L: int, M: int) -> mpmath.mpf | None:
+    """[L/M] of Σ a_n x^n at x = 1; None where it does not exist or has a pole near 0 … 3/2."""
+    system = arb_mat(M, M, [a[L + i - j] if L + i >= j else 0 for i in range(M) for j in range(M)])
+    try:
+        found = system.solve(arb_mat(M, 1, [-a[L + i + 1] for i in range(M)]))
+        q = [arb(1), *(x.mid() for x in found.entries())]
+        poles = [complex(pole.mid()) for pole in acb_poly(q).roots()]
+    except (ZeroDivisionError, ValueError):  # singular; poles that coincide
+        return None
+    if any(abs(pole - min(max(pole.real, 0.0), 1.5)) < 0.25 for pole in poles):
+        return None
+    p = (q[j] * a[i - j] for i in range(L + 1) for j in range(min(i, M) + 1))
+    return mpmath.mpf((sum(p, arb(0)) / sum(q, arb(0)))._mpf_)

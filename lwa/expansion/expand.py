@@ -1,0 +1,213 @@
+"""The expansion of a chain's traveling waves in ε = k - 1, exact at every order.
+
+Near k = 1 a wave is long, of width 1/√ε, and the long-wave theory is its leading order. What is
+expanded are the lattice's own equations (`lwa.expansion.recursion`), not the theory's: for the
+chain of equal beads the first order is the wave of Chatterjee, Phys. Rev. E 59, 5912 (1999). Here
+its speed, profile, widths, momentum and energy (`lwa.expansion.observables`) get the cell's units
+and become series in ε (`lwa.expansion.series`), with sums and closed formulas.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import sympy as sp
+
+from lwa.cell import Cell, exponent, substitution
+from lwa.cell import k as symbol_k
+from lwa.exact import InputError, integer, real, shorten
+from lwa.expansion.effort import affordable, short
+from lwa.expansion.observables import Observables, ring
+from lwa.expansion.series import EpsilonSeries
+from lwa.quantities import QUANTITIES as QUANTITIES
+from lwa.quantities import known
+from lwa.value import Value
+
+
+@dataclass(frozen=True)
+class Expansion(Value):
+    """The traveling wave of a chain as a series in ε = k - 1 (see `expand`).
+
+    Its first contact has the peak force 1; at a peak force F, c² is F^{(k-1)/k} times what stands
+    here, the widths are the same. Lengths are in D (sites), A and the masses in the cell's units.
+    """
+
+    cell: Cell
+    order: int
+    k: sp.Expr = symbol_k
+
+    @cached_property
+    def _read(self) -> Observables:
+        own = ring(self.cell, self.k)
+        effort = affordable(own, self.order)
+        return Observables(own, self.order, effort.progress(f"the expansion to ε^{self.order}"))
+
+    @cached_property
+    def numeric(self) -> bool:
+        """Whether k > 1 and the cell are numbers, so that the series can be summed."""
+        values = (*self.cell.masses, *self.cell.stiffnesses, self.k)
+        return not any(x.free_symbols for x in values) and bool(self.k > 1)
+
+    @property
+    def I(self) -> sp.Expr:
+        """I of the linear chain's Ω² = κ² - I κ⁴ + …, over D²."""
+        return self._read.I
+
+    @cached_property
+    def compliance(self) -> sp.Expr:
+        """ā, the mean of A_i^{-1/k}."""
+        return sp.Add(*self.cell.compliances(self.k)) / self.cell.size
+
+    @cached_property
+    def c2(self) -> EpsilonSeries:
+        """c², the square of the speed in sites per unit of time.
+
+        >>> from lwa import Cell
+        >>> expand(Cell([1]), 2).c2.coefficients
+        (1, -1/2, 2/5)
+        """
+        return self._series("c2", self._sound, sp.S.Zero)
+
+    @cached_property
+    def c(self) -> EpsilonSeries:
+        """The speed in sites per unit of time."""
+        return self._series("c", sp.sqrt(self._sound), sp.S.Zero)
+
+    def fwhm(self, quantity: str = "strain") -> EpsilonSeries:
+        """Full width at half maximum of a contact's strain or force, or the first bead's velocity.
+
+        >>> from lwa import Cell
+        >>> expand(Cell([1]), 1).fwhm("force").coefficients
+        (1, 1/10 - log(2)/60)
+        """
+        return self._series(known(quantity), 4 * sp.sqrt(self.I * sp.log(2)), -sp.S.Half)
+
+    @cached_property
+    def momentum(self) -> EpsilonSeries:
+        """Σ m v over the chain, which is (M/P) c times the displacement that the wave leaves."""
+        return self._series("momentum", 2 * sp.sqrt(sp.pi * self.I / self._sound), -sp.S.Half)
+
+    @cached_property
+    def kinetic(self) -> EpsilonSeries:
+        """The kinetic energy, by the virial theorem (k + 1)/(k + 3) of the energy."""
+        return self._energy("kinetic")
+
+    @cached_property
+    def energy(self) -> EpsilonSeries:
+        """Kinetic and elastic energy of the chain."""
+        return self._energy("energy")
+
+    def _energy(self, quantity: str) -> EpsilonSeries:
+        unit = self.compliance * sp.sqrt(2 * sp.pi * self.I)
+        return self._series(quantity, unit, -sp.S.Half)
+
+    @cached_property
+    def _sound(self) -> sp.Expr:
+        """c² at k = 1."""
+        return self.cell.size / (self.cell.mass * self.compliance)
+
+    def _series(self, quantity: str, unit: sp.Expr, power: sp.Expr) -> EpsilonSeries:
+        coefficients = self._read.coefficients(quantity)
+        return EpsilonSeries(unit, power, coefficients, self.k, self.cell, quantity)
+
+    def log_force(self, contact: Any = 0, X: Any = None) -> dict[sp.Rational, sp.Expr]:
+        """n → φ_n(X) of log F = Σ ε^n φ_n(X), X = √ε ξ, n = 0, 1/2, 1, …; zero ones are left out.
+
+        ξ is counted from the peak of the first contact, of force 1, and is that of the contact's
+        own cell: contact i stands i sites behind it. X is a symbol of this name, or another one
+        where it is given: a name becomes a real symbol.
+
+        >>> from lwa import Cell
+        >>> expand(Cell([1]), 1).log_force()
+        {0: -3*X**2, 1: -3*X**4/10 + 3*X**2/5}
+        """
+        place = sp.Symbol("X") if X is None else real(X, "X")
+        self._place(place, "X")
+        return {
+            n: sp.Add(*(a * place**d for d, a in phi.items()))
+            for n, phi in self._read.log_force(self._contact(contact)).items()
+        }
+
+    def profile(self, xi: Any, contact: Any = 0) -> sp.Expr:
+        """The force of a contact at ξ, exp Σ ε^n φ_n(√ε ξ) to the order ε^order, in D = 1.
+
+        ξ is a number, a name, which becomes a real symbol, or an expression.
+
+        >>> from lwa import Cell
+        >>> expand(Cell([1]), 1, k=2).profile("xi")
+        exp(-3*xi**4/10 - 12*xi**2/5)
+        """
+        place, epsilon = self._place(real(xi, "xi"), "xi"), self.k - 1
+        powers: dict[int, list[sp.Expr]] = {}
+        for n, phi in self._read.log_force(self._contact(contact)).items():
+            for d, a in phi.items():
+                powers.setdefault(d, []).append(a * epsilon ** (n + sp.Rational(d, 2)))
+        return sp.exp(sp.Add(*(sp.Add(*terms) * place**d for d, terms in powers.items())))
+
+    def at(self, **values: Any) -> Expansion:
+        """The expansion for these values of the named symbols, and of ω = m2/m1 by ``omega``.
+
+        Raises `lwa.InputError` for a name that does not occur or a value that is not positive.
+
+        >>> expand(Cell(["m1", "m2"]), 1).at(m1=2, omega=1).c2.prefactor
+        1/2
+        """
+        new = substitution(values, self.cell, self.k)
+        return expand(self.cell.replaced(new), self.order, k=self.k.xreplace(new))
+
+    def _contact(self, contact: Any) -> int:
+        number = integer(contact, "contact", 0)
+        if number >= self.cell.size:
+            raise InputError(f"contact is {shorten(number)}: 0 … {self.cell.size - 1} is wanted")
+        return number
+
+    def _place(self, place: sp.Expr, name: str) -> sp.Expr:
+        """A place, refused where a symbol in it is called like one of the chain's."""
+        own = {s.name for s in (*self.cell.symbols, *self.k.free_symbols)}
+        if shared := own & {s.name for s in place.free_symbols}:
+            raise InputError(
+                f"{min(shared)} names a property of the chain: give {name} another name"
+            )
+        return place
+
+    def _repr_latex_(self) -> str:
+        return self.c2._repr_latex_()
+
+
+def expand(cell: Cell, order: Any = 4, *, k: Any = symbol_k) -> Expansion:
+    """The traveling wave of a chain to the order ε^order, ε = k - 1, from the lattice's equations.
+
+    Parameters
+    ----------
+    cell : the periodic cell; numbers give rational coefficients, symbols rational functions.
+    order : highest power of ε (relative to the leading one).
+    k : exponent, a number or a symbol. Unlike contacts share the strain by it.
+
+    Raises `lwa.InputError` for anything else, and for orders beyond what the algebra can do.
+
+    >>> from lwa import Cell
+    >>> wave = expand(Cell([1]), 10)
+    >>> wave.fwhm("force").at(1.5).value.__round__(6)  # the uniform Hertz chain, in D
+    1.411928
+    """
+    if not isinstance(cell, Cell):
+        raise InputError(f"cell is {shorten(cell)}: a Cell such as Cell([1, 2]) is wanted")
+    order = integer(order, "order", 1)
+    k = exponent(k, cell)
+    _no_letter(cell, k)
+    for name, values in (("mass", cell.masses), ("stiffness", cell.stiffnesses), ("k", (k,))):
+        for value in values:
+            short(value, name)
+    if not k.free_symbols and k <= 1:
+        raise InputError(f"k is {k}: the expansion in k - 1 wants k > 1")
+    affordable(ring(cell, k), order)
+    return Expansion(cell, order, k)
+
+
+def _no_letter(cell: Cell, k: sp.Expr) -> None:
+    """Refuse the name that a series has a meaning for."""
+    for name in sorted(s.name for s in (*cell.symbols, *k.free_symbols)):
+        if name in ("ε", "varepsilon"):
+            raise InputError(f"{name!r} means k - 1 in a series: choose another name")

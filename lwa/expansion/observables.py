@@ -1,0 +1,194 @@
+"""What is read off a wave of `lwa.expansion.recursion`: speed, widths, momentum, energy, profile.
+
+Each is a series in t whose even terms, polynomials in √log 2 over the recursion's ring, leave as
+the coefficients of a series in ε, in the caller's symbols.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from functools import cached_property, lru_cache
+from math import factorial
+from typing import Any
+
+import sympy as sp
+from flint import fmpq, fmpq_mpoly
+
+from lwa.cell import Cell
+from lwa.coefficients import Coefficients, number, rational
+from lwa.duration import Progress
+from lwa.expansion.pulse import (
+    Series,
+    by_degree,
+    half_width,
+    log_term,
+    moment,
+    product,
+    root,
+    wider,
+)
+from lwa.expansion.recursion import Recursion
+
+
+class Observables:
+    """The quantities of one wave as series in t, each computed when it is first asked for.
+
+    ring : of the cell, at its exponent.
+    order : of ε.
+    """
+
+    def __init__(self, ring: Coefficients, order: int, progress: Progress = iter) -> None:
+        self.ring, self.order = ring, order
+        self.wave = Recursion(ring, 2 * order, progress)
+
+    @property
+    def c2(self) -> Series:
+        """c² over its leading term, that of sound."""
+        return self.wave.gamma[: 2 * self.order + 1]
+
+    @cached_property
+    def c(self) -> Series:
+        """c over its leading term."""
+        return root(self.c2)
+
+    @cached_property
+    def force(self) -> Series:
+        """The force's full width at half maximum, over 4 √(I log 2/ε)."""
+        return half_width(self.wave.fields.log_force[0])
+
+    @cached_property
+    def strain(self) -> Series:
+        """The strain's, in the same unit: the force's power 1/k."""
+        return wider(self.force, self.wave.epsilon)
+
+    @cached_property
+    def velocity(self) -> Series:
+        """That of the first bead's velocity, in the same unit.
+
+        Seen half a cell off, where the velocity of equal beads is even: (P∂/2)/sinh(P∂/2) of the
+        mean strain.
+        """
+        wave = self.wave
+        weights = [
+            (fmpq(2) ** (1 - m) - 1) * fmpq(wave.P**m, factorial(m)) * rational(sp.bernoulli(m))
+            for m in range(0, 2 * self.order + 1, 2)
+        ]
+        slope = [
+            sum((w * term for w, term in zip(weights, terms[::2], strict=False)), wave.zero)
+            for terms in wave.fields.means
+        ]
+        log: Series = []
+        for _ in slope:
+            log.append(log_term(slope, log))
+        return half_width(log)
+
+    @cached_property
+    def momentum(self) -> Series:
+        """Σ m v over its leading term: M/P times c and the displacement that the wave leaves."""
+        return product(self.c, [moment(terms[0], 2) for terms in self.wave.fields.means])
+
+    @cached_property
+    def kinetic(self) -> Series:
+        """The kinetic energy over ā √(2πI/ε)."""
+        wave = self.wave
+        squares = (product(s, s, 2) for s in wave.fields.slope)
+        kinetic = _sum(wave.mu, squares, wave.zero)
+        return [moment(a, 1) / 2 for a in product(self.c2, kinetic, 2)]
+
+    @cached_property
+    def energy(self) -> Series:
+        """Kinetic and elastic energy in the same unit: (k + 3)/2 times the elastic one.
+
+        That is the virial theorem: dE = c dP of waves of all amplitudes, P = 2 T/c.
+        """
+        wave = self.wave
+        pairs = zip(wave.fields.force, wave.fields.strain, strict=True)
+        works = _sum(wave.c, (product(f, r, 2) for f, r in pairs), wave.zero)
+        share = [wave.zero for _ in works]  # (k + 3)/2 of 1/(k + 1), per contact
+        for n in range(0, len(share), 2):
+            share[n] = (-wave.epsilon / 2) ** (n // 2) / (2 * wave.P)
+        share[0] = share[0] + fmpq(1, 2 * wave.P)
+        return [moment(a, 1) for a in product(share, works, 2)]
+
+    def coefficients(self, quantity: str) -> tuple[sp.Expr, ...]:
+        """Those of ε^0, ε^1, …, Z² = log 2, of the quantity of this name."""
+        terms: Series = getattr(self, quantity)
+        found = []
+        logs = [sp.log(2) ** m for m in range(self.order + 1)]
+        for n in range(self.order + 1):
+            by_log = by_degree(terms[2 * n])
+            parts = (self.over(c, 3 * n) * logs[d // 2] for d, c in by_log.items())
+            found.append(sp.Add(*parts))
+        return tuple(found)
+
+    def log_force(self, contact: int) -> dict[sp.Rational, dict[int, sp.Expr]]:
+        """n → d → the coefficient of X^d in φ_n, n = 0, 1/2, 1, …; zero ones are left out."""
+        found = {sp.S.Zero: {2: -1 / (4 * self.I)}}
+        for n, q in enumerate(self.wave.fields.log_force[contact]):
+            if q:
+                parts = by_degree(q).items()
+                found[sp.Rational(n, 2)] = {d: self.over(c, (3 * n + d) // 2) for d, c in parts}
+        return found
+
+    @cached_property
+    def I(self) -> sp.Expr:
+        """I of the linear chain's Ω² = κ² - I κ⁴ + …, over D²."""
+        return self.over(self.wave.I, 0)
+
+    def over(self, numerator: fmpq_mpoly, power: int) -> sp.Expr:
+        """numerator / I^power, in the caller's symbols."""
+        I = self.wave.I
+        if not self.ring.names:
+            return number(_constant(numerator) / _constant(I) ** power)
+        while power:
+            quotient, remainder = divmod(numerator, I)
+            if remainder:
+                break
+            numerator, power = quotient, power - 1
+        return self._expression(numerator) * self._below(power)
+
+    @cached_property
+    def _powers(self) -> list[sp.Expr]:
+        return [sp.S.One, 1 / self._expression(self.wave.I)]
+
+    def _below(self, power: int) -> sp.Expr:
+        while len(self._powers) <= power:
+            self._powers.append(self._powers[1] ** len(self._powers))
+        return self._powers[power]
+
+    def _expression(self, polynomial: fmpq_mpoly) -> sp.Expr:
+        terms: list[tuple[tuple[int, ...], Any]] = [
+            (tuple(map(int, e[1:])), c) for e, c in polynomial.terms()
+        ]
+        return self.ring.expression(terms)
+
+
+def _constant(polynomial: fmpq_mpoly) -> fmpq:
+    return polynomial.leading_coefficient() if polynomial else fmpq(0)
+
+
+def _sum(weights: Series, rows: Iterable[Series], zero: fmpq_mpoly) -> Series:
+    """Σ weight · row."""
+    weighted = ([w * term for term in row] for w, row in zip(weights, rows, strict=True))
+    return [sum(terms, zero) for terms in zip(*weighted, strict=True)]
+
+
+def ring(cell: Cell, k: sp.Expr) -> Coefficients:
+    """The ring of the shares alone: an exponent that they do not depend on is none of it."""
+    equal = len({*cell.stiffnesses}) == 1
+    return Coefficients(cell, sp.S.One if equal else k)
+
+
+@lru_cache(maxsize=4)
+def _equal_beads(order: int) -> Observables:
+    return Observables(Coefficients(Cell((1,)), sp.S.One), order)
+
+
+@lru_cache(maxsize=32)
+def equal_beads(quantity: str, order: int) -> tuple[sp.Expr, ...]:
+    """The coefficients of the chain of equal beads, kept: every other chain's sum wants them.
+
+    >>> equal_beads("c2", 2)
+    (1, -1/2, 2/5)
+    """
+    return _equal_beads(order).coefficients(quantity)

@@ -1,0 +1,160 @@
+"""Pulses e^{-Z²/4} Σ S_n(Z) t^n: logarithm and exponential, width at half maximum, moments.
+
+A series is the list of its coefficients, polynomials over a ring of python-flint whose first
+generator is Z; t is its small parameter. The waves of `lwa.expansion.expand` are such pulses.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from math import factorial, prod
+from typing import Any
+
+from flint import fmpq, fmpq_mpoly
+from sympy import factorial2
+
+Series = list[fmpq_mpoly]
+"""The coefficients of t^0, t^1, …"""
+
+
+def log_term(S: Series, log: Series) -> fmpq_mpoly:
+    """The next coefficient of log Σ S_n t^n (S_0 = 1), by n log_n = n S_n - Σ j log_j S_{n-j}."""
+    n = len(log)
+    if n == 0:
+        return S[0] - 1
+    total = n * S[n]
+    for j in range(1, n):
+        if log[j]:
+            total = total - j * log[j] * S[n - j]
+    return total / n
+
+
+def exp_term(log: Series, S: Series) -> fmpq_mpoly:
+    """The next coefficient of exp Σ log_n t^n (log_0 = 0), by n S_n = Σ j log_j S_{n-j}."""
+    n = len(S)
+    if n == 0:
+        return log[0] + 1
+    total = 0 * log[0]
+    for j in range(1, n + 1):
+        if log[j]:
+            total = total + j * log[j] * S[n - j]
+    return total / n
+
+
+def by_degree(polynomial: fmpq_mpoly) -> dict[int, fmpq_mpoly]:
+    """d → the coefficient of Z^d."""
+    parts: dict[int, dict[tuple[int, ...], Any]] = {}
+    for exponents, coefficient in polynomial.terms():
+        d, *rest = map(int, exponents)
+        parts.setdefault(d, {})[0, *rest] = coefficient
+    return {d: polynomial.context().from_dict(part) for d, part in parts.items()}
+
+
+def moment(polynomial: fmpq_mpoly, variance: int) -> fmpq_mpoly:
+    """The mean of a polynomial in Z under the normal distribution: Z^{2m} → (2m-1)!! v^m."""
+    return sum(
+        (
+            c * int(factorial2(d - 1)) * variance ** (d // 2)
+            for d, c in by_degree(polynomial).items()
+            if d % 2 == 0
+        ),
+        0 * polynomial,
+    )
+
+
+def half_width(log: Series) -> Series:
+    """The h_n of the full width 4y Σ h_n t^n where e^{-Z²/4 + Σ log_n t^n} has e^{-y²} of its peak.
+
+    In the result, polynomials in y², Z stands for y. Counted from the peak the exponent is
+    -Z²/4 + p(Z), p = O(t), and Z²/4 = y² + p(Z) is solved by Lagrange's series
+
+        Z/2 = y + Σ_{m≥1} 1/m! (d/dy²)^{m-1} p(2y)^m/(2y),
+
+    whose odd part in y is a quarter of the width. The terms of the sum are kept times y.
+    """
+    p = [_reweighted(term, lambda d: fmpq(2) ** d) for term in _from_peak(log)]
+    y = p[0].context().gen(0)
+    powers = [p]
+    while any(powers[-1]):
+        powers.append(product(powers[-1], p))
+    total = powers[-1]
+    for m in range(len(powers) - 1, 0, -1):  # d/dy² of a/y is (y a' - a)/(2y³)
+        slopes = [_over_square(y * a.derivative(0) - a, y) / (2 * m + 2) for a in total]
+        total = [b / 2 + slope for b, slope in zip(powers[m - 1], slopes, strict=True)]
+    even = [_over_square(_reweighted(a, lambda d: fmpq(1 - d % 2)), y) for a in total]
+    return [even[0] + 1, *even[1:]]
+
+
+def _from_peak(log: Series) -> Series:
+    """-Z²/4 + Σ log_n t^n about its maximum, without -Z²/4 and its value there.
+
+    The place of the maximum is moved to 0 order by order, Z → Z + z_n t^n.
+    """
+    Z = log[0].context().gen(0)
+    phi = [log[0] - Z**2 / 4, *log[1:]]
+    for n in range(1, len(phi)):
+        if place := 2 * by_degree(phi[n]).get(1, 0 * Z):
+            moved, derivatives = list(phi), phi
+            for j in range(1, (len(phi) - 1) // n + 1):
+                derivatives = [place * term.derivative(0) / j for term in derivatives]
+                for m in range(j * n, len(phi)):
+                    moved[m] = moved[m] + derivatives[m - j * n]
+            phi = moved
+    if phi[0] != -(Z**2) / 4:
+        raise ArithmeticError("the pulse has no quadratic maximum")
+    return [0 * Z, *(_reweighted(term, lambda d: fmpq(min(d, 1))) for term in phi[1:])]
+
+
+def wider(width: Series, epsilon: fmpq_mpoly) -> Series:
+    """`half_width` of the pulse's power 1/(1+ε), at the same height: y² → (1+ε) y², ε of t².
+
+    Each y^d of 4y Σ h_n t^n becomes (1+ε)^{(d+1)/2} y^d.
+    """
+    found = list(width)
+    for n, term in enumerate(width):
+        for j in range(1, (len(width) - 1 - n) // 2 + 1):
+            part = _reweighted(term, partial(_binomial_of_root, j=j))
+            found[n + 2 * j] = found[n + 2 * j] + epsilon**j * part
+    return found
+
+
+def _binomial_of_root(d: int, j: int) -> fmpq:
+    """The binomial coefficient of (d+1)/2 over j."""
+    return fmpq(prod(range(d + 1, d + 1 - 2 * j, -2)), 2**j * factorial(j))
+
+
+def _over_square(polynomial: fmpq_mpoly, y: fmpq_mpoly) -> fmpq_mpoly:
+    return polynomial // y**2 if polynomial else polynomial
+
+
+def _reweighted(polynomial: fmpq_mpoly, weight: Callable[[int], fmpq]) -> fmpq_mpoly:
+    """Σ weight(d) c Z^d of Σ c Z^d."""
+    found = {}
+    for exponents, coefficient in polynomial.terms():
+        d, *rest = map(int, exponents)
+        if factor := weight(d):
+            found[d, *rest] = factor * coefficient
+    return polynomial.context().from_dict(found)
+
+
+def product(a: Series, b: Series, step: int = 1) -> Series:
+    """a · b, as long as they are; of the terms at t^n only those of which ``step`` divides n."""
+    found = [0 * a[0] for _ in a]
+    for n, x in enumerate(a):
+        if x:
+            for m in range(-n % step, len(a) - n, step):
+                if b[m]:
+                    found[n + m] = found[n + m] + x * b[m]
+    return found
+
+
+def root(S: Series) -> Series:
+    """√(Σ S_n t^n), S_0 = 1, by 2 n R_n = Σ_{j≥1} (3j - 2n) S_j R_{n-j}."""
+    R = [S[0]]
+    for n in range(1, len(S)):
+        total = 0 * S[0]
+        for j in range(1, n + 1):
+            total = total + (3 * j - 2 * n) * S[j] * R[n - j]
+        R.append(total / (2 * n))
+    return R

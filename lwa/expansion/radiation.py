@@ -1,0 +1,149 @@
+"""What a wave of unlike beads radiates: the size of the error that no order in ε removes.
+
+The pulse carries the light beads' rattle along, whose wavenumber at rest in the pulse's frame is K,
+
+    K² = K_0² F^{(k-1)/k},    K_0² = Ω_o² - 1,
+
+Ω_o² the lowest optical Ω² at κ = 0 (1/ν for a dimer): contacts are stiffer where they are pressed,
+so the rattle slows down towards the pulse's ends. The slaved motion, of the size F', excites it by
+
+    R = |∫ K^{3/2} F' e^{i∫K} dξ|,
+
+exponentially small in 1/ε where K_0 is large. It is computed with F = exp(φ_0 + ε φ_1), and since
+the integral passes through zero (at the mass ratios without a tail), as the greatest of some K_0.
+
+What c² and the widths lose by it was fitted, as a bound, to exact waves of dimers with tails from
+1e-9 to 0.1 and to pulses of struck chains: `Radiation.relative`. It bounds; a struck chain's pulse
+is closer, by a factor from 10 to 70.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+import sympy as sp
+from flint import fmpq_mpoly
+
+from lwa.cell import Cell
+from lwa.coefficients import Coefficients
+from lwa.expansion.pulse import by_degree
+from lwa.expansion.recursion import Recursion
+from lwa.linear.bloch import Bloch
+from lwa.value import Value
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    FloatArray = NDArray[np.float64]
+
+POINTS = 8001
+SPAN = 20.0
+"""Half of the range of Z = X/√I that is integrated; F < e^{-100} at its ends."""
+
+PHASES = (0.85, 0.92, 1.0, 1.08, 1.16)
+"""Factors of K_0² that move the integral off its zeros."""
+
+FACTOR, POWER = 1.0, 0.75
+"""Of the bound FACTOR · contrast · R^POWER."""
+
+
+@dataclass(frozen=True)
+class Radiation(Value):
+    """The chain's numbers that radiation wants.
+
+    contrast : 0 for equal beads and contacts, (1 - 2b)² for a dimer of equal contacts.
+    I : of Ω² = κ² - I κ⁴ + …
+    optical : the lowest optical Ω² at κ = 0.
+    lightest : the lightest bead's mass over the mean one.
+    quadratic, quartic : φ_1 = quadratic X² + quartic X⁴ + odd terms.
+    """
+
+    contrast: float
+    I: float
+    optical: float
+    lightest: float
+    quadratic: float
+    quartic: float
+
+    def relative(self, k: float) -> float:
+        """The bound of the relative error of c², widths, momentum and energy at this k."""
+        if self.contrast <= 0:
+            return 0.0
+        return float(FACTOR * self.contrast * self.amplitude(k) ** POWER)
+
+    def amplitude(self, k: float) -> float:
+        """R at this k, over the pulse's peak force."""
+        import numpy as np
+
+        epsilon = k - 1
+        X = np.linspace(-SPAN, SPAN, POINTS) * np.sqrt(self.I)
+        log = -(X**2) / (4 * self.I) + epsilon * (self.quadratic * X**2 + self.quartic * X**4)
+        half = np.minimum.accumulate(log[POINTS // 2 :])  # φ_1 may turn log F up far outside
+        log = np.concatenate([half[:0:-1], half])
+        step = (X[1] - X[0]) / np.sqrt(epsilon)
+        F, slope = np.exp(log), np.gradient(log, step)
+        wavenumbers = (math.sqrt(factor * max(self.optical - 1, 0.0)) for factor in PHASES)
+        return self.lightest * max(
+            _rattle(K_0 * np.exp(log * epsilon / (2 * k)), F * slope, float(step))
+            for K_0 in wavenumbers
+        )
+
+
+def _rattle(K: FloatArray, slope: FloatArray, step: float) -> float:
+    """|∫ K^{3/2} F' e^{i∫K} dξ| by trapezia, which are exact for what has ended."""
+    import numpy as np
+
+    phase = np.concatenate([[0.0], np.cumsum((K[1:] + K[:-1]) / 2)]) * step
+    return float(abs(np.sum(K**1.5 * slope * np.exp(1j * phase))) * step)
+
+
+@lru_cache(maxsize=64)
+def radiation(cell: Cell, k: sp.Expr) -> Radiation | None:
+    """What a chain of numbers radiates; None for equal beads and contacts, and for symbols.
+
+    k may be a symbol where contacts are equal; others share the strain by it.
+    """
+    alike = len({*cell.stiffnesses}) == 1
+    if alike and len({*cell.masses}) == 1:
+        return None
+    ring = Coefficients(cell, sp.S.One if alike else k)
+    if any(x.free_symbols for x in (*cell.masses, *cell.stiffnesses, ring.k)):
+        return None
+    import numpy as np
+
+    values = _values(ring)
+    trace = [_float(t, values) for t in Bloch(ring).trace(cell.size)]
+    trace[0] = 0.0  # 2 cos(Pκ) = 2 at κ = 0, where one root is 0
+    wave = Recursion(ring, 2)
+    I = _float(wave.I, (1.0, *values))
+    first = by_degree(wave.fields.log_force[0][2])
+    quadratic, quartic = (_float(first.get(d, wave.zero), (1.0, *values)) for d in (2, 4))
+    return Radiation(
+        contrast=(12 * I - 1) / 3,
+        I=I,
+        optical=float(np.min(np.roots(trace[:0:-1]).real)),
+        lightest=cell.size * min(_float(mu, (1.0, *values)) for mu in wave.mu),
+        quadratic=quadratic / I**4,
+        quartic=quartic / I**5,
+    )
+
+
+def _values(ring: Coefficients) -> tuple[float, ...]:
+    """Those of the ring's generators."""
+    values = [] if ring.k.is_Rational else [ring.k]
+    for part in (ring.masses, ring.contacts):
+        if part.names:
+            values += [part.total * w / part.sum for w in part.distinct[:-1]]
+    return tuple(float(sp.N(value)) for value in values)
+
+
+def _float(polynomial: fmpq_mpoly, values: Sequence[float]) -> float:
+    return math.fsum(
+        float(c) * math.prod(v ** int(e) for v, e in zip(values, exponents, strict=True))
+        for exponents, c in polynomial.terms()
+    )

@@ -1,0 +1,238 @@
+"""The recursion for a chain's traveling wave in ε = k - 1: polynomials, exact at every order.
+
+The lattice's own equations are expanded about a Gaussian. With r_i, f_i the strain and force of
+contact i, s_i = -u_i' the slope of bead i's displacement (its velocity over c), each in the frame
+of its cell, ∂ = d/dξ,
+
+    f_i = f_{i-1} + P μ_i γ ∂s_i,    s_{i+1} = s_i + c_i ∂r_i,    f_i = r_i^k,
+    ∫_0^P s_0(ξ + x) dx = Σ c_i r_i(ξ),    γ Σ P μ_i s_i(ξ) = ∫_0^P f_{P-1}(ξ - x) dx,
+
+where the strains are in units of their leading shares c_i and c² = γ P/(M ā), ā the mean
+compliance. The averages are series in ∂. In the stretched place Z = √(ε/I) ξ, Ω² = κ² - I κ⁴ + …
+the linear chain's dispersion (`lwa.linear.bloch`), the force of the first contact is
+
+    log f_0 = -Z²/4 + Σ_n q_n(Z) (ε/I)^{n/2},
+
+the q_n are polynomials over Q[μ, c, 1/I], and each solves q'' - Z q' + q = known + γ's next term,
+a triangular system; q_n(0) = q_n'(0) = 0 puts the peak, of force 1, at ξ = 0. The Gaussian as the
+limit: James & Pelinovsky, Proc. R. Soc. A 470, 20130462 (2014).
+
+The parameter in which the algebra runs is t, (ε/I)^{1/2} = I t: no denominators appear.
+
+q_n follows from the equations at t^{n+2}. From n = 3 on the fields are linear in it up to there, so
+that they are computed once, without it, and changed by what it brings when it is known.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import factorial
+
+from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
+from sympy import bernoulli
+
+from lwa.coefficients import Coefficients, rational
+from lwa.duration import Progress
+from lwa.expansion.pulse import Series, by_degree, exp_term, log_term
+from lwa.linear.bloch import Bloch
+
+LINEAR = 3
+"""The first n for which q_n² has no place up to t^{n+2}."""
+
+Term = Callable[[Series, Series, Series], fmpq_mpoly]
+"""The last term of an exponential or a logarithm from two fields and the wave's own."""
+
+
+class Fields:
+    """Fields e^{-Z²/4} Σ S_n t^n of a wave, or a change of them, as lists of the S_n.
+
+    For each contact `force` and `strain` with their logarithms, for each bead `slope`; `means` and
+    `pushes` have the mean strain Σ c_i r_i / P and the last contact's force with their derivatives:
+    n → the terms at t^n of the 0-th, 1-st, …, n-th.
+    """
+
+    def __init__(self, size: int) -> None:
+        self.force: list[Series] = [[] for _ in range(size)]
+        self.strain: list[Series] = [[] for _ in range(size)]
+        self.slope: list[Series] = [[] for _ in range(size)]
+        self.log_force: list[Series] = [[] for _ in range(size)]
+        self.log_strain: list[Series] = [[] for _ in range(size)]
+        self.means: list[Series] = []
+        self.pushes: list[Series] = []
+
+    @property
+    def _rows(self) -> list[Series]:
+        groups = (self.force, self.strain, self.slope, self.log_force, self.log_strain)
+        return [row for group in groups for row in group]
+
+    def truncate(self, n: int) -> None:
+        """Forget the terms from t^n on."""
+        for row in self._rows:
+            del row[n:]
+        del self.means[n:], self.pushes[n:]
+
+    def add(self, change: Fields, n: int) -> None:
+        """Add a change that starts at t^n."""
+        for row, terms in zip(self._rows, change._rows, strict=True):
+            for j, term in enumerate(terms, start=n):
+                row[j] = row[j] + term
+        pairs = ((self.means, change.means), (self.pushes, change.pushes))
+        for rows, changes in pairs:
+            for j, terms in enumerate(changes, start=n):
+                for m, term in enumerate(terms):
+                    rows[j][m] = rows[j][m] + term
+
+
+class Recursion:
+    """The `fields` of a wave, order by order in t, over the ring Q[μ, c], Z its first generator."""
+
+    def __init__(self, ring: Coefficients, order: int, progress: Progress = iter) -> None:
+        self.context = fmpq_mpoly_ctx.get(("Z", *ring.names), Ordering.lex)
+        self.Z, self.zero = self.context.gen(0), self.context.constant(0)
+        self.mu = ring.masses.elements(self.context)
+        self.c = ring.contacts.elements(self.context)
+        self.P = ring.cell.size
+        quartic = Bloch(ring).acoustic(2)[2]
+        self.I = -self.context.from_dict({(0, *map(int, e)): c for e, c in quartic.terms()})
+        self.epsilon = self.I**3  # of t²
+        self._half = self.Z / 2
+        self.gamma: Series = [self.context.constant(1)]
+        self.fields = Fields(self.P)
+        self._solve(order, progress)
+
+    def derivative(self, S: fmpq_mpoly) -> fmpq_mpoly:
+        """The term at t^{n+1} of ∂ (e^{-Z²/4} S t^n)."""
+        return self.I * (S.derivative(0) - self._half * S) if S else S
+
+    def _solve(self, order: int, progress: Progress) -> None:
+        """γ_2 closes the order at which the Gaussian does; then q_n and γ_{n+2} for n = 1, 2, …"""
+        fields = self.fields
+        for n in range(3):
+            residual = self._extend(n)
+        self.gamma += [self.zero, -residual]
+        for n in progress(range(1, order + 1)):
+            if n <= LINEAR:
+                fields.truncate(n)
+            for m in range(len(fields.means), n + 3):
+                residual = self._extend(m)
+            q, gamma = self._invert(residual)
+            self.gamma.append(gamma)
+            if n < LINEAR:
+                fields.truncate(n)
+                self._extend(n, q)
+            elif q:
+                fields.add(self._change(q), n)
+        fields.truncate(order + 1)
+
+    def _invert(self, residual: fmpq_mpoly) -> tuple[fmpq_mpoly, fmpq_mpoly]:
+        """q and γ of I³ (q'' - Z q' + q) = residual + γ, q(0) = q'(0) = 0."""
+        left = by_degree(residual)
+        q = self.zero
+        for d in range(max(left, default=0), 1, -1):
+            a = left.get(d, self.zero) / ((1 - d) * self.epsilon)
+            q = q + a * self.Z**d
+            left[d - 2] = left.get(d - 2, self.zero) - d * (d - 1) * self.epsilon * a
+        if left.get(1, self.zero):
+            raise ArithmeticError("no wave at this order: the chain's equations are at odds")
+        return q, -left.get(0, self.zero)
+
+    def _extend(self, n: int, q: fmpq_mpoly | None = None) -> fmpq_mpoly:
+        """Add the terms at t^n, those of q_n = 0 where it is not known; the residual there.
+
+        It is that of the momentum's balance, the last of the equations, over P.
+        """
+
+        def exponential(log: Series, S: Series, _: Series) -> fmpq_mpoly:
+            return exp_term(log, S)
+
+        def logarithm(S: Series, log: Series, _: Series) -> fmpq_mpoly:
+            return log_term(S, log)
+
+        fields = self.fields
+        width = self.zero if n % 2 or not n else -((-self.epsilon) ** (n // 2)) * self.Z**2 / 4
+        self._step(fields, n, self.zero if q is None else q, width, exponential, logarithm)
+        residual = self.zero
+        for mu, slope in zip(self.mu, fields.slope, strict=True):
+            residual = residual + mu * self._accelerated(slope, n)
+        for m, term in enumerate(fields.pushes[n]):  # (1 - e^{-P∂})/(P∂)
+            residual = residual - fmpq((-self.P) ** m, factorial(m + 1)) * term
+        return residual
+
+    def _change(self, q: fmpq_mpoly) -> Fields:
+        """What q_n brings to the fields at t^n, t^{n+1} and t^{n+2}, n ≥ `LINEAR`."""
+
+        def exponential(log: Series, _: Series, S: Series) -> fmpq_mpoly:
+            return _last(log, S)  # of δ e^S = e^S δS
+
+        def logarithm(change: Series, log: Series, S: Series) -> fmpq_mpoly:
+            return change[-1] - _last([*log, self.zero], S)
+
+        change = Fields(self.P)
+        for j in range(3):
+            self._step(change, j, self.zero if j else q, self.zero, exponential, logarithm)
+        return change
+
+    def _step(
+        self,
+        fields: Fields,
+        n: int,
+        q: fmpq_mpoly,
+        width: fmpq_mpoly,
+        exponential: Term,
+        logarithm: Term,
+    ) -> None:
+        """Add the terms at t^n to the wave's fields or to a change of them.
+
+        ``width`` is the term of the strain's logarithm that comes of the Gaussian.
+        """
+        own, P = self.fields, range(self.P)
+        for i in P:
+            S, log = fields.force[i], fields.log_force[i]
+            if i == 0:
+                log.append(q)
+                S.append(exponential(log, S, own.force[0]))
+            else:
+                S.append(fields.force[i - 1][n])
+                if n:
+                    inertia = self.derivative(self._accelerated(fields.slope[i], n - 1))
+                    S[n] = S[n] + self.P * self.mu[i] * inertia
+                log.append(logarithm(S, log, own.force[i]))
+            strain, log_strain = fields.strain[i], fields.log_strain[i]
+            log_strain.append(width)
+            for m in range(n // 2 + 1):  # r = f^{1/(1+ε)}
+                log_strain[n] = log_strain[n] + (-self.epsilon) ** m * log[n - 2 * m]
+            strain.append(exponential(log_strain, strain, own.strain[i]))
+        mean = sum((c * r[n] for c, r in zip(self.c, fields.strain, strict=True)), self.zero)
+        fields.means.append(self._derivatives(mean / self.P, fields.means))
+        fields.pushes.append(self._derivatives(fields.force[-1][n], fields.pushes))
+        slope = self.zero
+        for m, term in enumerate(fields.means[n]):  # P∂/(e^{P∂} - 1)
+            if factor := _bernoulli(m):
+                slope = slope + fmpq(self.P**m, factorial(m)) * factor * term
+        for i in P:
+            fields.slope[i].append(slope)
+            if n:
+                slope = slope + self.c[i] * self.derivative(fields.strain[i][n - 1])
+
+    def _accelerated(self, slope: Series, n: int) -> fmpq_mpoly:
+        """The term at t^n of γ s_i."""
+        total = self.zero
+        for a, factor in enumerate(self.gamma[: n + 1]):
+            if factor and slope[n - a]:
+                total = total + factor * slope[n - a]
+        return total
+
+    def _derivatives(self, term: fmpq_mpoly, rows: list[Series]) -> Series:
+        """The terms at t^n of a field and of its n first derivatives, after those of t^{n-1}."""
+        return [term, *map(self.derivative, rows[-1])] if rows else [term]
+
+
+def _last(a: Series, b: Series) -> fmpq_mpoly:
+    """The term of a · b at the end of a."""
+    n = len(a) - 1
+    return sum((x * b[n - j] for j, x in enumerate(a) if x), 0 * b[0])
+
+
+def _bernoulli(m: int) -> fmpq:
+    """B_m, with B_1 = -1/2."""
+    return fmpq(-1, 2) if m == 1 else rational(bernoulli(m))

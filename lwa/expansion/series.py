@@ -1,0 +1,169 @@
+"""A quantity of a chain's wave as a series in ε = k - 1, exact, and its sum at a number k."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any, overload
+
+import sympy as sp
+
+from lwa.cell import Cell, exponent
+from lwa.cell import k as symbol_k
+from lwa.exact import InputError, integer, shorten
+from lwa.expansion.approximants import Resummed, pade, resum
+from lwa.expansion.effort import short
+from lwa.expansion.observables import equal_beads
+from lwa.expansion.radiation import Radiation, radiation
+from lwa.value import Value
+
+SHOWN = 3
+"""Terms of a series in LaTeX."""
+
+_LETTERS = {
+    "c2": "c^2",
+    "c": "c",
+    "strain": r"\mathrm{FWHM}_\mathrm{strain}",
+    "force": r"\mathrm{FWHM}_\mathrm{force}",
+    "velocity": r"\mathrm{FWHM}_\mathrm{velocity}",
+    "momentum": r"\sum m v",
+    "kinetic": "T",
+    "energy": "E",
+}
+
+
+@dataclass(frozen=True, repr=False)
+class EpsilonSeries(Value):
+    """prefactor · ε^power · Σ coefficients[n] ε^n, ε = k - 1.
+
+    The series owns its k: where it is a number, it is the one at which the series is summed; where
+    it is a symbol, a number or another symbol takes its place, wherever it stands: the prefactor
+    and the shares of unlike contacts depend on it too.
+
+    cell, quantity : what it is the series of. `at` sums what the chain of equal beads has of it
+        apart, and adds to the error what the chain radiates.
+    """
+
+    prefactor: sp.Expr
+    power: sp.Expr
+    coefficients: tuple[sp.Expr, ...]
+    k: sp.Expr = symbol_k
+    cell: Cell | None = None
+    quantity: str = ""
+
+    @property
+    def order(self) -> int:
+        """The highest power of ε in the sum."""
+        return len(self.coefficients) - 1
+
+    @property
+    def radiation(self) -> Radiation | None:
+        """What `at` adds to the error; None for symbols and for equal beads."""
+        return radiation(self.cell, self.k) if self.cell else None
+
+    def partial_sum(self, k: Any = None, order: Any = None) -> sp.Expr:
+        """The sum to ε^order, exact.
+
+        k : a number or a symbol where the series' k is a symbol, which stays when none is given.
+
+        >>> from lwa import Cell, expand
+        >>> expand(Cell([1]), 2).c2.partial_sum("3/2")
+        17/20
+        """
+        series = self._for(k)
+        last = self.order if order is None else integer(order, "order", 0)
+        if last > self.order:
+            raise InputError(f"order is {shorten(last)}: the series ends at ε^{self.order}")
+        terms = (a * series._epsilon**n for n, a in enumerate(series.coefficients[: last + 1]))
+        return series._unit * sp.Add(*terms)
+
+    @overload
+    def pade(self, numerator: int, denominator: int, /) -> sp.Expr: ...
+
+    @overload
+    def pade(self, k: Any, numerator: int, denominator: int, /) -> sp.Expr: ...
+
+    def pade(self, *arguments: Any) -> sp.Expr:
+        """``pade([k,] L, M)``: the approximant [L/M] in ε, exact, k as in `partial_sum`.
+
+        Raises `lwa.InputError` where the series is too short, or has none.
+
+        >>> from lwa import Cell, expand
+        >>> expand(Cell([1]), 2).c.pade("k", 1, 1)
+        (17*k + 23)/(27*k + 13)
+        """
+        if len(arguments) not in (2, 3):
+            raise InputError("pade takes k, where it is a symbol, and the two degrees of [L/M]")
+        *k, L, M = arguments
+        series = self._for(*k)
+        degrees = integer(L, "numerator", 0), integer(M, "denominator", 0)
+        return series._unit * pade(series.coefficients, *degrees, series._epsilon)
+
+    def at(self, k: Any = None) -> Resummed:
+        """The sum and an estimate of its error; at a number k > 1 where the series' k is a symbol.
+
+        Raises `lwa.InputError` when k or the cell holds symbols, or k ≤ 1, or the series has a k
+        of its own and another is given.
+
+        >>> from lwa import Cell, expand
+        >>> expand(Cell([1]), 10, k="3/2").fwhm("force").at().value.__round__(6)
+        1.411928
+        """
+        series = self._for(k)
+        values = (series.k, series.prefactor, *series.coefficients)
+        symbols = set().union(*(value.free_symbols for value in values))
+        if symbols:
+            raise InputError(f"{min(map(str, symbols))!r} has no value: a sum needs numbers")
+        if not series.k > 1:
+            raise InputError(f"k is {series.k}: the expansion in k - 1 is summed for k > 1")
+        base = equal_beads(self.quantity, self.order) if series.radiation else ()
+        lost = series.radiation.relative(float(series.k)) if series.radiation else 0.0
+        return resum(series.coefficients, series._epsilon, base, series._unit, lost)
+
+    @property
+    def _epsilon(self) -> sp.Expr:
+        return self.k - 1
+
+    @property
+    def _unit(self) -> sp.Expr:
+        return self.prefactor * self._epsilon**self.power
+
+    def _for(self, k: Any = None) -> EpsilonSeries:
+        """The series with this k for its symbol."""
+        if k is None:
+            return self
+        new = short(exponent(k, self.cell), "k")
+        if not self.k.is_Symbol:
+            raise InputError(f"k is {new}, but the series is that of k = {self.k}: leave k out")
+        return replace(
+            self,
+            prefactor=self.prefactor.xreplace({self.k: new}),
+            coefficients=tuple(a.xreplace({self.k: new}) for a in self.coefficients),
+            k=new,
+        )
+
+    def __repr__(self) -> str:
+        name = self.quantity or "series"
+        return f"EpsilonSeries({name} to ε^{self.order}, k={self.k}, {self.cell!r})"
+
+    def latex(self) -> str:
+        r"""The series as a paper prints it: its name, its first `SHOWN` terms and what follows.
+
+        >>> from lwa import Cell, expand
+        >>> print(expand(Cell([1]), 6).c2.latex())
+        c^2 = 1 - \frac{1}{2} \varepsilon + \frac{2}{5} \varepsilon^{2} + \dots
+        """
+        body = ""
+        for n, a in enumerate(self.coefficients[:SHOWN]):
+            if a:
+                text = rf"\left({sp.latex(a)}\right)" if a.is_Add else sp.latex(a)
+                sign, text = ("-", text[1:].strip()) if text.startswith("-") else ("+", text)
+                power = rf"\varepsilon^{{{n}}}" if n > 1 else r"\varepsilon" * n
+                text = power if text == "1" and n else f"{text} {power}".rstrip()
+                body += f" {sign} {text}" if body else f"{sign}{text}".lstrip("+")
+        body += r" + \dots"
+        unit = self.prefactor * sp.Symbol(r"\varepsilon") ** self.power
+        name = f"{_LETTERS[self.quantity]} = " if self.quantity else ""
+        return name + (body if unit == 1 else rf"{sp.latex(unit)} \left({body}\right)")
+
+    def _repr_latex_(self) -> str:
+        return rf"$\displaystyle {self.latex()}$"

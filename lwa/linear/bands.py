@@ -1,0 +1,85 @@
+"""Bloch's bands in numbers: frequencies and group velocities of the linear chain.
+
+The equations of `lwa.linear.bloch` read f = B(κ) a in the variables a_i √(P μ_i), f_i √c_i, so
+that the Ω_j are the singular values of B. Eigenvalues of BᴴB would lose half the digits of a small
+Ω.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lwa.exact import InputError, shorten
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+
+def branches(fractions: Array, shares: Array, kappa: ArrayLike) -> Array:
+    """Ω_j(κ), ascending along a last axis of length P; error about 1e-15 of the largest.
+
+    fractions, shares : the μ_i and the c_i. Raises `lwa.InputError` for a κ that is no finite
+    number.
+    """
+    B, _ = _strains(fractions, shares, kappa)
+    return np.linalg.svd(B, compute_uv=False)[..., ::-1].astype(float)
+
+
+def group_velocity(fractions: Array, shares: Array, kappa: ArrayLike) -> Array:
+    """dΩ_j/dκ in the order of `branches`, by dΩ = Re (left vector)ᴴ dB (right vector).
+
+    Where branches touch, or touch zero, they have a kink: there it is the slope towards larger κ.
+    """
+    B, dB = _strains(fractions, shares, kappa)
+    left, omega, right = np.linalg.svd(B)
+    # dB has one entry, from the first particle to the last contact
+    S = left[..., -1, :, None].conj() * dB[..., None, None] * right[..., None, :, 0].conj()
+    slopes = np.diagonal(S, axis1=-2, axis2=-1)
+    equal = 64 * np.finfo(float).eps * omega[..., :1]
+    velocity = np.where(omega <= equal, np.abs(slopes), slopes.real).astype(float)
+    for i in range(len(fractions) - 1):  # no more than two branches meet in a point
+        j = i + 1
+        mean = (slopes[..., i] + slopes[..., j]).real / 2
+        half = (slopes[..., i] - slopes[..., j]).real / 2
+        split = np.hypot(half, np.abs(S[..., i, j] + S[..., j, i].conj()) / 2)
+        touch = omega[..., i] - omega[..., j] <= equal[..., 0]
+        velocity[..., i] = np.where(touch, mean + split, velocity[..., i])
+        velocity[..., j] = np.where(touch, mean - split, velocity[..., j])
+    return velocity[..., ::-1]
+
+
+def edges(fractions: Array, shares: Array) -> Array:
+    """(min, max) of Ω of each branch, shape (P, 2): each is monotone between κ = 0 and π/P."""
+    ends = branches(fractions, shares, [0.0, np.pi / len(fractions)])
+    result: Array = np.sort(ends, axis=0).T
+    return result
+
+
+def _strains(fractions: Array, shares: Array, kappa: ArrayLike) -> tuple[Complex, Complex]:
+    """B(κ), which takes a_i √(P μ_i) to f_i √c_i, and the one entry of dB/dκ (last row)."""
+    wave = _finite(kappa)
+    P = len(fractions)
+    mass, share = np.sqrt(P * fractions), np.sqrt(shares)
+    B = np.zeros((*wave.shape, P, P), complex)
+    for i in range(P):
+        B[..., i, i] = -1 / (share[i] * mass[i])
+        if i < P - 1:
+            B[..., i, i + 1] = 1 / (share[i] * mass[i + 1])
+    end = np.exp(1j * P * wave) / (share[-1] * mass[0])
+    B[..., -1, 0] += end
+    return B, 1j * P * end
+
+
+def _finite(kappa: ArrayLike) -> Array:
+    try:
+        values = np.asarray(kappa)
+        array: Array = values.astype(
+            float, casting="safe" if values.dtype.kind != "O" else "unsafe"
+        )
+    except (TypeError, ValueError):
+        raise InputError(f"kappa is {shorten(kappa)}: real wavenumbers are wanted") from None
+    if not np.all(np.isfinite(array)):
+        value = array[~np.isfinite(array)].flat[0]
+        raise InputError(f"kappa is {value}: finite wavenumbers are wanted")
+    return array

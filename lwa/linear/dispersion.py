@@ -1,0 +1,224 @@
+"""The linear chain: its exact dispersion relation, the series of its branches, and Bloch's bands.
+
+A chain at k = 1, or one of any k linearised about a uniform compression, is a chain of springs of
+compliances c_i (`Cell.shares`). In the theory's units (time τ, wavenumber κ = qD, so that Ω = κ to
+leading order) its acoustic branch is a series
+
+    Ω² = κ² (1 - I κ² + …)
+
+with I the coefficient of u_4x of the wave equation. `lwa.linear.bloch` derives relation and series,
+`lwa.linear.bands` computes frequencies and group velocities.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cached_property
+from math import comb
+from typing import TYPE_CHECKING, Any
+
+import sympy as sp
+from flint import fmpq_mpoly
+
+from lwa import latex
+from lwa.cell import Cell, exponent, substitution
+from lwa.coefficients import Coefficients
+from lwa.exact import InputError, integer, shorten
+from lwa.linear.bloch import BRANCHES, Bloch
+from lwa.value import Value
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import ArrayLike, NDArray
+
+    Array = NDArray[np.float64]
+
+MOST_TERMS = 200_000
+"""What a series may take, by the estimate of `Dispersion._length`: about half a minute."""
+
+
+@dataclass(frozen=True)
+class Dispersion(Value):
+    """Ω(κ) of the linear chain with a cell's masses and strain shares.
+
+    Ω is the frequency in τ times D and κ the wavenumber times D. In time t the frequency is
+    Ω/D · `Cell.time_scale`, times p^{(k-1)/2} under a mean strain p.
+
+    Parameters
+    ----------
+    cell : the periodic cell.
+    k : exponent of the contact law, which matters for unequal contacts only; 1 makes the
+        stiffnesses spring constants.
+
+    Raises `lwa.InputError` for anything else.
+
+    >>> m1, m2 = sp.symbols("m1 m2", positive=True)
+    >>> Dispersion(Cell((m1, m2))).acoustic(4)
+    {2: 1, 4: -(m1**2 - m1*m2 + m2**2)/(3*(m1 + m2)**2)}
+    """
+
+    cell: Cell
+    k: sp.Expr = sp.S.One
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.cell, Cell):
+            raise InputError(f"cell is {shorten(self.cell)}: a Cell such as Cell([1, 2]) is wanted")
+        object.__setattr__(self, "k", exponent(self.k, self.cell))
+
+    def at(self, **values: Any) -> Dispersion:
+        """The chain for these values of the named symbols, and of ω = m2/m1 by ``omega``.
+
+        Raises `lwa.InputError` for a name that does not occur or a value that is not positive.
+        """
+        new = substitution(values, self.cell, self.k)
+        return Dispersion(self.cell.replaced(new), self.k.xreplace(new))
+
+    def _repr_latex_(self) -> str:
+        row = rf"\Omega^{{2}} = \kappa^{{2}} - {sp.latex(self.I)} \, \kappa^{{4}} + \cdots"
+        return latex.display([row])
+
+    # --- exact ------------------------------------------------------------------------------
+
+    @cached_property
+    def trace(self) -> dict[int, sp.Expr]:
+        """m → t_m of the exact dispersion relation 2 cos(Pκ) = Σ t_m Ω^{2m}, m = 0 … P.
+
+        >>> Dispersion(Cell([1])).trace
+        {0: 2, 1: -1}
+        """
+        return {m: self._expression(t) for m, t in enumerate(self._bloch.trace(self.cell.size))}
+
+    def acoustic(self, order: int = 4) -> dict[int, sp.Expr]:
+        """n → the coefficient of κ^n in Ω² of the acoustic branch, n = 2, 4, … ≤ ``order``."""
+        series = self._bloch.acoustic(self._length(order))
+        return {2 * n: self._expression(c) for n, c in enumerate(series) if n > 0}
+
+    def optical(self, order: int = 4) -> dict[int, sp.Expr]:
+        """n → the coefficient of κ^n in Ω² of a dimer's optical branch, n = 0, 2, … ≤ ``order``.
+
+        Raises `lwa.InputError` unless the cell has two particles.
+        """
+        self._demand_dimer("the optical series")
+        acoustic = self.acoustic(order)
+        return {0: 1 / self._expression(self._bloch.nu)} | {n: -c for n, c in acoustic.items()}
+
+    def amplitude_ratio(self, order: int = 4, branch: str = "acoustic") -> dict[int, sp.Expr]:
+        """n → the coefficient of (iκ)^n in a_1/a_0 = w/u of a dimer, n = 0 … ``order``.
+
+        These are λ b_n of the ansatz w = λ Σ b_n D^n ∂_x^n u: a_1 is taken at the place of a_0.
+
+        Raises `lwa.InputError` unless the cell has two particles.
+        """
+        self._demand_dimer("the amplitude ratio")
+        if branch not in BRANCHES:
+            raise InputError(f"branch is {shorten(branch)}: one of {', '.join(BRANCHES)} is wanted")
+        self._length(order)
+        m1, m2 = self.cell.masses
+        ratio = sp.Integer(1) if branch == "acoustic" else sp.cancel(-m1 / m2)
+        series = self._bloch.amplitudes(order, branch)
+        return {n: sp.Mul(ratio, self._expression(b)) for n, b in enumerate(series)}
+
+    @cached_property
+    def I(self) -> sp.Expr:
+        """I of Ω² = κ² (1 - I κ² + …): the wave equation's coefficient of u_4x, over D².
+
+        >>> Dispersion(Cell(["1/2", "1/3", "1/6"])).I
+        5/36
+        """
+        return -self.acoustic(4)[4]
+
+    @cached_property
+    def _ring(self) -> Coefficients:
+        return Coefficients(self.cell, self.k)
+
+    @cached_property
+    def _bloch(self) -> Bloch:
+        return Bloch(self._ring)
+
+    def _expression(self, polynomial: fmpq_mpoly) -> sp.Expr:
+        count = len(self._ring.names)
+        terms = [(tuple(map(int, e[:count])), c) for e, c in polynomial.terms()]
+        return sp.together(self._ring.expression(terms))  # compliances enter as 1/A
+
+    def _length(self, order: Any) -> int:
+        """The number of powers of κ² up to κ^order, refused where it would take too long.
+
+        The coefficient of κ^{2n} has the degree 2n - 2 in the masses and in the compliances, and
+        comes from about n² products.
+        """
+        highest = integer(order, "order", 1)
+        n = highest // 2
+        terms = n * n
+        for part in (self._ring.masses, self._ring.contacts):
+            terms *= comb(2 * max(n, 1) - 2 + len(part.names), len(part.names))
+        if terms > MOST_TERMS:
+            raise InputError(
+                f"order is {shorten(order)}: about {min(terms, 10**30):.0e} terms, too many; give "
+                "numbers for the cell, or a lower order"
+            )
+        self._ring.writable(highest)
+        return n
+
+    def _demand_dimer(self, what: str) -> None:
+        if self.cell.size == 1:
+            raise InputError(f"{what} needs a cell of 2 masses: 1 mass has no optical branch")
+        if self.cell.size > 2:
+            raise InputError(
+                f"{what} needs a cell of 2 masses, not {self.cell.size}: there its roots are not "
+                "rational; use the numerical branches"
+            )
+
+    # --- numbers ----------------------------------------------------------------------------
+
+    def branches(self, kappa: ArrayLike) -> Array:
+        """Ω_j(κ), ascending along a last axis of length P; error about 1e-15 of the largest.
+
+        Raises `lwa.InputError` for a κ that is no finite number, and where masses, stiffnesses or
+        k are symbols.
+
+        >>> Dispersion(Cell([1])).branches(3.141592653589793)
+        array([2.])
+        """
+        from lwa.linear import bands
+
+        return bands.branches(*self._weights, kappa)
+
+    def group_velocity(self, kappa: ArrayLike) -> Array:
+        """dΩ_j/dκ in the order of `branches`; the slope towards larger κ where branches touch."""
+        from lwa.linear import bands
+
+        return bands.group_velocity(*self._weights, kappa)
+
+    def band_edges(self) -> Array:
+        """(min, max) of Ω of each branch, shape (P, 2): each is monotone between κ = 0 and π/P."""
+        from lwa.linear import bands
+
+        return bands.edges(*self._weights)
+
+    def gaps(self) -> Array:
+        """(from, to) of the P - 1 intervals of Ω between the bands; closed ones are of length 0."""
+        import numpy as np
+
+        edges = self.band_edges()
+        return np.stack([edges[:-1, 1], edges[1:, 0]], axis=-1)
+
+    @property
+    def _weights(self) -> tuple[Array, Array]:
+        """μ_i and c_i as floats."""
+        return self._floats(self.cell.fractions), self._floats(self.cell.shares(self.k))
+
+    def _floats(self, values: Iterable[sp.Expr]) -> Array:
+        import numpy as np
+
+        values = tuple(values)
+        unknown = set().union(*(v.free_symbols for v in values))
+        if unknown:
+            raise InputError(
+                f"{min(map(str, unknown))!r} has no value: the numerical branches need numbers for "
+                "the masses, the stiffnesses and, with unequal contacts, k"
+            )
+        numbers = np.array([float(v) for v in values])
+        if not np.all(numbers > 0):
+            raise InputError("masses or compliances differ by more than a float can tell")
+        return numbers

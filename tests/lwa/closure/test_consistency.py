@@ -1,0 +1,294 @@
+"""The closure against computations that share no code with it.
+
+The lattice's own equations of motion are expanded numerically with mpmath at 50 digits; at k = 1
+the exact dispersion relation of the linear chain must come out to order 12, both branches.
+"""
+
+from fractions import Fraction
+
+import mpmath
+import pytest
+import sympy as sp
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from lwa import Cell, Dimer, InputError, Jet, homogenize
+from lwa.closure.consistency import amplitude_ratios
+
+masses = st.fractions(min_value="1/20", max_value=20, max_denominator=20)
+
+
+# --- the lattice equations, expanded at 50 digits ----------------------------------------------
+
+
+# A concrete field u(x) = Σ w e^{ax}: u_x > 0 around x = 0, and no derivative vanishes.
+FIELD = (
+    (sp.Integer(2), sp.Integer(1)),
+    (sp.Rational(-1, 4), sp.Rational(-2, 3)),
+    (sp.Integer(3), sp.Rational(1, 5)),
+)
+
+
+def exponentials():
+    return [(mpmath.mpf(w.p) / w.q, mpmath.mpf(a.p) / a.q) for w, a in FIELD]
+
+
+def derivative(n, x=0):
+    """∂_x^n u."""
+    return mpmath.fsum(w * a**n * mpmath.exp(a * x) for w, a in exponentials())
+
+
+def slaved(ansatz, x, D):
+    """w = Σ b_n D^n ∂_x^n u."""
+    return mpmath.fsum(
+        w * mpmath.exp(a * x) * mpmath.fsum(b * (a * D) ** n for n, b in enumerate(ansatz))
+        for w, a in exponentials()
+    )
+
+
+def taylor(f, order, points=256):
+    """Taylor coefficients of f at 0 by Cauchy's integral; the error falls geometrically."""
+    radius = mpmath.mpf(1) / 8
+    values = [f(radius * mpmath.expjpi(mpmath.mpf(2 * j) / points)) for j in range(points)]
+    return [
+        mpmath.fsum(
+            v * mpmath.expjpi(-mpmath.mpf(2 * j * n) / points) for j, v in enumerate(values)
+        ).real / points / radius**n
+        for n in range(order + 1)
+    ]  # fmt: skip
+
+
+def evaluate(terms):
+    """Σ coefficient · Π (∂^i u/u_x)^e at x = 0."""
+    total = mpmath.mpf(0)
+    for jet, coefficient in terms.items():
+        product = mpmath.mpf(sp.N(coefficient, 60))
+        for i, e in jet.x:
+            product *= (derivative(i) / derivative(1)) ** e
+        total += product
+    return total
+
+
+def lattice_accelerations(theory, order):
+    """E_n, n < order, of u_ττ by both equations of motion, with the theory's ansatz for w."""
+    m1, m2 = (mpmath.mpf(m.p) / m.q for m in theory.cell.masses)
+    k = mpmath.mpf(theory.k.p) / theory.k.q
+    ansatz = [mpmath.mpf(1)] + [mpmath.mpf(sp.N(b, 60)) for b in theory.ansatz.values()]
+    p = derivative(1)
+
+    def forces(D):
+        u, right = derivative(0), derivative(0, 2 * D)
+        w, left = slaved(ansatz, 0, D), slaved(ansatz, -2 * D, D)
+        own = ((w - u) / (D * p)) ** k
+        return own - ((u - left) / (D * p)) ** k, ((right - w) / (D * p)) ** k - own
+
+    unit = 2 * k / (m1 + m2)
+    first = [c / (m1 * unit) for c in taylor(lambda D: forces(D)[0], order)]
+    second = [c / (m2 * unit) for c in taylor(lambda D: forces(D)[1], order)]
+    return first, second, ansatz
+
+
+@pytest.mark.parametrize(
+    ("k", "m1", "m2"), [("3/2", 1, 1), ("3/2", "9/20", "123/1000"), ("11/4", 1, 3), ("2/3", 7, 2)]
+)
+def test_against_the_lattice_at_fifty_digits(k, m1, m2):
+    order = 7
+    with mpmath.workdps(70):
+        theory = homogenize(Dimer(m1, m2), order=order, k=k)
+        first, second, ansatz = lattice_accelerations(theory, order - 1)
+        bound = mpmath.mpf(10) ** -45  # 70 digits less the Cauchy integrals' own loss
+        assert abs(first[0]) < bound
+        assert abs(first[1] - derivative(2) / derivative(1)) < bound
+        for n in range(2, order):
+            assert abs(first[n] - evaluate(theory.pde.coefficients[n])) < bound
+        for n in range(1, order):
+            by_second = first[n] - evaluate(theory.defect.get(n, {}))
+            assert abs(second[n] - ansatz_on_second(theory, ansatz, n) - by_second) < bound
+
+
+def ansatz_on_second(theory, ansatz, n):
+    """What w = Lu adds to w_ττ: Σ_{0<j<n} b_j ∂_x^j u_ττ at D^{n-1} over u_x^k, by calculus.
+
+    u_ττ is that of the second equation, the theory's less its defect.
+    """
+    x = sp.Symbol("x")
+    u = sum(w * sp.exp(a * x) for w, a in FIELD)
+    base = u.diff(x)
+    total = mpmath.mpf(0)
+    for j in range(1, n):
+        order = n - j
+        parts = dict(theory.pde.coefficients.get(order, {})) if order > 1 else {Jet(((2, 1),)): 1}
+        for jet, value in theory.defect.get(order, {}).items():
+            parts[jet] = parts.get(jet, 0) - value
+        field = sum(
+            c * sp.prod((u.diff(x, i) / base) ** e for i, e in jet.x) for jet, c in parts.items()
+        )
+        slope = (base**theory.k * field).diff(x, j) / base**theory.k
+        total += ansatz[j] * mpmath.mpf(sp.N(slope.subs(x, 0), 60))
+    return total
+
+
+# --- the linear limit ---------------------------------------------------------------------------
+
+
+def truncated_product(a, b, order):
+    c = [Fraction(0)] * (order + 1)
+    for i, x in enumerate(a[: order + 1]):
+        for j, y in enumerate(b[: order + 1 - i]):
+            c[i + j] += x * y
+    return c
+
+
+def exponential(rate, order):
+    series, term = [], Fraction(1)
+    for n in range(order + 1):
+        series.append(term)
+        term = term * rate / (n + 1)
+    return series
+
+
+def fraction(value):
+    return Fraction(int(value.p), int(value.q))
+
+
+@given(masses, masses)
+@settings(max_examples=15)
+@pytest.mark.parametrize("branch", ["acoustic", "optical"])
+def test_k_equal_one_is_the_exact_dispersion_relation_to_order_12(branch, m1, m2):
+    """With u = e^{qx} (q = iκ) both equations of motion become identities in q, order by order.
+
+    In time t: m1 s = -2 + ρ (1 + e^{-2q}) and m2 s ρ = e^{2q} + 1 - 2ρ, where s = u_tt/u and ρ is
+    the amplitude ratio w/u, both series in q that the theory gives (D = 1).
+    """
+    order = 12
+    theory = homogenize(Dimer(m1, m2, spacing=1), order=order, k=1, branch=branch)
+    ratio = fraction(theory.amplitude_ratio)
+    rho = [ratio] + [ratio * fraction(b) for b in theory.ansatz.values()]
+    scale = fraction(theory.pde.time_scale**2)
+    # the coefficient of q^n in u_ττ/u: acoustic q² + …, optical -1 + …
+    s = [Fraction(0)] * (order + 1)
+    s[0 if branch == "optical" else 2] = Fraction(-1 if branch == "optical" else 1)
+    for n, terms in theory.pde.coefficients.items():
+        for jet, coefficient in terms.items():
+            ((i, e),) = jet.x  # at k = 1 nothing but linear terms is left
+            assert e == 1
+            s[i] += fraction(coefficient)
+            assert i == n + (branch == "acoustic")
+    s = [scale * c for c in s]
+    minus = exponential(Fraction(-2), order)
+    plus = exponential(Fraction(2), order)
+    one_plus_minus = [minus[0] + 1, *minus[1:]]
+    first = truncated_product(rho, one_plus_minus, order)
+    first[0] -= 2
+    assert [m1 * c for c in s] == first
+    second = [a - 2 * b for a, b in zip(plus, rho, strict=True)]
+    second[0] += 1
+    assert [m2 * c for c in truncated_product(s, rho, order)] == second
+    assert theory.defect == {}
+
+
+# --- structure --------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("branch", ["acoustic", "optical"])
+def test_every_second_order_vanishes(branch):
+    theory = homogenize(Dimer("m1", "m2"), order=9, branch=branch)
+    parity = 0 if branch == "acoustic" else 1
+    for n, terms in theory.pde.coefficients.items():
+        assert (len(terms) == 0) == (n % 2 == parity)
+
+
+def test_the_ansatz_does_not_depend_on_k():
+    k = sp.Symbol("k", positive=True)
+    theory = homogenize(Dimer("m1", "m2"), order=10)
+    assert not any(b.has(k) for b in theory.ansatz.values())
+
+
+def test_the_defect_vanishes_at_equal_masses_only():
+    m = sp.Symbol("m", positive=True)
+    theory = homogenize(Dimer("m1", "m2"), order=8)
+    assert set(theory.defect) == {3, 5, 7}
+    assert homogenize(Dimer(m, m), order=8).defect == {}
+    m1, m2 = theory.cell.masses
+    for terms in theory.defect.values():
+        for coefficient in terms.values():
+            assert sp.cancel(coefficient.subs(m1, m2)) == 0
+
+
+def test_the_defect_is_what_the_second_equation_says_less_of_G_and_H():
+    theory = homogenize(Dimer("m1", "m2"), order=4)
+    m1, m2 = theory.cell.masses
+    k, b = theory.k, m1 / (m1 + m2)
+    G2 = (k - 1) * (k - 2) * (b**2 - 8 * b + 4) / 6
+    H2 = (k - 1) * (sp.Rational(5, 3) - 3 * b)
+    terms = theory.pde.coefficients[3]
+    assert sp.cancel(terms[((2, 3),)] - theory.defect[3][((2, 3),)] - G2) == 0
+    assert sp.cancel(terms[((2, 1), (3, 1))] - theory.defect[3][((2, 1), (3, 1))] - H2) == 0
+    assert set(theory.defect[3]) == {Jet(((2, 3),)), Jet(((2, 1), (3, 1)))}
+
+
+@given(masses, masses, st.fractions(min_value="1/3", max_value=5, max_denominator=7))
+@settings(max_examples=10)
+def test_numbers_and_symbols_give_the_same_theory(m1, m2, k):
+    symbolic = homogenize(Dimer("m1", "m2"), order=6)
+    numeric = homogenize(Dimer(m1, m2), order=6, k=k)
+    values = {
+        **dict(zip(symbolic.cell.masses, numeric.cell.masses, strict=True)),
+        symbolic.k: numeric.k,
+    }
+    for n, b in symbolic.ansatz.items():
+        assert b.subs(values) == numeric.ansatz[n]
+    for n, terms in symbolic.pde.coefficients.items():
+        for jet, coefficient in terms.items():
+            assert coefficient.subs(values) == numeric.pde.coefficients[n].get(jet, 0)
+
+
+def test_a_cell_of_one_particle_is_the_dimer_of_equal_masses():
+    one = homogenize(Cell(["m"]), order=9)
+    two = homogenize(Dimer("m", "m"), order=9)
+    assert one.ansatz == {}
+    for n, terms in one.pde.coefficients.items():
+        assert dict(terms) == dict(two.pde.coefficients[n])
+
+
+def test_unequal_contacts_satisfy_both_equations_in_the_linear_limit():
+    theory = homogenize(Dimer("m1", "m2", stiffnesses=("A1", "A2")), order=6, k=1)
+    assert theory.defect == {}
+    assert theory.pde.vanishing == (2, 4)
+
+
+@pytest.mark.parametrize("branch", ["acoustic", "optical"])
+def test_unequal_springs_have_their_dispersion_relation(branch):
+    """m1 m2 s² + (A1 + A2)(m1 + m2) s + A1 A2 (2 - e^{2q} - e^{-2q}) = 0, s = u_tt/u, to q^6."""
+    q = sp.Symbol("q")
+    cell = Dimer(2, 3, stiffnesses=(1, 5), spacing=1)
+    theory = homogenize(cell, order=7, k=1, branch=branch)
+    m1, m2 = cell.masses
+    A1, A2 = cell.stiffnesses
+    s = q**2 if branch == "acoustic" else sp.Integer(-1)
+    for terms in theory.pde.coefficients.values():
+        s += sum(coefficient * q ** jet.x[0][0] for jet, coefficient in terms.items())
+    s *= sp.simplify(theory.pde.time_scale**2)
+    relation = m1 * m2 * s**2 + (A1 + A2) * (m1 + m2) * s
+    relation += A1 * A2 * (2 - sp.exp(2 * q) - sp.exp(-2 * q)).series(q, 0, 7).removeO()
+    assert sp.series(sp.expand(relation), q, 0, 7).removeO() == 0
+
+
+def test_amplitude_ratios_are_all_the_uniform_motions():
+    """m1 ü = 2s and m2 λ ü = -2s, s the force of a contact: m2 λ s + m1 s = 0 for the ratios only.
+
+    s is odd in the strain (λ - 1) u and vanishes with it alone: where a power (λ - 1)^k would do.
+    """
+    m1, m2 = sp.symbols("m1 m2", positive=True)
+    lam = sp.Symbol("lam")
+    found = amplitude_ratios(Dimer(m1, m2))
+    for s in (lam - 1, (lam - 1) ** 3):
+        assert set(sp.solve(m2 * lam * s + m1 * s, lam)) == set(found.values())
+    assert amplitude_ratios(Dimer(3, 5)) == {"acoustic": 1, "optical": sp.Rational(-3, 5)}
+
+
+def test_three_masses_are_refused():
+    with pytest.raises(InputError, match="3 masses"):
+        homogenize(Cell([1, 2, 3]))
+    with pytest.raises(InputError, match="1 masses"):
+        homogenize(Cell([1]), branch="optical")

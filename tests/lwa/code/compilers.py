@@ -1,0 +1,60 @@
+"""Generated C and Fortran as functions that Python calls: compiled to a shared library."""
+
+import ctypes
+import os
+import shutil
+import subprocess
+
+import pytest
+
+from lwa.code.writer import Function
+
+STRICT = ("-O2", "-Wall", "-Wextra", "-pedantic", "-Werror", "-shared", "-fPIC")
+COMMANDS = {
+    "c": ("cc", "-std=c99", *STRICT),
+    "fortran": ("gfortran", "-std=f2008", *STRICT),
+}
+SUFFIX = {"c": "c", "fortran": "f90"}
+
+
+def compiled(source, language, functions: list[Function], folder):
+    """Name → the compiled function of numbers.
+
+    A Fortran function is called by a procedure that binds it to C.
+    """
+    command = COMMANDS[language]
+    if shutil.which(command[0]) is None:
+        text = f"no {command[0]} here: generated {language} is not compiled"
+        if os.environ.get("CI"):
+            raise RuntimeError(text)
+        pytest.skip(text)
+    if language == "fortran":
+        uses = ("use iso_c_binding", "use lwa_wave", "implicit none", "contains")
+        bound = map(_bound, functions)
+        source = "\n".join([source, "module called", *uses, *bound, "end module"])
+    file, library = folder / f"lwa_wave.{SUFFIX[language]}", folder / f"lwa_wave_{language}.so"
+    file.write_text(source + "\n", encoding="utf-8")
+    subprocess.run([*command, "-o", library, file, "-lm"], check=True, cwd=folder)
+    loaded = ctypes.CDLL(str(library))
+    found = {}
+    for function in functions:
+        symbol = f"c_{function.name.lower()}" if language == "fortran" else function.name
+        call = getattr(loaded, symbol)
+        call.restype = ctypes.c_double
+        call.argtypes = [ctypes.c_double] * len(function.arguments)
+        found[function.name] = call
+    return found
+
+
+def _bound(function: Function) -> str:
+    names = [f"x{i}" for i in range(len(function.arguments))]
+    listed = ", &\n".join(names)
+    return "\n".join(
+        [
+            f"function c_{function.name}({listed}) bind(C) result(y)",
+            *(f"real(c_double), value :: {name}" for name in names),
+            "real(c_double) :: y",
+            f"y = {function.name}({listed})",
+            "end function",
+        ]
+    )

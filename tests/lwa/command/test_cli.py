@@ -1,0 +1,511 @@
+"""The command `lwa` and its JSON contract."""
+
+import json
+import math
+import os
+import re
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+import sympy as sp
+
+from lwa import Dimer, Material, Sphere, homogenize
+from lwa.command.cli import main
+from lwa.spheres import hertz
+
+
+def run(capsys, *arguments):
+    """Exit status, standard output and standard error of one call."""
+    with pytest.raises(SystemExit) as ended:
+        main(arguments)
+    captured = capsys.readouterr()
+    return ended.value.code, captured.out, captured.err
+
+
+def result(capsys, *arguments):
+    status, out, err = run(capsys, *arguments, "--format", "json")
+    assert (status, err) == (0, "")
+    return json.loads(out)
+
+
+SYMBOLS = {s.name: s for s in homogenize(Dimer("m1", "m2")).pde.H.free_symbols}
+
+
+def read(text):
+    """A string of the JSON, as another program would read it."""
+    return sp.sympify(text, locals=SYMBOLS)
+
+
+def test_derive_json(capsys):
+    found = result(capsys, "derive", "--order", "4")
+    theory = homogenize(Dimer("m1", "m2"))
+    assert found["lambda"] == "1"
+    assert {int(n) for n in found["ansatz"]} == set(theory.ansatz)
+    for n, b in found["ansatz"].items():
+        assert sp.cancel(read(b) - theory.ansatz[int(n)]) == 0
+    for name in "GHI":
+        assert sp.cancel(read(found[name]) - getattr(theory.pde, name)) == 0
+    assert [term["jet"] for term in found["terms"]] == [[[2, 3]], [[2, 1], [3, 1]], [[4, 1]]]
+    assert all(term["order"] == 3 and term["jet_t"] == [] for term in found["terms"])
+    D = SYMBOLS["D"]
+    assert sp.cancel(read(found["terms"][0]["coefficient"]) * D**2 - theory.pde.G) == 0
+    assert len(found["defect"]) == 2
+    assert found["conservative"] is False
+    assert found["vanishing"] == [2]
+
+
+def test_derive_json_with_numbers(capsys):
+    found = result(capsys, "derive", "--k", "1.5", "--masses", "1,1", "--order", "6")
+    assert (found["G"], found["I"]) == ("-D**2/96", "D**2/12")
+    assert found["defect"] == []
+    assert found["conservative"] is True
+    assert {term["order"] for term in found["terms"]} == {3, 5}
+
+
+def test_low_orders_have_no_G(capsys):
+    found = result(capsys, "derive", "--order", "2")
+    assert found["G"] is found["H"] is found["I"] is None
+    assert found["terms"] == []
+    assert found["ansatz"] == {"1": "1", "2": "m1/(m1 + m2)"}
+    status, out, _ = run(capsys, "derive", "--order", "1")
+    assert status == 0
+    assert "order 2" in out
+
+
+def test_optical_branch(capsys):
+    found = result(capsys, "derive", "--branch", "optical", "--order", "2")
+    assert found["lambda"] == "-m1/m2"
+    assert found["G"] is None
+
+
+def test_wave_json(capsys):
+    found = result(capsys, "wave", "--k", "3/2", "--masses", "1,1")
+    assert found["beta"] == "sqrt(10)/(5*D)"
+    assert found["beta_value"] == pytest.approx(math.sqrt(10) / 5, rel=1e-15)
+    assert found["p"] == "4/5"
+    assert [root["p"] for root in found["roots"]] == ["4/5", "4/3"]
+    assert set(found["fwhm"]) == set(found["fwhm_value"]) == {"strain", "force", "velocity"}
+    assert round(found["fwhm_value"]["force"], 4) == 1.4909
+    assert found["width_value"] == pytest.approx(math.pi / found["beta_value"], rel=1e-15)
+    for name in ("a", "mu", "eta", "sigma", "s", "B", "width", "speed"):
+        assert isinstance(found[name], str)
+        assert isinstance(found[f"{name}_value"], float)
+
+
+def test_wave_json_in_a_length_unit(capsys):
+    one = result(capsys, "wave", "--k", "3/2", "--masses", "0.45,0.123")
+    mm = result(capsys, "wave", "--k", "3/2", "--masses", "0.45,0.123", "--spacing", "4.76")
+    assert mm["width_value"] == pytest.approx(4.76 * one["width_value"], rel=1e-15)
+
+
+def test_symbols_have_no_values(capsys):
+    found = result(capsys, "wave", "--k", "q", "--masses", "c,b")
+    assert not [name for name in found if name.endswith("_value")]
+    assert "q" in found["beta"]
+
+
+def test_amplitudes_out_of_range_have_no_value_but_a_logarithm(capsys):
+    found = result(capsys, "wave", "--k", "1.00001", "--masses", "1,3")
+    assert math.isfinite(found["log_B_value"])
+    assert "NaN" not in json.dumps(found)
+    assert "Infinity" not in json.dumps(found)
+
+
+@pytest.mark.parametrize("command", ["derive", "wave"])
+def test_python_source_computes_what_the_theory_says(capsys, command):
+    status, out, _ = run(capsys, command, "--format", "python")
+    assert status == 0
+    module = {}
+    exec(out, module)  # our own output, which is what is on trial
+    theory = homogenize(Dimer("m1", "m2"))
+    values = {"k": 1.75, "m1": 2.0, "m2": 3.0, "D": 0.5}
+    if command == "derive":
+        expected = theory.pde.H.subs(
+            {s: sp.Rational(values[s.name]) for s in theory.pde.H.free_symbols}
+        )
+        assert module["H"](**values) == pytest.approx(float(expected), rel=1e-14)
+        table = module["coefficients"](values["k"], values["m1"], values["m2"])
+        assert table[3][((2, 1), (3, 1)), ()] * values["D"] ** 2 == pytest.approx(float(expected))
+    else:
+        wave = theory.pde.traveling_wave().at(k=1.75, m1=2, m2=3, D=0.5)
+        assert module["beta"](**values) == pytest.approx(float(wave.beta), rel=1e-14)
+        assert module["fwhm_force"](**values) == pytest.approx(float(wave.fwhm("force")), rel=1e-13)
+
+
+@pytest.mark.parametrize("command", ["derive", "wave"])
+def test_latex_is_one_balanced_display(capsys, command):
+    status, out, _ = run(capsys, command, "--format", "latex")
+    assert status == 0
+    assert out.startswith("\\begin{align}")
+    assert out.rstrip().endswith("\\end{align}")
+    assert out.count("{") == out.count("}")
+
+
+def test_text_of_the_paper(capsys):
+    status, out, _ = run(capsys, "derive", "--order", "4")
+    assert status == 0
+    for line in (
+        "  λ = 1",
+        "  b2 = m1/(m1 + m2)",
+        "  b3 = (2*m1 - m2)/(3*(m1 + m2))",
+        "  b4 = m1*(m1**2 - m1*m2 + m2**2)/(3*(m1 + m2)**3)",
+        "  G = D**2*m1**2*(k - 2)*(k - 1)/(6*(m1 + m2)**2)",
+        "  vanishing identically: D^(k+2)",
+    ):
+        assert line in out.splitlines()
+    assert "does not conserve momentum; see --closure full" in out
+
+
+def test_full_closure(capsys):
+    found = result(capsys, "derive", "--closure", "full", "--order", "6")
+    assert found["defect"] == []
+    assert found["conservative"] is False
+    assert any(term["jet_t"] for term in found["terms"])
+    assert {term["particle"] for term in found["slaved"]} == {2}
+    status, out, _ = run(capsys, "derive", "--closure", "full", "--order", "6")
+    assert status == 0
+    assert "u_x^(-1) u_2xτ u_3xτ" in out
+    assert "see --field center" in out
+
+
+def test_canonical_field(capsys):
+    chain = ("--closure", "full", "--field", "center")
+    found = result(capsys, "derive", *chain, "--masses", "m1,m2,m3")
+    assert found["conservative"] is True
+    found = result(capsys, "wave", *chain, "--k", "3/2", "--masses", "1,0.2733")
+    w = 0.2733
+    assert found["beta_value"] == pytest.approx((1 + w) / math.sqrt(10 * (1 - w + w * w)))
+    assert found["p"] == "4/5"
+    found = result(capsys, "wave", *chain)
+    assert found["speed_factor"] == "2/(k*(k + 1))"
+    assert "Abs" not in found["p"]
+
+
+def test_text_of_the_wave(capsys):
+    status, out, _ = run(capsys, "wave", "--k", "3/2", "--masses", "1,1")
+    assert status == 0
+    assert "β = sqrt(10)/(5*D) ≈ 0.632455532033676 D^-1" in out
+    assert "p = 4/5" in out
+    assert "the other root, p = 4/3" in out
+
+
+def test_expansion(capsys):
+    found = result(capsys, "expansion", "--k", "3/2", "--masses", "1", "--order", "10")
+    assert [sp.Rational(a) for a in found["c2"][:3]] == [1, -sp.S.Half, sp.Rational(2, 5)]
+    assert len(found["c2"]) == 11
+    assert set(found["fwhm_value"]) == {"strain", "force", "velocity"}
+    assert abs(found["fwhm_value"]["force"] - 1.411928) < found["error_estimate"] < 1e-4
+    assert abs(found["c2_value"] - 0.819959) < found["error_estimate"]
+    symbolic = result(capsys, "expansion", "--masses", "m1,m2", "--order", "2")
+    assert "c2_value" not in symbolic
+    status, out, _ = run(capsys, "expansion", "--k", "2", "--masses", "1", "--order", "3")
+    assert status == 0
+    assert "±" in out
+    assert "c² = Σ a_n ε^n" in out
+
+
+def test_dispersion(capsys):
+    found = result(capsys, "dispersion", "--masses", "3,1", "--order", "6")
+    assert found["acoustic"] == {"2": "1", "4": "-7/48", "6": "-59/5760"}
+    assert found["optical"]["0"] == "16/3"
+    assert result(capsys, "dispersion", "--masses", "1,2,3")["optical"] is None
+    status, out, _ = run(capsys, "dispersion")
+    assert status == 0
+    assert "κ^4: -(m1**2 - m1*m2 + m2**2)/(3*(m1 + m2)**2)" in out
+
+
+STEEL_AND_PTFE = """
+[materials]
+steel = {E = 193e9, nu = 0.3}
+ptfe = {E = 1.46e9, nu = 0.46}
+[beads]
+heavy = {mass = 0.45e-3, radius = 2.38e-3, material = "steel"}
+light = {mass = 0.123e-3, radius = 2.38e-3, material = "ptfe"}
+[chain]
+cell = ["heavy", "light"]
+"""
+
+
+@pytest.fixture
+def spheres(tmp_path):
+    """The file of the paper's dimer, with more or other lines where they are given."""
+    file = tmp_path / "spheres.toml"
+
+    def write(old="", new=""):
+        file.write_text(STEEL_AND_PTFE.replace(old, new) if old else STEEL_AND_PTFE + new)
+        return str(file)
+
+    return write
+
+
+def dimer(A):
+    return Dimer("0.45e-3", "0.123e-3", stiffnesses=(A, A), spacing="4.76e-3")
+
+
+def test_spheres_at_a_force_are_in_si_units(capsys, spheres):
+    steel, ptfe = Material("193e9", "0.3"), Material("1.46e9", "0.46")
+    A = hertz.stiffness(Sphere(1, "2.38e-3", steel), Sphere(1, "2.38e-3", ptfe))
+    wave = homogenize(dimer(A), k="3/2").pde.traveling_wave().at_force(10)
+    found = result(capsys, "wave", "--spheres", spheres(), "--force", "10")
+    for name in ("strain", "compression", "speed", "bead_velocity", "force"):
+        assert found[f"{name}_value"] == float(getattr(wave, name))
+        assert abs(sp.N(sp.sympify(found[name]) / getattr(wave, name) - 1, 50)) < 1e-40
+    for quantity in ("strain", "force", "velocity"):
+        assert found["fwhm_value"][quantity] == float(wave.fwhm(quantity))
+        assert found["fwhm_time_value"][quantity] == float(wave.fwhm(quantity, "time"))
+    assert found["stiffnesses_value"] == [float(A)] * 2
+    assert found["masses_value"] == [0.45e-3, 0.123e-3]
+    assert found["compressions_value"] == [found["compression_value"]] * 2
+    assert (found["B_value"], found["spacing_value"]) == (found["strain_value"], 0.00476)
+    assert (found["units"]["speed"], found["units"]["fwhm_time"]) == ("m/s", "s")
+    status, out, _ = run(capsys, "wave", "--spheres", spheres(), "--force", "10")
+    assert status == 0
+    for line in ("  spacing D = 0.00476 m", "  masses 0.00045, 0.000123 kg"):
+        assert line in out.splitlines()
+    assert f"speed dx/dt = {found['speed_value']:.10f}"[:22] in out
+
+
+def test_the_units_are_what_the_values_are_in(capsys, spheres):
+    """The same spheres in grams, millimetres and milliseconds: N are N, and E is in 10^6 Pa."""
+    found = result(capsys, "wave", "--spheres", spheres(), "--force", "10")
+    lines = [
+        ("193e9", "193e3"), ("1.46e9", "1.46e3"), ("2.38e-3", "2.38"), ("0.45e-3", "0.45"),
+        ("0.123e-3", "0.123"),
+    ]  # fmt: skip
+    content = STEEL_AND_PTFE
+    for old, new in lines:
+        content = content.replace(old, new)
+    other = result(capsys, "wave", "--spheres", spheres(STEEL_AND_PTFE, content), "--force", "10")
+    factors = {"kg": 1e3, "m": 1e3, "s": 1e3, "N": 1.0, "m/s": 1.0, "1/m": 1e-3}
+    factors["N/m^(3/2)"] = 1e3**-1.5
+    for name in (name.removesuffix("_value") for name in found if name.endswith("_value")):
+        factor = factors[found["units"][name]] if name in found["units"] else 1.0
+        for a, b in zip(flat(found[f"{name}_value"]), flat(other[f"{name}_value"]), strict=True):
+            assert b == pytest.approx(factor * a, rel=1e-14), name
+
+
+def flat(value):
+    return list(value.values()) if isinstance(value, dict) else np.ravel(value)
+
+
+def test_spheres_without_a_force_have_one_in_symbols(capsys, spheres):
+    found = result(capsys, "wave", "--spheres", spheres())
+    at = result(capsys, "wave", "--spheres", spheres(), "--force", "10")
+    assert found["force"] == "F"
+    assert found["fwhm_value"] == at["fwhm_value"]
+    assert not {"speed_value", "force_value", "fwhm_time_value"} & set(found)
+    speed = sp.sympify(found["speed"]).subs("F", 10)
+    assert float(speed) == pytest.approx(at["speed_value"], rel=1e-15)
+    status, out, _ = run(capsys, "wave", "--spheres", spheres())
+    assert status == 0
+    assert "·F**(1/6) m/s" in out
+
+
+def test_unequal_contacts_are_compressed_unequally(capsys, spheres):
+    file = spheres('["heavy", "light"]', '["heavy", "heavy", "light"]')
+    chain = ("--closure", "full", "--field", "center")
+    found = result(capsys, "wave", "--spheres", file, "--force", "3", *chain)
+    for A, delta in zip(found["stiffnesses_value"], found["compressions_value"], strict=True):
+        assert A * delta**1.5 == pytest.approx(3, rel=1e-14)
+    assert found["compression_value"] == pytest.approx(sum(found["compressions_value"]) / 3)
+
+
+def test_a_force_in_the_cells_own_units(capsys):
+    found = result(capsys, "wave", "--k", "3/2", "--masses", "1,1", "--force", "8")
+    assert (found["compression"], found["B"]) == ("4", "4/D")
+    assert found["speed_value"] == pytest.approx(math.sqrt(1.6), rel=1e-15)  # √(4/5 · 8^{1/3})
+    assert "units" not in found
+    found = result(capsys, "wave", "--force", "f")
+    assert found["strain"] == "f**(1/k)/D"
+    assert not [name for name in found if name.endswith("_value")]
+    status, out, _ = run(capsys, "wave", "--k", "3/2", "--masses", "m", "--force", "f")
+    assert (status, "peak contact force f:" in out) == (0, True)
+
+
+def test_spheres_in_latex_and_python_are_a_wave_as_any_other(capsys, spheres):
+    for style in ("latex", "python"):
+        given = ("--k", "3/2", "--masses", "0.45e-3,0.123e-3", "--spacing", "4.76e-3")
+        wanted = run(capsys, "wave", *given, "--format", style)
+        assert run(capsys, "wave", "--spheres", spheres(), "--format", style) == wanted
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "more", "words"),
+    [
+        ("", "", ("--k", "3/2"), "--k and --spheres are both given"),
+        ("", "", ("--masses", "m1,m2"), "--masses and --spheres are both given"),
+        ("", "", ("--stiffnesses", "1,1"), "--stiffnesses and --spheres are both given"),
+        ("", "", ("--spacing", "1"), "--spacing and --spheres are both given"),
+        ("", "", ("--force", "0"), "force is 0: it must be positive"),
+        ("", "", ("--force", "-1"), "force is -1: it must be positive"),
+        ("", "", ("--force", "1 N"), "force is '1 N': an integer, a decimal"),
+        ("", "", ("--force", ""), "force is '': an integer, a decimal"),
+        ("", "", ("--force", "V_s"), "force 'V_s': the name means the speed"),
+        ("", "", ("--force", "1", "--format", "latex"), "--format latex is for any force"),
+        ("", "", ("--order", "2"), "G"),
+        ('"light"]', '"light", "heavy"]', (), "the cell has 3 masses"),
+        ('"light"]', "1.0]", (), "spheres.toml: chain.cell number 2 is 1.0: one of heavy, light"),
+        ('"light"]', '"ligth"]', (), "chain.cell number 2 is 'ligth': did you mean light"),
+        ('["heavy", "light"]', "[]", (), "chain.cell is empty"),
+        ("[chain]", "[chains]", (), "spheres.toml: chains is unknown: did you mean chain"),
+        ("cell =", "cells =", (), "chain.cells is unknown: did you mean cell"),
+        ("", "k = 1.5", (), "chain.k is unknown: one of cell, repeat"),
+        ("0.3", "0.6", (), "materials.steel.nu is 0.6: Poisson's ratio lies between -1 and 1/2"),
+        ("193e9", "-1", (), "materials.steel.E is -1: it must be positive"),
+        ("193e9", "1e-320", (), "materials.steel.E is 1e-320: floats below 2e-308 lose"),
+        ("193e9", "nan", (), "materials.steel.E is nan: a finite number is wanted"),
+        ("193e9", '"E"', (), "materials.steel.E is 'E': a number is wanted"),
+        ("radius = 2.38e-3", "radius = 0", (), "beads.heavy.radius is 0: it must be positive"),
+        ("[chain]", "precompression = 1\n[chain]", (), "beads.precompression is 1: a table"),
+        ("[materials]", "precompression = 1\n[materials]", (), "precompression is given: the wave"),
+        ("[chain]", "[chain", (), "spheres.toml: not TOML"),
+    ],
+)
+def test_bad_spheres_are_one_line_and_status_two(capsys, spheres, old, new, more, words):
+    status, out, err = run(capsys, "wave", "--spheres", spheres(old, new), *more)
+    assert (status, out) == (2, "")
+    assert err.startswith("lwa: ")
+    assert err.count("\n") == 1
+    assert words in err
+
+
+def test_files_of_spheres_that_are_none(capsys, tmp_path):
+    os.mkfifo(tmp_path / "pipe.toml")
+    for name, words in (
+        ("missing.toml", "No such file"),
+        ("pipe.toml", "a pipe, and only regular files are read"),
+        ("spheres.txt", "a list of spheres is a file ending in .toml or .json"),
+        ("a" * 300 + ".toml", "File name too long"),
+    ):
+        status, out, err = run(capsys, "wave", "--spheres", str(tmp_path / name))
+        assert (status, out, err.count("\n")) == (2, "", 1)
+        assert words in err
+
+
+BAD = [
+    ("wave", "--force", "m1"),
+    ("wave", "--force", "0"),
+    ("wave", "--spheres", ""),
+    ("derive", "--force", "1"),
+    ("derive", "--k", "0"),
+    ("derive", "--k", "nan"),
+    ("derive", "--k", "1/0"),
+    ("derive", "--k", "__import__('os').system('true')"),
+    ("derive", "--masses", "0,1"),
+    ("derive", "--masses", "1,-2"),
+    ("derive", "--masses", "1,nan"),
+    ("derive", "--masses", "1,2,3"),
+    ("derive", "--masses", "1,,2"),
+    ("derive", "--masses", "lambda: 0,1"),
+    ("derive", "--stiffnesses", "1"),
+    ("derive", "--order", "0"),
+    ("derive", "--order", "2.5"),
+    ("derive", "--order", "99999999999999999999"),
+    ("derive", "--closure", "none"),
+    ("derive", "--field", "center"),
+    ("derive", "--closure", "full", "--field", "last"),
+    ("derive", "--closure", "full", "--branch", "optical"),
+    ("derive", "--branch", "up"),
+    ("derive", "--format", "xml"),
+    ("derive", "--spacing", "-1"),
+    ("derive", "--nonsense"),
+    ("wave", "--k", "1"),
+    ("wave", "--k", "1/2"),
+    ("wave", "--order", "3"),
+    ("wave", "--k", "3", "--masses", "1,100"),
+    ("wave", "--branch", "optical"),
+    ("dispersion", "--order", "0"),
+    ("expansion", "--order", "0"),
+    ("expansion", "--k", "1"),
+    ("expansion", "--k", "1/2", "--masses", "1"),
+    ("expansion", "--order", "100"),
+    ("dispersion", "--masses", "1,-1"),
+    ("explain",),
+]
+
+
+@pytest.mark.parametrize("arguments", BAD, ids=" ".join)
+def test_bad_input_is_one_line_and_status_two(capsys, arguments):
+    status, out, err = run(capsys, *arguments)
+    assert (status, out) == (2, "")
+    assert err.startswith("lwa: ")
+    assert err.count("\n") == 1
+
+
+def test_the_installed_command():
+    command = [sys.executable, "-c", "from lwa.command.cli import main; main()"]
+    good = subprocess.run(
+        [*command, "wave", "--k", "3/2", "--masses", "1,1"], capture_output=True, text=True
+    )
+    assert good.returncode == 0
+    bad = subprocess.run([*command, "derive", "--k", "0"], capture_output=True, text=True)
+    assert (bad.returncode, bad.stdout, bad.stderr.count("\n")) == (2, "", 1)
+
+
+def test_a_reader_that_stops_early_is_no_fault():
+    code = "import sys; from lwa.command.cli import main; main(['derive', '--order', '8'])"
+    process = subprocess.Popen(
+        [sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE
+    )
+    process.stdout.close()
+    assert process.stderr.read() == b""
+    process.stderr.close()
+    assert process.wait() in (0, 1)
+
+
+@pytest.mark.parametrize(
+    ("command", "says"),
+    [
+        ("wave --masses B,m2", "'B': the name means the peak strain"),
+        ("wave --k B", "'B': the name means the peak strain"),
+        ("wave --k V_s", "'V_s': the name means the speed"),
+        ("wave --spacing B", "'B': the name means the peak strain"),
+        ("derive --spacing k", "'k': the name means the exponent"),
+        ("wave --masses p,m2", "'p' has a meaning of its own in what `lwa wave` prints"),
+        ("wave --masses m1,ξ", "'ξ' has a meaning"),
+        ("wave --k eta", "'eta' has a meaning"),
+        ("derive --masses u,m2", "'u' has a meaning"),
+        ("derive --masses m1,b12", "'b12' has a meaning"),
+        ("derive --stiffnesses G,H --closure full", "'G' has a meaning"),
+        ("dispersion --masses kappa,1", "'kappa' has a meaning"),
+        ("expansion --masses epsilon,1", "'epsilon' has a meaning"),
+        ("expansion --masses c,1 --k n", "'c' has a meaning"),
+        (
+            "dispersion --masses 1,2 --stiffnesses 1,2 --k 1e-9",
+            "stiffness 2 is 2 and k 1/10000",
+        ),
+        ("derive --masses 1,1e999 --order 10", "more than 4000"),
+        ("wave --k 29000", "up to k = 1000"),
+        ("derive --masses 1,2,3", "--closure full"),
+    ],
+)
+def test_what_would_print_one_letter_for_two_things_is_refused(capsys, command, says):
+    status, out, err = run(capsys, *command.split())
+    assert (status, out) == (2, "")
+    assert says in err
+    assert err.count("\n") == 1
+
+
+def test_letters_of_other_commands_are_free(capsys):
+    for command in ("derive --masses p,q --k n", "dispersion --masses u,w", "wave --masses b1,c"):
+        status, out, _ = run(capsys, *command.split())
+        assert status == 0
+        assert command.split()[2].split(",")[1] in out
+
+
+def test_conservative_is_told_at_any_order(capsys):
+    for order in "1234":
+        status, out, _ = run(capsys, "derive", "--order", order, "--format", "json")
+        assert status == 0
+        assert json.loads(out)["conservative"] is False
+
+
+def test_what_takes_long_to_write_says_so(capsys, monkeypatch):
+    monkeypatch.setattr("lwa.command.cli.SECONDS_A_TERM", 10.0)
+    status, out, err = run(capsys, "derive", "--closure", "full")
+    assert status == 0
+    assert re.match(r"\d+ terms to be written: about [\d.]+ minutes\n", err)
+    monkeypatch.undo()
+    assert run(capsys, "derive", "--closure", "full") == (0, out, "")

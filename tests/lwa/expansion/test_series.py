@@ -1,0 +1,312 @@
+"""A series in ε owns its k; expansions and series are values; nobody's symbols are captured."""
+
+from __future__ import annotations
+
+import copy
+import pickle
+import re
+import signal
+import subprocess
+import sys
+from collections.abc import Callable
+from fractions import Fraction
+
+import numpy as np
+import pytest
+import sympy as sp
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from lwa import Cell, Dimer, InputError, expand
+from lwa.coefficients import Coefficients
+from lwa.command.cli import main
+from lwa.exact import real
+from lwa.expansion.effort import Effort, affordable
+from lwa.expansion.radiation import radiation
+from lwa.quantities import QUANTITIES
+
+# --- k ---
+
+
+def test_a_series_of_a_number_k_is_summed_there_only() -> None:
+    """c² of one bead and one contact A scales as A^{1/k}."""
+    stiff, unit = (expand(Cell([1], [A]), 12, k="6/5").c2.at() for A in (8, 1))
+    assert stiff.value == pytest.approx(8 ** (5 / 6) * unit.value, rel=1e-14)
+    series = expand(Cell([1], [8]), 12, k="3/2").c2
+    for call in (
+        lambda: series.at("6/5"),
+        lambda: series.at("3/2"),
+        lambda: series.partial_sum("k"),
+        lambda: series.pade("k", 1, 1),
+    ):
+        with pytest.raises(InputError, match="that of k = 3/2"):
+            call()
+
+
+@pytest.mark.parametrize("cell", [Cell([1], [8]), Cell([1, 1], [1, 8]), Cell([1, 3], [1, 2])])
+def test_k_replaces_the_symbol_wherever_it_stands(cell: Cell) -> None:
+    """Prefactor, shares of unlike contacts, radiation."""
+    k = sp.Rational(3, 2)
+    symbolic, numeric = expand(cell, 3), expand(cell, 3, k=k)
+    for read in (lambda e: e.c2, lambda e: e.fwhm("velocity"), lambda e: e.energy):
+        ours, own = read(symbolic), read(numeric)
+        assert ours.at(k).value == pytest.approx(own.at().value, rel=1e-14)
+        assert ours.at(k).error == pytest.approx(own.at().error, rel=1e-9)
+        assert sp.N(ours.partial_sum(k) / own.partial_sum(), 30) == pytest.approx(1, rel=1e-25)
+        assert sp.N(ours.pade(k, 1, 1) / own.pade(1, 1), 30) == pytest.approx(1, rel=1e-25)
+    assert symbolic.at(k=k) == numeric
+
+
+def test_a_symbol_for_k_stays_or_is_renamed() -> None:
+    series = expand(Cell([1], [8]), 2).c2
+    x = sp.Symbol("x", positive=True)
+    assert series.partial_sum("x") == series.partial_sum().xreplace({series.k: x})
+    assert series.pade(x, 1, 1) == series.pade(1, 1).xreplace({series.k: x})
+    with pytest.raises(InputError, match="has no value"):
+        series.at()
+    with pytest.raises(InputError, match="names both"):
+        expand(Cell(["x"]), 2).c2.partial_sum("x")
+
+
+def test_orders_and_degrees_are_integers() -> None:
+    series = expand(Cell([1]), np.int64(2)).c2
+    assert series.partial_sum("k", np.int64(1)) == series.partial_sum("k", 1)
+    assert series.pade("k", np.int64(1), np.int64(1)) == series.pade("k", 1, 1)
+    for call in (
+        lambda: series.partial_sum("k", True),
+        lambda: series.partial_sum("k", 3),
+        lambda: series.pade("k", 1.0, 1),
+        lambda: series.pade("k", -1, 1),
+        lambda: series.pade(1),
+        lambda: expand(Cell([1, 2]), 1).log_force(True),
+        lambda: expand(Cell([1, 2]), 1).log_force("0"),
+        lambda: expand(Cell([1, 2]), 1).profile("x", -1),
+    ):
+        with pytest.raises(InputError):
+            call()
+    wave = expand(Cell([1, 2]), 1)
+    assert wave.log_force(np.int64(1)) == wave.log_force(1)
+
+
+def test_radiation_of_irrational_shares_is_that_of_their_neighbours() -> None:
+    """Shares are generators of the ring where they are irrational, and numbers where not."""
+    near = radiation(Cell([1, 1], [1, 8]), sp.Rational(3, 2))
+    for k in (sp.Rational(3, 2) + sp.Rational(1, 10**9), sp.Rational(3, 2) - sp.sqrt(2) / 10**9):
+        found = radiation(Cell([1, 1], [1, 8]), k)
+        for name in ("contrast", "I", "optical", "lightest", "quadratic", "quartic"):
+            assert getattr(found, name) == pytest.approx(getattr(near, name), rel=1e-7)
+
+
+def test_irrational_shares_leave_no_terms_alike() -> None:
+    """Powers of 3^{1/3} are collected, as SymPy does it: a sum that is built anew is the same."""
+    for a in expand(Cell([1, 2], [1, 3]), 2, k="3/2").c2.coefficients[1:]:
+        for part in a.atoms(sp.Add):
+            assert part == sp.Add(*(sp.Mul(*term.as_ordered_factors()) for term in part.args))
+            assert len(part.args) <= 3
+
+
+def test_an_unlike_contacts_radiation_counts_in_the_error() -> None:
+    """Between rational shares the error is what its neighbours' are."""
+    errors = [expand(Cell([1, 2], [1, A]), 2, k="3/2").c2.at().error for A in ("2.99", 3, "3.01")]
+    assert errors[1] == pytest.approx((errors[0] + errors[2]) / 2, rel=1e-3)
+
+
+# --- values ---
+
+CHAINS = {
+    "equal": (lambda: expand(Cell([1]), 3)),
+    "dimer": (lambda: expand(Cell([1, "1/3"]), 2, k="3/2")),
+    "symbols": (lambda: expand(Dimer("m1", "m2"), 2)),
+    "contacts": (lambda: expand(Cell([1, 2], ["A", 3]), 1)),
+}
+
+
+@pytest.mark.parametrize("name", CHAINS)
+def test_expansions_and_series_are_known_by_what_they_were_made_from(name: str) -> None:
+    one, same = CHAINS[name](), CHAINS[name]()
+    values = [one, *(one.fwhm(q) for q in QUANTITIES), one.c2, one.momentum]
+    again = [same, *(same.fwhm(q) for q in QUANTITIES), same.c2, same.momentum]
+    assert values == again
+    assert [*map(hash, values)] == [*map(hash, again)]
+    assert len({*values}) == len(values)
+    assert [pickle.loads(pickle.dumps(v)) for v in values] == values
+    assert [copy.deepcopy(v) for v in values] == values
+    # What an expansion has computed stays behind.
+    assert len(pickle.dumps(one)) == len(pickle.dumps(CHAINS[name]()))
+    assert all("\n" not in repr(v) and len(repr(v)) < 250 for v in values)
+    if one.numeric:
+        assert pickle.loads(pickle.dumps(one.c2.at())) == same.c2.at()
+        assert pickle.loads(pickle.dumps(one.c2.radiation)) == same.c2.radiation
+
+
+def test_order_and_k_count() -> None:
+    cell = Cell([1, 2])
+    assert len({expand(cell, 1), expand(cell, 2), expand(cell, 1, k=2), expand(cell, 1)}) == 3
+
+
+def test_a_long_series_has_a_short_repr_and_latex() -> None:
+    series = expand(Cell([1]), 12).fwhm("force")
+    assert len(repr(series)) < 120
+    latex = series._repr_latex_()
+    assert latex.startswith(r"$\displaystyle \mathrm{FWHM}_\mathrm{force} = ")
+    assert r"\left(\frac{1}{10} - \frac{\log{\left(2 \right)}}{60}\right) \varepsilon" in latex
+    assert latex.endswith(r" + \dots\right)$")
+    assert expand(Cell([1]), 12)._repr_latex_() == expand(Cell([1]), 12).c2._repr_latex_()
+
+
+def test_at_gives_symbols_their_values() -> None:
+    wave = expand(Dimer("m1", "m2"), 2)
+    assert wave.at(m1=2, omega="1/2", k="3/2") == expand(Cell([2, 1]), 2, k="3/2")
+    for name, series in (("c2", wave.c2), ("force", wave.fwhm("force"))):
+        numbers = dict(zip(wave.cell.symbols[1:], (2, 1), strict=True))
+        at = wave.at(m1=2, m2=1)
+        own = at.c2 if name == "c2" else at.fwhm(name)
+        for a, b in zip(series.coefficients, own.coefficients, strict=True):
+            assert sp.simplify(a.subs(numbers) - b) == 0
+    with pytest.raises(InputError, match="m3"):
+        wave.at(m3=1)
+
+
+# --- symbols ---
+
+OURS = (
+    "X", "Z", "t", "y", "c0", "c1", "mu0", "mu1", "k0", "a0", "a1", "epsilon", "xi", "I", "P", "M",
+    "gamma", "p", "lambda", "math", "c", "omega", "x0",
+)  # fmt: skip
+
+named = st.builds(
+    lambda name, assumptions: sp.Symbol(name, **assumptions),
+    st.sampled_from(OURS),
+    st.sampled_from([{}, {"positive": True}]),
+)
+
+
+@given(names=st.lists(named, min_size=3, max_size=3, unique_by=lambda s: s.name), place=named)
+@settings(max_examples=12, deadline=None)
+def test_no_name_is_captured(names: list[sp.Symbol], place: sp.Symbol) -> None:
+    """What two masses and k are called changes nothing but their names."""
+    plain = [sp.Symbol(f"n{i}", **s._assumptions_orig) for i, s in enumerate(names)]
+    values = dict(zip(plain, (2, 5, sp.Rational(3, 2)), strict=True))
+    values |= dict(zip(names, (2, 5, sp.Rational(3, 2)), strict=True))
+    values |= {sp.Symbol("free"): sp.Rational(1, 7)}
+    ours, theirs = (expand(Cell([a, 1, b]), 1, k=k) for a, b, k in (names, plain))
+    free = sp.Symbol("free")
+    pairs = [(ours.c2.partial_sum(), theirs.c2.partial_sum())]
+    pairs += [(ours.energy.partial_sum(), theirs.energy.partial_sum())]
+    pairs += [(ours.fwhm("velocity").pade(0, 1), theirs.fwhm("velocity").pade(0, 1))]
+    mine = {place: free}
+    if place.name in {s.name for s in names}:
+        with pytest.raises(InputError, match=f"^{place.name} names"):
+            ours.profile(place)
+        with pytest.raises(InputError, match=f"^{place.name} names"):
+            ours.log_force(1, place.name)
+    else:
+        pairs += [(ours.profile(place, 2).xreplace(mine), theirs.profile(free, 2))]
+        logs = ours.log_force(1, place), theirs.log_force(1, free)
+        pairs += [(logs[0][n].xreplace(mine), logs[1][n]) for n in logs[1]]
+    for a, b in pairs:
+        assert a.free_symbols <= {*names, free}
+        assert abs(sp.N(a.subs(values) / b.subs(values), 40) - 1) < 1e-35
+
+
+def test_a_place_is_real_and_a_mass_called_like_it_is_refused() -> None:
+    assert expand(Cell([1]), 1, k=2).profile("xi").free_symbols == {sp.Symbol("xi", real=True)}
+    assert real("xi", "xi") == sp.Symbol("xi", real=True)
+    assert real("3/2", "xi") == sp.Rational(3, 2)
+    wave = expand(Cell([sp.Symbol("X"), 2]), 1)
+    with pytest.raises(InputError, match="X names a property of the chain"):
+        wave.log_force()
+    Y = sp.Symbol("Y", real=True)
+    assert wave.log_force(X="Y")[0] == -(Y**2) / (4 * wave.I)
+    numbers = {sp.Symbol("X"): 3, wave.k: 2, sp.Symbol("xi", real=True): sp.Rational(1, 7)}
+    direct = expand(Cell([3, 2]), 1, k=2).profile("1/7")
+    assert abs(sp.N(wave.profile("xi").subs(numbers) / direct, 30) - 1) < 1e-25
+
+
+@pytest.mark.parametrize("name", ["ε", "varepsilon"])
+def test_the_series_own_letter_is_refused(name: str) -> None:
+    with pytest.raises(InputError, match=r"k - 1"):
+        expand(Cell([name, 1]), 1)
+    with pytest.raises(InputError, match=r"k - 1"):
+        expand(Cell([1, 2]), 1, k=name)
+
+
+# --- effort ---
+
+
+def test_what_takes_minutes_is_said_and_what_takes_hours_refused(capsys) -> None:
+    for cell, order in ((Cell(["a", "b"]), 100), (Cell([1]), 10**18), (Cell([1, "1/50"]), 400)):
+        with pytest.raises(InputError, match=r"this takes (about|over) .* (hours|days|years)"):
+            expand(cell, order)
+    ring = Coefficients(Cell([1, "1/50"]), sp.S.One)
+    assert [*affordable(ring, 16).progress("it takes")(range(3))] == [0, 1, 2]
+    assert capsys.readouterr().err == ""
+    assert [*affordable(ring, 100).progress("it takes")(range(3))] == [0, 1, 2]
+    assert re.fullmatch(r"it takes: about .* minutes\n", capsys.readouterr().err)
+
+
+@settings(max_examples=15, deadline=None)
+@given(
+    order=st.integers(1, 200),
+    size=st.integers(1, 12),
+    symbols=st.integers(0, 12),
+    digits=st.integers(1, 99),
+)
+def test_more_never_takes_less(order: int, size: int, symbols: int, digits: int) -> None:
+    def seconds(order: int, size: int, symbols: int, digits: int) -> float:
+        masses = [*(f"n{i}" for i in range(symbols)), *[1] * size, 10**digits]
+        return Effort.of(Coefficients(Cell(masses), sp.S.One), order).seconds
+
+    at = seconds(order, size, symbols, digits)
+    assert seconds(order + 1, size, symbols, digits) > at
+    assert seconds(order, size + 1, symbols, digits) > at
+    assert seconds(order, size, symbols + 1, digits) > at
+    assert seconds(order, size, symbols, digits + 60) >= at
+
+
+@pytest.mark.parametrize(
+    "cell",
+    [
+        lambda: Cell([1, 10**5000]),
+        lambda: Cell([1, Fraction(1, 10**5000)]),
+        lambda: Cell([1], [10**5000 + 1]),
+        lambda: Cell([10**400 + 1]),
+        lambda: Cell([1, 10**200 + 1]),
+        lambda: Cell([1], [Fraction(1, 10**400 + 1)]),
+        lambda: Cell([Fraction(1, 10**40 + i) for i in range(4)]),
+    ],
+)
+def test_numbers_of_thousands_of_digits_are_refused(cell: Callable[[], Cell]) -> None:
+    with pytest.raises(InputError, match="digits"):
+        expand(cell(), 2)
+
+
+def test_k_of_thousands_of_digits_is_refused() -> None:
+    for k in (10**5000, 1 + Fraction(1, 10**400)):
+        with pytest.raises(InputError, match="digits"):
+            expand(Cell([1], [3]), 2, k=k)
+        with pytest.raises(InputError, match="digits"):
+            expand(Cell([1], [3]), 2).c2.at(k)
+
+
+def test_a_long_command_says_so_and_stops_at_an_interrupt() -> None:
+    command = ["expansion", "--masses", "1,1/50", "--order", "100"]
+    code = f"from lwa.command.cli import main; main({command})"
+    with subprocess.Popen([sys.executable, "-c", code], stderr=subprocess.PIPE, text=True) as run:
+        assert run.stderr is not None
+        first = run.stderr.readline()
+        run.send_signal(signal.SIGINT)
+        rest = run.stderr.read()
+    assert re.fullmatch(r"the expansion to ε\^100: about .* minutes\n", first)
+    assert rest.strip() == "lwa: interrupted"
+    assert run.returncode == 130
+
+
+@pytest.mark.parametrize("masses", ["a0,m2", "a_n,m2", "a1,b2"])
+def test_a_letter_prints_for_one_thing(capsys, masses: str) -> None:
+    with pytest.raises(SystemExit):
+        main(["expansion", "--masses", masses, "--order", "1"])
+    out = capsys.readouterr().out
+    letter = "c" if "b" in masses else "b"
+    assert f"Σ {letter}_n ε^n" in out
+    assert f"\n  {letter}1 = " in out

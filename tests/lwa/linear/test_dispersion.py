@@ -1,0 +1,501 @@
+"""The dispersion relation against the chain's own matrices, closed forms and the wave equation.
+
+The exact parts are compared exactly; each numerical bound says where it comes from. A singular
+value is good to some 1e-16 of the largest, which for these cells is below 20.
+"""
+
+import subprocess
+import sys
+from fractions import Fraction
+from math import factorial
+
+import mpmath
+import numpy as np
+import pytest
+import sympy as sp
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from lwa import Cell, Dimer, InputError, homogenize
+from lwa.linear.dispersion import Dispersion
+
+ROUNDING = 1e-13
+
+values = st.fractions(min_value="1/9", max_value=9, max_denominator=9)
+
+
+@st.composite
+def cells(draw, sizes=(1, 2, 3, 4)):
+    P = draw(st.sampled_from(sizes))
+    masses = draw(st.lists(values, min_size=P, max_size=P))
+    stiffnesses = draw(st.one_of(st.just(()), st.lists(values, min_size=P, max_size=P)))
+    return Cell(masses, stiffnesses=stiffnesses)
+
+
+def fraction(value):
+    return Fraction(int(value.p), int(value.q))
+
+
+def mirrored(cell):
+    """The same chain read from the right: contact i joins what P-2-i joined; the last one stays."""
+    A = cell.stiffnesses
+    return Cell(cell.masses[::-1], stiffnesses=(*A[:-1][::-1], A[-1]))
+
+
+def turned(cell, by):
+    """The same chain, its cell begun elsewhere."""
+    masses, A = cell.masses, cell.stiffnesses
+    return Cell(masses[by:] + masses[:by], stiffnesses=A[by:] + A[:by])
+
+
+# --- the exact relation -------------------------------------------------------------------------
+
+
+@given(cells(), st.sampled_from([sp.S.One, sp.Rational(1, 2)]))
+@settings(max_examples=20)
+def test_the_trace_is_the_determinant_of_the_chain(cell, k):
+    """det(K(κ) - Ω² M) Π c_i = trace - z - 1/z, z = e^{iPκ}: SymPy's determinant, P equations."""
+    omega2, z = sp.symbols("omega2 z")
+    P, c = cell.size, cell.shares(k)
+    matrix = sp.zeros(P, P)
+    for i in range(P):
+        matrix[i, i] -= P * cell.fractions[i] * omega2
+        j, phase = (i + 1, sp.S.One) if i < P - 1 else (0, z)
+        matrix[i, i] += 1 / c[i]
+        matrix[j, j] += 1 / c[i]
+        matrix[i, j] -= phase / c[i]
+        matrix[j, i] -= 1 / phase / c[i]
+    trace = sum(t * omega2**m for m, t in Dispersion(cell, k).trace.items())
+    assert sp.expand(matrix.det() * sp.prod(c) - trace + z + 1 / z) == 0
+
+
+def test_uniform_chain():
+    chain = Dispersion(Cell(["m"], stiffnesses=["A"]), "k")
+    assert chain.trace == {0: 2, 1: -1}  # Ω² = 2 - 2 cos κ = 4 sin²(κ/2)
+    cosine = {n: sp.Rational(-2 * (-1) ** (n // 2), factorial(n)) for n in range(2, 21, 2)}
+    assert chain.acoustic(20) == cosine
+    number = Dispersion(Cell([3]))
+    kappa = np.linspace(-4, 4, 101)
+    assert np.allclose(number.branches(kappa)[:, 0], 2 * abs(np.sin(kappa / 2)), 0, ROUNDING)
+
+
+def test_dimer():
+    m1, m2 = sp.symbols("m1 m2", positive=True)
+    chain = Dispersion(Cell((m1, m2)))
+    nu = m1 * m2 / (m1 + m2) ** 2
+    assert chain.trace == {0: 2, 1: -4, 2: 4 * nu}
+    sixth = sp.Rational(2, 45) - 2 * nu / 3 + 2 * nu**2
+    for n, expected in {2: 1, 4: nu - sp.Rational(1, 3), 6: sixth}.items():
+        assert sp.cancel(chain.acoustic(6)[n] - expected) == 0
+    assert chain.optical(1) == {0: (m1 + m2) ** 2 / (m1 * m2)}
+
+
+def test_dimer_closed_form():
+    """2ν Ω² = 1 ∓ √(1 - 4ν sin²κ)."""
+    for cell in (Cell([3, 1]), Cell([1, 50]), Cell([2, 5], stiffnesses=[7, 2])):
+        nu = sp.prod((*cell.fractions, *cell.shares(sp.S.One)))
+        kappa = np.linspace(0.01, 3.2, 60)
+        root = np.sqrt(1 - 4 * float(nu) * np.sin(kappa) ** 2)
+        low = 2 * np.sin(kappa) ** 2 / (1 + root)  # without cancellation
+        expected = np.sqrt(np.stack([low, (1 + root) / (2 * float(nu))], axis=-1))
+        assert np.allclose(Dispersion(cell).branches(kappa), expected, 0, ROUNDING)
+
+
+@pytest.mark.parametrize(
+    ("cell", "expected"),
+    [
+        (Cell([3, 1]), "7/48"),
+        (Cell(["1/2", "1/3", "1/6"]), "5/36"),
+        (Cell(["1/2", "1/3", "1/6"], stiffnesses=[2, "10/7", "5/9"]), "49/180"),
+        (Cell([1]), "1/12"),
+        (Cell([5, 5, 5, 5]), "1/12"),
+    ],
+)
+def test_known_I(cell, expected):
+    found = Dispersion(cell).I
+    assert found == sp.Rational(expected)
+
+
+# --- series -------------------------------------------------------------------------------------
+
+
+def product(a, b, order):
+    return [sum((a[i] * b[n - i] for i in range(n + 1)), Fraction(0)) for n in range(order + 1)]
+
+
+def exponential(rate, order):
+    return [Fraction(rate) ** n / factorial(n) for n in range(order + 1)]
+
+
+@given(cell=cells(sizes=(2,)))
+@settings(max_examples=15)
+@pytest.mark.parametrize("branch", ["acoustic", "optical"])
+def test_series_of_a_dimer_satisfy_both_equations_of_motion(cell, branch):
+    """With a_0 = 1, a_1 = ρ and s = -Ω², in powers of q = iκ, to order 12 and with zero left."""
+    order = 12
+    chain = Dispersion(cell)
+    rho = [fraction(b) for b in chain.amplitude_ratio(order, branch).values()]
+    omega2 = getattr(chain, branch)(order)
+    s = [-fraction(sp.sympify(omega2.get(n, 0))) * (-1) ** (n // 2) for n in range(order + 1)]
+    mu = [2 * fraction(x) for x in cell.fractions]
+    c0, c1 = (fraction(x) for x in cell.shares(sp.S.One))
+    one = exponential(0, order)
+    right = [a - b for a, b in zip(exponential(2, order), rho, strict=True)]  # a_2 - a_1
+    own = [b - a for a, b in zip(one, rho, strict=True)]  # a_1 - a_0
+    left = product(exponential(-2, order), right, order)  # a_0 - a_{-1}
+    first = [x / c0 - y / c1 for x, y in zip(own, left, strict=True)]
+    assert [mu[0] * x for x in s] == first
+    second = [x / c1 - y / c0 for x, y in zip(right, own, strict=True)]
+    assert [mu[1] * x for x in product(s, rho, order)] == second
+
+
+@given(cells(sizes=(1, 2, 3, 5)))
+@settings(max_examples=15)
+def test_acoustic_series_satisfies_the_relation(cell):
+    order = 12
+    chain = Dispersion(cell)
+    omega2 = [fraction(sp.sympify(chain.acoustic(order).get(n, 0))) for n in range(order + 1)]
+    total, power = [Fraction(0)] * (order + 1), exponential(0, order)
+    for t in chain.trace.values():
+        total = [x + fraction(t) * y for x, y in zip(total, power, strict=True)]
+        power = product(power, omega2, order)
+    cosine = exponential(cell.size, order)
+    assert total == [2 * x * (-1) ** (n // 2) * (n % 2 == 0) for n, x in enumerate(cosine)]
+
+
+def test_symbols_and_numbers_give_the_same_series():
+    names = ["m1", "m2", "m3", "A1", "A2", "A3"]
+    numbers = [2, 3, 5, 7, 11, 13]
+    symbols = dict(zip(sp.symbols(names, positive=True), numbers, strict=True))
+    for P, order in ((2, 6), (3, 4)):
+        symbolic = Dispersion(Cell(names[:P], stiffnesses=names[3 : 3 + P]))
+        plain = Dispersion(Cell(numbers[:P], stiffnesses=numbers[3 : 3 + P]))
+        pairs = [(symbolic.acoustic(order), plain.acoustic(order)), (symbolic.trace, plain.trace)]
+        if P == 2:
+            pairs.append((symbolic.optical(order), plain.optical(order)))
+            pairs += [
+                (symbolic.amplitude_ratio(order, branch), plain.amplitude_ratio(order, branch))
+                for branch in ("acoustic", "optical")
+            ]
+        for ours, theirs in pairs:
+            assert {n: sp.sympify(c).subs(symbols) for n, c in ours.items()} == theirs
+
+
+def test_odd_orders_add_nothing():
+    chain = Dispersion(Cell([3, 1]))
+    assert chain.acoustic(1) == {}
+    assert chain.acoustic(7) == chain.acoustic(6)
+    assert list(chain.optical(7)) == [0, 2, 4, 6]
+
+
+@pytest.mark.parametrize(
+    ("cell", "k", "branch"),
+    [
+        (Cell([3, 1]), 1, "acoustic"),
+        (Cell([3, 1]), 1, "optical"),
+        (Cell([2, 5], stiffnesses=[7, 2]), "3/2", "optical"),
+        (Cell([1, 2, 3], stiffnesses=[3, 1, 2]), 1, "acoustic"),
+        (Cell([4, 1, 1, 2, 5]), 1, "acoustic"),
+    ],
+)
+@pytest.mark.parametrize("order", [2, 4, 6])
+def test_the_error_of_the_series_falls_with_the_next_power(cell, k, branch, order):
+    chain = Dispersion(cell, k)
+    kappa = np.geomspace(0.04, 0.08, 9)
+    exact = chain.branches(kappa)[:, 0 if branch == "acoustic" else -1] ** 2
+    series = sum(float(c) * kappa**n for n, c in getattr(chain, branch)(order).items())
+    slope = np.polyfit(np.log(kappa), np.log(abs(exact - series)), 1)[0]
+    # The power after the next bends the line by its coefficient over the next one's times κ²
+    # (below 0.0064, the coefficients growing less than tenfold), rounding by 1e-15 in 0.04^8.
+    assert slope == pytest.approx(2 * (order // 2) + 2, abs=0.1)
+
+
+# --- against the wave equation ------------------------------------------------------------------
+
+
+@given(cells(), st.sampled_from([1, sp.Rational(1, 3)]))
+@settings(max_examples=20)
+def test_I_is_the_wave_equation_s(cell, k):
+    # k = 1 and 1/3: A^{-1/k} is rational
+    pde = homogenize(cell, 4, k=k, closure="full", field="center").pde
+    assert Dispersion(cell, k).I * cell.spacing**2 == pde.I
+
+
+def test_I_is_the_wave_equation_s_where_the_shares_are_roots():
+    cell = Cell(["m1", "m2"], stiffnesses=["A1", 3])
+    for k in (sp.Rational(3, 2), sp.Symbol("k", positive=True)):
+        pde = homogenize(cell, 4, k=k, closure="full", field="center").pde
+        difference = Dispersion(cell, k).I - pde.I / cell.spacing**2
+        assert sp.simplify(difference) == 0
+
+
+@pytest.mark.parametrize("field", ["first", "center"])
+@pytest.mark.parametrize(
+    "cell",
+    [
+        Cell([3, 1]),
+        Cell([2, 5], stiffnesses=[7, 2]),
+        Cell([1, 2, 3]),
+        Cell([2, 1, 4], stiffnesses=[3, 1, 2]),
+    ],
+    ids=str,
+)
+def test_the_linear_wave_equation_is_the_series_to_order_12(cell, field):
+    pde = homogenize(cell, 12, k=1, closure="full", field=field).pde
+    found = {2: sp.Integer(1)}
+    for terms in pde.coefficients.values():
+        for jet, coefficient in terms.items():
+            assert not jet.t
+            ((i, e),) = jet.x
+            assert e == 1
+            found[i] = coefficient * (-1) ** (i // 2 + 1)  # -Ω² = Σ coefficient (iκ)^i
+    assert found == Dispersion(cell).acoustic(12)
+
+
+@pytest.mark.parametrize("branch", ["acoustic", "optical"])
+@pytest.mark.parametrize("stiffnesses", [(), ("A1", "A2")])
+def test_the_dimer_s_ansatz_is_the_amplitude_ratio(branch, stiffnesses):
+    cell = Dimer("m1", "m2", stiffnesses=stiffnesses)
+    order = 6 if stiffnesses else 12
+    theory = homogenize(cell, order, k=1, branch=branch)
+    ratio = Dispersion(cell).amplitude_ratio(order, branch)
+    assert ratio[0] == theory.amplitude_ratio
+    for n, b in theory.ansatz.items():
+        assert sp.cancel(ratio[n] - theory.amplitude_ratio * b) == 0
+    if branch == "optical":  # Ω² in units of its own at κ = 0
+        series = Dispersion(cell).optical(order)
+        for n, terms in theory.pde.coefficients.items():
+            if n < order:
+                found = sum(terms.values()) * (-1) ** (n // 2 + 1)
+                assert sp.cancel(found - sp.sympify(series.get(n, 0)) / series[0]) == 0
+
+
+def test_precompressed_chain():
+    """Springs k A_i δ_i^{k-1} under the force 1, in time t, against Ω with the theory's time."""
+    k = 1.5
+    m, A = np.array([2.0, 1.0, 3.0]), np.array([1.0, 5.0, 2.0])
+    cell = Cell(m, stiffnesses=A, spacing=1)
+    delta = A ** (-1 / k)
+    springs = k * A * delta ** (k - 1)
+    for kappa in (0.3, 1.0):
+        K = np.zeros((3, 3), complex)
+        for i in range(3):
+            j, phase = (i + 1) % 3, 1 if i < 2 else np.exp(3j * kappa)
+            K[i, i] += springs[i]
+            K[j, j] += springs[i]
+            K[i, j] -= springs[i] * phase
+            K[j, i] -= springs[i] / phase
+        frequency = np.sqrt(np.linalg.eigvalsh(K / np.sqrt(np.outer(m, m))))
+        # p^{k-1} u_xx: a mean strain p makes the speed in τ p^{(k-1)/2}
+        scale = float(cell.time_scale(sp.Rational(3, 2))) * delta.mean() ** ((k - 1) / 2)
+        ours = Dispersion(cell, k).branches(kappa) * scale
+        assert np.allclose(ours, frequency, 0, ROUNDING * frequency[-1])
+
+
+# --- numbers ------------------------------------------------------------------------------------
+
+
+def test_shapes():
+    chain = Dispersion(Cell([1, 2, 3]))
+    assert chain.branches(1).shape == chain.group_velocity(1).shape == (3,)
+    grid = np.linspace(0, 1, 8).reshape(2, 4)
+    assert chain.branches(grid).shape == chain.group_velocity(grid).shape == (2, 4, 3)
+    assert np.array_equal(chain.branches(grid)[1, 2], chain.branches(grid[1, 2]))
+    assert chain.branches([]).shape == (0, 3)
+    assert np.array_equal(chain.branches([sp.Rational(1, 2)]), chain.branches([0.5]))
+    assert chain.branches(grid).dtype == float
+
+
+def test_long_waves_keep_their_digits():
+    # Eigenvalues Ω² with an error of 1e-16 would leave nothing of Ω = 1e-8; the next term of the
+    # series is below 1e-20.
+    chain = Dispersion(Cell([1, 3, 2], stiffnesses=[1, 2, 3]))
+    kappa = np.array([1e-8, 1e-6, 1e-4])
+    series = kappa * (1 - float(chain.I) * kappa**2 / 2)
+    assert np.all(abs(chain.branches(kappa)[:, 0] - series) < 1e-15)
+
+
+@given(cells(sizes=(2, 3, 4, 5)), st.floats(0, 6))
+@settings(max_examples=25)
+def test_one_chain_many_cells(cell, kappa):
+    """Where the cell begins, which way it is read, and how often it repeats do not matter."""
+    chain = Dispersion(cell)
+    for other in (mirrored(cell), *(turned(cell, by) for by in range(1, cell.size))):
+        same = Dispersion(other)
+        assert same.trace == chain.trace
+        assert same.acoustic(8) == chain.acoustic(8)
+        assert np.allclose(same.branches(kappa), chain.branches(kappa), 0, 2e-13)
+    double = Dispersion(Cell(cell.masses * 2, stiffnesses=cell.stiffnesses * 2))
+    assert double.acoustic(8) == chain.acoustic(8)
+    folded = chain.branches([kappa, kappa + np.pi / cell.size]).ravel()
+    assert np.allclose(double.branches(kappa), np.sort(folded), 0, 2e-13)
+
+
+def test_equal_masses_unfold():
+    chain = Dispersion(Cell([7, 7]))
+    cosine = {n: sp.Rational(2 * (-1) ** (n // 2), factorial(n)) for n in range(0, 13, 2)}
+    assert chain.optical(12) == cosine | {0: 4}  # 2 + 2 cos κ, the chain's branch seen from π
+    kappa = np.linspace(0, np.pi / 2, 30)
+    expected = np.stack([2 * np.sin(kappa / 2), 2 * np.cos(kappa / 2)], axis=-1)
+    assert np.allclose(chain.branches(kappa), expected, 0, ROUNDING)
+    for P in (2, 3, 4, 8):
+        assert np.allclose(np.diff(Dispersion(Cell([1] * P)).gaps()), 0, 0, ROUNDING)
+
+
+def high_precision(cell, kappa, branch):
+    """Ω by mpmath's Hermitian eigenvalues."""
+    P = cell.size
+    matrix = mpmath.matrix(P, P)
+    for i, share in enumerate(cell.shares(sp.S.One)):
+        j, phase = (i + 1, 1) if i < P - 1 else (0, mpmath.expj(P * kappa))
+        spring = mpmath.mpf(share.q) / share.p
+        matrix[i, i] += spring
+        matrix[j, j] += spring
+        matrix[i, j] -= spring * phase
+        matrix[j, i] -= spring / phase
+    root = [mpmath.sqrt(mpmath.mpf(P * x.p) / x.q) for x in cell.fractions]
+    for i in range(P):
+        for j in range(P):
+            matrix[i, j] /= root[i] * root[j]
+    return mpmath.sqrt(mpmath.eighe(matrix, eigvals_only=True)[branch])
+
+
+CELLS = [
+    Cell([3, 1]),
+    Cell([1, 2, 3], stiffnesses=[3, 1, 2]),
+    Cell([1, 1, 5, 2], stiffnesses=[1, 4, 1, 1]),
+]
+
+
+@pytest.mark.parametrize("cell", CELLS, ids=str)
+def test_group_velocity_is_the_derivative_to_all_digits(cell):
+    chain = Dispersion(cell)
+    with mpmath.workdps(40):
+        for kappa in (0.2, 1.3):
+            for branch in range(cell.size):
+                slope = mpmath.diff(lambda q, j=branch: high_precision(cell, q, j), kappa)
+                omega = high_precision(cell, kappa, branch)
+                assert abs(chain.branches(kappa)[branch] - omega) < ROUNDING
+                # vectors carry the rounding over the distance to the next branch, here above 0.1
+                assert abs(chain.group_velocity(kappa)[branch] - slope) < 10 * ROUNDING
+
+
+@pytest.mark.parametrize("cell", CELLS, ids=str)
+def test_group_velocity_against_differences(cell):
+    chain, h = Dispersion(cell), 1e-5
+    kappa = np.linspace(-0.95, 0.95, 12) * np.pi / cell.size
+    difference = (chain.branches(kappa + h) - chain.branches(kappa - h)) / (2 * h)
+    # h²/6 times the third derivative (up to some 100 near band edges) and 1e-15/h
+    assert np.allclose(chain.group_velocity(kappa), difference, 0, 1e-8)
+
+
+@pytest.mark.parametrize("P", [1, 2, 3, 4, 8, 30])
+def test_group_velocity_at_kinks_is_the_slope_to_the_right(P):
+    """The uniform chain folded into the cell: branches touch at κ = 0 and π/P."""
+    chain = Dispersion(Cell([1] * P))
+    for kappa in (0.0, np.pi / P):
+        omega = chain.branches(kappa)
+        # Ω = 2|sin(q/2)| has the slopes ± cos(q/2): of two that touch the lower one falls
+        slope = np.sqrt(abs(1 - (omega / 2) ** 2))
+        sign = np.ones(P)
+        sign[0 if kappa else 1 :: 2] = -1  # at κ = 0 the lowest one starts upwards
+        # at the top the slope is zero and 1 - Ω²/4 a rounding error, of which √ is taken
+        assert np.allclose(chain.group_velocity(kappa), sign * slope, 0, 1e-7)
+
+
+def test_a_narrow_gap_is_no_kink():
+    chain = Dispersion(Cell([1, "1.0000001"]))
+    kappa = [0.0, np.pi / 2]
+    # at the edges of a gap of 7e-8 the vectors are good to 1e-16/7e-8
+    assert np.allclose(chain.group_velocity(kappa), [[1, 0], [0, 0]], 0, 1e-7)
+
+
+@given(cells(sizes=(1, 2, 3, 4, 5)))
+@settings(max_examples=25)
+def test_bands(cell):
+    chain = Dispersion(cell)
+    edges, gaps = chain.band_edges(), chain.gaps()
+    assert edges.shape == (cell.size, 2)
+    assert gaps.shape == (cell.size - 1, 2)
+    inside = chain.branches(np.linspace(-7, 7, 301))
+    assert np.all(inside >= edges[:, 0] - ROUNDING)
+    assert np.all(inside <= edges[:, 1] + ROUNDING)
+    assert np.all(np.diff(gaps) > -ROUNDING)
+    # a zone is crossed in one direction, lowest branch upwards
+    half = np.linspace(0, np.pi / cell.size, 50)
+    direction = (-1.0) ** np.arange(cell.size)
+    assert np.all(np.diff(chain.branches(half), axis=0) * direction > -ROUNDING)
+
+
+def test_dimer_gap():
+    # M = 4 of masses 3 and 1: 2 m Ω²/M = 4 where one sublattice rests
+    assert np.allclose(Dispersion(Cell([3, 1])).gaps(), np.sqrt([[4 / 3, 4]]), 0, ROUNDING)
+
+
+# --- refusals -----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("kappa", "message"),
+    [
+        (float("nan"), "kappa is nan"),
+        ([0.1, float("inf")], "kappa is inf"),
+        ("0.1", "kappa is '0.1'"),
+        (1j, "kappa is 1j"),
+        (None, "kappa is None|kappa is nan"),
+        ([[1], [2, 3]], "kappa is"),
+        (sp.Symbol("q"), "kappa is q"),
+    ],
+)
+def test_bad_wavenumbers(kappa, message):
+    chain = Dispersion(Cell([1, 2]))
+    for function in (chain.branches, chain.group_velocity):
+        with pytest.raises(InputError, match=message):
+            function(kappa)
+
+
+@pytest.mark.parametrize("order", [0, -2, 2.0, "4", True, None])
+def test_bad_orders(order):
+    chain = Dispersion(Cell([1, 2]))
+    for function in (chain.acoustic, chain.optical, chain.amplitude_ratio):
+        with pytest.raises(InputError, match=f"order is {order!r}"):
+            function(order)
+
+
+@pytest.mark.parametrize("cell", [Cell([1, 2]), Cell(["a", "b", "c"], stiffnesses=["d", "e", "f"])])
+def test_orders_beyond_reach(cell):
+    with pytest.raises(InputError, match=r"order is 10000: .* lower order"):
+        Dispersion(cell).acoustic(10000)
+
+
+def test_cells_without_these_series():
+    for function in ("optical", "amplitude_ratio"):
+        with pytest.raises(InputError, match="1 mass has no optical branch"):
+            getattr(Dispersion(Cell([1])), function)(4)
+        with pytest.raises(InputError, match=r"not 3.*numerical branches"):
+            getattr(Dispersion(Cell([1, 2, 3])), function)(4)
+    with pytest.raises(InputError, match="branch is 'up'"):
+        Dispersion(Cell([1, 2])).amplitude_ratio(4, "up")
+
+
+def test_symbols_have_no_numerical_branches():
+    with pytest.raises(InputError, match="'m2' has no value"):
+        Dispersion(Cell([1, "m2"])).branches(1)
+    with pytest.raises(InputError, match="'k' has no value"):
+        Dispersion(Cell([1, 2], stiffnesses=[1, 2]), "k").band_edges()
+    # equal contacts have equal shares whatever k and A are
+    assert Dispersion(Cell(["m"], stiffnesses=["A"]), "k").branches(np.pi) == pytest.approx(2)
+    with pytest.raises(InputError, match="than a float can tell"):
+        Dispersion(Cell(["1e400", 1])).branches(1)
+
+
+def test_bad_chains():
+    with pytest.raises(InputError, match="cell is "):
+        Dispersion([1, 2])
+    with pytest.raises(InputError, match="k is 0"):
+        Dispersion(Cell([1]), 0)
+
+
+def test_importing_it_does_not_load_numpy():
+    code = "import lwa.linear.dispersion, sys; sys.exit('numpy' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
