@@ -9,11 +9,11 @@
 1.4119
 """
 
-from validation.lattice import Run, simulate
-from validation.materials import Bead, Material
-from validation.measure import Pulse, measure
-from validation.scene import Scene, SceneError
-from validation.solitary import ExactWave, exact_wave
+from validation.lattice.simulate import Run, simulate
+from validation.pulses.pulse import Pulse, measure
+from validation.scenes.materials import Bead, Material
+from validation.scenes.scene import Scene, SceneError
+from validation.waves.solver import ExactWave, exact_wave
 
 __all__ = [
     "Bead",

@@ -17,34 +17,34 @@ from tqdm import tqdm
 from lwa.command.terminal import quantities, quantity, run
 from lwa.duration import announce
 from lwa.exact import InputError
-from validation import experiments
-from validation.accuracy import NAMES
-from validation.accuracy import accuracy as run_accuracy
-from validation.atlas import Sweep
-from validation.checked import SceneError
-from validation.effort import Effort
-from validation.executors import cluster, processes
-from validation.figures import figures as run_figures
-from validation.files import output_file
-from validation.gallery import Figures
-from validation.hard import CASES
-from validation.hard import hard as run_hard
-from validation.lattice import COMPILED, METHODS, IntegrationError
-from validation.limits import limits as run_limits
-from validation.peers import PeerError
-from validation.plots import SUFFIXES, plot_file, save
-from validation.portrait import ExactWave, Resonances
-from validation.record import TOLERANCE, record
-from validation.report import STORED, document, store, text
-from validation.resonances import resonances
-from validation.scene import Scene
-from validation.scenefile import read
-from validation.solitary import exact_wave
-from validation.steady import STRETCH
-from validation.sweep import SweepError, axis
-from validation.sweep import sweep as run_sweep
-from validation.verdicts import Hard
-from validation.workprecision import Accuracy
+from validation.lattice.effort import Effort
+from validation.lattice.simulate import COMPILED, METHODS, IntegrationError
+from validation.pulses.sensors import TOLERANCE, record
+from validation.pulses.steady import STRETCH
+from validation.report.figure import SUFFIXES, plot_file, save
+from validation.report.files import output_file
+from validation.report.text import STORED, document, store, text
+from validation.scenes.checks import SceneError
+from validation.scenes.scene import Scene
+from validation.scenes.scenefile import read
+from validation.studies.accuracy.integrators import NAMES
+from validation.studies.accuracy.integrators import accuracy as run_accuracy
+from validation.studies.accuracy.peers import PeerError
+from validation.studies.accuracy.workprecision import Accuracy
+from validation.studies.exact import ExactWave, Resonances
+from validation.studies.hard.cases import CASES
+from validation.studies.hard.cases import hard as run_hard
+from validation.studies.hard.verdicts import Hard
+from validation.studies.limits import limits as run_limits
+from validation.studies.porter2008 import experiment
+from validation.studies.porter2008.figures import figures as run_figures
+from validation.studies.porter2008.gallery import Figures
+from validation.studies.sweep.atlas import Sweep
+from validation.studies.sweep.executors import cluster, processes
+from validation.studies.sweep.sweep import SweepError, axis
+from validation.studies.sweep.sweep import sweep as run_sweep
+from validation.waves.resonances import resonances
+from validation.waves.solver import exact_wave
 
 Command = Callable[..., Any]
 
@@ -145,8 +145,8 @@ def paper(
     picture: Path | None,
 ) -> None:
     """The steel:PTFE chain of the paper: speed, peak force and FWHM."""  # fmt: skip
-    g = experiments.GRAVITY if gravity else 0.0
-    result = experiments.paper(_number(velocity, "velocity"), beads, sensors, g, _run)
+    g = experiment.GRAVITY if gravity else 0.0
+    result = experiment.paper(_number(velocity, "velocity"), beads, sensors, g, _run)
     _show(result, style, picture)
 
 

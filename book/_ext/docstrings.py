@@ -103,7 +103,8 @@ class Modules(SphinxDirective):
         lines: list[str] = []
         for found in pkgutil.walk_packages(import_module(package).__path__, f"{package}."):
             if not any(f"{found.name}.".startswith(name) for name in hidden):
-                lines += [found.name, "^" * len(found.name), "", f".. automodule:: {found.name}", ""]
+                name = found.name
+                lines += [name, "^" * len(name), "", f".. automodule:: {name}", ""]
         return self.parse_text_to_nodes("\n".join(lines), allow_section_headings=True)
 
 

@@ -12,8 +12,8 @@ A file of spheres holds, in units that agree (SI if A is to be in N/m^{3/2})::
     [chain]
     cell = ["ball", "ball"]       # names of beads, in their order
 
-These are tables of a scene (`validation.scenefile`), and any scene of beads without precompression
-is such a file: what else it says about its finite chain is not asked for here.
+These are tables of a scene (`validation.scenes.scenefile`), and any scene of beads without
+precompression is such a file: what else it says about its finite chain is not asked for here.
 """
 
 from __future__ import annotations

@@ -2,7 +2,7 @@
 
 import pytest
 
-from validation.limits import limits
+from validation.studies.limits import limits
 
 
 @pytest.fixture(scope="session")

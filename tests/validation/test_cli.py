@@ -15,9 +15,9 @@ import pytest
 from click.testing import CliRunner
 
 from validation import cli
-from validation.lattice import IntegrationError
-from validation.limits import Limits
-from validation.report import document, text
+from validation.lattice.simulate import IntegrationError
+from validation.report.text import document, text
+from validation.studies.limits import Limits
 
 COMMAND = Path(sys.executable).with_name("lwa-validate")
 
@@ -187,8 +187,8 @@ def test_an_output_that_cannot_be_is_refused_before_the_work(
     os.mkfifo(f"pipe{suffix}")
     before = sorted(tmp_path.iterdir())
     monkeypatch.setattr(cli, "record", None)
-    monkeypatch.setattr(cli.experiments, "paper", None)
-    monkeypatch.setattr("validation.sweep._compute", None)
+    monkeypatch.setattr(cli.experiment, "paper", None)
+    monkeypatch.setattr("validation.studies.sweep.sweep._compute", None)
     status, out, err = run(capsys, *command, option, f"{name}{suffix}")
     assert (status, out, err.count("\n")) == (2, "", 1)
     assert err.startswith(f"lwa-validate: {option[2:]} is {name[:50]}")
@@ -409,8 +409,8 @@ def test_runs_beyond_reason_are_one_line(
 ):
     monkeypatch.chdir(scene_file.parent)
     scene_file.write_text(content)
-    monkeypatch.setattr("validation.lattice.integrate", None)
-    monkeypatch.setattr("validation.engine.advance", None)
+    monkeypatch.setattr("validation.lattice.simulate.integrate", None)
+    monkeypatch.setattr("validation.lattice.engine.advance", None)
     status, out, err = run(capsys, "run", "scene.toml", "--out", "o.json", *options)
     assert (status, out, err.count("\n")) == (2, "", 1)
     assert re.match(f"lwa-validate: {message}", err), err

@@ -8,8 +8,8 @@ import sympy as sp
 from lwa import Cell, Material, Sphere, canonical_wave, homogenize
 from lwa.spheres.hertz import stiffness
 from validation import Scene, exact_wave, measure, simulate
-from validation.materials import PTFE_BEAD, STEEL_BEAD, Bead, contact_stiffness
-from validation.measure import speed
+from validation.pulses.pulse import speed
+from validation.scenes.materials import PTFE_BEAD, STEEL_BEAD, Bead, contact_stiffness
 
 FROM, TO = 50, 60
 """Contacts between which the pulse is timed; at 50 sites it is the lattice's own wave to 1e-8."""

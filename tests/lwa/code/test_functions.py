@@ -14,13 +14,13 @@ import pytest
 import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from tests.lwa.code.compilers import compiled
 
 from lwa import Cell, Dimer, InputError, NoSolitaryWave, canonical_wave, homogenize
 from lwa.code.functions import in_order, wave_functions
 from lwa.code.languages import LANGUAGES
 from lwa.code.writer import Function, wrapped
 from lwa.command.cli import main
+from tests.lwa.code.compilers import compiled
 
 EXPONENTS = (
     1.01,

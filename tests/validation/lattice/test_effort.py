@@ -1,0 +1,220 @@
+"""What a run takes is known before it starts, and no scene makes it run on or return no number."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from validation.lattice import effort
+from validation.lattice.simulate import COMPILED, METHODS, IntegrationError, simulate
+from validation.pulses.sensors import record
+from validation.scenes.scene import Scene, SceneError
+from validation.scenes.scenefile import scene
+
+
+def struck(n, omega=1.0, k=1.5, **rest):
+    return Scene(
+        masses=(1.0, omega) * (n // 2), stiffnesses=(1.0,) * (n - 1), k=k,
+        **({"velocities": (1.0,), "duration": 25.0} | rest),
+    )  # fmt: skip
+
+
+PRESSED = Scene(
+    masses=(1, 0.3, 2), stiffnesses=(1, 2), wall=1, k=1.5, precompression=1, duration=50,
+    velocities=(0, 0.8, -0.6),
+)  # fmt: skip
+
+
+def told(what, **options):
+    """The efforts that a run shows, and the shares that it tells, without running for long."""
+    efforts, shares = [], []
+
+    class Shown:
+        def __init__(self, effort):
+            efforts.append(effort)
+
+        def __enter__(self):
+            return shares.append
+
+        def __exit__(self, *_):
+            return None
+
+    return simulate(what, progress=Shown, **options), efforts, shares
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("what", [struck(20), struck(20, 0.01), struck(20, 0.5, 1.0), PRESSED])
+@pytest.mark.parametrize("rtol", [1e-4, 1e-6, 1e-10])
+def test_the_steps_of_scipys_methods(method, what, rtol):
+    """From an eighth to three times as many as the module says; the bound on them is 10."""
+    rtol = max(rtol, 1e-7) if method == "RK23" else rtol
+    run, (found,), shares = told(what, method=method, rtol=rtol, atol=rtol)
+    steps = what.duration / run.step
+    assert 1 / 8 < steps / (found.steps - effort._FEWEST) < 3
+    assert shares == sorted(shares)
+    assert shares[-1] == 1
+
+
+@pytest.mark.parametrize("method", COMPILED)
+def test_the_steps_of_compiled_methods_are_exact(method):
+    run, (found,), _ = told(struck(20), method=method, rtol=1e-5, window=False)
+    assert math.ceil(found.steps) == round(25 / run.step)
+    assert found.beads == 20
+
+
+def test_a_window_moves_a_part_of_the_beads():
+    run, (found,), _ = told(struck(400, duration=300.0), method="SRKN14", rtol=1e-5, window=True)
+    assert run.window is not None
+    moved = run.bead_evaluations / run.evaluations
+    assert 0.5 < moved / found.beads < 2
+
+
+def test_a_compiled_run_looks_up_on_the_way(monkeypatch):
+    """In the same bits as in one go."""
+    whole = told(struck(100, 0.3, duration=90.0, contact_sensors=(50,)), method="SRKN14")
+    monkeypatch.setattr("validation.lattice.engine._GLANCE", 1e-4)
+    parts = told(struck(100, 0.3, duration=90.0, contact_sensors=(50,)), method="SRKN14")
+    assert len(whole[2]) <= 2
+    assert len(parts[2]) > 20
+    assert parts[2] == sorted(parts[2])
+    for name in ("contact_force", "displacements", "velocities"):
+        np.testing.assert_array_equal(getattr(whole[0], name), getattr(parts[0], name))
+    assert whole[0].window.decay == parts[0].window.decay
+
+
+@pytest.mark.parametrize("method", ["DOP853", "SRKN14"])
+def test_a_run_can_be_interrupted(method):
+    class Interrupting:
+        def __init__(self, effort):
+            pass
+
+        def __enter__(self):
+            return self.tell
+
+        def tell(self, share):
+            raise KeyboardInterrupt
+
+        def __exit__(self, *_):
+            return None
+
+    with pytest.raises(KeyboardInterrupt):
+        simulate(struck(20), method=method, progress=Interrupting)
+
+
+BEYOND = [
+    (struck(20, 1e-12), {}, r"duration is 25: this makes .* of DOP853, about .* hours; 6 hours are"
+                            r" the most; SRKN14 takes about .*"),
+    (struck(20, 1e-300), {}, "duration is 25: this makes .* steps of DOP853, over 1000 years.*"),
+    (struck(20, duration=1e300), {}, "duration is 1e.300: .*"),
+    (struck(20, 1e-16), {"method": "Verlet"}, "duration is 25: .* of Verlet, .* days; 6 hours.*"),
+    (struck(20), {"method": "Verlet", "step": 1e-12}, "duration is 25: this makes 2.5e.13 steps.*"),
+    (struck(20, bead_sensors=(1,), samples=10**9), {}, "samples is 1e.09: with 1 sensors and 20 be"
+                                                       "ads DOP853 takes .* GB; 4 GB are the most"),
+    (struck(20, samples=10**12), {"method": "S6"}, "samples is 1e.12: .*"),
+    (struck(20_000), {"method": "LSODA"}, "samples is 1001: .*20000 beads LSODA takes 13 GB; .*"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("what", "options", "message"), BEYOND, ids=[b[2][:40] for b in BEYOND])
+def test_what_is_beyond_reason_is_refused_before_it_starts(monkeypatch, what, options, message):
+    monkeypatch.setattr("validation.lattice.simulate.integrate", None)
+    monkeypatch.setattr("validation.lattice.engine.advance", None)
+    with pytest.raises(SceneError, match=f"^{message}$"):
+        simulate(what, **options)
+
+
+def test_an_adaptive_method_has_a_bound_on_its_steps(monkeypatch):
+    """Here rounding hides the motion: the steps would shrink to a millionth."""
+    pressed = struck(20, wall=1.0, gravity=1e10, duration=0.05)
+    monkeypatch.setattr(effort, "_FEWEST", 10)
+    with pytest.raises(
+        IntegrationError, match=r"^\d+ steps of DOP853 reach t = .* for all of 0.05: "
+    ):
+        simulate(pressed, rtol=1e-12, atol=1e-12)
+    with pytest.raises(SceneError, match=r"^rtol is 1e-10: rounding of the static compression, "):
+        record(pressed)
+
+
+# --- whatever a file holds ------------------------------------------------------------------
+
+powers = st.builds(lambda m, e: m * 10.0**e, st.floats(1, 9.99), st.integers(-320, 307))
+sizes = st.sampled_from([1.0, 1.0, 0.5, 2]) | st.floats(1e-3, 1e3) | powers
+reals = sizes | st.builds(lambda x: -x, sizes) | st.just(0.0)
+wrong = st.sampled_from([None, True, "1", [], {}, float("nan"), float("inf"), 10**400, 10**5000])
+
+
+def row(numbers, most):
+    return st.lists(numbers, min_size=1, max_size=most)
+
+
+def table(**entries):
+    return st.fixed_dictionaries({}, optional=entries)
+
+
+files = st.fixed_dictionaries(
+    {
+        "duration": sizes,
+        "chain": st.fixed_dictionaries(
+            {"cell": row(sizes, 4), "k": st.sampled_from([1.5, 1, 1.3, 3]) | sizes},
+            optional={"repeat": st.integers(1, 4), "stiffnesses": sizes, "spacings": sizes},
+        ),
+    },
+    optional={
+        "samples": st.integers(2, 300),
+        "gravity": reals,
+        "precompression": reals,
+        "wall": table(stiffness=sizes),
+        "start": table(
+            velocities=row(reals, 4), displacements=row(reals, 4), overlap=st.just(True)
+        ),
+        "defects": st.lists(
+            st.fixed_dictionaries({"bead": st.integers(1, 4), "mass": sizes})
+            | st.fixed_dictionaries({"contact": st.integers(1, 4), "stiffness": sizes}),
+            max_size=3,
+        ),
+        "sensors": table(beads=row(st.integers(1, 4), 3), contacts=row(st.integers(1, 4), 3)),
+    },
+)
+
+
+@st.composite
+def spoiled(draw):
+    """A file, and sometimes something else in one place of it."""
+    content = at = draw(files)
+    if draw(st.integers(0, 3)) == 0:
+        while True:
+            key = draw(st.sampled_from(sorted(at) if isinstance(at, dict) else range(len(at))))
+            if not isinstance(at[key], dict | list) or not at[key]:
+                break
+            at = at[key]
+        at[key] = draw(wrong)
+    return content
+
+
+@given(spoiled(), st.sampled_from(["DOP853", "LSODA", "SRKN14", "Verlet"]))
+@settings(max_examples=100)
+def test_a_file_makes_finite_numbers_or_one_line(content, method):
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(effort, "LONGEST", 0.2)
+        try:
+            what = scene(content)
+            made = record(what, method=method, rtol=1e-6)
+        except (SceneError, IntegrationError) as error:
+            message = str(error)
+            assert message
+            assert "\n" not in message
+            assert len(message) < 250
+            return
+    run = made.run
+    for name in ("contact_force", "compression", "bead_force", "bead_velocity", "velocities"):
+        assert np.isfinite(getattr(run, name)).all(), name
+    assert np.isfinite(run.displacements).all()
+    assert math.isfinite(run.energy_drift)
+    assert run.momentum_drift is None or math.isfinite(run.momentum_drift)
+    for sensor in (*made.sensors, *made.speeds):
+        for number in sensor.numbers.values():
+            assert math.isfinite(number.value)
+            assert math.isfinite(number.error)
+        assert sensor.missing is None or "\n" not in sensor.missing

@@ -1,0 +1,267 @@
+"""The compiled engine against exact motions, SciPy's reference, and its own whole chain."""
+
+import math
+import subprocess
+import sys
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from validation.lattice.schemes import SCHEMES
+from validation.lattice.simulate import COMPILED, IntegrationError, simulate
+from validation.pulses.pulse import measure
+from validation.scenes.scene import Scene, SceneError
+
+
+def loaded(k, duration=8.0, **rest):
+    """Six beads under such weight that no contact opens: a smooth problem."""
+    masses, n = (1.0, 0.3, 2.0, 0.7, 1.1, 0.5), 6
+    scene = dict(
+        masses=masses, stiffnesses=(1.0, 2.0, 0.5, 1.5, 3.0), wall=1.0, gravity=1.0, k=k,
+        displacements=(0.05, -0.05, 0.02), velocities=(0.0, 0.1, -0.05),
+        contact_sensors=range(n), bead_sensors=range(n), duration=duration,
+    )  # fmt: skip
+    return Scene(**{**scene, **rest})
+
+
+def struck(n, omega=0.2733, k=1.5, **rest):
+    """A dimer whose first bead strikes with velocity 1."""
+    masses = (1.0, omega) * (n // 2)
+    return Scene(masses=masses, stiffnesses=(1.0,) * (n - 1), k=k, velocities=(1.0,), **rest)
+
+
+@pytest.mark.parametrize("method", COMPILED)
+@pytest.mark.parametrize("k", [1.0, 3.0])
+def test_the_order_on_a_smooth_problem(method, k):
+    """Slopes 2, 4 and 6 of the error at the end against half the step."""
+    scene, order = loaded(k), SCHEMES[method].order
+    reference = simulate(scene, method="DOP853", rtol=1e-13, atol=1e-13)
+    exact = reference.displacements
+    assert reference.compression.min() > 0.1
+    steps = 0.015 * SCHEMES[method].stages * np.array([1.4, 1.2, 1.0])
+    errors = [
+        np.abs(simulate(scene, method=method, step=h).displacements - exact).max() for h in steps
+    ]
+    assert errors[-1] > 1e-12  # above rounding
+    slope = np.polyfit(np.log(steps), np.log(errors), 1)[0]
+    assert slope == pytest.approx(order, abs=0.2)
+
+
+@pytest.mark.parametrize("method", COMPILED)
+@pytest.mark.parametrize("k", [1.0, 1.1, 1.25, 1.5, 2.0, 3.0])
+def test_every_law_and_every_sensor_agree_with_dop853(method, k):
+    """Smooth, so that the step's error is far below 1e-6; the samples' quintic as well."""
+    scene = loaded(k, samples=301)
+    reference = simulate(scene, rtol=1e-12, atol=1e-12)
+    run = simulate(scene, method=method, step=1e-4 if method == "Verlet" else 0.02)
+    assert run.window is None
+    for name in ("contact_force", "compression", "bead_force", "bead_velocity", "velocities"):
+        np.testing.assert_allclose(getattr(run, name), getattr(reference, name), atol=1e-6)
+    np.testing.assert_allclose(run.bead_velocity[:, -1], run.velocities, atol=1e-14)
+
+
+def test_lsoda_agrees_with_dop853():
+    scene = loaded(1.5, samples=31)
+    one, other = (simulate(scene, rtol=1e-11, atol=1e-11, method=m) for m in ("LSODA", "DOP853"))
+    np.testing.assert_allclose(one.contact_force, other.contact_force, atol=1e-8)
+
+
+@pytest.mark.parametrize("method", COMPILED)
+def test_time_can_be_reversed(method):
+    """Palindromes: the way back differs by rounding only, however long the step."""
+    chain = dict(masses=(1.0, 0.4) * 5, stiffnesses=(1.0,) * 9, k=1.5, duration=12.0)
+    there = simulate(Scene(**chain, velocities=(1.0,)), method=method, step=0.1, window=False)
+    back = simulate(
+        Scene(**chain, displacements=there.displacements, velocities=-there.velocities),
+        method=method, step=0.1, window=False,
+    )  # fmt: skip
+    np.testing.assert_allclose(back.displacements, 0, atol=1e-12)
+    np.testing.assert_allclose(back.velocities, [-1] + [0] * 9, atol=1e-12)
+
+
+@pytest.mark.parametrize("method", COMPILED)
+def test_the_energy_of_a_long_run_is_bounded(method):
+    """Symplectic: the error swings but does not grow, over some hundred periods as over ten."""
+    drifts = [
+        [
+            abs(simulate(loaded(2.0, duration=t, contact_sensors=(), bead_sensors=()),
+                         method=method, step=0.04 * SCHEMES[method].stages).energy_drift)
+            for t in start + np.arange(40) / 7
+        ]
+        for start in (20, 400)
+    ]  # fmt: skip
+    early, late = np.max(drifts, axis=1)
+    assert late < 2 * early < 0.05
+
+
+@pytest.mark.parametrize("k", [1.1, 1.5, 3.0])
+@pytest.mark.parametrize("omega", [1.0, 0.3428, 0.2733, 0.1])
+def test_the_window_does_not_touch_the_pulse(k, omega):
+    """Up to 4 long-wave widths behind the peak the window's record is the whole chain's."""
+    scene = struck(160, omega, k, duration=130.0, contact_sensors=(50, 100), samples=2601)
+    step = 0.1
+    seen, whole = (simulate(scene, method="SRKN6", step=step, window=w) for w in (True, False))
+    assert whole.window is None
+    top = whole.contact_force.argmax(axis=1)
+    for force, exact, p in zip(seen.contact_force, whole.contact_force, top, strict=True):
+        assert force[: p + 1] == pytest.approx(exact[: p + 1], abs=1e-13)
+    assert abs(seen.momentum_drift) < 1e-12
+    assert abs(seen.energy_drift) < 2e-3  # that of the step; nothing leaves the books
+    assert seen.energy_drift == pytest.approx(whole.energy_drift, abs=2e-3)
+
+
+def test_the_peak_force_of_the_560_beads():
+    """0.29635394407 at contact 480 and t = 499.87256146: SRKN11 and SRKN14 on the whole chain with
+    steps of 0.004 and 0.01 agree to 4e-10; DOP853 is compared on fewer beads below."""
+    scene = struck(560, duration=510.0, contact_sensors=(480,), samples=10201)
+    run = simulate(scene, method="SRKN14", rtol=1e-6, check=True)
+    pulse = measure(run.time, run.contact_force[0])
+    assert pulse.peak == pytest.approx(0.29635394407, rel=1e-6)
+    assert pulse.arrival == pytest.approx(499.87256146, rel=1e-7)
+    assert run.window_error < 1e-12
+    assert 1e-6 < run.step_error < 1e-3  # of twice the step, at every time
+    assert abs(run.energy_drift) < 1e-5
+
+
+def test_dop853_and_the_window_agree():
+    """``rtol`` is what the error is aimed at in the mean: within a factor of 3 of it."""
+    scene = struck(60, duration=55.0, contact_sensors=(40,), samples=1101)
+    reference = simulate(scene, rtol=1e-11, atol=1e-11)
+    pulse = measure(reference.time, reference.contact_force[0])
+    for rtol in (1e-5, 1e-7):
+        run = simulate(scene, method="SRKN14", rtol=rtol, window=True)
+        seen = measure(run.time, run.contact_force[0])
+        assert seen.peak == pytest.approx(pulse.peak, rel=3 * rtol)
+        assert seen.arrival == pytest.approx(pulse.arrival, rel=3 * rtol)
+
+
+def test_the_kinks_reduce_the_order():
+    """Contacts that open leave h^{k+1} = h^{5/2} of order 6, in the mean over many steps."""
+    scene = struck(100, duration=60.0, contact_sensors=(50,), samples=2401)
+
+    def peak(step):
+        run = simulate(scene, method="SRKN14", step=step)
+        return measure(run.time, run.contact_force[0]).peak
+
+    exact = peak(0.004)
+    coarse, fine = (
+        math.sqrt(np.mean([(peak(h * q) - exact) ** 2 for q in np.linspace(0.8, 1.2, 15)]))
+        for h in (0.4, 0.05)
+    )
+    assert math.log(coarse / fine, 8) == pytest.approx(2.5, abs=0.8)
+
+
+def test_the_cost_of_a_site_does_not_grow_with_the_chain():
+    """Beads moved per site of a Hertz chain, counted; the slope of 10² … 10⁴ sites is 0."""
+    sizes = np.array([100, 1000, 10000])
+    per_site = [
+        simulate(struck(n, 1.0, duration=1.3 * n, samples=2), method="SRKN14", rtol=1e-4)
+        .bead_evaluations / n
+        for n in sizes
+    ]  # fmt: skip
+    assert abs(np.polyfit(np.log(sizes), np.log(per_site), 1)[0]) < 0.05
+
+
+def test_where_the_window_is_the_whole_chain():
+    assert simulate(loaded(1.5), method="S6", rtol=1e-3).window is None
+    rest = dict(duration=20.0, contact_sensors=(10,))
+    assert simulate(struck(200, k=1.0, **rest), method="S6", rtol=1e-3).window is None
+    assert simulate(struck(200, **rest), method="S6", rtol=1e-3, window=False).window is None
+    assert simulate(struck(200, **rest), method="S6", rtol=1e-3).window.reach == 40
+    assert simulate(struck(200, **rest), method="S6", rtol=1e-3, window=99).window.reach == 99
+    # between ω = 0.5 and 0.7 the pulse radiates so much that its tail overtakes it
+    fading = struck(300, 0.6, duration=450.0)
+    assert simulate(fading, method="S6", rtol=1e-3).window is None
+    assert simulate(fading, method="S6", rtol=1e-3, window=True).window.decay < 0.9
+
+
+def test_what_is_left_behind_is_told():
+    scene = struck(160, 1.0, duration=130.0, contact_sensors=(20, 158), bead_sensors=(0, 20))
+    run = simulate(scene, method="SRKN6", rtol=1e-6)
+    window = run.window
+    assert 20 < window.left < 160
+    assert window.contact_until[0] < 60
+    assert window.contact_until[1] == 130
+    late = run.time > window.contact_until[0]
+    assert not run.contact_force[0, late].any()
+    assert window.bead_until[1] <= window.contact_until[0]
+    assert np.ptp(run.bead_velocity[1, late]) == 0
+    with pytest.raises(ValueError, match="read-only"):
+        window.contact_until[0] = 1
+
+
+def test_a_chain_without_motion():
+    scene = Scene(masses=(1, 1), stiffnesses=(1,), k=1.5, duration=1, bead_sensors=(0, 1))
+    run = simulate(scene, method="SRKN14")
+    assert not run.displacements.any()
+    assert run.energy_drift == run.momentum_drift == 0
+
+
+@pytest.mark.parametrize("window", [None, True, False])
+def test_a_single_bead_flies(window):
+    scene = Scene(masses=(1,), stiffnesses=(), k=1.5, duration=20, velocities=(1,))
+    run = simulate(scene, method="PEFRL", window=window)
+    assert run.displacements == pytest.approx([20])
+
+
+def test_a_bead_bounces_off_a_wall():
+    scene = Scene(masses=(1,), stiffnesses=(), k=1.5, wall=1.0, duration=20, velocities=(1,))
+    assert simulate(scene, method="PEFRL").velocities == pytest.approx([-1], abs=1e-6)
+
+
+def test_beads_that_fly_apart_feel_nothing():
+    scene = Scene(masses=(1,) * 60, stiffnesses=(1,) * 59, k=1.5, duration=9,
+                  velocities=np.linspace(0, 1, 60), contact_sensors=(5,))  # fmt: skip
+    run = simulate(scene, method="SRKN14")
+    assert not run.contact_force.any()
+    np.testing.assert_allclose(run.velocities, scene.velocities, atol=1e-15)
+    assert run.energy_drift == pytest.approx(0, abs=1e-14)
+
+
+def test_a_step_that_is_too_long_is_not_silent():
+    scene = loaded(3.0, duration=1000.0)
+    with pytest.raises(IntegrationError, match=r"^the motion overflows: a step of 20 is too long"):
+        simulate(scene, method="Verlet", step=20.0)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (dict(step=0.1), "step is 0.1: it needs one of SRKN14"),
+        (dict(window=True), "window is True: it needs one of"),
+        (dict(check=True), "check is True: it needs one of"),
+        (dict(method="S6", step=0), "step is 0: it must be positive"),
+        (dict(method="S6", step=1e-300), "duration is 1: this makes 1.0e.300 steps of S6, "),
+        (dict(method="S6", rtol=0), "rtol is 0: it lies between"),
+        (dict(method="S6", window=3), "window is 3: an integer from 8 on is wanted"),
+        (dict(method="S6", window="x"), "window is 'x': an integer from 8 on is wanted"),
+        (dict(method="S6", check=True), "check compares what sensors record: the scene has none"),
+        (dict(method="s6"), "method is 's6': one of DOP853, RK45, RK23, LSODA"),
+    ],
+)
+def test_bad_options(options, message):
+    with pytest.raises(SceneError, match=f"^{message}"):
+        simulate(struck(4, duration=1.0), **options)
+
+
+def test_a_wall_needs_the_whole_chain():
+    with pytest.raises(SceneError, match=r"^window is True: .*whole chain is wanted$"):
+        simulate(loaded(1.5), method="S6", window=True)
+
+
+def test_numba_is_imported_for_compiled_methods_only():
+    code = "import sys, validation.cli; assert 'numba' not in sys.modules"
+    subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def test_rounding_noise_in_a_start_is_no_front():
+    """A window follows the pulse, not the last bead that has a velocity of 1e-17."""
+    chain = Scene(
+        masses=(1.0,) * 200, stiffnesses=(1.0,) * 199, k=1.5, velocities=(1.0,),
+        contact_sensors=(100,), duration=150.0, samples=301,
+    )  # fmt: skip
+    noisy = replace(chain, velocities=(1.0, *((-1) ** i * 1e-17 for i in range(199))))
+    a, b = (simulate(scene, method="SRKN14", window=True) for scene in (chain, noisy))
+    assert a.contact_force.max() > 0.5
+    assert np.abs(a.contact_force - b.contact_force).max() < 1e-9

@@ -1,0 +1,342 @@
+"""The equations of motion against what is known exactly: no stored outputs."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.interpolate import CubicSpline
+
+from validation.lattice.simulate import METHODS, IntegrationError, simulate
+from validation.pulses.pulse import measure, speed
+from validation.scenes.scene import Scene, SceneError
+
+TIGHT = dict(rtol=1e-11, atol=1e-11)
+
+exponents = st.floats(1.0, 3.0)
+positive = st.floats(0.1, 10.0)
+
+
+@settings(max_examples=15)
+@given(exponents, positive, positive, positive, positive)
+def test_two_beads_collide(k, m1, m2, A, v):
+    """Contact time, greatest force and final velocities, in closed form for every k.
+
+    With μ = m1 m2/(m1 + m2) the compression peaks at δ_m = ((k+1) μ v²/(2A))^{1/(k+1)} and lasts
+    T = 2 δ_m/v ∫ dx/√(1 - x^{k+1}) over 0 … 1; for k = 3/2, T = 2.943 δ_m/v (Hertz).
+    """
+    mu = m1 * m2 / (m1 + m2)
+    deepest = ((k + 1) * mu * v**2 / (2 * A)) ** (1 / (k + 1))
+    q = 1 / (k + 1)
+    lasting = 2 * deepest / v * math.sqrt(math.pi) * math.gamma(1 + q) / math.gamma(0.5 + q)
+    run = simulate(
+        Scene(
+            masses=(m1, m2),
+            stiffnesses=(A,),
+            k=k,
+            duration=1.2 * lasting,
+            velocities=(v,),
+            contact_sensors=(0,),
+            samples=2001,
+        ),
+        **TIGHT,
+    )
+    common = m1 * v / (m1 + m2)
+    # The step in which the contact opens holds a kink that the error estimate can miss.
+    assert run.velocities == pytest.approx([2 * common - v, 2 * common], abs=2e-7 * v)
+    pulse = measure(run.time, run.contact_force[0])
+    # the spline's error on 1667 samples of a half wave that starts like a power k
+    assert pulse.peak == pytest.approx(A * deepest**k, rel=1e-9)
+    assert pulse.arrival == pytest.approx(lasting / 2, rel=1e-9)
+    zeros = CubicSpline(run.time, run.compression[0]).roots(extrapolate=False)
+    assert zeros[zeros > lasting / 2] == pytest.approx([lasting], rel=1e-8)
+
+
+def test_the_hertz_contact_time_constant():
+    """2.94, as the textbooks print it (Landau and Lifshitz, §9)."""
+    run = simulate(
+        Scene(masses=(2, 2), stiffnesses=(1,), k=1.5, duration=5, velocities=(1,),
+              contact_sensors=(0,)),
+        **TIGHT,
+    )  # fmt: skip
+    deepest = run.compression[0].max()
+    end = CubicSpline(run.time, run.compression[0]).roots(extrapolate=False)[-1]
+    assert end / deepest == pytest.approx(2.94, abs=0.005)
+
+
+def hanging(k, masses, stiffnesses, **rest):
+    """A chain under its weight, so heavy that no contact opens in a small motion."""
+    *inner, wall = stiffnesses
+    return Scene(masses=masses, stiffnesses=inner, wall=wall, gravity=1.0, k=k, **rest)
+
+
+def normal_modes(masses, stiffnesses, y, v, time):
+    """(y, v) at a time of the linear chain that a wall ends, by its eigenvectors."""
+    n = len(masses)
+    strain = np.eye(n) - np.eye(n, k=1)  # δ = strain @ y, the wall at rest
+    root = np.sqrt(masses)
+    matrix = strain.T @ np.diag(stiffnesses) @ strain / np.outer(root, root)
+    squares, modes = np.linalg.eigh(matrix)
+    w = np.sqrt(squares)
+    a, b = modes.T @ (root * y), modes.T @ (root * v)
+    cos, sin = np.cos(w * time), np.sin(w * time)
+    y_end = modes @ (a * cos + b * sin / w) / root
+    return y_end, modes @ (b * cos - a * w * sin) / root
+
+
+LINEAR = dict(masses=(1.0, 0.3, 2.0, 0.7, 1.1), stiffnesses=(1.0, 2.0, 0.5, 1.5, 3.0))
+START = dict(displacements=(0.01, -0.02, 0.0, 0.015), velocities=(0.0, 0.01, -0.02, 0.0, 0.03))
+
+
+def linear_error(method, tolerance, duration=20.0):
+    run = simulate(
+        hanging(1.0, **LINEAR, **START, duration=duration),
+        rtol=tolerance, atol=tolerance, method=method,
+    )  # fmt: skip
+    y, v = np.zeros(5), np.array(START["velocities"])
+    y[:4] = START["displacements"]
+    exact = normal_modes(*map(np.array, LINEAR.values()), y, v, duration)
+    found = run.displacements, run.velocities
+    return max(np.abs(np.subtract(found, exact)).max(), 0.0)
+
+
+def test_the_linear_chain_moves_in_its_normal_modes():
+    """k = 1, all contacts closed by the weight: exact. 1e-12 of 0.03 a step, 400 steps."""
+    assert linear_error("DOP853", 1e-13) < 1e-12
+
+
+@pytest.mark.parametrize("method", METHODS[:2])
+def test_the_error_follows_the_tolerance(method):
+    """An error of tol a step makes the error at the end ∝ tol: slope 1, up to jitter."""
+    tolerances = np.array([1e-4, 1e-5, 1e-6, 1e-7, 1e-8])
+    errors = [linear_error(method, t) for t in tolerances]
+    slope = np.polyfit(np.log(tolerances), np.log(errors), 1)[0]
+    assert slope == pytest.approx(1, abs=0.2)
+
+
+@given(exponents, st.lists(positive, min_size=1, max_size=6), positive)
+@settings(max_examples=20)
+def test_equilibrium_under_gravity_stays_and_carries_the_weight(k, masses, A):
+    n = len(masses)
+    scene = hanging(
+        k, masses, [A] * n, duration=10, contact_sensors=range(n), bead_sensors=range(n), samples=3
+    )
+    run = simulate(scene)
+    assert not run.displacements.any()  # exactly: the load is computed as the force is
+    assert not run.velocities.any()
+    weight = np.cumsum(masses)
+    # A ((F/A)^{1/k})^k = F up to some ulp, k ≤ 3
+    np.testing.assert_allclose(run.contact_force, np.outer(weight, [1, 1, 1]), rtol=1e-14)
+    above = np.concatenate(([0.0], weight[:-1]))
+    np.testing.assert_allclose(run.bead_force[:, 0], (above + weight) / 2, rtol=1e-14)
+    assert run.energy_drift == 0
+
+
+def test_a_bead_on_a_wall_swings_at_its_own_frequency():
+    """Small swings about the Hertz equilibrium: Ω² = k A δ0^{k-1}/m, with g = A δ0^k/m."""
+    k, m, A, swing = 1.5, 2.0, 3.0, 1e-5
+    rest = (m / A) ** (1 / k)
+    period = 2 * math.pi / math.sqrt(k * A * rest ** (k - 1) / m)
+    run = simulate(hanging(k, (m,), (A,), displacements=(swing * rest,), duration=period), **TIGHT)
+    # the period depends on the swing as 1 + O(swing²); the return is quadratic in its error
+    assert run.displacements[0] == pytest.approx(swing * rest, rel=1e-8)
+    assert abs(run.velocities[0]) < 1e-7 * swing * rest / period
+
+
+sixtyfourths = st.integers(-64, 25).map(lambda i: i / 64)
+chains = st.integers(2, 6).flatmap(
+    lambda n: st.fixed_dictionaries(
+        dict(
+            masses=st.tuples(*[positive] * n),
+            stiffnesses=st.tuples(*[positive] * (n - 1)),
+            k=st.floats(1.1, 2.5),
+            # multiples of 1/64: a denormal would not scale exactly
+            velocities=st.tuples(st.floats(0.5, 2), *[sixtyfourths] * (n - 1)),
+            duration=st.just(6.0),
+        )
+    )
+)
+
+
+@settings(max_examples=25)
+@given(chains)
+def test_energy_and_momentum_are_kept(chain):
+    run = simulate(Scene(**chain), **TIGHT)
+    # Contacts that open are kinks of F''; with k near 1 they cost the step control digits.
+    assert abs(run.energy_drift) < 1e-7
+    assert abs(run.momentum_drift) < 1e-12  # linear: kept by every Runge–Kutta step
+    end = np.array(chain["masses"]) @ run.velocities
+    assert end == pytest.approx(np.dot(chain["masses"], chain["velocities"]), abs=1e-11)
+
+
+@settings(max_examples=15)
+@given(chains)
+def test_time_can_be_reversed(chain):
+    there = simulate(Scene(**chain), **TIGHT)
+    back = simulate(
+        Scene(**{**chain, "velocities": -there.velocities}, displacements=there.displacements),
+        **TIGHT,
+    )
+    # collisions amplify the integrator's error, here by at most some thousand
+    np.testing.assert_allclose(back.velocities, -np.array(chain["velocities"]), atol=1e-6)
+    np.testing.assert_allclose(back.displacements, 0, atol=1e-6)
+
+
+@settings(max_examples=15)
+@given(chains)
+def test_the_mirror_image_moves_as_the_mirror(chain):
+    mirrored = dict(
+        chain,
+        masses=chain["masses"][::-1],
+        stiffnesses=chain["stiffnesses"][::-1],
+        velocities=[-v for v in chain["velocities"][::-1]],
+    )
+    run, image = simulate(Scene(**chain), **TIGHT), simulate(Scene(**mirrored), **TIGHT)
+    # another order of rounding only, amplified as above
+    np.testing.assert_allclose(image.velocities, -run.velocities[::-1], atol=1e-8)
+
+
+@settings(max_examples=10)
+@given(chains, st.floats(-3, 3))
+def test_a_moving_observer_sees_the_same_forces(chain, drift):
+    beads = range(len(chain["masses"]))
+    seen = dict(contact_sensors=beads[:-1], bead_sensors=beads, samples=50)
+    run = simulate(Scene(**chain, **seen), **TIGHT)
+    moving = {**chain, "velocities": [v + drift for v in chain["velocities"]]}
+    other = simulate(Scene(**moving, **seen), **TIGHT)
+    # the steps differ, so the integrator's error (see time reversal) does
+    np.testing.assert_allclose(other.contact_force, run.contact_force, atol=1e-6)
+    np.testing.assert_allclose(other.bead_velocity, run.bead_velocity + drift, atol=1e-6)
+
+
+def scaled(chain, length, mass, **options):
+    """The final velocities and the evaluations of a chain in other units of length and mass,
+    where a unit of time is √(mass length^{1-k}) so that the stiffnesses keep their numbers."""
+    time = math.sqrt(mass * length ** (1 - chain["k"]))
+    run = simulate(
+        Scene(
+            masses=[mass * m for m in chain["masses"]],
+            stiffnesses=chain["stiffnesses"],
+            k=chain["k"],
+            velocities=[v * length / time for v in chain["velocities"]],
+            duration=chain["duration"] * time,
+        ),
+        **options,
+    )
+    return run.velocities * time / length, run.evaluations
+
+
+@settings(max_examples=15)
+@given(chains, st.integers(-20, 20))
+def test_units_of_mass_and_time_do_not_matter(chain, q):
+    """Powers of two leave every digit of every step as it is."""
+    velocities, evaluations = scaled(chain, 1.0, 4.0**q)
+    run = simulate(Scene(**chain))
+    assert evaluations == run.evaluations
+    assert np.array_equal(velocities, run.velocities)
+
+
+@settings(max_examples=15)
+@given(chains, st.floats(1e-6, 1e6))
+def test_units_of_length_do_not_matter(chain, length):
+    """Only rounding differs, which may tip a step: the integrator's error, see time reversal."""
+    velocities, _ = scaled(chain, length, 1.0, **TIGHT)
+    np.testing.assert_allclose(velocities, simulate(Scene(**chain), **TIGHT).velocities, atol=1e-6)
+
+
+def test_sensors_change_nothing_and_cost_nothing():
+    chain = dict(masses=(1, 0.5) * 6, stiffnesses=(1,) * 11, k=1.5, duration=9, velocities=(1,))
+    plain = simulate(Scene(**chain))
+    seen = simulate(Scene(**chain, contact_sensors=(7, 2, 3), bead_sensors=(0, 3, 11)))
+    assert np.array_equal(seen.displacements, plain.displacements)
+    assert plain.contact_force.shape == plain.bead_velocity.shape == (0, 1001)
+    # only the interpolant's three evaluations a step come on top
+    assert plain.evaluations < seen.evaluations < 1.3 * plain.evaluations
+    assert seen.contact_force.shape == seen.bead_force.shape == (3, 1001)
+    np.testing.assert_allclose(
+        seen.bead_force[1], (seen.contact_force[1] + seen.contact_force[2]) / 2, rtol=1e-15
+    )
+    assert seen.time[[0, -1]].tolist() == [0, 9]
+    # the record ends with the final state, up to the interpolant's last digits
+    np.testing.assert_allclose(seen.bead_velocity[:, -1], seen.velocities[[0, 3, 11]], atol=1e-12)
+    with pytest.raises(ValueError, match="read-only"):
+        seen.time[0] = 1
+
+
+def test_no_tension():
+    """Beads that fly apart feel nothing, and a gap shows as a negative compression."""
+    run = simulate(
+        Scene(masses=(1, 1), stiffnesses=(1,), k=1.5, duration=2, velocities=(-1, 1),
+              contact_sensors=(0,))
+    )  # fmt: skip
+    assert run.velocities.tolist() == [-1, 1]
+    assert not run.contact_force.any()
+    np.testing.assert_allclose(run.compression[0], -2 * run.time, atol=1e-12)
+
+
+def test_a_striker_makes_the_exact_wave_of_the_hertz_chain():
+    """FWHM of contact force and strain, 1.411928 D and 1.725713 D: Newton's method on the
+    lattice's own traveling-wave equation gave these digits."""
+    run = simulate(
+        Scene(
+            masses=(1,) * 150,
+            stiffnesses=(1,) * 149,
+            k=1.5,
+            duration=160,
+            velocities=(1,),
+            contact_sensors=(80, 130),
+            samples=8001,
+        ),
+        rtol=1e-10,
+        atol=1e-10,
+    )
+    first, second = (measure(run.time, force) for force in run.contact_force)
+    V = speed(first, second, 50)
+    assert second.fwhm * V == pytest.approx(1.411928, abs=1e-6)
+    strain = measure(run.time, run.compression[1])
+    assert strain.fwhm * V == pytest.approx(1.725713, abs=1e-6)
+
+
+@pytest.mark.parametrize("scene", [dict(), dict(wall=1.0), dict(wall=1.0, gravity=1.0)])
+def test_a_single_bead(scene):
+    run = simulate(Scene(masses=(1,), stiffnesses=(), k=1.5, duration=20, velocities=(1,), **scene))
+    assert abs(run.energy_drift) < 1e-6  # default tolerance, a few bounces
+    if not scene:
+        assert run.displacements == pytest.approx([20])
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (dict(method="Radau"), "method is 'Radau': one of DOP853, RK45, RK23, LSODA"),
+        (dict(rtol=0), "rtol is 0: it lies between"),
+        (dict(atol=1), "atol is 1: it lies between"),
+        (dict(rtol=float("nan")), "rtol is nan"),
+        (dict(atol="x"), "atol is 'x': a number is wanted"),
+    ],
+)
+def test_bad_options(options, message):
+    with pytest.raises(SceneError, match=f"^{message}"):
+        simulate(Scene(masses=(1,), stiffnesses=(), k=1.5, duration=1), **options)
+
+
+@pytest.mark.parametrize("velocity", [1e200, 1e-200])
+def test_energies_beyond_floating_point_are_refused(velocity):
+    scene = Scene(masses=(1, 1), stiffnesses=(1,), k=1.5, duration=1, velocities=(velocity,))
+    with pytest.raises(
+        SceneError, match=r"^the scene's energy comes out as .*: choose other units"
+    ):
+        simulate(scene)
+
+
+def test_a_failing_integrator_is_not_silent(monkeypatch):
+    from scipy import integrate
+
+    class Failing(integrate.DOP853):
+        def _step_impl(self):
+            return False, "step too small"
+
+    monkeypatch.setattr(integrate, "DOP853", Failing)
+    with pytest.raises(IntegrationError, match=r"^integration stopped at t = 0: step too small$"):
+        simulate(Scene(masses=(1, 1), stiffnesses=(1,), k=1.5, duration=1, velocities=(1,)))

@@ -1,0 +1,142 @@
+"""Measurements of pulses that are known in closed form, and of records that hold none."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from lwa import InputError
+from validation.pulses.pulse import (
+    FEWEST,
+    Measured,
+    MeasureError,
+    Pulse,
+    derived,
+    impulse,
+    measure,
+    speed,
+)
+
+
+def arch(t, arrival=0.0, peak=1.0, beta=1.0):
+    """The theory's pulse for k = 3/2, cos^6."""
+    return peak * np.cos(np.clip(beta * (t - arrival), -np.pi / 2, np.pi / 2)) ** 6
+
+
+WIDTH = 2 * math.acos(2 ** (-1 / 6))
+
+
+@given(st.floats(-1, 1), st.floats(1e-3, 1e3), st.floats(0.5, 5))
+def test_an_arch(arrival, peak, beta):
+    t = np.linspace(-5, 5, 4001)
+    pulse = measure(t, arch(t, arrival, peak, beta))
+    # h = 0.0025 · 5 in the pulse's own scale; spline errors h⁴ and, for the arrival, h³
+    assert pulse.arrival == pytest.approx(arrival, abs=1e-6)
+    assert pulse.peak == pytest.approx(peak, rel=1e-7)
+    assert pulse.fwhm == pytest.approx(WIDTH / beta, rel=1e-7)
+    assert (pulse.rise + pulse.fall) / 2 == pytest.approx(arrival, abs=1e-6)
+    area = impulse(t, arch(t, arrival, peak, beta), -5, 5)
+    assert area == pytest.approx(peak * 5 * math.pi / 16 / beta, rel=1e-7)
+
+
+def test_the_error_falls_with_the_fourth_power_of_the_step():
+    """A cubic spline. The error depends on where the peak falls between samples: the worst."""
+    counts = np.array([40, 80, 160, 320])
+    errors = []
+    for n in counts:
+        t = np.linspace(-2, 2, n)
+        pulses = [measure(t, arch(t, shift * 4 / (n - 1))) for shift in np.linspace(0, 1, 9)]
+        errors.append(
+            (max(abs(p.peak - 1) for p in pulses), max(abs(p.fwhm - WIDTH) for p in pulses))
+        )
+    for error in zip(*errors, strict=True):
+        slope = np.polyfit(np.log(counts), np.log(error), 1)[0]
+        assert slope == pytest.approx(-4, abs=0.2)
+
+
+def test_the_highest_pulse_is_measured_among_others():
+    t = np.linspace(-5, 20, 5001)
+    signal = arch(t, 0, 0.4, 2) + arch(t, 3) + arch(t, 9, 0.8)
+    assert measure(t, signal).arrival == pytest.approx(3, abs=1e-6)
+
+
+def test_its_flanks_are_those_next_to_the_peak():
+    t = np.linspace(-5, 5, 2001)
+    signal = arch(t) + arch(t, 3, 0.9) + arch(t, -3, 0.9)
+    assert measure(t, signal).fwhm == pytest.approx(WIDTH, rel=1e-6)  # tails of cos⁶ at π/2
+
+
+T = np.linspace(-2, 2, 401)
+
+
+@pytest.mark.parametrize(
+    ("time", "signal", "message"),
+    [
+        (T[:200], arch(T[:200]), r"the pulse is not wholly in the record: it peaks at the last"),
+        (T[201:], arch(T[201:]), r"the pulse is not wholly in the record: it peaks at the first"),
+        (T[:220], arch(T[:220]), r"the pulse is not wholly .*: its back does not pass half"),
+        (T[180:], arch(T[180:]), r"the pulse is not wholly .*: its front does not pass half"),
+        (T, 0 * T, r"no pulse is in the record"),
+        (T, -arch(T), r"no pulse is in the record"),
+        (T, T * np.nan, r"time and signal must be finite"),
+        (-T, arch(T), r"time and signal must be finite, and time must increase"),
+        (T[::40], arch(T[::40]), rf"\d samples lie above half .*: at least {FEWEST}"),
+        (T, arch(T)[:-1], r"time and signal have the shapes \(401,\) and \(400,\)"),
+        (T[:3], arch(T[:3]), r".* at least 4 samples are wanted"),
+        ([T], [arch(T)], r"time and signal have the shapes \(1, 401\)"),
+    ],
+)
+def test_records_without_a_whole_pulse(time, signal, message):
+    with pytest.raises(MeasureError, match=f"^{message}") as caught:
+        measure(time, signal)
+    assert isinstance(caught.value, InputError)
+
+
+def test_impulse_of_a_part():
+    t = np.linspace(0, 4, 9)
+    assert impulse(t, t**3, 1.25, 3.1) == pytest.approx((3.1**4 - 1.25**4) / 4, rel=1e-14)
+    for start, end in ((-1, 2), (1, 5), (2, 2), (3, 1)):
+        with pytest.raises(MeasureError, match=r"is not within the record, 0 … 4"):
+            impulse(t, t, start, end)
+
+
+def test_speed():
+    first, second = Pulse(1.0, 1, 0, 2), Pulse(3.0, 1, 2, 4)
+    assert speed(first, second, 5.0) == 2.5
+    with pytest.raises(MeasureError, match=r"needs a later second arrival"):
+        speed(second, first, 5.0)
+
+
+def test_a_measured_number_carries_its_error():
+    a, b = Measured(2.0, 2.1), Measured(5.0, 4.9)
+    product = derived(lambda x, y: x * y, a, b)
+    assert (product.value, product.check) == (10.0, 2.1 * 4.9)
+    assert a.error == pytest.approx(0.1)
+    assert a.relative_error == pytest.approx(0.05)
+    assert str(Measured(1.41192847, 1.41192831)) == "1.4119285 ± 2e-07"
+    assert str(Measured(16300.0, 17000.0)) == "16300 ± 7e+02"
+    assert str(Measured(1.5, 1.5)) == "1.5 ± 0"
+
+
+@pytest.mark.parametrize(("pace", "height"), [(2.0**-900, 2.0**1000), (2.0**900, 2.0**-1000)])
+def test_units_at_the_ends_of_floating_point_cost_no_digit(pace, height):
+    """There a spline's slopes overflow, or vanish."""
+    t = np.linspace(0.0, 4.0, 401)
+    f = np.exp(-4 * (t - 1.7) ** 2) * (1 + t / 9)
+    pulse, scaled = measure(t, f), measure(t * pace, f * height)
+    for name, unit in (("arrival", pace), ("peak", height), ("rise", pace), ("fall", pace)):
+        assert getattr(scaled, name) == getattr(pulse, name) * unit
+
+
+def test_a_long_record_is_measured_at_its_pulse():
+    """A hundred thousand samples elsewhere change no digit, whatever they are."""
+    t = np.arange(100_000) * 0.01
+    pulse = np.exp(-((t - 500) ** 2))
+    short = slice(49_000, 51_000)
+    rest = 0.4 * np.sin(37 * t) * (np.abs(t - 500) > 8)
+    seen, alone = measure(t, pulse + rest), measure(t[short], pulse[short])
+    assert seen.arrival == pytest.approx(alone.arrival, rel=1e-15)
+    assert seen.peak == pytest.approx(alone.peak, rel=1e-15)
+    assert seen.fwhm == pytest.approx(alone.fwhm, rel=1e-12)

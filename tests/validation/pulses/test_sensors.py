@@ -1,0 +1,212 @@
+"""What sensors tell, held to the paper's experiment and to the linear chain's exact waves."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.special import erf
+
+from lwa import Dimer
+from lwa.linear.dispersion import Dispersion
+from validation.lattice.simulate import simulate
+from validation.pulses.pulse import MeasureError
+from validation.pulses.sensors import first_pulse, record, tracks
+from validation.report.text import document, text
+from validation.scenes.scene import Scene, SceneError
+from validation.studies.porter2008.experiment import chain_scene, paper
+
+
+def numbers(found):
+    return {f"{s.kind} {s.number}": s.numbers for s in found.sensors}
+
+
+@pytest.mark.parametrize("gravity", [0.0, 9.81])
+def test_the_experiment_of_the_paper(gravity):
+    """The same run as `paper`'s, though here the wall's echo is in the record."""
+    rows = {row.quantity: row.lattice for row in paper(gravity=gravity).rows}
+    found = record(chain_scene(1.37, 38, (15, 34), gravity, 2e-3))
+    here, speed = numbers(found), found.speeds[0]
+    assert (speed.kind, speed.start, speed.end) == ("bead", 15, 34)
+    # Other sample times, and a spline of fourth order through them.
+    assert speed.numbers["speed"].value == pytest.approx(rows["speed V_s"].value, rel=1e-6)
+    for bead in (15, 34):
+        peak = rows[f"peak bead force F_{bead}"].value
+        assert here[f"bead {bead}"]["peak"].value == pytest.approx(peak, rel=1e-6)
+    width = 1e6 * np.mean([here[f"bead {bead}"]["fwhm"].value for bead in (15, 34)])
+    assert width == pytest.approx(rows["FWHM of bead force in time"].value, rel=1e-6)
+    sites = speed.numbers["speed_sites"].value
+    assert sites == pytest.approx(speed.numbers["speed"].value / 4.76e-3, rel=1e-12)
+
+
+def test_sensors_without_a_pulse_say_why():
+    scene = Scene(
+        masses=(1,) * 30, stiffnesses=(1,) * 29, k=1.5, duration=15, velocities=(1,),
+        contact_sensors=(4, 7, 28, 8), bead_sensors=(0, 29),
+    )  # fmt: skip
+    found = record(scene)
+    here = {f"{s.kind} {s.number}": s for s in found.sensors}
+    assert here["contact 29"].numbers == here["bead 30"].numbers == {}
+    assert here["contact 29"].missing.startswith("no pulse is in the record")
+    assert set(here["contact 5"].numbers) == {"arrival", "peak", "fwhm"}
+    assert here["contact 5"].missing is None
+    reached, *lost, bead = [*found.speeds[1:], found.speeds[0]]
+    assert set(reached.numbers) == {"speed_sites"}  # the scene has no spacings
+    assert [s.missing for s in (*lost, bead)] == ["one of the two has no pulse"] * 3
+
+
+def test_a_speed_needs_sensors_in_the_order_of_the_pulse():
+    scene = Scene(
+        masses=(1,) * 12, stiffnesses=(1,) * 11, k=1.5, duration=14, velocities=(1,),
+        contact_sensors=(7, 4),
+    )  # fmt: skip
+    (speed,) = record(scene).speeds
+    assert (speed.start, speed.end, speed.numbers) == (8, 5, {})
+    assert "a speed needs a later second arrival" in speed.missing
+
+
+def test_sensors_sit_between_the_beads_they_join():
+    scene = Scene(
+        masses=(1,) * 3, stiffnesses=(1, 1), wall=1, k=1.5, duration=1, spacings=(1, 3),
+        bead_sensors=(0, 1, 2), contact_sensors=(0, 1, 2),
+    )  # fmt: skip
+    places = [track.place["speed"] for track in tracks(simulate(scene))]
+    assert places == [0, 1, 4, 0.5, 2.5, 5.5]
+
+
+def test_the_first_pulse_is_not_the_highest_one():
+    t = np.linspace(0, 10, 2001)
+
+    def pulse(height, at):
+        return height * np.exp(-4 * (t - at) ** 2)
+
+    small, first, echo = pulse(0.4, 1), pulse(1.0, 4), pulse(1.5, 8)
+    found = first_pulse(t, small + first + echo)
+    assert (found.arrival, found.peak) == pytest.approx((4, 1), rel=1e-6)
+    assert found.fwhm == pytest.approx(math.sqrt(math.log(2)), rel=1e-6)
+    with pytest.raises(MeasureError, match="nowhere positive"):
+        first_pulse(t, -first)
+
+
+# --- precompression -------------------------------------------------------------------------
+
+F0 = 2.0
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (dict(precompression=1), "precompression is 1: .* needs a wall to push against"),
+        (dict(precompression=-1, wall=1), "precompression is -1: it must be positive"),
+        (dict(spacings=(1,)), "1 spacings for 3 beads: 2 are wanted"),
+        (dict(spacings=(1, 0)), r"spacings\[1\] is 0: it must be positive"),
+    ],
+)
+def test_what_a_chain_cannot_have(change, message):
+    with pytest.raises(SceneError, match=f"^{message}"):
+        Scene(masses=(1,) * 3, stiffnesses=(1, 1), k=1.5, duration=1, **change)
+
+
+def squeezed(masses, **rest):
+    n = len(masses)
+    return Scene(
+        masses=masses, stiffnesses=(3.0,) * (n - 1), wall=3.0, k=1.5, precompression=F0, **rest
+    )
+
+
+def stiffness():
+    """dF/dδ = k A^{1/k} F0^{(k-1)/k} of a contact that carries F0."""
+    return 1.5 * 3.0 ** (2 / 3) * F0 ** (1 / 3)
+
+
+# The compiled engine has k = 3/2 without a power, which rounds differently.
+@pytest.mark.parametrize(("method", "bound"), [("DOP853", 0), ("SRKN14", 1e-14)])
+def test_a_squeezed_chain_stays_at_rest(method, bound):
+    scene = squeezed((1, 0.5, 2), duration=10, contact_sensors=(0, 1, 2), gravity=0.5)
+    run = simulate(scene, method=method)
+    assert np.max(np.abs([run.displacements, run.velocities])) <= bound
+    static = np.array([F0 + 0.5, F0 + 0.75, F0 + 1.75])  # and the weight above
+    np.testing.assert_allclose(run.contact_force, np.tile(static, (1001, 1)).T, rtol=1e-14)
+
+
+@pytest.mark.parametrize("method", ["DOP853", "SRKN14"])
+def test_a_squeezed_chain_swings_in_bloch_waves(method):
+    """One bead free, the wall fixed: cos q(i + 1/2), q = π/(2n + 1), returns after its period."""
+    n, small = 12, 1e-6
+    q = math.pi / (2 * n + 1)
+    shape = small * np.cos(q * (np.arange(n) + 0.5))
+    omega = 2 * math.sqrt(stiffness()) * math.sin(q / 2)
+    scene = squeezed((1,) * n, duration=2 * math.pi / omega, displacements=shape)
+    run = simulate(scene, method=method)
+    # What is left of k ≠ 1 is of the order of the strain over that of F0.
+    np.testing.assert_allclose(run.displacements, shape, atol=small * small)
+    np.testing.assert_allclose(run.velocities, 0, atol=small * small * omega)
+
+
+def test_small_pulses_travel_at_the_speed_of_sound():
+    """A pulse e^{-x²/2s²} of a dimer: at c = √(2K/(m1 + m2)) sites, less what disperses.
+
+    By Ω² = κ²(1 - Iκ²) the peak is slower by 3I/(2s²) at first, and by O(1/s⁴) more. The sensors
+    are 6s away from the start, where the light beads rattle a little.
+    """
+    s, n, small = 16.0, 400, 1e-5
+    masses = (1.0, 0.5) * (n // 2)
+    c = math.sqrt(2 * stiffness() / 1.5)
+    x = np.arange(n) - 110.0
+    strain = small * np.exp(-(x**2) / (2 * s**2))
+    shape = -small * s * math.sqrt(math.pi / 2) * erf(x / s / math.sqrt(2))
+    scene = squeezed(
+        masses, duration=240 / c, displacements=shape - shape[-1], velocities=c * strain,
+        contact_sensors=(206, 290),
+    )  # fmt: skip
+    (speed,) = record(scene).speeds
+    slower = float(3 * Dispersion(Dimer(1, 0.5)).I / (2 * s**2))
+    found = speed.numbers["speed_sites"].value / c - 1
+    assert found == pytest.approx(-slower, abs=1 / s**4)
+
+
+@pytest.mark.parametrize("method", ["DOP853", "SRKN14"])
+def test_a_recording_shows_both_drifts_where_both_are_conserved(method):
+    masses, contacts = (1.0, 0.5) * 10, (1.0,) * 19
+    free = Scene(
+        masses=masses, stiffnesses=contacts, k=1.5, duration=20, velocities=(1,),
+        contact_sensors=(8, 12),
+    )  # fmt: skip
+    found = record(free, method=method, rtol=1e-9)
+    shown = document(found)
+    assert abs(shown["energy_drift_value"]) < 1e-5  # contacts open within a step
+    assert abs(shown["momentum_drift_value"]) < 1e-13  # by Newton's third law, to rounding
+    assert "energy drift " in text(found)
+    assert f"momentum drift {found.run.momentum_drift:.0e}" in text(found)
+    walled = Scene(
+        masses=masses, stiffnesses=contacts, k=1.5, duration=20, velocities=(1,), wall=1.0,
+        gravity=0.01,
+    )  # fmt: skip
+    found = record(walled, method=method, rtol=1e-9)
+    assert document(found)["momentum_drift_value"] is None
+    assert "momentum not conserved" in text(found)
+
+
+def test_engines_agree_within_the_errors_they_state():
+    scene = Scene(
+        masses=(1.0, 0.5) * 20, stiffnesses=(1.0,) * 39, k=1.5, duration=35, velocities=(1,),
+        contact_sensors=(8, 20), samples=1501,
+    )  # fmt: skip
+    one, other = (numbers(record(scene, method=m)) for m in ("DOP853", "SRKN14"))
+    for sensor, found in one.items():
+        for name, measured in found.items():
+            bound = measured.error + other[sensor][name].error
+            assert abs(measured.value - other[sensor][name].value) <= bound, (sensor, name)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"method": "RK4"}, "method is .*RK4.*DOP853.*SRKN14"),
+        ({"rtol": 1e-3}, "rtol is 0.001: it lies between 1e-13 and 1e-05"),
+        ({"rtol": 0.0}, "rtol is 0"),
+    ],
+)
+def test_an_engine_that_is_not_there(options, message):
+    scene = Scene(masses=(1, 1), stiffnesses=(1,), k=1.5, duration=1, velocities=(1,))
+    with pytest.raises(SceneError, match=message):
+        record(scene, **options)

@@ -1,0 +1,154 @@
+"""The steady pulse of a struck chain: exact waves, symmetries, published ratios, its own errors."""
+
+import math
+from itertools import combinations
+
+import numpy as np
+import pytest
+import sympy as sp
+
+from validation.lattice.simulate import IntegrationError, simulate
+from validation.pulses import steady
+from validation.pulses.steady import QUANTITIES, STRETCH, leading_pulse, point
+from validation.scenes.scene import Scene
+from validation.waves.solver import exact_wave, free_wave
+
+R = sp.Rational
+HERTZ = R(3, 2)
+SPECIAL = R(3428457811, 10**10)
+"""The first mass ratio at which a Hertz dimer has a solitary wave (Jayaprakash et al. 2011)."""
+
+
+def at(k, omega, stretch=STRETCH):
+    found = point(R(k), R(omega), stretch)
+    assert found.missing is None, found.missing
+    assert list(found.numbers) == list(QUANTITIES)
+    return found.numbers
+
+
+@pytest.mark.parametrize(
+    ("k", "omega"), [("5/4", 1), ("3/2", 1), (2, 1), (3, 1), (6, 1), ("3/2", SPECIAL)]
+)
+def test_a_solitary_wave_is_the_exact_one_of_newtons_method(k, omega):
+    wave = exact_wave([1], float(R(k))) if omega == 1 else free_wave((1, float(omega)), 1.5)
+    numbers = at(k, omega)
+    exact = {
+        "width": wave.fwhm("force"),
+        "strain_width": wave.fwhm("strain"),
+        "speed": wave.c,
+        "decay": 0.0,
+    }
+    for name, value in exact.items():
+        # the two share no equation in code; 1e-7 is the accuracy of the special ratio's wave
+        assert abs(numbers[name].value - value) <= numbers[name].error + 1e-7, name
+        assert numbers[name].error < 1e-5
+
+
+def test_the_published_width_of_the_uniform_hertz_chain():
+    width = at(HERTZ, 1)["width"]
+    assert abs(width.value - 1.411928) <= width.error + 5e-7  # published to six decimals
+    assert width.error < 5e-6
+
+
+def test_a_pulse_decays_but_for_the_special_ratio():
+    # what a pulse leaves behind vanishes at the ratio as the square of the distance from it
+    near = at(HERTZ, SPECIAL)["decay"]
+    assert abs(near.value) < 1e-7
+    assert at(HERTZ, "0.59")["decay"].value > 0.01
+    below, above = (at(HERTZ, SPECIAL + step)["decay"].value for step in (-R(1, 50), R(1, 50)))
+    assert min(below, above) > 1000 * abs(near.value)
+    half = at(HERTZ, SPECIAL + R(1, 100))["decay"].value
+    assert above / half == pytest.approx(4, rel=0.25)
+
+
+def test_the_decay_is_that_per_site():
+    """Against the slope of the log of peak forces over the site, from one run read by hand."""
+    sites = tuple(range(30, 62, 2))
+    scene = Scene(
+        masses=(1.0, 0.7) * 50, stiffnesses=(1.0,) * 99, k=1.5, velocities=(1.0,),
+        contact_sensors=sites, duration=100.0, samples=4001,
+    )  # fmt: skip
+    run = simulate(scene, rtol=1e-7, method="SRKN14", window=False)
+    slope = -np.polyfit(sites, np.log([force.max() for force in run.contact_force]), 1)[0]
+    # The pulse is steady to some percent there.
+    assert at(HERTZ, "0.7")["decay"].value == pytest.approx(slope, rel=0.05)
+
+
+@pytest.mark.parametrize(("k", "omega"), [("3/2", "0.7"), ("3/2", "0.2"), ("5/2", "0.8")])
+def test_relabelling_the_masses_changes_the_unit_of_mass_only(k, omega):
+    one, other = at(k, omega), at(k, 1 / R(omega))
+    for name in ("width", "strain_width", "decay"):
+        bound = one[name].error + other[name].error
+        assert abs(one[name].value - other[name].value) <= bound, name
+    ratio = other["speed"].value / one["speed"].value
+    bound = one["speed"].relative_error + other["speed"].relative_error
+    # masses 1, 1/ω are 1/ω times the masses ω, 1: speeds go as 1/√mass
+    assert ratio == pytest.approx(math.sqrt(float(R(omega))), rel=bound)
+
+
+SETTINGS = (
+    {"stretch": 3},
+    {"stretch": 7},
+    {"TOLERANCES": (1e-6, 1e-5)},
+    {"_SAMPLES": 25.0},
+    {"PLACES": 14},
+)
+
+
+@pytest.mark.parametrize(
+    ("k", "omega"),
+    [("3/2", "0.6"), ("3/2", "0.1"), ("2", "0.65"), ("6/5", "1/2")],
+)
+def test_the_errors_cover_what_other_settings_find(monkeypatch, k, omega):
+    """At ω = 0.6 the decay falls all along the chain."""
+    found = [at(k, omega)]
+    for options in SETTINGS:
+        with monkeypatch.context() as changed:
+            for name, value in options.items():
+                if name != "stretch":
+                    changed.setattr(steady, name, value)
+            found.append(at(k, omega, options.get("stretch", STRETCH)))
+    for one, other in combinations(found, 2):
+        for name in QUANTITIES:
+            bound = one[name].error + other[name].error
+            assert abs(one[name].value - other[name].value) <= bound, name
+
+
+def test_what_a_geometric_approach_has_before_it_is_in_the_error():
+    """x_n = r^n, whose limit is 0: each error is x_n at least, up to r = 0.9."""
+    for r in (0.3, 0.8, 0.89):
+        x = r ** np.arange(9.0)
+        assert np.all(steady._unsettled(x[None])[0] >= x[2:])
+
+
+def test_the_leading_pulse_is_not_a_later_and_higher_one():
+    time = np.linspace(0, 20, 2001)
+    first, second = np.exp(-((time - 5) ** 2)), 2 * np.exp(-((time - 12) ** 2))
+    part = leading_pulse(first + second, 1.5)
+    assert time[part][np.argmax((first + second)[part])] == pytest.approx(5, abs=0.01)
+    # two humps are one pulse while the compression between them stays above a quarter
+    part = leading_pulse(first + np.exp(-((time - 7) ** 2)), 1.5)
+    assert time[part.stop] > 8
+
+
+def test_a_pulse_that_does_not_come_through_is_told(monkeypatch):
+    monkeypatch.setattr(steady, "_LONGEST", 1)
+    monkeypatch.setattr(steady.Chain, "crossing", 10.0)
+    found = point(HERTZ, R(1), STRETCH)
+    assert found.missing == "the pulse has not passed 80 sites by t = 10"
+    assert (found.sites, found.numbers) == (None, {})
+
+
+def test_a_failure_is_the_points_own(monkeypatch):
+    def fails(*_, **__):
+        raise IntegrationError("too long a step")
+
+    monkeypatch.setattr(steady, "simulate", fails)
+    assert point(HERTZ, R(1), STRETCH).missing == "too long a step"
+
+    def broken(*_, **__):
+        raise TypeError("a bug")
+
+    monkeypatch.setattr(steady, "simulate", broken)
+    with pytest.raises(TypeError):
+        point(HERTZ, R(1), STRETCH)

@@ -1,0 +1,87 @@
+"""Files: every fault of the system is one line, and nothing is left half-written."""
+
+import errno
+import os
+import re
+import tempfile
+
+import pytest
+
+from lwa import InputError
+from lwa.spheres.files import content
+from validation.report.files import output_file, replacing
+
+
+def refusal(tmp_path, name):
+    """What is said of an output file of that name; nothing may be left."""
+    before = sorted(tmp_path.iterdir())
+    with pytest.raises(InputError) as caught:
+        output_file("plot", str(tmp_path / name), (".svg",))
+    assert sorted(tmp_path.iterdir()) == before
+    message = str(caught.value)
+    assert message.startswith("plot is ")
+    assert "\n" not in message
+    assert len(message) < 400
+    return message.rpartition(": ")[2]
+
+
+def test_places_that_cannot_take_a_file(tmp_path):
+    (tmp_path / "folder.svg").mkdir()
+    (tmp_path / "file").write_text("")
+    os.mkfifo(tmp_path / "pipe.svg")
+    for name, said in {
+        "a" * 300 + ".svg": "it cannot be written, File name too long",
+        "a" * 300 + "/p.svg": "it cannot be written, File name too long",
+        "a/" * 3000 + "p.svg": "it cannot be written, File name too long",
+        "no/p.svg": "the folder .* does not exist",
+        "file/p.svg": ".*file is no folder",
+        "file/no/p.svg": "it cannot be written, Not a directory",
+        "folder.svg": "a file that can be written is wanted, not a folder",
+        "pipe.svg": "a file that can be written is wanted, not a pipe",
+        "p.txt": "a file ending in .svg is wanted",
+        "p\0.svg": "it cannot be written, embedded null byte",
+    }.items():
+        assert re.fullmatch(said, refusal(tmp_path, name)), name
+
+
+@pytest.mark.parametrize("number", [errno.EACCES, errno.ENOSPC, errno.EROFS, errno.EDQUOT])
+def test_a_folder_that_takes_no_file(tmp_path, monkeypatch, number):
+    def refuse(**_):
+        raise OSError(number, os.strerror(number))
+
+    monkeypatch.setattr(tempfile, "TemporaryFile", refuse)
+    assert refusal(tmp_path, "p.svg") == f"it cannot be written, {os.strerror(number)}"
+
+
+@pytest.mark.parametrize(
+    "fault", [OSError(errno.ENOSPC, "full"), KeyboardInterrupt(), ValueError()]
+)
+@pytest.mark.parametrize("name", ["p.svg", "a" * 251 + ".svg"])
+def test_what_fails_on_the_way_leaves_the_old_file(tmp_path, fault, name):
+    file = tmp_path / name
+    file.write_text("old")
+    wanted = InputError if isinstance(fault, OSError) else type(fault)
+
+    def fail():
+        with replacing(file) as new:
+            new.write_text("half")
+            raise fault
+
+    with pytest.raises(wanted) as caught:
+        fail()
+    assert (file.read_text(), list(tmp_path.iterdir())) == ("old", [file])
+    assert wanted is not InputError or str(caught.value).endswith("is not written: full")
+
+
+def test_the_content_of_a_regular_file_only(tmp_path):
+    (tmp_path / "s").write_bytes(b"12345")
+    os.mkfifo(tmp_path / "pipe")
+    assert content(tmp_path / "s", 5) == b"12345"
+    for name, most, said in (
+        ("s", 4, "more than 4 bytes, the most that is read"),
+        ("pipe", 9, "a pipe, and only regular files are read"),
+        (".", 9, "a folder, and only regular files are read"),
+        ("/dev/zero", 9, "a device, and only regular files are read"),
+    ):
+        with pytest.raises(InputError, match=f"^{said}$"):
+            content(tmp_path / name, most)

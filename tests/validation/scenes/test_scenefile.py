@@ -1,0 +1,422 @@
+"""A scene's file: what it means, that it is read back equal, and that nothing else is read."""
+
+import copy
+import json
+import os
+import re
+import textwrap
+import tomllib
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from lwa import Cell
+from lwa.spheres import beads, files
+from lwa.spheres.beads import read_spheres
+from validation.scenes import scenefile
+from validation.scenes.materials import STEEL, Bead, Material, contact_stiffness
+from validation.scenes.scene import Scene, SceneError
+from validation.scenes.scenefile import document, read, scene, toml, write
+from validation.studies.porter2008.experiment import chain_scene
+
+# The experiment of Porter et al. (2008), standing upright: SI units.
+PAPER = """
+duration = 1.5e-3
+samples = 2280
+gravity = 9.81
+
+[materials.steel]
+E = 193e9
+nu = 0.3
+
+[materials.ptfe]
+E = 1.46e9
+nu = 0.46
+
+[beads.steel]
+mass = 0.45e-3
+radius = 2.38e-3
+material = "steel"
+
+[beads.ptfe]
+mass = 0.123e-3
+radius = 2.38e-3
+material = "ptfe"
+
+[chain]
+cell = ["steel", "ptfe"]
+repeat = 19
+
+[striker]                          # bead 1
+velocity = 1.37
+
+[wall]
+material = "steel"
+
+[sensors]                          # counted from 1
+beads = [15, 34]
+contacts = [14, 15, 33, 34, 38]    # the last one is that with the wall
+"""
+
+# All other keys: a trimer in units of its own, pressed together, with a defect and a soft contact.
+TRIMER = """
+duration = 20
+precompression = 0.5
+chain = {cell = [1, 1, 0.25], repeat = 3, k = 1.25, stiffnesses = [1, 2, 3], spacings = 1}
+defects = [{bead = 5, mass = 7}, {contact = 1, stiffness = 0.5}]
+wall = {stiffness = 4}
+start = {velocities = [1, 1], displacements = [0.1]}
+sensors = {beads = [9, 1]}
+"""
+
+
+def toml_file(text):
+    return scene(tomllib.loads(text))
+
+
+def test_the_experiment_of_the_paper():
+    assert toml_file(PAPER) == chain_scene(1.37, 38, (15, 34), 9.81, 1.5e-3)
+
+
+def test_every_other_key():
+    assert toml_file(TRIMER) == Scene(
+        masses=(1, 1, 0.25, 1, 7, 0.25, 1, 1, 0.25),
+        stiffnesses=(0.5, 2, 3, 1, 2, 3, 1, 2),
+        spacings=(1,) * 8,
+        k=1.25,
+        duration=20,
+        precompression=0.5,
+        wall=4,
+        velocities=(1, 1),
+        displacements=(0.1,),
+        bead_sensors=(8, 0),
+    )
+
+
+def test_the_modules_own_example_holds_every_key():
+    example = scenefile.__doc__.partition("::\n")[2].partition("\nBeads and contacts are")[0]
+    content = tomllib.loads(textwrap.dedent(example))
+    assert set(content) == set(scenefile.KEYS["file"])
+    for name in ("chain", "striker", "start", "sensors"):
+        assert set(content[name]) == set(scenefile.KEYS[name])
+    start = content.pop("start")  # what excludes each other
+    balls = {key: content["chain"].pop(key) for key in ("k", "stiffnesses", "spacings")}
+    assert scene(content).size == 38
+    del content["striker"]
+    content |= {"start": start, "chain": {"cell": [1.0, 2.0], "repeat": 19} | balls}
+    content |= {"wall": {"stiffness": 1.0}, "defects": [{"bead": 10, "mass": 2.0}]}
+    assert scene(content).spacings == (1.0,) * 37
+
+
+def test_what_is_not_named_is_not_there():
+    bare = scene({"duration": 1, "chain": {"cell": [1, 2], "k": 2}})
+    assert bare == Scene(masses=(1, 2), stiffnesses=(1,), k=2, duration=1)
+
+
+def test_a_defect_may_be_a_bead_of_the_file_or_a_mass():
+    big = Bead(mass=1e-3, radius=5e-3, material=Material(72e9, 0.17))
+    text = (
+        PAPER
+        + "[materials.glass]\nE = 72e9\nnu = 0.17\n[beads.big]\nmass = 1e-3\nradius = 5e-3\n"
+        + 'material = "glass"\n[[defects]]\nbead = 4\nlike = "big"\n[[defects]]\nbead = 7\nmass = 9'
+    )
+    changed, plain = toml_file(text), toml_file(PAPER)
+    steel = Bead(mass=0.45e-3, radius=2.38e-3, material=STEEL)
+    assert changed.stiffnesses[2:4] == (contact_stiffness(steel, big),) * 2
+    assert changed.spacings[2:4] == (7.38e-3,) * 2
+    assert (changed.masses[3], changed.masses[6]) == (1e-3, 9)
+    same = [i for i in range(38) if i not in (3, 6)]
+    assert all(changed.masses[i] == plain.masses[i] for i in same)
+    assert changed.stiffnesses[4:] == plain.stiffnesses[4:]
+
+
+def test_stiffnesses_of_a_cell_or_of_all_contacts():
+    chain = {"cell": [1, 2], "repeat": 2, "k": 1.5}
+    for values, found in [(3, (3, 3, 3)), ([1, 2], (1, 2, 1)), ([1, 2, 3], (1, 2, 3))]:
+        assert scene({"duration": 1, "chain": chain | {"stiffnesses": values}}).stiffnesses == found
+
+
+def test_the_cell_of_a_scene_is_read_by_the_theory(tmp_path):
+    (tmp_path / "scene.toml").write_text(PAPER)
+    cell, chain = Cell.of_spheres(read_spheres(tmp_path / "scene.toml")), toml_file(PAPER)
+    assert chain.masses[:2] == tuple(map(float, cell.masses))
+    assert chain.stiffnesses[:2] == pytest.approx([float(A) for A in cell.stiffnesses], rel=1e-15)
+    assert chain.spacings[:2] == (float(cell.spacing),) * 2
+    known = {"materials", "beads", "chain", "precompression", *beads.SCENE}
+    assert known == set(scenefile.KEYS["file"])
+
+
+# --- there and back -------------------------------------------------------------------------
+
+sizes = st.floats(1e-300, 1e300)
+reals = st.floats(-1e300, 1e300)
+
+
+@st.composite
+def scenes(draw):
+    period, repeat = draw(st.integers(1, 4)), draw(st.integers(1, 3))
+    n = period * repeat
+
+    def rows(numbers, least, most):
+        return draw(st.lists(numbers, min_size=least, max_size=most))
+
+    wall = draw(st.none() | sizes)
+    contacts = n - (wall is None)
+    return Scene(
+        masses=rows(sizes, period, period) * repeat,
+        stiffnesses=(rows(sizes, period, period) * repeat)[: n - 1],
+        spacings=(rows(sizes, period, period) * repeat)[: n - 1] if draw(st.booleans()) else (),
+        k=draw(st.floats(1, 100)),
+        duration=draw(sizes),
+        samples=draw(st.integers(2, 10**5)),
+        wall=wall,
+        gravity=0 if wall is None else draw(st.just(0) | sizes),
+        precompression=0 if wall is None else draw(st.just(0) | sizes),
+        displacements=rows(reals, 0, n),
+        velocities=rows(reals, 0, n),
+        bead_sensors=draw(st.permutations(range(n)))[: draw(st.integers(0, n))],
+        contact_sensors=draw(st.permutations(range(contacts)))[: draw(st.integers(0, contacts))],
+    )
+
+
+@given(scenes())
+def test_a_scene_written_is_read_back_equal(what):
+    content = document(what)
+    assert scene(tomllib.loads(toml(content))) == what
+    assert scene(json.loads(json.dumps(content, allow_nan=False))) == what
+
+
+@pytest.mark.parametrize("suffix", files.MOST_BYTES)
+@pytest.mark.parametrize("text", [PAPER, TRIMER])
+def test_files_there_and_back(tmp_path, text, suffix):
+    file, first = tmp_path / f"scene{suffix}", tmp_path / "first.toml"
+    first.write_text(text)
+    write(read(first), file)
+    assert read(file) == read(first)
+    assert {f.name for f in tmp_path.iterdir()} == {first.name, file.name}
+    assert len(file.read_text()) < 800  # a periodic chain is written as its cell
+
+
+def test_a_failure_leaves_the_old_file(tmp_path, monkeypatch):
+    file = tmp_path / "scene.toml"
+    file.write_text("old")
+    monkeypatch.setattr("os.replace", lambda *_: 1 / 0)
+    with pytest.raises(ZeroDivisionError):
+        write(toml_file(TRIMER), file)
+    assert file.read_text() == "old"
+    assert list(tmp_path.iterdir()) == [file]
+
+
+# --- what is refused ------------------------------------------------------------------------
+
+GOOD = {
+    "duration": 1.0,
+    "samples": 11,
+    "materials": {"steel": {"E": 1e11, "nu": 0.3}},
+    "beads": {"ball": {"mass": 1e-3, "radius": 1e-3, "material": "steel"}},
+    "chain": {"cell": [1, 2, 3], "k": 1.5},
+    "sensors": {"beads": [2], "contacts": [1]},
+}
+BALLS = {"chain": {"cell": ["ball", "ball"]}}
+NAN, INF = float("nan"), float("inf")
+
+BAD = [
+    ({"duration": 0}, "duration is 0: it must be positive"),
+    ({"duration": -1}, "duration is -1: it must be positive"),
+    ({"duration": NAN}, "duration is nan: a finite number is wanted"),
+    ({"duration": "1"}, "duration is '1': a number is wanted"),
+    ({"duration": True}, "duration is True: a number is wanted"),
+    ({"duration": 10**400}, "duration is 1000.*: a number is wanted"),
+    ({"durations": 1}, "durations is unknown: did you mean duration"),
+    ({"__import__('os')": 1}, r"\"__import__\('os'\)\" is unknown: one of duration, .* is wanted"),
+    ({"samples": 1}, "samples is 1: one of 2 … 10000000 is wanted"),
+    ({"samples": 1.5}, "samples is 1.5: one of"),
+    ({"samples": 5_000_001}, "samples is 5000001, for each of 2 sensors: all may take 10000000"),
+    ({"gravity": 9.81}, "gravity is 9.81: .* needs a wall to pull towards"),
+    ({"gravity": [9.81]}, r"gravity is \[9.81\]: a number is wanted"),
+    ({"precompression": 1}, "precompression is 1: .* needs a wall to push against"),
+    ({"precompression": -1, "wall": {"stiffness": 1}}, "precompression is -1: it must be positive"),
+    ({"chain": 3}, "chain is 3: a table of keys is wanted"),
+    ({"chain": {}}, "chain.cell is missing"),
+    ({"chain": {"cell": []}}, "chain.cell and repeat make 0 beads: 1 … 1000000 are wanted"),
+    ({"chain": {"cell": [1], "repeat": 10**6 + 1}}, "chain.cell and repeat make 1000001 beads"),
+    ({"chain": {"cell": [1], "repeat": 0}}, "chain.repeat is 0: an integer from 1 on is wanted"),
+    ({"chain": {"cell": "ball"}}, "chain.cell is 'ball': a list is wanted"),
+    ({"chain": {"cell": [1, -2]}}, "chain.cell number 2 is -2: it must be positive"),
+    ({"chain": {"cell": [1, NAN]}}, "chain.cell number 2 is nan: a finite number is wanted"),
+    ({"chain": {"cell": [1, INF]}}, "chain.cell number 2 is inf: a finite number is wanted"),
+    ({"chain": {"cell": [1, "ball"]}}, "chain.cell number 2 is 'ball': a number is wanted"),
+    ({"chain": {"cell": ["ball", 1]}}, "chain.cell number 2 is 1: one of ball is wanted"),
+    ({"chain": {"cell": ["bal"]}}, "chain.cell number 1 is 'bal': did you mean ball"),
+    ({"chain": {"cell": ["ball"]}, "beads": {}}, "chain.cell number 1 is 'ball': none is defined"),
+    ({"chain": {"cell": [1]}}, "chain.k is missing"),
+    ({"chain": {"cell": [1, 2], "k": 0.5}}, "k is 0.5: the contact law .* k ≥ 1"),
+    ({"chain": {"cell": ["ball"], "k": 1.5}}, "chain.k is given, but named beads are in Hertz"),
+    ({"chain": {"cell": [1, 2, 3], "k": 2, "stiffnesses": [1]}}, "chain.stiffnesses holds 1: 2 or"),
+    ({"chain": {"cell": [1, 2], "k": 2, "stiffnesses": [0]}}, "chain.stiffnesses number 1 is 0"),
+    ({"chain": {"cell": [1, 2], "k": 2, "spacings": -1}}, "chain.spacings is -1: it must be pos"),
+    ({"chain": {"cell": [1], "masses": [1]}}, "chain.masses is unknown: one of cell, k"),
+    ({"materials": {"x": {"E": 1}}}, "materials.x.nu is missing"),
+    ({"materials": {"x": {"E": 1, "nu": 0.6}}}, "materials.x.nu is 0.6: Poisson's ratio lies"),
+    ({"materials": {"x y": {"e": 1, "nu": 0.6}}}, "materials.'x y'.e is unknown"),
+    ({"beads": {"b": {"mass": -1, "radius": 1}}}, "beads.b.mass is -1: it must be positive"),
+    ({"beads": {"b": {"mass": 1, "radius": 1, "material": "stel"}}},
+     "beads.b.material is 'stel': did you mean steel"),
+    ({"beads": [1]}, r"beads is \[1\]: a table of keys is wanted"),
+    ({"defects": {"bead": 1}}, "defects is {'bead': 1}: a list is wanted"),
+    ({"defects": [{}]}, "defects number 1 has neither contact nor bead: one is wanted"),
+    ({"defects": [{"bead": 1}]}, "defects number 1 has neither like nor mass: one is wanted"),
+    ({"defects": [{"bead": 1, "mass": 1, "like": "ball"}]}, "defects number 1 has both like and m"),
+    ({"defects": [{"bead": 0, "mass": 1}]}, "defects number 1.bead is 0: one of 1 … 3 is wanted"),
+    ({"defects": [{"bead": 4, "mass": 1}]}, "defects number 1.bead is 4: one of 1 … 3 is wanted"),
+    ({"defects": [{"bead": 1, "mass": -1}]}, "defects number 1.mass is -1: it must be positive"),
+    ({"defects": [{"bead": 1, "like": "ball"}]}, "defects number 1.like names a bead in"),
+    ({"defects": [{"contact": 3, "stiffness": 1}]}, "defects number 1.contact is 3: one of 1 … 2"),
+    ({"defects": [{"contact": 1, "mass": 1}]}, "defects number 1.mass is unknown: one of contact"),
+    ({"defects": [{"bead": 3, "mass": 1}, {"contact": 1, "stiffness": 2}, {"bead": 3, "mass": 1}]},
+     "defects number 1 and defects number 3 are both of bead 3: one is wanted"),
+    ({"defects": [{"bead": 1, "like": "ball"}, {"bead": 1, "mass": 2}]} | BALLS,
+     "defects number 1 and defects number 2 are both of bead 1: one is wanted"),
+    ({"defects": [{"contact": 2, "stiffness": 1}] * 2},
+     "defects number 1 and defects number 2 are both of contact 2: one is wanted"),
+    ({"wall": {}}, "wall has neither material nor stiffness: one is wanted"),
+    ({"wall": {"stiffness": 0}}, "wall.stiffness is 0: it must be positive"),
+    ({"wall": {"material": "steel"}}, "wall.material is given, but a chain of masses needs"),
+    ({"wall": {"material": "wood"}} | BALLS, "wall.material is 'wood': one of steel is wanted"),
+    ({"striker": {"speed": 1}}, "striker.speed is unknown: one of velocity is wanted"),
+    ({"striker": {}}, "striker.velocity is missing"),
+    ({"striker": {"velocity": NAN}}, "striker.velocity is nan: a finite number is wanted"),
+    ({"striker": {"velocity": 1}, "start": {}}, "striker and start are both there"),
+    ({"start": {"velocities": [1] * 4}}, "4 velocities for 3 beads: at most 3 wanted"),
+    ({"start": {"displacements": [0.1]}}, "start.displacements press bead 1 into bead 2: start.ov"),
+    ({"start": {"displacements": [0, 0, 1]}, "wall": {"stiffness": 1}},
+     "start.displacements press bead 3 into the wall"),
+    ({"start": {"displacements": [1], "overlap": 1}}, "start.overlap is 1: true or false"),
+    ({"sensors": {"beads": [4]}}, "sensors.beads number 1 is 4: one of 1 … 3 is wanted"),
+    ({"sensors": {"beads": [0]}}, "sensors.beads number 1 is 0: one of 1 … 3 is wanted"),
+    ({"sensors": {"beads": [1, 1]}}, r"sensors.beads is \[1, 1\]: each may be named once"),
+    ({"sensors": {"contacts": [3]}}, "sensors.contacts number 1 is 3: one of 1 … 2 is wanted"),
+    ({"sensors": {"contacts": [1]}, "chain": {"cell": [1], "k": 2}},
+     "sensors.contacts number 1 is 1: the chain has none"),
+    ({"sensors": {"bead": [1]}}, "sensors.bead is unknown: did you mean beads"),
+]  # fmt: skip
+
+
+def one_line(caught):
+    message = str(caught.value)
+    assert "\n" not in message
+    assert len(re.sub(r"^/\S+/", "", message)) < 200
+
+
+@pytest.mark.parametrize(("change", "message"), BAD, ids=[str(b[0])[:50] for b in BAD])
+def test_bad_scenes_are_refused_by_the_key(change, message):
+    scene(GOOD)
+    with pytest.raises(SceneError, match=rf"^{message}") as caught:
+        scene(GOOD | change)
+    one_line(caught)
+
+
+def test_overlap_is_asked_for_or_carried():
+    pressed = {"displacements": [0.1]}
+    for more in (
+        {"start": pressed | {"overlap": True}},
+        {"start": pressed, "wall": {"stiffness": 1}, "precompression": 1},
+        {"start": {"displacements": [-0.1, -0.1]}},  # a gap
+    ):
+        assert scene(GOOD | more).displacements
+
+
+FILES = [
+    ("s.toml", b"", "duration is missing|chain is missing"),
+    ("s.toml", b"duration = ", "not TOML: Invalid value"),
+    ("s.toml", b"duration = 1\nduration = 2", "not TOML: Cannot overwrite a value"),
+    (
+        "s.toml",
+        b"duration = 0x" + b"f" * 5000 + b"\nchain = {cell = [1], k = 2}",
+        "duration is a number of thousands of digits",
+    ),
+    ("s.toml", b"duration = nan\nchain = {cell = [1], k = 2}", "duration is nan: a finite"),
+    ("s.toml", b"duration = 1979-05-27\nchain = {cell = [1], k = 2}", "duration is datetime"),
+    ("s.toml", b"x = " + b"[" * 100_000, "nested too deeply for a scene"),
+    ("s.toml", b"\x89PNG\r\n\x1a\n\x00\x00", "not a text in UTF-8"),
+    ("s.toml", "# Länge\nduration = 1".encode("latin-1"), "not a text in UTF-8"),
+    ("s.json", b"", "not JSON: Expecting value"),
+    ("s.json", b'{"duration": 1', "not JSON: Expecting"),
+    ("s.json", b"[1, 2]", r"the file is \[1, 2\]: a table of keys is wanted"),
+    ("s.json", b'{"duration": NaN, "chain": {"cell": [1], "k": 2}}', "duration is nan"),
+    ("s.json", b'{"duration": 1, "duration": 2}', "'duration' is there 2 times"),
+    ("s.json", b"[" * 100_000, "nested too deeply for a scene"),
+    ("s.json", b'{"duration": 1' + b"0" * 5000 + b"}", "not JSON: Exceeds the limit"),
+    ("s.txt", b"duration = 1", "a scene is a file ending in .toml or .json"),
+    ("s.toml", b"a." * 5_000 + b"b = 1", "nested too deeply for a scene"),
+    ("s.toml", b"[x" + b" . x" * 5_000 + b"]", "nested too deeply for a scene"),
+    ("s.toml", b"x = 1  # ." + b"a" * 300_000, "x is unknown"),  # in time linear in its length
+    ("folder.toml", None, "a folder, and only regular files are read"),
+    ("pipe.json", None, "a pipe, and only regular files are read"),
+    ("device.json", None, "a device, and only regular files are read"),
+    ("missing.toml", None, "No such file or directory"),
+]
+
+
+@pytest.mark.parametrize(("name", "content", "message"), FILES, ids=range(len(FILES)))
+def test_bad_files(tmp_path, name, content, message):
+    file = tmp_path / name
+    (tmp_path / "folder.toml").mkdir()
+    (tmp_path / "device.json").symlink_to("/dev/zero")
+    os.mkfifo(tmp_path / "pipe.json")  # which nobody writes to
+    if content is not None:
+        file.write_bytes(content)
+    with pytest.raises(SceneError) as caught:
+        read(file)
+    found = str(caught.value)
+    assert found.startswith(f"{file}: ")
+    assert re.match(message, found.removeprefix(f"{file}: "))
+    one_line(caught)
+
+
+def test_a_file_without_end_is_refused(monkeypatch, tmp_path):
+    monkeypatch.setitem(files.MOST_BYTES, ".toml", 10)
+    (tmp_path / "s.toml").write_text("duration = 1")
+    with pytest.raises(SceneError, match=r"s.toml: more than 10 bytes, the most that is read$"):
+        read(tmp_path / "s.toml")
+    with pytest.raises(
+        SceneError, match=r"t.toml: the scene takes [0-9]+ bytes, and 10 of TOML are the"
+    ):
+        write(Scene(masses=(1, 2), stiffnesses=(1,), k=2, duration=1), tmp_path / "t.toml")
+    assert not (tmp_path / "t.toml").exists()
+
+
+leaves = st.one_of(
+    st.none(), st.booleans(), st.integers(-3, 50), st.floats(), st.text(max_size=4),
+    st.sampled_from(["ball", "steel"]), st.just(10**400),
+)  # fmt: skip
+anything = st.recursive(
+    leaves,
+    lambda inner: (
+        st.lists(inner, max_size=3)
+        | st.dictionaries(st.sampled_from(["bead", "mass", "stiffness", "material", "x"]), inner)
+    ),
+    max_leaves=5,
+)
+FULL = tomllib.loads(PAPER) | {"defects": [{"bead": 1, "mass": 1.0}], "precompression": 1.0}
+
+
+@given(st.data())
+def test_whatever_a_file_holds_is_read_or_refused_in_one_line(data):
+    content = copy.deepcopy(FULL)
+    at = content
+    while True:
+        keys = sorted(at) if isinstance(at, dict) else list(range(len(at)))
+        key = data.draw(st.sampled_from(keys))
+        if not isinstance(at[key], dict | list) or not at[key] or data.draw(st.booleans()):
+            break
+        at = at[key]
+    at[key] = data.draw(anything)
+    try:
+        scene(content)
+    except SceneError as error:
+        message = str(error)
+    else:
+        message = ""
+    assert "\n" not in message

@@ -1,0 +1,230 @@
+"""Speed against error: errors fall, costs are told as defined, and the contract is kept."""
+
+import json
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy import integrate as scipy
+
+from lwa import InputError
+from validation import cli
+from validation.lattice.schemes import SCHEMES
+from validation.lattice.simulate import COMPILED, simulate
+from validation.report.text import document, text
+from validation.scenes.scene import Scene
+from validation.studies.accuracy import integrators as module
+from validation.studies.accuracy import peers, tasks
+from validation.studies.accuracy.integrators import Row, accuracy, cost, costs
+from validation.studies.accuracy.reference import integrate
+from validation.studies.accuracy.tasks import NUMBERS, Task, errors, exact, struck
+
+
+def precompressed(duration=6.0):
+    """A dimer under such load that a weak blow opens no contact: a smooth problem at k = 3/2."""
+    n = 12
+    return Scene(
+        masses=(1.0, 0.4) * (n // 2), stiffnesses=(1.0,) * (n - 1), wall=1.0, precompression=1.0,
+        k=1.5, velocities=(0.2,), duration=duration, samples=121, contact_sensors=range(n),
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("method", COMPILED)
+def test_the_order_of_every_scheme_on_a_precompressed_chain(method):
+    """The error of the last state against the step: slopes 2, 4 and 6."""
+    scene, order = precompressed(), SCHEMES[method].order
+    truth = simulate(scene, rtol=1e-13, atol=1e-13)
+    assert truth.compression.min() > 0.9
+    steps, found = [], []
+    for each in (0.015, 0.02, 0.03):
+        run = simulate(scene, method=method, step=each * SCHEMES[method].stages)
+        steps.append(run.step)  # a whole number of them fills the duration
+        found.append(np.abs(run.velocities - truth.velocities).max())
+    assert found[0] > 1e-10  # above rounding
+    assert np.polyfit(np.log(steps), np.log(found), 1)[0] == pytest.approx(order, abs=0.2)
+
+
+@pytest.mark.parametrize("window", [False, True])
+@pytest.mark.parametrize("method", ["DOP853", "RK45", "LSODA", "SRKN14", "PEFRL"])
+def test_the_error_falls_with_the_tolerance(method, window):
+    """By a hundred at least where the tolerance falls by 1e4, and to what it promises."""
+    task = exact(20)
+    found = []
+    for rtol in (1e-5, 1e-9):
+        if method in COMPILED:
+            run = simulate(task.scene, method=method, rtol=rtol, window=window)
+            force = run.contact_force[0][-len(task.times) :]
+        else:
+            force = integrate(task, getattr(scipy, method), rtol, window=window)
+        found.append(max(errors(task.read(force), task.truth).values()))
+    assert found[0] < 1e-2
+    assert found[1] < 1e-2 * found[0]
+    assert found[1] < 1e-6
+
+
+def row(seconds, peak, method="a", window=False, family="peer", setting=1e-8, **rest):
+    off = {"arrival": 1e-9, "peak": peak, "fwhm": 1e-8}
+    return Row("dimer", family, method, window, setting, off, seconds, **rest)
+
+
+def test_a_cost_holds_from_there_on():
+    """The lucky run at 1 s does not count, as the one at 2 s is worse; that at 3 s does."""
+    rows = [row(1, 1e-7), row(4, 1e-9), row(2, 2e-6), row(3, 9e-7)]
+    assert cost(rows) == 3
+    assert cost(rows, 1e-8) == 4
+    assert cost(rows, 1e-5) == 1
+    assert cost(rows, 1e-10) == math.inf
+    assert costs([*rows, row(5, 1e-7, window=True)]) == {
+        ("peer", "a"): 3, ("peer", "a, window"): 5,
+    }  # fmt: skip
+
+
+def test_goals_compare_equal_errors(monkeypatch):
+    monkeypatch.setattr(module, "scaling", lambda sites: (-0.02, 0.01))
+    ours = dict(method="SRKN14", window=True, family="compiled")
+    rows = [
+        row(0.001, 2e-6, setting=1e-5, **ours), row(0.004, 5e-7, setting=1e-6, **ours),
+        row(0.02, 1e-9, ns=1.6, **ours),
+        row(1.0, 2e-6, "SciPy DOP853", family="SciPy"),
+        row(3.0, 9e-7, "SciPy DOP853", family="SciPy"),
+        row(0.05, 2e-6, "CyRK"), row(0.09, 5e-7, "CyRK"), row(0.2, 1e-8, "slow"),
+    ]  # fmt: skip
+    goals = {goal.key: goal for goal in module._goals(rows)}
+    assert goals["window_ms"].value == pytest.approx(4.0)
+    assert goals["scipy_ratio"].value == pytest.approx(750)
+    assert goals["peer_ratio"].value == pytest.approx(22.5)
+    assert "CyRK" in goals["peer_ratio"].quantity
+    assert {key: goal.ok for key, goal in goals.items()} == {
+        "window_ms": True, "scipy_ratio": True, "peer_ratio": False, "evaluation_ns": False,
+        "site_exponent": True,
+    }  # fmt: skip
+    others = [r for r in rows if r.family != "peer"]
+    assert "peer_ratio" not in {goal.key for goal in module._goals(others)}
+
+
+def test_cost_per_site_is_fitted_by_a_power(monkeypatch):
+    """Costs n² give cost per site ~ n."""
+    monkeypatch.setattr(module, "_timed", lambda run: (None, 1e-9 * len(run.args[0].masses) ** 2))
+    slope, error = module.scaling((100, 200, 400))
+    assert slope == pytest.approx(1.0)
+    assert error < 1e-9
+
+
+def small():
+    return struck(0.2733, 24, 16, 8.0, 24.0, "a small dimer")
+
+
+def walled():
+    """As the experiment: behind a wall there is no window."""
+    task = small()
+    scene = replace(task.scene, wall=1.0)
+    return Task("with a wall", scene, task.listen, windowed=False)
+
+
+def reduce(monkeypatch, the_peers=()):
+    monkeypatch.setattr(peers, "PEERS", the_peers)
+    for name, factory in (("dimer", small), ("experiment", walled)):
+        monkeypatch.setitem(tasks.TASKS, name, factory)
+    tables = dict(
+        _SCIPY={("DOP853", False): (1e-6, 1e-8), ("DOP853", True): (1e-8,)},
+        _SPLITTINGS={("SRKN14", True): (1e-6, 1e-8), ("Verlet", True): (1e-5,)},
+    )
+    tables |= dict(_SITES=(60, 120, 240), _ENOUGH=0.0)
+    for name, value in tables.items():
+        monkeypatch.setattr(module, name, value)
+
+
+def command(capsys, *arguments):
+    with pytest.raises(SystemExit) as ended:
+        cli.main(("accuracy", *arguments))
+    captured = capsys.readouterr()
+    return ended.value.code, captured.out, captured.err
+
+
+def held(result, names):
+    """The contract, and what each number means."""
+    assert {row["task"] for row in result["rows"]} == set(names)
+    for row in result["rows"]:
+        assert row["error"] == max(row[f"{name}_error"] for name in NUMBERS) < 1e-3
+        assert row["seconds"] > 0
+        if row["task"] == "experiment":
+            assert "window" not in row["method"]
+    for reference in result["references"]:
+        assert reference["agreement"] < 5e-12
+        assert all(reference[name] > 0 for name in NUMBERS)
+    assert len(result["references"]) == len(names)
+
+
+def test_the_command_prints_the_contract(capsys, monkeypatch, tmp_path):
+    reduce(monkeypatch)
+    picture = tmp_path / "diagram.svg"
+    arguments = ("--task", "dimer", "--task", "experiment", "--plot", str(picture))
+    status, out, err = command(capsys, *arguments, "--format", "json")
+    assert (status, err) == (0, "")
+    result = json.loads(out)
+    held(result, ("dimer", "experiment"))
+    methods = [row["method"] for row in result["rows"] if row["task"] == "dimer"]
+    assert methods == [
+        "SciPy DOP853", "SciPy DOP853", "SciPy DOP853, window", "SRKN14, window",
+        "SRKN14, window", "Verlet, window",
+    ]  # fmt: skip
+    assert [goal["key"] for goal in result["goals"]] == [
+        "window_ms", "scipy_ratio", "evaluation_ns", "site_exponent",
+    ]  # fmt: skip
+    drawn = picture.read_text()
+    assert drawn.startswith("<?xml")
+
+
+def test_the_text_names_tasks_methods_and_what_is_missing(monkeypatch):
+    monkeypatch.delenv("CI", raising=False)
+    reduce(monkeypatch, (peers.Peer("absent", "RK4", pytest.fail),))
+    result = accuracy(["experiment"])
+    assert result.goals == ()
+    assert document(result)["absent"] == ["absent"]
+    printed = text(result)
+    assert printed.startswith("experiment: arrival ")
+    assert "SRKN14  " in printed
+    assert "SRKN14, window" not in printed
+    assert printed.endswith(
+        "Left out, as not installed: absent (pip install 'lwa[peers]' brings them)."
+    )
+
+
+def test_a_missing_peer_ends_the_command_where_ci_is_set(capsys, monkeypatch):
+    monkeypatch.setenv("CI", "1")
+    reduce(monkeypatch, (peers.Peer("absent", "RK4", pytest.fail),))
+    status, out, err = command(capsys, "--task", "experiment")
+    assert (status, out) == (2, "")
+    (line,) = err.splitlines()
+    assert "absent is missing where CI is set" in line
+
+
+def test_a_task_that_does_not_exist_is_named_and_nothing_is_run(capsys, monkeypatch):
+    for name in tasks.TASKS:
+        monkeypatch.setitem(tasks.TASKS, name, pytest.fail)
+    status, out, err = command(capsys, "--task", "dimer", "--task", "tea")
+    assert (status, out) == (2, "")
+    names = "uniform, dimer, exact, experiment, theory"
+    assert err == f"lwa-validate: task is 'tea': one of {names} is wanted\n"
+    with pytest.raises(InputError, match=r"^task is 'tea'"):
+        accuracy(["tea"])
+
+
+@pytest.mark.slow
+@pytest.mark.filterwarnings("default::DeprecationWarning")
+def test_the_command_with_every_method(capsys, monkeypatch):
+    """All methods and peers, on short chains."""
+    for name, factory in (("dimer", small), ("experiment", walled)):
+        monkeypatch.setitem(tasks.TASKS, name, factory)
+    monkeypatch.setattr(module, "_SITES", (60, 120, 240))
+    names = ("dimer", "experiment")
+    chosen = [argument for name in names for argument in ("--task", name)]
+    status, out, _ = command(capsys, *chosen, "--format", "json")
+    assert status == 0
+    result = json.loads(out)
+    held(result, names)
+    attained = {row["method"].removesuffix(", window") for row in result["rows"]}
+    assert attained >= set(COMPILED) | {"SciPy DOP853", "SciPy RK45", "SciPy LSODA"}
+    found = {peer.name for peer in peers.PEERS if peer.package not in result["absent"]}
+    assert attained >= found

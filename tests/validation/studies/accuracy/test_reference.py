@@ -1,0 +1,127 @@
+"""The reference: two routes that agree, kinks that are located, a window without effect."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy import integrate as scipy
+
+from validation.lattice.equations import Motion
+from validation.lattice.simulate import simulate
+from validation.scenes.scene import Scene, SceneError
+from validation.studies.accuracy import reference as module
+from validation.studies.accuracy.reference import (
+    Located,
+    Part,
+    integrate,
+    located,
+    reference,
+    symplectic,
+)
+from validation.studies.accuracy.tasks import TASKS, Task, errors, exact, experiment, struck
+
+
+def short(omega):
+    return struck(omega, 30, 20, *{1.0: (14.0, 34.0), 0.2733: (10.0, 30.0)}[omega])
+
+
+@pytest.mark.parametrize("omega", [1.0, 0.2733])
+def test_both_routes_agree(omega):
+    """Both are good to a few 1e-13: rounding in a thousand steps and more."""
+    task = short(omega)
+    assert max(errors(located(task), symplectic(task)).values()) < 2e-12
+
+
+def test_located_kinks_make_the_error_follow_the_tolerance():
+    """In proportion to it; plain DOP853, which steps over the kinks, errs far more at its least."""
+    task = short(0.2733)
+    truth = symplectic(task)
+
+    def error(method, rtol):
+        return errors(task.read(integrate(task, method, rtol)), truth)["peak"]
+
+    tolerances = np.array([1e-9, 1e-11, 1e-13])
+    found = [error(Located, rtol) for rtol in tolerances]
+    assert np.polyfit(np.log(tolerances), np.log(found), 1)[0] == pytest.approx(1, abs=0.2)
+    assert error(scipy.DOP853, 1e-13) > 10 * found[-1]
+
+
+def test_the_end_of_a_collision_is_found_where_it_is():
+    """Two beads are in contact for (2 δ/v) √π Γ(1+s)/Γ(1/2+s), s = 1/(k+1), δ the deepest."""
+    k, reduced = 1.5, 1 / (1 + 1 / 0.3)
+    scene = Scene(masses=(1, 0.3), stiffnesses=(1,), k=k, velocities=(1,), duration=9)
+    s = 1 / (k + 1)
+    deepest = (reduced / (2 * s)) ** s
+    duration = 2 * deepest * math.sqrt(math.pi) * math.gamma(1 + s) / math.gamma(0.5 + s)
+    stepper = Located(Motion(scene), 0.0, np.array([0.0, 0, 1, 0]), 9.0, rtol=2.5e-14, atol=1e-15)
+    while not stepper.events:
+        assert stepper.step() is None
+    assert stepper.t == pytest.approx(duration, rel=1e-12)
+    while stepper.status == "running":
+        assert stepper.step() is None
+    assert stepper.events == 1
+    assert stepper.y[3] - stepper.y[2] == pytest.approx(1.0, rel=1e-12)  # elastic
+
+
+def test_the_exact_wave_arrives_as_it_must():
+    """Within the residual of the wave itself, which is 1e-12 of its speed at most."""
+    task = exact(20)
+    for pulse in (located(task), symplectic(task)):
+        assert max(errors(pulse, task.truth).values()) < 5e-12
+
+
+@pytest.mark.parametrize("omega", [1.0, 0.2733])
+def test_the_window_costs_no_accuracy(omega, monkeypatch):
+    """It leaves beads behind and lets others join; the whole chain moves by the other route."""
+    task = struck(omega, 100, 80, *((86.0, 104.0) if omega == 1 else (76.0, 92.0)))
+    followed = []
+
+    class Followed(Part):
+        def __init__(self, whole, lo, hi):
+            super().__init__(whole, lo, hi)
+            followed.append((lo, hi))
+
+    monkeypatch.setattr(module, "Part", Followed)
+    window = integrate(task, Located, 1e-12, window=True)
+    assert followed == sorted(followed)
+    assert followed[0] == (0, 33)
+    assert followed[-1][0] > 10
+    assert followed[-1][1] > 90
+    run = simulate(task.scene, method="SRKN14", rtol=1e-11, window=False)
+    whole = run.contact_force[0][-len(task.times) :]
+    assert max(errors(task.read(window), task.read(whole)).values()) < 1e-10
+
+
+def test_behind_a_wall_there_is_no_window():
+    with pytest.raises(SceneError, match=r"^window is True: behind a wall"):
+        integrate(experiment(), scipy.DOP853, 1e-6, window=True)
+
+
+def test_a_pulse_is_read_to_twelve_digits():
+    """cos^8 between its zeros, as narrow and as densely sampled as the tasks' pulses."""
+    task = struck(1.0, 30, 20, 10.0, 20.0)
+    width, centre, half = 1.6, 15.013, math.acos(0.5 ** (1 / 8))
+    phase = (task.times - centre) * 2 * half / width
+    force = 0.7 * np.where(np.abs(phase) < np.pi / 2, np.cos(phase), 0.0) ** 8
+    pulse = task.read(force)
+    # The peak's time is where a slope vanishes, and less certain than the slope.
+    assert pulse.arrival == pytest.approx(centre, abs=1e-11)
+    assert pulse.peak == pytest.approx(0.7, rel=1e-12)
+    assert pulse.fwhm == pytest.approx(width, rel=1e-12)
+
+
+@pytest.mark.parametrize("name", TASKS)
+def test_tasks_are_what_they_say(name):
+    task = TASKS[name]()
+    assert isinstance(task, Task)
+    assert task.times[0] >= task.listen
+    assert task.times[-1] == task.scene.duration
+    assert task.windowed is (task.scene.wall is None)
+    assert len(task.scene.contact_sensors) == 1
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["uniform", "dimer", "experiment"])
+def test_the_references_agree(name):
+    """480 contacts: rounding over a million steps is what is left."""
+    assert reference(name, TASKS[name]()).agreement < 5e-12

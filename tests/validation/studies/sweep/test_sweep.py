@@ -1,0 +1,539 @@
+"""Sweeps: any executor, nothing computed twice, nothing finished lost, the theory beside."""
+
+import importlib
+import json
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from concurrent.futures import BrokenExecutor, Executor, Future
+from concurrent.futures import ThreadPoolExecutor as Threads
+from contextlib import contextmanager
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import pytest
+import sympy as sp
+from hypothesis import given
+from hypothesis import strategies as st
+
+import validation.studies.sweep.sweep as module
+from lwa import InputError
+from validation import cli
+from validation.pulses.pulse import Measured
+from validation.pulses.steady import QUANTITIES, Point
+from validation.studies.limits import theory_at
+from validation.studies.sweep import executors
+from validation.studies.sweep.executors import cluster, processes
+from validation.studies.sweep.sweep import SweepError, axis, sweep, theory
+from validation.waves.theory import Compacton
+
+R = sp.Rational
+COMMAND = Path(sys.executable).with_name("lwa-validate")
+
+
+def dask():
+    """Dask, without which CI fails and others skip."""
+    if os.environ.get("CI"):
+        return importlib.import_module("distributed")
+    return pytest.importorskip("distributed", reason="Dask is not installed")
+
+
+class Inline(Executor):
+    """Computes at once, and keeps a list of what; the call number ``stop`` raises ``error``."""
+
+    def __init__(self, stop=None, error=KeyboardInterrupt):
+        self.calls, self.stop, self.error = [], stop, error
+
+    def submit(self, fn, /, *arguments):
+        if len(self.calls) == self.stop:
+            raise self.error
+        self.calls.append(arguments[:2])
+        future = Future()
+        try:
+            future.set_result(fn(*arguments))
+        except Exception as error:
+            future.set_exception(error)
+        return future
+
+
+def quick(k, omega, stretch):
+    """In place of a chain."""
+    value = float(k / omega)
+    return Point(k, omega, (8, 16), {name: Measured(value, value + 1e-9) for name in QUANTITIES})
+
+
+@pytest.fixture
+def fake(monkeypatch):
+    monkeypatch.setattr(module, "point", quick)
+
+
+KS, OMEGAS = ("3/2", 2, "5/2"), (1, "1/2", "1/4")
+GRID = [(R(k), R(omega)) for k in KS for omega in ("1/4", "1/2", 1)]
+
+
+# Executors
+
+
+@pytest.fixture(scope="module")
+def reference():
+    return sweep(["3/2", 2], [1, "1/2"], executor=Inline())
+
+
+def numbers(result):
+    return [(p.k, p.omega, p.sites, p.missing, dict(p.numbers)) for p in result.points]
+
+
+def test_threads_compute_the_same_bits(reference):
+    with Threads(2) as executor:
+        found = sweep([2, 1.5], [0.5, 1], executor=executor)
+    assert numbers(found) == numbers(reference)
+
+
+@pytest.mark.slow
+def test_the_default_pool_computes_the_same_bits(reference, tmp_path):
+    found = sweep(["3/2", 2], [1, "1/2"], file=tmp_path / "s.jsonl")
+    assert numbers(found) == numbers(reference)
+    again = sweep(["3/2", 2], [1, "1/2"], file=tmp_path / "s.jsonl", executor=Inline(stop=0))
+    assert numbers(again) == numbers(reference)
+
+
+def test_a_dask_cluster_computes_the_same_bits(reference):
+    distributed = dask()
+    with (
+        distributed.LocalCluster(
+            n_workers=1, threads_per_worker=2, processes=False, dashboard_address=None
+        ) as local,
+    ):
+        found = sweep(["3/2", 2], [1, "1/2"], executor=cluster(local.scheduler_address))
+    assert numbers(found) == numbers(reference)
+
+
+def test_an_executor_is_left_running_and_a_context_is_left(fake):
+    with Threads(1) as executor:
+        sweep(KS, OMEGAS, executor=executor)
+        assert executor.submit(pow, 2, 3).result() == 8
+    log = []
+
+    @contextmanager
+    def context():
+        log.append("entered")
+        yield Inline()
+        log.append("left")
+
+    with tempfile.TemporaryDirectory() as folder:
+        for _ in range(2):  # the second time there is nothing to do
+            sweep(KS, OMEGAS, executor=context(), file=Path(folder, "s.jsonl"))
+    assert log == ["entered", "left"]
+
+
+def test_a_bounded_number_is_underway(fake, monkeypatch):
+    class Counting(Threads):
+        most = now = 0
+
+        def submit(self, fn, /, *arguments):
+            self.now += 1
+            self.most = max(self.most, self.now)
+            future = super().submit(fn, *arguments)
+            future.add_done_callback(lambda _: time.sleep(0.001))
+            return future
+
+    monkeypatch.setattr(module, "_UNDERWAY", 3)
+    journal_add = module.Journal.add
+
+    def add(journal, point):
+        executor.now -= 1
+        journal_add(journal, point)
+
+    monkeypatch.setattr(module.Journal, "add", add)
+    with Counting(2) as executor:
+        sweep([1.5, 2, 3, 4], [1, 2, 3, 4, 5], executor=executor)
+    assert executor.most == 3
+
+
+def test_what_is_no_executor_is_refused():
+    with pytest.raises(InputError, match=r"^executor is 4: a concurrent\.futures\.Executor"):
+        sweep([2], [1], executor=4)
+    with pytest.raises(InputError, match=r"^jobs is 0: one of 1 … 1024 is wanted$"):
+        sweep([2], [1], executor=processes(0))
+
+
+# The file
+
+
+@pytest.mark.parametrize("stop", range(9))
+def test_an_interrupted_sweep_goes_on_where_it_was(fake, tmp_path, stop):
+    file = tmp_path / "s.jsonl"
+    first, second, third = Inline(stop), Inline(), Inline()
+    with pytest.raises(KeyboardInterrupt):
+        sweep(KS, OMEGAS, executor=first, file=file)
+    # all that was finished, though the interruption came before it was looked at
+    assert file.exists() == (stop > 0)
+    assert not stop or file.read_text().count("\n") == 1 + stop
+    whole = sweep(KS, OMEGAS, executor=second, file=file)
+    assert first.calls + second.calls == GRID
+    assert numbers(whole) == numbers(sweep(KS, OMEGAS, executor=third, file=file))
+    assert third.calls == []
+    assert numbers(whole) == numbers(sweep(KS, OMEGAS, executor=Inline()))
+
+
+def test_a_larger_sweep_computes_only_what_is_new(fake, tmp_path):
+    file, executor = tmp_path / "s.jsonl", Inline()
+    sweep(["3/2"], [1, "1/2"], executor=executor, file=file)
+    whole = sweep(KS, OMEGAS, executor=executor, file=file)
+    assert sorted(executor.calls) == GRID
+    assert [(p.k, p.omega) for p in whole.points] == GRID
+
+
+def test_a_torn_line_is_computed_again(fake, tmp_path):
+    file, executor = tmp_path / "s.jsonl", Inline()
+    sweep(KS, OMEGAS, executor=Inline(), file=file)
+    whole = file.read_bytes()
+    file.write_bytes(whole[:-30])
+    sweep(KS, OMEGAS, executor=executor, file=file)
+    assert executor.calls == GRID[-1:]
+    assert file.read_bytes() == whole
+
+
+def test_another_stretch_is_another_sweep(fake, tmp_path):
+    file = tmp_path / "s.jsonl"
+    sweep(KS, OMEGAS, executor=Inline(), file=file)
+    with pytest.raises(InputError, match=r"s\.jsonl is another sweep's, with settings"):
+        sweep(KS, OMEGAS, executor=Inline(stop=0), file=file, stretch=5)
+
+
+def test_a_point_that_fails_is_recorded_and_loses_no_other(monkeypatch, tmp_path):
+    def some(k, omega, stretch):
+        return Point(k, omega, None, {}, "broke") if omega == 1 else quick(k, omega, stretch)
+
+    monkeypatch.setattr(module, "point", some)
+    file, executor = tmp_path / "s.jsonl", Inline()
+    found = sweep(KS, OMEGAS, executor=executor, file=file)
+    assert [p.missing for p in found.points] == [None, None, "broke"] * 3
+    np.testing.assert_array_equal(np.isnan(found.map("width")), [[False, False, True]] * 3)
+    sweep(KS, OMEGAS, executor=executor, file=file)
+    assert len(executor.calls) == 9
+
+
+@pytest.mark.parametrize(
+    ("error", "message"),
+    [
+        (BrokenExecutor("gone"), "the workers are gone before the sweep is done"),
+        (TypeError("a bug"), "k = 2, omega = 1/4 is not computed: TypeError: a bug"),
+    ],
+)
+def test_an_executor_that_fails_loses_nothing_finished(monkeypatch, tmp_path, error, message):
+    def some(k, omega, stretch):
+        if k == 2:
+            raise error
+        return quick(k, omega, stretch)
+
+    monkeypatch.setattr(module, "point", some)
+    file, executor = tmp_path / "s.jsonl", Inline()
+    with pytest.raises(SweepError, match=message):
+        sweep(["3/2", 2], ["1/4"], executor=executor, file=file)
+    assert file.read_text().count("\n") == 2  # the other point, and the header
+    monkeypatch.setattr(module, "point", quick)
+    sweep(["3/2", 2], ["1/4"], executor=executor, file=file)
+    assert len(executor.calls) == 3
+
+
+def test_progress_is_shown_what_is_computed(fake, tmp_path):
+    seen = []
+
+    def progress(todo):
+        total = len(todo)
+        for i, key in enumerate(todo):
+            seen.append((i, total))
+            yield key
+
+    sweep(["3/2"], OMEGAS, executor=Inline(), file=tmp_path / "s.jsonl")
+    sweep(KS, OMEGAS, executor=Inline(), file=tmp_path / "s.jsonl", progress=progress)
+    assert seen == [(i, 6) for i in range(6)]
+
+
+# The theory
+
+
+def test_the_theory_is_that_of_lwa():
+    ks, omegas = (R(3, 2), R(3)), (R(1, 5), R(1), R(7))
+    found = theory(ks, omegas)
+    for i, k in enumerate(ks):
+        for j, omega in enumerate(omegas):
+            if (k, omega) == (3, 7):
+                continue
+            wave = theory_at(k, omega)
+            linear = {name: values[i, j] for name, values in found["linear"].items()}
+            assert linear == pytest.approx(
+                {
+                    "width": float(wave.fwhm("force")),
+                    "strain_width": float(wave.fwhm("strain")),
+                    "speed": Compacton(wave, 1.0).speed,
+                },
+                rel=1e-14,
+            )
+    for name, values in found["linear"].items():
+        assert np.isnan(values[1, 2]), name  # G + H + I < 0: no wave
+        assert values[:, 1] == pytest.approx(found["canonical"][name][:, 1], rel=1e-14)
+    # the canonical wave does not ask which mass is called m1
+    swapped = theory(ks, [1 / omega for omega in omegas])["canonical"]
+    for name, power in (("width", 0), ("strain_width", 0), ("speed", 0.5)):
+        scale = np.array([float(omega) for omega in omegas]) ** power
+        assert found["canonical"][name] * scale == pytest.approx(swapped[name], rel=1e-14)
+
+
+# Input
+
+
+@given(
+    st.fractions(0, 9, max_denominator=50),
+    st.fractions(0, 9, max_denominator=50),
+    st.integers(2, 40),
+)
+def test_a_range_is_exact_and_equidistant(start, stop, count):
+    values = axis(f"{start}:{stop}:{count},7", "k")
+    assert (values[0], values[-2], values[-1]) == (R(start), R(stop), 7)
+    assert len(values) == count + 1
+    step = (R(stop) - R(start)) / (count - 1)
+    assert {b - a for a, b in pairwise(values[:-1])} == {step}
+
+
+BAD_AXES = [
+    ("", "k is '': an integer"),
+    ("1.5,,2", "k is '': an integer"),
+    ("m", "k is 'm': an integer, a decimal or a fraction is wanted"),
+    ("nan", "k is 'nan': "),
+    ("1/0", "k is 1/0: the denominator"),
+    ("2:3", "k is '2:3': a range is start:stop:count"),
+    ("2:3:4:5", "k is '2:3:4:5': a range is start:stop:count"),
+    ("2:3:x", "k is '2:3:x': a range is start:stop:count"),
+    ("2:3:-4", "k is '2:3:-4': a range is start:stop:count"),
+    ("2:3:1", "the count of k is 1: one of 2 … 1000 is wanted"),
+    ("2:3:1000000000", "k is '2:3:1000000000': a range"),
+    ("2:m:4", "k is 'm': an integer"),
+    ("__import__('os')", "k is "),
+]
+
+
+@pytest.mark.parametrize(("text", "message"), BAD_AXES)
+def test_a_bad_axis_is_told_by_its_name(text, message):
+    with pytest.raises(InputError) as refused:
+        axis(text, "k")
+    assert str(refused.value).startswith(message)
+
+
+BAD_GRIDS = [
+    (([1], [1]), "k is 1: one from 21/20 to 6 is wanted"),
+    (([2, 7], [1]), "k is 7: one from"),
+    (([2], [0]), "omega is 0: one from 1/100 to 100 is wanted"),
+    (([2], [-1]), "omega is -1: one from"),
+    (([], [1]), "k has 0 values: 1 … 1000 are wanted"),
+    (([2], [1 + R(i, 10**6) for i in range(1001)]), "omega has 1001 values"),
+    ((2, [1]), "k is 2: a sequence is wanted"),
+    (("2", [1]), "k is '2': a sequence is wanted"),
+    (([float("nan")], [1]), "k is nan: "),
+    (([sp.sqrt(2)], [1]), "k is sqrt(2): an integer, a decimal or a fraction is wanted"),
+    (([True], [1]), "k is True: "),
+]
+
+
+@pytest.mark.parametrize(("grid", "message"), BAD_GRIDS)
+def test_a_bad_grid_computes_and_writes_nothing(tmp_path, grid, message):
+    executor = Inline()
+    with pytest.raises(InputError) as refused:
+        sweep(*grid, executor=executor, file=tmp_path / "s.jsonl")
+    assert str(refused.value).startswith(message)
+    assert executor.calls == list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("stretch", [1, 101, 2.5, "4"])
+def test_a_bad_stretch_is_refused(stretch):
+    with pytest.raises(InputError, match=r"^stretch is .*: one of 2 … 100 is wanted$"):
+        sweep([2], [1], stretch=stretch)
+
+
+def test_a_cluster_that_cannot_be_is_refused(monkeypatch):
+    dask()
+    monkeypatch.setattr(executors, "PATIENCE", 0.2)
+    for address in ("nonsense", "", "tcp://127.0.0.1", "foo://x:1", 5):
+        with (
+            pytest.raises(InputError, match=r"^cluster is .*: the address of a Dask scheduler is"),
+            cluster(address),
+        ):
+            pass
+    with (
+        pytest.raises(InputError, match=r"^cluster is tcp://127\.0\.0\.1:9: no Dask scheduler"),
+        cluster("tcp://127.0.0.1:9"),  # discard: nobody serves it
+    ):
+        pass
+
+
+def test_a_cluster_without_workers_is_refused(monkeypatch):
+    distributed = dask()
+    with distributed.LocalCluster(n_workers=0, processes=False, dashboard_address=None) as local:
+        monkeypatch.setattr(executors, "PATIENCE", 0.5)
+        with (
+            pytest.raises(InputError, match=r"^cluster is inproc.*: its scheduler has no workers$"),
+            cluster(local.scheduler_address),
+        ):
+            pass
+
+
+# The command
+
+
+def run(capsys, *arguments):
+    with pytest.raises(SystemExit) as ended:
+        cli.main(("sweep", *arguments))
+    captured = capsys.readouterr()
+    return ended.value.code, captured.out, captured.err
+
+
+@pytest.fixture
+def inline(monkeypatch):
+    executor = Inline()
+    monkeypatch.setattr(cli, "processes", lambda jobs: executor)
+    return executor
+
+
+def test_the_command(capsys, inline, tmp_path):
+    file, picture = tmp_path / "s.jsonl", tmp_path / "s.svg"
+    status, out, err = run(
+        capsys, "--k", "3/2", "--omega", "0.5:1:2", "--file", str(file), "--plot", str(picture),
+        "--format", "json",
+    )  # fmt: skip
+    assert (status, err) == (0, "")
+    half, one = json.loads(out)["points"]
+    assert (half["k"], half["omega"], one["omega"]) == ("3/2", "1/2", "1")
+    assert abs(one["width_value"] - 1.411928) <= one["width_error_value"] + 5e-7
+    assert half["decay_value"] > 1000 * abs(one["decay_value"])
+    assert picture.read_text().startswith("<?xml")
+    status, out, err = run(capsys, "--k", "3/2", "--omega", "1", "--file", str(file))
+    assert (status, err) == (0, "")
+    assert out.startswith("k = 3/2\nω = m2/m1 ")
+    assert len(inline.calls) == 2
+
+
+BAD = [
+    (("--k", "1"), "k is 1: one from 21/20 to 6 is wanted"),
+    (("--k", "1:2"), "k is '1:2': a range is start:stop:count"),
+    (("--omega", "w"), "omega is 'w': an integer"),
+    (("--stretch", "0"), "stretch is 0: one of 2 … 100 is wanted"),
+    (("--file", "s.txt"), "file is s.txt: a file ending in .jsonl is wanted"),
+    (("--file", "no/s.jsonl"), "file is no/s.jsonl: the folder no does not exist"),
+    (("--jobs", "0", "--file", "s.jsonl"), "jobs is 0: one of 1 … 1024 is wanted"),
+    (("--jobs", "2", "--cluster", "tcp://a:1"), "jobs is 2: a cluster has workers of its own"),
+    (("--cluster", "a", "--file", "s.jsonl"), "cluster is 'a': the address of a Dask scheduler"),
+    (("--plot", "s.txt"), "plot is s.txt: a file ending in"),
+]
+
+
+@pytest.mark.parametrize(("arguments", "message"), BAD, ids=str)
+def test_bad_input_is_one_line_and_leaves_nothing(
+    capsys, monkeypatch, tmp_path, arguments, message
+):
+    if "a" in arguments:
+        dask()
+    monkeypatch.chdir(tmp_path)
+    status, out, err = run(capsys, *arguments)
+    assert (status, out, err.count("\n")) == (2, "", 1)
+    assert err.startswith(f"lwa-validate: {message}")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_without_dask_the_extra_is_named(capsys, monkeypatch):
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    status, out, err = run(capsys, "--cluster", "tcp://127.0.0.1:8786")
+    assert (status, out) == (2, "")
+    assert err == "lwa-validate: cluster needs Dask: pip install 'lwa[cluster]'\n"
+
+
+def test_an_interrupted_command_says_where_the_points_are(capsys, fake, monkeypatch, tmp_path):
+    file = tmp_path / "s.jsonl"
+    monkeypatch.setattr(cli, "processes", lambda jobs: Inline(stop=3))
+    status, out, err = run(capsys, "--file", str(file))
+    assert (status, out) == (130, "")
+    assert f"finished points are in {file}: the same command goes on" in err
+    assert err.endswith("lwa-validate: interrupted\n")
+    assert "Traceback" not in err
+    assert file.read_text().count("\n") == 4
+
+
+def test_an_executor_that_fails_is_one_line(capsys, fake, monkeypatch):
+    monkeypatch.setattr(cli, "processes", lambda jobs: Inline(3, SweepError("gone")))
+    assert run(capsys) == (2, "", "lwa-validate: gone\n")
+
+
+LISTENING = (
+    sys.executable, "-c", "import os, signal, sys; signal.signal(signal.SIGINT, signal.SIG_DFL); "
+    "os.execv(sys.argv[1], sys.argv[1:])",
+)  # fmt: skip
+"""Runs a command that hears Ctrl-C, to which a shell's background jobs are deaf."""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("blow", [signal.SIGINT, signal.SIGKILL])
+def test_a_process_that_is_stopped_goes_on_and_leaves_no_worker(tmp_path, blow):
+    file = tmp_path / "s.jsonl"
+    command = [COMMAND, "sweep", "--k", "3/2", "--omega", "1/2:1:30", "--jobs", "2", "--file", file]
+    stopped = subprocess.Popen(
+        [*LISTENING, *command],
+        start_new_session=True,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    while not file.exists() or file.read_text().count("\n") < 4:
+        assert stopped.poll() is None
+        time.sleep(0.02)
+    if blow == signal.SIGINT:  # as a terminal's Ctrl-C: to the workers, too
+        os.killpg(stopped.pid, blow)
+    else:
+        stopped.kill()
+    out, err = stopped.communicate(timeout=60)
+    if blow == signal.SIGINT:
+        assert (stopped.returncode, out) == (130, "")
+        assert err.endswith("lwa-validate: interrupted\n")
+        assert "Traceback" not in err
+    for _ in range(500):  # the workers are in its session
+        left = subprocess.run(
+            ["ps", "-o", "pid=", "-s", str(stopped.pid)],
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        if not left.stdout.strip():
+            break
+        time.sleep(0.02)
+    assert not left.stdout.strip()
+    before = file.read_bytes()
+    before = before[: before.rfind(b"\n") + 1]
+    again = subprocess.run(
+        [*command, "--format", "json"], capture_output=True, text=True, check=True
+    )
+    assert len(json.loads(again.stdout)["points"]) == 30
+    content = file.read_bytes()
+    assert content.startswith(before)
+    assert content.count(b"\n") == 31
+
+
+def test_workers_that_are_gone_when_more_is_submitted_are_told(fake, tmp_path):
+    file = tmp_path / "s.jsonl"
+    with pytest.raises(SweepError, match="the workers are gone before the sweep is done"):
+        sweep(KS, OMEGAS, executor=Inline(3, BrokenExecutor), file=file)
+    assert file.read_text().count("\n") == 4
+
+
+@pytest.mark.slow
+def test_a_worker_that_is_killed_is_told(tmp_path):
+    def progress(todo):
+        os.kill(pid, signal.SIGKILL)
+        yield from todo
+
+    with processes(1) as pool:
+        pid = pool.submit(os.getpid).result()
+        with pytest.raises(SweepError, match="the workers are gone before the sweep is done"):
+            sweep([2], [1, "1/2"], executor=pool, file=tmp_path / "s.jsonl", progress=progress)

@@ -1,0 +1,138 @@
+"""The limits: the laws derived again, the runs against each other, and wrong theories refused."""
+
+import dataclasses
+
+import pytest
+import sympy as sp
+
+from validation.studies.limits import (
+    EQUAL,
+    EXPONENTS,
+    LAWS,
+    LIGHT,
+    QUANTITIES,
+    _quantity_rows,
+    theory_at,
+    theory_values,
+)
+
+eps, s, X = sp.symbols("epsilon s X", positive=True)
+
+LATTICE = (-3 * X**2, sp.Rational(18, 5) * X**2 - sp.Rational(3, 10) * X**4)
+SPEED = 1 - eps / 2 + 2 * eps**2 / 5  # c² = k V_s² of the lattice's wave, at strain 1
+
+
+def test_the_lattices_series_solves_its_equation():
+    """c² R'' = Σ shifts of R^k with R = exp(φ_0 + ε φ_1 + …), X = √ε x = s x, to order ε³.
+
+    Divided by R^k: c² e^{-εφ} ε (φ'² + φ'') = e^{k(φ(X+s) - φ)} - 2 + e^{k(φ(X-s) - φ)}. φ_2
+    enters both sides alike at ε³ and cancels.
+    """
+    phi = LATTICE[0] + s**2 * LATTICE[1]
+    k = 1 + s**2
+    curvature = phi.diff(X) ** 2 + phi.diff(X, 2)
+    left = SPEED.subs(eps, s**2) * exponential(-(s**2) * phi) * s**2 * curvature
+    right = sum(exponential(k * (phi.subs(X, X + h) - phi)) for h in (s, -s)) - 2
+    defect = sp.Poly(left - right, s)
+    assert all(sp.expand(defect.coeff_monomial(s**n)) == 0 for n in range(7))
+
+
+def exponential(exponent, order=6):
+    """exp of a polynomial in s that vanishes at 0: n Y_n = Σ j X_j Y_{n-j}."""
+    given = sp.Poly(exponent, s)
+    terms = [sp.Integer(1)]
+    for n in range(1, order + 1):
+        total = sum(j * given.coeff_monomial(s**j) * terms[n - j] for j in range(1, n + 1))
+        terms.append(sp.expand(total / n))
+    return sum(term * s**n for n, term in enumerate(terms))
+
+
+def law(quantity):
+    """Order and coefficient in ε of theory/lattice - 1, from both series."""
+    k = 1 + eps
+    if quantity.startswith("speed"):
+        error = sp.series(sp.sqrt(2 / (k * (k + 1)) * k / SPEED), eps, 0, 3).removeO() - 1
+        (coefficient, power) = sp.expand(error).as_coeff_exponent(eps)
+        return power, coefficient
+    # log of the theory's strain, 2/ε log cos(βx), with β = ε √(6/(k(k+1))) for D = 1
+    angle = eps * sp.sqrt(6 / (k * (k + 1))) * X / sp.sqrt(eps)
+    theory = 2 / eps * (-(angle**2) / 2 - angle**4 / 12)
+    theory = sp.series(sp.expand(theory), eps, 0, 2).removeO()
+    lattice = LATTICE[0] + eps * LATTICE[1]
+    difference = sp.expand((theory - lattice).coeff(eps, 1))
+    if quantity.startswith("support"):
+        # mean over the Gaussian e^{-3X²}: ⟨X²⟩ = 1/6, ⟨X⁴⟩ = 1/12
+        return 1, difference.coeff(X, 2) / 6 + difference.coeff(X, 4) / 12
+    # at half maximum, 3X² = log 2: a shift ε d of the log moves X by ε d/(6X)
+    at_half = difference / (6 * X**2)
+    return 1, sp.expand(at_half.subs(X, sp.sqrt(sp.log(2) / 3)))
+
+
+@pytest.mark.parametrize("quantity", QUANTITIES)
+def test_the_laws_follow_from_the_series(quantity):
+    order, coefficient = law(quantity)
+    assert LAWS[quantity].order == order
+    assert sp.simplify(LAWS[quantity].coefficient - coefficient) == 0
+
+
+def test_the_limits_of_the_paper():
+    """β = √10/(5D) and √10/(10D), that is π√10/2 ≈ 5 and π√10 ≈ 10 sites."""
+    equal = theory_values(theory_at(EXPONENTS[0], EQUAL))
+    assert equal["support π/β"] == sp.pi * sp.sqrt(10) / 2
+
+
+def test_all_hold(limits_result):
+    assert limits_result.ok
+    assert len(limits_result.rows) == 47
+
+
+def found(limits_result, quantity, k, omega):
+    (row,) = (r for r in limits_result.rows if (r.quantity, r.k, r.omega) == (quantity, k, omega))
+    return row
+
+
+def test_the_hertz_chain_to_all_its_digits(limits_result):
+    """1.411928 D and 1.725713 D, by Newton's method on the traveling-wave equation."""
+    for quantity, width in (("FWHM of force", 1.411928), ("FWHM of strain", 1.725713)):
+        row = found(limits_result, quantity, EXPONENTS[0], EQUAL)
+        assert row.lattice.value == pytest.approx(width, abs=1e-6)
+        assert row.lattice.error < 1e-6
+
+
+@pytest.mark.parametrize("quantity", QUANTITIES)
+def test_light_beads_only_hand_the_force_on(limits_result, quantity):
+    """ω → 0 is the uniform chain of twice the spacing, on the lattice as in the theory."""
+    scale = 1 if quantity.startswith("speed") else 2
+    uniform = found(limits_result, quantity, EXPONENTS[0], EQUAL)
+    limit = found(limits_result, quantity, EXPONENTS[0], 0)
+    assert sp.simplify(limit.theory - scale * uniform.theory) == 0
+    # the extrapolation's own error, doubled: it is an estimate
+    tolerance = 2 * limit.lattice.error + scale * uniform.lattice.error
+    assert limit.lattice.value == pytest.approx(scale * uniform.lattice.value, abs=tolerance)
+    assert limit.lattice.relative_error < 2e-5
+    # and ω = 1/1000 is as near to it as the theory says: within 1.5 ω
+    near = found(limits_result, quantity, EXPONENTS[0], LIGHT)
+    assert near.lattice.value == pytest.approx(limit.lattice.value, rel=1.5 * float(LIGHT))
+
+
+@pytest.mark.parametrize("quantity", QUANTITIES)
+@pytest.mark.parametrize(
+    ("omega", "wrong"), [(EQUAL, 0.9995), (EQUAL, 1.0005), (LIGHT, 0.998), (LIGHT, 1.002)]
+)
+def test_a_theory_off_by_half_a_permille_is_refused(limits_result, quantity, omega, wrong):
+    """Were the formula another one, by so little, at least one row would fail.
+
+    At ω = 1/1000 by 2 ‰: the law there holds only to O(ω).
+    """
+    rows = [found(limits_result, quantity, k, omega) for k in EXPONENTS]
+    lattice = [row.lattice for row in rows]
+    assert all(row.ok for row in _quantity_rows(quantity, omega, [r.theory for r in rows], lattice))
+    changed = [row.theory * sp.Rational(str(wrong)) for row in rows]
+    assert not all(row.ok for row in _quantity_rows(quantity, omega, changed, lattice))
+
+
+def test_a_row_fails_beyond_its_bound_or_when_the_lattice_is_too_rough(limits_result):
+    row = limits_result.rows[0]
+    assert not dataclasses.replace(row, bound=0.99 * abs(row.error)).ok
+    rough = dataclasses.replace(row.lattice, check=row.lattice.value * 1.1)
+    assert not dataclasses.replace(row, lattice=rough).ok

@@ -1,0 +1,146 @@
+"""The equations of motion of a scene, and the scales that its energy and weights give them.
+
+    m_i y_i'' = F_{i-1} - F_i + m_i g,    F_i = A_i [δ_i⁰ + y_i - y_{i+1}]_+^k,
+
+where F_{-1} is the precompression F0, y counts from the equilibrium, δ_i⁰ is the compression of
+contact i there (0 without gravity and F0) and the wall stands at y_n = 0 (Porter et al. 2008,
+eq. 1, for k = 3/2). A contact that opens carries no tension.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lwa.spheres.tables import LEAST
+from validation.scenes.checks import SceneError
+from validation.scenes.scene import Scene
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Scales:
+    """What the energy of a state, and the weights, could do to a bead or a contact.
+
+    energy : above equilibrium.
+    compression : of a contact.
+    displacement, velocity : of a bead, 1 where there is no energy.
+    time : the shortest √(m/spring) of a bead between its contacts at that compression; infinite
+        where nothing presses.
+    rounding : of the static compressions, over the displacement.
+    """
+
+    energy: float
+    compression: float
+    displacement: float
+    velocity: float
+    time: float
+    rounding: float = 0.0
+
+
+class Motion:
+    """The right-hand side for one scene, in the state (y_0 … y_{n-1}, v_0 … v_{n-1}).
+
+    start : the initial state.
+    """
+
+    def __init__(self, scene: Scene) -> None:
+        wall = () if scene.wall is None else (scene.wall,)
+        self.size = scene.size
+        self.masses = np.array(scene.masses)
+        self.stiffnesses = np.array(scene.stiffnesses + wall)
+        self.k = scene.k
+        with np.errstate(over="ignore", invalid="ignore"):
+            self.rest = (np.array(scene.load) / self.stiffnesses) ** (1 / self.k)
+            # The load from the rest compressions, so that equilibrium is an exact zero.
+            self.load = self.force(self.rest)
+        self.start = np.zeros(2 * scene.size)
+        self.start[: len(scene.displacements)] = scene.displacements
+        self.start[scene.size : scene.size + len(scene.velocities)] = scene.velocities
+        if scene.gravity or scene.precompression:
+            for name, values in (("compression", self.rest), ("force", self.load)):
+                _held(f"static {name}", values.min(), values.max())
+
+    def compression(self, y: Array) -> Array:
+        """δ_i, for displacements of shape (n,) or (n, S)."""
+        row = np.concatenate((y, np.zeros_like(y[:1]))) if len(self.rest) == len(y) else y
+        result: Array = (self.rest + (row[:-1] - row[1:]).T).T
+        return result
+
+    def force(self, compression: Array) -> Array:
+        """F_i = A_i [δ_i]_+^k."""
+        result: Array = (self.stiffnesses * np.maximum(compression, 0.0).T ** self.k).T
+        return result
+
+    def bead_force(self, bead: int, force: Array) -> Array:
+        """The mean of the forces of a bead's two contacts; an end without one counts as 0."""
+        return np.asarray(force[max(bead - 1, 0) : bead + 1].sum(axis=0) / 2)
+
+    def __call__(self, time: float, state: Array) -> Array:
+        y, v = state[: self.size], state[self.size :]
+        excess = self.force(self.compression(y)) - self.load
+        push = np.zeros(self.size)
+        push[: len(excess)] = -excess
+        push[1:] += excess[: self.size - 1]
+        return np.concatenate((v, push / self.masses))
+
+    def energy(self, state: Array, first: int = 0) -> float:
+        """Kinetic and elastic energy, less the work of the weights: 0 in equilibrium.
+
+        Contacts before the ``first`` do not count.
+        """
+        compression, v = self.compression(state[: self.size]), state[self.size :]
+        stored = (self.force(compression) * compression - self.load * self.rest) / (self.k + 1)
+        work = self.load * (compression - self.rest)
+        return float(self.masses @ v**2 / 2 + np.sum((stored - work)[first:]))
+
+    def momentum_drift(self, before: Array, after: Array) -> float | None:
+        """Change of the momentum between two rows of velocities over Σ m|v|; None with a wall."""
+        if len(self.rest) == self.size:
+            return None
+        total = self.masses @ np.abs(after)
+        return float(self.masses @ (after - before) / total) if total else 0.0
+
+    def scales(self, state: Array) -> Scales:
+        """The scales of a state's motion.
+
+        Raises `SceneError` when floating point cannot hold one of them.
+        """
+        with np.errstate(all="ignore"):
+            return self._scales(state)
+
+    def _scales(self, state: Array) -> Scales:
+        energy, n, A = self.energy(state), self.size, self.stiffnesses
+        pressed = self.compression(state[:n]).max(initial=0.0) > self.rest.max(initial=0.0)
+        if not np.isfinite(energy) or (energy == 0 and (pressed or np.any(state[n:]))):
+            _held("energy", energy)
+        deepest = float(self.rest.max(initial=0.0))
+        if energy > 0 and len(A):
+            deepest = max(deepest, float(np.float64(energy / A.max()) ** (1 / (self.k + 1))))
+        if not deepest:
+            return Scales(energy, 0.0, 1.0, 1.0, math.inf)
+        stiffening = np.float64(deepest) ** (self.k - 1)
+        springs = np.zeros(n)
+        springs[: len(A)] = A
+        springs[1:] += A[: n - 1]
+        time = 1 / np.sqrt((springs / self.masses).max() * self.k * stiffening)
+        _held("stiffest spring", A.max() * stiffening)
+        _held("shortest time", time)
+        if energy <= 0:
+            return Scales(energy, deepest, 1.0, 1.0, float(time))
+        y, v = np.sqrt(energy / (A.max() * stiffening)), np.sqrt(energy / self.masses.mean())
+        _held("displacement", y)
+        _held("velocity", v)
+        rounding = np.finfo(float).eps * self.rest.max() / y
+        return Scales(energy, deepest, float(y), float(v), float(time), float(rounding))
+
+
+def _held(name: str, *values: float) -> None:
+    """Refuse scales that overflow, or are too small for all digits of a float."""
+    for value in values:
+        if not LEAST <= value < math.inf:
+            raise SceneError(f"the scene's {name} comes out as {value:g}: choose other units")

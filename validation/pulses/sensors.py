@@ -1,0 +1,213 @@
+"""What a scene's sensors tell: arrival, peak force and FWHM of the first pulse, and its speed.
+
+The first pulse at a sensor is the first stretch of its force above half the record's highest, so
+that what follows, such as the wall's echo, does not count. Forces are dynamic: what gravity and
+precompression hold there at rest is subtracted. Every number is measured in two runs, and the less
+accurate one, of a tolerance `LESS` times as large, gives its error.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from validation.lattice.effort import Progress, silent
+from validation.lattice.equations import Array, Motion
+from validation.lattice.simulate import METHODS, Run, simulate
+from validation.pulses.pulse import Measured, MeasureError, Pulse, measure, speed
+from validation.scenes.checks import SceneError, real
+from validation.scenes.scene import Scene
+
+TOLERANCE = 1e-10
+"""Of the run that counts, unless another one is asked for."""
+
+LESS = 1e3
+"""By how much that of the run that gives its errors is larger."""
+
+_ROUNDING = 10
+"""Times the tolerance: what rounding may take of a motion, whose noise the steps would follow."""
+
+READINGS = ("arrival", "peak", "fwhm")
+"""What is read off a pulse."""
+
+SPEEDS = ("speed_sites", "speed")
+"""In sites and in length over time."""
+
+
+@dataclass(frozen=True)
+class Sensor:
+    """One sensor's `READINGS`; or none, and the reason.
+
+    kind : "bead" or "contact".
+    number : of it, counted from 1.
+    """
+
+    kind: str
+    number: int
+    numbers: Mapping[str, Measured]
+    missing: str | None = None
+
+
+@dataclass(frozen=True)
+class Speed:
+    """The speed of the pulse between two sensors of one kind; or none, and the reason.
+
+    start, end : numbers of the sensors, counted from 1.
+    numbers : `SPEEDS`, the second one if the scene has spacings.
+    """
+
+    kind: str
+    start: int
+    end: int
+    numbers: Mapping[str, Measured]
+    missing: str | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Recording:
+    """A run, what its sensors tell, and the speeds from each sensor to the next of its kind."""
+
+    run: Run
+    sensors: tuple[Sensor, ...]
+    speeds: tuple[Speed, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Track:
+    """One sensor's dynamic force; ``place`` is where it sits, by what of `SPEEDS` it serves."""
+
+    kind: str
+    index: int
+    time: Array
+    force: Array
+    place: Mapping[str, float]
+
+    @property
+    def number(self) -> int:
+        """Of the bead or contact, counted from 1."""
+        return self.index + 1
+
+    @cached_property
+    def pulse(self) -> Pulse:
+        """The first pulse; raises `MeasureError` for what is missing in the record."""
+        return first_pulse(self.time, self.force)
+
+
+def record(
+    scene: Scene, *, method: str = METHODS[0], rtol: Any = TOLERANCE, progress: Progress = silent
+) -> Recording:
+    """Simulate a scene and read its sensors.
+
+    Parameters
+    ----------
+    method : of integration, as for `validation.simulate`.
+    rtol : its tolerance, from 1e-13 to 1e-5.
+    progress : of the two runs, as for `validation.simulate`.
+
+    Raises what `validation.simulate` raises.
+
+    >>> scene = Scene(masses=(1,) * 8, stiffnesses=(1,) * 7, k=1.5, duration=12, velocities=(1,),
+    ...               contact_sensors=(4, 5))
+    >>> record(scene).speeds[0].numbers["speed_sites"]
+    0.8388521 ± 1e-06
+    """
+    if not 1e-13 <= real(rtol, "rtol") <= 1e-2 / LESS:
+        raise SceneError(f"rtol is {rtol:g}: it lies between 1e-13 and {1e-2 / LESS:g}")
+    motion = Motion(scene)
+    if (lost := motion.scales(motion.start).rounding) > _ROUNDING * rtol:
+        raise SceneError(
+            f"rtol is {rtol:g}: rounding of the static compression, {motion.rest.max():.1g}, takes "
+            f"{lost:.1g} of the motion; {lost / _ROUNDING:.1g} or more is wanted"
+        )
+    run, check = (
+        simulate(scene, rtol=t, atol=t, method=method, progress=progress)
+        for t in (rtol, LESS * rtol)
+    )
+    pairs = tuple(zip(tracks(run), tracks(check), strict=True))
+    sensors = tuple(Sensor(t.kind, t.number, *_pulse_numbers(t, c)) for t, c in pairs)
+    speeds = tuple(
+        Speed(a[0].kind, a[0].number, b[0].number, *_speed_numbers(a, b))
+        for a, b in pairwise(pairs)
+        if a[0].kind == b[0].kind
+    )
+    return Recording(run, sensors, speeds)
+
+
+def tracks(run: Run) -> tuple[Track, ...]:
+    """What the sensors of a run recorded, beads first.
+
+    A contact sits midway between its beads, that with the wall half a spacing behind the last one.
+    """
+    scene = run.scene
+    load = np.zeros(scene.size + 1)  # of the contacts on the left and right of the beads
+    load[1 : scene.contact_count + 1] = scene.load
+    x = np.concatenate(([0.0], np.cumsum(scene.spacings)))
+
+    def place(site: float) -> dict[str, float]:
+        left = min(int(site), scene.size - 2)
+        length = [x[left] + (site - left) * scene.spacings[left]] if scene.spacings else []
+        return dict(zip(SPEEDS, (site, *length), strict=False))
+
+    beads = (
+        Track("bead", i, run.time, force - (load[i] + load[i + 1]) / 2, place(i))
+        for i, force in zip(scene.bead_sensors, run.bead_force, strict=True)
+    )
+    contacts = (
+        Track("contact", i, run.time, force - load[i + 1], place(i + 0.5))
+        for i, force in zip(scene.contact_sensors, run.contact_force, strict=True)
+    )
+    return (*beads, *contacts)
+
+
+def first_pulse(time: Array, force: Array) -> Pulse:
+    """Measure the first stretch of a record that is above half its highest value.
+
+    Raises `MeasureError` where `validation.pulses.pulse.measure` does.
+
+    >>> t = np.linspace(0, 4, 401)
+    >>> round(first_pulse(t, np.sin(np.pi * t) ** 2 * (1 + t / 8)).arrival, 1)
+    0.5
+    """
+    if not force.max() > 0:
+        return measure(time, force)  # which says what is wrong
+    above = force > force.max() / 2
+    start = int(np.argmax(above))
+    stop = start + int(np.argmin(np.append(above[start:], False)))
+    # Behind it the record counts up to where it is as high again.
+    again = np.append(force[stop:] >= force[start:stop].max(), True)
+    end = max(stop + int(np.argmax(again)), 4)
+    return measure(time[:end], force[:end])
+
+
+def _pulse_numbers(track: Track, check: Track) -> tuple[dict[str, Measured], str | None]:
+    try:
+        pulse, less = track.pulse, check.pulse
+    except MeasureError as error:
+        return {}, str(error)
+    return {name: Measured(getattr(pulse, name), getattr(less, name)) for name in READINGS}, None
+
+
+def _speed_numbers(
+    first: tuple[Track, Track], second: tuple[Track, Track]
+) -> tuple[dict[str, Measured], str | None]:
+    numbers = {}
+    try:
+        for unit in first[0].place:
+            value, check = (_speed(a, b, unit) for a, b in zip(first, second, strict=True))
+            numbers[unit] = Measured(value, check)
+    except MeasureError as error:
+        return {}, str(error)
+    return numbers, None
+
+
+def _speed(first: Track, second: Track, unit: str) -> float:
+    try:
+        pulses = first.pulse, second.pulse
+    except MeasureError:
+        raise MeasureError("one of the two has no pulse") from None
+    return speed(*pulses, abs(second.place[unit] - first.place[unit]))

@@ -1,0 +1,229 @@
+"""The steady pulse of a dimer chain: its width, its speed and its decay, at one k and one ω.
+
+Bead 0 of a chain of masses 1, ω, 1, … at rest is struck (A = D = 1). The pulse that it sends is
+recorded at `PLACES` cells, equally far from each other. As F = A δ^k has no scale of its own, a
+pulse that leaves something behind in every cell comes to lose the same share of its force F in
+each, F ~ e^{-d n} after n sites, and is similar to itself ever after: its speed goes as
+F^{(k-1)/(2k)} and its width, in sites, does not change. From one place to the next, N sites on,
+
+    decay  d = ln(F_1/F_2) / N,
+    speed  c = N (e^z - 1) / (z T F_1^q),   q = (k-1)/(2k),  z = q d N,
+
+T the time between the two peaks: c is the speed at contact force 1, exactly so for a pulse whose
+speed is c F^q all the way. Widths are times at a contact times the speed there. Every number is
+the mean over the two contacts of a cell, on that stretch where its error is least.
+
+A number x_n of stretch n differs from its limit by what the pulse has yet to shed. Its error is
+the largest of |x_n - x_{n-1}|, |x_n - x_{n-2}| and the difference from a less accurate run, and on
+top of it what the differences add up to if they go on to shrink as they do: δ r / (1 - r), δ the
+last one, r its ratio to the one before, of which 0.9 is the most that is believed.
+
+The leading pulse ends at a contact where the compression first falls to a quarter of its highest
+so far. Between special mass ratios the force has several humps, as the light bead hits to and fro;
+a width is that of the highest, so that it jumps where the dip before another hump passes half.
+Where a pulse decays fast, another one may overtake it; which of the two is measured depends on how
+far the chain is followed (k ≥ 3/2, ω from 0.53 to 0.65). The errors say nothing of the other one:
+numbers are those of the pulse that leads at the `Point.sites`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import sympy as sp
+from numpy.typing import NDArray
+from scipy.special import exprel
+
+from lwa.exact import InputError
+from validation.lattice.simulate import IntegrationError, Run, simulate
+from validation.pulses.pulse import Measured, MeasureError, measure
+from validation.scenes.scene import Scene
+
+Array = NDArray[np.float64]
+
+QUANTITIES = {
+    "width": "FWHM of the contact force (sites)",
+    "strain_width": "FWHM of the contact strain (sites)",
+    "speed": "speed at contact force 1 (sites/time)",
+    "decay": "decay of the peak force per site",
+}
+"""What is measured, and what it is called."""
+
+PLACES = 10
+"""Cells at which the pulse is recorded."""
+
+STRETCH = 4
+"""Cells from one place to the next, for k from 3/2 on, unless a sweep sets another number."""
+
+TOLERANCES = (1e-8, 1e-6)
+"""Of the run that counts and of the one that gives its error."""
+
+_SAMPLES = 40.0
+"""Per unit of time, in the run that counts, at k ≤ 3/2 and ω ≥ 1/4."""
+_GROWTH = 1.6
+_LONGEST = 16
+"""By how much, and how often, a run is made longer in which the pulse does not come through."""
+
+
+@dataclass(frozen=True)
+class Point:
+    """What one k and ω gave: `QUANTITIES` by their names, or none of them and the reason.
+
+    sites : beads from the struck one to both ends of the stretch that was measured.
+    """
+
+    k: sp.Rational
+    omega: sp.Rational
+    sites: tuple[int, int] | None
+    numbers: Mapping[str, Measured]
+    missing: str | None = None
+
+
+def cells_apart(k: float, stretch: int) -> int:
+    """Cells from one place to the next: as k → 1 a pulse needs longer to leave its wake behind.
+
+    >>> [cells_apart(k, 4) for k in (3, 1.5, 1.1)]
+    [4, 4, 30]
+    """
+    return math.ceil(stretch * max(1.0, math.pow(2 * (k - 1), -1.25)))
+
+
+def point(k: sp.Rational, omega: sp.Rational, stretch: int) -> Point:
+    """Strike the chain and measure its pulse; what cannot be measured is told by the point itself.
+
+    >>> numbers = point(sp.Rational(3, 2), sp.Integer(1), STRETCH).numbers
+    >>> numbers["width"].error < 1e-5, round(numbers["width"].value, 4)
+    (True, 1.4119)
+    """
+    try:
+        return _point(k, omega, stretch)
+    except (InputError, IntegrationError, ArithmeticError) as error:
+        return Point(k, omega, None, {}, str(error) or type(error).__name__)
+
+
+def _point(k: sp.Rational, omega: sp.Rational, stretch: int) -> Point:
+    chain = Chain(float(k), float(omega), cells_apart(float(k), stretch))
+    rtol, less = TOLERANCES
+    rough = chain.passed(chain.crossing, less, _SAMPLES / 2)
+    check = chain.numbers(rough)
+    numbers = chain.numbers(chain.passed(1.05 * rough.until, rtol, _SAMPLES))
+    errors = np.maximum(_unsettled(numbers), np.abs(numbers - check)[:, 2:])
+    # Relatively; of the force where it is its decay.
+    worst = np.vstack((errors[:3] / numbers[:3, 2:], chain.sites * errors[3])).max(axis=0)
+    if np.isnan(worst).all():
+        raise MeasureError("the pulse does not arrive later at each place than at the one before")
+    best = int(np.nanargmin(worst))
+    place = chain.sites * (best + 3)
+    values = zip(numbers[:, best + 2].tolist(), errors[:, best].tolist(), strict=True)
+    measured = (Measured(value, value + error) for value, error in values)
+    names = dict(zip(QUANTITIES, measured, strict=True))
+    return Point(k, omega, (place, place + chain.sites), names)
+
+
+_SLOWEST = 0.9
+"""Ratio of two differences, next to 1 of which nothing can be said of their sum."""
+
+
+def _unsettled(numbers: Array) -> Array:
+    """How far each stretch's numbers, from the third one on, may be from what they settle at."""
+    steps = np.abs(np.diff(numbers))
+    last, before = steps[:, 1:], steps[:, :-1]
+    ratio = np.minimum(last / np.where(before > 0, before, np.inf), _SLOWEST)
+    seen = np.maximum(last, np.abs(numbers[:, 2:] - numbers[:, :-2]))
+    return np.asarray(seen + last * ratio / (1 - ratio))
+
+
+@dataclass(frozen=True)
+class Record:
+    """A run in which the pulse has come through, where it is in each contact's record, and the
+    duration that it takes."""
+
+    run: Run
+    parts: tuple[slice, ...]
+    until: float
+
+
+@dataclass(frozen=True)
+class Chain:
+    """A dimer chain whose first bead is struck, with ``cells`` from place to place."""
+
+    k: float
+    omega: float
+    cells: int
+
+    @property
+    def sites(self) -> int:
+        """From place to place."""
+        return 2 * self.cells
+
+    @property
+    def crossing(self) -> float:
+        """About the time of a pulse of force 1, by the long-wave speed 2/√((k+1)(1+ω))."""
+        return self.sites * PLACES * math.sqrt((self.k + 1) * (1 + self.omega)) / 1.6
+
+    def passed(self, duration: float, rtol: float, samples: float = _SAMPLES) -> Record:
+        """A run of this duration, or longer, with ``samples`` per unit of time; more where hits
+        are shorter. Raises `MeasureError` where the pulse does not come through."""
+        samples *= max(1.0, self.k / 1.5) / math.sqrt(min(1.0, 4 * self.omega))
+        for _ in range(_LONGEST):
+            run = self.run(duration, rtol, math.ceil(samples * duration))
+            parts = tuple(leading_pulse(force, self.k) for force in run.contact_force)
+            # One place's time more, lest the front of a pulse yet to come be taken for it.
+            until = (1 + 1 / PLACES) * float(run.time[max(part.stop for part in parts) - 1])
+            if until <= duration:
+                return Record(run, parts, until)
+            duration *= _GROWTH
+        raise MeasureError(
+            f"the pulse has not passed {self.sites * PLACES} sites by t = {duration / _GROWTH:.3g}"
+        )
+
+    def run(self, duration: float, rtol: float, samples: int) -> Run:
+        """Strike."""
+        cells = self.cells * PLACES + 6
+        places = range(self.sites, self.sites * PLACES + 1, self.sites)
+        scene = Scene(
+            masses=(1.0, self.omega) * cells,
+            stiffnesses=(1.0,) * (2 * cells - 1),
+            k=self.k,
+            velocities=(1.0,),
+            contact_sensors=tuple(place + side for place in places for side in (0, 1)),
+            duration=duration,
+            samples=samples,
+        )
+        return simulate(scene, rtol=rtol, method="SRKN14")
+
+    def numbers(self, record: Record) -> Array:
+        """`QUANTITIES` (rows) of each stretch; NaN where the pulse does not arrive later than at
+        the place before."""
+        rows = []
+        for signal, part in zip(record.run.contact_force, record.parts, strict=True):
+            time, force = record.run.time[part], signal[part]
+            pulse, strain = measure(time, force), measure(time, force ** (1 / self.k))
+            rows.append((pulse.arrival, pulse.peak, pulse.fwhm, strain.fwhm))
+        # Places down, contacts of a cell across.
+        arrival, peak, width, strain_width = np.array(rows).T.reshape(4, PLACES, 2)
+        elapsed, fall = np.diff(arrival, axis=0), -np.diff(np.log(peak), axis=0)
+        elapsed[elapsed <= 0] = np.nan
+        q = (self.k - 1) / (2 * self.k)
+        speed = self.sites * exprel(q * fall) / (elapsed * peak[:-1] ** q)
+        here = speed * peak[1:] ** q
+        numbers = (width[1:] * here, strain_width[1:] * here, speed, fall / self.sites)
+        return np.asarray(np.mean(numbers, axis=2))
+
+
+def leading_pulse(force: Array, k: float) -> slice:
+    """Where the leading pulse is in a contact's record, with as much again before it.
+
+    It ends with the record where it is not over.
+
+    >>> leading_pulse(np.array([0, 0, 0, 1, 4, 2, 1, 0.9, 3, 1]), 1.0)
+    slice(0, 8, None)
+    """
+    strain = force ** (1 / k)
+    start = int(np.argmax(strain > strain.max() / 4))
+    relieved = strain[start:] < np.maximum.accumulate(strain[start:]) / 4
+    length = int(np.argmax(relieved)) + 1 if relieved.any() else len(force) - start
+    return slice(max(0, start - length), start + length)

@@ -1,0 +1,1 @@
+"""What a result looks like: findings and curves, text, documents, pictures, files."""

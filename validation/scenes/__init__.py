@@ -1,0 +1,1 @@
+"""What is simulated: beads, contacts, sensors, and the files that describe them."""

@@ -1,0 +1,77 @@
+"""Numbers that enter a scene become finite floats here, or are refused.
+
+The counterpart of `lwa.exact` for the lattice: every fault is one line that names the value and
+says what would be right.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import wraps
+from typing import Any, ParamSpec, TypeVar
+
+import numpy as np
+
+from lwa.exact import InputError, shorten
+from lwa.spheres import tables
+from lwa.spheres.tables import LEAST, Reader, array
+
+P = ParamSpec("P")
+T = TypeVar("T")
+
+
+class SceneError(InputError):
+    """A scene, or a part of one, that cannot be meant: the message says what would be right."""
+
+
+def of_scene(read: Callable[P, T]) -> Callable[P, T]:
+    """The same function, whose refusals are `SceneError`.
+
+    >>> positive(-1, "duration")
+    Traceback (most recent call last):
+        ...
+    validation.scenes.checks.SceneError: duration is -1: it must be positive
+    """
+
+    @wraps(read)
+    def checked(*args: P.args, **options: P.kwargs) -> T:
+        try:
+            return read(*args, **options)
+        except InputError as error:
+            raise SceneError(str(error)) from None
+
+    return checked
+
+
+real = of_scene(tables.real)
+positive = of_scene(tables.positive)
+integer = of_scene(tables.integer)
+
+
+def row(
+    values: Sequence[Any], read: Callable[[Any, str], float], name: Callable[[int], str]
+) -> Any:
+    """Every value by a reader; ``name`` is what messages call number i of them, from 0.
+
+    `real` and `positive` check a row of a million numbers at once.
+    """
+    if read in (real, positive) and set(map(type, values)) <= {int, float, np.float64}:
+        try:
+            numbers = np.array(values, float)
+        except OverflowError:  # of an integer
+            numbers = np.array([np.nan])
+        if np.isfinite(numbers).all() and (read is real or np.all(numbers >= LEAST)):
+            return numbers.tolist()
+    return [read(value, name(i)) for i, value in enumerate(values)]
+
+
+def each(reader: Reader) -> Reader:
+    """`lwa.spheres.tables.each`, by `row`."""
+    return lambda value, name: row(array(value, name), reader, lambda i: f"{name} number {i + 1}")
+
+
+def items(values: Any, name: str) -> tuple[Any, ...]:
+    """The items of a sequence; raises `SceneError` for a text or a single value."""
+    if isinstance(values, str | bytes) or not hasattr(values, "__iter__"):
+        raise SceneError(f"{name} is {shorten(values)}: a sequence is wanted")
+    return tuple(values)

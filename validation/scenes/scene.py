@@ -1,0 +1,197 @@
+"""What is simulated: the beads, their contacts, what sets them in motion, and who listens.
+
+Beads 0 … n-1 lie in a row. Contact i joins bead i to bead i+1, the last one (only with a wall)
+bead n-1 to the wall. Each pushes with F = A_i δ^k when its compression δ is positive and is open
+otherwise. Displacements count from the equilibrium and are positive towards the wall. A scene
+holds only what it names: no wall, no gravity, no precompression and no sensors unless they are
+given.
+
+Units are the caller's own, as long as they agree (SI for real beads; m1 = A = D = 1 without).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from itertools import accumulate, pairwise
+from typing import Any
+
+import sympy as sp
+
+from lwa import Cell
+from lwa.cell import exponent
+from lwa.exact import InputError, shorten
+from validation.scenes.checks import SceneError, integer, items, positive, real, row
+from validation.scenes.materials import Bead, Material, contact_stiffness
+
+__all__ = ["Scene", "SceneError"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Scene:
+    """A chain, its initial state and its sensors.
+
+    Parameters
+    ----------
+    masses : of the n beads.
+    stiffnesses : A_i of the n-1 contacts between them.
+    k : exponent of the contact law, at least 1.
+    duration : time that is simulated.
+    wall : stiffness of the contact of the last bead with a fixed wall.
+    gravity : acceleration towards the wall. The chain is then in equilibrium under its own
+        weight: contact i carries the beads above it.
+    precompression : constant force F0 on bead 0, towards the wall. It is part of the equilibrium:
+        every contact carries F0 besides the beads above it.
+    displacements, velocities : initial, from the equilibrium; beads that the sequence does not
+        reach start at 0. A striker is ``velocities=(v,)``.
+    contact_sensors : sensors of the force and the compression of these contacts.
+    bead_sensors : sensors of the force and the velocity of these beads; the force is the mean of a
+        bead's two contacts (at an end that touches nothing, of its one contact and 0).
+    samples : number of sample times, equidistant from 0 to the duration.
+    spacings : distances of the n-1 pairs of neighbours in equilibrium. The motion does not ask for
+        them; without, a speed is known in sites only.
+
+    Raises `SceneError` for whatever cannot be meant.
+
+    >>> Scene(masses=(1, 1), stiffnesses=(1,), k=1.5, duration=-1)
+    Traceback (most recent call last):
+        ...
+    validation.scenes.checks.SceneError: duration is -1: it must be positive
+    """
+
+    masses: tuple[float, ...]
+    stiffnesses: tuple[float, ...]
+    k: float
+    duration: float
+    wall: float | None = None
+    gravity: float = 0.0
+    displacements: tuple[float, ...] = ()
+    velocities: tuple[float, ...] = ()
+    contact_sensors: tuple[int, ...] = ()
+    bead_sensors: tuple[int, ...] = ()
+    samples: int = 1001
+    precompression: float = 0.0
+    spacings: tuple[float, ...] = ()
+
+    def __post_init__(self) -> None:
+        checked: dict[str, Any] = {
+            "masses": _all(positive, self.masses, "masses"),
+            "stiffnesses": _all(positive, self.stiffnesses, "stiffnesses"),
+            "k": real(self.k, "k"),
+            "duration": positive(self.duration, "duration"),
+            "wall": None if self.wall is None else positive(self.wall, "wall"),
+            "gravity": real(self.gravity, "gravity"),
+            "displacements": _all(real, self.displacements, "displacements"),
+            "velocities": _all(real, self.velocities, "velocities"),
+            "samples": integer(self.samples, "samples", 2),
+            "precompression": real(self.precompression, "precompression"),
+            "spacings": _all(positive, self.spacings, "spacings"),
+        }
+        for name, value in checked.items():
+            object.__setattr__(self, name, value)
+        n = self.size
+        if n == 0:
+            raise SceneError("masses is empty: a chain has at least one bead")
+        for name in ("stiffnesses", "spacings"):
+            if (given := len(checked[name])) != n - 1 and (given or name == "stiffnesses"):
+                raise SceneError(f"{given} {name} for {n} beads: {n - 1} are wanted")
+        for name in ("displacements", "velocities"):
+            if len(checked[name]) > n:
+                raise SceneError(f"{len(checked[name])} {name} for {n} beads: at most {n} wanted")
+        if not math.isfinite(sum(checked["spacings"])):
+            raise SceneError("the chain's length comes out as inf: choose other units")
+        if self.k < 1:
+            raise SceneError(f"k is {self.k:g}: the contact law A δ^k is simulated for k ≥ 1")
+        for name, act in (("gravity", "pull towards"), ("precompression", "push against")):
+            if (value := checked[name]) < 0 or (value > 0 and self.wall is None):
+                raise SceneError(
+                    f"{name} is {value:g}: it must be positive and needs a wall to {act}"
+                )
+        for name, most in (
+            ("contact_sensors", self.contact_count - 1),
+            ("bead_sensors", n - 1),
+        ):
+            object.__setattr__(self, name, _sensors(getattr(self, name), name, most))
+
+    @property
+    def size(self) -> int:
+        """n, the number of beads."""
+        return len(self.masses)
+
+    @property
+    def contact_count(self) -> int:
+        """The number of contacts, that with the wall included."""
+        return len(self.stiffnesses) + (self.wall is not None)
+
+    @property
+    def load(self) -> tuple[float, ...]:
+        """The static force of each contact: F0 and the weight of the beads above."""
+        above = accumulate(self.masses[: self.contact_count])
+        return tuple(self.precompression + self.gravity * mass for mass in above)
+
+    @classmethod
+    def of_cell(cls, cell: Cell, repeats: int, k: Any, **rest: Any) -> Scene:
+        """A chain of the theory's own periodic cell, repeated; ``rest`` as for a `Scene`.
+
+        The cell's last contact, which joins it to the next cell, is left out at the end.
+
+        Raises `SceneError` when the cell holds symbols.
+
+        >>> from lwa import Dimer
+        >>> Scene.of_cell(Dimer(1, "1/2", spacing=1), 2, "3/2", duration=1).masses
+        (1.0, 0.5, 1.0, 0.5)
+        """
+        repeats = integer(repeats, "repeats", 1)
+        try:
+            k_value = _number(exponent(k), "k")
+        except InputError as error:
+            raise SceneError(str(error)) from None
+        masses = [_number(m, "mass") for m in cell.masses]
+        stiffnesses = [_number(A, "stiffness") for A in cell.stiffnesses]
+        n = len(masses) * repeats
+        return cls(
+            masses=tuple(masses * repeats),
+            stiffnesses=tuple((stiffnesses * repeats)[:-1]),
+            k=k_value,
+            spacings=(float(cell.spacing),) * (n - 1) if cell.spacing.is_number else (),
+            **rest,
+        )
+
+    @classmethod
+    def of_beads(cls, beads: Sequence[Bead], *, wall: Material | None = None, **rest: Any) -> Scene:
+        """A chain of real beads in Hertz contact, ended by a flat wall if its material is given."""
+        row = items(beads, "beads")
+        for i, bead in enumerate(row):
+            if not isinstance(bead, Bead):
+                raise SceneError(f"bead {i} is {shorten(bead)}: a Bead is wanted")
+        if not row:
+            raise SceneError("beads is empty: a chain has at least one bead")
+        return cls(
+            masses=tuple(bead.mass for bead in row),
+            stiffnesses=tuple(contact_stiffness(a, b) for a, b in pairwise(row)),
+            k=1.5,
+            wall=None if wall is None else contact_stiffness(row[-1], wall),
+            spacings=tuple(a.radius + b.radius for a, b in pairwise(row)),
+            **rest,
+        )
+
+
+def _all(read: Callable[[Any, str], float], values: Any, name: str) -> tuple[float, ...]:
+    return tuple(row(items(values, name), read, lambda i: f"{name}[{i}]"))
+
+
+def _sensors(values: Any, name: str, most: int) -> tuple[int, ...]:
+    given = items(values, name)
+    if given and most < 0:
+        raise SceneError(f"{name} is {shorten(given)}: this chain has none")
+    sensors = tuple(integer(i, f"{name}[{j}]", 0, most) for j, i in enumerate(given))
+    if len(set(sensors)) < len(sensors):
+        raise SceneError(f"{name} is {shorten(sensors)}: each may be named once")
+    return sensors
+
+
+def _number(value: sp.Expr, name: str) -> float:
+    if not value.is_number:
+        raise SceneError(f"{name} is {value}: the lattice needs numbers in place of symbols")
+    return float(value)

@@ -1,0 +1,309 @@
+"""A `Scene` as a file, TOML or JSON, that reads like the experiment.
+
+All keys but ``duration`` and ``chain.cell`` are optional, and what is not named is not there::
+
+    duration = 1e-3               # of the simulation
+    samples = 2001                # of the sensors, from 0 to the duration; 1001 if not given
+    gravity = 9.81                # towards the wall; the chain is in equilibrium under its weight
+    precompression = 2.0          # constant force on bead 1, towards the wall: in equilibrium every
+                                  #   contact carries it, besides the beads above
+    [materials.steel]             # any name
+    E = 193e9                     # Young's modulus
+    nu = 0.3                      # Poisson's ratio
+    [beads.ball]                  # any name
+    mass = 0.45e-3
+    radius = 2.38e-3
+    material = "steel"
+    [chain]
+    cell = ["ball", "ball"]       # names of beads, in Hertz contact; or masses, and for them alone
+    k = 1.5                       #   the exponent, which masses need,
+    stiffnesses = [1.0, 2.0]      #   A of each contact or one for all (1 if not given),
+    spacings = 1.0                #   likewise the neighbours' distance (speeds are in sites if not)
+    repeat = 19                   # of the cell, 1 if not given
+    [[defects]]                   # one table for each
+    bead = 10
+    like = "ball"                 # another bead in its place; or mass = 2.0
+    [[defects]]
+    contact = 3
+    stiffness = 2.0
+    [wall]                        # behind the last bead; gravity and precompression need it
+    material = "steel"            # or stiffness = 2.0
+    [striker]
+    velocity = 1.37               # of bead 1
+    [start]                       # instead of a striker; from bead 1 on, the others at 0
+    velocities = [1.0, 1.0]
+    displacements = [0.1, 0.1]    # from the equilibrium
+    overlap = true                # they press beads into each other that carry nothing at rest
+    [sensors]
+    beads = [15, 34]
+    contacts = [15]               # contact 15 joins beads 15 and 16, the last one bead and wall
+
+Beads and contacts are counted from 1, as in the paper and on the command line (a `Scene` counts
+from 0). Stiffnesses are as many as the cell has beads, the last one joining it to the next cell,
+or as many as the whole chain has contacts; spacings likewise. Units are SI, or any that agree.
+
+Unknown keys are refused, and every fault is one line that names the key. Written are the masses
+and stiffnesses of a scene, not the materials that they came from; what is written is read back as
+an equal scene, to the last bit.
+"""
+
+from __future__ import annotations
+
+import json
+import textwrap
+from collections.abc import Mapping, Sequence
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from lwa.exact import shorten
+from lwa.spheres import hertz
+from lwa.spheres.beads import read_beads, read_materials
+from lwa.spheres.files import MOST_BYTES, load
+from lwa.spheres.tables import Table, among, array, entries, flag, place, places, table
+from validation.report.files import replacing
+from validation.scenes.checks import SceneError, each, integer, of_scene, positive, real
+from validation.scenes.materials import Bead, Material, contact_stiffness
+from validation.scenes.scene import Scene
+
+MOST_BEADS = 1_000_000
+MOST_SAMPLES = 10_000_000
+"""Of all sensors together."""
+
+KEYS = {
+    "file": (
+        "duration", "samples", "gravity", "precompression", "materials", "beads", "chain",
+        "defects", "wall", "striker", "start", "sensors",
+    ),
+    "chain": ("cell", "k", "stiffnesses", "spacings", "repeat"),
+    "wall": ("material", "stiffness"),
+    "striker": ("velocity",),
+    "start": ("velocities", "displacements", "overlap"),
+    "sensors": ("beads", "contacts"),
+}  # fmt: skip
+
+
+def read(path: str | Path) -> Scene:
+    """Read a scene from a TOML or a JSON file.
+
+    Raises `SceneError`, in one line, for a file that cannot be read or is not a scene.
+    """
+    return of_scene(load)(path, "a scene", scene)
+
+
+def write(what: Scene, file: Path) -> None:
+    """Write a scene as TOML or JSON, by the suffix; only a complete file replaces an old one."""
+    suffix, entries = file.suffix.lower(), document(what)
+    text = toml(entries) if suffix == ".toml" else json.dumps(entries, indent=2) + "\n"
+    if len(text) > (most := MOST_BYTES[suffix]):
+        raise SceneError(
+            f"{file}: the scene takes {len(text)} bytes, and {most} of {suffix[1:].upper()} are "
+            "the most that is read"
+        )
+    with replacing(file) as new:
+        new.write_text(text, encoding="utf-8")
+
+
+# --- what is read ---------------------------------------------------------------------------
+
+
+@of_scene
+def scene(content: Any) -> Scene:
+    """The scene of a parsed file, see the module; raises `SceneError`.
+
+    >>> scene({"duration": 1, "chain": {"cell": [1, 0.5], "repeat": 2, "k": 1.5}}).masses
+    (1.0, 0.5, 1.0, 0.5)
+    """
+    file = Table(content, "", KEYS["file"])
+    tables = {
+        name: file.read(name, table(KEYS[name]), Table({}, name, KEYS[name]))
+        for name in ("wall", "striker", "start", "sensors")
+    }
+    materials = read_materials(file)
+    spheres = read_beads(file, materials)
+    beads = {name: Bead.of(sphere) for name, sphere in spheres.items()}
+    defects = file.read("defects", _defects, ())
+    row, chain = _chain(file.read("chain", table(KEYS["chain"])), beads, defects)
+    n = len(chain["masses"])
+    wall = _wall(tables["wall"], row, materials) if "wall" in file else None
+    start, sensors = tables["start"], tables["sensors"]
+    velocities = start.read("velocities", each(real), ())
+    if "striker" in file:
+        if "start" in file:
+            raise SceneError("striker and start are both there: one says how the beads start")
+        velocities = (tables["striker"].read("velocity", real),)
+    result = Scene(
+        **chain,
+        wall=wall,
+        duration=file.read("duration", positive),
+        samples=file.read("samples", partial(integer, least=2, most=MOST_SAMPLES), 1001),
+        gravity=file.read("gravity", real, 0.0),
+        precompression=file.read("precompression", real, 0.0),
+        displacements=start.read("displacements", each(real), ()),
+        velocities=velocities,
+        bead_sensors=sensors.read("beads", places(n), ()),
+        contact_sensors=sensors.read("contacts", places(n - (wall is None)), ()),
+    )
+    listening = len(result.bead_sensors) + len(result.contact_sensors)
+    if result.samples * listening > MOST_SAMPLES:
+        raise SceneError(f"samples is {result.samples}, for each of {listening} sensors: all may "
+                         f"take {MOST_SAMPLES} together")  # fmt: skip
+    pressed = _overlap(result)
+    if pressed and not start.read("overlap", flag, False):
+        other = "the wall" if pressed == n else f"bead {pressed + 1}"
+        raise SceneError(
+            f"start.displacements press bead {pressed} into {other}: start.overlap = true allows it"
+        )
+    return result
+
+
+def _defect(value: Any, name: str) -> Table:
+    of_contact = "contact" in entries(value, name)
+    given = Table(value, name, ("contact", "stiffness") if of_contact else ("bead", "like", "mass"))
+    given.one("contact", "bead")
+    if not of_contact:
+        given.one("like", "mass")
+    return given
+
+
+def _defects(value: Any, name: str) -> list[Table]:
+    found: list[Table] = each(_defect)(value, name)
+    first: dict[tuple[str, int], Table] = {}
+    for defect in found:
+        what = "contact" if "contact" in defect else "bead"
+        at = defect.entries[what]  # checked when it is known how many there are
+        if isinstance(at, int) and (other := first.setdefault((what, at), defect)) is not defect:
+            raise SceneError(
+                f"{other.name} and {defect.name} are both of {what} {at}: one is wanted"
+            )
+    return found
+
+
+def _chain(
+    given: Table, beads: Mapping[str, Bead], defects: Sequence[Table]
+) -> tuple[list[Bead], dict[str, Any]]:
+    """The beads, where they are named, and what the chain gives a `Scene`."""
+    cell = given.read("cell", array)
+    repeat = given.read("repeat", partial(integer, least=1), 1)
+    n = len(cell) * repeat
+    if not 1 <= n <= MOST_BEADS:
+        raise SceneError(
+            f"chain.cell and repeat make {shorten(n)} beads: 1 … {MOST_BEADS} are wanted"
+        )
+    row: list[Bead] = []
+    if isinstance(cell[0], str):
+        for key in ("k", "stiffnesses", "spacings"):
+            if key in given:
+                raise SceneError(f"chain.{key} is given, but named beads are in Hertz contact")
+        row = each(among(beads))(cell, "chain.cell") * repeat
+        for defect in defects:
+            if "like" in defect:
+                row[defect.read("bead", place(n))] = defect.read("like", among(beads))
+        hertz = Scene.of_beads(row, duration=1)
+        masses, stiffnesses = list(hertz.masses), list(hertz.stiffnesses)
+        k, spacings = hertz.k, hertz.spacings
+    else:
+        masses = each(positive)(cell, "chain.cell") * repeat
+        of_contacts = partial(_of_contacts, period=len(cell), count=n - 1)
+        k = given.read("k", real)
+        stiffnesses = given.read("stiffnesses", of_contacts, [1.0] * (n - 1))
+        spacings = given.read("spacings", of_contacts, ())
+    for defect in defects:
+        if "contact" in defect:
+            at = defect.read("contact", place(n - 1))
+            stiffnesses[at] = defect.read("stiffness", positive)
+        elif "mass" in defect:
+            masses[defect.read("bead", place(n))] = defect.read("mass", positive)
+        elif not row:
+            raise SceneError(f"{defect.path('like')} names a bead in a chain of masses")
+    return row, {"masses": masses, "stiffnesses": stiffnesses, "k": k, "spacings": spacings}
+
+
+def _of_contacts(value: Any, name: str, period: int, count: int) -> list[float]:
+    """One number for all of the contacts, one for each, or those of a cell."""
+    if not isinstance(value, list):
+        return [positive(value, name)] * count
+    if len(value) not in (period, count):
+        wanted = " or ".join(map(str, sorted({period, count})))
+        raise SceneError(f"{name} holds {len(value)}: {wanted} are wanted, or one number")
+    numbers: list[float] = each(positive)(value, name)
+    return numbers if len(value) == count else (numbers * (count // period + 1))[:count]
+
+
+def _wall(given: Table, row: Sequence[Bead], materials: Mapping[str, hertz.Material]) -> float:
+    if given.one("material", "stiffness") == "stiffness":
+        return float(given.read("stiffness", positive))
+    if not row:
+        raise SceneError("wall.material is given, but a chain of masses needs wall.stiffness")
+    return contact_stiffness(row[-1], Material.of(given.read("material", among(materials))))
+
+
+def _overlap(what: Scene) -> int:
+    """The number of the first contact that displacements press though it carries nothing, or 0."""
+    y = [*what.displacements, 0.0, 0.0]
+    if not (what.gravity or what.precompression):
+        for number in range(1, min(what.contact_count, len(what.displacements)) + 1):
+            if y[number - 1] > y[number]:
+                return number
+    return 0
+
+
+# --- what is written ------------------------------------------------------------------------
+
+
+def document(what: Scene) -> dict[str, Any]:
+    """The file of a scene, for JSON or `toml`; `scene` makes an equal scene of it."""
+    period = _period(what)
+    chain: dict[str, Any] = {"cell": list(what.masses[:period]), "k": what.k}
+    if period < what.size:
+        chain["repeat"] = what.size // period
+    for name in ("stiffnesses", "spacings"):
+        if values := getattr(what, name):
+            chain[name] = values[0] if len(set(values)) == 1 else list(values[:period])
+    result: dict[str, Any] = {"duration": what.duration, "samples": what.samples}
+    for name in ("gravity", "precompression"):
+        if value := getattr(what, name):
+            result[name] = value
+    result["chain"] = chain
+    if what.wall is not None:
+        result["wall"] = {"stiffness": what.wall}
+    if len(what.velocities) == 1 and not what.displacements:
+        result["striker"] = {"velocity": what.velocities[0]}
+    elif what.velocities or what.displacements:
+        start = {"velocities": what.velocities, "displacements": what.displacements}
+        result["start"] = {name: list(values) for name, values in start.items() if values}
+        if _overlap(what):
+            result["start"]["overlap"] = True
+    sensors = {"beads": what.bead_sensors, "contacts": what.contact_sensors}
+    heard = {name: [i + 1 for i in indices] for name, indices in sensors.items() if indices}
+    return result | ({"sensors": heard} if heard else {})
+
+
+def toml(content: Mapping[str, Any]) -> str:
+    """What `document` returns, as TOML.
+
+    >>> print(toml({"duration": 1.0, "chain": {"cell": [1.0, 0.5], "repeat": 2}}), end="")
+    duration = 1.0
+    <BLANKLINE>
+    [chain]
+    cell = [1.0, 0.5]
+    repeat = 2
+    """
+    lines = []
+    for key, value in content.items():
+        if isinstance(value, dict):
+            lines += ["", f"[{key}]", toml(value).rstrip()]
+        else:  # JSON's numbers, booleans and lists of them are TOML's
+            text = f"{key} = {json.dumps(value, allow_nan=False)}"
+            lines += textwrap.wrap(text, 100, subsequent_indent="    ", break_on_hyphens=False)
+    return "\n".join(lines) + "\n"
+
+
+def _period(what: Scene) -> int:
+    """The size of the smallest cell that, repeated, is the chain."""
+    n = what.size
+    for period in (p for p in range(1, n) if n % p == 0):
+        rows = (what.masses, what.stiffnesses, what.spacings)
+        if all(row[period:] == row[: len(row) - period] for row in rows if row):
+            return period
+    return n

@@ -1,0 +1,1 @@
+"""The studies, each a comparison of theory and lattice."""

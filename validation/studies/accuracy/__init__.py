@@ -1,0 +1,1 @@
+"""Speed against error: integrators on fixed tasks, theories against true waves."""

@@ -1,0 +1,232 @@
+"""General integrators of other packages, given the same equations of motion in their best form.
+
+CyRK : adaptive Runge–Kutta pairs in C++, the right-hand side compiled by numba to a C function.
+diffrax : adaptive Runge–Kutta pairs compiled by XLA; the right-hand side in JAX, vectorised.
+heyoka : Taylor's method to machine precision by automatic differentiation, compiled by LLVM. The
+    error is that of the kinks of [δ]_+^k, which a Taylor polynomial does not see; a largest step is
+    what keeps them in bounds, and takes the tolerance's place.
+
+All on the whole chain, as none has a window. A package that is missing is left out with a word;
+where the environment names a continuous integration (CI), it is an error.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Callable, Collection, Iterator
+from dataclasses import dataclass
+from importlib import import_module
+from typing import Any
+
+import numpy as np
+
+from validation.lattice.equations import Array, Motion
+from validation.scenes.checks import SceneError
+from validation.studies.accuracy.tasks import Task
+
+Solve = Callable[[float], Array]
+"""From a tolerance (heyoka: the largest step) to the displacements at the task's times, (n, S)."""
+
+_TAYLOR = 1e-9
+"""Tolerance of heyoka's steps, below the error of the kinks."""
+
+
+class PeerError(RuntimeError):
+    """A package that must be there is missing, or an integrator could not go on."""
+
+
+@dataclass(frozen=True)
+class Peer:
+    """One integrator of a package; ``prepare`` compiles it for a task."""
+
+    package: str
+    method: str
+    prepare: Callable[[Task, str], Solve]
+
+    @property
+    def name(self) -> str:
+        """As it stands in tables."""
+        return f"{self.package} {self.method}"
+
+
+def _start(task: Task) -> Array:
+    scene, n = task.scene, task.scene.size
+    state = np.zeros(2 * n)
+    state[: len(scene.displacements)] = scene.displacements
+    state[n : n + len(scene.velocities)] = scene.velocities
+    return state
+
+
+def _contacts(motion: Motion) -> tuple[Array, Array, Array]:
+    """Stiffness, rest compression and load of a contact ahead of every bead; 0 where none is."""
+    rows = np.zeros((3, motion.size))
+    for row, values in zip(rows, (motion.stiffnesses, motion.rest, motion.load), strict=True):
+        row[: len(values)] = values
+    return rows[0], rows[1], rows[2]
+
+
+def _cyrk(task: Task, method: str) -> Solve:
+    import numba
+    from CyRK import nbsolve2_ivp
+    from CyRK.nb.numba_solver import cyjit_sig
+
+    motion, start = _hertz(task), _start(task)
+    n = motion.size
+    constants = np.concatenate(([n], 1 / motion.masses, *_contacts(motion)))
+
+    def motion_of(rate: Any, t: float, y: Any, c: Any) -> None:
+        n = int(c[0])
+        behind = 0.0
+        for i in range(n):
+            rate[i] = y[n + i]
+            ahead = y[i + 1] if i < n - 1 else 0.0
+            d = c[1 + 2 * n + i] + y[i] - ahead
+            force = (c[1 + n + i] * d * math.sqrt(d) if d > 0.0 else 0.0) - c[1 + 3 * n + i]
+            rate[n + i] = (behind - force) * c[1 + i]
+            behind = force
+
+    compiled = numba.cfunc(cyjit_sig)(motion_of)
+    span = (0.0, float(task.times[-1]))
+
+    def solve(tolerance: float) -> Array:
+        solution = nbsolve2_ivp(
+            compiled.address, span, start, method=method, t_eval=task.times, args=constants,
+            rtol=tolerance, atol=tolerance,
+        )  # fmt: skip
+        if not solution.success:
+            raise PeerError(f"CyRK {method} stopped: {solution.message}")
+        y = np.array(solution.y[:n])
+        solution.free()
+        return y
+
+    solve(1e-3)  # compiles what calls it
+    return solve
+
+
+def _diffrax(task: Task, method: str) -> Solve:
+    import diffrax
+    import jax
+    import jax.numpy as jnp
+
+    motion, start = _hertz(task), _start(task)
+    n = motion.size
+
+    with jax.enable_x64(True):
+        masses = jnp.array(motion.masses)
+        A, rest, load = (jnp.array(row) for row in _contacts(motion))
+
+        def rate(t: Any, state: Any, constants: Any) -> Any:
+            y, v = state[:n], state[n:]
+            d = jnp.maximum(rest + y - jnp.append(y[1:], 0.0), 0.0)
+            force = A * d * jnp.sqrt(d) - load
+            push = jnp.append(0.0, force[:-1]) - force
+            return jnp.concatenate((v, push / masses))
+
+        def run(tolerance: Any) -> tuple[Any, Any]:
+            solution = diffrax.diffeqsolve(
+                diffrax.ODETerm(rate),
+                getattr(diffrax, method)(),
+                0.0,
+                float(task.times[-1]),
+                1e-3,
+                jnp.array(start),
+                saveat=diffrax.SaveAt(ts=jnp.array(task.times)),
+                stepsize_controller=diffrax.PIDController(rtol=tolerance, atol=tolerance),
+                max_steps=None,
+                throw=False,
+            )
+            return solution.ys, solution.result == diffrax.RESULTS.successful
+
+        compiled = jax.jit(run)
+
+    def solve(tolerance: float) -> Array:
+        with jax.enable_x64(True):
+            states, well = compiled(tolerance)
+        if not well:
+            raise PeerError(f"diffrax {method} stopped at tolerance {tolerance:g}")
+        return np.asarray(states).T[:n]
+
+    solve(1e-3)  # compiles
+    return solve
+
+
+def _heyoka(task: Task, method: str) -> Solve:
+    import heyoka
+
+    motion, start = _hertz(task), _start(task)
+    n = motion.size
+    y, v = (heyoka.make_vars(*(f"{name}{i}" for i in range(n))) for name in "yv")
+    force: list[Any] = [0.0]
+    for i, (A, rest, load) in enumerate(zip(*_contacts(motion), strict=True)):
+        if not A:
+            force.append(0.0)
+            continue
+        d = rest + y[i] - (y[i + 1] if i + 1 < n else 0.0)
+        closed = heyoka.gt(d, 0.0)
+        # not the power of a negative gap, which would be no number
+        force.append(A * heyoka.select(closed, heyoka.select(closed, d, 1.0) ** 1.5, 0.0) - load)
+    system = [(y[i], v[i]) for i in range(n)]
+    system += [(v[i], (force[i] - force[i + 1]) / motion.masses[i]) for i in range(n)]
+    stepper = heyoka.taylor_adaptive(system, list(start), tol=_TAYLOR, compact_mode=True)
+
+    def solve(longest: float) -> Array:
+        stepper.time = 0.0
+        stepper.state[:] = start
+        reached = stepper.propagate_until(task.times[0], max_delta_t=longest)[0]
+        found = stepper.propagate_grid(task.times, max_delta_t=longest)
+        for outcome in (reached, found[0]):
+            if outcome != heyoka.taylor_outcome.time_limit:
+                raise PeerError(f"heyoka stopped: {outcome}")
+        return np.array(found[-1].T[:n])
+
+    return solve
+
+
+def _hertz(task: Task) -> Motion:
+    """The equations; peers have those of k = 3/2 only, without a power."""
+    if task.scene.k != 1.5:
+        raise SceneError(f"k is {task.scene.k:g}: peers are given the equations of k = 1.5")
+    return Motion(task.scene)
+
+
+PEERS = (
+    Peer("CyRK", "RK45", _cyrk),
+    Peer("CyRK", "TSIT5", _cyrk),
+    Peer("CyRK", "VERN7", _cyrk),
+    Peer("CyRK", "DOP853", _cyrk),
+    Peer("diffrax", "Tsit5", _diffrax),
+    Peer("diffrax", "Dopri8", _diffrax),
+    Peer("heyoka", "Taylor", _heyoka),
+)
+"""All of them."""
+
+
+def packages() -> tuple[str, ...]:
+    """That `PEERS` come from."""
+    return tuple(dict.fromkeys(peer.package for peer in PEERS))
+
+
+def missing() -> tuple[str, ...]:
+    """The packages of `PEERS` that cannot be imported.
+
+    Raises `PeerError` if there is one and the environment has CI set.
+    """
+    absent = []
+    for package in packages():
+        try:
+            import_module(package)
+        except ImportError as reason:
+            if os.environ.get("CI"):
+                raise PeerError(
+                    f"{package} is missing where CI is set ({reason}): pip install 'lwa[peers]'"
+                ) from None
+            absent.append(package)
+    return tuple(absent)
+
+
+def prepared(task: Task, absent: Collection[str]) -> Iterator[tuple[Peer, Solve]]:
+    """The peers of packages that are there, compiled for the task."""
+    for peer in PEERS:
+        if peer.package not in absent:
+            yield peer, peer.prepare(task, peer.method)

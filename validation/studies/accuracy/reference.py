@@ -1,0 +1,198 @@
+"""The pulse of a task to about twelve digits, by two routes that share nothing but the equations.
+
+One is SciPy's DOP853 (order 8) with every opening and closing of a contact located: F = A [δ]_+^k
+has a kink at δ = 0, which costs a step that passes over it its order and which the error estimate
+does not see. A sign change of an overlap within a step is found on its cubic Hermite interpolant,
+its time by Brent's method on the step's dense output (Hairer, Nørsett & Wanner, Solving Ordinary
+Differential Equations I, II.6); the step is taken again up to there.
+The other is the compiled SRKN14 of `validation.lattice.engine`, symplectic, at a very small step.
+
+`integrate` drives any of SciPy's steppers, on the whole chain or on a window that moves with the
+pulse: beads join ahead before they move, and those behind leave where an open contact parts them
+from the pulse. Contacts carry no tension, so that what has been parted must catch up to matter.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from scipy import integrate as scipy
+from scipy.optimize import brentq
+
+from validation.lattice.equations import Array, Motion
+from validation.lattice.simulate import IntegrationError, simulate
+from validation.pulses.pulse import Pulse
+from validation.scenes.checks import SceneError
+from validation.studies.accuracy.tasks import Task, errors
+
+REACH = 48
+"""Beads that a window follows behind the front at least."""
+_AHEAD = 32
+"""Beads that join at once."""
+_MARGIN = 6
+"""Still beads at the front."""
+_STILL = 1e-13
+"""Displacement below which a bead is still, over the largest."""
+_TIGHT = 2.5e-14
+"""Relative tolerance of the located steps, about the least that SciPy takes."""
+_STEP = 1e-13
+"""Relative error that the symplectic step of the reference aims at."""
+
+
+class Part(Motion):
+    """The beads lo … hi-1 of a chain on their own; the last keeps its wall if there is one."""
+
+    def __init__(self, whole: Motion, lo: int, hi: int) -> None:
+        contacts = slice(lo, hi - 1 if hi < whole.size else len(whole.rest))
+        self.size, self.k = hi - lo, whole.k
+        self.masses = whole.masses[lo:hi]
+        self.stiffnesses, self.rest, self.load = (
+            row[contacts] for row in (whole.stiffnesses, whole.rest, whole.load)
+        )
+
+
+class Located(scipy.DOP853):  # type: ignore[misc]
+    """DOP853 on a `Motion`, with every opening and closing of a contact at the end of a step."""
+
+    t: float
+    y: Array
+    f: Array
+    h_abs: float
+
+    _inside = np.linspace(0.0, 1.0, 9)[1:, None]
+    """Where in a step the overlaps are looked at."""
+    _on = 1e-9
+    """Overlap, over the displacements' scale, of a contact that is just opening or closing."""
+
+    def __init__(self, motion: Motion, *arguments: Any, **options: Any) -> None:
+        super().__init__(motion, *arguments, **options)
+        self.motion = motion
+        self.events = 0
+
+    def _step_impl(self) -> tuple[bool, str | None]:
+        before = self.t, self.y, self.f
+        going, message = super()._step_impl()
+        while going and (time := self._kink(*before)) is not None:
+            self.events += 1
+            self.t, self.y, self.f = before
+            self.h_abs = time - self.t
+            going, message = super()._step_impl()
+        return going, message
+
+    def _overlaps(self, state: Array) -> tuple[Array, Array]:
+        """Of all contacts: the overlap and its rate."""
+        n = self.motion.size
+        v = np.append(state[n:], 0.0)[: len(self.motion.rest) + 1]
+        return self.motion.compression(state[:n]), v[:-1] - v[1:]
+
+    def _kink(self, t: float, y: Array, f: Array) -> float | None:
+        """The time of the first change of sign of an overlap in the step from t; None without."""
+        h, x = self.t - t, self._inside
+        (a, da), (b, db) = self._overlaps(y), self._overlaps(self.y)
+        da, db = h * da, h * db
+        p = a + x * (da + x * (3 * (b - a) - 2 * da - db + x * (2 * (a - b) + da + db)))
+        on = np.abs(a) <= self._on
+        side = np.where(on, np.sign(da), np.sign(a))
+        crossed = p * side < -self._on
+        if not crossed.any():
+            return None
+        first = np.where(crossed.any(axis=0), crossed.argmax(axis=0), len(x))
+        self.t_old = t
+        dense = self._dense_output_impl()
+        times = []
+        for i in np.flatnonzero(crossed.any(axis=0) & (first <= first.min() + 1)):
+
+            def overlap(time: float, i: Any = i) -> float:
+                return float(self.motion.compression(dense(time)[: self.motion.size])[i])
+
+            start, end = t + (1e-3 * h if on[i] else 0.0), t + h * float(x[first[i], 0])
+            changes = overlap(start) * overlap(end) < 0
+            times.append(brentq(overlap, start, end, xtol=1e-14 * end) if changes else end)
+        time = float(min(times))
+        return time if time < t + (1 - 1e-9) * h else None
+
+
+def integrate(
+    task: Task, method: Any, rtol: float, *, window: bool = False, atol: float | None = None
+) -> Array:
+    """The force of the task's contact at its times, by a stepper of SciPy's or one like them.
+
+    Parameters
+    ----------
+    method : a class such as `scipy.integrate.DOP853` or `Located`.
+    rtol, atol : local error per step, relative and absolute; the absolute one is the same unless
+        given.
+    window : whether to move with the pulse, and not to integrate the whole chain.
+
+    Raises `SceneError` for a window in a chain with a wall, `IntegrationError` when the stepper
+    fails.
+    """
+    scene, whole = task.scene, Motion(task.scene)
+    if window and not task.windowed:
+        raise SceneError("window is True: behind a wall waves come back; the whole chain is wanted")
+    state = np.zeros((2, whole.size))
+    state[0, : len(scene.displacements)] = scene.displacements
+    state[1, : len(scene.velocities)] = scene.velocities
+    moved = np.flatnonzero(state.any(axis=0))
+    front = int(moved[-1]) + 1 if len(moved) else 0
+    lo, hi = 0, min(whole.size, front + _AHEAD) if window else whole.size
+    force = np.zeros(len(task.times))
+    t, done = 0.0, 0
+    options: dict[str, float] = {}
+    while t < scene.duration:
+        part = Part(whole, lo, hi)
+        stepper = method(
+            part, t, state[:, lo:hi].ravel(), scene.duration,
+            rtol=rtol, atol=rtol if atol is None else atol, **options,
+        )  # fmt: skip
+        while stepper.status == "running" and (hi == whole.size or not _moves(stepper.y, part)):
+            message = stepper.step()
+            if stepper.status == "failed":
+                raise IntegrationError(f"integration stopped at t = {stepper.t:g}: {message}")
+            until = int(np.searchsorted(task.times, stepper.t, side="right"))
+            if until > done:
+                if lo <= task.contact < hi - 1:
+                    y = stepper.dense_output()(task.times[done:until])[: part.size]
+                    force[done:until] = part.force(part.compression(y))[task.contact - lo]
+                done = until
+        t, state[:, lo:hi] = stepper.t, stepper.y.reshape(2, -1)
+        if t < scene.duration:
+            options = {"first_step": min(stepper.step_size, scene.duration - t)}
+            # One of the gaps behind parts the pulse from what it has left.
+            gaps = np.flatnonzero(part.compression(state[0, lo:hi])[: hi - lo - _AHEAD - REACH] < 0)
+            lo, hi = lo + (int(gaps[-1]) + 1 if len(gaps) else 0), min(whole.size, hi + _AHEAD)
+    return force
+
+
+def _moves(state: Array, part: Motion) -> bool:
+    """Whether the front has come near the last bead."""
+    y = state[: part.size]
+    return bool(abs(y[-_MARGIN]) > _STILL * np.abs(y).max())
+
+
+@dataclass(frozen=True)
+class Reference:
+    """The pulse of a task, and the largest relative difference of a number by another route."""
+
+    task: str
+    pulse: Pulse
+    agreement: float
+
+
+def symplectic(task: Task, rtol: float = _STEP) -> Pulse:
+    """By SRKN14 at a step for this error of the peak, on a window where there may be one."""
+    run = simulate(task.scene, method="SRKN14", rtol=rtol)
+    return task.read(run.contact_force[0][-len(task.times) :])
+
+
+def located(task: Task, rtol: float = _TIGHT) -> Pulse:
+    """By DOP853 with every kink located, on a window where there may be one."""
+    return task.read(integrate(task, Located, rtol, window=task.windowed, atol=rtol / 10))
+
+
+def reference(name: str, task: Task) -> Reference:
+    """The truth where it is known, else the symplectic result; beside the located one."""
+    pulse = task.truth or symplectic(task)
+    return Reference(name, pulse, max(errors(located(task), pulse).values()))

@@ -1,0 +1,1 @@
+"""The experiment and the figures of Porter et al. (2008)."""

@@ -1,0 +1,206 @@
+"""A sweep's file: one line of JSON a point, there for good as soon as the point is finished.
+
+The first line names the format and the settings, each other one is a
+`validation.pulses.steady.Point`:
+
+    {"format": "lwa sweep", "version": 2, "settings": {"stretch": 4}}
+    {"k": "3/2", "omega": "1", "sites": [56, 64], "numbers": {"width": [1.41192837, 1.4119284], …}}
+    {"k": "3/2", "omega": "1/9", "missing": "the pulse has not passed 80 sites by t = 1e+05"}
+
+A number is followed by the one that its error comes from. Every line is written by a single call
+and synchronised with the disk before the next. A last line without its end, which a power cut or
+a full disk leaves, is dropped when the file is opened again, and its point computed anew. Any
+other damage is refused: nobody knows what it was.
+"""
+
+from __future__ import annotations
+
+import errno
+import json
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, BinaryIO
+
+import sympy as sp
+
+from lwa.exact import InputError, exact, shorten
+from lwa.spheres.files import content, reason
+from lwa.spheres.tables import Table, array, table
+from validation.pulses.pulse import Measured
+from validation.pulses.steady import QUANTITIES, Point
+from validation.report.files import output_file
+from validation.scenes.checks import SceneError, integer, real
+
+SUFFIX = ".jsonl"
+FORMAT = {"format": "lwa sweep", "version": 2}
+"""The version counts the definitions of what is measured, too."""
+
+MOST_BYTES = 10**9
+"""Of the file: twice a million points."""
+
+Key = tuple[sp.Rational, sp.Rational]
+"""k and ω."""
+
+
+class Journal:
+    """The finished points of a sweep, and the file that keeps them, if there is one.
+
+    The file is begun, or freed of its torn end, with the first point that is added.
+
+    Raises `lwa.InputError` for a file that cannot be one, is another sweep's, or is damaged.
+    """
+
+    def __init__(self, path: str | Path | None, settings: Mapping[str, int]) -> None:
+        self.points: dict[Key, Point] = {}
+        self.file = None if path is None else output_file("file", str(path), (SUFFIX,))
+        self._stream: BinaryIO | None = None
+        self._header = json.dumps(FORMAT | {"settings": dict(settings)}).encode() + b"\n"
+        self._end = 0
+        if self.file is None or not self.file.exists():
+            return
+        if not os.access(self.file, os.W_OK):
+            raise InputError(f"file is {self.file}: one that can be written is wanted")
+        try:
+            found = content(self.file, MOST_BYTES)
+        except OSError as error:
+            raise InputError(f"{self.file} is not read: {reason(error)}") from None
+        except InputError as error:
+            raise InputError(f"{self.file} is not read: {error}") from None
+        self._end = found.rfind(b"\n") + 1
+        if self._end:
+            self.points = _read(self.file, found[: self._end], settings)
+        elif not self._header.startswith(found):
+            raise InputError(f"{self.file} is not a sweep's file: choose another name")
+
+    def add(self, point: Point) -> None:
+        """Keep a finished point. Raises `lwa.InputError` when the file cannot take it."""
+        if self.file is not None:
+            try:
+                self._append(_line(point))
+            except OSError as error:
+                raise InputError(f"{self.file} is not written: {reason(error)}") from None
+        self.points[point.k, point.omega] = point
+
+    def close(self) -> None:
+        """Close the file."""
+        if self._stream is not None:
+            self._stream.close()
+
+    def _append(self, line: bytes) -> None:
+        """The whole line, on the disk, or nothing of it."""
+        assert self.file is not None
+        if self._stream is None:
+            self._stream = self.file.open("ab", buffering=0)
+            self._stream.truncate(self._end)
+            if not self._end:
+                line = self._header + line
+        end = self._stream.seek(0, os.SEEK_END)
+        try:
+            if self._stream.write(line) < len(line):
+                raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+            os.fsync(self._stream.fileno())
+        except OSError:
+            self._stream.truncate(end)
+            raise
+
+
+def _line(point: Point) -> bytes:
+    entry: dict[str, Any] = {"k": str(point.k), "omega": str(point.omega)}
+    if point.missing is None:
+        numbers = {name: [n.value, n.check] for name, n in point.numbers.items()}
+        entry |= {"sites": point.sites, "numbers": numbers}
+    else:
+        entry["missing"] = point.missing
+    return json.dumps(entry, ensure_ascii=False, allow_nan=False).encode() + b"\n"
+
+
+def _read(file: Path, content: bytes, settings: Mapping[str, int]) -> dict[Key, Point]:
+    first, *lines = content.splitlines()
+    _check_header(file, first, settings)
+    points: dict[Key, Point] = {}
+    for number, line in enumerate(lines, start=2):
+        try:
+            point = _point(_json(line))
+        except (InputError, ValueError) as error:
+            raise InputError(f"{file} is damaged in line {number}: {error}") from None
+        if points.setdefault((point.k, point.omega), point) != point:
+            raise InputError(
+                f"{file} is damaged in line {number}: it holds k = {point.k}, ω = {point.omega} "
+                "again, with other numbers"
+            )
+    return points
+
+
+def _check_header(file: Path, line: bytes, settings: Mapping[str, int]) -> None:
+    try:
+        header = _json(line)
+    except ValueError:
+        header = None
+    if not isinstance(header, dict) or header.get("format") != FORMAT["format"]:
+        raise InputError(f"{file} is not a sweep's file: choose another name")
+    if (version := header.get("version")) != FORMAT["version"]:
+        raise InputError(
+            f"{file} has version {shorten(version)} of its format: {FORMAT['version']} is wanted"
+        )
+    if (theirs := header.get("settings")) != settings:
+        ours = ", ".join(f"{name} = {value}" for name, value in settings.items())
+        raise InputError(
+            f"{file} is another sweep's, with settings {shorten(theirs)}: choose another name for "
+            f"{ours}"
+        )
+
+
+def _json(line: bytes) -> Any:
+    def refuse(constant: str) -> None:
+        raise ValueError(f"{constant} is not a finite number")
+
+    try:
+        return json.loads(line.decode(), parse_constant=refuse)
+    except (json.JSONDecodeError, UnicodeDecodeError, RecursionError):
+        raise ValueError("it is not JSON") from None
+
+
+def _point(entry: Any) -> Point:
+    found = Table(entry, "", ("k", "omega", "sites", "numbers", "missing"))
+    k, omega = (found.read(name, rational) for name in ("k", "omega"))
+    if "missing" in found:
+        return Point(k, omega, None, {}, found.read("missing", _text))
+    numbers = found.read("numbers", table(tuple(QUANTITIES)))
+    return Point(
+        k,
+        omega,
+        found.read("sites", _sites),
+        {name: numbers.read(name, _measured) for name in QUANTITIES},
+    )
+
+
+def rational(value: Any, name: str) -> sp.Rational:
+    """Read a rational number; raises `lwa.InputError` for anything else."""
+    number = exact(value, name)
+    if not number.is_Rational:
+        raise InputError(
+            f"{name} is {shorten(value)}: an integer, a decimal or a fraction is wanted"
+        )
+    return number
+
+
+def _text(value: Any, name: str) -> str:
+    if not isinstance(value, str):
+        raise SceneError(f"{name} is {shorten(value)}: a text is wanted")
+    return value
+
+
+def _measured(value: Any, name: str) -> Measured:
+    return Measured(*(real(number, name) for number in _pair(value, name)))
+
+
+def _sites(value: Any, name: str) -> tuple[int, int]:
+    start, end = (integer(number, name, 0) for number in _pair(value, name))
+    return start, end
+
+
+def _pair(value: Any, name: str) -> list[Any]:
+    if len(numbers := array(value, name)) != 2:
+        raise SceneError(f"{name} is {shorten(value)}: two numbers are wanted")
+    return numbers

@@ -1,0 +1,1 @@
+"""Exact traveling waves of the lattice, by Newton's method."""

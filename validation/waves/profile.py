@@ -1,0 +1,267 @@
+"""A traveling wave of the lattice as trigonometric polynomials, and what is read off a profile.
+
+The wave is that of `validation.waves.fourier`: contacts push with r_+^k, A = D = 1, and a contact's
+strain is a(ξ) = e + o or b(ξ) = a(-ξ), ξ = x - ct. Equations that hold for a wave hold for its
+multiples, r → s r with c² → s^{k-1} c²: the contact law has no scale of its own. A wave is given at
+contact force 1, and `ExactWave.scaled` gives it at any other speed or force.
+"""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.optimize import brentq, minimize_scalar
+
+from lwa.quantities import strain_power
+from validation.pulses.pulse import MeasureError
+from validation.scenes.checks import SceneError, positive
+from validation.waves import fourier
+from validation.waves.fourier import Array
+
+TOLERANCE = 1e-9
+"""A wave is called solitary when its tail, over the peak strain, is below this and the equations
+of motion hold to it."""
+
+OUTSIDE = 0.6
+"""Of the half period: where the pulse of a dimer has ended, and its tail is looked for."""
+
+
+class Profile(ABC):
+    """A pulse of a chain as a function of ξ = x - ct, mirror symmetric about a bead; A = D = 1."""
+
+    masses: tuple[float, float]
+    k: float
+    c2: float
+    half_period: float
+
+    @property
+    @abstractmethod
+    def samples(self) -> int:
+        """On 0 … L, from which on its humps are told apart."""
+
+    @abstractmethod
+    def strain(self, xi: ArrayLike, contact: int = 0) -> Array:
+        """a(ξ) (contact 0, m1 to its left) or b(ξ) = a(-ξ) (contact 1); a gap is negative."""
+
+    @abstractmethod
+    def velocity(self, xi: ArrayLike, bead: int = 0) -> Array:
+        """Of the beads m1 (bead 0) or m2 (bead 1); far from the pulse a cell has no momentum."""
+
+    @property
+    def c(self) -> float:
+        """The speed dx/dt."""
+        return math.sqrt(self.c2)
+
+    @property
+    def omega(self) -> float:
+        """ω = m2/m1."""
+        return self.masses[1] / self.masses[0]
+
+    @property
+    def pulse(self) -> float:
+        """The |ξ| within which it is read off: a dimer's without its tail."""
+        ample = fourier.ample_half_period((1.0, self.omega), self.k)
+        return min(self.half_period, ample if self.omega == 1 else OUTSIDE * ample)
+
+    def force(self, xi: ArrayLike, contact: int = 0) -> Array:
+        """F_a(ξ) or F_b(ξ), positive."""
+        value: Array = np.maximum(self.strain(xi, contact), 0.0) ** self.k
+        return value
+
+    def quantity(self, name: str, xi: ArrayLike) -> Array:
+        """ "strain", "force" (of contact 0) or "velocity" (of bead m1), as in `lwa`."""
+        strain_power(name, self.k)  # refuses other names
+        value: Array = getattr(self, name)(xi)
+        return value
+
+    def peak(self, name: str) -> tuple[float, float]:
+        """Where a quantity is greatest, and its value there."""
+        xi = np.linspace(-self.half_period, self.half_period, 4 * self.samples + 1)
+        return summit(lambda x: float(self.quantity(name, x)), xi, self.quantity(name, xi))
+
+    def fwhm(self, name: str = "strain") -> float:
+        """Full width at half maximum, in D, of the highest hump: roots of the profile itself.
+
+        At a contact of a dimer a pulse may have several humps, as the light bead hits to and fro;
+        the width jumps where the dip between two of them passes half the maximum.
+
+        Raises `MeasureError` where the quantity does not fall to half its peak.
+        """
+        top, peak = self.peak(name)
+        xi = top + np.linspace(0, self.half_period, 4 * self.samples)
+        width = 0.0
+        for side in (-1, 1):
+            points = top + side * (xi - top)
+            below = int(np.argmax(self.quantity(name, points) < peak / 2))
+            if not below:
+                raise MeasureError(f"the {name} has no FWHM: its tail is above half its peak")
+            ends = points[below - 1], points[below]
+            root = brentq(
+                lambda x: float(self.quantity(name, x)) - peak / 2, *ends, xtol=1e-14, rtol=1e-14
+            )
+            width += abs(float(root) - top)
+        return width
+
+    def rms_width(self, name: str = "strain") -> float:
+        """√(∫ (ξ - mean)² f / ∫ f) over the pulse; positive values only (gaps do not count)."""
+        n = 8 * self.samples
+        xi = self.pulse * np.arange(-n, n) / n  # trapezia: exact for what has ended
+        f = np.maximum(self.quantity(name, xi), 0.0)
+        mean = (f @ xi) / f.sum()
+        return math.sqrt(f @ (xi - mean) ** 2 / f.sum())
+
+    def rattle(self, start: float) -> float:
+        """The largest |o| on start ≤ |ξ| ≤ L: how far light beads are from their places."""
+        outside = np.linspace(start, self.half_period, 2 * self.samples)
+
+        def height(xi: ArrayLike) -> Array:
+            at = np.asarray(xi, float)
+            return np.abs(self.strain(at) - self.strain(-at)) / 2
+
+        return summit(lambda x: float(height(x)), outside, height(outside))[1]
+
+
+@dataclass(frozen=True, eq=False)
+class ExactWave(Profile):
+    """One traveling wave; A = D = 1.
+
+    masses : (m1, m2); equal for a chain of one mass.
+    c2 : c², the square of the speed dx/dt.
+    half_period : L; profiles are periodic with 2L, a solitary wave's end before.
+    even, odd : coefficients of E in cos(πjξ/L), j = 0 … n, and of O in sin(πjξ/L).
+    tail : largest |o| outside the pulse, over the peak strain.
+    residual : of the equations of motion, integrated twice, on a grid twice as fine as that on
+        which they were solved; over the peak strain.
+    """
+
+    masses: tuple[float, float]
+    k: float
+    c2: float
+    half_period: float
+    even: Array
+    odd: Array
+    tail: float
+    residual: float
+
+    @property
+    def samples(self) -> int:
+        """The points of the grid."""
+        return len(self.even)
+
+    @property
+    def solitary(self) -> bool:
+        """Whether the wave has no tail, as far as its residual lets one say so."""
+        return self.tail < TOLERANCE and self.residual < TOLERANCE
+
+    def scaled(self, *, speed: Any = None, force: Any = None) -> ExactWave:
+        """The same wave of another speed dx/dt, or of another peak force of its contacts.
+
+        Raises `SceneError` unless one of the two is given, a positive number, and the strains are
+        within the range of floating point.
+
+        >>> from validation.waves.solver import exact_wave
+        >>> wave = exact_wave([1], 1.5).scaled(speed=2)
+        >>> round(wave.c, 12), round(wave.peak("force")[1] / 4**3 * wave.scaled(force=1).c2**3, 12)
+        (2.0, 1.0)
+        """
+        if (speed is None) == (force is None):
+            raise SceneError("speed or force is wanted: a wave is scaled to one of the two")
+        with np.errstate(over="ignore", under="ignore"):
+            if speed is not None:
+                now = np.float64(positive(speed, "speed") / self.c) ** (2 / (self.k - 1))
+            else:
+                now = np.float64(positive(force, "force")) ** (1 / self.k)
+                now /= self.peak("strain")[1]
+            scale = float(now ** max(self.k, 2.0))
+        if not 1e-200 < scale < 1e200:
+            what = f"speed is {speed:g}" if speed is not None else f"force is {force:g}"
+            raise SceneError(
+                f"{what}: the wave's strain, {now:.1e} times that here, is out of range"
+            )
+        s = float(now)
+        return replace(
+            self,
+            c2=float(self.c2 * s ** (self.k - 1)),
+            even=self.even * s**self.k,
+            odd=self.odd * s**self.k,
+        )
+
+    @cached_property
+    def _q(self) -> Array:
+        return np.asarray(np.pi * np.arange(len(self.even)) / self.half_period, float)
+
+    @cached_property
+    def _strains(self) -> tuple[Array, Array]:
+        # In units of m1, whose reciprocal may be out of range.
+        pair = fourier.rates((1.0, self.omega))
+        e, o = fourier.respond(self.even, self.odd, pair, self.half_period)
+        e[0] = -fourier.at_end(e)
+        c2 = self.c2 * self.masses[0]
+        return np.asarray(e / c2), np.asarray(o / c2)
+
+    def _inside(self, xi: ArrayLike) -> Array:
+        """A solitary wave is not repeated."""
+        at = np.asarray(xi, float)
+        return np.clip(at, -self.half_period, self.half_period) if self.solitary else at
+
+    def strain(self, xi: ArrayLike, contact: int = 0) -> Array:
+        """a(ξ) (contact 0, m1 to its left) or b(ξ) = a(-ξ) (contact 1); a gap is negative."""
+        at = np.asarray(xi, float)
+        value: Array = self._sum(-at if contact % 2 else at, *self._strains)
+        return value
+
+    def velocity(self, xi: ArrayLike, bead: int = 0) -> Array:
+        """Of the beads m1 (bead 0) or m2 (bead 1); far from the pulse a cell has no momentum."""
+        one, two = (float(self._velocity(np.array(self.half_period), i)) for i in (0, 1))
+        mean = (one + self.omega * two) / (1 + self.omega)
+        return self._velocity(xi, bead) - mean
+
+    def _velocity(self, xi: ArrayLike, bead: int) -> Array:
+        sign, q = (-1 if bead % 2 else 1), self._q[1:]
+        push = -2 * np.sin(q / 2) * self.even[1:] + sign * 2 * np.cos(q / 2) * self.odd[1:]
+        row = np.append(0.0, -push / q) / (self.masses[bead % 2] * self.c)
+        return self._sum(xi, row, 0 * row)
+
+    def _sum(self, xi: ArrayLike, even: Array, odd: Array) -> Array:
+        phase = np.multiply.outer(self._inside(xi), self._q)
+        value: Array = np.cos(phase) @ even + np.sin(phase) @ odd
+        return value
+
+
+def at_unit_force(
+    masses: tuple[float, float], k: float, c2: float, half_period: float, even: Array, odd: Array
+) -> ExactWave:
+    """The wave of these forces, scaled to a force 1 at its peak, with its tail and residual."""
+    wave = ExactWave(masses, k, c2, half_period, even, odd, 0.0, 0.0)
+    s = 1 / wave.peak("strain")[1]
+    wave = replace(wave, c2=float(c2 * s ** (k - 1)), even=even * s**k, odd=odd * s**k)
+    tail = 0.0 if masses[0] == masses[1] else wave.rattle(OUTSIDE * half_period)
+    return replace(wave, tail=tail, residual=_residual(wave))
+
+
+def _residual(wave: ExactWave) -> float:
+    """max |r - r[F(r)]| on the grid twice as fine, for both contacts."""
+    n, L = 2 * (len(wave.even) - 1), wave.half_period
+    xi = L * np.arange(n + 1) / n
+    a, b = wave.strain(xi, 0), wave.strain(xi, 1)
+    Fa, Fb = np.maximum(a, 0) ** wave.k, np.maximum(b, 0) ** wave.k
+    even, odd = fourier.coefficients((Fa + Fb) / 2, (Fa - Fb)[1:n] / 2)
+    again = replace(wave, even=even, odd=odd)
+    return float(max(np.abs(again.strain(xi, i) - r).max() for i, r in enumerate((a, b))))
+
+
+def summit(f: Callable[[float], float], xi: Array, value: Array) -> tuple[float, float]:
+    """The maximum of a smooth function near the largest of its samples; its place to 1e-8."""
+    i = int(np.argmax(value))
+    bounds = xi[max(i - 1, 0)], xi[min(i + 1, len(xi) - 1)]
+    top = minimize_scalar(lambda x: -f(x), bounds=bounds, method="bounded", options={"xatol": 1e-9})
+    if -top.fun > value[i]:
+        return float(top.x), -float(top.fun)
+    return float(xi[i]), float(value[i])
