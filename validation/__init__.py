@@ -9,7 +9,8 @@
 1.4119
 """
 
-from validation.lattice.simulate import Run, simulate
+from validation.lattice.run import Run
+from validation.lattice.simulate import simulate
 from validation.pulses.pulse import Pulse, measure
 from validation.scenes.materials import Bead, Material
 from validation.scenes.scene import Scene, SceneError

@@ -18,7 +18,8 @@ from lwa.command.terminal import quantities, quantity, run
 from lwa.duration import announce
 from lwa.exact import InputError
 from validation.lattice.effort import Effort
-from validation.lattice.simulate import COMPILED, METHODS, IntegrationError
+from validation.lattice.run import IntegrationError
+from validation.lattice.simulate import COMPILED, METHODS
 from validation.pulses.sensors import TOLERANCE, record
 from validation.pulses.steady import STRETCH
 from validation.report.figure import SUFFIXES, plot_file, save

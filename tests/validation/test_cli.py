@@ -15,7 +15,7 @@ import pytest
 from click.testing import CliRunner
 
 from validation import cli
-from validation.lattice.simulate import IntegrationError
+from validation.lattice.run import IntegrationError
 from validation.report.text import document, text
 from validation.studies.limits import Limits
 

@@ -29,8 +29,8 @@ from validation.lattice import effort
 from validation.lattice.effort import Effort, Progress
 from validation.lattice.equations import Array, Motion
 from validation.lattice.kernel import BLOCK, MARGIN, SHORTEST, advance, beginning
+from validation.lattice.run import IntegrationError, Run, Window, frozen
 from validation.lattice.schemes import LAWS, SCHEMES
-from validation.lattice.simulate import IntegrationError, Run, Window, frozen
 from validation.scenes.checks import SceneError, integer, positive
 from validation.scenes.scene import Scene
 

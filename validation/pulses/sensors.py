@@ -18,7 +18,8 @@ import numpy as np
 
 from validation.lattice.effort import Progress, silent
 from validation.lattice.equations import Array, Motion
-from validation.lattice.simulate import METHODS, Run, simulate
+from validation.lattice.run import Run
+from validation.lattice.simulate import METHODS, simulate
 from validation.pulses.pulse import Measured, MeasureError, Pulse, measure, speed
 from validation.scenes.checks import SceneError, real
 from validation.scenes.scene import Scene

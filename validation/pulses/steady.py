@@ -38,7 +38,8 @@ from numpy.typing import NDArray
 from scipy.special import exprel
 
 from lwa.exact import InputError
-from validation.lattice.simulate import IntegrationError, Run, simulate
+from validation.lattice.run import IntegrationError, Run
+from validation.lattice.simulate import simulate
 from validation.pulses.pulse import Measured, MeasureError, measure
 from validation.scenes.scene import Scene
 

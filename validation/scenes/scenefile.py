@@ -49,8 +49,6 @@ an equal scene, to the last bit.
 
 from __future__ import annotations
 
-import json
-import textwrap
 from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
@@ -59,9 +57,8 @@ from typing import Any
 from lwa.exact import shorten
 from lwa.spheres import hertz
 from lwa.spheres.beads import read_beads, read_materials
-from lwa.spheres.files import MOST_BYTES, load
+from lwa.spheres.files import load
 from lwa.spheres.tables import Table, among, array, entries, flag, place, places, table
-from validation.report.files import replacing
 from validation.scenes.checks import SceneError, each, integer, of_scene, positive, real
 from validation.scenes.materials import Bead, Material, contact_stiffness
 from validation.scenes.scene import Scene
@@ -89,19 +86,6 @@ def read(path: str | Path) -> Scene:
     Raises `SceneError`, in one line, for a file that cannot be read or is not a scene.
     """
     return of_scene(load)(path, "a scene", scene)
-
-
-def write(what: Scene, file: Path) -> None:
-    """Write a scene as TOML or JSON, by the suffix; only a complete file replaces an old one."""
-    suffix, entries = file.suffix.lower(), document(what)
-    text = toml(entries) if suffix == ".toml" else json.dumps(entries, indent=2) + "\n"
-    if len(text) > (most := MOST_BYTES[suffix]):
-        raise SceneError(
-            f"{file}: the scene takes {len(text)} bytes, and {most} of {suffix[1:].upper()} are "
-            "the most that is read"
-        )
-    with replacing(file) as new:
-        new.write_text(text, encoding="utf-8")
 
 
 # --- what is read ---------------------------------------------------------------------------
@@ -277,26 +261,6 @@ def document(what: Scene) -> dict[str, Any]:
     sensors = {"beads": what.bead_sensors, "contacts": what.contact_sensors}
     heard = {name: [i + 1 for i in indices] for name, indices in sensors.items() if indices}
     return result | ({"sensors": heard} if heard else {})
-
-
-def toml(content: Mapping[str, Any]) -> str:
-    """What `document` returns, as TOML.
-
-    >>> print(toml({"duration": 1.0, "chain": {"cell": [1.0, 0.5], "repeat": 2}}), end="")
-    duration = 1.0
-    <BLANKLINE>
-    [chain]
-    cell = [1.0, 0.5]
-    repeat = 2
-    """
-    lines = []
-    for key, value in content.items():
-        if isinstance(value, dict):
-            lines += ["", f"[{key}]", toml(value).rstrip()]
-        else:  # JSON's numbers, booleans and lists of them are TOML's
-            text = f"{key} = {json.dumps(value, allow_nan=False)}"
-            lines += textwrap.wrap(text, 100, subsequent_indent="    ", break_on_hyphens=False)
-    return "\n".join(lines) + "\n"
 
 
 def _period(what: Scene) -> int:

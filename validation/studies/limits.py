@@ -21,15 +21,23 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from itertools import groupby
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import sympy as sp
 
 from lwa import Dimer, TravelingWave, homogenize
-from validation.lattice.simulate import Run, simulate
+from validation.lattice.run import Run
+from validation.lattice.simulate import simulate
 from validation.pulses.pulse import Measured, derived, impulse, measure, speed
+from validation.report.figure import figure
+from validation.report.text import document, percent, table, text
 from validation.scenes.scene import Scene
 from validation.waves.theory import Compacton
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 EXPONENTS = (sp.Rational(3, 2), sp.Rational(5, 4), sp.Rational(11, 10))
 """Hertz, and two on the way to k = 1."""
@@ -284,3 +292,99 @@ def _exponent_row(k: sp.Rational, wave: TravelingWave, waves: list[LatticeWave])
     pairs = [number for wave in waves for number in (wave.speed, wave.force)]
     # The lattice scales exactly, so only the integration's error is allowed for.
     return Row("exponent of F_m in V_s", k, EQUAL, wave.force_exponent, derived(fit, *pairs), 1e-5)
+
+
+# --- as text, document and picture ------------------------------------------------------------
+
+
+def _chain(row: Row) -> str:
+    if not row.omega:
+        return "ω = m2/m1 → 0, extrapolated from runs at small ω"
+    name = "m1 = m2" if row.omega == 1 else "m1 ≫ m2"
+    return f"{name}, ω = {row.omega}"
+
+
+@text.register
+def _(result: Limits) -> str:
+    header = ("quantity", "k", "theory", "lattice", "error", "bound", "")
+    blocks = []
+    for chain, rows in groupby(result.rows, _chain):
+        lines = [
+            (
+                row.quantity,
+                "→ 1" if row.k is None else str(row.k),
+                f"{row.theory_value:.8g}",
+                str(row.lattice),
+                percent(row.error),
+                percent(row.bound).lstrip("+"),
+                "ok" if row.ok else "FAILS",
+            )
+            for row in rows
+        ]
+        blocks.append(f"{chain}\n{table(header, lines)}")
+    failed = sum(not row.ok for row in result.rows)
+    verdict = f"{failed} of {len(result.rows)} fail" if failed else "all hold"
+    notes = (
+        "Lengths in D, m1 = A = D = 1; force and strain of a contact; error: theory/lattice - 1.\n"
+        "±: the lattice's own error, by how much a number still changed over the last stretch."
+    )
+    return "\n\n".join((*blocks, notes, f"{len(result.rows)} checks: {verdict}"))
+
+
+@document.register
+def _(result: Limits) -> dict[str, Any]:
+    """``ok``, ``rows``: ``quantity``, ``k`` and ``omega`` (exact; ``k`` null where all enter,
+    ``omega`` 0 for the limit), ``theory`` (exact), ``theory_value``, ``lattice_value``,
+    ``lattice_error_value`` (absolute), ``error_value`` (theory over lattice - 1),
+    ``bound_value``, ``ok``.
+    """
+    return {
+        "ok": result.ok,
+        "rows": [
+            {
+                "quantity": row.quantity,
+                "k": None if row.k is None else str(row.k),
+                "omega": str(row.omega),
+                "theory": str(row.theory),
+                "theory_value": row.theory_value,
+                "lattice_value": row.lattice.value,
+                "lattice_error_value": row.lattice.error,
+                "error_value": row.error,
+                "bound_value": row.bound,
+                "ok": row.ok,
+            }
+            for row in result.rows
+        ],
+    }
+
+
+@figure.register(Limits)
+def _(result: Limits) -> Figure:
+    """|error| against k - 1, with the leading powers that it must approach."""
+    from matplotlib.figure import Figure
+
+    picture = Figure(figsize=(10, 4.5), layout="constrained")
+    epsilon = np.geomspace(float(EXPONENTS[-1] - 1) / 2, float(EXPONENTS[0] - 1), 2)
+    for axes, omega in zip(picture.subplots(1, 2, sharey=True), (EQUAL, LIGHT), strict=True):
+        for i, (quantity, law) in enumerate(LAWS.items()):
+            rows = [
+                row
+                for row in result.rows
+                if (row.quantity, row.omega) == (quantity, omega) and row.k is not None
+            ]
+            color = f"C{i}"
+            axes.plot(epsilon, abs(float(law.coefficient)) * epsilon**law.order, color=color)
+            axes.errorbar(
+                [float(row.k - 1) for row in rows if row.k is not None],
+                [abs(row.error) for row in rows],
+                [row.lattice.relative_error for row in rows],
+                fmt="osD^"[i],
+                color=color,
+                label=quantity,
+            )
+        axes.set(xscale="log", yscale="log", xlabel="k - 1", title=f"m2/m1 = {omega}")
+        axes.set_xticks([float(k - 1) for k in EXPONENTS], [str(k - 1) for k in EXPONENTS])
+        axes.set_xticks([], minor=True)
+    picture.axes[0].set_ylabel("|theory/lattice - 1|")
+    picture.axes[0].legend(title="lines: leading order in k - 1")
+    return picture

@@ -53,25 +53,23 @@ class Resonances:
 
 
 def resonances(k: Any, count: Any) -> Resonances:
-    """The first ``count`` special ratios and their waves, for k from 1.1 to 5."""
+    """The first ``count`` special ratios and their waves, for k from 1.1 to 5.
+
+    Raises `SceneError` and `NoWave` as `special_waves` does.
+
+    >>> [round(ratio, 6) for ratio in resonances(1.5, 2).mass_ratios]
+    [0.342846, 0.154752]
+    """
     waves = special_waves(k, count)
     return Resonances(waves[0].k, waves)
 
 
-def special_ratios(k: Any, count: Any) -> tuple[float, ...]:
-    """The ``count`` largest m2/m1 < 1 at which a dimer has a solitary wave.
+def special_waves(k: Any, count: Any) -> tuple[ExactWave, ...]:
+    """The solitary waves at the ``count`` largest special ratios m2/m1 < 1, with m1 = 1.
 
     Raises `SceneError` where the roots cannot be told from rounding, and `NoWave` when fewer are
     found.
-
-    >>> [round(ratio, 6) for ratio in special_ratios(1.5, 2)]
-    [0.342846, 0.154752]
     """
-    return tuple(wave.masses[1] for wave in special_waves(k, count))
-
-
-def special_waves(k: Any, count: Any) -> tuple[ExactWave, ...]:
-    """The solitary waves at `special_ratios`, with m1 = 1."""
     _, k = parameters([1], k)
     low, high = RANGE
     if not low <= k <= high:

@@ -37,7 +37,7 @@ import numpy as np
 
 from lwa.exact import InputError
 from lwa.quantities import QUANTITIES
-from validation.lattice.simulate import IntegrationError
+from validation.lattice.run import IntegrationError
 from validation.pulses.pulse import Measured
 from validation.scenes.checks import SceneError, items, positive, real
 from validation.waves import fourier

@@ -8,7 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from validation.lattice import effort
-from validation.lattice.simulate import COMPILED, METHODS, IntegrationError, simulate
+from validation.lattice.run import IntegrationError
+from validation.lattice.simulate import COMPILED, METHODS, simulate
 from validation.pulses.sensors import record
 from validation.scenes.scene import Scene, SceneError
 from validation.scenes.scenefile import scene

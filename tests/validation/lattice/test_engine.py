@@ -8,8 +8,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from validation.lattice.run import IntegrationError
 from validation.lattice.schemes import SCHEMES
-from validation.lattice.simulate import COMPILED, IntegrationError, simulate
+from validation.lattice.simulate import COMPILED, simulate
 from validation.pulses.pulse import measure
 from validation.scenes.scene import Scene, SceneError
 

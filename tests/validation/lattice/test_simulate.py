@@ -8,7 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.interpolate import CubicSpline
 
-from validation.lattice.simulate import METHODS, IntegrationError, simulate
+from validation.lattice.run import IntegrationError
+from validation.lattice.simulate import METHODS, simulate
 from validation.pulses.pulse import measure, speed
 from validation.scenes.scene import Scene, SceneError
 

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from validation.lattice.simulate import IntegrationError, simulate
+from validation.lattice.run import IntegrationError
+from validation.lattice.simulate import simulate
 from validation.pulses import steady
 from validation.pulses.steady import QUANTITIES, STRETCH, leading_pulse, point
 from validation.scenes.scene import Scene

@@ -18,7 +18,7 @@ from validation.scenes.checks import SceneError
 from validation.studies.exact import document, text
 from validation.waves import solver
 from validation.waves.continuation import follow
-from validation.waves.resonances import resonances, special_ratios, special_waves
+from validation.waves.resonances import resonances, special_waves
 from validation.waves.solver import NoWave, continuation, exact_wave, measured, solve
 
 QUANTITIES = ("strain", "force", "velocity")
@@ -533,9 +533,9 @@ def test_bad_input(masses, k, message):
 
 def test_bad_counts_and_names(hertz):
     with pytest.raises(SceneError, match="count is 0"):
-        special_ratios(1.5, 0)
+        resonances(1.5, 0)
     for k in (1.05, 5.5):
         with pytest.raises(SceneError, match=rf"k is {k}: .* from 1\.1 to 5"):
-            special_ratios(k, 1)
+            resonances(k, 1)
     with pytest.raises(ValueError, match="quantity is"):
         hertz.fwhm("mass")

@@ -22,7 +22,8 @@ from scipy import integrate as scipy
 from scipy.optimize import brentq
 
 from validation.lattice.equations import Array, Motion
-from validation.lattice.simulate import IntegrationError, simulate
+from validation.lattice.run import IntegrationError
+from validation.lattice.simulate import simulate
 from validation.pulses.pulse import Pulse
 from validation.scenes.checks import SceneError
 from validation.studies.accuracy.tasks import Task, errors

@@ -25,7 +25,7 @@ from scipy.interpolate import make_interp_spline
 from lwa.exact import shorten
 from validation.lattice.equations import Array
 from validation.pulses.pulse import Pulse, measure
-from validation.pulses.time_of_flight import carrying
+from validation.scenes.chains import carrying
 from validation.scenes.checks import SceneError
 from validation.scenes.scene import Scene
 from validation.studies.porter2008.experiment import chain_scene

@@ -11,10 +11,12 @@ import numpy as np
 import sympy as sp
 
 from lwa import Dimer, homogenize
-from validation.lattice.simulate import IntegrationError, simulate
+from validation.lattice.run import IntegrationError
+from validation.lattice.simulate import simulate
 from validation.pulses.pulse import derived
-from validation.pulses.time_of_flight import METHOD, carrying, passage, ratio, uniform
+from validation.pulses.time_of_flight import METHOD, passage, ratio
 from validation.report.result import Curve, Finding, Outcome, Panel, Statement
+from validation.scenes.chains import carrying
 from validation.scenes.scene import Scene
 from validation.studies.hard.floats import ALLOWED, closed_wave, exact, in_ulps
 from validation.studies.limits import LAWS, theory_at
@@ -242,3 +244,14 @@ def _too_coarse(scene: Scene) -> Statement:
     except IntegrationError as error:
         return Statement("rtol = 1e-3 is too coarse here, and is told", str(error), True)
     return Statement("rtol = 1e-3 is too coarse here, and is told", "nothing is said", False)
+
+
+def uniform(wave: ExactWave, start: int, sites: int) -> Scene:
+    """A uniform chain with its wave at bead ``start``, to run ``sites`` further."""
+    n = 2 * start + sites
+    bead = np.arange(n) - start
+    return carrying(
+        (1.0,) * n, wave.k, wave.strain(bead[:-1] + 0.5), wave.velocity(bead),
+        contact_sensors=(start + sites // 2, start + sites), samples=4001,
+        duration=(sites + start // 2) / wave.c,
+    )  # fmt: skip

@@ -13,7 +13,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from validation.lattice.simulate import IntegrationError, Run, simulate
+from validation.lattice.run import IntegrationError, Run
+from validation.lattice.simulate import simulate
 from validation.pulses.pulse import measure
 from validation.pulses.time_of_flight import METHOD
 from validation.report.result import Curve, Finding, Outcome, Panel, Statement

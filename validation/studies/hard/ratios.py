@@ -14,8 +14,9 @@ from lwa import Dimer, NoSolitaryWave, TravelingWave, canonical_wave, homogenize
 from validation.lattice.simulate import simulate
 from validation.pulses.pulse import derived, measure
 from validation.pulses.steady import STRETCH, point
-from validation.pulses.time_of_flight import METHOD, carrying, passage, ratio
+from validation.pulses.time_of_flight import METHOD, passage, ratio
 from validation.report.result import Curve, Finding, Outcome, Panel, Statement
+from validation.scenes.chains import carrying
 from validation.scenes.scene import Scene
 from validation.studies.limits import theory_at
 from validation.waves.continuation import NoWave, solve

@@ -15,6 +15,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import sympy as sp
@@ -22,8 +23,11 @@ from numpy.typing import NDArray
 
 from lwa import Cell, Dimer, TravelingWave, homogenize
 from validation.lattice.effort import Progress, silent
-from validation.lattice.simulate import Run, simulate
+from validation.lattice.run import Run
+from validation.lattice.simulate import simulate
 from validation.pulses.pulse import Measured, MeasureError, Pulse, measure, speed
+from validation.report.figure import figure
+from validation.report.text import document, percent, table, text
 from validation.scenes.checks import SceneError, integer, items, real
 from validation.scenes.materials import (
     DIAMETER,
@@ -35,6 +39,9 @@ from validation.scenes.materials import (
 )
 from validation.scenes.scene import Scene
 from validation.waves.theory import Compacton
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
 
@@ -237,3 +244,75 @@ def _record(run: Run, sensor: int, compacton: Compacton) -> Record:
     arrival = pulse_before_wall(run, force, f"bead {bead}").arrival
     theory = compacton.bead_force(compacton.speed * (run.time - arrival))
     return Record(bead, run.time, force - force[0], theory)
+
+
+# --- as text, document and picture ------------------------------------------------------------
+
+
+@text.register
+def _(result: Paper) -> str:
+    header = ["quantity", "unit", "lattice"]
+    for source in SOURCES:
+        header += [f"by {source}", "error"]
+    lines = []
+    for row in result.rows:
+        line = [row.quantity, row.unit, str(row.lattice)]
+        for source, fixed in SOURCES.items():
+            by_construction = fixed == row.quantity
+            line += [f"{row.theory[source]:.5g}"]
+            line += ["set" if by_construction else percent(row.error(source))]
+        lines.append(line)
+    first, second = result.sensors
+    gravity = f"gravity {result.gravity:g} m/s²" if result.gravity else "no gravity"
+    return "\n\n".join(
+        (
+            f"{result.beads} beads, steel (the striker, {result.velocity:g} m/s) and PTFE in turn, "
+            f"steel wall, {gravity}; sensors in beads {first} and {second}",
+            table(header, lines),
+            "The force of a bead is the mean of its two contacts'; what names no bead is the mean "
+            "over both sensor\nbeads (odd ones are steel, even ones PTFE) or over their four "
+            "contacts. The theory's amplitude is set by\nF_m, by the speed, or by all of the "
+            "striker's momentum; error: theory/lattice - 1. ±: the error of the\nintegration.",
+        )
+    )
+
+
+@document.register
+def _(result: Paper) -> dict[str, Any]:
+    """``velocity_value``, ``beads``, ``sensors``, ``gravity_value``, ``rows``: ``quantity``,
+    ``unit``, ``lattice_value``, ``lattice_error_value``, and by what sets the theory's amplitude
+    (``F_m``, ``speed``, ``striker``) ``theory_value`` {…} and ``error_value`` {…}.
+    """
+    return {
+        "velocity_value": result.velocity,
+        "beads": result.beads,
+        "sensors": list(result.sensors),
+        "gravity_value": result.gravity,
+        "rows": [
+            {
+                "quantity": row.quantity,
+                "unit": row.unit,
+                "lattice_value": row.lattice.value,
+                "lattice_error_value": row.lattice.error,
+                "theory_value": dict(row.theory),
+                "error_value": {source: row.error(source) for source in SOURCES},
+            }
+            for row in result.rows
+        ],
+    }
+
+
+@figure.register(Paper)
+def _(result: Paper) -> Figure:
+    """The forces at both sensors over time, the lattice's and the theory's."""
+    from matplotlib.figure import Figure
+
+    picture = Figure(figsize=(8, 4.5), layout="constrained")
+    axes = picture.subplots()
+    for i, record in enumerate(result.records):
+        color, time = f"C{i}", 1e6 * record.time
+        axes.plot(time, record.lattice, color=color, label=f"bead {record.bead}, lattice")
+        axes.plot(time, record.theory, "--", color=color, label="theory, amplitude from F_m")
+    axes.set(xlabel="time (µs)", ylabel="force, mean of the bead's contacts (N)")
+    axes.legend(loc="upper center", ncols=2, bbox_to_anchor=(0.5, 1.17))
+    return picture

@@ -29,7 +29,8 @@ from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq
 
 from lwa import Dimer, TravelingWave, canonical_wave, homogenize
-from validation.lattice.simulate import COMPILED, Run, simulate
+from validation.lattice.run import Run
+from validation.lattice.simulate import COMPILED, simulate
 from validation.pulses.pulse import Measured, Pulse, derived, speed
 from validation.scenes.materials import DIAMETER, PTFE_BEAD, STEEL_BEAD, Bead
 from validation.studies.porter2008.experiment import (

@@ -7,12 +7,14 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from validation.pulses.time_of_flight import carrying, passage, ratio, uniform
+from validation.pulses.time_of_flight import passage, ratio
+from validation.scenes.chains import carrying
 from validation.studies.hard import exponents as module
 from validation.studies.hard.exponents import (
     collision_fwhm,
     contact_time,
     hard_spheres,
+    uniform,
     vanishing_terms,
 )
 from validation.studies.limits import theory_at
