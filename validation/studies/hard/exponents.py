@@ -9,6 +9,7 @@ import math
 
 import numpy as np
 import sympy as sp
+from scipy.special import beta, betaincc
 
 from lwa import Dimer, homogenize
 from validation.lattice.run import IntegrationError
@@ -219,23 +220,18 @@ def hard_spheres() -> Outcome:
 def contact_time(k: float, omega: float) -> float:
     """How long beads of masses 1 and ω touch that meet with relative velocity 1; A = 1.
 
-    2 ∫ dδ / √(1 - (δ/d)^{k+1}) from 0 to the deepest compression d.
+    2 ∫ dδ / √(1 - (δ/d)^n), n = k + 1, from 0 to the deepest compression d: a beta function.
     """
-    reduced = omega / (1 + omega)
-    deepest = ((k + 1) * reduced / 2) ** (1 / (k + 1))
-    gammas = math.gamma(1 + 1 / (k + 1)) / math.gamma(0.5 + 1 / (k + 1))
-    return float(2 * deepest * math.sqrt(math.pi) * gammas)
+    n = k + 1
+    deepest = (n * omega / (1 + omega) / 2) ** (1 / n)
+    return float(2 * deepest * beta(1 / n, 0.5) / n)
 
 
 def collision_fwhm(k: float) -> float:
-    """∫ dδ / √(1 - δ^{k+1}) from half the force, twice: the FWHM in time of a collision of two
-    whose compression peaks at 1, times their relative velocity; with δ = 1 - s²."""
-    s, weights = np.polynomial.legendre.leggauss(60)
-    end = math.sqrt(1 - 0.5 ** (1 / k))
-    s = end * (s + 1) / 2
-    # 1 - (1 - s²)^{k+1} without cancellation
-    speed = np.sqrt(-np.expm1((k + 1) * np.log1p(-s * s)))
-    return float(2 * end / 2 * weights @ (2 * s / speed))
+    """The FWHM in time of the force of a collision whose compression peaks at 1, times the
+    relative velocity: twice ∫ dδ / √(1 - δ^n), n = k + 1, from half the force, δ^k = 1/2, to 1."""
+    n = k + 1
+    return float(2 * beta(1 / n, 0.5) / n * betaincc(1 / n, 0.5, 0.5 ** (n / k)))
 
 
 def _too_coarse(scene: Scene) -> Statement:
