@@ -9,12 +9,16 @@
 1.4119
 """
 
-from validation.lattice.run import Run
-from validation.lattice.simulate import simulate
-from validation.pulses.pulse import Pulse, measure
-from validation.scenes.materials import Bead, Material
-from validation.scenes.scene import Scene, SceneError
-from validation.waves.solver import ExactWave, exact_wave
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from validation.lattice.run import Run
+    from validation.lattice.simulate import simulate
+    from validation.pulses.pulse import Pulse, measure
+    from validation.scenes.materials import Bead, Material
+    from validation.scenes.scene import Scene, SceneError
+    from validation.waves.solver import ExactWave, exact_wave
 
 __all__ = [
     "Bead",
@@ -28,3 +32,21 @@ __all__ = [
     "measure",
     "simulate",
 ]
+
+_PLACES = {
+    "lattice.run": ("Run",),
+    "lattice.simulate": ("simulate",),
+    "pulses.pulse": ("Pulse", "measure"),
+    "scenes.materials": ("Bead", "Material"),
+    "scenes.scene": ("Scene", "SceneError"),
+    "waves.solver": ("ExactWave", "exact_wave"),
+}
+"""Module → what stands here of it."""
+
+
+def __getattr__(name: str) -> Any:
+    """A module is loaded when a name of it is asked for: a command's help wants no SciPy."""
+    for module, names in _PLACES.items():
+        if name in names:
+            return getattr(import_module(f"validation.{module}"), name)
+    raise AttributeError(f"module 'validation' has no attribute {name!r}")

@@ -10,15 +10,18 @@ import sys
 from pathlib import Path
 from types import SimpleNamespace
 
+import click
 import numpy as np
 import pytest
 from click.testing import CliRunner
 
 from validation import cli
 from validation.lattice.run import IntegrationError
+from validation.report import command
 from validation.report.text import document, text
 from validation.studies.limits import Limits
 
+LIMITS, RECORD = "validation.studies.limits.limits", "validation.studies.run.record"
 COMMAND = Path(sys.executable).with_name("lwa-validate")
 
 
@@ -51,7 +54,7 @@ def test_paper_options(capsys, tmp_path):
 
 
 def test_limits(capsys, monkeypatch, limits_result):
-    monkeypatch.setattr(cli, "run_limits", lambda progress: limits_result)
+    monkeypatch.setattr(LIMITS, lambda progress: limits_result)
     status, out, err = run(capsys, "limits")
     assert (status, out, err) == (0, text(limits_result) + "\n", "")
     status, out, err = run(capsys, "limits", "--format", "json")
@@ -61,7 +64,7 @@ def test_limits(capsys, monkeypatch, limits_result):
 def test_limits_that_fail_are_printed_and_end_with_1(capsys, monkeypatch, limits_result):
     first, *others = limits_result.rows
     broken = Limits((dataclasses.replace(first, bound=1e-6), *others))
-    monkeypatch.setattr(cli, "run_limits", lambda progress: broken)
+    monkeypatch.setattr(LIMITS, lambda progress: broken)
     status, out, err = run(capsys, "limits")
     assert (status, err) == (1, "")
     assert "FAILS" in out
@@ -186,8 +189,8 @@ def test_an_output_that_cannot_be_is_refused_before_the_work(
     Path(f"folder{suffix}").mkdir()
     os.mkfifo(f"pipe{suffix}")
     before = sorted(tmp_path.iterdir())
-    monkeypatch.setattr(cli, "record", None)
-    monkeypatch.setattr(cli.experiment, "paper", None)
+    monkeypatch.setattr(RECORD, None)
+    monkeypatch.setattr("validation.studies.porter2008.experiment.paper", None)
     monkeypatch.setattr("validation.studies.sweep.sweep._compute", None)
     status, out, err = run(capsys, *command, option, f"{name}{suffix}")
     assert (status, out, err.count("\n")) == (2, "", 1)
@@ -212,7 +215,7 @@ def test_an_integrator_that_fails_is_one_line(capsys, monkeypatch, scene_file):
     def fails(scene, **_):
         raise IntegrationError("integration stopped at t = 1: too small a step")
 
-    monkeypatch.setattr(cli, "record", fails)
+    monkeypatch.setattr(RECORD, fails)
     status, out, err = run(capsys, "run", str(scene_file))
     assert (status, out) == (2, "")
     assert err == "lwa-validate: integration stopped at t = 1: too small a step\n"
@@ -241,7 +244,9 @@ def test_bad_runs_are_one_line_and_leave_nothing(
 ):
     monkeypatch.chdir(tmp_path)
     Path("scene.toml").write_text(content)
-    monkeypatch.setattr(cli, "record", lambda scene: pytest.fail("computed first"))
+    monkeypatch.setattr(
+        "validation.studies.run.record", lambda scene: pytest.fail("computed first")
+    )
     status, out, err = run(capsys, "run", "scene.toml", *options)
     assert (status, out) == (2, "")
     assert err.startswith(f"lwa-validate: {message}")
@@ -276,7 +281,9 @@ BAD = [
 
 @pytest.mark.parametrize("arguments", BAD, ids=" ".join)
 def test_bad_input_is_one_line_and_status_2(capsys, monkeypatch, arguments):
-    monkeypatch.setattr(cli, "run_limits", lambda progress: pytest.fail("computed first"))
+    monkeypatch.setattr(
+        "validation.studies.limits.limits", lambda progress: pytest.fail("computed first")
+    )
     status, out, err = run(capsys, *arguments)
     assert (status, out) == (2, "")
     assert err.startswith("lwa-validate: ")
@@ -443,8 +450,8 @@ def test_a_long_run_says_so_first_and_stops_at_ctrl_c(scene_file, options):
 
 def test_a_run_that_takes_longer_than_expected_says_so(capsys, monkeypatch):
     now = iter([0.0, 1.0, 61.0, 62.0, 99.0])
-    monkeypatch.setattr(cli, "time", SimpleNamespace(monotonic=lambda: next(now)))
-    with cli._run(SimpleNamespace(seconds=1.0)) as tell:
+    monkeypatch.setattr(command, "time", SimpleNamespace(monotonic=lambda: next(now)))
+    with command.run_progress(SimpleNamespace(seconds=1.0)) as tell:
         for share in (0.0, 0.25, 0.5):
             tell(share)
     assert capsys.readouterr().err == "25.0% of the run is done\n"
@@ -474,3 +481,24 @@ def test_exact_scaled_to_a_speed_or_a_force(capsys):
     status, out, err = run(capsys, "exact", "--speed", "2", "--force", "3")
     assert (status, out) == (2, "")
     assert "scaled to one of the two" in err
+
+
+def test_the_list_of_studies_is_what_they_say():
+    """The help is told without loading any of them."""
+    context = click.Context(cli.validate)
+    for name, (_, says) in cli.COMMANDS.items():
+        found = cli.validate.get_command(context, name)
+        assert found.name == name
+        assert found.help == says
+    assert cli.validate.get_command(context, "nothing") is None
+
+
+@pytest.mark.parametrize("arguments", [["--help"], ["--nothing"], ["nothing"]])
+def test_a_study_is_loaded_when_it_is_called(arguments):
+    code = (
+        f"import sys\nfrom validation.cli import validate\n"
+        f"try: validate.main({arguments}, standalone_mode=False)\nexcept Exception: pass\n"
+        "print({'numpy', 'scipy', 'numba', 'matplotlib'} & set(sys.modules))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines()[-1] == "set()"

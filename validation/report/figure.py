@@ -9,7 +9,6 @@ from functools import singledispatch
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from validation.pulses.sensors import Recording, tracks
 from validation.report.files import output_file, replacing
 
 if TYPE_CHECKING:
@@ -36,17 +35,3 @@ def save(result: Any, file: Path) -> None:
 def figure(result: Any) -> Figure:
     """The picture of a result."""
     raise TypeError(f"nothing is known to draw of {type(result).__name__}")
-
-
-@figure.register(Recording)
-def _(result: Recording) -> Figure:
-    """The dynamic force at every sensor over time."""
-    from matplotlib.figure import Figure
-
-    picture = Figure(figsize=(8, 4.5), layout="constrained")
-    axes = picture.subplots()
-    for track in tracks(result.run):
-        axes.plot(track.time, track.force, label=f"{track.kind} {track.number}")
-    axes.set(xlabel="time", ylabel="dynamic force")
-    axes.legend()
-    return picture

@@ -5,16 +5,22 @@ Importing this module teaches `validation.report.text` and `validation.report.fi
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import click
 import numpy as np
+import sympy as sp
 
+from lwa.command.terminal import quantities
+from lwa.exact import InputError
 from lwa.quantities import QUANTITIES
+from validation.report.command import EXPONENT, number, output, show, wanted
 from validation.report.figure import figure
 from validation.report.text import document, table, text
 from validation.waves.profile import ExactWave
-from validation.waves.resonances import Resonances
-from validation.waves.solver import measured
+from validation.waves.resonances import Resonances, resonances
+from validation.waves.solver import exact_wave, measured
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -133,3 +139,43 @@ def _(result: Resonances) -> Figure:
     axes.set(xlabel="ξ / D", ylabel="force of a contact")
     axes.legend()
     return picture
+
+
+@click.command("exact")
+@EXPONENT
+@click.option(
+    "--masses", callback=quantities, default="1", show_default=True,
+    help="One mass, or the two of a dimer.",
+)  # fmt: skip
+@click.option("--speed", callback=wanted, help="Scale the wave to this speed, at D = 1.")
+@click.option(
+    "--force", callback=wanted, help="Scale the wave to this peak force, at A = 1; by default 1."
+)
+@output
+def exact_command(
+    k: sp.Expr,
+    masses: tuple[sp.Expr, ...],
+    speed: sp.Expr | None,
+    force: sp.Expr | None,
+    style: str,
+    picture: Path | None,
+) -> None:
+    """An exact traveling wave of the lattice: speed, widths, and the tail if it has one."""
+    if speed is not None and force is not None:
+        raise InputError("speed and force: a wave is scaled to one of the two")
+    wave: ExactWave = exact_wave([number(m, "mass") for m in masses], number(k, "k"))
+    if speed is not None:
+        wave = wave.scaled(speed=number(speed, "speed"))
+    if force is not None:
+        wave = wave.scaled(force=number(force, "force"))
+    show(wave, style, picture)
+
+
+@click.command("resonances")
+@EXPONENT
+@click.option("--count", type=int, default=3, show_default=True, help="How many, from above.")
+@output
+def resonances_command(k: sp.Expr, count: int, style: str, picture: Path | None) -> None:
+    """The mass ratios m2/m1 < 1 at which a dimer has a solitary wave."""
+    found: Resonances = resonances(number(k, "k"), count)
+    show(found, style, picture)

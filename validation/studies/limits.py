@@ -22,8 +22,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from itertools import groupby
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import click
 import numpy as np
 import sympy as sp
 
@@ -31,6 +33,7 @@ from lwa import Dimer, TravelingWave, homogenize
 from validation.lattice.run import Run
 from validation.lattice.simulate import simulate
 from validation.pulses.pulse import Measured, derived, impulse, measure, speed
+from validation.report.command import output, progress, show
 from validation.report.figure import figure
 from validation.report.text import document, percent, table, text
 from validation.scenes.scene import Scene
@@ -388,3 +391,12 @@ def _(result: Limits) -> Figure:
     picture.axes[0].set_ylabel("|theory/lattice - 1|")
     picture.axes[0].legend(title="lines: leading order in k - 1")
     return picture
+
+
+@click.command("limits")
+@output
+def limits_command(style: str, picture: Path | None) -> int:
+    """Equal masses, m1 ≫ m2 and k → 1: widths, speed and amplitude, held to bounds."""
+    result = limits(progress)
+    show(result, style, picture)
+    return 0 if result.ok else 1

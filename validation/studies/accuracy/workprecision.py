@@ -8,12 +8,18 @@ from __future__ import annotations
 
 import math
 from itertools import groupby
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import click
+
+from validation.lattice.run import IntegrationError
+from validation.report.command import output, progress, show
 from validation.report.figure import figure
 from validation.report.result import Finding
 from validation.report.text import document, table, text
-from validation.studies.accuracy.integrators import WANTED, Accuracy, Row, costs
+from validation.studies.accuracy.integrators import NAMES, WANTED, Accuracy, Row, accuracy, costs
+from validation.studies.accuracy.peers import PeerError
 from validation.studies.accuracy.rungs import draw
 from validation.studies.accuracy.tasks import NUMBERS
 
@@ -176,3 +182,18 @@ def _(result: Accuracy) -> Figure:
         fontsize="small",
     )  # fmt: skip
     return picture
+
+
+@click.command("accuracy")
+@click.option(
+    "--task", "names", multiple=True, metavar="NAME",
+    help=f"Only this task, may be given again: {', '.join(NAMES)}.",
+)  # fmt: skip
+@output
+def accuracy_command(names: tuple[str, ...], style: str, picture: Path | None) -> None:
+    """Speed against error: integrators on fixed tasks, and theories against true waves."""
+    try:
+        result: Accuracy = accuracy(names, progress)
+    except (PeerError, IntegrationError) as error:
+        raise click.ClickException(str(error)) from None
+    show(result, style, picture)

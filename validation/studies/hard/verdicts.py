@@ -7,13 +7,17 @@ is.
 from __future__ import annotations
 
 import math
+from pathlib import Path
 from textwrap import fill
 from typing import TYPE_CHECKING, Any
 
+import click
+
+from validation.report.command import output, progress, show
 from validation.report.figure import figure
 from validation.report.result import Finding, Outcome, Panel, Statement
 from validation.report.text import document, table, text
-from validation.studies.hard.cases import Hard
+from validation.studies.hard.cases import CASES, Hard, hard
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -178,3 +182,16 @@ def draw(plot: Axes, panel: Panel) -> None:
     if "y" in panel.scale:
         plot.set_yscale("log")
     plot.legend(fontsize="small")
+
+
+@click.command("hard")
+@click.option(
+    "--case", "names", multiple=True, metavar="NAME",
+    help=f"Only this case, may be given again: {', '.join(CASES)}.",
+)  # fmt: skip
+@output
+def hard_command(names: tuple[str, ...], style: str, picture: Path | None) -> int:
+    """Extreme k and ω, lost contacts, long runs, float64 against 50 digits: what holds there."""
+    result: Hard = hard(names, progress)
+    show(result, style, picture)
+    return 0 if result.ok else 1

@@ -15,17 +15,21 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import click
 import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
 from lwa import Cell, Dimer, TravelingWave, homogenize
+from lwa.command.terminal import quantities, quantity
 from validation.lattice.effort import Progress, silent
 from validation.lattice.run import Run
 from validation.lattice.simulate import simulate
 from validation.pulses.pulse import Measured, MeasureError, Pulse, measure, speed
+from validation.report.command import number, output, run_progress, show
 from validation.report.figure import figure
 from validation.report.text import document, percent, table, text
 from validation.scenes.checks import SceneError, integer, items, real
@@ -316,3 +320,37 @@ def _(result: Paper) -> Figure:
     axes.set(xlabel="time (µs)", ylabel="force, mean of the bead's contacts (N)")
     axes.legend(loc="upper center", ncols=2, bbox_to_anchor=(0.5, 1.17))
     return picture
+
+
+@click.command("paper")
+@click.option(
+    "--velocity",
+    callback=quantity,
+    default="1.37",
+    show_default=True,
+    help="Of the striker, in m/s.",
+)
+@click.option(
+    "--beads", type=int, default=38, show_default=True, help="In the chain, the striker included."
+)
+@click.option(
+    "--sensors",
+    callback=quantities,
+    default="15,34",
+    show_default=True,
+    help="The two beads that are compared, counted from the striker, 1.",
+)
+@click.option("--gravity", is_flag=True, help="Let the chain stand upright, under its own weight.")
+@output
+def paper_command(
+    velocity: sp.Expr,
+    beads: int,
+    sensors: tuple[sp.Expr, ...],
+    gravity: bool,
+    style: str,
+    picture: Path | None,
+) -> None:
+    """The steel:PTFE chain of the paper: speed, peak force and FWHM."""  # fmt: skip
+    g = GRAVITY if gravity else 0.0
+    result = paper(number(velocity, "velocity"), beads, sensors, g, run_progress)
+    show(result, style, picture)

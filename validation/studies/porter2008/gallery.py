@@ -6,8 +6,12 @@ is.
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import click
+
+from validation.report.command import output, progress, show
 from validation.report.figure import figure
 from validation.report.text import document, table, text
 from validation.studies.porter2008.figures import (
@@ -18,6 +22,7 @@ from validation.studies.porter2008.figures import (
     Figures,
     Scaling,
     Widths,
+    figures,
 )
 
 __all__ = ["Figures"]
@@ -182,3 +187,11 @@ def _draw_widths(axes: Axes, widths: Widths) -> None:
             axes.axhline(1e6 * width, ls=style, color=f"C{i}", label=f"{line}, {closure}")
     axes.set(xlabel="bead", ylabel="FWHM (µs)")
     axes.legend(fontsize="small", loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=3)
+
+
+@click.command("figures")
+@output
+def figures_command(style: str, picture: Path | None) -> None:
+    """The paper's figures: force records, N:1 chains, force against speed, and the FWHM."""
+    result: Figures = figures(progress)
+    show(result, style, picture)

@@ -8,17 +8,22 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import groupby
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import click
 import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
+from lwa.exact import InputError
 from validation.pulses.pulse import Measured
-from validation.pulses.steady import QUANTITIES, Point
+from validation.pulses.steady import QUANTITIES, STRETCH, Point
+from validation.report.command import output, progress, show
 from validation.report.figure import figure
 from validation.report.text import document, table, text
-from validation.studies.sweep.sweep import CLOSURES, Sweep
+from validation.studies.sweep.executors import cluster, processes
+from validation.studies.sweep.sweep import CLOSURES, Sweep, SweepError, axis, sweep
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -223,3 +228,57 @@ def _borders(values: Sequence[sp.Rational]) -> tuple[Array, str]:
 
 def _floats(values: Sequence[sp.Rational]) -> Array:
     return np.array([float(value) for value in values])
+
+
+def _axis(context: click.Context, option: click.Parameter, text: str) -> tuple[sp.Rational, ...]:
+    return axis(text, option.opts[0].lstrip("-"))
+
+
+@click.command("sweep")
+@click.option(
+    "--k", "ks", callback=_axis, default="5/4:3:8", show_default=True,
+    help="Exponents of F = δ^k: values and ranges start:stop:count, separated by commas.",
+)  # fmt: skip
+@click.option(
+    "--omega", "omegas", callback=_axis, default="1/20:1:20", show_default=True,
+    help="Mass ratios m2/m1, likewise.",
+)  # fmt: skip
+@click.option(
+    "--stretch", type=int, default=STRETCH, show_default=True,
+    help="Cells from one place at which the pulse is measured to the next; more below k = 3/2.",
+)  # fmt: skip
+@click.option(
+    "--file", metavar="FILE",
+    help="Keep finished points (.jsonl); with the same file a sweep goes on where it was left.",
+)  # fmt: skip
+@click.option("--jobs", type=int, help="Processes; by default one for each processor.")
+@click.option(
+    "--cluster", "address", metavar="ADDRESS",
+    help="Compute on a Dask cluster instead, whose scheduler is there, such as tcp://host:8786.",
+)  # fmt: skip
+@output
+def sweep_command(
+    ks: tuple[sp.Rational, ...],
+    omegas: tuple[sp.Rational, ...],
+    stretch: int,
+    file: str | None,
+    jobs: int | None,
+    address: str | None,
+    style: str,
+    picture: Path | None,
+) -> None:
+    """Maps over k and m2/m1: width, speed and decay of a struck chain's pulse."""
+    if address is not None and jobs is not None:
+        raise InputError(f"jobs is {jobs}: a cluster has workers of its own")
+    executor = processes(jobs) if address is None else cluster(address)
+    try:
+        result: Sweep = sweep(
+            ks, omegas, stretch=stretch, executor=executor, file=file, progress=progress
+        )
+    except SweepError as error:
+        raise click.ClickException(str(error)) from None
+    except KeyboardInterrupt:
+        if file is not None and Path(file).exists():
+            click.echo(f"finished points are in {file}: the same command goes on", err=True)
+        raise
+    show(result, style, picture)

@@ -32,6 +32,7 @@ from validation.studies.sweep.sweep import SweepError, axis, sweep, theory
 from validation.waves.theory import Compacton
 
 R = sp.Rational
+PROCESSES = "validation.studies.sweep.atlas.processes"
 COMMAND = Path(sys.executable).with_name("lwa-validate")
 
 
@@ -395,7 +396,7 @@ def run(capsys, *arguments):
 @pytest.fixture
 def inline(monkeypatch):
     executor = Inline()
-    monkeypatch.setattr(cli, "processes", lambda jobs: executor)
+    monkeypatch.setattr(PROCESSES, lambda jobs: executor)
     return executor
 
 
@@ -453,7 +454,7 @@ def test_without_dask_the_extra_is_named(capsys, monkeypatch):
 
 def test_an_interrupted_command_says_where_the_points_are(capsys, fake, monkeypatch, tmp_path):
     file = tmp_path / "s.jsonl"
-    monkeypatch.setattr(cli, "processes", lambda jobs: Inline(stop=3))
+    monkeypatch.setattr(PROCESSES, lambda jobs: Inline(stop=3))
     status, out, err = run(capsys, "--file", str(file))
     assert (status, out) == (130, "")
     assert f"finished points are in {file}: the same command goes on" in err
@@ -463,7 +464,9 @@ def test_an_interrupted_command_says_where_the_points_are(capsys, fake, monkeypa
 
 
 def test_an_executor_that_fails_is_one_line(capsys, fake, monkeypatch):
-    monkeypatch.setattr(cli, "processes", lambda jobs: Inline(3, SweepError("gone")))
+    monkeypatch.setattr(
+        "validation.studies.sweep.atlas.processes", lambda jobs: Inline(3, SweepError("gone"))
+    )
     assert run(capsys) == (2, "", "lwa-validate: gone\n")
 
 
