@@ -88,7 +88,8 @@ class Terms(Mapping[Jet, sp.Expr]):
         return (self._ring, self._raw, self.power, self._divisor)
 
     def __setstate__(self, state: tuple[Any, ...]) -> None:
-        self.__init__(*state)  # type: ignore[misc]  # what was looked up stays behind
+        self._ring, self._raw, self.power, self._divisor = state
+        self._converted, self._written = {}, {}
 
     def __repr__(self) -> str:
         """The first terms, where they are short."""
