@@ -14,6 +14,7 @@ from lwa.cell import Cell, D, Dimer, k
 from lwa.closure.consistency import Closure
 from lwa.closure.motion import Solution
 from lwa.coefficients import Coefficients, Partition
+from lwa.compact import CompactWave
 from lwa.exact import InputError, Quantity
 from lwa.expansion.approximants import Resummed
 from lwa.expansion.expand import Expansion, expand
@@ -22,7 +23,7 @@ from lwa.expansion.series import EpsilonSeries
 from lwa.jets import JetAlgebra, Ladder, Monomial, Term
 from lwa.linear.dispersion import Dispersion
 from lwa.pde import PDE
-from lwa.physical import CompactWave, PhysicalWave
+from lwa.physical import PhysicalWave
 from lwa.quantities import NoSolitaryWave
 from lwa.spheres import hertz
 from lwa.spheres.hertz import Material, Sphere

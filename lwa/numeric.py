@@ -12,18 +12,16 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
 import sympy as sp
 from numpy.typing import ArrayLike, NDArray
 
+from lwa.compact import CompactWave
 from lwa.exact import InputError, shorten
 from lwa.quantities import NoSolitaryWave, strain_power
 from lwa.value import Value
-
-if TYPE_CHECKING:
-    from lwa.wave import TravelingWave
 
 Array = NDArray[np.float64]
 Extended = NDArray[np.longdouble]
@@ -48,7 +46,7 @@ class NumericWave(Value):
     array([2., 1.])
     """
 
-    wave: TravelingWave
+    wave: CompactWave
     missing: Literal["raise", "nan"] = "raise"
 
     def __post_init__(self) -> None:

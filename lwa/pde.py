@@ -88,8 +88,24 @@ class PDE(Value):
         known = self.acoustic and self.closure.order >= 4
         return {"G": self.G, "H": self.H, "I": self.I} if known else {}
 
+    def latex_rows(self, most: int | None = None) -> list[str]:
+        """The equation, the terms at D^{k+3} with the letters G, H, I; to D^{k+most} or all."""
+        letters = self.third_order
+        parts = [r"u_{x}^{k-1} u_{xx}" if self.acoustic else "-u^{k}"]
+        for n, found in self.coefficients.items():
+            if n == 3 and letters:
+                parts += [f"{letter} {found.latex(jet)}" for letter, jet in self.LETTERS.items()]
+            elif found and most is not None and n > most:
+                parts.append(r"\cdots")
+                break
+            elif found:
+                D = latex.power(self.cell.spacing, n - base_order(self.closure.ring))
+                parts.append(rf"{D} \Bigl({found.latex_total()}\Bigr)")
+        rows = [latex.row(letter, value) for letter, value in letters.items()]
+        return [rf"u_{{\tau\tau}} = {' + '.join(parts)}", *rows]
+
     def _repr_latex_(self) -> str:
-        return latex.display(latex.equation(self, 3))
+        return latex.display(self.latex_rows(3))
 
     def _at_third_order(self, letter: str) -> sp.Expr:
         if not self.acoustic:

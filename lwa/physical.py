@@ -13,29 +13,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Protocol, Self
+from typing import Any
 
 import sympy as sp
 
-from lwa.cell import RESERVED, Cell, unmistakable
+from lwa.cell import RESERVED, unmistakable
+from lwa.compact import CompactWave
 from lwa.exact import InputError, positive, shorten
 from lwa.value import Value
 
 EXTENTS = ("length", "time")
 """What a width is: the extent in space, or the time that it takes to pass."""
-
-
-class CompactWave(Protocol):
-    """What is asked of a `lwa.TravelingWave`."""
-
-    @property
-    def cell(self) -> Cell: ...
-    @property
-    def k(self) -> sp.Expr: ...
-    @property
-    def speed_factor(self) -> sp.Expr: ...
-    def fwhm(self, quantity: str) -> sp.Expr: ...
-    def at(self, **values: Any) -> Self: ...
 
 
 @dataclass(frozen=True)

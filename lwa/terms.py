@@ -131,8 +131,12 @@ class Terms(Mapping[Jet, sp.Expr]):
                 factors.append(_raised(f"u_{{{place}{mark}}}", str(e), "{{{}}}"))
         return " ".join(factors) or "1"
 
+    def latex_total(self) -> str:
+        """The sum of the terms."""
+        return latex.total((self[jet], self.latex(jet)) for jet in self)
+
     def _repr_latex_(self) -> str:
-        return latex.display(latex.terms(self))
+        return latex.display([self.latex_total()])
 
     def without(self, left_out: Callable[[Jet], bool]) -> Terms:
         """The terms but those of some jets."""

@@ -93,7 +93,7 @@ class Theory(Value):
         return (*self.pde.coefficients.values(), *slaved, *self.defect.values())
 
     def _repr_latex_(self) -> str:
-        return latex.display([*latex.ansatz(self.closure, 4), *latex.equation(self.pde, 3)])
+        return latex.display([*self.closure.latex_rows(4), *self.pde.latex_rows(3)])
 
     def at(self, **values: Any) -> Theory:
         """The theory for these values of the named symbols, and of ω = m2/m1 by ``omega``.

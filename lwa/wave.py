@@ -158,7 +158,13 @@ class TravelingWave(Value):
         return f"TravelingWave({self.cell!r}, k={self.k}, β={shorten(self.beta)})"
 
     def _repr_latex_(self) -> str:
-        return latex.display(latex.wave(self))
+        return latex.display(
+            [
+                r"v = u_{x} = B \cos^{2/(k-1)}(\beta \xi), \quad |\xi| \leq \frac{\pi}{2\beta}",
+                latex.row(r"\beta", self.beta),
+                latex.row("V_{s}", self.speed()),
+            ]
+        )
 
     @property
     def D(self) -> sp.Expr:

@@ -88,8 +88,21 @@ class Closure:
             f"closure={self.name!r}, branch={self.ring.branch!r}, field={self.field!r})"
         )
 
+    def latex_rows(self, most: int | None = None) -> list[str]:
+        """w = λ (u + b_1 D u_x + …), λ and the b_n; to D^most or all."""
+        if not self.ansatz:
+            return []
+        last = min(len(self.ansatz) - 1, most or len(self.ansatz))
+        D = self.ring.cell.spacing
+        parts = [f"b_{{{n}}} {latex.power(D, n)} {latex.derivative(n)}" for n in range(1, last + 1)]
+        if self.name == "full" or last < len(self.ansatz) - 1:
+            parts.append(r"\cdots")
+        first = rf"w = \lambda \left(u + {' + '.join(parts)}\right)"
+        values = [latex.row(f"b_{{{n}}}", self.b[n]) for n in range(1, last + 1)]
+        return [first, latex.row(r"\lambda", self.ratio), *values]
+
     def _repr_latex_(self) -> str:
-        return latex.display(latex.ansatz(self, 4) or [latex.row(r"\lambda", self.ratio)])
+        return latex.display(self.latex_rows(4) or [latex.row(r"\lambda", self.ratio)])
 
     @cached_property
     def b(self) -> dict[int, sp.Expr]:

@@ -18,17 +18,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING
 
 import sympy as sp
 
 from lwa.code.languages import LANGUAGES
 from lwa.code.writer import Function, Local
+from lwa.compact import CompactWave
 from lwa.exact import InputError, shorten
 from lwa.quantities import QUANTITIES, strain_power
-
-if TYPE_CHECKING:
-    from lwa.wave import TravelingWave
 
 _XI = sp.Dummy("xi", real=True)
 _B, _V = (sp.Dummy(name, positive=True) for name in ("B", "V_s"))
@@ -43,7 +40,7 @@ _TITLE = (
 )
 
 
-def wave_code(wave: TravelingWave, language: str) -> str:
+def wave_code(wave: CompactWave, language: str) -> str:
     """The source text of `wave_functions` in one of the `LANGUAGES`.
 
     Python has those of the paper's reduction, `reduction_functions`, besides.
@@ -60,7 +57,7 @@ def wave_code(wave: TravelingWave, language: str) -> str:
     return LANGUAGES[language](list(functions.values()), OWN).module(_TITLE)
 
 
-def wave_functions(wave: TravelingWave) -> dict[str, Function]:
+def wave_functions(wave: CompactWave) -> dict[str, Function]:
     """β, width, FWHM, speed, amplitude and profile, by name.
 
     Arguments stand in this order, each where it is used: xi; B or V_s; the symbols of k, of the
@@ -90,7 +87,7 @@ def wave_functions(wave: TravelingWave) -> dict[str, Function]:
     return {function.name: function for function in functions}
 
 
-def reduction_functions(wave: TravelingWave, amplitude: Function) -> dict[str, Function]:
+def reduction_functions(wave: CompactWave, amplitude: Function) -> dict[str, Function]:
     """p, a, μ, η, σ, s of `Reduction` as the paper writes them, and B, the amplitude again."""
     found, define = wave.reduction(V=_V), _functions_of(wave)
     doc = "{} of the reduction v = z^p, z'' = mu z^eta - sigma z"
@@ -102,7 +99,7 @@ def reduction_functions(wave: TravelingWave, amplitude: Function) -> dict[str, F
     return {function.name: function for function in functions}
 
 
-def _functions_of(wave: TravelingWave) -> Callable[..., Function]:
+def _functions_of(wave: CompactWave) -> Callable[..., Function]:
     cell = wave.cell
     parts = (wave.k, *cell.masses, *cell.stiffnesses, cell.spacing, wave.dispersion)
     return partial(function_of, in_order(*parts))

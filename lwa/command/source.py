@@ -15,7 +15,7 @@ from lwa.wave import TravelingWave
 
 def theory_latex(theory: Theory) -> str:
     """The ansatz and the wave equation, all orders of it, as LaTeX."""
-    return latex.align([*latex.ansatz(theory.closure), *latex.equation(theory.pde)])
+    return latex.align([*theory.closure.latex_rows(), *theory.pde.latex_rows()])
 
 
 def wave_latex(theory: Theory, wave: TravelingWave) -> str:
