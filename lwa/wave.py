@@ -32,6 +32,7 @@ from lwa.jets import JetAlgebra, Monomial
 from lwa.linear.dispersion import Dispersion
 from lwa.physical import PhysicalWave
 from lwa.quantities import NoSolitaryWave, strain_power
+from lwa.rational import factored
 from lwa.value import Value
 
 if TYPE_CHECKING:
@@ -174,15 +175,15 @@ class TravelingWave(Value):
     @cached_property
     def _shares(self) -> tuple[sp.Expr, sp.Expr]:
         """G/I and H/I; in the canonical field both depend on k alone."""
-        return sp.cancel(self.G / self.I), sp.cancel(self.H / self.I)
+        return factored(self.G / self.I), factored(self.H / self.I)
 
     @cached_property
     def dispersion(self) -> sp.Expr:
         """(G + H + I) / D²."""
         g, h = self._shares
         if (g + h).free_symbols <= self.k.free_symbols:  # I need not be taken apart
-            return self.I / self.D**2 * sp.factor(1 + g + h)
-        return sp.factor(sp.cancel((self.G + self.H + self.I) / self.D**2))
+            return self.I / self.D**2 * factored(1 + g + h)
+        return factored((self.G + self.H + self.I) / self.D**2)
 
     @property
     def m(self) -> sp.Expr:
@@ -219,7 +220,7 @@ class TravelingWave(Value):
         """V²/B^{k-1} = 1 - β² [(H + 3I) m - 2I]."""
         # β² and m written out: (k-1) cancels, and the result is rational in k and the masses.
         k, (g, h) = self.k, self._shares
-        return sp.factor(sp.cancel(1 - (k - 1) * (h + 4 - k) / (2 * (1 + g + h))))
+        return factored(1 - (k - 1) * (h + 4 - k) / (2 * (1 + g + h)))
 
     def speed(self, B: Any = None) -> sp.Expr:
         """V = dx/dτ of the wave whose strain peaks at B (a symbol B when not given)."""
@@ -263,8 +264,8 @@ class TravelingWave(Value):
         """Both p for which v = z^p removes z_ξ³, the paper's first (2/(k+1) at equal masses)."""
         p, equation = self._equation
         quadratic = sp.Poly(sp.cancel(equation["cubic"] / p), p).all_coeffs()
-        A, B, C = (sp.factor(self._with_shares(c)) for c in quadratic)
-        root = _root(sp.factor(B**2 - 4 * A * C)).replace(sp.Abs, lambda x: x)
+        A, B, C = (factored(self._with_shares(c)) for c in quadratic)
+        root = _root(factored(B**2 - 4 * A * C)).replace(sp.Abs, lambda x: x)
         return (sp.together((-B - root) / (2 * A)), sp.together((-B + root) / (2 * A)))
 
     @cached_property
@@ -287,8 +288,8 @@ class TravelingWave(Value):
             raise InputError(f"root is {shorten(root)}: 0 or 1 is wanted")
         p, equation = self._equation
         exponent = sp.Poly(sp.cancel(equation["product"] / equation["third"]) + 1, p)  # e
-        slope, constant = (sp.factor(self._with_shares(exponent.nth(n))) for n in (1, 0))
-        a = sp.factor(slope - self.k) * self.roots[root] + constant
+        slope, constant = (factored(self._with_shares(exponent.nth(n))) for n in (1, 0))
+        a = factored(slope - self.k) * self.roots[root] + constant
         return Reduction(k=self.k, I=self.I, p=self.roots[root], a=a, V=positive(V, "V"))
 
     def at(self, **values: Any) -> TravelingWave:

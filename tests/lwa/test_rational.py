@@ -1,0 +1,40 @@
+"""Rational expressions in lowest terms, against SymPy's own polynomials."""
+
+import sympy as sp
+from hypothesis import assume, given
+from hypothesis import strategies as st
+
+from lwa.rational import factored
+
+x, y = sp.symbols("x y", positive=True)
+leaves = st.sampled_from([x, y, sp.Rational(2, 3), sp.Integer(-3), sp.sqrt(2), x**y, sp.sin(x)])
+expressions = st.recursive(
+    leaves,
+    lambda parts: st.one_of(
+        st.builds(sp.Add, parts, parts),
+        st.builds(sp.Mul, parts, parts),
+        st.builds(sp.Pow, parts, st.integers(-2, 3)),
+    ),
+    max_leaves=6,
+)
+
+
+@given(expressions)
+def test_it_is_the_same_in_lowest_terms(value):
+    assume(not value.has(sp.zoo, sp.nan))
+    found = factored(value)
+    plain = {sp.sqrt(2): sp.Symbol("r"), x**y: sp.Symbol("p"), sp.sin(x): sp.Symbol("s")}
+    difference = sp.cancel((found - value).subs(plain))
+    assert difference == 0
+    numerator, denominator = sp.fraction(sp.cancel(value.subs(plain)))
+    above, below = sp.fraction(found.subs(plain))
+    gens = (*plain.values(), x, y)
+    for one, two in ((numerator, above), (denominator, below)):
+        assert sp.Poly(one, *gens).total_degree() == sp.Poly(two, *gens).total_degree()
+
+
+def test_what_cancels_is_gone():
+    assert factored((x**2 - y**2) / (x - y)) == x + y
+    assert factored(x / (x + y) + y / (x + y)) == 1
+    assert factored(x - x) == 0
+    assert factored((x + y) ** 2 - 4 * x * y) == (x - y) ** 2
