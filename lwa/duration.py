@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Iterable
+from importlib import import_module
 
 LONG = 30.0
 """Seconds from which it is said that something takes long, with a progress bar on a terminal."""
@@ -35,6 +36,8 @@ def _round(number: float) -> str:
 def announce(what: str, seconds: float) -> bool:
     """Say on the standard error what takes how long, where it takes long; whether it does."""
     if seconds > LONG:
+        # before the line: Python may lose a Ctrl-C that meets it in an import
+        import_module("tqdm")
         print(f"{what}: {words(seconds)}", file=sys.stderr, flush=True)
     return seconds > LONG
 

@@ -292,11 +292,16 @@ def test_k_of_thousands_of_digits_is_refused() -> None:
 def test_a_long_command_says_so_and_stops_at_an_interrupt() -> None:
     command = ["expansion", "--masses", "1,1/50", "--order", "100"]
     code = f"from lwa.command.cli import main; main({command})"
-    with subprocess.Popen([sys.executable, "-c", code], stderr=subprocess.PIPE, text=True) as run:
+    with subprocess.Popen(
+        [sys.executable, "-c", code], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
+    ) as run:
         assert run.stderr is not None
         first = run.stderr.readline()
         run.send_signal(signal.SIGINT)
-        rest = run.stderr.read()
+        try:
+            _, rest = run.communicate(timeout=60)  # of the minutes that it would take
+        finally:
+            run.kill()
     assert re.fullmatch(r"the expansion to ε\^100: about .* minutes\n", first)
     assert rest.strip() == "lwa: interrupted"
     assert run.returncode == 130
