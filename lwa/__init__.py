@@ -25,11 +25,12 @@ from lwa.linear.dispersion import Dispersion
 from lwa.pde import PDE
 from lwa.physical import PhysicalWave
 from lwa.quantities import NoSolitaryWave
+from lwa.reduction import Reduction
 from lwa.spheres import hertz
 from lwa.spheres.hertz import Material, Sphere
 from lwa.terms import Jet, Powers, Terms
 from lwa.theory import Theory, homogenize
-from lwa.wave import Reduction, TravelingWave, canonical_wave
+from lwa.wave import TravelingWave, canonical_wave
 
 if TYPE_CHECKING:
     from lwa.numeric import Array, NumericWave

@@ -32,7 +32,7 @@ _JULIA = re.findall(
 )
 
 
-class Python(Writer, PythonCodePrinter):  # type: ignore[misc]
+class Python(Writer, PythonCodePrinter):  # type: ignore[misc]  # untyped in SymPy
     """Python and its `math`, for numbers."""
 
     gap = 2
@@ -53,7 +53,7 @@ class Python(Writer, PythonCodePrinter):  # type: ignore[misc]
         return []
 
 
-class NumPy(Python, NumPyPrinter):  # type: ignore[misc]
+class NumPy(Python, NumPyPrinter):  # type: ignore[misc]  # untyped in SymPy
     """NumPy, for arrays that broadcast."""
 
     reserved = Python.reserved - {"math"} | {"np", "map"}
@@ -72,7 +72,7 @@ class NumPy(Python, NumPyPrinter):  # type: ignore[misc]
         return super().text(value).replace("numpy.", "np.")
 
 
-class C(Writer, C99CodePrinter):  # type: ignore[misc]
+class C(Writer, C99CodePrinter):  # type: ignore[misc]  # untyped in SymPy
     """C99 and its <math.h>."""
 
     comment = "//"
@@ -101,7 +101,7 @@ class C(Writer, C99CodePrinter):  # type: ignore[misc]
         return repr(math.pi)
 
 
-class Fortran(Writer, FCodePrinter):  # type: ignore[misc]
+class Fortran(Writer, FCodePrinter):  # type: ignore[misc]  # untyped in SymPy
     """Fortran 2008, free form, and its intrinsic functions."""
 
     comment = "!"
@@ -153,7 +153,7 @@ class Fortran(Writer, FCodePrinter):  # type: ignore[misc]
     _print_Function = CodePrinter._print_Function  # SymPy's own rounds constant arguments
 
 
-class Julia(Writer, JuliaCodePrinter):  # type: ignore[misc]
+class Julia(Writer, JuliaCodePrinter):  # type: ignore[misc]  # untyped in SymPy
     """Julia, for numbers; f.(x, …) broadcasts."""
 
     reserved = frozenset({*_MATHEMATICS, *_JULIA})

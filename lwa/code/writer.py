@@ -62,7 +62,7 @@ class Writer:
 
     def __init__(self, functions: Sequence[Function], own: Sequence[sp.Symbol] = ()) -> None:
         """A writer of these functions; the names of the symbols ``own`` come before others."""
-        super().__init__(dict(self.settings))  # type: ignore[call-arg]
+        super().__init__(dict(self.settings))  # type: ignore[call-arg]  # SymPy's
         self.functions = functions
         self.names: dict[sp.Symbol, str] = {symbol: symbol.name for symbol in own}
         self.renamed: dict[str, str] = {}
@@ -93,7 +93,7 @@ class Writer:
 
     def text(self, value: sp.Basic) -> str:
         """A value on one line."""
-        return str(self.doprint(value))  # type: ignore[attr-defined]
+        return str(self.doprint(value))  # type: ignore[attr-defined]  # SymPy's
 
     def arguments(self, function: Function, kind: str = "") -> str:
         """The names of a function's arguments, each behind its kind."""
@@ -134,10 +134,10 @@ class Writer:
     def parenthesize(self, item: sp.Basic, level: int, strict: bool = False) -> str:
         """SymPy's, but for fractions that are one literal."""
         one = item.is_Rational and item.p > 0 and "/" not in self.text(item)
-        return str(super().parenthesize(item, 0 if one else level, strict))  # type: ignore[misc]
+        return str(super().parenthesize(item, 0 if one else level, strict))  # type: ignore[misc]  # SymPy's
 
     def _print_AppliedUndef(self, call: sp.Expr) -> str:
-        return f"{call.func.__name__}({', '.join(map(self._print, call.args))})"  # type: ignore[attr-defined]
+        return f"{call.func.__name__}({', '.join(map(self._print, call.args))})"  # type: ignore[attr-defined]  # SymPy's
 
     def _print_Rational(self, number: sp.Rational) -> str:
         p, q = int(number.p), int(number.q)

@@ -16,11 +16,6 @@ from lwa.theory import Theory
 from lwa.wave import TravelingWave
 
 
-def third_order(theory: Theory) -> dict[str, sp.Expr]:
-    """G, H and I, or {} where the theory does not reach them (order < 4, or optical)."""
-    return theory.pde.third_order
-
-
 def wave_values(wave: TravelingWave) -> dict[str, sp.Expr]:
     """The wave's closed forms by the names of the paper, for its root p and the symbols V_s, B."""
     reduction = wave.reduction()
@@ -56,7 +51,7 @@ def theory_json(theory: Theory) -> dict[str, Any]:
     ``terms`` are the right-hand side of u_ττ after its leading term. ``slaved`` (full closure) are
     the terms W_n of w_i = u + u_x Σ D^n W_n by particle, 1 being the first, in the same form.
     """
-    found = third_order(theory)
+    found = theory.pde.third_order
     return {
         **_chain_json(theory),
         "lambda": str(theory.amplitude_ratio),

@@ -7,7 +7,7 @@ import sympy as sp
 from lwa import latex
 from lwa.code.functions import function_of, in_order
 from lwa.code.languages import LANGUAGES
-from lwa.command.document import third_order, wave_values
+from lwa.command.document import wave_values
 from lwa.quantities import QUANTITIES
 from lwa.theory import Theory
 from lwa.wave import TravelingWave
@@ -31,7 +31,7 @@ def theory_python(theory: Theory) -> str:
     cell = theory.cell
     order = in_order(theory.k, *cell.masses, *cell.stiffnesses, cell.spacing)
     table = {n: {jet: found[jet] for jet in found} for n, found in theory.pde.coefficients.items()}
-    values = {f"b{n}": b for n, b in theory.ansatz.items()} | third_order(theory)
+    values = {f"b{n}": b for n, b in theory.ansatz.items()} | theory.pde.third_order
     functions = [
         function_of(order, name, f"The coefficient {name}", v) for name, v in values.items()
     ]

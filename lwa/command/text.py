@@ -8,7 +8,7 @@ from string import ascii_lowercase
 
 import sympy as sp
 
-from lwa.command.document import in_units, third_order, wave_values
+from lwa.command.document import in_units, wave_values
 from lwa.expansion.approximants import Resummed
 from lwa.expansion.expand import Expansion
 from lwa.expansion.series import EpsilonSeries
@@ -69,7 +69,7 @@ def _is_linear(jet: Jet) -> bool:
 
 def _equation_text(theory: Theory) -> list[str]:
     acoustic = theory.closure.ring.branch == "acoustic"
-    found = third_order(theory)
+    found = theory.pde.third_order
     more = " + …"
     if found:
         lines = [

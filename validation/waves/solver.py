@@ -208,11 +208,3 @@ def _dimer(
         return follow(_dimer(pair, STEEP, half_period, None), pair, k, half_period, points)
     except NoWave as other:
         raise NoWave(f"{failure}; {other}") from None
-
-
-def free_wave(masses: tuple[float, float], k: float) -> ExactWave | None:
-    """The solitary wave of a special ratio, near the theory's wave of these masses."""
-    try:
-        return solve(masses, k, free=True)
-    except NoWave:
-        return None
