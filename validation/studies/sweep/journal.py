@@ -75,12 +75,14 @@ class Journal:
 
     def add(self, point: Point) -> None:
         """Keep a finished point. Raises `lwa.InputError` when the file cannot take it."""
+        key = point.k, point.omega
+        self.points[key] = point  # first, as a Ctrl-C is heard when the line is on the disk
         if self.file is not None:
             try:
                 self._append(_line(point))
             except OSError as error:
+                del self.points[key]
                 raise InputError(f"{self.file} is not written: {reason(error)}") from None
-        self.points[point.k, point.omega] = point
 
     def close(self) -> None:
         """Close the file."""

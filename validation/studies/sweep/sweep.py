@@ -222,7 +222,9 @@ def _compute(
                     del underway[future]
                     next(ticks, None)
         except BaseException as error:
-            for future in underway:
+            for future, key in underway.items():
+                if key in journal.points:  # it was being kept when Ctrl-C came
+                    continue
                 if not future.cancel() and future.done() and future.exception() is None:
                     journal.add(future.result())
             if isinstance(error, BrokenExecutor | CancelledError):

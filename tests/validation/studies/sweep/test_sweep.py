@@ -523,6 +523,29 @@ def test_a_process_that_is_stopped_goes_on_and_leaves_no_worker(tmp_path, blow):
     assert content.count(b"\n") == 31
 
 
+@pytest.mark.parametrize("place", ["fsync", "add"])
+def test_an_interrupt_while_a_point_is_kept_does_not_keep_it_twice(
+    fake, monkeypatch, tmp_path, place
+):
+    """Ctrl-C is heard as soon as the disk has answered, or when the point is in the file."""
+    file = tmp_path / "s.jsonl"
+    owner = os if place == "fsync" else module.Journal
+    done, calls = getattr(owner, place), []
+
+    def interrupted(*arguments):
+        done(*arguments)
+        calls.append(arguments)
+        if len(calls) == 3:
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(owner, place, interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        sweep(KS, OMEGAS, executor=Inline(), file=file)
+    sweep(KS, OMEGAS, executor=Inline(), file=file)
+    lines = file.read_text().splitlines()
+    assert len(lines) == len(set(lines)) == 1 + len(GRID)
+
+
 def test_workers_that_are_gone_when_more_is_submitted_are_told(fake, tmp_path):
     file = tmp_path / "s.jsonl"
     with pytest.raises(SweepError, match="the workers are gone before the sweep is done"):
