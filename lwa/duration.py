@@ -5,12 +5,14 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterable
 from importlib import import_module
+from typing import TypeVar
 
 LONG = 30.0
 """Seconds from which it is said that something takes long, with a progress bar on a terminal."""
 
-Progress = Callable[[Iterable[int]], Iterable[int]]
-"""What the orders of a computation are run through on their way, such as `tqdm.tqdm`."""
+T = TypeVar("T")
+Progress = Callable[[Iterable[T]], Iterable[T]]
+"""What the orders or cases of a computation are run through on their way, as `tqdm.tqdm`."""
 
 _UNITS = (("years", 3.156e7), ("days", 86400.0), ("hours", 3600.0), ("minutes", 60.0))
 

@@ -18,7 +18,8 @@ if TYPE_CHECKING:
     from validation.pulses.pulse import Pulse, measure
     from validation.scenes.materials import Bead, Material
     from validation.scenes.scene import Scene, SceneError
-    from validation.waves.solver import ExactWave, exact_wave
+    from validation.waves.profile import ExactWave
+    from validation.waves.solver import exact_wave
 
 __all__ = [
     "Bead",
@@ -39,7 +40,8 @@ _PLACES = {
     "pulses.pulse": ("Pulse", "measure"),
     "scenes.materials": ("Bead", "Material"),
     "scenes.scene": ("Scene", "SceneError"),
-    "waves.solver": ("ExactWave", "exact_wave"),
+    "waves.profile": ("ExactWave",),
+    "waves.solver": ("exact_wave",),
 }
 """Module → what stands here of it."""
 

@@ -1,56 +1,49 @@
 """The command `lwa-validate`: the lattice, measured against the theory.
 
-A study is loaded when it is called: `COMMANDS` says of each where it stands and what its help says.
+Every `validation.report.command.study` in `validation.studies` is a command of it. They are found
+by reading the modules' text, and one is loaded only when it is called: help wants no SciPy.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import ast
+from collections.abc import Iterator, Sequence
+from functools import cache
 from importlib import import_module
+from pathlib import Path
 
 import click
 
 from lwa.command.terminal import run
 
-COMMANDS = {
-    "limits": (
-        "limits",
-        "Equal masses, m1 ≫ m2 and k → 1: widths, speed and amplitude, held to bounds.",
-    ),
-    "paper": (
-        "porter2008.experiment",
-        "The steel:PTFE chain of the paper: speed, peak force and FWHM.",
-    ),
-    "figures": (
-        "porter2008.gallery",
-        "The paper's figures: force records, N:1 chains, force against speed, and the FWHM.",
-    ),
-    "exact": (
-        "exact",
-        "An exact traveling wave of the lattice: speed, widths, and the tail if it has one.",
-    ),
-    "resonances": (
-        "exact",
-        "The mass ratios m2/m1 < 1 at which a dimer has a solitary wave.",
-    ),
-    "hard": (
-        "hard.verdicts",
-        "Extreme k and ω, lost contacts, long runs, float64 against 50 digits: what holds there.",
-    ),
-    "accuracy": (
-        "accuracy.workprecision",
-        "Speed against error: integrators on fixed tasks, and theories against true waves.",
-    ),
-    "run": (
-        "run",
-        "A scene from a file, TOML or JSON: arrival, peak force, FWHM and speed at its sensors.",
-    ),
-    "sweep": (
-        "sweep.atlas",
-        "Maps over k and m2/m1: width, speed and decay of a struck chain's pulse.",
-    ),
-}
-"""Name → the module in `validation.studies` that has NAME_command, and its help in one line."""
+_STUDIES = Path(__file__).parent / "studies"
+
+
+@cache
+def studies() -> dict[str, tuple[str, str, str]]:
+    """Command → its module, its function and its help in one line.
+
+    >>> studies()["limits"][:2]
+    ('validation.studies.limits', 'limits')
+    """
+    found = (entry for file in sorted(_STUDIES.rglob("*.py")) for entry in _in(file))
+    return {name: (module, function, says) for name, module, function, says in found}
+
+
+def _in(file: Path) -> Iterator[tuple[str, str, str, str]]:
+    text = file.read_text(encoding="utf-8")
+    if "\n@study(" not in text:
+        return
+    module = ".".join(("validation", "studies", *file.relative_to(_STUDIES).with_suffix("").parts))
+    for node in ast.parse(text).body:
+        if not isinstance(node, ast.FunctionDef):
+            continue
+        for mark in node.decorator_list:
+            match mark:
+                case ast.Call(func=ast.Name(id="study"), keywords=words):
+                    names = [ast.literal_eval(word.value) for word in words if word.arg == "name"]
+                    says = (ast.get_docstring(node) or "").partition("\n\n")[0]
+                    yield (names or [node.name])[0], module, node.name, says
 
 
 class Studies(click.Group):
@@ -58,23 +51,21 @@ class Studies(click.Group):
 
     def list_commands(self, context: click.Context) -> list[str]:
         """Their names."""
-        return list(COMMANDS)
+        return sorted(studies())
 
     def get_command(self, context: click.Context, name: str) -> click.Command | None:
         """One of them."""
-        if name not in COMMANDS:
+        if name not in studies():
             return None
-        module, _ = COMMANDS[name]
+        module, function, _ = studies()[name]
         # here, for a quick start: a study loads SciPy and what else it needs
-        found: click.Command = getattr(
-            import_module(f"validation.studies.{module}"), f"{name}_command"
-        )
+        found: click.Command = getattr(import_module(module), function).command
         return found
 
     def format_commands(self, context: click.Context, formatter: click.HelpFormatter) -> None:
         """The list of them, without loading any."""
         with formatter.section("Commands"):
-            formatter.write_dl([(name, says) for name, (_, says) in COMMANDS.items()])
+            formatter.write_dl([(name, says) for name, (_, _, says) in sorted(studies().items())])
 
 
 @click.group(cls=Studies)

@@ -19,7 +19,10 @@ from typing import ClassVar
 from docutils import nodes
 from docutils.parsers.rst import directives
 from sphinx.application import Sphinx
+from sphinx.ext.autodoc import FunctionDocumenter
 from sphinx.util.docutils import SphinxDirective
+
+from validation.report.command import Study
 
 _CODE = re.compile(r"``(.+?)``|`(.+?)`")
 _ENTRY = re.compile(r"([^\W\d][^:()]*?) : (\S.*)")
@@ -108,6 +111,19 @@ class Modules(SphinxDirective):
         return self.parse_text_to_nodes("\n".join(lines), allow_section_headings=True)
 
 
+class StudyDocumenter(FunctionDocumenter):
+    """A study is documented as the function that it is."""
+
+    objtype = "study"
+    directivetype = "function"
+    priority = FunctionDocumenter.priority + 10
+
+    @classmethod
+    def can_document_member(cls, member: object, name: str, own: bool, parent: object) -> bool:
+        """Whether it is one."""
+        return isinstance(member, Study)
+
+
 def _process(app: Sphinx, what: str, name: str, obj: object, options: object, lines: list) -> None:
     lines[:] = converted(lines)
 
@@ -115,5 +131,6 @@ def _process(app: Sphinx, what: str, name: str, obj: object, options: object, li
 def setup(app: Sphinx) -> dict[str, bool]:
     """Sphinx's hook."""
     app.add_directive("modules", Modules)
+    app.add_autodocumenter(StudyDocumenter)
     app.connect("autodoc-process-docstring", _process)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

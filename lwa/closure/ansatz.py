@@ -19,7 +19,7 @@ from lwa.exact import InputError
 from lwa.jets import JetAlgebra, Ladder, Power, exact_quotient
 
 
-def linear(ring: Coefficients, order: int, progress: Progress = iter) -> Solution:
+def linear(ring: Coefficients, order: int, progress: Progress[int] = iter) -> Solution:
     """The paper's closure, to D^order in the ansatz, on the branch of ``ring``.
 
     Raises `lwa.InputError` for cells of more than two particles, which the ansatz does not cover.
@@ -41,7 +41,7 @@ def _applied(b: list[fmpq_mpoly], f: Ladder, n: int) -> fmpq_mpoly:
     return sum((b[j] * f.dx(n - j, j) for j in range(1, min(n, len(f)))), f.algebra.zero)
 
 
-def _acoustic(ring: Coefficients, order: int, progress: Progress) -> Solution:
+def _acoustic(ring: Coefficients, order: int, progress: Progress[int]) -> Solution:
     algebra = JetAlgebra(ring.names, max(order - 1, 1))
     k = ring.exponent(algebra.context)
     mu = ring.masses.elements(algebra.context)
@@ -68,7 +68,7 @@ def _acoustic(ring: Coefficients, order: int, progress: Progress) -> Solution:
     return _solution(ring, algebra, b[: order + 1], first, second)
 
 
-def _optical(ring: Coefficients, order: int, progress: Progress) -> Solution:
+def _optical(ring: Coefficients, order: int, progress: Progress[int]) -> Solution:
     # Contacts here also pull: the branch belongs to the odd extension of δ^k (or to odd k).
     # w - u = -(u/μ_1)(1 + Y) and u(x + 2D) - w = (u/μ_1)(1 + Z); E = 1 + kε.
     algebra = JetAlgebra(ring.names, max(order, 1))
@@ -93,7 +93,7 @@ def _optical(ring: Coefficients, order: int, progress: Progress) -> Solution:
     return _solution(ring, algebra, b, first, second)
 
 
-def _uniform(ring: Coefficients, order: int, progress: Progress) -> Solution:
+def _uniform(ring: Coefficients, order: int, progress: Progress[int]) -> Solution:
     # One particle per cell: nothing is slaved, and the one equation is the wave equation.
     algebra = JetAlgebra(ring.names, max(order - 1, 1))
     k = ring.exponent(algebra.context)

@@ -155,7 +155,7 @@ def amplitude_ratios(cell: Cell) -> dict[str, sp.Expr]:
 
 
 def solve(
-    ring: Coefficients, order: int, closure: str, field: str, progress: Progress = iter
+    ring: Coefficients, order: int, closure: str, field: str, progress: Progress[int] = iter
 ) -> Closure:
     """The consistency condition by the named closure, for the named field.
 
@@ -168,7 +168,7 @@ def solve(
 
 
 def _solution(
-    ring: Coefficients, order: int, closure: str, field: str, progress: Progress
+    ring: Coefficients, order: int, closure: str, field: str, progress: Progress[int]
 ) -> Solution:
     if closure == "linear" and field != "first":
         raise InputError(

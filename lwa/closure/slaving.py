@@ -19,7 +19,7 @@ from lwa.jets import JetAlgebra, Ladder, Power
 
 
 def full(
-    ring: Coefficients, order: int, field: str = "first", progress: Progress = iter
+    ring: Coefficients, order: int, field: str = "first", progress: Progress[int] = iter
 ) -> Solution:
     """The closure that satisfies all equations of motion, to D^order in the slaved fields.
 

@@ -48,7 +48,7 @@ class Effort:
             terms=8.0 * P * order**2 * monomials / (ratios + 2),
         )
 
-    def progress(self, what: str) -> Progress:
+    def progress(self, what: str) -> Progress[int]:
         """Say what takes long, where it does, and show how far it is."""
         return shown if announce(what, self.seconds) else iter
 

@@ -37,7 +37,7 @@ class Observables:
     order : of ε.
     """
 
-    def __init__(self, ring: Coefficients, order: int, progress: Progress = iter) -> None:
+    def __init__(self, ring: Coefficients, order: int, progress: Progress[int] = iter) -> None:
         self.ring, self.order = ring, order
         self.wave = Recursion(ring, 2 * order, progress)
 

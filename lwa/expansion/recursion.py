@@ -86,7 +86,7 @@ class Fields:
 class Recursion:
     """The `fields` of a wave, order by order in t, over the ring Q[μ, c], Z its first generator."""
 
-    def __init__(self, ring: Coefficients, order: int, progress: Progress = iter) -> None:
+    def __init__(self, ring: Coefficients, order: int, progress: Progress[int] = iter) -> None:
         self.context = fmpq_mpoly_ctx.get(("Z", *ring.names), Ordering.lex)
         self.Z, self.zero = self.context.gen(0), self.context.constant(0)
         self.mu = ring.masses.elements(self.context)
@@ -104,7 +104,7 @@ class Recursion:
         """The term at t^{n+1} of ∂ (e^{-Z²/4} S t^n)."""
         return self.I * (S.derivative(0) - self._half * S) if S else S
 
-    def _solve(self, order: int, progress: Progress) -> None:
+    def _solve(self, order: int, progress: Progress[int]) -> None:
         """γ_2 closes the order at which the Gaussian does; then q_n and γ_{n+2} for n = 1, 2, …"""
         fields = self.fields
         for n in range(3):

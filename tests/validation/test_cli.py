@@ -15,29 +15,25 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
+from tests.commands import ended
 from validation import cli
 from validation.lattice.run import IntegrationError
 from validation.report import command
-from validation.report.text import document, text
 from validation.studies.limits import Limits
 
-LIMITS, RECORD = "validation.studies.limits.limits", "validation.studies.run.record"
+LIMITS, RECORD = "validation.studies.limits.limits.function", "validation.studies.run.record"
 COMMAND = Path(sys.executable).with_name("lwa-validate")
 
 
 def run(capsys, *arguments):
-    """Exit status, standard output and standard error of one call."""
-    with pytest.raises(SystemExit) as ended:
-        cli.main(arguments)
-    captured = capsys.readouterr()
-    return ended.value.code, captured.out, captured.err
+    return ended(capsys, cli.main, *arguments)
 
 
 def test_paper_text(capsys):
     status, out, err = run(capsys, "paper")
     assert (status, err) == (0, "")
     assert out.startswith("38 beads, steel (the striker, 1.37 m/s)")
-    assert "no gravity; sensors in beads 15 and 34" in out
+    assert "no gravity; sensors in beads 15 and 34" in " ".join(out.split())
 
 
 def test_paper_options(capsys, tmp_path):
@@ -56,9 +52,11 @@ def test_paper_options(capsys, tmp_path):
 def test_limits(capsys, monkeypatch, limits_result):
     monkeypatch.setattr(LIMITS, lambda progress: limits_result)
     status, out, err = run(capsys, "limits")
-    assert (status, out, err) == (0, text(limits_result) + "\n", "")
+    assert (status, out, err) == (0, limits_result.report().text() + "\n", "")
     status, out, err = run(capsys, "limits", "--format", "json")
-    assert (status, json.loads(out), err) == (0, document(limits_result), "")
+    assert (status, json.loads(out), err) == (0, limits_result.report().document(), "")
+    status, out, err = run(capsys, "limits", "--format", "csv")
+    assert (status, out, err) == (0, limits_result.report().csv(), "")
 
 
 def test_limits_that_fail_are_printed_and_end_with_1(capsys, monkeypatch, limits_result):
@@ -190,8 +188,10 @@ def test_an_output_that_cannot_be_is_refused_before_the_work(
     os.mkfifo(f"pipe{suffix}")
     before = sorted(tmp_path.iterdir())
     monkeypatch.setattr(RECORD, None)
-    monkeypatch.setattr("validation.studies.porter2008.experiment.paper", None)
-    monkeypatch.setattr("validation.studies.sweep.sweep._compute", None)
+    monkeypatch.setattr(
+        "validation.studies.porter2008.experiment.paper.function", lambda: pytest.fail("computed")
+    )
+    monkeypatch.setattr("validation.studies.sweep.sweep.compute", None)
     status, out, err = run(capsys, *command, option, f"{name}{suffix}")
     assert (status, out, err.count("\n")) == (2, "", 1)
     assert err.startswith(f"lwa-validate: {option[2:]} is {name[:50]}")
@@ -281,9 +281,7 @@ BAD = [
 
 @pytest.mark.parametrize("arguments", BAD, ids=" ".join)
 def test_bad_input_is_one_line_and_status_2(capsys, monkeypatch, arguments):
-    monkeypatch.setattr(
-        "validation.studies.limits.limits", lambda progress: pytest.fail("computed first")
-    )
+    monkeypatch.setattr(LIMITS, lambda progress: pytest.fail("computed first"))
     status, out, err = run(capsys, *arguments)
     assert (status, out) == (2, "")
     assert err.startswith("lwa-validate: ")
@@ -416,7 +414,7 @@ def test_runs_beyond_reason_are_one_line(
 ):
     monkeypatch.chdir(scene_file.parent)
     scene_file.write_text(content)
-    monkeypatch.setattr("validation.lattice.simulate.integrate", None)
+    monkeypatch.setattr("validation.lattice.simulate.scipy", None)
     monkeypatch.setattr("validation.lattice.engine.advance", None)
     status, out, err = run(capsys, "run", "scene.toml", "--out", "o.json", *options)
     assert (status, out, err.count("\n")) == (2, "", 1)
@@ -486,10 +484,11 @@ def test_exact_scaled_to_a_speed_or_a_force(capsys):
 def test_the_list_of_studies_is_what_they_say():
     """The help is told without loading any of them."""
     context = click.Context(cli.validate)
-    for name, (_, says) in cli.COMMANDS.items():
+    for name, (_, _, says) in cli.studies().items():
         found = cli.validate.get_command(context, name)
         assert found.name == name
-        assert found.help == says
+        assert found.get_short_help_str(1000).rstrip(".") == " ".join(says.split()).rstrip(".")
+        assert {"--format", "--plot"} <= {o for p in found.params for o in p.opts}
     assert cli.validate.get_command(context, "nothing") is None
 
 

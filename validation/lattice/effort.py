@@ -85,12 +85,12 @@ class Effort:
             )
 
 
-Progress = Callable[[Effort], AbstractContextManager[Callable[[float], object]]]
+RunProgress = Callable[[Effort], AbstractContextManager[Callable[[float], object]]]
 """Is shown the effort of a run before it starts; what it gives is told the share that is done."""
 
 
 def silent(effort: Effort) -> AbstractContextManager[Callable[[float], object]]:
-    """The `Progress` that shows none."""
+    """The `RunProgress` that shows none."""
     return nullcontext(lambda share: None)
 
 

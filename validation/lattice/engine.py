@@ -2,7 +2,7 @@
 
 A step alternates kicks v += b_s h F(y)/m and drifts y += a_s h v (`validation.lattice.schemes`): it
 is symplectic, time-reversible, and keeps the momentum to rounding. Numba compiles it once and
-caches it on disk. The loops over beads hold no branch, so that they vectorise.
+caches it on disk.
 
 Order. F = A δ^k with k = 3/2 has no second derivative where a contact opens or closes: with every
 such passage a step errs by O(h^{k+1}) whatever the scheme, which leaves h^{5/2} of order 4 and of
@@ -19,17 +19,27 @@ tail may overtake it. As a pulse decays, the step grows with its time scale, F^{
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from lwa.numeric import Array
 from validation.lattice import effort
-from validation.lattice.effort import Effort, Progress
-from validation.lattice.equations import Array, Motion
-from validation.lattice.kernel import BLOCK, MARGIN, SHORTEST, advance, beginning
-from validation.lattice.run import IntegrationError, Run, Window, frozen
+from validation.lattice.effort import RunProgress
+from validation.lattice.equations import Motion
+from validation.lattice.kernel import (
+    BLOCK,
+    MARGIN,
+    SHORTEST,
+    Beads,
+    Chain,
+    Plan,
+    Samples,
+    advance,
+    beginning,
+)
+from validation.lattice.run import IntegrationError, Run, Window, finished, frozen
 from validation.lattice.schemes import LAWS, SCHEMES
 from validation.scenes.checks import SceneError, integer, positive
 from validation.scenes.scene import Scene
@@ -45,36 +55,22 @@ _GLANCE = 0.2
 
 
 def follow(
-    scene: Scene,
-    method: str,
-    *,
-    rtol: float,
-    step: float | None,
-    window: Any,
-    check: bool,
-    progress: Progress,
+    motion: Motion, method: str, rtol: float, step: float | None, window: Any, progress: RunProgress
 ) -> Run:
     """`validation.simulate` for a method of `SCHEMES`."""
-    reach = _reach(scene, window)
-    chain = _Chain(scene, method, rtol, step, progress)
-    run = chain.run(reach)
+    reach = _reach(motion, window)
+    natural = effort.step(method, rtol) * min(motion.scales.time, motion.scene.duration)
+    longest = positive(natural if step is None else step, "step")
+    run = _integrated(motion, method, longest, step is None, reach, progress)
     if window is None and run.window is not None and run.window.decay < _DECAY:
-        reach = None
-        run = chain.run(reach)
-    if not check:
-        return run
-    if not scene.contact_sensors and not scene.bead_sensors:
-        raise SceneError("check compares what sensors record: the scene has none")
-    return replace(
-        run,
-        step_error=_difference(run, chain.run(reach, coarser=2.0)),
-        window_error=None if reach is None else _difference(run, chain.run(reach, whole=True)),
-    )
+        return _integrated(motion, method, longest, False, None, progress)
+    return run
 
 
-def _reach(scene: Scene, window: Any) -> int | None:
+def _reach(motion: Motion, window: Any) -> int | None:
     """Beads to follow behind the front; None for the whole chain."""
-    returns = scene.wall is not None or scene.k == 1
+    scene, n, k = motion.scene, motion.size, motion.k
+    returns = scene.wall is not None or k == 1
     if window is False or not scene.stiffnesses or (window is None and returns):
         return None
     if returns:
@@ -84,133 +80,129 @@ def _reach(scene: Scene, window: Any) -> int | None:
         )
     if window is not None and window is not True:
         return integer(window, "window", BLOCK)
-    moving = np.zeros(scene.size, bool)
-    moving[: len(scene.velocities)] = scene.velocities
-    masses = np.array(scene.masses)
-    masses = masses if moving.all() else masses[~moving]  # a striker may be of any mass
-    support = math.pi / (scene.k - 1) * math.sqrt(scene.k * (scene.k + 1) / 6)
-    behind = _SUPPORTS * support * masses.max() / masses.mean()
-    reach = 2 * MARGIN + math.ceil(behind if behind < scene.size else scene.size)
-    return None if window is None and reach >= scene.size else reach
+    still = motion.start[n:] == 0
+    masses = motion.masses[still] if still.any() else motion.masses  # a striker may be of any mass
+    support = math.pi / (k - 1) * math.sqrt(k * (k + 1) / 6)
+    reach = 2 * MARGIN + math.ceil(min(n, _SUPPORTS * support * masses.max() / masses.mean()))
+    return None if window is None and reach >= n else reach
 
 
-class _Chain:
-    """A scene in the kernel's arrays, padded by beads of infinite mass: the first is the wall."""
-
-    def __init__(
-        self, scene: Scene, method: str, rtol: float, step: float | None, progress: Progress
-    ) -> None:
-        self.scene, self.motion, self.scheme = scene, Motion(scene), SCHEMES[method]
-        self.method, self.progress = method, progress
-        motion, n = self.motion, scene.size
-        self.start = motion.start.reshape(2, n)
-        scales = motion.scales(motion.start)
-        self.energy, self.deepest = scales.energy, scales.compression
-        # inverse masses, stiffnesses, rest compressions, loads
-        self.lattice = np.zeros((4, n + 2 * SHORTEST))
-        self.lattice[0, :n] = 1 / motion.masses
-        for row, values in enumerate((motion.stiffnesses, motion.rest, motion.load), 1):
-            self.lattice[row, : len(values)] = values
-        self.adapt = step is None
-        if step is None:
-            step = effort.step(method, rtol) * min(scales.time, scene.duration)
-        self.step = positive(step, "step")
-
-    def _effort(self, reach: int | None, step: float) -> Effort:
-        n, steps = self.scene.size, self.scene.duration / step
-        beads = n if reach is None else min(n, _WINDOW * reach)
-        found = effort.compiled(self.scene, self.method, steps, beads)
-        found.check()
-        return found
-
-    def run(self, reach: int | None, *, whole: bool = False, coarser: float = 1.0) -> Run:
-        """Integrate; ``whole`` takes a window's steps but moves all beads."""
-        scene, scheme, n, end = self.scene, self.scheme, self.scene.size, self.scene.duration
-        taken = self._effort(None if whole else reach, self.step * coarser)
-        count = math.ceil(taken.steps)
-        y, v = np.zeros((2, self.lattice.shape[1]))
-        y[:n], v[:n] = self.start
-        size = np.abs(self.start)
-        noise = np.finfo(float).eps * size.max(axis=1, keepdims=True)
-        moved = np.flatnonzero((size > noise).any(axis=0))  # rounding noise is no front
-        front = min(n, MARGIN + (moved[-1] + 1 if len(moved) else 0))
-        time = np.linspace(0.0, end, scene.samples)
-        contacts = np.array(scene.contact_sensors, int)
-        beads = np.array(scene.bead_sensors, int)
-        watched = np.union1d(np.append(contacts, beads - 1), np.append(contacts, beads) + 1)
-        watched = np.union1d(watched, beads)[int(0 in beads) :]  # not bead -1
-        seen = np.repeat(np.stack((y, v))[:, watched, None], len(time), axis=2)
-        left = np.full(len(y), np.inf)
-        inverse, A, rest, load = self.lattice
-        force, glance = np.zeros(len(y) + 1), max(1, int(_GLANCE * taken.steps / taken.seconds))
-        at = beginning(front, end / count, A.max(), self.deepest, scene.k)
-        with self.progress(taken) as tell:
-            while (t := at[1][0]) < end:
-                tell(t / end)
-                at = advance(
-                    y, v, inverse, A, rest, load, LAWS.get(scene.k, 0), scene.k,
-                    scheme.kicks, scheme.drifts, end / count, end, self.deepest,
-                    self.adapt and reach is not None, n, reach or n, whole or reach is None,
-                    time, watched, seen[0], seen[1], left, force, at, at[0][0] + glance,
-                )  # fmt: skip
-        steps, evaluations, rear = at[0][0], at[0][1], at[0][4]
-        lost, decay = at[1][-2:]
-        if not (np.isfinite(y).all() and np.isfinite(v).all()):
-            raise IntegrationError(f"the motion overflows: a step of {end / count:g} is too long")
-        state = np.concatenate((y[:n], v[:n]))
-        energy = self.motion.energy(state, rear) + lost
-        y[:rear] += v[:rear] * (end - left[:rear])
-        for row, j in enumerate(watched):
-            flying = time > left[j]
-            seen[0, row, flying] = y[j] + v[j] * (time[flying] - end)
-            seen[1, row, flying] = v[j]
-
-        def contact(i: NDArray[np.int_]) -> tuple[Array, Array]:
-            """Compression and force; contact -1 is a padded one, without stiffness."""
-            row = np.searchsorted(watched, i)
-            compression = rest[i, None] + seen[0, row] - seen[0, row + 1]
-            force = A[i, None] * np.maximum(compression, 0.0) ** scene.k
-            return compression, np.where(time > left[i, None], 0.0, force)
-
-        compression, contact_force = contact(contacts)
-        bead_force = (contact(beads - 1)[1] + contact(beads)[1]) / 2
-        window = None
-        if reach is not None and not whole:
-            before = np.maximum(beads - 1, 0)
-            until = frozen(
-                contact_until=np.minimum(left[contacts], end),
-                bead_until=np.minimum(left[before], end),
-            )
-            window = Window(reach, rear, decay, **until)
-        return Run(
-            scene=scene,
-            **frozen(
-                time=time,
-                contact_force=contact_force,
-                compression=compression,
-                bead_force=bead_force,
-                bead_velocity=seen[1, np.searchsorted(watched, beads)],
-                displacements=y[:n].copy(),
-                velocities=v[:n].copy(),
-            ),
-            energy_drift=(energy - self.energy) / self.energy if self.energy else 0.0,
-            momentum_drift=self.motion.momentum_drift(self.start[1], v[:n]),
-            evaluations=steps * scheme.stages,
-            bead_evaluations=evaluations,
-            step=end / steps,
-            window=window,
-        )
+def _integrated(
+    motion: Motion,
+    method: str,
+    step: float,
+    adapt: bool,
+    reach: int | None,
+    progress: RunProgress,
+) -> Run:
+    """The run, of a window that reaches so far back or of the whole chain."""
+    n, end, scheme = motion.size, motion.scene.duration, SCHEMES[method]
+    moved = n if reach is None else min(n, _WINDOW * reach)
+    taken = effort.compiled(motion.scene, method, end / step, moved)
+    taken.check()
+    chain = _chain(motion)
+    beads, seen = _start(motion, len(chain.A))
+    plan = Plan(
+        scheme.kicks, scheme.drifts, end / math.ceil(taken.steps), end,
+        motion.scales.compression, chain.A.max(), 1 / chain.inverse[min(1, n - 1) : n].min(), n,
+        reach or 0, adapt,
+    )  # fmt: skip
+    at = beginning(plan, chain.k, n if reach is None else _front(motion))
+    glance = int(_GLANCE * taken.steps / taken.seconds)
+    t = 0.0
+    with progress(taken) as tell:
+        while t < end:
+            tell(t / end)
+            t = advance(chain, beads, plan, seen, at, max(1, glance))
+    if not (np.isfinite(beads.y).all() and np.isfinite(beads.v).all()):
+        raise IntegrationError(f"the motion overflows: a step of {plan.h:g} is too long")
+    rear, energy = int(at["lo"]), motion.energy(_state(beads, n), at["lo"]) + float(at["lost"])
+    _fly_on(beads, seen, rear, end)
+    return finished(
+        motion,
+        _state(beads, n),
+        _recorded(motion.scene, chain, beads, seen),
+        energy=energy,
+        evaluations=int(at["steps"]) * scheme.stages,
+        bead_evaluations=int(at["evaluations"]),
+        steps=int(at["steps"]),
+        window=None if reach is None else _window(motion.scene, reach, rear, at, beads.left),
+    )
 
 
-def _difference(run: Run, other: Run) -> float:
-    """Largest difference of a sensor's force while both followed it, over the largest force."""
-    worst = top = 0.0
-    for kind in ("contact", "bead"):
-        force, otherwise = (getattr(one, f"{kind}_force") for one in (run, other))
-        known = np.ones(force.shape, bool)
-        for window in (run.window, other.window):
-            if window is not None:
-                known &= run.time <= getattr(window, f"{kind}_until")[:, None]
-        worst = max(worst, np.abs(np.where(known, force - otherwise, 0.0)).max(initial=0.0))
-        top = max(top, force.max(initial=0.0))
-    return float(worst / top) if top else float(worst)
+def _chain(motion: Motion) -> Chain:
+    """Padded by beads of infinite mass: the first is the wall."""
+    inverse, A, rest, load = rows = np.zeros((4, motion.size + 2 * SHORTEST))
+    given = 1 / motion.masses, motion.stiffnesses, motion.rest, motion.load
+    for row, values in zip(rows, given, strict=True):
+        row[: len(values)] = values
+    return Chain(inverse, A, rest, load, LAWS.get(motion.k, 0), motion.k)
+
+
+def _front(motion: Motion) -> int:
+    """The first bead that is still, and a margin."""
+    size = np.abs(motion.start.reshape(2, motion.size))
+    noise = np.finfo(float).eps * size.max(axis=1, keepdims=True)
+    moving = np.flatnonzero((size > noise).any(axis=0))  # rounding noise is no front
+    return min(motion.size, MARGIN + (int(moving[-1]) + 1 if len(moving) else 0))
+
+
+def _start(motion: Motion, padded: int) -> tuple[Beads, Samples]:
+    """The beads as they start, and who is watched: those of the sensors, and of their contacts."""
+    scene, n = motion.scene, motion.size
+    y, v, force, left = np.zeros((4, padded + 1))
+    y[:n], v[:n], left[:] = motion.start[:n], motion.start[n:], np.inf
+    contacts, beads = _sensors(scene)
+    watched = np.unique(np.concatenate((contacts, contacts + 1, beads - 1, beads, beads + 1)))
+    watched = watched[watched >= 0]
+    time = np.linspace(0.0, scene.duration, scene.samples)
+    seen = np.repeat(np.stack((y, v))[:, watched, None], len(time), axis=2)
+    return Beads(y, v, force, left), Samples(time, watched, np.zeros((3, len(watched))), *seen)
+
+
+def _sensors(scene: Scene) -> tuple[NDArray[np.int_], NDArray[np.int_]]:
+    return np.array(scene.contact_sensors, int), np.array(scene.bead_sensors, int)
+
+
+def _state(beads: Beads, n: int) -> Array:
+    return np.concatenate((beads.y[:n], beads.v[:n]))
+
+
+def _fly_on(beads: Beads, seen: Samples, rear: int, end: float) -> None:
+    """Beads that were left behind have kept their velocities since."""
+    y, v, left = beads.y, beads.v, beads.left
+    y[:rear] += v[:rear] * (end - left[:rear])
+    for row, j in enumerate(seen.watched):
+        flying = seen.time > left[j]
+        seen.y[row, flying] = y[j] + v[j] * (seen.time[flying] - end)
+        seen.v[row, flying] = v[j]
+
+
+def _recorded(scene: Scene, chain: Chain, beads: Beads, seen: Samples) -> dict[str, Array]:
+    """By the sensors."""
+
+    def contact(i: NDArray[np.int_]) -> tuple[Array, Array]:
+        """Compression and force; contact -1 is a padded one, without stiffness."""
+        row = np.searchsorted(seen.watched, i)
+        compression = chain.rest[i, None] + seen.y[row] - seen.y[row + 1]
+        force = chain.A[i, None] * np.maximum(compression, 0.0) ** scene.k
+        return compression, np.where(seen.time > beads.left[i, None], 0.0, force)
+
+    contacts, sensors = _sensors(scene)
+    compression, force = contact(contacts)
+    return {
+        "time": seen.time,
+        "contact_force": force,
+        "compression": compression,
+        "bead_force": (contact(sensors - 1)[1] + contact(sensors)[1]) / 2,
+        "bead_velocity": seen.v[np.searchsorted(seen.watched, sensors)],
+    }
+
+
+def _window(scene: Scene, reach: int, rear: int, at: Any, left: Array) -> Window:
+    contacts, beads = _sensors(scene)
+    until = frozen(
+        contact_until=np.minimum(left[contacts], scene.duration),
+        bead_until=np.minimum(left[np.maximum(beads - 1, 0)], scene.duration),
+    )
+    return Window(reach, rear, float(at["decay"]), **until)

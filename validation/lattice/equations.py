@@ -11,15 +11,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lwa.numeric import Array
 from lwa.spheres.tables import LEAST
 from validation.scenes.checks import SceneError
 from validation.scenes.scene import Scene
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -50,7 +49,7 @@ class Motion:
 
     def __init__(self, scene: Scene) -> None:
         wall = () if scene.wall is None else (scene.wall,)
-        self.size = scene.size
+        self.scene, self.size = scene, scene.size
         self.masses = np.array(scene.masses)
         self.stiffnesses = np.array(scene.stiffnesses + wall)
         self.k = scene.k
@@ -98,25 +97,27 @@ class Motion:
         work = self.load * (compression - self.rest)
         return float(self.masses @ v**2 / 2 + np.sum((stored - work)[first:]))
 
-    def momentum_drift(self, before: Array, after: Array) -> float | None:
-        """Change of the momentum between two rows of velocities over Σ m|v|; None with a wall."""
-        if len(self.rest) == self.size:
+    def momentum_drift(self, end: Array) -> float | None:
+        """Change of the momentum, from the start to a state, over Σ m|v|; None with a wall."""
+        if self.scene.wall is not None:
             return None
+        before, after = self.start[self.size :], end[self.size :]
         total = self.masses @ np.abs(after)
         return float(self.masses @ (after - before) / total) if total else 0.0
 
-    def scales(self, state: Array) -> Scales:
-        """The scales of a state's motion.
+    @cached_property
+    def scales(self) -> Scales:
+        """The scales of the motion from its start.
 
         Raises `SceneError` when floating point cannot hold one of them.
         """
         with np.errstate(all="ignore"):
-            return self._scales(state)
+            return self._scales()
 
-    def _scales(self, state: Array) -> Scales:
-        energy, n, A = self.energy(state), self.size, self.stiffnesses
-        pressed = self.compression(state[:n]).max(initial=0.0) > self.rest.max(initial=0.0)
-        if not np.isfinite(energy) or (energy == 0 and (pressed or np.any(state[n:]))):
+    def _scales(self) -> Scales:
+        energy, n, A = self.energy(self.start), self.size, self.stiffnesses
+        pressed = self.compression(self.start[:n]).max(initial=0.0) > self.rest.max(initial=0.0)
+        if not np.isfinite(energy) or (energy == 0 and (pressed or np.any(self.start[n:]))):
             _held("energy", energy)
         deepest = float(self.rest.max(initial=0.0))
         if energy > 0 and len(A):

@@ -5,11 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from validation.lattice.equations import Array
+from lwa.numeric import Array
+from validation.lattice.equations import Motion
+from validation.scenes.checks import Failure
 from validation.scenes.scene import Scene
 
 
-class IntegrationError(RuntimeError):
+class IntegrationError(Failure):
     """The integrator could not go on; the message says where and why."""
 
 
@@ -53,9 +55,6 @@ class Run:
     bead_evaluations : the same, times the beads that each one moved.
     step : mean step.
     window : None when the whole chain was integrated throughout.
-    step_error, window_error : largest difference of a sensor's force, over the largest force
-        recorded, from a run at twice the step, and from one on the whole chain (while the window
-        follows the sensor); None unless asked for.
     """
 
     scene: Scene
@@ -72,8 +71,6 @@ class Run:
     bead_evaluations: int
     step: float
     window: Window | None = None
-    step_error: float | None = None
-    window_error: float | None = None
 
 
 def frozen(**arrays: Array) -> dict[str, Any]:
@@ -81,3 +78,28 @@ def frozen(**arrays: Array) -> dict[str, Any]:
     for array in arrays.values():
         array.setflags(write=False)
     return arrays
+
+
+def finished(
+    motion: Motion,
+    end: Array,
+    records: dict[str, Array],
+    *,
+    energy: float,
+    evaluations: int,
+    bead_evaluations: int,
+    steps: int,
+    window: Window | None = None,
+) -> Run:
+    """The run that came to this state and energy, with what its sensors recorded."""
+    n, before = motion.size, motion.scales.energy
+    return Run(
+        scene=motion.scene,
+        **frozen(**records, displacements=end[:n].copy(), velocities=end[n:].copy()),
+        energy_drift=(energy - before) / before if before else 0.0,
+        momentum_drift=motion.momentum_drift(end),
+        evaluations=evaluations,
+        bead_evaluations=bead_evaluations,
+        step=motion.scene.duration / steps,
+        window=window,
+    )

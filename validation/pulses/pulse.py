@@ -8,15 +8,18 @@ impulse the spline's integral.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TypeVar
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike, NDArray
-from scipy.interpolate import CubicSpline, PPoly
 
 from lwa.exact import InputError
+
+Source = TypeVar("Source")
 
 FEWEST = 8
 """Samples above half the peak, below which a record is too coarse to be measured."""
@@ -95,6 +98,18 @@ def derived(function: Callable[..., float], *numbers: Measured) -> Measured:
     return Measured(function(*(n.value for n in numbers)), function(*(n.check for n in numbers)))
 
 
+def compared(
+    numbers: Callable[[Source], Mapping[str, float]], fine: Source, coarse: Source
+) -> dict[str, Measured]:
+    """Numbers read off two runs, of which the less accurate one gives the errors.
+
+    >>> compared(lambda x: {"x": x, "2x": 2 * x}, 1.5, 1.25)
+    {'x': 1.5 ± 2e-01, '2x': 3.0 ± 5e-01}
+    """
+    less = numbers(coarse)
+    return {name: Measured(value, less[name]) for name, value in numbers(fine).items()}
+
+
 def measure(time: ArrayLike, signal: ArrayLike) -> Pulse:
     """Measure the highest pulse of a record.
 
@@ -127,9 +142,11 @@ def measure(time: ArrayLike, signal: ArrayLike) -> Pulse:
     # Powers of two, which cost no digit: slopes of a spline may overflow where its values do not.
     pace, height = (2.0 ** (math.frexp(x)[1] - 1) for x in (t[-1] - t[0], f[top]))
     t, f = t / pace, f / height
-    spline = CubicSpline(t, f, extrapolate=False)
+    spline = scipy.interpolate.CubicSpline(t, f, extrapolate=False)
     # The peak may lie on either side of the highest sample.
-    crest = PPoly(spline.c[:, top - 1 : top + 1], spline.x[top - 1 : top + 2], extrapolate=False)
+    crest = scipy.interpolate.PPoly(
+        spline.c[:, top - 1 : top + 1], spline.x[top - 1 : top + 2], extrapolate=False
+    )
     candidates = np.append(crest.derivative().roots(), t[top])
     arrival = candidates[np.argmax(spline(candidates))]
     peak = spline(arrival)
@@ -163,7 +180,7 @@ def impulse(time: ArrayLike, signal: ArrayLike, start: float, end: float) -> flo
         raise MeasureError(
             f"{start:g} … {end:g} is not within the record, {t[0]:g} … {t[-1]:g}, in this order"
         )
-    return float(CubicSpline(t, f).integrate(start, end))
+    return float(scipy.interpolate.CubicSpline(t, f).integrate(start, end))
 
 
 def speed(first: Pulse, second: Pulse, distance: float) -> float:

@@ -8,7 +8,7 @@ accurate one, of a tolerance `LESS` times as large, gives its error.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -16,11 +16,12 @@ from typing import Any
 
 import numpy as np
 
-from validation.lattice.effort import Progress, silent
-from validation.lattice.equations import Array, Motion
+from lwa.numeric import Array
+from validation.lattice.effort import RunProgress, silent
+from validation.lattice.equations import Motion
 from validation.lattice.run import Run
-from validation.lattice.simulate import METHODS, simulate
-from validation.pulses.pulse import Measured, MeasureError, Pulse, measure, speed
+from validation.lattice.simulate import METHODS, twice
+from validation.pulses.pulse import Measured, MeasureError, Pulse, compared, measure, speed
 from validation.scenes.checks import SceneError, real
 from validation.scenes.scene import Scene
 
@@ -33,40 +34,31 @@ LESS = 1e3
 _ROUNDING = 10
 """Times the tolerance: what rounding may take of a motion, whose noise the steps would follow."""
 
-READINGS = ("arrival", "peak", "fwhm")
-"""What is read off a pulse."""
+READINGS = {"arrival": "arrival", "peak": "peak force", "fwhm": "FWHM"}
+"""What is read off a pulse, and what it is called."""
 
-SPEEDS = ("speed_sites", "speed")
+SPEEDS = {"speed_sites": "sites/time", "speed": "length/time"}
 """In sites and in length over time."""
 
 
 @dataclass(frozen=True)
-class Sensor:
-    """One sensor's `READINGS`; or none, and the reason.
+class Reading:
+    """What a sensor tells, or one and the next of its kind; or nothing, and the reason.
 
     kind : "bead" or "contact".
-    number : of it, counted from 1.
+    places : the number of the sensor, or of the two, counted from 1.
+    numbers : `READINGS`; of two `SPEEDS`, the second one if the scene has spacings.
     """
 
     kind: str
-    number: int
+    places: tuple[int, ...]
     numbers: Mapping[str, Measured]
     missing: str | None = None
 
-
-@dataclass(frozen=True)
-class Speed:
-    """The speed of the pulse between two sensors of one kind; or none, and the reason.
-
-    start, end : numbers of the sensors, counted from 1.
-    numbers : `SPEEDS`, the second one if the scene has spacings.
-    """
-
-    kind: str
-    start: int
-    end: int
-    numbers: Mapping[str, Measured]
-    missing: str | None = None
+    @property
+    def name(self) -> str:
+        """What people read, such as bead 15 → 34."""
+        return f"{self.kind} {' → '.join(map(str, self.places))}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,8 +66,8 @@ class Recording:
     """A run, what its sensors tell, and the speeds from each sensor to the next of its kind."""
 
     run: Run
-    sensors: tuple[Sensor, ...]
-    speeds: tuple[Speed, ...]
+    sensors: tuple[Reading, ...]
+    speeds: tuple[Reading, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,15 +75,10 @@ class Track:
     """One sensor's dynamic force; ``place`` is where it sits, by what of `SPEEDS` it serves."""
 
     kind: str
-    index: int
+    number: int
     time: Array
     force: Array
     place: Mapping[str, float]
-
-    @property
-    def number(self) -> int:
-        """Of the bead or contact, counted from 1."""
-        return self.index + 1
 
     @cached_property
     def pulse(self) -> Pulse:
@@ -99,8 +86,11 @@ class Track:
         return first_pulse(self.time, self.force)
 
 
+Tracks = tuple[Track, ...]
+
+
 def record(
-    scene: Scene, *, method: str = METHODS[0], rtol: Any = TOLERANCE, progress: Progress = silent
+    scene: Scene, *, method: str = METHODS[0], rtol: Any = TOLERANCE, progress: RunProgress = silent
 ) -> Recording:
     """Simulate a scene and read its sensors.
 
@@ -120,26 +110,19 @@ def record(
     if not 1e-13 <= real(rtol, "rtol") <= 1e-2 / LESS:
         raise SceneError(f"rtol is {rtol:g}: it lies between 1e-13 and {1e-2 / LESS:g}")
     motion = Motion(scene)
-    if (lost := motion.scales(motion.start).rounding) > _ROUNDING * rtol:
+    if (lost := motion.scales.rounding) > _ROUNDING * rtol:
         raise SceneError(
             f"rtol is {rtol:g}: rounding of the static compression, {motion.rest.max():.1g}, takes "
             f"{lost:.1g} of the motion; {lost / _ROUNDING:.1g} or more is wanted"
         )
-    run, check = (
-        simulate(scene, rtol=t, atol=t, method=method, progress=progress)
-        for t in (rtol, LESS * rtol)
-    )
+    run, check = twice(scene, rtol, LESS * rtol, method=method, progress=progress)
     pairs = tuple(zip(tracks(run), tracks(check), strict=True))
-    sensors = tuple(Sensor(t.kind, t.number, *_pulse_numbers(t, c)) for t, c in pairs)
-    speeds = tuple(
-        Speed(a[0].kind, a[0].number, b[0].number, *_speed_numbers(a, b))
-        for a, b in pairwise(pairs)
-        if a[0].kind == b[0].kind
-    )
-    return Recording(run, sensors, speeds)
+    sensors = tuple(_reading(_pulse, (fine,), (coarse,)) for fine, coarse in pairs)
+    both = (zip(*two, strict=True) for two in pairwise(pairs) if two[0][0].kind == two[1][0].kind)
+    return Recording(run, sensors, tuple(_reading(_speed, *two) for two in both))
 
 
-def tracks(run: Run) -> tuple[Track, ...]:
+def tracks(run: Run) -> Tracks:
     """What the sensors of a run recorded, beads first.
 
     A contact sits midway between its beads, that with the wall half a spacing behind the last one.
@@ -147,19 +130,18 @@ def tracks(run: Run) -> tuple[Track, ...]:
     scene = run.scene
     load = np.zeros(scene.size + 1)  # of the contacts on the left and right of the beads
     load[1 : scene.contact_count + 1] = scene.load
-    x = np.concatenate(([0.0], np.cumsum(scene.spacings)))
+    x = np.cumsum((0.0, *scene.spacings, *scene.spacings[-1:]))
 
     def place(site: float) -> dict[str, float]:
-        left = min(int(site), scene.size - 2)
-        length = [x[left] + (site - left) * scene.spacings[left]] if scene.spacings else []
+        length = [float(np.interp(site, range(len(x)), x))] if scene.spacings else []
         return dict(zip(SPEEDS, (site, *length), strict=False))
 
     beads = (
-        Track("bead", i, run.time, force - (load[i] + load[i + 1]) / 2, place(i))
+        Track("bead", i + 1, run.time, force - (load[i] + load[i + 1]) / 2, place(i))
         for i, force in zip(scene.bead_sensors, run.bead_force, strict=True)
     )
     contacts = (
-        Track("contact", i, run.time, force - load[i + 1], place(i + 0.5))
+        Track("contact", i + 1, run.time, force - load[i + 1], place(i + 0.5))
         for i, force in zip(scene.contact_sensors, run.contact_force, strict=True)
     )
     return (*beads, *contacts)
@@ -185,30 +167,24 @@ def first_pulse(time: Array, force: Array) -> Pulse:
     return measure(time[:end], force[:end])
 
 
-def _pulse_numbers(track: Track, check: Track) -> tuple[dict[str, Measured], str | None]:
+def _reading(
+    read: Callable[[Tracks], Mapping[str, float]], fine: Tracks, coarse: Tracks
+) -> Reading:
+    places = tuple(track.number for track in fine)
     try:
-        pulse, less = track.pulse, check.pulse
+        return Reading(fine[0].kind, places, compared(read, fine, coarse))
     except MeasureError as error:
-        return {}, str(error)
-    return {name: Measured(getattr(pulse, name), getattr(less, name)) for name in READINGS}, None
+        return Reading(fine[0].kind, places, {}, str(error))
 
 
-def _speed_numbers(
-    first: tuple[Track, Track], second: tuple[Track, Track]
-) -> tuple[dict[str, Measured], str | None]:
-    numbers = {}
+def _pulse(heard: Tracks) -> dict[str, float]:
+    return {name: getattr(heard[0].pulse, name) for name in READINGS}
+
+
+def _speed(heard: Tracks) -> dict[str, float]:
+    start, end = heard
     try:
-        for unit in first[0].place:
-            value, check = (_speed(a, b, unit) for a, b in zip(first, second, strict=True))
-            numbers[unit] = Measured(value, check)
-    except MeasureError as error:
-        return {}, str(error)
-    return numbers, None
-
-
-def _speed(first: Track, second: Track, unit: str) -> float:
-    try:
-        pulses = first.pulse, second.pulse
+        pulses = start.pulse, end.pulse
     except MeasureError:
         raise MeasureError("one of the two has no pulse") from None
-    return speed(*pulses, abs(second.place[unit] - first.place[unit]))
+    return {unit: speed(*pulses, abs(end.place[unit] - at)) for unit, at in start.place.items()}

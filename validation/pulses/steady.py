@@ -33,17 +33,15 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 import sympy as sp
-from numpy.typing import NDArray
-from scipy.special import exprel
 
 from lwa.exact import InputError
+from lwa.numeric import Array
 from validation.lattice.run import IntegrationError, Run
 from validation.lattice.simulate import simulate
 from validation.pulses.pulse import Measured, MeasureError, measure
-from validation.scenes.scene import Scene
-
-Array = NDArray[np.float64]
+from validation.scenes.chains import struck
 
 QUANTITIES = {
     "width": "FWHM of the contact force (sites)",
@@ -169,8 +167,14 @@ class Chain:
         """A run of this duration, or longer, with ``samples`` per unit of time; more where hits
         are shorter. Raises `MeasureError` where the pulse does not come through."""
         samples *= max(1.0, self.k / 1.5) / math.sqrt(min(1.0, 4 * self.omega))
+        places = range(self.sites, self.sites * PLACES + 1, self.sites)
+        sensors = tuple(place + side for place in places for side in (0, 1))
         for _ in range(_LONGEST):
-            run = self.run(duration, rtol, math.ceil(samples * duration))
+            scene = struck(
+                (1.0, self.omega), self.sites * PLACES + 12, self.k, contact_sensors=sensors,
+                duration=duration, samples=math.ceil(samples * duration),
+            )  # fmt: skip
+            run = simulate(scene, rtol=rtol, method="SRKN14")
             parts = tuple(leading_pulse(force, self.k) for force in run.contact_force)
             # One place's time more, lest the front of a pulse yet to come be taken for it.
             until = (1 + 1 / PLACES) * float(run.time[max(part.stop for part in parts) - 1])
@@ -180,21 +184,6 @@ class Chain:
         raise MeasureError(
             f"the pulse has not passed {self.sites * PLACES} sites by t = {duration / _GROWTH:.3g}"
         )
-
-    def run(self, duration: float, rtol: float, samples: int) -> Run:
-        """Strike."""
-        cells = self.cells * PLACES + 6
-        places = range(self.sites, self.sites * PLACES + 1, self.sites)
-        scene = Scene(
-            masses=(1.0, self.omega) * cells,
-            stiffnesses=(1.0,) * (2 * cells - 1),
-            k=self.k,
-            velocities=(1.0,),
-            contact_sensors=tuple(place + side for place in places for side in (0, 1)),
-            duration=duration,
-            samples=samples,
-        )
-        return simulate(scene, rtol=rtol, method="SRKN14")
 
     def numbers(self, record: Record) -> Array:
         """`QUANTITIES` (rows) of each stretch; NaN where the pulse does not arrive later than at
@@ -209,7 +198,7 @@ class Chain:
         elapsed, fall = np.diff(arrival, axis=0), -np.diff(np.log(peak), axis=0)
         elapsed[elapsed <= 0] = np.nan
         q = (self.k - 1) / (2 * self.k)
-        speed = self.sites * exprel(q * fall) / (elapsed * peak[:-1] ** q)
+        speed = self.sites * scipy.special.exprel(q * fall) / (elapsed * peak[:-1] ** q)
         here = speed * peak[1:] ** q
         numbers = (width[1:] * here, strain_width[1:] * here, speed, fall / self.sites)
         return np.asarray(np.mean(numbers, axis=2))

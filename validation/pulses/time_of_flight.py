@@ -7,8 +7,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from validation.lattice.simulate import simulate
-from validation.pulses.pulse import Measured, derived, measure, speed
+from validation.lattice.run import Run
+from validation.lattice.simulate import twice
+from validation.pulses.pulse import Measured, compared, derived, measure, speed
 from validation.scenes.scene import Scene
 
 METHOD = "SRKN14"
@@ -33,18 +34,19 @@ class Passage:
 def passage(scene: Scene, rtol: float = 1e-6) -> Passage:
     """Run a scene with two contact sensors and measure the pulse on its way between them."""
     a, b = scene.contact_sensors
-    rows = []
-    for tolerance in (rtol, 10 * rtol):
-        run = simulate(scene, method=METHOD, rtol=tolerance, window=False)
+
+    def numbers(run: Run) -> dict[str, float]:
         first, second = (measure(run.time, force) for force in run.contact_force)
         V = speed(first, second, b - a)
         deepest = measure(run.time, run.compression[1]).peak
-        rows.append(((V, second.fwhm * V, second.peak, deepest), run))
-    (fine, run), (coarse, _) = rows
-    measured = (Measured(x, y) for x, y in zip(fine, coarse, strict=True))
-    pace, fwhm, force, strain = measured
+        return {"speed": V, "fwhm": second.fwhm * V, "force": second.peak, "strain": deepest}
+
+    run, check = twice(scene, rtol, 10 * rtol, method=METHOD, window=False)
     return Passage(
-        pace, fwhm, force, strain, run.energy_drift, run.momentum_drift or 0.0, run.evaluations
+        **compared(numbers, run, check),
+        energy_drift=run.energy_drift,
+        momentum_drift=run.momentum_drift or 0.0,
+        evaluations=run.evaluations,
     )
 
 

@@ -1,54 +1,125 @@
-"""What the commands of the studies share: where a result goes, and how progress is shown."""
+"""A study as a command: its options, where its result goes, its progress and its exit status."""
 
 from __future__ import annotations
 
+import inspect
 import json
 import sys
 import time
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
+from functools import update_wrapper
 from pathlib import Path
-from typing import Any
+from typing import Any, Generic, ParamSpec, Protocol, TypeVar
 
 import click
-import sympy as sp
 from tqdm import tqdm
 
 from lwa.command.terminal import quantity
 from lwa.duration import announce
 from validation.lattice.effort import Effort
-from validation.report.figure import SUFFIXES, plot_file, save
-from validation.report.text import document, text
-from validation.scenes.checks import SceneError
+from validation.report.figure import SUFFIXES, plot_file
+from validation.report.result import Report
+from validation.scenes.checks import Failure, SceneError
 
-Command = Callable[..., Any]
-
-
-def _picture(context: click.Context, option: click.Parameter, path: str | None) -> Path | None:
-    return None if path is None else plot_file(path)
+P = ParamSpec("P")
+T = TypeVar("T")
 
 
-def output(command: Command) -> Command:
-    """The options that say where a result goes."""
-    command = click.option(
-        "--plot", "picture", callback=_picture, metavar="FILE",
-        help=f"Draw the result into a file ({', '.join(SUFFIXES)}).",
-    )(command)  # fmt: skip
-    return click.option(
-        "--format", "style", type=click.Choice(("text", "json")), default="text",
-        show_default=True, help="How to print the result.",
-    )(command)  # fmt: skip
+class Result(Protocol):
+    """A study's typed result."""
+
+    def report(self) -> Report:
+        """What it looks like."""
+        ...
 
 
-def show(result: Any, style: str, picture: Path | None) -> None:
+R = TypeVar("R", bound=Result | Report)
+
+
+class Study(Generic[P, R]):
+    """A function that computes a result, and the ``command`` that shows it."""
+
+    def __init__(self, function: Callable[P, R], name: str, options: Iterable[Any]) -> None:
+        self.function = function
+        self.name = name
+        self.options = tuple(options)
+        update_wrapper(self, function)
+
+    def __call__(self, *arguments: P.args, **options: P.kwargs) -> R:
+        return self.function(*arguments, **options)
+
+    @property
+    def command(self) -> click.Command:
+        """Of its options, ``--format`` and ``--plot``; it ends with 1 where a finding fails."""
+        wants = inspect.signature(self.function).parameters
+        function: Callable[..., R] = self.function
+
+        def run(style: str, picture: Path | None, **values: Any) -> int:
+            offered = {"progress": progress, "run_progress": run_progress, "picture": picture}
+            values |= {name: value for name, value in offered.items() if name in wants}
+            try:
+                found = function(**values)
+            except Failure as error:
+                raise click.ClickException(str(error)) from None
+            report = found if isinstance(found, Report) else found.report()
+            show(report, style, picture)
+            return 0 if report.ok else 1
+
+        for option in (*_OUTPUT, *reversed(self.options)):
+            run = option(run)
+        says = (inspect.getdoc(self.function) or "").partition("\n\n")[0]
+        return click.command(self.name, help=says)(run)
+
+
+def study(*options: Any, name: str = "") -> Callable[[Callable[P, R]], Study[P, R]]:
+    """Make a study of a function that returns a `Report`, or what has one.
+
+    options : of the command, as `option`, or Click's; the function's parameters have their names.
+    name : of the command; by default the function's.
+
+    What the function's parameters name it is given besides: ``progress`` to show cases on their
+    way, ``run_progress`` one run (`validation.lattice.effort.RunProgress`), and ``picture``, the
+    file that is asked for.
+    """
+    return lambda function: Study(function, name or function.__name__, options)
+
+
+def option(*names: str, default: Any = None, says: str = "", **more: Any) -> Any:
+    """An option with its default and its help; the default's type is the option's."""
+    more.setdefault("show_default", default is not None)
+    return click.option(*names, default=default, help=says, **more)
+
+
+def number(context: click.Context, given: click.Parameter, value: str | None) -> float | None:
+    """Callback of an option that is a number: an integer, a decimal or a fraction."""
+    found = quantity(context, given, value)
+    if found is None:
+        return None
+    if not found.is_number:
+        raise SceneError(f"{given.opts[0].lstrip('-')} is {found}: a number is wanted")
+    return float(found)
+
+
+EXPONENT = option("--k", callback=number, default="3/2", says="Exponent of F = δ^k.")
+
+
+def show(report: Report, style: str, picture: Path | None) -> None:
+    """Print a report as "text", "json" or "csv", when its picture is saved."""
+    if style == "json":
+        written = json.dumps(report.document(), indent=2, allow_nan=False)
+    else:
+        written = report.csv().rstrip("\n") if style == "csv" else report.text()
     if picture is not None:
-        save(result, picture)
-    click.echo(text(result) if style == "text" else json.dumps(document(result), indent=2))
+        report.save(picture)
+    click.echo(written)
 
 
-def progress(cases: Collection[Any]) -> tqdm[Any]:
+def progress(cases: Iterable[T]) -> Iterable[T]:
+    """Show the cases on their way, on a terminal."""
     # disable=None: only on a terminal
-    return tqdm(cases, desc="lattice runs", disable=None, leave=False, file=sys.stderr)
+    bar: Iterable[T] = tqdm(cases, desc="lattice runs", disable=None, leave=False, file=sys.stderr)
+    return bar
 
 
 SILENCE = 60.0
@@ -74,16 +145,17 @@ def run_progress(effort: Effort) -> Iterator[Callable[[float], None]]:
         yield tell
 
 
-def wanted(context: click.Context, option: click.Parameter, value: str | None) -> sp.Expr | None:
-    return None if value is None else quantity(context, option, value)
+def _picture(context: click.Context, given: click.Parameter, path: str | None) -> Path | None:
+    return None if path is None else plot_file(path)
 
 
-EXPONENT = click.option(
-    "--k", callback=quantity, default="3/2", show_default=True, help="Exponent of F = δ^k."
-)
-
-
-def number(value: sp.Expr, name: str) -> float:
-    if not value.is_number:
-        raise SceneError(f"{name} is {value}: a number is wanted")
-    return float(value)
+_OUTPUT = (
+    click.option(
+        "--plot", "picture", callback=_picture, metavar="FILE",
+        help=f"Draw the result into a file ({', '.join(SUFFIXES)}).",
+    ),
+    click.option(
+        "--format", "style", type=click.Choice(("text", "json", "csv")), default="text",
+        show_default=True, help="How to print the result.",
+    ),
+)  # fmt: skip

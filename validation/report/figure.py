@@ -1,20 +1,32 @@
-"""A result as a picture, drawn by Matplotlib without a display.
+"""Panels as a picture, drawn by Matplotlib without a display.
 
-Matplotlib is imported when a picture is drawn. A file appears only when it is complete.
+Matplotlib is imported when a picture is drawn.
 """
 
 from __future__ import annotations
 
-from functools import singledispatch
+import math
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from validation.report.files import output_file, replacing
+import numpy as np
+
+from lwa.numeric import Array
+from validation.report.files import output_file
+from validation.report.panel import Map, Panel
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 SUFFIXES = (".pdf", ".png", ".svg")
+
+_STYLES = ("o-", "s--", "^:", "D-.", "v-", "x--", "P:", "*-.")
+_FEW = 40
+"""Points of a curve, beyond which marks would cover it."""
+_MOST = 10
+"""Names in a panel's legend; more stand once below all panels."""
 
 
 def plot_file(path: str) -> Path:
@@ -25,13 +37,74 @@ def plot_file(path: str) -> Path:
     return output_file("plot", path, SUFFIXES)
 
 
-def save(result: Any, file: Path) -> None:
-    """Draw a result into a file, which is replaced only by a complete picture."""
-    with replacing(file) as new:
-        figure(result).savefig(new, dpi=150)
+def figure(panels: Sequence[Panel]) -> Figure:
+    """All panels in one picture, two in a row."""
+    from matplotlib.figure import Figure
+
+    columns = min(2, len(panels))
+    rows = math.ceil(len(panels) / columns)
+    many = any(len(panel.curves) > _MOST for panel in panels)
+    size = (6.5 if columns == 1 else 6 * columns, 4.2 * rows + many)
+    picture = Figure(figsize=size, layout="constrained")
+    plots = picture.subplots(rows, columns, squeeze=False).ravel()
+    for plot, panel in zip(plots, panels, strict=False):
+        draw(plot, panel)
+    for empty in plots[len(panels) :]:
+        empty.set_visible(False)
+    if many:
+        crowded = [p for p, panel in zip(plots, panels, strict=False) if len(panel.curves) > _MOST]
+        names = {
+            label: handle
+            for plot in crowded
+            for handle, label in zip(*plot.get_legend_handles_labels(), strict=True)
+        }
+        picture.legend(
+            names.values(), names.keys(), loc="outside lower center", ncols=2 * columns + 1,
+            fontsize="small",
+        )  # fmt: skip
+    return picture
 
 
-@singledispatch
-def figure(result: Any) -> Figure:
-    """The picture of a result."""
-    raise TypeError(f"nothing is known to draw of {type(result).__name__}")
+def draw(plot: Axes, panel: Panel) -> None:
+    """Draw one panel."""
+    plot.set(xlabel=panel.x, ylabel=panel.y, title=panel.title)
+    for axis in panel.scale:
+        plot.set(**{f"{axis}scale": "log"})
+    if panel.map is not None:
+        _draw_map(plot, panel.map)
+    for i, curve in enumerate(panel.curves):
+        style, colour = curve.style, None
+        if not style:
+            style = _STYLES[i % len(_STYLES)]
+            style = style if len(curve.x) <= _FEW else style[1:]
+        if not any(part in style for part in ("C", "k", "r")):
+            colour = f"C{i}"
+        plot.errorbar(
+            curve.x, curve.y, curve.error, fmt=style, color=colour, ms=4, label=curve.label or None
+        )
+    if 0 < sum(bool(curve.label) for curve in panel.curves) <= _MOST:
+        plot.legend(fontsize="small")
+
+
+def _draw_map(plot: Axes, found: Map) -> None:
+    from matplotlib.colors import LogNorm, Normalize
+
+    values = np.ma.masked_invalid(found.values)
+    norm = (LogNorm if found.scale else Normalize)(found.low, found.high)
+    below = found.low is not None and bool(np.any(values < found.low))
+    above = found.high is not None and bool(np.any(values > found.high))
+    extend = ("neither", "min", "max", "both")[below + 2 * above]
+    (x, x_scale), (y, y_scale) = _borders(found.x), _borders(found.y)
+    image = plot.pcolormesh(x, y, values, norm=norm, cmap=found.colours)
+    plot.figure.colorbar(image, ax=plot, label=found.label, extend=extend)
+    plot.set(xscale=x_scale, yscale=y_scale, facecolor="0.8")
+
+
+def _borders(places: Array) -> tuple[Array, str]:
+    """Half way between places and as far beyond the outer ones, and the scale on which they are."""
+    log = places[-1] > 50 * places[0]
+    centres = np.log(places) if log else places
+    half = np.diff(centres) / 2
+    ends = [centres[0] - half[0]], centres[:-1] + half, [centres[-1] + half[-1]]
+    borders = np.concatenate(ends)
+    return (np.exp(borders), "log") if log else (borders, "linear")

@@ -1,111 +1,133 @@
-"""What a hard case turned out to be: numbers held to bounds, statements, and a picture's curves."""
+"""What any study's result looks like: a title, tables, findings, panels and notes."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+import io
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from html import escape
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from lwa.exact import InputError
+from validation.report import table as tables
+from validation.report import text as texts
+from validation.report.figure import figure
+from validation.report.files import replacing
+from validation.report.panel import Panel
+from validation.report.table import Finding, Statement, Table, plain
 
-from validation.pulses.pulse import Measured
-
-Array = NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class Finding:
-    """One measured number.
-
-    low, high : what it must lie between, its error included; a number without either is only told.
-    error : of the value; None where the number is itself an error, or exact.
-    key : by which a program finds it in the case's document; none for the many of a loop.
-
-    >>> Finding("order", 2.4, 2.0, 3.0, error=0.1).ok
-    True
-    >>> Finding("order", 2.4, 2.0, 2.45, error=0.1).ok
-    False
-    """
-
-    quantity: str
-    value: float
-    low: float = -math.inf
-    high: float = math.inf
-    error: float | None = None
-    key: str = ""
-
-    @classmethod
-    def of(
-        cls, quantity: str, measured: Measured, low: float, high: float, key: str = ""
-    ) -> Finding:
-        """A number that was measured twice."""
-        return cls(quantity, measured.value, low, high, measured.error, key)
-
-    @property
-    def ok(self) -> bool:
-        """Whether it lies where it must; a NaN never does."""
-        error = self.error or 0.0
-        return bool(self.low <= self.value - error and self.value + error <= self.high)
-
-
-@dataclass(frozen=True)
-class Statement:
-    """What holds or does not, such as that something is refused, in the words of the refusal."""
-
-    quantity: str
-    says: str
-    ok: bool
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 @dataclass(frozen=True, eq=False)
-class Curve:
-    """A row of points; ``line`` False draws the points alone."""
+class Report:
+    """A result for people, programs, spreadsheets, notebooks and eyes.
 
-    label: str
-    x: Array
-    y: Array
-    line: bool = True
+    title : what was done, in one line or some.
+    tables : of which people read those with labels, and programs those with a key.
+    findings : numbers held to bounds, and statements. With tables, people read only what fails.
+    panels : of the picture.
+    notes : what it takes to read the rest.
+    data : what goes to JSON as it is, besides the tables and findings.
+    parts : reports of which this one is made.
 
-    @classmethod
-    def of(cls, label: str, x: ArrayLike, y: ArrayLike, line: bool = True) -> Curve:
-        """From any sequences of numbers."""
-        return cls(label, np.asarray(x, float), np.asarray(y, float), line)
-
-
-@dataclass(frozen=True)
-class Panel:
-    """The picture of a case; ``scale`` names the logarithmic axes: "", "x", "y" or "xy"."""
-
-    x: str
-    y: str
-    curves: tuple[Curve, ...]
-    scale: str = ""
-
-
-@dataclass(frozen=True)
-class Grid:
-    """Many findings as one table for people: a header and its rows."""
-
-    header: tuple[str, ...]
-    rows: tuple[tuple[str, ...], ...]
-
-
-@dataclass(frozen=True)
-class Outcome:
-    """What is asked of a case, what was found, and what follows.
-
-    answer : what follows when the findings are as they must be.
-    grid : in place of the list of findings, where they fill a table.
+    >>> from validation.report.table import Column
+    >>> row = Table((Column("n", "sites"), Column("c_value", "speed", format=".3f")), ((8, 1.25),))
+    >>> print(Report("one chain", (row,)).text())
+    one chain
+    <BLANKLINE>
+    sites  speed
+    8      1.250
     """
 
-    question: str
-    findings: Sequence[Finding | Statement]
-    answer: str
-    panel: Panel
-    grid: Grid | None = None
+    title: str
+    tables: tuple[Table, ...] = ()
+    findings: tuple[Finding | Statement, ...] = ()
+    panels: tuple[Panel, ...] = ()
+    notes: tuple[str, ...] = ()
+    data: Mapping[str, Any] = field(default_factory=dict)
+    parts: tuple[Report, ...] = ()
 
     @property
     def ok(self) -> bool:
-        """Whether all findings are as they must be."""
-        return all(finding.ok for finding in self.findings)
+        """Whether every finding holds, those of the parts too."""
+        return all(found.ok for found in (*self.findings, *self.parts))
+
+    @property
+    def verdict(self) -> str:
+        """How many findings hold; nothing where there are none.
+
+        >>> Report("", findings=(Statement("refused", "k is 1", True),)).verdict
+        '1 check: all hold'
+        """
+        count = len(found := self._all())
+        failed = sum(not finding.ok for finding in found)
+        checks = f"{count} check{'s' * (count != 1)}: "
+        return checks + (f"{failed} of {count} fail" if failed else "all hold") if count else ""
+
+    def text(self) -> str:
+        """For people."""
+        return "\n\n".join(filter(None, (self._body(), self.verdict)))
+
+    def document(self) -> dict[str, Any]:
+        """For JSON: ``data``, the tables by their keys and, where something was to hold, ``ok`` and
+        the findings as `validation.report.table.document` has them."""
+        found: dict[str, Any] = dict(plain(self.data))
+        found |= {table.key: table.document() for table in self.tables if table.key}
+        if self.findings:
+            found |= tables.document(self.findings)
+        return found | ({"ok": self.ok} if self._all() else {})
+
+    def csv(self) -> str:
+        """The first table that programs read, or that of the first part which has one.
+
+        Raises `lwa.InputError` where there is none."""
+        for table in self.tables:
+            if any(column.key for column in table.columns):
+                return table.csv()
+        for part in self.parts:
+            return part.csv()
+        raise InputError("format is csv: this result has no table")
+
+    def figure(self) -> Figure:
+        """The picture. Raises `lwa.InputError` where there is none."""
+        if not (panels := self._panels()):
+            raise InputError("plot is asked for: this result has no picture")
+        return figure(panels)
+
+    def save(self, file: Path) -> None:
+        """Draw the picture into a file, which is replaced only by a complete one."""
+        with replacing(file) as new:
+            self.figure().savefig(new, dpi=150)
+
+    def _repr_html_(self) -> str:
+        """For a notebook: the tables and the picture."""
+        picture = ""
+        if self._panels():
+            drawn = io.StringIO()
+            self.figure().savefig(drawn, format="svg")
+            picture = drawn.getvalue()[drawn.getvalue().index("<svg") :]
+        return self._html() + picture + (f"<p>{self.verdict}</p>" if self._all() else "")
+
+    def _all(self) -> list[Finding | Statement]:
+        return [*self.findings, *(found for part in self.parts for found in part._all())]
+
+    def _panels(self) -> tuple[Panel, ...]:
+        return self.panels + tuple(panel for part in self.parts for panel in part._panels())
+
+    def _shown(self) -> list[str]:
+        shown = any(texts.blocks(table) for table in self.tables)
+        return texts.listed(self.findings, all_of_them=not shown)
+
+    def _body(self) -> str:
+        title, *notes = map(texts.filled, (self.title, *self.notes))
+        blocks = [title, *map(texts.text, self.tables), *self._shown(), *notes]
+        return "\n\n".join(filter(None, (*blocks, *(part._body() for part in self.parts))))
+
+    def _html(self) -> str:
+        told = [f"<pre>{escape(block)}</pre>" for block in self._shown()]
+        notes = [f"<p>{escape(note)}</p>" for note in self.notes]
+        blocks = [f"<p>{escape(self.title)}</p>", *map(texts.html, self.tables), *told, *notes]
+        return "".join((*blocks, *(part._html() for part in self.parts)))

@@ -1,17 +1,54 @@
-"""Chains with a motion put into them: compressions of the contacts, velocities of the beads.
+"""Chains with a motion put into them: a blow at the first bead, or a wave on its way; A = 1.
 
-m1 = A = D = 1.
+The paper's, `chain_scene`, is in SI units.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from lwa.numeric import Array
+from validation.scenes.materials import PTFE_BEAD, STEEL, STEEL_BEAD, Bead
 from validation.scenes.scene import Scene
+
+
+def struck(masses: Sequence[float], beads: int, k: float = 1.5, **rest: Any) -> Scene:
+    """So many beads at rest, whose masses repeat; the first one has velocity 1.
+
+    >>> struck((1, 0.5), 3, duration=1).masses
+    (1.0, 0.5, 1.0)
+    """
+    row = tuple(masses[i % len(masses)] for i in range(beads))
+    return Scene(masses=row, stiffnesses=(1.0,) * (beads - 1), k=k, velocities=(1.0,), **rest)
+
+
+def chain_scene(
+    velocity: float,
+    beads: int,
+    sensors: Sequence[int],
+    gravity: float,
+    duration: float,
+    N: int = 1,
+    ptfe: Bead = PTFE_BEAD,
+) -> Scene:
+    """The N:1 chain of steel and PTFE of Porter et al. (2008), which ends in a steel wall and is
+    struck by its first bead; it records the sensor beads, their two contacts each, and the wall's.
+    """
+    around = sorted({bead - 1 + side for bead in sensors for side in (-1, 0)})
+    return Scene.of_beads(
+        [STEEL_BEAD if number % (N + 1) else ptfe for number in range(1, beads + 1)],
+        wall=STEEL,
+        velocities=(velocity,),
+        gravity=gravity,
+        bead_sensors=[bead - 1 for bead in sensors],
+        contact_sensors=[*around, beads - 1],
+        duration=duration,
+        samples=60 * beads,
+    )
 
 
 def carrying(
@@ -28,3 +65,41 @@ def carrying(
         velocities=tuple(np.asarray(velocity, float)),
         **rest,
     )
+
+
+class Wave(Protocol):
+    """A traveling wave of a dimer: its speed c, the strain at contacts behind beads of either
+    mass, and the velocity of such beads."""
+
+    @property
+    def k(self) -> float: ...
+    @property
+    def c(self) -> float: ...
+    @property
+    def masses(self) -> tuple[float, float]: ...
+
+    def strain(self, xi: ArrayLike, contact: int = 0) -> Array:
+        """At contacts whose middle is at ξ."""
+        ...
+
+    def velocity(self, xi: ArrayLike, bead: int = 0) -> Array:
+        """Of beads at ξ."""
+        ...
+
+
+def launched(wave: Wave, start: int, sites: int, **rest: Any) -> Scene:
+    """A chain with a wave at bead ``start``, an m1, to run so many sites further; by default with
+    sensors at the contacts half way and at the end."""
+    bead = np.arange(2 * start + sites) - start
+    at, even = bead[:-1] + 0.5, bead % 2 == 0
+    options: dict[str, Any] = {
+        "contact_sensors": (start + sites // 2, start + sites),
+        "duration": (sites + start / 2) / wave.c,
+        "samples": 4001,
+    }
+    return carrying(
+        tuple(np.where(even, *wave.masses)), wave.k,
+        np.where(even[:-1], wave.strain(at, 0), wave.strain(at, 1)),
+        np.where(even, wave.velocity(bead, 0), wave.velocity(bead, 1)),
+        **options | rest,
+    )  # fmt: skip

@@ -6,7 +6,7 @@ says what would be right.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from functools import wraps
 from typing import Any, ParamSpec, TypeVar
 
@@ -22,6 +22,23 @@ T = TypeVar("T")
 
 class SceneError(InputError):
     """A scene, or a part of one, that cannot be meant: the message says what would be right."""
+
+
+class Failure(RuntimeError):
+    """A computation that could not go on, of good input: the message says where and why."""
+
+
+def one_of(value: Any, choices: Collection[str], name: str) -> str:
+    """A text that is one of the choices; raises `SceneError` for anything else.
+
+    >>> one_of("RK4", ("Verlet", "S6"), "method")
+    Traceback (most recent call last):
+        ...
+    validation.scenes.checks.SceneError: method is 'RK4': one of Verlet, S6 is wanted
+    """
+    if not isinstance(value, str) or value not in choices:
+        raise SceneError(f"{name} is {shorten(value)}: one of {', '.join(choices)} is wanted")
+    return value
 
 
 def of_scene(read: Callable[P, T]) -> Callable[P, T]:

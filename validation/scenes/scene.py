@@ -12,8 +12,9 @@ Units are the caller's own, as long as they agree (SI for real beads; m1 = A = D
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import accumulate, pairwise
 from typing import Any
 
@@ -21,8 +22,9 @@ import sympy as sp
 
 from lwa import Cell
 from lwa.cell import exponent
-from lwa.exact import InputError, shorten
-from validation.scenes.checks import SceneError, integer, items, positive, real, row
+from lwa.exact import shorten
+from lwa.spheres.tables import Reader
+from validation.scenes.checks import SceneError, integer, items, of_scene, positive, real, row
 from validation.scenes.materials import Bead, Material, contact_stiffness
 
 __all__ = ["Scene", "SceneError"]
@@ -75,44 +77,29 @@ class Scene:
     spacings: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
-        checked: dict[str, Any] = {
-            "masses": _all(positive, self.masses, "masses"),
-            "stiffnesses": _all(positive, self.stiffnesses, "stiffnesses"),
-            "k": real(self.k, "k"),
-            "duration": positive(self.duration, "duration"),
-            "wall": None if self.wall is None else positive(self.wall, "wall"),
-            "gravity": real(self.gravity, "gravity"),
-            "displacements": _all(real, self.displacements, "displacements"),
-            "velocities": _all(real, self.velocities, "velocities"),
-            "samples": integer(self.samples, "samples", 2),
-            "precompression": real(self.precompression, "precompression"),
-            "spacings": _all(positive, self.spacings, "spacings"),
-        }
-        for name, value in checked.items():
-            object.__setattr__(self, name, value)
+        for name, read in _READERS.items():
+            if name != "wall" or self.wall is not None:
+                object.__setattr__(self, name, read(getattr(self, name), name))
         n = self.size
         if n == 0:
             raise SceneError("masses is empty: a chain has at least one bead")
         for name in ("stiffnesses", "spacings"):
-            if (given := len(checked[name])) != n - 1 and (given or name == "stiffnesses"):
+            if (given := len(getattr(self, name))) != n - 1 and (given or name == "stiffnesses"):
                 raise SceneError(f"{given} {name} for {n} beads: {n - 1} are wanted")
         for name in ("displacements", "velocities"):
-            if len(checked[name]) > n:
-                raise SceneError(f"{len(checked[name])} {name} for {n} beads: at most {n} wanted")
-        if not math.isfinite(sum(checked["spacings"])):
+            if (given := len(getattr(self, name))) > n:
+                raise SceneError(f"{given} {name} for {n} beads: at most {n} wanted")
+        if not math.isfinite(sum(self.spacings)):
             raise SceneError("the chain's length comes out as inf: choose other units")
         if self.k < 1:
             raise SceneError(f"k is {self.k:g}: the contact law A δ^k is simulated for k ≥ 1")
         for name, act in (("gravity", "pull towards"), ("precompression", "push against")):
-            if (value := checked[name]) < 0 or (value > 0 and self.wall is None):
+            if (value := getattr(self, name)) < 0 or (value > 0 and self.wall is None):
                 raise SceneError(
                     f"{name} is {value:g}: it must be positive and needs a wall to {act}"
                 )
-        for name, most in (
-            ("contact_sensors", self.contact_count - 1),
-            ("bead_sensors", n - 1),
-        ):
-            object.__setattr__(self, name, _sensors(getattr(self, name), name, most))
+        for name, count in (("contact_sensors", self.contact_count), ("bead_sensors", n)):
+            object.__setattr__(self, name, _sensors(getattr(self, name), name, count))
 
     @property
     def size(self) -> int:
@@ -143,49 +130,49 @@ class Scene:
         (1.0, 0.5, 1.0, 0.5)
         """
         repeats = integer(repeats, "repeats", 1)
-        try:
-            k_value = _number(exponent(k), "k")
-        except InputError as error:
-            raise SceneError(str(error)) from None
-        masses = [_number(m, "mass") for m in cell.masses]
-        stiffnesses = [_number(A, "stiffness") for A in cell.stiffnesses]
-        n = len(masses) * repeats
+        k_value = _number(of_scene(exponent)(k), "k")
+        masses = tuple(_number(m, "mass") for m in cell.masses) * repeats
+        stiffnesses = tuple(_number(A, "stiffness") for A in cell.stiffnesses) * repeats
+        spacings = (float(cell.spacing),) * (len(masses) - 1) if cell.spacing.is_number else ()
         return cls(
-            masses=tuple(masses * repeats),
-            stiffnesses=tuple((stiffnesses * repeats)[:-1]),
-            k=k_value,
-            spacings=(float(cell.spacing),) * (n - 1) if cell.spacing.is_number else (),
-            **rest,
+            masses=masses, stiffnesses=stiffnesses[:-1], k=k_value, spacings=spacings, **rest
         )
 
     @classmethod
     def of_beads(cls, beads: Sequence[Bead], *, wall: Material | None = None, **rest: Any) -> Scene:
         """A chain of real beads in Hertz contact, ended by a flat wall if its material is given."""
-        row = items(beads, "beads")
-        for i, bead in enumerate(row):
+        given = items(beads, "beads")
+        for i, bead in enumerate(given):
             if not isinstance(bead, Bead):
                 raise SceneError(f"bead {i} is {shorten(bead)}: a Bead is wanted")
-        if not row:
+        if not given:
             raise SceneError("beads is empty: a chain has at least one bead")
         return cls(
-            masses=tuple(bead.mass for bead in row),
-            stiffnesses=tuple(contact_stiffness(a, b) for a, b in pairwise(row)),
+            masses=tuple(bead.mass for bead in given),
+            stiffnesses=tuple(contact_stiffness(a, b) for a, b in pairwise(given)),
             k=1.5,
-            wall=None if wall is None else contact_stiffness(row[-1], wall),
-            spacings=tuple(a.radius + b.radius for a, b in pairwise(row)),
+            wall=None if wall is None else contact_stiffness(given[-1], wall),
+            spacings=tuple(a.radius + b.radius for a, b in pairwise(given)),
             **rest,
         )
 
 
-def _all(read: Callable[[Any, str], float], values: Any, name: str) -> tuple[float, ...]:
-    return tuple(row(items(values, name), read, lambda i: f"{name}[{i}]"))
+def _all(read: Reader) -> Reader:
+    return lambda values, name: tuple(row(items(values, name), read, lambda i: f"{name}[{i}]"))
 
 
-def _sensors(values: Any, name: str, most: int) -> tuple[int, ...]:
+_READERS: dict[str, Reader] = {
+    "masses": _all(positive), "stiffnesses": _all(positive), "spacings": _all(positive),
+    "displacements": _all(real), "velocities": _all(real), "samples": partial(integer, least=2),
+    "k": real, "duration": positive, "wall": positive, "gravity": real, "precompression": real,
+}  # fmt: skip
+
+
+def _sensors(values: Any, name: str, count: int) -> tuple[int, ...]:
     given = items(values, name)
-    if given and most < 0:
+    if given and not count:
         raise SceneError(f"{name} is {shorten(given)}: this chain has none")
-    sensors = tuple(integer(i, f"{name}[{j}]", 0, most) for j, i in enumerate(given))
+    sensors = tuple(integer(i, f"{name}[{j}]", 0, count - 1) for j, i in enumerate(given))
     if len(set(sensors)) < len(sensors):
         raise SceneError(f"{name} is {shorten(sensors)}: each may be named once")
     return sensors

@@ -51,6 +51,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import partial
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -88,9 +89,6 @@ def read(path: str | Path) -> Scene:
     return of_scene(load)(path, "a scene", scene)
 
 
-# --- what is read ---------------------------------------------------------------------------
-
-
 @of_scene
 def scene(content: Any) -> Scene:
     """The scene of a parsed file, see the module; raises `SceneError`.
@@ -104,13 +102,11 @@ def scene(content: Any) -> Scene:
         for name in ("wall", "striker", "start", "sensors")
     }
     materials = read_materials(file)
-    spheres = read_beads(file, materials)
-    beads = {name: Bead.of(sphere) for name, sphere in spheres.items()}
+    beads = {name: Bead.of(sphere) for name, sphere in read_beads(file, materials).items()}
     defects = file.read("defects", _defects, ())
     row, chain = _chain(file.read("chain", table(KEYS["chain"])), beads, defects)
-    n = len(chain["masses"])
+    n, start, sensors = len(chain["masses"]), tables["start"], tables["sensors"]
     wall = _wall(tables["wall"], row, materials) if "wall" in file else None
-    start, sensors = tables["start"], tables["sensors"]
     velocities = start.read("velocities", each(real), ())
     if "striker" in file:
         if "start" in file:
@@ -132,8 +128,7 @@ def scene(content: Any) -> Scene:
     if result.samples * listening > MOST_SAMPLES:
         raise SceneError(f"samples is {result.samples}, for each of {listening} sensors: all may "
                          f"take {MOST_SAMPLES} together")  # fmt: skip
-    pressed = _overlap(result)
-    if pressed and not start.read("overlap", flag, False):
+    if (pressed := _overlap(result)) and not start.read("overlap", flag, False):
         other = "the wall" if pressed == n else f"bead {pressed + 1}"
         raise SceneError(
             f"start.displacements press bead {pressed} into {other}: start.overlap = true allows it"
@@ -183,9 +178,9 @@ def _chain(
         for defect in defects:
             if "like" in defect:
                 row[defect.read("bead", place(n))] = defect.read("like", among(beads))
-        hertz = Scene.of_beads(row, duration=1)
-        masses, stiffnesses = list(hertz.masses), list(hertz.stiffnesses)
-        k, spacings = hertz.k, hertz.spacings
+        plain = Scene.of_beads(row, duration=1)
+        masses, stiffnesses = list(plain.masses), list(plain.stiffnesses)
+        k, spacings = plain.k, plain.spacings
     else:
         masses = each(positive)(cell, "chain.cell") * repeat
         of_contacts = partial(_of_contacts, period=len(cell), count=n - 1)
@@ -224,19 +219,15 @@ def _wall(given: Table, row: Sequence[Bead], materials: Mapping[str, hertz.Mater
 
 def _overlap(what: Scene) -> int:
     """The number of the first contact that displacements press though it carries nothing, or 0."""
-    y = [*what.displacements, 0.0, 0.0]
-    if not (what.gravity or what.precompression):
-        for number in range(1, min(what.contact_count, len(what.displacements)) + 1):
-            if y[number - 1] > y[number]:
-                return number
-    return 0
-
-
-# --- what is written ------------------------------------------------------------------------
+    if what.gravity or what.precompression:
+        return 0
+    pairs = pairwise((*what.displacements, 0.0))  # beyond them, and at the wall
+    deeper = (i for i, (y, after) in enumerate(pairs, start=1) if y > after)
+    return next((i for i in deeper if i <= what.contact_count), 0)
 
 
 def document(what: Scene) -> dict[str, Any]:
-    """The file of a scene, for JSON or `toml`; `scene` makes an equal scene of it."""
+    """The file of a scene, for JSON; `scene` makes an equal scene of it."""
     period = _period(what)
     chain: dict[str, Any] = {"cell": list(what.masses[:period]), "k": what.k}
     if period < what.size:
@@ -245,10 +236,8 @@ def document(what: Scene) -> dict[str, Any]:
         if values := getattr(what, name):
             chain[name] = values[0] if len(set(values)) == 1 else list(values[:period])
     result: dict[str, Any] = {"duration": what.duration, "samples": what.samples}
-    for name in ("gravity", "precompression"):
-        if value := getattr(what, name):
-            result[name] = value
-    result["chain"] = chain
+    forces = {"gravity": what.gravity, "precompression": what.precompression}
+    result |= {name: force for name, force in forces.items() if force} | {"chain": chain}
     if what.wall is not None:
         result["wall"] = {"stiffness": what.wall}
     if len(what.velocities) == 1 and not what.displacements:
@@ -265,9 +254,8 @@ def document(what: Scene) -> dict[str, Any]:
 
 def _period(what: Scene) -> int:
     """The size of the smallest cell that, repeated, is the chain."""
-    n = what.size
-    for period in (p for p in range(1, n) if n % p == 0):
-        rows = (what.masses, what.stiffnesses, what.spacings)
-        if all(row[period:] == row[: len(row) - period] for row in rows if row):
-            return period
-    return n
+    n, rows = what.size, (what.masses, what.stiffnesses, what.spacings)
+    return next(
+        p for p in range(1, n + 1)
+        if n % p == 0 and all(row[p:] == row[: max(len(row) - p, 0)] for row in rows)
+    )  # fmt: skip

@@ -3,119 +3,89 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
 
 import click
 import numpy as np
 
-from validation.lattice.run import IntegrationError
+from validation.lattice.effort import RunProgress
 from validation.lattice.simulate import COMPILED, METHODS
-from validation.pulses.pulse import Measured
 from validation.pulses.sensors import (
     READINGS,
     SPEEDS,
     TOLERANCE,
+    Reading,
     Recording,
-    Sensor,
-    Speed,
     record,
     tracks,
 )
-from validation.report.command import output, run_progress, show
-from validation.report.figure import figure
+from validation.report.command import option, study
 from validation.report.files import output_file, replacing
-from validation.report.text import document, table, text
+from validation.report.panel import Curve, Panel
+from validation.report.result import Report
+from validation.report.table import Column, Table
 from validation.scenes.checks import SceneError
 from validation.scenes.scene import Scene
-from validation.scenes.scenefile import document as scene_document
-from validation.scenes.scenefile import read
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+from validation.scenes.scenefile import document, read
 
 STORED = (".json", ".npz")
 """Suffixes of the files that `store` writes."""
 
-RECORDS = ("time", "contact_force", "compression", "bead_force", "bead_velocity")
-"""The samples of a `validation.lattice.run.Run`."""
+_NOTE = (
+    "The first pulse at each sensor, dynamic forces, in the scene's own units. ±: by how much a "
+    "less\naccurate run differs."
+)
 
 
-@text.register
-def _(result: Recording) -> str:
-    scene = result.run.scene
-    wall = ", the last one the wall's" if scene.wall is not None else ""
-    momentum = result.run.momentum_drift
-    head = (
-        f"{scene.size} beads, {scene.contact_count} contacts{wall}, k = {scene.k:g}; "
-        f"duration {scene.duration:g}, energy drift {result.run.energy_drift:.0e}"
-        + (", momentum not conserved" if momentum is None else f", momentum drift {momentum:.0e}")
-    )
-    sensors = [(f"{s.kind} {s.number}", s) for s in result.sensors]
-    speeds = [(f"{s.kind} {s.start} → {s.end}", s) for s in result.speeds]
-    blocks = [head]
-    for header, names, lines in (
-        (("sensor", "arrival", "peak force", "FWHM"), READINGS, sensors),
-        (("speed", "sites/time", "length/time"), SPEEDS, speeds),
-    ):
-        rows = [(label, *(_number(s.numbers.get(name)) for name in names)) for label, s in lines]
-        if rows:
-            blocks.append(table(header, rows))
-    blocks += ["\n".join(f"{label}: {s.missing}" for label, s in sensors + speeds if s.missing)]
-    if sensors:
-        blocks.append(
-            "The first pulse at each sensor, dynamic forces, in the scene's own units. ±: by how "
-            "much a less\naccurate run differs."
-        )
-    return "\n\n".join(filter(None, blocks))
-
-
-def _number(measured: Measured | None) -> str:
-    return "-" if measured is None else f"{measured.value:.8g} ± {measured.error:.0e}"
-
-
-@document.register
-def _(result: Recording) -> dict[str, Any]:
+def report(found: Recording) -> Report:
     """``scene`` (as in a file, see `validation.scenes.scenefile`), ``sensors``: ``kind``,
     ``number``, ``arrival_value``, ``peak_value``, ``fwhm_value``; ``speeds``: ``kind``, ``from``,
     ``to``, ``speed_sites_value``, ``speed_value`` (null without spacings); each value with its
     error, as ``arrival_error_value``, and all null where ``missing`` says why;
-    ``energy_drift_value``, and ``momentum_drift_value``, null with a wall.
+    ``energy_drift_value``, and ``momentum_drift_value``, null with a wall. In the picture the
+    dynamic force at every sensor over time.
     """
-    return {
-        "scene": scene_document(result.run.scene),
-        "sensors": [
-            {"kind": s.kind, "number": s.number} | _values(READINGS, s) for s in result.sensors
-        ],
-        "speeds": [
-            {"kind": s.kind, "from": s.start, "to": s.end} | _values(SPEEDS, s)
-            for s in result.speeds
-        ],
-        "energy_drift_value": result.run.energy_drift,
-        "momentum_drift_value": result.run.momentum_drift,
-    }
+    run, scene = found.run, found.run.scene
+    wall = ", the last one the wall's" if scene.wall is not None else ""
+    momentum = "not conserved" if (p := run.momentum_drift) is None else f"drift {p:.0e}"
+    missing = [f"{r.name}: {r.missing}" for r in found.sensors + found.speeds if r.missing]
+    curves = tuple(Curve(f"{t.kind} {t.number}", t.time, t.force) for t in tracks(run))
+    return Report(
+        f"{scene.size} beads, {scene.contact_count} contacts{wall}, k = {scene.k:g}; duration "
+        f"{scene.duration:g}, energy drift {run.energy_drift:.0e}, momentum {momentum}",
+        (_table("sensor", ("number",), READINGS, found.sensors),
+         _table("speed", ("from", "to"), SPEEDS, found.speeds)),
+        panels=(Panel("time", "dynamic force", curves),) if curves else (),
+        notes=("\n".join(missing), _NOTE if found.sensors else ""),
+        data={
+            "scene": document(scene),
+            "energy_drift_value": run.energy_drift,
+            "momentum_drift_value": run.momentum_drift,
+        },
+    )  # fmt: skip
 
 
-def _values(names: Sequence[str], found: Sensor | Speed) -> dict[str, Any]:
-    values: dict[str, Any] = {}
-    for name in names:
-        measured = found.numbers.get(name)
-        values[f"{name}_value"] = None if measured is None else measured.value
-        values[f"{name}_error_value"] = None if measured is None else measured.error
-    return values | {"missing": found.missing}
+def _table(
+    what: str, places: Sequence[str], labels: Mapping[str, str], found: Sequence[Reading]
+) -> Table:
+    measured = [Column(name, label, "", ".8g", error=True) for name, label in labels.items()]
+    columns = (Column("", what), *map(Column, ("kind", *places)), *measured, Column("missing"))
+    rows = ((r.name, r.kind, *r.places, *map(r.numbers.get, labels), r.missing) for r in found)
+    return Table(columns, tuple(rows), f"{what}s")
 
 
-def store(result: Recording, file: Path) -> None:
+def store(found: Recording, file: Path) -> None:
     """Write a recording with all its samples; only a complete file replaces an old one.
 
-    JSON: the `document` and ``records``, which holds the arrays of
+    JSON: the document of its `report` and ``records``, which holds the arrays of
     `validation.lattice.run.Run` under their names with ``_value``, in the order of
     ``sensors``. NumPy's .npz: the same arrays under their own names and ``document``, a JSON text.
     Static forces are included.
     """
-    arrays = {name: getattr(result.run, name) for name in RECORDS}
-    content = document(result)
+    names = ("time", "contact_force", "compression", "bead_force", "bead_velocity")
+    arrays = {name: getattr(found.run, name) for name in names}
+    content = report(found).document()
     with replacing(file) as new, new.open("wb") as stream:
         if file.suffix.lower() == ".npz":
             np.savez_compressed(stream, document=json.dumps(content), **arrays)
@@ -124,58 +94,31 @@ def store(result: Recording, file: Path) -> None:
             stream.write(json.dumps(content | {"records": records}).encode())
 
 
-@figure.register(Recording)
-def _(result: Recording) -> Figure:
-    """The dynamic force at every sensor over time."""
-    from matplotlib.figure import Figure
-
-    picture = Figure(figsize=(8, 4.5), layout="constrained")
-    axes = picture.subplots()
-    for track in tracks(result.run):
-        axes.plot(track.time, track.force, label=f"{track.kind} {track.number}")
-    axes.set(xlabel="time", ylabel="dynamic force")
-    axes.legend()
-    return picture
-
-
-def _read(context: click.Context, argument: click.Parameter, path: str) -> Scene:
+def _read(context: click.Context, given: click.Parameter, path: str) -> Scene:
     return read(path)
 
 
-def _store(context: click.Context, option: click.Parameter, path: str | None) -> Path | None:
+def _out(context: click.Context, given: click.Parameter, path: str | None) -> Path | None:
     return None if path is None else output_file("out", path, STORED)
 
 
-@click.command("run")
-@click.argument("scene", callback=_read)
-@click.option(
-    "--out", callback=_store, metavar="FILE",
-    help=f"Store the result, the records and the scene in a file ({', '.join(STORED)}).",
+@study(
+    click.argument("scene", callback=_read),
+    option("--out", callback=_out, metavar="FILE", says="Store the result, the records and the "
+           f"scene in a file ({', '.join(STORED)})."),
+    option("--method", default=METHODS[0], metavar="NAME", says="Of integration: "
+           f"{', '.join(METHODS)} (SciPy) or {', '.join(COMPILED)} (compiled)."),
+    option("--rtol", default=TOLERANCE, says="Of the method; errors are those from a run at a "
+           "tolerance 1000 times as large."),
 )  # fmt: skip
-@click.option(
-    "--method", default=METHODS[0], show_default=True, metavar="NAME",
-    help=f"Of integration: {', '.join(METHODS)} (SciPy) or {', '.join(COMPILED)} (compiled).",
-)  # fmt: skip
-@click.option(
-    "--rtol", type=float, default=TOLERANCE, show_default=True,
-    help="Of the method; errors are those from a run at a tolerance 1000 times as large.",
-)  # fmt: skip
-@output
-def run_command(
-    scene: Scene,
-    out: Path | None,
-    method: str,
-    rtol: float,
-    style: str,
-    picture: Path | None,
-) -> None:
+def run(
+    scene: Scene, out: Path | None, method: str, rtol: float, picture: Path | None,
+    run_progress: RunProgress,
+) -> Report:  # fmt: skip
     """A scene from a file, TOML or JSON: arrival, peak force, FWHM and speed at its sensors."""
     if picture is not None and not (scene.bead_sensors or scene.contact_sensors):
         raise SceneError("plot is asked for, but the scene names no sensors")
-    try:
-        result = record(scene, method=method, rtol=rtol, progress=run_progress)
-    except IntegrationError as error:
-        raise click.ClickException(str(error)) from None
+    found = record(scene, method=method, rtol=rtol, progress=run_progress)
     if out is not None:
-        store(result, out)
-    show(result, style, picture)
+        store(found, out)
+    return report(found)

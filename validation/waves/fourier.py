@@ -33,10 +33,10 @@ from collections.abc import Callable
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy.fft import dct, dst
+import scipy
 
-Array = NDArray[np.float64]
+from lwa.numeric import Array
+from validation.scenes.checks import integer
 
 MOST_STEPS = 40
 """Of Newton's method."""
@@ -55,15 +55,10 @@ def ample_half_period(masses: tuple[float, float], k: float) -> float:
     return length if masses[0] == masses[1] else max(8.0, 1.15 * length * widening(masses))
 
 
-def rates(masses: tuple[float, float]) -> tuple[float, float]:
-    """Σ and Δ."""
-    return 1 / masses[0] + 1 / masses[1], 1 / masses[1] - 1 / masses[0]
-
-
 def respond(
     even: Array, odd: Array, pair: tuple[float, float], half_period: float
 ) -> tuple[Array, Array]:
-    """c² e and c² o of (*), coefficients for coefficients along the first axis; e_0 is left 0."""
+    """c² e and c² o of (*) for Σ, Δ, coefficients along the first axis; e_0 is left 0."""
     total, difference = pair
     n = len(even) - 1
     q = np.pi * np.arange(n + 1) / half_period
@@ -82,19 +77,13 @@ def respond(
     return e, o
 
 
-def at_end(even: Array) -> Array:
-    """The value at L of a cosine series, but for its constant."""
-    result: Array = even[1::2].sum(axis=0) * -1 + even[2::2].sum(axis=0)
-    return result
-
-
 def coefficients(even: Array, odd: Array) -> tuple[Array, Array]:
     """Of cos and sin, from values at ξ = 0 … L (0 … n; odd 1 … n-1), along the first axis."""
     n = len(even) - 1
-    c = dct(even, 1, axis=0) / n
+    c = scipy.fft.dct(even, 1, axis=0) / n
     c[[0, n]] /= 2
     s = np.zeros_like(odd, shape=(n + 1, *odd.shape[1:]))
-    s[1:n] = dst(odd, 1, axis=0) / n
+    s[1:n] = scipy.fft.dst(odd, 1, axis=0) / n
     return c, s
 
 
@@ -104,8 +93,8 @@ def values(even: Array, odd: Array) -> tuple[Array, Array]:
     c = even / 2
     c[[0, n]] *= 2
     s = np.zeros_like(odd)
-    s[1:n] = dst(odd[1:n], 1, axis=0) / 2
-    return np.asarray(dct(c, 1, axis=0)), s
+    s[1:n] = scipy.fft.dst(odd[1:n], 1, axis=0) / 2
+    return np.asarray(scipy.fft.dct(c, 1, axis=0)), s
 
 
 class Problem:
@@ -176,48 +165,43 @@ class Problem:
         even, odd, T = (first * a + light * b for a, b in zip(*self.parts, strict=True))
         return even, odd, T
 
-    def wave(self, z: Array, c2: float) -> tuple[Array, float]:
-        """Forces and c² at the given masses."""
+    def wave(self, z: Array, c2: float, unknown: str = "") -> tuple[Array, float, float]:
+        """Forces, c², and where it is asked for the "mass" (as 1/m2) or the "kick" with T = 0.
+
+        Raises `numpy.linalg.LinAlgError` where Newton's method does not converge.
+        """
+        count, inner = self.count, self.xi[1 : self.n]
+        kick = np.append(np.zeros(self.n + 1), inner * np.exp(-2 * inner**2))
 
         def step(x: Array) -> tuple[Array, Array]:
-            fault, matrix = self.equations(x[:-1], x[-1], self.inverse[1])
-            return fault, matrix[:, :-1]
+            light = x[-1] if unknown == "mass" else self.inverse[1]
+            fault, matrix = self.equations(x[:count], x[count], light)
+            if not unknown:
+                return fault, matrix[:, :-1]
+            T = self._at(light)[2]
+            last = float(self.parts[1][2] @ x[:count]) if unknown == "mass" else 0.0
+            if unknown == "kick":
+                fault[:-1] -= x[-1] * kick
+                matrix[:-1, -1] = -kick
+            row = np.append(T, [0.0, last])
+            return np.append(fault, T @ x[:count]), np.vstack((matrix, row))
 
-        x = newton(step, self._start(z, c2), self._sizes(c2))
-        return x[:-1], float(x[-1])
+        others = [c2, *{"": (), "mass": (self.inverse[1],), "kick": (0.0,)}[unknown]]
+        sizes = np.append(np.ones(count), [other or 1.0 for other in others])
+        x = newton(step, np.append(z[:count] / z[0], others), sizes)
+        return x[:count], float(x[count]), float(x[-1])
 
-    def ending(self, z: Array, c2: float) -> tuple[Array, float, float]:
-        """Forces, c² and the 1/m2 for which T = 0."""
 
-        def step(x: Array) -> tuple[Array, Array]:
-            fault, matrix = self.equations(x[:-2], x[-2], x[-1])
-            T, by_light = self._at(x[-1])[2], self.parts[1][2] @ x[:-2]
-            row = np.append(T, [0.0, by_light])
-            return np.append(fault, T @ x[:-2]), np.vstack((matrix, row))
-
-        light = self.inverse[1]
-        x = newton(step, self._start(z, c2, light), self._sizes(c2, light))
-        return x[:-2], float(x[-2]), float(x[-1])
-
-    def kicked(self, z: Array, c2: float) -> tuple[Array, float, float]:
-        """Forces, c² and the size of the kick with which T = 0."""
-        inner = self.xi[1 : self.n]
-        kick = np.concatenate((np.zeros(self.n + 1), inner * np.exp(-2 * inner**2), [0.0]))
-        T = np.append(self._at(self.inverse[1])[2], [0.0, 0.0])
-
-        def step(x: Array) -> tuple[Array, Array]:
-            fault, matrix = self.equations(x[:-2], x[-2], self.inverse[1])
-            matrix[:, -1] = -kick
-            return np.append(fault - x[-1] * kick, T @ x), np.vstack((matrix, T))
-
-        x = newton(step, self._start(z, c2, 0.0), self._sizes(c2, 1.0))
-        return x[:-2], float(x[-2]), float(x[-1])
-
-    def _start(self, z: Array, *others: float) -> Array:
-        return np.append(z[: self.count] / z[0], others)
-
-    def _sizes(self, *others: float) -> Array:
-        return np.append(np.ones(self.count), others)
+def problem(
+    masses: tuple[float, float], k: float, half_period: float | None, points: int | None
+) -> Problem:
+    """On an ample period, and on points that resolve the wave, unless they are given."""
+    L = ample_half_period(masses, k) if half_period is None else half_period
+    # Per site: the pulse's own Fourier width, its steeper flanks at large k, the light beads.
+    beads = math.sqrt(sum(masses) / min(masses) - 1)
+    dense = 3 + 9 * math.sqrt(k - 1) + 7 * max(k - 2, 0) + 1.5 * beads
+    n = max(40, math.ceil(dense * L)) if points is None else integer(points, "points", 8, 2000)
+    return Problem(masses, k, L, n)
 
 
 def newton(step: Callable[[Array], tuple[Array, Array]], x: Array, sizes: Array) -> Array:

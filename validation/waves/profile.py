@@ -16,14 +16,14 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy.optimize import brentq, minimize_scalar
 
+from lwa.numeric import Array
 from lwa.quantities import strain_power
 from validation.pulses.pulse import MeasureError
 from validation.scenes.checks import SceneError, positive
 from validation.waves import fourier
-from validation.waves.fourier import Array
 
 TOLERANCE = 1e-9
 """A wave is called solitary when its tail, over the peak strain, is below this and the equations
@@ -47,8 +47,13 @@ class Profile(ABC):
         """On 0 … L, from which on its humps are told apart."""
 
     @abstractmethod
+    def _front(self, xi: Array) -> Array:
+        """a(ξ)."""
+
     def strain(self, xi: ArrayLike, contact: int = 0) -> Array:
         """a(ξ) (contact 0, m1 to its left) or b(ξ) = a(-ξ) (contact 1); a gap is negative."""
+        at = np.asarray(xi, float)
+        return self._front(-at if contact % 2 else at)
 
     @abstractmethod
     def velocity(self, xi: ArrayLike, bead: int = 0) -> Array:
@@ -103,7 +108,7 @@ class Profile(ABC):
             if not below:
                 raise MeasureError(f"the {name} has no FWHM: its tail is above half its peak")
             ends = points[below - 1], points[below]
-            root = brentq(
+            root = scipy.optimize.brentq(
                 lambda x: float(self.quantity(name, x)) - peak / 2, *ends, xtol=1e-14, rtol=1e-14
             )
             width += abs(float(root) - top)
@@ -126,6 +131,11 @@ class Profile(ABC):
             return np.abs(self.strain(at) - self.strain(-at)) / 2
 
         return summit(lambda x: float(height(x)), outside, height(outside))[1]
+
+    def apart(self, other: Profile, end: float) -> float:
+        """The largest difference of two strains on |ξ| ≤ end."""
+        xi = np.linspace(-end, end, 401)
+        return float(np.abs(self.strain(xi) - other.strain(xi)).max())
 
 
 @dataclass(frozen=True, eq=False)
@@ -185,13 +195,12 @@ class ExactWave(Profile):
             raise SceneError(
                 f"{what}: the wave's strain, {now:.1e} times that here, is out of range"
             )
-        s = float(now)
-        return replace(
-            self,
-            c2=float(self.c2 * s ** (self.k - 1)),
-            even=self.even * s**self.k,
-            odd=self.odd * s**self.k,
-        )
+        return self.times(float(now))
+
+    def times(self, s: float) -> ExactWave:
+        """The wave of s times these strains."""
+        c2, force = float(self.c2 * s ** (self.k - 1)), s**self.k
+        return replace(self, c2=c2, even=self.even * force, odd=self.odd * force)
 
     @cached_property
     def _q(self) -> Array:
@@ -199,23 +208,13 @@ class ExactWave(Profile):
 
     @cached_property
     def _strains(self) -> tuple[Array, Array]:
-        # In units of m1, whose reciprocal may be out of range.
-        pair = fourier.rates((1.0, self.omega))
-        e, o = fourier.respond(self.even, self.odd, pair, self.half_period)
-        e[0] = -fourier.at_end(e)
-        c2 = self.c2 * self.masses[0]
+        light, c2 = 1 / self.omega, self.c2 * self.masses[0]  # 1/m1 itself may be out of range
+        e, o = fourier.respond(self.even, self.odd, (1 + light, light - 1), self.half_period)
+        e[0] = e[1::2].sum() - e[2::2].sum()  # the strain is 0 at L
         return np.asarray(e / c2), np.asarray(o / c2)
 
-    def _inside(self, xi: ArrayLike) -> Array:
-        """A solitary wave is not repeated."""
-        at = np.asarray(xi, float)
-        return np.clip(at, -self.half_period, self.half_period) if self.solitary else at
-
-    def strain(self, xi: ArrayLike, contact: int = 0) -> Array:
-        """a(ξ) (contact 0, m1 to its left) or b(ξ) = a(-ξ) (contact 1); a gap is negative."""
-        at = np.asarray(xi, float)
-        value: Array = self._sum(-at if contact % 2 else at, *self._strains)
-        return value
+    def _front(self, xi: Array) -> Array:
+        return self._sum(xi, *self._strains)
 
     def velocity(self, xi: ArrayLike, bead: int = 0) -> Array:
         """Of the beads m1 (bead 0) or m2 (bead 1); far from the pulse a cell has no momentum."""
@@ -230,7 +229,8 @@ class ExactWave(Profile):
         return self._sum(xi, row, 0 * row)
 
     def _sum(self, xi: ArrayLike, even: Array, odd: Array) -> Array:
-        phase = np.multiply.outer(self._inside(xi), self._q)
+        L = self.half_period if self.solitary else math.inf  # a solitary wave is not repeated
+        phase = np.multiply.outer(np.clip(xi, -L, L), self._q)
         value: Array = np.cos(phase) @ even + np.sin(phase) @ odd
         return value
 
@@ -240,8 +240,7 @@ def at_unit_force(
 ) -> ExactWave:
     """The wave of these forces, scaled to a force 1 at its peak, with its tail and residual."""
     wave = ExactWave(masses, k, c2, half_period, even, odd, 0.0, 0.0)
-    s = 1 / wave.peak("strain")[1]
-    wave = replace(wave, c2=float(c2 * s ** (k - 1)), even=even * s**k, odd=odd * s**k)
+    wave = wave.times(1 / wave.peak("strain")[1])
     tail = 0.0 if masses[0] == masses[1] else wave.rattle(OUTSIDE * half_period)
     return replace(wave, tail=tail, residual=_residual(wave))
 
@@ -261,7 +260,9 @@ def summit(f: Callable[[float], float], xi: Array, value: Array) -> tuple[float,
     """The maximum of a smooth function near the largest of its samples; its place to 1e-8."""
     i = int(np.argmax(value))
     bounds = xi[max(i - 1, 0)], xi[min(i + 1, len(xi) - 1)]
-    top = minimize_scalar(lambda x: -f(x), bounds=bounds, method="bounded", options={"xatol": 1e-9})
+    top = scipy.optimize.minimize_scalar(
+        lambda x: -f(x), bounds=bounds, method="bounded", options={"xatol": 1e-9}
+    )
     if -top.fun > value[i]:
         return float(top.x), -float(top.fun)
     return float(xi[i]), float(value[i])

@@ -3,8 +3,8 @@
 Elsewhere the light beads keep oscillating behind the pulse. At these ratios they come to rest with
 the heavy ones, after one more full oscillation from each ratio to the next smaller one
 (Jayaprakash, Starosvetsky & Vakakis, Phys. Rev. E 83, 036606, 2011: 0.3428, 0.1548, 0.0901, … at
-k = 3/2). They are the zeros of the strain T that a wave leaves, of `spectral`; Newton's method
-solves T = 0 with the equations of motion, m2/m1 being one of the unknowns.
+k = 3/2). They are the zeros of the strain T that a wave leaves (`validation.waves.fourier`);
+Newton's method solves T = 0 with the equations of motion, m2/m1 being one of the unknowns.
 
 Newton's method alone may end at any of the ratios. What keeps them in order: the first two are
 those of k = 3/2, followed to k in steps that change √(m1/m2) little. Each further one is looked for
@@ -23,9 +23,8 @@ from typing import Any
 import numpy as np
 
 from validation.scenes.checks import SceneError, integer
-from validation.waves.continuation import NoWave, kicked, solve
 from validation.waves.profile import ExactWave
-from validation.waves.solver import parameters
+from validation.waves.solver import NoWave, kicked, parameters, solve
 
 RANGE = (1.1, 5.0)
 """The k for which special ratios are found. As k → 1, T becomes too small to be told from
@@ -53,22 +52,13 @@ class Resonances:
 
 
 def resonances(k: Any, count: Any) -> Resonances:
-    """The first ``count`` special ratios and their waves, for k from 1.1 to 5.
-
-    Raises `SceneError` and `NoWave` as `special_waves` does.
-
-    >>> [round(ratio, 6) for ratio in resonances(1.5, 2).mass_ratios]
-    [0.342846, 0.154752]
-    """
-    waves = special_waves(k, count)
-    return Resonances(waves[0].k, waves)
-
-
-def special_waves(k: Any, count: Any) -> tuple[ExactWave, ...]:
-    """The solitary waves at the ``count`` largest special ratios m2/m1 < 1, with m1 = 1.
+    """The solitary waves at the ``count`` largest special ratios m2/m1 < 1, for k from 1.1 to 5.
 
     Raises `SceneError` where the roots cannot be told from rounding, and `NoWave` when fewer are
     found.
+
+    >>> [round(ratio, 6) for ratio in resonances(1.5, 2).mass_ratios]
+    [0.342846, 0.154752]
     """
     _, k = parameters([1], k)
     low, high = RANGE
@@ -79,8 +69,8 @@ def special_waves(k: Any, count: Any) -> tuple[ExactWave, ...]:
     count = integer(count, "count", 1, MOST)
     first = [solve((1.0, ratio), HERTZ, free=True) for ratio in PUBLISHED]
     if k <= HERTZ:
-        return _ladder([_followed(wave, k) for wave in first], count)
-    return tuple(_followed(wave, k) for wave in _ladder(first, count))
+        return Resonances(k, _ladder([_followed(wave, k) for wave in first], count))
+    return Resonances(k, tuple(_followed(wave, k) for wave in _ladder(first, count)))
 
 
 def _root(wave: ExactWave) -> float:

@@ -1,7 +1,7 @@
 """Traveling waves of the lattice to machine precision: Newton's method on spectral profiles.
 
-The equations are those of `spectral`: a chain of beads m1, m2, m1, … at distance 1 whose contacts
-push with r_+^k, and a wave mirror symmetric about a bead, with strains e ± o at its two contacts.
+The equations are those of `validation.waves.fourier`, of a wave mirror symmetric about a bead of a
+dimer chain.
 
 A solitary wave leaves no strain T behind. That is one condition more than there are unknowns
 (amplitude and speed are tied by scaling), so that a dimer has solitary waves at isolated ratios
@@ -28,7 +28,7 @@ from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
 from typing import Any
@@ -36,16 +36,20 @@ from typing import Any
 import numpy as np
 
 from lwa.exact import InputError
+from lwa.numeric import Array
 from lwa.quantities import QUANTITIES
 from validation.lattice.run import IntegrationError
 from validation.pulses.pulse import Measured
 from validation.scenes.checks import SceneError, items, positive, real
 from validation.waves import fourier
-from validation.waves.continuation import NoWave, follow, named, solve
-from validation.waves.profile import TOLERANCE, ExactWave
+from validation.waves.profile import ExactWave, Profile, at_unit_force
 from validation.waves.struck import Struck, struck
 
-__all__ = ["TOLERANCE", "ExactWave", "NoWave", "continuation", "exact_wave", "measured", "solve"]
+CLOSE = 0.1
+"""By how much c² or the strain, over c² or the peak strain, may change in one step along k."""
+
+HALVINGS = 7
+"""Of a step along k, before a branch counts as lost."""
 
 STEEP = 2.0
 """The k from which waves are followed up where Newton's method finds none."""
@@ -57,14 +61,11 @@ ROUNDING = 1e-12
 """Of a solitary wave's numbers: that of a strain, over its slope at half maximum."""
 
 
-def exact_wave(
-    masses: Sequence[Any],
-    k: Any,
-    *,
-    half_period: float | None = None,
-    points: int | None = None,
-    start: ExactWave | None = None,
-) -> ExactWave:
+class NoWave(InputError):
+    """Newton's method found no wave; the message names its parameters."""
+
+
+def exact_wave(masses: Sequence[Any], k: Any, *, half_period: float | None = None) -> ExactWave:
     """The traveling wave: solitary, or the nanopteron nearest to the pulse of a struck chain.
 
     Parameters
@@ -72,10 +73,6 @@ def exact_wave(
     masses : m1, or m1 and m2.
     k : exponent of F = δ^k, from 1.01 to 8.
     half_period : L, where it is to be this one and not chosen.
-    points : n, of the grid on [0, L].
-    start : a wave whose branch is followed to these parameters; without, a solitary wave that the
-        theory's leads to is taken, and otherwise of all waves found that which is nearest to the
-        pulse of a struck chain.
 
     Raises `SceneError` for parameters that cannot be meant, `NoWave` when Newton's method fails.
 
@@ -86,13 +83,7 @@ def exact_wave(
     pair, k = parameters(masses, k)
     L = None if half_period is None else positive(half_period, "half_period")
     unit = (1.0, pair[1] / pair[0])
-    if start is not None:
-        c2 = start.c2 * start.masses[0]
-        found = follow(replace(start, masses=(1.0, start.omega), c2=c2), unit, k, L, points)
-    elif unit[1] == 1:
-        found = _uniform(unit, k, L, points)
-    else:
-        found = _dimer(unit, k, L, points)
+    found = (_uniform if unit[1] == 1 else _dimer)(unit, k, L)
     c2 = found.c2 / pair[0]
     if not sys.float_info.min <= c2 <= sys.float_info.max:
         raise SceneError(f"mass 1 is {pair[0]:g}: c² leaves the range of floats")
@@ -136,19 +127,6 @@ def _numbers(wave: ExactWave | Struck, mass: float = 1.0) -> dict[str, float]:
     return found
 
 
-def continuation(
-    parameters: Iterable[tuple[Sequence[Any], Any]], **options: Any
-) -> Iterator[ExactWave]:
-    """Waves along a path of (masses, k), each on the branch of the one before; options as there.
-
-    Raises `NoWave` where the branch turns back, ends or cannot be told from another one.
-    """
-    wave: ExactWave | None = None
-    for masses, k in parameters:
-        wave = exact_wave(masses, k, start=wave, **options)
-        yield wave
-
-
 def parameters(masses: Sequence[Any], k: Any) -> tuple[tuple[float, float], float]:
     """m1, m2 and k, checked."""
     given = [positive(m, f"mass {i}") for i, m in enumerate(items(masses, "masses"), start=1)]
@@ -163,48 +141,154 @@ def parameters(masses: Sequence[Any], k: Any) -> tuple[tuple[float, float], floa
     return (given[0], given[-1]), k
 
 
-def _uniform(
-    pair: tuple[float, float], k: float, half_period: float | None, points: int | None
-) -> ExactWave:
+def _uniform(pair: tuple[float, float], k: float, half_period: float | None) -> ExactWave:
     if k <= 3:
-        return solve(pair, k, half_period, points)
-    return follow(solve(pair, 3.0), pair, k, half_period, points)  # the theory's is too wide
+        return solve(pair, k, half_period)
+    L = half_period or fourier.ample_half_period(pair, k)
+    return _followed(solve(pair, 3.0), k, L)  # the theory's is too wide
 
 
-def _dimer(
-    pair: tuple[float, float], k: float, half_period: float | None, points: int | None
-) -> ExactWave:
+def _dimer(pair: tuple[float, float], k: float, half_period: float | None) -> ExactWave:
     """The solitary wave that the theory's leads to, or the wave nearest to a struck chain's."""
     ample = fourier.ample_half_period(pair, k)
     periods = list(ample * PERIODS) if half_period is None else [half_period]
     waves: list[ExactWave] = []
-
-    def look(L: float, start: Struck | None) -> bool:
-        with suppress(NoWave):
-            waves.append(solve(pair, k, L, points, start))
-            return waves[-1].solitary
-        return False
-
-    if look(periods[0], None):
-        return waves[0]
+    with suppress(NoWave):
+        waves.append(solve(pair, k, periods[0]))
+        if waves[0].solitary:
+            return waves[0]
     try:
         pulse = struck(k, pair[1])
     except (InputError, IntegrationError) as error:
-        raise NoWave(f"{named('no pulse of a struck chain', pair, k)}: {error}") from None
+        raise NoWave(f"{_named('no pulse of a struck chain', pair, k)}: {error}") from None
     for start in (pulse, None):
         for L in periods:
-            if look(L, start):
-                return waves[-1]
+            with suppress(NoWave):
+                waves.append(solve(pair, k, L, start=start))
+                if waves[-1].solitary:
+                    return waves[-1]
         if waves:
-            return min(waves, key=pulse.distance)
+            return min(waves, key=lambda wave: pulse.apart(wave, pulse.pulse))
     lengths = f"{periods[0]:.4g}" + f" to {periods[-1]:.4g}" * (len(periods) > 1)
     failure = (
-        f"{named('no wave found', pair, k)}: Newton's method was begun from the pulse of a struck "
+        f"{_named('no wave found', pair, k)}: Newton's method was begun from the pulse of a struck "
         f"chain and from the theory's wave, at half periods {lengths}"
     )
     if k <= STEEP:
         raise NoWave(failure)
     try:
-        return follow(_dimer(pair, STEEP, half_period, None), pair, k, half_period, points)
+        begin = _dimer(pair, STEEP, half_period)
+        return _followed(begin, k, half_period or max(begin.half_period, ample))
     except NoWave as other:
         raise NoWave(f"{failure}; {other}") from None
+
+
+def _followed(begin: ExactWave, k: float, half_period: float) -> ExactWave:
+    """The wave at another k and L on the branch of this one.
+
+    A step counts when it changes the wave little and when the same step taken back leads to the
+    wave it came from, as far as residuals can tell; otherwise it is halved. Raises `NoWave` where
+    the branch turns back or ends on the way.
+    """
+
+    def at(t: float) -> tuple[float, float]:
+        L = begin.half_period + t * (half_period - begin.half_period)
+        return (begin.k + t * (k - begin.k) if t < 1 else k), L
+
+    wave, done, step = begin, 0.0, 1.0
+    while done < 1:
+        to = min(1.0, done + step)
+        with suppress(NoWave):
+            found = solve(begin.masses, *at(to), start=wave)
+            back = solve(begin.masses, *at(done), start=found)
+            L = min(wave.half_period, found.half_period)
+            speeds = found.c2 * (found.k + 1) / (wave.c2 * (wave.k + 1))  # over the theory's
+            rounding = 1e-6 + 10 * max(wave.residual, back.residual)
+            near = abs(speeds - 1) < CLOSE and found.apart(wave, L) < CLOSE
+            if near and back.apart(wave, wave.half_period) < rounding:
+                wave, done, step = found, to, 2 * step
+                continue
+        step = (to - done) / 2
+        if step < 0.5**HALVINGS:
+            lost = "the branch of waves turns back or ends"
+            raise NoWave(_named(lost, begin.masses, at(done)[0]))
+    return wave
+
+
+# --- one solution of the equations ----------------------------------------------------------
+
+
+def solve(
+    masses: tuple[float, float],
+    k: float,
+    half_period: float | None = None,
+    points: int | None = None,
+    start: Profile | None = None,
+    free: bool = False,
+) -> ExactWave:
+    """One wave by Newton's method, scaled to a force 1 at its peak; free: m2 is to be found.
+
+    It begins with the theory's wave, or another near one, and may end on any branch of waves.
+    Raises `NoWave` where it fails.
+    """
+    return _solved(masses, k, half_period, points, start, "mass" if free else "")[0]
+
+
+def kicked(
+    masses: tuple[float, float], k: float, start: ExactWave | None = None
+) -> tuple[ExactWave, float]:
+    """The wave that a kick in the middle of its pulse keeps from having a tail, and the kick.
+
+    It obeys the equations of motion but for the kick. Raises `NoWave` where Newton's method fails.
+    """
+    return _solved(masses, k, None, None, start, "kick")
+
+
+def _solved(
+    masses: tuple[float, float],
+    k: float,
+    half_period: float | None,
+    points: int | None,
+    start: Profile | None,
+    unknown: str,
+) -> tuple[ExactWave, float]:
+    problem = fourier.problem(masses, k, half_period, points)
+    try:
+        z, c2, found = problem.wave(*_guess(masses, k, problem.xi, start), unknown)
+    except np.linalg.LinAlgError:
+        raise NoWave(_named("Newton's method finds no wave", masses, k)) from None
+    if unknown == "mass":
+        masses = masses[0], 1 / found
+    n = problem.n
+    z = np.append(z, np.zeros(2 * n - len(z)))
+    even, odd = fourier.coefficients(z[: n + 1], z[n + 1 :])
+    return at_unit_force(masses, k, c2, float(problem.xi[-1]), even, odd), found
+
+
+def _guess(
+    masses: tuple[float, float], k: float, xi: Array, start: Profile | None
+) -> tuple[Array, float]:
+    """E, O on the grid and c², from a near wave or from the theory at leading order.
+
+    There the force is cos^{2k/(k-1)}(βξ), c² = 4 / ((k+1)(m1+m2)), and the contacts of a cell are
+    (m2-m1)/(m1+m2) out of step, by which both beads of a cell move alike.
+    """
+    if start is not None:
+        a, b = start.force(xi, 0), start.force(xi, 1)
+        c2 = start.c2 * sum(start.masses) / sum(masses)
+    else:
+        m1, m2 = masses
+        beta = (k - 1) * math.sqrt(6 / (k * (k + 1))) / fourier.widening(masses)
+        shift = (m2 - m1) / (m1 + m2) / 2
+        a, b = (
+            np.cos(np.clip(beta * (xi + side * shift), -np.pi / 2, np.pi / 2)) ** (2 * k / (k - 1))
+            for side in (-1, 1)
+        )
+        c2 = 4 / ((k + 1) * (m1 + m2))
+    E, O = (a + b) / 2, (a - b)[1:-1] / 2
+    return np.append(E, O), c2 * float(E[0]) ** ((1 - k) / k)
+
+
+def _named(text: str, masses: tuple[float, float], k: float) -> str:
+    """A message with the parameters."""
+    return f"{text} at k = {k:g}, masses {masses[0]:g}, {masses[1]:g}"

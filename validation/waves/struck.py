@@ -4,7 +4,7 @@ The chain is that of `validation.pulses.steady`, masses 1, ω. At one of its las
 of the two contacts of a cell are recorded, a(ξ) and b(ξ), and scaled to contact force 1. The pulse
 leaves light beads in motion behind it and meets none, so that b(ξ) is not quite a(-ξ). Its
 symmetric part (a(ξ) + b(-ξ))/2 has half of the tail on either side, as the symmetric waves of
-`validation.waves.continuation` have a whole one: to first order in the tail it is one of them. ξ =
+`validation.waves.solver` have a whole one: to first order in the tail it is one of them. ξ =
 0 is the mean of the two contacts' centers of F - F_max/4^k, where that is positive.
 
 As k → 1 the pulse needs ever longer to leave its wake; it is not waited for beyond `FARTHEST`.
@@ -15,13 +15,15 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
+from typing import Any
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy.interpolate import CubicSpline
 
+from lwa.numeric import Array
 from validation.pulses.steady import PLACES, STRETCH, Chain, cells_apart
-from validation.waves.fourier import Array, ample_half_period
+from validation.waves.fourier import ample_half_period
 from validation.waves.profile import Profile
 
 FARTHEST = 60
@@ -64,20 +66,20 @@ class Struck(Profile):
         return self.rattle(self.pulse)
 
     @cached_property
-    def _strain(self) -> CubicSpline:
-        return CubicSpline(self.xi, self.front)
+    def _strain(self) -> Any:
+        return scipy.interpolate.CubicSpline(self.xi, self.front)
 
     @cached_property
-    def _impulse(self) -> tuple[CubicSpline, CubicSpline]:
+    def _impulse(self) -> tuple[Any, Any]:
         """∫ of the force from the left less that from the right, for m1 and m2."""
         pushes = (self.force(self.xi - 0.5, 1 - i) - self.force(self.xi + 0.5, i) for i in (0, 1))
-        one, two = (CubicSpline(self.xi, push).antiderivative() for push in pushes)
+        one, two = (
+            scipy.interpolate.CubicSpline(self.xi, push).antiderivative() for push in pushes
+        )
         return one, two
 
-    def strain(self, xi: ArrayLike, contact: int = 0) -> Array:
-        """a(ξ) or b(ξ) = a(-ξ)."""
-        at = np.clip(xi, self.xi[0], self.xi[-1])
-        value: Array = self._strain(-at if contact % 2 else at)
+    def _front(self, xi: Array) -> Array:
+        value: Array = self._strain(np.clip(xi, self.xi[0], self.xi[-1]))
         return value
 
     def velocity(self, xi: ArrayLike, bead: int = 0) -> Array:
@@ -86,11 +88,6 @@ class Struck(Profile):
         left = impulse(self.xi[-1]) - impulse(np.asarray(xi, float))
         value: Array = left / (self.masses[bead % 2] * self.c)
         return value
-
-    def distance(self, other: Profile) -> float:
-        """The largest difference of two pulses' strains, tails left out."""
-        at = np.linspace(-self.pulse, self.pulse, 401)
-        return float(np.abs(self.strain(at) - other.strain(at)).max())
 
 
 @lru_cache(maxsize=64)
@@ -127,7 +124,7 @@ def struck(k: float, omega: float) -> Struck:
     half = np.arange(0, _LONG * ample, _STEP)
     xi = np.append(-half[:0:-1], half)
     a, b = (
-        CubicSpline(time, r / peak ** (1 / k))(
+        scipy.interpolate.CubicSpline(time, r / peak ** (1 / k))(
             np.clip(middle + (site - xi) / here, time[0], time[-1])
         )
         for r, site in zip(record.run.compression[cell], (-0.5, 0.5), strict=True)

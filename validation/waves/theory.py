@@ -17,14 +17,13 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
+import scipy
 import sympy as sp
-from numpy.typing import ArrayLike, NDArray
-from scipy.optimize import brentq
+from numpy.typing import ArrayLike
 
-from lwa import TravelingWave
+from lwa import Dimer, TravelingWave, canonical_wave, homogenize
+from lwa.numeric import Array
 from validation.scenes.checks import positive
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -133,7 +132,23 @@ class Compacton:
             return _float(self.wave.fwhm(quantity))
         half = self.bead_force(0.0) / 2
         end = (self.support + self.spacing) / 2
-        return 2 * float(brentq(lambda x: self.bead_force(x) - half, 0.0, end, xtol=1e-14 * end))
+        return 2 * float(
+            scipy.optimize.brentq(lambda x: self.bead_force(x) - half, 0.0, end, xtol=1e-14 * end)
+        )
+
+
+def theory_at(k: Any, omega: Any, closure: str = "linear") -> TravelingWave:
+    """The theory's wave for masses 1 and ω, equal contacts A = 1 and D = 1.
+
+    closure : "linear", the paper's, or "full", or "canonical": the full closure's canonical field.
+
+    >>> theory_at("3/2", 1).width
+    sqrt(10)*pi/2
+    """
+    cell = Dimer(1, omega, spacing=1)
+    if closure == "canonical":
+        return canonical_wave(cell, k)
+    return homogenize(cell, k=k, closure=closure).pde.traveling_wave()
 
 
 def _float(value: Any) -> float:

@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 
 from lwa import Cell, Dimer, InputError, Jet, homogenize
 from lwa.closure.consistency import amplitude_ratios
+from tests.lwa.series import exponential, fraction
 
 masses = st.fractions(min_value="1/20", max_value=20, max_denominator=20)
 
@@ -137,18 +138,6 @@ def truncated_product(a, b, order):
         for j, y in enumerate(b[: order + 1 - i]):
             c[i + j] += x * y
     return c
-
-
-def exponential(rate, order):
-    series, term = [], Fraction(1)
-    for n in range(order + 1):
-        series.append(term)
-        term = term * rate / (n + 1)
-    return series
-
-
-def fraction(value):
-    return Fraction(int(value.p), int(value.q))
 
 
 @given(masses, masses)

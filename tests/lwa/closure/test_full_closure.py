@@ -11,6 +11,7 @@ from fractions import Fraction
 import pytest
 
 from lwa import Cell, homogenize
+from tests.lwa.series import fraction
 
 TAU = 2  # the second derivative in τ is wanted
 
@@ -88,10 +89,6 @@ class Series:
         """Times τ^m."""
         return Series(self.degree, {(i, j, n + m): c for (i, j, n), c in self.terms.items()
                                     if n + m <= TAU})  # fmt: skip
-
-
-def fraction(value):
-    return Fraction(int(value.p), int(value.q))
 
 
 class Jets:

@@ -14,14 +14,11 @@ import sympy as sp
 from lwa import Dimer, Material, Sphere, homogenize
 from lwa.command.cli import main
 from lwa.spheres import hertz
+from tests.commands import ended
 
 
 def run(capsys, *arguments):
-    """Exit status, standard output and standard error of one call."""
-    with pytest.raises(SystemExit) as ended:
-        main(arguments)
-    captured = capsys.readouterr()
-    return ended.value.code, captured.out, captured.err
+    return ended(capsys, main, *arguments)
 
 
 def result(capsys, *arguments):

@@ -18,6 +18,7 @@ from hypothesis import strategies as st
 
 from lwa import Cell, Dimer, InputError, homogenize
 from lwa.linear.dispersion import Dispersion
+from tests.lwa.series import exponential, fraction, product
 
 ROUNDING = 1e-13
 
@@ -30,10 +31,6 @@ def cells(draw, sizes=(1, 2, 3, 4)):
     masses = draw(st.lists(values, min_size=P, max_size=P))
     stiffnesses = draw(st.one_of(st.just(()), st.lists(values, min_size=P, max_size=P)))
     return Cell(masses, stiffnesses=stiffnesses)
-
-
-def fraction(value):
-    return Fraction(int(value.p), int(value.q))
 
 
 def mirrored(cell):
@@ -117,14 +114,6 @@ def test_known_I(cell, expected):
 
 
 # --- series -------------------------------------------------------------------------------------
-
-
-def product(a, b, order):
-    return [sum((a[i] * b[n - i] for i in range(n + 1)), Fraction(0)) for n in range(order + 1)]
-
-
-def exponential(rate, order):
-    return [Fraction(rate) ** n / factorial(n) for n in range(order + 1)]
 
 
 @given(cell=cells(sizes=(2,)))

@@ -116,12 +116,13 @@ def test_the_peak_force_of_the_560_beads():
     """0.29635394407 at contact 480 and t = 499.87256146: SRKN11 and SRKN14 on the whole chain with
     steps of 0.004 and 0.01 agree to 4e-10; DOP853 is compared on fewer beads below."""
     scene = struck(560, duration=510.0, contact_sensors=(480,), samples=10201)
-    run = simulate(scene, method="SRKN14", rtol=1e-6, check=True)
+    run, whole = (simulate(scene, method="SRKN14", rtol=1e-6, window=w) for w in (None, False))
     pulse = measure(run.time, run.contact_force[0])
     assert pulse.peak == pytest.approx(0.29635394407, rel=1e-6)
     assert pulse.arrival == pytest.approx(499.87256146, rel=1e-7)
-    assert run.window_error < 1e-12
-    assert 1e-6 < run.step_error < 1e-3  # of twice the step, at every time
+    assert run.window is not None
+    # without a window the step does not grow as the pulse decays
+    assert measure(whole.time, whole.contact_force[0]).peak == pytest.approx(pulse.peak, rel=1e-6)
     assert abs(run.energy_drift) < 1e-5
 
 
@@ -231,13 +232,11 @@ def test_a_step_that_is_too_long_is_not_silent():
     [
         (dict(step=0.1), "step is 0.1: it needs one of SRKN14"),
         (dict(window=True), "window is True: it needs one of"),
-        (dict(check=True), "check is True: it needs one of"),
         (dict(method="S6", step=0), "step is 0: it must be positive"),
         (dict(method="S6", step=1e-300), "duration is 1: this makes 1.0e.300 steps of S6, "),
         (dict(method="S6", rtol=0), "rtol is 0: it lies between"),
         (dict(method="S6", window=3), "window is 3: an integer from 8 on is wanted"),
         (dict(method="S6", window="x"), "window is 'x': an integer from 8 on is wanted"),
-        (dict(method="S6", check=True), "check compares what sensors record: the scene has none"),
         (dict(method="s6"), "method is 's6': one of DOP853, RK45, RK23, LSODA"),
     ],
 )

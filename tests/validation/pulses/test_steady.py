@@ -12,8 +12,7 @@ from validation.lattice.simulate import simulate
 from validation.pulses import steady
 from validation.pulses.steady import QUANTITIES, STRETCH, leading_pulse, point
 from validation.scenes.scene import Scene
-from validation.waves.continuation import solve
-from validation.waves.solver import exact_wave
+from validation.waves.solver import exact_wave, solve
 
 R = sp.Rational
 HERTZ = R(3, 2)

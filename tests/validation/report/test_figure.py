@@ -1,45 +1,92 @@
-"""Pictures: complete files or none."""
+"""Pictures: every format, complete files or none, and what the panels say."""
 
+import numpy as np
 import pytest
+from matplotlib.colors import same_color
 
 from lwa import InputError
-from validation.report import figure
-from validation.studies.porter2008.experiment import paper
+from validation.report import figure as drawing
+from validation.report import result as results
+from validation.report.figure import figure, plot_file
+from validation.report.panel import Curve, Map, Panel
+from validation.report.result import Report
 
 SIGNATURES = {".png": b"\x89PNG", ".pdf": b"%PDF", ".svg": b"<?xml"}
+X = np.array([1.0, 2.0, 3.0])
 
 
-@pytest.fixture(scope="module")
-def result():
-    return paper(beads=20, sensors=(8, 15))
+@pytest.fixture
+def report():
+    return Report("one", panels=(Panel("x", "y", (Curve.of("c", X, X**2),), "xy", "squares"),))
 
 
-@pytest.mark.parametrize("suffix", figure.SUFFIXES)
-def test_every_format(result, tmp_path, suffix):
+@pytest.mark.parametrize("suffix", drawing.SUFFIXES)
+def test_every_format(report, tmp_path, suffix):
     file = tmp_path / f"picture{suffix}"
-    figure.save(result, figure.plot_file(str(file)))
+    report.save(plot_file(str(file)))
     assert file.read_bytes().startswith(SIGNATURES[suffix])
     assert list(tmp_path.iterdir()) == [file]
 
 
-def test_the_paper_picture_shows_both_sensors(result):
-    (axes,) = figure.figure(result).axes
-    lattice, theory = axes.lines[:2]
-    assert lattice.get_label() == "bead 8, lattice"
-    # the theory's pulse stands where the lattice's does
-    assert theory.get_xdata()[theory.get_ydata().argmax()] == pytest.approx(
-        lattice.get_xdata()[lattice.get_ydata().argmax()], rel=0.01
+def test_a_panel_is_drawn_as_it_says(report):
+    (axes,) = report.figure().axes
+    assert (axes.get_xlabel(), axes.get_ylabel(), axes.get_title()) == ("x", "y", "squares")
+    assert (axes.get_xscale(), axes.get_yscale()) == ("log", "log")
+    (line,) = axes.lines
+    np.testing.assert_array_equal(line.get_xydata(), np.column_stack((X, X**2)))
+
+
+def test_colours_marks_and_bars():
+    curves = (
+        Curve.of("bars", X, X, "C3s", [0.1, 0.2, 0.3]),
+        Curve.of("", X, X, "k--"),
+        Curve.of("own", X, X),
+        Curve.of("long", np.arange(99.0), np.arange(99.0)),
     )
+    (axes,) = figure((Panel("x", "y", curves),)).axes
+    first, second, third, fourth = axes.lines[:4]
+    assert same_color(first.get_color(), "C3")
+    assert (first.get_marker(), first.get_linestyle()) == ("s", "None")
+    assert len(axes.containers[0].lines[2][0].get_segments()) == 3
+    assert same_color(second.get_color(), "k")
+    assert same_color(third.get_color(), "C2")
+    assert third.get_marker() == "^"
+    assert fourth.get_marker() == "None"  # marks would cover it
+    assert [t.get_text() for t in axes.get_legend().get_texts()] == ["bars", "own", "long"]
+
+
+def test_many_names_stand_once_below_all_panels():
+    crowded = Panel("x", "y", tuple(Curve.of(f"c{i}", X, i * X) for i in range(12)))
+    picture = figure((crowded, crowded))
+    assert all(axes.get_legend() is None for axes in picture.axes)
+    (legend,) = picture.legends
+    assert len(legend.get_texts()) == 12
+
+
+@pytest.mark.parametrize("places", [X, np.array([0.01, 0.1, 1.0])])
+def test_a_map_has_a_colour_for_each_place(places):
+    values = np.array([[1.0, 2.0, np.nan], [4.0, 5.0, 60.0]])
+    found = Map("c", places, np.array([1.0, 2.0]), values, 1.0, 10.0, "log")
+    axes, bar = figure((Panel("x", "y", map=found),)).axes
+    (mesh,) = axes.collections
+    assert mesh.get_array().shape == (2, 3)
+    assert mesh.get_array().mask.sum() == 1
+    assert mesh.norm.vmax == 10.0
+    assert bar.get_ylabel() == "c"
+    assert axes.get_xscale() == ("log" if places[0] < 1 else "linear")
+    low, high = axes.get_xlim()
+    assert low < places[0] < places[-1] < high
 
 
 def test_the_limits_picture_shows_every_quantity_at_every_k(limits_result):
-    left, right = figure.figure(limits_result).axes
+    left, right = limits_result.report().figure().axes
     for axes in (left, right):
-        assert len(axes.containers) == 4
-        assert all(len(c.lines[0].get_xdata()) == 3 for c in axes.containers)
+        bars = [c for c in axes.containers if c.has_yerr]
+        assert len(bars) == 4
+        assert all(len(c.lines[0].get_xdata()) == 3 for c in bars)
 
 
-def test_a_failure_leaves_the_old_picture(result, tmp_path, monkeypatch):
+def test_a_failure_leaves_the_old_picture(report, tmp_path, monkeypatch):
     file = tmp_path / "picture.png"
     file.write_bytes(b"old")
 
@@ -49,9 +96,9 @@ def test_a_failure_leaves_the_old_picture(result, tmp_path, monkeypatch):
                 half.write(b"half")
             raise OSError("disk full")
 
-    monkeypatch.setattr(figure, "figure", lambda result: Broken())
+    monkeypatch.setattr(results, "figure", lambda panels: Broken())
     with pytest.raises(InputError, match=r"picture.png is not written: disk full$"):
-        figure.save(result, file)
+        report.save(file)
     assert file.read_bytes() == b"old"
     assert list(tmp_path.iterdir()) == [file]
 
@@ -68,4 +115,4 @@ def test_a_failure_leaves_the_old_picture(result, tmp_path, monkeypatch):
 def test_bad_files(tmp_path, name, message):
     (tmp_path / "folder.png").mkdir()
     with pytest.raises(InputError, match=f"^{message}"):
-        figure.plot_file(str(tmp_path / name))
+        plot_file(str(tmp_path / name))

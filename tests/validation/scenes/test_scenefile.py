@@ -310,6 +310,7 @@ def test_overlap_is_asked_for_or_carried():
         {"start": pressed | {"overlap": True}},
         {"start": pressed, "wall": {"stiffness": 1}, "precompression": 1},
         {"start": {"displacements": [-0.1, -0.1]}},  # a gap
+        {"start": {"displacements": [0, 0, 0.1]}},  # nothing is behind the last bead
     ):
         assert scene(GOOD | more).displacements
 

@@ -5,34 +5,33 @@ on the whole chain and on a window that moves with the pulse, and general integr
 packages on the whole chain (`validation.studies.accuracy.peers`), each at several tolerances or
 steps. The error is the largest relative one of arrival time, peak force and FWHM, against
 `validation.studies.accuracy.reference`. The cost is CPU time without compilation, the median of a
-few runs where they are short.
-
-A method's cost of an accuracy is that of its cheapest run from which on every costlier one attains
-it as well: where kinks of [δ]_+^k meet a step by chance, single runs are better than they should.
+few runs where they are short (`validation.studies.accuracy.costs`).
 """
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+import math
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from functools import partial
-from statistics import median
-from typing import TypeVar
 
-import numpy as np
-from scipy import integrate as scipy
+import scipy
 
-from validation.lattice.equations import Array, Motion
+from lwa.duration import Progress
+from lwa.numeric import Array
+from validation.lattice.equations import Motion
 from validation.lattice.simulate import COMPILED, simulate
-from validation.report.result import Finding
-from validation.studies.accuracy.peers import missing, packages, prepared
+from validation.report.command import option, study
+from validation.report.panel import Curve, Panel
+from validation.report.result import Report
+from validation.report.table import Column, Finding, Table
+from validation.report.text import bounds, filled
+from validation.scenes.checks import one_of
+from validation.studies.accuracy.costs import BEST, WANTED, Row, costs, goals, methods, timed
+from validation.studies.accuracy.peers import Peer, Solve, missing, prepared
 from validation.studies.accuracy.reference import Reference, integrate, reference
-from validation.studies.accuracy.tasks import TASKS, Task, errors, known, struck
+from validation.studies.accuracy.tasks import NUMBERS, TASKS, Task, errors
 from validation.studies.accuracy.theories import Ladder, ladder
-
-BEST = COMPILED[0]
-"""The compiled scheme that is looked at most closely."""
 
 _SCIPY: Mapping[tuple[str, bool], Sequence[float]] = {
     ("DOP853", False): (1e-6, 1e-7, 1e-8, 3e-9, 1e-9),
@@ -64,48 +63,35 @@ THEORY = "theory"
 NAMES = (*TASKS, THEORY)
 """Of all tasks."""
 
-_ENOUGH = 0.15
-"""Seconds, beyond which a run is not repeated."""
-_REPEATS = 7
 
-WANTED = 1e-6
-"""Relative error of the peak force at which costs are compared."""
-_GOAL_TASK = "dimer"
-_SITES = (100, 1000, 10_000, 100_000)
-_PACE = 1.2
-"""Time per site, a little more than the pulse of equal beads takes."""
+def _ms(seconds: float) -> str:
+    return f"{1e3 * seconds:.3g}"
 
 
-@dataclass(frozen=True)
-class Row:
-    """One run of one method.
-
-    family : "SciPy", "compiled" or "peer".
-    setting : tolerance; of heyoka its largest step.
-    errors : relative, by `validation.studies.accuracy.tasks.NUMBERS`.
-    seconds : of CPU time, without compilation.
-    step : mean step, and ns: seconds per bead and evaluation of its force, of compiled runs.
-    """
-
-    task: str
-    family: str
-    method: str
-    window: bool
-    setting: float
-    errors: Mapping[str, float]
-    seconds: float
-    step: float | None = None
-    ns: float | None = None
-
-    @property
-    def name(self) -> str:
-        """The integrator, and where it ran."""
-        return self.method + (", window" if self.window else "")
-
-    @property
-    def error(self) -> float:
-        """The largest of the errors."""
-        return max(self.errors.values())
+_RUNS = (
+    *map(Column, ("task", "family", "error", "step", "ns_per_bead_evaluation")),
+    Column("method", "method"),
+    Column("setting", "setting", format=".0e"),
+    Column("arrival_error", "arrival", format=".1e"),
+    Column("peak_error", "peak", format=".1e"),
+    Column("fwhm_error", "FWHM", format=".1e"),
+    Column("seconds", "CPU", "ms", _ms),
+)
+_NOTE = (
+    "Errors are relative. Setting: the tolerance; of compiled splittings the error that their step "
+    "aims at,\nof heyoka the largest step. CPU time without compilation, on this machine."
+)
+_REFERENCES = (Column("task"), *map(Column, NUMBERS), Column("agreement"))
+_GOALS = (
+    *map(Column, ("key", "least_value", "most_value")),
+    Column("goal", "goals on the dimer"),
+    Column("measured_value", "value", format=".3g"),
+    Column("error_value", "±", format=".0e"),
+    Column("", "wanted"),
+    Column("ok", "goal", format=lambda ok: "met" if ok else "NOT met"),
+)
+_COLOURS = {"SciPy": "C0", "compiled": "C1", "peer": "C2"}
+_MARKS = "osD^v<>PX*"
 
 
 @dataclass(frozen=True)
@@ -119,23 +105,81 @@ class Accuracy:
     absent: tuple[str, ...]
     theories: Ladder | None = None
 
+    def report(self) -> Report:
+        """``rows``, as of `Row`, with the largest ``error``; ``references`` and their ``agreement``
+        with another route; ``goals``, which may be missed; ``absent``; ``theories``, as of
+        `Ladder`. In the picture CPU time over the error, solid with a window."""
+        tasks = {r.task: [row for row in self.rows if row.task == r.task] for r in self.references}
+        rows = tuple((r.task, r.family, r.error, r.step, r.ns, r.name, r.setting,
+                      *(r.errors[name] for name in NUMBERS), r.seconds)
+                     for r in self.rows)  # fmt: skip
+        references = tuple((r.task, *(getattr(r.pulse, name) for name in NUMBERS), r.agreement)
+                           for r in self.references)  # fmt: skip
+        aims = tuple((g.key, g.low, g.high, g.quantity, g.value, g.error, bounds(g.low, g.high),
+                      g.ok) for g in self.goals)  # fmt: skip
+        heads = {r.task: f"{r.task}: arrival {r.pulse.arrival:.12g}, peak {r.pulse.peak:.12g}, "
+                         f"FWHM {r.pulse.fwhm:.12g};\nanother route differs by {r.agreement:.0e} "
+                         "at most" for r in self.references}  # fmt: skip
+        feet = {task: _foot(its) for task, its in tasks.items()}
+        tables = (
+            Table(_RUNS, rows, "rows", note=_NOTE, by="task", heads=heads, feet=feet),
+            Table(_REFERENCES, references, "references"),
+            Table(_GOALS, aims, "goals"),
+        )
+        left = ", ".join(self.absent)
+        left = f"Left out, as not installed: {left} (pip install 'lwa[peers]' brings them)."
+        theories = () if self.theories is None else (self.theories.report(),)
+        data = {"rows": [], "references": [], "goals": [], "absent": self.absent}
+        return Report(
+            "Speed against error",
+            tuple(table for table in tables if table.rows),
+            panels=tuple(_panel(task, its) for task, its in tasks.items()),
+            notes=(left,) * bool(self.absent),
+            data=data | {key: value for part in theories for key, value in part.data.items()},
+            parts=theories,
+        )
 
+
+def _foot(rows: Sequence[Row]) -> str:
+    """From where on the peak force is attained."""
+    cheapest = sorted(costs(rows).items(), key=lambda item: item[1])
+    attained = [f"{name} {_ms(s)}" for (_, name), s in cheapest if math.isfinite(s)]
+    failing = [name for (_, name), s in cheapest if math.isinf(s)]
+    line = f"Peak force to {WANTED:g} from here on (ms): {'; '.join(attained) or 'none'}."
+    return filled(line + (f" Not: {', '.join(failing)}." if failing else ""))
+
+
+def _panel(task: str, rows: Sequence[Row]) -> Panel:
+    """A mark for each method of a family, shared by its window and its whole chain."""
+    marks: dict[str, dict[str, str]] = {}
+    curves = []
+    for (family, name), its in methods(rows).items():
+        known, method = marks.setdefault(family, {}), its[0].method
+        mark = known.setdefault(method, _MARKS[len(known) % len(_MARKS)])
+        style = _COLOURS[family] + mark + ("-" if its[0].window else ":")
+        points = ([row.error for row in its], [row.seconds for row in its])
+        curves.append(Curve.of(name, *points, style=style))
+    label = "largest relative error of arrival, peak, FWHM"
+    return Panel(label, "CPU time (s)", tuple(curves), "xy", task)
+
+
+@study(
+    option("--task", "names", multiple=True, metavar="NAME",
+           says=f"Only this task, may be given again: {', '.join(NAMES)}."),
+)  # fmt: skip
 def accuracy(
-    names: Collection[str] = (),
-    progress: Callable[[list[str]], Iterable[str]] = iter,
-    *,
-    peers: bool = True,
+    names: Collection[str] = (), progress: Progress[str] = iter, *, peers: bool = True
 ) -> Accuracy:
-    """Run the tasks of these names, all by default; ``progress`` shows how far (as `tqdm.tqdm`).
+    """Speed against error: integrators on fixed tasks, and theories against true waves.
 
-    Goals are set for the dimer, and there are none without it. The task "theory" is
-    `validation.studies.accuracy.theories`. ``peers`` False leaves the other packages' integrators
-    out.
+    names : of `NAMES`, all by default; "theory" is `validation.studies.accuracy.theories`. Goals
+        are set for the dimer, and there are none without it.
+    peers : False leaves the other packages' integrators out.
 
     Raises `validation.scenes.checks.SceneError` for a name that is not one of `NAMES`, and
     `validation.studies.accuracy.peers.PeerError` for a peer that is missing where CI is set.
     """
-    wanted = {known(name, NAMES) for name in names} or set(NAMES)
+    wanted = {one_of(name, NAMES, "task") for name in names} or set(NAMES)
     rows: list[Row] = []
     references: list[Reference] = []
     theories: Ladder | None = None
@@ -146,127 +190,40 @@ def accuracy(
             continue
         task = TASKS[name]()
         references.append(reference(name, task))
-        rows += _compared(name, task, references[-1], absent if peers else packages())
-    goals = tuple(_goals(rows)) if _GOAL_TASK in wanted else ()
-    return Accuracy(tuple(rows), tuple(references), goals, absent, theories)
+        others = prepared(task, absent) if peers else iter(())
+        rows += _compared(name, task, references[-1], others)
+    return Accuracy(tuple(rows), tuple(references), tuple(goals(rows)), absent, theories)
 
 
-def _compared(name: str, task: Task, truth: Reference, absent: Collection[str]) -> Iterator[Row]:
+def _compared(
+    name: str, task: Task, truth: Reference, peers: Iterator[tuple[Peer, Solve]]
+) -> Iterator[Row]:
     """All methods at one task."""
 
     def row(
-        family: str, method: str, window: bool, setting: float, force: Array, seconds: float
+        family: str, method: str, window: bool, setting: float, force: Array, *spent: float
     ) -> Row:
         off = errors(task.read(force), truth.pulse)
-        return Row(name, family, method, window, setting, off, seconds)
+        return Row(name, family, method, window, setting, off, *spent)
 
     for (method, window), tolerances in _SCIPY.items():
-        stepper = getattr(scipy, method)
+        stepper = getattr(scipy.integrate, method)
         for rtol in tolerances if task.windowed or not window else ():
-            force, seconds = _timed(partial(integrate, task, stepper, rtol, window=window))
+            force, seconds = timed(partial(integrate, task, stepper, rtol, window=window))
             yield row("SciPy", f"SciPy {method}", window, rtol, force, seconds)
-    for (method, window), aims in _splittings(task).items():
+    splittings: dict[tuple[str, bool], Sequence[float]] = {}
+    for (method, window), aims in _SPLITTINGS.items():
+        splittings.setdefault((method, window and task.windowed), aims)
+    for (method, window), aims in splittings.items():
         simulated = partial(simulate, task.scene, method=method, window=window)
         simulated(rtol=1e-3)  # compiles
         for rtol in aims:
-            run, seconds = _timed(partial(simulated, rtol=rtol))
-            force = run.contact_force[0][-len(task.times) :]
-            found = row("compiled", method, window, rtol, force, seconds)
-            yield replace(found, step=run.step, ns=1e9 * seconds / run.bead_evaluations)
+            run, seconds = timed(partial(simulated, rtol=rtol))
+            spent = seconds, run.step, 1e9 * seconds / run.bead_evaluations
+            yield row("compiled", method, window, rtol, task.force(run), *spent)
     motion = Motion(task.scene)
-    for peer, solve in prepared(task, absent):
+    for peer, solve in peers:
         for setting in _PEERS[peer.package]:
-            y, seconds = _timed(partial(solve, setting))
+            y, seconds = timed(partial(solve, setting))
             force = motion.force(motion.compression(y))[task.contact]
             yield row("peer", peer.name, False, setting, force, seconds)
-
-
-def _splittings(task: Task) -> dict[tuple[str, bool], Sequence[float]]:
-    """`_SPLITTINGS`, on the whole chain where a window is not allowed."""
-    if task.windowed:
-        return dict(_SPLITTINGS)
-    whole: dict[tuple[str, bool], Sequence[float]] = {}
-    for (method, _), aims in _SPLITTINGS.items():
-        whole.setdefault((method, False), aims)
-    return whole
-
-
-_Found = TypeVar("_Found")
-
-
-def _timed(run: Callable[[], _Found]) -> tuple[_Found, float]:
-    """The result and its CPU time, the median of a few where they are short."""
-    taken: list[float] = []
-    while True:
-        start = time.process_time()
-        found = run()
-        taken.append(time.process_time() - start)
-        if len(taken) == _REPEATS or sum(taken) > _ENOUGH:
-            return found, median(taken)
-
-
-def cost(rows: Iterable[Row], wanted: float = WANTED) -> float:
-    """CPU time of one method's cheapest run from which on the peak force is good to ``wanted``.
-
-    Infinite where its costliest run is not.
-    """
-    seconds = float("inf")
-    for row in sorted(rows, key=lambda row: -row.seconds):
-        if row.errors["peak"] > wanted:
-            break
-        seconds = row.seconds
-    return seconds
-
-
-def costs(rows: Iterable[Row], wanted: float = WANTED) -> dict[tuple[str, str], float]:
-    """`cost` by family and name."""
-    methods: dict[tuple[str, str], list[Row]] = {}
-    for row in rows:
-        methods.setdefault((row.family, row.name), []).append(row)
-    return {method: cost(its, wanted) for method, its in methods.items()}
-
-
-def _goals(rows: Iterable[Row]) -> Iterator[Finding]:
-    """What the compiled window is meant to attain, at the dimer and over the chain's length."""
-    found = [row for row in rows if row.task == _GOAL_TASK]
-    seconds = costs(found)
-    ours = seconds["compiled", f"{BEST}, window"]
-    yield Finding(
-        f"{BEST}, window: CPU time for the peak force to {WANTED:g} (ms)", 1e3 * ours,
-        high=5.0, key="window_ms",
-    )  # fmt: skip
-    yield Finding(
-        "SciPy's DOP853 on the whole chain takes so many times as long",
-        seconds["SciPy", "SciPy DOP853"] / ours, low=500.0, key="scipy_ratio",
-    )  # fmt: skip
-    peers = {name: taken for (family, name), taken in seconds.items() if family == "peer"}
-    if peers:
-        best = min(peers, key=lambda name: peers[name])
-        yield Finding(
-            f"the best peer, {best}, takes so many times as long", peers[best] / ours,
-            low=25.0, key="peer_ratio",
-        )  # fmt: skip
-    spent = [row for row in found if row.name == f"{BEST}, window" and row.setting == 1e-8]
-    yield Finding(
-        f"{BEST}, window: CPU time per bead and evaluation of its force (ns)",
-        min(row.ns or 0.0 for row in spent), high=1.5, key="evaluation_ns",
-    )  # fmt: skip
-    slope, error = scaling(_SITES)
-    yield Finding(
-        f"its cost per site ~ sites^p, equal beads, {_SITES[0]} to {_SITES[-1]} sites: p", slope,
-        high=0.1, error=error, key="site_exponent",
-    )  # fmt: skip
-
-
-def scaling(sites: Sequence[int]) -> tuple[float, float]:
-    """p of the windowed cost per site ~ sites^p, by least squares, and its standard error.
-
-    At least three chains; what a run costs at its start makes p negative on short ones.
-    """
-    each = []
-    for n in sites:
-        scene = replace(struck(1.0, n, 0, 0.0, _PACE * n).scene, contact_sensors=(), samples=2)
-        _, seconds = _timed(partial(simulate, scene, method=BEST, rtol=1e-6, window=True))
-        each.append(seconds / n)
-    (slope, _), covariance = np.polyfit(np.log(sites), np.log(each), 1, cov=True)
-    return float(slope), float(np.sqrt(covariance[0, 0]))

@@ -21,18 +21,16 @@ from typing import Any
 
 import numpy as np
 
-from validation.lattice.equations import Array, Motion
-from validation.scenes.checks import SceneError
+from lwa.numeric import Array
+from validation.lattice.equations import Motion
+from validation.scenes.checks import Failure, SceneError
 from validation.studies.accuracy.tasks import Task
 
 Solve = Callable[[float], Array]
 """From a tolerance (heyoka: the largest step) to the displacements at the task's times, (n, S)."""
 
-_TAYLOR = 1e-9
-"""Tolerance of heyoka's steps, below the error of the kinks."""
 
-
-class PeerError(RuntimeError):
+class PeerError(Failure):
     """A package that must be there is missing, or an integrator could not go on."""
 
 
@@ -50,30 +48,25 @@ class Peer:
         return f"{self.package} {self.method}"
 
 
-def _start(task: Task) -> Array:
-    scene, n = task.scene, task.scene.size
-    state = np.zeros(2 * n)
-    state[: len(scene.displacements)] = scene.displacements
-    state[n : n + len(scene.velocities)] = scene.velocities
-    return state
-
-
-def _contacts(motion: Motion) -> tuple[Array, Array, Array]:
-    """Stiffness, rest compression and load of a contact ahead of every bead; 0 where none is."""
+def _hertz(task: Task) -> tuple[Motion, Array]:
+    """The equations, of k = 3/2 without a power, and (3, n): stiffness, rest compression and load
+    of a contact ahead of every bead, 0 where none is."""
+    if task.scene.k != 1.5:
+        raise SceneError(f"k is {task.scene.k:g}: peers are given the equations of k = 1.5")
+    motion = Motion(task.scene)
     rows = np.zeros((3, motion.size))
-    for row, values in zip(rows, (motion.stiffnesses, motion.rest, motion.load), strict=True):
-        row[: len(values)] = values
-    return rows[0], rows[1], rows[2]
+    rows[:, : len(motion.rest)] = motion.stiffnesses, motion.rest, motion.load
+    return motion, rows
 
 
 def _cyrk(task: Task, method: str) -> Solve:
-    import numba
+    import numba  # optional, as CyRK is
     from CyRK import nbsolve2_ivp
     from CyRK.nb.numba_solver import cyjit_sig
 
-    motion, start = _hertz(task), _start(task)
-    n = motion.size
-    constants = np.concatenate(([n], 1 / motion.masses, *_contacts(motion)))
+    motion, contacts = _hertz(task)
+    start, n = motion.start, motion.size
+    constants = np.concatenate(([n], 1 / motion.masses, *contacts))
 
     def motion_of(rate: Any, t: float, y: Any, c: Any) -> None:
         n = int(c[0])
@@ -105,16 +98,16 @@ def _cyrk(task: Task, method: str) -> Solve:
 
 
 def _diffrax(task: Task, method: str) -> Solve:
-    import diffrax
+    import diffrax  # optional, with JAX
     import jax
     import jax.numpy as jnp
 
-    motion, start = _hertz(task), _start(task)
-    n = motion.size
+    motion, contacts = _hertz(task)
+    start, n, end = motion.start, motion.size, float(task.times[-1])
 
     with jax.enable_x64(True):
         masses = jnp.array(motion.masses)
-        A, rest, load = (jnp.array(row) for row in _contacts(motion))
+        A, rest, load = (jnp.array(row) for row in contacts)
 
         def rate(t: Any, state: Any, constants: Any) -> Any:
             y, v = state[:n], state[n:]
@@ -124,18 +117,12 @@ def _diffrax(task: Task, method: str) -> Solve:
             return jnp.concatenate((v, push / masses))
 
         def run(tolerance: Any) -> tuple[Any, Any]:
+            control = diffrax.PIDController(rtol=tolerance, atol=tolerance)
             solution = diffrax.diffeqsolve(
-                diffrax.ODETerm(rate),
-                getattr(diffrax, method)(),
-                0.0,
-                float(task.times[-1]),
-                1e-3,
-                jnp.array(start),
-                saveat=diffrax.SaveAt(ts=jnp.array(task.times)),
-                stepsize_controller=diffrax.PIDController(rtol=tolerance, atol=tolerance),
-                max_steps=None,
-                throw=False,
-            )
+                diffrax.ODETerm(rate), getattr(diffrax, method)(), 0.0, end, 1e-3,
+                jnp.array(start), saveat=diffrax.SaveAt(ts=jnp.array(task.times)),
+                stepsize_controller=control, max_steps=None, throw=False,
+            )  # fmt: skip
             return solution.ys, solution.result == diffrax.RESULTS.successful
 
         compiled = jax.jit(run)
@@ -152,23 +139,21 @@ def _diffrax(task: Task, method: str) -> Solve:
 
 
 def _heyoka(task: Task, method: str) -> Solve:
-    import heyoka
+    import heyoka  # optional
 
-    motion, start = _hertz(task), _start(task)
-    n = motion.size
+    motion, contacts = _hertz(task)
+    start, n = motion.start, motion.size
     y, v = (heyoka.make_vars(*(f"{name}{i}" for i in range(n))) for name in "yv")
     force: list[Any] = [0.0]
-    for i, (A, rest, load) in enumerate(zip(*_contacts(motion), strict=True)):
-        if not A:
-            force.append(0.0)
-            continue
+    for i, (A, rest, load) in enumerate(zip(*contacts, strict=True)):
         d = rest + y[i] - (y[i + 1] if i + 1 < n else 0.0)
         closed = heyoka.gt(d, 0.0)
         # not the power of a negative gap, which would be no number
         force.append(A * heyoka.select(closed, heyoka.select(closed, d, 1.0) ** 1.5, 0.0) - load)
     system = [(y[i], v[i]) for i in range(n)]
     system += [(v[i], (force[i] - force[i + 1]) / motion.masses[i]) for i in range(n)]
-    stepper = heyoka.taylor_adaptive(system, list(start), tol=_TAYLOR, compact_mode=True)
+    # a tolerance below the error of the kinks
+    stepper = heyoka.taylor_adaptive(system, list(start), tol=1e-9, compact_mode=True)
 
     def solve(longest: float) -> Array:
         stepper.time = 0.0
@@ -183,28 +168,12 @@ def _heyoka(task: Task, method: str) -> Solve:
     return solve
 
 
-def _hertz(task: Task) -> Motion:
-    """The equations; peers have those of k = 3/2 only, without a power."""
-    if task.scene.k != 1.5:
-        raise SceneError(f"k is {task.scene.k:g}: peers are given the equations of k = 1.5")
-    return Motion(task.scene)
-
-
 PEERS = (
-    Peer("CyRK", "RK45", _cyrk),
-    Peer("CyRK", "TSIT5", _cyrk),
-    Peer("CyRK", "VERN7", _cyrk),
-    Peer("CyRK", "DOP853", _cyrk),
-    Peer("diffrax", "Tsit5", _diffrax),
-    Peer("diffrax", "Dopri8", _diffrax),
+    *(Peer("CyRK", method, _cyrk) for method in ("RK45", "TSIT5", "VERN7", "DOP853")),
+    *(Peer("diffrax", method, _diffrax) for method in ("Tsit5", "Dopri8")),
     Peer("heyoka", "Taylor", _heyoka),
 )
 """All of them."""
-
-
-def packages() -> tuple[str, ...]:
-    """That `PEERS` come from."""
-    return tuple(dict.fromkeys(peer.package for peer in PEERS))
 
 
 def missing() -> tuple[str, ...]:
@@ -213,7 +182,7 @@ def missing() -> tuple[str, ...]:
     Raises `PeerError` if there is one and the environment has CI set.
     """
     absent = []
-    for package in packages():
+    for package in dict.fromkeys(peer.package for peer in PEERS):
         try:
             import_module(package)
         except ImportError as reason:
@@ -227,6 +196,4 @@ def missing() -> tuple[str, ...]:
 
 def prepared(task: Task, absent: Collection[str]) -> Iterator[tuple[Peer, Solve]]:
     """The peers of packages that are there, compiled for the task."""
-    for peer in PEERS:
-        if peer.package not in absent:
-            yield peer, peer.prepare(task, peer.method)
+    return ((p, p.prepare(task, p.method)) for p in PEERS if p.package not in absent)

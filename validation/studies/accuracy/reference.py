@@ -21,25 +21,19 @@ import numpy as np
 from scipy import integrate as scipy
 from scipy.optimize import brentq
 
-from validation.lattice.equations import Array, Motion
+from lwa.numeric import Array
+from validation.lattice.equations import Motion
 from validation.lattice.run import IntegrationError
 from validation.lattice.simulate import simulate
 from validation.pulses.pulse import Pulse
 from validation.scenes.checks import SceneError
 from validation.studies.accuracy.tasks import Task, errors
 
-REACH = 48
-"""Beads that a window follows behind the front at least."""
-_AHEAD = 32
-"""Beads that join at once."""
-_MARGIN = 6
-"""Still beads at the front."""
+_REACH, _AHEAD, _MARGIN = 48, 32, 6
+"""Beads that a window follows behind the front at least, that join at once, and that are still at
+the front."""
 _STILL = 1e-13
 """Displacement below which a bead is still, over the largest."""
-_TIGHT = 2.5e-14
-"""Relative tolerance of the located steps, about the least that SciPy takes."""
-_STEP = 1e-13
-"""Relative error that the symplectic step of the reference aims at."""
 
 
 class Part(Motion):
@@ -102,15 +96,15 @@ class Located(scipy.DOP853):  # type: ignore[misc]
         first = np.where(crossed.any(axis=0), crossed.argmax(axis=0), len(x))
         self.t_old = t
         dense = self._dense_output_impl()
+
+        def overlap(time: float, i: Any) -> float:
+            return float(self.motion.compression(dense(time)[: self.motion.size])[i])
+
         times = []
         for i in np.flatnonzero(crossed.any(axis=0) & (first <= first.min() + 1)):
-
-            def overlap(time: float, i: Any = i) -> float:
-                return float(self.motion.compression(dense(time)[: self.motion.size])[i])
-
             start, end = t + (1e-3 * h if on[i] else 0.0), t + h * float(x[first[i], 0])
-            changes = overlap(start) * overlap(end) < 0
-            times.append(brentq(overlap, start, end, xtol=1e-14 * end) if changes else end)
+            changes = overlap(start, i) * overlap(end, i) < 0
+            times.append(brentq(overlap, start, end, (i,), 1e-14 * end) if changes else end)
         time = float(min(times))
         return time if time < t + (1 - 1e-9) * h else None
 
@@ -120,11 +114,8 @@ def integrate(
 ) -> Array:
     """The force of the task's contact at its times, by a stepper of SciPy's or one like them.
 
-    Parameters
-    ----------
     method : a class such as `scipy.integrate.DOP853` or `Located`.
-    rtol, atol : local error per step, relative and absolute; the absolute one is the same unless
-        given.
+    rtol, atol : local error per step, relative and absolute; by default the same.
     window : whether to move with the pulse, and not to integrate the whole chain.
 
     Raises `SceneError` for a window in a chain with a wall, `IntegrationError` when the stepper
@@ -133,9 +124,7 @@ def integrate(
     scene, whole = task.scene, Motion(task.scene)
     if window and not task.windowed:
         raise SceneError("window is True: behind a wall waves come back; the whole chain is wanted")
-    state = np.zeros((2, whole.size))
-    state[0, : len(scene.displacements)] = scene.displacements
-    state[1, : len(scene.velocities)] = scene.velocities
+    state = whole.start.reshape(2, -1)
     moved = np.flatnonzero(state.any(axis=0))
     front = int(moved[-1]) + 1 if len(moved) else 0
     lo, hi = 0, min(whole.size, front + _AHEAD) if window else whole.size
@@ -148,7 +137,10 @@ def integrate(
             part, t, state[:, lo:hi].ravel(), scene.duration,
             rtol=rtol, atol=rtol if atol is None else atol, **options,
         )  # fmt: skip
-        while stepper.status == "running" and (hi == whole.size or not _moves(stepper.y, part)):
+        while stepper.status == "running":
+            moved = np.abs(stepper.y[: part.size])
+            if hi < whole.size and moved[-_MARGIN] > _STILL * moved.max():
+                break  # the front has come near the last bead
             message = stepper.step()
             if stepper.status == "failed":
                 raise IntegrationError(f"integration stopped at t = {stepper.t:g}: {message}")
@@ -162,15 +154,11 @@ def integrate(
         if t < scene.duration:
             options = {"first_step": min(stepper.step_size, scene.duration - t)}
             # One of the gaps behind parts the pulse from what it has left.
-            gaps = np.flatnonzero(part.compression(state[0, lo:hi])[: hi - lo - _AHEAD - REACH] < 0)
+            gaps = np.flatnonzero(
+                part.compression(state[0, lo:hi])[: hi - lo - _AHEAD - _REACH] < 0
+            )
             lo, hi = lo + (int(gaps[-1]) + 1 if len(gaps) else 0), min(whole.size, hi + _AHEAD)
     return force
-
-
-def _moves(state: Array, part: Motion) -> bool:
-    """Whether the front has come near the last bead."""
-    y = state[: part.size]
-    return bool(abs(y[-_MARGIN]) > _STILL * np.abs(y).max())
 
 
 @dataclass(frozen=True)
@@ -182,15 +170,15 @@ class Reference:
     agreement: float
 
 
-def symplectic(task: Task, rtol: float = _STEP) -> Pulse:
-    """By SRKN14 at a step for this error of the peak, on a window where there may be one."""
-    run = simulate(task.scene, method="SRKN14", rtol=rtol)
-    return task.read(run.contact_force[0][-len(task.times) :])
+def symplectic(task: Task) -> Pulse:
+    """By SRKN14 at a step for 1e-13 of the peak, on a window where there may be one."""
+    return task.read(task.force(simulate(task.scene, method="SRKN14", rtol=1e-13)))
 
 
-def located(task: Task, rtol: float = _TIGHT) -> Pulse:
+def located(task: Task) -> Pulse:
     """By DOP853 with every kink located, on a window where there may be one."""
-    return task.read(integrate(task, Located, rtol, window=task.windowed, atol=rtol / 10))
+    # about the least tolerance that SciPy takes
+    return task.read(integrate(task, Located, 2.5e-14, window=task.windowed, atol=2.5e-15))
 
 
 def reference(name: str, task: Task) -> Reference:

@@ -3,8 +3,7 @@
 uniform, dimer : a chain of 560 beads, m1 = A = D = 1 and k = 3/2, whose first is struck to velocity
     1; measured 480 contacts further. The dimer's ω = 0.2733 is that of steel and PTFE.
 exact : the uniform chain's solitary wave (`validation.waves.solver`), put on the lattice and
-measured
-    100 sites further, where arrival, peak and width are known from the wave itself.
+    measured 100 sites further, where arrival, peak and width are known from the wave itself.
 experiment : the 2:1 chain of Porter et al. (2008), figure 2(d): 38 beads of steel and PTFE up to a
     steel wall. In units of the striker's mass and velocity and the first contact's stiffness.
 
@@ -15,20 +14,18 @@ below 1e-12.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.interpolate import make_interp_spline
+import scipy
 
-from lwa.exact import shorten
-from validation.lattice.equations import Array
+from lwa.numeric import Array
+from validation.lattice.run import Run
 from validation.pulses.pulse import Pulse, measure
-from validation.scenes.chains import carrying
-from validation.scenes.checks import SceneError
+from validation.scenes import chains
+from validation.scenes.chains import chain_scene
 from validation.scenes.scene import Scene
-from validation.studies.porter2008.experiment import chain_scene
 from validation.waves.solver import exact_wave
 
 NUMBERS = ("arrival", "peak", "fwhm")
@@ -36,13 +33,9 @@ NUMBERS = ("arrival", "peak", "fwhm")
 
 _SAMPLING = 0.05
 """Between samples, where the pulse's FWHM is 1.4 or more."""
-_FINER = 128
-"""Times as dense is the table of the spline: the error of a cubic there is below 1e-12."""
-
-_FOOT = 0.25
-"""Of the peak: the table ends where the force is below it."""
-_NOTHING = 1e-15
-"""Of the exact wave's strain and velocity."""
+_FINER, _FOOT = 128, 0.25
+"""Times as dense is the table of the spline, where the error of a cubic is below 1e-12; it ends
+where the force is below so much of the peak."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,7 +46,6 @@ class Task:
     truth : the pulse as it must be, where it is known beforehand.
     """
 
-    title: str
     scene: Scene
     listen: float
     windowed: bool = True
@@ -71,6 +63,11 @@ class Task:
         """At which the pulse is measured."""
         return self.scene.contact_sensors[0]
 
+    def force(self, run: Run) -> Array:
+        """(S,): of the contact at `times`, in a run of the scene."""
+        force: Array = run.contact_force[0][-len(self.times) :]
+        return force
+
     def read(self, force: Array) -> Pulse:
         """The pulse, from the contact's force at `times`.
 
@@ -81,7 +78,7 @@ class Task:
         first, last = before[-1] if len(before) else 0, behind[0] if len(behind) else -1
         start, end = self.times[first], self.times[last]
         fine = np.linspace(start, end, _FINER * len(self.times[first:last]) + 1)
-        return measure(fine, make_interp_spline(self.times, force, 7)(fine))
+        return measure(fine, scipy.interpolate.make_interp_spline(self.times, force, 7)(fine))
 
 
 def errors(pulse: Pulse, reference: Pulse) -> dict[str, float]:
@@ -89,49 +86,36 @@ def errors(pulse: Pulse, reference: Pulse) -> dict[str, float]:
     return {name: abs(getattr(pulse, name) / getattr(reference, name) - 1) for name in NUMBERS}
 
 
-def struck(
-    omega: float, beads: int, contact: int, listen: float, duration: float, title: str = "struck"
-) -> Task:
+def struck(omega: float, beads: int, contact: int, listen: float, duration: float) -> Task:
     """A dimer chain, m1 = A = 1 and k = 3/2, whose first bead has velocity 1."""
-    scene = Scene(
-        masses=(1.0, omega) * (beads // 2),
-        stiffnesses=(1.0,) * (beads // 2 * 2 - 1),
-        k=1.5,
-        velocities=(1.0,),
-        contact_sensors=(contact,),
-        duration=duration,
-        samples=round(duration / _SAMPLING) + 1,
-    )
-    return Task(title, scene, listen)
+    scene = chains.struck((1.0, omega), beads, contact_sensors=(contact,), **_recorded(duration))
+    return Task(scene, listen)
+
+
+def _recorded(duration: float) -> dict[str, float]:
+    """For so long, at `_SAMPLING`."""
+    count = round(duration / _SAMPLING)
+    return {"duration": _SAMPLING * count, "samples": count + 1}
 
 
 def uniform() -> Task:
     """480 contacts of equal beads."""
-    return struck(1.0, 560, 480, 562.0, 582.0, "equal beads, 480 contacts")
+    return struck(1.0, 560, 480, 562.0, 582.0)
 
 
 def dimer() -> Task:
     """480 contacts of the dimer; light beads rattle behind the pulse."""
-    return struck(0.2733, 560, 480, 490.0, 510.0, "dimer ω = 0.2733, 480 contacts")
+    return struck(0.2733, 560, 480, 490.0, 510.0)
 
 
 def exact(sites: int = 100) -> Task:
     """The solitary wave of equal beads, from bead 16 to the contact so many sites further."""
-    start = 16
-    wave = exact_wave([1], 1.5)
-    bead = np.arange(start + sites + 24) - start
-    strain, velocity = wave.strain(bead[:-1] + 0.5), wave.velocity(bead)
-    for values in (strain, velocity):
-        values[np.abs(values) < _NOTHING] = 0.0  # rounding; ahead, the chain is at rest
+    start, wave = 16, exact_wave([1], 1.5)
     arrival, width = (sites + 0.5) / wave.c, wave.fwhm("force") / wave.c
-    duration = _SAMPLING * round((arrival + 10) / _SAMPLING)
-    scene = carrying(
-        (1.0,) * len(bead), wave.k, strain, velocity,
-        contact_sensors=(start + sites,), duration=duration,
-        samples=round(duration / _SAMPLING) + 1,
-    )  # fmt: skip
+    sensors = (start + sites,)
+    scene = chains.launched(wave, start, sites, contact_sensors=sensors, **_recorded(arrival + 10))
     truth = Pulse(arrival, 1.0, arrival - width / 2, arrival + width / 2)
-    return Task(f"exact solitary wave, {sites} sites", scene, arrival - 10, truth=truth)
+    return Task(scene, arrival - 10, truth=truth)
 
 
 def experiment() -> Task:
@@ -142,32 +126,14 @@ def experiment() -> Task:
     si = chain_scene(1.37, 38, (16, 34), 0.0, 1e-3, N=2)
     m, A = si.masses[0], si.stiffnesses[0]
     assert si.wall is not None
-    scene = replace(
-        si,
+    scene = Scene(
         masses=tuple(mass / m for mass in si.masses),
         stiffnesses=tuple(stiffness / A for stiffness in si.stiffnesses),
-        wall=si.wall / A,
-        velocities=(1.0,),
-        bead_sensors=(),
-        contact_sensors=(32,),
-        spacings=(),
-        duration=172.0,
-        samples=689,  # the pulse's FWHM is 18
-    )
-    return Task("2:1 steel:PTFE, 38 beads, wall", scene, 130.0, windowed=False)
+        wall=si.wall / A, k=si.k, velocities=(1.0,), contact_sensors=(32,),
+        duration=172.0, samples=689,  # the pulse's FWHM is 18
+    )  # fmt: skip
+    return Task(scene, 130.0, windowed=False)
 
 
-TASKS: Mapping[str, Callable[[], Task]] = {
-    "uniform": uniform,
-    "dimer": dimer,
-    "exact": exact,
-    "experiment": experiment,
-}
+TASKS = {task.__name__: task for task in (uniform, dimer, exact, experiment)}
 """The tasks by their names."""
-
-
-def known(name: str, names: Collection[str] = TASKS) -> str:
-    """The name of a task; raises `SceneError` for any other."""
-    if name not in names:
-        raise SceneError(f"task is {shorten(name)}: one of {', '.join(names)} is wanted")
-    return name

@@ -4,53 +4,86 @@ At a mass ratio whose wave is solitary the true one is `validation.waves.solver.
 elsewhere there is none, and the pulse that a struck chain comes to carry stands for it
 (`validation.pulses.steady.point`), with its own error. Compared are the widths of force and strain
 at a contact and the speed at peak contact force 1, m1 = A = D = 1. The cost is that of deriving the
-theory for this cell and of evaluating it, CPU time.
+theory for this chain and of evaluating it, CPU time.
 """
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
+from statistics import median
 from typing import Any
 
 import sympy as sp
 
-from lwa import Cell, NoSolitaryWave, TravelingWave, canonical_wave, expand, homogenize
+from lwa import Cell, NoSolitaryWave, expand
+from lwa.duration import Progress
 from validation.pulses.pulse import Measured
 from validation.pulses.steady import STRETCH, point
-from validation.waves.solver import exact_wave
+from validation.report.panel import Curve, Panel
+from validation.report.result import Report
+from validation.report.table import Column, Table
+from validation.waves.solver import exact_wave, measured
+from validation.waves.theory import Compacton, theory_at
 
 NAMES = ("force", "strain", "speed")
 """FWHM of the force and of the strain, speed."""
 
-ORDERS = (1, 2, 4, 8)
-"""Of the series in ε."""
+Prediction = tuple[Sequence[float], Sequence[float] | None]
+"""Values and the sizes of their relative errors, in the order of `NAMES`."""
 
-DEGREES = (1, 2)
-"""Of the approximants [n/n] of that series, closed formulas in k for equal beads."""
 
-THEORIES = (
-    "linear closure", "full closure", "canonical field",
-    *(f"[{n}/{n}]" for n in DEGREES), *(f"ε^{n}" for n in ORDERS),
-)  # fmt: skip
+def _closed(closure: str, k: sp.Rational, omega: sp.Rational) -> Prediction:
+    wave = Compacton(theory_at(k, omega, closure), 1.0)
+    return (wave.fwhm("force"), wave.fwhm("strain"), wave.speed), None
 
-UNIFORM = ("1.1", "5/4", "3/2", "2", "3")
-"""Exponents, for the chain of equal beads."""
 
-SPECIAL = ("0.3428457811", "0.1547515139", "0.0901277691")
-"""Mass ratios at which the Hertz dimer has a solitary wave (by `validation.waves.resonances`)."""
+def _approximant(n: int, k: sp.Rational, omega: sp.Rational) -> Prediction:
+    """[n/n] of the series of equal beads, a closed formula in k."""
+    if omega != 1:
+        raise NoSolitaryWave("a formula for equal beads")
+    expansion = expand(Cell((1,)), 2 * n)
+    series = (expansion.fwhm("force"), expansion.fwhm("strain"), expansion.c)
+    return [float(row.pade(k, n, n)) for row in series], None
 
-STRUCK = ("0.01", "0.05", "0.2", "0.55", "0.8", "0.9")
-"""Mass ratios at which the Hertz dimer has none."""
 
-OTHERS, ALSO = ("5/4", "2"), ("0.05", "0.2", "0.8")
-"""Exponents besides, and the mass ratios at which they are tried."""
+def _summed(n: int, k: sp.Rational, omega: sp.Rational) -> Prediction:
+    """n orders of the series in ε."""
+    expansion = expand(Cell((1,) if omega == 1 else (1, omega)), n, k=k)
+    series = (expansion.fwhm("force"), expansion.fwhm("strain"), expansion.c)
+    sums = [row.at() for row in series]
+    return [found.value for found in sums], [abs(found.error / found.value) for found in sums]
+
+
+_PREDICTIONS: Mapping[str, Callable[[sp.Rational, sp.Rational], Prediction]] = {
+    **{f"{closure} closure": partial(_closed, closure) for closure in ("linear", "full")},
+    "canonical field": partial(_closed, "canonical"),
+    **{f"[{n}/{n}]": partial(_approximant, n) for n in (1, 2)},
+    **{f"ε^{n}": partial(_summed, n) for n in (1, 2, 4, 8)},
+}
+THEORIES = tuple(_PREDICTIONS)
+"""Closures, closed approximants of the series in ε for equal beads, and sums of the series."""
 
 SOLITARY, STRUCK_CHAIN = "solitary wave", "struck chain"
+HERTZ = sp.Rational(3, 2)
 
-Progress = Callable[[list[Any]], Any]
+Case = tuple[sp.Rational, sp.Rational, str]
+"""k, ω, and what is the truth there."""
+
+# The mass ratios of solitary waves of the Hertz dimer are by `validation.waves.resonances`.
+CASES: tuple[Case, ...] = tuple(
+    (sp.Rational(k), sp.Rational(omega), kind)
+    for exponents, ratios, kind in (
+        (("1.1", "5/4", "3/2", "2", "3"), ("1",), SOLITARY),
+        (("3/2",), ("0.3428457811", "0.1547515139", "0.0901277691"), SOLITARY),
+        (("3/2",), ("0.01", "0.05", "0.2", "0.55", "0.8", "0.9"), STRUCK_CHAIN),
+        (("5/4", "2"), ("0.05", "0.2", "0.8"), STRUCK_CHAIN),
+    )
+    for k in exponents
+    for omega in ratios
+)
 
 
 @dataclass(frozen=True)
@@ -83,6 +116,20 @@ class Place:
     truth: Mapping[str, Measured]
     rungs: tuple[Rung, ...]
 
+    def document(self) -> dict[str, Any]:
+        """For JSON."""
+        return {
+            "k": self.k,
+            "omega": self.omega,
+            "truth": self.kind,
+            "truth_value": {name: found.value for name, found in self.truth.items()},
+            "truth_error_value": {name: found.error for name, found in self.truth.items()},
+            "rows": [
+                {"theory": r.theory, "error_value": r.errors, "estimate_value": r.estimates,
+                 "seconds": r.seconds, "missing": r.missing} for r in self.rungs
+            ],
+        }  # fmt: skip
+
 
 @dataclass(frozen=True)
 class Ladder:
@@ -90,96 +137,101 @@ class Ladder:
 
     places: tuple[Place, ...]
 
+    def cost(self, theory: str) -> float:
+        """The median of its seconds, where it has a wave."""
+        rungs = (place.rungs[THEORIES.index(theory)] for place in self.places)
+        return median(rung.seconds for rung in rungs if rung.errors)
 
-def ladder(progress: Progress = list) -> Ladder:
-    """Climb it: equal beads over `UNIFORM`, the Hertz dimer over `SPECIAL` and `STRUCK`."""
-    hertz = sp.Rational(3, 2)
-    equal = [(sp.Rational(k), sp.S.One, True) for k in UNIFORM]
-    dimers = [(hertz, sp.Rational(w), True) for w in SPECIAL]
-    dimers += [(hertz, sp.Rational(w), False) for w in STRUCK]
-    dimers += [(sp.Rational(k), sp.Rational(w), False) for k in OTHERS for w in ALSO]
-    return Ladder(tuple(place(*at) for at in progress([*equal, *dimers])))
+    def report(self) -> Report:
+        """``theories``: ``k``, ``omega``, ``truth`` (its kind), ``truth_value``,
+        ``truth_error_value``, and ``rows``, as of `Rung`; in the picture |error| of the force's
+        width over k and over m2/m1."""
+        found = {rung.theory for p in self.places for rung in p.rungs if rung.errors}
+        told = (f"{name} {1e3 * self.cost(name):.3g}" for name in THEORIES if name in found)
+        note = (
+            "ε^n: the series in k - 1 summed from n orders, in brackets its own estimate of the "
+            "error;\n[n/n]: its closed approximants for equal beads. Truth: by the solitary wave "
+            "or, where\nthere is none, the pulse of a struck chain.\n"
+            f"Median cost of derivation and evaluation (ms of CPU): {', '.join(told)}."
+        )
+        rows = tuple((name, p.k, p.omega, p.truth[name], p.kind,
+                      *(cell for rung in p.rungs for cell in _cells(rung, name)))
+                     for name in NAMES for p in self.places)  # fmt: skip
+        equal = [(p.k - 1, p) for p in self.places if p.omega == 1]
+        dimers = [(p.omega, p) for p in self.places if p.omega != 1 and p.k == HERTZ]
+        return Report(
+            "Theories against true waves",
+            (Table(_COLUMNS, rows, by="quantity", heads=_HEADS, note=note),),
+            panels=(_panel("k - 1", "theories, equal beads", equal),
+                    _panel("m2/m1", "theories, dimers, k = 3/2", dimers)),
+            data={"theories": [p.document() for p in self.places]},
+        )  # fmt: skip
 
 
-def place(k: sp.Rational, omega: sp.Rational, solitary: bool) -> Place:
+_HEADS = {
+    "force": "FWHM of a contact's force: theory over truth - 1",
+    "strain": "FWHM of a contact's strain: theory over truth - 1",
+    "speed": "speed at peak contact force 1: theory over truth - 1",
+}
+_COLUMNS = (
+    Column("quantity"),
+    Column("k", "k"),
+    Column("omega", "m2/m1", format=lambda omega: f"{float(omega):.4g}"),
+    Column("truth", "truth", format=".6g", error=True),
+    Column("truth", "by", format=lambda kind: kind.split()[0]),
+    *(column for name in THEORIES for column in
+      (Column(f"error_value.{name}"), Column(f"estimate_value.{name}"), Column("", name))),
+)  # fmt: skip
+
+
+def _cells(rung: Rung, name: str) -> tuple[float | None, float | None, str | None]:
+    """Error, estimate, and both for people."""
+    if rung.errors is None:
+        return None, None, None
+    error, estimate = rung.errors[name], rung.estimates[name] if rung.estimates else None
+    told = "" if estimate is None else f" ({estimate:.0e})"
+    return error, estimate, f"{error:+.1e}{told}"
+
+
+def _panel(axis: str, title: str, places: Sequence[tuple[sp.Rational, Place]]) -> Panel:
+    curves = []
+    for i, (name, mark) in enumerate(zip(THEORIES, "osD^v<>Pd", strict=True)):
+        points = sorted((float(at), abs(errors["force"])) for at, place in places
+                        if (errors := place.rungs[i].errors) is not None)  # fmt: skip
+        if points:
+            x, y = zip(*points, strict=True)
+            curves.append(Curve.of(name, x, y, f"C{i}{mark}-"))
+    return Panel(axis, "|error| of the FWHM of the force", tuple(curves), "xy", title)
+
+
+def ladder(progress: Progress[Case] = iter) -> Ladder:
+    """Climb it at all of `CASES`."""
+    return Ladder(tuple(place(*case) for case in progress(CASES)))
+
+
+def place(k: sp.Rational, omega: sp.Rational, kind: str = SOLITARY) -> Place:
     """All theories at one k and ω."""
-    truth = _solitary(k, omega) if solitary else _struck(k, omega)
-    cell = Cell((1,)) if omega == 1 else Cell((1, omega))
-    rungs = tuple(
-        _rung(name, compute, truth)
-        for name, compute in zip(THEORIES, _theories(cell, k), strict=True)
-    )
-    return Place(k, omega, SOLITARY if solitary else STRUCK_CHAIN, truth, rungs)
+    truth = _truth(k, omega, kind)
+    return Place(k, omega, kind, truth, tuple(_rung(name, k, omega, truth) for name in THEORIES))
 
 
-def _solitary(k: sp.Rational, omega: sp.Rational) -> dict[str, Measured]:
-    masses = (1.0,) if omega == 1 else (1.0, float(omega))
-    wave = exact_wave(masses, float(k))
-    size = max(wave.residual, wave.tail, 1e-15)
-    values = (wave.fwhm("force"), wave.fwhm("strain"), wave.c)
-    return {
-        name: Measured(value, value * (1 + size)) for name, value in zip(NAMES, values, strict=True)
-    }
+def _truth(k: sp.Rational, omega: sp.Rational, kind: str) -> dict[str, Measured]:
+    found: Mapping[str, Measured]
+    if kind == SOLITARY:
+        found = measured(exact_wave((1.0,) if omega == 1 else (1.0, float(omega)), float(k)))
+        names = ("fwhm force", "fwhm strain", "c")
+    else:
+        found, names = point(k, omega, STRETCH).numbers, ("width", "strain_width", "speed")
+    return {mine: found[its] for mine, its in zip(NAMES, names, strict=True)}
 
 
-def _struck(k: sp.Rational, omega: sp.Rational) -> dict[str, Measured]:
-    numbers = point(k, omega, STRETCH).numbers
-    names = ("width", "strain_width", "speed")
-    return {mine: numbers[its] for mine, its in zip(NAMES, names, strict=True)}
-
-
-Prediction = tuple[dict[str, float], dict[str, float] | None]
-"""Values and error estimates, by `NAMES`."""
-
-
-def _theories(cell: Cell, k: sp.Rational) -> Iterator[Callable[[], Prediction] | None]:
-    """In the order of `THEORIES`; None for closed formulas of another chain."""
-    for closure in ("linear", "full"):
-        yield partial(_closed, cell, k, closure)
-    yield lambda: _compact(canonical_wave(cell, k))
-    for degree in DEGREES:
-        yield partial(_approximant, k, degree) if cell.size == 1 else None
-    for order in ORDERS:
-        yield partial(_summed, cell, k, order)
-
-
-def _closed(cell: Cell, k: sp.Rational, closure: str) -> Prediction:
-    return _compact(homogenize(cell, closure=closure, k=k).pde.traveling_wave())
-
-
-def _compact(wave: TravelingWave) -> Prediction:
-    values = (wave.fwhm("force"), wave.fwhm("strain"), wave.speed() * wave.speed_scale)
-    ones = {s: 1 for value in values for s in value.free_symbols}  # D = 1, B = 1
-    return {name: float(value.subs(ones)) for name, value in zip(NAMES, values, strict=True)}, None
-
-
-def _approximant(k: sp.Rational, degree: int) -> Prediction:
-    """[degree/degree] of the chain of equal beads, a closed formula in k."""
-    expansion = expand(Cell((1,)), 2 * degree)
-    series = (expansion.fwhm("force"), expansion.fwhm("strain"), expansion.c)
-    return {
-        name: float(row.pade(k, degree, degree)) for name, row in zip(NAMES, series, strict=True)
-    }, None
-
-
-def _summed(cell: Cell, k: sp.Rational, order: int) -> Prediction:
-    expansion = expand(cell, order, k=k)
-    series = (expansion.fwhm("force"), expansion.fwhm("strain"), expansion.c)
-    sums = {name: row.at() for name, row in zip(NAMES, series, strict=True)}
-    values = {name: found.value for name, found in sums.items()}
-    return values, {name: abs(found.error / found.value) for name, found in sums.items()}
-
-
-def _rung(
-    theory: str, compute: Callable[[], Prediction] | None, truth: Mapping[str, Measured]
-) -> Rung:
-    if compute is None:
-        return Rung(theory, None, None, 0.0, "a formula for equal beads")
+def _rung(theory: str, k: sp.Rational, omega: sp.Rational, truth: Mapping[str, Measured]) -> Rung:
     start = time.process_time()
     try:
-        values, estimates = compute()
+        values, estimates = _PREDICTIONS[theory](k, omega)
     except NoSolitaryWave as none:
         return Rung(theory, None, None, time.process_time() - start, str(none))
     seconds = time.process_time() - start
-    errors = {name: values[name] / truth[name].value - 1 for name in NAMES}
-    return Rung(theory, errors, estimates, seconds)
+    errors = {name: v / truth[name].value - 1 for name, v in zip(NAMES, values, strict=True)}
+    sizes = None if estimates is None else dict(zip(NAMES, estimates, strict=True))
+    return Rung(theory, errors, sizes, seconds)

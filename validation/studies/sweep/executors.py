@@ -1,6 +1,7 @@
 """Where the points of a sweep are computed: by processes of this machine, or by a Dask cluster.
 
-Both are executors of `concurrent.futures`, and any other one serves a sweep as well.
+Both are executors of `concurrent.futures`, and any other one serves a sweep as well. An executor
+is given a bounded number of points at a time.
 """
 
 from __future__ import annotations
@@ -11,17 +12,37 @@ import os
 import signal
 import threading
 from collections.abc import Callable, Iterator
-from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
-from contextlib import contextmanager
+from concurrent.futures import (
+    FIRST_COMPLETED,
+    BrokenExecutor,
+    CancelledError,
+    Executor,
+    Future,
+    ProcessPoolExecutor,
+    ThreadPoolExecutor,
+    wait,
+)
+from contextlib import AbstractContextManager, ExitStack, closing, contextmanager, nullcontext
+from itertools import islice
 from typing import Any, TypeVar
 
+from lwa.duration import Progress
 from lwa.exact import InputError, shorten
-from validation.scenes.checks import integer
+from validation.pulses.steady import Point, point
+from validation.scenes.checks import Failure, SceneError, integer
+from validation.studies.sweep.journal import Journal, Key
 
 PATIENCE = 5
 """Seconds within which a cluster must answer."""
 
+_UNDERWAY = 256
+"""Points that an executor is given at a time."""
+
 _Result = TypeVar("_Result")
+
+
+class SweepError(Failure):
+    """The executor gave up; what was finished is kept. The message says where it stood."""
 
 
 class _Pool(ProcessPoolExecutor):
@@ -78,43 +99,85 @@ def cluster(address: str) -> Iterator[Executor]:
     """The executor of the Dask cluster whose scheduler is at an address such as tcp://host:8786.
 
     `lwa` must be installed where its workers are. Raises `lwa.InputError` when Dask is not
-    installed, or nothing answers within `PATIENCE`.
+    installed, or no scheduler with workers answers within `PATIENCE`.
     """
     try:
-        import distributed
-        from distributed.comm import connect
-        from distributed.comm.addressing import parse_address, parse_host_port
-        from distributed.comm.registry import get_backend
+        import distributed  # an optional package
     except ImportError:
         raise InputError("cluster needs Dask: pip install 'lwa[cluster]'") from None
-    try:
-        scheme, place = parse_address(address)
-        get_backend(scheme)
-        if scheme != "inproc":
-            parse_host_port(place)
-    except (ValueError, TypeError):
-        raise InputError(
-            f"cluster is {shorten(address)}: the address of a Dask scheduler is wanted, such as "
-            "tcp://127.0.0.1:8786"
-        ) from None
 
     async def call() -> None:
         arguments = distributed.Security().get_connection_args("client")
-        await (await connect(address, timeout=PATIENCE, **arguments)).close()
+        # its own timeout does not count while who answers is silent
+        called = distributed.connect(address, timeout=PATIENCE, **arguments)
+        await (await asyncio.wait_for(called, PATIENCE)).close()
 
-    try:
-        # First a call, as a client that fails leaves threads and messages behind; in a thread of
-        # its own, as a notebook's has a loop already.
-        with ThreadPoolExecutor(1) as thread:
-            thread.submit(asyncio.run, call()).result()
-        client = distributed.Client(address, timeout=PATIENCE, set_as_default=False)
-    except Exception:  # whatever answers there
-        raise InputError(
-            f"cluster is {address}: no Dask scheduler answers there within {PATIENCE} s"
-        ) from None
-    with client:
+    with ExitStack() as stack:
         try:
+            # First a call, as a client that fails leaves a thread behind; in a thread of its own,
+            # as a notebook's has a loop already.
+            with ThreadPoolExecutor(1) as thread:
+                thread.submit(asyncio.run, call()).result()
+            client = stack.enter_context(
+                distributed.Client(address, timeout=PATIENCE, set_as_default=False)
+            )
             client.wait_for_workers(1, timeout=PATIENCE)
-        except TimeoutError:
-            raise InputError(f"cluster is {address}: its scheduler has no workers") from None
+        except Exception:  # whatever answers there
+            raise InputError(
+                f"cluster is {shorten(address)}: no Dask scheduler with workers answers there "
+                f"within {PATIENCE} s; an address such as tcp://127.0.0.1:8786 is wanted"
+            ) from None
         yield client.get_executor()
+
+
+def entered(
+    executor: Executor | AbstractContextManager[Executor] | None,
+) -> AbstractContextManager[Executor]:
+    """A context that gives an executor: of those that are there, the default one, or as it is."""
+    if executor is None:
+        return processes()
+    if isinstance(executor, Executor):
+        return nullcontext(executor)
+    if isinstance(executor, AbstractContextManager):
+        return executor
+    raise SceneError(f"executor is {shorten(executor)}: a concurrent.futures.Executor is wanted")
+
+
+def compute(
+    executor: Executor, todo: list[Key], stretch: int, journal: Journal, progress: Progress[Key]
+) -> None:
+    """Each point into the journal as soon as it is finished, whatever happens to the others."""
+    waiting = iter(todo)
+    underway: dict[Future[Point], Key] = {}
+    with closing(key for key in progress(todo)) as ticks:
+        next(ticks)
+        try:
+            while True:
+                for key in islice(waiting, _UNDERWAY - len(underway)):
+                    underway[executor.submit(point, *key, stretch)] = key
+                if not underway:
+                    return
+                done = wait(underway, return_when=FIRST_COMPLETED).done
+                for future in [future for future in underway if future in done]:
+                    journal.add(_result(future, underway[future]))
+                    del underway[future]
+                    next(ticks, None)
+        except (BrokenExecutor, CancelledError) as error:
+            reason = "killed, or out of memory?"
+            raise SweepError(f"the workers are gone before the sweep is done: {reason}") from error
+        finally:
+            for future, key in underway.items():
+                if key in journal.points:  # it was being kept when Ctrl-C came
+                    continue
+                if not future.cancel() and future.done() and future.exception() is None:
+                    journal.add(future.result())
+
+
+def _result(future: Future[Point], key: Key) -> Point:
+    try:
+        return future.result()
+    except (BrokenExecutor, CancelledError):
+        raise
+    except Exception as error:  # beyond what a point can say of itself
+        reason = f"{type(error).__name__}: {error}"
+        raise SweepError(f"k = {key[0]}, omega = {key[1]} is not computed: {reason}") from error

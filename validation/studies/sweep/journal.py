@@ -18,15 +18,17 @@ from __future__ import annotations
 import errno
 import json
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from functools import partial
+from io import FileIO
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any
 
 import sympy as sp
 
 from lwa.exact import InputError, exact, shorten
 from lwa.spheres.files import content, reason
-from lwa.spheres.tables import Table, array, table
+from lwa.spheres.tables import Reader, Table, array, table
 from validation.pulses.pulse import Measured
 from validation.pulses.steady import QUANTITIES, Point
 from validation.report.files import output_file
@@ -54,56 +56,48 @@ class Journal:
     def __init__(self, path: str | Path | None, settings: Mapping[str, int]) -> None:
         self.points: dict[Key, Point] = {}
         self.file = None if path is None else output_file("file", str(path), (SUFFIX,))
-        self._stream: BinaryIO | None = None
         self._header = json.dumps(FORMAT | {"settings": dict(settings)}).encode() + b"\n"
-        self._end = 0
+        self._torn: int | None = None
         if self.file is None or not self.file.exists():
             return
         if not os.access(self.file, os.W_OK):
             raise InputError(f"file is {self.file}: one that can be written is wanted")
         try:
             found = content(self.file, MOST_BYTES)
-        except OSError as error:
+        except (OSError, InputError) as error:
             raise InputError(f"{self.file} is not read: {reason(error)}") from None
-        except InputError as error:
-            raise InputError(f"{self.file} is not read: {error}") from None
-        self._end = found.rfind(b"\n") + 1
-        if self._end:
-            self.points = _read(self.file, found[: self._end], settings)
+        if end := found.rfind(b"\n") + 1:
+            self.points = _read(self.file, found[:end], settings)
         elif not self._header.startswith(found):
             raise InputError(f"{self.file} is not a sweep's file: choose another name")
+        self._torn = end
 
     def add(self, point: Point) -> None:
         """Keep a finished point. Raises `lwa.InputError` when the file cannot take it."""
         key = point.k, point.omega
         self.points[key] = point  # first, as a Ctrl-C is heard when the line is on the disk
-        if self.file is not None:
-            try:
-                self._append(_line(point))
-            except OSError as error:
-                del self.points[key]
-                raise InputError(f"{self.file} is not written: {reason(error)}") from None
-
-    def close(self) -> None:
-        """Close the file."""
-        if self._stream is not None:
-            self._stream.close()
-
-    def _append(self, line: bytes) -> None:
-        """The whole line, on the disk, or nothing of it."""
-        assert self.file is not None
-        if self._stream is None:
-            self._stream = self.file.open("ab", buffering=0)
-            self._stream.truncate(self._end)
-            if not self._end:
-                line = self._header + line
-        end = self._stream.seek(0, os.SEEK_END)
+        if self.file is None:
+            return
         try:
-            if self._stream.write(line) < len(line):
+            with self.file.open("ab", buffering=0) as stream:
+                self._append(stream, _line(point))
+        except OSError as error:
+            del self.points[key]
+            raise InputError(f"{self.file} is not written: {reason(error)}") from None
+
+    def _append(self, stream: FileIO, line: bytes) -> None:
+        """The whole line, on the disk, or nothing of it."""
+        if self._torn is not None:
+            stream.truncate(self._torn)
+            self._torn = None
+        if not (end := stream.seek(0, os.SEEK_END)):
+            line = self._header + line
+        try:
+            if stream.write(line) < len(line):
                 raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
-            os.fsync(self._stream.fileno())
+            os.fsync(stream.fileno())
         except OSError:
-            self._stream.truncate(end)
+            stream.truncate(end)
             raise
 
 
@@ -124,7 +118,7 @@ def _read(file: Path, content: bytes, settings: Mapping[str, int]) -> dict[Key, 
     for number, line in enumerate(lines, start=2):
         try:
             point = _point(_json(line))
-        except (InputError, ValueError) as error:
+        except ValueError as error:
             raise InputError(f"{file} is damaged in line {number}: {error}") from None
         if points.setdefault((point.k, point.omega), point) != point:
             raise InputError(
@@ -154,12 +148,9 @@ def _check_header(file: Path, line: bytes, settings: Mapping[str, int]) -> None:
 
 
 def _json(line: bytes) -> Any:
-    def refuse(constant: str) -> None:
-        raise ValueError(f"{constant} is not a finite number")
-
     try:
-        return json.loads(line.decode(), parse_constant=refuse)
-    except (json.JSONDecodeError, UnicodeDecodeError, RecursionError):
+        return json.loads(line.decode())
+    except (ValueError, RecursionError):  # also of an encoding
         raise ValueError("it is not JSON") from None
 
 
@@ -168,13 +159,9 @@ def _point(entry: Any) -> Point:
     k, omega = (found.read(name, rational) for name in ("k", "omega"))
     if "missing" in found:
         return Point(k, omega, None, {}, found.read("missing", _text))
-    numbers = found.read("numbers", table(tuple(QUANTITIES)))
-    return Point(
-        k,
-        omega,
-        found.read("sites", _sites),
-        {name: numbers.read(name, _measured) for name in QUANTITIES},
-    )
+    given = found.read("numbers", table(tuple(QUANTITIES)))
+    numbers = {name: Measured(*given.read(name, _two(real))) for name in QUANTITIES}
+    return Point(k, omega, found.read("sites", _two(partial(integer, least=0))), numbers)
 
 
 def rational(value: Any, name: str) -> sp.Rational:
@@ -193,16 +180,12 @@ def _text(value: Any, name: str) -> str:
     return value
 
 
-def _measured(value: Any, name: str) -> Measured:
-    return Measured(*(real(number, name) for number in _pair(value, name)))
+def _two(reader: Reader) -> Callable[[Any, str], tuple[Any, Any]]:
+    """Reader of a list of two."""
 
+    def read(value: Any, name: str) -> tuple[Any, Any]:
+        if len(array(value, name)) != 2:
+            raise SceneError(f"{name} is {shorten(value)}: two numbers are wanted")
+        return reader(value[0], name), reader(value[1], name)
 
-def _sites(value: Any, name: str) -> tuple[int, int]:
-    start, end = (integer(number, name, 0) for number in _pair(value, name))
-    return start, end
-
-
-def _pair(value: Any, name: str) -> list[Any]:
-    if len(numbers := array(value, name)) != 2:
-        raise SceneError(f"{name} is {shorten(value)}: two numbers are wanted")
-    return numbers
+    return read

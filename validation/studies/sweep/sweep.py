@@ -11,57 +11,57 @@ closure, and the canonical field of the full closure.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Mapping
-from concurrent.futures import (
-    FIRST_COMPLETED,
-    BrokenExecutor,
-    CancelledError,
-    Executor,
-    Future,
-    wait,
-)
-from contextlib import AbstractContextManager, closing, nullcontext
+from collections.abc import Iterable, Mapping, Sequence
+from concurrent.futures import Executor
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from functools import cache
-from itertools import islice, product
+from itertools import product
 from pathlib import Path
 from typing import Any
 
+import click
 import numpy as np
-import sympy as sp
-from numpy.typing import NDArray
+from sympy import Rational
 
 from lwa import Dimer, canonical_wave, homogenize
-from lwa.exact import shorten
-from lwa.numeric import NumericWave
-from validation.pulses.steady import STRETCH, Point, point
+from lwa.duration import Progress
+from lwa.exact import InputError, shorten
+from lwa.numeric import Array, NumericWave
+from validation.pulses.steady import QUANTITIES, STRETCH, Point
+from validation.report.command import option, study
+from validation.report.panel import Curve, Map, Panel
+from validation.report.result import Report
+from validation.report.table import Column, Table
+from validation.report.text import percent
 from validation.scenes.checks import SceneError, integer, items
-from validation.studies.sweep.executors import processes
+from validation.studies.sweep.executors import cluster, compute, entered, processes
 from validation.studies.sweep.journal import Journal, Key, rational
 
-Array = NDArray[np.float64]
-
-RANGES = {
-    "k": (sp.Rational(21, 20), sp.Integer(6)),
-    "omega": (sp.Rational(1, 100), sp.Integer(100)),
-}
+RANGES = {"k": (Rational(21, 20), Rational(6)), "omega": (Rational(1, 100), Rational(100))}
 """Where a run of some seconds is enough."""
 
 MOST = 1000
 """Values on each axis."""
 
-CLOSURES = {
-    "linear": "paper's closure",
-    "canonical": "full closure, canonical field",
-}
+CLOSURES = {"linear": "paper's closure", "canonical": "full closure, canonical field"}
 """The theories beside the lattice, and what they are called."""
 
-_UNDERWAY = 256
-"""Points that the executor is given at a time."""
+_OMEGA = "ω = m2/m1"
+_UNSURE = 0.01
+"""Relative error of the width from which on a map marks a point."""
+_NO_DECAY = 1e-7
+"""Per site: what a map shows as no decay."""
+_MOST_ERROR = 50.0
+"""Of the theory, in percent: where the colours of its map end."""
 
-
-class SweepError(RuntimeError):
-    """The executor gave up; what was finished is kept. The message says where it stood."""
+_NOTE = (
+    "Width: FWHM of a contact's force, in sites. Speed: sites over time at contact force 1, with "
+    "A = D = m1 = 1.\nDecay: of the logarithm of the peak force. ±: the largest change over two "
+    "stretches, or of a less accurate run.\nSites: from the struck bead, where it was measured. "
+    "Theory/lattice - 1 of the wave of\n"
+    f"{'; '.join(f'{closure}: the {name}' for closure, name in CLOSURES.items())}."
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,8 +73,8 @@ class Sweep:
         theory has no wave.
     """
 
-    ks: tuple[sp.Rational, ...]
-    omegas: tuple[sp.Rational, ...]
+    ks: tuple[Rational, ...]
+    omegas: tuple[Rational, ...]
     stretch: int
     points: tuple[Point, ...]
     theory: Mapping[str, Mapping[str, Array]]
@@ -84,19 +84,101 @@ class Sweep:
 
         NaN at the points that are ``missing``.
         """
-        values = (
-            getattr(p.numbers[quantity], part) if p.missing is None else np.nan for p in self.points
+        numbers = (p.numbers.get(quantity) for p in self.points)
+        values = [np.nan if number is None else getattr(number, part) for number in numbers]
+        return np.array(values).reshape(len(self.ks), len(self.omegas))
+
+    def error(self, closure: str, quantity: str) -> Array:
+        """That of a theory, over the lattice, less 1: (len(ks), len(omegas)), NaN without one."""
+        return np.asarray(self.theory[closure][quantity] / self.map(quantity) - 1)
+
+    def report(self) -> Report:
+        """``stretch``, ``missing`` (how many), and ``points``: ``k``, ``omega`` (exact), ``sites``,
+        ``width_value``, ``strain_width_value``, ``speed_value``, ``decay_value`` and their errors
+        (``width_error_value``, …), null where ``missing`` says why; ``theory`` by closure:
+        ``width_value``, ``strain_width_value``, ``speed_value``, null where there is no wave. The
+        picture: maps over ω and k, or curves where one of the two has a single value.
+        """
+        without = [point for point in self.points if point.missing is not None]
+        missing = "\n".join(f"k = {p.k}, ω = {p.omega}: {p.missing}" for p in without)
+        maps = min(len(self.ks), len(self.omegas)) > 1
+        return Report(
+            "The steady pulse of a struck dimer chain",
+            (self._table(),),
+            panels=self._maps() if maps else self._curves(),
+            notes=(missing, _NOTE),
+            data={"stretch": self.stretch, "missing": len(without)},
         )
-        return np.fromiter(values, float).reshape(len(self.ks), len(self.omegas))
+
+    def _table(self) -> Table:
+        points = self.points
+        numbers = {name: [p.numbers.get(name) for p in points] for name in QUANTITIES}
+        cells: list[tuple[Column, Iterable[Any]]] = [
+            (Column("k"), [p.k for p in points]),
+            (Column("omega", _OMEGA), [p.omega for p in points]),
+        ]
+        for name in ("width", "speed"):
+            cells.append((Column(name, name, format=str, error=True), numbers[name]))
+            for closure in CLOSURES:
+                errors = [None if np.isnan(x) else x for x in self.error(closure, name).flat]
+                cells.append((Column("", closure, format=percent), errors))
+        cells += [
+            (Column("decay", "decay per site", format=".2e", error=True), numbers["decay"]),
+            (Column("sites", "sites", format="{0[0]} … {0[1]}".format), [p.sites for p in points]),
+            (Column("strain_width", error=True), numbers["strain_width"]),
+            (Column("missing"), [p.missing for p in points]),
+        ]
+        for closure, wave in self.theory.items():
+            for name, found in wave.items():
+                cells.append((Column(f"theory.{closure}.{name}_value"), found.ravel()))
+        columns, values = zip(*cells, strict=True)
+        rows = tuple(zip(*values, strict=True))
+        return Table(columns, rows, "points", by="k", heads={str(k): f"k = {k}" for k in self.ks})
+
+    def _maps(self) -> tuple[Panel, ...]:
+        width, decay = self.map("width"), self.map("decay")
+        theory = 100 * self.error("linear", "width")
+        largest = min(np.max(np.abs(theory), initial=1e-3, where=np.isfinite(theory)), _MOST_ERROR)
+        most = np.max(decay, initial=10 * _NO_DECAY, where=np.isfinite(decay))
+        decay = np.maximum(decay, _NO_DECAY / 2)  # a logarithm wants what is positive
+        x, y = (np.array(axis, float) for axis in (self.omegas, self.ks))
+        of_theory = f"FWHM of force: {CLOSURES['linear']}/lattice - 1 (%)"
+        maps = (
+            Map(QUANTITIES["width"], x, y, width),
+            Map(QUANTITIES["speed"], x, y, self.map("speed")),
+            Map(QUANTITIES["decay"], x, y, decay, _NO_DECAY, most, "log", "cividis"),
+            Map(of_theory, x, y, theory, -largest, largest, colours="PuOr"),
+        )
+        i, j = np.nonzero(self.map("width", "error") > _UNSURE * width)
+        marks = (Curve("", x[j], y[i], "rx"),)
+        red = f"; red ×: width known to less than {_UNSURE:.0%}" if len(i) else ""
+        title = f"grey: not measured{red}"
+        return tuple(Panel(_OMEGA, "k", marks, title=title, map=found) for found in maps)
+
+    def _curves(self) -> tuple[Panel, ...]:
+        along_k = self.ks, "k", f"ω = {self.omegas[0]}"
+        axis, x, title = along_k if len(self.ks) > 1 else (self.omegas, _OMEGA, f"k = {self.ks[0]}")
+        places = np.array(axis, float)
+        panels = []
+        for name, label in QUANTITIES.items():
+            value, error = (self.map(name, part).ravel() for part in ("value", "error"))
+            if log := name == "decay":  # what is less than its error is shown as that
+                value = np.fmax(value, error)
+            curves = [Curve("lattice", places, value, "ko", error)]
+            for style, (closure, wave) in zip(("C0-", "C1--"), self.theory.items(), strict=True):
+                if name in wave:
+                    curves.append(Curve(CLOSURES[closure], places, wave[name].ravel(), style))
+            panels.append(Panel(x, label, tuple(curves), "y" * log, title))
+        return tuple(panels)
 
 
-def axis(text: str, name: str) -> tuple[sp.Rational, ...]:
+def axis(text: str, name: str) -> tuple[Rational, ...]:
     """The values in a text: numbers and ranges start:stop:count, separated by commas, exact.
 
     >>> axis("1.2, 3/2:2:3", "k")
     (6/5, 3/2, 7/4, 2)
     """
-    values: list[sp.Rational] = []
+    values: list[Rational] = []
     for part in text.split(","):
         start, *rest = part.split(":")
         if not rest:
@@ -117,7 +199,7 @@ def sweep(
     stretch: int = STRETCH,
     executor: Executor | AbstractContextManager[Executor] | None = None,
     file: str | Path | None = None,
-    progress: Callable[[Collection[Key]], Iterable[Key]] = iter,
+    progress: Progress[Key] = iter,
 ) -> Sweep:
     """Strike a chain for each k and ω.
 
@@ -133,7 +215,7 @@ def sweep(
     progress : is shown the points to be computed (such as `tqdm.tqdm`).
 
     Raises `lwa.InputError` for numbers outside `RANGES` or a file that cannot serve, and
-    `SweepError` when the executor fails.
+    `validation.studies.sweep.executors.SweepError` when the executor fails.
 
     >>> from concurrent.futures import ThreadPoolExecutor
     >>> with ThreadPoolExecutor() as threads:
@@ -143,20 +225,17 @@ def sweep(
     """
     grid = _values(ks, "k"), _values(omegas, "omega")
     stretch = integer(stretch, "stretch", 2, 100)
-    with closing(Journal(file, {"stretch": stretch})) as journal:
-        todo = [key for key in product(*grid) if key not in journal.points]
-        if todo:
-            with _entered(executor) as workers:
-                _compute(workers, todo, stretch, journal, progress)
-        points = tuple(journal.points[key] for key in product(*grid))
+    journal = Journal(file, {"stretch": stretch})
+    if todo := [key for key in product(*grid) if key not in journal.points]:
+        with entered(executor) as workers:
+            compute(workers, todo, stretch, journal, progress)
+    points = tuple(journal.points[key] for key in product(*grid))
     return Sweep(*grid, stretch, points, theory(*grid))
 
 
-def theory(
-    ks: Collection[sp.Rational], omegas: Collection[sp.Rational]
-) -> dict[str, dict[str, Array]]:
+def theory(ks: Sequence[Rational], omegas: Sequence[Rational]) -> dict[str, dict[str, Array]]:
     """The theories' numbers, as in `Sweep`."""
-    k, omega = np.meshgrid([float(k) for k in ks], [float(w) for w in omegas], indexing="ij")
+    k, omega = np.meshgrid(np.array(ks, float), np.array(omegas, float), indexing="ij")
     scale = np.sqrt(2 * k / (1 + omega))  # τ/t, for A = D = m1 = 1
     return {
         closure: {
@@ -175,7 +254,7 @@ def _waves() -> dict[str, NumericWave]:
     return {closure: wave.numeric(missing="nan") for closure, wave in waves.items()}
 
 
-def _values(given: Iterable[Any], name: str) -> tuple[sp.Rational, ...]:
+def _values(given: Iterable[Any], name: str) -> tuple[Rational, ...]:
     values = {rational(value, name) for value in items(given, name)}
     least, most = RANGES[name]
     for value in values:
@@ -186,60 +265,35 @@ def _values(given: Iterable[Any], name: str) -> tuple[sp.Rational, ...]:
     return tuple(sorted(values))
 
 
-def _entered(
-    executor: Executor | AbstractContextManager[Executor] | None,
-) -> AbstractContextManager[Executor]:
-    if executor is None:
-        return processes()
-    if isinstance(executor, Executor):
-        return nullcontext(executor)
-    if isinstance(executor, AbstractContextManager):
-        return executor
-    raise SceneError(f"executor is {shorten(executor)}: a concurrent.futures.Executor is wanted")
+def _axis(context: click.Context, given: click.Parameter, text: str) -> tuple[Rational, ...]:
+    return axis(text, given.opts[0].lstrip("-"))
 
 
-def _compute(
-    executor: Executor,
-    todo: list[Key],
-    stretch: int,
-    journal: Journal,
-    progress: Callable[[Collection[Key]], Iterable[Key]],
-) -> None:
-    """Each point into the journal as soon as it is finished, whatever happens to the others."""
-    waiting = iter(todo)
-    underway: dict[Future[Point], Key] = {}
-    with closing(key for key in progress(todo)) as ticks:
-        next(ticks)
-        try:
-            while True:
-                for key in islice(waiting, _UNDERWAY - len(underway)):
-                    underway[executor.submit(point, *key, stretch)] = key
-                if not underway:
-                    return
-                done = wait(underway, return_when=FIRST_COMPLETED).done
-                for future in [future for future in underway if future in done]:
-                    journal.add(_result(future, underway[future]))
-                    del underway[future]
-                    next(ticks, None)
-        except BaseException as error:
-            for future, key in underway.items():
-                if key in journal.points:  # it was being kept when Ctrl-C came
-                    continue
-                if not future.cancel() and future.done() and future.exception() is None:
-                    journal.add(future.result())
-            if isinstance(error, BrokenExecutor | CancelledError):
-                reason = "killed, or out of memory?"
-                raise SweepError(
-                    f"the workers are gone before the sweep is done: {reason}"
-                ) from error
-            raise
-
-
-def _result(future: Future[Point], key: Key) -> Point:
+@study(
+    option("--k", "ks", callback=_axis, default="5/4:3:8", says="Exponents of F = δ^k: values and "
+           "ranges start:stop:count, separated by commas."),
+    option("--omega", "omegas", callback=_axis, default="1/20:1:20",
+           says="Mass ratios m2/m1, likewise."),
+    option("--stretch", default=STRETCH, says="Cells from one place at which the pulse is measured "
+           "to the next; more below k = 3/2."),
+    option("--file", metavar="FILE", says="Keep finished points (.jsonl); with the same file a "
+           "sweep goes on where it was left."),
+    option("--jobs", type=int, says="Processes; by default one for each processor."),
+    option("--cluster", "address", metavar="ADDRESS", says="Compute on a Dask cluster instead, "
+           "whose scheduler is there, such as tcp://host:8786."),
+    name="sweep",
+)  # fmt: skip
+def sweep_command(
+    ks: tuple[Rational, ...], omegas: tuple[Rational, ...], stretch: int, file: str | None,
+    jobs: int | None, address: str | None, progress: Progress[Key],
+) -> Sweep:  # fmt: skip
+    """Maps over k and m2/m1: width, speed and decay of a struck chain's pulse."""
+    if address is not None and jobs is not None:
+        raise InputError(f"jobs is {jobs}: a cluster has workers of its own")
+    executor = processes(jobs) if address is None else cluster(address)
     try:
-        return future.result()
-    except (BrokenExecutor, CancelledError):
+        return sweep(ks, omegas, stretch=stretch, executor=executor, file=file, progress=progress)
+    except KeyboardInterrupt:
+        if file is not None and Path(file).exists():
+            click.echo(f"finished points are in {file}: the same command goes on", err=True)
         raise
-    except Exception as error:  # beyond what a point can say of itself
-        reason = f"{type(error).__name__}: {error}"
-        raise SweepError(f"k = {key[0]}, omega = {key[1]} is not computed: {reason}") from error

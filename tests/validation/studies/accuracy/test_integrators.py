@@ -1,5 +1,7 @@
 """Speed against error: errors fall, costs are told as defined, and the contract is kept."""
 
+import csv
+import io
 import json
 import math
 from dataclasses import replace
@@ -9,14 +11,16 @@ import pytest
 from scipy import integrate as scipy
 
 from lwa import InputError
+from tests.commands import ended
 from validation import cli
 from validation.lattice.schemes import SCHEMES
 from validation.lattice.simulate import COMPILED, simulate
-from validation.report.text import document, text
 from validation.scenes.scene import Scene
+from validation.studies.accuracy import costs as spent
 from validation.studies.accuracy import integrators as module
 from validation.studies.accuracy import peers, tasks
-from validation.studies.accuracy.integrators import Row, accuracy, cost, costs
+from validation.studies.accuracy.costs import Row, cost, costs
+from validation.studies.accuracy.integrators import accuracy
 from validation.studies.accuracy.reference import integrate
 from validation.studies.accuracy.tasks import NUMBERS, Task, errors, exact, struck
 
@@ -54,7 +58,7 @@ def test_the_error_falls_with_the_tolerance(method, window):
     for rtol in (1e-5, 1e-9):
         if method in COMPILED:
             run = simulate(task.scene, method=method, rtol=rtol, window=window)
-            force = run.contact_force[0][-len(task.times) :]
+            force = task.force(run)
         else:
             force = integrate(task, getattr(scipy, method), rtol, window=window)
         found.append(max(errors(task.read(force), task.truth).values()))
@@ -81,7 +85,7 @@ def test_a_cost_holds_from_there_on():
 
 
 def test_goals_compare_equal_errors(monkeypatch):
-    monkeypatch.setattr(module, "scaling", lambda sites: (-0.02, 0.01))
+    monkeypatch.setattr(spent, "scaling", lambda sites: (-0.02, 0.01))
     ours = dict(method="SRKN14", window=True, family="compiled")
     rows = [
         row(0.001, 2e-6, setting=1e-5, **ours), row(0.004, 5e-7, setting=1e-6, **ours),
@@ -90,7 +94,7 @@ def test_goals_compare_equal_errors(monkeypatch):
         row(3.0, 9e-7, "SciPy DOP853", family="SciPy"),
         row(0.05, 2e-6, "CyRK"), row(0.09, 5e-7, "CyRK"), row(0.2, 1e-8, "slow"),
     ]  # fmt: skip
-    goals = {goal.key: goal for goal in module._goals(rows)}
+    goals = {goal.key: goal for goal in spent.goals(rows)}
     assert goals["window_ms"].value == pytest.approx(4.0)
     assert goals["scipy_ratio"].value == pytest.approx(750)
     assert goals["peer_ratio"].value == pytest.approx(22.5)
@@ -100,26 +104,27 @@ def test_goals_compare_equal_errors(monkeypatch):
         "site_exponent": True,
     }  # fmt: skip
     others = [r for r in rows if r.family != "peer"]
-    assert "peer_ratio" not in {goal.key for goal in module._goals(others)}
+    assert "peer_ratio" not in {goal.key for goal in spent.goals(others)}
+    assert list(spent.goals([replace(r, task="uniform") for r in rows])) == []
 
 
 def test_cost_per_site_is_fitted_by_a_power(monkeypatch):
     """Costs n² give cost per site ~ n."""
-    monkeypatch.setattr(module, "_timed", lambda run: (None, 1e-9 * len(run.args[0].masses) ** 2))
-    slope, error = module.scaling((100, 200, 400))
+    monkeypatch.setattr(spent, "timed", lambda run: (None, 1e-9 * len(run.args[0].masses) ** 2))
+    slope, error = spent.scaling((100, 200, 400))
     assert slope == pytest.approx(1.0)
     assert error < 1e-9
 
 
 def small():
-    return struck(0.2733, 24, 16, 8.0, 24.0, "a small dimer")
+    return struck(0.2733, 24, 16, 8.0, 24.0)
 
 
 def walled():
     """As the experiment: behind a wall there is no window."""
     task = small()
     scene = replace(task.scene, wall=1.0)
-    return Task("with a wall", scene, task.listen, windowed=False)
+    return Task(scene, task.listen, windowed=False)
 
 
 def reduce(monkeypatch, the_peers=()):
@@ -130,16 +135,14 @@ def reduce(monkeypatch, the_peers=()):
         _SCIPY={("DOP853", False): (1e-6, 1e-8), ("DOP853", True): (1e-8,)},
         _SPLITTINGS={("SRKN14", True): (1e-6, 1e-8), ("Verlet", True): (1e-5,)},
     )
-    tables |= dict(_SITES=(60, 120, 240), _ENOUGH=0.0)
     for name, value in tables.items():
         monkeypatch.setattr(module, name, value)
+    monkeypatch.setattr(spent, "_SITES", (60, 120, 240))
+    monkeypatch.setattr(spent, "_ENOUGH", 0.0)
 
 
 def command(capsys, *arguments):
-    with pytest.raises(SystemExit) as ended:
-        cli.main(("accuracy", *arguments))
-    captured = capsys.readouterr()
-    return ended.value.code, captured.out, captured.err
+    return ended(capsys, cli.main, "accuracy", *arguments)
 
 
 def held(result, names):
@@ -181,9 +184,14 @@ def test_the_text_names_tasks_methods_and_what_is_missing(monkeypatch):
     reduce(monkeypatch, (peers.Peer("absent", "RK4", pytest.fail),))
     result = accuracy(["experiment"])
     assert result.goals == ()
-    assert document(result)["absent"] == ["absent"]
-    printed = text(result)
-    assert printed.startswith("experiment: arrival ")
+    report = result.report()
+    assert report.ok
+    document = report.document()
+    assert document["absent"] == ["absent"]
+    assert document["goals"] == []
+    printed = report.text()
+    assert printed.startswith("Speed against error\n\nexperiment: arrival ")
+    assert "\nPeak force to 1e-06 from here on (ms): " in printed
     assert "SRKN14  " in printed
     assert "SRKN14, window" not in printed
     assert printed.endswith(
@@ -211,13 +219,46 @@ def test_a_task_that_does_not_exist_is_named_and_nothing_is_run(capsys, monkeypa
         accuracy(["tea"])
 
 
+def test_a_missed_goal_is_told_and_ends_with_0(capsys, monkeypatch):
+    """No run of these chains is 1000 times as fast as another."""
+    reduce(monkeypatch)
+    status, out, err = command(capsys, "--task", "dimer")
+    assert (status, err) == (0, "")
+    (line,) = [line for line in out.splitlines() if line.startswith("SciPy's DOP853 on the whole")]
+    assert line.endswith("≥ 500  NOT met")
+
+
+def test_csv_and_notebook_tell_what_json_does(monkeypatch):
+    reduce(monkeypatch)
+    report = accuracy(["dimer"], peers=False).report()
+    rows = report.document()["rows"]
+    for line, row in zip(csv.DictReader(io.StringIO(report.csv())), rows, strict=True):
+        assert (line["task"], line["method"], line["family"]) == (
+            row["task"], row["method"], row["family"],
+        )  # fmt: skip
+        for name in set(row) - {"task", "method", "family"}:
+            assert (float(line[name]) if line[name] else None) == row[name], name
+    page = report._repr_html_()
+    assert page.count("<tr>") == 1 + len(rows) + 1 + 4  # the goals have a table of their own
+    assert "<svg" in page
+
+
+def test_a_panel_tells_windows_from_whole_chains():
+    rows = [row(2.0, 1e-7), row(1.0, 1e-5), row(0.5, 1e-6, window=True), row(0.1, 1e-6, "b")]
+    curves = {curve.label: curve for curve in module._panel("dimer", rows).curves}
+    assert {name: curve.style for name, curve in curves.items()} == {
+        "a": "C2o:", "a, window": "C2o-", "b": "C2s:",
+    }  # fmt: skip
+    assert (curves["a"].x.tolist(), curves["a"].y.tolist()) == ([1e-7, 1e-5], [2.0, 1.0])
+
+
 @pytest.mark.slow
 @pytest.mark.filterwarnings("default::DeprecationWarning")
 def test_the_command_with_every_method(capsys, monkeypatch):
     """All methods and peers, on short chains."""
     for name, factory in (("dimer", small), ("experiment", walled)):
         monkeypatch.setitem(tasks.TASKS, name, factory)
-    monkeypatch.setattr(module, "_SITES", (60, 120, 240))
+    monkeypatch.setattr(spent, "_SITES", (60, 120, 240))
     names = ("dimer", "experiment")
     chosen = [argument for name in names for argument in ("--task", name)]
     status, out, _ = command(capsys, *chosen, "--format", "json")

@@ -29,7 +29,7 @@ def loaded():
         masses=(1.0, 0.3, 2.0, 0.7), stiffnesses=(1.0, 2.0, 0.5), wall=1.5, gravity=0.1, k=1.5,
         velocities=(0.3,), duration=8.0, samples=161, contact_sensors=(2,),
     )  # fmt: skip
-    return Task("loaded", scene, 1.0)
+    return Task(scene, 1.0)
 
 
 @pytest.mark.parametrize("peer", list(marked()))
@@ -67,4 +67,4 @@ def test_other_exponents_are_refused():
         masses=(1, 1), stiffnesses=(1,), k=2, duration=1, velocities=(1,), contact_sensors=(0,)
     )
     with pytest.raises(SceneError, match=r"^k is 2: "):
-        peers._hertz(Task("quadratic", scene, 0.0))
+        peers._hertz(Task(scene, 0.0))

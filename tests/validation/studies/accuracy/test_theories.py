@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import csv
+import io
 from functools import cache
 from itertools import pairwise
 
@@ -11,12 +13,8 @@ import sympy as sp
 
 from lwa import Cell, Expansion, expand
 from validation.pulses.steady import STRETCH, point
-from validation.report.text import document, text
-from validation.studies.accuracy.rungs import cost
-from validation.studies.accuracy.theories import THEORIES, Ladder, place
+from validation.studies.accuracy.theories import HERTZ, NAMES, THEORIES, Ladder, place
 from validation.waves.solver import ExactWave, exact_wave
-
-HERTZ = sp.Rational(3, 2)
 
 
 @cache
@@ -130,7 +128,7 @@ def test_between_resonances_the_series_claims_no_digit() -> None:
 
 
 def test_ladder_in_all_forms() -> None:
-    result = Ladder((place(sp.Rational(11, 10), sp.S.One, True),))
+    result = Ladder((place(sp.Rational(11, 10), sp.S.One),))
     (at,) = result.places
     errors = {rung.theory: abs(rung.errors["force"]) for rung in at.rungs if rung.errors}
     # For equal beads all closures are one theory; each order of the series is better.
@@ -138,9 +136,40 @@ def test_ladder_in_all_forms() -> None:
     rising = [errors[name] for name in THEORIES if name.startswith("ε")]
     assert rising == sorted(rising, reverse=True)
     assert errors["canonical field"] > rising[0]
-    printed = text(result)
+    report = result.report()
+    printed = report.text()
     assert "linear closure" in printed
-    rows = document(result)["theories"][0]["rows"]
+    assert printed.count("theory over truth - 1") == len(NAMES)
+    rows = report.document()["theories"][0]["rows"]
     assert [row["theory"] for row in rows] == list(THEORIES)
     assert all(row["seconds"] >= 0 for row in rows)
-    assert cost(result, 0) >= 0
+    assert result.cost(THEORIES[0]) >= 0
+    lines = list(csv.DictReader(io.StringIO(report.csv())))
+    for line, name in zip(lines, NAMES, strict=True):
+        assert line["quantity"] == name
+        assert float(line["truth_value"]) == at.truth[name].value
+        for rung in at.rungs:
+            assert float(line[f"error_value.{rung.theory}"]) == rung.errors[name]
+            estimate = line[f"estimate_value.{rung.theory}"]
+            assert not estimate if rung.estimates is None else float(estimate) > 0
+    page = report._repr_html_()
+    assert page.count("<tr>") == 2 * len(NAMES)
+    assert "<svg" in page
+
+
+def test_what_the_ladder_leaves_out_is_told() -> None:
+    """The approximants are those of equal beads; no error is claimed for others."""
+    at = place(HERTZ, sp.Rational("0.0901277691"))
+    rungs = {rung.theory: rung for rung in at.rungs}
+    assert rungs["[1/1]"].errors is None
+    assert rungs["[1/1]"].missing == "a formula for equal beads"
+    assert "[1/1] " not in Ladder((at,)).report().text().splitlines()[-1]
+    report = Ladder((at, place(HERTZ, sp.S.One))).report()
+    (row,) = [row for row in report.document()["theories"][0]["rows"] if row["theory"] == "[1/1]"]
+    assert (row["error_value"], row["estimate_value"]) == (None, None)
+    equal, dimers = report.panels
+    assert {curve.label for curve in equal.curves} == set(THEORIES)
+    assert {c.label: c.style for c in dimers.curves}.items() <= {
+        c.label: c.style for c in equal.curves
+    }.items()
+    assert "[1/1]" not in {curve.label for curve in dimers.curves}

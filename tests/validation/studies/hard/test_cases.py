@@ -1,21 +1,24 @@
 """The command `hard`: verdicts follow from the numbers, and the whole of it holds."""
 
+import csv
 import json
 import math
 
 import pytest
 
 from lwa import InputError
+from tests.commands import ended
 from validation import cli
-from validation.report.result import Curve, Finding, Outcome, Panel, Statement
-from validation.report.text import document, text
+from validation.report.panel import Curve, Panel
+from validation.report.result import Report
+from validation.report.table import Finding, Statement
 from validation.studies.hard import cases as module
 from validation.studies.hard.cases import CASES, hard
 
 
 def outcome(*findings):
     panel = Panel("t", "error", (Curve.of("it", [1, 2], [3, 4]),), "y")
-    return Outcome("does it hold?", findings, "It does.", panel)
+    return Report("does it hold?", (), findings, (panel,), ("It does.",))
 
 
 HOLDS = outcome(
@@ -53,10 +56,7 @@ def test_a_statement_that_does_not_hold_fails_its_case():
 
 def run(capsys, monkeypatch, cases, *arguments):
     monkeypatch.setattr(module, "CASES", cases)
-    with pytest.raises(SystemExit) as ended:
-        cli.main(("hard", *arguments))
-    captured = capsys.readouterr()
-    return ended.value.code, captured.out, captured.err
+    return ended(capsys, cli.main, "hard", *arguments)
 
 
 TWO = {"good": lambda: HOLDS, "bad": lambda: FAILS}
@@ -65,12 +65,14 @@ TWO = {"good": lambda: HOLDS, "bad": lambda: FAILS}
 def test_the_status_tells_whether_all_cases_hold(capsys, monkeypatch):
     status, out, err = run(capsys, monkeypatch, TWO)
     assert (status, err) == (1, "")
-    assert out.endswith("2 cases: 1 fail\n")
+    assert out.startswith("2 cases: 1 fail\n\ngood\ndoes it hold?\n")
+    assert out.endswith("5 checks: 1 of 5 fail\n")
     assert "1 not as expected, which was: It does." in out
     (line,) = (line for line in out.splitlines() if line.startswith("drift"))
     assert line.split() == ["drift", "0.001", "0", "…", "0.0001", "FAILS"]
     status, out, _ = run(capsys, monkeypatch, TWO, "--case", "good")
     assert status == 0
+    assert out.startswith("1 case: all hold\n")
     (line,) = (line for line in out.splitlines() if line.startswith("order"))
     assert line.split() == ["order", "2.4", "±", "1e-01", "2", "…", "3", "ok"]
     assert "refusal: there is no wave\n" in out
@@ -86,7 +88,38 @@ def test_the_document_holds_the_contract(capsys, monkeypatch, tmp_path):
     assert (bad["case"], bad["ok"], bad["drift_value"]) == ("bad", False, 1e-3)
     loss = good["findings"][1]
     assert (loss["measured_value"], loss["least_value"], loss["most_value"]) == (7.0, None, 8.0)
-    assert picture.read_text().startswith("<?xml")
+    assert good["question"] == "does it hold?"
+    assert bad["outcome"] == "1 not as expected, which was: It does."
+    (statement,) = good["statements"]
+    assert statement == {"quantity": "refusal", "says": "there is no wave", "ok": True}
+    curve = {"label": "it", "x_value": [1.0, 2.0], "y_value": [3.0, 4.0]}
+    assert good["panel"] == {"x": "t", "y": "error", "scale": "y", "curves": [curve]}
+    drawn = picture.read_text()
+    assert drawn.startswith("<?xml")
+    assert "<!-- good -->" in drawn
+    assert "<!-- bad -->" in drawn
+
+
+def test_the_csv_has_the_numbers_of_the_document(capsys, monkeypatch):
+    _, out, _ = run(capsys, monkeypatch, TWO, "--format", "json")
+    whole = [(case["case"], finding) for case in json.loads(out)["cases"]
+             for finding in case["findings"]]  # fmt: skip
+    status, out, _ = run(capsys, monkeypatch, TWO, "--format", "csv")
+    assert status == 1
+    rows = list(csv.DictReader(out.splitlines()))
+    for row, (name, finding) in zip(rows, whole, strict=True):
+        found = {key: value if key == "quantity" else value == "True" if key == "ok"
+                 else float(value) if value else None for key, value in row.items()
+                 if key != "case"}  # fmt: skip
+        assert (row["case"], found) == (name, finding)
+
+
+def test_a_notebook_shows_questions_answers_and_picture(monkeypatch):
+    monkeypatch.setattr(module, "CASES", TWO)
+    html = hard().report()._repr_html_()
+    assert "<svg" in html
+    for part in ("good\ndoes it hold?", "1 not as expected, which was: It does.", "5 checks"):
+        assert part in html
 
 
 def test_a_case_that_does_not_exist_is_named_and_nothing_is_run(capsys, monkeypatch):
@@ -107,8 +140,10 @@ def test_cases_run_once_and_in_their_order(monkeypatch):
 
 
 def test_the_text_fits_a_terminal_of_a_book(monkeypatch):
-    monkeypatch.setattr(module, "CASES", {"long": lambda: outcome(Statement("a", "b " * 99, True))})
-    assert max(map(len, text(hard()).splitlines())) <= 100
+    words = "b " * 99
+    long = Report(words, (), (Statement("a", words, True),), outcome().panels, (words,))
+    monkeypatch.setattr(module, "CASES", {"long": lambda: long})
+    assert max(map(len, hard().report().text().splitlines())) <= 100
 
 
 @pytest.mark.slow
@@ -121,7 +156,7 @@ def test_all_cases_hold_and_are_told_by_number():
         if not finding.ok
     ]
     assert failed == []
-    whole = document(result)
+    whole = result.report().document()
     assert whole["ok"]
     assert [case["case"] for case in whole["cases"]] == list(CASES)
     for case in whole["cases"]:

@@ -8,22 +8,16 @@ import pytest
 import sympy as sp
 
 from validation.pulses.time_of_flight import passage, ratio
-from validation.scenes.chains import carrying
+from validation.scenes.chains import carrying, launched
 from validation.studies.hard import exponents as module
 from validation.studies.hard.exponents import (
     collision_fwhm,
     contact_time,
     hard_spheres,
-    uniform,
     vanishing_terms,
 )
-from validation.studies.limits import theory_at
-from validation.waves.continuation import solve
-from validation.waves.theory import Compacton
-
-
-def failing(outcome):
-    return [finding.quantity for finding in outcome.findings if not finding.ok]
+from validation.waves.solver import solve
+from validation.waves.theory import Compacton, theory_at
 
 
 def test_two_linear_springs_touch_for_half_a_period():
@@ -55,7 +49,7 @@ def test_a_chain_carries_the_strains_and_velocities_it_is_given():
 def test_a_wave_that_is_off_is_seen_on_the_lattice():
     """Velocities 1 % too large are another pulse; the exact ones are the wave to 1e-6."""
     wave = solve((1.0, 1.0), 2.0)
-    scene = uniform(wave, 12, 40)
+    scene = launched(wave, 12, 40)
     passed = passage(scene, 1e-6)
     assert abs(ratio(passed.speed, wave.c).value) < 1e-6
     faster = carrying(
@@ -65,7 +59,7 @@ def test_a_wave_that_is_off_is_seen_on_the_lattice():
     assert ratio(passage(faster, 1e-6).speed, wave.c).value > 1e-3
 
 
-def test_hard_spheres_hold_but_for_a_wrong_contact_time(monkeypatch):
+def test_hard_spheres_hold_but_for_a_wrong_contact_time(monkeypatch, failing):
     monkeypatch.setattr(module, "contact_time", lambda k, omega: 1.0001 * contact_time(k, omega))
     monkeypatch.setattr(module, "collision_fwhm", lambda k: 0.9999 * collision_fwhm(k))
     assert failing(hard_spheres()) == [
@@ -75,7 +69,7 @@ def test_hard_spheres_hold_but_for_a_wrong_contact_time(monkeypatch):
     ]
 
 
-def test_vanishing_terms_hold_but_for_a_kink_in_the_theory(monkeypatch):
+def test_vanishing_terms_hold_but_for_a_kink_in_the_theory(monkeypatch, failing):
     def kinked(k, omega):
         return theory_at(sp.Rational("2.01") if k == 2 else k, omega)
 

@@ -6,12 +6,17 @@ import numpy as np
 import pytest
 
 from validation.lattice.simulate import simulate
+from validation.scenes.chains import struck
 from validation.studies.hard import motion as module
-from validation.studies.hard.motion import _box, _closures, _energy, _errors, light_bead, spreading
-
-
-def failing(outcome):
-    return [finding.quantity for finding in outcome.findings if not finding.ok]
+from validation.studies.hard.motion import (
+    _box,
+    _closures,
+    _energy,
+    _errors,
+    light_bead,
+    overflow,
+    spreading,
+)
 
 
 @pytest.mark.parametrize(
@@ -35,6 +40,14 @@ def test_a_contact_that_opens_leaves_k_plus_one_orders(method, k, opens, steps, 
 def test_closures_are_counted():
     record = np.array([[1.0, 0.0, -1.0, 2.0, 0.0, 1.0], [-1.0, -1.0, 1.0, 1.0, 1.0, 1.0]])
     assert _closures(record) == 3
+
+
+def test_a_step_that_is_not_refused_fails_and_one_that_is_too_long_is_told():
+    scene = struck((1.0,), 20, k=20.0, duration=20.0)
+    assert not overflow("fine", scene, rtol=1e-7).ok
+    told = overflow("coarse", scene, step=2.5)
+    assert told.ok
+    assert told.says == "the motion overflows: a step of 2.5 is too long"
 
 
 def test_spreading_tells_a_walk_from_a_drift_and_from_a_swing():
@@ -64,7 +77,7 @@ def test_closed_contacts_do_not_drift_over_ten_thousand_time_units(monkeypatch):
     assert fine < np.abs(energy).max() / 30
 
 
-def test_the_light_bead_holds_and_another_one_than_the_references_does_not(monkeypatch):
+def test_the_light_bead_holds_and_another_one_than_the_references_does_not(monkeypatch, failing):
     assert failing(light_bead()) == []
     monkeypatch.setattr(
         module, "simulate", lambda scene, **rest: simulate(spoiled(scene, rest), **rest)

@@ -7,7 +7,7 @@ import sympy as sp
 
 from validation.pulses.steady import point
 from validation.pulses.time_of_flight import passage, ratio
-from validation.report.result import Finding
+from validation.report.table import Finding
 from validation.studies.hard import ratios as module
 from validation.studies.hard.ratios import (
     _refusal,
@@ -16,11 +16,7 @@ from validation.studies.hard.ratios import (
     no_compact_wave,
     resonance,
 )
-from validation.waves.continuation import solve
-
-
-def failing(outcome):
-    return [finding.quantity for finding in outcome.findings if not finding.ok]
+from validation.waves.solver import solve
 
 
 @pytest.fixture(scope="module")
@@ -37,7 +33,7 @@ def test_slaved_beads_slow_the_limit_by_a_share_of_their_mass(uniform, omega):
     assert abs(passed.momentum_drift) < 1e-12
 
 
-def test_mass_ratios_hold_and_another_limit_does_not(monkeypatch):
+def test_mass_ratios_hold_and_another_limit_does_not(monkeypatch, failing):
     monkeypatch.setattr(module, "RATIOS", (1e-4, 1e-3, 1e-2))
     assert failing(mass_ratios()) == []
     # springs in a row of 2^-k are the limit, not parallel ones
@@ -45,7 +41,7 @@ def test_mass_ratios_hold_and_another_limit_does_not(monkeypatch):
     assert "ω = 0.0001: speed/limit - 1, over ω" in failing(mass_ratios())
 
 
-def test_the_decay_at_the_resonance_is_that_of_the_steady_pulse(monkeypatch):
+def test_the_decay_at_the_resonance_is_that_of_the_steady_pulse(monkeypatch, failing):
     """One number, one error: it was 0.0153535 ± 4e-8 here and 0.01531 ± 2e-6 in a sweep."""
     monkeypatch.setattr(module, "RESONANT", (0.6,))
     monkeypatch.setattr(module, "QUIET", (1.0,))
@@ -79,7 +75,7 @@ def test_the_closure_is_refused_where_one_of_its_numbers_is_not_positive(k, omeg
 
 
 @pytest.mark.slow
-def test_no_compact_wave_holds_but_for_a_closure_with_a_wave(monkeypatch):
+def test_no_compact_wave_holds_but_for_a_closure_with_a_wave(monkeypatch, failing):
     monkeypatch.setattr(module, "_refusal", lambda k, omega: "has a wave, of 5 sites")
     assert failing(no_compact_wave()) == [
         "k = 3, ω = 8.8137: paper's closure",

@@ -1,18 +1,18 @@
 """The paper's experiment on the lattice: exact scaling, closed loops, published numbers."""
 
+import csv
+import io
+import json
+
 import numpy as np
 import pytest
 
-from lwa import InputError
+from lwa import InputError, homogenize
+from validation.cli import main
 from validation.lattice.simulate import simulate
+from validation.scenes.chains import chain_scene
 from validation.scenes.materials import DIAMETER, PTFE_BEAD, STEEL_BEAD
-from validation.studies.porter2008.experiment import (
-    QUANTITIES,
-    SOURCES,
-    chain_scene,
-    chain_wave,
-    paper,
-)
+from validation.studies.porter2008.experiment import QUANTITIES, SOURCES, chain_cell, paper
 
 
 @pytest.fixture(scope="module")
@@ -111,7 +111,7 @@ def test_gravity_is_taken_out_of_the_forces_and_speeds_the_pulse_up(result):
 def test_momentum_reaches_the_wave(result):
     """The theory's wave of the striker's momentum carries it: M/(2D) ∫ V u_x dx, for k = 3/2
     with ∫ cos⁴(βx) dx = 3π/(8β)."""
-    wave = chain_wave()
+    wave = homogenize(chain_cell(), k="3/2").pde.traveling_wave()
     by_name = {row.quantity: row.theory["striker"] for row in result.rows}
     V, F = by_name["speed V_s"], by_name["peak contact force"]
     A = float(wave.cell.stiffnesses[0])
@@ -119,6 +119,44 @@ def test_momentum_reaches_the_wave(result):
     mass = STEEL_BEAD.mass + PTFE_BEAD.mass
     momentum = mass / (2 * DIAMETER) * V * B * 3 * np.pi / (8 * float(wave.beta))
     assert momentum == pytest.approx(STEEL_BEAD.mass * 1.37, rel=1e-12)
+
+
+def test_the_report_tells_the_numbers():
+    result = paper(beads=20, sensors=(8, 15))
+    report = result.report()
+    found = json.loads(json.dumps(report.document(), allow_nan=False))
+    assert (found["beads"], found["sensors"], found["gravity_value"]) == (20, [8, 15], 0)
+    for row, compared in zip(found["rows"], result.rows, strict=True):
+        assert row["lattice_error_value"] == compared.lattice.error
+        for source, value in row["theory_value"].items():
+            assert row["error_value"][source] == value / row["lattice_value"] - 1
+    shown = report.text()
+    assert shown.splitlines()[0].startswith("20 beads, steel (the striker, 1.37 m/s) and PTFE")
+    assert shown.count("  set") == 2  # what fixes the amplitude agrees by construction
+    assert "F_15" in shown
+    rows = list(csv.DictReader(io.StringIO(report.csv())))
+    for row, told in zip(rows, found["rows"], strict=True):
+        assert row["quantity"] == told["quantity"]
+        assert float(row["lattice_value"]) == told["lattice_value"]
+        for source, error in told["error_value"].items():
+            assert float(row[f"error_value.{source}"]) == error
+    page = report._repr_html_()
+    assert page.count("<tr>") == 1 + len(result.rows)
+    assert page.count("<svg") == 1
+
+
+def test_gravity_is_a_flag(capsys):
+    for flag, gravity in (((), 0.0), (("--gravity",), 9.81)):
+        with pytest.raises(SystemExit) as ended:
+            main(["paper", "--beads", "20", "--sensors", "8,15", "--format", "json", *flag])
+        assert ended.value.code == 0
+        assert json.loads(capsys.readouterr().out)["gravity_value"] == gravity
+
+
+def test_the_help_is_one_paragraph(capsys):
+    with pytest.raises(SystemExit):
+        main(["paper", "--help"])
+    assert "Parameters" not in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(

@@ -1,23 +1,18 @@
 """The paper's figures: identities, published numbers, and what no definition reproduces."""
 
+import csv
+import io
 import json
 import math
 
 import numpy as np
 import pytest
 
-from validation.report.figure import save
+from validation.scenes.materials import DIAMETER
 from validation.studies.porter2008 import figures
 from validation.studies.porter2008.experiment import paper
-from validation.studies.porter2008.figures import (
-    STATED,
-    Figures,
-    chain_speed,
-    forces,
-    scaling,
-    widths,
-)
-from validation.studies.porter2008.gallery import document, figure, text
+from validation.studies.porter2008.figures import Figures, chain_speed, forces, scaling
+from validation.studies.porter2008.widths import FIRST_BEAD, STATED, widths
 
 
 @pytest.fixture(scope="module")
@@ -54,7 +49,7 @@ def test_the_lines_for_both_limits_are_in_the_ratio_root_two(computed):
 
 def test_widths_alternate_from_bead_to_bead(computed):
     times = np.array([width.value for width in computed.times])
-    late = times[list(computed.beads).index(figures.FIRST_BEAD) :]
+    late = times[list(computed.beads).index(FIRST_BEAD) :]
     even, odd = late[::2], late[1::2]
     assert np.all(odd > 1.4 * even)  # steel beads carry the humps of both neighbours
     assert np.ptp(even) < 0.02 * even.mean()
@@ -68,10 +63,10 @@ def test_the_ptfe_beads_reproduce_two_of_the_stated_errors_and_nothing_all_three
 
 
 def test_the_width_agrees_with_the_experiment_of_the_paper_command(computed):
-    row = {row.quantity: row for row in paper().rows}["FWHM of F_34"]
+    found = {row.quantity: row.lattice.value for row in paper().rows}
     late = computed.times[computed.beads.index(34)].value
-    speed = {r.quantity: r for r in paper().rows}["speed V_s"].lattice.value
-    assert late * speed / figures.DIAMETER == pytest.approx(row.lattice.value, rel=1e-6)
+    width = late * found["speed V_s"] / DIAMETER
+    assert width == pytest.approx(found["FWHM of F_34"], rel=1e-6)
 
 
 @pytest.mark.parametrize("N", [1, 2, 5])
@@ -81,7 +76,7 @@ def test_homogenization_holds_for_several_beads_per_cell(N):
     assert found.theory == pytest.approx(found.speed.value, rel=0.07)
 
 
-@pytest.mark.parametrize("N", figures.SENSORS)
+@pytest.mark.parametrize("N", figures.RECORDED)
 def test_force_records(N):
     found = forces(N)
     assert found.force.shape == (3, len(found.time))
@@ -93,25 +88,38 @@ def test_force_records(N):
 
 @pytest.fixture(scope="module")
 def whole(scalings, computed):
-    records = tuple(forces(N) for N in figures.SENSORS)
+    records = tuple(forces(N) for N in figures.RECORDED)
     return Figures(records, (chain_speed(1), chain_speed(3)), tuple(scalings), computed)
 
 
 def test_all_figures_as_text_and_document(whole):
-    shown = text(whole)
+    report = whole.report()
+    shown = report.text()
     assert "No definition meets all three stated errors" in shown
-    assert "0.6 GPa" in shown
-    found = json.loads(json.dumps(document(whole), allow_nan=False))
+    assert "E of PTFE (GPa)" in shown
+    assert "\n0.6 " in shown
+    found = json.loads(json.dumps(report.document(), allow_nan=False))
     assert found["scaling"]["exponent_value"] == pytest.approx(1 / 6, abs=1e-6)
     assert found["scaling"] == found["scalings"][0]
     assert len(found["widths"]["definitions"]) == len(whole.widths.definitions)
+    for told, definition in zip(
+        found["widths"]["definitions"], whole.widths.definitions, strict=True
+    ):
+        assert told["error_value"] == definition.errors
+        assert told["reproduced"] == list(definition.reproduced)
+    rows = list(csv.DictReader(io.StringIO(report.csv())))
+    assert [{name: float(value) for name, value in row.items()} for row in rows] == found["speeds"]
 
 
-def test_all_figures_as_a_picture(whole, tmp_path):
-    save(whole, tmp_path / "figures.svg")
+def test_all_figures_as_a_picture_and_a_page(whole, tmp_path):
+    report = whole.report()
+    report.save(tmp_path / "figures.svg")
     drawn = (tmp_path / "figures.svg").read_text()
     assert drawn.count("<svg") == 1
-    assert len(figure(whole).axes) == 4
+    assert len(report.figure().axes) == 4
+    page = report._repr_html_()
+    assert page.count("<table>") == 3
+    assert page.count("<svg") == 1
 
 
 def test_every_figure_is_computed_in_one_call(monkeypatch):
@@ -119,7 +127,7 @@ def test_every_figure_is_computed_in_one_call(monkeypatch):
     monkeypatch.setattr(figures, "MODULI", figures.MODULI[:1])
     monkeypatch.setattr(figures, "HEIGHTS", (0.1, 1.0))
     found = figures.figures()
-    assert [f.N for f in found.forces] == list(figures.SENSORS)
+    assert [f.N for f in found.forces] == list(figures.RECORDED)
     assert [s.N for s in found.speeds] == [1, 2]
     assert len(found.scaling) == 1
     assert len(found.widths.beads) == len(found.widths.times)

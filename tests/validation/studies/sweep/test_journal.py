@@ -2,7 +2,7 @@
 
 import json
 import os
-from contextlib import closing
+from contextlib import contextmanager
 
 import pytest
 import sympy as sp
@@ -34,7 +34,6 @@ def write(file, points=POINTS, settings=SETTINGS):
     journal = Journal(file, settings)
     for point in points:
         journal.add(point)
-    journal.close()
     return file
 
 
@@ -53,17 +52,16 @@ def test_points_come_back_bit_for_bit(file):
 def test_without_a_file_it_is_kept_in_memory():
     journal = Journal(None, SETTINGS)
     journal.add(POINTS[0])
-    journal.close()
     assert list(journal.points) == [(R(3, 2), R(1))]
 
 
 def test_every_point_is_on_the_disk_before_the_next(tmp_path, monkeypatch):
     file, synced = tmp_path / "s.jsonl", []
     monkeypatch.setattr(os, "fsync", lambda _: synced.append(file.read_text().count("\n")))
-    with closing(Journal(file, SETTINGS)) as journal:
-        assert not file.exists()
-        for point in POINTS:
-            journal.add(point)
+    journal = Journal(file, SETTINGS)
+    assert not file.exists()
+    for point in POINTS:
+        journal.add(point)
     assert synced == [2, 3, 4]
 
 
@@ -79,25 +77,44 @@ def test_a_torn_end_costs_only_the_point_that_was_being_written(tmp_path_factory
     assert file.read_bytes() == content  # until there is something to write
     for point in POINTS[finished:]:
         journal.add(point)
-    journal.close()
     if finished < len(POINTS):
         assert file.read_bytes() == whole
 
 
-def test_a_full_disk_leaves_nothing_half_written(file, monkeypatch):
-    before = file.read_bytes()
+@pytest.fixture
+def full_disk(monkeypatch):
+    """A context in which the disk is full."""
 
     def full(_):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(os, "fsync", full)
-    with (
-        closing(Journal(file, SETTINGS)) as journal,
-        pytest.raises(InputError, match=r"s\.jsonl is not written: No space left on device$"),
-    ):
+    @contextmanager
+    def context():
+        with monkeypatch.context() as disk:
+            disk.setattr(os, "fsync", full)
+            with pytest.raises(InputError, match=r"s\.jsonl is not written: No space left on de"):
+                yield
+
+    return context
+
+
+def test_a_full_disk_leaves_nothing_half_written(file, full_disk):
+    before = file.read_bytes()
+    journal = Journal(file, SETTINGS)
+    with full_disk():
         journal.add(made(3, 1))
     assert file.read_bytes() == before
     assert (R(3), R(1)) not in journal.points
+
+
+def test_a_disk_that_is_full_at_first_takes_the_whole_file_later(tmp_path, full_disk):
+    """The next point began the file without its first line: it was no sweep's file any more."""
+    file = tmp_path / "s.jsonl"
+    journal = Journal(file, SETTINGS)
+    with full_disk():
+        journal.add(POINTS[0])
+    journal.add(POINTS[1])
+    assert list(Journal(file, SETTINGS).points.values()) == [POINTS[1]]
 
 
 def test_another_sweeps_file_is_refused_and_left_alone(file):

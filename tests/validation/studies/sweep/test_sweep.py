@@ -1,12 +1,17 @@
 """Sweeps: any executor, nothing computed twice, nothing finished lost, the theory beside."""
 
+import csv
+import gc
 import importlib
+import io
 import json
 import os
 import signal
+import socket
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 from concurrent.futures import BrokenExecutor, Executor, Future
 from concurrent.futures import ThreadPoolExecutor as Threads
@@ -20,26 +25,25 @@ import sympy as sp
 from hypothesis import given
 from hypothesis import strategies as st
 
-import validation.studies.sweep.sweep as module
 from lwa import InputError
+from tests.commands import ended
 from validation import cli
 from validation.pulses.pulse import Measured
 from validation.pulses.steady import QUANTITIES, Point
-from validation.studies.limits import theory_at
 from validation.studies.sweep import executors
-from validation.studies.sweep.executors import cluster, processes
-from validation.studies.sweep.sweep import SweepError, axis, sweep, theory
-from validation.waves.theory import Compacton
+from validation.studies.sweep.executors import SweepError, cluster, processes
+from validation.studies.sweep.sweep import axis, sweep, theory
+from validation.waves.theory import Compacton, theory_at
 
 R = sp.Rational
-PROCESSES = "validation.studies.sweep.atlas.processes"
+PROCESSES = "validation.studies.sweep.sweep.processes"
 COMMAND = Path(sys.executable).with_name("lwa-validate")
 
 
 def dask():
     """Dask, without which CI fails and others skip."""
     if os.environ.get("CI"):
-        return importlib.import_module("distributed")
+        return importlib.import_executors("distributed")
     return pytest.importorskip("distributed", reason="Dask is not installed")
 
 
@@ -69,7 +73,7 @@ def quick(k, omega, stretch):
 
 @pytest.fixture
 def fake(monkeypatch):
-    monkeypatch.setattr(module, "point", quick)
+    monkeypatch.setattr(executors, "point", quick)
 
 
 KS, OMEGAS = ("3/2", 2, "5/2"), (1, "1/2", "1/4")
@@ -142,14 +146,14 @@ def test_a_bounded_number_is_underway(fake, monkeypatch):
             future.add_done_callback(lambda _: time.sleep(0.001))
             return future
 
-    monkeypatch.setattr(module, "_UNDERWAY", 3)
-    journal_add = module.Journal.add
+    monkeypatch.setattr(executors, "_UNDERWAY", 3)
+    journal_add = executors.Journal.add
 
     def add(journal, point):
         executor.now -= 1
         journal_add(journal, point)
 
-    monkeypatch.setattr(module.Journal, "add", add)
+    monkeypatch.setattr(executors.Journal, "add", add)
     with Counting(2) as executor:
         sweep([1.5, 2, 3, 4], [1, 2, 3, 4, 5], executor=executor)
     assert executor.most == 3
@@ -210,7 +214,7 @@ def test_a_point_that_fails_is_recorded_and_loses_no_other(monkeypatch, tmp_path
     def some(k, omega, stretch):
         return Point(k, omega, None, {}, "broke") if omega == 1 else quick(k, omega, stretch)
 
-    monkeypatch.setattr(module, "point", some)
+    monkeypatch.setattr(executors, "point", some)
     file, executor = tmp_path / "s.jsonl", Inline()
     found = sweep(KS, OMEGAS, executor=executor, file=file)
     assert [p.missing for p in found.points] == [None, None, "broke"] * 3
@@ -232,12 +236,12 @@ def test_an_executor_that_fails_loses_nothing_finished(monkeypatch, tmp_path, er
             raise error
         return quick(k, omega, stretch)
 
-    monkeypatch.setattr(module, "point", some)
+    monkeypatch.setattr(executors, "point", some)
     file, executor = tmp_path / "s.jsonl", Inline()
     with pytest.raises(SweepError, match=message):
         sweep(["3/2", 2], ["1/4"], executor=executor, file=file)
     assert file.read_text().count("\n") == 2  # the other point, and the header
-    monkeypatch.setattr(module, "point", quick)
+    monkeypatch.setattr(executors, "point", quick)
     sweep(["3/2", 2], ["1/4"], executor=executor, file=file)
     assert len(executor.calls) == 3
 
@@ -356,41 +360,67 @@ def test_a_bad_stretch_is_refused(stretch):
         sweep([2], [1], stretch=stretch)
 
 
-def test_a_cluster_that_cannot_be_is_refused(monkeypatch):
+@contextmanager
+def nothing_is_left(capfd):
+    """No thread and no message, now or when the garbage is collected."""
     dask()
-    monkeypatch.setattr(executors, "PATIENCE", 0.2)
-    for address in ("nonsense", "", "tcp://127.0.0.1", "foo://x:1", 5):
-        with (
-            pytest.raises(InputError, match=r"^cluster is .*: the address of a Dask scheduler is"),
-            cluster(address),
-        ):
-            pass
-    with (
-        pytest.raises(InputError, match=r"^cluster is tcp://127\.0\.0\.1:9: no Dask scheduler"),
-        cluster("tcp://127.0.0.1:9"),  # discard: nobody serves it
-    ):
+    before = set(threading.enumerate())
+    yield
+    gc.collect()
+    assert set(threading.enumerate()) <= before
+    assert capfd.readouterr() == ("", "")
+
+
+def refused_cluster(address):
+    with pytest.raises(InputError) as refused, cluster(address):
         pass
+    said = str(refused.value)
+    assert said.startswith(f"cluster is {address!r}: no Dask scheduler with workers answers there ")
+    assert said.endswith("within 0.4 s; an address such as tcp://127.0.0.1:8786 is wanted")
 
 
-def test_a_cluster_without_workers_is_refused(monkeypatch):
+@pytest.mark.parametrize(
+    "address",
+    ["nonsense", "", "tcp://127.0.0.1", "foo://x:1", 5, "tcp://127.0.0.1:9"],  # 9: discard
+)
+def test_a_cluster_that_cannot_be_is_refused(capfd, monkeypatch, address):
+    with nothing_is_left(capfd):
+        monkeypatch.setattr(executors, "PATIENCE", 0.4)
+        refused_cluster(address)
+
+
+@pytest.mark.parametrize("answer", [b"", b"HTTP/1.0 400 Bad Request\r\n\r\n" * 9])
+def test_what_is_no_scheduler_is_refused(capfd, monkeypatch, answer):
+    """One that is silent was waited for without end."""
+    monkeypatch.setattr(executors, "PATIENCE", 0.4)
+    with socket.create_server(("127.0.0.1", 0)) as server, Threads(1) as threads:
+
+        def serve():
+            caller, _ = server.accept()
+            with caller:
+                caller.sendall(answer)
+                while not answer and caller.recv(1000):
+                    pass
+
+        serving = threads.submit(serve)
+        with nothing_is_left(capfd):
+            refused_cluster(f"tcp://127.0.0.1:{server.getsockname()[1]}")
+        serving.result()
+
+
+def test_a_cluster_without_workers_is_refused(capfd, monkeypatch):
     distributed = dask()
     with distributed.LocalCluster(n_workers=0, processes=False, dashboard_address=None) as local:
-        monkeypatch.setattr(executors, "PATIENCE", 0.5)
-        with (
-            pytest.raises(InputError, match=r"^cluster is inproc.*: its scheduler has no workers$"),
-            cluster(local.scheduler_address),
-        ):
-            pass
+        monkeypatch.setattr(executors, "PATIENCE", 0.4)
+        with nothing_is_left(capfd):
+            refused_cluster(local.scheduler_address)
 
 
 # The command
 
 
 def run(capsys, *arguments):
-    with pytest.raises(SystemExit) as ended:
-        cli.main(("sweep", *arguments))
-    captured = capsys.readouterr()
-    return ended.value.code, captured.out, captured.err
+    return ended(capsys, cli.main, "sweep", *arguments)
 
 
 @pytest.fixture
@@ -412,9 +442,15 @@ def test_the_command(capsys, inline, tmp_path):
     assert abs(one["width_value"] - 1.411928) <= one["width_error_value"] + 5e-7
     assert half["decay_value"] > 1000 * abs(one["decay_value"])
     assert picture.read_text().startswith("<?xml")
+    status, out, err = run(
+        capsys, "--k", "3/2", "--omega", "1/2,1", "--file", str(file), "--format", "csv"
+    )
+    assert (status, err) == (0, "")
+    widths = [float(row["width_value"]) for row in csv.DictReader(io.StringIO(out))]
+    assert widths == [half["width_value"], one["width_value"]]
     status, out, err = run(capsys, "--k", "3/2", "--omega", "1", "--file", str(file))
     assert (status, err) == (0, "")
-    assert out.startswith("k = 3/2\nω = m2/m1 ")
+    assert "\n\nk = 3/2\nω = m2/m1 " in out
     assert len(inline.calls) == 2
 
 
@@ -427,7 +463,10 @@ BAD = [
     (("--file", "no/s.jsonl"), "file is no/s.jsonl: the folder no does not exist"),
     (("--jobs", "0", "--file", "s.jsonl"), "jobs is 0: one of 1 … 1024 is wanted"),
     (("--jobs", "2", "--cluster", "tcp://a:1"), "jobs is 2: a cluster has workers of its own"),
-    (("--cluster", "a", "--file", "s.jsonl"), "cluster is 'a': the address of a Dask scheduler"),
+    (
+        ("--cluster", "a", "--file", "s.jsonl"),
+        "cluster is 'a': no Dask scheduler with workers answers there",
+    ),
     (("--plot", "s.txt"), "plot is s.txt: a file ending in"),
 ]
 
@@ -464,9 +503,7 @@ def test_an_interrupted_command_says_where_the_points_are(capsys, fake, monkeypa
 
 
 def test_an_executor_that_fails_is_one_line(capsys, fake, monkeypatch):
-    monkeypatch.setattr(
-        "validation.studies.sweep.atlas.processes", lambda jobs: Inline(3, SweepError("gone"))
-    )
+    monkeypatch.setattr(PROCESSES, lambda jobs: Inline(3, SweepError("gone")))
     assert run(capsys) == (2, "", "lwa-validate: gone\n")
 
 
@@ -529,7 +566,7 @@ def test_an_interrupt_while_a_point_is_kept_does_not_keep_it_twice(
 ):
     """Ctrl-C is heard as soon as the disk has answered, or when the point is in the file."""
     file = tmp_path / "s.jsonl"
-    owner = os if place == "fsync" else module.Journal
+    owner = os if place == "fsync" else executors.Journal
     done, calls = getattr(owner, place), []
 
     def interrupted(*arguments):

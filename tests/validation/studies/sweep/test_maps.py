@@ -1,5 +1,7 @@
-"""Sweeps as text, JSON and maps."""
+"""Sweeps as text, JSON, CSV and maps."""
 
+import csv
+import io
 import json
 from concurrent.futures import Executor, Future
 
@@ -7,11 +9,10 @@ import numpy as np
 import pytest
 import sympy as sp
 
-import validation.studies.sweep.sweep as module
 from validation.pulses.pulse import Measured
 from validation.pulses.steady import QUANTITIES, Point
-from validation.report.figure import save
-from validation.studies.sweep.atlas import document, figure, text
+from validation.report.text import percent
+from validation.studies.sweep import executors
 from validation.studies.sweep.sweep import sweep
 
 R = sp.Rational
@@ -39,13 +40,13 @@ def quick(k, omega, stretch):
 
 @pytest.fixture
 def result(monkeypatch):
-    monkeypatch.setattr(module, "point", quick)
+    monkeypatch.setattr(executors, "point", quick)
     # beyond ω = 6 the paper's closure has no wave at k = 6
     return sweep(["3/2", 2, 6], [1, "1/2", 50], executor=Inline())
 
 
 def one(monkeypatch, ks, omegas):
-    monkeypatch.setattr(module, "point", quick)
+    monkeypatch.setattr(executors, "point", quick)
     return sweep(ks, omegas, executor=Inline())
 
 
@@ -57,20 +58,21 @@ def test_the_maps_are_the_points(result):
 
 
 def test_the_text_has_a_table_for_each_k_and_the_reasons(result):
-    shown = text(result)
-    blocks = shown.split("\n\n")
+    shown = result.report().text()
+    title, *blocks = shown.split("\n\n")
+    assert title == "The steady pulse of a struck dimer chain"
     assert [block.splitlines()[0] for block in blocks[:3]] == ["k = 3/2", "k = 2", "k = 6"]
     assert [line.split()[0] for line in blocks[0].splitlines()[2:]] == ["1/2", "1", "50"]
     assert blocks[3] == "k = 2, ω = 1: broke"
     missing = blocks[1].splitlines()[3].split()
-    assert missing == ["1", "-", "-", "-", "-", "-", "-", "-", "-", "…", "-"]
+    assert missing == ["1", *8 * "-"]
     width = float(result.theory["linear"]["width"][0, 1])
-    assert f"{100 * (width / 2.5 - 1):+.2f} %" in blocks[0].splitlines()[3]
+    assert percent(width / 2.5 - 1) in blocks[0].splitlines()[3]
     assert "nan" not in shown
 
 
 def test_the_document_is_json_and_complete(result):
-    found = json.loads(json.dumps(document(result), allow_nan=False))
+    found = json.loads(json.dumps(result.report().document(), allow_nan=False))
     assert (found["stretch"], found["missing"]) == (4, 1)
     assert [(p["k"], p["omega"]) for p in found["points"][:4]] == [
         ("3/2", "1/2"), ("3/2", "1"), ("3/2", "50"), ("2", "1/2"),
@@ -86,9 +88,32 @@ def test_the_document_is_json_and_complete(result):
     assert last["canonical"]["width_value"] == result.theory["canonical"]["width"][2, 2]
 
 
+def test_the_table_of_numbers_is_that_of_the_document(result):
+    report = result.report()
+    rows = list(csv.DictReader(io.StringIO(report.csv())))
+    for row, p in zip(rows, report.document()["points"], strict=True):
+        assert (row["k"], row["omega"], row["missing"]) == (p["k"], p["omega"], p["missing"] or "")
+        theory = {
+            f"theory.{closure}.{name}": value
+            for closure, wave in p["theory"].items()
+            for name, value in wave.items()
+        }
+        values = {name: value for name, value in p.items() if name.endswith("_value")} | theory
+        assert len(values) == 14
+        for name, value in values.items():
+            assert row[name] == ("" if value is None else str(value))
+
+
+def test_a_notebook_shows_the_tables_and_the_maps(result):
+    shown = result.report()._repr_html_()
+    assert shown.count("<table>") == 3
+    assert "<svg" in shown
+    assert "k = 2, ω = 1: broke" in shown
+
+
 def test_maps(result, tmp_path):
-    picture = figure(result)
-    save(result, tmp_path / "maps.png")
+    picture = result.report().figure()
+    result.report().save(tmp_path / "maps.png")
     axes = [axes for axes in picture.axes if axes.get_xlabel() == "ω = m2/m1"]
     assert len(axes) == 4
     for plot in axes:
@@ -99,6 +124,9 @@ def test_maps(result, tmp_path):
         (unsure,) = plot.lines
         assert (list(unsure.get_xdata()), list(unsure.get_ydata())) == ([0.5], [2.0])
     assert axes[3].collections[0].get_array().mask[2, 2]  # no theory there
+    decay = axes[2].collections[0].get_array()
+    assert decay[0, 0] == 0.05
+    assert 0 < decay[0, 2] < 1e-7  # below the lowest colour, and not grey: it does not decay
     labels = {plot.get_ylabel() for plot in picture.axes} - {"k"}
     assert labels == {
         "FWHM of the contact force (sites)",
@@ -119,8 +147,8 @@ def test_maps(result, tmp_path):
 )
 def test_curves_where_one_axis_has_a_single_value(monkeypatch, tmp_path, ks, omegas, label, title):
     result = one(monkeypatch, ks, omegas)
-    picture = figure(result)
-    save(result, tmp_path / "curves.png")
+    picture = result.report().figure()
+    result.report().save(tmp_path / "curves.png")
     assert [plot.get_ylabel() for plot in picture.axes] == list(QUANTITIES.values())
     for plot in picture.axes:
         assert (plot.get_xlabel(), plot.get_title()) == (label, title)
@@ -130,5 +158,5 @@ def test_curves_where_one_axis_has_a_single_value(monkeypatch, tmp_path, ks, ome
 
 
 def test_a_map_without_a_single_measured_point_is_drawn(monkeypatch, tmp_path):
-    monkeypatch.setattr(module, "point", lambda k, w, s: Point(k, w, None, {}, "broke"))
-    save(sweep([2, 3], [1, 2], executor=Inline()), tmp_path / "maps.png")
+    monkeypatch.setattr(executors, "point", lambda k, w, s: Point(k, w, None, {}, "broke"))
+    sweep([2, 3], [1, 2], executor=Inline()).report().save(tmp_path / "maps.png")

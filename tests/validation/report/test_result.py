@@ -1,0 +1,72 @@
+"""A report says the same as text, JSON, CSV, picture and page."""
+
+import dataclasses
+import json
+
+import pytest
+
+from lwa import InputError
+from validation.report.panel import Curve, Panel
+from validation.report.result import Report
+from validation.report.table import Column, Finding, Statement, Table
+from validation.studies.limits import Limits
+
+PART = Report(
+    "a part",
+    (Table((Column("n", "sites"),), ((8,),)),),
+    (Statement("refused", "k is 1", True),),
+    (Panel("x", "y", (Curve.of("c", [1, 2], [3, 4]),)),),
+)
+
+
+def test_limits(limits_result):
+    found = json.loads(json.dumps(limits_result.report().document(), allow_nan=False))
+    assert found["ok"] is True
+    assert len(found["rows"]) == len(limits_result.rows)
+    for row, told in zip(limits_result.rows, found["rows"], strict=True):
+        assert told["lattice_value"] == row.lattice.value
+        assert told["lattice_error_value"] == row.lattice.error
+        error = told["theory_value"] / told["lattice_value"] - 1
+        assert told["error_value"] == pytest.approx(error, rel=1e-12)
+        assert abs(told["error_value"]) <= told["bound_value"]
+    shown = limits_result.report().text()
+    assert shown.count("  ok") == len(limits_result.rows)
+    assert shown.endswith("47 checks: all hold")
+    assert "FAILS" not in shown
+
+
+def test_a_failing_row_is_shown(limits_result):
+    first, *others = limits_result.rows
+    broken = Limits((dataclasses.replace(first, bound=1e-6), *others)).report()
+    assert not broken.ok
+    assert broken.document()["ok"] is broken.document()["rows"][0]["ok"] is False
+    assert broken.text().count("FAILS") == 2  # in the table, and alone below it
+    assert broken.text().endswith("47 checks: 1 of 47 fail")
+
+
+def test_a_report_of_parts():
+    whole = Report("both", parts=(PART, PART), findings=(Finding("x", 2.0, high=1.0),))
+    assert not whole.ok
+    assert whole.verdict == "3 checks: 1 of 3 fail"
+    assert whole.text().count("a part") == 2
+    assert whole.csv() == "n\n8\n"
+    assert len(whole.figure().axes) == 2
+    assert whole.document()["ok"] is False
+
+
+def test_a_notebook_shows_tables_and_picture():
+    page = Report("<both>", parts=(PART,))._repr_html_()
+    assert "&lt;both&gt;" in page
+    assert page.count("<table>") == 1
+    assert page.count("<svg") == page.count("</svg>") == 1
+    assert "1 check: all hold" in page
+    assert "<svg" not in Report("none")._repr_html_()
+
+
+def test_what_is_not_there_is_told():
+    empty = Report("nothing")
+    assert (empty.ok, empty.document(), empty.text()) == (True, {}, "nothing")
+    with pytest.raises(InputError, match="format is csv: this result has no table"):
+        empty.csv()
+    with pytest.raises(InputError, match="plot is asked for: this result has no picture"):
+        empty.figure()

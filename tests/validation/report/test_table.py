@@ -1,0 +1,144 @@
+"""A table says the same to people, programs and spreadsheets; a finding holds or does not."""
+
+import csv
+import io
+import json
+import math
+
+import numpy as np
+import pytest
+import sympy as sp
+from hypothesis import given
+from hypothesis import strategies as st
+
+from validation.pulses.pulse import Measured
+from validation.report.table import Column, Finding, Statement, Table, document, plain
+from validation.report.text import aligned, bounds, html, listed, text
+
+TABLE = Table(
+    (
+        Column("k", "k"),
+        Column("chain"),
+        Column("speed", "speed", "m/s", error=True),
+        Column("error_value.F_m", "by F_m", format="+.1%"),
+        Column("", "unit"),
+    ),
+    (
+        (sp.Rational(3, 2), "a", Measured(2.0, 1.75), 0.25, "m/s"),
+        (sp.Integer(2), "b", None, -0.5, "<m/s>"),
+        (sp.Integer(3), "a", Measured(4.0, 4.5), None, "m/s"),
+    ),
+    "rows",
+    by="chain",
+    heads={"a": "chain A"},
+    feet={"b": "no speed"},
+)
+
+
+def test_the_rows_of_a_document():
+    assert json.loads(json.dumps(TABLE.document(), allow_nan=False)) == [
+        {"k": "3/2", "chain": "a", "speed_value": 2.0, "speed_error_value": 0.25,
+         "error_value": {"F_m": 0.25}},
+        {"k": "2", "chain": "b", "speed_value": None, "speed_error_value": None,
+         "error_value": {"F_m": -0.5}},
+        {"k": "3", "chain": "a", "speed_value": 4.0, "speed_error_value": 0.5,
+         "error_value": {"F_m": None}},
+    ]  # fmt: skip
+
+
+def test_csv_holds_the_same_numbers():
+    rows = list(csv.DictReader(io.StringIO(TABLE.csv())))
+    assert list(rows[0]) == ["k", "chain", "speed_value", "speed_error_value", "error_value.F_m"]
+    for row, told in zip(rows, TABLE.document(), strict=True):
+        for name in ("speed_value", "speed_error_value"):
+            assert (float(row[name]) if row[name] else None) == told[name]
+        share = row["error_value.F_m"]
+        assert (float(share) if share else None) == told["error_value"]["F_m"]
+
+
+def test_text_falls_into_parts():
+    first, second = text(TABLE).split("\n\n")
+    assert [line.split() for line in first.splitlines()] == [
+        ["chain", "A"],
+        ["k", "speed", "(m/s)", "by", "F_m", "unit"],
+        ["3/2", "2.0", "±", "2e-01", "+25.0%", "m/s"],
+        ["3", "4.0", "±", "5e-01", "-", "m/s"],
+    ]
+    assert [line.split() for line in second.splitlines()] == [
+        ["b"],
+        ["k", "speed", "(m/s)", "by", "F_m", "unit"],
+        ["2", "-", "-50.0%", "<m/s>"],
+        ["no", "speed"],
+    ]
+
+
+def test_a_page_shows_what_the_text_shows_and_no_code_of_it():
+    shown = html(TABLE)
+    assert shown.count("<table>") == 2
+    assert shown.count("<tr>") == 5
+    assert "&lt;m/s&gt;" in shown
+    assert "<m/s>" not in shown
+    for part in ("chain A", "2.0 ± 2e-01", "-50.0%", "no speed"):
+        assert part in shown
+
+
+def test_a_table_without_labels_is_for_programs():
+    silent = Table((Column("k"),), ((1,),), "rows", title="k", note="alone")
+    assert text(silent) == html(silent) == ""
+    assert silent.csv() == "k\n1\n"
+
+
+def test_columns_line_up():
+    lines = aligned((("a", "long header"), ("first row", "1"), ("b", "23"))).splitlines()
+    assert lines == ["a          long header", "first row            1", "b                   23"]
+
+
+@given(st.recursive(
+    st.none() | st.booleans() | st.integers() | st.floats() | st.text(),
+    lambda inner: st.lists(inner) | st.dictionaries(st.text(), inner),
+))  # fmt: skip
+def test_everything_plain_is_json(value):
+    assert json.loads(json.dumps(plain(value), allow_nan=False)) == plain(value)
+
+
+def test_what_numpy_and_sympy_hold_is_plain():
+    held = {"a": np.arange(3), "b": np.float64(0.5), "c": (sp.sqrt(2), np.inf), "d": np.bool_(True)}
+    assert plain(held) == {"a": [0, 1, 2], "b": 0.5, "c": ["sqrt(2)", None], "d": True}
+
+
+@pytest.mark.parametrize(
+    ("value", "low", "high", "error", "ok"),
+    [
+        (1.0, 0.0, 2.0, None, True),
+        (1.0, 1.0, 1.0, None, True),
+        (3.0, 0.0, 2.0, None, False),
+        (1.9, 0.0, 2.0, 0.2, False),
+        (0.1, 0.0, 2.0, 0.2, False),
+        (math.nan, -math.inf, math.inf, None, False),
+        (math.inf, 0.0, math.inf, None, True),
+    ],
+)
+def test_a_finding_holds_with_its_error(value, low, high, error, ok):
+    assert Finding("x", value, low, high, error).ok is ok
+
+
+def test_findings_in_lines_and_in_a_document():
+    found = (
+        Finding("drift", 1e-12, -1e-9, 1e-9, key="drift"),
+        Finding("loss", 5.0, high=4.0, error=0.5),
+        Statement("coarse", "refused", True),
+    )
+    lines = "\n".join(listed(found))
+    assert [line.split()[-1] for line in lines.splitlines()] == ["refused", "expected", "ok",
+                                                                 "FAILS"]  # fmt: skip
+    assert "5 ± 5e-01" in lines
+    assert "drift" not in "\n".join(listed(found, all_of_them=False))
+    told = json.loads(json.dumps(document(found), allow_nan=False))
+    assert told["drift_value"] == 1e-12
+    assert [f["ok"] for f in told["findings"]] == [True, False]
+    assert told["findings"][1]["least_value"] is None
+    assert told["statements"] == [{"quantity": "coarse", "says": "refused", "ok": True}]
+
+
+def test_bounds_are_told_shortly():
+    assert [bounds(*b) for b in ((0, 0), (1, math.inf), (-math.inf, 1))] == ["0", "≥ 1", "≤ 1"]
