@@ -8,36 +8,48 @@
 D**2*(m1**2 - m1*m2 + m2**2)/(3*(m1 + m2)**2)
 """
 
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from lwa.cell import Cell, D, Dimer, k
-from lwa.closure.consistency import Closure
-from lwa.closure.motion import Solution
-from lwa.coefficients import Coefficients, Partition
-from lwa.compact import CompactWave
-from lwa.exact import InputError, Quantity
-from lwa.expansion.approximants import Resummed
-from lwa.expansion.expand import Expansion, expand
-from lwa.expansion.radiation import Radiation
-from lwa.expansion.series import EpsilonSeries
-from lwa.jets import JetAlgebra, Ladder, Monomial, Term
-from lwa.linear.dispersion import Dispersion
-from lwa.pde import PDE
-from lwa.physical import PhysicalWave
-from lwa.quantities import NoSolitaryWave
-from lwa.reduction import Reduction
-from lwa.spheres import hertz
-from lwa.spheres.hertz import Material, Sphere
-from lwa.terms import Jet, Powers, Terms
-from lwa.theory import Theory, homogenize
-from lwa.wave import TravelingWave, canonical_wave
-
 if TYPE_CHECKING:
+    from lwa.cell import Cell, D, Dimer, k
+    from lwa.closure.consistency import Closure
+    from lwa.closure.motion import Solution
+    from lwa.coefficients import Coefficients
+    from lwa.compact import CompactWave, LoadedWave
+    from lwa.compressed import BackgroundWave, background_wave
+    from lwa.curves import PhysicalWaves
+    from lwa.exact import InputError, Quantity
+    from lwa.expansion.approximants import Resummed
+    from lwa.expansion.expand import Expansion, expand
+    from lwa.expansion.physical import ExpandedWave
+    from lwa.expansion.radiation import Radiation
+    from lwa.expansion.series import EpsilonSeries
+    from lwa.jets import JetAlgebra, Ladder, Monomial, Term
+    from lwa.kdv import KdV
+    from lwa.law import Law, Power, general
+    from lwa.linear.dispersion import Dispersion
+    from lwa.linear.loaded import LoadedChain
     from lwa.numeric import Array, NumericWave
+    from lwa.partition import Partition
+    from lwa.pde import PDE
+    from lwa.physical import PhysicalWave
+    from lwa.precompressed import PrecompressedWave
+    from lwa.quadrature import NumericBackground
+    from lwa.quantities import NoSolitaryWave
+    from lwa.reduction import Reduction
+    from lwa.spheres import hertz
+    from lwa.spheres.hertz import Material, Sphere
+    from lwa.terms import Jet, Powers, Terms
+    from lwa.theory import Theory, homogenize
+    from lwa.wave import TravelingWave, canonical_wave
+
+    __version__: str
 
 __all__ = [
     "PDE",
     "Array",
+    "BackgroundWave",
     "Cell",
     "Closure",
     "Coefficients",
@@ -46,18 +58,27 @@ __all__ = [
     "Dimer",
     "Dispersion",
     "EpsilonSeries",
+    "ExpandedWave",
     "Expansion",
     "InputError",
     "Jet",
     "JetAlgebra",
+    "KdV",
     "Ladder",
+    "Law",
+    "LoadedChain",
+    "LoadedWave",
     "Material",
     "Monomial",
     "NoSolitaryWave",
+    "NumericBackground",
     "NumericWave",
     "Partition",
     "PhysicalWave",
+    "PhysicalWaves",
+    "Power",
     "Powers",
+    "PrecompressedWave",
     "Quantity",
     "Radiation",
     "Reduction",
@@ -68,18 +89,64 @@ __all__ = [
     "Terms",
     "Theory",
     "TravelingWave",
+    "background_wave",
     "canonical_wave",
     "expand",
+    "general",
     "hertz",
     "homogenize",
     "k",
 ]
 
 
-def __getattr__(name: str) -> Any:
-    """What needs NumPy is loaded when it is asked for."""
-    if name in ("Array", "NumericWave"):
-        from lwa import numeric
+_MODULES = {
+    "cell": "Cell D Dimer k",
+    "closure.consistency": "Closure",
+    "closure.motion": "Solution",
+    "coefficients": "Coefficients",
+    "compact": "CompactWave LoadedWave",
+    "compressed": "BackgroundWave background_wave",
+    "curves": "PhysicalWaves",
+    "exact": "InputError Quantity",
+    "expansion.approximants": "Resummed",
+    "expansion.expand": "Expansion expand",
+    "expansion.physical": "ExpandedWave",
+    "expansion.radiation": "Radiation",
+    "expansion.series": "EpsilonSeries",
+    "jets": "JetAlgebra Ladder Monomial Term",
+    "kdv": "KdV",
+    "law": "Law Power general",
+    "linear.dispersion": "Dispersion",
+    "linear.loaded": "LoadedChain",
+    "numeric": "Array NumericWave",
+    "partition": "Partition",
+    "pde": "PDE",
+    "physical": "PhysicalWave",
+    "precompressed": "PrecompressedWave",
+    "quadrature": "NumericBackground",
+    "quantities": "NoSolitaryWave",
+    "reduction": "Reduction",
+    "spheres.hertz": "Material Sphere",
+    "terms": "Jet Powers Terms",
+    "theory": "Theory homogenize",
+    "wave": "TravelingWave canonical_wave",
+}
+_HOMES = {name: module for module, names in _MODULES.items() for name in names.split()}
 
-        return getattr(numeric, name)
-    raise AttributeError(f"module 'lwa' has no attribute {name!r}")
+
+def __getattr__(name: str) -> Any:
+    """Each name is loaded when it is first asked for: the command starts before SymPy does."""
+    if name == "__version__":
+        from importlib.metadata import version  # here: it takes as long as all the rest
+
+        return version("lwa")
+    if name == "hertz":
+        return import_module("lwa.spheres.hertz")
+    if name not in _HOMES:
+        raise AttributeError(f"module 'lwa' has no attribute {name!r}")
+    found = globals()[name] = getattr(import_module(f"lwa.{_HOMES[name]}"), name)
+    return found
+
+
+def __dir__() -> list[str]:
+    return [*globals(), *__all__]

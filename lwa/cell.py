@@ -12,14 +12,14 @@ with P equal contacts of stiffness A_eff, A_eff^{-1/k} = (1/P) Σ A_i^{-1/k}.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Set
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import sympy as sp
 
-from lwa.exact import InputError, exact, integer, positive, shorten
+from lwa.exact import InputError, exact, integer, positive, power, shorten
 from lwa.spheres.hertz import Sphere, stiffness
 from lwa.value import Value
 
@@ -41,6 +41,9 @@ RESERVED = {
 
 MOST_BITS = 4096
 """By which the shares of contacts may differ; floats end at 1024."""
+
+MOST_EXPONENT = 1000
+"""Exact numbers of the kind of 2^k have more digits than anyone reads beyond it."""
 
 MOST_PARTICLES = 1000
 """In a cell; beyond it even the simplest of its theories takes minutes."""
@@ -168,7 +171,7 @@ class Cell(Value):
         """A_eff, the stiffness of the equal contacts that would respond alike."""
         if len(set(self.stiffnesses)) == 1:
             return self.stiffnesses[0]
-        return (sp.Add(*self.compliances(k)) / self.size) ** (-exponent(k))
+        return power(sp.Add(*self.compliances(k)) / self.size, -exponent(k))
 
     def time_scale(self, k: Any = k) -> sp.Expr:
         """τ/t = √(P k A_eff D^{k+1} / M), by which u_ττ = u_x^{k-1} u_xx at leading order.
@@ -176,7 +179,7 @@ class Cell(Value):
         For the paper's dimer it is √(2 k D^{k+1} / (m1 + m2)).
         """
         k = exponent(k)
-        return sp.sqrt(self.size * k * self.stiffness(k) * self.spacing ** (k + 1) / self.mass)
+        return sp.sqrt(self.size * k * self.stiffness(k) * power(self.spacing, k + 1) / self.mass)
 
 
 def Dimer(
@@ -199,7 +202,8 @@ def Dimer(
 def exponent(value: Any, cell: Cell | None = None) -> sp.Expr:
     """Read the exponent k of F = A δ^k exactly, for a chain of this cell.
 
-    Raises `lwa.InputError` unless k > 0, and for a name that means something else.
+    Raises `lwa.InputError` unless 0 < k ≤ `MOST_EXPONENT`, and for a name that means something
+    else.
 
     >>> exponent(1.5)
     3/2
@@ -207,6 +211,8 @@ def exponent(value: Any, cell: Cell | None = None) -> sp.Expr:
     result = exact(value, "k")
     if result.is_number and not result.is_positive:
         raise InputError(f"k is {result}: the contact force A δ^k needs an exponent k > 0")
+    if result.is_number and result > MOST_EXPONENT:
+        raise InputError(f"k is {shorten(result)}: exponents up to k = {MOST_EXPONENT} are taken")
     _meant(result, "k", k.name)
     if cell is not None:
         shared = {s.name for s in result.free_symbols} & {s.name for s in cell.symbols}
@@ -286,6 +292,9 @@ def _meant(value: sp.Expr, field: str, own: str = "") -> sp.Expr:
 
 
 def _sequence(values: Any, name: str) -> tuple[Any, ...]:
-    if isinstance(values, str) or not hasattr(values, "__iter__"):
-        raise InputError(f"{name}: a sequence of numbers or symbols is wanted, not {values!r}")
+    no_row = isinstance(values, str | bytes | bytearray | Mapping | Set)
+    if no_row or not hasattr(values, "__iter__"):
+        raise InputError(
+            f"{name}: a sequence of numbers or symbols is wanted, not {shorten(values)}"
+        )
     return tuple(values)

@@ -10,82 +10,23 @@ Polynomials leave as factored SymPy expressions in the caller's own symbols.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property, cmp_to_key
-from typing import Any
+from typing import Any, Self
 
 import sympy as sp
 from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
-from lwa.cell import Cell
+from lwa.cell import Cell, exponent, substitution
 from lwa.exact import InputError
+from lwa.jets import JetAlgebra
+from lwa.law import Law, Power
+from lwa.partition import Partition, number, rational
 from lwa.value import Value
 
 MOST_DIGITS = 4000
 """Of a coefficient; Python prints no integers of more than 4,300."""
-
-
-def rational(value: sp.Expr) -> fmpq:
-    """A SymPy rational as a python-flint one."""
-    return fmpq(int(value.p), int(value.q))
-
-
-def number(value: fmpq) -> sp.Rational:
-    """A python-flint rational as a SymPy one."""
-    return sp.Rational(int(value.p), int(value.q))
-
-
-@dataclass(frozen=True)
-class Partition(Value):
-    """Positive weights w_i that enter only as f_i = total · w_i / Σ_j w_j.
-
-    The masses of a cell are such weights (total 1), and so are the compliances of its contacts
-    (total P).
-    """
-
-    weights: tuple[sp.Expr, ...]
-    total: int
-    letter: str
-
-    @cached_property
-    def distinct(self) -> tuple[sp.Expr, ...]:
-        """The distinct weights, in the order of their first appearance."""
-        return tuple(dict.fromkeys(self.weights))
-
-    @cached_property
-    def sum(self) -> sp.Expr:
-        """Σ w_i."""
-        return sp.Add(*self.weights)
-
-    @cached_property
-    def values(self) -> tuple[sp.Expr, ...] | None:
-        """f of each distinct weight if all of them are rational, else None."""
-        values = tuple(sp.cancel(self.total * w / self.sum) for w in self.distinct)
-        return values if all(value.is_Rational for value in values) else None
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        """Names of the ring generators: one per distinct weight but the last."""
-        count = 0 if self.values else len(self.distinct) - 1
-        return tuple(f"{self.letter}{i}" for i in range(count))
-
-    def elements(self, context: fmpq_mpoly_ctx) -> list[fmpq_mpoly]:
-        """f_0, f_1, … as elements of a ring that has `names` among its generators."""
-        if self.values:
-            of = {
-                w: context.constant(rational(f))
-                for w, f in zip(self.distinct, self.values, strict=True)
-            }
-        else:
-            free = [context.gen(context.variable_to_index(name)) for name in self.names]
-            of = dict(zip(self.distinct, free, strict=False))
-            rest = context.constant(self.total)
-            for weight, f in of.items():
-                rest = rest - self.weights.count(weight) * f
-            last = self.distinct[-1]
-            of[last] = rest / self.weights.count(last)
-        return [of[w] for w in self.weights]
 
 
 @dataclass(frozen=True)
@@ -118,10 +59,42 @@ class Coefficients(Value):
         return Partition(weights, self.cell.size, "c")
 
     @property
+    def variables(self) -> tuple[sp.Expr, ...]:
+        """What the law's own generators stand for: k, unless it is rational."""
+        return () if self.k.is_Rational else (self.k,)
+
+    @property
     def names(self) -> tuple[str, ...]:
         """Names of the ring's generators."""
-        exponent = () if self.k.is_Rational else ("k",)
-        return (*exponent, *self.masses.names, *self.contacts.names, *self._opaque)
+        return (*self._own, *self.masses.names, *self.contacts.names, *self._opaque)
+
+    @property
+    def _own(self) -> tuple[str, ...]:
+        return ("k",) if self.variables else ()
+
+    @property
+    def law(self) -> Power | Law:
+        """The contact law."""
+        return Power(self.k)
+
+    @property
+    def time_scale(self) -> sp.Expr:
+        """τ/t of the acoustic branch."""
+        return self.cell.time_scale(self.k)
+
+    def algebra(self, weight: int, velocity: bool = False, rest: bool = False) -> JetAlgebra:
+        """The jets over this ring, with those of the velocity where they are wanted."""
+        return JetAlgebra(self.names, weight, self.exponent if velocity else None, rest)
+
+    def substitution(
+        self, values: Mapping[str, Any], more: Sequence[sp.Symbol]
+    ) -> dict[sp.Symbol, sp.Expr]:
+        """`lwa.cell.substitution` among the symbols of cell and law, and more."""
+        return substitution(values, self.cell, self.k, more)
+
+    def anew(self, new: Mapping[sp.Symbol, sp.Expr], order: int) -> Self:
+        """The ring for these values of its symbols, and for this order."""
+        return replace(self, cell=self.cell.replaced(new), k=exponent(self.k.xreplace(new)))
 
     def writable(self, order: int) -> None:
         """Refuse an order whose coefficients, powers of the cell's numbers, Python cannot print."""
@@ -204,7 +177,7 @@ class Door:
         partitions = [part for part in (ring.masses, ring.contacts) if part.names]
         values = [w for part in partitions for w in part.distinct]
         opaque_constants = [c for i, c in enumerate(ring.constants) if f"a{i}" in ring.names]
-        values += [*([] if ring.k.is_Rational else [ring.k]), *opaque_constants]
+        values += [*ring.variables, *opaque_constants]
         symbols = sorted(set().union(*(v.free_symbols for v in values)), key=str)
         polynomial = {v: _as_polynomial(v, symbols) for v in values}
         opaque = [v for v in dict.fromkeys(values) if polynomial[v] is None and not v.is_Rational]
@@ -223,7 +196,7 @@ class Door:
             padding = (0,) * len(opaque)
             return context.from_dict({(*e, *padding): rational(c) for e, c in poly.terms()})
 
-        self._images = [] if ring.k.is_Rational else [element(ring.k)]
+        self._images = [element(value) for value in ring.variables]
         self._denominators: list[tuple[slice, fmpq_mpoly]] = []
         for part in partitions:
             start = len(self._images)

@@ -3,12 +3,15 @@
 With w_i the field of particle i and p (1 + X_i) the strain of contact i over its share c_i, the
 energy of a cell per length, in the units of the wave equation, is
 
-    e = ½ Σ μ_i (∂_τ w_i)² + Σ c_i (p (1 + X_i))^{k+1} / (P k (k+1))
-      = u_τ²/2 + u_x^{k+1}/(k (k+1)) + …,
+    e = ½ Σ μ_i (∂_τ w_i)² + Σ c_i W(p (1 + X_i)) / P = u_τ²/2 + W(u_x) + …,
 
-and the equations of motion give ∂_τ e = (e^{PD∂} - 1) (F_{-1} ∂_τ w_0) / (PkD), the derivative of
-the flux of energy. That holds for any wave equation that the slaved fields satisfy, in every field,
-whether or not the equation derives from a potential.
+W′ = F the force, p^k/k for a power. The work of F(p) on the strains, Σ c_i p X_i, is by parts that
+of its derivative on a displacement. The equations of motion give
+
+    ∂_τ e = (e^{PD∂} - 1) (F_{-1} ∂_τ w_0) / (PD),
+
+the derivative of the flux of energy. That holds for any wave equation that the slaved fields
+satisfy, in every field, whether or not the equation derives from a potential.
 
 The density is given up to derivatives, so that no highest jet stands in it linearly.
 """
@@ -21,12 +24,13 @@ from math import factorial
 from flint import fmpq, fmpq_mpoly
 
 from lwa.closure.consistency import Closure
+from lwa.contact import contact
 from lwa.exact import InputError
-from lwa.jets import JetAlgebra, Ladder, Power, exact_quotient
+from lwa.jets import JetAlgebra, Ladder, exact_quotient
 
 
 def energy(closure: Closure) -> tuple[JetAlgebra, list[fmpq_mpoly]]:
-    """k (k+1) e / u_x^{k+1} as a series in D up to D^{order-2}, in an algebra that has s_0.
+    """(e - W(u_x)) / (u_x² F′(u_x)), a series in D up to D^{order-2}, in an algebra that has s_0.
 
     Raises `lwa.InputError` on the optical branch, and where the closure leaves a defect.
     """
@@ -39,12 +43,8 @@ def energy(closure: Closure) -> tuple[JetAlgebra, list[fmpq_mpoly]]:
         )
     fields = _Fields(closure)
     orders = range(max(closure.order - 1, 0))
-    return fields.algebra, [
-        fields.algebra.by_parts(
-            fields.k * (fields.k + 1) * fields.kinetic(n) + fields.elastic(n), fields.k + 1
-        )
-        for n in orders
-    ]
+    found = (fields.kinetic(n) + fields.elastic(n) for n in orders)
+    return fields.algebra, [fields.algebra.by_parts(e, fields.k + 1) for e in found]
 
 
 class _Fields:
@@ -52,17 +52,17 @@ class _Fields:
 
     def __init__(self, closure: Closure) -> None:
         ring, old = closure.ring, closure.algebra
-        self.algebra = algebra = JetAlgebra(ring.names, old.weight, ring.exponent, rest=True)
+        self.algebra = algebra = ring.algebra(old.weight, velocity=True, rest=True)
         self.k = ring.exponent(algebra.context)
         self.mu = ring.masses.elements(algebra.context)
         self.c = ring.contacts.elements(algebra.context)
         E = self._series(closure.acceleration, old, self.k)
-        S = [self._series(row, old, algebra.one) for row in closure.fields]
+        self.S = S = [self._series(row, old, algebra.one) for row in closure.fields]
         size = max(closure.order - 1, 0)
         self.velocities = [
             [algebra.s[0], *(algebra.dt(row, E, n) for n in range(1, size))] for row in S
         ]
-        self.forces = [Power(algebra, self.k + 1) for _ in S]
+        self.forces = [contact(algebra, self.k) for _ in S]
         for n in range(1, size):
             for force, share, strain in zip(self.forces, self.c, _strains(S, n), strict=True):
                 force.append(exact_quotient(strain, share))
@@ -76,7 +76,7 @@ class _Fields:
         return ladder
 
     def kinetic(self, n: int) -> fmpq_mpoly:
-        """½ Σ μ_i (∂_τ w_i)² at D^n, over p^{k+1}."""
+        """½ Σ μ_i (∂_τ w_i)² at D^n, over p² F′."""
         total = self.algebra.zero
         for mu, row in zip(self.mu, self.velocities, strict=True):
             for j in range(n + 1):
@@ -84,13 +84,20 @@ class _Fields:
         return total
 
     def elastic(self, n: int) -> fmpq_mpoly:
-        """Σ c_i (1 + X_i)^{k+1} / P at D^n."""
+        """Σ c_i W(p (1 + X_i)) / P at D^n, n ≥ 1, over p² F′; nothing at D^0.
+
+        Σ c_i p X_i / P = ∂_x Y with Y = Σ_j (PD∂_x)^j/(j+1)! w_0 - φ.
+        """
         if n == 0:
-            return self.algebra.one
+            return self.algebra.zero
         total = self.algebra.zero
         for c, force in zip(self.c, self.forces, strict=True):
-            total = total + c * force.Phi[n]
-        return (self.k + 1) * total / len(self.c)
+            total = total + c * force.work(n)
+        P, r = len(self.c), self.algebra.r
+        Y = r[n - 1] * fmpq(P**n, factorial(n + 1))
+        for j in range(n):
+            Y = Y + self.S[0].dx(n - 1 - j, j) * fmpq(P**j, factorial(j + 1))
+        return total / P - r[1] * Y
 
 
 def _strains(S: list[Ladder], n: int) -> list[fmpq_mpoly]:

@@ -70,7 +70,7 @@ def exact(value: Any, name: str) -> sp.Expr:
     if isinstance(value, int) and not isinstance(value, bool):
         return _writable(sp.Integer(value), name)
     if isinstance(value, float | Decimal):
-        if not math.isfinite(value):
+        if not (value.is_finite() if isinstance(value, Decimal) else math.isfinite(value)):
             raise InputError(f"{name} is {value}: a finite number is wanted")
         if isinstance(value, Decimal) and abs(value.adjusted()) > _DIGITS:
             raise InputError(f"{name} is {shorten(value)}: {_TOO_LONG}")
@@ -149,3 +149,29 @@ def _writable(number: sp.Rational, name: str) -> sp.Rational:
     if max(int(number.p).bit_length(), int(number.q).bit_length()) > _BITS:
         raise InputError(f"{name} is a number of too many digits: {_TOO_LONG}")
     return number
+
+
+class Kept(sp.UnevaluatedExpr):  # type: ignore[misc]
+    """A number under a power that is left as it is: printed, compared and evaluated as itself."""
+
+    def _eval_is_positive(self) -> bool:
+        return bool(self.args[0].is_positive)
+
+    def _eval_evalf(self, precision: int) -> sp.Expr:
+        return self.args[0]._eval_evalf(precision)
+
+
+def power(base: sp.Expr, exponent: sp.Expr) -> sp.Expr:
+    """base^exponent, in which no number is written out beyond a thousand digits.
+
+    SymPy takes whole powers out of roots, and would make such a number of 3^(1 + 1/99999).
+
+    >>> power(sp.Rational(9, 4), sp.Rational(3, 2)), power(sp.Rational(9, 4), sp.Rational(1, 9999))
+    (27/8, (9/4)**(1/9999))
+    """
+    factor = base.as_coeff_Mul()[0]
+    if factor not in (0, 1) and factor.is_Rational and exponent.is_Rational:
+        bits = int(factor.p).bit_length() + int(factor.q).bit_length()
+        if bits * (abs(int(exponent.p)) + int(exponent.q)) > _BITS:
+            base = Kept(base)
+    return base**exponent

@@ -2,7 +2,8 @@
 
 Inverted, u = φ + Σ ℓ_n D^n ∂_x^n φ, so that with X = Σ ℓ_n D^n r_n the strain of u is p (1 + X),
 its jets are (r_m + Σ ℓ_n D^n r_{m+n}) / (1 + X), those of its velocity likewise over
-(1 + X)^{(k+1)/2}, and φ_ττ = (1 + Σ α_n D^n ∂_x^n) u_ττ.
+(1 + X)^{(k+1)/2}, and φ_ττ = (1 + Σ α_n D^n ∂_x^n) u_ττ. Under a law that is no power what depends
+on p is expanded about φ_x instead, the coefficients' φ_n too.
 """
 
 from __future__ import annotations
@@ -17,8 +18,9 @@ from flint import fmpq_mpoly
 
 from lwa.closure.consistency import Closure
 from lwa.closure.motion import Solution
+from lwa.contact import Binomial, Powers
 from lwa.exact import InputError
-from lwa.jets import JetAlgebra, Ladder, Monomial, Power
+from lwa.jets import Ladder, Monomial
 
 Series = list[fmpq_mpoly]
 
@@ -55,7 +57,7 @@ class ChangedClosure(Closure):
     def symbols(self) -> tuple[sp.Symbol, ...]:
         """Those of the α_n."""
         own = set().union(*(alpha.free_symbols for _, alpha in self.alphas))
-        own -= {*self.ring.cell.symbols, *self.ring.k.free_symbols, *self.origin.symbols}
+        own -= {*self.ring.cell.symbols, *self.ring.law.symbols, *self.origin.symbols}
         return (*self.origin.symbols, *sorted(own, key=str))
 
     def anew(
@@ -83,9 +85,7 @@ class _Change:
         self.closure, self.alphas = closure, alphas
         old = closure.algebra
         self.ring = replace(closure.ring, constants=(*closure.ring.constants, *alphas.values()))
-        self.algebra = JetAlgebra(
-            self.ring.names, old.weight, self.ring.exponent if old.s else None
-        )
+        self.algebra = self.ring.algebra(old.weight, velocity=bool(old.s))
         self.k = self.ring.exponent(self.algebra.context)
         first = len(closure.ring.constants)
         self.size = closure.order
@@ -134,9 +134,9 @@ class _Change:
         total = [self.algebra.zero] * self.size
         for m, f in enumerate(terms):
             for monomial, coefficient in self._monomials(f):
-                parts = self._monomial(monomial, exponent, self.size - m)
+                parts = self._monomial(monomial, coefficient, exponent, self.size - m)
                 for j, part in enumerate(parts):
-                    total[m + j] = total[m + j] + coefficient * part
+                    total[m + j] = total[m + j] + part
         return total
 
     def _monomials(self, f: fmpq_mpoly) -> list[tuple[Monomial, fmpq_mpoly]]:
@@ -147,20 +147,35 @@ class _Change:
             for monomial, terms in old.terms(f).items()
         ]
 
-    def _monomial(self, monomial: Monomial, exponent: fmpq_mpoly, size: int) -> Series:
-        """Π jets of u times (1 + X)^e, in the jets of φ, to ``size`` terms."""
+    def _monomial(
+        self, monomial: Monomial, coefficient: fmpq_mpoly, exponent: fmpq_mpoly, size: int
+    ) -> Series:
+        """coefficient · Π jets of u · u_x^e in the jets of φ, to ``size`` terms, over φ_x^e."""
         powers_t = sum(e for _, e in monomial.t)
         degree = exponent - sum(e for _, e in monomial.x) - powers_t * (self.k + 1) / 2
-        strain = Power(self.algebra, degree)
-        for n in range(1, size):
-            strain.append(self.inverse[n] * self.algebra.r[n])
-        series = [self.algebra.one, *(degree * strain.Phi[n] for n in range(1, size))]
+        series = self._of_strain(coefficient, degree, size)
         for jets, powers in ((self.algebra.r, monomial.x), (self.algebra.s, monomial.t)):
             for m, e in powers:
                 jet = [self.inverse[n] * jets[m + n] for n in range(size)]
                 for _ in range(e):
                     series = self._product(series, jet)
         return series
+
+    def _of_strain(self, coefficient: fmpq_mpoly, degree: fmpq_mpoly, size: int) -> Series:
+        """coefficient · (1 + X)^degree, which a power of u_x becomes, with what is in p itself."""
+        X = [self.inverse[n] * self.algebra.r[n] for n in range(1, size)]
+        if not self.algebra.phi:
+            strain = Binomial(self.algebra, degree)
+            for X_n in X:
+                strain.append(X_n)
+            rest = (coefficient * degree * strain.Phi[n] for n in range(1, size))
+            return [coefficient, *rest]
+        slopes = [coefficient]  # p^m ∂_p^m of it
+        for m in range(size - 1):
+            slopes.append(self.algebra.scaled(slopes[-1], degree - m))
+        powers = Powers([self.algebra.zero, *X])
+        rest = (slopes[1] * X[n - 1] + powers.sum(slopes, n) for n in range(1, size))
+        return [coefficient, *rest]
 
     def _product(self, a: Series, b: Series) -> Series:
         zero = self.algebra.zero

@@ -11,6 +11,10 @@ The velocity joins with its own jets s_i = ∂_x^i u_τ / p^{(k+1)/2} of weight 
 u_ττ = p^k Σ_j D^{j-1} E_j is known, so is the derivative in time (`JetAlgebra.dt`). Since every
 factor D comes with one ∂_x, a series in the spacing D is a list of polynomials, the n-th of weight
 n. Coefficients live in Q[parameters]; polynomials are python-flint's `fmpq_mpoly`.
+
+For a law F(p) that is no power, p F'(p) stands in place of p^k, and k is its exponent
+d ln(p F')/d ln p = 1 + φ_2. The φ_n = p^{n-1} F^{(n)}(p)/F'(p), φ_1 = 1, are parameters that depend
+on p: p dφ_n/dp = φ_{n+1} + (n-1) φ_n - φ_n φ_2. For δ^k they are (k-1) … (k-n+1).
 """
 
 from __future__ import annotations
@@ -39,7 +43,8 @@ class JetAlgebra:
     """Polynomials in r_1 … r_weight over Q[parameters], with ∂_x.
 
     With ``exponent``, which gives k as an element of the ring, the jets s_1 … s_weight of the
-    velocity are there too, and ∂_τ; with ``rest`` also s_0 = u_τ / p^{(k+1)/2} itself.
+    velocity are there too, and ∂_τ; with ``rest`` also s_0 = u_τ / p^{(k+1)/2} itself. The first
+    parameters are φ_2 … φ_smooth of a law that is no power.
 
     >>> jets = JetAlgebra((), weight=2)
     >>> jets.dx(jets.r[1], 0)
@@ -52,6 +57,7 @@ class JetAlgebra:
         weight: int,
         exponent: Callable[[fmpq_mpoly_ctx], fmpq_mpoly] | None = None,
         rest: bool = False,
+        smooth: int = 0,
     ) -> None:
         self.parameters = parameters
         self.weight = weight
@@ -81,6 +87,24 @@ class JetAlgebra:
                 if n < weight:
                     self._dx[index] = self.s[n + 1] - self.half * r1 * self.s[n]
                 self._dt[index] = -self.half * self.s[1] * self.s[n]
+        self.phi = [self.zero, self.one, *generators[: smooth - 1]] if smooth else []
+        for n in range(2, smooth):
+            self._dx[n - 2] = self.r[1] * self._theta(n)
+            if exponent:
+                self._dt[n - 2] = self.s[1] * self._theta(n)
+        self._moving = [*range(max(smooth - 1, 0)), *range(self._offset, self.context.nvars())]
+
+    def _theta(self, n: int) -> fmpq_mpoly:
+        """p dφ_n/dp."""
+        phi = self.phi
+        return phi[n + 1] + (n - 1) * phi[n] - phi[n] * phi[2]
+
+    def scaled(self, f: fmpq_mpoly, exponent: fmpq_mpoly | int) -> fmpq_mpoly:
+        """p^{1-e} ∂_p (p^e f) at fixed jets, e the exponent."""
+        result = exponent * f
+        for n in range(2, len(self.phi) - 1):
+            result = result + f.derivative(n - 2) * self._theta(n)
+        return result
 
     def dx(self, f: fmpq_mpoly, exponent: fmpq_mpoly | int) -> fmpq_mpoly:
         """p^{-e} ∂_x (p^e f), e the exponent."""
@@ -108,9 +132,9 @@ class JetAlgebra:
         return [(i - start + self._lowest, f.derivative(i)) for i in self._present(f) if i >= start]
 
     def _present(self, f: fmpq_mpoly) -> list[int]:
-        """The indices of the jets that stand in f."""
+        """The indices of what depends on x in f, jets and φ_n."""
         degrees = f.degrees()
-        return [i for i in range(self._offset, len(degrees)) if degrees[i] > 0]
+        return [i for i in self._moving if degrees[i] > 0]
 
     def _derivation(
         self, result: fmpq_mpoly, f: fmpq_mpoly, images: dict[int, fmpq_mpoly]
@@ -154,7 +178,8 @@ class JetAlgebra:
             slope = f.derivative(index)
             if slope.is_zero():
                 continue
-            if index - 1 not in self._dx or not slope.derivative(index).is_zero():
+            below = index - 1 if index > self._offset else None
+            if below not in self._dx or not slope.derivative(index).is_zero():
                 return None
             part = slope.integral(index - 1)
             total, f = total + part, f - self.dx(part, exponent)
@@ -248,50 +273,3 @@ class Ladder:
         if n not in self._velocity_slopes:
             self._velocity_slopes[n] = self.algebra.velocity_slopes(self[n])
         return self._velocity_slopes[n]
-
-
-class Power:
-    """The series (1 + X)^k = 1 + k Φ of a graded series X = Σ_{n≥1} D^n X_n, term by term.
-
-    With Y = (1 + X)^k the recurrence n Y_n = Σ_{j=1..n} (k j - (n - j)) X_j Y_{n-j} gives
-
-        Φ_n = X_n + ((k + 1)/n) Σ_{j<n} j X_j Φ_{n-j} - Σ_{j<n} X_j Φ_{n-j},
-
-    polynomial in k and without a division by it. p^k (1 + X)^k is the force of a contact whose
-    strain is p (1 + X). X and Phi hold the terms so far.
-    """
-
-    def __init__(self, algebra: JetAlgebra, k: fmpq_mpoly) -> None:
-        self.k = k
-        self.X: list[fmpq_mpoly] = [algebra.zero]
-        self.Phi = Ladder(algebra, k)
-        self.Phi.append(algebra.zero)
-        self._one = Ladder(algebra, k)
-        self._one.append(algebra.r[1])
-        self._known: fmpq_mpoly | None = None
-
-    @property
-    def known(self) -> fmpq_mpoly:
-        """Of the next Φ_n the part Φ_n - X_n, which depends on X_1 … X_{n-1} only."""
-        if self._known is None:
-            n = len(self.X)
-            plain = weighted = self.Phi[0]
-            for j in range(1, n):
-                product = self.X[j] * self.Phi[n - j]
-                plain = plain + product
-                weighted = weighted + j * product
-            self._known = (self.k + 1) * weighted / n - plain
-        return self._known
-
-    def append(self, X_n: fmpq_mpoly) -> None:
-        """Give the next term of X."""
-        self.Phi.append(X_n + self.known)
-        self.X.append(X_n)
-        self._known = None
-
-    def carried(self, h: int, n: int) -> fmpq_mpoly:
-        """What the shift by hD adds to p^k (1 + kΦ) at D^n, over k p^k.
-
-        From the leading 1 it is h^n/n! ∂_x^{n-1} r_1.
-        """
-        return self.Phi.carried(h, n) + self._one.dx(0, n - 1) * fmpq(h**n, factorial(n))

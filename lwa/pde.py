@@ -1,11 +1,12 @@
 """The quasi-continuum wave equation of a chain, at any order.
 
-Acoustic branch (Porter et al. 2008, eq. 6, is order 4 of the dimer), in the time
+Acoustic branch (the wave equation of Porter et al. 2008 is order 4 of the dimer), in the time
 τ = t · `Cell.time_scale`:
 
     u_ττ = u_x^{k-1} u_xx + u_x^k Σ_{n≥2} D^{n-1} Σ_jets coefficient · Π_i (∂_x^i u / u_x)^{e_i},
 
-where n stands at D^{k+n} of the equations of motion; n = 3 holds G, H and I. Optical branch, in
+where n stands at D^{k+n} of the equations of motion; n = 3 holds G, H and I. Of a law F(δ) that is
+no power F′(D u_x) stands for u_x^{k-1}, and the coefficients hold φ_2, φ_3, …. Optical branch, in
 its own time unit: u_ττ = -u^k + u^k Σ_{n≥1} D^n Σ_jets coefficient · Π_i (∂_x^i u / u)^{e_i}.
 
 Coefficients are converted to SymPy when they are asked for, one by one.
@@ -26,8 +27,9 @@ from lwa.cell import Cell
 from lwa.closure.consistency import Closure
 from lwa.conservation import flux, potential
 from lwa.energy import energy
-from lwa.exact import InputError, exact, integer
+from lwa.exact import InputError, exact, integer, power
 from lwa.fields import change_field
+from lwa.law import Law, Power
 from lwa.terms import ENERGY, Jet, Terms, base_order, terms
 from lwa.value import Value
 from lwa.wave import TravelingWave
@@ -46,17 +48,22 @@ class PDE(Value):
 
     @property
     def k(self) -> sp.Expr:
-        """The exponent of the contact law."""
+        """The exponent of the contact law; of one that is no power 1 + φ_2."""
         return self.closure.ring.k
+
+    @property
+    def law(self) -> Power | Law:
+        """The contact law."""
+        return self.closure.ring.law
 
     @cached_property
     def time_scale(self) -> sp.Expr:
         """τ/t."""
         if self.acoustic:
-            return self.cell.time_scale(self.k)
+            return self.closure.ring.time_scale
         # w = λu strains each contact by (λ - 1)u, and 1 - λ = M/m2.
         m1, m2 = self.cell.masses
-        stretch = (self.cell.mass / m2) ** self.k
+        stretch = power(self.cell.mass / m2, self.k)
         return sp.sqrt(sp.Add(*self.cell.stiffnesses) * stretch / m1)
 
     @cached_property
@@ -91,7 +98,8 @@ class PDE(Value):
     def latex_rows(self, most: int | None = None) -> list[str]:
         """The equation, the terms at D^{k+3} with the letters G, H, I; to D^{k+most} or all."""
         letters = self.third_order
-        parts = [r"u_{x}^{k-1} u_{xx}" if self.acoustic else "-u^{k}"]
+        leading = "F'" if isinstance(self.law, Law) else "u_{x}^{k-1}"
+        parts = [f"{leading} u_{{xx}}" if self.acoustic else "-u^{k}"]
         for n, found in self.coefficients.items():
             if n == 3 and letters:
                 parts += [f"{letter} {found.latex(jet)}" for letter, jet in self.LETTERS.items()]
@@ -165,7 +173,14 @@ class PDE(Value):
 
         Where all orders are there, u_ττ is minus the variational derivative of Σ D^{n-1} V_n with
         V_1 = u_x^{k+1}/(k(k+1)), and u_τ²/2 + Σ D^{n-1} V_n is the density of a conserved energy.
+
+        Raises `lwa.InputError` for laws that are no power.
         """
+        if isinstance(self.law, Law):
+            raise InputError(
+                "a potential is found by Euler's theorem on homogeneous functions, which needs a "
+                "power law; `energy` is there for every law"
+            )
         found = {n: potential(self.closure, n, F) for n, F in self._fluxes.items()}
         return {n: terms(self.closure, V) for n, V in found.items() if V is not None}
 
@@ -185,12 +200,17 @@ class PDE(Value):
 
         It is the chain's own energy in the slaved fields (`lwa.energy`), so that ∂_τ of it is ∂_x
         of a flux to the order of the closure, in every field. e_0 = u_τ²/2 + u_x^{k+1}/(k(k+1)).
+        Of a law that is no power, e_n / (u_x² F′), and e_0 stands without W(u_x), W′ = F.
 
         Raises `lwa.InputError` on the optical branch, and where the closure leaves a defect.
         """
         algebra, found = energy(self.closure)
-        divisor = self.k * (self.k + 1)
-        return {n: terms(self.closure, e, ENERGY, divisor, algebra) for n, e in enumerate(found)}
+        rows = {n: terms(self.closure, e, ENERGY, algebra=algebra) for n, e in enumerate(found)}
+        if found and isinstance(self.law, Power):
+            k = self.closure.ring.exponent(algebra.context)
+            divided = k * (k + 1) * found[0] + 1
+            rows[0] = terms(self.closure, divided, ENERGY, self.k * (self.k + 1), algebra)
+        return rows
 
     def energy_density(self, u: sp.Expr, x: sp.Symbol, velocity: sp.Expr = sp.S.Zero) -> sp.Expr:
         """`energy` for fields u(x) and u_τ(x): the density of a conserved energy.
@@ -202,9 +222,11 @@ class PDE(Value):
         >>> homogenize(Cell([1]), k=3).pde.energy_density(x**2, x)
         -2*D**2*x**2/3 + 4*x**4/3
         """
-        D = self.cell.spacing
-        found = self.energy.items()
-        return sp.Add(*(D**n * e.of_fields(u, velocity, x) for n, e in found))
+        D, law = self.cell.spacing, self.law
+        parts = [D**n * e.of_fields(u, velocity, x) for n, e in self.energy.items()]
+        if parts and isinstance(law, Law):
+            parts.append(law.energy.subs(law.delta, D * u.diff(x)) / D**2)
+        return sp.Add(*parts)
 
     def in_field(self, alphas: Mapping[int, Any]) -> PDE:
         """The wave equation of φ = u + Σ α_n D^n ∂_x^n u, for {n: α_n}.
@@ -235,8 +257,11 @@ class PDE(Value):
         D**2*exp(x)/12 + exp(x)
         """
         base = base_order(self.closure.ring)
-        k, D = self.k, self.cell.spacing
-        leading = u.diff(x) ** (k - 1) * u.diff(x, 2) if base else -(u**k)
+        D, law = self.cell.spacing, self.law
+        if isinstance(law, Law):
+            leading = law.at(D * u.diff(x), 1) * u.diff(x, 2)
+        else:
+            leading = u.diff(x) ** (law.k - 1) * u.diff(x, 2) if base else -(u**law.k)
         rest = (
             D ** (n - base) * found.of_fields(u, velocity, x)
             for n, found in self.coefficients.items()
@@ -250,6 +275,11 @@ class PDE(Value):
         when the order is below 4, the branch optical, or D^{k+2} does not vanish (the linear
         closure with unequal contacts), so that the closed form does not apply.
         """
+        if isinstance(self.law, Law):
+            raise InputError(
+                "the compact wave in closed form belongs to a power law: `lwa.background_wave` "
+                "(--background P0) has the waves of any law"
+            )
         wave = TravelingWave(cell=self.cell, k=self.k, G=self.G, H=self.H, I=self.I)
         if 2 not in self.vanishing:
             raise InputError("unequal stiffnesses leave a term at D^(k+2): no wave in closed form")

@@ -18,6 +18,7 @@ from lwa import latex
 from lwa.closure.consistency import Closure
 from lwa.coefficients import Coefficients
 from lwa.jets import JetAlgebra, Term
+from lwa.law import Power
 
 Powers = tuple[tuple[int, int], ...]
 
@@ -111,9 +112,7 @@ class Terms(Mapping[Jet, sp.Expr]):
 
     def text(self, jet: Jet) -> str:
         """The jet as it stands in the equation, such as u_x^(k-3) u_2x^3."""
-        base = "u_x" if self.base else "u"
-        a, b = jet.over(self.power)
-        factors = [_raised(base, _exponent(a, b), "({})")] if a or b else []
+        factors = self._before(jet, "u_x" if self.base else "u", "({})")
         for mark, powers in (("", jet.x), ("τ", jet.t)):
             for i, e in powers:
                 place = f"{i if i > 1 else ''}x" if i else ""
@@ -122,14 +121,20 @@ class Terms(Mapping[Jet, sp.Expr]):
 
     def latex(self, jet: Jet) -> str:
         """The jet as the paper writes it, such as u_x^{k-3} u_{xx}^{3}."""
-        base = "u_{x}" if self.base else "u"
-        a, b = jet.over(self.power)
-        factors = [_raised(base, _exponent(a, b), "{{{}}}")] if a or b else []
+        factors = self._before(jet, "u_{x}" if self.base else "u", "{{{}}}")
         for mark, powers in (("", jet.x), (r"\tau", jet.t)):
             for i, e in powers:
                 place = "x" * i if i < 4 else f"{i}x"
                 factors.append(_raised(f"u_{{{place}{mark}}}", str(e), "{{{}}}"))
         return " ".join(factors) or "1"
+
+    def _before(self, jet: Jet, base: str, style: str) -> list[str]:
+        """The powers of the base that stand before the jet; of F′ too where the law is no power."""
+        a, b = jet.over(self.power)
+        if isinstance(self._ring.law, Power):
+            return [_raised(base, _exponent(a, b), style)] if a or b else []
+        powers = (("F'", b), (base, a + b))
+        return [_raised(name, str(e), style) for name, e in powers if e]
 
     def latex_total(self) -> str:
         """The sum of the terms."""
@@ -152,14 +157,21 @@ class Terms(Mapping[Jet, sp.Expr]):
 
     def of_fields(self, u: sp.Expr, velocity: sp.Expr, x: sp.Symbol) -> sp.Expr:
         """Σ coefficient · base^{a + bk} · jet for fields u(x) and u_τ(x)."""
-        base, k = (u.diff(x) if self.base else u), self._ring.k
+        base, law = (u.diff(x) if self.base else u), self._ring.law
         total = sp.S.Zero
         for jet, coefficient in self.items():
-            a, b = jet.over(self.power)
+            a, b = (
+                sp.Rational(power.numerator, power.denominator) for power in jet.over(self.power)
+            )
             factors = [u.diff(x, i) ** e for i, e in jet.x]
             factors += [velocity.diff(x, i) ** e for i, e in jet.t]
-            left = base ** (sp.Rational(a.numerator, a.denominator) + b * k if b else a)
-            total += coefficient * left * sp.Mul(*factors)
+            if isinstance(law, Power):
+                factors.append(base ** (a + b * law.k))
+            else:
+                delta = self._ring.cell.spacing * base
+                factors.append(law.at(delta, 1) ** b * base ** (a + b))
+                coefficient = law.evaluated(coefficient, delta)
+            total += coefficient * sp.Mul(*factors)
         return total
 
 

@@ -15,7 +15,9 @@ from lwa.closure.consistency import BRANCHES, CLOSURES, FIELDS, Closure, solve
 from lwa.coefficients import Coefficients
 from lwa.duration import shown
 from lwa.exact import InputError, integer, shorten
+from lwa.law import Law, Power, for_cell
 from lwa.pde import PDE
+from lwa.smooth import smooth
 from lwa.terms import STRAIN, Terms, terms
 from lwa.value import Value
 
@@ -39,8 +41,13 @@ class Theory(Value):
 
     @property
     def k(self) -> sp.Expr:
-        """The exponent of the contact law."""
+        """The exponent of the contact law; of one that is no power 1 + φ_2."""
         return self.closure.ring.k
+
+    @property
+    def law(self) -> Power | Law:
+        """The contact law."""
+        return self.closure.ring.law
 
     @property
     def order(self) -> int:
@@ -112,6 +119,7 @@ def homogenize(
     order: int = 4,
     *,
     k: Any = symbol_k,
+    law: Power | Law | None = None,
     closure: str = "linear",
     branch: str = "acoustic",
     field: str = "first",
@@ -123,6 +131,8 @@ def homogenize(
     cell : the periodic cell.
     order : highest power N of D in the ansatz; the wave equation then reaches D^{k+N-1}.
     k : exponent of the contact law, a number or a symbol.
+    law : the contact law, `lwa.Power(k)` where it is not given; see `lwa.law`. Under one that is no
+        power the contacts of a cell must be alike, and results hold its φ_n as phi2, phi3, ….
     closure : "linear", the paper's, or "full", which satisfies every equation of motion.
     branch : "acoustic" (neighbours move together) or "optical" (against each other).
     field : what the wave equation is about: "first", the first particle's displacement, or
@@ -145,11 +155,27 @@ def homogenize(
     _one_of(closure, CLOSURES, "closure")
     _one_of(branch, BRANCHES, "branch")
     _one_of(field, FIELDS, "field")
-    k = exponent(k, cell)
-    ring = Coefficients(cell, k, branch)
-    _affordable(order, len(ring.names), closure)
+    ring = _ring(cell, k, law, branch, order)
+    parameters = len(ring.names) - max(len(ring.variables) - 1, 0)  # the φ_n grow as powers of k
+    _affordable(order, parameters, closure)
     ring.writable(order)
     return Theory(solve(ring, order, closure, field, iter if order < SLOW_ORDER else shown))
+
+
+def _ring(cell: Cell, k: Any, law: Power | Law | None, branch: str, order: int) -> Coefficients:
+    if law is None:
+        return Coefficients(cell, exponent(k, cell), branch)
+    if k != symbol_k:
+        raise InputError(f"k is {shorten(k)} and law {shorten(law)}: one of them is wanted")
+    law = for_cell(law, cell)
+    if isinstance(law, Power):
+        return Coefficients(cell, law.k, branch)
+    if branch != "acoustic":
+        raise InputError(
+            f"branch is {branch!r}: its contacts also pull, and its unit of time is that of a "
+            "power law; a law given for compression has the acoustic branch"
+        )
+    return smooth(cell, law, order)
 
 
 def _affordable(order: int, parameters: int, closure: str) -> None:

@@ -19,34 +19,37 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, overload
 
 import sympy as sp
 
 from lwa import latex
 from lwa.cell import Cell, exponent, substitution
 from lwa.cell import k as symbol_k
-from lwa.exact import InputError, positive, real, shorten
+from lwa.compressed import BackgroundWave
+from lwa.exact import InputError, exact, positive, power, real, shorten
+from lwa.law import Power
 from lwa.linear.dispersion import Dispersion
 from lwa.physical import PhysicalWave
+from lwa.precompressed import PrecompressedWave
 from lwa.quantities import NoSolitaryWave, strain_power
 from lwa.rational import factored
 from lwa.reduction import Reduction, strain_equation
 from lwa.value import Value
 
 if TYPE_CHECKING:
-    from lwa.numeric import NumericWave
+    from collections.abc import Sequence
+
+    from numpy.typing import ArrayLike
+
+    from lwa.curves import PhysicalWaves
+    from lwa.numeric import Array, NumericWave
 
 V = sp.Symbol("V_s", positive=True)
 """The speed V_s = dx/dτ, where the caller gives none."""
 
-_LARGE_POWER = 500
-
 _SHARES = sp.symbols("g h", cls=sp.Dummy)
 """For G/I and H/I, in the algebra of the strain's equation."""
-
-MOST_EXPONENT = 1000
-"""Beyond it the exact 2^k of a width has more digits than anyone reads."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -71,10 +74,6 @@ class TravelingWave(Value):
         if self.k.is_number and not self.k > 1:
             raise NoSolitaryWave(
                 f"k is {self.k}: a compact wave needs k > 1 (at k = 1 the chain is linear)"
-            )
-        if self.k.is_number and self.k > MOST_EXPONENT:
-            raise InputError(
-                f"k is {shorten(self.k)}: closed forms are given up to k = {MOST_EXPONENT}"
             )
         if self.dispersion.is_number and not self.dispersion > 0:
             raise NoSolitaryWave(
@@ -155,14 +154,11 @@ class TravelingWave(Value):
     def speed(self, B: Any = None) -> sp.Expr:
         """V = dx/dτ of the wave whose strain peaks at B (a symbol B when not given)."""
         B = sp.Symbol("B", positive=True) if B is None else positive(B, "B")
-        return _root(self.speed_factor) * B ** ((self.k - 1) / 2)
+        return _root(self.speed_factor) * power(B, (self.k - 1) / 2)
 
     def amplitude(self, V: Any = V) -> sp.Expr:
         """B = (V² / speed_factor)^{1/(k-1)}, the peak strain of the wave of speed V = dx/dτ."""
-        base, power = positive(V, "V") ** 2 / self.speed_factor, 1 / (self.k - 1)
-        if power.is_number and power > _LARGE_POWER:
-            base = sp.UnevaluatedExpr(base)  # a number of millions of digits otherwise
-        return base**power
+        return power(positive(V, "V") ** 2 / self.speed_factor, 1 / (self.k - 1))
 
     @property
     def force_exponent(self) -> sp.Expr:
@@ -174,9 +170,76 @@ class TravelingWave(Value):
         """τ/t: the speed in space and time is dx/dt = V τ/t."""
         return self.cell.time_scale(self.k)
 
-    def at_force(self, F: Any = "F") -> PhysicalWave:
-        """The wave whose contact force peaks at F, in space and time; see `PhysicalWave`."""
-        return PhysicalWave(self, F)
+    @overload
+    def at_force(self, F: Sequence[Any] | Array, of: str = "contact") -> PhysicalWaves: ...
+
+    @overload
+    def at_force(
+        self, F: Any = "F", of: str = "contact", *, precompression: Any = 0
+    ) -> PhysicalWave | PrecompressedWave: ...
+
+    def at_force(self, F: Any = "F", of: str = "contact", *, precompression: Any = 0) -> Any:
+        """The wave whose force peaks at F, in space and time; the force ``of`` a contact or a bead.
+
+        A number or a name gives a `PhysicalWave`, a list or an array `PhysicalWaves`. Under the
+        load ``precompression``, of which a contact's force F is the sum with the dynamic one, it
+        is a `PrecompressedWave`, and this wave must be the canonical field's, as in
+        `on_background`.
+
+        >>> canonical_wave(Cell([1], spacing=1), "3/2").at_force([1, 64]).speed
+        array([0.89442719, 1.78885438])
+        """
+        load = exact(precompression, "precompression")
+        if not load.is_zero:
+            self._demand_canonical()
+            if of != "contact":
+                raise InputError(f"of is {shorten(of)}: under a load it is the force of a contact")
+            return PrecompressedWave(self.cell, Power(self.k), F, load)
+        if isinstance(F, str | bytes) or not getattr(F, "shape", hasattr(F, "__len__")):
+            return PhysicalWave(self, F, of)
+        from lwa.curves import PhysicalWaves  # here, so that `import lwa` does not load NumPy
+
+        return PhysicalWaves(PhysicalWave(self, sp.S.One, of), F)
+
+    def force(self, t: ArrayLike, peak: Any, of: str = "contact") -> Array:
+        """The force of a contact, or a bead, at the times t: ``peak`` at t = 0; see `at_force`.
+
+        >>> canonical_wave(Cell([1], spacing=1), "3/2").force([0, 99], peak=10)
+        array([10.,  0.])
+        """
+        return PhysicalWave(self, peak, of).curve(t)
+
+    def plot(self, ax: Any = None) -> Any:
+        """Strain and contact force along the chain, drawn on ``ax`` or a new picture.
+
+        Returns the axes. Raises `lwa.InputError` unless k and the masses are numbers.
+        """
+        from lwa.picture import profiles  # here: Matplotlib is wanted for pictures only
+
+        return profiles(self, ax)
+
+    def on_background(self, p0: Any = "p0") -> BackgroundWave:
+        """The waves on a strain p0, where this one is that of the canonical field.
+
+        Raises `lwa.InputError` for another field: its equation has no energy with two terms.
+
+        >>> canonical_wave(Cell((1,)), 2).on_background("p0").speed()
+        sqrt(B/3 + p0)
+        """
+        self._demand_canonical()
+        return BackgroundWave(self.cell, Power(self.k), p0)
+
+    def _demand_canonical(self) -> None:
+        k, (g, h) = self.k, self._shares
+        bloch = Dispersion(self.cell, k).I * self.D**2
+        if any(
+            sp.cancel(x) != 0 for x in (g - (k - 1) * (k - 2) / 2, h - 2 * (k - 1), self.I - bloch)
+        ):
+            raise InputError(
+                "waves on a background are those of the canonical field, which conserves momentum "
+                'and energy: closure="full" with field="center" (--closure full --field center), '
+                "or canonical_wave(cell, k)"
+            )
 
     def profile(self, xi: Any, B: Any = None) -> sp.Expr:
         """v(ξ) = B cos^m(βξ) on |ξ| ≤ π/(2β) and 0 outside, as a SymPy Piecewise.

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from validation.pulses.pulse import Pulse, measure
     from validation.scenes.materials import Bead, Material
     from validation.scenes.scene import Scene, SceneError
+    from validation.studies.records import load
     from validation.waves.profile import ExactWave
     from validation.waves.solver import exact_wave
 
@@ -30,6 +31,7 @@ __all__ = [
     "Scene",
     "SceneError",
     "exact_wave",
+    "load",
     "measure",
     "simulate",
 ]
@@ -40,6 +42,7 @@ _PLACES = {
     "pulses.pulse": ("Pulse", "measure"),
     "scenes.materials": ("Bead", "Material"),
     "scenes.scene": ("Scene", "SceneError"),
+    "studies.records": ("load",),
     "waves.profile": ("ExactWave",),
     "waves.solver": ("exact_wave",),
 }

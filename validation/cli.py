@@ -14,7 +14,7 @@ from pathlib import Path
 
 import click
 
-from lwa.command.terminal import run
+from lwa.command.terminal import HELP, run, version
 
 _STUDIES = Path(__file__).parent / "studies"
 
@@ -68,7 +68,8 @@ class Studies(click.Group):
             formatter.write_dl([(name, says) for name, (_, _, says) in sorted(studies().items())])
 
 
-@click.group(cls=Studies)
+@click.group(cls=Studies, context_settings=HELP)
+@version
 def validate() -> None:
     """The lattice of F = A δ^k contacts, measured against the long-wave theory.
 

@@ -1,4 +1,4 @@
-"""The closure of the paper (Porter et al. 2008, eq. 5): a linear ansatz for the slaved field.
+"""The closure of the paper (the ansatz of Porter et al. 2008): linear, for the slaved field.
 
 For the dimer, u = w_0 and w = w_1 = λ (u + Σ b_n D^n ∂_x^n u), with the b_n found from the demand
 that both equations of `lwa.closure.motion` are identical at each order. A linear ansatz has one
@@ -14,9 +14,10 @@ from flint import fmpq, fmpq_mpoly
 
 from lwa.closure.motion import Solution
 from lwa.coefficients import Coefficients
+from lwa.contact import contact
 from lwa.duration import Progress
 from lwa.exact import InputError
-from lwa.jets import JetAlgebra, Ladder, Power, exact_quotient
+from lwa.jets import JetAlgebra, Ladder, exact_quotient
 
 
 def linear(ring: Coefficients, order: int, progress: Progress[int] = iter) -> Solution:
@@ -42,11 +43,11 @@ def _applied(b: list[fmpq_mpoly], f: Ladder, n: int) -> fmpq_mpoly:
 
 
 def _acoustic(ring: Coefficients, order: int, progress: Progress[int]) -> Solution:
-    algebra = JetAlgebra(ring.names, max(order - 1, 1))
+    algebra = ring.algebra(max(order - 1, 1))
     k = ring.exponent(algebra.context)
     mu = ring.masses.elements(algebra.context)
     c = ring.contacts.elements(algebra.context)
-    right, left = Power(algebra, k), Power(algebra, k)  # of w - u, and of u - w one cell on
+    right, left = contact(algebra, k), contact(algebra, k)  # of w - u, and of u - w one cell on
     first, second = Ladder(algebra, k), Ladder(algebra, k)  # E by equation 1 and by equation 2
     first.append(algebra.zero)
     second.append(algebra.zero)
@@ -71,11 +72,11 @@ def _acoustic(ring: Coefficients, order: int, progress: Progress[int]) -> Soluti
 def _optical(ring: Coefficients, order: int, progress: Progress[int]) -> Solution:
     # Contacts here also pull: the branch belongs to the odd extension of δ^k (or to odd k).
     # w - u = -(u/μ_1)(1 + Y) and u(x + 2D) - w = (u/μ_1)(1 + Z); E = 1 + kε.
-    algebra = JetAlgebra(ring.names, max(order, 1))
+    algebra = ring.algebra(max(order, 1))
     k = ring.exponent(algebra.context)
     mu = ring.masses.elements(algebra.context)
     stiffness = ring.contacts.elements(algebra.context)
-    right, left = Power(algebra, k), Power(algebra, k)  # 1 + Y and 1 + Z
+    right, left = contact(algebra, k), contact(algebra, k)  # 1 + Y and 1 + Z
     first, second, leading = Ladder(algebra, k), Ladder(algebra, k), Ladder(algebra, k)
     first.append(algebra.zero)
     second.append(algebra.zero)
@@ -95,9 +96,9 @@ def _optical(ring: Coefficients, order: int, progress: Progress[int]) -> Solutio
 
 def _uniform(ring: Coefficients, order: int, progress: Progress[int]) -> Solution:
     # One particle per cell: nothing is slaved, and the one equation is the wave equation.
-    algebra = JetAlgebra(ring.names, max(order - 1, 1))
+    algebra = ring.algebra(max(order - 1, 1))
     k = ring.exponent(algebra.context)
-    force, E = Power(algebra, k), Ladder(algebra, k)
+    force, E = contact(algebra, k), Ladder(algebra, k)
     E.append(algebra.zero)
     for n in progress(range(1, order)):
         force.append(algebra.r[n] * fmpq(1, factorial(n + 1)))

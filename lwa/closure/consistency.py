@@ -8,7 +8,7 @@ equations of motion (`lwa.closure.slaving`). Both solve `lwa.closure.motion` in 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -16,7 +16,7 @@ import sympy as sp
 from flint import fmpq_mpoly
 
 from lwa import latex
-from lwa.cell import Cell, exponent, substitution
+from lwa.cell import Cell
 from lwa.closure.ansatz import linear
 from lwa.closure.motion import Solution
 from lwa.closure.slaving import full
@@ -130,15 +130,14 @@ class Closure:
 
     def at(self, **values: Any) -> Closure:
         """The closure for these values of the named symbols; see `lwa.cell.substitution`."""
-        return self.anew(substitution(values, self.ring.cell, self.ring.k, self.symbols))
+        return self.anew(self.ring.substitution(values, self.symbols))
 
     def anew(
         self, new: Mapping[sp.Symbol, sp.Expr] | None = None, order: int | None = None
     ) -> Closure:
         """The same derivation with these values of its symbols, or to this order."""
-        cell, k = self.ring.cell.replaced(new or {}), exponent(self.ring.k.xreplace(new or {}))
-        ring = replace(self.ring, cell=cell, k=k)
-        return solve(ring, order or self.order, self.name, self.field)
+        order = order or self.order
+        return solve(self.ring.anew(new or {}, order), order, self.name, self.field)
 
 
 def amplitude_ratios(cell: Cell) -> dict[str, sp.Expr]:

@@ -14,8 +14,9 @@ from flint import fmpq, fmpq_mpoly
 
 from lwa.closure.motion import Solution
 from lwa.coefficients import Coefficients
+from lwa.contact import contact
 from lwa.duration import Progress
-from lwa.jets import JetAlgebra, Ladder, Power
+from lwa.jets import JetAlgebra, Ladder
 
 
 def full(
@@ -59,14 +60,14 @@ class _Particle:
         self.S.append(x)
         self.rate = Ladder(algebra, algebra.half)
         self.rate.append(algebra.zero)
-        self.force = Power(algebra, k)
+        self.force = contact(algebra, k)
 
 
 class _Slaving:
     """The recursion of the full closure, one order of D at a time."""
 
     def __init__(self, ring: Coefficients, order: int, field: str) -> None:
-        self.algebra = algebra = JetAlgebra(ring.names, max(order - 1, 1), ring.exponent)
+        self.algebra = algebra = ring.algebra(max(order - 1, 1), velocity=True)
         self.order = order
         k = ring.exponent(algebra.context)
         self.E = Ladder(algebra, k)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import reduce, wraps
 from typing import Any
 
@@ -23,13 +23,34 @@ from lwa.command.document import (
     wave_json,
 )
 from lwa.command.letters import demand_own
+from lwa.command.load import (
+    background_json,
+    background_text,
+    loaded_json,
+    loaded_text,
+    precompressed_json,
+    precompressed_text,
+)
 from lwa.command.source import theory_latex, theory_python, wave_latex
-from lwa.command.terminal import quantities, quantity, run
+from lwa.command.terminal import (
+    HELP,
+    contact_law,
+    count,
+    quantities,
+    quantity,
+    run,
+    version,
+)
 from lwa.command.text import dispersion_text, expansion_text, force_text, theory_text, wave_text
+from lwa.compressed import BackgroundWave
 from lwa.duration import announce
 from lwa.exact import InputError, exact
 from lwa.expansion.expand import expand
+from lwa.expansion.physical import ExpandedWave
+from lwa.law import NAMES, Law, Power
 from lwa.linear.dispersion import Dispersion
+from lwa.linear.loaded import LoadedChain
+from lwa.precompressed import PrecompressedWave
 from lwa.spheres.hertz import EXPONENT
 from lwa.theory import Theory, homogenize
 
@@ -46,6 +67,9 @@ WAVE = {"text": wave_text, "json": wave_json, "latex": wave_latex} | {
     language: lambda _, wave, language=language: wave.code(language) for language in LANGUAGES
 }
 FORCE = {"text": force_text, "json": force_json}
+BACKGROUND = {"text": background_text, "json": background_json}
+PRECOMPRESSED = {"text": precompressed_text, "json": precompressed_json}
+LOADED = {"text": loaded_text, "json": loaded_json}
 DISPERSION = {"text": dispersion_text, "json": dispersion_json}
 EXPANSION = {"text": expansion_text, "json": expansion_json}
 
@@ -59,7 +83,7 @@ def _exponent(default: str) -> Option:
 
 
 def _order(help_text: str) -> Option:
-    return _option("--order", 4, help_text, type=int)
+    return _option("--order", "4", help_text, callback=count)
 
 
 def _style(formats: Iterable[str]) -> Option:
@@ -79,6 +103,12 @@ def _chain(formats: Iterable[str]) -> Option:
     """The options that name a chain and its theory."""
     options = (
         _exponent(k.name),
+        click.option(
+            "--law",
+            metavar="NAME[:PARAM,…]",
+            callback=contact_law,
+            help=f"Contact law in place of the power: {', '.join(NAMES)}.",
+        ),
         MASSES,
         STIFFNESSES,
         _option("--spacing", D.name, "Distance of neighbouring particles.", callback=quantity),
@@ -117,11 +147,17 @@ def _theory(
     stiffnesses: tuple[sp.Expr, ...],
     spacing: sp.Expr,
     order: int,
-    **kind: str,
+    **kind: Any,
 ) -> Theory:
     cell = Cell(masses, stiffnesses, spacing)
     _demand_own(cell, k)
     return homogenize(cell, order, k=k, **kind)
+
+
+def _given(option: str) -> bool:
+    """Whether the option stands on the command line."""
+    source = click.get_current_context().get_parameter_source(option)
+    return source is ParameterSource.COMMANDLINE
 
 
 def _demand_own(cell: Cell, *more: sp.Expr) -> None:
@@ -150,7 +186,8 @@ def _show(result: Any) -> None:
     click.echo(result if isinstance(result, str) else json.dumps(result, indent=2))
 
 
-@click.group()
+@click.group(context_settings=HELP)
+@version
 def lwa() -> None:
     """Long-wave theory of granular chains with contact force F = A δ^k.
 
@@ -167,29 +204,90 @@ def derive(style: str, **chain: Any) -> None:
     _show(THEORY[style](theory))
 
 
-@lwa.command()
-@_chain(WAVE)
-@click.option("--force", callback=quantity, help="Peak contact force, for speed, compression, ….")
-@click.option(
+_FORCE = click.option(
+    "--force", callback=quantity, help="Peak contact force, for speed, widths, …."
+)
+_SPHERES = click.option(
     "--spheres", metavar="FILE", help="Beads, a TOML file (`lwa.spheres.beads`), in SI units."
 )
-def wave(style: str, force: sp.Expr | None, spheres: str | None, **chain: Any) -> None:
+
+
+@lwa.command()
+@_chain(WAVE)
+@_FORCE
+@_SPHERES
+@click.option("--background", callback=quantity, help="Strain of the chain ahead of the wave.")
+@click.option(
+    "--precompression", callback=quantity, help="Static load; --force is its sum with the wave's."
+)
+def wave(
+    style: str,
+    force: sp.Expr | None,
+    spheres: str | None,
+    background: sp.Expr | None,
+    precompression: sp.Expr | None,
+    **chain: Any,
+) -> None:
     """The compact traveling wave: β, width, FWHM, amplitude and speed.
 
     With --force, a number or a name, the wave of that peak contact force, in space and time; with
-    --spheres all of it in m, s, kg and N.
+    --spheres all of it in m, s, kg and N. With --background or --precompression the wave of the
+    canonical field in a chain under load.
     """
     if spheres is not None:
         chain |= _of_spheres(spheres)
+    units = {} if spheres is None else SI
+    if _under_load(background, precompression, chain["law"]):
+        _wave_under_load(style, force, background, precompression, units, chain)
+        return
     theory = _theory(**chain)
     found = theory.pde.traveling_wave()
     if style in FORCE and (force is not None or spheres is not None):
-        units = {} if spheres is None else SI
         _show(FORCE[style](theory, found, exact("F", "force") if force is None else force, units))
     elif force is not None:
         raise InputError(f"--format {style} is for any force: --force goes with {', '.join(FORCE)}")
     else:
         _show(WAVE[style](theory, found))
+
+
+def _under_load(
+    background: sp.Expr | None, precompression: sp.Expr | None, law: Power | Law | None
+) -> bool:
+    """Whether a load is given, or a law under which there are no other waves."""
+    if background is not None and precompression is not None:
+        raise InputError("--background and --precompression are both given: one says the other")
+    load = precompression if background is None else background
+    return load is not None and (not load.is_zero or isinstance(law, Law))
+
+
+def _wave_under_load(
+    style: str,
+    force: sp.Expr | None,
+    background: sp.Expr | None,
+    precompression: sp.Expr | None,
+    units: Mapping[str, str],
+    chain: dict[str, Any],
+) -> None:
+    if style not in FORCE:
+        raise InputError(f"--format {style} has no wave under load: {', '.join(FORCE)} have")
+    for name, wanted in (("closure", "full"), ("field", "center"), ("branch", "acoustic")):
+        if _given(name) and chain[name] != wanted:
+            raise InputError(
+                f"{name} is {chain[name]!r}: under load the wave is that of the canonical field, "
+                f"{name} {wanted!r}"
+            )
+        chain[name] = wanted
+    theory = _theory(**chain)
+    if precompression is not None:
+        peak = exact("F", "force") if force is None else force
+        loaded = PrecompressedWave(theory.cell, theory.law, peak, precompression)
+        _show(PRECOMPRESSED[style](theory, loaded, units))
+    elif force is not None:
+        raise InputError("--force goes with --precompression, a force; --background is a strain")
+    else:
+        assert background is not None
+        demand_own("wave", [background])
+        _show(BACKGROUND[style](theory, BackgroundWave(theory.cell, theory.law, background)))
 
 
 def _of_spheres(file: str) -> dict[str, Any]:
@@ -198,9 +296,8 @@ def _of_spheres(file: str) -> dict[str, Any]:
         read_spheres,  # here, so that other commands do not load the parsers
     )
 
-    context = click.get_current_context()
-    for name in ("k", "masses", "stiffnesses", "spacing"):
-        if context.get_parameter_source(name) is ParameterSource.COMMANDLINE:
+    for name in ("k", "law", "masses", "stiffnesses", "spacing"):
+        if _given(name):
             raise InputError(f"--{name} and --spheres are both given: spheres have their own")
     cell = Cell.of_spheres(read_spheres(file))
     parts = {name: getattr(cell, name) for name in ("masses", "stiffnesses", "spacing")}
@@ -209,19 +306,54 @@ def _of_spheres(file: str) -> dict[str, Any]:
 
 @lwa.command()
 @_series("1", "Highest power of κ in Ω².", DISPERSION)
-def dispersion(cell: Cell, k: sp.Expr, order: int, style: str) -> None:
+@click.option(
+    "--precompression",
+    callback=quantity,
+    help="Static load: bands in s⁻¹ of the chain about it; k is 3/2 unless it is given.",
+)
+@_option("--spacing", D.name, "Distance of neighbouring particles.", callback=quantity)
+def dispersion(
+    cell: Cell,
+    k: sp.Expr,
+    order: int,
+    style: str,
+    precompression: sp.Expr | None,
+    spacing: sp.Expr,
+) -> None:
     """The linear chain: the series of Ω²(κ), Ω the frequency in τ and κ the wavenumber, times D.
 
-    The exponent matters for unequal contacts only, which share the strain by it.
+    The exponent matters for unequal contacts, which share the strain by it. With --precompression,
+    and masses, stiffnesses and spacing in SI, also the bands in s⁻¹ and the speeds in m/s.
     """
-    _show(DISPERSION[style](Dispersion(cell, k), order))
+    if precompression is None:
+        _show(DISPERSION[style](Dispersion(cell, k), order))
+        return
+    cell = Cell(cell.masses, cell.stiffnesses, spacing)
+    k = k if _given("k") else EXPONENT
+    loaded = LoadedChain(cell, Power(k), precompression)
+    _show(LOADED[style](Dispersion(cell, k), loaded, order))
 
 
 @lwa.command()
 @_series(k.name, "Highest power of ε = k - 1.", EXPANSION)
-def expansion(cell: Cell, k: sp.Expr, order: int, style: str) -> None:
-    """The lattice's wave as a series in ε = k - 1, summed where k and the cell are numbers."""
-    _show(EXPANSION[style](expand(cell, order, k=k)))
+@_FORCE
+@_SPHERES
+def expansion(
+    cell: Cell, k: sp.Expr, order: int, style: str, force: sp.Expr | None, spheres: str | None
+) -> None:
+    """The lattice's wave as a series in ε = k - 1, summed where k and the cell are numbers.
+
+    With --spheres, in m, s, kg and N; with --force also the wave of that peak force on the first
+    contact, in space and time.
+    """
+    if spheres is not None:
+        chain = _of_spheres(spheres)
+        k = chain.pop("k")
+        cell = Cell(**chain)
+    elif force is not None:
+        raise InputError("--force goes with --spheres: other chains have no units")
+    found = expand(cell, order, k=k)
+    _show(EXPANSION[style](found, None if force is None else ExpandedWave(found, force)))
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

@@ -7,8 +7,11 @@ from typing import Any
 
 import sympy as sp
 
+from lwa.exact import InputError
 from lwa.expansion.expand import Expansion
+from lwa.expansion.physical import ExpandedWave
 from lwa.expansion.series import EpsilonSeries
+from lwa.law import Power
 from lwa.linear.dispersion import Dispersion
 from lwa.quantities import QUANTITIES
 from lwa.terms import Terms
@@ -53,9 +56,9 @@ def theory_json(theory: Theory) -> dict[str, Any]:
     """
     found = theory.pde.third_order
     return {
-        **_chain_json(theory),
+        **chain_json(theory),
         "lambda": str(theory.amplitude_ratio),
-        "ansatz": _series_json(theory.ansatz),
+        "ansatz": series_json(theory.ansatz),
         **{name: str(found[name]) if found else None for name in "GHI"},
         "terms": _terms_json(theory.pde.coefficients),
         "vanishing": list(theory.pde.vanishing),
@@ -80,7 +83,7 @@ def wave_json(theory: Theory, wave: TravelingWave) -> dict[str, Any]:
     fwhm = {quantity: wave.fwhm(quantity) for quantity in QUANTITIES}
     roots = [wave.reduction(root) for root in (0, 1)]
     result: dict[str, Any] = {
-        **_chain_json(theory),
+        **chain_json(theory),
         **{name: str(value) for name, value in values.items()},
         "fwhm": {quantity: str(value) for quantity, value in fwhm.items()},
         "roots": [
@@ -91,8 +94,8 @@ def wave_json(theory: Theory, wave: TravelingWave) -> dict[str, Any]:
         "time_scale": str(wave.speed_scale),
     }
     for name, value in (values | {"fwhm": fwhm}).items():
-        _put(result, f"{name}_value", _each(lambda x: _float(in_units(wave, x)), value))
-    _put(result, "log_B_value", _float(-sp.log(wave.speed_factor) / (wave.k - 1)))
+        put(result, f"{name}_value", each(lambda x: as_float(in_units(wave, x)), value))
+    put(result, "log_B_value", as_float(-sp.log(wave.speed_factor) / (wave.k - 1)))
     return result
 
 
@@ -121,13 +124,13 @@ def force_json(
     if units:
         cell = theory.cell
         values |= {name: getattr(cell, name) for name in ("masses", "stiffnesses", "spacing")}
-    result = _chain_json(theory) | {name: _each(str, value) for name, value in values.items()}
+    result = chain_json(theory) | {name: each(str, value) for name, value in values.items()}
     for name, value in values.items():
-        _put(result, f"{name}_value", _each(lambda x: _float(in_units(wave, x)), value))
+        put(result, f"{name}_value", each(lambda x: as_float(in_units(wave, x)), value))
     return result | ({"units": dict(units)} if units else {})
 
 
-def _each(read: Callable[[sp.Expr], Any], value: Any) -> Any:
+def each(read: Callable[[sp.Expr], Any], value: Any) -> Any:
     """``read`` of an expression, or of those in a table or a row; None where it gives one None."""
     if isinstance(value, sp.Expr):
         return read(value)
@@ -144,16 +147,20 @@ def dispersion_json(chain: Dispersion, order: int) -> dict[str, Any]:
     """
     acoustic = chain.acoustic(order)
     optical = chain.optical(order) if chain.cell.size == 2 else None
-    return {"acoustic": _series_json(acoustic), "optical": optical and _series_json(optical)}
+    return {"acoustic": series_json(acoustic), "optical": optical and series_json(optical)}
 
 
-def expansion_json(expansion: Expansion) -> dict[str, Any]:
+def expansion_json(expansion: Expansion, wave: ExpandedWave | None = None) -> dict[str, Any]:
     """The object that `lwa expansion --format json` prints.
 
     c² is the sum of ``c2[n]`` ε^n, ε = k - 1, at peak force 1 on the first contact; widths, energy
     and momentum are ``prefactor`` ε^``power`` times the sum of ``coefficients[n]`` ε^n. With
     numbers for k and the cell come the sums, in D, with an estimate of each one's absolute error
     and ``error_estimate``, the largest of them; ``asymptotic`` where no higher order lessens it.
+    What has no sum (`lwa.EpsilonSeries.at`) is null, and why is told in ``unsummed``, by name.
+    With a wave of some force ``physical`` holds, in the cell's units, ``force_value``,
+    ``speed_value``, ``fwhm_value`` and ``fwhm_time_value``, and their errors, as
+    ``speed_error_value``.
     """
     widths = {quantity: expansion.fwhm(quantity) for quantity in QUANTITIES}
     result: dict[str, Any] = {
@@ -168,17 +175,44 @@ def expansion_json(expansion: Expansion) -> dict[str, Any]:
         "energy": _epsilon_json(expansion.energy),
     }
     if expansion.numeric:
-        speed = expansion.c2.at()
-        sums = {quantity: series.at() for quantity, series in widths.items()}
-        result |= {
-            "c2_value": speed.value,
-            "fwhm_value": {quantity: found.value for quantity, found in sums.items()},
-            "error_estimate": max(found.error for found in (speed, *sums.values())),
-            "c2_error_value": speed.error,
-            "fwhm_error_value": {quantity: found.error for quantity, found in sums.items()},
-            "asymptotic": any(found.asymptotic for found in (speed, *sums.values())),
+        result |= _sums_json({"c2": expansion.c2, **widths})
+    if wave is not None:
+        sums = {
+            "speed": wave.speed,
+            "fwhm": {q: wave.fwhm(q) for q in QUANTITIES},
+            "fwhm_time": {q: wave.fwhm(q, "time") for q in QUANTITIES},
         }
+        result["physical"] = {"force_value": float(wave.F)}
+        for name, found in sums.items():
+            for part, suffix in (("value", "value"), ("error", "error_value")):
+                result["physical"][f"{name}_{suffix}"] = (
+                    {q: getattr(one, part) for q, one in found.items()}
+                    if isinstance(found, dict)
+                    else getattr(found, part)
+                )
     return result
+
+
+def _sums_json(series: Mapping[str, EpsilonSeries]) -> dict[str, Any]:
+    """The sums of c² and the widths, with their errors."""
+    values: dict[str, float | None] = dict.fromkeys(series)
+    errors, unsummed, found = dict(values), {}, []
+    for name, row in series.items():
+        try:
+            found.append(row.at())
+        except InputError as error:
+            unsummed[name] = str(error)
+        else:
+            values[name], errors[name] = found[-1].value, found[-1].error
+    return {
+        "c2_value": values["c2"],
+        "fwhm_value": {quantity: values[quantity] for quantity in QUANTITIES},
+        "error_estimate": max((one.error for one in found), default=None),
+        "c2_error_value": errors["c2"],
+        "fwhm_error_value": {quantity: errors[quantity] for quantity in QUANTITIES},
+        "asymptotic": any(one.asymptotic for one in found) or not found,
+        "unsummed": unsummed,
+    }
 
 
 def _epsilon_json(series: EpsilonSeries) -> dict[str, Any]:
@@ -189,13 +223,14 @@ def _epsilon_json(series: EpsilonSeries) -> dict[str, Any]:
     }
 
 
-def _series_json(coefficients: Mapping[int, sp.Expr]) -> dict[str, str]:
+def series_json(coefficients: Mapping[int, sp.Expr]) -> dict[str, str]:
     return {str(n): str(c) for n, c in coefficients.items()}
 
 
-def _chain_json(theory: Theory) -> dict[str, Any]:
+def chain_json(theory: Theory) -> dict[str, Any]:
     return {
         "k": str(theory.k),
+        **_law_json(theory),
         "masses": [str(m) for m in theory.cell.masses],
         "stiffnesses": [str(A) for A in theory.cell.stiffnesses],
         "spacing": str(theory.cell.spacing),
@@ -204,6 +239,16 @@ def _chain_json(theory: Theory) -> dict[str, Any]:
         "branch": theory.closure.ring.branch,
         "field": theory.closure.field,
     }
+
+
+def _law_json(theory: Theory) -> dict[str, Any]:
+    """F and the φ_n in δ, of a law that is no power; the φ_n of `lwa.general` are not known."""
+    law = theory.law
+    if isinstance(law, Power):
+        return {}
+    orders = range(2, max(theory.order, 3))
+    phi = {} if law.formless else {str(n): str(law.phi(n)) for n in orders}
+    return {"law": str(law.F), "phi": phi}
 
 
 def _terms_json(coefficients: Mapping[int, Terms]) -> list[dict[str, Any]]:
@@ -219,7 +264,7 @@ def _terms_json(coefficients: Mapping[int, Terms]) -> list[dict[str, Any]]:
     ]
 
 
-def _put(result: dict[str, Any], name: str, value: Any) -> None:
+def put(result: dict[str, Any], name: str, value: Any) -> None:
     if value is not None:
         result[name] = value
 
@@ -232,7 +277,7 @@ def in_units(wave: TravelingWave, value: sp.Expr) -> sp.Expr:
     return value.xreplace(ones)
 
 
-def _float(value: sp.Expr) -> float | None:
+def as_float(value: sp.Expr) -> float | None:
     """The nearest float of an exact number, None for what is symbolic, complex or out of range."""
     if value.free_symbols:
         return None

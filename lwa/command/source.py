@@ -8,6 +8,8 @@ from lwa import latex
 from lwa.code.functions import function_of, in_order
 from lwa.code.languages import LANGUAGES
 from lwa.command.document import wave_values
+from lwa.exact import InputError
+from lwa.law import Law
 from lwa.quantities import QUANTITIES
 from lwa.theory import Theory
 from lwa.wave import TravelingWave
@@ -28,6 +30,8 @@ def wave_latex(theory: Theory, wave: TravelingWave) -> str:
 
 def theory_python(theory: Theory) -> str:
     """A module of functions: b1 …, G, H, I, and all coefficients by order and jet."""
+    if isinstance(theory.law, Law):
+        raise InputError("--format python is for power laws: others have text, json and latex")
     cell = theory.cell
     order = in_order(theory.k, *cell.masses, *cell.stiffnesses, cell.spacing)
     table = {n: {jet: found[jet] for jet in found} for n, found in theory.pde.coefficients.items()}

@@ -1,16 +1,25 @@
-"""How a command of this project meets its user: exact options in, one clear line for a fault."""
+"""How a command of this project meets its user: exact options in, one clear line for a fault.
+
+Where the output's encoding lacks a letter (a redirection on Windows is cp1252) its name is
+printed: beta for β.
+"""
 
 from __future__ import annotations
 
+import codecs
+import errno
+import io
 import os
 import sys
+import unicodedata
 from collections.abc import Callable, Sequence
 from typing import Any
 
 import click
 import sympy as sp
 
-from lwa.exact import InputError, exact
+from lwa.exact import InputError, exact, integer
+from lwa.law import Law, Power, named
 from lwa.quantities import NoSolitaryWave
 
 
@@ -26,17 +35,72 @@ def quantities(
     return tuple(exact(part, _name(option)) for part in value.split(",")) if value else ()
 
 
+def count(context: click.Context, option: click.Parameter, value: str) -> int:
+    """Callback of an option that is an integer from 1 on."""
+    name = _name(option)
+    return integer(exact(value, name), name, 1)
+
+
+def contact_law(
+    context: click.Context, option: click.Parameter, value: str | None
+) -> Power | Law | None:
+    """Callback of an option that is NAME or NAME:PARAM,…, as `lwa.law.named` takes them."""
+    if value is None:
+        return None
+    name, colon, parameters = value.partition(":")
+    return named(name, *(parameters.split(",") if colon else ()))
+
+
 def _name(option: click.Parameter) -> str:
     return option.opts[0].lstrip("-")
 
 
+HELP = {"help_option_names": ["-h", "--help"]}
+"""Settings of a command: both ways to ask for help."""
+
+version = click.version_option(package_name="lwa", message="%(prog)s %(version)s")
+"""The option ``--version`` of a command."""
+
+SIGNS = {
+    "≈": "~", "∝": "~", "≤": "<=", "≥": ">=", "√": "sqrt ", "∂": "d", "…": "...", "·": "*",
+    "±": "+-", "¹": "1", "²": "^2", "³": "^3", "⁴": "^4", "⁻": "^-", "→": "->", "×": "x",
+}  # fmt: skip
+"""What stands for signs that an encoding lacks."""
+
+
+def spelled(error: UnicodeError) -> tuple[str, int]:
+    """The names of letters that cannot be encoded, a handler of `codecs.register_error`.
+
+    >>> codecs.register_error("spelled", spelled)
+    >>> "ω ≤ Δδ".encode("ascii", "spelled")
+    b'omega <= Deltadelta'
+    """
+    if not isinstance(error, UnicodeEncodeError):
+        raise error
+    return "".join(map(_spelled, error.object[error.start : error.end])), error.end
+
+
+def _spelled(letter: str) -> str:
+    kind, _, name = unicodedata.name(letter, "").partition(" LETTER ")
+    if kind not in ("GREEK SMALL", "GREEK CAPITAL"):
+        return SIGNS.get(letter, "?")
+    name = name.split()[-1]
+    return name.lower() if kind == "GREEK SMALL" else name.capitalize()
+
+
 def run(command: click.Command, name: str, arguments: Sequence[str] | None = None) -> None:
     """Run a command and end the process: 0, or 2 with one line on what was wrong with the input."""
+    codecs.register_error("spelled", spelled)
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="spelled")
     sys.exit(_status(lambda: command.main(arguments, prog_name=name, standalone_mode=False), name))
 
 
 def _status(call: Callable[[], Any], name: str) -> int:
     try:
+        if sys.stdout is None:
+            raise OSError(errno.EBADF, "it is closed")
         result = call()
         sys.stdout.flush()
     except click.exceptions.NoArgsIsHelpError as help_text:
@@ -60,7 +124,8 @@ def _status(call: Callable[[], Any], name: str) -> int:
 
 def _drop_output() -> None:
     """Nothing is left to flush at the end of the process."""
-    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    if sys.stdout is not None:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _complain(name: str, message: str) -> int:

@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from functools import partial
 from string import ascii_lowercase
 
 import sympy as sp
 
 from lwa.command.document import in_units, wave_values
+from lwa.exact import InputError
 from lwa.expansion.approximants import Resummed
 from lwa.expansion.expand import Expansion
+from lwa.expansion.physical import ExpandedWave
 from lwa.expansion.series import EpsilonSeries
+from lwa.law import Law, Power
 from lwa.linear.dispersion import Dispersion
 from lwa.quantities import QUANTITIES
 from lwa.terms import Jet, Terms
@@ -26,11 +30,11 @@ def theory_text(theory: Theory) -> str:
     """What `lwa derive` prints."""
     ring = theory.closure.ring
     lines = [
-        f"masses {_list(theory.cell.masses)}; contact force F = A δ^k, k = {theory.k}, "
-        f"A = {_list(theory.cell.stiffnesses)}; spacing D = {theory.cell.spacing}",
+        _chain_text(theory),
         f"closure {theory.closure.name}, {ring.branch} branch, to D^{theory.order}; "
         f"τ = t·{theory.pde.time_scale}",
         _FIELDS[theory.closure.field],
+        *_law_text(theory),
         "",
         *_ansatz_text(theory),
         *_equation_text(theory),
@@ -38,6 +42,30 @@ def theory_text(theory: Theory) -> str:
         *_consistency_text(theory),
     ]
     return "\n".join(lines)
+
+
+def chain_text(theory: Theory) -> list[str]:
+    """What a chain, its law and its field are."""
+    return [_chain_text(theory), _FIELDS[theory.closure.field]]
+
+
+def _chain_text(theory: Theory) -> str:
+    law, cell = theory.law, theory.cell
+    force = f"A δ^k, k = {law.k}" if isinstance(law, Power) else f"A F({law.delta}), F = {law.F}"
+    return (
+        f"masses {_list(cell.masses)}; contact force F = {force}, "
+        f"A = {_list(cell.stiffnesses)}; spacing D = {cell.spacing}"
+    )
+
+
+def _law_text(theory: Theory) -> list[str]:
+    """The φ_n of a law that is no power."""
+    law = theory.law
+    if isinstance(law, Power):
+        return []
+    lines = [f"phi_n = {law.delta}^(n-1) F^(n)/F', at {law.delta} = D u_x; F' is taken there"]
+    orders = () if law.formless else range(2, max(theory.order, 3))
+    return lines + [f"  phi{n} = {law.phi(n)}" for n in orders]
 
 
 _FIELDS = {
@@ -71,7 +99,15 @@ def _equation_text(theory: Theory) -> list[str]:
     acoustic = theory.closure.ring.branch == "acoustic"
     found = theory.pde.third_order
     more = " + …"
-    if found:
+    if isinstance(theory.law, Law) and found:
+        lines = [
+            "u_ττ = F' u_xx + G F' u_x^-2 u_xx^3 + H F' u_x^-1 u_xx u_xxx + I F' u_4x"
+            + (more if theory.order > 4 else "")
+        ]
+        lines += [f"  {name} = {value}" for name, value in found.items()]
+    elif isinstance(theory.law, Law):
+        lines = ["u_ττ = F' u_xx + …"]
+    elif found:
         lines = [
             "u_ττ = u_x^(k-1) u_xx + G u_x^(k-3) u_xx^3 + H u_x^(k-2) u_xx u_xxx + I u_x^(k-1) u_4x"
             + (more if theory.order > 4 else "")
@@ -83,11 +119,18 @@ def _equation_text(theory: Theory) -> list[str]:
         lines = ["the wave equation starts at D^(k+1), that is at order 2 of the ansatz"]
     else:
         lines = ["u_ττ = u_x^(k-1) u_xx" + (more if theory.order > 2 else "")]
-    prefix, suffix = ("D^(k+", ")") if acoustic else ("D^", "")
+    prefix, suffix = _order_name(theory)
     shown = {n: c for n, c in theory.pde.coefficients.items() if not (found and n == 3)}
     lines += _orders(shown, prefix, suffix)
     vanishing = ", ".join(f"{prefix}{n}{suffix}" for n in theory.pde.vanishing)
     return [*lines, f"  vanishing identically: {vanishing}"] if vanishing else lines
+
+
+def _order_name(theory: Theory) -> tuple[str, str]:
+    """What stands before and behind the n of an order: the power of D where there is one."""
+    if isinstance(theory.law, Law):
+        return "order ", ""
+    return ("D^(k+", ")") if theory.closure.ring.branch == "acoustic" else ("D^", "")
 
 
 def _consistency_text(theory: Theory) -> list[str]:
@@ -95,7 +138,7 @@ def _consistency_text(theory: Theory) -> list[str]:
         lines = ["all equations of motion are satisfied at every order shown"]
     else:
         lines = ["defect: u_ττ by the first equation of motion minus u_ττ by the second"]
-        lines += _orders(theory.defect, "D^(k+", ")")
+        lines += _orders(theory.defect, *_order_name(theory))
     if theory.closure.ring.branch == "acoustic" and not theory.pde.conservative:
         lines.append(
             "not in conservation form: the linear closure of unequal particles does not conserve "
@@ -197,7 +240,7 @@ def _lines(wave: TravelingWave, values: dict[str, sp.Expr]) -> list[str]:
 def _unit(wave: TravelingWave, value: sp.Expr) -> str:
     if not wave.D.is_Symbol or wave.D not in value.free_symbols:
         return ""
-    power = sp.degree(sp.numer(value), wave.D) - sp.degree(sp.denom(value), wave.D)
+    power = value.as_powers_dict()[wave.D]
     return f" {wave.D}" if power == 1 else f" {wave.D}^{power}"
 
 
@@ -218,7 +261,7 @@ def _series(name: str, coefficients: Mapping[int, sp.Expr]) -> list[str]:
     return [f"{name}:", *(f"  {f'κ^{n}' if n else '1'}: {c}" for n, c in coefficients.items())]
 
 
-def expansion_text(expansion: Expansion) -> str:
+def expansion_text(expansion: Expansion, wave: ExpandedWave | None = None) -> str:
     """What `lwa expansion` prints."""
     cell = expansion.cell
     series = {"c²": expansion.c2}
@@ -234,7 +277,13 @@ def expansion_text(expansion: Expansion) -> str:
     ]
     if expansion.numeric:
         lines += ["", f"at k = {expansion.k}, with estimates of the error:"]
-        lines += [f"  {name} = {_summed(row.at())}" for name, row in series.items()]
+        lines += [f"  {name}{_summed(row.at)}" for name, row in series.items()]
+    if wave is not None:
+        lines += ["", f"peak contact force {float(wave.F):g}, in the units of the cell:"]
+        lines += [f"  speed dx/dt{_summed(lambda: wave.speed)}"]
+        for q in QUANTITIES:
+            for per, said in (("length", ""), ("time", ", in time")):
+                lines += [f"  FWHM of the {q}{said}{_summed(partial(wave.fwhm, q, per))}"]
     return "\n".join(lines)
 
 
@@ -255,9 +304,12 @@ def _in_epsilon(series: Mapping[str, EpsilonSeries], a: str) -> list[str]:
     return lines
 
 
-def _summed(found: Resummed) -> str:
-    """As many digits as the error lets stand, and one more."""
-    scale = max(abs(found.value), 1e-300)
-    digits = max(1, min(16, 2 - math.floor(math.log10(found.error / scale))))
+def _summed(sum_up: Callable[[], Resummed]) -> str:
+    """A sum to as many digits as the error lets stand, and one more; or why there is none."""
+    try:
+        found = sum_up()
+    except InputError as error:
+        return f": {error}"
+    digits = min(16, 2 - math.floor(math.log10(found.error / found.value)))
     note = "; higher orders do not help" if found.asymptotic else ""
-    return f"{found.value:.{digits}g} ± {found.error:.1e} (to ε^{found.order}{note})"
+    return f" = {found.value:.{digits}g} ± {found.error:.1e} (to ε^{found.order}{note})"

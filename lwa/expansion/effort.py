@@ -11,9 +11,10 @@ from math import comb, lcm
 
 import sympy as sp
 
-from lwa.coefficients import Coefficients, Partition
+from lwa.coefficients import Coefficients
 from lwa.duration import Progress, announce, shown, words
 from lwa.exact import InputError
+from lwa.partition import Partition
 
 LONGEST = 3600.0
 """Seconds of what is not refused."""

@@ -18,12 +18,17 @@ import sympy as sp
 from lwa.cell import Cell, exponent, substitution
 from lwa.cell import k as symbol_k
 from lwa.exact import InputError, integer, real, shorten
+from lwa.expansion.core import descent
 from lwa.expansion.effort import affordable, short
 from lwa.expansion.observables import Observables, ring
 from lwa.expansion.series import EpsilonSeries
+from lwa.law import Law, Power
 from lwa.quantities import QUANTITIES as QUANTITIES
 from lwa.quantities import known
 from lwa.value import Value
+
+FALLEN, MOVED = 0.01, 0.25
+"""Of its peak: to which a profile's force must fall, and by which its last order may move it."""
 
 
 @dataclass(frozen=True)
@@ -133,18 +138,58 @@ class Expansion(Value):
     def profile(self, xi: Any, contact: Any = 0) -> sp.Expr:
         """The force of a contact at ξ, exp Σ ε^n φ_n(√ε ξ) to the order ε^order, in D = 1.
 
-        ξ is a number, a name, which becomes a real symbol, or an expression.
+        ξ is a number, a name, which becomes a real symbol, or an expression. With numbers for k
+        and the cell it is 0 outside the `core`; with symbols it holds inside only.
+
+        Raises `lwa.InputError` as `core` does.
 
         >>> from lwa import Cell
         >>> expand(Cell([1]), 1, k=2).profile("xi")
         exp(-3*xi**4/10 - 12*xi**2/5)
         """
-        place, epsilon = self._place(real(xi, "xi"), "xi"), self.k - 1
+        place = self._place(real(xi, "xi"), "xi")
+        powers = self._powers(self._contact(contact))
+        force = sp.exp(sp.Add(*(a * place**d for d, a in powers.items())))
+        left, right = self.core(contact) if self.numeric else (-sp.oo, sp.oo)
+        inside = [place >= left] * left.is_finite + [place <= right] * right.is_finite
+        return sp.Piecewise((force, sp.And(*inside)), (0, True)) if inside else force
+
+    def core(self, contact: Any = 0) -> tuple[sp.Expr, sp.Expr]:
+        """The ends in ξ of what the profile's series can tell: up to there its force falls.
+
+        Beyond them a series that is cut may rise again, without bound; where it does not they are
+        infinite. They are rounded inwards, to 1/1000.
+
+        Raises `lwa.InputError` where k or the cell are symbols, and where the series tells no
+        pulse: its force has no peak, does not fall to `FALLEN` of it, or is moved by its last
+        order by more than `MOVED`.
+
+        >>> from lwa import Cell
+        >>> expand(Cell([1]), 3, k="3/2").core()
+        (-771/125, 771/125)
+        """
+        if not self.numeric:
+            raise InputError("k and the cell hold symbols: the core of a profile needs numbers")
+        number = self._contact(contact)
+        whole, last = (
+            {d: float(a) for d, a in self._powers(number, first).items()}
+            for first in (0, self.order - sp.S.Half)
+        )
+        ends, fallen, moved = descent(whole, last)
+        if fallen > FALLEN or moved > MOVED:
+            raise InputError(
+                f"no profile at k = {shorten(self.k)}: to ε^{self.order} the series tells no "
+                "pulse, which has one peak, falls, and is not moved by the last order"
+            )
+        return ends
+
+    def _powers(self, contact: int, first: Any = 0) -> dict[int, sp.Expr]:
+        """d → the coefficient of ξ^d in the logarithm of a contact's force, from ε^first on."""
         powers: dict[int, list[sp.Expr]] = {}
-        for n, phi in self._read.log_force(self._contact(contact)).items():
-            for d, a in phi.items():
-                powers.setdefault(d, []).append(a * epsilon ** (n + sp.Rational(d, 2)))
-        return sp.exp(sp.Add(*(sp.Add(*terms) * place**d for d, terms in powers.items())))
+        for n, phi in self._read.log_force(contact).items():
+            for d, a in phi.items() if n >= first else ():
+                powers.setdefault(d, []).append(a * (self.k - 1) ** (n + sp.Rational(d, 2)))
+        return {d: sp.Add(*terms) for d, terms in powers.items()}
 
     def at(self, **values: Any) -> Expansion:
         """The expansion for these values of the named symbols, and of ω = m2/m1 by ``omega``.
@@ -176,7 +221,9 @@ class Expansion(Value):
         return self.c2._repr_latex_()
 
 
-def expand(cell: Cell, order: Any = 4, *, k: Any = symbol_k) -> Expansion:
+def expand(
+    cell: Cell, order: Any = 4, *, k: Any = symbol_k, law: Power | Law | None = None
+) -> Expansion:
     """The traveling wave of a chain to the order ε^order, ε = k - 1, from the lattice's equations.
 
     Parameters
@@ -184,6 +231,7 @@ def expand(cell: Cell, order: Any = 4, *, k: Any = symbol_k) -> Expansion:
     cell : the periodic cell; numbers give rational coefficients, symbols rational functions.
     order : highest power of ε (relative to the leading one).
     k : exponent, a number or a symbol. Unlike contacts share the strain by it.
+    law : in its place, a power; no other law is a small change of the linear chain's, ε = k - 1.
 
     Raises `lwa.InputError` for anything else, and for orders beyond what the algebra can do.
 
@@ -195,7 +243,12 @@ def expand(cell: Cell, order: Any = 4, *, k: Any = symbol_k) -> Expansion:
     if not isinstance(cell, Cell):
         raise InputError(f"cell is {shorten(cell)}: a Cell such as Cell([1, 2]) is wanted")
     order = integer(order, "order", 1)
-    k = exponent(k, cell)
+    if law is not None and not isinstance(law, Power):
+        raise InputError(
+            f"law is {shorten(law)}: the expansion is one in ε = k - 1 about the linear chain, "
+            "and only a power law has a k"
+        )
+    k = exponent(k if law is None else law.k, cell)
     _no_letter(cell, k)
     for name, values in (("mass", cell.masses), ("stiffness", cell.stiffnesses), ("k", (k,))):
         for value in values:

@@ -15,7 +15,7 @@ import sympy as sp
 from flint import fmpq, fmpq_mpoly
 
 from lwa.cell import Cell
-from lwa.coefficients import Coefficients, number, rational
+from lwa.coefficients import Coefficients
 from lwa.duration import Progress
 from lwa.expansion.pulse import (
     Series,
@@ -28,6 +28,7 @@ from lwa.expansion.pulse import (
     wider,
 )
 from lwa.expansion.recursion import Recursion
+from lwa.partition import number, rational
 
 
 class Observables:

@@ -102,7 +102,8 @@ class EpsilonSeries(Value):
         """The sum and an estimate of its error; at a number k > 1 where the series' k is a symbol.
 
         Raises `lwa.InputError` when k or the cell holds symbols, or k ≤ 1, or the series has a k
-        of its own and another is given.
+        of its own and another is given, and where the error reaches the sum: what all these
+        quantities are is positive, and such a sum does not even tell that.
 
         >>> from lwa import Cell, expand
         >>> expand(Cell([1]), 10, k="3/2").fwhm("force").at().value.__round__(6)
@@ -117,7 +118,14 @@ class EpsilonSeries(Value):
             raise InputError(f"k is {series.k}: the expansion in k - 1 is summed for k > 1")
         base = equal_beads(self.quantity, self.order) if series.radiation else ()
         lost = series.radiation.relative(float(series.k)) if series.radiation else 0.0
-        return resum(series.coefficients, series._epsilon, base, series._unit, lost)
+        found = resum(series.coefficients, series._epsilon, base, series._unit, lost)
+        if not found.error < found.value:
+            more = "higher orders do not help" if found.asymptotic else "a higher order may help"
+            raise InputError(
+                f"no sum at k = {shorten(series.k)}: to ε^{self.order} its error is as large as "
+                f"itself; {more}"
+            )
+        return found
 
     @property
     def _epsilon(self) -> sp.Expr:

@@ -59,6 +59,8 @@ def edges(fractions: Array, shares: Array) -> Array:
 def _strains(fractions: Array, shares: Array, kappa: ArrayLike) -> tuple[Complex, Complex]:
     """B(κ), which takes a_i √(P μ_i) to f_i √c_i, and the one entry of dB/dκ (last row)."""
     wave = _finite(kappa)
+    # by whole turns less, which e^{iκ} takes off exactly
+    wave = np.where(np.abs(wave) <= np.pi, wave, np.angle(np.exp(1j * wave)))
     P = len(fractions)
     mass, share = np.sqrt(P * fractions), np.sqrt(shares)
     B = np.zeros((*wave.shape, P, P), complex)

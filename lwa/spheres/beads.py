@@ -2,15 +2,22 @@
 
 A file of spheres holds, in units that agree (SI if A is to be in N/m^{3/2})::
 
-    [materials.steel]             # any name
-    E = 193e9                     # Young's modulus
-    nu = 0.3                      # Poisson's ratio
+    [materials.resin]             # any name
+    E = 3e9                       # Young's modulus
+    nu = 0.4                      # Poisson's ratio
+    density = 1200                # for beads without a mass
+    [materials.soft]
+    like = "PTFE"                 # a material of `lwa.spheres.materials` …
+    E = 0.6e9                     # … but for this
     [beads.ball]                  # any name
-    mass = 0.45e-3
     radius = 2.38e-3
-    material = "steel"
+    mass = 0.45e-3                # or density, or that of the material
+    material = "steel 316"        # of the file or, in SI, of `lwa.spheres.materials`
+    [beads.light]
+    radius = 2.38e-3
+    material = "soft"
     [chain]
-    cell = ["ball", "ball"]       # names of beads, in their order
+    cell = ["ball", "light"]      # names of beads, in their order
 
 These are tables of a scene (`validation.scenes.scenefile`), and any scene of beads without
 precompression is such a file: what else it says about its finite chain is not asked for here.
@@ -26,16 +33,19 @@ from typing import Any
 from lwa.exact import InputError
 from lwa.spheres.files import load
 from lwa.spheres.hertz import Material, Sphere
+from lwa.spheres.materials import MATERIALS
 from lwa.spheres.tables import Table, among, array, each, named, positive, real, table
 
-SCENE = ("duration", "samples", "gravity", "defects", "wall", "striker", "start", "sensors")
+SCENE = (
+    "duration", "samples", "units", "gravity", "defects", "wall", "striker", "start", "sensors",
+)  # fmt: skip
 """Keys of a scene that say nothing about its cell."""
 
 
 def read_materials(file: Table) -> dict[str, Material]:
-    """The materials of a file, by name."""
+    """The materials of a file, by name, and those of `lwa.spheres.materials` under other names."""
     materials: dict[str, Material] = file.read("materials", named(_material), {})
-    return materials
+    return materials | {name: Material.named(name) for name in MATERIALS if name not in materials}
 
 
 def read_beads(file: Table, materials: Mapping[str, Material]) -> dict[str, Sphere]:
@@ -72,18 +82,30 @@ def spheres(content: Any) -> list[Sphere]:
 
 
 def _material(value: Any, name: str) -> Material:
-    given = Table(value, name, ("E", "nu"))
-    E, nu = given.read("E", positive), given.read("nu", real)
+    given = Table(value, name, ("like", "E", "nu", "density"))
+    readers = {"E": positive, "nu": real, "density": positive}
+    values = {key: given.read(key, reader) for key, reader in readers.items() if key in given}
     try:
-        return Material(E, nu)
+        if "like" in given:
+            like = given.read("like", among({known: known for known in MATERIALS}))
+            return Material.named(like, **values)
+        for key in ("E", "nu"):
+            given.read(key, real)
+        return Material(**values)
     except InputError as error:
-        raise InputError(f"{name}.{error}") from None
+        fault = str(error)
+        raise InputError(fault if fault.startswith(f"{name}.") else f"{name}.{fault}") from None
 
 
 def _bead(value: Any, name: str, materials: Mapping[str, Material]) -> Sphere:
-    given = Table(value, name, ("mass", "radius", "material"))
-    return Sphere(
-        mass=given.read("mass", positive),
-        radius=given.read("radius", positive),
-        material=given.read("material", among(materials)),
-    )
+    given = Table(value, name, ("mass", "density", "radius", "material"))
+    radius = given.read("radius", positive)
+    material = given.read("material", among(materials))
+    if "mass" in given and "density" in given:
+        raise InputError(f"{name} has both mass and density: one is wanted")
+    if "mass" in given:
+        return Sphere(given.read("mass", positive), radius, material)
+    if "density" not in given and material.density is None:
+        raise InputError(f"{name}.mass is missing: it, or a density here or of the material")
+    density = given.read("density", positive, material.density)
+    return Sphere.of_density(density, radius, material)

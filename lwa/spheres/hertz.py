@@ -17,6 +17,7 @@ from typing import Any
 import sympy as sp
 
 from lwa.exact import InputError, exact, positive, shorten
+from lwa.spheres.materials import MATERIALS
 from lwa.value import Value
 
 EXPONENT = sp.Rational(3, 2)
@@ -25,13 +26,15 @@ EXPONENT = sp.Rational(3, 2)
 
 @dataclass(frozen=True)
 class Material(Value):
-    """An isotropic elastic solid: Young's modulus E and Poisson's ratio ν, numbers or symbols.
+    """An isotropic elastic solid: Young's modulus E, Poisson's ratio ν and perhaps its density.
 
-    Raises `lwa.InputError` unless E > 0 and -1 < ν ≤ 1/2.
+    They are numbers or symbols. Raises `lwa.InputError` unless E > 0, -1 < ν ≤ 1/2, and the
+    density, where it is given, is positive.
     """
 
     E: sp.Expr
     nu: sp.Expr
+    density: sp.Expr | None = None
 
     def __post_init__(self) -> None:
         given = self.nu
@@ -39,6 +42,28 @@ class Material(Value):
         object.__setattr__(self, "nu", exact(self.nu, "nu"))
         if self.nu.is_number and not -1 < self.nu <= sp.S.Half:
             raise InputError(f"nu is {shorten(given)}: Poisson's ratio lies between -1 and 1/2")
+        if self.density is not None:
+            object.__setattr__(self, "density", positive(self.density, "density"))
+
+    @classmethod
+    def named(cls, name: str, *, E: Any = None, nu: Any = None, density: Any = None) -> Material:
+        """A material of `lwa.spheres.materials`, in SI, with other values where they are given.
+
+        Raises `lwa.InputError`, with the names that there are, for another name.
+
+        >>> Material.named("PTFE", E="0.6e9")
+        Material(E=600000000, nu=23/50, density=2178)
+        """
+        if not isinstance(name, str) or name not in MATERIALS:
+            raise InputError(
+                f"material is {shorten(name)}: one of {', '.join(MATERIALS)} is wanted"
+            )
+        table = MATERIALS[name]
+        return cls(
+            table.E if E is None else E,
+            table.nu if nu is None else nu,
+            table.density if density is None else density,
+        )
 
 
 @dataclass(frozen=True)
@@ -61,6 +86,20 @@ class Sphere(Value):
             object.__setattr__(self, name, positive(getattr(self, name), name))
         if not isinstance(self.material, Material):
             raise InputError(f"material is {shorten(self.material)}: a Material is wanted")
+
+    @classmethod
+    def solid(cls, radius: Any, material: Material) -> Sphere:
+        """The solid sphere of a material, whose density gives the mass.
+
+        >>> Sphere.solid("R", Material.named("steel 316")).mass
+        32000*pi*R**3/3
+        """
+        density = material.density if isinstance(material, Material) else None
+        if density is None:
+            raise InputError(
+                f"material is {shorten(material)}: a Material with a density is wanted"
+            )
+        return cls.of_density(density, radius, material)
 
     @classmethod
     def of_density(cls, density: Any, radius: Any, material: Material) -> Sphere:

@@ -58,6 +58,10 @@ def test_a_cell_is_a_value():
         (dict(masses=["k", 1]), "'k': the name means the exponent"),
         (dict(masses="m1,m2"), "a sequence"),
         (dict(masses=3), "a sequence"),
+        (dict(masses=b"1"), "a sequence"),
+        (dict(masses=bytearray(b"12")), "a sequence"),
+        (dict(masses={1: 2}), "a sequence"),
+        (dict(masses={1, 2}), "a sequence"),
     ],
 )
 def test_impossible_cells_are_refused(arguments, words):

@@ -9,7 +9,7 @@ import sympy as sp
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lwa.exact import InputError, exact, positive
+from lwa.exact import InputError, exact, positive, power
 
 
 @given(st.floats(allow_nan=False, allow_infinity=False))
@@ -41,7 +41,8 @@ def test_names_become_positive_symbols():
     [
         "nan", "NaN", "inf", "-inf", "oo", "", " ", "1/0", "1//2", "3/2/1", "1.2/3", "2*m", "m-1",
         "__import__('os')", "exp(1)", "I", "pi", "E", "lambda", "beta", "1_000", "0x10", "١",
-        "m1 m2", "1e99999", "9" * 300, float("nan"), float("inf"), 1j, None, True, [1], {"a": 1},
+        "m1 m2", "1e99999", "9" * 300, float("nan"), float("inf"), 1j,
+        Decimal("sNaN"), Decimal("NaN"), Decimal("-Infinity"), "１", None, True, [1], {"a": 1},
         b"1", np.array([1.0, 2.0]), sp.nan, sp.oo, sp.I, object(),
     ],
 )  # fmt: skip
@@ -74,3 +75,13 @@ def test_positive_refuses_what_is_not(value):
 def test_positive_takes_irrational_numbers_and_symbols():
     assert positive(sp.sqrt(2), "mass") == sp.sqrt(2)
     assert positive(sp.Symbol("m"), "mass") == sp.Symbol("m")
+
+
+@given(st.fractions(min_value="1/99", max_value=100, max_denominator=99), st.integers(-9, 9))
+def test_a_power_is_the_number_it_is_also_where_it_is_kept(base, numerator):
+    base = sp.Rational(base.numerator, base.denominator)
+    for denominator in (3, 99999):
+        found = power(base, sp.Rational(numerator, denominator))
+        assert found.is_positive
+        assert abs(found.n(30) / base.n(40) ** sp.Rational(numerator, denominator) - 1) < 1e-28
+        assert len(str(found)) < 60

@@ -8,7 +8,8 @@ import sympy as sp
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lwa.jets import JetAlgebra, Power
+from lwa.contact import Binomial
+from lwa.jets import JetAlgebra
 
 x, h = sp.symbols("x h")
 BASE = sp.exp(x) + sp.Rational(1, 3) * sp.exp(3 * x)  # any smooth positive base p
@@ -70,7 +71,7 @@ def test_power_series_against_mpmath(exponent):
     order = 6
     algebra = JetAlgebra((), weight=order)
     k = algebra.context.constant(0) + _fmpq(exponent)
-    power = Power(algebra, k)
+    power = Binomial(algebra, k)
     for n in range(1, order + 1):
         power.append(algebra.r[n] * _fmpq(sp.Rational(1, factorial(n + 1))))
     with mpmath.workdps(60):

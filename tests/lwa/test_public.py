@@ -1,5 +1,6 @@
 """The package's front door: every name in a public signature can be imported from `lwa`."""
 
+import ast
 import inspect
 import re
 import subprocess
@@ -59,10 +60,19 @@ def test_all_is_there_sorted_and_described():
         lwa.nothing  # noqa: B018
 
 
+def test_each_name_is_loaded_from_where_the_types_have_it():
+    source = ast.parse(inspect.getsource(lwa))
+    (block,) = (node for node in source.body if isinstance(node, ast.If))
+    imports = [node for node in block.body if isinstance(node, ast.ImportFrom)]
+    typed = {name.name: node.module for node in imports for name in node.names}
+    loaded = {name: f"lwa.{module}" for name, module in lwa._HOMES.items()}
+    assert typed == loaded | {"hertz": "lwa.spheres"}
+    assert sorted(lwa.__all__) == sorted(typed)
+    assert set(lwa.__all__) <= set(dir(lwa))
+
+
 def test_importing_it_loads_no_numbers():
-    code = (
-        "import sys, lwa; "
-        "print({'numpy', 'scipy', 'matplotlib', 'numba', 'tqdm', 'validation'} & set(sys.modules))"
-    )
+    large = {"numpy", "sympy", "scipy", "matplotlib", "numba", "tqdm", "validation"}
+    code = f"import sys, lwa; print({large} & set(sys.modules))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "set()"

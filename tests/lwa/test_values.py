@@ -6,7 +6,17 @@ import pickle
 import pytest
 import sympy as sp
 
-from lwa import Cell, Dimer, Dispersion, canonical_wave, homogenize
+from lwa import (
+    Cell,
+    Dimer,
+    Dispersion,
+    Power,
+    background_wave,
+    canonical_wave,
+    general,
+    homogenize,
+)
+from lwa.linear.loaded import loaded
 
 m1, m2 = sp.symbols("m1 m2", positive=True)
 
@@ -30,6 +40,13 @@ MADE = {
     "reduction": lambda: theory().pde.traveling_wave().reduction(),
     "numeric": lambda: theory().pde.traveling_wave().numeric(),
     "dispersion": lambda: Dispersion(Dimer(m1, m2)),
+    "law": lambda: general(),
+    "power": lambda: Power("k"),
+    "of a law": lambda: theory(5, law=general(), closure="full"),
+    "background": lambda: background_wave(Dimer(m1, m2)),
+    "kdv": lambda: background_wave(Dimer(m1, m2)).kdv,
+    "precompressed": lambda: canonical_wave(Dimer(m1, m2)).at_force("F", precompression="F0"),
+    "loaded": lambda: loaded(Dimer(m1, m2), "F0"),
 }
 
 

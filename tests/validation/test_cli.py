@@ -1,12 +1,14 @@
 """The command `lwa-validate`: exit status, standard error, JSON, pictures."""
 
-import dataclasses
+import io
 import json
 import os
 import re
 import signal
 import subprocess
 import sys
+import tomllib
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -16,13 +18,21 @@ import pytest
 from click.testing import CliRunner
 
 from tests.commands import ended
-from validation import cli
+from validation import cli, load
 from validation.lattice.run import IntegrationError
 from validation.report import command
+from validation.scenes.chains import chain_scene
+from validation.scenes.checks import SceneError
+from validation.scenes.examples import EXAMPLES
+from validation.scenes.scenefile import document, read, scene
 from validation.studies.limits import Limits
 
 LIMITS, RECORD = "validation.studies.limits.limits.function", "validation.studies.run.record"
 COMMAND = Path(sys.executable).with_name("lwa-validate")
+
+
+def toml(text):
+    return scene(tomllib.loads(text))
 
 
 def run(capsys, *arguments):
@@ -61,7 +71,7 @@ def test_limits(capsys, monkeypatch, limits_result):
 
 def test_limits_that_fail_are_printed_and_end_with_1(capsys, monkeypatch, limits_result):
     first, *others = limits_result.rows
-    broken = Limits((dataclasses.replace(first, bound=1e-6), *others))
+    broken = Limits((replace(first, bound=1e-6), *others))
     monkeypatch.setattr(LIMITS, lambda progress: broken)
     status, out, err = run(capsys, "limits")
     assert (status, err) == (1, "")
@@ -138,13 +148,127 @@ def test_run_stores_the_samples(capsys, scene_file, tmp_path):
     assert found == json.loads(out)
     with np.load(arrays) as held:
         assert json.loads(str(held["document"])) == found
-        assert set(held) - {"document"} == {name.removesuffix("_value") for name in records}
+        columns = {f"{table}_{name}" for table in ("sensors", "speeds") for name in found[table][0]}
+        names = {name.removesuffix("_value") for name in records}
+        assert set(held) - {"document"} == names | columns
+        for sensor, peak in zip(found["sensors"], held["sensors_peak_value"], strict=True):
+            assert sensor["peak_value"] == peak
         for name, values in records.items():
             np.testing.assert_array_equal(held[name.removesuffix("_value")], values)
         assert held["contact_force"].shape == held["compression"].shape == (2, 601)
         assert held["contact_force"].max(axis=1) == pytest.approx(
             [sensor["peak_value"] for sensor in found["sensors"][1:]], rel=1e-3
         )
+
+
+@pytest.mark.parametrize("suffix", [".json", ".npz"])
+def test_what_a_run_stored_is_loaded_and_runs_again(capsys, monkeypatch, scene_file, suffix):
+    monkeypatch.chdir(scene_file.parent)
+    stored = f"o{suffix}"
+    scene_file.write_text(SCENE.replace("12]", "12, 19]").replace("= 30", "= 20"))
+    first = run(capsys, "run", "scene.toml", "--out", stored)
+    assert first[0] == 0
+    assert run(capsys, "run", stored, "--out", f"again{suffix}") == first
+    found = load(stored)
+    assert found.scene == read("scene.toml")
+    assert found.records["contact_force"].shape == (3, 601)
+    assert list(found.sensors["kind"]) == ["bead", "contact", "contact", "contact"]
+    heard = found.records["contact_force"].max(axis=1)
+    assert found.sensors["peak_value"][1:3] == pytest.approx(heard[:2], rel=1e-3)
+    assert np.isnan(found.sensors["peak_value"][3])
+    assert found.sensors["missing"][3].startswith("the pulse is not wholly")
+    assert found.speeds["speed_value"].shape == (2,)
+    again = load(f"again{suffix}")
+    for name, array in found.records.items():
+        np.testing.assert_array_equal(again.records[name], array)
+
+
+def test_the_records_as_columns(capsys, scene_file, tmp_path):
+    """Dynamic forces: at rest there is nothing, though gravity presses."""
+    scene_file.write_text(SCENE + "gravity = 1e-4\nwall = {stiffness = 1}")
+    file = tmp_path / "o.csv"
+    assert run(capsys, "run", str(scene_file), "--out", str(file))[0] == 0
+    _, out, _ = run(capsys, "run", str(scene_file), "--format", "json")
+    header, *lines = file.read_text().splitlines()
+    assert header == "time,bead_9,contact_4,contact_12"
+    columns = np.array([line.split(",") for line in lines], float).T
+    np.testing.assert_allclose(columns[0], np.linspace(0, 30, 601), rtol=1e-15)
+    np.testing.assert_allclose(columns[1:, 0], 0, atol=1e-9)
+    for column, sensor in zip(columns[1:], json.loads(out)["sensors"], strict=True):
+        assert column.max() == pytest.approx(sensor["peak_value"], rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "message"),
+    [
+        ("s.csv", b"time", "a stored run is a file ending in .json or .npz"),
+        ("s.npz", b"PK", "not what `lwa-validate run --out` writes"),
+        ("s.json", b'{"scene": {}}', "not what `lwa-validate run --out` writes"),
+        ("s.json", b"[]", "not what `lwa-validate run --out` writes"),
+        ("s.json", b"{", ".*not JSON: "),
+        ("none.npz", None, "No such file or directory"),
+    ],
+)
+def test_a_file_that_no_run_wrote_is_refused(tmp_path, name, content, message):
+    if content is not None:
+        (tmp_path / name).write_bytes(content)
+    with pytest.raises(SceneError, match=rf"^{tmp_path / name}: {message}") as refused:
+        load(tmp_path / name)
+    assert "\n" not in str(refused.value)
+
+
+def test_the_scenes_own_file_is_not_overwritten(capsys, monkeypatch, tmp_path):
+    """In any spelling: this was done, and said nothing."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(RECORD, None)
+    file, text = Path("same.json"), json.dumps(document(toml(SCENE)))
+    file.write_text(text)
+    Path("link.json").symlink_to("same.json")
+    Path("hard.npz").hardlink_to(file)
+    Path("p.svg").symlink_to("same.json")
+    for given, option, out in (
+        ("same.json", "--out", "same.json"), ("same.json", "--out", f"{tmp_path}/same.json"),
+        ("link.json", "--out", "same.json"), ("same.json", "--out", "link.json"),
+        ("same.json", "--out", "hard.npz"), ("same.json", "--plot", "p.svg"),
+    ):  # fmt: skip
+        for arguments in ((given, option, out), (option, out, given)):
+            status, shown, err = run(capsys, "run", *arguments)
+            assert (status, shown) == (2, "")
+            said = f"{option[2:]} is {out}: it is the scene's own file, which would be lost"
+            assert err == f"lwa-validate: {said}\n"
+    assert file.read_text() == text
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_every_example_runs_and_tells_its_units(capsys, monkeypatch, tmp_path, name):
+    monkeypatch.chdir(tmp_path)
+    status, text, err = run(capsys, "run", "--example", name)
+    assert (status, err, text.isascii()) == (0, "", True)  # whatever a shell writes it in
+    assert max(map(len, text.splitlines())) < 80
+    Path("scene.toml").write_text(text)
+    status, out, err = run(capsys, "run", "scene.toml", "--rtol", "1e-7", "--plot", "p.png")
+    assert (status, err) == (0, "")
+    header = re.compile(r"sensor +arrival \(s\) +peak force \(N\) +FWHM \(s\)")
+    assert header.search(out)
+    assert re.search(r"speed +sites/s +m/s", out)
+    assert "in SI units" in out
+    assert " - " not in out  # each sensor has its pulse
+
+
+def test_the_first_example_is_the_experiment_of_the_paper(capsys):
+    status, text, _ = run(capsys, "run", "--example")
+    assert status == 0
+    expected = chain_scene(1.37, 38, (15, 34), 0.0, 1.2e-3)
+    found = toml(text)
+    assert found == replace(expected, samples=found.samples, contact_sensors=())
+
+
+def test_the_help_of_run_shows_the_format_and_the_examples():
+    shown = CliRunner().invoke(cli.validate, ["run", "--help"]).output
+    for name, (says, _) in EXAMPLES.items():
+        assert re.search(rf"  {name} +{re.escape(says)}\n", shown)
+    for line in EXAMPLES["paper"][1].splitlines():
+        assert line in shown
 
 
 @pytest.mark.parametrize("name", ["out.json", "out.npz"])
@@ -222,10 +346,15 @@ def test_an_integrator_that_fails_is_one_line(capsys, monkeypatch, scene_file):
 
 
 BAD_RUNS = [
-    (("--out", "result.txt"), SCENE, "out is result.txt: a file ending in .json, .npz is wanted"),
+    (
+        ("--out", "result.txt"),
+        SCENE,
+        "out is result.txt: a file ending in .json, .npz, .csv is wanted",
+    ),
     (("--out", "no/such/o.json"), SCENE, "out is no/such/o.json: the folder no/such does not"),
     (("--plot", "picture.txt"), SCENE, "plot is picture.txt: a file ending in"),
-    (("--plot", "p.svg"), SCENE.replace("sensors", "#"), "plot is asked for, but the scene names"),
+    (("--plot", "p.svg"), SCENE.replace("sensors", "#"), "plot is p.svg, but the scene names no s"),
+    (("--out", "o.csv"), SCENE.replace("sensors", "#"), "out is o.csv, but the scene names no s"),
     (
         ("--out", "o.json"),
         SCENE.replace("30", "-1"),
@@ -264,6 +393,10 @@ BAD = [
     ("paper", "--velocity", "__import__('os')"),
     ("paper", "--beads", "3"),
     ("paper", "--beads", "x"),
+    ("paper", "--beads", "２０"),
+    ("paper", "--beads", "1_0"),
+    ("resonances", "--count", "１"),
+    ("disorder", "--seed", "1.5"),
     ("paper", "--sensors", "34,15"),
     ("paper", "--sensors", "a,b"),
     ("paper", "--sensors", "1.5,8"),
@@ -300,6 +433,15 @@ def test_help(arguments):
     shown = CliRunner().invoke(cli.validate, arguments)
     assert shown.exit_code == 0
     assert "--help" in shown.output
+
+
+@pytest.mark.parametrize("program", [[COMMAND], [sys.executable, "-m", "validation"]], ids=len)
+def test_it_says_its_version_and_its_short_help(program):
+    for flag, first in (("--version", "lwa-validate "), ("-h", "Usage: lwa-validate ")):
+        shown = subprocess.run([*program, flag], capture_output=True, text=True, check=True)
+        assert shown.stdout.startswith(first)
+    shown = subprocess.run([*program, "limits", "-h"], capture_output=True, text=True, check=True)
+    assert "--format" in shown.stdout
 
 
 def test_the_installed_command():
@@ -487,7 +629,7 @@ def test_the_list_of_studies_is_what_they_say():
     for name, (_, _, says) in cli.studies().items():
         found = cli.validate.get_command(context, name)
         assert found.name == name
-        assert found.get_short_help_str(1000).rstrip(".") == " ".join(says.split()).rstrip(".")
+        assert " ".join(found.help.split()) == " ".join(says.split())
         assert {"--format", "--plot"} <= {o for p in found.params for o in p.opts}
     assert cli.validate.get_command(context, "nothing") is None
 
@@ -501,3 +643,21 @@ def test_a_study_is_loaded_when_it_is_called(arguments):
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.splitlines()[-1] == "set()"
+
+
+@pytest.mark.parametrize("name", ["accuracy", "exact", "figures", "hard", "limits"])
+def test_a_long_command_says_in_its_help_how_long_it_takes(name):
+    says = cli.studies()[name][2]
+    assert re.search(r"(minutes?|seconds)\b[^.]*\.$", says), says
+
+
+@pytest.mark.parametrize("cases", [[1], [1, 2, 3]])
+def test_the_bar_is_there_before_the_first_case_is_finished(monkeypatch, cases):
+    """On a terminal, and before the second case is begun."""
+    terminal = io.StringIO()
+    monkeypatch.setattr(terminal, "isatty", lambda: True)
+    monkeypatch.setattr(sys, "stderr", terminal)
+    each = iter(command.progress(cases))
+    assert next(each) == 1
+    assert "cases:   0%|" in terminal.getvalue()
+    assert f" 0/{len(cases)} " in terminal.getvalue()

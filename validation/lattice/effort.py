@@ -20,32 +20,23 @@ from validation.lattice.schemes import LAWS, SCHEMES
 from validation.scenes.checks import SceneError
 from validation.scenes.scene import Scene
 
-LONGEST = 6 * 3600.0
-"""Seconds of a run that is not refused."""
-LARGEST = 4e9
-"""Bytes of a run that is not refused."""
-EXCESS = 10
-"""Times as many steps as are expected, beyond which an adaptive method is stopped."""
+LONGEST = 6 * 3600.0  # seconds of a run that is not refused
+LARGEST = 4e9  # bytes of a run that is not refused
+EXCESS = 10  # times as many steps as are expected, beyond which an adaptive method is stopped
 
+# By order: c, q of (rtol/c)^q natural times a stage; c of a Hertz dimer of 560 beads.
 _SPLITTING = {2: (0.5, 0.5), 4: (0.01, 0.4), 6: (0.01, 0.4)}
-"""By order: c, q of (rtol/c)^q natural times a stage; c of a Hertz dimer of 560 beads."""
-_COARSEST = 0.2
-"""Natural times a stage: all splittings are stable."""
+_COARSEST = 0.2  # natural times a stage: all splittings are stable
+# (a, q, evaluations a step).
 _ADAPTIVE = {"DOP853": (0.3, 8, 14), "RK45": (0.2, 5, 6), "RK23": (0.2, 3, 3), "LSODA": (1.5, 8, 2)}
-"""(a, q, evaluations a step)."""
-_FEWEST = 100
-"""Steps that an adaptive method takes to find its step, however slow the motion."""
-
-_SAMPLE = 2e-6
-"""Seconds to measure, draw and write a sample."""
+_FEWEST = 100  # steps that an adaptive method takes to find its step, however slow the motion
+_SAMPLE = 2e-6  # seconds to measure, draw and write a sample
 
 
 @dataclass(frozen=True)
 class Effort:
-    """What a run takes: ``steps`` of a ``method`` that move ``beads`` each, ``memory`` in bytes.
-
-    instead : what another method takes, if it is less.
-    """
+    """What a run takes: ``steps`` of a ``method`` that move ``beads`` each, ``memory`` in bytes;
+    ``instead`` says what another method takes, if it is less."""
 
     scene: Scene
     method: str
@@ -55,15 +46,6 @@ class Effort:
     memory: float
     instead: str = ""
 
-    @property
-    def time(self) -> str:
-        """The seconds, in round words.
-
-        >>> Effort(Scene(masses=(1,), stiffnesses=(), k=1, duration=1), "S6", 1, 1, 7.2e3, 0).time
-        'about 2 hours'
-        """
-        return words(self.seconds)
-
     def __str__(self) -> str:
         listening = _listening(self.scene)
         samples = f", {listening * self.scene.samples:.1e} samples" if listening else ""
@@ -72,16 +54,16 @@ class Effort:
     def check(self) -> None:
         """Raise `SceneError` for a run that is beyond `LONGEST` or `LARGEST`."""
         if self.memory > LARGEST:
-            scene = self.scene
             raise SceneError(
-                f"samples is {scene.samples:g}: with {_listening(scene)} sensors and {scene.size} "
-                f"beads {self.method} takes {self.memory / 1e9:.2g} GB; {LARGEST / 1e9:g} GB are "
-                "the most"
+                f"samples is {self.scene.samples:g}: with {_listening(self.scene)} sensors and "
+                f"{self.scene.size} beads {self.method} takes {self.memory / 1e9:.2g} GB; "
+                f"{LARGEST / 1e9:g} GB are the most"
             )
         if self.seconds > LONGEST:
             raise SceneError(
                 f"duration is {self.scene.duration:g}: this makes {self.steps:.1e} steps of "
-                f"{self.method}, {self.time}; {LONGEST / 3600:g} hours are the most{self.instead}"
+                f"{self.method}, {words(self.seconds)}; {LONGEST / 3600:g} hours are the most"
+                f"{self.instead}"
             )
 
 
@@ -95,11 +77,7 @@ def silent(effort: Effort) -> AbstractContextManager[Callable[[float], object]]:
 
 
 def step(method: str, rtol: float) -> float:
-    """Natural times a step of a method, in the mean if it is SciPy's.
-
-    >>> step("Verlet", 1e-2), step("SRKN14", 1e-2)
-    (0.1414213562373095, 2.8000000000000003)
-    """
+    """Natural times a step of a method, in the mean if it is SciPy's."""
     if method in SCHEMES:
         scheme = SCHEMES[method]
         c, q = _SPLITTING[scheme.order]
@@ -123,12 +101,10 @@ def adaptive(scene: Scene, method: str, rtol: float, time: float) -> Effort:
     if _listening(scene):
         seconds += 6e-8 * n * scene.samples
     jacobian = (2 * n) ** 2 * 8 if method == "LSODA" else 0
-    found = _effort(scene, method, steps, n, seconds, 4, jacobian)
     other = next(iter(SCHEMES))
     less = compiled(scene, other, scene.duration / time / step(other, rtol), n)
-    return (
-        replace(found, instead=f"; {other} takes {less.time}") if less.seconds < LONGEST else found
-    )
+    instead = f"; {other} takes {words(less.seconds)}" if less.seconds < LONGEST else ""
+    return replace(_effort(scene, method, steps, n, seconds, 4, jacobian), instead=instead)
 
 
 def _listening(scene: Scene) -> int:

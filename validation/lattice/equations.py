@@ -25,8 +25,7 @@ from validation.scenes.scene import Scene
 class Scales:
     """What the energy of a state, and the weights, could do to a bead or a contact.
 
-    energy : above equilibrium.
-    compression : of a contact.
+    energy : above equilibrium. compression : of a contact.
     displacement, velocity : of a bead, 1 where there is no energy.
     time : the shortest √(m/spring) of a bead between its contacts at that compression; infinite
         where nothing presses.
@@ -42,10 +41,8 @@ class Scales:
 
 
 class Motion:
-    """The right-hand side for one scene, in the state (y_0 … y_{n-1}, v_0 … v_{n-1}).
-
-    start : the initial state.
-    """
+    """The right-hand side for one scene, in the state (y_0 … y_{n-1}, v_0 … v_{n-1}), and the
+    ``start`` of it."""
 
     def __init__(self, scene: Scene) -> None:
         wall = () if scene.wall is None else (scene.wall,)
@@ -67,17 +64,11 @@ class Motion:
     def compression(self, y: Array) -> Array:
         """δ_i, for displacements of shape (n,) or (n, S)."""
         row = np.concatenate((y, np.zeros_like(y[:1]))) if len(self.rest) == len(y) else y
-        result: Array = (self.rest + (row[:-1] - row[1:]).T).T
-        return result
+        return np.asarray((self.rest + (row[:-1] - row[1:]).T).T)
 
     def force(self, compression: Array) -> Array:
         """F_i = A_i [δ_i]_+^k."""
-        result: Array = (self.stiffnesses * np.maximum(compression, 0.0).T ** self.k).T
-        return result
-
-    def bead_force(self, bead: int, force: Array) -> Array:
-        """The mean of the forces of a bead's two contacts; an end without one counts as 0."""
-        return np.asarray(force[max(bead - 1, 0) : bead + 1].sum(axis=0) / 2)
+        return np.asarray((self.stiffnesses * np.maximum(compression, 0.0).T ** self.k).T)
 
     def __call__(self, time: float, state: Array) -> Array:
         y, v = state[: self.size], state[self.size :]
@@ -106,38 +97,32 @@ class Motion:
         return float(self.masses @ (after - before) / total) if total else 0.0
 
     @cached_property
+    @np.errstate(all="ignore")
     def scales(self) -> Scales:
-        """The scales of the motion from its start.
-
-        Raises `SceneError` when floating point cannot hold one of them.
-        """
-        with np.errstate(all="ignore"):
-            return self._scales()
-
-    def _scales(self) -> Scales:
+        """Of the motion from its start. Raises `SceneError` where a float cannot hold one."""
         energy, n, A = self.energy(self.start), self.size, self.stiffnesses
         pressed = self.compression(self.start[:n]).max(initial=0.0) > self.rest.max(initial=0.0)
         if not np.isfinite(energy) or (energy == 0 and (pressed or np.any(self.start[n:]))):
             _held("energy", energy)
-        deepest = float(self.rest.max(initial=0.0))
+        deepest = self.rest.max(initial=0.0)
         if energy > 0 and len(A):
-            deepest = max(deepest, float(np.float64(energy / A.max()) ** (1 / (self.k + 1))))
+            deepest = max(deepest, np.float64(energy / A.max()) ** (1 / (self.k + 1)))
         if not deepest:
             return Scales(energy, 0.0, 1.0, 1.0, math.inf)
-        stiffening = np.float64(deepest) ** (self.k - 1)
+        stiffening = deepest ** (self.k - 1)
         springs = np.zeros(n)
         springs[: len(A)] = A
         springs[1:] += A[: n - 1]
         time = 1 / np.sqrt((springs / self.masses).max() * self.k * stiffening)
         _held("stiffest spring", A.max() * stiffening)
         _held("shortest time", time)
-        if energy <= 0:
-            return Scales(energy, deepest, 1.0, 1.0, float(time))
-        y, v = np.sqrt(energy / (A.max() * stiffening)), np.sqrt(energy / self.masses.mean())
-        _held("displacement", y)
-        _held("velocity", v)
-        rounding = np.finfo(float).eps * self.rest.max() / y
-        return Scales(energy, deepest, float(y), float(v), float(time), float(rounding))
+        y, v, rounding = 1.0, 1.0, 0.0
+        if energy > 0:
+            y, v = np.sqrt(energy / (A.max() * stiffening)), np.sqrt(energy / self.masses.mean())
+            _held("displacement", y)
+            _held("velocity", v)
+            rounding = np.finfo(float).eps * self.rest.max() / y
+        return Scales(energy, float(deepest), float(y), float(v), float(time), float(rounding))
 
 
 def _held(name: str, *values: float) -> None:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any, NamedTuple, TypeVar, cast
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 from numba import njit
@@ -15,24 +15,14 @@ from numpy.typing import NDArray
 
 from lwa.numeric import Array
 
-_Function = TypeVar("_Function", bound=Callable[..., Any])
-
-MARGIN = 4
-"""Still beads that the window holds at its front."""
-SHORTEST = 32
-"""Beads below which the vector loops take no less time."""
-_OPEN = 1e-3
-"""Of the peak force: what a contact behind may push and count as open."""
-_BLOW = 0.05
-"""Of a bead's peak momentum: what the next one may still get from a bead that is left behind."""
-_LONGEST = 4
-"""Reaches: further behind, beads are left whatever they do, so that the cost stays bounded."""
-_STILL = 1e-13
-"""Of the peak compression: beads that have moved less are still."""
-_NOTHING = 1e-60
-"""Of the greatest compression: what counts as open, lest the front decay into denormal numbers."""
-BLOCK = 8
-"""What the window's length is a multiple of: the doubles of the widest vector register."""
+MARGIN = 4  # still beads that the window holds at its front
+SHORTEST = 32  # beads below which the vector loops take no less time
+BLOCK = 8  # what the window's length is a multiple of: the doubles of the widest vector register
+_OPEN = 1e-3  # of the peak force: what a contact behind may push and count as open
+_BLOW = 0.05  # of a bead's peak momentum: what the next may still get from a bead left behind
+_LONGEST = 4  # reaches: further behind, beads are left in any case, to bound the cost
+_STILL = 1e-13  # of the peak compression: beads that have moved less are still
+_NOTHING = 1e-60  # of the greatest compression: open, lest the front decay into denormal numbers
 
 
 class Chain(NamedTuple):
@@ -107,19 +97,13 @@ def beginning(plan: Plan, k: float, front: int) -> Any:
     return at
 
 
-_FLAGS = {"nnan", "ninf", "nsz", "arcp", "contract"}
-"""None that would let rounding depend on the order of a sum (reassoc)."""
-
-
-def _compiled(function: _Function) -> _Function:
-    """By numba; in its own error model every division by zero would be an exception's way out."""
-    return cast(_Function, njit(cache=True, fastmath=_FLAGS, error_model="numpy")(function))
-
-
-def _part(function: _Function) -> _Function:
-    """Written out where it is called: to pass the arrays would take as long as the rest."""
-    written: Any = njit(inline="always", fastmath=_FLAGS, error_model="numpy")
-    return cast(_Function, written(function))
+_Function = TypeVar("_Function", bound=Callable[..., Any])
+# Without "reassoc" rounding does not depend on the order of a sum; in numba's own error model
+# every division by zero would be an exception's way out.
+_OPTIONS: Any = dict(fastmath={"nnan", "ninf", "nsz", "arcp", "contract"}, error_model="numpy")
+_compiled: Callable[[_Function], _Function] = njit(cache=True, **_OPTIONS)
+# Written out where it is called: to pass the arrays would take as long as the rest.
+_part: Callable[[_Function], _Function] = njit(inline="always", **_OPTIONS)
 
 
 @_compiled
@@ -185,15 +169,6 @@ def _acceleration(chain: Chain, y: Array, i: int, lo: int) -> float:
 
 
 @_part
-def _note(chain: Chain, beads: Beads, seen: Samples, at: Any) -> None:
-    """The watched beads as they are before a step in which samples are due."""
-    for q in range(at.begin, at.stop):
-        j = seen.watched[q]
-        seen.before[0, q], seen.before[1, q] = beads.y[j], beads.v[j]
-        seen.before[2, q] = _acceleration(chain, beads.y, j, at.lo)
-
-
-@_part
 def _sample(chain: Chain, beads: Beads, seen: Samples, at: Any, h: float, due: int) -> None:
     """The samples within a step: of the quintic with y, y' and y'' of both ends."""
     y, v, before, time, seen_y, seen_v = beads.y, beads.v, seen.before, seen.time, seen.y, seen.v
@@ -214,19 +189,6 @@ def _sample(chain: Chain, beads: Beads, seen: Samples, at: Any, h: float, due: i
     at.done = due
 
 
-@_part
-def _move_front(beads: Beads, plan: Plan, at: Any, hi: int) -> None:
-    """To the first bead that is still; a reach further on, the step follows the pulse's height."""
-    if at.steps % 4 == 0:
-        top, force = at.top, beads.force
-        for i in range(at.lo, hi):
-            top = max(top, force[i + 1])
-        at.top = top
-    y = beads.y
-    while at.front < plan.size and abs(y[at.front - MARGIN]) > _STILL * at.scale:
-        at.front += 1
-
-
 @_compiled
 def _grow_step(chain: Chain, plan: Plan, at: Any) -> None:
     """A reach further on: how high is the pulse, and the step that goes with it."""
@@ -245,10 +207,8 @@ def _cut_rear(chain: Chain, beads: Beads, plan: Plan, at: Any) -> None:
     """Leave beads behind that are further than the reach, and have no say in the pulse."""
     y, v, inverse, k = beads.y, beads.v, chain.inverse, chain.k
     while at.front - at.lo > plan.reach:
-        lo, momentum = (
-            at.lo,
-            math.sqrt(plan.heaviest * at.peak * (at.peak / plan.stiffest) ** (1 / k)),
-        )
+        lo = at.lo
+        momentum = math.sqrt(plan.heaviest * at.peak * (at.peak / plan.stiffest) ** (1 / k))
         force = _net(chain, y, lo)
         blow = (v[lo] - v[lo + 1]) / (inverse[lo] + inverse[lo + 1])
         near = at.front - lo <= _LONGEST * plan.reach
@@ -285,7 +245,10 @@ def advance(chain: Chain, beads: Beads, plan: Plan, seen: Samples, at: Any, step
         while due < len(time) and time[due] <= later:
             due += 1
         if due > at.done:
-            _note(chain, beads, seen, at)
+            for q in range(at.begin, at.stop):
+                j = watched[q]
+                seen.before[0, q], seen.before[1, q] = beads.y[j], beads.v[j]
+                seen.before[2, q] = _acceleration(chain, beads.y, j, at.lo)
         _step(chain, beads, plan, h, at.lo, hi)
         at.steps += 1
         at.evaluations += stages * (hi - at.lo)
@@ -293,7 +256,13 @@ def advance(chain: Chain, beads: Beads, plan: Plan, seen: Samples, at: Any, step
             _sample(chain, beads, seen, at, h, due)
         at.t = later
         if plan.reach:
-            _move_front(beads, plan, at, hi)
+            if at.steps % 4 == 0:
+                top = at.top
+                for i in range(at.lo, hi):
+                    top = max(top, beads.force[i + 1])
+                at.top = top
+            while at.front < plan.size and abs(beads.y[at.front - MARGIN]) > _STILL * at.scale:
+                at.front += 1
             if at.front - at.mark >= plan.reach:
                 _grow_step(chain, plan, at)
             _cut_rear(chain, beads, plan, at)

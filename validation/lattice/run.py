@@ -1,4 +1,4 @@
-"""A run of a scene: what its sensors recorded, and how well the motion kept its invariants."""
+"""A run of a scene, however it was integrated."""
 
 from __future__ import annotations
 
@@ -7,32 +7,15 @@ from typing import Any
 
 from lwa.numeric import Array
 from validation.lattice.equations import Motion
-from validation.scenes.checks import Failure
+from validation.scenes.checks import Failure, SceneError
 from validation.scenes.scene import Scene
+
+_MOST = 10
+"""Names in the legend of a picture."""
 
 
 class IntegrationError(Failure):
     """The integrator could not go on; the message says where and why."""
-
-
-@dataclass(frozen=True, eq=False)
-class Window:
-    """What a compiled run on a moving window followed of the chain.
-
-    Beyond the times given here a sensor's contact counts as open and its beads fly on freely.
-
-    reach : beads that are followed behind the front at least.
-    left : number of beads left behind by the end.
-    decay : smallest ratio of the pulse's peak force to that one reach before; well below 1, the
-        tail may overtake the pulse, and then matters.
-    contact_until, bead_until : times up to which each contact and bead sensor was followed.
-    """
-
-    reach: int
-    left: int
-    decay: float
-    contact_until: Array
-    bead_until: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,7 +24,6 @@ class Run:
 
     Arrays are read-only; S is the number of samples.
 
-    scene : what was simulated.
     time : (S,).
     contact_force, compression : (contacts, S), at the scene's contact sensors; a gap is a
         negative compression. Static forces are included.
@@ -51,10 +33,10 @@ class Run:
     energy_drift : change of the energy above equilibrium over its initial value (0 if that is 0);
         beads left behind by a window keep what they had.
     momentum_drift : change of the momentum over Σ m|v| at the end; None with a wall.
-    evaluations : of the equations of motion.
-    bead_evaluations : the same, times the beads that each one moved.
-    step : mean step.
-    window : None when the whole chain was integrated throughout.
+    evaluations : of the equations of motion; bead_evaluations : times the beads each one moved.
+    step : the mean one.
+    window : beads that were followed behind the front at least; beyond, contacts count as open
+        and beads fly on freely. None when the whole chain was integrated throughout.
     """
 
     scene: Scene
@@ -70,36 +52,47 @@ class Run:
     evaluations: int
     bead_evaluations: int
     step: float
-    window: Window | None = None
+    window: int | None = None
 
+    def plot(self, ax: Any = None) -> Any:
+        """Draw the forces at the sensors over time into ``ax``, Matplotlib's axes, or a new
+        picture's.
 
-def frozen(**arrays: Array) -> dict[str, Any]:
-    """The same arrays, read-only from here on."""
-    for array in arrays.values():
-        array.setflags(write=False)
-    return arrays
+        Returns the axes. Raises `SceneError` for a scene without sensors.
+        """
+        from lwa.picture import axes  # optional, start-up
+
+        contacts, beads = self.scene.contact_sensors, self.scene.bead_sensors
+        names = [*(f"contact {i}" for i in contacts), *(f"bead {i}" for i in beads)]
+        if not names:
+            raise SceneError("plot is asked for, but the scene names no sensors")
+        ax = axes(ax)
+        for name, force in zip(names, (*self.contact_force, *self.bead_force), strict=True):
+            ax.plot(self.time, force, label=name)
+        ax.set(xlabel="time", ylabel="force")
+        if len(names) <= _MOST:
+            # above: within the axes it would lie on a pulse
+            place = {"loc": "lower center", "bbox_to_anchor": (0.5, 1.0)}
+            ax.legend(**place, ncols=min(5, len(names)), fontsize="small", frameon=False)
+        return ax
 
 
 def finished(
-    motion: Motion,
-    end: Array,
-    records: dict[str, Array],
-    *,
-    energy: float,
-    evaluations: int,
-    bead_evaluations: int,
-    steps: int,
-    window: Window | None = None,
-) -> Run:
+    motion: Motion, end: Array, records: dict[str, Array], energy: float,
+    steps: int, evaluations: int, bead_evaluations: int, window: int | None = None,
+) -> Run:  # fmt: skip
     """The run that came to this state and energy, with what its sensors recorded."""
     n, before = motion.size, motion.scales.energy
+    arrays = records | {"displacements": end[:n].copy(), "velocities": end[n:].copy()}
+    for array in arrays.values():
+        array.setflags(write=False)
     return Run(
         scene=motion.scene,
-        **frozen(**records, displacements=end[:n].copy(), velocities=end[n:].copy()),
         energy_drift=(energy - before) / before if before else 0.0,
         momentum_drift=motion.momentum_drift(end),
         evaluations=evaluations,
         bead_evaluations=bead_evaluations,
         step=motion.scene.duration / steps,
         window=window,
+        **arrays,
     )

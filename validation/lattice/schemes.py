@@ -2,11 +2,10 @@
 
 A step of h applies kick 0, drift 0, kick 1, drift 1, …: a kick adds b h F(y)/m to v, a drift adds
 a h v to y. Coefficients are as printed, to all digits, in
-  Verlet                  Verlet 1967: half a kick, a drift, half a kick
-  PEFRL                   Omelyan, Mryglod and Folk 2002, Comput. Phys. Commun. 146, 188
-  S6                      Blanes and Moan 2002, J. Comput. Appl. Math. 142, 313: S_6
-  SRKN6, SRKN11, SRKN14   there: SRKN_6^b, SRKN_11^b and SRKN_14^a, for forces that do not depend
-                          on v
+  Verlet  Verlet 1967: half a kick, a drift, half a kick
+  PEFRL   Omelyan, Mryglod and Folk 2002, Comput. Phys. Commun. 146, 188
+  others  Blanes and Moan 2002, J. Comput. Appl. Math. 142, 313: S_6 and, for forces that do not
+          depend on v, SRKN_6^b, SRKN_11^b and SRKN_14^a
 """
 
 from __future__ import annotations
@@ -40,10 +39,7 @@ def _scheme(order: int, kicks: list[float], drifts: list[float], middle: str) ->
         return [*half, last, *([] if odd else [last]), *half[::-1]]
 
     b, a = whole(kicks, middle == "kick"), whole(drifts, middle == "drift")
-    if len(b) < len(a):
-        b.insert(0, 0.0)
-    else:
-        a.append(0.0)
+    b, a = ([0.0, *b], a) if len(b) < len(a) else (b, [*a, 0.0])
     return Scheme(order, np.array(b), np.array(a))
 
 

@@ -22,7 +22,7 @@ from validation.lattice.equations import Motion
 from validation.lattice.run import Run
 from validation.lattice.simulate import METHODS, twice
 from validation.pulses.pulse import Measured, MeasureError, Pulse, compared, measure, speed
-from validation.scenes.checks import SceneError, real
+from validation.scenes.checks import SceneError, between
 from validation.scenes.scene import Scene
 
 TOLERANCE = 1e-10
@@ -107,8 +107,7 @@ def record(
     >>> record(scene).speeds[0].numbers["speed_sites"]
     0.8388521 ± 1e-06
     """
-    if not 1e-13 <= real(rtol, "rtol") <= 1e-2 / LESS:
-        raise SceneError(f"rtol is {rtol:g}: it lies between 1e-13 and {1e-2 / LESS:g}")
+    rtol = between(rtol, "rtol", 1e-13, 1e-2 / LESS)
     motion = Motion(scene)
     if (lost := motion.scales.rounding) > _ROUNDING * rtol:
         raise SceneError(

@@ -1,7 +1,7 @@
 """The steady pulse of a dimer chain: its width, its speed and its decay, at one k and one ω.
 
-Bead 0 of a chain of masses 1, ω, 1, … at rest is struck (A = D = 1). The pulse that it sends is
-recorded at `PLACES` cells, equally far from each other. As F = A δ^k has no scale of its own, a
+Bead 0 of a chain of masses 1, ω, 1, … at rest is struck (A = D = 1), and the pulse recorded at
+`PLACES` cells, equally far from each other. As F = A δ^k has no scale of its own, a
 pulse that leaves something behind in every cell comes to lose the same share of its force F in
 each, F ~ e^{-d n} after n sites, and is similar to itself ever after: its speed goes as
 F^{(k-1)/(2k)} and its width, in sites, does not change. From one place to the next, N sites on,
@@ -21,9 +21,8 @@ last one, r its ratio to the one before, of which 0.9 is the most that is believ
 The leading pulse ends at a contact where the compression first falls to a quarter of its highest
 so far. Between special mass ratios the force has several humps, as the light bead hits to and fro;
 a width is that of the highest, so that it jumps where the dip before another hump passes half.
-Where a pulse decays fast, another one may overtake it; which of the two is measured depends on how
-far the chain is followed (k ≥ 3/2, ω from 0.53 to 0.65). The errors say nothing of the other one:
-numbers are those of the pulse that leads at the `Point.sites`.
+Where a pulse decays fast, another may overtake it (k ≥ 3/2, ω from 0.53 to 0.65). The errors say
+nothing of the other one: numbers are those of the pulse that leads at the `Point.sites`.
 """
 
 from __future__ import annotations
@@ -31,6 +30,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import scipy
@@ -51,28 +51,18 @@ QUANTITIES = {
 }
 """What is measured, and what it is called."""
 
-PLACES = 10
-"""Cells at which the pulse is recorded."""
-
-STRETCH = 4
-"""Cells from one place to the next, for k from 3/2 on, unless a sweep sets another number."""
-
-TOLERANCES = (1e-8, 1e-6)
-"""Of the run that counts and of the one that gives its error."""
-
-_SAMPLES = 40.0
-"""Per unit of time, in the run that counts, at k ≤ 3/2 and ω ≥ 1/4."""
-_GROWTH = 1.6
-_LONGEST = 16
-"""By how much, and how often, a run is made longer in which the pulse does not come through."""
+PLACES = 10  # cells at which the pulse is recorded
+STRETCH = 4  # cells from one to the next, for k from 3/2 on, unless a sweep sets another number
+TOLERANCES = (1e-8, 1e-6)  # of the run that counts and of the one that gives its error
+_SAMPLES = 40.0  # per unit of time, in the run that counts, at k ≤ 3/2 and ω ≥ 1/4
+_GROWTH, _LONGEST = 1.6, 16  # by how much, and how often, a run is made longer, at most
+_SLOWEST = 0.9  # ratio of two differences, next to 1 of which nothing can be said of their sum
 
 
 @dataclass(frozen=True)
 class Point:
-    """What one k and ω gave: `QUANTITIES` by their names, or none of them and the reason.
-
-    sites : beads from the struck one to both ends of the stretch that was measured.
-    """
+    """What one k and ω gave: `QUANTITIES` by their names, or none of them and the reason; and the
+    sites (beads from the struck one) at both ends of the stretch that was measured."""
 
     k: sp.Rational
     omega: sp.Rational
@@ -91,12 +81,7 @@ def cells_apart(k: float, stretch: int) -> int:
 
 
 def point(k: sp.Rational, omega: sp.Rational, stretch: int) -> Point:
-    """Strike the chain and measure its pulse; what cannot be measured is told by the point itself.
-
-    >>> numbers = point(sp.Rational(3, 2), sp.Integer(1), STRETCH).numbers
-    >>> numbers["width"].error < 1e-5, round(numbers["width"].value, 4)
-    (True, 1.4119)
-    """
+    """Strike the chain and measure its pulse; what cannot be measured, the point itself tells."""
     try:
         return _point(k, omega, stretch)
     except (InputError, IntegrationError, ArithmeticError) as error:
@@ -104,7 +89,7 @@ def point(k: sp.Rational, omega: sp.Rational, stretch: int) -> Point:
 
 
 def _point(k: sp.Rational, omega: sp.Rational, stretch: int) -> Point:
-    chain = Chain(float(k), float(omega), cells_apart(float(k), stretch))
+    chain = Chain(float(k), float(omega), 2 * cells_apart(float(k), stretch))
     rtol, less = TOLERANCES
     rough = chain.passed(chain.crossing, less, _SAMPLES / 2)
     check = chain.numbers(rough)
@@ -116,14 +101,9 @@ def _point(k: sp.Rational, omega: sp.Rational, stretch: int) -> Point:
         raise MeasureError("the pulse does not arrive later at each place than at the one before")
     best = int(np.nanargmin(worst))
     place = chain.sites * (best + 3)
-    values = zip(numbers[:, best + 2].tolist(), errors[:, best].tolist(), strict=True)
-    measured = (Measured(value, value + error) for value, error in values)
-    names = dict(zip(QUANTITIES, measured, strict=True))
-    return Point(k, omega, (place, place + chain.sites), names)
-
-
-_SLOWEST = 0.9
-"""Ratio of two differences, next to 1 of which nothing can be said of their sum."""
+    rows = zip(QUANTITIES, numbers[:, best + 2].tolist(), errors[:, best].tolist(), strict=True)
+    measured = {name: Measured(value, value + error) for name, value, error in rows}
+    return Point(k, omega, (place, place + chain.sites), measured)
 
 
 def _unsettled(numbers: Array) -> Array:
@@ -135,10 +115,8 @@ def _unsettled(numbers: Array) -> Array:
     return np.asarray(seen + last * ratio / (1 - ratio))
 
 
-@dataclass(frozen=True)
-class Record:
-    """A run in which the pulse has come through, where it is in each contact's record, and the
-    duration that it takes."""
+class Record(NamedTuple):
+    """A run with the pulse in it, where in each contact's record, and how long it has to be."""
 
     run: Run
     parts: tuple[slice, ...]
@@ -147,16 +125,11 @@ class Record:
 
 @dataclass(frozen=True)
 class Chain:
-    """A dimer chain whose first bead is struck, with ``cells`` from place to place."""
+    """A dimer chain whose first bead is struck, with so many sites from place to place."""
 
     k: float
     omega: float
-    cells: int
-
-    @property
-    def sites(self) -> int:
-        """From place to place."""
-        return 2 * self.cells
+    sites: int
 
     @property
     def crossing(self) -> float:
@@ -164,15 +137,15 @@ class Chain:
         return self.sites * PLACES * math.sqrt((self.k + 1) * (1 + self.omega)) / 1.6
 
     def passed(self, duration: float, rtol: float, samples: float = _SAMPLES) -> Record:
-        """A run of this duration, or longer, with ``samples`` per unit of time; more where hits
-        are shorter. Raises `MeasureError` where the pulse does not come through."""
+        """A run of this duration, or longer, with ``samples`` per unit of time, more where hits are
+        shorter. Raises `MeasureError` where the pulse does not come through."""
         samples *= max(1.0, self.k / 1.5) / math.sqrt(min(1.0, 4 * self.omega))
         places = range(self.sites, self.sites * PLACES + 1, self.sites)
         sensors = tuple(place + side for place in places for side in (0, 1))
         for _ in range(_LONGEST):
             scene = struck(
-                (1.0, self.omega), self.sites * PLACES + 12, self.k, contact_sensors=sensors,
-                duration=duration, samples=math.ceil(samples * duration),
+                (1.0, self.omega), self.sites * PLACES + 12, self.k,
+                contact_sensors=sensors, duration=duration, samples=math.ceil(samples * duration),
             )  # fmt: skip
             run = simulate(scene, rtol=rtol, method="SRKN14")
             parts = tuple(leading_pulse(force, self.k) for force in run.contact_force)
@@ -181,13 +154,11 @@ class Chain:
             if until <= duration:
                 return Record(run, parts, until)
             duration *= _GROWTH
-        raise MeasureError(
-            f"the pulse has not passed {self.sites * PLACES} sites by t = {duration / _GROWTH:.3g}"
-        )
+        end = duration / _GROWTH
+        raise MeasureError(f"the pulse has not passed {self.sites * PLACES} sites by t = {end:.3g}")
 
     def numbers(self, record: Record) -> Array:
-        """`QUANTITIES` (rows) of each stretch; NaN where the pulse does not arrive later than at
-        the place before."""
+        """`QUANTITIES` (rows) of each stretch; NaN where the pulse does not arrive later."""
         rows = []
         for signal, part in zip(record.run.contact_force, record.parts, strict=True):
             time, force = record.run.time[part], signal[part]
@@ -205,13 +176,7 @@ class Chain:
 
 
 def leading_pulse(force: Array, k: float) -> slice:
-    """Where the leading pulse is in a contact's record, with as much again before it.
-
-    It ends with the record where it is not over.
-
-    >>> leading_pulse(np.array([0, 0, 0, 1, 4, 2, 1, 0.9, 3, 1]), 1.0)
-    slice(0, 8, None)
-    """
+    """Where the leading pulse is in a contact's record, at most to its end, with as much before."""
     strain = force ** (1 / k)
     start = int(np.argmax(strain > strain.max() / 4))
     relieved = strain[start:] < np.maximum.accumulate(strain[start:]) / 4

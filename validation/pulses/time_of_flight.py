@@ -1,7 +1,4 @@
-"""A pulse measured on its way between two contacts.
-
-Runs are made at two tolerances, whose difference is the error.
-"""
+"""A pulse measured on its way between two contacts, at two tolerances that differ by its error."""
 
 from __future__ import annotations
 
@@ -17,10 +14,8 @@ METHOD = "SRKN14"
 
 @dataclass(frozen=True)
 class Passage:
-    """A pulse between two contacts, at a tolerance and at a ten times coarser one.
-
-    speed in sites per time; fwhm of the force, in sites, force and strain at the second contact.
-    """
+    """speed in sites per time; fwhm of the force, in sites, force and strain at the second
+    contact; the run's drifts and evaluations."""
 
     speed: Measured
     fwhm: Measured
@@ -32,7 +27,7 @@ class Passage:
 
 
 def passage(scene: Scene, rtol: float = 1e-6) -> Passage:
-    """Run a scene with two contact sensors and measure the pulse on its way between them."""
+    """Run a scene with two contact sensors at rtol, and at a ten times coarser one."""
     a, b = scene.contact_sensors
 
     def numbers(run: Run) -> dict[str, float]:

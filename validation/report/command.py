@@ -40,10 +40,13 @@ R = TypeVar("R", bound=Result | Report)
 class Study(Generic[P, R]):
     """A function that computes a result, and the ``command`` that shows it."""
 
-    def __init__(self, function: Callable[P, R], name: str, options: Iterable[Any]) -> None:
+    def __init__(
+        self, function: Callable[P, R], name: str, options: Iterable[Any], epilog: str
+    ) -> None:
         self.function = function
         self.name = name
         self.options = tuple(options)
+        self.epilog = epilog
         update_wrapper(self, function)
 
     def __call__(self, *arguments: P.args, **options: P.kwargs) -> R:
@@ -69,26 +72,40 @@ class Study(Generic[P, R]):
         for option in (*_OUTPUT, *reversed(self.options)):
             run = option(run)
         says = (inspect.getdoc(self.function) or "").partition("\n\n")[0]
-        return click.command(self.name, help=says)(run)
+        return click.command(self.name, help=says, epilog=self.epilog or None)(run)
 
 
-def study(*options: Any, name: str = "") -> Callable[[Callable[P, R]], Study[P, R]]:
+def study(
+    *options: Any, name: str = "", epilog: str = ""
+) -> Callable[[Callable[P, R]], Study[P, R]]:
     """Make a study of a function that returns a `Report`, or what has one.
 
     options : of the command, as `option`, or Click's; the function's parameters have their names.
     name : of the command; by default the function's.
+    epilog : what stands below the options in its help.
 
     What the function's parameters name it is given besides: ``progress`` to show cases on their
     way, ``run_progress`` one run (`validation.lattice.effort.RunProgress`), and ``picture``, the
     file that is asked for.
     """
-    return lambda function: Study(function, name or function.__name__, options)
+    return lambda function: Study(function, name or function.__name__, options, epilog)
 
 
 def option(*names: str, default: Any = None, says: str = "", **more: Any) -> Any:
-    """An option with its default and its help; the default's type is the option's."""
+    """An option with its default and its help; a number's type is that of the default."""
     more.setdefault("show_default", default is not None)
+    if type(default) in (int, float) and "flag_value" not in more:
+        more.setdefault("callback", whole if isinstance(default, int) else number)
+        default = str(default)
     return click.option(*names, default=default, help=says, **more)
+
+
+def whole(context: click.Context, given: click.Parameter, value: str | None) -> int | None:
+    """Callback of an option that is an integer."""
+    found = quantity(context, given, value)
+    if found is not None and not found.is_Integer:
+        raise SceneError(f"{given.opts[0].lstrip('-')} is {found}: an integer is wanted")
+    return None if found is None else int(found)
 
 
 def number(context: click.Context, given: click.Parameter, value: str | None) -> float | None:
@@ -118,7 +135,7 @@ def show(report: Report, style: str, picture: Path | None) -> None:
 def progress(cases: Iterable[T]) -> Iterable[T]:
     """Show the cases on their way, on a terminal."""
     # disable=None: only on a terminal
-    bar: Iterable[T] = tqdm(cases, desc="lattice runs", disable=None, leave=False, file=sys.stderr)
+    bar: Iterable[T] = tqdm(cases, desc="cases", disable=None, leave=False, file=sys.stderr)
     return bar
 
 

@@ -68,10 +68,13 @@ def figure(panels: Sequence[Panel]) -> Figure:
 def draw(plot: Axes, panel: Panel) -> None:
     """Draw one panel."""
     plot.set(xlabel=panel.x, ylabel=panel.y, title=panel.title)
-    for axis in panel.scale:
-        plot.set(**{f"{axis}scale": "log"})
+    for axis in ("x", "y"):
+        if axis in panel.scale:
+            plot.set(**{f"{axis}scale": "log"})
+        else:  # 1, 2, … times a power of ten
+            getattr(plot, f"{axis}axis").get_major_formatter().set_powerlimits((-3, 5))
     if panel.map is not None:
-        _draw_map(plot, panel.map)
+        _draw_map(plot, panel.map, panel.scale)
     for i, curve in enumerate(panel.curves):
         style, colour = curve.style, None
         if not style:
@@ -83,10 +86,10 @@ def draw(plot: Axes, panel: Panel) -> None:
             curve.x, curve.y, curve.error, fmt=style, color=colour, ms=4, label=curve.label or None
         )
     if 0 < sum(bool(curve.label) for curve in panel.curves) <= _MOST:
-        plot.legend(fontsize="small")
+        plot.legend(fontsize="small", loc=panel.legend or "best")
 
 
-def _draw_map(plot: Axes, found: Map) -> None:
+def _draw_map(plot: Axes, found: Map, scale: str) -> None:
     from matplotlib.colors import LogNorm, Normalize
 
     values = np.ma.masked_invalid(found.values)
@@ -94,17 +97,17 @@ def _draw_map(plot: Axes, found: Map) -> None:
     below = found.low is not None and bool(np.any(values < found.low))
     above = found.high is not None and bool(np.any(values > found.high))
     extend = ("neither", "min", "max", "both")[below + 2 * above]
-    (x, x_scale), (y, y_scale) = _borders(found.x), _borders(found.y)
-    image = plot.pcolormesh(x, y, values, norm=norm, cmap=found.colours)
+    x, y = _borders(found.x, "x" in scale), _borders(found.y, "y" in scale)
+    # as dots in a PDF, too: of a colour for each place it would be slow to show
+    image = plot.pcolormesh(x, y, values, norm=norm, cmap=found.colours, rasterized=True)
     plot.figure.colorbar(image, ax=plot, label=found.label, extend=extend)
-    plot.set(xscale=x_scale, yscale=y_scale, facecolor="0.8")
+    plot.patch.set(facecolor="w", edgecolor="0.4", hatch="xxx")  # no colour of a map
 
 
-def _borders(places: Array) -> tuple[Array, str]:
-    """Half way between places and as far beyond the outer ones, and the scale on which they are."""
-    log = places[-1] > 50 * places[0]
+def _borders(places: Array, log: bool) -> Array:
+    """Half way between places, on their scale, and as far beyond the outer ones."""
     centres = np.log(places) if log else places
     half = np.diff(centres) / 2
     ends = [centres[0] - half[0]], centres[:-1] + half, [centres[-1] + half[-1]]
     borders = np.concatenate(ends)
-    return (np.exp(borders), "log") if log else (borders, "linear")
+    return np.exp(borders) if log else borders

@@ -27,19 +27,25 @@ def output_file(name: str, path: str, suffixes: Sequence[str]) -> Path:
     if file.suffix.lower() not in suffixes:
         raise InputError(f"{said}: a file ending in {', '.join(suffixes)} is wanted")
     try:
-        if (folder := _mode(file.parent)) is None:
-            raise InputError(f"{said}: the folder {_short(file.parent)} does not exist")
+        place = _target(file).parent
+        if (folder := _mode(place)) is None:
+            raise InputError(f"{said}: the folder {_short(place)} does not exist")
         if not stat.S_ISDIR(folder):
-            raise InputError(f"{said}: {_short(file.parent)} is no folder")
+            raise InputError(f"{said}: {_short(place)} is no folder")
         if (there := _mode(file)) is not None and not stat.S_ISREG(there):
             raise InputError(f"{said}: a file that can be written is wanted, not {kind(there)}")
-        with tempfile.TemporaryFile(dir=file.parent):
+        with tempfile.TemporaryFile(dir=place):
             pass
     except (OSError, ValueError) as error:  # ValueError: a name with a null byte
         if isinstance(error, InputError):
             raise
         raise InputError(f"{said}: it cannot be written, {reason(error)}") from None
     return file
+
+
+def _target(file: Path) -> Path:
+    """What a symbolic link names, which is written in its place."""
+    return Path(os.path.realpath(file)) if file.is_symlink() else file
 
 
 def _mode(file: Path) -> int | None:
@@ -54,6 +60,7 @@ def _mode(file: Path) -> int | None:
 def replacing(file: Path) -> Iterator[Path]:
     """A temporary file beside ``file``, which takes its place at the end, or vanishes on a failure.
 
+    A file that is there keeps its mode, and a symbolic link its target, which is replaced.
     An `OSError` on the way, such as of a disk that is full, becomes an `lwa.InputError`.
 
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -63,7 +70,7 @@ def replacing(file: Path) -> Iterator[Path]:
     'whole'
     """
     try:
-        with _beside(file) as new:
+        with _beside(_target(file)) as new:
             yield new
     except OSError as error:
         raise InputError(f"{_short(file)} is not written: {reason(error)}") from None
@@ -75,9 +82,9 @@ def _beside(file: Path) -> Iterator[Path]:
     os.close(handle)
     try:
         yield Path(name)
-        umask = os.umask(0)
-        os.umask(umask)
-        os.chmod(name, 0o666 & ~umask)
+        os.umask(umask := os.umask(0))
+        there = _mode(file)
+        os.chmod(name, 0o666 & ~umask if there is None else stat.S_IMODE(there))
         os.replace(name, file)
     except BaseException:
         os.unlink(name)

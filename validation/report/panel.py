@@ -41,7 +41,7 @@ class Map:
     """Values over two axes, shown as colours.
 
     label : of the colours.
-    x, y, values : (X,), (Y,), (Y, X); grey where there is no value.
+    x, y, values : (X,), (Y,), (Y, X); hatched where there is no value.
     low, high : where the colours end; values beyond are shown in the last one. From the values
         where None.
     scale : "log" for logarithmic colours.
@@ -61,7 +61,8 @@ class Map:
 @dataclass(frozen=True)
 class Panel:
     """A picture with two axes: their labels ``x`` and ``y``, and which of them are logarithmic
-    (``scale`` "", "x", "y" or "xy"; those of a map follow from its places)."""
+    (``scale`` "", "x", "y" or "xy"). ``legend``: its lower left corner in shares of the panel,
+    where Matplotlib finds no free place by itself."""
 
     x: str
     y: str
@@ -69,6 +70,7 @@ class Panel:
     scale: str = ""
     title: str = ""
     map: Map | None = None
+    legend: tuple[float, float] | None = None
 
     def document(self) -> dict[str, Any]:
         """For JSON: ``x``, ``y``, ``scale`` and ``curves`` of ``label``, ``x_value``,

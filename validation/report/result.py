@@ -12,12 +12,13 @@ from typing import TYPE_CHECKING, Any
 from lwa.exact import InputError
 from validation.report import table as tables
 from validation.report import text as texts
-from validation.report.figure import figure
+from validation.report.figure import draw, figure
 from validation.report.files import replacing
 from validation.report.panel import Panel
 from validation.report.table import Finding, Statement, Table, plain
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 
@@ -93,14 +94,26 @@ class Report:
 
     def figure(self) -> Figure:
         """The picture. Raises `lwa.InputError` where there is none."""
-        if not (panels := self._panels()):
-            raise InputError("plot is asked for: this result has no picture")
-        return figure(panels)
+        return figure(self._drawn())
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the first panel into Matplotlib's axes ``ax``, or into new ones; returns them.
+
+        Raises `lwa.InputError` where there is no picture."""
+        first, *_ = self._drawn()
+        if ax is None:
+            from matplotlib import pyplot
+
+            ax = pyplot.subplots()[1]
+        draw(ax, first)
+        return ax
 
     def save(self, file: Path) -> None:
         """Draw the picture into a file, which is replaced only by a complete one."""
+        drawn = io.BytesIO()  # of a file that cannot be closed Matplotlib prints a traceback
+        self.figure().savefig(drawn, dpi=150, format=file.suffix[1:].lower())
         with replacing(file) as new:
-            self.figure().savefig(new, dpi=150)
+            new.write_bytes(drawn.getvalue())
 
     def _repr_html_(self) -> str:
         """For a notebook: the tables and the picture."""
@@ -113,6 +126,11 @@ class Report:
 
     def _all(self) -> list[Finding | Statement]:
         return [*self.findings, *(found for part in self.parts for found in part._all())]
+
+    def _drawn(self) -> tuple[Panel, ...]:
+        if not (panels := self._panels()):
+            raise InputError("plot is asked for: this result has no picture")
+        return panels
 
     def _panels(self) -> tuple[Panel, ...]:
         return self.panels + tuple(panel for part in self.parts for panel in part._panels())

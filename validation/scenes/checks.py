@@ -65,6 +65,20 @@ positive = of_scene(tables.positive)
 integer = of_scene(tables.integer)
 
 
+def between(value: Any, name: str, low: float, high: float) -> float:
+    """`real`, and refused unless it lies there.
+
+    >>> between(2, "rtol", 1e-13, 1e-2)
+    Traceback (most recent call last):
+        ...
+    validation.scenes.checks.SceneError: rtol is 2: it lies between 1e-13 and 0.01
+    """
+    number = real(value, name)
+    if not low <= number <= high:
+        raise SceneError(f"{name} is {number:g}: it lies between {low:g} and {high:g}")
+    return number
+
+
 def row(
     values: Sequence[Any], read: Callable[[Any, str], float], name: Callable[[int], str]
 ) -> Any:

@@ -6,7 +6,7 @@ otherwise. Displacements count from the equilibrium and are positive towards the
 holds only what it names: no wall, no gravity, no precompression and no sensors unless they are
 given.
 
-Units are the caller's own, as long as they agree (SI for real beads; m1 = A = D = 1 without).
+Units are the caller's own, as long as they agree (m1 = A = D = 1, say); those of real beads are SI.
 """
 
 from __future__ import annotations
@@ -24,7 +24,16 @@ from lwa import Cell
 from lwa.cell import exponent
 from lwa.exact import shorten
 from lwa.spheres.tables import Reader
-from validation.scenes.checks import SceneError, integer, items, of_scene, positive, real, row
+from validation.scenes.checks import (
+    SceneError,
+    integer,
+    items,
+    of_scene,
+    one_of,
+    positive,
+    real,
+    row,
+)
 from validation.scenes.materials import Bead, Material, contact_stiffness
 
 __all__ = ["Scene", "SceneError"]
@@ -53,6 +62,7 @@ class Scene:
     samples : number of sample times, equidistant from 0 to the duration.
     spacings : distances of the n-1 pairs of neighbours in equilibrium. The motion does not ask for
         them; without, a speed is known in sites only.
+    units : "SI", or nothing for any that agree; what results say.
 
     Raises `SceneError` for whatever cannot be meant.
 
@@ -75,6 +85,7 @@ class Scene:
     samples: int = 1001
     precompression: float = 0.0
     spacings: tuple[float, ...] = ()
+    units: str = ""
 
     def __post_init__(self) -> None:
         for name, read in _READERS.items():
@@ -153,6 +164,7 @@ class Scene:
             k=1.5,
             wall=None if wall is None else contact_stiffness(given[-1], wall),
             spacings=tuple(a.radius + b.radius for a, b in pairwise(given)),
+            units="SI",
             **rest,
         )
 
@@ -165,6 +177,7 @@ _READERS: dict[str, Reader] = {
     "masses": _all(positive), "stiffnesses": _all(positive), "spacings": _all(positive),
     "displacements": _all(real), "velocities": _all(real), "samples": partial(integer, least=2),
     "k": real, "duration": positive, "wall": positive, "gravity": real, "precompression": real,
+    "units": lambda value, name: one_of(value, ("", "SI"), name),
 }  # fmt: skip
 
 

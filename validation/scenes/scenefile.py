@@ -4,6 +4,7 @@ All keys but ``duration`` and ``chain.cell`` are optional, and what is not named
 
     duration = 1e-3               # of the simulation
     samples = 2001                # of the sensors, from 0 to the duration; 1001 if not given
+    units = "SI"                  # what results say; of named beads they are SI in any case
     gravity = 9.81                # towards the wall; the chain is in equilibrium under its weight
     precompression = 2.0          # constant force on bead 1, towards the wall: in equilibrium every
                                   #   contact carries it, besides the beads above
@@ -36,11 +37,14 @@ All keys but ``duration`` and ``chain.cell`` are optional, and what is not named
     overlap = true                # they press beads into each other that carry nothing at rest
     [sensors]
     beads = [15, 34]
-    contacts = [15]               # contact 15 joins beads 15 and 16, the last one bead and wall
+    contacts = [15]               # contact 15 joins beads 15 and 16, the last one bead and wall;
+                                  #   or "all"
 
 Beads and contacts are counted from 1, as in the paper and on the command line (a `Scene` counts
 from 0). Stiffnesses are as many as the cell has beads, the last one joining it to the next cell,
-or as many as the whole chain has contacts; spacings likewise. Units are SI, or any that agree.
+or as many as the whole chain has contacts; spacings likewise. Units of named beads are SI, of
+masses and stiffnesses any that agree. A file with a key ``scene``, such as `lwa-validate run --out`
+writes, holds the scene under that key.
 
 Unknown keys are refused, and every fault is one line that names the key. Written are the masses
 and stiffnesses of a scene, not the materials that they came from; what is written is read back as
@@ -59,7 +63,7 @@ from lwa.exact import shorten
 from lwa.spheres import hertz
 from lwa.spheres.beads import read_beads, read_materials
 from lwa.spheres.files import load
-from lwa.spheres.tables import Table, among, array, entries, flag, place, places, table
+from lwa.spheres.tables import Reader, Table, among, array, entries, flag, place, places, table
 from validation.scenes.checks import SceneError, each, integer, of_scene, positive, real
 from validation.scenes.materials import Bead, Material, contact_stiffness
 from validation.scenes.scene import Scene
@@ -70,7 +74,7 @@ MOST_SAMPLES = 10_000_000
 
 KEYS = {
     "file": (
-        "duration", "samples", "gravity", "precompression", "materials", "beads", "chain",
+        "duration", "samples", "units", "gravity", "precompression", "materials", "beads", "chain",
         "defects", "wall", "striker", "start", "sensors",
     ),
     "chain": ("cell", "k", "stiffnesses", "spacings", "repeat"),
@@ -96,6 +100,8 @@ def scene(content: Any) -> Scene:
     >>> scene({"duration": 1, "chain": {"cell": [1, 0.5], "repeat": 2, "k": 1.5}}).masses
     (1.0, 0.5, 1.0, 0.5)
     """
+    if isinstance(content, dict) and "scene" in content:
+        content = content["scene"]
     file = Table(content, "", KEYS["file"])
     tables = {
         name: file.read(name, table(KEYS[name]), Table({}, name, KEYS[name]))
@@ -116,13 +122,14 @@ def scene(content: Any) -> Scene:
         **chain,
         wall=wall,
         duration=file.read("duration", positive),
+        units=file.read("units", among({"SI": "SI"}), "SI" if row else ""),
         samples=file.read("samples", partial(integer, least=2, most=MOST_SAMPLES), 1001),
         gravity=file.read("gravity", real, 0.0),
         precompression=file.read("precompression", real, 0.0),
         displacements=start.read("displacements", each(real), ()),
         velocities=velocities,
-        bead_sensors=sensors.read("beads", places(n), ()),
-        contact_sensors=sensors.read("contacts", places(n - (wall is None)), ()),
+        bead_sensors=sensors.read("beads", _heard(n), ()),
+        contact_sensors=sensors.read("contacts", _heard(n - (wall is None)), ()),
     )
     listening = len(result.bead_sensors) + len(result.contact_sensors)
     if result.samples * listening > MOST_SAMPLES:
@@ -134,6 +141,11 @@ def scene(content: Any) -> Scene:
             f"start.displacements press bead {pressed} into {other}: start.overlap = true allows it"
         )
     return result
+
+
+def _heard(count: int) -> Reader:
+    """Reader of sensors: a list of numbers from 1 to ``count``, or "all"."""
+    return lambda value, name: range(count) if value == "all" else places(count)(value, name)
 
 
 def _defect(value: Any, name: str) -> Table:
@@ -236,6 +248,8 @@ def document(what: Scene) -> dict[str, Any]:
         if values := getattr(what, name):
             chain[name] = values[0] if len(set(values)) == 1 else list(values[:period])
     result: dict[str, Any] = {"duration": what.duration, "samples": what.samples}
+    if what.units:
+        result["units"] = what.units
     forces = {"gravity": what.gravity, "precompression": what.precompression}
     result |= {name: force for name, force in forces.items() if force} | {"chain": chain}
     if what.wall is not None:

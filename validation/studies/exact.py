@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import sympy as sp
 
 from lwa.command.terminal import quantities
+from lwa.duration import Progress, announce
 from lwa.exact import InputError
 from lwa.quantities import QUANTITIES
 from validation.report.command import EXPONENT, number, option, study
@@ -16,7 +19,7 @@ from validation.scenes.checks import SceneError
 from validation.waves.profile import ExactWave
 from validation.waves.resonances import Resonances
 from validation.waves.resonances import resonances as special_ratios
-from validation.waves.solver import exact_wave, measured
+from validation.waves.solver import exact_wave, longest, measured
 
 _KINDS = {
     True: "solitary: nothing is left behind",
@@ -48,7 +51,6 @@ def wave_report(wave: ExactWave) -> Report:
     numbers = Table(tuple(Column(name, error=True) for name in names),
                     (tuple(found[name.replace(".", " ")] for name in names),))  # fmt: skip
     xi = np.linspace(-wave.half_period, wave.half_period, 2001)
-    profiles = {name: wave.quantity(name, xi) for name in QUANTITIES}
     errors = (
         "Errors are those of residual, tail and rounding."
         if wave.solitary
@@ -62,8 +64,8 @@ def wave_report(wave: ExactWave) -> Report:
         (Table(_COLUMNS, rows, note=f"{_SCALING}\n{errors}"),),
         panels=(
             Panel("ξ / D", "over its peak", tuple(
-                Curve.of(name, xi, values / np.abs(values).max(), style)
-                for (name, values), style in zip(profiles.items(), ("-", "--", ":"), strict=True)
+                Curve.of(name, xi, values, style) for (name, values), style
+                in zip(wave.over_peak(xi).items(), ("-", "--", ":"), strict=True)
             )),
         ),
         data={
@@ -105,15 +107,23 @@ def resonances_report(found: Resonances) -> Report:
            says="Scale the wave to this peak force, at A = 1; by default 1."),
 )  # fmt: skip
 def exact(
-    k: float, masses: tuple[sp.Expr, ...], speed: float | None, force: float | None
+    k: float,
+    masses: tuple[sp.Expr, ...],
+    speed: float | None,
+    force: float | None,
+    progress: Progress[Any] = iter,
 ) -> Report:
-    """An exact traveling wave of the lattice: speed, widths, and the tail if it has one."""
+    """An exact traveling wave of the lattice: speed, widths, and the tail if it has one. A second
+    or two; for unequal masses from k = 2 on up to minutes, which are announced.
+    """
     if speed is not None and force is not None:
         raise InputError("speed and force: a wave is scaled to one of the two")
     for mass in masses:
         if not mass.is_number:
             raise SceneError(f"mass is {mass}: a number is wanted")
-    wave = exact_wave([float(mass) for mass in masses], k)
+    values = [float(mass) for mass in masses]
+    announce(f"exact waves of unequal masses at k = {k:g} may take", longest(values, k))
+    wave = exact_wave(values, k, progress=progress)
     if speed is not None or force is not None:
         wave = wave.scaled(speed=speed, force=force)
     return wave_report(wave)

@@ -20,10 +20,10 @@ polynomials on |ξ| ≤ L, so that everything read off them is spectrally accura
 
     c² T = Δ ∫_0^∞ E dξ + 2Σ ∫_0^∞ ξ O dξ.
 
-It is 0 for a wave that ends. `Problem` can hold it there, either with m2 as one more unknown, or at
-given masses with a kick in the middle of the pulse, in ξ e^{-2ξ²} to the odd force, whose size the
-equations then ask for. That size depends smoothly on m2/m1 and is 0 exactly where T is 0 without a
-kick: its changes of sign are the special mass ratios.
+It is 0 for a wave that ends. `Problem` can hold it there with one more unknown: m2, or at given
+masses the size of a kick in the middle of the pulse, in ξ e^{-2ξ²} to the odd force. That size
+depends smoothly on m2/m1 and is 0 exactly where T is 0 without a kick: its changes of sign are the
+special mass ratios.
 """
 
 from __future__ import annotations
@@ -38,8 +38,7 @@ import scipy
 from lwa.numeric import Array
 from validation.scenes.checks import integer
 
-MOST_STEPS = 40
-"""Of Newton's method."""
+MOST_STEPS = 40  # of Newton's method
 
 
 def widening(masses: tuple[float, float]) -> float:
@@ -63,13 +62,10 @@ def respond(
     n = len(even) - 1
     q = np.pi * np.arange(n + 1) / half_period
     square = np.maximum(q, q[1]) ** 2
+    heavy, light = (total * 2 * f(q / 2) ** 2 for f in (np.sin, np.cos))
     mass, cross, light = (
         (row / square).reshape(-1, *[1] * (even.ndim - 1))
-        for row in (
-            total * 2 * np.sin(q / 2) ** 2,
-            difference * np.sin(q),
-            total * 2 * np.cos(q / 2) ** 2,
-        )
+        for row in (heavy, difference * np.sin(q), light)
     )
     e, o = mass * even + cross * odd, cross * even + light * odd
     e[0] = 0
@@ -100,8 +96,7 @@ def values(even: Array, odd: Array) -> tuple[Array, Array]:
 class Problem:
     """E - (a_+^k + b_+^k)/2 = 0 and O - (a_+^k - b_+^k)/2 = 0 on a grid, with E(0) = 1 for c².
 
-    Unknowns are the forces z (E at ξ = 0 … L, then O between) and c²; the response depends
-    linearly on 1/m2.
+    Unknowns are the forces z (E at ξ = 0 … L, then O between) and c²; strains are linear in 1/m2.
     """
 
     def __init__(self, masses: tuple[float, float], k: float, half_period: float, n: int) -> None:
@@ -131,8 +126,7 @@ class Problem:
 
     def fault(self, z: Array, c2: float, light: float) -> Array:
         """What is left of the equations."""
-        first = self.inverse[0]
-        padded = np.append(z, np.zeros(2 * self.n - self.count))
+        first, padded = self.inverse[0], np.append(z, np.zeros(2 * self.n - self.count))
         e, o = self._strains(padded, (first + light, light - first))
         a, b = np.maximum(e + o, 0) / c2, np.maximum(e - o, 0) / c2
         law = self._rows((a**self.k + b**self.k) / 2, (a**self.k - b**self.k) / 2)
@@ -148,21 +142,20 @@ class Problem:
         e, o = even @ z / c2, odd @ z / c2
         da, db = (k * np.maximum(r, 0) ** (k - 1) for r in (e + o, e - o))
 
-        def slope(e: Array, o: Array) -> Array:
-            """The change of the law's two rows with the strains."""
+        def slope(e: Array, o: Array) -> Array:  # of the law's two rows with the strains
             p, m = ((da + s * db).reshape(-1, *[1] * (e.ndim - 1)) / 2 for s in (1, -1))
             return self._rows(p * e + m * o, m * e + p * o)
 
         matrix = np.zeros((count + 1, count + 2))
-        matrix[:count, :count] = np.eye(count) - slope(even, odd) / c2
-        matrix[:count, count] = slope(e, o) / c2
-        matrix[:count, count + 1] = -slope(*(part @ z / c2 for part in self.parts[1][:2]))
+        matrix[:-1, :count] = np.eye(count) - slope(even, odd) / c2
+        matrix[:-1, count] = slope(e, o) / c2
+        matrix[:-1, -1] = -slope(*(part @ z / c2 for part in self.parts[1][:2]))
         matrix[count, 0] = 1
         return self.fault(z, c2, light), matrix
 
     def _at(self, light: float) -> tuple[Array, Array, Array]:
-        first = self.inverse[0]
-        even, odd, T = (first * a + light * b for a, b in zip(*self.parts, strict=True))
+        """What `parts` come to at these masses."""
+        even, odd, T = (self.inverse[0] * a + light * b for a, b in zip(*self.parts, strict=True))
         return even, odd, T
 
     def wave(self, z: Array, c2: float, unknown: str = "") -> tuple[Array, float, float]:
@@ -178,11 +171,10 @@ class Problem:
             fault, matrix = self.equations(x[:count], x[count], light)
             if not unknown:
                 return fault, matrix[:, :-1]
-            T = self._at(light)[2]
-            last = float(self.parts[1][2] @ x[:count]) if unknown == "mass" else 0.0
+            T, last = self._at(light)[2], float(self.parts[1][2] @ x[:count])
             if unknown == "kick":
                 fault[:-1] -= x[-1] * kick
-                matrix[:-1, -1] = -kick
+                matrix[:-1, -1], last = -kick, 0.0
             row = np.append(T, [0.0, last])
             return np.append(fault, T @ x[:count]), np.vstack((matrix, row))
 
@@ -204,6 +196,7 @@ def problem(
     return Problem(masses, k, L, n)
 
 
+@np.errstate(all="ignore")  # what overflows, or has c² < 0, does not converge
 def newton(step: Callable[[Array], tuple[Array, Array]], x: Array, sizes: Array) -> Array:
     """The root of equations near x, whose unknowns are of these sizes, by damped Newton steps.
 

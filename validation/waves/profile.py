@@ -1,9 +1,8 @@
 """A traveling wave of the lattice as trigonometric polynomials, and what is read off a profile.
 
-The wave is that of `validation.waves.fourier`: contacts push with r_+^k, A = D = 1, and a contact's
-strain is a(ξ) = e + o or b(ξ) = a(-ξ), ξ = x - ct. Equations that hold for a wave hold for its
-multiples, r → s r with c² → s^{k-1} c²: the contact law has no scale of its own. A wave is given at
-contact force 1, and `ExactWave.scaled` gives it at any other speed or force.
+The wave is that of `validation.waves.fourier`, A = D = 1: a contact's strain is a(ξ) = e + o or
+b(ξ) = a(-ξ), ξ = x - ct. As the contact law r_+^k has no scale of its own, its multiples are waves,
+too: r → s r with c² → s^{k-1} c². A wave is given at contact force 1, `ExactWave.scaled` at others.
 """
 
 from __future__ import annotations
@@ -20,17 +19,13 @@ import scipy
 from numpy.typing import ArrayLike
 
 from lwa.numeric import Array
-from lwa.quantities import strain_power
+from lwa.quantities import QUANTITIES, strain_power
 from validation.pulses.pulse import MeasureError
 from validation.scenes.checks import SceneError, positive
 from validation.waves import fourier
 
-TOLERANCE = 1e-9
-"""A wave is called solitary when its tail, over the peak strain, is below this and the equations
-of motion hold to it."""
-
-OUTSIDE = 0.6
-"""Of the half period: where the pulse of a dimer has ended, and its tail is looked for."""
+TOLERANCE = 1e-9  # of the tail, over the peak strain, and of the residual, of a solitary wave
+OUTSIDE = 0.6  # of the half period: where the pulse of a dimer has ended, and its tail is measured
 
 
 class Profile(ABC):
@@ -77,27 +72,23 @@ class Profile(ABC):
 
     def force(self, xi: ArrayLike, contact: int = 0) -> Array:
         """F_a(ξ) or F_b(ξ), positive."""
-        value: Array = np.maximum(self.strain(xi, contact), 0.0) ** self.k
-        return value
+        return np.asarray(np.maximum(self.strain(xi, contact), 0.0) ** self.k)
 
     def quantity(self, name: str, xi: ArrayLike) -> Array:
         """ "strain", "force" (of contact 0) or "velocity" (of bead m1), as in `lwa`."""
         strain_power(name, self.k)  # refuses other names
-        value: Array = getattr(self, name)(xi)
-        return value
+        return np.asarray(getattr(self, name)(xi))
 
     def peak(self, name: str) -> tuple[float, float]:
         """Where a quantity is greatest, and its value there."""
         xi = np.linspace(-self.half_period, self.half_period, 4 * self.samples + 1)
-        return summit(lambda x: float(self.quantity(name, x)), xi, self.quantity(name, xi))
+        return summit(lambda x: self.quantity(name, x), xi)
 
     def fwhm(self, name: str = "strain") -> float:
         """Full width at half maximum, in D, of the highest hump: roots of the profile itself.
 
-        At a contact of a dimer a pulse may have several humps, as the light bead hits to and fro;
-        the width jumps where the dip between two of them passes half the maximum.
-
-        Raises `MeasureError` where the quantity does not fall to half its peak.
+        Where a dimer's pulse has several humps (`validation.pulses.steady`), it jumps. Raises
+        `MeasureError` where the quantity does not fall to half its peak.
         """
         top, peak = self.peak(name)
         xi = top + np.linspace(0, self.half_period, 4 * self.samples)
@@ -114,6 +105,25 @@ class Profile(ABC):
             width += abs(float(root) - top)
         return width
 
+    def over_peak(self, xi: ArrayLike) -> dict[str, Array]:
+        """Strain, force and velocity, each over its peak."""
+        return {name: self.quantity(name, xi) / self.peak(name)[1] for name in QUANTITIES}
+
+    def plot(self, ax: Any = None) -> Any:
+        """Draw `over_peak` on |ξ| ≤ L into ``ax``, Matplotlib's axes, or a new picture's.
+
+        Returns the axes.
+        """
+        from lwa.picture import axes  # optional, start-up
+
+        ax = axes(ax)
+        xi = np.linspace(-self.half_period, self.half_period, 2001)
+        for (name, values), style in zip(self.over_peak(xi).items(), ("-", "--", ":"), strict=True):
+            ax.plot(xi, values, style, label=name)
+        ax.set(xlabel="ξ / D", ylabel="over its peak")
+        ax.legend()
+        return ax
+
     def rms_width(self, name: str = "strain") -> float:
         """√(∫ (ξ - mean)² f / ∫ f) over the pulse; positive values only (gaps do not count)."""
         n = 8 * self.samples
@@ -125,12 +135,7 @@ class Profile(ABC):
     def rattle(self, start: float) -> float:
         """The largest |o| on start ≤ |ξ| ≤ L: how far light beads are from their places."""
         outside = np.linspace(start, self.half_period, 2 * self.samples)
-
-        def height(xi: ArrayLike) -> Array:
-            at = np.asarray(xi, float)
-            return np.abs(self.strain(at) - self.strain(-at)) / 2
-
-        return summit(lambda x: float(height(x)), outside, height(outside))[1]
+        return summit(lambda x: np.abs(self.strain(x) - self.strain(-x)) / 2, outside)[1]
 
     def apart(self, other: Profile, end: float) -> float:
         """The largest difference of two strains on |ξ| ≤ end."""
@@ -142,13 +147,12 @@ class Profile(ABC):
 class ExactWave(Profile):
     """One traveling wave; A = D = 1.
 
-    masses : (m1, m2); equal for a chain of one mass.
-    c2 : c², the square of the speed dx/dt.
+    masses : (m1, m2); equal for a chain of one mass. c2 : c², the square of the speed dx/dt.
     half_period : L; profiles are periodic with 2L, a solitary wave's end before.
     even, odd : coefficients of E in cos(πjξ/L), j = 0 … n, and of O in sin(πjξ/L).
     tail : largest |o| outside the pulse, over the peak strain.
-    residual : of the equations of motion, integrated twice, on a grid twice as fine as that on
-        which they were solved; over the peak strain.
+    residual : of the equations of motion, integrated twice, over the peak strain; on a grid twice
+        as fine as that on which they were solved.
     """
 
     masses: tuple[float, float]
@@ -167,34 +171,35 @@ class ExactWave(Profile):
 
     @property
     def solitary(self) -> bool:
-        """Whether the wave has no tail, as far as its residual lets one say so."""
-        return self.tail < TOLERANCE and self.residual < TOLERANCE
+        """Whether the wave ends within L and has no tail, as far as its residual lets one say."""
+        return max(self.tail, self.residual, self.rest) < TOLERANCE
+
+    @cached_property
+    def rest(self) -> float:
+        """Of equal masses: the strain that the forces leave at L, where it is set to 0, over the
+        peak strain. It is c² times that, ∫ (1-|s|) F(L-s) ds, the mean of (*) at q = 0."""
+        if self.omega != 1:
+            return 0.0
+        even, c2 = self._strains[0], self.c2 * self.masses[0]
+        return float(abs(self.even[0] / c2 - even[0]) / even.sum())
 
     def scaled(self, *, speed: Any = None, force: Any = None) -> ExactWave:
         """The same wave of another speed dx/dt, or of another peak force of its contacts.
 
-        Raises `SceneError` unless one of the two is given, a positive number, and the strains are
-        within the range of floating point.
-
-        >>> from validation.waves.solver import exact_wave
-        >>> wave = exact_wave([1], 1.5).scaled(speed=2)
-        >>> round(wave.c, 12), round(wave.peak("force")[1] / 4**3 * wave.scaled(force=1).c2**3, 12)
-        (2.0, 1.0)
+        Raises `SceneError` unless one of the two is given, positive, and the strains are floats.
         """
         if (speed is None) == (force is None):
             raise SceneError("speed or force is wanted: a wave is scaled to one of the two")
         with np.errstate(over="ignore", under="ignore"):
             if speed is not None:
-                now = np.float64(positive(speed, "speed") / self.c) ** (2 / (self.k - 1))
+                what, now = f"speed is {speed}", np.float64(positive(speed, "speed") / self.c)
+                now **= 2 / (self.k - 1)
             else:
-                now = np.float64(positive(force, "force")) ** (1 / self.k)
-                now /= self.peak("strain")[1]
+                what, now = f"force is {force}", np.float64(positive(force, "force"))
+                now = now ** (1 / self.k) / self.peak("strain")[1]
             scale = float(now ** max(self.k, 2.0))
         if not 1e-200 < scale < 1e200:
-            what = f"speed is {speed:g}" if speed is not None else f"force is {force:g}"
-            raise SceneError(
-                f"{what}: the wave's strain, {now:.1e} times that here, is out of range"
-            )
+            raise SceneError(f"{what}: {now:.1e} times the strain here is out of range")
         return self.times(float(now))
 
     def times(self, s: float) -> ExactWave:
@@ -204,7 +209,7 @@ class ExactWave(Profile):
 
     @cached_property
     def _q(self) -> Array:
-        return np.asarray(np.pi * np.arange(len(self.even)) / self.half_period, float)
+        return np.asarray(np.pi * np.arange(self.samples) / self.half_period, float)
 
     @cached_property
     def _strains(self) -> tuple[Array, Array]:
@@ -217,7 +222,6 @@ class ExactWave(Profile):
         return self._sum(xi, *self._strains)
 
     def velocity(self, xi: ArrayLike, bead: int = 0) -> Array:
-        """Of the beads m1 (bead 0) or m2 (bead 1); far from the pulse a cell has no momentum."""
         one, two = (float(self._velocity(np.array(self.half_period), i)) for i in (0, 1))
         mean = (one + self.omega * two) / (1 + self.omega)
         return self._velocity(xi, bead) - mean
@@ -231,8 +235,7 @@ class ExactWave(Profile):
     def _sum(self, xi: ArrayLike, even: Array, odd: Array) -> Array:
         L = self.half_period if self.solitary else math.inf  # a solitary wave is not repeated
         phase = np.multiply.outer(np.clip(xi, -L, L), self._q)
-        value: Array = np.cos(phase) @ even + np.sin(phase) @ odd
-        return value
+        return np.asarray(np.cos(phase) @ even + np.sin(phase) @ odd)
 
 
 def at_unit_force(
@@ -247,21 +250,22 @@ def at_unit_force(
 
 def _residual(wave: ExactWave) -> float:
     """max |r - r[F(r)]| on the grid twice as fine, for both contacts."""
-    n, L = 2 * (len(wave.even) - 1), wave.half_period
-    xi = L * np.arange(n + 1) / n
-    a, b = wave.strain(xi, 0), wave.strain(xi, 1)
-    Fa, Fb = np.maximum(a, 0) ** wave.k, np.maximum(b, 0) ** wave.k
+    n = 2 * (len(wave.even) - 1)
+    xi = wave.half_period * np.arange(n + 1) / n
+    a, b = (wave.strain(xi, i) for i in (0, 1))
+    Fa, Fb = (np.maximum(r, 0) ** wave.k for r in (a, b))
     even, odd = fourier.coefficients((Fa + Fb) / 2, (Fa - Fb)[1:n] / 2)
     again = replace(wave, even=even, odd=odd)
     return float(max(np.abs(again.strain(xi, i) - r).max() for i, r in enumerate((a, b))))
 
 
-def summit(f: Callable[[float], float], xi: Array, value: Array) -> tuple[float, float]:
+def summit(f: Callable[[Any], Array], xi: Array) -> tuple[float, float]:
     """The maximum of a smooth function near the largest of its samples; its place to 1e-8."""
+    value = f(xi)
     i = int(np.argmax(value))
     bounds = xi[max(i - 1, 0)], xi[min(i + 1, len(xi) - 1)]
     top = scipy.optimize.minimize_scalar(
-        lambda x: -f(x), bounds=bounds, method="bounded", options={"xatol": 1e-9}
+        lambda x: -float(f(x)), bounds=bounds, method="bounded", options={"xatol": 1e-9}
     )
     if -top.fun > value[i]:
         return float(top.x), -float(top.fun)

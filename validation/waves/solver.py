@@ -9,17 +9,15 @@ m2/m1 only, those of Jayaprakash, Starosvetsky & Vakakis, Phys. Rev. E 83, 03660
 `resonances` finds them.
 
 At any other ratio the chain has periodic waves (Betti & Pelinovsky, J. Nonlinear Sci. 23, 689
-(2013)): on both sides of the pulse the light beads rattle between the heavy ones, for ever and at
-an amplitude that does not decay. Such a wave is a nanopteron, its tail the largest |o| on
-0.6 L ≤ |ξ| ≤ L. The strains are 0 at ξ = ±L, half way between two pulses. There are several
-branches of such waves, along each of which L and the tail change.
+(2013)): on both sides of the pulse the light beads rattle between the heavy ones, for ever. Such a
+wave is a nanopteron, its tail the largest |o| on 0.6 L ≤ |ξ| ≤ L. The strains are 0 at ξ = ±L, half
+way between two pulses. Along each of several branches of such waves L and the tail change.
 
 A struck chain makes none of them, as its light beads are at rest before the pulse; but its pulse,
 made symmetric, is nearly one (`validation.waves.struck`). Newton's method is begun from that pulse
 (and where it finds nothing, from the theory's wave), at several L unless one is given, and of the
 waves found that one is taken whose strain differs least from the struck chain's. How much it still
-differs is its error: that is how well a nanopteron, which depends on L, tells what a chain does
-(`measured`).
+differs is its error (`measured`).
 
 A chain of one mass has always a solitary wave (Friesecke & Wattis 1994; English & Pego 2005).
 """
@@ -31,10 +29,12 @@ import sys
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
+from itertools import count
 from typing import Any
 
 import numpy as np
 
+from lwa.duration import Progress
 from lwa.exact import InputError
 from lwa.numeric import Array
 from lwa.quantities import QUANTITIES
@@ -45,36 +45,34 @@ from validation.waves import fourier
 from validation.waves.profile import ExactWave, Profile, at_unit_force
 from validation.waves.struck import Struck, struck
 
-CLOSE = 0.1
-"""By how much c² or the strain, over c² or the peak strain, may change in one step along k."""
-
-HALVINGS = 7
-"""Of a step along k, before a branch counts as lost."""
-
-STEEP = 2.0
-"""The k from which waves are followed up where Newton's method finds none."""
-
-PERIODS = np.arange(1.0, 1.8, 0.1)
-"""Ample half periods at which waves are looked for."""
-
-ROUNDING = 1e-12
-"""Of a solitary wave's numbers: that of a strain, over its slope at half maximum."""
+CLOSE = 0.1  # by how much c² and the strain may change, relatively, in one step along k
+HALVINGS = 7  # of a step along k, before a branch counts as lost
+STEEP = 2.0  # the k from which waves are followed up where Newton's method finds none
+PERIODS = np.arange(1.0, 1.8, 0.1)  # ample half periods at which waves are looked for
+ENDED = 3e-15  # what equal masses may have of their peak strain at the half period
+ROUNDING = 1e-12  # of a solitary wave's numbers: that of a strain, over its slope at half maximum
 
 
 class NoWave(InputError):
     """Newton's method found no wave; the message names its parameters."""
 
 
-def exact_wave(masses: Sequence[Any], k: Any, *, half_period: float | None = None) -> ExactWave:
+def exact_wave(
+    masses: Sequence[Any],
+    k: Any,
+    *,
+    half_period: float | None = None,
+    progress: Progress[Any] = iter,
+) -> ExactWave:
     """The traveling wave: solitary, or the nanopteron nearest to the pulse of a struck chain.
 
-    Parameters
-    ----------
     masses : m1, or m1 and m2.
     k : exponent of F = δ^k, from 1.01 to 8.
     half_period : L, where it is to be this one and not chosen.
+    progress : is shown what is tried on the way, where the masses differ (such as `tqdm.tqdm`).
 
-    Raises `SceneError` for parameters that cannot be meant, `NoWave` when Newton's method fails.
+    Raises `SceneError` for parameters that cannot be meant, among them a half period at which the
+    wave of equal masses has not ended; `NoWave` when Newton's method fails.
 
     >>> wave = exact_wave([1], 1.5)
     >>> round(wave.fwhm("force"), 6), round(wave.fwhm("strain"), 6), wave.solitary
@@ -83,7 +81,7 @@ def exact_wave(masses: Sequence[Any], k: Any, *, half_period: float | None = Non
     pair, k = parameters(masses, k)
     L = None if half_period is None else positive(half_period, "half_period")
     unit = (1.0, pair[1] / pair[0])
-    found = (_uniform if unit[1] == 1 else _dimer)(unit, k, L)
+    found = _uniform(unit, k, L) if unit[1] == 1 else _dimer(unit, k, L, progress)
     c2 = found.c2 / pair[0]
     if not sys.float_info.min <= c2 <= sys.float_info.max:
         raise SceneError(f"mass 1 is {pair[0]:g}: c² leaves the range of floats")
@@ -96,9 +94,6 @@ def measured(wave: ExactWave) -> dict[str, Measured]:
     A nanopteron's error is the difference from a struck chain's pulse, made symmetric or (its
     widths) as it is, so that with it waves of all half periods agree. That of a solitary wave is,
     relatively, the sum of residual, tail and `ROUNDING`.
-
-    >>> measured(exact_wave([1], 1.5))["fwhm force"]
-    1.411928348539 ± 1e-12
     """
     values = _numbers(wave)
     if wave.solitary:
@@ -110,18 +105,16 @@ def measured(wave: ExactWave) -> dict[str, Measured]:
     off = {name: abs(there[name] / here[name] - 1) for name in here}
     for name, width in zip(("fwhm force", "fwhm strain"), pulse.widths, strict=True):
         off[name] = max(off[name], abs(width / here[name] - 1))
-    return {
-        name: Measured(value, value * (1 + off[name] + wave.residual))
-        for name, value in values.items()
-    }
+    far = {name: 1 + off[name] + wave.residual for name in off}
+    return {name: Measured(value, value * far[name]) for name, value in values.items()}
 
 
 def _numbers(wave: ExactWave | Struck, mass: float = 1.0) -> dict[str, float]:
     """In units in which m1 is ``mass``."""
-    found = {"c2": wave.c2 / mass, "c": wave.c / math.sqrt(mass), "tail": wave.tail}
+    root = math.sqrt(mass)
+    found = {"c2": wave.c2 / mass, "c": wave.c / root, "tail": wave.tail}
     for name in QUANTITIES:
-        unit = math.sqrt(mass) if name == "velocity" else 1.0
-        found[f"amplitude {name}"] = wave.peak(name)[1] / unit
+        found[f"amplitude {name}"] = wave.peak(name)[1] / (root if name == "velocity" else 1.0)
         found[f"fwhm {name}"] = wave.fwhm(name)
         found[f"rms {name}"] = wave.rms_width(name)
     return found
@@ -141,49 +134,72 @@ def parameters(masses: Sequence[Any], k: Any) -> tuple[tuple[float, float], floa
     return (given[0], given[-1]), k
 
 
+def longest(masses: Sequence[Any], k: Any) -> float:
+    """Seconds that `exact_wave` takes where Newton's method fails everywhere; a rough bound."""
+    pair, k = parameters(masses, k)
+    unit = (1.0, pair[1] / pair[0])
+    ample = fourier.ample_half_period(unit, k)
+    counts = [fourier.problem(unit, k, L, None).count for L in ample * PERIODS]
+    each = sum(5e-8 * count**2 + 4e-11 * count**3 for count in counts)  # a step's, on one core
+    return 0.0 if unit[1] == 1 else 2 * fourier.MOST_STEPS * each
+
+
 def _uniform(pair: tuple[float, float], k: float, half_period: float | None) -> ExactWave:
-    if k <= 3:
-        return solve(pair, k, half_period)
-    L = half_period or fourier.ample_half_period(pair, k)
-    return _followed(solve(pair, 3.0), k, L)  # the theory's is too wide
+    ample = fourier.ample_half_period(pair, k)
+    L = half_period or ample
+    # above k = 3 the theory's is too wide
+    found = solve(pair, k, L) if k <= 3 else _followed(solve(pair, 3.0), k, L)
+    if found.rest > ENDED:
+        raise SceneError(
+            f"half_period is {L:g}: the solitary wave at k = {k:g} has not ended there, with "
+            f"{found.rest:.0e} of its peak strain; {ample:.3g} is ample"
+        )
+    return found
 
 
-def _dimer(pair: tuple[float, float], k: float, half_period: float | None) -> ExactWave:
+def _dimer(
+    pair: tuple[float, float], k: float, half_period: float | None, progress: Progress[Any] = iter
+) -> ExactWave:
     """The solitary wave that the theory's leads to, or the wave nearest to a struck chain's."""
     ample = fourier.ample_half_period(pair, k)
     periods = list(ample * PERIODS) if half_period is None else [half_period]
+    # The theory's wave first, and where nothing else led to one, at the other half periods.
+    one, *others = ((False, L) for L in periods)
     waves: list[ExactWave] = []
-    with suppress(NoWave):
-        waves.append(solve(pair, k, periods[0]))
-        if waves[0].solitary:
-            return waves[0]
-    try:
-        pulse = struck(k, pair[1])
-    except (InputError, IntegrationError) as error:
-        raise NoWave(f"{_named('no pulse of a struck chain', pair, k)}: {error}") from None
-    for start in (pulse, None):
-        for L in periods:
-            with suppress(NoWave):
-                waves.append(solve(pair, k, L, start=start))
-                if waves[-1].solitary:
-                    return waves[-1]
-        if waves:
-            return min(waves, key=lambda wave: pulse.apart(wave, pulse.pulse))
+    for i, (from_pulse, L) in enumerate(progress([one, *((True, L) for L in periods), *others])):
+        if waves and i > len(periods):
+            break
+        start = _pulse(pair, k) if from_pulse else None
+        with suppress(NoWave):
+            waves.append(solve(pair, k, L, start=start))
+            if waves[-1].solitary:
+                return waves[-1]
+    if waves:
+        pulse = _pulse(pair, k)
+        return min(waves, key=lambda wave: pulse.apart(wave, pulse.pulse))
     lengths = f"{periods[0]:.4g}" + f" to {periods[-1]:.4g}" * (len(periods) > 1)
-    failure = (
-        f"{_named('no wave found', pair, k)}: Newton's method was begun from the pulse of a struck "
-        f"chain and from the theory's wave, at half periods {lengths}"
-    )
+    begun = "Newton's method was begun from the pulse of a struck chain and from the theory's wave"
+    failure = f"{_named('no wave found', pair, k)}: {begun}, at half periods {lengths}"
     if k <= STEEP:
         raise NoWave(failure)
     try:
-        begin = _dimer(pair, STEEP, half_period)
-        return _followed(begin, k, half_period or max(begin.half_period, ample))
+        begin = _dimer(pair, STEEP, half_period, progress)
+        return _followed(begin, k, half_period or max(begin.half_period, ample), progress)
     except NoWave as other:
         raise NoWave(f"{failure}; {other}") from None
 
 
-def _followed(begin: ExactWave, k: float, half_period: float) -> ExactWave:
+def _pulse(pair: tuple[float, float], k: float) -> Struck:
+    """Of the struck chain; raises `NoWave` where none comes through."""
+    try:
+        return struck(k, pair[1])
+    except (InputError, IntegrationError) as error:
+        raise NoWave(f"{_named('no pulse of a struck chain', pair, k)}: {error}") from None
+
+
+def _followed(
+    begin: ExactWave, k: float, half_period: float, progress: Progress[Any] = iter
+) -> ExactWave:
     """The wave at another k and L on the branch of this one.
 
     A step counts when it changes the wave little and when the same step taken back leads to the
@@ -196,7 +212,9 @@ def _followed(begin: ExactWave, k: float, half_period: float) -> ExactWave:
         return (begin.k + t * (k - begin.k) if t < 1 else k), L
 
     wave, done, step = begin, 0.0, 1.0
-    while done < 1:
+    for _ in progress(count()):
+        if done == 1:
+            break
         to = min(1.0, done + step)
         with suppress(NoWave):
             found = solve(begin.masses, *at(to), start=wave)
@@ -215,43 +233,24 @@ def _followed(begin: ExactWave, k: float, half_period: float) -> ExactWave:
     return wave
 
 
-# --- one solution of the equations ----------------------------------------------------------
-
-
 def solve(
-    masses: tuple[float, float],
-    k: float,
-    half_period: float | None = None,
-    points: int | None = None,
-    start: Profile | None = None,
-    free: bool = False,
-) -> ExactWave:
+    masses: tuple[float, float], k: float, half_period: float | None = None,
+    points: int | None = None, start: Profile | None = None, free: bool = False,
+) -> ExactWave:  # fmt: skip
     """One wave by Newton's method, scaled to a force 1 at its peak; free: m2 is to be found.
 
     It begins with the theory's wave, or another near one, and may end on any branch of waves.
     Raises `NoWave` where it fails.
     """
-    return _solved(masses, k, half_period, points, start, "mass" if free else "")[0]
+    return solved(masses, k, half_period, points, start, "mass" if free else "")[0]
 
 
-def kicked(
-    masses: tuple[float, float], k: float, start: ExactWave | None = None
-) -> tuple[ExactWave, float]:
-    """The wave that a kick in the middle of its pulse keeps from having a tail, and the kick.
-
-    It obeys the equations of motion but for the kick. Raises `NoWave` where Newton's method fails.
-    """
-    return _solved(masses, k, None, None, start, "kick")
-
-
-def _solved(
-    masses: tuple[float, float],
-    k: float,
-    half_period: float | None,
-    points: int | None,
-    start: Profile | None,
-    unknown: str,
-) -> tuple[ExactWave, float]:
+def solved(
+    masses: tuple[float, float], k: float, half_period: float | None = None,
+    points: int | None = None, start: Profile | None = None, unknown: str = "",
+) -> tuple[ExactWave, float]:  # fmt: skip
+    """`solve`, and what was asked for besides: the "mass", as 1/m2, or the "kick" in the middle of
+    the pulse that keeps the wave from having a tail."""
     problem = fourier.problem(masses, k, half_period, points)
     try:
         z, c2, found = problem.wave(*_guess(masses, k, problem.xi, start), unknown)
@@ -277,18 +276,14 @@ def _guess(
         a, b = start.force(xi, 0), start.force(xi, 1)
         c2 = start.c2 * sum(start.masses) / sum(masses)
     else:
-        m1, m2 = masses
         beta = (k - 1) * math.sqrt(6 / (k * (k + 1))) / fourier.widening(masses)
-        shift = (m2 - m1) / (m1 + m2) / 2
-        a, b = (
-            np.cos(np.clip(beta * (xi + side * shift), -np.pi / 2, np.pi / 2)) ** (2 * k / (k - 1))
-            for side in (-1, 1)
-        )
-        c2 = 4 / ((k + 1) * (m1 + m2))
+        shift = (masses[1] - masses[0]) / sum(masses) / 2
+        phases = (beta * (xi + side * shift) for side in (-1, 1))
+        a, b = (np.cos(np.clip(x, -np.pi / 2, np.pi / 2)) ** (2 * k / (k - 1)) for x in phases)
+        c2 = 4 / ((k + 1) * sum(masses))
     E, O = (a + b) / 2, (a - b)[1:-1] / 2
     return np.append(E, O), c2 * float(E[0]) ** ((1 - k) / k)
 
 
 def _named(text: str, masses: tuple[float, float], k: float) -> str:
-    """A message with the parameters."""
     return f"{text} at k = {k:g}, masses {masses[0]:g}, {masses[1]:g}"

@@ -3,9 +3,9 @@
 The chain is that of `validation.pulses.steady`, masses 1, ω. At one of its last places the strains
 of the two contacts of a cell are recorded, a(ξ) and b(ξ), and scaled to contact force 1. The pulse
 leaves light beads in motion behind it and meets none, so that b(ξ) is not quite a(-ξ). Its
-symmetric part (a(ξ) + b(-ξ))/2 has half of the tail on either side, as the symmetric waves of
-`validation.waves.solver` have a whole one: to first order in the tail it is one of them. ξ =
-0 is the mean of the two contacts' centers of F - F_max/4^k, where that is positive.
+symmetric part (a(ξ) + b(-ξ))/2 has half of the tail on either side: to first order in the tail it
+is one of the symmetric waves of `validation.waves.solver`. ξ = 0 is the mean of the two contacts'
+centers of F - F_max/4^k, where that is positive.
 
 As k → 1 the pulse needs ever longer to leave its wake; it is not waited for beyond `FARTHEST`.
 """
@@ -26,16 +26,10 @@ from validation.pulses.steady import PLACES, STRETCH, Chain, cells_apart
 from validation.waves.fourier import ample_half_period
 from validation.waves.profile import Profile
 
-FARTHEST = 60
-"""Cells from one place to the next."""
-
-TOLERANCE = 1e-7
-"""Of the run."""
-
-_STEP = 0.01
-"""In ξ."""
-_LONG = 2.0
-"""Ample half periods on which the profile is kept."""
+FARTHEST = 60  # cells from one place to the next
+TOLERANCE = 1e-7  # of the run
+_STEP = 0.01  # in ξ
+_LONG = 2.0  # ample half periods on which the profile is kept
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,21 +67,18 @@ class Struck(Profile):
     def _impulse(self) -> tuple[Any, Any]:
         """∫ of the force from the left less that from the right, for m1 and m2."""
         pushes = (self.force(self.xi - 0.5, 1 - i) - self.force(self.xi + 0.5, i) for i in (0, 1))
-        one, two = (
-            scipy.interpolate.CubicSpline(self.xi, push).antiderivative() for push in pushes
-        )
+        splines = (scipy.interpolate.CubicSpline(self.xi, push) for push in pushes)
+        one, two = (spline.antiderivative() for spline in splines)
         return one, two
 
     def _front(self, xi: Array) -> Array:
-        value: Array = self._strain(np.clip(xi, self.xi[0], self.xi[-1]))
-        return value
+        return np.asarray(self._strain(np.clip(xi, self.xi[0], self.xi[-1])))
 
     def velocity(self, xi: ArrayLike, bead: int = 0) -> Array:
         """Of the beads m1 or m2: what they have from ξ on, where they were at rest."""
         impulse = self._impulse[bead % 2]
         left = impulse(self.xi[-1]) - impulse(np.asarray(xi, float))
-        value: Array = left / (self.masses[bead % 2] * self.c)
-        return value
+        return np.asarray(left / (self.masses[bead % 2] * self.c))
 
 
 @lru_cache(maxsize=64)
@@ -95,39 +86,34 @@ def struck(k: float, omega: float) -> Struck:
     """Strike the chain, the heavy bead first, and read off its pulse; masses 1, ω.
 
     Raises `lwa.InputError` where the pulse does not come through.
-
-    >>> pulse = struck(1.5, 1.0)
-    >>> round(pulse.fwhm("force"), 4), round(pulse.c2, 4)
-    (1.4119, 0.82)
     """
     if omega > 1:  # the mirror image, in units of the light bead's mass
         other = struck(k, 1 / omega)
-        return replace(
-            other, masses=(1.0, omega), c2=other.c2 / omega, front=other.front[::-1].copy()
-        )
-    chain = Chain(k, omega, min(cells_apart(k, STRETCH), FARTHEST))
+        front = other.front[::-1].copy()
+        return replace(other, masses=(1.0, omega), c2=other.c2 / omega, front=front)
+    chain = Chain(k, omega, 2 * min(cells_apart(k, STRETCH), FARTHEST))
     record = chain.passed(chain.crossing, TOLERANCE)
     place = PLACES - 3  # the tail behind it has still to be recorded
     time, cell = record.run.time, slice(2 * place, 2 * place + 2)
-    forces = [
-        (time[part], force[part])
-        for part, force in zip(record.parts[cell], record.run.contact_force[cell], strict=True)
-    ]
+    parts = record.parts[cell]
+    forces = [f[part] for f, part in zip(record.run.contact_force[cell], parts, strict=True)]
     # A leading pulse ends where its strain is a quarter of the peak's: on both sides, here.
-    middle = float(
-        np.mean([np.average(t, weights=np.maximum(f - f.max() / 4**k, 0)) for t, f in forces])
-    )
-    peak = math.sqrt(math.prod(float(force.max()) for _, force in forces))
+    weights = (np.maximum(f - f.max() / 4**k, 0) for f in forces)
+    centers = [np.average(time[p], weights=w) for p, w in zip(parts, weights, strict=True)]
+    middle = float(np.mean(centers))
+    peak = math.sqrt(math.prod(float(force.max()) for force in forces))
     width, strain_width, c, _ = chain.numbers(record)[:, place - 1].tolist()
     here = c * peak ** ((k - 1) / (2 * k))
     ample = ample_half_period((1.0, omega), k)
     half = np.arange(0, _LONG * ample, _STEP)
     xi = np.append(-half[:0:-1], half)
+    splines = (
+        scipy.interpolate.CubicSpline(time, strain / peak ** (1 / k))
+        for strain in record.run.compression[cell]
+    )
     a, b = (
-        scipy.interpolate.CubicSpline(time, r / peak ** (1 / k))(
-            np.clip(middle + (site - xi) / here, time[0], time[-1])
-        )
-        for r, site in zip(record.run.compression[cell], (-0.5, 0.5), strict=True)
+        spline(np.clip(middle + (site - xi) / here, time[0], time[-1]))
+        for spline, site in zip(splines, (-0.5, 0.5), strict=True)
     )
     front = (a + b[::-1]) / 2
     return Struck((1.0, omega), k, c * c, ample, xi, front, (width, strain_width))

@@ -1,6 +1,6 @@
 """The theory's traveling wave in numbers, as the lattice would see it.
 
-The strain is v(x) = B cos^m(βx), m = 2/(k-1), on |x| ≤ π/(2β) (Porter et al. 2008, eq. 8). The
+The strain is v(x) = B cos^m(βx), m = 2/(k-1), on |x| ≤ π/(2β) (Porter et al. 2008). The
 lattice knows it through its contacts and beads, in the units of the cell:
 
     contact   compression D v, force A (D v)^k,
@@ -23,7 +23,7 @@ from numpy.typing import ArrayLike
 
 from lwa import Dimer, TravelingWave, canonical_wave, homogenize
 from lwa.numeric import Array
-from validation.scenes.checks import positive
+from validation.scenes.checks import SceneError, positive
 
 
 @dataclass(frozen=True)
@@ -41,21 +41,24 @@ class Compacton:
 
     @classmethod
     def of_speed(cls, wave: TravelingWave, speed: float) -> Compacton:
-        """The wave of a speed dx/dt: B^{(k-1)/2} is proportional to it."""
+        """The wave of a speed dx/dt: B^{(k-1)/2} is proportional to it.
+
+        This and the next two raise `SceneError` unless the amount is positive and B a float.
+        """
         unit = cls(wave, 1.0)
-        return cls(wave, (speed / unit.speed) ** (2 / (unit.k - 1)))
+        return cls(wave, _strain("speed", speed, unit.speed, (unit.k - 1) / 2))
 
     @classmethod
     def of_bead_force(cls, wave: TravelingWave, force: float) -> Compacton:
         """The wave whose bead force has this peak: B^k is proportional to it."""
         unit = cls(wave, 1.0)
-        return cls(wave, (force / float(unit.bead_force(0.0))) ** (1 / unit.k))
+        return cls(wave, _strain("force", force, float(unit.bead_force(0.0)), unit.k))
 
     @classmethod
     def of_momentum(cls, wave: TravelingWave, momentum: float) -> Compacton:
         """The wave that carries this momentum: B^{(k+1)/2} is proportional to it."""
         unit = cls(wave, 1.0)
-        return cls(wave, (momentum / unit.momentum) ** (2 / (unit.k + 1)))
+        return cls(wave, _strain("momentum", momentum, unit.momentum, (unit.k + 1) / 2))
 
     @cached_property
     def k(self) -> float:
@@ -149,6 +152,14 @@ def theory_at(k: Any, omega: Any, closure: str = "linear") -> TravelingWave:
     if closure == "canonical":
         return canonical_wave(cell, k)
     return homogenize(cell, k=k, closure=closure).pde.traveling_wave()
+
+
+def _strain(name: str, amount: float, unit: float, power: float) -> float:
+    """B where an amount is ``unit`` at B = 1 and goes as B^power."""
+    log = math.log(positive(amount, name) / unit) / power
+    if abs(log) > 700:
+        raise SceneError(f"{name} is {amount:g}: the strain e^{log:.0f} is no float")
+    return math.exp(log)
 
 
 def _float(value: Any) -> float:

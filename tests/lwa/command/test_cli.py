@@ -475,6 +475,10 @@ def test_a_reader_that_stops_early_is_no_fault():
         ),
         ("derive --masses 1,1e999 --order 10", "more than 4000"),
         ("wave --k 29000", "up to k = 1000"),
+        ("wave --k 1e7", "up to k = 1000"),
+        ("derive --k 1e400 --branch optical", "up to k = 1000"),
+        ("expansion --k 1e7 --masses 1", "up to k = 1000"),
+        ("dispersion --k 1e400 --stiffnesses 1,3", "up to k = 1000"),
         ("derive --masses 1,2,3", "--closure full"),
     ],
 )
@@ -497,6 +501,46 @@ def test_conservative_is_told_at_any_order(capsys):
         status, out, _ = run(capsys, "derive", "--order", order, "--format", "json")
         assert status == 0
         assert json.loads(out)["conservative"] is False
+
+
+def test_units_are_told_near_k_one(capsys):
+    status, out, _ = run(capsys, "wave", "--k", "1.000000001", "--masses", "1,2")
+    assert status == 0
+    assert "k = 1000000001/1000000000" in out
+    assert re.findall(r"≈ \S+ (D\S*)", out) == ["D^-1", "D", "D", "D", "D", "D^-2", "D^-2"]
+
+
+@pytest.mark.parametrize(
+    "options",
+    ["", "--field center", "--masses m1,m2,m3", "--k 1", "--k 3/2 --masses 1,2", "--k 1.000000001"],
+)
+def test_powers_of_the_full_closure_are_written_once(capsys, options):
+    """u_x^(k-1), u_x^(-1), never a sum of numbers, nor a power 0 or 1."""
+    for style, power in (("text", r"\^\(([^)]*)\)"), ("latex", r"u_\{x\}\^\{([^}]*)\}")):
+        arguments = ("derive", "--closure", "full", "--order", "5", *options.split())
+        status, out, _ = run(capsys, *arguments, "--format", style)
+        assert status == 0
+        powers = [p for p in re.findall(power, out) if "/" not in p and "D" not in p]
+        assert powers
+        assert all(re.fullmatch(r"-?[2-9]|-1|-?k(/2)?([+-]\d+)?", p) for p in powers)
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        "wave --k 999.99 --masses 1,2 --stiffnesses 1,3 --closure full --field center",
+        "wave --k 123.456789 --masses 1,2 --force 1.25 --spacing 0.3",
+        "derive --k 999.99999 --masses 1,2 --branch optical",
+        "derive --k 1000 --masses 1,1e300 --branch optical",
+        "derive --k 1.5123456789 --masses 1,2 --stiffnesses 1/7,3 --closure full",
+        "wave --k 123.456789 --masses 1,2 --stiffnesses 1/7,3 --closure full --force 1.25",
+        "expansion --k 1.5123456789 --masses 1,2 --stiffnesses 1/7,3 --order 2",
+    ],
+)
+def test_long_exponents_are_printed(capsys, command):
+    status, out, err = run(capsys, *command.split())
+    assert (status, err) == (0, "")
+    assert max(map(len, out.splitlines())) < 6000
 
 
 def test_what_takes_long_to_write_says_so(capsys, monkeypatch):

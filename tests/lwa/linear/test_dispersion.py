@@ -488,3 +488,13 @@ def test_bad_chains():
 def test_importing_it_does_not_load_numpy():
     code = "import lwa.linear.dispersion, sys; sys.exit('numpy' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+@pytest.mark.parametrize("kappa", [1e308, -1e17, 12345.678, 7.0])
+def test_a_wavenumber_of_many_turns_is_as_good_as_any(kappa):
+    chain = Dispersion(Cell([1, 2, 3]))
+    with mpmath.workdps(400):  # 1e308 has its own place in the zone
+        turn = mpmath.mpf(kappa) % (2 * mpmath.pi)
+        for branch, omega in enumerate(chain.branches(kappa)):
+            assert abs(omega - high_precision(chain.cell, turn, branch)) < ROUNDING
+    assert np.allclose(chain.group_velocity(kappa), chain.group_velocity(float(turn)), 0, 1e-13)

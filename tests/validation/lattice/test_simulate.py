@@ -1,11 +1,13 @@
 """The equations of motion against what is known exactly: no stored outputs."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from matplotlib.figure import Figure
 from scipy.interpolate import CubicSpline
 
 from validation.lattice.run import IntegrationError
@@ -341,3 +343,20 @@ def test_a_failing_integrator_is_not_silent(monkeypatch):
     monkeypatch.setattr(integrate, "DOP853", Failing)
     with pytest.raises(IntegrationError, match=r"^integration stopped at t = 0: step too small$"):
         simulate(Scene(masses=(1, 1), stiffnesses=(1,), k=1.5, duration=1, velocities=(1,)))
+
+
+def test_a_run_is_drawn_into_given_axes():
+    scene = Scene(masses=(1, 1, 1), stiffnesses=(1, 1), k=1.5, duration=3, velocities=(1, 0, 0))
+    heard = replace(scene, contact_sensors=(1,), bead_sensors=(0, 2))
+    run, ax = simulate(heard), Figure().add_subplot()
+    assert run.plot(ax) is ax
+    assert [text.get_text() for text in ax.get_legend().get_texts()] == [
+        "contact 1", "bead 0", "bead 2",
+    ]  # fmt: skip
+    for line, force in zip(ax.lines, (*run.contact_force, *run.bead_force), strict=True):
+        assert np.array_equal(line.get_xdata(), run.time)
+        assert np.array_equal(line.get_ydata(), force)
+    ax.figure.draw_without_rendering()
+    assert ax.get_legend().get_window_extent().y0 >= ax.bbox.y1  # on no curve
+    with pytest.raises(SceneError, match=r"^plot is asked for, but the scene names no sensors$"):
+        simulate(scene).plot()

@@ -1,12 +1,16 @@
 """Pictures: every format, complete files or none, and what the panels say."""
 
+import subprocess
+import sys
+
 import numpy as np
 import pytest
+from matplotlib import pyplot
 from matplotlib.colors import same_color
+from matplotlib.figure import Figure
 
 from lwa import InputError
 from validation.report import figure as drawing
-from validation.report import result as results
 from validation.report.figure import figure, plot_file
 from validation.report.panel import Curve, Map, Panel
 from validation.report.result import Report
@@ -63,19 +67,31 @@ def test_many_names_stand_once_below_all_panels():
     assert len(legend.get_texts()) == 12
 
 
-@pytest.mark.parametrize("places", [X, np.array([0.01, 0.1, 1.0])])
-def test_a_map_has_a_colour_for_each_place(places):
+@pytest.mark.parametrize(("places", "scale"), [(X, ""), (np.array([0.01, 0.1, 1.0]), "x")])
+def test_a_map_has_a_colour_for_each_place(places, scale):
     values = np.array([[1.0, 2.0, np.nan], [4.0, 5.0, 60.0]])
     found = Map("c", places, np.array([1.0, 2.0]), values, 1.0, 10.0, "log")
-    axes, bar = figure((Panel("x", "y", map=found),)).axes
+    axes, bar = figure((Panel("x", "y", scale=scale, map=found),)).axes
     (mesh,) = axes.collections
     assert mesh.get_array().shape == (2, 3)
     assert mesh.get_array().mask.sum() == 1
     assert mesh.norm.vmax == 10.0
     assert bar.get_ylabel() == "c"
-    assert axes.get_xscale() == ("log" if places[0] < 1 else "linear")
+    assert axes.get_xscale() == ("log" if scale else "linear")
+    assert axes.patch.get_hatch()  # where nothing is: grey stands in the middle of some colours
     low, high = axes.get_xlim()
     assert low < places[0] < places[-1] < high
+
+
+def test_a_panel_is_drawn_into_axes_that_are_given(report):
+    given = Figure().subplots()
+    assert report.plot(ax=given) is given
+    np.testing.assert_array_equal(given.lines[0].get_ydata(), X**2)
+    own = report.plot()
+    assert own.get_title() == "squares"
+    pyplot.close(own.figure)
+    with pytest.raises(InputError, match="this result has no picture"):
+        Report("none").plot()
 
 
 def test_the_limits_picture_shows_every_quantity_at_every_k(limits_result):
@@ -86,19 +102,28 @@ def test_the_limits_picture_shows_every_quantity_at_every_k(limits_result):
         assert all(len(c.lines[0].get_xdata()) == 3 for c in bars)
 
 
-def test_a_failure_leaves_the_old_picture(report, tmp_path, monkeypatch):
-    file = tmp_path / "picture.png"
+@pytest.mark.parametrize("suffix", drawing.SUFFIXES)
+def test_a_full_disk_is_one_line_and_leaves_the_old_picture(tmp_path, suffix):
+    """Full for this process: no file of it may be larger than a kilobyte."""
+    file = tmp_path / f"picture{suffix}"
     file.write_bytes(b"old")
-
-    class Broken:
-        def savefig(self, name, dpi):
-            with open(name, "wb") as half:
-                half.write(b"half")
-            raise OSError("disk full")
-
-    monkeypatch.setattr(results, "figure", lambda panels: Broken())
-    with pytest.raises(InputError, match=r"picture.png is not written: disk full$"):
-        report.save(file)
+    code = """if True:
+        import resource, sys
+        from pathlib import Path
+        from validation.report.panel import Curve, Panel
+        from validation.report.result import Report
+        report = Report("one", panels=(Panel("x", "y", (Curve.of("c", range(9), range(9)),)),))
+        report.figure()  # Matplotlib writes a cache of fonts
+        resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))
+        try:
+            report.save(Path(sys.argv[1]))
+        except ValueError as error:
+            print(error)
+    """
+    done = subprocess.run(
+        [sys.executable, "-c", code, file], capture_output=True, text=True, check=True
+    )
+    assert (done.stdout, done.stderr) == (f"{file} is not written: File too large\n", "")
     assert file.read_bytes() == b"old"
     assert list(tmp_path.iterdir()) == [file]
 

@@ -85,3 +85,27 @@ def test_the_content_of_a_regular_file_only(tmp_path):
     ):
         with pytest.raises(InputError, match=f"^{said}$"):
             content(tmp_path / name, most)
+
+
+def test_a_link_keeps_its_target_and_a_file_its_mode(tmp_path):
+    (tmp_path / "far").mkdir()
+    target, link, dangling = (tmp_path / n for n in ("far/t.svg", "l.svg", "d.svg"))
+    target.write_text("old")
+    target.chmod(0o640)
+    link.symlink_to("far/t.svg")
+    dangling.symlink_to("far/new.svg")
+    for file in (link, dangling):
+        with replacing(output_file("plot", str(file), (".svg",))) as new:
+            new.write_text("whole")
+    assert link.is_symlink()
+    assert dangling.is_symlink()
+    assert (target.read_text(), dangling.read_text()) == ("whole", "whole")
+    assert target.stat().st_mode & 0o777 == 0o640
+    assert len(list((tmp_path / "far").iterdir())) == 2
+
+
+def test_links_that_lead_nowhere_are_refused(tmp_path):
+    (tmp_path / "loop.svg").symlink_to("loop.svg")
+    (tmp_path / "lost.svg").symlink_to("no/p.svg")
+    assert refusal(tmp_path, "loop.svg").startswith("it cannot be written, Too many levels of")
+    assert re.fullmatch("the folder .*no does not exist", refusal(tmp_path, "lost.svg"))

@@ -114,6 +114,25 @@ def test_what_is_not_named_is_not_there():
     assert bare == Scene(masses=(1, 2), stiffnesses=(1,), k=2, duration=1)
 
 
+def test_all_beads_and_contacts_are_heard():
+    sensors = {"sensors": {"beads": "all", "contacts": "all"}}
+    assert scene(GOOD | sensors).bead_sensors == (0, 1, 2)
+    assert scene(GOOD | sensors).contact_sensors == (0, 1)
+    assert scene(GOOD | sensors | {"wall": {"stiffness": 1}}).contact_sensors == (0, 1, 2)
+
+
+def test_beads_of_materials_are_in_si():
+    assert toml_file(PAPER).units == "SI"
+    assert toml_file(TRIMER).units == ""
+    assert toml_file('units = "SI"\n' + TRIMER).units == "SI"
+
+
+def test_what_a_run_wrote_holds_the_scene():
+    assert scene({"scene": GOOD, "sensors": [], "records": {}}) == scene(GOOD)
+    with pytest.raises(SceneError, match=r"^the file is 3: a table of keys is wanted"):
+        scene({"scene": 3})
+
+
 def test_a_defect_may_be_a_bead_of_the_file_or_a_mass():
     big = Bead(mass=1e-3, radius=5e-3, material=Material(72e9, 0.17))
     text = (
@@ -169,6 +188,7 @@ def scenes(draw):
         spacings=(rows(sizes, period, period) * repeat)[: n - 1] if draw(st.booleans()) else (),
         k=draw(st.floats(1, 100)),
         duration=draw(sizes),
+        units=draw(st.sampled_from(["", "SI"])),
         samples=draw(st.integers(2, 10**5)),
         wall=wall,
         gravity=0 if wall is None else draw(st.just(0) | sizes),
@@ -247,7 +267,8 @@ BAD = [
     ({"materials": {"x": {"E": 1}}}, "materials.x.nu is missing"),
     ({"materials": {"x": {"E": 1, "nu": 0.6}}}, "materials.x.nu is 0.6: Poisson's ratio lies"),
     ({"materials": {"x y": {"e": 1, "nu": 0.6}}}, "materials.'x y'.e is unknown"),
-    ({"beads": {"b": {"mass": -1, "radius": 1}}}, "beads.b.mass is -1: it must be positive"),
+    ({"beads": {"b": {"mass": -1, "radius": 1, "material": "brass"}}},
+     "beads.b.mass is -1: it must"),
     ({"beads": {"b": {"mass": 1, "radius": 1, "material": "stel"}}},
      "beads.b.material is 'stel': did you mean steel"),
     ({"beads": [1]}, r"beads is \[1\]: a table of keys is wanted"),
@@ -270,7 +291,7 @@ BAD = [
     ({"wall": {}}, "wall has neither material nor stiffness: one is wanted"),
     ({"wall": {"stiffness": 0}}, "wall.stiffness is 0: it must be positive"),
     ({"wall": {"material": "steel"}}, "wall.material is given, but a chain of masses needs"),
-    ({"wall": {"material": "wood"}} | BALLS, "wall.material is 'wood': one of steel is wanted"),
+    ({"wall": {"material": "wood"}} | BALLS, "wall.material is 'wood': one of steel, steel 316, "),
     ({"striker": {"speed": 1}}, "striker.speed is unknown: one of velocity is wanted"),
     ({"striker": {}}, "striker.velocity is missing"),
     ({"striker": {"velocity": NAN}}, "striker.velocity is nan: a finite number is wanted"),
@@ -286,6 +307,8 @@ BAD = [
     ({"sensors": {"contacts": [3]}}, "sensors.contacts number 1 is 3: one of 1 … 2 is wanted"),
     ({"sensors": {"contacts": [1]}, "chain": {"cell": [1], "k": 2}},
      "sensors.contacts number 1 is 1: the chain has none"),
+    ({"sensors": {"beads": "some"}}, "sensors.beads is 'some': a list is wanted"),
+    ({"units": "cgs"}, "units is 'cgs': one of SI is wanted"),
     ({"sensors": {"bead": [1]}}, "sensors.bead is unknown: did you mean beads"),
 ]  # fmt: skip
 

@@ -3,6 +3,7 @@
 import csv
 import io
 
+import numpy as np
 import pytest
 
 from lwa import InputError
@@ -34,6 +35,21 @@ def test_a_notebook_shows_the_tables_and_the_forces(told):
     assert "<svg" in shown
     (panel,) = told.panels
     assert [curve.label for curve in panel.curves] == ["contact 5", "contact 9", "contact 19"]
+
+
+def test_many_sensors_are_drawn_as_a_map():
+    """As curves their names alone would fill the picture."""
+    heard = {"contact_sensors": (18, *range(18)), "bead_sensors": (4, 9)}
+    found = record(struck((1, 0.5), 20, duration=20, samples=3001, **heard))
+    few, many = report(found).panels
+    assert [curve.label for curve in few.curves] == ["bead 5", "bead 10"]
+    assert (many.x, many.y, many.map.label) == ("contact", "time", "dynamic force")
+    assert many.map.x.tolist() == list(range(1, 20))
+    run, time = found.run, many.map.y
+    assert 500 < len(time) <= 1000
+    assert many.map.values.shape == (len(time), 19)
+    force = run.contact_force[list(run.scene.contact_sensors).index(6)]
+    np.testing.assert_array_equal(many.map.values[:, 6], np.interp(time, run.time, force))
 
 
 def test_a_scene_without_sensors_has_no_picture():

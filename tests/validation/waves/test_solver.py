@@ -11,12 +11,13 @@ import pytest
 import sympy as sp
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from matplotlib.figure import Figure
 
 from validation import Scene, measure, simulate
 from validation.pulses.steady import STRETCH, point
 from validation.scenes.checks import SceneError
 from validation.studies.exact import wave_report
-from validation.waves import solver
+from validation.waves import fourier, solver
 from validation.waves.resonances import resonances
 from validation.waves.solver import NoWave, exact_wave, measured, solve
 
@@ -43,6 +44,13 @@ def test_the_widths_of_the_hertz_chain(hertz):
     assert finer.c2 == pytest.approx(hertz.c2, rel=1e-13)
     assert (hertz.solitary, hertz.tail) == (True, 0.0)
     assert hertz.residual < 1e-14
+
+
+def test_a_step_to_a_negative_square_of_the_speed_is_no_convergence():
+    """NumPy warned of a power of a negative number on the way to six special ratios at k = 1.15."""
+    problem = fourier.problem((1.0, 0.5), 1.15, None, None)
+    with pytest.raises(np.linalg.LinAlgError):
+        problem.wave(np.ones(problem.count), -1.0)
 
 
 def test_convergence_is_spectral():
@@ -377,6 +385,20 @@ def test_the_result_says_all_of_a_wave(masses):
     assert str(measured(wave)["c"]) in text
 
 
+def test_a_wave_is_drawn_into_given_axes(hertz):
+    """Each curve is the quantity over its peak: 1/2 at half of its width."""
+    ax = Figure().add_subplot()
+    assert hertz.plot(ax) is ax
+    names = [text.get_text() for text in ax.get_legend().get_texts()]
+    assert names == list(QUANTITIES)
+    for name, line in zip(names, ax.lines, strict=True):
+        x, y = line.get_data()
+        assert y.max() == pytest.approx(1, abs=1e-9)
+        half = hertz.fwhm(name) / 2
+        assert np.interp([-half, half], x, y) == pytest.approx([0.5, 0.5], abs=1e-4)  # of a chord
+    assert ax.get_xlabel() == "ξ / D"
+
+
 STRUCK = (
     ("3/2", "0.01", 0.001), ("3/2", "0.02", 0.005), ("3/2", "0.1", 0.02),
     ("3/2", "0.3", 0.03), ("3/2", "0.6", 0.03), ("3/2", "0.8", 0.03), ("3/2", "10", 0.02),
@@ -434,6 +456,63 @@ def test_the_errors_of_solitary_waves_cover_other_half_periods_and_grids(k, spec
             for name in one:
                 bound = one[name].error + other[name].error
                 assert abs(one[name].value - other[name].value) <= bound, name
+
+
+@pytest.mark.parametrize("k", [1.02, 1.1, 1.5, 2.0, 5.0])
+def test_a_half_period_that_is_too_short_is_refused(k):
+    """At k = 3/2 and L = 3 it was called solitary, with c² off by 2e-4; accepted ones agree."""
+    ample = exact_wave([1], k)
+    accepted, refused = {}, {}
+    for L in (share * ample.half_period for share in (0.5, 0.6, 0.7, 0.8, 0.9)):
+        try:
+            accepted[L] = measured(exact_wave([1], k, half_period=L))
+        except SceneError as error:
+            refused[L] = str(error)
+    assert accepted
+    assert refused
+    assert max(refused) < min(accepted)
+    for L, text in refused.items():
+        assert text.startswith(f"half_period is {L:g}: the solitary wave at k = {k:g} has not end")
+    for found in accepted.values():
+        for name, number in measured(ample).items():
+            assert abs(found[name].value - number.value) <= found[name].error + number.error, name
+
+
+def test_what_is_left_at_the_half_period_tells_how_far_a_wave_is_off(hertz):
+    """c² is off by (1.5 to 2) times the strain there; a wave that ends has none."""
+    for L in (2.0, 3.0, 4.0, 4.3):
+        wave = solve((1.0, 1.0), 1.5, L)
+        assert not wave.solitary or wave.rest < 1e-9
+        assert 1.5 < (1 - wave.c2 / hertz.c2) / wave.rest < 2
+        assert wave.scaled(force=3).rest == pytest.approx(wave.rest, rel=1e-3)
+    assert hertz.rest < 1e-15
+
+
+def test_each_wave_that_is_tried_is_shown(monkeypatch):
+    """Without a sign of life `exact` took 200 s at k = 8; the bar is there before the first."""
+    events = []
+
+    def fails(masses, k, *_, **__):
+        events.append("solve")
+        raise NoWave("no convergence")
+
+    def progress(cases):
+        for case in cases:
+            events.append("shown")
+            yield case
+
+    monkeypatch.setattr(solver, "solve", fails)
+    with pytest.raises(NoWave):
+        exact_wave([1, 0.6], 1.5, progress=progress)
+    assert events == ["shown", "solve"] * 2 * len(solver.PERIODS)
+
+
+def test_what_a_search_may_take_grows_with_k():
+    """In s; it is 0 where there is nothing to search."""
+    times = [solver.longest([1, 0.6], k) for k in (1.5, 3, 8)]
+    assert times == sorted(times)
+    assert times[0] < 60 < times[2]
+    assert solver.longest([1], 8) == 0
 
 
 @settings(max_examples=12, deadline=None)

@@ -75,3 +75,17 @@ def test_widths_are_where_the_quantities_are_half(wave, B):
 def test_bad_amplitudes(B):
     with pytest.raises(SceneError, match=r"^B is "):
         Compacton(WAVES["3/2"], B)
+
+
+@pytest.mark.parametrize("amount", [0, -1, float("nan"), float("inf"), "1"])
+@pytest.mark.parametrize("name", ["speed", "bead_force", "momentum"])
+def test_bad_amounts(name, amount):
+    """A speed -1 gave a wave of speed 1."""
+    with pytest.raises(SceneError, match=rf"^{name.removeprefix('bead_')} is [^\n]*$"):
+        getattr(Compacton, f"of_{name}")(WAVES["3/2"], amount)
+
+
+@pytest.mark.parametrize("amount", [1e-300, 1e300])
+def test_an_amount_whose_strain_is_no_float(amount):
+    with pytest.raises(SceneError, match=r"^speed is 1e.300: the strain e\^-?\d+ is no float$"):
+        Compacton.of_speed(WAVES["11/10"], amount)

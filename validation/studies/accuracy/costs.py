@@ -6,10 +6,12 @@ it as well: where kinks of [δ]_+^k meet a step by chance, single runs are bette
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
+from itertools import takewhile
 from statistics import median
 from typing import TypeVar
 
@@ -19,30 +21,25 @@ from validation.lattice.simulate import COMPILED, simulate
 from validation.report.table import Finding
 from validation.scenes.chains import struck
 
-BEST = COMPILED[0]
-"""The compiled scheme that is looked at most closely."""
+BEST = COMPILED[0]  # the compiled scheme that is looked at most closely
 OURS = f"{BEST}, window"
 
 WANTED = 1e-6
 """Relative error of the peak force at which costs are compared."""
 
-_ENOUGH, _REPEATS = 0.15, 7
-"""Seconds and times, beyond which a run is not repeated."""
-
+_ENOUGH, _REPEATS = 0.15, 7  # seconds and times, beyond which a run is not repeated
 _SITES = (100, 1000, 10_000, 100_000)
-_PACE = 1.2
-"""Time per site, a little more than the pulse of equal beads takes."""
+_PACE = 1.2  # time per site, a little more than the pulse of equal beads takes
 
 
 @dataclass(frozen=True)
 class Row:
-    """One run of one method.
+    """One run of one method, of the family "SciPy", "compiled" or "peer".
 
-    family : "SciPy", "compiled" or "peer".
     setting : tolerance; of heyoka its largest step.
     errors : relative, by `validation.studies.accuracy.tasks.NUMBERS`.
     seconds : of CPU time, without compilation.
-    step : mean step, and ns: seconds per bead and evaluation of its force, of compiled runs.
+    step, ns : of compiled runs the mean step, and the time per bead and evaluation of its force.
     """
 
     task: str
@@ -89,16 +86,11 @@ def methods(rows: Iterable[Row]) -> dict[tuple[str, str], list[Row]]:
 
 
 def cost(rows: Iterable[Row], wanted: float = WANTED) -> float:
-    """CPU time of one method's cheapest run from which on the peak force is good to ``wanted``.
-
-    Infinite where its costliest run is not.
-    """
-    seconds = float("inf")
-    for row in sorted(rows, key=lambda row: -row.seconds):
-        if row.errors["peak"] > wanted:
-            break
-        seconds = row.seconds
-    return seconds
+    """CPU time of one method's cheapest run from which on the peak force is good to ``wanted``;
+    infinite where its costliest run is not."""
+    costly = sorted(rows, key=lambda row: -row.seconds)
+    good = takewhile(lambda row: row.errors["peak"] <= wanted, costly)
+    return min((row.seconds for row in good), default=math.inf)
 
 
 def costs(rows: Iterable[Row], wanted: float = WANTED) -> dict[tuple[str, str], float]:
@@ -107,37 +99,31 @@ def costs(rows: Iterable[Row], wanted: float = WANTED) -> dict[tuple[str, str], 
 
 
 def goals(rows: Iterable[Row]) -> Iterator[Finding]:
-    """What the compiled window is meant to attain, at the dimer and over the chain's length.
-
-    None where the dimer was not run.
-    """
-    found = methods(row for row in rows if row.task == "dimer")
-    if not found:
+    """What the compiled window is meant to attain, where the dimer was run."""
+    if not (dimer := [row for row in rows if row.task == "dimer"]):
         return
-    seconds = costs(row for its in found.values() for row in its)
-    ours = seconds["compiled", OURS]
-    says = f"{OURS}: CPU time for the peak force to {WANTED:g} (ms)"
-    yield Finding(says, 1e3 * ours, high=5.0, key="window_ms")
-    says = "SciPy's DOP853 on the whole chain takes so many times as long"
-    yield Finding(says, seconds["SciPy", "SciPy DOP853"] / ours, low=500.0, key="scipy_ratio")
+    seconds = costs(dimer)
+    ours, theirs = seconds["compiled", OURS], seconds["SciPy", "SciPy DOP853"]
     peers = {name: taken for (family, name), taken in seconds.items() if family == "peer"}
-    if peers:
-        best = min(peers, key=lambda name: peers[name])
-        says = f"the best peer, {best}, takes so many times as long"
-        yield Finding(says, peers[best] / ours, low=25.0, key="peer_ratio")
-    ns = min(row.ns or 0.0 for row in found["compiled", OURS] if row.setting == 1e-8)
-    says = f"{OURS}: CPU time per bead and evaluation of its force (ns)"
-    yield Finding(says, ns, high=1.5, key="evaluation_ns")
+    fine = (row for row in methods(dimer)["compiled", OURS] if row.setting == 1e-8)
     p, error = scaling(_SITES)
-    says = f"its cost per site ~ sites^p, equal beads, {_SITES[0]} to {_SITES[-1]} sites: p"
-    yield Finding(says, p, high=0.1, error=error, key="site_exponent")
+    yield from (
+        Finding(f"{OURS}: CPU time for the peak force to {WANTED:g} (ms)", 1e3 * ours, high=5.0,
+                key="window_ms"),
+        Finding("SciPy's DOP853 on the whole chain takes so many times as long", theirs / ours,
+                low=500.0, key="scipy_ratio"),
+        *(Finding(f"the best peer, {best}, takes so many times as long", peers[best] / ours,
+                  low=25.0, key="peer_ratio") for best in sorted(peers, key=peers.__getitem__)[:1]),
+        Finding(f"{OURS}: CPU time per bead and evaluation of its force (ns)",
+                min(row.ns or 0.0 for row in fine), high=1.5, key="evaluation_ns"),
+        Finding(f"its cost per site ~ sites^p, equal beads, {_SITES[0]} to {_SITES[-1]} sites: p",
+                p, high=0.1, error=error, key="site_exponent"),
+    )  # fmt: skip
 
 
 def scaling(sites: Sequence[int]) -> tuple[float, float]:
-    """p of the windowed cost per site ~ sites^p, by least squares, and its standard error.
-
-    At least three chains; what a run costs at its start makes p negative on short ones.
-    """
+    """p of the windowed cost per site ~ sites^p, by least squares, and its standard error; what a
+    run costs at its start makes p negative on short chains."""
     each = []
     for n in sites:
         scene = struck((1.0,), n, duration=_PACE * n, samples=2)

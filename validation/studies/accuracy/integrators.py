@@ -25,7 +25,7 @@ from validation.report.command import option, study
 from validation.report.panel import Curve, Panel
 from validation.report.result import Report
 from validation.report.table import Column, Finding, Table
-from validation.report.text import bounds, filled
+from validation.report.text import filled
 from validation.scenes.checks import one_of
 from validation.studies.accuracy.costs import BEST, WANTED, Row, costs, goals, methods, timed
 from validation.studies.accuracy.peers import Peer, Solve, missing, prepared
@@ -82,14 +82,8 @@ _NOTE = (
     "aims at,\nof heyoka the largest step. CPU time without compilation, on this machine."
 )
 _REFERENCES = (Column("task"), *map(Column, NUMBERS), Column("agreement"))
-_GOALS = (
-    *map(Column, ("key", "least_value", "most_value")),
-    Column("goal", "goals on the dimer"),
-    Column("measured_value", "value", format=".3g"),
-    Column("error_value", "±", format=".0e"),
-    Column("", "wanted"),
-    Column("ok", "goal", format=lambda ok: "met" if ok else "NOT met"),
-)
+_GOALS = tuple(map(Column, ("key", "least_value", "most_value", "goal", "measured_value",
+                            "error_value", "ok")))  # fmt: skip
 _COLOURS = {"SciPy": "C0", "compiled": "C1", "peer": "C2"}
 _MARKS = "osD^v<>PX*"
 
@@ -107,16 +101,15 @@ class Accuracy:
 
     def report(self) -> Report:
         """``rows``, as of `Row`, with the largest ``error``; ``references`` and their ``agreement``
-        with another route; ``goals``, which may be missed; ``absent``; ``theories``, as of
-        `Ladder`. In the picture CPU time over the error, solid with a window."""
+        with another route; ``goals``, which people read as findings; ``absent``; ``theories``,
+        as of `Ladder`. In the picture CPU time over the error, solid with a window."""
         tasks = {r.task: [row for row in self.rows if row.task == r.task] for r in self.references}
         rows = tuple((r.task, r.family, r.error, r.step, r.ns, r.name, r.setting,
                       *(r.errors[name] for name in NUMBERS), r.seconds)
                      for r in self.rows)  # fmt: skip
         references = tuple((r.task, *(getattr(r.pulse, name) for name in NUMBERS), r.agreement)
                            for r in self.references)  # fmt: skip
-        aims = tuple((g.key, g.low, g.high, g.quantity, g.value, g.error, bounds(g.low, g.high),
-                      g.ok) for g in self.goals)  # fmt: skip
+        aims = tuple((g.key, g.low, g.high, g.quantity, g.value, g.error, g.ok) for g in self.goals)
         heads = {r.task: f"{r.task}: arrival {r.pulse.arrival:.12g}, peak {r.pulse.peak:.12g}, "
                          f"FWHM {r.pulse.fwhm:.12g};\nanother route differs by {r.agreement:.0e} "
                          "at most" for r in self.references}  # fmt: skip
@@ -129,6 +122,7 @@ class Accuracy:
         left = ", ".join(self.absent)
         left = f"Left out, as not installed: {left} (pip install 'lwa[peers]' brings them)."
         theories = () if self.theories is None else (self.theories.report(),)
+        goals = (Report("goals on the dimer", findings=self.goals),) * bool(self.goals)
         data = {"rows": [], "references": [], "goals": [], "absent": self.absent}
         return Report(
             "Speed against error",
@@ -136,7 +130,7 @@ class Accuracy:
             panels=tuple(_panel(task, its) for task, its in tasks.items()),
             notes=(left,) * bool(self.absent),
             data=data | {key: value for part in theories for key, value in part.data.items()},
-            parts=theories,
+            parts=(*goals, *theories),
         )
 
 
@@ -170,7 +164,8 @@ def _panel(task: str, rows: Sequence[Row]) -> Panel:
 def accuracy(
     names: Collection[str] = (), progress: Progress[str] = iter, *, peers: bool = True
 ) -> Accuracy:
-    """Speed against error: integrators on fixed tasks, and theories against true waves.
+    """Speed against error: integrators on fixed tasks, and theories against true waves. Five
+    minutes; of one task alone one or two.
 
     names : of `NAMES`, all by default; "theory" is `validation.studies.accuracy.theories`. Goals
         are set for the dimer, and there are none without it.
@@ -183,16 +178,18 @@ def accuracy(
     rows: list[Row] = []
     references: list[Reference] = []
     theories: Ladder | None = None
-    absent = missing() if peers and wanted != {THEORY} else ()
+    absent: tuple[str, ...] | None = None if peers else ()
     for name in progress([name for name in NAMES if name in wanted]):
         if name == THEORY:
             theories = ladder()
             continue
+        if absent is None:
+            absent = missing()  # within the progress: to load the peers takes seconds
         task = TASKS[name]()
         references.append(reference(name, task))
         others = prepared(task, absent) if peers else iter(())
         rows += _compared(name, task, references[-1], others)
-    return Accuracy(tuple(rows), tuple(references), tuple(goals(rows)), absent, theories)
+    return Accuracy(tuple(rows), tuple(references), tuple(goals(rows)), absent or (), theories)
 
 
 def _compared(

@@ -2,12 +2,12 @@
 
 CyRK : adaptive Runge–Kutta pairs in C++, the right-hand side compiled by numba to a C function.
 diffrax : adaptive Runge–Kutta pairs compiled by XLA; the right-hand side in JAX, vectorised.
-heyoka : Taylor's method to machine precision by automatic differentiation, compiled by LLVM. The
-    error is that of the kinks of [δ]_+^k, which a Taylor polynomial does not see; a largest step is
-    what keeps them in bounds, and takes the tolerance's place.
+heyoka : Taylor's method to machine precision by automatic differentiation, compiled by LLVM. Its
+    error is that of the kinks of [δ]_+^k, which a polynomial does not see: a largest step keeps it
+    in bounds, in the tolerance's place.
 
-All on the whole chain, as none has a window. A package that is missing is left out with a word;
-where the environment names a continuous integration (CI), it is an error.
+All integrate the whole chain. A package that is missing is left out with a word; where the
+environment names a continuous integration (CI), it is an error.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ class Peer:
 
     @property
     def name(self) -> str:
-        """As it stands in tables."""
+        """As in tables."""
         return f"{self.package} {self.method}"
 
 
@@ -69,8 +69,7 @@ def _cyrk(task: Task, method: str) -> Solve:
     constants = np.concatenate(([n], 1 / motion.masses, *contacts))
 
     def motion_of(rate: Any, t: float, y: Any, c: Any) -> None:
-        n = int(c[0])
-        behind = 0.0
+        n, behind = int(c[0]), 0.0
         for i in range(n):
             rate[i] = y[n + i]
             ahead = y[i + 1] if i < n - 1 else 0.0
@@ -80,12 +79,11 @@ def _cyrk(task: Task, method: str) -> Solve:
             behind = force
 
     compiled = numba.cfunc(cyjit_sig)(motion_of)
-    span = (0.0, float(task.times[-1]))
 
     def solve(tolerance: float) -> Array:
         solution = nbsolve2_ivp(
-            compiled.address, span, start, method=method, t_eval=task.times, args=constants,
-            rtol=tolerance, atol=tolerance,
+            compiled.address, (0.0, float(task.times[-1])), start, method=method, args=constants,
+            t_eval=task.times, rtol=tolerance, atol=tolerance,
         )  # fmt: skip
         if not solution.success:
             raise PeerError(f"CyRK {method} stopped: {solution.message}")
@@ -104,10 +102,8 @@ def _diffrax(task: Task, method: str) -> Solve:
 
     motion, contacts = _hertz(task)
     start, n, end = motion.start, motion.size, float(task.times[-1])
-
     with jax.enable_x64(True):
-        masses = jnp.array(motion.masses)
-        A, rest, load = (jnp.array(row) for row in contacts)
+        masses, A, rest, load = map(jnp.array, (motion.masses, *contacts))
 
         def rate(t: Any, state: Any, constants: Any) -> Any:
             y, v = state[:n], state[n:]
@@ -116,6 +112,7 @@ def _diffrax(task: Task, method: str) -> Solve:
             push = jnp.append(0.0, force[:-1]) - force
             return jnp.concatenate((v, push / masses))
 
+        @jax.jit  # type: ignore[untyped-decorator]
         def run(tolerance: Any) -> tuple[Any, Any]:
             control = diffrax.PIDController(rtol=tolerance, atol=tolerance)
             solution = diffrax.diffeqsolve(
@@ -125,11 +122,9 @@ def _diffrax(task: Task, method: str) -> Solve:
             )  # fmt: skip
             return solution.ys, solution.result == diffrax.RESULTS.successful
 
-        compiled = jax.jit(run)
-
     def solve(tolerance: float) -> Array:
         with jax.enable_x64(True):
-            states, well = compiled(tolerance)
+            states, well = run(tolerance)
         if not well:
             raise PeerError(f"diffrax {method} stopped at tolerance {tolerance:g}")
         return np.asarray(states).T[:n]
@@ -173,7 +168,6 @@ PEERS = (
     *(Peer("diffrax", method, _diffrax) for method in ("Tsit5", "Dopri8")),
     Peer("heyoka", "Taylor", _heyoka),
 )
-"""All of them."""
 
 
 def missing() -> tuple[str, ...]:
@@ -186,10 +180,9 @@ def missing() -> tuple[str, ...]:
         try:
             import_module(package)
         except ImportError as reason:
+            says = f"{package} is missing where CI is set ({reason}): pip install 'lwa[peers]'"
             if os.environ.get("CI"):
-                raise PeerError(
-                    f"{package} is missing where CI is set ({reason}): pip install 'lwa[peers]'"
-                ) from None
+                raise PeerError(says) from None
             absent.append(package)
     return tuple(absent)
 

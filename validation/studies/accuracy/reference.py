@@ -1,15 +1,15 @@
 """The pulse of a task to about twelve digits, by two routes that share nothing but the equations.
 
-One is SciPy's DOP853 (order 8) with every opening and closing of a contact located: F = A [δ]_+^k
-has a kink at δ = 0, which costs a step that passes over it its order and which the error estimate
-does not see. A sign change of an overlap within a step is found on its cubic Hermite interpolant,
-its time by Brent's method on the step's dense output (Hairer, Nørsett & Wanner, Solving Ordinary
-Differential Equations I, II.6); the step is taken again up to there.
-The other is the compiled SRKN14 of `validation.lattice.engine`, symplectic, at a very small step.
+One is SciPy's DOP853 (order 8) with every opening and closing of a contact located: a step over
+the kink of F = A [δ]_+^k at δ = 0 loses its order, and its error estimate does not see it. A sign
+change of an overlap within a step is found on its cubic Hermite interpolant, its time by Brent's
+method on the step's dense output (Hairer, Nørsett & Wanner, Solving Ordinary Differential Equations
+I, II.6); the step is taken again up to there. The other is the compiled SRKN14 of
+`validation.lattice.engine`, symplectic, at a very small step.
 
 `integrate` drives any of SciPy's steppers, on the whole chain or on a window that moves with the
-pulse: beads join ahead before they move, and those behind leave where an open contact parts them
-from the pulse. Contacts carry no tension, so that what has been parted must catch up to matter.
+pulse: beads join ahead before they move, and those behind leave where an open contact, which
+carries no tension, parts them from the pulse.
 """
 
 from __future__ import annotations
@@ -29,11 +29,9 @@ from validation.pulses.pulse import Pulse
 from validation.scenes.checks import SceneError
 from validation.studies.accuracy.tasks import Task, errors
 
-_REACH, _AHEAD, _MARGIN = 48, 32, 6
-"""Beads that a window follows behind the front at least, that join at once, and that are still at
-the front."""
-_STILL = 1e-13
-"""Displacement below which a bead is still, over the largest."""
+# Beads that a window follows behind the front at least, that join at once, and that are still at
+# the front: displaced by less than this over the largest displacement.
+_REACH, _AHEAD, _MARGIN, _STILL = 48, 32, 6, 1e-13
 
 
 class Part(Motion):
@@ -54,17 +52,13 @@ class Located(scipy.DOP853):  # type: ignore[misc]
     t: float
     y: Array
     f: Array
-    h_abs: float
 
-    _inside = np.linspace(0.0, 1.0, 9)[1:, None]
-    """Where in a step the overlaps are looked at."""
-    _on = 1e-9
-    """Overlap, over the displacements' scale, of a contact that is just opening or closing."""
+    _inside = np.linspace(0.0, 1.0, 9)[1:, None]  # where in a step the overlaps are looked at
+    _on = 1e-9  # overlap, over the displacements' scale, of a contact just opening or closing
 
     def __init__(self, motion: Motion, *arguments: Any, **options: Any) -> None:
         super().__init__(motion, *arguments, **options)
-        self.motion = motion
-        self.events = 0
+        self.motion, self.events = motion, 0
 
     def _step_impl(self) -> tuple[bool, str | None]:
         before = self.t, self.y, self.f
@@ -116,7 +110,6 @@ def integrate(
 
     method : a class such as `scipy.integrate.DOP853` or `Located`.
     rtol, atol : local error per step, relative and absolute; by default the same.
-    window : whether to move with the pulse, and not to integrate the whole chain.
 
     Raises `SceneError` for a window in a chain with a wall, `IntegrationError` when the stepper
     fails.
@@ -130,13 +123,10 @@ def integrate(
     lo, hi = 0, min(whole.size, front + _AHEAD) if window else whole.size
     force = np.zeros(len(task.times))
     t, done = 0.0, 0
-    options: dict[str, float] = {}
+    options = {"rtol": rtol, "atol": rtol if atol is None else atol}
     while t < scene.duration:
         part = Part(whole, lo, hi)
-        stepper = method(
-            part, t, state[:, lo:hi].ravel(), scene.duration,
-            rtol=rtol, atol=rtol if atol is None else atol, **options,
-        )  # fmt: skip
+        stepper = method(part, t, state[:, lo:hi].ravel(), scene.duration, **options)
         while stepper.status == "running":
             moved = np.abs(stepper.y[: part.size])
             if hi < whole.size and moved[-_MARGIN] > _STILL * moved.max():
@@ -152,18 +142,17 @@ def integrate(
                 done = until
         t, state[:, lo:hi] = stepper.t, stepper.y.reshape(2, -1)
         if t < scene.duration:
-            options = {"first_step": min(stepper.step_size, scene.duration - t)}
+            options["first_step"] = min(stepper.step_size, scene.duration - t)
             # One of the gaps behind parts the pulse from what it has left.
-            gaps = np.flatnonzero(
-                part.compression(state[0, lo:hi])[: hi - lo - _AHEAD - _REACH] < 0
-            )
+            behind = part.compression(state[0, lo:hi])[: hi - lo - _AHEAD - _REACH]
+            gaps = np.flatnonzero(behind < 0)
             lo, hi = lo + (int(gaps[-1]) + 1 if len(gaps) else 0), min(whole.size, hi + _AHEAD)
     return force
 
 
 @dataclass(frozen=True)
 class Reference:
-    """The pulse of a task, and the largest relative difference of a number by another route."""
+    """The pulse of a task, and the largest relative difference of its numbers by another route."""
 
     task: str
     pulse: Pulse

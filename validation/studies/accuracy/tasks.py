@@ -7,15 +7,15 @@ exact : the uniform chain's solitary wave (`validation.waves.solver`), put on th
 experiment : the 2:1 chain of Porter et al. (2008), figure 2(d): 38 beads of steel and PTFE up to a
     steel wall. In units of the striker's mass and velocity and the first contact's stiffness.
 
-A task is read from samples of the contact's force. Through them goes a spline of degree 7, on whose
-fine table `validation.pulses.pulse` finds peak and flanks: at the tasks' sampling, its own error is
-below 1e-12.
+Through samples of the contact's force goes a spline of degree 7, on whose fine table
+`validation.pulses.pulse` finds peak and flanks: its own error is below 1e-12.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 import scipy
@@ -31,11 +31,9 @@ from validation.waves.solver import exact_wave
 NUMBERS = ("arrival", "peak", "fwhm")
 """What is compared, of a `Pulse`."""
 
-_SAMPLING = 0.05
-"""Between samples, where the pulse's FWHM is 1.4 or more."""
-_FINER, _FOOT = 128, 0.25
-"""Times as dense is the table of the spline, where the error of a cubic is below 1e-12; it ends
-where the force is below so much of the peak."""
+_SAMPLING = 0.05  # time between samples, where the pulse's FWHM is 1.4 or more
+_FINER = 128  # times as dense is the table of the spline
+_FOOT = 0.25  # of the peak, where the table ends
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,8 +53,7 @@ class Task:
     def times(self) -> Array:
         """(S,): of the samples that are read."""
         every = np.linspace(0.0, self.scene.duration, self.scene.samples)
-        kept: Array = every[every >= self.listen]
-        return kept
+        return np.asarray(every[every >= self.listen])
 
     @property
     def contact(self) -> int:
@@ -65,8 +62,7 @@ class Task:
 
     def force(self, run: Run) -> Array:
         """(S,): of the contact at `times`, in a run of the scene."""
-        force: Array = run.contact_force[0][-len(self.times) :]
-        return force
+        return np.asarray(run.contact_force[0, -len(self.times) :])
 
     def read(self, force: Array) -> Pulse:
         """The pulse, from the contact's force at `times`.
@@ -98,31 +94,17 @@ def _recorded(duration: float) -> dict[str, float]:
     return {"duration": _SAMPLING * count, "samples": count + 1}
 
 
-def uniform() -> Task:
-    """480 contacts of equal beads."""
-    return struck(1.0, 560, 480, 562.0, 582.0)
-
-
-def dimer() -> Task:
-    """480 contacts of the dimer; light beads rattle behind the pulse."""
-    return struck(0.2733, 560, 480, 490.0, 510.0)
-
-
 def exact(sites: int = 100) -> Task:
     """The solitary wave of equal beads, from bead 16 to the contact so many sites further."""
     start, wave = 16, exact_wave([1], 1.5)
     arrival, width = (sites + 0.5) / wave.c, wave.fwhm("force") / wave.c
-    sensors = (start + sites,)
-    scene = chains.launched(wave, start, sites, contact_sensors=sensors, **_recorded(arrival + 10))
+    recorded = {"contact_sensors": (start + sites,), **_recorded(arrival + 10)}
     truth = Pulse(arrival, 1.0, arrival - width / 2, arrival + width / 2)
-    return Task(scene, arrival - 10, truth=truth)
+    return Task(chains.launched(wave, start, sites, **recorded), arrival - 10, truth=truth)
 
 
 def experiment() -> Task:
-    """The 2:1 chain, struck at 1.37 m/s; the contact of beads 33 and 34, before the wall answers.
-
-    The wall allows no window.
-    """
+    """The 2:1 chain, struck at 1.37 m/s; contact of beads 33 and 34, before the wall answers."""
     si = chain_scene(1.37, 38, (16, 34), 0.0, 1e-3, N=2)
     m, A = si.masses[0], si.stiffnesses[0]
     assert si.wall is not None
@@ -135,5 +117,10 @@ def experiment() -> Task:
     return Task(scene, 130.0, windowed=False)
 
 
-TASKS = {task.__name__: task for task in (uniform, dimer, exact, experiment)}
+TASKS: Mapping[str, Callable[[], Task]] = {
+    "uniform": partial(struck, 1.0, 560, 480, 562.0, 582.0),
+    "dimer": partial(struck, 0.2733, 560, 480, 490.0, 510.0),
+    "exact": exact,
+    "experiment": experiment,
+}
 """The tasks by their names."""

@@ -3,8 +3,8 @@
 At a mass ratio whose wave is solitary the true one is `validation.waves.solver.exact_wave`;
 elsewhere there is none, and the pulse that a struck chain comes to carry stands for it
 (`validation.pulses.steady.point`), with its own error. Compared are the widths of force and strain
-at a contact and the speed at peak contact force 1, m1 = A = D = 1. The cost is that of deriving the
-theory for this chain and of evaluating it, CPU time.
+at a contact and the speed at peak contact force 1, m1 = A = D = 1. The cost is the CPU time of
+deriving the theory for this chain and of evaluating it.
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ from typing import Any
 
 import sympy as sp
 
-from lwa import Cell, NoSolitaryWave, expand
-from lwa.duration import Progress
+from lwa import Cell, InputError, NoSolitaryWave, expand
+from lwa.expansion.series import EpsilonSeries
 from validation.pulses.pulse import Measured
 from validation.pulses.steady import STRETCH, point
 from validation.report.panel import Curve, Panel
@@ -28,8 +28,12 @@ from validation.report.table import Column, Table
 from validation.waves.solver import exact_wave, measured
 from validation.waves.theory import Compacton, theory_at
 
-NAMES = ("force", "strain", "speed")
-"""FWHM of the force and of the strain, speed."""
+_HEADS = {
+    "force": "FWHM of a contact's force: theory over truth - 1",
+    "strain": "FWHM of a contact's strain: theory over truth - 1",
+    "speed": "speed at peak contact force 1: theory over truth - 1",
+}
+NAMES = tuple(_HEADS)
 
 Prediction = tuple[Sequence[float], Sequence[float] | None]
 """Values and the sizes of their relative errors, in the order of `NAMES`."""
@@ -40,20 +44,21 @@ def _closed(closure: str, k: sp.Rational, omega: sp.Rational) -> Prediction:
     return (wave.fwhm("force"), wave.fwhm("strain"), wave.speed), None
 
 
+def _series(order: int, omega: sp.Rational, **k: sp.Rational) -> list[EpsilonSeries]:
+    expansion = expand(Cell((1,) if omega == 1 else (1, omega)), order, **k)
+    return [expansion.fwhm("force"), expansion.fwhm("strain"), expansion.c]
+
+
 def _approximant(n: int, k: sp.Rational, omega: sp.Rational) -> Prediction:
     """[n/n] of the series of equal beads, a closed formula in k."""
     if omega != 1:
         raise NoSolitaryWave("a formula for equal beads")
-    expansion = expand(Cell((1,)), 2 * n)
-    series = (expansion.fwhm("force"), expansion.fwhm("strain"), expansion.c)
-    return [float(row.pade(k, n, n)) for row in series], None
+    return [float(row.pade(k, n, n)) for row in _series(2 * n, omega)], None
 
 
 def _summed(n: int, k: sp.Rational, omega: sp.Rational) -> Prediction:
     """n orders of the series in ε."""
-    expansion = expand(Cell((1,) if omega == 1 else (1, omega)), n, k=k)
-    series = (expansion.fwhm("force"), expansion.fwhm("strain"), expansion.c)
-    sums = [row.at() for row in series]
+    sums = [row.at() for row in _series(n, omega, k=k)]
     return [found.value for found in sums], [abs(found.error / found.value) for found in sums]
 
 
@@ -69,11 +74,9 @@ THEORIES = tuple(_PREDICTIONS)
 SOLITARY, STRUCK_CHAIN = "solitary wave", "struck chain"
 HERTZ = sp.Rational(3, 2)
 
-Case = tuple[sp.Rational, sp.Rational, str]
-"""k, ω, and what is the truth there."""
-
-# The mass ratios of solitary waves of the Hertz dimer are by `validation.waves.resonances`.
-CASES: tuple[Case, ...] = tuple(
+# k, ω, and what is the truth there; the ratios of solitary waves of the Hertz dimer are by
+# `validation.waves.resonances`.
+CASES = tuple(
     (sp.Rational(k), sp.Rational(omega), kind)
     for exponents, ratios, kind in (
         (("1.1", "5/4", "3/2", "2", "3"), ("1",), SOLITARY),
@@ -104,10 +107,9 @@ class Rung:
 
 @dataclass(frozen=True)
 class Place:
-    """All theories at one k and ω, with the truth that they are measured by.
+    """All theories at one k and ω, with the truth by `NAMES`.
 
-    kind : `SOLITARY`, or `STRUCK_CHAIN` where there is no such wave.
-    truth : by `NAMES`, with the errors of the measurement.
+    kind : of the truth: `SOLITARY`, or `STRUCK_CHAIN` where there is no such wave.
     """
 
     k: sp.Rational
@@ -119,9 +121,7 @@ class Place:
     def document(self) -> dict[str, Any]:
         """For JSON."""
         return {
-            "k": self.k,
-            "omega": self.omega,
-            "truth": self.kind,
+            "k": self.k, "omega": self.omega, "truth": self.kind,
             "truth_value": {name: found.value for name, found in self.truth.items()},
             "truth_error_value": {name: found.error for name, found in self.truth.items()},
             "rows": [
@@ -168,11 +168,6 @@ class Ladder:
         )  # fmt: skip
 
 
-_HEADS = {
-    "force": "FWHM of a contact's force: theory over truth - 1",
-    "strain": "FWHM of a contact's strain: theory over truth - 1",
-    "speed": "speed at peak contact force 1: theory over truth - 1",
-}
 _COLUMNS = (
     Column("quantity"),
     Column("k", "k"),
@@ -197,39 +192,36 @@ def _panel(axis: str, title: str, places: Sequence[tuple[sp.Rational, Place]]) -
     curves = []
     for i, (name, mark) in enumerate(zip(THEORIES, "osD^v<>Pd", strict=True)):
         points = sorted((float(at), abs(errors["force"])) for at, place in places
-                        if (errors := place.rungs[i].errors) is not None)  # fmt: skip
+                        if (errors := place.rungs[i].errors))  # fmt: skip
         if points:
             x, y = zip(*points, strict=True)
             curves.append(Curve.of(name, x, y, f"C{i}{mark}-"))
     return Panel(axis, "|error| of the FWHM of the force", tuple(curves), "xy", title)
 
 
-def ladder(progress: Progress[Case] = iter) -> Ladder:
+def ladder() -> Ladder:
     """Climb it at all of `CASES`."""
-    return Ladder(tuple(place(*case) for case in progress(CASES)))
+    return Ladder(tuple(place(*case) for case in CASES))
 
 
 def place(k: sp.Rational, omega: sp.Rational, kind: str = SOLITARY) -> Place:
     """All theories at one k and ω."""
-    truth = _truth(k, omega, kind)
-    return Place(k, omega, kind, truth, tuple(_rung(name, k, omega, truth) for name in THEORIES))
-
-
-def _truth(k: sp.Rational, omega: sp.Rational, kind: str) -> dict[str, Measured]:
-    found: Mapping[str, Measured]
+    numbers: Mapping[str, Measured]
     if kind == SOLITARY:
-        found = measured(exact_wave((1.0,) if omega == 1 else (1.0, float(omega)), float(k)))
-        names = ("fwhm force", "fwhm strain", "c")
+        numbers = measured(exact_wave((1.0,) if omega == 1 else (1.0, float(omega)), float(k)))
+        names = "fwhm force", "fwhm strain", "c"
     else:
-        found, names = point(k, omega, STRETCH).numbers, ("width", "strain_width", "speed")
-    return {mine: found[its] for mine, its in zip(NAMES, names, strict=True)}
+        numbers = point(k, omega, STRETCH).numbers
+        names = "width", "strain_width", "speed"
+    truth = {mine: numbers[its] for mine, its in zip(NAMES, names, strict=True)}
+    return Place(k, omega, kind, truth, tuple(_rung(name, k, omega, truth) for name in THEORIES))
 
 
 def _rung(theory: str, k: sp.Rational, omega: sp.Rational, truth: Mapping[str, Measured]) -> Rung:
     start = time.process_time()
     try:
         values, estimates = _PREDICTIONS[theory](k, omega)
-    except NoSolitaryWave as none:
+    except (InputError, NoSolitaryWave) as none:
         return Rung(theory, None, None, time.process_time() - start, str(none))
     seconds = time.process_time() - start
     errors = {name: v / truth[name].value - 1 for name, v in zip(NAMES, values, strict=True)}

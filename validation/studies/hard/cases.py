@@ -1,8 +1,7 @@
 """Hard cases: where theory, closed forms or integration are pushed to their limits, measured.
 
-A case is a function that returns a `Report`: its question as the title, numbers held to bounds that
-follow from a law, a closed form or another method, one panel, and one note, the answer. k:
-`exponents`; ω: `ratios`; integration: `motion`; float64: `floats`.
+Numbers are held to bounds that follow from a law, a closed form or another method. k: `exponents`;
+ω: `ratios`; integration: `motion`; float64: `floats`.
 """
 
 from __future__ import annotations
@@ -73,20 +72,17 @@ class Hard:
            says=f"Only this case, may be given again: {', '.join(CASES)}."),
 )  # fmt: skip
 def hard(names: Collection[str] = (), progress: Progress[str] = iter) -> Hard:
-    """Extreme k and ω, lost contacts, long runs, float64 against 50 digits: what holds there.
+    """Extreme k and ω, lost contacts, long runs, float64 against 50 digits. Half a minute.
 
     Runs the cases of these names, all by default; raises `SceneError` for a name that is not one of
     `CASES`.
     """
-    for name in names:
-        one_of(name, CASES, "case")
-    wanted = [name for name in CASES if name in names or not names]
-    return Hard({name: _outcome(name) for name in progress(wanted)})
-
-
-def _outcome(name: str) -> Report:
-    """Of one case, whose answer, where a finding fails, was only the one expected."""
-    found = CASES[name]()
-    failed = sum(not finding.ok for finding in found.findings)
-    told = f"{failed} not as expected, which was: " if failed else ""
-    return replace(found, notes=tuple(told + answer for answer in found.notes))
+    wanted = {one_of(name, CASES, "case") for name in names} or set(CASES)
+    outcomes = {}
+    for name in progress([name for name in CASES if name in wanted]):
+        found = CASES[name]()
+        failed = sum(not finding.ok for finding in found.findings)
+        # Where a finding fails, the answer was only the one expected.
+        told = f"{failed} not as expected, which was: " if failed else ""
+        outcomes[name] = replace(found, notes=tuple(told + answer for answer in found.notes))
+    return Hard(outcomes)

@@ -1,17 +1,17 @@
 """The closed forms in float64 against 50 digits, in ulps, over an extreme grid of (k, ω).
 
 Every function of `lwa.NumericWave` (β, width, FWHM of strain, force and velocity, speed, ln B) is
-compared with the exact expression of `lwa.TravelingWave` it stands for, evaluated by mpmath at
-`DIGITS` working digits; k and ω are the float64 numbers themselves, so that no error is their own.
-An ulp is the distance of neighbouring float64 numbers at the exact value: 1/2 is perfect rounding.
+compared with the exact expression of `lwa.TravelingWave`, evaluated by mpmath at `DIGITS` working
+digits; k and ω are the float64 numbers themselves, so that no error is their own. An ulp is the
+distance of neighbouring float64 numbers at the exact value: 1/2 is perfect rounding.
 
-Beside them stand the same numbers as the paper prints them (Porter et al. 2008), evaluated as
-written in float64: G, H, I, the root p of (G+H+I) p² - (H+3I) p + 2I = 0, then a, μ, η, σ, s and
+Beside them stand the same numbers as the paper prints them (Porter et al. 2008), in float64: G, H,
+I, the root p of (G+H+I) p² - (H+3I) p + 2I = 0, then a, μ, η, σ, s and
 
     β = √σ (1-η)/2,    B = (μ / (β² s (s-1)))^{1/(k-1)},
 
-and, at k = 3/2, the expression of β in ω that fills a page. FWHM and speed are not printed there;
-they are 2 arccos(2^{-1/m})/β, 2 arccos(2^{-1/(km)})/β, and V from the relation of B.
+and, at k = 3/2, β as the expression in ω that fills a page. FWHM and speed, not printed there, are
+2 arccos(2^{-1/m})/β, 2 arccos(2^{-1/(km)})/β, and V from the relation of B.
 """
 
 from __future__ import annotations
@@ -28,24 +28,22 @@ import sympy as sp
 from lwa import Dimer, TravelingWave, homogenize
 from lwa.numeric import Array, NumericWave
 from validation.report.panel import Curve, Panel
-from validation.report.result import Report
 from validation.report.table import Column, Finding, Table
+from validation.studies.hard.case import Parts, case
 
-DIGITS = 80
-"""Working digits: what cancels on the grid leaves more than 50 of them."""
-
-ALLOWED = 8.0
-"""Ulps that a closed form may lose; they need NumPy's longdouble to be longer than float64."""
+DIGITS = 80  # what cancels on the grid leaves more than 50 of them
+ALLOWED = 8.0  # ulps that a closed form may lose
+PRINTED = "as printed"  # the source of what follows the paper's text
 
 EXPONENTS = np.array(
     [1 + 1e-6, 1 + 1e-5, 1.0001, 1.001, 1.01, 1.05, 1.1, 1.25, 1.4, 1.5, 1.6, 1.75, 1.9,
      2 - 2.0**-30, 2.0, 2 + 2.0**-30, 2.1, 2.5, 3 - 2.0**-30, 3.0, 3.5, 5.0, 8.0, 12.0, 20.0]
 )  # fmt: skip
+# ω = m2/m1; 0.2733 is that of the paper.
 RATIOS = np.unique(
     [*10.0 ** np.arange(-6, 6.1, 0.5), 0.2733, 0.3428, 0.99, 1 - 2.0**-40, 1 + 2.0**-40, 1.01,
      2.0, 3.0, 4.0, 5.0]
 )  # fmt: skip
-"""ω = m2/m1; 0.2733 is that of the paper."""
 
 CLOSURES: Mapping[str, Mapping[str, Any]] = {
     "paper's closure": {},
@@ -54,11 +52,8 @@ CLOSURES: Mapping[str, Mapping[str, Any]] = {
 }
 """The waves compared, as options of `lwa.homogenize`."""
 
-PRINTED = "as printed"
-"""The source of what follows the paper's text."""
-
 Form = tuple[Callable[[NumericWave, Array, Array], Array], Callable[[TravelingWave], sp.Expr]]
-"""In float64 from k and ω, and exact."""
+"""A closed form: in float64 from k and ω, and exact."""
 
 
 def log_amplitude(wave: TravelingWave, V: sp.Expr) -> sp.Expr:
@@ -79,21 +74,13 @@ FORMS: Mapping[str, Form] = {
     "ln B at V = 2^1000": (lambda f, k, w: f.log_amplitude(k, w, 2.0**1000),
                            lambda wave: log_amplitude(wave, sp.Integer(2) ** 1000)),
 }  # fmt: skip
-"""The closed forms: in float64, and exact."""
 
 
 @dataclass(frozen=True, eq=False)
 class Loss:
-    """What one way to evaluate a form loses on a grid.
+    """What one way to evaluate a form loses on a grid (n, m): NaN ulps where there is no wave, ∞
+    where there is one but no number."""
 
-    name : of the form.
-    source : one of `CLOSURES`, or `PRINTED`.
-    k, omega : the grid, (n, m).
-    ulps : (n, m); NaN where there is no wave, ∞ where there is one but the form gives no number.
-    """
-
-    name: str
-    source: str
     k: Array
     omega: Array
     ulps: Array
@@ -137,31 +124,31 @@ def exact(wave: TravelingWave, form: sp.Expr, k: Array, omega: Array) -> Any:
         sp.lambdify((wave.k, m2), expression.subs(m1, 1), "mpmath")
         for expression in (form, wave.dispersion, wave.speed_factor)
     )
-    result = np.full(k.shape, None, object)
+
+    def at(*point: float) -> Any:
+        numbers = tuple(map(mp.mpf, point))
+        return value(*numbers) if all(each(*numbers) > 0 for each in positive) else None
+
     with mp.workdps(DIGITS):
-        for at in np.ndindex(k.shape):
-            point = mp.mpf(float(k[at])), mp.mpf(float(omega[at]))
-            if all(condition(*point) > 0 for condition in positive):
-                result[at] = value(*point)
-    return result
+        return np.frompyfunc(at, 2, 1)(k, omega)
 
 
 def in_ulps(value: Array, exact: Any) -> Array:
     """|value - exact| over the spacing of float64 at the exact value; ∞ for what is no number."""
-    result = np.full(value.shape, np.nan)
+
+    def loss(found: float, true: Any) -> float:
+        if true is None or not math.isfinite(found):
+            return math.nan if true is None else math.inf
+        return float(abs(mp.mpf(found) - true) / float(np.spacing(abs(float(true)))))
+
     with mp.workdps(DIGITS):
-        for at in np.ndindex(value.shape):
-            true, found = exact[at], float(value[at])
-            if true is not None:
-                ulp = mp.mpf(float(np.spacing(abs(float(true)))))
-                result[at] = abs(mp.mpf(found) - true) / ulp if math.isfinite(found) else math.inf
-    return result
+        return np.asarray(np.frompyfunc(loss, 2, 1)(value, exact), float)
 
 
-def losses() -> tuple[Loss, ...]:
-    """All forms of all closures on the grid, then those of the paper as printed."""
+def losses() -> dict[tuple[str, str], Loss]:
+    """All forms on the grid, of all closures and as printed, by form and closure or `PRINTED`."""
     k, omega = np.meshgrid(EXPONENTS, RATIOS, indexing="ij")
-    found: list[Loss] = []
+    found = {}
     for closure in CLOSURES:
         wave = closed_wave(closure)
         numeric = wave.numeric(missing="nan")
@@ -170,23 +157,20 @@ def losses() -> tuple[Loss, ...]:
             ulps = in_ulps(value, exact(wave, form(wave), k, omega))
             # a number where there is no wave would be as wrong as none where there is one
             ulps[np.isnan(ulps) & np.isfinite(value)] = np.inf
-            found.append(Loss(name, closure, k, omega, ulps))
+            found[name, closure] = Loss(k, omega, ulps)
     wave = closed_wave("paper's closure")
     for name, value in printed(k, omega).items():
         ulps = in_ulps(value, exact(wave, FORMS[name][1](wave), k, omega))
-        found.append(Loss(name, PRINTED, k, omega, ulps))
-    omega = RATIOS[None, :]
-    k = np.full_like(omega, 1.5)
+        found[name, PRINTED] = Loss(k, omega, ulps)
+    k, omega = np.meshgrid(1.5, RATIOS, indexing="ij")
     ulps = in_ulps(printed_hertz_beta(omega), exact(wave, wave.beta, k, omega))
-    found.append(Loss("β at k = 3/2", PRINTED, k, omega, ulps))
-    return tuple(found)
+    return found | {("β at k = 3/2", PRINTED): Loss(k, omega, ulps)}
 
 
 def printed(k: Array, omega: Array) -> dict[str, Array]:
     """`FORMS` by the paper's route, in float64; NaN where p is complex or 0/0 comes up, m1 = 1.
 
-    The root p with the minus sign. Where it is negative so is the printed β, whose sign does not
-    matter: |β| is returned.
+    The root p is that with the minus sign. Where it is negative so is β: |β| is returned.
     """
     M = 1 + omega
     G = (2 - 3 * k + k**2) / (6 * M**2)
@@ -199,23 +183,16 @@ def printed(k: Array, omega: Array) -> dict[str, Array]:
         sigma = 1 / (I * (k * p + a))
         beta = np.abs(np.sqrt(sigma) * (1 - eta) / 2)
         s = 2 / (1 - eta)
-
-        def amplitude(V: float) -> Array:
-            mu = V**2 / (I * (p + a))
-            return np.asarray((mu / (beta**2 * s * (s - 1))) ** (1 / (k - 1)))
-
-        def fwhm(power: Array | float) -> Array:
-            return np.asarray(2 * np.arccos(2 ** (-(k - 1) / (2 * power))) / beta)
-
+        mu = 2.0**2 / (I * (p + a))  # at V = 2
+        powers: dict[str, Any] = {"strain": 1.0, "force": k, "velocity": 1.0}
         return {
             "β": beta,
             "width π/β": np.pi / beta,
-            "FWHM of strain": fwhm(1.0),
-            "FWHM of force": fwhm(k),
-            "FWHM of velocity": fwhm(1.0),
+            **{f"FWHM of {quantity}": 2 * np.arccos(2 ** (-(k - 1) / (2 * power))) / beta
+               for quantity, power in powers.items()},
             "speed at B = 2": np.sqrt(2 ** (k - 1) * I * (p + a) * beta**2 * s * (s - 1)),
-            "ln B at V = 2": np.log(amplitude(2.0)),
-        }
+            "ln B at V = 2": np.log((mu / (beta**2 * s * (s - 1))) ** (1 / (k - 1))),
+        }  # fmt: skip
 
 
 def printed_hertz_beta(omega: Array) -> Array:
@@ -239,12 +216,18 @@ _COLUMNS = (  # a form's losses in each closure, and what the printed form loses
 )
 
 
-def closed_forms() -> Report:
-    """Every closed form in float64 against 50 digits, and the paper's printed form beside it."""
-    found = {(loss.name, loss.source): loss for loss in losses()}
-    ours = [loss for loss in found.values() if loss.source != PRINTED]
+@case(
+    f"Less than {ALLOWED:g}, in every closed form and closure, and there is always a number. The "
+    "paper's route through the root p loses all digits where G+H+I nearly vanishes and gives no "
+    "number where p is complex; its expression of β at k = 3/2 is sound.",
+    Panel("k - 1", "largest loss of β, in ulps", scale="xy"),
+)
+def closed_forms() -> Parts:
+    """k = 1 + 1e-6 … 20, ω = 1e-6 … 1e6: how many ulps does float64 lose against 50 digits?"""
+    found = losses()
+    ours = [loss for (_, source), loss in found.items() if source != PRINTED]
     theirs = found["β", PRINTED]
-    findings = [
+    yield from (
         Finding("largest loss of all in ulps", max(loss.worst for loss in ours), 0, ALLOWED,
                 key="loss_ulps"),
         Finding("points at which one of them has no number", sum(loss.missing for loss in ours),
@@ -252,32 +235,18 @@ def closed_forms() -> Report:
         Finding("β as printed: largest loss in ulps", theirs.worst, ALLOWED,
                 key="printed_loss_ulps"),
         Finding("β as printed: points without a number", theirs.missing, 1, key="printed_missing"),
-    ]  # fmt: skip
-    for (form, source), loss in found.items():
-        # The route through p is only told; the expression for k = 3/2 is as good as ours.
-        told = source == PRINTED and form in FORMS
-        most, none = (math.inf, math.inf) if told else (ALLOWED, 0.0)
-        name = f"{form}, {source}"
-        findings += [
-            Finding(f"{name}: largest loss in ulps", loss.worst, high=most),
-            Finding(f"{name}: median loss in ulps", loss.median),
-            Finding(f"{name}: points of {loss.points} without a number", loss.missing, high=none),
-        ]
-    rows = [
-        (form, *(found.get((form, source)) for source in (*CLOSURES, *[PRINTED] * 4)))
-        for form in dict.fromkeys(loss.name for loss in found.values())
-    ]
-    curves = [
-        Curve.of(label, EXPONENTS - 1,
-                 [np.max(row, where=np.isfinite(row), initial=0.0) for row in loss.ulps])
-        for label, loss in (("lwa", found["β", "paper's closure"]), (PRINTED, theirs))
-    ]  # fmt: skip
-    return Report(
-        "k = 1 + 1e-6 … 20, ω = 1e-6 … 1e6: how many ulps does float64 lose against 50 digits?",
-        (Table(_COLUMNS, tuple(rows)),),
-        tuple(findings),
-        (Panel("k - 1", "largest loss of β, in ulps", tuple(curves), "xy"),),
-        (f"Less than {ALLOWED:g}, in every closed form and closure, and there is always a number. "
-         "The paper's route through the root p loses all digits where G+H+I nearly vanishes and "
-         "gives no number where p is complex; its expression of β at k = 3/2 is sound.",),
     )  # fmt: skip
+    for (form, source), loss in found.items():
+        name = f"{form}, {source}"
+        # The route through p is only told; the expression for k = 3/2 is as good as ours.
+        most, none = (math.inf,) * 2 if source == PRINTED and form in FORMS else (ALLOWED, 0.0)
+        yield Finding(f"{name}: largest loss in ulps", loss.worst, high=most)
+        yield Finding(f"{name}: median loss in ulps", loss.median)
+        name = f"{name}: points of {loss.points} without a number"
+        yield Finding(name, loss.missing, high=none)
+    rows = ((form, *(found.get((form, source)) for source in (*CLOSURES, *[PRINTED] * 4)))
+            for form in dict.fromkeys(form for form, _ in found))  # fmt: skip
+    yield Table(_COLUMNS, tuple(rows))
+    for label, loss in (("lwa", found["β", "paper's closure"]), (PRINTED, theirs)):
+        largest = np.max(loss.ulps, axis=1, where=np.isfinite(loss.ulps), initial=0.0)
+        yield Curve.of(label, EXPONENTS - 1, largest)

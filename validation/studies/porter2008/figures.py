@@ -9,7 +9,9 @@ heights, with both moduli of PTFE, and the exponent of V_s ~ F_m^e. Figure 3b is
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -78,11 +80,13 @@ class Speed:
 
 @dataclass(frozen=True)
 class Scaling:
-    """Figure 3a for one modulus of PTFE: V_s and F_m = (F_15 + F_34)/2 at each drop height."""
+    """Figure 3a for one modulus of PTFE: V_s and F_m = (F_15 + F_34)/2 at each drop height, and
+    the canonical theory's speed at each F_m."""
 
     E: float
     speeds: tuple[Measured, ...]
     forces: tuple[Measured, ...]
+    theory: tuple[float, ...]
 
     @property
     def exponent(self) -> Measured:
@@ -110,6 +114,7 @@ _SCALINGS = (
     Column("speed_error_value"),
     Column("force_value", "F_m", "N", format=lambda F: f"{F[0]:.2f} … {F[-1]:.2f}"),
     Column("force_error_value"),
+    Column("theory_value", "V_s theory", "m/s", format=lambda V: f"{V[0]:.1f} … {V[-1]:.1f}"),
 )
 
 
@@ -124,14 +129,15 @@ class Figures:
 
     def report(self) -> Report:
         """``speeds``: ``N``, ``speed``, ``force`` and ``theory``, each ``_value``; ``scalings``:
-        ``modulus_value``, ``exponent_value`` and a list over the drop heights of ``speed_value``
-        and ``force_value``; ``scaling``: that of the paper, with the dynamic modulus; ``forces``:
-        ``N``, ``beads``, ``time_value``, ``force_value``; ``widths``, as `Widths` has it."""
+        ``modulus_value``, ``exponent_value`` and a list over the drop heights of ``speed_value``,
+        ``force_value`` and ``theory_value``; ``scaling``: that of the paper, with the
+        dynamic modulus; ``forces``: ``N``, ``beads``, ``time_value``, ``force_value``; ``widths``,
+        as `Widths` has it."""
         speeds = tuple((s.N, s.speed, s.force, s.theory, s.theory / s.speed.value - 1)
                        for s in self.speeds)  # fmt: skip
         rows = tuple((s.E, s.exponent, s.exponent.value - 1 / 6,
                       [V.value for V in s.speeds], [V.error for V in s.speeds],
-                      [F.value for F in s.forces], [F.error for F in s.forces])
+                      [F.value for F in s.forces], [F.error for F in s.forces], s.theory)
                      for s in self.scaling)  # fmt: skip
         heights = f"drop heights {HEIGHTS[0]:g} … {HEIGHTS[-1]:g} m; the paper fits 0.1666"
         scalings = Table(_SCALINGS, rows, "scalings", title=heights)
@@ -155,7 +161,7 @@ def _forces_panel(record: Forces) -> Panel:
         Curve(f"bead {bead}", 1e6 * record.time, force, f"C{i}-")
         for i, (bead, force) in enumerate(zip(record.beads, record.force, strict=True))
     )
-    return Panel("time (µs)", "force of the bead (N)", tuple(curves), title=f"{record.N}:1")
+    return Panel("time (µs)", "force of the bead (N)", tuple(curves), title=f"{record.N}:1 chain")
 
 
 def _scaling_panel(rows: tuple[Scaling, ...]) -> Panel:
@@ -163,19 +169,21 @@ def _scaling_panel(rows: tuple[Scaling, ...]) -> Panel:
     for i, row in enumerate(rows):
         label = f"E = {row.E / 1e9:g} GPa: exponent {row.exponent.value:.4f}"
         forces, speeds = ([m.value for m in found] for found in (row.forces, row.speeds))
-        curves.append(Curve.of(label, forces, speeds, f"C{i}{'os'[i]}-"))
+        curves.append(Curve.of(label, forces, speeds, f"C{i}{'os'[i]}"))
+        curves.append(Curve.of("theory, $F_m^{1/6}$", forces, row.theory, f"C{i}-"))
     return Panel("peak force $F_m$ (N)", "speed $V_s$ (m/s)", tuple(curves), "xy")
 
 
 @study()
-def figures(progress: Progress[Any] = iter) -> Figures:
-    """The paper's figures: force records, N:1 chains, force against speed, and the FWHM."""
-    return Figures(
-        tuple(forces(N) for N in progress(RECORDED)),
-        tuple(chain_speed(N) for N in progress(range(1, MOST + 1))),
-        tuple(scaling(E) for E in progress(MODULI)),
-        widths(),
-    )
+def figures(progress: Progress[Callable[[], Any]] = iter) -> Figures:
+    """The paper's figures: force records, N:1 chains, force against speed, FWHM. Ten seconds."""
+    records = [partial(forces, N) for N in RECORDED]
+    speeds = [partial(chain_speed, N) for N in range(1, MOST + 1)]
+    scalings = [partial(scaling, E) for E in MODULI]
+    parts: list[Callable[[], Any]] = [*records, *speeds, *scalings, widths]
+    found = [part() for part in progress(parts)]
+    one, two = len(records), len(records) + len(speeds)
+    return Figures(tuple(found[:one]), tuple(found[one:two]), tuple(found[two:-1]), found[-1])
 
 
 def forces(N: int) -> Forces:
@@ -228,4 +236,8 @@ def scaling(E: float) -> Scaling:
         runs = chain_runs(SENSORS, math.sqrt(2 * GRAVITY * height), ptfe=ptfe)
         trains = tuple(map(Train.of, runs))
         found.append(compared(lambda train: {"V": train.speed, "F": train.peak}, *trains))
-    return Scaling(E, tuple(row["V"] for row in found), tuple(row["F"] for row in found))
+    wave = canonical_wave(chain_cell(ptfe=ptfe), HERTZ)
+    theory = (Compacton.of_bead_force(wave, row["F"].value).speed for row in found)
+    return Scaling(
+        E, tuple(row["V"] for row in found), tuple(row["F"] for row in found), tuple(theory)
+    )

@@ -1,27 +1,19 @@
 """Where the points of a sweep are computed: by processes of this machine, or by a Dask cluster.
 
-Both are executors of `concurrent.futures`, and any other one serves a sweep as well. An executor
-is given a bounded number of points at a time.
+Both are executors of `concurrent.futures`, and any other one serves a sweep as well.
 """
 
 from __future__ import annotations
 
 import asyncio
+import logging
 import multiprocessing
 import os
 import signal
 import threading
 from collections.abc import Callable, Iterator
-from concurrent.futures import (
-    FIRST_COMPLETED,
-    BrokenExecutor,
-    CancelledError,
-    Executor,
-    Future,
-    ProcessPoolExecutor,
-    ThreadPoolExecutor,
-    wait,
-)
+from concurrent import futures
+from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future
 from contextlib import AbstractContextManager, ExitStack, closing, contextmanager, nullcontext
 from itertools import islice
 from typing import Any, TypeVar
@@ -32,11 +24,8 @@ from validation.pulses.steady import Point, point
 from validation.scenes.checks import Failure, SceneError, integer
 from validation.studies.sweep.journal import Journal, Key
 
-PATIENCE = 5
-"""Seconds within which a cluster must answer."""
-
-_UNDERWAY = 256
-"""Points that an executor is given at a time."""
+PATIENCE = 5  # seconds within which a cluster must answer
+_UNDERWAY = 256  # points that an executor is given at a time
 
 _Result = TypeVar("_Result")
 
@@ -45,7 +34,7 @@ class SweepError(Failure):
     """The executor gave up; what was finished is kept. The message says where it stood."""
 
 
-class _Pool(ProcessPoolExecutor):
+class _Pool(futures.ProcessPoolExecutor):
     """Its workers do not hear Ctrl-C, which is for the parent to act on."""
 
     def submit(self, fn: Callable[..., _Result], /, *args: Any, **kwargs: Any) -> Future[_Result]:
@@ -63,8 +52,7 @@ def _end_with_parent() -> None:
     """In a worker: end when the process that started it is gone, however it went."""
 
     def watch() -> None:
-        parent = multiprocessing.parent_process()
-        if parent is not None:
+        if (parent := multiprocessing.parent_process()) is not None:
             parent.join()
             os._exit(1)
 
@@ -113,15 +101,17 @@ def cluster(address: str) -> Iterator[Executor]:
         await (await asyncio.wait_for(called, PATIENCE)).close()
 
     with ExitStack() as stack:
+        # of a scheduler that is gone it logs a traceback, and then `compute` tells it in one line
+        log = logging.getLogger("distributed.client")
+        stack.callback(log.setLevel, log.level)
+        log.setLevel(logging.CRITICAL)
         try:
             # First a call, as a client that fails leaves a thread behind; in a thread of its own,
             # as a notebook's has a loop already.
-            with ThreadPoolExecutor(1) as thread:
+            with futures.ThreadPoolExecutor(1) as thread:
                 thread.submit(asyncio.run, call()).result()
-            client = stack.enter_context(
-                distributed.Client(address, timeout=PATIENCE, set_as_default=False)
-            )
-            client.wait_for_workers(1, timeout=PATIENCE)
+            client = distributed.Client(address, timeout=PATIENCE, set_as_default=False)
+            stack.enter_context(client).wait_for_workers(1, timeout=PATIENCE)
         except Exception:  # whatever answers there
             raise InputError(
                 f"cluster is {shorten(address)}: no Dask scheduler with workers answers there "
@@ -133,7 +123,7 @@ def cluster(address: str) -> Iterator[Executor]:
 def entered(
     executor: Executor | AbstractContextManager[Executor] | None,
 ) -> AbstractContextManager[Executor]:
-    """A context that gives an executor: of those that are there, the default one, or as it is."""
+    """A context that gives an executor: the default one, one that is there, or itself."""
     if executor is None:
         return processes()
     if isinstance(executor, Executor):
@@ -157,14 +147,14 @@ def compute(
                     underway[executor.submit(point, *key, stretch)] = key
                 if not underway:
                     return
-                done = wait(underway, return_when=FIRST_COMPLETED).done
+                done = futures.wait(underway, return_when=futures.FIRST_COMPLETED).done
                 for future in [future for future in underway if future in done]:
                     journal.add(_result(future, underway[future]))
                     del underway[future]
                     next(ticks, None)
         except (BrokenExecutor, CancelledError) as error:
-            reason = "killed, or out of memory?"
-            raise SweepError(f"the workers are gone before the sweep is done: {reason}") from error
+            gone = "the workers are gone before the sweep is done: killed, or out of memory?"
+            raise SweepError(gone) from error
         finally:
             for future, key in underway.items():
                 if key in journal.points:  # it was being kept when Ctrl-C came

@@ -18,7 +18,8 @@ from __future__ import annotations
 import errno
 import json
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
+from contextlib import suppress
 from functools import partial
 from io import FileIO
 from pathlib import Path
@@ -28,21 +29,15 @@ import sympy as sp
 
 from lwa.exact import InputError, exact, shorten
 from lwa.spheres.files import content, reason
-from lwa.spheres.tables import Reader, Table, array, table
+from lwa.spheres.tables import Reader, Table, array, integer, real, table
 from validation.pulses.pulse import Measured
 from validation.pulses.steady import QUANTITIES, Point
 from validation.report.files import output_file
-from validation.scenes.checks import SceneError, integer, real
 
 SUFFIX = ".jsonl"
-FORMAT = {"format": "lwa sweep", "version": 2}
-"""The version counts the definitions of what is measured, too."""
-
-MOST_BYTES = 10**9
-"""Of the file: twice a million points."""
-
-Key = tuple[sp.Rational, sp.Rational]
-"""k and ω."""
+FORMAT = {"format": "lwa sweep", "version": 2}  # also of the definitions of what is measured
+MOST_BYTES = 10**9  # of the file: twice a million points
+Key = tuple[sp.Rational, sp.Rational]  # k and ω
 
 
 class Journal:
@@ -76,22 +71,19 @@ class Journal:
         """Keep a finished point. Raises `lwa.InputError` when the file cannot take it."""
         key = point.k, point.omega
         self.points[key] = point  # first, as a Ctrl-C is heard when the line is on the disk
-        if self.file is None:
-            return
         try:
-            with self.file.open("ab", buffering=0) as stream:
-                self._append(stream, _line(point))
+            if self.file is not None:
+                with self.file.open("ab", buffering=0) as stream:
+                    self._append(stream, _line(point))
         except OSError as error:
             del self.points[key]
             raise InputError(f"{self.file} is not written: {reason(error)}") from None
 
     def _append(self, stream: FileIO, line: bytes) -> None:
         """The whole line, on the disk, or nothing of it."""
-        if self._torn is not None:
-            stream.truncate(self._torn)
-            self._torn = None
-        if not (end := stream.seek(0, os.SEEK_END)):
-            line = self._header + line
+        end = stream.truncate(stream.seek(0, os.SEEK_END) if self._torn is None else self._torn)
+        self._torn = None
+        line = line if end else self._header + line
         try:
             if stream.write(line) < len(line):
                 raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
@@ -102,12 +94,11 @@ class Journal:
 
 
 def _line(point: Point) -> bytes:
-    entry: dict[str, Any] = {"k": str(point.k), "omega": str(point.omega)}
+    found: dict[str, Any] = {"missing": point.missing}
     if point.missing is None:
         numbers = {name: [n.value, n.check] for name, n in point.numbers.items()}
-        entry |= {"sites": point.sites, "numbers": numbers}
-    else:
-        entry["missing"] = point.missing
+        found = {"sites": point.sites, "numbers": numbers}
+    entry = {"k": str(point.k), "omega": str(point.omega)} | found
     return json.dumps(entry, ensure_ascii=False, allow_nan=False).encode() + b"\n"
 
 
@@ -116,35 +107,30 @@ def _read(file: Path, content: bytes, settings: Mapping[str, int]) -> dict[Key, 
     _check_header(file, first, settings)
     points: dict[Key, Point] = {}
     for number, line in enumerate(lines, start=2):
+        damaged = f"{file} is damaged in line {number}:"
         try:
             point = _point(_json(line))
         except ValueError as error:
-            raise InputError(f"{file} is damaged in line {number}: {error}") from None
+            raise InputError(f"{damaged} {error}") from None
         if points.setdefault((point.k, point.omega), point) != point:
-            raise InputError(
-                f"{file} is damaged in line {number}: it holds k = {point.k}, ω = {point.omega} "
-                "again, with other numbers"
-            )
+            twice = f"it holds k = {point.k}, ω = {point.omega} again, with other numbers"
+            raise InputError(f"{damaged} {twice}")
     return points
 
 
 def _check_header(file: Path, line: bytes, settings: Mapping[str, int]) -> None:
-    try:
+    header = None
+    with suppress(ValueError):
         header = _json(line)
-    except ValueError:
-        header = None
     if not isinstance(header, dict) or header.get("format") != FORMAT["format"]:
         raise InputError(f"{file} is not a sweep's file: choose another name")
-    if (version := header.get("version")) != FORMAT["version"]:
-        raise InputError(
-            f"{file} has version {shorten(version)} of its format: {FORMAT['version']} is wanted"
-        )
+    if (version := header.get("version")) != (wanted := FORMAT["version"]):
+        its = f"{file} has version {shorten(version)} of its format"
+        raise InputError(f"{its}: {wanted} is wanted")
     if (theirs := header.get("settings")) != settings:
         ours = ", ".join(f"{name} = {value}" for name, value in settings.items())
-        raise InputError(
-            f"{file} is another sweep's, with settings {shorten(theirs)}: choose another name for "
-            f"{ours}"
-        )
+        its = f"{file} is another sweep's, with settings {shorten(theirs)}"
+        raise InputError(f"{its}: choose another name for {ours}")
 
 
 def _json(line: bytes) -> Any:
@@ -168,24 +154,23 @@ def rational(value: Any, name: str) -> sp.Rational:
     """Read a rational number; raises `lwa.InputError` for anything else."""
     number = exact(value, name)
     if not number.is_Rational:
-        raise InputError(
-            f"{name} is {shorten(value)}: an integer, a decimal or a fraction is wanted"
-        )
+        wanted = "an integer, a decimal or a fraction"
+        raise InputError(f"{name} is {shorten(value)}: {wanted} is wanted")
     return number
 
 
 def _text(value: Any, name: str) -> str:
     if not isinstance(value, str):
-        raise SceneError(f"{name} is {shorten(value)}: a text is wanted")
+        raise InputError(f"{name} is {shorten(value)}: a text is wanted")
     return value
 
 
-def _two(reader: Reader) -> Callable[[Any, str], tuple[Any, Any]]:
+def _two(reader: Reader) -> Reader:
     """Reader of a list of two."""
 
-    def read(value: Any, name: str) -> tuple[Any, Any]:
+    def read(value: Any, name: str) -> tuple[Any, ...]:
         if len(array(value, name)) != 2:
-            raise SceneError(f"{name} is {shorten(value)}: two numbers are wanted")
-        return reader(value[0], name), reader(value[1], name)
+            raise InputError(f"{name} is {shorten(value)}: two numbers are wanted")
+        return tuple(reader(item, name) for item in value)
 
     return read

@@ -29,7 +29,7 @@ from lwa.duration import Progress
 from lwa.exact import InputError, shorten
 from lwa.numeric import Array, NumericWave
 from validation.pulses.steady import QUANTITIES, STRETCH, Point
-from validation.report.command import option, study
+from validation.report.command import option, study, whole
 from validation.report.panel import Curve, Map, Panel
 from validation.report.result import Report
 from validation.report.table import Column, Table
@@ -54,6 +54,8 @@ _NO_DECAY = 1e-7
 """Per site: what a map shows as no decay."""
 _MOST_ERROR = 50.0
 """Of the theory, in percent: where the colours of its map end."""
+_DECADES = 50
+"""Ratio of the largest to the least ω from which a map's axis is logarithmic."""
 
 _NOTE = (
     "Width: FWHM of a contact's force, in sites. Speed: sites over time at contact force 1, with "
@@ -151,9 +153,14 @@ class Sweep:
         )
         i, j = np.nonzero(self.map("width", "error") > _UNSURE * width)
         marks = (Curve("", x[j], y[i], "rx"),)
-        red = f"; red ×: width known to less than {_UNSURE:.0%}" if len(i) else ""
-        title = f"grey: not measured{red}"
-        return tuple(Panel(_OMEGA, "k", marks, title=title, map=found) for found in maps)
+        red = f"red ×: width known to less than {_UNSURE:.0%}" if len(i) else ""
+        scale = "x" if x[-1] > _DECADES * x[0] else ""
+
+        def title(found: Map) -> str:
+            hatched = "hatched: no value" if np.isnan(found.values).any() else ""
+            return "; ".join(filter(None, (hatched, red)))
+
+        return tuple(Panel(_OMEGA, "k", marks, scale, title(found), found) for found in maps)
 
     def _curves(self) -> tuple[Panel, ...]:
         along_k = self.ks, "k", f"ω = {self.omegas[0]}"
@@ -278,7 +285,7 @@ def _axis(context: click.Context, given: click.Parameter, text: str) -> tuple[Ra
            "to the next; more below k = 3/2."),
     option("--file", metavar="FILE", says="Keep finished points (.jsonl); with the same file a "
            "sweep goes on where it was left."),
-    option("--jobs", type=int, says="Processes; by default one for each processor."),
+    option("--jobs", callback=whole, says="Processes; by default one for each processor."),
     option("--cluster", "address", metavar="ADDRESS", says="Compute on a Dask cluster instead, "
            "whose scheduler is there, such as tcp://host:8786."),
     name="sweep",

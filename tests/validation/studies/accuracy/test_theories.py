@@ -157,6 +157,14 @@ def test_ladder_in_all_forms() -> None:
     assert "<svg" in page
 
 
+def test_a_sum_that_is_refused_is_missing_with_the_reason() -> None:
+    """One order tells nothing at k = 3, and a ladder that ends there is no ladder."""
+    (rung,) = (rung for rung in place(sp.S(3), sp.S.One).rungs if rung.theory == "ε^1")
+    assert rung.errors is None
+    assert rung.missing is not None
+    assert rung.missing.startswith("no sum at k = 3: to ε^1")
+
+
 def test_what_the_ladder_leaves_out_is_told() -> None:
     """The approximants are those of equal beads; no error is claimed for others."""
     at = place(HERTZ, sp.Rational("0.0901277691"))

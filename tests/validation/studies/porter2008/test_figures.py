@@ -4,13 +4,17 @@ import csv
 import io
 import json
 import math
+from dataclasses import replace
+from itertools import combinations
 
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-from validation.scenes.materials import DIAMETER
+from lwa import canonical_wave
+from validation.scenes.materials import DIAMETER, PTFE_BEAD
 from validation.studies.porter2008 import figures
-from validation.studies.porter2008.experiment import paper
+from validation.studies.porter2008.experiment import HERTZ, chain_cell, paper
 from validation.studies.porter2008.figures import Figures, chain_speed, forces, scaling
 from validation.studies.porter2008.widths import FIRST_BEAD, STATED, widths
 
@@ -37,6 +41,19 @@ def test_the_fitted_exponent_is_the_published_one(scalings, i):
 def test_a_softer_bead_slows_the_pulse(scalings):
     stiff, soft = scalings
     assert all(s.value < f.value for s, f in zip(soft.speeds, stiff.speeds, strict=True))
+
+
+def test_the_theorys_line_has_its_slope_and_its_own_prefactor(scalings):
+    """Speeds of `lwa`'s wave at a bead's peak force; below the lattice's, by one share of them."""
+    for found in scalings:
+        ptfe = replace(PTFE_BEAD, material=replace(PTFE_BEAD.material, E=found.E))
+        wave = canonical_wave(chain_cell(ptfe=ptfe), HERTZ)
+        force, speed = ([part.value for part in row] for row in (found.forces, found.speeds))
+        for F, V in zip(force, found.theory, strict=True):
+            assert pytest.approx(float(wave.at_force(F, of="bead").speed), rel=1e-9) == V
+        share = np.array(found.theory) / speed
+        assert share == pytest.approx(share[0], rel=1e-6)  # both go as F^{1/6}
+        assert 0.95 < share[0] < 1
 
 
 def test_the_lines_for_both_limits_are_in_the_ratio_root_two(computed):
@@ -122,11 +139,51 @@ def test_all_figures_as_a_picture_and_a_page(whole, tmp_path):
     assert page.count("<svg") == 1
 
 
+def test_no_line_lies_on_another(whole):
+    """The closures agree for m1 ≫ m2 and m1 = m2: their dashed lines were drawn on the others."""
+    for panel in whole.report()._panels():
+        for one, other in combinations(panel.curves, 2):
+            same = np.array_equal(one.x, other.x)
+            assert not (same and np.allclose(one.y, other.y, rtol=1e-6)), one.label
+        assert all(curve.label for curve in panel.curves)
+
+
+def test_no_legend_lies_on_a_curve(whole):
+    """That of the widths lay on a line."""
+    picture = whole.report().figure()
+    FigureCanvasAgg(picture).draw()
+    for axes in picture.axes:
+        box = axes.get_legend().get_window_extent()
+        for line in axes.lines:
+            at = axes.transData.transform(line.get_xydata())
+            if line.get_linestyle() != "None":
+                fine = np.linspace(0, len(at) - 1, 50 * len(at))
+                at = np.column_stack([np.interp(fine, range(len(at)), row) for row in at.T])
+            assert not box.count_contains(at), (axes.get_title(), line.get_label())
+
+
+def test_the_scaling_panel_shows_the_theory_of_each_modulus(whole):
+    found = [panel for panel in whole.report()._panels() if panel.scale == "xy"]
+    assert len(found) == 1
+    symbols, lines = found[0].curves[::2], found[0].curves[1::2]
+    assert len(lines) == len(figures.MODULI)
+    for one, line, row in zip(symbols, lines, whole.scaling, strict=True):
+        assert (one.x.tolist(), line.y.tolist()) == (line.x.tolist(), list(row.theory))
+        assert line.label.startswith("theory")
+
+
 def test_every_figure_is_computed_in_one_call(monkeypatch):
     monkeypatch.setattr(figures, "MOST", 2)
     monkeypatch.setattr(figures, "MODULI", figures.MODULI[:1])
     monkeypatch.setattr(figures, "HEIGHTS", (0.1, 1.0))
-    found = figures.figures()
+    shown = []
+
+    def progress(parts):
+        shown.extend(parts)
+        return parts
+
+    found = figures.figures(progress)
+    assert len(shown) == len(figures.RECORDED) + 2 + 1 + 1  # the widths were not on the bar
     assert [f.N for f in found.forces] == list(figures.RECORDED)
     assert [s.N for s in found.speeds] == [1, 2]
     assert len(found.scaling) == 1

@@ -201,3 +201,13 @@ def test_bad_files(tmp_path, name, message):
     (tmp_path / "folder.jsonl").mkdir()
     with pytest.raises(InputError, match=f"^{message}$"):
         Journal(tmp_path / name, SETTINGS)
+
+
+def test_a_link_keeps_its_target_and_a_file_its_mode(tmp_path):
+    target, link = tmp_path / "t", tmp_path / "s.jsonl"
+    target.touch(0o640)
+    link.symlink_to("t")
+    write(link)
+    assert link.is_symlink()
+    assert target.stat().st_mode & 0o777 == 0o640
+    assert list(Journal(link, SETTINGS).points.values()) == POINTS

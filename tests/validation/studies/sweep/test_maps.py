@@ -121,12 +121,13 @@ def test_maps(result, tmp_path):
         cells = plot.collections[0].get_array()
         assert cells.shape == (3, 3)
         assert cells.mask[1, 1]
+        assert plot.get_title() == "hatched: no value; red ×: width known to less than 1%"
         (unsure,) = plot.lines
         assert (list(unsure.get_xdata()), list(unsure.get_ydata())) == ([0.5], [2.0])
     assert axes[3].collections[0].get_array().mask[2, 2]  # no theory there
     decay = axes[2].collections[0].get_array()
     assert decay[0, 0] == 0.05
-    assert 0 < decay[0, 2] < 1e-7  # below the lowest colour, and not grey: it does not decay
+    assert 0 < decay[0, 2] < 1e-7  # below the lowest colour, and not hatched: it does not decay
     labels = {plot.get_ylabel() for plot in picture.axes} - {"k"}
     assert labels == {
         "FWHM of the contact force (sites)",

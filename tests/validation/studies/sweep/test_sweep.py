@@ -43,7 +43,7 @@ COMMAND = Path(sys.executable).with_name("lwa-validate")
 def dask():
     """Dask, without which CI fails and others skip."""
     if os.environ.get("CI"):
-        return importlib.import_executors("distributed")
+        return importlib.import_module("distributed")
     return pytest.importorskip("distributed", reason="Dask is not installed")
 
 
@@ -406,6 +406,35 @@ def test_what_is_no_scheduler_is_refused(capfd, monkeypatch, answer):
         with nothing_is_left(capfd):
             refused_cluster(f"tcp://127.0.0.1:{server.getsockname()[1]}")
         serving.result()
+
+
+@pytest.mark.slow
+def test_a_scheduler_that_is_killed_is_one_line(tmp_path):
+    dask()
+    file = tmp_path / "s.jsonl"
+    code = """if True:
+        from distributed import LocalCluster
+        with LocalCluster(n_workers=1, processes=False, protocol="tcp://",
+                          dashboard_address=None) as local:
+            print(local.scheduler_address, flush=True)
+            input()
+    """
+    with (
+        subprocess.Popen(
+            [sys.executable, "-c", code], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+        ) as local,
+        subprocess.Popen(
+            [COMMAND, "sweep", "--k", "5/4:3:20", "--cluster", local.stdout.readline().strip(),
+             "--file", file],
+            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+        ) as running,
+    ):  # fmt: skip
+        while not file.exists() and running.poll() is None:
+            time.sleep(0.1)
+        local.kill()
+        out, err = running.communicate()
+    said = "the workers are gone before the sweep is done: killed, or out of memory?"
+    assert (running.returncode, out, err) == (2, "", f"lwa-validate: {said}\n")
 
 
 def test_a_cluster_without_workers_is_refused(capfd, monkeypatch):

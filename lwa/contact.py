@@ -1,0 +1,123 @@
+"""The force of a contact as a series in the spacing D, for a power and for any other law.
+
+A contact whose strain is p (1 + X), X = Σ_{n≥1} D^n X_n, pushes with
+
+    F(p (1 + X)) = F(p) + p F'(p) Φ,    Φ = Σ_{m≥1} φ_m X^m/m!,
+
+φ_m = p^{m-1} F^{(m)}(p)/F'(p). For F = p^k, Φ obeys a recurrence of its own; for any other law its
+terms are sums over the powers of X.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import factorial
+
+from flint import fmpq, fmpq_mpoly
+
+from lwa.jets import JetAlgebra, Ladder
+
+
+class Force:
+    """The series X and Φ of a contact, term by term; both hold the terms so far."""
+
+    def __init__(self, algebra: JetAlgebra, k: fmpq_mpoly) -> None:
+        self.k = k
+        self.X: list[fmpq_mpoly] = [algebra.zero]
+        self.Phi = Ladder(algebra, k)
+        self.Phi.append(algebra.zero)
+        self._one = Ladder(algebra, k)
+        self._one.append(algebra.r[1])
+        self._known: fmpq_mpoly | None = None
+
+    @property
+    def known(self) -> fmpq_mpoly:
+        """Of the next Φ_n the part Φ_n - X_n, which depends on X_1 … X_{n-1} only."""
+        if self._known is None:
+            self._known = self._nonlinear(len(self.X))
+        return self._known
+
+    def _nonlinear(self, n: int) -> fmpq_mpoly:
+        raise NotImplementedError
+
+    def append(self, X_n: fmpq_mpoly) -> None:
+        """Give the next term of X."""
+        self.Phi.append(X_n + self.known)
+        self.X.append(X_n)
+        self._known = None
+
+    def carried(self, h: int, n: int) -> fmpq_mpoly:
+        """What the shift by hD adds to F(p) + p F' Φ at D^n, over p F'.
+
+        From F(p) it is h^n/n! ∂_x^{n-1} r_1.
+        """
+        return self.Phi.carried(h, n) + self._one.dx(0, n - 1) * fmpq(h**n, factorial(n))
+
+    def work(self, n: int) -> fmpq_mpoly:
+        """∫ Φ dX at D^n: the energy less its linear part, over p² F'."""
+        total = self.Phi[0]
+        for j in range(1, n):
+            total = total + j * self.X[j] * self.Phi[n - j]
+        return total / n
+
+
+class Binomial(Force):
+    """Φ of a power: (1 + X)^k = 1 + k Φ.
+
+    With Y = (1 + X)^k the recurrence n Y_n = Σ_{j=1..n} (k j - (n - j)) X_j Y_{n-j} gives
+
+        Φ_n = X_n + ((k + 1)/n) Σ_{j<n} j X_j Φ_{n-j} - Σ_{j<n} X_j Φ_{n-j},
+
+    polynomial in k and without a division by it.
+    """
+
+    def _nonlinear(self, n: int) -> fmpq_mpoly:
+        plain = weighted = self.Phi[0]
+        for j in range(1, n):
+            product = self.X[j] * self.Phi[n - j]
+            plain = plain + product
+            weighted = weighted + j * product
+        return (self.k + 1) * weighted / n - plain
+
+
+class Smooth(Force):
+    """Φ of any law whose φ_m are parameters of the algebra."""
+
+    def __init__(self, algebra: JetAlgebra, k: fmpq_mpoly) -> None:
+        super().__init__(algebra, k)
+        self._phi = algebra.phi
+        self._powers = Powers(self.X)
+
+    def _nonlinear(self, n: int) -> fmpq_mpoly:
+        return self._powers.sum(self._phi, n)
+
+
+class Powers:
+    """The powers X^m/m! of a graded series X = Σ_{n≥1} D^n X_n that may still grow."""
+
+    def __init__(self, X: Sequence[fmpq_mpoly]) -> None:
+        self._X = X
+        self._known: dict[tuple[int, int], fmpq_mpoly] = {}
+
+    def term(self, m: int, n: int) -> fmpq_mpoly:
+        """X^m/m! at D^n, n ≥ m ≥ 1."""
+        if m == 1:
+            return self._X[n]
+        if (m, n) not in self._known:
+            total = self._X[0]
+            for j in range(1, n - m + 2):
+                total = total + self._X[j] * self.term(m - 1, n - j)
+            self._known[m, n] = total / m
+        return self._known[m, n]
+
+    def sum(self, coefficients: Sequence[fmpq_mpoly], n: int) -> fmpq_mpoly:
+        """Σ_{m≥2} c_m X^m/m! at D^n."""
+        total = self._X[0]
+        for m in range(2, n + 1):
+            total = total + coefficients[m] * self.term(m, n)
+        return total
+
+
+def contact(algebra: JetAlgebra, k: fmpq_mpoly) -> Force:
+    """The force of a contact under the law of the algebra, k its exponent."""
+    return Smooth(algebra, k) if algebra.phi else Binomial(algebra, k)

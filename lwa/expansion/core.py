@@ -1,0 +1,50 @@
+"""Where a pulse is told by a polynomial for its logarithm, F = exp Σ a_d ξ^d: its core.
+
+Near its peak it falls; further out the polynomial, a series that is cut, may turn round.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+import sympy as sp
+
+POINTS = 401
+"""At which the core is looked at."""
+
+DEEP = 40.0
+"""Below the peak's logarithm there is nothing to be seen."""
+
+
+def descent(
+    whole: Mapping[int, float], last: Mapping[int, float]
+) -> tuple[tuple[sp.Expr, sp.Expr], float, float]:
+    """The ends of the core of exp Σ a ξ^d, and two shares of its peak: of the ends, of the last.
+
+    whole, last : d → a, of the series and of its last order alone. The ends are rounded inwards.
+    The shares are the greater of the ends' heights, and the most by which the last order moves the
+    pulse; infinite where the series has no peak.
+    """
+    import numpy as np
+    from numpy.polynomial import Polynomial
+
+    log, more = (Polynomial([a.get(d, 0.0) for d in range(max(whole) + 1)]) for a in (whole, last))
+    roots = log.deriv().roots()
+    turns = np.sort(roots.real[np.abs(roots.imag) <= 1e-9 * np.abs(roots)])
+    peak = min(turns, key=abs)
+    left, right = turns[turns < peak].max(initial=-np.inf), turns[turns > peak].min(initial=np.inf)
+    ends = (-_inwards(-float(left)), _inwards(float(right)))
+    if not log.deriv(2)(peak) < 0:
+        return ends, math.inf, math.inf
+    fallen = max(
+        (float(np.exp(log(x) - log(peak))) for x in (left, right) if np.isfinite(x)), default=0.0
+    )
+    width = math.sqrt(2 * DEEP / -log.deriv(2)(peak))
+    xi = np.linspace(max(left, peak - width), min(right, peak + width), POINTS)
+    force = np.exp(log(xi) - log(peak))
+    return ends, fallen, float(np.max(force * np.minimum(np.abs(more(xi)), 1.0)))
+
+
+def _inwards(end: float) -> sp.Expr:
+    return sp.Rational(math.floor(1000 * end), 1000) if math.isfinite(end) else sp.oo

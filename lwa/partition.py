@@ -1,0 +1,80 @@
+"""What enters a derivation as a fraction of a whole: mass fractions, and shares of the strain.
+
+Rational fractions are numbers, and what is not rational becomes one generator of a python-flint
+ring per distinct value, less one, since the fractions sum to the whole.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import sympy as sp
+from flint import fmpq, fmpq_mpoly, fmpq_mpoly_ctx
+
+from lwa.value import Value
+
+
+def rational(value: sp.Expr) -> fmpq:
+    """A SymPy rational as a python-flint one."""
+    return fmpq(int(value.p), int(value.q))
+
+
+def number(value: fmpq) -> sp.Rational:
+    """A python-flint rational as a SymPy one."""
+    return sp.Rational(int(value.p), int(value.q))
+
+
+@dataclass(frozen=True)
+class Partition(Value):
+    """Positive weights w_i that enter only as f_i = total · w_i / Σ_j w_j.
+
+    The masses of a cell are such weights (total 1), and so are the compliances of its contacts
+    (total P).
+    """
+
+    weights: tuple[sp.Expr, ...]
+    total: int
+    letter: str
+
+    @cached_property
+    def distinct(self) -> tuple[sp.Expr, ...]:
+        """The distinct weights, in the order of their first appearance."""
+        return tuple(dict.fromkeys(self.weights))
+
+    @cached_property
+    def sum(self) -> sp.Expr:
+        """Σ w_i."""
+        return sp.Add(*self.weights)
+
+    @cached_property
+    def values(self) -> tuple[sp.Expr, ...] | None:
+        """f of each distinct weight if all of them are rational, else None."""
+        first = self.distinct[0]
+        ratios = [w / first if w.is_number else sp.cancel(w / first) for w in self.weights]
+        if not all(ratio.is_Rational for ratio in ratios):
+            return None
+        return tuple(self.total * w / first / sp.Add(*ratios) for w in self.distinct)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the ring generators: one per distinct weight but the last."""
+        count = 0 if self.values else len(self.distinct) - 1
+        return tuple(f"{self.letter}{i}" for i in range(count))
+
+    def elements(self, context: fmpq_mpoly_ctx) -> list[fmpq_mpoly]:
+        """f_0, f_1, … as elements of a ring that has `names` among its generators."""
+        if self.values:
+            of = {
+                w: context.constant(rational(f))
+                for w, f in zip(self.distinct, self.values, strict=True)
+            }
+        else:
+            free = [context.gen(context.variable_to_index(name)) for name in self.names]
+            of = dict(zip(self.distinct, free, strict=False))
+            rest = context.constant(self.total)
+            for weight, f in of.items():
+                rest = rest - self.weights.count(weight) * f
+            last = self.distinct[-1]
+            of[last] = rest / self.weights.count(last)
+        return [of[w] for w in self.weights]

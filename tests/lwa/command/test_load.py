@@ -1,0 +1,155 @@
+"""The command `lwa` for other laws and for chains under load."""
+
+import json
+import math
+
+import pytest
+import sympy as sp
+
+from lwa import Cell, Dimer, Power, background_wave, canonical_wave, general, homogenize
+from lwa.command.cli import main
+
+
+def run(capsys, *arguments):
+    """Exit status, standard output and standard error of one call."""
+    with pytest.raises(SystemExit) as ended:
+        main(arguments)
+    captured = capsys.readouterr()
+    return ended.value.code, captured.out, captured.err
+
+
+def result(capsys, *arguments):
+    status, out, err = run(capsys, *arguments, "--format", "json")
+    assert (status, err) == (0, "")
+    return json.loads(out)
+
+
+def test_derive_any_law(capsys):
+    found = result(capsys, "derive", "--law", "general", "--closure", "full", "--field", "center")
+    pde = homogenize(Dimer("m1", "m2"), law=general(), closure="full", field="center").pde
+    assert [found[name] for name in "GHI"] == [str(getattr(pde, name)) for name in "GHI"]
+    assert "phi3" in found["G"]
+    assert "phi2" in found["H"]
+    assert found["law"] == "F(delta)"
+    assert found["conservative"] is True
+
+
+def test_derive_a_named_law(capsys):
+    found = result(capsys, "derive", "--law", "hertz2:1,1/2", "--masses", "1", "--order", "6")
+    assert found["law"] == "delta**(5/2)/2 + delta**(3/2)"
+    assert set(found["phi"]) == {"2", "3", "4", "5"}
+    status, out, _ = run(capsys, "derive", "--law", "hertz2:1,1/2")
+    assert status == 0
+    assert "phi2 = (15*delta + 6)/(10*delta + 12)" in out
+    assert "F' u_xx + G F' u_x^-2 u_xx^3" in out
+    status, out, _ = run(capsys, "derive", "--law", "exponential", "--format", "latex")
+    assert status == 0
+    assert r"F' u_{xx} + G F' u_{x}^{-2} u_{xx}^{3}" in out
+    assert result(capsys, "derive", "--law", "power:3/2") == result(capsys, "derive", "--k", "3/2")
+
+
+def test_wave_on_a_background(capsys):
+    found = result(capsys, "wave", "--k", "3/2", "--masses", "1,3", "--background", "1/10")
+    wave = background_wave(Dimer(1, 3), "1/10", law=Power("3/2"))
+    assert found["background"] == "1/10"
+    assert found["speed"] == str(wave.speed())
+    assert found["speed_value"] == pytest.approx(float(wave.speed(1)), rel=1e-15)
+    for quantity, width in found["fwhm_value"].items():
+        expected = wave.fwhm(1, quantity) / wave.cell.spacing
+        assert width == pytest.approx(float(expected), rel=1e-14)
+    kdv = wave.kdv
+    assert found["kdv"] == {
+        "sound_speed": str(kdv.sound_speed),
+        "nonlinearity": str(kdv.nonlinearity),
+        "dispersion": str(kdv.dispersion),
+        "speed": str(kdv.speed()),
+        "width": str(kdv.width()),
+    }
+    symbolic = result(capsys, "wave", "--background", "p0")
+    assert symbolic["speed"] == str(background_wave(Dimer("m1", "m2")).speed())
+    assert "speed_value" not in symbolic
+
+
+@pytest.mark.parametrize("style", ["text", "json"])
+@pytest.mark.parametrize("load", ["--background", "--precompression"])
+def test_without_load_it_prints_what_it_printed(capsys, style, load):
+    options = ("wave", "--k", "3/2", "--masses", "1,2", "--format", style)
+    assert run(capsys, *options, load, "0") == run(capsys, *options)
+
+
+def test_softening_has_no_wave_of_that_height_and_no_value(capsys):
+    found = result(capsys, "wave", "--k", "1/2", "--masses", "1", "--background", "1")
+    assert "speed_value" not in found
+    assert sp.sympify(found["speed"]).subs("B", -0.5) > 0
+    compact = result(capsys, "wave", "--law", "hertz2:1,1", "--masses", "1", "--background", "0")
+    assert compact["kdv"] is None
+
+
+def test_wave_in_forces(capsys):
+    options = ("--k", "3/2", "--masses", "2", "--stiffnesses", "5", "--spacing", "1/100")
+    found = result(capsys, "wave", *options, "--precompression", "3", "--force", "10")
+    wave = canonical_wave(Cell([2], [5], "1/100"), "3/2").at_force(10, precompression=3)
+    assert found["speed_value"] == pytest.approx(float(wave.speed), rel=1e-14)
+    assert found["sound_speed_value"] == pytest.approx(float(wave.sound_speed), rel=1e-14)
+    for extent, name in (("length", "fwhm_value"), ("time", "fwhm_time_value")):
+        expected = {q: float(wave.fwhm(q, extent)) for q in ("strain", "force", "velocity")}
+        assert found[name] == pytest.approx(expected, rel=1e-14)
+    status, out, _ = run(capsys, "wave", *options, "--precompression", "3", "--force", "10")
+    assert status == 0
+    assert f"speed = {sp.N(wave.speed, 15)}"[:20] in out
+
+
+def test_bands_in_si(capsys):
+    """ω of the diatomic chain's band edges, √(2K/m), with K = (3/2) A^{2/3} F0^{1/3}."""
+    heavy, light, A, F0 = 0.45e-3, 0.123e-3, 1e9, 2.0
+    found = result(
+        capsys, "dispersion", "--masses", f"{heavy},{light}", "--stiffnesses", "1e9,1e9",
+        "--spacing", "0.00476", "--precompression", "2",
+    )  # fmt: skip
+    K = 1.5 * A ** (2 / 3) * F0 ** (1 / 3)
+    edges = [
+        [0, math.sqrt(2 * K / heavy)],
+        [math.sqrt(2 * K / light), math.sqrt(2 * K * (1 / heavy + 1 / light))],
+    ]
+    for row, expected in zip(found["band_edges_value"], edges, strict=True):
+        assert row == pytest.approx(expected, rel=1e-13, abs=1e-9)
+    assert found["gaps_value"][0] == pytest.approx([edges[0][1], edges[1][0]], rel=1e-13)
+    sound = 0.00476 * math.sqrt(2 * K / (heavy + light))
+    assert found["sound_speed_value"] == pytest.approx(sound, rel=1e-13)
+    first, last = found["branches_value"][0], found["branches_value"][-1]
+    assert first["group_velocities"] == pytest.approx([sound, 0], rel=1e-12, abs=1e-6)
+    assert last["frequencies"] == pytest.approx([edges[0][1], edges[1][0]], rel=1e-12)
+    status, out, _ = run(capsys, "dispersion", "--masses", "1", "--precompression", "2")
+    assert status == 0
+    assert "band 1" in out
+    symbolic = result(capsys, "dispersion", "--precompression", "F0")
+    assert "band_edges_value" not in symbolic
+
+
+BAD = [
+    (("derive", "--law", "toda"), "one of power"),
+    (("derive", "--law", "hertz2:1,2,3"), "at most 2"),
+    (("derive", "--law", "hertz2:1+1"), "hertz2's a"),
+    (("derive", "--law", "general", "--k", "2"), "one of them"),
+    (("derive", "--law", "general", "--stiffnesses", "1,2"), "shares of the strain"),
+    (("derive", "--law", "general", "--branch", "optical"), "also pull"),
+    (("derive", "--law", "general", "--format", "python"), "power laws"),
+    (("wave", "--law", "hertz2"), "--background"),
+    (("wave", "--background", "-1"), "must not be negative"),
+    (("wave", "--background", "1", "--closure", "linear"), "canonical field"),
+    (("wave", "--background", "1", "--precompression", "1"), "both given"),
+    (("wave", "--background", "1", "--force", "1"), "goes with --precompression"),
+    (("wave", "--background", "1", "--format", "c"), "under load"),
+    (("wave", "--background", "B"), "'B'"),
+    (("wave", "--k", "3/2", "--precompression", "2", "--force", "1"), "only B > 0"),
+    (("wave", "--k", "3/2", "--precompression", "2", "--force", "2"), "no wave"),
+    (("dispersion", "--precompression", "-1"), "must be positive"),
+]
+
+
+@pytest.mark.parametrize(("arguments", "reason"), BAD)
+def test_what_cannot_be_meant_is_one_line(capsys, arguments, reason):
+    status, out, err = run(capsys, *arguments)
+    assert (status, out) == (2, "")
+    assert err.count("\n") == 1
+    assert reason in err

@@ -1,0 +1,134 @@
+"""Between a command and its user: encodings, closed and full outputs, Ctrl-C, digits."""
+
+import os
+import signal
+import subprocess
+import sys
+import textwrap
+from importlib.metadata import version
+
+import pytest
+
+import lwa
+from lwa.command.cli import main
+from lwa.command.start import INTERRUPTED, start
+from lwa.command.terminal import SIGNS
+
+COMMAND = [sys.executable, "-m", "lwa"]
+WAVE = [*COMMAND, "wave", "--k", "3/2", "--masses", "1,1"]
+
+
+def call(capsys, arguments):
+    """Exit status, standard output and standard error of one call."""
+    with pytest.raises(SystemExit) as ended:
+        main(arguments)
+    captured = capsys.readouterr()
+    return ended.value.code, captured.out, captured.err
+
+
+@pytest.mark.parametrize("encoding", ["cp1252", "latin-1", "utf-8"])
+def test_letters_that_an_encoding_lacks_are_spelled(encoding):
+    environment = os.environ | {"PYTHONIOENCODING": encoding}
+    done = subprocess.run(WAVE, capture_output=True, env=environment)
+    assert (done.returncode, done.stderr) == (0, b"")
+    text = done.stdout.decode(encoding)
+    assert ("width π/β = " if encoding == "utf-8" else "= sqrt(10)*pi*D/2") in text
+    assert "?" not in text
+    if encoding == "cp1252":
+        assert "width pi/beta = sqrt(10)*pi*D/2 ~ 4.96729413289805 D" in text
+        assert "z'' = mu z^eta - sigma z" in text
+
+
+def test_a_refusal_is_spelled_too():
+    environment = os.environ | {"PYTHONIOENCODING": "cp1252"}
+    done = subprocess.run(
+        [*COMMAND, "derive", "--masses", "κ κ"], capture_output=True, env=environment
+    )
+    assert done.returncode == 2
+    assert b"'kappa kappa'" in done.stderr
+
+
+def test_every_sign_stands_for_one_that_cp1252_or_ascii_lacks():
+    assert all(not sign.isascii() and plain.isascii() for sign, plain in SIGNS.items())
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="Linux's full device")
+def test_a_full_disk_is_one_line():
+    for arguments in (["derive", "--order", "8"], ["--version"], ["-h"]):
+        with open("/dev/full", "w") as full:
+            done = subprocess.run([*COMMAND, *arguments], stdout=full, stderr=subprocess.PIPE)
+        assert (done.returncode, done.stderr.count(b"\n")) == (2, 1)
+        assert b"No space left" in done.stderr
+
+
+@pytest.mark.skipif(os.name != "posix", reason="a shell closes the output")
+def test_a_closed_output_is_one_line():
+    for redirection, lines in ((">&-", 1), (">&- 2>&-", 0)):
+        command = f'"{sys.executable}" -m lwa derive {redirection}'
+        done = subprocess.run(command, shell=True, stderr=subprocess.PIPE)
+        assert (done.returncode, done.stderr.count(b"\n")) == (2, lines)
+
+
+def test_ctrl_c_while_the_command_is_loaded_is_one_line(tmp_path):
+    (tmp_path / "slow.py").write_text(
+        textwrap.dedent("""
+            import os, signal
+            try:
+                os.kill(os.getpid(), signal.SIGINT)
+            except BaseException:  # as a library's own `except` may
+                pass
+            main = print
+        """)
+    )
+    code = f"import sys; sys.path.insert(0, {str(tmp_path)!r}); "
+    code += "from lwa.command.start import start; start('lwa', 'slow')"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert (done.returncode, done.stdout) == (INTERRUPTED, "")
+    assert done.stderr == "lwa: interrupted\n"
+
+
+def test_nothing_is_loaded_before_ctrl_c_is_heard():
+    code = "import sys, lwa.__main__, lwa.command.start; print('sympy' in sys.modules)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "False"
+
+
+def test_once_loaded_the_command_hears_ctrl_c_itself(monkeypatch):
+    heard = []
+    monkeypatch.setattr(
+        "lwa.command.cli.main", lambda: heard.append(signal.getsignal(signal.SIGINT))
+    )
+    start("lwa", "lwa.command.cli")
+    assert heard == [signal.default_int_handler]
+
+
+def test_the_version(capsys):
+    assert lwa.__version__ == version("lwa")
+    assert call(capsys, ["--version"])[1] == f"lwa {lwa.__version__}\n"
+
+
+@pytest.mark.parametrize("arguments", [[], ["derive"], ["wave"], ["dispersion"], ["expansion"]])
+def test_help_has_a_short_name(capsys, arguments):
+    status, said, _ = call(capsys, [*arguments, "-h"])
+    assert status == 0
+    assert said.startswith("Usage: lwa")
+    assert said == call(capsys, [*arguments, "--help"])[1]
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["derive", "--order", "９"],
+        ["derive", "--order", "1_0"],
+        ["derive", "--order", "٤"],
+        ["derive", "--order", "5/2"],
+        ["derive", "--k", "１"],
+        ["dispersion", "--order", "９"],
+        ["expansion", "--order", "９"],
+        ["wave", "--masses", "1,２"],
+    ],
+)
+def test_digits_are_those_of_ascii_everywhere(capsys, arguments):
+    status, out, err = call(capsys, arguments)
+    assert (status, out, err.count("\n")) == (2, "", 1)
+    assert f"{arguments[1][2:]} is " in err

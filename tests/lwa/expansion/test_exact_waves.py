@@ -1,0 +1,140 @@
+"""Sums and profiles of the expansion beside the lattice's own waves, up to k = 20.
+
+Equal beads have c² r = Λ * r^k for the strain r, Λ the triangle on [-1, 1] (English & Pego 2005).
+Iterated with the peak held at 1 and solved by Fourier it is the wave, independently of the
+expansion and of `validation`, with whose waves it is compared where these reach.
+"""
+
+from contextlib import suppress
+from functools import cache
+
+import numpy as np
+import pytest
+import sympy as sp
+
+from lwa import Cell, Dimer, InputError, expand
+from lwa.command.cli import main
+
+POINTS = 4096
+NAMES = ("c2", "strain", "force", "velocity")
+EXPONENTS = ("1.1", "3/2", "2", "3", "4", "6", "8", "9.5", "10", "12", "15", "20")
+
+
+@cache
+def lattice(k):
+    """c² and widths of the wave of equal beads whose force peaks at 1; ξ and its forces."""
+    half = max(4.0, 8 / np.sqrt(k - 1))
+    xi = np.linspace(-half, half, POINTS, endpoint=False)
+    q = np.pi * np.fft.fftfreq(POINTS, 1 / POINTS) / half
+    mean = np.sinc(q / 2 / np.pi)
+    strain = np.exp(-3 * (k - 1) / k * np.fft.ifftshift(xi) ** 2)
+    for _ in range(1000):
+        new = np.fft.ifft(mean**2 * np.fft.fft(np.maximum(strain, 0) ** k)).real
+        c2 = new.max()
+        new, old = new / c2, strain
+        strain = new
+        if np.abs(new - old).max() < 1e-15:
+            break
+    force = np.fft.fft(np.maximum(strain, 0) ** k)
+
+    def width(spectrum):
+        below, above = 0.0, half / 2
+        height = spectrum.real.sum() / 2
+        for _ in range(60):
+            middle = (below + above) / 2
+            inside = (spectrum * np.exp(1j * q * middle)).real.sum() > height
+            below, above = (middle, above) if inside else (below, middle)
+        return 2 * below
+
+    widths = (width(spectrum) for spectrum in (np.fft.fft(strain), force, mean * force))
+    values = dict(zip(NAMES, (c2, *widths), strict=True))
+    return values, xi, np.fft.fftshift(np.maximum(strain, 0) ** k)
+
+
+def series(expansion):
+    return dict(zip(NAMES, (expansion.c2, *map(expansion.fwhm, NAMES[1:])), strict=True))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("k", [1.1, 1.5, 3.0, 8.0])
+def test_these_are_the_waves_of_newtons_method(k):
+    from validation.waves.solver import exact_wave, measured
+
+    values, _, _ = lattice(k)
+    for name, found in measured(exact_wave([1], k)).items():
+        if name in values:
+            assert found.value == pytest.approx(values[name], abs=1e-10)
+
+
+@pytest.mark.parametrize("order", [2, 4, 10])
+@pytest.mark.parametrize("k", EXPONENTS)
+def test_a_sum_is_right_within_its_error_or_refused(k, order):
+    values, _, _ = lattice(float(sp.Rational(k)))
+    for name, row in series(expand(Cell([1]), order, k=k)).items():
+        with suppress(InputError):
+            found = row.at()
+            assert 0 < found.error < found.value
+            assert abs(found.value - values[name]) < found.error
+
+
+@pytest.mark.parametrize("k", EXPONENTS[:5])
+def test_up_to_k_four_there_are_sums(k):
+    assert all(row.at().value > 0 for row in series(expand(Cell([1]), 10, k=k)).values())
+
+
+@pytest.mark.parametrize("k", EXPONENTS[-5:])
+def test_from_k_nine_and_a_half_there_are_none(k):
+    for row in series(expand(Cell([1]), 10, k=k)).values():
+        with pytest.raises(InputError, match="no sum at k"):
+            row.at()
+
+
+def test_the_command_prints_no_sum_that_there_is_not(capsys):
+    arguments = ["expansion", "--k", "10", "--masses", "1", "--order", "10"]
+    for style, words in (("text", "velocity: no sum at k = 10"), ("json", '"velocity": null')):
+        with pytest.raises(SystemExit) as ended:
+            main([*arguments, "--format", style])
+        said = capsys.readouterr().out
+        assert ended.value.code == 0
+        assert words in said
+        assert "±" not in said
+
+
+@pytest.mark.parametrize("order", [1, 3, 4, 8])
+@pytest.mark.parametrize("k", EXPONENTS[:4])
+def test_a_profile_decays_and_is_the_lattices_or_is_refused(k, order):
+    """Its last order's term, over the pulse, is a bound of what it lacks, but for a factor 2."""
+    wave = expand(Cell([1]), order, k=k)
+    _, xi, force = lattice(float(sp.Rational(k)))
+    try:
+        left, right = wave.core()
+    except InputError:
+        assert float(sp.Rational(k)) >= 3
+        assert order >= 4
+        return
+    assert left == -right
+    place = sp.Symbol("xi", real=True)
+    ours = np.array([float(wave.profile(x)) for x in xi[:: POINTS // 32]])
+    assert np.all((ours >= 0) & (ours <= 1))
+    bound = {"1.1": 3e-4, "3/2": 6e-3, "2": 0.03, "3": 0.15}[k]
+    assert np.abs(ours - force[:: POINTS // 32]).max() < bound
+    for far in (10, 100, 10**4):
+        assert wave.profile(far * 4) <= wave.profile(4) < 0.1
+    if right.is_finite:
+        assert wave.profile(place).subs(place, right) < 0.01
+        assert wave.profile(place).subs(place, right + 1) == 0
+
+
+def test_a_profile_of_a_dimer_has_a_core_of_its_own_on_each_side():
+    wave = expand(Dimer(1, "1/2"), 2, k="1.1")
+    left, right = wave.core(0)
+    assert left != -right
+    assert wave.profile(left - 1) == wave.profile(right + 1) == 0 < wave.profile(0) <= 1
+
+
+def test_where_a_series_tells_no_pulse_there_is_no_profile():
+    for wave in (expand(Cell([1]), 10, k=4), expand(Dimer(1, "1/2"), 4, k="3/2")):
+        with pytest.raises(InputError, match="no profile at k"):
+            wave.profile("xi")
+    with pytest.raises(InputError, match="hold symbols"):
+        expand(Cell([1]), 2).core()

@@ -1,0 +1,70 @@
+"""Bands under a static load against closed forms and the chain's own linearisation."""
+
+import numpy as np
+import pytest
+
+from lwa import Cell, InputError, Power, canonical_wave
+from lwa.law import general, named
+from lwa.linear.loaded import LoadedChain, loaded
+
+
+def test_one_bead_a_cell():
+    """ω = 2 √(K/m) |sin(qD/2)|."""
+    chain = loaded(Cell([2], [5], "1/10"), 3)
+    K = 1.5 * 5 ** (2 / 3) * 3 ** (1 / 3)
+    q = np.array([0.5, 7.0, 20.0])
+    omega = 2 * np.sqrt(K / 2) * np.sin(q / 20)
+    assert chain.branches(q)[:, 0] == pytest.approx(omega, rel=1e-14)
+    slope = np.sqrt(K / 2) * np.cos(q / 20) / 10
+    assert chain.group_velocity(q)[:, 0] == pytest.approx(slope, rel=1e-13)
+    assert float(chain.sound_speed) == pytest.approx(0.1 * np.sqrt(K / 2), rel=1e-14)
+    assert chain.gaps().shape == (0, 2)
+
+
+def test_the_eigenvalues_of_a_ring_of_unlike_contacts():
+    """Eight cells in a ring, linearised by differences of the force."""
+    masses, stiffnesses, k, F0 = (1.0, 2.0, 0.5), (1.0, 3.0, 2.0), 1.5, 0.7
+    chain = LoadedChain(Cell(masses, stiffnesses, 1), Power(k), F0)
+    cells, P, h = 8, 3, 1e-6
+    size = cells * P
+    delta = (F0 / np.array(stiffnesses)) ** (1 / k)
+
+    def forces(u):
+        bends = np.tile(delta, cells) + u - np.roll(u, -1)
+        push = np.tile(stiffnesses, cells) * bends**k
+        return np.roll(push, 1) - push
+
+    rows = [(forces(h * e) - forces(-h * e)) / (2 * h) for e in np.eye(size)]
+    inertia = np.tile(masses, cells)
+    omega2 = np.linalg.eigvals(-np.array(rows) / inertia[:, None]).real
+    expected = np.sort(np.sqrt(np.maximum(omega2, 0)))
+    q = 2 * np.pi * np.arange(cells) / size
+    found = np.sort(chain.branches(q).ravel())
+    assert found == pytest.approx(expected, abs=1e-4)  # √ of the differences' 1e-9 at ω = 0
+    edges = chain.band_edges()
+    assert np.all(edges[:, 0] <= edges[:, 1])
+
+
+def test_the_sound_is_that_of_the_waves_on_the_load():
+    cell = Cell([1, 3], [2, 7], "1/2")
+    wave = canonical_wave(cell, "5/2").at_force(4, precompression=3)
+    chain = LoadedChain(cell, Power("5/2"), 3)
+    assert float(chain.sound_speed) == pytest.approx(float(wave.sound_speed), rel=1e-14)
+
+
+def test_another_law():
+    law = named("exponential", 2)
+    chain = LoadedChain(Cell([1], [3], 1), law, 6)
+    # (e^{2δ} - 1)/2 = 2, and A F′ = 3 e^{2δ}
+    assert float(chain.spring_constants[0]) == pytest.approx(15, rel=1e-14)
+    assert chain.band_edges()[0, 1] == pytest.approx(2 * np.sqrt(15), rel=1e-13)
+
+
+def test_what_cannot_be_meant():
+    for make, reason in (
+        (lambda: loaded(Cell([1]), 0), "positive"),
+        (lambda: loaded(Cell(["m"]), 1).band_edges(), "has no value"),
+        (lambda: LoadedChain(Cell([1, 1], [1, 2]), general(), 1), "shares"),
+    ):
+        with pytest.raises(InputError, match=reason):
+            make()

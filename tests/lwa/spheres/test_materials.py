@@ -1,0 +1,120 @@
+"""Materials by name, and the masses of beads from densities."""
+
+import math
+
+import pytest
+import sympy as sp
+
+from lwa import Cell, InputError, Material, Sphere
+from lwa.spheres.beads import spheres
+from lwa.spheres.hertz import stiffness
+from lwa.spheres.materials import MATERIALS
+
+RANGES = {  # E in GPa and density in Mg/m³ of Gere & Goodno, Mechanics of Materials, appendix
+    "steel 316": (190, 210, 7.7, 8.1),
+    "steel 440C": (190, 210, 7.6, 7.9),
+    "aluminium": (68, 79, 2.6, 2.8),
+    "brass": (96, 110, 8.4, 8.6),
+    "glass": (48, 83, 2.4, 2.8),
+    "PTFE": (0.4, 1.8, 2.1, 2.3),
+    "delrin": (2.8, 3.4, 1.40, 1.43),
+}
+
+
+@pytest.mark.parametrize("name", MATERIALS)
+def test_a_material_is_one_of_its_kind_and_has_a_source(name):
+    low, high, light, heavy = RANGES[name]
+    material = Material.named(name)
+    assert low <= material.E / 10**9 <= high
+    assert light <= material.density / 1000 <= heavy
+    assert sp.Rational(1, 5) < material.nu < sp.S.Half
+    assert MATERIALS[name].source
+
+
+@pytest.mark.parametrize(("name", "mass"), [("steel 316", 0.45e-3), ("PTFE", 0.123e-3)])
+def test_the_papers_beads_have_the_papers_masses(name, mass):
+    """4.76 mm in diameter; the masses are given to 0.01 g and 0.001 g."""
+    sphere = Sphere.solid("2.38e-3", Material.named(name))
+    assert float(sphere.mass) == pytest.approx(mass, rel=0.012)
+
+
+def test_values_are_overridden_one_by_one():
+    ours = Material.named("PTFE", E="0.6e9")
+    assert ours == Material("0.6e9", "0.46", 2178)
+    assert Material.named("glass", nu="0.25", density=2500) == Material("72.8e9", "1/4", 2500)
+
+
+def chain(**tables):
+    return {"chain": {"cell": ["ball"]}} | tables
+
+
+def ball(**more):
+    return {"ball": {"radius": 0.01, "material": "steel 316"} | more}
+
+
+def test_a_bead_takes_a_mass_a_density_or_that_of_its_material():
+    volume = 4 * math.pi / 3 * 1e-6
+    for bead, mass in (
+        (ball(), 8000 * volume),
+        (ball(density=7970.0), 7970 * volume),
+        (ball(mass=0.03), 0.03),
+    ):
+        (sphere,) = spheres(chain(beads=bead))
+        assert float(sphere.mass) == pytest.approx(mass, rel=1e-14)
+        assert sphere.material == Material.named("steel 316")
+
+
+def test_a_file_may_change_a_material_or_have_its_own_of_the_same_name():
+    own = {"steel 316": {"E": 200e9, "nu": 0.29, "density": 7900.0}}
+    (sphere,) = spheres(chain(beads=ball(), materials=own))
+    assert sphere.material == Material("200e9", "0.29", 7900)
+    like = {"soft": {"like": "PTFE", "E": 0.6e9}}
+    (sphere,) = spheres(chain(beads=ball(material="soft"), materials=like))
+    assert sphere.material == Material.named("PTFE", E="0.6e9")
+
+
+def test_a_cell_of_named_materials_is_hertzs():
+    first, second = (Sphere.solid("0.01", Material.named(n)) for n in ("steel 316", "aluminium"))
+    cell = Cell.of_spheres([first, second])
+    assert cell.masses[0] / cell.masses[1] == sp.Rational(80, 27)
+    assert cell.stiffnesses[0] == stiffness(first, second)
+
+
+@pytest.mark.parametrize(
+    ("tables", "words"),
+    [
+        (dict(beads=ball(material="aluminum")), r"'aluminum': did you mean aluminium\?"),
+        (dict(beads=ball(material="wood")), r"steel 316, steel 440C, .*delrin is wanted"),
+        (dict(beads=ball(mass=1.0, density=1.0)), "beads.ball has both mass and density"),
+        (dict(beads=ball(density=0)), "beads.ball.density is 0: it must be positive"),
+        (
+            dict(beads=ball(material="x"), materials={"x": {"E": 1.0, "nu": 0.3}}),
+            "beads.ball.mass is missing: it, or a density here or of the material",
+        ),
+        (dict(beads=ball(), materials={"x": {"E": 1.0}}), "materials.x.nu is missing"),
+        (
+            dict(beads=ball(), materials={"x": {"like": "wood"}}),
+            "materials.x.like is 'wood': one of steel 316",
+        ),
+        (
+            dict(beads=ball(), materials={"x": {"like": "PTFE", "nu": 0.6}}),
+            "materials.x.nu is 0.6: Poisson's ratio",
+        ),
+    ],
+)
+def test_what_a_file_cannot_mean(tables, words):
+    with pytest.raises(InputError, match=words):
+        spheres(chain(**tables))
+
+
+def test_names_that_are_none():
+    for call, words in (
+        (lambda: Material.named("wood"), "'wood': one of steel 316, steel 440C"),
+        (lambda: Material.named(1), "material is 1: one of"),
+        (lambda: Material.named([]), r"material is \[\]: one of"),
+        (lambda: Sphere.solid(1, Material(1, 0)), "a Material with a density"),
+        (lambda: Sphere.solid(1, "PTFE"), "'PTFE': a Material with a density"),
+        (lambda: Material(1, 0, -1), "density is -1"),
+    ):
+        with pytest.raises(InputError, match=words):
+            call()

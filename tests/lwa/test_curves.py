@@ -1,0 +1,172 @@
+"""A wave in numbers: curves over time, arrays of forces, forces of beads, and pictures."""
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+import sympy as sp
+
+from lwa import (
+    Cell,
+    Dimer,
+    InputError,
+    Material,
+    Sphere,
+    canonical_wave,
+    homogenize,
+)
+
+STEEL = Material.named("steel 316")
+BALL = Sphere.solid("0.01", STEEL)
+CHAIN = canonical_wave(Cell.of_spheres([BALL]), "3/2")
+UNEQUAL = canonical_wave(
+    Cell.of_spheres([BALL, Sphere.solid("0.01", Material.named("PTFE"))]), "3/2"
+)
+THEORIES = (
+    CHAIN,
+    UNEQUAL,
+    canonical_wave(Dimer(1, "1/3", spacing=2), 2),
+    homogenize(Dimer(3, 1, spacing="1/2"), k="5/4").pde.traveling_wave(),
+)
+ROUNDING = 1e-13
+
+
+@pytest.mark.parametrize("wave", THEORIES)
+@pytest.mark.parametrize("of", ["contact", "bead"])
+def test_an_array_of_forces_has_what_each_force_has(wave, of):
+    forces = np.array([[0.3, 7.0], [1.0, 1e4]])
+    many = wave.at_force(forces, of)
+    for place, force in np.ndenumerate(forces):
+        one = wave.at_force(force, of)
+        for name in (
+            "contact_force",
+            "bead_force",
+            "strain",
+            "compression",
+            "speed",
+            "bead_velocity",
+        ):
+            assert getattr(many, name)[place] == pytest.approx(
+                float(getattr(one, name)), rel=ROUNDING
+            )
+        for quantity in ("strain", "force", "velocity"):
+            for extent in ("length", "time"):
+                found = many.fwhm(quantity, extent)
+                assert found.shape == forces.shape
+                assert found[place] == pytest.approx(
+                    float(one.fwhm(quantity, extent)), rel=ROUNDING
+                )
+    assert np.array_equal(wave.at_force(list(forces[0]), of).speed, many.speed[0])
+
+
+@pytest.mark.parametrize("wave", THEORIES)
+def test_a_curve_is_the_profile_as_it_passes(wave):
+    answer = wave.at_force(12)
+    half = float(answer.fwhm("strain", "time"))
+    times = np.linspace(-1.5, 1.5, 7) * half
+    strain = answer.curve(times, "strain")
+    for t, found in zip(times, strain, strict=True):
+        xi = sp.Float(-float(answer.speed) * t, 30)
+        exact = wave.profile(xi, answer.strain)
+        assert found == pytest.approx(float(exact), rel=1e-10, abs=1e-20)
+    force = answer.curve(times)
+    A, k, D = (float(x) for x in (wave.cell.stiffness(wave.k), wave.k, wave.D))
+    assert np.allclose(force, A * (D * strain) ** k, rtol=1e-12, atol=0)  # F = A δ^k
+    assert np.allclose(answer.curve(times, "velocity"), float(answer.speed) * strain, rtol=1e-13)
+
+
+@pytest.mark.parametrize("wave", THEORIES)
+@pytest.mark.parametrize("of", ["contact", "bead"])
+def test_a_curve_peaks_at_the_force_that_is_given_and_is_as_wide_as_is_told(wave, of):
+    answer = wave.at_force(12, of)
+    width = float(answer.fwhm("force", "time"))
+    t = np.linspace(-2 * width, 2 * width, 4001)
+    found = answer.curve(t)
+    assert found.max() == pytest.approx(12, rel=ROUNDING)
+    assert np.argmax(found) == 2000
+    assert np.array_equal(found, wave.force(t, peak=12, of=of))
+    assert max(found[0], found[-1]) < 1e-5
+    if of == "contact":
+        assert np.ptp(t[found > 6]) == pytest.approx(width, abs=2 * (t[1] - t[0]))
+
+
+@pytest.mark.parametrize("wave", THEORIES)
+def test_a_bead_bears_the_mean_of_its_contacts(wave):
+    answer = wave.at_force(5)
+    shift = float(wave.D / answer.speed) / 2
+    t = np.linspace(-1, 1, 51) * float(answer.fwhm("force", "time")) * 2
+    mean = (answer.curve(t - shift) + answer.curve(t + shift)) / 2
+    assert np.allclose(answer.curve(t, of="bead"), mean, rtol=0, atol=5e-13)
+    assert float(answer.bead_force) == pytest.approx(mean.max(), rel=1e-12)
+    back = wave.at_force(answer.bead_force, of="bead")
+    assert float(back.contact_force) == pytest.approx(5, rel=1e-14)
+
+
+def test_symbols_in_the_force_of_a_bead():
+    wave = canonical_wave(Cell(["m"], ["A"]), "3/2")
+    answer = wave.at_force("F", of="bead")
+    assert answer.bead_force == sp.Symbol("F", positive=True)
+    share = sp.cos(sp.sqrt(10) / 10) ** 6
+    assert sp.simplify(answer.contact_force * share - answer.bead_force) == 0
+    numbers = answer.at(F=2, m=1, A=1, D=1)
+    assert (numbers.of, numbers.bead_force) == ("bead", 2)
+
+
+def test_where_contacts_peak_one_after_the_other_a_bead_has_no_peak_force():
+    wave = canonical_wave(Cell([1], spacing=1), 5)
+    curve = wave.at_force(1).curve(np.linspace(-2, 2, 401), of="bead")
+    assert curve[200] < 0.9 * curve.max()
+    with pytest.raises(InputError, match="peak one after the other"):
+        wave.at_force(1, of="bead")
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda: CHAIN.at_force(1, of="wall"), "of is 'wall': contact or bead"),
+        (lambda: CHAIN.at_force([1, 0]), "force is 0.0: it must be positive"),
+        (lambda: CHAIN.at_force([1, float("nan")]), "force is nan: finite numbers"),
+        (lambda: CHAIN.at_force(["x"]), "real numbers are wanted"),
+        (lambda: CHAIN.at_force([1j]), "real numbers are wanted"),
+        (lambda: CHAIN.at_force(1).curve([0], "pressure"), "quantity is 'pressure'"),
+        (lambda: CHAIN.at_force(1).curve("now"), "t is 'now': real numbers"),
+        (lambda: CHAIN.at_force(1).curve([np.inf]), "t is inf: finite numbers"),
+        (lambda: CHAIN.at_force(1).curve([0], of="wall"), "of is 'wall'"),
+        (lambda: CHAIN.at_force("F").curve([0]), "F: a curve needs numbers"),
+        (lambda: CHAIN.force([0], peak=-1), "force is -1: it must be positive"),
+        (lambda: canonical_wave(Cell(["m"]), 2).at_force([1, 2]), "D, m: a curve needs numbers"),
+        (lambda: canonical_wave(Cell([1])).plot(), "k: a curve needs numbers"),
+        (lambda: CHAIN.at_force([1]).fwhm("force", "area"), "extent is 'area'"),
+    ],
+)
+def test_what_cannot_be_meant(call, words):
+    with pytest.raises(InputError, match=words):
+        call()
+
+
+def test_pictures(monkeypatch):
+    monkeypatch.setenv("MPLBACKEND", "Agg")
+    from matplotlib import pyplot
+
+    pyplot.switch_backend("Agg")
+    ax = canonical_wave(Cell([1]), "3/2").plot()
+    sites, strain = ax.lines[0].get_data()
+    assert strain.max() == 1
+    assert np.ptp(sites[strain > 0]) == pytest.approx(np.pi * np.sqrt(5 / 2), rel=0.01)
+    assert CHAIN.at_force(10).plot(ax, units=("s", "N")) is ax
+    contact, bead = (line.get_ydata() for line in ax.lines[-2:])
+    assert contact.max() == pytest.approx(10)
+    assert bead.max() == pytest.approx(float(CHAIN.at_force(10).bead_force), rel=1e-12)
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("t (s)", "force (N)")
+    pyplot.close("all")
+
+
+def test_matplotlib_is_loaded_for_a_new_picture_only():
+    code = (
+        "import sys\nfrom lwa import Cell, canonical_wave\n"
+        "wave = canonical_wave(Cell([1], spacing=1), '3/2')\nwave.force([0], peak=1)\n"
+        "print('matplotlib' in sys.modules)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "False"

@@ -1,0 +1,238 @@
+"""Any contact law: the power's results come back, the linear part is Bloch's, and the rest is held
+against the difference equation of the chain, expanded by code of its own."""
+
+from fractions import Fraction
+
+import pytest
+import sympy as sp
+
+from lwa import Cell, Dimer, Dispersion, InputError, Law, Power, general, homogenize
+from lwa.energy import energy
+from lwa.jets import Ladder
+from lwa.law import NAMES, named
+
+x = sp.Symbol("x")
+y = sp.Symbol("y", positive=True)
+
+
+def phi(n):
+    return sp.Symbol(f"phi{n}", real=True)
+
+
+def as_power(value, k):
+    """An expression in φ_2, φ_3, … for F = δ^k."""
+    return value.subs({phi(n): sp.prod(k - j for j in range(1, n)) for n in range(2, 12)})
+
+
+DERIVED = [
+    (Dimer("m1", "m2"), 7, {"closure": "full"}),
+    (Dimer("m1", "m2"), 7, {"closure": "full", "field": "center"}),
+    (Dimer("m1", "m2"), 8, {}),
+    (Cell([1, 2, 3]), 6, {"closure": "full", "field": "center"}),
+    (Cell([1]), 9, {}),
+]
+
+
+@pytest.mark.parametrize(("cell", "order", "kind"), DERIVED)
+def test_the_power_law_comes_back_at_every_order(cell, order, kind):
+    power = homogenize(cell, order, **kind)
+    found = homogenize(cell, order, law=general(), **kind)
+    pairs = [(power.pde.coefficients, found.pde.coefficients), (power.defect, found.defect)]
+    pairs += [(power.slaved[i], found.slaved[i]) for i in power.slaved]
+    if not power.defect:
+        pairs.append((dict(power.pde.energy), dict(found.pde.energy)))
+        pairs[-1][0].pop(0), pairs[-1][1].pop(0)  # W(u_x) stands apart
+    if kind.get("field") == "center":
+        pairs.append((power.pde.fluxes, found.pde.fluxes))
+    compared = 0
+    for old, new in pairs:
+        assert old.keys() == new.keys()
+        for n in old:
+            for jet in {*old[n], *new[n]}:
+                difference = old[n].get(jet, 0) - as_power(sp.sympify(new[n].get(jet, 0)), power.k)
+                assert sp.cancel(difference) == 0
+                compared += 1
+    assert compared > 10
+
+
+def test_in_another_field_too():
+    shifts = {1: "1/3", 2: "alpha"}
+    power, found = (
+        homogenize(Dimer(2, 1), 6, closure="full", **law).pde.in_field(shifts)
+        for law in ({}, {"law": general()})
+    )
+    for n, old in power.coefficients.items():
+        new = found.coefficients[n]
+        for jet in {*old, *new}:
+            difference = old.get(jet, 0) - as_power(sp.sympify(new.get(jet, 0)), power.k)
+            assert sp.cancel(difference) == 0
+
+
+@pytest.mark.parametrize("cell", [Cell([1]), Dimer("m1", "m2"), Cell(["m1", 2, 3])])
+def test_about_a_uniform_strain_it_is_blochs_chain(cell):
+    """What is linear in the jets has no φ_n in it, and is the series of Ω²."""
+    pde = homogenize(cell, 7, law=general(), closure="full", field="center").pde
+    series = Dispersion(cell).acoustic(6)
+    for n, found in pde.coefficients.items():
+        bloch = (-1) ** (n // 2) * series[n + 1] if n % 2 else 0
+        assert sp.cancel(found.get(((n + 1, 1),), 0) - bloch) == 0
+
+
+@pytest.mark.parametrize("branch", ["acoustic", "optical"])
+def test_the_linear_law_is_k_1(branch):
+    """φ_n = 0: a polynomial of degree one, next to the power 1."""
+    spring = homogenize(Dimer(2, 1), 8, k=1, branch=branch).pde
+    assert spring.right_side(sp.sin(x), x) != 0
+    if branch == "acoustic":
+        law = Law(3 * y, y)
+        found = homogenize(Dimer(2, 1), 8, law=law).pde
+        assert sp.expand(found.right_side(x**9, x) - 3 * spring.right_side(x**9, x)) == 0
+    else:
+        with pytest.raises(InputError, match="also pull"):
+            homogenize(Dimer(2, 1), law=general(), branch=branch)
+
+
+def series(value, order):
+    return [Fraction(value), *[Fraction(0)] * order]
+
+
+def times(a, b):
+    return [sum(a[j] * b[n - j] for j in range(n + 1)) for n in range(len(a))]
+
+
+def force(law, strain):
+    """The law at a strain that is a series in D, by Taylor's theorem."""
+    rest = [Fraction(0), *strain[1:]]
+    total, power, factorial = series(0, len(rest) - 1), series(1, len(rest) - 1), 1
+    for m in range(len(rest)):
+        factorial *= max(m, 1)
+        value = sp.Rational(law.at(sp.Rational(strain[0]), m))
+        slope = Fraction(int(value.p), int(value.q)) / factorial
+        total = [t + slope * p for t, p in zip(total, power, strict=True)]
+        power = times(power, rest)
+    return total
+
+
+LAWS = [named("hertz2", 2, "1/3"), named("polynomial", "1/2", -2), named("lennard-jones", 11),
+        Law(y**3 / (1 + y), y)]  # fmt: skip
+
+
+@pytest.mark.parametrize("law", LAWS, ids=lambda law: str(law.F))
+def test_the_equal_chain_is_the_difference_of_shifted_fields(law):
+    """[F((u(x+D) - u)/D) - F((u - u(x-D))/D)]/D at x = 0, D only in the shifts, to D^6."""
+    order = 8
+    jets = [0, 4, 1, -2, 3, 1, -1, 2, 5]  # ∂^n u at 0; u_x = 4 has a rational root
+    ahead = [Fraction(jets[n + 1], int(sp.factorial(n + 1))) for n in range(order)]
+    behind = [(-1) ** n * term for n, term in enumerate(ahead)]
+    pairs = zip(force(law, ahead), force(law, behind), strict=True)
+    expected = [a - b for a, b in pairs][1:]
+    pde = homogenize(Cell([1], spacing=1), order, law=law).pde
+    u = sum(sp.Rational(c, sp.factorial(n)) * x**n for n, c in enumerate(jets))
+    orders = (pde.coefficients[n].of_fields(u, sp.S.Zero, x) for n in range(2, order))
+    found = [law.at(sp.S(4), 1) * jets[2], *(value.subs(x, 0) for value in orders)]
+    assert found == expected[: len(found)]
+    assert sum(found) == pde.right_side(u, x).subs(x, 0)
+    assert any(found[2::2])
+
+
+def test_the_canonical_equation_of_a_law_without_form():
+    """u_ττ = ∂_x [F(u_x) + I (F′ u_xxx + ½ F″ u_xx²)], and its energy."""
+    cell = Dimer("m1", "m2", spacing=1)
+    pde = homogenize(cell, law=general(), closure="full", field="center").pde
+    u, F = sp.Function("u")(x), sp.Function("F")
+    p, d = u.diff(x), sp.Dummy("d", positive=True)
+    slope, bend = (F(d).diff(d, n).subs(d, p) for n in (1, 2))
+    I = Dispersion(cell).I
+    flux = F(p) + I * (slope * u.diff(x, 3) + bend * u.diff(x, 2) ** 2 / 2)
+    for form in (lambda s: s**4 + s**2, lambda s: sp.exp(2 * s), sp.atan):
+        difference = (flux.diff(x) - pde.right_side(u, x)).replace(F, form).doit()
+        assert sp.simplify(difference) == 0
+    assert pde.I == I
+    assert pde.conservative
+    assert set(pde.energy[2]) == {(((2, 2),), ())}  # F′ u_xx² alone
+    assert sp.cancel(pde.energy[2][((2, 2),)] + I / 2) == 0
+
+
+@pytest.mark.parametrize("field", ["first", "center"])
+@pytest.mark.parametrize("cell", [Dimer(3, 1), Cell([1, 2, 3])])
+def test_the_energy_of_a_law_without_form_is_conserved(cell, field):
+    """∂_τ e is ∂_x of something at every order, in the algebra of the jets."""
+    order = 7
+    closure = homogenize(cell, order, law=general(), closure="full", field=field).closure
+    _, density = energy(closure)
+    algebra = closure.ring.algebra(order, velocity=True, rest=True)
+    k = closure.ring.exponent(algebra.context)
+    E, e = Ladder(algebra, k), Ladder(algebra, k + 1)
+    old = closure.ring.algebra(closure.algebra.weight, velocity=True, rest=True)
+    for row, source, terms in (
+        (E, closure.algebra, closure.acceleration),
+        (e, old, density),
+    ):
+        for term in terms:
+            row.append(algebra.taken(term, source))
+    for n in range(1, order - 1):
+        change = algebra.dt(e, E, n) + algebra.s[0] * E[n]  # of u_τ²/2 too
+        if n == 1:  # W(u_x): F u_xτ is by parts -F′ u_xx u_τ
+            change = change - algebra.r[1] * algebra.s[0]
+            assert change.is_zero()
+        else:
+            assert algebra.antiderivative(change, k + 1 + (k - 1) / 2) is not None
+    wrong = algebra.dt(e, E, 3) + algebra.r[2] * algebra.s[1]
+    assert algebra.antiderivative(wrong, k + 1 + (k - 1) / 2) is None
+
+
+def test_a_law_is_a_value():
+    law = named("exponential", "a")
+    theory = homogenize(Dimer("m1", "m2"), law=law, closure="full")
+    assert theory.at(a=2, m1=1, m2=3) == homogenize(
+        Dimer(1, 3), law=named("exponential", 2), closure="full"
+    )
+    assert theory != homogenize(Dimer("m1", "m2"), law=general(), closure="full")
+    assert theory.law.phi(3) == (law.symbols[0] * law.delta) ** 2
+    assert homogenize(Dimer("m1", "m2"), law=Power("k")) == homogenize(Dimer("m1", "m2"))
+    assert homogenize(Cell([1]), law=Power("3/2")) == homogenize(Cell([1]), k="3/2")
+    assert theory.pde.in_field({2: "alpha"}).at(a=1).law == named("exponential", 1)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_name_has_its_derivatives_and_energy(name):
+    law = named(name)
+    assert law.phi(2) != 0
+    if name != "general":
+        at = {symbol: sp.Rational(i, 5) + 2 for i, symbol in enumerate(law.symbols)}
+        values = (law.energy.diff(law.delta), law.F)
+        one, two = (v.xreplace(at).subs(law.delta, sp.Rational(1, 3)).n(30) for v in values)
+        assert abs(one - two) < 1e-25
+
+
+BAD = [
+    ({"cell": Dimer(1, 2, stiffnesses=[1, 2]), "law": general()}, "shares of the strain"),
+    ({"cell": Cell([1]), "law": "hertz2"}, r"law is 'hertz2'"),
+    ({"cell": Cell([1]), "law": general(), "k": 2}, "one of them"),
+    ({"cell": Cell(["phi2"]), "law": general()}, "means φ_2"),
+    ({"cell": Cell(["a"]), "law": named("exponential")}, "names both"),
+]
+
+
+@pytest.mark.parametrize(("given", "reason"), BAD)
+def test_what_cannot_be_is_refused(given, reason):
+    with pytest.raises(InputError, match=reason):
+        homogenize(**given)
+
+
+def test_bad_laws():
+    for make, reason in (
+        (lambda: Law("x**2", y), "a SymPy expression"),
+        (lambda: Law(sp.S.One, y), "a SymPy expression"),
+        (lambda: Law(y, "y"), "the symbol of δ"),
+        (lambda: named("toda"), "one of power"),
+        (lambda: named("exponential", 1, 2), "at most 1"),
+        (lambda: named("general", 1), "none"),
+        (lambda: named("exponential", -1), "positive"),
+    ):
+        with pytest.raises(InputError, match=reason):
+            make()
+    pde = homogenize(Cell([1]), law=general()).pde
+    for call, reason in ((pde.traveling_wave, "power law"), (lambda: pde.variational, "Euler")):
+        with pytest.raises(InputError, match=reason):
+            call()
