@@ -2,7 +2,8 @@
 
 The server adds a script to each page. It waits until the page and its mathematics are there, sends
 back what it sees, and goes on to the next page. No other name than 127.0.0.1 resolves, and
-Chromium's own log of the network tells which addresses the pages asked for.
+Chromium's own log of the network tells which addresses the pages asked for. At the width of a phone
+the pages are opened in a frame, as a window cannot be that narrow.
 """
 
 from __future__ import annotations
@@ -22,6 +23,9 @@ from pathlib import Path
 from urllib.parse import urlsplit
 
 SECONDS_PER_PAGE = 60
+
+FRAME = "/frame-of-width/"
+"""Of the address WIDTH/PAGE that shows a page in a frame of that width."""
 
 FLAGS = (
     "--headless",
@@ -47,6 +51,18 @@ window.addEventListener("load", async () => {
   const math = [...document.querySelectorAll(".math")];
   const body = document.querySelector("article") || document.body;
   const text = body.cloneNode(true);
+  const texts = kind => [...document.querySelectorAll(kind)].map(e => e.textContent);
+  const overflow = e => getComputedStyle(e).overflowX;
+  const scrolls = e => /auto|scroll/.test(overflow(e));
+  const hides = e => /hidden|clip/.test(overflow(e));
+  const edge = e => e.getBoundingClientRect().right;
+  const spill = e => overflow(e) === "visible" ? Math.max(e.scrollWidth - e.clientWidth, 0) : 0;
+  const right = e => edge(e) + (e.clientWidth ? spill(e) : 0);
+  const cut = (e, a = e.parentElement) =>
+    a === body.parentElement || !a ? right(e) > innerWidth + 1
+    : scrolls(a) ? false : hides(a) && right(e) > edge(a) + 1 || cut(e, a.parentElement);
+  const clipped = e => e.tagName === "PRE" && hides(e) && e.scrollWidth > e.clientWidth + 1;
+  const parts = [...body.querySelectorAll("pre, table, img, mjx-math, dt, h1, h2, p")];
   const apart = "pre, code, script, style, mjx-container";
   for (const element of text.querySelectorAll(apart)) element.remove();
   const report = {
@@ -58,6 +74,9 @@ window.addEventListener("load", async () => {
     raw: text.textContent.match(/\\\(|\\\[|\$\$|\\begin\{|\\frac/g) || [],
     images: document.images.length,
     broken: [...document.images].filter(i => !i.naturalWidth || !i.naturalHeight).map(i => i.src),
+    unshown: texts("pre").filter(t => t.includes("<Figure size")),
+    cut: parts.filter(e => cut(e) || clipped(e)).map(e => e.textContent.trim().slice(0, 80)),
+    wider: document.scrollingElement.scrollWidth > innerWidth + 1,
     errors: errors,
   };
   const answer = await fetch("/probe", {method: "POST", body: JSON.stringify(report)});
@@ -100,9 +119,15 @@ class _Handler(SimpleHTTPRequestHandler):
 
     def do_GET(self) -> None:
         path = Path(self.translate_path(self.path))
+        if self.path.startswith(FRAME):
+            width, page = self.path.removeprefix(FRAME).split("/", 1)
+            return self._send(f'<iframe src="/{page}" width="{width}" height="900"></iframe>')
         if path.suffix != ".html" or not path.is_file():
             return super().do_GET()
-        page = path.read_text().replace("</body>", PROBE + "</body>").encode()
+        self._send(path.read_text().replace("</body>", PROBE + "</body>"))
+
+    def _send(self, text: str) -> None:
+        page = text.encode()
         self.send_response(200)
         self.send_header("Content-Type", "text/html; charset=utf-8")
         self.send_header("Content-Length", str(len(page)))
@@ -134,8 +159,10 @@ def _served(folder: Path, pages: Sequence[str], visit: Visit) -> Iterator[_Serve
         server.shutdown()
 
 
-def visited(folder: Path, pages: Sequence[str]) -> Visit:
+def visited(folder: Path, pages: Sequence[str], width: int | None = None) -> Visit:
     """Open the pages, one after another, and tell what was seen.
+
+    width : of the page, in CSS pixels; by default that of Chromium's window.
 
     Raises `FileNotFoundError` without Chromium and `TimeoutError` when a page does not report.
     """
@@ -144,6 +171,8 @@ def visited(folder: Path, pages: Sequence[str]) -> Visit:
         raise FileNotFoundError("chromium is not installed: apt-get install chromium")
     visit = Visit()
     first, *rest = ("/" + page for page in pages)
+    if width is not None:
+        first = f"{FRAME}{width}{first}"
     with tempfile.TemporaryDirectory() as home, _served(folder, rest, visit) as server:
         log = Path(home, "net-log.json")
         options = (f"--user-data-dir={home}/profile", f"--log-net-log={log}")

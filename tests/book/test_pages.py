@@ -21,11 +21,19 @@ window.MathJax = {startup: {promise: Promise.resolve()}};
 </script></head><body><article>%s</article></body></html>"""
 
 
+PHONE, WINDOW = 390, 1300
+"""Widths of a page, in CSS pixels."""
+
+
 @pytest.fixture(scope="module")
 def visit():
+    return opened(None)
+
+
+def opened(width):
     missing = [page for page in PAGES if not (HTML / page).is_file()]
     assert not missing, f"the book is not built: {missing[0]} is missing in {HTML}"
-    return visited(HTML, PAGES)
+    return visited(HTML, PAGES, width)
 
 
 def test_every_page_was_read(visit):
@@ -45,10 +53,18 @@ def test_all_mathematics_is_typeset(visit):
 
 def test_every_picture_is_there(visit):
     assert not {page: r["broken"] for page, r in visit.pages.items() if r["broken"]}
+    assert not [page for page, r in visit.pages.items() if r["unshown"]]
     assert sum(report["images"] for report in visit.pages.values()) > 2 * len(
         PAGES
     )  # logo, dark too
     assert not visit.missing
+
+
+@pytest.mark.parametrize("width", [PHONE, WINDOW])
+def test_nothing_is_cut(width):
+    pages = opened(width).pages
+    assert not {page: r["cut"] for page, r in pages.items() if r["cut"]}
+    assert not [page for page, r in pages.items() if r["wider"]]
 
 
 def test_no_request_leaves_the_machine(visit):
@@ -66,6 +82,7 @@ def test_no_request_leaves_the_machine(visit):
             "merrors",
         ),
         ('<img src="nowhere.png">', "broken"),
+        ("<pre>&lt;Figure size 650x520 with 1 Axes&gt;</pre>", "unshown"),
     ],
 )
 def test_a_fault_is_seen(tmp_path, body, key):
@@ -73,6 +90,18 @@ def test_a_fault_is_seen(tmp_path, body, key):
     seen = visited(tmp_path, ["page.html"])
     assert seen.pages["page.html"][key]
     assert ("/nowhere.png" in seen.missing) == (key == "broken")
+
+
+@pytest.mark.parametrize(
+    "style", ["", "overflow-x: hidden", "overflow-x: auto", "max-width: 100%; overflow-x: auto"]
+)
+def test_what_is_cut_is_seen(tmp_path, style):
+    """Only what scrolls by itself, within the page, is whole."""
+    line = f'<pre style="{style}">{"long " * 100}</pre>'
+    (tmp_path / "page.html").write_text(SMALLEST % line)
+    seen = visited(tmp_path, ["page.html"], PHONE).pages["page.html"]
+    assert bool(seen["cut"]) == ("auto" not in style)
+    assert seen["wider"] == (not style)
 
 
 def test_a_request_is_seen(tmp_path):
