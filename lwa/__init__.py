@@ -12,12 +12,15 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from lwa.background.compressed import BackgroundWave, background_wave
+    from lwa.background.kdv import KdV
+    from lwa.background.precompressed import PrecompressedWave
+    from lwa.background.quadrature import NumericBackground
     from lwa.cell import Cell, D, Dimer, k
     from lwa.closure.consistency import Closure
     from lwa.closure.motion import Solution
     from lwa.coefficients import Coefficients
     from lwa.compact import CompactWave, LoadedWave
-    from lwa.compressed import BackgroundWave, background_wave
     from lwa.curves import PhysicalWaves
     from lwa.exact import InputError, Quantity
     from lwa.expansion.approximants import Resummed
@@ -26,7 +29,6 @@ if TYPE_CHECKING:
     from lwa.expansion.radiation import Radiation
     from lwa.expansion.series import EpsilonSeries
     from lwa.jets import JetAlgebra, Ladder, Monomial, Term
-    from lwa.kdv import KdV
     from lwa.law import Law, Power, general
     from lwa.linear.dispersion import Dispersion
     from lwa.linear.loaded import LoadedChain
@@ -34,8 +36,6 @@ if TYPE_CHECKING:
     from lwa.partition import Partition
     from lwa.pde import PDE
     from lwa.physical import PhysicalWave
-    from lwa.precompressed import PrecompressedWave
-    from lwa.quadrature import NumericBackground
     from lwa.quantities import NoSolitaryWave
     from lwa.reduction import Reduction
     from lwa.spheres import hertz
@@ -105,7 +105,7 @@ _MODULES = {
     "closure.motion": "Solution",
     "coefficients": "Coefficients",
     "compact": "CompactWave LoadedWave",
-    "compressed": "BackgroundWave background_wave",
+    "background.compressed": "BackgroundWave background_wave",
     "curves": "PhysicalWaves",
     "exact": "InputError Quantity",
     "expansion.approximants": "Resummed",
@@ -114,7 +114,7 @@ _MODULES = {
     "expansion.radiation": "Radiation",
     "expansion.series": "EpsilonSeries",
     "jets": "JetAlgebra Ladder Monomial Term",
-    "kdv": "KdV",
+    "background.kdv": "KdV",
     "law": "Law Power general",
     "linear.dispersion": "Dispersion",
     "linear.loaded": "LoadedChain",
@@ -122,8 +122,8 @@ _MODULES = {
     "partition": "Partition",
     "pde": "PDE",
     "physical": "PhysicalWave",
-    "precompressed": "PrecompressedWave",
-    "quadrature": "NumericBackground",
+    "background.precompressed": "PrecompressedWave",
+    "background.quadrature": "NumericBackground",
     "quantities": "NoSolitaryWave",
     "reduction": "Reduction",
     "spheres.hertz": "Material Sphere",

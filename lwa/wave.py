@@ -24,14 +24,14 @@ from typing import TYPE_CHECKING, Any, Literal, overload
 import sympy as sp
 
 from lwa import latex
+from lwa.background.compressed import BackgroundWave
+from lwa.background.precompressed import PrecompressedWave
 from lwa.cell import Cell, exponent, substitution
 from lwa.cell import k as symbol_k
-from lwa.compressed import BackgroundWave
 from lwa.exact import InputError, exact, positive, power, real, shorten
 from lwa.law import Power
 from lwa.linear.dispersion import Dispersion
 from lwa.physical import PhysicalWave
-from lwa.precompressed import PrecompressedWave
 from lwa.quantities import NoSolitaryWave, strain_power
 from lwa.rational import factored
 from lwa.reduction import Reduction, strain_equation

@@ -11,6 +11,8 @@ import click
 import sympy as sp
 from click.core import ParameterSource
 
+from lwa.background.compressed import BackgroundWave
+from lwa.background.precompressed import PrecompressedWave
 from lwa.cell import Cell, D, k
 from lwa.closure.consistency import BRANCHES, CLOSURES, FIELDS
 from lwa.code.languages import LANGUAGES
@@ -42,7 +44,6 @@ from lwa.command.terminal import (
     version,
 )
 from lwa.command.text import dispersion_text, expansion_text, force_text, theory_text, wave_text
-from lwa.compressed import BackgroundWave
 from lwa.duration import announce
 from lwa.exact import InputError, exact
 from lwa.expansion.expand import expand
@@ -50,7 +51,6 @@ from lwa.expansion.physical import ExpandedWave
 from lwa.law import NAMES, Law, Power
 from lwa.linear.dispersion import Dispersion
 from lwa.linear.loaded import LoadedChain
-from lwa.precompressed import PrecompressedWave
 from lwa.spheres.hertz import EXPONENT
 from lwa.theory import Theory, homogenize
 

@@ -7,14 +7,14 @@ from typing import Any
 
 import sympy as sp
 
+from lwa.background.compressed import BackgroundWave
+from lwa.background.kdv import KdV
+from lwa.background.precompressed import PrecompressedWave
 from lwa.command.document import as_float, chain_json, dispersion_json, each, put
 from lwa.command.text import DIGITS, chain_text, dispersion_text
-from lwa.compressed import BackgroundWave
 from lwa.exact import InputError
-from lwa.kdv import KdV
 from lwa.linear.dispersion import Dispersion
 from lwa.linear.loaded import LoadedChain
-from lwa.precompressed import PrecompressedWave
 from lwa.quantities import QUANTITIES, NoSolitaryWave
 from lwa.theory import Theory
 

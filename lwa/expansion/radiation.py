@@ -78,7 +78,7 @@ class Radiation(Value):
 
     def amplitude(self, k: float) -> float:
         """R at this k, over the pulse's peak force."""
-        import numpy as np
+        import numpy as np  # start-up: `import lwa` does not load it
 
         epsilon = k - 1
         X = np.linspace(-SPAN, SPAN, POINTS) * np.sqrt(self.I)

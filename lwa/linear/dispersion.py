@@ -180,25 +180,25 @@ class Dispersion(Value):
         >>> Dispersion(Cell([1])).branches(3.141592653589793)
         array([2.])
         """
-        from lwa.linear import bands
+        from lwa.linear import bands  # start-up: it loads NumPy
 
         return bands.branches(*self._weights, kappa)
 
     def group_velocity(self, kappa: ArrayLike) -> Array:
         """dΩ_j/dκ in the order of `branches`; the slope towards larger κ where branches touch."""
-        from lwa.linear import bands
+        from lwa.linear import bands  # start-up: it loads NumPy
 
         return bands.group_velocity(*self._weights, kappa)
 
     def band_edges(self) -> Array:
         """(min, max) of Ω of each branch, shape (P, 2): each is monotone between κ = 0 and π/P."""
-        from lwa.linear import bands
+        from lwa.linear import bands  # start-up: it loads NumPy
 
         return bands.edges(*self._weights)
 
     def gaps(self) -> Array:
         """(from, to) of the P - 1 intervals of Ω between the bands; closed ones are of length 0."""
-        import numpy as np
+        import numpy as np  # start-up: `import lwa` does not load it
 
         edges = self.band_edges()
         return np.stack([edges[:-1, 1], edges[1:, 0]], axis=-1)
@@ -209,7 +209,7 @@ class Dispersion(Value):
         return self._floats(self.cell.fractions), self._floats(self.cell.shares(self.k))
 
     def _floats(self, values: Iterable[sp.Expr]) -> Array:
-        import numpy as np
+        import numpy as np  # start-up: `import lwa` does not load it
 
         values = tuple(values)
         unknown = set().union(*(v.free_symbols for v in values))

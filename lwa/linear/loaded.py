@@ -82,13 +82,13 @@ class LoadedChain(Value):
 
     def branches(self, q: ArrayLike) -> Array:
         """ω_j(q), ascending along a last axis of length P; q is a wavenumber, q D = κ."""
-        import numpy as np
+        import numpy as np  # start-up: `import lwa` does not load it
 
         return self.springs.branches(np.asarray(q) * self._length) * self._rate
 
     def group_velocity(self, q: ArrayLike) -> Array:
         """dω_j/dq in the order of `branches`."""
-        import numpy as np
+        import numpy as np  # start-up: `import lwa` does not load it
 
         slopes = self.springs.group_velocity(np.asarray(q) * self._length)
         return slopes * (self._rate * self._length)

@@ -102,7 +102,7 @@ class Report:
         Raises `lwa.InputError` where there is no picture."""
         first, *_ = self._drawn()
         if ax is None:
-            from matplotlib import pyplot
+            from matplotlib import pyplot  # start-up, and an optional display
 
             ax = pyplot.subplots()[1]
         draw(ax, first)

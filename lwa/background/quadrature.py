@@ -1,6 +1,6 @@
 """Waves on a background in float64: speed, width and profile for arrays of (p0, B).
 
-What `lwa.compressed` writes as differences of W and F cancels where the wave is small beside the
+What `compressed` writes as differences of W and F cancels where the wave is small beside the
 load. Here differences are integrals of F′ and F″ over the strains of the wave, by Gauss's rule,
 
     V² = 2∫(1-s) F′(p0+sB) ds,    c = F′(p1) - V² = B∫(1-s²) F″(p1-sB) ds,
@@ -26,9 +26,7 @@ import sympy as sp
 from numpy.polynomial import legendre
 from numpy.typing import ArrayLike, NDArray
 
-from lwa.compact import LoadedWave
-from lwa.exact import InputError
-from lwa.gauss import (
+from lwa.background.gauss import (
     DEEPEST,
     SMOOTH,
     STRAIN,
@@ -43,6 +41,8 @@ from lwa.gauss import (
     is_smooth,
     root,
 )
+from lwa.compact import LoadedWave
+from lwa.exact import InputError
 from lwa.law import Power
 from lwa.quantities import NoSolitaryWave, known
 from lwa.value import Value

@@ -1,6 +1,6 @@
 """The profile of a wave on a background in many digits: one quadrature, by mpmath.
 
-With v = B / cosh²θ the equation of `lwa.compressed` is
+With v = B / cosh²θ the equation of `lwa.background.compressed` is
 
     dξ/dθ = 2 √(I F′(p0+v) (B - v) / (B (Q(B) - Q(v)))),
 

@@ -22,17 +22,17 @@ import mpmath
 import sympy as sp
 
 from lwa import latex
+from lwa.background.kdv import RISE, KdV
+from lwa.background.profile import Profile
 from lwa.cell import Cell, substitution
 from lwa.exact import InputError, exact, integer, real, shorten
-from lwa.kdv import RISE, KdV
 from lwa.law import Law, Power, for_cell
 from lwa.linear.dispersion import Dispersion
-from lwa.profile import Profile
 from lwa.quantities import NoSolitaryWave, known
 from lwa.value import Value
 
 if TYPE_CHECKING:
-    from lwa.quadrature import NumericBackground
+    from lwa.background.quadrature import NumericBackground
 
 DIGITS = 15
 """Of a width or a profile, where no number of digits is given."""
@@ -253,7 +253,9 @@ class BackgroundWave(Value):
 
         Raises `lwa.InputError` unless masses, stiffnesses and the law's parameters are numbers.
         """
-        from lwa.quadrature import NumericBackground  # here, so that `import lwa` loads no NumPy
+        from lwa.background.quadrature import (
+            NumericBackground,  # here, so that `import lwa` loads no NumPy
+        )
 
         return NumericBackground(self)
 

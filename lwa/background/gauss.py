@@ -1,6 +1,6 @@
 """Gauss's rule and Legendre polynomials between two strains, and a law as functions of arrays.
 
-What `lwa.quadrature` integrates and expands with: the rule on [0, 1], the coefficients of what has
+What `quadrature` integrates and expands with: the rule on [0, 1], the coefficients of what has
 given values at its points, and SymPy's expressions compiled without rounding their numbers twice.
 """
 

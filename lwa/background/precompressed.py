@@ -2,7 +2,7 @@
 
 At leading order the static load F0 and the peak force F of a wave are the same in all contacts of a
 cell, which under A F(δ) are at the mean compressions δ0 and δ1 with A F(δ) = F0 and F. The strain
-then rises from p0 = δ0/D by B = (δ1 - δ0)/D, and `lwa.compressed` has the wave. For equal spheres
+then rises from p0 = δ0/D by B = (δ1 - δ0)/D, and `compressed` has the wave. For equal spheres
 its speed is Nesterenko's,
 
     V²/c0² = (4/15) (3 + 2 ζ^{5/2} - 5 ζ) / (ζ - 1)²,    ζ = (F/F0)^{2/3}.
@@ -16,8 +16,8 @@ from typing import Any
 
 import sympy as sp
 
+from lwa.background.compressed import DIGITS, BackgroundWave
 from lwa.cell import Cell, substitution
-from lwa.compressed import DIGITS, BackgroundWave
 from lwa.exact import InputError, positive, shorten
 from lwa.law import Law, Power, compression, for_cell
 from lwa.physical import EXTENTS
