@@ -165,5 +165,6 @@ def _recorded(scene: Scene, chain: Chain, beads: Beads, seen: Samples) -> dict[s
         "contact_force": force,
         "compression": compression,
         "bead_force": (contact(sensors - 1)[1] + contact(sensors)[1]) / 2,
+        "bead_displacement": seen.y[np.searchsorted(seen.watched, sensors)],
         "bead_velocity": seen.v[np.searchsorted(seen.watched, sensors)],
     }

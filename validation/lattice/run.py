@@ -27,8 +27,8 @@ class Run:
     time : (S,).
     contact_force, compression : (contacts, S), at the scene's contact sensors; a gap is a
         negative compression. Static forces are included.
-    bead_force, bead_velocity : (beads, S), at the bead sensors; the force is the mean of the
-        bead's two contacts.
+    bead_force, bead_displacement, bead_velocity : (beads, S), at the bead sensors; the force is the
+        mean of the bead's two contacts, the displacement is from the equilibrium.
     displacements, velocities : (n,), at the end.
     energy_drift : change of the energy above equilibrium over its initial value (0 if that is 0);
         beads left behind by a window keep what they had.
@@ -44,6 +44,7 @@ class Run:
     contact_force: Array
     compression: Array
     bead_force: Array
+    bead_displacement: Array
     bead_velocity: Array
     displacements: Array
     velocities: Array
@@ -63,7 +64,7 @@ class Run:
         from lwa.picture import axes  # optional, start-up
 
         contacts, beads = self.scene.contact_sensors, self.scene.bead_sensors
-        names = [*(f"contact {i}" for i in contacts), *(f"bead {i}" for i in beads)]
+        names = [*(f"contact {i + 1}" for i in contacts), *(f"bead {i + 1}" for i in beads)]
         if not names:
             raise SceneError("plot is asked for, but the scene names no sensors")
         ax = axes(ax)

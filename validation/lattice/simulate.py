@@ -30,7 +30,7 @@ COMPILED = tuple(SCHEMES)
 """The engine's splittings, of order 6, 6, 4, 4, 4 and 2; the first where in doubt."""
 
 _BLOCK = 1_000_000  # numbers that the interpolant gives at a time
-_RECORDS = ("contact_force", "compression", "bead_force", "bead_velocity")
+_RECORDS = ("contact_force", "compression", "bead_force", "bead_displacement", "bead_velocity")
 _FINITE = (*_RECORDS, "displacements", "velocities", "energy_drift")
 
 
@@ -106,7 +106,7 @@ def _adaptive(motion: Motion, method: str, rtol: float, atol: float, progress: R
     )  # fmt: skip
     time = np.linspace(0.0, end, motion.scene.samples)
     contacts, beads = len(motion.scene.contact_sensors), len(motion.scene.bead_sensors)
-    rows = zip(_RECORDS, (contacts, contacts, beads, beads), strict=True)
+    rows = zip(_RECORDS, (contacts, contacts, beads, beads, beads), strict=True)
     records = {"time": time} | {name: np.empty((row, len(time))) for name, row in rows}
     steps, done = 0, 0 if contacts + beads else len(time)
     block = max(1, _BLOCK // (2 * motion.size))
@@ -142,6 +142,7 @@ def _keep(motion: Motion, states: Array, kept: dict[str, Array]) -> None:
     force = motion.force(compression)
     kept["compression"][:] = compression[contacts]
     kept["contact_force"][:] = force[contacts]
+    kept["bead_displacement"][:] = states[: motion.size][beads]
     kept["bead_velocity"][:] = states[motion.size :][beads]
     for row, bead in enumerate(beads):  # an end without a contact counts as 0
         kept["bead_force"][row] = force[max(bead - 1, 0) : bead + 1].sum(axis=0) / 2

@@ -34,7 +34,8 @@ KEPT = (".json", ".npz")
 """Suffixes of files that hold the scene and the result as well."""
 SUFFIXES = (*KEPT, ".csv")
 
-RECORDS = ("time", "contact_force", "compression", "bead_force", "bead_velocity")
+RECORDS = ("time", "contact_force", "compression", "bead_force", "bead_displacement",
+           "bead_velocity")  # fmt: skip
 TABLES = ("sensors", "speeds")
 
 _MOST_BYTES = 10**9

@@ -57,9 +57,17 @@ def test_every_law_and_every_sensor_agree_with_dop853(method, k):
     reference = simulate(scene, rtol=1e-12, atol=1e-12)
     run = simulate(scene, method=method, step=1e-4 if method == "Verlet" else 0.02)
     assert run.window is None
-    for name in ("contact_force", "compression", "bead_force", "bead_velocity", "velocities"):
+    for name in (
+        "contact_force",
+        "compression",
+        "bead_force",
+        "bead_displacement",
+        "bead_velocity",
+        "velocities",
+    ):
         np.testing.assert_allclose(getattr(run, name), getattr(reference, name), atol=1e-6)
     np.testing.assert_allclose(run.bead_velocity[:, -1], run.velocities, atol=1e-14)
+    np.testing.assert_allclose(run.bead_displacement[:, -1], run.displacements, atol=1e-14)
 
 
 def test_lsoda_agrees_with_dop853():
@@ -188,6 +196,9 @@ def test_what_is_left_behind_is_told():
     assert run.contact_force[1, late].any()
     assert np.ptp(run.bead_velocity[:, late], axis=1).tolist() == [0, 0]
     assert run.bead_velocity[:, -1].tolist() == run.velocities[[0, 20]].tolist()
+    np.testing.assert_allclose(
+        run.bead_displacement[:, -1], run.displacements[[0, 20]], rtol=1e-13, atol=0
+    )
 
 
 def test_a_chain_without_motion():

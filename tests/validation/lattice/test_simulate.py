@@ -262,7 +262,9 @@ def test_sensors_change_nothing_and_cost_nothing():
     )
     assert seen.time[[0, -1]].tolist() == [0, 9]
     # the record ends with the final state, up to the interpolant's last digits
-    np.testing.assert_allclose(seen.bead_velocity[:, -1], seen.velocities[[0, 3, 11]], atol=1e-12)
+    ends = [0, 3, 11]
+    np.testing.assert_allclose(seen.bead_velocity[:, -1], seen.velocities[ends], atol=1e-12)
+    np.testing.assert_allclose(seen.bead_displacement[:, -1], seen.displacements[ends], atol=1e-12)
     with pytest.raises(ValueError, match="read-only"):
         seen.time[0] = 1
 
@@ -351,7 +353,7 @@ def test_a_run_is_drawn_into_given_axes():
     run, ax = simulate(heard), Figure().add_subplot()
     assert run.plot(ax) is ax
     assert [text.get_text() for text in ax.get_legend().get_texts()] == [
-        "contact 1", "bead 0", "bead 2",
+        "contact 2", "bead 1", "bead 3",
     ]  # fmt: skip
     for line, force in zip(ax.lines, (*run.contact_force, *run.bead_force), strict=True):
         assert np.array_equal(line.get_xdata(), run.time)
