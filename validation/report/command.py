@@ -95,7 +95,8 @@ def option(*names: str, default: Any = None, says: str = "", **more: Any) -> Any
     """An option with its default and its help; a number's type is that of the default."""
     more.setdefault("show_default", default is not None)
     if type(default) in (int, float) and "flag_value" not in more:
-        more.setdefault("callback", whole if isinstance(default, int) else number)
+        kind, reader = ("INTEGER", whole) if isinstance(default, int) else ("NUMBER", number)
+        more = {"callback": reader, "metavar": kind} | more
         default = str(default)
     return click.option(*names, default=default, help=says, **more)
 
