@@ -31,7 +31,7 @@ def test_limits(limits_result):
         assert abs(told["error_value"]) <= told["bound_value"]
     shown = limits_result.report().text()
     assert shown.count("  ok") == len(limits_result.rows)
-    assert shown.endswith("47 checks: all hold")
+    assert shown.endswith("24 checks: all hold")
     assert "FAILS" not in shown
 
 
@@ -41,7 +41,7 @@ def test_a_failing_row_is_shown(limits_result):
     assert not broken.ok
     assert broken.document()["ok"] is broken.document()["rows"][0]["ok"] is False
     assert broken.text().count("FAILS") == 2  # in the table, and alone below it
-    assert broken.text().endswith("47 checks: 1 of 47 fail")
+    assert broken.text().endswith("24 checks: 1 of 24 fail")
 
 
 def test_a_report_of_parts():

@@ -12,6 +12,7 @@ from validation.studies.limits import (
     LIGHT,
     QUANTITIES,
     _quantity_rows,
+    limits,
     theory_at,
     theory_values,
 )
@@ -20,6 +21,12 @@ eps, s, X = sp.symbols("epsilon s X", positive=True)
 
 LATTICE = (-3 * X**2, sp.Rational(18, 5) * X**2 - sp.Rational(3, 10) * X**4)
 SPEED = 1 - eps / 2 + 2 * eps**2 / 5  # c² = k V_s² of the lattice's wave, at strain 1
+
+
+@pytest.fixture(scope="module")
+def limits_result():
+    """The lattice itself, ten seconds."""
+    return limits()
 
 
 def test_the_lattices_series_solves_its_equation():
