@@ -101,10 +101,11 @@ def cluster(address: str) -> Iterator[Executor]:
         await (await asyncio.wait_for(called, PATIENCE)).close()
 
     with ExitStack() as stack:
-        # of a scheduler that is gone it logs a traceback, and then `compute` tells it in one line
-        log = logging.getLogger("distributed.client")
-        stack.callback(log.setLevel, log.level)
-        log.setLevel(logging.CRITICAL)
+        # of a scheduler that is gone they log tracebacks, and then `compute` tells it in one line
+        for name in ("distributed", "distributed.client", "tornado.application"):
+            log = logging.getLogger(name)
+            stack.callback(log.setLevel, log.level)
+            log.setLevel(logging.CRITICAL)
         try:
             # First a call, as a client that fails leaves a thread behind; in a thread of its own,
             # as a notebook's has a loop already.
