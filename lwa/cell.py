@@ -82,10 +82,10 @@ class Cell(Value):
         for field, given in (("mass", masses), ("stiffness", stiffnesses)):
             values = tuple(positive(x, f"{field} {i}") for i, x in enumerate(given, start=1))
             for value in values:
-                _meant(value, field)
+                meant(value, field)
             object.__setattr__(self, "masses" if field == "mass" else "stiffnesses", values)
         spacing = positive(self.spacing, "spacing")
-        object.__setattr__(self, "spacing", _meant(spacing, "spacing", D.name))
+        object.__setattr__(self, "spacing", meant(spacing, "spacing", D.name))
         unmistakable(self.symbols)
 
     @classmethod
@@ -213,7 +213,7 @@ def exponent(value: Any, cell: Cell | None = None) -> sp.Expr:
         raise InputError(f"k is {result}: the contact force A δ^k needs an exponent k > 0")
     if result.is_number and result > MOST_EXPONENT:
         raise InputError(f"k is {shorten(result)}: exponents up to k = {MOST_EXPONENT} are taken")
-    _meant(result, "k", k.name)
+    meant(result, "k", k.name)
     if cell is not None:
         shared = {s.name for s in result.free_symbols} & {s.name for s in cell.symbols}
         if shared:
@@ -283,11 +283,14 @@ def unmistakable(symbols: Sequence[sp.Symbol]) -> None:
         raise InputError(f"{min(twice)!r} names two symbols, with different assumptions: use one")
 
 
-def _meant(value: sp.Expr, field: str, own: str = "") -> sp.Expr:
-    """The value, refused where a symbol in it has a name that means something else in results."""
+def meant(
+    value: sp.Expr, field: str, own: str = "", taken: Mapping[str, str] = RESERVED
+) -> sp.Expr:
+    """The value, refused where a symbol in it has a name that is ``taken`` (name → its meaning);
+    ``own`` is the one that the field itself has."""
     for name in sorted(s.name for s in value.free_symbols):
-        if name in RESERVED and name != own:
-            raise InputError(f"{field} {name!r}: the name means {RESERVED[name]} here")
+        if name in taken and name != own:
+            raise InputError(f"{field} {name!r}: the name means {taken[name]} here")
     return value
 
 

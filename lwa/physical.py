@@ -20,9 +20,10 @@ from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
-from lwa.cell import RESERVED, unmistakable
+from lwa.cell import RESERVED, meant, unmistakable
 from lwa.compact import CompactWave
 from lwa.exact import InputError, positive, power, shorten
+from lwa.quantities import known_extent
 from lwa.value import Value
 
 if TYPE_CHECKING:
@@ -32,9 +33,6 @@ if TYPE_CHECKING:
 
 BEARERS = ("contact", "bead")
 """Whose force it is."""
-
-EXTENTS = ("length", "time")
-"""What a width is: the extent in space, or the time that it takes to pass."""
 
 
 @dataclass(frozen=True)
@@ -59,11 +57,9 @@ class PhysicalWave(Value):
         _bearer(self.of)
         object.__setattr__(self, "force", positive(self.force, "force"))
         unmistakable(list(self.force.free_symbols))
-        taken = {s.name for s in (*self.wave.cell.symbols, *self.wave.k.free_symbols)}
-        for name in sorted(s.name for s in self.force.free_symbols):
-            if name in RESERVED or name in taken:
-                meaning = RESERVED.get(name, "a property of the chain")
-                raise InputError(f"force {name!r}: the name means {meaning} here")
+        chain = (s.name for s in (*self.wave.cell.symbols, *self.wave.k.free_symbols))
+        taken = dict.fromkeys(chain, "a property of the chain") | RESERVED
+        meant(self.force, "force", taken=taken)
         if self.of == "bead":
             self._bead_share  # noqa: B018 - which may be refused
 
@@ -128,8 +124,7 @@ class PhysicalWave(Value):
 
         Raises `lwa.InputError` for any other.
         """
-        if extent not in EXTENTS:
-            raise InputError(f"extent is {shorten(extent)}: {' or '.join(EXTENTS)} is wanted")
+        known_extent(extent)
         length = self.wave.fwhm(quantity)
         return length if extent == "length" else length / self.speed
 

@@ -8,6 +8,9 @@ from lwa.exact import InputError, shorten
 
 QUANTITIES = ("strain", "force", "velocity")
 
+EXTENTS = ("length", "time")
+"""What a width is: the extent in space, or the time that it takes to pass."""
+
 
 def strain_power(quantity: str, k: Any) -> Any:
     """The power of the strain to which a quantity of the wave is proportional: k or 1.
@@ -24,6 +27,12 @@ def known(quantity: str) -> str:
             f"quantity is {shorten(quantity)}: one of {', '.join(QUANTITIES)} is wanted"
         )
     return quantity
+
+
+def known_extent(extent: str) -> None:
+    """Raise `lwa.InputError` unless the extent is one of `EXTENTS`."""
+    if extent not in EXTENTS:
+        raise InputError(f"extent is {shorten(extent)}: {' or '.join(EXTENTS)} is wanted")
 
 
 class NoSolitaryWave(ValueError):

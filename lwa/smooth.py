@@ -40,8 +40,7 @@ class SmoothCoefficients(Coefficients):
 
     @property
     def time_scale(self) -> sp.Expr:
-        cell = self.cell
-        return cell.spacing * sp.sqrt(cell.size * cell.stiffnesses[0] / cell.mass)
+        return self.cell.time_scale(1)  # F' is the law's own
 
     def exponent(self, context: fmpq_mpoly_ctx) -> fmpq_mpoly:
         return 1 + context.gen(context.variable_to_index("phi2"))

@@ -24,7 +24,7 @@ import sympy as sp
 from lwa import latex
 from lwa.background.kdv import RISE, KdV
 from lwa.background.profile import Profile
-from lwa.cell import Cell, substitution
+from lwa.cell import Cell, meant, substitution
 from lwa.exact import InputError, exact, integer, real, shorten
 from lwa.law import Law, Power, for_cell
 from lwa.linear.dispersion import Dispersion
@@ -41,6 +41,11 @@ MOST_DIGITS = 200
 
 _LOOKS = 64
 """Places between 0 and B at which existence is decided for a law that is no power."""
+
+
+def taken_names(cell: Cell, law: Power | Law) -> set[str]:
+    """Names that no load may have: the chain's, the law's and those of the wave."""
+    return {s.name for s in (*cell.symbols, *law.symbols)} | {"B", "V_s", "tau"}
 
 
 @dataclass(frozen=True, repr=False)
@@ -65,10 +70,9 @@ class BackgroundWave(Value):
         p0 = exact(self.p0, "p0")
         if isinstance(self.law, Power) and p0.is_negative:
             raise InputError(f"p0 is {p0}: under a power law it must not be negative")
-        taken = {s.name for s in (*self.cell.symbols, *self.law.symbols)} | {"B", "V_s", "tau"}
-        for name in sorted(s.name for s in p0.free_symbols if p0.is_Symbol):
-            if name in taken:
-                raise InputError(f"p0 {name!r}: the name means something else here")
+        if p0.is_Symbol:  # an expression may come from a load
+            own = taken_names(self.cell, self.law)
+            meant(p0, "p0", taken=dict.fromkeys(own, "something else"))
         object.__setattr__(self, "p0", p0)
 
     def __repr__(self) -> str:
@@ -80,16 +84,17 @@ class BackgroundWave(Value):
     @cached_property
     def I(self) -> sp.Expr:
         """The coefficient of u_4x, D² included."""
-        k = self.law.k if isinstance(self.law, Power) else sp.S.One
-        return Dispersion(self.cell, k).I * self.cell.spacing**2
+        return Dispersion(self.cell, self._exponent).I * self.cell.spacing**2
 
     @property
     def time_scale(self) -> sp.Expr:
         """τ/t: the speed in space and time is dx/dt = V τ/t."""
-        cell = self.cell
-        if isinstance(self.law, Power):
-            return cell.time_scale(self.law.k)
-        return cell.spacing * sp.sqrt(cell.size * cell.stiffnesses[0] / cell.mass)
+        return self.cell.time_scale(self._exponent)
+
+    @property
+    def _exponent(self) -> sp.Expr:
+        """By which unlike contacts share the strain; under a law that is no power all are alike."""
+        return self.law.k if isinstance(self.law, Power) else sp.S.One
 
     # --- the law in units of the strain -----------------------------------------------------
 

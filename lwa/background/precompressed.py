@@ -16,12 +16,11 @@ from typing import Any
 
 import sympy as sp
 
-from lwa.background.compressed import DIGITS, BackgroundWave
-from lwa.cell import Cell, substitution
-from lwa.exact import InputError, positive, shorten
+from lwa.background.compressed import DIGITS, BackgroundWave, taken_names
+from lwa.cell import Cell, meant, substitution
+from lwa.exact import positive
 from lwa.law import Law, Power, compression, for_cell
-from lwa.physical import EXTENTS
-from lwa.quantities import NoSolitaryWave
+from lwa.quantities import NoSolitaryWave, known_extent
 from lwa.value import Value
 
 
@@ -47,12 +46,11 @@ class PrecompressedWave(Value):
 
     def __post_init__(self) -> None:
         for_cell(self.law, self.cell)
+        own = taken_names(self.cell, self.law)
         for name in ("force", "precompression"):
-            object.__setattr__(self, name, positive(getattr(self, name), name))
-        own = {s.name for s in (*self.cell.symbols, *self.law.symbols)} | {"B", "V_s", "tau", "D"}
-        for value in (self.force, self.precompression):
-            for name in sorted(own & {s.name for s in value.free_symbols}):
-                raise InputError(f"force {name!r}: the name means something else here")
+            value = positive(getattr(self, name), name)
+            object.__setattr__(self, name, value)
+            meant(value, name, taken=dict.fromkeys((*own, "D"), "something else"))
         if self.force == self.precompression:
             raise NoSolitaryWave(
                 f"force and precompression are both {self.force}: there is no wave"
@@ -107,8 +105,7 @@ class PrecompressedWave(Value):
 
         A "length", or the "time" in which it passes; all of the chain must be numbers.
         """
-        if extent not in EXTENTS:
-            raise InputError(f"extent is {shorten(extent)}: {' or '.join(EXTENTS)} is wanted")
+        known_extent(extent)
         length = self.background.fwhm(self.strain, quantity, digits)
         return length if extent == "length" else length / self.speed.n(digits)
 

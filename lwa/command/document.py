@@ -121,12 +121,23 @@ def force_json(
         "V_s": wave.speed(answer.strain),
         **{name: getattr(answer, name) for name in named},
     }
+    return answers_json(theory, values, units, lambda x: in_units(wave, x))
+
+
+def answers_json(
+    theory: Theory,
+    values: Mapping[str, Any],
+    units: Mapping[str, str],
+    number: Callable[[sp.Expr], sp.Expr],
+) -> dict[str, Any]:
+    """A chain and values in its own units: each as a text, and where ``number`` of it is one as a
+    float. For spheres, with ``units``, what they make of the chain as well."""
     if units:
-        cell = theory.cell
-        values |= {name: getattr(cell, name) for name in ("masses", "stiffnesses", "spacing")}
+        chain = {n: getattr(theory.cell, n) for n in ("masses", "stiffnesses", "spacing")}
+        values = {**values, **chain}
     result = chain_json(theory) | {name: each(str, value) for name, value in values.items()}
     for name, value in values.items():
-        put(result, f"{name}_value", each(lambda x: as_float(in_units(wave, x)), value))
+        put(result, f"{name}_value", each(lambda x: as_float(number(x)), value))
     return result | ({"units": dict(units)} if units else {})
 
 

@@ -10,7 +10,7 @@ import sympy as sp
 from lwa.background.compressed import BackgroundWave
 from lwa.background.kdv import KdV
 from lwa.background.precompressed import PrecompressedWave
-from lwa.command.document import as_float, chain_json, dispersion_json, each, put
+from lwa.command.document import answers_json, as_float, chain_json, dispersion_json, each, put
 from lwa.command.text import DIGITS, chain_text, dispersion_text
 from lwa.exact import InputError
 from lwa.linear.dispersion import Dispersion
@@ -19,6 +19,9 @@ from lwa.quantities import QUANTITIES, NoSolitaryWave
 from lwa.theory import Theory
 
 Values = dict[str, Any]
+
+LOAD_SI = {"precompression": "N", "sound_speed": "m/s", "static_compression": "m"}
+"""Units besides those of `lwa.command.document.SI`."""
 
 PLACES = 8
 """Intervals of the wavenumbers, 0 to π/(PD), at which bands are printed."""
@@ -88,18 +91,12 @@ def precompressed_json(theory: Theory, wave: PrecompressedWave, units: Mapping[s
     load, B what the wave adds, ``compressions`` those that it adds to the cell's contacts. Widths
     are numbers, lengths and (``fwhm_time_value``) times.
     """
-    values = _precompressed(wave)
-    if units:
-        cell = theory.cell
-        values |= {name: getattr(cell, name) for name in ("masses", "stiffnesses", "spacing")}
-    result = chain_json(theory) | {name: each(str, value) for name, value in values.items()}
-    for name, value in values.items():
-        put(result, f"{name}_value", each(lambda x: as_float(_plain(wave, x)), value))
+    units = {**units, **LOAD_SI} if units else {}
+    result = answers_json(theory, _precompressed(wave), units, lambda x: _plain(wave, x))
     for name, extent in (("fwhm", "length"), ("fwhm_time", "time")):
         widths = _widths(wave, extent)
         put(result, f"{name}_value", widths and each(as_float, widths))
-    more = {"precompression": "N", "sound_speed": "m/s", "static_compression": "m"}
-    return result | ({"units": {**units, **more}} if units else {})
+    return result
 
 
 def _precompressed(wave: PrecompressedWave) -> Values:
@@ -191,13 +188,12 @@ def background_text(theory: Theory, wave: BackgroundWave) -> str:
 
 def precompressed_text(theory: Theory, wave: PrecompressedWave, units: Mapping[str, str]) -> str:
     """What `lwa wave --precompression F0 --force F` prints; ``units`` are those of spheres."""
-    known = {"background": "", "B": "", "V_s": "", **units}
-    known |= {"precompression": "N", "sound_speed": "m/s", "static_compression": "m"}
+    units = {**units, **LOAD_SI} if units else {}
     lines = [*chain_text(theory), ""]
     for name, value in _precompressed(wave).items():
         rows = value if isinstance(value, tuple) else (value,)
         row = ", ".join(map(_shown, dict.fromkeys(rows)))
-        lines.append(f"  {name.replace('_', ' ')} = {row} {known.get(name, '') if units else ''}")
+        lines.append(f"  {name.replace('_', ' ')} = {row} {units.get(name, '')}")
     for extent, unit in (("length", "m"), ("time", "s")):
         for q, value in (_widths(wave, extent) or {}).items():
             lines.append(f"  FWHM of the {q}, {extent} = {_shown(value)} {unit if units else ''}")

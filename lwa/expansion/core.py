@@ -26,8 +26,8 @@ def descent(
     The shares are the greater of the ends' heights, and the most by which the last order moves the
     pulse; infinite where the series has no peak.
     """
-    import numpy as np
-    from numpy.polynomial import Polynomial
+    import numpy as np  # start-up: `import lwa` does not load it
+    from numpy.polynomial import Polynomial  # likewise
 
     log, more = (Polynomial([a.get(d, 0.0) for d in range(max(whole) + 1)]) for a in (whole, last))
     roots = log.deriv().roots()

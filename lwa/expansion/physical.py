@@ -13,6 +13,7 @@ import sympy as sp
 from lwa.exact import InputError, positive, shorten
 from lwa.expansion.approximants import Resummed
 from lwa.expansion.expand import Expansion
+from lwa.quantities import known_extent
 from lwa.value import Value
 
 
@@ -43,12 +44,11 @@ class ExpandedWave(Value):
         k, spacing = self.expansion.k, self.expansion.cell.spacing
         return _times(self.expansion.c.at(), float(spacing * self.F ** ((k - 1) / (2 * k))))
 
-    def fwhm(self, quantity: str = "strain", per: str = "length") -> Resummed:
+    def fwhm(self, quantity: str = "strain", extent: str = "length") -> Resummed:
         """Full width at half maximum of "strain", "force" or "velocity", a "length" or a "time"."""
-        if per not in ("length", "time"):
-            raise InputError(f"per is {shorten(per)}: one of length, time is wanted")
+        known_extent(extent)
         width = _times(self.expansion.fwhm(quantity).at(), float(self.expansion.cell.spacing))
-        if per == "length":
+        if extent == "length":
             return width
         speed = self.speed
         value = width.value / speed.value

@@ -36,7 +36,7 @@ from lwa.linear.bloch import Bloch
 from lwa.value import Value
 
 if TYPE_CHECKING:
-    import numpy as np
+    import numpy as np  # start-up: `import lwa` does not load it
     from numpy.typing import NDArray
 
     FloatArray = NDArray[np.float64]
@@ -96,7 +96,7 @@ class Radiation(Value):
 
 def _rattle(K: FloatArray, slope: FloatArray, step: float) -> float:
     """|∫ K^{3/2} F' e^{i∫K} dξ| by trapezia, which are exact for what has ended."""
-    import numpy as np
+    import numpy as np  # start-up: `import lwa` does not load it
 
     phase = np.concatenate([[0.0], np.cumsum((K[1:] + K[:-1]) / 2)]) * step
     return float(abs(np.sum(K**1.5 * slope * np.exp(1j * phase))) * step)
@@ -114,7 +114,7 @@ def radiation(cell: Cell, k: sp.Expr) -> Radiation | None:
     ring = Coefficients(cell, sp.S.One if alike else k)
     if any(x.free_symbols for x in (*cell.masses, *cell.stiffnesses, ring.k)):
         return None
-    import numpy as np
+    import numpy as np  # start-up: `import lwa` does not load it
 
     values = _values(ring)
     trace = [_float(t, values) for t in Bloch(ring).trace(cell.size)]

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import sympy as sp
 
@@ -34,6 +34,8 @@ class LoadedChain(Value):
 
     >>> LoadedChain(Cell(["m"], ["A"]), Power("3/2"), "F0").spring_constants
     (3*A**(2/3)*F0**(1/3)/2,)
+    >>> LoadedChain(Cell([1], [1], 1), Power("3/2"), 8).band_edges().round(9)
+    array([[0.        , 3.46410162]])
     """
 
     cell: Cell
@@ -49,18 +51,16 @@ class LoadedChain(Value):
     def static_compressions(self) -> tuple[sp.Expr, ...]:
         """δ_i of each contact under the load."""
         if isinstance(self.law, Power):
-            return tuple((self.precompression / A) ** (1 / self.law.k) for A in self._stiffnesses)
+            return tuple(
+                (self.precompression / A) ** (1 / self.law.k) for A in self.cell.stiffnesses
+            )
         return (compression(self.cell, self.law, self.precompression),) * self.cell.size
 
     @cached_property
     def spring_constants(self) -> tuple[sp.Expr, ...]:
         """A_i F′(δ_i)."""
-        pairs = zip(self._stiffnesses, self.static_compressions, strict=True)
+        pairs = zip(self.cell.stiffnesses, self.static_compressions, strict=True)
         return tuple(sp.powsimp(A * self.law.at(delta, 1)) for A, delta in pairs)
-
-    @property
-    def _stiffnesses(self) -> tuple[sp.Expr, ...]:
-        return self.cell.stiffnesses
 
     @cached_property
     def springs(self) -> Dispersion:
@@ -116,12 +116,3 @@ class LoadedChain(Value):
             name = min(map(str, value.free_symbols))
             raise InputError(f"{name!r} has no value: bands under a load are numbers")
         return float(value)
-
-
-def loaded(cell: Cell, precompression: Any, k: Any = "3/2") -> LoadedChain:
-    """The chain of a cell under a load, of Hertz contacts where no other exponent is given.
-
-    >>> loaded(Cell([1], [1], 1), 8).band_edges().round(9)
-    array([[0.        , 3.46410162]])
-    """
-    return LoadedChain(cell, Power(k), precompression)

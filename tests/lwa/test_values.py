@@ -16,7 +16,7 @@ from lwa import (
     general,
     homogenize,
 )
-from lwa.linear.loaded import loaded
+from lwa.linear.loaded import LoadedChain
 
 m1, m2 = sp.symbols("m1 m2", positive=True)
 
@@ -46,7 +46,7 @@ MADE = {
     "background": lambda: background_wave(Dimer(m1, m2)),
     "kdv": lambda: background_wave(Dimer(m1, m2)).kdv,
     "precompressed": lambda: canonical_wave(Dimer(m1, m2)).at_force("F", precompression="F0"),
-    "loaded": lambda: loaded(Dimer(m1, m2), "F0"),
+    "loaded": lambda: LoadedChain(Dimer(m1, m2), Power("3/2"), "F0"),
 }
 
 

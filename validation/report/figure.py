@@ -39,7 +39,7 @@ def plot_file(path: str) -> Path:
 
 def figure(panels: Sequence[Panel]) -> Figure:
     """All panels in one picture, two in a row."""
-    from matplotlib.figure import Figure
+    from matplotlib.figure import Figure  # start-up
 
     columns = min(2, len(panels))
     rows = math.ceil(len(panels) / columns)
@@ -90,7 +90,7 @@ def draw(plot: Axes, panel: Panel) -> None:
 
 
 def _draw_map(plot: Axes, found: Map, scale: str) -> None:
-    from matplotlib.colors import LogNorm, Normalize
+    from matplotlib.colors import LogNorm, Normalize  # start-up
 
     values = np.ma.masked_invalid(found.values)
     norm = (LogNorm if found.scale else Normalize)(found.low, found.high)

@@ -5,12 +5,12 @@ import pytest
 
 from lwa import Cell, InputError, Power, canonical_wave
 from lwa.law import general, named
-from lwa.linear.loaded import LoadedChain, loaded
+from lwa.linear.loaded import LoadedChain
 
 
 def test_one_bead_a_cell():
     """ω = 2 √(K/m) |sin(qD/2)|."""
-    chain = loaded(Cell([2], [5], "1/10"), 3)
+    chain = LoadedChain(Cell([2], [5], "1/10"), Power("3/2"), 3)
     K = 1.5 * 5 ** (2 / 3) * 3 ** (1 / 3)
     q = np.array([0.5, 7.0, 20.0])
     omega = 2 * np.sqrt(K / 2) * np.sin(q / 20)
@@ -62,8 +62,8 @@ def test_another_law():
 
 def test_what_cannot_be_meant():
     for make, reason in (
-        (lambda: loaded(Cell([1]), 0), "positive"),
-        (lambda: loaded(Cell(["m"]), 1).band_edges(), "has no value"),
+        (lambda: LoadedChain(Cell([1]), Power("3/2"), 0), "positive"),
+        (lambda: LoadedChain(Cell(["m"]), Power("3/2"), 1).band_edges(), "has no value"),
         (lambda: LoadedChain(Cell([1, 1], [1, 2]), general(), 1), "shares"),
     ):
         with pytest.raises(InputError, match=reason):
