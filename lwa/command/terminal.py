@@ -25,19 +25,19 @@ from lwa.quantities import NoSolitaryWave
 
 def quantity(context: click.Context, option: click.Parameter, value: str | None) -> sp.Expr | None:
     """Callback of an option that is an integer, a decimal, a fraction or a plain name."""
-    return None if value is None else exact(value, _name(option))
+    return None if value is None else exact(value, called(option))
 
 
 def quantities(
     context: click.Context, option: click.Parameter, value: str | None
 ) -> tuple[sp.Expr, ...]:
     """Callback of an option that is a list of quantities, separated by commas; () when absent."""
-    return tuple(exact(part, _name(option)) for part in value.split(",")) if value else ()
+    return tuple(exact(part, called(option)) for part in value.split(",")) if value else ()
 
 
 def count(context: click.Context, option: click.Parameter, value: str) -> int:
     """Callback of an option that is an integer from 1 on."""
-    name = _name(option)
+    name = called(option)
     return integer(exact(value, name), name, 1)
 
 
@@ -51,7 +51,8 @@ def contact_law(
     return named(name, *(parameters.split(",") if colon else ()))
 
 
-def _name(option: click.Parameter) -> str:
+def called(option: click.Parameter) -> str:
+    """An option's name in messages, without its dashes."""
     return option.opts[0].lstrip("-")
 
 

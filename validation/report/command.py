@@ -15,7 +15,7 @@ from typing import Any, Generic, ParamSpec, Protocol, TypeVar
 import click
 from tqdm import tqdm
 
-from lwa.command.terminal import quantity
+from lwa.command.terminal import called, quantity
 from lwa.duration import announce
 from validation.lattice.effort import Effort
 from validation.report.figure import SUFFIXES, plot_file
@@ -105,7 +105,7 @@ def whole(context: click.Context, given: click.Parameter, value: str | None) -> 
     """Callback of an option that is an integer."""
     found = quantity(context, given, value)
     if found is not None and not found.is_Integer:
-        raise SceneError(f"{given.opts[0].lstrip('-')} is {found}: an integer is wanted")
+        raise SceneError(f"{called(given)} is {found}: an integer is wanted")
     return None if found is None else int(found)
 
 
@@ -115,7 +115,7 @@ def number(context: click.Context, given: click.Parameter, value: str | None) ->
     if found is None:
         return None
     if not found.is_number:
-        raise SceneError(f"{given.opts[0].lstrip('-')} is {found}: a number is wanted")
+        raise SceneError(f"{called(given)} is {found}: a number is wanted")
     return float(found)
 
 

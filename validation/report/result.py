@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from lwa.exact import InputError
+from lwa.picture import axes
 from validation.report import table as tables
 from validation.report import text as texts
 from validation.report.figure import draw, figure
@@ -54,7 +55,7 @@ class Report:
     @property
     def ok(self) -> bool:
         """Whether every finding holds, those of the parts too."""
-        return all(found.ok for found in (*self.findings, *self.parts))
+        return all(found.ok for found in self._all())
 
     @property
     def verdict(self) -> str:
@@ -85,11 +86,9 @@ class Report:
         """The first table that programs read, or that of the first part which has one.
 
         Raises `lwa.InputError` where there is none."""
-        for table in self.tables:
+        for table in (table for report in self._whole() for table in report.tables):
             if any(column.key for column in table.columns):
                 return table.csv()
-        for part in self.parts:
-            return part.csv()
         raise InputError("format is csv: this result has no table")
 
     def figure(self) -> Figure:
@@ -101,12 +100,9 @@ class Report:
 
         Raises `lwa.InputError` where there is no picture."""
         first, *_ = self._drawn()
-        if ax is None:
-            from matplotlib import pyplot  # start-up, and an optional display
-
-            ax = pyplot.subplots()[1]
-        draw(ax, first)
-        return ax
+        drawn: Axes = axes(ax)
+        draw(drawn, first)
+        return drawn
 
     def save(self, file: Path) -> None:
         """Draw the picture into a file, which is replaced only by a complete one."""
@@ -124,8 +120,14 @@ class Report:
             picture = drawn.getvalue()[drawn.getvalue().index("<svg") :]
         return self._html() + picture + (f"<p>{self.verdict}</p>" if self._all() else "")
 
+    def _whole(self) -> Iterator[Report]:
+        """This report and all that it is made of."""
+        yield self
+        for part in self.parts:
+            yield from part._whole()
+
     def _all(self) -> list[Finding | Statement]:
-        return [*self.findings, *(found for part in self.parts for found in part._all())]
+        return [found for report in self._whole() for found in report.findings]
 
     def _drawn(self) -> tuple[Panel, ...]:
         if not (panels := self._panels()):
@@ -133,7 +135,7 @@ class Report:
         return panels
 
     def _panels(self) -> tuple[Panel, ...]:
-        return self.panels + tuple(panel for part in self.parts for panel in part._panels())
+        return tuple(panel for report in self._whole() for panel in report.panels)
 
     def _shown(self) -> list[str]:
         shown = any(texts.blocks(table) for table in self.tables)

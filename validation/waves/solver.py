@@ -138,10 +138,12 @@ def longest(masses: Sequence[Any], k: Any) -> float:
     """Seconds that `exact_wave` takes where Newton's method fails everywhere; a rough bound."""
     pair, k = parameters(masses, k)
     unit = (1.0, pair[1] / pair[0])
+    if unit[1] == 1:
+        return 0.0
     ample = fourier.ample_half_period(unit, k)
     counts = [fourier.problem(unit, k, L, None).count for L in ample * PERIODS]
     each = sum(5e-8 * count**2 + 4e-11 * count**3 for count in counts)  # a step's, on one core
-    return 0.0 if unit[1] == 1 else 2 * fourier.MOST_STEPS * each
+    return 2 * fourier.MOST_STEPS * each
 
 
 def _uniform(pair: tuple[float, float], k: float, half_period: float | None) -> ExactWave:

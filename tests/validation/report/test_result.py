@@ -50,6 +50,7 @@ def test_a_report_of_parts():
     assert whole.verdict == "3 checks: 1 of 3 fail"
     assert whole.text().count("a part") == 2
     assert whole.csv() == "n\n8\n"
+    assert Report("", parts=(Report("no table"), PART)).csv() == PART.csv()
     assert len(whole.figure().axes) == 2
     assert whole.document()["ok"] is False
 

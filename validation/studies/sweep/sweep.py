@@ -25,6 +25,7 @@ import numpy as np
 from sympy import Rational
 
 from lwa import Dimer, canonical_wave, homogenize
+from lwa.command.terminal import called
 from lwa.duration import Progress
 from lwa.exact import InputError, shorten
 from lwa.numeric import Array, NumericWave
@@ -273,7 +274,7 @@ def _values(given: Iterable[Any], name: str) -> tuple[Rational, ...]:
 
 
 def _axis(context: click.Context, given: click.Parameter, text: str) -> tuple[Rational, ...]:
-    return axis(text, given.opts[0].lstrip("-"))
+    return axis(text, called(given))
 
 
 @study(
