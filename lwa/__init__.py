@@ -12,6 +12,9 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from lwa.algebra.coefficients import Coefficients
+    from lwa.algebra.jets import JetAlgebra, Ladder, Monomial, Term
+    from lwa.algebra.partition import Partition
     from lwa.background.compressed import BackgroundWave, background_wave
     from lwa.background.kdv import KdV
     from lwa.background.precompressed import PrecompressedWave
@@ -19,23 +22,20 @@ if TYPE_CHECKING:
     from lwa.cell import Cell, D, Dimer, k
     from lwa.closure.consistency import Closure
     from lwa.closure.motion import Solution
-    from lwa.coefficients import Coefficients
-    from lwa.compact import CompactWave, LoadedWave
-    from lwa.curves import PhysicalWaves
+    from lwa.compact.curves import PhysicalWaves
+    from lwa.compact.numeric import Array, NumericWave
+    from lwa.compact.physical import PhysicalWave
+    from lwa.compact.wave import CompactWave, LoadedWave
     from lwa.exact import InputError, Quantity
     from lwa.expansion.approximants import Resummed
     from lwa.expansion.expand import Expansion, expand
     from lwa.expansion.physical import ExpandedWave
     from lwa.expansion.radiation import Radiation
     from lwa.expansion.series import EpsilonSeries
-    from lwa.jets import JetAlgebra, Ladder, Monomial, Term
     from lwa.law import Law, Power, general
     from lwa.linear.dispersion import Dispersion
     from lwa.linear.loaded import LoadedChain
-    from lwa.numeric import Array, NumericWave
-    from lwa.partition import Partition
     from lwa.pde import PDE
-    from lwa.physical import PhysicalWave
     from lwa.quantities import NoSolitaryWave
     from lwa.reduction import Reduction
     from lwa.spheres import hertz
@@ -100,30 +100,30 @@ __all__ = [
 
 
 _MODULES = {
+    "algebra.coefficients": "Coefficients",
+    "algebra.jets": "JetAlgebra Ladder Monomial Term",
+    "algebra.partition": "Partition",
+    "background.compressed": "BackgroundWave background_wave",
+    "background.kdv": "KdV",
+    "background.precompressed": "PrecompressedWave",
+    "background.quadrature": "NumericBackground",
     "cell": "Cell D Dimer k",
     "closure.consistency": "Closure",
     "closure.motion": "Solution",
-    "coefficients": "Coefficients",
-    "compact": "CompactWave LoadedWave",
-    "background.compressed": "BackgroundWave background_wave",
-    "curves": "PhysicalWaves",
+    "compact.curves": "PhysicalWaves",
+    "compact.numeric": "Array NumericWave",
+    "compact.physical": "PhysicalWave",
+    "compact.wave": "CompactWave LoadedWave",
     "exact": "InputError Quantity",
     "expansion.approximants": "Resummed",
     "expansion.expand": "Expansion expand",
     "expansion.physical": "ExpandedWave",
     "expansion.radiation": "Radiation",
     "expansion.series": "EpsilonSeries",
-    "jets": "JetAlgebra Ladder Monomial Term",
-    "background.kdv": "KdV",
     "law": "Law Power general",
     "linear.dispersion": "Dispersion",
     "linear.loaded": "LoadedChain",
-    "numeric": "Array NumericWave",
-    "partition": "Partition",
     "pde": "PDE",
-    "physical": "PhysicalWave",
-    "background.precompressed": "PrecompressedWave",
-    "background.quadrature": "NumericBackground",
     "quantities": "NoSolitaryWave",
     "reduction": "Reduction",
     "spheres.hertz": "Material Sphere",

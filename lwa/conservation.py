@@ -15,8 +15,8 @@ from __future__ import annotations
 
 from flint import fmpq_mpoly
 
+from lwa.algebra.jets import JetAlgebra
 from lwa.closure.consistency import Closure
-from lwa.jets import JetAlgebra
 
 
 def flux(closure: Closure, n: int) -> fmpq_mpoly | None:

@@ -23,10 +23,10 @@ from math import factorial
 
 from flint import fmpq, fmpq_mpoly
 
+from lwa.algebra.contact import contact
+from lwa.algebra.jets import JetAlgebra, Ladder, exact_quotient
 from lwa.closure.consistency import Closure
-from lwa.contact import contact
 from lwa.exact import InputError
-from lwa.jets import JetAlgebra, Ladder, exact_quotient
 
 
 def energy(closure: Closure) -> tuple[JetAlgebra, list[fmpq_mpoly]]:

@@ -16,11 +16,11 @@ from typing import Any
 import sympy as sp
 from flint import fmpq_mpoly
 
+from lwa.algebra.contact import Binomial, Powers
+from lwa.algebra.jets import Ladder, Monomial
 from lwa.closure.consistency import Closure
 from lwa.closure.motion import Solution
-from lwa.contact import Binomial, Powers
 from lwa.exact import InputError
-from lwa.jets import Ladder, Monomial
 
 Series = list[fmpq_mpoly]
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from lwa.jets import JetAlgebra, Monomial
-from lwa.partition import number
+from lwa.algebra.jets import JetAlgebra, Monomial
+from lwa.algebra.partition import number
 from lwa.value import Value
 
 

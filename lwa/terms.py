@@ -15,9 +15,9 @@ import sympy as sp
 from flint import fmpq_mpoly
 
 from lwa import latex
+from lwa.algebra.coefficients import Coefficients
+from lwa.algebra.jets import JetAlgebra, Term
 from lwa.closure.consistency import Closure
-from lwa.coefficients import Coefficients
-from lwa.jets import JetAlgebra, Term
 from lwa.law import Power
 
 Powers = tuple[tuple[int, int], ...]

@@ -9,15 +9,15 @@ from typing import Any
 import sympy as sp
 
 from lwa import latex
+from lwa.algebra.coefficients import Coefficients
+from lwa.algebra.smooth import smooth
 from lwa.cell import Cell, exponent
 from lwa.cell import k as symbol_k
 from lwa.closure.consistency import BRANCHES, CLOSURES, FIELDS, Closure, solve
-from lwa.coefficients import Coefficients
 from lwa.duration import shown
 from lwa.exact import InputError, integer, shorten
 from lwa.law import Law, Power, for_cell
 from lwa.pde import PDE
-from lwa.smooth import smooth
 from lwa.terms import STRAIN, Terms, terms
 from lwa.value import Value
 

@@ -24,16 +24,16 @@ from typing import TYPE_CHECKING, Any, Literal, overload
 import sympy as sp
 
 from lwa import latex
+from lwa.algebra.rational import factored
 from lwa.background.compressed import BackgroundWave
 from lwa.background.precompressed import PrecompressedWave
 from lwa.cell import Cell, exponent, substitution
 from lwa.cell import k as symbol_k
+from lwa.compact.physical import PhysicalWave
 from lwa.exact import InputError, exact, positive, power, real, shorten
 from lwa.law import Power
 from lwa.linear.dispersion import Dispersion
-from lwa.physical import PhysicalWave
 from lwa.quantities import NoSolitaryWave, strain_power
-from lwa.rational import factored
 from lwa.reduction import Reduction, strain_equation
 from lwa.value import Value
 
@@ -42,8 +42,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from lwa.curves import PhysicalWaves
-    from lwa.numeric import Array, NumericWave
+    from lwa.compact.curves import PhysicalWaves
+    from lwa.compact.numeric import Array, NumericWave
 
 V = sp.Symbol("V_s", positive=True)
 """The speed V_s = dx/dτ, where the caller gives none."""
@@ -197,7 +197,9 @@ class TravelingWave(Value):
             return PrecompressedWave(self.cell, Power(self.k), F, load)
         if isinstance(F, str | bytes) or not getattr(F, "shape", hasattr(F, "__len__")):
             return PhysicalWave(self, F, of)
-        from lwa.curves import PhysicalWaves  # here, so that `import lwa` does not load NumPy
+        from lwa.compact.curves import (
+            PhysicalWaves,  # here, so that `import lwa` does not load NumPy
+        )
 
         return PhysicalWaves(PhysicalWave(self, sp.S.One, of), F)
 
@@ -214,7 +216,7 @@ class TravelingWave(Value):
 
         Returns the axes. Raises `lwa.InputError` unless k and the masses are numbers.
         """
-        from lwa.picture import profiles  # here: Matplotlib is wanted for pictures only
+        from lwa.compact.picture import profiles  # here: Matplotlib is wanted for pictures only
 
         return profiles(self, ax)
 
@@ -307,7 +309,9 @@ class TravelingWave(Value):
 
         Raises `lwa.InputError` unless k is a symbol and the masses are two, as in N:1 dimers.
         """
-        from lwa.numeric import NumericWave  # here, so that `import lwa` does not load NumPy
+        from lwa.compact.numeric import (
+            NumericWave,  # here, so that `import lwa` does not load NumPy
+        )
 
         return NumericWave(self, missing)
 

@@ -41,7 +41,7 @@ from lwa.background.gauss import (
     is_smooth,
     root,
 )
-from lwa.compact import LoadedWave
+from lwa.compact.wave import LoadedWave
 from lwa.exact import InputError
 from lwa.law import Power
 from lwa.quantities import NoSolitaryWave, known

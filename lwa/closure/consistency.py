@@ -2,7 +2,7 @@
 
 ``linear`` is the closure of the paper (`lwa.closure.ansatz`), ``full`` the one that satisfies all
 equations of motion (`lwa.closure.slaving`). Both solve `lwa.closure.motion` in one algebra,
-`lwa.jets`.
+`lwa.algebra.jets`.
 """
 
 from __future__ import annotations
@@ -16,14 +16,14 @@ import sympy as sp
 from flint import fmpq_mpoly
 
 from lwa import latex
+from lwa.algebra.coefficients import Coefficients
+from lwa.algebra.jets import JetAlgebra, Monomial
 from lwa.cell import Cell
 from lwa.closure.ansatz import linear
 from lwa.closure.motion import Solution
 from lwa.closure.slaving import full
-from lwa.coefficients import Coefficients
 from lwa.duration import Progress
 from lwa.exact import InputError
-from lwa.jets import JetAlgebra, Monomial
 
 BRANCHES = ("acoustic", "optical")
 CLOSURES = ("linear", "full")

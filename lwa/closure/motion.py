@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 from flint import fmpq_mpoly
 
-from lwa.jets import JetAlgebra
+from lwa.algebra.jets import JetAlgebra
 
 
 class Solution(NamedTuple):

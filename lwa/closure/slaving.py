@@ -12,11 +12,11 @@ from math import factorial
 
 from flint import fmpq, fmpq_mpoly
 
+from lwa.algebra.coefficients import Coefficients
+from lwa.algebra.contact import contact
+from lwa.algebra.jets import JetAlgebra, Ladder
 from lwa.closure.motion import Solution
-from lwa.coefficients import Coefficients
-from lwa.contact import contact
 from lwa.duration import Progress
-from lwa.jets import JetAlgebra, Ladder
 
 
 def full(

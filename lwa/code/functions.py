@@ -23,7 +23,7 @@ import sympy as sp
 
 from lwa.code.languages import LANGUAGES
 from lwa.code.writer import Function, Local
-from lwa.compact import CompactWave
+from lwa.compact.wave import CompactWave
 from lwa.exact import InputError, shorten
 from lwa.quantities import QUANTITIES, strain_power
 

@@ -11,10 +11,10 @@ from math import comb, lcm
 
 import sympy as sp
 
-from lwa.coefficients import Coefficients
+from lwa.algebra.coefficients import Coefficients
+from lwa.algebra.partition import Partition
 from lwa.duration import Progress, announce, shown, words
 from lwa.exact import InputError
-from lwa.partition import Partition
 
 LONGEST = 3600.0
 """Seconds of what is not refused."""

@@ -14,8 +14,9 @@ from typing import Any
 import sympy as sp
 from flint import fmpq, fmpq_mpoly
 
+from lwa.algebra.coefficients import Coefficients
+from lwa.algebra.partition import number, rational
 from lwa.cell import Cell
-from lwa.coefficients import Coefficients
 from lwa.duration import Progress
 from lwa.expansion.pulse import (
     Series,
@@ -28,7 +29,6 @@ from lwa.expansion.pulse import (
     wider,
 )
 from lwa.expansion.recursion import Recursion
-from lwa.partition import number, rational
 
 
 class Observables:

@@ -28,8 +28,8 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from flint import fmpq_mpoly
 
+from lwa.algebra.coefficients import Coefficients
 from lwa.cell import Cell
-from lwa.coefficients import Coefficients
 from lwa.expansion.pulse import by_degree
 from lwa.expansion.recursion import Recursion
 from lwa.linear.bloch import Bloch

@@ -31,11 +31,11 @@ from math import factorial
 from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 from sympy import bernoulli
 
-from lwa.coefficients import Coefficients
+from lwa.algebra.coefficients import Coefficients
+from lwa.algebra.partition import rational
 from lwa.duration import Progress
 from lwa.expansion.pulse import Series, by_degree, exp_term, log_term
 from lwa.linear.bloch import Bloch
-from lwa.partition import rational
 
 LINEAR = 3
 """The first n for which q_n² has no place up to t^{n+2}."""

@@ -16,7 +16,7 @@ from math import factorial
 
 from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
-from lwa.coefficients import Coefficients
+from lwa.algebra.coefficients import Coefficients
 
 BRANCHES = ("acoustic", "optical")
 

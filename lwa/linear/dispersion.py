@@ -22,8 +22,8 @@ import sympy as sp
 from flint import fmpq_mpoly
 
 from lwa import latex
+from lwa.algebra.coefficients import Coefficients
 from lwa.cell import Cell, exponent, substitution
-from lwa.coefficients import Coefficients
 from lwa.exact import InputError, integer, shorten
 from lwa.linear.bloch import BRANCHES, Bloch
 from lwa.value import Value

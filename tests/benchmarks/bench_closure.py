@@ -23,11 +23,11 @@ from pytest_benchmark.fixture import BenchmarkFixture
 from sympy.core.cache import clear_cache
 
 from lwa import Dimer, homogenize
+from lwa.algebra.coefficients import Coefficients
 from lwa.cell import k
 from lwa.closure.ansatz import linear
 from lwa.closure.motion import Solution
 from lwa.closure.slaving import full
-from lwa.coefficients import Coefficients
 from tests.benchmarks import peers
 
 DIMER = Dimer("m1", "m2")

@@ -5,7 +5,7 @@ import sympy as sp
 from flint import fmpq
 from sympy.polys.rings import ring as sympy_ring
 
-import lwa.jets
+import lwa.algebra.jets
 from lwa import Cell, Dimer, homogenize
 
 
@@ -102,7 +102,7 @@ class Context:
 def test_sympy_polynomials_give_the_same_theory(monkeypatch, cell, closure, field, order):
     flint = homogenize(cell, order, closure=closure, field=field)
     expected = flint.ansatz, {n: dict(found) for n, found in flint.pde.coefficients.items()}
-    monkeypatch.setattr(lwa.jets, "fmpq_mpoly_ctx", Context)
+    monkeypatch.setattr(lwa.algebra.jets, "fmpq_mpoly_ctx", Context)
     theory = homogenize(cell, order, closure=closure, field=field)
     assert isinstance(theory.closure.acceleration[-1], Polynomial)
     found = theory.ansatz, {n: dict(found) for n, found in theory.pde.coefficients.items()}

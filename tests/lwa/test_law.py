@@ -7,8 +7,8 @@ import pytest
 import sympy as sp
 
 from lwa import Cell, Dimer, Dispersion, InputError, Law, Power, general, homogenize
+from lwa.algebra.jets import Ladder
 from lwa.energy import energy
-from lwa.jets import Ladder
 from lwa.law import NAMES, named
 
 x = sp.Symbol("x")

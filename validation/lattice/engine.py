@@ -23,7 +23,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lwa.numeric import Array
+from lwa.compact.numeric import Array
 from validation.lattice import effort, kernel
 from validation.lattice.effort import RunProgress
 from validation.lattice.equations import Motion

@@ -15,7 +15,7 @@ from functools import cached_property
 
 import numpy as np
 
-from lwa.numeric import Array
+from lwa.compact.numeric import Array
 from lwa.spheres.tables import LEAST
 from validation.scenes.checks import SceneError
 from validation.scenes.scene import Scene

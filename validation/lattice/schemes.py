@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lwa.numeric import Array
+from lwa.compact.numeric import Array
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 import scipy
 
+from lwa.compact.numeric import Array
 from lwa.exact import shorten
-from lwa.numeric import Array
 from validation.lattice.effort import EXCESS, RunProgress, adaptive, silent
 from validation.lattice.equations import Motion
 from validation.lattice.run import IntegrationError, Run, finished

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lwa.numeric import Array
+from lwa.compact.numeric import Array
 from validation.report.files import output_file
 from validation.report.panel import Map, Panel
 

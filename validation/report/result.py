@@ -9,8 +9,8 @@ from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from lwa.compact.picture import axes
 from lwa.exact import InputError
-from lwa.picture import axes
 from validation.report import table as tables
 from validation.report import text as texts
 from validation.report.figure import draw, figure

@@ -11,7 +11,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lwa.numeric import Array
+from lwa.compact.numeric import Array
 from validation.scenes.materials import PTFE_BEAD, STEEL, STEEL_BEAD, Bead
 from validation.scenes.scene import Scene
 

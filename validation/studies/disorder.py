@@ -12,8 +12,8 @@ import math
 
 import numpy as np
 
+from lwa.compact.numeric import Array
 from lwa.duration import Progress
-from lwa.numeric import Array
 from validation.lattice.simulate import simulate
 from validation.pulses.pulse import Measured, measure
 from validation.report.command import EXPONENT, option, study

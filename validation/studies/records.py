@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lwa.numeric import Array
+from lwa.compact.numeric import Array
 from lwa.spheres import files
 from validation.lattice.run import Run
 from validation.pulses.sensors import tracks

@@ -35,7 +35,7 @@ from functools import cached_property
 import numpy as np
 import scipy
 
-from lwa.numeric import Array
+from lwa.compact.numeric import Array
 from validation.scenes.checks import integer
 
 MOST_STEPS = 40  # of Newton's method

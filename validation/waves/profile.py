@@ -18,7 +18,7 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
-from lwa.numeric import Array
+from lwa.compact.numeric import Array
 from lwa.quantities import QUANTITIES, strain_power
 from validation.pulses.pulse import MeasureError
 from validation.scenes.checks import SceneError, positive
@@ -114,7 +114,7 @@ class Profile(ABC):
 
         Returns the axes.
         """
-        from lwa.picture import axes  # optional, start-up
+        from lwa.compact.picture import axes  # optional, start-up
 
         ax = axes(ax)
         xi = np.linspace(-self.half_period, self.half_period, 2001)

@@ -34,9 +34,9 @@ from typing import Any
 
 import numpy as np
 
+from lwa.compact.numeric import Array
 from lwa.duration import Progress
 from lwa.exact import InputError
-from lwa.numeric import Array
 from lwa.quantities import QUANTITIES
 from validation.lattice.run import IntegrationError
 from validation.pulses.pulse import Measured

@@ -22,7 +22,7 @@ import sympy as sp
 from numpy.typing import ArrayLike
 
 from lwa import Dimer, TravelingWave, canonical_wave, homogenize
-from lwa.numeric import Array
+from lwa.compact.numeric import Array
 from validation.scenes.checks import SceneError, positive
 
 

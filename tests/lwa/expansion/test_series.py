@@ -18,7 +18,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lwa import Cell, Dimer, InputError, expand
-from lwa.coefficients import Coefficients
+from lwa.algebra.coefficients import Coefficients
 from lwa.command.cli import main
 from lwa.exact import real
 from lwa.expansion.effort import Effort, affordable

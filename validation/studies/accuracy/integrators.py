@@ -17,8 +17,8 @@ from functools import partial
 
 import scipy
 
+from lwa.compact.numeric import Array
 from lwa.duration import Progress
-from lwa.numeric import Array
 from validation.lattice.equations import Motion
 from validation.lattice.simulate import COMPILED, simulate
 from validation.report.command import option, study

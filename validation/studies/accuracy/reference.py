@@ -21,7 +21,7 @@ import numpy as np
 from scipy import integrate as scipy
 from scipy.optimize import brentq
 
-from lwa.numeric import Array
+from lwa.compact.numeric import Array
 from validation.lattice.equations import Motion
 from validation.lattice.run import IntegrationError
 from validation.lattice.simulate import simulate

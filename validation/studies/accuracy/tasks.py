@@ -20,7 +20,7 @@ from functools import cached_property, partial
 import numpy as np
 import scipy
 
-from lwa.numeric import Array
+from lwa.compact.numeric import Array
 from validation.lattice.run import Run
 from validation.pulses.pulse import Pulse, measure
 from validation.scenes import chains

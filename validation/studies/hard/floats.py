@@ -26,7 +26,7 @@ import numpy as np
 import sympy as sp
 
 from lwa import Dimer, TravelingWave, homogenize
-from lwa.numeric import Array, NumericWave
+from lwa.compact.numeric import Array, NumericWave
 from validation.report.panel import Curve, Panel
 from validation.report.table import Column, Finding, Table
 from validation.studies.hard.case import Parts, case

@@ -21,7 +21,7 @@ import sympy as sp
 
 from lwa import Cell, Dimer, canonical_wave, homogenize
 from lwa.command.terminal import quantities
-from lwa.numeric import Array
+from lwa.compact.numeric import Array
 from validation.lattice.effort import RunProgress, silent
 from validation.lattice.run import Run
 from validation.lattice.simulate import COMPILED, twice

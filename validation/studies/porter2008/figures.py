@@ -18,8 +18,8 @@ import numpy as np
 import scipy
 
 from lwa import canonical_wave
+from lwa.compact.numeric import Array
 from lwa.duration import Progress
-from lwa.numeric import Array
 from validation.lattice.run import Run
 from validation.pulses.pulse import Measured, compared, derived
 from validation.report.command import study

@@ -26,9 +26,9 @@ from sympy import Rational
 
 from lwa import Dimer, canonical_wave, homogenize
 from lwa.command.terminal import called
+from lwa.compact.numeric import Array, NumericWave
 from lwa.duration import Progress
 from lwa.exact import InputError, shorten
-from lwa.numeric import Array, NumericWave
 from validation.pulses.steady import QUANTITIES, STRETCH, Point
 from validation.report.command import option, study, whole
 from validation.report.panel import Curve, Map, Panel

@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any
 import sympy as sp
 
 from lwa.cell import RESERVED, meant, unmistakable
-from lwa.compact import CompactWave
+from lwa.compact.wave import CompactWave
 from lwa.exact import InputError, positive, power, shorten
 from lwa.quantities import known_extent
 from lwa.value import Value
@@ -29,7 +29,7 @@ from lwa.value import Value
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from lwa.curves import Array
+    from lwa.compact.curves import Array
 
 BEARERS = ("contact", "bead")
 """Whose force it is."""
@@ -140,7 +140,7 @@ class PhysicalWave(Value):
         >>> canonical_wave(Cell([1], spacing=1), "3/2").at_force(8).curve([-99, 0, 99])
         array([0., 8., 0.])
         """
-        from lwa.curves import curve  # here, so that `import lwa` does not load NumPy
+        from lwa.compact.curves import curve  # here, so that `import lwa` does not load NumPy
 
         return curve(self, t, quantity, _bearer(of or self.of))
 
@@ -149,7 +149,7 @@ class PhysicalWave(Value):
 
         units : of time and force, as "s" and "N" where the cell is in SI. Returns the axes.
         """
-        from lwa.picture import passage  # here: Matplotlib is wanted for pictures only
+        from lwa.compact.picture import passage  # here: Matplotlib is wanted for pictures only
 
         return passage(self, ax, units)
 

@@ -8,8 +8,8 @@ import sympy as sp
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lwa.contact import Binomial
-from lwa.jets import JetAlgebra
+from lwa.algebra.contact import Binomial
+from lwa.algebra.jets import JetAlgebra
 
 x, h = sp.symbols("x h")
 BASE = sp.exp(x) + sp.Rational(1, 3) * sp.exp(3 * x)  # any smooth positive base p

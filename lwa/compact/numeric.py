@@ -18,7 +18,7 @@ import numpy as np
 import sympy as sp
 from numpy.typing import ArrayLike, NDArray
 
-from lwa.compact import CompactWave
+from lwa.compact.wave import CompactWave
 from lwa.exact import InputError, shorten
 from lwa.quantities import NoSolitaryWave, strain_power
 from lwa.value import Value

@@ -19,7 +19,7 @@ from lwa.exact import InputError, shorten
 from lwa.quantities import known, strain_power
 
 if TYPE_CHECKING:
-    from lwa.physical import PhysicalWave
+    from lwa.compact.physical import PhysicalWave
 
 Array = NDArray[np.float64]
 

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from lwa import Cell
-from lwa.coefficients import Coefficients
+from lwa.algebra.coefficients import Coefficients
 
 m1, m2, A1, A2, k = sp.symbols("m1 m2 A1 A2 k", positive=True)
 

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import sympy as sp
 
-from lwa.curves import arch, number
+from lwa.compact.curves import arch, number
 from lwa.quantities import QUANTITIES, strain_power
 
 if TYPE_CHECKING:
-    from lwa.compact import CompactWave
-    from lwa.physical import PhysicalWave
+    from lwa.compact.physical import PhysicalWave
+    from lwa.compact.wave import CompactWave
 
 POINTS = 501
 

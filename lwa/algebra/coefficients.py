@@ -18,11 +18,11 @@ from typing import Any, Self
 import sympy as sp
 from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
+from lwa.algebra.jets import JetAlgebra
+from lwa.algebra.partition import Partition, number, rational
 from lwa.cell import Cell, exponent, substitution
 from lwa.exact import InputError
-from lwa.jets import JetAlgebra
 from lwa.law import Law, Power
-from lwa.partition import Partition, number, rational
 from lwa.value import Value
 
 MOST_DIGITS = 4000

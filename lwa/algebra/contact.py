@@ -15,7 +15,7 @@ from math import factorial
 
 from flint import fmpq, fmpq_mpoly
 
-from lwa.jets import JetAlgebra, Ladder
+from lwa.algebra.jets import JetAlgebra, Ladder
 
 
 class Force:

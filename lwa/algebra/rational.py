@@ -9,7 +9,7 @@ from __future__ import annotations
 import sympy as sp
 from flint import Ordering, fmpq_mpoly, fmpq_mpoly_ctx
 
-from lwa.partition import number, rational
+from lwa.algebra.partition import number, rational
 
 Fraction = tuple[fmpq_mpoly, fmpq_mpoly]
 

@@ -4,7 +4,7 @@ import sympy as sp
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from lwa.rational import factored
+from lwa.algebra.rational import factored
 
 x, y = sp.symbols("x y", positive=True)
 leaves = st.sampled_from([x, y, sp.Rational(2, 3), sp.Integer(-3), sp.sqrt(2), x**y, sp.sin(x)])

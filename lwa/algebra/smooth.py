@@ -1,7 +1,7 @@
 """The coefficient ring of a law that is no power, Q[φ_2, φ_3, …, μ, c].
 
 Where a power has its exponent k, any other law has the local one, 1 + φ_2, and its φ_n as
-generators; `lwa.jets` knows how these change with the strain.
+generators; `lwa.algebra.jets` knows how these change with the strain.
 """
 
 from __future__ import annotations
@@ -13,9 +13,9 @@ from typing import Any, Self
 import sympy as sp
 from flint import fmpq_mpoly, fmpq_mpoly_ctx
 
+from lwa.algebra.coefficients import Coefficients
+from lwa.algebra.jets import JetAlgebra
 from lwa.cell import Cell, substitution
-from lwa.coefficients import Coefficients
-from lwa.jets import JetAlgebra
 from lwa.law import Law, for_cell, phi_symbol
 
 
