@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from functools import reduce, wraps
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import click
 import sympy as sp
-from click.core import ParameterSource
 
 from lwa.background.compressed import BackgroundWave
 from lwa.background.precompressed import PrecompressedWave
 from lwa.cell import Cell, D, k
-from lwa.closure.consistency import BRANCHES, CLOSURES, FIELDS
 from lwa.code.languages import LANGUAGES
 from lwa.command.document import (
     SI,
@@ -33,12 +30,10 @@ from lwa.command.load import (
     precompressed_json,
     precompressed_text,
 )
+from lwa.command.options import FORCE, SPHERES, given, of_chain, of_series, own_names, setting
 from lwa.command.source import theory_latex, theory_python, wave_latex
 from lwa.command.terminal import (
     HELP,
-    contact_law,
-    count,
-    quantities,
     quantity,
     run,
     version,
@@ -48,14 +43,11 @@ from lwa.duration import announce
 from lwa.exact import InputError, exact
 from lwa.expansion.expand import expand
 from lwa.expansion.physical import ExpandedWave
-from lwa.law import NAMES, Law, Power
+from lwa.law import Law, Power
 from lwa.linear.dispersion import Dispersion
 from lwa.linear.loaded import LoadedChain
 from lwa.spheres.hertz import EXPONENT
 from lwa.theory import Theory, homogenize
-
-Command = Callable[..., None]
-Option = Callable[[Command], Command]
 
 THEORY = {
     "text": theory_text,
@@ -66,79 +58,12 @@ THEORY = {
 WAVE = {"text": wave_text, "json": wave_json, "latex": wave_latex} | {
     language: lambda _, wave, language=language: wave.code(language) for language in LANGUAGES
 }
-FORCE = {"text": force_text, "json": force_json}
+FORCED = {"text": force_text, "json": force_json}
 BACKGROUND = {"text": background_text, "json": background_json}
 PRECOMPRESSED = {"text": precompressed_text, "json": precompressed_json}
 LOADED = {"text": loaded_text, "json": loaded_json}
 DISPERSION = {"text": dispersion_text, "json": dispersion_json}
 EXPANSION = {"text": expansion_text, "json": expansion_json}
-
-
-def _option(name: str, default: Any, help_text: str, **settings: Any) -> Option:
-    return click.option(name, default=default, show_default=True, help=help_text, **settings)
-
-
-def _exponent(default: str) -> Option:
-    return _option("--k", default, "Exponent of the contact law.", callback=quantity)
-
-
-def _order(help_text: str) -> Option:
-    return _option("--order", "4", help_text, callback=count)
-
-
-def _style(formats: Iterable[str]) -> Option:
-    return click.option(
-        "--format", "style", type=click.Choice(list(formats)), default="text", show_default=True,
-        help="How to print the result.",
-    )  # fmt: skip
-
-
-MASSES = _option("--masses", "m1,m2", "Masses of the cell's particles.", callback=quantities)
-STIFFNESSES = click.option(
-    "--stiffnesses", callback=quantities, help="Stiffnesses of its contacts; equal by default."
-)
-
-
-def _chain(formats: Iterable[str]) -> Option:
-    """The options that name a chain and its theory."""
-    options = (
-        _exponent(k.name),
-        click.option(
-            "--law",
-            metavar="NAME[:PARAM,…]",
-            callback=contact_law,
-            help=f"Contact law in place of the power: {', '.join(NAMES)}.",
-        ),
-        MASSES,
-        STIFFNESSES,
-        _option("--spacing", D.name, "Distance of neighbouring particles.", callback=quantity),
-        _order("Highest power of D in the ansatz."),
-        _option("--closure", "linear", f"Consistency condition: {' or '.join(CLOSURES)}."),
-        _option("--field", "first", f"Field described: {' or '.join(FIELDS)} (closure full)."),
-        _option("--branch", "acoustic", f"{' or '.join(BRANCHES).capitalize()}."),
-        _style(formats),
-    )
-    return lambda command: reduce(lambda c, option: option(c), reversed(options), command)
-
-
-def _series(k: str, order: str, formats: Iterable[str]) -> Option:
-    """The options of a command on a series: its cell, exponent and order; ``k`` by default."""
-
-    def decorated(command: Command) -> Command:
-        @wraps(command)
-        def of_cell(
-            masses: tuple[sp.Expr, ...], stiffnesses: tuple[sp.Expr, ...], **options: Any
-        ) -> None:
-            cell = Cell(masses, stiffnesses)
-            _demand_own(cell, options["k"])
-            command(cell, **options)
-
-        given: Command = of_cell
-        for option in (_style(formats), _order(order), STIFFNESSES, MASSES, _exponent(k)):
-            given = option(given)
-        return given
-
-    return decorated
 
 
 def _theory(
@@ -150,19 +75,8 @@ def _theory(
     **kind: Any,
 ) -> Theory:
     cell = Cell(masses, stiffnesses, spacing)
-    _demand_own(cell, k)
+    own_names(cell, k)
     return homogenize(cell, order, k=k, **kind)
-
-
-def _given(option: str) -> bool:
-    """Whether the option stands on the command line."""
-    source = click.get_current_context().get_parameter_source(option)
-    return source is ParameterSource.COMMANDLINE
-
-
-def _demand_own(cell: Cell, *more: sp.Expr) -> None:
-    """Symbols have names of their own in what the command prints."""
-    demand_own(str(click.get_current_context().info_name), (*cell.symbols, *more))
 
 
 SECONDS_A_TERM = 3e-4
@@ -196,7 +110,7 @@ def lwa() -> None:
 
 
 @lwa.command()
-@_chain(THEORY)
+@of_chain(THEORY)
 def derive(style: str, **chain: Any) -> None:
     """The ansatz, the wave equation and the defect between the equations of motion."""
     theory = _theory(**chain)
@@ -204,18 +118,10 @@ def derive(style: str, **chain: Any) -> None:
     _show(THEORY[style](theory))
 
 
-_FORCE = click.option(
-    "--force", callback=quantity, help="Peak contact force, for speed, widths, …."
-)
-_SPHERES = click.option(
-    "--spheres", metavar="FILE", help="Beads, a TOML file (`lwa.spheres.beads`), in SI units."
-)
-
-
 @lwa.command()
-@_chain(WAVE)
-@_FORCE
-@_SPHERES
+@of_chain(WAVE)
+@FORCE
+@SPHERES
 @click.option("--background", callback=quantity, help="Strain of the chain ahead of the wave.")
 @click.option(
     "--precompression", callback=quantity, help="Static load; --force is its sum with the wave's."
@@ -242,10 +148,13 @@ def wave(
         return
     theory = _theory(**chain)
     found = theory.pde.traveling_wave()
-    if style in FORCE and (force is not None or spheres is not None):
-        _show(FORCE[style](theory, found, exact("F", "force") if force is None else force, units))
+    if style in FORCED and (force is not None or spheres is not None):
+        peak = exact("F", "force") if force is None else force
+        _show(FORCED[style](theory, found, peak, units))
     elif force is not None:
-        raise InputError(f"--format {style} is for any force: --force goes with {', '.join(FORCE)}")
+        raise InputError(
+            f"--format {style} is for any force: --force goes with {', '.join(FORCED)}"
+        )
     else:
         _show(WAVE[style](theory, found))
 
@@ -268,10 +177,10 @@ def _wave_under_load(
     units: Mapping[str, str],
     chain: dict[str, Any],
 ) -> None:
-    if style not in FORCE:
-        raise InputError(f"--format {style} has no wave under load: {', '.join(FORCE)} have")
+    if style not in FORCED:
+        raise InputError(f"--format {style} has no wave under load: {', '.join(FORCED)} have")
     for name, wanted in (("closure", "full"), ("field", "center"), ("branch", "acoustic")):
-        if _given(name) and chain[name] != wanted:
+        if given(name) and chain[name] != wanted:
             raise InputError(
                 f"{name} is {chain[name]!r}: under load the wave is that of the canonical field, "
                 f"{name} {wanted!r}"
@@ -297,7 +206,7 @@ def _of_spheres(file: str) -> dict[str, Any]:
     )
 
     for name in ("k", "law", "masses", "stiffnesses", "spacing"):
-        if _given(name):
+        if given(name):
             raise InputError(f"--{name} and --spheres are both given: spheres have their own")
     cell = Cell.of_spheres(read_spheres(file))
     parts = {name: getattr(cell, name) for name in ("masses", "stiffnesses", "spacing")}
@@ -305,13 +214,13 @@ def _of_spheres(file: str) -> dict[str, Any]:
 
 
 @lwa.command()
-@_series("1", "Highest power of κ in Ω².", DISPERSION)
+@of_series("1", "Highest power of κ in Ω².", DISPERSION)
 @click.option(
     "--precompression",
     callback=quantity,
     help="Static load: bands in s⁻¹ of the chain about it; k is 3/2 unless it is given.",
 )
-@_option("--spacing", D.name, "Distance of neighbouring particles.", callback=quantity)
+@setting("--spacing", D.name, "Distance of neighbouring particles.", callback=quantity)
 def dispersion(
     cell: Cell,
     k: sp.Expr,
@@ -329,15 +238,15 @@ def dispersion(
         _show(DISPERSION[style](Dispersion(cell, k), order))
         return
     cell = Cell(cell.masses, cell.stiffnesses, spacing)
-    k = k if _given("k") else EXPONENT
+    k = k if given("k") else EXPONENT
     loaded = LoadedChain(cell, Power(k), precompression)
     _show(LOADED[style](Dispersion(cell, k), loaded, order))
 
 
 @lwa.command()
-@_series(k.name, "Highest power of ε = k - 1.", EXPANSION)
-@_FORCE
-@_SPHERES
+@of_series(k.name, "Highest power of ε = k - 1.", EXPANSION)
+@FORCE
+@SPHERES
 def expansion(
     cell: Cell, k: sp.Expr, order: int, style: str, force: sp.Expr | None, spheres: str | None
 ) -> None:
