@@ -1,9 +1,9 @@
 """Speed against error: what an integrator costs, and how far the pulse is off, on fixed tasks.
 
-Tasks: `validation.studies.accuracy.tasks`. Methods: SciPy's steppers and the compiled splittings,
-on the whole chain and on a window that moves with the pulse, and general integrators of other
-packages on the whole chain (`validation.studies.accuracy.peers`), each at several tolerances or
-steps. The error is the largest relative one of arrival time, peak force and FWHM, against
+Tasks: `validation.studies.accuracy.tasks`. Methods: SciPy's steppers and the compiled ones, on
+the whole chain and on a window that moves with the pulse, and general integrators of other packages
+on the whole chain (`validation.studies.accuracy.peers`), each at several tolerances. The error is
+the largest relative one of arrival time, peak force and FWHM, against
 `validation.studies.accuracy.reference`. The cost is CPU time without compilation, the median of a
 few runs where they are short (`validation.studies.accuracy.costs`).
 """
@@ -14,6 +14,7 @@ import math
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
+from typing import Any
 
 import scipy
 
@@ -25,37 +26,46 @@ from validation.report.command import option, study
 from validation.report.panel import Curve, Panel
 from validation.report.result import Report
 from validation.report.table import Column, Finding, Table
-from validation.report.text import filled
 from validation.scenes.checks import one_of
-from validation.studies.accuracy.costs import BEST, WANTED, Row, costs, goals, methods, timed
+from validation.studies.accuracy.costs import WANTED, Row, cost, goals, methods, timed
 from validation.studies.accuracy.peers import Peer, Solve, missing, prepared
 from validation.studies.accuracy.reference import Reference, integrate, reference
 from validation.studies.accuracy.tasks import NUMBERS, TASKS, Task, errors
 from validation.studies.accuracy.theories import Ladder, ladder
 
+_FINEST = 1e-13
+"""The tolerance to which settings go, by half a decade, where no method makes it too long."""
+
+
+def _settings(first: float, last: float = _FINEST) -> tuple[float, ...]:
+    """From the first to the last by half a decade: 1e-5, 3e-6, 1e-6, …."""
+    steps = round(2 * math.log10(first / last))
+    return tuple(float(f"{first * 10 ** (-i / 2):.0e}") for i in range(steps + 1))
+
+
 _SCIPY: Mapping[tuple[str, bool], Sequence[float]] = {
-    ("DOP853", False): (1e-6, 1e-7, 1e-8, 3e-9, 1e-9),
+    ("DOP853", False): (1e-6, 1e-8, 1e-9, 1e-10, 1e-12),
     ("RK45", False): (1e-7, 1e-8, 1e-9),
     ("LSODA", False): (1e-6, 1e-7),
-    ("DOP853", True): (1e-6, 1e-7, 1e-8, 1e-9),
+    ("DOP853", True): (1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-12),
     ("RK45", True): (1e-7, 1e-8, 1e-9),
     ("LSODA", True): (1e-6, 1e-7),
 }
 """(method, window) → tolerances."""
 
-_SPLITTINGS: Mapping[tuple[str, bool], Sequence[float]] = {
-    (BEST, True): (1e-5, 3e-6, 2e-6, 1e-6, 1e-7, 1e-8, 1e-10),
-    (BEST, False): (1e-6, 1e-8, 1e-10),
-    **{(name, True): (1e-5, 1e-6, 1e-8) for name in COMPILED if name not in (BEST, "Verlet")},
-    ("Verlet", True): (1e-5, 1e-6),
-    ("Verlet", False): (1e-5,),
-}
-"""(scheme, window) → the error that the step aims at."""
+_COMPILED: Mapping[str, Sequence[float]] = {name: _settings(1e-3) for name in COMPILED}
+"""Method → the error of the peak force that it aims at, on the window and the whole chain."""
 
-_PEERS = {
-    "CyRK": (3e-7, 2e-7, 1e-7, 3e-8, 1e-8, 1e-9),
-    "diffrax": (1e-7, 1e-8, 1e-9),
-    "heyoka": (0.03, 0.01),
+_PEERS: Mapping[str, Sequence[float]] = {
+    "CyRK RK45": _settings(1e-4, 1e-9),
+    "CyRK TSIT5": _settings(1e-4, 1e-11),
+    "CyRK VERN7": _settings(1e-4),
+    "CyRK DOP853": _settings(1e-4),
+    "numbalsoda DOP853": _settings(1e-4),
+    "numbalsoda LSODA": _settings(1e-4, 1e-11),
+    "diffrax Tsit5": (1e-5, 1e-7, 1e-9),
+    "diffrax Dopri8": (1e-5, 1e-7, 1e-9, 1e-11),
+    "heyoka Taylor": (1.0, 0.1, 0.03, 0.01, 0.003),
 }
 """Tolerances; heyoka's largest steps."""
 
@@ -68,19 +78,15 @@ def _ms(seconds: float) -> str:
     return f"{1e3 * seconds:.3g}"
 
 
-_RUNS = (
-    *map(Column, ("task", "family", "error", "step", "ns_per_bead_evaluation")),
-    Column("method", "method"),
-    Column("setting", "setting", format=".0e"),
-    Column("arrival_error", "arrival", format=".1e"),
-    Column("peak_error", "peak", format=".1e"),
-    Column("fwhm_error", "FWHM", format=".1e"),
-    Column("seconds", "CPU", "ms", _ms),
+_RUNS = tuple(map(Column, ("task", "family", "method", "setting", "error",
+                           *(f"{name}_error" for name in NUMBERS),
+                           "seconds", "step", "ns_per_bead_evaluation")))  # fmt: skip
+_COSTS = (
+    Column("task"),
+    Column("method", "CPU time (ms) for the peak force to"),
+    *(Column(f"seconds_{wanted:.0e}", f"{wanted:.0e}", format=_ms) for wanted in WANTED),
 )
-_NOTE = (
-    "Errors are relative. Setting: the tolerance; of compiled splittings the error that their step "
-    "aims at,\nof heyoka the largest step. CPU time without compilation, on this machine."
-)
+_NOTE = "CPU time without compilation, on this machine; - where no run attains it from there on."
 _REFERENCES = (Column("task"), *map(Column, NUMBERS), Column("agreement"))
 _GOALS = tuple(map(Column, ("key", "least_value", "most_value", "goal", "measured_value",
                             "error_value", "ok")))  # fmt: skip
@@ -100,12 +106,13 @@ class Accuracy:
     theories: Ladder | None = None
 
     def report(self) -> Report:
-        """``rows``, as of `Row`, with the largest ``error``; ``references`` and their ``agreement``
-        with another route; ``goals``, which people read as findings; ``absent``; ``theories``,
-        as of `Ladder`. In the picture CPU time over the error, solid with a window."""
+        """``rows``, as of `Row`, with the largest ``error``; ``costs`` by method; ``references``
+        and their ``agreement`` with another route; ``goals``, which people read as findings;
+        ``absent``; ``theories``, as of `Ladder`. In the picture CPU time over the error, solid with
+        a window."""
         tasks = {r.task: [row for row in self.rows if row.task == r.task] for r in self.references}
-        rows = tuple((r.task, r.family, r.error, r.step, r.ns, r.name, r.setting,
-                      *(r.errors[name] for name in NUMBERS), r.seconds)
+        rows = tuple((r.task, r.family, r.name, r.setting, r.error,
+                      *(r.errors[name] for name in NUMBERS), r.seconds, r.step, r.ns)
                      for r in self.rows)  # fmt: skip
         references = tuple((r.task, *(getattr(r.pulse, name) for name in NUMBERS), r.agreement)
                            for r in self.references)  # fmt: skip
@@ -113,17 +120,18 @@ class Accuracy:
         heads = {r.task: f"{r.task}: arrival {r.pulse.arrival:.12g}, peak {r.pulse.peak:.12g}, "
                          f"FWHM {r.pulse.fwhm:.12g};\nanother route differs by {r.agreement:.0e} "
                          "at most" for r in self.references}  # fmt: skip
-        feet = {task: _foot(its) for task, its in tasks.items()}
+        spent = tuple((task, *line) for task, its in tasks.items() for line in _costs(its))
         tables = (
-            Table(_RUNS, rows, "rows", note=_NOTE, by="task", heads=heads, feet=feet),
+            Table(_RUNS, rows, "rows"),
+            Table(_COSTS, spent, "costs", note=_NOTE, by="task", heads=heads),
             Table(_REFERENCES, references, "references"),
             Table(_GOALS, aims, "goals"),
         )
         left = ", ".join(self.absent)
         left = f"Left out, as not installed: {left} (pip install 'lwa[peers]' brings them)."
         theories = () if self.theories is None else (self.theories.report(),)
-        goals = (Report("goals on the dimer", findings=self.goals),) * bool(self.goals)
-        data = {"rows": [], "references": [], "goals": [], "absent": self.absent}
+        goals = (Report("goals", findings=self.goals),) * bool(self.goals)
+        data = {"rows": [], "costs": [], "references": [], "goals": [], "absent": self.absent}
         return Report(
             "Speed against error",
             tuple(table for table in tables if table.rows),
@@ -134,13 +142,12 @@ class Accuracy:
         )
 
 
-def _foot(rows: Sequence[Row]) -> str:
-    """From where on the peak force is attained."""
-    cheapest = sorted(costs(rows).items(), key=lambda item: item[1])
-    attained = [f"{name} {_ms(s)}" for (_, name), s in cheapest if math.isfinite(s)]
-    failing = [name for (_, name), s in cheapest if math.isinf(s)]
-    line = f"Peak force to {WANTED:g} from here on (ms): {'; '.join(attained) or 'none'}."
-    return filled(line + (f" Not: {', '.join(failing)}." if failing else ""))
+def _costs(rows: Sequence[Row]) -> list[tuple[Any, ...]]:
+    """Of each method its name and `cost` at `WANTED`, None where not attained; the best first."""
+    found: list[tuple[Any, ...]] = [(name, *(cost(its, wanted) for wanted in WANTED))
+             for (_, name), its in methods(rows).items()]  # fmt: skip
+    found.sort(key=lambda line: line[:0:-1])  # by the finest, where attained
+    return [tuple(None if part == math.inf else part for part in line) for line in found]
 
 
 def _panel(task: str, rows: Sequence[Row]) -> Panel:
@@ -167,8 +174,7 @@ def accuracy(
     """Speed against error: integrators on fixed tasks, and theories against true waves. Five
     minutes; of one task alone one or two.
 
-    names : of `NAMES`, all by default; "theory" is `validation.studies.accuracy.theories`. Goals
-        are set for the dimer, and there are none without it.
+    names : of `NAMES`, all by default; "theory" is `validation.studies.accuracy.theories`.
     peers : False leaves the other packages' integrators out.
 
     Raises `validation.scenes.checks.SceneError` for a name that is not one of `NAMES`, and
@@ -208,19 +214,17 @@ def _compared(
         for rtol in tolerances if task.windowed or not window else ():
             force, seconds = timed(partial(integrate, task, stepper, rtol, window=window))
             yield row("SciPy", f"SciPy {method}", window, rtol, force, seconds)
-    splittings: dict[tuple[str, bool], Sequence[float]] = {}
-    for (method, window), aims in _SPLITTINGS.items():
-        splittings.setdefault((method, window and task.windowed), aims)
-    for (method, window), aims in splittings.items():
-        simulated = partial(simulate, task.scene, method=method, window=window)
-        simulated(rtol=1e-3)  # compiles
-        for rtol in aims:
-            run, seconds = timed(partial(simulated, rtol=rtol))
-            spent = seconds, run.step, 1e9 * seconds / run.bead_evaluations
-            yield row("compiled", method, window, rtol, task.force(run), *spent)
+    for method, aims in _COMPILED.items():
+        for window in {task.windowed, False}:
+            simulated = partial(simulate, task.scene, method=method, window=window)
+            simulated(rtol=1e-3)  # compiles
+            for rtol in aims:
+                run, seconds = timed(partial(simulated, rtol=rtol))
+                spent = seconds, run.step, 1e9 * seconds / run.bead_evaluations
+                yield row("compiled", method, window, rtol, task.force(run), *spent)
     motion = Motion(task.scene)
     for peer, solve in peers:
-        for setting in _PEERS[peer.package]:
+        for setting in _PEERS[peer.name]:
             y, seconds = timed(partial(solve, setting))
             force = motion.force(motion.compression(y))[task.contact]
             yield row("peer", peer.name, False, setting, force, seconds)

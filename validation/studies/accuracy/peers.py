@@ -1,6 +1,7 @@
 """General integrators of other packages, given the same equations of motion in their best form.
 
 CyRK : adaptive Runge–Kutta pairs in C++, the right-hand side compiled by numba to a C function.
+numbalsoda : DOP853 and LSODA in Fortran and C++, the right-hand side compiled likewise.
 diffrax : adaptive Runge–Kutta pairs compiled by XLA; the right-hand side in JAX, vectorised.
 heyoka : Taylor's method to machine precision by automatic differentiation, compiled by LLVM. Its
     error is that of the kinks of [δ]_+^k, which a polynomial does not see: a largest step keeps it
@@ -59,16 +60,14 @@ def _hertz(task: Task) -> tuple[Motion, Array]:
     return motion, rows
 
 
-def _cyrk(task: Task, method: str) -> Solve:
-    import numba  # optional, as CyRK is
-    from CyRK import nbsolve2_ivp
-    from CyRK.nb.numba_solver import cyjit_sig
+def _compiled(task: Task, signature: Any, rate_first: bool) -> tuple[Any, Array]:
+    """The equations as a C function of time, state, rate and constants, and the constants."""
+    import numba  # optional, as what calls it is
 
     motion, contacts = _hertz(task)
-    start, n = motion.start, motion.size
-    constants = np.concatenate(([n], 1 / motion.masses, *contacts))
 
-    def motion_of(rate: Any, t: float, y: Any, c: Any) -> None:
+    @numba.njit
+    def move(y: Any, rate: Any, c: Any) -> None:
         n, behind = int(c[0]), 0.0
         for i in range(n):
             rate[i] = y[n + i]
@@ -78,11 +77,26 @@ def _cyrk(task: Task, method: str) -> Solve:
             rate[n + i] = (behind - force) * c[1 + i]
             behind = force
 
-    compiled = numba.cfunc(cyjit_sig)(motion_of)
+    def of_time(t: float, y: Any, rate: Any, c: Any) -> None:
+        move(y, rate, c)
+
+    def of_rate(rate: Any, t: float, y: Any, c: Any) -> None:
+        move(y, rate, c)
+
+    constants = np.concatenate(([motion.size], 1 / motion.masses, *contacts))
+    return numba.cfunc(signature)(of_rate if rate_first else of_time), constants
+
+
+def _cyrk(task: Task, method: str) -> Solve:
+    from CyRK import nbsolve2_ivp  # optional
+    from CyRK.nb.numba_solver import cyjit_sig
+
+    motion, constants = _compiled(task, cyjit_sig, rate_first=True)
+    start, n = Motion(task.scene).start, task.scene.size
 
     def solve(tolerance: float) -> Array:
         solution = nbsolve2_ivp(
-            compiled.address, (0.0, float(task.times[-1])), start, method=method, args=constants,
+            motion.address, (0.0, float(task.times[-1])), start, method=method, args=constants,
             t_eval=task.times, rtol=tolerance, atol=tolerance,
         )  # fmt: skip
         if not solution.success:
@@ -92,6 +106,25 @@ def _cyrk(task: Task, method: str) -> Solve:
         return y
 
     solve(1e-3)  # compiles what calls it
+    return solve
+
+
+def _numbalsoda(task: Task, method: str) -> Solve:
+    import numbalsoda  # optional
+
+    motion, constants = _compiled(task, numbalsoda.lsoda_sig, rate_first=False)
+    start, n = Motion(task.scene).start, task.scene.size
+    times = np.concatenate(([0.0], task.times))
+
+    def solve(tolerance: float) -> Array:
+        states, well = getattr(numbalsoda, method.lower())(
+            motion.address, start, times, constants, rtol=tolerance, atol=tolerance
+        )
+        if not well:
+            raise PeerError(f"numbalsoda {method} stopped at tolerance {tolerance:g}")
+        return np.asarray(states[1:].T[:n])
+
+    solve(1e-3)  # compiles
     return solve
 
 
@@ -147,8 +180,9 @@ def _heyoka(task: Task, method: str) -> Solve:
         force.append(A * heyoka.select(closed, heyoka.select(closed, d, 1.0) ** 1.5, 0.0) - load)
     system = [(y[i], v[i]) for i in range(n)]
     system += [(v[i], (force[i] - force[i + 1]) / motion.masses[i]) for i in range(n)]
-    # a tolerance below the error of the kinks
-    stepper = heyoka.taylor_adaptive(system, list(start), tol=1e-9, compact_mode=True)
+    # below the error of the kinks, if there are any
+    tolerance = 1e-9 if 0.0 in task.scene.load else 1e-13
+    stepper = heyoka.taylor_adaptive(system, list(start), tol=tolerance, compact_mode=True)
 
     def solve(longest: float) -> Array:
         stepper.time = 0.0
@@ -165,6 +199,7 @@ def _heyoka(task: Task, method: str) -> Solve:
 
 PEERS = (
     *(Peer("CyRK", method, _cyrk) for method in ("RK45", "TSIT5", "VERN7", "DOP853")),
+    *(Peer("numbalsoda", method, _numbalsoda) for method in ("DOP853", "LSODA")),
     *(Peer("diffrax", method, _diffrax) for method in ("Tsit5", "Dopri8")),
     Peer("heyoka", "Taylor", _heyoka),
 )

@@ -16,6 +16,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property, partial
+from typing import Any
 
 import numpy as np
 import scipy
@@ -65,10 +66,11 @@ class Task:
         return np.asarray(run.contact_force[0, -len(self.times) :])
 
     def read(self, force: Array) -> Pulse:
-        """The pulse, from the contact's force at `times`.
+        """The pulse, from the contact's force at `times`; its peak is the dynamic force.
 
         Raises `validation.pulses.pulse.MeasureError` when it is not wholly there.
         """
+        force = force - self.scene.load[self.contact]
         low = np.flatnonzero(force < _FOOT * force.max())
         before, behind = np.split(low, [np.searchsorted(low, force.argmax())])
         first, last = before[-1] if len(before) else 0, behind[0] if len(behind) else -1
@@ -88,7 +90,7 @@ def struck(omega: float, beads: int, contact: int, listen: float, duration: floa
     return Task(scene, listen)
 
 
-def _recorded(duration: float) -> dict[str, float]:
+def _recorded(duration: float) -> dict[str, Any]:
     """For so long, at `_SAMPLING`."""
     count = round(duration / _SAMPLING)
     return {"duration": _SAMPLING * count, "samples": count + 1}
@@ -117,10 +119,22 @@ def experiment() -> Task:
     return Task(scene, 130.0, windowed=False)
 
 
+def precompressed(beads: int = 200, sites: int = 150) -> Task:
+    """Equal beads under a static force of 1; from the first to the contact so many sites further,
+    where the pulse passes at 0.814 units of time a site."""
+    arrival = 0.814 * sites
+    scene = Scene(
+        masses=(1.0,) * beads, stiffnesses=(1.0,) * (beads - 1), wall=1.0, precompression=1.0,
+        k=1.5, velocities=(1.0,), contact_sensors=(sites,), **_recorded(arrival + 10),
+    )  # fmt: skip
+    return Task(scene, arrival - 10, windowed=False)
+
+
 TASKS: Mapping[str, Callable[[], Task]] = {
     "uniform": partial(struck, 1.0, 560, 480, 562.0, 582.0),
     "dimer": partial(struck, 0.2733, 560, 480, 490.0, 510.0),
     "exact": exact,
     "experiment": experiment,
+    "precompressed": precompressed,
 }
 """The tasks by their names."""
