@@ -260,31 +260,26 @@ def solved(
         raise NoWave(_named("Newton's method finds no wave", masses, k)) from None
     if unknown == "mass":
         masses = masses[0], 1 / found
-    n = problem.n
-    z = np.append(z, np.zeros(2 * n - len(z)))
-    even, odd = fourier.coefficients(z[: n + 1], z[n + 1 :])
-    return at_unit_force(masses, k, c2, float(problem.xi[-1]), even, odd), found
+    even, odd = fourier.coefficients(problem.forces(z))
+    return at_unit_force(masses, k, c2, problem.L, even, odd), found
 
 
 def _guess(
     masses: tuple[float, float], k: float, xi: Array, start: Profile | None
 ) -> tuple[Array, float]:
-    """E, O on the grid and c², from a near wave or from the theory at leading order.
+    """F_a on the grid and c², from a near wave or from the theory at leading order.
 
     There the force is cos^{2k/(k-1)}(βξ), c² = 4 / ((k+1)(m1+m2)), and the contacts of a cell are
     (m2-m1)/(m1+m2) out of step, by which both beads of a cell move alike.
     """
     if start is not None:
-        a, b = start.force(xi, 0), start.force(xi, 1)
-        c2 = start.c2 * sum(start.masses) / sum(masses)
+        force, c2 = start.force(xi), start.c2 * sum(start.masses) / sum(masses)
     else:
         beta = (k - 1) * math.sqrt(6 / (k * (k + 1))) / fourier.widening(masses)
-        shift = (masses[1] - masses[0]) / sum(masses) / 2
-        phases = (beta * (xi + side * shift) for side in (-1, 1))
-        a, b = (np.cos(np.clip(x, -np.pi / 2, np.pi / 2)) ** (2 * k / (k - 1)) for x in phases)
+        phase = beta * (xi - (masses[1] - masses[0]) / sum(masses) / 2)
+        force = np.cos(np.clip(phase, -np.pi / 2, np.pi / 2)) ** (2 * k / (k - 1))
         c2 = 4 / ((k + 1) * sum(masses))
-    E, O = (a + b) / 2, (a - b)[1:-1] / 2
-    return np.append(E, O), c2 * float(E[0]) ** ((1 - k) / k)
+    return force, c2 * float(force[0]) ** ((1 - k) / k)
 
 
 def _named(text: str, masses: tuple[float, float], k: float) -> str:
