@@ -38,7 +38,8 @@ from numpy.typing import NDArray
 from lwa.numeric import Array
 from validation.scenes.checks import integer
 
-MOST_STEPS = 40  # of Newton's method
+MOST_STEPS = 25  # of Newton's method
+FEWEST = 40  # points on which a wave is resolved
 
 
 def widening(masses: tuple[float, float]) -> float:
@@ -165,15 +166,20 @@ class Problem:
         return x[:count], float(x[count]), float(x[-1])
 
 
+def enough(masses: tuple[float, float], k: float, half_period: float) -> int:
+    """Points on 0 … L that resolve the wave."""
+    # Per site: the pulse's own Fourier width, its steeper flanks at large k, the light beads.
+    beads = math.sqrt(sum(masses) / min(masses) - 1)
+    dense = 3 + 9 * math.sqrt(k - 1) + 7 * max(k - 2, 0) + 1.5 * beads
+    return max(FEWEST, math.ceil(dense * half_period))
+
+
 def problem(
     masses: tuple[float, float], k: float, half_period: float | None, points: int | None
 ) -> Problem:
     """On an ample period, and on points that resolve the wave, unless they are given."""
     L = ample_half_period(masses, k) if half_period is None else half_period
-    # Per site: the pulse's own Fourier width, its steeper flanks at large k, the light beads.
-    beads = math.sqrt(sum(masses) / min(masses) - 1)
-    dense = 3 + 9 * math.sqrt(k - 1) + 7 * max(k - 2, 0) + 1.5 * beads
-    n = max(40, math.ceil(dense * L)) if points is None else integer(points, "points", 8, 2000)
+    n = enough(masses, k, L) if points is None else integer(points, "points", 8, 2000)
     return Problem(masses, k, L, n)
 
 
