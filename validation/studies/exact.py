@@ -8,7 +8,7 @@ import numpy as np
 import sympy as sp
 
 from lwa.command.terminal import quantities
-from lwa.duration import Progress, announce
+from lwa.duration import Progress
 from lwa.exact import InputError
 from lwa.quantities import QUANTITIES
 from validation.report.command import EXPONENT, number, option, study
@@ -19,7 +19,7 @@ from validation.scenes.checks import SceneError
 from validation.waves.profile import ExactWave
 from validation.waves.resonances import Resonances
 from validation.waves.resonances import resonances as special_ratios
-from validation.waves.solver import exact_wave, longest, measured
+from validation.waves.solver import exact_wave, measured
 
 _KINDS = {
     True: "solitary: nothing is left behind",
@@ -114,7 +114,7 @@ def exact(
     progress: Progress[Any] = iter,
 ) -> Report:
     """An exact traveling wave of the lattice: speed, widths, and the tail if it has one. A second
-    or two; for unequal masses from k = 2 on up to minutes, which are announced.
+    or two; for unequal masses from k = 2 on up to half a minute.
     """
     if speed is not None and force is not None:
         raise InputError("speed and force: a wave is scaled to one of the two")
@@ -122,7 +122,6 @@ def exact(
         if not mass.is_number:
             raise SceneError(f"mass is {mass}: a number is wanted")
     values = [float(mass) for mass in masses]
-    announce(f"exact waves of unequal masses at k = {k:g} may take", longest(values, k))
     wave = exact_wave(values, k, progress=progress)
     if speed is not None or force is not None:
         wave = wave.scaled(speed=speed, force=force)

@@ -26,6 +26,7 @@ from validation.waves import fourier
 
 TOLERANCE = 1e-9  # of the tail, over the peak strain, and of the residual, of a solitary wave
 OUTSIDE = 0.6  # of the half period: where the pulse of a dimer has ended, and its tail is measured
+_ROW = 16  # of Fourier coefficients that are summed up together
 
 
 class Profile(ABC):
@@ -214,9 +215,11 @@ class ExactWave(Profile):
     @cached_property
     def _strains(self) -> tuple[Array, Array]:
         light, c2 = 1 / self.omega, self.c2 * self.masses[0]  # 1/m1 itself may be out of range
-        e, o = fourier.respond(self.even, self.odd, (1 + light, light - 1), self.half_period)
+        found = fourier.respond(self.even - 1j * self.odd, (1, light), self.half_period) / c2
+        e, o = found.real, -found.imag
         e[0] = e[1::2].sum() - e[2::2].sum()  # the strain is 0 at L
-        return np.asarray(e / c2), np.asarray(o / c2)
+        o[-1] = 0
+        return e, o
 
     def _front(self, xi: Array) -> Array:
         return self._sum(xi, *self._strains)
@@ -234,8 +237,11 @@ class ExactWave(Profile):
 
     def _sum(self, xi: ArrayLike, even: Array, odd: Array) -> Array:
         L = self.half_period if self.solitary else math.inf  # a solitary wave is not repeated
-        phase = np.multiply.outer(np.clip(xi, -L, L), self._q)
-        return np.asarray(np.cos(phase) @ even + np.sin(phase) @ odd)
+        rows = np.append(even - 1j * odd, np.zeros(-self.samples % _ROW)).reshape(-1, _ROW)
+        q, x = np.pi / self.half_period * np.arange(rows.size), np.clip(xi, -L, L)
+        # e^{iqξ} of every q from those of the first ones and of every 16th.
+        first, every = (np.exp(1j * np.multiply.outer(x, part)) for part in (q[:_ROW], q[::_ROW]))
+        return np.asarray(((first @ rows.T) * every).real.sum(axis=-1))
 
 
 def at_unit_force(
@@ -250,13 +256,10 @@ def at_unit_force(
 
 def _residual(wave: ExactWave) -> float:
     """max |r - r[F(r)]| on the grid twice as fine, for both contacts."""
-    n = 2 * (len(wave.even) - 1)
-    xi = wave.half_period * np.arange(n + 1) / n
-    a, b = (wave.strain(xi, i) for i in (0, 1))
-    Fa, Fb = (np.maximum(r, 0) ** wave.k for r in (a, b))
-    even, odd = fourier.coefficients((Fa + Fb) / 2, (Fa - Fb)[1:n] / 2)
+    xi = fourier.circle(wave.half_period, 2 * (len(wave.even) - 1))
+    even, odd = fourier.coefficients(wave.force(xi))
     again = replace(wave, even=even, odd=odd)
-    return float(max(np.abs(again.strain(xi, i) - r).max() for i, r in enumerate((a, b))))
+    return float(np.abs(again.strain(xi) - wave.strain(xi)).max())
 
 
 def summit(f: Callable[[Any], Array], xi: Array) -> tuple[float, float]:

@@ -17,7 +17,7 @@ A struck chain makes none of them, as its light beads are at rest before the pul
 made symmetric, is nearly one (`validation.waves.struck`). Newton's method is begun from that pulse
 (and where it finds nothing, from the theory's wave), at several L unless one is given, and of the
 waves found that one is taken whose strain differs least from the struck chain's. How much it still
-differs is its error (`measured`).
+differs is its error (`measured`). A rough grid tells which one that is.
 
 A chain of one mass has always a solitary wave (Friesecke & Wattis 1994; English & Pego 2005).
 """
@@ -48,7 +48,8 @@ from validation.waves.struck import Struck, struck
 CLOSE = 0.1  # by how much c² and the strain may change, relatively, in one step along k
 HALVINGS = 7  # of a step along k, before a branch counts as lost
 STEEP = 2.0  # the k from which waves are followed up where Newton's method finds none
-PERIODS = np.arange(1.0, 1.8, 0.1)  # ample half periods at which waves are looked for
+PERIODS = np.arange(1.0, 1.8, 0.05)  # ample half periods at which waves are looked for
+ROUGH = 0.35  # of the points that resolve a wave: enough to see which one is the nearest
 ENDED = 3e-15  # what equal masses may have of their peak strain at the half period
 ROUNDING = 1e-12  # of a solitary wave's numbers: that of a strain, over its slope at half maximum
 
@@ -134,18 +135,6 @@ def parameters(masses: Sequence[Any], k: Any) -> tuple[tuple[float, float], floa
     return (given[0], given[-1]), k
 
 
-def longest(masses: Sequence[Any], k: Any) -> float:
-    """Seconds that `exact_wave` takes where Newton's method fails everywhere; a rough bound."""
-    pair, k = parameters(masses, k)
-    unit = (1.0, pair[1] / pair[0])
-    if unit[1] == 1:
-        return 0.0
-    ample = fourier.ample_half_period(unit, k)
-    counts = [fourier.problem(unit, k, L, None).count for L in ample * PERIODS]
-    each = sum(5e-8 * count**2 + 4e-11 * count**3 for count in counts)  # a step's, on one core
-    return 2 * fourier.MOST_STEPS * each
-
-
 def _uniform(pair: tuple[float, float], k: float, half_period: float | None) -> ExactWave:
     ample = fourier.ample_half_period(pair, k)
     L = half_period or ample
@@ -165,20 +154,25 @@ def _dimer(
     """The solitary wave that the theory's leads to, or the wave nearest to a struck chain's."""
     ample = fourier.ample_half_period(pair, k)
     periods = list(ample * PERIODS) if half_period is None else [half_period]
-    # The theory's wave first, and where nothing else led to one, at the other half periods.
+    # The theory's wave first, and where the pulse led to none, at the other half periods.
     one, *others = ((False, L) for L in periods)
     waves: list[ExactWave] = []
+    led = False
     for i, (from_pulse, L) in enumerate(progress([one, *((True, L) for L in periods), *others])):
-        if waves and i > len(periods):
+        if led and i > len(periods):
             break
-        start = _pulse(pair, k) if from_pulse else None
+        points = max(fourier.FEWEST, int(ROUGH * fourier.enough(pair, k, L))) if i else None
         with suppress(NoWave):
-            waves.append(solve(pair, k, L, start=start))
+            start = _pulse(pair, k) if from_pulse else None
+            waves.append(solve(pair, k, L, points, start))
+            led |= from_pulse
             if waves[-1].solitary:
-                return waves[-1]
+                return solve(pair, k, L, start=waves[-1])
     if waves:
         pulse = _pulse(pair, k)
-        return min(waves, key=lambda wave: pulse.apart(wave, pulse.pulse))
+        for wave in sorted(waves, key=lambda wave: pulse.apart(wave, pulse.pulse)):
+            with suppress(NoWave):
+                return solve(pair, k, wave.half_period, start=wave)
     lengths = f"{periods[0]:.4g}" + f" to {periods[-1]:.4g}" * (len(periods) > 1)
     begun = "Newton's method was begun from the pulse of a struck chain and from the theory's wave"
     failure = f"{_named('no wave found', pair, k)}: {begun}, at half periods {lengths}"
@@ -260,31 +254,26 @@ def solved(
         raise NoWave(_named("Newton's method finds no wave", masses, k)) from None
     if unknown == "mass":
         masses = masses[0], 1 / found
-    n = problem.n
-    z = np.append(z, np.zeros(2 * n - len(z)))
-    even, odd = fourier.coefficients(z[: n + 1], z[n + 1 :])
-    return at_unit_force(masses, k, c2, float(problem.xi[-1]), even, odd), found
+    even, odd = fourier.coefficients(problem.forces(z))
+    return at_unit_force(masses, k, c2, problem.L, even, odd), found
 
 
 def _guess(
     masses: tuple[float, float], k: float, xi: Array, start: Profile | None
 ) -> tuple[Array, float]:
-    """E, O on the grid and c², from a near wave or from the theory at leading order.
+    """F_a on the grid and c², from a near wave or from the theory at leading order.
 
     There the force is cos^{2k/(k-1)}(βξ), c² = 4 / ((k+1)(m1+m2)), and the contacts of a cell are
     (m2-m1)/(m1+m2) out of step, by which both beads of a cell move alike.
     """
     if start is not None:
-        a, b = start.force(xi, 0), start.force(xi, 1)
-        c2 = start.c2 * sum(start.masses) / sum(masses)
+        force, c2 = start.force(xi), start.c2 * sum(start.masses) / sum(masses)
     else:
         beta = (k - 1) * math.sqrt(6 / (k * (k + 1))) / fourier.widening(masses)
-        shift = (masses[1] - masses[0]) / sum(masses) / 2
-        phases = (beta * (xi + side * shift) for side in (-1, 1))
-        a, b = (np.cos(np.clip(x, -np.pi / 2, np.pi / 2)) ** (2 * k / (k - 1)) for x in phases)
+        phase = beta * (xi - (masses[1] - masses[0]) / sum(masses) / 2)
+        force = np.cos(np.clip(phase, -np.pi / 2, np.pi / 2)) ** (2 * k / (k - 1))
         c2 = 4 / ((k + 1) * sum(masses))
-    E, O = (a + b) / 2, (a - b)[1:-1] / 2
-    return np.append(E, O), c2 * float(E[0]) ** ((1 - k) / k)
+    return force, c2 * float(force[0]) ** ((1 - k) / k)
 
 
 def _named(text: str, masses: tuple[float, float], k: float) -> str:
