@@ -24,6 +24,9 @@ It is 0 for a wave that ends. `Problem` can hold it there with one more unknown:
 masses the size of a kick in the middle of the pulse, in ξ e^{-2ξ²} to the odd force. That size
 depends smoothly on m2/m1 and is 0 exactly where T is 0 without a kick: its changes of sign are the
 special mass ratios.
+
+**Under a load.** On a background strain p0 a and b are by how much a contact is compressed more, r
+→ 0 far away, and F = (p0 + r)_+^k - p0^k; (*) stays.
 """
 
 from __future__ import annotations
@@ -55,6 +58,14 @@ def ample_half_period(masses: tuple[float, float], k: float) -> float:
     return length if masses[0] == masses[1] else max(8.0, 1.15 * length * widening(masses))
 
 
+def rise(strain: Array, k: float, p0: float) -> Array:
+    """(p0 + r)_+^k - p0^k, without cancellation where r is small."""
+    if not p0:
+        return np.asarray(np.maximum(strain, 0) ** k)
+    with np.errstate(divide="ignore"):  # an open contact
+        return np.asarray(p0**k * np.expm1(k * np.log1p(np.maximum(strain / p0, -1))))
+
+
 def respond(
     force: NDArray[np.complex128], inverse: tuple[float, float], half_period: float
 ) -> NDArray[np.complex128]:
@@ -80,13 +91,16 @@ def circle(half_period: float, n: int) -> Array:
 
 
 class Problem:
-    """F_a - a_+^k = 0 on a `circle`, with F_a(0) = 1 for c²; F_b(ξ) = F_a(-ξ).
+    """F_a - rise(a) = 0 on a `circle`, with F_a(0) = 1 - p0^k for c²; F_b(ξ) = F_a(-ξ).
 
     Unknowns are the forces (of equal masses, where o = 0, at 0 … L only) and c².
     """
 
-    def __init__(self, masses: tuple[float, float], k: float, half_period: float, n: int) -> None:
-        self.k, self.n, self.L = k, n, half_period
+    def __init__(
+        self, masses: tuple[float, float], k: float, half_period: float, n: int, p0: float = 0.0
+    ) -> None:
+        self.k, self.n, self.L, self.p0 = k, n, half_period, p0
+        self.height = -math.expm1(k * math.log(p0)) if p0 else 1.0
         self.xi = circle(half_period, n)
         self.uniform = masses[0] == masses[1]
         self.count = n + 1 if self.uniform else 2 * n
@@ -133,9 +147,9 @@ class Problem:
             z, c2 = x[:count], x[count]
             inverse = first, x[-1] if unknown == "mass" else self.inverse[1]
             a = self.strains(z, inverse) / c2
-            slope = self.k * np.maximum(a, 0) ** (self.k - 1)
-            fault = z - np.maximum(a, 0) ** self.k
-            columns, rows, rest = [slope * a / c2], [np.eye(1, count)[0]], [z[0] - 1]
+            slope = self.k * np.maximum(self.p0 + a, 0) ** (self.k - 1)
+            fault = z - rise(a, self.k, self.p0)
+            columns, rows, rest = [slope * a / c2], [np.eye(1, count)[0]], [z[0] - self.height]
             corner = np.zeros((1 + bool(unknown),) * 2)
             if unknown:
                 T = inverse[0] * by_first + inverse[1] * by_last
@@ -161,8 +175,8 @@ class Problem:
             return np.append(known, found[len(at) :])
 
         others = [c2, *{"": (), "mass": (self.inverse[1],), "kick": (0.0,)}[unknown]]
-        sizes = np.append(np.full(count, 2.0), [other or 1.0 for other in others])
-        x = newton(change, np.append(z[:count] / z[0], others), sizes)
+        sizes = np.append(np.full(count, 2 * self.height), [other or 1.0 for other in others])
+        x = newton(change, np.append(z[:count] * (self.height / z[0]), others), sizes)
         return x[:count], float(x[count]), float(x[-1])
 
 
