@@ -24,6 +24,9 @@ It is 0 for a wave that ends. `Problem` can hold it there with one more unknown:
 masses the size of a kick in the middle of the pulse, in ξ e^{-2ξ²} to the odd force. That size
 depends smoothly on m2/m1 and is 0 exactly where T is 0 without a kick: its changes of sign are the
 special mass ratios.
+
+**Under a load.** On a background strain p0 a and b are by how much a contact is compressed more, r
+→ 0 far away, and F = (p0 + r)_+^k - p0^k; (*) stays.
 """
 
 from __future__ import annotations
@@ -52,6 +55,14 @@ def ample_half_period(masses: tuple[float, float], k: float) -> float:
     # Near k = 1, log r = -3 (k-1) ξ²; above, r falls like exp(-k^ξ). Twice 1e-8 makes 1e-16.
     length = 1 + 3.7 / math.sqrt(k - 1) if k < 2 else 1 + 3.7 / math.log2(k) ** 0.5
     return length if masses[0] == masses[1] else max(8.0, 1.15 * length * widening(masses))
+
+
+def rise(strain: Array, k: float, p0: float) -> Array:
+    """(p0 + r)_+^k - p0^k, without cancellation where r is small."""
+    if not p0:
+        return np.asarray(np.maximum(strain, 0) ** k)
+    with np.errstate(divide="ignore"):  # an open contact
+        return np.asarray(p0**k * np.expm1(k * np.log1p(np.maximum(strain / p0, -1))))
 
 
 def respond(
@@ -94,13 +105,16 @@ def values(even: Array, odd: Array) -> tuple[Array, Array]:
 
 
 class Problem:
-    """E - (a_+^k + b_+^k)/2 = 0 and O - (a_+^k - b_+^k)/2 = 0 on a grid, with E(0) = 1 for c².
+    """E - (F_a + F_b)/2 = 0 and O - (F_a - F_b)/2 = 0 on a grid, with E(0) = 1 - p0^k for c².
 
     Unknowns are the forces z (E at ξ = 0 … L, then O between) and c²; strains are linear in 1/m2.
     """
 
-    def __init__(self, masses: tuple[float, float], k: float, half_period: float, n: int) -> None:
-        self.k, self.n = k, n
+    def __init__(
+        self, masses: tuple[float, float], k: float, half_period: float, n: int, p0: float = 0.0
+    ) -> None:
+        self.k, self.n, self.p0 = k, n, p0
+        self.height = -math.expm1(k * math.log(p0)) if p0 else 1.0
         self.xi = half_period * np.arange(n + 1) / n
         self.uniform = masses[0] == masses[1]
         self.count = n + 1 if self.uniform else 2 * n  # o = 0 for equal masses
@@ -128,9 +142,9 @@ class Problem:
         """What is left of the equations."""
         first, padded = self.inverse[0], np.append(z, np.zeros(2 * self.n - self.count))
         e, o = self._strains(padded, (first + light, light - first))
-        a, b = np.maximum(e + o, 0) / c2, np.maximum(e - o, 0) / c2
-        law = self._rows((a**self.k + b**self.k) / 2, (a**self.k - b**self.k) / 2)
-        return np.append(z - law, z[0] - 1)
+        Fa, Fb = (rise(r / c2, self.k, self.p0) for r in (e + o, e - o))
+        law = self._rows((Fa + Fb) / 2, (Fa - Fb) / 2)
+        return np.append(z - law, z[0] - self.height)
 
     def _rows(self, mean: Array, half: Array) -> Array:
         return np.concatenate((mean, half[1 : self.n]))[: self.count]
@@ -140,7 +154,7 @@ class Problem:
         k, count = self.k, self.count
         even, odd, _ = self._at(light)
         e, o = even @ z / c2, odd @ z / c2
-        da, db = (k * np.maximum(r, 0) ** (k - 1) for r in (e + o, e - o))
+        da, db = (k * np.maximum(self.p0 + r, 0) ** (k - 1) for r in (e + o, e - o))
 
         def slope(e: Array, o: Array) -> Array:  # of the law's two rows with the strains
             p, m = ((da + s * db).reshape(-1, *[1] * (e.ndim - 1)) / 2 for s in (1, -1))
@@ -179,8 +193,8 @@ class Problem:
             return np.append(fault, T @ x[:count]), np.vstack((matrix, row))
 
         others = [c2, *{"": (), "mass": (self.inverse[1],), "kick": (0.0,)}[unknown]]
-        sizes = np.append(np.ones(count), [other or 1.0 for other in others])
-        x = newton(step, np.append(z[:count] / z[0], others), sizes)
+        sizes = np.append(np.full(count, self.height), [other or 1.0 for other in others])
+        x = newton(step, np.append(z[:count] * (self.height / z[0]), others), sizes)
         return x[:count], float(x[count]), float(x[-1])
 
 

@@ -19,7 +19,9 @@ made symmetric, is nearly one (`validation.waves.struck`). Newton's method is be
 waves found that one is taken whose strain differs least from the struck chain's. How much it still
 differs is its error (`measured`).
 
-A chain of one mass has always a solitary wave (Friesecke & Wattis 1994; English & Pego 2005).
+A chain of one mass has always a solitary wave (Friesecke & Wattis 1994; English & Pego 2005), on a
+background strain p0 (a chain under load) too. There it ends as e^{-κ|ξ|}, c² κ² = 4 c0² sinh²(κ/2),
+and Newton's method is begun from the theory's wave on that background.
 """
 
 from __future__ import annotations
@@ -33,7 +35,9 @@ from itertools import count
 from typing import Any
 
 import numpy as np
+import scipy
 
+from lwa import Cell, Power, background_wave
 from lwa.duration import Progress
 from lwa.exact import InputError
 from lwa.numeric import Array
@@ -47,6 +51,9 @@ from validation.waves.struck import Struck, struck
 
 CLOSE = 0.1  # by how much c² and the strain may change, relatively, in one step along k
 HALVINGS = 7  # of a step along k, before a branch counts as lost
+FALLEN = 38.0  # e-foldings of a wave on a background from its flanks to L
+SHALLOWEST = 1e-4  # of a wave on a background: what it adds to the peak strain
+LESS = 0.125  # background, at k > 3 where that is small: from one wave to the next
 STEEP = 2.0  # the k from which waves are followed up where Newton's method finds none
 PERIODS = np.arange(1.0, 1.8, 0.1)  # ample half periods at which waves are looked for
 ENDED = 3e-15  # what equal masses may have of their peak strain at the half period
@@ -62,6 +69,7 @@ def exact_wave(
     k: Any,
     *,
     half_period: float | None = None,
+    background: Any = 0,
     progress: Progress[Any] = iter,
 ) -> ExactWave:
     """The traveling wave: solitary, or the nanopteron nearest to the pulse of a struck chain.
@@ -69,6 +77,8 @@ def exact_wave(
     masses : m1, or m1 and m2.
     k : exponent of F = δ^k, from 1.01 to 8.
     half_period : L, where it is to be this one and not chosen.
+    background : of one mass, p0 in units of the peak compression of the contacts: the static
+        force is p0^k, its sum with the wave's peaks at 1.
     progress : is shown what is tried on the way, where the masses differ (such as `tqdm.tqdm`).
 
     Raises `SceneError` for parameters that cannot be meant, among them a half period at which the
@@ -77,11 +87,21 @@ def exact_wave(
     >>> wave = exact_wave([1], 1.5)
     >>> round(wave.fwhm("force"), 6), round(wave.fwhm("strain"), 6), wave.solitary
     (1.411928, 1.725713, True)
+    >>> round(exact_wave([1], 1.5, background=0.5).c2, 6)
+    1.222413
     """
     pair, k = parameters(masses, k)
+    p0 = real(background, "background")
+    if not 0 <= p0 <= 1 - SHALLOWEST:
+        most = f"1 - {SHALLOWEST:g} of the peak compression"
+        raise SceneError(f"background is {p0:g}: one from 0 to {most} is wanted")
+    if p0 and pair[0] != pair[1]:
+        raise SceneError(
+            f"background is {p0:g}: under a load exact waves are found for equal masses"
+        )
     L = None if half_period is None else positive(half_period, "half_period")
     unit = (1.0, pair[1] / pair[0])
-    found = _uniform(unit, k, L) if unit[1] == 1 else _dimer(unit, k, L, progress)
+    found = _uniform(unit, k, L, p0) if unit[1] == 1 else _dimer(unit, k, L, progress)
     c2 = found.c2 / pair[0]
     if not sys.float_info.min <= c2 <= sys.float_info.max:
         raise SceneError(f"mass 1 is {pair[0]:g}: c² leaves the range of floats")
@@ -97,7 +117,7 @@ def measured(wave: ExactWave) -> dict[str, Measured]:
     """
     values = _numbers(wave)
     if wave.solitary:
-        least = ROUNDING + wave.residual + wave.tail
+        least = ROUNDING / (1 - wave.background) + wave.residual + wave.tail
         errors = {name: least * value for name, value in values.items()} | {"tail": least}
         return {name: Measured(value, value + errors[name]) for name, value in values.items()}
     here, pulse = _numbers(wave.scaled(force=1)), struck(wave.k, wave.omega)
@@ -146,17 +166,52 @@ def longest(masses: Sequence[Any], k: Any) -> float:
     return 2 * fourier.MOST_STEPS * each
 
 
-def _uniform(pair: tuple[float, float], k: float, half_period: float | None) -> ExactWave:
+def _uniform(
+    pair: tuple[float, float], k: float, half_period: float | None, p0: float
+) -> ExactWave:
     ample = fourier.ample_half_period(pair, k)
     L = half_period or ample
-    # above k = 3 the theory's is too wide
-    found = solve(pair, k, L) if k <= 3 else _followed(solve(pair, 3.0), k, L)
+    if p0:
+        found, ample = _pressed(pair, k, half_period, p0)
+        L = found.half_period
+    else:  # above k = 3 the theory's is too wide
+        found = solve(pair, k, L) if k <= 3 else _followed(solve(pair, 3.0), k, L)
     if found.rest > ENDED:
         raise SceneError(
             f"half_period is {L:g}: the solitary wave at k = {k:g} has not ended there, with "
             f"{found.rest:.0e} of its peak strain; {ample:.3g} is ample"
         )
     return found
+
+
+def _pressed(
+    pair: tuple[float, float], k: float, half_period: float | None, p0: float
+) -> tuple[ExactWave, float]:
+    """The wave of equal beads on a background, and the half period that is ample for it."""
+    theory, B = background_wave(Cell((1,)), law=Power(k)).numeric(), 1 - p0
+    c2, width, compact = (float(f) for f in (
+        k * theory.speed_squared(p0, B), theory.fwhm(p0, B), theory.fwhm(0.0, 1.0)
+    ))  # fmt: skip
+    excess = math.sqrt(c2 / (k * p0 ** (k - 1)))  # c/c0 = sinh(κ/2)/(κ/2)
+    kappa = 2 * float(scipy.optimize.brentq(
+        lambda x: math.log(math.sinh(x) / x / excess), 1e-5, 300, xtol=1e-12
+    ))  # fmt: skip
+    core = fourier.ample_half_period(pair, k)
+    ample = max(core, core / 2 + FALLEN / kappa)
+    L = half_period or ample
+    n = fourier.problem(pair, k, L, None).n
+    problem = fourier.Problem(pair, k, L, max(80, math.ceil(n * min(1, 1.3 * compact / width))), p0)
+    if k > 3 and p0 < 0.5:  # where the theory's is too wide: from the wave on a little less
+        near = _uniform(pair, k, None, max(0.0, p0 - LESS))
+        guess, c2 = near.force(problem.xi), near.c2
+    else:
+        guess = fourier.rise(theory.profile(problem.xi, p0, B), k, p0)
+    try:
+        even, c2, _ = problem.wave(guess, c2)
+    except np.linalg.LinAlgError:
+        raise NoWave(_named(f"Newton's method finds no wave on {p0:g}", pair, k)) from None
+    rows = fourier.coefficients(even, np.zeros(problem.n - 1))
+    return at_unit_force(pair, k, c2, L, *rows, p0), ample
 
 
 def _dimer(
