@@ -1,9 +1,15 @@
 """The README says what is true: its Python example prints what the comments beside it say."""
 
+import json
 import re
+import runpy
 from pathlib import Path
 
-README = (Path(__file__).parent.parent / "README.md").read_text()
+import pytest
+from PIL import Image
+
+ROOT = Path(__file__).parent.parent
+README = (ROOT / "README.md").read_text()
 
 
 def test_the_python_example(capsys):
@@ -23,3 +29,18 @@ def test_the_commands_exist():
     assert {command for program, command in shown if program == "lwa-validate"} == set(studies())
     for program, command in shown:
         assert command in known[program]
+
+
+def test_the_picture_shows_what_its_script_computes():
+    """What was drawn stands in the file: it is what the lattice and the theory say today."""
+    (file,) = re.findall(r"^!\[[^]]+\]\((.*)\)$", README, re.MULTILINE)
+    with Image.open(ROOT / file) as image:
+        drawn = json.loads(image.text["Comment"])
+    now = runpy.run_path(str(ROOT / "book" / "picture.py"))["passage"]()
+    numbers = now.numbers
+    assert drawn.keys() == numbers.keys()
+    for name, values in numbers.items():  # five digits, and the integration's error
+        largest = max(values) if isinstance(values, list) else values
+        assert drawn[name] == pytest.approx(values, rel=0, abs=1e-4 * largest)
+    for speed in (now.theory.speed, now.lattice_speed):
+        assert f"at {speed:.1f} m/s" in README

@@ -50,8 +50,8 @@ from lwa.value import Value
 _FEW = 16
 """Up to p0 = 4 B the definition of V² cancels less than extended precision has to spare."""
 
-_MOST_PANELS = 380
-"""Of θ; 1/cosh² θ is beyond a float there."""
+_MOST_PANELS = 350
+"""Of θ; 1/cosh² θ is next to nothing for a float there."""
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ import numpy as np
 import sympy as sp
 
 from lwa.command.terminal import quantities
-from lwa.duration import Progress, announce
+from lwa.duration import Progress
 from lwa.exact import InputError
 from lwa.quantities import QUANTITIES
 from validation.report.command import EXPONENT, number, option, study
@@ -19,7 +19,7 @@ from validation.scenes.checks import SceneError
 from validation.waves.profile import ExactWave
 from validation.waves.resonances import Resonances
 from validation.waves.resonances import resonances as special_ratios
-from validation.waves.solver import exact_wave, longest, measured
+from validation.waves.solver import exact_wave, measured
 
 _KINDS = {
     True: "solitary: nothing is left behind",
@@ -40,9 +40,10 @@ _SCALING = (
 
 
 def wave_report(wave: ExactWave) -> Report:
-    """``k_value``, ``masses_value``, ``half_period_value``, ``residual_value``, ``solitary``, and
-    with their errors, as ``c2_error_value``, ``c2_value``, ``c_value``, ``tail_value`` and by
-    quantity ``amplitude_value``, ``fwhm_value``, ``rms_value``."""
+    """``k_value``, ``masses_value``, ``background_value``, ``half_period_value``,
+    ``residual_value``, ``solitary``, and with their errors, as ``c2_error_value``, ``c2_value``,
+    ``c_value``, ``tail_value`` and by quantity ``amplitude_value``, ``fwhm_value``,
+    ``rms_value``."""
     found = measured(wave)
     tail = f"{wave.tail:.2e}" if wave.solitary else str(found["tail"])
     rows = tuple((q, *(found[f"{what} {q}"] for what in ("amplitude", "fwhm", "rms")))
@@ -57,8 +58,12 @@ def wave_report(wave: ExactWave) -> Report:
         else f"One of a family, of half period {wave.half_period:g}: errors are the differences "
         "from the pulse of a struck chain."
     )
+    loaded = (
+        f"; background strain {wave.background:g}: strains and forces are above it"
+        if wave.background else ""
+    )  # fmt: skip
     return Report(
-        f"masses {wave.masses[0]:g}, {wave.masses[1]:g}; k = {wave.k:g}; A = D = 1\n"
+        f"masses {wave.masses[0]:g}, {wave.masses[1]:g}; k = {wave.k:g}; A = D = 1{loaded}\n"
         f"c² = {found['c2']}, c = {found['c']}\n"
         f"tail {tail} of the peak strain, residual {wave.residual:.1e}: {_KINDS[wave.solitary]}",
         (Table(_COLUMNS, rows, note=f"{_SCALING}\n{errors}"),),
@@ -71,6 +76,7 @@ def wave_report(wave: ExactWave) -> Report:
         data={
             "k_value": wave.k,
             "masses_value": wave.masses,
+            "background_value": wave.background,
             "half_period_value": wave.half_period,
             "residual_value": wave.residual,
             "solitary": wave.solitary,
@@ -105,16 +111,19 @@ def resonances_report(found: Resonances) -> Report:
     option("--speed", callback=number, says="Scale the wave to this speed, at D = 1."),
     option("--force", callback=number,
            says="Scale the wave to this peak force, at A = 1; by default 1."),
+    option("--background", callback=number, default="0",
+           says="Static compression of the contacts, over that at the peak."),
 )  # fmt: skip
 def exact(
     k: float,
     masses: tuple[sp.Expr, ...],
     speed: float | None,
     force: float | None,
+    background: float = 0.0,
     progress: Progress[Any] = iter,
 ) -> Report:
     """An exact traveling wave of the lattice: speed, widths, and the tail if it has one. A second
-    or two; for unequal masses from k = 2 on up to minutes, which are announced.
+    or two; for unequal masses from k = 2 on up to half a minute.
     """
     if speed is not None and force is not None:
         raise InputError("speed and force: a wave is scaled to one of the two")
@@ -122,8 +131,7 @@ def exact(
         if not mass.is_number:
             raise SceneError(f"mass is {mass}: a number is wanted")
     values = [float(mass) for mass in masses]
-    announce(f"exact waves of unequal masses at k = {k:g} may take", longest(values, k))
-    wave = exact_wave(values, k, progress=progress)
+    wave = exact_wave(values, k, background=background, progress=progress)
     if speed is not None or force is not None:
         wave = wave.scaled(speed=speed, force=force)
     return wave_report(wave)

@@ -24,21 +24,25 @@ It is 0 for a wave that ends. `Problem` can hold it there with one more unknown:
 masses the size of a kick in the middle of the pulse, in ξ e^{-2ξ²} to the odd force. That size
 depends smoothly on m2/m1 and is 0 exactly where T is 0 without a kick: its changes of sign are the
 special mass ratios.
+
+**Under a load.** On a background strain p0 a and b are by how much a contact is compressed more, r
+→ 0 far away, and F = (p0 + r)_+^k - p0^k; (*) stays.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from functools import cached_property
 
 import numpy as np
 import scipy
+from numpy.typing import NDArray
 
 from lwa.compact.numeric import Array
 from validation.scenes.checks import integer
 
-MOST_STEPS = 40  # of Newton's method
+MOST_STEPS = 25  # of Newton's method
+FEWEST = 40  # points on which a wave is resolved
 
 
 def widening(masses: tuple[float, float]) -> float:
@@ -54,134 +58,134 @@ def ample_half_period(masses: tuple[float, float], k: float) -> float:
     return length if masses[0] == masses[1] else max(8.0, 1.15 * length * widening(masses))
 
 
+def rise(strain: Array, k: float, p0: float) -> Array:
+    """(p0 + r)_+^k - p0^k, without cancellation where r is small."""
+    if not p0:
+        return np.asarray(np.maximum(strain, 0) ** k)
+    with np.errstate(divide="ignore"):  # an open contact
+        return np.asarray(p0**k * np.expm1(k * np.log1p(np.maximum(strain / p0, -1))))
+
+
 def respond(
-    even: Array, odd: Array, pair: tuple[float, float], half_period: float
-) -> tuple[Array, Array]:
-    """c² e and c² o of (*) for Σ, Δ, coefficients along the first axis; e_0 is left 0."""
-    total, difference = pair
-    n = len(even) - 1
-    q = np.pi * np.arange(n + 1) / half_period
-    square = np.maximum(q, q[1]) ** 2
-    heavy, light = (total * 2 * f(q / 2) ** 2 for f in (np.sin, np.cos))
-    mass, cross, light = (
-        (row / square).reshape(-1, *[1] * (even.ndim - 1))
-        for row in (heavy, difference * np.sin(q), light)
-    )
-    e, o = mass * even + cross * odd, cross * even + light * odd
-    e[0] = 0
-    o[[0, n]] = 0
-    return e, o
+    force: NDArray[np.complex128], inverse: tuple[float, float], half_period: float
+) -> NDArray[np.complex128]:
+    """c² a, but for its mean, for F_a, as coefficients of e^{iqξ}, q = 0 … πn/L; (1/m1, 1/m2)."""
+    q = np.pi * np.arange(len(force)) / half_period
+    mirrored = inverse[0] * np.expm1(-1j * q) + inverse[1] * np.expm1(1j * q)
+    strain = 2j * sum(inverse) * force.imag - mirrored * force.conj()
+    strain[0] = 0
+    return np.asarray(strain / np.maximum(q, q[1]) ** 2)
 
 
-def coefficients(even: Array, odd: Array) -> tuple[Array, Array]:
-    """Of cos and sin, from values at ξ = 0 … L (0 … n; odd 1 … n-1), along the first axis."""
-    n = len(even) - 1
-    c = scipy.fft.dct(even, 1, axis=0) / n
-    c[[0, n]] /= 2
-    s = np.zeros_like(odd, shape=(n + 1, *odd.shape[1:]))
-    s[1:n] = scipy.fft.dst(odd, 1, axis=0) / n
-    return c, s
+def coefficients(force: Array) -> tuple[Array, Array]:
+    """Of E in cos qξ and O in sin qξ, from F_a on a `circle`."""
+    n = len(force) // 2
+    found = scipy.fft.rfft(force) / n
+    found[[0, n]] /= 2
+    return found.real, -found.imag
 
 
-def values(even: Array, odd: Array) -> tuple[Array, Array]:
-    """The inverse of `coefficients`, odd values with their zeros at 0 and L."""
-    n = len(even) - 1
-    c = even / 2
-    c[[0, n]] *= 2
-    s = np.zeros_like(odd)
-    s[1:n] = scipy.fft.dst(odd[1:n], 1, axis=0) / 2
-    return np.asarray(scipy.fft.dct(c, 1, axis=0)), s
+def circle(half_period: float, n: int) -> Array:
+    """ξ at 2n points of a period: 0 … L, and on from -L to 0."""
+    return np.asarray(half_period / n * np.append(np.arange(n + 1), np.arange(1 - n, 0)))
 
 
 class Problem:
-    """E - (a_+^k + b_+^k)/2 = 0 and O - (a_+^k - b_+^k)/2 = 0 on a grid, with E(0) = 1 for c².
+    """F_a - rise(a) = 0 on a `circle`, with F_a(0) = 1 - p0^k for c²; F_b(ξ) = F_a(-ξ).
 
-    Unknowns are the forces z (E at ξ = 0 … L, then O between) and c²; strains are linear in 1/m2.
+    Unknowns are the forces (of equal masses, where o = 0, at 0 … L only) and c².
     """
 
-    def __init__(self, masses: tuple[float, float], k: float, half_period: float, n: int) -> None:
-        self.k, self.n = k, n
-        self.xi = half_period * np.arange(n + 1) / n
+    def __init__(
+        self, masses: tuple[float, float], k: float, half_period: float, n: int, p0: float = 0.0
+    ) -> None:
+        self.k, self.n, self.L, self.p0 = k, n, half_period, p0
+        self.height = -math.expm1(k * math.log(p0)) if p0 else 1.0
+        self.xi = circle(half_period, n)
         self.uniform = masses[0] == masses[1]
-        self.count = n + 1 if self.uniform else 2 * n  # o = 0 for equal masses
+        self.count = n + 1 if self.uniform else 2 * n
         self.inverse = 1 / masses[0], 1 / masses[1]
 
-    @cached_property
-    def parts(self) -> list[tuple[Array, Array, Array]]:
-        """The response of every force on the grid, in e, o and T, times c²; by 1/m1 and by 1/m2."""
-        n, L, found = self.n, self.xi[-1], []
-        for pair in ((1.0, -1.0), (1.0, 1.0)):
-            e, o = self._strains(np.eye(2 * n)[:, : self.count], pair)
-            weights = np.full(n + 1, pair[1] * L / n)
-            weights[[0, n]] /= 2
-            T = np.append(weights, 2 * pair[0] * self.xi[1:n] * L / n)[: self.count]
-            found.append((e, o, T))
-        return found
+    def forces(self, z: Array) -> Array:
+        """F_a on the circle."""
+        return np.append(z, z[self.n - 1 : 0 : -1]) if self.uniform else z
 
-    def _strains(self, z: Array, pair: tuple[float, float]) -> tuple[Array, Array]:
-        """c² e and c² o of forces on the grid, all 2n of them, for Σ and Δ."""
+    def strains(self, z: Array, inverse: tuple[float, float]) -> Array:
+        """c² a of these forces, where they are."""
+        force = np.asarray(scipy.fft.rfft(self.forces(z)), complex)
+        a = scipy.fft.irfft(respond(force, inverse, self.L), 2 * self.n)
+        return np.asarray(a - a[self.n])[: self.count]
+
+    def responses(self, at: NDArray[np.int_], inverse: tuple[float, float]) -> Array:
+        """The matrix of `strains`, between some places of the grid."""
         n = self.n
-        e, o = values(*respond(*coefficients(z[: n + 1], z[n + 1 :]), pair, float(self.xi[-1])))
-        return e - e[n], o
+        plus, minus = (respond(np.full(n + 1, f, complex), inverse, self.L) for f in (1, 1j))
+        # to a force there, and to one at -ξ; twice as long, for the sum of two places
+        near, mirrored = (
+            np.tile(scipy.fft.irfft((plus + sign * minus) / 2, 2 * n), 2) for sign in (-1j, 1j)
+        )
 
-    def fault(self, z: Array, c2: float, light: float) -> Array:
-        """What is left of the equations."""
-        first, padded = self.inverse[0], np.append(z, np.zeros(2 * self.n - self.count))
-        e, o = self._strains(padded, (first + light, light - first))
-        a, b = np.maximum(e + o, 0) / c2, np.maximum(e - o, 0) / c2
-        law = self._rows((a**self.k + b**self.k) / 2, (a**self.k - b**self.k) / 2)
-        return np.append(z - law, z[0] - 1)
+        def to(j: NDArray[np.int_]) -> Array:
+            row = near[n - j] + mirrored[n + j]
+            return np.asarray(near[at[:, None] - j] + mirrored[at[:, None] + j] - row)
 
-    def _rows(self, mean: Array, half: Array) -> Array:
-        return np.concatenate((mean, half[1 : self.n]))[: self.count]
-
-    def equations(self, z: Array, c2: float, light: float) -> tuple[Array, Array]:
-        """`fault`, and its derivatives by z, c² and 1/m2."""
-        k, count = self.k, self.count
-        even, odd, _ = self._at(light)
-        e, o = even @ z / c2, odd @ z / c2
-        da, db = (k * np.maximum(r, 0) ** (k - 1) for r in (e + o, e - o))
-
-        def slope(e: Array, o: Array) -> Array:  # of the law's two rows with the strains
-            p, m = ((da + s * db).reshape(-1, *[1] * (e.ndim - 1)) / 2 for s in (1, -1))
-            return self._rows(p * e + m * o, m * e + p * o)
-
-        matrix = np.zeros((count + 1, count + 2))
-        matrix[:-1, :count] = np.eye(count) - slope(even, odd) / c2
-        matrix[:-1, count] = slope(e, o) / c2
-        matrix[:-1, -1] = -slope(*(part @ z / c2 for part in self.parts[1][:2]))
-        matrix[count, 0] = 1
-        return self.fault(z, c2, light), matrix
-
-    def _at(self, light: float) -> tuple[Array, Array, Array]:
-        """What `parts` come to at these masses."""
-        even, odd, T = (self.inverse[0] * a + light * b for a, b in zip(*self.parts, strict=True))
-        return even, odd, T
+        if not self.uniform:
+            return to(at)
+        return np.asarray((to(at) + to(-at)) * np.where(at % n == 0, 0.5, 1.0))
 
     def wave(self, z: Array, c2: float, unknown: str = "") -> tuple[Array, float, float]:
         """Forces, c², and where it is asked for the "mass" (as 1/m2) or the "kick" with T = 0.
 
         Raises `numpy.linalg.LinAlgError` where Newton's method does not converge.
         """
-        count, inner = self.count, self.xi[1 : self.n]
-        kick = np.append(np.zeros(self.n + 1), inner * np.exp(-2 * inner**2))
+        count, xi, first = self.count, self.xi[: self.count], self.inverse[0]
+        kick = xi * np.exp(-2 * xi**2) if unknown == "kick" else 0 * xi
+        by_first, by_last = (self.L / self.n * (xi * (xi < self.L) + s / 2) for s in (-1, 1))
 
-        def step(x: Array) -> tuple[Array, Array]:
-            light = x[-1] if unknown == "mass" else self.inverse[1]
-            fault, matrix = self.equations(x[:count], x[count], light)
-            if not unknown:
-                return fault, matrix[:, :-1]
-            T, last = self._at(light)[2], float(self.parts[1][2] @ x[:count])
+        def change(x: Array) -> Array:
+            """The equations' left-hand sides, solved with their derivatives."""
+            z, c2 = x[:count], x[count]
+            inverse = first, x[-1] if unknown == "mass" else self.inverse[1]
+            a = self.strains(z, inverse) / c2
+            slope = self.k * np.maximum(self.p0 + a, 0) ** (self.k - 1)
+            fault = z - rise(a, self.k, self.p0)
+            columns, rows, rest = [slope * a / c2], [np.eye(1, count)[0]], [z[0] - self.height]
+            corner = np.zeros((1 + bool(unknown),) * 2)
+            if unknown:
+                T = inverse[0] * by_first + inverse[1] * by_last
+                rows, rest = [*rows, T], [*rest, T @ z]
+            if unknown == "mass":
+                columns.append(-slope * self.strains(z, (0, 1)) / c2)
+                corner[1, 1] = by_last @ z
             if unknown == "kick":
-                fault[:-1] -= x[-1] * kick
-                matrix[:-1, -1], last = -kick, 0.0
-            row = np.append(T, [0.0, last])
-            return np.append(fault, T @ x[:count]), np.vstack((matrix, row))
+                fault -= x[-1] * kick
+                columns.append(-kick)
+            # Where a contact is open, and nothing else pushes, its force is known.
+            on = (slope != 0) | (kick != 0)
+            known = np.where(on, 0, fault)
+            right = (fault + slope / c2 * self.strains(known, inverse))[on]
+            at = np.flatnonzero(on)
+            matrix = np.eye(len(at)) - (slope[at] / c2)[:, None] * self.responses(at, inverse)
+            border = np.array(rows)
+            found = np.linalg.solve(
+                np.block([[matrix, np.array(columns).T[on]], [border[:, on], corner]]),
+                np.append(right, rest - border @ known),
+            )
+            known[on] = found[: len(at)]
+            return np.append(known, found[len(at) :])
 
         others = [c2, *{"": (), "mass": (self.inverse[1],), "kick": (0.0,)}[unknown]]
-        sizes = np.append(np.ones(count), [other or 1.0 for other in others])
-        x = newton(step, np.append(z[:count] / z[0], others), sizes)
+        sizes = np.append(np.full(count, 2 * self.height), [other or 1.0 for other in others])
+        x = newton(change, np.append(z[:count] * (self.height / z[0]), others), sizes)
         return x[:count], float(x[count]), float(x[-1])
+
+
+def enough(masses: tuple[float, float], k: float, half_period: float) -> int:
+    """Points on 0 … L that resolve the wave."""
+    # Per site: the pulse's own Fourier width, its steeper flanks at large k, the light beads.
+    beads = math.sqrt(sum(masses) / min(masses) - 1)
+    dense = 3 + 9 * math.sqrt(k - 1) + 7 * max(k - 2, 0) + 1.5 * beads
+    return max(FEWEST, math.ceil(dense * half_period))
 
 
 def problem(
@@ -189,28 +193,24 @@ def problem(
 ) -> Problem:
     """On an ample period, and on points that resolve the wave, unless they are given."""
     L = ample_half_period(masses, k) if half_period is None else half_period
-    # Per site: the pulse's own Fourier width, its steeper flanks at large k, the light beads.
-    beads = math.sqrt(sum(masses) / min(masses) - 1)
-    dense = 3 + 9 * math.sqrt(k - 1) + 7 * max(k - 2, 0) + 1.5 * beads
-    n = max(40, math.ceil(dense * L)) if points is None else integer(points, "points", 8, 2000)
+    n = enough(masses, k, L) if points is None else integer(points, "points", 8, 2000)
     return Problem(masses, k, L, n)
 
 
 @np.errstate(all="ignore")  # what overflows, or has c² < 0, does not converge
-def newton(step: Callable[[Array], tuple[Array, Array]], x: Array, sizes: Array) -> Array:
+def newton(change: Callable[[Array], Array], x: Array, sizes: Array) -> Array:
     """The root of equations near x, whose unknowns are of these sizes, by damped Newton steps.
 
-    ``step`` gives what is left of the equations and its Jacobian. Raises
-    `numpy.linalg.LinAlgError` where the iteration does not converge.
+    ``change`` is the full step, to be taken off. Raises `numpy.linalg.LinAlgError` where the
+    iteration does not converge.
     """
     before = math.inf
     for _ in range(MOST_STEPS):
-        fault, matrix = step(x)
-        change = np.linalg.solve(matrix, fault)
-        size = float(np.max(np.abs(change) / sizes))
+        step = change(x)
+        size = float(np.max(np.abs(step) / sizes))
         if not math.isfinite(size):
             break
-        x = x - change * (min(1.0, 0.3 / size) if size > 0 else 1.0)
+        x = x - step * (min(1.0, 0.3 / size) if size > 0 else 1.0)
         # What rounding leaves does not fall any further.
         if size < 1e-12 or (size < 1e-9 and size > before / 4):
             return x

@@ -3,6 +3,8 @@
 The wave is that of `validation.waves.fourier`, A = D = 1: a contact's strain is a(ξ) = e + o or
 b(ξ) = a(-ξ), ξ = x - ct. As the contact law r_+^k has no scale of its own, its multiples are waves,
 too: r → s r with c² → s^{k-1} c². A wave is given at contact force 1, `ExactWave.scaled` at others.
+On a background p0, which is multiplied by s as well, strains and forces are what the wave adds to
+p0 and p0^k; the contact force that peaks at 1 is the sum.
 """
 
 from __future__ import annotations
@@ -26,6 +28,7 @@ from validation.waves import fourier
 
 TOLERANCE = 1e-9  # of the tail, over the peak strain, and of the residual, of a solitary wave
 OUTSIDE = 0.6  # of the half period: where the pulse of a dimer has ended, and its tail is measured
+_ROW = 16  # of Fourier coefficients that are summed up together
 
 
 class Profile(ABC):
@@ -35,6 +38,7 @@ class Profile(ABC):
     k: float
     c2: float
     half_period: float
+    background: float = 0.0
 
     @property
     @abstractmethod
@@ -67,12 +71,14 @@ class Profile(ABC):
     @property
     def pulse(self) -> float:
         """The |ξ| within which it is read off: a dimer's without its tail."""
+        if self.background:
+            return self.half_period
         ample = fourier.ample_half_period((1.0, self.omega), self.k)
         return min(self.half_period, ample if self.omega == 1 else OUTSIDE * ample)
 
     def force(self, xi: ArrayLike, contact: int = 0) -> Array:
-        """F_a(ξ) or F_b(ξ), positive."""
-        return np.asarray(np.maximum(self.strain(xi, contact), 0.0) ** self.k)
+        """F_a(ξ) or F_b(ξ), above that of the background."""
+        return fourier.rise(self.strain(xi, contact), self.k, self.background)
 
     def quantity(self, name: str, xi: ArrayLike) -> Array:
         """ "strain", "force" (of contact 0) or "velocity" (of bead m1), as in `lwa`."""
@@ -153,6 +159,7 @@ class ExactWave(Profile):
     tail : largest |o| outside the pulse, over the peak strain.
     residual : of the equations of motion, integrated twice, over the peak strain; on a grid twice
         as fine as that on which they were solved.
+    background : p0, the strain far from the wave.
     """
 
     masses: tuple[float, float]
@@ -163,6 +170,7 @@ class ExactWave(Profile):
     odd: Array
     tail: float
     residual: float
+    background: float = 0.0
 
     @property
     def samples(self) -> int:
@@ -196,16 +204,16 @@ class ExactWave(Profile):
                 now **= 2 / (self.k - 1)
             else:
                 what, now = f"force is {force}", np.float64(positive(force, "force"))
-                now = now ** (1 / self.k) / self.peak("strain")[1]
+                now = now ** (1 / self.k) / (self.background + self.peak("strain")[1])
             scale = float(now ** max(self.k, 2.0))
         if not 1e-200 < scale < 1e200:
             raise SceneError(f"{what}: {now:.1e} times the strain here is out of range")
         return self.times(float(now))
 
     def times(self, s: float) -> ExactWave:
-        """The wave of s times these strains."""
-        c2, force = float(self.c2 * s ** (self.k - 1)), s**self.k
-        return replace(self, c2=c2, even=self.even * force, odd=self.odd * force)
+        """The wave of s times these strains, on s times this background."""
+        c2, force, p0 = float(self.c2 * s ** (self.k - 1)), s**self.k, s * self.background
+        return replace(self, c2=c2, even=self.even * force, odd=self.odd * force, background=p0)
 
     @cached_property
     def _q(self) -> Array:
@@ -214,9 +222,11 @@ class ExactWave(Profile):
     @cached_property
     def _strains(self) -> tuple[Array, Array]:
         light, c2 = 1 / self.omega, self.c2 * self.masses[0]  # 1/m1 itself may be out of range
-        e, o = fourier.respond(self.even, self.odd, (1 + light, light - 1), self.half_period)
+        found = fourier.respond(self.even - 1j * self.odd, (1, light), self.half_period) / c2
+        e, o = found.real, -found.imag
         e[0] = e[1::2].sum() - e[2::2].sum()  # the strain is 0 at L
-        return np.asarray(e / c2), np.asarray(o / c2)
+        o[-1] = 0
+        return e, o
 
     def _front(self, xi: Array) -> Array:
         return self._sum(xi, *self._strains)
@@ -234,29 +244,30 @@ class ExactWave(Profile):
 
     def _sum(self, xi: ArrayLike, even: Array, odd: Array) -> Array:
         L = self.half_period if self.solitary else math.inf  # a solitary wave is not repeated
-        phase = np.multiply.outer(np.clip(xi, -L, L), self._q)
-        return np.asarray(np.cos(phase) @ even + np.sin(phase) @ odd)
+        rows = np.append(even - 1j * odd, np.zeros(-self.samples % _ROW)).reshape(-1, _ROW)
+        q, x = np.pi / self.half_period * np.arange(rows.size), np.clip(xi, -L, L)
+        # e^{iqξ} of every q from those of the first ones and of every 16th.
+        first, every = (np.exp(1j * np.multiply.outer(x, part)) for part in (q[:_ROW], q[::_ROW]))
+        return np.asarray(((first @ rows.T) * every).real.sum(axis=-1))
 
 
 def at_unit_force(
-    masses: tuple[float, float], k: float, c2: float, half_period: float, even: Array, odd: Array
-) -> ExactWave:
+    masses: tuple[float, float], k: float, c2: float, half_period: float, even: Array, odd: Array,
+    p0: float = 0.0,
+) -> ExactWave:  # fmt: skip
     """The wave of these forces, scaled to a force 1 at its peak, with its tail and residual."""
-    wave = ExactWave(masses, k, c2, half_period, even, odd, 0.0, 0.0)
-    wave = wave.times(1 / wave.peak("strain")[1])
+    wave = ExactWave(masses, k, c2, half_period, even, odd, 0.0, 0.0, p0)
+    wave = wave.times(1 / (p0 + wave.peak("strain")[1]))
     tail = 0.0 if masses[0] == masses[1] else wave.rattle(OUTSIDE * half_period)
     return replace(wave, tail=tail, residual=_residual(wave))
 
 
 def _residual(wave: ExactWave) -> float:
-    """max |r - r[F(r)]| on the grid twice as fine, for both contacts."""
-    n = 2 * (len(wave.even) - 1)
-    xi = wave.half_period * np.arange(n + 1) / n
-    a, b = (wave.strain(xi, i) for i in (0, 1))
-    Fa, Fb = (np.maximum(r, 0) ** wave.k for r in (a, b))
-    even, odd = fourier.coefficients((Fa + Fb) / 2, (Fa - Fb)[1:n] / 2)
+    """max |r - r[F(r)]| on the grid twice as fine, for both contacts, over the peak strain."""
+    xi = fourier.circle(wave.half_period, 2 * (len(wave.even) - 1))
+    even, odd = fourier.coefficients(wave.force(xi))
     again = replace(wave, even=even, odd=odd)
-    return float(max(np.abs(again.strain(xi, i) - r).max() for i, r in enumerate((a, b))))
+    return float(np.abs(again.strain(xi) - wave.strain(xi)).max()) / (1 - wave.background)
 
 
 def summit(f: Callable[[Any], Array], xi: Array) -> tuple[float, float]:

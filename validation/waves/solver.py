@@ -17,9 +17,11 @@ A struck chain makes none of them, as its light beads are at rest before the pul
 made symmetric, is nearly one (`validation.waves.struck`). Newton's method is begun from that pulse
 (and where it finds nothing, from the theory's wave), at several L unless one is given, and of the
 waves found that one is taken whose strain differs least from the struck chain's. How much it still
-differs is its error (`measured`).
+differs is its error (`measured`). A rough grid tells which one that is.
 
-A chain of one mass has always a solitary wave (Friesecke & Wattis 1994; English & Pego 2005).
+A chain of one mass has always a solitary wave (Friesecke & Wattis 1994; English & Pego 2005), on a
+background strain p0 (a chain under load) too. There it ends as e^{-κ|ξ|}, c² κ² = 4 c0² sinh²(κ/2),
+and Newton's method is begun from the theory's wave on that background.
 """
 
 from __future__ import annotations
@@ -33,7 +35,9 @@ from itertools import count
 from typing import Any
 
 import numpy as np
+import scipy
 
+from lwa import Cell, Power, background_wave
 from lwa.compact.numeric import Array
 from lwa.duration import Progress
 from lwa.exact import InputError
@@ -47,8 +51,12 @@ from validation.waves.struck import Struck, struck
 
 CLOSE = 0.1  # by how much c² and the strain may change, relatively, in one step along k
 HALVINGS = 7  # of a step along k, before a branch counts as lost
+FALLEN = 38.0  # e-foldings of a wave on a background from its flanks to L
+SHALLOWEST = 1e-4  # of a wave on a background: what it adds to the peak strain
+LESS = 0.125  # background, at k > 3 where that is small: from one wave to the next
 STEEP = 2.0  # the k from which waves are followed up where Newton's method finds none
-PERIODS = np.arange(1.0, 1.8, 0.1)  # ample half periods at which waves are looked for
+PERIODS = np.arange(1.0, 1.8, 0.05)  # ample half periods at which waves are looked for
+ROUGH = 0.35  # of the points that resolve a wave: enough to see which one is the nearest
 ENDED = 3e-15  # what equal masses may have of their peak strain at the half period
 ROUNDING = 1e-12  # of a solitary wave's numbers: that of a strain, over its slope at half maximum
 
@@ -62,6 +70,7 @@ def exact_wave(
     k: Any,
     *,
     half_period: float | None = None,
+    background: Any = 0,
     progress: Progress[Any] = iter,
 ) -> ExactWave:
     """The traveling wave: solitary, or the nanopteron nearest to the pulse of a struck chain.
@@ -69,6 +78,8 @@ def exact_wave(
     masses : m1, or m1 and m2.
     k : exponent of F = δ^k, from 1.01 to 8.
     half_period : L, where it is to be this one and not chosen.
+    background : of one mass, p0 in units of the peak compression of the contacts: the static
+        force is p0^k, its sum with the wave's peaks at 1.
     progress : is shown what is tried on the way, where the masses differ (such as `tqdm.tqdm`).
 
     Raises `SceneError` for parameters that cannot be meant, among them a half period at which the
@@ -77,11 +88,21 @@ def exact_wave(
     >>> wave = exact_wave([1], 1.5)
     >>> round(wave.fwhm("force"), 6), round(wave.fwhm("strain"), 6), wave.solitary
     (1.411928, 1.725713, True)
+    >>> round(exact_wave([1], 1.5, background=0.5).c2, 6)
+    1.222413
     """
     pair, k = parameters(masses, k)
+    p0 = real(background, "background")
+    if not 0 <= p0 <= 1 - SHALLOWEST:
+        most = f"1 - {SHALLOWEST:g} of the peak compression"
+        raise SceneError(f"background is {p0:g}: one from 0 to {most} is wanted")
+    if p0 and pair[0] != pair[1]:
+        raise SceneError(
+            f"background is {p0:g}: under a load exact waves are found for equal masses"
+        )
     L = None if half_period is None else positive(half_period, "half_period")
     unit = (1.0, pair[1] / pair[0])
-    found = _uniform(unit, k, L) if unit[1] == 1 else _dimer(unit, k, L, progress)
+    found = _uniform(unit, k, L, p0) if unit[1] == 1 else _dimer(unit, k, L, progress)
     c2 = found.c2 / pair[0]
     if not sys.float_info.min <= c2 <= sys.float_info.max:
         raise SceneError(f"mass 1 is {pair[0]:g}: c² leaves the range of floats")
@@ -97,7 +118,7 @@ def measured(wave: ExactWave) -> dict[str, Measured]:
     """
     values = _numbers(wave)
     if wave.solitary:
-        least = ROUNDING + wave.residual + wave.tail
+        least = ROUNDING / (1 - wave.background) + wave.residual + wave.tail
         errors = {name: least * value for name, value in values.items()} | {"tail": least}
         return {name: Measured(value, value + errors[name]) for name, value in values.items()}
     here, pulse = _numbers(wave.scaled(force=1)), struck(wave.k, wave.omega)
@@ -134,23 +155,16 @@ def parameters(masses: Sequence[Any], k: Any) -> tuple[tuple[float, float], floa
     return (given[0], given[-1]), k
 
 
-def longest(masses: Sequence[Any], k: Any) -> float:
-    """Seconds that `exact_wave` takes where Newton's method fails everywhere; a rough bound."""
-    pair, k = parameters(masses, k)
-    unit = (1.0, pair[1] / pair[0])
-    if unit[1] == 1:
-        return 0.0
-    ample = fourier.ample_half_period(unit, k)
-    counts = [fourier.problem(unit, k, L, None).count for L in ample * PERIODS]
-    each = sum(5e-8 * count**2 + 4e-11 * count**3 for count in counts)  # a step's, on one core
-    return 2 * fourier.MOST_STEPS * each
-
-
-def _uniform(pair: tuple[float, float], k: float, half_period: float | None) -> ExactWave:
+def _uniform(
+    pair: tuple[float, float], k: float, half_period: float | None, p0: float
+) -> ExactWave:
     ample = fourier.ample_half_period(pair, k)
     L = half_period or ample
-    # above k = 3 the theory's is too wide
-    found = solve(pair, k, L) if k <= 3 else _followed(solve(pair, 3.0), k, L)
+    if p0:
+        found, ample = _pressed(pair, k, half_period, p0)
+        L = found.half_period
+    else:  # above k = 3 the theory's is too wide
+        found = solve(pair, k, L) if k <= 3 else _followed(solve(pair, 3.0), k, L)
     if found.rest > ENDED:
         raise SceneError(
             f"half_period is {L:g}: the solitary wave at k = {k:g} has not ended there, with "
@@ -159,26 +173,62 @@ def _uniform(pair: tuple[float, float], k: float, half_period: float | None) -> 
     return found
 
 
+def _pressed(
+    pair: tuple[float, float], k: float, half_period: float | None, p0: float
+) -> tuple[ExactWave, float]:
+    """The wave of equal beads on a background, and the half period that is ample for it."""
+    theory, B = background_wave(Cell((1,)), law=Power(k)).numeric(), 1 - p0
+    c2, width, compact = (float(f) for f in (
+        k * theory.speed_squared(p0, B), theory.fwhm(p0, B), theory.fwhm(0.0, 1.0)
+    ))  # fmt: skip
+    excess = math.sqrt(c2 / (k * p0 ** (k - 1)))  # c/c0 = sinh(κ/2)/(κ/2)
+    kappa = 2 * float(scipy.optimize.brentq(
+        lambda x: math.log(math.sinh(x) / x / excess), 1e-5, 300, xtol=1e-12
+    ))  # fmt: skip
+    core = fourier.ample_half_period(pair, k)
+    ample = max(core, core / 2 + FALLEN / kappa)
+    L = half_period or ample
+    n = fourier.problem(pair, k, L, None).n
+    problem = fourier.Problem(pair, k, L, max(80, math.ceil(n * min(1, 1.3 * compact / width))), p0)
+    xi = problem.xi[: problem.count]
+    if k > 3 and p0 < 0.5:  # where the theory's is too wide: from the wave on a little less
+        near = _uniform(pair, k, None, max(0.0, p0 - LESS))
+        guess, c2 = near.force(xi), near.c2
+    else:
+        guess = fourier.rise(theory.profile(xi, p0, B), k, p0)
+    try:
+        even, c2, _ = problem.wave(guess, c2)
+    except np.linalg.LinAlgError:
+        raise NoWave(_named(f"Newton's method finds no wave on {p0:g}", pair, k)) from None
+    rows = fourier.coefficients(problem.forces(even))
+    return at_unit_force(pair, k, c2, L, *rows, p0), ample
+
+
 def _dimer(
     pair: tuple[float, float], k: float, half_period: float | None, progress: Progress[Any] = iter
 ) -> ExactWave:
     """The solitary wave that the theory's leads to, or the wave nearest to a struck chain's."""
     ample = fourier.ample_half_period(pair, k)
     periods = list(ample * PERIODS) if half_period is None else [half_period]
-    # The theory's wave first, and where nothing else led to one, at the other half periods.
+    # The theory's wave first, and where the pulse led to none, at the other half periods.
     one, *others = ((False, L) for L in periods)
     waves: list[ExactWave] = []
+    led = False
     for i, (from_pulse, L) in enumerate(progress([one, *((True, L) for L in periods), *others])):
-        if waves and i > len(periods):
+        if led and i > len(periods):
             break
-        start = _pulse(pair, k) if from_pulse else None
+        points = max(fourier.FEWEST, int(ROUGH * fourier.enough(pair, k, L))) if i else None
         with suppress(NoWave):
-            waves.append(solve(pair, k, L, start=start))
+            start = _pulse(pair, k) if from_pulse else None
+            waves.append(solve(pair, k, L, points, start))
+            led |= from_pulse
             if waves[-1].solitary:
-                return waves[-1]
+                return solve(pair, k, L, start=waves[-1])
     if waves:
         pulse = _pulse(pair, k)
-        return min(waves, key=lambda wave: pulse.apart(wave, pulse.pulse))
+        for wave in sorted(waves, key=lambda wave: pulse.apart(wave, pulse.pulse)):
+            with suppress(NoWave):
+                return solve(pair, k, wave.half_period, start=wave)
     lengths = f"{periods[0]:.4g}" + f" to {periods[-1]:.4g}" * (len(periods) > 1)
     begun = "Newton's method was begun from the pulse of a struck chain and from the theory's wave"
     failure = f"{_named('no wave found', pair, k)}: {begun}, at half periods {lengths}"
@@ -260,31 +310,26 @@ def solved(
         raise NoWave(_named("Newton's method finds no wave", masses, k)) from None
     if unknown == "mass":
         masses = masses[0], 1 / found
-    n = problem.n
-    z = np.append(z, np.zeros(2 * n - len(z)))
-    even, odd = fourier.coefficients(z[: n + 1], z[n + 1 :])
-    return at_unit_force(masses, k, c2, float(problem.xi[-1]), even, odd), found
+    even, odd = fourier.coefficients(problem.forces(z))
+    return at_unit_force(masses, k, c2, problem.L, even, odd), found
 
 
 def _guess(
     masses: tuple[float, float], k: float, xi: Array, start: Profile | None
 ) -> tuple[Array, float]:
-    """E, O on the grid and c², from a near wave or from the theory at leading order.
+    """F_a on the grid and c², from a near wave or from the theory at leading order.
 
     There the force is cos^{2k/(k-1)}(βξ), c² = 4 / ((k+1)(m1+m2)), and the contacts of a cell are
     (m2-m1)/(m1+m2) out of step, by which both beads of a cell move alike.
     """
     if start is not None:
-        a, b = start.force(xi, 0), start.force(xi, 1)
-        c2 = start.c2 * sum(start.masses) / sum(masses)
+        force, c2 = start.force(xi), start.c2 * sum(start.masses) / sum(masses)
     else:
         beta = (k - 1) * math.sqrt(6 / (k * (k + 1))) / fourier.widening(masses)
-        shift = (masses[1] - masses[0]) / sum(masses) / 2
-        phases = (beta * (xi + side * shift) for side in (-1, 1))
-        a, b = (np.cos(np.clip(x, -np.pi / 2, np.pi / 2)) ** (2 * k / (k - 1)) for x in phases)
+        phase = beta * (xi - (masses[1] - masses[0]) / sum(masses) / 2)
+        force = np.cos(np.clip(phase, -np.pi / 2, np.pi / 2)) ** (2 * k / (k - 1))
         c2 = 4 / ((k + 1) * sum(masses))
-    E, O = (a + b) / 2, (a - b)[1:-1] / 2
-    return np.append(E, O), c2 * float(E[0]) ** ((1 - k) / k)
+    return force, c2 * float(force[0]) ** ((1 - k) / k)
 
 
 def _named(text: str, masses: tuple[float, float], k: float) -> str:

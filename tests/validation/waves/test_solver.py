@@ -507,14 +507,6 @@ def test_each_wave_that_is_tried_is_shown(monkeypatch):
     assert events == ["shown", "solve"] * 2 * len(solver.PERIODS)
 
 
-def test_what_a_search_may_take_grows_with_k():
-    """In s; it is 0 where there is nothing to search."""
-    times = [solver.longest([1, 0.6], k) for k in (1.5, 3, 8)]
-    assert times == sorted(times)
-    assert times[0] < 60 < times[2]
-    assert solver.longest([1], 8) == 0
-
-
 @settings(max_examples=12, deadline=None)
 @given(st.floats(2.3e-308, 1.7e308), st.sampled_from(["uniform", "special"]))
 def test_masses_of_any_size_scale_or_are_refused(hertz, specials, mass, name):

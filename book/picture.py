@@ -1,0 +1,133 @@
+"""The picture of page one: the paper's beads, the pulse that runs down them, the theory on top.
+
+A chain of steel and PTFE beads is struck at 1.37 m/s, as in Porter et al. 2008. Drawn are the
+beads, displaced more than they are, and the force in each contact. The line is the theory's wave:
+its height is that of the bead forces' mean, its place that of the lattice at the first moment, and
+from there it runs at its own speed.
+
+    python book/picture.py
+
+draws `chain.png`, which the README shows; what is drawn stands in the file as text.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import PatchCollection
+from matplotlib.figure import Figure
+from matplotlib.patches import Circle
+
+from lwa import Cell, Material, Sphere, homogenize
+from lwa.compact.numeric import Array
+from validation import Scene, measure, simulate
+from validation.waves.theory import Compacton
+
+HERE = Path(__file__).parent
+STEEL = Sphere("0.45e-3", "2.38e-3", Material(E="193e9", nu="0.3"))
+PTFE = Sphere("0.123e-3", "2.38e-3", Material(E="1.46e9", nu="0.46"))
+PAIRS, FIRST, LAST, FRAMES = 20, 11, 31, 21
+"""Cells, the beads between which the pulse is shown, both of PTFE, and moments on the way."""
+
+LARGER = 60
+"""How much larger than they are the displacements are drawn."""
+
+
+@dataclass(frozen=True, eq=False)
+class Passage:
+    """What the lattice did and what the theory says of it.
+
+    times : of the moments, each a site of the pulse after the one before.
+    force, displacement : of contacts and beads at these moments, in N and in D.
+    places : where the theory's wave is, in D, the first bead at 0.
+    """
+
+    times: Array
+    force: Array
+    displacement: Array
+    places: Array
+    theory: Compacton
+    lattice_speed: float
+
+    @property
+    def numbers(self) -> dict[str, list[float] | float]:
+        """What is drawn, to five digits."""
+        values = {"time": self.times, "force": self.force, "place": self.places}
+        rounded = {name: [float(f"{x:.5g}") for x in v.ravel()] for name, v in values.items()}
+        return rounded | {"speed": float(f"{self.theory.speed:.5g}")}
+
+
+def passage() -> Passage:
+    """The pulse's way through the chain, at moments equally far from each other."""
+    cell = Cell.of_spheres([STEEL, PTFE])
+    beads, D = range(2 * PAIRS), 2 * 2.38e-3
+    scene = Scene.of_cell(
+        cell, PAIRS, "3/2", velocities=(1.37,), duration=1.4e-3, samples=7001,
+        contact_sensors=beads[:-1], bead_sensors=beads,
+    )  # fmt: skip
+    run = simulate(scene)
+    arrivals = [  # at a bead: in the mean of its two contacts
+        np.mean([measure(run.time, run.contact_force[i]).arrival for i in (bead - 1, bead)])
+        for bead in (FIRST, LAST)
+    ]
+    times = np.linspace(*arrivals, FRAMES)
+    heights = run.bead_force[FIRST:LAST].max(axis=1)
+    wave = homogenize(cell, k="3/2").pde.traveling_wave()
+    theory = Compacton.of_bead_force(wave, float(heights.mean()))
+    speed = (LAST - FIRST) * D / (arrivals[1] - arrivals[0])
+    return Passage(
+        times,
+        _at(times, run.time, run.contact_force),
+        _at(times, run.time, run.bead_displacement) / D,
+        FIRST + theory.speed * (times - times[0]) / D,
+        theory,
+        speed,
+    )
+
+
+def _at(times: Array, time: Array, records: Array) -> Array:
+    return np.array([np.interp(times, time, record) for record in records]).T
+
+
+def draw(axes: Axes, seen: Passage, moment: int) -> None:
+    """The chain, its forces and the theory's wave at one moment."""
+    force, moved = seen.force[moment], LARGER * seen.displacement[moment]
+    axes.clear()
+    top = 1.15 * seen.force.max()
+    axes.bar(np.arange(len(force)) + 0.5, force, width=0.55, color="#56B4E9")
+    x = np.linspace(-1, len(force) + 1, 1201)
+    D = seen.theory.spacing
+    line = seen.theory.contact_force(D * (x - seen.places[moment]))
+    axes.plot(x, np.where(line > 1e-3 * top, line, np.nan), color="#D55E00", ls="-", lw=1.6)
+    beads = [Circle((i + x, 0), 0.5) for i, x in enumerate(moved)]
+    row = axes.inset_axes((0, 0, 1, 0.29))
+    row.add_collection(PatchCollection(beads, fc=["#44546A", "#F2E6C9"] * PAIRS, ec="k", lw=0.5))
+    row.set(xlim=(-2, len(moved)), ylim=(-0.6, 0.6), aspect="equal")
+    row.axis("off")
+    axes.set(xlim=(-2, len(moved)), ylim=(-0.42 * top, top))
+    axes.axis("off")
+
+
+def still(seen: Passage) -> Figure:
+    """Three moments, one below the other."""
+    figure, rows = plt.subplots(3, 1, figsize=(9, 4.2), layout="constrained")
+    for axes, moment in zip(rows, (0, len(seen.times) // 2, -1), strict=True):
+        draw(axes, seen, moment)
+        axes.text(-1.5, 0.6 * seen.force.max(), f"{1e6 * seen.times[moment]:.0f} µs", size=11)
+    return figure
+
+
+def main() -> None:
+    """Draw the README's picture."""
+    seen = passage()
+    still(seen).savefig(HERE / "chain.png", dpi=100, metadata={"Comment": json.dumps(seen.numbers)})
+    print(f"lattice {seen.lattice_speed:.2f} m/s, theory {seen.theory.speed:.2f} m/s")
+
+
+if __name__ == "__main__":
+    main()

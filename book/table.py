@@ -1,0 +1,23 @@
+"""A table for people, as the book's pages show one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import Any
+
+from validation.report.result import Report
+from validation.report.table import Column, Table
+
+
+def table(
+    rows: Iterable[Iterable[Any]], *heads: str | tuple[str, str | Callable[[Any], str]]
+) -> Report:
+    """Rows under heads; a head may come with the format of its column."""
+    pairs = [head if isinstance(head, tuple) else (head, "") for head in heads]
+    columns = tuple(Column("", name, format=form) for name, form in pairs)
+    return Report("", (Table(columns, tuple(map(tuple, rows))),))
+
+
+def percent(digits: int = 1) -> Callable[[float | None], str]:
+    """How a ratio less one is written; a dash where there is none."""
+    return lambda value: "–" if value is None else f"{100 * value:+.{digits}f} %"
