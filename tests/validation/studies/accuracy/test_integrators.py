@@ -77,37 +77,52 @@ def row(seconds, peak, method="a", window=False, family="peer", setting=1e-8, **
 def test_a_cost_holds_from_there_on():
     """The lucky run at 1 s does not count, as the one at 2 s is worse; that at 3 s does."""
     rows = [row(1, 1e-7), row(4, 1e-9), row(2, 2e-6), row(3, 9e-7)]
-    assert cost(rows) == 3
+    assert cost(rows, 1e-6) == 3
     assert cost(rows, 1e-8) == 4
     assert cost(rows, 1e-5) == 1
     assert cost(rows, 1e-10) == math.inf
-    assert costs([*rows, row(5, 1e-7, window=True)]) == {
+    assert costs([*rows, row(5, 1e-7, window=True)], 1e-6) == {
         ("peer", "a"): 3, ("peer", "a, window"): 5,
     }  # fmt: skip
 
 
+def test_the_table_of_costs_has_the_finest_first_and_gaps_where_nothing_is_attained():
+    rows = [row(1, 3e-5, "a"), row(4, 1e-9, "a"), row(2, 5e-7, "b"), row(0.5, 1e-3, "c")]
+    assert module._costs(rows) == [
+        ("a", 1, 4, 4, None), ("b", 2, 2, None, None), ("c", None, None, None, None),
+    ]  # fmt: skip
+
+
 def test_goals_compare_equal_errors(monkeypatch):
     monkeypatch.setattr(spent, "scaling", lambda sites: (-0.02, 0.01))
-    ours = dict(method="SRKN14", window=True, family="compiled")
+    monkeypatch.setattr(spent, "square_root", lambda: 0.5)
+    ours = dict(method="ours", window=True, family="compiled")
     rows = [
         row(0.001, 2e-6, setting=1e-5, **ours), row(0.004, 5e-7, setting=1e-6, **ours),
-        row(0.02, 1e-9, ns=1.6, **ours),
+        row(0.02, 1e-10, ns=1.5, **ours),
         row(1.0, 2e-6, "SciPy DOP853", family="SciPy"),
         row(3.0, 9e-7, "SciPy DOP853", family="SciPy"),
         row(0.05, 2e-6, "CyRK"), row(0.09, 5e-7, "CyRK"), row(0.2, 1e-8, "slow"),
     ]  # fmt: skip
     goals = {goal.key: goal for goal in spent.goals(rows)}
-    assert goals["window_ms"].value == pytest.approx(4.0)
-    assert goals["scipy_ratio"].value == pytest.approx(750)
-    assert goals["peer_ratio"].value == pytest.approx(22.5)
-    assert "CyRK" in goals["peer_ratio"].quantity
-    assert {key: goal.ok for key, goal in goals.items()} == {
-        "window_ms": True, "scipy_ratio": True, "peer_ratio": False, "evaluation_ns": False,
-        "site_exponent": True,
+    values = {
+        "dimer_peer_1e-04": 50, "dimer_ms_1e-06": 4, "dimer_peer_1e-06": 22.5,
+        "dimer_peer_1e-08": 10, "dimer_ms_1e-10": 20,
+        "scipy_ratio": 750, "evaluation_ns": 1.5, "evaluation_over_root": 3, "site_exponent": -0.02,
     }  # fmt: skip
+    assert {key: goal.value for key, goal in goals.items()} == pytest.approx(values)
+    assert "CyRK, over ours" in goals["dimer_peer_1e-06"].quantity
+    failing = {"dimer_ms_1e-06", "dimer_peer_1e-06", "dimer_ms_1e-10"}
+    assert {key for key, goal in goals.items() if not goal.ok} == failing
     others = [r for r in rows if r.family != "peer"]
-    assert "peer_ratio" not in {goal.key for goal in spent.goals(others)}
-    assert list(spent.goals([replace(r, task="uniform") for r in rows])) == []
+    assert not any("peer" in goal.key for goal in spent.goals(others))
+    uniform = list(spent.goals([replace(r, task="uniform") for r in rows]))
+    assert [goal.low for goal in uniform] == [1.0] * 3
+
+
+def test_the_time_of_a_square_root_is_that_of_a_force_at_least():
+    """A bead's force takes one, and some additions."""
+    assert 0.05 < spent.square_root() < 20
 
 
 def test_cost_per_site_is_fitted_by_a_power(monkeypatch):
@@ -135,7 +150,7 @@ def reduce(monkeypatch, the_peers=()):
         monkeypatch.setitem(tasks.TASKS, name, factory)
     tables = dict(
         _SCIPY={("DOP853", False): (1e-6, 1e-8), ("DOP853", True): (1e-8,)},
-        _SPLITTINGS={("SRKN14", True): (1e-6, 1e-8), ("Verlet", True): (1e-5,)},
+        _COMPILED={COMPILED[0]: (1e-6, 1e-8)},
     )
     for name, value in tables.items():
         monkeypatch.setattr(module, name, value)
@@ -171,12 +186,14 @@ def test_the_command_prints_the_contract(capsys, monkeypatch, tmp_path):
     held(result, ("dimer", "experiment"))
     methods = [row["method"] for row in result["rows"] if row["task"] == "dimer"]
     assert methods == [
-        "SciPy DOP853", "SciPy DOP853", "SciPy DOP853, window", "SRKN14, window",
-        "SRKN14, window", "Verlet, window",
+        "SciPy DOP853", "SciPy DOP853", "SciPy DOP853, window",
+        *(name for name in (f"{COMPILED[0]}, window", COMPILED[0]) for _ in range(2)),
     ]  # fmt: skip
     assert [goal["key"] for goal in result["goals"]] == [
-        "window_ms", "scipy_ratio", "evaluation_ns", "site_exponent",
+        "dimer_ms_1e-06", "dimer_ms_1e-10", "scipy_ratio", "evaluation_ns", "evaluation_over_root",
+        "site_exponent",
     ]  # fmt: skip
+    assert {cost["task"] for cost in result["costs"]} == {"dimer", "experiment"}
     drawn = picture.read_text()
     assert drawn.startswith("<?xml")
 
@@ -193,9 +210,9 @@ def test_the_text_names_tasks_methods_and_what_is_missing(monkeypatch):
     assert document["goals"] == []
     printed = report.text()
     assert printed.startswith("Speed against error\n\nexperiment: arrival ")
-    assert "\nPeak force to 1e-06 from here on (ms): " in printed
-    assert "SRKN14  " in printed
-    assert "SRKN14, window" not in printed
+    assert "\nCPU time (ms) for the peak force to  1e-04  1e-06  1e-08  1e-10\n" in printed
+    assert f"\n{COMPILED[0]}  " in printed
+    assert f"{COMPILED[0]}, window" not in printed
     assert printed.endswith(
         "Left out, as not installed: absent (pip install 'lwa[peers]' brings them)."
     )
@@ -233,7 +250,7 @@ def test_a_task_that_does_not_exist_is_named_and_nothing_is_run(capsys, monkeypa
         monkeypatch.setitem(tasks.TASKS, name, pytest.fail)
     status, out, err = command(capsys, "--task", "dimer", "--task", "tea")
     assert (status, out) == (2, "")
-    names = "uniform, dimer, exact, experiment, theory"
+    names = "uniform, dimer, exact, experiment, precompressed, theory"
     assert err == f"lwa-validate: task is 'tea': one of {names} is wanted\n"
     with pytest.raises(InputError, match=r"^task is 'tea'"):
         accuracy(["tea"])
@@ -271,7 +288,7 @@ def test_csv_and_notebook_tell_what_json_does(monkeypatch):
         for name in set(row) - {"task", "method", "family"}:
             assert (float(line[name]) if line[name] else None) == row[name], name
     page = report._repr_html_()
-    assert page.count("<tr>") == 1 + len(rows)
+    assert page.count("<tr>") == 1 + len(report.document()["costs"])
     assert page.count("SciPy&#x27;s DOP853 on the whole") == 1  # the goals are findings
     assert "<svg" in page
 

@@ -49,7 +49,7 @@ def test_a_peer_agrees_with_scipy(peer):
             assert max(errors(task.read(force), task.read(expected)).values()) < 1e-6
 
 
-@pytest.mark.parametrize("package", ["CyRK", "diffrax", "heyoka"])
+@pytest.mark.parametrize("package", ["CyRK", "numbalsoda", "diffrax", "heyoka"])
 def test_a_missing_package_is_left_out(monkeypatch, package):
     monkeypatch.delenv("CI", raising=False)
     its = tuple(peer for peer in PEERS if peer.package == package)
