@@ -229,12 +229,12 @@ class ExactWave(Profile):
         return e, o
 
     def _front(self, xi: Array) -> Array:
-        return self._sum(xi, *self._strains)
+        return self._sum(xi, *self._strains) * self._within(xi)
 
     def velocity(self, xi: ArrayLike, bead: int = 0) -> Array:
         one, two = (float(self._velocity(np.array(self.half_period), i)) for i in (0, 1))
         mean = (one + self.omega * two) / (1 + self.omega)
-        return self._velocity(xi, bead) - mean
+        return (self._velocity(xi, bead) - mean) * self._within(xi)
 
     def _velocity(self, xi: ArrayLike, bead: int) -> Array:
         sign, q = (-1 if bead % 2 else 1), self._q[1:]
@@ -249,6 +249,10 @@ class ExactWave(Profile):
         # e^{iqξ} of every q from those of the first ones and of every 16th.
         first, every = (np.exp(1j * np.multiply.outer(x, part)) for part in (q[:_ROW], q[::_ROW]))
         return np.asarray(((first @ rows.T) * every).real.sum(axis=-1))
+
+    def _within(self, xi: ArrayLike) -> Array:
+        """1 where the wave is, and 0 where one that ends has ended: no rounding moves a bead."""
+        return np.asarray((np.abs(xi) < self.half_period) | (not self.solitary), float)
 
 
 def at_unit_force(
