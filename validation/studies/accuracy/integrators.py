@@ -215,7 +215,7 @@ def _compared(
             force, seconds = timed(partial(integrate, task, stepper, rtol, window=window))
             yield row("SciPy", f"SciPy {method}", window, rtol, force, seconds)
     for method, aims in _COMPILED.items():
-        for window in {task.windowed, False}:
+        for window in sorted({task.windowed, False}, reverse=True):
             simulated = partial(simulate, task.scene, method=method, window=window)
             simulated(rtol=1e-3)  # compiles
             for rtol in aims:
