@@ -72,8 +72,8 @@ def test_masses_matter_to_widths_only():
 
 @pytest.fixture(scope="module")
 def radiating():
-    """A strong wave of a dimer, run."""
-    wave = Wave(numbered((1, "1/2")), 1.5, 10.0)
+    """A wave of a dimer as strong as the load, run."""
+    wave = Wave(numbered((1, "1/2")), 1.5, 1.0)
     return wave, simulate(wave.scene, method="SRKN14", rtol=1e-7)
 
 
@@ -82,7 +82,7 @@ def test_why_dimers_are_worse(radiating):
     optical branch, so that it decays."""
     wave, run = radiating
     found = wave.read(run, 1)
-    assert found["decay"] > 1e-4
+    assert found["decay"] > 1e-5
     chain = LoadedChain(Cell([1, "1/2"], spacing=1), Power("3/2"), 1)
     speed = found["speed"] * wave.sound
 
@@ -90,15 +90,14 @@ def test_why_dimers_are_worse(radiating):
         return chain.branches(q)[-1] - speed * q
 
     q = scipy.optimize.brentq(resonance, 0.1, np.pi)
-    size = len(wave.masses)
     light = run.bead_velocity[1] - run.bead_velocity[0]  # a contact's rate: no long waves
     start = int(np.argmax(run.contact_force[0])) + 200
     tail = light[start : start + 3000] * np.hanning(3000)
     spectrum = np.abs(np.fft.rfft(tail, 2**17))
     step = run.time[1] - run.time[0]
     frequency = 2 * np.pi * np.argmax(spectrum) / (2**17 * step)
-    assert frequency == pytest.approx(speed * q, rel=0.02)
-    assert size == 2
+    assert frequency == pytest.approx(speed * q, rel=1e-3)
+    assert frequency > 1.003 * chain.band_edges()[1, 0]  # not where the branch is flat
 
 
 def test_the_chain_is_followed_as_a_whole(radiating):
@@ -112,18 +111,18 @@ def test_the_chain_is_followed_as_a_whole(radiating):
 
 def test_another_exponent():
     """At k = 1.1 the theory is within the 0.14 % of c² that it is off without a load."""
-    found = precompressed(k=1.1, masses=(1,), ratios=(0.1, 100))
+    found = precompressed(k=1.1, masses=(1,), ratios=(3, 100))
     assert found.ok
     offs = [row["error_value"] for row in found.document()["rows"]]
     assert -0.0007 < offs[1] < offs[0] < 0
 
 
 def test_the_command(capsys):
-    options = ("precompressed", "--masses", "1,1/2", "--ratios", "1/10,1", "--format")
+    options = ("precompressed", "--masses", "1,1/2", "--ratios", "1", "--format")
     status, out, err = ended(capsys, cli.main, *options, "json")
     assert (status, err) == (0, "")
     found = json.loads(out)
-    assert [row["masses"] for row in found["rows"]] == [["1", "1/2"]] * 2
+    assert [row["masses"] for row in found["rows"]] == [["1", "1/2"]]
     names = "ratio_value", "speed_value", "theory_value", "error_value", "fwhm_value", "decay_value"
     assert all(isinstance(row[name], float) for row in found["rows"] for name in names)
     status, out, _ = ended(capsys, cli.main, *options, "csv")

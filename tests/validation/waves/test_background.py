@@ -69,7 +69,9 @@ def test_the_equation_of_motion_holds(k, p0):
     scale = wave.fwhm() / 30
     xi = np.linspace(0, wave.half_period / 2, 50)
     weights = np.array([2, -27, 270, -490, 270, -27, 2]) / 180
-    curved = sum(w * wave.strain(xi + j * scale) for w, j in zip(weights, range(-3, 4), strict=True))
+    curved = sum(
+        w * wave.strain(xi + j * scale) for w, j in zip(weights, range(-3, 4), strict=True)
+    )
     forces = [(p0 + wave.strain(xi + s)) ** k for s in (-1, 0, 1)]
     push = forces[0] - 2 * forces[1] + forces[2]
     assert wave.c2 * curved / scale**2 == pytest.approx(push, abs=2e-5 * np.abs(push).max())
