@@ -14,10 +14,10 @@ from typing import TypeVar
 
 import numpy as np
 import scipy
+from lwa.numeric import Array
 from numpy.typing import ArrayLike, NDArray
 
 from lwa.exact import InputError
-from lwa.numeric import Array
 
 Source = TypeVar("Source")
 
