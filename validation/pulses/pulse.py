@@ -14,9 +14,9 @@ from typing import TypeVar
 
 import numpy as np
 import scipy
-from lwa.numeric import Array
 from numpy.typing import ArrayLike, NDArray
 
+from lwa.compact.numeric import Array
 from lwa.exact import InputError
 
 Source = TypeVar("Source")
