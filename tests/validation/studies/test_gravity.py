@@ -64,9 +64,16 @@ def test_a_weak_blow(found):
 
 
 def test_heavier_beads_take_longer_only():
-    """Sites know no unit of mass, nor how weak the blow is."""
-    one, two = (Upright(numbered((m,)), 1.5, 1000).fronts()[1] for m in (1, 2))
-    assert two == pytest.approx(one, rel=1e-4)
+    """Sites know no unit of mass."""
+    one, two = (Upright(numbered((m,)), 1.5, 1000).fronts()[1] for m in (1, "1e-9"))
+    assert two == pytest.approx(one, rel=1e-12)
+
+
+def test_a_weak_blow_is_weak_enough(monkeypatch):
+    """A hundred times harder, the front is as wide."""
+    one = Upright(numbered((1,)), 1.5, 1000).fronts()[1]
+    monkeypatch.setattr("validation.studies.gravity.WEAK", 1e-2)
+    assert Upright(numbered((1,)), 1.5, 1000).fronts()[1] == pytest.approx(one, rel=5e-4)
 
 
 def test_the_dimension_of_a_cell_enters_by_I():
