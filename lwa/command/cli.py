@@ -99,16 +99,15 @@ STIFFNESSES = click.option(
 )
 
 
+def _law(help_text: str) -> Option:
+    return click.option("--law", metavar="NAME[:PARAM,…]", callback=contact_law, help=help_text)
+
+
 def _chain(formats: Iterable[str]) -> Option:
     """The options that name a chain and its theory."""
     options = (
         _exponent(k.name),
-        click.option(
-            "--law",
-            metavar="NAME[:PARAM,…]",
-            callback=contact_law,
-            help=f"Contact law in place of the power: {', '.join(NAMES)}.",
-        ),
+        _law(f"Contact law in place of the power: {', '.join(NAMES)}."),
         MASSES,
         STIFFNESSES,
         _option("--spacing", D.name, "Distance of neighbouring particles.", callback=quantity),
@@ -336,10 +335,17 @@ def dispersion(
 
 @lwa.command()
 @_series(k.name, "Highest power of ε = k - 1.", EXPANSION)
+@_law("In place of --k: power:K; no other law has an ε.")
 @_FORCE
 @_SPHERES
 def expansion(
-    cell: Cell, k: sp.Expr, order: int, style: str, force: sp.Expr | None, spheres: str | None
+    cell: Cell,
+    k: sp.Expr,
+    law: Power | Law | None,
+    order: int,
+    style: str,
+    force: sp.Expr | None,
+    spheres: str | None,
 ) -> None:
     """The lattice's wave as a series in ε = k - 1, summed where k and the cell are numbers.
 
@@ -352,7 +358,7 @@ def expansion(
         cell = Cell(**chain)
     elif force is not None:
         raise InputError("--force goes with --spheres: other chains have no units")
-    found = expand(cell, order, k=k)
+    found = expand(cell, order, k=k, law=law)
     _show(EXPANSION[style](found, None if force is None else ExpandedWave(found, force)))
 
 

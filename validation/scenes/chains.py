@@ -11,7 +11,9 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import ArrayLike
 
+from lwa import Cell
 from lwa.numeric import Array
+from validation.scenes.checks import SceneError
 from validation.scenes.materials import PTFE_BEAD, STEEL, STEEL_BEAD, Bead
 from validation.scenes.scene import Scene
 
@@ -24,6 +26,15 @@ def struck(masses: Sequence[float], beads: int, k: float = 1.5, **rest: Any) -> 
     """
     row = tuple(masses[i % len(masses)] for i in range(beads))
     return Scene(masses=row, stiffnesses=(1.0,) * (beads - 1), k=k, velocities=(1.0,), **rest)
+
+
+def numbered(masses: Sequence[Any]) -> Cell:
+    """The theory's cell of these masses at D = 1. Raises `SceneError` unless they are numbers."""
+    cell = Cell(tuple(masses), spacing=1)
+    for mass in cell.masses:
+        if not mass.is_number:
+            raise SceneError(f"mass is {mass}: a number is wanted")
+    return cell
 
 
 def chain_scene(

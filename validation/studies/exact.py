@@ -42,7 +42,8 @@ _SCALING = (
 def wave_report(wave: ExactWave) -> Report:
     """``k_value``, ``masses_value``, ``background_value``, ``half_period_value``,
     ``residual_value``, ``solitary``, and with their errors, as ``c2_error_value``, ``c2_value``,
-    ``c_value``, ``tail_value`` and by quantity ``amplitude_value``, ``fwhm_value``, ``rms_value``."""
+    ``c_value``, ``tail_value`` and by quantity ``amplitude_value``, ``fwhm_value``,
+    ``rms_value``."""
     found = measured(wave)
     tail = f"{wave.tail:.2e}" if wave.solitary else str(found["tail"])
     rows = tuple((q, *(found[f"{what} {q}"] for what in ("amplitude", "fwhm", "rms")))
