@@ -147,7 +147,7 @@ class Chain:
                 (1.0, self.omega), self.sites * PLACES + 12, self.k,
                 contact_sensors=sensors, duration=duration, samples=math.ceil(samples * duration),
             )  # fmt: skip
-            run = simulate(scene, rtol=rtol, method="SRKN14")
+            run = simulate(scene, rtol=rtol)
             parts = tuple(leading_pulse(force, self.k) for force in run.contact_force)
             # One place's time more, lest the front of a pulse yet to come be taken for it.
             until = (1 + 1 / PLACES) * float(run.time[max(part.stop for part in parts) - 1])
