@@ -77,10 +77,14 @@ def follow(
     return run
 
 
+def _returns(motion: Motion) -> bool:
+    """Whether waves come back: behind a wall, and at k = 1."""
+    return motion.scene.wall is not None or motion.k == 1
+
+
 def _reach(motion: Motion, window: Any) -> int | None:
     """Beads to follow behind the front; None for the whole chain."""
-    scene, n, k = motion.scene, motion.size, motion.k
-    returns = scene.wall is not None or k == 1
+    scene, n, returns = motion.scene, motion.size, _returns(motion)
     if window is False or not scene.stiffnesses or (window is None and returns):
         return None
     if returns:
@@ -90,12 +94,18 @@ def _reach(motion: Motion, window: Any) -> int | None:
         )
     if window is not None and window is not True:
         return integer(window, "window", kernel.BLOCK)
+    reach = _own_reach(motion)
+    return None if window is None and reach >= n else reach
+
+
+def _own_reach(motion: Motion) -> int:
+    """That of the pulse: its support and what may catch up with it."""
+    n, k = motion.size, motion.k
     still = motion.start[n:] == 0
     masses = motion.masses[still] if still.any() else motion.masses  # a striker may be of any mass
     support = math.pi / (k - 1) * math.sqrt(k * (k + 1) / 6)
     back = min(n, _SUPPORTS * support * masses.max() / masses.mean())
-    reach = 2 * kernel.MARGIN + math.ceil(back)
-    return None if window is None and reach >= n else reach
+    return 2 * kernel.MARGIN + math.ceil(back)
 
 
 def _integrated(
@@ -109,7 +119,7 @@ def _integrated(
     chain = _chain(motion)
     beads, seen = _start(motion, len(chain.A))
     plan = _plan(motion, given, chain, reach, end / math.ceil(taken.steps))
-    at = beginning(plan, chain.k, n if reach is None else _front(motion))
+    at = beginning(plan, chain.k, _front(motion))
     glance = max(1, int(_GLANCE * taken.steps / taken.seconds))
     t = 0.0
     with progress(taken) as tell:
@@ -135,8 +145,10 @@ def _integrated(
 def _tableau(method: str, k: float) -> Tableau:
     scheme = SCHEMES[method]
     nothing, table = np.zeros(0), np.zeros((0, 0))
-    u, w = scipy.special.roots_jacobi(_POINTS, 0.0, k)
-    points = np.stack(((1 + u) / 2, w / 2 ** (k + 1)))
+    points = table
+    if k < SCHEMES["RKN86"].order:  # else no kink is left that the pair sees
+        u, w = scipy.special.roots_jacobi(_POINTS, 0.0, k)
+        points = np.stack(((1 + u) / 2, w / 2 ** (k + 1)))
     if isinstance(scheme, Pair):
         return Tableau(nothing, nothing, *scheme.arrays(kernel.WIDTH), scheme.lower, points)
     return Tableau(scheme.kicks, scheme.drifts, nothing, table, table, 0, points)
@@ -145,11 +157,15 @@ def _tableau(method: str, k: float) -> Tableau:
 def _plan(motion: Motion, given: Given, chain: Chain, reach: int | None, step: float) -> Plan:
     """Of the whole run."""
     n, scales = motion.size, motion.scales
+    # without a window the splitting's step stays: rattling at the rear does not slow down
+    adapt = isinstance(SCHEMES[given.method], Pair) or (
+        given.longest == math.inf and reach is not None
+    )
     return Plan(
         _tableau(given.method, motion.k), given.rtol * scales.displacement,
         given.rtol * scales.velocity, step, given.longest, motion.scene.duration,
         scales.compression, chain.A.max(), 1 / chain.inverse[min(1, n - 1) : n].min(), n,
-        reach or 0, given.longest == math.inf and reach is not None,
+        0 if _returns(motion) else reach or _own_reach(motion), reach is not None, adapt,
     )  # fmt: skip
 
 

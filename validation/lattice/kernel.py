@@ -87,8 +87,9 @@ class Plan(NamedTuple):
 
     y, v : the errors of a step that are allowed. h : the first step. longest : the longest of a
     pair. deepest : the greatest compression. stiffest : of the contacts. heaviest : but for the
-    striker. reach : of the window, 0 without. adapt : whether step and errors follow the pulse's
-    time and size as it decays.
+    striker. reach : of a window, after which the pulse is looked at; 0 where waves come back.
+    cut : whether the rear is left. adapt : whether step and errors follow the pulse's time and size
+    as it decays.
     """
 
     scheme: Tableau
@@ -102,6 +103,7 @@ class Plan(NamedTuple):
     heaviest: float
     size: int
     reach: int
+    cut: bool
     adapt: bool
 
 
@@ -260,7 +262,7 @@ def _attempt(chain: Chain, beads: Beads, plan: Plan, at: Any, h: float, hi: int)
         before = rest[i] + y[i] - y[i + _ONE]
         after = rest[i] + next_y[i] - next_y[i + _ONE]
         crossing += 1 if before * after < 0.0 else 0
-    if crossing:
+    if crossing > 0 and plan.scheme.points.shape[1] > 0:
         for i in range(lo, hi):
             before = rest[i] + y[i] - y[i + 1]
             if before * (rest[i] + next_y[i] - next_y[i + 1]) < 0.0:
@@ -456,14 +458,17 @@ def _cut_rear(chain: Chain, beads: Beads, plan: Plan, at: Any) -> None:
 
 @_part
 def _follow(chain: Chain, beads: Beads, plan: Plan, at: Any, hi: int) -> None:
-    """Move the window with the pulse."""
-    if at.steps % 4 == 0 or len(plan.scheme.nodes):
-        at.top = max(at.top, _greatest(beads.force, at.lo, hi))
+    """Move the front, and the rear where it may be cut, with the pulse."""
     while at.front < plan.size and abs(beads.y[at.front - MARGIN]) > _STILL * at.scale:
         at.front += 1
+    if not plan.reach:
+        return
+    if at.steps % 4 == 0 or len(plan.scheme.nodes):
+        at.top = max(at.top, _greatest(beads.force, at.lo, hi))
     if at.front - at.mark >= plan.reach:
         _grow(chain, plan, at)
-    _cut_rear(chain, beads, plan, at)
+    if plan.cut:
+        _cut_rear(chain, beads, plan, at)
 
 
 @_compiled
@@ -507,6 +512,6 @@ def advance(chain: Chain, beads: Beads, plan: Plan, seen: Samples, at: Any, trie
         if due > at.done:
             _sample(seen, at, h, due)
         at.t, at.before = later, h
-        if plan.reach:
+        if plan.cut or at.front < plan.size:
             _follow(chain, beads, plan, at, hi)
     return float(at.t)
