@@ -152,7 +152,7 @@ class Chain:
                 contact_sensors=sensors, duration=duration, samples=math.ceil(samples * duration),
             )  # fmt: skip
             window = False if whole else None
-            run = simulate(scene, rtol=rtol, method="SRKN14", window=window)
+            run = simulate(scene, rtol=rtol, window=window)
             whole = run.window is None
             parts = tuple(leading_pulse(force, self.k) for force in run.contact_force)
             # One place's time more, lest the front of a pulse yet to come be taken for it.

@@ -153,7 +153,7 @@ class Upright:
             return np.asarray((np.reshape(found, x.shape) * self.sound(x)).mean(axis=1))
 
         scene = self.blown(WEAK, bead_sensors=beads.ravel().tolist())
-        fine, coarse = map(widths, twice(scene, *_TOLERANCES, method="SRKN14"))
+        fine, coarse = map(widths, twice(scene, *_TOLERANCES))
         return x.mean(axis=1), fine, coarse
 
     def fit(self, x: Array, width: Array, power: float) -> Array:
@@ -188,7 +188,7 @@ class Upright:
         contacts = np.add.outer(self.places(_TOP, _FEW), np.arange(2 * size))
         scene = self.blown(velocity, contact_sensors=np.unique(contacts).tolist())
         run, numeric, found = (
-            simulate(scene, method="SRKN14", rtol=_TOLERANCES[0]),
+            simulate(scene, rtol=_TOLERANCES[0]),
             self.theory.numeric(),
             {},
         )

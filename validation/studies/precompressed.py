@@ -186,7 +186,7 @@ class Wave:
 
     def row(self) -> dict[str, Any]:
         """What is measured, by the columns' keys, and what the theory says of the force there."""
-        runs = twice(self.scene, *_TOLERANCES, method="SRKN14")
+        runs = twice(self.scene, *_TOLERANCES)
         found, coarse = (self.read(run, 1) for run in runs)
         before = self.read(runs[0], 0)
         theory = self.theory(found["force"])

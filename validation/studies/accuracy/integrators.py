@@ -46,9 +46,7 @@ _SCIPY: Mapping[tuple[str, bool], Sequence[float]] = {
 _SPLITTINGS: Mapping[tuple[str, bool], Sequence[float]] = {
     (BEST, True): (1e-5, 3e-6, 2e-6, 1e-6, 1e-7, 1e-8, 1e-10),
     (BEST, False): (1e-6, 1e-8, 1e-10),
-    **{(name, True): (1e-5, 1e-6, 1e-8) for name in COMPILED if name not in (BEST, "Verlet")},
-    ("Verlet", True): (1e-5, 1e-6),
-    ("Verlet", False): (1e-5,),
+    **{(name, True): (1e-5, 1e-6, 1e-8) for name in COMPILED if name != BEST},
 }
 """(scheme, window) → the error that the step aims at."""
 
