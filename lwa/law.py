@@ -20,6 +20,7 @@ import sympy as sp
 from sympy.core.function import AppliedUndef
 
 from lwa.cell import Cell, exponent
+from lwa.cell import k as symbol_k
 from lwa.exact import InputError, exact, positive, real, shorten
 from lwa.value import Value
 
@@ -165,6 +166,12 @@ _NAMED: Mapping[str, tuple[tuple[str, ...], Builder]] = {
 _OF_EITHER_SIGN = ("polynomial",)
 NAMES = ("power", *_NAMED, "general")
 """What `named` knows."""
+
+
+def demand_one(k: Any, law: ContactLaw) -> None:
+    """Refuse an exponent beside a law, of which one says all."""
+    if k != symbol_k:
+        raise InputError(f"k is {shorten(k)} and law {shorten(law)}: one of them is wanted")
 
 
 def named(name: str, *parameters: Any) -> Power | Law:

@@ -16,7 +16,7 @@ from lwa.cell import k as symbol_k
 from lwa.closure.consistency import BRANCHES, CLOSURES, FIELDS, Closure, solve
 from lwa.duration import shown
 from lwa.exact import InputError, integer, shorten
-from lwa.law import Law, Power, for_cell
+from lwa.law import Law, Power, demand_one, for_cell
 from lwa.pde import PDE
 from lwa.terms import STRAIN, Terms, terms
 from lwa.value import Value
@@ -165,8 +165,7 @@ def homogenize(
 def _ring(cell: Cell, k: Any, law: Power | Law | None, branch: str, order: int) -> Coefficients:
     if law is None:
         return Coefficients(cell, exponent(k, cell), branch)
-    if k != symbol_k:
-        raise InputError(f"k is {shorten(k)} and law {shorten(law)}: one of them is wanted")
+    demand_one(k, law)
     law = for_cell(law, cell)
     if isinstance(law, Power):
         return Coefficients(cell, law.k, branch)

@@ -4,24 +4,24 @@ What they use, and nothing else: paragraphs, "Parameters" with a line of dashes,
 aligned lines, indented blocks (formulas), doctests, and `names` or ``code`` between backticks. All
 else is text, so that a ``*``, ``|`` or trailing ``_`` of a formula stays itself.
 
-The directive ``modules`` documents every module of a package, but for the modules and folders named
-after ``:without:``.
+Three directives are for the pages about the interface: ``names`` documents classes, functions and
+values by their full names, ``studies`` all studies of `validation`, and ``methods`` tells what the
+docstrings of modules say of method and source, without their members.
 """
 
 from __future__ import annotations
 
-import pkgutil
 import re
 from collections.abc import Iterator
 from importlib import import_module
-from typing import ClassVar
+from inspect import isroutine
 
 from docutils import nodes
-from docutils.parsers.rst import directives
 from sphinx.application import Sphinx
 from sphinx.ext.autodoc import FunctionDocumenter
 from sphinx.util.docutils import SphinxDirective
 
+from validation.cli import studies
 from validation.report.command import Study
 
 _CODE = re.compile(r"``(.+?)``|`(.+?)`")
@@ -94,21 +94,49 @@ def _escaped(text: str) -> str:
     return _TITLE.sub(r"*\1*", plain)  # of a book: *Title*
 
 
-class Modules(SphinxDirective):
-    """A section for every module of a package and of its folders, in alphabetical order."""
+class Names(SphinxDirective):
+    """What each name is and does; of a class its public members too."""
 
-    required_arguments = 1
-    option_spec: ClassVar = {"without": directives.unchanged}
+    has_content = True
 
     def run(self) -> list[nodes.Node]:
-        (package,) = self.arguments
-        hidden = [f"{package}.{name}." for name in self.options.get("without", "").split()]
-        lines: list[str] = []
-        for found in pkgutil.walk_packages(import_module(package).__path__, f"{package}."):
-            if not any(f"{found.name}.".startswith(name) for name in hidden):
-                name = found.name
-                lines += [name, "^" * len(name), "", f".. automodule:: {name}", ""]
-        return self.parse_text_to_nodes("\n".join(lines), allow_section_headings=True)
+        names = " ".join(self.content).split()
+        return self.parse_text_to_nodes("\n".join(line for n in names for line in _directive(n)))
+
+
+def _directive(name: str) -> Iterator[str]:
+    home, _, last = name.rpartition(".")
+    thing = getattr(import_module(home), last)
+    if isinstance(thing, Study):
+        kind = "study"
+    elif isinstance(thing, type):
+        kind = "class"
+    else:
+        kind = "function" if isroutine(thing) else "data"
+    yield from (f".. auto{kind}:: {name}", "   :no-index:" * (kind == "data"), "")
+
+
+class Studies(SphinxDirective):
+    """Every study as a function."""
+
+    def run(self) -> list[nodes.Node]:
+        found = (f"{module}.{name}" for module, name, _ in studies().values())
+        text = "\n".join(line for name in found for line in _directive(name))
+        return self.parse_text_to_nodes(text)
+
+
+class Methods(SphinxDirective):
+    """The docstring of each module under its name."""
+
+    has_content = True
+
+    def run(self) -> list[nodes.Node]:
+        names = " ".join(self.content).split()
+        text = "\n".join(
+            f"{name}\n{'^' * len(name)}\n\n.. automodule:: {name}\n   :no-members:\n"
+            for name in names
+        )
+        return self.parse_text_to_nodes(text, allow_section_headings=True)
 
 
 class StudyDocumenter(FunctionDocumenter):
@@ -128,9 +156,27 @@ def _process(app: Sphinx, what: str, name: str, obj: object, options: object, li
     lines[:] = converted(lines)
 
 
+_PROGRESS = re.compile(r": (?:Run)?Progress(?:\[\w+\])?")
+
+
+def _plain(
+    app: Sphinx,
+    what: str,
+    name: str,
+    obj: object,
+    options: object,
+    signature: str | None,
+    back: str,
+) -> tuple[str | None, str] | None:
+    """A signature without the type of what shows progress, which is no caller's."""
+    return (_PROGRESS.sub("", signature), back) if signature else None
+
+
 def setup(app: Sphinx) -> dict[str, bool]:
     """Sphinx's hook."""
-    app.add_directive("modules", Modules)
+    for name, directive in (("names", Names), ("studies", Studies), ("methods", Methods)):
+        app.add_directive(name, directive)
     app.add_autodocumenter(StudyDocumenter)
     app.connect("autodoc-process-docstring", _process)
+    app.connect("autodoc-process-signature", _plain)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -30,7 +30,16 @@ from lwa.command.load import (
     precompressed_json,
     precompressed_text,
 )
-from lwa.command.options import FORCE, SPHERES, given, of_chain, of_series, own_names, setting
+from lwa.command.options import (
+    FORCE,
+    SPHERES,
+    given,
+    law_option,
+    of_chain,
+    of_series,
+    own_names,
+    setting,
+)
 from lwa.command.source import theory_latex, theory_python, wave_latex
 from lwa.command.terminal import (
     HELP,
@@ -245,10 +254,17 @@ def dispersion(
 
 @lwa.command()
 @of_series(k.name, "Highest power of ε = k - 1.", EXPANSION)
+@law_option("In place of --k: power:K; no other law has an ε.")
 @FORCE
 @SPHERES
 def expansion(
-    cell: Cell, k: sp.Expr, order: int, style: str, force: sp.Expr | None, spheres: str | None
+    cell: Cell,
+    k: sp.Expr,
+    law: Power | Law | None,
+    order: int,
+    style: str,
+    force: sp.Expr | None,
+    spheres: str | None,
 ) -> None:
     """The lattice's wave as a series in ε = k - 1, summed where k and the cell are numbers.
 
@@ -261,7 +277,7 @@ def expansion(
         cell = Cell(**chain)
     elif force is not None:
         raise InputError("--force goes with --spheres: other chains have no units")
-    found = expand(cell, order, k=k)
+    found = expand(cell, order, k=k, law=law)
     _show(EXPANSION[style](found, None if force is None else ExpandedWave(found, force)))
 
 

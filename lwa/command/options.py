@@ -35,6 +35,11 @@ def order_option(help_text: str) -> Option:
     return setting("--order", "4", help_text, callback=count)
 
 
+def law_option(help_text: str) -> Option:
+    """``--law``."""
+    return click.option("--law", metavar="NAME[:PARAM,…]", callback=contact_law, help=help_text)
+
+
 def style_option(formats: Iterable[str]) -> Option:
     """``--format``, one of these."""
     return click.option(
@@ -57,12 +62,7 @@ def of_chain(formats: Iterable[str]) -> Option:
     """The options that name a chain and its theory."""
     options = (
         exponent(k.name),
-        click.option(
-            "--law",
-            metavar="NAME[:PARAM,…]",
-            callback=contact_law,
-            help=f"Contact law in place of the power: {', '.join(NAMES)}.",
-        ),
+        law_option(f"Contact law in place of the power: {', '.join(NAMES)}."),
         MASSES,
         STIFFNESSES,
         setting("--spacing", D.name, "Distance of neighbouring particles.", callback=quantity),

@@ -22,7 +22,7 @@ from lwa.expansion.core import descent
 from lwa.expansion.effort import affordable, short
 from lwa.expansion.observables import Observables, ring
 from lwa.expansion.series import EpsilonSeries
-from lwa.law import Law, Power
+from lwa.law import Law, Power, demand_one
 from lwa.quantities import QUANTITIES as QUANTITIES
 from lwa.quantities import known
 from lwa.value import Value
@@ -243,12 +243,15 @@ def expand(
     if not isinstance(cell, Cell):
         raise InputError(f"cell is {shorten(cell)}: a Cell such as Cell([1, 2]) is wanted")
     order = integer(order, "order", 1)
-    if law is not None and not isinstance(law, Power):
-        raise InputError(
-            f"law is {shorten(law)}: the expansion is one in ε = k - 1 about the linear chain, "
-            "and only a power law has a k"
-        )
-    k = exponent(k if law is None else law.k, cell)
+    if law is not None:
+        demand_one(k, law)
+        if not isinstance(law, Power):
+            raise InputError(
+                f"law is {shorten(law)}: the expansion is one in ε = k - 1 about the linear chain, "
+                "and only a power law has a k"
+            )
+        k = law.k
+    k = exponent(k, cell)
     _no_letter(cell, k)
     for name, values in (("mass", cell.masses), ("stiffness", cell.stiffnesses), ("k", (k,))):
         for value in values:

@@ -7,8 +7,11 @@ without the book it fails.
 import re
 from pathlib import Path
 
+import nbformat
 import pytest
 
+import lwa
+import validation
 from tests.book.browser import visited
 
 ROOT = Path(__file__).parents[2]
@@ -65,6 +68,37 @@ def test_nothing_is_cut(width):
     pages = opened(width).pages
     assert not {page: r["cut"] for page, r in pages.items() if r["cut"]}
     assert not [page for page, r in pages.items() if r["wider"]]
+
+
+def test_every_public_name_is_told_and_no_private_one():
+    screen = (HTML / "api.html").read_text()
+    for name in {*lwa.__all__, *validation.__all__}:
+        assert re.search(rf">(lwa\.)?{name}<", screen), name
+    for page in PAGES:
+        names = re.findall(r'<dt class="sig[^>]* id="([^"]*)"', (HTML / page).read_text())
+        assert not [name for name in names if re.search(r"\._", name)]
+        assert bool(names) == page.startswith("api_")
+
+
+def test_a_page_with_cells_is_there_as_a_notebook():
+    for page in PAGES:
+        text = (HTML / page).read_text()
+        assert ("cell_input" in text) == (f'href="_sources/{page[:-5]}.ipynb"' in text)
+        if "cell_input" in text:
+            notebook = nbformat.read(HTML / "_sources" / f"{page[:-5]}.ipynb", 4)
+            nbformat.validate(notebook)
+            assert sum(cell.cell_type == "code" for cell in notebook.cells) >= text.count(
+                'class="cell_input'
+            )
+
+
+def test_what_moves_is_there():
+    """A player on page one, in width over k, in cells over the mass ratio, under load over p0."""
+    for page in ("intro", "width", "cells", "pressed"):
+        text = (HTML / f"{page}.html").read_text()
+        assert text.count('class="anim-slider"') == 1
+        assert len(set(re.findall(r'frames\[\d+\] = "([^"]*)"', text))) > 10
+        assert len(text) < 500_000
 
 
 def test_no_request_leaves_the_machine(visit):

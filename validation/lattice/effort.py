@@ -1,8 +1,8 @@
 """What a run takes, known before it starts: its steps, its time and its memory.
 
 A scene's own time is the shortest √(m/spring) of a bead between its contacts at their deepest
-(`validation.lattice.equations.Scales.time`). A compiled method takes equal steps in proportion to
-it. SciPy's choose theirs; counted on uniform chains, dimers and pressed beads, k = 1 … 3, they are
+(`validation.lattice.equations.Scales.time`). The splitting takes equal steps in proportion to it.
+All others choose theirs; counted on uniform chains, dimers and pressed beads, k = 1 … 3, they are
 a rtol^{-1/q} in a time, at most 3 times as many, and an eighth where beads part.
 
 What takes longer than `LONGEST`, or more memory than `LARGEST`, is refused. Times tell minutes
@@ -17,6 +17,7 @@ from dataclasses import dataclass, replace
 
 from lwa.duration import words
 from validation.lattice.schemes import LAWS, SCHEMES
+from validation.lattice.schemes.splitting import SRKN14
 from validation.scenes.checks import SceneError
 from validation.scenes.scene import Scene
 
@@ -24,11 +25,13 @@ LONGEST = 6 * 3600.0  # seconds of a run that is not refused
 LARGEST = 4e9  # bytes of a run that is not refused
 EXCESS = 10  # times as many steps as are expected, beyond which an adaptive method is stopped
 
-# By order: c, q of (rtol/c)^q natural times a stage; c of a Hertz dimer of 560 beads.
-_SPLITTING = {2: (0.5, 0.5), 4: (0.01, 0.4), 6: (0.01, 0.4)}
-_COARSEST = 0.2  # natural times a stage: all splittings are stable
+_KINKS = 0.01  # (rtol/this)^0.4 natural times a stage of a splitting; of a Hertz dimer of 560 beads
+_COARSEST = 0.2  # natural times a stage: the splitting is stable
 # (a, q, evaluations a step).
-_ADAPTIVE = {"DOP853": (0.3, 8, 14), "RK45": (0.2, 5, 6), "RK23": (0.2, 3, 3), "LSODA": (1.5, 8, 2)}
+_ADAPTIVE = {
+    "RKN86": (0.25, 7, 8), "DOP853": (0.3, 8, 14), "RK45": (0.2, 5, 6), "RK23": (0.2, 3, 3),
+    "LSODA": (1.5, 8, 2),
+}  # fmt: skip
 _FEWEST = 100  # steps that an adaptive method takes to find its step, however slow the motion
 _SAMPLE = 2e-6  # seconds to measure, draw and write a sample
 
@@ -76,18 +79,25 @@ def silent(effort: Effort) -> AbstractContextManager[Callable[[float], object]]:
     return nullcontext(lambda share: None)
 
 
+def beyond(taken: Effort, steps: int, t: float) -> str:
+    """What is told where a method takes too many steps."""
+    return (
+        f"{steps} steps of {taken.method} reach t = {t:g} where {taken.steps:.0f} are enough for "
+        f"all of {taken.scene.duration:g}: rounding hides the motion, or rtol is too small for it"
+    )
+
+
 def step(method: str, rtol: float) -> float:
-    """Natural times a step of a method, in the mean if it is SciPy's."""
-    if method in SCHEMES:
-        scheme = SCHEMES[method]
-        c, q = _SPLITTING[scheme.order]
-        return float(min((rtol / c) ** q, _COARSEST)) * scheme.stages
+    """Natural times a step of a method, in the mean if it is adaptive."""
+    if method == "SRKN14":
+        return float(min((rtol / _KINKS) ** 0.4, _COARSEST)) * SRKN14.stages
     a, order, _ = _ADAPTIVE[method]
     return float(rtol ** (1 / order)) / a
 
 
 def compiled(scene: Scene, method: str, steps: float, beads: int) -> Effort:
-    """The effort of a splitting."""
+    """The effort of a compiled method."""
+    steps += _FEWEST if method in _ADAPTIVE else 0
     bead = 2e-9 if scene.k in LAWS else 9e-9  # a power takes its time
     seconds = steps * (3e-7 + SCHEMES[method].stages * max(beads, 32) * bead)
     return _effort(scene, method, steps, beads, seconds, 16)

@@ -1,42 +1,64 @@
-"""The compiled engine: symmetric splittings at a fixed step, on a window that moves with the pulse.
+"""The compiled engine: a pair or a splitting, on a window that moves with the pulse.
 
-A step alternates kicks and drifts (`validation.lattice.schemes`): it is symplectic and
-time-reversible, and keeps the momentum to rounding. Numba compiles it once and caches it on disk.
+Numba compiles it once and caches it on disk. A run is the same to the bit every time.
 
-Order. F = A δ^k with k = 3/2 has no second derivative where a contact opens or closes: with every
-such passage a step errs by O(h^{k+1}) whatever the scheme. The step that ``rtol`` asks for follows
-from that h^{5/2}, not from the scheme's own order.
+Pair. The adaptive one for y'' = f(y) (`validation.lattice.schemes.nystrom`). The error of a step is
+the root of the sum of its beads' squares, in the scene's scales of displacement and velocity, and
+is kept at ``rtol``; the next step follows from it alone. F = A δ^k with k = 3/2 has no second
+derivative where a contact opens or closes: the step would err by O(h^{k+1}) there. So the impulse
+of a contact that does is corrected by a quadrature that knows the kink: what is left is O(h^{k+3}).
+
+Splitting. Symplectic, at a fixed step (`validation.lattice.schemes.splitting`): with every kink it
+errs by O(h^{k+1}), and its step follows from that.
+
+Samples come from Hermite's polynomial with y, y', y'' and y''' at the ends of two steps.
 
 Window. Ahead nothing moves: the front advances with the first bead that does. Behind, beads more
 than ``reach`` from the front are left to fly on freely, with their energy on the books, once the
 contact that is cut is open but for a trace of the peak force and no strong blow is to come (the
 thresholds of `validation.lattice.kernel`), or four reaches behind in any case. As contacts carry no
 tension, the pulse does not depend on what is cut, unless it decays so fast (`_DECAY`) that its own
-tail may overtake it. As a pulse decays, the step grows with its time scale, F^{(1-k)/2k}.
+tail may overtake it. As a pulse decays, the step grows with its time scale, F^{(1-k)/2k}, and the
+error that is allowed shrinks with it.
 """
 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
 
 from lwa.compact.numeric import Array
 from validation.lattice import effort, kernel
-from validation.lattice.effort import RunProgress
+from validation.lattice.effort import EXCESS, RunProgress
 from validation.lattice.equations import Motion
-from validation.lattice.kernel import Beads, Chain, Plan, Samples, advance, beginning
+from validation.lattice.kernel import Beads, Chain, Plan, Samples, Tableau, advance, beginning
 from validation.lattice.run import IntegrationError, Run, finished
 from validation.lattice.schemes import LAWS, SCHEMES
+from validation.lattice.schemes.nystrom import Pair
 from validation.scenes.checks import SceneError, integer, positive
 from validation.scenes.scene import Scene
 
 _SUPPORTS = 4.0  # of the long-wave pulse: what the window reaches back
 _DECAY = 0.9  # of a pulse's peak, a reach later: where less is left, the window gives way
 _WINDOW = 2  # reaches that a window holds, about
+_POINTS = 6  # of the quadrature at a kink
 _GLANCE = 0.2  # seconds, about, from one look at the progress to the next, or at Ctrl-C
+
+
+@dataclass(frozen=True)
+class Given:
+    """step : of a splitting; of a pair the one that is expected."""
+
+    method: str
+    rtol: float
+    step: float
+    longest: float
 
 
 def follow(
@@ -44,18 +66,25 @@ def follow(
 ) -> Run:
     """`validation.simulate` for a method of `SCHEMES`."""
     reach = _reach(motion, window)
-    natural = effort.step(method, rtol) * min(motion.scales.time, motion.scene.duration)
-    longest = positive(natural if step is None else step, "step")
-    run, decay = _integrated(motion, method, longest, step is None, reach, progress)
+    end = motion.scene.duration
+    natural = effort.step(method, rtol) * min(motion.scales.time, end)
+    longest = math.inf if step is None else positive(step, "step")
+    shorter = step is None or (natural < longest and isinstance(SCHEMES[method], Pair))
+    given = Given(method, rtol, natural if shorter else longest, longest)
+    run, decay = _integrated(motion, given, reach, progress)
     if window is None and reach is not None and decay < _DECAY:
-        return _integrated(motion, method, longest, False, None, progress)[0]
+        return _integrated(motion, given, None, progress)[0]
     return run
+
+
+def _returns(motion: Motion) -> bool:
+    """Whether waves come back: behind a wall, and at k = 1."""
+    return motion.scene.wall is not None or motion.k == 1
 
 
 def _reach(motion: Motion, window: Any) -> int | None:
     """Beads to follow behind the front; None for the whole chain."""
-    scene, n, k = motion.scene, motion.size, motion.k
-    returns = scene.wall is not None or k == 1
+    scene, n, returns = motion.scene, motion.size, _returns(motion)
     if window is False or not scene.stiffnesses or (window is None and returns):
         return None
     if returns:
@@ -65,47 +94,79 @@ def _reach(motion: Motion, window: Any) -> int | None:
         )
     if window is not None and window is not True:
         return integer(window, "window", kernel.BLOCK)
+    reach = _own_reach(motion)
+    return None if window is None and reach >= n else reach
+
+
+def _own_reach(motion: Motion) -> int:
+    """That of the pulse: its support and what may catch up with it."""
+    n, k = motion.size, motion.k
     still = motion.start[n:] == 0
     masses = motion.masses[still] if still.any() else motion.masses  # a striker may be of any mass
     support = math.pi / (k - 1) * math.sqrt(k * (k + 1) / 6)
     back = min(n, _SUPPORTS * support * masses.max() / masses.mean())
-    reach = 2 * kernel.MARGIN + math.ceil(back)
-    return None if window is None and reach >= n else reach
+    return int(2 * kernel.MARGIN + math.ceil(back))
 
 
 def _integrated(
-    motion: Motion, method: str, step: float, adapt: bool, reach: int | None, progress: RunProgress
+    motion: Motion, given: Given, reach: int | None, progress: RunProgress
 ) -> tuple[Run, float]:
     """The run, and the smallest ratio of a pulse's peak to that one reach before."""
-    n, end, scheme = motion.size, motion.scene.duration, SCHEMES[method]
+    n, end = motion.size, motion.scene.duration
     moved = n if reach is None else min(n, _WINDOW * reach)
-    taken = effort.compiled(motion.scene, method, end / step, moved)
+    taken = effort.compiled(motion.scene, given.method, end / given.step, moved)
     taken.check()
     chain = _chain(motion)
     beads, seen = _start(motion, len(chain.A))
-    plan = Plan(
-        scheme.kicks, scheme.drifts, end / math.ceil(taken.steps), end,
-        motion.scales.compression, chain.A.max(), 1 / chain.inverse[min(1, n - 1) : n].min(), n,
-        reach or 0, adapt,
-    )  # fmt: skip
-    at = beginning(plan, chain.k, n if reach is None else _front(motion))
-    glance = int(_GLANCE * taken.steps / taken.seconds)
+    plan = _plan(motion, given, chain, reach, end / math.ceil(taken.steps))
+    at = beginning(plan, chain.k, _front(motion))
+    glance = max(1, int(_GLANCE * taken.steps / taken.seconds))
     t = 0.0
     with progress(taken) as tell:
         while t < end:
             tell(t / end)
-            t = advance(chain, beads, plan, seen, at, max(1, glance))
+            t = advance(chain, beads, plan, seen, at, glance)
+            if t < end and at["tries"] > EXCESS * taken.steps:
+                raise IntegrationError(effort.beyond(taken, int(at["tries"]), t))
     if not (np.isfinite(beads.y).all() and np.isfinite(beads.v).all()):
         raise IntegrationError(f"the motion overflows: a step of {plan.h:g} is too long")
-    rear, steps, moves = (int(at[name]) for name in ("lo", "steps", "evaluations"))
+    rear, steps, tries, moves = (int(at[name]) for name in ("lo", "steps", "tries", "evaluations"))
     state = np.concatenate((beads.y[:n], beads.v[:n]))
     energy = motion.energy(state, rear) + float(at["lost"])
     _fly_on(beads, seen, rear, end)
     state[:rear] = beads.y[:rear]
     records = _recorded(motion.scene, chain, beads, seen)
-    evaluations = steps * scheme.stages
+    evaluations = tries * SCHEMES[given.method].stages
     run = finished(motion, state, records, energy, steps, evaluations, moves, reach)
     return run, float(at["decay"])
+
+
+@lru_cache
+def _tableau(method: str, k: float) -> Tableau:
+    scheme = SCHEMES[method]
+    nothing, table = np.zeros(0), np.zeros((0, 0))
+    points = table
+    if k < SCHEMES["RKN86"].order:  # else no kink is left that the pair sees
+        u, w = scipy.special.roots_jacobi(_POINTS, 0.0, k)
+        points = np.stack(((1 + u) / 2, w / 2 ** (k + 1)))
+    if isinstance(scheme, Pair):
+        return Tableau(nothing, nothing, *scheme.arrays(kernel.WIDTH), scheme.lower, points)
+    return Tableau(scheme.kicks, scheme.drifts, nothing, table, table, 0, points)
+
+
+def _plan(motion: Motion, given: Given, chain: Chain, reach: int | None, step: float) -> Plan:
+    """Of the whole run."""
+    n, scales = motion.size, motion.scales
+    # without a window the splitting's step stays: rattling at the rear does not slow down
+    adapt = isinstance(SCHEMES[given.method], Pair) or (
+        given.longest == math.inf and reach is not None
+    )
+    return Plan(
+        _tableau(given.method, motion.k), given.rtol * scales.displacement,
+        given.rtol * scales.velocity, step, given.longest, motion.scene.duration,
+        scales.compression, chain.A.max(), 1 / chain.inverse[min(1, n - 1) : n].min(), n,
+        0 if _returns(motion) else reach or _own_reach(motion), reach is not None, adapt,
+    )  # fmt: skip
 
 
 def _chain(motion: Motion) -> Chain:
@@ -128,14 +189,17 @@ def _front(motion: Motion) -> int:
 def _start(motion: Motion, padded: int) -> tuple[Beads, Samples]:
     """The beads as they start, and the samples of the sensors' beads and of their contacts'."""
     scene, n = motion.scene, motion.size
-    y, v, force, left = np.zeros((4, padded + 1))
+    y, v, next_y, next_v, left = np.zeros((5, padded + 1))
     y[:n], v[:n], left[:] = motion.start[:n], motion.start[n:], np.inf
+    sums, force = np.zeros((4, padded + 1)), np.zeros((2 * kernel.WIDTH, padded + 1))
     contacts, beads = (np.array(row, int) for row in (scene.contact_sensors, scene.bead_sensors))
     watched = np.unique(np.concatenate((contacts, contacts + 1, beads - 1, beads, beads + 1)))
     watched = watched[watched >= 0]
     time = np.linspace(0.0, scene.duration, scene.samples)
     seen = np.repeat(np.stack((y, v))[:, watched, None], len(time), axis=2)
-    return Beads(y, v, force, left), Samples(time, watched, np.zeros((3, len(watched))), *seen)
+    return Beads(y, v, next_y, next_v, left, force, sums), Samples(
+        time, watched, np.zeros((3, 4, len(watched))), *seen
+    )
 
 
 def _fly_on(beads: Beads, seen: Samples, rear: int, end: float) -> None:

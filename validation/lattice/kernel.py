@@ -18,11 +18,13 @@ from lwa.compact.numeric import Array
 MARGIN = 4  # still beads that the window holds at its front
 SHORTEST = 32  # beads below which the vector loops take no less time
 BLOCK = 8  # what the window's length is a multiple of: the doubles of the widest vector register
+WIDTH = 5  # stages that are added up at a time
 _OPEN = 1e-3  # of the peak force: what a contact behind may push and count as open
 _BLOW = 0.05  # of a bead's peak momentum: what the next may still get from a bead left behind
 _LONGEST = 4  # reaches: further behind, beads are left in any case, to bound the cost
 _STILL = 1e-13  # of the peak compression: beads that have moved less are still
 _NOTHING = 1e-60  # of the greatest compression: open, lest the front decay into denormal numbers
+_DOUBT = 0.05  # of what an opening corrects: what it may err by
 
 
 class Chain(NamedTuple):
@@ -37,121 +39,313 @@ class Chain(NamedTuple):
 
 
 class Beads(NamedTuple):
-    """y and v; the force on each bead from behind, less its load; when beads were left behind."""
+    """y and v, and as they may be after the step that is tried; when beads were left behind.
+
+    force : (stages, padded + 1), by stage that on each bead from behind, less its load.
+    sums : (4, padded + 1), of stages: one for all, then the impulses of a step and the errors of
+        displacement and velocity that they bring.
+    """
 
     y: Array
     v: Array
-    force: Array
+    next_y: Array
+    next_v: Array
     left: Array
+    force: Array
+    sums: Array
 
 
 class Samples(NamedTuple):
-    """Times; the watched beads, their y, v and y'' before a step (3, W), and y and v (W, S)."""
+    """Times; the watched beads, and y, v (W, S) there.
+
+    knots : (3, 4, W), y, v, y'' and y''' at the ends of the last two steps, by turns.
+    """
 
     time: Array
     watched: NDArray[np.int_]
-    before: Array
+    knots: Array
     y: Array
     v: Array
 
 
-class Plan(NamedTuple):
-    """A splitting, its first step, and what it moves: ``size`` beads, or a window of them.
-
-    deepest : the greatest compression. stiffest : of the contacts. heaviest : but for the striker.
-    reach : of the window, 0 without. adapt : whether the step grows as the pulse decays.
+class Tableau(NamedTuple):
+    """kicks, drifts : of a splitting. nodes, rows, ends : of a pair; lower : its lower order.
+    points : nodes and weights of ∫ u^k q(u) du from 0 to 1.
     """
 
     kicks: Array
     drifts: Array
+    nodes: Array
+    rows: Array
+    ends: Array
+    lower: int
+    points: Array
+
+
+class Plan(NamedTuple):
+    """A scheme, its first step, and what it moves: ``size`` beads, or a window of them.
+
+    y, v : the errors of a step that are allowed. h : the first step. longest : the longest of a
+    pair. deepest : the greatest compression. stiffest : of the contacts. heaviest : but for the
+    striker. reach : of a window, after which the pulse is looked at; 0 where waves come back.
+    cut : whether the rear is left. adapt : whether step and errors follow the pulse's time and size
+    as it decays.
+    """
+
+    scheme: Tableau
+    y: float
+    v: float
     h: float
+    longest: float
     end: float
     deepest: float
     stiffest: float
     heaviest: float
     size: int
     reach: int
+    cut: bool
     adapt: bool
 
 
-_COUNTS = ("steps", "evaluations", "front", "mark", "lo", "done", "begin", "stop", "legs", "count")
-_REALS = ("t", "base", "h", "scale", "top", "peak", "lost", "decay")
+_COUNTS = ("steps", "tries", "evaluations", "front", "mark", "lo", "done", "begin", "stop", "legs",
+           "count")  # fmt: skip
+_REALS = ("t", "base", "h", "before", "y", "v", "scale", "top", "peak", "lost", "decay")
 _PLACE = np.dtype([(name, int) for name in _COUNTS] + [(name, float) for name in _REALS])
 
 
 def beginning(plan: Plan, k: float, front: int) -> Any:
     """Where `advance` is, to begin with: a record that it changes.
 
-    steps, evaluations : their numbers; evaluations times the beads that each one moves.
+    steps, tries, evaluations : their numbers; evaluations times the beads that each one moves.
     front, mark, lo : the first bead that is still, that of one reach ago, the rear.
     done : samples that are taken. begin, stop : watched beads that are followed.
     legs : reaches passed. count : of steps of the present length h, from base on.
-    t : the time. scale : the compression that the step is made for.
+    t : the time. before : the last step. y, v : the error that is allowed.
+    scale : the compression that the step is made for.
     top, peak : the greatest force in this reach, and in the last.
     lost : energy of the contacts that were cut. decay : the smallest ratio of two such peaks.
     """
     at = np.zeros(1, _PLACE)[0]
     at["front"] = at["mark"] = front
-    at["h"], at["scale"], at["decay"] = plan.h, plan.deepest, 1.0
+    at["h"], at["y"], at["v"] = plan.h, plan.y, plan.v
+    at["scale"], at["decay"] = plan.deepest, 1.0
     at["peak"] = plan.stiffest * plan.deepest**k
     return at
 
 
 _Function = TypeVar("_Function", bound=Callable[..., Any])
-# Without "reassoc" rounding does not depend on the order of a sum; in numba's own error model
-# every division by zero would be an exception's way out.
-_OPTIONS: Any = dict(fastmath={"nnan", "ninf", "nsz", "arcp", "contract"}, error_model="numpy")
+# Without "reassoc" rounding does not depend on the order of a sum, without "nnan" and "ninf" an
+# overflow is seen; in numba's own error model every division by zero would be an exception's way
+# out.
+_OPTIONS: Any = dict(fastmath={"nsz", "arcp", "contract"}, error_model="numpy", nogil=True)
 _compiled: Callable[[_Function], _Function] = njit(cache=True, **_OPTIONS)
+# Sums and maxima in the order of the machine's registers, the same in every run.
+_summed: Callable[[_Function], _Function] = njit(
+    cache=True, **_OPTIONS | {"fastmath": {"nsz", "arcp", "contract", "reassoc"}}
+)
 # Written out where it is called: to pass the arrays would take as long as the rest.
 _part: Callable[[_Function], _Function] = njit(inline="always", **_OPTIONS)
+# An index without a sign is never one from the end, which would keep a loop from vectorising.
+_index = np.uint64
+_ZERO, _ONE, _TWO, _THREE = map(_index, range(4))
+
+
+@_part
+def _press(chain: Chain, y: Array, force: Array, s: Any, lo: int, hi: int, nothing: float) -> None:
+    """The forces ahead of the beads lo … hi-1, less their loads, as those of a stage."""
+    A, rest, load, law, k = chain.A, chain.rest, chain.load, chain.law, chain.k
+    if law == 3:
+        for i in range(_index(lo), _index(hi)):
+            d = rest[i] + y[i] - y[i + _ONE]
+            d = d if d > nothing else 0.0
+            force[s, i + _ONE] = A[i] * (d * np.sqrt(d)) - load[i]
+    elif law == 1:
+        for i in range(_index(lo), _index(hi)):
+            d = rest[i] + y[i] - y[i + _ONE]
+            d = d if d > nothing else 0.0
+            force[s, i + _ONE] = A[i] * d - load[i]
+    elif law == 2:
+        for i in range(_index(lo), _index(hi)):
+            d = rest[i] + y[i] - y[i + _ONE]
+            d = d if d > nothing else 0.0
+            force[s, i + _ONE] = A[i] * (d * np.sqrt(np.sqrt(d))) - load[i]
+    elif law == 4:
+        for i in range(_index(lo), _index(hi)):
+            d = rest[i] + y[i] - y[i + _ONE]
+            d = d if d > nothing else 0.0
+            force[s, i + _ONE] = A[i] * (d * d) - load[i]
+    elif law == 5:
+        for i in range(_index(lo), _index(hi)):
+            d = rest[i] + y[i] - y[i + _ONE]
+            d = d if d > nothing else 0.0
+            force[s, i + _ONE] = A[i] * (d * d * d) - load[i]
+    else:
+        for i in range(_index(lo), _index(hi)):
+            d = rest[i] + y[i] - y[i + _ONE]
+            d = d if d > nothing else 0.0
+            force[s, i + _ONE] = A[i] * d**k - load[i]
 
 
 @_compiled
-def _step(chain: Chain, beads: Beads, plan: Plan, h: float, lo: int, hi: int) -> None:
-    """One step of the beads lo … hi-1."""
-    size, law, k, nothing = hi - lo, chain.law, chain.k, _NOTHING * plan.deepest
-    y, v, here, inverse = beads.y[lo:hi], beads.v[lo:hi], beads.force[lo:hi], chain.inverse[lo:hi]
-    next_y, ahead = beads.y[lo + 1 : hi + 1], beads.force[lo + 1 : hi + 1]
-    A, rest, load = chain.A[lo:hi], chain.rest[lo:hi], chain.load[lo:hi]
-    kicks, drifts = plan.kicks, plan.drifts
+def _split(chain: Chain, beads: Beads, plan: Plan, h: float, lo: int, hi: int) -> None:
+    """One step of a splitting, of the beads lo … hi-1."""
+    nothing, kicks, drifts = _NOTHING * plan.deepest, plan.scheme.kicks, plan.scheme.drifts
+    y, v, force, inverse = beads.y, beads.v, beads.force, chain.inverse
     for s in range(len(drifts)):
-        if s == 0:
-            pass  # the forces of the last stage, which a first kick of 0 does not ask for
-        elif law == 3:
-            for i in range(size):
-                d = rest[i] + y[i] - next_y[i]
-                d = d if d > nothing else 0.0
-                ahead[i] = A[i] * (d * np.sqrt(d)) - load[i]
-        elif law == 1:
-            for i in range(size):
-                d = rest[i] + y[i] - next_y[i]
-                d = d if d > nothing else 0.0
-                ahead[i] = A[i] * d - load[i]
-        elif law == 2:
-            for i in range(size):
-                d = rest[i] + y[i] - next_y[i]
-                d = d if d > nothing else 0.0
-                ahead[i] = A[i] * (d * np.sqrt(np.sqrt(d))) - load[i]
-        elif law == 4:
-            for i in range(size):
-                d = rest[i] + y[i] - next_y[i]
-                d = d if d > nothing else 0.0
-                ahead[i] = A[i] * (d * d) - load[i]
-        elif law == 5:
-            for i in range(size):
-                d = rest[i] + y[i] - next_y[i]
-                d = d if d > nothing else 0.0
-                ahead[i] = A[i] * (d * d * d) - load[i]
-        else:
-            for i in range(size):
-                d = rest[i] + y[i] - next_y[i]
-                d = d if d > nothing else 0.0
-                ahead[i] = A[i] * d**k - load[i]
+        if s > 0:  # the first kick is 0
+            _press(chain, y, force, _ZERO, lo, hi, nothing)
         b, a = h * kicks[s], h * drifts[s]
-        for i in range(size):
-            u = v[i] + b * (here[i] - ahead[i]) * inverse[i]
+        for i in range(_index(lo), _index(hi)):
+            u = v[i] + b * (force[_ZERO, i] - force[_ZERO, i + _ONE]) * inverse[i]
             v[i] = u
             y[i] = y[i] + a * u
+
+
+@_part
+def _add_up(
+    sums: Array, q: Any, force: Array, table: Array, row: int, scale: float, stages: int, lo: int,
+    hi: int,
+) -> None:  # fmt: skip
+    """scale Σ_j table[row, j] force[j] over the first stages."""
+    for first in range(0, stages, WIDTH):
+        a, b = scale * table[row, first], scale * table[row, first + 1]
+        c, d = scale * table[row, first + 2], scale * table[row, first + 3]
+        e = scale * table[row, first + 4]
+        j = _index(first)
+        j1, j2, j3, j4 = j + _ONE, j + _index(2), j + _index(3), j + _index(4)
+        if first == 0:
+            for i in range(_index(lo), _index(hi) + _ONE):
+                sums[q, i] = (
+                    a * force[j, i] + b * force[j1, i] + c * force[j2, i] + d * force[j3, i]
+                    + e * force[j4, i]
+                )  # fmt: skip
+        else:
+            for i in range(_index(lo), _index(hi) + _ONE):
+                sums[q, i] += (
+                    a * force[j, i] + b * force[j1, i] + c * force[j2, i] + d * force[j3, i]
+                    + e * force[j4, i]
+                )  # fmt: skip
+
+
+@_summed
+def _square(sums: Array, inverse: Array, lo: int, hi: int) -> float:
+    """Σ over the beads of the squares of their errors."""
+    total = 0.0
+    for i in range(_index(lo), _index(hi)):
+        y = (sums[_TWO, i] - sums[_TWO, i + _ONE]) * inverse[i]
+        v = (sums[_THREE, i] - sums[_THREE, i + _ONE]) * inverse[i]
+        total += y * y + v * v
+    return total
+
+
+@_part
+def _attempt(chain: Chain, beads: Beads, plan: Plan, at: Any, h: float, hi: int) -> float:
+    """One step of a pair, of the beads lo … hi-1: its greatest error over that which is allowed."""
+    lo, nothing, stages = at.lo, _NOTHING * plan.deepest, len(plan.scheme.nodes)
+    y, v, next_y, next_v = beads.y, beads.v, beads.next_y, beads.next_v
+    inverse, rest, force, sums = chain.inverse, chain.rest, beads.force, beads.sums
+    rows, ends, nodes = plan.scheme.rows, plan.scheme.ends, plan.scheme.nodes
+    for s in range(1, stages):
+        _add_up(sums, _ZERO, force, rows, s, h * h, s, lo, hi)
+        ch = nodes[s] * h
+        for i in range(_index(lo), _index(hi)):
+            push = (sums[_ZERO, i] - sums[_ZERO, i + _ONE]) * inverse[i]
+            next_y[i] = y[i] + ch * v[i] + push
+        _press(chain, next_y, force, _index(s), lo, hi, nothing)
+    _add_up(sums, _ONE, force, ends, 0, h, stages, lo, hi)
+    _add_up(sums, _TWO, force, ends, 1, h * h / at.y, stages, lo, hi)
+    _add_up(sums, _THREE, force, ends, 2, h / at.v, stages, lo, hi)
+    for i in range(_index(lo), _index(hi)):
+        next_v[i] = v[i] + (sums[_ONE, i] - sums[_ONE, i + _ONE]) * inverse[i]
+    crossing = 0
+    for i in range(_index(lo), _index(hi)):
+        before = rest[i] + y[i] - y[i + _ONE]
+        after = rest[i] + next_y[i] - next_y[i + _ONE]
+        crossing += 1 if before * after < 0.0 else 0
+    if crossing > 0 and plan.scheme.points.shape[1] > 0:
+        for i in range(lo, hi):
+            before = rest[i] + y[i] - y[i + 1]
+            if before * (rest[i] + next_y[i] - next_y[i + 1]) < 0.0:
+                _correct(chain, beads, plan, at, h, i)
+    return math.sqrt(_square(sums, inverse, lo, hi))
+
+
+@_compiled
+def _correct(chain: Chain, beads: Beads, plan: Plan, at: Any, h: float, i: int) -> None:
+    """Contact i opens or closes within a step: its impulse, and what it moves, by quadrature.
+
+    Its compression is the quintic with δ, δ' and δ'' of both ends, with one root r. On the closed
+    side it is (x - r) q(x), and ∫ |x - r|^k q^k dx is a Gauss–Jacobi sum.
+    """
+    y, v, inverse, force = beads.y, beads.v, chain.inverse, beads.force
+    last = len(plan.scheme.nodes) - 1
+    c0 = chain.rest[i] + y[i] - y[i + 1]
+    c1 = h * (v[i] - v[i + 1])
+    c2 = h * h * _relative(force[0], inverse, i) / 2
+    r0 = chain.rest[i] + beads.next_y[i] - beads.next_y[i + 1] - c0 - c1 - c2
+    r1 = h * (beads.next_v[i] - beads.next_v[i + 1]) - c1 - 2 * c2
+    r2 = h * h * _relative(force[last], inverse, i) - 2 * c2
+    c3, c4, c5 = 10 * r0 - 4 * r1 + r2 / 2, -15 * r0 + 7 * r1 - r2, 6 * r0 - 3 * r1 + r2 / 2
+    low, high, x = 0.0, 1.0, 0.5
+    for _ in range(60):  # Newton's method, or else the middle
+        p = c0 + x * (c1 + x * (c2 + x * (c3 + x * (c4 + x * c5))))
+        slope = c1 + x * (2 * c2 + x * (3 * c3 + x * (4 * c4 + x * 5 * c5)))
+        low, high = (x, high) if p * c0 > 0.0 else (low, x)
+        guess = x - p / slope
+        guess = guess if low < guess < high else (low + high) / 2
+        x, moved = guess, abs(guess - x)
+        if moved < 1e-15:
+            break
+    q3 = c4 + x * c5
+    q2 = c3 + x * q3
+    q1 = c2 + x * q2
+    q0 = c1 + x * q1
+    side = -x if c0 > 0.0 else 1.0 - x
+    impulse = moment = 0.0
+    for m in range(plan.scheme.points.shape[1]):
+        z = x + side * plan.scheme.points[0, m]
+        q = side * (q0 + z * (q1 + z * (q2 + z * (q3 + z * c5))))
+        f = plan.scheme.points[1, m] * max(q, 0.0) ** chain.k
+        impulse += f
+        moment += f * (1.0 - z)
+    impulse = h * (chain.A[i] * abs(side) * impulse - chain.load[i])
+    moment = h * h * (chain.A[i] * abs(side) * moment - chain.load[i] / 2)
+    summed = 0.0
+    for s in range(last):
+        summed += plan.scheme.rows[last, s] * force[s, i + 1]
+    d_impulse, d_moment = impulse - beads.sums[1, i + 1], moment - h * h * summed
+    beads.next_v[i] -= d_impulse * inverse[i]
+    beads.next_v[i + 1] += d_impulse * inverse[i + 1]
+    beads.next_y[i] -= d_moment * inverse[i]
+    beads.next_y[i + 1] += d_moment * inverse[i + 1]
+    # The pair's own estimate is that of a smooth motion.
+    beads.sums[2, i + 1] = _DOUBT * d_moment / at.y
+    beads.sums[3, i + 1] = _DOUBT * d_impulse / at.v
+
+
+@_part
+def _relative(force: Array, inverse: Array, i: int) -> float:
+    """The acceleration of bead i less that of the next."""
+    near, far = (force[i] - force[i + 1]) * inverse[i], (force[i + 1] - force[i + 2])
+    return float(near - far * inverse[i + 1])
+
+
+@_part
+def _accepted(chain: Chain, beads: Beads, plan: Plan, at: Any, h: float, hi: int) -> bool:
+    """Try a step of a pair, choose the next one by its error, and tell whether it is made."""
+    error = _attempt(chain, beads, plan, at, h, hi)
+    if not error <= 1.0:
+        shrink = 0.9 * error ** (-1.0 / (plan.scheme.lower + 1)) if error < 1e9 else 0.0
+        at.h = h * max(0.1, shrink)
+        if not error < 1e9:
+            beads.force[1:] = 0.0  # overflows must not last
+        return False
+    for i in range(_index(at.lo), _index(hi)):
+        beads.y[i], beads.v[i] = beads.next_y[i], beads.next_v[i]
+    _press(chain, beads.y, beads.force, _ZERO, at.lo, hi, _NOTHING * plan.deepest)
+    grow = 0.9 * max(error, 1e-9) ** (-1.0 / (plan.scheme.lower + 1))
+    at.h = min(plan.longest, h * min(5.0, grow))
+    return True
 
 
 @_compiled
@@ -161,45 +355,87 @@ def _net(chain: Chain, y: Array, i: int) -> float:
     return float((chain.A[i] * d**chain.k if d > 0.0 else 0.0) - chain.load[i])
 
 
-@_compiled
-def _acceleration(chain: Chain, y: Array, i: int, lo: int) -> float:
-    """Of bead i, where lo is the first that is followed."""
-    back = _net(chain, y, i - 1) if i > lo else 0.0
-    return float((back - _net(chain, y, i)) * chain.inverse[i])
+@_part
+def _bond(chain: Chain, beads: Beads, i: int, lo: int) -> tuple[float, float]:
+    """The force of contact i, less its load, and its rate; 0 where it is cut."""
+    d = chain.rest[i] + beads.y[i] - beads.y[i + 1]
+    if i < lo or d <= 0.0:
+        return (0.0 if i < lo else -chain.load[i]), 0.0
+    root = np.sqrt(d) if chain.law == 3 else d ** (chain.k - 1.0)
+    stiff = chain.A[i] * root
+    return stiff * d - chain.load[i], chain.k * stiff * (beads.v[i] - beads.v[i + 1])
 
 
 @_part
-def _sample(chain: Chain, beads: Beads, seen: Samples, at: Any, h: float, due: int) -> None:
-    """The samples within a step: of the quintic with y, y' and y'' of both ends."""
-    y, v, before, time, seen_y, seen_v = beads.y, beads.v, seen.before, seen.time, seen.y, seen.v
+def _knot(chain: Chain, beads: Beads, seen: Samples, at: Any, turn: int) -> None:
+    """y and its first three derivatives at the watched beads."""
+    knot = seen.knots[turn]
     for q in range(at.begin, at.stop):
         j = seen.watched[q]
-        c0, c1, c2 = before[0, q], h * before[1, q], h * h * before[2, q] / 2
-        r0 = y[j] - c0 - c1 - c2
-        r1 = h * v[j] - c1 - 2 * c2
-        r2 = h * h * _acceleration(chain, y, j, at.lo) - 2 * c2
-        c3 = 10 * r0 - 4 * r1 + r2 / 2
-        c4 = -15 * r0 + 7 * r1 - r2
-        c5 = 6 * r0 - 3 * r1 + r2 / 2
-        for s in range(at.done, due):
-            x = (time[s] - at.t) / h
-            seen_y[q, s] = c0 + x * (c1 + x * (c2 + x * (c3 + x * (c4 + x * c5))))
-            slope = c1 + x * (2 * c2 + x * (3 * c3 + x * (4 * c4 + x * 5 * c5)))
-            seen_v[q, s] = slope / h
-    at.done = due
+        back, back_rate = _bond(chain, beads, j - 1, at.lo) if j > 0 else (0.0, 0.0)
+        force, rate = _bond(chain, beads, j, at.lo)
+        knot[0, q], knot[1, q] = beads.y[j], beads.v[j]
+        knot[2, q] = (back - force) * chain.inverse[j]
+        knot[3, q] = (back_rate - rate) * chain.inverse[j]
 
 
 @_compiled
-def _grow_step(chain: Chain, plan: Plan, at: Any) -> None:
-    """A reach further on: how high is the pulse, and the step that goes with it."""
+def _sample(seen: Samples, at: Any, h: float, due: int) -> None:
+    """The samples within a step: Hermite's polynomial of the knots of two steps, in Newton's form.
+
+    Its order is 12; 8 in the first step.
+    """
+    size = 12 if at.steps > 1 else 8
+    x, d = np.empty(12), np.empty(12)
+    x[:4], x[4:8], x[8:] = 0.0, 1.0, -at.before / h
+    for q in range(at.begin, at.stop):
+        knots = seen.knots[:, :, q]
+        new, old, older = at.steps % 3, (at.steps - 1) % 3, (at.steps - 2) % 3
+        for i in range(size):
+            d[i] = knots[old if i < 4 else new if i < 8 else older, 0]
+        scale = 1.0
+        for j in range(1, size):
+            scale *= h / j
+            for i in range(size - 1, j - 1, -1):
+                if x[i] == x[i - j]:
+                    d[i] = scale * knots[old if i < 4 else new if i < 8 else older, j]
+                else:
+                    d[i] = (d[i] - d[i - 1]) / (x[i] - x[i - j])
+        for s in range(at.done, due):
+            z = (seen.time[s] - at.t) / h
+            p, slope = d[size - 1], 0.0
+            for i in range(size - 2, -1, -1):
+                slope = p + (z - x[i]) * slope
+                p = d[i] + (z - x[i]) * p
+            seen.y[q, s], seen.v[q, s] = p, slope / h
+    at.done = due
+
+
+@_summed
+def _greatest(force: Array, lo: int, hi: int) -> float:
+    """Of the contacts' forces."""
+    top = 0.0
+    for i in range(_index(lo), _index(hi)):
+        top = max(top, force[_ZERO, i + _ONE])
+    return top
+
+
+@_compiled
+def _grow(chain: Chain, plan: Plan, at: Any) -> None:
+    """A reach further on: how high is the pulse, and the step or error that goes with it."""
     at.legs += 1
     if at.legs > 2 and at.peak > 0.0:  # the first may hold the striker's blow
         at.decay = min(at.decay, at.top / at.peak)
     at.peak, at.top, at.mark = at.top, 0.0, at.front
     now = min(plan.deepest, (at.peak / plan.stiffest) ** (1 / chain.k))
     if plan.adapt and now > 0.0 and abs(now - at.scale) > 0.07 * at.scale:
-        at.scale, at.base, at.count = now, at.t, 0
-        at.h = plan.h * (plan.deepest / now) ** ((chain.k - 1) / 2)
+        at.scale = now
+        size = now / plan.deepest
+        if len(plan.scheme.nodes):
+            at.y, at.v = plan.y * size, plan.v * size ** ((chain.k + 1) / 2)
+        else:
+            at.base, at.count = at.t, 0
+            at.h = plan.h * size ** ((1 - chain.k) / 2)
 
 
 @_part
@@ -217,53 +453,65 @@ def _cut_rear(chain: Chain, beads: Beads, plan: Plan, at: Any) -> None:
         at.lost += max(force, 0.0) * max(y[lo] - y[lo + 1], 0.0) / (k + 1)
         beads.left[lo] = at.t
         at.lo = lo + 1
-        beads.force[lo + 1] = 0.0
+        beads.force[:, lo + 1] = 0.0
+
+
+@_part
+def _follow(chain: Chain, beads: Beads, plan: Plan, at: Any, hi: int) -> None:
+    """Move the front, and the rear where it may be cut, with the pulse."""
+    while at.front < plan.size and abs(beads.y[at.front - MARGIN]) > _STILL * at.scale:
+        at.front += 1
+    if not plan.reach:
+        return
+    if at.steps % 4 == 0 or len(plan.scheme.nodes):
+        at.top = max(at.top, _greatest(beads.force, at.lo, hi))
+    if at.front - at.mark >= plan.reach:
+        _grow(chain, plan, at)
+    if plan.cut:
+        _cut_rear(chain, beads, plan, at)
 
 
 @_compiled
-def advance(chain: Chain, beads: Beads, plan: Plan, seen: Samples, at: Any, steps: int) -> float:
-    """Integrate on from where the beads are, to the end or by so many steps; the time there.
+def advance(chain: Chain, beads: Beads, plan: Plan, seen: Samples, at: Any, tries: int) -> float:
+    """Integrate on from where the beads are, to the end or by so many tries; the time there.
 
     Beads that are left behind stay as they were then.
     """
-    until = at.steps + steps
-    if at.steps == 0:
+    until, time, watched = at.tries + tries, seen.time, seen.watched
+    stages = max(len(plan.scheme.nodes), len(plan.scheme.drifts)) - 1
+    if at.tries == 0:
         for i in range(plan.size):
-            beads.force[i + 1] = _net(chain, beads.y, i)
-    time, watched, stages = seen.time, seen.watched, len(plan.drifts) - 1
-    while at.t < plan.end and at.steps < until:
+            beads.force[0, i + 1] = _net(chain, beads.y, i)
+        at.stop = len(watched)
+        for turn in range(3):
+            _knot(chain, beads, seen, at, turn)
+        at.stop = 0
+    while at.t < plan.end and at.tries < until:
         hi = at.lo + max(SHORTEST, -(-(at.front - at.lo) // BLOCK) * BLOCK)
         while at.stop < len(watched) and watched[at.stop] < hi:
             at.stop += 1
         while at.begin < at.stop and watched[at.begin] < at.lo:
             at.begin += 1
-        at.count += 1
-        later, h = at.base + at.count * at.h, at.h
+        at.tries += 1
+        at.evaluations += stages * (hi - at.lo)
+        later, h = at.base + (at.count + 1) * at.h, at.h
         if later > plan.end - 1e-9 * h:
             later, h = plan.end, plan.end - at.t
+        if len(plan.scheme.nodes):
+            if not _accepted(chain, beads, plan, at, h, hi):
+                continue
+            at.base, at.count = later, 0
+        else:
+            _split(chain, beads, plan, h, at.lo, hi)
+            at.count += 1
+        at.steps += 1
         due = at.done
         while due < len(time) and time[due] <= later:
             due += 1
+        _knot(chain, beads, seen, at, at.steps % 3)
         if due > at.done:
-            for q in range(at.begin, at.stop):
-                j = watched[q]
-                seen.before[0, q], seen.before[1, q] = beads.y[j], beads.v[j]
-                seen.before[2, q] = _acceleration(chain, beads.y, j, at.lo)
-        _step(chain, beads, plan, h, at.lo, hi)
-        at.steps += 1
-        at.evaluations += stages * (hi - at.lo)
-        if due > at.done:
-            _sample(chain, beads, seen, at, h, due)
-        at.t = later
-        if plan.reach:
-            if at.steps % 4 == 0:
-                top = at.top
-                for i in range(at.lo, hi):
-                    top = max(top, beads.force[i + 1])
-                at.top = top
-            while at.front < plan.size and abs(beads.y[at.front - MARGIN]) > _STILL * at.scale:
-                at.front += 1
-            if at.front - at.mark >= plan.reach:
-                _grow_step(chain, plan, at)
-            _cut_rear(chain, beads, plan, at)
+            _sample(seen, at, h, due)
+        at.t, at.before = later, h
+        if plan.cut or at.front < plan.size:
+            _follow(chain, beads, plan, at, hi)
     return float(at.t)

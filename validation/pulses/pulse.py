@@ -16,14 +16,13 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike, NDArray
 
+from lwa.compact.numeric import Array
 from lwa.exact import InputError
 
 Source = TypeVar("Source")
 
 FEWEST = 8  # samples above half the peak, below which a record is too coarse to be measured
-_FORGOTTEN = (
-    64  # samples beyond the flanks that a spline goes through: it keeps 0.27 of each a step
-)
+FORGOTTEN = 32  # samples beyond the flanks that a spline goes through: it keeps 0.27 of each a step
 
 
 class MeasureError(InputError):
@@ -112,28 +111,61 @@ def measure(time: ArrayLike, signal: ArrayLike) -> Pulse:
     low = f <= f[top] / 2
     start = top - int(np.argmax(low[top::-1])) if low[:top].any() else 0
     stop = top + int(np.argmax(low[top:])) if low[top:].any() else len(f)
-    start, stop = max(0, start - _FORGOTTEN), stop + _FORGOTTEN
+    start, stop = max(0, start - FORGOTTEN), stop + FORGOTTEN
     t, f, top = t[start:stop], f[start:stop], top - start
     # Powers of two, which cost no digit: slopes of a spline may overflow where its values do not.
     pace, height = (2.0 ** (math.frexp(x)[1] - 1) for x in (t[-1] - t[0], f[top]))
     t, f = t / pace, f / height
-    spline = scipy.interpolate.CubicSpline(t, f, extrapolate=False)
-    # The peak may lie on either side of the highest sample.
-    crest = spline.c[:, top - 1 : top + 1], spline.x[top - 1 : top + 2]
-    slope = scipy.interpolate.PPoly(*crest, extrapolate=False).derivative()
-    candidates = np.append(slope.roots(), t[top])
-    arrival = candidates[np.argmax(spline(candidates))]
-    peak = spline(arrival)
-    passes = spline.solve(peak / 2)
-    before, behind = passes[passes < arrival], passes[passes > arrival]
-    for side, found in (("front", before), ("back", behind)):
-        if not len(found):
+    arrival, peak, rise, fall = (float(x[0]) for x in read(t, f[None], np.array([top])))
+    for side, found in (("front", rise), ("back", fall)):
+        if math.isnan(found):
             raise MeasureError(f"{partly} its {side} does not pass half its peak")
-    rise, fall = before[-1], behind[0]
     if (inside := np.count_nonzero((t > rise) & (t < fall))) < FEWEST:
         few = f"{inside} samples lie above half the pulse's peak"
         raise MeasureError(f"{few}: at least {FEWEST} are wanted")
-    return Pulse(*(float(x) for x in (arrival * pace, peak * height, rise * pace, fall * pace)))
+    return Pulse(arrival * pace, peak * height, rise * pace, fall * pace)
+
+
+def read(time: Array, rows: Array, top: NDArray[np.intp]) -> tuple[Array, Array, Array, Array]:
+    """Arrival, peak, rise and fall of the pulse in each row, whose highest sample is at ``top``.
+
+    All rows, of shape (R, S), are at the same times, ``top`` at neither end; NaN where a flank is
+    not in the record.
+    """
+    spline = scipy.interpolate.CubicSpline(time, rows, axis=1)
+    row, steps = np.arange(len(rows)), np.diff(time)
+
+    def piece(i: NDArray[np.intp]) -> Array:
+        """One for each row: coefficients of a cubic in 0 … 1."""
+        return np.asarray(spline.c[:, i, row] * steps[i] ** np.arange(3, -1, -1)[:, None])
+
+    def at(cubic: Array, x: Array) -> Array:
+        return np.asarray(((cubic[0] * x + cubic[1]) * x + cubic[2]) * x + cubic[3])
+
+    # The peak may lie on either side of the highest sample.
+    crest = top - (spline.c[2, top, row] <= 0)
+    a, b, c, _ = cubic = piece(crest)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        x = np.nan_to_num(c / (np.sqrt(np.maximum(b * b - 3 * a * c, 0)) - b)).clip(0, 1)
+    peak = np.maximum(at(cubic, x), rows[row, top])
+    arrival = time[crest] + x * steps[crest]
+    below, place = rows <= peak[:, None] / 2, np.arange(len(time))
+    before = np.where(below & (place < top[:, None]), place, -1).max(axis=1)
+    behind = np.where(below & (place > top[:, None]), place, len(time)).min(axis=1)
+
+    def flank(i: NDArray[np.intp], rising: bool) -> Array:
+        cubic, low, high = piece(i), np.zeros(len(rows)), np.ones(len(rows))
+        for _ in range(53):  # by bisection: the spline passes half of the peak once
+            x = (low + high) / 2
+            under = (at(cubic, x) < peak / 2) == rising
+            low, high = np.where(under, x, low), np.where(under, high, x)
+        return np.asarray(time[i] + high * steps[i])
+
+    rise = np.where(before < 0, np.nan, flank(np.maximum(before, 0), True))
+    fall = np.where(
+        behind == len(time), np.nan, flank(np.minimum(behind, len(time) - 1) - 1, False)
+    )
+    return arrival, peak, rise, fall
 
 
 def impulse(time: ArrayLike, signal: ArrayLike, start: float, end: float) -> float:

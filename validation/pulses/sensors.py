@@ -20,7 +20,7 @@ from lwa.compact.numeric import Array
 from validation.lattice.effort import RunProgress, silent
 from validation.lattice.equations import Motion
 from validation.lattice.run import Run
-from validation.lattice.simulate import METHODS, twice
+from validation.lattice.simulate import COMPILED, twice
 from validation.pulses.pulse import Measured, MeasureError, Pulse, compared, measure, speed
 from validation.scenes.checks import SceneError, between
 from validation.scenes.scene import Scene
@@ -90,7 +90,11 @@ Tracks = tuple[Track, ...]
 
 
 def record(
-    scene: Scene, *, method: str = METHODS[0], rtol: Any = TOLERANCE, progress: RunProgress = silent
+    scene: Scene,
+    *,
+    method: str = COMPILED[0],
+    rtol: Any = TOLERANCE,
+    progress: RunProgress = silent,
 ) -> Recording:
     """Simulate a scene and read its sensors.
 

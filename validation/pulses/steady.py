@@ -40,7 +40,7 @@ from lwa.compact.numeric import Array
 from lwa.exact import InputError
 from validation.lattice.run import IntegrationError, Run
 from validation.lattice.simulate import simulate
-from validation.pulses.pulse import Measured, MeasureError, measure
+from validation.pulses.pulse import FEWEST, FORGOTTEN, Measured, MeasureError, read
 from validation.scenes.chains import struck
 
 QUANTITIES = {
@@ -53,7 +53,7 @@ QUANTITIES = {
 
 PLACES = 10  # cells at which the pulse is recorded
 STRETCH = 4  # cells from one to the next, for k from 3/2 on, unless a sweep sets another number
-TOLERANCES = (1e-8, 1e-6)  # of the run that counts and of the one that gives its error
+TOLERANCES = (1e-7, 1e-6)  # of the run that counts and of the one that gives its error
 _SAMPLES = 40.0  # per unit of time, in the run that counts, at k ≤ 3/2 and ω ≥ 1/4
 _GROWTH, _LONGEST = 1.6, 16  # by how much, and how often, a run is made longer, at most
 _SLOWEST = 0.9  # ratio of two differences, next to 1 of which nothing can be said of their sum
@@ -93,7 +93,7 @@ def _point(k: sp.Rational, omega: sp.Rational, stretch: int) -> Point:
     rtol, less = TOLERANCES
     rough = chain.passed(chain.crossing, less, _SAMPLES / 2)
     check = chain.numbers(rough)
-    numbers = chain.numbers(chain.passed(1.05 * rough.until, rtol, _SAMPLES))
+    numbers = chain.numbers(chain.passed(1.01 * rough.until, rtol, _SAMPLES, rough.whole))
     errors = np.maximum(_unsettled(numbers), np.abs(numbers - check)[:, 2:])
     # Relatively; of the force where it is its decay.
     worst = np.vstack((errors[:3] / numbers[:3, 2:], chain.sites * errors[3])).max(axis=0)
@@ -116,11 +116,13 @@ def _unsettled(numbers: Array) -> Array:
 
 
 class Record(NamedTuple):
-    """A run with the pulse in it, where in each contact's record, and how long it has to be."""
+    """A run with the pulse in it, where in each contact's record, and how long it has to be;
+    whether the whole chain had to be moved."""
 
     run: Run
     parts: tuple[slice, ...]
     until: float
+    whole: bool
 
 
 @dataclass(frozen=True)
@@ -136,7 +138,9 @@ class Chain:
         """About the time of a pulse of force 1, by the long-wave speed 2/√((k+1)(1+ω))."""
         return self.sites * PLACES * math.sqrt((self.k + 1) * (1 + self.omega)) / 1.6
 
-    def passed(self, duration: float, rtol: float, samples: float = _SAMPLES) -> Record:
+    def passed(
+        self, duration: float, rtol: float, samples: float = _SAMPLES, whole: bool = False
+    ) -> Record:
         """A run of this duration, or longer, with ``samples`` per unit of time, more where hits are
         shorter. Raises `MeasureError` where the pulse does not come through."""
         samples *= max(1.0, self.k / 1.5) / math.sqrt(min(1.0, 4 * self.omega))
@@ -147,25 +151,38 @@ class Chain:
                 (1.0, self.omega), self.sites * PLACES + 12, self.k,
                 contact_sensors=sensors, duration=duration, samples=math.ceil(samples * duration),
             )  # fmt: skip
-            run = simulate(scene, rtol=rtol, method="SRKN14")
+            window = False if whole else None
+            run = simulate(scene, rtol=rtol, window=window)
+            whole = run.window is None
             parts = tuple(leading_pulse(force, self.k) for force in run.contact_force)
             # One place's time more, lest the front of a pulse yet to come be taken for it.
             until = (1 + 1 / PLACES) * float(run.time[max(part.stop for part in parts) - 1])
             if until <= duration:
-                return Record(run, parts, until)
+                return Record(run, parts, until, whole)
             duration *= _GROWTH
         end = duration / _GROWTH
         raise MeasureError(f"the pulse has not passed {self.sites * PLACES} sites by t = {end:.3g}")
 
     def numbers(self, record: Record) -> Array:
         """`QUANTITIES` (rows) of each stretch; NaN where the pulse does not arrive later."""
-        rows = []
-        for signal, part in zip(record.run.contact_force, record.parts, strict=True):
-            time, force = record.run.time[part], signal[part]
-            pulse, strain = measure(time, force), measure(time, force ** (1 / self.k))
-            rows.append((pulse.arrival, pulse.peak, pulse.fwhm, strain.fwhm))
+        time, force, parts = record.run.time, record.run.contact_force, record.parts
+        pulses = [f[part] for f, part in zip(force, parts, strict=True)]
+        tops = np.array([part.start + np.argmax(f) for f, part in zip(pulses, parts, strict=True)])
+        # As far as where the longest one has half of its strain, and where a spline forgets.
+        high = max(np.count_nonzero(f > f.max() / 2**self.k) for f in pulses)
+        step, reach = time[1], high + FORGOTTEN
+        near = np.arange(-reach, reach + 1)
+        places = np.clip(tops[:, None] + near, 0, len(time) - 1)
+        rows = np.take_along_axis(force, places, axis=1)
+        rows = np.concatenate((rows, rows ** (1 / self.k)))
+        found = read(step * near, rows, np.full(len(rows), reach))
         # Places down, contacts of a cell across.
-        arrival, peak, width, strain_width = np.array(rows).T.reshape(4, PLACES, 2)
+        arrival, peak, rise, back = (x.reshape(2, PLACES, 2) for x in found)
+        width, strain_width = widths = back - rise
+        if not (widths > FEWEST * step).all():
+            few = f"at least {FEWEST} samples above half of its peak"
+            raise MeasureError(f"the pulse is not wholly in the record, with {few}")
+        arrival, peak = arrival[0] + time[tops].reshape(PLACES, 2), peak[0]
         elapsed, fall = np.diff(arrival, axis=0), -np.diff(np.log(peak), axis=0)
         elapsed[elapsed <= 0] = np.nan
         q = (self.k - 1) / (2 * self.k)
@@ -177,8 +194,8 @@ class Chain:
 
 def leading_pulse(force: Array, k: float) -> slice:
     """Where the leading pulse is in a contact's record, at most to its end, with as much before."""
-    strain = force ** (1 / k)
-    start = int(np.argmax(strain > strain.max() / 4))
-    relieved = strain[start:] < np.maximum.accumulate(strain[start:]) / 4
+    quarter = 0.25**k  # of the compression
+    start = int(np.argmax(force > quarter * force.max()))
+    relieved = force[start:] < quarter * np.maximum.accumulate(force[start:])
     length = int(np.argmax(relieved)) + 1 if relieved.any() else len(force) - start
     return slice(max(0, start - length), start + length)

@@ -9,8 +9,6 @@ from validation.lattice.simulate import twice
 from validation.pulses.pulse import Measured, compared, derived, measure, speed
 from validation.scenes.scene import Scene
 
-METHOD = "SRKN14"
-
 
 @dataclass(frozen=True)
 class Passage:
@@ -36,7 +34,7 @@ def passage(scene: Scene, rtol: float = 1e-6) -> Passage:
         deepest = measure(run.time, run.compression[1]).peak
         return {"speed": V, "fwhm": second.fwhm * V, "force": second.peak, "strain": deepest}
 
-    run, check = twice(scene, rtol, 10 * rtol, method=METHOD, window=False)
+    run, check = twice(scene, rtol, 10 * rtol, window=False)
     return Passage(
         **compared(numbers, run, check),
         energy_drift=run.energy_drift,

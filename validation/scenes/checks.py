@@ -31,10 +31,10 @@ class Failure(RuntimeError):
 def one_of(value: Any, choices: Collection[str], name: str) -> str:
     """A text that is one of the choices; raises `SceneError` for anything else.
 
-    >>> one_of("RK4", ("Verlet", "S6"), "method")
+    >>> one_of("RK4", ("RKN86", "SRKN14"), "method")
     Traceback (most recent call last):
         ...
-    validation.scenes.checks.SceneError: method is 'RK4': one of Verlet, S6 is wanted
+    validation.scenes.checks.SceneError: method is 'RK4': one of RKN86, SRKN14 is wanted
     """
     if not isinstance(value, str) or value not in choices:
         raise SceneError(f"{name} is {shorten(value)}: one of {', '.join(choices)} is wanted")

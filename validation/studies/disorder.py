@@ -122,7 +122,7 @@ def _log_forces(
         masses, len(masses), k, contact_sensors=tuple(places.tolist()), duration=duration,
         samples=math.ceil(30 * duration * max(1.0, k / 1.5)),
     )  # fmt: skip
-    run = simulate(scene, method="SRKN14", rtol=rtol)
+    run = simulate(scene, rtol=rtol)
     return np.log([measure(run.time, force).peak for force in run.contact_force])
 
 

@@ -137,8 +137,8 @@ def _example(context: click.Context, given: click.Parameter, name: str | None) -
            says="Print a scene to begin with, by default that of the paper."),
     option("--out", callback=_out, metavar="FILE", says="Store the records in a file: .csv, or, "
            "with the result and the scene, which runs again, .json or .npz."),
-    option("--method", default=METHODS[0], metavar="NAME", says="Of integration: "
-           f"{', '.join(METHODS)} (SciPy) or {', '.join(COMPILED)} (compiled)."),
+    option("--method", default=COMPILED[0], metavar="NAME", says="Of integration: "
+           f"{', '.join(COMPILED)} (compiled) or {', '.join(METHODS)} (SciPy)."),
     option("--rtol", default=TOLERANCE, says="Of the method; errors are those from a run at a "
            "tolerance 1000 times as large."),
     epilog=_EPILOG,

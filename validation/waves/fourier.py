@@ -33,6 +33,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from copy import copy
 
 import numpy as np
 import scipy
@@ -43,6 +44,12 @@ from validation.scenes.checks import integer
 
 MOST_STEPS = 25  # of Newton's method
 FEWEST = 40  # points on which a wave is resolved
+_FIRST, _FARTHEST = (
+    0.01,
+    0.2,
+)  # steps along a branch, in k, c² and the root of the mean square force
+_STRAIGHT = 0.9  # cosine of the angle between two steps
+_PLACES = 300  # along a branch
 
 
 def widening(masses: tuple[float, float]) -> float:
@@ -133,8 +140,11 @@ class Problem:
             return to(at)
         return np.asarray((to(at) + to(-at)) * np.where(at % n == 0, 0.5, 1.0))
 
-    def wave(self, z: Array, c2: float, unknown: str = "") -> tuple[Array, float, float]:
-        """Forces, c², and where it is asked for the "mass" (as 1/m2) or the "kick" with T = 0.
+    def wave(
+        self, z: Array, c2: float, unknown: str = "", along: Array | None = None
+    ) -> tuple[Array, float, float]:
+        """Forces, c², and where it is asked for the "mass" (as 1/m2) or the "kick" with T = 0, or
+        "k", where forces, c² and k differ from these ones by what is normal to ``along``.
 
         Raises `numpy.linalg.LinAlgError` where Newton's method does not converge.
         """
@@ -146,12 +156,17 @@ class Problem:
             """The equations' left-hand sides, solved with their derivatives."""
             z, c2 = x[:count], x[count]
             inverse = first, x[-1] if unknown == "mass" else self.inverse[1]
+            k = x[-1] if unknown == "k" else self.k
             a = self.strains(z, inverse) / c2
-            slope = self.k * np.maximum(self.p0 + a, 0) ** (self.k - 1)
-            fault = z - rise(a, self.k, self.p0)
+            slope = k * np.maximum(self.p0 + a, 0) ** (k - 1)
+            fault = z - rise(a, k, self.p0)
             columns, rows, rest = [slope * a / c2], [np.eye(1, count)[0]], [z[0] - self.height]
             corner = np.zeros((1 + bool(unknown),) * 2)
-            if unknown:
+            if along is not None:
+                columns.append(-scipy.special.xlogy(np.maximum(a, 0) ** k, np.maximum(a, 0)))
+                rows, rest = [*rows, along[:count]], [*rest, along @ (x - start)]
+                corner[1] = along[count:]
+            elif unknown:
                 T = inverse[0] * by_first + inverse[1] * by_last
                 rows, rest = [*rows, T], [*rest, T @ z]
             if unknown == "mass":
@@ -174,10 +189,40 @@ class Problem:
             known[on] = found[: len(at)]
             return np.append(known, found[len(at) :])
 
-        others = [c2, *{"": (), "mass": (self.inverse[1],), "kick": (0.0,)}[unknown]]
-        sizes = np.append(np.full(count, 2 * self.height), [other or 1.0 for other in others])
-        x = newton(change, np.append(z[:count] * (self.height / z[0]), others), sizes)
+        last = {"": (), "mass": (self.inverse[1],), "kick": (0.0,), "k": (self.k,)}[unknown]
+        sizes = np.append(np.full(count, 2 * self.height), [other or 1.0 for other in (c2, *last)])
+        start = np.append(z[:count] * (self.height / z[0]), (c2, *last))
+        x = newton(change, start, sizes)
         return x[:count], float(x[count]), float(x[-1])
+
+    def followed(self, z: Array, c2: float, k: float) -> tuple[Array, float]:
+        """Forces and c², about, at another k on the branch of a wave, which may turn on the way.
+
+        By pseudo-arclength: from two waves to the next one, in a plane normal to their difference.
+        Raises `numpy.linalg.LinAlgError` where the branch is lost, or does not get there.
+        """
+        size = np.append(np.full(self.count, 1 / self.count), (1, 1))
+        here = np.append(z, (c2, self.k))
+        along, step = np.append(0 * here[:-1], math.copysign(1, k - self.k)), _FIRST
+        for place in range(_PLACES):
+            near, ahead = copy(self), here + step * along
+            near.k = ahead[-1]
+            try:
+                there = np.hstack(near.wave(ahead[:-2], ahead[-2], "k", size * along))
+                change = there - here
+                turn = change / math.sqrt(change @ (size * change))
+            except np.linalg.LinAlgError:
+                turn = -along
+            if place and turn @ (size * along) < _STRAIGHT:
+                step /= 2
+                if step < _FIRST / 1e4:
+                    break
+                continue
+            if (there[-1] - k) * (here[-1] - k) <= 0:
+                x = here + change * (k - here[-1]) / change[-1]
+                return x[:-2], float(x[-2])
+            here, along, step = there, turn, min(1.5 * step, _FARTHEST)
+        raise np.linalg.LinAlgError("the branch is lost")
 
 
 def enough(masses: tuple[float, float], k: float, half_period: float) -> int:

@@ -31,7 +31,6 @@ import sys
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
-from itertools import count
 from typing import Any
 
 import numpy as np
@@ -49,8 +48,6 @@ from validation.waves import fourier
 from validation.waves.profile import ExactWave, Profile, at_unit_force
 from validation.waves.struck import Struck, struck
 
-CLOSE = 0.1  # by how much c² and the strain may change, relatively, in one step along k
-HALVINGS = 7  # of a step along k, before a branch counts as lost
 FALLEN = 38.0  # e-foldings of a wave on a background from its flanks to L
 SHALLOWEST = 1e-4  # of a wave on a background: what it adds to the peak strain
 LESS = 0.125  # background, at k > 3 where that is small: from one wave to the next
@@ -164,8 +161,8 @@ def _uniform(
         found, ample = _pressed(pair, k, half_period, p0)
         L = found.half_period
     else:  # above k = 3 the theory's is too wide
-        found = solve(pair, k, L) if k <= 3 else _followed(solve(pair, 3.0), k, L)
-    if found.rest > ENDED:
+        found = solve(pair, k, L) if k <= 3 else _followed(solve(pair, 3.0, L), k)
+    if found.rest > ENDED / (1 - p0):  # strains are rounded beside p0
         raise SceneError(
             f"half_period is {L:g}: the solitary wave at k = {k:g} has not ended there, with "
             f"{found.rest:.0e} of its peak strain; {ample:.3g} is ample"
@@ -217,7 +214,7 @@ def _dimer(
     for i, (from_pulse, L) in enumerate(progress([one, *((True, L) for L in periods), *others])):
         if led and i > len(periods):
             break
-        points = max(fourier.FEWEST, int(ROUGH * fourier.enough(pair, k, L))) if i else None
+        points = _rough(pair, k, L) if i else None
         with suppress(NoWave):
             start = _pulse(pair, k) if from_pulse else None
             waves.append(solve(pair, k, L, points, start))
@@ -235,10 +232,14 @@ def _dimer(
     if k <= STEEP:
         raise NoWave(failure)
     try:
-        begin = _dimer(pair, STEEP, half_period, progress)
-        return _followed(begin, k, half_period or max(begin.half_period, ample), progress)
+        return _followed(_dimer(pair, STEEP, half_period, progress), k)
     except NoWave as other:
         raise NoWave(f"{failure}; {other}") from None
+
+
+def _rough(pair: tuple[float, float], k: float, half_period: float) -> int:
+    """Points on which a wave is told from others."""
+    return max(fourier.FEWEST, int(ROUGH * fourier.enough(pair, k, half_period)))
 
 
 def _pulse(pair: tuple[float, float], k: float) -> Struck:
@@ -249,40 +250,21 @@ def _pulse(pair: tuple[float, float], k: float) -> Struck:
         raise NoWave(f"{_named('no pulse of a struck chain', pair, k)}: {error}") from None
 
 
-def _followed(
-    begin: ExactWave, k: float, half_period: float, progress: Progress[Any] = iter
-) -> ExactWave:
-    """The wave at another k and L on the branch of this one.
+def _followed(begin: ExactWave, k: float) -> ExactWave:
+    """The wave at another k, of the same half period, on the branch of this one.
 
-    A step counts when it changes the wave little and when the same step taken back leads to the
-    wave it came from, as far as residuals can tell; otherwise it is halved. Raises `NoWave` where
-    the branch turns back or ends on the way.
+    Raises `NoWave` where the branch does not get there, or is lost.
     """
-
-    def at(t: float) -> tuple[float, float]:
-        L = begin.half_period + t * (half_period - begin.half_period)
-        return (begin.k + t * (k - begin.k) if t < 1 else k), L
-
-    wave, done, step = begin, 0.0, 1.0
-    for _ in progress(count()):
-        if done == 1:
-            break
-        to = min(1.0, done + step)
-        with suppress(NoWave):
-            found = solve(begin.masses, *at(to), start=wave)
-            back = solve(begin.masses, *at(done), start=found)
-            L = min(wave.half_period, found.half_period)
-            speeds = found.c2 * (found.k + 1) / (wave.c2 * (wave.k + 1))  # over the theory's
-            rounding = 1e-6 + 10 * max(wave.residual, back.residual)
-            near = abs(speeds - 1) < CLOSE and found.apart(wave, L) < CLOSE
-            if near and back.apart(wave, wave.half_period) < rounding:
-                wave, done, step = found, to, 2 * step
-                continue
-        step = (to - done) / 2
-        if step < 0.5**HALVINGS:
-            lost = "the branch of waves turns back or ends"
-            raise NoWave(_named(lost, begin.masses, at(done)[0]))
-    return wave
+    masses, L = begin.masses, begin.half_period
+    problem = fourier.problem(masses, begin.k, L, _rough(masses, max(begin.k, k), L))
+    try:
+        z, c2, _ = problem.wave(*_guess(masses, begin.k, problem.xi, begin))
+        z, c2 = problem.followed(z, c2, k)
+    except np.linalg.LinAlgError:
+        lost = "the branch of waves ends, or is lost, on the way"
+        raise NoWave(_named(lost, masses, k)) from None
+    near = at_unit_force(masses, k, c2, L, *fourier.coefficients(problem.forces(z)))
+    return solve(masses, k, L, start=near)
 
 
 def solve(

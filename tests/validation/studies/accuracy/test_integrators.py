@@ -38,21 +38,21 @@ def precompressed(duration=6.0):
 
 @pytest.mark.parametrize("method", COMPILED)
 def test_the_order_of_every_scheme_on_a_precompressed_chain(method):
-    """The error of the last state against the step: slopes 2, 4 and 6."""
+    """The error of the last state against the step: slopes 8 and 6 at fixed steps."""
     scene, order = precompressed(), SCHEMES[method].order
-    truth = simulate(scene, rtol=1e-13, atol=1e-13)
+    truth = simulate(scene, method="DOP853", rtol=1e-13, atol=1e-13)
     assert truth.compression.min() > 0.9
     steps, found = [], []
-    for each in (0.015, 0.02, 0.03):
-        run = simulate(scene, method=method, step=each * SCHEMES[method].stages)
+    for count in (50, 40, 30) if method == "RKN86" else (28, 21, 14):
+        run = simulate(scene, method=method, step=6.0 / count, rtol=1e-2)
         steps.append(run.step)  # a whole number of them fills the duration
         found.append(np.abs(run.velocities - truth.velocities).max())
-    assert found[0] > 1e-10  # above rounding
-    assert np.polyfit(np.log(steps), np.log(found), 1)[0] == pytest.approx(order, abs=0.2)
+    assert found[0] > 1e-12  # above rounding
+    assert np.polyfit(np.log(steps), np.log(found), 1)[0] == pytest.approx(order, abs=0.6)
 
 
 @pytest.mark.parametrize("window", [False, True])
-@pytest.mark.parametrize("method", ["DOP853", "RK45", "LSODA", "SRKN14", "PEFRL"])
+@pytest.mark.parametrize("method", ["DOP853", "RK45", "LSODA", "RKN86", "SRKN14"])
 def test_the_error_falls_with_the_tolerance(method, window):
     """By a hundred at least where the tolerance falls by 1e4, and to what it promises."""
     task = exact(20)

@@ -20,18 +20,16 @@ from validation.studies.hard.motion import (
 
 
 @pytest.mark.parametrize(
-    ("method", "k", "opens", "steps", "order"),
+    ("k", "opens", "steps", "order"),
     [
-        ("PEFRL", 1.5, False, (0.1, 0.025), 4.0),
-        ("SRKN14", 1.5, False, (0.2, 0.1), 6.0),
-        ("PEFRL", 1.5, True, (0.1, 0.006), 2.5),
-        ("SRKN14", 1.5, True, (0.2, 0.012), 2.5),
-        ("SRKN14", 3.0, True, (0.15, 0.012), 4.0),
+        (1.5, False, (0.2, 0.1), 6.0),
+        (1.5, True, (0.2, 0.012), 2.5),
+        (3.0, True, (0.15, 0.012), 4.0),
     ],
 )
-def test_a_contact_that_opens_leaves_k_plus_one_orders(method, k, opens, steps, order):
+def test_a_contact_that_opens_leaves_k_plus_one_orders(k, opens, steps, order):
     steps = np.geomspace(*steps, 4)
-    errors, again = _errors(method, k, opens, steps)
+    errors, again = _errors(k, opens, steps)
     slope = np.polyfit(np.log(steps), np.log(errors), 1)[0]
     assert abs(slope - order) < 0.35  # the scatter of an opening's place within its step
     assert (again > 0) is opens
@@ -89,7 +87,7 @@ def test_the_light_bead_holds_and_another_one_than_the_references_does_not(monke
 
 def spoiled(scene, rest):
     """The engine's runs get a light bead that is a thousandth heavier than the reference's."""
-    if "method" not in rest:
+    if rest["method"] == "DOP853":
         return scene
     masses = tuple(m * 1.001 if m < 1 else m for m in scene.masses)
     return replace(scene, masses=masses)

@@ -1,0 +1,89 @@
+"""Embedded Runge–Kutta–Nyström pairs for y'' = f(y), by their exact coefficients.
+
+Stage s evaluates f at y + c_s h v + h² Σ a_sj f_j, with Σ_j a_sj = c_s²/2. A step ends at
+
+    y + h v + h² Σ b_j f_j,    v + h Σ b'_j f_j,
+
+and differs from a solution of lower order by h² Σ e_j f_j and h Σ e'_j f_j, its error. The last
+stage is at the step's end, and is the first of the next step: its row of a is b.
+
+Source: Dormand, El-Mikkawy and Prince 1987, IMA J. Numer. Anal. 7, 423: RKN8(6)9FM.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+
+import numpy as np
+
+from lwa.compact.numeric import Array
+
+Row = tuple[Fraction, ...]
+
+
+@dataclass(frozen=True)
+class Pair:
+    """rows : a. speeds : b'. low, low_speeds : b and b' of the lower order."""
+
+    order: int
+    lower: int
+    rows: tuple[Row, ...]
+    speeds: Row
+    low: Row
+    low_speeds: Row
+
+    @property
+    def stages(self) -> int:
+        """Evaluations of the forces per step."""
+        return len(self.rows) - 1
+
+    @property
+    def nodes(self) -> tuple[float, ...]:
+        """c."""
+        return tuple(float(np.sqrt(float(2 * sum(row)))) for row in self.rows)
+
+    def arrays(self, width: int) -> tuple[Array, Array, Array]:
+        """c, a, and the rows b', e and e', filled up with zeros to a multiple of ``width``."""
+        b = self.rows[-1]
+        e, e_speeds = (
+            tuple(x - y for x, y in zip(high, low, strict=True))
+            for high, low in ((b, self.low), (self.speeds, self.low_speeds))
+        )
+        padded = -(-len(b) // width) * width
+        a, ends = np.zeros((len(b), padded)), np.zeros((3, padded))
+        for table, rows in ((a, self.rows), (ends, (self.speeds, e, e_speeds))):
+            for row, values in zip(table, rows, strict=True):
+                row[: len(values)] = [float(value) for value in values]
+        return np.array(self.nodes), a, ends
+
+
+def _pair(order: int, lower: int, rows: str, speeds: str, low: str, low_speeds: str) -> Pair:
+    table = [tuple(map(Fraction, row.split())) for row in ("", *rows.strip().splitlines())]
+    size = len(table)
+
+    def full(row: tuple[Fraction, ...]) -> Row:
+        return row + (Fraction(0),) * (size - len(row))
+
+    ends = (full(tuple(map(Fraction, row.split()))) for row in (speeds, low, low_speeds))
+    return Pair(order, lower, tuple(map(full, table)), *ends)
+
+
+RKN86 = _pair(
+    8, 6,
+    """
+    1/800
+    1/600 1/300
+    9/200 -9/100 9/100
+    -66701/197352 28325/32892 -2665/5482 2170/24669
+    227015747/304251000 -54897451/30425100 12942349/10141700 -9499/304251 539/9250
+    -1131891597/901789000 41964921/12882700 -6663147/3220675 270954/644135 -108/5875 114/1645
+    13836959/3667458 -17731450/1833729 1063919505/156478208 -33213845/39119552 13335/28544 -705/14272 1645/57088
+    223/7938 0 1175/8064 925/6048 41/448 925/14112 1175/72576 0
+    """,  # noqa: E501
+    "223/7938 0 5875/36288 4625/21168 41/224 4625/21168 5875/36288 223/7938 0",
+    "7987313/109941300 0 1610737/44674560 10023263/33505920 -497221/12409600 10023263/78180480"
+    " 1610737/402071040",
+    "7987313/109941300 0 1610737/40207104 10023263/23454144 -497221/6204800 10023263/23454144"
+    " 1610737/40207104 -4251941/54970650 3/20",
+)  # fmt: skip
