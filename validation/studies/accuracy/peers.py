@@ -187,11 +187,11 @@ def _heyoka(task: Task, method: str) -> Solve:
     def solve(longest: float) -> Array:
         stepper.time = 0.0
         stepper.state[:] = start
-        reached = stepper.propagate_until(task.times[0], max_delta_t=longest)[0]
-        found = stepper.propagate_grid(task.times, max_delta_t=longest)
-        for outcome in (reached, found[0]):
-            if outcome != heyoka.taylor_outcome.time_limit:
-                raise PeerError(f"heyoka stopped: {outcome}")
+        found: Any = ()
+        for propagate, until in (("until", task.times[0]), ("grid", task.times)):
+            found = getattr(stepper, f"propagate_{propagate}")(until, max_delta_t=longest)
+            if found[0] != heyoka.taylor_outcome.time_limit:
+                raise PeerError(f"heyoka stopped: {found[0]}")
         return np.array(found[-1].T[:n])
 
     return solve

@@ -4,8 +4,8 @@ One is SciPy's DOP853 (order 8) with every opening and closing of a contact loca
 the kink of F = A [δ]_+^k at δ = 0 loses its order, and its error estimate does not see it. A sign
 change of an overlap within a step is found on its cubic Hermite interpolant, its time by Brent's
 method on the step's dense output (Hairer, Nørsett & Wanner, Solving Ordinary Differential Equations
-I, II.6); the step is taken again up to there. The other is the compiled SRKN14 of
-`validation.lattice.engine`, symplectic, at a very small step.
+I, II.6); the step is taken again up to there. The other is the engine's own, compiled, at
+its finest tolerance.
 
 `integrate` drives any of SciPy's steppers, on the whole chain or on a window that moves with the
 pulse: beads join ahead before they move, and those behind leave where an open contact, which
@@ -32,6 +32,9 @@ from validation.studies.accuracy.tasks import Task, errors
 # Beads that a window follows behind the front at least, that join at once, and that are still at
 # the front: displaced by less than this over the largest displacement.
 _REACH, _AHEAD, _MARGIN, _STILL = 48, 32, 6, 1e-13
+
+FINEST = 1e-13
+"""The smallest tolerance that `validation.simulate` takes."""
 
 
 class Part(Motion):
@@ -159,9 +162,9 @@ class Reference:
     agreement: float
 
 
-def symplectic(task: Task) -> Pulse:
-    """By SRKN14 at a step for 1e-13 of the peak, on a window where there may be one."""
-    return task.read(task.force(simulate(task.scene, method="SRKN14", rtol=1e-13)))
+def compiled(task: Task) -> Pulse:
+    """By the engine at its finest tolerance, on a window where there may be one."""
+    return task.read(task.force(simulate(task.scene, rtol=FINEST)))
 
 
 def located(task: Task) -> Pulse:
@@ -171,6 +174,6 @@ def located(task: Task) -> Pulse:
 
 
 def reference(name: str, task: Task) -> Reference:
-    """The truth where it is known, else the symplectic result; beside the located one."""
-    pulse = task.truth or symplectic(task)
+    """The truth where it is known, else the engine's result; beside the located one."""
+    pulse = task.truth or compiled(task)
     return Reference(name, pulse, max(errors(located(task), pulse).values()))

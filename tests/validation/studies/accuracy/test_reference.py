@@ -13,10 +13,10 @@ from validation.studies.accuracy import reference as module
 from validation.studies.accuracy.reference import (
     Located,
     Part,
+    compiled,
     integrate,
     located,
     reference,
-    symplectic,
 )
 from validation.studies.accuracy.tasks import TASKS, Task, errors, exact, experiment, struck
 
@@ -29,13 +29,13 @@ def short(omega):
 def test_both_routes_agree(omega):
     """Both are good to a few 1e-13: rounding in a thousand steps and more."""
     task = short(omega)
-    assert max(errors(located(task), symplectic(task)).values()) < 2e-12
+    assert max(errors(located(task), compiled(task)).values()) < 2e-12
 
 
 def test_located_kinks_make_the_error_follow_the_tolerance():
     """In proportion to it; plain DOP853, which steps over the kinks, errs far more at its least."""
     task = short(0.2733)
-    truth = symplectic(task)
+    truth = compiled(task)
 
     def error(method, rtol):
         return errors(task.read(integrate(task, method, rtol)), truth)["peak"]
@@ -66,7 +66,7 @@ def test_the_end_of_a_collision_is_found_where_it_is():
 def test_the_exact_wave_arrives_as_it_must():
     """Within the residual of the wave itself, which is 1e-12 of its speed at most."""
     task = exact(20)
-    for pulse in (located(task), symplectic(task)):
+    for pulse in (located(task), compiled(task)):
         assert max(errors(pulse, task.truth).values()) < 5e-12
 
 
