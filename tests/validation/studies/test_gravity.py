@@ -91,6 +91,9 @@ def test_a_strong_blow_is_the_solitary_wave_of_its_depth(found):
     assert deep[1000]["width_value"] == pytest.approx(deep[1000]["solitary_value"], rel=0.03)
     assert deep[10]["width_value"] == pytest.approx(deep[10]["front_value"], rel=0.08)
     assert deep[10]["solitary_value"] > 2 * deep[10]["width_value"]
+    last, end = [row for row in strong if row["blow_value"] == 10][-2:]
+    growth = np.log(end["solitary_value"] / last["solitary_value"])
+    assert growth > 0.45 * np.log(end["site_value"] / last["site_value"])  # the front's is 1/3
     for row in strong:
         least = min(row["solitary_value"], row["front_value"])
         assert 0.7 * least < row["width_value"] < 1.02 * least
