@@ -34,9 +34,7 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-import scipy
 
-from lwa import Cell, Power, background_wave
 from lwa.compact.numeric import Array
 from lwa.duration import Progress
 from lwa.exact import InputError
@@ -47,6 +45,7 @@ from validation.scenes.checks import SceneError, items, positive, real
 from validation.waves import fourier
 from validation.waves.profile import ExactWave, Profile, at_unit_force
 from validation.waves.struck import Struck, struck
+from validation.waves.theory import Loaded
 
 FALLEN = 38.0  # e-foldings of a wave on a background from its flanks to L
 SHALLOWEST = 1e-4  # of a wave on a background: what it adds to the peak strain
@@ -174,25 +173,18 @@ def _pressed(
     pair: tuple[float, float], k: float, half_period: float | None, p0: float
 ) -> tuple[ExactWave, float]:
     """The wave of equal beads on a background, and the half period that is ample for it."""
-    theory, B = background_wave(Cell((1,)), law=Power(k)).numeric(), 1 - p0
-    c2, width, compact = (float(f) for f in (
-        k * theory.speed_squared(p0, B), theory.fwhm(p0, B), theory.fwhm(0.0, 1.0)
-    ))  # fmt: skip
-    excess = math.sqrt(c2 / (k * p0 ** (k - 1)))  # c/c0 = sinh(κ/2)/(κ/2)
-    kappa = 2 * float(scipy.optimize.brentq(
-        lambda x: math.log(math.sinh(x) / x / excess), 1e-5, 300, xtol=1e-12
-    ))  # fmt: skip
-    core = fourier.ample_half_period(pair, k)
-    ample = max(core, core / 2 + FALLEN / kappa)
+    theory, core = Loaded(k, p0), fourier.ample_half_period(pair, k)
+    ample = max(core, core / 2 + FALLEN / theory.kappa)
     L = half_period or ample
     n = fourier.problem(pair, k, L, None).n
-    problem = fourier.Problem(pair, k, L, max(80, math.ceil(n * min(1, 1.3 * compact / width))), p0)
+    n = max(80, math.ceil(n * min(1, 1.3 * theory.narrower)))
+    problem = fourier.Problem(pair, k, L, n, p0)
     xi = problem.xi[: problem.count]
     if k > 3 and p0 < 0.5:  # where the theory's is too wide: from the wave on a little less
         near = _uniform(pair, k, None, max(0.0, p0 - LESS))
         guess, c2 = near.force(xi), near.c2
     else:
-        guess = fourier.rise(theory.profile(xi, p0, B), k, p0)
+        guess, c2 = fourier.rise(theory.strain(xi), k, p0), theory.c2
     try:
         even, c2, _ = problem.wave(guess, c2)
     except np.linalg.LinAlgError:

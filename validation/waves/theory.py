@@ -21,7 +21,8 @@ import scipy
 import sympy as sp
 from numpy.typing import ArrayLike
 
-from lwa import Dimer, TravelingWave, canonical_wave, homogenize
+from lwa import Cell, Dimer, Power, TravelingWave, background_wave, canonical_wave, homogenize
+from lwa.background.quadrature import NumericBackground
 from lwa.compact.numeric import Array
 from validation.scenes.checks import SceneError, positive
 
@@ -138,6 +139,41 @@ class Compacton:
         return 2 * float(
             scipy.optimize.brentq(lambda x: self.bead_force(x) - half, 0.0, end, xtol=1e-14 * end)
         )
+
+
+@dataclass(frozen=True)
+class Loaded:
+    """The wave of equal beads under a load, whose strain rises from p0 to 1; m = A = D = 1."""
+
+    k: float
+    p0: float
+
+    @cached_property
+    def _numeric(self) -> NumericBackground:
+        return background_wave(Cell((1,), spacing=1), law=Power(self.k)).numeric()
+
+    @cached_property
+    def c2(self) -> float:
+        """c²."""
+        return float(self.k * self._numeric.speed_squared(self.p0, 1 - self.p0))
+
+    @cached_property
+    def narrower(self) -> float:
+        """The FWHM of the wave without a load over this one's."""
+        return float(self._numeric.fwhm(0.0, 1.0) / self._numeric.fwhm(self.p0, 1 - self.p0))
+
+    @cached_property
+    def kappa(self) -> float:
+        """κ of the lattice's end of a wave so fast, e^{-κ|ξ|}: c/c0 = sinh(κ/2)/(κ/2)."""
+        excess = math.sqrt(self.c2 / (self.k * self.p0 ** (self.k - 1)))
+        half = scipy.optimize.brentq(
+            lambda x: math.log(math.sinh(x) / x / excess), 1e-5, 300, xtol=1e-12
+        )
+        return 2 * float(half)
+
+    def strain(self, xi: ArrayLike) -> Array:
+        """v(ξ), above p0."""
+        return self._numeric.profile(xi, self.p0, 1 - self.p0)
 
 
 def theory_at(k: Any, omega: Any, closure: str = "linear") -> TravelingWave:

@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 import scipy
 
+import validation.studies.gravity as study
+from lwa.background.quadrature import NumericBackground
 from tests.commands import ended
 from validation import cli
 from validation.scenes.chains import numbered
@@ -89,6 +91,9 @@ def test_a_strong_blow_is_the_solitary_wave_of_its_depth(found):
     assert deep[1000]["width_value"] == pytest.approx(deep[1000]["solitary_value"], rel=0.03)
     assert deep[10]["width_value"] == pytest.approx(deep[10]["front_value"], rel=0.08)
     assert deep[10]["solitary_value"] > 2 * deep[10]["width_value"]
+    last, end = [row for row in strong if row["blow_value"] == 10][-2:]
+    growth = np.log(end["solitary_value"] / last["solitary_value"])
+    assert growth > 0.45 * np.log(end["site_value"] / last["site_value"])  # the front's is 1/3
     for row in strong:
         least = min(row["solitary_value"], row["front_value"])
         assert 0.7 * least < row["width_value"] < 1.02 * least
@@ -102,6 +107,16 @@ def test_the_wave_widens_with_the_load():
     assert widths[0] == pytest.approx(1.4119, rel=0.02)
     forces = [row["ratio"] * row["site"] for row in rows]
     assert forces == pytest.approx([forces[0]] * len(forces), rel=0.07)
+
+
+def test_a_theory_that_is_off_fails(monkeypatch):
+    """A front at constant speed of sound, and a solitary wave that is too wide."""
+    monkeypatch.setattr(study, "front_width", lambda k: front_width(k) * 0.5 ** (1 / 3))
+    true = NumericBackground.fwhm
+    monkeypatch.setattr(NumericBackground, "fwhm", lambda *a: true(*a) * 1.2)
+    failed = [f.quantity for f in gravity(masses=(1,), beads=1000).findings if not f.ok]
+    assert any("prefactor" in quantity for quantity in failed)
+    assert any("solitary wave/width" in quantity for quantity in failed)
 
 
 def test_the_command(capsys):

@@ -10,11 +10,10 @@ import pytest
 import scipy
 
 from lwa import Cell, Power
+from lwa.background.quadrature import NumericBackground
 from lwa.linear.loaded import LoadedChain
 from tests.commands import ended
 from validation import cli
-from validation.lattice import engine
-from validation.lattice.equations import Motion
 from validation.lattice.simulate import simulate
 from validation.scenes.chains import numbered
 from validation.scenes.checks import SceneError
@@ -104,17 +103,24 @@ def test_the_chain_is_followed_as_a_whole(radiating):
     """Behind the wave contacts carry a load: a window that cuts them is refused."""
     wave, run = radiating
     assert run.window is None
-    assert engine._reach(Motion(wave.scene), None) is None
     with pytest.raises(SceneError, match="the whole chain is wanted"):
         simulate(wave.scene, method="SRKN14", window=True)
 
 
+def test_a_theory_that_is_off_fails(monkeypatch):
+    """By 3 % of the speed, which is more than it may be anywhere."""
+    true = NumericBackground.speed
+    monkeypatch.setattr(NumericBackground, "speed", lambda *a: true(*a) * 0.97)
+    failed = [f for f in precompressed(masses=(1,), ratios=(0.1,)).findings if not f.ok]
+    assert len(failed) == 3  # anywhere, up to F0, and of all chains; Newton's wave holds
+
+
 def test_another_exponent():
-    """At k = 1.1 the theory is within the 0.14 % of c² that it is off without a load."""
-    found = precompressed(k=1.1, masses=(1,), ratios=(3, 100))
+    """At k = 2 the theory is within the 6.8 % of c² that it is off without a load."""
+    found = precompressed(k=2, masses=(1,), ratios=(3, 100))
     assert found.ok
     offs = [row["error_value"] for row in found.document()["rows"]]
-    assert -0.0007 < offs[1] < offs[0] < 0
+    assert -0.0348 < offs[1] < offs[0] < 0
 
 
 def test_the_command(capsys):

@@ -73,7 +73,7 @@ class Hard:
            says=f"Only this case, may be given again: {', '.join(CASES)}."),
 )  # fmt: skip
 def hard(names: Collection[str] = (), progress: Progress[str] = iter) -> Hard:
-    """Extreme k and ω, lost contacts, long runs, float64 against 50 digits. Half a minute.
+    """Extreme k, ω and loads, lost contacts, long runs, float64 against 50 digits. Half a minute.
 
     Runs the cases of these names, all by default; raises `SceneError` for a name that is not one of
     `CASES`.

@@ -25,7 +25,7 @@ from validation.studies.hard.floats import DIGITS, PRINTED, in_ulps
 RATIOS = 10.0 ** np.arange(-12, 12.5, 0.5)
 """p0/B."""
 
-WIDTHS = RATIOS[::6]
+WIDTHS = RATIOS[::12]
 """Where widths are compared, which take longer to 50 digits."""
 
 B = 0.7  # the rise; no power of 2
