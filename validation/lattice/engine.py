@@ -133,8 +133,9 @@ def _integrated(
     rear, steps, tries, moves = (int(at[name]) for name in ("lo", "steps", "tries", "evaluations"))
     state = np.concatenate((beads.y[:n], beads.v[:n]))
     energy = motion.energy(state, rear) + float(at["lost"])
-    _fly_on(beads, seen, rear, end)
-    state[:rear] = beads.y[:rear]
+    if rear:
+        _fly_on(beads, seen, rear, end)
+        state[:rear] = beads.y[:rear]
     records = _recorded(motion.scene, chain, beads, seen)
     evaluations = tries * SCHEMES[given.method].stages
     run = finished(motion, state, records, energy, steps, evaluations, moves, reach)
@@ -196,7 +197,8 @@ def _start(motion: Motion, padded: int) -> tuple[Beads, Samples]:
     watched = np.unique(np.concatenate((contacts, contacts + 1, beads - 1, beads, beads + 1)))
     watched = watched[watched >= 0]
     time = np.linspace(0.0, scene.duration, scene.samples)
-    seen = np.repeat(np.stack((y, v))[:, watched, None], len(time), axis=2)
+    seen = np.empty((2, len(watched), len(time)))
+    seen[0], seen[1] = y[watched, None], v[watched, None]
     return Beads(y, v, next_y, next_v, left, force, sums), Samples(
         time, watched, np.zeros((3, 4, len(watched))), *seen
     )
@@ -220,15 +222,22 @@ def _recorded(scene: Scene, chain: Chain, beads: Beads, seen: Samples) -> dict[s
         row = np.searchsorted(seen.watched, i)
         compression = chain.rest[i, None] + seen.y[row] - seen.y[row + 1]
         force = chain.A[i, None] * np.maximum(compression, 0.0) ** scene.k
-        return compression, np.where(seen.time > beads.left[i, None], 0.0, force)
+        if (left := beads.left[i]).min() < scene.duration:
+            force[seen.time > left[:, None]] = 0.0
+        return compression, force
 
     contacts, sensors = (np.array(row, int) for row in (scene.contact_sensors, scene.bead_sensors))
-    compression, force = contact(contacts)
+    none = np.zeros((0, len(seen.time)))
+    compression, force = contact(contacts) if len(contacts) else (none, none)
+    mean, y, v = none, none, none
+    if len(sensors):
+        row = np.searchsorted(seen.watched, sensors)
+        mean, y, v = (contact(sensors - 1)[1] + contact(sensors)[1]) / 2, seen.y[row], seen.v[row]
     return {
         "time": seen.time,
         "contact_force": force,
         "compression": compression,
-        "bead_force": (contact(sensors - 1)[1] + contact(sensors)[1]) / 2,
-        "bead_displacement": seen.y[np.searchsorted(seen.watched, sensors)],
-        "bead_velocity": seen.v[np.searchsorted(seen.watched, sensors)],
+        "bead_force": mean,
+        "bead_displacement": y,
+        "bead_velocity": v,
     }
