@@ -105,7 +105,7 @@ def _own_reach(motion: Motion) -> int:
     masses = motion.masses[still] if still.any() else motion.masses  # a striker may be of any mass
     support = math.pi / (k - 1) * math.sqrt(k * (k + 1) / 6)
     back = min(n, _SUPPORTS * support * masses.max() / masses.mean())
-    return 2 * kernel.MARGIN + math.ceil(back)
+    return 2 * kernel.MARGIN + math.ceil(float(back))
 
 
 def _integrated(
