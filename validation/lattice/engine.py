@@ -17,9 +17,10 @@ Window. Ahead nothing moves: the front advances with the first bead that does. B
 than ``reach`` from the front are left to fly on freely, with their energy on the books, once the
 contact that is cut is open but for a trace of the peak force and no strong blow is to come (the
 thresholds of `validation.lattice.kernel`), or four reaches behind in any case. As contacts carry no
-tension, the pulse does not depend on what is cut, unless it decays so fast (`_DECAY`) that its own
-tail may overtake it. As a pulse decays, the step grows with its time scale, F^{(1-k)/2k}, and the
-error that is allowed shrinks with it.
+tension, the pulse does not depend on what is cut, unless it decays so fast (`_DECAY`, `_LEFT`) that
+its own tail may overtake it: then, and where too few reaches were passed to tell, the run is made
+again with the whole chain, whoever asked for a window. As a pulse decays, the step grows with its
+time scale, F^{(1-k)/2k}, and the error that is allowed shrinks with it.
 """
 
 from __future__ import annotations
@@ -45,7 +46,8 @@ from validation.scenes.checks import SceneError, integer, positive
 from validation.scenes.scene import Scene
 
 _SUPPORTS = 4.0  # of the long-wave pulse: what the window reaches back
-_DECAY = 0.9  # of a pulse's peak, a reach later: where less is left, the window gives way
+# Of a pulse's peak, a reach later and at the end: where less is left, the window gives way.
+_DECAY, _LEFT = 0.9, 0.5
 _WINDOW = 2  # reaches that a window holds, about
 _POINTS = 6  # of the quadrature at a kink
 _GLANCE = 0.2  # seconds, about, from one look at the progress to the next, or at Ctrl-C
@@ -71,10 +73,8 @@ def follow(
     longest = math.inf if step is None else positive(step, "step")
     shorter = step is None or (natural < longest and isinstance(SCHEMES[method], Pair))
     given = Given(method, rtol, natural if shorter else longest, longest)
-    run, decay = _integrated(motion, given, reach, progress)
-    if window is None and reach is not None and decay < _DECAY:
-        return _integrated(motion, given, None, progress)[0]
-    return run
+    run, kept = _integrated(motion, given, reach, progress)
+    return run if kept else _integrated(motion, given, None, progress)[0]
 
 
 def _returns(motion: Motion) -> bool:
@@ -110,8 +110,8 @@ def _own_reach(motion: Motion) -> int:
 
 def _integrated(
     motion: Motion, given: Given, reach: int | None, progress: RunProgress
-) -> tuple[Run, float]:
-    """The run, and the smallest ratio of a pulse's peak to that one reach before."""
+) -> tuple[Run, bool]:
+    """The run, and whether nothing behind a window can have a say in the pulse."""
     n, end = motion.size, motion.scene.duration
     moved = n if reach is None else min(n, _WINDOW * reach)
     taken = effort.compiled(motion.scene, given.method, end / given.step, moved)
@@ -139,7 +139,8 @@ def _integrated(
     records = _recorded(motion.scene, chain, beads, seen)
     evaluations = tries * SCHEMES[given.method].stages
     run = finished(motion, state, records, energy, steps, evaluations, moves, reach)
-    return run, float(at["decay"])
+    kept = at["legs"] > 2 and at["decay"] >= _DECAY and at["left"] >= _LEFT
+    return run, not rear or bool(kept)
 
 
 @lru_cache
@@ -166,7 +167,7 @@ def _plan(motion: Motion, given: Given, chain: Chain, reach: int | None, step: f
         _tableau(given.method, motion.k), given.rtol * scales.displacement,
         given.rtol * scales.velocity, step, given.longest, motion.scene.duration,
         scales.compression, chain.A.max(), 1 / chain.inverse[min(1, n - 1) : n].min(), n,
-        0 if _returns(motion) else reach or _own_reach(motion), reach is not None, adapt,
+        0 if _returns(motion) else _own_reach(motion), reach or 0, adapt,
     )  # fmt: skip
 
 

@@ -58,9 +58,10 @@ def simulate(
     method : one of `COMPILED` or of `METHODS`.
     step : of a compiled method, the largest, in place of that which ``rtol`` gives.
     window : of a compiled method, whether to follow the pulse only. By default wherever the pulse
-        runs away: not with a wall (gravity has one), not at k = 1, and not when it decays fast.
-        False asks for all that happens behind, such as light beads that rattle. A number is that
-        of the beads to follow behind the front.
+        runs away: not with a wall (gravity has one) and not at k = 1. False asks for all that
+        happens behind, such as light beads that rattle. A number is that of the beads to follow
+        behind the front. Where a pulse decays, so that its tail may overtake it, there is none in
+        any case.
     progress : is shown what a run takes before it starts, and then how far it is.
 
     Raises `SceneError` for a tolerance or method that cannot be meant, and for a run that takes
