@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from validation.lattice.run import Run
-    from validation.lattice.simulate import simulate
+    from validation.lattice.simulate import simulate, simulate_many
     from validation.pulses.pulse import Pulse, measure
     from validation.scenes.materials import Bead, Material
     from validation.scenes.scene import Scene, SceneError
@@ -34,11 +34,12 @@ __all__ = [
     "load",
     "measure",
     "simulate",
+    "simulate_many",
 ]
 
 _PLACES = {
     "lattice.run": ("Run",),
-    "lattice.simulate": ("simulate",),
+    "lattice.simulate": ("simulate", "simulate_many"),
     "pulses.pulse": ("Pulse", "measure"),
     "scenes.materials": ("Bead", "Material"),
     "scenes.scene": ("Scene", "SceneError"),

@@ -17,9 +17,10 @@ Window. Ahead nothing moves: the front advances with the first bead that does. B
 than ``reach`` from the front are left to fly on freely, with their energy on the books, once the
 contact that is cut is open but for a trace of the peak force and no strong blow is to come (the
 thresholds of `validation.lattice.kernel`), or four reaches behind in any case. As contacts carry no
-tension, the pulse does not depend on what is cut, unless it decays so fast (`_DECAY`) that its own
-tail may overtake it. As a pulse decays, the step grows with its time scale, F^{(1-k)/2k}, and the
-error that is allowed shrinks with it.
+tension, the pulse does not depend on what is cut, unless it decays so fast (`_DECAY`, `_LEFT`) that
+its own tail may overtake it: then, and where too few reaches were passed to tell, the run is made
+again with the whole chain, whoever asked for a window. As a pulse decays, the step grows with its
+time scale, F^{(1-k)/2k}, and the error that is allowed shrinks with it.
 """
 
 from __future__ import annotations
@@ -45,7 +46,8 @@ from validation.scenes.checks import SceneError, integer, positive
 from validation.scenes.scene import Scene
 
 _SUPPORTS = 4.0  # of the long-wave pulse: what the window reaches back
-_DECAY = 0.9  # of a pulse's peak, a reach later: where less is left, the window gives way
+# Of a pulse's peak, a reach later and at the end: where less is left, the window gives way.
+_DECAY, _LEFT = 0.9, 0.5
 _WINDOW = 2  # reaches that a window holds, about
 _POINTS = 6  # of the quadrature at a kink
 _GLANCE = 0.2  # seconds, about, from one look at the progress to the next, or at Ctrl-C
@@ -71,10 +73,8 @@ def follow(
     longest = math.inf if step is None else positive(step, "step")
     shorter = step is None or (natural < longest and isinstance(SCHEMES[method], Pair))
     given = Given(method, rtol, natural if shorter else longest, longest)
-    run, decay = _integrated(motion, given, reach, progress)
-    if window is None and reach is not None and decay < _DECAY:
-        return _integrated(motion, given, None, progress)[0]
-    return run
+    run, kept = _integrated(motion, given, reach, progress)
+    return run if kept else _integrated(motion, given, None, progress)[0]
 
 
 def _returns(motion: Motion) -> bool:
@@ -105,13 +105,13 @@ def _own_reach(motion: Motion) -> int:
     masses = motion.masses[still] if still.any() else motion.masses  # a striker may be of any mass
     support = math.pi / (k - 1) * math.sqrt(k * (k + 1) / 6)
     back = min(n, _SUPPORTS * support * masses.max() / masses.mean())
-    return int(2 * kernel.MARGIN + math.ceil(back))
+    return 2 * kernel.MARGIN + math.ceil(float(back))
 
 
 def _integrated(
     motion: Motion, given: Given, reach: int | None, progress: RunProgress
-) -> tuple[Run, float]:
-    """The run, and the smallest ratio of a pulse's peak to that one reach before."""
+) -> tuple[Run, bool]:
+    """The run, and whether nothing behind a window can have a say in the pulse."""
     n, end = motion.size, motion.scene.duration
     moved = n if reach is None else min(n, _WINDOW * reach)
     taken = effort.compiled(motion.scene, given.method, end / given.step, moved)
@@ -133,12 +133,14 @@ def _integrated(
     rear, steps, tries, moves = (int(at[name]) for name in ("lo", "steps", "tries", "evaluations"))
     state = np.concatenate((beads.y[:n], beads.v[:n]))
     energy = motion.energy(state, rear) + float(at["lost"])
-    _fly_on(beads, seen, rear, end)
-    state[:rear] = beads.y[:rear]
+    if rear:
+        _fly_on(beads, seen, rear, end)
+        state[:rear] = beads.y[:rear]
     records = _recorded(motion.scene, chain, beads, seen)
     evaluations = tries * SCHEMES[given.method].stages
     run = finished(motion, state, records, energy, steps, evaluations, moves, reach)
-    return run, float(at["decay"])
+    kept = at["legs"] > 2 and at["decay"] >= _DECAY and at["left"] >= _LEFT
+    return run, not rear or bool(kept)
 
 
 @lru_cache
@@ -165,7 +167,7 @@ def _plan(motion: Motion, given: Given, chain: Chain, reach: int | None, step: f
         _tableau(given.method, motion.k), given.rtol * scales.displacement,
         given.rtol * scales.velocity, step, given.longest, motion.scene.duration,
         scales.compression, chain.A.max(), 1 / chain.inverse[min(1, n - 1) : n].min(), n,
-        0 if _returns(motion) else reach or _own_reach(motion), reach is not None, adapt,
+        0 if _returns(motion) else _own_reach(motion), reach or 0, adapt,
     )  # fmt: skip
 
 
@@ -196,7 +198,8 @@ def _start(motion: Motion, padded: int) -> tuple[Beads, Samples]:
     watched = np.unique(np.concatenate((contacts, contacts + 1, beads - 1, beads, beads + 1)))
     watched = watched[watched >= 0]
     time = np.linspace(0.0, scene.duration, scene.samples)
-    seen = np.repeat(np.stack((y, v))[:, watched, None], len(time), axis=2)
+    seen = np.empty((2, len(watched), len(time)))
+    seen[0], seen[1] = y[watched, None], v[watched, None]
     return Beads(y, v, next_y, next_v, left, force, sums), Samples(
         time, watched, np.zeros((3, 4, len(watched))), *seen
     )
@@ -220,15 +223,22 @@ def _recorded(scene: Scene, chain: Chain, beads: Beads, seen: Samples) -> dict[s
         row = np.searchsorted(seen.watched, i)
         compression = chain.rest[i, None] + seen.y[row] - seen.y[row + 1]
         force = chain.A[i, None] * np.maximum(compression, 0.0) ** scene.k
-        return compression, np.where(seen.time > beads.left[i, None], 0.0, force)
+        if (left := beads.left[i]).min() < scene.duration:
+            force[seen.time > left[:, None]] = 0.0
+        return compression, force
 
     contacts, sensors = (np.array(row, int) for row in (scene.contact_sensors, scene.bead_sensors))
-    compression, force = contact(contacts)
+    none = np.zeros((0, len(seen.time)))
+    compression, force = contact(contacts) if len(contacts) else (none, none)
+    mean, y, v = none, none, none
+    if len(sensors):
+        row = np.searchsorted(seen.watched, sensors)
+        mean, y, v = (contact(sensors - 1)[1] + contact(sensors)[1]) / 2, seen.y[row], seen.v[row]
     return {
         "time": seen.time,
         "contact_force": force,
         "compression": compression,
-        "bead_force": (contact(sensors - 1)[1] + contact(sensors)[1]) / 2,
-        "bead_displacement": seen.y[np.searchsorted(seen.watched, sensors)],
-        "bead_velocity": seen.v[np.searchsorted(seen.watched, sensors)],
+        "bead_force": mean,
+        "bead_displacement": y,
+        "bead_velocity": v,
     }

@@ -96,17 +96,21 @@ class Motion:
         total = self.masses @ np.abs(after)
         return float(self.masses @ (after - before) / total) if total else 0.0
 
+    def _stirred(self, rest: float) -> bool:
+        """Whether a bead moves, or a contact is pressed more than at rest, to begin with."""
+        pressed = self.compression(self.start[: self.size]).max(initial=0.0) > rest
+        return bool(pressed or np.any(self.start[self.size :]))
+
     @cached_property
     @np.errstate(all="ignore")
     def scales(self) -> Scales:
         """Of the motion from its start. Raises `SceneError` where a float cannot hold one."""
         energy, n, A = self.energy(self.start), self.size, self.stiffnesses
-        pressed = self.compression(self.start[:n]).max(initial=0.0) > self.rest.max(initial=0.0)
-        if not np.isfinite(energy) or (energy == 0 and (pressed or np.any(self.start[n:]))):
+        deepest, stiffest = self.rest.max(initial=0.0), A.max(initial=0.0)
+        if not math.isfinite(energy) or (energy == 0 and self._stirred(deepest)):
             _held("energy", energy)
-        deepest = self.rest.max(initial=0.0)
         if energy > 0 and len(A):
-            deepest = max(deepest, np.float64(energy / A.max()) ** (1 / (self.k + 1)))
+            deepest = max(deepest, np.float64(energy / stiffest) ** (1 / (self.k + 1)))
         if not deepest:
             return Scales(energy, 0.0, 1.0, 1.0, math.inf)
         stiffening = deepest ** (self.k - 1)
@@ -114,11 +118,11 @@ class Motion:
         springs[: len(A)] = A
         springs[1:] += A[: n - 1]
         time = 1 / np.sqrt((springs / self.masses).max() * self.k * stiffening)
-        _held("stiffest spring", A.max() * stiffening)
+        _held("stiffest spring", stiffest * stiffening)
         _held("shortest time", time)
         y, v, rounding = 1.0, 1.0, 0.0
         if energy > 0:
-            y, v = np.sqrt(energy / (A.max() * stiffening)), np.sqrt(energy / self.masses.mean())
+            y, v = np.sqrt(energy / (stiffest * stiffening)), np.sqrt(energy / self.masses.mean())
             _held("displacement", y)
             _held("velocity", v)
             rounding = np.finfo(float).eps * self.rest.max() / y

@@ -87,9 +87,9 @@ class Plan(NamedTuple):
 
     y, v : the errors of a step that are allowed. h : the first step. longest : the longest of a
     pair. deepest : the greatest compression. stiffest : of the contacts. heaviest : but for the
-    striker. reach : of a window, after which the pulse is looked at; 0 where waves come back.
-    cut : whether the rear is left. adapt : whether step and errors follow the pulse's time and size
-    as it decays.
+    striker. reach : after which the pulse is looked at; 0 where waves come back. cut : behind the
+    front, where the rear may be left; 0 for never. adapt : whether step and errors follow the
+    pulse's time and size as it decays.
     """
 
     scheme: Tableau
@@ -103,13 +103,14 @@ class Plan(NamedTuple):
     heaviest: float
     size: int
     reach: int
-    cut: bool
+    cut: int
     adapt: bool
 
 
 _COUNTS = ("steps", "tries", "evaluations", "front", "mark", "lo", "done", "begin", "stop", "legs",
            "count")  # fmt: skip
-_REALS = ("t", "base", "h", "before", "y", "v", "scale", "top", "peak", "lost", "decay")
+_REALS = ("t", "base", "h", "before", "y", "v", "scale", "top", "peak", "lost", "formed",
+          "decay", "left")  # fmt: skip
 _PLACE = np.dtype([(name, int) for name in _COUNTS] + [(name, float) for name in _REALS])
 
 
@@ -123,12 +124,13 @@ def beginning(plan: Plan, k: float, front: int) -> Any:
     t : the time. before : the last step. y, v : the error that is allowed.
     scale : the compression that the step is made for.
     top, peak : the greatest force in this reach, and in the last.
-    lost : energy of the contacts that were cut. decay : the smallest ratio of two such peaks.
+    lost : energy of the contacts that were cut. formed : the peak in the first whole reach.
+    decay : the smallest ratio of the peaks in two reaches. left : the last over ``formed``.
     """
     at = np.zeros(1, _PLACE)[0]
-    at["front"] = at["mark"] = front
+    at["front"], at["mark"] = front, front - plan.reach // 2
     at["h"], at["y"], at["v"] = plan.h, plan.y, plan.v
-    at["scale"], at["decay"] = plan.deepest, 1.0
+    at["scale"], at["decay"], at["left"] = plan.deepest, 1.0, 1.0
     at["peak"] = plan.stiffest * plan.deepest**k
     return at
 
@@ -424,8 +426,11 @@ def _greatest(force: Array, lo: int, hi: int) -> float:
 def _grow(chain: Chain, plan: Plan, at: Any) -> None:
     """A reach further on: how high is the pulse, and the step or error that goes with it."""
     at.legs += 1
-    if at.legs > 2 and at.peak > 0.0:  # the first may hold the striker's blow
+    if at.legs == 2:  # the first, half a reach, holds the striker's blow
+        at.formed = at.top
+    elif at.legs > 2 and at.peak > 0.0:
         at.decay = min(at.decay, at.top / at.peak)
+        at.left = at.top / at.formed
     at.peak, at.top, at.mark = at.top, 0.0, at.front
     now = min(plan.deepest, (at.peak / plan.stiffest) ** (1 / chain.k))
     if plan.adapt and now > 0.0 and abs(now - at.scale) > 0.07 * at.scale:
@@ -442,12 +447,12 @@ def _grow(chain: Chain, plan: Plan, at: Any) -> None:
 def _cut_rear(chain: Chain, beads: Beads, plan: Plan, at: Any) -> None:
     """Leave beads behind that are further than the reach, and have no say in the pulse."""
     y, v, inverse, k = beads.y, beads.v, chain.inverse, chain.k
-    while at.front - at.lo > plan.reach:
+    while at.front - at.lo > plan.cut:
         lo = at.lo
         momentum = math.sqrt(plan.heaviest * at.peak * (at.peak / plan.stiffest) ** (1 / k))
         force = _net(chain, y, lo)
         blow = (v[lo] - v[lo + 1]) / (inverse[lo] + inverse[lo + 1])
-        near = at.front - lo <= _LONGEST * plan.reach
+        near = at.front - lo <= _LONGEST * plan.cut
         if near and (force > _OPEN * at.peak or blow > _BLOW * momentum):
             break
         at.lost += max(force, 0.0) * max(y[lo] - y[lo + 1], 0.0) / (k + 1)
@@ -467,7 +472,7 @@ def _follow(chain: Chain, beads: Beads, plan: Plan, at: Any, hi: int) -> None:
         at.top = max(at.top, _greatest(beads.force, at.lo, hi))
     if at.front - at.mark >= plan.reach:
         _grow(chain, plan, at)
-    if plan.cut:
+    if plan.cut > 0:
         _cut_rear(chain, beads, plan, at)
 
 
@@ -512,6 +517,6 @@ def advance(chain: Chain, beads: Beads, plan: Plan, seen: Samples, at: Any, trie
         if due > at.done:
             _sample(seen, at, h, due)
         at.t, at.before = later, h
-        if plan.cut or at.front < plan.size:
+        if plan.cut > 0 or at.front < plan.size:
             _follow(chain, beads, plan, at, hi)
     return float(at.t)

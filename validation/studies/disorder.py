@@ -14,7 +14,9 @@ import numpy as np
 
 from lwa.compact.numeric import Array
 from lwa.duration import Progress
-from validation.lattice.simulate import simulate
+from lwa.compact.numeric import Array
+from validation.lattice.run import Run
+from validation.lattice.simulate import simulate, simulate_many
 from validation.pulses.pulse import Measured, measure
 from validation.report.command import EXPONENT, option, study
 from validation.report.panel import Curve, Panel
@@ -22,6 +24,7 @@ from validation.report.result import Report
 from validation.report.table import Column, Finding, Table
 from validation.scenes.chains import struck
 from validation.scenes.checks import SceneError, integer, real
+from validation.scenes.scene import Scene
 from validation.waves.theory import Compacton, theory_at
 
 PLACES = 10
@@ -66,10 +69,10 @@ def disorder(
     # Twice what a pulse needs that keeps all of the blow's momentum.
     duration = 2 * (sites + _BEYOND) / Compacton.of_momentum(theory_at(str(k), 1), 1.0).speed
     draws = [_masses(spread, sites, seed, i) for i in range(chains)]
-    logs = np.array(
-        [_log_forces(k, draws[i], places, duration, _TOLERANCE) for i in progress(range(chains))]
-    )
-    coarse = _log_forces(k, draws[0], places, duration, 10 * _TOLERANCE)
+    scenes = [_scene(k, masses, places, duration) for masses in draws]
+    runs = simulate_many(scenes, rtol=_TOLERANCE)
+    logs = np.array([_log_forces(next(runs)) for _ in progress(range(chains))])
+    coarse = _log_forces(simulate(scenes[0], rtol=10 * _TOLERANCE))
     numerical = Finding(
         "ln F at ten times the tolerance, first chain: largest change",
         float(np.abs(coarse - logs[0]).max()), high=_CLOSE, key="integration_error",
@@ -114,15 +117,16 @@ def _masses(spread: float, sites: int, seed: int, number: int) -> tuple[float, .
     return (1.0, *random.uniform(1 - spread, 1 + spread, sites + _BEYOND))
 
 
-def _log_forces(
-    k: float, masses: tuple[float, ...], places: Array, duration: float, rtol: float
-) -> Array:
-    """ln F at the contacts behind these places."""
-    scene = struck(
+def _scene(k: float, masses: tuple[float, ...], places: Array, duration: float) -> Scene:
+    """Measured at the contacts behind these places."""
+    return struck(
         masses, len(masses), k, contact_sensors=tuple(places.tolist()), duration=duration,
         samples=math.ceil(30 * duration * max(1.0, k / 1.5)),
     )  # fmt: skip
-    run = simulate(scene, rtol=rtol)
+
+
+def _log_forces(run: Run) -> Array:
+    """ln F at the sensors."""
     return np.log([measure(run.time, force).peak for force in run.contact_force])
 
 

@@ -73,9 +73,9 @@ def test_a_window_moves_a_part_of_the_beads():
 
 def test_a_compiled_run_looks_up_on_the_way(monkeypatch):
     """In the same bits as in one go."""
-    whole = told(struck(100, 0.3, duration=90.0, contact_sensors=(50,)), method="SRKN14")
+    whole = told(struck(200, 0.3, duration=190.0, contact_sensors=(50,)), method="SRKN14")
     monkeypatch.setattr("validation.lattice.engine._GLANCE", 1e-4)
-    parts = told(struck(100, 0.3, duration=90.0, contact_sensors=(50,)), method="SRKN14")
+    parts = told(struck(200, 0.3, duration=190.0, contact_sensors=(50,)), method="SRKN14")
     assert len(whole[2]) <= 2
     assert len(parts[2]) > 20
     assert parts[2] == sorted(parts[2])

@@ -32,8 +32,8 @@ RATIOS = (1e-6, 1e-5, 1e-4, 1e-3, 1e-2)  # ω, and 1/ω, of `mass_ratios`
 
 @case(
     "It does, to O(ω), and ω → 1/ω is the same chain; the cost grows no faster than the "
-    "light beads' frequency, 1/√ω. The canonical theory is 5.6 % wide at both ends, the paper's at "
-    "ω ≪ 1 only.",
+    "light beads' frequency, 1/√ω. The canonical theory is 5.6 % wide at both ends, the "
+    "paper's at ω ≪ 1 only.",
     Panel("ω = m2/m1", "|speed/limit - 1|", scale="xy"),
 )
 def mass_ratios() -> Parts:

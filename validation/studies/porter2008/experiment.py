@@ -15,6 +15,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 import sympy as sp
@@ -34,6 +35,7 @@ from validation.report.text import percent
 from validation.scenes.chains import chain_scene
 from validation.scenes.checks import SceneError, integer, items, real
 from validation.scenes.materials import DIAMETER, PTFE_BEAD, STEEL_BEAD, Bead, contact_stiffness
+from validation.scenes.scene import Scene
 from validation.waves.theory import Compacton
 
 HERTZ = sp.Rational(3, 2)
@@ -41,6 +43,8 @@ BEADS, SENSORS, VELOCITY = 38, (15, 34), 1.37
 """Of the chain, the striker included; with a sensor, counted from 1; of the striker, in m/s."""
 GRAVITY = 9.81
 """In m/s²."""
+TOLERANCES = (1e-9, 1e-7)
+"""Of the run that counts, and of the one that gives its errors."""
 
 SOURCES = {"F_m": "peak bead force F_m", "speed": "speed V_s", "striker": None}
 """What sets the theory's amplitude, and the quantity that then agrees by construction."""
@@ -196,19 +200,23 @@ def chain_cell(N: int = 1, ptfe: Bead = PTFE_BEAD) -> Cell:
     return Dimer(STEEL_BEAD.mass, ptfe.mass, N, stiffnesses=stiffnesses, spacing=DIAMETER)
 
 
-def chain_runs(
+def recorded_chain(
     sensors: Sequence[int],
     velocity: float = VELOCITY,
     N: int = 1,
     ptfe: Bead = PTFE_BEAD,
     beads: int = BEADS,
-) -> tuple[Run, Run]:
-    """The N:1 chain by the compiled engine: the run that counts, and one that gives its errors."""
+) -> Scene:
+    """The N:1 chain, struck, for as long as the pulse takes to its wall."""
     wave = canonical_wave(chain_cell(N, ptfe), HERTZ)
     pulse = Compacton.of_momentum(wave, STEEL_BEAD.mass * velocity)
     duration = 1.6 * beads * DIAMETER / pulse.speed
-    scene = chain_scene(velocity, beads, sensors, 0.0, duration, N, ptfe)
-    return twice(scene, 1e-9, 1e-7)
+    return chain_scene(velocity, beads, sensors, 0.0, duration, N, ptfe)
+
+
+def chain_runs(sensors: Sequence[int], **options: Any) -> tuple[Run, Run]:
+    """`recorded_chain`: the run that counts, and one that gives its errors."""
+    return twice(recorded_chain(sensors, **options), *TOLERANCES)
 
 
 @study(

@@ -21,6 +21,7 @@ from lwa import canonical_wave
 from lwa.compact.numeric import Array
 from lwa.duration import Progress
 from validation.lattice.run import Run
+from validation.lattice.simulate import simulate_many
 from validation.pulses.pulse import Measured, compared, derived
 from validation.report.command import study
 from validation.report.panel import Curve, Panel
@@ -33,9 +34,11 @@ from validation.studies.porter2008.experiment import (
     GRAVITY,
     HERTZ,
     SENSORS,
+    TOLERANCES,
     Train,
     chain_cell,
     chain_runs,
+    recorded_chain,
 )
 from validation.studies.porter2008.widths import Widths, widths
 from validation.waves.theory import Compacton
@@ -231,11 +234,12 @@ def _front(time: Array, above: Array) -> float:
 def scaling(E: float) -> Scaling:
     """Figure 3a for a modulus of PTFE, without gravity in the chain."""
     ptfe = replace(PTFE_BEAD, material=replace(PTFE_BEAD.material, E=E))
-    found = []
-    for height in HEIGHTS:
-        runs = chain_runs(SENSORS, math.sqrt(2 * GRAVITY * height), ptfe=ptfe)
-        trains = tuple(map(Train.of, runs))
-        found.append(compared(lambda train: {"V": train.speed, "F": train.peak}, *trains))
+    drops = [recorded_chain(SENSORS, math.sqrt(2 * GRAVITY * h), ptfe=ptfe) for h in HEIGHTS]
+    pairs = zip(*(simulate_many(drops, rtol=rtol) for rtol in TOLERANCES), strict=True)
+    found = [
+        compared(lambda train: {"V": train.speed, "F": train.peak}, *map(Train.of, pair))
+        for pair in pairs
+    ]
     wave = canonical_wave(chain_cell(ptfe=ptfe), HERTZ)
     theory = (Compacton.of_bead_force(wave, row["F"].value).speed for row in found)
     return Scaling(
