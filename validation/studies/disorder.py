@@ -14,7 +14,6 @@ import numpy as np
 
 from lwa.compact.numeric import Array
 from lwa.duration import Progress
-from lwa.compact.numeric import Array
 from validation.lattice.run import Run
 from validation.lattice.simulate import simulate, simulate_many
 from validation.pulses.pulse import Measured, measure
