@@ -119,7 +119,8 @@ class Problem:
 
     def strains(self, z: Array, inverse: tuple[float, float]) -> Array:
         """c² a of these forces, where they are."""
-        force = np.asarray(scipy.fft.rfft(self.forces(z)), complex)
+        force = scipy.fft.rfft(self.forces(z))
+        force = np.asarray(force.real if self.uniform else force, complex)  # no rounding over q²
         a = scipy.fft.irfft(respond(force, inverse, self.L), 2 * self.n)
         return np.asarray(a - a[self.n])[: self.count]
 
@@ -128,9 +129,9 @@ class Problem:
         n = self.n
         plus, minus = (respond(np.full(n + 1, f, complex), inverse, self.L) for f in (1, 1j))
         # to a force there, and to one at -ξ; twice as long, for the sum of two places
-        near, mirrored = (
-            np.tile(scipy.fft.irfft((plus + sign * minus) / 2, 2 * n), 2) for sign in (-1j, 1j)
-        )
+        minus = 1j * minus
+        both = (plus, 0 * plus) if self.uniform else ((plus - minus) / 2, (plus + minus) / 2)
+        near, mirrored = (np.tile(scipy.fft.irfft(row, 2 * n), 2) for row in both)
 
         def to(j: NDArray[np.int_]) -> Array:
             row = near[n - j] + mirrored[n + j]
