@@ -138,6 +138,14 @@ def test_what_is_cut_is_seen(tmp_path, style):
     assert seen["wider"] == (not style)
 
 
+@pytest.mark.parametrize("width", [300, 900])
+def test_a_picture_that_is_cut_is_seen(tmp_path, width):
+    picture = f'<div style="overflow: hidden"><svg width="{width}" height="9"></svg></div>'
+    (tmp_path / "page.html").write_text(SMALLEST % picture)
+    seen = visited(tmp_path, ["page.html"], PHONE).pages["page.html"]
+    assert bool(seen["cut"]) == (width > PHONE)
+
+
 def test_a_request_is_seen(tmp_path):
     (tmp_path / "page.html").write_text(SMALLEST % '<img src="https://example.org/picture.png">')
     assert visited(tmp_path, ["page.html"]).foreign == ["https://example.org/picture.png"]
