@@ -393,8 +393,11 @@ def _sample(seen: Samples, at: Any, h: float, due: int) -> None:
     Its order is 12; 8 in the first step.
     """
     size = 12 if at.steps > 1 else 8
-    x, d = np.empty(12), np.empty(12)
+    x, d, inverse = np.empty(12), np.empty(12), np.zeros((12, 12))
     x[:4], x[4:8], x[8:] = 0.0, 1.0, -at.before / h
+    for j in range(1, size):
+        for i in range(j, size):
+            inverse[j, i] = 1.0 / (x[i] - x[i - j]) if x[i] != x[i - j] else 0.0
     for q in range(at.begin, at.stop):
         knots = seen.knots[:, :, q]
         new, old, older = at.steps % 3, (at.steps - 1) % 3, (at.steps - 2) % 3
@@ -404,10 +407,10 @@ def _sample(seen: Samples, at: Any, h: float, due: int) -> None:
         for j in range(1, size):
             scale *= h / j
             for i in range(size - 1, j - 1, -1):
-                if x[i] == x[i - j]:
+                if inverse[j, i] == 0.0:
                     d[i] = scale * knots[old if i < 4 else new if i < 8 else older, j]
                 else:
-                    d[i] = (d[i] - d[i - 1]) / (x[i] - x[i - j])
+                    d[i] = (d[i] - d[i - 1]) * inverse[j, i]
         for s in range(at.done, due):
             z = (seen.time[s] - at.t) / h
             p, slope = d[size - 1], 0.0
