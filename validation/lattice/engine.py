@@ -194,9 +194,9 @@ def _start(motion: Motion, padded: int) -> tuple[Beads, Samples]:
     y, v, next_y, next_v, left = np.zeros((5, padded + 1))
     y[:n], v[:n], left[:] = motion.start[:n], motion.start[n:], np.inf
     sums, force = np.zeros((4, padded + 1)), np.zeros((2 * kernel.WIDTH, padded + 1))
-    contacts, beads = (np.array(row, int) for row in (scene.contact_sensors, scene.bead_sensors))
-    watched = np.unique(np.concatenate((contacts, contacts + 1, beads - 1, beads, beads + 1)))
-    watched = watched[watched >= 0]
+    near = {i + m for i in scene.contact_sensors for m in (0, 1)}
+    near |= {j + m for j in scene.bead_sensors for m in (-1, 0, 1) if j + m >= 0}
+    watched = np.array(sorted(near), int)
     time = np.linspace(0.0, scene.duration, scene.samples)
     seen = np.empty((2, len(watched), len(time)))
     seen[0], seen[1] = y[watched, None], v[watched, None]

@@ -209,6 +209,7 @@ def _add_up(
     hi: int,
 ) -> None:  # fmt: skip
     """scale Σ_j table[row, j] force[j] over the first stages."""
+    sums[q, lo] = 0.0
     for first in range(0, stages, WIDTH):
         a, b = scale * table[row, first], scale * table[row, first + 1]
         c, d = scale * table[row, first + 2], scale * table[row, first + 3]
@@ -216,13 +217,13 @@ def _add_up(
         j = _index(first)
         j1, j2, j3, j4 = j + _ONE, j + _index(2), j + _index(3), j + _index(4)
         if first == 0:
-            for i in range(_index(lo), _index(hi) + _ONE):
+            for i in range(_index(lo) + _ONE, _index(hi) + _ONE):
                 sums[q, i] = (
                     a * force[j, i] + b * force[j1, i] + c * force[j2, i] + d * force[j3, i]
                     + e * force[j4, i]
                 )  # fmt: skip
         else:
-            for i in range(_index(lo), _index(hi) + _ONE):
+            for i in range(_index(lo) + _ONE, _index(hi) + _ONE):
                 sums[q, i] += (
                     a * force[j, i] + b * force[j1, i] + c * force[j2, i] + d * force[j3, i]
                     + e * force[j4, i]
@@ -250,9 +251,11 @@ def _attempt(chain: Chain, beads: Beads, plan: Plan, at: Any, h: float, hi: int)
     for s in range(1, stages):
         _add_up(sums, _ZERO, force, rows, s, h * h, s, lo, hi)
         ch = nodes[s] * h
+        behind = 0.0
         for i in range(_index(lo), _index(hi)):
-            push = (sums[_ZERO, i] - sums[_ZERO, i + _ONE]) * inverse[i]
-            next_y[i] = y[i] + ch * v[i] + push
+            ahead = sums[_ZERO, i + _ONE]
+            next_y[i] = y[i] + ch * v[i] + (behind - ahead) * inverse[i]
+            behind = ahead
         _press(chain, next_y, force, _index(s), lo, hi, nothing)
     _add_up(sums, _ONE, force, ends, 0, h, stages, lo, hi)
     _add_up(sums, _TWO, force, ends, 1, h * h / at.y, stages, lo, hi)
@@ -272,7 +275,7 @@ def _attempt(chain: Chain, beads: Beads, plan: Plan, at: Any, h: float, hi: int)
     return math.sqrt(_square(sums, inverse, lo, hi))
 
 
-@_compiled
+@_part
 def _correct(chain: Chain, beads: Beads, plan: Plan, at: Any, h: float, i: int) -> None:
     """Contact i opens or closes within a step: its impulse, and what it moves, by quadrature.
 
@@ -284,11 +287,12 @@ def _correct(chain: Chain, beads: Beads, plan: Plan, at: Any, h: float, i: int) 
     c0 = chain.rest[i] + y[i] - y[i + 1]
     c1 = h * (v[i] - v[i + 1])
     c2 = h * h * _relative(force[0], inverse, i) / 2
-    r0 = chain.rest[i] + beads.next_y[i] - beads.next_y[i + 1] - c0 - c1 - c2
+    end = chain.rest[i] + beads.next_y[i] - beads.next_y[i + 1]
+    r0 = end - c0 - c1 - c2
     r1 = h * (beads.next_v[i] - beads.next_v[i + 1]) - c1 - 2 * c2
     r2 = h * h * _relative(force[last], inverse, i) - 2 * c2
     c3, c4, c5 = 10 * r0 - 4 * r1 + r2 / 2, -15 * r0 + 7 * r1 - r2, 6 * r0 - 3 * r1 + r2 / 2
-    low, high, x = 0.0, 1.0, 0.5
+    low, high, x = 0.0, 1.0, c0 / (c0 - end)
     for _ in range(60):  # Newton's method, or else the middle
         p = c0 + x * (c1 + x * (c2 + x * (c3 + x * (c4 + x * c5))))
         slope = c1 + x * (2 * c2 + x * (3 * c3 + x * (4 * c4 + x * 5 * c5)))
@@ -296,7 +300,7 @@ def _correct(chain: Chain, beads: Beads, plan: Plan, at: Any, h: float, i: int) 
         guess = x - p / slope
         guess = guess if low < guess < high else (low + high) / 2
         x, moved = guess, abs(guess - x)
-        if moved < 1e-15:
+        if moved < 1e-9:  # its square is left
             break
     q3 = c4 + x * c5
     q2 = c3 + x * q3
@@ -307,7 +311,8 @@ def _correct(chain: Chain, beads: Beads, plan: Plan, at: Any, h: float, i: int) 
     for m in range(plan.scheme.points.shape[1]):
         z = x + side * plan.scheme.points[0, m]
         q = side * (q0 + z * (q1 + z * (q2 + z * (q3 + z * c5))))
-        f = plan.scheme.points[1, m] * max(q, 0.0) ** chain.k
+        q = max(q, 0.0)
+        f = plan.scheme.points[1, m] * (q * np.sqrt(q) if chain.law == 3 else q**chain.k)
         impulse += f
         moment += f * (1.0 - z)
     impulse = h * (chain.A[i] * abs(side) * impulse - chain.load[i])
@@ -388,8 +393,11 @@ def _sample(seen: Samples, at: Any, h: float, due: int) -> None:
     Its order is 12; 8 in the first step.
     """
     size = 12 if at.steps > 1 else 8
-    x, d = np.empty(12), np.empty(12)
+    x, d, inverse = np.empty(12), np.empty(12), np.zeros((12, 12))
     x[:4], x[4:8], x[8:] = 0.0, 1.0, -at.before / h
+    for j in range(1, size):
+        for i in range(j, size):
+            inverse[j, i] = 1.0 / (x[i] - x[i - j]) if x[i] != x[i - j] else 0.0
     for q in range(at.begin, at.stop):
         knots = seen.knots[:, :, q]
         new, old, older = at.steps % 3, (at.steps - 1) % 3, (at.steps - 2) % 3
@@ -399,10 +407,10 @@ def _sample(seen: Samples, at: Any, h: float, due: int) -> None:
         for j in range(1, size):
             scale *= h / j
             for i in range(size - 1, j - 1, -1):
-                if x[i] == x[i - j]:
+                if inverse[j, i] == 0.0:
                     d[i] = scale * knots[old if i < 4 else new if i < 8 else older, j]
                 else:
-                    d[i] = (d[i] - d[i - 1]) / (x[i] - x[i - j])
+                    d[i] = (d[i] - d[i - 1]) * inverse[j, i]
         for s in range(at.done, due):
             z = (seen.time[s] - at.t) / h
             p, slope = d[size - 1], 0.0
