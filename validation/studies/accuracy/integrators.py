@@ -28,6 +28,7 @@ from validation.report.result import Report
 from validation.report.table import Column, Finding, Table
 from validation.scenes.checks import one_of
 from validation.studies.accuracy.costs import WANTED, Row, cost, goals, methods, timed
+from validation.studies.accuracy.many import Many, many, together
 from validation.studies.accuracy.peers import Peer, Solve, missing, prepared
 from validation.studies.accuracy.reference import FINEST, Reference, integrate, reference
 from validation.studies.accuracy.tasks import NUMBERS, TASKS, Task, errors
@@ -66,8 +67,8 @@ _PEERS: Mapping[str, Sequence[float]] = {
 }
 """Tolerances; heyoka's largest steps."""
 
-THEORY = "theory"
-NAMES = (*TASKS, THEORY)
+MANY, THEORY = "many", "theory"
+NAMES = (*TASKS, MANY, THEORY)
 """Of all tasks."""
 
 
@@ -87,6 +88,17 @@ _NOTE = "CPU time without compilation, on this machine; - where no run attains i
 _REFERENCES = (Column("task"), *map(Column, NUMBERS), Column("agreement"))
 _GOALS = tuple(map(Column, ("key", "least_value", "most_value", "goal", "measured_value",
                             "error_value", "ok")))  # fmt: skip
+_MANY = (
+    Column("method", "Many chains"),
+    Column("setting", "setting", format=".0e"),
+    Column("error", "error", format=".0e"),
+    Column("seconds", "a chain", "ms", _ms),
+    Column("share_value", "share of the ideal gain", format=".2f"),
+)
+_MANY_NOTE = (
+    "100 of the paper's chains with random masses, over a thread a core; error: the median one of\n"
+    "the peak force. Wall time."
+)
 _COLOURS = {"SciPy": "C0", "compiled": "C1", "peer": "C2"}
 _MARKS = "osD^v<>PX*"
 
@@ -100,12 +112,13 @@ class Accuracy:
     references: tuple[Reference, ...]
     goals: tuple[Finding, ...]
     absent: tuple[str, ...]
+    many: tuple[Many, ...] = ()
     theories: Ladder | None = None
 
     def report(self) -> Report:
         """``rows``, as of `Row`, with the largest ``error``; ``costs`` by method; ``references``
         and their ``agreement`` with another route; ``goals``, which people read as findings;
-        ``absent``; ``theories``, as of `Ladder`. In the picture CPU time over the error, solid with
+        ``absent``; ``many``, as of `Many`; ``theories``, as of `Ladder`. In the picture CPU time over the error, solid with
         a window."""
         tasks = {r.task: [row for row in self.rows if row.task == r.task] for r in self.references}
         rows = tuple((r.task, r.family, r.name, r.setting, r.error,
@@ -114,6 +127,7 @@ class Accuracy:
         references = tuple((r.task, *(getattr(r.pulse, name) for name in NUMBERS), r.agreement)
                            for r in self.references)  # fmt: skip
         aims = tuple((g.key, g.low, g.high, g.quantity, g.value, g.error, g.ok) for g in self.goals)
+        chains = tuple((m.method, m.setting, m.error, m.seconds, m.share) for m in self.many)
         heads = {r.task: f"{r.task}: arrival {r.pulse.arrival:.12g}, peak {r.pulse.peak:.12g}, "
                          f"FWHM {r.pulse.fwhm:.12g};\nanother route differs by {r.agreement:.0e} "
                          "at most" for r in self.references}  # fmt: skip
@@ -122,6 +136,7 @@ class Accuracy:
             Table(_RUNS, rows, "rows"),
             Table(_COSTS, spent, "costs", note=_NOTE, by="task", heads=heads),
             Table(_REFERENCES, references, "references"),
+            Table(_MANY, chains, "many", note=_MANY_NOTE),
             Table(_GOALS, aims, "goals"),
         )
         left = ", ".join(self.absent)
@@ -180,6 +195,7 @@ def accuracy(
     wanted = {one_of(name, NAMES, "task") for name in names} or set(NAMES)
     rows: list[Row] = []
     references: list[Reference] = []
+    chains: list[Many] = []
     theories: Ladder | None = None
     absent: tuple[str, ...] | None = None if peers else ()
     for name in progress([name for name in NAMES if name in wanted]):
@@ -188,11 +204,15 @@ def accuracy(
             continue
         if absent is None:
             absent = missing()  # within the progress: to load the peers takes seconds
+        if name == MANY:
+            chains = many(peers, absent)
+            continue
         task = TASKS[name]()
         references.append(reference(name, task))
         others = prepared(task, absent) if peers else iter(())
         rows += _compared(name, task, references[-1], others)
-    return Accuracy(tuple(rows), tuple(references), tuple(goals(rows)), absent or (), theories)
+    aims = (*goals(rows), *together(chains))
+    return Accuracy(tuple(rows), tuple(references), aims, absent or (), tuple(chains), theories)
 
 
 def _compared(

@@ -27,8 +27,12 @@ from validation.lattice.equations import Motion
 from validation.scenes.checks import Failure, SceneError
 from validation.studies.accuracy.tasks import Task
 
-Solve = Callable[[float], Array]
-"""From a tolerance (heyoka: the largest step) to the displacements at the task's times, (n, S)."""
+Solve = Callable[..., Array]
+"""From a tolerance (heyoka: the largest step) to the displacements at the task's times, (n, S); of
+a package in `MANY` also for another task of as many beads, given second."""
+
+MANY = ("CyRK", "numbalsoda")
+"""Packages whose compiled equations take other chains."""
 
 
 class PeerError(Failure):
@@ -60,11 +64,15 @@ def _hertz(task: Task) -> tuple[Motion, Array]:
     return motion, rows
 
 
-def _compiled(task: Task, signature: Any, rate_first: bool) -> tuple[Any, Array]:
-    """The equations as a C function of time, state, rate and constants, and the constants."""
-    import numba  # optional, as what calls it is
-
+def _constants(task: Task) -> Array:
+    """Of the equations in C: n, and (4, n) of 1/m and `_hertz`."""
     motion, contacts = _hertz(task)
+    return np.concatenate(([motion.size], 1 / motion.masses, *contacts))
+
+
+def _compiled(signature: Any, rate_first: bool) -> Any:
+    """The equations as a C function of time, state, rate and constants."""
+    import numba  # optional, as what calls it is
 
     @numba.njit
     def move(y: Any, rate: Any, c: Any) -> None:
@@ -83,25 +91,23 @@ def _compiled(task: Task, signature: Any, rate_first: bool) -> tuple[Any, Array]
     def of_rate(rate: Any, t: float, y: Any, c: Any) -> None:
         move(y, rate, c)
 
-    constants = np.concatenate(([motion.size], 1 / motion.masses, *contacts))
-    return numba.cfunc(signature)(of_rate if rate_first else of_time), constants
+    return numba.cfunc(signature)(of_rate if rate_first else of_time)
 
 
 def _cyrk(task: Task, method: str) -> Solve:
     from CyRK import nbsolve2_ivp  # optional
     from CyRK.nb.numba_solver import cyjit_sig
 
-    motion, constants = _compiled(task, cyjit_sig, rate_first=True)
-    start, n = Motion(task.scene).start, task.scene.size
+    motion = _compiled(cyjit_sig, rate_first=True)
 
-    def solve(tolerance: float) -> Array:
+    def solve(tolerance: float, task: Task = task) -> Array:
         solution = nbsolve2_ivp(
-            motion.address, (0.0, float(task.times[-1])), start, method=method, args=constants,
-            t_eval=task.times, rtol=tolerance, atol=tolerance,
+            motion.address, (0.0, float(task.times[-1])), Motion(task.scene).start, method=method,
+            args=_constants(task), t_eval=task.times, rtol=tolerance, atol=tolerance,
         )  # fmt: skip
         if not solution.success:
             raise PeerError(f"CyRK {method} stopped: {solution.message}")
-        y = np.array(solution.y[:n])
+        y = np.array(solution.y[: task.scene.size])
         solution.free()
         return y
 
@@ -112,17 +118,16 @@ def _cyrk(task: Task, method: str) -> Solve:
 def _numbalsoda(task: Task, method: str) -> Solve:
     import numbalsoda  # optional
 
-    motion, constants = _compiled(task, numbalsoda.lsoda_sig, rate_first=False)
-    start, n = Motion(task.scene).start, task.scene.size
-    times = np.concatenate(([0.0], task.times))
+    motion = _compiled(numbalsoda.lsoda_sig, rate_first=False)
 
-    def solve(tolerance: float) -> Array:
+    def solve(tolerance: float, task: Task = task) -> Array:
         states, well = getattr(numbalsoda, method.lower())(
-            motion.address, start, times, constants, rtol=tolerance, atol=tolerance
-        )
+            motion.address, Motion(task.scene).start, np.concatenate(([0.0], task.times)),
+            _constants(task), rtol=tolerance, atol=tolerance,
+        )  # fmt: skip
         if not well:
             raise PeerError(f"numbalsoda {method} stopped at tolerance {tolerance:g}")
-        return np.asarray(states[1:].T[:n])
+        return np.asarray(states[1:].T[: task.scene.size])
 
     solve(1e-3)  # compiles
     return solve

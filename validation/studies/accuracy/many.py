@@ -1,0 +1,140 @@
+"""Many chains at once: the paper's 38 beads with masses of their own each, over threads.
+
+Every chain is the task "experiment" with masses that vary at random. The engine runs them by
+`validation.simulate_many`; a peer whose compiled equations take other chains
+(`validation.studies.accuracy.peers.MANY`) runs them over as many threads. Each method is given the
+coarsest setting at which the median chain's peak force is good to `ERROR`, against the engine at
+its finest. Times are wall times a chain, medians of a few.
+"""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Callable, Collection, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, replace
+from functools import partial
+from statistics import median
+
+import numpy as np
+
+from lwa.compact.numeric import Array
+from validation.lattice.equations import Motion
+from validation.lattice.simulate import COMPILED, simulate_many
+from validation.report.table import Finding
+from validation.studies.accuracy.peers import MANY, PEERS, Solve
+from validation.studies.accuracy.reference import FINEST
+from validation.studies.accuracy.tasks import TASKS, Task
+
+ERROR = 1e-6
+"""Of the peak force, in the median."""
+
+_CHAINS, _SPREAD = 100, 0.1  # and the standard deviation of a mass, relative
+_SETTINGS = (1e-5, 3e-6, 1e-6, 3e-7, 1e-7, 3e-8, 1e-8, 3e-9, 1e-9)
+_REPEATS = 3
+
+
+@dataclass(frozen=True)
+class Many:
+    """What a method takes: its family as in `validation.studies.accuracy.costs.Row`.
+
+    error : median one of the peak force.
+    seconds : a chain, over all cores; alone : over one thread.
+    """
+
+    method: str
+    family: str
+    setting: float
+    error: float
+    seconds: float
+    alone: float
+
+    @property
+    def share(self) -> float:
+        """Of the ideal gain by threads."""
+        return self.alone / self.seconds / cores()
+
+
+def cores() -> int:
+    """Those of this machine."""
+    return os.cpu_count() or 1
+
+
+def chains(count: int = _CHAINS, seed: int = 38) -> list[Task]:
+    """The tasks."""
+    task, random = TASKS["experiment"](), np.random.default_rng(seed)
+    for_each = random.lognormal(0.0, _SPREAD, (count, task.scene.size)) * task.scene.masses
+    return [replace(task, scene=replace(task.scene, masses=tuple(row))) for row in for_each]
+
+
+Run = Callable[[float, int], list[Array]]
+"""From a setting and the number of threads to the force of each chain's contact."""
+
+
+def many(peers: bool = True, absent: Collection[str] = ()) -> list[Many]:
+    """The engine, and with ``peers`` those that are not absent."""
+    tasks = chains()
+    truths = _peaks(tasks, _engine(tasks)(FINEST, cores()))
+    found = [_cheapest(COMPILED[0], "compiled", _engine(tasks), tasks, truths)]
+    for peer in PEERS if peers else ():
+        if peer.package in MANY and peer.package not in absent:
+            run = _threaded(peer.prepare(tasks[0], peer.method), tasks)
+            found.append(_cheapest(peer.name, "peer", run, tasks, truths))
+    return found
+
+
+def together(found: Sequence[Many]) -> Iterator[Finding]:
+    """What the engine is meant to attain with many chains."""
+    if not found:
+        return
+    engine, *others = found
+    yield Finding(f"many chains: gain of {engine.method} by threads over the ideal one",
+                  engine.share, low=0.9, key="many_share")  # fmt: skip
+    if good := [m for m in others if m.error <= ERROR]:
+        best = min(good, key=lambda m: m.seconds)
+        yield Finding(f"many chains: the best peer, {best.method}, over {engine.method}",
+                      best.seconds / engine.seconds, low=1.0, key="many_peer")  # fmt: skip
+
+
+def _engine(tasks: Sequence[Task]) -> Run:
+    def run(setting: float, threads: int) -> list[Array]:
+        runs = simulate_many((t.scene for t in tasks), workers=threads, rtol=setting)
+        return [task.force(run) for task, run in zip(tasks, runs, strict=True)]
+
+    return run
+
+
+def _threaded(solve: Solve, tasks: Sequence[Task]) -> Run:
+    def force(setting: float, task: Task) -> Array:
+        motion = Motion(task.scene)
+        return np.asarray(motion.force(motion.compression(solve(setting, task)))[task.contact])
+
+    def run(setting: float, threads: int) -> list[Array]:
+        with ThreadPoolExecutor(threads) as pool:
+            return list(pool.map(partial(force, setting), tasks))
+
+    return run
+
+
+def _peaks(tasks: Sequence[Task], forces: Sequence[Array]) -> Array:
+    return np.array([t.read(force).peak for t, force in zip(tasks, forces, strict=True)])
+
+
+def _cheapest(method: str, family: str, run: Run, tasks: Sequence[Task], truths: Array) -> Many:
+    """At the coarsest setting that is good enough, or at the finest."""
+    for setting in _SETTINGS:
+        error = float(np.median(np.abs(_peaks(tasks, run(setting, 1)) / truths - 1)))
+        if error <= ERROR:
+            break
+    together, alone = (_wall(partial(run, setting, n)) / len(tasks) for n in (cores(), 1))
+    return Many(method, family, setting, error, together, alone)
+
+
+def _wall(run: Callable[[], object]) -> float:
+    taken = []
+    for _ in range(_REPEATS):
+        start = time.perf_counter()
+        run()
+        taken.append(time.perf_counter() - start)
+    return median(taken)
