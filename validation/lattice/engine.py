@@ -11,7 +11,8 @@ of a contact that does is corrected by a quadrature that knows the kink: what is
 Splitting. Symplectic, at a fixed step (`validation.lattice.schemes.splitting`): with every kink it
 errs by O(h^{k+1}), and its step follows from that.
 
-Samples come from Hermite's polynomial with y, y', y'' and y''' at the ends of two steps.
+Samples come from Hermite's polynomial with y, y', y'' and y''' at the ends of two steps,
+or of one with a kink.
 
 Window. Ahead nothing moves: the front advances with the first bead that does. Behind, beads more
 than ``reach`` from the front are left to fly on freely, with their energy on the books, once the
