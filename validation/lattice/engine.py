@@ -6,12 +6,13 @@ Pair. The adaptive one for y'' = f(y) (`validation.lattice.schemes.nystrom`). Th
 the root of the sum of its beads' squares, in the scene's scales of displacement and velocity, and
 is kept at ``rtol``; the next step follows from it alone. F = A δ^k with k = 3/2 has no second
 derivative where a contact opens or closes: the step would err by O(h^{k+1}) there. So the impulse
-of a contact that does is corrected by a quadrature that knows the kink: what is left is O(h^{k+3}).
+of a contact that does is corrected by a quadrature that knows the kink.
 
 Splitting. Symplectic, at a fixed step (`validation.lattice.schemes.splitting`): with every kink it
 errs by O(h^{k+1}), and its step follows from that.
 
-Samples come from Hermite's polynomial with y, y', y'' and y''' at the ends of two steps.
+Samples come from Hermite's polynomial with y, y', y'' and y''' at the ends of two steps,
+or of one with a kink.
 
 Window. Ahead nothing moves: the front advances with the first bead that does. Behind, beads more
 than ``reach`` from the front are left to fly on freely, with their energy on the books, once the

@@ -108,7 +108,7 @@ class Plan(NamedTuple):
 
 
 _COUNTS = ("steps", "tries", "evaluations", "front", "mark", "lo", "done", "begin", "stop", "legs",
-           "count")  # fmt: skip
+           "kink", "count")  # fmt: skip
 _REALS = ("t", "base", "h", "before", "y", "v", "scale", "top", "peak", "lost", "formed",
           "decay", "left")  # fmt: skip
 _PLACE = np.dtype([(name, int) for name in _COUNTS] + [(name, float) for name in _REALS])
@@ -120,7 +120,8 @@ def beginning(plan: Plan, k: float, front: int) -> Any:
     steps, tries, evaluations : their numbers; evaluations times the beads that each one moves.
     front, mark, lo : the first bead that is still, that of one reach ago, the rear.
     done : samples that are taken. begin, stop : watched beads that are followed.
-    legs : reaches passed. count : of steps of the present length h, from base on.
+    legs : reaches passed. kink : the last step in which a contact opened or closed.
+    count : of steps of the present length h, from base on.
     t : the time. before : the last step. y, v : the error that is allowed.
     scale : the compression that the step is made for.
     top, peak : the greatest force in this reach, and in the last.
@@ -267,6 +268,8 @@ def _attempt(chain: Chain, beads: Beads, plan: Plan, at: Any, h: float, hi: int)
         before = rest[i] + y[i] - y[i + _ONE]
         after = rest[i] + next_y[i] - next_y[i + _ONE]
         crossing += 1 if before * after < 0.0 else 0
+    if crossing > 0:
+        at.kink = at.steps + 1
     if crossing > 0 and plan.scheme.points.shape[1] > 0:
         for i in range(lo, hi):
             before = rest[i] + y[i] - y[i + 1]
@@ -390,9 +393,9 @@ def _knot(chain: Chain, beads: Beads, seen: Samples, at: Any, turn: int) -> None
 def _sample(seen: Samples, at: Any, h: float, due: int) -> None:
     """The samples within a step: Hermite's polynomial of the knots of two steps, in Newton's form.
 
-    Its order is 12; 8 in the first step.
+    Its order is 12; 8, in one step, where a contact opens or closes in them, and in the first.
     """
-    size = 12 if at.steps > 1 else 8
+    size = 12 if at.steps - at.kink > 1 else 8
     x, d, inverse = np.empty(12), np.empty(12), np.zeros((12, 12))
     x[:4], x[4:8], x[8:] = 0.0, 1.0, -at.before / h
     for j in range(1, size):
