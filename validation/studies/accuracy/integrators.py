@@ -117,9 +117,9 @@ class Accuracy:
 
     def report(self) -> Report:
         """``rows``, as of `Row`, with the largest ``error``; ``costs`` by method; ``references``
-        and their ``agreement`` with another route; ``goals``, which people read as findings;
-        ``absent``; ``many``, as of `Many`; ``theories``, as of `Ladder`. In the picture CPU time over the error, solid with
-        a window."""
+        and their ``agreement`` with another route; ``many``, as of `Many`; ``goals``, which people
+        read as findings; ``absent``; ``theories``, as of `Ladder`. In the picture CPU time over the
+        error, solid with a window."""
         tasks = {r.task: [row for row in self.rows if row.task == r.task] for r in self.references}
         rows = tuple((r.task, r.family, r.name, r.setting, r.error,
                       *(r.errors[name] for name in NUMBERS), r.seconds, r.step, r.ns)
@@ -143,7 +143,8 @@ class Accuracy:
         left = f"Left out, as not installed: {left} (pip install 'lwa[peers]' brings them)."
         theories = () if self.theories is None else (self.theories.report(),)
         goals = (Report("goals", findings=self.goals),) * bool(self.goals)
-        data = {"rows": [], "costs": [], "references": [], "goals": [], "absent": self.absent}
+        empty = dict.fromkeys(("rows", "costs", "references", "many", "goals"), ())
+        data = empty | {"absent": self.absent}
         return Report(
             "Speed against error",
             tuple(table for table in tables if table.rows),

@@ -250,7 +250,7 @@ def test_a_task_that_does_not_exist_is_named_and_nothing_is_run(capsys, monkeypa
         monkeypatch.setitem(tasks.TASKS, name, pytest.fail)
     status, out, err = command(capsys, "--task", "dimer", "--task", "tea")
     assert (status, out) == (2, "")
-    names = "uniform, dimer, exact, experiment, precompressed, theory"
+    names = "uniform, dimer, exact, experiment, precompressed, many, theory"
     assert err == f"lwa-validate: task is 'tea': one of {names} is wanted\n"
     with pytest.raises(InputError, match=r"^task is 'tea'"):
         accuracy(["tea"])
