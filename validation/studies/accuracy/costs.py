@@ -36,7 +36,7 @@ class Row:
     """One run of one method, of the family "SciPy", "compiled" or "peer".
 
     setting : tolerance; of heyoka its largest step.
-    errors : relative, by `validation.studies.accuracy.tasks.NUMBERS`.
+    errors : relative, by `validation.studies.accuracy.tasks.NUMBERS`; infinite where no pulse came.
     seconds : of CPU time, without compilation.
     step, ns : of compiled runs the mean step, and the time per bead and evaluation of its force.
     """

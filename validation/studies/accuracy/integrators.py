@@ -22,6 +22,7 @@ from lwa.compact.numeric import Array
 from lwa.duration import Progress
 from validation.lattice.equations import Motion
 from validation.lattice.simulate import COMPILED, simulate
+from validation.pulses.pulse import MeasureError
 from validation.report.command import option, study
 from validation.report.panel import Curve, Panel
 from validation.report.result import Report
@@ -171,7 +172,8 @@ def _panel(task: str, rows: Sequence[Row]) -> Panel:
         known, method = marks.setdefault(family, {}), its[0].method
         mark = known.setdefault(method, _MARKS[len(known) % len(_MARKS)])
         style = _COLOURS[family] + mark + ("-" if its[0].window else ":")
-        points = ([row.error for row in its], [row.seconds for row in its])
+        seen = [row for row in its if math.isfinite(row.error)]
+        points = ([row.error for row in seen], [row.seconds for row in seen])
         curves.append(Curve.of(name, *points, style=style))
     label = "largest relative error of arrival, peak, FWHM"
     return Panel(label, "CPU time (s)", tuple(curves), "xy", task)
@@ -224,7 +226,10 @@ def _compared(
     def row(
         family: str, method: str, window: bool, setting: float, force: Array, *spent: float
     ) -> Row:
-        off = errors(task.read(force), truth.pulse)
+        try:
+            off = errors(task.read(force), truth.pulse)
+        except MeasureError:  # at this setting no pulse comes through
+            off = dict.fromkeys(NUMBERS, math.inf)
         return Row(name, family, method, window, setting, off, *spent)
 
     for (method, window), tolerances in _SCIPY.items():

@@ -302,6 +302,18 @@ def test_a_panel_tells_windows_from_whole_chains():
     assert (curves["a"].x.tolist(), curves["a"].y.tolist()) == ([1e-7, 1e-5], [2.0, 1.0])
 
 
+def test_a_run_without_a_pulse_is_told_and_drawn_nowhere(monkeypatch):
+    reduce(monkeypatch)
+    task = small()
+    monkeypatch.setattr(module, "integrate", lambda task, *rest, **options: 0 * task.times)
+    monkeypatch.setattr(module, "_COMPILED", {})
+    truth = module.Reference("dimer", task.read(task.force(simulate(task.scene))), 0.0)
+    rows = list(module._compared("dimer", task, truth, iter(())))
+    assert {row.error for row in rows} == {math.inf}
+    assert module._costs(rows)[0][1:] == (None,) * 4
+    assert all(len(curve.x) == 0 for curve in module._panel("dimer", rows).curves)
+
+
 @pytest.mark.slow
 @pytest.mark.filterwarnings("default::DeprecationWarning")
 def test_the_command_with_every_method(capsys, monkeypatch):
