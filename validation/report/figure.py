@@ -18,6 +18,7 @@ from validation.report.panel import Map, Panel
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.axis import Axis
     from matplotlib.figure import Figure
 
 SUFFIXES = (".pdf", ".png", ".svg")
@@ -85,8 +86,22 @@ def draw(plot: Axes, panel: Panel) -> None:
         plot.errorbar(
             curve.x, curve.y, curve.error, fmt=style, color=colour, ms=4, label=curve.label or None
         )
+    for axis in panel.scale:
+        _plain(getattr(plot, f"{axis}axis"))
     if 0 < sum(bool(curve.label) for curve in panel.curves) <= _MOST:
         plot.legend(fontsize="small", loc=panel.legend or "best")
+
+
+def _plain(axis: Axis) -> None:
+    """Plain numbers on a logarithmic axis of few decades, not products with a power of ten."""
+    from matplotlib.ticker import LogLocator, NullFormatter  # start-up
+
+    low, high = sorted(axis.get_view_interval())
+    if low >= 1e-3 and high <= 1e5 and high < 300 * low:
+        subs = (1, 1.5, 2, 3, 4, 6, 8) if high < 10 * low else (1, 2, 5)
+        axis.set_major_locator(LogLocator(subs=subs))
+        axis.set_major_formatter("{x:g}")
+        axis.set_minor_formatter(NullFormatter())
 
 
 def _draw_map(plot: Axes, found: Map, scale: str) -> None:
