@@ -97,7 +97,7 @@ def _plain(axis: Axis) -> None:
     from matplotlib.ticker import LogLocator, NullFormatter  # start-up
 
     low, high = sorted(axis.get_view_interval())
-    if low >= 1e-3 and high <= 1e5 and high < 300 * low:
+    if low >= 1e-3 and high <= 1e5 and high < 1e3 * low:
         subs = (1, 1.5, 2, 3, 4, 6, 8) if high < 10 * low else (1, 2, 5)
         axis.set_major_locator(LogLocator(subs=subs))
         axis.set_major_formatter("{x:g}")
