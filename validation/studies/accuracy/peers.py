@@ -31,6 +31,8 @@ Solve = Callable[..., Array]
 """From a tolerance (heyoka: the largest step) to the displacements at the task's times, (n, S); of
 a package in `MANY` also for another task of as many beads, given second."""
 
+_STEPS = 10**8  # that numbalsoda may take: more than it needs
+
 MANY = ("CyRK", "numbalsoda")
 """Packages whose compiled equations take other chains."""
 
@@ -123,7 +125,7 @@ def _numbalsoda(task: Task, method: str) -> Solve:
     def solve(tolerance: float, task: Task = task) -> Array:
         states, well = getattr(numbalsoda, method.lower())(
             motion.address, Motion(task.scene).start, np.concatenate(([0.0], task.times)),
-            _constants(task), rtol=tolerance, atol=tolerance,
+            _constants(task), rtol=tolerance, atol=tolerance, mxstep=_STEPS,
         )  # fmt: skip
         if not well:
             raise PeerError(f"numbalsoda {method} stopped at tolerance {tolerance:g}")
