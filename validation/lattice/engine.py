@@ -50,7 +50,7 @@ _SUPPORTS = 4.0  # of the long-wave pulse: what the window reaches back
 # Of a pulse's peak, a reach later and at the end: where less is left, the window gives way.
 _DECAY, _LEFT = 0.9, 0.5
 _WINDOW = 2  # reaches that a window holds, about
-_POINTS = 6  # of the quadrature at a kink
+_POINTS = 8  # of the quadrature at a kink
 _GLANCE = 0.2  # seconds, about, from one look at the progress to the next, or at Ctrl-C
 
 
@@ -201,7 +201,8 @@ def _start(motion: Motion, padded: int) -> tuple[Beads, Samples]:
     time = np.linspace(0.0, scene.duration, scene.samples)
     seen = np.empty((2, len(watched), len(time)))
     seen[0], seen[1] = y[watched, None], v[watched, None]
-    return Beads(y, v, next_y, next_v, left, force, sums), Samples(
+    kinks = np.zeros((padded + 1, 7))
+    return Beads(y, v, next_y, next_v, left, force, sums, kinks), Samples(
         time, watched, np.zeros((3, 4, len(watched))), *seen
     )
 

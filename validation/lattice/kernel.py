@@ -24,7 +24,11 @@ _BLOW = 0.05  # of a bead's peak momentum: what the next may still get from a be
 _LONGEST = 4  # reaches: further behind, beads are left in any case, to bound the cost
 _STILL = 1e-13  # of the peak compression: beads that have moved less are still
 _NOTHING = 1e-60  # of the greatest compression: open, lest the front decay into denormal numbers
-_DOUBT = 0.05  # of what an opening corrects: what it may err by
+_NEAR = 0.5  # of a contact's greater compression at the ends of a step: a kink is near
+_STEADY = 0.5  # of the greater closing speed at the ends of a step
+_COUNTS_FROM = 10.0  # times the error that is allowed: an impulse near a kink
+_FAR = 1.0  # steps that it may be away
+_EVEN = 0.2  # of the greatest q: the least
 
 
 class Chain(NamedTuple):
@@ -44,6 +48,7 @@ class Beads(NamedTuple):
     force : (stages, padded + 1), by stage that on each bead from behind, less its load.
     sums : (4, padded + 1), of stages: one for all, then the impulses of a step and the errors of
         displacement and velocity that they bring.
+    kinks : (padded + 1, 7), of the step: contact, root r and coefficients of q.
     """
 
     y: Array
@@ -53,6 +58,7 @@ class Beads(NamedTuple):
     left: Array
     force: Array
     sums: Array
+    kinks: Array
 
 
 class Samples(NamedTuple):
@@ -108,7 +114,7 @@ class Plan(NamedTuple):
 
 
 _COUNTS = ("steps", "tries", "evaluations", "front", "mark", "lo", "done", "begin", "stop", "legs",
-           "kink", "count")  # fmt: skip
+           "kink", "kinks", "count")  # fmt: skip
 _REALS = ("t", "base", "h", "before", "y", "v", "scale", "top", "peak", "lost", "formed",
           "decay", "left")  # fmt: skip
 _PLACE = np.dtype([(name, int) for name in _COUNTS] + [(name, float) for name in _REALS])
@@ -121,6 +127,7 @@ def beginning(plan: Plan, k: float, front: int) -> Any:
     front, mark, lo : the first bead that is still, that of one reach ago, the rear.
     done : samples that are taken. begin, stop : watched beads that are followed.
     legs : reaches passed. kink : the last step in which a contact opened or closed.
+    kinks : those that the last step corrects for.
     count : of steps of the present length h, from base on.
     t : the time. before : the last step. y, v : the error that is allowed.
     scale : the compression that the step is made for.
@@ -263,43 +270,81 @@ def _attempt(chain: Chain, beads: Beads, plan: Plan, at: Any, h: float, hi: int)
     _add_up(sums, _THREE, force, ends, 2, h / at.v, stages, lo, hi)
     for i in range(_index(lo), _index(hi)):
         next_v[i] = v[i] + (sums[_ONE, i] - sums[_ONE, i + _ONE]) * inverse[i]
-    crossing = 0
+    at.kinks = 0
+    # A kink, within the step or about as near as a step is long, and of an impulse that counts.
+    near = 0
     for i in range(_index(lo), _index(hi)):
         before = rest[i] + y[i] - y[i + _ONE]
         after = rest[i] + next_y[i] - next_y[i + _ONE]
-        crossing += 1 if before * after < 0.0 else 0
-    if crossing > 0:
-        at.kink = at.steps + 1
-    if crossing > 0 and plan.scheme.points.shape[1] > 0:
+        near += 1 if min(before, after) < _NEAR * max(before, after, 0.0) else 0
+    if near > 0:
         for i in range(lo, hi):
             before = rest[i] + y[i] - y[i + 1]
-            if before * (rest[i] + next_y[i] - next_y[i + 1]) < 0.0:
-                _correct(chain, beads, plan, at, h, i)
+            after = rest[i] + next_y[i] - next_y[i + 1]
+            most = max(before, after, 0.0)
+            if min(before, after) < _NEAR * most:
+                if before * after < 0.0:
+                    at.kink = at.steps + 1
+                speed, later = v[i] - v[i + 1], next_v[i] - next_v[i + 1]
+                even = min(speed / later, later / speed) > _STEADY
+                kick = h * chain.A[i] * _power(chain, most) * max(inverse[i], inverse[i + 1])
+                if (
+                    kick > _COUNTS_FROM * at.v
+                    and (even or before * after < 0.0)
+                    and plan.scheme.points.shape[1] > 0
+                ):
+                    _correct(chain, beads, plan, at, h, i)
     return math.sqrt(_square(sums, inverse, lo, hi))
 
 
 @_part
-def _correct(chain: Chain, beads: Beads, plan: Plan, at: Any, h: float, i: int) -> None:
-    """Contact i opens or closes within a step: its impulse, and what it moves, by quadrature.
+def _power(chain: Chain, q: float) -> float:
+    q = max(q, 0.0)
+    return float(q * np.sqrt(q) if chain.law == 3 else q**chain.k)
 
-    Its compression is the quintic with δ, δ' and δ'' of both ends, with one root r. On the closed
-    side it is (x - r) q(x), and ∫ |x - r|^k q^k dx is a Gauss–Jacobi sum.
+
+@_compiled
+def _ramp(chain: Chain, scheme: Tableau, kink: Array, z: float) -> tuple[float, float]:
+    """∫∫ and ∫ of p_+^k, from its root to z, for p = (z - r) q(z)."""
+    side = z - kink[1]
+    once = twice = 0.0
+    if side * kink[2] > 0.0:
+        for m in range(scheme.points.shape[1]):
+            part = scheme.points[0, m]
+            u = kink[1] + side * part
+            q = kink[2] + u * (kink[3] + u * (kink[4] + u * (kink[5] + u * kink[6])))
+            f = scheme.points[1, m] * _power(chain, side * q)
+            once += f
+            twice += f * (1.0 - part)
+    return side * side * twice, side * once
+
+
+@_part
+def _correct(chain: Chain, beads: Beads, plan: Plan, at: Any, h: float, i: int) -> None:
+    """Contact i opens or closes in or near a step: the pair's error in its impulse is taken off.
+
+    Its compression is about the quintic p with δ, δ' and δ'' of both ends, with one root r. On the
+    closed side p is (x - r) q(x), and ∫ |x - r|^k q^k dx is a Gauss–Jacobi sum. The pair integrates
+    what is left of the force, which is smoother.
     """
-    y, v, inverse, force = beads.y, beads.v, chain.inverse, beads.force
-    last = len(plan.scheme.nodes) - 1
+    y, v, inverse, force, scheme = beads.y, beads.v, chain.inverse, beads.force, plan.scheme
+    last = len(scheme.nodes) - 1
     c0 = chain.rest[i] + y[i] - y[i + 1]
+    end = chain.rest[i] + beads.next_y[i] - beads.next_y[i + 1]
     c1 = h * (v[i] - v[i + 1])
     c2 = h * h * _relative(force[0], inverse, i) / 2
-    end = chain.rest[i] + beads.next_y[i] - beads.next_y[i + 1]
     r0 = end - c0 - c1 - c2
     r1 = h * (beads.next_v[i] - beads.next_v[i + 1]) - c1 - 2 * c2
     r2 = h * h * _relative(force[last], inverse, i) - 2 * c2
     c3, c4, c5 = 10 * r0 - 4 * r1 + r2 / 2, -15 * r0 + 7 * r1 - r2, 6 * r0 - 3 * r1 + r2 / 2
-    low, high, x = 0.0, 1.0, c0 / (c0 - end)
-    for _ in range(60):  # Newton's method, or else the middle
+    rising = end > c0
+    low, high, x, moved = -_FAR, 1.0 + _FAR, c0 / (c0 - end), 1.0
+    if c0 * end < 0.0:
+        low, high = 0.0, 1.0
+    for _ in range(30):  # Newton's method, or else the middle
         p = c0 + x * (c1 + x * (c2 + x * (c3 + x * (c4 + x * c5))))
         slope = c1 + x * (2 * c2 + x * (3 * c3 + x * (4 * c4 + x * 5 * c5)))
-        low, high = (x, high) if p * c0 > 0.0 else (low, x)
+        low, high = (low, x) if (p > 0.0) == rising else (x, high)
         guess = x - p / slope
         guess = guess if low < guess < high else (low + high) / 2
         x, moved = guess, abs(guess - x)
@@ -309,28 +354,37 @@ def _correct(chain: Chain, beads: Beads, plan: Plan, at: Any, h: float, i: int) 
     q2 = c3 + x * q3
     q1 = c2 + x * q2
     q0 = c1 + x * q1
-    side = -x if c0 > 0.0 else 1.0 - x
-    impulse = moment = 0.0
-    for m in range(plan.scheme.points.shape[1]):
-        z = x + side * plan.scheme.points[0, m]
-        q = side * (q0 + z * (q1 + z * (q2 + z * (q3 + z * c5))))
-        q = max(q, 0.0)
-        f = plan.scheme.points[1, m] * (q * np.sqrt(q) if chain.law == 3 else q**chain.k)
-        impulse += f
-        moment += f * (1.0 - z)
-    impulse = h * (chain.A[i] * abs(side) * impulse - chain.load[i])
-    moment = h * h * (chain.A[i] * abs(side) * moment - chain.load[i] / 2)
-    summed = 0.0
-    for s in range(last):
-        summed += plan.scheme.rows[last, s] * force[s, i + 1]
-    d_impulse, d_moment = impulse - beads.sums[1, i + 1], moment - h * h * summed
-    beads.next_v[i] -= d_impulse * inverse[i]
-    beads.next_v[i + 1] += d_impulse * inverse[i + 1]
-    beads.next_y[i] -= d_moment * inverse[i]
-    beads.next_y[i + 1] += d_moment * inverse[i + 1]
-    # The pair's own estimate is that of a smooth motion.
-    beads.sums[2, i + 1] = _DOUBT * d_moment / at.y
-    beads.sums[3, i + 1] = _DOUBT * d_impulse / at.v
+    start, finish = q0, q0 + q1 + q2 + q3 + c5
+    centre = q0 + x * (q1 + x * (q2 + x * (q3 + x * c5)))
+    sign = 1.0 if rising else -1.0
+    least = min(sign * start, sign * finish, sign * centre)
+    if (
+        moved >= 1e-9
+        or abs(x - 0.5) > 0.499 + _FAR
+        or least < _EVEN * max(sign * start, sign * finish, sign * centre)
+    ):
+        return
+    kink = beads.kinks[at.kinks]
+    kink[0], kink[1], kink[2], kink[3], kink[4], kink[5], kink[6] = i, x, q0, q1, q2, q3, c5
+    at.kinks += 1
+    twice, once = _ramp(chain, scheme, kink, 1.0)
+    start_twice, start_once = _ramp(chain, scheme, kink, 0.0)
+    impulse, moment = once - start_once, twice - start_twice - start_once
+    error = error_speed = 0.0
+    for s in range(last + 1):
+        u = scheme.nodes[s]
+        f = _power(chain, c0 + u * (c1 + u * (c2 + u * (c3 + u * (c4 + u * c5)))))
+        impulse -= scheme.ends[0, s] * f
+        moment -= scheme.rows[last, s] * f
+        error += scheme.ends[1, s] * f
+        error_speed += scheme.ends[2, s] * f
+    impulse, moment = chain.A[i] * h * impulse, chain.A[i] * h * h * moment
+    beads.next_v[i] -= impulse * inverse[i]
+    beads.next_v[i + 1] += impulse * inverse[i + 1]
+    beads.next_y[i] -= moment * inverse[i]
+    beads.next_y[i + 1] += moment * inverse[i + 1]
+    beads.sums[2, i + 1] -= chain.A[i] * h * h * error / at.y
+    beads.sums[3, i + 1] -= chain.A[i] * h * error_speed / at.v
 
 
 @_part
@@ -389,21 +443,60 @@ def _knot(chain: Chain, beads: Beads, seen: Samples, at: Any, turn: int) -> None
         knot[3, q] = (back_rate - rate) * chain.inverse[j]
 
 
+@_part
+def _bend(chain: Chain, plan: Plan, kink: Array, j: int, h: float, z: float) -> tuple[float, float]:
+    """What a kink adds to the displacement and velocity of bead j."""
+    unit = chain.A[int(kink[0])] * chain.inverse[j] * h * (1.0 if kink[0] < j else -1.0)
+    twice, once = _ramp(chain, plan.scheme, kink, z)
+    return unit * h * twice, unit * once
+
+
+@_part
+def _smooth(chain: Chain, beads: Beads, plan: Plan, at: Any, knots: Array, j: int, h: float) -> int:
+    """Take what kinks add off the knots of bead j at the ends of the step; their number."""
+    count = 0
+    for n in range(at.kinks):
+        kink = beads.kinks[n]
+        i = int(kink[0])
+        if i != j and i + 1 != j:
+            continue
+        count += 1
+        unit = chain.A[i] * chain.inverse[j] * (1.0 if i < j else -1.0)
+        for end in range(2):
+            knot = knots[(at.steps - 1 + end) % 3]
+            y, v = _bend(chain, plan, kink, j, h, end)
+            q = kink[2] + end * (kink[3] + kink[4] + kink[5] + kink[6])
+            rise = kink[3] + end * (2 * kink[4] + 3 * kink[5] + 4 * kink[6])
+            p, slope = (end - kink[1]) * q, q + (end - kink[1]) * rise
+            knot[0] -= y
+            knot[1] -= v
+            if p > 0.0:
+                force = unit * _power(chain, p)
+                knot[2] -= force
+                knot[3] -= chain.k * force / p * slope / h
+    return count
+
+
 @_compiled
-def _sample(seen: Samples, at: Any, h: float, due: int) -> None:
+def _sample(
+    chain: Chain, beads: Beads, plan: Plan, seen: Samples, at: Any, h: float, due: int
+) -> None:
     """The samples within a step: Hermite's polynomial of the knots of two steps, in Newton's form.
 
     Its order is 12; 8, in one step, where a contact opens or closes in them, and in the first.
+    What the kinks of a bead's own contacts add is not interpolated.
     """
-    size = 12 if at.steps - at.kink > 1 else 8
-    x, d, inverse = np.empty(12), np.empty(12), np.zeros((12, 12))
+    x, d, inverse, knots = np.empty(12), np.empty(12), np.zeros((12, 12)), np.empty((3, 4))
     x[:4], x[4:8], x[8:] = 0.0, 1.0, -at.before / h
-    for j in range(1, size):
-        for i in range(j, size):
+    for j in range(1, 12):
+        for i in range(j, 12):
             inverse[j, i] = 1.0 / (x[i] - x[i - j]) if x[i] != x[i - j] else 0.0
+    new, old, older = at.steps % 3, (at.steps - 1) % 3, (at.steps - 2) % 3
     for q in range(at.begin, at.stop):
-        knots = seen.knots[:, :, q]
-        new, old, older = at.steps % 3, (at.steps - 1) % 3, (at.steps - 2) % 3
+        bead = seen.watched[q]
+        knots[:] = seen.knots[:, :, q]
+        kinks = _smooth(chain, beads, plan, at, knots, bead, h)
+        size = 12 if at.steps - at.kink > 1 and kinks == 0 else 8
         for i in range(size):
             d[i] = knots[old if i < 4 else new if i < 8 else older, 0]
         scale = 1.0
@@ -420,7 +513,12 @@ def _sample(seen: Samples, at: Any, h: float, due: int) -> None:
             for i in range(size - 2, -1, -1):
                 slope = p + (z - x[i]) * slope
                 p = d[i] + (z - x[i]) * p
-            seen.y[q, s], seen.v[q, s] = p, slope / h
+            y, v = p, slope / h
+            for n in range(at.kinks if kinks > 0 else 0):
+                if beads.kinks[n, 0] == bead or beads.kinks[n, 0] + 1 == bead:
+                    more, faster = _bend(chain, plan, beads.kinks[n], bead, h, z)
+                    y, v = y + more, v + faster
+            seen.y[q, s], seen.v[q, s] = y, v
     at.done = due
 
 
@@ -526,7 +624,7 @@ def advance(chain: Chain, beads: Beads, plan: Plan, seen: Samples, at: Any, trie
             due += 1
         _knot(chain, beads, seen, at, at.steps % 3)
         if due > at.done:
-            _sample(seen, at, h, due)
+            _sample(chain, beads, plan, seen, at, h, due)
         at.t, at.before = later, h
         if plan.cut > 0 or at.front < plan.size:
             _follow(chain, beads, plan, at, hi)
