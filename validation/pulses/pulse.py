@@ -137,7 +137,8 @@ def read(time: Array, rows: Array, top: NDArray[np.intp]) -> tuple[Array, Array,
 
     def piece(i: NDArray[np.intp]) -> Array:
         """One for each row: coefficients of a cubic in 0 … 1."""
-        return np.asarray(spline.c[:, i, row] * steps[i] ** np.arange(3, -1, -1)[:, None])
+        powers = np.arange(3, -1, -1).reshape(4, *(1,) * i.ndim)
+        return np.asarray(spline.c[:, i, row] * steps[i] ** powers)
 
     def at(cubic: Array, x: Array) -> Array:
         return np.asarray(((cubic[0] * x + cubic[1]) * x + cubic[2]) * x + cubic[3])
@@ -153,18 +154,18 @@ def read(time: Array, rows: Array, top: NDArray[np.intp]) -> tuple[Array, Array,
     before = np.where(below & (place < top[:, None]), place, -1).max(axis=1)
     behind = np.where(below & (place > top[:, None]), place, len(time)).min(axis=1)
 
-    def flank(i: NDArray[np.intp], rising: bool) -> Array:
-        cubic, low, high = piece(i), np.zeros(len(rows)), np.ones(len(rows))
+    def flanks(i: NDArray[np.intp]) -> Array:
+        """Where it passes half of the peak, rising in i[0] and falling in i[1]."""
+        cubic, low, high = piece(i), np.zeros(i.shape), np.ones(i.shape)
+        rising = np.array([[True], [False]])
         for _ in range(53):  # by bisection: the spline passes half of the peak once
             x = (low + high) / 2
             under = (at(cubic, x) < peak / 2) == rising
             low, high = np.where(under, x, low), np.where(under, high, x)
         return np.asarray(time[i] + high * steps[i])
 
-    rise = np.where(before < 0, np.nan, flank(np.maximum(before, 0), True))
-    fall = np.where(
-        behind == len(time), np.nan, flank(np.minimum(behind, len(time) - 1) - 1, False)
-    )
+    rise, fall = flanks(np.stack((np.maximum(before, 0), np.minimum(behind, len(time) - 1) - 1)))
+    rise[before < 0] = fall[behind == len(time)] = np.nan
     return arrival, peak, rise, fall
 
 

@@ -53,8 +53,8 @@ QUANTITIES = {
 
 PLACES = 10  # cells at which the pulse is recorded
 STRETCH = 4  # cells from one to the next, for k from 3/2 on, unless a sweep sets another number
-TOLERANCES = (1e-7, 1e-6)  # of the run that counts and of the one that gives its error
-_SAMPLES = 40.0  # per unit of time, in the run that counts, at k ≤ 3/2 and ω ≥ 1/4
+TOLERANCES = (1e-6, 1e-5)  # of the run that counts and of the one that gives its error
+_SAMPLES = 40.0  # per unit of time, in the run that counts, at k ≤ 3/2 and ω from 1/4 to 1
 _GROWTH, _LONGEST = 1.6, 16  # by how much, and how often, a run is made longer, at most
 _SLOWEST = 0.9  # ratio of two differences, next to 1 of which nothing can be said of their sum
 
@@ -141,9 +141,11 @@ class Chain:
     def passed(
         self, duration: float, rtol: float, samples: float = _SAMPLES, whole: bool = False
     ) -> Record:
-        """A run of this duration, or longer, with ``samples`` per unit of time, more where hits are
-        shorter. Raises `MeasureError` where the pulse does not come through."""
-        samples *= max(1.0, self.k / 1.5) / math.sqrt(min(1.0, 4 * self.omega))
+        """A run of this duration, or longer, with ``samples`` per unit of time: more where hits are
+        shorter, fewer where beads are heavy. Raises `MeasureError` where the pulse does not come
+        through."""
+        units = min(1.0, 4 * self.omega) * max(1.0, self.omega)
+        samples *= max(1.0, self.k / 1.5) / math.sqrt(units)
         places = range(self.sites, self.sites * PLACES + 1, self.sites)
         sensors = tuple(place + side for place in places for side in (0, 1))
         for _ in range(_LONGEST):

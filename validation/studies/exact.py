@@ -123,7 +123,7 @@ def exact(
     progress: Progress[Any] = iter,
 ) -> Report:
     """An exact traveling wave of the lattice: speed, widths, and the tail if it has one. A second
-    or two; for unequal masses from k = 2 on up to half a minute.
+    or two; for unequal masses from k = 4 on up to half a minute.
     """
     if speed is not None and force is not None:
         raise InputError("speed and force: a wave is scaled to one of the two")

@@ -224,7 +224,8 @@ def _dimer(
     if k <= STEEP:
         raise NoWave(failure)
     try:
-        return _followed(_dimer(pair, STEEP, half_period, progress), k)
+        begin = _dimer(pair, STEEP, half_period, progress)
+        return next(_followed(begin, end) for end in progress([k]))
     except NoWave as other:
         raise NoWave(f"{failure}; {other}") from None
 

@@ -328,18 +328,26 @@ def test_a_name_changes_nothing_but_itself(drawn, assume_positive):
     except InputError:  # a name that means something else
         return
     values = (1.5, 2.0, 3.0, 0.5)
-    plain = canonical_wave(Dimer("m1", "m2"))
     for language in ("python", "numpy", "julia"):
-        found, expected = {}, {}
-        for each, into in ((wave, found), (plain, expected)):
-            source = each.code(language)
-            exec(as_python(source) if language == "julia" else source, into)
+        found, expected = namespace(wave, language), plain(language)
         got = found["profile"](0.1, 2.0, *values)
         # sums are in another order under other names
         assert got == pytest.approx(expected["profile"](0.1, 2.0, *values), rel=1e-15)
         assert found["fwhm_force"](*values) == pytest.approx(
             expected["fwhm_force"](*values), rel=1e-15
         )
+
+
+def namespace(wave, language):
+    """What the wave's code defines, run by Python."""
+    source, found = wave.code(language), {}
+    exec(as_python(source) if language == "julia" else source, found)
+    return found
+
+
+@cache
+def plain(language):
+    return namespace(canonical_wave(Dimer("m1", "m2")), language)
 
 
 def test_what_was_renamed_is_said():

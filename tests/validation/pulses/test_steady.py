@@ -90,7 +90,7 @@ def test_relabelling_the_masses_changes_the_unit_of_mass_only(k, omega):
 SETTINGS = (
     {"stretch": 3},
     {"stretch": 7},
-    {"TOLERANCES": (1e-6, 1e-5)},
+    {"TOLERANCES": (1e-7, 1e-6)},
     {"_SAMPLES": 25.0},
     {"PLACES": 14},
 )

@@ -508,6 +508,26 @@ def test_each_wave_that_is_tried_is_shown(monkeypatch):
     assert events == ["shown", "solve"] * 2 * len(solver.PERIODS)
 
 
+def test_a_branch_that_is_followed_is_shown(monkeypatch):
+    """It takes seconds at k = 8."""
+    events, solve = [], solver.solve
+
+    def fails(masses, k, *rest, **options):
+        if k > solver.STEEP:
+            raise NoWave("no convergence")
+        return solve(masses, k, *rest, **options)
+
+    def progress(cases):
+        for case in cases:
+            events.append(case)
+            yield case
+
+    monkeypatch.setattr(solver, "solve", fails)
+    monkeypatch.setattr(solver, "_followed", lambda begin, k: (events.append("followed"), k))
+    assert solver._dimer((1.0, 0.6), 5.0, None, progress)[1] == 5.0
+    assert events[-2:] == [5.0, "followed"]
+
+
 @settings(max_examples=12, deadline=None)
 @given(st.floats(2.3e-308, 1.7e308), st.sampled_from(["uniform", "special"]))
 def test_masses_of_any_size_scale_or_are_refused(hertz, specials, mass, name):

@@ -1,1 +1,1 @@
-"""Maps over k and m2/m1, resumable, on processes or a cluster."""
+"""Maps over k and m2/m1, resumable, on threads or a cluster."""

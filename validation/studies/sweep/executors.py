@@ -1,4 +1,4 @@
-"""Where the points of a sweep are computed: by processes of this machine, or by a Dask cluster.
+"""Where the points of a sweep are computed: by threads of this process, or by a Dask cluster.
 
 Both are executors of `concurrent.futures`, and any other one serves a sweep as well.
 """
@@ -7,16 +7,12 @@ from __future__ import annotations
 
 import asyncio
 import logging
-import multiprocessing
 import os
-import signal
-import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from concurrent import futures
 from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future
 from contextlib import AbstractContextManager, ExitStack, closing, contextmanager, nullcontext
 from itertools import islice
-from typing import Any, TypeVar
 
 from lwa.duration import Progress
 from lwa.exact import InputError, shorten
@@ -27,57 +23,24 @@ from validation.studies.sweep.journal import Journal, Key
 PATIENCE = 5  # seconds within which a cluster must answer
 _UNDERWAY = 256  # points that an executor is given at a time
 
-_Result = TypeVar("_Result")
-
 
 class SweepError(Failure):
     """The executor gave up; what was finished is kept. The message says where it stood."""
 
 
-class _Pool(futures.ProcessPoolExecutor):
-    """Its workers do not hear Ctrl-C, which is for the parent to act on."""
-
-    def submit(self, fn: Callable[..., _Result], /, *args: Any, **kwargs: Any) -> Future[_Result]:
-        """Submit a call; this is where workers are started, who inherit the mask."""
-        if not hasattr(signal, "pthread_sigmask"):
-            return super().submit(fn, *args, **kwargs)
-        mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-        try:
-            return super().submit(fn, *args, **kwargs)
-        finally:
-            signal.pthread_sigmask(signal.SIG_SETMASK, mask)
-
-
-def _end_with_parent() -> None:
-    """In a worker: end when the process that started it is gone, however it went."""
-
-    def watch() -> None:
-        if (parent := multiprocessing.parent_process()) is not None:
-            parent.join()
-            os._exit(1)
-
-    threading.Thread(target=watch, daemon=True).start()
-
-
 @contextmanager
-def processes(jobs: int | None = None) -> Iterator[Executor]:
-    """A pool of so many processes, by default one for each processor that this one may use.
+def threads(jobs: int | None = None) -> Iterator[Executor]:
+    """So many threads, by default one for each processor that this process may use.
 
-    They are started anew (spawn), as a fork would not survive numba's and BLAS's threads: a script
-    that calls this needs ``if __name__ == "__main__"``. On an exception they are ended at once.
+    They run side by side, as the compiled engine holds no lock. On an exception the points that
+    wait are dropped; those underway, which nothing can end, take seconds at most.
     """
     if jobs is None:
         affinity = getattr(os, "sched_getaffinity", None)
         jobs = len(affinity(0)) if affinity else os.cpu_count() or 1
-    jobs = integer(jobs, "jobs", 1, 1024)
-    others = set(multiprocessing.active_children())
-    pool = _Pool(jobs, multiprocessing.get_context("spawn"), _end_with_parent)
+    pool = futures.ThreadPoolExecutor(integer(jobs, "jobs", 1, 1024))
     try:
         yield pool
-    except BaseException:
-        for process in set(multiprocessing.active_children()) - others:
-            process.terminate()
-        raise
     finally:
         pool.shutdown(cancel_futures=True)
 
@@ -126,7 +89,7 @@ def entered(
 ) -> AbstractContextManager[Executor]:
     """A context that gives an executor: the default one, one that is there, or itself."""
     if executor is None:
-        return processes()
+        return threads()
     if isinstance(executor, Executor):
         return nullcontext(executor)
     if isinstance(executor, AbstractContextManager):

@@ -36,7 +36,7 @@ from validation.report.result import Report
 from validation.report.table import Column, Table
 from validation.report.text import percent
 from validation.scenes.checks import SceneError, integer, items
-from validation.studies.sweep.executors import cluster, compute, entered, processes
+from validation.studies.sweep.executors import cluster, compute, entered, threads
 from validation.studies.sweep.journal import Journal, Key, rational
 
 RANGES = {"k": (Rational(21, 20), Rational(6)), "omega": (Rational(1, 100), Rational(100))}
@@ -218,16 +218,14 @@ def sweep(
     stretch : cells from place to place, see `validation.pulses.steady`; at k ≥ 3/2, and more below.
     executor : which computes the points, and is left running; or a context that gives one, such
         as `validation.studies.sweep.executors.cluster`, entered when there is something to compute.
-        By default `validation.studies.sweep.executors.processes`.
+        By default `validation.studies.sweep.executors.threads`.
     file : where finished points are kept, ending in .jsonl; those it holds are not computed again.
     progress : is shown the points to be computed (such as `tqdm.tqdm`).
 
     Raises `lwa.InputError` for numbers outside `RANGES` or a file that cannot serve, and
     `validation.studies.sweep.executors.SweepError` when the executor fails.
 
-    >>> from concurrent.futures import ThreadPoolExecutor
-    >>> with ThreadPoolExecutor() as threads:
-    ...     found = sweep(["3/2"], [1], executor=threads)
+    >>> found = sweep(["3/2"], [1])
     >>> found.points[0].numbers["width"].value.__round__(4)
     1.4119
     """
@@ -286,7 +284,7 @@ def _axis(context: click.Context, given: click.Parameter, text: str) -> tuple[Ra
            "to the next; more below k = 3/2."),
     option("--file", metavar="FILE", says="Keep finished points (.jsonl); with the same file a "
            "sweep goes on where it was left."),
-    option("--jobs", callback=whole, says="Processes; by default one for each processor."),
+    option("--jobs", callback=whole, says="Threads; by default one for each processor."),
     option("--cluster", "address", metavar="ADDRESS", says="Compute on a Dask cluster instead, "
            "whose scheduler is there, such as tcp://host:8786."),
     name="sweep",
@@ -298,7 +296,7 @@ def sweep_command(
     """Maps over k and m2/m1: width, speed and decay of a struck chain's pulse."""
     if address is not None and jobs is not None:
         raise InputError(f"jobs is {jobs}: a cluster has workers of its own")
-    executor = processes(jobs) if address is None else cluster(address)
+    executor = threads(jobs) if address is None else cluster(address)
     try:
         return sweep(ks, omegas, stretch=stretch, executor=executor, file=file, progress=progress)
     except KeyboardInterrupt:

@@ -76,9 +76,19 @@ def test_closed_contacts_do_not_drift_over_ten_thousand_time_units(monkeypatch):
 
 
 def test_the_light_bead_holds_and_another_one_than_the_references_does_not(monkeypatch, failing):
+    references = {}
+
+    def once(scene, **rest):  # DOP853 takes most of the time, and is the same both times
+        if rest["method"] != "DOP853":
+            return simulate(scene, **rest)
+        if scene.stiffnesses not in references:
+            references[scene.stiffnesses] = simulate(scene, **rest)
+        return references[scene.stiffnesses]
+
+    monkeypatch.setattr(module, "simulate", once)
     assert failing(light_bead()) == []
     monkeypatch.setattr(
-        module, "simulate", lambda scene, **rest: simulate(spoiled(scene, rest), **rest)
+        module, "simulate", lambda scene, **rest: once(spoiled(scene, rest), **rest)
     )
     assert "contacts of 1: largest error of a force at any time, over the peak" in failing(
         light_bead()
