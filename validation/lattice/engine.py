@@ -38,7 +38,7 @@ from numpy.typing import NDArray
 from lwa.compact.numeric import Array
 from validation.lattice import effort, kernel
 from validation.lattice.effort import EXCESS, RunProgress
-from validation.lattice.equations import Motion
+from validation.lattice.equations import Motion, power
 from validation.lattice.kernel import Beads, Chain, Plan, Samples, Tableau, advance, beginning
 from validation.lattice.run import IntegrationError, Run, finished
 from validation.lattice.schemes import LAWS, SCHEMES
@@ -129,10 +129,10 @@ def _integrated(
             t = advance(chain, beads, plan, seen, at, glance)
             if t < end and at["tries"] > EXCESS * taken.steps:
                 raise IntegrationError(effort.beyond(taken, int(at["tries"]), t))
-    if not (np.isfinite(beads.y).all() and np.isfinite(beads.v).all()):
-        raise IntegrationError(f"the motion overflows: a step of {plan.h:g} is too long")
     rear, steps, tries, moves = (int(at[name]) for name in ("lo", "steps", "tries", "evaluations"))
     state = np.concatenate((beads.y[:n], beads.v[:n]))
+    if not np.isfinite(state).all():
+        raise IntegrationError(f"the motion overflows: a step of {plan.h:g} is too long")
     energy = motion.energy(state, rear) + float(at["lost"])
     if rear:
         _fly_on(beads, seen, rear, end)
@@ -224,9 +224,9 @@ def _recorded(scene: Scene, chain: Chain, beads: Beads, seen: Samples) -> dict[s
         """Compression and force; contact -1 is a padded one, without stiffness."""
         row = np.searchsorted(seen.watched, i)
         compression = chain.rest[i, None] + seen.y[row] - seen.y[row + 1]
-        force = chain.A[i, None] * np.maximum(compression, 0.0) ** scene.k
-        if (left := beads.left[i]).min() < scene.duration:
-            force[seen.time > left[:, None]] = 0.0
+        force = chain.A[i, None] * power(compression, scene.k)
+        if beads.left[0] < scene.duration:  # the first is left first
+            force[seen.time > beads.left[i, None]] = 0.0
         return compression, force
 
     contacts, sensors = (np.array(row, int) for row in (scene.contact_sensors, scene.bead_sensors))

@@ -40,6 +40,12 @@ class Scales:
     rounding: float = 0.0
 
 
+def power(compression: Array, k: float) -> Array:
+    """[δ]_+^k."""
+    pressed = np.maximum(compression, 0.0)
+    return np.asarray(pressed * np.sqrt(pressed) if k == 1.5 else pressed**k)
+
+
 class Motion:
     """The right-hand side for one scene, in the state (y_0 … y_{n-1}, v_0 … v_{n-1}), and the
     ``start`` of it."""
@@ -51,24 +57,28 @@ class Motion:
         self.stiffnesses = np.array(scene.stiffnesses + wall)
         self.k = scene.k
         with np.errstate(over="ignore", invalid="ignore"):
-            self.rest = (np.array(scene.load) / self.stiffnesses) ** (1 / self.k)
-            # The load from the rest compressions, so that equilibrium is an exact zero.
-            self.load = self.force(self.rest)
+            self.rest = self.load = np.zeros(len(self.stiffnesses))
+            self.loaded = bool(scene.gravity or scene.precompression)
+            if self.loaded:
+                self.rest = (np.array(scene.load) / self.stiffnesses) ** (1 / self.k)
+                # The load from the rest compressions, so that equilibrium is an exact zero.
+                self.load = self.force(self.rest)
         self.start = np.zeros(2 * scene.size)
         self.start[: len(scene.displacements)] = scene.displacements
         self.start[scene.size : scene.size + len(scene.velocities)] = scene.velocities
-        if scene.gravity or scene.precompression:
+        if self.loaded:
             for name, values in (("compression", self.rest), ("force", self.load)):
                 _held(f"static {name}", values.min(), values.max())
 
     def compression(self, y: Array) -> Array:
         """δ_i, for displacements of shape (n,) or (n, S)."""
         row = np.concatenate((y, np.zeros_like(y[:1]))) if len(self.rest) == len(y) else y
-        return np.asarray((self.rest + (row[:-1] - row[1:]).T).T)
+        dynamic = row[:-1] - row[1:]
+        return np.asarray((self.rest + dynamic.T).T) if self.loaded else dynamic
 
     def force(self, compression: Array) -> Array:
         """F_i = A_i [δ_i]_+^k."""
-        return np.asarray((self.stiffnesses * np.maximum(compression, 0.0).T ** self.k).T)
+        return np.asarray((self.stiffnesses * power(compression, self.k).T).T)
 
     def __call__(self, time: float, state: Array) -> Array:
         y, v = state[: self.size], state[self.size :]
@@ -85,8 +95,9 @@ class Motion:
         """
         compression, v = self.compression(state[: self.size]), state[self.size :]
         stored = (self.force(compression) * compression - self.load * self.rest) / (self.k + 1)
-        work = self.load * (compression - self.rest)
-        return float(self.masses @ v**2 / 2 + np.sum((stored - work)[first:]))
+        if self.loaded:
+            stored -= self.load * (compression - self.rest)
+        return float(self.masses @ v**2 / 2 + stored[first:].sum())
 
     def momentum_drift(self, end: Array) -> float | None:
         """Change of the momentum, from the start to a state, over Σ m|v|; None with a wall."""
@@ -106,7 +117,8 @@ class Motion:
     def scales(self) -> Scales:
         """Of the motion from its start. Raises `SceneError` where a float cannot hold one."""
         energy, n, A = self.energy(self.start), self.size, self.stiffnesses
-        deepest, stiffest = self.rest.max(initial=0.0), A.max(initial=0.0)
+        deepest = at_rest = self.rest.max(initial=0.0) if self.loaded else 0.0
+        stiffest = A.max(initial=0.0)
         if not math.isfinite(energy) or (energy == 0 and self._stirred(deepest)):
             _held("energy", energy)
         if energy > 0 and len(A):
@@ -122,10 +134,13 @@ class Motion:
         _held("shortest time", time)
         y, v, rounding = 1.0, 1.0, 0.0
         if energy > 0:
-            y, v = np.sqrt(energy / (stiffest * stiffening)), np.sqrt(energy / self.masses.mean())
+            y, v = (
+                np.sqrt(energy / (stiffest * stiffening)),
+                np.sqrt(energy / (self.masses.sum() / n)),
+            )
             _held("displacement", y)
             _held("velocity", v)
-            rounding = np.finfo(float).eps * self.rest.max() / y
+            rounding = np.finfo(float).eps * at_rest / y
         return Scales(energy, float(deepest), float(y), float(v), float(time), float(rounding))
 
 
