@@ -42,7 +42,7 @@ class Part(Motion):
 
     def __init__(self, whole: Motion, lo: int, hi: int) -> None:
         contacts = slice(lo, hi - 1 if hi < whole.size else len(whole.rest))
-        self.size, self.k = hi - lo, whole.k
+        self.size, self.k, self.loaded = hi - lo, whole.k, whole.loaded
         self.masses = whole.masses[lo:hi]
         self.stiffnesses, self.rest, self.load = (
             row[contacts] for row in (whole.stiffnesses, whole.rest, whole.load)
