@@ -5,14 +5,15 @@ Numba compiles it once and caches it on disk. A run is the same to the bit every
 Pair. The adaptive one for y'' = f(y) (`validation.lattice.schemes.nystrom`). The error of a step is
 the root of the sum of its beads' squares, in the scene's scales of displacement and velocity, and
 is kept at ``rtol``; the next step follows from it alone. F = A δ^k with k = 3/2 has no second
-derivative where a contact opens or closes: the step would err by O(h^{k+1}) there. So the impulse
-of a contact that does is corrected by a quadrature that knows the kink.
+derivative where a contact opens or closes: the step would err by O(h^{k+1}) there, and little less
+next to it. So p_+^k, for a polynomial p that is nearly the contact's δ, is taken off its force, and
+is integrated by a quadrature that knows the kink.
 
 Splitting. Symplectic, at a fixed step (`validation.lattice.schemes.splitting`): with every kink it
 errs by O(h^{k+1}), and its step follows from that.
 
 Samples come from Hermite's polynomial with y, y', y'' and y''' at the ends of two steps,
-or of one with a kink.
+or of one with a kink; what p_+^k brings about is no part of it.
 
 Window. Ahead nothing moves: the front advances with the first bead that does. Behind, beads more
 than ``reach`` from the front are left to fly on freely, with their energy on the books, once the

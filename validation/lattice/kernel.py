@@ -1,6 +1,7 @@
 """The loops of the compiled engine; `validation.lattice.engine` says what they do and why.
 
-Those over all beads hold no branch, and contiguous arrays, so that they vectorise.
+Those over all beads hold no branch, and contiguous arrays, so that they vectorise. They are in one
+file, as numba's cache does not notice a change in another one.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ _STILL = 1e-13  # of the peak compression: beads that have moved less are still
 _NOTHING = 1e-60  # of the greatest compression: open, lest the front decay into denormal numbers
 _NEAR = 0.5  # of a contact's greater compression at the ends of a step: a kink is near
 _STEADY = 0.5  # of the greater closing speed at the ends of a step
-_COUNTS_FROM = 10.0  # times the error that is allowed: an impulse near a kink
+_SLIGHT = 10.0  # times the error that is allowed: what a contact near a kink may bring about
 _FAR = 1.0  # steps that it may be away
 _EVEN = 0.2  # of the greatest q: the least
 
@@ -271,7 +272,7 @@ def _attempt(chain: Chain, beads: Beads, plan: Plan, at: Any, h: float, hi: int)
     for i in range(_index(lo), _index(hi)):
         next_v[i] = v[i] + (sums[_ONE, i] - sums[_ONE, i + _ONE]) * inverse[i]
     at.kinks = 0
-    # A kink, within the step or about as near as a step is long, and of an impulse that counts.
+    # Kinks within the step or near it, of contacts that move at about one speed and may count.
     near = 0
     for i in range(_index(lo), _index(hi)):
         before = rest[i] + y[i] - y[i + _ONE]
@@ -283,16 +284,14 @@ def _attempt(chain: Chain, beads: Beads, plan: Plan, at: Any, h: float, hi: int)
             after = rest[i] + next_y[i] - next_y[i + 1]
             most = max(before, after, 0.0)
             if min(before, after) < _NEAR * most:
-                if before * after < 0.0:
+                within = before * after < 0.0
+                if within:
                     at.kink = at.steps + 1
                 speed, later = v[i] - v[i + 1], next_v[i] - next_v[i + 1]
-                even = min(speed / later, later / speed) > _STEADY
+                steady = min(speed / later, later / speed) > _STEADY
                 kick = h * chain.A[i] * _power(chain, most) * max(inverse[i], inverse[i + 1])
-                if (
-                    kick > _COUNTS_FROM * at.v
-                    and (even or before * after < 0.0)
-                    and plan.scheme.points.shape[1] > 0
-                ):
+                counts = kick > _SLIGHT * at.v and plan.scheme.points.shape[1] > 0
+                if counts and (within or steady):
                     _correct(chain, beads, plan, at, h, i)
     return math.sqrt(_square(sums, inverse, lo, hi))
 
@@ -305,7 +304,7 @@ def _power(chain: Chain, q: float) -> float:
 
 @_compiled
 def _ramp(chain: Chain, scheme: Tableau, kink: Array, z: float) -> tuple[float, float]:
-    """∫∫ and ∫ of p_+^k, from its root to z, for p = (z - r) q(z)."""
+    """∫∫ and ∫ of p_+^k, from its root r to z, for p = (z - r) q(z)."""
     side = z - kink[1]
     once = twice = 0.0
     if side * kink[2] > 0.0:
@@ -321,7 +320,7 @@ def _ramp(chain: Chain, scheme: Tableau, kink: Array, z: float) -> tuple[float, 
 
 @_part
 def _correct(chain: Chain, beads: Beads, plan: Plan, at: Any, h: float, i: int) -> None:
-    """Contact i opens or closes in or near a step: the pair's error in its impulse is taken off.
+    """Contact i opens or closes in a step or near it: take the pair's error in its impulse off.
 
     Its compression is about the quintic p with δ, δ' and δ'' of both ends, with one root r. On the
     closed side p is (x - r) q(x), and ∫ |x - r|^k q^k dx is a Gauss–Jacobi sum. The pair integrates
@@ -354,15 +353,11 @@ def _correct(chain: Chain, beads: Beads, plan: Plan, at: Any, h: float, i: int) 
     q2 = c3 + x * q3
     q1 = c2 + x * q2
     q0 = c1 + x * q1
-    start, finish = q0, q0 + q1 + q2 + q3 + c5
-    centre = q0 + x * (q1 + x * (q2 + x * (q3 + x * c5)))
     sign = 1.0 if rising else -1.0
-    least = min(sign * start, sign * finish, sign * centre)
-    if (
-        moved >= 1e-9
-        or abs(x - 0.5) > 0.499 + _FAR
-        or least < _EVEN * max(sign * start, sign * finish, sign * centre)
-    ):
+    start, finish = sign * q0, sign * (q0 + q1 + q2 + q3 + c5)
+    root = sign * (q0 + x * (q1 + x * (q2 + x * (q3 + x * c5))))
+    uneven = min(start, finish, root) < _EVEN * max(start, finish, root)
+    if uneven or moved >= 1e-9 or abs(x - 0.5) > 0.499 + _FAR:  # no root, but an end
         return
     kink = beads.kinks[at.kinks]
     kink[0], kink[1], kink[2], kink[3], kink[4], kink[5], kink[6] = i, x, q0, q1, q2, q3, c5
