@@ -28,8 +28,10 @@ time scale, F^{(1-k)/2k}, and the error that is allowed shrinks with it.
 from __future__ import annotations
 
 import math
+import sys
 from dataclasses import dataclass
 from functools import lru_cache
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -69,6 +71,7 @@ def follow(
     motion: Motion, method: str, rtol: float, step: float | None, window: Any, progress: RunProgress
 ) -> Run:
     """`validation.simulate` for a method of `SCHEMES`."""
+    _say_if_compiled()
     reach = _reach(motion, window)
     end = motion.scene.duration
     natural = effort.step(method, rtol) * min(motion.scales.time, end)
@@ -77,6 +80,17 @@ def follow(
     given = Given(method, rtol, natural if shorter else longest, longest)
     run, kept = _integrated(motion, given, reach, progress)
     return run if kept else _integrated(motion, given, None, progress)[0]
+
+
+def _say_if_compiled() -> None:
+    """On a terminal: that the loops are compiled first, which takes its time once."""
+    loops: Any = advance  # numba's
+    if loops.signatures or not sys.stderr.isatty():
+        return
+    written = Path(kernel.__file__).stat().st_mtime
+    kept = Path(loops.stats.cache_path).glob("kernel.advance-*.nbi")
+    if not any(file.stat().st_mtime > written for file in kept):
+        print("the engine is compiled for this machine, once", file=sys.stderr, flush=True)
 
 
 def _returns(motion: Motion) -> bool:

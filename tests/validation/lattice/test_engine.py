@@ -5,6 +5,7 @@ import subprocess
 import sys
 from dataclasses import replace
 from itertools import pairwise
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -368,3 +369,16 @@ def test_rounding_noise_in_a_start_is_no_front():
     a, b = (simulate(scene, method="SRKN14", window=True) for scene in (chain, noisy))
     assert a.contact_force.max() > 0.5
     assert np.abs(a.contact_force - b.contact_force).max() < 1e-9
+
+
+@pytest.mark.parametrize("terminal", [True, False])
+def test_a_first_run_says_that_it_compiles(capsys, monkeypatch, tmp_path, terminal):
+    stats = SimpleNamespace(cache_path=tmp_path)
+    monkeypatch.setattr(engine, "advance", SimpleNamespace(signatures=[], stats=stats))
+    monkeypatch.setattr(engine.sys.stderr, "isatty", lambda: terminal)
+    engine._say_if_compiled()
+    said = capsys.readouterr().err
+    assert said == ("the engine is compiled for this machine, once\n" if terminal else "")
+    (tmp_path / "kernel.advance-100.nbi").write_bytes(b"")  # newer than the source
+    engine._say_if_compiled()
+    assert capsys.readouterr().err == ""
