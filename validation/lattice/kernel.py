@@ -293,7 +293,7 @@ def _power(chain: Chain, q: float) -> float:
     return float(q * np.sqrt(q) if chain.law == 3 else q**chain.k)
 
 
-@_compiled
+@_part
 def _ramp(chain: Chain, scheme: Tableau, kink: Array, z: float) -> tuple[float, float]:
     """∫∫ and ∫ of p_+^k, from its root r to z, for p = (z - r) q(z)."""
     side = z - kink[1]
@@ -373,7 +373,7 @@ def _correct(chain: Chain, beads: Beads, plan: Plan, at: Any, h: float, i: int) 
     beads.sums[3, i + 1] -= chain.A[i] * h * error_speed / at.v
 
 
-@_compiled
+@_part
 def _kinks(
     chain: Chain, beads: Beads, plan: Plan, at: Any, h: float, hi: int, least: float
 ) -> None:
@@ -486,7 +486,7 @@ def _smooth(chain: Chain, beads: Beads, plan: Plan, at: Any, knots: Array, j: in
     return count
 
 
-@_compiled
+@_part
 def _sample(
     chain: Chain, beads: Beads, plan: Plan, seen: Samples, at: Any, h: float, due: int
 ) -> None:
