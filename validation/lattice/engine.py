@@ -182,7 +182,8 @@ def _plan(motion: Motion, given: Given, chain: Chain, reach: int | None, step: f
     return Plan(
         _tableau(given.method, motion.k), given.rtol * scales.displacement,
         given.rtol * scales.velocity, step, given.longest, motion.scene.duration,
-        scales.compression, chain.A.max(), 1 / chain.inverse[min(1, n - 1) : n].min(), n,
+        scales.compression, chain.A.max(), 1 / chain.inverse[min(1, n - 1) : n].min(),
+        chain.A.max() * chain.inverse.max(), n,
         0 if _returns(motion) else _own_reach(motion), reach or 0, adapt,
     )  # fmt: skip
 

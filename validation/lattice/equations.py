@@ -50,6 +50,8 @@ class Motion:
     """The right-hand side for one scene, in the state (y_0 … y_{n-1}, v_0 … v_{n-1}), and the
     ``start`` of it."""
 
+    loaded = True  # by gravity or a precompression
+
     def __init__(self, scene: Scene) -> None:
         wall = () if scene.wall is None else (scene.wall,)
         self.scene, self.size = scene, scene.size

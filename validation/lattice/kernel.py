@@ -94,7 +94,8 @@ class Plan(NamedTuple):
 
     y, v : the errors of a step that are allowed. h : the first step. longest : the longest of a
     pair. deepest : the greatest compression. stiffest : of the contacts. heaviest : but for the
-    striker. reach : after which the pulse is looked at; 0 where waves come back. cut : behind the
+    striker. quickest : stiffness over the least mass.
+    reach : after which the pulse is looked at; 0 where waves come back. cut : behind the
     front, where the rear may be left; 0 for never. adapt : whether step and errors follow the
     pulse's time and size as it decays.
     """
@@ -108,6 +109,7 @@ class Plan(NamedTuple):
     deepest: float
     stiffest: float
     heaviest: float
+    quickest: float
     size: int
     reach: int
     cut: int
@@ -273,26 +275,15 @@ def _attempt(chain: Chain, beads: Beads, plan: Plan, at: Any, h: float, hi: int)
         next_v[i] = v[i] + (sums[_ONE, i] - sums[_ONE, i + _ONE]) * inverse[i]
     at.kinks = 0
     # Kinks within the step or near it, of contacts that move at about one speed and may count.
+    least = (_SLIGHT * at.v / (h * plan.quickest)) ** (1.0 / chain.k)
     near = 0
     for i in range(_index(lo), _index(hi)):
         before = rest[i] + y[i] - y[i + _ONE]
         after = rest[i] + next_y[i] - next_y[i + _ONE]
-        near += 1 if min(before, after) < _NEAR * max(before, after, 0.0) else 0
+        most = max(before, after)
+        near += 1 if (most > least) & (min(before, after) < _NEAR * most) else 0
     if near > 0:
-        for i in range(lo, hi):
-            before = rest[i] + y[i] - y[i + 1]
-            after = rest[i] + next_y[i] - next_y[i + 1]
-            most = max(before, after, 0.0)
-            if min(before, after) < _NEAR * most:
-                within = before * after < 0.0
-                if within:
-                    at.kink = at.steps + 1
-                speed, later = v[i] - v[i + 1], next_v[i] - next_v[i + 1]
-                steady = min(speed / later, later / speed) > _STEADY
-                kick = h * chain.A[i] * _power(chain, most) * max(inverse[i], inverse[i + 1])
-                counts = kick > _SLIGHT * at.v and plan.scheme.points.shape[1] > 0
-                if counts and (within or steady):
-                    _correct(chain, beads, plan, at, h, i)
+        _kinks(chain, beads, plan, at, h, hi, least)
     return math.sqrt(_square(sums, inverse, lo, hi))
 
 
@@ -302,7 +293,7 @@ def _power(chain: Chain, q: float) -> float:
     return float(q * np.sqrt(q) if chain.law == 3 else q**chain.k)
 
 
-@_compiled
+@_part
 def _ramp(chain: Chain, scheme: Tableau, kink: Array, z: float) -> tuple[float, float]:
     """∫∫ and ∫ of p_+^k, from its root r to z, for p = (z - r) q(z)."""
     side = z - kink[1]
@@ -380,6 +371,29 @@ def _correct(chain: Chain, beads: Beads, plan: Plan, at: Any, h: float, i: int) 
     beads.next_y[i + 1] += moment * inverse[i + 1]
     beads.sums[2, i + 1] -= chain.A[i] * h * h * error / at.y
     beads.sums[3, i + 1] -= chain.A[i] * h * error_speed / at.v
+
+
+@_part
+def _kinks(
+    chain: Chain, beads: Beads, plan: Plan, at: Any, h: float, hi: int, least: float
+) -> None:
+    """Correct for the kinks of a step of contacts that are pressed by ``least`` or more."""
+    y, v, next_y, next_v = beads.y, beads.v, beads.next_y, beads.next_v
+    inverse, rest = chain.inverse, chain.rest
+    for i in range(at.lo, hi):
+        before = rest[i] + y[i] - y[i + 1]
+        after = rest[i] + next_y[i] - next_y[i + 1]
+        most = max(before, after)
+        if most > least and min(before, after) < _NEAR * most:
+            within = before * after < 0.0
+            if within:
+                at.kink = at.steps + 1
+            speed, later = v[i] - v[i + 1], next_v[i] - next_v[i + 1]
+            steady = min(speed / later, later / speed) > _STEADY
+            kick = h * chain.A[i] * _power(chain, most) * max(inverse[i], inverse[i + 1])
+            counts = kick > _SLIGHT * at.v and plan.scheme.points.shape[1] > 0
+            if counts and (within or steady):
+                _correct(chain, beads, plan, at, h, i)
 
 
 @_part
@@ -472,7 +486,7 @@ def _smooth(chain: Chain, beads: Beads, plan: Plan, at: Any, knots: Array, j: in
     return count
 
 
-@_compiled
+@_part
 def _sample(
     chain: Chain, beads: Beads, plan: Plan, seen: Samples, at: Any, h: float, due: int
 ) -> None:
