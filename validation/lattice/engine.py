@@ -71,7 +71,6 @@ def follow(
     motion: Motion, method: str, rtol: float, step: float | None, window: Any, progress: RunProgress
 ) -> Run:
     """`validation.simulate` for a method of `SCHEMES`."""
-    _say_if_compiled()
     reach = _reach(motion, window)
     end = motion.scene.duration
     natural = effort.step(method, rtol) * min(motion.scales.time, end)
@@ -132,6 +131,7 @@ def _integrated(
     moved = n if reach is None else min(n, _WINDOW * reach)
     taken = effort.compiled(motion.scene, given.method, end / given.step, moved)
     taken.check()
+    _say_if_compiled()
     chain = _chain(motion)
     beads, seen = _start(motion, len(chain.A))
     plan = _plan(motion, given, chain, reach, end / math.ceil(taken.steps))
