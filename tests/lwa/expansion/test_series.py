@@ -182,7 +182,7 @@ named = st.builds(
 
 
 @given(names=st.lists(named, min_size=3, max_size=3, unique_by=lambda s: s.name), place=named)
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=8, deadline=None)
 def test_no_name_is_captured(names: list[sp.Symbol], place: sp.Symbol) -> None:
     """What two masses and k are called changes nothing but their names."""
     plain = [sp.Symbol(f"n{i}", **s._assumptions_orig) for i, s in enumerate(names)]
@@ -249,7 +249,7 @@ def test_what_takes_minutes_is_said_and_what_takes_hours_refused(capsys) -> None
     assert re.fullmatch(r"it takes: about .* minutes\n", capsys.readouterr().err)
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=10, deadline=None)
 @given(
     order=st.integers(1, 200),
     size=st.integers(1, 12),

@@ -14,7 +14,7 @@ from validation.studies.accuracy.peers import PEERS, PeerError, missing, prepare
 from validation.studies.accuracy.reference import integrate
 from validation.studies.accuracy.tasks import Task, errors, struck
 
-LONG_TO_COMPILE = ("CyRK", "diffrax Dopri8", "numbalsoda")
+LONG_TO_COMPILE = ("CyRK", "diffrax", "numbalsoda")
 
 
 def marked():
