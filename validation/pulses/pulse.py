@@ -195,7 +195,10 @@ def speed(first: Pulse, second: Pulse, distance: float) -> float:
 
 
 def _record(time: ArrayLike, signal: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    t, f = np.asarray(time, float), np.asarray(signal, float)
+    try:
+        t, f = np.asarray(time, float), np.asarray(signal, float)
+    except (TypeError, ValueError) as reason:
+        raise MeasureError(f"time and signal must be rows of numbers: {reason}") from None
     if t.ndim != 1 or t.shape != f.shape or len(t) < 4:
         shapes = f"time and signal have the shapes {t.shape} and {f.shape}"
         raise MeasureError(f"{shapes}: two equally long rows of at least 4 samples are wanted")

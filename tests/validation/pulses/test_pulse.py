@@ -1,6 +1,7 @@
 """Measurements of pulses that are known in closed form, and of records that hold none."""
 
 import math
+from decimal import Decimal
 
 import numpy as np
 import pytest
@@ -86,6 +87,8 @@ T = np.linspace(-2, 2, 401)
         (T, arch(T)[:-1], r"time and signal have the shapes \(401,\) and \(400,\)"),
         (T[:3], arch(T[:3]), r".* at least 4 samples are wanted"),
         ([T], [arch(T)], r"time and signal have the shapes \(1, 401\)"),
+        (T, [Decimal("sNaN")] * 401, r"time and signal must be rows of numbers: .*signaling NaN"),
+        (T, ["tea"] * 401, r"time and signal must be rows of numbers: .*'tea'"),
     ],
 )
 def test_records_without_a_whole_pulse(time, signal, message):

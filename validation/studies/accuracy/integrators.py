@@ -186,8 +186,8 @@ def _panel(task: str, rows: Sequence[Row]) -> Panel:
 def accuracy(
     names: Collection[str] = (), progress: Progress[str] = iter, *, peers: bool = True
 ) -> Accuracy:
-    """Speed against error: integrators on fixed tasks, and theories against true waves. Five
-    minutes; of one task alone one or two.
+    """Speed against error: integrators on fixed tasks, and theories against true waves. Ten
+    minutes; of one task alone up to five.
 
     names : of `NAMES`, all by default; "theory" is `validation.studies.accuracy.theories`.
     peers : False leaves the other packages' integrators out.
