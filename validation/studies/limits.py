@@ -213,7 +213,7 @@ Case = tuple[sp.Rational, sp.Rational, sp.Rational]
 
 @study()
 def limits(progress: Progress[Case] = iter) -> Limits:
-    """Equal masses, m1 ≫ m2 and k → 1: widths, speed, amplitude, held to bounds. Half a minute."""
+    """Equal masses, m1 ≫ m2 and k → 1: widths, speed, amplitude, held to bounds. A few seconds."""
     cases: dict[Case, None] = dict.fromkeys(
         [(k, omega, AMPLITUDES[1]) for omega in (EQUAL, LIGHT) for k in EXPONENTS]
         + [(k, EQUAL, B) for k in EXPONENTS for B in AMPLITUDES]
