@@ -163,13 +163,13 @@ def _integrated(
 def _tableau(method: str, k: float) -> Tableau:
     scheme = SCHEMES[method]
     nothing, table = np.zeros(0), np.zeros((0, 0))
+    if not isinstance(scheme, Pair):
+        return Tableau(scheme.kicks, scheme.drifts, nothing, table, table, 0, table)
     points = table
-    if k < SCHEMES["RKN86"].order:  # else no kink is left that the pair sees
+    if k < scheme.order:  # else no kink is left that the pair sees
         u, w = scipy.special.roots_jacobi(_POINTS, 0.0, k)
         points = np.stack(((1 + u) / 2, w / 2 ** (k + 1)))
-    if isinstance(scheme, Pair):
-        return Tableau(nothing, nothing, *scheme.arrays(kernel.WIDTH), scheme.lower, points)
-    return Tableau(scheme.kicks, scheme.drifts, nothing, table, table, 0, points)
+    return Tableau(nothing, nothing, *scheme.arrays(kernel.WIDTH), scheme.lower, points)
 
 
 def _plan(motion: Motion, given: Given, chain: Chain, reach: int | None, step: float) -> Plan:

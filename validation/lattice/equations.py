@@ -47,10 +47,8 @@ def power(compression: Array, k: float) -> Array:
 
 
 class Motion:
-    """The right-hand side for one scene, in the state (y_0 … y_{n-1}, v_0 … v_{n-1}), and the
-    ``start`` of it."""
-
-    loaded = True  # by gravity or a precompression
+    """The right-hand side for one scene, in the state (y_0 … y_{n-1}, v_0 … v_{n-1}), the ``start``
+    of it, and whether it is ``loaded``, by gravity or a precompression."""
 
     def __init__(self, scene: Scene) -> None:
         wall = () if scene.wall is None else (scene.wall,)

@@ -365,6 +365,14 @@ def _correct(chain: Chain, beads: Beads, plan: Plan, at: Any, h: float, i: int) 
         error += scheme.ends[1, s] * f
         error_speed += scheme.ends[2, s] * f
     impulse, moment = chain.A[i] * h * impulse, chain.A[i] * h * h * moment
+    # What is taken off moves the contact by e ~ u^{k+2} from the root on, so that p is not quite
+    # its compression: where ∫ k A p^{k-1} e counts, the pair's own estimate is the better judge.
+    most = max(c0, end)
+    stiff = chain.k * chain.A[i] * _power(chain, most) / most
+    apart = (inverse[i] + inverse[i + 1]) * abs(moment)
+    if h * stiff * apart * max(inverse[i], inverse[i + 1]) > (2.0 * chain.k + 2.0) * at.v:
+        at.kinks -= 1
+        return
     beads.next_v[i] -= impulse * inverse[i]
     beads.next_v[i + 1] += impulse * inverse[i + 1]
     beads.next_y[i] -= moment * inverse[i]

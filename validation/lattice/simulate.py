@@ -9,10 +9,9 @@ only the sensors' samples.
 
 from __future__ import annotations
 
-import os
 from collections import deque
 from collections.abc import Iterable, Iterator
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import Future
 from typing import Any
 
 import numpy as np
@@ -24,6 +23,7 @@ from validation.lattice.effort import EXCESS, RunProgress, adaptive, beyond, sil
 from validation.lattice.equations import Motion
 from validation.lattice.run import IntegrationError, Run, finished
 from validation.lattice.schemes import SCHEMES
+from validation.lattice.threads import cores, threads
 from validation.scenes.checks import SceneError, between, one_of
 from validation.scenes.scene import Scene
 
@@ -35,7 +35,7 @@ COMPILED = tuple(SCHEMES)
 
 _BLOCK = 1_000_000  # numbers that the interpolant gives at a time
 _RECORDS = ("contact_force", "compression", "bead_force", "bead_displacement", "bead_velocity")
-_FINITE = (*_RECORDS, "energy_drift")  # of the whole motion
+_FINITE = (*_RECORDS, "displacements", "velocities", "energy_drift")
 
 
 def simulate(
@@ -109,18 +109,14 @@ def simulate_many(
     ...  simulate_many(Scene(**chain, velocities=(v,)) for v in (1, 2))]
     [np.float64(1.0), np.float64(2.0)]
     """
-    count = workers or os.cpu_count() or 1
-    pool = ThreadPoolExecutor(count)
     ahead: deque[Future[Run]] = deque()
-    try:
+    with threads(workers) as pool:
         for scene in scenes:
             ahead.append(pool.submit(simulate, scene, **options))
-            if len(ahead) > 4 * count:
+            if len(ahead) > 4 * (workers or cores()):
                 yield ahead.popleft().result()
         while ahead:
             yield ahead.popleft().result()
-    finally:
-        pool.shutdown(cancel_futures=True)
 
 
 def twice(scene: Scene, fine: float, coarse: float, **options: Any) -> tuple[Run, Run]:

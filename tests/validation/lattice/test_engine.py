@@ -154,6 +154,36 @@ def test_sampled_forces_are_as_good_as_the_steps(rtol, opens):
         assert np.abs(run.bead_velocity - exact.bead_velocity).max() < 10 * rtol
 
 
+@pytest.mark.parametrize("k", [1.2, 1.5, 2.0, 3.0])
+def test_beads_that_meet_after_a_long_flight(k):
+    """A first step through the flight ends in the contact, of which no stage but the last tells."""
+    masses = np.array([2.0, 1.5])
+    scene = dict(masses=masses, stiffnesses=(5.0,), k=k, duration=6.0)
+    away = simulate(Scene(**scene, velocities=(1.0, 0.0)), rtol=1e-13)
+    again = Scene(**scene, displacements=away.displacements, velocities=-away.velocities)
+    assert away.displacements[1] > away.displacements[0] + 1
+    for rtol in 10.0 ** np.arange(-12, -4, 0.25):
+        back = simulate(again, rtol=rtol)
+        assert back.velocities == pytest.approx([-1.0, 0.0], abs=30 * rtol), rtol
+        assert abs(back.energy_drift) < 30 * rtol
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_chains_that_fly_apart_and_meet(seed):
+    random = np.random.default_rng(seed)
+    n = 2 + seed % 4
+    scene = Scene(
+        masses=random.uniform(0.3, 3.0, n), stiffnesses=random.uniform(1.0, 10.0, n - 1),
+        k=(1.2, 1.5, 2.5)[seed % 3], velocities=random.uniform(-1.0, 1.0, n),
+        displacements=np.sort(random.uniform(0.0, 8.0, n)), duration=10.0,
+    )  # fmt: skip
+    exact = simulate(scene, method="DOP853", rtol=1e-13, atol=1e-13)
+    for rtol in 10.0 ** np.arange(-11, -4, 0.5):
+        run = simulate(scene, rtol=rtol)
+        # each meeting doubles an error or so
+        assert run.velocities == pytest.approx(exact.velocities, abs=100 * rtol), rtol
+
+
 def test_the_correction_of_kinks_saves_half_the_steps(monkeypatch):
     scene = struck(60, duration=55.0, contact_sensors=(40,), samples=1101)
     corrected, tableau = simulate(scene, rtol=1e-10, window=False), engine._tableau

@@ -9,10 +9,8 @@ its finest. Times are wall times a chain, medians of a few.
 
 from __future__ import annotations
 
-import os
 import time
 from collections.abc import Callable, Collection, Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import partial
 from statistics import median
@@ -22,6 +20,7 @@ import numpy as np
 from lwa.compact.numeric import Array
 from validation.lattice.equations import Motion
 from validation.lattice.simulate import COMPILED, simulate_many
+from validation.lattice.threads import cores, threads
 from validation.report.table import Finding
 from validation.studies.accuracy.peers import MANY, PEERS, Solve
 from validation.studies.accuracy.reference import FINEST
@@ -54,11 +53,6 @@ class Many:
     def share(self) -> float:
         """Of the ideal gain by threads."""
         return self.alone / self.seconds / cores()
-
-
-def cores() -> int:
-    """Those of this machine."""
-    return os.cpu_count() or 1
 
 
 def chains(count: int = _CHAINS, seed: int = 38) -> list[Task]:
@@ -98,8 +92,8 @@ def together(found: Sequence[Many]) -> Iterator[Finding]:
 
 
 def _engine(tasks: Sequence[Task]) -> Run:
-    def run(setting: float, threads: int) -> list[Array]:
-        runs = simulate_many((t.scene for t in tasks), workers=threads, rtol=setting)
+    def run(setting: float, workers: int) -> list[Array]:
+        runs = simulate_many((t.scene for t in tasks), workers=workers, rtol=setting)
         return [task.force(run) for task, run in zip(tasks, runs, strict=True)]
 
     return run
@@ -110,8 +104,8 @@ def _threaded(solve: Solve, tasks: Sequence[Task]) -> Run:
         motion = Motion(task.scene)
         return np.asarray(motion.force(motion.compression(solve(setting, task)))[task.contact])
 
-    def run(setting: float, threads: int) -> list[Array]:
-        with ThreadPoolExecutor(threads) as pool:
+    def run(setting: float, workers: int) -> list[Array]:
+        with threads(workers) as pool:
             return list(pool.map(partial(force, setting), tasks))
 
     return run

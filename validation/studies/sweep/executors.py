@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import asyncio
 import logging
-import os
 from collections.abc import Iterator
 from concurrent import futures
 from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future
@@ -16,8 +15,9 @@ from itertools import islice
 
 from lwa.duration import Progress
 from lwa.exact import InputError, shorten
+from validation.lattice.threads import threads
 from validation.pulses.steady import Point, point
-from validation.scenes.checks import Failure, SceneError, integer
+from validation.scenes.checks import Failure, SceneError
 from validation.studies.sweep.journal import Journal, Key
 
 PATIENCE = 5  # seconds within which a cluster must answer
@@ -26,23 +26,6 @@ _UNDERWAY = 256  # points that an executor is given at a time
 
 class SweepError(Failure):
     """The executor gave up; what was finished is kept. The message says where it stood."""
-
-
-@contextmanager
-def threads(jobs: int | None = None) -> Iterator[Executor]:
-    """So many threads, by default one for each processor that this process may use.
-
-    They run side by side, as the compiled engine holds no lock. On an exception the points that
-    wait are dropped; those underway, which nothing can end, take seconds at most.
-    """
-    if jobs is None:
-        affinity = getattr(os, "sched_getaffinity", None)
-        jobs = len(affinity(0)) if affinity else os.cpu_count() or 1
-    pool = futures.ThreadPoolExecutor(integer(jobs, "jobs", 1, 1024))
-    try:
-        yield pool
-    finally:
-        pool.shutdown(cancel_futures=True)
 
 
 @contextmanager

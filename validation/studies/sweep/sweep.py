@@ -29,6 +29,7 @@ from lwa.command.terminal import called
 from lwa.compact.numeric import Array, NumericWave
 from lwa.duration import Progress
 from lwa.exact import InputError, shorten
+from validation.lattice.threads import threads
 from validation.pulses.steady import QUANTITIES, STRETCH, Point
 from validation.report.command import option, study, whole
 from validation.report.panel import Curve, Map, Panel
@@ -36,7 +37,7 @@ from validation.report.result import Report
 from validation.report.table import Column, Table
 from validation.report.text import percent
 from validation.scenes.checks import SceneError, integer, items
-from validation.studies.sweep.executors import cluster, compute, entered, threads
+from validation.studies.sweep.executors import cluster, compute, entered
 from validation.studies.sweep.journal import Journal, Key, rational
 
 RANGES = {"k": (Rational(21, 20), Rational(6)), "omega": (Rational(1, 100), Rational(100))}
@@ -218,7 +219,7 @@ def sweep(
     stretch : cells from place to place, see `validation.pulses.steady`; at k ≥ 3/2, and more below.
     executor : which computes the points, and is left running; or a context that gives one, such
         as `validation.studies.sweep.executors.cluster`, entered when there is something to compute.
-        By default `validation.studies.sweep.executors.threads`.
+        By default `validation.lattice.threads.threads`.
     file : where finished points are kept, ending in .jsonl; those it holds are not computed again.
     progress : is shown the points to be computed (such as `tqdm.tqdm`).
 
@@ -296,7 +297,7 @@ def sweep_command(
     """Maps over k and m2/m1: width, speed and decay of a struck chain's pulse."""
     if address is not None and jobs is not None:
         raise InputError(f"jobs is {jobs}: a cluster has workers of its own")
-    executor = threads(jobs) if address is None else cluster(address)
+    executor = threads(jobs, "jobs") if address is None else cluster(address)
     try:
         return sweep(ks, omegas, stretch=stretch, executor=executor, file=file, progress=progress)
     except KeyboardInterrupt:

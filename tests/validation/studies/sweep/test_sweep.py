@@ -29,10 +29,11 @@ from hypothesis import strategies as st
 from lwa import InputError
 from tests.commands import ended
 from validation import cli
+from validation.lattice.threads import threads
 from validation.pulses.pulse import Measured
 from validation.pulses.steady import QUANTITIES, Point
 from validation.studies.sweep import executors
-from validation.studies.sweep.executors import SweepError, cluster, threads
+from validation.studies.sweep.executors import SweepError, cluster
 from validation.studies.sweep.sweep import axis, sweep, theory
 from validation.waves.theory import Compacton, theory_at
 
@@ -137,7 +138,7 @@ def test_a_bounded_number_is_underway(fake, monkeypatch):
             self.now += 1
             self.most = max(self.most, self.now)
             future = super().submit(fn, *arguments)
-            future.add_done_callback(lambda _: time.sleep(0.001))
+            future.add_done_callback(lambda *_: time.sleep(0.001))
             return future
 
     monkeypatch.setattr(executors, "_UNDERWAY", 3)
@@ -156,7 +157,7 @@ def test_a_bounded_number_is_underway(fake, monkeypatch):
 def test_what_is_no_executor_is_refused():
     with pytest.raises(InputError, match=r"^executor is 4: a concurrent\.futures\.Executor"):
         sweep([2], [1], executor=4)
-    with pytest.raises(InputError, match=r"^jobs is 0: one of 1 … 1024 is wanted$"):
+    with pytest.raises(InputError, match=r"^workers is 0: one of 1 … 1024 is wanted$"):
         sweep([2], [1], executor=threads(0))
 
 
@@ -449,7 +450,7 @@ def run(capsys, *arguments):
 @pytest.fixture
 def inline(monkeypatch):
     executor = Inline()
-    monkeypatch.setattr(THREADS, lambda jobs: executor)
+    monkeypatch.setattr(THREADS, lambda jobs, name: executor)
     return executor
 
 
@@ -516,7 +517,7 @@ def test_without_dask_the_extra_is_named(capsys, monkeypatch):
 
 def test_an_interrupted_command_says_where_the_points_are(capsys, fake, monkeypatch, tmp_path):
     file = tmp_path / "s.jsonl"
-    monkeypatch.setattr(THREADS, lambda jobs: Inline(stop=3))
+    monkeypatch.setattr(THREADS, lambda jobs, name: Inline(stop=3))
     status, out, err = run(capsys, "--file", str(file))
     assert (status, out) == (130, "")
     assert f"finished points are in {file}: the same command goes on" in err
@@ -526,7 +527,7 @@ def test_an_interrupted_command_says_where_the_points_are(capsys, fake, monkeypa
 
 
 def test_an_executor_that_fails_is_one_line(capsys, fake, monkeypatch):
-    monkeypatch.setattr(THREADS, lambda jobs: Inline(3, SweepError("gone")))
+    monkeypatch.setattr(THREADS, lambda jobs, name: Inline(3, SweepError("gone")))
     assert run(capsys) == (2, "", "lwa-validate: gone\n")
 
 
