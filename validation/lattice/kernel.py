@@ -66,6 +66,7 @@ class Samples(NamedTuple):
     """Times; the watched beads, and y, v (W, S) there.
 
     knots : (3, 4, W), y, v, y'' and y''' at the ends of the last two steps, by turns.
+    room : (17, 12), for one bead at a time.
     """
 
     time: Array
@@ -73,6 +74,7 @@ class Samples(NamedTuple):
     knots: Array
     y: Array
     v: Array
+    room: Array
 
 
 class Tableau(NamedTuple):
@@ -149,8 +151,10 @@ def beginning(plan: Plan, k: float, front: int) -> Any:
 _Function = TypeVar("_Function", bound=Callable[..., Any])
 # Without "reassoc" rounding does not depend on the order of a sum, without "nnan" and "ninf" an
 # overflow is seen; in numba's own error model every division by zero would be an exception's way
-# out.
-_OPTIONS: Any = dict(fastmath={"nsz", "arcp", "contract"}, error_model="numpy", nogil=True)
+# out. Nothing is allocated: to count the references to arrays takes longer than the arithmetic.
+_OPTIONS: Any = dict(
+    fastmath={"nsz", "arcp", "contract"}, error_model="numpy", nogil=True, _nrt=False
+)
 _compiled: Callable[[_Function], _Function] = njit(cache=True, **_OPTIONS)
 # Sums and maxima in the order of the machine's registers, the same in every run.
 _summed: Callable[[_Function], _Function] = njit(
@@ -294,19 +298,40 @@ def _power(chain: Chain, q: float) -> float:
 
 
 @_part
-def _ramp(chain: Chain, scheme: Tableau, kink: Array, z: float) -> tuple[float, float]:
+def _quintic(c0: float, c1: float, c2: float, c3: float, c4: float, c5: float, x: float) -> float:
+    return c0 + x * (c1 + x * (c2 + x * (c3 + x * (c4 + x * c5))))
+
+
+@_summed
+def _ramp(chain: Chain, points: Array, kink: Array, z: float) -> tuple[float, float]:
     """∫∫ and ∫ of p_+^k, from its root r to z, for p = (z - r) q(z)."""
-    side = z - kink[1]
+    root, q0, q1, q2, q3, q4 = kink[1], kink[2], kink[3], kink[4], kink[5], kink[6]
+    side = z - root
     once = twice = 0.0
-    if side * kink[2] > 0.0:
-        for m in range(scheme.points.shape[1]):
-            part = scheme.points[0, m]
-            u = kink[1] + side * part
-            q = kink[2] + u * (kink[3] + u * (kink[4] + u * (kink[5] + u * kink[6])))
-            f = scheme.points[1, m] * _power(chain, side * q)
+    if side * q0 > 0.0:
+        for m in range(points.shape[1]):
+            part = points[0, m]
+            q = _quintic(q0, q1, q2, q3, q4, 0.0, root + side * part)
+            f = points[1, m] * _power(chain, side * q)
             once += f
             twice += f * (1.0 - part)
     return side * side * twice, side * once
+
+
+@_summed
+def _pair_sums(
+    chain: Chain, scheme: Tableau, c0: float, c1: float, c2: float, c3: float, c4: float, c5: float
+) -> tuple[float, float, float, float]:  # fmt: skip
+    """What the pair makes of ∫ and ∫∫ of p_+^k over a step, and its errors of both."""
+    nodes, last = scheme.nodes, len(scheme.nodes) - 1
+    once = twice = error = error_once = 0.0
+    for s in range(last + 1):
+        f = _power(chain, _quintic(c0, c1, c2, c3, c4, c5, nodes[s]))
+        once += scheme.ends[0, s] * f
+        twice += scheme.rows[last, s] * f
+        error += scheme.ends[1, s] * f
+        error_once += scheme.ends[2, s] * f
+    return twice, once, error, error_once
 
 
 @_part
@@ -318,21 +343,22 @@ def _correct(chain: Chain, beads: Beads, plan: Plan, at: Any, h: float, i: int) 
     what is left of the force, which is smoother.
     """
     y, v, inverse, force, scheme = beads.y, beads.v, chain.inverse, beads.force, plan.scheme
-    last = len(scheme.nodes) - 1
     c0 = chain.rest[i] + y[i] - y[i + 1]
     end = chain.rest[i] + beads.next_y[i] - beads.next_y[i + 1]
     c1 = h * (v[i] - v[i + 1])
     c2 = h * h * _relative(force[0], inverse, i) / 2
     r0 = end - c0 - c1 - c2
     r1 = h * (beads.next_v[i] - beads.next_v[i + 1]) - c1 - 2 * c2
-    r2 = h * h * _relative(force[last], inverse, i) - 2 * c2
+    r2 = h * h * _relative(force[len(scheme.nodes) - 1], inverse, i) - 2 * c2
     c3, c4, c5 = 10 * r0 - 4 * r1 + r2 / 2, -15 * r0 + 7 * r1 - r2, 6 * r0 - 3 * r1 + r2 / 2
     rising = end > c0
-    low, high, x, moved = -_FAR, 1.0 + _FAR, c0 / (c0 - end), 1.0
-    if c0 * end < 0.0:
-        low, high = 0.0, 1.0
+    low, high, x = 0.0, 1.0, c0 / (c0 - end)
+    if c0 * end >= 0.0:
+        low, high = (-_FAR, 0.0) if rising else (1.0, 1.0 + _FAR)
+        if _quintic(c0, c1, c2, c3, c4, c5, low if rising else high) >= 0.0:
+            return
     for _ in range(30):  # Newton's method, or else the middle
-        p = c0 + x * (c1 + x * (c2 + x * (c3 + x * (c4 + x * c5))))
+        p = _quintic(c0, c1, c2, c3, c4, c5, x)
         slope = c1 + x * (2 * c2 + x * (3 * c3 + x * (4 * c4 + x * 5 * c5)))
         low, high = (low, x) if (p > 0.0) == rising else (x, high)
         guess = x - p / slope
@@ -347,38 +373,29 @@ def _correct(chain: Chain, beads: Beads, plan: Plan, at: Any, h: float, i: int) 
     sign = 1.0 if rising else -1.0
     start, finish = sign * q0, sign * (q0 + q1 + q2 + q3 + c5)
     root = sign * (q0 + x * (q1 + x * (q2 + x * (q3 + x * c5))))
-    uneven = min(start, finish, root) < _EVEN * max(start, finish, root)
-    if uneven or moved >= 1e-9 or abs(x - 0.5) > 0.499 + _FAR:  # no root, but an end
+    if min(start, finish, root) < _EVEN * max(start, finish, root):
         return
     kink = beads.kinks[at.kinks]
     kink[0], kink[1], kink[2], kink[3], kink[4], kink[5], kink[6] = i, x, q0, q1, q2, q3, c5
-    at.kinks += 1
-    twice, once = _ramp(chain, scheme, kink, 1.0)
-    start_twice, start_once = _ramp(chain, scheme, kink, 0.0)
-    impulse, moment = once - start_once, twice - start_twice - start_once
-    error = error_speed = 0.0
-    for s in range(last + 1):
-        u = scheme.nodes[s]
-        f = _power(chain, c0 + u * (c1 + u * (c2 + u * (c3 + u * (c4 + u * c5)))))
-        impulse -= scheme.ends[0, s] * f
-        moment -= scheme.rows[last, s] * f
-        error += scheme.ends[1, s] * f
-        error_speed += scheme.ends[2, s] * f
-    impulse, moment = chain.A[i] * h * impulse, chain.A[i] * h * h * moment
+    twice, once = _ramp(chain, scheme.points, kink, 1.0)
+    start_twice, start_once = _ramp(chain, scheme.points, kink, 0.0)
+    pair_twice, pair_once, error, error_once = _pair_sums(chain, scheme, c0, c1, c2, c3, c4, c5)
+    impulse = chain.A[i] * h * (once - start_once - pair_once)
+    moment = chain.A[i] * h * h * (twice - start_twice - start_once - pair_twice)
     # What is taken off moves the contact by e ~ u^{k+2} from the root on, so that p is not quite
     # its compression: where ∫ k A p^{k-1} e counts, the pair's own estimate is the better judge.
     most = max(c0, end)
     stiff = chain.k * chain.A[i] * _power(chain, most) / most
     apart = (inverse[i] + inverse[i + 1]) * abs(moment)
     if h * stiff * apart * max(inverse[i], inverse[i + 1]) > (2.0 * chain.k + 2.0) * at.v:
-        at.kinks -= 1
         return
+    at.kinks += 1
     beads.next_v[i] -= impulse * inverse[i]
     beads.next_v[i + 1] += impulse * inverse[i + 1]
     beads.next_y[i] -= moment * inverse[i]
     beads.next_y[i + 1] += moment * inverse[i + 1]
     beads.sums[2, i + 1] -= chain.A[i] * h * h * error / at.y
-    beads.sums[3, i + 1] -= chain.A[i] * h * error_speed / at.v
+    beads.sums[3, i + 1] -= chain.A[i] * h * error_once / at.v
 
 
 @_part
@@ -464,7 +481,7 @@ def _knot(chain: Chain, beads: Beads, seen: Samples, at: Any, turn: int) -> None
 def _bend(chain: Chain, plan: Plan, kink: Array, j: int, h: float, z: float) -> tuple[float, float]:
     """What a kink adds to the displacement and velocity of bead j."""
     unit = chain.A[int(kink[0])] * chain.inverse[j] * h * (1.0 if kink[0] < j else -1.0)
-    twice, once = _ramp(chain, plan.scheme, kink, z)
+    twice, once = _ramp(chain, plan.scheme.points, kink, z)
     return unit * h * twice, unit * once
 
 
@@ -503,7 +520,7 @@ def _sample(
     Its order is 12; 8, in one step, where a contact opens or closes in them, and in the first.
     What the kinks of a bead's own contacts add is not interpolated.
     """
-    x, d, inverse, knots = np.empty(12), np.empty(12), np.zeros((12, 12)), np.empty((3, 4))
+    x, d, knots, inverse = seen.room[0], seen.room[1], seen.room[2:5], seen.room[5:]
     x[:4], x[4:8], x[8:] = 0.0, 1.0, -at.before / h
     for j in range(1, 12):
         for i in range(j, 12):
@@ -511,7 +528,9 @@ def _sample(
     new, old, older = at.steps % 3, (at.steps - 1) % 3, (at.steps - 2) % 3
     for q in range(at.begin, at.stop):
         bead = seen.watched[q]
-        knots[:] = seen.knots[:, :, q]
+        for turn in range(3):
+            for j in range(4):
+                knots[turn, j] = seen.knots[turn, j, q]
         kinks = _smooth(chain, beads, plan, at, knots, bead, h)
         size = 12 if at.steps - at.kink > 1 and kinks == 0 else 8
         for i in range(size):
@@ -584,7 +603,8 @@ def _cut_rear(chain: Chain, beads: Beads, plan: Plan, at: Any) -> None:
         at.lost += max(force, 0.0) * max(y[lo] - y[lo + 1], 0.0) / (k + 1)
         beads.left[lo] = at.t
         at.lo = lo + 1
-        beads.force[:, lo + 1] = 0.0
+        for s in range(len(beads.force)):
+            beads.force[s, lo + 1] = 0.0
 
 
 @_part

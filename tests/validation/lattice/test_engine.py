@@ -210,7 +210,7 @@ def test_the_integrals_of_a_force_with_a_kink(k, root, q):
         return max((u - root) * np.polyval(coefficients[::-1], u), 0.0) ** k
 
     def ramp(z):
-        return np.array(kernel._ramp(chain, engine._tableau("RKN86", k), row, z))
+        return np.array(kernel._ramp(chain, engine._tableau("RKN86", k).points, row, z))
 
     (far, speed), (near, start) = ramp(1.0), ramp(0.0)
     ends = sorted((0.0, min(max(root, 0.0), 1.0), 1.0))
