@@ -18,7 +18,8 @@ from tqdm import tqdm
 from lwa.command.terminal import called, quantity
 from lwa.duration import announce
 from validation.lattice.effort import Effort
-from validation.report.figure import SUFFIXES, plot_file
+from validation.report.figure import SUFFIXES
+from validation.report.files import output_file
 from validation.report.result import Report
 from validation.scenes.checks import Failure, SceneError
 
@@ -43,10 +44,8 @@ class Study(Generic[P, R]):
     def __init__(
         self, function: Callable[P, R], name: str, options: Iterable[Any], epilog: str
     ) -> None:
-        self.function = function
-        self.name = name
-        self.options = tuple(options)
-        self.epilog = epilog
+        self.function, self.name = function, name
+        self.options, self.epilog = tuple(options), epilog
         update_wrapper(self, function)
 
     def __call__(self, *arguments: P.args, **options: P.kwargs) -> R:
@@ -164,7 +163,7 @@ def run_progress(effort: Effort) -> Iterator[Callable[[float], None]]:
 
 
 def _picture(context: click.Context, given: click.Parameter, path: str | None) -> Path | None:
-    return None if path is None else plot_file(path)
+    return None if path is None else output_file("plot", path, SUFFIXES)
 
 
 _OUTPUT = (

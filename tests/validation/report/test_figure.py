@@ -11,7 +11,8 @@ from matplotlib.figure import Figure
 
 from lwa import InputError
 from validation.report import figure as drawing
-from validation.report.figure import figure, plot_file
+from validation.report.figure import figure
+from validation.report.files import output_file
 from validation.report.panel import Curve, Map, Panel
 from validation.report.result import Report
 
@@ -27,7 +28,7 @@ def report():
 @pytest.mark.parametrize("suffix", drawing.SUFFIXES)
 def test_every_format(report, tmp_path, suffix):
     file = tmp_path / f"picture{suffix}"
-    report.save(plot_file(str(file)))
+    report.save(file)
     assert file.read_bytes().startswith(SIGNATURES[suffix])
     assert list(tmp_path.iterdir()) == [file]
 
@@ -154,4 +155,4 @@ def test_a_full_disk_is_one_line_and_leaves_the_old_picture(tmp_path, suffix):
 def test_bad_files(tmp_path, name, message):
     (tmp_path / "folder.png").mkdir()
     with pytest.raises(InputError, match=f"^{message}"):
-        plot_file(str(tmp_path / name))
+        output_file("plot", str(tmp_path / name), drawing.SUFFIXES)

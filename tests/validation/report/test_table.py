@@ -12,7 +12,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from validation.pulses.pulse import Measured
-from validation.report.table import Column, Finding, Statement, Table, document, plain
+from validation.report.result import Report
+from validation.report.table import Column, Finding, Statement, Table, plain
 from validation.report.text import aligned, bounds, html, listed, text
 
 TABLE = Table(
@@ -133,7 +134,7 @@ def test_findings_in_lines_and_in_a_document():
                                                                  "FAILS"]  # fmt: skip
     assert "5 ± 5e-01" in lines
     assert "drift" not in "\n".join(listed(found, all_of_them=False))
-    told = json.loads(json.dumps(document(found), allow_nan=False))
+    told = json.loads(json.dumps(Report("", findings=found).document(), allow_nan=False))
     assert told["drift_value"] == 1e-12
     assert [f["ok"] for f in told["findings"]] == [True, False]
     assert told["findings"][1]["least_value"] is None
