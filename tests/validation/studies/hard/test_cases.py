@@ -13,12 +13,18 @@ from validation.report.panel import Curve, Panel
 from validation.report.result import Report
 from validation.report.table import Finding, Statement
 from validation.studies.hard import cases as module
+from validation.studies.hard.case import case
 from validation.studies.hard.cases import CASES, hard
 
 
 def outcome(*findings):
-    panel = Panel("t", "error", (Curve.of("it", [1, 2], [3, 4]),), "y")
-    return Report("does it hold?", (), findings, (panel,), ("It does.",))
+    @case("It does.", Panel("t", "error", scale="y"))
+    def told():
+        """does it hold?"""
+        yield from findings
+        yield Curve.of("it", [1, 2], [3, 4])
+
+    return told()
 
 
 HOLDS = outcome(
@@ -158,11 +164,11 @@ def test_all_cases_hold_and_are_told_by_number():
     assert failed == []
     whole = result.report().document()
     assert whole["ok"]
-    assert [case["case"] for case in whole["cases"]] == list(CASES)
-    for case in whole["cases"]:
-        assert any(key.endswith("_value") for key in case), case["case"]
+    assert [told["case"] for told in whole["cases"]] == list(CASES)
+    for told in whole["cases"]:
+        assert any(key.endswith("_value") for key in told), told["case"]
         bounded = [
-            f for f in case["findings"] if (f["least_value"], f["most_value"]) != (None,) * 2
+            f for f in told["findings"] if (f["least_value"], f["most_value"]) != (None,) * 2
         ]
-        assert bounded, case["case"]
+        assert bounded, told["case"]
     json.dumps(whole, allow_nan=False)
