@@ -86,13 +86,14 @@ class Report:
         return found | ({"ok": self.ok} if self._all() else {})
 
     def csv(self) -> str:
-        """The first table that programs read, or that of the first part which has one.
+        """The first table that programs read, of those that have rows if there are such.
 
         Raises `lwa.InputError` where there is none."""
-        for table in (table for report in self._whole() for table in report.tables):
-            if any(column.key for column in table.columns):
-                return table.csv()
-        raise InputError("format is csv: this result has no table")
+        tables = [table for report in self._whole() for table in report.tables
+                  if any(column.key for column in table.columns)]  # fmt: skip
+        if not tables:
+            raise InputError("format is csv: this result has no table")
+        return next((table for table in tables if table.rows), tables[0]).csv()
 
     def figure(self) -> Figure:
         """The picture. Raises `lwa.InputError` where there is none."""

@@ -35,7 +35,7 @@ _PACE = 1.2  # time per site, a little more than the pulse of equal beads takes
 class Row:
     """One run of one method, of the family "SciPy", "compiled" or "peer".
 
-    setting : tolerance; of heyoka its largest step.
+    setting : tolerance.
     errors : relative, by `validation.studies.accuracy.tasks.NUMBERS`; infinite where no pulse came.
     seconds : of CPU time, without compilation.
     step, ns : of compiled runs the mean step, and the time per bead and evaluation of its force.
@@ -65,14 +65,16 @@ class Row:
 _Found = TypeVar("_Found")
 
 
-def timed(run: Callable[[], _Found]) -> tuple[_Found, float]:
-    """The result and its CPU time, the median of a few where they are short."""
+def timed(
+    run: Callable[[], _Found], least: int = 1, clock: Callable[[], float] = time.process_time
+) -> tuple[_Found, float]:
+    """The result and its time by a clock, the median of a few where they are short."""
     taken: list[float] = []
     while True:
-        start = time.process_time()
+        start = clock()
         found = run()
-        taken.append(time.process_time() - start)
-        if len(taken) == _REPEATS or sum(taken) > _ENOUGH:
+        taken.append(clock() - start)
+        if len(taken) == _REPEATS or (len(taken) >= least and sum(taken) > _ENOUGH):
             return found, median(taken)
 
 
@@ -92,15 +94,10 @@ def cost(rows: Iterable[Row], wanted: float) -> float:
     return min((row.seconds for row in good), default=math.inf)
 
 
-def costs(rows: Iterable[Row], wanted: float) -> dict[tuple[str, str], float]:
-    """`cost` by family and name."""
-    return {method: cost(its, wanted) for method, its in methods(rows).items()}
-
-
 def cheapest(rows: Iterable[Row], family: str, wanted: float) -> tuple[str, float]:
     """The method of a family that costs least, and what; "none" and infinity where none attains
     what is wanted."""
-    found = {name: each for (its, name), each in costs(rows, wanted).items() if its == family}
+    found = {name: cost(its, wanted) for (of, name), its in methods(rows).items() if of == family}
     best = min(found, key=found.__getitem__, default="none")
     return best, found.get(best, math.inf)
 
@@ -132,7 +129,7 @@ def goals(rows: Sequence[Row]) -> Iterator[Finding]:
 
 def _of_the_dimer(rows: Sequence[Row]) -> Iterator[Finding]:
     _, least = cheapest(rows, "compiled", 1e-6)
-    theirs = costs(rows, 1e-6)["SciPy", "SciPy DOP853"]
+    theirs = cost(methods(rows)["SciPy", "SciPy DOP853"], 1e-6)
     each = min(row.ns for row in rows if row.ns is not None)
     root = square_root()
     p, error = scaling(_SITES)
@@ -148,8 +145,7 @@ def _of_the_dimer(rows: Sequence[Row]) -> Iterator[Finding]:
 
 
 def square_root() -> float:
-    """Nanoseconds that one takes here, of an array in the cache: a force of Hertz's costs one, so
-    that no engine is faster."""
+    """Nanoseconds that one takes here, in the cache: a force of Hertz's costs one at least."""
     values = np.linspace(1.0, 2.0, 4096)
     out = np.empty_like(values)
     _, seconds = timed(lambda: [np.sqrt(values, out=out) for _ in range(500)])
@@ -157,8 +153,7 @@ def square_root() -> float:
 
 
 def scaling(sites: Sequence[int]) -> tuple[float, float]:
-    """p of the windowed cost per site ~ sites^p, by least squares, and its standard error; what a
-    run costs at its start makes p negative on short chains."""
+    """p of the windowed cost per site ~ sites^p, by least squares, and its standard error."""
     each = []
     for n in sites:
         scene = struck((1.0,), n, duration=_PACE * n, samples=2)

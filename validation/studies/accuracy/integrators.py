@@ -1,11 +1,9 @@
 """Speed against error: what an integrator costs, and how far the pulse is off, on fixed tasks.
 
-Tasks: `validation.studies.accuracy.tasks`. Methods: SciPy's steppers and the compiled ones, on
-the whole chain and on a window that moves with the pulse, and general integrators of other packages
-on the whole chain (`validation.studies.accuracy.peers`), each at several tolerances. The error is
-the largest relative one of arrival time, peak force and FWHM, against
-`validation.studies.accuracy.reference`. The cost is CPU time without compilation, the median of a
-few runs where they are short (`validation.studies.accuracy.costs`).
+Methods are SciPy's steppers and the compiled ones, on the whole chain and on a window that moves
+with the pulse, and integrators of other packages on the whole chain, each at several tolerances.
+The error is the largest relative one of arrival time, peak force and FWHM. The cost is CPU time
+without compilation, the median of a few runs where they are short.
 """
 
 from __future__ import annotations
@@ -20,7 +18,6 @@ import scipy
 
 from lwa.compact.numeric import Array
 from lwa.duration import Progress
-from validation.lattice.equations import Motion
 from validation.lattice.simulate import COMPILED, simulate
 from validation.pulses.pulse import MeasureError
 from validation.report.command import option, study
@@ -30,7 +27,7 @@ from validation.report.table import Column, Finding, Table
 from validation.scenes.checks import one_of
 from validation.studies.accuracy.costs import WANTED, Row, cost, goals, methods, timed
 from validation.studies.accuracy.many import Many, many, together
-from validation.studies.accuracy.peers import Peer, Solve, missing, prepared
+from validation.studies.accuracy.peers import missing, prepared
 from validation.studies.accuracy.reference import FINEST, Reference, integrate, reference
 from validation.studies.accuracy.tasks import NUMBERS, TASKS, Task, errors
 from validation.studies.accuracy.theories import Ladder, ladder
@@ -62,11 +59,8 @@ _PEERS: Mapping[str, Sequence[float]] = {
     "CyRK DOP853": _settings(1e-4, 1e-12),
     "numbalsoda DOP853": _settings(1e-4, 1e-12),
     "numbalsoda LSODA": (1e-5, 1e-7, 1e-9),
-    "diffrax Tsit5": (1e-5, 1e-7, 1e-9),
-    "diffrax Dopri8": (1e-5, 1e-7, 1e-9, 1e-11),
-    "heyoka Taylor": (0.1, 0.03, 0.01),
 }
-"""Tolerances; heyoka's largest steps."""
+"""Method → tolerances."""
 
 MANY, THEORY = "many", "theory"
 NAMES = (*TASKS, MANY, THEORY)
@@ -87,8 +81,8 @@ _COSTS = (
 )
 _NOTE = "CPU time without compilation, on this machine; - where no run attains it from there on."
 _REFERENCES = (Column("task"), *map(Column, NUMBERS), Column("agreement"))
-_GOALS = tuple(map(Column, ("key", "least_value", "most_value", "goal", "measured_value",
-                            "error_value", "ok")))  # fmt: skip
+_GOALS = tuple(map(Column, ("key", "goal", "measured_value", "error_value", "least_value",
+                            "most_value", "ok")))  # fmt: skip
 _MANY = (
     Column("method", "Many chains"),
     Column("setting", "setting", format=".0e"),
@@ -125,34 +119,34 @@ class Accuracy:
         rows = tuple((r.task, r.family, r.name, r.setting, r.error,
                       *(r.errors[name] for name in NUMBERS), r.seconds, r.step, r.ns)
                      for r in self.rows)  # fmt: skip
+        spent = tuple((task, *line) for task, its in tasks.items() for line in _costs(its))
         references = tuple((r.task, *(getattr(r.pulse, name) for name in NUMBERS), r.agreement)
                            for r in self.references)  # fmt: skip
-        aims = tuple((g.key, g.low, g.high, g.quantity, g.value, g.error, g.ok) for g in self.goals)
+        heads = {task: f"{task}: arrival {arrival:.12g}, peak {peak:.12g}, FWHM {fwhm:.12g};\n"
+                       f"another route differs by {agreement:.0e} at most"
+                 for task, arrival, peak, fwhm, agreement in references}  # fmt: skip
         chains = tuple((m.method, m.setting, m.error, m.seconds, m.share) for m in self.many)
-        heads = {r.task: f"{r.task}: arrival {r.pulse.arrival:.12g}, peak {r.pulse.peak:.12g}, "
-                         f"FWHM {r.pulse.fwhm:.12g};\nanother route differs by {r.agreement:.0e} "
-                         "at most" for r in self.references}  # fmt: skip
-        spent = tuple((task, *line) for task, its in tasks.items() for line in _costs(its))
-        tables = (
-            Table(_RUNS, rows, "rows"),
-            Table(_COSTS, spent, "costs", note=_NOTE, by="task", heads=heads),
-            Table(_REFERENCES, references, "references"),
-            Table(_MANY, chains, "many", note=_MANY_NOTE),
-            Table(_GOALS, aims, "goals"),
-        )
+        goals = tuple((goal.key, *goal.document().values()) for goal in self.goals)
+        parts = [Report("goals", findings=self.goals)] if self.goals else []
+        data: dict[str, Any] = {"absent": self.absent}
+        if self.theories is not None:
+            parts.append(self.theories.report())
+            data |= parts[-1].data
         left = ", ".join(self.absent)
         left = f"Left out, as not installed: {left} (pip install 'lwa[peers]' brings them)."
-        theories = () if self.theories is None else (self.theories.report(),)
-        goals = (Report("goals", findings=self.goals),) * bool(self.goals)
-        empty = dict.fromkeys(("rows", "costs", "references", "many", "goals"), ())
-        data = empty | {"absent": self.absent}
         return Report(
             "Speed against error",
-            tuple(table for table in tables if table.rows),
+            (
+                Table(_RUNS, rows, "rows"),
+                Table(_COSTS, spent, "costs", note=_NOTE, by="task", heads=heads),
+                Table(_REFERENCES, references, "references"),
+                Table(_MANY, chains, "many", note=_MANY_NOTE),
+                Table(_GOALS, goals, "goals"),
+            ),
             panels=tuple(_panel(task, its) for task, its in tasks.items()),
-            notes=(left,) * bool(self.absent),
-            data=data | {key: value for part in theories for key, value in part.data.items()},
-            parts=(*goals, *theories),
+            notes=(left,) if self.absent else (),
+            data=data,
+            parts=tuple(parts),
         )
 
 
@@ -183,14 +177,11 @@ def _panel(task: str, rows: Sequence[Row]) -> Panel:
     option("--task", "names", multiple=True, metavar="NAME",
            says=f"Only this task, may be given again: {', '.join(NAMES)}."),
 )  # fmt: skip
-def accuracy(
-    names: Collection[str] = (), progress: Progress[str] = iter, *, peers: bool = True
-) -> Accuracy:
+def accuracy(names: Collection[str] = (), progress: Progress[str] = iter) -> Accuracy:
     """Speed against error: integrators on fixed tasks, and theories against true waves. Ten
     minutes; of one task alone up to five.
 
     names : of `NAMES`, all by default; "theory" is `validation.studies.accuracy.theories`.
-    peers : False leaves the other packages' integrators out.
 
     Raises `validation.scenes.checks.SceneError` for a name that is not one of `NAMES`, and
     `validation.studies.accuracy.peers.PeerError` for a peer that is missing where CI is set.
@@ -200,27 +191,23 @@ def accuracy(
     references: list[Reference] = []
     chains: list[Many] = []
     theories: Ladder | None = None
-    absent: tuple[str, ...] | None = None if peers else ()
+    absent: tuple[str, ...] = ()
     for name in progress([name for name in NAMES if name in wanted]):
         if name == THEORY:
             theories = ladder()
             continue
-        if absent is None:
-            absent = missing()  # within the progress: to load the peers takes seconds
+        absent = missing()  # within the progress: to load the peers takes seconds
         if name == MANY:
-            chains = many(peers, absent)
+            chains = many(absent)
             continue
         task = TASKS[name]()
         references.append(reference(name, task))
-        others = prepared(task, absent) if peers else iter(())
-        rows += _compared(name, task, references[-1], others)
+        rows += _compared(task, references[-1], absent)
     aims = (*goals(rows), *together(chains))
-    return Accuracy(tuple(rows), tuple(references), aims, absent or (), tuple(chains), theories)
+    return Accuracy(tuple(rows), tuple(references), aims, absent, tuple(chains), theories)
 
 
-def _compared(
-    name: str, task: Task, truth: Reference, peers: Iterator[tuple[Peer, Solve]]
-) -> Iterator[Row]:
+def _compared(task: Task, truth: Reference, absent: Collection[str]) -> Iterator[Row]:
     """All methods at one task."""
 
     def row(
@@ -230,7 +217,7 @@ def _compared(
             off = errors(task.read(force), truth.pulse)
         except MeasureError:  # at this setting no pulse comes through
             off = dict.fromkeys(NUMBERS, math.inf)
-        return Row(name, family, method, window, setting, off, *spent)
+        return Row(truth.task, family, method, window, setting, off, *spent)
 
     for (method, window), tolerances in _SCIPY.items():
         stepper = getattr(scipy.integrate, method)
@@ -245,9 +232,7 @@ def _compared(
                 run, seconds = timed(partial(simulated, rtol=rtol))
                 spent = seconds, run.step, 1e9 * seconds / run.bead_evaluations
                 yield row("compiled", method, window, rtol, task.force(run), *spent)
-    motion = Motion(task.scene)
-    for peer, solve in peers:
+    for peer, solve in prepared(task, absent):
         for setting in _PEERS[peer.name]:
-            y, seconds = timed(partial(solve, setting))
-            force = motion.force(motion.compression(y))[task.contact]
-            yield row("peer", peer.name, False, setting, force, seconds)
+            displacements, seconds = timed(partial(solve, setting, task))
+            yield row("peer", peer.name, False, setting, task.force_at(displacements), seconds)

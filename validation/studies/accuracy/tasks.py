@@ -22,6 +22,7 @@ import numpy as np
 import scipy
 
 from lwa.compact.numeric import Array
+from validation.lattice.equations import Motion
 from validation.lattice.run import Run
 from validation.pulses.pulse import Pulse, measure
 from validation.scenes import chains
@@ -64,6 +65,11 @@ class Task:
     def force(self, run: Run) -> Array:
         """(S,): of the contact at `times`, in a run of the scene."""
         return np.asarray(run.contact_force[0, -len(self.times) :])
+
+    def force_at(self, displacements: Array) -> Array:
+        """(S,): the same, from the displacements of all beads (n, S) at `times`."""
+        motion = Motion(self.scene)
+        return np.asarray(motion.force(motion.compression(displacements))[self.contact])
 
     def read(self, force: Array) -> Pulse:
         """The pulse, from the contact's force at `times`; its peak is the dynamic force.

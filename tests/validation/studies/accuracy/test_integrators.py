@@ -21,7 +21,7 @@ from validation.scenes.scene import Scene
 from validation.studies.accuracy import costs as spent
 from validation.studies.accuracy import integrators as module
 from validation.studies.accuracy import peers, tasks
-from validation.studies.accuracy.costs import Row, cost, costs
+from validation.studies.accuracy.costs import Row, cheapest, cost
 from validation.studies.accuracy.integrators import accuracy
 from validation.studies.accuracy.reference import integrate
 from validation.studies.accuracy.tasks import NUMBERS, Task, errors, exact, struck
@@ -81,9 +81,9 @@ def test_a_cost_holds_from_there_on():
     assert cost(rows, 1e-8) == 4
     assert cost(rows, 1e-5) == 1
     assert cost(rows, 1e-10) == math.inf
-    assert costs([*rows, row(5, 1e-7, window=True)], 1e-6) == {
-        ("peer", "a"): 3, ("peer", "a, window"): 5,
-    }  # fmt: skip
+    assert cheapest([*rows, row(1, 1e-7, window=True)], "peer", 1e-6) == ("a, window", 1)
+    assert cheapest([*rows, row(5, 1e-7, window=True)], "peer", 1e-6) == ("a", 3)
+    assert cheapest(rows, "compiled", 1e-6) == ("none", math.inf)
 
 
 def test_the_table_of_costs_has_the_finest_first_and_gaps_where_nothing_is_attained():
@@ -279,7 +279,7 @@ def test_goals_are_findings(met):
 
 def test_csv_and_notebook_tell_what_json_does(monkeypatch):
     reduce(monkeypatch)
-    report = accuracy(["dimer"], peers=False).report()
+    report = accuracy(["dimer"]).report()
     rows = report.document()["rows"]
     for line, row in zip(csv.DictReader(io.StringIO(report.csv())), rows, strict=True):
         assert (line["task"], line["method"], line["family"]) == (
@@ -308,7 +308,7 @@ def test_a_run_without_a_pulse_is_told_and_drawn_nowhere(monkeypatch):
     monkeypatch.setattr(module, "integrate", lambda task, *rest, **options: 0 * task.times)
     monkeypatch.setattr(module, "_COMPILED", {})
     truth = module.Reference("dimer", task.read(task.force(simulate(task.scene))), 0.0)
-    rows = list(module._compared("dimer", task, truth, iter(())))
+    rows = list(module._compared(task, truth, ()))
     assert {row.error for row in rows} == {math.inf}
     assert module._costs(rows)[0][1:] == (None,) * 4
     assert all(len(curve.x) == 0 for curve in module._panel("dimer", rows).curves)
