@@ -30,7 +30,7 @@ from validation.studies.accuracy.many import Many, many, together
 from validation.studies.accuracy.peers import missing, prepared
 from validation.studies.accuracy.reference import FINEST, Reference, integrate, reference
 from validation.studies.accuracy.tasks import NUMBERS, TASKS, Task, errors
-from validation.studies.accuracy.theories import Ladder, ladder
+from validation.studies.accuracy.theories import CASES, Ladder, place
 
 
 def _settings(first: float, last: float = FINEST) -> tuple[float, ...]:
@@ -194,7 +194,7 @@ def accuracy(names: Collection[str] = (), progress: Progress[str] = iter) -> Acc
     absent: tuple[str, ...] = ()
     for name in progress([name for name in NAMES if name in wanted]):
         if name == THEORY:
-            theories = ladder()
+            theories = Ladder(tuple(place(*case) for case in CASES))
             continue
         absent = missing()  # within the progress: to load the peers takes seconds
         if name == MANY:

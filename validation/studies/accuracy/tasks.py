@@ -7,8 +7,7 @@ exact : the uniform chain's solitary wave (`validation.waves.solver`), put on th
 experiment : the 2:1 chain of Porter et al. (2008), figure 2(d): 38 beads of steel and PTFE up to a
     steel wall. In units of the striker's mass and velocity and the first contact's stiffness.
 
-Through samples of the contact's force goes a spline of degree 7, on whose fine table
-`validation.pulses.pulse` finds peak and flanks: its own error is below 1e-12.
+The contact's force is a spline of degree 7 through its samples, whose own error is below 1e-12.
 """
 
 from __future__ import annotations
@@ -72,7 +71,7 @@ class Task:
         return np.asarray(motion.force(motion.compression(displacements))[self.contact])
 
     def read(self, force: Array) -> Pulse:
-        """The pulse, from the contact's force at `times`; its peak is the dynamic force.
+        """The pulse of the dynamic force, from the contact's force at `times`.
 
         Raises `validation.pulses.pulse.MeasureError` when it is not wholly there.
         """
