@@ -54,7 +54,7 @@ class Table:
 
     key : its name in a document, where it has one; the first table of a report is its CSV.
     by : key of a column: for people the table falls into one for each of its values, with what
-        ``heads`` and ``feet`` say of the value above and below.
+        ``heads`` says of the value above it.
     """
 
     columns: tuple[Column, ...]
@@ -64,7 +64,6 @@ class Table:
     note: str = ""
     by: str = ""
     heads: Mapping[str, str] = field(default_factory=dict)
-    feet: Mapping[str, str] = field(default_factory=dict)
 
     def records(self) -> list[dict[str, Any]]:
         """Each row's names and plain values, in the columns' order, names with their dots."""

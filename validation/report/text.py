@@ -59,9 +59,9 @@ def bounds(low: float, high: float) -> str:
     return f"≤ {high:g}" if math.isinf(low) else f"{low:g} … {high:g}"
 
 
-def blocks(table: Table) -> list[tuple[str, Lines, str]]:
-    """What stands above, the lines with their header, and what stands below, of each part that
-    people read: one, or one for each value of the column that the table is divided ``by``."""
+def blocks(table: Table) -> list[tuple[str, Lines]]:
+    """What stands above, and the lines with their header, of each part that people read: one, or
+    one for each value of the column that the table is divided ``by``."""
     shown = [(i, column) for i, column in enumerate(table.columns) if column.label]
     if not shown:
         return []
@@ -71,8 +71,7 @@ def blocks(table: Table) -> list[tuple[str, Lines, str]]:
     for row in table.rows:
         group = str(row[keys.index(table.by)]) if table.by else ""
         parts.setdefault(group, [header]).append([cell(column, row[i]) for i, column in shown])
-    return [(table.heads.get(group, group), lines, table.feet.get(group, ""))
-            for group, lines in parts.items()]  # fmt: skip
+    return [(table.heads.get(group, group), lines) for group, lines in parts.items()]
 
 
 def cell(column: Column, value: Any) -> str:
@@ -92,8 +91,7 @@ def cell(column: Column, value: Any) -> str:
 
 def text(table: Table) -> str:
     """The table for people; nothing where no column has a label, or no row is there."""
-    parts = ["\n".join(filter(None, (head, aligned(lines), foot)))
-             for head, lines, foot in blocks(table)]  # fmt: skip
+    parts = [f"{head}\n{aligned(lines)}".lstrip("\n") for head, lines in blocks(table)]
     return "\n".join(filter(None, (table.title, "\n\n".join(parts), table.note))) if parts else ""
 
 
@@ -102,13 +100,12 @@ def html(table: Table) -> str:
     if not (parts := blocks(table)):
         return ""
     result = [_element("h4", table.title)]
-    for head, (header, *lines), foot in parts:
+    for head, (header, *lines) in parts:
         rows = ["".join(f"<td>{escape(part)}</td>" for part in line) for line in lines]
         result += [
             _element("p", head),
             "<table><thead><tr>", *(f"<th>{escape(part)}</th>" for part in header),
             "</tr></thead><tbody>", *(f"<tr>{row}</tr>" for row in rows), "</tbody></table>",
-            _element("p", foot),
         ]  # fmt: skip
     return "".join((*result, _element("p", table.note)))
 

@@ -110,21 +110,20 @@ _TIMES = {("dimer", 1e-6): 2.0, ("dimer", 1e-10): 12.0}
 
 
 def goals(rows: Sequence[Row]) -> Iterator[Finding]:
-    """What the engine is meant to attain: on each task beside the peers, on the dimer at all."""
-    for task in dict.fromkeys(row.task for row in rows):
-        its = [row for row in rows if row.task == task]
-        for wanted in WANTED:
-            what, place = f"{task}, peak force to {wanted:.0e}", (task, wanted)
-            ours, least = cheapest(its, "compiled", wanted)
-            peer, theirs = cheapest(its, "peer", wanted)
-            if place in _TIMES:
-                yield Finding(f"{what}: CPU time of {ours} (ms)", 1e3 * least,
-                              high=_TIMES[place], key=f"{task}_ms_{wanted:.0e}")  # fmt: skip
-            if math.isfinite(theirs):
-                yield Finding(f"{what}: the best peer, {peer}, over {ours}", theirs / least,
-                              _AHEAD.get(place, 1.0), key=f"{task}_peer_{wanted:.0e}")  # fmt: skip
-    if dimer := [row for row in rows if row.task == "dimer"]:
-        yield from _of_the_dimer(dimer)
+    """What the engine is meant to attain on a task: beside the peers, on the dimer at all."""
+    task = rows[0].task
+    for wanted in WANTED:
+        what, place = f"{task}, peak force to {wanted:.0e}", (task, wanted)
+        ours, least = cheapest(rows, "compiled", wanted)
+        peer, theirs = cheapest(rows, "peer", wanted)
+        if place in _TIMES:
+            yield Finding(f"{what}: CPU time of {ours} (ms)", 1e3 * least, high=_TIMES[place],
+                          key=f"{task}_ms_{wanted:.0e}")  # fmt: skip
+        if math.isfinite(theirs):
+            yield Finding(f"{what}: the best peer, {peer}, over {ours}", theirs / least,
+                          _AHEAD.get(place, 1.0), key=f"{task}_peer_{wanted:.0e}")  # fmt: skip
+    if task == "dimer":
+        yield from _of_the_dimer(rows)
 
 
 def _of_the_dimer(rows: Sequence[Row]) -> Iterator[Finding]:

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
@@ -19,16 +18,16 @@ import scipy
 from lwa.compact.numeric import Array
 from lwa.duration import Progress
 from validation.lattice.simulate import COMPILED, simulate
-from validation.pulses.pulse import MeasureError
+from validation.pulses.pulse import MeasureError, Pulse
 from validation.report.command import option, study
 from validation.report.panel import Curve, Panel
 from validation.report.result import Report
-from validation.report.table import Column, Finding, Table
+from validation.report.table import Column, Table
 from validation.scenes.checks import one_of
 from validation.studies.accuracy.costs import WANTED, Row, cost, goals, methods, timed
 from validation.studies.accuracy.many import Many, many, together
 from validation.studies.accuracy.peers import missing, prepared
-from validation.studies.accuracy.reference import FINEST, Reference, integrate, reference
+from validation.studies.accuracy.reference import FINEST, integrate, reference
 from validation.studies.accuracy.tasks import NUMBERS, TASKS, Task, errors
 from validation.studies.accuracy.theories import CASES, Ladder, place
 
@@ -98,56 +97,108 @@ _COLOURS = {"SciPy": "C0", "compiled": "C1", "peer": "C2"}
 _MARKS = "osD^v<>PX*"
 
 
-@dataclass(frozen=True)
-class Accuracy:
-    """Rows and references of the tasks that were run, the goals, peers that are missing, and the
-    ladder of theories."""
+@study(
+    option("--task", "names", multiple=True, metavar="NAME",
+           says=f"Only this task, may be given again: {', '.join(NAMES)}."),
+)  # fmt: skip
+def accuracy(names: Collection[str] = (), progress: Progress[str] = iter) -> Report:
+    """Speed against error: integrators on fixed tasks, and theories against true waves. Ten
+    minutes; of one task alone up to five.
 
-    rows: tuple[Row, ...]
-    references: tuple[Reference, ...]
-    goals: tuple[Finding, ...]
-    absent: tuple[str, ...]
-    many: tuple[Many, ...] = ()
-    theories: Ladder | None = None
+    ``rows``, as of `Row`, with the largest ``error``; ``costs`` by method; ``references`` and their
+    ``agreement`` with another route; ``many``, as of `Many`; ``goals``, which people read as
+    findings; ``absent``, the peers that are missing; ``theories``, as of `Ladder`. In the picture
+    CPU time over the error, solid with a window.
 
-    def report(self) -> Report:
-        """``rows``, as of `Row`, with the largest ``error``; ``costs`` by method; ``references``
-        and their ``agreement`` with another route; ``many``, as of `Many`; ``goals``, which people
-        read as findings; ``absent``; ``theories``, as of `Ladder`. In the picture CPU time over the
-        error, solid with a window."""
-        tasks = {r.task: [row for row in self.rows if row.task == r.task] for r in self.references}
-        rows = tuple((r.task, r.family, r.name, r.setting, r.error,
-                      *(r.errors[name] for name in NUMBERS), r.seconds, r.step, r.ns)
-                     for r in self.rows)  # fmt: skip
-        spent = tuple((task, *line) for task, its in tasks.items() for line in _costs(its))
-        references = tuple((r.task, *(getattr(r.pulse, name) for name in NUMBERS), r.agreement)
-                           for r in self.references)  # fmt: skip
-        heads = {task: f"{task}: arrival {arrival:.12g}, peak {peak:.12g}, FWHM {fwhm:.12g};\n"
-                       f"another route differs by {agreement:.0e} at most"
-                 for task, arrival, peak, fwhm, agreement in references}  # fmt: skip
-        chains = tuple((m.method, m.setting, m.error, m.seconds, m.share) for m in self.many)
-        goals = tuple((goal.key, *goal.document().values()) for goal in self.goals)
-        parts = [Report("goals", findings=self.goals)] if self.goals else []
-        data: dict[str, Any] = {"absent": self.absent}
-        if self.theories is not None:
-            parts.append(self.theories.report())
-            data |= parts[-1].data
-        left = ", ".join(self.absent)
-        left = f"Left out, as not installed: {left} (pip install 'lwa[peers]' brings them)."
-        return Report(
-            "Speed against error",
-            (
-                Table(_RUNS, rows, "rows"),
-                Table(_COSTS, spent, "costs", note=_NOTE, by="task", heads=heads),
-                Table(_REFERENCES, references, "references"),
-                Table(_MANY, chains, "many", note=_MANY_NOTE),
-                Table(_GOALS, goals, "goals"),
-            ),
-            panels=tuple(_panel(task, its) for task, its in tasks.items()),
-            notes=(left,) if self.absent else (),
-            data=data,
-            parts=tuple(parts),
-        )
+    Raises `validation.scenes.checks.SceneError` for a name that is not one of `NAMES`, and
+    `validation.studies.accuracy.peers.PeerError` for a peer that is missing where CI is set.
+    """
+    wanted = {one_of(name, NAMES, "task") for name in names} or set(NAMES)
+    rows: dict[str, list[Row]] = {}
+    references: list[tuple[Any, ...]] = []
+    chains: list[Many] = []
+    theories: list[Report] = []
+    absent: tuple[str, ...] = ()
+    for name in progress([name for name in NAMES if name in wanted]):
+        if name == THEORY:
+            theories = [Ladder(tuple(place(*case) for case in CASES)).report()]
+            continue
+        absent = missing()  # within the progress: to load the peers takes seconds
+        if name == MANY:
+            chains = many(absent)
+            continue
+        task = TASKS[name]()
+        truth, agreement = reference(task)
+        references.append((name, *(getattr(truth, number) for number in NUMBERS), agreement))
+        rows[name] = list(_compared(name, task, truth, absent))
+    return _report(rows, references, chains, theories, absent)
+
+
+def _compared(name: str, task: Task, truth: Pulse, absent: Collection[str]) -> Iterator[Row]:
+    """All methods at one task."""
+
+    def row(
+        family: str, method: str, window: bool, setting: float, force: Array, *spent: float
+    ) -> Row:
+        try:
+            off = errors(task.read(force), truth)
+        except MeasureError:  # at this setting no pulse comes through
+            off = dict.fromkeys(NUMBERS, math.inf)
+        return Row(name, family, method, window, setting, off, *spent)
+
+    for (method, window), tolerances in _SCIPY.items():
+        stepper = getattr(scipy.integrate, method)
+        for rtol in tolerances if task.windowed or not window else ():
+            force, seconds = timed(partial(integrate, task, stepper, rtol, window=window))
+            yield row("SciPy", f"SciPy {method}", window, rtol, force, seconds)
+    for method, aims in _COMPILED.items():
+        for window in sorted({task.windowed, False}, reverse=True):
+            simulated = partial(simulate, task.scene, method=method, window=window)
+            simulated(rtol=1e-3)  # compiles
+            for rtol in aims:
+                run, seconds = timed(partial(simulated, rtol=rtol))
+                spent = seconds, run.step, 1e9 * seconds / run.bead_evaluations
+                yield row("compiled", method, window, rtol, task.force(run), *spent)
+    for peer, solve in prepared(task, absent):
+        for setting in _PEERS[peer.name]:
+            displacements, seconds = timed(partial(solve, setting, task))
+            yield row("peer", peer.name, False, setting, task.force_at(displacements), seconds)
+
+
+def _report(
+    rows: Mapping[str, Sequence[Row]],
+    references: Sequence[tuple[Any, ...]],
+    chains: Sequence[Many],
+    theories: Sequence[Report],
+    absent: Sequence[str],
+) -> Report:
+    """Of rows and references by task."""
+    runs = tuple((r.task, r.family, r.name, r.setting, r.error,
+                  *(r.errors[name] for name in NUMBERS), r.seconds, r.step, r.ns)
+                 for its in rows.values() for r in its)  # fmt: skip
+    spent = tuple((task, *line) for task, its in rows.items() for line in _costs(its))
+    heads = {task: f"{task}: arrival {arrival:.12g}, peak {peak:.12g}, FWHM {fwhm:.12g};\n"
+                   f"another route differs by {agreement:.0e} at most"
+             for task, arrival, peak, fwhm, agreement in references}  # fmt: skip
+    many = tuple((m.method, m.setting, m.error, m.seconds, m.share) for m in chains)
+    aims = (*(goal for its in rows.values() for goal in goals(its)), *together(chains))
+    parts = [Report("goals", findings=aims), *theories] if aims else theories
+    left = ", ".join(absent)
+    left = f"Left out, as not installed: {left} (pip install 'lwa[peers]' brings them)."
+    return Report(
+        "Speed against error",
+        (
+            Table(_RUNS, runs, "rows"),
+            Table(_COSTS, spent, "costs", note=_NOTE, by="task", heads=heads),
+            Table(_REFERENCES, tuple(references), "references"),
+            Table(_MANY, many, "many", note=_MANY_NOTE),
+            Table(_GOALS, tuple((aim.key, *aim.document().values()) for aim in aims), "goals"),
+        ),
+        panels=tuple(_panel(task, its) for task, its in rows.items()),
+        notes=(left,) if absent else (),
+        data={"absent": absent, **{name: x for part in theories for name, x in part.data.items()}},
+        parts=tuple(parts),
+    )
 
 
 def _costs(rows: Sequence[Row]) -> list[tuple[Any, ...]]:
@@ -171,68 +222,3 @@ def _panel(task: str, rows: Sequence[Row]) -> Panel:
         curves.append(Curve.of(name, *points, style=style))
     label = "largest relative error of arrival, peak, FWHM"
     return Panel(label, "CPU time (s)", tuple(curves), "xy", task)
-
-
-@study(
-    option("--task", "names", multiple=True, metavar="NAME",
-           says=f"Only this task, may be given again: {', '.join(NAMES)}."),
-)  # fmt: skip
-def accuracy(names: Collection[str] = (), progress: Progress[str] = iter) -> Accuracy:
-    """Speed against error: integrators on fixed tasks, and theories against true waves. Ten
-    minutes; of one task alone up to five.
-
-    names : of `NAMES`, all by default; "theory" is `validation.studies.accuracy.theories`.
-
-    Raises `validation.scenes.checks.SceneError` for a name that is not one of `NAMES`, and
-    `validation.studies.accuracy.peers.PeerError` for a peer that is missing where CI is set.
-    """
-    wanted = {one_of(name, NAMES, "task") for name in names} or set(NAMES)
-    rows: list[Row] = []
-    references: list[Reference] = []
-    chains: list[Many] = []
-    theories: Ladder | None = None
-    absent: tuple[str, ...] = ()
-    for name in progress([name for name in NAMES if name in wanted]):
-        if name == THEORY:
-            theories = Ladder(tuple(place(*case) for case in CASES))
-            continue
-        absent = missing()  # within the progress: to load the peers takes seconds
-        if name == MANY:
-            chains = many(absent)
-            continue
-        task = TASKS[name]()
-        references.append(reference(name, task))
-        rows += _compared(task, references[-1], absent)
-    aims = (*goals(rows), *together(chains))
-    return Accuracy(tuple(rows), tuple(references), aims, absent, tuple(chains), theories)
-
-
-def _compared(task: Task, truth: Reference, absent: Collection[str]) -> Iterator[Row]:
-    """All methods at one task."""
-
-    def row(
-        family: str, method: str, window: bool, setting: float, force: Array, *spent: float
-    ) -> Row:
-        try:
-            off = errors(task.read(force), truth.pulse)
-        except MeasureError:  # at this setting no pulse comes through
-            off = dict.fromkeys(NUMBERS, math.inf)
-        return Row(truth.task, family, method, window, setting, off, *spent)
-
-    for (method, window), tolerances in _SCIPY.items():
-        stepper = getattr(scipy.integrate, method)
-        for rtol in tolerances if task.windowed or not window else ():
-            force, seconds = timed(partial(integrate, task, stepper, rtol, window=window))
-            yield row("SciPy", f"SciPy {method}", window, rtol, force, seconds)
-    for method, aims in _COMPILED.items():
-        for window in sorted({task.windowed, False}, reverse=True):
-            simulated = partial(simulate, task.scene, method=method, window=window)
-            simulated(rtol=1e-3)  # compiles
-            for rtol in aims:
-                run, seconds = timed(partial(simulated, rtol=rtol))
-                spent = seconds, run.step, 1e9 * seconds / run.bead_evaluations
-                yield row("compiled", method, window, rtol, task.force(run), *spent)
-    for peer, solve in prepared(task, absent):
-        for setting in _PEERS[peer.name]:
-            displacements, seconds = timed(partial(solve, setting, task))
-            yield row("peer", peer.name, False, setting, task.force_at(displacements), seconds)

@@ -13,7 +13,6 @@ carries no tension, parts them from the pulse.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -148,15 +147,6 @@ def integrate(
     return force
 
 
-@dataclass(frozen=True)
-class Reference:
-    """The pulse of a task, and the largest relative difference of its numbers by another route."""
-
-    task: str
-    pulse: Pulse
-    agreement: float
-
-
 def compiled(task: Task) -> Pulse:
     """By the engine at its finest tolerance, on a window where there may be one."""
     return task.read(task.force(simulate(task.scene, rtol=FINEST)))
@@ -168,7 +158,8 @@ def located(task: Task) -> Pulse:
     return task.read(integrate(task, Located, 2.5e-14, window=task.windowed, atol=2.5e-15))
 
 
-def reference(name: str, task: Task) -> Reference:
-    """The truth where it is known, else the engine's result; beside the located one."""
+def reference(task: Task) -> tuple[Pulse, float]:
+    """The truth where it is known, else the engine's result; its largest relative difference from
+    the located one."""
     pulse = task.truth or compiled(task)
-    return Reference(name, pulse, max(errors(located(task), pulse).values()))
+    return pulse, max(errors(located(task), pulse).values())

@@ -201,9 +201,7 @@ def test_the_command_prints_the_contract(capsys, monkeypatch, tmp_path):
 def test_the_text_names_tasks_methods_and_what_is_missing(monkeypatch):
     monkeypatch.delenv("CI", raising=False)
     reduce(monkeypatch, (peers.Peer("absent", "RK4", pytest.fail),))
-    result = accuracy(["experiment"])
-    assert result.goals == ()
-    report = result.report()
+    report = accuracy(["experiment"])
     assert report.ok
     document = report.document()
     assert document["absent"] == ["absent"]
@@ -267,9 +265,10 @@ def test_a_missed_goal_is_told_once_and_ends_with_1(capsys, monkeypatch):
 
 
 @pytest.mark.parametrize("met", [True, False])
-def test_goals_are_findings(met):
+def test_goals_are_findings(monkeypatch, met):
     goals = tuple(Finding(f"g{i}", 1.0, high=2.0 if met or i else 0.5) for i in range(3))
-    report = module.Accuracy((), (), goals, ()).report()
+    monkeypatch.setattr(module, "goals", lambda rows: goals)
+    report = module._report({"dimer": [row(1, 1e-7)]}, (), (), (), ())
     assert report.ok is met
     assert report.document()["ok"] is met
     assert [goal["ok"] for goal in report.document()["goals"]] == [met, True, True]
@@ -279,7 +278,7 @@ def test_goals_are_findings(met):
 
 def test_csv_and_notebook_tell_what_json_does(monkeypatch):
     reduce(monkeypatch)
-    report = accuracy(["dimer"]).report()
+    report = accuracy(["dimer"])
     rows = report.document()["rows"]
     for line, row in zip(csv.DictReader(io.StringIO(report.csv())), rows, strict=True):
         assert (line["task"], line["method"], line["family"]) == (
@@ -307,8 +306,8 @@ def test_a_run_without_a_pulse_is_told_and_drawn_nowhere(monkeypatch):
     task = small()
     monkeypatch.setattr(module, "integrate", lambda task, *rest, **options: 0 * task.times)
     monkeypatch.setattr(module, "_COMPILED", {})
-    truth = module.Reference("dimer", task.read(task.force(simulate(task.scene))), 0.0)
-    rows = list(module._compared(task, truth, ()))
+    truth = task.read(task.force(simulate(task.scene)))
+    rows = list(module._compared("dimer", task, truth, ()))
     assert {row.error for row in rows} == {math.inf}
     assert module._costs(rows)[0][1:] == (None,) * 4
     assert all(len(curve.x) == 0 for curve in module._panel("dimer", rows).curves)
