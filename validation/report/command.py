@@ -65,7 +65,13 @@ class Study(Generic[P, R]):
             except Failure as error:
                 raise click.ClickException(str(error)) from None
             report = found if isinstance(found, Report) else found.report()
-            show(report, style, picture)
+            if style == "json":
+                written = json.dumps(report.document(), indent=2, allow_nan=False)
+            else:
+                written = report.csv().rstrip("\n") if style == "csv" else report.text()
+            if picture is not None:
+                report.save(picture)
+            click.echo(written)
             return 0 if report.ok else 1
 
         for option in (*_OUTPUT, *reversed(self.options)):
@@ -119,17 +125,6 @@ def number(context: click.Context, given: click.Parameter, value: str | None) ->
 
 
 EXPONENT = option("--k", callback=number, default="3/2", says="Exponent of F = δ^k.")
-
-
-def show(report: Report, style: str, picture: Path | None) -> None:
-    """Print a report as "text", "json" or "csv", when its picture is saved."""
-    if style == "json":
-        written = json.dumps(report.document(), indent=2, allow_nan=False)
-    else:
-        written = report.csv().rstrip("\n") if style == "csv" else report.text()
-    if picture is not None:
-        report.save(picture)
-    click.echo(written)
 
 
 def progress(cases: Iterable[T]) -> Iterable[T]:

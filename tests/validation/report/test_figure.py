@@ -12,7 +12,6 @@ from matplotlib.figure import Figure
 from lwa import InputError
 from validation.report import figure as drawing
 from validation.report.figure import figure
-from validation.report.files import output_file
 from validation.report.panel import Curve, Map, Panel
 from validation.report.result import Report
 
@@ -141,18 +140,3 @@ def test_a_full_disk_is_one_line_and_leaves_the_old_picture(tmp_path, suffix):
     assert (done.stdout, done.stderr) == (f"{file} is not written: File too large\n", "")
     assert file.read_bytes() == b"old"
     assert list(tmp_path.iterdir()) == [file]
-
-
-@pytest.mark.parametrize(
-    ("name", "message"),
-    [
-        ("picture", r"plot is .*picture: a file ending in .pdf, .png, .svg is wanted"),
-        ("picture.txt", r"plot is .*: a file ending in"),
-        ("none/picture.png", r"plot is .*: the folder .*none does not exist"),
-        ("folder.png", r"plot is .*: a file that can be written is wanted"),
-    ],
-)
-def test_bad_files(tmp_path, name, message):
-    (tmp_path / "folder.png").mkdir()
-    with pytest.raises(InputError, match=f"^{message}"):
-        output_file("plot", str(tmp_path / name), drawing.SUFFIXES)

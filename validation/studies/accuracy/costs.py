@@ -21,8 +21,6 @@ from validation.lattice.simulate import COMPILED, simulate
 from validation.report.table import Finding
 from validation.scenes.chains import struck
 
-BEST = COMPILED[0]  # the compiled method that is looked at most closely
-
 WANTED = (1e-4, 1e-6, 1e-8, 1e-10)
 """Relative errors of the peak force at which costs are compared."""
 
@@ -156,7 +154,7 @@ def scaling(sites: Sequence[int]) -> tuple[float, float]:
     each = []
     for n in sites:
         scene = struck((1.0,), n, duration=_PACE * n, samples=2)
-        _, seconds = timed(partial(simulate, scene, method=BEST, rtol=1e-6, window=True))
+        _, seconds = timed(partial(simulate, scene, method=COMPILED[0], rtol=1e-6, window=True))
         each.append(seconds / n)
     (slope, _), covariance = np.polyfit(np.log(sites), np.log(each), 1, cov=True)
     return float(slope), float(np.sqrt(covariance[0, 0]))

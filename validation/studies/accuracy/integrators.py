@@ -28,15 +28,8 @@ from validation.studies.accuracy.costs import WANTED, Row, cost, goals, methods,
 from validation.studies.accuracy.many import Many, many, together
 from validation.studies.accuracy.peers import missing, prepared
 from validation.studies.accuracy.reference import FINEST, integrate, reference
-from validation.studies.accuracy.tasks import NUMBERS, TASKS, Task, errors
+from validation.studies.accuracy.tasks import NUMBERS, TASKS, Task, errors, settings
 from validation.studies.accuracy.theories import CASES, Ladder, place
-
-
-def _settings(first: float, last: float = FINEST) -> tuple[float, ...]:
-    """By half a decade: 1e-5, 3e-6, 1e-6, …."""
-    steps = round(2 * math.log10(first / last))
-    return tuple(float(f"{first * 10 ** (-i / 2):.0e}") for i in range(steps + 1))
-
 
 _SCIPY: Mapping[tuple[str, bool], Sequence[float]] = {
     ("DOP853", False): (1e-6, 1e-8, 1e-9, 1e-10),
@@ -48,18 +41,8 @@ _SCIPY: Mapping[tuple[str, bool], Sequence[float]] = {
 }
 """(method, window) → tolerances."""
 
-_COMPILED: Mapping[str, Sequence[float]] = {name: _settings(1e-3) for name in COMPILED}
+_COMPILED: Mapping[str, Sequence[float]] = {name: settings(1e-3, FINEST) for name in COMPILED}
 """Method → the error of the peak force that it aims at, on the window and the whole chain."""
-
-_PEERS: Mapping[str, Sequence[float]] = {
-    "CyRK RK45": _settings(1e-4, 1e-9),
-    "CyRK TSIT5": _settings(1e-4, 1e-11),
-    "CyRK VERN7": _settings(1e-4, 1e-12),
-    "CyRK DOP853": _settings(1e-4, 1e-12),
-    "numbalsoda DOP853": _settings(1e-4, 1e-12),
-    "numbalsoda LSODA": (1e-5, 1e-7, 1e-9),
-}
-"""Method → tolerances."""
 
 MANY, THEORY = "many", "theory"
 NAMES = (*TASKS, MANY, THEORY)
@@ -160,7 +143,7 @@ def _compared(name: str, task: Task, truth: Pulse, absent: Collection[str]) -> I
                 spent = seconds, run.step, 1e9 * seconds / run.bead_evaluations
                 yield row("compiled", method, window, rtol, task.force(run), *spent)
     for peer, solve in prepared(task, absent):
-        for setting in _PEERS[peer.name]:
+        for setting in peer.tolerances:
             displacements, seconds = timed(partial(solve, setting, task))
             yield row("peer", peer.name, False, setting, task.force_at(displacements), seconds)
 

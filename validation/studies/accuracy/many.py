@@ -22,13 +22,12 @@ from validation.report.table import Finding
 from validation.studies.accuracy.costs import timed
 from validation.studies.accuracy.peers import Solve, prepared
 from validation.studies.accuracy.reference import FINEST
-from validation.studies.accuracy.tasks import TASKS, Task
+from validation.studies.accuracy.tasks import TASKS, Task, settings
 
 ERROR = 1e-6
 """Of the peak force, in the median."""
 
 _CHAINS, _SPREAD = 100, 0.1  # and the standard deviation of a mass, relative
-_SETTINGS = (1e-5, 3e-6, 1e-6, 3e-7, 1e-7, 3e-8, 1e-8, 3e-9, 1e-9)
 _REPEATS = 3  # at least
 
 
@@ -109,7 +108,7 @@ def _peaks(tasks: Sequence[Task], forces: Sequence[Array]) -> Array:
 
 def _cheapest(method: str, family: str, run: Run, tasks: Sequence[Task], truths: Array) -> Many:
     """At the coarsest setting that is good enough, or at the finest."""
-    for setting in _SETTINGS:
+    for setting in settings(1e-5, 1e-9):
         error = float(np.median(np.abs(_peaks(tasks, run(setting, 1)) / truths - 1)))
         if error <= ERROR:
             break

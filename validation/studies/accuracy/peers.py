@@ -21,7 +21,7 @@ import numpy as np
 from lwa.compact.numeric import Array
 from validation.lattice.equations import Motion
 from validation.scenes.checks import Failure, SceneError
-from validation.studies.accuracy.tasks import Task
+from validation.studies.accuracy.tasks import Task, settings
 
 Solve = Callable[[float, Task], Array]
 """From a tolerance to the displacements at the task's times, (n, S)."""
@@ -35,11 +35,13 @@ class PeerError(Failure):
 
 @dataclass(frozen=True)
 class Peer:
-    """One integrator of a package; ``prepare`` compiles it, and tries it on a task."""
+    """One integrator of a package, compared at its ``tolerances``; ``prepare`` compiles it, and
+    tries it on a task."""
 
     package: str
     method: str
     prepare: Callable[[Task, str], Solve]
+    tolerances: tuple[float, ...] = ()
 
     @property
     def name(self) -> str:
@@ -123,8 +125,12 @@ def _numbalsoda(task: Task, method: str) -> Solve:
 
 
 PEERS = (
-    *(Peer("CyRK", method, _cyrk) for method in ("RK45", "TSIT5", "VERN7", "DOP853")),
-    *(Peer("numbalsoda", method, _numbalsoda) for method in ("DOP853", "LSODA")),
+    Peer("CyRK", "RK45", _cyrk, settings(1e-4, 1e-9)),
+    Peer("CyRK", "TSIT5", _cyrk, settings(1e-4, 1e-11)),
+    Peer("CyRK", "VERN7", _cyrk, settings(1e-4, 1e-12)),
+    Peer("CyRK", "DOP853", _cyrk, settings(1e-4, 1e-12)),
+    Peer("numbalsoda", "DOP853", _numbalsoda, settings(1e-4, 1e-12)),
+    Peer("numbalsoda", "LSODA", _numbalsoda, (1e-5, 1e-7, 1e-9)),
 )
 
 

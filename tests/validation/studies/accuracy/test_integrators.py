@@ -141,7 +141,7 @@ def walled():
     """As the experiment: behind a wall there is no window."""
     task = small()
     scene = replace(task.scene, wall=1.0)
-    return Task(scene, task.listen, windowed=False)
+    return Task(scene, task.listen)
 
 
 def reduce(monkeypatch, the_peers=()):

@@ -115,7 +115,6 @@ def test_tasks_are_what_they_say(name):
     assert isinstance(task, Task)
     assert task.times[0] >= task.listen
     assert task.times[-1] == task.scene.duration
-    assert task.windowed is (task.scene.wall is None)
     assert len(task.scene.contact_sensors) == 1
 
 
