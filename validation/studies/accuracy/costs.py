@@ -10,23 +10,18 @@ import math
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
 from itertools import takewhile
 from statistics import median
 from typing import TypeVar
 
 import numpy as np
 
-from validation.lattice.simulate import COMPILED, simulate
 from validation.report.table import Finding
-from validation.scenes.chains import struck
 
 WANTED = (1e-4, 1e-6, 1e-8, 1e-10)
 """Relative errors of the peak force at which costs are compared."""
 
 _ENOUGH, _REPEATS = 0.15, 7  # seconds and times, beyond which a run is not repeated
-_SITES = (100, 1000, 10_000, 100_000)
-_PACE = 1.2  # time per site, a little more than the pulse of equal beads takes
 
 
 @dataclass(frozen=True)
@@ -129,15 +124,12 @@ def _of_the_dimer(rows: Sequence[Row]) -> Iterator[Finding]:
     theirs = cost(methods(rows)["SciPy", "SciPy DOP853"], 1e-6)
     each = min(row.ns for row in rows if row.ns is not None)
     root = square_root()
-    p, error = scaling(_SITES)
     yield from (
         Finding("dimer, peak force to 1e-06: SciPy's DOP853 on the whole chain over the engine",
                 theirs / least, low=500.0, key="scipy_ratio"),
         Finding("CPU time per bead and evaluation of its force, at best (ns)", each,
                 key="evaluation_ns"),
         Finding("that over the time of a square root", each / root, key="evaluation_over_root"),
-        Finding(f"cost per site ~ sites^p, equal beads, {_SITES[0]} to {_SITES[-1]} sites: p",
-                p, high=0.1, error=error, key="site_exponent"),
     )  # fmt: skip
 
 
@@ -147,14 +139,3 @@ def square_root() -> float:
     out = np.empty_like(values)
     _, seconds = timed(lambda: [np.sqrt(values, out=out) for _ in range(500)])
     return 1e9 * seconds / (500 * len(values))
-
-
-def scaling(sites: Sequence[int]) -> tuple[float, float]:
-    """p of the windowed cost per site ~ sites^p, by least squares, and its standard error."""
-    each = []
-    for n in sites:
-        scene = struck((1.0,), n, duration=_PACE * n, samples=2)
-        _, seconds = timed(partial(simulate, scene, method=COMPILED[0], rtol=1e-6, window=True))
-        each.append(seconds / n)
-    (slope, _), covariance = np.polyfit(np.log(sites), np.log(each), 1, cov=True)
-    return float(slope), float(np.sqrt(covariance[0, 0]))

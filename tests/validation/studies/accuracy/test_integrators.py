@@ -94,7 +94,6 @@ def test_the_table_of_costs_has_the_finest_first_and_gaps_where_nothing_is_attai
 
 
 def test_goals_compare_equal_errors(monkeypatch):
-    monkeypatch.setattr(spent, "scaling", lambda sites: (-0.02, 0.01))
     monkeypatch.setattr(spent, "square_root", lambda: 0.5)
     ours = dict(method="ours", window=True, family="compiled")
     rows = [
@@ -108,7 +107,7 @@ def test_goals_compare_equal_errors(monkeypatch):
     values = {
         "dimer_peer_1e-04": 50, "dimer_ms_1e-06": 4, "dimer_peer_1e-06": 22.5,
         "dimer_peer_1e-08": 10, "dimer_ms_1e-10": 20,
-        "scipy_ratio": 750, "evaluation_ns": 1.5, "evaluation_over_root": 3, "site_exponent": -0.02,
+        "scipy_ratio": 750, "evaluation_ns": 1.5, "evaluation_over_root": 3,
     }  # fmt: skip
     assert {key: goal.value for key, goal in goals.items()} == pytest.approx(values)
     assert "CyRK, over ours" in goals["dimer_peer_1e-06"].quantity
@@ -123,14 +122,6 @@ def test_goals_compare_equal_errors(monkeypatch):
 def test_the_time_of_a_square_root_is_that_of_a_force_at_least():
     """A bead's force takes one, and some additions."""
     assert 0.05 < spent.square_root() < 20
-
-
-def test_cost_per_site_is_fitted_by_a_power(monkeypatch):
-    """Costs n² give cost per site ~ n."""
-    monkeypatch.setattr(spent, "timed", lambda run: (None, 1e-9 * len(run.args[0].masses) ** 2))
-    slope, error = spent.scaling((100, 200, 400))
-    assert slope == pytest.approx(1.0)
-    assert error < 1e-9
 
 
 def small():
@@ -154,7 +145,6 @@ def reduce(monkeypatch, the_peers=()):
     )
     for name, value in tables.items():
         monkeypatch.setattr(module, name, value)
-    monkeypatch.setattr(spent, "_SITES", (60, 120, 240))
     monkeypatch.setattr(spent, "_ENOUGH", 0.0)
 
 
@@ -191,7 +181,6 @@ def test_the_command_prints_the_contract(capsys, monkeypatch, tmp_path):
     ]  # fmt: skip
     assert [goal["key"] for goal in result["goals"]] == [
         "dimer_ms_1e-06", "dimer_ms_1e-10", "scipy_ratio", "evaluation_ns", "evaluation_over_root",
-        "site_exponent",
     ]  # fmt: skip
     assert {cost["task"] for cost in result["costs"]} == {"dimer", "experiment"}
     drawn = picture.read_text()
@@ -261,7 +250,7 @@ def test_a_missed_goal_is_told_once_and_ends_with_1(capsys, monkeypatch):
     assert (status, err) == (1, "")
     (line,) = [line for line in out.splitlines() if "SciPy's DOP853 on the whole" in line]
     assert line.endswith("≥ 500  FAILS")
-    assert re.search(r"\n6 checks: \d of 6 fail\n$", out)
+    assert re.search(r"\n5 checks: \d of 5 fail\n$", out)
 
 
 @pytest.mark.parametrize("met", [True, False])
@@ -319,7 +308,6 @@ def test_the_command_with_every_method(capsys, monkeypatch):
     """All methods and peers, on short chains."""
     for name, factory in (("dimer", small), ("experiment", walled)):
         monkeypatch.setitem(tasks.TASKS, name, factory)
-    monkeypatch.setattr(spent, "_SITES", (60, 120, 240))
     names = ("dimer", "experiment")
     chosen = [argument for name in names for argument in ("--task", name)]
     status, out, _ = command(capsys, *chosen, "--format", "json")
