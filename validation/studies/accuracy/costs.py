@@ -116,21 +116,15 @@ def goals(rows: Sequence[Row]) -> Iterator[Finding]:
             yield Finding(f"{what}: the best peer, {peer}, over {ours}", theirs / least,
                           _AHEAD.get(place, 1.0), key=f"{task}_peer_{wanted:.0e}")  # fmt: skip
     if task == "dimer":
-        yield from _of_the_dimer(rows)
-
-
-def _of_the_dimer(rows: Sequence[Row]) -> Iterator[Finding]:
-    _, least = cheapest(rows, "compiled", 1e-6)
-    theirs = cost(methods(rows)["SciPy", "SciPy DOP853"], 1e-6)
-    each = min(row.ns for row in rows if row.ns is not None)
-    root = square_root()
-    yield from (
-        Finding("dimer, peak force to 1e-06: SciPy's DOP853 on the whole chain over the engine",
-                theirs / least, low=500.0, key="scipy_ratio"),
-        Finding("CPU time per bead and evaluation of its force, at best (ns)", each,
-                key="evaluation_ns"),
-        Finding("that over the time of a square root", each / root, key="evaluation_over_root"),
-    )  # fmt: skip
+        whole = cost(methods(rows)["SciPy", "SciPy DOP853"], 1e-6)
+        share = whole / cheapest(rows, "compiled", 1e-6)[1]
+        each = min(row.ns for row in rows if row.ns is not None)
+        name = "dimer, peak force to 1e-06: SciPy's DOP853 on the whole chain over the engine"
+        yield Finding(name, share, low=500.0, key="scipy_ratio")
+        name = "CPU time per bead and evaluation of its force, at best (ns)"
+        yield Finding(name, each, key="evaluation_ns")
+        name = "that over the time of a square root"
+        yield Finding(name, each / square_root(), key="evaluation_over_root")
 
 
 def square_root() -> float:
