@@ -33,14 +33,13 @@ _REPEATS = 3  # at least
 
 @dataclass(frozen=True)
 class Many:
-    """What a method takes: its family as in `validation.studies.accuracy.costs.Row`.
+    """What a method takes.
 
     error : median one of the peak force.
     seconds : a chain, over all cores; alone : over one thread.
     """
 
     method: str
-    family: str
     setting: float
     error: float
     seconds: float
@@ -66,11 +65,11 @@ Run = Callable[[float, int], list[Array]]
 def many(absent: Collection[str]) -> list[Many]:
     """The engine, and the peers that are not absent."""
     tasks = chains()
-    truths = _peaks(tasks, _engine(tasks)(FINEST, cores()))
-    found = [_cheapest(COMPILED[0], "compiled", _engine(tasks), tasks, truths)]
+    runs = {COMPILED[0]: _engine(tasks)}
     for peer, solve in prepared(tasks[0], absent):
-        found.append(_cheapest(peer.name, "peer", _threaded(solve, tasks), tasks, truths))
-    return found
+        runs[peer.name] = _threaded(solve, tasks)
+    truths = _peaks(tasks, runs[COMPILED[0]](FINEST, cores()))
+    return [_cheapest(name, run, tasks, truths) for name, run in runs.items()]
 
 
 def together(found: Sequence[Many]) -> Iterator[Finding]:
@@ -106,7 +105,7 @@ def _peaks(tasks: Sequence[Task], forces: Sequence[Array]) -> Array:
     return np.array([t.read(force).peak for t, force in zip(tasks, forces, strict=True)])
 
 
-def _cheapest(method: str, family: str, run: Run, tasks: Sequence[Task], truths: Array) -> Many:
+def _cheapest(method: str, run: Run, tasks: Sequence[Task], truths: Array) -> Many:
     """At the coarsest setting that is good enough, or at the finest."""
     for setting in settings(1e-5, 1e-9):
         error = float(np.median(np.abs(_peaks(tasks, run(setting, 1)) / truths - 1)))
@@ -114,4 +113,4 @@ def _cheapest(method: str, family: str, run: Run, tasks: Sequence[Task], truths:
             break
     together, alone = (timed(partial(run, setting, n), _REPEATS, perf_counter)[1] / len(tasks)
                        for n in (cores(), 1))  # fmt: skip
-    return Many(method, family, setting, error, together, alone)
+    return Many(method, setting, error, together, alone)

@@ -28,13 +28,13 @@ def test_the_engine_is_good_to_the_error_that_is_wanted(monkeypatch):
     assert found.share == found.alone / found.seconds / module.cores()
 
 
-def numbers(method, family, seconds, error=1e-7):
-    return Many(method, family, 1e-6, error, seconds, 1.9 * seconds)
+def numbers(method, seconds, error=1e-7):
+    return Many(method, 1e-6, error, seconds, 1.9 * seconds)
 
 
 def test_findings_compare_good_peers_only():
     engine, *others = (
-        numbers("ours", "compiled", 1.0), numbers("a", "peer", 1.2), numbers("b", "peer", 0.5, 1e-5)
+        numbers("ours", 1.0), numbers("a", 1.2), numbers("b", 0.5, 1e-5)
     )  # fmt: skip
     share, peer = together([engine, *others])
     assert share.value == pytest.approx(1.9 / module.cores())
