@@ -108,16 +108,16 @@ def accuracy(names: Collection[str] = (), progress: Progress[str] = iter) -> Rep
             continue
         absent = missing()  # within the progress: to load the peers takes seconds
         if name == MANY:
-            chains = many(absent)
+            chains = many()
             continue
         task = TASKS[name]()
         truth, agreement = reference(task)
         references.append((name, *(getattr(truth, number) for number in NUMBERS), agreement))
-        rows[name] = list(_compared(name, task, truth, absent))
+        rows[name] = list(_compared(name, task, truth))
     return _report(rows, references, chains, theories, absent)
 
 
-def _compared(name: str, task: Task, truth: Pulse, absent: Collection[str]) -> Iterator[Row]:
+def _compared(name: str, task: Task, truth: Pulse) -> Iterator[Row]:
     """All methods at one task."""
 
     def row(
@@ -142,7 +142,7 @@ def _compared(name: str, task: Task, truth: Pulse, absent: Collection[str]) -> I
                 run, seconds = timed(partial(simulated, rtol=rtol))
                 spent = seconds, run.step, 1e9 * seconds / run.bead_evaluations
                 yield row("compiled", method, window, rtol, task.force(run), *spent)
-    for peer, solve in prepared(task, absent):
+    for peer, solve in prepared(task):
         for setting in peer.tolerances:
             displacements, seconds = timed(partial(solve, setting, task))
             yield row("peer", peer.name, False, setting, task.force_at(displacements), seconds)

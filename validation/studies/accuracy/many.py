@@ -8,7 +8,7 @@ a chain, medians of a few.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from time import perf_counter
@@ -62,11 +62,11 @@ Run = Callable[[float, int], list[Array]]
 """From a setting and the number of threads to the force of each chain's contact."""
 
 
-def many(absent: Collection[str]) -> list[Many]:
-    """The engine, and the peers that are not absent."""
+def many() -> list[Many]:
+    """The engine, and the peers that are there."""
     tasks = chains()
     runs = {COMPILED[0]: _engine(tasks)}
-    for peer, solve in prepared(tasks[0], absent):
+    for peer, solve in prepared(tasks[0]):
         runs[peer.name] = _threaded(solve, tasks)
     truths = _peaks(tasks, runs[COMPILED[0]](FINEST, cores()))
     return [_cheapest(name, run, tasks, truths) for name, run in runs.items()]

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from importlib import import_module
 from typing import Any
@@ -151,6 +151,7 @@ def missing() -> tuple[str, ...]:
     return tuple(absent)
 
 
-def prepared(task: Task, absent: Collection[str]) -> Iterator[tuple[Peer, Solve]]:
+def prepared(task: Task) -> Iterator[tuple[Peer, Solve]]:
     """The peers of packages that are there, compiled for the task."""
+    absent = missing()
     return ((p, p.prepare(task, p.method)) for p in PEERS if p.package not in absent)

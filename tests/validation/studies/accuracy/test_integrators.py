@@ -296,7 +296,7 @@ def test_a_run_without_a_pulse_is_told_and_drawn_nowhere(monkeypatch):
     monkeypatch.setattr(module, "integrate", lambda task, *rest, **options: 0 * task.times)
     monkeypatch.setattr(module, "_COMPILED", {})
     truth = task.read(task.force(simulate(task.scene)))
-    rows = list(module._compared("dimer", task, truth, ()))
+    rows = list(module._compared("dimer", task, truth))
     assert {row.error for row in rows} == {math.inf}
     assert module._costs(rows)[0][1:] == (None,) * 4
     assert all(len(curve.x) == 0 for curve in module._panel("dimer", rows).curves)

@@ -46,7 +46,7 @@ def test_a_missing_package_is_left_out(monkeypatch, package):
     monkeypatch.setattr(peers, "PEERS", its)
     monkeypatch.setitem(sys.modules, package, None)
     assert missing() == (package,)
-    assert list(prepared(struck(1.0, 16, 10, 5.0, 20.0), missing())) == []
+    assert list(prepared(struck(1.0, 16, 10, 5.0, 20.0))) == []
     monkeypatch.setenv("CI", "true")
     with pytest.raises(PeerError, match=rf"^{package} is missing where CI is set"):
         missing()
