@@ -18,7 +18,8 @@ from tqdm import tqdm
 from lwa.command.terminal import called, quantity
 from lwa.duration import announce
 from validation.lattice.effort import Effort
-from validation.report.figure import SUFFIXES, plot_file
+from validation.report.figure import SUFFIXES
+from validation.report.files import output_file
 from validation.report.result import Report
 from validation.scenes.checks import Failure, SceneError
 
@@ -43,10 +44,8 @@ class Study(Generic[P, R]):
     def __init__(
         self, function: Callable[P, R], name: str, options: Iterable[Any], epilog: str
     ) -> None:
-        self.function = function
-        self.name = name
-        self.options = tuple(options)
-        self.epilog = epilog
+        self.function, self.name = function, name
+        self.options, self.epilog = tuple(options), epilog
         update_wrapper(self, function)
 
     def __call__(self, *arguments: P.args, **options: P.kwargs) -> R:
@@ -66,7 +65,13 @@ class Study(Generic[P, R]):
             except Failure as error:
                 raise click.ClickException(str(error)) from None
             report = found if isinstance(found, Report) else found.report()
-            show(report, style, picture)
+            if style == "json":
+                written = json.dumps(report.document(), indent=2, allow_nan=False)
+            else:
+                written = report.csv().rstrip("\n") if style == "csv" else report.text()
+            if picture is not None:
+                report.save(picture)
+            click.echo(written)
             return 0 if report.ok else 1
 
         for option in (*_OUTPUT, *reversed(self.options)):
@@ -122,17 +127,6 @@ def number(context: click.Context, given: click.Parameter, value: str | None) ->
 EXPONENT = option("--k", callback=number, default="3/2", says="Exponent of F = δ^k.")
 
 
-def show(report: Report, style: str, picture: Path | None) -> None:
-    """Print a report as "text", "json" or "csv", when its picture is saved."""
-    if style == "json":
-        written = json.dumps(report.document(), indent=2, allow_nan=False)
-    else:
-        written = report.csv().rstrip("\n") if style == "csv" else report.text()
-    if picture is not None:
-        report.save(picture)
-    click.echo(written)
-
-
 def progress(cases: Iterable[T]) -> Iterable[T]:
     """Show the cases on their way, on a terminal."""
     # disable=None: only on a terminal
@@ -164,7 +158,7 @@ def run_progress(effort: Effort) -> Iterator[Callable[[float], None]]:
 
 
 def _picture(context: click.Context, given: click.Parameter, path: str | None) -> Path | None:
-    return None if path is None else plot_file(path)
+    return None if path is None else output_file("plot", path, SUFFIXES)
 
 
 _OUTPUT = (

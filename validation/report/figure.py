@@ -1,19 +1,15 @@
-"""Panels as a picture, drawn by Matplotlib without a display.
-
-Matplotlib is imported when a picture is drawn.
-"""
+"""Panels as a picture, drawn by Matplotlib without a display."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from pathlib import Path
+from itertools import compress
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from lwa.compact.numeric import Array
-from validation.report.files import output_file
 from validation.report.panel import Map, Panel
 
 if TYPE_CHECKING:
@@ -30,39 +26,25 @@ _MOST = 10
 """Names in a panel's legend; more stand once below all panels."""
 
 
-def plot_file(path: str) -> Path:
-    """A path that a picture can be written to.
-
-    Raises `lwa.InputError` for another suffix than `SUFFIXES` or a folder that does not exist.
-    """
-    return output_file("plot", path, SUFFIXES)
-
-
 def figure(panels: Sequence[Panel]) -> Figure:
     """All panels in one picture, two in a row."""
     from matplotlib.figure import Figure  # start-up
 
     columns = min(2, len(panels))
     rows = math.ceil(len(panels) / columns)
-    many = any(len(panel.curves) > _MOST for panel in panels)
-    size = (6.5 if columns == 1 else 6 * columns, 4.2 * rows + many)
+    crowded = [len(panel.curves) > _MOST for panel in panels]
+    size = (6.5 if columns == 1 else 6 * columns, 4.2 * rows + any(crowded))
     picture = Figure(figsize=size, layout="constrained")
     plots = picture.subplots(rows, columns, squeeze=False).ravel()
     for plot, panel in zip(plots, panels, strict=False):
         draw(plot, panel)
     for empty in plots[len(panels) :]:
         empty.set_visible(False)
-    if many:
-        crowded = [p for p, panel in zip(plots, panels, strict=False) if len(panel.curves) > _MOST]
-        names = {
-            label: handle
-            for plot in crowded
-            for handle, label in zip(*plot.get_legend_handles_labels(), strict=True)
-        }
-        picture.legend(
-            names.values(), names.keys(), loc="outside lower center", ncols=2 * columns + 1,
-            fontsize="small",
-        )  # fmt: skip
+    names = {label: handle for plot in compress(plots, crowded)
+             for handle, label in zip(*plot.get_legend_handles_labels(), strict=True)}  # fmt: skip
+    if names:
+        picture.legend(names.values(), names.keys(), fontsize="small", ncols=2 * columns + 1,
+                       loc="outside lower center")  # fmt: skip
     return picture
 
 
@@ -77,12 +59,10 @@ def draw(plot: Axes, panel: Panel) -> None:
     if panel.map is not None:
         _draw_map(plot, panel.map, panel.scale)
     for i, curve in enumerate(panel.curves):
-        style, colour = curve.style, None
-        if not style:
-            style = _STYLES[i % len(_STYLES)]
-            style = style if len(curve.x) <= _FEW else style[1:]
-        if not any(part in style for part in ("C", "k", "r")):
-            colour = f"C{i}"
+        style = curve.style or _STYLES[i % len(_STYLES)]
+        if not curve.style and len(curve.x) > _FEW:
+            style = style[1:]
+        colour = None if any(part in style for part in "Ckr") else f"C{i}"
         plot.errorbar(
             curve.x, curve.y, curve.error, fmt=style, color=colour, ms=4, label=curve.label or None
         )

@@ -69,26 +69,21 @@ def replacing(file: Path) -> Iterator[Path]:
     ...     Path(folder, "a.txt").read_text()
     'whole'
     """
+    target = _target(file)
     try:
-        with _beside(_target(file)) as new:
-            yield new
+        handle, name = tempfile.mkstemp(suffix=file.suffix.lower(), dir=target.parent)
+        os.close(handle)
+        try:
+            yield Path(name)
+            os.umask(umask := os.umask(0))
+            there = _mode(target)
+            os.chmod(name, 0o666 & ~umask if there is None else stat.S_IMODE(there))
+            os.replace(name, target)
+        except BaseException:
+            os.unlink(name)
+            raise
     except OSError as error:
         raise InputError(f"{_short(file)} is not written: {reason(error)}") from None
-
-
-@contextmanager
-def _beside(file: Path) -> Iterator[Path]:
-    handle, name = tempfile.mkstemp(suffix=file.suffix.lower(), dir=file.parent)
-    os.close(handle)
-    try:
-        yield Path(name)
-        os.umask(umask := os.umask(0))
-        there = _mode(file)
-        os.chmod(name, 0o666 & ~umask if there is None else stat.S_IMODE(there))
-        os.replace(name, file)
-    except BaseException:
-        os.unlink(name)
-        raise
 
 
 def _short(file: Path) -> str:

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import io
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from lwa.compact.picture import axes
 from lwa.exact import InputError
-from validation.report import table as tables
 from validation.report import text as texts
 from validation.report.figure import draw, figure
 from validation.report.files import replacing
@@ -71,38 +70,42 @@ class Report:
 
     def text(self) -> str:
         """For people."""
-        return "\n\n".join(filter(None, (self._body(), self.verdict)))
+        blocks = [block for report in self._whole() for block in report._blocks()]
+        return "\n\n".join(filter(None, (*blocks, self.verdict)))
 
     def document(self) -> dict[str, Any]:
-        """For JSON: ``data``, the tables by their keys and, where something was to hold, ``ok`` and
-        the findings as `validation.report.table.document` has them."""
+        """For JSON: ``data``, the tables by their keys and, where something was to hold, ``ok``,
+        ``findings``, ``statements``, and KEY_value of each finding that has a key."""
         found: dict[str, Any] = dict(plain(self.data))
         found |= {table.key: table.document() for table in self.tables if table.key}
         if self.findings:
-            found |= tables.document(self.findings)
+            numbers = [f for f in self.findings if isinstance(f, Finding)]
+            found |= {f"{f.key}_value": plain(f.value) for f in numbers if f.key}
+            found["findings"] = [f.document() for f in numbers]
+            found["statements"] = [asdict(s) for s in self.findings if isinstance(s, Statement)]
         return found | ({"ok": self.ok} if self._all() else {})
 
     def csv(self) -> str:
-        """The first table that programs read, or that of the first part which has one.
+        """The first table that programs read, of those that have rows if there are such.
 
         Raises `lwa.InputError` where there is none."""
-        for table in (table for report in self._whole() for table in report.tables):
-            if any(column.key for column in table.columns):
-                return table.csv()
-        raise InputError("format is csv: this result has no table")
+        tables = [table for report in self._whole() for table in report.tables
+                  if any(column.key for column in table.columns)]  # fmt: skip
+        if not tables:
+            raise InputError("format is csv: this result has no table")
+        return next((table for table in tables if table.rows), tables[0]).csv()
 
     def figure(self) -> Figure:
         """The picture. Raises `lwa.InputError` where there is none."""
-        return figure(self._drawn())
+        return figure(self._panels())
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the first panel into Matplotlib's axes ``ax``, or into new ones; returns them.
 
         Raises `lwa.InputError` where there is no picture."""
-        first, *_ = self._drawn()
-        drawn: Axes = axes(ax)
+        first, drawn = self._panels()[0], axes(ax)
         draw(drawn, first)
-        return drawn
+        return drawn  # type: ignore[no-any-return]
 
     def save(self, file: Path) -> None:
         """Draw the picture into a file, which is replaced only by a complete one."""
@@ -114,11 +117,12 @@ class Report:
     def _repr_html_(self) -> str:
         """For a notebook: the tables and the picture."""
         picture = ""
-        if self._panels():
+        if any(report.panels for report in self._whole()):
             drawn = io.StringIO()
             self.figure().savefig(drawn, format="svg")
             picture = drawn.getvalue()[drawn.getvalue().index("<svg") :]
-        return self._html() + picture + (f"<p>{self.verdict}</p>" if self._all() else "")
+        verdict = f"<p>{self.verdict}</p>" if self._all() else ""
+        return "".join((*(report._html() for report in self._whole()), picture, verdict))
 
     def _whole(self) -> Iterator[Report]:
         """This report and all that it is made of."""
@@ -129,25 +133,20 @@ class Report:
     def _all(self) -> list[Finding | Statement]:
         return [found for report in self._whole() for found in report.findings]
 
-    def _drawn(self) -> tuple[Panel, ...]:
-        if not (panels := self._panels()):
-            raise InputError("plot is asked for: this result has no picture")
-        return panels
+    def _panels(self) -> list[Panel]:
+        if found := [panel for report in self._whole() for panel in report.panels]:
+            return found
+        raise InputError("plot is asked for: this result has no picture")
 
-    def _panels(self) -> tuple[Panel, ...]:
-        return tuple(panel for report in self._whole() for panel in report.panels)
-
-    def _shown(self) -> list[str]:
+    def _listed(self) -> list[str]:
         shown = any(texts.blocks(table) for table in self.tables)
         return texts.listed(self.findings, all_of_them=not shown)
 
-    def _body(self) -> str:
+    def _blocks(self) -> list[str]:
         title, *notes = map(texts.filled, (self.title, *self.notes))
-        blocks = [title, *map(texts.text, self.tables), *self._shown(), *notes]
-        return "\n\n".join(filter(None, (*blocks, *(part._body() for part in self.parts))))
+        return [title, *map(texts.text, self.tables), *self._listed(), *notes]
 
     def _html(self) -> str:
-        told = [f"<pre>{escape(block)}</pre>" for block in self._shown()]
-        notes = [f"<p>{escape(note)}</p>" for note in self.notes]
-        blocks = [f"<p>{escape(self.title)}</p>", *map(texts.html, self.tables), *told, *notes]
-        return "".join((*blocks, *(part._html() for part in self.parts)))
+        title, *notes = (f"<p>{escape(line)}</p>" for line in (self.title, *self.notes))
+        told = [f"<pre>{escape(block)}</pre>" for block in self._listed()]
+        return "".join((title, *map(texts.html, self.tables), *told, *notes))

@@ -1,9 +1,4 @@
-"""What a result is told in: tables of values, and findings that hold or do not.
-
-A table is one thing for people, programs and spreadsheets: `document` makes the rows of a JSON
-document of it, `csv` a header of keys and a line for each row, `validation.report.text` columns of
-text.
-"""
+"""What a result is told in: tables of values, and findings that hold or do not."""
 
 from __future__ import annotations
 
@@ -11,7 +6,7 @@ import csv as comma
 import io
 import json
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -49,8 +44,8 @@ class Column:
             yield self.key, plain(cell)
             return
         name, dot, rest = self.key.partition(".")
-        yield f"{name}_value{dot}{rest}", None if cell is None else plain(cell.value)
-        yield f"{name}_error_value{dot}{rest}", None if cell is None else plain(cell.error)
+        for ending, part in (("value", "value"), ("error_value", "error")):
+            yield f"{name}_{ending}{dot}{rest}", plain(getattr(cell, part, None))
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,7 +54,7 @@ class Table:
 
     key : its name in a document, where it has one; the first table of a report is its CSV.
     by : key of a column: for people the table falls into one for each of its values, with what
-        ``heads`` and ``feet`` say of the value above and below.
+        ``heads`` says of the value above it.
     """
 
     columns: tuple[Column, ...]
@@ -69,7 +64,6 @@ class Table:
     note: str = ""
     by: str = ""
     heads: Mapping[str, str] = field(default_factory=dict)
-    feet: Mapping[str, str] = field(default_factory=dict)
 
     def records(self) -> list[dict[str, Any]]:
         """Each row's names and plain values, in the columns' order, names with their dots."""
@@ -93,12 +87,12 @@ class Table:
         2,,
         """
         text = io.StringIO()
-        keyed = [column for column in self.columns if column.key]
-        writer = comma.writer(text, lineterminator="\n")
-        writer.writerow([name for column in keyed for name, _ in column.values(None)])
+        names = [name for c in self.columns if c.key for name, _ in c.values(None)]
+        writer = comma.DictWriter(text, names, lineterminator="\n")
+        writer.writeheader()
         for record in self.records():
-            writer.writerow([json.dumps(value) if isinstance(value, list | dict) else value
-                             for value in record.values()])  # fmt: skip
+            writer.writerow({name: json.dumps(value) if isinstance(value, list | dict) else value
+                             for name, value in record.items()})  # fmt: skip
         return text.getvalue()
 
 
@@ -106,12 +100,10 @@ def plain(value: Any) -> Any:
     """A value as JSON holds it: exact numbers as texts that SymPy reads, None for no number."""
     if isinstance(value, sp.Basic):
         return str(value)
-    if isinstance(value, bool | np.bool_):
-        return bool(value)
-    if isinstance(value, float | np.floating):
-        return float(value) if math.isfinite(value) else None
-    if isinstance(value, np.ndarray | np.integer):
+    if isinstance(value, np.ndarray | np.generic):
         return plain(value.tolist())
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
     if isinstance(value, Mapping):
         return {name: plain(part) for name, part in value.items()}
     if isinstance(value, list | tuple):
@@ -122,15 +114,12 @@ def plain(value: Any) -> Any:
 def _nested(record: Mapping[str, Any]) -> dict[str, Any]:
     result: dict[str, Any] = {}
     for name, value in record.items():
-        name, dot, rest = name.partition(".")
-        if dot:
-            result.setdefault(name, {})[rest] = value
-        else:
-            result[name] = value
-    return {
-        name: _nested(value) if isinstance(value, dict) and any("." in n for n in value) else value
-        for name, value in result.items()
-    }
+        *path, last = name.split(".")
+        place = result
+        for part in path:
+            place = place.setdefault(part, {})
+        place[last] = value
+    return result
 
 
 @dataclass(frozen=True)
@@ -167,6 +156,12 @@ class Finding:
         error = self.error or 0.0
         return bool(self.low <= self.value - error and self.value + error <= self.high)
 
+    def document(self) -> dict[str, Any]:
+        """For JSON; null is the error of what is exact or itself an error, and no bound."""
+        found = {"quantity": self.quantity, "measured_value": self.value, "error_value": self.error,
+                 "least_value": self.low, "most_value": self.high, "ok": self.ok}  # fmt: skip
+        return {name: plain(part) for name, part in found.items()}
+
 
 @dataclass(frozen=True)
 class Statement:
@@ -175,26 +170,3 @@ class Statement:
     quantity: str
     says: str
     ok: bool
-
-
-def document(findings: Iterable[Finding | Statement]) -> dict[str, Any]:
-    """Findings for JSON: the value of each that has a key, as KEY_value, ``findings`` with
-    ``quantity``, ``measured_value``, ``error_value`` (null for what is exact or itself an error),
-    ``least_value`` and ``most_value`` (null for no bound) and ``ok``, and ``statements`` with
-    ``quantity``, ``says`` and ``ok``."""
-    numbers = [f for f in findings if isinstance(f, Finding)]
-    statements = [f for f in findings if isinstance(f, Statement)]
-    return {f"{f.key}_value": plain(f.value) for f in numbers if f.key} | {
-        "findings": [
-            {
-                "quantity": f.quantity,
-                "measured_value": plain(f.value),
-                "error_value": f.error,
-                "least_value": plain(f.low),
-                "most_value": plain(f.high),
-                "ok": f.ok,
-            }
-            for f in numbers
-        ],
-        "statements": [{"quantity": s.quantity, "says": s.says, "ok": s.ok} for s in statements],
-    }

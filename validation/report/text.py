@@ -23,13 +23,11 @@ def aligned(lines: Lines) -> str:
     second  12.25
     """
     widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
-    return "\n".join(
-        "  ".join(
-            cell.rjust(width) if i else cell.ljust(width)
-            for i, (cell, width) in enumerate(zip(line, widths, strict=True))
-        ).rstrip()
-        for line in lines
-    )
+    told = []
+    for first, *others in lines:
+        cells = [first.ljust(widths[0]), *map(str.rjust, others, widths[1:])]
+        told.append("  ".join(cells).rstrip())
+    return "\n".join(told)
 
 
 def filled(text: str) -> str:
@@ -52,31 +50,28 @@ def bounds(low: float, high: float) -> str:
     >>> bounds(-1.0, 1.0), bounds(2.0, 3.0), bounds(-math.inf, 3.0), bounds(-math.inf, math.inf)
     ('± 1', '2 … 3', '≤ 3', '-')
     """
-    if math.isinf(low) and math.isinf(high):
-        return "-"
-    if math.isinf(high):
-        return f"≥ {low:g}"
-    if math.isinf(low):
-        return f"≤ {high:g}"
     if low == high:
         return f"{low:g}"
-    return f"± {high:g}" if low == -high else f"{low:g} … {high:g}"
+    if low == -high:
+        return f"± {high:g}" if math.isfinite(high) else "-"
+    if math.isinf(high):
+        return f"≥ {low:g}"
+    return f"≤ {high:g}" if math.isinf(low) else f"{low:g} … {high:g}"
 
 
-def blocks(table: Table) -> list[tuple[str, Lines, str]]:
-    """What stands above, the lines with their header, and what stands below, of each part that
-    people read: one, or one for each value of the column that the table is divided ``by``."""
+def blocks(table: Table) -> list[tuple[str, Lines]]:
+    """What stands above, and the lines with their header, of each part that people read: one, or
+    one for each value of the column that the table is divided ``by``."""
     shown = [(i, column) for i, column in enumerate(table.columns) if column.label]
-    if not shown or not table.rows:
+    if not shown:
         return []
     header = [f"{c.label} ({c.unit})" if c.unit else c.label for _, c in shown]
+    keys = [column.key for column in table.columns]
     parts: dict[str, list[Sequence[str]]] = {}
-    place = next((i for i, c in enumerate(table.columns) if c.key == table.by), None)
     for row in table.rows:
-        group = "" if not table.by or place is None else str(row[place])
+        group = str(row[keys.index(table.by)]) if table.by else ""
         parts.setdefault(group, [header]).append([cell(column, row[i]) for i, column in shown])
-    return [(table.heads.get(group, group), lines, table.feet.get(group, ""))
-            for group, lines in parts.items()]  # fmt: skip
+    return [(table.heads.get(group, group), lines) for group, lines in parts.items()]
 
 
 def cell(column: Column, value: Any) -> str:
@@ -96,50 +91,41 @@ def cell(column: Column, value: Any) -> str:
 
 def text(table: Table) -> str:
     """The table for people; nothing where no column has a label, or no row is there."""
-    parts = ["\n".join(filter(None, (head, aligned(lines), foot)))
-             for head, lines, foot in blocks(table)]  # fmt: skip
-    if not parts:
-        return ""
-    return "\n".join(filter(None, (table.title, "\n\n".join(parts), table.note)))
+    parts = [f"{head}\n{aligned(lines)}".lstrip("\n") for head, lines in blocks(table)]
+    return "\n".join(filter(None, (table.title, "\n\n".join(parts), table.note))) if parts else ""
 
 
 def html(table: Table) -> str:
     """The same for a web page."""
-    result = [f"<h4>{escape(table.title)}</h4>"] if table.title and blocks(table) else []
-    for head, (header, *lines), foot in blocks(table):
+    if not (parts := blocks(table)):
+        return ""
+    result = [_element("h4", table.title)]
+    for head, (header, *lines) in parts:
         rows = ["".join(f"<td>{escape(part)}</td>" for part in line) for line in lines]
         result += [
-            f"<p>{escape(head)}</p>" if head else "",
+            _element("p", head),
             "<table><thead><tr>", *(f"<th>{escape(part)}</th>" for part in header),
             "</tr></thead><tbody>", *(f"<tr>{row}</tr>" for row in rows), "</tbody></table>",
-            f"<p>{escape(foot)}</p>" if foot else "",
         ]  # fmt: skip
-    return "".join(result) + (f"<p>{escape(table.note)}</p>" if table.note and result else "")
+    return "".join((*result, _element("p", table.note)))
+
+
+def _element(name: str, text: str) -> str:
+    return f"<{name}>{escape(text)}</{name}>" if text else ""
 
 
 def listed(findings: Iterable[Finding | Statement], all_of_them: bool = True) -> list[str]:
     """Findings line by line: statements, then a table of the numbers, of those that fail alone
     where ``all_of_them`` is False."""
     told = [f for f in findings if all_of_them or isinstance(f, Statement) or not f.ok]
-    parts = [
-        filled(f"{f.quantity}: {f.says}{'' if f.ok else '  FAILS'}")
-        for f in told
-        if isinstance(f, Statement)
-    ]
-    lines = [
-        (f.quantity, _value(f), bounds(f.low, f.high), _word(f))
-        for f in told
-        if isinstance(f, Finding)
-    ]
-    return [*parts, aligned([("measured", "value", "expected", ""), *lines])] if lines else parts
-
-
-def _value(finding: Finding) -> str:
-    value = f"{finding.value:.6g}"
-    return value if finding.error is None else f"{value} ± {finding.error:.0e}"
-
-
-def _word(finding: Finding) -> str:
-    if not finding.ok:
-        return "FAILS"
-    return "" if math.isinf(finding.low) and math.isinf(finding.high) else "ok"
+    parts = []
+    lines = [("measured", "value", "expected", "")]
+    for f in told:
+        if isinstance(f, Statement):
+            parts.append(filled(f"{f.quantity}: {f.says}{'' if f.ok else '  FAILS'}"))
+            continue
+        value = f"{f.value:.6g}" + ("" if f.error is None else f" ± {f.error:.0e}")
+        expected = bounds(f.low, f.high)
+        word = "FAILS" if not f.ok else "" if expected == "-" else "ok"
+        lines.append((f.quantity, value, expected, word))
+    return [*parts, aligned(lines)] if lines[1:] else parts

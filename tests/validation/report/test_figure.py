@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from lwa import InputError
 from validation.report import figure as drawing
-from validation.report.figure import figure, plot_file
+from validation.report.figure import figure
 from validation.report.panel import Curve, Map, Panel
 from validation.report.result import Report
 
@@ -27,7 +27,7 @@ def report():
 @pytest.mark.parametrize("suffix", drawing.SUFFIXES)
 def test_every_format(report, tmp_path, suffix):
     file = tmp_path / f"picture{suffix}"
-    report.save(plot_file(str(file)))
+    report.save(file)
     assert file.read_bytes().startswith(SIGNATURES[suffix])
     assert list(tmp_path.iterdir()) == [file]
 
@@ -140,18 +140,3 @@ def test_a_full_disk_is_one_line_and_leaves_the_old_picture(tmp_path, suffix):
     assert (done.stdout, done.stderr) == (f"{file} is not written: File too large\n", "")
     assert file.read_bytes() == b"old"
     assert list(tmp_path.iterdir()) == [file]
-
-
-@pytest.mark.parametrize(
-    ("name", "message"),
-    [
-        ("picture", r"plot is .*picture: a file ending in .pdf, .png, .svg is wanted"),
-        ("picture.txt", r"plot is .*: a file ending in"),
-        ("none/picture.png", r"plot is .*: the folder .*none does not exist"),
-        ("folder.png", r"plot is .*: a file that can be written is wanted"),
-    ],
-)
-def test_bad_files(tmp_path, name, message):
-    (tmp_path / "folder.png").mkdir()
-    with pytest.raises(InputError, match=f"^{message}"):
-        plot_file(str(tmp_path / name))

@@ -51,6 +51,9 @@ def test_a_report_of_parts():
     assert whole.text().count("a part") == 2
     assert whole.csv() == "n\n8\n"
     assert Report("", parts=(Report("no table"), PART)).csv() == PART.csv()
+    empty = Table((Column("k"),), (), "rows")
+    assert Report("", (empty,), parts=(PART,)).csv() == PART.csv()
+    assert Report("", (empty,)).csv() == "k\n"
     assert len(whole.figure().axes) == 2
     assert whole.document()["ok"] is False
 

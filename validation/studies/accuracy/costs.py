@@ -10,32 +10,25 @@ import math
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
 from itertools import takewhile
 from statistics import median
 from typing import TypeVar
 
 import numpy as np
 
-from validation.lattice.simulate import COMPILED, simulate
 from validation.report.table import Finding
-from validation.scenes.chains import struck
-
-BEST = COMPILED[0]  # the compiled method that is looked at most closely
 
 WANTED = (1e-4, 1e-6, 1e-8, 1e-10)
 """Relative errors of the peak force at which costs are compared."""
 
 _ENOUGH, _REPEATS = 0.15, 7  # seconds and times, beyond which a run is not repeated
-_SITES = (100, 1000, 10_000, 100_000)
-_PACE = 1.2  # time per site, a little more than the pulse of equal beads takes
 
 
 @dataclass(frozen=True)
 class Row:
     """One run of one method, of the family "SciPy", "compiled" or "peer".
 
-    setting : tolerance; of heyoka its largest step.
+    setting : tolerance.
     errors : relative, by `validation.studies.accuracy.tasks.NUMBERS`; infinite where no pulse came.
     seconds : of CPU time, without compilation.
     step, ns : of compiled runs the mean step, and the time per bead and evaluation of its force.
@@ -65,14 +58,16 @@ class Row:
 _Found = TypeVar("_Found")
 
 
-def timed(run: Callable[[], _Found]) -> tuple[_Found, float]:
-    """The result and its CPU time, the median of a few where they are short."""
+def timed(
+    run: Callable[[], _Found], least: int = 1, clock: Callable[[], float] = time.process_time
+) -> tuple[_Found, float]:
+    """The result and its time by a clock, the median of a few where they are short."""
     taken: list[float] = []
     while True:
-        start = time.process_time()
+        start = clock()
         found = run()
-        taken.append(time.process_time() - start)
-        if len(taken) == _REPEATS or sum(taken) > _ENOUGH:
+        taken.append(clock() - start)
+        if len(taken) == _REPEATS or (len(taken) >= least and sum(taken) > _ENOUGH):
             return found, median(taken)
 
 
@@ -92,15 +87,10 @@ def cost(rows: Iterable[Row], wanted: float) -> float:
     return min((row.seconds for row in good), default=math.inf)
 
 
-def costs(rows: Iterable[Row], wanted: float) -> dict[tuple[str, str], float]:
-    """`cost` by family and name."""
-    return {method: cost(its, wanted) for method, its in methods(rows).items()}
-
-
 def cheapest(rows: Iterable[Row], family: str, wanted: float) -> tuple[str, float]:
     """The method of a family that costs least, and what; "none" and infinity where none attains
     what is wanted."""
-    found = {name: each for (its, name), each in costs(rows, wanted).items() if its == family}
+    found = {name: cost(its, wanted) for (of, name), its in methods(rows).items() if of == family}
     best = min(found, key=found.__getitem__, default="none")
     return best, found.get(best, math.inf)
 
@@ -113,56 +103,33 @@ _TIMES = {("dimer", 1e-6): 2.0, ("dimer", 1e-10): 12.0}
 
 
 def goals(rows: Sequence[Row]) -> Iterator[Finding]:
-    """What the engine is meant to attain: on each task beside the peers, on the dimer at all."""
-    for task in dict.fromkeys(row.task for row in rows):
-        its = [row for row in rows if row.task == task]
-        for wanted in WANTED:
-            what, place = f"{task}, peak force to {wanted:.0e}", (task, wanted)
-            ours, least = cheapest(its, "compiled", wanted)
-            peer, theirs = cheapest(its, "peer", wanted)
-            if place in _TIMES:
-                yield Finding(f"{what}: CPU time of {ours} (ms)", 1e3 * least,
-                              high=_TIMES[place], key=f"{task}_ms_{wanted:.0e}")  # fmt: skip
-            if math.isfinite(theirs):
-                yield Finding(f"{what}: the best peer, {peer}, over {ours}", theirs / least,
-                              _AHEAD.get(place, 1.0), key=f"{task}_peer_{wanted:.0e}")  # fmt: skip
-    if dimer := [row for row in rows if row.task == "dimer"]:
-        yield from _of_the_dimer(dimer)
-
-
-def _of_the_dimer(rows: Sequence[Row]) -> Iterator[Finding]:
-    _, least = cheapest(rows, "compiled", 1e-6)
-    theirs = costs(rows, 1e-6)["SciPy", "SciPy DOP853"]
-    each = min(row.ns for row in rows if row.ns is not None)
-    root = square_root()
-    p, error = scaling(_SITES)
-    yield from (
-        Finding("dimer, peak force to 1e-06: SciPy's DOP853 on the whole chain over the engine",
-                theirs / least, low=500.0, key="scipy_ratio"),
-        Finding("CPU time per bead and evaluation of its force, at best (ns)", each,
-                key="evaluation_ns"),
-        Finding("that over the time of a square root", each / root, key="evaluation_over_root"),
-        Finding(f"cost per site ~ sites^p, equal beads, {_SITES[0]} to {_SITES[-1]} sites: p",
-                p, high=0.1, error=error, key="site_exponent"),
-    )  # fmt: skip
+    """What the engine is meant to attain on a task: beside the peers, on the dimer at all."""
+    task = rows[0].task
+    for wanted in WANTED:
+        what, place = f"{task}, peak force to {wanted:.0e}", (task, wanted)
+        ours, least = cheapest(rows, "compiled", wanted)
+        peer, theirs = cheapest(rows, "peer", wanted)
+        if place in _TIMES:
+            yield Finding(f"{what}: CPU time of {ours} (ms)", 1e3 * least, high=_TIMES[place],
+                          key=f"{task}_ms_{wanted:.0e}")  # fmt: skip
+        if math.isfinite(theirs):
+            yield Finding(f"{what}: the best peer, {peer}, over {ours}", theirs / least,
+                          _AHEAD.get(place, 1.0), key=f"{task}_peer_{wanted:.0e}")  # fmt: skip
+    if task == "dimer":
+        whole = cost(methods(rows)["SciPy", "SciPy DOP853"], 1e-6)
+        share = whole / cheapest(rows, "compiled", 1e-6)[1]
+        each = min(row.ns for row in rows if row.ns is not None)
+        name = "dimer, peak force to 1e-06: SciPy's DOP853 on the whole chain over the engine"
+        yield Finding(name, share, low=500.0, key="scipy_ratio")
+        name = "CPU time per bead and evaluation of its force, at best (ns)"
+        yield Finding(name, each, key="evaluation_ns")
+        name = "that over the time of a square root"
+        yield Finding(name, each / square_root(), key="evaluation_over_root")
 
 
 def square_root() -> float:
-    """Nanoseconds that one takes here, of an array in the cache: a force of Hertz's costs one, so
-    that no engine is faster."""
+    """Nanoseconds that one takes here, in the cache: a force of Hertz's costs one at least."""
     values = np.linspace(1.0, 2.0, 4096)
     out = np.empty_like(values)
     _, seconds = timed(lambda: [np.sqrt(values, out=out) for _ in range(500)])
     return 1e9 * seconds / (500 * len(values))
-
-
-def scaling(sites: Sequence[int]) -> tuple[float, float]:
-    """p of the windowed cost per site ~ sites^p, by least squares, and its standard error; what a
-    run costs at its start makes p negative on short chains."""
-    each = []
-    for n in sites:
-        scene = struck((1.0,), n, duration=_PACE * n, samples=2)
-        _, seconds = timed(partial(simulate, scene, method=BEST, rtol=1e-6, window=True))
-        each.append(seconds / n)
-    (slope, _), covariance = np.polyfit(np.log(sites), np.log(each), 1, cov=True)
-    return float(slope), float(np.sqrt(covariance[0, 0]))

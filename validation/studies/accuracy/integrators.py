@@ -1,18 +1,15 @@
 """Speed against error: what an integrator costs, and how far the pulse is off, on fixed tasks.
 
-Tasks: `validation.studies.accuracy.tasks`. Methods: SciPy's steppers and the compiled ones, on
-the whole chain and on a window that moves with the pulse, and general integrators of other packages
-on the whole chain (`validation.studies.accuracy.peers`), each at several tolerances. The error is
-the largest relative one of arrival time, peak force and FWHM, against
-`validation.studies.accuracy.reference`. The cost is CPU time without compilation, the median of a
-few runs where they are short (`validation.studies.accuracy.costs`).
+Methods are SciPy's steppers and the compiled ones, on the whole chain and on a window that moves
+with the pulse, and integrators of other packages on the whole chain, each at several tolerances.
+The error is the largest relative one of arrival time, peak force and FWHM. The cost is CPU time
+without compilation, the median of a few runs where they are short.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
@@ -20,27 +17,19 @@ import scipy
 
 from lwa.compact.numeric import Array
 from lwa.duration import Progress
-from validation.lattice.equations import Motion
 from validation.lattice.simulate import COMPILED, simulate
-from validation.pulses.pulse import MeasureError
+from validation.pulses.pulse import MeasureError, Pulse
 from validation.report.command import option, study
 from validation.report.panel import Curve, Panel
 from validation.report.result import Report
-from validation.report.table import Column, Finding, Table
+from validation.report.table import Column, Table
 from validation.scenes.checks import one_of
 from validation.studies.accuracy.costs import WANTED, Row, cost, goals, methods, timed
 from validation.studies.accuracy.many import Many, many, together
-from validation.studies.accuracy.peers import Peer, Solve, missing, prepared
-from validation.studies.accuracy.reference import FINEST, Reference, integrate, reference
-from validation.studies.accuracy.tasks import NUMBERS, TASKS, Task, errors
-from validation.studies.accuracy.theories import Ladder, ladder
-
-
-def _settings(first: float, last: float = FINEST) -> tuple[float, ...]:
-    """By half a decade: 1e-5, 3e-6, 1e-6, …."""
-    steps = round(2 * math.log10(first / last))
-    return tuple(float(f"{first * 10 ** (-i / 2):.0e}") for i in range(steps + 1))
-
+from validation.studies.accuracy.peers import missing, prepared
+from validation.studies.accuracy.reference import FINEST, integrate, reference
+from validation.studies.accuracy.tasks import NUMBERS, TASKS, Task, errors, settings
+from validation.studies.accuracy.theories import CASES, Ladder, place
 
 _SCIPY: Mapping[tuple[str, bool], Sequence[float]] = {
     ("DOP853", False): (1e-6, 1e-8, 1e-9, 1e-10),
@@ -52,21 +41,8 @@ _SCIPY: Mapping[tuple[str, bool], Sequence[float]] = {
 }
 """(method, window) → tolerances."""
 
-_COMPILED: Mapping[str, Sequence[float]] = {name: _settings(1e-3) for name in COMPILED}
+_COMPILED: Mapping[str, Sequence[float]] = {name: settings(1e-3, FINEST) for name in COMPILED}
 """Method → the error of the peak force that it aims at, on the window and the whole chain."""
-
-_PEERS: Mapping[str, Sequence[float]] = {
-    "CyRK RK45": _settings(1e-4, 1e-9),
-    "CyRK TSIT5": _settings(1e-4, 1e-11),
-    "CyRK VERN7": _settings(1e-4, 1e-12),
-    "CyRK DOP853": _settings(1e-4, 1e-12),
-    "numbalsoda DOP853": _settings(1e-4, 1e-12),
-    "numbalsoda LSODA": (1e-5, 1e-7, 1e-9),
-    "diffrax Tsit5": (1e-5, 1e-7, 1e-9),
-    "diffrax Dopri8": (1e-5, 1e-7, 1e-9, 1e-11),
-    "heyoka Taylor": (0.1, 0.03, 0.01),
-}
-"""Tolerances; heyoka's largest steps."""
 
 MANY, THEORY = "many", "theory"
 NAMES = (*TASKS, MANY, THEORY)
@@ -87,8 +63,8 @@ _COSTS = (
 )
 _NOTE = "CPU time without compilation, on this machine; - where no run attains it from there on."
 _REFERENCES = (Column("task"), *map(Column, NUMBERS), Column("agreement"))
-_GOALS = tuple(map(Column, ("key", "least_value", "most_value", "goal", "measured_value",
-                            "error_value", "ok")))  # fmt: skip
+_GOALS = tuple(map(Column, ("key", "goal", "measured_value", "error_value", "least_value",
+                            "most_value", "ok")))  # fmt: skip
 _MANY = (
     Column("method", "Many chains"),
     Column("setting", "setting", format=".0e"),
@@ -104,56 +80,108 @@ _COLOURS = {"SciPy": "C0", "compiled": "C1", "peer": "C2"}
 _MARKS = "osD^v<>PX*"
 
 
-@dataclass(frozen=True)
-class Accuracy:
-    """Rows and references of the tasks that were run, the goals, peers that are missing, and the
-    ladder of theories."""
+@study(
+    option("--task", "names", multiple=True, metavar="NAME",
+           says=f"Only this task, may be given again: {', '.join(NAMES)}."),
+)  # fmt: skip
+def accuracy(names: Collection[str] = (), progress: Progress[str] = iter) -> Report:
+    """Speed against error: integrators on fixed tasks, and theories against true waves. Ten
+    minutes; of one task alone up to five.
 
-    rows: tuple[Row, ...]
-    references: tuple[Reference, ...]
-    goals: tuple[Finding, ...]
-    absent: tuple[str, ...]
-    many: tuple[Many, ...] = ()
-    theories: Ladder | None = None
+    ``rows``, as of `Row`, with the largest ``error``; ``costs`` by method; ``references`` and their
+    ``agreement`` with another route; ``many``, as of `Many`; ``goals``, which people read as
+    findings; ``absent``, the peers that are missing; ``theories``, as of `Ladder`. In the picture
+    CPU time over the error, solid with a window.
 
-    def report(self) -> Report:
-        """``rows``, as of `Row`, with the largest ``error``; ``costs`` by method; ``references``
-        and their ``agreement`` with another route; ``many``, as of `Many`; ``goals``, which people
-        read as findings; ``absent``; ``theories``, as of `Ladder`. In the picture CPU time over the
-        error, solid with a window."""
-        tasks = {r.task: [row for row in self.rows if row.task == r.task] for r in self.references}
-        rows = tuple((r.task, r.family, r.name, r.setting, r.error,
-                      *(r.errors[name] for name in NUMBERS), r.seconds, r.step, r.ns)
-                     for r in self.rows)  # fmt: skip
-        references = tuple((r.task, *(getattr(r.pulse, name) for name in NUMBERS), r.agreement)
-                           for r in self.references)  # fmt: skip
-        aims = tuple((g.key, g.low, g.high, g.quantity, g.value, g.error, g.ok) for g in self.goals)
-        chains = tuple((m.method, m.setting, m.error, m.seconds, m.share) for m in self.many)
-        heads = {r.task: f"{r.task}: arrival {r.pulse.arrival:.12g}, peak {r.pulse.peak:.12g}, "
-                         f"FWHM {r.pulse.fwhm:.12g};\nanother route differs by {r.agreement:.0e} "
-                         "at most" for r in self.references}  # fmt: skip
-        spent = tuple((task, *line) for task, its in tasks.items() for line in _costs(its))
-        tables = (
-            Table(_RUNS, rows, "rows"),
+    Raises `validation.scenes.checks.SceneError` for a name that is not one of `NAMES`, and
+    `validation.studies.accuracy.peers.PeerError` for a peer that is missing where CI is set.
+    """
+    wanted = {one_of(name, NAMES, "task") for name in names} or set(NAMES)
+    rows: dict[str, list[Row]] = {}
+    references: list[tuple[Any, ...]] = []
+    chains: list[Many] = []
+    theories: list[Report] = []
+    absent: tuple[str, ...] = ()
+    for name in progress([name for name in NAMES if name in wanted]):
+        if name == THEORY:
+            theories = [Ladder(tuple(place(*case) for case in CASES)).report()]
+            continue
+        absent = missing()  # within the progress: to load the peers takes seconds
+        if name == MANY:
+            chains = many()
+            continue
+        task = TASKS[name]()
+        truth, agreement = reference(task)
+        references.append((name, *(getattr(truth, number) for number in NUMBERS), agreement))
+        rows[name] = list(_compared(name, task, truth))
+    return _report(rows, references, chains, theories, absent)
+
+
+def _compared(name: str, task: Task, truth: Pulse) -> Iterator[Row]:
+    """All methods at one task."""
+
+    def row(
+        family: str, method: str, window: bool, setting: float, force: Array, *spent: float
+    ) -> Row:
+        try:
+            off = errors(task.read(force), truth)
+        except MeasureError:  # at this setting no pulse comes through
+            off = dict.fromkeys(NUMBERS, math.inf)
+        return Row(name, family, method, window, setting, off, *spent)
+
+    for (method, window), tolerances in _SCIPY.items():
+        stepper = getattr(scipy.integrate, method)
+        for rtol in tolerances if task.windowed or not window else ():
+            force, seconds = timed(partial(integrate, task, stepper, rtol, window=window))
+            yield row("SciPy", f"SciPy {method}", window, rtol, force, seconds)
+    for method, aims in _COMPILED.items():
+        for window in sorted({task.windowed, False}, reverse=True):
+            simulated = partial(simulate, task.scene, method=method, window=window)
+            simulated(rtol=1e-3)  # compiles
+            for rtol in aims:
+                run, seconds = timed(partial(simulated, rtol=rtol))
+                spent = seconds, run.step, 1e9 * seconds / run.bead_evaluations
+                yield row("compiled", method, window, rtol, task.force(run), *spent)
+    for peer, solve in prepared(task):
+        for setting in peer.tolerances:
+            displacements, seconds = timed(partial(solve, setting, task))
+            yield row("peer", peer.name, False, setting, task.force_at(displacements), seconds)
+
+
+def _report(
+    rows: Mapping[str, Sequence[Row]],
+    references: Sequence[tuple[Any, ...]],
+    chains: Sequence[Many],
+    theories: Sequence[Report],
+    absent: Sequence[str],
+) -> Report:
+    """Of rows and references by task."""
+    runs = tuple((r.task, r.family, r.name, r.setting, r.error,
+                  *(r.errors[name] for name in NUMBERS), r.seconds, r.step, r.ns)
+                 for its in rows.values() for r in its)  # fmt: skip
+    spent = tuple((task, *line) for task, its in rows.items() for line in _costs(its))
+    heads = {task: f"{task}: arrival {arrival:.12g}, peak {peak:.12g}, FWHM {fwhm:.12g};\n"
+                   f"another route differs by {agreement:.0e} at most"
+             for task, arrival, peak, fwhm, agreement in references}  # fmt: skip
+    many = tuple((m.method, m.setting, m.error, m.seconds, m.share) for m in chains)
+    aims = (*(goal for its in rows.values() for goal in goals(its)), *together(chains))
+    parts = [Report("goals", findings=aims), *theories] if aims else theories
+    left = ", ".join(absent)
+    left = f"Left out, as not installed: {left} (pip install 'lwa[peers]' brings them)."
+    return Report(
+        "Speed against error",
+        (
+            Table(_RUNS, runs, "rows"),
             Table(_COSTS, spent, "costs", note=_NOTE, by="task", heads=heads),
-            Table(_REFERENCES, references, "references"),
-            Table(_MANY, chains, "many", note=_MANY_NOTE),
-            Table(_GOALS, aims, "goals"),
-        )
-        left = ", ".join(self.absent)
-        left = f"Left out, as not installed: {left} (pip install 'lwa[peers]' brings them)."
-        theories = () if self.theories is None else (self.theories.report(),)
-        goals = (Report("goals", findings=self.goals),) * bool(self.goals)
-        empty = dict.fromkeys(("rows", "costs", "references", "many", "goals"), ())
-        data = empty | {"absent": self.absent}
-        return Report(
-            "Speed against error",
-            tuple(table for table in tables if table.rows),
-            panels=tuple(_panel(task, its) for task, its in tasks.items()),
-            notes=(left,) * bool(self.absent),
-            data=data | {key: value for part in theories for key, value in part.data.items()},
-            parts=(*goals, *theories),
-        )
+            Table(_REFERENCES, tuple(references), "references"),
+            Table(_MANY, many, "many", note=_MANY_NOTE),
+            Table(_GOALS, tuple((aim.key, *aim.document().values()) for aim in aims), "goals"),
+        ),
+        panels=tuple(_panel(task, its) for task, its in rows.items()),
+        notes=(left,) if absent else (),
+        data={"absent": absent, **{name: x for part in theories for name, x in part.data.items()}},
+        parts=tuple(parts),
+    )
 
 
 def _costs(rows: Sequence[Row]) -> list[tuple[Any, ...]]:
@@ -177,77 +205,3 @@ def _panel(task: str, rows: Sequence[Row]) -> Panel:
         curves.append(Curve.of(name, *points, style=style))
     label = "largest relative error of arrival, peak, FWHM"
     return Panel(label, "CPU time (s)", tuple(curves), "xy", task)
-
-
-@study(
-    option("--task", "names", multiple=True, metavar="NAME",
-           says=f"Only this task, may be given again: {', '.join(NAMES)}."),
-)  # fmt: skip
-def accuracy(
-    names: Collection[str] = (), progress: Progress[str] = iter, *, peers: bool = True
-) -> Accuracy:
-    """Speed against error: integrators on fixed tasks, and theories against true waves. Ten
-    minutes; of one task alone up to five.
-
-    names : of `NAMES`, all by default; "theory" is `validation.studies.accuracy.theories`.
-    peers : False leaves the other packages' integrators out.
-
-    Raises `validation.scenes.checks.SceneError` for a name that is not one of `NAMES`, and
-    `validation.studies.accuracy.peers.PeerError` for a peer that is missing where CI is set.
-    """
-    wanted = {one_of(name, NAMES, "task") for name in names} or set(NAMES)
-    rows: list[Row] = []
-    references: list[Reference] = []
-    chains: list[Many] = []
-    theories: Ladder | None = None
-    absent: tuple[str, ...] | None = None if peers else ()
-    for name in progress([name for name in NAMES if name in wanted]):
-        if name == THEORY:
-            theories = ladder()
-            continue
-        if absent is None:
-            absent = missing()  # within the progress: to load the peers takes seconds
-        if name == MANY:
-            chains = many(peers, absent)
-            continue
-        task = TASKS[name]()
-        references.append(reference(name, task))
-        others = prepared(task, absent) if peers else iter(())
-        rows += _compared(name, task, references[-1], others)
-    aims = (*goals(rows), *together(chains))
-    return Accuracy(tuple(rows), tuple(references), aims, absent or (), tuple(chains), theories)
-
-
-def _compared(
-    name: str, task: Task, truth: Reference, peers: Iterator[tuple[Peer, Solve]]
-) -> Iterator[Row]:
-    """All methods at one task."""
-
-    def row(
-        family: str, method: str, window: bool, setting: float, force: Array, *spent: float
-    ) -> Row:
-        try:
-            off = errors(task.read(force), truth.pulse)
-        except MeasureError:  # at this setting no pulse comes through
-            off = dict.fromkeys(NUMBERS, math.inf)
-        return Row(name, family, method, window, setting, off, *spent)
-
-    for (method, window), tolerances in _SCIPY.items():
-        stepper = getattr(scipy.integrate, method)
-        for rtol in tolerances if task.windowed or not window else ():
-            force, seconds = timed(partial(integrate, task, stepper, rtol, window=window))
-            yield row("SciPy", f"SciPy {method}", window, rtol, force, seconds)
-    for method, aims in _COMPILED.items():
-        for window in sorted({task.windowed, False}, reverse=True):
-            simulated = partial(simulate, task.scene, method=method, window=window)
-            simulated(rtol=1e-3)  # compiles
-            for rtol in aims:
-                run, seconds = timed(partial(simulated, rtol=rtol))
-                spent = seconds, run.step, 1e9 * seconds / run.bead_evaluations
-                yield row("compiled", method, window, rtol, task.force(run), *spent)
-    motion = Motion(task.scene)
-    for peer, solve in peers:
-        for setting in _PEERS[peer.name]:
-            y, seconds = timed(partial(solve, setting))
-            force = motion.force(motion.compression(y))[task.contact]
-            yield row("peer", peer.name, False, setting, force, seconds)

@@ -1,49 +1,45 @@
 """Many chains at once: the paper's 38 beads with masses of their own each, over threads.
 
 Every chain is the task "experiment" with masses that vary at random. The engine runs them by
-`validation.simulate_many`; a peer whose compiled equations take other chains
-(`validation.studies.accuracy.peers.MANY`) runs them over as many threads. Each method is given the
-coarsest setting at which the median chain's peak force is good to `ERROR`, against the engine at
-its finest. Times are wall times a chain, medians of a few.
+`validation.simulate_many`, a peer over as many threads, each at the coarsest setting at which the
+median chain's peak force is good to `ERROR`, against the engine at its finest. Times are wall times
+a chain, medians of a few.
 """
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from statistics import median
+from time import perf_counter
 
 import numpy as np
 
 from lwa.compact.numeric import Array
-from validation.lattice.equations import Motion
 from validation.lattice.simulate import COMPILED, simulate_many
 from validation.lattice.threads import cores, threads
 from validation.report.table import Finding
-from validation.studies.accuracy.peers import MANY, PEERS, Solve
+from validation.studies.accuracy.costs import timed
+from validation.studies.accuracy.peers import Solve, prepared
 from validation.studies.accuracy.reference import FINEST
-from validation.studies.accuracy.tasks import TASKS, Task
+from validation.studies.accuracy.tasks import TASKS, Task, settings
 
 ERROR = 1e-6
 """Of the peak force, in the median."""
 
 _CHAINS, _SPREAD = 100, 0.1  # and the standard deviation of a mass, relative
-_SETTINGS = (1e-5, 3e-6, 1e-6, 3e-7, 1e-7, 3e-8, 1e-8, 3e-9, 1e-9)
-_REPEATS = 3
+_REPEATS = 3  # at least
 
 
 @dataclass(frozen=True)
 class Many:
-    """What a method takes: its family as in `validation.studies.accuracy.costs.Row`.
+    """What a method takes.
 
     error : median one of the peak force.
     seconds : a chain, over all cores; alone : over one thread.
     """
 
     method: str
-    family: str
     setting: float
     error: float
     seconds: float
@@ -66,16 +62,14 @@ Run = Callable[[float, int], list[Array]]
 """From a setting and the number of threads to the force of each chain's contact."""
 
 
-def many(peers: bool = True, absent: Collection[str] = ()) -> list[Many]:
-    """The engine, and with ``peers`` those that are not absent."""
+def many() -> list[Many]:
+    """The engine, and the peers that are there."""
     tasks = chains()
-    truths = _peaks(tasks, _engine(tasks)(FINEST, cores()))
-    found = [_cheapest(COMPILED[0], "compiled", _engine(tasks), tasks, truths)]
-    for peer in PEERS if peers else ():
-        if peer.package in MANY and peer.package not in absent:
-            run = _threaded(peer.prepare(tasks[0], peer.method), tasks)
-            found.append(_cheapest(peer.name, "peer", run, tasks, truths))
-    return found
+    runs = {COMPILED[0]: _engine(tasks)}
+    for peer, solve in prepared(tasks[0]):
+        runs[peer.name] = _threaded(solve, tasks)
+    truths = _peaks(tasks, runs[COMPILED[0]](FINEST, cores()))
+    return [_cheapest(name, run, tasks, truths) for name, run in runs.items()]
 
 
 def together(found: Sequence[Many]) -> Iterator[Finding]:
@@ -100,13 +94,9 @@ def _engine(tasks: Sequence[Task]) -> Run:
 
 
 def _threaded(solve: Solve, tasks: Sequence[Task]) -> Run:
-    def force(setting: float, task: Task) -> Array:
-        motion = Motion(task.scene)
-        return np.asarray(motion.force(motion.compression(solve(setting, task)))[task.contact])
-
     def run(setting: float, workers: int) -> list[Array]:
         with threads(workers) as pool:
-            return list(pool.map(partial(force, setting), tasks))
+            return list(pool.map(lambda task: task.force_at(solve(setting, task)), tasks))
 
     return run
 
@@ -115,20 +105,12 @@ def _peaks(tasks: Sequence[Task], forces: Sequence[Array]) -> Array:
     return np.array([t.read(force).peak for t, force in zip(tasks, forces, strict=True)])
 
 
-def _cheapest(method: str, family: str, run: Run, tasks: Sequence[Task], truths: Array) -> Many:
+def _cheapest(method: str, run: Run, tasks: Sequence[Task], truths: Array) -> Many:
     """At the coarsest setting that is good enough, or at the finest."""
-    for setting in _SETTINGS:
+    for setting in settings(1e-5, 1e-9):
         error = float(np.median(np.abs(_peaks(tasks, run(setting, 1)) / truths - 1)))
         if error <= ERROR:
             break
-    together, alone = (_wall(partial(run, setting, n)) / len(tasks) for n in (cores(), 1))
-    return Many(method, family, setting, error, together, alone)
-
-
-def _wall(run: Callable[[], object]) -> float:
-    taken = []
-    for _ in range(_REPEATS):
-        start = time.perf_counter()
-        run()
-        taken.append(time.perf_counter() - start)
-    return median(taken)
+    together, alone = (timed(partial(run, setting, n), _REPEATS, perf_counter)[1] / len(tasks)
+                       for n in (cores(), 1))  # fmt: skip
+    return Many(method, setting, error, together, alone)

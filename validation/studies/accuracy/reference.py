@@ -1,11 +1,10 @@
 """The pulse of a task to about twelve digits, by two routes that share nothing but the equations.
 
-One is SciPy's DOP853 (order 8) with every opening and closing of a contact located: a step over
-the kink of F = A [δ]_+^k at δ = 0 loses its order, and its error estimate does not see it. A sign
-change of an overlap within a step is found on its cubic Hermite interpolant, its time by Brent's
-method on the step's dense output (Hairer, Nørsett & Wanner, Solving Ordinary Differential Equations
-I, II.6); the step is taken again up to there. The other is the engine's own, compiled, at
-its finest tolerance.
+One is the engine's own at its finest tolerance. The other is SciPy's DOP853 with every opening and
+closing of a contact located, as a step over the kink of F = A [δ]_+^k at δ = 0 loses its order. A
+sign change of an overlap within a step is found on its cubic Hermite interpolant, its time by
+Brent's method on the step's dense output (Hairer, Nørsett & Wanner, Solving Ordinary Differential
+Equations I, II.6); the step is taken again up to there.
 
 `integrate` drives any of SciPy's steppers, on the whole chain or on a window that moves with the
 pulse: beads join ahead before they move, and those behind leave where an open contact, which
@@ -14,7 +13,6 @@ carries no tension, parts them from the pulse.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -109,21 +107,17 @@ class Located(scipy.DOP853):  # type: ignore[misc]
 def integrate(
     task: Task, method: Any, rtol: float, *, window: bool = False, atol: float | None = None
 ) -> Array:
-    """The force of the task's contact at its times, by a stepper of SciPy's or one like them.
+    """The force of the task's contact at its times, by a class such as `scipy.integrate.DOP853` or
+    `Located`; rtol and atol, by default the same, are of the local error.
 
-    method : a class such as `scipy.integrate.DOP853` or `Located`.
-    rtol, atol : local error per step, relative and absolute; by default the same.
-
-    Raises `SceneError` for a window in a chain with a wall, `IntegrationError` when the stepper
-    fails.
+    Raises `SceneError` for a window in front of a wall, `IntegrationError` when the stepper fails.
     """
     scene, whole = task.scene, Motion(task.scene)
     if window and not task.windowed:
         raise SceneError("window is True: behind a wall waves come back; the whole chain is wanted")
     state = whole.start.reshape(2, -1)
-    moved = np.flatnonzero(state.any(axis=0))
-    front = int(moved[-1]) + 1 if len(moved) else 0
-    lo, hi = 0, min(whole.size, front + _AHEAD) if window else whole.size
+    moved = np.flatnonzero(state.any(axis=0)).max(initial=-1)
+    lo, hi = 0, min(whole.size, int(moved) + 1 + _AHEAD) if window else whole.size
     force = np.zeros(len(task.times))
     t, done = 0.0, 0
     options = {"rtol": rtol, "atol": rtol if atol is None else atol}
@@ -131,8 +125,8 @@ def integrate(
         part = Part(whole, lo, hi)
         stepper = method(part, t, state[:, lo:hi].ravel(), scene.duration, **options)
         while stepper.status == "running":
-            moved = np.abs(stepper.y[: part.size])
-            if hi < whole.size and moved[-_MARGIN] > _STILL * moved.max():
+            reached = np.abs(stepper.y[: part.size])
+            if hi < whole.size and reached[-_MARGIN] > _STILL * reached.max():
                 break  # the front has come near the last bead
             message = stepper.step()
             if stepper.status == "failed":
@@ -148,18 +142,9 @@ def integrate(
             options["first_step"] = min(stepper.step_size, scene.duration - t)
             # One of the gaps behind parts the pulse from what it has left.
             behind = part.compression(state[0, lo:hi])[: hi - lo - _AHEAD - _REACH]
-            gaps = np.flatnonzero(behind < 0)
-            lo, hi = lo + (int(gaps[-1]) + 1 if len(gaps) else 0), min(whole.size, hi + _AHEAD)
+            parted = np.flatnonzero(behind < 0).max(initial=-1)
+            lo, hi = lo + int(parted) + 1, min(whole.size, hi + _AHEAD)
     return force
-
-
-@dataclass(frozen=True)
-class Reference:
-    """The pulse of a task, and the largest relative difference of its numbers by another route."""
-
-    task: str
-    pulse: Pulse
-    agreement: float
 
 
 def compiled(task: Task) -> Pulse:
@@ -173,7 +158,8 @@ def located(task: Task) -> Pulse:
     return task.read(integrate(task, Located, 2.5e-14, window=task.windowed, atol=2.5e-15))
 
 
-def reference(name: str, task: Task) -> Reference:
-    """The truth where it is known, else the engine's result; beside the located one."""
+def reference(task: Task) -> tuple[Pulse, float]:
+    """The truth where it is known, else the engine's result; its largest relative difference from
+    the located one."""
     pulse = task.truth or compiled(task)
-    return Reference(name, pulse, max(errors(located(task), pulse).values()))
+    return pulse, max(errors(located(task), pulse).values())

@@ -7,8 +7,7 @@ exact : the uniform chain's solitary wave (`validation.waves.solver`), put on th
 experiment : the 2:1 chain of Porter et al. (2008), figure 2(d): 38 beads of steel and PTFE up to a
     steel wall. In units of the striker's mass and velocity and the first contact's stiffness.
 
-Through samples of the contact's force goes a spline of degree 7, on whose fine table
-`validation.pulses.pulse` finds peak and flanks: its own error is below 1e-12.
+The contact's force is a spline of degree 7 through its samples, whose own error is below 1e-12.
 """
 
 from __future__ import annotations
@@ -22,6 +21,7 @@ import numpy as np
 import scipy
 
 from lwa.compact.numeric import Array
+from validation.lattice.equations import Motion
 from validation.lattice.run import Run
 from validation.pulses.pulse import Pulse, measure
 from validation.scenes import chains
@@ -39,16 +39,17 @@ _FOOT = 0.25  # of the peak, where the table ends
 
 @dataclass(frozen=True, eq=False)
 class Task:
-    """A scene with one contact sensor, recorded from ``listen`` to its end.
-
-    windowed : whether a window may follow the pulse.
-    truth : the pulse as it must be, where it is known beforehand.
-    """
+    """A scene with one contact sensor, recorded from ``listen`` to its end; ``truth`` is the pulse
+    as it must be, where it is known beforehand."""
 
     scene: Scene
     listen: float
-    windowed: bool = True
     truth: Pulse | None = None
+
+    @property
+    def windowed(self) -> bool:
+        """Whether a window may follow the pulse: no waves come back."""
+        return self.scene.wall is None
 
     @cached_property
     def times(self) -> Array:
@@ -65,8 +66,13 @@ class Task:
         """(S,): of the contact at `times`, in a run of the scene."""
         return np.asarray(run.contact_force[0, -len(self.times) :])
 
+    def force_at(self, displacements: Array) -> Array:
+        """(S,): the same, from the displacements of all beads (n, S) at `times`."""
+        motion = Motion(self.scene)
+        return np.asarray(motion.force(motion.compression(displacements))[self.contact])
+
     def read(self, force: Array) -> Pulse:
-        """The pulse, from the contact's force at `times`; its peak is the dynamic force.
+        """The pulse of the dynamic force, from the contact's force at `times`.
 
         Raises `validation.pulses.pulse.MeasureError` when it is not wholly there.
         """
@@ -77,6 +83,12 @@ class Task:
         start, end = self.times[first], self.times[last]
         fine = np.linspace(start, end, _FINER * len(self.times[first:last]) + 1)
         return measure(fine, scipy.interpolate.make_interp_spline(self.times, force, 7)(fine))
+
+
+def settings(first: float, last: float) -> tuple[float, ...]:
+    """By half a decade: 1e-5, 3e-6, 1e-6, …."""
+    steps = round(2 * np.log10(first / last))
+    return tuple(float(f"{first * 10 ** (-i / 2):.0e}") for i in range(steps + 1))
 
 
 def errors(pulse: Pulse, reference: Pulse) -> dict[str, float]:
@@ -116,7 +128,7 @@ def experiment() -> Task:
         wall=si.wall / A, k=si.k, velocities=(1.0,), contact_sensors=(32,),
         duration=172.0, samples=689,  # the pulse's FWHM is 18
     )  # fmt: skip
-    return Task(scene, 130.0, windowed=False)
+    return Task(scene, 130.0)
 
 
 def precompressed(beads: int = 200, sites: int = 150) -> Task:
@@ -127,7 +139,7 @@ def precompressed(beads: int = 200, sites: int = 150) -> Task:
         masses=(1.0,) * beads, stiffnesses=(1.0,) * (beads - 1), wall=1.0, precompression=1.0,
         k=1.5, velocities=(1.0,), contact_sensors=(sites,), **_recorded(arrival + 10),
     )  # fmt: skip
-    return Task(scene, arrival - 10, windowed=False)
+    return Task(scene, arrival - 10)
 
 
 TASKS: Mapping[str, Callable[[], Task]] = {

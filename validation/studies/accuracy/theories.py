@@ -1,10 +1,9 @@
 """The ladder of theories: linear, full, canonical, the series in ε, each against the true wave.
 
 At a mass ratio whose wave is solitary the true one is `validation.waves.solver.exact_wave`;
-elsewhere there is none, and the pulse that a struck chain comes to carry stands for it
-(`validation.pulses.steady.point`), with its own error. Compared are the widths of force and strain
-at a contact and the speed at peak contact force 1, m1 = A = D = 1. The cost is the CPU time of
-deriving the theory for this chain and of evaluating it.
+elsewhere the pulse that a struck chain comes to carry (`validation.pulses.steady`) stands for it,
+with its own error. Compared are the widths of force and strain at a contact and the speed at peak
+contact force 1, m1 = A = D = 1. The cost is the CPU time of deriving and evaluating the theory.
 """
 
 from __future__ import annotations
@@ -197,11 +196,6 @@ def _panel(axis: str, title: str, places: Sequence[tuple[sp.Rational, Place]]) -
             x, y = zip(*points, strict=True)
             curves.append(Curve.of(name, x, y, f"C{i}{mark}-"))
     return Panel(axis, "|error| of the FWHM of the force", tuple(curves), "xy", title)
-
-
-def ladder() -> Ladder:
-    """Climb it at all of `CASES`."""
-    return Ladder(tuple(place(*case) for case in CASES))
 
 
 def place(k: sp.Rational, omega: sp.Rational, kind: str = SOLITARY) -> Place:

@@ -29,8 +29,10 @@ def case(answer: str, panel: Panel) -> Callable[[Callable[[], Parts]], Callable[
             def of(kind: Any) -> tuple[Any, ...]:
                 return tuple(part for part in found if isinstance(part, kind))
 
-            picture = replace(panel, curves=of(Curve))
-            return Report(question, of(Table), of(Finding | Statement), (picture,), (answer,))
+            findings, picture = of(Finding | Statement), replace(panel, curves=of(Curve))
+            failed = sum(not finding.ok for finding in findings)
+            told = f"{failed} not as expected, which was: {answer}" if failed else answer
+            return Report(question, of(Table), findings, (picture,), (told,))
 
         return report
 

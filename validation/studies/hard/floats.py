@@ -5,13 +5,9 @@ compared with the exact expression of `lwa.TravelingWave`, evaluated by mpmath a
 digits; k and ω are the float64 numbers themselves, so that no error is their own. An ulp is the
 distance of neighbouring float64 numbers at the exact value: 1/2 is perfect rounding.
 
-Beside them stand the same numbers as the paper prints them (Porter et al. 2008), in float64: G, H,
-I, the root p of (G+H+I) p² - (H+3I) p + 2I = 0, then a, μ, η, σ, s and
-
-    β = √σ (1-η)/2,    B = (μ / (β² s (s-1)))^{1/(k-1)},
-
-and, at k = 3/2, β as the expression in ω that fills a page. FWHM and speed, not printed there, are
-2 arccos(2^{-1/m})/β, 2 arccos(2^{-1/(km)})/β, and V from the relation of B.
+Beside them stand the same numbers as the paper prints them (Porter et al. 2008), in float64, by the
+root p of (G+H+I) p² - (H+3I) p + 2I = 0, and, at k = 3/2, β as the expression in ω that fills a
+page. FWHM and speed, not printed there, follow from the paper's β and B.
 """
 
 from __future__ import annotations
@@ -78,38 +74,29 @@ FORMS: Mapping[str, Form] = {
 
 @dataclass(frozen=True, eq=False)
 class Loss:
-    """What one way to evaluate a form loses on a grid (n, m): NaN ulps where there is no wave, ∞
-    where there is one but no number."""
+    """What one way to evaluate a form loses on a grid (n, m).
 
-    k: Array
-    omega: Array
+    ulps : NaN where there is no wave, ∞ where there is one but no number.
+    points, missing : how many have a wave, and how many of these no number.
+    worst, where : the largest loss of those with a number, and its k and ω.
+    median : of all with a wave.
+    """
+
     ulps: Array
+    points: int
+    missing: int
+    worst: float
+    where: tuple[float, float]
+    median: float
 
-    @property
-    def points(self) -> int:
-        """Points at which there is a wave."""
-        return int(np.count_nonzero(~np.isnan(self.ulps)))
-
-    @property
-    def missing(self) -> int:
-        """Those of them at which the form gives NaN, ∞ or a complex number."""
-        return int(np.count_nonzero(np.isinf(self.ulps)))
-
-    @property
-    def worst(self) -> float:
-        """The largest loss of those that give a number."""
-        return float(np.max(self.ulps, where=np.isfinite(self.ulps), initial=0.0))
-
-    @property
-    def median(self) -> float:
-        """The loss in the middle, no number counting as infinite."""
-        return float(np.nanmedian(self.ulps))
-
-    @property
-    def where(self) -> tuple[float, float]:
-        """k and ω of the largest loss."""
-        at = np.argmax(np.where(np.isfinite(self.ulps), self.ulps, -1.0))
-        return float(self.k.flat[at]), float(self.omega.flat[at])
+    @classmethod
+    def of(cls, ulps: Array, k: Array, omega: Array) -> Loss:
+        """Of the ulps at these k and ω."""
+        known = np.where(np.isfinite(ulps), ulps, 0.0)
+        at = np.argmax(known)
+        points, missing = (int(np.count_nonzero(x)) for x in (~np.isnan(ulps), np.isinf(ulps)))
+        where = float(k.flat[at]), float(omega.flat[at])
+        return cls(ulps, points, missing, float(known.max()), where, float(np.nanmedian(ulps)))
 
 
 def closed_wave(closure: str) -> TravelingWave:
@@ -157,14 +144,14 @@ def losses() -> dict[tuple[str, str], Loss]:
             ulps = in_ulps(value, exact(wave, form(wave), k, omega))
             # a number where there is no wave would be as wrong as none where there is one
             ulps[np.isnan(ulps) & np.isfinite(value)] = np.inf
-            found[name, closure] = Loss(k, omega, ulps)
+            found[name, closure] = Loss.of(ulps, k, omega)
     wave = closed_wave("paper's closure")
     for name, value in printed(k, omega).items():
         ulps = in_ulps(value, exact(wave, FORMS[name][1](wave), k, omega))
-        found[name, PRINTED] = Loss(k, omega, ulps)
+        found[name, PRINTED] = Loss.of(ulps, k, omega)
     k, omega = np.meshgrid(1.5, RATIOS, indexing="ij")
     ulps = in_ulps(printed_hertz_beta(omega), exact(wave, wave.beta, k, omega))
-    return found | {("β at k = 3/2", PRINTED): Loss(k, omega, ulps)}
+    return found | {("β at k = 3/2", PRINTED): Loss.of(ulps, k, omega)}
 
 
 def printed(k: Array, omega: Array) -> dict[str, Array]:

@@ -1,7 +1,4 @@
-"""Where the points of a sweep are computed: by threads of this process, or by a Dask cluster.
-
-Both are executors of `concurrent.futures`, and any other one serves a sweep as well.
-"""
+"""Where the points of a sweep are computed: by any executor of `concurrent.futures`."""
 
 from __future__ import annotations
 

@@ -7,10 +7,8 @@ The first line names the format and the settings, each other one is a
     {"k": "3/2", "omega": "1", "sites": [56, 64], "numbers": {"width": [1.41192837, 1.4119284], …}}
     {"k": "3/2", "omega": "1/9", "missing": "the pulse has not passed 80 sites by t = 1e+05"}
 
-A number is followed by the one that its error comes from. Every line is written by a single call
-and synchronised with the disk before the next. A last line without its end, which a power cut or
-a full disk leaves, is dropped when the file is opened again, and its point computed anew. Any
-other damage is refused: nobody knows what it was.
+A number is followed by the one that its error comes from. A last line without its end, which a
+power cut or a full disk leaves, is dropped and its point computed anew; other damage is refused.
 """
 
 from __future__ import annotations
@@ -71,10 +69,11 @@ class Journal:
         """Keep a finished point. Raises `lwa.InputError` when the file cannot take it."""
         key = point.k, point.omega
         self.points[key] = point  # first, as a Ctrl-C is heard when the line is on the disk
+        if self.file is None:
+            return
         try:
-            if self.file is not None:
-                with self.file.open("ab", buffering=0) as stream:
-                    self._append(stream, _line(point))
+            with self.file.open("ab", buffering=0) as stream:
+                self._append(stream, _line(point))
         except OSError as error:
             del self.points[key]
             raise InputError(f"{self.file} is not written: {reason(error)}") from None
@@ -107,14 +106,13 @@ def _read(file: Path, content: bytes, settings: Mapping[str, int]) -> dict[Key, 
     _check_header(file, first, settings)
     points: dict[Key, Point] = {}
     for number, line in enumerate(lines, start=2):
-        damaged = f"{file} is damaged in line {number}:"
         try:
             point = _point(_json(line))
+            if points.setdefault((point.k, point.omega), point) != point:
+                its = f"k = {point.k}, ω = {point.omega}"
+                raise ValueError(f"it holds {its} again, with other numbers")
         except ValueError as error:
-            raise InputError(f"{damaged} {error}") from None
-        if points.setdefault((point.k, point.omega), point) != point:
-            twice = f"it holds k = {point.k}, ω = {point.omega} again, with other numbers"
-            raise InputError(f"{damaged} {twice}")
+            raise InputError(f"{file} is damaged in line {number}: {error}") from None
     return points
 
 
@@ -124,9 +122,9 @@ def _check_header(file: Path, line: bytes, settings: Mapping[str, int]) -> None:
         header = _json(line)
     if not isinstance(header, dict) or header.get("format") != FORMAT["format"]:
         raise InputError(f"{file} is not a sweep's file: choose another name")
-    if (version := header.get("version")) != (wanted := FORMAT["version"]):
+    if (version := header.get("version")) != FORMAT["version"]:
         its = f"{file} has version {shorten(version)} of its format"
-        raise InputError(f"{its}: {wanted} is wanted")
+        raise InputError(f"{its}: {FORMAT['version']} is wanted")
     if (theirs := header.get("settings")) != settings:
         ours = ", ".join(f"{name} = {value}" for name, value in settings.items())
         its = f"{file} is another sweep's, with settings {shorten(theirs)}"
@@ -152,10 +150,9 @@ def _point(entry: Any) -> Point:
 
 def rational(value: Any, name: str) -> sp.Rational:
     """Read a rational number; raises `lwa.InputError` for anything else."""
-    number = exact(value, name)
-    if not number.is_Rational:
-        wanted = "an integer, a decimal or a fraction"
-        raise InputError(f"{name} is {shorten(value)}: {wanted} is wanted")
+    if not (number := exact(value, name)).is_Rational:
+        wanted = "an integer, a decimal or a fraction is wanted"
+        raise InputError(f"{name} is {shorten(value)}: {wanted}")
     return number
 
 

@@ -1,12 +1,9 @@
 """Sweeps: the steady pulse of a dimer chain over k and ω, beside the theory's.
 
-Every point is one chain of `validation.pulses.steady`. The points are computed by any executor of
-`concurrent.futures`, a bounded number at a time, and go into the sweep's file one by one as they
-are finished (`validation.studies.sweep.journal`): a sweep that is interrupted goes on from there,
-and one with more k and ω computes only what is new. A point that cannot be measured says why.
-
-The theory's numbers are those of the wave of `lwa` with contact force 1 at its peak: the paper's
-closure, and the canonical field of the full closure.
+Every point is one chain of `validation.pulses.steady`, and goes into the sweep's file as soon as it
+is finished: a sweep that is interrupted goes on from there, and one with more k and ω computes only
+what is new. A point that cannot be measured says why. The theory's numbers are those of its wave
+with contact force 1 at its peak: the paper's closure, and the canonical field of the full closure.
 """
 
 from __future__ import annotations
@@ -25,7 +22,6 @@ import numpy as np
 from sympy import Rational
 
 from lwa import Dimer, canonical_wave, homogenize
-from lwa.command.terminal import called
 from lwa.compact.numeric import Array, NumericWave
 from lwa.duration import Progress
 from lwa.exact import InputError, shorten
@@ -50,14 +46,10 @@ CLOSURES = {"linear": "paper's closure", "canonical": "full closure, canonical f
 """The theories beside the lattice, and what they are called."""
 
 _OMEGA = "ω = m2/m1"
-_UNSURE = 0.01
-"""Relative error of the width from which on a map marks a point."""
-_NO_DECAY = 1e-7
-"""Per site: what a map shows as no decay."""
-_MOST_ERROR = 50.0
-"""Of the theory, in percent: where the colours of its map end."""
-_DECADES = 50
-"""Ratio of the largest to the least ω from which a map's axis is logarithmic."""
+_UNSURE = 0.01  # relative error of the width from which on a map marks a point
+_NO_DECAY = 1e-7  # per site: what a map shows as no decay
+_MOST_ERROR = 50.0  # of the theory, in percent: where the colours of its map end
+_WIDE = 50  # the largest over the least ω from which on a map's axis is logarithmic
 
 _NOTE = (
     "Width: FWHM of a contact's force, in sites. Speed: sites over time at contact force 1, with "
@@ -84,12 +76,9 @@ class Sweep:
     theory: Mapping[str, Mapping[str, Array]]
 
     def map(self, quantity: str, part: str = "value") -> Array:
-        """One of `QUANTITIES`, or its ``part`` "error": (len(ks), len(omegas)).
-
-        NaN at the points that are ``missing``.
-        """
-        numbers = (p.numbers.get(quantity) for p in self.points)
-        values = [np.nan if number is None else getattr(number, part) for number in numbers]
+        """One of `QUANTITIES`, or its ``part`` "error": (len(ks), len(omegas)), NaN where it is
+        missing."""
+        values = [getattr(p.numbers.get(quantity), part, np.nan) for p in self.points]
         return np.array(values).reshape(len(self.ks), len(self.omegas))
 
     def error(self, closure: str, quantity: str) -> Array:
@@ -105,14 +94,10 @@ class Sweep:
         """
         without = [point for point in self.points if point.missing is not None]
         missing = "\n".join(f"k = {p.k}, ω = {p.omega}: {p.missing}" for p in without)
-        maps = min(len(self.ks), len(self.omegas)) > 1
-        return Report(
-            "The steady pulse of a struck dimer chain",
-            (self._table(),),
-            panels=self._maps() if maps else self._curves(),
-            notes=(missing, _NOTE),
-            data={"stretch": self.stretch, "missing": len(without)},
-        )
+        panels = self._maps if min(len(self.ks), len(self.omegas)) > 1 else self._curves
+        data = {"stretch": self.stretch, "missing": len(without)}
+        return Report("The steady pulse of a struck dimer chain", (self._table(),),
+                      panels=panels(), notes=(missing, _NOTE), data=data)  # fmt: skip
 
     def _table(self) -> Table:
         points = self.points
@@ -156,7 +141,7 @@ class Sweep:
         i, j = np.nonzero(self.map("width", "error") > _UNSURE * width)
         marks = (Curve("", x[j], y[i], "rx"),)
         red = f"red ×: width known to less than {_UNSURE:.0%}" if len(i) else ""
-        scale = "x" if x[-1] > _DECADES * x[0] else ""
+        scale = "x" if x[-1] > _WIDE * x[0] else ""
 
         def title(found: Map) -> str:
             hatched = "hatched: no value" if np.isnan(found.values).any() else ""
@@ -212,14 +197,11 @@ def sweep(
 ) -> Sweep:
     """Strike a chain for each k and ω.
 
-    Parameters
-    ----------
-    ks, omegas : exact numbers, texts, or floats (read as the decimals they print as); the order
-        and repetitions do not matter.
+    ks, omegas : exact numbers, texts, or floats (read as the decimals they print as), in any order.
     stretch : cells from place to place, see `validation.pulses.steady`; at k ≥ 3/2, and more below.
     executor : which computes the points, and is left running; or a context that gives one, such
         as `validation.studies.sweep.executors.cluster`, entered when there is something to compute.
-        By default `validation.lattice.threads.threads`.
+        By default a thread for each core.
     file : where finished points are kept, ending in .jsonl; those it holds are not computed again.
     progress : is shown the points to be computed (such as `tqdm.tqdm`).
 
@@ -272,14 +254,10 @@ def _values(given: Iterable[Any], name: str) -> tuple[Rational, ...]:
     return tuple(sorted(values))
 
 
-def _axis(context: click.Context, given: click.Parameter, text: str) -> tuple[Rational, ...]:
-    return axis(text, called(given))
-
-
 @study(
-    option("--k", "ks", callback=_axis, default="5/4:3:8", says="Exponents of F = δ^k: values and "
+    option("--k", "ks", default="5/4:3:8", says="Exponents of F = δ^k: values and "
            "ranges start:stop:count, separated by commas."),
-    option("--omega", "omegas", callback=_axis, default="1/20:1:20",
+    option("--omega", "omegas", default="1/20:1:20",
            says="Mass ratios m2/m1, likewise."),
     option("--stretch", default=STRETCH, says="Cells from one place at which the pulse is measured "
            "to the next; more below k = 3/2."),
@@ -291,15 +269,16 @@ def _axis(context: click.Context, given: click.Parameter, text: str) -> tuple[Ra
     name="sweep",
 )  # fmt: skip
 def sweep_command(
-    ks: tuple[Rational, ...], omegas: tuple[Rational, ...], stretch: int, file: str | None,
-    jobs: int | None, address: str | None, progress: Progress[Key],
+    ks: str, omegas: str, stretch: int, file: str | None, jobs: int | None, address: str | None,
+    progress: Progress[Key],
 ) -> Sweep:  # fmt: skip
     """Maps over k and m2/m1: width, speed and decay of a struck chain's pulse."""
     if address is not None and jobs is not None:
         raise InputError(f"jobs is {jobs}: a cluster has workers of its own")
     executor = threads(jobs, "jobs") if address is None else cluster(address)
     try:
-        return sweep(ks, omegas, stretch=stretch, executor=executor, file=file, progress=progress)
+        return sweep(axis(ks, "k"), axis(omegas, "omega"), stretch=stretch, executor=executor,
+                     file=file, progress=progress)  # fmt: skip
     except KeyboardInterrupt:
         if file is not None and Path(file).exists():
             click.echo(f"finished points are in {file}: the same command goes on", err=True)

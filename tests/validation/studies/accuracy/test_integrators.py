@@ -21,7 +21,7 @@ from validation.scenes.scene import Scene
 from validation.studies.accuracy import costs as spent
 from validation.studies.accuracy import integrators as module
 from validation.studies.accuracy import peers, tasks
-from validation.studies.accuracy.costs import Row, cost, costs
+from validation.studies.accuracy.costs import Row, cheapest, cost
 from validation.studies.accuracy.integrators import accuracy
 from validation.studies.accuracy.reference import integrate
 from validation.studies.accuracy.tasks import NUMBERS, Task, errors, exact, struck
@@ -81,9 +81,9 @@ def test_a_cost_holds_from_there_on():
     assert cost(rows, 1e-8) == 4
     assert cost(rows, 1e-5) == 1
     assert cost(rows, 1e-10) == math.inf
-    assert costs([*rows, row(5, 1e-7, window=True)], 1e-6) == {
-        ("peer", "a"): 3, ("peer", "a, window"): 5,
-    }  # fmt: skip
+    assert cheapest([*rows, row(1, 1e-7, window=True)], "peer", 1e-6) == ("a, window", 1)
+    assert cheapest([*rows, row(5, 1e-7, window=True)], "peer", 1e-6) == ("a", 3)
+    assert cheapest(rows, "compiled", 1e-6) == ("none", math.inf)
 
 
 def test_the_table_of_costs_has_the_finest_first_and_gaps_where_nothing_is_attained():
@@ -94,7 +94,6 @@ def test_the_table_of_costs_has_the_finest_first_and_gaps_where_nothing_is_attai
 
 
 def test_goals_compare_equal_errors(monkeypatch):
-    monkeypatch.setattr(spent, "scaling", lambda sites: (-0.02, 0.01))
     monkeypatch.setattr(spent, "square_root", lambda: 0.5)
     ours = dict(method="ours", window=True, family="compiled")
     rows = [
@@ -108,7 +107,7 @@ def test_goals_compare_equal_errors(monkeypatch):
     values = {
         "dimer_peer_1e-04": 50, "dimer_ms_1e-06": 4, "dimer_peer_1e-06": 22.5,
         "dimer_peer_1e-08": 10, "dimer_ms_1e-10": 20,
-        "scipy_ratio": 750, "evaluation_ns": 1.5, "evaluation_over_root": 3, "site_exponent": -0.02,
+        "scipy_ratio": 750, "evaluation_ns": 1.5, "evaluation_over_root": 3,
     }  # fmt: skip
     assert {key: goal.value for key, goal in goals.items()} == pytest.approx(values)
     assert "CyRK, over ours" in goals["dimer_peer_1e-06"].quantity
@@ -125,14 +124,6 @@ def test_the_time_of_a_square_root_is_that_of_a_force_at_least():
     assert 0.05 < spent.square_root() < 20
 
 
-def test_cost_per_site_is_fitted_by_a_power(monkeypatch):
-    """Costs n² give cost per site ~ n."""
-    monkeypatch.setattr(spent, "timed", lambda run: (None, 1e-9 * len(run.args[0].masses) ** 2))
-    slope, error = spent.scaling((100, 200, 400))
-    assert slope == pytest.approx(1.0)
-    assert error < 1e-9
-
-
 def small():
     return struck(0.2733, 24, 16, 8.0, 24.0)
 
@@ -141,7 +132,7 @@ def walled():
     """As the experiment: behind a wall there is no window."""
     task = small()
     scene = replace(task.scene, wall=1.0)
-    return Task(scene, task.listen, windowed=False)
+    return Task(scene, task.listen)
 
 
 def reduce(monkeypatch, the_peers=()):
@@ -154,7 +145,6 @@ def reduce(monkeypatch, the_peers=()):
     )
     for name, value in tables.items():
         monkeypatch.setattr(module, name, value)
-    monkeypatch.setattr(spent, "_SITES", (60, 120, 240))
     monkeypatch.setattr(spent, "_ENOUGH", 0.0)
 
 
@@ -191,7 +181,6 @@ def test_the_command_prints_the_contract(capsys, monkeypatch, tmp_path):
     ]  # fmt: skip
     assert [goal["key"] for goal in result["goals"]] == [
         "dimer_ms_1e-06", "dimer_ms_1e-10", "scipy_ratio", "evaluation_ns", "evaluation_over_root",
-        "site_exponent",
     ]  # fmt: skip
     assert {cost["task"] for cost in result["costs"]} == {"dimer", "experiment"}
     drawn = picture.read_text()
@@ -201,9 +190,7 @@ def test_the_command_prints_the_contract(capsys, monkeypatch, tmp_path):
 def test_the_text_names_tasks_methods_and_what_is_missing(monkeypatch):
     monkeypatch.delenv("CI", raising=False)
     reduce(monkeypatch, (peers.Peer("absent", "RK4", pytest.fail),))
-    result = accuracy(["experiment"])
-    assert result.goals == ()
-    report = result.report()
+    report = accuracy(["experiment"])
     assert report.ok
     document = report.document()
     assert document["absent"] == ["absent"]
@@ -263,13 +250,14 @@ def test_a_missed_goal_is_told_once_and_ends_with_1(capsys, monkeypatch):
     assert (status, err) == (1, "")
     (line,) = [line for line in out.splitlines() if "SciPy's DOP853 on the whole" in line]
     assert line.endswith("≥ 500  FAILS")
-    assert re.search(r"\n6 checks: \d of 6 fail\n$", out)
+    assert re.search(r"\n5 checks: \d of 5 fail\n$", out)
 
 
 @pytest.mark.parametrize("met", [True, False])
-def test_goals_are_findings(met):
+def test_goals_are_findings(monkeypatch, met):
     goals = tuple(Finding(f"g{i}", 1.0, high=2.0 if met or i else 0.5) for i in range(3))
-    report = module.Accuracy((), (), goals, ()).report()
+    monkeypatch.setattr(module, "goals", lambda rows: goals)
+    report = module._report({"dimer": [row(1, 1e-7)]}, (), (), (), ())
     assert report.ok is met
     assert report.document()["ok"] is met
     assert [goal["ok"] for goal in report.document()["goals"]] == [met, True, True]
@@ -279,7 +267,7 @@ def test_goals_are_findings(met):
 
 def test_csv_and_notebook_tell_what_json_does(monkeypatch):
     reduce(monkeypatch)
-    report = accuracy(["dimer"], peers=False).report()
+    report = accuracy(["dimer"])
     rows = report.document()["rows"]
     for line, row in zip(csv.DictReader(io.StringIO(report.csv())), rows, strict=True):
         assert (line["task"], line["method"], line["family"]) == (
@@ -307,8 +295,8 @@ def test_a_run_without_a_pulse_is_told_and_drawn_nowhere(monkeypatch):
     task = small()
     monkeypatch.setattr(module, "integrate", lambda task, *rest, **options: 0 * task.times)
     monkeypatch.setattr(module, "_COMPILED", {})
-    truth = module.Reference("dimer", task.read(task.force(simulate(task.scene))), 0.0)
-    rows = list(module._compared("dimer", task, truth, iter(())))
+    truth = task.read(task.force(simulate(task.scene)))
+    rows = list(module._compared("dimer", task, truth))
     assert {row.error for row in rows} == {math.inf}
     assert module._costs(rows)[0][1:] == (None,) * 4
     assert all(len(curve.x) == 0 for curve in module._panel("dimer", rows).curves)
@@ -320,7 +308,6 @@ def test_the_command_with_every_method(capsys, monkeypatch):
     """All methods and peers, on short chains."""
     for name, factory in (("dimer", small), ("experiment", walled)):
         monkeypatch.setitem(tasks.TASKS, name, factory)
-    monkeypatch.setattr(spent, "_SITES", (60, 120, 240))
     names = ("dimer", "experiment")
     chosen = [argument for name in names for argument in ("--task", name)]
     status, out, _ = command(capsys, *chosen, "--format", "json")

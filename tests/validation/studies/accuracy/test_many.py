@@ -8,7 +8,7 @@ import pytest
 from validation.lattice.simulate import simulate
 from validation.studies.accuracy import many as module
 from validation.studies.accuracy.many import ERROR, Many, chains, many, together
-from validation.studies.accuracy.peers import MANY, PEERS
+from validation.studies.accuracy.peers import PEERS
 
 
 def test_chains_differ_in_their_masses_only():
@@ -22,19 +22,20 @@ def test_chains_differ_in_their_masses_only():
 
 def test_the_engine_is_good_to_the_error_that_is_wanted(monkeypatch):
     monkeypatch.setattr(module, "chains", lambda: chains(3))
-    (found,) = many(peers=False)
+    monkeypatch.setattr(module, "prepared", lambda task: ())
+    (found,) = many()
     assert 0 < found.error <= ERROR
     assert found.seconds > 0
     assert found.share == found.alone / found.seconds / module.cores()
 
 
-def numbers(method, family, seconds, error=1e-7):
-    return Many(method, family, 1e-6, error, seconds, 1.9 * seconds)
+def numbers(method, seconds, error=1e-7):
+    return Many(method, 1e-6, error, seconds, 1.9 * seconds)
 
 
 def test_findings_compare_good_peers_only():
     engine, *others = (
-        numbers("ours", "compiled", 1.0), numbers("a", "peer", 1.2), numbers("b", "peer", 0.5, 1e-5)
+        numbers("ours", 1.0), numbers("a", 1.2), numbers("b", 0.5, 1e-5)
     )  # fmt: skip
     share, peer = together([engine, *others])
     assert share.value == pytest.approx(1.9 / module.cores())
@@ -45,7 +46,7 @@ def test_findings_compare_good_peers_only():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("peer", [p for p in PEERS if p.package in MANY], ids=lambda p: p.name)
+@pytest.mark.parametrize("peer", PEERS, ids=lambda p: p.name)
 def test_a_peer_runs_other_chains_than_it_was_prepared_for(peer):
     """To 1e-5 of the peak, at a tolerance of 1e-9."""
     if not os.environ.get("CI"):

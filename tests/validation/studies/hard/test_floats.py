@@ -40,7 +40,7 @@ def test_no_number_is_infinitely_wrong_and_no_wave_is_not_counted():
     true = np.array([mp.mpf(1), mp.mpf(1), mp.mpf(1), None], object)
     found = in_ulps(np.array([np.nan, np.inf, 1.0, np.nan]), true)
     assert np.isinf(found).tolist() == [True, True, False, False]
-    loss = floats.Loss(np.ones(4), np.ones(4), found)
+    loss = floats.Loss.of(found, np.ones(4), np.ones(4))
     assert (loss.points, loss.missing, loss.worst) == (3, 2, 0.0)
     assert np.isnan(found[3])
 

@@ -3,12 +3,12 @@
 import csv
 import io
 import json
-from concurrent.futures import Executor, Future
 
 import numpy as np
 import pytest
 import sympy as sp
 
+from tests.validation.studies.sweep.inline import Inline
 from validation.pulses.pulse import Measured
 from validation.pulses.steady import QUANTITIES, Point
 from validation.report.text import percent
@@ -16,13 +16,6 @@ from validation.studies.sweep import executors
 from validation.studies.sweep.sweep import sweep
 
 R = sp.Rational
-
-
-class Inline(Executor):
-    def submit(self, fn, /, *arguments):
-        future = Future()
-        future.set_result(fn(*arguments))
-        return future
 
 
 def quick(k, omega, stretch):

@@ -14,7 +14,7 @@ import sys
 import tempfile
 import threading
 import time
-from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor
+from concurrent.futures import BrokenExecutor, ProcessPoolExecutor
 from concurrent.futures import ThreadPoolExecutor as Threads
 from contextlib import contextmanager
 from itertools import pairwise
@@ -28,6 +28,7 @@ from hypothesis import strategies as st
 
 from lwa import InputError
 from tests.commands import ended
+from tests.validation.studies.sweep.inline import Inline
 from validation import cli
 from validation.lattice.threads import threads
 from validation.pulses.pulse import Measured
@@ -47,24 +48,6 @@ def dask():
     if os.environ.get("CI"):
         return importlib.import_module("distributed")
     return pytest.importorskip("distributed", reason="Dask is not installed")
-
-
-class Inline(Executor):
-    """Computes at once, and keeps a list of what; the call number ``stop`` raises ``error``."""
-
-    def __init__(self, stop=None, error=KeyboardInterrupt):
-        self.calls, self.stop, self.error = [], stop, error
-
-    def submit(self, fn, /, *arguments):
-        if len(self.calls) == self.stop:
-            raise self.error
-        self.calls.append(arguments[:2])
-        future = Future()
-        try:
-            future.set_result(fn(*arguments))
-        except Exception as error:
-            future.set_exception(error)
-        return future
 
 
 def quick(k, omega, stretch):
