@@ -53,6 +53,7 @@ _SUPPORTS = 4.0  # of the long-wave pulse: what the window reaches back
 # Of a pulse's peak, a reach later and at the end: where less is left, the window gives way.
 _DECAY, _LEFT = 0.9, 0.5
 _WINDOW = 2  # reaches that a window holds, about
+_SMOOTH = 0.03  # of the error that is estimated for order 6: in order 8 it is less than that
 _POINTS = 8  # of the quadrature at a kink
 _NOISE = sys.float_info.epsilon  # of the greatest: rounding is no front
 _GLANCE = 0.2  # seconds, about, from one look at the progress to the next, or at Ctrl-C
@@ -184,8 +185,8 @@ def _plan(motion: Motion, given: Given, chain: Chain, reach: int | None, step: f
     return Plan(
         _tableau(given.method, motion.k), given.rtol * scales.displacement,
         given.rtol * scales.velocity, step, given.longest, motion.scene.duration,
-        scales.compression, stiffest, 1 / inverse[min(1, n - 1) : n].min(),
-        stiffest * inverse.max(), n,
+        scales.compression, _SMOOTH if motion.loaded else 1.0, stiffest,
+        1 / inverse[min(1, n - 1) : n].min(), stiffest * inverse.max(), n,
         0 if _returns(motion) else _own_reach(motion), reach or 0, adapt,
     )  # fmt: skip
 

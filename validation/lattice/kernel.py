@@ -95,8 +95,9 @@ class Plan(NamedTuple):
     """A scheme, its first step, and what it moves: ``size`` beads, or a window of them.
 
     y, v : the errors of a step that are allowed. h : the first step. longest : the longest of a
-    pair. deepest : the greatest compression. stiffest : of the contacts. heaviest : but for the
-    striker. quickest : stiffness over the least mass.
+    pair. deepest : the greatest compression. smooth : the share of a step's error that counts where
+    no kink is near. stiffest : of the contacts. heaviest : but for the striker.
+    quickest : stiffness over the least mass.
     reach : after which the pulse is looked at; 0 where waves come back. cut : behind the
     front, where the rear may be left; 0 for never. adapt : whether step and errors follow the
     pulse's time and size as it decays.
@@ -109,6 +110,7 @@ class Plan(NamedTuple):
     longest: float
     end: float
     deepest: float
+    smooth: float
     stiffest: float
     heaviest: float
     quickest: float
@@ -288,7 +290,7 @@ def _attempt(chain: Chain, beads: Beads, plan: Plan, at: Any, h: float, hi: int)
         near += 1 if (most > least) & (min(before, after) < _NEAR * most) else 0
     if near > 0:
         _kinks(chain, beads, plan, at, h, hi, least)
-    return math.sqrt(_square(sums, inverse, lo, hi))
+    return math.sqrt(_square(sums, inverse, lo, hi)) * (1.0 if near > 0 else plan.smooth)
 
 
 @_part
