@@ -18,7 +18,7 @@ or of one with a kink; what p_+^k brings about is no part of it.
 Window. Ahead nothing moves: the front advances with the first bead that does. Behind, beads more
 than ``reach`` from the front are left to fly on freely, with their energy on the books, once the
 contact that is cut is open but for a trace of the peak force and no strong blow is to come (the
-thresholds of `validation.lattice.kernel`), or four reaches behind in any case. As contacts carry no
+thresholds of `validation.lattice.kernel`), or eight reaches behind in any case. As contacts carry no
 tension, the pulse does not depend on what is cut, unless it decays so fast (`_DECAY`, `_LEFT`) that
 its own tail may overtake it: then, and where too few reaches were passed to tell, the run is made
 again with the whole chain, whoever asked for a window. As a pulse decays, the step grows with its
@@ -49,7 +49,8 @@ from validation.lattice.schemes.nystrom import Pair
 from validation.scenes.checks import SceneError, integer, positive
 from validation.scenes.scene import Scene
 
-_SUPPORTS = 4.0  # of the long-wave pulse: what the window reaches back
+# In supports of the long-wave pulse: what the window reaches back, and after what it is looked at.
+_BACK, _LOOK = 2.0, 4.0
 # Of a pulse's peak, a reach later and at the end: where less is left, the window gives way.
 _DECAY, _LEFT = 0.9, 0.5
 _WINDOW = 2  # reaches that a window holds, about
@@ -101,7 +102,7 @@ def _returns(motion: Motion) -> bool:
 
 def _reach(motion: Motion, window: Any) -> int | None:
     """Beads to follow behind the front; None for the whole chain."""
-    scene, n, returns = motion.scene, motion.size, _returns(motion)
+    scene, returns = motion.scene, _returns(motion)
     if window is False or not scene.stiffnesses or (window is None and returns):
         return None
     if returns:
@@ -109,19 +110,21 @@ def _reach(motion: Motion, window: Any) -> int | None:
             f"window is {window}: behind a wall, and at k = 1, waves come back; "
             "the whole chain is wanted"
         )
-    if window is not None and window is not True:
-        return integer(window, "window", kernel.BLOCK)
-    reach = _own_reach(motion)
-    return None if window is None and reach >= n else reach
+    if window is None or window is True:
+        reach = _supports(motion, _BACK)
+    else:
+        reach = integer(window, "window", kernel.BLOCK)
+    # In so few beads nothing would be known of the pulse's decay.
+    return None if motion.size < 2.5 * _supports(motion, _LOOK) else reach
 
 
-def _own_reach(motion: Motion) -> int:
-    """That of the pulse: its support and what may catch up with it."""
+def _supports(motion: Motion, number: float) -> int:
+    """Beads of so many of the pulse's supports, and a margin at both ends."""
     n, k = motion.size, motion.k
     still = motion.start[n:] == 0
     masses = motion.masses[still] if still.any() else motion.masses  # a striker may be of any mass
     support = math.pi / (k - 1) * math.sqrt(k * (k + 1) / 6)
-    back = min(n, _SUPPORTS * support * masses.max() / masses.mean())
+    back = min(n, number * support * masses.max() / masses.mean())
     return 2 * kernel.MARGIN + math.ceil(float(back))
 
 
@@ -187,7 +190,7 @@ def _plan(motion: Motion, given: Given, chain: Chain, reach: int | None, step: f
         given.rtol * scales.velocity, step, given.longest, motion.scene.duration,
         scales.compression, _SMOOTH if motion.loaded else 1.0, stiffest,
         1 / inverse[min(1, n - 1) : n].min(), stiffest * inverse.max(), n,
-        0 if _returns(motion) else _own_reach(motion), reach or 0, adapt,
+        0 if _returns(motion) else _supports(motion, _LOOK), reach or 0, adapt,
     )  # fmt: skip
 
 

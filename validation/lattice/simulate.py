@@ -61,8 +61,8 @@ def simulate(
     window : of a compiled method, whether to follow the pulse only. By default wherever the pulse
         runs away: not with a wall (gravity has one) and not at k = 1. False asks for all that
         happens behind, such as light beads that rattle. A number is that of the beads to follow
-        behind the front. Where a pulse decays, so that its tail may overtake it, there is none in
-        any case.
+        behind the front. Where a pulse decays, so that its tail may overtake it, and in a chain
+        too short to tell, there is none in any case.
     progress : is shown what a run takes before it starts, and then how far it is.
 
     Raises `SceneError` for a tolerance or method that cannot be meant, and for a run that takes
