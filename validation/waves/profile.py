@@ -31,14 +31,19 @@ OUTSIDE = 0.6  # of the half period: where the pulse of a dimer has ended, and i
 _ROW = 16  # of Fourier coefficients that are summed up together
 
 
+@dataclass(frozen=True, eq=False)
 class Profile(ABC):
-    """A pulse of a chain as a function of ξ = x - ct, mirror symmetric about a bead; A = D = 1."""
+    """A pulse of a chain as a function of ξ = x - ct, mirror symmetric about a bead; A = D = 1.
+
+    masses : (m1, m2); equal for a chain of one mass. c2 : c², the square of the speed dx/dt.
+    half_period : L, up to which it is known.
+    """
 
     masses: tuple[float, float]
     k: float
     c2: float
     half_period: float
-    background: float = 0.0
+    background = 0.0
 
     @property
     @abstractmethod
@@ -97,19 +102,18 @@ class Profile(ABC):
         `MeasureError` where the quantity does not fall to half its peak.
         """
         top, peak = self.peak(name)
-        xi = top + np.linspace(0, self.half_period, 4 * self.samples)
-        width = 0.0
+
+        def above(r: Any, side: int) -> Array:
+            return self.quantity(name, top + side * r) - peak / 2
+
+        distance, width = np.linspace(0, self.half_period, 4 * self.samples), 0.0
         for side in (-1, 1):
-            points = top + side * (xi - top)
-            below = int(np.argmax(self.quantity(name, points) < peak / 2))
+            below = int(np.argmax(above(distance, side) < 0))
             if not below:
                 raise MeasureError(f"the {name} has no FWHM: its tail is above half its peak")
-            ends = points[below - 1], points[below]
-            root = scipy.optimize.brentq(
-                lambda x: float(self.quantity(name, x)) - peak / 2, *ends, xtol=1e-14, rtol=1e-14
-            )
-            width += abs(float(root) - top)
-        return width
+            ends = distance[below - 1 : below + 1]
+            width += scipy.optimize.brentq(above, *ends, (side,), xtol=1e-14, rtol=1e-14)
+        return float(width)
 
     def over_peak(self, xi: ArrayLike) -> dict[str, Array]:
         """Strain, force and velocity, each over its peak."""
@@ -153,7 +157,6 @@ class Profile(ABC):
 class ExactWave(Profile):
     """One traveling wave; A = D = 1.
 
-    masses : (m1, m2); equal for a chain of one mass. c2 : c², the square of the speed dx/dt.
     half_period : L; profiles are periodic with 2L, a solitary wave's end before.
     even, odd : coefficients of E in cos(πjξ/L), j = 0 … n, and of O in sin(πjξ/L).
     tail : largest |o| outside the pulse, over the peak strain.
@@ -162,10 +165,6 @@ class ExactWave(Profile):
     background : p0, the strain far from the wave.
     """
 
-    masses: tuple[float, float]
-    k: float
-    c2: float
-    half_period: float
     even: Array
     odd: Array
     tail: float
@@ -257,13 +256,13 @@ class ExactWave(Profile):
 
 
 def at_unit_force(
-    masses: tuple[float, float], k: float, c2: float, half_period: float, even: Array, odd: Array,
-    p0: float = 0.0,
-) -> ExactWave:  # fmt: skip
-    """The wave of these forces, scaled to a force 1 at its peak, with its tail and residual."""
-    wave = ExactWave(masses, k, c2, half_period, even, odd, 0.0, 0.0, p0)
-    wave = wave.times(1 / (p0 + wave.peak("strain")[1]))
-    tail = 0.0 if masses[0] == masses[1] else wave.rattle(OUTSIDE * half_period)
+    masses: tuple[float, float], problem: fourier.Problem, forces: Array, c2: float
+) -> ExactWave:
+    """The wave that solves a problem, scaled to a force 1 at its peak; its tail and residual."""
+    even, odd = fourier.coefficients(problem.forces(forces))
+    wave = ExactWave(masses, problem.k, c2, problem.L, even, odd, 0.0, 0.0, problem.p0)
+    wave = wave.times(1 / (problem.p0 + wave.peak("strain")[1]))
+    tail = 0.0 if problem.uniform else wave.rattle(OUTSIDE * problem.L)
     return replace(wave, tail=tail, residual=_residual(wave))
 
 
@@ -283,6 +282,5 @@ def summit(f: Callable[[Any], Array], xi: Array) -> tuple[float, float]:
     top = scipy.optimize.minimize_scalar(
         lambda x: -float(f(x)), bounds=bounds, method="bounded", options={"xatol": 1e-9}
     )
-    if -top.fun > value[i]:
-        return float(top.x), -float(top.fun)
-    return float(xi[i]), float(value[i])
+    peak, place = max((value[i], xi[i]), (-top.fun, top.x))
+    return float(place), float(peak)

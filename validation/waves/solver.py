@@ -34,18 +34,19 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+import scipy
 
+from lwa import Cell, Power, background_wave
 from lwa.compact.numeric import Array
 from lwa.duration import Progress
 from lwa.exact import InputError
 from lwa.quantities import QUANTITIES
 from validation.lattice.run import IntegrationError
 from validation.pulses.pulse import Measured
-from validation.scenes.checks import SceneError, items, positive, real
+from validation.scenes.checks import SceneError, integer, items, positive, real
 from validation.waves import fourier
 from validation.waves.profile import ExactWave, Profile, at_unit_force
 from validation.waves.struck import Struck, struck
-from validation.waves.theory import Loaded
 
 FALLEN = 38.0  # e-foldings of a wave on a background from its flanks to L
 SHALLOWEST = 1e-4  # of a wave on a background: what it adds to the peak strain
@@ -173,24 +174,33 @@ def _pressed(
     pair: tuple[float, float], k: float, half_period: float | None, p0: float
 ) -> tuple[ExactWave, float]:
     """The wave of equal beads on a background, and the half period that is ample for it."""
-    theory, core = Loaded(k, p0), fourier.ample_half_period(pair, k)
-    ample = max(core, core / 2 + FALLEN / theory.kappa)
+    theory, load = background_wave(Cell((1,), spacing=1), law=Power(k)).numeric(), (p0, 1 - p0)
+    c2 = float(k * theory.speed_squared(*load))
+    core = fourier.ample_half_period(pair, k)
+    ample = max(core, core / 2 + FALLEN / _kappa(c2 / (k * p0 ** (k - 1))))
     L = half_period or ample
-    n = fourier.problem(pair, k, L, None).n
-    n = max(80, math.ceil(n * min(1, 1.3 * theory.narrower)))
+    narrower = float(theory.fwhm(0.0, 1.0) / theory.fwhm(*load))
+    n = max(80, math.ceil(fourier.enough(pair, k, L) * min(1, 1.3 * narrower)))
     problem = fourier.Problem(pair, k, L, n, p0)
     xi = problem.xi[: problem.count]
     if k > 3 and p0 < 0.5:  # where the theory's is too wide: from the wave on a little less
         near = _uniform(pair, k, None, max(0.0, p0 - LESS))
         guess, c2 = near.force(xi), near.c2
     else:
-        guess, c2 = fourier.rise(theory.strain(xi), k, p0), theory.c2
+        guess = fourier.rise(theory.profile(xi, *load), k, p0)
     try:
-        even, c2, _ = problem.wave(guess, c2)
+        forces, c2, _ = problem.wave(guess, c2)
     except np.linalg.LinAlgError:
         raise NoWave(_named(f"Newton's method finds no wave on {p0:g}", pair, k)) from None
-    rows = fourier.coefficients(problem.forces(even))
-    return at_unit_force(pair, k, c2, L, *rows, p0), ample
+    return at_unit_force(pair, problem, forces, c2), ample
+
+
+def _kappa(square: float) -> float:
+    """κ of a wave's end e^{-κ|ξ|} at (c/c0)² = (sinh(κ/2)/(κ/2))²."""
+    excess = math.sqrt(square)
+    return 2 * float(
+        scipy.optimize.brentq(lambda x: math.log(math.sinh(x) / x / excess), 1e-5, 300, xtol=1e-12)
+    )
 
 
 def _dimer(
@@ -249,15 +259,15 @@ def _followed(begin: ExactWave, k: float) -> ExactWave:
     Raises `NoWave` where the branch does not get there, or is lost.
     """
     masses, L = begin.masses, begin.half_period
-    problem = fourier.problem(masses, begin.k, L, _rough(masses, max(begin.k, k), L))
+    problem = fourier.Problem(masses, begin.k, L, _rough(masses, max(begin.k, k), L))
     try:
         z, c2, _ = problem.wave(*_guess(masses, begin.k, problem.xi, begin))
         z, c2 = problem.followed(z, c2, k)
     except np.linalg.LinAlgError:
         lost = "the branch of waves ends, or is lost, on the way"
         raise NoWave(_named(lost, masses, k)) from None
-    near = at_unit_force(masses, k, c2, L, *fourier.coefficients(problem.forces(z)))
-    return solve(masses, k, L, start=near)
+    problem.k = k
+    return solve(masses, k, L, start=at_unit_force(masses, problem, z, c2))
 
 
 def solve(
@@ -278,15 +288,15 @@ def solved(
 ) -> tuple[ExactWave, float]:  # fmt: skip
     """`solve`, and what was asked for besides: the "mass", as 1/m2, or the "kick" in the middle of
     the pulse that keeps the wave from having a tail."""
-    problem = fourier.problem(masses, k, half_period, points)
+    points = None if points is None else integer(points, "points", 8, 2000)
+    problem = fourier.Problem(masses, k, half_period, points)
     try:
         z, c2, found = problem.wave(*_guess(masses, k, problem.xi, start), unknown)
     except np.linalg.LinAlgError:
         raise NoWave(_named("Newton's method finds no wave", masses, k)) from None
     if unknown == "mass":
         masses = masses[0], 1 / found
-    even, odd = fourier.coefficients(problem.forces(z))
-    return at_unit_force(masses, k, c2, problem.L, even, odd), found
+    return at_unit_force(masses, problem, z, c2), found
 
 
 def _guess(

@@ -41,10 +41,6 @@ class Struck(Profile):
     widths : FWHM of force and strain at a contact, the mean over the two as they are.
     """
 
-    masses: tuple[float, float]
-    k: float
-    c2: float
-    half_period: float
     xi: Array
     front: Array
     widths: tuple[float, float]
