@@ -12,7 +12,7 @@ speed, and from the striker's momentum, as if the pulse took all of it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
@@ -22,7 +22,6 @@ import sympy as sp
 
 from lwa import Cell, Dimer, canonical_wave, homogenize
 from lwa.command.terminal import quantities
-from lwa.compact.numeric import Array
 from validation.lattice.effort import RunProgress, silent
 from validation.lattice.run import Run
 from validation.lattice.simulate import twice
@@ -92,23 +91,15 @@ class Comparison:
         """Theory over lattice, less 1."""
         return self.theory[source] / self.lattice.value - 1
 
-    def cells(self, source: str) -> tuple[float, float, str]:
-        """The theory's number and its error, for programs and for people."""
-        told = "set" if SOURCES[source] == self.quantity else percent(self.error(source))
-        return self.theory[source], self.error(source), told
-
-
-@dataclass(frozen=True, eq=False)
-class Record:
-    """The dynamic force of one bead, in N, over time, in s: the lattice's and the theory's.
-
-    The theory's is that of amplitude F_m, with its peak where the lattice's is.
-    """
-
-    bead: int
-    time: Array
-    lattice: Array
-    theory: Array
+    @property
+    def cells(self) -> tuple[Any, ...]:
+        """Of a table: by source the theory's number and its error, for programs and for people."""
+        cells: list[Any] = [self.quantity, self.unit, self.lattice]
+        for source, quantity in SOURCES.items():
+            error = self.error(source)
+            told = "set" if quantity == self.quantity else percent(error)
+            cells += [self.theory[source], error, told]
+        return tuple(cells)
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,28 +111,19 @@ class Paper:
     sensors: tuple[int, int]
     gravity: float
     rows: tuple[Comparison, ...]
-    records: tuple[Record, ...]
+    records: tuple[Curve, ...]
 
     def report(self) -> Report:
         """``velocity_value``, ``beads``, ``sensors``, ``gravity_value``, ``rows``: ``quantity``,
         ``unit``, ``lattice_value``, ``lattice_error_value``, and by what sets the theory's
         amplitude (``F_m``, ``speed``, ``striker``) ``theory_value`` {…} and ``error_value`` {…};
         in the picture the forces at both sensors over time."""
-        rows = tuple(
-            (row.quantity, row.unit, row.lattice, *(c for s in SOURCES for c in row.cells(s)))
-            for row in self.rows
-        )
-        curves = []
-        for i, record in enumerate(self.records):
-            names = f"bead {record.bead}, lattice", "" if i else "theory, amplitude from F_m"
-            curves += [Curve(names[0], 1e6 * record.time, record.lattice, f"C{i}-"),
-                       Curve(names[1], 1e6 * record.time, record.theory, f"C{i}--")]  # fmt: skip
         gravity = f"gravity {self.gravity:g} m/s²" if self.gravity else "no gravity"
         return Report(
             f"{self.beads} beads, steel (the striker, {self.velocity:g} m/s) and PTFE in turn, "
             f"steel wall, {gravity}; sensors in beads {self.sensors[0]} and {self.sensors[1]}",
-            (Table(_COLUMNS, rows, "rows"),),
-            panels=(Panel("time (µs)", "force, mean of the bead's contacts (N)", tuple(curves)),),
+            (Table(_COLUMNS, tuple(row.cells for row in self.rows), "rows"),),
+            panels=(Panel("time (µs)", "force, mean of the bead's contacts (N)", self.records),),
             notes=(_NOTE,),
             data={"velocity_value": self.velocity, "beads": self.beads, "sensors": self.sensors,
                   "gravity_value": self.gravity},
@@ -150,8 +132,7 @@ class Paper:
 
 @dataclass(frozen=True)
 class Train:
-    """One run's dynamic pulses at beads or at contacts, by their numbers, from before the wall's
-    answer."""
+    """A run's dynamic pulses by the numbers of beads or contacts, from before the wall's answer."""
 
     pulses: Mapping[int, Pulse]
 
@@ -236,16 +217,8 @@ def paper(
 ) -> Paper:
     """The steel:PTFE chain of the paper: speed, peak force and FWHM.
 
-    Parameters
-    ----------
-    velocity : of the striker, in m/s, from 1e-6 to 1000.
-    beads : in the chain, the striker included, from 8 to 2000.
-    sensors : numbers of two beads, counted from 1, that the pulse passes in this order.
-    gravity : in m/s², towards the wall.
-    run_progress : of the two runs, as for `validation.simulate`.
-
-    Raises `SceneError` for values that cannot be meant, `MeasureError` where the pulse is not
-    whole at a sensor before the wall throws it back.
+    Gravity is in m/s², towards the wall. Raises `SceneError` for values that cannot be meant,
+    `MeasureError` where the pulse is not whole at a sensor before the wall throws it back.
     """
     if not 1e-6 <= real(velocity, "velocity") <= 1000:
         raise SceneError(f"velocity is {velocity:g} m/s: one from 1e-6 to 1000 is wanted")
@@ -275,7 +248,7 @@ def paper(
         )
         for name, (unit, theory) in QUANTITIES.items()
     )  # fmt: skip
-    return Paper(velocity, beads, pair, gravity, rows, _records(run, waves["F_m"]))
+    return Paper(velocity, beads, pair, gravity, rows, tuple(_records(run, waves["F_m"])))
 
 
 def _numbers(run: Run) -> dict[str, float]:
@@ -298,10 +271,11 @@ def _numbers(run: Run) -> dict[str, float]:
     }
 
 
-def _records(run: Run, theory: Compacton) -> tuple[Record, ...]:
+def _records(run: Run, theory: Compacton) -> Iterator[Curve]:
+    """Dynamic forces over time, the theory's with its peak where the lattice's is."""
     pulses = Train.of(run).pulses.items()
-    return tuple(
-        Record(bead, run.time, force - force[0],
-               theory.bead_force(theory.speed * (run.time - pulse.arrival)))
-        for (bead, pulse), force in zip(pulses, run.bead_force, strict=True)
-    )  # fmt: skip
+    for i, ((bead, pulse), force) in enumerate(zip(pulses, run.bead_force, strict=True)):
+        line = theory.bead_force(theory.speed * (run.time - pulse.arrival))
+        name = "" if i else "theory, amplitude from F_m"
+        yield Curve(f"bead {bead}, lattice", 1e6 * run.time, force - force[0], f"C{i}-")
+        yield Curve(name, 1e6 * run.time, line, f"C{i}--")

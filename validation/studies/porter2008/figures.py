@@ -9,10 +9,8 @@ heights, with both moduli of PTFE, and the exponent of V_s ~ F_m^e. Figure 3b is
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import scipy
@@ -39,7 +37,7 @@ from validation.studies.porter2008.experiment import (
     chain_cell,
     chain_runs,
     recorded_chain,
-)
+)  # fmt: skip
 from validation.studies.porter2008.widths import Widths, widths
 from validation.waves.theory import Compacton
 
@@ -55,10 +53,9 @@ HEIGHTS = (0.1, 0.2, 0.4, 0.6, 0.8, 1.0, 1.2)
 MODULI = (1.46e9, 0.6e9)
 """Of PTFE, in Pa: the dynamic one that the paper uses, and the nominal static one."""
 
-_N_TO_1 = (
-    "N:1 chains; the theory is that of the canonical field at the lattice's peak force; ±: by how\n"
-    "much a less accurate run differs"
-)
+_N_TO_1 = """\
+N:1 chains; the theory is that of the canonical field at the lattice's peak force; ±: by how
+much a less accurate run differs"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,8 +68,7 @@ class Forces:
     force: Array
 
 
-@dataclass(frozen=True)
-class Speed:
+class Speed(NamedTuple):
     """The leading pulse of an N:1 chain, and the canonical theory's speed at its peak force."""
 
     N: int
@@ -136,8 +132,7 @@ class Figures:
         ``force_value`` and ``theory_value``; ``scaling``: that of the paper, with the
         dynamic modulus; ``forces``: ``N``, ``beads``, ``time_value``, ``force_value``; ``widths``,
         as `Widths` has it."""
-        speeds = tuple((s.N, s.speed, s.force, s.theory, s.theory / s.speed.value - 1)
-                       for s in self.speeds)  # fmt: skip
+        speeds = tuple((*s, s.theory / s.speed.value - 1) for s in self.speeds)
         rows = tuple((s.E, s.exponent, s.exponent.value - 1 / 6,
                       [V.value for V in s.speeds], [V.error for V in s.speeds],
                       [F.value for F in s.forces], [F.error for F in s.forces], s.theory)
@@ -160,10 +155,8 @@ class Figures:
 
 
 def _forces_panel(record: Forces) -> Panel:
-    curves = (
-        Curve(f"bead {bead}", 1e6 * record.time, force, f"C{i}-")
-        for i, (bead, force) in enumerate(zip(record.beads, record.force, strict=True))
-    )
+    rows = enumerate(zip(record.beads, record.force, strict=True))
+    curves = (Curve(f"bead {bead}", 1e6 * record.time, f, f"C{i}-") for i, (bead, f) in rows)
     return Panel("time (µs)", "force of the bead (N)", tuple(curves), title=f"{record.N}:1 chain")
 
 
@@ -178,15 +171,16 @@ def _scaling_panel(rows: tuple[Scaling, ...]) -> Panel:
 
 
 @study()
-def figures(progress: Progress[Callable[[], Any]] = iter) -> Figures:
+def figures(progress: Progress[Any] = iter) -> Figures:
     """The paper's figures: force records, N:1 chains, force against speed, FWHM. Ten seconds."""
-    records = [partial(forces, N) for N in RECORDED]
-    speeds = [partial(chain_speed, N) for N in range(1, MOST + 1)]
-    scalings = [partial(scaling, E) for E in MODULI]
-    parts: list[Callable[[], Any]] = [*records, *speeds, *scalings, widths]
-    found = [part() for part in progress(parts)]
-    one, two = len(records), len(records) + len(speeds)
-    return Figures(tuple(found[:one]), tuple(found[one:two]), tuple(found[two:-1]), found[-1])
+    parts: list[tuple[Any, ...]] = [(forces, N) for N in RECORDED]
+    parts += [(chain_speed, N) for N in range(1, MOST + 1)]
+    parts += [*((scaling, E) for E in MODULI), (widths,)]
+    found: dict[Any, list[Any]] = {}
+    for part, *of in progress(parts):
+        found.setdefault(part, []).append(part(*of))
+    records, speeds, scalings, (beads,) = found.values()
+    return Figures(tuple(records), tuple(speeds), tuple(scalings), beads)
 
 
 def forces(N: int) -> Forces:
@@ -224,11 +218,8 @@ def chain_speed(N: int) -> Speed:
 def _front(time: Array, above: Array) -> float:
     """When a signal first passes zero, by a cubic spline."""
     first = int(np.argmax(above > 0))
-    return float(
-        scipy.optimize.brentq(
-            scipy.interpolate.CubicSpline(time, above), time[first - 1], time[first]
-        )
-    )
+    spline = scipy.interpolate.CubicSpline(time, above)
+    return float(scipy.optimize.brentq(spline, time[first - 1], time[first]))
 
 
 def scaling(E: float) -> Scaling:
@@ -236,12 +227,9 @@ def scaling(E: float) -> Scaling:
     ptfe = replace(PTFE_BEAD, material=replace(PTFE_BEAD.material, E=E))
     drops = [recorded_chain(SENSORS, math.sqrt(2 * GRAVITY * h), ptfe=ptfe) for h in HEIGHTS]
     pairs = zip(*(simulate_many(drops, rtol=rtol) for rtol in TOLERANCES), strict=True)
-    found = [
-        compared(lambda train: {"V": train.speed, "F": train.peak}, *map(Train.of, pair))
-        for pair in pairs
-    ]
+    found = [(Measured(fine.speed, coarse.speed), Measured(fine.peak, coarse.peak))
+             for fine, coarse in (map(Train.of, pair) for pair in pairs)]  # fmt: skip
+    speeds, forces = zip(*found, strict=True)
     wave = canonical_wave(chain_cell(ptfe=ptfe), HERTZ)
-    theory = (Compacton.of_bead_force(wave, row["F"].value).speed for row in found)
-    return Scaling(
-        E, tuple(row["V"] for row in found), tuple(row["F"] for row in found), tuple(theory)
-    )
+    theory = tuple(Compacton.of_bead_force(wave, force.value).speed for force in forces)
+    return Scaling(E, speeds, forces, theory)
