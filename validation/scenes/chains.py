@@ -19,13 +19,14 @@ from validation.scenes.scene import Scene
 
 
 def struck(masses: Sequence[float], beads: int, k: float = 1.5, **rest: Any) -> Scene:
-    """So many beads at rest, whose masses repeat; the first one has velocity 1.
+    """So many beads at rest, whose masses repeat; the first one has velocity 1 by default.
 
     >>> struck((1, 0.5), 3, duration=1).masses
     (1.0, 0.5, 1.0)
     """
     row = tuple(masses[i % len(masses)] for i in range(beads))
-    return Scene(masses=row, stiffnesses=(1.0,) * (beads - 1), k=k, velocities=(1.0,), **rest)
+    blow = {"velocities": (1.0,)} | rest
+    return Scene(masses=row, stiffnesses=(1.0,) * (beads - 1), k=k, **blow)
 
 
 def numbered(masses: Sequence[Any]) -> Cell:

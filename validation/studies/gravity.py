@@ -32,7 +32,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cache, cached_property
 from typing import Any
 
@@ -82,20 +82,19 @@ def front_width(k: float) -> float:
     """
     mu, turn = (k - 1) / (2 * (k + 1)), np.exp(1j * np.pi / 6)  # where s³ falls fastest
 
-    def front(z: float) -> float:
-        def part(r: float) -> float:
-            s = r * turn
-            wave = np.exp(1j * (s**3 / 3 + z * s - np.pi * mu / 2))
-            return float((s**mu * wave * turn).real)
+    def part(r: float, z: float) -> float:
+        s = r * turn
+        wave = np.exp(1j * (s**3 / 3 + z * s - np.pi * mu / 2))
+        return float((s**mu * wave * turn).real)
 
-        return float(scipy.integrate.quad(part, 0, 8, epsabs=1e-12, epsrel=1e-11, limit=200)[0])
+    def front(z: float, less: float = 0.0) -> float:
+        full = scipy.integrate.quad(part, 0, 8, (z,), epsabs=1e-12, epsrel=1e-11, limit=200)[0]
+        return float(full) - less
 
     top, peak = summit(np.vectorize(front), np.linspace(-2.0, 0.0, 41))
-    ends = (
-        scipy.optimize.brentq(lambda z: front(z) - peak / 2, *sorted((top, other)), xtol=1e-11)
-        for other in (top - 1.6, top + 4)
-    )
-    return float(-np.subtract(*ends))
+    before, behind = (scipy.optimize.brentq(front, top, other, (peak / 2,), xtol=1e-11)
+                      for other in (top - 1.6, top + 4))  # fmt: skip
+    return float(behind - before)
 
 
 @dataclass(frozen=True)
@@ -134,13 +133,10 @@ class Upright:
     def blown(self, velocity: float, **sensors: Any) -> Scene:
         """Struck at the top, until sound has come almost to the end."""
         flight = 2 * self.k / (self.k + 1) * self.beads / float(self.sound(self.beads))
-        scene = struck(
-            self.masses, self.beads, self.k, wall=1.0, gravity=1.0, duration=0.97 * flight,
-            samples=math.ceil(_SAMPLES * flight), **sensors,
+        return struck(
+            self.masses, self.beads, self.k, wall=1.0, gravity=1.0, velocities=(velocity,),
+            duration=0.97 * flight, samples=math.ceil(_SAMPLES * flight), **sensors,
         )  # fmt: skip
-        return replace(scene, velocities=(velocity,))
-
-    # --- weak blows -------------------------------------------------------------------------
 
     def fronts(self) -> tuple[Array, Array, Array]:
         """x and the width in sites of the velocity, means over a cell; the latter also of a less
@@ -158,14 +154,9 @@ class Upright:
 
     def fit(self, x: Array, width: Array, power: float) -> Array:
         """Exponent, and prefactor at the exponent 1/3, with corrections by x^-power, x^{-2/3}."""
-        one, corrections = np.ones_like(x), [x**-power, x ** (-2 / 3)]
-        free, held = (
-            np.linalg.lstsq(np.stack(rows, axis=1), values)[0]
-            for rows, values in (
-                ([np.log(x), one, *corrections], np.log(width)),
-                ([one, *corrections], width / np.cbrt(x)),
-            )
-        )
+        rows = np.stack((np.log(x), np.ones_like(x), x**-power, x ** (-2 / 3)), axis=1)
+        free, held = (np.linalg.lstsq(matrix, values)[0] for matrix, values in
+                      ((rows, np.log(width)), (rows[:, 1:], width / np.cbrt(x))))  # fmt: skip
         return np.array([free[0], held[0]])
 
     def fitted(self, x: Array, width: Array, coarse: Array) -> tuple[Measured, Measured]:
@@ -176,10 +167,9 @@ class Upright:
         values = self.fit(x, width, power)
         others = (self.fit(x, width, other), self.fit(x[half:], width[half:], power),
                   self.fit(x, coarse, power))  # fmt: skip
-        exponent, prefactor = values + np.max(np.abs(np.array(others) - values), axis=0)
-        return Measured(float(values[0]), exponent), Measured(float(values[1]), prefactor)
-
-    # --- strong blows -----------------------------------------------------------------------
+        off = np.max(np.abs(np.array(others) - values), axis=0)
+        exponent, prefactor = map(Measured, values.tolist(), (values + off).tolist())
+        return exponent, prefactor
 
     def pulses(self, velocity: float) -> list[dict[str, float]]:
         """At each place the dynamic force of the contacts over the load, its FWHM in sites, and
@@ -187,30 +177,21 @@ class Upright:
         size = len(self.masses)
         contacts = np.add.outer(self.places(_TOP, _FEW), np.arange(2 * size))
         scene = self.blown(velocity, contact_sensors=np.unique(contacts).tolist())
-        run, numeric, found = (
-            simulate(scene, rtol=_TOLERANCES[0]),
-            self.theory.numeric(),
-            {},
-        )
+        run, numeric, found = simulate(scene, rtol=_TOLERANCES[0]), self.theory.numeric(), {}
         for contact, force in zip(scene.contact_sensors, run.contact_force, strict=True):
             dynamic = force - scene.load[contact]
             part = leading_pulse(np.maximum(dynamic, 0.0), self.k)
-            found[contact] = measure(run.time[part], dynamic[part])
+            pulse = measure(run.time[part], dynamic[part])
+            found[contact] = pulse.arrival, pulse.peak, pulse.fwhm
         rows = []
         for cell in contacts:
-            pulses = [found[contact] for contact in cell]
-            here, further = pulses[:size], pulses[size:]
-            load = float(cell[0] + (size + 1) / 2)
-            speed = np.mean(
-                [size / (b.arrival - a.arrival) for a, b in zip(here, further, strict=True)]
-            )
-            force, width = (np.mean([getattr(p, name) for p in here]) for name in ("peak", "fwhm"))
+            arrival, peak, fwhm = np.array([found[contact] for contact in cell]).T
+            load, force = float(cell[0] + (size + 1) / 2), peak[:size].mean()
+            width = fwhm[:size].mean() * np.mean(size / (arrival[size:] - arrival[:size]))
             p0, p1 = (f ** (1 / self.k) for f in (load, load + force))
-            rows.append({
-                "site": load, "ratio": float(force / load),
-                "width": float(width * speed),
-                "solitary": float(numeric.fwhm(p0, p1 - p0, "force")),
-            })  # fmt: skip
+            solitary = float(numeric.fwhm(p0, p1 - p0, "force"))
+            rows.append({"site": load, "ratio": float(force / load), "width": float(width),
+                         "solitary": solitary})  # fmt: skip
         return rows
 
 
@@ -241,10 +222,8 @@ def gravity(
     beads = integer(beads, "beads", 10 * FIRST, 20_000)
     chains = [Upright(numbered(row), k, beads) for row in ([masses] if masses else CHAINS)]
     jobs = [(chain, blow) for chain in chains for blow in (WEAK, *STRONG)]
-    found = {
-        (chain, blow): chain.fronts() if blow == WEAK else chain.pulses(blow)
-        for chain, blow in progress(jobs)
-    }
+    found = {(chain, blow): chain.fronts() if blow == WEAK else chain.pulses(blow)
+             for chain, blow in progress(jobs)}  # fmt: skip
     return _report(chains, found)
 
 
@@ -279,15 +258,10 @@ def _report(chains: Sequence[Upright], found: Mapping[tuple[Upright, float], Any
                   Curve.of("front", sites, theory * np.cbrt(sites), "C0-")]  # fmt: skip
         for blow, colour in zip(STRONG, ("C1", "C2", "C3"), strict=True):
             pulses = found[chain, blow]
-            strong += [
-                (names, blow, p["site"], p["ratio"], p["width"], p["solitary"],
-                 theory * math.cbrt(p["site"])) for p in pulses
-            ]  # fmt: skip
-            at, *widths = ([p[name] for p in pulses] for name in ("site", "width", "solitary"))
-            for label, values, style in (
-                (f"blow of {blow:g}", widths[0], "s"), ("solitary wave", widths[1], "--"),
-            ):  # fmt: skip
-                curves.append(Curve.of(label, at, values, colour + style))
+            strong += [(names, blow, *p.values(), theory * math.cbrt(p["site"])) for p in pulses]
+            at, width, solitary = ([p[n] for p in pulses] for n in ("site", "width", "solitary"))
+            curves += [Curve.of(f"blow of {blow:g}", at, width, f"{colour}s"),
+                       Curve.of("solitary wave", at, solitary, f"{colour}--")]  # fmt: skip
         panels.append(Panel("site", "FWHM (sites)", tuple(curves), "xy", ", ".join(names)))
     return Report(
         f"Chains of {chains[0].beads} beads under their own weight, k = {chains[0].k:g}",
