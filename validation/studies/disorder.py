@@ -67,8 +67,7 @@ def disorder(
     places = np.linspace(sites / PLACES, sites, PLACES).astype(int)
     # Twice what a pulse needs that keeps all of the blow's momentum.
     duration = 2 * (sites + _BEYOND) / Compacton.of_momentum(theory_at(str(k), 1), 1.0).speed
-    draws = [_masses(spread, sites, seed, i) for i in range(chains)]
-    scenes = [_scene(k, masses, places, duration) for masses in draws]
+    scenes = [_scene(k, _masses(spread, sites, seed, i), places, duration) for i in range(chains)]
     runs = simulate_many(scenes, rtol=_TOLERANCE)
     logs = np.array([_log_forces(next(runs)) for _ in progress(range(chains))])
     coarse = _log_forces(simulate(scenes[0], rtol=10 * _TOLERANCE))
@@ -96,13 +95,10 @@ def _report(title: str, places: Array, logs: Array, numerical: Finding) -> Repor
     bars = Curve.of("mean over chains", places, [m.value for m in means], "C0o",
                     [m.error for m in means])  # fmt: skip
     fit = Curve.of(f"decay {decay.value:.3g} per site", places, line, "C1-")
+    rows = tuple(zip(places.tolist(), means, scatter.tolist(), strict=True))
     return Report(
         f"{title}\ndecay of the peak force per site: {decay}",
-        (
-            Table(
-                _COLUMNS, tuple(zip(places.tolist(), means, scatter.tolist(), strict=True)), "rows"
-            ),
-        ),
+        (Table(_COLUMNS, rows, "rows"),),
         (numerical,),
         (Panel("site", "ln F, less that at the first place", (bars, fit)),),
         ("F: peak force of a contact. ±: standard error of the mean over chains.",),

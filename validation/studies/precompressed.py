@@ -21,7 +21,7 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import cycle
+from itertools import cycle, groupby
 from typing import Any
 
 import numpy as np
@@ -116,8 +116,7 @@ class Wave:
 
     def unit(self, name: str) -> float:
         """By which all chains fall on one curve: √(12 I) of a width."""
-        I = background_wave(self.cell, law=Power(self.k)).I
-        return math.sqrt(12 * I) if name == "fwhm" else 1.0
+        return math.sqrt(12 * self._theory.wave.I) if name == "fwhm" else 1.0
 
     @cached_property
     def exact(self) -> ExactWave | None:
@@ -134,9 +133,13 @@ class Wave:
 
     def theory(self, force: float) -> dict[str, float]:
         """Speed, FWHM of the contact force and bead velocity at a dynamic force."""
-        B = math.expm1(math.log1p(force) / self.k)
+        B = self.strain(force)
         speed, width = self._theory.speed(1.0, B), self._theory.fwhm(1.0, B, "force")
         return {"speed": float(speed), "fwhm": float(width), "peak": B * float(speed) * self.sound}
+
+    def strain(self, force: float) -> float:
+        """What a dynamic force on F0 adds to the strain."""
+        return math.expm1(math.log1p(force) / self.k)
 
     @cached_property
     def places(self) -> tuple[int, ...]:
@@ -154,8 +157,8 @@ class Wave:
         beads = math.ceil((places[-1] + start + found["speed"] * (sites + start)) / 2 / size) * size
         bead = np.arange(beads, dtype=float) - start
         if self.exact is None:
-            B = math.expm1(math.log1p(self.ratio) / self.k)
-            strain, motion = (self._theory.profile(x, 1.0, B) for x in (bead[:-1] + 0.5, bead))
+            strain, motion = (self._theory.profile(x, 1.0, self.strain(self.ratio))
+                              for x in (bead[:-1] + 0.5, bead))  # fmt: skip
             velocity = motion * found["speed"] * self.sound
         else:
             strain, velocity = self.exact.strain(bead[:-1] + 0.5), self.exact.velocity(bead)
@@ -189,18 +192,17 @@ class Wave:
 
     def row(self) -> dict[str, Any]:
         """What is measured, by the columns' keys, and what the theory says of the force there."""
-        runs = twice(self.scene, *_TOLERANCES)
-        found, coarse = (self.read(run, 1) for run in runs)
-        before = self.read(runs[0], 0)
-        theory = self.theory(found["force"])
-        cells: dict[str, Any] = {name: found[name] for name in ("force", "decay")}
+        fine, rough = twice(self.scene, *_TOLERANCES)
+        found, coarse, before = self.read(fine, 1), self.read(rough, 1), self.read(fine, 0)
+        theory, *others = (self.theory(read["force"]) for read in (found, coarse, before))
+        exact = None if self.exact is None else self.exact.c / self.sound
+        cells: dict[str, Any] = {"masses": [str(m) for m in self.cell.masses], "exact": exact}
+        cells |= {name: found[name] for name in ("force", "decay")}
         for name, value in theory.items():
-            over, *others = (read[name] / self.theory(read["force"])[name]
-                             for read in (found, coarse, before))  # fmt: skip
-            error = max(abs(over - other) for other in others) * value
-            cells |= {name: Measured(found[name], found[name] + error),
+            changes = (abs(found[name] / value - read[name] / other[name])
+                       for read, other in zip((coarse, before), others, strict=True))  # fmt: skip
+            cells |= {name: Measured(found[name], found[name] + max(changes) * value),
                       f"{name} theory": value, f"{name} off": value / found[name] - 1}  # fmt: skip
-        cells["exact"] = None if self.exact is None else self.exact.c / self.sound
         return cells
 
 
@@ -222,13 +224,13 @@ _COLUMNS = {
 
 
 def _report(k: float, found: Sequence[tuple[Wave, dict[str, Any]]]) -> Report:
-    rows = [{"masses": [str(m) for m in wave.cell.masses], **cells} for wave, cells in found]
+    rows = [cells for _, cells in found]
     return Report(
         f"Waves on a static force F0 = 1: k = {k:g}, A = D = 1",
         (Table(tuple(_COLUMNS.values()), tuple(tuple(map(row.get, _COLUMNS)) for row in rows),
                "rows"),),
         tuple(_findings(k, rows)),
-        _panels(found),
+        tuple(_panels(found)),
         (
             "F: dynamic contact force, V: speed, c0: that of sound. off: theory/lattice - 1. FWHM: "
             "of the contact force; bead velocity: its peak, the mean over a cell by mass.",
@@ -258,22 +260,18 @@ def _findings(k: float, rows: Sequence[dict[str, Any]]) -> Iterator[Finding]:
                               high=bound, error=error)  # fmt: skip
 
 
-def _panels(found: Sequence[tuple[Wave, dict[str, Any]]]) -> tuple[Panel, ...]:
+def _panels(found: Sequence[tuple[Wave, dict[str, Any]]]) -> Iterator[Panel]:
     """V/c0 and FWHM over √(12 I): one curve of the theory for all chains."""
-    chains: dict[str, list[tuple[Wave, dict[str, Any]]]] = {}
-    for wave, cells in found:
-        chains.setdefault(", ".join(map(str, wave.cell.masses)), []).append((wave, cells))
     ratios = [wave.ratio for wave, _ in found]
-    first, panels, forces = found[0][0], [], np.geomspace(min(ratios), max(ratios), 100)
+    first, forces = found[0][0], np.geomspace(min(ratios), max(ratios), 100)
     theory = [first.theory(force) for force in forces]
     for name, label, scale in (("speed", "V/c0", "x"), ("fwhm", "FWHM of force / √(12 I)", "xy")):
-        curves = [
-            Curve.of(masses, [cells["force"] for _, cells in those],
-                     [cells[name].value / wave.unit(name) for wave, cells in those], mark,
-                     [cells[name].error / wave.unit(name) for wave, cells in those])
-            for (masses, those), mark in zip(chains.items(), cycle("osv^Dx"), strict=False)
-        ]  # fmt: skip
         values = [each[name] / first.unit(name) for each in theory]
-        line = Curve.of("theory, all chains", forces, values, "k-")
-        panels.append(Panel("F/F0", label, (line, *curves), scale))
-    return tuple(panels)
+        curves = [Curve.of("theory, all chains", forces, values, "k-")]
+        chains = groupby(found, lambda part: part[0].cell)
+        for (cell, those), mark in zip(chains, cycle("osv^Dx"), strict=False):
+            points = [(row["force"], row[name].value / wave.unit(name),
+                       row[name].error / wave.unit(name)) for wave, row in those]  # fmt: skip
+            x, y, error = zip(*points, strict=True)
+            curves.append(Curve.of(", ".join(map(str, cell.masses)), x, y, mark, error))
+        yield Panel("F/F0", label, tuple(curves), scale)
