@@ -25,20 +25,11 @@ from validation.pulses.pulse import Measured, MeasureError, Pulse, compared, mea
 from validation.scenes.checks import SceneError, between
 from validation.scenes.scene import Scene
 
-TOLERANCE = 1e-10
-"""Of the run that counts, unless another one is asked for."""
-
-LESS = 1e3
-"""By how much that of the run that gives its errors is larger."""
-
-_ROUNDING = 10
-"""Times the tolerance: what rounding may take of a motion, whose noise the steps would follow."""
-
-READINGS = {"arrival": "arrival", "peak": "peak force", "fwhm": "FWHM"}
-"""What is read off a pulse, and what it is called."""
-
-SPEEDS = {"speed_sites": "sites/time", "speed": "length/time"}
-"""In sites and in length over time."""
+TOLERANCE = 1e-10  # of the run that counts, unless another one is asked for
+LESS = 1e3  # by how much that of the run that gives its errors is larger
+_ROUNDING = 10  # times rtol: what rounding may take of a motion, lest the steps follow its noise
+READINGS = {"arrival": "arrival", "peak": "peak force", "fwhm": "FWHM"}  # off a pulse
+SPEEDS = {"speed_sites": "sites/time", "speed": "length/time"}  # in sites and in length over time
 
 
 @dataclass(frozen=True)

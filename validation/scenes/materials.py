@@ -67,17 +67,8 @@ def contact_stiffness(bead: Bead, other: Bead | Material) -> float:
     return float(hertz.contact(bead, other, math.sqrt))
 
 
-STEEL = Material(E=193e9, nu=0.3)
-"""Stainless steel, type 316."""
-
-PTFE = Material(E=1.46e9, nu=0.46)
-"""Polytetrafluoroethylene, with the dynamic modulus that the paper uses."""
-
-DIAMETER = 4.76e-3
-"""Of all beads of the experiment, in m."""
-
-STEEL_BEAD = Bead(mass=0.45e-3, radius=DIAMETER / 2, material=STEEL)
-"""The heavy bead of the experiment, and its striker."""
-
+STEEL = Material(E=193e9, nu=0.3)  # stainless steel, type 316
+PTFE = Material(E=1.46e9, nu=0.46)  # with the dynamic modulus that the paper uses
+DIAMETER = 4.76e-3  # of all beads of the experiment, in m
+STEEL_BEAD = Bead(mass=0.45e-3, radius=DIAMETER / 2, material=STEEL)  # the striker too
 PTFE_BEAD = Bead(mass=0.123e-3, radius=DIAMETER / 2, material=PTFE)
-"""The light bead of the experiment."""

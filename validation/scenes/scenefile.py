@@ -69,9 +69,7 @@ from validation.scenes.materials import Bead, Material, contact_stiffness
 from validation.scenes.scene import Scene
 
 MOST_BEADS = 1_000_000
-MOST_SAMPLES = 10_000_000
-"""Of all sensors together."""
-
+MOST_SAMPLES = 10_000_000  # of all sensors together
 KEYS = {
     "file": (
         "duration", "samples", "units", "gravity", "precompression", "materials", "beads", "chain",

@@ -26,14 +26,10 @@ from validation.scenes.checks import SceneError, integer, real
 from validation.scenes.scene import Scene
 from validation.waves.theory import Compacton, theory_at
 
-PLACES = 10
-"""Contacts at which the pulse is measured, equally far from each other."""
-
-_BEYOND = 20
-"""Beads behind the last place."""
+PLACES = 10  # contacts at which the pulse is measured, equally far from each other
+_BEYOND = 20  # beads behind the last place
 _TOLERANCE = 1e-6
-_CLOSE = 1e-4
-"""By how much ln F may change at a ten times coarser tolerance."""
+_CLOSE = 1e-4  # by how much ln F may change at a ten times coarser tolerance
 
 
 @study(

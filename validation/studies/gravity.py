@@ -58,15 +58,9 @@ from validation.scenes.checks import SceneError, integer, real
 from validation.scenes.scene import Scene
 from validation.waves.profile import summit
 
-CHAINS = ((1,), (1, "1/2"))
-"""Masses of the cells that are measured unless others are given."""
-
-WEAK, STRONG = 1e-4, (10.0, 100.0, 1000.0)
-"""Velocities of the struck bead."""
-
-FIRST = 100
-"""Beads above the first bead by which the width of a weak blow's front is fitted."""
-
+CHAINS = ((1,), (1, "1/2"))  # masses of the cells that are measured unless others are given
+WEAK, STRONG = 1e-4, (10.0, 100.0, 1000.0)  # velocities of the struck bead
+FIRST = 100  # beads above the first bead by which the width of a weak blow's front is fitted
 _PLACES = 24  # of a weak blow
 _TOP, _FEW = 20, 7  # beads above the first place of a strong blow, and their number
 _SAMPLES = 40.0  # per unit of time

@@ -31,18 +31,11 @@ from validation.scenes.chains import carrying
 from validation.waves.asymptotics import LAWS, QUANTITIES, theory_values
 from validation.waves.theory import Compacton, theory_at
 
-EXPONENTS = (sp.Rational(3, 2), sp.Rational(5, 4), sp.Rational(11, 10))
-"""Hertz, and two on the way to k = 1."""
-
+EXPONENTS = (sp.Rational(3, 2), sp.Rational(5, 4), sp.Rational(11, 10))  # Hertz, and on to 1
 EQUAL = sp.Integer(1)
-LIGHT = sp.Rational(1, 1000)
-"""ω = m2/m1 of the two chains; the second is small enough that its square does not show."""
-
-LIMIT = (4 * LIGHT, LIGHT, LIGHT / 4)
-"""The ω from which the lattice is extrapolated to ω → 0 at k = 3/2."""
-
-AMPLITUDES = (0.01, 1.0, 100.0)
-"""Peak strains B of the runs that measure the exponent of F_m against V_s."""
+LIGHT = sp.Rational(1, 1000)  # ω = m2/m1, so small that its square does not show
+LIMIT = (4 * LIGHT, LIGHT, LIGHT / 4)  # from which the lattice is extrapolated to ω → 0 at k = 3/2
+AMPLITUDES = (0.01, 1.0, 100.0)  # peak strains B, for the exponent of F_m against V_s
 
 
 @dataclass(frozen=True)
@@ -195,8 +188,7 @@ def _numbers(run: Run, compacton: Compacton, place: int) -> dict[str, float]:
     return {name: (value + second[name]) / 2 for name, value in first.items()}
 
 
-Case = tuple[sp.Rational, sp.Rational, float]
-"""k, ω and B of one run."""
+Case = tuple[sp.Rational, sp.Rational, float]  # k, ω and B of one run
 
 
 @study()

@@ -47,12 +47,8 @@ from validation.scenes.scene import Scene
 from validation.waves.profile import ExactWave, summit
 from validation.waves.solver import exact_wave
 
-CHAINS = ((1,), (1, "1/2"), (1, "1/4"), (1, 1, 1, "1/4"))
-"""Masses of the cells that are measured unless others are given."""
-
-RATIOS = 0.01, 0.03, 0.1, 0.3, 1, 3, 10, 30, 100
-"""Dynamic over static force."""
-
+CHAINS = ((1,), (1, "1/2"), (1, "1/4"), (1, 1, 1, "1/4"))  # masses of the cells
+RATIOS = 0.01, 0.03, 0.1, 0.3, 1, 3, 10, 30, 100  # dynamic over static force
 _SITES = 400  # that a wave runs, with places half way, at three quarters and at the end
 _ENDED = 10.0  # widths from a wave's middle to where it is put on the chain
 _TOLERANCES = (1e-7, 1e-5)

@@ -30,8 +30,7 @@ from validation.scenes.checks import SceneError, of_scene
 from validation.scenes.scene import Scene
 from validation.scenes.scenefile import scene
 
-KEPT = (".json", ".npz")
-"""Suffixes of files that hold the scene and the result as well."""
+KEPT = (".json", ".npz")  # suffixes of files that hold the scene and the result as well
 SUFFIXES = (*KEPT, ".csv")
 
 RECORDS = ("time", "contact_force", "compression", "bead_force", "bead_displacement",

@@ -43,11 +43,8 @@ _SI = {
 }  # fmt: skip
 """What is shown, with its unit where a scene is in SI."""
 
-_MOST = 10
-"""Sensors of a kind that are drawn as curves; more as a map."""
-
-_FINEST = 1000
-"""Places and times of a map."""
+_MOST = 10  # sensors of a kind that are drawn as curves; more as a map
+_FINEST = 1000  # places and times of a map
 
 
 _EPILOG = "\n\n".join((

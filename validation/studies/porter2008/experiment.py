@@ -40,11 +40,8 @@ from validation.waves.theory import Compacton
 HERTZ = sp.Rational(3, 2)
 BEADS, SENSORS, VELOCITY = 38, (15, 34), 1.37
 """Of the chain, the striker included; with a sensor, counted from 1; of the striker, in m/s."""
-GRAVITY = 9.81
-"""In m/s²."""
-TOLERANCES = (1e-9, 1e-7)
-"""Of the run that counts, and of the one that gives its errors."""
-
+GRAVITY = 9.81  # in m/s²
+TOLERANCES = (1e-9, 1e-7)  # of the run that counts, and of the one that gives its errors
 SOURCES = {"F_m": "peak bead force F_m", "speed": "speed V_s", "striker": None}
 """What sets the theory's amplitude, and the quantity that then agrees by construction."""
 

@@ -41,17 +41,10 @@ from validation.studies.porter2008.experiment import (
 from validation.studies.porter2008.widths import Widths, widths
 from validation.waves.theory import Compacton
 
-RECORDED = {1: (15, 24, 33), 2: (16, 24, 34)}
-"""N → the beads of figure 2; bead 24 is PTFE in both chains, the others are steel."""
-
-MOST = 22
-"""The largest N of the paper's numerics."""
-
-HEIGHTS = (0.1, 0.2, 0.4, 0.6, 0.8, 1.0, 1.2)
-"""Drop heights of figure 3a, in m."""
-
-MODULI = (1.46e9, 0.6e9)
-"""Of PTFE, in Pa: the dynamic one that the paper uses, and the nominal static one."""
+RECORDED = {1: (15, 24, 33), 2: (16, 24, 34)}  # N → figure 2's beads; 24 is PTFE
+MOST = 22  # the largest N of the paper's numerics
+HEIGHTS = (0.1, 0.2, 0.4, 0.6, 0.8, 1.0, 1.2)  # drop heights of figure 3a, in m
+MODULI = (1.46e9, 0.6e9)  # of PTFE, in Pa: dynamic, which the paper uses, and nominal static
 
 _N_TO_1 = """\
 N:1 chains; the theory is that of the canonical field at the lattice's peak force; ±: by how

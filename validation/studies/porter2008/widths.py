@@ -31,12 +31,8 @@ from validation.studies.porter2008.experiment import (
 )  # fmt: skip
 from validation.waves.theory import Compacton
 
-FIRST_BEAD = 10
-"""From here on the width no longer changes on its way; the average starts here."""
-
-STATED = {"m1 ≫ m2": 0.092, "m2/m1 = 0.27": 0.025, "m1 = m2": 0.228}
-"""The paper's errors of its three lines."""
-
+FIRST_BEAD = 10  # from here on the width no longer changes on its way; the average starts here
+STATED = {"m1 ≫ m2": 0.092, "m2/m1 = 0.27": 0.025, "m1 = m2": 0.228}  # the paper's
 READINGS = {
     "contact force": ("contacts", "force"),
     "bead force": ("beads", "bead force"),
