@@ -22,7 +22,7 @@ from validation.report.panel import Curve, Panel
 from validation.report.result import Report
 from validation.report.table import Column, Finding, Table
 from validation.scenes.chains import struck
-from validation.scenes.checks import SceneError, integer, real
+from validation.scenes.checks import between, integer
 from validation.scenes.scene import Scene
 from validation.waves.theory import Compacton, theory_at
 
@@ -56,8 +56,7 @@ def disorder(
     Raises `SceneError` for numbers that cannot be meant, `lwa.NoSolitaryWave` for k ≤ 1, and
     `MeasureError` where a pulse does not come through.
     """
-    if not 0 <= real(spread, "spread") <= 0.5:
-        raise SceneError(f"spread is {spread:g}: one from 0 to 0.5 is wanted")
+    between(spread, "spread", 0, 0.5, "one from 0 to 0.5 is wanted")
     chains, seed = integer(chains, "chains", 2, 10_000), integer(seed, "seed", 0)
     sites = integer(sites, "sites", 5 * PLACES, 10_000)
     places = np.linspace(sites / PLACES, sites, PLACES).astype(int)

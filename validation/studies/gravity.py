@@ -54,7 +54,7 @@ from validation.report.result import Report
 from validation.report.table import Column, Finding, Table
 from validation.report.text import percent
 from validation.scenes.chains import numbered, struck
-from validation.scenes.checks import SceneError, integer, real
+from validation.scenes.checks import between, integer
 from validation.scenes.scene import Scene
 from validation.waves.profile import summit
 
@@ -208,11 +208,9 @@ def gravity(
 
     Raises `SceneError` for numbers that cannot be meant, k from 3 on among them.
     """
-    if not 1.1 <= real(k, "k") <= 1.75:
-        raise SceneError(
-            f"k is {k:g}: one from 1.1 to 1.75 is wanted; the nearer to 3, where the front's width "
-            "ceases to go as the depth's third root, the more beads it takes to see it"
-        )
+    between(k, "k", 1.1, 1.75,
+            "one from 1.1 to 1.75 is wanted; the nearer to 3, where the front's width ceases to go "
+            "as the depth's third root, the more beads it takes to see it")  # fmt: skip
     beads = integer(beads, "beads", 10 * FIRST, 20_000)
     chains = [Upright(numbered(row), k, beads) for row in ([masses] if masses else CHAINS)]
     jobs = [(chain, blow) for chain in chains for blow in (WEAK, *STRONG)]
