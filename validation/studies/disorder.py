@@ -40,13 +40,9 @@ _CLOSE = 1e-4  # by how much ln F may change at a ten times coarser tolerance
     option("--seed", default=1, says="Of the random numbers; the same seed, the same chains."),
 )
 def disorder(
-    k: float = 1.5,
-    spread: float = 0.1,
-    chains: int = 20,
-    sites: int = 200,
-    seed: int = 1,
+    k: float = 1.5, spread: float = 0.1, chains: int = 20, sites: int = 200, seed: int = 1,
     progress: Progress[int] = iter,
-) -> Report:
+) -> Report:  # fmt: skip
     """Decay of a pulse in chains of random masses, with error bars over chains.
 
     ``decay_value`` per site, its error, and ``rows``: ``site``, ``log_force_value`` and its error,

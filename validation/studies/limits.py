@@ -16,12 +16,13 @@ from typing import Any
 
 import numpy as np
 import sympy as sp
+from scipy.interpolate import CubicSpline
 
 from lwa import Dimer, TravelingWave, homogenize
 from lwa.duration import Progress
 from validation.lattice.run import Run
 from validation.lattice.simulate import simulate
-from validation.pulses.pulse import Measured, compared, derived, impulse, measure, speed
+from validation.pulses.pulse import Measured, compared, derived, measure, speed
 from validation.report.command import study
 from validation.report.panel import Curve, Panel
 from validation.report.result import Report
@@ -177,8 +178,8 @@ def _numbers(run: Run, compacton: Compacton, place: int) -> dict[str, float]:
         sites = run.scene.contact_sensors[here] - run.scene.contact_sensors[here - 2]
         V = speed(before, pulse, sites)
         reach = 0.6 * compacton.support / V
-        ends = pulse.arrival - reach, pulse.arrival + reach
-        push = impulse(run.time, run.contact_force[here], *ends)
+        force = CubicSpline(run.time, run.contact_force[here])
+        push = float(force.integrate(pulse.arrival - reach, pulse.arrival + reach))
         sides.append({
             width: pulse.fwhm * V, strain_width: strain.fwhm * V,
             support: unit_support * push * V / pulse.peak,

@@ -65,11 +65,9 @@ _WEAKEST, _STRONGEST = 1e-3, 1e4
            says="Dynamic over static force."),
 )  # fmt: skip
 def precompressed(
-    k: float = 1.5,
-    masses: Sequence[Any] = (),
-    ratios: Sequence[Any] = RATIOS,
+    k: float = 1.5, masses: Sequence[Any] = (), ratios: Sequence[Any] = RATIOS,
     progress: Progress[Any] = iter,
-) -> Report:
+) -> Report:  # fmt: skip
     """Waves of a chain under load: speed, width and bead velocity against the theory. Fifteen
     seconds.
 

@@ -216,7 +216,7 @@ def _dimer(
                 return solve(pair, k, L, start=waves[-1])
     if waves:
         pulse = _pulse(pair, k)
-        for wave in sorted(waves, key=lambda wave: pulse.apart(wave, pulse.pulse)):
+        for wave in sorted(waves, key=pulse.apart):
             with suppress(NoWave):
                 return solve(pair, k, wave.half_period, start=wave)
     lengths = f"{periods[0]:.4g}" + f" to {periods[-1]:.4g}" * (len(periods) > 1)

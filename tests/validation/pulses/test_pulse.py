@@ -15,7 +15,6 @@ from validation.pulses.pulse import (
     MeasureError,
     Pulse,
     derived,
-    impulse,
     measure,
     speed,
 )
@@ -38,8 +37,6 @@ def test_an_arch(arrival, peak, beta):
     assert pulse.peak == pytest.approx(peak, rel=1e-7)
     assert pulse.fwhm == pytest.approx(WIDTH / beta, rel=1e-7)
     assert (pulse.rise + pulse.fall) / 2 == pytest.approx(arrival, abs=1e-6)
-    area = impulse(t, arch(t, arrival, peak, beta), -5, 5)
-    assert area == pytest.approx(peak * 5 * math.pi / 16 / beta, rel=1e-7)
 
 
 def test_the_error_falls_with_the_fourth_power_of_the_step():
@@ -95,14 +92,6 @@ def test_records_without_a_whole_pulse(time, signal, message):
     with pytest.raises(MeasureError, match=f"^{message}") as caught:
         measure(time, signal)
     assert isinstance(caught.value, InputError)
-
-
-def test_impulse_of_a_part():
-    t = np.linspace(0, 4, 9)
-    assert impulse(t, t**3, 1.25, 3.1) == pytest.approx((3.1**4 - 1.25**4) / 4, rel=1e-14)
-    for start, end in ((-1, 2), (1, 5), (2, 2), (3, 1)):
-        with pytest.raises(MeasureError, match=r"is not within the record, 0 … 4"):
-            impulse(t, t, start, end)
 
 
 def test_speed():

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import chain, pairwise
 from typing import Any
 
 import numpy as np
@@ -91,12 +91,12 @@ class Comparison:
     @property
     def cells(self) -> tuple[Any, ...]:
         """Of a table: by source the theory's number and its error, for programs and for people."""
-        cells: list[Any] = [self.quantity, self.unit, self.lattice]
-        for source, quantity in SOURCES.items():
-            error = self.error(source)
-            told = "set" if quantity == self.quantity else percent(error)
-            cells += [self.theory[source], error, told]
-        return tuple(cells)
+        by_source = (
+            (self.theory[source], self.error(source),
+             "set" if quantity == self.quantity else percent(self.error(source)))
+            for source, quantity in SOURCES.items()
+        )  # fmt: skip
+        return self.quantity, self.unit, self.lattice, *chain.from_iterable(by_source)
 
 
 @dataclass(frozen=True, eq=False)
@@ -179,12 +179,9 @@ def chain_cell(N: int = 1, ptfe: Bead = PTFE_BEAD) -> Cell:
 
 
 def recorded_chain(
-    sensors: Sequence[int],
-    velocity: float = VELOCITY,
-    N: int = 1,
-    ptfe: Bead = PTFE_BEAD,
+    sensors: Sequence[int], velocity: float = VELOCITY, N: int = 1, ptfe: Bead = PTFE_BEAD,
     beads: int = BEADS,
-) -> Scene:
+) -> Scene:  # fmt: skip
     """The N:1 chain, struck, for as long as the pulse takes to its wall."""
     wave = canonical_wave(chain_cell(N, ptfe), HERTZ)
     pulse = Compacton.of_momentum(wave, STEEL_BEAD.mass * velocity)
@@ -206,12 +203,9 @@ def chain_runs(sensors: Sequence[int], **options: Any) -> tuple[Run, Run]:
            says="Let the chain stand upright, under its own weight."),
 )  # fmt: skip
 def paper(
-    velocity: float = VELOCITY,
-    beads: int = BEADS,
-    sensors: tuple[int, int] = SENSORS,
-    gravity: float = 0.0,
-    run_progress: RunProgress = silent,
-) -> Paper:
+    velocity: float = VELOCITY, beads: int = BEADS, sensors: tuple[int, int] = SENSORS,
+    gravity: float = 0.0, run_progress: RunProgress = silent,
+) -> Paper:  # fmt: skip
     """The steel:PTFE chain of the paper: speed, peak force and FWHM.
 
     Gravity is in m/s², towards the wall. Raises `SceneError` for values that cannot be meant,
@@ -222,10 +216,8 @@ def paper(
     beads = integer(beads, "beads", 8, 2000)
     pair = tuple(integer(bead, "sensor", 2, beads - 1) for bead in items(sensors, "sensors"))
     if len(pair) != 2 or not pair[0] < pair[1]:
-        raise SceneError(
-            f"sensors are {', '.join(map(str, pair))}: two beads are wanted, the one nearer to "
-            "the striker first"
-        )
+        wanted = "two beads are wanted, the one nearer to the striker first"
+        raise SceneError(f"sensors are {', '.join(map(str, pair))}: {wanted}")
     wave = homogenize(chain_cell(), k=HERTZ).pde.traveling_wave()
     striker = Compacton.of_momentum(wave, STEEL_BEAD.mass * velocity)
     # Ample: the pulse that had all the momentum would need two thirds of this to the wall.
@@ -239,10 +231,8 @@ def paper(
         "striker": striker,
     }
     rows = tuple(
-        Comparison(
-            name.format(first=pair[0], second=pair[1]), unit, numbers[name],
-            {source: theory(wave) for source, wave in waves.items()},
-        )
+        Comparison(name.format(first=pair[0], second=pair[1]), unit, numbers[name],
+                   {source: theory(wave) for source, wave in waves.items()})
         for name, (unit, theory) in QUANTITIES.items()
     )  # fmt: skip
     return Paper(velocity, beads, pair, gravity, rows, tuple(_records(run, waves["F_m"])))
