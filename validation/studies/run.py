@@ -32,18 +32,14 @@ from validation.scenes.scene import Scene
 from validation.scenes.scenefile import document, read
 from validation.studies.records import KEPT, SUFFIXES, load, store
 
-_NOTE = (
-    "The first pulse at each sensor, dynamic forces, in {} units. ±: by how much a less\naccurate "
-    "run differs."
-)
-
-_SI = {
+_NOTE = """\
+The first pulse at each sensor, dynamic forces, in {} units. ±: by how much a less
+accurate run differs."""
+_SI = {  # what is shown, with its unit where a scene is in SI
     "arrival": "arrival (s)", "peak force": "peak force (N)", "FWHM": "FWHM (s)",
     "sites/time": "sites/s", "length/time": "m/s",
     "time": "time (s)", "dynamic force": "dynamic force (N)",
 }  # fmt: skip
-"""What is shown, with its unit where a scene is in SI."""
-
 _MOST = 10  # sensors of a kind that are drawn as curves; more as a map
 _FINEST = 1000  # places and times of a map
 
@@ -87,11 +83,8 @@ def report(found: Recording) -> Report:
          _table("speed", ("from", "to"), SPEEDS, says, found.speeds)),
         panels=tuple(_panels(tracks(run), says)),
         notes=("\n".join(missing), note if found.sensors else ""),
-        data={
-            "scene": document(scene),
-            "energy_drift_value": run.energy_drift,
-            "momentum_drift_value": run.momentum_drift,
-        },
+        data={"scene": document(scene), "energy_drift_value": run.energy_drift,
+              "momentum_drift_value": run.momentum_drift},
     )  # fmt: skip
 
 
