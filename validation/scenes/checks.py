@@ -36,13 +36,7 @@ def one_of(value: Any, choices: Collection[str], name: str) -> str:
 
 
 def of_scene(read: Callable[P, T]) -> Callable[P, T]:
-    """The same function, whose refusals are `SceneError`.
-
-    >>> positive(-1, "duration")
-    Traceback (most recent call last):
-        ...
-    validation.scenes.checks.SceneError: duration is -1: it must be positive
-    """
+    """The same function, whose refusals are `SceneError`."""
 
     @wraps(read)
     def checked(*args: P.args, **options: P.kwargs) -> T:

@@ -1,7 +1,7 @@
 """A pulse running down a chain under its own weight: how its width grows with depth.
 
-The beads hang on nothing and stand on a wall; units are their mean mass, A, D and g. Under x beads
-the load is F0 = x and the speed of sound, in sites per unit of time, c0(x) = √(k x^{(k-1)/k}).
+The beads stand on a wall; units are their mean mass, A, D and g. Under x beads the load is F0 = x
+and the speed of sound, in sites per unit of time, c0(x) = √(k x^{(k-1)/k}).
 
 **A weak blow** at the top bead. Frequencies are kept on the way down, and a wave of frequency ω has
 there the wavenumber q = ω/c0 + I ω³/(2 c0³) + …, I that of the linear chain, at any load. The front
@@ -14,18 +14,16 @@ for μ = 0 Airy's function; μ comes from the top, where c0 ∝ x^{(k-1)/2k} sta
 blow's long waves are Hankel functions of order 1/(k+1). The front's width in sites is c0 times that
 in time, and c0³ S = 2k/(3-k) x for k < 3:
 
-    width = w (3 I k x / (3-k))^{1/3},    w the FWHM of the integral above in z.
+    width = w (3 I k x / (3-k))^{1/3},    w the FWHM of the integral above in z,
 
-That is (2k/(3-k))^{1/3} times what a front comes to at constant speed, w (3 I x/2)^{1/3}: what has
-spread above is stretched as sound speeds up. From k = 3 on most is spread at the top, and the
-exponent is no longer 1/3. Where the waves are not short beside x they are no rays: a correction of
-x^{-2/3} on the way, and one from the top that falls as x^{-(3-k)/3k}, where it is of order ω², or
-as x^{-2(3-k)/3(k+1)}, where of order ω^{4k/(k+1)}. The fit holds the first and the last, and the
-error bars what the other makes of it.
+(2k/(3-k))^{1/3} times that at constant speed: what has spread above is stretched as sound speeds
+up. From k = 3 on most is spread at the top, and the exponent is no longer 1/3. Where the waves are
+not short beside x they are no rays: a correction of x^{-2/3} on the way, and one from the top that
+falls as x^{-(3-k)/3k}, where it is of order ω², or as x^{-2(3-k)/3(k+1)}, where of order
+ω^{4k/(k+1)}. The fit holds the first and the last, and the error bars what the other makes of it.
 
-**A strong blow** makes the solitary wave of the load at its depth (`lwa.background`). Its width
-grows, too, as the load does, in the end faster than x^{1/3}, and when it comes to that of the front
-of a weak blow, the pulse falls behind it and follows the latter.
+**A strong blow** makes the solitary wave of the load at its depth (`lwa.background`), until that is
+as wide as the front of a weak blow, which the pulse then follows.
 """
 
 from __future__ import annotations
@@ -133,8 +131,8 @@ class Upright:
         )  # fmt: skip
 
     def fronts(self) -> tuple[Array, Array, Array]:
-        """x and the width in sites of the velocity, means over a cell; the latter also of a less
-        accurate run."""
+        """x and the width in sites of the velocity, and that of a less accurate run; means over a
+        cell."""
         beads = np.add.outer(self.places(FIRST, _PLACES), np.arange(len(self.masses)))
         x = beads + 0.5  # half of its own weight is above a bead's middle
 
@@ -166,8 +164,8 @@ class Upright:
         return exponent, prefactor
 
     def pulses(self, velocity: float) -> list[dict[str, float]]:
-        """At each place the dynamic force of the contacts over the load, its FWHM in sites, and
-        that of the solitary wave of this force on this load; means over a cell."""
+        """At each place dynamic force over load, its FWHM in sites, and that of the solitary wave
+        of this force on this load; means over a cell."""
         size = len(self.masses)
         contacts = np.add.outer(self.places(_TOP, _FEW), np.arange(2 * size))
         scene = self.blown(velocity, contact_sensors=np.unique(contacts).tolist())
@@ -236,6 +234,12 @@ _STRONG = (
     Column("front_value", "front", "sites", format=".2f"),
 )
 
+_WEAK_NOTE = f"""\
+Weak blows, of {WEAK:g}: width in sites at x sites, from {FIRST} on, prefactor x^exponent."""
+_STRONG_NOTE = """\
+Strong blows: width of the dynamic contact force F on the load F0, of the solitary wave of
+the same F on F0, and of a weak blow's front."""
+
 
 def _report(chains: Sequence[Upright], found: Mapping[tuple[Upright, float], Any]) -> Report:
     weak, strong, panels = [], [], []
@@ -257,14 +261,8 @@ def _report(chains: Sequence[Upright], found: Mapping[tuple[Upright, float], Any
         panels.append(Panel("site", "FWHM (sites)", tuple(curves), "xy", ", ".join(names)))
     return Report(
         f"Chains of {chains[0].beads} beads under their own weight, k = {chains[0].k:g}",
-        (
-            Table(_WEAK, tuple(weak), "rows",
-                  note=f"Weak blows, of {WEAK:g}: width in sites at x sites, from {FIRST} on, "
-                  "prefactor x^exponent."),
-            Table(_STRONG, tuple(strong), "strong",
-                  note="Strong blows: width of the dynamic contact force F on the load F0, of the "
-                  "solitary wave of\nthe same F on F0, and of a weak blow's front."),
-        ),
+        (Table(_WEAK, tuple(weak), "rows", note=_WEAK_NOTE),
+         Table(_STRONG, tuple(strong), "strong", note=_STRONG_NOTE)),
         tuple(_findings(weak, strong)),
         tuple(panels),
         ("Units: the mean mass, A, D, g.",),

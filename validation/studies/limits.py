@@ -41,10 +41,7 @@ AMPLITUDES = (0.01, 1.0, 100.0)  # peak strains B, for the exponent of F_m again
 
 @dataclass(frozen=True)
 class Row:
-    """One comparison.
-
-    ``omega`` is 0 for the limit ω → 0, ``k`` is None where all of `EXPONENTS` enter.
-    """
+    """One comparison; omega 0: the limit ω → 0, no k: all of `EXPONENTS` enter."""
 
     quantity: str
     k: sp.Rational | None
@@ -108,9 +105,8 @@ class Limits:
     def report(self) -> Report:
         """``rows``: ``quantity``, ``k`` and ``omega`` (exact; ``k`` null where all enter, ``omega``
         0 for the limit), ``theory`` (exact), ``theory_value``, ``lattice_value``,
-        ``lattice_error_value`` (absolute), ``error_value`` (theory over lattice - 1),
-        ``bound_value``, ``ok``; in the picture |error| against k - 1, with the leading powers that
-        it must approach."""
+        ``lattice_error_value``, ``error_value`` (theory over lattice - 1), ``bound_value``, ``ok``.
+        """
         rows = tuple(row.cells for row in self.rows)
         return Report(
             "The theory's limits on the lattice",
@@ -120,6 +116,7 @@ class Limits:
         )
 
     def _panel(self, omega: sp.Rational) -> Panel:
+        """|error| against k - 1, with the leading powers that it must approach."""
         epsilon = np.geomspace(float(EXPONENTS[-1] - 1) / 2, float(EXPONENTS[0] - 1), 2)
         curves = []
         for i, (quantity, law) in enumerate(LAWS.items()):
