@@ -88,11 +88,6 @@ def record(
 
     The options are those of `validation.simulate`, which raises what this raises; rtol is from
     1e-13 to 1e-5.
-
-    >>> scene = Scene(masses=(1,) * 8, stiffnesses=(1,) * 7, k=1.5, duration=12, velocities=(1,),
-    ...               contact_sensors=(4, 5))
-    >>> round(record(scene).speeds[0].numbers["speed_sites"].value, 7)
-    0.8388521
     """
     rtol = between(rtol, "rtol", 1e-13, 1e-2 / LESS)
     motion = Motion(scene)
@@ -109,10 +104,8 @@ def record(
 
 
 def tracks(run: Run) -> Tracks:
-    """What the sensors of a run recorded, beads first.
-
-    A contact sits midway between its beads, that with the wall half a spacing behind the last one.
-    """
+    """What the sensors of a run recorded, beads first. A contact sits midway between its beads,
+    that with the wall half a spacing behind the last one."""
     scene = run.scene
     load = np.zeros(scene.size + 1)  # of the contacts on the left and right of the beads
     load[1 : scene.contact_count + 1] = scene.load
@@ -131,14 +124,7 @@ def tracks(run: Run) -> Tracks:
 
 
 def first_pulse(time: Array, force: Array) -> Pulse:
-    """Measure the first stretch of a record that is above half its highest value.
-
-    Raises `MeasureError` where `validation.pulses.pulse.measure` does.
-
-    >>> t = np.linspace(0, 4, 401)
-    >>> round(first_pulse(t, np.sin(np.pi * t) ** 2 * (1 + t / 8)).arrival, 1)
-    0.5
-    """
+    """`measure` the first stretch of a record that is above half its highest value."""
     if not force.max() > 0:
         return measure(time, force)  # which says what is wrong
     above = force > force.max() / 2

@@ -15,10 +15,8 @@ from validation.scenes.checks import SceneError, of_scene, positive, real
 
 @dataclass(frozen=True)
 class Material:
-    """An isotropic elastic solid: Young's modulus E in Pa, Poisson's ratio ν.
-
-    Raises `SceneError` unless E > 0 and -1 < ν ≤ 1/2.
-    """
+    """An isotropic elastic solid: Young's modulus E in Pa, Poisson's ratio ν. Raises `SceneError`
+    unless E > 0 and -1 < ν ≤ 1/2."""
 
     E: float
     nu: float
@@ -36,10 +34,7 @@ class Material:
 
 @dataclass(frozen=True)
 class Bead:
-    """A sphere: mass in kg, radius in m, material.
-
-    Raises `SceneError` unless mass and radius are positive.
-    """
+    """A sphere: mass in kg and radius in m, both positive or a `SceneError`, and material."""
 
     mass: float
     radius: float

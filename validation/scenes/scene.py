@@ -55,11 +55,6 @@ class Scene:
     units : "SI", or nothing for any that agree; what results say.
 
     Raises `SceneError` for whatever cannot be meant.
-
-    >>> Scene(masses=(1, 1), stiffnesses=(1,), k=1.5, duration=-1)
-    Traceback (most recent call last):
-        ...
-    validation.scenes.checks.SceneError: duration is -1: it must be positive
     """
 
     masses: tuple[float, ...]

@@ -93,11 +93,7 @@ def read(path: str | Path) -> Scene:
 
 @of_scene
 def scene(content: Any) -> Scene:
-    """The scene of a parsed file, see the module; raises `SceneError`.
-
-    >>> scene({"duration": 1, "chain": {"cell": [1, 0.5], "repeat": 2, "k": 1.5}}).masses
-    (1.0, 0.5, 1.0, 0.5)
-    """
+    """The scene of a parsed file, see the module; raises `SceneError`."""
     if isinstance(content, dict) and "scene" in content:
         content = content["scene"]
     file = Table(content, "", KEYS["file"])

@@ -17,7 +17,6 @@ from validation.report.result import Report
 from validation.report.table import Column, Table
 from validation.scenes.chains import numbered
 from validation.waves.profile import ExactWave
-from validation.waves.resonances import Resonances
 from validation.waves.resonances import resonances as special_ratios
 from validation.waves.solver import exact_wave, measured
 
@@ -71,27 +70,6 @@ def wave_report(wave: ExactWave) -> Report:
     )  # fmt: skip
 
 
-def resonances_report(found: Resonances) -> Report:
-    """``k_value`` and, in falling order, ``mass_ratios``, ``c2_value``, ``tail_value``,
-    ``residual_value``."""
-    columns = (
-        Column("mass_ratio", "m2/m1", format=".9f"),
-        Column("c2_value", "c² at peak force 1", format=".9f"),
-        Column("tail_value", "tail", format=".0e"),
-        Column("residual_value", "residual", format=".0e"),
-    )
-    rows = tuple((wave.omega, wave.c2, wave.tail, wave.residual) for wave in found.waves)
-    xi = np.linspace(-5, 5, 1001)
-    curves = (Curve.of(f"m2/m1 = {w.omega:.4f}", xi, w.force(xi), "-") for w in found.waves)
-    names = ("mass_ratios", *(column.key for column in columns[1:]))
-    return Report(
-        f"k = {found.k:g}: dimers with a solitary wave",
-        (Table(columns, rows),),
-        panels=(Panel("ξ / D", "force of a contact", tuple(curves)),),
-        data={"k_value": found.k} | dict(zip(names, zip(*rows, strict=True), strict=True)),
-    )
-
-
 @study(
     EXPONENT,
     option("--masses", callback=quantities, default="1", says="One mass, or the two of a dimer."),
@@ -119,5 +97,24 @@ def exact(
 
 @study(EXPONENT, option("--count", default=3, says="How many, from above."))
 def resonances(k: float, count: int) -> Report:
-    """The mass ratios m2/m1 < 1 at which a dimer has a solitary wave."""
-    return resonances_report(special_ratios(k, count))
+    """The mass ratios m2/m1 < 1 at which a dimer has a solitary wave.
+
+    ``k_value`` and, in falling order, ``mass_ratios``, ``c2_value``, ``tail_value``,
+    ``residual_value``.
+    """
+    columns = (
+        Column("mass_ratio", "m2/m1", format=".9f"),
+        Column("c2_value", "c² at peak force 1", format=".9f"),
+        Column("tail_value", "tail", format=".0e"),
+        Column("residual_value", "residual", format=".0e"),
+    )
+    waves, xi = special_ratios(k, count).waves, np.linspace(-5, 5, 1001)
+    rows = tuple((wave.omega, wave.c2, wave.tail, wave.residual) for wave in waves)
+    curves = (Curve.of(f"m2/m1 = {w.omega:.4f}", xi, w.force(xi), "-") for w in waves)
+    names = ("mass_ratios", *(column.key for column in columns[1:]))
+    return Report(
+        f"k = {k:g}: dimers with a solitary wave",
+        (Table(columns, rows),),
+        panels=(Panel("ξ / D", "force of a contact", tuple(curves)),),
+        data={"k_value": k} | dict(zip(names, zip(*rows, strict=True), strict=True)),
+    )
