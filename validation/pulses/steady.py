@@ -143,15 +143,13 @@ class Chain:
         shorter. Raises `MeasureError` where the pulse does not come through."""
         units = min(1.0, 4 * self.omega) * max(1.0, self.omega)
         samples *= max(1.0, self.k / 1.5) / math.sqrt(units)
-        places = range(self.sites, self.sites * PLACES + 1, self.sites)
+        last = self.sites * PLACES
+        places = range(self.sites, last + 1, self.sites)
         sensors = tuple(place + side for place in places for side in (0, 1))
         for _ in range(_LONGEST):
-            scene = struck(
-                (1.0, self.omega), self.sites * PLACES + 12, self.k,
-                contact_sensors=sensors, duration=duration, samples=math.ceil(samples * duration),
-            )  # fmt: skip
-            window = False if whole else None
-            run = simulate(scene, rtol=rtol, window=window)
+            scene = struck((1.0, self.omega), last + 12, self.k, contact_sensors=sensors,
+                           duration=duration, samples=math.ceil(samples * duration))  # fmt: skip
+            run = simulate(scene, rtol=rtol, window=False if whole else None)
             whole = run.window is None
             parts = tuple(leading_pulse(force, self.k) for force in run.contact_force)
             # One place's time more, lest the front of a pulse yet to come be taken for it.
@@ -160,7 +158,7 @@ class Chain:
                 return Record(run, parts, until, whole)
             duration *= _GROWTH
         end = duration / _GROWTH
-        raise MeasureError(f"the pulse has not passed {self.sites * PLACES} sites by t = {end:.3g}")
+        raise MeasureError(f"the pulse has not passed {last} sites by t = {end:.3g}")
 
     def numbers(self, record: Record) -> Array:
         """`QUANTITIES` (rows) of each stretch; NaN where the pulse does not arrive later."""

@@ -58,7 +58,16 @@ def disorder(
     places = np.linspace(sites / PLACES, sites, PLACES).astype(int)
     # Twice what a pulse needs that keeps all of the blow's momentum.
     duration = 2 * (sites + _BEYOND) / Compacton.of_momentum(theory_at(str(k), 1), 1.0).speed
-    scenes = [_scene(k, _masses(spread, sites, seed, i), places, duration) for i in range(chains)]
+    samples = math.ceil(30 * duration * max(1.0, k / 1.5))
+
+    def scene(number: int) -> Scene:
+        """Chain ``number``, whatever the number of chains."""
+        random = np.random.default_rng((seed, number))
+        masses = (1.0, *random.uniform(1 - spread, 1 + spread, sites + _BEYOND))
+        return struck(masses, len(masses), k, contact_sensors=tuple(places.tolist()),
+                      duration=duration, samples=samples)  # fmt: skip
+
+    scenes = list(map(scene, range(chains)))
     runs = simulate_many(scenes, rtol=_TOLERANCE)
     logs = np.array([_log_forces(next(runs)) for _ in progress(range(chains))])
     coarse = _log_forces(simulate(scenes[0], rtol=10 * _TOLERANCE))
@@ -83,8 +92,8 @@ def _report(title: str, places: Array, logs: Array, numerical: Finding) -> Repor
     decay = _mean(-np.polynomial.polynomial.polyfit(places, logs.T, 1)[1])
     means, scatter = [_mean(fall) for fall in falls.T], falls.std(axis=0, ddof=1)
     line = falls.mean() - decay.value * (places - places.mean())
-    bars = Curve.of("mean over chains", places, [m.value for m in means], "C0o",
-                    [m.error for m in means])  # fmt: skip
+    values, errors = [m.value for m in means], [m.error for m in means]
+    bars = Curve.of("mean over chains", places, values, "C0o", errors)
     fit = Curve.of(f"decay {decay.value:.3g} per site", places, line, "C1-")
     rows = tuple(zip(places.tolist(), means, scatter.tolist(), strict=True))
     return Report(
@@ -95,20 +104,6 @@ def _report(title: str, places: Array, logs: Array, numerical: Finding) -> Repor
         ("F: peak force of a contact. ±: standard error of the mean over chains.",),
         {"decay_value": decay.value, "decay_error_value": decay.error},
     )
-
-
-def _masses(spread: float, sites: int, seed: int, number: int) -> tuple[float, ...]:
-    """Of chain ``number``, whatever the number of chains."""
-    random = np.random.default_rng((seed, number))
-    return (1.0, *random.uniform(1 - spread, 1 + spread, sites + _BEYOND))
-
-
-def _scene(k: float, masses: tuple[float, ...], places: Array, duration: float) -> Scene:
-    """Measured at the contacts behind these places."""
-    return struck(
-        masses, len(masses), k, contact_sensors=tuple(places.tolist()), duration=duration,
-        samples=math.ceil(30 * duration * max(1.0, k / 1.5)),
-    )  # fmt: skip
 
 
 def _log_forces(run: Run) -> Array:

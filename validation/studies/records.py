@@ -32,11 +32,9 @@ from validation.scenes.scenefile import scene
 
 KEPT = (".json", ".npz")  # suffixes of files that hold the scene and the result as well
 SUFFIXES = (*KEPT, ".csv")
-
 RECORDS = ("time", "contact_force", "compression", "bead_force", "bead_displacement",
            "bead_velocity")  # fmt: skip
 TABLES = ("sensors", "speeds")
-
 _MOST_BYTES = 10**9
 
 
@@ -61,9 +59,8 @@ def store(run: Run, document: Mapping[str, Any], file: Path) -> None:
     suffix = file.suffix.lower()
     with replacing(file) as new, new.open("wb") as stream:
         if suffix == ".npz":
-            for table in TABLES:
-                columns = _columns(document[table])
-                arrays |= {f"{table}_{name}": column for name, column in columns.items()}
+            arrays |= {f"{table}_{name}": column for table in TABLES
+                       for name, column in _columns(document[table]).items()}  # fmt: skip
             np.savez_compressed(stream, document=json.dumps(document), **arrays)
         elif suffix == ".csv":
             stream.write(_csv(run).encode())
