@@ -63,13 +63,9 @@ class NoWave(InputError):
 
 
 def exact_wave(
-    masses: Sequence[Any],
-    k: Any,
-    *,
-    half_period: float | None = None,
-    background: Any = 0,
+    masses: Sequence[Any], k: Any, *, half_period: float | None = None, background: Any = 0,
     progress: Progress[Any] = iter,
-) -> ExactWave:
+) -> ExactWave:  # fmt: skip
     """The traveling wave: solitary, or the nanopteron nearest to the pulse of a struck chain.
 
     masses : m1, or m1 and m2. k : exponent of F = δ^k, from 1.01 to 8.
@@ -187,7 +183,7 @@ def _pressed(pair: Pair, k: float, half_period: float | None, p0: float) -> tupl
 
 
 def _kappa(square: float) -> float:
-    """κ of a wave's end e^{-κ|ξ|} at (c/c0)² = (sinh(κ/2)/(κ/2))²."""
+    """κ of a wave's end e^{-κ|ξ|}, at (c/c0)² = (sinh(κ/2)/(κ/2))²."""
     excess = math.sqrt(square)
     return 2 * float(
         scipy.optimize.brentq(lambda x: math.log(math.sinh(x) / x / excess), 1e-5, 300, xtol=1e-12)
