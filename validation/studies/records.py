@@ -10,7 +10,6 @@ column of the dynamic force for each sensor.
 
 from __future__ import annotations
 
-import csv
 import io
 import json
 from collections.abc import Mapping
@@ -63,7 +62,10 @@ def store(run: Run, document: Mapping[str, Any], file: Path) -> None:
                        for name, column in _columns(document[table]).items()}  # fmt: skip
             np.savez_compressed(stream, document=json.dumps(document), **arrays)
         elif suffix == ".csv":
-            stream.write(_csv(run).encode())
+            heard = tracks(run)
+            names = ",".join(("time", *(f"{track.kind}_{track.number}" for track in heard)))
+            rows = np.column_stack((run.time, *(track.force for track in heard)))
+            np.savetxt(stream, rows, "%s", ",", header=names, comments="")
         else:
             records = {f"{name}_value": array.tolist() for name, array in arrays.items()}
             stream.write(json.dumps({**document, "records": records}).encode())
@@ -109,12 +111,3 @@ def _columns(rows: list[dict[str, Any]]) -> dict[str, NDArray[Any]]:
                        str if name in texts else float)
         for name in (rows[0] if rows else ())
     }  # fmt: skip
-
-
-def _csv(run: Run) -> str:
-    heard = tracks(run)
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(["time", *(f"{track.kind}_{track.number}" for track in heard)])
-    writer.writerows(np.column_stack((run.time, *(track.force for track in heard))).tolist())
-    return text.getvalue()
