@@ -7,7 +7,7 @@ signal: the peak is a root of the spline's derivative, a flank a root of spline 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TypeVar
 
@@ -79,6 +79,16 @@ class Measured:
 def derived(function: Callable[..., float], *numbers: Measured) -> Measured:
     """A function of measured numbers, with the error that theirs make in it."""
     return Measured(function(*(n.value for n in numbers)), function(*(n.check for n in numbers)))
+
+
+def exponent(x: Sequence[Measured], y: Sequence[Measured]) -> Measured:
+    """p of y ~ x^p, by least squares of their logarithms."""
+
+    def fitted(*numbers: float) -> float:
+        one, other = np.split(np.log(numbers), 2)
+        return float(np.polyfit(one, other, 1)[0])
+
+    return derived(fitted, *x, *y)
 
 
 def compared(

@@ -22,7 +22,7 @@ from lwa import Dimer, TravelingWave, homogenize
 from lwa.duration import Progress
 from validation.lattice.run import Run
 from validation.lattice.simulate import simulate
-from validation.pulses.pulse import Measured, compared, derived, measure, speed
+from validation.pulses.pulse import Measured, compared, derived, exponent, measure, speed
 from validation.report.command import study
 from validation.report.panel import Curve, Panel
 from validation.report.result import Report
@@ -252,11 +252,7 @@ def _limit_rows(waves: list[dict[str, Measured]]) -> Iterator[Row]:
 
 def _exponent_row(k: sp.Rational, wave: TravelingWave, waves: list[dict[str, Measured]]) -> Row:
     """The power of V_s to which F_m is proportional, fitted to runs of different amplitude."""
-
-    def fit(*numbers: float) -> float:
-        V, F = np.log(numbers[::2]), np.log(numbers[1::2])
-        return float(np.polyfit(V, F, 1)[0])
-
-    pairs = [wave[name] for wave in waves for name in ("speed", "force")]
+    speeds, forces = ([wave[name] for wave in waves] for name in ("speed", "force"))
     # The lattice scales exactly, so only the integration's error is allowed for.
-    return Row("exponent of F_m in V_s", k, EQUAL, wave.force_exponent, derived(fit, *pairs), 1e-5)
+    found = exponent(speeds, forces)
+    return Row("exponent of F_m in V_s", k, EQUAL, wave.force_exponent, found, 1e-5)

@@ -15,6 +15,7 @@ from validation.pulses.pulse import (
     MeasureError,
     Pulse,
     derived,
+    exponent,
     measure,
     speed,
 )
@@ -110,6 +111,13 @@ def test_a_measured_number_carries_its_error():
     assert str(Measured(1.41192847, 1.41192831)) == "1.4119285 ± 2e-07"
     assert str(Measured(16300.0, 17000.0)) == "16300 ± 7e+02"
     assert str(Measured(1.5, 1.5)) == "1.5 ± 0"
+
+
+def test_an_exponent_carries_the_errors_of_both_rows():
+    x = [Measured(n, n) for n in (1.0, 2.0, 5.0)]
+    y = [Measured(3 * n.value**1.75, 7 * n.value**1.5) for n in x]
+    found = exponent(x, y)
+    assert (found.value, found.check) == pytest.approx((1.75, 1.5), rel=1e-13)
 
 
 @pytest.mark.parametrize(("pace", "height"), [(2.0**-900, 2.0**1000), (2.0**900, 2.0**-1000)])

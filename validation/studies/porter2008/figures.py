@@ -20,7 +20,7 @@ from lwa.compact.numeric import Array
 from lwa.duration import Progress
 from validation.lattice.run import Run
 from validation.lattice.simulate import simulate_many
-from validation.pulses.pulse import Measured, compared, derived
+from validation.pulses.pulse import Measured, compared, exponent
 from validation.report.command import study
 from validation.report.panel import Curve, Panel
 from validation.report.result import Report
@@ -83,12 +83,7 @@ class Scaling:
     @property
     def exponent(self) -> Measured:
         """The fitted e of V_s ~ F_m^e."""
-
-        def fitted(*numbers: float) -> float:
-            V, F = np.split(np.log(numbers), 2)
-            return float(np.polyfit(F, V, 1)[0])
-
-        return derived(fitted, *self.speeds, *self.forces)
+        return exponent(self.forces, self.speeds)
 
 
 _SPEEDS = (
