@@ -13,10 +13,10 @@ wave is a nanopteron, its tail the largest |o| on 0.6 L ≤ |ξ| ≤ L. The stra
 way between two pulses. Along each of several branches of such waves L and the tail change.
 
 A struck chain makes none of them, as its light beads are at rest before the pulse; but its pulse,
-made symmetric, is nearly one (`validation.waves.struck`). Newton's method is begun from that pulse
-(and where it finds nothing, from the theory's wave), at several L unless one is given, and of the
-waves found that one is taken whose strain differs least from the struck chain's. How much it still
-differs is its error (`measured`). A rough grid tells which one that is.
+made symmetric, is nearly one (`validation.waves.struck`). Newton's method is begun from it, or
+where it finds nothing from the theory's wave, at several L unless one is given; of the waves found,
+on a rough grid, the one is taken whose strain differs least from the struck chain's. How much it
+still differs is its error (`measured`).
 
 A chain of one mass has always a solitary wave (Friesecke & Wattis 1994; English & Pego 2005), on a
 background strain p0 (a chain under load) too. There it ends as e^{-κ|ξ|}, c² κ² = 4 c0² sinh²(κ/2),

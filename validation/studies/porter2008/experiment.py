@@ -26,6 +26,7 @@ from validation.lattice.effort import RunProgress, silent
 from validation.lattice.run import Run
 from validation.lattice.simulate import twice
 from validation.pulses.pulse import Measured, MeasureError, Pulse, compared, measure, speed
+from validation.pulses.sensors import tracks
 from validation.report.command import number, option, study
 from validation.report.panel import Curve, Panel
 from validation.report.result import Report
@@ -137,17 +138,15 @@ class Train:
     def of(cls, run: Run, kind: str = "bead") -> Train:
         """At the sensors of that kind, "bead" or "contact", but the wall's; raises `MeasureError`
         where a pulse is not whole."""
-        sensors, forces = run.scene.bead_sensors, run.bead_force
-        if kind == "contact":
-            sensors, forces = run.scene.contact_sensors[:-1], run.contact_force[:-1]
         end = int(np.argmax(run.contact_force[-1])) + 1
         pulses = {}
-        for i, force in zip(sensors, forces, strict=True):
-            try:
-                pulses[i + 1] = measure(run.time[:end], force[:end] - force[0])
-            except MeasureError as error:
-                place = f"{kind} {i + 1}, before the wave reaches the wall"
-                raise MeasureError(f"{place}: {error}") from None
+        for track in tracks(run)[:-1]:  # the last one is the wall's
+            if track.kind == kind:
+                try:
+                    pulses[track.number] = measure(track.time[:end], track.force[:end])
+                except MeasureError as error:
+                    place = f"{kind} {track.number}, before the wave reaches the wall"
+                    raise MeasureError(f"{place}: {error}") from None
         return cls(pulses)
 
     def only(self, wanted: Callable[[int], bool]) -> Train:

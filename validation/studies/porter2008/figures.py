@@ -27,17 +27,8 @@ from validation.report.result import Report
 from validation.report.table import Column, Table
 from validation.report.text import percent
 from validation.scenes.materials import DIAMETER, PTFE_BEAD
-from validation.studies.porter2008.experiment import (
-    BEADS,
-    GRAVITY,
-    HERTZ,
-    SENSORS,
-    TOLERANCES,
-    Train,
-    chain_cell,
-    chain_runs,
-    recorded_chain,
-)  # fmt: skip
+from validation.studies.porter2008 import experiment
+from validation.studies.porter2008.experiment import HERTZ, Train, chain_cell, chain_runs
 from validation.studies.porter2008.widths import Widths, widths
 from validation.waves.theory import Compacton
 
@@ -196,7 +187,7 @@ def chain_speed(N: int) -> Speed:
         )
         return {"speed": across * period * DIAMETER / (second - first), "force": train.peak}
 
-    runs = chain_runs(sensors, N=N, beads=max(BEADS, (before + across + 3) * period))
+    runs = chain_runs(sensors, N=N, beads=max(experiment.BEADS, (before + across + 3) * period))
     found = compared(numbers, *runs)
     wave = canonical_wave(chain_cell(N), HERTZ)
     theory = Compacton.of_bead_force(wave, found["force"].value).speed
@@ -213,8 +204,9 @@ def _front(time: Array, above: Array) -> float:
 def scaling(E: float) -> Scaling:
     """Figure 3a for a modulus of PTFE, without gravity in the chain."""
     ptfe = replace(PTFE_BEAD, material=replace(PTFE_BEAD.material, E=E))
-    drops = [recorded_chain(SENSORS, math.sqrt(2 * GRAVITY * h), ptfe=ptfe) for h in HEIGHTS]
-    pairs = zip(*(simulate_many(drops, rtol=rtol) for rtol in TOLERANCES), strict=True)
+    velocities = (math.sqrt(2 * experiment.GRAVITY * h) for h in HEIGHTS)
+    drops = [experiment.recorded_chain(experiment.SENSORS, v, ptfe=ptfe) for v in velocities]
+    pairs = zip(*(simulate_many(drops, rtol=rtol) for rtol in experiment.TOLERANCES), strict=True)
     found = [(Measured(fine.speed, coarse.speed), Measured(fine.peak, coarse.peak))
              for fine, coarse in (map(Train.of, pair) for pair in pairs)]  # fmt: skip
     speeds, forces = zip(*found, strict=True)

@@ -21,14 +21,8 @@ from validation.report.result import Report
 from validation.report.table import Column, Table
 from validation.report.text import percent
 from validation.scenes.materials import DIAMETER
-from validation.studies.porter2008.experiment import (
-    BEADS,
-    HERTZ,
-    SENSORS,
-    Train,
-    chain_cell,
-    chain_runs,
-)  # fmt: skip
+from validation.studies.porter2008 import experiment
+from validation.studies.porter2008.experiment import HERTZ, Train, chain_cell, chain_runs
 from validation.waves.theory import Compacton
 
 FIRST_BEAD = 10  # from here on the width no longer changes on its way; the average starts here
@@ -134,7 +128,7 @@ class Widths:
 
 def widths() -> Widths:
     """The FWHM down the 1:1 chain, and the definitions of its average."""
-    beads = tuple(range(4, BEADS - 2))  # of PTFE and of steel in turn
+    beads = tuple(range(4, experiment.BEADS - 2))  # of PTFE and of steel in turn
     found, waves = compared(_numbers, *chain_runs(beads)), _waves()
 
     def theory(quantity: str, force: Measured, in_time: bool) -> dict[str, dict[str, float]]:
@@ -167,7 +161,7 @@ def _numbers(run: Run) -> dict[str, float]:
         "steel": steel.fwhm,
         "PTFE": late.only(lambda bead: bead % 2 == 0).fwhm,
         "contacts' force": contacts.peak,
-        "F_m": beads.only(lambda bead: bead in SENSORS).peak,
+        "F_m": beads.only(lambda bead: bead in experiment.SENSORS).peak,
         "speed": steel.speed,
     }
 
