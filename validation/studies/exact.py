@@ -46,8 +46,8 @@ def wave_report(wave: ExactWave) -> Report:
     ``c_value``, ``tail_value`` and by quantity ``amplitude_value``, ``fwhm_value``,
     ``rms_value``."""
     found = measured(wave)
-    tail, kind, errors = (f"{wave.tail:.2e}", *_SOLITARY) if wave.solitary else (
-        found["tail"], *_NANOPTERON)  # fmt: skip
+    kind, errors = _SOLITARY if wave.solitary else _NANOPTERON
+    tail = f"{wave.tail:.2e}" if wave.solitary else found["tail"]
     rows = tuple((q, *(found[f"{c.key} {q}"] for c in _COLUMNS[1:])) for q in QUANTITIES)
     names = ("c2", "c", "tail", *(f"{c.key}.{q}" for c in _COLUMNS[1:] for q in QUANTITIES))
     numbers = Table(tuple(Column(name, error=True) for name in names),
