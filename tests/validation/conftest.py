@@ -17,7 +17,6 @@ def limits_result():
             for quantity, law in LAWS.items():
                 error = 0.9 * float(law.coefficient * (k - 1) ** law.order)
                 lattice = float(theory[quantity]) / (1 + error)
-                bound = law.constant * float(k - 1) ** law.order
                 found = Measured(lattice, lattice * (1 + 1e-7))
-                rows.append(Row(quantity, k, omega, theory[quantity], found, bound))
+                rows.append(Row(quantity, k, omega, theory[quantity], found, law.bound(k)))
     return Limits(tuple(rows))

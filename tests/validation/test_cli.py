@@ -23,9 +23,9 @@ from validation.lattice.run import IntegrationError
 from validation.report import command
 from validation.scenes.chains import chain_scene
 from validation.scenes.checks import SceneError
-from validation.scenes.examples import EXAMPLES
 from validation.scenes.scenefile import document, read, scene
 from validation.studies.limits import Limits
+from validation.studies.run import EXAMPLES
 
 LIMITS, RECORD = "validation.studies.limits.limits.function", "validation.studies.run.record"
 COMMAND = Path(sys.executable).with_name("lwa-validate")

@@ -1,14 +1,13 @@
-"""What is read off the record of a pulse: arrival, peak, width, impulse, and the speed of two.
+"""What is read off the record of a pulse: arrival, peak, width, and the speed of two.
 
 A record is a signal sampled in time, dense enough that a cubic spline through it (SciPy) is the
-signal: the peak is a root of the spline's derivative, a flank a root of spline - peak/2, the
-impulse the spline's integral.
+signal: the peak is a root of the spline's derivative, a flank a root of spline - peak/2.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TypeVar
 
@@ -80,6 +79,16 @@ class Measured:
 def derived(function: Callable[..., float], *numbers: Measured) -> Measured:
     """A function of measured numbers, with the error that theirs make in it."""
     return Measured(function(*(n.value for n in numbers)), function(*(n.check for n in numbers)))
+
+
+def exponent(x: Sequence[Measured], y: Sequence[Measured]) -> Measured:
+    """p of y ~ x^p, by least squares of their logarithms."""
+
+    def fitted(*numbers: float) -> float:
+        one, other = np.split(np.log(numbers), 2)
+        return float(np.polyfit(one, other, 1)[0])
+
+    return derived(fitted, *x, *y)
 
 
 def compared(
@@ -169,18 +178,6 @@ def read(time: Array, rows: Array, top: NDArray[np.intp]) -> tuple[Array, Array,
     return arrival, peak, rise, fall
 
 
-def impulse(time: ArrayLike, signal: ArrayLike, start: float, end: float) -> float:
-    """∫ signal dt from start to end, in the record's units.
-
-    Raises `MeasureError` when start … end is not wholly in the record.
-    """
-    t, f = _record(time, signal)
-    if not t[0] <= start < end <= t[-1]:
-        record = f"the record, {t[0]:g} … {t[-1]:g}, in this order"
-        raise MeasureError(f"{start:g} … {end:g} is not within {record}")
-    return float(scipy.interpolate.CubicSpline(t, f).integrate(start, end))
-
-
 def speed(first: Pulse, second: Pulse, distance: float) -> float:
     """Distance over the time from the first pulse's arrival to the second's.
 
@@ -194,7 +191,7 @@ def speed(first: Pulse, second: Pulse, distance: float) -> float:
     return found
 
 
-def _record(time: ArrayLike, signal: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _record(time: ArrayLike, signal: ArrayLike) -> tuple[Array, Array]:
     try:
         t, f = np.asarray(time, float), np.asarray(signal, float)
     except (TypeError, ValueError) as reason:

@@ -25,27 +25,18 @@ from validation.pulses.pulse import Measured, MeasureError, Pulse, compared, mea
 from validation.scenes.checks import SceneError, between
 from validation.scenes.scene import Scene
 
-TOLERANCE = 1e-10
-"""Of the run that counts, unless another one is asked for."""
-
-LESS = 1e3
-"""By how much that of the run that gives its errors is larger."""
-
-_ROUNDING = 10
-"""Times the tolerance: what rounding may take of a motion, whose noise the steps would follow."""
-
-READINGS = {"arrival": "arrival", "peak": "peak force", "fwhm": "FWHM"}
-"""What is read off a pulse, and what it is called."""
-
-SPEEDS = {"speed_sites": "sites/time", "speed": "length/time"}
-"""In sites and in length over time."""
+TOLERANCE = 1e-10  # of the run that counts, unless another one is asked for
+LESS = 1e3  # by how much that of the run that gives its errors is larger
+_ROUNDING = 10  # times rtol: what rounding may take of a motion, lest the steps follow its noise
+READINGS = {"arrival": "arrival", "peak": "peak force", "fwhm": "FWHM"}  # off a pulse
+SPEEDS = {"speed_sites": "sites/time", "speed": "length/time"}  # in sites and in length over time
 
 
 @dataclass(frozen=True)
 class Reading:
-    """What a sensor tells, or one and the next of its kind; or nothing, and the reason.
+    """What a "bead" or "contact" sensor tells, or one and the next of its kind; or the reason why
+    nothing.
 
-    kind : "bead" or "contact".
     places : the number of the sensor, or of the two, counted from 1.
     numbers : `READINGS`; of two `SPEEDS`, the second one if the scene has spacings.
     """
@@ -90,26 +81,13 @@ Tracks = tuple[Track, ...]
 
 
 def record(
-    scene: Scene,
-    *,
-    method: str = COMPILED[0],
-    rtol: Any = TOLERANCE,
+    scene: Scene, *, method: str = COMPILED[0], rtol: Any = TOLERANCE,
     progress: RunProgress = silent,
-) -> Recording:
+) -> Recording:  # fmt: skip
     """Simulate a scene and read its sensors.
 
-    Parameters
-    ----------
-    method : of integration, as for `validation.simulate`.
-    rtol : its tolerance, from 1e-13 to 1e-5.
-    progress : of the two runs, as for `validation.simulate`.
-
-    Raises what `validation.simulate` raises.
-
-    >>> scene = Scene(masses=(1,) * 8, stiffnesses=(1,) * 7, k=1.5, duration=12, velocities=(1,),
-    ...               contact_sensors=(4, 5))
-    >>> round(record(scene).speeds[0].numbers["speed_sites"].value, 7)
-    0.8388521
+    The options are those of `validation.simulate`, which raises what this raises; rtol is from
+    1e-13 to 1e-5.
     """
     rtol = between(rtol, "rtol", 1e-13, 1e-2 / LESS)
     motion = Motion(scene)
@@ -126,39 +104,27 @@ def record(
 
 
 def tracks(run: Run) -> Tracks:
-    """What the sensors of a run recorded, beads first.
-
-    A contact sits midway between its beads, that with the wall half a spacing behind the last one.
-    """
+    """What the sensors of a run recorded, beads first. A contact sits midway between its beads,
+    that with the wall half a spacing behind the last one."""
     scene = run.scene
     load = np.zeros(scene.size + 1)  # of the contacts on the left and right of the beads
     load[1 : scene.contact_count + 1] = scene.load
     x = np.cumsum((0.0, *scene.spacings, *scene.spacings[-1:]))
 
-    def place(site: float) -> dict[str, float]:
+    def track(kind: str, i: int, site: float, force: Array) -> Track:
         length = [float(np.interp(site, range(len(x)), x))] if scene.spacings else []
-        return dict(zip(SPEEDS, (site, *length), strict=False))
+        place = dict(zip(SPEEDS, (site, *length), strict=False))
+        return Track(kind, i + 1, run.time, force, place)
 
-    beads = (
-        Track("bead", i + 1, run.time, force - (load[i] + load[i + 1]) / 2, place(i))
-        for i, force in zip(scene.bead_sensors, run.bead_force, strict=True)
-    )
-    contacts = (
-        Track("contact", i + 1, run.time, force - load[i + 1], place(i + 0.5))
-        for i, force in zip(scene.contact_sensors, run.contact_force, strict=True)
-    )
-    return (*beads, *contacts)
+    beads = zip(scene.bead_sensors, run.bead_force, strict=True)
+    contacts = zip(scene.contact_sensors, run.contact_force, strict=True)
+    return (*(track("bead", i, i, force - (load[i] + load[i + 1]) / 2) for i, force in beads),
+            *(track("contact", i, i + 0.5, force - load[i + 1]) for i, force in contacts)
+            )  # fmt: skip
 
 
 def first_pulse(time: Array, force: Array) -> Pulse:
-    """Measure the first stretch of a record that is above half its highest value.
-
-    Raises `MeasureError` where `validation.pulses.pulse.measure` does.
-
-    >>> t = np.linspace(0, 4, 401)
-    >>> round(first_pulse(t, np.sin(np.pi * t) ** 2 * (1 + t / 8)).arrival, 1)
-    0.5
-    """
+    """`measure` the first stretch of a record that is above half its highest value."""
     if not force.max() > 0:
         return measure(time, force)  # which says what is wrong
     above = force > force.max() / 2
@@ -173,11 +139,11 @@ def first_pulse(time: Array, force: Array) -> Pulse:
 def _reading(
     read: Callable[[Tracks], Mapping[str, float]], fine: Tracks, coarse: Tracks
 ) -> Reading:
-    places = tuple(track.number for track in fine)
+    kind, places = fine[0].kind, tuple(track.number for track in fine)
     try:
-        return Reading(fine[0].kind, places, compared(read, fine, coarse))
+        return Reading(kind, places, compared(read, fine, coarse))
     except MeasureError as error:
-        return Reading(fine[0].kind, places, {}, str(error))
+        return Reading(kind, places, {}, str(error))
 
 
 def _pulse(heard: Tracks) -> dict[str, float]:

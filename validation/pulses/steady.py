@@ -43,14 +43,12 @@ from validation.lattice.simulate import simulate
 from validation.pulses.pulse import FEWEST, FORGOTTEN, Measured, MeasureError, read
 from validation.scenes.chains import struck
 
-QUANTITIES = {
+QUANTITIES = {  # what is measured, and what it is called
     "width": "FWHM of the contact force (sites)",
     "strain_width": "FWHM of the contact strain (sites)",
     "speed": "speed at contact force 1 (sites/time)",
     "decay": "decay of the peak force per site",
 }
-"""What is measured, and what it is called."""
-
 PLACES = 10  # cells at which the pulse is recorded
 STRETCH = 4  # cells from one to the next, for k from 3/2 on, unless a sweep sets another number
 TOLERANCES = (1e-6, 1e-5)  # of the run that counts and of the one that gives its error
@@ -61,8 +59,8 @@ _SLOWEST = 0.9  # ratio of two differences, next to 1 of which nothing can be sa
 
 @dataclass(frozen=True)
 class Point:
-    """What one k and ω gave: `QUANTITIES` by their names, or none of them and the reason; and the
-    sites (beads from the struck one) at both ends of the stretch that was measured."""
+    """What one k and ω gave: `QUANTITIES` by name, or the reason why there are none; and the sites
+    (beads from the struck one) at both ends of the stretch that was measured."""
 
     k: sp.Rational
     omega: sp.Rational
@@ -92,18 +90,18 @@ def _point(k: sp.Rational, omega: sp.Rational, stretch: int) -> Point:
     chain = Chain(float(k), float(omega), 2 * cells_apart(float(k), stretch))
     rtol, less = TOLERANCES
     rough = chain.passed(chain.crossing, less, _SAMPLES / 2)
-    check = chain.numbers(rough)
-    numbers = chain.numbers(chain.passed(1.01 * rough.until, rtol, _SAMPLES, rough.whole))
+    fine = chain.passed(1.01 * rough.until, rtol, _SAMPLES, rough.whole)
+    numbers, check = chain.numbers(fine), chain.numbers(rough)
     errors = np.maximum(_unsettled(numbers), np.abs(numbers - check)[:, 2:])
     # Relatively; of the force where it is its decay.
     worst = np.vstack((errors[:3] / numbers[:3, 2:], chain.sites * errors[3])).max(axis=0)
     if np.isnan(worst).all():
         raise MeasureError("the pulse does not arrive later at each place than at the one before")
     best = int(np.nanargmin(worst))
-    place = chain.sites * (best + 3)
-    rows = zip(QUANTITIES, numbers[:, best + 2].tolist(), errors[:, best].tolist(), strict=True)
-    measured = {name: Measured(value, value + error) for name, value, error in rows}
-    return Point(k, omega, (place, place + chain.sites), measured)
+    place, values = chain.sites * (best + 3), numbers[:, best + 2]
+    measured = map(Measured, values.tolist(), (values + errors[:, best]).tolist())
+    sites = place, place + chain.sites
+    return Point(k, omega, sites, dict(zip(QUANTITIES, measured, strict=True)))
 
 
 def _unsettled(numbers: Array) -> Array:
@@ -116,8 +114,8 @@ def _unsettled(numbers: Array) -> Array:
 
 
 class Record(NamedTuple):
-    """A run with the pulse in it, where in each contact's record, and how long it has to be;
-    whether the whole chain had to be moved."""
+    """A run, the pulse's part of each contact's record, and how long it has to be; whether the
+    whole chain had to be moved."""
 
     run: Run
     parts: tuple[slice, ...]
@@ -141,20 +139,17 @@ class Chain:
     def passed(
         self, duration: float, rtol: float, samples: float = _SAMPLES, whole: bool = False
     ) -> Record:
-        """A run of this duration, or longer, with ``samples`` per unit of time: more where hits are
-        shorter, fewer where beads are heavy. Raises `MeasureError` where the pulse does not come
-        through."""
+        """A run of this duration, or longer, with ``samples`` per unit of time, more where hits are
+        shorter. Raises `MeasureError` where the pulse does not come through."""
         units = min(1.0, 4 * self.omega) * max(1.0, self.omega)
         samples *= max(1.0, self.k / 1.5) / math.sqrt(units)
-        places = range(self.sites, self.sites * PLACES + 1, self.sites)
+        last = self.sites * PLACES
+        places = range(self.sites, last + 1, self.sites)
         sensors = tuple(place + side for place in places for side in (0, 1))
         for _ in range(_LONGEST):
-            scene = struck(
-                (1.0, self.omega), self.sites * PLACES + 12, self.k,
-                contact_sensors=sensors, duration=duration, samples=math.ceil(samples * duration),
-            )  # fmt: skip
-            window = False if whole else None
-            run = simulate(scene, rtol=rtol, window=window)
+            scene = struck((1.0, self.omega), last + 12, self.k, contact_sensors=sensors,
+                           duration=duration, samples=math.ceil(samples * duration))  # fmt: skip
+            run = simulate(scene, rtol=rtol, window=False if whole else None)
             whole = run.window is None
             parts = tuple(leading_pulse(force, self.k) for force in run.contact_force)
             # One place's time more, lest the front of a pulse yet to come be taken for it.
@@ -163,13 +158,13 @@ class Chain:
                 return Record(run, parts, until, whole)
             duration *= _GROWTH
         end = duration / _GROWTH
-        raise MeasureError(f"the pulse has not passed {self.sites * PLACES} sites by t = {end:.3g}")
+        raise MeasureError(f"the pulse has not passed {last} sites by t = {end:.3g}")
 
     def numbers(self, record: Record) -> Array:
         """`QUANTITIES` (rows) of each stretch; NaN where the pulse does not arrive later."""
-        time, force, parts = record.run.time, record.run.contact_force, record.parts
-        pulses = [f[part] for f, part in zip(force, parts, strict=True)]
-        tops = np.array([part.start + np.argmax(f) for f, part in zip(pulses, parts, strict=True)])
+        time, force = record.run.time, record.run.contact_force
+        pulses = [f[part] for f, part in zip(force, record.parts, strict=True)]
+        tops = np.array([part.start for part in record.parts]) + list(map(np.argmax, pulses))
         # As far as where the longest one has half of its strain, and where a spline forgets.
         high = max(np.count_nonzero(f > f.max() / 2**self.k) for f in pulses)
         step, reach = time[1], high + FORGOTTEN

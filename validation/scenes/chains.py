@@ -19,13 +19,14 @@ from validation.scenes.scene import Scene
 
 
 def struck(masses: Sequence[float], beads: int, k: float = 1.5, **rest: Any) -> Scene:
-    """So many beads at rest, whose masses repeat; the first one has velocity 1.
+    """So many beads at rest, whose masses repeat; the first one has velocity 1 by default.
 
     >>> struck((1, 0.5), 3, duration=1).masses
     (1.0, 0.5, 1.0)
     """
     row = tuple(masses[i % len(masses)] for i in range(beads))
-    return Scene(masses=row, stiffnesses=(1.0,) * (beads - 1), k=k, velocities=(1.0,), **rest)
+    blow = {"velocities": (1.0,)} | rest
+    return Scene(masses=row, stiffnesses=(1.0,) * (beads - 1), k=k, **blow)
 
 
 def numbered(masses: Sequence[Any]) -> Cell:
@@ -38,14 +39,9 @@ def numbered(masses: Sequence[Any]) -> Cell:
 
 
 def chain_scene(
-    velocity: float,
-    beads: int,
-    sensors: Sequence[int],
-    gravity: float,
-    duration: float,
-    N: int = 1,
-    ptfe: Bead = PTFE_BEAD,
-) -> Scene:
+    velocity: float, beads: int, sensors: Sequence[int], gravity: float, duration: float,
+    N: int = 1, ptfe: Bead = PTFE_BEAD,
+) -> Scene:  # fmt: skip
     """The N:1 chain of steel and PTFE of Porter et al. (2008), which ends in a steel wall and is
     struck by its first bead; it records the sensor beads, their two contacts each, and the wall's.
     """
@@ -79,8 +75,8 @@ def carrying(
 
 
 class Wave(Protocol):
-    """A traveling wave of a dimer: its speed c, the strain at contacts behind beads of either
-    mass, and the velocity of such beads."""
+    """A traveling wave of a dimer: its speed c, and at ξ the strain of contacts behind beads of
+    either mass and the velocity of such beads."""
 
     @property
     def k(self) -> float: ...
@@ -88,14 +84,8 @@ class Wave(Protocol):
     def c(self) -> float: ...
     @property
     def masses(self) -> tuple[float, float]: ...
-
-    def strain(self, xi: ArrayLike, contact: int = 0) -> Array:
-        """At contacts whose middle is at ξ."""
-        ...
-
-    def velocity(self, xi: ArrayLike, bead: int = 0) -> Array:
-        """Of beads at ξ."""
-        ...
+    def strain(self, xi: ArrayLike, contact: int = 0) -> Array: ...
+    def velocity(self, xi: ArrayLike, bead: int = 0) -> Array: ...
 
 
 def launched(wave: Wave, start: int, sites: int, **rest: Any) -> Scene:
@@ -103,14 +93,10 @@ def launched(wave: Wave, start: int, sites: int, **rest: Any) -> Scene:
     sensors at the contacts half way and at the end."""
     bead = np.arange(2 * start + sites) - start
     at, even = bead[:-1] + 0.5, bead % 2 == 0
-    options: dict[str, Any] = {
-        "contact_sensors": (start + sites // 2, start + sites),
-        "duration": (sites + start / 2) / wave.c,
-        "samples": 4001,
-    }
-    return carrying(
-        tuple(np.where(even, *wave.masses)), wave.k,
-        np.where(even[:-1], wave.strain(at, 0), wave.strain(at, 1)),
-        np.where(even, wave.velocity(bead, 0), wave.velocity(bead, 1)),
-        **options | rest,
+    options: dict[str, Any] = dict(
+        contact_sensors=(start + sites // 2, start + sites), samples=4001,
+        duration=(sites + start / 2) / wave.c,
     )  # fmt: skip
+    strain = np.where(even[:-1], wave.strain(at, 0), wave.strain(at, 1))
+    velocity = np.where(even, wave.velocity(bead, 0), wave.velocity(bead, 1))
+    return carrying(tuple(np.where(even, *wave.masses)), wave.k, strain, velocity, **options | rest)

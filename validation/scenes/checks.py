@@ -29,26 +29,14 @@ class Failure(RuntimeError):
 
 
 def one_of(value: Any, choices: Collection[str], name: str) -> str:
-    """A text that is one of the choices; raises `SceneError` for anything else.
-
-    >>> one_of("RK4", ("RKN86", "SRKN14"), "method")
-    Traceback (most recent call last):
-        ...
-    validation.scenes.checks.SceneError: method is 'RK4': one of RKN86, SRKN14 is wanted
-    """
+    """A text that is one of the choices; raises `SceneError` for anything else."""
     if not isinstance(value, str) or value not in choices:
         raise SceneError(f"{name} is {shorten(value)}: one of {', '.join(choices)} is wanted")
     return value
 
 
 def of_scene(read: Callable[P, T]) -> Callable[P, T]:
-    """The same function, whose refusals are `SceneError`.
-
-    >>> positive(-1, "duration")
-    Traceback (most recent call last):
-        ...
-    validation.scenes.checks.SceneError: duration is -1: it must be positive
-    """
+    """The same function, whose refusals are `SceneError`."""
 
     @wraps(read)
     def checked(*args: P.args, **options: P.kwargs) -> T:
@@ -65,17 +53,12 @@ positive = of_scene(tables.positive)
 integer = of_scene(tables.integer)
 
 
-def between(value: Any, name: str, low: float, high: float) -> float:
-    """`real`, and refused unless it lies there.
-
-    >>> between(2, "rtol", 1e-13, 1e-2)
-    Traceback (most recent call last):
-        ...
-    validation.scenes.checks.SceneError: rtol is 2: it lies between 1e-13 and 0.01
-    """
+def between(value: Any, name: str, low: float, high: float, wanted: str = "") -> float:
+    """`real`, and refused unless it lies there; ``wanted`` is what would be right."""
     number = real(value, name)
     if not low <= number <= high:
-        raise SceneError(f"{name} is {number:g}: it lies between {low:g} and {high:g}")
+        wanted = wanted or f"it lies between {low:g} and {high:g}"
+        raise SceneError(f"{name} is {number:g}: {wanted}")
     return number
 
 

@@ -15,10 +15,8 @@ from validation.scenes.checks import SceneError, of_scene, positive, real
 
 @dataclass(frozen=True)
 class Material:
-    """An isotropic elastic solid: Young's modulus E in Pa, Poisson's ratio ν.
-
-    Raises `SceneError` unless E > 0 and -1 < ν ≤ 1/2.
-    """
+    """An isotropic elastic solid: Young's modulus E in Pa, Poisson's ratio ν. Raises `SceneError`
+    unless E > 0 and -1 < ν ≤ 1/2."""
 
     E: float
     nu: float
@@ -36,10 +34,7 @@ class Material:
 
 @dataclass(frozen=True)
 class Bead:
-    """A sphere: mass in kg, radius in m, material.
-
-    Raises `SceneError` unless mass and radius are positive.
-    """
+    """A sphere: mass in kg and radius in m, both positive or a `SceneError`, and material."""
 
     mass: float
     radius: float
@@ -58,26 +53,12 @@ class Bead:
 
 
 def contact_stiffness(bead: Bead, other: Bead | Material) -> float:
-    """A of F = A δ^{3/2} between a bead and another one or a flat wall, in N/m^{3/2}.
-
-    >>> steel, wall = STEEL_BEAD, STEEL_BEAD.material
-    >>> round(contact_stiffness(steel, wall) / contact_stiffness(steel, steel), 12)  # √2
-    1.414213562373
-    """
+    """A of F = A δ^{3/2} between a bead and another one or a flat wall, in N/m^{3/2}."""
     return float(hertz.contact(bead, other, math.sqrt))
 
 
-STEEL = Material(E=193e9, nu=0.3)
-"""Stainless steel, type 316."""
-
-PTFE = Material(E=1.46e9, nu=0.46)
-"""Polytetrafluoroethylene, with the dynamic modulus that the paper uses."""
-
-DIAMETER = 4.76e-3
-"""Of all beads of the experiment, in m."""
-
-STEEL_BEAD = Bead(mass=0.45e-3, radius=DIAMETER / 2, material=STEEL)
-"""The heavy bead of the experiment, and its striker."""
-
+STEEL = Material(E=193e9, nu=0.3)  # stainless steel, type 316
+PTFE = Material(E=1.46e9, nu=0.46)  # with the dynamic modulus that the paper uses
+DIAMETER = 4.76e-3  # of all beads of the experiment, in m
+STEEL_BEAD = Bead(mass=0.45e-3, radius=DIAMETER / 2, material=STEEL)  # the striker too
 PTFE_BEAD = Bead(mass=0.123e-3, radius=DIAMETER / 2, material=PTFE)
-"""The light bead of the experiment."""

@@ -24,16 +24,8 @@ from lwa import Cell
 from lwa.cell import exponent
 from lwa.exact import shorten
 from lwa.spheres.tables import Reader
-from validation.scenes.checks import (
-    SceneError,
-    integer,
-    items,
-    of_scene,
-    one_of,
-    positive,
-    real,
-    row,
-)
+from validation.scenes import checks
+from validation.scenes.checks import SceneError, integer, items, of_scene, positive, real
 from validation.scenes.materials import Bead, Material, contact_stiffness
 
 __all__ = ["Scene", "SceneError"]
@@ -50,26 +42,19 @@ class Scene:
     k : exponent of the contact law, at least 1.
     duration : time that is simulated.
     wall : stiffness of the contact of the last bead with a fixed wall.
-    gravity : acceleration towards the wall. The chain is then in equilibrium under its own
-        weight: contact i carries the beads above it.
-    precompression : constant force F0 on bead 0, towards the wall. It is part of the equilibrium:
-        every contact carries F0 besides the beads above it.
+    gravity, precompression : acceleration, and a constant force F0 on bead 0, towards the wall. In
+        equilibrium every contact carries F0 and the weight of the beads above it.
     displacements, velocities : initial, from the equilibrium; beads that the sequence does not
         reach start at 0. A striker is ``velocities=(v,)``.
-    contact_sensors : sensors of the force and the compression of these contacts.
-    bead_sensors : sensors of the force and the velocity of these beads; the force is the mean of a
-        bead's two contacts (at an end that touches nothing, of its one contact and 0).
+    contact_sensors : of the force and the compression of these contacts.
+    bead_sensors : of the velocity of these beads and of their force, the mean of the two contacts
+        (at an end that touches nothing, of one contact and 0).
     samples : number of sample times, equidistant from 0 to the duration.
     spacings : distances of the n-1 pairs of neighbours in equilibrium. The motion does not ask for
         them; without, a speed is known in sites only.
     units : "SI", or nothing for any that agree; what results say.
 
     Raises `SceneError` for whatever cannot be meant.
-
-    >>> Scene(masses=(1, 1), stiffnesses=(1,), k=1.5, duration=-1)
-    Traceback (most recent call last):
-        ...
-    validation.scenes.checks.SceneError: duration is -1: it must be positive
     """
 
     masses: tuple[float, ...]
@@ -106,9 +91,8 @@ class Scene:
             raise SceneError(f"k is {self.k:g}: the contact law A δ^k is simulated for k ≥ 1")
         for name, act in (("gravity", "pull towards"), ("precompression", "push against")):
             if (value := getattr(self, name)) < 0 or (value > 0 and self.wall is None):
-                raise SceneError(
-                    f"{name} is {value:g}: it must be positive and needs a wall to {act}"
-                )
+                wanted = f"it must be positive and needs a wall to {act}"
+                raise SceneError(f"{name} is {value:g}: {wanted}")
         for name, count in (("contact_sensors", self.contact_count), ("bead_sensors", n)):
             object.__setattr__(self, name, _sensors(getattr(self, name), name, count))
 
@@ -132,9 +116,7 @@ class Scene:
     def of_cell(cls, cell: Cell, repeats: int, k: Any, **rest: Any) -> Scene:
         """A chain of the theory's own periodic cell, repeated; ``rest`` as for a `Scene`.
 
-        The cell's last contact, which joins it to the next cell, is left out at the end.
-
-        Raises `SceneError` when the cell holds symbols.
+        The last cell's last contact is left out. Raises `SceneError` when the cell holds symbols.
 
         >>> from lwa import Dimer
         >>> Scene.of_cell(Dimer(1, "1/2", spacing=1), 2, "3/2", duration=1).masses
@@ -145,9 +127,8 @@ class Scene:
         masses = tuple(_number(m, "mass") for m in cell.masses) * repeats
         stiffnesses = tuple(_number(A, "stiffness") for A in cell.stiffnesses) * repeats
         spacings = (float(cell.spacing),) * (len(masses) - 1) if cell.spacing.is_number else ()
-        return cls(
-            masses=masses, stiffnesses=stiffnesses[:-1], k=k_value, spacings=spacings, **rest
-        )
+        contacts = stiffnesses[:-1]
+        return cls(masses=masses, stiffnesses=contacts, k=k_value, spacings=spacings, **rest)
 
     @classmethod
     def of_beads(cls, beads: Sequence[Bead], *, wall: Material | None = None, **rest: Any) -> Scene:
@@ -170,14 +151,16 @@ class Scene:
 
 
 def _all(read: Reader) -> Reader:
-    return lambda values, name: tuple(row(items(values, name), read, lambda i: f"{name}[{i}]"))
+    return lambda values, name: tuple(
+        checks.row(items(values, name), read, lambda i: f"{name}[{i}]")
+    )
 
 
 _READERS: dict[str, Reader] = {
     "masses": _all(positive), "stiffnesses": _all(positive), "spacings": _all(positive),
     "displacements": _all(real), "velocities": _all(real), "samples": partial(integer, least=2),
     "k": real, "duration": positive, "wall": positive, "gravity": real, "precompression": real,
-    "units": lambda value, name: one_of(value, ("", "SI"), name),
+    "units": lambda value, name: checks.one_of(value, ("", "SI"), name),
 }  # fmt: skip
 
 

@@ -69,9 +69,7 @@ from validation.scenes.materials import Bead, Material, contact_stiffness
 from validation.scenes.scene import Scene
 
 MOST_BEADS = 1_000_000
-MOST_SAMPLES = 10_000_000
-"""Of all sensors together."""
-
+MOST_SAMPLES = 10_000_000  # of all sensors together
 KEYS = {
     "file": (
         "duration", "samples", "units", "gravity", "precompression", "materials", "beads", "chain",
@@ -95,11 +93,7 @@ def read(path: str | Path) -> Scene:
 
 @of_scene
 def scene(content: Any) -> Scene:
-    """The scene of a parsed file, see the module; raises `SceneError`.
-
-    >>> scene({"duration": 1, "chain": {"cell": [1, 0.5], "repeat": 2, "k": 1.5}}).masses
-    (1.0, 0.5, 1.0, 0.5)
-    """
+    """The scene of a parsed file, see the module; raises `SceneError`."""
     if isinstance(content, dict) and "scene" in content:
         content = content["scene"]
     file = Table(content, "", KEYS["file"])
@@ -133,13 +127,11 @@ def scene(content: Any) -> Scene:
     )
     listening = len(result.bead_sensors) + len(result.contact_sensors)
     if result.samples * listening > MOST_SAMPLES:
-        raise SceneError(f"samples is {result.samples}, for each of {listening} sensors: all may "
-                         f"take {MOST_SAMPLES} together")  # fmt: skip
+        each_of = f"samples is {result.samples}, for each of {listening} sensors"
+        raise SceneError(f"{each_of}: all may take {MOST_SAMPLES} together")
     if (pressed := _overlap(result)) and not start.read("overlap", flag, False):
-        other = "the wall" if pressed == n else f"bead {pressed + 1}"
-        raise SceneError(
-            f"start.displacements press bead {pressed} into {other}: start.overlap = true allows it"
-        )
+        into = f"bead {pressed} into {'the wall' if pressed == n else f'bead {pressed + 1}'}"
+        raise SceneError(f"start.displacements press {into}: start.overlap = true allows it")
     return result
 
 
@@ -164,9 +156,8 @@ def _defects(value: Any, name: str) -> list[Table]:
         what = "contact" if "contact" in defect else "bead"
         at = defect.entries[what]  # checked when it is known how many there are
         if isinstance(at, int) and (other := first.setdefault((what, at), defect)) is not defect:
-            raise SceneError(
-                f"{other.name} and {defect.name} are both of {what} {at}: one is wanted"
-            )
+            both = f"{other.name} and {defect.name} are both of {what} {at}"
+            raise SceneError(f"{both}: one is wanted")
     return found
 
 
@@ -178,9 +169,8 @@ def _chain(
     repeat = given.read("repeat", partial(integer, least=1), 1)
     n = len(cell) * repeat
     if not 1 <= n <= MOST_BEADS:
-        raise SceneError(
-            f"chain.cell and repeat make {shorten(n)} beads: 1 … {MOST_BEADS} are wanted"
-        )
+        made = f"chain.cell and repeat make {shorten(n)} beads"
+        raise SceneError(f"{made}: 1 … {MOST_BEADS} are wanted")
     row: list[Bead] = []
     if isinstance(cell[0], str):
         for key in ("k", "stiffnesses", "spacings"):
@@ -248,10 +238,8 @@ def document(what: Scene) -> dict[str, Any]:
         if values := getattr(what, name):
             chain[name] = values[0] if len(set(values)) == 1 else list(values[:period])
     result: dict[str, Any] = {"duration": what.duration, "samples": what.samples}
-    if what.units:
-        result["units"] = what.units
-    forces = {"gravity": what.gravity, "precompression": what.precompression}
-    result |= {name: force for name, force in forces.items() if force} | {"chain": chain}
+    own = {name: getattr(what, name) for name in ("units", "gravity", "precompression")}
+    result |= {name: value for name, value in own.items() if value} | {"chain": chain}
     if what.wall is not None:
         result["wall"] = {"stiffness": what.wall}
     if len(what.velocities) == 1 and not what.displacements:

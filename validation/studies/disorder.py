@@ -22,18 +22,14 @@ from validation.report.panel import Curve, Panel
 from validation.report.result import Report
 from validation.report.table import Column, Finding, Table
 from validation.scenes.chains import struck
-from validation.scenes.checks import SceneError, integer, real
+from validation.scenes.checks import between, integer
 from validation.scenes.scene import Scene
 from validation.waves.theory import Compacton, theory_at
 
-PLACES = 10
-"""Contacts at which the pulse is measured, equally far from each other."""
-
-_BEYOND = 20
-"""Beads behind the last place."""
+PLACES = 10  # contacts at which the pulse is measured, equally far from each other
+_BEYOND = 20  # beads behind the last place
 _TOLERANCE = 1e-6
-_CLOSE = 1e-4
-"""By how much ln F may change at a ten times coarser tolerance."""
+_CLOSE = 1e-4  # by how much ln F may change at a ten times coarser tolerance
 
 
 @study(
@@ -44,13 +40,9 @@ _CLOSE = 1e-4
     option("--seed", default=1, says="Of the random numbers; the same seed, the same chains."),
 )
 def disorder(
-    k: float = 1.5,
-    spread: float = 0.1,
-    chains: int = 20,
-    sites: int = 200,
-    seed: int = 1,
+    k: float = 1.5, spread: float = 0.1, chains: int = 20, sites: int = 200, seed: int = 1,
     progress: Progress[int] = iter,
-) -> Report:
+) -> Report:  # fmt: skip
     """Decay of a pulse in chains of random masses, with error bars over chains.
 
     ``decay_value`` per site, its error, and ``rows``: ``site``, ``log_force_value`` and its error,
@@ -60,15 +52,22 @@ def disorder(
     Raises `SceneError` for numbers that cannot be meant, `lwa.NoSolitaryWave` for k ≤ 1, and
     `MeasureError` where a pulse does not come through.
     """
-    if not 0 <= real(spread, "spread") <= 0.5:
-        raise SceneError(f"spread is {spread:g}: one from 0 to 0.5 is wanted")
+    between(spread, "spread", 0, 0.5, "one from 0 to 0.5 is wanted")
     chains, seed = integer(chains, "chains", 2, 10_000), integer(seed, "seed", 0)
     sites = integer(sites, "sites", 5 * PLACES, 10_000)
     places = np.linspace(sites / PLACES, sites, PLACES).astype(int)
     # Twice what a pulse needs that keeps all of the blow's momentum.
     duration = 2 * (sites + _BEYOND) / Compacton.of_momentum(theory_at(str(k), 1), 1.0).speed
-    draws = [_masses(spread, sites, seed, i) for i in range(chains)]
-    scenes = [_scene(k, masses, places, duration) for masses in draws]
+    samples = math.ceil(30 * duration * max(1.0, k / 1.5))
+
+    def scene(number: int) -> Scene:
+        """Chain ``number``, whatever the number of chains."""
+        random = np.random.default_rng((seed, number))
+        masses = (1.0, *random.uniform(1 - spread, 1 + spread, sites + _BEYOND))
+        return struck(masses, len(masses), k, contact_sensors=tuple(places.tolist()),
+                      duration=duration, samples=samples)  # fmt: skip
+
+    scenes = list(map(scene, range(chains)))
     runs = simulate_many(scenes, rtol=_TOLERANCE)
     logs = np.array([_log_forces(next(runs)) for _ in progress(range(chains))])
     coarse = _log_forces(simulate(scenes[0], rtol=10 * _TOLERANCE))
@@ -93,35 +92,18 @@ def _report(title: str, places: Array, logs: Array, numerical: Finding) -> Repor
     decay = _mean(-np.polynomial.polynomial.polyfit(places, logs.T, 1)[1])
     means, scatter = [_mean(fall) for fall in falls.T], falls.std(axis=0, ddof=1)
     line = falls.mean() - decay.value * (places - places.mean())
-    bars = Curve.of("mean over chains", places, [m.value for m in means], "C0o",
-                    [m.error for m in means])  # fmt: skip
+    values, errors = [m.value for m in means], [m.error for m in means]
+    bars = Curve.of("mean over chains", places, values, "C0o", errors)
     fit = Curve.of(f"decay {decay.value:.3g} per site", places, line, "C1-")
+    rows = tuple(zip(places.tolist(), means, scatter.tolist(), strict=True))
     return Report(
         f"{title}\ndecay of the peak force per site: {decay}",
-        (
-            Table(
-                _COLUMNS, tuple(zip(places.tolist(), means, scatter.tolist(), strict=True)), "rows"
-            ),
-        ),
+        (Table(_COLUMNS, rows, "rows"),),
         (numerical,),
         (Panel("site", "ln F, less that at the first place", (bars, fit)),),
         ("F: peak force of a contact. ±: standard error of the mean over chains.",),
         {"decay_value": decay.value, "decay_error_value": decay.error},
     )
-
-
-def _masses(spread: float, sites: int, seed: int, number: int) -> tuple[float, ...]:
-    """Of chain ``number``, whatever the number of chains."""
-    random = np.random.default_rng((seed, number))
-    return (1.0, *random.uniform(1 - spread, 1 + spread, sites + _BEYOND))
-
-
-def _scene(k: float, masses: tuple[float, ...], places: Array, duration: float) -> Scene:
-    """Measured at the contacts behind these places."""
-    return struck(
-        masses, len(masses), k, contact_sensors=tuple(places.tolist()), duration=duration,
-        samples=math.ceil(30 * duration * max(1.0, k / 1.5)),
-    )  # fmt: skip
 
 
 def _log_forces(run: Run) -> Array:

@@ -15,16 +15,17 @@ from validation.report.command import EXPONENT, number, option, study
 from validation.report.panel import Curve, Panel
 from validation.report.result import Report
 from validation.report.table import Column, Table
-from validation.scenes.checks import SceneError
+from validation.scenes.chains import numbered
 from validation.waves.profile import ExactWave
-from validation.waves.resonances import Resonances
 from validation.waves.resonances import resonances as special_ratios
 from validation.waves.solver import exact_wave, measured
 
-_KINDS = {
-    True: "solitary: nothing is left behind",
-    False: "a nanopteron, not solitary:\nthe light beads rattle on both sides, with this tail",
-}
+_SOLITARY = ("solitary: nothing is left behind", "Errors are those of residual, tail and rounding.")
+_NANOPTERON = (
+    "a nanopteron, not solitary:\nthe light beads rattle on both sides, with this tail",
+    "One of a family, of half period {:g}: errors are the differences from the pulse of a struck "
+    "chain.",
+)
 
 _COLUMNS = (
     Column("of", "of"),
@@ -45,64 +46,28 @@ def wave_report(wave: ExactWave) -> Report:
     ``c_value``, ``tail_value`` and by quantity ``amplitude_value``, ``fwhm_value``,
     ``rms_value``."""
     found = measured(wave)
-    tail = f"{wave.tail:.2e}" if wave.solitary else str(found["tail"])
-    rows = tuple((q, *(found[f"{what} {q}"] for what in ("amplitude", "fwhm", "rms")))
-                 for q in QUANTITIES)  # fmt: skip
+    kind, errors = _SOLITARY if wave.solitary else _NANOPTERON
+    tail = f"{wave.tail:.2e}" if wave.solitary else found["tail"]
+    rows = tuple((q, *(found[f"{c.key} {q}"] for c in _COLUMNS[1:])) for q in QUANTITIES)
     names = ("c2", "c", "tail", *(f"{c.key}.{q}" for c in _COLUMNS[1:] for q in QUANTITIES))
     numbers = Table(tuple(Column(name, error=True) for name in names),
                     (tuple(found[name.replace(".", " ")] for name in names),))  # fmt: skip
     xi = np.linspace(-wave.half_period, wave.half_period, 2001)
-    errors = (
-        "Errors are those of residual, tail and rounding."
-        if wave.solitary
-        else f"One of a family, of half period {wave.half_period:g}: errors are the differences "
-        "from the pulse of a struck chain."
-    )
-    loaded = (
-        f"; background strain {wave.background:g}: strains and forces are above it"
-        if wave.background else ""
-    )  # fmt: skip
+    curves = (Curve.of(name, xi, values, style) for (name, values), style
+              in zip(wave.over_peak(xi).items(), ("-", "--", ":"), strict=True))  # fmt: skip
+    loaded = f"; background strain {wave.background:g}: strains and forces are above it"
     return Report(
-        f"masses {wave.masses[0]:g}, {wave.masses[1]:g}; k = {wave.k:g}; A = D = 1{loaded}\n"
-        f"c² = {found['c2']}, c = {found['c']}\n"
-        f"tail {tail} of the peak strain, residual {wave.residual:.1e}: {_KINDS[wave.solitary]}",
-        (Table(_COLUMNS, rows, note=f"{_SCALING}\n{errors}"),),
-        panels=(
-            Panel("ξ / D", "over its peak", tuple(
-                Curve.of(name, xi, values, style) for (name, values), style
-                in zip(wave.over_peak(xi).items(), ("-", "--", ":"), strict=True)
-            )),
-        ),
+        f"masses {wave.masses[0]:g}, {wave.masses[1]:g}; k = {wave.k:g}; A = D = 1"
+        f"{loaded if wave.background else ''}\nc² = {found['c2']}, c = {found['c']}\n"
+        f"tail {tail} of the peak strain, residual {wave.residual:.1e}: {kind}",
+        (Table(_COLUMNS, rows, note=f"{_SCALING}\n{errors.format(wave.half_period)}"),),
+        panels=(Panel("ξ / D", "over its peak", tuple(curves)),),
         data={
-            "k_value": wave.k,
-            "masses_value": wave.masses,
-            "background_value": wave.background,
-            "half_period_value": wave.half_period,
-            "residual_value": wave.residual,
+            "k_value": wave.k, "masses_value": wave.masses, "background_value": wave.background,
+            "half_period_value": wave.half_period, "residual_value": wave.residual,
             "solitary": wave.solitary,
         } | numbers.document()[0],
     )  # fmt: skip
-
-
-def resonances_report(found: Resonances) -> Report:
-    """``k_value`` and, in falling order, ``mass_ratios``, ``c2_value``, ``tail_value``,
-    ``residual_value``."""
-    columns = (
-        Column("mass_ratio", "m2/m1", format=".9f"),
-        Column("c2_value", "c² at peak force 1", format=".9f"),
-        Column("tail_value", "tail", format=".0e"),
-        Column("residual_value", "residual", format=".0e"),
-    )
-    rows = tuple((wave.omega, wave.c2, wave.tail, wave.residual) for wave in found.waves)
-    xi = np.linspace(-5, 5, 1001)
-    curves = (Curve.of(f"m2/m1 = {w.omega:.4f}", xi, w.force(xi), "-") for w in found.waves)
-    names = ("mass_ratios", *(column.key for column in columns[1:]))
-    return Report(
-        f"k = {found.k:g}: dimers with a solitary wave",
-        (Table(columns, rows),),
-        panels=(Panel("ξ / D", "force of a contact", tuple(curves)),),
-        data={"k_value": found.k} | dict(zip(names, zip(*rows, strict=True), strict=True)),
-    )
 
 
 @study(
@@ -115,22 +80,15 @@ def resonances_report(found: Resonances) -> Report:
            says="Static compression of the contacts, over that at the peak."),
 )  # fmt: skip
 def exact(
-    k: float,
-    masses: tuple[sp.Expr, ...],
-    speed: float | None,
-    force: float | None,
-    background: float = 0.0,
-    progress: Progress[Any] = iter,
-) -> Report:
+    k: float, masses: tuple[sp.Expr, ...], speed: float | None, force: float | None,
+    background: float = 0.0, progress: Progress[Any] = iter,
+) -> Report:  # fmt: skip
     """An exact traveling wave of the lattice: speed, widths, and the tail if it has one. A second
     or two; for unequal masses from k = 4 on up to half a minute.
     """
     if speed is not None and force is not None:
         raise InputError("speed and force: a wave is scaled to one of the two")
-    for mass in masses:
-        if not mass.is_number:
-            raise SceneError(f"mass is {mass}: a number is wanted")
-    values = [float(mass) for mass in masses]
+    values = [float(mass) for mass in numbered(masses).masses]
     wave = exact_wave(values, k, background=background, progress=progress)
     if speed is not None or force is not None:
         wave = wave.scaled(speed=speed, force=force)
@@ -139,5 +97,24 @@ def exact(
 
 @study(EXPONENT, option("--count", default=3, says="How many, from above."))
 def resonances(k: float, count: int) -> Report:
-    """The mass ratios m2/m1 < 1 at which a dimer has a solitary wave."""
-    return resonances_report(special_ratios(k, count))
+    """The mass ratios m2/m1 < 1 at which a dimer has a solitary wave.
+
+    ``k_value`` and, in falling order, ``mass_ratios``, ``c2_value``, ``tail_value``,
+    ``residual_value``.
+    """
+    columns = (
+        Column("mass_ratio", "m2/m1", format=".9f"),
+        Column("c2_value", "c² at peak force 1", format=".9f"),
+        Column("tail_value", "tail", format=".0e"),
+        Column("residual_value", "residual", format=".0e"),
+    )
+    waves, xi = special_ratios(k, count).waves, np.linspace(-5, 5, 1001)
+    rows = tuple((wave.omega, wave.c2, wave.tail, wave.residual) for wave in waves)
+    curves = (Curve.of(f"m2/m1 = {w.omega:.4f}", xi, w.force(xi), "-") for w in waves)
+    names = ("mass_ratios", *(column.key for column in columns[1:]))
+    return Report(
+        f"k = {k:g}: dimers with a solitary wave",
+        (Table(columns, rows),),
+        panels=(Panel("ξ / D", "force of a contact", tuple(curves)),),
+        data={"k_value": k} | dict(zip(names, zip(*rows, strict=True), strict=True)),
+    )

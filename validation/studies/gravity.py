@@ -1,7 +1,7 @@
 """A pulse running down a chain under its own weight: how its width grows with depth.
 
-The beads hang on nothing and stand on a wall; units are their mean mass, A, D and g. Under x beads
-the load is F0 = x and the speed of sound, in sites per unit of time, c0(x) = √(k x^{(k-1)/k}).
+The beads stand on a wall; units are their mean mass, A, D and g. Under x beads the load is F0 = x
+and the speed of sound, in sites per unit of time, c0(x) = √(k x^{(k-1)/k}).
 
 **A weak blow** at the top bead. Frequencies are kept on the way down, and a wave of frequency ω has
 there the wavenumber q = ω/c0 + I ω³/(2 c0³) + …, I that of the linear chain, at any load. The front
@@ -14,25 +14,23 @@ for μ = 0 Airy's function; μ comes from the top, where c0 ∝ x^{(k-1)/2k} sta
 blow's long waves are Hankel functions of order 1/(k+1). The front's width in sites is c0 times that
 in time, and c0³ S = 2k/(3-k) x for k < 3:
 
-    width = w (3 I k x / (3-k))^{1/3},    w the FWHM of the integral above in z.
+    width = w (3 I k x / (3-k))^{1/3},    w the FWHM of the integral above in z,
 
-That is (2k/(3-k))^{1/3} times what a front comes to at constant speed, w (3 I x/2)^{1/3}: what has
-spread above is stretched as sound speeds up. From k = 3 on most is spread at the top, and the
-exponent is no longer 1/3. Where the waves are not short beside x they are no rays: a correction of
-x^{-2/3} on the way, and one from the top that falls as x^{-(3-k)/3k}, where it is of order ω², or
-as x^{-2(3-k)/3(k+1)}, where of order ω^{4k/(k+1)}. The fit holds the first and the last, and the
-error bars what the other makes of it.
+(2k/(3-k))^{1/3} times that at constant speed: what has spread above is stretched as sound speeds
+up. From k = 3 on most is spread at the top, and the exponent is no longer 1/3. Where the waves are
+not short beside x they are no rays: a correction of x^{-2/3} on the way, and one from the top that
+falls as x^{-(3-k)/3k}, where it is of order ω², or as x^{-2(3-k)/3(k+1)}, where of order
+ω^{4k/(k+1)}. The fit holds the first and the last, and the error bars what the other makes of it.
 
-**A strong blow** makes the solitary wave of the load at its depth (`lwa.background`). Its width
-grows, too, as the load does, in the end faster than x^{1/3}, and when it comes to that of the front
-of a weak blow, the pulse falls behind it and follows the latter.
+**A strong blow** makes the solitary wave of the load at its depth (`lwa.background`), until that is
+as wide as the front of a weak blow, which the pulse then follows.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cache, cached_property
 from typing import Any
 
@@ -54,19 +52,13 @@ from validation.report.result import Report
 from validation.report.table import Column, Finding, Table
 from validation.report.text import percent
 from validation.scenes.chains import numbered, struck
-from validation.scenes.checks import SceneError, integer, real
+from validation.scenes.checks import between, integer
 from validation.scenes.scene import Scene
 from validation.waves.profile import summit
 
-CHAINS = ((1,), (1, "1/2"))
-"""Masses of the cells that are measured unless others are given."""
-
-WEAK, STRONG = 1e-4, (10.0, 100.0, 1000.0)
-"""Velocities of the struck bead."""
-
-FIRST = 100
-"""Beads above the first bead by which the width of a weak blow's front is fitted."""
-
+CHAINS = ((1,), (1, "1/2"))  # masses of the cells that are measured unless others are given
+WEAK, STRONG = 1e-4, (10.0, 100.0, 1000.0)  # velocities of the struck bead
+FIRST = 100  # beads above the first bead by which the width of a weak blow's front is fitted
 _PLACES = 24  # of a weak blow
 _TOP, _FEW = 20, 7  # beads above the first place of a strong blow, and their number
 _SAMPLES = 40.0  # per unit of time
@@ -82,20 +74,17 @@ def front_width(k: float) -> float:
     """
     mu, turn = (k - 1) / (2 * (k + 1)), np.exp(1j * np.pi / 6)  # where s³ falls fastest
 
-    def front(z: float) -> float:
-        def part(r: float) -> float:
-            s = r * turn
-            wave = np.exp(1j * (s**3 / 3 + z * s - np.pi * mu / 2))
-            return float((s**mu * wave * turn).real)
+    y, weight = np.polynomial.legendre.leggauss(200)
+    s, ds = turn * (y + 1) ** 3, 3 * turn * (y + 1) ** 2 * weight  # smooth at 0
 
-        return float(scipy.integrate.quad(part, 0, 8, epsabs=1e-12, epsrel=1e-11, limit=200)[0])
+    def front(z: float, less: float = 0.0) -> float:
+        wave = s**mu * np.exp(1j * (s**3 / 3 + z * s - np.pi * mu / 2))
+        return float((wave @ ds).real) - less
 
     top, peak = summit(np.vectorize(front), np.linspace(-2.0, 0.0, 41))
-    ends = (
-        scipy.optimize.brentq(lambda z: front(z) - peak / 2, *sorted((top, other)), xtol=1e-11)
-        for other in (top - 1.6, top + 4)
-    )
-    return float(-np.subtract(*ends))
+    before, behind = (scipy.optimize.brentq(front, top, other, (peak / 2,), xtol=1e-11)
+                      for other in (top - 1.6, top + 4))  # fmt: skip
+    return float(behind - before)
 
 
 @dataclass(frozen=True)
@@ -134,17 +123,14 @@ class Upright:
     def blown(self, velocity: float, **sensors: Any) -> Scene:
         """Struck at the top, until sound has come almost to the end."""
         flight = 2 * self.k / (self.k + 1) * self.beads / float(self.sound(self.beads))
-        scene = struck(
-            self.masses, self.beads, self.k, wall=1.0, gravity=1.0, duration=0.97 * flight,
-            samples=math.ceil(_SAMPLES * flight), **sensors,
+        return struck(
+            self.masses, self.beads, self.k, wall=1.0, gravity=1.0, velocities=(velocity,),
+            duration=0.97 * flight, samples=math.ceil(_SAMPLES * flight), **sensors,
         )  # fmt: skip
-        return replace(scene, velocities=(velocity,))
-
-    # --- weak blows -------------------------------------------------------------------------
 
     def fronts(self) -> tuple[Array, Array, Array]:
-        """x and the width in sites of the velocity, means over a cell; the latter also of a less
-        accurate run."""
+        """x and the width in sites of the velocity, and that of a less accurate run; means over a
+        cell."""
         beads = np.add.outer(self.places(FIRST, _PLACES), np.arange(len(self.masses)))
         x = beads + 0.5  # half of its own weight is above a bead's middle
 
@@ -158,14 +144,9 @@ class Upright:
 
     def fit(self, x: Array, width: Array, power: float) -> Array:
         """Exponent, and prefactor at the exponent 1/3, with corrections by x^-power, x^{-2/3}."""
-        one, corrections = np.ones_like(x), [x**-power, x ** (-2 / 3)]
-        free, held = (
-            np.linalg.lstsq(np.stack(rows, axis=1), values)[0]
-            for rows, values in (
-                ([np.log(x), one, *corrections], np.log(width)),
-                ([one, *corrections], width / np.cbrt(x)),
-            )
-        )
+        rows = np.stack((np.log(x), np.ones_like(x), x**-power, x ** (-2 / 3)), axis=1)
+        free, held = (np.linalg.lstsq(matrix, values)[0] for matrix, values in
+                      ((rows, np.log(width)), (rows[:, 1:], width / np.cbrt(x))))  # fmt: skip
         return np.array([free[0], held[0]])
 
     def fitted(self, x: Array, width: Array, coarse: Array) -> tuple[Measured, Measured]:
@@ -176,41 +157,31 @@ class Upright:
         values = self.fit(x, width, power)
         others = (self.fit(x, width, other), self.fit(x[half:], width[half:], power),
                   self.fit(x, coarse, power))  # fmt: skip
-        exponent, prefactor = values + np.max(np.abs(np.array(others) - values), axis=0)
-        return Measured(float(values[0]), exponent), Measured(float(values[1]), prefactor)
-
-    # --- strong blows -----------------------------------------------------------------------
+        off = np.max(np.abs(np.array(others) - values), axis=0)
+        exponent, prefactor = map(Measured, values.tolist(), (values + off).tolist())
+        return exponent, prefactor
 
     def pulses(self, velocity: float) -> list[dict[str, float]]:
-        """At each place the dynamic force of the contacts over the load, its FWHM in sites, and
-        that of the solitary wave of this force on this load; means over a cell."""
+        """At each place dynamic force over load, its FWHM in sites, and that of the solitary wave
+        of this force on this load; means over a cell."""
         size = len(self.masses)
         contacts = np.add.outer(self.places(_TOP, _FEW), np.arange(2 * size))
         scene = self.blown(velocity, contact_sensors=np.unique(contacts).tolist())
-        run, numeric, found = (
-            simulate(scene, rtol=_TOLERANCES[0]),
-            self.theory.numeric(),
-            {},
-        )
+        run, numeric, found = simulate(scene, rtol=_TOLERANCES[0]), self.theory.numeric(), {}
         for contact, force in zip(scene.contact_sensors, run.contact_force, strict=True):
             dynamic = force - scene.load[contact]
             part = leading_pulse(np.maximum(dynamic, 0.0), self.k)
-            found[contact] = measure(run.time[part], dynamic[part])
+            pulse = measure(run.time[part], dynamic[part])
+            found[contact] = pulse.arrival, pulse.peak, pulse.fwhm
         rows = []
         for cell in contacts:
-            pulses = [found[contact] for contact in cell]
-            here, further = pulses[:size], pulses[size:]
-            load = float(cell[0] + (size + 1) / 2)
-            speed = np.mean(
-                [size / (b.arrival - a.arrival) for a, b in zip(here, further, strict=True)]
-            )
-            force, width = (np.mean([getattr(p, name) for p in here]) for name in ("peak", "fwhm"))
+            arrival, peak, fwhm = np.array([found[contact] for contact in cell]).T
+            load, force = float(cell[0] + (size + 1) / 2), peak[:size].mean()
+            width = fwhm[:size].mean() * np.mean(size / (arrival[size:] - arrival[:size]))
             p0, p1 = (f ** (1 / self.k) for f in (load, load + force))
-            rows.append({
-                "site": load, "ratio": float(force / load),
-                "width": float(width * speed),
-                "solitary": float(numeric.fwhm(p0, p1 - p0, "force")),
-            })  # fmt: skip
+            solitary = float(numeric.fwhm(p0, p1 - p0, "force"))
+            rows.append({"site": load, "ratio": float(force / load), "width": float(width),
+                         "solitary": solitary})  # fmt: skip
         return rows
 
 
@@ -233,18 +204,14 @@ def gravity(
 
     Raises `SceneError` for numbers that cannot be meant, k from 3 on among them.
     """
-    if not 1.1 <= real(k, "k") <= 1.75:
-        raise SceneError(
-            f"k is {k:g}: one from 1.1 to 1.75 is wanted; the nearer to 3, where the front's width "
-            "ceases to go as the depth's third root, the more beads it takes to see it"
-        )
+    between(k, "k", 1.1, 1.75,
+            "one from 1.1 to 1.75 is wanted; the nearer to 3, where the front's width ceases to go "
+            "as the depth's third root, the more beads it takes to see it")  # fmt: skip
     beads = integer(beads, "beads", 10 * FIRST, 20_000)
     chains = [Upright(numbered(row), k, beads) for row in ([masses] if masses else CHAINS)]
     jobs = [(chain, blow) for chain in chains for blow in (WEAK, *STRONG)]
-    found = {
-        (chain, blow): chain.fronts() if blow == WEAK else chain.pulses(blow)
-        for chain, blow in progress(jobs)
-    }
+    found = {(chain, blow): chain.fronts() if blow == WEAK else chain.pulses(blow)
+             for chain, blow in progress(jobs)}  # fmt: skip
     return _report(chains, found)
 
 
@@ -265,6 +232,12 @@ _STRONG = (
     Column("front_value", "front", "sites", format=".2f"),
 )
 
+_WEAK_NOTE = f"""\
+Weak blows, of {WEAK:g}: width in sites at x sites, from {FIRST} on, prefactor x^exponent."""
+_STRONG_NOTE = """\
+Strong blows: width of the dynamic contact force F on the load F0, of the solitary wave of
+the same F on F0, and of a weak blow's front."""
+
 
 def _report(chains: Sequence[Upright], found: Mapping[tuple[Upright, float], Any]) -> Report:
     weak, strong, panels = [], [], []
@@ -279,26 +252,15 @@ def _report(chains: Sequence[Upright], found: Mapping[tuple[Upright, float], Any
                   Curve.of("front", sites, theory * np.cbrt(sites), "C0-")]  # fmt: skip
         for blow, colour in zip(STRONG, ("C1", "C2", "C3"), strict=True):
             pulses = found[chain, blow]
-            strong += [
-                (names, blow, p["site"], p["ratio"], p["width"], p["solitary"],
-                 theory * math.cbrt(p["site"])) for p in pulses
-            ]  # fmt: skip
-            at, *widths = ([p[name] for p in pulses] for name in ("site", "width", "solitary"))
-            for label, values, style in (
-                (f"blow of {blow:g}", widths[0], "s"), ("solitary wave", widths[1], "--"),
-            ):  # fmt: skip
-                curves.append(Curve.of(label, at, values, colour + style))
+            strong += [(names, blow, *p.values(), theory * math.cbrt(p["site"])) for p in pulses]
+            at, width, solitary = ([p[n] for p in pulses] for n in ("site", "width", "solitary"))
+            curves += [Curve.of(f"blow of {blow:g}", at, width, f"{colour}s"),
+                       Curve.of("solitary wave", at, solitary, f"{colour}--")]  # fmt: skip
         panels.append(Panel("site", "FWHM (sites)", tuple(curves), "xy", ", ".join(names)))
     return Report(
         f"Chains of {chains[0].beads} beads under their own weight, k = {chains[0].k:g}",
-        (
-            Table(_WEAK, tuple(weak), "rows",
-                  note=f"Weak blows, of {WEAK:g}: width in sites at x sites, from {FIRST} on, "
-                  "prefactor x^exponent."),
-            Table(_STRONG, tuple(strong), "strong",
-                  note="Strong blows: width of the dynamic contact force F on the load F0, of the "
-                  "solitary wave of\nthe same F on F0, and of a weak blow's front."),
-        ),
+        (Table(_WEAK, tuple(weak), "rows", note=_WEAK_NOTE),
+         Table(_STRONG, tuple(strong), "strong", note=_STRONG_NOTE)),
         tuple(_findings(weak, strong)),
         tuple(panels),
         ("Units: the mean mass, A, D, g.",),

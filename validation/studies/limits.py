@@ -10,17 +10,19 @@ With m1 ≫ m2 the light beads only hand the force on: a chain of spacing 2D, wi
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import sympy as sp
+from scipy.interpolate import CubicSpline
 
 from lwa import Dimer, TravelingWave, homogenize
 from lwa.duration import Progress
 from validation.lattice.run import Run
 from validation.lattice.simulate import simulate
-from validation.pulses.pulse import Measured, compared, derived, impulse, measure, speed
+from validation.pulses.pulse import Measured, compared, derived, exponent, measure, speed
 from validation.report.command import study
 from validation.report.panel import Curve, Panel
 from validation.report.result import Report
@@ -30,26 +32,16 @@ from validation.scenes.chains import carrying
 from validation.waves.asymptotics import LAWS, QUANTITIES, theory_values
 from validation.waves.theory import Compacton, theory_at
 
-EXPONENTS = (sp.Rational(3, 2), sp.Rational(5, 4), sp.Rational(11, 10))
-"""Hertz, and two on the way to k = 1."""
-
+EXPONENTS = (sp.Rational(3, 2), sp.Rational(5, 4), sp.Rational(11, 10))  # Hertz, and on to 1
 EQUAL = sp.Integer(1)
-LIGHT = sp.Rational(1, 1000)
-"""ω = m2/m1 of the two chains; the second is small enough that its square does not show."""
-
-LIMIT = (4 * LIGHT, LIGHT, LIGHT / 4)
-"""The ω from which the lattice is extrapolated to ω → 0 at k = 3/2."""
-
-AMPLITUDES = (sp.Rational(1, 100), sp.Integer(1), sp.Integer(100))
-"""Peak strains B of the runs that measure the exponent of F_m against V_s."""
+LIGHT = sp.Rational(1, 1000)  # ω = m2/m1, so small that its square does not show
+LIMIT = (4 * LIGHT, LIGHT, LIGHT / 4)  # from which the lattice is extrapolated to ω → 0 at k = 3/2
+AMPLITUDES = (0.01, 1.0, 100.0)  # peak strains B, for the exponent of F_m against V_s
 
 
 @dataclass(frozen=True)
 class Row:
-    """One comparison.
-
-    ``omega`` is 0 for the limit ω → 0, ``k`` is None where all of `EXPONENTS` enter.
-    """
+    """One comparison; omega 0: the limit ω → 0, no k: all of `EXPONENTS` enter."""
 
     quantity: str
     k: sp.Rational | None
@@ -73,6 +65,12 @@ class Row:
         """The error, held to the bound with the lattice's own added to it."""
         own = self.lattice.relative_error
         return Finding(self.quantity, self.error, -self.bound, self.bound, error=own)
+
+    @property
+    def cells(self) -> tuple[Any, ...]:
+        """Of the table."""
+        return (self.quantity, self.k, self.omega, self.theory, self.theory_value, self.lattice,
+                self.error, self.bound, self.finding.ok)  # fmt: skip
 
 
 _COLUMNS = (
@@ -107,19 +105,18 @@ class Limits:
     def report(self) -> Report:
         """``rows``: ``quantity``, ``k`` and ``omega`` (exact; ``k`` null where all enter, ``omega``
         0 for the limit), ``theory`` (exact), ``theory_value``, ``lattice_value``,
-        ``lattice_error_value`` (absolute), ``error_value`` (theory over lattice - 1),
-        ``bound_value``, ``ok``; in the picture |error| against k - 1, with the leading powers that
-        it must approach."""
-        rows = tuple((row.quantity, row.k, row.omega, row.theory, row.theory_value, row.lattice,
-                      row.error, row.bound, row.finding.ok) for row in self.rows)  # fmt: skip
+        ``lattice_error_value``, ``error_value`` (theory over lattice - 1), ``bound_value``, ``ok``.
+        """
+        rows = tuple(row.cells for row in self.rows)
         return Report(
             "The theory's limits on the lattice",
             (Table(_COLUMNS, rows, "rows", by="omega", heads=_CHAINS, note=_NOTE),),
             tuple(row.finding for row in self.rows),
             tuple(self._panel(omega) for omega in (EQUAL, LIGHT)),
-        )  # fmt: skip
+        )
 
     def _panel(self, omega: sp.Rational) -> Panel:
+        """|error| against k - 1, with the leading powers that it must approach."""
         epsilon = np.geomspace(float(EXPONENTS[-1] - 1) / 2, float(EXPONENTS[0] - 1), 2)
         curves = []
         for i, (quantity, law) in enumerate(LAWS.items()):
@@ -134,17 +131,8 @@ class Limits:
         return Panel("k - 1", "|theory/lattice - 1|", tuple(curves), "xy", title)
 
 
-@dataclass(frozen=True)
-class LatticeWave:
-    """What the lattice makes of a wave: `QUANTITIES`, speed dx/dt and peak contact force."""
-
-    quantities: dict[str, Measured]
-    speed: Measured
-    force: Measured
-
-
-def lattice_wave(wave: TravelingWave, B: float = 1.0) -> LatticeWave:
-    """Start the lattice from the theory's wave and measure what becomes of it.
+def lattice_wave(wave: TravelingWave, B: float = 1.0) -> dict[str, Measured]:
+    """`QUANTITIES`, speed dx/dt and peak contact force of what the theory's wave becomes.
 
     Means over the two contacts of a cell, which the exact wave passes as mirror images.
     """
@@ -153,14 +141,9 @@ def lattice_wave(wave: TravelingWave, B: float = 1.0) -> LatticeWave:
     places = [2 * round((start + s * compacton.support) / 2) for s in (4, 6, 8)]
     run = _run(compacton, start, places)
     numbers = compared(lambda place: _numbers(run, compacton, place), 2, 1)
-    scale = float(sp.N(wave.speed_scale)) * B ** ((compacton.k - 1) / 2)
-    numbers[QUANTITIES[-1]] = derived(
-        lambda V, u: V / scale / (u / B) ** ((compacton.k - 1) / 2),
-        numbers["speed"],
-        numbers["strain"],
-    )
-    quantities = {name: numbers[name] for name in QUANTITIES}
-    return LatticeWave(quantities, numbers["speed"], numbers["force"])
+    scale, power = float(wave.speed_scale), (compacton.k - 1) / 2
+    at_one = derived(lambda V, u: V / scale / u**power, numbers["speed"], numbers["strain"])
+    return numbers | {QUANTITIES[-1]: at_one}
 
 
 def _run(compacton: Compacton, start: int, places: Sequence[int]) -> Run:
@@ -176,10 +159,9 @@ def _run(compacton: Compacton, start: int, places: Sequence[int]) -> Run:
         duration=(2 * cells - start - compacton.support / 4) / compacton.speed,
         samples=80 * cells,
     )
-    if wave.cell.masses[1] == wave.cell.masses[0]:
-        return simulate(scene, rtol=1e-9, atol=1e-9)
-    # The light beads set the step here, far below what the pulse needs at the same tolerance.
-    return simulate(scene, rtol=1e-7, atol=1e-6)
+    # Light beads set the step, far below what the pulse needs at the same tolerance.
+    rtol, atol = (1e-9, 1e-9) if len(set(wave.cell.masses)) == 1 else (1e-7, 1e-6)
+    return simulate(scene, rtol=rtol, atol=atol)
 
 
 def _numbers(run: Run, compacton: Compacton, place: int) -> dict[str, float]:
@@ -193,46 +175,37 @@ def _numbers(run: Run, compacton: Compacton, place: int) -> dict[str, float]:
         sites = run.scene.contact_sensors[here] - run.scene.contact_sensors[here - 2]
         V = speed(before, pulse, sites)
         reach = 0.6 * compacton.support / V
-        ends = pulse.arrival - reach, pulse.arrival + reach
-        push = impulse(run.time, run.contact_force[here], *ends)
+        force = CubicSpline(run.time, run.contact_force[here])
+        push = float(force.integrate(pulse.arrival - reach, pulse.arrival + reach))
         sides.append({
-            width: pulse.fwhm * V,
-            strain_width: strain.fwhm * V,
+            width: pulse.fwhm * V, strain_width: strain.fwhm * V,
             support: unit_support * push * V / pulse.peak,
-            "strain": strain.peak,
-            "speed": V,
-            "force": pulse.peak,
+            "strain": strain.peak, "speed": V, "force": pulse.peak,
         })  # fmt: skip
     first, second = sides
     return {name: (value + second[name]) / 2 for name, value in first.items()}
 
 
-Case = tuple[sp.Rational, sp.Rational, sp.Rational]
-"""k, ω and B of one run."""
+Case = tuple[sp.Rational, sp.Rational, float]  # k, ω and B of one run
 
 
 @study()
 def limits(progress: Progress[Case] = iter) -> Limits:
     """Equal masses, m1 ≫ m2 and k → 1: widths, speed, amplitude, held to bounds. A few seconds."""
     cases: dict[Case, None] = dict.fromkeys(
-        [(k, omega, AMPLITUDES[1]) for omega in (EQUAL, LIGHT) for k in EXPONENTS]
+        [(k, omega, 1.0) for omega in (EQUAL, LIGHT) for k in EXPONENTS]
         + [(k, EQUAL, B) for k in EXPONENTS for B in AMPLITUDES]
-        + [(EXPONENTS[0], omega, AMPLITUDES[1]) for omega in LIMIT]
+        + [(EXPONENTS[0], omega, 1.0) for omega in LIMIT]
     )
     waves = {(k, omega): theory_at(k, omega) for k, omega, _ in cases}
-    lattice = {
-        (k, omega, B): lattice_wave(waves[k, omega], float(B))
-        for k, omega, B in progress(list(cases))
-    }
+    lattice = {case: lattice_wave(waves[case[:2]], case[2]) for case in progress(list(cases))}
     rows: list[Row] = []
     for omega in (EQUAL, LIGHT):
         theory = [theory_values(waves[k, omega]) for k in EXPONENTS]
-        found = [lattice[k, omega, AMPLITUDES[1]].quantities for k in EXPONENTS]
         for quantity in QUANTITIES:
-            columns = [t[quantity] for t in theory], [f[quantity] for f in found]
-            rows += _quantity_rows(quantity, omega, *columns)
-    first = EXPONENTS[0]
-    rows += _limit_rows([lattice[first, omega, AMPLITUDES[1]] for omega in LIMIT])
+            found = [lattice[k, omega, 1.0][quantity] for k in EXPONENTS]
+            rows += _quantity_rows(quantity, omega, [t[quantity] for t in theory], found)
+    rows += _limit_rows([lattice[EXPONENTS[0], omega, 1.0] for omega in LIMIT])
     for k in EXPONENTS:
         rows.append(_exponent_row(k, waves[k, EQUAL], [lattice[k, EQUAL, B] for B in AMPLITUDES]))
     return Limits(tuple(rows))
@@ -244,10 +217,8 @@ def _quantity_rows(
     """One quantity at each k, and how its error vanishes with ε."""
     law = LAWS[quantity]
     epsilon = np.array([float(k - 1) for k in EXPONENTS])
-    rows = [
-        Row(quantity, k, omega, t, f, law.constant * float(k - 1) ** law.order)
-        for k, t, f in zip(EXPONENTS, theory, lattice, strict=True)
-    ]
+    rows = [Row(quantity, k, omega, t, f, law.bound(k))
+            for k, t, f in zip(EXPONENTS, theory, lattice, strict=True)]  # fmt: skip
     # The coefficient is that of ω = 1 and of ω → 0; between, it depends on ω.
     slack = 0.0 if omega == 1 else 20 * float(omega)
     numbers = np.array([row.theory_value for row in rows])
@@ -267,35 +238,21 @@ def _quantity_rows(
     ]  # fmt: skip
 
 
-def _limit_rows(waves: list[LatticeWave]) -> list[Row]:
+def _limit_rows(waves: list[dict[str, Measured]]) -> Iterator[Row]:
     """ω → 0 at the first k: the lattice extrapolated, linearly in ω."""
     k = EXPONENTS[0]
     symbols = homogenize(Dimer("m1", "m2", spacing=1), k=k).pde.traveling_wave()
     m1, m2 = symbols.cell.masses
-    rows = []
     for quantity, theory in theory_values(symbols).items():
-        coarse, middle, fine = (wave.quantities[quantity].value for wave in waves)
-        law = LAWS[quantity]
-        rows.append(
-            Row(
-                quantity,
-                k,
-                sp.Integer(0),
-                sp.simplify(theory.subs({m1: 1, m2: 0})),
-                Measured((4 * fine - middle) / 3, (4 * middle - coarse) / 3),
-                law.constant * float(k - 1) ** law.order,
-            )
-        )
-    return rows
+        coarse, middle, fine = (wave[quantity].value for wave in waves)
+        limit = Measured((4 * fine - middle) / 3, (4 * middle - coarse) / 3)
+        there = sp.simplify(theory.subs({m1: 1, m2: 0}))
+        yield Row(quantity, k, sp.Integer(0), there, limit, LAWS[quantity].bound(k))
 
 
-def _exponent_row(k: sp.Rational, wave: TravelingWave, waves: list[LatticeWave]) -> Row:
+def _exponent_row(k: sp.Rational, wave: TravelingWave, waves: list[dict[str, Measured]]) -> Row:
     """The power of V_s to which F_m is proportional, fitted to runs of different amplitude."""
-
-    def fit(*numbers: float) -> float:
-        V, F = np.log(numbers[::2]), np.log(numbers[1::2])
-        return float(np.polyfit(V, F, 1)[0])
-
-    pairs = [number for wave in waves for number in (wave.speed, wave.force)]
+    speeds, forces = ([wave[name] for wave in waves] for name in ("speed", "force"))
     # The lattice scales exactly, so only the integration's error is allowed for.
-    return Row("exponent of F_m in V_s", k, EQUAL, wave.force_exponent, derived(fit, *pairs), 1e-5)
+    found = exponent(speeds, forces)
+    return Row("exponent of F_m in V_s", k, EQUAL, wave.force_exponent, found, 1e-5)

@@ -10,7 +10,6 @@ column of the dynamic force for each sensor.
 
 from __future__ import annotations
 
-import csv
 import io
 import json
 from collections.abc import Mapping
@@ -30,14 +29,11 @@ from validation.scenes.checks import SceneError, of_scene
 from validation.scenes.scene import Scene
 from validation.scenes.scenefile import scene
 
-KEPT = (".json", ".npz")
-"""Suffixes of files that hold the scene and the result as well."""
+KEPT = (".json", ".npz")  # suffixes of files that hold the scene and the result as well
 SUFFIXES = (*KEPT, ".csv")
-
 RECORDS = ("time", "contact_force", "compression", "bead_force", "bead_displacement",
            "bead_velocity")  # fmt: skip
 TABLES = ("sensors", "speeds")
-
 _MOST_BYTES = 10**9
 
 
@@ -62,12 +58,14 @@ def store(run: Run, document: Mapping[str, Any], file: Path) -> None:
     suffix = file.suffix.lower()
     with replacing(file) as new, new.open("wb") as stream:
         if suffix == ".npz":
-            for table in TABLES:
-                columns = _columns(document[table])
-                arrays |= {f"{table}_{name}": column for name, column in columns.items()}
+            arrays |= {f"{table}_{name}": column for table in TABLES
+                       for name, column in _columns(document[table]).items()}  # fmt: skip
             np.savez_compressed(stream, document=json.dumps(document), **arrays)
         elif suffix == ".csv":
-            stream.write(_csv(run).encode())
+            heard = tracks(run)
+            names = ",".join(("time", *(f"{track.kind}_{track.number}" for track in heard)))
+            rows = np.column_stack((run.time, *(track.force for track in heard)))
+            np.savetxt(stream, rows, "%s", ",", header=names, comments="")
         else:
             records = {f"{name}_value": array.tolist() for name, array in arrays.items()}
             stream.write(json.dumps({**document, "records": records}).encode())
@@ -113,12 +111,3 @@ def _columns(rows: list[dict[str, Any]]) -> dict[str, NDArray[Any]]:
                        str if name in texts else float)
         for name in (rows[0] if rows else ())
     }  # fmt: skip
-
-
-def _csv(run: Run) -> str:
-    heard = tracks(run)
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(["time", *(f"{track.kind}_{track.number}" for track in heard)])
-    writer.writerows(np.column_stack((run.time, *(track.force for track in heard))).tolist())
-    return text.getvalue()

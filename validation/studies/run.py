@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from importlib.resources import files
 from pathlib import Path
 
 import click
 import numpy as np
 
+import validation.scenes
 from validation.lattice.effort import RunProgress
 from validation.lattice.simulate import COMPILED, METHODS
 from validation.pulses.sensors import (
@@ -26,30 +28,31 @@ from validation.report.panel import Curve, Map, Panel
 from validation.report.result import Report
 from validation.report.table import Column, Table
 from validation.scenes.checks import SceneError
-from validation.scenes.examples import EXAMPLES
 from validation.scenes.scene import Scene
 from validation.scenes.scenefile import document, read
 from validation.studies.records import KEPT, SUFFIXES, load, store
 
-_NOTE = (
-    "The first pulse at each sensor, dynamic forces, in {} units. ±: by how much a less\naccurate "
-    "run differs."
-)
-
-_SI = {
+_NOTE = """\
+The first pulse at each sensor, dynamic forces, in {} units. ±: by how much a less
+accurate run differs."""
+_SI = {  # what is shown, with its unit where a scene is in SI
     "arrival": "arrival (s)", "peak force": "peak force (N)", "FWHM": "FWHM (s)",
     "sites/time": "sites/s", "length/time": "m/s",
     "time": "time (s)", "dynamic force": "dynamic force (N)",
 }  # fmt: skip
-"""What is shown, with its unit where a scene is in SI."""
-
-_MOST = 10
-"""Sensors of a kind that are drawn as curves; more as a map."""
-
-_FINEST = 1000
-"""Places and times of a map."""
+_MOST = 10  # sensors of a kind that are drawn as curves; more as a map
+_FINEST = 1000  # places and times of a map
 
 
+def _example(name: str) -> tuple[str, str]:
+    """What an example is, which the first line of its file says, and the file without it."""
+    file = files(validation.scenes) / "examples" / f"{name}.toml"
+    says, _, text = file.read_text(encoding="utf-8").partition("\n")
+    return says.removeprefix("# "), text
+
+
+EXAMPLES = {name: _example(name) for name in
+            ("paper", "vertical", "precompressed", "defect", "trimer")}  # fmt: skip
 _EPILOG = "\n\n".join((
     "\b\nExamples:\n" + "\n".join(f"  {name:14} {says}" for name, (says, _) in EXAMPLES.items()),
     "\b\nA scene names what is there, in SI units if its beads are of materials:\n"
@@ -80,11 +83,8 @@ def report(found: Recording) -> Report:
          _table("speed", ("from", "to"), SPEEDS, says, found.speeds)),
         panels=tuple(_panels(tracks(run), says)),
         notes=("\n".join(missing), note if found.sensors else ""),
-        data={
-            "scene": document(scene),
-            "energy_drift_value": run.energy_drift,
-            "momentum_drift_value": run.momentum_drift,
-        },
+        data={"scene": document(scene), "energy_drift_value": run.energy_drift,
+              "momentum_drift_value": run.momentum_drift},
     )  # fmt: skip
 
 
@@ -124,7 +124,7 @@ def _out(context: click.Context, given: click.Parameter, path: str | None) -> Pa
     return None if path is None else output_file("out", path, SUFFIXES)
 
 
-def _example(context: click.Context, given: click.Parameter, name: str | None) -> None:
+def _show(context: click.Context, given: click.Parameter, name: str | None) -> None:
     if name is not None:
         click.echo(EXAMPLES[name][1], nl=False)
         context.exit()
@@ -133,7 +133,7 @@ def _example(context: click.Context, given: click.Parameter, name: str | None) -
 @study(
     click.argument("scene"),
     option("--example", type=click.Choice(tuple(EXAMPLES)), is_flag=False, flag_value="paper",
-           is_eager=True, expose_value=False, callback=_example, show_default=False,
+           is_eager=True, expose_value=False, callback=_show, show_default=False,
            says="Print a scene to begin with, by default that of the paper."),
     option("--out", callback=_out, metavar="FILE", says="Store the records in a file: .csv, or, "
            "with the result and the scene, which runs again, .json or .npz."),

@@ -36,6 +36,10 @@ class Law:
     order_bound: float
     coefficient_bound: float
 
+    def bound(self, k: sp.Expr) -> float:
+        """Of the error at k."""
+        return self.constant * float(k - 1) ** self.order
+
 
 _WIDTH = Law(1, sp.Rational(3, 20) - sp.log(2) / 15, 0.113, 0.05, 0.01)
 _SUPPORT = Law(1, sp.Rational(1, 20), 0.077, 0.2, 0.02)

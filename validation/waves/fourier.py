@@ -40,14 +40,10 @@ import scipy
 from numpy.typing import NDArray
 
 from lwa.compact.numeric import Array
-from validation.scenes.checks import integer
 
 MOST_STEPS = 25  # of Newton's method
 FEWEST = 40  # points on which a wave is resolved
-_FIRST, _FARTHEST = (
-    0.01,
-    0.2,
-)  # steps along a branch, in k, c² and the root of the mean square force
+_FIRST, _FARTHEST = 0.01, 0.2  # steps along a branch, in k, c², and the forces' mean square
 _STRAIGHT = 0.9  # cosine of the angle between two steps
 _PLACES = 300  # along a branch
 
@@ -100,17 +96,21 @@ def circle(half_period: float, n: int) -> Array:
 class Problem:
     """F_a - rise(a) = 0 on a `circle`, with F_a(0) = 1 - p0^k for c²; F_b(ξ) = F_a(-ξ).
 
-    Unknowns are the forces (of equal masses, where o = 0, at 0 … L only) and c².
+    Unknowns are the forces (of equal masses, where o = 0, at 0 … L only) and c². L is ample, and
+    n points resolve the wave, unless they are given.
     """
 
     def __init__(
-        self, masses: tuple[float, float], k: float, half_period: float, n: int, p0: float = 0.0
-    ) -> None:
-        self.k, self.n, self.L, self.p0 = k, n, half_period, p0
+        self, masses: tuple[float, float], k: float, half_period: float | None = None,
+        points: int | None = None, p0: float = 0.0,
+    ) -> None:  # fmt: skip
+        self.k, self.p0 = k, p0
+        self.L = half_period or ample_half_period(masses, k)
+        self.n = points or enough(masses, k, self.L)
         self.height = -math.expm1(k * math.log(p0)) if p0 else 1.0
-        self.xi = circle(half_period, n)
+        self.xi = circle(self.L, self.n)
         self.uniform = masses[0] == masses[1]
-        self.count = n + 1 if self.uniform else 2 * n
+        self.count = self.n + 1 if self.uniform else 2 * self.n
         self.inverse = 1 / masses[0], 1 / masses[1]
 
     def forces(self, z: Array) -> Array:
@@ -232,15 +232,6 @@ def enough(masses: tuple[float, float], k: float, half_period: float) -> int:
     beads = math.sqrt(sum(masses) / min(masses) - 1)
     dense = 3 + 9 * math.sqrt(k - 1) + 7 * max(k - 2, 0) + 1.5 * beads
     return max(FEWEST, math.ceil(dense * half_period))
-
-
-def problem(
-    masses: tuple[float, float], k: float, half_period: float | None, points: int | None
-) -> Problem:
-    """On an ample period, and on points that resolve the wave, unless they are given."""
-    L = ample_half_period(masses, k) if half_period is None else half_period
-    n = enough(masses, k, L) if points is None else integer(points, "points", 8, 2000)
-    return Problem(masses, k, L, n)
 
 
 @np.errstate(all="ignore")  # what overflows, or has c² < 0, does not converge

@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 import scipy
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from lwa.compact.numeric import Array
 from lwa.quantities import QUANTITIES, strain_power
@@ -31,14 +31,18 @@ OUTSIDE = 0.6  # of the half period: where the pulse of a dimer has ended, and i
 _ROW = 16  # of Fourier coefficients that are summed up together
 
 
+@dataclass(frozen=True, eq=False)
 class Profile(ABC):
-    """A pulse of a chain as a function of ξ = x - ct, mirror symmetric about a bead; A = D = 1."""
+    """A pulse of a chain as a function of ξ = x - ct, mirror symmetric about a bead; A = D = 1.
+
+    half_period : L, up to which it is known.
+    """
 
     masses: tuple[float, float]
     k: float
     c2: float
     half_period: float
-    background: float = 0.0
+    background = 0.0
 
     @property
     @abstractmethod
@@ -93,33 +97,28 @@ class Profile(ABC):
     def fwhm(self, name: str = "strain") -> float:
         """Full width at half maximum, in D, of the highest hump: roots of the profile itself.
 
-        Where a dimer's pulse has several humps (`validation.pulses.steady`), it jumps. Raises
-        `MeasureError` where the quantity does not fall to half its peak.
+        Raises `MeasureError` where the quantity does not fall to half its peak.
         """
         top, peak = self.peak(name)
-        xi = top + np.linspace(0, self.half_period, 4 * self.samples)
-        width = 0.0
+
+        def above(r: Any, side: int) -> Array:
+            return self.quantity(name, top + side * r) - peak / 2
+
+        distance, width = np.linspace(0, self.half_period, 4 * self.samples), 0.0
         for side in (-1, 1):
-            points = top + side * (xi - top)
-            below = int(np.argmax(self.quantity(name, points) < peak / 2))
+            below = int(np.argmax(above(distance, side) < 0))
             if not below:
                 raise MeasureError(f"the {name} has no FWHM: its tail is above half its peak")
-            ends = points[below - 1], points[below]
-            root = scipy.optimize.brentq(
-                lambda x: float(self.quantity(name, x)) - peak / 2, *ends, xtol=1e-14, rtol=1e-14
-            )
-            width += abs(float(root) - top)
-        return width
+            ends = distance[below - 1 : below + 1]
+            width += scipy.optimize.brentq(above, *ends, (side,), xtol=1e-14, rtol=1e-14)
+        return float(width)
 
     def over_peak(self, xi: ArrayLike) -> dict[str, Array]:
         """Strain, force and velocity, each over its peak."""
         return {name: self.quantity(name, xi) / self.peak(name)[1] for name in QUANTITIES}
 
     def plot(self, ax: Any = None) -> Any:
-        """Draw `over_peak` on |ξ| ≤ L into ``ax``, Matplotlib's axes, or a new picture's.
-
-        Returns the axes.
-        """
+        """Draw `over_peak` on |ξ| ≤ L into Matplotlib's axes, or into new ones; returns them."""
         from lwa.compact.picture import axes  # optional, start-up
 
         ax = axes(ax)
@@ -143,9 +142,9 @@ class Profile(ABC):
         outside = np.linspace(start, self.half_period, 2 * self.samples)
         return summit(lambda x: np.abs(self.strain(x) - self.strain(-x)) / 2, outside)[1]
 
-    def apart(self, other: Profile, end: float) -> float:
-        """The largest difference of two strains on |ξ| ≤ end."""
-        xi = np.linspace(-end, end, 401)
+    def apart(self, other: Profile) -> float:
+        """The largest difference of two strains over the pulse."""
+        xi = np.linspace(-self.pulse, self.pulse, 401)
         return float(np.abs(self.strain(xi) - other.strain(xi)).max())
 
 
@@ -153,7 +152,7 @@ class Profile(ABC):
 class ExactWave(Profile):
     """One traveling wave; A = D = 1.
 
-    masses : (m1, m2); equal for a chain of one mass. c2 : c², the square of the speed dx/dt.
+    masses, k, c2 : (m1, m2), the exponent, and the square of the speed dx/dt.
     half_period : L; profiles are periodic with 2L, a solitary wave's end before.
     even, odd : coefficients of E in cos(πjξ/L), j = 0 … n, and of O in sin(πjξ/L).
     tail : largest |o| outside the pulse, over the peak strain.
@@ -162,10 +161,6 @@ class ExactWave(Profile):
     background : p0, the strain far from the wave.
     """
 
-    masses: tuple[float, float]
-    k: float
-    c2: float
-    half_period: float
     even: Array
     odd: Array
     tail: float
@@ -216,10 +211,6 @@ class ExactWave(Profile):
         return replace(self, c2=c2, even=self.even * force, odd=self.odd * force, background=p0)
 
     @cached_property
-    def _q(self) -> Array:
-        return np.asarray(np.pi * np.arange(self.samples) / self.half_period, float)
-
-    @cached_property
     def _strains(self) -> tuple[Array, Array]:
         light, c2 = 1 / self.omega, self.c2 * self.masses[0]  # 1/m1 itself may be out of range
         odd = self.odd if light != 1 else 0 * self.odd  # but for rounding, over q²
@@ -230,40 +221,39 @@ class ExactWave(Profile):
         return e, o
 
     def _front(self, xi: Array) -> Array:
-        return self._sum(xi, *self._strains) * self._within(xi)
+        return np.where(self._ended(xi), 0.0, self._sum(xi, *self._strains))
 
     def velocity(self, xi: ArrayLike, bead: int = 0) -> Array:
         one, two = (float(self._velocity(np.array(self.half_period), i)) for i in (0, 1))
         mean = (one + self.omega * two) / (1 + self.omega)
-        return (self._velocity(xi, bead) - mean) * self._within(xi)
+        return np.where(self._ended(xi), 0.0, self._velocity(xi, bead) - mean)
 
     def _velocity(self, xi: ArrayLike, bead: int) -> Array:
-        sign, q = (-1 if bead % 2 else 1), self._q[1:]
+        sign, q = (-1 if bead % 2 else 1), np.pi / self.half_period * np.arange(1, self.samples)
         push = -2 * np.sin(q / 2) * self.even[1:] + sign * 2 * np.cos(q / 2) * self.odd[1:]
         row = np.append(0.0, -push / q) / (self.masses[bead % 2] * self.c)
         return self._sum(xi, row, 0 * row)
 
     def _sum(self, xi: ArrayLike, even: Array, odd: Array) -> Array:
-        L = self.half_period if self.solitary else math.inf  # a solitary wave is not repeated
         rows = np.append(even - 1j * odd, np.zeros(-self.samples % _ROW)).reshape(-1, _ROW)
-        q, x = np.pi / self.half_period * np.arange(rows.size), np.clip(xi, -L, L)
+        q = np.pi / self.half_period * np.arange(rows.size)
         # e^{iqξ} of every q from those of the first ones and of every 16th.
-        first, every = (np.exp(1j * np.multiply.outer(x, part)) for part in (q[:_ROW], q[::_ROW]))
+        first, every = (np.exp(1j * np.multiply.outer(xi, part)) for part in (q[:_ROW], q[::_ROW]))
         return np.asarray(((first @ rows.T) * every).real.sum(axis=-1))
 
-    def _within(self, xi: ArrayLike) -> Array:
-        """1 where the wave is, and 0 where one that ends has ended: no rounding moves a bead."""
-        return np.asarray((np.abs(xi) < self.half_period) | (not self.solitary), float)
+    def _ended(self, xi: ArrayLike) -> NDArray[np.bool_]:
+        """Where a wave that ends has ended: it is not repeated, and no rounding moves a bead."""
+        return np.asarray((np.abs(xi) >= self.half_period) & self.solitary)
 
 
 def at_unit_force(
-    masses: tuple[float, float], k: float, c2: float, half_period: float, even: Array, odd: Array,
-    p0: float = 0.0,
-) -> ExactWave:  # fmt: skip
-    """The wave of these forces, scaled to a force 1 at its peak, with its tail and residual."""
-    wave = ExactWave(masses, k, c2, half_period, even, odd, 0.0, 0.0, p0)
-    wave = wave.times(1 / (p0 + wave.peak("strain")[1]))
-    tail = 0.0 if masses[0] == masses[1] else wave.rattle(OUTSIDE * half_period)
+    masses: tuple[float, float], problem: fourier.Problem, forces: Array, c2: float
+) -> ExactWave:
+    """The wave that solves a problem, scaled to a force 1 at its peak; its tail and residual."""
+    even, odd = fourier.coefficients(problem.forces(forces))
+    wave = ExactWave(masses, problem.k, c2, problem.L, even, odd, 0.0, 0.0, problem.p0)
+    wave = wave.times(1 / (problem.p0 + wave.peak("strain")[1]))
+    tail = 0.0 if problem.uniform else wave.rattle(OUTSIDE * problem.L)
     return replace(wave, tail=tail, residual=_residual(wave))
 
 
@@ -283,6 +273,5 @@ def summit(f: Callable[[Any], Array], xi: Array) -> tuple[float, float]:
     top = scipy.optimize.minimize_scalar(
         lambda x: -float(f(x)), bounds=bounds, method="bounded", options={"xatol": 1e-9}
     )
-    if -top.fun > value[i]:
-        return float(top.x), -float(top.fun)
-    return float(xi[i]), float(value[i])
+    peak, place = max((value[i], xi[i]), (-top.fun, top.x))
+    return float(place), float(peak)

@@ -24,11 +24,10 @@ from typing import Any
 
 import numpy as np
 
-from validation.scenes.checks import SceneError, integer
+from validation.scenes.checks import between, integer
 from validation.waves.profile import ExactWave
-from validation.waves.solver import NoWave, parameters, solve, solved
+from validation.waves.solver import NoWave, solve, solved
 
-RANGE = (1.1, 5.0)  # the k of special ratios: as k → 1, T cannot be told from rounding any more
 MOST = 6  # special ratios at one k
 HERTZ, PUBLISHED = 1.5, (0.3428, 0.1548)  # the first ratios there, near which Newton begins
 _FARTHEST = 0.15  # change of √(m1/m2) in one step along k; the ratios are 0.2 apart, or more
@@ -50,14 +49,10 @@ class Resonances:
 def resonances(k: Any, count: Any) -> Resonances:
     """The solitary waves at the ``count`` largest special ratios m2/m1 < 1, for k from 1.1 to 5.
 
-    Raises `SceneError` where the roots cannot be told from rounding, and `NoWave` when fewer are
-    found.
+    Nearer to 1 the strain T cannot be told from rounding. Raises `SceneError` for other numbers
+    than can be meant, and `NoWave` when fewer are found.
     """
-    _, k = parameters([1], k)
-    low, high = RANGE
-    if not low <= k <= high:
-        found = f"special mass ratios are found for k from {low:g} to {high:g}"
-        raise SceneError(f"k is {k:g}: {found}")
+    k = between(k, "k", 1.1, 5, "special mass ratios are found for k from 1.1 to 5")
     count = integer(count, "count", 1, MOST)
     first = [solve((1.0, ratio), HERTZ, free=True) for ratio in PUBLISHED]
     if k <= HERTZ:

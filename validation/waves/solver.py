@@ -5,8 +5,7 @@ dimer chain.
 
 A solitary wave leaves no strain T behind. That is one condition more than there are unknowns
 (amplitude and speed are tied by scaling), so that a dimer has solitary waves at isolated ratios
-m2/m1 only, those of Jayaprakash, Starosvetsky & Vakakis, Phys. Rev. E 83, 036606 (2011).
-`resonances` finds them.
+m2/m1 only, those of `validation.waves.resonances`.
 
 At any other ratio the chain has periodic waves (Betti & Pelinovsky, J. Nonlinear Sci. 23, 689
 (2013)): on both sides of the pulse the light beads rattle between the heavy ones, for ever. Such a
@@ -14,10 +13,10 @@ wave is a nanopteron, its tail the largest |o| on 0.6 L ≤ |ξ| ≤ L. The stra
 way between two pulses. Along each of several branches of such waves L and the tail change.
 
 A struck chain makes none of them, as its light beads are at rest before the pulse; but its pulse,
-made symmetric, is nearly one (`validation.waves.struck`). Newton's method is begun from that pulse
-(and where it finds nothing, from the theory's wave), at several L unless one is given, and of the
-waves found that one is taken whose strain differs least from the struck chain's. How much it still
-differs is its error (`measured`). A rough grid tells which one that is.
+made symmetric, is nearly one (`validation.waves.struck`). Newton's method is begun from it, or
+where it finds nothing from the theory's wave, at several L unless one is given; of the waves found,
+on a rough grid, the one is taken whose strain differs least from the struck chain's. How much it
+still differs is its error (`measured`).
 
 A chain of one mass has always a solitary wave (Friesecke & Wattis 1994; English & Pego 2005), on a
 background strain p0 (a chain under load) too. There it ends as e^{-κ|ξ|}, c² κ² = 4 c0² sinh²(κ/2),
@@ -34,18 +33,19 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+import scipy
 
+from lwa import Cell, Power, background_wave
 from lwa.compact.numeric import Array
 from lwa.duration import Progress
 from lwa.exact import InputError
 from lwa.quantities import QUANTITIES
 from validation.lattice.run import IntegrationError
 from validation.pulses.pulse import Measured
-from validation.scenes.checks import SceneError, items, positive, real
+from validation.scenes.checks import SceneError, between, integer, items, positive
 from validation.waves import fourier
 from validation.waves.profile import ExactWave, Profile, at_unit_force
 from validation.waves.struck import Struck, struck
-from validation.waves.theory import Loaded
 
 FALLEN = 38.0  # e-foldings of a wave on a background from its flanks to L
 SHALLOWEST = 1e-4  # of a wave on a background: what it adds to the peak strain
@@ -55,6 +55,7 @@ PERIODS = np.arange(1.0, 1.8, 0.05)  # ample half periods at which waves are loo
 ROUGH = 0.35  # of the points that resolve a wave: enough to see which one is the nearest
 ENDED = 3e-15  # what equal masses may have of their peak strain at the half period
 ROUNDING = 1e-12  # of a solitary wave's numbers: that of a strain, over its slope at half maximum
+Pair = tuple[float, float]  # m1 and m2
 
 
 class NoWave(InputError):
@@ -62,17 +63,12 @@ class NoWave(InputError):
 
 
 def exact_wave(
-    masses: Sequence[Any],
-    k: Any,
-    *,
-    half_period: float | None = None,
-    background: Any = 0,
+    masses: Sequence[Any], k: Any, *, half_period: float | None = None, background: Any = 0,
     progress: Progress[Any] = iter,
-) -> ExactWave:
+) -> ExactWave:  # fmt: skip
     """The traveling wave: solitary, or the nanopteron nearest to the pulse of a struck chain.
 
-    masses : m1, or m1 and m2.
-    k : exponent of F = δ^k, from 1.01 to 8.
+    masses : m1, or m1 and m2. k : exponent of F = δ^k, from 1.01 to 8.
     half_period : L, where it is to be this one and not chosen.
     background : of one mass, p0 in units of the peak compression of the contacts: the static
         force is p0^k, its sum with the wave's peaks at 1.
@@ -88,14 +84,11 @@ def exact_wave(
     1.222413
     """
     pair, k = parameters(masses, k)
-    p0 = real(background, "background")
-    if not 0 <= p0 <= 1 - SHALLOWEST:
-        most = f"1 - {SHALLOWEST:g} of the peak compression"
-        raise SceneError(f"background is {p0:g}: one from 0 to {most} is wanted")
+    wanted = f"one from 0 to 1 - {SHALLOWEST:g} of the peak compression is wanted"
+    p0 = between(background, "background", 0, 1 - SHALLOWEST, wanted)
     if p0 and pair[0] != pair[1]:
-        raise SceneError(
-            f"background is {p0:g}: under a load exact waves are found for equal masses"
-        )
+        found_for = "under a load exact waves are found for equal masses"
+        raise SceneError(f"background is {p0:g}: {found_for}")
     L = None if half_period is None else positive(half_period, "half_period")
     unit = (1.0, pair[1] / pair[0])
     found = _uniform(unit, k, L, p0) if unit[1] == 1 else _dimer(unit, k, L, progress)
@@ -137,64 +130,68 @@ def _numbers(wave: ExactWave | Struck, mass: float = 1.0) -> dict[str, float]:
     return found
 
 
-def parameters(masses: Sequence[Any], k: Any) -> tuple[tuple[float, float], float]:
+def parameters(masses: Sequence[Any], k: Any) -> tuple[Pair, float]:
     """m1, m2 and k, checked."""
     given = [positive(m, f"mass {i}") for i, m in enumerate(items(masses, "masses"), start=1)]
     if len(given) not in (1, 2):
         raise SceneError(f"{len(given)} masses: exact waves are found for a cell of 1 or 2 beads")
-    k = real(k, "k")
-    if not 1.01 <= k <= 8:
-        raise SceneError(f"k is {k:g}: exact waves are found for k from 1.01 to 8")
+    k = between(k, "k", 1.01, 8, "exact waves are found for k from 1.01 to 8")
     ratio = given[-1] / given[0]
     if not 0.01 <= ratio <= 100:
         raise SceneError(f"m2/m1 is {ratio:g}: exact waves are found for 0.01 to 100")
     return (given[0], given[-1]), k
 
 
-def _uniform(
-    pair: tuple[float, float], k: float, half_period: float | None, p0: float
-) -> ExactWave:
+def _uniform(pair: Pair, k: float, half_period: float | None, p0: float) -> ExactWave:
+    """Of equal masses, on a background or none."""
     ample = fourier.ample_half_period(pair, k)
-    L = half_period or ample
     if p0:
         found, ample = _pressed(pair, k, half_period, p0)
-        L = found.half_period
-    else:  # above k = 3 the theory's is too wide
-        found = solve(pair, k, L) if k <= 3 else _followed(solve(pair, 3.0, L), k)
+    elif k <= 3:
+        found = solve(pair, k, half_period)
+    else:  # the theory's is too wide
+        found = _followed(solve(pair, 3.0, half_period or ample), k)
     if found.rest > ENDED / (1 - p0):  # strains are rounded beside p0
         raise SceneError(
-            f"half_period is {L:g}: the solitary wave at k = {k:g} has not ended there, with "
-            f"{found.rest:.0e} of its peak strain; {ample:.3g} is ample"
+            f"half_period is {found.half_period:g}: the solitary wave at k = {k:g} has not ended "
+            f"there, with {found.rest:.0e} of its peak strain; {ample:.3g} is ample"
         )
     return found
 
 
-def _pressed(
-    pair: tuple[float, float], k: float, half_period: float | None, p0: float
-) -> tuple[ExactWave, float]:
+def _pressed(pair: Pair, k: float, half_period: float | None, p0: float) -> tuple[ExactWave, float]:
     """The wave of equal beads on a background, and the half period that is ample for it."""
-    theory, core = Loaded(k, p0), fourier.ample_half_period(pair, k)
-    ample = max(core, core / 2 + FALLEN / theory.kappa)
+    theory, load = background_wave(Cell((1,), spacing=1), law=Power(k)).numeric(), (p0, 1 - p0)
+    c2 = float(k * theory.speed_squared(*load))
+    core = fourier.ample_half_period(pair, k)
+    ample = max(core, core / 2 + FALLEN / _kappa(c2 / (k * p0 ** (k - 1))))
     L = half_period or ample
-    n = fourier.problem(pair, k, L, None).n
-    n = max(80, math.ceil(n * min(1, 1.3 * theory.narrower)))
+    narrower = float(theory.fwhm(0.0, 1.0) / theory.fwhm(*load))
+    n = max(80, math.ceil(fourier.enough(pair, k, L) * min(1, 1.3 * narrower)))
     problem = fourier.Problem(pair, k, L, n, p0)
     xi = problem.xi[: problem.count]
     if k > 3 and p0 < 0.5:  # where the theory's is too wide: from the wave on a little less
         near = _uniform(pair, k, None, max(0.0, p0 - LESS))
         guess, c2 = near.force(xi), near.c2
     else:
-        guess, c2 = fourier.rise(theory.strain(xi), k, p0), theory.c2
+        guess = fourier.rise(theory.profile(xi, *load), k, p0)
     try:
-        even, c2, _ = problem.wave(guess, c2)
+        forces, c2, _ = problem.wave(guess, c2)
     except np.linalg.LinAlgError:
         raise NoWave(_named(f"Newton's method finds no wave on {p0:g}", pair, k)) from None
-    rows = fourier.coefficients(problem.forces(even))
-    return at_unit_force(pair, k, c2, L, *rows, p0), ample
+    return at_unit_force(pair, problem, forces, c2), ample
+
+
+def _kappa(square: float) -> float:
+    """κ of a wave's end e^{-κ|ξ|}, at (c/c0)² = (sinh(κ/2)/(κ/2))²."""
+    excess = math.sqrt(square)
+    return 2 * float(
+        scipy.optimize.brentq(lambda x: math.log(math.sinh(x) / x / excess), 1e-5, 300, xtol=1e-12)
+    )
 
 
 def _dimer(
-    pair: tuple[float, float], k: float, half_period: float | None, progress: Progress[Any] = iter
+    pair: Pair, k: float, half_period: float | None, progress: Progress[Any] = iter
 ) -> ExactWave:
     """The solitary wave that the theory's leads to, or the wave nearest to a struck chain's."""
     ample = fourier.ample_half_period(pair, k)
@@ -215,7 +212,7 @@ def _dimer(
                 return solve(pair, k, L, start=waves[-1])
     if waves:
         pulse = _pulse(pair, k)
-        for wave in sorted(waves, key=lambda wave: pulse.apart(wave, pulse.pulse)):
+        for wave in sorted(waves, key=pulse.apart):
             with suppress(NoWave):
                 return solve(pair, k, wave.half_period, start=wave)
     lengths = f"{periods[0]:.4g}" + f" to {periods[-1]:.4g}" * (len(periods) > 1)
@@ -230,12 +227,12 @@ def _dimer(
         raise NoWave(f"{failure}; {other}") from None
 
 
-def _rough(pair: tuple[float, float], k: float, half_period: float) -> int:
+def _rough(pair: Pair, k: float, half_period: float) -> int:
     """Points on which a wave is told from others."""
     return max(fourier.FEWEST, int(ROUGH * fourier.enough(pair, k, half_period)))
 
 
-def _pulse(pair: tuple[float, float], k: float) -> Struck:
+def _pulse(pair: Pair, k: float) -> Struck:
     """Of the struck chain; raises `NoWave` where none comes through."""
     try:
         return struck(k, pair[1])
@@ -249,20 +246,20 @@ def _followed(begin: ExactWave, k: float) -> ExactWave:
     Raises `NoWave` where the branch does not get there, or is lost.
     """
     masses, L = begin.masses, begin.half_period
-    problem = fourier.problem(masses, begin.k, L, _rough(masses, max(begin.k, k), L))
+    problem = fourier.Problem(masses, begin.k, L, _rough(masses, max(begin.k, k), L))
     try:
         z, c2, _ = problem.wave(*_guess(masses, begin.k, problem.xi, begin))
         z, c2 = problem.followed(z, c2, k)
     except np.linalg.LinAlgError:
         lost = "the branch of waves ends, or is lost, on the way"
         raise NoWave(_named(lost, masses, k)) from None
-    near = at_unit_force(masses, k, c2, L, *fourier.coefficients(problem.forces(z)))
-    return solve(masses, k, L, start=near)
+    problem.k = k
+    return solve(masses, k, L, start=at_unit_force(masses, problem, z, c2))
 
 
 def solve(
-    masses: tuple[float, float], k: float, half_period: float | None = None,
-    points: int | None = None, start: Profile | None = None, free: bool = False,
+    masses: Pair, k: float, half_period: float | None = None, points: int | None = None,
+    start: Profile | None = None, free: bool = False,
 ) -> ExactWave:  # fmt: skip
     """One wave by Newton's method, scaled to a force 1 at its peak; free: m2 is to be found.
 
@@ -273,25 +270,23 @@ def solve(
 
 
 def solved(
-    masses: tuple[float, float], k: float, half_period: float | None = None,
-    points: int | None = None, start: Profile | None = None, unknown: str = "",
+    masses: Pair, k: float, half_period: float | None = None, points: int | None = None,
+    start: Profile | None = None, unknown: str = "",
 ) -> tuple[ExactWave, float]:  # fmt: skip
     """`solve`, and what was asked for besides: the "mass", as 1/m2, or the "kick" in the middle of
     the pulse that keeps the wave from having a tail."""
-    problem = fourier.problem(masses, k, half_period, points)
+    points = None if points is None else integer(points, "points", 8, 2000)
+    problem = fourier.Problem(masses, k, half_period, points)
     try:
         z, c2, found = problem.wave(*_guess(masses, k, problem.xi, start), unknown)
     except np.linalg.LinAlgError:
         raise NoWave(_named("Newton's method finds no wave", masses, k)) from None
     if unknown == "mass":
         masses = masses[0], 1 / found
-    even, odd = fourier.coefficients(problem.forces(z))
-    return at_unit_force(masses, k, c2, problem.L, even, odd), found
+    return at_unit_force(masses, problem, z, c2), found
 
 
-def _guess(
-    masses: tuple[float, float], k: float, xi: Array, start: Profile | None
-) -> tuple[Array, float]:
+def _guess(masses: Pair, k: float, xi: Array, start: Profile | None) -> tuple[Array, float]:
     """F_a on the grid and c², from a near wave or from the theory at leading order.
 
     There the force is cos^{2k/(k-1)}(βξ), c² = 4 / ((k+1)(m1+m2)), and the contacts of a cell are
@@ -307,5 +302,5 @@ def _guess(
     return force, c2 * float(force[0]) ** ((1 - k) / k)
 
 
-def _named(text: str, masses: tuple[float, float], k: float) -> str:
+def _named(text: str, masses: Pair, k: float) -> str:
     return f"{text} at k = {k:g}, masses {masses[0]:g}, {masses[1]:g}"

@@ -41,10 +41,6 @@ class Struck(Profile):
     widths : FWHM of force and strain at a contact, the mean over the two as they are.
     """
 
-    masses: tuple[float, float]
-    k: float
-    c2: float
-    half_period: float
     xi: Array
     front: Array
     widths: tuple[float, float]
@@ -67,9 +63,8 @@ class Struck(Profile):
     def _impulse(self) -> tuple[Any, Any]:
         """∫ of the force from the left less that from the right, for m1 and m2."""
         pushes = (self.force(self.xi - 0.5, 1 - i) - self.force(self.xi + 0.5, i) for i in (0, 1))
-        splines = (scipy.interpolate.CubicSpline(self.xi, push) for push in pushes)
-        one, two = (spline.antiderivative() for spline in splines)
-        return one, two
+        one, two = (scipy.interpolate.CubicSpline(self.xi, push) for push in pushes)
+        return one.antiderivative(), two.antiderivative()
 
     def _front(self, xi: Array) -> Array:
         return np.asarray(self._strain(np.clip(xi, self.xi[0], self.xi[-1])))
@@ -95,25 +90,24 @@ def struck(k: float, omega: float) -> Struck:
     record = chain.passed(chain.crossing, TOLERANCE)
     place = PLACES - 3  # the tail behind it has still to be recorded
     time, cell = record.run.time, slice(2 * place, 2 * place + 2)
-    parts = record.parts[cell]
-    forces = [f[part] for f, part in zip(record.run.contact_force[cell], parts, strict=True)]
-    # A leading pulse ends where its strain is a quarter of the peak's: on both sides, here.
-    weights = (np.maximum(f - f.max() / 4**k, 0) for f in forces)
-    centers = [np.average(time[p], weights=w) for p, w in zip(parts, weights, strict=True)]
-    middle = float(np.mean(centers))
-    peak = math.sqrt(math.prod(float(force.max()) for force in forces))
+    centers, peaks = [], []
+    for part, whole in zip(record.parts[cell], record.run.contact_force[cell], strict=True):
+        force = whole[part]
+        # A leading pulse ends where its strain is a quarter of the peak's: on both sides, here.
+        weights = np.maximum(force - force.max() / 4**k, 0)
+        centers.append(np.average(time[part], weights=weights))
+        peaks.append(float(force.max()))
+    middle, peak = float(np.mean(centers)), math.sqrt(math.prod(peaks))
     width, strain_width, c, _ = chain.numbers(record)[:, place - 1].tolist()
     here = c * peak ** ((k - 1) / (2 * k))
     ample = ample_half_period((1.0, omega), k)
     half = np.arange(0, _LONG * ample, _STEP)
     xi = np.append(-half[:0:-1], half)
-    splines = (
-        scipy.interpolate.CubicSpline(time, strain / peak ** (1 / k))
-        for strain in record.run.compression[cell]
-    )
     a, b = (
-        spline(np.clip(middle + (site - xi) / here, time[0], time[-1]))
-        for spline, site in zip(splines, (-0.5, 0.5), strict=True)
+        scipy.interpolate.CubicSpline(time, strain)(
+            np.clip(middle + (site - xi) / here, 0, time[-1])
+        )
+        for strain, site in zip(record.run.compression[cell], (-0.5, 0.5), strict=True)
     )
-    front = (a + b[::-1]) / 2
+    front = (a + b[::-1]) / 2 / peak ** (1 / k)
     return Struck((1.0, omega), k, c * c, ample, xi, front, (width, strain_width))

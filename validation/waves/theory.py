@@ -5,24 +5,21 @@ lattice knows it through its contacts and beads, in the units of the cell:
 
     contact   compression D v, force A (D v)^k,
     bead      velocity V v, and the mean of the forces half a spacing D before and behind it.
-
-The integral of an arch, ∫ cos^q(βx) dx = √π Γ((q+1)/2) / (Γ(q/2+1) β), gives impulse and momentum.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 import scipy
-import sympy as sp
 from numpy.typing import ArrayLike
 
-from lwa import Cell, Dimer, Power, TravelingWave, background_wave, canonical_wave, homogenize
-from lwa.background.quadrature import NumericBackground
+from lwa import Dimer, TravelingWave, canonical_wave, homogenize
+from lwa.compact.curves import arch, number
 from lwa.compact.numeric import Array
 from validation.scenes.checks import SceneError, positive
 
@@ -31,57 +28,46 @@ from validation.scenes.checks import SceneError, positive
 class Compacton:
     """One wave of a chain with equal contacts, of peak strain B; all parameters numbers.
 
-    Raises `SceneError` unless B is a positive number.
+    Raises `SceneError` unless B is a positive number; ``of_speed``, ``of_bead_force`` and
+    ``of_momentum`` unless the amount is positive and B a float.
     """
 
     wave: TravelingWave
     B: float
+    k: float = field(init=False)
+    beta: float = field(init=False)
+    spacing: float = field(init=False)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "B", positive(self.B, "B"))
+        own = {"k": self.wave.k, "beta": self.wave.beta, "spacing": self.wave.D}
+        for name, value in own.items():
+            object.__setattr__(self, name, number(value))
 
     @classmethod
     def of_speed(cls, wave: TravelingWave, speed: float) -> Compacton:
-        """The wave of a speed dx/dt: B^{(k-1)/2} is proportional to it.
-
-        This and the next two raise `SceneError` unless the amount is positive and B a float.
-        """
+        """The wave of a speed dx/dt, which goes as B^{(k-1)/2}."""
         unit = cls(wave, 1.0)
         return cls(wave, _strain("speed", speed, unit.speed, (unit.k - 1) / 2))
 
     @classmethod
     def of_bead_force(cls, wave: TravelingWave, force: float) -> Compacton:
-        """The wave whose bead force has this peak: B^k is proportional to it."""
+        """The wave whose bead force, which goes as B^k, has this peak."""
         unit = cls(wave, 1.0)
         return cls(wave, _strain("force", force, float(unit.bead_force(0.0)), unit.k))
 
     @classmethod
     def of_momentum(cls, wave: TravelingWave, momentum: float) -> Compacton:
-        """The wave that carries this momentum: B^{(k+1)/2} is proportional to it."""
+        """The wave that carries this momentum, which goes as B^{(k+1)/2}."""
         unit = cls(wave, 1.0)
         return cls(wave, _strain("momentum", momentum, unit.momentum, (unit.k + 1) / 2))
 
-    @cached_property
-    def k(self) -> float:
-        """The exponent of the contact law."""
-        return _float(self.wave.k)
-
-    @cached_property
+    @property
     def m(self) -> float:
         """2/(k-1), the power of the cosine."""
-        return _float(self.wave.m)
+        return 2 / (self.k - 1)
 
-    @cached_property
-    def spacing(self) -> float:
-        """D."""
-        return _float(self.wave.D)
-
-    @cached_property
-    def beta(self) -> float:
-        """β."""
-        return _float(self.wave.beta)
-
-    @cached_property
+    @property
     def support(self) -> float:
         """π/β, a length."""
         return math.pi / self.beta
@@ -89,91 +75,46 @@ class Compacton:
     @cached_property
     def speed(self) -> float:
         """dx/dt."""
-        unit = _float(self.wave.speed(1)) * _float(self.wave.speed_scale)
+        unit = number(self.wave.speed(1)) * number(self.wave.speed_scale)
         return float(unit * self.B ** ((self.k - 1) / 2))
 
-    @cached_property
+    @property
     def momentum(self) -> float:
         """∫ (mass per length) (bead velocity) dx, with the mass of a cell spread evenly over it."""
         cell = self.wave.cell
-        density = _float(cell.mass) / (cell.size * self.spacing)
+        density = number(cell.mass) / (cell.size * self.spacing)
         return density * self.speed * self.B * self.arch_integral(self.m)
 
     def arch_integral(self, power: float) -> float:
         """∫ cos^power(βx) dx over the support."""
-        gammas = math.lgamma((power + 1) / 2) - math.lgamma(power / 2 + 1)
-        return math.sqrt(math.pi) * math.exp(gammas) / self.beta
-
-    def arch(self, x: ArrayLike, power: float) -> Array:
-        """cos^power(βx) on the support, 0 outside."""
-        angle = np.clip(self.beta * np.asarray(x, float), -np.pi / 2, np.pi / 2)
-        return np.asarray(np.cos(angle) ** power)
+        return float(scipy.special.beta((power + 1) / 2, 0.5)) / self.beta
 
     def compression(self, x: ArrayLike) -> Array:
         """D v, of a contact at x."""
-        return self.spacing * self.B * self.arch(x, self.m)
+        return self.spacing * self.B * arch(self.beta * np.asarray(x, float), self.m)
 
     def velocity(self, x: ArrayLike) -> Array:
         """V v, of a bead at x, in the direction of the wave."""
-        peak = self.speed * self.B
-        return peak * self.arch(x, self.m)
+        return self.speed / self.spacing * self.compression(x)
 
     def contact_force(self, x: ArrayLike) -> Array:
         """A (D v)^k, of a contact at x."""
-        stiffness = _float(self.wave.cell.stiffness(self.wave.k))
-        peak = float(stiffness * (self.spacing * self.B) ** self.k)
-        return peak * self.arch(x, self.k * self.m)
+        return number(self.wave.cell.stiffness(self.wave.k)) * self.compression(x) ** self.k
 
     def bead_force(self, x: ArrayLike) -> Array:
         """The mean of the contact forces at x - D/2 and x + D/2, of a bead at x."""
         centre, half = np.asarray(x, float), self.spacing / 2
-        mean: Array = (self.contact_force(centre - half) + self.contact_force(centre + half)) / 2
-        return mean
+        return (self.contact_force(centre - half) + self.contact_force(centre + half)) / 2
 
     def fwhm(self, quantity: str) -> float:
         """Full width at half maximum of "strain", "force" (of a contact) or "bead force"."""
         if quantity != "bead force":
-            return _float(self.wave.fwhm(quantity))
+            return number(self.wave.fwhm(quantity))
         half = self.bead_force(0.0) / 2
         end = (self.support + self.spacing) / 2
         return 2 * float(
             scipy.optimize.brentq(lambda x: self.bead_force(x) - half, 0.0, end, xtol=1e-14 * end)
         )
-
-
-@dataclass(frozen=True)
-class Loaded:
-    """The wave of equal beads under a load, whose strain rises from p0 to 1; m = A = D = 1."""
-
-    k: float
-    p0: float
-
-    @cached_property
-    def _numeric(self) -> NumericBackground:
-        return background_wave(Cell((1,), spacing=1), law=Power(self.k)).numeric()
-
-    @cached_property
-    def c2(self) -> float:
-        """c²."""
-        return float(self.k * self._numeric.speed_squared(self.p0, 1 - self.p0))
-
-    @cached_property
-    def narrower(self) -> float:
-        """The FWHM of the wave without a load over this one's."""
-        return float(self._numeric.fwhm(0.0, 1.0) / self._numeric.fwhm(self.p0, 1 - self.p0))
-
-    @cached_property
-    def kappa(self) -> float:
-        """κ of the lattice's end of a wave so fast, e^{-κ|ξ|}: c/c0 = sinh(κ/2)/(κ/2)."""
-        excess = math.sqrt(self.c2 / (self.k * self.p0 ** (self.k - 1)))
-        half = scipy.optimize.brentq(
-            lambda x: math.log(math.sinh(x) / x / excess), 1e-5, 300, xtol=1e-12
-        )
-        return 2 * float(half)
-
-    def strain(self, xi: ArrayLike) -> Array:
-        """v(ξ), above p0."""
-        return self._numeric.profile(xi, self.p0, 1 - self.p0)
 
 
 def theory_at(k: Any, omega: Any, closure: str = "linear") -> TravelingWave:
@@ -196,7 +137,3 @@ def _strain(name: str, amount: float, unit: float, power: float) -> float:
     if abs(log) > 700:
         raise SceneError(f"{name} is {amount:g}: the strain e^{log:.0f} is no float")
     return math.exp(log)
-
-
-def _float(value: Any) -> float:
-    return float(sp.N(value, 17))

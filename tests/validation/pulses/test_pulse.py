@@ -15,7 +15,7 @@ from validation.pulses.pulse import (
     MeasureError,
     Pulse,
     derived,
-    impulse,
+    exponent,
     measure,
     speed,
 )
@@ -38,8 +38,6 @@ def test_an_arch(arrival, peak, beta):
     assert pulse.peak == pytest.approx(peak, rel=1e-7)
     assert pulse.fwhm == pytest.approx(WIDTH / beta, rel=1e-7)
     assert (pulse.rise + pulse.fall) / 2 == pytest.approx(arrival, abs=1e-6)
-    area = impulse(t, arch(t, arrival, peak, beta), -5, 5)
-    assert area == pytest.approx(peak * 5 * math.pi / 16 / beta, rel=1e-7)
 
 
 def test_the_error_falls_with_the_fourth_power_of_the_step():
@@ -97,14 +95,6 @@ def test_records_without_a_whole_pulse(time, signal, message):
     assert isinstance(caught.value, InputError)
 
 
-def test_impulse_of_a_part():
-    t = np.linspace(0, 4, 9)
-    assert impulse(t, t**3, 1.25, 3.1) == pytest.approx((3.1**4 - 1.25**4) / 4, rel=1e-14)
-    for start, end in ((-1, 2), (1, 5), (2, 2), (3, 1)):
-        with pytest.raises(MeasureError, match=r"is not within the record, 0 … 4"):
-            impulse(t, t, start, end)
-
-
 def test_speed():
     first, second = Pulse(1.0, 1, 0, 2), Pulse(3.0, 1, 2, 4)
     assert speed(first, second, 5.0) == 2.5
@@ -121,6 +111,13 @@ def test_a_measured_number_carries_its_error():
     assert str(Measured(1.41192847, 1.41192831)) == "1.4119285 ± 2e-07"
     assert str(Measured(16300.0, 17000.0)) == "16300 ± 7e+02"
     assert str(Measured(1.5, 1.5)) == "1.5 ± 0"
+
+
+def test_an_exponent_carries_the_errors_of_both_rows():
+    x = [Measured(n, n) for n in (1.0, 2.0, 5.0)]
+    y = [Measured(3 * n.value**1.75, 7 * n.value**1.5) for n in x]
+    found = exponent(x, y)
+    assert (found.value, found.check) == pytest.approx((1.75, 1.5), rel=1e-13)
 
 
 @pytest.mark.parametrize(("pace", "height"), [(2.0**-900, 2.0**1000), (2.0**900, 2.0**-1000)])

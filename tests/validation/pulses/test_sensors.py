@@ -36,6 +36,8 @@ def test_the_experiment_of_the_paper(gravity):
     assert width == pytest.approx(rows["FWHM of bead force in time"].value, rel=1e-6)
     sites = speed.numbers["speed_sites"].value
     assert sites == pytest.approx(speed.numbers["speed"].value / 4.76e-3, rel=1e-12)
+    # Nothing has moved yet: all that contacts and beads carry is static.
+    assert max(abs(track.force[0]) for track in tracks(found.run)) < 1e-13
 
 
 def test_sensors_without_a_pulse_say_why():

@@ -57,6 +57,11 @@ def test_against_a_rigid_wall_only_the_bead_yields(bead):
     assert contact_stiffness(bead, rigid) == pytest.approx(A, rel=ROUNDING)
 
 
+def test_a_wall_is_stiffer_than_an_equal_bead():
+    wall, bead = contact_stiffness(STEEL_BEAD, STEEL), contact_stiffness(STEEL_BEAD, STEEL_BEAD)
+    assert wall / bead == pytest.approx(math.sqrt(2), rel=ROUNDING)
+
+
 def test_the_beads_of_the_experiment():
     """Masses and diameter must agree with handbook densities, 8000 and 2180 kg/m³, to 1 %."""
     volume = math.pi * DIAMETER**3 / 6

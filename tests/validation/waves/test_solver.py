@@ -49,7 +49,7 @@ def test_the_widths_of_the_hertz_chain(hertz):
 
 def test_a_step_to_a_negative_square_of_the_speed_is_no_convergence():
     """NumPy warned of a power of a negative number on the way to six special ratios at k = 1.15."""
-    problem = fourier.problem((1.0, 0.5), 1.15, None, None)
+    problem = fourier.Problem((1.0, 0.5), 1.15)
     with pytest.raises(np.linalg.LinAlgError):
         problem.wave(np.ones(problem.count), -1.0)
 

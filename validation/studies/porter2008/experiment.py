@@ -12,9 +12,9 @@ speed, and from the striker's momentum, as if the pulse took all of it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import chain, pairwise
 from typing import Any
 
 import numpy as np
@@ -22,11 +22,11 @@ import sympy as sp
 
 from lwa import Cell, Dimer, canonical_wave, homogenize
 from lwa.command.terminal import quantities
-from lwa.compact.numeric import Array
 from validation.lattice.effort import RunProgress, silent
 from validation.lattice.run import Run
 from validation.lattice.simulate import twice
 from validation.pulses.pulse import Measured, MeasureError, Pulse, compared, measure, speed
+from validation.pulses.sensors import tracks
 from validation.report.command import number, option, study
 from validation.report.panel import Curve, Panel
 from validation.report.result import Report
@@ -41,11 +41,8 @@ from validation.waves.theory import Compacton
 HERTZ = sp.Rational(3, 2)
 BEADS, SENSORS, VELOCITY = 38, (15, 34), 1.37
 """Of the chain, the striker included; with a sensor, counted from 1; of the striker, in m/s."""
-GRAVITY = 9.81
-"""In m/s²."""
-TOLERANCES = (1e-9, 1e-7)
-"""Of the run that counts, and of the one that gives its errors."""
-
+GRAVITY = 9.81  # in m/s²
+TOLERANCES = (1e-9, 1e-7)  # of the run that counts, and of the one that gives its errors
 SOURCES = {"F_m": "peak bead force F_m", "speed": "speed V_s", "striker": None}
 """What sets the theory's amplitude, and the quantity that then agrees by construction."""
 
@@ -92,23 +89,15 @@ class Comparison:
         """Theory over lattice, less 1."""
         return self.theory[source] / self.lattice.value - 1
 
-    def cells(self, source: str) -> tuple[float, float, str]:
-        """The theory's number and its error, for programs and for people."""
-        told = "set" if SOURCES[source] == self.quantity else percent(self.error(source))
-        return self.theory[source], self.error(source), told
-
-
-@dataclass(frozen=True, eq=False)
-class Record:
-    """The dynamic force of one bead, in N, over time, in s: the lattice's and the theory's.
-
-    The theory's is that of amplitude F_m, with its peak where the lattice's is.
-    """
-
-    bead: int
-    time: Array
-    lattice: Array
-    theory: Array
+    @property
+    def cells(self) -> tuple[Any, ...]:
+        """Of a table: by source the theory's number and its error, for programs and for people."""
+        by_source = (
+            (self.theory[source], self.error(source),
+             "set" if quantity == self.quantity else percent(self.error(source)))
+            for source, quantity in SOURCES.items()
+        )  # fmt: skip
+        return self.quantity, self.unit, self.lattice, *chain.from_iterable(by_source)
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,28 +109,19 @@ class Paper:
     sensors: tuple[int, int]
     gravity: float
     rows: tuple[Comparison, ...]
-    records: tuple[Record, ...]
+    records: tuple[Curve, ...]
 
     def report(self) -> Report:
         """``velocity_value``, ``beads``, ``sensors``, ``gravity_value``, ``rows``: ``quantity``,
         ``unit``, ``lattice_value``, ``lattice_error_value``, and by what sets the theory's
         amplitude (``F_m``, ``speed``, ``striker``) ``theory_value`` {…} and ``error_value`` {…};
         in the picture the forces at both sensors over time."""
-        rows = tuple(
-            (row.quantity, row.unit, row.lattice, *(c for s in SOURCES for c in row.cells(s)))
-            for row in self.rows
-        )
-        curves = []
-        for i, record in enumerate(self.records):
-            names = f"bead {record.bead}, lattice", "" if i else "theory, amplitude from F_m"
-            curves += [Curve(names[0], 1e6 * record.time, record.lattice, f"C{i}-"),
-                       Curve(names[1], 1e6 * record.time, record.theory, f"C{i}--")]  # fmt: skip
         gravity = f"gravity {self.gravity:g} m/s²" if self.gravity else "no gravity"
         return Report(
             f"{self.beads} beads, steel (the striker, {self.velocity:g} m/s) and PTFE in turn, "
             f"steel wall, {gravity}; sensors in beads {self.sensors[0]} and {self.sensors[1]}",
-            (Table(_COLUMNS, rows, "rows"),),
-            panels=(Panel("time (µs)", "force, mean of the bead's contacts (N)", tuple(curves)),),
+            (Table(_COLUMNS, tuple(row.cells for row in self.rows), "rows"),),
+            panels=(Panel("time (µs)", "force, mean of the bead's contacts (N)", self.records),),
             notes=(_NOTE,),
             data={"velocity_value": self.velocity, "beads": self.beads, "sensors": self.sensors,
                   "gravity_value": self.gravity},
@@ -150,8 +130,7 @@ class Paper:
 
 @dataclass(frozen=True)
 class Train:
-    """One run's dynamic pulses at beads or at contacts, by their numbers, from before the wall's
-    answer."""
+    """A run's dynamic pulses by the numbers of beads or contacts, from before the wall's answer."""
 
     pulses: Mapping[int, Pulse]
 
@@ -159,17 +138,15 @@ class Train:
     def of(cls, run: Run, kind: str = "bead") -> Train:
         """At the sensors of that kind, "bead" or "contact", but the wall's; raises `MeasureError`
         where a pulse is not whole."""
-        sensors, forces = run.scene.bead_sensors, run.bead_force
-        if kind == "contact":
-            sensors, forces = run.scene.contact_sensors[:-1], run.contact_force[:-1]
         end = int(np.argmax(run.contact_force[-1])) + 1
         pulses = {}
-        for i, force in zip(sensors, forces, strict=True):
-            try:
-                pulses[i + 1] = measure(run.time[:end], force[:end] - force[0])
-            except MeasureError as error:
-                place = f"{kind} {i + 1}, before the wave reaches the wall"
-                raise MeasureError(f"{place}: {error}") from None
+        for track in tracks(run)[:-1]:  # the last one is the wall's
+            if track.kind == kind:
+                try:
+                    pulses[track.number] = measure(track.time[:end], track.force[:end])
+                except MeasureError as error:
+                    place = f"{kind} {track.number}, before the wave reaches the wall"
+                    raise MeasureError(f"{place}: {error}") from None
         return cls(pulses)
 
     def only(self, wanted: Callable[[int], bool]) -> Train:
@@ -201,12 +178,9 @@ def chain_cell(N: int = 1, ptfe: Bead = PTFE_BEAD) -> Cell:
 
 
 def recorded_chain(
-    sensors: Sequence[int],
-    velocity: float = VELOCITY,
-    N: int = 1,
-    ptfe: Bead = PTFE_BEAD,
+    sensors: Sequence[int], velocity: float = VELOCITY, N: int = 1, ptfe: Bead = PTFE_BEAD,
     beads: int = BEADS,
-) -> Scene:
+) -> Scene:  # fmt: skip
     """The N:1 chain, struck, for as long as the pulse takes to its wall."""
     wave = canonical_wave(chain_cell(N, ptfe), HERTZ)
     pulse = Compacton.of_momentum(wave, STEEL_BEAD.mass * velocity)
@@ -228,34 +202,21 @@ def chain_runs(sensors: Sequence[int], **options: Any) -> tuple[Run, Run]:
            says="Let the chain stand upright, under its own weight."),
 )  # fmt: skip
 def paper(
-    velocity: float = VELOCITY,
-    beads: int = BEADS,
-    sensors: tuple[int, int] = SENSORS,
-    gravity: float = 0.0,
-    run_progress: RunProgress = silent,
-) -> Paper:
+    velocity: float = VELOCITY, beads: int = BEADS, sensors: tuple[int, int] = SENSORS,
+    gravity: float = 0.0, run_progress: RunProgress = silent,
+) -> Paper:  # fmt: skip
     """The steel:PTFE chain of the paper: speed, peak force and FWHM.
 
-    Parameters
-    ----------
-    velocity : of the striker, in m/s, from 1e-6 to 1000.
-    beads : in the chain, the striker included, from 8 to 2000.
-    sensors : numbers of two beads, counted from 1, that the pulse passes in this order.
-    gravity : in m/s², towards the wall.
-    run_progress : of the two runs, as for `validation.simulate`.
-
-    Raises `SceneError` for values that cannot be meant, `MeasureError` where the pulse is not
-    whole at a sensor before the wall throws it back.
+    Gravity is in m/s², towards the wall. Raises `SceneError` for values that cannot be meant,
+    `MeasureError` where the pulse is not whole at a sensor before the wall throws it back.
     """
     if not 1e-6 <= real(velocity, "velocity") <= 1000:
         raise SceneError(f"velocity is {velocity:g} m/s: one from 1e-6 to 1000 is wanted")
     beads = integer(beads, "beads", 8, 2000)
     pair = tuple(integer(bead, "sensor", 2, beads - 1) for bead in items(sensors, "sensors"))
     if len(pair) != 2 or not pair[0] < pair[1]:
-        raise SceneError(
-            f"sensors are {', '.join(map(str, pair))}: two beads are wanted, the one nearer to "
-            "the striker first"
-        )
+        wanted = "two beads are wanted, the one nearer to the striker first"
+        raise SceneError(f"sensors are {', '.join(map(str, pair))}: {wanted}")
     wave = homogenize(chain_cell(), k=HERTZ).pde.traveling_wave()
     striker = Compacton.of_momentum(wave, STEEL_BEAD.mass * velocity)
     # Ample: the pulse that had all the momentum would need two thirds of this to the wall.
@@ -269,13 +230,11 @@ def paper(
         "striker": striker,
     }
     rows = tuple(
-        Comparison(
-            name.format(first=pair[0], second=pair[1]), unit, numbers[name],
-            {source: theory(wave) for source, wave in waves.items()},
-        )
+        Comparison(name.format(first=pair[0], second=pair[1]), unit, numbers[name],
+                   {source: theory(wave) for source, wave in waves.items()})
         for name, (unit, theory) in QUANTITIES.items()
     )  # fmt: skip
-    return Paper(velocity, beads, pair, gravity, rows, _records(run, waves["F_m"]))
+    return Paper(velocity, beads, pair, gravity, rows, tuple(_records(run, waves["F_m"])))
 
 
 def _numbers(run: Run) -> dict[str, float]:
@@ -298,10 +257,11 @@ def _numbers(run: Run) -> dict[str, float]:
     }
 
 
-def _records(run: Run, theory: Compacton) -> tuple[Record, ...]:
+def _records(run: Run, theory: Compacton) -> Iterator[Curve]:
+    """Dynamic forces over time, the theory's with its peak where the lattice's is."""
     pulses = Train.of(run).pulses.items()
-    return tuple(
-        Record(bead, run.time, force - force[0],
-               theory.bead_force(theory.speed * (run.time - pulse.arrival)))
-        for (bead, pulse), force in zip(pulses, run.bead_force, strict=True)
-    )  # fmt: skip
+    for i, ((bead, pulse), force) in enumerate(zip(pulses, run.bead_force, strict=True)):
+        line = theory.bead_force(theory.speed * (run.time - pulse.arrival))
+        name = "" if i else "theory, amplitude from F_m"
+        yield Curve(f"bead {bead}, lattice", 1e6 * run.time, force - force[0], f"C{i}-")
+        yield Curve(name, 1e6 * run.time, line, f"C{i}--")

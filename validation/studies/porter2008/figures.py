@@ -9,10 +9,8 @@ heights, with both moduli of PTFE, and the exponent of V_s ~ F_m^e. Figure 3b is
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import scipy
@@ -22,43 +20,26 @@ from lwa.compact.numeric import Array
 from lwa.duration import Progress
 from validation.lattice.run import Run
 from validation.lattice.simulate import simulate_many
-from validation.pulses.pulse import Measured, compared, derived
+from validation.pulses.pulse import Measured, compared, exponent
 from validation.report.command import study
 from validation.report.panel import Curve, Panel
 from validation.report.result import Report
 from validation.report.table import Column, Table
 from validation.report.text import percent
 from validation.scenes.materials import DIAMETER, PTFE_BEAD
-from validation.studies.porter2008.experiment import (
-    BEADS,
-    GRAVITY,
-    HERTZ,
-    SENSORS,
-    TOLERANCES,
-    Train,
-    chain_cell,
-    chain_runs,
-    recorded_chain,
-)
+from validation.studies.porter2008 import experiment
+from validation.studies.porter2008.experiment import HERTZ, Train, chain_cell, chain_runs
 from validation.studies.porter2008.widths import Widths, widths
 from validation.waves.theory import Compacton
 
-RECORDED = {1: (15, 24, 33), 2: (16, 24, 34)}
-"""N → the beads of figure 2; bead 24 is PTFE in both chains, the others are steel."""
+RECORDED = {1: (15, 24, 33), 2: (16, 24, 34)}  # N → figure 2's beads; 24 is PTFE
+MOST = 22  # the largest N of the paper's numerics
+HEIGHTS = (0.1, 0.2, 0.4, 0.6, 0.8, 1.0, 1.2)  # drop heights of figure 3a, in m
+MODULI = (1.46e9, 0.6e9)  # of PTFE, in Pa: dynamic, which the paper uses, and nominal static
 
-MOST = 22
-"""The largest N of the paper's numerics."""
-
-HEIGHTS = (0.1, 0.2, 0.4, 0.6, 0.8, 1.0, 1.2)
-"""Drop heights of figure 3a, in m."""
-
-MODULI = (1.46e9, 0.6e9)
-"""Of PTFE, in Pa: the dynamic one that the paper uses, and the nominal static one."""
-
-_N_TO_1 = (
-    "N:1 chains; the theory is that of the canonical field at the lattice's peak force; ±: by how\n"
-    "much a less accurate run differs"
-)
+_N_TO_1 = """\
+N:1 chains; the theory is that of the canonical field at the lattice's peak force; ±: by how
+much a less accurate run differs"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,8 +52,7 @@ class Forces:
     force: Array
 
 
-@dataclass(frozen=True)
-class Speed:
+class Speed(NamedTuple):
     """The leading pulse of an N:1 chain, and the canonical theory's speed at its peak force."""
 
     N: int
@@ -94,12 +74,7 @@ class Scaling:
     @property
     def exponent(self) -> Measured:
         """The fitted e of V_s ~ F_m^e."""
-
-        def fitted(*numbers: float) -> float:
-            V, F = np.split(np.log(numbers), 2)
-            return float(np.polyfit(F, V, 1)[0])
-
-        return derived(fitted, *self.speeds, *self.forces)
+        return exponent(self.forces, self.speeds)
 
 
 _SPEEDS = (
@@ -136,8 +111,7 @@ class Figures:
         ``force_value`` and ``theory_value``; ``scaling``: that of the paper, with the
         dynamic modulus; ``forces``: ``N``, ``beads``, ``time_value``, ``force_value``; ``widths``,
         as `Widths` has it."""
-        speeds = tuple((s.N, s.speed, s.force, s.theory, s.theory / s.speed.value - 1)
-                       for s in self.speeds)  # fmt: skip
+        speeds = tuple((*s, s.theory / s.speed.value - 1) for s in self.speeds)
         rows = tuple((s.E, s.exponent, s.exponent.value - 1 / 6,
                       [V.value for V in s.speeds], [V.error for V in s.speeds],
                       [F.value for F in s.forces], [F.error for F in s.forces], s.theory)
@@ -160,10 +134,8 @@ class Figures:
 
 
 def _forces_panel(record: Forces) -> Panel:
-    curves = (
-        Curve(f"bead {bead}", 1e6 * record.time, force, f"C{i}-")
-        for i, (bead, force) in enumerate(zip(record.beads, record.force, strict=True))
-    )
+    rows = enumerate(zip(record.beads, record.force, strict=True))
+    curves = (Curve(f"bead {bead}", 1e6 * record.time, f, f"C{i}-") for i, (bead, f) in rows)
     return Panel("time (µs)", "force of the bead (N)", tuple(curves), title=f"{record.N}:1 chain")
 
 
@@ -178,15 +150,16 @@ def _scaling_panel(rows: tuple[Scaling, ...]) -> Panel:
 
 
 @study()
-def figures(progress: Progress[Callable[[], Any]] = iter) -> Figures:
+def figures(progress: Progress[Any] = iter) -> Figures:
     """The paper's figures: force records, N:1 chains, force against speed, FWHM. Ten seconds."""
-    records = [partial(forces, N) for N in RECORDED]
-    speeds = [partial(chain_speed, N) for N in range(1, MOST + 1)]
-    scalings = [partial(scaling, E) for E in MODULI]
-    parts: list[Callable[[], Any]] = [*records, *speeds, *scalings, widths]
-    found = [part() for part in progress(parts)]
-    one, two = len(records), len(records) + len(speeds)
-    return Figures(tuple(found[:one]), tuple(found[one:two]), tuple(found[two:-1]), found[-1])
+    parts: list[tuple[Any, ...]] = [(forces, N) for N in RECORDED]
+    parts += [(chain_speed, N) for N in range(1, MOST + 1)]
+    parts += [*((scaling, E) for E in MODULI), (widths,)]
+    found: dict[Any, list[Any]] = {}
+    for part, *of in progress(parts):
+        found.setdefault(part, []).append(part(*of))
+    records, speeds, scalings, (beads,) = found.values()
+    return Figures(tuple(records), tuple(speeds), tuple(scalings), beads)
 
 
 def forces(N: int) -> Forces:
@@ -214,7 +187,7 @@ def chain_speed(N: int) -> Speed:
         )
         return {"speed": across * period * DIAMETER / (second - first), "force": train.peak}
 
-    runs = chain_runs(sensors, N=N, beads=max(BEADS, (before + across + 3) * period))
+    runs = chain_runs(sensors, N=N, beads=max(experiment.BEADS, (before + across + 3) * period))
     found = compared(numbers, *runs)
     wave = canonical_wave(chain_cell(N), HERTZ)
     theory = Compacton.of_bead_force(wave, found["force"].value).speed
@@ -224,24 +197,19 @@ def chain_speed(N: int) -> Speed:
 def _front(time: Array, above: Array) -> float:
     """When a signal first passes zero, by a cubic spline."""
     first = int(np.argmax(above > 0))
-    return float(
-        scipy.optimize.brentq(
-            scipy.interpolate.CubicSpline(time, above), time[first - 1], time[first]
-        )
-    )
+    spline = scipy.interpolate.CubicSpline(time, above)
+    return float(scipy.optimize.brentq(spline, time[first - 1], time[first]))
 
 
 def scaling(E: float) -> Scaling:
     """Figure 3a for a modulus of PTFE, without gravity in the chain."""
     ptfe = replace(PTFE_BEAD, material=replace(PTFE_BEAD.material, E=E))
-    drops = [recorded_chain(SENSORS, math.sqrt(2 * GRAVITY * h), ptfe=ptfe) for h in HEIGHTS]
-    pairs = zip(*(simulate_many(drops, rtol=rtol) for rtol in TOLERANCES), strict=True)
-    found = [
-        compared(lambda train: {"V": train.speed, "F": train.peak}, *map(Train.of, pair))
-        for pair in pairs
-    ]
+    velocities = (math.sqrt(2 * experiment.GRAVITY * h) for h in HEIGHTS)
+    drops = [experiment.recorded_chain(experiment.SENSORS, v, ptfe=ptfe) for v in velocities]
+    pairs = zip(*(simulate_many(drops, rtol=rtol) for rtol in experiment.TOLERANCES), strict=True)
+    found = [(Measured(fine.speed, coarse.speed), Measured(fine.peak, coarse.peak))
+             for fine, coarse in (map(Train.of, pair) for pair in pairs)]  # fmt: skip
+    speeds, forces = zip(*found, strict=True)
     wave = canonical_wave(chain_cell(ptfe=ptfe), HERTZ)
-    theory = (Compacton.of_bead_force(wave, row["F"].value).speed for row in found)
-    return Scaling(
-        E, tuple(row["V"] for row in found), tuple(row["F"] for row in found), tuple(theory)
-    )
+    theory = tuple(Compacton.of_bead_force(wave, force.value).speed for force in forces)
+    return Scaling(E, speeds, forces, theory)

@@ -13,8 +13,6 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-import numpy as np
-
 from lwa import Dimer, TravelingWave, canonical_wave, homogenize
 from validation.lattice.run import Run
 from validation.pulses.pulse import Measured, compared, derived
@@ -23,22 +21,12 @@ from validation.report.result import Report
 from validation.report.table import Column, Table
 from validation.report.text import percent
 from validation.scenes.materials import DIAMETER
-from validation.studies.porter2008.experiment import (
-    BEADS,
-    HERTZ,
-    SENSORS,
-    Train,
-    chain_cell,
-    chain_runs,
-)
+from validation.studies.porter2008 import experiment
+from validation.studies.porter2008.experiment import HERTZ, Train, chain_cell, chain_runs
 from validation.waves.theory import Compacton
 
-FIRST_BEAD = 10
-"""From here on the width no longer changes on its way; the average starts here."""
-
-STATED = {"m1 ≫ m2": 0.092, "m2/m1 = 0.27": 0.025, "m1 = m2": 0.228}
-"""The paper's errors of its three lines."""
-
+FIRST_BEAD = 10  # from here on the width no longer changes on its way; the average starts here
+STATED = {"m1 ≫ m2": 0.092, "m2/m1 = 0.27": 0.025, "m1 = m2": 0.228}  # the paper's
 READINGS = {
     "contact force": ("contacts", "force"),
     "bead force": ("beads", "bead force"),
@@ -119,19 +107,13 @@ class Widths:
         reading = f"{best.quantity}, in {'time' if best.time else 'sites'}."
         if len(best.reproduced) == len(STATED):
             return f"The stated errors are those of: {reading}"
-        return (
-            f"No definition meets all three stated errors within half a percent; nearest: {reading}"
-        )
+        none = "No definition meets all three stated errors within half a percent"
+        return f"{none}; nearest: {reading}"
 
     def _panel(self) -> Panel:
-        numbers = np.array(self.beads)
-        times = np.array([1e6 * width.value for width in self.times])
-        curves = [
-            Curve.of(f"lattice, {ball} bead", numbers[own], times[own], style)
-            for ball, own, style in (
-                ("steel", numbers % 2 == 1, "ko"), ("PTFE", numbers % 2 == 0, "ks"),
-            )
-        ]  # fmt: skip
+        times = [1e6 * width.value for width in self.times]
+        curves = [Curve.of(f"lattice, {ball} bead", self.beads[i::2], times[i::2], style)
+                  for ball, i, style in (("steel", 1, "ko"), ("PTFE", 0, "ks"))]  # fmt: skip
         ends, first = (self.beads[0], self.beads[-1]), self.lines["linear"]
         for closure, lines in self.lines.items():
             for i, (line, width) in enumerate(lines.items()):
@@ -146,25 +128,22 @@ class Widths:
 
 def widths() -> Widths:
     """The FWHM down the 1:1 chain, and the definitions of its average."""
-    beads = tuple(range(4, BEADS - 2))
+    beads = tuple(range(4, experiment.BEADS - 2))  # of PTFE and of steel in turn
     found, waves = compared(_numbers, *chain_runs(beads)), _waves()
 
     def theory(quantity: str, force: Measured, in_time: bool) -> dict[str, dict[str, float]]:
-        return {
-            closure: {line: _width(wave, quantity, force.value, in_time)
-                      for line, wave in lines.items()}
-            for closure, lines in waves.items()
-        }  # fmt: skip
+        """By closure and line."""
+        return {closure: {line: _width(wave, quantity, force.value, in_time)
+                          for line, wave in zip(STATED, lines, strict=True)}
+                for closure, lines in waves.items()}  # fmt: skip
 
     definitions = []
     for reading, (pulses, quantity) in READINGS.items():
         force = found["contacts' force" if pulses == "contacts" else "F_m"]
         sites = derived(lambda width, V: width * V / DIAMETER, found[pulses], found["speed"])
         for average, in_time in ((found[pulses], True), (sites, False)):
-            errors = {
-                closure: {line: width / average.value - 1 for line, width in lines.items()}
-                for closure, lines in theory(quantity, force, in_time).items()
-            }
+            errors = {closure: {line: width / average.value - 1 for line, width in lines.items()}
+                      for closure, lines in theory(quantity, force, in_time).items()}  # fmt: skip
             definitions.append(Definition(reading, in_time, average, errors))
     times = tuple(found[f"bead {bead}"] for bead in beads)
     return Widths(beads, times, theory("force", found["F_m"], True), tuple(definitions))
@@ -182,22 +161,19 @@ def _numbers(run: Run) -> dict[str, float]:
         "steel": steel.fwhm,
         "PTFE": late.only(lambda bead: bead % 2 == 0).fwhm,
         "contacts' force": contacts.peak,
-        "F_m": beads.only(lambda bead: bead in SENSORS).peak,
+        "F_m": beads.only(lambda bead: bead in experiment.SENSORS).peak,
         "speed": steel.speed,
     }
 
 
-def _waves() -> dict[str, dict[str, TravelingWave]]:
-    """By closure and line, the wave for the chain's contacts and the masses of `STATED`."""
+def _waves() -> dict[str, list[TravelingWave]]:
+    """By closure, the waves for the chain's contacts and the masses of `STATED`."""
     cell = chain_cell()
     heavy, light = cell.masses
     masses = (heavy / 10**12, light, heavy)  # the first for m2 → 0, exact to 12 digits
     cells = [Dimer(heavy, m2, stiffnesses=cell.stiffnesses, spacing=cell.spacing) for m2 in masses]
-    waves = {
-        "linear": [homogenize(own, k=HERTZ).pde.traveling_wave() for own in cells],
-        "canonical": [canonical_wave(own, HERTZ) for own in cells],
-    }
-    return {closure: dict(zip(STATED, found, strict=True)) for closure, found in waves.items()}
+    return {"linear": [homogenize(own, k=HERTZ).pde.traveling_wave() for own in cells],
+            "canonical": [canonical_wave(own, HERTZ) for own in cells]}  # fmt: skip
 
 
 def _width(wave: TravelingWave, quantity: str, force: float, in_time: bool) -> float:
