@@ -18,9 +18,9 @@ or of one with a kink; what p_+^k brings about is no part of it.
 Window. Ahead nothing moves: the front advances with the first bead that does. Behind, beads more
 than ``reach`` from the front are left to fly on freely, with their energy on the books, once the
 contact that is cut is open but for a trace of the peak force and no strong blow is to come (the
-thresholds of `validation.lattice.kernel`), or eight reaches behind in any case. As contacts carry no
-tension, the pulse does not depend on what is cut, unless it decays so fast (`_DECAY`, `_LEFT`) that
-its own tail may overtake it: then, and where too few reaches were passed to tell, the run is made
+thresholds of `validation.lattice.kernel`), or eight reaches behind in any case. As contacts carry
+no tension, the pulse does not depend on what is cut, unless it decays so fast (`_DECAY`, `_LEFT`)
+that its own tail may overtake it: then, and where too little was passed to tell, the run is made
 again with the whole chain, whoever asked for a window. As a pulse decays, the step grows with its
 time scale, F^{(1-k)/2k}, and the error that is allowed shrinks with it.
 """
