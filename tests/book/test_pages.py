@@ -80,6 +80,15 @@ def test_every_public_name_is_told_and_no_private_one():
         assert bool(names) == page.startswith("api_")
 
 
+def test_the_interface_is_told_in_its_own_words():
+    """No type of what shows progress, nothing that Python says of a type, no mark left as it is."""
+    for page in PAGES:
+        if page.startswith("api_"):
+            text = re.sub(r"<[^>]*>", "", (HTML / page).read_text())
+            assert "Callable[[Iterable" not in text and "PEP 604" not in text
+            assert not re.findall(r"\*\*[A-Z][^*]*\*\*|[.;] - \w", text)
+
+
 def test_a_page_with_cells_is_there_as_a_notebook():
     for page in PAGES:
         text = (HTML / page).read_text()
