@@ -76,6 +76,8 @@ window.addEventListener("load", async () => {
     broken: [...document.images].filter(i => !i.naturalWidth || !i.naturalHeight).map(i => i.src),
     unshown: texts("pre").filter(t => t.includes("<Figure size")),
     cut: parts.filter(e => cut(e) || clipped(e)).map(e => e.textContent.trim().slice(0, 80)),
+    crumbled: [...body.querySelectorAll("td span.pre")]
+      .filter(e => e.getClientRects().length > 2).map(e => e.textContent),
     wider: document.scrollingElement.scrollWidth > innerWidth + 1,
     errors: errors,
   };
