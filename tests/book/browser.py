@@ -62,7 +62,7 @@ window.addEventListener("load", async () => {
     a === body.parentElement || !a ? right(e) > innerWidth + 1
     : scrolls(a) ? false : hides(a) && right(e) > edge(a) + 1 || cut(e, a.parentElement);
   const clipped = e => e.tagName === "PRE" && hides(e) && e.scrollWidth > e.clientWidth + 1;
-  const parts = [...body.querySelectorAll("pre, table, img, svg, mjx-math, dt, h1, h2, p")];
+  const parts = [...body.querySelectorAll("pre, table, img, svg, input, mjx-math, dt, h1, h2, p")];
   const apart = "pre, code, script, style, mjx-container";
   for (const element of text.querySelectorAll(apart)) element.remove();
   const report = {
