@@ -163,7 +163,7 @@ def _process(app: Sphinx, what: str, name: str, obj: object, options: object, li
     lines[:] = [] if of_type else converted(lines)
 
 
-_PROGRESS = re.compile(r"(?<=progress): [^=]*(?= = )")
+_PROGRESS = re.compile(r"(?<=progress): [^=]*(?= = |\)$)")
 
 
 def _plain(
