@@ -14,8 +14,16 @@ def table(
 ) -> Report:
     """Rows under heads; a head may come with the format of its column."""
     pairs = [head if isinstance(head, tuple) else (head, "") for head in heads]
-    columns = tuple(Column("", name, format=form) for name, form in pairs)
-    return Report("", (Table(columns, tuple(map(tuple, rows))),))
+    # here, not by the column: what is None has a form as well
+    shown = (
+        tuple(
+            form(cell) if callable(form) else cell
+            for (_, form), cell in zip(pairs, row, strict=True)
+        )
+        for row in rows
+    )
+    columns = tuple(Column("", name, format="" if callable(form) else form) for name, form in pairs)
+    return Report("", (Table(columns, tuple(shown)),))
 
 
 def percent(digits: int = 1) -> Callable[[float | None], str]:

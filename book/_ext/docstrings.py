@@ -26,6 +26,7 @@ from validation.report.command import Study
 
 _CODE = re.compile(r"``(.+?)``|`(.+?)`")
 _ENTRY = re.compile(r"([^\W\d][^:()]*?) : (\S.*)")
+_BOLD = re.compile(r"(?<!\S)\\\*\\\*([A-Z].*?)\\\*\\\*")
 _TITLE = re.compile(r"(?<!\S)\\\*([A-Z][^*]*)\\\*")
 
 
@@ -60,6 +61,9 @@ def _block(block: list[str]) -> list[str]:
     margin = [not line.startswith(" ") for line in block]
     if all(begin for begin, at in zip(begins, margin, strict=True) if at):
         return list(_entries(block))
+    if first.startswith("- ") and all(line.startswith(("- ", "  ")) for line in block):
+        items = "\n".join(block).removeprefix("- ").split("\n- ")
+        return [f"- {_text(' '.join(item.split()))}" for item in items]
     # an indented block is literal, with "::" before it or without
     return [_text(re.sub("::$", ":", " ".join(line.strip() for line in block)))]
 
@@ -91,6 +95,7 @@ def _literal(code: str) -> str:
 
 def _escaped(text: str) -> str:
     plain = re.sub(r"([\\*|_`\[\]])", r"\\\1", text)
+    plain = _BOLD.sub(r"**\1**", plain)
     return _TITLE.sub(r"*\1*", plain)  # of a book: *Title*
 
 
@@ -153,10 +158,12 @@ class StudyDocumenter(FunctionDocumenter):
 
 
 def _process(app: Sphinx, what: str, name: str, obj: object, options: object, lines: list) -> None:
-    lines[:] = converted(lines)
+    # a value without a text of its own comes with that of its type
+    of_type = what == "data" and lines and lines[0] in (type(obj).__doc__ or "")
+    lines[:] = [] if of_type else converted(lines)
 
 
-_PROGRESS = re.compile(r": (?:Run)?Progress(?:\[\w+\])?")
+_PROGRESS = re.compile(r"(?<=progress): [^=]*(?= = |\)$)")
 
 
 def _plain(

@@ -62,7 +62,7 @@ window.addEventListener("load", async () => {
     a === body.parentElement || !a ? right(e) > innerWidth + 1
     : scrolls(a) ? false : hides(a) && right(e) > edge(a) + 1 || cut(e, a.parentElement);
   const clipped = e => e.tagName === "PRE" && hides(e) && e.scrollWidth > e.clientWidth + 1;
-  const parts = [...body.querySelectorAll("pre, table, img, svg, mjx-math, dt, h1, h2, p")];
+  const parts = [...body.querySelectorAll("pre, table, img, svg, input, mjx-math, dt, h1, h2, p")];
   const apart = "pre, code, script, style, mjx-container";
   for (const element of text.querySelectorAll(apart)) element.remove();
   const report = {
@@ -76,6 +76,8 @@ window.addEventListener("load", async () => {
     broken: [...document.images].filter(i => !i.naturalWidth || !i.naturalHeight).map(i => i.src),
     unshown: texts("pre").filter(t => t.includes("<Figure size")),
     cut: parts.filter(e => cut(e) || clipped(e)).map(e => e.textContent.trim().slice(0, 80)),
+    crumbled: [...body.querySelectorAll("td span.pre")]
+      .filter(e => e.getClientRects().length > 2).map(e => e.textContent),
     wider: document.scrollingElement.scrollWidth > innerWidth + 1,
     errors: errors,
   };

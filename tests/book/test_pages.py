@@ -67,6 +67,7 @@ def test_every_picture_is_there(visit):
 def test_nothing_is_cut(width):
     pages = opened(width).pages
     assert not {page: r["cut"] for page, r in pages.items() if r["cut"]}
+    assert not {page: r["crumbled"] for page, r in pages.items() if r["crumbled"]}
     assert not [page for page, r in pages.items() if r["wider"]]
 
 
@@ -78,6 +79,15 @@ def test_every_public_name_is_told_and_no_private_one():
         names = re.findall(r'<dt class="sig[^>]* id="([^"]*)"', (HTML / page).read_text())
         assert not [name for name in names if re.search(r"\._", name)]
         assert bool(names) == page.startswith("api_")
+
+
+def test_the_interface_is_told_in_its_own_words():
+    """No type of what shows progress, nothing that Python says of a type, no mark left as it is."""
+    for page in PAGES:
+        if page.startswith("api_"):
+            text = re.sub(r"<[^>]*>", "", (HTML / page).read_text())
+            marks = r"Callable\[\[Iterable|PEP 604|Symbol class|\*\*[A-Z][^*]*\*\*|[.;] - \w"
+            assert not re.findall(marks, text), page
 
 
 def test_a_page_with_cells_is_there_as_a_notebook():
@@ -136,6 +146,16 @@ def test_what_is_cut_is_seen(tmp_path, style):
     seen = visited(tmp_path, ["page.html"], PHONE).pages["page.html"]
     assert bool(seen["cut"]) == ("auto" not in style)
     assert seen["wider"] == (not style)
+
+
+@pytest.mark.parametrize("wrap", ["anywhere", "normal"])
+def test_a_word_of_one_letter_a_line_is_seen(tmp_path, wrap):
+    """Which nothing else does: it is neither cut nor wider than the page."""
+    cell = f'<td><span class="pre" style="overflow-wrap: {wrap}">crumbs</span></td>'
+    row = f"<table style='width: 80px'><tr>{cell}<td>{'long' * 20}</td></tr></table>"
+    (tmp_path / "page.html").write_text(SMALLEST % f'<div style="overflow: auto">{row}</div>')
+    seen = visited(tmp_path, ["page.html"], PHONE).pages["page.html"]
+    assert seen["crumbled"] == (["crumbs"] if wrap == "anywhere" else [])
 
 
 @pytest.mark.parametrize("width", [300, 900])
