@@ -97,7 +97,7 @@ def _report(title: str, places: Array, logs: Array, numerical: Finding) -> Repor
     fit = Curve.of(f"decay {decay.value:.3g} per site", places, line, "C1-")
     rows = tuple(zip(places.tolist(), means, scatter.tolist(), strict=True))
     return Report(
-        f"{title}\ndecay of the peak force per site: {decay}",
+        f"{title}; decay of the peak force per site: {decay}",
         (Table(_COLUMNS, rows, "rows"),),
         (numerical,),
         (Panel("site", "ln F, less that at the first place", (bars, fit)),),
