@@ -287,9 +287,11 @@ def _attempt(chain: Chain, beads: Beads, plan: Plan, at: Any, h: float, hi: int)
         before = rest[i] + y[i] - y[i + _ONE]
         after = rest[i] + next_y[i] - next_y[i + _ONE]
         most = max(before, after)
-        near += 1 if (most > least) & (min(before, after) < _NEAR * most) else 0
+        kinked = (most > least) & (min(before, after) < _NEAR * most)
+        sums[_ZERO, i + _ONE] = most if kinked else 0.0
+        near += 1 if kinked else 0
     if near > 0:
-        _kinks(chain, beads, plan, at, h, hi, least)
+        _kinks(chain, beads, plan, at, h, hi)
     return math.sqrt(_square(sums, inverse, lo, hi)) * (1.0 if near > 0 else plan.smooth)
 
 
@@ -401,18 +403,14 @@ def _correct(chain: Chain, beads: Beads, plan: Plan, at: Any, h: float, i: int) 
 
 
 @_part
-def _kinks(
-    chain: Chain, beads: Beads, plan: Plan, at: Any, h: float, hi: int, least: float
-) -> None:
-    """Correct for the kinks of a step of contacts that are pressed by ``least`` or more."""
+def _kinks(chain: Chain, beads: Beads, plan: Plan, at: Any, h: float, hi: int) -> None:
+    """Correct for the kinks of contacts whose greater compression is in the first sum."""
     y, v, next_y, next_v = beads.y, beads.v, beads.next_y, beads.next_v
     inverse, rest = chain.inverse, chain.rest
     for i in range(at.lo, hi):
-        before = rest[i] + y[i] - y[i + 1]
-        after = rest[i] + next_y[i] - next_y[i + 1]
-        most = max(before, after)
-        if most > least and min(before, after) < _NEAR * most:
-            within = before * after < 0.0
+        most = beads.sums[0, i + 1]
+        if most > 0.0:
+            within = (rest[i] + y[i] - y[i + 1]) * (rest[i] + next_y[i] - next_y[i + 1]) < 0.0
             if within:
                 at.kink = at.steps + 1
             speed, later = v[i] - v[i + 1], next_v[i] - next_v[i + 1]
@@ -446,13 +444,6 @@ def _accepted(chain: Chain, beads: Beads, plan: Plan, at: Any, h: float, hi: int
     grow = 0.9 * max(error, 1e-9) ** (-1.0 / (plan.scheme.lower + 1))
     at.h = min(plan.longest, h * min(5.0, grow))
     return True
-
-
-@_compiled
-def _net(chain: Chain, y: Array, i: int) -> float:
-    """The force of contact i, less its load."""
-    d = chain.rest[i] + y[i] - y[i + 1]
-    return float((chain.A[i] * d**chain.k if d > 0.0 else 0.0) - chain.load[i])
 
 
 @_part
@@ -597,7 +588,7 @@ def _cut_rear(chain: Chain, beads: Beads, plan: Plan, at: Any) -> None:
     while at.front - at.lo > plan.cut:
         lo = at.lo
         momentum = math.sqrt(plan.heaviest * at.peak * (at.peak / plan.stiffest) ** (1 / k))
-        force = _net(chain, y, lo)
+        force, _ = _bond(chain, beads, lo, lo)
         blow = (v[lo] - v[lo + 1]) / (inverse[lo] + inverse[lo + 1])
         near = at.front - lo <= _LONGEST * plan.cut
         if near and (force > _OPEN * at.peak or blow > _BLOW * momentum):
@@ -633,8 +624,7 @@ def advance(chain: Chain, beads: Beads, plan: Plan, seen: Samples, at: Any, trie
     until, time, watched = at.tries + tries, seen.time, seen.watched
     stages = max(len(plan.scheme.nodes), len(plan.scheme.drifts)) - 1
     if at.tries == 0:
-        for i in range(plan.size):
-            beads.force[0, i + 1] = _net(chain, beads.y, i)
+        _press(chain, beads.y, beads.force, _ZERO, 0, plan.size, 0.0)
         at.stop = len(watched)
         for turn in range(3):
             _knot(chain, beads, seen, at, turn)
