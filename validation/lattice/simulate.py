@@ -53,9 +53,10 @@ def simulate(
 
     Parameters
     ----------
-    rtol, atol : of a compiled method ``rtol`` is a bound on the relative error of a pulse's peak
-        force, ``atol`` does not count. Of SciPy's: local error per step, relative to each component
-        and to the scene's own scale of displacement and velocity.
+    rtol, atol : of the pair ``rtol`` is about the most by which a pulse's peak force is off,
+        relatively; of the splitting what it is off by in the mean; ``atol`` does not count. Of
+        SciPy's: local error per step, relative to each component and to the scene's own scale of
+        displacement and velocity.
     method : one of `COMPILED` or of `METHODS`.
     step : of a compiled method, the largest, in place of that which ``rtol`` gives.
     window : of a compiled method, whether to follow the pulse only. By default wherever the pulse
