@@ -4,11 +4,17 @@ from fractions import Fraction
 from math import factorial
 
 import mpmath
+from flint import fmpq
 
 
 def fraction(value):
     """A SymPy rational as Python's."""
     return Fraction(int(value.p), int(value.q))
+
+
+def rational(value):
+    """A SymPy rational as FLINT's."""
+    return fmpq(int(value.p), int(value.q))
 
 
 def exponential(rate, order):

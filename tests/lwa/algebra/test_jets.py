@@ -5,13 +5,12 @@ from math import factorial
 import mpmath
 import pytest
 import sympy as sp
-from flint import fmpq
 from hypothesis import given
 from hypothesis import strategies as st
 
 from lwa.algebra.contact import Binomial
 from lwa.algebra.jets import JetAlgebra
-from tests.lwa.series import taylor
+from tests.lwa.series import rational, taylor
 
 x, h = sp.symbols("x h")
 BASE = sp.exp(x) + sp.Rational(1, 3) * sp.exp(3 * x)  # any smooth positive base p
@@ -72,10 +71,10 @@ def test_power_series_against_mpmath(exponent):
     """(1 + X)^k and its shift, order by order, against Taylor series at 40 digits."""
     order = 6
     algebra = JetAlgebra((), weight=order)
-    k = algebra.context.constant(0) + _fmpq(exponent)
+    k = algebra.context.constant(0) + rational(sp.Rational(exponent))
     power = Binomial(algebra, k)
     for n in range(1, order + 1):
-        power.append(algebra.r[n] * _fmpq(sp.Rational(1, factorial(n + 1))))
+        power.append(algebra.r[n] * rational(sp.Rational(1, factorial(n + 1))))
     with mpmath.workdps(60):
         p = sp.lambdify(x, BASE, "mpmath")
         # ∫ p over [x, x + D], over D, is p (1 + Σ r_n D^n/(n+1)!)
@@ -93,8 +92,3 @@ def test_power_series_against_mpmath(exponent):
                 value = sp.N(at_zero(algebra, found), 60) * sp.N(exponent, 60)
                 expected = series[n] / p(mpmath.mpf(0)) ** e
                 assert abs(mpmath.mpf(value) - expected) < mpmath.mpf(10) ** -30
-
-
-def _fmpq(value):
-    value = sp.Rational(value)
-    return fmpq(int(value.p), int(value.q))

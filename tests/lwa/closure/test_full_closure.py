@@ -11,13 +11,9 @@ import pytest
 from flint import fmpq
 
 from lwa import Cell, homogenize
+from tests.lwa.series import rational
 
 TAU = 2  # the second derivative in τ is wanted
-
-
-def rational(value):
-    """A SymPy rational as FLINT's, of which the series have many."""
-    return fmpq(int(value.p), int(value.q))
 
 
 class Series:
