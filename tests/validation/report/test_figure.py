@@ -116,6 +116,18 @@ def test_the_limits_picture_shows_every_quantity_at_every_k(limits_result):
         assert all(len(c.lines[0].get_xdata()) == 3 for c in bars)
 
 
+@pytest.mark.parametrize(
+    ("largest", "power"), [(0.006, True), (0.06, False), (60_000, False), (600_000, True)]
+)
+def test_small_and_large_numbers_stand_before_a_power_of_ten(largest, power):
+    curve = Curve.of("c", [0, 1], [0, largest])
+    figure = Report("one", panels=(Panel("x", "y", (curve,)),)).figure()
+    figure.draw_without_rendering()
+    (axes,) = figure.axes
+    assert bool(axes.yaxis.get_offset_text().get_text()) is power
+    assert axes.xaxis.get_offset_text().get_text() == ""
+
+
 def test_a_full_disk_is_one_line_and_leaves_the_old_picture(tmp_path):
     """Full for this process: no file of it may be larger than a kilobyte."""
     files = [tmp_path / f"picture{suffix}" for suffix in drawing.SUFFIXES]
