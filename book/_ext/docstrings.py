@@ -70,8 +70,8 @@ def _block(block: list[str]) -> list[str]:
 
 def _entries(block: list[str]) -> Iterator[str]:
     for line in block:
-        if not line.startswith(" "):
-            name, text = _ENTRY.match(line).groups()  # type: ignore[union-attr]
+        if entry := _ENTRY.match(line):  # an indented line is none
+            name, text = entry.groups()
             yield f"``{name.strip('`')}``"
             yield f"    {_text(text)}"
         else:

@@ -10,6 +10,7 @@ terms are sums over the powers of X.
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from math import factorial
 
@@ -18,7 +19,7 @@ from flint import fmpq, fmpq_mpoly
 from lwa.algebra.jets import JetAlgebra, Ladder
 
 
-class Force:
+class Force(ABC):
     """The series X and Φ of a contact, term by term; both hold the terms so far."""
 
     def __init__(self, algebra: JetAlgebra, k: fmpq_mpoly) -> None:
@@ -37,8 +38,9 @@ class Force:
             self._known = self._nonlinear(len(self.X))
         return self._known
 
+    @abstractmethod
     def _nonlinear(self, n: int) -> fmpq_mpoly:
-        raise NotImplementedError
+        """`known` for Φ_n."""
 
     def append(self, X_n: fmpq_mpoly) -> None:
         """Give the next term of X."""

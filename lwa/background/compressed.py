@@ -13,7 +13,6 @@ singularities, dξ/dθ = 2 √(I F′ (B - v) / (B (Q(B) - Q(v)))).
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Self
@@ -23,7 +22,7 @@ import sympy as sp
 
 from lwa import latex
 from lwa.background.kdv import RISE, KdV
-from lwa.background.profile import Profile
+from lwa.background.profile import Function, Profile
 from lwa.cell import Cell, meant, substitution
 from lwa.exact import InputError, exact, integer, real, shorten
 from lwa.law import Law, Power, for_cell
@@ -115,8 +114,11 @@ class BackgroundWave(Value):
 
     def stiffness(self, v: sp.Expr) -> sp.Expr:
         """Q(v), the V² of the wave that rises by v."""
+        return sp.powsimp(self._stiffness(v))
+
+    def _stiffness(self, v: sp.Expr) -> sp.Expr:
         rest = self.force(self.p0, -1) + self.force(self.p0) * v
-        return sp.powsimp(2 * (self.force(sp.expand(self.p0 + v), -1) - rest) / v**2)
+        return 2 * (self.force(sp.expand(self.p0 + v), -1) - rest) / v**2
 
     # --- the wave ---------------------------------------------------------------------------
 
@@ -173,7 +175,7 @@ class BackgroundWave(Value):
             return ""
         with mpmath.workdps(30 + self._lost(B)):
             number = self._number(B)
-            Q, slope = self._function(self.stiffness), self._function(lambda v: self._slope(v))
+            _, slope, Q = self._functions()
             top = Q(number)
             for i in range(1, _LOOKS):
                 v = number * i / _LOOKS
@@ -310,25 +312,27 @@ class BackgroundWave(Value):
         one = value.subs(self._unit, 1) if self._unit.is_Symbol else value
         return mpmath.mpf(sp.N(one, mpmath.mp.dps + 5))
 
-    def _function(self, build: Callable[[sp.Expr], sp.Expr]) -> Callable[[Any], Any]:
-        v = sp.Dummy("v", real=True)
-        value = build(v)
-        value = value.subs(self._unit, 1) if self._unit.is_Symbol else value
-        # numbers in the working precision, not as Python's quotients
-        numbers = {a: sp.Dummy() for a in value.atoms(sp.Rational) if not a.is_Integer}
-        function = sp.lambdify((v, *numbers.values()), value.xreplace(numbers), "mpmath")
-        given = [mpmath.mpf(int(a.p)) / int(a.q) for a in numbers]
-        return lambda place: function(place, *given)
+    @cached_property
+    def _compiled(self) -> list[tuple[Function, list[sp.Rational]]]:
+        """F, F′ and Q at p0 + v: functions of v and of their own fractions."""
+        v, found = sp.Dummy("v", real=True), []
+        for value in (self.force(self.p0 + v), self._slope(v), self._stiffness(v)):
+            value = value.subs(self._unit, 1) if self._unit.is_Symbol else value
+            numbers = {a: sp.Dummy() for a in value.atoms(sp.Rational) if not a.is_Integer}
+            function = sp.lambdify((v, *numbers.values()), value.xreplace(numbers), "mpmath")
+            found.append((function, list(numbers)))
+        return found
+
+    def _functions(self) -> list[Function]:
+        """F, F′ and Q at p0 + v in mpmath's working precision: fractions are no floats there."""
+        return [
+            _given(function, [mpmath.mpf(int(a.p)) / int(a.q) for a in numbers])
+            for function, numbers in self._compiled
+        ]
 
     def _profile(self, B: sp.Expr) -> Profile:
         """In mpmath's working precision."""
-        return Profile(
-            self._number(B),
-            self._number(self.I),
-            self._function(lambda v: self.force(self.p0 + v)),
-            self._function(self._slope),
-            self._function(self.stiffness),
-        )
+        return Profile(self._number(B), self._number(self.I), *self._functions())
 
 
 def background_wave(
@@ -340,3 +344,7 @@ def background_wave(
     p0**(1/4)
     """
     return BackgroundWave(cell, Power("k") if law is None else law, p0)
+
+
+def _given(function: Function, numbers: list[Any]) -> Function:
+    return lambda v: function(v, *numbers)

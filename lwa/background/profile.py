@@ -13,11 +13,15 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from typing import Any
 
 import mpmath
+from mpmath.calculus.quadrature import GaussLegendre
 
 Function = Callable[[Any], Any]
+
+_GAUSS = GaussLegendre(mpmath.mp)
 
 
 @dataclass(frozen=True)
@@ -90,4 +94,5 @@ class Profile:
         n points are good to 6^{-2n}; its cancellation at small θ would keep an adaptive rule busy.
         """
         degree = 4 + max(0, math.ceil(math.log2(mpmath.mp.dps / 50)))  # 3·2^{degree-1} points
-        return mpmath.quad(self.rate, points, method="gauss-legendre", maxdegree=degree)
+        pieces = (_GAUSS.get_nodes(a, b, degree, mpmath.mp.prec) for a, b in pairwise(points))
+        return mpmath.fdot((w, self.rate(theta)) for nodes in pieces for theta, w in nodes)

@@ -13,6 +13,7 @@ import math
 import re
 import sys
 import unicodedata
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -44,7 +45,7 @@ class Function:
         return sp.Function(self.name)(*self.arguments)
 
 
-class Writer:
+class Writer(ABC):
     """What the languages share; each is this and one of SymPy's printers."""
 
     comment: ClassVar[str] = "#"
@@ -87,9 +88,9 @@ class Writer:
             lines += [*[""] * self.gap, *self.function(function)]
         return "\n".join([*lines, *self.tail])
 
+    @abstractmethod
     def function(self, function: Function) -> list[str]:
         """The lines of one function."""
-        raise NotImplementedError
 
     def text(self, value: sp.Basic) -> str:
         """A value on one line."""

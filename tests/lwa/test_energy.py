@@ -25,7 +25,7 @@ def power_of_what_is_left(pde):
     density = pde.energy_density(FIELD + s * VELOCITY, x, VELOCITY + s * force)
     change = sp.lambdify((x, spacing), density.diff(s).subs(s, 0), "mpmath", cse=True)
     with mpmath.workdps(60):
-        points = [2 * mpmath.pi * i / 200 for i in range(200)]
+        points = [2 * mpmath.pi * i / 96 for i in range(96)]
         left = [
             abs(mpmath.fsum(change(point, mpmath.mpf(10) ** -d) for point in points))
             for d in (3, 4)

@@ -72,7 +72,7 @@ NEUTRAL = {role: sp.Symbol(f"role_{role}", positive=True) for role in ROLES}
 def numbers(given):
     """The results with a number for each symbol, 30 digits."""
     values = {given[role]: number for role, number in ROLES.items()}
-    return [(name, sp.N(sp.sympify(x).subs(values), 30)) for name, x in results(**given)]
+    return [(name, sp.N(sp.sympify(x).xreplace(values), 30)) for name, x in results(**given)]
 
 
 EXPECTED = numbers(NEUTRAL)

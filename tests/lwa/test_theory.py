@@ -51,18 +51,6 @@ def test_floats_enter_as_their_decimals():
     assert not homogenize(Dimer(0.1, 0.7), k=1.1).pde.G.has(sp.Float)
 
 
-def test_importing_lwa_loads_no_numerics():
-    code = (
-        "import sys, lwa; "
-        "print(sorted({'numpy', 'scipy', 'matplotlib', 'numba', 'validation', 'click'} "
-        "& set(sys.modules)))"
-    )
-    result = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, check=True
-    )
-    assert result.stdout.strip() == "[]"
-
-
 def progress_of(code):
     """What a child process writes to its terminal's standard error."""
     controller, terminal = pty.openpty()

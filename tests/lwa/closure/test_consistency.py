@@ -5,6 +5,7 @@ the exact dispersion relation of the linear chain must come out to order 12, bot
 """
 
 from fractions import Fraction
+from functools import cache
 
 import mpmath
 import pytest
@@ -14,7 +15,7 @@ from hypothesis import strategies as st
 
 from lwa import Cell, Dimer, InputError, Jet, homogenize
 from lwa.closure.consistency import amplitude_ratios
-from tests.lwa.series import exponential, fraction
+from tests.lwa.series import exponential, fraction, taylor
 
 masses = st.fractions(min_value="1/20", max_value=20, max_denominator=20)
 
@@ -30,12 +31,18 @@ FIELD = (
 )
 
 
+def number(value):
+    """A rational at the digits at work."""
+    return mpmath.mpf(int(value.p)) / int(value.q)
+
+
 def exponentials():
-    return [(mpmath.mpf(w.p) / w.q, mpmath.mpf(a.p) / a.q) for w, a in FIELD]
+    return [(number(w), number(a)) for w, a in FIELD]
 
 
+@cache
 def derivative(n, x=0):
-    """∂_x^n u."""
+    """∂_x^n u, at 70 digits."""
     return mpmath.fsum(w * a**n * mpmath.exp(a * x) for w, a in exponentials())
 
 
@@ -47,36 +54,25 @@ def slaved(ansatz, x, D):
     )
 
 
-def taylor(f, order, points=256):
-    """Taylor coefficients of f at 0 by Cauchy's integral; the error falls geometrically."""
-    radius = mpmath.mpf(1) / 8
-    values = [f(radius * mpmath.expjpi(mpmath.mpf(2 * j) / points)) for j in range(points)]
-    return [
-        mpmath.fsum(
-            v * mpmath.expjpi(-mpmath.mpf(2 * j * n) / points) for j, v in enumerate(values)
-        ).real / points / radius**n
-        for n in range(order + 1)
-    ]  # fmt: skip
-
-
-def evaluate(terms):
-    """Σ coefficient · Π (∂^i u/u_x)^e at x = 0."""
+def evaluate(terms, x=0):
+    """Σ coefficient · Π (∂^i u/u_x)^e."""
     total = mpmath.mpf(0)
     for jet, coefficient in terms.items():
-        product = mpmath.mpf(sp.N(coefficient, 60))
+        product = number(coefficient)
         for i, e in jet.x:
-            product *= (derivative(i) / derivative(1)) ** e
+            product *= (derivative(i, x) / derivative(1, x)) ** e
         total += product
     return total
 
 
 def lattice_accelerations(theory, order):
     """E_n, n < order, of u_ττ by both equations of motion, with the theory's ansatz for w."""
-    m1, m2 = (mpmath.mpf(m.p) / m.q for m in theory.cell.masses)
-    k = mpmath.mpf(theory.k.p) / theory.k.q
-    ansatz = [mpmath.mpf(1)] + [mpmath.mpf(sp.N(b, 60)) for b in theory.ansatz.values()]
+    m1, m2 = map(number, theory.cell.masses)
+    k = number(theory.k)
+    ansatz = [mpmath.mpf(1), *map(number, theory.ansatz.values())]
     p = derivative(1)
 
+    @cache
     def forces(D):
         u, right = derivative(0), derivative(0, 2 * D)
         w, left = slaved(ansatz, 0, D), slaved(ansatz, -2 * D, D)
@@ -108,25 +104,21 @@ def test_against_the_lattice_at_fifty_digits(k, m1, m2):
 
 
 def ansatz_on_second(theory, ansatz, n):
-    """What w = Lu adds to w_ττ: Σ_{0<j<n} b_j ∂_x^j u_ττ at D^{n-1} over u_x^k, by calculus.
+    """What w = Lu adds to w_ττ: Σ_{0<j<n} b_j ∂_x^j u_ττ at D^{n-1} over u_x^k.
 
     u_ττ is that of the second equation, the theory's less its defect.
     """
-    x = sp.Symbol("x")
-    u = sum(w * sp.exp(a * x) for w, a in FIELD)
-    base = u.diff(x)
+    k = number(theory.k)
     total = mpmath.mpf(0)
     for j in range(1, n):
         order = n - j
         parts = dict(theory.pde.coefficients.get(order, {})) if order > 1 else {Jet(((2, 1),)): 1}
         for jet, value in theory.defect.get(order, {}).items():
             parts[jet] = parts.get(jet, 0) - value
-        field = sum(
-            c * sp.prod((u.diff(x, i) / base) ** e for i, e in jet.x) for jet, c in parts.items()
-        )
-        slope = (base**theory.k * field).diff(x, j) / base**theory.k
-        total += ansatz[j] * mpmath.mpf(sp.N(slope.subs(x, 0), 60))
-    return total
+        parts = {jet: sp.sympify(value) for jet, value in parts.items()}
+        field = taylor(lambda x, parts=parts: derivative(1, x) ** k * evaluate(parts, x), j)
+        total += ansatz[j] * field[j] * mpmath.factorial(j)
+    return total / derivative(1) ** k
 
 
 # --- the linear limit ---------------------------------------------------------------------------

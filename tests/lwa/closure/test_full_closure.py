@@ -1,4 +1,5 @@
-"""The full closure, put into every equation of motion by code that shares nothing with it.
+"""The full closure, put into every equation of motion by code that shares nothing with it
+but the rational numbers of FLINT.
 
 The field is a power series in (x, D, τ) with rational coefficients, truncated; the theory's wave
 equation gives its acceleration and the slaved fields the particles' motion; the lattice's equations
@@ -6,12 +7,11 @@ are then evaluated term by term. Where the contact exponent k is an odd integer 
 rational, so that zero means zero.
 """
 
-from fractions import Fraction
-
 import pytest
+from flint import fmpq
 
 from lwa import Cell, homogenize
-from tests.lwa.series import fraction
+from tests.lwa.series import rational
 
 TAU = 2  # the second derivative in τ is wanted
 
@@ -30,7 +30,7 @@ class Series:
         return Series(min(self.degree, other.degree), terms)
 
     def __sub__(self, other):
-        return self + other * Fraction(-1)
+        return self + other * fmpq(-1)
 
     def __mul__(self, other):
         if not isinstance(other, Series):
@@ -45,7 +45,7 @@ class Series:
         return Series(degree, terms)
 
     def __pow__(self, n):
-        result = Series(self.degree, {(0, 0, 0): Fraction(1)})
+        result = Series(self.degree, {(0, 0, 0): fmpq(1)})
         for _ in range(n):
             result = result * self
         return result
@@ -60,7 +60,7 @@ class Series:
     def inverse(self):
         constant = self.terms[0, 0, 0]
         rest = Series(self.degree, {e: -c / constant for e, c in self.terms.items() if any(e)})
-        result = power = Series(self.degree, {(0, 0, 0): Fraction(1)})
+        result = power = Series(self.degree, {(0, 0, 0): fmpq(1)})
         for _ in range(self.degree + TAU):
             power = power * rest
             result = result + power
@@ -77,7 +77,7 @@ class Series:
         """f(x + hD)."""
         result = term = self
         for n in range(1, self.degree + 1):
-            term = term.dx() * Fraction(h, n)
+            term = term.dx() * fmpq(h, n)
             result = result + term.times_D(n)
         return result
 
@@ -105,7 +105,7 @@ class Jets:
         """Σ coefficient · Π jets of one order."""
         total = Series(self.p.degree)
         for jet, coefficient in terms.items():
-            product = Series(self.p.degree, {(0, 0, 0): fraction(coefficient)})
+            product = Series(self.p.degree, {(0, 0, 0): rational(coefficient)})
             for i, e in jet.x:
                 product = product * self("x", i) ** e
             for i, e in jet.t:
@@ -136,18 +136,14 @@ def residuals(theory):
     cell, order, k = theory.cell, theory.order, int(theory.k)
     P = cell.size
     degree = order + 6
-    u = {
-        (i, 0, 0): Fraction(c) for i, c in enumerate([0, 2, 1, -1, 2, 1, -2, 1, 3, -1, 2, 1, 1, -2])
-    }
-    v = {
-        (i, 0, 0): Fraction(c) for i, c in enumerate([1, -1, 2, 1, 1, -3, 2, 1, -1, 1, 2, -1, 1, 1])
-    }
+    u = {(i, 0, 0): fmpq(c) for i, c in enumerate([0, 2, 1, -1, 2, 1, -2, 1, 3, -1, 2, 1, 1, -2])}
+    v = {(i, 0, 0): fmpq(c) for i, c in enumerate([1, -1, 2, 1, 1, -3, 2, 1, -1, 1, 2, -1, 1, 1])}
     u, v = Series(degree, u), Series(degree, v)
     a = acceleration(theory, k, u, v)
     # φ_τττ: the wave equation's own derivative along the motion (u + τv, v + τa)
     da = acceleration(theory, k, u + v.at_tau(1), v + a.at_tau(1)).tau(1)
-    field = u + v.at_tau(1) + (a * Fraction(1, 2)).at_tau(2)
-    velocity = v + a.at_tau(1) + (da * Fraction(1, 2)).at_tau(2)
+    field = u + v.at_tau(1) + (a * fmpq(1, 2)).at_tau(2)
+    velocity = v + a.at_tau(1) + (da * fmpq(1, 2)).at_tau(2)
 
     jets = Jets(k, field, velocity)
     w = []
@@ -157,12 +153,12 @@ def residuals(theory):
             if terms:
                 total = total + (jets.p * jets.sum(terms)).times_D(n)
         w.append(total)
-    shares = [fraction(c) for c in cell.shares(theory.k)]
+    shares = [rational(c) for c in cell.shares(theory.k)]
     strains = [w[i + 1] - w[i] for i in range(P - 1)] + [w[0].shifted(P) - w[-1]]
     force = [s.over_D().tau(0) ** k * (1 / c**k) for s, c in zip(strains, shares, strict=True)]
     left = []
     for i in range(P):
-        inertia = (w[i].tau(2) * 2).times_D(1) * (P * k * fraction(cell.fractions[i]))
+        inertia = (w[i].tau(2) * 2).times_D(1) * (P * k * rational(cell.fractions[i]))
         before = force[i - 1] if i else force[-1].shifted(-P)
         left.append(inertia - force[i] + before)
     assert all(residual.degree >= order - 1 for residual in left)

@@ -12,20 +12,8 @@ import pytest
 import sympy as sp
 
 from lwa import Dimer, Material, Sphere, homogenize
-from lwa.command.cli import main
 from lwa.spheres import hertz
-from tests.commands import ended
-
-
-def run(capsys, *arguments):
-    return ended(capsys, main, *arguments)
-
-
-def result(capsys, *arguments):
-    status, out, err = run(capsys, *arguments, "--format", "json")
-    assert (status, err) == (0, "")
-    return json.loads(out)
-
+from tests.lwa.command.answers import result, run
 
 SYMBOLS = {s.name: s for s in homogenize(Dimer("m1", "m2")).pde.H.free_symbols}
 

@@ -1,27 +1,12 @@
 """The command `lwa` for other laws and for chains under load."""
 
-import json
 import math
 
 import pytest
 import sympy as sp
 
 from lwa import Cell, Dimer, Power, background_wave, canonical_wave, general, homogenize
-from lwa.command.cli import main
-
-
-def run(capsys, *arguments):
-    """Exit status, standard output and standard error of one call."""
-    with pytest.raises(SystemExit) as ended:
-        main(arguments)
-    captured = capsys.readouterr()
-    return ended.value.code, captured.out, captured.err
-
-
-def result(capsys, *arguments):
-    status, out, err = run(capsys, *arguments, "--format", "json")
-    assert (status, err) == (0, "")
-    return json.loads(out)
+from tests.lwa.command.answers import result, run
 
 
 def test_derive_any_law(capsys):

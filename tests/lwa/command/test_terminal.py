@@ -10,20 +10,12 @@ from importlib.metadata import version
 import pytest
 
 import lwa
-from lwa.command.cli import main
 from lwa.command.start import INTERRUPTED, start
 from lwa.command.terminal import SIGNS
+from tests.lwa.command.answers import run
 
 COMMAND = [sys.executable, "-m", "lwa"]
 WAVE = [*COMMAND, "wave", "--k", "3/2", "--masses", "1,1"]
-
-
-def call(capsys, arguments):
-    """Exit status, standard output and standard error of one call."""
-    with pytest.raises(SystemExit) as ended:
-        main(arguments)
-    captured = capsys.readouterr()
-    return ended.value.code, captured.out, captured.err
 
 
 @pytest.mark.parametrize("encoding", ["cp1252", "latin-1", "utf-8"])
@@ -104,15 +96,15 @@ def test_once_loaded_the_command_hears_ctrl_c_itself(monkeypatch):
 
 def test_the_version(capsys):
     assert lwa.__version__ == version("lwa")
-    assert call(capsys, ["--version"])[1] == f"lwa {lwa.__version__}\n"
+    assert run(capsys, "--version")[1] == f"lwa {lwa.__version__}\n"
 
 
 @pytest.mark.parametrize("arguments", [[], ["derive"], ["wave"], ["dispersion"], ["expansion"]])
 def test_help_has_a_short_name(capsys, arguments):
-    status, said, _ = call(capsys, [*arguments, "-h"])
+    status, said, _ = run(capsys, *arguments, "-h")
     assert status == 0
     assert said.startswith("Usage: lwa")
-    assert said == call(capsys, [*arguments, "--help"])[1]
+    assert said == run(capsys, *arguments, "--help")[1]
 
 
 @pytest.mark.parametrize(
@@ -129,6 +121,6 @@ def test_help_has_a_short_name(capsys, arguments):
     ],
 )
 def test_digits_are_those_of_ascii_everywhere(capsys, arguments):
-    status, out, err = call(capsys, arguments)
+    status, out, err = run(capsys, *arguments)
     assert (status, out, err.count("\n")) == (2, "", 1)
     assert f"{arguments[1][2:]} is " in err

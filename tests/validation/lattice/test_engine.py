@@ -198,6 +198,14 @@ def test_the_correction_of_kinks_saves_half_the_steps(monkeypatch):
     assert next(peaks) == pytest.approx(next(peaks), rel=1e-9)
 
 
+def test_how_fast_a_contact_closes_is_the_difference_of_two_accelerations():
+    force, inverse = np.array([0.3, 2.0, -1.0, 0.7]), np.array([0.5, 4.0, 1.5])
+    accelerations = (force[:-1] - force[1:]) * inverse
+    for i in (0, 1):
+        found = kernel._relative.py_func(force, inverse, i)
+        assert found == pytest.approx(accelerations[i] - accelerations[i + 1], rel=1e-15)
+
+
 @pytest.mark.parametrize("k", [1.5, 2.5])
 @pytest.mark.parametrize(("root", "q"), [(-0.6, 1.0), (0.3, 1.0), (0.3, -1.0), (1.7, -1.0)])
 def test_the_integrals_of_a_force_with_a_kink(k, root, q):

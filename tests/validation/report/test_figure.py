@@ -116,11 +116,23 @@ def test_the_limits_picture_shows_every_quantity_at_every_k(limits_result):
         assert all(len(c.lines[0].get_xdata()) == 3 for c in bars)
 
 
-@pytest.mark.parametrize("suffix", drawing.SUFFIXES)
-def test_a_full_disk_is_one_line_and_leaves_the_old_picture(tmp_path, suffix):
+@pytest.mark.parametrize(
+    ("largest", "power"), [(0.006, True), (0.06, False), (60_000, False), (600_000, True)]
+)
+def test_small_and_large_numbers_stand_before_a_power_of_ten(largest, power):
+    curve = Curve.of("c", [0, 1], [0, largest])
+    figure = Report("one", panels=(Panel("x", "y", (curve,)),)).figure()
+    figure.draw_without_rendering()
+    (axes,) = figure.axes
+    assert bool(axes.yaxis.get_offset_text().get_text()) is power
+    assert axes.xaxis.get_offset_text().get_text() == ""
+
+
+def test_a_full_disk_is_one_line_and_leaves_the_old_picture(tmp_path):
     """Full for this process: no file of it may be larger than a kilobyte."""
-    file = tmp_path / f"picture{suffix}"
-    file.write_bytes(b"old")
+    files = [tmp_path / f"picture{suffix}" for suffix in drawing.SUFFIXES]
+    for file in files:
+        file.write_bytes(b"old")
     code = """if True:
         import resource, sys
         from pathlib import Path
@@ -129,14 +141,16 @@ def test_a_full_disk_is_one_line_and_leaves_the_old_picture(tmp_path, suffix):
         report = Report("one", panels=(Panel("x", "y", (Curve.of("c", range(9), range(9)),)),))
         report.figure()  # Matplotlib writes a cache of fonts
         resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))
-        try:
-            report.save(Path(sys.argv[1]))
-        except ValueError as error:
-            print(error)
+        for file in sys.argv[1:]:
+            try:
+                report.save(Path(file))
+            except ValueError as error:
+                print(error)
     """
     done = subprocess.run(
-        [sys.executable, "-c", code, file], capture_output=True, text=True, check=True
+        [sys.executable, "-c", code, *files], capture_output=True, text=True, check=True
     )
-    assert (done.stdout, done.stderr) == (f"{file} is not written: File too large\n", "")
-    assert file.read_bytes() == b"old"
-    assert list(tmp_path.iterdir()) == [file]
+    said = [f"{file} is not written: File too large" for file in files]
+    assert (done.stdout.splitlines(), done.stderr) == (said, "")
+    assert {file.read_bytes() for file in files} == {b"old"}
+    assert sorted(tmp_path.iterdir()) == sorted(files)
