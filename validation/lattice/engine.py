@@ -87,7 +87,7 @@ def follow(
 def _say_if_compiled() -> None:
     """On a terminal: that the loops are compiled first, which takes its time once."""
     loops: Any = advance  # numba's
-    if loops.signatures or not sys.stderr.isatty():
+    if loops.overloads or not sys.stderr.isatty():
         return
     written = Path(kernel.__file__).stat().st_mtime
     kept = Path(loops.stats.cache_path).glob("kernel.advance-*.nbi")

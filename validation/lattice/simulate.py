@@ -13,6 +13,8 @@ import math
 from collections import deque
 from collections.abc import Iterable, Iterator
 from concurrent.futures import Future
+from itertools import islice
+from time import perf_counter
 from typing import Any
 
 import numpy as np
@@ -34,6 +36,7 @@ METHODS = ("DOP853", "RK45", "RK23", "LSODA")
 COMPILED = tuple(SCHEMES)
 """The engine's: an adaptive Runge–Kutta–Nyström pair, the default, and a symplectic splitting."""
 
+_BATCH, _SPELL = 32, 0.02  # scenes that a thread is given at a time, at most, and for seconds
 _BLOCK = 1_000_000  # numbers that the interpolant gives at a time
 _RECORDS = ("contact_force", "compression", "bead_force", "bead_displacement", "bead_velocity")
 _FINITE = (*_RECORDS, "displacements", "velocities")
@@ -112,14 +115,33 @@ def simulate_many(
     ...  simulate_many(Scene(**chain, velocities=(v,)) for v in (1, 2))]
     [np.float64(1.0), np.float64(2.0)]
     """
-    ahead: deque[Future[Run]] = deque()
+    ahead: deque[Future[_Batch]] = deque()
+    waiting, size, count = iter(scenes), 1, workers or cores()
     with threads(workers) as pool:
-        for scene in scenes:
-            ahead.append(pool.submit(simulate, scene, **options))
-            if len(ahead) > 4 * (workers or cores()):
-                yield ahead.popleft().result()
-        while ahead:
-            yield ahead.popleft().result()
+        while True:
+            while len(ahead) <= 2 * count and (some := list(islice(waiting, size))):
+                ahead.append(pool.submit(_batch, some, options))
+            if not ahead:
+                return
+            runs, seconds, error = ahead.popleft().result()
+            yield from runs
+            if error is not None:
+                raise error
+            size = math.ceil(min(_BATCH, _SPELL / seconds))
+
+
+_Batch = tuple[list[Run], float, Exception | None]
+
+
+def _batch(scenes: list[Scene], options: dict[str, Any]) -> _Batch:
+    """The runs before one that fails, the seconds that each took, and why it fails."""
+    runs: list[Run] = []
+    start = perf_counter()
+    try:
+        runs.extend(simulate(scene, **options) for scene in scenes)
+    except Exception as error:
+        return runs, 1.0, error
+    return runs, (perf_counter() - start) / len(scenes), None
 
 
 def twice(scene: Scene, fine: float, coarse: float, **options: Any) -> tuple[Run, Run]:

@@ -415,7 +415,7 @@ def test_rounding_noise_in_a_start_is_no_front():
 @pytest.mark.parametrize("terminal", [True, False])
 def test_a_first_run_says_that_it_compiles(capsys, monkeypatch, tmp_path, terminal):
     stats = SimpleNamespace(cache_path=tmp_path)
-    monkeypatch.setattr(engine, "advance", SimpleNamespace(signatures=[], stats=stats))
+    monkeypatch.setattr(engine, "advance", SimpleNamespace(overloads=[], stats=stats))
     monkeypatch.setattr(engine.sys.stderr, "isatty", lambda: terminal)
     engine._say_if_compiled()
     said = capsys.readouterr().err
