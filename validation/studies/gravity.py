@@ -193,7 +193,7 @@ class Upright:
 def gravity(
     k: float = 1.5, masses: Sequence[Any] = (), beads: int = 3000, progress: Progress[Any] = iter
 ) -> Report:
-    """A pulse down a chain under its own weight: width against depth, weak blow and strong. Ten
+    """A pulse down a chain under its own weight: width against depth, weak blow and strong. Five
     seconds.
 
     ``rows``, of weak blows: ``masses``, ``exponent_value`` and ``prefactor_value`` of the front's

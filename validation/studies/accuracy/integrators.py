@@ -85,8 +85,8 @@ _MARKS = "osD^v<>PX*"
            says=f"Only this task, may be given again: {', '.join(NAMES)}."),
 )  # fmt: skip
 def accuracy(names: Collection[str] = (), progress: Progress[str] = iter) -> Report:
-    """Speed against error: integrators on fixed tasks, and theories against true waves. Ten
-    minutes; of one task alone up to five.
+    """Speed against error: integrators on fixed tasks, and theories against true waves. Six
+    minutes; of one task alone up to three.
 
     ``rows``, as of `Row`, with the largest ``error``; ``costs`` by method; ``references`` and their
     ``agreement`` with another route; ``many``, as of `Many`; ``goals``, which people read as
