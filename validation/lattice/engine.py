@@ -19,10 +19,11 @@ Window. Ahead nothing moves: the front advances with the first bead that does. B
 than ``reach`` from the front are left to fly on freely, with their energy on the books, once the
 contact that is cut is open but for a trace of the peak force and no strong blow is to come (the
 thresholds of `validation.lattice.kernel`), or eight reaches behind in any case. As contacts carry
-no tension, the pulse does not depend on what is cut, unless it decays so fast (`_DECAY`, `_LEFT`)
-that its own tail may overtake it: then, and where too little was passed to tell, the run is made
-again with the whole chain, whoever asked for a window. As a pulse decays, the step grows with its
-time scale, F^{(1-k)/2k}, and the error that is allowed shrinks with it.
+no tension, a struck chain's pulse does not depend on what is cut, unless it decays so fast
+(`_DECAY`, `_LEFT`) that its own tail may overtake it: then, where too little was passed to tell,
+and where something was left that was no such contact, the run is made again with the whole chain,
+whoever asked for a window. Blows within, and contacts of many kinds, get none. As a pulse decays,
+the step grows with its time scale, F^{(1-k)/2k}, and the error that is allowed shrinks with it.
 """
 
 from __future__ import annotations
@@ -51,10 +52,10 @@ from validation.scenes.scene import Scene
 
 # In supports of the long-wave pulse: what the window reaches back, and after what it is looked at.
 _BACK, _LOOK = 2.0, 4.0
-# Of a pulse's peak, a reach later and at the end: where less is left, the window gives way.
+# Of a pulse's peak, a look later and at the end: where less is left, the window gives way.
 _DECAY, _LEFT = 0.9, 0.5
 _WINDOW = 2  # reaches that a window holds, about
-_SMOOTH = 0.03  # of the error that is estimated for order 6: in order 8 it is less than that
+_UNEVEN = 4.0  # stiffnesses: the greatest over the least that a window is for
 _POINTS = 8  # of the quadrature at a kink
 _NOISE = sys.float_info.epsilon  # of the greatest: rounding is no front
 _GLANCE = 0.2  # seconds, about, from one look at the progress to the next, or at Ctrl-C
@@ -110,12 +111,15 @@ def _reach(motion: Motion, window: Any) -> int | None:
             f"window is {window}: behind a wall, and at k = 1, waves come back; "
             "the whole chain is wanted"
         )
-    if window is None or window is True:
-        reach = _supports(motion, _BACK)
-    else:
-        reach = integer(window, "window", kernel.BLOCK)
-    # In so few beads nothing would be known of the pulse's decay.
-    return None if motion.size < 2.5 * _supports(motion, _LOOK) else reach
+    reach = _supports(motion, _BACK)
+    if window is not None and window is not True:
+        reach = max(reach, integer(window, "window", kernel.BLOCK))
+    # In so few beads nothing would be known of the pulse's decay; of several blows, or in contacts
+    # of many kinds, a later pulse may be the faster one; and from within, waves go both ways.
+    few = motion.size < 2.5 * _supports(motion, _LOOK)
+    inner = not scene.displacements and any(scene.velocities[1:])
+    uneven = motion.stiffnesses.max() > _UNEVEN * motion.stiffnesses.min()
+    return None if few or inner or uneven else reach
 
 
 def _supports(motion: Motion, number: float) -> int:
@@ -188,7 +192,7 @@ def _plan(motion: Motion, given: Given, chain: Chain, reach: int | None, step: f
     return Plan(
         _tableau(given.method, motion.k), given.rtol * scales.displacement,
         given.rtol * scales.velocity, step, given.longest, motion.scene.duration,
-        scales.compression, _SMOOTH if motion.loaded else 1.0, stiffest,
+        scales.compression, stiffest,
         1 / inverse[min(1, n - 1) : n].min(), stiffest * inverse.max(), n,
         0 if _returns(motion) else _supports(motion, _LOOK), reach or 0, adapt,
     )  # fmt: skip

@@ -95,10 +95,9 @@ class Plan(NamedTuple):
     """A scheme, its first step, and what it moves: ``size`` beads, or a window of them.
 
     y, v : the errors of a step that are allowed. h : the first step. longest : the longest of a
-    pair. deepest : the greatest compression. smooth : the share of a step's error that counts where
-    no kink is near. stiffest : of the contacts. heaviest : but for the striker.
-    quickest : stiffness over the least mass.
-    reach : after which the pulse is looked at; 0 where waves come back. cut : behind the
+    pair. deepest : the greatest compression. stiffest : of the contacts. heaviest : but for the
+    striker. quickest : stiffness over the least mass.
+    look : beads after which the pulse is looked at; 0 where waves come back. cut : behind the
     front, where the rear may be left; 0 for never. adapt : whether step and errors follow the
     pulse's time and size as it decays.
     """
@@ -110,12 +109,11 @@ class Plan(NamedTuple):
     longest: float
     end: float
     deepest: float
-    smooth: float
     stiffest: float
     heaviest: float
     quickest: float
     size: int
-    reach: int
+    look: int
     cut: int
     adapt: bool
 
@@ -131,19 +129,19 @@ def beginning(plan: Plan, k: float, front: int) -> Any:
     """Where `advance` is, to begin with: a record that it changes.
 
     steps, tries, evaluations : their numbers; evaluations times the beads that each one moves.
-    front, mark, lo : the first bead that is still, that of one reach ago, the rear.
+    front, mark, lo : the first bead that is still, that of one look ago, the rear.
     done : samples that are taken. begin, stop : watched beads that are followed.
-    legs : reaches passed. kink : the last step in which a contact opened or closed.
+    legs : looks passed. kink : the last step in which a contact opened or closed.
     kinks : those that the last step corrects for.
     count : of steps of the present length h, from base on.
     t : the time. before : the last step. y, v : the error that is allowed.
     scale : the compression that the step is made for.
-    top, peak : the greatest force in this reach, and in the last.
-    lost : energy of the contacts that were cut. formed : the peak in the first whole reach.
-    decay : the smallest ratio of the peaks in two reaches. left : the last over ``formed``.
+    top, peak : the greatest force in this look, and in the last.
+    lost : energy of the contacts that were cut. formed : the peak in the first whole look.
+    decay : the smallest ratio of the peaks in two looks. left : the last over ``formed``.
     """
     at = np.zeros(1, _PLACE)[0]
-    at["front"], at["mark"] = front, front - plan.reach // 2
+    at["front"], at["mark"] = front, front - plan.look // 2
     at["h"], at["y"], at["v"] = plan.h, plan.y, plan.v
     at["scale"], at["decay"], at["left"] = plan.deepest, 1.0, 1.0
     at["peak"] = plan.stiffest * plan.deepest**k
@@ -292,7 +290,7 @@ def _attempt(chain: Chain, beads: Beads, plan: Plan, at: Any, h: float, hi: int)
         near += 1 if kinked else 0
     if near > 0:
         _kinks(chain, beads, plan, at, h, hi)
-    return math.sqrt(_square(sums, inverse, lo, hi)) * (1.0 if near > 0 else plan.smooth)
+    return math.sqrt(_square(sums, inverse, lo, hi))
 
 
 @_part
@@ -562,9 +560,9 @@ def _greatest(force: Array, lo: int, hi: int) -> float:
 
 @_compiled
 def _grow(chain: Chain, plan: Plan, at: Any) -> None:
-    """A reach further on: how high is the pulse, and the step or error that goes with it."""
+    """A look further on: how high is the pulse, and the step or error that goes with it."""
     at.legs += 1
-    if at.legs == 2:  # the first, half a reach, holds the striker's blow
+    if at.legs == 2:  # the first, half a look, holds the striker's blow
         at.formed = at.top
     elif at.legs > 2 and at.peak > 0.0:
         at.decay = min(at.decay, at.top / at.peak)
@@ -590,9 +588,11 @@ def _cut_rear(chain: Chain, beads: Beads, plan: Plan, at: Any) -> None:
         momentum = math.sqrt(plan.heaviest * at.peak * (at.peak / plan.stiffest) ** (1 / k))
         force, _ = _bond(chain, beads, lo, lo)
         blow = (v[lo] - v[lo + 1]) / (inverse[lo] + inverse[lo + 1])
-        near = at.front - lo <= _LONGEST * plan.cut
-        if near and (force > _OPEN * at.peak or blow > _BLOW * momentum):
-            break
+        still = abs(y[lo]) <= _STILL * at.scale  # nothing has passed it yet
+        if still or force > _OPEN * at.peak or blow > _BLOW * momentum:
+            if at.front - lo <= _LONGEST * plan.cut:
+                break
+            at.decay = 0.0  # nobody knows: the whole chain is wanted
         at.lost += max(force, 0.0) * max(y[lo] - y[lo + 1], 0.0) / (k + 1)
         beads.left[lo] = at.t
         at.lo = lo + 1
@@ -605,11 +605,11 @@ def _follow(chain: Chain, beads: Beads, plan: Plan, at: Any, hi: int) -> None:
     """Move the front, and the rear where it may be cut, with the pulse."""
     while at.front < plan.size and abs(beads.y[at.front - MARGIN]) > _STILL * at.scale:
         at.front += 1
-    if not plan.reach:
+    if not plan.look:
         return
     if at.steps % 4 == 0 or len(plan.scheme.nodes):
         at.top = max(at.top, _greatest(beads.force, at.lo, hi))
-    if at.front - at.mark >= plan.reach:
+    if at.front - at.mark >= plan.look:
         _grow(chain, plan, at)
     if plan.cut > 0:
         _cut_rear(chain, beads, plan, at)

@@ -36,7 +36,7 @@ METHODS = ("DOP853", "RK45", "RK23", "LSODA")
 COMPILED = tuple(SCHEMES)
 """The engine's: an adaptive Runge–Kutta–Nyström pair, the default, and a symplectic splitting."""
 
-_BATCH, _SPELL = 32, 0.02  # scenes that a thread is given at a time, at most, and for seconds
+_BATCH, _SPELL = 8, 0.02  # scenes that a thread is given at a time, at most, and for seconds
 _BLOCK = 1_000_000  # numbers that the interpolant gives at a time
 _RECORDS = ("contact_force", "compression", "bead_force", "bead_displacement", "bead_velocity")
 _FINITE = (*_RECORDS, "displacements", "velocities")
@@ -56,17 +56,18 @@ def simulate(
 
     Parameters
     ----------
-    rtol, atol : of the pair ``rtol`` is about the most by which a pulse's peak force is off,
-        relatively; of the splitting what it is off by in the mean; ``atol`` does not count. Of
-        SciPy's: local error per step, relative to each component and to the scene's own scale of
-        displacement and velocity.
+    rtol, atol : of the pair ``rtol`` is about the most by which the peak force of a struck
+        chain's pulse is off, relatively; a motion that goes on bouncing may be off by some tens of
+        it at its end. Of the splitting it is what the peak is off by in the mean. ``atol`` does not
+        count. Of SciPy's: local error per step, relative to each component and to the scene's own
+        scale of displacement and velocity.
     method : one of `COMPILED` or of `METHODS`.
     step : of a compiled method, the largest, in place of that which ``rtol`` gives.
     window : of a compiled method, whether to follow the pulse only. By default wherever the pulse
         runs away: not with a wall (gravity has one) and not at k = 1. False asks for all that
         happens behind, such as light beads that rattle. A number is that of the beads to follow
-        behind the front. Where a pulse decays, so that its tail may overtake it, and in a chain
-        too short to tell, there is none in any case.
+        behind the front, or more where the pulse is wider. Where its tail may overtake it, in a
+        chain too short to tell, and where another bead than the first is struck, there is none.
     progress : is shown what a run takes before it starts, and then how far it is.
 
     Raises `SceneError` for a tolerance or method that cannot be meant, and for a run that takes
@@ -93,8 +94,8 @@ def simulate(
             run = follow(motion, method, rtol, step, window, progress)
         else:
             run = _adaptive(motion, method, rtol, atol, progress)
-    sums = (float(getattr(run, name).sum()) for name in _FINITE)
-    if not (math.isfinite(run.energy_drift) and all(map(math.isfinite, sums))):
+        sums = [float(getattr(run, name).sum()) for name in _FINITE]
+    if not all(map(math.isfinite, (run.energy_drift, *sums))):
         raise IntegrationError("the motion overflows: choose other units")
     return run
 

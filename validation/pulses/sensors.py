@@ -86,8 +86,8 @@ def record(
 ) -> Recording:  # fmt: skip
     """Simulate a scene and read its sensors.
 
-    The options are those of `validation.simulate`, which raises what this raises; rtol is from
-    1e-13 to 1e-5.
+    The options are those of `validation.simulate`, but for rtol, from 1e-13 to 1e-5. Raises what
+    that raises, and `SceneError` where rounding hides what rtol asks for.
     """
     rtol = between(rtol, "rtol", 1e-13, 1e-2 / LESS)
     motion = Motion(scene)

@@ -51,6 +51,7 @@ def _example(name: str) -> tuple[str, str]:
     return says.removeprefix("# "), text
 
 
+# read with the command, whose help names them
 EXAMPLES = {name: _example(name) for name in
             ("paper", "vertical", "precompressed", "defect", "trimer")}  # fmt: skip
 _EPILOG = "\n\n".join((

@@ -296,6 +296,24 @@ def test_a_forced_window_is_right_where_the_pulse_radiates(omega):
         assert run.contact_force.max(axis=1) == pytest.approx(whole, rel=1e-6)
 
 
+@pytest.mark.parametrize(
+    "blows", [{0: 1.0, 150: 0.2}, {150: 1.0}, {20: -1.0, 21: 1.0}], ids=["two", "within", "apart"]
+)
+def test_a_window_loses_no_pulse_that_it_does_not_follow(blows):
+    velocities = [blows.get(i, 0.0) for i in range(300)]
+    sensors = dict(contact_sensors=(3, 40, 100, 180), samples=1001)
+    scene = replace(struck(300, 1.0, duration=200.0, **sensors), velocities=velocities)
+    whole = simulate(scene, rtol=1e-7, window=False).contact_force
+    for window in (None, True, 16):
+        assert np.array_equal(simulate(scene, rtol=1e-7, window=window).contact_force, whole)
+
+
+def test_stiff_and_soft_contacts_take_the_whole_chain():
+    scene = struck(300, 1.0, duration=200.0)
+    mixed = replace(scene, stiffnesses=(1.0, 5.0) * 149 + (1.0,))
+    assert [simulate(s, rtol=1e-3, window=True).window for s in (scene, mixed)] == [18, None]
+
+
 def test_many_scenes_run_as_one_does_and_are_taken_as_they_are_needed():
     scenes = [struck(40, 1.0, duration=d, contact_sensors=(20,)) for d in np.linspace(10, 40, 30)]
     taken = []
