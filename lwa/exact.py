@@ -151,7 +151,7 @@ def _writable(number: sp.Rational, name: str) -> sp.Rational:
     return number
 
 
-class Kept(sp.UnevaluatedExpr):  # type: ignore[misc]
+class Kept(sp.UnevaluatedExpr):  # type: ignore[misc]  # untyped in SymPy
     """A number under a power that is left as it is: printed, compared and evaluated as itself."""
 
     def _eval_is_positive(self) -> bool:

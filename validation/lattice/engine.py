@@ -227,12 +227,8 @@ def _start(motion: Motion, padded: int) -> tuple[Beads, Samples]:
     time = np.arange(scene.samples) / (scene.samples - 1) * scene.duration
     seen_y, seen_v = np.empty((2, len(watched), len(time)))
     seen_y[:], seen_v[:] = y[watched, None], v[watched, None]
-    knots, room, kinks = (
-        np.zeros((3, 4, len(watched))),
-        np.zeros((17, 12)),
-        np.zeros((padded + 1, 7)),
-    )
-    beads = Beads(y, v, next_y, next_v, left, force, sums, kinks)
+    knots, room = np.zeros((3, 4, len(watched))), np.zeros((17, 12))
+    beads = Beads(y, v, next_y, next_v, left, force, sums, kinks=np.zeros((padded + 1, 7)))
     return beads, Samples(time, watched, knots, seen_y, seen_v, room)
 
 

@@ -117,8 +117,8 @@ def simulate_many(
     [np.float64(1.0), np.float64(2.0)]
     """
     ahead: deque[Future[_Batch]] = deque()
-    waiting, size, count = iter(scenes), 1, workers or cores()
-    with threads(workers) as pool:
+    waiting, size, count = iter(scenes), 1, cores() if workers is None else workers
+    with threads(count) as pool:
         while True:
             while len(ahead) <= 2 * count and (some := list(islice(waiting, size))):
                 ahead.append(pool.submit(_batch, some, options))

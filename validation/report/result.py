@@ -103,9 +103,10 @@ class Report:
         """Draw the first panel into Matplotlib's axes ``ax``, or into new ones; returns them.
 
         Raises `lwa.InputError` where there is no picture."""
-        first, drawn = self._panels()[0], axes(ax)
+        first = self._panels()[0]
+        drawn: Axes = axes(ax)
         draw(drawn, first)
-        return drawn  # type: ignore[no-any-return]
+        return drawn
 
     def save(self, file: Path) -> None:
         """Draw the picture into a file, which is replaced only by a complete one."""
