@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from lwa.compact.numeric import Array
 from validation.lattice.equations import Motion
 from validation.scenes.checks import Failure, SceneError
@@ -31,12 +33,12 @@ class Run:
         mean of the bead's two contacts, the displacement is from the equilibrium.
     displacements, velocities : (n,), at the end.
     energy_drift : change of the energy above equilibrium over its initial value (0 if that is 0);
-        beads left behind by a window keep what they had.
+        beads that a window has left behind keep their energy.
     momentum_drift : change of the momentum over Σ m|v| at the end; None with a wall.
     evaluations : of the equations of motion; bead_evaluations : times the beads each one moved.
     step : the mean one.
-    window : beads that were followed behind the front at least; beyond, contacts count as open
-        and beads fly on freely. None when the whole chain was integrated throughout.
+    window : number of beads that were followed behind the front; what lies further behind is NaN
+        in all arrays. None for the whole chain.
     """
 
     scene: Scene
@@ -80,11 +82,12 @@ class Run:
 
 def finished(
     motion: Motion, end: Array, records: dict[str, Array], energy: float,
-    steps: int, evaluations: int, bead_evaluations: int, window: int | None = None,
+    steps: int, evaluations: int, bead_evaluations: int, window: int | None = None, rear: int = 0,
 ) -> Run:  # fmt: skip
-    """The run that came to this state and energy, with what its sensors recorded."""
+    """The run that came to this state and energy; the first ``rear`` beads were left behind."""
     n, before = motion.size, motion.scales.energy
     arrays = records | {"displacements": end[:n].copy(), "velocities": end[n:].copy()}
+    arrays["displacements"][:rear] = arrays["velocities"][:rear] = np.nan
     for array in arrays.values():
         array.setflags(write=False)
     return Run(
