@@ -9,7 +9,7 @@ import scipy
 
 import book.studies.gravity as study
 from book.studies.gravity import FIRST, Upright, front_width, gravity
-from lwa.background.quadrature import NumericBackground
+from lwa.wave.quadrature import NumericBackground
 from tests.commands import ended
 from validation.scenes.chains import numbered
 

@@ -11,8 +11,8 @@ import scipy
 
 from book.studies.precompressed import Wave, precompressed
 from lwa import Cell, Power
-from lwa.background.quadrature import NumericBackground
 from lwa.linear.loaded import LoadedChain
+from lwa.wave.quadrature import NumericBackground
 from tests.commands import ended
 from validation.lattice.simulate import simulate
 from validation.scenes.chains import numbered
