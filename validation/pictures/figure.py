@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lwa.compact.numeric import Array
-from lwa.compact.picture import axes
-from lwa.exact import InputError
+from lwa.base.arrays import Array
+from lwa.base.exact import InputError
+from lwa.wave.plots import axes
 from validation.pictures.panel import Map, Panel
 
 if TYPE_CHECKING:

@@ -13,8 +13,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from uuid import uuid4
 
-from lwa.exact import InputError
-from lwa.spheres.files import reason
+from lwa.base.exact import InputError
+from lwa.base.files import reason
 
 
 def output_file(name: str, path: str, suffixes: Sequence[str]) -> Path:

@@ -1,4 +1,4 @@
-"""Result of a study: a title, tables, findings, panels and notes, shown as text, JSON, CSV or page."""
+"""Result of a study: title, tables, findings, panels and notes, as text, JSON, CSV or HTML."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
-from lwa.exact import InputError
+from lwa.base.exact import InputError
 from validation.pictures.figure import Pictured, svg
 from validation.pictures.panel import Panel
 from validation.report import text as texts

@@ -120,7 +120,7 @@ def _element(name: str, text: str) -> str:
 
 
 def listed(findings: Iterable[Finding | Statement], failing: bool = False) -> list[str]:
-    """Statements line by line, then a table of numeric findings, only failing ones if ``failing``."""
+    """Statements line by line, then a table of numbers; with ``failing`` only numbers that fail."""
     shown = [f for f in findings if not failing or isinstance(f, Statement) or not f.ok]
     parts = []
     lines = [("measured", "value", "expected", "")]

@@ -12,6 +12,7 @@ import numpy as np
 import validation.scenes
 from validation.lattice.effort import RunProgress
 from validation.lattice.simulate import COMPILED, METHODS
+from validation.pictures.panel import Curve, Map, Panel
 from validation.pulses.sensors import (
     READINGS,
     SPEEDS,
@@ -24,7 +25,6 @@ from validation.pulses.sensors import (
 )
 from validation.report.command import option, study
 from validation.report.files import output_file
-from validation.pictures.panel import Curve, Map, Panel
 from validation.report.result import Report
 from validation.report.table import Column, Table
 from validation.scenes.checks import SceneError
