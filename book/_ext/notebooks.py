@@ -20,7 +20,7 @@ from pybtex.database import parse_file
 from sphinx.application import Sphinx
 
 INSTALL = """*This notebook is a page of the book* Long waves in granular chains. *It needs
-Python 3.11 or newer and the package* `lwa`: *in a clone of its repository*, `pip install . jupyter`.
+Python 3.11 or newer and* `lwa`: *in a clone of its repository*, `pip install . jupyter`.
 *The next cells write the files that the book's pages share into the folder of the notebook.*"""
 
 _STYLE = "style.mplstyle"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from lwa.compact.numeric import Array
+from lwa.base.arrays import Array
 from validation.lattice.equations import Motion
 from validation.scenes.checks import Failure, SceneError
 from validation.scenes.scene import Scene
@@ -61,7 +61,7 @@ class Run:
 
         Returns the axes. Raises `SceneError` for a scene without sensors.
         """
-        from lwa.compact.picture import axes  # optional, start-up
+        from lwa.wave.plots import axes  # optional, start-up
 
         contacts, beads = self.scene.contact_sensors, self.scene.bead_sensors
         names = [*(f"contact {i + 1}" for i in contacts), *(f"bead {i + 1}" for i in beads)]

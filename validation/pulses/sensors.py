@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from lwa.compact.numeric import Array
+from lwa.base.arrays import Array
 from validation.lattice.effort import RunProgress, silent
 from validation.lattice.equations import Motion
 from validation.lattice.run import Run

@@ -36,8 +36,8 @@ import numpy as np
 import scipy
 import sympy as sp
 
-from lwa.compact.numeric import Array
-from lwa.exact import InputError
+from lwa.base.arrays import Array
+from lwa.base.exact import InputError
 from validation.lattice.run import IntegrationError, Run
 from validation.lattice.simulate import simulate
 from validation.pulses.pulse import FEWEST, FORGOTTEN, Measured, MeasureError, read

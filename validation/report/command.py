@@ -15,8 +15,8 @@ from typing import Any, Generic, ParamSpec, Protocol, TypeVar
 import click
 from tqdm import tqdm
 
+from lwa.base.progress import announce
 from lwa.command.terminal import called, quantity
-from lwa.duration import announce
 from validation.lattice.effort import Effort
 from validation.report.figure import SUFFIXES
 from validation.report.files import output_file

@@ -12,8 +12,8 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
-from lwa.exact import InputError
-from lwa.spheres.files import kind, reason
+from lwa.base.exact import InputError
+from lwa.base.files import kind, reason
 
 
 def output_file(name: str, path: str, suffixes: Sequence[str]) -> Path:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lwa.compact.numeric import Array
+from lwa.base.arrays import Array
 from validation.report.table import plain
 
 

@@ -9,8 +9,8 @@ from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from lwa.compact.picture import axes
-from lwa.exact import InputError
+from lwa.base.exact import InputError
+from lwa.wave.plots import axes
 from validation.report import text as texts
 from validation.report.figure import draw, figure
 from validation.report.files import replacing

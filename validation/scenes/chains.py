@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lwa import Cell
-from lwa.compact.numeric import Array
+from lwa.base.arrays import Array
 from validation.scenes.checks import SceneError
 from validation.scenes.materials import PTFE_BEAD, STEEL, STEEL_BEAD, Bead
 from validation.scenes.scene import Scene

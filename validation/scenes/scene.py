@@ -21,9 +21,9 @@ from typing import Any
 import sympy as sp
 
 from lwa import Cell
+from lwa.base.exact import shorten
+from lwa.base.tables import Reader
 from lwa.cell import exponent
-from lwa.exact import shorten
-from lwa.spheres.tables import Reader
 from validation.scenes import checks
 from validation.scenes.checks import SceneError, integer, items, of_scene, positive, real
 from validation.scenes.materials import Bead, Material, contact_stiffness

@@ -59,11 +59,11 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
-from lwa.exact import shorten
+from lwa.base.exact import shorten
+from lwa.base.files import load
+from lwa.base.tables import Reader, Table, among, array, entries, flag, place, places, table
 from lwa.spheres import hertz
 from lwa.spheres.beads import read_beads, read_materials
-from lwa.spheres.files import load
-from lwa.spheres.tables import Reader, Table, among, array, entries, flag, place, places, table
 from validation.scenes.checks import SceneError, each, integer, of_scene, positive, real
 from validation.scenes.materials import Bead, Material, contact_stiffness
 from validation.scenes.scene import Scene

@@ -12,8 +12,8 @@ import math
 
 import numpy as np
 
-from lwa.compact.numeric import Array
-from lwa.duration import Progress
+from lwa.base.arrays import Array
+from lwa.base.progress import Progress
 from validation.lattice.run import Run
 from validation.lattice.simulate import simulate, simulate_many
 from validation.pulses.pulse import Measured, measure

@@ -22,8 +22,8 @@ not short beside x they are no rays: a correction of x^{-2/3} on the way, and on
 falls as x^{-(3-k)/3k}, where it is of order ω², or as x^{-2(3-k)/3(k+1)}, where of order
 ω^{4k/(k+1)}. The fit holds the first and the last, and the error bars what the other makes of it.
 
-**A strong blow** makes the solitary wave of the load at its depth (`lwa.background`), until that is
-as wide as the front of a weak blow, which the pulse then follows.
+**A strong blow** makes the solitary wave of the load at its depth (`lwa.wave.background`), until
+that is as wide as the front of a weak blow, which the pulse then follows.
 """
 
 from __future__ import annotations
@@ -38,10 +38,10 @@ import numpy as np
 import scipy
 
 from lwa import Cell, Power, background_wave
-from lwa.background.compressed import BackgroundWave
+from lwa.base.arrays import Array
+from lwa.base.progress import Progress
 from lwa.command.terminal import quantities
-from lwa.compact.numeric import Array
-from lwa.duration import Progress
+from lwa.wave.background import BackgroundWave
 from validation.lattice.run import Run
 from validation.lattice.simulate import simulate, twice
 from validation.pulses.pulse import Measured, measure

@@ -8,8 +8,8 @@ contacts, and the theory is that at the dynamic force measured there. Error bars
 two changes of theory/lattice: between the two stretches, and to a less accurate run.
 
 In V/c0 and in widths over √(12 I) the theory knows no masses: all chains lie on one curve
-(`lwa.background`). A wave is faster than all long ones; but where ω = V q meets an optical branch
-short ones take its energy along, and it decays, the slower the longer it is.
+(`lwa.wave.background`). A wave is faster than all long ones; but where ω = V q meets an optical
+branch short ones take its energy along, and it decays, the slower the longer it is.
 
 The chain is integrated as a whole: under a load what happens behind the wave is passed on.
 """
@@ -27,10 +27,10 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from lwa import Cell, Power, background_wave
-from lwa.background.quadrature import NumericBackground
+from lwa.base.arrays import Array
+from lwa.base.progress import Progress
 from lwa.command.terminal import quantities
-from lwa.compact.numeric import Array
-from lwa.duration import Progress
+from lwa.wave.quadrature import NumericBackground
 from validation.lattice.run import Run
 from validation.lattice.simulate import twice
 from validation.pulses.pulse import Measured, measure

@@ -20,8 +20,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lwa.compact.numeric import Array
-from lwa.spheres import files
+from lwa.base import files
+from lwa.base.arrays import Array
 from validation.lattice.run import Run
 from validation.pulses.sensors import tracks
 from validation.report.files import replacing

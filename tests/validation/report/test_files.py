@@ -8,7 +8,7 @@ import tempfile
 import pytest
 
 from lwa import InputError
-from lwa.spheres.files import content
+from lwa.base.files import content
 from validation.report.files import output_file, replacing
 
 

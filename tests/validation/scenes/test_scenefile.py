@@ -12,7 +12,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from lwa import Cell
-from lwa.spheres import beads, files
+from lwa.base import files
+from lwa.spheres import beads
 from lwa.spheres.beads import read_spheres
 from validation.scenes import scenefile
 from validation.scenes.materials import STEEL, Bead, Material, contact_stiffness

@@ -8,7 +8,7 @@ import pytest
 import scipy
 
 import validation.studies.gravity as study
-from lwa.background.quadrature import NumericBackground
+from lwa.wave.quadrature import NumericBackground
 from tests.commands import ended
 from validation import cli
 from validation.scenes.chains import numbered

@@ -10,8 +10,8 @@ import pytest
 import scipy
 
 from lwa import Cell, Power
-from lwa.background.quadrature import NumericBackground
 from lwa.linear.loaded import LoadedChain
+from lwa.wave.quadrature import NumericBackground
 from tests.commands import ended
 from validation import cli
 from validation.lattice.simulate import simulate

@@ -16,8 +16,8 @@ import numpy as np
 import scipy
 
 from lwa import canonical_wave
-from lwa.compact.numeric import Array
-from lwa.duration import Progress
+from lwa.base.arrays import Array
+from lwa.base.progress import Progress
 from validation.lattice.run import Run
 from validation.lattice.simulate import simulate_many
 from validation.pulses.pulse import Measured, compared, exponent
