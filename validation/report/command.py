@@ -6,7 +6,7 @@ import inspect
 import json
 import sys
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import update_wrapper
 from pathlib import Path
@@ -16,7 +16,8 @@ import click
 from tqdm import tqdm
 
 from lwa.base.progress import announce
-from lwa.command.terminal import called, quantity
+from lwa.command.terminal import HELP, called, quantity
+from lwa.command.terminal import run as run_command
 from validation.lattice.effort import Effort
 from validation.report.figure import SUFFIXES
 from validation.report.files import output_file
@@ -77,7 +78,14 @@ class Study(Generic[P, R]):
         for option in (*_OUTPUT, *reversed(self.options)):
             run = option(run)
         says = (inspect.getdoc(self.function) or "").partition("\n\n")[0]
-        return click.command(self.name, help=says, epilog=self.epilog or None)(run)
+        command = click.command(
+            self.name, help=says, epilog=self.epilog or None, context_settings=HELP
+        )
+        return command(run)
+
+    def main(self, arguments: Sequence[str] | None = None) -> None:
+        """Run the study as a program of its own, for the file that defines it."""
+        run_command(self.command, f"{self.name}.py", arguments)
 
 
 def study(

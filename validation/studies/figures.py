@@ -27,9 +27,8 @@ from validation.report.result import Report
 from validation.report.table import Column, Table
 from validation.report.text import percent
 from validation.scenes.materials import DIAMETER, PTFE_BEAD
-from validation.studies.porter2008 import experiment
-from validation.studies.porter2008.experiment import HERTZ, Train, chain_cell, chain_runs
-from validation.studies.porter2008.widths import Widths, widths
+from validation.studies import paper
+from validation.studies.paper import HERTZ, Train, chain_cell, chain_runs
 from validation.waves.theory import Compacton
 
 RECORDED = {1: (15, 24, 33), 2: (16, 24, 34)}  # N → figure 2's beads; 24 is PTFE
@@ -103,14 +102,12 @@ class Figures:
     forces: tuple[Forces, ...]
     speeds: tuple[Speed, ...]
     scaling: tuple[Scaling, ...]
-    widths: Widths
 
     def report(self) -> Report:
         """``speeds``: ``N``, ``speed``, ``force`` and ``theory``, each ``_value``; ``scalings``:
         ``modulus_value``, ``exponent_value`` and a list over the drop heights of ``speed_value``,
         ``force_value`` and ``theory_value``; ``scaling``: that of the paper, with the
-        dynamic modulus; ``forces``: ``N``, ``beads``, ``time_value``, ``force_value``; ``widths``,
-        as `Widths` has it."""
+        dynamic modulus; ``forces``: ``N``, ``beads``, ``time_value``, ``force_value``."""
         speeds = tuple((*s, s.theory / s.speed.value - 1) for s in self.speeds)
         rows = tuple((s.E, s.exponent, s.exponent.value - 1 / 6,
                       [V.value for V in s.speeds], [V.error for V in s.speeds],
@@ -118,7 +115,6 @@ class Figures:
                      for s in self.scaling)  # fmt: skip
         heights = f"drop heights {HEIGHTS[0]:g} … {HEIGHTS[-1]:g} m; the paper fits 0.1666"
         scalings = Table(_SCALINGS, rows, "scalings", title=heights)
-        widths = self.widths.report()
         return Report(
             "",
             (Table(_SPEEDS, speeds, "speeds", title=_N_TO_1), scalings),
@@ -127,9 +123,7 @@ class Figures:
                 "scaling": scalings.document()[0],
                 "forces": [{"N": f.N, "beads": f.beads, "time_value": f.time,
                             "force_value": f.force} for f in self.forces],
-                "widths": widths.document(),
             },
-            parts=(widths,),
         )  # fmt: skip
 
 
@@ -151,15 +145,15 @@ def _scaling_panel(rows: tuple[Scaling, ...]) -> Panel:
 
 @study()
 def figures(progress: Progress[Any] = iter) -> Figures:
-    """The paper's figures: force records, N:1 chains, force against speed, FWHM. Ten seconds."""
+    """The paper's figures: force records, N:1 chains, force against speed. Ten seconds."""
     parts: list[tuple[Any, ...]] = [(forces, N) for N in RECORDED]
     parts += [(chain_speed, N) for N in range(1, MOST + 1)]
-    parts += [*((scaling, E) for E in MODULI), (widths,)]
+    parts += [(scaling, E) for E in MODULI]
     found: dict[Any, list[Any]] = {}
     for part, *of in progress(parts):
         found.setdefault(part, []).append(part(*of))
-    records, speeds, scalings, (beads,) = found.values()
-    return Figures(tuple(records), tuple(speeds), tuple(scalings), beads)
+    records, speeds, scalings = found.values()
+    return Figures(tuple(records), tuple(speeds), tuple(scalings))
 
 
 def forces(N: int) -> Forces:
@@ -187,7 +181,7 @@ def chain_speed(N: int) -> Speed:
         )
         return {"speed": across * period * DIAMETER / (second - first), "force": train.peak}
 
-    runs = chain_runs(sensors, N=N, beads=max(experiment.BEADS, (before + across + 3) * period))
+    runs = chain_runs(sensors, N=N, beads=max(paper.BEADS, (before + across + 3) * period))
     found = compared(numbers, *runs)
     wave = canonical_wave(chain_cell(N), HERTZ)
     theory = Compacton.of_bead_force(wave, found["force"].value).speed
@@ -204,9 +198,9 @@ def _front(time: Array, above: Array) -> float:
 def scaling(E: float) -> Scaling:
     """Figure 3a for a modulus of PTFE, without gravity in the chain."""
     ptfe = replace(PTFE_BEAD, material=replace(PTFE_BEAD.material, E=E))
-    velocities = (math.sqrt(2 * experiment.GRAVITY * h) for h in HEIGHTS)
-    drops = [experiment.recorded_chain(experiment.SENSORS, v, ptfe=ptfe) for v in velocities]
-    pairs = zip(*(simulate_many(drops, rtol=rtol) for rtol in experiment.TOLERANCES), strict=True)
+    velocities = (math.sqrt(2 * paper.GRAVITY * h) for h in HEIGHTS)
+    drops = [paper.recorded_chain(paper.SENSORS, v, ptfe=ptfe) for v in velocities]
+    pairs = zip(*(simulate_many(drops, rtol=rtol) for rtol in paper.TOLERANCES), strict=True)
     found = [(Measured(fine.speed, coarse.speed), Measured(fine.peak, coarse.peak))
              for fine, coarse in (map(Train.of, pair) for pair in pairs)]  # fmt: skip
     speeds, forces = zip(*found, strict=True)

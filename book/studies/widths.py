@@ -16,13 +16,14 @@ from dataclasses import dataclass
 from lwa import Dimer, TravelingWave, canonical_wave, homogenize
 from validation.lattice.run import Run
 from validation.pulses.pulse import Measured, compared, derived
+from validation.report.command import study
 from validation.report.panel import Curve, Panel
 from validation.report.result import Report
 from validation.report.table import Column, Table
 from validation.report.text import percent
 from validation.scenes.materials import DIAMETER
-from validation.studies.porter2008 import experiment
-from validation.studies.porter2008.experiment import HERTZ, Train, chain_cell, chain_runs
+from validation.studies import paper
+from validation.studies.paper import HERTZ, Train, chain_cell, chain_runs
 from validation.waves.theory import Compacton
 
 FIRST_BEAD = 10  # from here on the width no longer changes on its way; the average starts here
@@ -126,9 +127,10 @@ class Widths:
         return Panel(*labels, tuple(curves), title="1:1 chain", legend=free)
 
 
+@study()
 def widths() -> Widths:
-    """The FWHM down the 1:1 chain, and the definitions of its average."""
-    beads = tuple(range(4, experiment.BEADS - 2))  # of PTFE and of steel in turn
+    """FWHM of the force down the paper's 1:1 chain, and ten definitions of its average."""
+    beads = tuple(range(4, paper.BEADS - 2))  # of PTFE and of steel in turn
     found, waves = compared(_numbers, *chain_runs(beads)), _waves()
 
     def theory(quantity: str, force: Measured, in_time: bool) -> dict[str, dict[str, float]]:
@@ -161,7 +163,7 @@ def _numbers(run: Run) -> dict[str, float]:
         "steel": steel.fwhm,
         "PTFE": late.only(lambda bead: bead % 2 == 0).fwhm,
         "contacts' force": contacts.peak,
-        "F_m": beads.only(lambda bead: bead in experiment.SENSORS).peak,
+        "F_m": beads.only(lambda bead: bead in paper.SENSORS).peak,
         "speed": steel.speed,
     }
 
@@ -182,3 +184,7 @@ def _width(wave: TravelingWave, quantity: str, force: float, in_time: bool) -> f
     peak = (unit.bead_force if quantity == "bead force" else unit.contact_force)(0.0)
     compacton = Compacton(wave, (force / float(peak)) ** (1 / unit.k))
     return compacton.fwhm(quantity) / (compacton.speed if in_time else compacton.spacing)
+
+
+if __name__ == "__main__":
+    widths.main()

@@ -7,15 +7,14 @@ import json
 import numpy as np
 import pytest
 
+from book.studies.disorder import disorder
 from tests.commands import ended
-from validation import cli
-from validation.studies.disorder import disorder
 
 FEW = {"chains": 12, "sites": 100}
 
 
 def run(capsys, *arguments):
-    return ended(capsys, cli.main, "disorder", "--chains", "4", "--sites", "60", *arguments)
+    return ended(capsys, disorder.main, "--chains", "4", "--sites", "60", *arguments)
 
 
 def test_equal_beads_keep_their_pulse():

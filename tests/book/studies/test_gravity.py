@@ -7,12 +7,11 @@ import numpy as np
 import pytest
 import scipy
 
-import validation.studies.gravity as study
+import book.studies.gravity as study
+from book.studies.gravity import FIRST, Upright, front_width, gravity
 from lwa.wave.quadrature import NumericBackground
 from tests.commands import ended
-from validation import cli
 from validation.scenes.chains import numbered
-from validation.studies.gravity import FIRST, Upright, front_width, gravity
 
 
 def test_without_a_top_the_front_is_airys():
@@ -74,7 +73,7 @@ def test_heavier_beads_take_longer_only():
 def test_a_weak_blow_is_weak_enough(monkeypatch):
     """A hundred times harder, the front is as wide."""
     one = Upright(numbered((1,)), 1.5, 1000).fronts()[1]
-    monkeypatch.setattr("validation.studies.gravity.WEAK", 1e-2)
+    monkeypatch.setattr("book.studies.gravity.WEAK", 1e-2)
     assert Upright(numbered((1,)), 1.5, 1000).fronts()[1] == pytest.approx(one, rel=5e-4)
 
 
@@ -121,7 +120,7 @@ def test_a_theory_that_is_off_fails(monkeypatch):
 
 def test_the_command(capsys):
     status, out, err = ended(
-        capsys, cli.main, "gravity", "--masses", "1,1/2", "--beads", "1000", "--format", "json"
+        capsys, gravity.main, "--masses", "1,1/2", "--beads", "1000", "--format", "json"
     )
     assert (status, err) == (0, "")
     found = json.loads(out)

@@ -9,15 +9,14 @@ import numpy as np
 import pytest
 import scipy
 
+from book.studies.precompressed import Wave, precompressed
 from lwa import Cell, Power
 from lwa.linear.loaded import LoadedChain
 from lwa.wave.quadrature import NumericBackground
 from tests.commands import ended
-from validation import cli
 from validation.lattice.simulate import simulate
 from validation.scenes.chains import numbered
 from validation.scenes.checks import SceneError
-from validation.studies.precompressed import Wave, precompressed
 
 
 def rows(**options):
@@ -124,19 +123,19 @@ def test_another_exponent():
 
 
 def test_the_command(capsys):
-    options = ("precompressed", "--masses", "1,1/2", "--ratios", "1", "--format")
-    status, out, err = ended(capsys, cli.main, *options, "json")
+    options = ("--masses", "1,1/2", "--ratios", "1", "--format")
+    status, out, err = ended(capsys, precompressed.main, *options, "json")
     assert (status, err) == (0, "")
     found = json.loads(out)
     assert [row["masses"] for row in found["rows"]] == [["1", "1/2"]]
     names = "ratio_value", "speed_value", "theory_value", "error_value", "fwhm_value", "decay_value"
     assert all(isinstance(row[name], float) for row in found["rows"] for name in names)
-    status, out, _ = ended(capsys, cli.main, *options, "csv")
+    status, out, _ = ended(capsys, precompressed.main, *options, "csv")
     written = list(csv.DictReader(io.StringIO(out)))
     assert [float(row["speed_value"]) for row in written] == [
         row["speed_value"] for row in found["rows"]
     ]
-    status, out, _ = ended(capsys, cli.main, *options, "text")
+    status, out, _ = ended(capsys, precompressed.main, *options, "text")
     assert out.splitlines()[0].startswith("Waves on a static force F0 = 1")
 
 

@@ -283,3 +283,7 @@ def _findings(
         if off:
             yield Finding(f"equal beads: |{name}/width - 1| where it is less than half as wide as "
                           f"the {other}, at most", max(off), high=0.12)  # fmt: skip
+
+
+if __name__ == "__main__":
+    gravity.main()

@@ -115,3 +115,7 @@ def _mean(values: Array) -> Measured:
     """The mean over chains; its standard error is the error."""
     mean = float(values.mean())
     return Measured(mean, mean + float(values.std(ddof=1)) / math.sqrt(len(values)))
+
+
+if __name__ == "__main__":
+    disorder.main()

@@ -268,3 +268,7 @@ def _panels(found: Sequence[tuple[Wave, dict[str, Any]]]) -> Iterator[Panel]:
             x, y, error = zip(*points, strict=True)
             curves.append(Curve.of(", ".join(map(str, cell.masses)), x, y, mark, error))
         yield Panel("F/F0", label, tuple(curves), scale)
+
+
+if __name__ == "__main__":
+    precompressed.main()

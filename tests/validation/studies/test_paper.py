@@ -12,7 +12,7 @@ from validation.cli import main
 from validation.lattice.simulate import simulate
 from validation.scenes.chains import chain_scene
 from validation.scenes.materials import DIAMETER, PTFE_BEAD, STEEL_BEAD
-from validation.studies.porter2008.experiment import QUANTITIES, SOURCES, chain_cell, paper
+from validation.studies.paper import QUANTITIES, SOURCES, chain_cell, paper
 
 
 @pytest.fixture(scope="module")
