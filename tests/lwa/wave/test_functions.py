@@ -4,7 +4,7 @@ import keyword
 import re
 import subprocess
 import sys
-from functools import cache
+from functools import cache, partial
 from itertools import product
 from pathlib import Path
 
@@ -20,7 +20,7 @@ from lwa.code.languages import LANGUAGES
 from lwa.code.writer import Function, wrapped
 from lwa.command.cli import main
 from lwa.wave.functions import in_order, wave_functions
-from tests.lwa.code.compilers import compiled
+from tests.lwa.code.compilers import compiled, in_node
 
 EXPONENTS = (
     1.01,
@@ -119,18 +119,24 @@ def sp_or_mp(value):
 @pytest.fixture(scope="module")
 def functions_of(tmp_path_factory):
     """(wave, language) → name → the function, called by the names of its arguments."""
+    processes = []
 
     @cache
     def load(name, language):
         functions, source = functions_in(name), code_of(name, language)
         if language in ("c", "fortran"):
             found = compiled(source, language, functions, tmp_path_factory.mktemp("code"))
+        elif language == "javascript":
+            node, found = in_node(source, functions)
+            processes.append(node)
         else:
             found = {}
             exec(as_python(source) if language == "julia" else source, found)  # our own output
         return {f.name: by_name(found[f.name], f) for f in functions}
 
-    return load
+    yield load
+    for node in processes:
+        node.communicate(timeout=30)
 
 
 def by_name(call, function):
@@ -313,7 +319,7 @@ NAMES = [
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
-def test_any_name_at_once(language, tmp_path):
+def test_any_name_at_once(language, tmp_path, request):
     """One function of all of them: Σ n s_n tells each from every other."""
     symbols = [sp.Symbol(name) for name in dict.fromkeys(NAMES)]
     n = len(symbols)
@@ -325,6 +331,9 @@ def test_any_name_at_once(language, tmp_path):
     source = LANGUAGES[language](functions).module(["names"])
     if language in ("c", "fortran"):
         found = compiled(source, language, functions, tmp_path)
+    elif language == "javascript":
+        node, found = in_node(source, functions)
+        request.addfinalizer(partial(node.communicate, timeout=30))
     else:
         found = {}
         exec(as_python(source) if language == "julia" else source, found)
