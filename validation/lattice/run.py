@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from lwa.compact.numeric import Array
+from lwa.base.arrays import Array
 from validation.lattice.equations import Motion
 from validation.scenes.checks import Failure, SceneError
 from validation.scenes.scene import Scene
@@ -63,7 +63,7 @@ class Run:
 
         Returns the axes. Raises `SceneError` for a scene without sensors.
         """
-        from lwa.compact.picture import axes  # optional, start-up
+        from lwa.wave.plots import axes  # optional, start-up
 
         contacts, beads = self.scene.contact_sensors, self.scene.bead_sensors
         names = [*(f"contact {i + 1}" for i in contacts), *(f"bead {i + 1}" for i in beads)]
@@ -81,9 +81,16 @@ class Run:
 
 
 def finished(
-    motion: Motion, end: Array, records: dict[str, Array], energy: float,
-    steps: int, evaluations: int, bead_evaluations: int, window: int | None = None, rear: int = 0,
-) -> Run:  # fmt: skip
+    motion: Motion,
+    end: Array,
+    records: dict[str, Array],
+    energy: float,
+    steps: int,
+    evaluations: int,
+    bead_evaluations: int,
+    window: int | None = None,
+    rear: int = 0,
+) -> Run:
     """The run that came to this state and energy; the first ``rear`` beads were left behind."""
     n, before = motion.size, motion.scales.energy
     arrays = records | {"displacements": end[:n].copy(), "velocities": end[n:].copy()}
