@@ -17,15 +17,15 @@ or of one with a kink; what p_+^k brings about is no part of it.
 
 Window. Ahead of the front nothing has moved yet: these beads are left out, always. A window of N
 beads leaves out those more than N behind the front as well; their energy stays on the books, their
-motion is not known. What that does to the leading pulse is known by a second run, with twice the
-window, which is the one that is returned.
+motion is not known. What that does to the leading pulse is told by a second run, with twice the
+window: this is the one that is returned, as far as both follow it.
 """
 
 from __future__ import annotations
 
 import math
 import sys
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -73,11 +73,11 @@ def follow(
     shorter = step is None or (natural < longest and isinstance(SCHEMES[method], Pair))
     given = Given(method, rtol, natural if shorter else longest, longest)
     if beads is None:
-        return _integrated(motion, given, None, progress)
-    short = _integrated(motion, given, beads, progress)
-    run = _integrated(motion, given, 2 * beads, progress)
-    _compare(motion, rtol, short, run)
-    return run
+        return _integrated(motion, given, None, progress)[0]
+    short, left = _integrated(motion, given, beads, progress)
+    long, _ = _integrated(motion, given, 2 * beads, progress, left)
+    _compare(motion, rtol, short, long)
+    return replace(long, window=beads)
 
 
 def _window(motion: Motion, window: Any) -> int | None:
@@ -100,7 +100,7 @@ def _window(motion: Motion, window: Any) -> int | None:
 def _compare(motion: Motion, rtol: float, short: Run, long: Run) -> None:
     """Raise `IntegrationError` where the longer window changes the leading pulse.
 
-    Compared are velocities at the end, from the fastest bead that both runs follow on.
+    Compared are velocities at the end, from the fastest bead on.
     """
     followed = np.isfinite(short.velocities)
     one, other = short.velocities[followed], long.velocities[followed]
@@ -124,8 +124,19 @@ def _say_if_compiled() -> None:
         print("the engine is compiled for this machine, once", file=sys.stderr, flush=True)
 
 
-def _integrated(motion: Motion, given: Given, window: int | None, progress: RunProgress) -> Run:
-    """The run, of the whole chain or of a window."""
+def _integrated(
+    motion: Motion,
+    given: Given,
+    window: int | None,
+    progress: RunProgress,
+    followed: Array | None = None,
+) -> tuple[Run, Array]:
+    """Integrate the whole chain, or the beads of a window.
+
+    followed : times up to which each bead's motion is told; by default as long as it is computed.
+
+    Returns the run, and the times up to which each bead is followed.
+    """
     n, end = motion.size, motion.scene.duration
     window = None if window is None or window >= n else window
     taken = effort.compiled(motion.scene, given.method, end / given.step, window or n)
@@ -148,12 +159,17 @@ def _integrated(motion: Motion, given: Given, window: int | None, progress: RunP
     if not np.isfinite(state).all():
         raise IntegrationError(f"the motion overflows: a step of {plan.h:g} is too long")
     energy = motion.energy(state, rear) + float(at["lost"])
+    left = beads.left if followed is None else followed
     for row, j in enumerate(seen.watched):
-        left = seen.time > beads.left[j]
-        seen.y[row, left] = seen.v[row, left] = np.nan
+        late = seen.time > left[j]
+        seen.y[row, late] = seen.v[row, late] = np.nan
+    momentum = motion.momentum_drift(state)
     records = _recorded(motion.scene, chain, beads, seen)
     evaluations = tries * SCHEMES[given.method].stages
-    return finished(motion, state, records, energy, steps, evaluations, moves, window, rear)
+    state.reshape(2, n)[:, np.isfinite(left[:n])] = np.nan
+    return finished(
+        motion, state, records, energy, momentum, steps, evaluations, moves, window
+    ), left
 
 
 @lru_cache

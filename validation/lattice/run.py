@@ -5,8 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-
 from lwa.base.arrays import Array
 from validation.lattice.equations import Motion
 from validation.scenes.checks import Failure, SceneError
@@ -85,22 +83,21 @@ def finished(
     end: Array,
     records: dict[str, Array],
     energy: float,
+    momentum: float | None,
     steps: int,
     evaluations: int,
     bead_evaluations: int,
     window: int | None = None,
-    rear: int = 0,
 ) -> Run:
-    """The run that came to this state and energy; the first ``rear`` beads were left behind."""
+    """The run that came to this state, energy and change of momentum."""
     n, before = motion.size, motion.scales.energy
     arrays = records | {"displacements": end[:n].copy(), "velocities": end[n:].copy()}
-    arrays["displacements"][:rear] = arrays["velocities"][:rear] = np.nan
     for array in arrays.values():
         array.setflags(write=False)
     return Run(
         scene=motion.scene,
         energy_drift=(energy - before) / before if before else 0.0,
-        momentum_drift=motion.momentum_drift(end),
+        momentum_drift=momentum,
         evaluations=evaluations,
         bead_evaluations=bead_evaluations,
         step=motion.scene.duration / steps,

@@ -65,8 +65,8 @@ def simulate(
     step : of a compiled method, the largest, in place of that which ``rtol`` gives.
     window : of a compiled method, the number of beads to follow behind the front of a leading
         pulse, or True for eight widths of the long-wave pulse; the chain must end freely and
-        k exceed 1. The run is made with this window and with twice as many beads; the second is
-        returned. In its arrays, what is no longer followed is NaN. By default the whole chain.
+        k exceed 1. The run is made with this window and with one twice as long, whose numbers are
+        returned; beads further behind are NaN in all arrays. By default the whole chain.
     progress : is shown what a run takes before it starts, and then how far it is.
 
     Raises `SceneError` for a tolerance or method that cannot be meant, and for a run that takes
@@ -186,7 +186,8 @@ def _adaptive(motion: Motion, method: str, rtol: float, atol: float, progress: R
             tell(stepper.t / end)
     energy, evaluations = motion.energy(stepper.y), int(stepper.nfev)
     moves = evaluations * motion.size
-    return finished(motion, stepper.y, records, energy, steps, evaluations, moves)
+    momentum = motion.momentum_drift(stepper.y)
+    return finished(motion, stepper.y, records, energy, momentum, steps, evaluations, moves)
 
 
 def _keep(motion: Motion, states: Array, kept: dict[str, Array]) -> None:
