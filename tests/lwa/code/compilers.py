@@ -1,11 +1,7 @@
 """Generated C and Fortran as functions that Python calls: compiled to a shared library."""
 
 import ctypes
-import os
-import shutil
 import subprocess
-
-import pytest
 
 from lwa.code.writer import Function
 
@@ -23,18 +19,13 @@ def compiled(source, language, functions: list[Function], folder):
     A Fortran function is called by a procedure that binds it to C.
     """
     command = COMMANDS[language]
-    if shutil.which(command[0]) is None:
-        text = f"no {command[0]} here: generated {language} is not compiled"
-        if os.environ.get("CI"):
-            raise RuntimeError(text)
-        pytest.skip(text)
     if language == "fortran":
         uses = ("use iso_c_binding", "use lwa_wave", "implicit none", "contains")
         bound = map(_bound, functions)
         source = "\n".join([source, "module called", *uses, *bound, "end module"])
     file, library = folder / f"lwa_wave.{SUFFIX[language]}", folder / f"lwa_wave_{language}.so"
     file.write_text(source + "\n", encoding="utf-8")
-    subprocess.run([*command, "-o", library, file, "-lm"], check=True, cwd=folder)
+    subprocess.run([*command, "-o", library, file, "-lm"], check=True, cwd=folder, timeout=120)
     loaded = ctypes.CDLL(str(library))
     found = {}
     for function in functions:
