@@ -11,7 +11,7 @@ from collections.abc import Iterable
 
 import sympy as sp
 
-from lwa.exact import InputError
+from lwa.base.exact import InputError
 
 EQUATION = "u w x t tau τ λ δ F G H"
 LETTERS = {
@@ -27,9 +27,9 @@ _NUMBERED = {"derive": "b"}
 def demand_own(command: str, values: Iterable[sp.Expr]) -> None:
     """Refuse symbols called like a letter of the command's output.
 
-    >>> demand_own("wave", [sp.Symbol("m1") + sp.Symbol("p")])
+    >>> demand_own("wave", [sp.Symbol("m1") + sp.Symbol("p")])  # doctest: +ELLIPSIS
     Traceback (most recent call last):
-    lwa.exact.InputError: 'p' has a meaning of its own in what `lwa wave` prints: use another name
+    lwa.base.exact.InputError: 'p' has a meaning of its own in what `lwa wave` prints: ...
     """
     letters = LETTERS[command].split()
     numbered = re.compile(rf"{_NUMBERED[command]}[0-9]+") if command in _NUMBERED else None

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from lwa import Cell, Dimer, Dispersion, InputError, canonical_wave, homogenize
 from lwa.cell import RESERVED
-from lwa.compact.numeric import NumericWave
+from lwa.wave.numeric import NumericWave
 
 OURS = """
 mu0 mu1 c0 c1 a0 a1 k D B V_s tau lambda p a mu eta sigma s m z v G H I X x u w omega kappa r1 s1

@@ -1,7 +1,9 @@
-"""Generated C and Fortran as functions that Python calls: compiled to a shared library."""
+"""Generated code as functions that Python calls: C and Fortran compiled, JavaScript in Node.js."""
 
 import ctypes
+import json
 import subprocess
+from functools import partial
 
 from lwa.code.writer import Function
 
@@ -10,6 +12,9 @@ COMMANDS = {
     "c": ("cc", "-std=c99", *STRICT),
     "fortran": ("gfortran", "-std=f2008", *STRICT),
 }
+PROGRAMS = {language: command[0] for language, command in COMMANDS.items()} | {"javascript": "node"}
+"""What runs or compiles a generated language."""
+
 SUFFIX = {"c": "c", "fortran": "f90"}
 
 
@@ -35,6 +40,29 @@ def compiled(source, language, functions: list[Function], folder):
         call.argtypes = [ctypes.c_double] * len(function.arguments)
         found[function.name] = call
     return found
+
+
+ANSWER = """
+for await (const line of require("readline").createInterface({input: process.stdin})) {
+  const [name, ...values] = JSON.parse(line);
+  console.log(JSON.stringify(eval(name)(...values)));
+}
+"""
+
+
+def in_node(source, functions: list[Function]):
+    """Name → the function of numbers, called in a process of Node.js that ends with this one."""
+    program = f"{source}\n(async () => {{{ANSWER}}})();"
+    node = subprocess.Popen(
+        ["node", "--eval", program], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+    )
+
+    def call(name, *values):
+        node.stdin.write(json.dumps([name, *map(float, values)]) + "\n")
+        node.stdin.flush()
+        return json.loads(node.stdout.readline())
+
+    return node, {f.name: partial(call, f.name) for f in functions}
 
 
 def _bound(function: Function) -> str:
