@@ -19,10 +19,10 @@ import mpmath
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
+from lwa.base.exact import InputError, exact, positive, real, shorten
+from lwa.base.frozen import Value
 from lwa.cell import RESERVED, Cell, exponent, meant, unmistakable
 from lwa.cell import k as symbol_k
-from lwa.exact import InputError, exact, positive, real, shorten
-from lwa.value import Value
 
 DELTA = sp.Symbol("delta", positive=True)
 """δ, the compression of a contact, where the caller names no other symbol."""

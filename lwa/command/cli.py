@@ -9,8 +9,8 @@ from typing import Any
 import click
 import sympy as sp
 
-from lwa.background.compressed import BackgroundWave
-from lwa.background.precompressed import PrecompressedWave
+from lwa.base.exact import InputError, exact
+from lwa.base.progress import announce
 from lwa.cell import Cell, D, k
 from lwa.code.languages import LANGUAGES
 from lwa.command.document import (
@@ -48,8 +48,6 @@ from lwa.command.terminal import (
     version,
 )
 from lwa.command.text import dispersion_text, expansion_text, force_text, theory_text, wave_text
-from lwa.duration import announce
-from lwa.exact import InputError, exact
 from lwa.expansion.expand import expand
 from lwa.expansion.physical import ExpandedWave
 from lwa.law import Law, Power
@@ -57,6 +55,8 @@ from lwa.linear.dispersion import Dispersion
 from lwa.linear.loaded import LoadedChain
 from lwa.spheres.hertz import EXPONENT
 from lwa.theory import Theory, homogenize
+from lwa.wave.background import BackgroundWave
+from lwa.wave.precompressed import PrecompressedWave
 
 THEORY = {
     "text": theory_text,

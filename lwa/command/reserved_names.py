@@ -11,7 +11,7 @@ from collections.abc import Iterable
 
 import sympy as sp
 
-from lwa.exact import InputError
+from lwa.base.exact import InputError
 
 EQUATION = "u w x t tau τ λ delta δ A F G H"
 NAMES = {
@@ -30,9 +30,9 @@ def demand_free(output: str, values: Iterable[sp.Expr], own: str = "") -> None:
 
     own: the name that the command prints for these values, such as A for stiffnesses.
 
-    >>> demand_free("wave", [sp.Symbol("m1") + sp.Symbol("p")])
+    >>> demand_free("wave", [sp.Symbol("m1") + sp.Symbol("p")])  # doctest: +ELLIPSIS
     Traceback (most recent call last):
-    lwa.exact.InputError: 'p' has a meaning of its own in what `lwa wave` prints: use another name
+    lwa.base.exact.InputError: 'p' has a meaning of its own in what `lwa wave` prints: ...
     """
     names = NAMES[output].split()
     numbered = re.compile(rf"{_NUMBERED[output]}[0-9]+") if output in _NUMBERED else None

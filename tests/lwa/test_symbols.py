@@ -17,8 +17,8 @@ from lwa import (
     homogenize,
 )
 from lwa.cell import RESERVED
-from lwa.compact.numeric import NumericWave
 from lwa.law import DELTA, named
+from lwa.wave.numeric import NumericWave
 
 OURS = """
 mu0 mu1 c0 c1 a0 a1 k D B V_s tau lambda p a mu eta sigma s m z v G H I X x u w omega kappa r1 s1
