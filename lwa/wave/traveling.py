@@ -319,8 +319,8 @@ class TravelingWave(Value):
     def code(self, language: str) -> str:
         """β, widths, speed, amplitude and profile as functions in a program's source text.
 
-        ``language`` is "python" (plain `math`), "numpy", "c", "fortran" or "julia"; arguments and
-        accuracy are told in `lwa.wave.functions`.
+        ``language`` is "python" (plain `math`), "numpy", "c", "fortran", "julia" or "javascript";
+        arguments and accuracy are told in `lwa.wave.functions`.
 
         Raises `lwa.InputError` for another language, and for numbers beyond a double.
         """

@@ -79,9 +79,15 @@ class Run:
 
 
 def finished(
-    motion: Motion, end: Array, records: dict[str, Array], energy: float,
-    steps: int, evaluations: int, bead_evaluations: int, window: int | None = None,
-) -> Run:  # fmt: skip
+    motion: Motion,
+    end: Array,
+    records: dict[str, Array],
+    energy: float,
+    steps: int,
+    evaluations: int,
+    bead_evaluations: int,
+    window: int | None = None,
+) -> Run:
     """The run that came to this state and energy, with what its sensors recorded."""
     n, before = motion.size, motion.scales.energy
     arrays = records | {"displacements": end[:n].copy(), "velocities": end[n:].copy()}

@@ -72,15 +72,26 @@ MOST_BEADS = 1_000_000
 MOST_SAMPLES = 10_000_000  # of all sensors together
 KEYS = {
     "file": (
-        "duration", "samples", "units", "gravity", "precompression", "materials", "beads", "chain",
-        "defects", "wall", "striker", "start", "sensors",
+        "duration",
+        "samples",
+        "units",
+        "gravity",
+        "precompression",
+        "materials",
+        "beads",
+        "chain",
+        "defects",
+        "wall",
+        "striker",
+        "start",
+        "sensors",
     ),
     "chain": ("cell", "k", "stiffnesses", "spacings", "repeat"),
     "wall": ("material", "stiffness"),
     "striker": ("velocity",),
     "start": ("velocities", "displacements", "overlap"),
     "sensors": ("beads", "contacts"),
-}  # fmt: skip
+}
 
 
 def read(path: str | Path) -> Scene:
@@ -258,6 +269,7 @@ def _period(what: Scene) -> int:
     """The size of the smallest cell that, repeated, is the chain."""
     n, rows = what.size, (what.masses, what.stiffnesses, what.spacings)
     return next(
-        p for p in range(1, n + 1)
+        p
+        for p in range(1, n + 1)
         if n % p == 0 and all(row[p:] == row[: max(len(row) - p, 0)] for row in rows)
-    )  # fmt: skip
+    )
