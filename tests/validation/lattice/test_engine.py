@@ -415,7 +415,7 @@ def test_a_wall_needs_the_whole_chain():
 
 def test_numba_is_imported_for_compiled_methods_only():
     code = "import sys, validation.cli; assert 'numba' not in sys.modules"
-    subprocess.run([sys.executable, "-c", code], check=True)
+    subprocess.run([sys.executable, "-c", code], check=True, timeout=120)
 
 
 def test_rounding_noise_in_a_start_is_no_front():
