@@ -44,7 +44,7 @@ class Records(ArrayValue, Pictured):
     contact_force, compression : (contacts, S), at the scene's contact sensors; a gap is a negative
         compression.
     bead_force, bead_displacement, bead_velocity : (beads, S), at the bead sensors; the force is the
-        mean of the bead's two contacts, the displacement counts from the equilibrium.
+    """The run that ended in the state ``end`` with this energy and change of momentum."""
     """
 
     scene: Scene
@@ -128,12 +128,13 @@ class Run(Records):
 
     displacements, velocities : (n,), at the end.
     energy_drift : change of the energy above equilibrium over its initial value (0 if that is 0);
-        beads left behind by a window keep what they had.
+        beads that a window has left behind keep their energy.
     momentum_drift : change of the momentum over Σ m|v| at the end; None with a wall.
     evaluations : number of evaluations of the equations of motion.
     bead_evaluations : sum over these evaluations of the number of beads that moved.
     step : mean step.
-    window : number of beads followed behind the front; None for the whole chain.
+    window : number of beads followed behind the front; what lies further behind is NaN in all
+        arrays. None for the whole chain.
     """
 
     displacements: Array
@@ -151,12 +152,13 @@ def finished(
     end: Array,
     records: dict[str, Array],
     energy: float,
+    momentum: float | None,
     steps: int,
     evaluations: int,
     bead_evaluations: int,
     window: int | None = None,
 ) -> Run:
-    """The run that ended in the state ``end`` with this energy."""
+    """The run that ended in the state ``end`` with this energy and change of momentum."""
     n, before = motion.size, motion.scales.energy
     arrays = records | {"displacements": end[:n].copy(), "velocities": end[n:].copy()}
     for array in arrays.values():
@@ -164,7 +166,7 @@ def finished(
     return Run(
         scene=motion.scene,
         energy_drift=(energy - before) / before if before else 0.0,
-        momentum_drift=motion.momentum_drift(end),
+        momentum_drift=momentum,
         evaluations=evaluations,
         bead_evaluations=bead_evaluations,
         step=motion.scene.duration / steps,
