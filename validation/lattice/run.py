@@ -44,7 +44,7 @@ class Records(ArrayValue, Pictured):
     contact_force, compression : (contacts, S), at the scene's contact sensors; a gap is a negative
         compression.
     bead_force, bead_displacement, bead_velocity : (beads, S), at the bead sensors; the force is the
-    """The run that ended in the state ``end`` with this energy and change of momentum."""
+        mean of the bead's two contacts, the displacement counts from the equilibrium.
     """
 
     scene: Scene
