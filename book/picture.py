@@ -24,7 +24,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
 from lwa import Cell, Material, Sphere, homogenize
-from lwa.compact.numeric import Array
+from lwa.base.arrays import Array
 from validation import Scene, measure, simulate
 from validation.waves.theory import Compacton
 

@@ -15,18 +15,14 @@ if TYPE_CHECKING:
     from lwa.algebra.coefficients import Coefficients
     from lwa.algebra.jets import JetAlgebra, Ladder, Monomial, Term
     from lwa.algebra.partition import Partition
-    from lwa.background.compressed import BackgroundWave, background_wave
-    from lwa.background.kdv import KdV
-    from lwa.background.precompressed import PrecompressedWave
-    from lwa.background.quadrature import NumericBackground
+    from lwa.base.arrays import Array
+    from lwa.base.exact import InputError, Quantity
+    from lwa.base.quantities import NoSolitaryWave
     from lwa.cell import Cell, D, Dimer, k
     from lwa.closure.consistency import Closure
     from lwa.closure.motion import Solution
-    from lwa.compact.curves import PhysicalWaves
-    from lwa.compact.numeric import Array, NumericWave
-    from lwa.compact.physical import PhysicalWave
-    from lwa.compact.wave import CompactWave, LoadedWave
-    from lwa.exact import InputError, Quantity
+    from lwa.equation.pde import PDE
+    from lwa.equation.terms import Jet, Powers, Terms
     from lwa.expansion.approximants import Resummed
     from lwa.expansion.expand import Expansion, expand
     from lwa.expansion.physical import ExpandedWave
@@ -35,14 +31,19 @@ if TYPE_CHECKING:
     from lwa.law import Law, Power, general
     from lwa.linear.dispersion import Dispersion
     from lwa.linear.loaded import LoadedChain
-    from lwa.pde import PDE
-    from lwa.quantities import NoSolitaryWave
-    from lwa.reduction import Reduction
     from lwa.spheres import hertz
     from lwa.spheres.hertz import Material, Sphere
-    from lwa.terms import Jet, Powers, Terms
     from lwa.theory import Theory, homogenize
-    from lwa.wave import TravelingWave, canonical_wave
+    from lwa.wave.background import BackgroundWave, background_wave
+    from lwa.wave.closed import CompactWave, LoadedWave
+    from lwa.wave.curves import PhysicalWaves
+    from lwa.wave.kdv import KdV
+    from lwa.wave.numeric import NumericWave
+    from lwa.wave.physical import PhysicalWave
+    from lwa.wave.precompressed import PrecompressedWave
+    from lwa.wave.quadrature import NumericBackground
+    from lwa.wave.reduction import Reduction
+    from lwa.wave.traveling import TravelingWave, canonical_wave
 
     __version__: str
 
@@ -103,18 +104,19 @@ _MODULES = {
     "algebra.coefficients": "Coefficients",
     "algebra.jets": "JetAlgebra Ladder Monomial Term",
     "algebra.partition": "Partition",
-    "background.compressed": "BackgroundWave background_wave",
-    "background.kdv": "KdV",
-    "background.precompressed": "PrecompressedWave",
-    "background.quadrature": "NumericBackground",
+    "wave.background": "BackgroundWave background_wave",
+    "wave.kdv": "KdV",
+    "wave.precompressed": "PrecompressedWave",
+    "wave.quadrature": "NumericBackground",
     "cell": "Cell D Dimer k",
     "closure.consistency": "Closure",
     "closure.motion": "Solution",
-    "compact.curves": "PhysicalWaves",
-    "compact.numeric": "Array NumericWave",
-    "compact.physical": "PhysicalWave",
-    "compact.wave": "CompactWave LoadedWave",
-    "exact": "InputError Quantity",
+    "wave.curves": "PhysicalWaves",
+    "base.arrays": "Array",
+    "wave.numeric": "NumericWave",
+    "wave.physical": "PhysicalWave",
+    "wave.closed": "CompactWave LoadedWave",
+    "base.exact": "InputError Quantity",
     "expansion.approximants": "Resummed",
     "expansion.expand": "Expansion expand",
     "expansion.physical": "ExpandedWave",
@@ -123,13 +125,13 @@ _MODULES = {
     "law": "Law Power general",
     "linear.dispersion": "Dispersion",
     "linear.loaded": "LoadedChain",
-    "pde": "PDE",
-    "quantities": "NoSolitaryWave",
-    "reduction": "Reduction",
+    "equation.pde": "PDE",
+    "base.quantities": "NoSolitaryWave",
+    "wave.reduction": "Reduction",
     "spheres.hertz": "Material Sphere",
-    "terms": "Jet Powers Terms",
+    "equation.terms": "Jet Powers Terms",
     "theory": "Theory homogenize",
-    "wave": "TravelingWave canonical_wave",
+    "wave.traveling": "TravelingWave canonical_wave",
 }
 _HOMES = {name: module for module, names in _MODULES.items() for name in names.split()}
 

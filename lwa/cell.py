@@ -19,9 +19,9 @@ from typing import Any
 
 import sympy as sp
 
-from lwa.exact import InputError, exact, integer, positive, power, shorten
+from lwa.base.exact import InputError, exact, integer, positive, power, shorten
+from lwa.base.frozen import Value
 from lwa.spheres.hertz import Sphere, stiffness
-from lwa.value import Value
 
 D = sp.Symbol("D", positive=True)
 """The spacing of neighbouring particles, unless the caller names another."""

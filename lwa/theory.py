@@ -8,18 +8,18 @@ from typing import Any
 
 import sympy as sp
 
-from lwa import latex
 from lwa.algebra.coefficients import Coefficients
 from lwa.algebra.smooth import smooth
+from lwa.base import latex
+from lwa.base.exact import InputError, integer, shorten
+from lwa.base.frozen import Value
+from lwa.base.progress import shown
 from lwa.cell import Cell, exponent
 from lwa.cell import k as symbol_k
 from lwa.closure.consistency import BRANCHES, CLOSURES, FIELDS, Closure, solve
-from lwa.duration import shown
-from lwa.exact import InputError, integer, shorten
+from lwa.equation.pde import PDE
+from lwa.equation.terms import STRAIN, Terms, terms
 from lwa.law import Law, Power, demand_one, for_cell
-from lwa.pde import PDE
-from lwa.terms import STRAIN, Terms, terms
-from lwa.value import Value
 
 SLOW_ORDER = 12
 """The order from which a derivation shows its progress."""

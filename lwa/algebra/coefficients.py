@@ -20,10 +20,10 @@ from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
 from lwa.algebra.jets import JetAlgebra
 from lwa.algebra.partition import Partition, number, rational
+from lwa.base.exact import InputError
+from lwa.base.frozen import Value
 from lwa.cell import Cell, exponent, substitution
-from lwa.exact import InputError
 from lwa.law import Law, Power
-from lwa.value import Value
 
 MOST_DIGITS = 4000
 """Of a coefficient; Python prints no integers of more than 4,300."""

@@ -12,7 +12,7 @@ from functools import cached_property
 import sympy as sp
 from flint import fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
-from lwa.value import Value
+from lwa.base.frozen import Value
 
 
 def rational(value: sp.Expr) -> fmpq:

@@ -15,9 +15,9 @@ from flint import fmpq, fmpq_mpoly
 from lwa.algebra.coefficients import Coefficients
 from lwa.algebra.contact import contact
 from lwa.algebra.jets import JetAlgebra, Ladder, exact_quotient
+from lwa.base.exact import InputError
+from lwa.base.progress import Progress
 from lwa.closure.motion import Solution
-from lwa.duration import Progress
-from lwa.exact import InputError
 
 
 def linear(ring: Coefficients, order: int, progress: Progress[int] = iter) -> Solution:

@@ -15,15 +15,15 @@ from typing import Any
 import sympy as sp
 from flint import fmpq_mpoly
 
-from lwa import latex
 from lwa.algebra.coefficients import Coefficients
 from lwa.algebra.jets import JetAlgebra, Monomial
+from lwa.base import latex
+from lwa.base.exact import InputError
+from lwa.base.progress import Progress
 from lwa.cell import Cell
 from lwa.closure.ansatz import linear
 from lwa.closure.motion import Solution
 from lwa.closure.slaving import full
-from lwa.duration import Progress
-from lwa.exact import InputError
 
 BRANCHES = ("acoustic", "optical")
 CLOSURES = ("linear", "full")

@@ -15,8 +15,8 @@ from flint import fmpq, fmpq_mpoly
 from lwa.algebra.coefficients import Coefficients
 from lwa.algebra.contact import contact
 from lwa.algebra.jets import JetAlgebra, Ladder
+from lwa.base.progress import Progress
 from lwa.closure.motion import Solution
-from lwa.duration import Progress
 
 
 def full(

@@ -1,4 +1,4 @@
-"""Python, NumPy, C, Fortran and Julia: each a printer of SymPy with the frame of a function."""
+"""Python, NumPy, C, Fortran, Julia and JavaScript: SymPy's printers with frames of functions."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ import sympy as sp
 from sympy.printing.c import C99CodePrinter, reserved_words, reserved_words_c99
 from sympy.printing.codeprinter import CodePrinter
 from sympy.printing.fortran import FCodePrinter
+from sympy.printing.jscode import JavascriptCodePrinter
 from sympy.printing.julia import JuliaCodePrinter
 from sympy.printing.numpy import NumPyPrinter
 from sympy.printing.precedence import PRECEDENCE
@@ -29,6 +30,14 @@ _JULIA = re.findall(
     "baremodule begin break catch const continue do else elseif end export false finally for "
     "function global if import in isa let local macro module outer pi quote return struct true "
     "try using where while",
+)
+
+_JAVASCRIPT = re.findall(
+    r"\w+",
+    "Math arguments async await break case catch class const continue debugger default delete do "
+    "else enum eval export extends false finally for function if implements import in instanceof "
+    "interface let new null of package private protected public return static super switch this "
+    "throw true try typeof undefined var void while with yield",
 )
 
 
@@ -173,11 +182,35 @@ class Julia(Writer, JuliaCodePrinter):  # type: ignore[misc]  # untyped in SymPy
         return text
 
 
+class JavaScript(Writer, JavascriptCodePrinter):  # type: ignore[misc]  # untyped in SymPy
+    """JavaScript and its `Math`, for numbers: plain functions, in a page as in a module."""
+
+    comment = "//"
+    reserved = frozenset(_JAVASCRIPT)
+    end = ";"
+
+    def function(self, function: Function) -> list[str]:
+        """The lines of one function."""
+        return [
+            f"// {function.doc}",
+            *wrapped(f"function {function.name}({self.arguments(function)}) {{"),
+            *self.statements(function, "const ", "return "),
+            "}",
+        ]
+
+    def _print_asinh(self, call: sp.Expr) -> str:
+        return f"Math.asinh({self._print(call.args[0])})"
+
+    def _print_sinh(self, call: sp.Expr) -> str:
+        return f"Math.sinh({self._print(call.args[0])})"
+
+
 LANGUAGES: dict[str, type[Writer]] = {
     "python": Python,
     "numpy": NumPy,
     "c": C,
     "fortran": Fortran,
     "julia": Julia,
+    "javascript": JavaScript,
 }
 """By name, as `lwa.TravelingWave.code` takes it."""

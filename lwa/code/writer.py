@@ -20,7 +20,7 @@ from typing import Any, ClassVar
 
 import sympy as sp
 
-from lwa.exact import InputError, shorten
+from lwa.base.exact import InputError, shorten
 
 WIDTH = 79
 _LONGEST_NAME = 31  # letters that C99 guarantees to tell names apart

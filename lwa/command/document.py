@@ -7,16 +7,16 @@ from typing import Any
 
 import sympy as sp
 
-from lwa.exact import InputError
+from lwa.base.exact import InputError
+from lwa.base.quantities import QUANTITIES
+from lwa.equation.terms import Terms
 from lwa.expansion.expand import Expansion
 from lwa.expansion.physical import ExpandedWave
 from lwa.expansion.series import EpsilonSeries
 from lwa.law import Power
 from lwa.linear.dispersion import Dispersion
-from lwa.quantities import QUANTITIES
-from lwa.terms import Terms
 from lwa.theory import Theory
-from lwa.wave import TravelingWave
+from lwa.wave.traveling import TravelingWave
 
 
 def wave_values(wave: TravelingWave) -> dict[str, sp.Expr]:

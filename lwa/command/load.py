@@ -7,16 +7,16 @@ from typing import Any
 
 import sympy as sp
 
-from lwa.background.compressed import BackgroundWave
-from lwa.background.kdv import KdV
-from lwa.background.precompressed import PrecompressedWave
+from lwa.base.exact import InputError
+from lwa.base.quantities import QUANTITIES, NoSolitaryWave
 from lwa.command.document import answers_json, as_float, chain_json, dispersion_json, each, put
 from lwa.command.text import DIGITS, chain_text, dispersion_text
-from lwa.exact import InputError
 from lwa.linear.dispersion import Dispersion
 from lwa.linear.loaded import LoadedChain
-from lwa.quantities import QUANTITIES, NoSolitaryWave
 from lwa.theory import Theory
+from lwa.wave.background import BackgroundWave
+from lwa.wave.kdv import KdV
+from lwa.wave.precompressed import PrecompressedWave
 
 Values = dict[str, Any]
 

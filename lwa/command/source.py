@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import sympy as sp
 
-from lwa import latex
-from lwa.code.functions import function_of, in_order
+from lwa.base import latex
+from lwa.base.exact import InputError
+from lwa.base.quantities import QUANTITIES
 from lwa.code.languages import LANGUAGES
 from lwa.command.document import wave_values
-from lwa.exact import InputError
 from lwa.law import Law
-from lwa.quantities import QUANTITIES
 from lwa.theory import Theory
-from lwa.wave import TravelingWave
+from lwa.wave.functions import function_of, in_order
+from lwa.wave.traveling import TravelingWave
 
 
 def theory_latex(theory: Theory) -> str:

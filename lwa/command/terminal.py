@@ -18,9 +18,9 @@ from typing import Any
 import click
 import sympy as sp
 
-from lwa.exact import InputError, exact, integer
+from lwa.base.exact import InputError, exact, integer
+from lwa.base.quantities import NoSolitaryWave
 from lwa.law import Law, Power, named
-from lwa.quantities import NoSolitaryWave
 
 
 def quantity(context: click.Context, option: click.Parameter, value: str | None) -> sp.Expr | None:

@@ -9,18 +9,18 @@ from string import ascii_lowercase
 
 import sympy as sp
 
+from lwa.base.exact import InputError
+from lwa.base.quantities import QUANTITIES
 from lwa.command.document import in_units, wave_values
-from lwa.exact import InputError
+from lwa.equation.terms import Jet, Terms
 from lwa.expansion.approximants import Resummed
 from lwa.expansion.expand import Expansion
 from lwa.expansion.physical import ExpandedWave
 from lwa.expansion.series import EpsilonSeries
 from lwa.law import Law, Power
 from lwa.linear.dispersion import Dispersion
-from lwa.quantities import QUANTITIES
-from lwa.terms import Jet, Terms
 from lwa.theory import Theory
-from lwa.wave import TravelingWave
+from lwa.wave.traveling import TravelingWave
 
 DIGITS = 15
 """Significant digits of a printed number; all of them are correct."""

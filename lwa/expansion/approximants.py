@@ -21,8 +21,8 @@ import mpmath
 import sympy as sp
 from flint import acb_poly, arb, arb_mat, ctx
 
-from lwa.exact import InputError
-from lwa.value import Value
+from lwa.base.exact import InputError
+from lwa.base.frozen import Value
 
 WINDOW = 3
 """Orders of ε that a window holds before its last one."""

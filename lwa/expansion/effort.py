@@ -13,8 +13,8 @@ import sympy as sp
 
 from lwa.algebra.coefficients import Coefficients
 from lwa.algebra.partition import Partition
-from lwa.duration import Progress, announce, shown, words
-from lwa.exact import InputError
+from lwa.base.exact import InputError
+from lwa.base.progress import Progress, announce, shown, words
 
 LONGEST = 3600.0
 """Seconds of what is not refused."""

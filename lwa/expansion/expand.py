@@ -15,17 +15,17 @@ from typing import Any
 
 import sympy as sp
 
+from lwa.base.exact import InputError, integer, real, shorten
+from lwa.base.frozen import Value
+from lwa.base.quantities import QUANTITIES as QUANTITIES
+from lwa.base.quantities import known
 from lwa.cell import Cell, exponent, substitution
 from lwa.cell import k as symbol_k
-from lwa.exact import InputError, integer, real, shorten
 from lwa.expansion.core import descent
 from lwa.expansion.effort import affordable, short
 from lwa.expansion.observables import Observables, ring
 from lwa.expansion.series import EpsilonSeries
 from lwa.law import Law, Power, demand_one
-from lwa.quantities import QUANTITIES as QUANTITIES
-from lwa.quantities import known
-from lwa.value import Value
 
 FALLEN, MOVED = 0.01, 0.25
 """Of its peak: to which a profile's force must fall, and by which its last order may move it."""

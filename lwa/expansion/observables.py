@@ -16,8 +16,8 @@ from flint import fmpq, fmpq_mpoly
 
 from lwa.algebra.coefficients import Coefficients
 from lwa.algebra.partition import number, rational
+from lwa.base.progress import Progress
 from lwa.cell import Cell
-from lwa.duration import Progress
 from lwa.expansion.pulse import (
     Series,
     by_degree,

@@ -10,11 +10,11 @@ from dataclasses import dataclass, replace
 
 import sympy as sp
 
-from lwa.exact import InputError, positive, shorten
+from lwa.base.exact import InputError, positive, shorten
+from lwa.base.frozen import Value
+from lwa.base.quantities import known_extent
 from lwa.expansion.approximants import Resummed
 from lwa.expansion.expand import Expansion
-from lwa.quantities import known_extent
-from lwa.value import Value
 
 
 @dataclass(frozen=True)

@@ -29,17 +29,14 @@ import sympy as sp
 from flint import fmpq_mpoly
 
 from lwa.algebra.coefficients import Coefficients
+from lwa.base.frozen import Value
 from lwa.cell import Cell
 from lwa.expansion.pulse import by_degree
 from lwa.expansion.recursion import Recursion
 from lwa.linear.bloch import Bloch
-from lwa.value import Value
 
 if TYPE_CHECKING:
-    import numpy as np  # start-up: `import lwa` does not load it
-    from numpy.typing import NDArray
-
-    FloatArray = NDArray[np.float64]
+    from lwa.base.arrays import Array
 
 POINTS = 8001
 SPAN = 20.0
@@ -94,7 +91,7 @@ class Radiation(Value):
         )
 
 
-def _rattle(K: FloatArray, slope: FloatArray, step: float) -> float:
+def _rattle(K: Array, slope: Array, step: float) -> float:
     """|∫ K^{3/2} F' e^{i∫K} dξ| by trapezia, which are exact for what has ended."""
     import numpy as np  # start-up: `import lwa` does not load it
 

@@ -33,7 +33,7 @@ from sympy import bernoulli
 
 from lwa.algebra.coefficients import Coefficients
 from lwa.algebra.partition import rational
-from lwa.duration import Progress
+from lwa.base.progress import Progress
 from lwa.expansion.pulse import Series, by_degree, exp_term, log_term
 from lwa.linear.bloch import Bloch
 

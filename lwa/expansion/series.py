@@ -7,14 +7,14 @@ from typing import Any, overload
 
 import sympy as sp
 
+from lwa.base.exact import InputError, integer, shorten
+from lwa.base.frozen import Value
 from lwa.cell import Cell, exponent
 from lwa.cell import k as symbol_k
-from lwa.exact import InputError, integer, shorten
 from lwa.expansion.approximants import Resummed, pade, resum
 from lwa.expansion.effort import short
 from lwa.expansion.observables import equal_beads
 from lwa.expansion.radiation import Radiation, radiation
-from lwa.value import Value
 
 SHOWN = 3
 """Terms of a series in LaTeX."""

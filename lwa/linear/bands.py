@@ -10,9 +10,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lwa.exact import InputError, shorten
+from lwa.base.arrays import Array
+from lwa.base.exact import InputError, shorten
 
-Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 

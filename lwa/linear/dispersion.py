@@ -21,18 +21,17 @@ from typing import TYPE_CHECKING, Any
 import sympy as sp
 from flint import fmpq_mpoly
 
-from lwa import latex
 from lwa.algebra.coefficients import Coefficients
+from lwa.base import latex
+from lwa.base.exact import InputError, integer, shorten
+from lwa.base.frozen import Value
 from lwa.cell import Cell, exponent, substitution
-from lwa.exact import InputError, integer, shorten
 from lwa.linear.bloch import BRANCHES, Bloch
-from lwa.value import Value
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
-    Array = NDArray[np.float64]
+    from lwa.base.arrays import Array
 
 MOST_TERMS = 200_000
 """What a series may take, by the estimate of `Dispersion._length`: about half a minute."""

@@ -12,17 +12,16 @@ from typing import TYPE_CHECKING
 
 import sympy as sp
 
+from lwa.base.exact import InputError, positive
+from lwa.base.frozen import Value
 from lwa.cell import Cell
-from lwa.exact import InputError, positive
 from lwa.law import Law, Power, compression, for_cell
 from lwa.linear.dispersion import Dispersion
-from lwa.value import Value
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
-    Array = NDArray[np.float64]
+    from lwa.base.arrays import Array
 
 
 @dataclass(frozen=True)

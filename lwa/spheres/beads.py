@@ -30,11 +30,11 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from lwa.exact import InputError
-from lwa.spheres.files import load
+from lwa.base.exact import InputError
+from lwa.base.files import load
+from lwa.base.tables import Table, among, array, each, named, positive, real, table
 from lwa.spheres.hertz import Material, Sphere
 from lwa.spheres.materials import MATERIALS
-from lwa.spheres.tables import Table, among, array, each, named, positive, real, table
 
 SCENE = (
     "duration", "samples", "units", "gravity", "defects", "wall", "striker", "start", "sensors",

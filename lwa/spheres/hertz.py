@@ -16,9 +16,9 @@ from typing import Any
 
 import sympy as sp
 
-from lwa.exact import InputError, exact, positive, shorten
+from lwa.base.exact import InputError, exact, positive, shorten
+from lwa.base.frozen import Value
 from lwa.spheres.materials import MATERIALS
-from lwa.value import Value
 
 EXPONENT = sp.Rational(3, 2)
 """k of Hertz's contact."""

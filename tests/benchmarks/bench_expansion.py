@@ -16,7 +16,7 @@ from pytest_benchmark.fixture import BenchmarkFixture
 from sympy.core.cache import clear_cache
 
 from lwa import Cell, expand
-from lwa.quantities import QUANTITIES
+from lwa.base.quantities import QUANTITIES
 
 CHAINS = {
     "equal beads to ε^40": (Cell([1]), 40),

@@ -20,7 +20,7 @@ from pytest_benchmark.fixture import BenchmarkFixture
 from sympy.core.cache import clear_cache
 
 from lwa import Cell, canonical_wave
-from lwa.quantities import QUANTITIES
+from lwa.base.quantities import QUANTITIES
 
 CANONICAL = {4: 4.5, 6: 23.7}
 """Particles of the cell, all masses symbols: seconds before, of an idle machine."""

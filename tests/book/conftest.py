@@ -1,14 +1,15 @@
 """The built book's test needs a browser: it runs only where it is asked for by its path.
 
-pytest tests/book
+pytest tests/book/test_pages.py
 """
 
 from pathlib import Path
 
+PAGES = Path(__file__).with_name("test_pages.py")
+
 
 def pytest_ignore_collect(collection_path, config):
-    here = Path(__file__).parent
-    asked = (Path(config.invocation_params.dir, a.split("::")[0]) for a in config.args)
-    if any(path.resolve().is_relative_to(here) for path in asked):
+    if collection_path != PAGES:
         return None
-    return True
+    asked = (Path(config.invocation_params.dir, a.split("::")[0]) for a in config.args)
+    return None if any(path.resolve() in (PAGES, PAGES.parent) for path in asked) else True

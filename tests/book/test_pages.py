@@ -1,7 +1,7 @@
 """The built book in a browser without a network: mathematics, pictures, nothing from outside.
 
-Run by its path, after the book is built: ``python -m pytest tests/book``. Without a browser or
-without the book it fails.
+Run by its path, after the book is built: ``python -m pytest tests/book/test_pages.py``. Without a
+browser or without the book it fails.
 """
 
 import re

@@ -8,7 +8,7 @@ import sympy as sp
 
 from lwa import Cell, Dimer, Dispersion, InputError, Law, Power, general, homogenize
 from lwa.algebra.jets import Ladder
-from lwa.energy import energy
+from lwa.equation.energy import energy
 from lwa.law import NAMES, named
 
 x = sp.Symbol("x")

@@ -312,9 +312,7 @@ def test_an_output_that_cannot_be_is_refused_before_the_work(
     os.mkfifo(f"pipe{suffix}")
     before = sorted(tmp_path.iterdir())
     monkeypatch.setattr(RECORD, None)
-    monkeypatch.setattr(
-        "validation.studies.porter2008.experiment.paper.function", lambda: pytest.fail("computed")
-    )
+    monkeypatch.setattr("validation.studies.paper.paper.function", lambda: pytest.fail("computed"))
     monkeypatch.setattr("validation.studies.sweep.sweep.compute", None)
     status, out, err = run(capsys, *command, option, f"{name}{suffix}")
     assert (status, out, err.count("\n")) == (2, "", 1)
@@ -396,7 +394,6 @@ BAD = [
     ("paper", "--beads", "２０"),
     ("paper", "--beads", "1_0"),
     ("resonances", "--count", "１"),
-    ("disorder", "--seed", "1.5"),
     ("paper", "--sensors", "34,15"),
     ("paper", "--sensors", "a,b"),
     ("paper", "--sensors", "1.5,8"),

@@ -15,7 +15,7 @@ from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, replace
 
-from lwa.duration import words
+from lwa.base.progress import words
 from validation.lattice.schemes import LAWS, SCHEMES
 from validation.lattice.schemes.splitting import SRKN14
 from validation.scenes.checks import SceneError

@@ -39,7 +39,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from lwa.compact.numeric import Array
+from lwa.base.arrays import Array
 from validation.lattice import effort, kernel
 from validation.lattice.effort import EXCESS, RunProgress
 from validation.lattice.equations import Motion, power

@@ -15,8 +15,8 @@ from functools import cached_property
 
 import numpy as np
 
-from lwa.compact.numeric import Array
-from lwa.spheres.tables import LEAST
+from lwa.base.arrays import Array
+from lwa.base.tables import LEAST
 from validation.scenes.checks import SceneError
 from validation.scenes.scene import Scene
 

@@ -14,7 +14,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from lwa.compact.numeric import Array
+from lwa.base.arrays import Array
 
 MARGIN = 4  # still beads that the window holds at its front
 SHORTEST = 32  # beads below which the vector loops take no less time

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from lwa.compact.numeric import Array
+from lwa.base.arrays import Array
 from validation.lattice.equations import Motion
 from validation.scenes.checks import Failure, SceneError
 from validation.scenes.scene import Scene
@@ -61,7 +61,7 @@ class Run:
 
         Returns the axes. Raises `SceneError` for a scene without sensors.
         """
-        from lwa.compact.picture import axes  # optional, start-up
+        from lwa.wave.plots import axes  # optional, start-up
 
         contacts, beads = self.scene.contact_sensors, self.scene.bead_sensors
         names = [*(f"contact {i + 1}" for i in contacts), *(f"bead {i + 1}" for i in beads)]
@@ -79,9 +79,15 @@ class Run:
 
 
 def finished(
-    motion: Motion, end: Array, records: dict[str, Array], energy: float,
-    steps: int, evaluations: int, bead_evaluations: int, window: int | None = None,
-) -> Run:  # fmt: skip
+    motion: Motion,
+    end: Array,
+    records: dict[str, Array],
+    energy: float,
+    steps: int,
+    evaluations: int,
+    bead_evaluations: int,
+    window: int | None = None,
+) -> Run:
     """The run that came to this state and energy, with what its sensors recorded."""
     n, before = motion.size, motion.scales.energy
     arrays = records | {"displacements": end[:n].copy(), "velocities": end[n:].copy()}

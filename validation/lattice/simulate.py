@@ -20,8 +20,8 @@ from typing import Any
 import numpy as np
 import scipy
 
-from lwa.compact.numeric import Array
-from lwa.exact import shorten
+from lwa.base.arrays import Array
+from lwa.base.exact import shorten
 from validation.lattice.effort import EXCESS, RunProgress, adaptive, beyond, silent
 from validation.lattice.equations import Motion
 from validation.lattice.run import IntegrationError, Run, finished

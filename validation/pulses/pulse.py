@@ -15,8 +15,8 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike, NDArray
 
-from lwa.compact.numeric import Array
-from lwa.exact import InputError
+from lwa.base.arrays import Array
+from lwa.base.exact import InputError
 
 Source = TypeVar("Source")
 

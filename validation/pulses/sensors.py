@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from lwa.compact.numeric import Array
+from lwa.base.arrays import Array
 from validation.lattice.effort import RunProgress, silent
 from validation.lattice.equations import Motion
 from validation.lattice.run import Run
@@ -81,9 +81,12 @@ Tracks = tuple[Track, ...]
 
 
 def record(
-    scene: Scene, *, method: str = COMPILED[0], rtol: Any = TOLERANCE,
+    scene: Scene,
+    *,
+    method: str = COMPILED[0],
+    rtol: Any = TOLERANCE,
     progress: RunProgress = silent,
-) -> Recording:  # fmt: skip
+) -> Recording:
     """Simulate a scene and read its sensors.
 
     The options are those of `validation.simulate`, but for rtol, from 1e-13 to 1e-5. Raises what
@@ -118,9 +121,10 @@ def tracks(run: Run) -> Tracks:
 
     beads = zip(scene.bead_sensors, run.bead_force, strict=True)
     contacts = zip(scene.contact_sensors, run.contact_force, strict=True)
-    return (*(track("bead", i, i, force - (load[i] + load[i + 1]) / 2) for i, force in beads),
-            *(track("contact", i, i + 0.5, force - load[i + 1]) for i, force in contacts)
-            )  # fmt: skip
+    return (
+        *(track("bead", i, i, force - (load[i] + load[i + 1]) / 2) for i, force in beads),
+        *(track("contact", i, i + 0.5, force - load[i + 1]) for i, force in contacts),
+    )
 
 
 def first_pulse(time: Array, force: Array) -> Pulse:

@@ -36,8 +36,8 @@ import numpy as np
 import scipy
 import sympy as sp
 
-from lwa.compact.numeric import Array
-from lwa.exact import InputError
+from lwa.base.arrays import Array
+from lwa.base.exact import InputError
 from validation.lattice.run import IntegrationError, Run
 from validation.lattice.simulate import simulate
 from validation.pulses.pulse import FEWEST, FORGOTTEN, Measured, MeasureError, read
@@ -147,8 +147,14 @@ class Chain:
         places = range(self.sites, last + 1, self.sites)
         sensors = tuple(place + side for place in places for side in (0, 1))
         for _ in range(_LONGEST):
-            scene = struck((1.0, self.omega), last + 12, self.k, contact_sensors=sensors,
-                           duration=duration, samples=math.ceil(samples * duration))  # fmt: skip
+            scene = struck(
+                (1.0, self.omega),
+                last + 12,
+                self.k,
+                contact_sensors=sensors,
+                duration=duration,
+                samples=math.ceil(samples * duration),
+            )
             run = simulate(scene, rtol=rtol, window=False if whole else None)
             whole = run.window is None
             parts = tuple(leading_pulse(force, self.k) for force in run.contact_force)

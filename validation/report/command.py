@@ -6,7 +6,7 @@ import inspect
 import json
 import sys
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import update_wrapper
 from pathlib import Path
@@ -15,10 +15,11 @@ from typing import Any, Generic, ParamSpec, Protocol, TypeVar
 import click
 from tqdm import tqdm
 
-from lwa.command.terminal import called, quantity
-from lwa.duration import announce
+from lwa.base.progress import announce
+from lwa.command.terminal import HELP, called, quantity
+from lwa.command.terminal import run as run_command
 from validation.lattice.effort import Effort
-from validation.report.figure import SUFFIXES
+from validation.pictures.figure import SUFFIXES
 from validation.report.files import output_file
 from validation.report.result import Report
 from validation.scenes.checks import Failure, SceneError
@@ -77,7 +78,14 @@ class Study(Generic[P, R]):
         for option in (*_OUTPUT, *reversed(self.options)):
             run = option(run)
         says = (inspect.getdoc(self.function) or "").partition("\n\n")[0]
-        return click.command(self.name, help=says, epilog=self.epilog or None)(run)
+        command = click.command(
+            self.name, help=says, epilog=self.epilog or None, context_settings=HELP
+        )
+        return command(run)
+
+    def main(self, arguments: Sequence[str] | None = None) -> None:
+        """Run the study as a program of its own, for the file that defines it."""
+        run_command(self.command, f"{self.name}.py", arguments)
 
 
 def study(
@@ -143,9 +151,14 @@ def run_progress(effort: Effort) -> Iterator[Callable[[float], None]]:
     """What one run takes, and how far it is."""
     start, said = time.monotonic(), announce(str(effort), effort.seconds)
     with tqdm(
-        total=1.0, desc="lattice run", disable=None, leave=False, file=sys.stderr, delay=1,
+        total=1.0,
+        desc="lattice run",
+        disable=None,
+        leave=False,
+        file=sys.stderr,
+        delay=1,
         bar_format="{desc}: {percentage:.1f} %|{bar}| {elapsed}<{remaining}",
-    ) as bar:  # fmt: skip
+    ) as bar:
 
         def tell(share: float) -> None:
             nonlocal said
@@ -163,11 +176,18 @@ def _picture(context: click.Context, given: click.Parameter, path: str | None) -
 
 _OUTPUT = (
     click.option(
-        "--plot", "picture", callback=_picture, metavar="FILE",
+        "--plot",
+        "picture",
+        callback=_picture,
+        metavar="FILE",
         help=f"Draw the result into a file ({', '.join(SUFFIXES)}).",
     ),
     click.option(
-        "--format", "style", type=click.Choice(("text", "json", "csv")), default="text",
-        show_default=True, help="How to print the result.",
+        "--format",
+        "style",
+        type=click.Choice(("text", "json", "csv")),
+        default="text",
+        show_default=True,
+        help="How to print the result.",
     ),
-)  # fmt: skip
+)

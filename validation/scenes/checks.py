@@ -1,7 +1,7 @@
 """Numbers that enter a scene become finite floats here, or are refused.
 
-The counterpart of `lwa.exact` for the lattice: every fault is one line that names the value and
-says what would be right.
+The counterpart of `lwa.base.exact` for the lattice: every fault is one line that names the value
+and says what would be right.
 """
 
 from __future__ import annotations
@@ -12,9 +12,9 @@ from typing import Any, ParamSpec, TypeVar
 
 import numpy as np
 
-from lwa.exact import InputError, shorten
-from lwa.spheres import tables
-from lwa.spheres.tables import LEAST, Reader, array
+from lwa.base import tables
+from lwa.base.exact import InputError, shorten
+from lwa.base.tables import LEAST, Reader, array
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -80,7 +80,7 @@ def row(
 
 
 def each(reader: Reader) -> Reader:
-    """`lwa.spheres.tables.each`, by `row`."""
+    """`lwa.base.tables.each`, by `row`."""
     return lambda value, name: row(array(value, name), reader, lambda i: f"{name} number {i + 1}")
 
 

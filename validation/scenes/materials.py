@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from lwa.exact import shorten
+from lwa.base.exact import shorten
 from lwa.spheres import hertz
 from validation.scenes.checks import SceneError, of_scene, positive, real
 

@@ -21,9 +21,9 @@ from typing import Any
 import sympy as sp
 
 from lwa import Cell
+from lwa.base.exact import shorten
+from lwa.base.tables import Reader
 from lwa.cell import exponent
-from lwa.exact import shorten
-from lwa.spheres.tables import Reader
 from validation.scenes import checks
 from validation.scenes.checks import SceneError, integer, items, of_scene, positive, real
 from validation.scenes.materials import Bead, Material, contact_stiffness
@@ -157,11 +157,19 @@ def _all(read: Reader) -> Reader:
 
 
 _READERS: dict[str, Reader] = {
-    "masses": _all(positive), "stiffnesses": _all(positive), "spacings": _all(positive),
-    "displacements": _all(real), "velocities": _all(real), "samples": partial(integer, least=2),
-    "k": real, "duration": positive, "wall": positive, "gravity": real, "precompression": real,
+    "masses": _all(positive),
+    "stiffnesses": _all(positive),
+    "spacings": _all(positive),
+    "displacements": _all(real),
+    "velocities": _all(real),
+    "samples": partial(integer, least=2),
+    "k": real,
+    "duration": positive,
+    "wall": positive,
+    "gravity": real,
+    "precompression": real,
     "units": lambda value, name: checks.one_of(value, ("", "SI"), name),
-}  # fmt: skip
+}
 
 
 def _sensors(values: Any, name: str, count: int) -> tuple[int, ...]:

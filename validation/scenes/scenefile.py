@@ -59,11 +59,11 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
-from lwa.exact import shorten
+from lwa.base.exact import shorten
+from lwa.base.files import load
+from lwa.base.tables import Reader, Table, among, array, entries, flag, place, places, table
 from lwa.spheres import hertz
 from lwa.spheres.beads import read_beads, read_materials
-from lwa.spheres.files import load
-from lwa.spheres.tables import Reader, Table, among, array, entries, flag, place, places, table
 from validation.scenes.checks import SceneError, each, integer, of_scene, positive, real
 from validation.scenes.materials import Bead, Material, contact_stiffness
 from validation.scenes.scene import Scene
@@ -72,15 +72,26 @@ MOST_BEADS = 1_000_000
 MOST_SAMPLES = 10_000_000  # of all sensors together
 KEYS = {
     "file": (
-        "duration", "samples", "units", "gravity", "precompression", "materials", "beads", "chain",
-        "defects", "wall", "striker", "start", "sensors",
+        "duration",
+        "samples",
+        "units",
+        "gravity",
+        "precompression",
+        "materials",
+        "beads",
+        "chain",
+        "defects",
+        "wall",
+        "striker",
+        "start",
+        "sensors",
     ),
     "chain": ("cell", "k", "stiffnesses", "spacings", "repeat"),
     "wall": ("material", "stiffness"),
     "striker": ("velocity",),
     "start": ("velocities", "displacements", "overlap"),
     "sensors": ("beads", "contacts"),
-}  # fmt: skip
+}
 
 
 def read(path: str | Path) -> Scene:
@@ -258,6 +269,7 @@ def _period(what: Scene) -> int:
     """The size of the smallest cell that, repeated, is the chain."""
     n, rows = what.size, (what.masses, what.stiffnesses, what.spacings)
     return next(
-        p for p in range(1, n + 1)
+        p
+        for p in range(1, n + 1)
         if n % p == 0 and all(row[p:] == row[: max(len(row) - p, 0)] for row in rows)
-    )  # fmt: skip
+    )

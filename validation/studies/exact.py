@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
+from lwa.base.exact import InputError
+from lwa.base.progress import Progress
+from lwa.base.quantities import QUANTITIES
 from lwa.command.terminal import quantities
-from lwa.duration import Progress
-from lwa.exact import InputError
-from lwa.quantities import QUANTITIES
 from validation.report.command import EXPONENT, number, option, study
 from validation.report.panel import Curve, Panel
 from validation.report.result import Report

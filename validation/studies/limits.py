@@ -19,7 +19,7 @@ import sympy as sp
 from scipy.interpolate import CubicSpline
 
 from lwa import Dimer, TravelingWave, homogenize
-from lwa.duration import Progress
+from lwa.base.progress import Progress
 from validation.lattice.run import Run
 from validation.lattice.simulate import simulate
 from validation.pulses.pulse import Measured, compared, derived, exponent, measure, speed

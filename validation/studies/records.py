@@ -20,8 +20,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lwa.compact.numeric import Array
-from lwa.spheres import files
+from lwa.base import files
+from lwa.base.arrays import Array
 from validation.lattice.run import Run
 from validation.pulses.sensors import tracks
 from validation.report.files import replacing
@@ -31,8 +31,14 @@ from validation.scenes.scenefile import scene
 
 KEPT = (".json", ".npz")  # suffixes of files that hold the scene and the result as well
 SUFFIXES = (*KEPT, ".csv")
-RECORDS = ("time", "contact_force", "compression", "bead_force", "bead_displacement",
-           "bead_velocity")  # fmt: skip
+RECORDS = (
+    "time",
+    "contact_force",
+    "compression",
+    "bead_force",
+    "bead_displacement",
+    "bead_velocity",
+)
 TABLES = ("sensors", "speeds")
 _MOST_BYTES = 10**9
 
@@ -58,8 +64,11 @@ def store(run: Run, document: Mapping[str, Any], file: Path) -> None:
     suffix = file.suffix.lower()
     with replacing(file) as new, new.open("wb") as stream:
         if suffix == ".npz":
-            arrays |= {f"{table}_{name}": column for table in TABLES
-                       for name, column in _columns(document[table]).items()}  # fmt: skip
+            arrays |= {
+                f"{table}_{name}": column
+                for table in TABLES
+                for name, column in _columns(document[table]).items()
+            }
             np.savez_compressed(stream, document=json.dumps(document), **arrays)
         elif suffix == ".csv":
             heard = tracks(run)
@@ -107,7 +116,9 @@ def _columns(rows: list[dict[str, Any]]) -> dict[str, NDArray[Any]]:
     """A table's columns; those of texts hold "" where there is none."""
     texts = ("kind", "missing")
     return {
-        name: np.array([(row[name] or "") if name in texts else row[name] for row in rows],
-                       str if name in texts else float)
+        name: np.array(
+            [(row[name] or "") if name in texts else row[name] for row in rows],
+            str if name in texts else float,
+        )
         for name in (rows[0] if rows else ())
-    }  # fmt: skip
+    }

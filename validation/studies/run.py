@@ -12,6 +12,7 @@ import numpy as np
 import validation.scenes
 from validation.lattice.effort import RunProgress
 from validation.lattice.simulate import COMPILED, METHODS
+from validation.pictures.panel import Curve, Map, Panel
 from validation.pulses.sensors import (
     READINGS,
     SPEEDS,
@@ -24,7 +25,6 @@ from validation.pulses.sensors import (
 )
 from validation.report.command import option, study
 from validation.report.files import output_file
-from validation.report.panel import Curve, Map, Panel
 from validation.report.result import Report
 from validation.report.table import Column, Table
 from validation.scenes.checks import SceneError
@@ -36,10 +36,14 @@ _NOTE = """\
 The first pulse at each sensor, dynamic forces, in {} units. ±: by how much a less
 accurate run differs."""
 _SI = {  # what is shown, with its unit where a scene is in SI
-    "arrival": "arrival (s)", "peak force": "peak force (N)", "FWHM": "FWHM (s)",
-    "sites/time": "sites/s", "length/time": "m/s",
-    "time": "time (s)", "dynamic force": "dynamic force (N)",
-}  # fmt: skip
+    "arrival": "arrival (s)",
+    "peak force": "peak force (N)",
+    "FWHM": "FWHM (s)",
+    "sites/time": "sites/s",
+    "length/time": "m/s",
+    "time": "time (s)",
+    "dynamic force": "dynamic force (N)",
+}
 _MOST = 10  # sensors of a kind that are drawn as curves; more as a map
 _FINEST = 1000  # places and times of a map
 
@@ -52,14 +56,18 @@ def _example(name: str) -> tuple[str, str]:
 
 
 # read with the command, whose help names them
-EXAMPLES = {name: _example(name) for name in
-            ("paper", "vertical", "precompressed", "defect", "trimer")}  # fmt: skip
-_EPILOG = "\n\n".join((
-    "\b\nExamples:\n" + "\n".join(f"  {name:14} {says}" for name, (says, _) in EXAMPLES.items()),
-    "\b\nA scene names what is there, in SI units if its beads are of materials:\n"
-    + EXAMPLES["paper"][1].replace("\n\n", "\n").rstrip(),
-    "All keys: python -m pydoc validation.scenes.scenefile",
-))  # fmt: skip
+EXAMPLES = {
+    name: _example(name) for name in ("paper", "vertical", "precompressed", "defect", "trimer")
+}
+_EPILOG = "\n\n".join(
+    (
+        "\b\nExamples:\n"
+        + "\n".join(f"  {name:14} {says}" for name, (says, _) in EXAMPLES.items()),
+        "\b\nA scene names what is there, in SI units if its beads are of materials:\n"
+        + EXAMPLES["paper"][1].replace("\n\n", "\n").rstrip(),
+        "All keys: python -m pydoc validation.scenes.scenefile",
+    )
+)
 
 
 def report(found: Recording) -> Report:
@@ -80,19 +88,27 @@ def report(found: Recording) -> Report:
     return Report(
         f"{scene.size} beads, {scene.contact_count} contacts{wall}, k = {scene.k:g}; duration "
         f"{duration}, energy drift {run.energy_drift:.0e}, momentum {momentum}",
-        (_table("sensor", ("number",), READINGS, says, found.sensors),
-         _table("speed", ("from", "to"), SPEEDS, says, found.speeds)),
+        (
+            _table("sensor", ("number",), READINGS, says, found.sensors),
+            _table("speed", ("from", "to"), SPEEDS, says, found.speeds),
+        ),
         panels=tuple(_panels(tracks(run), says)),
         notes=("\n".join(missing), note if found.sensors else ""),
-        data={"scene": document(scene), "energy_drift_value": run.energy_drift,
-              "momentum_drift_value": run.momentum_drift},
-    )  # fmt: skip
+        data={
+            "scene": document(scene),
+            "energy_drift_value": run.energy_drift,
+            "momentum_drift_value": run.momentum_drift,
+        },
+    )
 
 
 def _table(
-    what: str, places: Sequence[str], labels: Mapping[str, str], says: Mapping[str, str],
+    what: str,
+    places: Sequence[str],
+    labels: Mapping[str, str],
+    says: Mapping[str, str],
     found: Sequence[Reading],
-) -> Table:  # fmt: skip
+) -> Table:
     shown = {name: says.get(label, label) for name, label in labels.items()}
     measured = [Column(name, label, "", ".8g", error=True) for name, label in shown.items()]
     columns = (Column("", what), *map(Column, ("kind", *places)), *measured, Column("missing"))
@@ -133,21 +149,45 @@ def _show(context: click.Context, given: click.Parameter, name: str | None) -> N
 
 @study(
     click.argument("scene"),
-    option("--example", type=click.Choice(tuple(EXAMPLES)), is_flag=False, flag_value="paper",
-           is_eager=True, expose_value=False, callback=_show, show_default=False,
-           says="Print a scene to begin with, by default that of the paper."),
-    option("--out", callback=_out, metavar="FILE", says="Store the records in a file: .csv, or, "
-           "with the result and the scene, which runs again, .json or .npz."),
-    option("--method", default=COMPILED[0], metavar="NAME", says="Of integration: "
-           f"{', '.join(COMPILED)} (compiled) or {', '.join(METHODS)} (SciPy)."),
-    option("--rtol", default=TOLERANCE, says="Of the method; errors are those from a run at a "
-           "tolerance 1000 times as large."),
+    option(
+        "--example",
+        type=click.Choice(tuple(EXAMPLES)),
+        is_flag=False,
+        flag_value="paper",
+        is_eager=True,
+        expose_value=False,
+        callback=_show,
+        show_default=False,
+        says="Print a scene to begin with, by default that of the paper.",
+    ),
+    option(
+        "--out",
+        callback=_out,
+        metavar="FILE",
+        says="Store the records in a file: .csv, or, "
+        "with the result and the scene, which runs again, .json or .npz.",
+    ),
+    option(
+        "--method",
+        default=COMPILED[0],
+        metavar="NAME",
+        says=f"Of integration: {', '.join(COMPILED)} (compiled) or {', '.join(METHODS)} (SciPy).",
+    ),
+    option(
+        "--rtol",
+        default=TOLERANCE,
+        says="Of the method; errors are those from a run at a tolerance 1000 times as large.",
+    ),
     epilog=_EPILOG,
-)  # fmt: skip
+)
 def run(
-    scene: str, out: Path | None, method: str, rtol: float, picture: Path | None,
+    scene: str,
+    out: Path | None,
+    method: str,
+    rtol: float,
+    picture: Path | None,
     run_progress: RunProgress,
-) -> Report:  # fmt: skip
+) -> Report:
     """A scene from a file, TOML or JSON: arrival, peak force, FWHM and speed at its sensors."""
     what = _read(scene)
     for name, file in (("out", out), ("plot", picture)):

@@ -39,7 +39,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from lwa.compact.numeric import Array
+from lwa.base.arrays import Array
 
 MOST_STEPS = 25  # of Newton's method
 FEWEST = 40  # points on which a wave is resolved

@@ -20,8 +20,8 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike, NDArray
 
-from lwa.compact.numeric import Array
-from lwa.quantities import QUANTITIES, strain_power
+from lwa.base.arrays import Array
+from lwa.base.quantities import QUANTITIES, strain_power
 from validation.pulses.pulse import MeasureError
 from validation.scenes.checks import SceneError, positive
 from validation.waves import fourier
@@ -119,7 +119,7 @@ class Profile(ABC):
 
     def plot(self, ax: Any = None) -> Any:
         """Draw `over_peak` on |ξ| ≤ L into Matplotlib's axes, or into new ones; returns them."""
-        from lwa.compact.picture import axes  # optional, start-up
+        from lwa.wave.plots import axes  # optional, start-up
 
         ax = axes(ax)
         xi = np.linspace(-self.half_period, self.half_period, 2001)

@@ -36,10 +36,10 @@ import numpy as np
 import scipy
 
 from lwa import Cell, Power, background_wave
-from lwa.compact.numeric import Array
-from lwa.duration import Progress
-from lwa.exact import InputError
-from lwa.quantities import QUANTITIES
+from lwa.base.arrays import Array
+from lwa.base.exact import InputError
+from lwa.base.progress import Progress
+from lwa.base.quantities import QUANTITIES
 from validation.lattice.run import IntegrationError
 from validation.pulses.pulse import Measured
 from validation.scenes.checks import SceneError, between, integer, items, positive

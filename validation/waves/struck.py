@@ -21,7 +21,7 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
-from lwa.compact.numeric import Array
+from lwa.base.arrays import Array
 from validation.pulses.steady import PLACES, STRETCH, Chain, cells_apart
 from validation.waves.fourier import ample_half_period
 from validation.waves.profile import Profile

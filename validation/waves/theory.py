@@ -19,8 +19,8 @@ import scipy
 from numpy.typing import ArrayLike
 
 from lwa import Dimer, TravelingWave, canonical_wave, homogenize
-from lwa.compact.curves import arch, number
-from lwa.compact.numeric import Array
+from lwa.base.arrays import Array
+from lwa.wave.curves import arch, number
 from validation.scenes.checks import SceneError, positive
 
 

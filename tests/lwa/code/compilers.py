@@ -1,9 +1,11 @@
-"""Generated C and Fortran as functions that Python calls: compiled to a shared library."""
+"""Generated code as functions that Python calls: C and Fortran compiled, JavaScript in Node.js."""
 
 import ctypes
+import json
 import os
 import shutil
 import subprocess
+from functools import partial
 
 import pytest
 
@@ -23,11 +25,7 @@ def compiled(source, language, functions: list[Function], folder):
     A Fortran function is called by a procedure that binds it to C.
     """
     command = COMMANDS[language]
-    if shutil.which(command[0]) is None:
-        text = f"no {command[0]} here: generated {language} is not compiled"
-        if os.environ.get("CI"):
-            raise RuntimeError(text)
-        pytest.skip(text)
+    need(command[0], language)
     if language == "fortran":
         uses = ("use iso_c_binding", "use lwa_wave", "implicit none", "contains")
         bound = map(_bound, functions)
@@ -44,6 +42,39 @@ def compiled(source, language, functions: list[Function], folder):
         call.argtypes = [ctypes.c_double] * len(function.arguments)
         found[function.name] = call
     return found
+
+
+def need(program, language):
+    """Skip the test where a program is missing; fail where everything is promised."""
+    if shutil.which(program) is None:
+        text = f"no {program} here: generated {language} is not run"
+        if os.environ.get("CI"):
+            raise RuntimeError(text)
+        pytest.skip(text)
+
+
+ANSWER = """
+for await (const line of require("readline").createInterface({input: process.stdin})) {
+  const [name, ...values] = JSON.parse(line);
+  console.log(JSON.stringify(eval(name)(...values)));
+}
+"""
+
+
+def in_node(source, functions: list[Function]):
+    """Name → the function of numbers, called in a process of Node.js that ends with this one."""
+    need("node", "javascript")
+    program = f"{source}\n(async () => {{{ANSWER}}})();"
+    node = subprocess.Popen(
+        ["node", "--eval", program], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+    )
+
+    def call(name, *values):
+        node.stdin.write(json.dumps([name, *map(float, values)]) + "\n")
+        node.stdin.flush()
+        return json.loads(node.stdout.readline())
+
+    return node, {f.name: partial(call, f.name) for f in functions}
 
 
 def _bound(function: Function) -> str:

@@ -13,9 +13,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lwa import Cell, Dimer, InputError, homogenize
+from lwa.base.quantities import QUANTITIES
 from lwa.expansion.expand import Expansion, expand
 from lwa.law import DELTA, Law, Power, general, named
-from lwa.quantities import QUANTITIES
 
 HALF = sp.Rational(1, 2)
 OMEGA = sp.Symbol("omega", positive=True)

@@ -5,8 +5,8 @@ import json
 import pytest
 
 from lwa import Cell, ExpandedWave, InputError, expand
+from lwa.base.quantities import QUANTITIES
 from lwa.command.cli import main
-from lwa.quantities import QUANTITIES
 from tests.commands import ended
 
 BEADS = """

@@ -19,11 +19,11 @@ from hypothesis import strategies as st
 
 from lwa import Cell, Dimer, InputError, expand
 from lwa.algebra.coefficients import Coefficients
+from lwa.base.exact import real
+from lwa.base.quantities import QUANTITIES
 from lwa.command.cli import main
-from lwa.exact import real
 from lwa.expansion.effort import Effort, affordable
 from lwa.expansion.radiation import radiation
-from lwa.quantities import QUANTITIES
 
 # --- k ---
 

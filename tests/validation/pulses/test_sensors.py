@@ -12,7 +12,7 @@ from validation.lattice.simulate import simulate
 from validation.pulses.pulse import MeasureError
 from validation.pulses.sensors import first_pulse, record, tracks
 from validation.scenes.scene import Scene, SceneError
-from validation.studies.porter2008.experiment import chain_scene, paper
+from validation.studies.paper import chain_scene, paper
 from validation.studies.run import report
 
 

@@ -12,13 +12,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from lwa import Cell
-from lwa.spheres import beads, files
+from lwa.base import files
+from lwa.spheres import beads
 from lwa.spheres.beads import read_spheres
 from validation.scenes import scenefile
 from validation.scenes.materials import STEEL, Bead, Material, contact_stiffness
 from validation.scenes.scene import Scene, SceneError
 from validation.scenes.scenefile import document, read, scene
-from validation.studies.porter2008.experiment import chain_scene
+from validation.studies.paper import chain_scene
 
 # The experiment of Porter et al. (2008), standing upright: SI units.
 PAPER = """

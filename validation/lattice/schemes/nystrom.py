@@ -17,7 +17,7 @@ from fractions import Fraction
 
 import numpy as np
 
-from lwa.compact.numeric import Array
+from lwa.base.arrays import Array
 
 Row = tuple[Fraction, ...]
 

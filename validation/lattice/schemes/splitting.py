@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lwa.compact.numeric import Array
+from lwa.base.arrays import Array
 
 
 @dataclass(frozen=True, eq=False)

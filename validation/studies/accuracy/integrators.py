@@ -15,8 +15,8 @@ from typing import Any
 
 import scipy
 
-from lwa.compact.numeric import Array
-from lwa.duration import Progress
+from lwa.base.arrays import Array
+from lwa.base.progress import Progress
 from validation.lattice.simulate import COMPILED, simulate
 from validation.pulses.pulse import MeasureError, Pulse
 from validation.report.command import option, study

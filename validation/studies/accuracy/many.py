@@ -15,7 +15,7 @@ from time import perf_counter
 
 import numpy as np
 
-from lwa.compact.numeric import Array
+from lwa.base.arrays import Array
 from validation.lattice.simulate import COMPILED, simulate_many
 from validation.lattice.threads import cores, threads
 from validation.report.table import Finding

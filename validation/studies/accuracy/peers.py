@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from lwa.compact.numeric import Array
+from lwa.base.arrays import Array
 from validation.lattice.equations import Motion
 from validation.scenes.checks import Failure, SceneError
 from validation.studies.accuracy.tasks import Task, settings

@@ -19,7 +19,7 @@ import numpy as np
 from scipy import integrate as scipy
 from scipy.optimize import brentq
 
-from lwa.compact.numeric import Array
+from lwa.base.arrays import Array
 from validation.lattice.equations import Motion
 from validation.lattice.run import IntegrationError
 from validation.lattice.simulate import simulate

@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 import scipy
 
-from lwa.compact.numeric import Array
+from lwa.base.arrays import Array
 from validation.lattice.equations import Motion
 from validation.lattice.run import Run
 from validation.pulses.pulse import Pulse, measure

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, replace
 
-from lwa.duration import Progress
+from lwa.base.progress import Progress
 from validation.report.command import option, study
 from validation.report.result import Report
 from validation.report.table import Column, Finding, Table

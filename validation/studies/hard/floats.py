@@ -22,7 +22,8 @@ import numpy as np
 import sympy as sp
 
 from lwa import Dimer, TravelingWave, homogenize
-from lwa.compact.numeric import Array, NumericWave
+from lwa.base.arrays import Array
+from lwa.wave.numeric import NumericWave
 from validation.report.panel import Curve, Panel
 from validation.report.table import Column, Finding, Table
 from validation.studies.hard.case import Parts, case

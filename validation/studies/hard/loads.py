@@ -16,7 +16,7 @@ import numpy as np
 import sympy as sp
 
 from lwa import Cell, Power, background_wave
-from lwa.background.compressed import BackgroundWave
+from lwa.wave.background import BackgroundWave
 from validation.report.panel import Curve, Panel
 from validation.report.table import Finding
 from validation.studies.hard.case import Parts, case

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from lwa.compact.numeric import Array
+from lwa.base.arrays import Array
 from validation.lattice.run import IntegrationError
 from validation.lattice.simulate import simulate
 from validation.pulses.pulse import measure

@@ -10,8 +10,8 @@ from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future
 from contextlib import AbstractContextManager, ExitStack, closing, contextmanager, nullcontext
 from itertools import islice
 
-from lwa.duration import Progress
-from lwa.exact import InputError, shorten
+from lwa.base.exact import InputError, shorten
+from lwa.base.progress import Progress
 from validation.lattice.threads import threads
 from validation.pulses.steady import Point, point
 from validation.scenes.checks import Failure, SceneError

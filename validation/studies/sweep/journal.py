@@ -25,9 +25,9 @@ from typing import Any
 
 import sympy as sp
 
-from lwa.exact import InputError, exact, shorten
-from lwa.spheres.files import content, reason
-from lwa.spheres.tables import Reader, Table, array, integer, real, table
+from lwa.base.exact import InputError, exact, shorten
+from lwa.base.files import content, reason
+from lwa.base.tables import Reader, Table, array, integer, real, table
 from validation.pulses.pulse import Measured
 from validation.pulses.steady import QUANTITIES, Point
 from validation.report.files import output_file

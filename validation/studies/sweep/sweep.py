@@ -22,9 +22,10 @@ import numpy as np
 from sympy import Rational
 
 from lwa import Dimer, canonical_wave, homogenize
-from lwa.compact.numeric import Array, NumericWave
-from lwa.duration import Progress
-from lwa.exact import InputError, shorten
+from lwa.base.arrays import Array
+from lwa.base.exact import InputError, shorten
+from lwa.base.progress import Progress
+from lwa.wave.numeric import NumericWave
 from validation.lattice.threads import threads
 from validation.pulses.steady import QUANTITIES, STRETCH, Point
 from validation.report.command import option, study, whole

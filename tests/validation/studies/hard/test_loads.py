@@ -41,7 +41,7 @@ def test_all_hold_and_the_printed_relation_loses_two_digits_a_decade(few):
 
 def test_a_loss_is_seen(few, monkeypatch):
     """V² off by 1e-15 of itself, the width by 1e-11."""
-    from lwa.background.quadrature import NumericBackground
+    from lwa.wave.quadrature import NumericBackground
 
     true = NumericBackground.speed_squared, NumericBackground.fwhm
     monkeypatch.setattr(NumericBackground, "speed_squared",

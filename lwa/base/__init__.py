@@ -1,0 +1,1 @@
+"""Ground of the package: exact input, frozen values, tables, files, progress, LaTeX."""

@@ -1,0 +1,185 @@
+"""Parsed files, checked entry by entry: what is unknown, missing or wrong is told by its full key.
+
+A reader takes a value and what messages call it, and returns the value checked or raises
+`lwa.InputError`. Numbers of a file are floats.
+
+>>> real("1.5", "duration")
+Traceback (most recent call last):
+    ...
+lwa.base.exact.InputError: duration is '1.5': a number is wanted
+"""
+
+from __future__ import annotations
+
+import math
+import operator
+import sys
+from collections.abc import Callable, Collection, Mapping, Sequence
+from difflib import get_close_matches
+from typing import Any
+
+from lwa.base.exact import InputError, shorten
+
+Reader = Callable[[Any, str], Any]
+
+LEAST = sys.float_info.min
+"""Of what is positive."""
+
+
+def real(value: Any, name: str) -> float:
+    """Read one finite number."""
+    if not isinstance(value, str | bytes | bool):
+        try:
+            number = float(value)
+        except (TypeError, ValueError, OverflowError):
+            pass
+        else:
+            if math.isfinite(number):
+                return number
+            raise InputError(f"{name} is {number}: a finite number is wanted")
+    raise InputError(f"{name} is {shorten(value)}: a number is wanted")
+
+
+def positive(value: Any, name: str) -> float:
+    """`real`, and refused unless it is positive and a float of all digits."""
+    number = real(value, name)
+    if not number > 0:
+        raise InputError(f"{name} is {number:g}: it must be positive")
+    if number < LEAST:
+        raise InputError(f"{name} is {number}: floats below {LEAST:.1g} lose their digits")
+    return number
+
+
+def integer(value: Any, name: str, least: int, most: int | None = None) -> int:
+    """Read an integer from ``least`` to ``most``."""
+    wanted = f"an integer from {least} on" if most is None else f"one of {least} … {most}"
+    try:
+        number = operator.index(value)
+    except TypeError:
+        raise InputError(f"{name} is {shorten(value)}: {wanted} is wanted") from None
+    if isinstance(value, bool) or number < least or (most is not None and number > most):
+        raise InputError(f"{name} is {shorten(value)}: {wanted} is wanted")
+    return number
+
+
+class Table:
+    """A table whose keys are known.
+
+    >>> Table({"masss": 1}, "bead", ("mass", "radius"))
+    Traceback (most recent call last):
+        ...
+    lwa.base.exact.InputError: bead.masss is unknown: did you mean mass?
+    """
+
+    def __init__(self, value: Any, name: str, known: Sequence[str]) -> None:
+        self.name, self.entries = name, entries(value, name or "the file")
+        for key in self.entries:
+            if key not in known:
+                raise InputError(f"{self.path(key)} is unknown: {_suggestion(key, known)}")
+
+    def __contains__(self, key: str) -> bool:
+        return key in self.entries
+
+    def path(self, key: str) -> str:
+        """The full name of a key."""
+        return f"{self.name}.{_plain(key)}" if self.name else _plain(key)
+
+    def read(self, key: str, reader: Reader, default: Any = None) -> Any:
+        """An entry, checked; one without a default must be there."""
+        if key in self:
+            return reader(self.entries[key], self.path(key))
+        if default is None:
+            raise InputError(f"{self.path(key)} is missing")
+        return default
+
+    def one(self, *keys: str) -> str:
+        """The one of the keys that is there."""
+        found = [key for key in keys if key in self]
+        if len(found) != 1:
+            there = f"both {' and '.join(found)}" if found else f"neither {' nor '.join(keys)}"
+            raise InputError(f"{self.name} has {there}: one is wanted")
+        return found[0]
+
+
+def table(known: Sequence[str]) -> Reader:
+    """Reader of a `Table`."""
+    return lambda value, name: Table(value, name, known)
+
+
+def entries(value: Any, name: str) -> dict[str, Any]:
+    """Read a table without looking at its keys."""
+    if not isinstance(value, dict):
+        raise InputError(f"{name} is {shorten(value)}: a table of keys is wanted")
+    return value
+
+
+def named(reader: Reader) -> Reader:
+    """Reader of a table of any names, whose entries are read alike."""
+    return lambda value, name: {
+        key: reader(entry, f"{name}.{_plain(key)}") for key, entry in entries(value, name).items()
+    }
+
+
+def array(value: Any, name: str) -> list[Any]:
+    """Read a list."""
+    if not isinstance(value, list):
+        raise InputError(f"{name} is {shorten(value)}: a list is wanted")
+    return value
+
+
+def each(reader: Reader) -> Reader:
+    """Reader of a list whose items are read alike."""
+    return lambda value, name: [
+        reader(item, f"{name} number {i}") for i, item in enumerate(array(value, name), start=1)
+    ]
+
+
+def among(values: Mapping[str, Any]) -> Reader:
+    """Reader of a name, for which the value of that name is returned."""
+
+    def read(value: Any, name: str) -> Any:
+        if not isinstance(value, str) or value not in values:
+            raise InputError(f"{name} is {shorten(value)}: {_suggestion(value, values)}")
+        return values[value]
+
+    return read
+
+
+def place(count: int) -> Reader:
+    """Reader of a number from 1 to ``count``; returns the index, from 0."""
+
+    def read(value: Any, name: str) -> int:
+        if not count:
+            raise InputError(f"{name} is {shorten(value)}: the chain has none")
+        return integer(value, name, 1, count) - 1
+
+    return read
+
+
+def places(count: int) -> Reader:
+    """Reader of a list of different numbers from 1 to ``count``; returns the indices."""
+
+    def read(value: Any, name: str) -> list[int]:
+        found: list[int] = each(place(count))(value, name)
+        if len(set(found)) < len(found):
+            raise InputError(f"{name} is {shorten(value)}: each may be named once")
+        return found
+
+    return read
+
+
+def flag(value: Any, name: str) -> bool:
+    """Read true or false."""
+    if not isinstance(value, bool):
+        raise InputError(f"{name} is {shorten(value)}: true or false is wanted")
+    return value
+
+
+def _plain(key: str) -> str:
+    return key if key.isidentifier() and len(key) < 60 else shorten(key)
+
+
+def _suggestion(value: Any, known: Collection[str]) -> str:
+    if close := get_close_matches(str(value)[:60], known, 1):
+        return f"did you mean {close[0]}?"
+    return f"one of {', '.join(list(known)[:12])} is wanted" if known else "none is defined"

@@ -1,0 +1,1 @@
+"""The wave equation at any order: its terms, its fields, its energy."""

@@ -1,0 +1,182 @@
+"""The wave equation in another field, φ = u + Σ_n α_n D^n ∂_x^n u with constants α_n.
+
+Inverted, u = φ + Σ ℓ_n D^n ∂_x^n φ, so that with X = Σ ℓ_n D^n r_n the strain of u is p (1 + X),
+its jets are (r_m + Σ ℓ_n D^n r_{m+n}) / (1 + X), those of its velocity likewise over
+(1 + X)^{(k+1)/2}, and φ_ττ = (1 + Σ α_n D^n ∂_x^n) u_ττ. Under a law that is no power what depends
+on p is expanded about φ_x instead, the coefficients' φ_n too.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import sympy as sp
+from flint import fmpq_mpoly
+
+from lwa.algebra.contact import Binomial, Powers
+from lwa.algebra.jets import Ladder, Monomial
+from lwa.base.exact import InputError
+from lwa.closure.consistency import Closure
+from lwa.closure.motion import Solution
+
+Series = list[fmpq_mpoly]
+
+
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class ChangedClosure(Closure):
+    """A closure written for φ = u + Σ α_n D^n ∂_x^n u; without the ansatz and the defect.
+
+    alphas : the (n, α_n), n ≥ 1. It is known by them and by the ``origin``, the closure of u.
+    """
+
+    origin: Closure
+    alphas: tuple[tuple[int, sp.Expr], ...]
+
+    @property
+    def key(self) -> tuple[Any, ...]:
+        """What it is known by: the arguments of `change_field`."""
+        return (self.origin, self.alphas)
+
+    def __reduce__(self) -> tuple[Callable[..., Closure], tuple[Any, ...]]:
+        return change_field, (self.origin, dict(self.alphas))
+
+    def __repr__(self) -> str:
+        shifts = ", ".join(f"{n}: {alpha}" for n, alpha in self.alphas)
+        return f"{self.origin!r} in the field {{{shifts}}}"
+
+    @cached_property
+    def fields(self) -> tuple[tuple[fmpq_mpoly, ...], ...]:
+        """The S_i of w_i = φ + D φ_x S_i in the new jets, found when they are asked for."""
+        change = _Change(self.origin, dict(self.alphas))
+        return tuple(map(change.slaved, self.origin.fields))
+
+    @property
+    def symbols(self) -> tuple[sp.Symbol, ...]:
+        """Those of the α_n."""
+        own = set().union(*(alpha.free_symbols for _, alpha in self.alphas))
+        own -= {*self.ring.cell.symbols, *self.ring.law.symbols, *self.origin.symbols}
+        return (*self.origin.symbols, *sorted(own, key=str))
+
+    def anew(
+        self, new: Mapping[sp.Symbol, sp.Expr] | None = None, order: int | None = None
+    ) -> Closure:
+        """The same derivation with these values of its symbols, or to this order."""
+        alphas = {n: alpha.xreplace(new or {}) for n, alpha in self.alphas}
+        return change_field(self.origin.anew(new, order), alphas)
+
+
+def change_field(closure: Closure, alphas: Mapping[int, sp.Expr]) -> ChangedClosure:
+    """The closure for φ = u + Σ α_n D^n ∂_x^n u, n ≥ 1.
+
+    Raises `lwa.InputError` on the optical branch and for n < 1.
+    """
+    if closure.ring.branch != "acoustic":
+        raise InputError("the change of field is for the acoustic branch")
+    if any(n < 1 for n in alphas):
+        raise InputError(f"n is {min(alphas)}: α_n D^n ∂_x^n changes the field for n from 1 on")
+    return _Change(closure, alphas).result()
+
+
+class _Change:
+    def __init__(self, closure: Closure, alphas: Mapping[int, sp.Expr]) -> None:
+        self.closure, self.alphas = closure, alphas
+        old = closure.algebra
+        self.ring = replace(closure.ring, constants=(*closure.ring.constants, *alphas.values()))
+        self.algebra = self.ring.algebra(old.weight, velocity=bool(old.s))
+        self.k = self.ring.exponent(self.algebra.context)
+        first = len(closure.ring.constants)
+        self.size = closure.order
+        zero, one = self.algebra.zero, self.algebra.one
+        self.alpha = [one] + [zero] * self.size
+        for i, n in enumerate(alphas):
+            if n <= self.size:
+                self.alpha[n] = self.ring.constant(first + i, self.algebra.context)
+        self.inverse = [one]
+        for n in range(1, self.size + 1):
+            terms = (self.alpha[j] * self.inverse[n - j] for j in range(1, n + 1))
+            self.inverse.append(-sum(terms, zero))
+
+    def result(self) -> ChangedClosure:
+        closure = self.closure
+        return ChangedClosure(
+            self.ring,
+            closure.order,
+            closure.name,
+            "changed",
+            closure.ratio,
+            Solution(self.algebra, self._acceleration()),
+            origin=closure,
+            alphas=tuple(self.alphas.items()),
+        )
+
+    def _acceleration(self) -> tuple[fmpq_mpoly, ...]:
+        """φ_ττ = (1 + Σ α_n D^n ∂_x^n) u_ττ."""
+        acceleration = Ladder(self.algebra, self.k)
+        for term in self._replaced(self.closure.acceleration, self.k):
+            acceleration.append(term)
+        return tuple(
+            sum(
+                (self.alpha[j] * acceleration.dx(n - j, j) for j in range(n + 1)), self.algebra.zero
+            )
+            for n in range(self.size)
+        )
+
+    def slaved(self, S: Sequence[fmpq_mpoly]) -> tuple[fmpq_mpoly, ...]:
+        """w - φ = (u - φ) + D u_x S, over D φ_x."""
+        moved = self._replaced(S, self.algebra.one)
+        return tuple(self.inverse[n + 1] * self.algebra.r[n] + moved[n] for n in range(self.size))
+
+    def _replaced(self, terms: Sequence[fmpq_mpoly], exponent: fmpq_mpoly) -> Series:
+        """The series u_x^e Σ D^m f_m in the jets of φ."""
+        total = [self.algebra.zero] * self.size
+        for m, f in enumerate(terms):
+            for monomial, coefficient in self._monomials(f):
+                parts = self._monomial(monomial, coefficient, exponent, self.size - m)
+                for j, part in enumerate(parts):
+                    total[m + j] = total[m + j] + part
+        return total
+
+    def _monomials(self, f: fmpq_mpoly) -> list[tuple[Monomial, fmpq_mpoly]]:
+        old = self.closure.algebra
+        padding = (0,) * (self.algebra.context.nvars() - len(old.parameters))
+        return [
+            (monomial, self.algebra.context.from_dict({(*e, *padding): c for e, c in terms}))
+            for monomial, terms in old.terms(f).items()
+        ]
+
+    def _monomial(
+        self, monomial: Monomial, coefficient: fmpq_mpoly, exponent: fmpq_mpoly, size: int
+    ) -> Series:
+        """coefficient · Π jets of u · u_x^e in the jets of φ, to ``size`` terms, over φ_x^e."""
+        powers_t = sum(e for _, e in monomial.t)
+        degree = exponent - sum(e for _, e in monomial.x) - powers_t * (self.k + 1) / 2
+        series = self._of_strain(coefficient, degree, size)
+        for jets, powers in ((self.algebra.r, monomial.x), (self.algebra.s, monomial.t)):
+            for m, e in powers:
+                jet = [self.inverse[n] * jets[m + n] for n in range(size)]
+                for _ in range(e):
+                    series = self._product(series, jet)
+        return series
+
+    def _of_strain(self, coefficient: fmpq_mpoly, degree: fmpq_mpoly, size: int) -> Series:
+        """coefficient · (1 + X)^degree, which a power of u_x becomes, with what is in p itself."""
+        X = [self.inverse[n] * self.algebra.r[n] for n in range(1, size)]
+        if not self.algebra.phi:
+            strain = Binomial(self.algebra, degree)
+            for X_n in X:
+                strain.append(X_n)
+            rest = (coefficient * degree * strain.Phi[n] for n in range(1, size))
+            return [coefficient, *rest]
+        slopes = [coefficient]  # p^m ∂_p^m of it
+        for m in range(size - 1):
+            slopes.append(self.algebra.scaled(slopes[-1], degree - m))
+        powers = Powers([self.algebra.zero, *X])
+        rest = (slopes[1] * X[n - 1] + powers.sum(slopes, n) for n in range(1, size))
+        return [coefficient, *rest]
+
+    def _product(self, a: Series, b: Series) -> Series:
+        zero = self.algebra.zero
+        return [sum((a[j] * b[n - j] for j in range(n + 1)), zero) for n in range(len(a))]

@@ -1,0 +1,287 @@
+"""The quasi-continuum wave equation of a chain, at any order.
+
+Acoustic branch (the wave equation of Porter et al. 2008 is order 4 of the dimer), in the time
+τ = t · `Cell.time_scale`:
+
+    u_ττ = u_x^{k-1} u_xx + u_x^k Σ_{n≥2} D^{n-1} Σ_jets coefficient · Π_i (∂_x^i u / u_x)^{e_i},
+
+where n stands at D^{k+n} of the equations of motion; n = 3 holds G, H and I. Of a law F(δ) that is
+no power F′(D u_x) stands for u_x^{k-1}, and the coefficients hold φ_2, φ_3, …. Optical branch, in
+its own time unit: u_ττ = -u^k + u^k Σ_{n≥1} D^n Σ_jets coefficient · Π_i (∂_x^i u / u)^{e_i}.
+
+Coefficients are converted to SymPy when they are asked for, one by one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, ClassVar
+
+import sympy as sp
+from flint import fmpq_mpoly
+
+from lwa.base import latex
+from lwa.base.exact import InputError, exact, integer, power
+from lwa.base.frozen import Value
+from lwa.cell import Cell
+from lwa.closure.consistency import Closure
+from lwa.equation.conservation import flux, potential
+from lwa.equation.energy import energy
+from lwa.equation.fields import change_field
+from lwa.equation.terms import ENERGY, Jet, Terms, base_order, terms
+from lwa.law import Law, Power
+from lwa.wave.traveling import TravelingWave
+
+
+@dataclass(frozen=True)
+class PDE(Value):
+    """The wave equation that a closure leads to (see the module's first lines for its form)."""
+
+    closure: Closure
+
+    @property
+    def cell(self) -> Cell:
+        """The chain."""
+        return self.closure.ring.cell
+
+    @property
+    def k(self) -> sp.Expr:
+        """The exponent of the contact law; of one that is no power 1 + φ_2."""
+        return self.closure.ring.k
+
+    @property
+    def law(self) -> Power | Law:
+        """The contact law."""
+        return self.closure.ring.law
+
+    @cached_property
+    def time_scale(self) -> sp.Expr:
+        """τ/t."""
+        if self.acoustic:
+            return self.closure.ring.time_scale
+        # w = λu strains each contact by (λ - 1)u, and 1 - λ = M/m2.
+        m1, m2 = self.cell.masses
+        stretch = power(self.cell.mass / m2, self.k)
+        return sp.sqrt(sp.Add(*self.cell.stiffnesses) * stretch / m1)
+
+    @cached_property
+    def coefficients(self) -> Mapping[int, Terms]:
+        """n → the terms at D^{k+n} (optical: D^n), without the power of D; {} where none stand.
+
+        The leading term is left out: `coefficients` starts behind u_x^{k-1} u_xx (or -u^k).
+        """
+        base = base_order(self.closure.ring)
+        sign = 1 if base else -1
+        acceleration = enumerate(self.closure.acceleration)
+        return {n: terms(self.closure, sign * E) for n, E in acceleration if n > base}
+
+    LETTERS: ClassVar[Mapping[str, Jet]] = {
+        "G": Jet(((2, 3),)),
+        "H": Jet(((2, 1), (3, 1))),
+        "I": Jet(((4, 1),)),
+    }
+    """The paper's letters for the coefficients at D^{k+3}, and their jets."""
+
+    @property
+    def acoustic(self) -> bool:
+        """Whether it is the acoustic branch's equation."""
+        return self.closure.ring.branch == "acoustic"
+
+    @property
+    def third_order(self) -> dict[str, sp.Expr]:
+        """G, H and I by their letters; {} below order 4 and on the optical branch."""
+        known = self.acoustic and self.closure.order >= 4
+        return {"G": self.G, "H": self.H, "I": self.I} if known else {}
+
+    def latex_rows(self, most: int | None = None) -> list[str]:
+        """The equation, the terms at D^{k+3} with the letters G, H, I; to D^{k+most} or all."""
+        letters = self.third_order
+        leading = "F'" if isinstance(self.law, Law) else "u_{x}^{k-1}"
+        parts = [f"{leading} u_{{xx}}" if self.acoustic else "-u^{k}"]
+        for n, found in self.coefficients.items():
+            if n == 3 and letters:
+                parts += [f"{letter} {found.latex(jet)}" for letter, jet in self.LETTERS.items()]
+            elif found and most is not None and n > most:
+                parts.append(r"\cdots")
+                break
+            elif found:
+                D = latex.power(self.cell.spacing, n - base_order(self.closure.ring))
+                parts.append(rf"{D} \Bigl({found.latex_total()}\Bigr)")
+        rows = [latex.row(letter, value) for letter, value in letters.items()]
+        return [rf"u_{{\tau\tau}} = {' + '.join(parts)}", *rows]
+
+    def _repr_latex_(self) -> str:
+        return latex.display(self.latex_rows(3))
+
+    def _at_third_order(self, letter: str) -> sp.Expr:
+        if not self.acoustic:
+            raise InputError("G, H and I belong to the acoustic branch")
+        if self.closure.order < 4:
+            raise InputError(
+                f"order is {self.closure.order}: G, H and I stand at D^(k+3), from order 4 on"
+            )
+        return self.coefficients[3].get(self.LETTERS[letter], sp.Integer(0)) * self.cell.spacing**2
+
+    @cached_property
+    def G(self) -> sp.Expr:
+        """The coefficient of u_x^{k-3} u_xx^3, D² included."""
+        return self._at_third_order("G")
+
+    @cached_property
+    def H(self) -> sp.Expr:
+        """The coefficient of u_x^{k-2} u_xx u_xxx, D² included."""
+        return self._at_third_order("H")
+
+    @cached_property
+    def I(self) -> sp.Expr:
+        """The coefficient of u_x^{k-1} u_xxxx, D² included."""
+        return self._at_third_order("I")
+
+    @property
+    def vanishing(self) -> tuple[int, ...]:
+        """The n whose order D^{k+n} (optical: D^n) vanishes identically."""
+        return tuple(n for n, found in self.coefficients.items() if not found)
+
+    @cached_property
+    def conservative(self) -> bool:
+        """Whether every order is ∂_x of a flux, so that the momentum ∫ u_τ dx is conserved.
+
+        What speaks against it stands at D^{k+3} at the earliest, which is asked for an equation of
+        lower order too.
+        """
+        return self.acoustic and None not in self._at_least_to_third_order._fluxes.values()
+
+    @property
+    def _at_least_to_third_order(self) -> PDE:
+        return self if self.closure.order >= 4 else PDE(self.closure.anew(order=4))
+
+    @cached_property
+    def _fluxes(self) -> dict[int, fmpq_mpoly | None]:
+        """n → F_n, None where order D^{k+n} has none."""
+        return {n: flux(self.closure, n) for n in self._orders}
+
+    @cached_property
+    def fluxes(self) -> Mapping[int, Terms]:
+        """n → F_n, u_x^k E_n = ∂_x (u_x^k F_n), for the orders D^{k+n}, n ≥ 2, that have one."""
+        return {n: terms(self.closure, F) for n, F in self._fluxes.items() if F is not None}
+
+    @cached_property
+    def potentials(self) -> Mapping[int, Terms]:
+        """n → (k+1) V_n / u_x^{k+1} for the variational orders among D^{k+n}, n ≥ 2.
+
+        Where all orders are there, u_ττ is minus the variational derivative of Σ D^{n-1} V_n with
+        V_1 = u_x^{k+1}/(k(k+1)), and u_τ²/2 + Σ D^{n-1} V_n is the density of a conserved energy.
+
+        Raises `lwa.InputError` for laws that are no power.
+        """
+        if isinstance(self.law, Law):
+            raise InputError(
+                "a potential is found by Euler's theorem on homogeneous functions, which needs a "
+                "power law; `energy` is there for every law"
+            )
+        found = {n: potential(self.closure, n, F) for n, F in self._fluxes.items()}
+        return {n: terms(self.closure, V) for n, V in found.items() if V is not None}
+
+    @cached_property
+    def variational(self) -> bool:
+        """Whether every order (D^{k+3} in any case) derives from a potential; see `potentials`."""
+        pde = self._at_least_to_third_order
+        return bool(pde._orders) and all(n in pde.potentials for n in pde._orders)
+
+    @property
+    def _orders(self) -> tuple[int, ...]:
+        return tuple(self.coefficients) if self.acoustic else ()
+
+    @cached_property
+    def energy(self) -> Mapping[int, Terms]:
+        """n → e_n / u_x^{k+1} of the energy's density Σ D^n e_n, to n = order - 2.
+
+        It is the chain's own energy in the slaved fields (`lwa.equation.energy`), so that ∂_τ of it
+        is ∂_x of a flux to the order of the closure, in every field.
+        e_0 = u_τ²/2 + u_x^{k+1}/(k(k+1)).
+        Of a law that is no power, e_n / (u_x² F′), and e_0 stands without W(u_x), W′ = F.
+
+        Raises `lwa.InputError` on the optical branch, and where the closure leaves a defect.
+        """
+        algebra, found = energy(self.closure)
+        rows = {n: terms(self.closure, e, ENERGY, algebra=algebra) for n, e in enumerate(found)}
+        if found and isinstance(self.law, Power):
+            k = self.closure.ring.exponent(algebra.context)
+            divided = k * (k + 1) * found[0] + 1
+            rows[0] = terms(self.closure, divided, ENERGY, self.k * (self.k + 1), algebra)
+        return rows
+
+    def energy_density(self, u: sp.Expr, x: sp.Symbol, velocity: sp.Expr = sp.S.Zero) -> sp.Expr:
+        """`energy` for fields u(x) and u_τ(x): the density of a conserved energy.
+
+        Raises `lwa.InputError` as `energy` does.
+
+        >>> from lwa import Cell, homogenize
+        >>> x = sp.Symbol("x")
+        >>> homogenize(Cell([1]), k=3).pde.energy_density(x**2, x)
+        -2*D**2*x**2/3 + 4*x**4/3
+        """
+        D, law = self.cell.spacing, self.law
+        parts = [D**n * e.of_fields(u, velocity, x) for n, e in self.energy.items()]
+        if parts and isinstance(law, Law):
+            parts.append(law.energy.subs(law.delta, D * u.diff(x)) / D**2)
+        return sp.Add(*parts)
+
+    def in_field(self, alphas: Mapping[int, Any]) -> PDE:
+        """The wave equation of φ = u + Σ α_n D^n ∂_x^n u, for {n: α_n}.
+
+        Raises `lwa.InputError` on the optical branch, for n < 1 or α_n that are no quantities.
+
+        >>> from lwa import Dimer, homogenize
+        >>> pde = homogenize(Dimer(1, 1)).pde
+        >>> pde.H, pde.in_field({2: "alpha"}).H
+        (D**2*(k/6 - 1/6), D**2*(12*alpha + 1)*(k - 1)/6)
+        """
+        given = ((integer(n, "n", 1), a) for n, a in alphas.items())
+        return PDE(change_field(self.closure, {n: exact(a, f"alpha_{n}") for n, a in given}))
+
+    def at(self, **values: Any) -> PDE:
+        """The equation for these values of the named symbols, and of ω = m2/m1 by ``omega``.
+
+        Raises `lwa.InputError` for a name that does not occur or a value that cannot be meant.
+        """
+        return PDE(self.closure.at(**values))
+
+    def right_side(self, u: sp.Expr, x: sp.Symbol, velocity: sp.Expr = sp.S.Zero) -> sp.Expr:
+        """The right-hand side of u_ττ for fields u(x) and u_τ(x), as a SymPy expression.
+
+        >>> from lwa import homogenize, Cell
+        >>> x = sp.Symbol("x")
+        >>> homogenize(Cell([1]), k=1, order=4).pde.right_side(sp.exp(x), x)
+        D**2*exp(x)/12 + exp(x)
+        """
+        base = base_order(self.closure.ring)
+        D, law = self.cell.spacing, self.law
+        if isinstance(law, Law):
+            leading = law.at(D * u.diff(x), 1) * u.diff(x, 2)
+        else:
+            leading = u.diff(x) ** (law.k - 1) * u.diff(x, 2) if base else -(u**law.k)
+        rest = (
+            D ** (n - base) * found.of_fields(u, velocity, x)
+            for n, found in self.coefficients.items()
+        )
+        return sp.Add(leading, *rest)
+
+    def traveling_wave(self) -> TravelingWave:
+        """The compact wave of the equation truncated at D^{k+3}, in closed form.
+
+        Raises `lwa.NoSolitaryWave` where numbers show that there is none, and `lwa.InputError`
+        when the order is below 4, the branch optical, or D^{k+2} does not vanish (the linear
+        closure with unequal contacts), so that the closed form does not apply.
+        """
+        if isinstance(self.law, Law):
+            raise InputError(
+                "the compact wave in closed form belongs to a power law: `lwa.background_wave` "
+                "(--background P0) has the waves of any law"
+            )
+        wave = TravelingWave(cell=self.cell, k=self.k, G=self.G, H=self.H, I=self.I)
+        if 2 not in self.vanishing:
+            raise InputError("unequal stiffnesses leave a term at D^(k+2): no wave in closed form")
+        return wave

@@ -1,0 +1,215 @@
+"""The terms of one order in the spacing: jets with their coefficients, and their notation.
+
+A jet is a product of (∂_x^i u / base)^e and (∂_x^i u_τ / base^{(k+1)/2})^e, the base u_x (on the
+optical branch u). A term is coefficient · base^{a + bk} · jet, a + bk the same for all of them; the
+powers of the base cancel in what is printed, as in u_x^{k-3} u_xx^3.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from fractions import Fraction
+from typing import Any, NamedTuple
+
+import sympy as sp
+from flint import fmpq_mpoly
+
+from lwa.algebra.coefficients import Coefficients
+from lwa.algebra.jets import JetAlgebra, Term
+from lwa.base import latex
+from lwa.closure.consistency import Closure
+from lwa.law import Power
+
+Powers = tuple[tuple[int, int], ...]
+
+FORCE, STRAIN, ENERGY = (0, 1), (1, 0), (1, 1)
+"""The power (a, b) of the base, base^{a + bk}, that a force, a strain and an energy have."""
+
+_SHOWN = 3
+"""Terms that `Terms.__repr__` prints in full."""
+
+
+class Jet(NamedTuple):
+    """The product of (∂_x^i u / base)^e over ``x`` and (∂_x^i u_τ / base^{(k+1)/2})^e over ``t``.
+
+    Both are tuples of (i, e). The base is u_x, on the optical branch u.
+    """
+
+    x: Powers
+    t: Powers = ()
+
+    def over(self, power: tuple[int, int]) -> tuple[Fraction, Fraction]:
+        """What is left of base^{a + bk} beside the derivatives themselves, as (a, b)."""
+        halves = Fraction(sum(e for _, e in self.t), 2)
+        return power[0] - sum(e for _, e in self.x) - halves, power[1] - halves
+
+
+class Terms(Mapping[Jet, sp.Expr]):
+    """Jet → coefficient at one order; a coefficient becomes SymPy when it is looked up.
+
+    A jet without u_τ may also be given by its plain tuple, as in ``terms[(2, 1), (3, 1)]``.
+    ``divisor`` divides all coefficients.
+    """
+
+    def __init__(
+        self,
+        ring: Coefficients,
+        raw: dict[Jet, list[Term]],
+        power: tuple[int, int] = FORCE,
+        divisor: sp.Expr = sp.S.One,
+    ) -> None:
+        self.power = power
+        self._ring = ring
+        self._raw = raw
+        self._divisor = divisor
+        self._converted: dict[Jet, sp.Expr] = {}
+        self._written: dict[Jet, str] = {}
+
+    def __getitem__(self, jet: Jet | Powers) -> sp.Expr:
+        jet = jet if isinstance(jet, Jet) else Jet(jet)
+        if jet not in self._converted:
+            self._converted[jet] = self._ring.expression(self._raw[jet]) / self._divisor
+        return self._converted[jet]
+
+    def __iter__(self) -> Iterator[Jet]:
+        return iter(self._raw)
+
+    def __len__(self) -> int:
+        return len(self._raw)
+
+    def __eq__(self, other: object) -> bool:
+        if isinstance(other, Terms) and self.__getstate__() == other.__getstate__():
+            return True
+        return Mapping.__eq__(self, other)
+
+    def __hash__(self) -> int:
+        return hash(frozenset(self._raw))
+
+    def __getstate__(self) -> tuple[Any, ...]:
+        return (self._ring, self._raw, self.power, self._divisor)
+
+    def __setstate__(self, state: tuple[Any, ...]) -> None:
+        self._ring, self._raw, self.power, self._divisor = state
+        self._converted, self._written = {}, {}
+
+    def __repr__(self) -> str:
+        """The first terms, where they are short."""
+        first = [jet for jet in self if len(self._raw[jet]) <= _SHOWN][:_SHOWN]
+        rows = [f"{jet}: {self[jet]}" for jet in first]
+        more = len(self) - len(rows)
+        rows += [f"{more} more" if rows else f"{more} terms"] if more else []
+        return f"{{{', '.join(rows)}}}"
+
+    def length(self, jet: Jet) -> int:
+        """The number of terms of a coefficient."""
+        return len(self._raw[jet])
+
+    def written(self, jet: Jet) -> str:
+        """The coefficient as text, which for long ones takes longest of all; kept."""
+        if jet not in self._written:
+            self._written[jet] = str(self[jet])
+        return self._written[jet]
+
+    def text(self, jet: Jet) -> str:
+        """The jet as it stands in the equation, such as u_x^(k-3) u_2x^3."""
+        factors = self._before(jet, "u_x" if self.base else "u", "({})")
+        for mark, powers in (("", jet.x), ("τ", jet.t)):
+            for i, e in powers:
+                place = f"{i if i > 1 else ''}x" if i else ""
+                factors.append(_raised(f"u_{place}{mark}", str(e), "{}"))
+        return " ".join(factors) or "1"
+
+    def latex(self, jet: Jet) -> str:
+        """The jet as the paper writes it, such as u_x^{k-3} u_{xx}^{3}."""
+        factors = self._before(jet, "u_{x}" if self.base else "u", "{{{}}}")
+        for mark, powers in (("", jet.x), (r"\tau", jet.t)):
+            for i, e in powers:
+                place = "x" * i if i < 4 else f"{i}x"
+                factors.append(_raised(f"u_{{{place}{mark}}}", str(e), "{{{}}}"))
+        return " ".join(factors) or "1"
+
+    def _before(self, jet: Jet, base: str, style: str) -> list[str]:
+        """The powers of the base that stand before the jet; of F′ too where the law is no power."""
+        a, b = jet.over(self.power)
+        if isinstance(self._ring.law, Power):
+            return [_raised(base, _exponent(a, b), style)] if a or b else []
+        powers = (("F'", b), (base, a + b))
+        return [_raised(name, str(e), style) for name, e in powers if e]
+
+    def latex_total(self) -> str:
+        """The sum of the terms."""
+        return latex.total((self[jet], self.latex(jet)) for jet in self)
+
+    def _repr_latex_(self) -> str:
+        return latex.display([self.latex_total()])
+
+    def without(self, left_out: Callable[[Jet], bool]) -> Terms:
+        """The terms but those of some jets."""
+        raw = {jet: c for jet, c in self._raw.items() if not left_out(jet)}
+        rest = Terms(self._ring, raw, self.power, self._divisor)
+        rest._converted, rest._written = self._converted, self._written
+        return rest
+
+    @property
+    def base(self) -> int:
+        """The order of the derivative that the jets are normalised by: 1 (u_x) or 0 (u)."""
+        return base_order(self._ring)
+
+    def of_fields(self, u: sp.Expr, velocity: sp.Expr, x: sp.Symbol) -> sp.Expr:
+        """Σ coefficient · base^{a + bk} · jet for fields u(x) and u_τ(x)."""
+        base, law = (u.diff(x) if self.base else u), self._ring.law
+        total = sp.S.Zero
+        for jet, coefficient in self.items():
+            a, b = (
+                sp.Rational(power.numerator, power.denominator) for power in jet.over(self.power)
+            )
+            factors = [u.diff(x, i) ** e for i, e in jet.x]
+            factors += [velocity.diff(x, i) ** e for i, e in jet.t]
+            if isinstance(law, Power):
+                factors.append(base ** (a + b * law.k))
+            else:
+                delta = self._ring.cell.spacing * base
+                factors.append(law.at(delta, 1) ** b * base ** (a + b))
+                coefficient = law.evaluated(coefficient, delta)
+            total += coefficient * sp.Mul(*factors)
+        return total
+
+
+def _raised(name: str, power: str, style: str) -> str:
+    return name if power == "1" else f"{name}^{style.format(power)}"
+
+
+def _exponent(a: Fraction, b: Fraction) -> str:
+    """a + bk, such as k-3."""
+    if not b:
+        return str(a)
+    slope = {"1": "k", "-1": "-k"}.get(str(b), f"{b}k")
+    return slope + (f"{'+' if a > 0 else '-'}{abs(a)}" if a else "")
+
+
+def terms(
+    closure: Closure,
+    polynomial: fmpq_mpoly,
+    power: tuple[int, int] = FORCE,
+    divisor: sp.Expr = sp.S.One,
+    algebra: JetAlgebra | None = None,
+) -> Terms:
+    """A polynomial of the closure's algebra (or another one) as jets of the field."""
+    base = base_order(closure.ring)
+    found = (algebra or closure.algebra).terms(polynomial)
+    raw = {
+        Jet(tuple((n + base, e) for n, e in monomial.x), monomial.t): coefficient
+        for monomial, coefficient in found.items()
+    }
+    ordered = dict(sorted(raw.items(), key=lambda item: _complexity(item[0])))
+    return Terms(closure.ring, ordered, power, divisor)
+
+
+def base_order(ring: Coefficients) -> int:
+    """1 where jets are normalised by u_x, 0 on the optical branch, where they are by u."""
+    return 1 if ring.branch == "acoustic" else 0
+
+
+def _complexity(jet: Jet) -> tuple[bool, int, Jet]:
+    """The paper's order: u_xx³, u_xx u_xxx, u_xxxx; those with u_τ last."""
+    return bool(jet.t), -sum(e for _, e in jet.x), jet

@@ -1,0 +1,1 @@
+"""Traveling waves: closed forms below, floats, units, backgrounds and plots above them."""

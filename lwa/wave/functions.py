@@ -1,0 +1,155 @@
+"""A wave as the source of a program: β, widths, speed, amplitude and profile as plain functions.
+
+What is written are not the formulas as they stand but forms of them that keep their digits:
+
+- sums that hold k are polynomials in k - 2, an exact number, in which less cancels than in k;
+- arccos(2^{-x}) = arctan √(2^{x+1} sinh(x ln 2)), good as x → 0;
+- ln f = 2 arsinh((f-1)/(2√f)), f = V²/B^{k-1}, good as f → 1, that is as k → 1;
+- cos(βξ) on the support and 0 outside of it is sin((h + |h|)/2), h = π/2 - |βξ|.
+
+So the functions are good to 1e-14, relatively, but for three things that no arrangement mends. The
+amplitude's exponent 2/(k-1) makes each rounding |ln B| times larger. Near the edge of the domain of
+a wave (G + H + I → 0, V² → 0) a last digit of k or a mass is more than that. And so it is of ξ near
+the end of the support: the profile is good to 1e-14 B at a ξ that is off by 1e-14 of itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+
+import sympy as sp
+
+from lwa.base.exact import InputError, shorten
+from lwa.base.quantities import QUANTITIES, strain_power
+from lwa.code.languages import LANGUAGES
+from lwa.code.writer import Function, Local
+from lwa.wave.closed import CompactWave
+
+_XI = sp.Dummy("xi", real=True)
+_B, _V = (sp.Dummy(name, positive=True) for name in ("B", "V_s"))
+OWN = (_XI, _B, _V)
+_SHIFT, _INSIDE = (sp.Dummy(name, real=True) for name in ("k_2", "inside"))
+_LONGEST_SUM = 64
+
+_TITLE = (
+    "The compact traveling wave v = u_x = B cos^m(beta xi), m = 2/(k - 1),",
+    "xi = x - V_s tau, |xi| <= pi/(2 beta), written by lwa. There is one where",
+    "k > 1, G + H + I > 0 and V_s^2 > 0, which is not checked here.",
+)
+
+
+def wave_code(wave: CompactWave, language: str) -> str:
+    """The source text of `wave_functions` in one of the `LANGUAGES`.
+
+    Python has those of the paper's reduction, `reduction_functions`, besides.
+
+    Raises `lwa.InputError` for another language.
+    """
+    if language not in LANGUAGES:
+        raise InputError(
+            f"language is {shorten(language)}: one of {', '.join(LANGUAGES)} is wanted"
+        )
+    functions = wave_functions(wave)
+    if language == "python":
+        functions |= reduction_functions(wave, functions["amplitude"])
+    return LANGUAGES[language](list(functions.values()), OWN).module(_TITLE)
+
+
+def wave_functions(wave: CompactWave) -> dict[str, Function]:
+    """β, width, FWHM, speed, amplitude and profile, by name.
+
+    Arguments stand in this order, each where it is used: xi; B or V_s; the symbols of k, of the
+    masses, of the stiffnesses and of the spacing.
+    """
+    k, f, define = wave.k, wave.speed_factor, _functions_of(wave)
+    parts = {k - 2: _SHIFT}
+    S, excess = _stable(wave.dispersion, k, parts), _stable(sp.factor(sp.cancel(f - 1)), k, parts)
+    f = _stable(f, k, parts)
+    local = tuple((symbol, value) for value, symbol in parts.items())
+    beta_value = (k - 1) / (2 * wave.D * sp.sqrt(S))
+    beta = define("beta", "beta = (k - 1)/(2 sqrt(G + H + I))", beta_value, local)
+    functions = [beta, define("width", "Length of the support, pi/beta", sp.pi / beta.call)]
+    for quantity in QUANTITIES:
+        doc = f"Full width at half maximum of the {quantity}"
+        angle = _half_angle((k - 1) / (2 * strain_power(quantity, k)))
+        functions.append(define(f"fwhm_{quantity}", doc, 2 * angle / beta.call))
+    speed = sp.sqrt(f) * _B ** ((k - 1) / 2)
+    amplitude = _V ** (2 / (k - 1)) * sp.exp(-2 * sp.asinh(excess / (2 * sp.sqrt(f))) / (k - 1))
+    profile = _B * sp.sin((_INSIDE + sp.Abs(_INSIDE)) / 2) ** (2 / (k - 1))
+    inside = sp.pi / 2 - sp.Abs(beta.call * _XI)
+    functions += [
+        define("speed", "V_s of the wave whose strain peaks at B", speed, local),
+        define("amplitude", "B, the peak strain of the wave of speed V_s", amplitude, local),
+        define("profile", "v at xi, 0 outside of the support", profile, ((_INSIDE, inside),)),
+    ]
+    return {function.name: function for function in functions}
+
+
+def reduction_functions(wave: CompactWave, amplitude: Function) -> dict[str, Function]:
+    """p, a, μ, η, σ, s of `Reduction` as the paper writes them, and B, the amplitude again."""
+    found, define = wave.reduction(V=_V), _functions_of(wave)
+    doc = "{} of the reduction v = z^p, z'' = mu z^eta - sigma z"
+    p = define("p", doc.format("p"), found.p)
+    a = define("a", doc.format("a"), found.a.subs(found.p, p.call))
+    found = replace(found, p=p.call, a=a.call)
+    rest = [define(n, doc.format(n), getattr(found, n)) for n in ("mu", "eta", "sigma", "s")]
+    functions = (p, a, *rest, define("B", amplitude.doc, amplitude.call))
+    return {function.name: function for function in functions}
+
+
+def _functions_of(wave: CompactWave) -> Callable[..., Function]:
+    cell = wave.cell
+    parts = (wave.k, *cell.masses, *cell.stiffnesses, cell.spacing, wave.dispersion)
+    return partial(function_of, in_order(*parts))
+
+
+def in_order(*parts: sp.Expr) -> tuple[sp.Symbol, ...]:
+    """Their symbols, those of the first part first, by name within a part."""
+    return tuple(dict.fromkeys(s for part in parts for s in sorted(part.free_symbols, key=str)))
+
+
+def function_of(
+    order: tuple[sp.Symbol, ...], name: str, doc: str, value: sp.Basic, local: Local = ()
+) -> Function:
+    """A function with those arguments and local variables that its value depends on."""
+    used = value.free_symbols
+    for symbol, part in reversed(local):
+        used |= part.free_symbols if symbol in used else set()
+    arguments = tuple(s for s in (*OWN, *order) if s in used)
+    return Function(name, doc, arguments, value, tuple(row for row in local if row[0] in used))
+
+
+def _half_angle(x: sp.Expr) -> sp.Expr:
+    """arccos(2^{-x})."""
+    return sp.atan(sp.sqrt(2 ** (x + 1) * sp.sinh(x * sp.log(2))))
+
+
+def _stable(ratio: sp.Expr, k: sp.Expr, parts: dict[sp.Expr, sp.Symbol]) -> sp.Expr:
+    """A rational expression, its sums in powers of k - 2.
+
+    What becomes a variable is added to ``parts``: A^{1/k}, and pieces of a sum too long for one
+    statement (Fortran takes 256 lines).
+    """
+
+    def part(value: sp.Expr, name: str) -> sp.Symbol:
+        symbol = sp.Dummy(f"{name}_{len(parts)}", positive=name == "r" or None)
+        return parts.setdefault(value, symbol)
+
+    def root(power: sp.Pow) -> sp.Expr:
+        n, _ = (power.exp * k).as_coeff_Mul()
+        return part(power.base ** (power.exp / n), "r") ** n
+
+    def about_two(total: sp.Expr) -> sp.Expr:
+        terms = sp.Poly(total.subs(k, _SHIFT + 2), _SHIFT).terms()
+        return sp.Add(*(sp.factor(c) * _SHIFT**n for (n,), c in terms))
+
+    def pieces(total: sp.Expr) -> sp.Expr:
+        n = range(0, len(total.args), _LONGEST_SUM)
+        return sp.Add(*(part(sp.Add(*total.args[i : i + _LONGEST_SUM]), "sum") for i in n))
+
+    if k.is_Symbol:
+        ratio = ratio.replace(lambda e: e.is_Pow and e.exp.has(k), root)
+        ratio = ratio.replace(lambda e: e.is_Add and e.has(k) and not (e - k).is_number, about_two)
+    return ratio.replace(lambda e: e.is_Add and len(e.args) > _LONGEST_SUM, pieces)

@@ -1,0 +1,38 @@
+"""The equation of Korteweg and de Vries, to which waves on a background come down as B → 0."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import sympy as sp
+
+from lwa.base.exact import exact, real
+from lwa.base.frozen import Value
+
+RISE = sp.Symbol("B", positive=True)
+"""The rise of a wave, where no other is given."""
+
+
+@dataclass(frozen=True)
+class KdV(Value):
+    """The limit of small waves, v_τ + c0 v_x + α v v_x + γ v_xxx = 0, and its sech² wave.
+
+    For a power α = (k-1) c0/(2 p0), γ = I c0/2, c0 = p0^{(k-1)/2}.
+    """
+
+    sound_speed: sp.Expr
+    nonlinearity: sp.Expr
+    dispersion: sp.Expr
+
+    def speed(self, B: Any = RISE) -> sp.Expr:
+        """V = c0 + α B/3 of the wave v = B sech²(ξ/L)."""
+        return self.sound_speed + self.nonlinearity * exact(B, "B") / 3
+
+    def width(self, B: Any = RISE) -> sp.Expr:
+        """L = √(12 γ / (α B)) of v = B sech²(ξ/L); its FWHM is 2 arcosh(√2) L."""
+        return sp.sqrt(12 * sp.simplify(self.dispersion / self.nonlinearity) / exact(B, "B"))
+
+    def profile(self, xi: Any, B: Any = RISE) -> sp.Expr:
+        """v = B sech²(ξ/L)."""
+        return exact(B, "B") * sp.sech(real(xi, "xi") / self.width(B)) ** 2

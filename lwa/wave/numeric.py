@@ -1,0 +1,171 @@
+"""The closed forms in float64: vectorised NumPy functions of (k, ω), ω = m2/m1, lengths in D.
+
+G + H + I cancels where k > 2 and ω ≫ 1, and V²/B^{k-1} approaches 1 as k → 1. The exact
+coefficients are therefore evaluated in extended precision (`numpy.longdouble`, 64 bits of
+significand on x86) as polynomials in k - 2, which is exact near k = 2, and the logarithm of
+V²/B^{k-1} near 1 by log1p of the difference, which is computed over k - 1. Results are rounded to
+float64 once, at the end: they are good to 2 ulps wherever the extended precision is there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Literal
+
+import numpy as np
+import sympy as sp
+from numpy.typing import ArrayLike
+
+from lwa.base.arrays import Array, Extended
+from lwa.base.exact import InputError, shorten
+from lwa.base.frozen import Value
+from lwa.base.quantities import NoSolitaryWave, strain_power
+from lwa.wave.closed import CompactWave
+
+Function = Callable[[Extended, Extended], Extended]
+
+
+@dataclass(frozen=True)
+class NumericWave(Value):
+    """β, width, FWHM, speed and amplitude of an N:1 dimer's wave, for arrays of k and ω.
+
+    ``wave`` has the symbol k for its exponent and two symbols m1, m2 for its masses; k and ω
+    broadcast against each other. Where there is no wave (k ≤ 1, G + H + I ≤ 0, V² ≤ 0) the
+    functions raise `lwa.NoSolitaryWave` and name the first such point, or, with
+    ``missing="nan"``, return NaN there.
+
+    Raises `lwa.InputError` for any other wave.
+
+    >>> import numpy as np
+    >>> from lwa import Dimer, homogenize
+    >>> wave = homogenize(Dimer("m1", "m2")).pde.traveling_wave().numeric()
+    >>> np.round(wave.beta(1.5, [1.0, 1e-12]) * np.sqrt(10), 9)
+    array([2., 1.])
+    """
+
+    wave: CompactWave
+    missing: Literal["raise", "nan"] = "raise"
+
+    def __post_init__(self) -> None:
+        if self.missing not in ("raise", "nan"):
+            raise InputError(f"missing is {shorten(self.missing)}: 'raise' or 'nan' is wanted")
+        free = self._symbols
+        given = set(self.wave.dispersion.free_symbols | self.wave.speed_factor.free_symbols)
+        if len(set(free)) != 3 or not all(x.is_Symbol for x in free) or not given <= set(free):
+            raise InputError(
+                "functions of (k, ω) need a symbol k and a cell of two masses that are symbols, "
+                "m1 and m2, with equal contacts"
+            )
+
+    def _repr_latex_(self) -> str:
+        return self.wave._repr_latex_()
+
+    @property
+    def _symbols(self) -> tuple[sp.Expr, ...]:
+        """k and the distinct masses, in their order."""
+        return (self.wave.k, *dict.fromkeys(self.wave.cell.masses))
+
+    @cached_property
+    def _dispersion(self) -> Function:
+        return _function(self.wave.dispersion, *self._symbols)
+
+    @cached_property
+    def _factor(self) -> Function:
+        return _function(self.wave.speed_factor, *self._symbols)
+
+    @cached_property
+    def _excess(self) -> Function:
+        """(V²/B^{k-1} - 1) / (k - 1)."""
+        return _function((self.wave.speed_factor - 1) / (self.wave.k - 1), *self._symbols)
+
+    def beta(self, k: ArrayLike, omega: ArrayLike) -> Array:
+        """β D = (k-1) / (2 √((G+H+I)/D²))."""
+        return _rounded(self._beta(k, omega))
+
+    def width(self, k: ArrayLike, omega: ArrayLike) -> Array:
+        """π/(βD), the number of sites under the wave."""
+        return _rounded(_PI / self._beta(k, omega))
+
+    def fwhm(self, k: ArrayLike, omega: ArrayLike, quantity: str = "strain") -> Array:
+        """FWHM of strain, contact force or velocity, over D (see `lwa.TravelingWave.fwhm`)."""
+        beta = self._beta(k, omega)
+        k = np.asarray(k, np.longdouble)
+        # arccos(2^-x) = arctan √(4^x - 1), which keeps its digits as x → 0
+        x = (k - 1) / (2 * strain_power(quantity, k))
+        return _rounded(2 * np.arctan(np.sqrt(np.expm1(x * _LOG4))) / beta)
+
+    def speed(self, k: ArrayLike, omega: ArrayLike, B: ArrayLike = 1.0) -> Array:
+        """V = dx/dτ of the wave whose strain peaks at B."""
+        k, omega, _ = self._wave(k, omega)
+        return _rounded(np.sqrt(self._factor(k, omega)) * _positive(B, "B") ** ((k - 1) / 2))
+
+    def log_amplitude(self, k: ArrayLike, omega: ArrayLike, V: ArrayLike = 1.0) -> Array:
+        """ln B of the wave of speed V; finite where B, its peak strain, over- or underflows."""
+        k, omega, _ = self._wave(k, omega)
+        less_one = (k - 1) * self._excess(k, omega)  # V²/B^{k-1} - 1
+        near = np.abs(less_one) < 0.5
+        log_factor = np.where(near, np.log1p(less_one), np.log(self._factor(k, omega)))
+        return _rounded((2 * np.log(_positive(V, "V")) - log_factor) / (k - 1))
+
+    def _beta(self, k: ArrayLike, omega: ArrayLike) -> Extended:
+        k, _, dispersion = self._wave(k, omega)
+        beta: Extended = (k - 1) / (2 * np.sqrt(dispersion))
+        return beta
+
+    def _wave(self, k: ArrayLike, omega: ArrayLike) -> tuple[Extended, Extended, Extended]:
+        """k and ω as arrays of one shape, NaN where there is no wave, and (G+H+I)/D²."""
+        given = (np.asarray(x, np.float64).astype(np.longdouble) for x in (k, omega))
+        k, omega = np.broadcast_arrays(*given)
+        if not (np.all(np.isfinite(k)) and np.all(np.isfinite(omega)) and np.all(omega > 0)):
+            raise InputError("k and ω = m2/m1 must be finite, and ω positive")
+        with np.errstate(all="ignore"):  # outside the domain, which the next lines tell
+            dispersion = self._dispersion(k, omega)
+            exists = (k > 1) & (dispersion > 0) & (self._factor(k, omega) > 0)
+        if np.all(exists):
+            return k, omega, dispersion
+        if self.missing == "raise":
+            first = np.argmin(exists)
+            raise NoSolitaryWave(
+                f"no compact wave at k = {float(k.flat[first])}, ω = {float(omega.flat[first])}: "
+                "it needs k > 1, G+H+I > 0 and V² > 0"
+            )
+        nan = np.where(exists, 0.0, np.nan)
+        return k + nan, omega + nan, dispersion + nan
+
+
+_PI = np.longdouble("3.14159265358979323846264338327950288")
+_LOG4 = np.longdouble("1.38629436111989061883446424291635313")
+
+
+def _rounded(value: Extended) -> Array:
+    return np.asarray(value).astype(np.float64)
+
+
+def _positive(value: ArrayLike, name: str) -> Extended:
+    array = np.asarray(value, np.float64)
+    if not np.all((array > 0) & np.isfinite(array)):
+        raise InputError(f"{name} must be positive and finite")
+    return array.astype(np.longdouble)
+
+
+def _function(ratio: sp.Expr, k: sp.Symbol, m1: sp.Symbol, m2: sp.Symbol) -> Function:
+    """A function of (k, ω) from a rational expression homogeneous in the masses."""
+    shifted, omega = sp.symbols("kappa omega", cls=sp.Dummy)
+    ratio = ratio.subs({m1: 1, m2: omega, k: shifted + 2}, simultaneous=True)
+    numerator, denominator = (
+        sum(
+            sp.factor(coefficient) * shifted**power
+            for (power,), coefficient in sp.Poly(part, shifted).terms()
+        )
+        for part in sp.fraction(sp.cancel(ratio))
+    )
+    compiled = sp.lambdify((shifted, omega), numerator / denominator, "numpy", cse=True)
+
+    def function(k: Extended, omega: Extended) -> Extended:
+        # a theory without ω, or without k, gives a constant: broadcast it
+        result: Extended = compiled(k - 2, omega) + 0 * k
+        return result
+
+    return function

@@ -1,0 +1,170 @@
+"""The wave of a given peak contact force, in space and time.
+
+All contacts of a cell carry the same force at leading order, F = A_eff (D u_x)^k, so that the wave
+whose contact force peaks at F has the peak strain B = (F/A_eff)^{1/k} / D and, with V² = f B^{k-1}
+(`lwa.TravelingWave.speed_factor`) and dx/dt = V √(P k A_eff D^{k+1} / M), the speed
+
+    dx/dt = D √(f P k / M) A_eff^{1/(2k)} F^{(k-1)/(2k)}.
+
+A bead bears the mean of its two contacts, half a spacing before and behind it: at its peak, of all
+contacts' force F cos^{mk}(βξ), the share cos^{mk}(βD/2), m = 2/(k-1).
+
+Everything is in the units of the cell: in SI where the cell is (`lwa.Cell.of_spheres`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import sympy as sp
+
+from lwa.base.exact import InputError, positive, power, shorten
+from lwa.base.frozen import Value
+from lwa.base.quantities import known_extent
+from lwa.cell import RESERVED, meant, unmistakable
+from lwa.wave.closed import CompactWave
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from lwa.base.arrays import Array
+
+BEARERS = ("contact", "bead")
+"""Whose force it is."""
+
+
+@dataclass(frozen=True)
+class PhysicalWave(Value):
+    """The compact wave whose force peaks at ``force``, a number or a symbol.
+
+    The force is that ``of`` a "contact" or a "bead". Raises `lwa.InputError` unless it is positive,
+    for a name that has a meaning in the wave already, and for the force of a bead in a wave so
+    short that its two contacts peak one after the other.
+
+    >>> from lwa import Cell, canonical_wave
+    >>> wave = canonical_wave(Cell(["m"], ["A"]), "3/2").at_force("F")
+    >>> wave.compression, wave.speed
+    (F**(2/3)/A**(2/3), 2*sqrt(5)*A**(1/3)*D*F**(1/6)/(5*sqrt(m)))
+    """
+
+    wave: CompactWave
+    force: sp.Expr
+    of: str = "contact"
+
+    def __post_init__(self) -> None:
+        _bearer(self.of)
+        object.__setattr__(self, "force", positive(self.force, "force"))
+        unmistakable(list(self.force.free_symbols))
+        chain = (s.name for s in (*self.wave.cell.symbols, *self.wave.k.free_symbols))
+        taken = dict.fromkeys(chain, "a property of the chain") | RESERVED
+        meant(self.force, "force", taken=taken)
+        if self.of == "bead":
+            self._bead_share  # noqa: B018 - which may be refused
+
+    @cached_property
+    def _bead_share(self) -> sp.Expr:
+        """cos^{mk}(βD/2), a bead's peak force over its contacts'."""
+        wave, k = self.wave, self.wave.k
+        angle = (k - 1) / (4 * sp.sqrt(wave.dispersion))  # βD/2
+        power = 2 * k / (k - 1)
+        # at ξ = 0 the mean of cos^power(βξ ± angle) is greatest where it is concave
+        if angle.is_number and not (angle < sp.pi / 2 and power * sp.sin(angle) ** 2 < 1):
+            raise InputError(
+                f"k is {shorten(k)}: the two contacts of a bead peak one after the other, so that "
+                "its force has no single peak; give that of a contact"
+            )
+        return sp.cos(angle) ** power
+
+    @cached_property
+    def contact_force(self) -> sp.Expr:
+        """The peak force of the contacts."""
+        return self.force if self.of == "contact" else self.force / self._bead_share
+
+    @cached_property
+    def bead_force(self) -> sp.Expr:
+        """The peak force of a bead, the mean of its two contacts."""
+        return self.force if self.of == "bead" else self.force * self._bead_share
+
+    @cached_property
+    def strain(self) -> sp.Expr:
+        """B, the peak strain."""
+        return self.compression / self.wave.cell.spacing
+
+    @cached_property
+    def compression(self) -> sp.Expr:
+        """D B, the peak compression of a contact; of unequal ones, their mean (`compressions`)."""
+        k = self.wave.k
+        return power(self.contact_force / self.wave.cell.stiffness(k), 1 / k)
+
+    @cached_property
+    def compressions(self) -> tuple[sp.Expr, ...]:
+        """(F/A_i)^{1/k}, the peak compression of each contact of the cell."""
+        return tuple(
+            power(self.contact_force / A, 1 / self.wave.k) for A in self.wave.cell.stiffnesses
+        )
+
+    @cached_property
+    def speed(self) -> sp.Expr:
+        """dx/dt = V τ/t."""
+        wave, k = self.wave, self.wave.k
+        factor = wave.speed_factor * wave.cell.size * k / wave.cell.mass
+        stiffness, force = wave.cell.stiffness(k), self.contact_force
+        powers = power(stiffness, 1 / (2 * k)) * power(force, (k - 1) / (2 * k))
+        return wave.cell.spacing * sp.sqrt(factor) * powers
+
+    @cached_property
+    def bead_velocity(self) -> sp.Expr:
+        """B dx/dt, the peak velocity u_t of the beads; in this theory all of a cell move alike."""
+        return self.strain * self.speed
+
+    def fwhm(self, quantity: str = "force", extent: str = "length") -> sp.Expr:
+        """Full width at half maximum of "strain", "force" or "velocity", a "length" or a "time".
+
+        Raises `lwa.InputError` for any other.
+        """
+        known_extent(extent)
+        length = self.wave.fwhm(quantity)
+        return length if extent == "length" else length / self.speed
+
+    def curve(self, t: ArrayLike, quantity: str = "force", of: str = "") -> Array:
+        """A quantity at the times t, float64: "force", "strain" or "velocity"; its peak is at 0.
+
+        Of a contact or a bead, by default whichever the peak force is of. A bead's force and
+        strain are the mean of its two contacts', and velocities are those of beads.
+
+        Raises `lwa.InputError` for any other, and unless all is in numbers.
+
+        >>> from lwa import Cell, canonical_wave
+        >>> canonical_wave(Cell([1], spacing=1), "3/2").at_force(8).curve([-99, 0, 99])
+        array([0., 8., 0.])
+        """
+        from lwa.wave.curves import curve  # here, so that `import lwa` does not load NumPy
+
+        return curve(self, t, quantity, _bearer(of or self.of))
+
+    def plot(self, ax: Any = None, units: tuple[str, str] = ("", "")) -> Any:
+        """The force of a contact and of a bead over time, drawn on ``ax`` or a new picture.
+
+        units : of time and force, as "s" and "N" where the cell is in SI. Returns the axes.
+        """
+        from lwa.wave.plots import passage  # here: Matplotlib is wanted for pictures only
+
+        return passage(self, ax, units)
+
+    def at(self, **values: Any) -> PhysicalWave:
+        """The same with numbers (or other symbols) for the named symbols, the force's among them.
+
+        Raises what `lwa.TravelingWave.at` raises.
+        """
+        known = {s.name: s for s in self.force.free_symbols}
+        new = {known[n]: positive(value, n) for n, value in values.items() if n in known}
+        rest = {name: value for name, value in values.items() if name not in known}
+        return PhysicalWave(self.wave.at(**rest), self.force.xreplace(new), self.of)
+
+
+def _bearer(of: str) -> str:
+    if of not in BEARERS:
+        raise InputError(f"of is {shorten(of)}: {' or '.join(BEARERS)} is wanted")
+    return of

@@ -1,0 +1,121 @@
+"""The wave of a given peak contact force in a chain under load, in space and time.
+
+At leading order the static load F0 and the peak force F of a wave are the same in all contacts of a
+cell, which under A F(δ) are at the mean compressions δ0 and δ1 with A F(δ) = F0 and F. The strain
+then rises from p0 = δ0/D by B = (δ1 - δ0)/D, and `compressed` has the wave. For equal spheres
+its speed is Nesterenko's,
+
+    V²/c0² = (4/15) (3 + 2 ζ^{5/2} - 5 ζ) / (ζ - 1)²,    ζ = (F/F0)^{2/3}.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import sympy as sp
+
+from lwa.base.exact import positive
+from lwa.base.frozen import Value
+from lwa.base.quantities import NoSolitaryWave, known_extent
+from lwa.cell import Cell, meant, substitution
+from lwa.law import Law, Power, compression, for_cell
+from lwa.wave.background import DIGITS, BackgroundWave, taken_names
+
+
+@dataclass(frozen=True)
+class PrecompressedWave(Value):
+    """The wave whose contact force peaks at ``force`` in a chain with the load ``precompression``.
+
+    Both are total forces, numbers or symbols, in the units of the cell; the dynamic force is their
+    difference. A force below the load is that of a rarefaction wave. Under a law that is no power
+    they are numbers, as all of the chain then is.
+
+    Raises `lwa.InputError` unless both are positive, and `lwa.NoSolitaryWave` without a wave.
+
+    >>> wave = PrecompressedWave(Cell(["m"]), Power(2), "F", "F0")
+    >>> wave.sound_speed
+    sqrt(2)*D*F0**(1/4)/sqrt(m)
+    """
+
+    cell: Cell
+    law: Power | Law
+    force: sp.Expr
+    precompression: sp.Expr
+
+    def __post_init__(self) -> None:
+        for_cell(self.law, self.cell)
+        own = taken_names(self.cell, self.law)
+        for name in ("force", "precompression"):
+            value = positive(getattr(self, name), name)
+            object.__setattr__(self, name, value)
+            meant(value, name, taken=own)
+        if self.force == self.precompression:
+            raise NoSolitaryWave(
+                f"force and precompression are both {self.force}: there is no wave"
+            )
+
+    @cached_property
+    def static_compression(self) -> sp.Expr:
+        """δ0 of a contact under the load; of unequal ones, their mean."""
+        return compression(self.cell, self.law, self.precompression)
+
+    @cached_property
+    def compression(self) -> sp.Expr:
+        """δ1 - δ0, the peak compression that the wave adds."""
+        return compression(self.cell, self.law, self.force) - self.static_compression
+
+    @cached_property
+    def compressions(self) -> tuple[sp.Expr, ...]:
+        """δ1 - δ0 of each contact of the cell."""
+        if not isinstance(self.law, Power):
+            return (self.compression,) * self.cell.size
+        return tuple(share * self.compression for share in self.cell.shares(self.law.k))
+
+    @cached_property
+    def background(self) -> BackgroundWave:
+        """The waves on this load."""
+        return BackgroundWave(self.cell, self.law, self.static_compression / self.cell.spacing)
+
+    @property
+    def strain(self) -> sp.Expr:
+        """B, by which the strain rises."""
+        return self.compression / self.cell.spacing
+
+    @cached_property
+    def speed(self) -> sp.Expr:
+        """dx/dt."""
+        return self.background.speed(self.strain) * self.background.time_scale
+
+    @cached_property
+    def sound_speed(self) -> sp.Expr:
+        """dx/dt of long small waves."""
+        return sp.powdenest(self.background.sound_speed * self.background.time_scale)
+
+    @property
+    def bead_velocity(self) -> sp.Expr:
+        """B dx/dt, the peak velocity of the beads."""
+        return self.strain * self.speed
+
+    def fwhm(
+        self, quantity: str = "force", extent: str = "length", digits: int = DIGITS
+    ) -> sp.Expr:
+        """Full width at half maximum of what "strain", "force" or "velocity" rise by.
+
+        A "length", or the "time" in which it passes; all of the chain must be numbers.
+        """
+        known_extent(extent)
+        length = self.background.fwhm(self.strain, quantity, digits)
+        return length if extent == "length" else length / self.speed.n(digits)
+
+    def at(self, **values: Any) -> PrecompressedWave:
+        """The same with numbers (or other symbols) for the named symbols.
+
+        Raises `lwa.InputError` for a name that does not occur or a value that cannot be meant.
+        """
+        forces = self.force.free_symbols | self.precompression.free_symbols
+        more = (*self.law.symbols, *sorted(forces, key=str))
+        new = substitution(values, self.cell, more=more)
+        force, load = (x.xreplace(new) for x in (self.force, self.precompression))
+        return PrecompressedWave(self.cell.replaced(new), self.law.replaced(new), force, load)

@@ -1,0 +1,142 @@
+"""A chain under its own weight: the front's shape and width, and what takes over from it."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+import scipy
+
+import book.studies.gravity as study
+from book.studies.gravity import FIRST, Upright, front_width, gravity
+from lwa.wave.quadrature import NumericBackground
+from tests.commands import ended
+from validation.scenes.chains import numbered
+
+
+def test_without_a_top_the_front_is_airys():
+    """At k = 1 all beads have one speed, and the blow is Airy's function, in SciPy."""
+    ai = scipy.special.airy
+    top = scipy.optimize.brentq(lambda z: ai(z)[1], -1.5, -0.5)
+    ends = [
+        scipy.optimize.brentq(lambda z: ai(z)[0] - ai(top)[0] / 2, *sorted((top, far)))
+        for far in (-2.3, 3)
+    ]
+    assert front_width(1.0) == pytest.approx(ends[1] - ends[0], abs=1e-9)
+
+
+@pytest.mark.parametrize("k", [1.1, 1.5, 1.75])
+def test_the_top_takes_part_of_airys_front(k):
+    """The continuum's own waves from the top, T^ν H_ν(ωT) at travel time T, over their momentum
+    flux T^{1-2ν} d/dT of them at T → 0, with the phase ω³/3 of the way: the same front far down."""
+    nu, top, far = 1 / (k + 1), 1e-12, 1e9
+    y, weight = np.polynomial.legendre.leggauss(300)
+    r, dr = 2 * (y + 1) ** 2, 4 * (y + 1) * weight  # smooth at 0
+    omega = r * np.exp(1j * np.pi / 6)
+    here = far**nu * scipy.special.hankel1e(nu, omega * far)
+    flux = omega * top ** (1 - nu) * scipy.special.hankel1e(nu - 1, omega * top)
+    spectrum = -1j * omega * here / flux * np.exp(1j * omega**3 / 3) * np.exp(1j * np.pi / 6) * dr
+    z = np.linspace(-2.5, 4, 1301)
+    front = (np.exp(1j * np.outer(z, omega)) @ spectrum).real
+    front /= front[np.argmax(np.abs(front))]
+    crossings = scipy.interpolate.CubicSpline(z, front - 0.5).roots(extrapolate=False)
+    summit = z[np.argmax(front)]
+    width = crossings[crossings > summit].min() - crossings[crossings < summit].max()
+    assert front_width(k) == pytest.approx(width, rel=1e-4)
+
+
+@pytest.fixture(scope="module")
+def found():
+    return gravity(masses=(1,), beads=1500).document()
+
+
+def test_a_weak_blow(found):
+    """The third root, and a prefactor that no other speed law would give."""
+    assert found["ok"]
+    (row,) = found["rows"]
+    assert row["exponent_value"] == pytest.approx(1 / 3, abs=2 * row["exponent_error_value"])
+    assert row["exponent_error_value"] < 3e-3
+    assert row["prefactor_value"] == pytest.approx(
+        row["prefactor_theory_value"], abs=2 * row["prefactor_error_value"]
+    )
+    assert row["error_value"] == pytest.approx(0, abs=5e-3)
+    constant = front_width(1.0) * (1 / 8) ** (1 / 3)  # Airy's at constant speed: (3 I x/2)^{1/3}
+    assert row["prefactor_value"] > 1.2 * constant
+
+
+def test_heavier_beads_take_longer_only():
+    """Sites know no unit of mass."""
+    one, two = (Upright(numbered((m,)), 1.5, 1000).fronts()[1] for m in (1, "1e-9"))
+    assert two == pytest.approx(one, rel=1e-12)
+
+
+def test_a_weak_blow_is_weak_enough(monkeypatch):
+    """A hundred times harder, the front is as wide."""
+    one = Upright(numbered((1,)), 1.5, 1000).fronts()[1]
+    monkeypatch.setattr("book.studies.gravity.WEAK", 1e-2)
+    assert Upright(numbered((1,)), 1.5, 1000).fronts()[1] == pytest.approx(one, rel=5e-4)
+
+
+def test_the_dimension_of_a_cell_enters_by_I():
+    """Of masses 1, 1/2: I = 1/9 in place of 1/12."""
+    one, two = (Upright(numbered(m), 1.5, 1000).prefactor for m in ((1,), (1, "1/2")))
+    assert two / one == pytest.approx((12 / 9) ** (1 / 3), rel=1e-12)
+
+
+def test_a_strong_blow_is_the_solitary_wave_of_its_depth(found):
+    """Until that is wider than a weak blow's front, which the weakest of the three follows."""
+    strong = found["strong"]
+    deep = {row["blow_value"]: row for row in strong}  # the last place of each
+    assert deep[1000]["width_value"] == pytest.approx(deep[1000]["solitary_value"], rel=0.03)
+    assert deep[10]["width_value"] == pytest.approx(deep[10]["front_value"], rel=0.08)
+    assert deep[10]["solitary_value"] > 2 * deep[10]["width_value"]
+    last, end = [row for row in strong if row["blow_value"] == 10][-2:]
+    growth = np.log(end["solitary_value"] / last["solitary_value"])
+    assert growth > 0.45 * np.log(end["site_value"] / last["site_value"])  # the front's is 1/3
+    for row in strong:
+        least = min(row["solitary_value"], row["front_value"])
+        assert 0.7 * least < row["width_value"] < 1.02 * least
+
+
+def test_the_wave_widens_with_the_load():
+    """From the compact wave's width on; a strong wave keeps its energy, nearly its force."""
+    rows = Upright(numbered((1,)), 1.5, 1000).pulses(1e4)
+    widths = [row["width"] for row in rows]
+    assert widths == sorted(widths)
+    assert widths[0] == pytest.approx(1.4119, rel=0.02)
+    forces = [row["ratio"] * row["site"] for row in rows]
+    assert forces == pytest.approx([forces[0]] * len(forces), rel=0.07)
+
+
+def test_a_theory_that_is_off_fails(monkeypatch):
+    """A front at constant speed of sound, and a solitary wave that is too wide."""
+    monkeypatch.setattr(study, "front_width", lambda k: front_width(k) * 0.5 ** (1 / 3))
+    true = NumericBackground.fwhm
+    monkeypatch.setattr(NumericBackground, "fwhm", lambda *a: true(*a) * 1.2)
+    failed = [f.quantity for f in gravity(masses=(1,), beads=1000).findings if not f.ok]
+    assert any("prefactor" in quantity for quantity in failed)
+    assert any("solitary wave/width" in quantity for quantity in failed)
+
+
+def test_the_command(capsys):
+    status, out, err = ended(
+        capsys, gravity.main, "--masses", "1,1/2", "--beads", "1000", "--format", "json"
+    )
+    assert (status, err) == (0, "")
+    found = json.loads(out)
+    assert [row["masses"] for row in found["rows"]] == [["1", "1/2"]]
+    assert math.isfinite(found["rows"][0]["prefactor_theory_value"])
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"masses": ("m",)}, "mass is m: a number is wanted"),
+        ({"beads": 10 * FIRST - 1}, "beads is 999"),
+        ({"k": 3}, "k is 3: one from 1.1 to 1.75"),
+        ({"k": "3/2"}, "a number is wanted"),
+    ],
+)
+def test_what_cannot_be_meant_is_refused(options, message):
+    with pytest.raises(ValueError, match=message):
+        gravity(**options)

@@ -1,0 +1,87 @@
+"""What enters from outside: read exactly, or refused in one line."""
+
+from decimal import Decimal
+from fractions import Fraction
+
+import numpy as np
+import pytest
+import sympy as sp
+from hypothesis import given
+from hypothesis import strategies as st
+
+from lwa.base.exact import InputError, exact, positive, power
+
+
+@given(st.floats(allow_nan=False, allow_infinity=False))
+def test_a_float_is_the_decimal_it_prints_as(x):
+    assert exact(x, "x") == sp.Rational(repr(x)) == exact(np.float64(x), "x") == exact(str(x), "x")
+
+
+@given(st.fractions())
+def test_fractions_are_read_from_numbers_and_from_text(x):
+    expected = sp.Rational(x.numerator, x.denominator)
+    assert exact(x, "x") == expected
+    assert exact(f"{x.numerator}/{x.denominator}", "x") == expected
+
+
+def test_other_numbers():
+    assert exact(Decimal("1.50"), "x") == sp.Rational(3, 2)
+    assert exact("1e-3", "x") == sp.Rational(1, 1000)
+    assert exact(sp.Float("0.1") * sp.Symbol("y"), "x") == sp.Symbol("y") / 10
+    assert exact(np.int64(3), "x") == 3
+    assert exact(Fraction(1, 3), "x") == sp.Rational(1, 3)
+
+
+def test_names_become_positive_symbols():
+    assert exact("m_1", "x") == sp.Symbol("m_1", positive=True)
+
+
+@pytest.mark.parametrize(
+    "value",
+    [
+        "nan", "NaN", "inf", "-inf", "oo", "", " ", "1/0", "1//2", "3/2/1", "1.2/3", "2*m", "m-1",
+        "__import__('os')", "exp(1)", "I", "pi", "E", "lambda", "beta", "1_000", "0x10", "١",
+        "m1 m2", "1e99999", "9" * 300, float("nan"), float("inf"), 1j,
+        Decimal("sNaN"), Decimal("NaN"), Decimal("-Infinity"), "１", None, True, [1], {"a": 1},
+        b"1", np.array([1.0, 2.0]), sp.nan, sp.oo, sp.I, object(),
+    ],
+)  # fmt: skip
+def test_what_is_no_quantity_is_refused_in_one_line(value):
+    with pytest.raises(InputError) as caught:
+        exact(value, "mass 1")
+    message = str(caught.value)
+    assert message.startswith("mass 1 is")
+    assert "\n" not in message
+    assert len(message) < 200
+
+
+@given(st.text())
+def test_text_is_read_or_refused_and_never_evaluated(text):
+    try:
+        result = exact(text, "x")
+    except InputError:
+        return
+    assert result.is_Rational or result.is_Symbol
+
+
+@pytest.mark.parametrize(
+    "value", [0, -1, "-1/2", "0.0", sp.sqrt(2) - 2, -sp.Symbol("m", positive=True)]
+)
+def test_positive_refuses_what_is_not(value):
+    with pytest.raises(InputError, match="positive"):
+        positive(value, "mass")
+
+
+def test_positive_takes_irrational_numbers_and_symbols():
+    assert positive(sp.sqrt(2), "mass") == sp.sqrt(2)
+    assert positive(sp.Symbol("m"), "mass") == sp.Symbol("m")
+
+
+@given(st.fractions(min_value="1/99", max_value=100, max_denominator=99), st.integers(-9, 9))
+def test_a_power_is_the_number_it_is_also_where_it_is_kept(base, numerator):
+    base = sp.Rational(base.numerator, base.denominator)
+    for denominator in (3, 99999):
+        found = power(base, sp.Rational(numerator, denominator))
+        assert found.is_positive
+        assert abs(found.n(30) / base.n(40) ** sp.Rational(numerator, denominator) - 1) < 1e-28
+        assert len(str(found)) < 60

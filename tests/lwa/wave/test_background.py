@@ -1,0 +1,345 @@
+"""Waves on a background: limits, an independent integration, exact waves of two lattices."""
+
+import math
+
+import mpmath
+import numpy as np
+import pytest
+import sympy as sp
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from lwa import (
+    Cell,
+    Dimer,
+    InputError,
+    Material,
+    NoSolitaryWave,
+    Power,
+    Sphere,
+    background_wave,
+    canonical_wave,
+    expand,
+    general,
+    homogenize,
+)
+from lwa.law import named
+
+CHAIN = Cell([1], spacing=1)
+p0, B, k = sp.symbols("p0 B k", positive=True)
+
+
+def compression(cell=CHAIN, law="3/2", load=1):
+    return background_wave(cell, load, law=Power(law))
+
+
+# --- limits -------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("cell", [Cell([1]), Dimer("m1", "m2"), Dimer(3, 1, N=2)])
+def test_without_load_it_is_the_compact_wave_exactly(cell):
+    compact = canonical_wave(cell, "3/2")
+    wave = compact.on_background(0)
+    assert sp.simplify(wave.speed(7) - compact.speed(7)) == 0
+    for quantity in ("strain", "force", "velocity"):
+        assert sp.simplify(wave.fwhm(2, quantity) / compact.fwhm(quantity)) == 1
+    one, two = (w.profile("xi", B=3) for w in (wave, compact))
+    assert sp.simplify(one.args[0][0] / two.args[0][0]) == 1
+
+
+def test_a_light_load_changes_it_little():
+    """FWHM and speed of p0/B = 1e-12 next to the compact wave's, by both routes."""
+    wave = compression(load=sp.Rational(1, 10**12))
+    compact = compression(load=0)
+    assert abs(wave.fwhm(1) / compact.fwhm(1).n(20) - 1) < 1e-10
+    numeric = wave.numeric()
+    assert numeric.fwhm(0.0, 1.0) == pytest.approx(float(compact.fwhm(1)), rel=1e-14)
+    assert numeric.speed(0.0, 1.0) == pytest.approx(float(compact.speed(1)), rel=1e-15)
+
+
+def test_a_weak_wave_is_that_of_kdv():
+    """The difference falls as B: speed at the order after, width by one order."""
+    cell = Dimer(3, 1, spacing=1)
+    errors = []
+    for size in ("1/100", "1/1000"):
+        wave = compression(cell, "3/2", 2)
+        kdv = wave.kdv
+        width = 2 * sp.acosh(sp.sqrt(2)) * kdv.width(size)
+        errors.append(
+            (
+                abs(wave.speed(size).n(30) - kdv.speed(size).n(30)),
+                abs(wave.fwhm(size, digits=20) / width.n(30) - 1),
+                abs(wave.profile(10, size) / kdv.profile(10, size).n(30) - 1),
+            )
+        )
+    speed, width, profile = (float(sp.log(a / b, 10)) for a, b in zip(*errors, strict=True))
+    assert speed == pytest.approx(2, abs=0.01)
+    assert width == pytest.approx(1, abs=0.01)
+    assert profile > 0.9
+
+
+def test_kdv_in_closed_form():
+    I = Dimer("m1", "m2")
+    kdv = background_wave(I).kdv
+    c0 = p0 ** ((k - 1) / 2)
+    assert sp.simplify(kdv.sound_speed - c0) == 0
+    assert sp.simplify(kdv.nonlinearity - (k - 1) * c0 / (2 * p0)) == 0
+    assert sp.simplify(kdv.dispersion / (background_wave(I).I * c0 / 2)) == 1
+    x, t = sp.symbols("x t", real=True)
+    v = (B * sp.sech((x - kdv.speed() * t) / kdv.width()) ** 2).subs({k: 2, p0: 3, "m1": 1})
+    v = v.subs({s: 2 for s in v.free_symbols if s.name in ("m1", "m2", "D")})
+    c, alpha, gamma = (
+        value.subs({k: 2, p0: 3}).subs({s: 2 for s in value.free_symbols if s not in (k, p0)})
+        for value in (kdv.sound_speed, kdv.nonlinearity, kdv.dispersion)
+    )
+    left = v.diff(t) + c * v.diff(x) + alpha * v * v.diff(x) + gamma * v.diff(x, 3)
+    assert abs(left.subs({x: 1, t: sp.Rational(1, 3), B: 2}).n(30)) < 1e-25
+
+
+# --- the wave's own equation --------------------------------------------------------------------
+
+WAVES = [
+    (Power("3/2"), 1, "1/2"),
+    (Power("1/2"), 1, "-1/2"),
+    (named("hertz2", 1, "1/2"), "1/10", 1),
+    (named("polynomial", 0, 1), 0, -1),
+    (named("lennard-jones", 1), 0, "1/10"),
+]
+
+
+@pytest.mark.parametrize(("law", "load", "rise"), WAVES, ids=str)
+def test_the_profile_obeys_the_canonical_equation(law, load, rise):
+    """V² v = F(p0+v) - F(p0) + I (F′ v″ + ½ F″ v′²), the derivatives by differences."""
+    wave = background_wave(CHAIN, load, law=law)
+    V2, I, h = wave.speed(rise).n(40) ** 2, wave.I, sp.Rational(1, 1000)
+    around = [wave.profile(1 + i * h, rise, digits=30) for i in (-2, -1, 0, 1, 2)]
+    v = around[2]
+    first = (around[0] - 8 * around[1] + 8 * around[3] - around[4]) / (12 * h)
+    second = (-around[0] + 16 * around[1] - 30 * v + 16 * around[3] - around[4]) / (12 * h**2)
+    F, F0, F1, F2 = (
+        wave.force(p, n).n(40)
+        for p, n in ((wave.p0 + v, 0), (wave.p0, 0), (wave.p0 + v, 1), (wave.p0 + v, 2))
+    )
+    left = V2 * v - (F - F0) - I * (F1 * second + F2 * first**2 / 2)
+    assert abs(left) < 1e-10 * abs(V2 * v)  # h⁴ of the differences
+    assert (
+        abs(wave.profile(wave.fwhm(rise, digits=25) / 2, rise) / sp.Rational(rise) * 2 - 1) < 1e-13
+    )
+
+
+@pytest.mark.parametrize("quantity", ["strain", "force"])
+@pytest.mark.parametrize(("law", "load", "rise"), WAVES, ids=str)
+def test_float64_is_the_quadrature_of_many_digits(law, load, rise, quantity):
+    wave = background_wave(CHAIN, load, law=law)
+    numeric = wave.numeric()
+    at = float(sp.Rational(load)), float(sp.Rational(rise))
+    wave = wave.on(sp.Rational(at[0]))
+    rise = sp.Rational(at[1])
+    assert numeric.fwhm(*at, quantity) == pytest.approx(float(wave.fwhm(rise, quantity)), rel=1e-13)
+    assert numeric.speed(*at) == pytest.approx(float(wave.speed(rise).n(25)), rel=1e-15)
+    v = [float(wave.profile(x, rise)) for x in (0, sp.Rational(1, 2), 2)]
+    assert numeric.profile([0.0, 0.5, 2.0], *at) == pytest.approx(v, rel=1e-12)
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    st.floats(-12, 12),
+    st.floats(0.1, 10),
+    st.sampled_from(["11/10", "4/3", "3/2", "2", "3", "5"]),
+    st.sampled_from(["strain", "force"]),
+)
+def test_float64_over_all_loads(exponent, rise, k, quantity):
+    """V² to 4 ulps of its definition at 120 digits, FWHM to 1e-12 of another quadrature's."""
+    load = 10.0**exponent * rise
+    numeric = NUMERIC[k]
+    with mpmath.workdps(120):
+        a, b, e = (
+            mpmath.mpf(load),
+            mpmath.mpf(rise),
+            mpmath.mpf(sp.Rational(k).p) / sp.Rational(k).q,
+        )
+        exact = 2 * ((a + b) ** (e + 1) - a ** (e + 1) - (e + 1) * a**e * b) / (e * (e + 1) * b * b)
+        found = float(numeric.speed_squared(load, rise))
+        assert abs(found - exact) <= 4 * np.spacing(found)
+    wave = compression(law=k, load=sp.Rational(load))
+    expected = wave.fwhm(sp.Rational(rise), quantity)
+    assert float(numeric.fwhm(load, rise, quantity)) == pytest.approx(float(expected), rel=1e-12)
+
+
+NUMERIC = {k: compression(law=k).numeric() for k in ("11/10", "4/3", "3/2", "2", "3", "5")}
+
+
+def test_arrays_broadcast():
+    numeric = NUMERIC["3/2"]
+    loads, rises = np.array([[0.0], [1.0], [1e6]]), np.array([0.5, 2.0])
+    for function in (numeric.speed, numeric.fwhm):
+        found = function(loads, rises)
+        assert found.shape == (3, 2)
+        assert found[1, 1] == pytest.approx(float(function(1.0, 2.0)), rel=1e-15)
+    assert numeric.profile(np.zeros((2, 3)), 1.0, 1.0) == pytest.approx(np.ones((2, 3)), rel=1e-15)
+    assert numeric.profile([1e3, 1e9], 0.0, 1.0).tolist() == [0.0, 0.0]
+
+
+# --- published and exact ------------------------------------------------------------------------
+
+
+def test_nesterenkos_relation_for_equal_spheres():
+    """As Daraio, Nesterenko, Herbold and Jin print it, Phys. Rev. E 73, 026610 (2006), eqs. 3–5.
+
+    c0 with its constant 0.9314, and V_s in f_r = F_m/F_0.
+    """
+    E, nu, a, F0, fr = 193e9, 0.3, 4.76e-3, 2.38, 7.5
+    mass = 0.45e-3
+    rho = mass / (math.pi * a**3 / 6)
+    steel = Material(E=str(E), nu=str(nu))
+    chain = Cell.of_spheres([Sphere(mass=str(mass), radius=str(a / 2), material=steel)])
+    wave = canonical_wave(chain, "3/2").at_force(F0 * fr, precompression=F0)
+    sound = (4 * E**2 * F0 / (a**2 * rho**3 * (1 - nu**2) ** 2)) ** (1 / 6)
+    assert float(wave.sound_speed) / sound == pytest.approx(0.9314, abs=1e-4)  # printed, cut off
+    root = math.sqrt(4 / 15 * (3 + 2 * fr ** (5 / 3) - 5 * fr ** (2 / 3)))
+    printed = root / (fr ** (2 / 3) - 1)
+    assert float(wave.speed / wave.sound_speed) == pytest.approx(printed, rel=1e-13)
+    zeta = sp.Symbol("zeta", positive=True)
+    V2 = compression(load=1).stiffness(zeta - 1)
+    relation = sp.Rational(4, 15) * (3 + 2 * zeta ** sp.Rational(5, 2) - 5 * zeta) / (zeta - 1) ** 2
+    assert sp.simplify(V2 - relation) == 0
+
+
+def test_todas_soliton():
+    """c² = sinh²κ/κ² at the peak 2 ln cosh κ; the theory errs by κ⁴/60, the width to the -4."""
+    wave = background_wave(CHAIN, 0, law=named("exponential", 1))
+    errors = []
+    for kappa in (sp.Rational(1, 10), sp.Rational(1, 20)):
+        exact = (sp.sinh(kappa) / kappa) ** 2
+        V2 = wave.stiffness(2 * sp.log(sp.cosh(kappa)))
+        errors.append((exact - V2).n(30) / kappa**4)
+    assert errors[1] == pytest.approx(1 / 60, rel=1e-2)
+    assert abs(errors[1] - sp.Rational(1, 60)) < abs(errors[0] - sp.Rational(1, 60)) / 3
+
+
+def exact_speed_squared(force, slope, guess, height, length, points=160):
+    """c² of the chain's own wave R of this height: c² R″ = F(R)(x+1) - 2F(R) + F(R)(x-1).
+
+    In Fourier space c² R = sinc²(q/2) F(R); Newton on even R over [0, length] and c², with R(0)
+    fixed, is spectrally accurate.
+    """
+    j = np.arange(points + 1)
+    x = j * length / points
+    cosines = np.cos(np.pi * np.outer(j, j) / points)
+    smear = cosines @ np.diag(np.sinc(j / (2 * length)) ** 2) @ np.linalg.inv(cosines)
+    R, c2 = guess(x), 1 + abs(height) / 3
+    for _ in range(30):
+        residual = np.append(c2 * R - smear @ force(R), R[0] - height)
+        jacobian = np.block(
+            [[c2 * np.eye(points + 1) - smear * slope(R), R[:, None]], [np.eye(1, points + 1), 0.0]]
+        )
+        step = np.linalg.solve(jacobian, -residual)
+        R, c2 = R + step[:-1], c2 + step[-1]
+        if np.abs(step).max() < 1e-13:
+            return c2
+    raise AssertionError("no wave was found")
+
+
+@pytest.mark.parametrize(("alpha", "beta"), [(1, 0), (0, 1), ("1/2", 1)])
+def test_the_lattices_own_wave_of_fermi_pasta_ulam_and_tsingou(alpha, beta):
+    """Newton on the lattice; the error falls as the fourth power of the inverse width."""
+    law = named("polynomial", alpha, beta)
+    a, b = float(sp.Rational(alpha)), float(beta)
+    wave = background_wave(CHAIN, 0, law=law)
+    force = lambda R: R + a * R**2 + b * R**3  # noqa: E731
+    slope = lambda R: 1 + 2 * a * R + 3 * b * R**2  # noqa: E731
+    found = []
+    for height in (0.04, 0.02) if alpha else (0.12, 0.06):
+        width = float(wave.numeric().fwhm(0.0, height))
+        guess = lambda x, h=height: wave.numeric().profile(x, 0.0, h)  # noqa: E731
+        exact = exact_speed_squared(force, slope, guess, height, 11 * width)
+        found.append((width, abs(exact - float(wave.speed(height)) ** 2)))
+    (w1, e1), (w2, e2) = found
+    assert math.log(e1 / e2) / math.log(w2 / w1) == pytest.approx(4, abs=0.12)
+    assert e2 > 1e-9  # above rounding
+
+
+# --- rarefaction, existence, units --------------------------------------------------------------
+
+
+def test_existence_is_decided():
+    cases = [
+        (Power("3/2"), 1, "-1/2", "only B > 0"),
+        (Power("1/2"), 1, "1/2", "only B < 0"),
+        (Power("1/2"), 1, -1, "would open"),
+        (Power("1/2"), 0, -1, "no load"),
+        (Power(1), 1, 1, "linear"),
+        (named("polynomial", 1, 0), 0, "-1/10", "does not stiffen"),
+        (named("polynomial", -1, 0), 0, "7/10", "not positive|does not stiffen"),
+        (named("polynomial", -3, 1), 0, 1, "not positive|does not stiffen"),
+    ]
+    for law, load, rise, reason in cases:
+        wave = background_wave(CHAIN, load, law=law)
+        with pytest.raises(NoSolitaryWave, match=reason):
+            wave.speed(rise)
+        with pytest.raises(NoSolitaryWave):
+            wave.numeric().speed(float(load), float(sp.Rational(rise)))
+    with pytest.raises(NoSolitaryWave, match="no sound"):
+        _ = compression(load=0).kdv
+
+
+def test_what_cannot_be_meant():
+    wave = background_wave(Cell(["m"]), law=Power("3/2"))
+    for call, reason in (
+        (lambda: compression(load=-1), "must not be negative"),
+        (lambda: wave.speed(0), "B is 0"),
+        (lambda: wave.fwhm(1), "has no value"),
+        (lambda: compression().fwhm(1, "colour"), "quantity"),
+        (lambda: compression().fwhm(1, digits=1000), "at most"),
+        (lambda: compression().profile("x", 1), "a number"),
+        (lambda: background_wave(Cell([1]), "B"), "means the peak strain"),
+        (lambda: background_wave(Dimer(1, 1, stiffnesses=[1, 2]), law=general()), "shares"),
+        (lambda: background_wave(Cell([1]), law=Power("k")).numeric(), "has no value"),
+        (lambda: NUMERIC["3/2"].speed(math.nan, 1.0), "finite"),
+        (lambda: canonical_wave(Cell([1]), 2).at_force(1, precompression=-1), "positive"),
+        (lambda: homogenize(Dimer(1, 2)).pde.traveling_wave().on_background(1), "canonical"),
+        (lambda: expand(Cell([1]), 2, law=general()), "only a power law"),
+    ):
+        with pytest.raises(InputError, match=reason):
+            call()
+    assert expand(Cell([1]), 2, law=Power(2)) == expand(Cell([1]), 2, k=2)
+
+
+def test_in_space_and_time():
+    """Force, strain and speed in units agree with those of the theory, for unlike contacts too."""
+    cell = Dimer(2, 1, stiffnesses=[3, 5], spacing="1/2")
+    wave = canonical_wave(cell, "3/2").at_force(7, precompression=2)
+    background, A = wave.background, cell.stiffness("3/2")
+    D = cell.spacing
+    assert float(A * (D * background.p0) ** 1.5) == pytest.approx(2, rel=1e-14)
+    assert float(A * (D * (background.p0 + wave.strain)) ** 1.5) == pytest.approx(7, rel=1e-14)
+    assert float(wave.bead_velocity) == pytest.approx(float(wave.strain * wave.speed), rel=1e-14)
+    length, time = (wave.fwhm("force", extent) for extent in ("length", "time"))
+    assert float(length / time) == pytest.approx(float(wave.speed), rel=1e-13)
+    light = canonical_wave(cell, "3/2").at_force(7, precompression="1e-30")
+    free = canonical_wave(cell, "3/2").at_force(7)
+    assert float(light.speed) == pytest.approx(float(free.speed), rel=1e-12)
+    assert canonical_wave(cell, "3/2").at_force(7, precompression=0) == free
+    symbolic = canonical_wave(Cell(["m"], ["A"]), "3/2").at_force("F", precompression="F0")
+    numbers = symbolic.at(m=2, A=3, F=7, F0=2, D=1)
+    direct = canonical_wave(Cell([2], [3], 1), "3/2").at_force(7, precompression=2)
+    assert numbers == direct
+    assert float(sp.N(numbers.speed - direct.speed)) == 0
+
+
+def test_another_law_in_units():
+    from lwa.wave.precompressed import PrecompressedWave
+
+    law = named("hertz2", 1, "1/2")
+    wave = PrecompressedWave(Cell([1], [3], 1), law, 2, 1)
+    delta = wave.static_compression
+    assert abs(3 * (delta ** sp.Rational(3, 2) + delta ** sp.Rational(5, 2) / 2) - 1) < 1e-30
+    assert wave.speed > wave.sound_speed
+    with pytest.raises(InputError, match="does not reach"):
+        PrecompressedWave(Cell([1], spacing=1), named("polynomial", -1, 0), 2, 1).speed  # noqa: B018
+
+
+def test_far_from_its_wave_a_profile_is_nothing():
+    """Under next to no load θ runs through hundreds within a site; cosh² θ would overflow."""
+    far = background_wave(CHAIN, law=Power("3/2")).numeric().profile([50.0], 1e-12, 1.0)
+    assert 0 <= far[0] < 1e-300

@@ -1,0 +1,481 @@
+"""Generated functions, run in their own languages, against 50 digits."""
+
+import keyword
+import re
+import subprocess
+import sys
+from functools import cache, partial
+from itertools import product
+from pathlib import Path
+
+import mpmath
+import numpy as np
+import pytest
+import sympy as sp
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from lwa import Cell, Dimer, InputError, NoSolitaryWave, canonical_wave, homogenize
+from lwa.code.languages import LANGUAGES
+from lwa.code.writer import Function, wrapped
+from lwa.command.cli import main
+from lwa.wave.functions import in_order, wave_functions
+from tests.lwa.code.compilers import compiled, in_node
+
+EXPONENTS = (
+    1.01,
+    1.02,
+    1.1,
+    1.25,
+    1.5,
+    1.7,
+    1.999,
+    2.0,
+    2.000001,
+    2.3,
+    3.0,
+    3.7,
+    5.0,
+    6.1,
+    7.875,
+    8.0,
+)
+RATIOS = (
+    1e-3,
+    3e-3,
+    0.01,
+    0.05,
+    0.0977,
+    0.1,
+    0.2733,
+    0.5,
+    0.9,
+    1.0,
+    1.1,
+    1.7,
+    3.0,
+    10.0,
+    99.0,
+    1e3,
+)
+GRID = {"k": EXPONENTS, "m1": (1.0,), "m2": RATIOS, "D": (1.0,)}
+FEW = {"k": (1.01, 1.5, 2.001, 8.0), "m1": (0.3, 7.0), "m2": (2.0,), "m3": (1.1,), "D": (0.7,)}
+STIFF = {**FEW, "A1": (1.0, 50.0), "A2": (0.02, 3.0)}
+
+WAVES = {
+    "paper": (lambda: homogenize(Dimer("m1", "m2")), GRID),
+    "full": (lambda: homogenize(Dimer("m1", "m2"), closure="full"), GRID),
+    "canonical": (lambda: homogenize(Dimer("m1", "m2"), closure="full", field="center"), GRID),
+    "spheres": (lambda: homogenize(Dimer("m1", "m2"), k="3/2"), GRID),
+    "one mass": (lambda: homogenize(Dimer(1, "0.2733")), GRID),
+    "stiff": (lambda: homogenize(Dimer("m1", "m2", stiffnesses=["A1", 2]), closure="full"), STIFF),
+    "three": (lambda: canonical_wave(Cell(["m1", 2, "m3"], ["A1", 1, 8])), STIFF),
+    "numbers": (lambda: homogenize(Dimer(1, 1, spacing=1), k="3/2"), GRID),
+}  # fmt: skip
+
+
+@cache
+def wave_of(name):
+    found = WAVES[name][0]()
+    return found.pde.traveling_wave() if hasattr(found, "pde") else found
+
+
+@cache
+def functions_in(name):
+    return list(wave_functions(wave_of(name)).values())
+
+
+@cache
+def code_of(name, language):
+    return wave_of(name).code(language)
+
+
+def exact(value):
+    return mpmath.mpf(value)
+
+
+@cache
+def points(name):
+    """(name → number, k, G + H + I, V²/B^{k-1}) where there is a wave, from its equation."""
+    wave = wave_of(name)
+    symbols = in_order(wave.k, *wave.cell.masses, *wave.cell.stiffnesses, wave.D)
+    names = [symbol.name for symbol in symbols]
+    numbers = sp.lambdify(symbols, [wave.k, wave.G, wave.H, wave.I], "mpmath")
+    rows = []
+    with mpmath.workdps(50):
+        for values in product(*(WAVES[name][1][s] for s in names)):
+            k, G, H, I = (sp_or_mp(x) for x in numbers(*map(exact, values)))
+            S = G + H + I
+            factor = S and 1 - (k - 1) ** 2 / (4 * S) * ((H + 3 * I) * 2 / (k - 1) - 2 * I)
+            if S > 1e-30 and factor > 0:  # k = 8, m2 = 3: S = 0
+                rows.append((dict(zip(names, values, strict=True)), k, S, factor))
+    return rows
+
+
+def sp_or_mp(value):
+    return mpmath.mpf(value.p) / value.q if isinstance(value, sp.Rational) else mpmath.mpf(value)
+
+
+@pytest.fixture(scope="module")
+def functions_of(tmp_path_factory):
+    """(wave, language) → name → the function, called by the names of its arguments."""
+    processes = []
+
+    @cache
+    def load(name, language):
+        functions, source = functions_in(name), code_of(name, language)
+        if language in ("c", "fortran"):
+            found = compiled(source, language, functions, tmp_path_factory.mktemp("code"))
+        elif language == "javascript":
+            node, found = in_node(source, functions)
+            processes.append(node)
+        else:
+            found = {}
+            exec(as_python(source) if language == "julia" else source, found)  # our own output
+        return {f.name: by_name(found[f.name], f) for f in functions}
+
+    yield load
+    for node in processes:
+        node.communicate(timeout=30)
+
+
+def by_name(call, function):
+    names = [symbol.name for symbol in function.arguments]
+    return lambda **values: call(*(values[name] for name in names))
+
+
+def as_python(source):
+    """Julia as far as it is used here, there being no Julia: functions, ^ and the mathematics."""
+    lines, in_head = ["from math import asinh, atan, exp, log, pi, sin, sinh, sqrt"], False
+    words = "|".join({*keyword.kwlist} - {"return"})
+    for line in re.sub(rf"\b({words})\b", r"\1_here", source.replace("^", "**")).splitlines():
+        in_head = in_head or line.startswith("function ")
+        ends = in_head and line.endswith(")")
+        lines.append(
+            line.removesuffix("end" * (line == "end")).replace("function", "def") + ":" * ends
+        )
+        in_head = in_head and not ends
+    return "\n".join(lines)
+
+
+@cache
+def expected(name):
+    """(name → number, (function, B or V_s) → value, what the value's double leaves), all points."""
+    rows = []
+    with mpmath.workdps(50):
+        for values, k, S, factor in points(name):
+            beta = (k - 1) / (2 * mpmath.sqrt(S))
+            found = {("beta", 0): beta, ("width", 0): mpmath.pi / beta}
+            for quantity, power in (("strain", 1), ("force", k), ("velocity", 1)):
+                angle = mpmath.acos(exact(2) ** (-(k - 1) / (2 * power)))
+                found[f"fwhm_{quantity}", 0] = 2 * angle / beta
+            for at in (0.5, 1.0, 2.0):
+                found["speed", at] = mpmath.sqrt(factor) * at ** ((k - 1) / 2)
+                found["amplitude", at] = (at**2 / factor) ** (1 / (k - 1))
+            rest = {key: float(value - float(value)) for key, value in found.items()}
+            rows.append((values, {key: float(value) for key, value in found.items()}, rest))
+    return rows
+
+
+@pytest.mark.parametrize("name", WAVES)
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_every_language_is_good_to_1e14(functions_of, language, name):
+    found = functions_of(name, language)
+    rows = expected(name)
+    for values, numbers, rest in rows:
+        for (function, at), value in numbers.items():
+            got = float(found[function](**values, B=at, V_s=at))
+            error = got - value - rest[function, at]  # without rounding where it is small
+            # at k = 1.01 rounding the exponent 2/(k-1) of V_s costs |ln B| = 137 half ulps
+            assert abs(error) <= 1e-14 * value, (function, at, values)
+    assert len(rows) == 1 or len(rows) > 7
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+@pytest.mark.parametrize("name", ["paper", "stiff", "numbers"])
+def test_the_profile(functions_of, language, name):
+    """Good to 1e-14 B where ξ is off by 1e-14 of itself, and 0 outside of the support."""
+    profile, width = (functions_of(name, language)[f] for f in ("profile", "width"))
+    B = 3.0
+
+    def v(xi, beta, m):
+        return B * mpmath.cos(beta * xi) ** m if beta * xi < mpmath.pi / 2 else exact(0)
+
+    with mpmath.workdps(50):
+        for values, k, S, _ in points(name)[::7]:
+            beta, m = (k - 1) / (2 * mpmath.sqrt(S)), 2 / (k - 1)
+            for fraction in (0.0, 1e-3, 0.1, 0.3, 0.6, 0.9, 0.999, 1 - 1e-9, 1 + 1e-9, 1.5, 3.7):
+                xi = fraction * width(**values) / 2
+                got = float(profile(xi=xi, B=B, **values))
+                assert got == float(profile(xi=-xi, B=B, **values))
+                off = exact("1e-14")
+                low, high = (v(exact(xi) * (1 + sign * off), beta, m) for sign in (1, -1))
+                assert low - B * off <= got <= high + B * off, (values, fraction)
+                assert fraction < 1 or got == 0
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_near_the_edge_of_existence_the_error_is_that_of_the_arguments(functions_of, language):
+    """k = 3, ω → ω*, where G + H + I = 0: β at an ω that is off by 4 ulps."""
+    beta = functions_of("paper", language)["beta"]
+    with mpmath.workdps(50):
+        edge = (1 + mpmath.sqrt(25)) / 2  # 12 + 2ω(1 - ω) = 0
+
+        def exact_beta(w):
+            return 2 / (2 * mpmath.sqrt((12 + 2 * w * (1 - w)) / (6 * (1 + w) ** 2)))
+
+        for distance in (1e-2, 1e-5, 1e-9, 1e-12):
+            w = float(edge) * (1 - distance)
+            low, high = (exact_beta(exact(w) * (1 + s * exact(2) ** -50)) for s in (-1, 1))
+            assert low <= beta(k=3.0, m1=1.0, m2=w, D=1.0) <= high
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_widths_and_speeds_keep_their_digits_as_k_goes_to_one(functions_of, language):
+    found = functions_of("canonical", language)
+    with mpmath.workdps(50):
+        for n in (10, 20, 40):
+            values = {"k": 1 + 2.0**-n, "m1": 1.0, "m2": 1.0, "D": 1.0}
+            k = exact(values["k"])
+            beta = (k - 1) / mpmath.sqrt(k * (k + 1) / 6)  # I = 1/12
+            assert abs(found["beta"](**values) / beta - 1) < 1e-14
+            for quantity, power in (("strain", 1), ("force", k)):
+                width = 2 * mpmath.acos(exact(2) ** (-(k - 1) / (2 * power))) / beta
+                assert abs(found[f"fwhm_{quantity}"](**values) / width - 1) < 1e-14
+            speed = mpmath.sqrt(2 / (k * (k + 1))) * exact(3) ** ((k - 1) / 2)
+            assert abs(found["speed"](B=3.0, k=values["k"]) / speed - 1) < 1e-14
+
+
+@pytest.mark.parametrize("V", [1e-2, 0.9, 1.1, 30.0])
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_an_amplitude_far_from_one_loses_its_logarithm_of_roundings(functions_of, language, V):
+    amplitude = functions_of("paper", language)["amplitude"]
+    with mpmath.workdps(50):
+        for k in (1.015625, 1.03125, 1.0625):
+            k, omega = exact(k), exact(0.25)
+            S = (k * (k + 1) + 2 * (k - 2) * omega * (1 - omega)) / (6 * (1 + omega) ** 2)
+            wave = wave_of("paper").at(k=sp.Rational(float(k)), m1=1, m2="1/4", D=1)
+            factor = sp_or_mp(wave.speed_factor)
+            B = (exact(V) ** 2 / factor) ** (1 / (k - 1))
+            got = float(amplitude(V_s=V, k=float(k), m1=1.0, m2=0.25))
+            assert S > 0
+            assert abs(got / B - 1) <= 2.0**-52 * (4 + abs(mpmath.log(B)))
+
+
+def test_numpy_broadcasts_and_takes_integers(functions_of):
+    found = functions_of("paper", "numpy")
+    k, w = np.array([[1.25], [1.5]]), np.array([0.1, 1.0, 10.0])
+    beta = found["beta"](k=k, m1=1, m2=w, D=1)
+    assert beta.shape == (2, 3)
+    assert beta[1, 1] == found["beta"](k=1.5, m1=1, m2=1, D=1)
+    xi = np.linspace(-9, 9, 37)
+    v = found["profile"](xi=xi, B=2, k=1.5, m1=1, m2=1, D=1)
+    outside = np.abs(xi) > found["width"](k=1.5, m1=1, m2=1, D=1) / 2
+    assert outside.sum() > 10
+    assert np.all((v == 0) == outside)
+    large = found["beta"](k=2, m1=10**12, m2=np.array([10**12, 10**13]), D=3)  # 10^26: no int64
+    assert large == pytest.approx(found["beta"](k=2, m1=1, m2=np.array([1, 10]), D=3), rel=1e-15)
+
+
+def test_python_has_the_reduction_too():
+    found = {}
+    wave = wave_of("paper")
+    exec(wave.code("python"), found)
+    names = (*wave_functions(wave), "p", "a", "mu", "eta", "sigma", "s", "B")
+    assert set(names) <= set(found)
+    k, m1, m2, D, V = 1.5, 2.0, 3.0, 0.5, 1.25
+    exact_wave = wave.at(k=k, m1=m1, m2=m2, D=D)
+    reduction = exact_wave.reduction(V=V)
+    for name in ("p", "a", "mu", "eta", "sigma", "s"):
+        first, last = (V,) * (name == "mu"), (D,) * (name in ("mu", "sigma"))
+        got = found[name](*first, k, m1, m2, *last)
+        assert got == pytest.approx(float(getattr(reduction, name)), rel=1e-13)
+    assert found["B"](V, k, m1, m2) == found["amplitude"](V, k, m1, m2)
+    complex_root = {}
+    exec(wave.at(k=3, m1=1, m2=2).code("python"), complex_root)
+    assert complex_root["p"]() == pytest.approx(complex(wave.at(k=3, m1=1, m2=2).roots[0]))
+
+
+def test_arguments_have_one_order_in_all_languages():
+    functions = wave_functions(canonical_wave(Cell(["z", "a"], ["y", "b"], "L"), "q"))
+    names = {name: [s.name for s in f.arguments] for name, f in functions.items()}
+    assert names["profile"] == ["xi", "B", "q", "z", "a", "y", "b", "L"]
+    assert names["beta"] == names["width"] == names["fwhm_force"] == names["profile"][2:]
+    assert names["speed"] == ["B", "q"]
+    assert names["amplitude"] == ["V_s", "q"]
+
+
+# Words of every language, the module's own, letters beyond ASCII, and text that is no name at all.
+NAMES = [
+    *keyword.kwlist, *(word for language in LANGUAGES.values() for word in language.reserved),
+    "beta", "width", "speed", "amplitude", "profile", "fwhm_strain", "p", "a", "mu", "eta", "sigma",
+    "s", "xi", "Xi", "XI", "b", "v_s", "inside", "k_2", "k_2_", "r_1", "sum_1", "dp", "DP", "np",
+    "numpy", "self", "main", "beta_", "math_", "μ1", "μ", "λ", "lambda", "Λ", "ς", "σ", "M1", "m1",
+    "é", "_", "_x", "__init__", "1x", "", "x y", "x-y", "a'b", 'a"b', "x\ny", "x\\", "*/", "// ??/",
+    "!x", "#", "x;return 0", "M_PI", "M_LN2", "HUGE_VAL", "NAN", "INFINITY", "y0", "j1", "gamma",
+    "exp", "Sin", "SQRT", "print", "float", "map", "real", "Real", "result", "module", "call", "I",
+    "l", "O", "E", "pi", "size", "i386", "unix", "x" * 100, "x" * 31 + "y", "x" * 31 + "z", "日本",
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_any_name_at_once(language, tmp_path, request):
+    """One function of all of them: Σ n s_n tells each from every other."""
+    symbols = [sp.Symbol(name) for name in dict.fromkeys(NAMES)]
+    n = len(symbols)
+    total = sp.Add(*((i + 1) * symbol for i, symbol in enumerate(symbols)))
+    functions = [
+        Function("beta", "Σ n s_n", tuple(symbols), total),
+        Function("profile", "twice", tuple(symbols), 2 * sp.Function("beta")(*symbols)),
+    ]
+    source = LANGUAGES[language](functions).module(["names"])
+    if language in ("c", "fortran"):
+        found = compiled(source, language, functions, tmp_path)
+    elif language == "javascript":
+        node, found = in_node(source, functions)
+        request.addfinalizer(partial(node.communicate, timeout=30))
+    else:
+        found = {}
+        exec(as_python(source) if language == "julia" else source, found)
+    unit = np.eye(n)
+    assert [found["beta"](*row) for row in unit] == [i + 1 for i in range(n)]
+    assert found["profile"](*unit[n // 2]) == 2 * (n // 2 + 1)
+
+
+names = st.one_of(st.sampled_from(NAMES), st.text(max_size=6))
+
+
+@given(st.lists(names, min_size=4, max_size=4, unique=True), st.booleans())
+@settings(max_examples=12)
+def test_a_name_changes_nothing_but_itself(drawn, assume_positive):
+    symbols = [sp.Symbol(name, positive=assume_positive or None) for name in drawn]
+    k, m1, m2, D = symbols
+    try:
+        wave = canonical_wave(Dimer(m1, m2, spacing=D), k)
+    except InputError:  # a name that means something else
+        return
+    values = (1.5, 2.0, 3.0, 0.5)
+    for language in ("python", "numpy", "julia"):
+        found, expected = namespace(wave, language), plain(language)
+        got = found["profile"](0.1, 2.0, *values)
+        # sums are in another order under other names
+        assert got == pytest.approx(expected["profile"](0.1, 2.0, *values), rel=1e-15)
+        assert found["fwhm_force"](*values) == pytest.approx(
+            expected["fwhm_force"](*values), rel=1e-15
+        )
+
+
+def namespace(wave, language):
+    """What the wave's code defines, run by Python."""
+    source, found = wave.code(language), {}
+    exec(as_python(source) if language == "julia" else source, found)
+    return found
+
+
+@cache
+def plain(language):
+    return namespace(canonical_wave(Dimer("m1", "m2")), language)
+
+
+def test_what_was_renamed_is_said():
+    code = homogenize(Dimer("math", "μ1")).pde.traveling_wave().code("python")
+    assert "# math_ is the symbol 'math'\n# mu1 is the symbol 'μ1'\n" in code
+    code = homogenize(Dimer("M1", "m1"), k="3/2").pde.traveling_wave().code("fortran")
+    assert "! m1_ is the symbol 'm1'\n" in code
+    assert "symbol" not in homogenize(Dimer("M1", "m1"), k="3/2").pde.traveling_wave().code("c")
+
+
+def test_python_is_clean(tmp_path):
+    for name, language in product(WAVES, ("python", "numpy")):
+        (tmp_path / f"{name}_{language}.py").write_text(code_of(name, language) + "\n")
+    style = ["--isolated", "--preview", "--select=E,W,F", "--ignore=E226", "--line-length=79"]
+    command = [sys.executable, "-m", "ruff", "check", "--no-cache", *style, tmp_path]
+    found = subprocess.run(command, text=True, capture_output=True, check=False)
+    assert found.returncode == 0, found.stdout
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_lines_are_short_and_brackets_close(language):
+    for name in WAVES:
+        source = code_of(name, language)
+        assert max(map(len, source.splitlines())) < 80
+        assert source.count("(") == source.count(")")
+    assert not re.search(r"\*\*|\.[*/^]", code_of("paper", "julia"))
+
+
+def test_long_sums_are_cut_for_fortran():
+    long = canonical_wave(Cell([f"m{i}" for i in range(4)], [f"A{i}" for i in range(4)]), "3/2")
+    statement = re.compile(r"^.*(?:&\n.*)*", re.M)
+    assert max(s.count("\n") for s in statement.findall(long.code("fortran"))) < 256
+
+
+@given(st.lists(st.sampled_from(["a*b", "m1**2", "(", ")", "x/y", "f(x, y)", "c"]), max_size=60))
+def test_wrapping_changes_nothing_but_spaces(parts):
+    line = "    return (" + " + ".join(parts) + ")"
+    lines = wrapped(line, " &")
+    assert all(row.endswith(" &") for row in lines[:-1])
+    assert all(len(row) < 80 for row in lines)
+    joined = "".join(row.removesuffix(" &").strip() for row in lines)
+    assert joined.replace(" ", "") == line.replace(" ", "")
+
+
+def test_numbers():
+    wave = canonical_wave(Dimer(10**30, "1/3"))
+    found = {}
+    for language, text in (("c", "1.0/3.0"), ("fortran", "1d0/3d0"), ("python", "1/3")):
+        source = LANGUAGES[language]([Function("f", "f", (), sp.Rational(1, 3))]).module([])
+        assert text in source
+    exec(wave.code("python"), found)
+    assert found["beta"](1.5, 1) == pytest.approx(float(wave.at(k=1.5, D=1).beta), rel=1e-14)
+    for number in (10**400, sp.Rational(1, 10**400)):
+        with pytest.raises(InputError, match="beyond the numbers of a program"):
+            canonical_wave(Dimer("m1", "m2", spacing=number)).code("c")
+    thirds = {"c": "2.0/3.0", "fortran": "1.5d0", "julia": "1.5", "python": "1.5"}
+    values = {"c": sp.Rational(2, 3)}
+    for language, text in thirds.items():
+        value = values.get(language, sp.Rational(3, 2))
+        assert f" {text}" in LANGUAGES[language]([Function("f", "f", (), value)]).module([])
+
+
+def test_refusals(capsys):
+    with pytest.raises(InputError, match="language is 'rust': one of python, numpy, c, fortran, "):
+        wave_of("paper").code("rust")
+    with pytest.raises(SystemExit) as ended:
+        main(["derive", "--format", "c"])
+    assert ended.value.code == 2
+    assert capsys.readouterr().err.count("\n") == 1
+    with pytest.raises(NoSolitaryWave):
+        wave_of("paper").at(k=3, m1=1, m2=100).code("c")
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_the_command_prints_the_same(language, capsys):
+    with pytest.raises(SystemExit) as ended:
+        main(["wave", "--k", "3/2", "--masses", "1,math", "--format", language])
+    assert ended.value.code == 0
+    wave = homogenize(Dimer(1, "math"), k="3/2").pde.traveling_wave()
+    assert capsys.readouterr().out == wave.code(language) + "\n"
+
+
+def test_a_theory_with_awkward_names_is_a_module(capsys):
+    with pytest.raises(SystemExit):
+        main(["derive", "--masses", "math,coefficients", "--format", "python", "--order", "6"])
+    found = {}
+    exec(capsys.readouterr().out, found)
+    plain = homogenize(Dimer("m1", "m2"), 6).pde
+    values = {"k": sp.Rational(7, 4), "m1": 2, "m2": 3, "D": sp.S.Half}
+    expected = plain.H.xreplace({s: sp.sympify(values[s.name]) for s in plain.H.free_symbols})
+    assert found["H"](1.75, 2, 3, 0.5) == pytest.approx(float(expected), rel=1e-14)
+    table = found["coefficients"](1.75, 2, 3)
+    assert table[3][((2, 1), (3, 1)), ()] * 0.25 == pytest.approx(float(expected), rel=1e-14)
+    assert set(table) == set(plain.coefficients)
+
+
+def test_a_missing_compiler_is_told_or_refused_in_ci(monkeypatch):
+    monkeypatch.setenv("PATH", "")
+    monkeypatch.setenv("CI", "true")
+    with pytest.raises(RuntimeError, match="no gfortran here"):
+        compiled("", "fortran", [], Path())
+    monkeypatch.delenv("CI")
+    with pytest.raises(pytest.skip.Exception, match="no cc here"):
+        compiled("", "c", [], Path())

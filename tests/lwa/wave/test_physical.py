@@ -1,0 +1,170 @@
+"""The wave of a peak contact force: forces, scalings, limits; tests/validation has the lattice."""
+
+import pickle
+from functools import cache
+
+import mpmath
+import pytest
+import sympy as sp
+from hypothesis import given
+from hypothesis import strategies as st
+
+from lwa import Cell, Dimer, InputError, NoSolitaryWave, canonical_wave, homogenize
+from lwa.base.quantities import QUANTITIES
+
+k = sp.Symbol("k", positive=True)
+
+
+def symbols(letter, P):
+    return sp.symbols(f"{letter}1:{P + 1}", positive=True)
+
+
+@cache
+def functions(P):
+    """What the wave of a cell of P in symbols says, by name: functions at mpmath's precision."""
+    wave = canonical_wave(Cell(symbols("m", P), symbols("A", P)), k)
+    answer = wave.at_force()
+    expressions = {
+        "B": answer.strain,
+        "delta": answer.compression,
+        **{f"delta{i}": delta for i, delta in enumerate(answer.compressions)},
+        "c": answer.speed,
+        "v": answer.bead_velocity,
+        "scaled": wave.speed(answer.strain) * wave.speed_scale,
+        "peak": wave.profile(0, answer.strain),
+        **{f"{q} of the wave": wave.fwhm(q) for q in QUANTITIES},
+        **{f"{q} length": answer.fwhm(q) for q in QUANTITIES},
+        **{f"{q} time": answer.fwhm(q, "time") for q in QUANTITIES},
+    }
+    arguments = (*wave.cell.masses, *wave.cell.stiffnesses, wave.D, k, answer.force)
+    return list(expressions), sp.lambdify(arguments, list(expressions.values()), "mpmath", cse=True)
+
+
+def values(masses, stiffnesses, D, k, F):
+    names, compiled = functions(len(masses))
+    return dict(zip(names, compiled(*masses, *stiffnesses, D, k, F), strict=True))
+
+
+def same(found, wanted):
+    return abs(found / wanted - 1) < mpmath.mpf(10) ** -34  # of 40 digits
+
+
+reals = st.floats(1e-3, 1e3).map(mpmath.mpf)
+exponents = st.floats(1.05, 4).map(mpmath.mpf)
+cells = st.integers(1, 3).flatmap(
+    lambda P: st.tuples(
+        st.lists(reals, min_size=P, max_size=P), st.lists(reals, min_size=P, max_size=P)
+    )
+)
+
+
+@given(cells, reals, exponents, reals)
+def test_every_contact_carries_the_force_and_the_strain_is_their_mean(cell, D, k, F):
+    with mpmath.workdps(40):
+        masses, stiffnesses = cell
+        found = values(masses, stiffnesses, D, k, F)
+        deltas = [found[f"delta{i}"] for i in range(len(masses))]
+        for A, delta in zip(stiffnesses, deltas, strict=True):
+            assert same(A * delta**k, F)
+        assert same(sum(deltas), len(masses) * D * found["B"])
+        assert same(found["delta"], D * found["B"])
+
+
+@given(cells, reals, exponents, reals)
+def test_it_is_the_same_wave_in_space_and_time(cell, D, k, F):
+    with mpmath.workdps(40):
+        found = values(*cell, D, k, F)
+        assert same(found["c"], found["scaled"])
+        assert same(found["v"], found["c"] * found["peak"])
+        for quantity in QUANTITIES:
+            assert found[f"{quantity} length"] == found[f"{quantity} of the wave"]
+            assert same(found[f"{quantity} time"] * found["c"], found[f"{quantity} length"])
+
+
+@given(cells, reals, exponents, reals, st.tuples(reals, reals, reals, reals))
+def test_units(cell, D, k, F, scales):
+    """Masses, stiffnesses, lengths and forces in other units: the powers are those of mechanics."""
+    with mpmath.workdps(40):
+        m, A, length, force = scales
+        masses, stiffnesses = [m * x for x in cell[0]], [A * x for x in cell[1]]
+        one = values(*cell, D, k, F)
+        other = values(masses, stiffnesses, length * D, k, force * F)
+        delta = (force / A) ** (1 / k)
+        time = mpmath.sqrt(m * delta / force)
+        assert same(other["delta"], one["delta"] * delta)
+        assert same(other["B"], one["B"] * delta / length)
+        assert same(other["c"], one["c"] * length / time)
+        assert same(other["v"], one["v"] * delta / time)
+        for quantity in QUANTITIES:
+            assert same(other[f"{quantity} length"], one[f"{quantity} length"] * length)
+            assert same(other[f"{quantity} time"], one[f"{quantity} time"] * time)
+
+
+def test_the_linear_chains_sound_speed_as_k_tends_to_one():
+    """Springs in series: P D √(1 / (M Σ 1/A_i))."""
+    m1, m2, A1, A2, D, k = sp.symbols("m1 m2 A1 A2 D k", positive=True)
+    speed = canonical_wave(Cell([m1, m2], [A1, A2], D), k).at_force(7).speed
+    sound = 2 * D / sp.sqrt((m1 + m2) * (1 / A1 + 1 / A2))
+    assert sp.simplify((speed.subs(k, 1) / sound) ** 2) == 1
+
+
+def test_equal_spheres_by_hand():
+    """The theory's c² = (2/(k+1)) A^{1/k} F^{(k-1)/k} D²/m, 4/5 of it at k = 3/2."""
+    m, A, D, F = sp.symbols("m A D F", positive=True)
+    answer = homogenize(Cell([m], [A], D), k="3/2").pde.traveling_wave().at_force()
+    assert answer.force == F
+    assert answer.speed**2 == sp.Rational(4, 5) * A ** sp.Rational(2, 3) * sp.cbrt(F) * D**2 / m
+
+
+def test_the_papers_scaling_of_force_and_speed():
+    answer = homogenize(Dimer("m1", "m2")).pde.traveling_wave().at(k="3/2").at_force("F")
+    F = sp.Symbol("F", positive=True)
+    assert sp.simplify(F * sp.diff(answer.speed, F) / answer.speed) == sp.Rational(1, 6)
+
+
+def test_names_and_numbers_for_the_symbols():
+    wave = homogenize(Dimer("m1", "m2")).pde.traveling_wave()
+    answer = wave.at_force("F")
+    at = answer.at(F=2, k="3/2", m1=3, m2="1/2", D="5")
+    assert at == wave.at(k="3/2", m1=3, m2="1/2", D=5).at_force(2)
+    assert at.speed.is_number
+    assert answer.at(F="f").force == sp.Symbol("f", positive=True)
+    assert answer.at(m1=1).force == answer.force
+    assert pickle.loads(pickle.dumps(answer)) == answer
+    assert hash(answer) == hash(wave.at_force())
+
+
+@pytest.mark.parametrize(
+    ("F", "words"),
+    [
+        (0, "force is 0: it must be positive"),
+        (-1.5, "force is -3/2: it must be positive"),
+        (float("nan"), "force is nan"),
+        (None, "force is None"),
+        ("m1", "force 'm1': the name means a property of the chain"),
+        ("q", "force 'q': the name means a property of the chain"),
+        ("k", "force 'k': the name means the exponent"),
+        ("B", "force 'B': the name means the peak strain"),
+        ("V_s", "force 'V_s': the name means the speed"),
+        (sp.Symbol("f") + sp.Symbol("f", positive=True), "'f' names two symbols"),
+        (2 * sp.Symbol("D"), "force 'D': the name means the spacing"),
+    ],
+)
+def test_refused_forces(F, words):
+    wave = homogenize(Dimer("m1", "m2"), k="q").pde.traveling_wave()
+    with pytest.raises(InputError, match=f"^{words}"):
+        wave.at_force(F)
+
+
+def test_refused_values():
+    answer = canonical_wave(Cell(["m"]), "3/2").at_force()
+    with pytest.raises(InputError, match=r"^extent is 'space': length or time is wanted"):
+        answer.fwhm("force", "space")
+    with pytest.raises(InputError, match=r"^quantity is 'bead'"):
+        answer.fwhm("bead")
+    with pytest.raises(InputError, match=r"^F is 0: it must be positive"):
+        answer.at(F=0)
+    with pytest.raises(InputError, match="'A' is not among"):
+        answer.at(A=1)
+    with pytest.raises(NoSolitaryWave, match="k > 1"):
+        canonical_wave(Cell(["m"])).at_force().at(k=1)

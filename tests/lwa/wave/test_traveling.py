@@ -1,0 +1,182 @@
+"""The traveling wave in closed form, substituted where its derivation does not go."""
+
+import mpmath
+import pytest
+import sympy as sp
+from hypothesis import assume, given
+from hypothesis import strategies as st
+
+from lwa import Cell, Dimer, InputError, NoSolitaryWave, canonical_wave, homogenize
+from lwa.wave.reduction import strain_equation
+
+masses = st.fractions(min_value="1/50", max_value=50, max_denominator=50)
+exponents = st.fractions(min_value="21/20", max_value=6, max_denominator=20)
+
+WAVE = homogenize(Dimer("m1", "m2")).pde.traveling_wave()
+
+
+def number(value):
+    real, imaginary = sp.N(value, 60).as_real_imag()
+    return mpmath.mpc(mpmath.mpf(real), mpmath.mpf(imaginary))
+
+
+def wave_at(k, m1, m2):
+    try:
+        return WAVE.at(k=k, m1=m1, m2=m2, D=1)
+    except NoSolitaryWave:
+        return None
+
+
+def test_the_strain_equation_by_the_chain_rule():
+    """v^k [v'/v + G (v'/v)³ + H v' v''/v² + I v'''/v] with v = z^p, by SymPy's own calculus."""
+    x = sp.Symbol("x")
+    p, G, H, I = sp.symbols("p G H I")
+    z = sp.exp(2 * x) + 3 * x + 5
+    v = z**p
+    v1, v2, v3 = (v.diff(x, n) / v for n in (1, 2, 3))
+    expected = v1 + G * v1**3 + H * v1 * v2 + I * v3
+    r1, r2, r3 = (z.diff(x, n) / z for n in (1, 2, 3))
+    c = strain_equation(p, G, H, I)
+    found = c["linear"] * r1 + c["cubic"] * r1**3 + c["product"] * r1 * r2 + c["third"] * r3
+    assert sp.simplify((found - expected).subs(x, 0)) == 0
+
+
+@given(exponents, masses, masses, st.integers(0, 1))
+def test_z_obeys_its_equation_for_either_root_even_complex_ones(k, m1, m2, root):
+    """z = v^{1/p} put into z'' = μ z^η - σ z, at 50 digits."""
+    wave = wave_at(k, m1, m2)
+    assume(wave is not None)
+    with mpmath.workdps(50):
+        found = wave.reduction(root, V="4/3")
+        p, mu, eta, sigma = map(number, (found.p, found.mu, found.eta, found.sigma))
+        beta, m, B = map(number, (wave.beta, wave.m, wave.amplitude("4/3")))
+        t = mpmath.mpf(2) / 5
+        log_v = mpmath.log(B) + m * mpmath.log(mpmath.cos(t))
+        z = mpmath.exp(log_v / p)
+        # d²/dξ² of exp(log v / p), with (log v)' = -mβ tan, (log v)'' = -mβ²/cos²
+        slope = -m * beta * mpmath.tan(t) / p
+        second = z * (slope**2 - m * beta**2 / mpmath.cos(t) ** 2 / p)
+        terms = second, mu * z**eta, sigma * z
+        # 50 digits, less what the cancellation between the terms and the root p cost
+        assert abs(terms[0] - terms[1] + terms[2]) < mpmath.mpf(10) ** -38 * max(map(abs, terms))
+
+
+@given(exponents, masses, masses, st.integers(0, 1))
+def test_the_paper_s_beta_and_B_equal_the_short_forms(k, m1, m2, root):
+    wave = wave_at(k, m1, m2)
+    assume(wave is not None)
+    with mpmath.workdps(50):
+        found = wave.reduction(root, V=2)
+        beta, short = number(found.beta), number(wave.beta)
+        assert min(abs(beta - short), abs(beta + short)) < abs(short) * mpmath.mpf(10) ** -38
+        s, mu = number(found.s), number(found.mu)
+        # B^{k-1}, whose own power 1/(k-1) may overflow
+        ratio = mu / (short**2 * s * (s - 1))
+        assert abs(ratio / (4 / number(wave.speed_factor)) - 1) < mpmath.mpf(10) ** -36
+
+
+def test_complex_roots_do_occur_and_leave_beta_real():
+    wave = WAVE.at(k=3, m1=1, m2=2)
+    assert not any(sp.N(root).is_real for root in wave.roots)
+    assert wave.beta.is_real
+    # here H = 0 as well, so that a = (3 - k + H/I) p - 2 does not depend on p
+    assert wave.reduction().a == -2
+
+
+@given(exponents)
+def test_uniform_chain_roots(k):
+    roots = WAVE.at(k=k, m1=1, m2=1).roots
+    k = sp.Rational(k.numerator, k.denominator)
+    assert set(roots) == {2 / (k + 1), 2 / k}
+    assert WAVE.at(k=k, m1=3, m2=3).speed_factor == 2 / (k * (k + 1))
+
+
+@given(exponents, masses, masses)
+def test_fwhm_is_where_the_profile_falls_to_half(k, m1, m2):
+    wave = wave_at(k, m1, m2)
+    assume(wave is not None)
+    with mpmath.workdps(40):
+        for quantity, power in (("strain", 1), ("force", wave.k), ("velocity", 1)):
+            xi = wave.fwhm(quantity) / 2
+            value = number(wave.profile(xi, 3) / 3) ** number(power)
+            assert abs(value - mpmath.mpf(1) / 2) < mpmath.mpf(10) ** -35
+
+
+def test_profile_has_compact_support():
+    wave = WAVE.at(k="3/2", m1=1, m2=1, D=1)
+    assert wave.profile(0, 2) == 2
+    assert wave.profile(wave.width / 2 + 1, 2) == 0
+    assert wave.profile(-wave.width, 2) == 0
+
+
+@given(exponents, masses, masses)
+def test_speed_and_amplitude_are_inverse(k, m1, m2):
+    wave = wave_at(k, m1, m2)
+    assume(wave is not None and wave.k > sp.Rational(6, 5))
+    with mpmath.workdps(40):
+        back = number(wave.amplitude(wave.speed(3)))
+        assert abs(back / 3 - 1) < mpmath.mpf(10) ** -30
+
+
+def test_results_in_any_length_unit():
+    mm = WAVE.at(k="3/2", m1=2, m2=1, D="4.76")
+    one = WAVE.at(k="3/2", m1=2, m2=1, D=1)
+    assert mm.fwhm("force") == one.fwhm("force") * sp.Rational("4.76")
+    assert mm.sites == one.sites
+    assert mm.speed_factor == one.speed_factor
+
+
+def test_symbols_without_assumptions_do_as_well():
+    a, b, q, d = sp.symbols("a b q d")
+    wave = homogenize(Dimer(a, b, spacing=d), k=q).pde.traveling_wave()
+    assert wave.at(q="3/2", a=1, b=1).beta == sp.sqrt(10) / (5 * d)
+
+
+@pytest.mark.parametrize(
+    ("k", "m1", "m2", "words"),
+    [
+        (1, 1, 1, "k > 1"),
+        ("1/2", 1, 1, "k > 1"),
+        (3, 1, 100, "G\\+H\\+I"),
+        # k = 8/5, ω → ∞: G+H+I > 0, yet V² < 0
+        ("8/5", 1, 1000, "real speed"),
+    ],
+)
+def test_no_wave_is_an_error_that_says_why(k, m1, m2, words):
+    with pytest.raises(NoSolitaryWave, match=words):
+        WAVE.at(k=k, m1=m1, m2=m2)
+    with pytest.raises(NoSolitaryWave, match=words):
+        homogenize(Dimer(m1, m2), k=k).pde.traveling_wave()
+
+
+def test_refused_values():
+    with pytest.raises(InputError, match="'m3' is not among"):
+        WAVE.at(m3=1)
+    with pytest.raises(InputError, match="m1 is -1"):
+        WAVE.at(m1=-1)
+    with pytest.raises(InputError, match="quantity"):
+        WAVE.fwhm("bead")
+    with pytest.raises(InputError, match="root is 2"):
+        WAVE.reduction(2)
+    with pytest.raises(InputError, match="V is 0"):
+        WAVE.amplitude(0)
+
+
+@pytest.mark.parametrize(
+    ("cell", "k"),
+    [
+        (Dimer("m1", "m2"), "k"),
+        (Cell(["m"]), "k"),
+        (Cell(["m1", "m1", "m2"]), "k"),
+        (Cell([1, 2, 3], [1, 8, 27]), 3),
+    ],
+    ids=str,
+)
+def test_the_canonical_wave_needs_the_dispersion_only(cell, k):
+    short = canonical_wave(cell, k)
+    long = homogenize(cell, 4, k=k, closure="full", field="center").pde.traveling_wave()
+    k = short.k
+    assert sp.simplify(short.beta**2 - (k - 1) ** 2 / (2 * long.I * k * (k + 1))) == 0
+    assert sp.simplify(short.beta**2 / long.beta**2) == 1
+    assert short.speed_factor == sp.factor(2 / (k * (k + 1)))
+    assert sp.simplify(long.speed_factor - short.speed_factor) == 0

@@ -1,0 +1,156 @@
+"""Pictures: every format, complete files or none, and what the panels say."""
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from matplotlib import pyplot
+from matplotlib.colors import same_color
+from matplotlib.figure import Figure
+
+from lwa import InputError
+from validation.pictures import figure as drawing
+from validation.pictures.figure import figure
+from validation.pictures.panel import Curve, Map, Panel
+from validation.report.result import Report
+
+SIGNATURES = {".png": b"\x89PNG", ".pdf": b"%PDF", ".svg": b"<?xml"}
+X = np.array([1.0, 2.0, 3.0])
+
+
+@pytest.fixture
+def report():
+    return Report("one", panels=(Panel("x", "y", (Curve.of("c", X, X**2),), "xy", "squares"),))
+
+
+@pytest.mark.parametrize("suffix", drawing.SUFFIXES)
+def test_every_format(report, tmp_path, suffix):
+    file = tmp_path / f"picture{suffix}"
+    report.save(file)
+    assert file.read_bytes().startswith(SIGNATURES[suffix])
+    assert list(tmp_path.iterdir()) == [file]
+
+
+def test_a_panel_is_drawn_as_it_says(report):
+    (axes,) = report.figure().axes
+    assert (axes.get_xlabel(), axes.get_ylabel(), axes.get_title()) == ("x", "y", "squares")
+    assert (axes.get_xscale(), axes.get_yscale()) == ("log", "log")
+    (line,) = axes.lines
+    np.testing.assert_array_equal(line.get_xydata(), np.column_stack((X, X**2)))
+
+
+@pytest.mark.parametrize(
+    ("most", "labels"),
+    [(8.0, {"1", "1.5", "2", "3", "4", "6", "8"}), (200.0, {"1", "2", "5", "10", "50", "200"})],
+)
+def test_a_logarithmic_axis_of_few_decades_has_plain_numbers(most, labels):
+    x = np.geomspace(1, most, 5)
+    picture = figure([Panel("x", "y", (Curve.of("c", x, 1e6 * x),), "xy")])
+    picture.canvas.draw()
+    (axes,) = picture.axes
+    assert {tick.get_text() for tick in axes.get_xticklabels()} >= labels
+    assert not any(tick.get_text() for tick in axes.get_xticklabels(minor=True))
+    assert any("10^" in tick.get_text() for tick in axes.get_yticklabels())  # too large for that
+
+
+def test_colours_marks_and_bars():
+    curves = (
+        Curve.of("bars", X, X, "C3s", [0.1, 0.2, 0.3]),
+        Curve.of("", X, X, "k--"),
+        Curve.of("own", X, X),
+        Curve.of("long", np.arange(99.0), np.arange(99.0)),
+    )
+    (axes,) = figure((Panel("x", "y", curves),)).axes
+    first, second, third, fourth = axes.lines[:4]
+    assert same_color(first.get_color(), "C3")
+    assert (first.get_marker(), first.get_linestyle()) == ("s", "None")
+    assert len(axes.containers[0].lines[2][0].get_segments()) == 3
+    assert same_color(second.get_color(), "k")
+    assert same_color(third.get_color(), "C2")
+    assert third.get_marker() == "^"
+    assert fourth.get_marker() == "None"  # marks would cover it
+    assert [t.get_text() for t in axes.get_legend().get_texts()] == ["bars", "own", "long"]
+
+
+def test_many_names_stand_once_below_all_panels():
+    crowded = Panel("x", "y", tuple(Curve.of(f"c{i}", X, i * X) for i in range(12)))
+    picture = figure((crowded, crowded))
+    assert all(axes.get_legend() is None for axes in picture.axes)
+    (legend,) = picture.legends
+    assert len(legend.get_texts()) == 12
+
+
+@pytest.mark.parametrize(("places", "scale"), [(X, ""), (np.array([0.01, 0.1, 1.0]), "x")])
+def test_a_map_has_a_colour_for_each_place(places, scale):
+    values = np.array([[1.0, 2.0, np.nan], [4.0, 5.0, 60.0]])
+    found = Map("c", places, np.array([1.0, 2.0]), values, 1.0, 10.0, "log")
+    axes, bar = figure((Panel("x", "y", scale=scale, map=found),)).axes
+    (mesh,) = axes.collections
+    assert mesh.get_array().shape == (2, 3)
+    assert mesh.get_array().mask.sum() == 1
+    assert mesh.norm.vmax == 10.0
+    assert bar.get_ylabel() == "c"
+    assert axes.get_xscale() == ("log" if scale else "linear")
+    assert axes.patch.get_hatch()  # where nothing is: grey stands in the middle of some colours
+    low, high = axes.get_xlim()
+    assert low < places[0] < places[-1] < high
+
+
+def test_a_panel_is_drawn_into_axes_that_are_given(report):
+    given = Figure().subplots()
+    assert report.plot(ax=given) is given
+    np.testing.assert_array_equal(given.lines[0].get_ydata(), X**2)
+    own = report.plot()
+    assert own.get_title() == "squares"
+    pyplot.close(own.figure)
+    with pytest.raises(InputError, match="this result has no picture"):
+        Report("none").plot()
+
+
+def test_the_limits_picture_shows_every_quantity_at_every_k(limits_result):
+    left, right = limits_result.report().figure().axes
+    for axes in (left, right):
+        bars = [c for c in axes.containers if c.has_yerr]
+        assert len(bars) == 4
+        assert all(len(c.lines[0].get_xdata()) == 3 for c in bars)
+
+
+@pytest.mark.parametrize(
+    ("largest", "power"), [(0.006, True), (0.06, False), (60_000, False), (600_000, True)]
+)
+def test_small_and_large_numbers_stand_before_a_power_of_ten(largest, power):
+    curve = Curve.of("c", [0, 1], [0, largest])
+    figure = Report("one", panels=(Panel("x", "y", (curve,)),)).figure()
+    figure.draw_without_rendering()
+    (axes,) = figure.axes
+    assert bool(axes.yaxis.get_offset_text().get_text()) is power
+    assert axes.xaxis.get_offset_text().get_text() == ""
+
+
+def test_a_full_disk_is_one_line_and_leaves_the_old_picture(tmp_path):
+    """Full for this process: no file of it may be larger than a kilobyte."""
+    files = [tmp_path / f"picture{suffix}" for suffix in drawing.SUFFIXES]
+    for file in files:
+        file.write_bytes(b"old")
+    code = """if True:
+        import resource, sys
+        from pathlib import Path
+        from validation.pictures.panel import Curve, Panel
+        from validation.report.result import Report
+        report = Report("one", panels=(Panel("x", "y", (Curve.of("c", range(9), range(9)),)),))
+        report.figure()  # Matplotlib writes a cache of fonts
+        resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))
+        for file in sys.argv[1:]:
+            try:
+                report.save(Path(file))
+            except ValueError as error:
+                print(error)
+    """
+    done = subprocess.run(
+        [sys.executable, "-c", code, *files], capture_output=True, text=True, check=True
+    )
+    said = [f"{file} is not written: File too large" for file in files]
+    assert (done.stdout.splitlines(), done.stderr) == (said, "")
+    assert {file.read_bytes() for file in files} == {b"old"}
+    assert sorted(tmp_path.iterdir()) == sorted(files)

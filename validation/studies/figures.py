@@ -1,0 +1,209 @@
+"""The figures and stated numbers of Porter et al. (2008), computed.
+
+Figure 2: the force over time at three beads of the 1:1 and the 2:1 chain; with it N:1 chains up to
+22:1, as far as the paper's numerics go. Figure 3a: peak force against speed over the striker's drop
+heights, with both moduli of PTFE, and the exponent of V_s ~ F_m^e. Figure 3b is
+`validation.studies.porter2008.widths`.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
+
+import numpy as np
+import scipy
+
+from lwa import canonical_wave
+from lwa.base.arrays import Array
+from lwa.base.progress import Progress
+from validation.lattice.run import Run
+from validation.lattice.simulate import simulate_many
+from validation.pulses.pulse import Measured, compared, exponent
+from validation.report.command import study
+from validation.report.panel import Curve, Panel
+from validation.report.result import Report
+from validation.report.table import Column, Table
+from validation.report.text import percent
+from validation.scenes.materials import DIAMETER, PTFE_BEAD
+from validation.studies import paper
+from validation.studies.paper import HERTZ, Train, chain_cell, chain_runs
+from validation.waves.theory import Compacton
+
+RECORDED = {1: (15, 24, 33), 2: (16, 24, 34)}  # N → figure 2's beads; 24 is PTFE
+MOST = 22  # the largest N of the paper's numerics
+HEIGHTS = (0.1, 0.2, 0.4, 0.6, 0.8, 1.0, 1.2)  # drop heights of figure 3a, in m
+MODULI = (1.46e9, 0.6e9)  # of PTFE, in Pa: dynamic, which the paper uses, and nominal static
+
+_N_TO_1 = """\
+N:1 chains; the theory is that of the canonical field at the lattice's peak force; ±: by how
+much a less accurate run differs"""
+
+
+@dataclass(frozen=True, eq=False)
+class Forces:
+    """Figure 2: the force of each sensor bead (mean of its contacts, N) over time (s)."""
+
+    N: int
+    beads: tuple[int, ...]
+    time: Array
+    force: Array
+
+
+class Speed(NamedTuple):
+    """The leading pulse of an N:1 chain, and the canonical theory's speed at its peak force."""
+
+    N: int
+    speed: Measured
+    force: Measured
+    theory: float
+
+
+@dataclass(frozen=True)
+class Scaling:
+    """Figure 3a for one modulus of PTFE: V_s and F_m = (F_15 + F_34)/2 at each drop height, and
+    the canonical theory's speed at each F_m."""
+
+    E: float
+    speeds: tuple[Measured, ...]
+    forces: tuple[Measured, ...]
+    theory: tuple[float, ...]
+
+    @property
+    def exponent(self) -> Measured:
+        """The fitted e of V_s ~ F_m^e."""
+        return exponent(self.forces, self.speeds)
+
+
+_SPEEDS = (
+    Column("N", "chain", format="{}:1".format),
+    Column("speed", "V_s lattice", "m/s", error=True),
+    Column("force", "peak force", "N", error=True),
+    Column("theory_value", "V_s theory", "m/s", format=".2f"),
+    Column("", "error", format=percent),
+)
+_SCALINGS = (
+    Column("modulus_value", "E of PTFE", "GPa", format=lambda E: f"{E / 1e9:g}"),
+    Column("exponent", "exponent of V_s in F_m", error=True),
+    Column("", "less 1/6", format="+.0e"),
+    Column("speed_value", "V_s", "m/s", format=lambda V: f"{V[0]:.1f} … {V[-1]:.1f}"),
+    Column("speed_error_value"),
+    Column("force_value", "F_m", "N", format=lambda F: f"{F[0]:.2f} … {F[-1]:.2f}"),
+    Column("force_error_value"),
+    Column("theory_value", "V_s theory", "m/s", format=lambda V: f"{V[0]:.1f} … {V[-1]:.1f}"),
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Figures:
+    """All of them."""
+
+    forces: tuple[Forces, ...]
+    speeds: tuple[Speed, ...]
+    scaling: tuple[Scaling, ...]
+
+    def report(self) -> Report:
+        """``speeds``: ``N``, ``speed``, ``force`` and ``theory``, each ``_value``; ``scalings``:
+        ``modulus_value``, ``exponent_value`` and a list over the drop heights of ``speed_value``,
+        ``force_value`` and ``theory_value``; ``scaling``: that of the paper, with the
+        dynamic modulus; ``forces``: ``N``, ``beads``, ``time_value``, ``force_value``."""
+        speeds = tuple((*s, s.theory / s.speed.value - 1) for s in self.speeds)
+        rows = tuple((s.E, s.exponent, s.exponent.value - 1 / 6,
+                      [V.value for V in s.speeds], [V.error for V in s.speeds],
+                      [F.value for F in s.forces], [F.error for F in s.forces], s.theory)
+                     for s in self.scaling)  # fmt: skip
+        heights = f"drop heights {HEIGHTS[0]:g} … {HEIGHTS[-1]:g} m; the paper fits 0.1666"
+        scalings = Table(_SCALINGS, rows, "scalings", title=heights)
+        return Report(
+            "",
+            (Table(_SPEEDS, speeds, "speeds", title=_N_TO_1), scalings),
+            panels=(*map(_forces_panel, self.forces), _scaling_panel(self.scaling)),
+            data={
+                "scaling": scalings.document()[0],
+                "forces": [{"N": f.N, "beads": f.beads, "time_value": f.time,
+                            "force_value": f.force} for f in self.forces],
+            },
+        )  # fmt: skip
+
+
+def _forces_panel(record: Forces) -> Panel:
+    rows = enumerate(zip(record.beads, record.force, strict=True))
+    curves = (Curve(f"bead {bead}", 1e6 * record.time, f, f"C{i}-") for i, (bead, f) in rows)
+    return Panel("time (µs)", "force of the bead (N)", tuple(curves), title=f"{record.N}:1 chain")
+
+
+def _scaling_panel(rows: tuple[Scaling, ...]) -> Panel:
+    curves = []
+    for i, row in enumerate(rows):
+        label = f"E = {row.E / 1e9:g} GPa: exponent {row.exponent.value:.4f}"
+        forces, speeds = ([m.value for m in found] for found in (row.forces, row.speeds))
+        curves.append(Curve.of(label, forces, speeds, f"C{i}{'os'[i]}"))
+        curves.append(Curve.of("theory, $F_m^{1/6}$", forces, row.theory, f"C{i}-"))
+    return Panel("peak force $F_m$ (N)", "speed $V_s$ (m/s)", tuple(curves), "xy")
+
+
+@study()
+def figures(progress: Progress[Any] = iter) -> Figures:
+    """The paper's figures: force records, N:1 chains, force against speed. Ten seconds."""
+    parts: list[tuple[Any, ...]] = [(forces, N) for N in RECORDED]
+    parts += [(chain_speed, N) for N in range(1, MOST + 1)]
+    parts += [(scaling, E) for E in MODULI]
+    found: dict[Any, list[Any]] = {}
+    for part, *of in progress(parts):
+        found.setdefault(part, []).append(part(*of))
+    records, speeds, scalings = found.values()
+    return Figures(tuple(records), tuple(speeds), tuple(scalings))
+
+
+def forces(N: int) -> Forces:
+    """Figure 2 for the N:1 chain."""
+    run, _ = chain_runs(RECORDED[N], N=N)
+    return Forces(N, RECORDED[N], run.time, run.bead_force)
+
+
+def chain_speed(N: int) -> Speed:
+    """The leading pulse of the N:1 chain over some periods far from the striker, and the theory's.
+
+    It is timed from steel bead to steel bead, over three periods or 18 beads at least, by its
+    front, a tenth of its peak: in chains of large N it has several humps, and not the same one
+    stays the highest.
+    """
+    period = N + 1
+    before, across = (max(3, math.ceil(beads / period)) for beads in (14, 18))
+    sensors = (before * period + 1, (before + across) * period + 1)
+
+    def numbers(run: Run) -> dict[str, float]:
+        train = Train.of(run)
+        first, second = (
+            _front(run.time, force - pulse.peak / 10)
+            for force, pulse in zip(run.bead_force, train.pulses.values(), strict=True)
+        )
+        return {"speed": across * period * DIAMETER / (second - first), "force": train.peak}
+
+    runs = chain_runs(sensors, N=N, beads=max(paper.BEADS, (before + across + 3) * period))
+    found = compared(numbers, *runs)
+    wave = canonical_wave(chain_cell(N), HERTZ)
+    theory = Compacton.of_bead_force(wave, found["force"].value).speed
+    return Speed(N, found["speed"], found["force"], theory)
+
+
+def _front(time: Array, above: Array) -> float:
+    """When a signal first passes zero, by a cubic spline."""
+    first = int(np.argmax(above > 0))
+    spline = scipy.interpolate.CubicSpline(time, above)
+    return float(scipy.optimize.brentq(spline, time[first - 1], time[first]))
+
+
+def scaling(E: float) -> Scaling:
+    """Figure 3a for a modulus of PTFE, without gravity in the chain."""
+    ptfe = replace(PTFE_BEAD, material=replace(PTFE_BEAD.material, E=E))
+    velocities = (math.sqrt(2 * paper.GRAVITY * h) for h in HEIGHTS)
+    drops = [paper.recorded_chain(paper.SENSORS, v, ptfe=ptfe) for v in velocities]
+    pairs = zip(*(simulate_many(drops, rtol=rtol) for rtol in paper.TOLERANCES), strict=True)
+    found = [(Measured(fine.speed, coarse.speed), Measured(fine.peak, coarse.peak))
+             for fine, coarse in (map(Train.of, pair) for pair in pairs)]  # fmt: skip
+    speeds, forces = zip(*found, strict=True)
+    wave = canonical_wave(chain_cell(ptfe=ptfe), HERTZ)
+    theory = tuple(Compacton.of_bead_force(wave, force.value).speed for force in forces)
+    return Scaling(E, speeds, forces, theory)

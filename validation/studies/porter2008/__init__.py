@@ -1,1 +1,0 @@
-"""The experiment and the figures of Porter et al. (2008)."""
