@@ -118,7 +118,7 @@ class Observables:
         return quotient(product(self.momentum, self.momentum), self.energy)
 
     @cached_property
-    def linear(self) -> Series:
+    def linear_loss(self) -> Series:
         """Mean over the contacts of ∫ (dδ/dt)² dt, δ the compression, over its leading term.
 
         In the wave dδ/dt = -c dδ/dξ and dt = dξ/c, so that this is c ∫ (dδ/dξ)² dξ.
@@ -127,7 +127,7 @@ class Observables:
         return self._loss([share * share for share in c], strain, strain)
 
     @cached_property
-    def kuwabara_kono(self) -> Series:
+    def kuwabara_kono_loss(self) -> Series:
         """Mean over equal contacts of ∫ δ^{k-1} (dδ/dt)² dt, over its leading term.
 
         With F = A δ^k the integrand is (dF/dt) (dδ/dt) / (k A).
