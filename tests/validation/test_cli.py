@@ -328,6 +328,7 @@ def test_output_on_a_full_disk_is_one_line(scene_file):
             stderr=subprocess.PIPE,
             text=True,
             check=False,
+            timeout=120,
         )
     said = "lwa-validate: the output: No space left on device\n"
     assert (ended.returncode, ended.stderr) == (2, said)
@@ -437,19 +438,25 @@ def test_help(study, flag):
 @pytest.mark.parametrize("program", [[COMMAND], [sys.executable, "-m", "validation"]], ids=len)
 def test_it_says_its_version_and_its_name(program):
     for flag, first in (("--version", "lwa-validate "), ("-h", "Usage: lwa-validate ")):
-        shown = subprocess.run([*program, flag], capture_output=True, text=True, check=True)
+        shown = subprocess.run(
+            [*program, flag], capture_output=True, text=True, check=True, timeout=120
+        )
         assert shown.stdout.startswith(first)
 
 
 def test_the_installed_command():
     ended = subprocess.run(
         [COMMAND, "paper", "--beads", "20", "--sensors", "8,15", "--format", "json"],
-        capture_output=True, text=True, check=False,
+        capture_output=True, text=True, check=False, timeout=120
     )  # fmt: skip
     assert (ended.returncode, ended.stderr) == (0, "")
     assert len(json.loads(ended.stdout)["rows"]) == 11
     ended = subprocess.run(
-        [COMMAND, "paper", "--beads", "two"], capture_output=True, text=True, check=False
+        [COMMAND, "paper", "--beads", "two"],
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=120,
     )
     assert (ended.returncode, ended.stdout) == (2, "")
     assert ended.stderr.count("\n") == 1
@@ -460,7 +467,9 @@ def test_matplotlib_is_loaded_only_for_a_picture():
         "import sys; from validation import cli; cli.validate.main(['paper', '--beads', '12', "
         "'--sensors', '4,8'], standalone_mode=False); assert 'matplotlib' not in sys.modules"
     )
-    ended = subprocess.run([sys.executable, "-c", code], capture_output=True, check=False)
+    ended = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, check=False, timeout=120
+    )
     assert ended.returncode == 0, ended.stderr
 
 
@@ -576,7 +585,7 @@ def test_a_long_run_says_so_first_and_stops_at_ctrl_c(scene_file, method, durati
         assert running.stderr is not None
         first = running.stderr.readline()
         running.send_signal(signal.SIGINT)
-        out, rest = running.communicate()
+        out, rest = running.communicate(timeout=120)
     assert re.match(r".* steps of \w+ with .* beads, .* samples: about [\d.]+ \w+$", first)
     assert (running.returncode, out) == (130, "")
     assert rest.splitlines()[-1] == "lwa-validate: interrupted"
@@ -641,7 +650,9 @@ def test_a_study_is_loaded_when_it_is_called():
                 pass
             print({"numpy", "scipy", "numba", "matplotlib"} & {*sys.modules})
     """
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=120
+    )
     assert re.findall(r"(?m)^(?:set\(\)|\{.*)$", done.stdout) == ["set()"] * 3
 
 

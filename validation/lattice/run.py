@@ -31,12 +31,12 @@ class Run:
         mean of the bead's two contacts, the displacement is from the equilibrium.
     displacements, velocities : (n,), at the end.
     energy_drift : change of the energy above equilibrium over its initial value (0 if that is 0);
-        beads left behind by a window keep what they had.
+        beads that a window has left behind keep their energy.
     momentum_drift : change of the momentum over Σ m|v| at the end; None with a wall.
     evaluations : of the equations of motion; bead_evaluations : times the beads each one moved.
     step : the mean one.
-    window : beads that were followed behind the front at least; beyond, contacts count as open
-        and beads fly on freely. None when the whole chain was integrated throughout.
+    window : number of beads that were followed behind the front; what lies further behind is NaN
+        in all arrays. None for the whole chain.
     """
 
     scene: Scene
@@ -83,12 +83,13 @@ def finished(
     end: Array,
     records: dict[str, Array],
     energy: float,
+    momentum: float | None,
     steps: int,
     evaluations: int,
     bead_evaluations: int,
     window: int | None = None,
 ) -> Run:
-    """The run that came to this state and energy, with what its sensors recorded."""
+    """The run that came to this state, energy and change of momentum."""
     n, before = motion.size, motion.scales.energy
     arrays = records | {"displacements": end[:n].copy(), "velocities": end[n:].copy()}
     for array in arrays.values():
@@ -96,7 +97,7 @@ def finished(
     return Run(
         scene=motion.scene,
         energy_drift=(energy - before) / before if before else 0.0,
-        momentum_drift=motion.momentum_drift(end),
+        momentum_drift=momentum,
         evaluations=evaluations,
         bead_evaluations=bead_evaluations,
         step=motion.scene.duration / steps,

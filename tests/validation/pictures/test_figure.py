@@ -148,7 +148,11 @@ def test_a_full_disk_is_one_line_and_leaves_the_old_picture(tmp_path):
                 print(error)
     """
     done = subprocess.run(
-        [sys.executable, "-c", code, *files], capture_output=True, text=True, check=True
+        [sys.executable, "-c", code, *files],
+        capture_output=True,
+        text=True,
+        check=True,
+        timeout=120,
     )
     said = [f"{file} is not written: File too large" for file in files]
     assert (done.stdout.splitlines(), done.stderr) == (said, "")
