@@ -4,8 +4,17 @@ import numpy as np
 import pytest
 import scipy
 
-from lwa import Cell, Dimer, ExpandedWave, InputError, expand
-from lwa.expansion.strike import graded_force, pulse_of_strike, transmitted_force
+from lwa import (
+    Cell,
+    Dimer,
+    ExpandedWave,
+    InputError,
+    canonical_wave,
+    expand,
+    graded_force,
+    pulse_of_strike,
+    transmitted_force,
+)
 from tests.lwa.expansion.test_exact_waves import lattice
 from validation import Scene, simulate
 
@@ -131,6 +140,22 @@ def test_a_damped_pulse_slows_down_as_its_ledger_says(kind):
         errors.append(rate / gamma / wave().slowdown(kind).value - 1)
     assert abs(errors[0]) < 0.07
     assert abs(errors[1]) < 0.35 * abs(errors[0])
+
+
+@pytest.mark.parametrize("cell", [EQUAL, Dimer(2, 1, spacing=1)], ids=["equal", "dimer"])
+def test_the_long_wave_s_ledger_is_the_lattice_s_as_k_tends_to_1(cell):
+    """Energy, momentum and effective mass of the canonical wave: errors fall as k - 1."""
+    rows = []
+    for k in ("1.02", "1.01"):
+        long, own = canonical_wave(cell, k).at_force(8), wave(k, 8, cell)
+        pairs = (
+            (getattr(w, name) for w in (long, own))
+            for name in ("energy", "momentum", "effective_mass")
+        )
+        rows.append([float(ours) / sum_.value - 1 for ours, sum_ in pairs])
+    for far, near in zip(*rows, strict=True):
+        assert abs(far) < 0.02
+        assert near == pytest.approx(far / 2, rel=0.05)  # the next order in k - 1
 
 
 def test_dissipation_of_other_kinds_or_unlike_contacts_is_refused():
