@@ -146,7 +146,7 @@ def test_a_damped_pulse_slows_down_as_its_ledger_says(kind):
 def test_the_long_wave_s_ledger_is_the_lattice_s_as_k_tends_to_1(cell):
     """Energy, momentum and effective mass of the canonical wave: errors fall as k - 1."""
     rows = []
-    for k in ("1.02", "1.01"):
+    for k in ("1.004", "1.002"):
         long, own = canonical_wave(cell, k).at_force(8), wave(k, 8, cell)
         pairs = (
             (getattr(w, name) for w in (long, own))
@@ -154,8 +154,8 @@ def test_the_long_wave_s_ledger_is_the_lattice_s_as_k_tends_to_1(cell):
         )
         rows.append([float(ours) / sum_.value - 1 for ours, sum_ in pairs])
     for far, near in zip(*rows, strict=True):
-        assert abs(far) < 0.02
-        assert near == pytest.approx(far / 2, rel=0.05)  # the next order in k - 1
+        assert abs(far) < 0.004
+        assert near == pytest.approx(far / 2, rel=0.02)  # the next order in k - 1
 
 
 def test_dissipation_of_other_kinds_or_unlike_contacts_is_refused():
