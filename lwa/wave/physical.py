@@ -141,7 +141,7 @@ class PhysicalWave(Value):
 
         >>> from lwa import Cell, canonical_wave
         >>> round(canonical_wave(Cell([1]), "3/2").at_force(1).effective_mass.n(), 4)
-        1.4190
+        1.4192
         """
         k, m = self.wave.k, 2 / (self.wave.k - 1)
         return (k + 1) / (k + 3) * self._density * self._arch(m) ** 2 / self._arch(2 * m)
