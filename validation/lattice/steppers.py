@@ -95,7 +95,8 @@ def integrate(motion: Motion, method: str, rtol: float, atol: float, progress: R
                 states[-1][..., : len(held)] = state.T.reshape(-1, 2, n)[..., held]
             ends.append(stepper.t)
             tell(stepper.t / end)
-    path = NodePath(np.array(ends), beads, np.array(states).reshape(-1, len(nodes), 2, len(beads)))
+    nothing = np.zeros((len(ends) - 1, len(nodes), 2, 0))
+    path = NodePath(np.array(ends), beads, np.array(states) if states else nothing)
     records = {"time": time} | recorded(motion, beads, *path(beads, time))
     evaluations = int(stepper.nfev)
     energy, momentum = motion.energy(stepper.y), motion.momentum_drift(stepper.y)
