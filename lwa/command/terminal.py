@@ -114,8 +114,10 @@ def _status(call: Callable[[], Any], name: str) -> int:
     except (click.Abort, KeyboardInterrupt):
         click.echo(f"{name}: interrupted", err=True)
         return 130
-    except BrokenPipeError:  # the reader has seen enough; nothing is left to flush
-        _drop_output()
+    except (SystemExit, BrokenPipeError) as ended:
+        if isinstance(ended, SystemExit) and not ended.code:
+            raise  # Click has printed a shell's completion
+        _drop_output()  # the reader has seen enough: Click ends with 1 then
         return 0
     except OSError as error:  # such as a disk that is full
         _drop_output()
