@@ -8,13 +8,11 @@ with contact force 1 at its peak, in the paper's closure and for the full closur
 
 from __future__ import annotations
 
-import asyncio
 import json
-import logging
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import Executor, Future, ThreadPoolExecutor, as_completed
-from contextlib import ExitStack, contextmanager, nullcontext
+from concurrent.futures import BrokenExecutor, CancelledError, as_completed
+from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
@@ -29,7 +27,7 @@ from lwa.base.arrays import Array
 from lwa.base.exact import InputError, exact, shorten
 from lwa.base.files import content
 from lwa.base.progress import Progress
-from validation.lattice.threads import threads
+from validation.lattice.threads import cluster, threads
 from validation.pictures.panel import Curve, Map, Panel
 from validation.pulses.pulse import Measured
 from validation.pulses.steady import QUANTITIES, STRETCH, Point, point
@@ -49,7 +47,6 @@ CLOSURES = {"linear": "paper's closure", "canonical": "full closure, canonical f
 Key = tuple[Rational, Rational]  # k and ω of a point
 
 _MOST, _MOST_BYTES = 300, 10**9  # values of an axis; of the file
-_PATIENCE = 5  # seconds within which a cluster must answer
 _FORMAT = {"format": "lwa sweep", "version": 2}  # changes with the definition of a quantity
 _OMEGA = "ω = m2/m1"
 _NOTE = """\
@@ -207,8 +204,10 @@ def _locked(file: Path) -> Iterator[None]:
     lock = FileLock(f"{file}.lock", blocking=False)
     try:
         with lock:
-            yield
-            Path(lock.lock_file).unlink()
+            try:
+                yield
+            finally:
+                Path(lock.lock_file).unlink()
     except Timeout:
         raise InputError(f"file is {file}: another sweep writes it") from None
 
@@ -230,37 +229,8 @@ def theory(ks: Sequence[Rational], omegas: Sequence[Rational]) -> dict[str, dict
     }
 
 
-@contextmanager
-def cluster(address: str) -> Iterator[Executor]:
-    """Executor of the Dask cluster of a scheduler, whose workers have `lwa` installed.
-
-    Raises `lwa.InputError` without Dask, and where no scheduler with workers answers.
-    """
-    try:
-        import distributed  # an optional package
-    except ImportError:
-        raise InputError("cluster needs Dask: pip install 'lwa[cluster]'") from None
-
-    async def call() -> None:  # a client hangs where a stranger accepts its call
-        await (await asyncio.wait_for(distributed.connect(address), _PATIENCE)).close()
-
-    with ExitStack() as stack:
-        for name in ("distributed", "distributed.client", "tornado.application"):
-            log = logging.getLogger(name)  # of a lost scheduler they print tracebacks
-            stack.callback(log.setLevel, log.level)
-            log.setLevel(logging.CRITICAL)
-        try:
-            with ThreadPoolExecutor(1) as thread:  # as a notebook's own has a loop already
-                thread.submit(asyncio.run, call()).result()
-            client = distributed.Client(address, timeout=_PATIENCE, set_as_default=False)
-            stack.enter_context(client).wait_for_workers(1, timeout=_PATIENCE)
-        except Exception:
-            wanted = "no Dask scheduler with workers answers; one such as tcp://127.0.0.1:8786"
-            raise InputError(f"cluster is {shorten(address)}: {wanted} is wanted") from None
-        yield client.get_executor()
-
-
 def _axis(text: str, name: str) -> Iterator[Rational]:
+    """Values and ranges start:stop:count of a text, exactly."""
     for part in text.split(","):
         start, *rest = part.split(":")
         if not rest:
@@ -333,18 +303,14 @@ def sweep(
             underway = [workers.submit(point, *key, stretch) for key in todo]
             try:
                 for _, future in zip(progress(todo), as_completed(underway), strict=True):
-                    found = _result(future)
+                    found = future.result()
                     points[found.k, found.omega] = found
                     if path:
                         _keep(path, header, found)
+            except (BrokenExecutor, CancelledError) as error:
+                gone = "the workers are gone before the sweep is done: killed, or out of memory?"
+                raise SweepError(gone) from error
             finally:
                 for future in underway:
                     future.cancel()
     return Sweep(*grid, stretch, tuple(points[key] for key in product(*grid)), theory(*grid))
-
-
-def _result(future: Future[Point]) -> Point:
-    try:
-        return future.result()
-    except Exception as error:  # a lost worker, or one without this package
-        raise SweepError(f"a worker failed: {type(error).__name__}: {error}") from error
