@@ -174,16 +174,17 @@ def power(base: sp.Expr, exponent: sp.Expr) -> sp.Expr:
     factor, rest = base.as_coeff_Mul()
     if factor in (0, 1) or not factor.is_Rational or not exponent.is_Rational:
         return base**exponent
+    p, q = int(exponent.p), int(exponent.q)
     parts = int(factor.p), int(factor.q)
     bits = [part.bit_length() for part in parts]
-    if sum(bits) * (abs(int(exponent.p)) + int(exponent.q)) > _BITS:
-        return Kept(base) ** exponent
-    if max(bits) < _ROOTLESS or exponent.is_Integer:
-        return base**exponent
-    roots = [sp.integer_nthroot(abs(part), int(exponent.q)) for part in parts]
-    if factor > 0 and all(whole for _, whole in roots):
-        return sp.Rational(roots[0][0], roots[1][0]) ** exponent.p * rest**exponent
-    return Kept(factor) ** exponent * rest**exponent if factor > 0 else Kept(base) ** exponent
+    if max(bits) > _ROOTLESS and factor > 0 and 1 < q and abs(p) < q:
+        roots = [sp.integer_nthroot(part, q) for part in parts]
+        whole = all(found for _, found in roots)
+        number = sp.Rational(roots[0][0], roots[1][0]) ** p if whole else Kept(factor) ** exponent
+        return number * rest**exponent
+    if sum(bits) * (abs(p) + q) > _BITS or (max(bits) > _ROOTLESS and q > 1):
+        base = Kept(base)
+    return base**exponent
 
 
 def root(value: sp.Expr) -> sp.Expr:
