@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
-from lwa.base.exact import InputError, positive, power, shorten
+from lwa.base.exact import InputError, positive, power, root, shorten
 from lwa.base.frozen import Value
 from lwa.base.quantities import known_extent
 from lwa.cell import RESERVED, meant, unmistakable
@@ -67,7 +67,7 @@ class PhysicalWave(Value):
     def _bead_share(self) -> sp.Expr:
         """cos^{mk}(βD/2), a bead's peak force over its contacts'."""
         wave, k = self.wave, self.wave.k
-        angle = (k - 1) / (4 * sp.sqrt(wave.dispersion))  # βD/2
+        angle = (k - 1) / (4 * root(wave.dispersion))  # βD/2
         power = 2 * k / (k - 1)
         # at ξ = 0 the mean of cos^power(βξ ± angle) is greatest where it is concave
         if angle.is_number and not (angle < sp.pi / 2 and power * sp.sin(angle) ** 2 < 1):
@@ -112,12 +112,49 @@ class PhysicalWave(Value):
         factor = wave.speed_factor * wave.cell.size * k / wave.cell.mass
         stiffness, force = wave.cell.stiffness(k), self.contact_force
         powers = power(stiffness, 1 / (2 * k)) * power(force, (k - 1) / (2 * k))
-        return wave.cell.spacing * sp.sqrt(factor) * powers
+        return wave.cell.spacing * root(factor) * powers
 
     @cached_property
     def bead_velocity(self) -> sp.Expr:
         """B dx/dt, the peak velocity u_t of the beads; in this theory all of a cell move alike."""
         return self.strain * self.speed
+
+    @cached_property
+    def momentum(self) -> sp.Expr:
+        """Σ m u_t over the chain: M/(P D) · B dx/dt · ∫ cos^m(βξ) dξ."""
+        return self._density * self.bead_velocity * self._arch(2 / (self.wave.k - 1))
+
+    @cached_property
+    def energy(self) -> sp.Expr:
+        """Kinetic and elastic energy of the chain, (k + 3)/(k + 1) times the kinetic energy.
+
+        That is the virial theorem, which holds for the lattice's waves and for the canonical
+        field's. The kinetic energy is M/(2 P D) · (B dx/dt)² · ∫ cos^{2m}(βξ) dξ.
+        """
+        k = self.wave.k
+        kinetic = self._density * self.bead_velocity**2 * self._arch(4 / (k - 1)) / 2
+        return (k + 3) / (k + 1) * kinetic
+
+    @cached_property
+    def effective_mass(self) -> sp.Expr:
+        """P²/(2E) of momentum and energy, which does not depend on the force.
+
+        >>> from lwa import Cell, canonical_wave
+        >>> round(canonical_wave(Cell([1]), "3/2").at_force(1).effective_mass.n(), 4)
+        1.4192
+        """
+        k, m = self.wave.k, 2 / (self.wave.k - 1)
+        return (k + 1) / (k + 3) * self._density * self._arch(m) ** 2 / self._arch(2 * m)
+
+    @property
+    def _density(self) -> sp.Expr:
+        """Mass per length."""
+        return self.wave.cell.mass / (self.wave.cell.size * self.wave.D)
+
+    def _arch(self, n: sp.Expr) -> sp.Expr:
+        """∫ cos^n(βξ) dξ over the wave."""
+        beta = (self.wave.k - 1) / (2 * self.wave.D * sp.sqrt(self.wave.dispersion))
+        return sp.sqrt(sp.pi) * sp.gamma((n + 1) / 2) / (beta * sp.gamma(n / 2 + 1))
 
     def fwhm(self, quantity: str = "force", extent: str = "length") -> sp.Expr:
         """Full width at half maximum of "strain", "force" or "velocity", a "length" or a "time".
