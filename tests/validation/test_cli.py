@@ -739,7 +739,7 @@ def test_a_study_is_loaded_when_it_is_called():
     assert re.findall(r"(?m)^(?:set\(\)|\{.*)$", done.stdout) == ["set()"] * 3
 
 
-@pytest.mark.parametrize("name", ["accuracy", "exact", "figures", "hard", "limits"])
+@pytest.mark.parametrize("name", ["accuracy", "figures", "hard", "limits"])
 def test_a_long_command_says_in_its_help_how_long_it_takes(name):
     says = cli.studies()[name][2]
     assert re.search(r"(minutes?|seconds)\b[^.]*\.$", says), says
