@@ -339,7 +339,6 @@ def test_an_output_that_cannot_be_is_refused_before_the_work(
     before = sorted(tmp_path.iterdir())
     monkeypatch.setattr(RECORD, None)
     monkeypatch.setattr("validation.studies.paper.paper.function", lambda: pytest.fail("computed"))
-    monkeypatch.setattr("validation.studies.sweep.sweep.compute", None)
     status, out, err = run(capsys, *command, option, f"{name}{suffix}")
     assert (status, out, err.count("\n")) == (2, "", 1)
     assert err.startswith(f"lwa-validate: {option[2:]} is {name[:50]}")
