@@ -656,7 +656,7 @@ def test_a_closed_pipe_is_no_failure(scene_file):
             running.stdout.close()
             assert running.stderr is not None
             assert running.stderr.read() == b""
-            assert running.wait(timeout=120) == 0
+            assert running.wait(timeout=120) == 141  # of Unix tools that lose their reader
 
 
 @pytest.mark.parametrize(
