@@ -34,7 +34,8 @@ def test_samples_are_values_of_the_signals(method):
     """Of every quantity, at shapes of any kind; the last bead touches a wall under a load."""
     scene = Scene(
         masses=(1, 0.4, 2, 1), stiffnesses=(1, 3, 1), wall=2, k=1.5, precompression=0.3,
-        gravity=0.1, velocities=(0.5,), duration=9, samples=51, contact_sensors=(0, 3), bead_sensors=(3, 1),
+        gravity=0.1, velocities=(0.5,), duration=9, samples=51,
+        contact_sensors=(0, 3), bead_sensors=(3, 1),
     )  # fmt: skip
     run = simulate(scene, method=method, rtol=1e-6)
     records = {
