@@ -32,6 +32,10 @@ TAKEN = {**RESERVED, "A": "the stiffness of a contact", "p0": "the strain ahead 
 """Names that stand beside a law in results, and what they mean there."""
 
 
+LARGE = 32
+"""The exponent from which on a power of a sum is not multiplied out."""
+
+
 class ContactLaw(Value):
     """A contact force F(δ): its derivatives, its energy, and how the contacts of a cell share it.
 
@@ -62,8 +66,8 @@ class ContactLaw(Value):
         if self.F.atoms(AppliedUndef):
             s = sp.Dummy("s", positive=True)
             return sp.Integral(self.F.subs(self.delta, s), (s, 0, self.delta))
-        found = _energy_of_poles(self.F, self.delta)
-        return sp.integrate(self.F, self.delta, conds="none") if found is None else found
+        parts = sp.Add.make_args(self.F) if _unexpanded(self.F) else (self.F,)
+        return sp.Add(*(_integral(part, self.delta) for part in parts))
 
     def phi(self, n: int) -> sp.Expr:
         """φ_n = δ^{n-1} F^{(n)}/F′ as an expression in δ.
@@ -71,8 +75,8 @@ class ContactLaw(Value):
         >>> named("exponential", 1).phi(3)
         delta**2
         """
-        top = sp.expand(self.delta ** (n - 1) * self.slope(n))
-        return sp.cancel(sp.powsimp(top / sp.expand(self.slope())))
+        top, bottom, large = _large_powers(self.delta ** (n - 1) * self.slope(n), self.slope())
+        return sp.cancel(sp.powsimp(sp.expand(top) / sp.expand(bottom))).xreplace(large)
 
     def at(self, delta: sp.Expr, n: int = 0) -> sp.Expr:
         """F^{(n)} at a compression."""
@@ -147,22 +151,6 @@ class ContactLaw(Value):
     def replaced(self, new: Mapping[sp.Symbol, sp.Expr]) -> Self:
         """The law with the values that `lwa.cell.substitution` gives for its symbols."""
         raise NotImplementedError
-
-
-def _energy_of_poles(F: sp.Expr, x: sp.Symbol) -> sp.Expr | None:
-    """∫ Σ c (a + bx)^q dx with some q < -1, term by term; None for any other F.
-
-    SymPy expands such a function, and the terms of the expanded form cancel next to the pole.
-    """
-    total, poles = sp.S.Zero, False
-    for term in sp.Add.make_args(F):
-        c, rest = term.as_independent(x, as_Add=False)
-        base, q = rest.as_base_exp() if rest.has(x) else (x, sp.S.Zero)
-        b = base.diff(x)
-        if not q.is_Rational or q == -1 or b.has(x):
-            return None
-        total, poles = total + c * base ** (q + 1) / ((q + 1) * b), poles or q < -1
-    return total if poles else None
 
 
 def _where_it_grows_to_zero(F: Callable[[Any], Any]) -> Any:
@@ -288,6 +276,48 @@ def general() -> Law:
 def phi_symbol(n: int) -> sp.Symbol:
     """φ_n, as it stands in results."""
     return sp.Symbol(f"phi{n}", real=True)
+
+
+def _large(*values: sp.Expr) -> set[sp.Expr]:
+    """The powers b^e with |e| > `LARGE` in the values."""
+    powers: set[sp.Expr] = set().union(*(value.atoms(sp.Pow) for value in values))
+    return {power for power in powers if power.exp.is_Rational and abs(power.exp) > LARGE}
+
+
+def _unexpanded(F: sp.Expr) -> bool:
+    """Whether F has large powers or poles, which SymPy's integral would multiply out.
+
+    The terms of a multiplied out pole cancel next to it.
+    """
+    powers = (power.exp for power in F.atoms(sp.Pow) if power.exp.is_Rational)
+    return any(abs(e) > LARGE or e < -1 for e in powers)
+
+
+def _integral(value: sp.Expr, x: sp.Symbol) -> sp.Expr:
+    """∫ value dx; that of a power of a linear base by its own rule."""
+    factor, power = value.as_independent(x, as_Add=False)
+    base, e = power.as_base_exp()
+    if _unexpanded(power) and e.is_Rational and not base.diff(x).has(x):
+        return factor * base ** (e + 1) / (base.diff(x) * (e + 1))
+    return sp.integrate(value, x, conds="none")
+
+
+def _large_powers(*values: sp.Expr) -> tuple[Any, ...]:
+    """The values with b^e, |e| > `LARGE`, written as c b^{e - e0}, and the mapping c → b^{e0}.
+
+    The exponents of F′ and of F^{(n)} differ by a few, and c cancels in their ratio; b^e itself
+    SymPy would multiply out, in e terms.
+    """
+    found: dict[sp.Expr, sp.Expr] = {}  # b → b^{e0}
+    new: dict[sp.Expr, sp.Expr] = {}
+    names: dict[sp.Expr, sp.Expr] = {}
+    for power in sorted(_large(*values), key=sp.default_sort_key):
+        first = found.setdefault(power.base, power)
+        rest = power.exp - first.exp
+        if rest.is_Integer and abs(rest) <= LARGE:
+            c = names.setdefault(first, sp.Dummy("c", positive=True))
+            new[power] = c * power.base**rest
+    return *(x.xreplace(new) for x in values), {c: first for first, c in names.items()}
 
 
 Builder = Callable[..., sp.Expr]

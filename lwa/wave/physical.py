@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Any
 import sympy as sp
 
 from lwa.base import latex
-from lwa.base.exact import InputError, number, positive, power, shorten
+from lwa.base.exact import InputError, number, positive, power, root, shorten
 from lwa.base.frozen import Value
 from lwa.base.quantities import known, known_extent, strain_power
 from lwa.cell import RESERVED, meant, unmistakable
@@ -105,7 +105,7 @@ class PhysicalWave(Value):
     def _bead_share(self) -> sp.Expr:
         """cos^{mk}(βD/2), a bead's peak force over its contacts'."""
         wave, k = self.wave, self.wave.k
-        angle = (k - 1) / (4 * sp.sqrt(wave.dispersion))  # βD/2
+        angle = (k - 1) / (4 * root(wave.dispersion))  # βD/2
         exponent = 2 * k / (k - 1)
         # At ξ = 0 the mean of cos^e(βξ ± angle) has its maximum only where it is concave.
         if angle.is_number and not (angle < sp.pi / 2 and exponent * sp.sin(angle) ** 2 < 1):
@@ -155,7 +155,7 @@ class PhysicalWave(Value):
         wave, k = self.wave, self.wave.k
         factor = wave.speed_factor * wave.cell.size * k / wave.cell.mass
         powers = power(wave.cell.stiffness(k), 1 / (2 * k))
-        return wave.D * sp.sqrt(factor) * powers * power(contact_force, (k - 1) / (2 * k))
+        return wave.D * root(factor) * powers * power(contact_force, (k - 1) / (2 * k))
 
     @cached_property
     def bead_velocity(self) -> Any:
@@ -163,15 +163,41 @@ class PhysicalWave(Value):
         return self.strain * self.speed
 
     @cached_property
-    def compact_momentum(self) -> Any:
-        """Momentum of the compact wave, ∫ (M/(PD)) V v dx, with the cell's mass spread evenly.
+    @cached_property
+    def momentum(self) -> Any:
+        """Σ m u_t over the chain: M/(P D) · B dx/dt · ∫ cos^m(βξ) dξ."""
+        return self._like(self._density * self._arch(self.wave.m)) * self.bead_velocity
 
-        ∫ cos^m(βx) dx over the support is √π Γ((m+1)/2) / (β Γ(m/2+1)).
+    @cached_property
+    def energy(self) -> Any:
+        """Kinetic and elastic energy of the chain, (k + 3)/(k + 1) times the kinetic energy.
+
+        That is the virial theorem, which holds for the lattice's waves and for the canonical
+        field's. The kinetic energy is M/(2 P D) · (B dx/dt)² · ∫ cos^{2m}(βξ) dξ.
         """
-        wave, m = self.wave, self.wave.m
-        arch = sp.sqrt(sp.pi) * sp.gamma((m + 1) / 2) / sp.gamma(m / 2 + 1) / wave.beta
-        density = wave.cell.mass / (wave.cell.size * wave.D)
-        return self._like(density * arch) * self.bead_velocity
+        k = self.wave.k
+        kinetic = self._like(self._density * self._arch(2 * self.wave.m)) / 2
+        return self._like((k + 3) / (k + 1)) * kinetic * self.bead_velocity**2
+
+    @cached_property
+    def effective_mass(self) -> sp.Expr:
+        """P²/(2E) of momentum and energy, which does not depend on the force.
+
+        >>> from lwa import Cell, canonical_wave
+        >>> round(canonical_wave(Cell([1]), "3/2").at_force(1).effective_mass.n(), 4)
+        1.4192
+        """
+        k, m = self.wave.k, self.wave.m
+        return (k + 1) / (k + 3) * self._density * self._arch(m) ** 2 / self._arch(2 * m)
+
+    @property
+    def _density(self) -> sp.Expr:
+        """Mass per length."""
+        return self.wave.cell.mass / (self.wave.cell.size * self.wave.D)
+
+    def _arch(self, n: sp.Expr) -> sp.Expr:
+        """∫ cos^n(βξ) dξ over the wave."""
+        return sp.sqrt(sp.pi) * sp.gamma((n + 1) / 2) / (self.wave.beta * sp.gamma(n / 2 + 1))
 
     def fwhm(self, quantity: str = "force", extent: str = "length") -> Any:
         """Full width at half maximum of "strain", "force" or "velocity", a "length" or a "time".

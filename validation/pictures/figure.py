@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 SUFFIXES = (".pdf", ".png", ".svg")
 _STYLES = ("o-", "s--", "^:", "D-.", "v-", "x--", "P:", "*-.")
 _FEW = 40  # points of a curve; markers at more of them would cover the curve
+_ACROSS = 5  # names in a row of a legend above the panel
 _MOST = 10  # names in the legend of a panel; more stand once below all panels
 
 
@@ -119,7 +120,10 @@ def draw(plot: Axes, panel: Panel) -> None:
     for axis in panel.scale:
         _plain(getattr(plot, f"{axis}axis"))
     if 0 < sum(bool(curve.label) for curve in panel.curves) <= _MOST:
-        plot.legend(fontsize="small", loc=panel.legend or "best")
+        above = panel.legend is not None and panel.legend[1] >= 1
+        place = {"loc": "lower left", "bbox_to_anchor": panel.legend, "ncols": _ACROSS}
+        other = {"loc": panel.legend or "best"}
+        plot.legend(fontsize="small", frameon=not above, **(place if above else other))
 
 
 def _plain(axis: Axis) -> None:

@@ -65,8 +65,8 @@ class Panel:
 
     x, y : labels of the axes.
     scale : logarithmic axes: "", "x", "y" or "xy".
-    legend : lower left corner of the legend in fractions of the panel, where Matplotlib finds no
-        free place by itself.
+    legend : lower left corner of the legend in fractions of the panel, above it from 1 on; by
+        default where Matplotlib finds most room.
     """
 
     x: str

@@ -13,8 +13,9 @@ from numpy.typing import ArrayLike
 
 from lwa import Cell
 from lwa.base.arrays import Array
+from lwa.spheres.hertz import Sphere
 from validation.scenes.checks import SceneError
-from validation.scenes.materials import PTFE_BEAD, STEEL, STEEL_BEAD, Bead
+from validation.scenes.materials import PTFE_BEAD, STEEL, STEEL_BEAD
 from validation.scenes.scene import Scene
 
 
@@ -45,7 +46,7 @@ def chain_scene(
     gravity: float,
     duration: float,
     N: int = 1,
-    ptfe: Bead = PTFE_BEAD,
+    ptfe: Sphere = PTFE_BEAD,
 ) -> Scene:
     """The N:1 chain of steel and PTFE of Porter et al. (2008), which ends in a steel wall and is
     struck by its first bead; it records the sensor beads, their two contacts each, and the wall's.
