@@ -153,17 +153,17 @@ def widths() -> Widths:
 
 def _numbers(run: Run) -> dict[str, float]:
     """FWHM of each bead's force and their averages (s), mean peaks (N) and the speed (m/s)."""
-    beads, contacts = Train.of(run), Train.of(run, "contact").only(lambda i: i >= FIRST_BEAD)
-    late = beads.only(lambda bead: bead >= FIRST_BEAD)
-    steel = late.only(lambda bead: bead % 2 == 1)
+    beads, contacts = Train.of(run), Train.of(run, "contact").only(range(FIRST_BEAD, paper.BEADS))
+    late = beads.only(range(FIRST_BEAD, paper.BEADS))
+    steel = late.only(range(1, paper.BEADS, 2))
     return {
         **{f"bead {bead}": pulse.fwhm for bead, pulse in beads.pulses.items()},
         "contacts": contacts.fwhm,
         "beads": late.fwhm,
         "steel": steel.fwhm,
-        "PTFE": late.only(lambda bead: bead % 2 == 0).fwhm,
+        "PTFE": late.only(range(0, paper.BEADS, 2)).fwhm,
         "contacts' force": contacts.peak,
-        "F_m": beads.only(lambda bead: bead in paper.SENSORS).peak,
+        "F_m": beads.only(paper.SENSORS).peak,
         "speed": steel.speed,
     }
 

@@ -19,6 +19,7 @@ from numpy.typing import ArrayLike
 
 from lwa import Dimer, PhysicalWave, TravelingWave, canonical_wave, homogenize
 from lwa.base.arrays import Array
+from lwa.wave.closed import CompactWave
 from lwa.wave.curves import arch, number
 from validation.scenes.checks import SceneError, positive
 
@@ -158,12 +159,13 @@ def _with(
     return PhysicalWave(wave, math.exp(log))
 
 
-def bead_fwhm(wave: TravelingWave) -> float:
+def bead_fwhm(wave: CompactWave) -> float:
     """Full width at half maximum of the force inside a bead, a length; the same at every force.
 
     The force is cos^p(β(x - D/2)) + cos^p(β(x + D/2)), p = 2k/(k-1), each term on its own arch.
     """
-    k, beta, D = (number(value) for value in (wave.k, wave.beta, wave.D))
+    k, D = number(wave.k), number(wave.D)
+    beta = (k - 1) / (2 * D * math.sqrt(number(wave.dispersion)))
 
     def force(x: float) -> float:
         sides = (beta * (x + side) for side in (-D / 2, D / 2))
