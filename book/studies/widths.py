@@ -24,7 +24,7 @@ from validation.report.text import percent
 from validation.scenes.materials import DIAMETER
 from validation.studies import paper
 from validation.studies.paper import HERTZ, Train, chain_cell, chain_runs
-from validation.waves.theory import Compacton
+from validation.waves.theory import bead_fwhm
 
 FIRST_BEAD = 10  # from here on the width no longer changes on its way; the average starts here
 STATED = {"m1 ≫ m2": 0.092, "m2/m1 = 0.27": 0.025, "m1 = m2": 0.228}  # the paper's
@@ -180,10 +180,10 @@ def _waves() -> dict[str, list[TravelingWave]]:
 
 def _width(wave: TravelingWave, quantity: str, force: float, in_time: bool) -> float:
     """The theory's FWHM of a quantity whose peak is ``force``, in s or sites."""
-    unit = Compacton(wave, 1.0)
-    peak = (unit.bead_force if quantity == "bead force" else unit.contact_force)(0.0)
-    compacton = Compacton(wave, (force / float(peak)) ** (1 / unit.k))
-    return compacton.fwhm(quantity) / (compacton.speed if in_time else compacton.spacing)
+    bead = quantity == "bead force"
+    physical = wave.at_force(force, of="bead" if bead else "contact")
+    width = bead_fwhm(wave) if bead else float(physical.fwhm("force"))
+    return width / (float(physical.speed) if in_time else float(wave.D))
 
 
 if __name__ == "__main__":
