@@ -80,9 +80,9 @@ def precompressed(
     ``rows``: ``masses``, ``ratio_value`` (measured dynamic over static force), ``speed_value``
     (V/c0, c0 the speed of sound) with its error, ``theory_value``, ``error_value`` (theory/lattice
     - 1), ``exact_value`` (for equal beads, by Newton's method), ``fwhm_value`` of the dynamic
-    contact force in sites with its error, ``fwhm_theory_value``, ``fwhm_off_value``, ``peak_value`` (bead
-    velocity, the mean over a cell by mass) with its error, ``peak_theory_value``,
-    ``peak_off_value`` and ``decay_value`` (of the dynamic force, per site).
+    contact force in sites with its error, ``fwhm_theory_value``, ``fwhm_off_value``,
+    ``peak_value`` (bead velocity, the mean over a cell by mass) with its error,
+    ``peak_theory_value``, ``peak_off_value`` and ``decay_value`` (of the dynamic force, per site).
 
     Raises `SceneError` for parameters out of range and `MeasureError` if a pulse does not arrive.
     """
