@@ -122,7 +122,7 @@ class NumericBackground(Value):
     def _squares(self, p0: Array, B: Array) -> Array:
         """V²: F′(p0) + B ∫(1-s)² F″ ds, or 2 ∫(1-s) F′ ds for waves that are not small."""
         found = np.empty_like(p0)
-        for rows, g, p, bend, _ in self._resolved(p0, B):
+        for rows, g, p, bend, _ in self._resolved(p0, B, rough=True):
             first, second = g.ds * g.y2, g.ds * g.y2**2  # weights of 1/2 and 1/3, but for rounding
             start = self._slope(p0[rows])
             change = B[rows] / 3 * (bend @ (second / second.sum()))
@@ -159,15 +159,19 @@ class NumericBackground(Value):
         return found
 
     def _resolved(
-        self, p0: Array, B: Array, deep: bool = False
+        self, p0: Array, B: Array, deep: bool = False, rough: bool = False
     ) -> Iterator[tuple[NDArray[np.intp], Grid, Array, Array, Array]]:
-        """Rows of waves with a grid that resolves them, p and F″ at its nodes, and dξ/dθ."""
+        """Rows of waves with a grid that resolves them, p and F″ at its nodes, and dξ/dθ.
+
+        Waves that no grid resolves are refused or, if ``rough``, come with the finest one.
+        """
         rows = np.arange(len(p0))
         for level in LEVELS:
             g = grid(*level, deep)
             base, rise = p0[rows], B[rows]
             p, bend, rate = self._rates(g, base, rise, np.zeros_like(base))
-            good = g.converged(rate, ROUNDING if level == LEVELS[-1] else CONVERGED)
+            last = level == LEVELS[-1]
+            good = g.converged(rate, ROUNDING if last else CONVERGED) | (last and rough)
             yield rows[good], g, p[good], bend[good], rate[good]
             rows = rows[~good]
             if not len(rows):
