@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from lwa.expansion.physical import ExpandedWave
     from lwa.expansion.radiation import Radiation
     from lwa.expansion.series import EpsilonSeries
+    from lwa.expansion.strike import Strike, graded_force, pulse_of_strike, transmitted_force
     from lwa.law import Law, Power, general
     from lwa.linear.dispersion import Dispersion
     from lwa.linear.loaded import LoadedChain
@@ -86,6 +87,7 @@ __all__ = [
     "Resummed",
     "Solution",
     "Sphere",
+    "Strike",
     "Term",
     "Terms",
     "Theory",
@@ -94,9 +96,12 @@ __all__ = [
     "canonical_wave",
     "expand",
     "general",
+    "graded_force",
     "hertz",
     "homogenize",
     "k",
+    "pulse_of_strike",
+    "transmitted_force",
 ]
 
 
@@ -122,6 +127,7 @@ _MODULES = {
     "expansion.physical": "ExpandedWave",
     "expansion.radiation": "Radiation",
     "expansion.series": "EpsilonSeries",
+    "expansion.strike": "Strike graded_force pulse_of_strike transmitted_force",
     "law": "Law Power general",
     "linear.dispersion": "Dispersion",
     "linear.loaded": "LoadedChain",

@@ -21,11 +21,15 @@ from sympy.core.function import AppliedUndef
 
 from lwa.base.exact import InputError, exact, positive, real, shorten
 from lwa.base.frozen import Value
-from lwa.cell import Cell, exponent
+from lwa.cell import RESERVED, Cell, exponent, meant, unmistakable
 from lwa.cell import k as symbol_k
 
 DELTA = sp.Symbol("delta", positive=True)
 """δ, the compression of a contact, where the caller names no other symbol."""
+
+
+TAKEN = {**RESERVED, "A": "the stiffness of a contact", "p0": "the strain ahead of a wave"}
+"""Names that stand beside a law in results, and what they mean there."""
 
 
 class ContactLaw(Value):
@@ -115,12 +119,15 @@ class Law(ContactLaw):
             raise InputError(
                 f"F is {shorten(self.F)}: a SymPy expression in {self.delta} is wanted"
             )
-        object.__setattr__(self, "F", exact(self.F, "F"))
+        object.__setattr__(self, "F", meant(exact(self.F, "F"), "law", taken=TAKEN))
+        unmistakable((self.delta, *self.symbols))
         if self.slope().is_zero:
             raise InputError(f"F is {shorten(self.F)}: a force that depends on δ is wanted")
 
     def replaced(self, new: Mapping[sp.Symbol, sp.Expr]) -> Law:
         """With what `lwa.cell.substitution` gives for its symbols."""
+        for symbol in self.symbols:
+            _uncaptured(new.get(symbol, symbol), str(symbol), self.delta)
         return Law(self.F.xreplace(dict(new)), self.delta)
 
     def evaluated(self, value: sp.Expr, delta: sp.Expr) -> sp.Expr:
@@ -204,7 +211,14 @@ def named(name: str, *parameters: Any) -> Power | Law:
     read = real if name in _OF_EITHER_SIGN else positive
     given = [*parameters, *letters[len(parameters) :]]
     values = [read(v, f"{name}'s {letter}") for v, letter in zip(given, letters, strict=True)]
+    for value, letter in zip(values, letters, strict=True):
+        _uncaptured(value, f"{name}'s {letter}", DELTA)
     return Law(build(*values), DELTA)
+
+
+def _uncaptured(value: sp.Expr, name: str, delta: sp.Symbol) -> None:
+    """Refuse a law's parameter that holds the symbol of the compression."""
+    meant(value, name, taken={delta.name: "the compression of a contact"})
 
 
 def _at_most(name: str, parameters: Sequence[Any], letters: tuple[str, ...]) -> None:

@@ -1,19 +1,57 @@
-"""Settings for all tests."""
+"""Settings of all tests: threads, examples, signals, garbage, and the optional parts."""
 
 import gc
 import os
+import shutil
+import signal
+from importlib.util import find_spec
 
 # The tests' linear systems are small: on a busy machine a second thread only waits for the first.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
+import pytest
 from hypothesis import settings
 
 # No wall time is asserted, on noisy machines.
 settings.register_profile("lwa", deadline=None, max_examples=40, derandomize=True)
 settings.load_profile("lwa")
 
+COMPLETE = "LWA_TESTS_COMPLETE"
+"""Environment variable that makes a missing optional part an error; `.ci/run` sets it where
+everything optional is installed."""
+
 
 def pytest_collection_finish(session):
-    """SymPy's many small objects are no garbage: to look for it less often saves a tenth."""
+    """Look for garbage less often: SymPy's many small objects are none, and this saves a tenth."""
     gc.freeze()
     gc.set_threshold(50_000, 20, 100)
+
+
+def pytest_runtest_setup(item):
+    """Skip a test whose optional parts are missing, before the test starts anything.
+
+    ``@pytest.mark.optional("distributed", "gfortran")`` names Python packages and programs.
+    """
+    for mark in item.iter_markers("optional"):
+        for part in mark.args:
+            if shutil.which(part) is None and find_spec(part) is None:
+                reason = f"{part} is not installed"
+                if os.environ.get(COMPLETE):
+                    pytest.fail(reason, pytrace=False)
+                pytest.skip(reason)
+
+
+@pytest.fixture(autouse=True)
+def _interruptible():
+    """Let the processes that a test starts hear Ctrl-C.
+
+    A shell starts the jobs of a script's background with SIGINT ignored, and a child inherits
+    that; a signal that has a handler is given back to a child as the system's default.
+    """
+    before = signal.getsignal(signal.SIGINT)
+    if before is not signal.SIG_IGN:
+        yield
+        return
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)

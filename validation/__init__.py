@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     from validation.lattice.run import Run
     from validation.lattice.simulate import simulate, simulate_many
     from validation.pulses.pulse import Pulse, measure
-    from validation.scenes.materials import Bead, Material
     from validation.scenes.scene import Scene, SceneError
     from validation.studies.records import load
     from validation.waves.profile import ExactWave

@@ -1,6 +1,10 @@
-"""Types of NumPy arrays."""
+"""Types of NumPy arrays, and values that hold arrays."""
 
 from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import Field, fields
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,3 +14,31 @@ Array = NDArray[np.float64]
 
 Extended = NDArray[np.longdouble]
 """An array of extended precision."""
+
+
+class ArrayValue:
+    """Base of frozen dataclasses with array fields (``eq=False``): equal if all fields are equal.
+
+    A copy and a pickle of such a value compare equal to it.
+    """
+
+    __dataclass_fields__: ClassVar[dict[str, Field[Any]]]
+
+    def __eq__(self, other: object) -> bool:
+        if type(other) is not type(self):
+            return NotImplemented
+        names = (field.name for field in fields(self) if field.compare)
+        return all(_same(getattr(self, name), getattr(other, name)) for name in names)
+
+    def __hash__(self) -> int:
+        values = (getattr(self, field.name) for field in fields(self))
+        return hash(tuple(value for value in values if isinstance(value, int | float | str)))
+
+
+def _same(one: Any, other: Any) -> bool:
+    """Equality of arrays (NaN equals NaN), of mappings of arrays, or of anything else."""
+    if isinstance(one, Mapping) and isinstance(other, Mapping):
+        return one.keys() == other.keys() and all(_same(one[key], other[key]) for key in one)
+    if isinstance(one, np.ndarray):
+        return np.array_equal(one, other, equal_nan=one.dtype.kind == "f")
+    return bool(one == other)

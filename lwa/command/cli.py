@@ -21,7 +21,6 @@ from lwa.command.document import (
     theory_json,
     wave_json,
 )
-from lwa.command.letters import demand_own
 from lwa.command.load import (
     background_json,
     background_text,
@@ -33,13 +32,14 @@ from lwa.command.load import (
 from lwa.command.options import (
     FORCE,
     SPHERES,
+    demand_free_names,
     given,
     law_option,
     of_chain,
     of_series,
-    own_names,
     setting,
 )
+from lwa.command.reserved_names import demand_free
 from lwa.command.source import theory_latex, theory_python, wave_latex
 from lwa.command.terminal import (
     HELP,
@@ -76,16 +76,19 @@ EXPANSION = {"text": expansion_text, "json": expansion_json}
 
 
 def _theory(
+    output: str,
+    *,
     k: sp.Expr,
     masses: tuple[sp.Expr, ...],
     stiffnesses: tuple[sp.Expr, ...],
     spacing: sp.Expr,
     order: int,
+    law: Power | Law | None,
     **kind: Any,
 ) -> Theory:
     cell = Cell(masses, stiffnesses, spacing)
-    own_names(cell, k)
-    return homogenize(cell, order, k=k, **kind)
+    demand_free_names(cell, k, *(law.symbols if law else ()), output=output)
+    return homogenize(cell, order, k=k, law=law, **kind)
 
 
 SECONDS_A_TERM = 3e-4
@@ -122,7 +125,7 @@ def lwa() -> None:
 @of_chain(THEORY)
 def derive(style: str, **chain: Any) -> None:
     """The ansatz, the wave equation and the defect between the equations of motion."""
-    theory = _theory(**chain)
+    theory = _theory("derive", **chain)
     _write_out(theory)
     _show(THEORY[style](theory))
 
@@ -152,10 +155,14 @@ def wave(
     if spheres is not None:
         chain |= _of_spheres(spheres)
     units = {} if spheres is None else SI
-    if _under_load(background, precompression, chain["law"]):
+    loaded = _under_load(background, precompression, chain["law"])
+    output = "wave under load" if loaded or isinstance(chain["law"], Law) else "wave"
+    for load, own in ((force, "F"), (precompression, "F0"), (background, "p0")):
+        demand_free(output, () if load is None else (load,), own)
+    if loaded:
         _wave_under_load(style, force, background, precompression, units, chain)
         return
-    theory = _theory(**chain)
+    theory = _theory(output, **chain)
     found = theory.pde.traveling_wave()
     if style in FORCED and (force is not None or spheres is not None):
         peak = exact("F", "force") if force is None else force
@@ -195,7 +202,7 @@ def _wave_under_load(
                 f"{name} {wanted!r}"
             )
         chain[name] = wanted
-    theory = _theory(**chain)
+    theory = _theory("wave under load", **chain)
     if precompression is not None:
         peak = exact("F", "force") if force is None else force
         loaded = PrecompressedWave(theory.cell, theory.law, peak, precompression)
@@ -204,7 +211,6 @@ def _wave_under_load(
         raise InputError("--force goes with --precompression, a force; --background is a strain")
     else:
         assert background is not None
-        demand_own("wave", [background])
         _show(BACKGROUND[style](theory, BackgroundWave(theory.cell, theory.law, background)))
 
 

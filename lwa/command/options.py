@@ -12,7 +12,7 @@ from click.core import ParameterSource
 
 from lwa.cell import Cell, D, k
 from lwa.closure.consistency import BRANCHES, CLOSURES, FIELDS
-from lwa.command.letters import demand_own
+from lwa.command.reserved_names import demand_free
 from lwa.command.terminal import contact_law, count, quantities, quantity
 from lwa.law import NAMES
 
@@ -84,7 +84,7 @@ def of_series(k: str, order: str, formats: Iterable[str]) -> Option:
             masses: tuple[sp.Expr, ...], stiffnesses: tuple[sp.Expr, ...], **options: Any
         ) -> None:
             cell = Cell(masses, stiffnesses)
-            own_names(cell, options["k"])
+            demand_free_names(cell, options["k"])
             command(cell, **options)
 
         options = (exponent(k), MASSES, STIFFNESSES, order_option(order), style_option(formats))
@@ -99,9 +99,14 @@ def given(option: str) -> bool:
     return source is ParameterSource.COMMANDLINE
 
 
-def own_names(cell: Cell, *more: sp.Expr) -> None:
-    """Symbols have names of their own in what the command prints."""
-    demand_own(str(click.get_current_context().info_name), (*cell.symbols, *more))
+def demand_free_names(cell: Cell, *more: sp.Expr, output: str = "") -> None:
+    """Refuse symbols of a chain with names that the output has for something else.
+
+    output: a key of `NAMES`, the command's own name when empty.
+    """
+    output = output or str(click.get_current_context().info_name)
+    demand_free(output, (*cell.masses, cell.spacing, *more))
+    demand_free(output, cell.stiffnesses, own="A")
 
 
 FORCE = click.option("--force", callback=quantity, help="Peak contact force, for speed, widths, ….")

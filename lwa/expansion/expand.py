@@ -27,6 +27,9 @@ from lwa.expansion.observables import Observables, ring
 from lwa.expansion.series import EpsilonSeries
 from lwa.law import Law, Power, demand_one
 
+DAMPINGS = ("linear", "kuwabara_kono")
+"""Damping forces of a contact: γ dδ/dt and γ δ^{k-1} dδ/dt (Kuwabara and Kono 1987)."""
+
 FALLEN, MOVED = 0.01, 0.25
 """Of its peak: to which a profile's force must fall, and by which its last order may move it."""
 
@@ -103,6 +106,32 @@ class Expansion(Value):
     def energy(self) -> EpsilonSeries:
         """Kinetic and elastic energy of the chain."""
         return self._energy("energy")
+
+    @cached_property
+    def effective_mass(self) -> EpsilonSeries:
+        """P²/(2E), the mass of a particle with the wave's momentum and energy, at any force."""
+        unit = sp.sqrt(2 * sp.pi * self.I) * self.cell.mass / self.cell.size
+        return self._series("effective_mass", unit, -sp.S.Half)
+
+    def dissipation(self, kind: str) -> EpsilonSeries:
+        """Energy that the wave loses per contact, over a small damping constant γ.
+
+        kind : "linear" for the damping force γ dδ/dt, δ the compression: D0 = ∫ (dδ/dt)² dt;
+            "kuwabara_kono" for γ δ^{k-1} dδ/dt: D1 = ∫ δ^{k-1} (dδ/dt)² dt. γ is the same in all
+            contacts; D0 is the mean over those of a cell.
+
+        Raises `lwa.InputError` for other kinds, and for D1 of contacts that differ.
+        """
+        if not isinstance(kind, str) or kind not in DAMPINGS:
+            raise InputError(f"kind is {shorten(kind)}: {' or '.join(DAMPINGS)} is wanted")
+        unit = sp.sqrt(2 * sp.pi * self._sound / self.I) * self.compliance / 4
+        if kind == "linear":
+            unit *= self.compliance
+        elif len({*self.cell.stiffnesses}) > 1:
+            raise InputError("the contacts differ in stiffness: D1 is derived for equal contacts")
+        else:
+            unit /= self.k * self.cell.stiffnesses[0]
+        return self._series(f"{kind}_loss", unit, sp.S.Half)
 
     def _energy(self, quantity: str) -> EpsilonSeries:
         unit = self.compliance * sp.sqrt(2 * sp.pi * self.I)

@@ -25,6 +25,7 @@ from lwa.expansion.pulse import (
     log_term,
     moment,
     product,
+    quotient,
     root,
     wider,
 )
@@ -111,6 +112,36 @@ class Observables:
         share[0] = share[0] + fmpq(1, 2 * wave.P)
         return [moment(a, 1) for a in product(share, works, 2)]
 
+    @cached_property
+    def effective_mass(self) -> Series:
+        """P²/(2E) of momentum and energy, over its leading term."""
+        return quotient(product(self.momentum, self.momentum), self.energy)
+
+    @cached_property
+    def linear_loss(self) -> Series:
+        """Mean over the contacts of ∫ (dδ/dt)² dt, δ the compression, over its leading term.
+
+        In the wave dδ/dt = -c dδ/dξ and dt = dξ/c, so that this is c ∫ (dδ/dξ)² dξ.
+        """
+        strain, c = self.wave.fields.strain, self.wave.c
+        return self._loss([share * share for share in c], strain, strain)
+
+    @cached_property
+    def kuwabara_kono_loss(self) -> Series:
+        """Mean over equal contacts of ∫ δ^{k-1} (dδ/dt)² dt, over its leading term.
+
+        With F = A δ^k the integrand is (dF/dt) (dδ/dt) / (k A).
+        """
+        fields = self.wave.fields
+        return self._loss(self.wave.c, fields.force, fields.strain)
+
+    def _loss(self, weights: Series, first: list[Series], second: list[Series]) -> Series:
+        """c Σ weight ∫ (d first/dξ) (d second/dξ) dξ, over its leading term."""
+        slopes = ([list(map(_slope, row)) for row in rows] for rows in (first, second))
+        products = (product(a, b, 2) for a, b in zip(*slopes, strict=True))
+        total = _sum(weights, products, self.wave.zero)
+        return product(self.c, [4 * moment(a, 1) / self.wave.P for a in total])
+
     def coefficients(self, quantity: str) -> tuple[sp.Expr, ...]:
         """Those of ε^0, ε^1, …, Z² = log 2, of the quantity of this name."""
         terms: Series = getattr(self, quantity)
@@ -166,6 +197,11 @@ class Observables:
 
 def _constant(polynomial: fmpq_mpoly) -> fmpq:
     return polynomial.leading_coefficient() if polynomial else fmpq(0)
+
+
+def _slope(term: fmpq_mpoly) -> fmpq_mpoly:
+    """e^{Z²/4} d/dZ of e^{-Z²/4} S(Z)."""
+    return term.derivative(0) - term.context().gen(0) * term / 2
 
 
 def _sum(weights: Series, rows: Iterable[Series], zero: fmpq_mpoly) -> Series:

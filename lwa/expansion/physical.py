@@ -15,6 +15,7 @@ from lwa.base.frozen import Value
 from lwa.base.quantities import known_extent
 from lwa.expansion.approximants import Resummed
 from lwa.expansion.expand import Expansion
+from lwa.expansion.series import EpsilonSeries
 
 
 @dataclass(frozen=True)
@@ -54,6 +55,51 @@ class ExpandedWave(Value):
         value = width.value / speed.value
         error = value * (width.error / width.value + speed.error / speed.value)
         return replace(width, value=value, error=error)
+
+    @property
+    def momentum(self) -> Resummed:
+        """Σ m v over the chain, proportional to F^{(k+1)/(2k)}."""
+        return self._at_force(self.expansion.momentum, (self.expansion.k + 1) / 2)
+
+    @property
+    def energy(self) -> Resummed:
+        """Kinetic and elastic energy, proportional to F^{(k+1)/k}."""
+        return self._at_force(self.expansion.energy, self.expansion.k + 1)
+
+    @property
+    def effective_mass(self) -> Resummed:
+        """P²/(2E) of momentum P and energy E, the same at any force."""
+        return self.expansion.effective_mass.at()
+
+    def dissipation(self, kind: str) -> Resummed:
+        """Energy lost per contact and damping constant; kind as in `Expansion.dissipation`."""
+        k = self.expansion.k
+        power = (k + 3 if kind == "linear" else 3 * k + 1) / 2
+        return self._at_force(self.expansion.dissipation(kind), power)
+
+    def slowdown(self, kind: str) -> Resummed:
+        """Rate at which a weak damping γ slows the pulse down, per site and γ, to first order.
+
+        For "linear" damping -dV/dn, for "kuwabara_kono" d(1/V)/dn, V = dx/dt. Both rates stay
+        the same along the chain while the force falls: E ∝ F^{(k+1)/k} and V ∝ F^{(k-1)/(2k)}
+        give dV/dn = -(k-1)/(2(k+1)) γ D V/E.
+
+        Raises `lwa.InputError` as `Expansion.dissipation` does.
+
+        >>> from lwa import Cell, expand
+        >>> wave = ExpandedWave(expand(Cell([1], spacing=1), 8, k="3/2"), 64)
+        >>> round(wave.slowdown("linear").value, 5), round(wave.slowdown("kuwabara_kono").value, 5)
+        (0.09607, 0.0835)
+        """
+        k, parts = self.expansion.k, (self.dissipation(kind), self.energy, self.speed)
+        loss, energy, speed = (part.value for part in parts)
+        factor = speed if kind == "linear" else 1 / speed
+        value = float((k - 1) / (2 * (k + 1))) * loss / energy * factor
+        return replace(parts[0], value=value, error=value * sum(x.error / x.value for x in parts))
+
+    def _at_force(self, series: EpsilonSeries, power: sp.Expr) -> Resummed:
+        """A quantity proportional to the compression to some power."""
+        return _times(series.at(), float(self.F ** (power / self.expansion.k)))
 
 
 def _times(found: Resummed, factor: float) -> Resummed:

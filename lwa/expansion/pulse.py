@@ -149,6 +149,14 @@ def product(a: Series, b: Series, step: int = 1) -> Series:
     return found
 
 
+def quotient(a: Series, b: Series) -> Series:
+    """a / b, b_0 = 1, by Q_n = a_n - Σ_{j≥1} b_j Q_{n-j}."""
+    Q: Series = []
+    for n, term in enumerate(a):
+        Q.append(sum((-b[j] * Q[n - j] for j in range(1, n + 1)), term))
+    return Q
+
+
 def root(S: Series) -> Series:
     """√(Σ S_n t^n), S_0 = 1, by 2 n R_n = Σ_{j≥1} (3j - 2n) S_j R_{n-j}."""
     R = [S[0]]

@@ -28,6 +28,9 @@ _LETTERS = {
     "momentum": r"\sum m v",
     "kinetic": "T",
     "energy": "E",
+    "effective_mass": r"m_\mathrm{eff}",
+    "linear_loss": "D_0",
+    "kuwabara_kono_loss": "D_1",
 }
 
 

@@ -25,7 +25,7 @@ from lwa.base import latex
 from lwa.base.exact import InputError, exact, integer, real, shorten
 from lwa.base.frozen import Value
 from lwa.base.quantities import NoSolitaryWave, known
-from lwa.cell import Cell, meant, substitution
+from lwa.cell import RESERVED, Cell, meant, substitution
 from lwa.law import Law, Power, for_cell
 from lwa.linear.dispersion import Dispersion
 from lwa.wave.kdv import RISE, KdV
@@ -43,9 +43,10 @@ _LOOKS = 64
 """Places between 0 and B at which existence is decided for a law that is no power."""
 
 
-def taken_names(cell: Cell, law: Power | Law) -> set[str]:
-    """Names that no load may have: the chain's, the law's and those of the wave."""
-    return {s.name for s in (*cell.symbols, *law.symbols)} | {"B", "V_s", "tau"}
+def taken_names(cell: Cell, law: Power | Law) -> dict[str, str]:
+    """Names that no load may have, and what each means: those of chain, law and wave."""
+    chain = dict.fromkeys((s.name for s in cell.symbols), "a property of the cell")
+    return chain | dict.fromkeys((s.name for s in law.symbols), "a symbol of the law") | RESERVED
 
 
 @dataclass(frozen=True, repr=False)
@@ -70,9 +71,9 @@ class BackgroundWave(Value):
         p0 = exact(self.p0, "p0")
         if isinstance(self.law, Power) and p0.is_negative:
             raise InputError(f"p0 is {p0}: under a power law it must not be negative")
-        if p0.is_Symbol:  # an expression may come from a load
-            own = taken_names(self.cell, self.law)
-            meant(p0, "p0", taken=dict.fromkeys(own, "something else"))
+        chain = {*self.cell.symbols, *self.law.symbols}  # p0 of a load holds these
+        free = p0 if p0.is_Symbol else sp.Add(*(p0.free_symbols - chain))
+        meant(free, "p0", taken=taken_names(self.cell, self.law))
         object.__setattr__(self, "p0", p0)
 
     def __repr__(self) -> str:
@@ -198,7 +199,7 @@ class BackgroundWave(Value):
 
         Raises `lwa.NoSolitaryWave` where no sound runs, at p0 = 0 under most laws.
         """
-        if self.sound_speed.is_zero or (not self.sound_speed.is_finite and self.p0.is_number):
+        if self.sound_speed.is_zero or self.sound_speed.is_finite is False:
             raise NoSolitaryWave(f"p0 is {self.p0}: no sound runs there, so that no wave is small")
         c0 = self.sound_speed
         bend = self.force(self.p0, 2)

@@ -119,6 +119,43 @@ class PhysicalWave(Value):
         """B dx/dt, the peak velocity u_t of the beads; in this theory all of a cell move alike."""
         return self.strain * self.speed
 
+    @cached_property
+    def momentum(self) -> sp.Expr:
+        """Σ m u_t over the chain: M/(P D) · B dx/dt · ∫ cos^m(βξ) dξ."""
+        return self._density * self.bead_velocity * self._arch(2 / (self.wave.k - 1))
+
+    @cached_property
+    def energy(self) -> sp.Expr:
+        """Kinetic and elastic energy of the chain, (k + 3)/(k + 1) times the kinetic energy.
+
+        That is the virial theorem, which holds for the lattice's waves and for the canonical
+        field's. The kinetic energy is M/(2 P D) · (B dx/dt)² · ∫ cos^{2m}(βξ) dξ.
+        """
+        k = self.wave.k
+        kinetic = self._density * self.bead_velocity**2 * self._arch(4 / (k - 1)) / 2
+        return (k + 3) / (k + 1) * kinetic
+
+    @cached_property
+    def effective_mass(self) -> sp.Expr:
+        """P²/(2E) of momentum and energy, which does not depend on the force.
+
+        >>> from lwa import Cell, canonical_wave
+        >>> round(canonical_wave(Cell([1]), "3/2").at_force(1).effective_mass.n(), 4)
+        1.4192
+        """
+        k, m = self.wave.k, 2 / (self.wave.k - 1)
+        return (k + 1) / (k + 3) * self._density * self._arch(m) ** 2 / self._arch(2 * m)
+
+    @property
+    def _density(self) -> sp.Expr:
+        """Mass per length."""
+        return self.wave.cell.mass / (self.wave.cell.size * self.wave.D)
+
+    def _arch(self, n: sp.Expr) -> sp.Expr:
+        """∫ cos^n(βξ) dξ over the wave."""
+        beta = (self.wave.k - 1) / (2 * self.wave.D * sp.sqrt(self.wave.dispersion))
+        return sp.sqrt(sp.pi) * sp.gamma((n + 1) / 2) / (beta * sp.gamma(n / 2 + 1))
+
     def fwhm(self, quantity: str = "force", extent: str = "length") -> sp.Expr:
         """Full width at half maximum of "strain", "force" or "velocity", a "length" or a "time".
 

@@ -50,7 +50,7 @@ class PrecompressedWave(Value):
         for name in ("force", "precompression"):
             value = positive(getattr(self, name), name)
             object.__setattr__(self, name, value)
-            meant(value, name, taken=dict.fromkeys((*own, "D"), "something else"))
+            meant(value, name, taken=own)
         if self.force == self.precompression:
             raise NoSolitaryWave(
                 f"force and precompression are both {self.force}: there is no wave"

@@ -74,5 +74,7 @@ def test_each_name_is_loaded_from_where_the_types_have_it():
 def test_importing_it_loads_no_numbers():
     large = {"numpy", "sympy", "scipy", "matplotlib", "numba", "tqdm", "click", "validation"}
     code = f"import sys, lwa; print({large} & set(sys.modules))"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=120
+    )
     assert done.stdout.strip() == "set()"

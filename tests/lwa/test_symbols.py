@@ -1,12 +1,23 @@
 """Whatever a caller's symbols are called, results mean the same, or the name is refused by name."""
 
 import numpy as np
+import pytest
 import sympy as sp
 from hypothesis import Phase, assume, example, given, settings
 from hypothesis import strategies as st
 
-from lwa import Cell, Dimer, Dispersion, InputError, canonical_wave, homogenize
+from lwa import (
+    Cell,
+    Dimer,
+    Dispersion,
+    InputError,
+    Law,
+    background_wave,
+    canonical_wave,
+    homogenize,
+)
 from lwa.cell import RESERVED
+from lwa.law import DELTA, named
 from lwa.wave.numeric import NumericWave
 
 OURS = """
@@ -106,3 +117,47 @@ def test_results_do_not_depend_on_names(given):
         # 30 digits, less those that the alternating coefficients lose; doubles to 4 ulps
         tolerance = 4 * np.finfo(float).eps if name == "numeric" else 1e-25
         assert abs(number - expected) <= tolerance * max(1, abs(expected)), name
+
+
+def law_results(a, b):
+    """What a law with the parameters a and b gives, with the wave's B = 2 put in last."""
+    law = named("hertz2", a, b)
+    cell = Dimer(1, 3)
+    theory = homogenize(cell, law=law, closure="full", field="center")
+    yield law.evaluated(theory.pde.G, DELTA).subs(DELTA, 3).subs(theory.cell.spacing, 1)
+    yield law.phi(3).subs(DELTA, 3)
+    wave = background_wave(cell, "1/2", law=law)
+    for value in (wave.speed(), wave.kdv.speed(), wave.kdv.width()):
+        rise = [s for s in value.free_symbols if s.name == "B"]
+        yield value.subs(dict.fromkeys(rise, 2)).subs(sp.Symbol("D", positive=True), 1)
+
+
+@settings(max_examples=10, phases=(Phase.explicit, Phase.generate))
+@given(a=symbols, b=symbols)
+@example(a=sp.Symbol("a"), b=sp.Symbol("B"))
+@example(a=DELTA, b=sp.Symbol("b"))
+@example(a=sp.Symbol("delta"), b=sp.Symbol("b"))
+def test_results_do_not_depend_on_the_names_of_a_laws_parameters(a, b):
+    assume(a.name != b.name)
+    try:
+        found = [x.subs({a: 2, b: sp.Rational(1, 3)}) for x in law_results(a, b)]
+    except InputError as refusal:
+        found, message = [], str(refusal)
+    if not found:
+        taken = {*RESERVED, "A", "p0", "delta", "phi2"}
+        assert any(repr(s.name) in message for s in (a, b) if s.name in taken)
+        return
+    for x, expected in zip(found, law_results(2, "1/3"), strict=True):
+        assert abs(sp.N(x, 30) / sp.N(expected, 30) - 1) < 1e-25
+
+
+def test_a_laws_symbols_have_names_of_their_own():
+    a, d = sp.symbols("a d", positive=True)
+    for name in ("A", "B", "D", "k", "p0", "tau"):
+        with pytest.raises(InputError, match=f"'{name}': the name means"):
+            Law(sp.Symbol(name) * d + d**2, d)
+    law = Law(a * d + d**2, d)
+    with pytest.raises(InputError, match="'d': the name means the compression"):
+        background_wave(Cell([1]), 1, law=law).at(a="d")
+    with pytest.raises(InputError, match="'d' names two symbols"):
+        Law(sp.Symbol("d") * d, d)

@@ -55,7 +55,7 @@ def progress_of(code):
     """What a child process writes to its terminal's standard error."""
     controller, terminal = pty.openpty()
     fcntl.ioctl(terminal, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 80, 0, 0))
-    subprocess.run([sys.executable, "-c", code], stderr=terminal, check=True)
+    subprocess.run([sys.executable, "-c", code], stderr=terminal, check=True, timeout=120)
     written = b""
     while select.select([controller], [], [], 0)[0]:
         written += os.read(controller, 4096)
@@ -68,5 +68,7 @@ def test_high_orders_show_their_progress_on_a_terminal():
     code = "from lwa import *; homogenize(Dimer(1, 2), {}, k='3/2')"
     assert b"orders:" in progress_of(code.format(12))
     assert progress_of(code.format(11)) == b""
-    piped = subprocess.run([sys.executable, "-c", code.format(12)], capture_output=True, check=True)
+    piped = subprocess.run(
+        [sys.executable, "-c", code.format(12)], capture_output=True, check=True, timeout=120
+    )
     assert piped.stderr == b""

@@ -15,22 +15,17 @@ errs by O(h^{k+1}), and its step follows from that.
 Samples come from Hermite's polynomial with y, y', y'' and y''' at the ends of two steps,
 or of one with a kink; what p_+^k brings about is no part of it.
 
-Window. Ahead nothing moves: the front advances with the first bead that does. Behind, beads more
-than ``reach`` from the front are left to fly on freely, with their energy on the books, once the
-contact that is cut is open but for a trace of the peak force and no strong blow is to come (the
-thresholds of `validation.lattice.kernel`), or eight reaches behind in any case. As contacts carry
-no tension, a struck chain's pulse does not depend on what is cut, unless it decays so fast
-(`_DECAY`, `_LEFT`) that its own tail may overtake it: then, where too little was passed to tell,
-and where something was left that was no such contact, the run is made again with the whole chain,
-whoever asked for a window. Blows within, and contacts of many kinds, get none. As a pulse decays,
-the step grows with its time scale, F^{(1-k)/2k}, and the error that is allowed shrinks with it.
+Window. Ahead of the front nothing has moved yet: these beads are left out, always. A window of N
+beads leaves out those more than N behind the front as well; their energy stays on the books, their
+motion is not known. What that does to the leading pulse is told by a second run, with twice the
+window: this is the one that is returned, as far as both follow it.
 """
 
 from __future__ import annotations
 
 import math
 import sys
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -50,12 +45,8 @@ from validation.lattice.schemes.nystrom import Pair
 from validation.scenes.checks import SceneError, integer, positive
 from validation.scenes.scene import Scene
 
-# In supports of the long-wave pulse: what the window reaches back, and after what it is looked at.
-_BACK, _LOOK = 2.0, 4.0
-# Of a pulse's peak, a look later and at the end: where less is left, the window gives way.
-_DECAY, _LEFT = 0.9, 0.5
-_WINDOW = 2  # reaches that a window holds, about
-_UNEVEN = 4.0  # stiffnesses: the greatest over the least that a window is for
+_SUPPORTS = 8  # widths of the long-wave pulse in a window of the engine's choice
+_CHANGE = 10.0  # rtol: by how much a longer window may change the leading pulse's velocities
 _POINTS = 8  # of the quadrature at a kink
 _NOISE = sys.float_info.epsilon  # of the greatest: rounding is no front
 _GLANCE = 0.2  # seconds, about, from one look at the progress to the next, or at Ctrl-C
@@ -75,14 +66,51 @@ def follow(
     motion: Motion, method: str, rtol: float, step: float | None, window: Any, progress: RunProgress
 ) -> Run:
     """`validation.simulate` for a method of `SCHEMES`."""
-    reach = _reach(motion, window)
+    beads = _window(motion, window)
     end = motion.scene.duration
     natural = effort.step(method, rtol) * min(motion.scales.time, end)
     longest = math.inf if step is None else positive(step, "step")
     shorter = step is None or (natural < longest and isinstance(SCHEMES[method], Pair))
     given = Given(method, rtol, natural if shorter else longest, longest)
-    run, kept = _integrated(motion, given, reach, progress)
-    return run if kept else _integrated(motion, given, None, progress)[0]
+    if beads is None:
+        return _integrated(motion, given, None, progress)[0]
+    short, left = _integrated(motion, given, beads, progress)
+    long, _ = _integrated(motion, given, 2 * beads, progress, left)
+    _compare(motion, rtol, short, long)
+    return replace(long, window=beads)
+
+
+def _window(motion: Motion, window: Any) -> int | None:
+    """The number of beads to follow behind the front; None for the whole chain."""
+    if window is False:
+        return None
+    if motion.scene.wall is not None or motion.k == 1:
+        raise SceneError(
+            f"window is {window}: behind a wall, and at k = 1, waves come back; "
+            "the whole chain is wanted"
+        )
+    if window is True:
+        support = math.pi / (motion.k - 1) * math.sqrt(motion.k * (motion.k + 1) / 6)
+        beads = math.ceil(min(_SUPPORTS * support, motion.size)) + kernel.MARGIN
+    else:
+        beads = integer(window, "window", kernel.BLOCK)
+    return beads if beads < motion.size else None
+
+
+def _compare(motion: Motion, rtol: float, short: Run, long: Run) -> None:
+    """Raise `IntegrationError` where the longer window changes the leading pulse.
+
+    Compared are velocities at the end, from the fastest bead on.
+    """
+    followed = np.isfinite(short.velocities)
+    one, other = short.velocities[followed], long.velocities[followed]
+    leading = slice(int(np.argmax(np.abs(other))), None)
+    change = np.abs(one - other)[leading].max() / motion.scales.velocity
+    if change > _CHANGE * rtol:
+        raise IntegrationError(
+            f"window is {short.window}: twice as many beads change the leading pulse by "
+            f"{change:.1g} where rtol is {rtol:g}; a longer window or the whole chain is wanted"
+        )
 
 
 def _say_if_compiled() -> None:
@@ -96,55 +124,28 @@ def _say_if_compiled() -> None:
         print("the engine is compiled for this machine, once", file=sys.stderr, flush=True)
 
 
-def _returns(motion: Motion) -> bool:
-    """Whether waves come back: behind a wall, and at k = 1."""
-    return motion.scene.wall is not None or motion.k == 1
-
-
-def _reach(motion: Motion, window: Any) -> int | None:
-    """Beads to follow behind the front; None for the whole chain."""
-    scene, returns = motion.scene, _returns(motion)
-    if window is False or not scene.stiffnesses or (window is None and returns):
-        return None
-    if returns:
-        raise SceneError(
-            f"window is {window}: behind a wall, and at k = 1, waves come back; "
-            "the whole chain is wanted"
-        )
-    reach = _supports(motion, _BACK)
-    if window is not None and window is not True:
-        reach = max(reach, integer(window, "window", kernel.BLOCK))
-    # In so few beads nothing would be known of the pulse's decay; of several blows, or in contacts
-    # of many kinds, a later pulse may be the faster one; and from within, waves go both ways.
-    few = motion.size < 2.5 * _supports(motion, _LOOK)
-    inner = not scene.displacements and any(scene.velocities[1:])
-    uneven = motion.stiffnesses.max() > _UNEVEN * motion.stiffnesses.min()
-    return None if few or inner or uneven else reach
-
-
-def _supports(motion: Motion, number: float) -> int:
-    """Beads of so many of the pulse's supports, and a margin at both ends."""
-    n, k = motion.size, motion.k
-    still = motion.start[n:] == 0
-    masses = motion.masses[still] if still.any() else motion.masses  # a striker may be of any mass
-    support = math.pi / (k - 1) * math.sqrt(k * (k + 1) / 6)
-    back = min(n, number * support * masses.max() / masses.mean())
-    return 2 * kernel.MARGIN + math.ceil(float(back))
-
-
 def _integrated(
-    motion: Motion, given: Given, reach: int | None, progress: RunProgress
-) -> tuple[Run, bool]:
-    """The run, and whether nothing behind a window can have a say in the pulse."""
+    motion: Motion,
+    given: Given,
+    window: int | None,
+    progress: RunProgress,
+    followed: Array | None = None,
+) -> tuple[Run, Array]:
+    """Integrate the whole chain, or the beads of a window.
+
+    followed : times up to which each bead's motion is told; by default as long as it is computed.
+
+    Returns the run, and the times up to which each bead is followed.
+    """
     n, end = motion.size, motion.scene.duration
-    moved = n if reach is None else min(n, _WINDOW * reach)
-    taken = effort.compiled(motion.scene, given.method, end / given.step, moved)
+    window = None if window is None or window >= n else window
+    taken = effort.compiled(motion.scene, given.method, end / given.step, window or n)
     taken.check()
     _say_if_compiled()
     chain = _chain(motion)
     beads, seen = _start(motion, len(chain.A))
-    plan = _plan(motion, given, chain, reach, end / math.ceil(taken.steps))
-    at = beginning(plan, chain.k, _front(motion))
+    plan = _plan(motion, given, chain, window, end / math.ceil(taken.steps))
+    at = beginning(plan, _front(motion))
     glance = max(1, int(_GLANCE * taken.steps / taken.seconds))
     t = 0.0
     with progress(taken) as tell:
@@ -158,14 +159,17 @@ def _integrated(
     if not np.isfinite(state).all():
         raise IntegrationError(f"the motion overflows: a step of {plan.h:g} is too long")
     energy = motion.energy(state, rear) + float(at["lost"])
-    if rear:
-        _fly_on(beads, seen, rear, end)
-        state[:rear] = beads.y[:rear]
+    left = beads.left if followed is None else followed
+    for row, j in enumerate(seen.watched):
+        late = seen.time > left[j]
+        seen.y[row, late] = seen.v[row, late] = np.nan
+    momentum = motion.momentum_drift(state)
     records = _recorded(motion.scene, chain, beads, seen)
     evaluations = tries * SCHEMES[given.method].stages
-    run = finished(motion, state, records, energy, steps, evaluations, moves, reach)
-    kept = at["legs"] > 2 and at["decay"] >= _DECAY and at["left"] >= _LEFT
-    return run, not rear or bool(kept)
+    state.reshape(2, n)[:, np.isfinite(left[:n])] = np.nan
+    return finished(
+        motion, state, records, energy, momentum, steps, evaluations, moves, window
+    ), left
 
 
 @lru_cache
@@ -181,20 +185,13 @@ def _tableau(method: str, k: float) -> Tableau:
     return Tableau(nothing, nothing, *scheme.arrays(kernel.WIDTH), scheme.lower, points)
 
 
-def _plan(motion: Motion, given: Given, chain: Chain, reach: int | None, step: float) -> Plan:
-    """Of the whole run."""
-    n, scales, inverse = motion.size, motion.scales, chain.inverse
-    stiffest = chain.A.max()
-    # without a window the splitting's step stays: rattling at the rear does not slow down
-    adapt = isinstance(SCHEMES[given.method], Pair) or (
-        given.longest == math.inf and reach is not None
-    )
+def _plan(motion: Motion, given: Given, chain: Chain, window: int | None, step: float) -> Plan:
+    """The integration plan of a run."""
+    scales = motion.scales
     return Plan(
         _tableau(given.method, motion.k), given.rtol * scales.displacement,
         given.rtol * scales.velocity, step, given.longest, motion.scene.duration,
-        scales.compression, stiffest,
-        1 / inverse[min(1, n - 1) : n].min(), stiffest * inverse.max(), n,
-        0 if _returns(motion) else _supports(motion, _LOOK), reach or 0, adapt,
+        scales.compression, chain.A.max() * chain.inverse.max(), motion.size, window or 0,
     )  # fmt: skip
 
 
@@ -232,16 +229,6 @@ def _start(motion: Motion, padded: int) -> tuple[Beads, Samples]:
     return beads, Samples(time, watched, knots, seen_y, seen_v, room)
 
 
-def _fly_on(beads: Beads, seen: Samples, rear: int, end: float) -> None:
-    """Beads that were left behind have kept their velocities since."""
-    y, v, left = beads.y, beads.v, beads.left
-    y[:rear] += v[:rear] * (end - left[:rear])
-    for row, j in enumerate(seen.watched):
-        flying = seen.time > left[j]
-        seen.y[row, flying] = y[j] + v[j] * (seen.time[flying] - end)
-        seen.v[row, flying] = v[j]
-
-
 def _recorded(scene: Scene, chain: Chain, beads: Beads, seen: Samples) -> dict[str, Array]:
     """By the sensors."""
 
@@ -250,8 +237,6 @@ def _recorded(scene: Scene, chain: Chain, beads: Beads, seen: Samples) -> dict[s
         row = np.searchsorted(seen.watched, i)
         compression = chain.rest[i, None] + seen.y[row] - seen.y[row + 1]
         force = chain.A[i, None] * power(compression, scene.k)
-        if beads.left[0] < scene.duration:  # the first is left first
-            force[seen.time > beads.left[i, None]] = 0.0
         return compression, force
 
     contacts, sensors = (np.array(row, int) for row in (scene.contact_sensors, scene.bead_sensors))

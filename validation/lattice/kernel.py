@@ -20,9 +20,6 @@ MARGIN = 4  # still beads that the window holds at its front
 SHORTEST = 32  # beads below which the vector loops take no less time
 BLOCK = 8  # what the window's length is a multiple of: the doubles of the widest vector register
 WIDTH = 5  # stages that are added up at a time
-_OPEN = 1e-3  # of the peak force: what a contact behind may push and count as open
-_BLOW = 0.05  # of a bead's peak momentum: what the next may still get from a bead left behind
-_LONGEST = 8  # reaches: further behind, beads are left in any case, to bound the cost
 _STILL = 1e-13  # of the peak compression: beads that have moved less are still
 _NOTHING = 1e-60  # of the greatest compression: open, lest the front decay into denormal numbers
 _NEAR = 0.5  # of a contact's greater compression at the ends of a step: a kink is near
@@ -95,11 +92,8 @@ class Plan(NamedTuple):
     """A scheme, its first step, and what it moves: ``size`` beads, or a window of them.
 
     y, v : the errors of a step that are allowed. h : the first step. longest : the longest of a
-    pair. deepest : the greatest compression. stiffest : of the contacts. heaviest : but for the
-    striker. quickest : stiffness over the least mass.
-    look : beads after which the pulse is looked at; 0 where waves come back. cut : behind the
-    front, where the rear may be left; 0 for never. adapt : whether step and errors follow the
-    pulse's time and size as it decays.
+    pair. deepest : the greatest compression. quickest : stiffness over the least mass.
+    window : number of beads that are followed behind the front; 0 for the whole chain.
     """
 
     scheme: Tableau
@@ -109,42 +103,29 @@ class Plan(NamedTuple):
     longest: float
     end: float
     deepest: float
-    stiffest: float
-    heaviest: float
     quickest: float
     size: int
-    look: int
-    cut: int
-    adapt: bool
+    window: int
 
 
-_COUNTS = ("steps", "tries", "evaluations", "front", "mark", "lo", "done", "begin", "stop", "legs",
-           "kink", "kinks", "count")  # fmt: skip
-_REALS = ("t", "base", "h", "before", "y", "v", "scale", "top", "peak", "lost", "formed",
-          "decay", "left")  # fmt: skip
+_COUNTS = ("steps", "tries", "evaluations", "front", "lo", "done", "begin", "stop", "kink", "kinks")
+_REALS = ("t", "h", "before", "lost")
 _PLACE = np.dtype([(name, int) for name in _COUNTS] + [(name, float) for name in _REALS])
 
 
-def beginning(plan: Plan, k: float, front: int) -> Any:
-    """Where `advance` is, to begin with: a record that it changes.
+def beginning(plan: Plan, front: int) -> Any:
+    """The state of an integration at its start: a record that `advance` changes.
 
     steps, tries, evaluations : their numbers; evaluations times the beads that each one moves.
-    front, mark, lo : the first bead that is still, that of one look ago, the rear.
+    front, lo : the first bead that is still, the first one that is followed.
     done : samples that are taken. begin, stop : watched beads that are followed.
-    legs : looks passed. kink : the last step in which a contact opened or closed.
+    kink : the last step in which a contact opened or closed.
     kinks : those that the last step corrects for.
-    count : of steps of the present length h, from base on.
-    t : the time. before : the last step. y, v : the error that is allowed.
-    scale : the compression that the step is made for.
-    top, peak : the greatest force in this look, and in the last.
-    lost : energy of the contacts that were cut. formed : the peak in the first whole look.
-    decay : the smallest ratio of the peaks in two looks. left : the last over ``formed``.
+    t, h, before : the time, the next step, the last step.
+    lost : elastic energy of the contacts that the window has cut.
     """
     at = np.zeros(1, _PLACE)[0]
-    at["front"], at["mark"] = front, front - plan.look // 2
-    at["h"], at["y"], at["v"] = plan.h, plan.y, plan.v
-    at["scale"], at["decay"], at["left"] = plan.deepest, 1.0, 1.0
-    at["peak"] = plan.stiffest * plan.deepest**k
+    at["front"], at["h"] = front, plan.h
     return at
 
 
@@ -273,13 +254,13 @@ def _attempt(chain: Chain, beads: Beads, plan: Plan, at: Any, h: float, hi: int)
             behind = ahead
         _press(chain, next_y, force, _index(s), lo, hi, nothing)
     _add_up(sums, _ONE, force, ends, 0, h, stages, lo, hi)
-    _add_up(sums, _TWO, force, ends, 1, h * h / at.y, stages, lo, hi)
-    _add_up(sums, _THREE, force, ends, 2, h / at.v, stages, lo, hi)
+    _add_up(sums, _TWO, force, ends, 1, h * h / plan.y, stages, lo, hi)
+    _add_up(sums, _THREE, force, ends, 2, h / plan.v, stages, lo, hi)
     for i in range(_index(lo), _index(hi)):
         next_v[i] = v[i] + (sums[_ONE, i] - sums[_ONE, i + _ONE]) * inverse[i]
     at.kinks = 0
     # Kinks within the step or near it, of contacts that move at about one speed and may count.
-    least = (_SLIGHT * at.v / (h * plan.quickest)) ** (1.0 / chain.k)
+    least = (_SLIGHT * plan.v / (h * plan.quickest)) ** (1.0 / chain.k)
     near = 0
     for i in range(_index(lo), _index(hi)):
         before = rest[i] + y[i] - y[i + _ONE]
@@ -389,15 +370,15 @@ def _correct(chain: Chain, beads: Beads, plan: Plan, at: Any, h: float, i: int) 
     most = max(c0, end)
     stiff = chain.k * chain.A[i] * _power(chain, most) / most
     apart = (inverse[i] + inverse[i + 1]) * abs(moment)
-    if h * stiff * apart * max(inverse[i], inverse[i + 1]) > (2.0 * chain.k + 2.0) * at.v:
+    if h * stiff * apart * max(inverse[i], inverse[i + 1]) > (2.0 * chain.k + 2.0) * plan.v:
         return
     at.kinks += 1
     beads.next_v[i] -= impulse * inverse[i]
     beads.next_v[i + 1] += impulse * inverse[i + 1]
     beads.next_y[i] -= moment * inverse[i]
     beads.next_y[i + 1] += moment * inverse[i + 1]
-    beads.sums[2, i + 1] -= chain.A[i] * h * h * error / at.y
-    beads.sums[3, i + 1] -= chain.A[i] * h * error_once / at.v
+    beads.sums[2, i + 1] -= chain.A[i] * h * h * error / plan.y
+    beads.sums[3, i + 1] -= chain.A[i] * h * error_once / plan.v
 
 
 @_part
@@ -414,7 +395,7 @@ def _kinks(chain: Chain, beads: Beads, plan: Plan, at: Any, h: float, hi: int) -
             speed, later = v[i] - v[i + 1], next_v[i] - next_v[i + 1]
             steady = min(speed / later, later / speed) > _STEADY
             kick = h * chain.A[i] * _power(chain, most) * max(inverse[i], inverse[i + 1])
-            counts = kick > _SLIGHT * at.v and plan.scheme.points.shape[1] > 0
+            counts = kick > _SLIGHT * plan.v and plan.scheme.points.shape[1] > 0
             if counts and (within or steady):
                 _correct(chain, beads, plan, at, h, i)
 
@@ -549,70 +530,19 @@ def _sample(
     at.done = due
 
 
-@_summed
-def _greatest(force: Array, lo: int, hi: int) -> float:
-    """Of the contacts' forces."""
-    top = 0.0
-    for i in range(_index(lo), _index(hi)):
-        top = max(top, force[_ZERO, i + _ONE])
-    return top
-
-
-@_compiled
-def _grow(chain: Chain, plan: Plan, at: Any) -> None:
-    """A look further on: how high is the pulse, and the step or error that goes with it."""
-    at.legs += 1
-    if at.legs == 2:  # the first, half a look, holds the striker's blow
-        at.formed = at.top
-    elif at.legs > 2 and at.peak > 0.0:
-        at.decay = min(at.decay, at.top / at.peak)
-        at.left = at.top / at.formed
-    at.peak, at.top, at.mark = at.top, 0.0, at.front
-    now = min(plan.deepest, (at.peak / plan.stiffest) ** (1 / chain.k))
-    if plan.adapt and now > 0.0 and abs(now - at.scale) > 0.07 * at.scale:
-        at.scale = now
-        size = now / plan.deepest
-        if len(plan.scheme.nodes):
-            at.y, at.v = plan.y * size, plan.v * size ** ((chain.k + 1) / 2)
-        else:
-            at.base, at.count = at.t, 0
-            at.h = plan.h * size ** ((1 - chain.k) / 2)
-
-
 @_part
-def _cut_rear(chain: Chain, beads: Beads, plan: Plan, at: Any) -> None:
-    """Leave beads behind that are further than the reach, and have no say in the pulse."""
-    y, v, inverse, k = beads.y, beads.v, chain.inverse, chain.k
-    while at.front - at.lo > plan.cut:
+def _follow(chain: Chain, beads: Beads, plan: Plan, at: Any) -> None:
+    """Move the front with the first bead that is still, and the rear of a window behind it."""
+    while at.front < plan.size and abs(beads.y[at.front - MARGIN]) > _STILL * plan.deepest:
+        at.front += 1
+    while plan.window > 0 and at.front - at.lo > plan.window:
         lo = at.lo
-        momentum = math.sqrt(plan.heaviest * at.peak * (at.peak / plan.stiffest) ** (1 / k))
         force, _ = _bond(chain, beads, lo, lo)
-        blow = (v[lo] - v[lo + 1]) / (inverse[lo] + inverse[lo + 1])
-        still = abs(y[lo]) <= _STILL * at.scale  # nothing has passed it yet
-        if still or force > _OPEN * at.peak or blow > _BLOW * momentum:
-            if at.front - lo <= _LONGEST * plan.cut:
-                break
-            at.decay = 0.0  # nobody knows: the whole chain is wanted
-        at.lost += max(force, 0.0) * max(y[lo] - y[lo + 1], 0.0) / (k + 1)
+        at.lost += force * max(beads.y[lo] - beads.y[lo + 1], 0.0) / (chain.k + 1)
         beads.left[lo] = at.t
         at.lo = lo + 1
         for s in range(len(beads.force)):
             beads.force[s, lo + 1] = 0.0
-
-
-@_part
-def _follow(chain: Chain, beads: Beads, plan: Plan, at: Any, hi: int) -> None:
-    """Move the front, and the rear where it may be cut, with the pulse."""
-    while at.front < plan.size and abs(beads.y[at.front - MARGIN]) > _STILL * at.scale:
-        at.front += 1
-    if not plan.look:
-        return
-    if at.steps % 4 == 0 or len(plan.scheme.nodes):
-        at.top = max(at.top, _greatest(beads.force, at.lo, hi))
-    if at.front - at.mark >= plan.look:
-        _grow(chain, plan, at)
-    if plan.cut > 0:
-        _cut_rear(chain, beads, plan, at)
 
 
 @_compiled
@@ -637,16 +567,14 @@ def advance(chain: Chain, beads: Beads, plan: Plan, seen: Samples, at: Any, trie
             at.begin += 1
         at.tries += 1
         at.evaluations += stages * (hi - at.lo)
-        later, h = at.base + (at.count + 1) * at.h, at.h
+        h, pair = at.h, len(plan.scheme.nodes) > 0
+        later = at.t + h if pair else (at.steps + 1) * h
         if later > plan.end - 1e-9 * h:
             later, h = plan.end, plan.end - at.t
-        if len(plan.scheme.nodes):
-            if not _accepted(chain, beads, plan, at, h, hi):
-                continue
-            at.base, at.count = later, 0
-        else:
+        if not pair:
             _split(chain, beads, plan, h, at.lo, hi)
-            at.count += 1
+        elif not _accepted(chain, beads, plan, at, h, hi):
+            continue
         at.steps += 1
         due = at.done
         while due < len(time) and time[due] <= later:
@@ -655,6 +583,5 @@ def advance(chain: Chain, beads: Beads, plan: Plan, seen: Samples, at: Any, trie
         if due > at.done:
             _sample(chain, beads, plan, seen, at, h, due)
         at.t, at.before = later, h
-        if plan.cut > 0 or at.front < plan.size:
-            _follow(chain, beads, plan, at, hi)
+        _follow(chain, beads, plan, at)
     return float(at.t)

@@ -1,42 +1,50 @@
-"""A run of a scene, however it was integrated."""
+"""Records of a scene's sensors, and the run that made them, whichever method integrated it."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
+from importlib import import_module
 from typing import Any
 
-from lwa.base.arrays import Array
+import numpy as np
+
+from lwa.base.arrays import Array, ArrayValue
 from validation.lattice.equations import Motion
+from validation.pictures.figure import Pictured
+from validation.pictures.panel import Curve, Map, Panel
 from validation.scenes.checks import Failure, SceneError
 from validation.scenes.scene import Scene
 
-_MOST = 10
-"""Names in the legend of a picture."""
+_SI = {
+    "time": "s",
+    "arrival": "s",
+    "FWHM": "s",
+    "force": "N",
+    "compression": "m",
+    "displacement": "m",
+    "velocity": "m/s",
+}
+_MOST = 10  # sensors of one kind that are drawn as curves; more are drawn as a map
+_FINEST = 1000  # places, and times, of a map
 
 
 class IntegrationError(Failure):
     """The integrator could not go on; the message says where and why."""
 
 
-@dataclass(frozen=True, eq=False)
-class Run:
-    """What a scene's sensors recorded, and how well the motion kept its invariants.
+@dataclass(frozen=True, eq=False, repr=False)
+class Records(ArrayValue, Pictured):
+    """What the sensors of a scene recorded; S is the number of samples.
 
-    Arrays are read-only; S is the number of samples.
+    Forces are total: the static force of gravity and precompression is included. Entries that were
+    not computed, because a window had left the sensor, are NaN.
 
     time : (S,).
-    contact_force, compression : (contacts, S), at the scene's contact sensors; a gap is a
-        negative compression. Static forces are included.
+    contact_force, compression : (contacts, S), at the scene's contact sensors; a gap is a negative
+        compression.
     bead_force, bead_displacement, bead_velocity : (beads, S), at the bead sensors; the force is the
-        mean of the bead's two contacts, the displacement is from the equilibrium.
-    displacements, velocities : (n,), at the end.
-    energy_drift : change of the energy above equilibrium over its initial value (0 if that is 0);
-        beads left behind by a window keep what they had.
-    momentum_drift : change of the momentum over Σ m|v| at the end; None with a wall.
-    evaluations : of the equations of motion; bead_evaluations : times the beads each one moved.
-    step : the mean one.
-    window : beads that were followed behind the front at least; beyond, contacts count as open
-        and beads fly on freely. None when the whole chain was integrated throughout.
+        mean of the bead's two contacts, the displacement counts from the equilibrium.
     """
 
     scene: Scene
@@ -46,6 +54,89 @@ class Run:
     bead_force: Array
     bead_displacement: Array
     bead_velocity: Array
+
+    def __repr__(self) -> str:
+        sensors = len(self.scene.bead_sensors) + len(self.scene.contact_sensors)
+        return f"{type(self).__name__}({self.scene}; {sensors} sensors, {len(self.time)} samples)"
+
+    def label(self, quantity: str) -> str:
+        """Name of a quantity with its unit, as in headers and on axes.
+
+        ``quantity`` ends in one of the names of quantities with SI units.
+
+        >>> rest = [np.zeros((0, 2))] * 5
+        >>> Records(Scene(masses=(1,), stiffnesses=(), k=1, duration=1, units="SI"), np.arange(2.0),
+        ...         *rest).label("bead 1 velocity")
+        'bead 1 velocity (m/s)'
+        """
+        return f"{quantity} ({_SI[quantity.split()[-1]]})" if self.scene.units else quantity
+
+    def columns(self) -> dict[str, Array]:
+        """Time and all records, each (S,), by names such as "bead 15 force (N)"."""
+        scene = self.scene
+        found = {"time": self.time}
+        for row, i in enumerate(scene.bead_sensors):
+            for quantity in ("force", "displacement", "velocity"):
+                found[f"bead {i + 1} {quantity}"] = getattr(self, f"bead_{quantity}")[row]
+        for row, i in enumerate(scene.contact_sensors):
+            found[f"contact {i + 1} force"] = self.contact_force[row]
+            found[f"contact {i + 1} compression"] = self.compression[row]
+        return {self.label(name): values for name, values in found.items()}
+
+    def to_pandas(self) -> Any:
+        """The `columns` as a pandas DataFrame, with the time as index.
+
+        Raises `SceneError` without pandas, an optional package.
+        """
+        try:
+            pandas = import_module("pandas")
+        except ImportError:
+            raise SceneError("to_pandas needs pandas: pip install pandas") from None
+        return pandas.DataFrame(self.columns()).set_index(self.label("time"))
+
+    def pictured(self) -> list[Panel]:
+        """Force over time at all sensors; an x–t map for a kind with more than ten sensors."""
+        return list(self._drawn())
+
+    def _drawn(self) -> Iterator[Panel]:
+        time, force = self.label("time"), self.label("force")
+        kinds = (
+            ("bead", self.scene.bead_sensors, self.bead_force),
+            ("contact", self.scene.contact_sensors, self.contact_force),
+        )
+        curves = [
+            Curve(f"{kind} {i + 1}", self.time, row)
+            for kind, sensors, forces in kinds
+            if len(sensors) <= _MOST
+            for i, row in zip(sensors, forces, strict=True)
+        ]
+        if curves:
+            yield Panel(time, force, tuple(curves), legend=(0.0, 1.0))
+        for kind, sensors, forces in kinds:
+            if len(sensors) > _MOST:
+                x = np.argsort(sensors)[:: -(-len(sensors) // _FINEST)]
+                t = slice(None, None, -(-len(self.time) // _FINEST))
+                places = np.array(sensors, float)[x] + 1
+                yield Panel(kind, time, map=Map(force, places, self.time[t], forces[x, t].T))
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Run(Records):
+    """The records of a simulation, its final state, and how well it kept its invariants.
+
+    All arrays are read-only; further fields are those of `Records`.
+
+    displacements, velocities : (n,), at the end.
+    energy_drift : change of the energy above equilibrium over its initial value (0 if that is 0);
+        beads that a window has left behind keep their energy.
+    momentum_drift : change of the momentum over Σ m|v| at the end; None with a wall.
+    evaluations : number of evaluations of the equations of motion.
+    bead_evaluations : sum over these evaluations of the number of beads that moved.
+    step : mean step.
+    window : number of beads followed behind the front; what lies further behind is NaN in all
+        arrays. None for the whole chain.
+    """
+
     displacements: Array
     velocities: Array
     energy_drift: float
@@ -55,34 +146,19 @@ class Run:
     step: float
     window: int | None = None
 
-    def plot(self, ax: Any = None) -> Any:
-        """Draw the forces at the sensors over time into ``ax``, Matplotlib's axes, or a new
-        picture's.
-
-        Returns the axes. Raises `SceneError` for a scene without sensors.
-        """
-        from lwa.wave.plots import axes  # optional, start-up
-
-        contacts, beads = self.scene.contact_sensors, self.scene.bead_sensors
-        names = [*(f"contact {i + 1}" for i in contacts), *(f"bead {i + 1}" for i in beads)]
-        if not names:
-            raise SceneError("plot is asked for, but the scene names no sensors")
-        ax = axes(ax)
-        for name, force in zip(names, (*self.contact_force, *self.bead_force), strict=True):
-            ax.plot(self.time, force, label=name)
-        ax.set(xlabel="time", ylabel="force")
-        if len(names) <= _MOST:
-            # above: within the axes it would lie on a pulse
-            place = {"loc": "lower center", "bbox_to_anchor": (0.5, 1.0)}
-            ax.legend(**place, ncols=min(5, len(names)), fontsize="small", frameon=False)
-        return ax
-
 
 def finished(
-    motion: Motion, end: Array, records: dict[str, Array], energy: float,
-    steps: int, evaluations: int, bead_evaluations: int, window: int | None = None,
-) -> Run:  # fmt: skip
-    """The run that came to this state and energy, with what its sensors recorded."""
+    motion: Motion,
+    end: Array,
+    records: dict[str, Array],
+    energy: float,
+    momentum: float | None,
+    steps: int,
+    evaluations: int,
+    bead_evaluations: int,
+    window: int | None = None,
+) -> Run:
+    """The run that ended in the state ``end`` with this energy and change of momentum."""
     n, before = motion.size, motion.scales.energy
     arrays = records | {"displacements": end[:n].copy(), "velocities": end[n:].copy()}
     for array in arrays.values():
@@ -90,7 +166,7 @@ def finished(
     return Run(
         scene=motion.scene,
         energy_drift=(energy - before) / before if before else 0.0,
-        momentum_drift=motion.momentum_drift(end),
+        momentum_drift=momentum,
         evaluations=evaluations,
         bead_evaluations=bead_evaluations,
         step=motion.scene.duration / steps,

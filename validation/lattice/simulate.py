@@ -1,7 +1,7 @@
 """The equations of motion of a scene (`validation.lattice.equations`), integrated.
 
 One `simulate` stands before two engines. The compiled one (`validation.lattice.engine`), with an
-adaptive pair for y'' = f(y) and a symplectic splitting, follows the pulse with a moving window.
+adaptive pair for y'' = f(y) and a symplectic splitting, moves the beads behind the front only.
 SciPy's steppers, whose own interpolant gives the samples, are the reference. Tolerances are
 relative to the scene's own scales, so that a run does not depend on the units. Either engine keeps
 only the sensors' samples.
@@ -49,7 +49,7 @@ def simulate(
     atol: float = 1e-9,
     method: str = COMPILED[0],
     step: float | None = None,
-    window: bool | int | None = None,
+    window: bool | int = False,
     progress: RunProgress = silent,
 ) -> Run:
     """Integrate a scene and return what its sensors recorded.
@@ -63,16 +63,15 @@ def simulate(
         scale of displacement and velocity.
     method : one of `COMPILED` or of `METHODS`.
     step : of a compiled method, the largest, in place of that which ``rtol`` gives.
-    window : of a compiled method, whether to follow the pulse only. By default wherever the pulse
-        runs away: not with a wall (gravity has one) and not at k = 1. False asks for all that
-        happens behind, such as light beads that rattle. A number is that of the beads to follow
-        behind the front, or more where the pulse is wider. Where its tail may overtake it, in a
-        chain too short to tell, and where another bead than the first is struck, there is none.
+    window : of a compiled method, the number of beads to follow behind the front of a leading
+        pulse, or True for eight widths of the long-wave pulse; the chain must end freely and
+        k exceed 1. The run is made with this window and with one twice as long, whose numbers are
+        returned; beads further behind are NaN in all arrays. By default the whole chain.
     progress : is shown what a run takes before it starts, and then how far it is.
 
     Raises `SceneError` for a tolerance or method that cannot be meant, and for a run that takes
     longer or more memory than `validation.lattice.effort` allows, and `IntegrationError` when the
-    integrator fails.
+    integrator fails or the longer window changes the leading pulse by more than some rtol.
 
     >>> scene = Scene(masses=(1, 1), stiffnesses=(1,), k=1.5, duration=9, velocities=(1,))
     >>> simulate(scene).velocities.round(6) + 0.0  # equal masses exchange their velocities
@@ -82,7 +81,7 @@ def simulate(
     """
     one_of(method, COMPILED + METHODS, "method")
     rtol, atol = between(rtol, "rtol", 1e-13, 1e-2), between(atol, "atol", 1e-13, 1e-2)
-    for name, value in (("step", step), ("window", window)):
+    for name, value in (("step", step), ("window", window or None)):
         if method not in COMPILED and value is not None:
             needs = f"it needs one of {', '.join(COMPILED)}"
             raise SceneError(f"{name} is {shorten(value)}: {needs}")
@@ -94,7 +93,9 @@ def simulate(
             run = follow(motion, method, rtol, step, window, progress)
         else:
             run = _adaptive(motion, method, rtol, atol, progress)
-        sums = [float(getattr(run, name).sum()) for name in _FINITE]
+        # of a window NaN is what was not followed, and overflows raise in the engine
+        add = np.nansum if run.window else np.sum
+        sums = [float(add(getattr(run, name))) for name in _FINITE]
     if not all(map(math.isfinite, (run.energy_drift, *sums))):
         raise IntegrationError("the motion overflows: choose other units")
     return run
@@ -185,7 +186,8 @@ def _adaptive(motion: Motion, method: str, rtol: float, atol: float, progress: R
             tell(stepper.t / end)
     energy, evaluations = motion.energy(stepper.y), int(stepper.nfev)
     moves = evaluations * motion.size
-    return finished(motion, stepper.y, records, energy, steps, evaluations, moves)
+    momentum = motion.momentum_drift(stepper.y)
+    return finished(motion, stepper.y, records, energy, momentum, steps, evaluations, moves)
 
 
 def _keep(motion: Motion, states: Array, kept: dict[str, Array]) -> None:

@@ -44,6 +44,7 @@ class Reading:
     kind: str
     places: tuple[int, ...]
     numbers: Mapping[str, Measured]
+    static: float
     missing: str | None = None
 
     @property
@@ -70,6 +71,7 @@ class Track:
     time: Array
     force: Array
     place: Mapping[str, float]
+    static: float
 
     @cached_property
     def pulse(self) -> Pulse:
@@ -81,9 +83,12 @@ Tracks = tuple[Track, ...]
 
 
 def record(
-    scene: Scene, *, method: str = COMPILED[0], rtol: Any = TOLERANCE,
+    scene: Scene,
+    *,
+    method: str = COMPILED[0],
+    rtol: Any = TOLERANCE,
     progress: RunProgress = silent,
-) -> Recording:  # fmt: skip
+) -> Recording:
     """Simulate a scene and read its sensors.
 
     The options are those of `validation.simulate`, but for rtol, from 1e-13 to 1e-5. Raises what
@@ -111,16 +116,17 @@ def tracks(run: Run) -> Tracks:
     load[1 : scene.contact_count + 1] = scene.load
     x = np.cumsum((0.0, *scene.spacings, *scene.spacings[-1:]))
 
-    def track(kind: str, i: int, site: float, force: Array) -> Track:
+    def track(kind: str, i: int, site: float, force: Array, static: float) -> Track:
         length = [float(np.interp(site, range(len(x)), x))] if scene.spacings else []
         place = dict(zip(SPEEDS, (site, *length), strict=False))
-        return Track(kind, i + 1, run.time, force, place)
+        return Track(kind, i + 1, run.time, force - static, place, float(static))
 
     beads = zip(scene.bead_sensors, run.bead_force, strict=True)
     contacts = zip(scene.contact_sensors, run.contact_force, strict=True)
-    return (*(track("bead", i, i, force - (load[i] + load[i + 1]) / 2) for i, force in beads),
-            *(track("contact", i, i + 0.5, force - load[i + 1]) for i, force in contacts)
-            )  # fmt: skip
+    return (
+        *(track("bead", i, i, force, (load[i] + load[i + 1]) / 2) for i, force in beads),
+        *(track("contact", i, i + 0.5, force, load[i + 1]) for i, force in contacts),
+    )
 
 
 def first_pulse(time: Array, force: Array) -> Pulse:
@@ -141,9 +147,9 @@ def _reading(
 ) -> Reading:
     kind, places = fine[0].kind, tuple(track.number for track in fine)
     try:
-        return Reading(kind, places, compared(read, fine, coarse))
+        return Reading(kind, places, compared(read, fine, coarse), fine[0].static)
     except MeasureError as error:
-        return Reading(kind, places, {}, str(error))
+        return Reading(kind, places, {}, fine[0].static, str(error))
 
 
 def _pulse(heard: Tracks) -> dict[str, float]:

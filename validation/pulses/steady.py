@@ -90,7 +90,7 @@ def _point(k: sp.Rational, omega: sp.Rational, stretch: int) -> Point:
     chain = Chain(float(k), float(omega), 2 * cells_apart(float(k), stretch))
     rtol, less = TOLERANCES
     rough = chain.passed(chain.crossing, less, _SAMPLES / 2)
-    fine = chain.passed(1.01 * rough.until, rtol, _SAMPLES, rough.whole)
+    fine = chain.passed(1.01 * rough.until, rtol, _SAMPLES)
     numbers, check = chain.numbers(fine), chain.numbers(rough)
     errors = np.maximum(_unsettled(numbers), np.abs(numbers - check)[:, 2:])
     # Relatively; of the force where it is its decay.
@@ -114,13 +114,11 @@ def _unsettled(numbers: Array) -> Array:
 
 
 class Record(NamedTuple):
-    """A run, the pulse's part of each contact's record, and how long it has to be; whether the
-    whole chain had to be moved."""
+    """A run, the pulse's part of each contact's record, and how long it has to be."""
 
     run: Run
     parts: tuple[slice, ...]
     until: float
-    whole: bool
 
 
 @dataclass(frozen=True)
@@ -136,9 +134,7 @@ class Chain:
         """A pulse's of force 1, by the long-wave speed 2/√((k+1)(1+ω)), and half as long again."""
         return 0.75 * self.sites * PLACES * math.sqrt((self.k + 1) * (1 + self.omega))
 
-    def passed(
-        self, duration: float, rtol: float, samples: float = _SAMPLES, whole: bool = False
-    ) -> Record:
+    def passed(self, duration: float, rtol: float, samples: float = _SAMPLES) -> Record:
         """A run of this duration, or longer, with ``samples`` per unit of time, more where hits are
         shorter. Raises `MeasureError` where the pulse does not come through."""
         units = min(1.0, 4 * self.omega) * max(1.0, self.omega)
@@ -147,15 +143,20 @@ class Chain:
         places = range(self.sites, last + 1, self.sites)
         sensors = tuple(place + side for place in places for side in (0, 1))
         for _ in range(_LONGEST):
-            scene = struck((1.0, self.omega), last + 12, self.k, contact_sensors=sensors,
-                           duration=duration, samples=math.ceil(samples * duration))  # fmt: skip
-            run = simulate(scene, rtol=rtol, window=False if whole else None)
-            whole = run.window is None
+            scene = struck(
+                (1.0, self.omega),
+                last + 12,
+                self.k,
+                contact_sensors=sensors,
+                duration=duration,
+                samples=math.ceil(samples * duration),
+            )
+            run = simulate(scene, rtol=rtol)
             parts = tuple(leading_pulse(force, self.k) for force in run.contact_force)
             # One place's time more, lest the front of a pulse yet to come be taken for it.
             until = (1 + 1 / PLACES) * float(run.time[max(part.stop for part in parts) - 1])
             if until <= duration:
-                return Record(run, parts, until, whole)
+                return Record(run, parts, until)
             duration *= _GROWTH
         end = duration / _GROWTH
         raise MeasureError(f"the pulse has not passed {last} sites by t = {end:.3g}")

@@ -19,7 +19,7 @@ from lwa.base.progress import announce
 from lwa.command.terminal import HELP, called, quantity
 from lwa.command.terminal import run as run_command
 from validation.lattice.effort import Effort
-from validation.report.figure import SUFFIXES
+from validation.pictures.figure import SUFFIXES
 from validation.report.files import output_file
 from validation.report.result import Report
 from validation.scenes.checks import Failure, SceneError
@@ -151,9 +151,14 @@ def run_progress(effort: Effort) -> Iterator[Callable[[float], None]]:
     """What one run takes, and how far it is."""
     start, said = time.monotonic(), announce(str(effort), effort.seconds)
     with tqdm(
-        total=1.0, desc="lattice run", disable=None, leave=False, file=sys.stderr, delay=1,
+        total=1.0,
+        desc="lattice run",
+        disable=None,
+        leave=False,
+        file=sys.stderr,
+        delay=1,
         bar_format="{desc}: {percentage:.1f} %|{bar}| {elapsed}<{remaining}",
-    ) as bar:  # fmt: skip
+    ) as bar:
 
         def tell(share: float) -> None:
             nonlocal said
@@ -171,11 +176,18 @@ def _picture(context: click.Context, given: click.Parameter, path: str | None) -
 
 _OUTPUT = (
     click.option(
-        "--plot", "picture", callback=_picture, metavar="FILE",
+        "--plot",
+        "picture",
+        callback=_picture,
+        metavar="FILE",
         help=f"Draw the result into a file ({', '.join(SUFFIXES)}).",
     ),
     click.option(
-        "--format", "style", type=click.Choice(("text", "json", "csv")), default="text",
-        show_default=True, help="How to print the result.",
+        "--format",
+        "style",
+        type=click.Choice(("text", "json", "csv")),
+        default="text",
+        show_default=True,
+        help="How to print the result.",
     ),
-)  # fmt: skip
+)

@@ -68,8 +68,9 @@ class Table:
     def records(self) -> list[dict[str, Any]]:
         """Each row's names and plain values, in the columns' order, names with their dots."""
         keyed = [(i, column) for i, column in enumerate(self.columns) if column.key]
-        return [dict(pair for i, column in keyed for pair in column.values(row[i])) for row in
-                self.rows]  # fmt: skip
+        return [
+            dict(pair for i, column in keyed for pair in column.values(row[i])) for row in self.rows
+        ]
 
     def document(self) -> list[dict[str, Any]]:
         """The rows for JSON.
@@ -91,8 +92,12 @@ class Table:
         writer = comma.DictWriter(text, names, lineterminator="\n")
         writer.writeheader()
         for record in self.records():
-            writer.writerow({name: json.dumps(value) if isinstance(value, list | dict) else value
-                             for name, value in record.items()})  # fmt: skip
+            writer.writerow(
+                {
+                    name: json.dumps(value) if isinstance(value, list | dict) else value
+                    for name, value in record.items()
+                }
+            )
         return text.getvalue()
 
 
@@ -158,8 +163,14 @@ class Finding:
 
     def document(self) -> dict[str, Any]:
         """For JSON; null is the error of what is exact or itself an error, and no bound."""
-        found = {"quantity": self.quantity, "measured_value": self.value, "error_value": self.error,
-                 "least_value": self.low, "most_value": self.high, "ok": self.ok}  # fmt: skip
+        found = {
+            "quantity": self.quantity,
+            "measured_value": self.value,
+            "error_value": self.error,
+            "least_value": self.low,
+            "most_value": self.high,
+            "ok": self.ok,
+        }
         return {name: plain(part) for name, part in found.items()}
 
 

@@ -1,4 +1,4 @@
-"""Tables and findings as text in columns, and as the tables of a web page."""
+"""Tables and findings as text in columns, and as HTML tables."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Lines = Sequence[Sequence[str]]
 
 
 def aligned(lines: Lines) -> str:
-    """Columns of text, the first aligned left, the others right.
+    """Align columns of text: the first one left, the others right.
 
     >>> print(aligned((("bead", "force"), ("first", "1.5"), ("second", "12.25"))))
     bead    force
@@ -23,20 +23,20 @@ def aligned(lines: Lines) -> str:
     second  12.25
     """
     widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
-    told = []
+    result = []
     for first, *others in lines:
         cells = [first.ljust(widths[0]), *map(str.rjust, others, widths[1:])]
-        told.append("  ".join(cells).rstrip())
-    return "\n".join(told)
+        result.append("  ".join(cells).rstrip())
+    return "\n".join(result)
 
 
 def filled(text: str) -> str:
-    """Each line of a text within 100 columns."""
+    """Wrap each line of a text to 100 columns."""
     return "\n".join(fill(line, 100, break_long_words=False) for line in text.splitlines())
 
 
 def percent(share: float) -> str:
-    """A share with its sign.
+    """Format a fraction as a signed percentage.
 
     >>> percent(-0.0125)
     '-1.25 %'
@@ -45,7 +45,7 @@ def percent(share: float) -> str:
 
 
 def bounds(low: float, high: float) -> str:
-    """What a number must lie between.
+    """Format an interval; infinite ends are left out.
 
     >>> bounds(-1.0, 1.0), bounds(2.0, 3.0), bounds(-math.inf, 3.0), bounds(-math.inf, math.inf)
     ('± 1', '2 … 3', '≤ 3', '-')
@@ -60,8 +60,10 @@ def bounds(low: float, high: float) -> str:
 
 
 def blocks(table: Table) -> list[tuple[str, Lines]]:
-    """What stands above, and the lines with their header, of each part that people read: one, or
-    one for each value of the column that the table is divided ``by``."""
+    """Printed parts of a table: a heading, and lines of cells that begin with the column labels.
+
+    One part, or one for each value of the column ``table.by``; none without column labels.
+    """
     shown = [(i, column) for i, column in enumerate(table.columns) if column.label]
     if not shown:
         return []
@@ -75,7 +77,7 @@ def blocks(table: Table) -> list[tuple[str, Lines]]:
 
 
 def cell(column: Column, value: Any) -> str:
-    """One value as text; ``-`` where there is none."""
+    """Format one cell; ``-`` for None."""
     if value is None:
         return "-"
     if callable(column.format):
@@ -90,13 +92,13 @@ def cell(column: Column, value: Any) -> str:
 
 
 def text(table: Table) -> str:
-    """The table for people; nothing where no column has a label, or no row is there."""
+    """Format a table as text; empty without column labels or rows."""
     parts = [f"{head}\n{aligned(lines)}".lstrip("\n") for head, lines in blocks(table)]
     return "\n".join(filter(None, (table.title, "\n\n".join(parts), table.note))) if parts else ""
 
 
 def html(table: Table) -> str:
-    """The same for a web page."""
+    """Format a table as HTML."""
     if not (parts := blocks(table)):
         return ""
     result = [_element("h4", table.title)]
@@ -104,9 +106,12 @@ def html(table: Table) -> str:
         rows = ["".join(f"<td>{escape(part)}</td>" for part in line) for line in lines]
         result += [
             _element("p", head),
-            "<table><thead><tr>", *(f"<th>{escape(part)}</th>" for part in header),
-            "</tr></thead><tbody>", *(f"<tr>{row}</tr>" for row in rows), "</tbody></table>",
-        ]  # fmt: skip
+            "<table><thead><tr>",
+            *(f"<th>{escape(part)}</th>" for part in header),
+            "</tr></thead><tbody>",
+            *(f"<tr>{row}</tr>" for row in rows),
+            "</tbody></table>",
+        ]
     return "".join((*result, _element("p", table.note)))
 
 
@@ -114,13 +119,12 @@ def _element(name: str, text: str) -> str:
     return f"<{name}>{escape(text)}</{name}>" if text else ""
 
 
-def listed(findings: Iterable[Finding | Statement], all_of_them: bool = True) -> list[str]:
-    """Findings line by line: statements, then a table of the numbers, of those that fail alone
-    where ``all_of_them`` is False."""
-    told = [f for f in findings if all_of_them or isinstance(f, Statement) or not f.ok]
+def listed(findings: Iterable[Finding | Statement], failing: bool = False) -> list[str]:
+    """Statements line by line, then a table of numbers; with ``failing`` only numbers that fail."""
+    shown = [f for f in findings if not failing or isinstance(f, Statement) or not f.ok]
     parts = []
     lines = [("measured", "value", "expected", "")]
-    for f in told:
+    for f in shown:
         if isinstance(f, Statement):
             parts.append(filled(f"{f.quantity}: {f.says}{'' if f.ok else '  FAILS'}"))
             continue

@@ -13,8 +13,9 @@ from numpy.typing import ArrayLike
 
 from lwa import Cell
 from lwa.base.arrays import Array
+from lwa.spheres.hertz import Sphere
 from validation.scenes.checks import SceneError
-from validation.scenes.materials import PTFE_BEAD, STEEL, STEEL_BEAD, Bead
+from validation.scenes.materials import PTFE_BEAD, STEEL, STEEL_BEAD
 from validation.scenes.scene import Scene
 
 
@@ -39,9 +40,14 @@ def numbered(masses: Sequence[Any]) -> Cell:
 
 
 def chain_scene(
-    velocity: float, beads: int, sensors: Sequence[int], gravity: float, duration: float,
-    N: int = 1, ptfe: Bead = PTFE_BEAD,
-) -> Scene:  # fmt: skip
+    velocity: float,
+    beads: int,
+    sensors: Sequence[int],
+    gravity: float,
+    duration: float,
+    N: int = 1,
+    ptfe: Sphere = PTFE_BEAD,
+) -> Scene:
     """The N:1 chain of steel and PTFE of Porter et al. (2008), which ends in a steel wall and is
     struck by its first bead; it records the sensor beads, their two contacts each, and the wall's.
     """
@@ -94,9 +100,10 @@ def launched(wave: Wave, start: int, sites: int, **rest: Any) -> Scene:
     bead = np.arange(2 * start + sites) - start
     at, even = bead[:-1] + 0.5, bead % 2 == 0
     options: dict[str, Any] = dict(
-        contact_sensors=(start + sites // 2, start + sites), samples=4001,
+        contact_sensors=(start + sites // 2, start + sites),
+        samples=4001,
         duration=(sites + start / 2) / wave.c,
-    )  # fmt: skip
+    )
     strain = np.where(even[:-1], wave.strain(at, 0), wave.strain(at, 1))
     velocity = np.where(even, wave.velocity(bead, 0), wave.velocity(bead, 1))
     return carrying(tuple(np.where(even, *wave.masses)), wave.k, strain, velocity, **options | rest)

@@ -1,20 +1,20 @@
-"""What is simulated: the beads, their contacts, what sets them in motion, and who listens.
+"""Scenes: chains of beads, their contacts, initial state and sensors.
 
-Beads 0 … n-1 lie in a row. Contact i joins bead i to bead i+1, the last one (only with a wall)
-bead n-1 to the wall. Each pushes with F = A_i δ^k when its compression δ is positive and is open
-otherwise. Displacements count from the equilibrium and are positive towards the wall. A scene
-holds only what it names: no wall, no gravity, no precompression and no sensors unless they are
-given.
+Beads 0 … n-1 lie in a row. Contact i joins bead i to bead i+1; with a wall, the last contact joins
+bead n-1 to it. A contact pushes with F = A_i δ^k while its compression δ is positive and is open
+otherwise. Displacements count from the equilibrium and are positive towards the wall. By default a
+scene has no wall, no gravity, no precompression and no sensors.
 
-Units are the caller's own, as long as they agree (m1 = A = D = 1, say); those of real beads are SI.
+Any consistent units will do (m1 = A = D = 1, say); scenes of real beads are in SI.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import partial
+from html import escape
 from itertools import accumulate, pairwise
 from typing import Any
 
@@ -24,37 +24,38 @@ from lwa import Cell
 from lwa.base.exact import shorten
 from lwa.base.tables import Reader
 from lwa.cell import exponent
+from lwa.spheres.hertz import Material, Sphere, stiffness
 from validation.scenes import checks
 from validation.scenes.checks import SceneError, integer, items, of_scene, positive, real
-from validation.scenes.materials import Bead, Material, contact_stiffness
 
 __all__ = ["Scene", "SceneError"]
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class Scene:
     """A chain, its initial state and its sensors.
 
     Parameters
     ----------
     masses : of the n beads.
-    stiffnesses : A_i of the n-1 contacts between them.
-    k : exponent of the contact law, at least 1.
-    duration : time that is simulated.
-    wall : stiffness of the contact of the last bead with a fixed wall.
-    gravity, precompression : acceleration, and a constant force F0 on bead 0, towards the wall. In
-        equilibrium every contact carries F0 and the weight of the beads above it.
-    displacements, velocities : initial, from the equilibrium; beads that the sequence does not
-        reach start at 0. A striker is ``velocities=(v,)``.
-    contact_sensors : of the force and the compression of these contacts.
-    bead_sensors : of the velocity of these beads and of their force, the mean of the two contacts
-        (at an end that touches nothing, of one contact and 0).
+    stiffnesses : A_i of the n-1 contacts between beads.
+    k : exponent of the contact law, at least 1; a number or a text such as "3/2".
+    duration : time to simulate.
+    wall : stiffness of the contact between the last bead and a fixed wall.
+    gravity : acceleration towards the wall.
+    precompression : constant force F0 on bead 0 towards the wall. At rest every contact carries F0
+        and the weight of the beads above it.
+    displacements, velocities : initial values for the first beads; all other beads start at 0. A
+        striker is ``velocities=(v,)``.
+    contact_sensors : contacts whose force and compression are recorded.
+    bead_sensors : beads whose displacement, velocity and force are recorded. The force of a bead
+        is the mean of its two contacts' (a missing contact counts as 0).
     samples : number of sample times, equidistant from 0 to the duration.
-    spacings : distances of the n-1 pairs of neighbours in equilibrium. The motion does not ask for
-        them; without, a speed is known in sites only.
-    units : "SI", or nothing for any that agree; what results say.
+    spacings : n-1 distances between neighbours at rest. They only turn speeds from sites into
+        lengths per time.
+    units : "SI", or "" for any other consistent units; labels of results depend on it.
 
-    Raises `SceneError` for whatever cannot be meant.
+    Raises `SceneError` for invalid values.
     """
 
     masses: tuple[float, ...]
@@ -96,55 +97,91 @@ class Scene:
         for name, count in (("contact_sensors", self.contact_count), ("bead_sensors", n)):
             object.__setattr__(self, name, _sensors(getattr(self, name), name, count))
 
+    def __repr__(self) -> str:
+        return f"Scene({self})"
+
+    def __str__(self) -> str:
+        """Size, law and duration in one line.
+
+        >>> print(Scene(masses=(1, 1), stiffnesses=(1,), k="3/2", duration=2))
+        2 beads, 1 contact, k = 1.5; duration 2
+        """
+        n, c = self.size, self.contact_count
+        wall = ", the last one the wall's" if self.wall is not None else ""
+        size = f"{n} bead{'s' * (n != 1)}, {c} contact{'s' * (c != 1)}{wall}"
+        return f"{size}, k = {self.k:g}; duration {self.duration:g}{' s' if self.units else ''}"
+
+    def _repr_html_(self) -> str:
+        """The fields that differ from their defaults as a table, for a notebook."""
+        given = ((f.name, getattr(self, f.name), f.default) for f in fields(self))
+        rows = (
+            f"<tr><td>{name}</td><td>{escape(shorten(value))}</td></tr>"
+            for name, value, default in given
+            if value != default
+        )
+        return f"<p>{escape(str(self))}</p><table><tbody>{''.join(rows)}</tbody></table>"
+
     @property
     def size(self) -> int:
-        """n, the number of beads."""
+        """Number of beads."""
         return len(self.masses)
 
     @property
     def contact_count(self) -> int:
-        """The number of contacts, that with the wall included."""
+        """Number of contacts, the wall's included."""
         return len(self.stiffnesses) + (self.wall is not None)
 
     @property
     def load(self) -> tuple[float, ...]:
-        """The static force of each contact: F0 and the weight of the beads above."""
+        """Static force of each contact: F0 and the weight of the beads above."""
         above = accumulate(self.masses[: self.contact_count])
         return tuple(self.precompression + self.gravity * mass for mass in above)
 
     @classmethod
     def of_cell(cls, cell: Cell, repeats: int, k: Any, **rest: Any) -> Scene:
-        """A chain of the theory's own periodic cell, repeated; ``rest`` as for a `Scene`.
+        """A chain of repeated periodic cells of the theory.
 
-        The last cell's last contact is left out. Raises `SceneError` when the cell holds symbols.
+        The last contact of the last cell is left out. ``rest`` are further fields of the scene.
+        Raises `SceneError` for a cell with symbols.
 
         >>> from lwa import Dimer
         >>> Scene.of_cell(Dimer(1, "1/2", spacing=1), 2, "3/2", duration=1).masses
         (1.0, 0.5, 1.0, 0.5)
         """
+        if not isinstance(cell, Cell):
+            raise SceneError(f"cell is {shorten(cell)}: a Cell of lwa is wanted")
         repeats = integer(repeats, "repeats", 1)
-        k_value = _number(of_scene(exponent)(k), "k")
         masses = tuple(_number(m, "mass") for m in cell.masses) * repeats
         stiffnesses = tuple(_number(A, "stiffness") for A in cell.stiffnesses) * repeats
         spacings = (float(cell.spacing),) * (len(masses) - 1) if cell.spacing.is_number else ()
         contacts = stiffnesses[:-1]
-        return cls(masses=masses, stiffnesses=contacts, k=k_value, spacings=spacings, **rest)
+        return cls(masses=masses, stiffnesses=contacts, k=k, spacings=spacings, **rest)
 
     @classmethod
-    def of_beads(cls, beads: Sequence[Bead], *, wall: Material | None = None, **rest: Any) -> Scene:
-        """A chain of real beads in Hertz contact, ended by a flat wall if its material is given."""
+    def of_beads(
+        cls, beads: Sequence[Sphere], *, wall: Material | None = None, **rest: Any
+    ) -> Scene:
+        """A chain of spheres in Hertz contact, in SI units, ended by a wall of a given material.
+
+        ``rest`` are further fields of the scene. Raises `SceneError` for spheres with symbols.
+        """
         given = items(beads, "beads")
         for i, bead in enumerate(given):
-            if not isinstance(bead, Bead):
-                raise SceneError(f"bead {i} is {shorten(bead)}: a Bead is wanted")
+            if not isinstance(bead, Sphere):
+                raise SceneError(f"bead {i} is {shorten(bead)}: a Sphere is wanted")
         if not given:
             raise SceneError("beads is empty: a chain has at least one bead")
+        pairs = [(id(a), id(b)) for a, b in pairwise(given)]
+        distinct = dict(zip(pairs, pairwise(given), strict=True))
+        A = {key: _number(stiffness(*pair), "stiffness") for key, pair in distinct.items()}
+        distance = {key: float(a.radius + b.radius) for key, (a, b) in distinct.items()}
+        mass = {key: _number(bead.mass, "mass") for key, bead in {id(b): b for b in given}.items()}
         return cls(
-            masses=tuple(bead.mass for bead in given),
-            stiffnesses=tuple(contact_stiffness(a, b) for a, b in pairwise(given)),
+            masses=tuple(mass[id(bead)] for bead in given),
+            stiffnesses=tuple(A[key] for key in pairs),
             k=1.5,
-            wall=None if wall is None else contact_stiffness(given[-1], wall),
-            spacings=tuple(a.radius + b.radius for a, b in pairwise(given)),
+            wall=None if wall is None else float(stiffness(given[-1], wall)),
+            spacings=tuple(distance[key] for key in pairs),
             units="SI",
             **rest,
         )
@@ -156,12 +193,26 @@ def _all(read: Reader) -> Reader:
     )
 
 
+def _exponent(value: Any, name: str) -> float:
+    if isinstance(value, str | sp.Expr):
+        return _number(of_scene(exponent)(value), name)
+    return real(value, name)
+
+
 _READERS: dict[str, Reader] = {
-    "masses": _all(positive), "stiffnesses": _all(positive), "spacings": _all(positive),
-    "displacements": _all(real), "velocities": _all(real), "samples": partial(integer, least=2),
-    "k": real, "duration": positive, "wall": positive, "gravity": real, "precompression": real,
+    "masses": _all(positive),
+    "stiffnesses": _all(positive),
+    "spacings": _all(positive),
+    "displacements": _all(real),
+    "velocities": _all(real),
+    "samples": partial(integer, least=2),
+    "k": _exponent,
+    "duration": positive,
+    "wall": positive,
+    "gravity": real,
+    "precompression": real,
     "units": lambda value, name: checks.one_of(value, ("", "SI"), name),
-}  # fmt: skip
+}
 
 
 def _sensors(values: Any, name: str, count: int) -> tuple[int, ...]:

@@ -62,25 +62,36 @@ from typing import Any
 from lwa.base.exact import shorten
 from lwa.base.files import load
 from lwa.base.tables import Reader, Table, among, array, entries, flag, place, places, table
-from lwa.spheres import hertz
 from lwa.spheres.beads import read_beads, read_materials
+from lwa.spheres.hertz import Material, Sphere
 from validation.scenes.checks import SceneError, each, integer, of_scene, positive, real
-from validation.scenes.materials import Bead, Material, contact_stiffness
+from validation.scenes.materials import contact_stiffness
 from validation.scenes.scene import Scene
 
 MOST_BEADS = 1_000_000
 MOST_SAMPLES = 10_000_000  # of all sensors together
 KEYS = {
     "file": (
-        "duration", "samples", "units", "gravity", "precompression", "materials", "beads", "chain",
-        "defects", "wall", "striker", "start", "sensors",
+        "duration",
+        "samples",
+        "units",
+        "gravity",
+        "precompression",
+        "materials",
+        "beads",
+        "chain",
+        "defects",
+        "wall",
+        "striker",
+        "start",
+        "sensors",
     ),
     "chain": ("cell", "k", "stiffnesses", "spacings", "repeat"),
     "wall": ("material", "stiffness"),
     "striker": ("velocity",),
     "start": ("velocities", "displacements", "overlap"),
     "sensors": ("beads", "contacts"),
-}  # fmt: skip
+}
 
 
 def read(path: str | Path) -> Scene:
@@ -102,7 +113,7 @@ def scene(content: Any) -> Scene:
         for name in ("wall", "striker", "start", "sensors")
     }
     materials = read_materials(file)
-    beads = {name: Bead.of(sphere) for name, sphere in read_beads(file, materials).items()}
+    beads = read_beads(file, materials)
     defects = file.read("defects", _defects, ())
     row, chain = _chain(file.read("chain", table(KEYS["chain"])), beads, defects)
     n, start, sensors = len(chain["masses"]), tables["start"], tables["sensors"]
@@ -162,8 +173,8 @@ def _defects(value: Any, name: str) -> list[Table]:
 
 
 def _chain(
-    given: Table, beads: Mapping[str, Bead], defects: Sequence[Table]
-) -> tuple[list[Bead], dict[str, Any]]:
+    given: Table, beads: Mapping[str, Sphere], defects: Sequence[Table]
+) -> tuple[list[Sphere], dict[str, Any]]:
     """The beads, where they are named, and what the chain gives a `Scene`."""
     cell = given.read("cell", array)
     repeat = given.read("repeat", partial(integer, least=1), 1)
@@ -171,7 +182,7 @@ def _chain(
     if not 1 <= n <= MOST_BEADS:
         made = f"chain.cell and repeat make {shorten(n)} beads"
         raise SceneError(f"{made}: 1 … {MOST_BEADS} are wanted")
-    row: list[Bead] = []
+    row: list[Sphere] = []
     if isinstance(cell[0], str):
         for key in ("k", "stiffnesses", "spacings"):
             if key in given:
@@ -211,12 +222,12 @@ def _of_contacts(value: Any, name: str, period: int, count: int) -> list[float]:
     return numbers if len(value) == count else (numbers * (count // period + 1))[:count]
 
 
-def _wall(given: Table, row: Sequence[Bead], materials: Mapping[str, hertz.Material]) -> float:
+def _wall(given: Table, row: Sequence[Sphere], materials: Mapping[str, Material]) -> float:
     if given.one("material", "stiffness") == "stiffness":
         return float(given.read("stiffness", positive))
     if not row:
         raise SceneError("wall.material is given, but a chain of masses needs wall.stiffness")
-    return contact_stiffness(row[-1], Material.of(given.read("material", among(materials))))
+    return contact_stiffness(row[-1], given.read("material", among(materials)))
 
 
 def _overlap(what: Scene) -> int:
@@ -258,6 +269,7 @@ def _period(what: Scene) -> int:
     """The size of the smallest cell that, repeated, is the chain."""
     n, rows = what.size, (what.masses, what.stiffnesses, what.spacings)
     return next(
-        p for p in range(1, n + 1)
+        p
+        for p in range(1, n + 1)
         if n % p == 0 and all(row[p:] == row[: max(len(row) - p, 0)] for row in rows)
-    )  # fmt: skip
+    )

@@ -22,6 +22,7 @@ import sympy as sp
 
 from lwa import Cell, Dimer, canonical_wave, homogenize
 from lwa.command.terminal import quantities
+from lwa.spheres.hertz import Sphere
 from validation.lattice.effort import RunProgress, silent
 from validation.lattice.run import Run
 from validation.lattice.simulate import twice
@@ -34,7 +35,7 @@ from validation.report.table import Column, Table
 from validation.report.text import percent
 from validation.scenes.chains import chain_scene
 from validation.scenes.checks import SceneError, integer, items, real
-from validation.scenes.materials import DIAMETER, PTFE_BEAD, STEEL_BEAD, Bead, contact_stiffness
+from validation.scenes.materials import DIAMETER, PTFE_BEAD, STEEL_BEAD, contact_stiffness
 from validation.scenes.scene import Scene
 from validation.waves.theory import Compacton
 
@@ -170,7 +171,7 @@ class Train:
         return float(np.mean([pulse.fwhm for pulse in self.pulses.values()]))
 
 
-def chain_cell(N: int = 1, ptfe: Bead = PTFE_BEAD) -> Cell:
+def chain_cell(N: int = 1, ptfe: Sphere = PTFE_BEAD) -> Cell:
     """N steel beads and one of PTFE, in SI units."""
     row = [STEEL_BEAD] * N + [ptfe, STEEL_BEAD]
     stiffnesses = [contact_stiffness(*pair) for pair in pairwise(row)]
@@ -178,12 +179,12 @@ def chain_cell(N: int = 1, ptfe: Bead = PTFE_BEAD) -> Cell:
 
 
 def recorded_chain(
-    sensors: Sequence[int], velocity: float = VELOCITY, N: int = 1, ptfe: Bead = PTFE_BEAD,
+    sensors: Sequence[int], velocity: float = VELOCITY, N: int = 1, ptfe: Sphere = PTFE_BEAD,
     beads: int = BEADS,
 ) -> Scene:  # fmt: skip
     """The N:1 chain, struck, for as long as the pulse takes to its wall."""
     wave = canonical_wave(chain_cell(N, ptfe), HERTZ)
-    pulse = Compacton.of_momentum(wave, STEEL_BEAD.mass * velocity)
+    pulse = Compacton.of_momentum(wave, float(STEEL_BEAD.mass) * velocity)
     duration = 1.6 * beads * DIAMETER / pulse.speed
     return chain_scene(velocity, beads, sensors, 0.0, duration, N, ptfe)
 
@@ -218,7 +219,7 @@ def paper(
         wanted = "two beads are wanted, the one nearer to the striker first"
         raise SceneError(f"sensors are {', '.join(map(str, pair))}: {wanted}")
     wave = homogenize(chain_cell(), k=HERTZ).pde.traveling_wave()
-    striker = Compacton.of_momentum(wave, STEEL_BEAD.mass * velocity)
+    striker = Compacton.of_momentum(wave, float(STEEL_BEAD.mass) * velocity)
     # Ample: the pulse that had all the momentum would need two thirds of this to the wall.
     duration = 1.5 * beads * DIAMETER / striker.speed
     scene = chain_scene(velocity, beads, pair, gravity, duration)

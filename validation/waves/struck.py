@@ -87,7 +87,7 @@ def struck(k: float, omega: float) -> Struck:
         front = other.front[::-1].copy()
         return replace(other, masses=(1.0, omega), c2=other.c2 / omega, front=front)
     chain = Chain(k, omega, 2 * min(cells_apart(k, STRETCH), FARTHEST))
-    record = chain.passed(chain.crossing, TOLERANCE, whole=True)  # its tail is wanted too
+    record = chain.passed(chain.crossing, TOLERANCE)
     place = PLACES - 3  # the tail behind it has still to be recorded
     time, cell = record.run.time, slice(2 * place, 2 * place + 2)
     centers, peaks = [], []

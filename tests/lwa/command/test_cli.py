@@ -422,10 +422,15 @@ def test_bad_input_is_one_line_and_status_two(capsys, arguments):
 def test_the_installed_command():
     command = [sys.executable, "-c", "from lwa.command.cli import main; main()"]
     good = subprocess.run(
-        [*command, "wave", "--k", "3/2", "--masses", "1,1"], capture_output=True, text=True
+        [*command, "wave", "--k", "3/2", "--masses", "1,1"],
+        capture_output=True,
+        text=True,
+        timeout=120,
     )
     assert good.returncode == 0
-    bad = subprocess.run([*command, "derive", "--k", "0"], capture_output=True, text=True)
+    bad = subprocess.run(
+        [*command, "derive", "--k", "0"], capture_output=True, text=True, timeout=120
+    )
     assert (bad.returncode, bad.stdout, bad.stderr.count("\n")) == (2, "", 1)
 
 
@@ -437,7 +442,7 @@ def test_a_reader_that_stops_early_is_no_fault():
     process.stdout.close()
     assert process.stderr.read() == b""
     process.stderr.close()
-    assert process.wait() in (0, 1)
+    assert process.wait(120) in (0, 1)
 
 
 @pytest.mark.parametrize(

@@ -21,7 +21,7 @@ WAVE = [*COMMAND, "wave", "--k", "3/2", "--masses", "1,1"]
 @pytest.mark.parametrize("encoding", ["cp1252", "latin-1", "utf-8"])
 def test_letters_that_an_encoding_lacks_are_spelled(encoding):
     environment = os.environ | {"PYTHONIOENCODING": encoding}
-    done = subprocess.run(WAVE, capture_output=True, env=environment)
+    done = subprocess.run(WAVE, capture_output=True, env=environment, timeout=120)
     assert (done.returncode, done.stderr) == (0, b"")
     text = done.stdout.decode(encoding)
     assert ("width π/β = " if encoding == "utf-8" else "= sqrt(10)*pi*D/2") in text
@@ -34,7 +34,7 @@ def test_letters_that_an_encoding_lacks_are_spelled(encoding):
 def test_a_refusal_is_spelled_too():
     environment = os.environ | {"PYTHONIOENCODING": "cp1252"}
     done = subprocess.run(
-        [*COMMAND, "derive", "--masses", "κ κ"], capture_output=True, env=environment
+        [*COMMAND, "derive", "--masses", "κ κ"], capture_output=True, env=environment, timeout=120
     )
     assert done.returncode == 2
     assert b"'kappa kappa'" in done.stderr
@@ -48,7 +48,9 @@ def test_every_sign_stands_for_one_that_cp1252_or_ascii_lacks():
 def test_a_full_disk_is_one_line():
     for arguments in (["derive", "--order", "8"], ["--version"], ["-h"]):
         with open("/dev/full", "w") as full:
-            done = subprocess.run([*COMMAND, *arguments], stdout=full, stderr=subprocess.PIPE)
+            done = subprocess.run(
+                [*COMMAND, *arguments], stdout=full, stderr=subprocess.PIPE, timeout=120
+            )
         assert (done.returncode, done.stderr.count(b"\n")) == (2, 1)
         assert b"No space left" in done.stderr
 
@@ -57,7 +59,7 @@ def test_a_full_disk_is_one_line():
 def test_a_closed_output_is_one_line():
     for redirection, lines in ((">&-", 1), (">&- 2>&-", 0)):
         command = f'"{sys.executable}" -m lwa derive {redirection}'
-        done = subprocess.run(command, shell=True, stderr=subprocess.PIPE)
+        done = subprocess.run(command, shell=True, stderr=subprocess.PIPE, timeout=120)
         assert (done.returncode, done.stderr.count(b"\n")) == (2, lines)
 
 
@@ -74,14 +76,16 @@ def test_ctrl_c_while_the_command_is_loaded_is_one_line(tmp_path):
     )
     code = f"import sys; sys.path.insert(0, {str(tmp_path)!r}); "
     code += "from lwa.command.start import start; start('lwa', 'slow')"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120)
     assert (done.returncode, done.stdout) == (INTERRUPTED, "")
     assert done.stderr == "lwa: interrupted\n"
 
 
 def test_nothing_is_loaded_before_ctrl_c_is_heard():
     code = "import sys, lwa.__main__, lwa.command.start; print('sympy' in sys.modules)"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=120
+    )
     assert done.stdout.strip() == "False"
 
 

@@ -490,7 +490,7 @@ def test_bad_chains():
 
 def test_importing_it_does_not_load_numpy():
     code = "import lwa.linear.dispersion, sys; sys.exit('numpy' in sys.modules)"
-    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+    assert subprocess.run([sys.executable, "-c", code], check=False, timeout=120).returncode == 0
 
 
 @pytest.mark.parametrize("kappa", [1e308, -1e17, 12345.678, 7.0])

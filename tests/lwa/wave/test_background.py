@@ -292,7 +292,7 @@ def test_what_cannot_be_meant():
         (lambda: compression().fwhm(1, "colour"), "quantity"),
         (lambda: compression().fwhm(1, digits=1000), "at most"),
         (lambda: compression().profile("x", 1), "a number"),
-        (lambda: background_wave(Cell([1]), "B"), "means something else"),
+        (lambda: background_wave(Cell([1]), "B"), "means the peak strain"),
         (lambda: background_wave(Dimer(1, 1, stiffnesses=[1, 2]), law=general()), "shares"),
         (lambda: background_wave(Cell([1]), law=Power("k")).numeric(), "has no value"),
         (lambda: NUMERIC["3/2"].speed(math.nan, 1.0), "finite"),

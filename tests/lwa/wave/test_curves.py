@@ -168,5 +168,7 @@ def test_matplotlib_is_loaded_for_a_new_picture_only():
         "wave = canonical_wave(Cell([1], spacing=1), '3/2')\nwave.force([0], peak=1)\n"
         "print('matplotlib' in sys.modules)"
     )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=120
+    )
     assert done.stdout.strip() == "False"

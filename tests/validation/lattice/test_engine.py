@@ -85,10 +85,10 @@ def test_the_splitting_can_be_reversed_in_time():
     """A palindrome: the way back differs by rounding only, however long the step."""
     method = "SRKN14"
     chain = dict(masses=(1.0, 0.4) * 5, stiffnesses=(1.0,) * 9, k=1.5, duration=12.0)
-    there = simulate(Scene(**chain, velocities=(1.0,)), method=method, step=0.1, window=False)
+    there = simulate(Scene(**chain, velocities=(1.0,)), method=method, step=0.1)
     back = simulate(
         Scene(**chain, displacements=there.displacements, velocities=-there.velocities),
-        method=method, step=0.1, window=False,
+        method=method, step=0.1,
     )  # fmt: skip
     np.testing.assert_allclose(back.displacements, 0, atol=1e-12)
     np.testing.assert_allclose(back.velocities, [-1] + [0] * 9, atol=1e-12)
@@ -111,16 +111,52 @@ def test_the_energy_of_a_long_run_of_the_splitting_is_bounded():
 @pytest.mark.parametrize("k", [1.1, 1.5, 3.0])
 @pytest.mark.parametrize("omega", [1.0, 0.3428, 0.2733, 0.1])
 def test_the_window_does_not_touch_the_pulse(k, omega):
-    """Before the peak the window's record is the whole chain's."""
-    scene = struck(160, omega, k, duration=130.0, contact_sensors=(50, 100), samples=2601)
-    seen, whole = (simulate(scene, method="SRKN14", step=0.2, window=w) for w in (True, False))
-    assert whole.window is None
+    """Up to the peak the window's record is the whole chain's."""
+    scene = struck(260, omega, k, duration=200.0, contact_sensors=(50, 100), samples=2601)
+    seen, whole = (simulate(scene, rtol=1e-8, window=w) for w in (60, False))
+    assert (seen.window, whole.window) == (60, None)
     top = whole.contact_force.argmax(axis=1)
     for force, exact, p in zip(seen.contact_force, whole.contact_force, top, strict=True):
-        assert force[: p + 1] == pytest.approx(exact[: p + 1], abs=1e-13)
+        assert force[: p + 1] == pytest.approx(exact[: p + 1], abs=1e-7)
+    # the books of energy and momentum hold what was left behind
     assert abs(seen.momentum_drift) < 1e-12
-    assert abs(seen.energy_drift) < 2e-3  # that of the step; nothing leaves the books
-    assert seen.energy_drift == pytest.approx(whole.energy_drift, abs=2e-3)
+    assert abs(seen.energy_drift) < 1e-7
+
+
+def test_the_whole_chain_is_the_default():
+    """A heavy striker's chain of three masses: contacts push back long after the pulse has passed.
+
+    The peaks at both contacts are those of SciPy's DOP853 at 1e-11."""
+    masses = [0.3 if i % 3 == 2 else 1.0 for i in range(150)]
+    masses[0] = 20.0
+    scene = Scene(
+        masses=masses, stiffnesses=(1.0,) * 149, k=1.5, duration=190, velocities=(1,),
+        contact_sensors=(116, 119), samples=9001,
+    )  # fmt: skip
+    run = simulate(scene)
+    assert run.window is None
+    assert run.contact_force.max(axis=1) == pytest.approx([1.11428, 1.11143], abs=1e-5)
+    assert simulate(scene, window=44).contact_force.max(axis=1) == pytest.approx(
+        run.contact_force.max(axis=1), rel=1e-8
+    )
+    with pytest.raises(IntegrationError, match=r"^window is 24: twice as many beads change the "):
+        simulate(scene, window=24)
+
+
+def test_beyond_a_window_nothing_is_a_number():
+    """Records end where the window leaves their beads, and so do the final states."""
+    scene = struck(160, 1.0, duration=130.0, contact_sensors=(20, 90), bead_sensors=(0, 20))
+    run = simulate(scene, rtol=1e-6, window=24)
+    lost = np.isnan(run.contact_force)
+    assert lost[0].any()
+    assert not lost[1].all()
+    for row in (*lost, *np.isnan(run.bead_velocity), *np.isnan(run.bead_force)):
+        assert (np.diff(row.astype(int)) >= 0).all()  # never followed again
+    assert np.isnan(run.bead_displacement[:, -1]).all()
+    rear = np.flatnonzero(np.isfinite(run.velocities))[0]
+    assert np.isfinite(run.displacements[rear:]).all()
+    assert np.isnan(run.displacements[:rear]).all()
+    assert rear > 21
 
 
 @pytest.mark.parametrize("method", COMPILED)
@@ -128,14 +164,12 @@ def test_the_peak_force_of_the_560_beads(method):
     """0.29635394421 at contact 480 and t = 499.87256149: by located kinks and by small steps of the
     splitting (`validation.studies.accuracy.reference`); DOP853 is compared on fewer beads below."""
     scene = struck(560, duration=510.0, contact_sensors=(480,), samples=10201)
-    run, whole = (simulate(scene, method=method, rtol=1e-6, window=w) for w in (None, False))
-    pulse = measure(run.time, run.contact_force[0])
-    assert pulse.peak == pytest.approx(0.29635394421, rel=1e-6)
-    assert pulse.arrival == pytest.approx(499.87256149, rel=1e-7)
-    assert run.window is not None
-    # without a window the step does not grow as the pulse decays
-    assert measure(whole.time, whole.contact_force[0]).peak == pytest.approx(pulse.peak, rel=1e-6)
-    assert abs(run.energy_drift) < 1e-5
+    for window in (True, False):
+        run = simulate(scene, method=method, rtol=1e-7, window=window)
+        pulse = measure(run.time, run.contact_force[0])
+        assert pulse.peak == pytest.approx(0.29635394421, rel=1e-6)
+        assert pulse.arrival == pytest.approx(499.87256149, rel=1e-7)
+        assert abs(run.energy_drift) < 1e-5
 
 
 @pytest.mark.parametrize("opens", [False, True])
@@ -186,13 +220,13 @@ def test_chains_that_fly_apart_and_meet(seed):
 
 def test_the_correction_of_kinks_saves_half_the_steps(monkeypatch):
     scene = struck(60, duration=55.0, contact_sensors=(40,), samples=1101)
-    corrected, tableau = simulate(scene, rtol=1e-10, window=False), engine._tableau
+    corrected, tableau = simulate(scene, rtol=1e-10), engine._tableau
 
     def plain(method, k):
         return tableau(method, k)._replace(points=np.zeros((0, 0)))
 
     monkeypatch.setattr(engine, "_tableau", plain)
-    uncorrected = simulate(scene, rtol=1e-10, window=False)
+    uncorrected = simulate(scene, rtol=1e-10)
     assert corrected.evaluations < uncorrected.evaluations / 2
     peaks = (run.contact_force.max() for run in (corrected, uncorrected))
     assert next(peaks) == pytest.approx(next(peaks), rel=1e-9)
@@ -261,57 +295,39 @@ def test_the_kinks_reduce_the_order():
 
 
 def test_the_cost_of_a_site_does_not_grow_with_the_chain():
-    """Beads moved per site of a Hertz chain, counted; the slope of 10² … 10⁴ sites is 0."""
-    sizes = np.array([100, 1000, 10000])
+    """Beads moved per site of a Hertz chain, counted; the slope of 300 … 10⁴ sites is 0."""
+    sizes = np.array([300, 1000, 10000])
     per_site = [
-        simulate(struck(n, 1.0, duration=1.3 * n, samples=2), method="SRKN14", rtol=1e-4)
+        simulate(struck(n, 1.0, duration=1.3 * n, samples=2), rtol=1e-4, window=24)
         .bead_evaluations / n
         for n in sizes
     ]  # fmt: skip
     assert abs(np.polyfit(np.log(sizes), np.log(per_site), 1)[0]) < 0.05
 
 
-def test_where_the_window_is_the_whole_chain():
-    assert simulate(loaded(1.5), method="SRKN14", rtol=1e-3).window is None
-    rest = dict(duration=150.0, contact_sensors=(10,))
-    assert simulate(struck(200, k=1.0, **rest), method="SRKN14", rtol=1e-3).window is None
-    assert simulate(struck(200, **rest), method="SRKN14", rtol=1e-3, window=False).window is None
-    assert simulate(struck(200, **rest), method="SRKN14", rtol=1e-3).window == 24
-    assert simulate(struck(200, **rest), method="SRKN14", rtol=1e-3, window=99).window == 99
-    # of so few beads nothing is known of a decay
-    short = struck(60, duration=55.0)
-    assert simulate(short, method="SRKN14", rtol=1e-3, window=True).window is None
-    # between ω = 0.5 and 0.7 the pulse radiates so much that its tail overtakes it
-    fading = struck(300, 0.6, duration=450.0)
-    assert simulate(fading, method="SRKN14", rtol=1e-3).window is None
+def test_a_window_that_holds_the_chain_is_the_whole_chain():
+    scene = struck(40, duration=30.0, contact_sensors=(20,))
+    whole = simulate(scene, rtol=1e-6)
+    for window in (40, 99):
+        run = simulate(scene, rtol=1e-6, window=window)
+        assert run.window is None
+        assert np.array_equal(run.contact_force, whole.contact_force)
 
 
-@pytest.mark.parametrize("omega", [0.5, 0.6, 0.7])
-def test_a_forced_window_is_right_where_the_pulse_radiates(omega):
-    """Its tail overtakes it: with any window the peaks would be off by up to a half."""
-    scene = struck(160, omega, duration=220.0, contact_sensors=(60, 90, 120), samples=4401)
-    whole = simulate(scene, rtol=1e-7, window=False).contact_force.max(axis=1)
-    for window in (True, 16):
-        run = simulate(scene, rtol=1e-7, window=window)
-        assert run.contact_force.max(axis=1) == pytest.approx(whole, rel=1e-6)
-
-
-@pytest.mark.parametrize(
-    "blows", [{0: 1.0, 150: 0.2}, {150: 1.0}, {20: -1.0, 21: 1.0}], ids=["two", "within", "apart"]
-)
-def test_a_window_loses_no_pulse_that_it_does_not_follow(blows):
-    velocities = [blows.get(i, 0.0) for i in range(300)]
+@pytest.mark.parametrize("blow", [{0: 1.0, 150: 0.2}, {150: 1.0}, {20: -1.0, 21: 1.0}])
+@pytest.mark.parametrize("window", [16, 80])
+def test_a_window_follows_the_leading_pulse_or_raises(blow, window):
+    """Whatever a window loses is an error or NaN: what it returns is the whole chain's."""
+    velocities = [blow.get(i, 0.0) for i in range(300)]
     sensors = dict(contact_sensors=(3, 40, 100, 180), samples=1001)
     scene = replace(struck(300, 1.0, duration=200.0, **sensors), velocities=velocities)
-    whole = simulate(scene, rtol=1e-7, window=False).contact_force
-    for window in (None, True, 16):
-        assert np.array_equal(simulate(scene, rtol=1e-7, window=window).contact_force, whole)
-
-
-def test_stiff_and_soft_contacts_take_the_whole_chain():
-    scene = struck(300, 1.0, duration=200.0)
-    mixed = replace(scene, stiffnesses=(1.0, 5.0) * 149 + (1.0,))
-    assert [simulate(s, rtol=1e-3, window=True).window for s in (scene, mixed)] == [18, None]
+    whole = simulate(scene, rtol=1e-7)
+    try:
+        run = simulate(scene, rtol=1e-7, window=window)
+    except IntegrationError:
+        return
+    leading = int(np.nanargmax(np.abs(run.velocities)))
+    assert run.velocities[leading:] == pytest.approx(whole.velocities[leading:], abs=1e-6)
 
 
 def test_many_scenes_run_as_one_does_and_are_taken_as_they_are_needed():
@@ -335,22 +351,6 @@ def test_many_scenes_run_as_one_does_and_are_taken_as_they_are_needed():
         list(simulate_many(scenes, rtol=0))
 
 
-@pytest.mark.parametrize("method", COMPILED)
-def test_what_is_left_behind_is_told(method):
-    """Its contacts are open, and its beads fly on at the velocities that they end with."""
-    scene = struck(160, 1.0, duration=130.0, contact_sensors=(20, 90), bead_sensors=(0, 20))
-    run = simulate(scene, method=method, rtol=1e-6)
-    assert run.window < 40
-    late = run.time > 60
-    assert not run.contact_force[0, late].any()
-    assert run.contact_force[1, late].any()
-    assert np.ptp(run.bead_velocity[:, late], axis=1).tolist() == [0, 0]
-    assert run.bead_velocity[:, -1].tolist() == run.velocities[[0, 20]].tolist()
-    np.testing.assert_allclose(
-        run.bead_displacement[:, -1], run.displacements[[0, 20]], rtol=1e-13, atol=0
-    )
-
-
 def test_a_chain_without_motion():
     scene = Scene(masses=(1, 1), stiffnesses=(1,), k=1.5, duration=1, bead_sensors=(0, 1))
     run = simulate(scene, method="SRKN14")
@@ -359,7 +359,7 @@ def test_a_chain_without_motion():
 
 
 @pytest.mark.parametrize("method", COMPILED)
-@pytest.mark.parametrize("window", [None, True, False])
+@pytest.mark.parametrize("window", [True, False])
 def test_a_single_bead_flies(window, method):
     scene = Scene(masses=(1,), stiffnesses=(), k=1.5, duration=20, velocities=(1,))
     run = simulate(scene, method=method, window=window)
@@ -415,7 +415,7 @@ def test_a_wall_needs_the_whole_chain():
 
 def test_numba_is_imported_for_compiled_methods_only():
     code = "import sys, validation.cli; assert 'numba' not in sys.modules"
-    subprocess.run([sys.executable, "-c", code], check=True)
+    subprocess.run([sys.executable, "-c", code], check=True, timeout=120)
 
 
 def test_rounding_noise_in_a_start_is_no_front():

@@ -1,6 +1,8 @@
 """The equations of motion against what is known exactly: no stored outputs."""
 
 import math
+import pickle
+import sys
 from dataclasses import replace
 
 import numpy as np
@@ -10,6 +12,7 @@ from hypothesis import strategies as st
 from matplotlib.figure import Figure
 from scipy.interpolate import CubicSpline
 
+from lwa import InputError
 from validation.lattice.run import IntegrationError
 from validation.lattice.simulate import METHODS, simulate
 from validation.pulses.pulse import measure, speed
@@ -363,12 +366,48 @@ def test_a_run_is_drawn_into_given_axes():
     run, ax = simulate(heard), Figure().add_subplot()
     assert run.plot(ax) is ax
     assert [text.get_text() for text in ax.get_legend().get_texts()] == [
-        "contact 2", "bead 1", "bead 3",
+        "bead 1", "bead 3", "contact 2",
     ]  # fmt: skip
-    for line, force in zip(ax.lines, (*run.contact_force, *run.bead_force), strict=True):
+    for line, force in zip(ax.lines, (*run.bead_force, *run.contact_force), strict=True):
         assert np.array_equal(line.get_xdata(), run.time)
         assert np.array_equal(line.get_ydata(), force)
     ax.figure.draw_without_rendering()
     assert ax.get_legend().get_window_extent().y0 >= ax.bbox.y1  # on no curve
-    with pytest.raises(SceneError, match=r"^plot is asked for, but the scene names no sensors$"):
+    with pytest.raises(InputError, match=r"^plot is asked for: this result has no picture$"):
         simulate(scene).plot()
+
+
+def test_a_notebook_shows_a_run_and_a_program_its_columns():
+    scene = Scene(masses=(1, 1, 1), stiffnesses=(1, 1), k=1.5, duration=3, velocities=(1,))
+    run = simulate(replace(scene, contact_sensors=(1,), bead_sensors=(0,), samples=11))
+    assert repr(run) == "Run(3 beads, 2 contacts, k = 1.5; duration 3; 2 sensors, 11 samples)"
+    page = run._repr_html_()
+    assert "3 beads" in page
+    assert "<svg" in page
+    assert "<svg" not in simulate(scene)._repr_html_()
+    assert "masses" in scene._repr_html_()
+    assert list(run.columns()) == [
+        "time", "bead 1 force", "bead 1 displacement", "bead 1 velocity", "contact 2 force",
+        "contact 2 compression",
+    ]  # fmt: skip
+    pandas = pytest.importorskip("pandas")
+    table = run.to_pandas()
+    assert isinstance(table, pandas.DataFrame)
+    assert table.index.name == "time"
+    np.testing.assert_array_equal(table["contact 2 force"], run.contact_force[0])
+
+
+def test_a_run_equals_its_pickle_and_no_other_run():
+    scene = Scene(masses=(1, 1), stiffnesses=(1,), k=1.5, duration=3, velocities=(1,))
+    run = simulate(replace(scene, contact_sensors=(0,)))
+    copy = pickle.loads(pickle.dumps(run))
+    assert copy == run
+    assert hash(copy) == hash(run)
+    assert run != simulate(replace(scene, contact_sensors=(0,), duration=2.9))
+
+
+def test_pandas_is_optional(monkeypatch):
+    monkeypatch.setitem(sys.modules, "pandas", None)
+    scene = Scene(masses=(1, 1), stiffnesses=(1,), k=1.5, duration=1, contact_sensors=(0,))
+    with pytest.raises(SceneError, match=r"^to_pandas needs pandas: pip install pandas$"):
+        simulate(scene).to_pandas()

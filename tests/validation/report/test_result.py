@@ -6,7 +6,7 @@ import json
 import pytest
 
 from lwa import InputError
-from validation.report.panel import Curve, Panel
+from validation.pictures.panel import Curve, Panel
 from validation.report.result import Report
 from validation.report.table import Column, Finding, Statement, Table
 from validation.studies.limits import Limits

@@ -133,7 +133,7 @@ def test_findings_in_lines_and_in_a_document():
     assert [line.split()[-1] for line in lines.splitlines()] == ["refused", "expected", "ok",
                                                                  "FAILS"]  # fmt: skip
     assert "5 ± 5e-01" in lines
-    assert "drift" not in "\n".join(listed(found, all_of_them=False))
+    assert "drift" not in "\n".join(listed(found, failing=True))
     told = json.loads(json.dumps(Report("", findings=found).document(), allow_nan=False))
     assert told["drift_value"] == 1e-12
     assert [f["ok"] for f in told["findings"]] == [True, False]

@@ -15,8 +15,9 @@ from lwa import Cell
 from lwa.base import files
 from lwa.spheres import beads
 from lwa.spheres.beads import read_spheres
+from lwa.spheres.hertz import Material, Sphere
 from validation.scenes import scenefile
-from validation.scenes.materials import STEEL, Bead, Material, contact_stiffness
+from validation.scenes.materials import STEEL, contact_stiffness
 from validation.scenes.scene import Scene, SceneError
 from validation.scenes.scenefile import document, read, scene
 from validation.studies.paper import chain_scene
@@ -135,14 +136,14 @@ def test_what_a_run_wrote_holds_the_scene():
 
 
 def test_a_defect_may_be_a_bead_of_the_file_or_a_mass():
-    big = Bead(mass=1e-3, radius=5e-3, material=Material(72e9, 0.17))
+    big = Sphere(mass=1e-3, radius=5e-3, material=Material(72e9, 0.17))
     text = (
         PAPER
         + "[materials.glass]\nE = 72e9\nnu = 0.17\n[beads.big]\nmass = 1e-3\nradius = 5e-3\n"
         + 'material = "glass"\n[[defects]]\nbead = 4\nlike = "big"\n[[defects]]\nbead = 7\nmass = 9'
     )
     changed, plain = toml_file(text), toml_file(PAPER)
-    steel = Bead(mass=0.45e-3, radius=2.38e-3, material=STEEL)
+    steel = Sphere(mass=0.45e-3, radius=2.38e-3, material=STEEL)
     assert changed.stiffnesses[2:4] == (contact_stiffness(steel, big),) * 2
     assert changed.spacings[2:4] == (7.38e-3,) * 2
     assert (changed.masses[3], changed.masses[6]) == (1e-3, 9)

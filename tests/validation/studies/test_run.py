@@ -43,7 +43,7 @@ def test_many_sensors_are_drawn_as_a_map():
     found = record(struck((1, 0.5), 20, duration=20, samples=3001, **heard))
     few, many = report(found).panels
     assert [curve.label for curve in few.curves] == ["bead 5", "bead 10"]
-    assert (many.x, many.y, many.map.label) == ("contact", "time", "dynamic force")
+    assert (many.x, many.y, many.map.label) == ("contact", "time", "force")
     assert many.map.x.tolist() == list(range(1, 20))
     run, time = found.run, many.map.y
     assert 500 < len(time) <= 1000

@@ -194,7 +194,7 @@ def test_a_point_may_be_there_twice_but_not_with_other_numbers(file):
     [
         ("s.json", r"file is .*s\.json: a file ending in \.jsonl is wanted"),
         ("no/s.jsonl", r"file is .*: the folder .*no does not exist"),
-        ("folder.jsonl", r"file is .*: a file that can be written is wanted, not a folder"),
+        ("folder.jsonl", r"file is .*: a regular file is wanted"),
     ],
 )
 def test_bad_files(tmp_path, name, message):

@@ -10,9 +10,9 @@ from matplotlib.colors import same_color
 from matplotlib.figure import Figure
 
 from lwa import InputError
-from validation.report import figure as drawing
-from validation.report.figure import figure
-from validation.report.panel import Curve, Map, Panel
+from validation.pictures import figure as drawing
+from validation.pictures.figure import figure
+from validation.pictures.panel import Curve, Map, Panel
 from validation.report.result import Report
 
 SIGNATURES = {".png": b"\x89PNG", ".pdf": b"%PDF", ".svg": b"<?xml"}
@@ -136,7 +136,7 @@ def test_a_full_disk_is_one_line_and_leaves_the_old_picture(tmp_path):
     code = """if True:
         import resource, sys
         from pathlib import Path
-        from validation.report.panel import Curve, Panel
+        from validation.pictures.panel import Curve, Panel
         from validation.report.result import Report
         report = Report("one", panels=(Panel("x", "y", (Curve.of("c", range(9), range(9)),)),))
         report.figure()  # Matplotlib writes a cache of fonts
@@ -148,7 +148,11 @@ def test_a_full_disk_is_one_line_and_leaves_the_old_picture(tmp_path):
                 print(error)
     """
     done = subprocess.run(
-        [sys.executable, "-c", code, *files], capture_output=True, text=True, check=True
+        [sys.executable, "-c", code, *files],
+        capture_output=True,
+        text=True,
+        check=True,
+        timeout=120,
     )
     said = [f"{file} is not written: File too large" for file in files]
     assert (done.stdout.splitlines(), done.stderr) == (said, "")

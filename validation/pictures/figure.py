@@ -1,16 +1,21 @@
-"""Panels as a picture, drawn by Matplotlib without a display."""
+"""Figures made of panels, drawn by Matplotlib without a display."""
 
 from __future__ import annotations
 
+import io
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
+from html import escape
 from itertools import compress
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from lwa.base.arrays import Array
-from validation.report.panel import Map, Panel
+from lwa.base.exact import InputError
+from lwa.wave.plots import axes
+from validation.pictures.panel import Map, Panel
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -18,17 +23,55 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 SUFFIXES = (".pdf", ".png", ".svg")
-
 _STYLES = ("o-", "s--", "^:", "D-.", "v-", "x--", "P:", "*-.")
-_FEW = 40
-"""Points of a curve, beyond which marks would cover it."""
-_MOST = 10
-"""Names in a panel's legend; more stand once below all panels."""
+_FEW = 40  # points of a curve; markers at more of them would cover the curve
+_ACROSS = 5  # names in a row of a legend above the panel
+_MOST = 10  # names in the legend of a panel; more stand once below all panels
+
+
+class Pictured(ABC):
+    """A result that draws itself: into Matplotlib's axes, a figure, or a notebook."""
+
+    @abstractmethod
+    def pictured(self) -> Sequence[Panel]:
+        """The panels of the picture, none for a result without a picture."""
+
+    def figure(self) -> Figure:
+        """All panels in one Matplotlib figure; `lwa.InputError` without panels."""
+        return figure(self._panels())
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the first panel into Matplotlib's axes ``ax``, by default new ones.
+
+        Returns the axes. Raises `lwa.InputError` without panels.
+        """
+        first = self._panels()[0]
+        drawn: Axes = axes(ax)
+        draw(drawn, first)
+        return drawn
+
+    def _panels(self) -> Sequence[Panel]:
+        if found := self.pictured():
+            return found
+        raise InputError("plot is asked for: this result has no picture")
+
+    def _repr_html_(self) -> str:
+        """The one-line description and the picture, for a notebook."""
+        return f"<p>{escape(repr(self))}</p>{svg(self.pictured())}"
+
+
+def svg(panels: Sequence[Panel]) -> str:
+    """The figure of the panels as an SVG element; empty without panels."""
+    if not panels:
+        return ""
+    drawn = io.StringIO()
+    figure(panels).savefig(drawn, format="svg")
+    return drawn.getvalue()[drawn.getvalue().index("<svg") :]
 
 
 def figure(panels: Sequence[Panel]) -> Figure:
-    """All panels in one picture, two in a row."""
-    from matplotlib.figure import Figure  # start-up
+    """All panels in one figure, two in a row."""
+    from matplotlib.figure import Figure  # here: loading Matplotlib takes half a second
 
     columns = min(2, len(panels))
     rows = math.ceil(len(panels) / columns)
@@ -40,16 +83,24 @@ def figure(panels: Sequence[Panel]) -> Figure:
         draw(plot, panel)
     for empty in plots[len(panels) :]:
         empty.set_visible(False)
-    names = {label: handle for plot in compress(plots, crowded)
-             for handle, label in zip(*plot.get_legend_handles_labels(), strict=True)}  # fmt: skip
+    names = {
+        label: handle
+        for plot in compress(plots, crowded)
+        for handle, label in zip(*plot.get_legend_handles_labels(), strict=True)
+    }
     if names:
-        picture.legend(names.values(), names.keys(), fontsize="small", ncols=2 * columns + 1,
-                       loc="outside lower center")  # fmt: skip
+        picture.legend(
+            names.values(),
+            names.keys(),
+            fontsize="small",
+            ncols=2 * columns + 1,
+            loc="outside lower center",
+        )
     return picture
 
 
 def draw(plot: Axes, panel: Panel) -> None:
-    """Draw one panel."""
+    """Draw one panel into Matplotlib's axes."""
     plot.set(xlabel=panel.x, ylabel=panel.y, title=panel.title)
     for axis in ("x", "y"):
         if axis in panel.scale:
@@ -69,12 +120,15 @@ def draw(plot: Axes, panel: Panel) -> None:
     for axis in panel.scale:
         _plain(getattr(plot, f"{axis}axis"))
     if 0 < sum(bool(curve.label) for curve in panel.curves) <= _MOST:
-        plot.legend(fontsize="small", loc=panel.legend or "best")
+        above = panel.legend is not None and panel.legend[1] >= 1
+        place = {"loc": "lower left", "bbox_to_anchor": panel.legend, "ncols": _ACROSS}
+        other = {"loc": panel.legend or "best"}
+        plot.legend(fontsize="small", frameon=not above, **(place if above else other))
 
 
 def _plain(axis: Axis) -> None:
-    """Plain numbers on a logarithmic axis of few decades, not products with a power of ten."""
-    from matplotlib.ticker import LogLocator, NullFormatter  # start-up
+    """Plain tick labels, not powers of ten, on a logarithmic axis of few decades."""
+    from matplotlib.ticker import LogLocator, NullFormatter  # loaded as late as Matplotlib
 
     low, high = sorted(axis.get_view_interval())
     if low >= 1e-3 and high <= 1e5 and high < 1e3 * low:
@@ -85,7 +139,7 @@ def _plain(axis: Axis) -> None:
 
 
 def _draw_map(plot: Axes, found: Map, scale: str) -> None:
-    from matplotlib.colors import LogNorm, Normalize  # start-up
+    from matplotlib.colors import LogNorm, Normalize  # loaded as late as Matplotlib
 
     values = np.ma.masked_invalid(found.values)
     norm = (LogNorm if found.scale else Normalize)(found.low, found.high)
@@ -93,14 +147,14 @@ def _draw_map(plot: Axes, found: Map, scale: str) -> None:
     above = found.high is not None and bool(np.any(values > found.high))
     extend = ("neither", "min", "max", "both")[below + 2 * above]
     x, y = _borders(found.x, "x" in scale), _borders(found.y, "y" in scale)
-    # as dots in a PDF, too: of a colour for each place it would be slow to show
+    # Pixels in a PDF, too: viewers are slow with one rectangle for each value.
     image = plot.pcolormesh(x, y, values, norm=norm, cmap=found.colours, rasterized=True)
     plot.figure.colorbar(image, ax=plot, label=found.label, extend=extend)
-    plot.patch.set(facecolor="w", edgecolor="0.4", hatch="xxx")  # no colour of a map
+    plot.patch.set(facecolor="w", edgecolor="0.4", hatch="xxx")  # unlike any colour of a map
 
 
 def _borders(places: Array, log: bool) -> Array:
-    """Half way between places, on their scale, and as far beyond the outer ones."""
+    """Borders of a map's cells: halfway between neighbouring places, on the axis' scale."""
     centres = np.log(places) if log else places
     half = np.diff(centres) / 2
     ends = [centres[0] - half[0]], centres[:-1] + half, [centres[-1] + half[-1]]

@@ -1,0 +1,248 @@
+"""Energy, momentum and losses of the expansion's wave, and the collisions built on them."""
+
+import numpy as np
+import pytest
+import scipy
+
+from lwa import (
+    Cell,
+    Dimer,
+    ExpandedWave,
+    InputError,
+    canonical_wave,
+    expand,
+    graded_force,
+    pulse_of_strike,
+    transmitted_force,
+)
+from tests.lwa.expansion.test_exact_waves import lattice
+from validation import Scene, simulate
+
+EQUAL = Cell([1], spacing=1)
+
+
+def wave(k="3/2", force=1, cell=EQUAL):
+    return ExpandedWave(expand(cell, 10, k=k), force)
+
+
+def integrals(k):
+    """Energies, momentum and losses of the lattice's own wave at unit force, by trapezia.
+
+    The velocity is the force's mean over one site, over c: c² s' = F(ξ - ½) - F(ξ + ½).
+    """
+    values, xi, force = lattice(k)
+    c, step = np.sqrt(values["c2"]), xi[1] - xi[0]
+    q = 2 * np.pi * np.fft.fftfreq(len(xi), step)
+    strain = force ** (1 / k)
+    velocity = np.fft.ifft(np.sinc(q / 2 / np.pi) * np.fft.fft(force)).real / c
+    slope = np.fft.ifft(1j * q * np.fft.fft(strain)).real
+    kinetic, elastic = step * np.sum(velocity**2) / 2, step * np.sum(strain ** (k + 1)) / (k + 1)
+    rate = c * slope**2 * step
+    return {
+        "kinetic": kinetic,
+        "elastic": elastic,
+        "momentum": step * np.sum(velocity),
+        "linear": np.sum(rate),
+        "kuwabara_kono": np.sum(strain ** (k - 1) * rate),
+    }
+
+
+@pytest.mark.parametrize("k", ["6/5", "3/2", "2"])
+def test_the_ledger_is_that_of_the_lattice_s_wave(k):
+    """The sums differ from integrals over a wave found by Fourier by less than their errors."""
+    found, true = wave(k), integrals(float(wave(k).expansion.k))
+    energy = true["kinetic"] + true["elastic"]
+    pairs = [
+        (found.energy, energy),
+        (found.momentum, true["momentum"]),
+        (found.effective_mass, true["momentum"] ** 2 / (2 * energy)),
+        *((found.dissipation(kind), true[kind]) for kind in ("linear", "kuwabara_kono")),
+    ]
+    for sum_, exact in pairs:
+        assert abs(sum_.value - exact) < sum_.error < 5e-4
+    assert true["kinetic"] / true["elastic"] == pytest.approx((float(found.expansion.k) + 1) / 2)
+
+
+def test_hertz_s_numbers():
+    """Six digits of the theory notes: computed outside the project."""
+    one = wave()
+    sums = one.energy, one.momentum, one.dissipation("linear"), one.dissipation("kuwabara_kono")
+    for sum_, known in zip(sums, (1.046516, 1.652067, 1.110266, 0.791307), strict=True):
+        assert sum_.value == pytest.approx(known, abs=1e-6)
+    assert one.effective_mass.value == pytest.approx(1.3040, abs=1e-4)
+
+
+def test_kinetic_over_potential_energy_is_half_of_k_plus_one():
+    """The virial theorem, 2 T = (k+1) U, at every order in k - 1 and for a dimer too."""
+    for cell in (Cell([1]), Dimer(1, "1/3")):
+        expansion = expand(cell, 4)
+        T, E = expansion.kinetic.coefficients, expansion.energy.coefficients
+        assert expansion.kinetic.prefactor == expansion.energy.prefactor
+        U = [e - t for e, t in zip(E, T, strict=True)]
+        rest = [2 * t - 2 * u - below for t, u, below in zip(T, U, [0, *U], strict=False)]
+        assert not any(rest)
+
+
+def test_units_and_forces_enter_as_dimensions_demand():
+    """E ~ F δ, P ~ m δ/t, D0 ~ δ²/t, D1 ~ δ^{k+1}/t with δ = (F/A)^{1/k}, t = √(m δ/F)."""
+    k, m, A, F = 1.5, 4.0, 8.0, 27.0
+    delta = (F / A) ** (1 / k)
+    t = np.sqrt(m * delta / F)
+    one, other = wave(), wave(force=27, cell=Cell([4], [8], 3))
+    for read, unit in (
+        (lambda w: w.energy, F * delta),
+        (lambda w: w.momentum, m * delta / t),
+        (lambda w: w.effective_mass, m),
+        (lambda w: w.dissipation("linear"), delta**2 / t),
+        (lambda w: w.dissipation("kuwabara_kono"), delta ** (k + 1) / t),
+    ):
+        assert read(other).value == pytest.approx(unit * read(one).value, rel=1e-12)
+        assert read(other).error == pytest.approx(unit * read(one).error, rel=1e-12)
+
+
+def damped_speeds(kind, gamma, k=1.5, beads=80):
+    """Speeds of a pulse between contacts 20, 22, … of a damped chain, by SciPy."""
+
+    def motion(t, y):
+        u, v = y[:beads], y[beads:]
+        delta, rate = np.maximum(u[:-1] - u[1:], 0), v[:-1] - v[1:]
+        factor = (delta > 0) if kind == "linear" else delta ** (k - 1)
+        force = delta**k + gamma * factor * rate
+        a = np.zeros(beads)
+        a[:-1] -= force
+        a[1:] += force
+        return np.append(v, a)
+
+    start = np.zeros(2 * beads)
+    start[beads] = 1
+    run = scipy.integrate.solve_ivp(
+        motion, (0, 90), start, "DOP853", rtol=1e-7, atol=1e-9, dense_output=True
+    )
+    time = np.linspace(0, 90, 9001)
+    u = run.sol(time)[:beads]
+    arrivals = []
+    for i in range(20, 62, 2):
+        delta = u[i] - u[i + 1]
+        top = int(np.argmax(delta))
+        a, b, _ = np.polyfit(time[top - 3 : top + 4] - time[top], delta[top - 3 : top + 4], 2)
+        arrivals.append(time[top] - b / (2 * a))
+    return 2 / np.diff(arrivals)
+
+
+@pytest.mark.parametrize("kind", ["linear", "kuwabara_kono"])
+def test_a_damped_pulse_slows_down_as_its_ledger_says(kind):
+    """V falls, or 1/V rises, linearly; the error of the rate vanishes with γ."""
+    errors = []
+    for gamma in (0.01, 0.0025):
+        V = damped_speeds(kind, gamma)
+        n = np.arange(len(V)) * 2.0
+        rate, _ = np.polyfit(n, -V if kind == "linear" else 1 / V, 1)
+        errors.append(rate / gamma / wave().slowdown(kind).value - 1)
+    assert abs(errors[0]) < 0.07
+    assert abs(errors[1]) < 0.35 * abs(errors[0])
+
+
+@pytest.mark.parametrize("cell", [EQUAL, Dimer(2, 1, spacing=1)], ids=["equal", "dimer"])
+def test_the_long_wave_s_ledger_is_the_lattice_s_as_k_tends_to_1(cell):
+    """Energy, momentum and effective mass of the canonical wave: errors fall as k - 1."""
+    rows = []
+    for k in ("1.004", "1.002"):
+        long, own = canonical_wave(cell, k).at_force(8), wave(k, 8, cell)
+        pairs = (
+            (getattr(w, name) for w in (long, own))
+            for name in ("energy", "momentum", "effective_mass")
+        )
+        rows.append([float(ours) / sum_.value - 1 for ours, sum_ in pairs])
+    for far, near in zip(*rows, strict=True):
+        assert abs(far) < 0.004
+        assert near == pytest.approx(far / 2, rel=0.02)  # the next order in k - 1
+
+
+def test_dissipation_of_other_kinds_or_unlike_contacts_is_refused():
+    with pytest.raises(InputError, match="kind is 'quadratic': linear or kuwabara_kono"):
+        expand(Cell([1]), 2).dissipation("quadratic")
+    with pytest.raises(InputError, match="D1 is derived for equal contacts"):
+        expand(Cell([1, 1], [1, 2]), 2).dissipation("kuwabara_kono")
+
+
+# --- collisions ---
+
+
+def peaks(masses, stiffnesses, k, sensors, duration):
+    scene = Scene(
+        masses=tuple(masses), stiffnesses=tuple(stiffnesses), k=k, duration=duration,
+        velocities=(1,), contact_sensors=sensors, samples=20001,
+    )  # fmt: skip
+    return [force.max() for force in simulate(scene).contact_force]
+
+
+@pytest.mark.parametrize("k", ["5/4", "3/2", "2", "5/2"])
+@pytest.mark.parametrize("mass", [0.5, 1, 1.75, 4, 8])
+def test_the_force_of_a_strike_is_right_within_its_error(k, mass):
+    found = pulse_of_strike(EQUAL, mass, 1, k=k)
+    number = float(found.chain.k)
+    (peak,) = peaks([mass] + 60 * [1], 60 * [1], number, (40,), 80)
+    assert abs(found.force.value - peak) < found.force.error
+    if found.chain.effective_mass.at().value <= mass <= 2:
+        assert found.force.error < 0.013 * peak
+    assert found.train == (mass > 2)
+
+
+def test_a_strike_in_si_units_and_by_its_drop():
+    """F ~ v^{2k/(k+1)} (m^k A)^{1/(k+1)}, as dimensions demand; a drop h gives √(2 g h)."""
+    one = pulse_of_strike(EQUAL, 1, 1)
+    other = pulse_of_strike(Cell(["1/2000"], ["1e9"], "1/200"), "1/2000", 3)
+    ratio = 3 ** (6 / 5) * (5e-4**1.5 * 1e9) ** (2 / 5)
+    assert other.force.value == pytest.approx(ratio * one.force.value, rel=1e-12)
+    assert other.fwhm("force", "length") == other.wave.fwhm("force", "length")
+    share = other.force.error / other.force.value / 6
+    for found, sum_ in (
+        (other.speed, other.wave.speed),
+        (other.fwhm(), other.wave.fwhm("force", "time")),
+    ):
+        assert found.value == sum_.value
+        assert found.error == pytest.approx(sum_.error + share * found.value)
+    dropped = pulse_of_strike(other.chain.cell, "1/2000", drop=0.5)
+    same = pulse_of_strike(other.chain.cell, "1/2000", (2 * 9.80665 * 0.5) ** 0.5)
+    assert dropped.force.value == pytest.approx(same.force.value, rel=1e-12)
+
+
+def test_beyond_the_measured_exponents_a_strike_has_no_error():
+    assert np.isnan(pulse_of_strike(EQUAL, 1, 1, k="6/5").force.error)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"chain": Cell([1, 2], spacing=1)}, "a Cell of equal beads and contacts is wanted"),
+        ({"velocity": None}, "velocity or drop: one of the two is wanted"),
+        ({"drop": 1}, "velocity or drop: one of the two is wanted"),
+        ({"mass": -1}, "mass is -1: it must be positive"),
+        ({"mass": "m"}, "mass is m: a number is wanted"),
+    ],
+)
+def test_what_is_no_strike_is_refused(arguments, message):
+    with pytest.raises(InputError, match=message):
+        pulse_of_strike(**({"chain": EQUAL, "mass": 1, "velocity": 1} | arguments))
+
+
+@pytest.mark.parametrize("what", ["stiffness", "mass", "radius"])
+def test_force_in_a_graded_chain(what):
+    """Stiffness ×4, mass ×4 or radius ÷2 over 500 beads: within 0.5 % halfway."""
+    share = np.clip((np.arange(600) - 50) / 500, 0, 1)
+    stiffness = {"stiffness": 4.0**share, "mass": 1 + 0 * share, "radius": 2 ** (-share / 2)}[what][
+        :-1
+    ]
+    masses = {"stiffness": 1 + 0 * share, "mass": 4.0**share, "radius": 8.0**-share}[what]
+    first, half = peaks(masses, stiffness, 1.5, (40, 300), 500)
+    assert half == pytest.approx(float(graded_force(first, 1, stiffness[300], "3/2")), rel=0.005)
+
+
+@pytest.mark.parametrize(
+    ("ratio", "most"), [(0.25, 0.075), (0.5, 0.025), (2, 0.025), (4, 0.075), (8, 0.1)]
+)
+def test_force_behind_an_interface(ratio, most):
+    """The rule is a little too small, and the better the more alike the beads are."""
+    before, behind = peaks(60 * [1] + 50 * [ratio], 109 * [1], 1.5, (40, 90), 260)
+    rule = float(transmitted_force(before, Cell([1]), Cell([ratio]), "3/2"))
+    assert -most < rule / behind - 1 < 0

@@ -1,0 +1,1 @@
+"""Pictures: curves and maps in panels, and the objects that draw themselves."""
