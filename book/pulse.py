@@ -30,7 +30,7 @@ class StruckPulse:
     decay: float
 
 
-def struck_pulse(k: float, omega: Any, near: int = 80, far: int = 160) -> StruckPulse:
+def struck_pulse(k: float, omega: Any, near: int = 40, far: int = 80) -> StruckPulse:
     """Strike a chain and measure its leading pulse at the contacts ``near`` and ``far``."""
     contacts = (near, near + 1, far, far + 1)
     scene = Scene.of_cell(
