@@ -19,7 +19,7 @@ from typing import Any
 
 import sympy as sp
 
-from lwa.base.exact import InputError, exact, integer, positive, power, shorten
+from lwa.base.exact import InputError, exact, integer, positive, power, root, shorten
 from lwa.base.frozen import Value
 from lwa.spheres.hertz import Sphere, stiffness
 
@@ -179,7 +179,7 @@ class Cell(Value):
         For the paper's dimer it is √(2 k D^{k+1} / (m1 + m2)).
         """
         k = exponent(k)
-        return sp.sqrt(self.size * k * self.stiffness(k) * power(self.spacing, k + 1) / self.mass)
+        return root(self.size * k * self.stiffness(k) * power(self.spacing, k + 1) / self.mass)
 
 
 def Dimer(
@@ -272,7 +272,7 @@ def _root(A: sp.Expr, k: sp.Expr, name: str) -> sp.Expr:
                 f"{name} is {shorten(A)} and k {shorten(k)}: the share of this contact, by A^(-1/k)"
                 f", is beyond 2^±{MOST_BITS}"
             )
-    return A ** (-1 / k)
+    return power(A, -1 / k)
 
 
 def unmistakable(symbols: Sequence[sp.Symbol]) -> None:

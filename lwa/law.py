@@ -32,6 +32,10 @@ TAKEN = {**RESERVED, "A": "the stiffness of a contact", "p0": "the strain ahead 
 """Names that stand beside a law in results, and what they mean there."""
 
 
+LARGE = 32
+"""The exponent from which on a power of a sum is not multiplied out."""
+
+
 class ContactLaw(Value):
     """What all laws have: F, its derivatives, its energy and its symbols."""
 
@@ -53,7 +57,8 @@ class ContactLaw(Value):
         if self.F.atoms(AppliedUndef):
             s = sp.Dummy("s", positive=True)
             return sp.Integral(self.F.subs(self.delta, s), (s, 0, self.delta))
-        return sp.integrate(self.F, self.delta, conds="none")
+        parts = sp.Add.make_args(self.F) if _large(self.F) else (self.F,)
+        return sp.Add(*(_integral(part, self.delta) for part in parts))
 
     def phi(self, n: int) -> sp.Expr:
         """φ_n = δ^{n-1} F^{(n)}/F′ as an expression in δ.
@@ -61,8 +66,8 @@ class ContactLaw(Value):
         >>> named("exponential", 1).phi(3)
         delta**2
         """
-        top = sp.expand(self.delta ** (n - 1) * self.slope(n))
-        return sp.cancel(sp.powsimp(top / sp.expand(self.slope())))
+        top, bottom, large = _large_powers(self.delta ** (n - 1) * self.slope(n), self.slope())
+        return sp.cancel(sp.powsimp(sp.expand(top) / sp.expand(bottom))).xreplace(large)
 
     def at(self, delta: sp.Expr, n: int = 0) -> sp.Expr:
         """F^{(n)} at a compression."""
@@ -158,6 +163,39 @@ def general() -> Law:
 def phi_symbol(n: int) -> sp.Symbol:
     """φ_n, as it stands in results."""
     return sp.Symbol(f"phi{n}", real=True)
+
+
+def _large(*values: sp.Expr) -> set[sp.Expr]:
+    """The powers b^e with |e| > `LARGE` in the values."""
+    powers: set[sp.Expr] = set().union(*(value.atoms(sp.Pow) for value in values))
+    return {power for power in powers if power.exp.is_Rational and abs(power.exp) > LARGE}
+
+
+def _integral(value: sp.Expr, x: sp.Symbol) -> sp.Expr:
+    """∫ value dx; of a large power of a linear base by its own rule, not multiplied out."""
+    factor, power = value.as_independent(x, as_Add=False)
+    base, e = power.as_base_exp()
+    if _large(power) and not base.diff(x).has(x):
+        return factor * base ** (e + 1) / (base.diff(x) * (e + 1))
+    return sp.integrate(value, x, conds="none")
+
+
+def _large_powers(*values: sp.Expr) -> tuple[Any, ...]:
+    """The values with b^e, |e| > `LARGE`, written as c b^{e - e0}, and the mapping c → b^{e0}.
+
+    The exponents of F′ and of F^{(n)} differ by a few, and c cancels in their ratio; b^e itself
+    SymPy would multiply out, in e terms.
+    """
+    found: dict[sp.Expr, sp.Expr] = {}  # b → b^{e0}
+    new: dict[sp.Expr, sp.Expr] = {}
+    names: dict[sp.Expr, sp.Expr] = {}
+    for power in sorted(_large(*values), key=sp.default_sort_key):
+        first = found.setdefault(power.base, power)
+        rest = power.exp - first.exp
+        if rest.is_Integer and abs(rest) <= LARGE:
+            c = names.setdefault(first, sp.Dummy("c", positive=True))
+            new[power] = c * power.base**rest
+    return *(x.xreplace(new) for x in values), {c: first for first, c in names.items()}
 
 
 Builder = Callable[..., sp.Expr]

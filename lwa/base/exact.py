@@ -27,6 +27,7 @@ _NOT_A_NUMBER = {"nan", "inf", "infinity", "none", "null", "true", "false"}
 _LONGEST = 200
 _DIGITS = 1000
 _BITS = 3322  # of as many digits
+_ROOTLESS = 1024  # bits of an integer beyond a double
 _TOO_LONG = f"at most {_DIGITS} digits are wanted, before the point and behind it"
 
 
@@ -164,14 +165,28 @@ class Kept(sp.UnevaluatedExpr):  # type: ignore[misc]  # untyped in SymPy
 def power(base: sp.Expr, exponent: sp.Expr) -> sp.Expr:
     """base^exponent, in which no number is written out beyond a thousand digits.
 
-    SymPy takes whole powers out of roots, and would make such a number of 3^(1 + 1/99999).
+    SymPy takes whole powers out of roots, and would make such a number of 3^(1 + 1/99999). Of
+    integers beyond a double it takes no roots at all (`math.log` of python-flint's integers).
 
     >>> power(sp.Rational(9, 4), sp.Rational(3, 2)), power(sp.Rational(9, 4), sp.Rational(1, 9999))
     (27/8, (9/4)**(1/9999))
     """
-    factor = base.as_coeff_Mul()[0]
-    if factor not in (0, 1) and factor.is_Rational and exponent.is_Rational:
-        bits = int(factor.p).bit_length() + int(factor.q).bit_length()
-        if bits * (abs(int(exponent.p)) + int(exponent.q)) > _BITS:
-            base = Kept(base)
+    factor, rest = base.as_coeff_Mul()
+    if factor in (0, 1) or not factor.is_Rational or not exponent.is_Rational:
+        return base**exponent
+    p, q = int(exponent.p), int(exponent.q)
+    parts = int(factor.p), int(factor.q)
+    bits = [part.bit_length() for part in parts]
+    if max(bits) > _ROOTLESS and factor > 0 and q > 1 and abs(p) < q:
+        roots = [sp.integer_nthroot(part, q) for part in parts]
+        whole = all(found for _, found in roots)
+        number = sp.Rational(roots[0][0], roots[1][0]) ** p if whole else Kept(factor) ** exponent
+        return number * rest**exponent
+    if sum(bits) * (abs(p) + q) > _BITS or (max(bits) > _ROOTLESS and q > 1):
+        base = Kept(base)
     return base**exponent
+
+
+def root(value: sp.Expr) -> sp.Expr:
+    """√value, as `power` takes it."""
+    return power(value, sp.S.Half)

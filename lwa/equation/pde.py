@@ -23,7 +23,7 @@ import sympy as sp
 from flint import fmpq_mpoly
 
 from lwa.base import latex
-from lwa.base.exact import InputError, exact, integer, power
+from lwa.base.exact import InputError, exact, integer, power, root
 from lwa.base.frozen import Value
 from lwa.cell import Cell
 from lwa.closure.consistency import Closure
@@ -64,7 +64,7 @@ class PDE(Value):
         # w = λu strains each contact by (λ - 1)u, and 1 - λ = M/m2.
         m1, m2 = self.cell.masses
         stretch = power(self.cell.mass / m2, self.k)
-        return sp.sqrt(sp.Add(*self.cell.stiffnesses) * stretch / m1)
+        return root(sp.Add(*self.cell.stiffnesses) * stretch / m1)
 
     @cached_property
     def coefficients(self) -> Mapping[int, Terms]:

@@ -22,7 +22,7 @@ import mpmath
 import sympy as sp
 
 from lwa.base import latex
-from lwa.base.exact import InputError, exact, integer, real, shorten
+from lwa.base.exact import InputError, exact, integer, real, root, shorten
 from lwa.base.frozen import Value
 from lwa.base.quantities import NoSolitaryWave, known
 from lwa.cell import RESERVED, Cell, meant, substitution
@@ -112,7 +112,7 @@ class BackgroundWave(Value):
     @cached_property
     def sound_speed(self) -> sp.Expr:
         """c0 = √F′(p0), the speed of long small waves."""
-        return sp.sqrt(self.force(self.p0, 1))
+        return root(self.force(self.p0, 1))
 
     def stiffness(self, v: sp.Expr) -> sp.Expr:
         """Q(v), the V² of the wave that rises by v."""
@@ -136,7 +136,7 @@ class BackgroundWave(Value):
         square = self.stiffness(B)
         if isinstance(self.law, Power) and self.law.k.is_Integer:
             square = sp.expand(sp.cancel(square))
-        return sp.sqrt(square)
+        return root(square)
 
     @property
     def _rise(self) -> sp.Symbol:
@@ -233,7 +233,7 @@ class BackgroundWave(Value):
         if not (isinstance(self.law, Power) and self.p0.is_zero):
             return None
         k = self.law.k
-        return k, (k - 1) / sp.sqrt(2 * self.I * k * (k + 1))
+        return k, (k - 1) / root(2 * self.I * k * (k + 1))
 
     def profile(self, xi: Any, B: Any, digits: int = DIGITS) -> sp.Expr:
         """v(ξ), the strain above p0: the compact wave without load, else a number.

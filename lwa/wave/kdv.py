@@ -7,7 +7,7 @@ from typing import Any
 
 import sympy as sp
 
-from lwa.base.exact import exact, real
+from lwa.base.exact import exact, real, root
 from lwa.base.frozen import Value
 
 RISE = sp.Symbol("B", positive=True)
@@ -31,7 +31,7 @@ class KdV(Value):
 
     def width(self, B: Any = RISE) -> sp.Expr:
         """L = √(12 γ / (α B)) of v = B sech²(ξ/L); its FWHM is 2 arcosh(√2) L."""
-        return sp.sqrt(12 * sp.simplify(self.dispersion / self.nonlinearity) / exact(B, "B"))
+        return root(12 * sp.simplify(self.dispersion / self.nonlinearity) / exact(B, "B"))
 
     def profile(self, xi: Any, B: Any = RISE) -> sp.Expr:
         """v = B sech²(ξ/L)."""

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
-from lwa.base.exact import InputError, positive, power, shorten
+from lwa.base.exact import InputError, positive, power, root, shorten
 from lwa.base.frozen import Value
 from lwa.base.quantities import known_extent
 from lwa.cell import RESERVED, meant, unmistakable
@@ -67,7 +67,7 @@ class PhysicalWave(Value):
     def _bead_share(self) -> sp.Expr:
         """cos^{mk}(βD/2), a bead's peak force over its contacts'."""
         wave, k = self.wave, self.wave.k
-        angle = (k - 1) / (4 * sp.sqrt(wave.dispersion))  # βD/2
+        angle = (k - 1) / (4 * root(wave.dispersion))  # βD/2
         power = 2 * k / (k - 1)
         # at ξ = 0 the mean of cos^power(βξ ± angle) is greatest where it is concave
         if angle.is_number and not (angle < sp.pi / 2 and power * sp.sin(angle) ** 2 < 1):
@@ -112,7 +112,7 @@ class PhysicalWave(Value):
         factor = wave.speed_factor * wave.cell.size * k / wave.cell.mass
         stiffness, force = wave.cell.stiffness(k), self.contact_force
         powers = power(stiffness, 1 / (2 * k)) * power(force, (k - 1) / (2 * k))
-        return wave.cell.spacing * sp.sqrt(factor) * powers
+        return wave.cell.spacing * root(factor) * powers
 
     @cached_property
     def bead_velocity(self) -> sp.Expr:

@@ -25,7 +25,7 @@ import sympy as sp
 
 from lwa.algebra.rational import factored
 from lwa.base import latex
-from lwa.base.exact import InputError, exact, positive, power, real, shorten
+from lwa.base.exact import InputError, exact, positive, power, real, root, shorten
 from lwa.base.frozen import Value
 from lwa.base.quantities import NoSolitaryWave, strain_power
 from lwa.cell import Cell, exponent, substitution
@@ -348,4 +348,4 @@ def _root(value: sp.Expr) -> sp.Expr:
     """√value of a rational expression in positive quantities, squares taken out of the root."""
     plain, back = sp.posify(value)
     numerator, denominator = sp.fraction(plain)
-    return (sp.sqrt(numerator) / sp.sqrt(denominator)).xreplace(back)
+    return (root(numerator) / root(denominator)).xreplace(back)

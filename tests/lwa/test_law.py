@@ -243,3 +243,21 @@ def test_bad_laws():
     for call, reason in ((pde.traveling_wave, "power law"), (lambda: pde.variational, "Euler")):
         with pytest.raises(InputError, match=reason):
             call()
+
+
+def test_large_exponents_are_not_multiplied_out():
+    """φ_n of (1 - δ/d)^{-n} is (n+1) … (n+j-1) δ^{j-1}/(d - δ)^{j-1}; W is its own power."""
+    n, d = 10**9, sp.Symbol("m", positive=True)
+    law = named("magnetic", n, "m")
+    delta = law.delta
+    for j in range(2, 5):
+        factor = sp.Mul(*(n + i for i in range(1, j)))
+        assert sp.cancel(law.phi(j) - factor * (delta / (d - delta)) ** (j - 1)) == 0
+    assert sp.cancel(law.energy.diff(delta) / (law.F + 1) - law.F / (law.F + 1)) == 0
+    both = Law((1 + y) ** 50 + (1 + y) ** 60, y)  # a ratio that does not cancel
+    direct = (y**2 * both.slope(3) / both.slope()).subs(y, sp.Rational(1, 3))
+    assert sp.N(both.phi(3).subs(y, sp.Rational(1, 3)) / direct - 1, 40) == 0
+    found = homogenize(Dimer("m1", "m2"), law=named("magnetic", n, 1))
+    assert (
+        found.pde.H.free_symbols == homogenize(Dimer("m1", "m2"), law=general()).pde.H.free_symbols
+    )

@@ -1,27 +1,30 @@
-"""Threads side by side: the compiled engine holds no lock."""
+"""Executors of many runs: threads, as the compiled engine holds no lock, or a Dask cluster."""
 
 from __future__ import annotations
 
+import asyncio
+import logging
 import os
 from collections.abc import Iterator
 from concurrent.futures import Executor, ThreadPoolExecutor
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 
+from lwa.base.exact import InputError, shorten
 from validation.scenes.checks import integer
 
 
 def cores() -> int:
-    """Those that this process may use."""
+    """Number of processors that this process may use."""
     affinity = getattr(os, "sched_getaffinity", None)  # not on every system
     return len(affinity(0)) if affinity else os.cpu_count() or 1
 
 
 @contextmanager
 def threads(count: int | None = None, name: str = "workers") -> Iterator[Executor]:
-    """So many threads, by default one for each core; ``name`` is what a bad number is called.
+    """Executor of ``count`` threads, by default one for each core.
 
-    On an exception the tasks that wait are dropped; those underway, which nothing can end, are
-    waited for.
+    At the end, waiting tasks are dropped and running tasks are finished: nothing can stop them.
+    Raises `lwa.InputError` for a bad count, which its message calls ``name``.
     """
     wanted = cores() if count is None else integer(count, name, 1, 1024)
     pool = ThreadPoolExecutor(wanted)
@@ -29,3 +32,34 @@ def threads(count: int | None = None, name: str = "workers") -> Iterator[Executo
         yield pool
     finally:
         pool.shutdown(cancel_futures=True)
+
+
+@contextmanager
+def cluster(address: str, patience: float = 5.0) -> Iterator[Executor]:
+    """Executor of a running Dask cluster, by the address of its scheduler.
+
+    The workers have `lwa` installed. Raises `lwa.InputError` without Dask, and where no scheduler
+    with workers answers within ``patience`` seconds.
+    """
+    try:
+        import distributed  # an optional package
+    except ImportError:
+        raise InputError("cluster needs Dask: pip install 'lwa[cluster]'") from None
+
+    async def call() -> None:  # a client hangs where a stranger accepts its call
+        await (await asyncio.wait_for(distributed.connect(address), patience)).close()
+
+    with ExitStack() as stack:
+        for name in ("distributed", "distributed.client", "tornado.application"):
+            log = logging.getLogger(name)  # of a lost scheduler they print tracebacks
+            stack.callback(log.setLevel, log.level)
+            log.setLevel(logging.CRITICAL)
+        try:
+            with ThreadPoolExecutor(1) as thread:  # as a notebook's own has a loop already
+                thread.submit(asyncio.run, call()).result()
+            client = distributed.Client(address, timeout=patience, set_as_default=False)
+            stack.enter_context(client).wait_for_workers(1, timeout=patience)
+        except Exception:
+            wanted = "no Dask scheduler with workers answers; one such as tcp://127.0.0.1:8786"
+            raise InputError(f"cluster is {shorten(address)}: {wanted} is wanted") from None
+        yield client.get_executor()

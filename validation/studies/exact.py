@@ -1,4 +1,4 @@
-"""Exact traveling waves of the lattice and the mass ratios of the solitary ones, as reports."""
+"""Exact traveling waves of the lattice and the mass ratios of solitary waves, as reports."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from lwa.base.exact import InputError
 from lwa.base.progress import Progress
 from lwa.base.quantities import QUANTITIES
 from lwa.command.terminal import quantities
+from validation.pictures.panel import Curve, Panel
 from validation.report.command import EXPONENT, number, option, study
-from validation.report.panel import Curve, Panel
 from validation.report.result import Report
 from validation.report.table import Column, Table
 from validation.scenes.chains import numbered
@@ -20,71 +20,46 @@ from validation.waves.profile import ExactWave
 from validation.waves.resonances import resonances as special_ratios
 from validation.waves.solver import exact_wave, measured
 
-_SOLITARY = ("solitary: nothing is left behind", "Errors are those of residual, tail and rounding.")
+_SOLITARY = "solitary: nothing is left behind", "Errors: residual, tail and rounding."
 _NANOPTERON = (
     "a nanopteron, not solitary:\nthe light beads rattle on both sides, with this tail",
-    "One of a family, of half period {:g}: errors are the differences from the pulse of a struck "
+    "A member of a family, of half period {:g}. Errors: differences from the pulse of a struck "
     "chain.",
 )
-
 _COLUMNS = (
     Column("of", "of"),
     Column("amplitude", "amplitude", error=True),
     Column("fwhm", "FWHM", "D", error=True),
     Column("rms", "rms width", "D", error=True),
 )
-
-_SCALING = (
-    "Strain and force are those of a contact, the velocity is that of a bead m1. At another peak "
-    "force F\nstrains go as F^(1/k), velocities as F^((k+1)/2k), c as F^((k-1)/2k); widths stay."
-)
-
-
-def wave_report(wave: ExactWave) -> Report:
-    """``k_value``, ``masses_value``, ``background_value``, ``half_period_value``,
-    ``residual_value``, ``solitary``, and with their errors, as ``c2_error_value``, ``c2_value``,
-    ``c_value``, ``tail_value`` and by quantity ``amplitude_value``, ``fwhm_value``,
-    ``rms_value``."""
-    found = measured(wave)
-    kind, errors = _SOLITARY if wave.solitary else _NANOPTERON
-    tail = f"{wave.tail:.2e}" if wave.solitary else found["tail"]
-    rows = tuple((q, *(found[f"{c.key} {q}"] for c in _COLUMNS[1:])) for q in QUANTITIES)
-    names = ("c2", "c", "tail", *(f"{c.key}.{q}" for c in _COLUMNS[1:] for q in QUANTITIES))
-    numbers = Table(tuple(Column(name, error=True) for name in names),
-                    (tuple(found[name.replace(".", " ")] for name in names),))  # fmt: skip
-    xi = np.linspace(-wave.half_period, wave.half_period, 2001)
-    curves = (Curve.of(name, xi, values, style) for (name, values), style
-              in zip(wave.over_peak(xi).items(), ("-", "--", ":"), strict=True))  # fmt: skip
-    loaded = f"; background strain {wave.background:g}: strains and forces are above it"
-    return Report(
-        f"masses {wave.masses[0]:g}, {wave.masses[1]:g}; k = {wave.k:g}; A = D = 1"
-        f"{loaded if wave.background else ''}\nc² = {found['c2']}, c = {found['c']}\n"
-        f"tail {tail} of the peak strain, residual {wave.residual:.1e}: {kind}",
-        (Table(_COLUMNS, rows, note=f"{_SCALING}\n{errors.format(wave.half_period)}"),),
-        panels=(Panel("ξ / D", "over its peak", tuple(curves)),),
-        data={
-            "k_value": wave.k, "masses_value": wave.masses, "background_value": wave.background,
-            "half_period_value": wave.half_period, "residual_value": wave.residual,
-            "solitary": wave.solitary,
-        } | numbers.document()[0],
-    )  # fmt: skip
+_SCALING = """\
+Strain and force of a contact, velocity of a bead m1. Strains scale with the peak force F as
+F^(1/k), velocities as F^((k+1)/2k), c as F^((k-1)/2k); widths do not depend on F."""
 
 
 @study(
     EXPONENT,
     option("--masses", callback=quantities, default="1", says="One mass, or the two of a dimer."),
     option("--speed", callback=number, says="Scale the wave to this speed, at D = 1."),
-    option("--force", callback=number,
-           says="Scale the wave to this peak force, at A = 1; by default 1."),
-    option("--background", callback=number, default="0",
-           says="Static compression of the contacts, over that at the peak."),
-)  # fmt: skip
+    option("--force", callback=number, says="Scale the wave to this peak force, at A = 1.  [1]"),
+    option(
+        "--background",
+        callback=number,
+        default="0",
+        says="Static compression of the contacts over the peak compression.",
+    ),
+)
 def exact(
-    k: float, masses: tuple[sp.Expr, ...], speed: float | None, force: float | None,
-    background: float = 0.0, progress: Progress[Any] = iter,
-) -> Report:  # fmt: skip
-    """An exact traveling wave of the lattice: speed, widths, and the tail if it has one. A second
-    or two; for unequal masses from k = 4 on up to half a minute.
+    k: float,
+    masses: tuple[sp.Expr, ...],
+    speed: float | None,
+    force: float | None,
+    background: float = 0.0,
+    progress: Progress[Any] = iter,
+) -> Report:
+    """Exact traveling wave of the lattice: speed, widths and tail.
+
+    Takes a second or two, for unequal masses from k = 4 on up to half a minute.
     """
     if speed is not None and force is not None:
         raise InputError("speed and force: a wave is scaled to one of the two")
@@ -95,26 +70,61 @@ def exact(
     return wave_report(wave)
 
 
-@study(EXPONENT, option("--count", default=3, says="How many, from above."))
+def wave_report(wave: ExactWave) -> Report:
+    """Report of a wave.
+
+    ``k_value``, ``masses_value``, ``background_value``, ``half_period_value``, ``residual_value``,
+    ``solitary``; with errors, as ``c2_error_value``: ``c2_value``, ``c_value``, ``tail_value`` and
+    by quantity ``amplitude_value``, ``fwhm_value``, ``rms_value``.
+    """
+    found = measured(wave)
+    kind, errors = _SOLITARY if wave.solitary else _NANOPTERON
+    tail = f"{wave.tail:.2e}" if wave.solitary else found["tail"]
+    rows = tuple((q, *(found[f"{c.key} {q}"] for c in _COLUMNS[1:])) for q in QUANTITIES)
+    names = ("c2", "c", "tail", *(f"{c.key}.{q}" for c in _COLUMNS[1:] for q in QUANTITIES))
+    values = tuple(found[name.replace(".", " ")] for name in names)
+    numbers = Table(tuple(Column(name, error=True) for name in names), (values,)).document()[0]
+    load = f"; background strain {wave.background:g}: strains and forces are above it"
+    return Report(
+        f"masses {wave.masses[0]:g}, {wave.masses[1]:g}; k = {wave.k:g}; A = D = 1"
+        f"{load if wave.background else ''}\nc² = {found['c2']}, c = {found['c']}\n"
+        f"tail {tail} of the peak strain, residual {wave.residual:.1e}: {kind}",
+        (Table(_COLUMNS, rows, note=f"{_SCALING}\n{errors.format(wave.half_period)}"),),
+        panels=tuple(wave.pictured()),
+        data={
+            "k_value": wave.k,
+            "masses_value": wave.masses,
+            "background_value": wave.background,
+            "half_period_value": wave.half_period,
+            "residual_value": wave.residual,
+            "solitary": wave.solitary,
+            **numbers,
+        },
+    )
+
+
+_RATIOS = (
+    Column("mass_ratio", "m2/m1", format=".9f"),
+    Column("c2_value", "c² at peak force 1", format=".9f"),
+    Column("tail_value", "tail", format=".0e"),
+    Column("residual_value", "residual", format=".0e"),
+)
+
+
+@study(EXPONENT, option("--count", default=3, says="Number of ratios, from the largest down."))
 def resonances(k: float, count: int) -> Report:
-    """The mass ratios m2/m1 < 1 at which a dimer has a solitary wave.
+    """Mass ratios m2/m1 < 1 of the dimers with a solitary wave.
 
     ``k_value`` and, in falling order, ``mass_ratios``, ``c2_value``, ``tail_value``,
     ``residual_value``.
     """
-    columns = (
-        Column("mass_ratio", "m2/m1", format=".9f"),
-        Column("c2_value", "c² at peak force 1", format=".9f"),
-        Column("tail_value", "tail", format=".0e"),
-        Column("residual_value", "residual", format=".0e"),
-    )
     waves, xi = special_ratios(k, count).waves, np.linspace(-5, 5, 1001)
     rows = tuple((wave.omega, wave.c2, wave.tail, wave.residual) for wave in waves)
     curves = (Curve.of(f"m2/m1 = {w.omega:.4f}", xi, w.force(xi), "-") for w in waves)
-    names = ("mass_ratios", *(column.key for column in columns[1:]))
+    names = ("mass_ratios", *(column.key for column in _RATIOS[1:]))
     return Report(
         f"k = {k:g}: dimers with a solitary wave",
-        (Table(columns, rows),),
+        (Table(_RATIOS, rows),),
         panels=(Panel("ξ / D", "force of a contact", tuple(curves)),),
         data={"k_value": k} | dict(zip(names, zip(*rows, strict=True), strict=True)),
     )

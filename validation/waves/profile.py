@@ -1,16 +1,16 @@
-"""A traveling wave of the lattice as trigonometric polynomials, and what is read off a profile.
+"""Profiles of traveling waves and the numbers read off them: peaks, widths, tails, energy.
 
-The wave is that of `validation.waves.fourier`, A = D = 1: a contact's strain is a(ξ) = e + o or
-b(ξ) = a(-ξ), ξ = x - ct. As the contact law r_+^k has no scale of its own, its multiples are waves,
-too: r → s r with c² → s^{k-1} c². A wave is given at contact force 1, `ExactWave.scaled` at others.
-On a background p0, which is multiplied by s as well, strains and forces are what the wave adds to
-p0 and p0^k; the contact force that peaks at 1 is the sum.
+A = D = 1. A contact's strain is a(ξ) or b(ξ) = a(-ξ), ξ = x - ct (`validation.waves.newton`). The
+contact law r_+^k has no scale of its own, so that multiples of a wave are waves: r → s r with
+c² → s^{k-1} c². Waves are found at peak contact force 1; `ExactWave.scaled` gives the others. On a
+background p0, which is multiplied by s too, strains and forces are those added to p0 and p0^k, and
+the force of peak 1 is the sum.
 """
 
 from __future__ import annotations
 
 import math
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -22,20 +22,23 @@ from numpy.typing import ArrayLike, NDArray
 
 from lwa.base.arrays import Array
 from lwa.base.quantities import QUANTITIES, strain_power
+from validation.pictures.figure import Pictured
+from validation.pictures.panel import Curve, Panel
 from validation.pulses.pulse import MeasureError
 from validation.scenes.checks import SceneError, positive
-from validation.waves import fourier
+from validation.waves import newton
 
-TOLERANCE = 1e-9  # of the tail, over the peak strain, and of the residual, of a solitary wave
-OUTSIDE = 0.6  # of the half period: where the pulse of a dimer has ended, and its tail is measured
-_ROW = 16  # of Fourier coefficients that are summed up together
+TOLERANCE = 1e-9  # tail and residual of a solitary wave over its peak strain, at most
+OUTSIDE = 0.6  # share of the half period at which a dimer's pulse has ended and its tail begins
+_ROW = 16  # Fourier coefficients that are summed up together
 
 
 @dataclass(frozen=True, eq=False)
-class Profile(ABC):
-    """A pulse of a chain as a function of ξ = x - ct, mirror symmetric about a bead; A = D = 1.
+class Profile(Pictured):
+    """A pulse as a function of ξ = x - ct, mirror symmetric about a bead; A = D = 1.
 
-    half_period : L, up to which it is known.
+    masses : (m1, m2). k : exponent. c2 : c², the square of the speed dx/dt.
+    half_period : L, the largest |ξ| at which the pulse is known.
     """
 
     masses: tuple[float, float]
@@ -47,57 +50,57 @@ class Profile(ABC):
     @property
     @abstractmethod
     def samples(self) -> int:
-        """On 0 … L, from which on its humps are told apart."""
+        """Number of points on 0 … L that resolve the profile."""
 
     @abstractmethod
     def _front(self, xi: Array) -> Array:
         """a(ξ)."""
 
+    @abstractmethod
+    def velocity(self, xi: ArrayLike, bead: int = 0) -> Array:
+        """Velocity of beads m1 (bead 0) or m2 (bead 1); a cell far away has no momentum."""
+
     def strain(self, xi: ArrayLike, contact: int = 0) -> Array:
-        """a(ξ) (contact 0, m1 to its left) or b(ξ) = a(-ξ) (contact 1); a gap is negative."""
+        """Strain a(ξ) of contacts behind beads m1 (contact 0), or b(ξ) (contact 1)."""
         at = np.asarray(xi, float)
         return self._front(-at if contact % 2 else at)
 
-    @abstractmethod
-    def velocity(self, xi: ArrayLike, bead: int = 0) -> Array:
-        """Of the beads m1 (bead 0) or m2 (bead 1); far from the pulse a cell has no momentum."""
+    def force(self, xi: ArrayLike, contact: int = 0) -> Array:
+        """Force F_a(ξ) or F_b(ξ) of a contact, above the static force."""
+        return newton.rise(self.strain(xi, contact), self.k, self.background)
 
     @property
     def c(self) -> float:
-        """The speed dx/dt."""
+        """Speed dx/dt."""
         return math.sqrt(self.c2)
 
     @property
     def omega(self) -> float:
-        """ω = m2/m1."""
+        """Mass ratio ω = m2/m1."""
         return self.masses[1] / self.masses[0]
 
     @property
     def pulse(self) -> float:
-        """The |ξ| within which it is read off: a dimer's without its tail."""
+        """Largest |ξ| of the pulse itself, without a dimer's tail."""
         if self.background:
             return self.half_period
-        ample = fourier.ample_half_period((1.0, self.omega), self.k)
+        ample = newton.ample_half_period((1.0, self.omega), self.k)
         return min(self.half_period, ample if self.omega == 1 else OUTSIDE * ample)
 
-    def force(self, xi: ArrayLike, contact: int = 0) -> Array:
-        """F_a(ξ) or F_b(ξ), above that of the background."""
-        return fourier.rise(self.strain(xi, contact), self.k, self.background)
-
     def quantity(self, name: str, xi: ArrayLike) -> Array:
-        """ "strain", "force" (of contact 0) or "velocity" (of bead m1), as in `lwa`."""
+        """The "strain" or "force" of contact 0 or the "velocity" of bead 0."""
         strain_power(name, self.k)  # refuses other names
         return np.asarray(getattr(self, name)(xi))
 
     def peak(self, name: str) -> tuple[float, float]:
-        """Where a quantity is greatest, and its value there."""
+        """Place and value of the maximum of a quantity."""
         xi = np.linspace(-self.half_period, self.half_period, 4 * self.samples + 1)
         return summit(lambda x: self.quantity(name, x), xi)
 
     def fwhm(self, name: str = "strain") -> float:
-        """Full width at half maximum, in D, of the highest hump: roots of the profile itself.
+        """Full width at half maximum of a quantity's highest hump, a length.
 
-        Raises `MeasureError` where the quantity does not fall to half its peak.
+        Raises `MeasureError` if the quantity does not fall to half its peak.
         """
         top, peak = self.peak(name)
 
@@ -113,51 +116,43 @@ class Profile(ABC):
             width += scipy.optimize.brentq(above, *ends, (side,), xtol=1e-14, rtol=1e-14)
         return float(width)
 
-    def over_peak(self, xi: ArrayLike) -> dict[str, Array]:
-        """Strain, force and velocity, each over its peak."""
-        return {name: self.quantity(name, xi) / self.peak(name)[1] for name in QUANTITIES}
-
-    def plot(self, ax: Any = None) -> Any:
-        """Draw `over_peak` on |ξ| ≤ L into Matplotlib's axes, or into new ones; returns them."""
-        from lwa.wave.plots import axes  # optional, start-up
-
-        ax = axes(ax)
-        xi = np.linspace(-self.half_period, self.half_period, 2001)
-        for (name, values), style in zip(self.over_peak(xi).items(), ("-", "--", ":"), strict=True):
-            ax.plot(xi, values, style, label=name)
-        ax.set(xlabel="ξ / D", ylabel="over its peak")
-        ax.legend()
-        return ax
-
     def rms_width(self, name: str = "strain") -> float:
-        """√(∫ (ξ - mean)² f / ∫ f) over the pulse; positive values only (gaps do not count)."""
+        """√(∫ (ξ - mean)² f / ∫ f) over the pulse, of the positive part f of a quantity."""
         n = 8 * self.samples
-        xi = self.pulse * np.arange(-n, n) / n  # trapezia: exact for what has ended
+        xi = self.pulse * np.arange(-n, n) / n  # trapezia: exact for a pulse that has ended
         f = np.maximum(self.quantity(name, xi), 0.0)
         mean = (f @ xi) / f.sum()
         return math.sqrt(f @ (xi - mean) ** 2 / f.sum())
 
     def rattle(self, start: float) -> float:
-        """The largest |o| on start ≤ |ξ| ≤ L: how far light beads are from their places."""
+        """Largest |a(ξ) - a(-ξ)|/2 on start ≤ |ξ| ≤ L: the displacement of the light beads."""
         outside = np.linspace(start, self.half_period, 2 * self.samples)
         return summit(lambda x: np.abs(self.strain(x) - self.strain(-x)) / 2, outside)[1]
 
     def apart(self, other: Profile) -> float:
-        """The largest difference of two strains over the pulse."""
+        """Largest difference of two waves' strains over the pulse."""
         xi = np.linspace(-self.pulse, self.pulse, 401)
         return float(np.abs(self.strain(xi) - other.strain(xi)).max())
+
+    def pictured(self) -> list[Panel]:
+        """Strain, force and velocity, each over its peak."""
+        xi, styles = np.linspace(-self.half_period, self.half_period, 2001), ("-", "--", ":")
+        curves = (
+            Curve.of(name, xi, self.quantity(name, xi) / self.peak(name)[1], style)
+            for name, style in zip(QUANTITIES, styles, strict=True)
+        )
+        return [Panel("ξ / D", "over its peak", tuple(curves))]
 
 
 @dataclass(frozen=True, eq=False)
 class ExactWave(Profile):
-    """One traveling wave; A = D = 1.
+    """A traveling wave of the lattice to rounding; A = D = 1.
 
-    masses, k, c2 : (m1, m2), the exponent, and the square of the speed dx/dt.
-    half_period : L; profiles are periodic with 2L, a solitary wave's end before.
+    half_period : L; profiles have the period 2L, and a solitary wave ends before L.
     even, odd : coefficients of E in cos(πjξ/L), j = 0 … n, and of O in sin(πjξ/L).
-    tail : largest |o| outside the pulse, over the peak strain.
-    residual : of the equations of motion, integrated twice, over the peak strain; on a grid twice
-        as fine as that on which they were solved.
+    tail : largest |o| outside the pulse over the peak strain.
+    residual : error in the equations of motion, integrated twice, over the peak strain, on a grid
+        twice as fine as the grid on which they were solved.
     background : p0, the strain far from the wave.
     """
 
@@ -167,29 +162,69 @@ class ExactWave(Profile):
     residual: float
     background: float = 0.0
 
+    def __repr__(self) -> str:
+        kind = "solitary" if self.solitary else f"tail {self.tail:.2g}"
+        m1, m2 = self.masses
+        return f"ExactWave(masses=({m1:g}, {m2:g}), k={self.k:g}, c={self.c:.12g}, {kind})"
+
     @property
     def samples(self) -> int:
-        """The points of the grid."""
+        """Number of Fourier coefficients."""
         return len(self.even)
 
     @property
     def solitary(self) -> bool:
-        """Whether the wave ends within L and has no tail, as far as its residual lets one say."""
+        """Whether the wave ends within L without a tail, as far as its residual can tell."""
         return max(self.tail, self.residual, self.rest) < TOLERANCE
 
     @cached_property
     def rest(self) -> float:
-        """Of equal masses: the strain that the forces leave at L, where it is set to 0, over the
-        peak strain. It is c² times that, ∫ (1-|s|) F(L-s) ds, the mean of (*) at q = 0."""
+        """Strain left at L by the forces in a chain of equal masses, over the peak strain.
+
+        The wave has strain 0 at L; the forces leave ∫ (1-|s|) F(L-s) ds / c², (*) at q = 0.
+        """
         if self.omega != 1:
             return 0.0
         even, c2 = self._strains[0], self.c2 * self.masses[0]
         return float(abs(self.even[0] / c2 - even[0]) / even.sum())
 
-    def scaled(self, *, speed: Any = None, force: Any = None) -> ExactWave:
-        """The same wave of another speed dx/dt, or of another peak force of its contacts.
+    @property
+    def energy(self) -> float:
+        """Kinetic and elastic energy of the pulse above the static state, in a whole chain.
 
-        Raises `SceneError` unless one of the two is given, positive, and the strains are floats.
+        The energy of a moment does not depend on the moment: its mean over all is an integral.
+        """
+        p0, k = self.background, self.k
+        xi, step = self._pulse_grid
+        density = 0 * xi
+        for i, mass in enumerate(self.masses):
+            r = self.strain(xi, i)
+            density += newton.rise(r, k + 1, p0) / (k + 1) - p0**k * r
+            density += mass / 2 * self.velocity(xi, i) ** 2
+        return float(density.sum()) * step / 2
+
+    @property
+    def momentum(self) -> float:
+        """Momentum of the pulse in a whole chain."""
+        xi, step = self._pulse_grid
+        one, two = (m * self.velocity(xi, i).sum() for i, m in enumerate(self.masses))
+        return float(one + two) * step / 2
+
+    @property
+    def effective_mass(self) -> float:
+        """P²/(2E), the mass of a particle of the pulse's momentum and energy."""
+        return self.momentum**2 / (2 * self.energy)
+
+    @property
+    def _pulse_grid(self) -> tuple[Array, float]:
+        """Points of the pulse and their distance, for sums that are exact for smooth pulses."""
+        n = 8 * self.samples
+        return self.pulse * np.arange(-n, n) / n, self.pulse / n
+
+    def scaled(self, *, speed: Any = None, force: Any = None) -> ExactWave:
+        """The same wave with another speed dx/dt or another peak contact force.
+
+        Raises `SceneError` unless exactly one is given, positive, and the strains are floats.
         """
         if (speed is None) == (force is None):
             raise SceneError("speed or force is wanted: a wave is scaled to one of the two")
@@ -206,15 +241,16 @@ class ExactWave(Profile):
         return self.times(float(now))
 
     def times(self, s: float) -> ExactWave:
-        """The wave of s times these strains, on s times this background."""
+        """The wave with s times these strains, on s times this background."""
         c2, force, p0 = float(self.c2 * s ** (self.k - 1)), s**self.k, s * self.background
         return replace(self, c2=c2, even=self.even * force, odd=self.odd * force, background=p0)
 
     @cached_property
     def _strains(self) -> tuple[Array, Array]:
+        """Coefficients of e and o."""
         light, c2 = 1 / self.omega, self.c2 * self.masses[0]  # 1/m1 itself may be out of range
-        odd = self.odd if light != 1 else 0 * self.odd  # but for rounding, over q²
-        found = fourier.respond(self.even - 1j * odd, (1, light), self.half_period) / c2
+        odd = self.odd if light != 1 else 0 * self.odd  # rounding, divided by q²
+        found = newton.respond(self.even - 1j * odd, (1, light), self.half_period) / c2
         e, o = found.real, -found.imag
         e[0] = e[1::2].sum() - e[2::2].sum()  # the strain is 0 at L
         o[-1] = 0
@@ -229,44 +265,42 @@ class ExactWave(Profile):
         return np.where(self._ended(xi), 0.0, self._velocity(xi, bead) - mean)
 
     def _velocity(self, xi: ArrayLike, bead: int) -> Array:
+        """Velocity up to a constant, by c v' = (force behind - force ahead)/m."""
         sign, q = (-1 if bead % 2 else 1), np.pi / self.half_period * np.arange(1, self.samples)
         push = -2 * np.sin(q / 2) * self.even[1:] + sign * 2 * np.cos(q / 2) * self.odd[1:]
         row = np.append(0.0, -push / q) / (self.masses[bead % 2] * self.c)
         return self._sum(xi, row, 0 * row)
 
     def _sum(self, xi: ArrayLike, even: Array, odd: Array) -> Array:
+        """Σ even_j cos(q_j ξ) + odd_j sin(q_j ξ)."""
         rows = np.append(even - 1j * odd, np.zeros(-self.samples % _ROW)).reshape(-1, _ROW)
         q = np.pi / self.half_period * np.arange(rows.size)
-        # e^{iqξ} of every q from those of the first ones and of every 16th.
+        # e^{iqξ} of every q as a product of two of q's first 16 and of every 16th q.
         first, every = (np.exp(1j * np.multiply.outer(xi, part)) for part in (q[:_ROW], q[::_ROW]))
         return np.asarray(((first @ rows.T) * every).real.sum(axis=-1))
 
     def _ended(self, xi: ArrayLike) -> NDArray[np.bool_]:
-        """Where a wave that ends has ended: it is not repeated, and no rounding moves a bead."""
+        """Whether a solitary wave has ended: beyond L it is not repeated."""
         return np.asarray((np.abs(xi) >= self.half_period) & self.solitary)
 
 
 def at_unit_force(
-    masses: tuple[float, float], problem: fourier.Problem, forces: Array, c2: float
+    masses: tuple[float, float], problem: newton.Problem, forces: Array, c2: float
 ) -> ExactWave:
-    """The wave that solves a problem, scaled to a force 1 at its peak; its tail and residual."""
-    even, odd = fourier.coefficients(problem.forces(forces))
+    """The wave of a problem's solution, scaled to peak force 1, with its tail and residual."""
+    even, odd = newton.coefficients(problem.forces(forces))
     wave = ExactWave(masses, problem.k, c2, problem.L, even, odd, 0.0, 0.0, problem.p0)
     wave = wave.times(1 / (problem.p0 + wave.peak("strain")[1]))
     tail = 0.0 if problem.uniform else wave.rattle(OUTSIDE * problem.L)
-    return replace(wave, tail=tail, residual=_residual(wave))
-
-
-def _residual(wave: ExactWave) -> float:
-    """max |r - r[F(r)]| on the grid twice as fine, for both contacts, over the peak strain."""
-    xi = fourier.circle(wave.half_period, 2 * (len(wave.even) - 1))
-    even, odd = fourier.coefficients(wave.force(xi))
+    xi = newton.circle(wave.half_period, 2 * problem.n)
+    even, odd = newton.coefficients(wave.force(xi))
     again = replace(wave, even=even, odd=odd)
-    return float(np.abs(again.strain(xi) - wave.strain(xi)).max()) / (1 - wave.background)
+    off = float(np.abs(again.strain(xi) - wave.strain(xi)).max())
+    return replace(wave, tail=tail, residual=off / (1 - wave.background))
 
 
 def summit(f: Callable[[Any], Array], xi: Array) -> tuple[float, float]:
-    """The maximum of a smooth function near the largest of its samples; its place to 1e-8."""
+    """Place, to 1e-8, and value of a smooth function's maximum, near the largest sample."""
     value = f(xi)
     i = int(np.argmax(value))
     bounds = xi[max(i - 1, 0)], xi[min(i + 1, len(xi) - 1)]

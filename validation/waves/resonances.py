@@ -1,16 +1,16 @@
-"""The special mass ratios at which a dimer chain has a solitary wave, whatever the exponent k.
+"""Mass ratios at which a dimer chain has a solitary wave.
 
-Elsewhere the light beads keep oscillating behind the pulse. At these ratios they come to rest with
-the heavy ones, after one more full oscillation from each ratio to the next smaller one
-(Jayaprakash, Starosvetsky & Vakakis, Phys. Rev. E 83, 036606, 2011: 0.3428, 0.1548, 0.0901, … at
-k = 3/2). They are the zeros of the strain T that a wave leaves (`validation.waves.fourier`);
-Newton's method solves T = 0 with the equations of motion, m2/m1 being one of the unknowns.
+At other ratios the light beads keep oscillating behind the pulse. At these ratios the light beads
+come to rest with the heavy ones, with one more full oscillation from each ratio to the next smaller
+one (Jayaprakash, Starosvetsky & Vakakis, Phys. Rev. E 83, 036606, 2011: 0.3428, 0.1548, 0.0901, …
+at k = 3/2). The ratios are zeros of the strain T left by a wave (`validation.waves.newton`);
+Newton's method solves T = 0 together with the equations of motion, with m2/m1 as an unknown.
 
-It alone may end at any of the ratios. What keeps them in order: the first two are those of k = 3/2,
-followed to k in steps that change √(m1/m2) little. Each further one is looked for where √(m1/m2) is
-one step further, as steps are nearly equal: by Newton's method, and between changes of sign of the
-kick that keeps a wave of given masses from leaving a strain. Above k = 3/2 all of them are followed
-from there.
+Newton's method alone may end at any of the ratios. The order is kept as follows. The first two
+ratios are those of k = 3/2, followed to k in small steps of √(m1/m2). Each further ratio is
+searched one step of √(m1/m2) on, as these steps are nearly equal: by Newton's method, and between
+changes of sign of the kick that keeps a wave at given masses from leaving a strain. Above k = 3/2
+all ratios are followed from k = 3/2.
 """
 
 from __future__ import annotations
@@ -28,29 +28,29 @@ from validation.scenes.checks import between, integer
 from validation.waves.profile import ExactWave
 from validation.waves.solver import NoWave, solve, solved
 
-MOST = 6  # special ratios at one k
-HERTZ, PUBLISHED = 1.5, (0.3428, 0.1548)  # the first ratios there, near which Newton begins
-_FARTHEST = 0.15  # change of √(m1/m2) in one step along k; the ratios are 0.2 apart, or more
+MOST = 6  # ratios at one k
+HERTZ, PUBLISHED = 1.5, (0.3428, 0.1548)  # the first ratios at k = 3/2, as published
+_FARTHEST = 0.15  # change of √(m1/m2) in one step along k; neighbours differ by 0.2 or more
 
 
 @dataclass(frozen=True, eq=False)
 class Resonances:
-    """The solitary waves at the largest special ratios m2/m1 < 1, in falling order; m1 = 1."""
+    """Solitary waves at the largest special ratios m2/m1 < 1, in falling order; m1 = 1."""
 
     k: float
     waves: tuple[ExactWave, ...]
 
     @property
     def mass_ratios(self) -> tuple[float, ...]:
-        """m2/m1."""
+        """The ratios m2/m1."""
         return tuple(wave.omega for wave in self.waves)
 
 
 def resonances(k: Any, count: Any) -> Resonances:
-    """The solitary waves at the ``count`` largest special ratios m2/m1 < 1, for k from 1.1 to 5.
+    """Solitary waves at the ``count`` largest special ratios m2/m1 < 1, for k from 1.1 to 5.
 
-    Nearer to 1 the strain T cannot be told from rounding. Raises `SceneError` for other numbers
-    than can be meant, and `NoWave` when fewer are found.
+    Nearer to k = 1 the strain T is lost in rounding. Raises `SceneError` for numbers out of range,
+    and `NoWave` if fewer waves are found.
     """
     k = between(k, "k", 1.1, 5, "special mass ratios are found for k from 1.1 to 5")
     count = integer(count, "count", 1, MOST)
@@ -61,18 +61,19 @@ def resonances(k: Any, count: Any) -> Resonances:
 
 
 def _root(wave: ExactWave) -> float:
-    """√(m1/m2), as the light beads' frequency goes."""
+    """√(m1/m2), to which the frequency of the light beads is proportional."""
     return math.sqrt(1 / wave.omega)
 
 
 def _ladder(waves: list[ExactWave], count: int) -> tuple[ExactWave, ...]:
+    """The first waves and the next ones, down to the ``count``-th ratio."""
     while len(waves) < count:
         waves.append(_next(*waves[-2:]))
     return tuple(waves[:count])
 
 
 def _followed(wave: ExactWave, k: float) -> ExactWave:
-    """The wave at another k whose special ratio is of the same place in the order."""
+    """The wave at another k whose ratio has the same place in the order."""
     e, end = math.log(wave.k - 1), math.log(k - 1)
     step, slope = 0.1, 0.0
     while e != end:
@@ -87,12 +88,12 @@ def _followed(wave: ExactWave, k: float) -> ExactWave:
                 continue
         step /= 2
         if step < 1e-3:
-            raise NoWave(f"k = {k:g}: special mass ratios are lost on the way, at {wave.k:g}")
+            raise NoWave(f"on the way to k = {k:g} the ratio is lost", wave.masses, wave.k)
     return wave
 
 
 def _ending(root: float, k: float, start: ExactWave | None) -> ExactWave | None:
-    """The wave of a special ratio near root^-2, from a start or the theory's, if one is found."""
+    """The solitary wave near the ratio root^-2, from a near wave or the theory's; None if lost."""
     try:
         wave = solve((1.0, root**-2), k, start=start, free=True)
     except NoWave:
@@ -101,7 +102,7 @@ def _ending(root: float, k: float, start: ExactWave | None) -> ExactWave | None:
 
 
 def _next(before: ExactWave, last: ExactWave) -> ExactWave:
-    """The wave of the next smaller ratio."""
+    """The solitary wave at the next smaller ratio."""
     step = _root(last) - _root(before)
     places = (_root(last) + step * np.arange(0.6, 1.35, 0.05)).tolist()
     first, end = places[0], places[-1]
@@ -112,20 +113,21 @@ def _next(before: ExactWave, last: ExactWave) -> ExactWave:
         if found is not None and first < _root(found) < end:
             return found
     raise NoWave(
-        f"k = {last.k:g}: the special mass ratio next to {last.omega:.6g} is not found from "
-        f"{first**-2:.4g} down to {end**-2:.4g}"
+        f"from {first**-2:.4g} down to {end**-2:.4g} the next special mass ratio is not found",
+        last.masses,
+        last.k,
     )
 
 
 def _changes(
     roots: list[float], last: ExactWave
 ) -> Iterator[tuple[tuple[float, float], tuple[float, float], ExactWave]]:
-    """Neighbours (√(m1/m2), kick) between which the kick changes its sign, with a wave there."""
+    """Pairs of neighbours (√(m1/m2), kick) with kicks of opposite signs, and a wave near them."""
     before, wave = (math.nan, math.nan), last
     for root in roots:
         for start in (None, wave):
             with suppress(NoWave):
-                found, kick = solved((1.0, root**-2), last.k, start=start, unknown="kick")
+                found, kick = solved((1.0, root**-2), last.k, near=start, unknown="kick")
                 if kick * before[1] < 0:
                     yield before, (root, kick), wave
                 before, wave = (root, kick), found
@@ -133,7 +135,7 @@ def _changes(
 
 
 def _zero(low: tuple[float, float], high: tuple[float, float], wave: ExactWave) -> ExactWave | None:
-    """The wave without a kick, by the secant method; None where the kick jumps through 0."""
+    """The wave without a kick, by the secant method; None where the kick jumps across 0."""
     (a, f), (b, g) = low, high
     left, right = a, b
     for _ in range(12):
@@ -143,7 +145,7 @@ def _zero(low: tuple[float, float], high: tuple[float, float], wave: ExactWave) 
         if not left <= b <= right:
             return None
         try:
-            wave, kick = solved((1.0, b**-2), wave.k, start=wave, unknown="kick")
+            wave, kick = solved((1.0, b**-2), wave.k, near=wave, unknown="kick")
         except NoWave:
             return None
         f, g = g, kick

@@ -9,7 +9,7 @@ import sympy as sp
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lwa.base.exact import InputError, exact, positive, power
+from lwa.base.exact import InputError, exact, positive, power, root
 
 
 @given(st.floats(allow_nan=False, allow_infinity=False))
@@ -85,3 +85,16 @@ def test_a_power_is_the_number_it_is_also_where_it_is_kept(base, numerator):
         assert found.is_positive
         assert abs(found.n(30) / base.n(40) ** sp.Rational(numerator, denominator) - 1) < 1e-28
         assert len(str(found)) < 60
+
+
+@pytest.mark.parametrize(
+    "value", [10**400, 2 * 10**400, sp.Rational(3, 7 * 10**700), 10**401], ids=lambda _: ""
+)
+def test_roots_of_integers_beyond_a_double(value):
+    """SymPy takes none of these with python-flint: its `math.log` overflows."""
+    x = sp.Symbol("x", positive=True)
+    for expression in (sp.sympify(value), value * x):
+        found = root(expression)
+        assert abs(sp.N(found.subs(x, 1), 40) ** 2 / sp.N(value, 40) - 1) < 1e-38
+    assert root(sp.Integer(10) ** 400 * x) == 10**200 * root(x)
+    assert str(root(sp.Integer(10) ** 401)) == f"sqrt(1{'0' * 401})"

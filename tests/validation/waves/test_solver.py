@@ -17,10 +17,11 @@ from validation import Scene, measure, simulate
 from validation.pulses.steady import STRETCH, point
 from validation.scenes.checks import SceneError
 from validation.studies.exact import wave_report
-from validation.waves import fourier, solver
+from validation.waves import solver
+from validation.waves.newton import Problem, ample_half_period
 from validation.waves.resonances import resonances
-from validation.waves.solver import NoWave, exact_wave, measured, solve
-from validation.waves.struck import struck
+from validation.waves.solver import NoWave, exact_wave, followed, measured, solve
+from validation.waves.start import struck_pulse
 
 QUANTITIES = ("strain", "force", "velocity")
 
@@ -49,7 +50,7 @@ def test_the_widths_of_the_hertz_chain(hertz):
 
 def test_a_step_to_a_negative_square_of_the_speed_is_no_convergence():
     """NumPy warned of a power of a negative number on the way to six special ratios at k = 1.15."""
-    problem = fourier.Problem((1.0, 0.5), 1.15)
+    problem = Problem((1.0, 0.5), 1.15)
     with pytest.raises(np.linalg.LinAlgError):
         problem.wave(np.ones(problem.count), -1.0)
 
@@ -489,43 +490,17 @@ def test_what_is_left_at_the_half_period_tells_how_far_a_wave_is_off(hertz):
     assert hertz.rest < 1e-15
 
 
-def test_each_wave_that_is_tried_is_shown(monkeypatch):
-    """Without a sign of life `exact` took 200 s at k = 8; the bar is there before the first."""
-    events = []
-
-    def fails(masses, k, *_, **__):
-        events.append("solve")
-        raise NoWave("no convergence")
+def test_each_start_is_shown():
+    """One for the theory's wave and one for the struck chain's pulse at this half period."""
+    shown = []
 
     def progress(cases):
         for case in cases:
-            events.append("shown")
+            shown.append(case)
             yield case
 
-    monkeypatch.setattr(solver, "solve", fails)
-    with pytest.raises(NoWave):
-        exact_wave([1, 0.6], 1.5, progress=progress)
-    assert events == ["shown", "solve"] * 2 * len(solver.PERIODS)
-
-
-def test_a_branch_that_is_followed_is_shown(monkeypatch):
-    """It takes seconds at k = 8."""
-    events, solve = [], solver.solve
-
-    def fails(masses, k, *rest, **options):
-        if k > solver.STEEP:
-            raise NoWave("no convergence")
-        return solve(masses, k, *rest, **options)
-
-    def progress(cases):
-        for case in cases:
-            events.append(case)
-            yield case
-
-    monkeypatch.setattr(solver, "solve", fails)
-    monkeypatch.setattr(solver, "_followed", lambda begin, k: (events.append("followed"), k))
-    assert solver._dimer((1.0, 0.6), 5.0, None, progress)[1] == 5.0
-    assert events[-2:] == [5.0, "followed"]
+    exact_wave([1, 0.9], 1.5, half_period=8, progress=progress)
+    assert shown == [(False, 8.0), (True, 8.0)]
 
 
 @settings(max_examples=12, deadline=None)
@@ -567,43 +542,27 @@ def test_the_unit_of_mass_may_be_anything(masses):
 @pytest.mark.parametrize("k", [1.45, 2.0, 3.0])
 def test_following_stays_on_its_branch_and_leads_back(k):
     start = exact_wave([1, 0.9], 1.5, half_period=5)
-    there = solver._followed(start, k)
+    there = followed(start, k)
     assert (there.k, there.omega, there.solitary) == (k, 0.9, False)
-    back = solver._followed(there, 1.5)
+    back = followed(there, 1.5)
     assert back.c2 == pytest.approx(start.c2, rel=1e-9)
     assert back.tail == pytest.approx(start.tail, rel=1e-6)
 
 
-def test_a_branch_is_followed_through_its_fold(monkeypatch):
-    """At ω = 0.7 one turns back at k = 1.85, where steps along k alone end."""
-    masses, wave, found = (1.0, 0.7), fourier.Problem.wave, []
-
-    def spied(problem, *args):
-        result = wave(problem, *args)
-        found.append((problem, *result))
-        return result
-
-    begin = solve(masses, 2, fourier.ample_half_period(masses, 2), start=struck(2.0, 0.7))
-    monkeypatch.setattr(fourier, "_PLACES", 40)
-    monkeypatch.setattr(fourier.Problem, "wave", spied)
+@pytest.mark.slow
+def test_a_branch_that_turns_back_does_not_reach_its_end():
+    """At ω = 0.7 a branch from k = 2 turns back at k = 1.85."""
+    masses = (1.0, 0.7)
+    begin = solve(masses, 2, ample_half_period(masses, 2), start=struck_pulse(2.0, 0.7))
+    assert followed(begin, 1.9).residual < 1e-6
     with pytest.raises(NoWave, match=r"ends, or is lost, on the way at k = 1\.4, masses 1, 0\.7$"):
-        solver._followed(begin, 1.4)
-    found = found[1:]
-    ks = [k for *_, k in found]
-    fold = int(np.argmin(ks))
-    assert 1.8 < ks[fold] < 1.9
-    start, place = found[0], next(i for i in range(fold, len(ks)) if ks[i] > 2)
-    # a wave of its own k, and another one than before the fold
-    problem, z, c2, k = found[place]
-    problem.k = k
-    assert wave(problem, z, c2)[1] == pytest.approx(c2, rel=1e-10)
-    assert c2 > 1.02 * start[2]
+        followed(begin, 1.4)
 
 
 @pytest.mark.parametrize("k", [1.5, 3])
 def test_a_missing_wave_says_what_was_tried(monkeypatch, k):
     def fails(masses, k, *_, **__):
-        raise NoWave("no convergence")
+        raise NoWave("no convergence", masses, k)
 
     monkeypatch.setattr(solver, "solve", fails)
     with pytest.raises(NoWave) as caught:

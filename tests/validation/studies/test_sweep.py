@@ -1,0 +1,500 @@
+"""Sweeps: nothing computed twice, nothing finished lost, the theory beside, maps and tables."""
+
+import csv
+import io
+import json
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+from concurrent.futures import BrokenExecutor, ThreadPoolExecutor
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import pytest
+import sympy as sp
+from filelock import FileLock
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from lwa import InputError
+from tests.commands import ended
+from validation import cli
+from validation.lattice.threads import cluster
+from validation.pulses.pulse import Measured
+from validation.pulses.steady import QUANTITIES, Point
+from validation.report.text import percent
+from validation.studies.sweep import Sweep, SweepError, sweep, theory
+from validation.waves.theory import Compacton, theory_at
+
+R = sp.Rational
+COMMAND = Path(sys.executable).with_name("lwa-validate")
+QUICK = {"stretch": 2, "jobs": 1}
+"""The shortest chains, one after another."""
+
+KS, OMEGAS = (2, "5/2"), (1, "1/2")
+GRID = [(R(k), R(omega)) for k in KS for omega in ("1/2", 1)]
+
+
+@pytest.fixture(scope="module")
+def reference():
+    return numbers(sweep(KS, OMEGAS, **QUICK))
+
+
+def numbers(result):
+    return [(p.k, p.omega, p.sites, p.missing, dict(p.numbers)) for p in result.points]
+
+
+def stopping(after, error=KeyboardInterrupt):
+    """Progress that raises an error when so many points are kept."""
+
+    def progress(todo):
+        yield from todo[:after]
+        raise error
+
+    return progress
+
+
+def watched(computed):
+    """Progress that collects the points that are computed."""
+
+    def progress(todo):
+        computed.extend(todo)
+        return todo
+
+    return progress
+
+
+# The file
+
+
+def test_an_interrupted_sweep_goes_on_where_it_was(reference, tmp_path):
+    file, computed = tmp_path / "s.jsonl", []
+    with pytest.raises(KeyboardInterrupt):
+        sweep(KS, OMEGAS, file=file, progress=stopping(3), **QUICK)
+    assert file.read_text().count("\n") == 1 + 3
+    whole = sweep(KS, OMEGAS, file=file, progress=watched(computed), **QUICK)
+    assert len(computed) == 1
+    assert numbers(whole) == reference
+    again = sweep(KS, OMEGAS, file=file, progress=watched(computed), **QUICK)
+    assert len(computed) == 1
+    assert numbers(again) == reference
+    assert [path.name for path in tmp_path.iterdir()] == ["s.jsonl"]
+
+
+def test_a_larger_sweep_computes_only_what_is_new(reference, tmp_path):
+    file, computed = tmp_path / "s.jsonl", []
+    sweep(KS[:1], OMEGAS, file=file, **QUICK)
+    whole = sweep(KS, OMEGAS, file=file, progress=watched(computed), **QUICK)
+    assert computed == GRID[2:]
+    assert numbers(whole) == reference
+
+
+@pytest.fixture(scope="module")
+def content(tmp_path_factory):
+    """A sweep's file: one line of settings, two of points, a third that has none."""
+    file = tmp_path_factory.mktemp("sweep") / "s.jsonl"
+    sweep([2], OMEGAS, file=file, **QUICK)
+    missing = {"k": "3", "omega": "1", "missing": "it “broke”\n"}
+    return file.read_bytes() + json.dumps(missing, ensure_ascii=False).encode() + b"\n"
+
+
+class Stop(Exception):
+    pass
+
+
+@given(cut=st.integers(min_value=0, max_value=10_000))
+@settings(max_examples=25)
+def test_a_torn_end_costs_only_the_point_that_was_being_written(content, tmp_path_factory, cut):
+    file = tmp_path_factory.mktemp("torn") / "s.jsonl"
+    torn = content[: cut % (len(content) + 1)]
+    file.write_bytes(torn)
+    seen = []
+
+    def progress(todo):
+        seen.extend(todo)
+        raise Stop
+
+    with pytest.raises(Stop):
+        sweep([2, 3, 4], OMEGAS, file=file, progress=progress, **QUICK)
+    assert len(seen) == 6 - max(0, torn.count(b"\n") - 1)
+    assert file.read_bytes() == torn[: torn.rfind(b"\n") + 1]
+
+
+def test_points_come_back_bit_for_bit(content, reference, tmp_path):
+    file = tmp_path / "s.jsonl"
+    file.write_bytes(content)
+    found = sweep([2], [1, "1/2"], file=file, progress=watched([]), **QUICK)
+    assert numbers(found) == reference[:2]
+    assert sweep([3], [1], file=file, **QUICK).points[0].missing == "it “broke”\n"
+    assert file.read_bytes() == content
+
+
+def test_another_sweeps_file_is_refused_and_left_alone(content, tmp_path):
+    file = tmp_path / "s.jsonl"
+    for found in (content, b"a,b\n1,2\n"):
+        file.write_bytes(found)
+        with pytest.raises(InputError, match=r"s\.jsonl does not begin with {.*: choose another"):
+            sweep([2], OMEGAS, file=file, stretch=3)
+        assert file.read_bytes() == found
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        '{"k": "3/2"',
+        "[]",
+        '{"k": "3/2"}',
+        '{"k": 2, "omega": 1, "numbers": {}, "sight": 1}',
+        '{"k": "__import__(0)", "omega": 1, "missing": "x"}',
+        '{"k": 2, "omega": 1, "sites": [1, 2], "numbers": {"width": [1]}}',
+    ],
+)
+def test_damage_is_told_by_its_line(content, tmp_path, line):
+    file = tmp_path / "s.jsonl"
+    lines = content.splitlines()
+    lines[2] = line.encode()
+    file.write_bytes(b"\n".join(lines) + b"\n")
+    with pytest.raises(InputError, match=r"s\.jsonl is damaged in line 3$"):
+        sweep([2], OMEGAS, file=file, **QUICK)
+
+
+def test_two_sweeps_do_not_write_one_file(tmp_path):
+    file = tmp_path / "s.jsonl"
+    with FileLock(f"{file}.lock"), pytest.raises(InputError, match=r"another sweep writes it$"):
+        sweep([2], [1], file=file, **QUICK)
+    assert not file.exists()
+
+
+def test_a_full_disk_leaves_what_is_finished(tmp_path, monkeypatch):
+    file, sync = tmp_path / "s.jsonl", os.fsync
+
+    def full(handle):
+        if file.read_bytes().count(b"\n") > 2:
+            raise OSError(28, "No space left on device")
+        sync(handle)
+
+    monkeypatch.setattr(os, "fsync", full)
+    with pytest.raises(OSError, match="No space left"):
+        sweep(KS, OMEGAS, file=file, **QUICK)
+    monkeypatch.undo()
+    sweep(KS, OMEGAS, file=file, **QUICK)
+    lines = file.read_text().splitlines()
+    assert len(lines) == len(set(lines)) == 1 + len(GRID)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("blow", [signal.SIGINT, signal.SIGKILL])
+def test_a_process_that_is_stopped_goes_on(tmp_path, blow):
+    file = tmp_path / "s.jsonl"
+    command = [COMMAND, "sweep", "--k", "3/2", "--omega", "1/2:1:30", "--jobs", "2", "--file", file]
+    with subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    ) as stopped:
+        while not file.exists() or file.read_text().count("\n") < 4:
+            assert stopped.poll() is None
+            time.sleep(0.02)
+        stopped.send_signal(blow)
+        out, err = stopped.communicate(timeout=60)
+    if blow == signal.SIGINT:
+        assert (stopped.returncode, out) == (130, "")
+        assert err.endswith("lwa-validate: interrupted\n")
+        assert "Traceback" not in err
+    before = file.read_bytes()
+    before = before[: before.rfind(b"\n") + 1]
+    again = subprocess.run(
+        [*command, "--format", "json"], capture_output=True, text=True, check=True, timeout=120
+    )
+    assert len(json.loads(again.stdout)["points"]) == 30
+    content = file.read_bytes()
+    assert content.startswith(before)
+    assert content.count(b"\n") == 31
+
+
+# A cluster
+
+
+with_dask = pytest.mark.optional("distributed")
+
+
+def local_cluster(**options):
+    from distributed import LocalCluster
+
+    return LocalCluster(dashboard_address=None, **options)
+
+
+@with_dask
+def test_a_dask_cluster_computes_the_same_bits(reference):
+    with local_cluster(n_workers=1, threads_per_worker=2, processes=False) as local:
+        found = sweep(KS, OMEGAS, stretch=2, address=local.scheduler_address)
+    assert numbers(found) == reference
+
+
+@pytest.mark.slow
+@with_dask
+def test_a_cluster_that_loses_a_worker_loses_no_point(reference, tmp_path):
+    with local_cluster(n_workers=2, threads_per_worker=1) as local:
+        pids = [worker.pid for worker in local.workers.values()]
+
+        def progress(todo):
+            for i, key in enumerate(todo):
+                if i == 1:
+                    os.kill(pids[0], signal.SIGKILL)
+                yield key
+
+        found = sweep(KS, OMEGAS, stretch=2, address=local.scheduler_address, progress=progress)
+    assert numbers(found) == reference
+
+
+@pytest.mark.slow
+@with_dask
+def test_a_scheduler_that_is_killed_is_one_line(tmp_path):
+    file = tmp_path / "s.jsonl"
+    code = """if True:
+        from distributed import LocalCluster
+        with LocalCluster(n_workers=1, processes=False, protocol="tcp://",
+                          dashboard_address=None) as local:
+            print(local.scheduler_address, flush=True)
+            input()
+    """
+    with (
+        subprocess.Popen(
+            [sys.executable, "-c", code], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+        ) as local,
+        subprocess.Popen(
+            [
+                *(COMMAND, "sweep", "--k", "5/4:3:20", "--file", file),
+                *("--cluster", local.stdout.readline().strip()),
+            ],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+        ) as running,
+    ):
+        while not file.exists() and running.poll() is None:
+            time.sleep(0.1)
+        local.kill()
+        out, err = running.communicate(timeout=60)
+    assert (running.returncode, out, err.count("\n")) == (2, "", 1), err
+    assert err.startswith("lwa-validate: the workers are gone before the sweep is done: ")
+
+
+REFUSED = r"^cluster is {}: no Dask scheduler with workers answers; one such as .* is wanted$"
+
+
+@with_dask
+@pytest.mark.parametrize("address", ["nonsense", "foo://x:1", "tcp://127.0.0.1:9"])  # 9: discard
+def test_a_cluster_that_cannot_be_is_refused(capfd, address):
+    with pytest.raises(InputError, match=REFUSED.format(f"'{address}'")), cluster(address, 0.4):
+        pass
+    assert capfd.readouterr() == ("", "")
+
+
+@with_dask
+def test_a_cluster_without_workers_is_refused():
+    with local_cluster(n_workers=0, processes=False) as local:
+        address = local.scheduler_address
+        with pytest.raises(InputError, match=REFUSED.format("'.*'")), cluster(address, 0.4):
+            pass
+
+
+@with_dask
+@pytest.mark.parametrize("answer", [b"", b"HTTP/1.0 400 Bad Request\r\n\r\n" * 9])
+def test_what_is_no_scheduler_is_refused(answer):
+    """A silent server was waited for without end."""
+    with socket.create_server(("127.0.0.1", 0)) as server, ThreadPoolExecutor(1) as threads:
+        server.settimeout(10)
+
+        def serve():
+            caller, _ = server.accept()
+            caller.settimeout(10)
+            with caller:
+                caller.sendall(answer)
+                while not answer and caller.recv(1000):
+                    pass
+
+        serving = threads.submit(serve)
+        address = f"tcp://127.0.0.1:{server.getsockname()[1]}"
+        with pytest.raises(InputError, match=REFUSED.format("'.*'")), cluster(address, 0.4):
+            pass
+        serving.result(timeout=20)
+
+
+def test_without_dask_the_extra_is_named(monkeypatch):
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    with pytest.raises(InputError, match=r"^cluster needs Dask: pip install 'lwa\[cluster\]'$"):
+        sweep([2], [1], address="tcp://127.0.0.1:8786")
+
+
+# The result
+
+
+@pytest.fixture(scope="module")
+def result():
+    """Exact functions in place of measurements, one unsure and one missing."""
+    ks, omegas = (R(3, 2), R(2), R(6)), (R(1, 2), R(1), R(50))
+    points = []
+    for k in ks:
+        for omega in omegas:
+            error = 0.1 if (k, omega) == (2, R(1, 2)) else 1e-9
+            values = map(float, (k + omega, k + 2 * omega, 1 / omega, (1 - omega) / 10))
+            read = {n: Measured(v, v + error) for n, v in zip(QUANTITIES, values, strict=True)}
+            points.append(Point(k, omega, (24, 32), read))
+    points[4] = Point(R(2), R(1), None, {}, "broke")
+    # beyond ω = 6 the paper's closure has no wave at k = 6
+    return Sweep(ks, omegas, 4, tuple(points), theory(ks, omegas))
+
+
+def test_the_maps_are_the_points(result):
+    expected = [[k + omega for omega in (0.5, 1, 50)] for k in (1.5, 2, 6)]
+    expected[1][1] = np.nan
+    np.testing.assert_array_equal(result.map("width"), expected)
+    assert result.map("width", "error")[1, 0] == pytest.approx(0.1)
+
+
+def test_the_text_has_a_table_for_each_k_and_the_reasons(result):
+    shown = result.report().text()
+    title, *blocks = shown.split("\n\n")
+    assert title == "The steady pulse of a struck dimer chain"
+    assert [block.splitlines()[0] for block in blocks[:3]] == ["k = 3/2", "k = 2", "k = 6"]
+    assert [line.split()[0] for line in blocks[0].splitlines()[2:]] == ["1/2", "1", "50"]
+    assert blocks[3] == "k = 2, ω = 1: broke"
+    assert blocks[1].splitlines()[3].split() == ["1", *8 * "-"]
+    width = float(result.theory["linear"]["width"][0, 1])
+    assert percent(width / 2.5 - 1) in blocks[0].splitlines()[3]
+    assert "nan" not in shown
+
+
+def test_the_document_is_json_and_complete(result):
+    found = json.loads(json.dumps(result.report().document(), allow_nan=False))
+    assert (found["stretch"], found["missing"]) == (4, 1)
+    assert [(p["k"], p["omega"]) for p in found["points"][2:4]] == [("3/2", "50"), ("2", "1/2")]
+    for p, point in zip(found["points"], result.points, strict=True):
+        for name in QUANTITIES:
+            number = point.numbers.get(name)
+            assert p[f"{name}_value"] == (None if number is None else number.value)
+            assert p[f"{name}_error_value"] == (None if number is None else number.error)
+        assert (p["missing"] is None) == (p["sites"] == [24, 32])
+    last = found["points"][-1]["theory"]
+    assert last["linear"] == {"width_value": None, "strain_width_value": None, "speed_value": None}
+    assert last["canonical"]["width_value"] == result.theory["canonical"]["width"][2, 2]
+    rows = list(csv.DictReader(io.StringIO(result.report().csv())))
+    for row, p in zip(rows, found["points"], strict=True):
+        assert (row["k"], row["omega"]) == (p["k"], p["omega"])
+        for name in ("width_value", "decay_error_value"):
+            assert row[name] == ("" if p[name] is None else str(p[name]))
+
+
+def test_the_picture_has_maps_or_curves(result):
+    width, _, decay, theory_error = (panel.map for panel in result.report().panels)
+    np.testing.assert_array_equal(width.values, result.map("width"))
+    assert (decay.values[~np.isnan(decay.values)] > 0).all()
+    assert theory_error.low == -theory_error.high
+    (unsure,) = result.report().panels[0].curves
+    assert (unsure.x.tolist(), unsure.y.tolist()) == ([0.5], [2.0])
+    for ks, omegas, step in ((result.ks[:1], result.omegas, 1), (result.ks, result.omegas[:1], 3)):
+        points = result.points[: 3 * step : step]
+        panels = Sweep(ks, omegas, 4, points, theory(ks, omegas)).report().panels
+        assert [len(panel.curves) for panel in panels] == [3, 3, 3, 1]
+        found = [p.numbers["width"].value for p in points]
+        assert panels[0].curves[0].y.tolist() == found
+
+
+def test_the_theory_is_that_of_lwa():
+    ks, omegas = (R(3, 2), R(3)), (R(1, 5), R(1), R(7))
+    found = theory(ks, omegas)
+    for i, k in enumerate(ks):
+        for j, omega in enumerate(omegas):
+            if (k, omega) == (3, 7):
+                continue
+            wave = theory_at(k, omega)
+            linear = {name: values[i, j] for name, values in found["linear"].items()}
+            expected = {
+                "width": float(wave.fwhm("force")),
+                "strain_width": float(wave.fwhm("strain")),
+                "speed": Compacton(wave, 1.0).speed,
+            }
+            assert linear == pytest.approx(expected, rel=1e-14)
+    for name, values in found["linear"].items():
+        assert np.isnan(values[1, 2]), name  # G + H + I < 0: no wave
+        assert values[:, 1] == pytest.approx(found["canonical"][name][:, 1], rel=1e-14)
+    # the canonical wave does not ask which mass is called m1
+    swapped = theory(ks, [1 / omega for omega in omegas])["canonical"]
+    for name, power in (("width", 0), ("strain_width", 0), ("speed", 0.5)):
+        scale = np.array([float(omega) for omega in omegas]) ** power
+        assert found["canonical"][name] * scale == pytest.approx(swapped[name], rel=1e-14)
+
+
+# The command
+
+
+def test_the_command(capsys, tmp_path):
+    file, picture = tmp_path / "s.jsonl", tmp_path / "s.svg"
+    options = ("--k", "3/2", "--file", str(file), "--stretch", "3")
+    status, out, err = ended(
+        capsys, cli.main, "sweep", *options, "--omega", "0.5:1:2,3/4", "--plot", str(picture),
+        "--format", "json",
+    )  # fmt: skip
+    assert (status, err) == (0, "")
+    half, middle, one = json.loads(out)["points"]
+    assert (half["omega"], middle["omega"], one["omega"]) == ("1/2", "3/4", "1")
+    assert abs(one["width_value"] - 1.411928) <= one["width_error_value"] + 5e-7
+    assert half["decay_value"] > 1000 * abs(one["decay_value"])
+    assert picture.read_text().startswith("<?xml")
+    before = file.read_bytes()
+    status, out, err = ended(capsys, cli.main, "sweep", *options, "--omega", "1")
+    assert (status, err, file.read_bytes()) == (0, "", before)
+    assert "\n\nk = 3/2\nω = m2/m1 " in out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("--k", "1"), "k is 1: one from 21/20 to 6 is wanted"),
+        (("--k", "m"), "k is m: one from 21/20 to 6 is wanted"),
+        (("--k", "1:2"), "k is '1:2': a range is start:stop:count"),
+        (("--k", "1:2:301"), "the count of k is 301: one of 2 … 300 is wanted"),
+        (("--omega", "__import__('os')"), "omega is "),
+        (("--stretch", "0"), "stretch is 0: one of 2 … 100 is wanted"),
+        (("--file", "s.txt"), "file is s.txt: a file ending in .jsonl is wanted"),
+        (("--jobs", "0", "--file", "s.jsonl"), "jobs is 0: one of 1 … 1024 is wanted"),
+        (("--jobs", "2", "--cluster", "tcp://a:1"), "jobs is 2: a cluster has workers of its own"),
+    ],
+    ids=str,
+)
+def test_bad_input_is_one_line_and_leaves_nothing(
+    capsys, monkeypatch, tmp_path, arguments, message
+):
+    monkeypatch.chdir(tmp_path)
+    status, out, err = ended(capsys, cli.main, "sweep", *arguments)
+    assert (status, out, err.count("\n")) == (2, "", 1)
+    assert err.startswith(f"lwa-validate: {message}")
+    assert list(tmp_path.iterdir()) == []
+
+
+@given(
+    start=st.fractions(2, 3, max_denominator=50),
+    stop=st.fractions(3, 5, max_denominator=50),
+    count=st.integers(2, 40),
+)
+@settings(max_examples=10)
+def test_a_range_is_exact_and_equidistant(start, stop, count):
+    seen = []
+
+    def progress(todo):
+        seen.extend(k for k, _ in todo)
+        raise Stop
+
+    with pytest.raises(Stop):
+        sweep(f"{start}:{stop}:{count},11/2", [1], progress=progress, **QUICK)
+    assert (seen[0], seen[-2], seen[-1]) == (R(start), R(stop), R(11, 2))
+    step = (R(stop) - R(start)) / (count - 1)
+    assert {b - a for a, b in pairwise(seen[:-1])} <= {step}
+
+
+def test_workers_that_are_gone_are_told():
+    with pytest.raises(SweepError, match=r"^the workers are gone before"):
+        sweep(KS, OMEGAS, progress=stopping(1, BrokenExecutor("killed")), **QUICK)

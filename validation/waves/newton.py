@@ -1,0 +1,268 @@
+"""Traveling waves of the lattice in Fourier coefficients, solved by Newton's method.
+
+Beads of masses m1 and m2 alternate at distance 1, contacts push with F = r_+^k (A = D = 1). In a
+wave of speed c all quantities depend on ξ = x - ct alone. With a(ξ) the strain of the contacts
+behind beads m1, b(ξ) the strain of the other contacts, F_a = a_+^k and F_b = b_+^k, the equations
+of motion are
+
+    c² a'' = -Σ F_a(ξ) + F_b(ξ-1)/m1 + F_b(ξ+1)/m2,      Σ = 1/m1 + 1/m2,
+
+and the same for b with a ↔ b, m1 ↔ m2. Sought are mirror symmetric waves, b(ξ) = a(-ξ). Then
+a = e + o with e even and o odd, likewise F_a = E + O, and the Fourier coefficients (e, E of cos qξ;
+o, O of sin qξ) satisfy, with Δ = 1/m2 - 1/m1,
+
+    c² q² e = Σ (1 - cos q) E + Δ sin q O,      c² q² o = Δ sin q E + Σ (1 + cos q) O.     (*)
+
+Integrated twice like this the problem is a fixed point of smoothing operators, and Newton's method
+converges quadratically. Profiles are trigonometric polynomials on |ξ| ≤ L, spectrally accurate.
+
+**The tail.** At q → 0 the second line of (*) has a pole: forces that end leave o = ±T behind, with
+
+    c² T = Δ ∫_0^∞ E dξ + 2Σ ∫_0^∞ ξ O dξ.
+
+T is 0 for a solitary wave. `Problem.wave` can impose T = 0 with one more unknown: m2, or at given
+masses the size of a kick ξ e^{-2ξ²} in the odd force. The size of the kick depends smoothly on
+m2/m1 and is 0 exactly where T is 0 without a kick: its changes of sign are the special mass ratios.
+
+**Under a load.** On a background strain p0, a and b are the additional strains, r → 0 far away, and
+F = (p0 + r)_+^k - p0^k; (*) stays.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from copy import copy
+
+import numpy as np
+import scipy
+from numpy.typing import NDArray
+
+from lwa.base.arrays import Array
+
+MOST_STEPS = 25  # of Newton's method
+FEWEST = 40  # points on 0 … L
+_FIRST, _FARTHEST = 0.01, 0.2  # arclength of a step along a branch, first and largest
+_STRAIGHT = 0.9  # cosine of the angle between two steps, at least
+_PLACES = 300  # steps along a branch, at most
+
+
+def widening(masses: tuple[float, float]) -> float:
+    """Length of the canonical wave over the length in the uniform chain, √(12 I/D²)."""
+    m1, m2 = masses
+    return 2 * math.sqrt(m1 * m1 - m1 * m2 + m2 * m2) / (m1 + m2)
+
+
+def ample_half_period(masses: tuple[float, float], k: float) -> float:
+    """Half period L at which a uniform chain's pulse has ended; a dimer's has at 0.6 L."""
+    # Near k = 1, log r = -3 (k-1) ξ²; above, r falls like exp(-k^ξ). Twice 1e-8 makes 1e-16.
+    length = 1 + 3.7 / math.sqrt(k - 1) if k < 2 else 1 + 3.7 / math.log2(k) ** 0.5
+    return length if masses[0] == masses[1] else max(8.0, 1.15 * length * widening(masses))
+
+
+def enough(masses: tuple[float, float], k: float, half_period: float) -> int:
+    """Number of points on 0 … L that resolve the wave to rounding."""
+    # Per site: the pulse's Fourier width, its steeper flanks at large k, the light beads' rattling.
+    beads = math.sqrt(sum(masses) / min(masses) - 1)
+    dense = 3 + 9 * math.sqrt(k - 1) + 7 * max(k - 2, 0) + 1.5 * beads
+    return max(FEWEST, math.ceil(dense * half_period))
+
+
+def rise(strain: Array, k: float, p0: float) -> Array:
+    """(p0 + r)_+^k - p0^k, without cancellation at small r."""
+    if not p0:
+        return np.asarray(np.maximum(strain, 0) ** k)
+    with np.errstate(divide="ignore"):  # an open contact
+        return np.asarray(p0**k * np.expm1(k * np.log1p(np.maximum(strain / p0, -1))))
+
+
+def respond(
+    force: NDArray[np.complex128], inverse: tuple[float, float], half_period: float
+) -> NDArray[np.complex128]:
+    """Coefficients of c² a from those of F_a by (*), the mean set to 0.
+
+    Coefficients are those of e^{iqξ}, q = 0 … πn/L; ``inverse`` is (1/m1, 1/m2).
+    """
+    q = np.pi * np.arange(len(force)) / half_period
+    mirrored = inverse[0] * np.expm1(-1j * q) + inverse[1] * np.expm1(1j * q)
+    strain = 2j * sum(inverse) * force.imag - mirrored * force.conj()
+    strain[0] = 0
+    return np.asarray(strain / np.maximum(q, q[1]) ** 2)
+
+
+def coefficients(force: Array) -> tuple[Array, Array]:
+    """Coefficients of E in cos qξ and of O in sin qξ, from F_a on a `circle`."""
+    n = len(force) // 2
+    found = scipy.fft.rfft(force) / n
+    found[[0, n]] /= 2
+    return found.real, -found.imag
+
+
+def circle(half_period: float, n: int) -> Array:
+    """ξ at 2n points of a period: 0 … L, then from -L to 0."""
+    return np.asarray(half_period / n * np.append(np.arange(n + 1), np.arange(1 - n, 0)))
+
+
+class Problem:
+    """The equations F_a = rise(a[F_a]) on a `circle`, with F_a(0) = 1 - p0^k to fix c².
+
+    masses, k : (m1, m2) and the exponent. half_period, points : L and the number of points on
+    0 … L, by default ample. p0 : background strain.
+
+    The unknowns are the ``count`` forces (for equal masses, where o = 0, those at 0 … L) and c².
+    """
+
+    def __init__(
+        self,
+        masses: tuple[float, float],
+        k: float,
+        half_period: float | None = None,
+        points: int | None = None,
+        p0: float = 0.0,
+    ) -> None:
+        self.k, self.p0 = k, p0
+        self.L = half_period or ample_half_period(masses, k)
+        self.n = points or enough(masses, k, self.L)
+        self.height = -math.expm1(k * math.log(p0)) if p0 else 1.0
+        self.uniform = masses[0] == masses[1]
+        self.count = self.n + 1 if self.uniform else 2 * self.n
+        self.xi = circle(self.L, self.n)[: self.count]
+        self.inverse = 1 / masses[0], 1 / masses[1]
+
+    def forces(self, z: Array) -> Array:
+        """F_a on the whole circle."""
+        return np.append(z, z[self.n - 1 : 0 : -1]) if self.uniform else z
+
+    def strains(self, z: Array, inverse: tuple[float, float]) -> Array:
+        """c² a at the unknowns' places; 0 at L."""
+        force = scipy.fft.rfft(self.forces(z))
+        force = np.asarray(force.real if self.uniform else force, complex)  # no rounding over q²
+        a = scipy.fft.irfft(respond(force, inverse, self.L), 2 * self.n)
+        return np.asarray(a - a[self.n])[: self.count]
+
+    def responses(self, at: NDArray[np.int_], inverse: tuple[float, float]) -> Array:
+        """Matrix of `strains` between the places ``at`` of the grid."""
+        n = self.n
+        plus, minus = (respond(np.full(n + 1, f, complex), inverse, self.L) for f in (1, 1j))
+        minus = 1j * minus
+        # Strain due to a force at one place and due to a force at its mirror image, as functions
+        # of the difference and of the sum of two places; two periods, as the sum exceeds one.
+        both = (plus, 0 * plus) if self.uniform else ((plus - minus) / 2, (plus + minus) / 2)
+        near, mirrored = (np.tile(scipy.fft.irfft(row, 2 * n), 2) for row in both)
+
+        def to(j: NDArray[np.int_]) -> Array:
+            row = near[n - j] + mirrored[n + j]
+            return np.asarray(near[at[:, None] - j] + mirrored[at[:, None] + j] - row)
+
+        if not self.uniform:
+            return to(at)
+        return np.asarray((to(at) + to(-at)) * np.where(at % n == 0, 0.5, 1.0))
+
+    def wave(
+        self, z: Array, c2: float, unknown: str = "", along: Array | None = None
+    ) -> tuple[Array, float, float]:
+        """Forces, c² and the last unknown of the wave near ``z``, ``c2``.
+
+        unknown : "mass" (1/m2) or "kick" for T = 0; "k" for a step along a branch, in the plane
+            through the start normal to ``along``; "" for none, and the last number is c².
+
+        Raises `numpy.linalg.LinAlgError` if Newton's method does not converge.
+        """
+        last = {"": (), "mass": (self.inverse[1],), "kick": (0.0,), "k": (self.k,)}[unknown]
+        size = np.append(np.full(self.count, 2 * self.height), [abs(x) or 1.0 for x in (c2, *last)])
+        start = np.append(z[: self.count] * (self.height / z[0]), (c2, *last))
+        x = newton(lambda x: self._step(x, unknown, along, start), start, size)
+        return x[: self.count], float(x[self.count]), float(x[-1])
+
+    def _step(self, x: Array, unknown: str, along: Array | None, start: Array) -> Array:
+        """Newton step at the unknowns x: the residual, solved with its derivatives."""
+        count, xi = self.count, self.xi
+        z, c2 = x[:count], x[count]
+        inverse = self.inverse[0], x[-1] if unknown == "mass" else self.inverse[1]
+        k = x[-1] if unknown == "k" else self.k
+        a = self.strains(z, inverse) / c2
+        slope = k * np.maximum(self.p0 + a, 0) ** (k - 1) / c2
+        fault = z - rise(a, k, self.p0)
+        columns, rows, rest = [slope * a], [np.eye(1, count)[0]], [z[0] - self.height]
+        corner = np.zeros((1 + bool(unknown),) * 2)
+        kick = xi * np.exp(-2 * xi**2) if unknown == "kick" else 0 * xi
+        if along is not None:
+            columns.append(-scipy.special.xlogy(np.maximum(a, 0) ** k, np.maximum(a, 0)))
+            rows, rest = [*rows, along[:count]], [*rest, along @ (x - start)]
+            corner[1] = along[count:]
+        elif unknown:  # c² T over Δξ, and its derivative by 1/m2
+            one, two = (self.L / self.n * (xi * (xi < self.L) + s / 2) for s in (-1, 1))
+            tail = inverse[0] * one + inverse[1] * two
+            rows, rest = [*rows, tail], [*rest, tail @ z]
+            if unknown == "mass":
+                columns.append(-slope * self.strains(z, (0, 1)))
+                corner[1, 1] = two @ z
+            else:
+                fault -= x[-1] * kick
+                columns.append(-kick)
+        # The force of an open contact without a kick is known: it leaves the linear system.
+        on = (slope != 0) | (kick != 0)
+        known = np.where(on, 0, fault)
+        right = (fault + slope * self.strains(known, inverse))[on]
+        at = np.flatnonzero(on)
+        matrix = np.eye(len(at)) - slope[at][:, None] * self.responses(at, inverse)
+        border = np.array(rows)
+        found = np.linalg.solve(
+            np.block([[matrix, np.array(columns).T[on]], [border[:, on], corner]]),
+            np.append(right, rest - border @ known),
+        )
+        known[on] = found[: len(at)]
+        return np.append(known, found[len(at) :])
+
+    def followed(self, z: Array, c2: float, k: float) -> tuple[Array, float]:
+        """Forces and approximate c² at another k, on the branch of the wave ``z``, ``c2``.
+
+        Pseudo-arclength continuation, which passes turns of the branch: each step ends in a plane
+        normal to the difference of the two waves before.
+
+        Raises `numpy.linalg.LinAlgError` if the branch is lost or does not reach k.
+        """
+        size = np.append(np.full(self.count, 1 / self.count), (1, 1))
+        here = np.append(z, (c2, self.k))
+        along, step = np.append(0 * here[:-1], math.copysign(1, k - self.k)), _FIRST
+        for place in range(_PLACES):
+            near, ahead = copy(self), here + step * along
+            near.k = ahead[-1]
+            try:
+                there = np.hstack(near.wave(ahead[:-2], ahead[-2], "k", size * along))
+                change = there - here
+                turn = change / math.sqrt(change @ (size * change))
+            except np.linalg.LinAlgError:
+                turn = -along
+            if place and turn @ (size * along) < _STRAIGHT:
+                step /= 2
+                if step < _FIRST / 1e4:
+                    break
+                continue
+            if (there[-1] - k) * (here[-1] - k) <= 0:
+                x = here + change * (k - here[-1]) / change[-1]
+                return x[:-2], float(x[-2])
+            here, along, step = there, turn, min(1.5 * step, _FARTHEST)
+        raise np.linalg.LinAlgError("the branch is lost")
+
+
+@np.errstate(all="ignore")  # an overflow or c² < 0 does not converge
+def newton(change: Callable[[Array], Array], x: Array, sizes: Array) -> Array:
+    """Root near x by damped Newton steps.
+
+    change : the full Newton step at x, to be subtracted. sizes : typical sizes of the unknowns.
+
+    Raises `numpy.linalg.LinAlgError` if the iteration does not converge.
+    """
+    before = math.inf
+    for _ in range(MOST_STEPS):
+        step = change(x)
+        size = float(np.max(np.abs(step) / sizes))
+        if not math.isfinite(size):
+            break
+        x = x - step * (min(1.0, 0.3 / size) if size > 0 else 1.0)
+        # Rounding stops the fall of the steps.
+        if size < 1e-12 or (size < 1e-9 and size > before / 4):
+            return x
+        before = size
+    raise np.linalg.LinAlgError("no convergence")

@@ -1,0 +1,144 @@
+"""Starts of Newton's method: the theory's wave, a near wave, and the pulse of a struck chain.
+
+A start is the forces F_a on a grid and c², scaled to peak force 1 (`validation.waves.newton`).
+
+**The struck chain** (`validation.pulses.steady`, masses 1, ω). At one of its last places the
+strains a(ξ), b(ξ) of the two contacts of a cell are recorded and scaled to contact force 1. The
+pulse leaves light beads in motion behind it and meets none, so that b(ξ) is not quite a(-ξ). The
+symmetric part (a(ξ) + b(-ξ))/2 has half of the tail on either side: to first order in the tail it
+is a symmetric wave of the lattice. ξ = 0 is the mean of the two contacts' centers of
+F - F_max/4^k, restricted to positive values. As k → 1 the pulse needs ever longer to leave its
+wake; the distance between two places is `FARTHEST` at most.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
+from typing import Any
+
+import numpy as np
+import scipy
+from numpy.typing import ArrayLike
+
+from lwa.base.arrays import Array
+from lwa.wave.quadrature import NumericBackground
+from validation.pulses.steady import PLACES, STRETCH, Chain, cells_apart
+from validation.waves import newton
+from validation.waves.profile import Profile
+
+FARTHEST = 60  # cells from one place to the next
+TOLERANCE = 1e-7  # rtol of the struck chain
+_STEP = 0.01  # grid of the struck chain's profile, in ξ
+_LONG = 2.0  # ample half periods on which the profile is kept
+
+
+def long_wave(masses: tuple[float, float], k: float, xi: Array) -> tuple[Array, float]:
+    """The theory's wave at leading order.
+
+    The force is cos^{2k/(k-1)}(βξ) and c² = 4/((k+1)(m1+m2)). The contacts of a cell are
+    (m2-m1)/(m1+m2) out of step, so that both beads of a cell move alike.
+    """
+    beta = (k - 1) * math.sqrt(6 / (k * (k + 1))) / newton.widening(masses)
+    phase = beta * (xi - (masses[1] - masses[0]) / sum(masses) / 2)
+    force = np.cos(np.clip(phase, -np.pi / 2, np.pi / 2)) ** (2 * k / (k - 1))
+    return _at_zero(force, 4 / ((k + 1) * sum(masses)), k)
+
+
+def near(wave: Profile, masses: tuple[float, float], k: float, xi: Array) -> tuple[Array, float]:
+    """A wave found for near masses and a near k."""
+    return _at_zero(wave.force(xi), wave.c2 * sum(wave.masses) / sum(masses), k)
+
+
+def under_load(theory: NumericBackground, k: float, p0: float, xi: Array) -> tuple[Array, float]:
+    """The theory's wave of equal masses on a background strain p0, of peak strain 1."""
+    B = 1 - p0
+    force = newton.rise(theory.profile(xi, p0, B), k, p0)
+    return force, float(k * theory.speed_squared(p0, B))
+
+
+def _at_zero(force: Array, c2: float, k: float) -> tuple[Array, float]:
+    """c² of the multiple of the wave with force 1 at ξ = 0; Newton's method scales the forces."""
+    return force, c2 * float(force[0]) ** ((1 - k) / k)
+
+
+@dataclass(frozen=True, eq=False)
+class StruckPulse(Profile):
+    """The symmetric part of a struck chain's pulse at contact force 1; masses 1, ω.
+
+    half_period : the ample one of `validation.waves.newton`.
+    xi, front : a(ξ), made symmetric, on a wider grid.
+    widths : FWHM of force and strain at a contact, means over the two recorded contacts.
+    """
+
+    xi: Array
+    front: Array
+    widths: tuple[float, float]
+
+    @property
+    def samples(self) -> int:
+        """Number of points on 0 … L."""
+        return math.ceil(self.half_period / _STEP)
+
+    @property
+    def tail(self) -> float:
+        """Largest |o| outside the pulse, half of the motion left in the chain."""
+        return self.rattle(self.pulse)
+
+    @cached_property
+    def _strain(self) -> Any:
+        return scipy.interpolate.CubicSpline(self.xi, self.front)
+
+    @cached_property
+    def _impulse(self) -> tuple[Any, Any]:
+        """Integrals over ξ of the net force on m1 and on m2."""
+        pushes = (self.force(self.xi - 0.5, 1 - i) - self.force(self.xi + 0.5, i) for i in (0, 1))
+        one, two = (scipy.interpolate.CubicSpline(self.xi, push) for push in pushes)
+        return one.antiderivative(), two.antiderivative()
+
+    def _front(self, xi: Array) -> Array:
+        return np.asarray(self._strain(np.clip(xi, self.xi[0], self.xi[-1])))
+
+    def velocity(self, xi: ArrayLike, bead: int = 0) -> Array:
+        """Velocity of beads m1 or m2, by the net force ahead of ξ; 0 ahead of the pulse."""
+        impulse = self._impulse[bead % 2]
+        left = impulse(self.xi[-1]) - impulse(np.asarray(xi, float))
+        return np.asarray(left / (self.masses[bead % 2] * self.c))
+
+
+@lru_cache(maxsize=64)
+def struck_pulse(k: float, omega: float) -> StruckPulse:
+    """The pulse of a chain of masses 1, ω whose first bead, a heavy one, is struck.
+
+    Raises `lwa.InputError` if the pulse does not reach the last place.
+    """
+    if omega > 1:  # the mirror image, in units of the light bead's mass
+        other = struck_pulse(k, 1 / omega)
+        front = other.front[::-1].copy()
+        return replace(other, masses=(1.0, omega), c2=other.c2 / omega, front=front)
+    chain = Chain(k, omega, 2 * min(cells_apart(k, STRETCH), FARTHEST))
+    record = chain.passed(chain.crossing, TOLERANCE)
+    place = PLACES - 3  # the tail behind the pulse is recorded there, too
+    time, cell = record.run.time, slice(2 * place, 2 * place + 2)
+    centers, peaks = [], []
+    for part, whole in zip(record.parts[cell], record.run.contact_force[cell], strict=True):
+        force = whole[part]
+        # A leading pulse ends at a quarter of its peak strain: the same cut on both sides.
+        weights = np.maximum(force - force.max() / 4**k, 0)
+        centers.append(np.average(time[part], weights=weights))
+        peaks.append(float(force.max()))
+    middle, peak = float(np.mean(centers)), math.sqrt(math.prod(peaks))
+    width, strain_width, c, _ = chain.numbers(record)[:, place - 1].tolist()
+    here = c * peak ** ((k - 1) / (2 * k))
+    ample = newton.ample_half_period((1.0, omega), k)
+    half = np.arange(0, _LONG * ample, _STEP)
+    xi = np.append(-half[:0:-1], half)
+    a, b = (
+        scipy.interpolate.CubicSpline(time, strain)(
+            np.clip(middle + (site - xi) / here, 0, time[-1])
+        )
+        for strain, site in zip(record.run.compression[cell], (-0.5, 0.5), strict=True)
+    )
+    front = (a + b[::-1]) / 2 / peak ** (1 / k)
+    return StruckPulse((1.0, omega), k, c * c, ample, xi, front, (width, strain_width))
