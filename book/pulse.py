@@ -33,13 +33,14 @@ class StruckPulse:
 def struck_pulse(k: float, omega: Any, near: int = 40, far: int = 80) -> StruckPulse:
     """Strike a chain and measure its leading pulse at the contacts ``near`` and ``far``."""
     contacts = (near, near + 1, far, far + 1)
+    heavy = max(float(omega), 1.0)  # a light bead strikes heavy ones: a slow, weak pulse
     scene = Scene.of_cell(
         Dimer(1, omega, spacing=1),
         far // 2 + 20,
         k,
         velocities=(1.0,),
         contact_sensors=contacts,
-        duration=1.45 * far + 30,
+        duration=(1.45 * far + 30) * heavy**0.7,
         samples=40 * far,
     )
     run = simulate(scene, rtol=1e-8)

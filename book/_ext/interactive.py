@@ -27,12 +27,12 @@ def formulas() -> str:
     chain = canonical_wave(Cell([m1, m2], stiffnesses=[A, A], spacing=D), k)
     pulse, loaded = chain.at_force(F), chain.at_force(F, precompression=F_0)
     strain = canonical_wave(Cell([1]), k).on_background(p_0)
-    E1, nu1, R1, E2, nu2, R2 = sp.symbols("E1 nu1 R1 E2 nu2 R2", positive=True)
-    one, two = (Sphere(1, R, Material(E=E, nu=nu)) for E, nu, R in ((E1, nu1, R1), (E2, nu2, R2)))
+    solids = sp.symbols("E1 nu1 R1 E2 nu2 R2", positive=True)
+    one, two = (Sphere(1, R, Material(E=E, nu=nu)) for E, nu, R in (solids[:3], solids[3:]))
     values = (k, A, m1, m2, D)
     more = (
         Function("dispersion_I", "I of the canonical wave equation", (m1, m2, wave.D), wave.I),
-        Function("hertz_A", "A of two spheres", (E1, nu1, R1, E2, nu2, R2), hertz.stiffness(one, two)),
+        Function("hertz_A", "A of two spheres", solids, hertz.stiffness(one, two)),
         Function("pulse_speed", "dx/dt at the peak force F", (F, *values), pulse.speed),
         Function("pulse_time", "FWHM of F in time", (F, *values), pulse.fwhm("force", "time")),
         Function("sound_speed", "dx/dt of small waves", (F_0, *values), loaded.sound_speed),
@@ -64,9 +64,7 @@ def turn(app: Sphinx, page: str, template: str, context: dict, doctree: object) 
     body = context.get("body", "")
     if 'class="lwa-' in body:
         root = context["pathto"]("_static/chain.js", resource=True)
-        context["body"] = (
-            f'{body}<script>{formulas()}</script><script src="{root}"></script>'
-        )
+        context["body"] = f'{body}<script>{formulas()}</script><script src="{root}"></script>'
 
 
 def setup(app: Sphinx) -> dict[str, bool]:
