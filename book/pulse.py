@@ -34,7 +34,9 @@ class StruckPulse:
 def struck_pulse(k: float, omega: Any, near: int = 40, far: int = 80) -> StruckPulse:
     """Strike a chain and measure its leading pulse at the contacts ``near`` and ``far``."""
     contacts = (near, near + 1, far, far + 1)
-    heavy = max(float(Fraction(str(omega))), 1.0)  # a light bead strikes heavy ones: a slow, weak pulse
+    heavy = max(
+        float(Fraction(str(omega))), 1.0
+    )  # a light bead strikes heavy ones: a slow, weak pulse
     scene = Scene.of_cell(
         Dimer(1, omega, spacing=1),
         far // 2 + 20,
