@@ -27,6 +27,7 @@ Source = TypeVar("Source")
 FEWEST = 8  # samples above half the peak; a record with fewer is too coarse
 _POINTS = 4  # grid points in each smooth interval
 _DEGREE = 10  # of the interpolant about a peak, over half an interval: error about 1e-16
+_NOISE = 1e-6  # of the largest |signal|: less may be rounding, or a spline's overshoot
 _PARTLY = "the pulse is not wholly in the record:"
 
 
@@ -161,16 +162,42 @@ def first_pulse(signal: Signal) -> Pulse:
     return grid.pulse(0, stop + int(np.argmax(again)))
 
 
-def leading_pulse(force: Signal, k: float) -> Pulse:
-    """Measure the leading pulse of a contact force F = A δ^k.
+def leading_pulse(signal: Signal, k: float = 1.0, share: float = 0.5) -> Pulse:
+    """Measure the leading pulse of a contact's compression δ, or of its force F = A δ^k.
 
     The pulse ends where the compression first falls to a quarter of its highest value so far.
+
+    k : exponent of the signal in terms of the compression. share : fraction of the peak that the
+        signal passes at the rise and fall of the measured pulse.
     """
-    grid, quarter = _Grid(force), 0.25**k
+    return leading_pulses(signal, k, (share,))[0]
+
+
+def leading_pulses(signal: Signal, k: float, shares: Sequence[float]) -> list[Pulse]:
+    """The same `leading_pulse` with its rise and fall at several fractions of the peak."""
+    grid, quarter = _Grid(signal), 0.25**k
     start = int(np.argmax(grid.f > quarter * grid.f.max()))
     relieved = grid.f[start:] < quarter * np.maximum.accumulate(grid.f[start:])
     stop = start + int(np.argmax(relieved)) + 1 if relieved.any() else len(grid.f)
-    return grid.pulse(0, stop)
+    return grid.pulses(0, stop, shares)
+
+
+def first_passage(signal: Signal, level: float) -> float:
+    """First time at which a signal rises above a level; `MeasureError` if it never does."""
+    grid = _Grid(signal)
+    above = int(np.argmax(grid.f > level))
+    if not above:
+        raise MeasureError(f"the signal does not rise above {level:g} within the record")
+    return grid.crossing(above - 1, level)
+
+
+def integral(signal: Signal, low: float, high: float) -> float:
+    """Integral of a signal over time, by Gauss's quadrature on each smooth interval."""
+    inside = signal.times[(signal.times > low) & (signal.times < high)]
+    edges = np.concatenate(([low], inside, [high]))
+    nodes, weights = np.polynomial.legendre.leggauss(_DEGREE)
+    half = np.diff(edges) / 2
+    return float(half @ (weights @ signal(edges[:-1] + half * (nodes[:, None] + 1))))
 
 
 def all_pulses(signal: Signal, least: float = 0.01) -> list[Pulse]:
@@ -201,7 +228,7 @@ class _Grid:
         self.signal, self.t = signal, np.append(between.ravel(), times[-1])
         f = signal(self.t)
         self.f = np.where(np.isnan(f), -np.inf, f)
-        if not self.f.max() > 0:
+        if not self.f.max() > _NOISE * np.nanmax(np.abs(f), initial=0.0):
             raise MeasureError(
                 "not followed: a window had left the sensor"
                 if np.isnan(f).any()
@@ -210,13 +237,22 @@ class _Grid:
 
     def pulse(self, start: int, stop: int) -> Pulse:
         """The highest pulse among the grid points from ``start`` on and before ``stop``."""
+        return self.pulses(start, stop, (0.5,))[0]
+
+    def pulses(self, start: int, stop: int, shares: Sequence[float]) -> list[Pulse]:
+        """The same pulse with its rise and fall at several fractions of the peak."""
         t, f = self.t, self.f[:stop]
         top = start + int(np.argmax(f[start:]))
         if top in (0, len(self.f) - 1):
             end = "end" if top else "start"
             raise MeasureError(f"{_PARTLY} it peaks at the {end} of the record")
         arrival, peak = self._crest(t[top - 1], t[top + 1])
-        below = np.flatnonzero(f <= peak / 2)
+        flanks = (self._flanks(f, top, share * peak) for share in shares)
+        return [Pulse(arrival, peak, *sides) for sides in flanks]
+
+    def _flanks(self, f: Array, top: int, level: float) -> tuple[float, float]:
+        """Times next to the grid point ``top`` at which the signal passes a level."""
+        below = np.flatnonzero(f <= level)
         place = int(np.searchsorted(below, top))
         for side, there in (("front", place > 0), ("back", place < len(below))):
             if not there:
@@ -224,14 +260,16 @@ class _Grid:
         before, after = int(below[place - 1]), int(below[place])
         if np.isinf(f[[before, after]]).any():
             raise MeasureError("not followed: a window had left the sensor before the pulse passed")
+        return self.crossing(before, level), self.crossing(after - 1, level)
 
-        def height(time: float) -> float:
-            return float(self.signal(time)) / peak - 0.5
+    def crossing(self, i: int, level: float) -> float:
+        """Time between grid points i and i+1 at which the signal passes a level."""
+        low, step = self.t[i], self.t[i + 1] - self.t[i]
 
-        def root(low: float, high: float) -> float:
-            return float(scipy.optimize.brentq(height, low, high, xtol=5e-324, rtol=1e-15))
+        def above(part: float) -> float:
+            return float(self.signal(low + part * step)) / level - 1
 
-        return Pulse(arrival, peak, root(t[before], t[before + 1]), root(t[after - 1], t[after]))
+        return float(low + scipy.optimize.brentq(above, 0.0, 1.0, xtol=1e-12) * step)
 
     def _crest(self, low: float, high: float) -> tuple[float, float]:
         """Time and value of the maximum between two times."""

@@ -16,13 +16,20 @@ from typing import Any
 
 import numpy as np
 import sympy as sp
-from scipy.interpolate import CubicSpline
 
 from lwa import Dimer, TravelingWave, homogenize
 from lwa.base.progress import Progress
 from validation.lattice.run import Run
 from validation.lattice.simulate import simulate
-from validation.pulses.pulse import Measured, compared, derived, exponent, measure, speed
+from validation.pulses.pulse import (
+    Measured,
+    compared,
+    derived,
+    exponent,
+    highest_pulse,
+    integral,
+    speed,
+)
 from validation.report.command import study
 from validation.report.panel import Curve, Panel
 from validation.report.result import Report
@@ -157,7 +164,6 @@ def _run(compacton: Compacton, start: int, places: Sequence[int]) -> Run:
         compacton.velocity(bead),
         contact_sensors=[place + side for place in places for side in (0, 1)],
         duration=(2 * cells - start - compacton.support / 4) / compacton.speed,
-        samples=80 * cells,
     )
     # Light beads set the step, far below what the pulse needs at the same tolerance.
     rtol, atol = (1e-9, 1e-9) if len(set(wave.cell.masses)) == 1 else (1e-7, 1e-6)
@@ -169,14 +175,15 @@ def _numbers(run: Run, compacton: Compacton, place: int) -> dict[str, float]:
     unit_support = compacton.support / compacton.arch_integral(compacton.k * compacton.m)
     width, strain_width, support, _ = QUANTITIES
     sides = []
-    for here in (2 * place, 2 * place + 1):  # rows of the cell's contacts, next to the last cell's
-        before, pulse = (measure(run.time, run.contact_force[row]) for row in (here - 2, here))
-        strain = measure(run.time, run.compression[here])
-        sites = run.scene.contact_sensors[here] - run.scene.contact_sensors[here - 2]
-        V = speed(before, pulse, sites)
+    contacts = run.scene.contact_sensors
+    for row in (2 * place, 2 * place + 1):  # the cell's contacts, next to the last cell's
+        here, last = contacts[row], contacts[row - 2]
+        force = run.signal("contact", here)
+        pulse, before = highest_pulse(force), highest_pulse(run.signal("contact", last))
+        strain = highest_pulse(run.signal("contact", here, "compression"))
+        V = speed(before, pulse, here - last)
         reach = 0.6 * compacton.support / V
-        force = CubicSpline(run.time, run.contact_force[here])
-        push = float(force.integrate(pulse.arrival - reach, pulse.arrival + reach))
+        push = integral(force, pulse.arrival - reach, pulse.arrival + reach)
         sides.append({
             width: pulse.fwhm * V, strain_width: strain.fwhm * V,
             support: unit_support * push * V / pulse.peak,
