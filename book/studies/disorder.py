@@ -38,7 +38,7 @@ from validation.report.table import Column, Finding, Table
 from validation.scenes.chains import struck
 from validation.scenes.checks import between, integer
 from validation.scenes.scene import Scene
-from validation.waves.theory import Compacton, theory_at
+from validation.waves.theory import of_momentum, theory_at
 
 PLACES = 10  # contacts at which the pulse is measured, equally far from each other
 NODES = 5  # excesses of either sign at which the loss at a single bead is measured
@@ -126,7 +126,7 @@ def single_losses(excesses: Sequence[float] | Array, k: float = 1.5) -> list[Mea
 
 def _struck(masses: Sequence[float], k: float, sensors: Sequence[int]) -> Scene:
     """A struck chain, run for twice the flight of a pulse with all of the blow's momentum."""
-    duration = 2 * len(masses) / Compacton.of_momentum(theory_at(str(k), 1), 1.0).speed
+    duration = 2 * len(masses) / float(of_momentum(theory_at(str(k), 1), 1.0).speed)
     samples = math.ceil(30 * duration * max(1.0, k / 1.5))
     return struck(
         masses, len(masses), k, contact_sensors=sensors, duration=duration, samples=samples

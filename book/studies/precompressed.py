@@ -108,7 +108,11 @@ class Wave:
 
     def unit(self, name: str) -> float:
         """By which all chains fall on one curve: √(12 I) of a width."""
-        return math.sqrt(12 * self._theory.wave.I) if name == "fwhm" else 1.0
+        return (
+            math.sqrt(12 * background_wave(self.cell, law=Power(self.k)).I)
+            if name == "fwhm"
+            else 1.0
+        )
 
     @cached_property
     def exact(self) -> ExactWave | None:
