@@ -192,8 +192,8 @@ def _run(wave: TravelingWave, compact: PhysicalWave) -> Run:
     scene = carrying(
         [float(m) for m in wave.cell.masses] * cells,
         float(wave.k),
-        compact.curve(-(bead[:-1] + 0.5) / V, "strain"),
-        compact.curve(-bead / V, "velocity"),
+        compact.along(bead[:-1] + 0.5, "strain"),
+        compact.along(bead, "velocity"),
         contact_sensors=[place + side for place in places for side in (0, 1)],
         duration=(2 * cells - start - support / 4) / V,
     )
