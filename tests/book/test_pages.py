@@ -112,12 +112,15 @@ def test_the_calculator_shows_the_numbers_of_python(visit):
         float(re.search(r": ([\d.e+]+) ", told[name])[1]) for name in ("force", "speed", "width")
     )
     steel, ptfe = (hertz.MATERIALS[name] for name in ("steel 316", "PTFE"))
-    ball = lambda solid: Sphere(
-        mass=solid.density * sp.Rational(4, 3) * sp.pi.n(30) * sp.Rational("2.38e-3") ** 3,
-        radius="2.38e-3",
-        material=Material(E=solid.E, nu=solid.nu),
-    )
-    chain = Cell.of_spheres([ball(steel), ball(ptfe)])
+    balls = [
+        Sphere(
+            mass=sp.Rational(4, 3) * sp.pi.n(30) * sp.Rational("2.38e-3") ** 3 * solid.density,
+            radius="2.38e-3",
+            material=Material(E=solid.E, nu=solid.nu),
+        )
+        for solid in (steel, ptfe)
+    ]
+    chain = Cell.of_spheres(balls)
     pulse = canonical_wave(chain, "3/2").at_force(F)
     assert abs(speed / float(pulse.speed) - 1) < 2e-4  # F is printed with four digits
     assert abs(width / float(1e6 * pulse.fwhm("force", "time")) - 1) < 1e-3
