@@ -23,12 +23,8 @@ from matplotlib.collections import PatchCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
-<<<<<<< HEAD
-from lwa import Array, Cell, Material, PhysicalWave, Sphere, homogenize
-=======
 from lwa import Cell, Material, PhysicalWave, Sphere, homogenize
 from lwa.base.arrays import Array
->>>>>>> main
 from validation import Scene, measure, simulate
 
 HERE = Path(__file__).parent
@@ -104,13 +100,8 @@ def draw(axes: Axes, seen: Passage, moment: int) -> None:
     top = 1.15 * seen.force.max()
     axes.bar(np.arange(len(force)) + 0.5, force, width=0.55, color="#56B4E9")
     x = np.linspace(-1, len(force) + 1, 1201)
-<<<<<<< HEAD
-    flight = 2 * 2.38e-3 * (x - seen.places[moment]) / float(seen.theory.speed)
-    line = seen.theory.curve(flight, "force", "contact")
-=======
     D = float(seen.theory.wave.D)
     line = seen.theory.along(D * (x - seen.places[moment]), of="contact")
->>>>>>> main
     axes.plot(x, np.where(line > 1e-3 * top, line, np.nan), color="#D55E00", ls="-", lw=1.6)
     beads = [Circle((i + x, 0), 0.5) for i, x in enumerate(moved)]
     row = axes.inset_axes((0, 0, 1, 0.29))
