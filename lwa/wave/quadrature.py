@@ -253,7 +253,7 @@ class NumericBackground(Value):
     # --- existence --------------------------------------------------------------------------
 
     def _waves(self, p0: ArrayLike, B: ArrayLike) -> tuple[Array, Array, Array]:
-        """p0 and B of one shape over a unit, and the unit: a power law's is about the largest strain."""
+        """p0 and B of one shape over a unit, and the unit: a power of two under a power law."""
         base, rise = np.broadcast_arrays(finite(p0, "p0"), finite(B, "B"))
         if not np.all(rise):
             raise InputError("B is 0: a wave rises or falls by B")
