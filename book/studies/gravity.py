@@ -44,8 +44,8 @@ from lwa.command.terminal import quantities
 from lwa.wave.background import BackgroundWave
 from validation.lattice.run import Run
 from validation.lattice.simulate import simulate, twice
-from validation.pulses.pulse import Measured, measure
-from validation.pulses.steady import leading_pulse
+from validation.pulses.pulse import Measured, highest_pulse, leading_pulse
+from validation.pulses.sensors import tracks
 from validation.report.command import EXPONENT, option, study
 from validation.report.panel import Curve, Panel
 from validation.report.result import Report
@@ -146,7 +146,8 @@ class Upright:
         x = beads + 0.5  # half of its own weight is above a bead's middle
 
         def widths(run: Run) -> Array:
-            found = [measure(run.time, velocity).fwhm for velocity in run.bead_velocity]
+            moving = (run.signal("bead", i, "velocity") for i in run.scene.bead_sensors)
+            found = [highest_pulse(velocity).fwhm for velocity in moving]
             return np.asarray((np.reshape(found, x.shape) * self.sound(x)).mean(axis=1))
 
         scene = self.blown(WEAK, bead_sensors=beads.ravel().tolist())
@@ -184,11 +185,9 @@ class Upright:
         contacts = np.add.outer(self.places(_TOP, _FEW), np.arange(2 * size))
         scene = self.blown(velocity, contact_sensors=np.unique(contacts).tolist())
         run, numeric, found = simulate(scene, rtol=_TOLERANCES[0]), self.theory.numeric(), {}
-        for contact, force in zip(scene.contact_sensors, run.contact_force, strict=True):
-            dynamic = force - scene.load[contact]
-            part = leading_pulse(np.maximum(dynamic, 0.0), self.k)
-            pulse = measure(run.time[part], dynamic[part])
-            found[contact] = pulse.arrival, pulse.peak, pulse.fwhm
+        for track in tracks(run):
+            pulse = leading_pulse(track.force, self.k)
+            found[track.number - 1] = pulse.arrival, pulse.peak, pulse.fwhm
         rows = []
         for cell in contacts:
             arrival, peak, fwhm = np.array([found[contact] for contact in cell]).T

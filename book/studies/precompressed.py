@@ -23,7 +23,6 @@ from itertools import cycle, groupby
 from typing import Any
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from lwa import Cell, Power, background_wave
 from lwa.base.arrays import Array
@@ -32,8 +31,8 @@ from lwa.command.terminal import quantities
 from lwa.wave.quadrature import NumericBackground
 from validation.lattice.run import Run
 from validation.lattice.simulate import twice
-from validation.pulses.pulse import Measured, measure
-from validation.pulses.steady import leading_pulse
+from validation.pulses.pulse import Measured, highest_pulse, leading_pulse
+from validation.pulses.sensors import tracks
 from validation.report.command import EXPONENT, option, study
 from validation.report.panel import Curve, Panel
 from validation.report.result import Report
@@ -42,7 +41,7 @@ from validation.report.text import percent
 from validation.scenes.chains import carrying, numbered
 from validation.scenes.checks import SceneError, between
 from validation.scenes.scene import Scene
-from validation.waves.profile import ExactWave, summit
+from validation.waves.profile import ExactWave
 from validation.waves.solver import exact_wave
 
 CHAINS = ((1,), (1, "1/2"), (1, "1/4"), (1, 1, 1, "1/4"))  # masses of the cells
@@ -184,10 +183,12 @@ class Wave:
     def read(self, run: Run, stretch: int) -> dict[str, float]:
         """Numbers of one of the two stretches between places, means over its ends and a cell."""
         rows = []
-        for force, velocity in zip(run.contact_force, run.bead_velocity, strict=True):
-            part = leading_pulse(np.maximum(force - 1, 0.0), self.k)
-            pulse = measure(run.time[part], force[part] - 1)
-            _, fastest = summit(CubicSpline(run.time[part], velocity[part]), run.time[part])
+        heard = tracks(run)
+        beads, contacts = heard[: len(heard) // 2], heard[len(heard) // 2 :]
+        for bead, contact in zip(beads, contacts, strict=True):
+            pulse = leading_pulse(contact.force, self.k)
+            velocity = run.signal("bead", bead.number - 1, "velocity")
+            fastest = highest_pulse(velocity, pulse.fall + pulse.fwhm).peak
             rows.append((pulse.arrival, pulse.peak, pulse.fwhm, fastest))
         table = np.array(rows).reshape(3, len(self.masses), 4)[stretch : stretch + 2]
         arrival, force, width, velocity = np.moveaxis(table, 2, 0)

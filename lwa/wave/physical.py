@@ -163,7 +163,6 @@ class PhysicalWave(Value):
         return self.strain * self.speed
 
     @cached_property
-    @cached_property
     def momentum(self) -> Any:
         """Σ m u_t over the chain: M/(P D) · B dx/dt · ∫ cos^m(βξ) dξ."""
         return self._like(self._density * self._arch(self.wave.m)) * self.bead_velocity
