@@ -21,7 +21,6 @@ the integration's error ε splits by √ε. (Flach & Gorbach, Phys. Rep. 467, 1,
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -36,10 +35,10 @@ from validation.scenes.checks import SceneError, integer, positive
 
 HARMONICS = 5  # H
 MOST_STEPS = 30  # of Newton's method
-CLOSE = 1e-12  # change of the last step over the largest displacement
+CLOSE = 1e-8  # last step over the largest displacement, at most
+SMALL, LARGE = 1e-2, 1e3  # least motion over the start's, and largest over the static compression
 SMALLEST = 1e-3  # of the way in frequency, the shortest step of a continuation
 TOLERANCE = 1e-10  # rtol of the linearised motion
-TOO_FAR = 1e-2  # least motion over the start's: below, an orbit has shrunk to the state of rest
 
 
 class NoOrbit(InputError):
@@ -180,16 +179,17 @@ def orbit(
         a[:, 1] = given
     else:
         a[:, : given.shape[1]] = given[:, : H + 1]
-    first = np.abs(a).max()
+    least, before = SMALL * np.abs(a).max(), math.inf
     for _ in range(MOST_STEPS):
         step = _newton_step(chain, omega, a)
-        a, size = a - step, np.abs(step).max()
-        if not size < 1e3 * chain.rest.max():
+        a = a - step
+        size, largest = np.abs(step).max(), np.abs(a).max()
+        if not least < largest < LARGE * chain.rest.max():
             break
-        if size < CLOSE * np.abs(a).max() or size < 1e-15 * first:
-            if np.abs(a).max() < TOO_FAR * first:
-                break
+        # Rounding stops the fall of the steps; a wide orbit is easily shifted along the chain.
+        if size < CLOSE * largest and size > before / 4:
             return Orbit(chain, omega, a, _residual(chain, omega, a))
+        before = size
     raise NoOrbit(f"frequency is {omega:.8g}: Newton's method finds no orbit from this start")
 
 
