@@ -11,8 +11,7 @@ from lwa.base.exact import InputError
 from lwa.base.quantities import QUANTITIES, NoSolitaryWave
 from lwa.command.document import answers_json, as_float, chain_json, dispersion_json, each, put
 from lwa.command.text import DIGITS, chain_text, dispersion_text
-from lwa.linear.dispersion import Dispersion
-from lwa.linear.loaded import LoadedChain
+from lwa.linear.dispersion import Dispersion, LoadedChain
 from lwa.theory import Theory
 from lwa.wave.background import BackgroundWave
 from lwa.wave.kdv import KdV

@@ -16,7 +16,7 @@ from lwa import (
     general,
     homogenize,
 )
-from lwa.linear.loaded import LoadedChain
+from lwa.linear.dispersion import LoadedChain
 
 m1, m2 = sp.symbols("m1 m2", positive=True)
 
