@@ -268,6 +268,15 @@ class BackgroundWave(Value):
 
         return NumericBackground(self)
 
+    def code(self, language: str) -> str:
+        """Speeds, small waves and τ/t as functions in a program's source text.
+
+        ``language`` as in `lwa.TravelingWave.code`; arguments are told in `lwa.wave.functions`.
+        """
+        from lwa.wave.functions import loaded_code  # here: it is for these waves too
+
+        return loaded_code(self, language)
+
     def on(self, p0: Any) -> Self:
         """The same on another strain."""
         return replace(self, p0=p0)

@@ -22,14 +22,16 @@ from functools import partial
 import sympy as sp
 
 from lwa.base.exact import InputError, shorten
-from lwa.base.quantities import QUANTITIES, strain_power
+from lwa.base.quantities import QUANTITIES, NoSolitaryWave, strain_power
+from lwa.cell import Cell
 from lwa.code.languages import LANGUAGES
 from lwa.code.writer import Function, Local
-from lwa.wave.closed import CompactWave
+from lwa.law import Power
+from lwa.wave.closed import CompactWave, LoadedWave
 
 _XI = sp.Dummy("xi", real=True)
-_B, _V = (sp.Dummy(name, positive=True) for name in ("B", "V_s"))
-OWN = (_XI, _B, _V)
+_B, _V, _F = (sp.Dummy(name, positive=True) for name in ("B", "V_s", "F"))
+OWN = (_XI, _B, _V, _F)
 _SHIFT, _INSIDE = (sp.Dummy(name, real=True) for name in ("k_2", "inside"))
 _LONGEST_SUM = 64
 
@@ -38,6 +40,13 @@ _TITLE = (
     "xi = x - V_s tau, |xi| <= pi/(2 beta), written by lwa. There is one where",
     "k > 1, G + H + I > 0 and V_s^2 > 0, which is not checked here.",
 )
+_LOADED_TITLE = (
+    "Waves u_x = p0 + v(xi), xi = x - V_s tau, whose strain rises from p0 by B,",
+    "written by lwa. They exist where V_s^2 > 0 grows with B, which is not checked.",
+)
+_STRAIN_DOC = "B of the wave whose contact force peaks at F"
+_FORCE_DOC = "dx/dt, in m/s for a chain in SI, of the wave whose force peaks at F"
+_LOADED_SPEED_DOC = "V_s = dx/dtau; loses digits as B/p0 falls: kdv_speed is for small B"
 
 
 def wave_code(wave: CompactWave, language: str) -> str:
@@ -47,14 +56,27 @@ def wave_code(wave: CompactWave, language: str) -> str:
 
     Raises `lwa.InputError` for another language.
     """
-    if language not in LANGUAGES:
-        raise InputError(
-            f"language is {shorten(language)}: one of {', '.join(LANGUAGES)} is wanted"
-        )
+    _known(language)
     functions = wave_functions(wave)
     if language == "python":
         functions |= reduction_functions(wave, functions["amplitude"])
     return LANGUAGES[language](list(functions.values()), OWN).module(_TITLE)
+
+
+def loaded_code(wave: LoadedWave, language: str) -> str:
+    """The source text of `loaded_functions` in one of the `LANGUAGES`.
+
+    Raises `lwa.InputError` for another language.
+    """
+    _known(language)
+    return LANGUAGES[language](list(loaded_functions(wave).values()), OWN).module(_LOADED_TITLE)
+
+
+def _known(language: str) -> None:
+    if language not in LANGUAGES:
+        raise InputError(
+            f"language is {shorten(language)}: one of {', '.join(LANGUAGES)} is wanted"
+        )
 
 
 def wave_functions(wave: CompactWave) -> dict[str, Function]:
@@ -80,11 +102,59 @@ def wave_functions(wave: CompactWave) -> dict[str, Function]:
     profile = _B * sp.sin((_INSIDE + sp.Abs(_INSIDE)) / 2) ** (2 / (k - 1))
     inside = sp.pi / 2 - sp.Abs(beta.call * _XI)
     functions += [
-        define("speed", "V_s of the wave whose strain peaks at B", speed, local),
+        define("speed", "V_s = dx/dtau of the wave whose strain peaks at B", speed, local),
         define("amplitude", "B, the peak strain of the wave of speed V_s", amplitude, local),
         define("profile", "v at xi, 0 outside of the support", profile, ((_INSIDE, inside),)),
     ]
+    strain = define("strain", _STRAIN_DOC, _strain(wave.cell, k))
+    functions += _in_time(define, wave.cell.time_scale(k), functions[5], strain)
     return {function.name: function for function in functions}
+
+
+def loaded_functions(wave: LoadedWave) -> dict[str, Function]:
+    """Speed, time scale, the limit of small waves, and under a power law the speed at a force.
+
+    Arguments stand in this order, each where it is used: B; F; p0; the symbols of the law, of the
+    masses, of the stiffnesses and of the spacing.
+    """
+    cell, law = wave.cell, wave.law
+    parts = (wave.p0, *law.symbols, *cell.masses, *cell.stiffnesses, cell.spacing)
+    define = partial(function_of, in_order(*parts))
+
+    def of_rise(value: sp.Expr) -> sp.Expr:
+        return value.xreplace({s: _B for s in value.free_symbols if s.name == "B"})
+
+    speed = define("speed", _LOADED_SPEED_DOC, of_rise(wave.speed()))
+    strain = None
+    if isinstance(law, Power):
+        strain = define("strain", _STRAIN_DOC, _strain(cell, law.k) - wave.p0)
+    functions = [speed, *_in_time(define, wave.time_scale, speed, strain)]
+    try:
+        kdv = wave.kdv
+    except NoSolitaryWave:
+        return {function.name: function for function in functions}
+    functions += [
+        define("sound_speed", "V_s of long small waves", kdv.sound_speed),
+        define("kdv_speed", "V_s of a small wave", of_rise(kdv.speed())),
+        define("kdv_width", "L of a small wave v = B sech^2(xi/L)", of_rise(kdv.width())),
+    ]
+    return {function.name: function for function in functions}
+
+
+def _strain(cell: Cell, k: sp.Expr) -> sp.Expr:
+    """The strain at which the contacts of a cell push with F."""
+    return (_F / cell.stiffness(k)) ** (1 / k) / cell.spacing
+
+
+def _in_time(
+    define: Callable[..., Function], scale: sp.Expr, speed: Function, strain: Function | None
+) -> list[Function]:
+    """Functions that turn V_s = dx/dτ into dx/dt."""
+    time_scale = define("time_scale", "tau/t: dx/dt = V_s tau/t", scale)
+    if strain is None:
+        return [time_scale]
+    in_time = speed.call.subs(_B, strain.call) * time_scale.call
+    return [time_scale, strain, define("speed_at_force", _FORCE_DOC, in_time)]
 
 
 def reduction_functions(wave: CompactWave, amplitude: Function) -> dict[str, Function]:
