@@ -18,7 +18,7 @@ from lwa.base.exact import InputError
 from lwa.base.files import load
 from lwa.base.tables import Table, array, each, positive, real, table
 from lwa.cell import Cell, D
-from lwa.law import Law, Power, named
+from lwa.law import ContactLaw, Power, named
 from lwa.spheres.beads import SCENE, spheres
 from lwa.spheres.hertz import EXPONENT
 
@@ -34,7 +34,7 @@ class ChainFile:
     """
 
     cell: Cell
-    law: Power | Law
+    law: ContactLaw
     precompression: sp.Expr
     si: bool
 
@@ -63,7 +63,7 @@ def _chain(content: Any) -> ChainFile:
     return ChainFile(Cell.of_spheres(spheres(content)), Power(EXPONENT), load, True)
 
 
-def _masses(chain: Table) -> tuple[Cell, Power | Law]:
+def _masses(chain: Table) -> tuple[Cell, ContactLaw]:
     """The smallest cell that, repeated, is a row of masses and its contacts."""
     repeat = int(chain.read("repeat", positive, 1))
     masses = chain.read("cell", each(positive))

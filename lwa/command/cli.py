@@ -29,7 +29,7 @@ from lwa.command.rows import Answer
 from lwa.command.terminal import HELP, quantity, run, version
 from lwa.expansion.expand import expand
 from lwa.expansion.physical import ExpandedWave
-from lwa.law import Law, Power
+from lwa.law import ContactLaw, Law, Power
 from lwa.linear.dispersion import Dispersion
 from lwa.linear.loaded import LoadedChain
 from lwa.spheres.hertz import EXPONENT
@@ -54,7 +54,7 @@ def _theory(
     stiffnesses: tuple[sp.Expr, ...],
     spacing: sp.Expr,
     order: int,
-    law: Power | Law | None,
+    law: ContactLaw | None,
     **kind: Any,
 ) -> Theory:
     cell = Cell(masses, stiffnesses, spacing)
@@ -96,7 +96,7 @@ class _Load:
     background: sp.Expr | None
     precompression: sp.Expr | None
 
-    def under(self, law: Power | Law | None) -> bool:
+    def under(self, law: ContactLaw | None) -> bool:
         """Whether there is a load, or a law under which all waves are those of `lwa.wave`."""
         if self.background is not None and self.precompression is not None:
             raise InputError("--background and --precompression are both given: one says the other")
@@ -208,8 +208,8 @@ def _from_file(file: str, chain: dict[str, Any]) -> tuple[dict[str, str], sp.Exp
             raise InputError(f"--{name} and --spheres are both given: spheres have their own")
     found = read_chain(file)
     chain |= {name: getattr(found.cell, name) for name in ("masses", "stiffnesses", "spacing")}
-    chain |= {"k": found.law.k} if isinstance(found.law, Power) else {"law": found.law}
-    exponent = found.law.k if isinstance(found.law, Power) else EXPONENT
+    chain |= {"k": found.law.exponent} if found.law.homogeneous else {"law": found.law}
+    exponent = found.law.exponent if found.law.homogeneous else EXPONENT
     return (waves.si_units(exponent) if found.si else {}), found.precompression
 
 
@@ -250,7 +250,7 @@ def dispersion(
 def expansion(
     cell: Cell,
     k: sp.Expr,
-    law: Power | Law | None,
+    law: ContactLaw | None,
     order: int,
     style: str,
     force: sp.Expr | None,

@@ -15,19 +15,19 @@ the end of the support: the profile is good to 1e-14 B at a ξ that is off by 1e
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial
 
 import sympy as sp
 
 from lwa.base.exact import InputError, shorten
-from lwa.base.quantities import QUANTITIES, NoSolitaryWave, strain_power
+from lwa.base.quantities import QUANTITIES, strain_power
 from lwa.cell import Cell
 from lwa.code.languages import LANGUAGES
 from lwa.code.writer import Function, Local
-from lwa.law import Power
-from lwa.wave.closed import CompactWave, LoadedWave
+from lwa.law import ContactLaw
+from lwa.wave.closed import CompactWave
 
 _XI = sp.Dummy("xi", real=True)
 _B, _V, _F = (sp.Dummy(name, positive=True) for name in ("B", "V_s", "F"))
@@ -46,7 +46,14 @@ _LOADED_TITLE = (
 )
 _STRAIN_DOC = "B of the wave whose contact force peaks at F"
 _FORCE_DOC = "dx/dt, in m/s for a chain in SI, of the wave whose force peaks at F"
-_LOADED_SPEED_DOC = "V_s = dx/dtau; loses digits as B/p0 falls: kdv_speed is for small B"
+_SCALE_DOC = "tau/t: dx/dt = V_s tau/t"
+_LOADED_DOCS = {
+    "speed": "V_s = dx/dtau; loses digits as B/p0 falls: kdv_speed is for small B",
+    "time_scale": _SCALE_DOC,
+    "sound_speed": "V_s of long small waves",
+    "kdv_speed": "V_s of a small wave",
+    "kdv_width": "L of a small wave v = B sech^2(xi/L)",
+}
 
 
 def wave_code(wave: CompactWave, language: str) -> str:
@@ -63,13 +70,16 @@ def wave_code(wave: CompactWave, language: str) -> str:
     return LANGUAGES[language](list(functions.values()), OWN).module(_TITLE)
 
 
-def loaded_code(wave: LoadedWave, language: str) -> str:
+def loaded_code(
+    cell: Cell, law: ContactLaw, p0: sp.Expr, forms: Mapping[str, sp.Expr], language: str
+) -> str:
     """The source text of `loaded_functions` in one of the `LANGUAGES`.
 
     Raises `lwa.InputError` for another language.
     """
     _known(language)
-    return LANGUAGES[language](list(loaded_functions(wave).values()), OWN).module(_LOADED_TITLE)
+    functions = loaded_functions(cell, law, p0, forms)
+    return LANGUAGES[language](list(functions.values()), OWN).module(_LOADED_TITLE)
 
 
 def _known(language: str) -> None:
@@ -107,54 +117,45 @@ def wave_functions(wave: CompactWave) -> dict[str, Function]:
         define("profile", "v at xi, 0 outside of the support", profile, ((_INSIDE, inside),)),
     ]
     strain = define("strain", _STRAIN_DOC, _strain(wave.cell, k))
-    functions += _in_time(define, wave.cell.time_scale(k), functions[5], strain)
+    scale = define("time_scale", _SCALE_DOC, wave.cell.time_scale(k))
+    in_time = functions[5].call.subs(_B, strain.call) * scale.call
+    functions += [scale, strain, define("speed_at_force", _FORCE_DOC, in_time)]
     return {function.name: function for function in functions}
 
 
-def loaded_functions(wave: LoadedWave) -> dict[str, Function]:
-    """Speed, time scale, the limit of small waves, and under a power law the speed at a force.
+def loaded_functions(
+    cell: Cell, law: ContactLaw, p0: sp.Expr, forms: Mapping[str, sp.Expr]
+) -> dict[str, Function]:
+    """The closed forms of a wave under load, and under a power law its speed at a force, by name.
+
+    forms : by the names of `_LOADED_DOCS`, in the symbol B for the rise of the strain.
 
     Arguments stand in this order, each where it is used: B; F; p0; the symbols of the law, of the
     masses, of the stiffnesses and of the spacing.
     """
-    cell, law = wave.cell, wave.law
-    parts = (wave.p0, *law.symbols, *cell.masses, *cell.stiffnesses, cell.spacing)
+    parts = (p0, *law.symbols, *cell.masses, *cell.stiffnesses, cell.spacing)
     define = partial(function_of, in_order(*parts))
-
-    def of_rise(value: sp.Expr) -> sp.Expr:
-        return value.xreplace({s: _B for s in value.free_symbols if s.name == "B"})
-
-    speed = define("speed", _LOADED_SPEED_DOC, of_rise(wave.speed()))
-    strain = None
-    if isinstance(law, Power):
-        strain = define("strain", _STRAIN_DOC, _strain(cell, law.k) - wave.p0)
-    functions = [speed, *_in_time(define, wave.time_scale, speed, strain)]
-    try:
-        kdv = wave.kdv
-    except NoSolitaryWave:
-        return {function.name: function for function in functions}
-    functions += [
-        define("sound_speed", "V_s of long small waves", kdv.sound_speed),
-        define("kdv_speed", "V_s of a small wave", of_rise(kdv.speed())),
-        define("kdv_width", "L of a small wave v = B sech^2(xi/L)", of_rise(kdv.width())),
-    ]
-    return {function.name: function for function in functions}
+    functions = {
+        name: define(
+            name,
+            _LOADED_DOCS[name],
+            value.xreplace({s: _B for s in value.free_symbols if s.name == "B"}),
+        )
+        for name, value in forms.items()
+    }
+    if law.homogeneous:
+        strain = define("strain", _STRAIN_DOC, _strain(cell, law.exponent) - p0)
+        in_time = functions["speed"].call.subs(_B, strain.call) * functions["time_scale"].call
+        functions |= {
+            "strain": strain,
+            "speed_at_force": define("speed_at_force", _FORCE_DOC, in_time),
+        }
+    return functions
 
 
 def _strain(cell: Cell, k: sp.Expr) -> sp.Expr:
     """The strain at which the contacts of a cell push with F."""
     return (_F / cell.stiffness(k)) ** (1 / k) / cell.spacing
-
-
-def _in_time(
-    define: Callable[..., Function], scale: sp.Expr, speed: Function, strain: Function | None
-) -> list[Function]:
-    """Functions that turn V_s = dx/dτ into dx/dt."""
-    time_scale = define("time_scale", "tau/t: dx/dt = V_s tau/t", scale)
-    if strain is None:
-        return [time_scale]
-    in_time = speed.call.subs(_B, strain.call) * time_scale.call
-    return [time_scale, strain, define("speed_at_force", _FORCE_DOC, in_time)]
 
 
 def reduction_functions(wave: CompactWave, amplitude: Function) -> dict[str, Function]:

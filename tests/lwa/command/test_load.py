@@ -6,7 +6,7 @@ import pytest
 import sympy as sp
 
 from lwa import Cell, Dimer, Power, background_wave, canonical_wave, general, homogenize
-from lwa.law import compression, named
+from lwa.law import named
 from tests.lwa.command.answers import result, run
 
 
@@ -99,7 +99,7 @@ def test_a_wave_under_load_in_a_program(capsys, load, law):
     power = law[0] == "--k"
     cell = Cell([1, 3], spacing=1)
     contact = Power("3/2") if power else named("hertz2", 1, "1/3")
-    p0 = compression(cell, contact, sp.S.Half) if load[0] == "--precompression" else "1/2"
+    p0 = contact.compression(cell, sp.S.Half) if load[0] == "--precompression" else "1/2"
     wave = background_wave(cell, p0, law=contact)
     for B in ("1/3", "7/2"):
         assert module["speed"](float(sp.Rational(B))) == pytest.approx(
