@@ -42,8 +42,7 @@ class NodePath:
         return y, v
 
     def _at(self, beads: Beads, time: Array) -> Array:
-        step = np.searchsorted(self.time, time, side="right") - 1
-        step = np.clip(step, 0, len(self.time) - 2)
+        step = np.searchsorted(self.time[1:-1], time, side="right")
         start = self.time[step]
         x = (time - start) / (self.time[step + 1] - start)
         # The barycentric formula (Berrut and Trefethen 2004, eq. 5.4).
