@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,6 +28,7 @@ class KnotPath:
     points: Array
     knots: Knots
     left: Array
+    kinks: dict[int, Array] = field(default_factory=dict)
 
     @property
     def time(self) -> Array:

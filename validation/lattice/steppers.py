@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import scipy
@@ -33,6 +33,7 @@ class NodePath:
     time: Array
     beads: NDArray[np.int_]
     state: Array
+    kinks: dict[int, Array] = field(default_factory=dict)
 
     def __call__(self, beads: Beads, time: Array) -> tuple[Array, Array]:
         """Displacements and velocities (beads, S) at times (S,) within the run."""

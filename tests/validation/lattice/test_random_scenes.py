@@ -47,6 +47,8 @@ def drawn(seed):
         y += np.cumsum((random.random(n) < 0.2) * random.uniform(0, 0.5, n))
     if "wall" in rest:
         y -= max(0, y[-1])
+    if not (y.any() or v.any()):
+        v[0] = 1
     scene = dict(
         masses=masses, stiffnesses=stiffnesses[:-1], k=k, displacements=y, velocities=v,
         samples=301, **rest,
