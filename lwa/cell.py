@@ -90,7 +90,8 @@ class Cell(Value):
         unmistakable(self.symbols)
 
     def latex_rows(self) -> list[str]:
-        return latex.rows({"m": self.masses, "A": self.stiffnesses, "D": self.spacing})
+        m, A = sp.Tuple(*self.masses), sp.Tuple(*self.stiffnesses)
+        return latex.rows({"m": m, "A": A, "D": self.spacing})
 
     @classmethod
     def of_spheres(cls, spheres: Sequence[Sphere]) -> Cell:

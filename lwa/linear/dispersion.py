@@ -234,6 +234,7 @@ class LoadedChain(Value):
     Raises `lwa.InputError` unless the load is positive, and for unlike contacts under a law that
     is no power.
 
+    >>> from lwa import Power
     >>> LoadedChain(Cell(["m"], ["A"]), Power("3/2"), "F0").spring_constants
     (3*A**(2/3)*F0**(1/3)/2,)
     >>> LoadedChain(Cell([1], [1], 1), Power("3/2"), 8).band_edges().round(9)

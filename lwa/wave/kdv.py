@@ -25,7 +25,8 @@ class KdV(Value):
     dispersion: sp.Expr
 
     def latex_rows(self) -> list[str]:
-        names = {"c_{0}": self.sound_speed, r"\alpha": self.nonlinearity, r"\gamma": self.dispersion}
+        names = {"c_{0}": self.sound_speed, r"\alpha": self.nonlinearity}
+        names[r"\gamma"] = self.dispersion
         equation = r"v_{\tau} + c_{0} v_{x} + \alpha v v_{x} + \gamma v_{xxx} = 0"
         return [equation, *latex.rows(names)]
 

@@ -50,7 +50,8 @@ class Reduction(Value):
     V: sp.Expr
 
     def latex_rows(self) -> list[str]:
-        names = {"p": self.p, "a": self.a, r"\mu": self.mu, r"\eta": self.eta, r"\sigma": self.sigma}
+        names = {"p": self.p, "a": self.a, r"\mu": self.mu, r"\eta": self.eta}
+        names[r"\sigma"] = self.sigma
         return [r"z'' = \mu z^{\eta} - \sigma z, \quad v = z^{p}", *latex.rows(names)]
 
     @property

@@ -104,6 +104,16 @@ def test_repr_is_one_short_line(order):
     assert repr(theory().pde.coefficients[2]) == "{}"
 
 
+@pytest.mark.parametrize("make", MADE.values(), ids=MADE)
+def test_a_notebook_shows_it_in_latex(make):
+    """A display whose braces match, without Python's names of functions."""
+    shown = make()._repr_latex_()
+    assert shown.startswith("$$")
+    assert shown.endswith("$$")
+    assert shown.count("{") == shown.count("}")
+    assert "sqrt(" not in shown
+
+
 def test_latex_is_the_papers_equation_at_any_order():
     equation = (
         r"u_{\tau\tau} &= u_{x}^{k-1} u_{xx} + G u_{x}^{k-3} u_{xx}^{3} "
