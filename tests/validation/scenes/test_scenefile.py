@@ -428,3 +428,14 @@ def test_whatever_a_file_holds_is_read_or_refused_in_one_line(data):
     else:
         message = ""
     assert "\n" not in message
+
+
+@pytest.mark.parametrize(
+    "law",
+    ["hertz2:1,1/2", "magnetic:4,2", "polynomial:1/4,-1/10", "polynomial:0,1", "exponential:3/2",
+     "lennard-jones:3", "power:3/2"],
+)  # fmt: skip
+def test_a_law_is_read_and_written(law):
+    read = scene({"duration": 1, "chain": {"cell": [1, 2], "law": law}})
+    assert scene(document(read)) == read
+    assert (read.law is None) == law.startswith("power")
