@@ -1,4 +1,4 @@
-"""The picture of page one: the paper's beads, the pulse that runs down them, the theory on top.
+"""The README's picture: the paper's beads, the pulse that runs down them, the theory on top.
 
 A chain of steel and PTFE beads is struck at 1.37 m/s, as in Porter et al. 2008. Drawn are the
 beads, displaced more than they are, and the force in each contact. The line is the theory's wave:
