@@ -143,7 +143,10 @@ class ContactLaw(Value):
                 f"{min(map(str, free))!r} has no value: the load under {self.F} needs numbers"
             )
         with mpmath.workdps(50):
-            found = _where_it_grows_to_zero(sp.lambdify(self.delta, self.F - ratio, "mpmath"))
+            F, slope = (
+                sp.lambdify(self.delta, x, "mpmath") for x in (self.F - ratio, self.slope())
+            )
+            found = _where_it_grows_to_zero(F, slope)
             if found is None:
                 raise InputError(f"force is {shorten(force)}: the law does not reach it")
             return sp.Float(found, 35)
@@ -153,8 +156,8 @@ class ContactLaw(Value):
         raise NotImplementedError
 
 
-def _where_it_grows_to_zero(F: Callable[[Any], Any]) -> Any:
-    """δ > 0 with F(δ) = 0, F growing from δ = 0 to there; None where F stops growing before.
+def _where_it_grows_to_zero(F: Callable[[Any], Any], slope: Callable[[Any], Any]) -> Any:
+    """δ > 0 with F(δ) = 0, F growing from δ = 0 to there; None if F stops growing before.
 
     Steps that leave the interval on which F is real and grows (its pole, its maximum) are halved.
     """
@@ -162,10 +165,10 @@ def _where_it_grows_to_zero(F: Callable[[Any], Any]) -> Any:
     below = F(low)
     while True:
         try:
-            above = F(low + step)
+            above, grows = F(low + step), slope(low + step)
         except ZeroDivisionError:
-            above = mpmath.nan
-        if mpmath.im(above) == 0 and above > below:
+            above = grows = mpmath.nan
+        if mpmath.im(above) == mpmath.im(grows) == 0 and above > below and grows > 0:
             if above >= 0:
                 break
             low, below, step = low + step, above, step * mpmath.mpf("1.2")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import scipy
@@ -33,6 +33,7 @@ class NodePath:
     time: Array
     beads: NDArray[np.int_]
     state: Array
+    kinks: dict[int, Array] = field(default_factory=dict)
 
     def __call__(self, beads: Beads, time: Array) -> tuple[Array, Array]:
         """Displacements and velocities (beads, S) at times (S,) within the run."""
@@ -42,8 +43,7 @@ class NodePath:
         return y, v
 
     def _at(self, beads: Beads, time: Array) -> Array:
-        step = np.searchsorted(self.time, time, side="right") - 1
-        step = np.clip(step, 0, len(self.time) - 2)
+        step = np.searchsorted(self.time[1:-1], time, side="right")
         start = self.time[step]
         x = (time - start) / (self.time[step + 1] - start)
         # The barycentric formula (Berrut and Trefethen 2004, eq. 5.4).
