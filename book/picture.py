@@ -1,4 +1,4 @@
-"""The picture of page one: the paper's beads, the pulse that runs down them, the theory on top.
+"""The README's picture: the paper's beads, the pulse that runs down them, the theory on top.
 
 A chain of steel and PTFE beads is struck at 1.37 m/s, as in Porter et al. 2008. Drawn are the
 beads, displaced more than they are, and the force in each contact. The line is the theory's wave:
@@ -100,8 +100,8 @@ def draw(axes: Axes, seen: Passage, moment: int) -> None:
     top = 1.15 * seen.force.max()
     axes.bar(np.arange(len(force)) + 0.5, force, width=0.55, color="#56B4E9")
     x = np.linspace(-1, len(force) + 1, 1201)
-    D, V = float(seen.theory.wave.D), float(seen.theory.speed)
-    line = seen.theory.curve(D * (seen.places[moment] - x) / V, of="contact")
+    D = float(seen.theory.wave.D)
+    line = seen.theory.along(D * (x - seen.places[moment]), of="contact")
     axes.plot(x, np.where(line > 1e-3 * top, line, np.nan), color="#D55E00", ls="-", lw=1.6)
     beads = [Circle((i + x, 0), 0.5) for i, x in enumerate(moved)]
     row = axes.inset_axes((0, 0, 1, 0.29))

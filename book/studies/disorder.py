@@ -30,7 +30,7 @@ from lwa.base.arrays import Array
 from lwa.base.progress import Progress
 from validation.lattice.run import Run
 from validation.lattice.simulate import simulate, simulate_many
-from validation.pulses.pulse import Measured, measure
+from validation.pulses.pulse import Measured, highest_pulse
 from validation.report.command import EXPONENT, option, study
 from validation.report.panel import Curve, Panel
 from validation.report.result import Report
@@ -198,7 +198,8 @@ def _slopes(places: Array, logs: Array) -> Array:
 
 def _log_forces(run: Run) -> Array:
     """ln F at the sensors."""
-    return np.log([measure(run.time, force).peak for force in run.contact_force])
+    signals = (run.signal("contact", i) for i in run.scene.contact_sensors)
+    return np.log([highest_pulse(force).peak for force in signals])
 
 
 def _mean(values: Array) -> Measured:

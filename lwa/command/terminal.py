@@ -21,7 +21,7 @@ import sympy as sp
 from lwa.base.exact import InputError, exact, integer
 from lwa.base.quantities import NoSolitaryWave
 from lwa.command.interrupt import INTERRUPTED
-from lwa.law import Law, Power, named
+from lwa.law import ContactLaw, named
 
 
 def quantity(context: click.Context, option: click.Parameter, value: str | None) -> sp.Expr | None:
@@ -44,7 +44,7 @@ def count(context: click.Context, option: click.Parameter, value: str) -> int:
 
 def contact_law(
     context: click.Context, option: click.Parameter, value: str | None
-) -> Power | Law | None:
+) -> ContactLaw | None:
     """Callback of an option that is NAME or NAME:PARAM,…, as `lwa.law.named` takes them."""
     if value is None:
         return None

@@ -12,16 +12,13 @@ import math
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
-import numpy as np
-import scipy
-
 from lwa import PhysicalWave, canonical_wave
 from lwa.base.arrays import Array
 from lwa.base.progress import Progress
 from validation.lattice.run import Run
 from validation.lattice.simulate import simulate_many
 from validation.pictures.panel import Curve, Panel
-from validation.pulses.pulse import Measured, compared, exponent
+from validation.pulses.pulse import Measured, compared, exponent, first_passage
 from validation.report.command import study
 from validation.report.result import Report
 from validation.report.table import Column, Table
@@ -178,8 +175,8 @@ def chain_speed(N: int) -> Speed:
     def numbers(run: Run) -> dict[str, float]:
         train = Train.of(run)
         first, second = (
-            _front(run.time, force - pulse.peak / 10)
-            for force, pulse in zip(run.bead_force, train.pulses.values(), strict=True)
+            first_passage(run.signal("bead", sensor - 1), pulse.peak / 10)
+            for sensor, pulse in zip(sensors, train.pulses.values(), strict=True)
         )
         return {"speed": across * period * DIAMETER / (second - first), "force": train.peak}
 
@@ -187,13 +184,6 @@ def chain_speed(N: int) -> Speed:
     found = compared(numbers, *runs)
     wave = PhysicalWave(canonical_wave(chain_cell(N), HERTZ), found["force"].value, "bead")
     return Speed(N, found["speed"], found["force"], float(wave.speed))
-
-
-def _front(time: Array, above: Array) -> float:
-    """First zero of a rising signal, by a cubic spline."""
-    first = int(np.argmax(above > 0))
-    spline = scipy.interpolate.CubicSpline(time, above)
-    return float(scipy.optimize.brentq(spline, time[first - 1], time[first]))
 
 
 def scaling(E: float) -> Scaling:

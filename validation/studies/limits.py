@@ -16,14 +16,21 @@ from typing import Any
 
 import numpy as np
 import sympy as sp
-from scipy.interpolate import CubicSpline
 
 from lwa import Dimer, PhysicalWave, TravelingWave, homogenize
 from lwa.base.progress import Progress
 from validation.lattice.run import Run
 from validation.lattice.simulate import simulate
 from validation.pictures.panel import Curve, Panel
-from validation.pulses.pulse import Measured, compared, derived, exponent, measure, speed
+from validation.pulses.pulse import (
+    Measured,
+    compared,
+    derived,
+    exponent,
+    highest_pulse,
+    integral,
+    speed,
+)
 from validation.report.command import study
 from validation.report.result import Report
 from validation.report.table import Column, Finding, Table
@@ -185,11 +192,10 @@ def _run(wave: TravelingWave, compact: PhysicalWave) -> Run:
     scene = carrying(
         [float(m) for m in wave.cell.masses] * cells,
         float(wave.k),
-        compact.curve(-(bead[:-1] + 0.5) / V, "strain"),
-        compact.curve(-bead / V, "velocity"),
+        compact.along(bead[:-1] + 0.5, "strain"),
+        compact.along(bead, "velocity"),
         contact_sensors=[place + side for place in places for side in (0, 1)],
         duration=(2 * cells - start - support / 4) / V,
-        samples=80 * cells,
     )
     # Light beads set the step, far below the needs of the pulse at the same tolerance.
     rtol, atol = (1e-9, 1e-9) if len(set(wave.cell.masses)) == 1 else (1e-7, 1e-6)
@@ -202,13 +208,15 @@ def _numbers(run: Run, wave: TravelingWave, place: int) -> dict[str, float]:
     k, beta = float(wave.k), float(wave.beta)
     unit = support * beta / float(sp.beta(k / (k - 1) + 0.5, 0.5))  # support over ∫F dx / F_m
     sides = []
-    for here in (2 * place, 2 * place + 1):  # rows of a cell's contacts; the last cell's are here-2
-        before, pulse = (measure(run.time, run.contact_force[row]) for row in (here - 2, here))
-        strain = measure(run.time, run.compression[here])
-        sites = run.scene.contact_sensors[here] - run.scene.contact_sensors[here - 2]
-        V = speed(before, pulse, sites)
-        force, reach = CubicSpline(run.time, run.contact_force[here]), 0.6 * support / V
-        push = float(force.integrate(pulse.arrival - reach, pulse.arrival + reach))
+    contacts = run.scene.contact_sensors
+    for row in (2 * place, 2 * place + 1):  # rows of a cell's contacts; the last cell's are row-2
+        here, last = contacts[row], contacts[row - 2]
+        force = run.signal("contact", here)
+        pulse, before = highest_pulse(force), highest_pulse(run.signal("contact", last))
+        strain = highest_pulse(run.signal("contact", here, "compression"))
+        V = speed(before, pulse, here - last)
+        reach = 0.6 * support / V
+        push = integral(force, pulse.arrival - reach, pulse.arrival + reach)
         lengths = {width: pulse.fwhm * V, strain_width: strain.fwhm * V}
         lengths[length] = unit * push * V / pulse.peak
         sides.append(lengths | {"strain": strain.peak, "speed": V, "force": pulse.peak})

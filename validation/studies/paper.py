@@ -25,11 +25,11 @@ import sympy as sp
 
 from lwa import Cell, PhysicalWave, Sphere, canonical_wave, homogenize
 from lwa.command.terminal import quantities
-from validation.lattice.effort import RunProgress, silent
+from validation.lattice.cost import RunProgress, silent
 from validation.lattice.run import Run
 from validation.lattice.simulate import twice
 from validation.pictures.panel import Curve, Panel
-from validation.pulses.pulse import Measured, MeasureError, Pulse, compared, measure, speed
+from validation.pulses.pulse import Measured, MeasureError, Pulse, compared, highest_pulse, speed
 from validation.pulses.sensors import tracks
 from validation.report.command import number, option, study
 from validation.report.result import Report
@@ -147,12 +147,12 @@ class Train:
 
         The last contact sensor is the wall's. Raises `MeasureError` if a pulse is not whole.
         """
-        end = int(np.argmax(run.contact_force[-1])) + 1
+        end = float(run.time[np.argmax(run.contact_force[-1])])
         pulses = {}
         for track in tracks(run)[:-1]:
             if track.kind == kind:
                 try:
-                    pulses[track.number] = measure(track.time[:end], track.force[:end])
+                    pulses[track.number] = highest_pulse(track.force, end)
                 except MeasureError as error:
                     place = f"{kind} {track.number}, before the wave reaches the wall"
                     raise MeasureError(f"{place}: {error}") from None

@@ -9,7 +9,7 @@ from pathlib import Path
 import click
 
 import validation.scenes
-from validation.lattice.effort import RunProgress
+from validation.lattice.cost import RunProgress
 from validation.lattice.run import Run
 from validation.lattice.simulate import COMPILED, METHODS
 from validation.pulses.sensors import READINGS, SPEEDS, TOLERANCE, Reading, Recording, record
@@ -87,7 +87,8 @@ def _readings(run: Run) -> dict[str, str]:
 
 def _speeds(scene: Scene) -> dict[str, str]:
     """Column labels of `SPEEDS`."""
-    return dict(zip(SPEEDS, ("sites/s", "m/s") if scene.units else SPEEDS.values(), strict=True))
+    units = ("sites/s", "m/s") if scene.units else ("sites/time", "length/time")
+    return dict(zip(SPEEDS, units, strict=True))
 
 
 def _table(

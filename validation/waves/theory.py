@@ -19,8 +19,8 @@ from numpy.typing import ArrayLike
 
 from lwa import Dimer, PhysicalWave, TravelingWave, canonical_wave, homogenize
 from lwa.base.arrays import Array
+from lwa.base.exact import number
 from lwa.wave.closed import CompactWave
-from lwa.wave.curves import arch, number
 from validation.scenes.checks import SceneError, positive
 
 
@@ -115,6 +115,11 @@ class Compacton:
         return 2 * float(
             scipy.optimize.brentq(lambda x: self.bead_force(x) - half, 0.0, end, xtol=1e-14 * end)
         )
+
+
+def arch(y: Array, power: float) -> Array:
+    """cos^power y on |y| < π/2, 0 outside."""
+    return np.where(np.abs(y) < np.pi / 2, np.cos(y), 0.0) ** power
 
 
 def theory_at(k: Any, omega: Any, closure: str = "linear") -> TravelingWave:
