@@ -83,8 +83,15 @@ class BackgroundWave(Value):
     def __repr__(self) -> str:
         return f"BackgroundWave({self.cell!r}, {self.law!r}, p0={self.p0})"
 
-    def _repr_latex_(self) -> str:
-        return latex.display([latex.row("V_{s}", self.speed())])
+    def latex_rows(self) -> list[str]:
+        energy = "V_{s}^{2} v^{2} - 2 [W(p_{0} + v) - W(p_{0}) - F(p_{0}) v]"
+        return [
+            rf"I F'(p_{{0}} + v) v_{{\xi}}^{{2}} = {energy}, \quad W' = F",
+            *self.law.latex_rows(),
+            latex.row("p_{0}", self.p0),
+            latex.row("I", self.I),
+            latex.row("V_{s}", self.speed()),
+        ]
 
     @cached_property
     def I(self) -> sp.Expr:
@@ -259,6 +266,23 @@ class BackgroundWave(Value):
         from lwa.wave.quadrature import NumericBackground  # start-up: it loads NumPy
 
         return NumericBackground(self.cell, self.law)
+
+    def code(self, language: str) -> str:
+        """Speeds, small waves and τ/t as functions in a program's source text.
+
+        ``language`` as in `lwa.TravelingWave.code`; arguments are told in `lwa.wave.functions`.
+        """
+        from lwa.wave.functions import loaded_code  # here, for a quick start of the others
+
+        forms = {"speed": self.speed(), "time_scale": self.time_scale}
+        try:
+            kdv = self.kdv
+        except NoSolitaryWave:
+            kdv = None
+        if kdv:
+            forms |= {"sound_speed": kdv.sound_speed, "kdv_speed": kdv.speed()}
+            forms["kdv_width"] = kdv.width()
+        return loaded_code(self.cell, self.law, self.p0, forms, language)
 
     def on(self, p0: Any) -> Self:
         """The waves of the same chain on another strain."""
