@@ -14,6 +14,15 @@ the derivative of the flux of energy. That holds for any wave equation that the 
 satisfy, in every field, whether or not the equation derives from a potential.
 
 The density is given up to derivatives, so that no highest jet stands in it linearly.
+
+**Theorem.** In the canonical field φ = Σ μ_i w_i, with w_i = φ + D² e_i φ_xx + …, terms linear in the
+corrections telescope round the cell, and the elastic energy at D² is one monomial,
+k A φ_x^{k-1} φ_xx² S(e), with
+
+    S(e) = Σ [-c_i³/24 - c_i (e_i + e_{i+1})/2 + (e_{i+1} - e_i)²/(2 c_i)].
+
+So G = I (k-1)(k-2)/2 and H = 2I (k-1) in every cell, and I/D² = -(2/P) min S on Σ μ_i e_i = 0 is
+that of the linear chain with the compliances c_i. The book's chapter "One number" has the proof.
 """
 
 from __future__ import annotations
