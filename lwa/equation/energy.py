@@ -15,8 +15,8 @@ satisfy, in every field, whether or not the equation derives from a potential.
 
 The density is given up to derivatives, so that no highest jet stands in it linearly.
 
-**Theorem.** In the canonical field φ = Σ μ_i w_i, with w_i = φ + D² e_i φ_xx + …, terms linear in the
-corrections telescope round the cell, and the elastic energy at D² is one monomial,
+**Theorem.** In the canonical field φ = Σ μ_i w_i, with w_i = φ + D² e_i φ_xx + …, terms linear in
+the corrections telescope round the cell, and the elastic energy at D² is one monomial,
 k A φ_x^{k-1} φ_xx² S(e), with
 
     S(e) = Σ [-c_i³/24 - c_i (e_i + e_{i+1})/2 + (e_{i+1} - e_i)²/(2 c_i)].

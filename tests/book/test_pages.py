@@ -27,7 +27,7 @@ window.MathJax = {startup: {promise: Promise.resolve()}};
 </script></head><body><article>%s</article></body></html>"""
 
 
-PHONE, WINDOW = 390, 1300
+PHONE, WINDOW = 390, 1280
 """Widths of a page, in CSS pixels."""
 
 
@@ -36,10 +36,10 @@ def visit():
     return opened(None)
 
 
-def opened(width):
+def opened(width, mode="light"):
     missing = [page for page in PAGES if not (HTML / page).is_file()]
     assert not missing, f"the book is not built: {missing[0]} is missing in {HTML}"
-    return visited(HTML, PAGES, width)
+    return visited(HTML, PAGES, width, mode)
 
 
 def test_every_page_was_read(visit):
@@ -66,9 +66,11 @@ def test_every_picture_is_there(visit):
     assert not visit.missing
 
 
+@pytest.mark.parametrize("mode", ["light", "dark"])
 @pytest.mark.parametrize("width", [PHONE, WINDOW])
-def test_nothing_is_cut(width):
-    pages = opened(width).pages
+def test_nothing_is_cut_or_faint(width, mode):
+    pages = opened(width, mode).pages
+    assert not {page: r["faint"] for page, r in pages.items() if r["faint"]}
     assert not {page: r["cut"] for page, r in pages.items() if r["cut"]}
     assert not {page: r["crumbled"] for page, r in pages.items() if r["crumbled"]}
     assert not [page for page, r in pages.items() if r["wider"]]
@@ -188,6 +190,13 @@ def test_what_is_cut_is_seen(tmp_path, style):
     seen = visited(tmp_path, ["page.html"], PHONE).pages["page.html"]
     assert bool(seen["cut"]) == ("auto" not in style)
     assert seen["wider"] == (not style)
+
+
+@pytest.mark.parametrize("color", ["#999", "#222"])
+def test_faint_text_is_seen(tmp_path, color):
+    (tmp_path / "page.html").write_text(SMALLEST % f'<p style="color: {color}">words</p>')
+    seen = visited(tmp_path, ["page.html"]).pages["page.html"]
+    assert seen["faint"] == (["words"] if color == "#999" else [])
 
 
 @pytest.mark.parametrize("wrap", ["anywhere", "normal"])
