@@ -19,6 +19,7 @@ import mpmath
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
+from lwa.base import latex
 from lwa.base.exact import InputError, exact, positive, real, shorten
 from lwa.base.frozen import Value
 from lwa.cell import RESERVED, Cell, exponent, meant, unmistakable
@@ -45,6 +46,9 @@ class ContactLaw(Value):
     F: sp.Expr
     delta: sp.Symbol
     homogeneous: ClassVar[bool] = False
+
+    def latex_rows(self) -> list[str]:
+        return latex.rows({f"F({sp.latex(self.delta)})": self.F})
 
     @property
     def symbols(self) -> tuple[sp.Symbol, ...]:
@@ -143,7 +147,10 @@ class ContactLaw(Value):
                 f"{min(map(str, free))!r} has no value: the load under {self.F} needs numbers"
             )
         with mpmath.workdps(50):
-            found = _where_it_grows_to_zero(sp.lambdify(self.delta, self.F - ratio, "mpmath"))
+            F, slope = (
+                sp.lambdify(self.delta, x, "mpmath") for x in (self.F - ratio, self.slope())
+            )
+            found = _where_it_grows_to_zero(F, slope)
             if found is None:
                 raise InputError(f"force is {shorten(force)}: the law does not reach it")
             return sp.Float(found, 35)
@@ -153,8 +160,8 @@ class ContactLaw(Value):
         raise NotImplementedError
 
 
-def _where_it_grows_to_zero(F: Callable[[Any], Any]) -> Any:
-    """δ > 0 with F(δ) = 0, F growing from δ = 0 to there; None where F stops growing before.
+def _where_it_grows_to_zero(F: Callable[[Any], Any], slope: Callable[[Any], Any]) -> Any:
+    """δ > 0 with F(δ) = 0, F growing from δ = 0 to there; None if F stops growing before.
 
     Steps that leave the interval on which F is real and grows (its pole, its maximum) are halved.
     """
@@ -162,10 +169,10 @@ def _where_it_grows_to_zero(F: Callable[[Any], Any]) -> Any:
     below = F(low)
     while True:
         try:
-            above = F(low + step)
+            above, grows = F(low + step), slope(low + step)
         except ZeroDivisionError:
-            above = mpmath.nan
-        if mpmath.im(above) == 0 and above > below:
+            above = grows = mpmath.nan
+        if mpmath.im(above) == mpmath.im(grows) == 0 and above > below and grows > 0:
             if above >= 0:
                 break
             low, below, step = low + step, above, step * mpmath.mpf("1.2")

@@ -83,8 +83,15 @@ class BackgroundWave(Value):
     def __repr__(self) -> str:
         return f"BackgroundWave({self.cell!r}, {self.law!r}, p0={self.p0})"
 
-    def _repr_latex_(self) -> str:
-        return latex.display([latex.row("V_{s}", self.speed())])
+    def latex_rows(self) -> list[str]:
+        energy = "V_{s}^{2} v^{2} - 2 [W(p_{0} + v) - W(p_{0}) - F(p_{0}) v]"
+        return [
+            rf"I F'(p_{{0}} + v) v_{{\xi}}^{{2}} = {energy}, \quad W' = F",
+            *self.law.latex_rows(),
+            latex.row("p_{0}", self.p0),
+            latex.row("I", self.I),
+            latex.row("V_{s}", self.speed()),
+        ]
 
     @cached_property
     def I(self) -> sp.Expr:
@@ -220,7 +227,7 @@ class BackgroundWave(Value):
         with mpmath.workdps(self._precision(B, digits)):
             found = self._profile(B, digits)
             length = 2 * found.place(found.half(known(quantity)))
-        return sp.Float(length, digits) * self._unit
+        return sp.Float(length, digits) * self.unit
 
     @property
     def _compact(self) -> tuple[sp.Expr, sp.Expr] | None:
@@ -240,7 +247,7 @@ class BackgroundWave(Value):
             k, beta = self._compact
             arch = B * sp.cos(beta * xi) ** (2 / (k - 1))
             return sp.Piecewise((arch, sp.Abs(xi) <= sp.pi / (2 * beta)), (0, True))
-        place = self._in_unit(xi)
+        place = self.in_unit(xi)
         if place.free_symbols:
             raise InputError(f"xi is {shorten(xi)}: a number, in D, is wanted")
         digits = self._digits(digits)
@@ -260,6 +267,23 @@ class BackgroundWave(Value):
 
         return NumericBackground(self.cell, self.law)
 
+    def code(self, language: str) -> str:
+        """Speeds, small waves and τ/t as functions in a program's source text.
+
+        ``language`` as in `lwa.TravelingWave.code`; arguments are told in `lwa.wave.functions`.
+        """
+        from lwa.wave.functions import loaded_code  # here, for a quick start of the others
+
+        forms = {"speed": self.speed(), "time_scale": self.time_scale}
+        try:
+            kdv = self.kdv
+        except NoSolitaryWave:
+            kdv = None
+        if kdv:
+            forms |= {"sound_speed": kdv.sound_speed, "kdv_speed": kdv.speed()}
+            forms["kdv_width"] = kdv.width()
+        return loaded_code(self.cell, self.law, self.p0, forms, language)
+
     def on(self, p0: Any) -> Self:
         """The waves of the same chain on another strain."""
         return replace(self, p0=p0)
@@ -278,17 +302,18 @@ class BackgroundWave(Value):
     # --- numbers of many digits -------------------------------------------------------------
 
     @property
-    def _unit(self) -> sp.Expr:
+    def unit(self) -> sp.Expr:
         """The spacing if it is a symbol and the law has no length; lengths are numbers in it."""
         D = self.cell.spacing
         return D if D.is_Symbol and self.law.homogeneous else sp.S.One
 
-    def _in_unit(self, value: sp.Expr) -> sp.Expr:
-        return value.subs(self._unit, 1) if self._unit.is_Symbol else value
+    def in_unit(self, value: sp.Expr) -> sp.Expr:
+        """A length or a speed over the `unit`."""
+        return value.subs(self.unit, 1) if self.unit.is_Symbol else value
 
     def _free(self, *values: sp.Expr) -> set[sp.Symbol]:
         all_values = (*values, self.p0, self.I, self.force(self.p0 + sp.S.One, 1))
-        return set().union(*(v.free_symbols for v in all_values)) - {self._unit}
+        return set().union(*(v.free_symbols for v in all_values)) - {self.unit}
 
     def _digits(self, digits: int) -> int:
         if integer(digits, "digits", 1) > MOST_DIGITS:
@@ -320,14 +345,14 @@ class BackgroundWave(Value):
         raise InputError(f"B is {shorten(B)}: too small beside p0, use `kdv`")
 
     def _number(self, value: sp.Expr) -> Any:
-        return mpmath.mpf(sp.N(self._in_unit(value), mpmath.mp.dps + 5, maxn=_MOST_PRECISION))
+        return mpmath.mpf(sp.N(self.in_unit(value), mpmath.mp.dps + 5, maxn=_MOST_PRECISION))
 
     @cached_property
     def _compiled(self) -> list[tuple[Function, list[sp.Rational]]]:
         """F, F′ and Q at p0 + v: functions of v and of their own fractions."""
         v, found = sp.Dummy("v", real=True), []
         for value in (self.force(self.p0 + v), self.force(self.p0 + v, 1), self._stiffness(v)):
-            value = self._in_unit(value)
+            value = self.in_unit(value)
             numbers = {a: sp.Dummy() for a in value.atoms(sp.Rational) if not a.is_Integer}
             function = sp.lambdify((v, *numbers.values()), value.xreplace(numbers), "mpmath")
             found.append((function, list(numbers)))

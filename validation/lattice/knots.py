@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,6 +28,7 @@ class KnotPath:
     points: Array
     knots: Knots
     left: Array
+    kinks: dict[int, Array] = field(default_factory=dict)
 
     @property
     def time(self) -> Array:
@@ -37,12 +38,12 @@ class KnotPath:
     def __call__(self, beads: Beads, time: Array) -> tuple[Array, Array]:
         """Displacements and velocities (beads, S) at times (S,) within the run."""
         rows = np.searchsorted(self.knots.watched, beads)
-        step = np.searchsorted(self.time, time, side="right") - 1
-        step = np.clip(step, 0, len(self.time) - 2)
+        step = np.searchsorted(self.time[1:-1], time, side="right")
         y, v = np.empty((2, len(rows), len(time)))
         interpolate(self.chain, self.points, self.knots, rows, time, step, y, v)
-        late = time > self.left[rows, None]
-        y[late] = v[late] = np.nan
+        if np.isfinite(self.left).any():
+            late = time > self.left[rows, None]
+            y[late] = v[late] = np.nan
         return y, v
 
 
@@ -55,7 +56,8 @@ class Recorder:
     def __init__(self, chain: Chain, points: Array, needed: NDArray[np.int_], time: Array) -> None:
         self.chain, self.points, self.needed, self.time = chain, points, needed, time
         # A bead's acceleration changes with its neighbours' displacements.
-        watched = np.unique(np.concatenate((needed - 1, needed, needed + 1)).clip(0))
+        near = {j + m for j in needed.tolist() for m in (-1, 0, 1)}
+        watched = np.array(sorted(near - {-1}), int)
         most = 2 + _PART // (3 * len(watched) + 1)
         self.knots = Knots(np.empty(most), watched, np.empty((most, len(watched), 3)))
         self.y, self.v = np.empty((2, len(needed), len(time)))

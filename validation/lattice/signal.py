@@ -18,6 +18,8 @@ from lwa.base.arrays import Array
 from validation.lattice.equations import Motion, power
 from validation.scenes.checks import SceneError
 
+_REGULA_FALSI = 9  # steps, that leave less than 1e-12 of a step of the integrator
+
 _QUANTITIES = {
     "contact": ("force", "compression"),
     "bead": ("force", "displacement", "velocity"),
@@ -38,6 +40,11 @@ class Path(Protocol):
     @property
     def time(self) -> Array:
         """The ends of the steps, from 0 to the duration."""
+        ...
+
+    @property
+    def kinks(self) -> dict[int, Array]:
+        """The times within steps at which contacts open or close, as far as they are known."""
         ...
 
     def __call__(self, beads: Beads, time: Array) -> tuple[Array, Array]: ...
@@ -127,24 +134,31 @@ def signal(motion: Motion, path: Path, kind: str, number: int, quantity: str) ->
         raise SceneError(f"no {kind} has a {quantity}: {wanted}")
     if number not in (scene.contact_sensors if kind == "contact" else scene.bead_sensors):
         raise SceneError(f"number is {number!r}: the scene has no sensor at this {kind}")
-    sensor = Sensor.of(motion, kind, number)
-    times = np.concatenate((path.time, *_kinks(sensor, path)))
-    return Signal(np.unique(times), sensor, quantity, path)
+    contacts = [number] if kind == "contact" else [number - 1, number]
+    kinks = [_kinks(motion, path, i) for i in contacts if 0 <= i < scene.contact_count]
+    times = np.unique(np.concatenate((path.time, *kinks)))
+    return Signal(times, Sensor.of(motion, kind, number), quantity, path)
 
 
-def _kinks(sensor: Sensor, path: Path) -> Iterator[Array]:
-    """Times within steps at which a contact of the sensor opens or closes, by bisection."""
-    time = path.time
-    closed = sensor.compressions(path(sensor.beads, time)[0]) > 0
-    for row, contact in enumerate(closed):
-        step = np.flatnonzero(contact[1:] != contact[:-1])
-        low, high = time[step], time[step + 1]
-        for _ in range(53):
-            middle = (low + high) / 2
-            there = sensor.compressions(path(sensor.beads, middle)[0])[row] > 0
-            before = there == contact[step]
-            low, high = np.where(before, middle, low), np.where(before, high, middle)
-        yield low[(low > time[step]) & (high < time[step + 1])]
+def _kinks(motion: Motion, path: Path, contact: int) -> Array:
+    """Times within steps at which a contact opens or closes; kept by the path for other signals."""
+    if contact not in path.kinks:
+        sensor, time = Sensor.of(motion, "contact", contact), path.time
+
+        def compression(t: Array) -> Array:
+            return np.asarray(sensor.compressions(path(sensor.beads, t)[0])[0])
+
+        d = compression(time)
+        step = np.flatnonzero(d[1:] * d[:-1] < 0)
+        a, b, f, g = time[step], time[step + 1], d[step], d[step + 1]
+        for _ in range(_REGULA_FALSI if len(step) else 0):  # the Illinois variant
+            c = b - g * (b - a) / np.where(g == f, 1.0, g - f)
+            h = compression(c)
+            beyond = h * g < 0
+            a, f = np.where(beyond, b, a), np.where(beyond, g, f / 2)
+            b, g = c, h
+        path.kinks[contact] = b[(b > time[step]) & (b < time[step + 1])]
+    return path.kinks[contact]
 
 
 def recorded(motion: Motion, beads: NDArray[np.int_], y: Array, v: Array) -> dict[str, Array]:

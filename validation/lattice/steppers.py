@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import scipy
 from numpy.typing import NDArray
 
 from lwa.base.arrays import Array
-from validation.lattice.effort import EXCESS, RunProgress, adaptive, beyond
+from validation.lattice.cost import RunProgress, beyond, mean_step, most_steps
 from validation.lattice.equations import Motion
 from validation.lattice.run import IntegrationError, Run, finished
 from validation.lattice.signal import Beads, recorded, sampled
@@ -33,6 +33,7 @@ class NodePath:
     time: Array
     beads: NDArray[np.int_]
     state: Array
+    kinks: dict[int, Array] = field(default_factory=dict)
 
     def __call__(self, beads: Beads, time: Array) -> tuple[Array, Array]:
         """Displacements and velocities (beads, S) at times (S,) within the run."""
@@ -42,8 +43,7 @@ class NodePath:
         return y, v
 
     def _at(self, beads: Beads, time: Array) -> Array:
-        step = np.searchsorted(self.time, time, side="right") - 1
-        step = np.clip(step, 0, len(self.time) - 2)
+        step = np.searchsorted(self.time[1:-1], time, side="right")
         start = self.time[step]
         x = (time - start) / (self.time[step + 1] - start)
         # The barycentric formula (Berrut and Trefethen 2004, eq. 5.4).
@@ -68,8 +68,9 @@ def integrate(motion: Motion, method: str, rtol: float, atol: float, progress: R
     """Integrate a scene with one of `METHODS`; the arguments are those of `simulate`."""
     scales, end, n = motion.scales, motion.scene.duration, motion.size
     y, v = scales.displacement, scales.velocity
-    taken = adaptive(motion.scene, method, rtol, scales.time)
-    taken.check()
+    steps = end / scales.time / mean_step(method, rtol)
+    jacobian = (2 * n) ** 2 * 8 if method == "LSODA" else 0
+    most = most_steps(motion.scene, method, steps, 4, jacobian)
     stepper = getattr(scipy.integrate, method)(
         motion,
         0.0,
@@ -82,10 +83,10 @@ def integrate(motion: Motion, method: str, rtol: float, atol: float, progress: R
     time, beads = sampled(motion)
     nodes, held = chebyshev(_COEFFICIENTS[method]), beads[beads < n]
     ends, states = [0.0], []
-    with progress(taken) as tell:
+    with progress() as tell:
         while stepper.status == "running":
-            if len(ends) > EXCESS * taken.steps:
-                raise IntegrationError(beyond(taken, len(ends), stepper.t))
+            if len(ends) > most:
+                raise IntegrationError(beyond(method, len(ends), stepper.t, end))
             message = stepper.step()
             if stepper.status == "failed":
                 raise IntegrationError(f"integration stopped at t = {stepper.t:g}: {message}")
@@ -100,7 +101,7 @@ def integrate(motion: Motion, method: str, rtol: float, atol: float, progress: R
     records = {"time": time} | recorded(motion, beads, *path(beads, time))
     evaluations = int(stepper.nfev)
     energy, momentum = motion.energy(stepper.y), motion.momentum_drift(stepper.y)
-    moves, steps = evaluations * n, len(ends) - 1
+    moves, made = evaluations * n, len(ends) - 1
     return finished(
-        motion, stepper.y, records, energy, momentum, steps, evaluations, moves, None, path
+        motion, stepper.y, records, energy, momentum, made, evaluations, moves, None, path
     )

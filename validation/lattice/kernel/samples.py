@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from lwa.base.arrays import Array
 from validation.lattice.kernel.arrays import Beads, Chain, Knots, Plan
-from validation.lattice.kernel.compiled import SOURCES, ZERO, cached, compiled, part
+from validation.lattice.kernel.compiled import SOURCES, ZERO, cached, part
 from validation.lattice.kernel.force import NOTHING, power, press, stiffness
 from validation.lattice.kernel.kinks import NEAR, NONE, Quintic, fitted, kink, quintic, ramp
 
@@ -53,7 +53,7 @@ def _compression(chain: Chain, knots: Knots, n: int, q: int) -> tuple[float, flo
     return rest + near[0] - far[0], near[1] - far[1], near[2] - far[2]
 
 
-@compiled
+@part
 def course(chain: Chain, points: Array, knots: Knots, n: int, q: int) -> Quintic:
     """The kink in step n of the contact between the beads of rows q and q + 1, or `NONE`."""
     if points.shape[1] == 0 or not _adjacent(knots.watched, q):
@@ -118,7 +118,7 @@ def _kinked(chain: Chain, points: Array, p: Quintic, unit: float, x: float) -> t
     return unit * y, unit * v
 
 
-@compiled
+@part
 def _polynomial(
     chain: Chain, points: Array, knots: Knots, n: int, q: int, behind: Quintic, ahead: Quintic
 ) -> tuple[Quintic, float, float]:
@@ -163,19 +163,19 @@ def _built(sources: int) -> Any:
         for r in range(len(rows)):
             q, n = rows[r], -1
             behind = ahead = low = NONE
-            c6 = c7 = 0.0
+            start = h = c6 = c7 = push = pull = 0.0
             for s in range(len(time)):
                 if step[s] != n:
                     n = step[s]
+                    start, h = knots.time[n], knots.time[n + 1] - knots.time[n]
+                    push, pull = _units(chain, knots, q, h)
                     behind = course(chain, points, knots, n, q - 1)
                     ahead = course(chain, points, knots, n, q)
                     low, c6, c7 = _polynomial(chain, points, knots, n, q, behind, ahead)
-                h = knots.time[n + 1] - knots.time[n]
-                x = (time[s] - knots.time[n]) / h
-                push, pull = _units(chain, knots, q, h)
-                back_y, back_v = _kinked(chain, points, behind, push, x)
+                x = (time[s] - start) / h
                 more_y, more_v = _kinked(chain, points, ahead, pull, x)
-                y[r, s] = quintic(low, x) + x**6 * (c6 + x * c7) + back_y + more_y
+                back_y, back_v = _kinked(chain, points, behind, push, x)
+                y[r, s] = quintic(low, x) + x * x * x * x * x * x * (c6 + x * c7) + back_y + more_y
                 slope = 4 * low[4] + x * (5 * low[5] + x * (6 * c6 + x * 7 * c7))
                 slope = low[1] + x * (2 * low[2] + x * (3 * low[3] + x * slope))
                 v[r, s] = (slope + back_v + more_v) / h
