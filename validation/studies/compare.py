@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 import click
 
 from lwa.base.arrays import Array
-from validation.lattice.effort import RunProgress, silent
+from validation.lattice.cost import RunProgress, silent
 from validation.pictures.panel import Curve, Panel
 from validation.pulses.pulse import Measured, Pulse, Sampled, compared, dense, derived, first_pulse
 from validation.pulses.sensors import READINGS, Track, record, tracks
