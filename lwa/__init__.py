@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from lwa.cell import Cell, D, Dimer, k
     from lwa.closure.consistency import Closure
     from lwa.closure.motion import Solution
+    from lwa.envelopes.breather import Breather
+    from lwa.envelopes.schrodinger import Envelope, envelope
     from lwa.equation.pde import PDE
     from lwa.equation.terms import Jet, Powers, Terms
     from lwa.expansion.approximants import Resummed
@@ -52,6 +54,7 @@ __all__ = [
     "PDE",
     "Array",
     "BackgroundWave",
+    "Breather",
     "Cell",
     "Closure",
     "Coefficients",
@@ -59,6 +62,7 @@ __all__ = [
     "D",
     "Dimer",
     "Dispersion",
+    "Envelope",
     "EpsilonSeries",
     "ExpandedWave",
     "Expansion",
@@ -94,6 +98,7 @@ __all__ = [
     "TravelingWave",
     "background_wave",
     "canonical_wave",
+    "envelope",
     "expand",
     "general",
     "graded_force",
@@ -122,6 +127,8 @@ _MODULES = {
     "wave.physical": "PhysicalWave",
     "wave.closed": "CompactWave LoadedWave",
     "base.exact": "InputError Quantity",
+    "envelopes.breather": "Breather",
+    "envelopes.schrodinger": "Envelope envelope",
     "expansion.approximants": "Resummed",
     "expansion.expand": "Expansion expand",
     "expansion.physical": "ExpandedWave",
