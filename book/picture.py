@@ -1,4 +1,4 @@
-"""The picture of page one: the paper's beads, the pulse that runs down them, the theory on top.
+"""The README's picture: the paper's beads, the pulse that runs down them, the theory on top.
 
 A chain of steel and PTFE beads is struck at 1.37 m/s, as in Porter et al. 2008. Drawn are the
 beads, displaced more than they are, and the force in each contact. The line is the theory's wave:
@@ -23,10 +23,9 @@ from matplotlib.collections import PatchCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
-from lwa import Cell, Material, Sphere, homogenize
+from lwa import Cell, Material, PhysicalWave, Sphere, homogenize
 from lwa.base.arrays import Array
 from validation import Scene, measure, simulate
-from validation.waves.theory import Compacton
 
 HERE = Path(__file__).parent
 STEEL = Sphere("0.45e-3", "2.38e-3", Material(E="193e9", nu="0.3"))
@@ -51,7 +50,7 @@ class Passage:
     force: Array
     displacement: Array
     places: Array
-    theory: Compacton
+    theory: PhysicalWave
     lattice_speed: float
 
     @property
@@ -59,7 +58,7 @@ class Passage:
         """What is drawn, to five digits."""
         values = {"time": self.times, "force": self.force, "place": self.places}
         rounded = {name: [float(f"{x:.5g}") for x in v.ravel()] for name, v in values.items()}
-        return rounded | {"speed": float(f"{self.theory.speed:.5g}")}
+        return rounded | {"speed": float(f"{float(self.theory.speed):.5g}")}
 
 
 def passage() -> Passage:
@@ -78,13 +77,13 @@ def passage() -> Passage:
     times = np.linspace(*arrivals, FRAMES)
     heights = run.bead_force[FIRST:LAST].max(axis=1)
     wave = homogenize(cell, k="3/2").pde.traveling_wave()
-    theory = Compacton.of_bead_force(wave, float(heights.mean()))
+    theory = wave.at_force(float(heights.mean()), of="bead")
     speed = (LAST - FIRST) * D / (arrivals[1] - arrivals[0])
     return Passage(
         times,
         _at(times, run.time, run.contact_force),
         _at(times, run.time, run.bead_displacement) / D,
-        FIRST + theory.speed * (times - times[0]) / D,
+        FIRST + float(theory.speed) * (times - times[0]) / D,
         theory,
         speed,
     )
@@ -101,8 +100,8 @@ def draw(axes: Axes, seen: Passage, moment: int) -> None:
     top = 1.15 * seen.force.max()
     axes.bar(np.arange(len(force)) + 0.5, force, width=0.55, color="#56B4E9")
     x = np.linspace(-1, len(force) + 1, 1201)
-    D = seen.theory.spacing
-    line = seen.theory.contact_force(D * (x - seen.places[moment]))
+    D = float(seen.theory.wave.D)
+    line = seen.theory.along(D * (x - seen.places[moment]), of="contact")
     axes.plot(x, np.where(line > 1e-3 * top, line, np.nan), color="#D55E00", ls="-", lw=1.6)
     beads = [Circle((i + x, 0), 0.5) for i, x in enumerate(moved)]
     row = axes.inset_axes((0, 0, 1, 0.29))
@@ -126,7 +125,7 @@ def main() -> None:
     """Draw the README's picture."""
     seen = passage()
     still(seen).savefig(HERE / "chain.png", dpi=100, metadata={"Comment": json.dumps(seen.numbers)})
-    print(f"lattice {seen.lattice_speed:.2f} m/s, theory {seen.theory.speed:.2f} m/s")
+    print(f"lattice {seen.lattice_speed:.2f} m/s, theory {float(seen.theory.speed):.2f} m/s")
 
 
 if __name__ == "__main__":

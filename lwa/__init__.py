@@ -31,15 +31,14 @@ if TYPE_CHECKING:
     from lwa.expansion.radiation import Radiation
     from lwa.expansion.series import EpsilonSeries
     from lwa.expansion.strike import Strike, graded_force, pulse_of_strike, transmitted_force
-    from lwa.law import Law, Power, general
+    from lwa.law import ContactLaw, Law, Power, general
     from lwa.linear.dispersion import Dispersion
     from lwa.linear.loaded import LoadedChain
     from lwa.spheres import hertz
     from lwa.spheres.hertz import Material, Sphere
     from lwa.theory import Theory, homogenize
     from lwa.wave.background import BackgroundWave, background_wave
-    from lwa.wave.closed import CompactWave, LoadedWave
-    from lwa.wave.curves import PhysicalWaves
+    from lwa.wave.closed import CompactWave
     from lwa.wave.kdv import KdV
     from lwa.wave.numeric import NumericWave
     from lwa.wave.physical import PhysicalWave
@@ -59,6 +58,7 @@ __all__ = [
     "Closure",
     "Coefficients",
     "CompactWave",
+    "ContactLaw",
     "D",
     "Dimer",
     "Dispersion",
@@ -73,7 +73,6 @@ __all__ = [
     "Ladder",
     "Law",
     "LoadedChain",
-    "LoadedWave",
     "Material",
     "Monomial",
     "NoSolitaryWave",
@@ -81,7 +80,6 @@ __all__ = [
     "NumericWave",
     "Partition",
     "PhysicalWave",
-    "PhysicalWaves",
     "Power",
     "Powers",
     "PrecompressedWave",
@@ -121,11 +119,10 @@ _MODULES = {
     "cell": "Cell D Dimer k",
     "closure.consistency": "Closure",
     "closure.motion": "Solution",
-    "wave.curves": "PhysicalWaves",
     "base.arrays": "Array",
     "wave.numeric": "NumericWave",
     "wave.physical": "PhysicalWave",
-    "wave.closed": "CompactWave LoadedWave",
+    "wave.closed": "CompactWave",
     "base.exact": "InputError Quantity",
     "envelopes.breather": "Breather",
     "envelopes.schrodinger": "Envelope envelope",
@@ -135,7 +132,7 @@ _MODULES = {
     "expansion.radiation": "Radiation",
     "expansion.series": "EpsilonSeries",
     "expansion.strike": "Strike graded_force pulse_of_strike transmitted_force",
-    "law": "Law Power general",
+    "law": "ContactLaw Law Power general",
     "linear.dispersion": "Dispersion",
     "linear.loaded": "LoadedChain",
     "equation.pde": "PDE",

@@ -1,6 +1,6 @@
 """The command `lwa`, also as `python -m lwa`."""
 
-from lwa.command.start import start
+from lwa.command.interrupt import start
 
 
 def main() -> None:

@@ -13,7 +13,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
+from typing import Any, ClassVar, Self
 
 import mpmath
 import sympy as sp
@@ -37,15 +37,24 @@ LARGE = 32
 
 
 class ContactLaw(Value):
-    """What all laws have: F, its derivatives, its energy and its symbols."""
+    """A contact force F(δ): its derivatives, its energy, and how the contacts of a cell share it.
+
+    `Power` and `Law` are its two kinds. ``homogeneous`` laws obey F(sδ) = s^k F(δ).
+    """
 
     F: sp.Expr
     delta: sp.Symbol
+    homogeneous: ClassVar[bool] = False
 
     @property
     def symbols(self) -> tuple[sp.Symbol, ...]:
         """The law's own symbols, by name."""
         return tuple(sorted(self.F.free_symbols - {self.delta}, key=str))
+
+    @property
+    def exponent(self) -> sp.Expr:
+        """The k of A_i^{-1/k} by which unlike contacts share the strain; 1 where all are alike."""
+        return sp.S.One
 
     def slope(self, n: int = 1) -> sp.Expr:
         """F^{(n)}(δ)."""
@@ -57,7 +66,7 @@ class ContactLaw(Value):
         if self.F.atoms(AppliedUndef):
             s = sp.Dummy("s", positive=True)
             return sp.Integral(self.F.subs(self.delta, s), (s, 0, self.delta))
-        parts = sp.Add.make_args(self.F) if _large(self.F) else (self.F,)
+        parts = sp.Add.make_args(self.F) if _unexpanded(self.F) else (self.F,)
         return sp.Add(*(_integral(part, self.delta) for part in parts))
 
     def phi(self, n: int) -> sp.Expr:
@@ -73,6 +82,106 @@ class ContactLaw(Value):
         """F^{(n)} at a compression."""
         return self.slope(n).subs(self.delta, delta) if n else self.F.subs(self.delta, delta)
 
+    def evaluated(self, value: sp.Expr, delta: sp.Expr) -> sp.Expr:
+        """An expression in φ_2, φ_3, … at a compression."""
+        return value.xreplace({s: self._phi_at(s, delta) for s in value.free_symbols})
+
+    def _phi_at(self, symbol: sp.Symbol, delta: sp.Expr) -> sp.Expr:
+        n = symbol.name[3:]
+        if not n.isdecimal() or symbol != phi_symbol(int(n)):
+            return symbol
+        return delta ** (int(n) - 1) * self.at(delta, int(n)) / self.at(delta, 1)
+
+    @property
+    def formless(self) -> bool:
+        """Whether F is a function without an expression, as that of `general`."""
+        return bool(self.F.atoms(AppliedUndef))
+
+    def of_strain(self, p: sp.Expr, D: sp.Expr, n: int = 0) -> sp.Expr:
+        """F^{(n)} at a strain, in the units of the wave equation u_ττ = F′(u_x) u_xx; W for n = -1.
+
+        It is F(Dp)/D, for a power p^k/k.
+        """
+        if n < 0:
+            return self.energy.subs(self.delta, D * p) / D**2
+        return self.at(D * p, n) * D ** (n - 1)
+
+    def weight(self, p: sp.Expr, D: sp.Expr, a: sp.Expr, b: sp.Expr) -> sp.Expr:
+        """p^a (p F′)^b at a strain, the weight of a jet; p^{a + bk} under a power."""
+        return self.at(D * p, 1) ** b * p ** (a + b)
+
+    def checked(self, cell: Cell) -> None:
+        """Raise `lwa.InputError` unless the contacts of the cell can share the law.
+
+        The shares of unlike contacts would depend on the strain under a law that is no power.
+        """
+        if len(set(cell.stiffnesses)) > 1:
+            raise InputError(
+                "the contacts differ in stiffness, and their shares of the strain would then "
+                "depend on the strain: only a power law allows that"
+            )
+        own = {s.name for s in cell.symbols}
+        for symbol in (self.delta, *self.symbols):
+            if symbol.name in own:
+                raise InputError(f"{symbol.name} names both the law's and a property of the cell")
+        for name in sorted(own | {s.name for s in self.symbols}):
+            if name[:3] == "phi" and name[3:].isdecimal():
+                raise InputError(f"{name!r} means φ_{name[3:]} of the law here: use another name")
+
+    def compressions(self, cell: Cell, force: sp.Expr) -> tuple[sp.Expr, ...]:
+        """The compression of each contact of a cell that pushes with this force."""
+        return (self.compression(cell, force),) * cell.size
+
+    def compression(self, cell: Cell, force: sp.Expr) -> sp.Expr:
+        """The mean compression of a cell's contacts that push with this force, to 35 digits.
+
+        Raises `lwa.InputError` for a force beyond the law's reach, and for symbols.
+        """
+        ratio = force / cell.stiffnesses[0]
+        if free := ratio.free_symbols | self.F.free_symbols - {self.delta}:
+            raise InputError(
+                f"{min(map(str, free))!r} has no value: the load under {self.F} needs numbers"
+            )
+        with mpmath.workdps(50):
+            F, slope = (
+                sp.lambdify(self.delta, x, "mpmath") for x in (self.F - ratio, self.slope())
+            )
+            found = _where_it_grows_to_zero(F, slope)
+            if found is None:
+                raise InputError(f"force is {shorten(force)}: the law does not reach it")
+            return sp.Float(found, 35)
+
+    def replaced(self, new: Mapping[sp.Symbol, sp.Expr]) -> Self:
+        """The law with the values that `lwa.cell.substitution` gives for its symbols."""
+        raise NotImplementedError
+
+
+def _where_it_grows_to_zero(F: Callable[[Any], Any], slope: Callable[[Any], Any]) -> Any:
+    """δ > 0 with F(δ) = 0, F growing from δ = 0 to there; None if F stops growing before.
+
+    Steps that leave the interval on which F is real and grows (its pole, its maximum) are halved.
+    """
+    low, step, least = mpmath.mpf(0), mpmath.mpf(2) ** -20, mpmath.mpf(2) ** -150
+    below = F(low)
+    while True:
+        try:
+            above, grows = F(low + step), slope(low + step)
+        except ZeroDivisionError:
+            above = grows = mpmath.nan
+        if mpmath.im(above) == mpmath.im(grows) == 0 and above > below and grows > 0:
+            if above >= 0:
+                break
+            low, below, step = low + step, above, step * mpmath.mpf("1.2")
+        else:
+            step /= 2
+        if step < least * max(low, 1) or low > 2**40:
+            return None
+    high = low + step
+    while high - low > mpmath.eps * high:  # F may be anything between: bisection
+        middle = (low + high) / 2
+        low, high = (middle, high) if F(middle) < 0 else (low, middle)
+    return high
+
 
 @dataclass(frozen=True)
 class Power(ContactLaw):
@@ -85,11 +194,16 @@ class Power(ContactLaw):
     k: sp.Expr
     F: sp.Expr = field(init=False, repr=False)
     delta: sp.Symbol = field(init=False, repr=False)
+    homogeneous: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         k = exponent(self.k)
         for name, value in (("k", k), ("F", DELTA**k), ("delta", DELTA)):
             object.__setattr__(self, name, value)
+
+    @property
+    def exponent(self) -> sp.Expr:
+        return self.k
 
     @cached_property
     def energy(self) -> sp.Expr:
@@ -98,14 +212,32 @@ class Power(ContactLaw):
     def phi(self, n: int) -> sp.Expr:
         return sp.Mul(*(self.k - j for j in range(1, n)))
 
+    def of_strain(self, p: sp.Expr, D: sp.Expr, n: int = 0) -> sp.Expr:
+        up, down = (sp.Mul(*(self.k - j for j in r)) for r in (range(1, n), range(n, 1)))
+        return up / down * p ** (self.k - n)
+
+    def weight(self, p: sp.Expr, D: sp.Expr, a: sp.Expr, b: sp.Expr) -> sp.Expr:
+        return p ** (a + b * self.k)
+
+    def evaluated(self, value: sp.Expr, delta: sp.Expr) -> sp.Expr:
+        return value
+
+    def checked(self, cell: Cell) -> None:
+        exponent(self.k, cell)
+
+    def compressions(self, cell: Cell, force: sp.Expr) -> tuple[sp.Expr, ...]:
+        return tuple((force / A) ** (1 / self.k) for A in cell.stiffnesses)
+
+    def compression(self, cell: Cell, force: sp.Expr) -> sp.Expr:
+        return (force / cell.stiffness(self.k)) ** (1 / self.k)
+
     def replaced(self, new: Mapping[sp.Symbol, sp.Expr]) -> Power:
-        """With what `lwa.cell.substitution` gives for its symbols."""
         return Power(self.k.xreplace(new))
 
 
 @dataclass(frozen=True)
 class Law(ContactLaw):
-    """F(δ), a SymPy expression in the symbol ``delta`` with F′ ≠ 0; `general` is one without form.
+    """F(δ), a SymPy expression in the symbol ``delta`` with F′ ≠ 0; see also `general`.
 
     Raises `lwa.InputError` for anything else: a text is not evaluated.
 
@@ -130,25 +262,9 @@ class Law(ContactLaw):
             raise InputError(f"F is {shorten(self.F)}: a force that depends on δ is wanted")
 
     def replaced(self, new: Mapping[sp.Symbol, sp.Expr]) -> Law:
-        """With what `lwa.cell.substitution` gives for its symbols."""
         for symbol in self.symbols:
             _uncaptured(new.get(symbol, symbol), str(symbol), self.delta)
         return Law(self.F.xreplace(dict(new)), self.delta)
-
-    def evaluated(self, value: sp.Expr, delta: sp.Expr) -> sp.Expr:
-        """An expression in φ_2, φ_3, … at a compression."""
-        return value.xreplace({s: self._phi_at(s, delta) for s in value.free_symbols})
-
-    def _phi_at(self, symbol: sp.Symbol, delta: sp.Expr) -> sp.Expr:
-        n = symbol.name[3:]
-        if not n.isdecimal() or symbol != phi_symbol(int(n)):
-            return symbol
-        return delta ** (int(n) - 1) * self.at(delta, int(n)) / self.at(delta, 1)
-
-    @property
-    def formless(self) -> bool:
-        """Whether F is some function that is not given."""
-        return bool(self.F.atoms(AppliedUndef))
 
 
 def general() -> Law:
@@ -171,11 +287,20 @@ def _large(*values: sp.Expr) -> set[sp.Expr]:
     return {power for power in powers if power.exp.is_Rational and abs(power.exp) > LARGE}
 
 
+def _unexpanded(F: sp.Expr) -> bool:
+    """Whether F has large powers or poles, which SymPy's integral would multiply out.
+
+    The terms of a multiplied out pole cancel next to it.
+    """
+    powers = (power.exp for power in F.atoms(sp.Pow) if power.exp.is_Rational)
+    return any(abs(e) > LARGE or e < -1 for e in powers)
+
+
 def _integral(value: sp.Expr, x: sp.Symbol) -> sp.Expr:
-    """∫ value dx; of a large power of a linear base by its own rule, not multiplied out."""
+    """∫ value dx; that of a power of a linear base by its own rule."""
     factor, power = value.as_independent(x, as_Add=False)
     base, e = power.as_base_exp()
-    if _large(power) and not base.diff(x).has(x):
+    if _unexpanded(power) and e.is_Rational and not base.diff(x).has(x):
         return factor * base ** (e + 1) / (base.diff(x) * (e + 1))
     return sp.integrate(value, x, conds="none")
 
@@ -214,12 +339,12 @@ NAMES = ("power", *_NAMED, "general")
 
 
 def demand_one(k: Any, law: ContactLaw) -> None:
-    """Refuse an exponent beside a law, of which one says all."""
+    """Raise `lwa.InputError` for an exponent beside a law, which already determines the force."""
     if k != symbol_k:
         raise InputError(f"k is {shorten(k)} and law {shorten(law)}: one of them is wanted")
 
 
-def named(name: str, *parameters: Any) -> Power | Law:
+def named(name: str, *parameters: Any) -> ContactLaw:
     """A law by its name; parameters that are not given are symbols.
 
     - power: δ^k.
@@ -265,52 +390,12 @@ def _at_most(name: str, parameters: Sequence[Any], letters: tuple[str, ...]) -> 
         raise InputError(f"law {name} has {len(parameters)} parameters: {wanted} are wanted")
 
 
-def for_cell(law: Any, cell: Cell) -> Power | Law:
-    """The law, refused where the contacts of the cell cannot share it.
+def for_cell(law: Any, cell: Cell) -> ContactLaw:
+    """The law, if it is one and the contacts of the cell can share it.
 
-    Raises `lwa.InputError` for what is no law, and unlike contacts under a law that is no power:
-    their shares of the strain would depend on the strain.
+    Raises `lwa.InputError` for anything else.
     """
-    if not isinstance(law, Power | Law):
+    if not isinstance(law, ContactLaw):
         raise InputError(f"law is {shorten(law)}: Power(k), Law(F, delta) or general() is wanted")
-    if isinstance(law, Power):
-        exponent(law.k, cell)
-        return law
-    if len(set(cell.stiffnesses)) > 1:
-        raise InputError(
-            "the contacts differ in stiffness, and their shares of the strain would then depend "
-            "on the strain: only a power law allows that"
-        )
-    own = {s.name for s in cell.symbols}
-    for symbol in (law.delta, *law.symbols):
-        if symbol.name in own:
-            raise InputError(f"{symbol.name} names both the law's and a property of the cell")
-    for name in sorted(own | {s.name for s in law.symbols}):
-        if name[:3] == "phi" and name[3:].isdecimal():
-            raise InputError(f"{name!r} means φ_{name[3:]} of the law here: use another name")
+    law.checked(cell)
     return law
-
-
-def compression(cell: Cell, law: Power | Law, force: sp.Expr) -> sp.Expr:
-    """The mean compression at which the contacts of a cell push with this force.
-
-    Under a law that is no power it is a number of 35 digits.
-
-    Raises `lwa.InputError` where such a law does not reach the force, or something is a symbol.
-    """
-    if isinstance(law, Power):
-        return (force / cell.stiffness(law.k)) ** (1 / law.k)
-    ratio = force / cell.stiffnesses[0]
-    if free := ratio.free_symbols | law.F.free_symbols - {law.delta}:
-        raise InputError(
-            f"{min(map(str, free))!r} has no value: the load under {law.F} needs numbers"
-        )
-    with mpmath.workdps(40):
-        F = sp.lambdify(law.delta, law.F - ratio, "mpmath")
-        high = mpmath.mpf(2) ** -20
-        low = mpmath.mpf(0)
-        while (top := F(high)).imag == 0 and top < 0 and high < 2**40:
-            low, high = high, high * mpmath.mpf("1.2")
-        if not (top.imag == 0 and top >= 0):
-            raise InputError(f"force is {shorten(force)}: the law does not reach it")
-        return sp.Float(mpmath.findroot(F, (low, high), solver="anderson"), 35)

@@ -19,7 +19,7 @@ from lwa.cell import k as symbol_k
 from lwa.closure.consistency import BRANCHES, CLOSURES, FIELDS, Closure, solve
 from lwa.equation.pde import PDE
 from lwa.equation.terms import STRAIN, Terms, terms
-from lwa.law import Law, Power, demand_one, for_cell
+from lwa.law import ContactLaw, demand_one, for_cell
 
 SLOW_ORDER = 12
 """The order from which a derivation shows its progress."""
@@ -45,7 +45,7 @@ class Theory(Value):
         return self.closure.ring.k
 
     @property
-    def law(self) -> Power | Law:
+    def law(self) -> ContactLaw:
         """The contact law."""
         return self.closure.ring.law
 
@@ -119,7 +119,7 @@ def homogenize(
     order: int = 4,
     *,
     k: Any = symbol_k,
-    law: Power | Law | None = None,
+    law: ContactLaw | None = None,
     closure: str = "linear",
     branch: str = "acoustic",
     field: str = "first",
@@ -162,13 +162,13 @@ def homogenize(
     return Theory(solve(ring, order, closure, field, iter if order < SLOW_ORDER else shown))
 
 
-def _ring(cell: Cell, k: Any, law: Power | Law | None, branch: str, order: int) -> Coefficients:
+def _ring(cell: Cell, k: Any, law: ContactLaw | None, branch: str, order: int) -> Coefficients:
     if law is None:
         return Coefficients(cell, exponent(k, cell), branch)
     demand_one(k, law)
     law = for_cell(law, cell)
-    if isinstance(law, Power):
-        return Coefficients(cell, law.k, branch)
+    if law.homogeneous:
+        return Coefficients(cell, law.exponent, branch)
     if branch != "acoustic":
         raise InputError(
             f"branch is {branch!r}: its contacts also pull, and its unit of time is that of a "

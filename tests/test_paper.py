@@ -10,7 +10,7 @@ import pytest
 import sympy as sp
 
 from lwa import D, Dimer, Jet, homogenize, k
-from lwa.wave.traveling import V
+from lwa.base.quantities import SPEED as V
 
 m1, m2 = sp.symbols("m1 m2", positive=True)
 omega = sp.Symbol("omega", positive=True)

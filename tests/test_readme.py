@@ -42,5 +42,5 @@ def test_the_picture_shows_what_its_script_computes():
     for name, values in numbers.items():  # five digits, and the integration's error
         largest = max(values) if isinstance(values, list) else values
         assert drawn[name] == pytest.approx(values, rel=0, abs=1e-4 * largest)
-    for speed in (now.theory.speed, now.lattice_speed):
+    for speed in (float(now.theory.speed), now.lattice_speed):
         assert f"at {speed:.1f} m/s" in README

@@ -22,9 +22,7 @@ if TYPE_CHECKING:
     from validation.waves.solver import exact_wave
 
 __all__ = [
-    "Bead",
     "ExactWave",
-    "Material",
     "Pulse",
     "Run",
     "Scene",
@@ -40,7 +38,6 @@ _PLACES = {
     "lattice.run": ("Run",),
     "lattice.simulate": ("simulate", "simulate_many"),
     "pulses.pulse": ("Pulse", "measure"),
-    "scenes.materials": ("Bead", "Material"),
     "scenes.scene": ("Scene", "SceneError"),
     "studies.records": ("load",),
     "waves.profile": ("ExactWave",),

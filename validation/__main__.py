@@ -1,6 +1,6 @@
 """The command `lwa-validate`, also as `python -m validation`."""
 
-from lwa.command.start import start
+from lwa.command.interrupt import start
 
 
 def main() -> None:

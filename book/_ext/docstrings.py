@@ -4,9 +4,9 @@ What they use, and nothing else: paragraphs, "Parameters" with a line of dashes,
 aligned lines, indented blocks (formulas), doctests, and `names` or ``code`` between backticks. All
 else is text, so that a ``*``, ``|`` or trailing ``_`` of a formula stays itself.
 
-Three directives are for the pages about the interface: ``names`` documents classes, functions and
-values by their full names, ``studies`` all studies of `validation`, and ``methods`` tells what the
-docstrings of modules say of method and source, without their members.
+Three directives are for the pages about the interface: ``names`` documents public names by
+themselves or by package, ``studies`` all studies of `validation`, and ``methods`` the method and
+source in each module's docstring, without the module's members.
 """
 
 from __future__ import annotations
@@ -15,6 +15,8 @@ import re
 from collections.abc import Iterator
 from importlib import import_module
 from inspect import isroutine
+from pkgutil import walk_packages
+from types import ModuleType
 
 from docutils import nodes
 from sphinx.application import Sphinx
@@ -100,13 +102,24 @@ def _escaped(text: str) -> str:
 
 
 class Names(SphinxDirective):
-    """What each name is and does; of a class its public members too."""
+    """Documentation of names, or of all public names of a package; of classes with members."""
 
     has_content = True
 
     def run(self) -> list[nodes.Node]:
-        names = " ".join(self.content).split()
+        names = [name for entry in " ".join(self.content).split() for name in _public(entry)]
         return self.parse_text_to_nodes("\n".join(line for n in names for line in _directive(n)))
+
+
+def _public(name: str) -> Iterator[str]:
+    """The name itself, or the names that a package exports, its modules aside."""
+    if "." in name:
+        yield name
+        return
+    package = import_module(name)
+    for exported in sorted(package.__all__, key=str.lower):
+        if not isinstance(getattr(package, exported), ModuleType):
+            yield f"{name}.{exported}"
 
 
 def _directive(name: str) -> Iterator[str]:
@@ -131,17 +144,27 @@ class Studies(SphinxDirective):
 
 
 class Methods(SphinxDirective):
-    """The docstring of each module under its name."""
+    """Docstrings of all modules of packages, each under the module's name."""
 
     has_content = True
 
     def run(self) -> list[nodes.Node]:
-        names = " ".join(self.content).split()
+        found = (name for entry in " ".join(self.content).split() for name in _modules(entry))
         text = "\n".join(
             f"{name}\n{'^' * len(name)}\n\n.. automodule:: {name}\n   :no-members:\n"
-            for name in names
+            for name in found
         )
         return self.parse_text_to_nodes(text, allow_section_headings=True)
+
+
+def _modules(package: str) -> Iterator[str]:
+    """Modules of a package with more than one sentence to say, in the order of their names."""
+    root = import_module(package)
+    for info in walk_packages(root.__path__, f"{package}."):
+        if not info.name.endswith("__main__"):
+            text = import_module(info.name).__doc__ or ""
+            if "\n" in text.strip():
+                yield info.name
 
 
 class StudyDocumenter(FunctionDocumenter):

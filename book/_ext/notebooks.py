@@ -108,7 +108,8 @@ def shared(code: str, folder: Path) -> Iterator[str]:
 def plain(text: str, book: Book) -> str:
     """MyST's text as Markdown: roles, directives, labels and targets rendered."""
     text = _HTML.sub("", _TARGET.sub("", text))
-    text = _FENCE.sub(_directive, text)
+    while (rendered := _FENCE.sub(_directive, text)) != text:
+        text = rendered
     text = _LABELLED.sub(
         lambda m: f"$$\n{m[1]} \\tag{{{book.equations.get(m[2], m[2])}}}\n$$", text
     )

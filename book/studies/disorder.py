@@ -30,7 +30,7 @@ from lwa.base.arrays import Array
 from lwa.base.progress import Progress
 from validation.lattice.run import Run
 from validation.lattice.simulate import simulate, simulate_many
-from validation.pulses.pulse import Measured, measure
+from validation.pulses.pulse import Measured, highest_pulse
 from validation.report.command import EXPONENT, option, study
 from validation.report.panel import Curve, Panel
 from validation.report.result import Report
@@ -38,7 +38,7 @@ from validation.report.table import Column, Finding, Table
 from validation.scenes.chains import struck
 from validation.scenes.checks import between, integer
 from validation.scenes.scene import Scene
-from validation.waves.theory import Compacton, theory_at
+from validation.waves.theory import of_momentum, theory_at
 
 PLACES = 10  # contacts at which the pulse is measured, equally far from each other
 NODES = 5  # excesses of either sign at which the loss at a single bead is measured
@@ -126,7 +126,7 @@ def single_losses(excesses: Sequence[float] | Array, k: float = 1.5) -> list[Mea
 
 def _struck(masses: Sequence[float], k: float, sensors: Sequence[int]) -> Scene:
     """A struck chain, run for twice the flight of a pulse with all of the blow's momentum."""
-    duration = 2 * len(masses) / Compacton.of_momentum(theory_at(str(k), 1), 1.0).speed
+    duration = 2 * len(masses) / float(of_momentum(theory_at(str(k), 1), 1.0).speed)
     samples = math.ceil(30 * duration * max(1.0, k / 1.5))
     return struck(
         masses, len(masses), k, contact_sensors=sensors, duration=duration, samples=samples
@@ -198,7 +198,8 @@ def _slopes(places: Array, logs: Array) -> Array:
 
 def _log_forces(run: Run) -> Array:
     """ln F at the sensors."""
-    return np.log([measure(run.time, force).peak for force in run.contact_force])
+    signals = (run.signal("contact", i) for i in run.scene.contact_sensors)
+    return np.log([highest_pulse(force).peak for force in signals])
 
 
 def _mean(values: Array) -> Measured:

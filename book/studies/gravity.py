@@ -1,4 +1,4 @@
-"""A pulse running down a chain under its own weight: how its width grows with depth.
+"""Width of a pulse against depth in a chain under its own weight.
 
 The beads stand on a wall; units are their mean mass, A, D and g. Under x beads the load is F0 = x
 and the speed of sound, in sites per unit of time, c0(x) = √(k x^{(k-1)/k}).
@@ -16,14 +16,14 @@ in time, and c0³ S = 2k/(3-k) x for k < 3:
 
     width = w (3 I k x / (3-k))^{1/3},    w the FWHM of the integral above in z,
 
-(2k/(3-k))^{1/3} times that at constant speed: what has spread above is stretched as sound speeds
-up. From k = 3 on most is spread at the top, and the exponent is no longer 1/3. Where the waves are
-not short beside x they are no rays: a correction of x^{-2/3} on the way, and one from the top that
-falls as x^{-(3-k)/3k}, where it is of order ω², or as x^{-2(3-k)/3(k+1)}, where of order
-ω^{4k/(k+1)}. The fit holds the first and the last, and the error bars what the other makes of it.
+(2k/(3-k))^{1/3} times the width at constant speed: sound speeds up, which stretches the front. From
+k = 3 on most of the spreading happens at the top, and the exponent is no longer 1/3. Waves that are
+not short beside x are no rays: this gives a correction of x^{-2/3} on the way, and one from the top
+of x^{-(3-k)/3k} if it is of order ω², or of x^{-2(3-k)/3(k+1)} if of order ω^{4k/(k+1)}. The fit
+has the first and the last of these; its errors contain the change by the other.
 
-**A strong blow** makes the solitary wave of the load at its depth (`lwa.wave.background`), until
-that is as wide as the front of a weak blow, which the pulse then follows.
+**A strong blow** makes the solitary wave of the load at its depth (`lwa.background_wave`), until
+this wave is as wide as the front of a weak blow, which the pulse then follows.
 """
 
 from __future__ import annotations
@@ -44,8 +44,8 @@ from lwa.command.terminal import quantities
 from lwa.wave.background import BackgroundWave
 from validation.lattice.run import Run
 from validation.lattice.simulate import simulate, twice
-from validation.pulses.pulse import Measured, measure
-from validation.pulses.steady import leading_pulse
+from validation.pulses.pulse import Measured, highest_pulse, leading_pulse
+from validation.pulses.sensors import tracks
 from validation.report.command import EXPONENT, option, study
 from validation.report.panel import Curve, Panel
 from validation.report.result import Report
@@ -56,18 +56,18 @@ from validation.scenes.checks import between, integer
 from validation.scenes.scene import Scene
 from validation.waves.profile import summit
 
-CHAINS = ((1,), (1, "1/2"))  # masses of the cells that are measured unless others are given
+CHAINS = ((1,), (1, "1/2"))  # masses of the default cells
 WEAK, STRONG = 1e-4, (10.0, 100.0, 1000.0)  # velocities of the struck bead
-FIRST = 100  # beads above the first bead by which the width of a weak blow's front is fitted
-_PLACES = 24  # of a weak blow
-_TOP, _FEW = 20, 7  # beads above the first place of a strong blow, and their number
+FIRST = 100  # beads above the first place of the fit of a weak blow's front
+_PLACES = 24  # places of a weak blow
+_TOP, _FEW = 20, 7  # beads above the first place of a strong blow; number of its places
 _SAMPLES = 40.0  # per unit of time
 _TOLERANCES = (1e-5, 1e-4)
 
 
 @cache
 def front_width(k: float) -> float:
-    """w, the FWHM in z of the first lobe of the front (see the module).
+    """FWHM w in z of the first lobe of a weak blow's front.
 
     >>> round(front_width(1.0), 9), round(front_width(1.5), 9)  # Airy's function, Hertz contacts
     (2.278027519, 2.235263174)
@@ -82,14 +82,16 @@ def front_width(k: float) -> float:
         return float((wave @ ds).real) - less
 
     top, peak = summit(np.vectorize(front), np.linspace(-2.0, 0.0, 41))
-    before, behind = (scipy.optimize.brentq(front, top, other, (peak / 2,), xtol=1e-11)
-                      for other in (top - 1.6, top + 4))  # fmt: skip
+    before, behind = (
+        scipy.optimize.brentq(front, top, other, (peak / 2,), xtol=1e-11)
+        for other in (top - 1.6, top + 4)
+    )
     return float(behind - before)
 
 
 @dataclass(frozen=True)
 class Upright:
-    """A chain of so many beads under its own weight."""
+    """A chain under its own weight, of ``beads`` beads that repeat the cell."""
 
     cell: Cell
     k: float
@@ -97,45 +99,55 @@ class Upright:
 
     @cached_property
     def masses(self) -> tuple[float, ...]:
-        """As floats, in units of their mean."""
+        """Masses as floats, in units of their mean."""
         return tuple(float(mass * self.cell.size / self.cell.mass) for mass in self.cell.masses)
 
     @cached_property
     def theory(self) -> BackgroundWave:
-        """Its waves on a load."""
+        """The theory's waves of the chain under load."""
         return background_wave(self.cell, law=Power(self.k))
 
     def sound(self, x: Any) -> Any:
-        """c0(x)."""
+        """Speed of sound c0(x)."""
         return np.sqrt(self.k * x ** ((self.k - 1) / self.k))
 
     @cached_property
     def prefactor(self) -> float:
-        """Of x^{1/3} in the front's width."""
+        """Prefactor of x^{1/3} in the front's width."""
         spread = 3 * float(self.theory.I) * self.k / (3 - self.k)
         return front_width(self.k) * math.pow(spread, 1 / 3)
 
     def places(self, first: int, count: int) -> Array:
-        """Sites run at the first beads of some cells, as far from each other in ln x."""
+        """Sites run at the first beads of some cells, equally spaced in ln x."""
         size = len(self.masses)
         return np.unique(np.geomspace(first, 0.9 * self.beads, count).astype(int) // size * size)
 
     def blown(self, velocity: float, **sensors: Any) -> Scene:
-        """Struck at the top, until sound has come almost to the end."""
+        """The chain, struck at the top, until sound is near the end."""
         flight = 2 * self.k / (self.k + 1) * self.beads / float(self.sound(self.beads))
         return struck(
-            self.masses, self.beads, self.k, wall=1.0, gravity=1.0, velocities=(velocity,),
-            duration=0.97 * flight, samples=math.ceil(_SAMPLES * flight), **sensors,
-        )  # fmt: skip
+            self.masses,
+            self.beads,
+            self.k,
+            wall=1.0,
+            gravity=1.0,
+            velocities=(velocity,),
+            duration=0.97 * flight,
+            samples=math.ceil(_SAMPLES * flight),
+            **sensors,
+        )
 
     def fronts(self) -> tuple[Array, Array, Array]:
-        """x and the width in sites of the velocity, and that of a less accurate run; means over a
-        cell."""
+        """Depth x, width of the velocity in sites, and this width in a less accurate run.
+
+        Means over a cell.
+        """
         beads = np.add.outer(self.places(FIRST, _PLACES), np.arange(len(self.masses)))
         x = beads + 0.5  # half of its own weight is above a bead's middle
 
         def widths(run: Run) -> Array:
-            found = [measure(run.time, velocity).fwhm for velocity in run.bead_velocity]
+            moving = (run.signal("bead", i, "velocity") for i in run.scene.bead_sensors)
+            found = [highest_pulse(velocity).fwhm for velocity in moving]
             return np.asarray((np.reshape(found, x.shape) * self.sound(x)).mean(axis=1))
 
         scene = self.blown(WEAK, bead_sensors=beads.ravel().tolist())
@@ -143,36 +155,39 @@ class Upright:
         return x.mean(axis=1), fine, coarse
 
     def fit(self, x: Array, width: Array, power: float) -> Array:
-        """Exponent, and prefactor at the exponent 1/3, with corrections by x^-power, x^{-2/3}."""
+        """Exponent, and prefactor at exponent 1/3, with corrections x^-power and x^{-2/3}."""
         rows = np.stack((np.log(x), np.ones_like(x), x**-power, x ** (-2 / 3)), axis=1)
-        free, held = (np.linalg.lstsq(matrix, values)[0] for matrix, values in
-                      ((rows, np.log(width)), (rows[:, 1:], width / np.cbrt(x))))  # fmt: skip
+        free, held = (
+            np.linalg.lstsq(matrix, values)[0]
+            for matrix, values in ((rows, np.log(width)), (rows[:, 1:], width / np.cbrt(x)))
+        )
         return np.array([free[0], held[0]])
 
     def fitted(self, x: Array, width: Array, coarse: Array) -> tuple[Measured, Measured]:
-        """`fit`. Errors are its largest changes: with the other correction, to the deeper half of
-        the places, and to the less accurate run."""
+        """`fit` with errors: its largest change with the other correction, from the deeper half of
+        the places, or in the less accurate run."""
         half, rest = len(x) // 2, (3 - self.k) / 3
         power, other = 2 * rest / (self.k + 1), rest / self.k
         values = self.fit(x, width, power)
-        others = (self.fit(x, width, other), self.fit(x[half:], width[half:], power),
-                  self.fit(x, coarse, power))  # fmt: skip
+        others = (
+            self.fit(x, width, other),
+            self.fit(x[half:], width[half:], power),
+            self.fit(x, coarse, power),
+        )
         off = np.max(np.abs(np.array(others) - values), axis=0)
         exponent, prefactor = map(Measured, values.tolist(), (values + off).tolist())
         return exponent, prefactor
 
     def pulses(self, velocity: float) -> list[dict[str, float]]:
-        """At each place dynamic force over load, its FWHM in sites, and that of the solitary wave
-        of this force on this load; means over a cell."""
+        """Dynamic force over load, FWHM in sites, and FWHM of the solitary wave of this force on
+        this load, at each place; means over a cell."""
         size = len(self.masses)
         contacts = np.add.outer(self.places(_TOP, _FEW), np.arange(2 * size))
         scene = self.blown(velocity, contact_sensors=np.unique(contacts).tolist())
         run, numeric, found = simulate(scene, rtol=_TOLERANCES[0]), self.theory.numeric(), {}
-        for contact, force in zip(scene.contact_sensors, run.contact_force, strict=True):
-            dynamic = force - scene.load[contact]
-            part = leading_pulse(np.maximum(dynamic, 0.0), self.k)
-            pulse = measure(run.time[part], dynamic[part])
-            found[contact] = pulse.arrival, pulse.peak, pulse.fwhm
+        for track in tracks(run):
+            pulse = leading_pulse(track.force, self.k)
+            found[track.number - 1] = pulse.arrival, pulse.peak, pulse.fwhm
         rows = []
         for cell in contacts:
             arrival, peak, fwhm = np.array([found[contact] for contact in cell]).T
@@ -180,38 +195,54 @@ class Upright:
             width = fwhm[:size].mean() * np.mean(size / (arrival[size:] - arrival[:size]))
             p0, p1 = (f ** (1 / self.k) for f in (load, load + force))
             solitary = float(numeric.fwhm(p0, p1 - p0, "force"))
-            rows.append({"site": load, "ratio": float(force / load), "width": float(width),
-                         "solitary": solitary})  # fmt: skip
+            rows.append(
+                {
+                    "site": load,
+                    "ratio": float(force / load),
+                    "width": float(width),
+                    "solitary": solitary,
+                }
+            )
         return rows
 
 
 @study(
     EXPONENT,
-    option("--masses", callback=quantities, says="Of one cell, such as 1,1/2; two chains without."),
-    option("--beads", default=3000, says="Of a chain."),
+    option(
+        "--masses",
+        callback=quantities,
+        says="Masses of a cell, such as 1,1/2; by default two chains.",
+    ),
+    option("--beads", default=3000, says="Number of beads."),
 )
 def gravity(
     k: float = 1.5, masses: Sequence[Any] = (), beads: int = 3000, progress: Progress[Any] = iter
 ) -> Report:
-    """A pulse down a chain under its own weight: width against depth, weak blow and strong. Five
-    seconds.
+    """Width of a pulse down a chain under its own weight, weak and strong. Five seconds.
 
-    ``rows``, of weak blows: ``masses``, ``exponent_value`` and ``prefactor_value`` of the front's
+    ``rows`` for weak blows: ``masses``, ``exponent_value`` and ``prefactor_value`` of the front's
     width in sites with their errors, ``prefactor_theory_value`` and ``error_value``
     (theory/lattice - 1). ``strong``: ``masses``, ``blow_value`` (the velocity), ``site_value``,
     ``ratio_value`` (dynamic over static force), ``width_value``, ``solitary_value`` and
     ``front_value``, the widths of the solitary wave there and of a weak blow's front.
 
-    Raises `SceneError` for numbers that cannot be meant, k from 3 on among them.
+    Raises `SceneError` for parameters out of range.
     """
-    between(k, "k", 1.1, 1.75,
-            "one from 1.1 to 1.75 is wanted; the nearer to 3, where the front's width ceases to go "
-            "as the depth's third root, the more beads it takes to see it")  # fmt: skip
+    between(
+        k,
+        "k",
+        1.1,
+        1.75,
+        "one from 1.1 to 1.75 is wanted; the nearer to 3, where the front's width ceases to go "
+        "as the depth's third root, the more beads it takes to see it",
+    )
     beads = integer(beads, "beads", 10 * FIRST, 20_000)
     chains = [Upright(numbered(row), k, beads) for row in ([masses] if masses else CHAINS)]
     jobs = [(chain, blow) for chain in chains for blow in (WEAK, *STRONG)]
-    found = {(chain, blow): chain.fronts() if blow == WEAK else chain.pulses(blow)
-             for chain, blow in progress(jobs)}  # fmt: skip
+    found = {
+        (chain, blow): chain.fronts() if blow == WEAK else chain.pulses(blow)
+        for chain, blow in progress(jobs)
+    }
     return _report(chains, found)
 
 
@@ -248,29 +279,35 @@ def _report(chains: Sequence[Upright], found: Mapping[tuple[Upright, float], Any
         theory = chain.prefactor
         weak.append((names, exponent, prefactor, theory, theory / prefactor.value - 1))
         sites = np.geomspace(_TOP, chain.beads, 50)
-        curves = [Curve.of("weak blow", x, width, "C0o"),
-                  Curve.of("front", sites, theory * np.cbrt(sites), "C0-")]  # fmt: skip
+        curves = [
+            Curve.of("weak blow", x, width, "C0o"),
+            Curve.of("front", sites, theory * np.cbrt(sites), "C0-"),
+        ]
         for blow, colour in zip(STRONG, ("C1", "C2", "C3"), strict=True):
             pulses = found[chain, blow]
             strong += [(names, blow, *p.values(), theory * math.cbrt(p["site"])) for p in pulses]
             at, width, solitary = ([p[n] for p in pulses] for n in ("site", "width", "solitary"))
-            curves += [Curve.of(f"blow of {blow:g}", at, width, f"{colour}s"),
-                       Curve.of("solitary wave", at, solitary, f"{colour}--")]  # fmt: skip
+            curves += [
+                Curve.of(f"blow of {blow:g}", at, width, f"{colour}s"),
+                Curve.of("solitary wave", at, solitary, f"{colour}--"),
+            ]
         panels.append(Panel("site", "FWHM (sites)", tuple(curves), "xy", ", ".join(names)))
     return Report(
         f"Chains of {chains[0].beads} beads under their own weight, k = {chains[0].k:g}",
-        (Table(_WEAK, tuple(weak), "rows", note=_WEAK_NOTE),
-         Table(_STRONG, tuple(strong), "strong", note=_STRONG_NOTE)),
+        (
+            Table(_WEAK, tuple(weak), "rows", note=_WEAK_NOTE),
+            Table(_STRONG, tuple(strong), "strong", note=_STRONG_NOTE),
+        ),
         tuple(_findings(weak, strong)),
         tuple(panels),
         ("Units: the mean mass, A, D, g.",),
-    )  # fmt: skip
+    )
 
 
 def _findings(
     weak: Sequence[tuple[Any, ...]], strong: Sequence[tuple[Any, ...]]
 ) -> Iterator[Finding]:
-    """The front's power law; of equal beads, that the narrower of solitary wave and front leads."""
+    """The front's power law, and for equal beads the narrower of solitary wave and front."""
     for names, exponent, prefactor, theory, _ in weak:
         of = ", ".join(names)
         yield Finding.of(f"{of}: exponent", exponent, 1 / 3 - 0.02, 1 / 3 + 0.02)
@@ -278,11 +315,18 @@ def _findings(
         yield Finding.of(f"{of}: prefactor/theory", over, 0.97, 1.03)
     wave, front = ("solitary wave", -2), ("front", -1)
     for (name, one), (other, two) in ((wave, front), (front, wave)):
-        off = [abs(row[one] / row[-3] - 1) for row in strong
-               if len(row[0]) == 1 and 2 * row[one] < row[two]]  # fmt: skip
+        off = [
+            abs(row[one] / row[-3] - 1)
+            for row in strong
+            if len(row[0]) == 1 and 2 * row[one] < row[two]
+        ]
         if off:
-            yield Finding(f"equal beads: |{name}/width - 1| where it is less than half as wide as "
-                          f"the {other}, at most", max(off), high=0.12)  # fmt: skip
+            yield Finding(
+                f"equal beads: |{name}/width - 1| where it is less than half as wide as "
+                f"the {other}, at most",
+                max(off),
+                high=0.12,
+            )
 
 
 if __name__ == "__main__":

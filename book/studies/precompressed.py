@@ -1,17 +1,16 @@
-"""Waves of a chain under load against the theory, from weak to strong.
+"""Waves in a chain under load against the theory, from weak to strong.
 
-A = D = 1, and all contacts carry the static force F0 = 1, which a wall at the far end holds. Waves
-are put on the chain as they are, as a weak one would take very many sites to come out of a blow: of
-equal beads the lattice's own (`validation.waves.solver`), of others the theory's, which sheds what
-it is not. Each is read off by the contacts of a cell at three places, numbers are means over these
-contacts, and the theory is that at the dynamic force measured there. Error bars are the larger of
-two changes of theory/lattice: between the two stretches, and to a less accurate run.
+A = D = 1, and all contacts carry the static force F0 = 1, held by a wall at the far end. Each chain
+starts with a wave, as a weak wave would need very many sites to form from a blow: equal beads with
+the lattice's own wave (`validation.waves.solver`), others with the theory's, which sheds its
+difference from the lattice's wave. Contacts of a cell record the wave at three places; numbers are
+means over the contacts of a cell, and the theory is evaluated at the dynamic force measured there.
+Errors are the larger of two changes: of theory/lattice between the two stretches, and of the
+lattice's number in a less accurate run.
 
-In V/c0 and in widths over √(12 I) the theory knows no masses: all chains lie on one curve
-(`lwa.wave.background`). A wave is faster than all long ones; but where ω = V q meets an optical
-branch short ones take its energy along, and it decays, the slower the longer it is.
-
-The chain is integrated as a whole: under a load what happens behind the wave is passed on.
+The theory's V/c0 and width over √(12 I) do not depend on the masses: all chains lie on one curve
+(`lwa.background_wave`). A wave is faster than all long waves; but where ω = V q meets an optical
+branch, short waves carry energy away, and the wave decays, the slower the longer it is.
 """
 
 from __future__ import annotations
@@ -24,7 +23,6 @@ from itertools import cycle, groupby
 from typing import Any
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from lwa import Cell, Power, background_wave
 from lwa.base.arrays import Array
@@ -33,8 +31,8 @@ from lwa.command.terminal import quantities
 from lwa.wave.quadrature import NumericBackground
 from validation.lattice.run import Run
 from validation.lattice.simulate import twice
-from validation.pulses.pulse import Measured, measure
-from validation.pulses.steady import leading_pulse
+from validation.pulses.pulse import Measured, highest_pulse, leading_pulse
+from validation.pulses.sensors import tracks
 from validation.report.command import EXPONENT, option, study
 from validation.report.panel import Curve, Panel
 from validation.report.result import Report
@@ -43,42 +41,49 @@ from validation.report.text import percent
 from validation.scenes.chains import carrying, numbered
 from validation.scenes.checks import SceneError, between
 from validation.scenes.scene import Scene
-from validation.waves.profile import ExactWave, summit
+from validation.waves.profile import ExactWave
 from validation.waves.solver import exact_wave
 
 CHAINS = ((1,), (1, "1/2"), (1, "1/4"), (1, 1, 1, "1/4"))  # masses of the cells
 RATIOS = 0.01, 0.03, 0.1, 0.3, 1, 3, 10, 30, 100  # dynamic over static force
-_SITES = 400  # that a wave runs, with places half way, at three quarters and at the end
-_ENDED = 10.0  # widths from a wave's middle to where it is put on the chain
+_SITES = 400  # run by a wave; places are half way, at three quarters and at the end
+_ENDED = 10.0  # widths from the middle of the initial wave to the end of the chain
 _TOLERANCES = (1e-7, 1e-5)
-_SAMPLES = 40.0  # per site that sound runs, and per width of the wave
-_LAUNCHED = 1e-6  # of the speed, what the lattice may be off the exact wave
+_SAMPLES = 40.0  # per site run by sound, and per width of the wave
+_LAUNCHED = 1e-6  # relative difference of the lattice's speed from the exact wave's, at most
 _WEAKEST, _STRONGEST = 1e-3, 1e4
 
 
 @study(
     EXPONENT,
-    option("--masses", callback=quantities,
-           says="Of one cell, such as 1,1/2; four chains without it."),
-    option("--ratios", callback=quantities, default=",".join(map(str, RATIOS)),
-           says="Dynamic over static force."),
-)  # fmt: skip
+    option(
+        "--masses",
+        callback=quantities,
+        says="Masses of a cell, such as 1,1/2; by default four chains.",
+    ),
+    option(
+        "--ratios",
+        callback=quantities,
+        default=",".join(map(str, RATIOS)),
+        says="Dynamic forces over the static force.",
+    ),
+)
 def precompressed(
-    k: float = 1.5, masses: Sequence[Any] = (), ratios: Sequence[Any] = RATIOS,
+    k: float = 1.5,
+    masses: Sequence[Any] = (),
+    ratios: Sequence[Any] = RATIOS,
     progress: Progress[Any] = iter,
-) -> Report:  # fmt: skip
-    """Waves of a chain under load: speed, width and bead velocity against the theory. Fifteen
-    seconds.
+) -> Report:
+    """Waves in chains under load: speed, width and bead velocity. Fifteen seconds.
 
-    ``rows``: ``masses``, ``ratio_value`` (dynamic over static force, as measured), ``speed_value``
-    (V/c0, c0 that of sound) with its error, ``theory_value``, ``error_value`` (theory/lattice - 1),
-    ``exact_value`` (of equal beads, by Newton's method), ``fwhm_value`` of the dynamic contact
-    force in sites with its error, ``fwhm_theory_value``, ``fwhm_off_value``, ``peak_value`` (bead
-    velocity, the mean over a cell by mass) with its error, ``peak_theory_value``,
-    ``peak_off_value`` and ``decay_value`` (of the dynamic force, per site).
+    ``rows``: ``masses``, ``ratio_value`` (measured dynamic over static force), ``speed_value``
+    (V/c0, c0 the speed of sound) with its error, ``theory_value``, ``error_value`` (theory/lattice
+    - 1), ``exact_value`` (for equal beads, by Newton's method), ``fwhm_value`` of the dynamic
+    contact force in sites with its error, ``fwhm_theory_value``, ``fwhm_off_value``,
+    ``peak_value`` (bead velocity, the mean over a cell by mass) with its error,
+    ``peak_theory_value``, ``peak_off_value`` and ``decay_value`` (of the dynamic force, per site).
 
-    Raises `SceneError` for numbers that cannot be meant and `MeasureError` where no pulse comes
-    through.
+    Raises `SceneError` for parameters out of range and `MeasureError` if a pulse does not arrive.
     """
     cells = [numbered(row) for row in ([masses] if masses else CHAINS)]
     between(k, "k", 1.01, 8)
@@ -91,7 +96,7 @@ def precompressed(
 
 @dataclass(frozen=True)
 class Wave:
-    """A wave of this dynamic force on F0 = 1, speeds over that of sound, lengths in sites."""
+    """A wave with dynamic force ``ratio`` on F0 = 1; speeds in units of c0, lengths in sites."""
 
     cell: Cell
     k: float
@@ -99,7 +104,7 @@ class Wave:
 
     @cached_property
     def masses(self) -> Array:
-        """As floats."""
+        """Masses as floats."""
         return np.array(self.cell.masses, float)
 
     @cached_property
@@ -108,12 +113,16 @@ class Wave:
         return math.sqrt(self.k / self.masses.mean())
 
     def unit(self, name: str) -> float:
-        """By which all chains fall on one curve: √(12 I) of a width."""
-        return math.sqrt(12 * self._theory.wave.I) if name == "fwhm" else 1.0
+        """Unit in which all chains fall on one curve: √(12 I) for a width."""
+        return (
+            math.sqrt(12 * background_wave(self.cell, law=Power(self.k)).I)
+            if name == "fwhm"
+            else 1.0
+        )
 
     @cached_property
     def exact(self) -> ExactWave | None:
-        """By Newton's method, of equal beads."""
+        """The lattice's own wave, for equal beads."""
         if len(self.masses) > 1:
             return None
         p0 = math.pow(1 + self.ratio, -1 / self.k)
@@ -131,45 +140,55 @@ class Wave:
         return {"speed": float(speed), "fwhm": float(width), "peak": B * float(speed) * self.sound}
 
     def strain(self, force: float) -> float:
-        """What a dynamic force on F0 adds to the strain."""
+        """Strain added by a dynamic force on F0."""
         return math.expm1(math.log1p(force) / self.k)
 
     @cached_property
     def places(self) -> tuple[int, ...]:
-        """The bead at which the wave is put on, and the first contacts at which it is read off."""
+        """Bead at the middle of the initial wave, and first contact of each place."""
         size, ended = len(self.masses), max(20.0, _ENDED * self.theory(self.ratio)["fwhm"])
         start = math.ceil(ended / size) * size
         return tuple(start + round(_SITES * part / size) * size for part in (0, 0.5, 0.75, 1))
 
     @cached_property
     def scene(self) -> Scene:
-        """So long that nothing comes back from the wall."""
+        """The chain with its wave, too long for an echo from the wall."""
         start, *places = self.places
         size, found = len(self.masses), self.theory(self.ratio)
-        sites = _SITES + start / 2  # at most, of sound
+        sites = _SITES + start / 2  # run by sound
         beads = math.ceil((places[-1] + start + found["speed"] * (sites + start)) / 2 / size) * size
         bead = np.arange(beads, dtype=float) - start
         if self.exact is None:
-            strain, motion = (self._theory.profile(x, 1.0, self.strain(self.ratio))
-                              for x in (bead[:-1] + 0.5, bead))  # fmt: skip
+            strain, motion = (
+                self._theory.profile(x, 1.0, self.strain(self.ratio))
+                for x in (bead[:-1] + 0.5, bead)
+            )
             velocity = motion * found["speed"] * self.sound
         else:
             strain, velocity = self.exact.strain(bead[:-1] + 0.5), self.exact.velocity(bead)
         sensors = tuple(place + i for place in places for i in range(size))
         return carrying(
-            np.resize(self.masses, beads).tolist(), self.k, strain, velocity,
-            wall=1.0, precompression=1.0, contact_sensors=sensors, bead_sensors=sensors,
+            np.resize(self.masses, beads).tolist(),
+            self.k,
+            strain,
+            velocity,
+            wall=1.0,
+            precompression=1.0,
+            contact_sensors=sensors,
+            bead_sensors=sensors,
             duration=sites / self.sound,
             samples=math.ceil(_SAMPLES * sites * max(1.0, found["speed"] / found["fwhm"])),
-        )  # fmt: skip
+        )
 
     def read(self, run: Run, stretch: int) -> dict[str, float]:
-        """Off one of the two stretches between places, as means over them and a cell."""
+        """Numbers of one of the two stretches between places, means over its ends and a cell."""
         rows = []
-        for force, velocity in zip(run.contact_force, run.bead_velocity, strict=True):
-            part = leading_pulse(np.maximum(force - 1, 0.0), self.k)
-            pulse = measure(run.time[part], force[part] - 1)
-            _, fastest = summit(CubicSpline(run.time[part], velocity[part]), run.time[part])
+        heard = tracks(run)
+        beads, contacts = heard[: len(heard) // 2], heard[len(heard) // 2 :]
+        for bead, contact in zip(beads, contacts, strict=True):
+            pulse = leading_pulse(contact.force, self.k)
+            velocity = run.signal("bead", bead.number - 1, "velocity")
+            fastest = highest_pulse(velocity, pulse.fall + pulse.fwhm).peak
             rows.append((pulse.arrival, pulse.peak, pulse.fwhm, fastest))
         table = np.array(rows).reshape(3, len(self.masses), 4)[stretch : stretch + 2]
         arrival, force, width, velocity = np.moveaxis(table, 2, 0)
@@ -184,18 +203,21 @@ class Wave:
         }
 
     def row(self) -> dict[str, Any]:
-        """What is measured, by the columns' keys, and what the theory says of the force there."""
+        """Cells of the table: measured numbers and the theory's at the measured force."""
         fine, rough = twice(self.scene, *_TOLERANCES)
         found, coarse, before = self.read(fine, 1), self.read(rough, 1), self.read(fine, 0)
-        theory, *others = (self.theory(read["force"]) for read in (found, coarse, before))
+        theory, earlier = (self.theory(read["force"]) for read in (found, before))
         exact = None if self.exact is None else self.exact.c / self.sound
         cells: dict[str, Any] = {"masses": [str(m) for m in self.cell.masses], "exact": exact}
         cells |= {name: found[name] for name in ("force", "decay")}
         for name, value in theory.items():
-            changes = (abs(found[name] / value - read[name] / other[name])
-                       for read, other in zip((coarse, before), others, strict=True))  # fmt: skip
-            cells |= {name: Measured(found[name], found[name] + max(changes) * value),
-                      f"{name} theory": value, f"{name} off": value / found[name] - 1}  # fmt: skip
+            settled = abs(found[name] / value - before[name] / earlier[name]) * value
+            change = max(abs(found[name] - coarse[name]), settled)
+            cells |= {
+                name: Measured(found[name], found[name] + change),
+                f"{name} theory": value,
+                f"{name} off": value / found[name] - 1,
+            }
         return cells
 
 
@@ -220,41 +242,54 @@ def _report(k: float, found: Sequence[tuple[Wave, dict[str, Any]]]) -> Report:
     rows = [cells for _, cells in found]
     return Report(
         f"Waves on a static force F0 = 1: k = {k:g}, A = D = 1",
-        (Table(tuple(_COLUMNS.values()), tuple(tuple(map(row.get, _COLUMNS)) for row in rows),
-               "rows"),),
+        (
+            Table(
+                tuple(_COLUMNS.values()),
+                tuple(tuple(map(row.get, _COLUMNS)) for row in rows),
+                "rows",
+            ),
+        ),
         tuple(_findings(k, rows)),
         tuple(_panels(found)),
         (
-            "F: dynamic contact force, V: speed, c0: that of sound. off: theory/lattice - 1. FWHM: "
-            "of the contact force; bead velocity: its peak, the mean over a cell by mass.",
-            "Where masses differ the theory is worse: it takes waves as long beside a cell, and "
-            "strong ones feed short waves of an optical branch, so that they decay.",
+            "F: dynamic contact force, V: speed, c0: speed of sound. off: theory/lattice - 1. "
+            "FWHM: of the contact force; bead velocity: peak, mean over a cell by mass.",
+            "For unlike masses the theory is worse: its waves are long beside a cell, and strong "
+            "waves decay as they feed short waves of an optical branch.",
         ),
-    )  # fmt: skip
+    )
 
 
 def _findings(k: float, rows: Sequence[dict[str, Any]]) -> Iterator[Finding]:
-    """What must hold of equal beads, and of all chains where the wave is weak."""
+    """Bounds for equal beads, and for weak waves in all chains."""
     equal = [row for row in rows if len(row["masses"]) == 1]
     if equal:
         off = max(abs(row["speed"].value / row["exact"] - 1) for row in equal)
-        yield Finding("equal beads, V: lattice over exact wave - 1, at most", off, high=_LAUNCHED,
-                      key="lattice_over_exact")  # fmt: skip
+        yield Finding(
+            "equal beads, V: lattice over exact wave - 1, at most",
+            off,
+            high=_LAUNCHED,
+            key="lattice_over_exact",
+        )
     for name, those, ratio, bound in (
         ("equal beads", equal, math.inf, 0.025),
         ("equal beads up to F/F0 = 1", equal, 1.0, 1e-3),
         ("all chains up to F/F0 = 0.1", rows, 0.1, 1e-3),
     ):
-        offs = [(abs(row["speed off"]), row["speed"].relative_error) for row in those
-                if row["force"] <= ratio * (1 + 1e-6)]  # fmt: skip
+        offs = [
+            (abs(row["speed off"]), row["speed"].relative_error)
+            for row in those
+            if row["force"] <= ratio * (1 + 1e-6)
+        ]
         if offs and (k == 1.5 or ratio < 1):
             worst, error = max(offs)
-            yield Finding(f"{name}, V: |theory/lattice - 1|, at most", worst, high=bound,
-                          error=error)  # fmt: skip
+            yield Finding(
+                f"{name}, V: |theory/lattice - 1|, at most", worst, high=bound, error=error
+            )
 
 
 def _panels(found: Sequence[tuple[Wave, dict[str, Any]]]) -> Iterator[Panel]:
-    """V/c0 and FWHM over √(12 I): one curve of the theory for all chains."""
+    """V/c0 and FWHM over √(12 I), one curve of the theory for all chains."""
     ratios = [wave.ratio for wave, _ in found]
     first, forces = found[0][0], np.geomspace(min(ratios), max(ratios), 100)
     theory = [first.theory(force) for force in forces]
@@ -263,8 +298,10 @@ def _panels(found: Sequence[tuple[Wave, dict[str, Any]]]) -> Iterator[Panel]:
         curves = [Curve.of("theory, all chains", forces, values, "k-")]
         chains = groupby(found, lambda part: part[0].cell)
         for (cell, those), mark in zip(chains, cycle("osv^Dx"), strict=False):
-            points = [(row["force"], row[name].value / wave.unit(name),
-                       row[name].error / wave.unit(name)) for wave, row in those]  # fmt: skip
+            points = [
+                (row["force"], row[name].value / wave.unit(name), row[name].error / wave.unit(name))
+                for wave, row in those
+            ]
             x, y, error = zip(*points, strict=True)
             curves.append(Curve.of(", ".join(map(str, cell.masses)), x, y, mark, error))
         yield Panel("F/F0", label, tuple(curves), scale)

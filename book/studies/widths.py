@@ -24,7 +24,7 @@ from validation.report.text import percent
 from validation.scenes.materials import DIAMETER
 from validation.studies import paper
 from validation.studies.paper import HERTZ, Train, chain_cell, chain_runs
-from validation.waves.theory import Compacton
+from validation.waves.theory import bead_fwhm
 
 FIRST_BEAD = 10  # from here on the width no longer changes on its way; the average starts here
 STATED = {"m1 ≫ m2": 0.092, "m2/m1 = 0.27": 0.025, "m1 = m2": 0.228}  # the paper's
@@ -153,17 +153,17 @@ def widths() -> Widths:
 
 def _numbers(run: Run) -> dict[str, float]:
     """FWHM of each bead's force and their averages (s), mean peaks (N) and the speed (m/s)."""
-    beads, contacts = Train.of(run), Train.of(run, "contact").only(lambda i: i >= FIRST_BEAD)
-    late = beads.only(lambda bead: bead >= FIRST_BEAD)
-    steel = late.only(lambda bead: bead % 2 == 1)
+    beads, contacts = Train.of(run), Train.of(run, "contact").only(range(FIRST_BEAD, paper.BEADS))
+    late = beads.only(range(FIRST_BEAD, paper.BEADS))
+    steel = late.only(range(1, paper.BEADS, 2))
     return {
         **{f"bead {bead}": pulse.fwhm for bead, pulse in beads.pulses.items()},
         "contacts": contacts.fwhm,
         "beads": late.fwhm,
         "steel": steel.fwhm,
-        "PTFE": late.only(lambda bead: bead % 2 == 0).fwhm,
+        "PTFE": late.only(range(0, paper.BEADS, 2)).fwhm,
         "contacts' force": contacts.peak,
-        "F_m": beads.only(lambda bead: bead in paper.SENSORS).peak,
+        "F_m": beads.only(paper.SENSORS).peak,
         "speed": steel.speed,
     }
 
@@ -180,10 +180,10 @@ def _waves() -> dict[str, list[TravelingWave]]:
 
 def _width(wave: TravelingWave, quantity: str, force: float, in_time: bool) -> float:
     """The theory's FWHM of a quantity whose peak is ``force``, in s or sites."""
-    unit = Compacton(wave, 1.0)
-    peak = (unit.bead_force if quantity == "bead force" else unit.contact_force)(0.0)
-    compacton = Compacton(wave, (force / float(peak)) ** (1 / unit.k))
-    return compacton.fwhm(quantity) / (compacton.speed if in_time else compacton.spacing)
+    bead = quantity == "bead force"
+    physical = wave.at_force(force, of="bead" if bead else "contact")
+    width = bead_fwhm(wave) if bead else float(physical.fwhm("force"))
+    return width / (float(physical.speed) if in_time else float(wave.D))
 
 
 if __name__ == "__main__":

@@ -23,7 +23,7 @@ from lwa.algebra.partition import Partition, number, rational
 from lwa.base.exact import InputError
 from lwa.base.frozen import Value
 from lwa.cell import Cell, exponent, substitution
-from lwa.law import Law, Power
+from lwa.law import ContactLaw, Power
 
 MOST_DIGITS = 4000
 """Of a coefficient; Python prints no integers of more than 4,300."""
@@ -73,7 +73,7 @@ class Coefficients(Value):
         return ("k",) if self.variables else ()
 
     @property
-    def law(self) -> Power | Law:
+    def law(self) -> ContactLaw:
         """The contact law."""
         return Power(self.k)
 

@@ -16,18 +16,18 @@ from flint import fmpq_mpoly, fmpq_mpoly_ctx
 from lwa.algebra.coefficients import Coefficients
 from lwa.algebra.jets import JetAlgebra
 from lwa.cell import Cell, substitution
-from lwa.law import Law, for_cell, phi_symbol
+from lwa.law import ContactLaw, for_cell, phi_symbol
 
 
 @dataclass(frozen=True, kw_only=True)
 class SmoothCoefficients(Coefficients):
     """The ring for one cell and one law, with φ_2 … φ_highest; k is 1 + φ_2, d ln(δ F′)/d ln δ."""
 
-    given: Law
+    given: ContactLaw
     highest: int
 
     @property
-    def law(self) -> Law:
+    def law(self) -> ContactLaw:
         return self.given
 
     @property
@@ -60,7 +60,7 @@ class SmoothCoefficients(Coefficients):
         return replace(self, cell=cell, given=law, highest=_highest(order))
 
 
-def smooth(cell: Cell, law: Law, order: int) -> SmoothCoefficients:
+def smooth(cell: Cell, law: ContactLaw, order: int) -> SmoothCoefficients:
     """The ring for a derivation to this order."""
     return SmoothCoefficients(cell, 1 + phi_symbol(2), given=law, highest=_highest(order))
 

@@ -31,6 +31,10 @@ _ROOTLESS = 1024  # bits of an integer beyond a double
 _TOO_LONG = f"at most {_DIGITS} digits are wanted, before the point and behind it"
 
 
+MOST_CANCELLED = 5000
+"""Digits that the terms of an exact number may cancel before it is evaluated in vain."""
+
+
 class InputError(ValueError):
     """An argument that cannot be meant: the message names it and says what would be right."""
 
@@ -150,6 +154,17 @@ def _writable(number: sp.Rational, name: str) -> sp.Rational:
     if max(int(number.p).bit_length(), int(number.q).bit_length()) > _BITS:
         raise InputError(f"{name} is a number of too many digits: {_TOO_LONG}")
     return number
+
+
+def number(value: sp.Expr) -> float:
+    """The float of an exact number, right to the last digit however much its terms cancel.
+
+    Raises `lwa.InputError` for an expression with symbols.
+    """
+    if value.free_symbols:
+        names = ", ".join(sorted(map(str, value.free_symbols)))
+        raise InputError(f"{names}: a curve needs numbers for all symbols; give them by at(…)")
+    return float(sp.N(value, 20, maxn=MOST_CANCELLED))
 
 
 class Kept(sp.UnevaluatedExpr):  # type: ignore[misc]  # untyped in SymPy

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from importlib import import_module
+from time import monotonic
 from typing import TypeVar
 
 LONG = 30.0
 """Seconds from which it is said that something takes long, with a progress bar on a terminal."""
+
+EVERY = 30.0
+"""Seconds between two lines of progress, where there is no terminal for a bar."""
 
 T = TypeVar("T")
 Progress = Callable[[Iterable[T]], Iterable[T]]
@@ -44,9 +48,33 @@ def announce(what: str, seconds: float) -> bool:
     return seconds > LONG
 
 
-def shown(orders: Iterable[int]) -> Iterable[int]:
-    """The orders behind a progress bar, on a terminal."""
+def shown(items: Iterable[T], label: str = "orders") -> Iterable[T]:
+    """The items behind a progress bar on a terminal; elsewhere a line is printed every 30 s."""
+    if sys.stderr is None or not sys.stderr.isatty():
+        return _counted(items, label)
     from tqdm import tqdm  # here, so that `import lwa` does not load it
 
-    bar: Iterable[int] = tqdm(orders, desc="orders", leave=False, disable=None)
+    bar: Iterable[T] = tqdm(items, desc=label, leave=False, file=sys.stderr)
     return bar
+
+
+def _counted(items: Iterable[T], label: str) -> Iterator[T]:
+    items = list(items)
+    tell = lines(label)
+    for done, item in enumerate(items, start=1):
+        yield item
+        tell(done / len(items))
+
+
+def lines(label: str) -> Callable[[float], None]:
+    """A function of the completed fraction that prints a line with the time left every 30 s."""
+    start = said = monotonic()
+
+    def tell(fraction: float) -> None:
+        nonlocal said
+        now = monotonic()
+        if now - said >= EVERY and 0 < fraction < 1:
+            said, left = now, (now - start) * (1 / fraction - 1)
+            print(f"{label}: {fraction:.0%} done, {words(left)} left", file=sys.stderr, flush=True)
+
+    return tell

@@ -1,27 +1,40 @@
-"""The quantities of a wave that have a width, and the answer that there is no wave."""
+"""Symbols, quantities and widths of a wave, and the error raised where no wave exists."""
 
 from __future__ import annotations
 
 from typing import Any
 
+import sympy as sp
+
 from lwa.base.exact import InputError, shorten
 
+RISE = sp.Symbol("B", positive=True)
+"""B, the peak strain of a wave, unless the caller gives another."""
+
+SPEED = sp.Symbol("V_s", positive=True)
+"""V_s = dx/dτ, the speed of a wave, unless the caller gives another."""
+
 QUANTITIES = ("strain", "force", "velocity")
+"""The quantities of a wave that have a width."""
 
 EXTENTS = ("length", "time")
-"""What a width is: the extent in space, or the time that it takes to pass."""
+"""The kinds of a width: an extent in space, or the time of passage."""
+
+
+class NoSolitaryWave(ValueError):
+    """No traveling wave exists for these parameters; the message names the reason."""
 
 
 def strain_power(quantity: str, k: Any) -> Any:
-    """The power of the strain to which a quantity of the wave is proportional: k or 1.
+    """The exponent q of a quantity that scales as strain^q: k for the force, else 1.
 
-    Raises `lwa.InputError` unless the quantity is "strain", "force" or "velocity".
+    Raises `lwa.InputError` unless the quantity is among `QUANTITIES`.
     """
     return k if known(quantity) == "force" else 1
 
 
 def known(quantity: str) -> str:
-    """The quantity, refused unless it is one of `QUANTITIES`."""
+    """Return the quantity; raise `lwa.InputError` unless it is among `QUANTITIES`."""
     if not isinstance(quantity, str) or quantity not in QUANTITIES:
         raise InputError(
             f"quantity is {shorten(quantity)}: one of {', '.join(QUANTITIES)} is wanted"
@@ -30,10 +43,6 @@ def known(quantity: str) -> str:
 
 
 def known_extent(extent: str) -> None:
-    """Raise `lwa.InputError` unless the extent is one of `EXTENTS`."""
+    """Raise `lwa.InputError` unless the extent is among `EXTENTS`."""
     if extent not in EXTENTS:
         raise InputError(f"extent is {shorten(extent)}: {' or '.join(EXTENTS)} is wanted")
-
-
-class NoSolitaryWave(ValueError):
-    """The theory has no compact traveling wave for these parameters; the message says why."""

@@ -50,7 +50,7 @@ from lwa.command.terminal import (
 from lwa.command.text import dispersion_text, expansion_text, force_text, theory_text, wave_text
 from lwa.expansion.expand import expand
 from lwa.expansion.physical import ExpandedWave
-from lwa.law import Law, Power
+from lwa.law import ContactLaw, Law, Power
 from lwa.linear.dispersion import Dispersion
 from lwa.linear.loaded import LoadedChain
 from lwa.spheres.hertz import EXPONENT
@@ -83,7 +83,7 @@ def _theory(
     stiffnesses: tuple[sp.Expr, ...],
     spacing: sp.Expr,
     order: int,
-    law: Power | Law | None,
+    law: ContactLaw | None,
     **kind: Any,
 ) -> Theory:
     cell = Cell(masses, stiffnesses, spacing)
@@ -176,7 +176,7 @@ def wave(
 
 
 def _under_load(
-    background: sp.Expr | None, precompression: sp.Expr | None, law: Power | Law | None
+    background: sp.Expr | None, precompression: sp.Expr | None, law: ContactLaw | None
 ) -> bool:
     """Whether a load is given, or a law under which there are no other waves."""
     if background is not None and precompression is not None:
@@ -266,7 +266,7 @@ def dispersion(
 def expansion(
     cell: Cell,
     k: sp.Expr,
-    law: Power | Law | None,
+    law: ContactLaw | None,
     order: int,
     style: str,
     force: sp.Expr | None,

@@ -20,7 +20,8 @@ import sympy as sp
 
 from lwa.base.exact import InputError, exact, integer
 from lwa.base.quantities import NoSolitaryWave
-from lwa.law import Law, Power, named
+from lwa.command.interrupt import INTERRUPTED
+from lwa.law import ContactLaw, named
 
 
 def quantity(context: click.Context, option: click.Parameter, value: str | None) -> sp.Expr | None:
@@ -43,7 +44,7 @@ def count(context: click.Context, option: click.Parameter, value: str) -> int:
 
 def contact_law(
     context: click.Context, option: click.Parameter, value: str | None
-) -> Power | Law | None:
+) -> ContactLaw | None:
     """Callback of an option that is NAME or NAME:PARAM,…, as `lwa.law.named` takes them."""
     if value is None:
         return None
@@ -58,6 +59,9 @@ def called(option: click.Parameter) -> str:
 
 HELP = {"help_option_names": ["-h", "--help"]}
 """Settings of a command: both ways to ask for help."""
+
+CLOSED = 141
+"""Exit status where the reader of the output went away, as the shells have it for SIGPIPE."""
 
 version = click.version_option(package_name="lwa", message="%(prog)s %(version)s")
 """The option ``--version`` of a command."""
@@ -90,7 +94,11 @@ def _spelled(letter: str) -> str:
 
 
 def run(command: click.Command, name: str, arguments: Sequence[str] | None = None) -> None:
-    """Run a command and end the process: 0, or 2 with one line on what was wrong with the input."""
+    """Run a command and end the process with its status.
+
+    The status is the command's own (0, or 1 for comparisons that failed), 2 after one line on bad
+    input, `INTERRUPTED` after Ctrl-C, and `CLOSED` where the reader of the output went away.
+    """
     codecs.register_error("spelled", spelled)
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
@@ -102,7 +110,7 @@ def _status(call: Callable[[], Any], name: str) -> int:
     try:
         if sys.stdout is None:
             raise OSError(errno.EBADF, "it is closed")
-        result = call()
+        result = _unless_closed(call)
         sys.stdout.flush()
     except click.exceptions.NoArgsIsHelpError as help_text:
         click.echo(help_text.format_message(), err=True)
@@ -113,14 +121,26 @@ def _status(call: Callable[[], Any], name: str) -> int:
         return _complain(name, str(error))
     except (click.Abort, KeyboardInterrupt):
         click.echo(f"{name}: interrupted", err=True)
-        return 130
-    except BrokenPipeError:  # the reader has seen enough; nothing is left to flush
+        return INTERRUPTED
+    except BrokenPipeError:
         _drop_output()
-        return 0
+        return CLOSED
     except OSError as error:  # such as a disk that is full
         _drop_output()
         return _complain(name, f"{error.filename or 'the output'}: {error.strerror or error}")
     return result if isinstance(result, int) else 0
+
+
+def _unless_closed(call: Callable[[], Any]) -> Any:
+    """The result of a call of click, which replaces the output and exits where a pipe is closed."""
+    output = sys.stdout
+    try:
+        return call()
+    except SystemExit:
+        if sys.stdout is output:
+            raise
+        sys.stdout = output
+        raise BrokenPipeError from None
 
 
 def _drop_output() -> None:

@@ -31,7 +31,7 @@ from lwa.equation.conservation import flux, potential
 from lwa.equation.energy import energy
 from lwa.equation.fields import change_field
 from lwa.equation.terms import ENERGY, Jet, Terms, base_order, terms
-from lwa.law import Law, Power
+from lwa.law import ContactLaw
 from lwa.wave.traveling import TravelingWave
 
 
@@ -52,7 +52,7 @@ class PDE(Value):
         return self.closure.ring.k
 
     @property
-    def law(self) -> Power | Law:
+    def law(self) -> ContactLaw:
         """The contact law."""
         return self.closure.ring.law
 
@@ -98,7 +98,7 @@ class PDE(Value):
     def latex_rows(self, most: int | None = None) -> list[str]:
         """The equation, the terms at D^{k+3} with the letters G, H, I; to D^{k+most} or all."""
         letters = self.third_order
-        leading = "F'" if isinstance(self.law, Law) else "u_{x}^{k-1}"
+        leading = "u_{x}^{k-1}" if self.law.homogeneous else "F'"
         parts = [f"{leading} u_{{xx}}" if self.acoustic else "-u^{k}"]
         for n, found in self.coefficients.items():
             if n == 3 and letters:
@@ -176,7 +176,7 @@ class PDE(Value):
 
         Raises `lwa.InputError` for laws that are no power.
         """
-        if isinstance(self.law, Law):
+        if not self.law.homogeneous:
             raise InputError(
                 "a potential is found by Euler's theorem on homogeneous functions, which needs a "
                 "power law; `energy` is there for every law"
@@ -207,7 +207,7 @@ class PDE(Value):
         """
         algebra, found = energy(self.closure)
         rows = {n: terms(self.closure, e, ENERGY, algebra=algebra) for n, e in enumerate(found)}
-        if found and isinstance(self.law, Power):
+        if found and self.law.homogeneous:
             k = self.closure.ring.exponent(algebra.context)
             divided = k * (k + 1) * found[0] + 1
             rows[0] = terms(self.closure, divided, ENERGY, self.k * (self.k + 1), algebra)
@@ -225,8 +225,8 @@ class PDE(Value):
         """
         D, law = self.cell.spacing, self.law
         parts = [D**n * e.of_fields(u, velocity, x) for n, e in self.energy.items()]
-        if parts and isinstance(law, Law):
-            parts.append(law.energy.subs(law.delta, D * u.diff(x)) / D**2)
+        if parts and not law.homogeneous:  # e_0 of a power holds W
+            parts.append(law.of_strain(u.diff(x), D, -1))
         return sp.Add(*parts)
 
     def in_field(self, alphas: Mapping[int, Any]) -> PDE:
@@ -259,10 +259,7 @@ class PDE(Value):
         """
         base = base_order(self.closure.ring)
         D, law = self.cell.spacing, self.law
-        if isinstance(law, Law):
-            leading = law.at(D * u.diff(x), 1) * u.diff(x, 2)
-        else:
-            leading = u.diff(x) ** (law.k - 1) * u.diff(x, 2) if base else -(u**law.k)
+        leading = law.of_strain(u.diff(x), D, 1) * u.diff(x, 2) if base else -(u**law.exponent)
         rest = (
             D ** (n - base) * found.of_fields(u, velocity, x)
             for n, found in self.coefficients.items()
@@ -276,7 +273,7 @@ class PDE(Value):
         when the order is below 4, the branch optical, or D^{k+2} does not vanish (the linear
         closure with unequal contacts), so that the closed form does not apply.
         """
-        if isinstance(self.law, Law):
+        if not self.law.homogeneous:
             raise InputError(
                 "the compact wave in closed form belongs to a power law: `lwa.background_wave` "
                 "(--background P0) has the waves of any law"

@@ -18,7 +18,6 @@ from lwa.algebra.coefficients import Coefficients
 from lwa.algebra.jets import JetAlgebra, Term
 from lwa.base import latex
 from lwa.closure.consistency import Closure
-from lwa.law import Power
 
 Powers = tuple[tuple[int, int], ...]
 
@@ -131,7 +130,7 @@ class Terms(Mapping[Jet, sp.Expr]):
     def _before(self, jet: Jet, base: str, style: str) -> list[str]:
         """The powers of the base that stand before the jet; of F′ too where the law is no power."""
         a, b = jet.over(self.power)
-        if isinstance(self._ring.law, Power):
+        if self._ring.law.homogeneous:
             return [_raised(base, _exponent(a, b), style)] if a or b else []
         powers = (("F'", b), (base, a + b))
         return [_raised(name, str(e), style) for name, e in powers if e]
@@ -158,6 +157,7 @@ class Terms(Mapping[Jet, sp.Expr]):
     def of_fields(self, u: sp.Expr, velocity: sp.Expr, x: sp.Symbol) -> sp.Expr:
         """Σ coefficient · base^{a + bk} · jet for fields u(x) and u_τ(x)."""
         base, law = (u.diff(x) if self.base else u), self._ring.law
+        D = self._ring.cell.spacing
         total = sp.S.Zero
         for jet, coefficient in self.items():
             a, b = (
@@ -165,13 +165,8 @@ class Terms(Mapping[Jet, sp.Expr]):
             )
             factors = [u.diff(x, i) ** e for i, e in jet.x]
             factors += [velocity.diff(x, i) ** e for i, e in jet.t]
-            if isinstance(law, Power):
-                factors.append(base ** (a + b * law.k))
-            else:
-                delta = self._ring.cell.spacing * base
-                factors.append(law.at(delta, 1) ** b * base ** (a + b))
-                coefficient = law.evaluated(coefficient, delta)
-            total += coefficient * sp.Mul(*factors)
+            factors.append(law.weight(base, D, a, b))
+            total += law.evaluated(coefficient, D * base) * sp.Mul(*factors)
         return total
 
 

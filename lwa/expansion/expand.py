@@ -25,7 +25,7 @@ from lwa.expansion.core import descent
 from lwa.expansion.effort import affordable, short
 from lwa.expansion.observables import Observables, ring
 from lwa.expansion.series import EpsilonSeries
-from lwa.law import Law, Power, demand_one
+from lwa.law import ContactLaw, demand_one
 
 DAMPINGS = ("linear", "kuwabara_kono")
 """Damping forces of a contact: γ dδ/dt and γ δ^{k-1} dδ/dt (Kuwabara and Kono 1987)."""
@@ -251,7 +251,7 @@ class Expansion(Value):
 
 
 def expand(
-    cell: Cell, order: Any = 4, *, k: Any = symbol_k, law: Power | Law | None = None
+    cell: Cell, order: Any = 4, *, k: Any = symbol_k, law: ContactLaw | None = None
 ) -> Expansion:
     """The traveling wave of a chain to the order ε^order, ε = k - 1, from the lattice's equations.
 
@@ -274,12 +274,12 @@ def expand(
     order = integer(order, "order", 1)
     if law is not None:
         demand_one(k, law)
-        if not isinstance(law, Power):
+        if not law.homogeneous:
             raise InputError(
                 f"law is {shorten(law)}: the expansion is one in ε = k - 1 about the linear chain, "
                 "and only a power law has a k"
             )
-        k = law.k
+        k = law.exponent
     k = exponent(k, cell)
     _no_letter(cell, k)
     for name, values in (("mass", cell.masses), ("stiffness", cell.stiffnesses), ("k", (k,))):

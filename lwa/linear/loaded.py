@@ -15,7 +15,7 @@ import sympy as sp
 from lwa.base.exact import InputError, positive
 from lwa.base.frozen import Value
 from lwa.cell import Cell
-from lwa.law import Law, Power, compression, for_cell
+from lwa.law import ContactLaw, for_cell
 from lwa.linear.dispersion import Dispersion
 
 if TYPE_CHECKING:
@@ -38,7 +38,7 @@ class LoadedChain(Value):
     """
 
     cell: Cell
-    law: Power | Law
+    law: ContactLaw
     precompression: sp.Expr
 
     def __post_init__(self) -> None:
@@ -49,11 +49,7 @@ class LoadedChain(Value):
     @cached_property
     def static_compressions(self) -> tuple[sp.Expr, ...]:
         """δ_i of each contact under the load."""
-        if isinstance(self.law, Power):
-            return tuple(
-                (self.precompression / A) ** (1 / self.law.k) for A in self.cell.stiffnesses
-            )
-        return (compression(self.cell, self.law, self.precompression),) * self.cell.size
+        return self.law.compressions(self.cell, self.precompression)
 
     @cached_property
     def spring_constants(self) -> tuple[sp.Expr, ...]:

@@ -2,18 +2,20 @@
 
 In the canonical field u_ττ = ∂_x [F(u_x) + I (F′ u_xxx + ½ F″ u_xx²)], F the force in the units of
 `lwa.equation.pde` (p^k/k for a power) and W′ = F. Its wave v on a strain p0,
-u_x = p0 + v(ξ), ξ = x - V τ, obeys (Nesterenko, *Dynamics of Heterogeneous
-Materials*, 2001, ch. 1, for equal spheres)
+u_x = p0 + v(ξ), ξ = x - V τ, obeys (Nesterenko, *Dynamics of Heterogeneous Materials*, 2001, ch. 1,
+for equal spheres)
 
     I F′(p0 + v) v′² = v² (Q(B) - Q(v)),    Q(v) = 2 [W(p0+v) - W(p0) - F(p0) v] / v²,
 
-so that V² = Q(B) for the wave that rises by B. It exists where Q(v) < Q(B) for all v between 0 and
-B and F′ > 0 there; with v = B / cosh²θ its profile is the quadrature of a function without
-singularities, dξ/dθ = 2 √(I F′ (B - v) / (B (Q(B) - Q(v)))).
+so that V² = Q(B) for the wave that rises by B. It exists where F′ > 0 and Q(v) < Q(B) for all v
+between 0 and B, and B Q′(B) > 0: at Q′(B) = 0, the limiting amplitude of a law that softens, the
+wave is infinitely long. With v = B / cosh²θ its profile is the quadrature of a function without
+singularities (`lwa.wave.profile`, `lwa.wave.quadrature`).
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Self
@@ -24,26 +26,29 @@ import sympy as sp
 from lwa.base import latex
 from lwa.base.exact import InputError, exact, integer, real, root, shorten
 from lwa.base.frozen import Value
-from lwa.base.quantities import NoSolitaryWave, known
+from lwa.base.quantities import RISE, NoSolitaryWave, known
 from lwa.cell import RESERVED, Cell, meant, substitution
-from lwa.law import Law, Power, for_cell
+from lwa.law import ContactLaw, Power, for_cell
 from lwa.linear.dispersion import Dispersion
-from lwa.wave.kdv import RISE, KdV
+from lwa.wave.kdv import KdV
 from lwa.wave.profile import Function, Profile
 
 if TYPE_CHECKING:
     from lwa.wave.quadrature import NumericBackground
 
 DIGITS = 15
-"""Of a width or a profile, where no number of digits is given."""
+"""Digits of a width or a profile, unless the caller asks for others."""
 
 MOST_DIGITS = 200
+
+_MOST_PRECISION = 20_000
+"""Digits beyond which differences are not followed."""
 
 _LOOKS = 64
 """Places between 0 and B at which existence is decided for a law that is no power."""
 
 
-def taken_names(cell: Cell, law: Power | Law) -> dict[str, str]:
+def taken_names(cell: Cell, law: ContactLaw) -> dict[str, str]:
     """Names that no load may have, and what each means: those of chain, law and wave."""
     chain = dict.fromkeys((s.name for s in cell.symbols), "a property of the cell")
     return chain | dict.fromkeys((s.name for s in law.symbols), "a symbol of the law") | RESERVED
@@ -55,23 +60,22 @@ class BackgroundWave(Value):
 
     p0 : a number or a symbol; not negative under a power law, whose contacts only push.
 
-    Raises `lwa.InputError` for what cannot be meant, a cell of unlike contacts under a law that is
-    no power among it.
+    Raises `lwa.InputError` for anything else, and for unlike contacts under a law that is no power.
 
     >>> BackgroundWave(Cell([1]), Power("3/2"), "p0").kdv.nonlinearity
     1/(4*p0**(3/4))
     """
 
     cell: Cell
-    law: Power | Law
+    law: ContactLaw
     p0: sp.Expr
 
     def __post_init__(self) -> None:
         for_cell(self.law, self.cell)
         p0 = exact(self.p0, "p0")
-        if isinstance(self.law, Power) and p0.is_negative:
+        if self.law.homogeneous and p0.is_negative:
             raise InputError(f"p0 is {p0}: under a power law it must not be negative")
-        chain = {*self.cell.symbols, *self.law.symbols}  # p0 of a load holds these
+        chain = {*self.cell.symbols, *self.law.symbols}  # the p0 of a load holds these
         free = p0 if p0.is_Symbol else sp.Add(*(p0.free_symbols - chain))
         meant(free, "p0", taken=taken_names(self.cell, self.law))
         object.__setattr__(self, "p0", p0)
@@ -85,29 +89,16 @@ class BackgroundWave(Value):
     @cached_property
     def I(self) -> sp.Expr:
         """The coefficient of u_4x, D² included."""
-        return Dispersion(self.cell, self._exponent).I * self.cell.spacing**2
+        return Dispersion(self.cell, self.law.exponent).I * self.cell.spacing**2
 
     @property
     def time_scale(self) -> sp.Expr:
         """τ/t: the speed in space and time is dx/dt = V τ/t."""
-        return self.cell.time_scale(self._exponent)
-
-    @property
-    def _exponent(self) -> sp.Expr:
-        """By which unlike contacts share the strain; under a law that is no power all are alike."""
-        return self.law.k if isinstance(self.law, Power) else sp.S.One
-
-    # --- the law in units of the strain -----------------------------------------------------
+        return self.cell.time_scale(self.law.exponent)
 
     def force(self, p: sp.Expr, n: int = 0) -> sp.Expr:
         """F^{(n)} at a strain; W for n = -1."""
-        law, D = self.law, self.cell.spacing
-        if isinstance(law, Power):
-            up, down = (sp.Mul(*(law.k - j for j in r)) for r in (range(1, n), range(n, 1)))
-            return up / down * p ** (law.k - n)
-        if n < 0:
-            return law.energy.subs(law.delta, D * p) / D**2
-        return law.at(D * p, n) * D ** (n - 1)
+        return self.law.of_strain(p, self.cell.spacing, n)
 
     @cached_property
     def sound_speed(self) -> sp.Expr:
@@ -127,23 +118,22 @@ class BackgroundWave(Value):
     def speed(self, B: Any = None) -> sp.Expr:
         """V = dx/dτ of the wave whose strain rises from p0 to p0 + B (a symbol B when not given).
 
-        Raises `lwa.NoSolitaryWave` where numbers show that there is none.
+        Raises `lwa.NoSolitaryWave` for numbers without a wave.
 
         >>> BackgroundWave(Cell([1]), Power(2), "p0").speed()
         sqrt(B/3 + p0)
         """
-        B = self._amplitude(B)
-        square = self.stiffness(B)
-        if isinstance(self.law, Power) and self.law.k.is_Integer:
+        square = self.stiffness(self._amplitude(B))
+        if self.law.homogeneous and self.law.exponent.is_Integer:
             square = sp.expand(sp.cancel(square))
         return root(square)
 
     @property
     def _rise(self) -> sp.Symbol:
-        """The symbol B: positive, under a power with k < 1 negative, under other laws of either."""
-        if not isinstance(self.law, Power):
+        """The symbol B: positive, negative under a power with k < 1, real under other laws."""
+        if not self.law.homogeneous:
             return sp.Symbol("B", real=True)
-        return sp.Symbol("B", negative=True) if (self.law.k - 1).is_negative else RISE
+        return sp.Symbol("B", negative=True) if (self.law.exponent - 1).is_negative else RISE
 
     def _amplitude(self, B: Any) -> sp.Expr:
         if B is None:
@@ -151,15 +141,14 @@ class BackgroundWave(Value):
         B = exact(B, "B")
         if B.is_zero:
             raise InputError("B is 0: a wave rises or falls by B; `kdv` is the limit of small ones")
-        if reason := self._missing(B):
+        missing = self._missing if self.law.homogeneous else self._missing_numerically
+        if reason := missing(B):
             raise NoSolitaryWave(f"p0 = {self.p0}, B = {shorten(B)}: {reason}")
         return B
 
     def _missing(self, B: sp.Expr) -> str:
-        """Why there is no wave; empty where there is one, or where symbols leave it open."""
-        if not isinstance(self.law, Power):
-            return self._missing_numerically(B)
-        excess = self.law.k - 1
+        """Why a power law has no wave; empty where it has one, or where symbols leave it open."""
+        excess = self.law.exponent - 1
         if excess.is_zero:
             return "at k = 1 the chain is linear, and its waves disperse"
         if excess.is_negative and self.p0.is_zero:
@@ -173,45 +162,51 @@ class BackgroundWave(Value):
         return ""
 
     def _missing_numerically(self, B: sp.Expr) -> str:
+        """Why another law has no wave."""
         if self._free(B):
             return ""
-        with mpmath.workdps(30 + self._lost(B)):
+        with mpmath.workdps(30):
+            _, slope, _ = self._functions()
+            for i in range(_LOOKS + 1):
+                v = self._number(B) * i / _LOOKS
+                stiff = slope(v)
+                if mpmath.im(stiff) != 0 or not 0 < stiff < mpmath.inf:
+                    return f"F′ is not positive at the strain p0 + {mpmath.nstr(v, 5)}"
+        with mpmath.workdps(self._precision(B, DIGITS)):
             number = self._number(B)
-            _, slope, Q = self._functions()
-            top = Q(number)
+            F, _, Q = self._functions()
+            top, higher = Q(number), "a wave of the height {} would be as fast"
+            if not (F(number) - F(mpmath.mpf(0))) / number > top:  # B Q′(B)/2 = this - Q(B)
+                return f"the law does not stiffen towards it: {higher.format('just below')}"
             for i in range(1, _LOOKS):
                 v = number * i / _LOOKS
-                if mpmath.im(slope(v)) != 0 or not slope(v) > 0:
-                    return f"F′ is not positive at the strain p0 + {mpmath.nstr(v, 5)}"
                 if not Q(v) < top:
-                    return (
-                        "the law does not stiffen towards it: a wave of the height "
-                        f"{mpmath.nstr(v, 5)} would be as fast"
-                    )
+                    height = mpmath.nstr(v, 5)
+                    return f"the law does not stiffen towards it: {higher.format(height)}"
         return ""
-
-    def _slope(self, v: sp.Expr) -> sp.Expr:
-        return self.force(self.p0 + v, 1)
 
     @property
     def kdv(self) -> KdV:
         """The limit B → 0.
 
-        Raises `lwa.NoSolitaryWave` where no sound runs, at p0 = 0 under most laws.
+        Raises `lwa.NoSolitaryWave` where no sound runs (p0 = 0 under most laws), and at k = 1,
+        where waves have no amplitude of their own.
         """
         if self.sound_speed.is_zero or self.sound_speed.is_finite is False:
             raise NoSolitaryWave(f"p0 is {self.p0}: no sound runs there, so that no wave is small")
         c0 = self.sound_speed
         bend = self.force(self.p0, 2)
+        if bend.is_zero:
+            raise NoSolitaryWave(f"F″ is 0 at p0 = {self.p0}: waves of small amplitude disperse")
         return KdV(c0, sp.powsimp(bend / (2 * c0)), self.I * c0 / 2)
 
     def fwhm(self, B: Any, quantity: str = "strain", digits: int = DIGITS) -> sp.Expr:
         """Full width at half maximum, a length in x: of the rise of the strain, or of the force.
 
-        The velocity's is the strain's. Without load under a power law it is the compact wave's
-        closed form, else a number of so many digits, times D where D is a symbol.
+        The velocity's is the strain's. Without load under a power law the width is the compact
+        wave's closed form, else a number of so many digits, times D for a spacing that is a symbol.
 
-        Raises `lwa.InputError` where other things are symbols, `lwa.NoSolitaryWave` without a wave.
+        Raises `lwa.InputError` for other symbols, `lwa.NoSolitaryWave` without a wave.
 
         >>> BackgroundWave(Cell([1]), Power("3/2"), 1).fwhm(1)
         3.15563100804513*D
@@ -222,60 +217,57 @@ class BackgroundWave(Value):
             power = k if known(quantity) == "force" else 1
             return 2 * sp.acos(2 ** (-(k - 1) / (2 * power))) / beta
         digits = self._digits(digits)
-        with mpmath.workdps(2 * digits + 15 + self._lost(B)):
-            found = self._profile(B)
+        with mpmath.workdps(self._precision(B, digits)):
+            found = self._profile(B, digits)
             length = 2 * found.place(found.half(known(quantity)))
-        return sp.Float(length, digits) * self._unit
+        return sp.Float(length, digits) * self.unit
 
     @property
     def _compact(self) -> tuple[sp.Expr, sp.Expr] | None:
         """k and β of the wave without load under a power law."""
-        if not (isinstance(self.law, Power) and self.p0.is_zero):
+        if not (self.law.homogeneous and self.p0.is_zero):
             return None
-        k = self.law.k
+        k = self.law.exponent
         return k, (k - 1) / root(2 * self.I * k * (k + 1))
 
     def profile(self, xi: Any, B: Any, digits: int = DIGITS) -> sp.Expr:
         """v(ξ), the strain above p0: the compact wave without load, else a number.
 
-        Raises what `fwhm` raises, and `lwa.InputError` for a ξ that is no number in D.
+        Raises the errors of `fwhm`, and `lwa.InputError` for a ξ that is no number in D.
         """
         B, xi = self._amplitude(B), real(xi, "xi")
         if self._compact is not None:
             k, beta = self._compact
             arch = B * sp.cos(beta * xi) ** (2 / (k - 1))
             return sp.Piecewise((arch, sp.Abs(xi) <= sp.pi / (2 * beta)), (0, True))
-        place = xi.subs(self._unit, 1) if self._unit.is_Symbol else xi
+        place = self.in_unit(xi)
         if place.free_symbols:
             raise InputError(f"xi is {shorten(xi)}: a number, in D, is wanted")
         digits = self._digits(digits)
-        with mpmath.workdps(2 * digits + 15 + self._lost(B)):
+        with mpmath.workdps(self._precision(B, digits)):
             target = abs(mpmath.mpf(sp.N(place, mpmath.mp.dps)))
             if not target:
                 return sp.Float(self._number(B), digits)
-            found = self._profile(B)
-            value = found.strain(found.theta(target, mpmath.mpf(10) ** (-digits - 5)))
-        return sp.Float(value, digits)
+            found = self._profile(B, digits)
+            return sp.Float(found.strain(found.theta(target)), digits)
 
     def numeric(self) -> NumericBackground:
         """Vectorised float64 functions of (p0, B) for this cell and law; p0 is an argument there.
 
         Raises `lwa.InputError` unless masses, stiffnesses and the law's parameters are numbers.
         """
-        from lwa.wave.quadrature import (
-            NumericBackground,  # here, so that `import lwa` loads no NumPy
-        )
+        from lwa.wave.quadrature import NumericBackground  # start-up: it loads NumPy
 
-        return NumericBackground(self)
+        return NumericBackground(self.cell, self.law)
 
     def on(self, p0: Any) -> Self:
-        """The same on another strain."""
+        """The waves of the same chain on another strain."""
         return replace(self, p0=p0)
 
     def at(self, **values: Any) -> BackgroundWave:
-        """With numbers (or other symbols) for the named symbols, and for ω = m2/m1.
+        """The waves for numbers (or other symbols) in place of symbols, and ω = m2/m1 (``omega``).
 
-        Raises `lwa.InputError` for a name that does not occur or a value that cannot be meant.
+        Raises `lwa.InputError` for a name that does not occur or a value that is no quantity.
         """
         more = (*self.law.symbols, *sorted(self.p0.free_symbols, key=str))
         new = substitution(values, self.cell, more=more)
@@ -286,40 +278,57 @@ class BackgroundWave(Value):
     # --- numbers of many digits -------------------------------------------------------------
 
     @property
-    def _unit(self) -> sp.Expr:
-        """The spacing where it is a symbol and the law has no scale; lengths are numbers in it."""
+    def unit(self) -> sp.Expr:
+        """The spacing if it is a symbol and the law has no length; lengths are numbers in it."""
         D = self.cell.spacing
-        return D if D.is_Symbol and isinstance(self.law, Power) else sp.S.One
+        return D if D.is_Symbol and self.law.homogeneous else sp.S.One
+
+    def in_unit(self, value: sp.Expr) -> sp.Expr:
+        """A length or a speed over the `unit`."""
+        return value.subs(self.unit, 1) if self.unit.is_Symbol else value
 
     def _free(self, *values: sp.Expr) -> set[sp.Symbol]:
-        all_values = (*values, self.p0, self.I, self._slope(sp.S.One))
-        return set().union(*(v.free_symbols for v in all_values)) - {self._unit}
+        all_values = (*values, self.p0, self.I, self.force(self.p0 + sp.S.One, 1))
+        return set().union(*(v.free_symbols for v in all_values)) - {self.unit}
 
     def _digits(self, digits: int) -> int:
         if integer(digits, "digits", 1) > MOST_DIGITS:
             raise InputError(f"digits is {digits}: at most {MOST_DIGITS} are given")
         return digits
 
-    def _lost(self, B: sp.Expr) -> int:
-        """Digits that the differences cancel where the wave is small."""
+    def _precision(self, B: sp.Expr, digits: int) -> int:
+        """Working digits with which Q(B) - Q(v) keeps twice the digits that are asked for.
+
+        Twice, because the difference falls as θ² towards the peak. How many the terms of Q cancel
+        is measured: the difference must not change with twice the working digits.
+        """
         if free := self._free(B):
             raise InputError(
                 f"{min(map(str, free))!r} has no value: a width or a profile on a background is a "
                 "number and wants numbers"
             )
-        ratio = abs(sp.N(self.p0 / B, 5))
-        return 3 * max(0, int(sp.ceiling(sp.log(ratio + 1, 10)))) + 10
+        working, found = 2 * digits + 15, []
+        while working < _MOST_PRECISION:
+            with mpmath.workdps(working):
+                _, _, Q = self._functions()
+                number = self._number(B)
+                found.append(Q(number) - Q(number / 2))
+                if len(found) > 1 and abs(found[-1] - found[-2]) <= abs(found[-1]) * mpmath.mpf(
+                    10
+                ) ** (-2 * digits):
+                    return working // 2
+            working *= 2
+        raise InputError(f"B is {shorten(B)}: too small beside p0, use `kdv`")
 
     def _number(self, value: sp.Expr) -> Any:
-        one = value.subs(self._unit, 1) if self._unit.is_Symbol else value
-        return mpmath.mpf(sp.N(one, mpmath.mp.dps + 5))
+        return mpmath.mpf(sp.N(self.in_unit(value), mpmath.mp.dps + 5, maxn=_MOST_PRECISION))
 
     @cached_property
     def _compiled(self) -> list[tuple[Function, list[sp.Rational]]]:
         """F, F′ and Q at p0 + v: functions of v and of their own fractions."""
         v, found = sp.Dummy("v", real=True), []
-        for value in (self.force(self.p0 + v), self._slope(v), self._stiffness(v)):
-            value = value.subs(self._unit, 1) if self._unit.is_Symbol else value
+        for value in (self.force(self.p0 + v), self.force(self.p0 + v, 1), self._stiffness(v)):
+            value = self.in_unit(value)
             numbers = {a: sp.Dummy() for a in value.atoms(sp.Rational) if not a.is_Integer}
             function = sp.lambdify((v, *numbers.values()), value.xreplace(numbers), "mpmath")
             found.append((function, list(numbers)))
@@ -332,15 +341,13 @@ class BackgroundWave(Value):
             for function, numbers in self._compiled
         ]
 
-    def _profile(self, B: sp.Expr) -> Profile:
+    def _profile(self, B: sp.Expr, digits: int) -> Profile:
         """In mpmath's working precision."""
-        return Profile(self._number(B), self._number(self.I), *self._functions())
+        return Profile(self._number(B), self._number(self.I), digits, *self._functions())
 
 
-def background_wave(
-    cell: Cell, p0: Any = "p0", *, law: Power | Law | None = None
-) -> BackgroundWave:
-    """The waves of a cell's canonical field on the strain p0, under δ^k where no law is given.
+def background_wave(cell: Cell, p0: Any = "p0", *, law: ContactLaw | None = None) -> BackgroundWave:
+    """The waves of a cell's canonical field on the strain p0, under δ^k unless a law is given.
 
     >>> background_wave(Cell([1]), law=Power("3/2")).sound_speed
     p0**(1/4)
@@ -348,5 +355,13 @@ def background_wave(
     return BackgroundWave(cell, Power("k") if law is None else law, p0)
 
 
-def _given(function: Function, numbers: list[Any]) -> Function:
-    return lambda v: function(v, *numbers)
+def _given(function: Callable[..., Any], numbers: list[Any]) -> Function:
+    """The function of v alone; NaN at a pole."""
+
+    def value(v: Any) -> Any:
+        try:
+            return function(v, *numbers)
+        except ZeroDivisionError:
+            return mpmath.nan
+
+    return value

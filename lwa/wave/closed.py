@@ -1,44 +1,224 @@
-"""What is asked of a wave by what computes with it, in numbers, in units, in programs."""
+"""The compact traveling wave of the wave equation at D^{k+3}, in closed form.
+
+    u_ττ = u_x^{k-1} u_xx + G u_x^{k-3} u_xx³ + H u_x^{k-2} u_xx u_xxx + I u_x^{k-1} u_4x.
+
+With ξ = x - V τ the strain v = u_ξ obeys a third-order equation. The substitution v = z^p with
+
+    (G + H + I) p² - (H + 3I) p + 2I = 0
+
+removes z_ξ³, the integrating factor z^a makes the rest a total derivative, and what remains is
+z'' = μ z^η - σ z (Porter et al. 2008). Its compact wave is v = B cos^m(βξ) on |ξ| ≤ π/(2β),
+m = 2/(k-1). Both roots p lead to the same
+
+    β = (k-1) / (2 √(G+H+I)),    V² = B^{k-1} (1 - β² [(H + 3I) m - 2I]),
+
+because I (kp + a) = p² (G + H + I). The wave needs G + H + I > 0 and V² > 0; p may be complex.
+"""
 
 from __future__ import annotations
 
-from typing import Any, Protocol, Self
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any, Self
 
 import sympy as sp
 
-from lwa.cell import Cell
-from lwa.law import Law, Power
+from lwa.algebra.rational import factored
+from lwa.base import latex
+from lwa.base.exact import InputError, positive, power, real, root, shorten
+from lwa.base.frozen import Value
+from lwa.base.quantities import RISE, SPEED, NoSolitaryWave, strain_power
+from lwa.cell import Cell, exponent, substitution
+from lwa.wave.reduction import Reduction, strain_equation
+
+_SHARES = sp.symbols("g h", cls=sp.Dummy)
+"""G/I and H/I in the algebra of the strain's equation."""
 
 
-class CompactWave(Protocol):
-    """A `lwa.TravelingWave`, or what can stand for it."""
+@dataclass(frozen=True, repr=False)
+class CompactWave(Value):
+    """Closed forms of the compact wave v = u_x = B cos^m(βξ), ξ = x - V τ.
+
+    Parameters
+    ----------
+    cell, k : the chain and the exponent of its contact law.
+    G, H, I : coefficients of the wave equation, D² included.
+
+    Results are exact SymPy expressions. Lengths are in units of the spacing D; B is the peak of the
+    strain u_x, and the speed V = dx/dτ becomes dx/dt by `speed_scale`.
+
+    Raises `NoSolitaryWave` when the parameters are numbers without a wave (k ≤ 1, G + H + I ≤ 0,
+    or V² ≤ 0).
+    """
+
+    cell: Cell
+    k: sp.Expr
+    G: sp.Expr
+    H: sp.Expr
+    I: sp.Expr
+
+    def __post_init__(self) -> None:
+        if self.k.is_number and not self.k > 1:
+            raise NoSolitaryWave(
+                f"k is {self.k}: a compact wave needs k > 1 (at k = 1 the chain is linear)"
+            )
+        if self.dispersion.is_number and not self.dispersion > 0:
+            raise NoSolitaryWave(
+                f"(G+H+I)/D² is {self.dispersion}: there is no compact wave unless G+H+I > 0"
+            )
+        if self.speed_factor.is_number and not self.speed_factor > 0:
+            raise NoSolitaryWave(
+                f"V²/B^(k-1) is {self.speed_factor}: there is no wave with a real speed"
+            )
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({self.cell!r}, k={self.k}, β={shorten(self.beta)})"
+
+    def _repr_latex_(self) -> str:
+        return latex.display(
+            [
+                r"v = u_{x} = B \cos^{2/(k-1)}(\beta \xi), \quad |\xi| \leq \frac{\pi}{2\beta}",
+                latex.row(r"\beta", self.beta),
+                latex.row("V_{s}", self.speed()),
+            ]
+        )
 
     @property
-    def cell(self) -> Cell: ...
+    def D(self) -> sp.Expr:
+        """The spacing."""
+        return self.cell.spacing
+
+    @cached_property
+    def shares(self) -> tuple[sp.Expr, sp.Expr]:
+        """G/I and H/I; in the canonical field both depend on k alone."""
+        return factored(self.G / self.I), factored(self.H / self.I)
+
+    @cached_property
+    def dispersion(self) -> sp.Expr:
+        """(G + H + I) / D²."""
+        g, h = self.shares
+        if (g + h).free_symbols <= self.k.free_symbols:  # then I stays the factor that it is
+            return self.I / self.D**2 * factored(1 + g + h)
+        return factored((self.G + self.H + self.I) / self.D**2)
+
     @property
-    def k(self) -> sp.Expr: ...
+    def m(self) -> sp.Expr:
+        """m = 2/(k-1), the power of the cosine in the strain."""
+        return 2 / (self.k - 1)
+
+    @cached_property
+    def beta(self) -> sp.Expr:
+        """β = (k-1) / (2 √(G+H+I))."""
+        return (self.k - 1) / (2 * self.D * _root(self.dispersion))
+
+    @cached_property
+    def width(self) -> sp.Expr:
+        """π/β, the length of the wave's support."""
+        return sp.pi / self.beta
+
     @property
-    def D(self) -> sp.Expr: ...
+    def sites(self) -> sp.Expr:
+        """π/(βD), the number of particles under the wave."""
+        return self.width / self.D
+
+    def fwhm(self, quantity: str = "strain") -> sp.Expr:
+        """Full width at half maximum, a length in x.
+
+        ``quantity`` is "strain" (u_x), "force" (of a contact, A (D u_x)^k) or "velocity"
+        (u_τ = -V u_x, so that its width is the strain's).
+
+        Raises `lwa.InputError` for any other quantity.
+        """
+        return 2 * sp.acos(2 ** (-1 / (strain_power(quantity, self.k) * self.m))) / self.beta
+
+    @cached_property
+    def speed_factor(self) -> sp.Expr:
+        """V²/B^{k-1} = 1 - β² [(H + 3I) m - 2I]."""
+        # With β² and m written out (k - 1) cancels: the result is rational in k and the masses.
+        k, (g, h) = self.k, self.shares
+        return factored(1 - (k - 1) * (h + 4 - k) / (2 * (1 + g + h)))
+
+    def speed(self, B: Any = RISE) -> sp.Expr:
+        """V = dx/dτ of the wave whose strain peaks at B."""
+        return _root(self.speed_factor) * power(positive(B, "B"), (self.k - 1) / 2)
+
+    def amplitude(self, V: Any = SPEED) -> sp.Expr:
+        """B = (V² / speed_factor)^{1/(k-1)}, the peak strain of the wave of speed V = dx/dτ."""
+        return power(positive(V, "V") ** 2 / self.speed_factor, 1 / (self.k - 1))
+
     @property
-    def dispersion(self) -> sp.Expr: ...
+    def force_exponent(self) -> sp.Expr:
+        """2k/(k-1), the power of V to which the peak force F_m is proportional."""
+        return 2 * self.k / (self.k - 1)
+
     @property
-    def speed_factor(self) -> sp.Expr: ...
-    def fwhm(self, quantity: str) -> sp.Expr: ...
-    def reduction(self, root: int = 0, V: Any = ...) -> Any: ...
-    def at(self, **values: Any) -> Self: ...
-    def _repr_latex_(self) -> str: ...
+    def speed_scale(self) -> sp.Expr:
+        """τ/t: the speed in space and time is dx/dt = V τ/t."""
+        return self.cell.time_scale(self.k)
+
+    def profile(self, xi: Any, B: Any = RISE) -> sp.Expr:
+        """v(ξ) = B cos^m(βξ) on |ξ| ≤ π/(2β) and 0 outside, as a SymPy Piecewise.
+
+        >>> from lwa import Cell, canonical_wave
+        >>> canonical_wave(Cell((1,)), 3).profile("xi", B=1)
+        Piecewise((cos(sqrt(2)*xi/D), Abs(xi) <= sqrt(2)*pi*D/4), (0, True))
+        """
+        xi = real(xi, "xi")
+        arch = positive(B, "B") * sp.cos(self.beta * xi) ** self.m
+        return sp.Piecewise((arch, sp.Abs(xi) <= self.width / 2), (0, True))
+
+    @cached_property
+    def roots(self) -> tuple[sp.Expr, sp.Expr]:
+        """Both p for which v = z^p removes z_ξ³, the paper's first (2/(k+1) at equal masses)."""
+        p, equation = self._equation
+        quadratic = sp.Poly(sp.cancel(equation["cubic"] / p), p).all_coeffs()
+        A, B, C = (factored(self._with_shares(c)) for c in quadratic)
+        root = _root(factored(B**2 - 4 * A * C)).replace(sp.Abs, lambda x: x)
+        return (sp.together((-B - root) / (2 * A)), sp.together((-B + root) / (2 * A)))
+
+    @cached_property
+    def _equation(self) -> tuple[sp.Symbol, dict[str, sp.Expr]]:
+        """p and `strain_equation` over I, with symbols for G/I and H/I."""
+        p = sp.Dummy("p")
+        return p, strain_equation(p, _SHARES[0], _SHARES[1], sp.S.One)
+
+    def _with_shares(self, value: sp.Expr) -> sp.Expr:
+        return value.xreplace(dict(zip(_SHARES, self.shares, strict=True)))
+
+    def reduction(self, root: int = 0, V: Any = SPEED) -> Reduction:
+        """z'' = μ z^η - σ z for one root p (0: the paper's, 1: the other).
+
+        With p the equation reads V² z^p p r_1 = z^{kp} p (r_1 + I r_3 + q r_1 r_2). Since
+        ∂(z^e r_2) = z^e (r_3 + (e - 1) r_1 r_2), the factor z^a, kp + a = e = q/I + 1, makes it
+        a total derivative; integrated once it is the equation of z.
+        """
+        if root not in (0, 1):
+            raise InputError(f"root is {shorten(root)}: 0 or 1 is wanted")
+        p, equation = self._equation
+        exponent = sp.Poly(sp.cancel(equation["product"] / equation["third"]) + 1, p)  # e
+        slope, constant = (factored(self._with_shares(exponent.nth(n))) for n in (1, 0))
+        a = factored(slope - self.k) * self.roots[root] + constant
+        return Reduction(k=self.k, I=self.I, p=self.roots[root], a=a, V=positive(V, "V"))
+
+    def at(self, **values: Any) -> Self:
+        """The same wave with numbers (or other symbols) for the named symbols, and for ω = m2/m1.
+
+        Raises `lwa.InputError` for a name that the wave does not contain or a value that is not
+        positive, and `NoSolitaryWave` for values without a wave.
+
+        >>> from lwa import Dimer, homogenize
+        >>> wave = homogenize(Dimer("m1", "m2")).pde.traveling_wave()
+        >>> wave.at(k=sp.Rational(3, 2), m1=1, m2=1).beta
+        sqrt(10)/(5*D)
+        """
+        new = substitution(values, self.cell, self.k)
+        G, H, I = (c.xreplace(new) for c in (self.G, self.H, self.I))
+        k = exponent(self.k.xreplace(new))
+        return replace(self, cell=self.cell.replaced(new), k=k, G=G, H=H, I=I)
 
 
-class LoadedWave(Protocol):
-    """A `lwa.BackgroundWave`, or what can stand for it."""
-
-    @property
-    def cell(self) -> Cell: ...
-    @property
-    def law(self) -> Power | Law: ...
-    @property
-    def I(self) -> sp.Expr: ...
-    def force(self, p: sp.Expr, n: int = 0) -> sp.Expr: ...
-    def on(self, p0: Any) -> Self: ...
-    def speed(self, B: Any = None) -> sp.Expr: ...
-    def fwhm(self, B: Any, quantity: str = ...) -> sp.Expr: ...
+def _root(value: sp.Expr) -> sp.Expr:
+    """√value of a rational expression in positive quantities, squares taken out of the root."""
+    plain, back = sp.posify(value)
+    numerator, denominator = sp.fraction(plain)
+    return (root(numerator) / root(denominator)).xreplace(back)

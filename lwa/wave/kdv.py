@@ -9,9 +9,7 @@ import sympy as sp
 
 from lwa.base.exact import exact, real, root
 from lwa.base.frozen import Value
-
-RISE = sp.Symbol("B", positive=True)
-"""The rise of a wave, where no other is given."""
+from lwa.base.quantities import RISE
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,7 @@ import numpy as np
 import sympy as sp
 from numpy.typing import ArrayLike
 
-from lwa.base.arrays import Array, Extended
+from lwa.base.arrays import Array, Extended, finite
 from lwa.base.exact import InputError, shorten
 from lwa.base.frozen import Value
 from lwa.base.quantities import NoSolitaryWave, strain_power
@@ -116,10 +116,10 @@ class NumericWave(Value):
 
     def _wave(self, k: ArrayLike, omega: ArrayLike) -> tuple[Extended, Extended, Extended]:
         """k and ω as arrays of one shape, NaN where there is no wave, and (G+H+I)/D²."""
-        given = (np.asarray(x, np.float64).astype(np.longdouble) for x in (k, omega))
+        given = (finite(x, name).astype(np.longdouble) for x, name in ((k, "k"), (omega, "ω")))
         k, omega = np.broadcast_arrays(*given)
-        if not (np.all(np.isfinite(k)) and np.all(np.isfinite(omega)) and np.all(omega > 0)):
-            raise InputError("k and ω = m2/m1 must be finite, and ω positive")
+        if not np.all(omega > 0):
+            raise InputError(f"ω = m2/m1 is {omega.min()}: it must be positive")
         with np.errstate(all="ignore"):  # outside the domain, which the next lines tell
             dispersion = self._dispersion(k, omega)
             exists = (k > 1) & (dispersion > 0) & (self._factor(k, omega) > 0)
@@ -144,9 +144,9 @@ def _rounded(value: Extended) -> Array:
 
 
 def _positive(value: ArrayLike, name: str) -> Extended:
-    array = np.asarray(value, np.float64)
-    if not np.all((array > 0) & np.isfinite(array)):
-        raise InputError(f"{name} must be positive and finite")
+    array = finite(value, name)
+    if not np.all(array > 0):
+        raise InputError(f"{name} is {array.min()}: it must be positive")
     return array.astype(np.longdouble)
 
 

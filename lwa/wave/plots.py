@@ -1,56 +1,29 @@
-"""Pictures of a wave. Matplotlib is loaded where one is drawn: the theory itself wants none."""
+"""Figures of waves. Matplotlib is loaded when a new figure is drawn, not before."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping
+from typing import Any
 
-import numpy as np
-import sympy as sp
-
-from lwa.base.quantities import QUANTITIES, strain_power
-from lwa.wave.curves import arch, number
-
-if TYPE_CHECKING:
-    from lwa.wave.closed import CompactWave
-    from lwa.wave.physical import PhysicalWave
-
-POINTS = 501
+from lwa.base.arrays import Array
 
 
 def axes(ax: Any) -> Any:
-    """The axes that are given, or those of a new picture."""
+    """The given axes, or those of a new figure."""
     if ax is None:
-        from matplotlib import pyplot  # here: only a picture wants it
+        from matplotlib import pyplot  # start-up: only a figure needs it
 
         ax = pyplot.figure().add_subplot()
     return ax
 
 
-def profiles(wave: CompactWave, ax: Any) -> Any:
-    """Strain and contact force over their peaks, along the chain in sites."""
-    k = number(wave.k)
-    beta = number((wave.k - 1) / (2 * sp.sqrt(wave.dispersion)))
-    sites = np.linspace(-0.6, 0.6, POINTS) * np.pi / beta
+def draw(
+    ax: Any, x: Array, curves: Mapping[str, Array], xlabel: str, ylabel: str, title: str = ""
+) -> Any:
+    """Draw curves over x with a legend on ``ax`` or a new figure, and return the axes."""
     ax = axes(ax)
-    for quantity in QUANTITIES[:2]:
-        power = 2 * strain_power(quantity, k) / (k - 1)
-        ax.plot(sites, arch(beta * sites, power), label=quantity)
-    ax.set(xlabel="ξ/D", ylabel="over its peak", title=f"compact wave, k = {wave.k}")
-    ax.legend()
-    return ax
-
-
-def passage(answer: PhysicalWave, ax: Any, units: tuple[str, str]) -> Any:
-    """The force of a contact and of a bead as the wave passes."""
-    half = number(answer.fwhm("force", "time"))
-    t = np.linspace(-2 * half, 2 * half, POINTS)
-    ax = axes(ax)
-    for of in ("contact", "bead"):
-        ax.plot(t, answer.curve(t, of=of), label=of)
-    names = (
-        f"{name} ({unit})" if unit else name
-        for name, unit in zip(("t", "force"), units, strict=True)
-    )
-    ax.set(**dict(zip(("xlabel", "ylabel"), names, strict=True)))
+    for label, values in curves.items():
+        ax.plot(x, values, label=label)
+    ax.set(xlabel=xlabel, ylabel=ylabel, title=title)
     ax.legend()
     return ax

@@ -16,11 +16,11 @@ from typing import Any
 
 import sympy as sp
 
-from lwa.base.exact import positive
+from lwa.base.exact import MOST_CANCELLED, positive
 from lwa.base.frozen import Value
 from lwa.base.quantities import NoSolitaryWave, known_extent
 from lwa.cell import Cell, meant, substitution
-from lwa.law import Law, Power, compression, for_cell
+from lwa.law import ContactLaw, for_cell
 from lwa.wave.background import DIGITS, BackgroundWave, taken_names
 
 
@@ -34,13 +34,14 @@ class PrecompressedWave(Value):
 
     Raises `lwa.InputError` unless both are positive, and `lwa.NoSolitaryWave` without a wave.
 
+    >>> from lwa import Power
     >>> wave = PrecompressedWave(Cell(["m"]), Power(2), "F", "F0")
     >>> wave.sound_speed
     sqrt(2)*D*F0**(1/4)/sqrt(m)
     """
 
     cell: Cell
-    law: Power | Law
+    law: ContactLaw
     force: sp.Expr
     precompression: sp.Expr
 
@@ -59,19 +60,18 @@ class PrecompressedWave(Value):
     @cached_property
     def static_compression(self) -> sp.Expr:
         """δ0 of a contact under the load; of unequal ones, their mean."""
-        return compression(self.cell, self.law, self.precompression)
+        return self.law.compression(self.cell, self.precompression)
 
     @cached_property
     def compression(self) -> sp.Expr:
         """δ1 - δ0, the peak compression that the wave adds."""
-        return compression(self.cell, self.law, self.force) - self.static_compression
+        return self.law.compression(self.cell, self.force) - self.static_compression
 
     @cached_property
     def compressions(self) -> tuple[sp.Expr, ...]:
         """δ1 - δ0 of each contact of the cell."""
-        if not isinstance(self.law, Power):
-            return (self.compression,) * self.cell.size
-        return tuple(share * self.compression for share in self.cell.shares(self.law.k))
+        shares = self.cell.shares(self.law.exponent)
+        return tuple(share * self.compression for share in shares)
 
     @cached_property
     def background(self) -> BackgroundWave:
@@ -107,7 +107,11 @@ class PrecompressedWave(Value):
         """
         known_extent(extent)
         length = self.background.fwhm(self.strain, quantity, digits)
-        return length if extent == "length" else length / self.speed.n(digits)
+        if extent == "length":
+            return length
+        # In units of D, where D is a symbol: SymPy does not follow terms with symbols that cancel.
+        speed = sp.N(self.background.in_unit(self.speed), digits, maxn=MOST_CANCELLED)
+        return length / (speed * self.background.unit)
 
     def at(self, **values: Any) -> PrecompressedWave:
         """The same with numbers (or other symbols) for the named symbols.

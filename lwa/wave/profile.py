@@ -1,10 +1,10 @@
-"""The profile of a wave on a background in many digits: one quadrature, by mpmath.
+"""The profile of a wave on a background to many digits: one quadrature, by mpmath.
 
 With v = B / cosh²θ the equation of `lwa.wave.background` is
 
-    dξ/dθ = 2 √(I F′(p0+v) (B - v) / (B (Q(B) - Q(v)))),
+    dξ/dθ = 2 √(I F′(p0+v) tanh²θ / (Q(B) - Q(v))),
 
-regular as far as π/2 from the real axis at any load.
+for a power law regular as far as π/2 from the real axis at any load.
 """
 
 from __future__ import annotations
@@ -23,16 +23,20 @@ Function = Callable[[Any], Any]
 
 _GAUSS = GaussLegendre(mpmath.mp)
 
+_RULES = ((-1, 0), (0, 0), (0, 4), (1, 8), (1, 20), (2, 40), (2, 80))
+"""Degrees of Gauss's rule beyond the usual one, and halvings of the piece next to θ = 0."""
+
 
 @dataclass(frozen=True)
 class Profile:
-    """A wave that rises by B, in mpmath's working precision, of which differences lose some.
+    """A wave of the rise B, to so many digits; mpmath works with those that differences lose.
 
     force, slope and stiffness are F, F′ and Q at the strain v above the background.
     """
 
     B: Any
     I: Any
+    digits: int
     force: Function
     slope: Function
     stiffness: Function
@@ -44,11 +48,11 @@ class Profile:
     def rate(self, theta: Any) -> Any:
         """dξ/dθ, θ > 0."""
         v = self.strain(theta)
-        gap = self.B * (self._top - self.stiffness(v))
-        return 2 * mpmath.sqrt(self.I * self.slope(v) * (self.B - v) / gap)
+        gap = self._top - self.stiffness(v)
+        return 2 * mpmath.tanh(theta) * mpmath.sqrt(self.I * self.slope(v) / gap)
 
     def strain(self, theta: Any) -> Any:
-        """v."""
+        """v(θ)."""
         return self.B / mpmath.cosh(theta) ** 2
 
     def place(self, theta: Any) -> Any:
@@ -57,20 +61,25 @@ class Profile:
         return self._integral(mpmath.linspace(0, theta, pieces + 1))
 
     def half(self, quantity: str) -> Any:
-        """θ where the quantity has half of its rise."""
+        """θ at which the quantity has half of its rise."""
         if quantity != "force":
             return mpmath.acosh(mpmath.sqrt(2))
         half = (self.force(mpmath.mpf(0)) + self.force(self.B)) / 2
+        low, high = mpmath.mpf(0), self.B
         v = self.B
-        for _ in range(200):  # Newton, from the side where a law that stiffens does not overshoot
-            change = (self.force(v) - half) / self.slope(v)
-            v -= change
-            if abs(change) < abs(v) * mpmath.eps * 100:
+        for _ in range(20 * mpmath.mp.dps):  # Newton, or halves where it leaves the bracket
+            gap = self.force(v) - half
+            low, high = (low, v) if gap * mpmath.sign(self.B) > 0 else (v, high)
+            step = v - gap / self.slope(v)
+            inside = min(low, high) < step < max(low, high)
+            v, before = step if inside else (low + high) / 2, v
+            if abs(v - before) < abs(v) * mpmath.mpf(10) ** (-self.digits - 5):
                 break
         return mpmath.acosh(mpmath.sqrt(self.B / v))
 
-    def theta(self, place: Any, accuracy: Any) -> Any:
+    def theta(self, place: Any) -> Any:
         """θ at a place ξ > 0."""
+        accuracy = mpmath.mpf(10) ** (-self.digits - 5)
         start, here = mpmath.mpf(0), mpmath.mpf(0)
         while here + (step := self._integral([start, start + 1])) < place:
             start, here = start + 1, here + step
@@ -89,10 +98,22 @@ class Profile:
         return theta
 
     def _integral(self, points: list[Any]) -> Any:
-        """∫ dξ by Gauss's rule on pieces of length 1, of as many points as the precision asks for.
+        """∫ dξ by Gauss's rule on each piece, refined until the digits stand.
 
-        n points are good to 6^{-2n}; its cancellation at small θ would keep an adaptive rule busy.
+        Under a power with small k, n points err by 6^{-2n} on a piece of length 1, and degree d has
+        n = 3·2^{d-1}. Steep laws, and waves next to their limiting amplitude, vary fast at θ = 0.
+        Nodes and weights need the digits only; what differences lose is lost in the integrand.
         """
-        degree = 4 + max(0, math.ceil(math.log2(mpmath.mp.dps / 50)))  # 3·2^{degree-1} points
-        pieces = (_GAUSS.get_nodes(a, b, degree, mpmath.mp.prec) for a, b in pairwise(points))
-        return mpmath.fdot((w, self.rate(theta)) for nodes in pieces for theta, w in nodes)
+        precision = int(3.33 * self.digits) + 40
+        usual = 4 + max(0, math.ceil(math.log2((self.digits + 5) / 36)))
+        found = mpmath.mpf(0)
+        for more, halvings in _RULES:
+            first = points[0] + (points[1] - points[0]) * mpmath.mpf(2) ** -halvings
+            graded = [first * 2**i for i in range(halvings)] if not points[0] else []
+            pieces = pairwise([points[0], *graded, *points[1:]])
+            nodes = (_GAUSS.get_nodes(a, b, usual + more, precision) for a, b in pieces)
+            before = found
+            found = mpmath.fdot((w, self.rate(theta)) for piece in nodes for theta, w in piece)
+            if abs(found - before) <= abs(found) * mpmath.mpf(10) ** (-self.digits - 3):
+                break
+        return found

@@ -1,86 +1,89 @@
 """Waves on a background in float64: speed, width and profile for arrays of (p0, B).
 
-What `compressed` writes as differences of W and F cancels where the wave is small beside the
-load. Here differences are integrals of F′ and F″ over the strains of the wave, by Gauss's rule,
+`lwa.wave.background` writes V² = Q(B) and Q(B) - Q(v) as differences of W and F, which cancel. Here
+they are integrals of F′ and F″ over the strains of the wave, p = p0 + sB, 0 < s < 1, whose
+integrands keep one sign under a law that stiffens:
 
-    V² = 2∫(1-s) F′(p0+sB) ds,    c = F′(p1) - V² = B∫(1-s²) F″(p1-sB) ds,
-    n = (F(p1) - F(p0))/B - V² = B∫s(1-s) F″(p1-sB) ds,    p1 = p0 + B,
+    Q(B)        = 2 ∫ (1-s) F′ ds,
+    Q(B) - Q(v) = B ∫ K F″ ds,    K = (1-s)² for s > v/B,  (1-s)² - (1 - sB/v)² below.
 
-of one sign under a law that stiffens, so that nothing cancels. Where F′ is no polynomial on that
-scale, as next to δ = 0, which the last coefficients of its expansion in Legendre polynomials tell,
-the differences themselves are taken, which then lose little. With v = B (1 - y²), y = tanh θ,
+With v = B (1 - y²), y = tanh θ, the profile of the wave is
 
-    dξ/dθ = 2 (v/B) √(I F′(p0+v) / X),    X = 2n - y² (c - y² B ∫(1-s)² F″(p1 - s y² B) ds),
+    dξ/dθ = 2 √(I F′(p0+v) y² / (Q(B) - Q(v))).
 
-where the last integral is over strains far from p0 and always smooth: at fixed θ it is a matrix
-times F″ at fixed places, and the width the integral of a polynomial in θ.
+All integrals run over one grid in θ, s = 1/cosh²θ, of Gauss panels. Towards s = 0, where F′ of an
+unloaded contact is singular, the panels become longer; towards s = 1 they are halved until the
+expansion of dξ/dθ in Legendre polynomials has converged, as steep laws, contacts about to open and
+waves next to their limiting amplitude demand. K is a matrix on that grid. At small v the wave of
+half the rise has the same form, so that a profile is a sequence of octaves.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import sympy as sp
-from numpy.polynomial import legendre
 from numpy.typing import ArrayLike, NDArray
 
-from lwa.base.arrays import Array
-from lwa.base.exact import InputError
+from lwa.base.arrays import Array, finite
+from lwa.base.exact import InputError, number
 from lwa.base.frozen import Value
 from lwa.base.quantities import NoSolitaryWave, known
-from lwa.law import Power
-from lwa.wave.closed import LoadedWave
-from lwa.wave.gauss import (
-    DEEPEST,
-    SMOOTH,
-    STRAIN,
-    THETA,
-    Function,
-    blocks,
-    compiled,
-    expansion,
-    fitted,
+from lwa.cell import Cell
+from lwa.law import ContactLaw
+from lwa.linear.dispersion import Dispersion
+from lwa.wave.panels import (
+    CONVERGED,
+    LEVELS,
+    ROUNDING,
+    Grid,
     gauss,
-    is_smooth,
-    root,
+    grid,
+    integrated,
+    inverse,
+    strains,
+    value_at,
 )
 
-_FEW = 16
-"""Up to p0 = 4 B the definition of V² cancels less than extended precision has to spare."""
-
-_MOST_PANELS = 350
-"""Of θ; 1/cosh² θ is next to nothing for a float there."""
+_BLOCK = 256
+"""Waves that are computed at once, so that their samples stay in the processor's cache."""
 
 
 @dataclass(frozen=True)
 class NumericBackground(Value):
-    """V², V, widths and profiles of a cell's waves, for arrays of p0 and B that broadcast.
+    """V, widths and profiles of the waves of a cell under a law, for arrays of p0 and B.
 
-    Strains are as in `lwa.BackgroundWave`, whose p0 does not matter here; lengths are in D where D
-    is a symbol. Where there is no wave the functions raise `lwa.NoSolitaryWave` and name the place.
+    p0 and B broadcast; strains are those of `lwa.BackgroundWave`; lengths are in units of D for a
+    spacing that is a symbol under a power law. The functions raise `lwa.NoSolitaryWave`, which
+    names the place, for a p0 and B without a wave.
 
-    Raises `lwa.InputError` where masses, stiffnesses or the law's parameters are symbols, and for
-    arguments that are not finite.
+    Raises `lwa.InputError` for symbols among masses, stiffnesses and the law's parameters, for
+    arguments that are not finite, and for a law that changes too much over a wave for float64.
 
-    >>> from lwa import Cell, Power, background_wave
+    >>> from lwa import Power, background_wave
     >>> numeric = background_wave(Cell([1]), law=Power("3/2")).numeric()
     >>> numeric.fwhm([1e-12, 1.0], 1.0).round(9)
     array([1.80837653, 3.15563101])
     """
 
-    wave: LoadedWave
+    cell: Cell
+    law: ContactLaw
 
     def __post_init__(self) -> None:
-        if free := self._I.free_symbols | self._slope_of(1).free_symbols - {STRAIN}:
+        slope = self.law.of_strain(_STRAIN, self._D, 1)
+        if free := (self._I.free_symbols | slope.free_symbols) - {_STRAIN}:
             raise InputError(f"{min(map(str, free))!r} has no value: numbers are wanted")
 
-    # --- what is asked for ------------------------------------------------------------------
-
     def speed_squared(self, p0: ArrayLike, B: ArrayLike) -> Array:
-        """V², good to 4 ulps for Hertz contacts at any p0/B."""
-        return self._squared(*self._waves(p0, B))
+        """V² = Q(B), for power laws to k = 5 good to 6 ulps at any p0/B."""
+        p0, B, unit = self._waves(p0, B)
+        square = self._by_block(self._squares, p0, B)
+        with np.errstate(over="ignore", under="ignore"):
+            return np.asarray(square * self._scale(unit), np.float64)[()]
 
     def speed(self, p0: ArrayLike, B: ArrayLike) -> Array:
         """V = dx/dτ."""
@@ -88,211 +91,220 @@ class NumericBackground(Value):
 
     def fwhm(self, p0: ArrayLike, B: ArrayLike, quantity: str = "strain") -> Array:
         """Full width at half maximum of the rise of "strain", "force" or "velocity"."""
-        p0, B = self._waves(p0, B)
-        width = np.empty(p0.shape)
-        pieces = (x.ravel() for x in (p0, B))
-        for base, rise, part in zip(*map(blocks, (*pieces, width.ravel())), strict=True):
-            part[:] = self._widths(base, rise, known(quantity))
-        return width[()]
-
-    def _widths(self, p0: Array, B: Array, quantity: str) -> Array:
-        theta, tails, integral = expansion()
-        y2 = np.tanh(theta) ** 2
-        p1 = (p0 + B)[:, None]
-        bend = self._bend(p1 - DEEPEST * gauss().s * B[:, None])
-        slope = self._slope(p1 - y2 * B[:, None])
-        n, c = self._moments(p0, B)
-        X = 2 * n[:, None] - y2 * (c[:, None] - y2 * B[:, None] * (bend @ tails.T))
-        with np.errstate(invalid="ignore", divide="ignore"):
-            rate = (1 - y2) * np.sqrt(slope / X)
-        half = np.full_like(B, np.arccosh(np.sqrt(2.0)))
-        if quantity == "force":
-            rise = self._slope(p0 + B) - c + n  # (F(p1) - F(p0))/B
-            fall = 2 * slope * (1 - y2) * np.sqrt(y2)  # of F with θ, over B
-            half = root(fall, rise / 2)
-        length = legendre.legval(2 * half / THETA - 1, (rate @ integral.T).T, tensor=False)
-        width: Array = 4.0 * self._root_I * np.asarray(length, np.float64)
-        for i in np.flatnonzero(self._strange(bend, rate)):  # one by one, in many digits
-            found = self.wave.on(sp.Rational(p0[i])).fwhm(sp.Rational(B[i]), quantity)
-            width[i] = float(found)
-        return width
+        force = known(quantity) == "force"
+        p0, B, _ = self._waves(p0, B)
+        half = self._by_block(lambda p0, B: self._half_widths(p0, B, force), p0, B)
+        return 2 * half[()]
 
     def profile(self, xi: ArrayLike, p0: float, B: float) -> Array:
         """v(ξ) of one wave at any places ξ."""
-        base, rise = (float(x) for x in self._waves(p0, B))
-        places = np.abs(np.asarray(xi, np.float64))
-        if not np.all(np.isfinite(places)):
-            raise InputError("xi must be finite")
-        starts, coefficients = self._panels(base, rise, float(places.max(initial=0.0)))
-        panel = np.searchsorted(starts, places, side="right") - 1
-        here = coefficients[:, np.minimum(panel, coefficients.shape[1] - 1)]
-        local = np.full(places.shape, 0.5)
-        slopes = legendre.legder(here, axis=0) * 2
-        for _ in range(50):  # Newton; θ in its panel
-            gap = starts[panel] + legendre.legval(2 * local - 1, here, tensor=False) - places
-            step = gap / np.maximum(legendre.legval(2 * local - 1, slopes, tensor=False), 1e-300)
-            local = np.clip(local - step, 0.0, 1.0)
-            if np.all(np.abs(step) < 1e-15):
-                break
-        beyond = panel >= coefficients.shape[1]
-        theta = np.where(beyond, 0.0, np.minimum(panel + local, 350.0))
-        return np.asarray(np.where(beyond, 0.0, rise / np.cosh(theta) ** 2), np.float64)
+        places = np.abs(finite(xi, "xi"))
+        base, rise, unit = self._waves(p0, B)
+        if base.ndim:
+            raise InputError("p0 or B is an array: a profile is that of one wave")
+        found = self._panels(base[None], rise[None], float(places.max(initial=0.0)))
+        at, theta, lengths, rises, rows = (np.array(x) for x in zip(*found, strict=True))
+        panel = np.searchsorted(at, places, side="right") - 1
+        last = at[-1] + rows[-1].sum()  # P_n(1) = 1
+        local = inverse(rows[panel], places - at[panel])
+        v = unit * rises[panel] / np.cosh(theta[panel] + lengths[panel] * local) ** 2
+        return np.asarray(np.where(places < last, v, 0.0), np.float64)
 
-    # --- integrals over the strains of the wave ---------------------------------------------
+    # --- a block of waves -------------------------------------------------------------------
 
-    def _squared(self, p0: Array, B: Array) -> Array:
-        """F′(p0) + B∫(1-s)² F″ where the wave is small beside the load, else its definition."""
-        rule, shape = gauss(), p0.shape
-        p0, B = p0.ravel(), B.ravel()
-        bend = self._bend(p0[:, None] + rule.s * B[:, None])
-        square = self._slope(p0) + B * (bend @ (rule.w * (1 - rule.s) ** 2))
-        small = self._smooth(bend, p0, B * _FEW)
-        if not np.all(small):
-            square[~small] = self._direct_square(p0[~small], B[~small])
-        return np.asarray(square.reshape(shape))
+    @staticmethod
+    def _by_block(function: Callable[[Array, Array], Array], p0: Array, B: Array) -> Array:
+        base, rise = p0.ravel(), B.ravel()
+        starts = range(0, max(len(base), 1), _BLOCK)
+        parts = [function(base[i : i + _BLOCK], rise[i : i + _BLOCK]) for i in starts]
+        return np.concatenate(parts).reshape(p0.shape)
 
-    def _direct_square(self, base: Array, rise: Array) -> Array:
-        """V² by its definition, in extended precision."""
-        (W, F), (p0, B) = self._extended, (x.astype(np.longdouble) for x in (base, rise))
-        return np.asarray(2 * (W(p0 + B) - W(p0) - F(p0) * B) / B**2, np.float64)
+    def _squares(self, p0: Array, B: Array) -> Array:
+        """V²: F′(p0) + B ∫(1-s)² F″ ds, or 2 ∫(1-s) F′ ds for waves that are not small."""
+        found = np.empty_like(p0)
+        for rows, g, p, bend, _ in self._resolved(p0, B, rough=True):
+            first, second = g.ds * g.y2, g.ds * g.y2**2  # weights of 1/2 and 1/3, but for rounding
+            start = self._slope(p0[rows])
+            change = B[rows] / 3 * (bend @ (second / second.sum()))
+            small = np.abs(change) < start / 4
+            direct = self._slope(p) @ (first / first.sum())
+            found[rows] = np.where(small, start + change, direct)
+        return found
 
-    def _moments(self, p0: Array, B: Array) -> tuple[Array, Array]:
-        """n and c of the module's first lines."""
-        rule = gauss()
-        bend = self._bend(p0[..., None] + rule.s * B[..., None]) * B[..., None]
-        down = 1 - rule.s  # the module's s runs from p1 down
-        n, c = bend @ (rule.w * down * rule.s), bend @ (rule.w * (1 - down**2))
-
-        def direct(p0: Array, B: Array) -> tuple[Array, Array]:
-            square, p1 = self._direct_square(p0, B), p0 + B
-            return (self._force(p1) - self._force(p0)) / B - square, self._slope(p1) - square
-
-        smooth = self._smooth(bend, p0, B)
-        if not np.all(smooth):
-            n[~smooth], c[~smooth] = direct(p0[~smooth], B[~smooth])
-        return n, c
-
-    def _smooth(self, samples: Array, p0: Array, B: Array) -> NDArray[np.bool_]:
-        """Where Gauss's rule between p0 and p0 + B is good to rounding: far from δ = 0."""
-        if isinstance(self.wave.law, Power):
-            return 4 * p0 >= np.abs(B)  # 2.6^{-2n}
-        return is_smooth(samples)
-
-    def _panels(self, p0: float, B: float, reach: float) -> tuple[Array, Array]:
-        """ξ at θ = i, and ξ(θ) less it on [i, i + 1] in Legendre polynomials, to ``reach``."""
-        rule = gauss()
-        integral = legendre.legint(np.eye(len(rule.s)), lbnd=-1, axis=0) / 2 @ fitted()
-        starts, rows = [0.0], list[Array]()
-        while starts[-1] <= reach and len(rows) < _MOST_PANELS:
-            rate = self._rate(p0, B, len(rows) + rule.s)
-            if self._strange(rate[None], most=1e-11)[0]:
-                raise InputError(
-                    f"p0 = {p0}, B = {B}: the law changes too much over the wave for float64; "
-                    "`lwa.BackgroundWave.profile` gives more digits"
+    def _half_widths(self, p0: Array, B: Array, force: bool, deep: bool = False) -> Array:
+        """ξ where the strain, or the force, has half of its rise."""
+        found = np.empty_like(p0)
+        for rows, g, p, _, rate in self._resolved(p0, B, deep):
+            part, (_, w) = g.panels(rate), gauss()
+            pieces = part @ w * g.lengths
+            if not force:
+                found[rows] = pieces.sum(axis=1)
+                continue
+            fall = self._slope(p) * g.ds
+            sums = np.cumsum(g.panels(fall).sum(axis=2), axis=1)
+            half = fall.sum(axis=1) / 2
+            panel = (sums < half[:, None]).sum(axis=1)
+            if not deep and np.any(late := panel == sums.shape[1]):
+                at = rows[late]
+                found[at] = self._half_widths(p0[at], B[at], True, True)
+                rows, half, panel, fall, part, pieces, sums = (
+                    x[~late] for x in (rows, half, panel, fall, part, pieces, sums)
                 )
-            row = integral @ rate
-            rows.append(row)
-            starts.append(starts[-1] + float(row.sum()))  # P_n(1) = 1
-            if starts[-1] == starts[-2]:
-                break
-        return np.array(starts), np.array(rows).T
+            each = np.arange(len(rows)), np.minimum(panel, sums.shape[1] - 1)
+            before = sums[each] - g.panels(fall)[each].sum(axis=1)
+            local = inverse(g.panels(fall)[each] / w @ integrated().T, half - before)
+            more = value_at(part[each] @ integrated().T, local) * g.lengths[each[1]]
+            ahead = np.cumsum(pieces, axis=1)[each] - pieces[each] + more
+            found[rows] = np.where(panel < sums.shape[1], ahead, np.nan)
+        return found
 
-    def _rate(self, p0: float, B: float, theta: Array) -> Array:
-        """dξ/dθ at any θ."""
-        share, y2 = 1 / np.cosh(theta) ** 2, np.tanh(theta) ** 2
-        base, rise = np.full_like(theta, p0), np.full_like(theta, B)
-        v = B * share
-        rule = gauss()
+    def _resolved(
+        self, p0: Array, B: Array, deep: bool = False, rough: bool = False
+    ) -> Iterator[tuple[NDArray[np.intp], Grid, Array, Array, Array]]:
+        """Rows of waves with a grid that resolves them, p and F″ at its nodes, and dξ/dθ.
 
-        def weighted(start: Array, length: Array) -> Array:
-            """∫(1-s)² F″(start + s length) ds."""
-            bend = self._bend(start[:, None] + rule.s * length[:, None])
-            return np.asarray(bend @ (rule.w * (1 - rule.s) ** 2))
+        Waves that no grid resolves are refused or, if ``rough``, come with the finest one.
+        """
+        rows = np.arange(len(p0))
+        for level in LEVELS:
+            g = grid(*level, deep)
+            base, rise = p0[rows], B[rows]
+            p, bend, rate = self._rates(g, base, rise, np.zeros_like(base))
+            last = level == LEVELS[-1]
+            good = g.converged(rate, ROUNDING if last else CONVERGED) | (last and rough)
+            yield rows[good], g, p[good], bend[good], rate[good]
+            rows = rows[~good]
+            if not len(rows):
+                return
+        i = rows[0]
+        raise InputError(
+            f"p0 = {p0[i]:.6g}, B = {B[i]:.6g}: the law changes too much over the wave for "
+            "float64; `lwa.BackgroundWave` computes with more digits"
+        )
 
-        n, c = self._moments(base, rise)
-        top = y2 < 0.5
-        gap = np.empty_like(theta)  # (V² - Q(v)) B/(B - v)
-        d = y2 * B
-        above = weighted((base + rise)[top], -d[top])
-        gap[top] = (2 * n - y2 * c)[top] + y2[top] ** 2 * B * above
-        gap[top] /= share[top] ** 2
-        if self._smooth(self._bend(base[:1, None] + rule.s * B), base[:1], rise[:1])[0]:
-            below = B * weighted(base[:1], rise[:1]) - v[~top] * weighted(base[~top], v[~top])
-        else:
-            below = self._squared(base[:1], rise[:1]) - self._squared(base[~top], v[~top])
-        gap[~top] = below / y2[~top]
-        return np.asarray(2 * self._root_I * np.sqrt(self._slope(base + v) / gap))
+    def _rates(self, g: Grid, p0: Array, B: Array, passed: Array) -> tuple[Array, Array, Array]:
+        """p and F″ at the nodes, and dξ/dθ at the upper ones.
 
-    # --- the law as functions ---------------------------------------------------------------
+        passed : Q of the whole wave less Q(B), for a B further down its flank.
+        """
+        p = strains(g, p0, B)
+        n = len(g.kernel)
+        with np.errstate(all="ignore"):
+            bend = self._bend(p)
+            gap = (passed / B)[:, None] / g.y2[:n] + bend @ g.kernel.T  # (Q(B) - Q(v)) / (B y²)
+            size, sign = np.sqrt(np.abs(B))[:, None], np.sign(B)[:, None]
+            root = np.sqrt(self._slope(p[:, :n])) / np.sqrt(sign * gap)
+            return p, bend, 2 * self._root_I / size * root
+
+    def _panels(
+        self, p0: Array, B: Array, reach: float
+    ) -> list[tuple[float, float, float, float, Array]]:
+        """Panels of one wave to ξ = ``reach``: ξ and θ at the start, length, B, and ξ - ξ(start).
+
+        The last are coefficients in Legendre polynomials. At v = B/2 the wave of that rise
+        goes on, its Q less by what has been passed.
+        """
+        rows, at, passed, least = [], 0.0, np.zeros(1), _LEAST * abs(B[0])
+        ((_, g, _, bend, rate),) = (x for x in self._resolved(p0, B) if len(x[0]))
+        while True:
+            for j, values in enumerate(g.panels(rate)[0]):
+                coefficients = integrated() @ values * g.lengths[j]
+                rows.append((at, g.starts[j], g.lengths[j], B[0], coefficients))
+                at += float(coefficients.sum())
+            end = float(g.starts[-1] + g.lengths[-1])
+            passed = passed + B * np.tanh(end) ** 2 * (bend @ g.last)
+            B, g = B / np.cosh(end) ** 2, grid(2)  # Q(v) = Q(B) at θ = iπ/4
+            if at > reach or abs(B[0]) < least:
+                return rows
+            _, bend, rate = self._rates(g, p0, B, passed)
+            if not g.converged(rate)[0]:
+                raise InputError(f"p0 = {p0[0]:.6g}: no profile to ξ = {reach:.6g} in float64")
+
+    # --- the law ----------------------------------------------------------------------------
 
     @property
+    def _D(self) -> sp.Expr:
+        """The spacing, 1 where the law has no length to compare it with."""
+        D = self.cell.spacing
+        return sp.S.One if D.is_Symbol and self.law.homogeneous else D
+
+    @cached_property
     def _I(self) -> sp.Expr:
-        D = self.wave.cell.spacing
-        return self.wave.I.subs(D, 1) if D.is_Symbol else self.wave.I
+        return Dispersion(self.cell, self.law.exponent).I * self._D**2
 
     @cached_property
     def _root_I(self) -> float:
-        return float(sp.sqrt(self._I))
-
-    def _slope_of(self, n: int) -> sp.Expr:
-        return self.wave.force(STRAIN, n).subs(self._unit, 1)
-
-    @property
-    def _unit(self) -> sp.Expr:
-        D = self.wave.cell.spacing
-        return D if D.is_Symbol and isinstance(self.wave.law, Power) else sp.S.One
+        return number(sp.sqrt(self._I))
 
     @cached_property
-    def _extended(self) -> tuple[Function, Function]:
-        """W and F."""
-        return compiled(self._slope_of(-1), True), compiled(self._slope_of(0), True)
+    def _slope(self) -> Callable[[Array], Array]:
+        return _compiled(self.law.of_strain(_STRAIN, self._D, 1))
 
     @cached_property
-    def _force(self) -> Function:
-        return compiled(self._slope_of(0))
+    def _bend(self) -> Callable[[Array], Array]:
+        return _compiled(self.law.of_strain(_STRAIN, self._D, 2))
 
-    @cached_property
-    def _slope(self) -> Function:
-        return compiled(self._slope_of(1))
+    def _scale(self, unit: Array) -> Any:
+        """V² in units of strain^{k-1}, in extended precision."""
+        if not self.law.homogeneous:
+            return 1.0
+        return unit.astype(np.longdouble) ** np.longdouble(str(sp.N(self.law.exponent - 1, 25)))
 
-    @cached_property
-    def _bend(self) -> Function:
-        return compiled(self._slope_of(2))
+    # --- existence --------------------------------------------------------------------------
 
-    # --- where there are waves --------------------------------------------------------------
-
-    def _waves(self, p0: ArrayLike, B: ArrayLike) -> tuple[Array, Array]:
-        """p0 and B as arrays of one shape, refused where there is no wave."""
-        base, rise = np.broadcast_arrays(*(np.asarray(x, np.float64) for x in (p0, B)))
-        if not (np.all(np.isfinite(base)) and np.all(np.isfinite(rise)) and np.all(rise != 0)):
-            raise InputError("p0 and B must be finite, and B not 0")
-        if isinstance(self.wave.law, Power):
-            sign = 1 if self.wave.law.k > 1 else -1
-            exists = (base >= 0) & (sign * rise > 0) & (base + rise > 0) & bool(self.wave.law.k - 1)
-        else:
-            exists = self._stiffens(base, rise)
+    def _waves(self, p0: ArrayLike, B: ArrayLike) -> tuple[Array, Array, Array]:
+        """p0 and B of one shape over a unit, and the unit: a power of two under a power law."""
+        base, rise = np.broadcast_arrays(finite(p0, "p0"), finite(B, "B"))
+        if not np.all(rise):
+            raise InputError("B is 0: a wave rises or falls by B")
+        with np.errstate(all="ignore"):
+            if self.law.homogeneous:
+                excess = float(self.law.exponent - 1)
+                exists = (base >= 0) & (excess * rise > 0) & (base + rise > 0)
+            else:
+                pieces = (base, rise)
+                exists = self._by_block(self._exists, *pieces).astype(bool)
         if not np.all(exists):
             i = int(np.argmin(exists))
-            self.wave.on(float(base.flat[i])).speed(float(rise.flat[i]))  # says why
-            raise NoSolitaryWave(f"no wave at p0 = {base.flat[i]}, B = {rise.flat[i]}")
-        return base, rise
+            raise NoSolitaryWave(
+                f"p0 = {base.flat[i]}, B = {rise.flat[i]}: there is no wave unless contacts stay "
+                "closed, F′ > 0, and speeds grow towards B"
+            )
+        unit = np.ones_like(base)
+        if self.law.homogeneous:  # a power of two, by which nothing is rounded
+            unit = np.ldexp(0.5, np.frexp(np.maximum(base, base + rise))[1])
+        return base / unit, rise / unit, unit
 
-    def _stiffens(self, p0: Array, B: Array) -> NDArray[np.bool_]:
-        """Whether F′ > 0 and Q(v) < Q(B) at some places between 0 and B."""
-        rule = gauss()
-        with np.errstate(all="ignore"):
-            places = p0[..., None] + rule.s * B[..., None]
-            bend = self._bend(places) * B[..., None]
-            convex = np.all(bend > 0, axis=-1)
-            top = self._squared(p0, B)
-            below = np.stack([self._squared(p0, t * B) for t in rule.s], axis=-1)
-            positive = np.all(self._slope(places) > 0, axis=-1)
-            found: NDArray[np.bool_] = positive & (convex | np.all(below < top[..., None], axis=-1))
-            return found
+    def _exists(self, p0: Array, B: Array) -> Array:
+        """Whether F′ is positive and finite and Q(v) < Q(B) from v = B down, Q′(B) B > 0 first."""
+        g = grid(*LEVELS[1])
+        good = np.isfinite(self._slope(p0 + B)) & (self._slope(p0 + B) > 0)
+        passed = np.zeros_like(p0)
+        for _ in range(20):  # to v = 1e-6 B
+            p = strains(g, p0, B)
+            bend = self._bend(p)
+            gap = passed[:, None] / g.y2[: len(g.kernel)] + B[:, None] * (bend @ g.kernel.T)
+            good &= (self._slope(p) > 0).all(axis=1) & (gap > 0).all(axis=1)
+            good &= passed + B * (bend @ g.first) > 0
+            end = float(g.starts[-1] + g.lengths[-1])
+            passed = passed + B * np.tanh(end) ** 2 * (bend @ g.last)
+            B = B / np.cosh(end) ** 2
+        return good.astype(np.float64)
 
-    def _strange(self, *samples: Array, most: float = SMOOTH) -> NDArray[np.bool_]:
-        """Where a law changes too fast over the wave for the expansions; no power does."""
-        if isinstance(self.wave.law, Power):
-            return np.zeros(len(samples[0]), np.bool_)
-        found: NDArray[np.bool_] = ~np.logical_and.reduce([is_smooth(x, most) for x in samples])
-        return found
+
+_STRAIN = sp.Symbol("p", positive=True)
+
+_LEAST = 1e-280
+"""Strains of a profile that are 0 beside its peak 1."""
+
+
+def _compiled(value: sp.Expr) -> Callable[[Array], Array]:
+    """A function of arrays of strains."""
+    long = {x: sp.Float(x, 17) for x in value.atoms(sp.Rational) if x.p.bit_length() > 53}
+    function = sp.lambdify(_STRAIN, value.xreplace(long), "numpy")
+
+    def evaluated(p: Array) -> Array:
+        result = np.asarray(function(p), np.float64)
+        return result if result.shape == p.shape else np.full_like(p, result)
+
+    return evaluated

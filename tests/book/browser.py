@@ -79,8 +79,19 @@ window.addEventListener("load", async () => {
     crumbled: [...body.querySelectorAll("td span.pre")]
       .filter(e => e.getClientRects().length > 2).map(e => e.textContent),
     wider: document.scrollingElement.scrollWidth > innerWidth + 1,
+    silent: [...body.querySelectorAll("img")].filter(i => !i.alt).map(i => i.src),
+    unnamed: [...body.querySelectorAll("canvas, input, select")]
+      .filter(e => !e.getAttribute("aria-label") && !e.closest("label")).map(e => e.outerHTML),
+    sliders: body.querySelectorAll("input[type=range]").length,
+    calculator: [...body.querySelectorAll(".lwa-calculator [data-name]")]
+      .map(e => [e.dataset.name, e.textContent]),
     errors: errors,
   };
+  if (window.lwaTurn) {
+    const chain = new lwaTurn.Chain();
+    while (chain.arrivals.length < 35) chain.advance(1);
+    report.chain = {speed: chain.speed(), force: chain.arrivals[12].force};
+  }
   const answer = await fetch("/probe", {method: "POST", body: JSON.stringify(report)});
   const next = await answer.text();
   if (next) location.href = next;

@@ -12,8 +12,7 @@ is integrated by a quadrature that knows the kink.
 Splitting. Symplectic, at a fixed step (`validation.lattice.schemes.splitting`): with every kink it
 errs by O(h^{k+1}), and its step follows from that.
 
-Samples come from Hermite's polynomial with y, y', y'' and y''' at the ends of two steps,
-or of one with a kink; what p_+^k brings about is no part of it.
+Samples and signals: `validation.lattice.kernel.samples`.
 
 Window. Ahead of the front nothing has moved yet: these beads are left out, always. A window of N
 beads leaves out those more than N behind the front as well; their energy stays on the books, their
@@ -27,23 +26,33 @@ import math
 import sys
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import scipy
-from numpy.typing import NDArray
 
 from lwa.base.arrays import Array
-from validation.lattice import effort, kernel
+from validation.lattice import effort
 from validation.lattice.effort import EXCESS, RunProgress
-from validation.lattice.equations import Motion, power
-from validation.lattice.kernel import Beads, Chain, Plan, Samples, Tableau, advance, beginning
+from validation.lattice.equations import Motion
+from validation.lattice.kernel.advance import advance
+from validation.lattice.kernel.arrays import (
+    BLOCK,
+    MARGIN,
+    SHORTEST,
+    WIDTH,
+    Beads,
+    Chain,
+    Plan,
+    Tableau,
+    beginning,
+)
+from validation.lattice.knots import Recorder
 from validation.lattice.run import IntegrationError, Run, finished
 from validation.lattice.schemes import LAWS, SCHEMES
 from validation.lattice.schemes.nystrom import Pair
+from validation.lattice.signal import recorded, sampled
 from validation.scenes.checks import SceneError, integer, positive
-from validation.scenes.scene import Scene
 
 _SUPPORTS = 8  # widths of the long-wave pulse in a window of the engine's choice
 _CHANGE = 10.0  # rtol: by how much a longer window may change the leading pulse's velocities
@@ -91,9 +100,9 @@ def _window(motion: Motion, window: Any) -> int | None:
         )
     if window is True:
         support = math.pi / (motion.k - 1) * math.sqrt(motion.k * (motion.k + 1) / 6)
-        beads = math.ceil(min(_SUPPORTS * support, motion.size)) + kernel.MARGIN
+        beads = math.ceil(min(_SUPPORTS * support, motion.size)) + MARGIN
     else:
-        beads = integer(window, "window", kernel.BLOCK)
+        beads = integer(window, "window", BLOCK)
     return beads if beads < motion.size else None
 
 
@@ -113,17 +122,6 @@ def _compare(motion: Motion, rtol: float, short: Run, long: Run) -> None:
         )
 
 
-def _say_if_compiled() -> None:
-    """On a terminal: that the loops are compiled first, which takes its time once."""
-    loops: Any = advance  # numba's
-    if loops.overloads or not sys.stderr.isatty():
-        return
-    written = Path(kernel.__file__).stat().st_mtime
-    kept = Path(loops.stats.cache_path).glob("kernel.advance-*.nbi")
-    if not any(file.stat().st_mtime > written for file in kept):
-        print("the engine is compiled for this machine, once", file=sys.stderr, flush=True)
-
-
 def _integrated(
     motion: Motion,
     given: Given,
@@ -141,48 +139,49 @@ def _integrated(
     window = None if window is None or window >= n else window
     taken = effort.compiled(motion.scene, given.method, end / given.step, window or n)
     taken.check()
-    _say_if_compiled()
     chain = _chain(motion)
-    beads, seen = _start(motion, len(chain.A))
+    beads = _start(motion, len(chain.A))
     plan = _plan(motion, given, chain, window, end / math.ceil(taken.steps))
+    time, needed = sampled(motion)
+    recorder = Recorder(chain, plan.scheme.points, needed, time)
     at = beginning(plan, _front(motion))
     glance = max(1, int(_GLANCE * taken.steps / taken.seconds))
     t = 0.0
     with progress(taken) as tell:
         while t < end:
             tell(t / end)
-            t = advance(chain, beads, plan, seen, at, glance)
+            t, _ = advance(chain, beads, plan, recorder.knots, at, glance)
             if t < end and at["tries"] > EXCESS * taken.steps:
                 raise IntegrationError(effort.beyond(taken, int(at["tries"]), t))
+            if t == end or at["kept"] == len(recorder.knots.time):
+                at["kept"] = recorder.take(int(at["kept"]))
     rear, steps, tries, moves = (int(at[name]) for name in ("lo", "steps", "tries", "evaluations"))
     state = np.concatenate((beads.y[:n], beads.v[:n]))
     if not np.isfinite(state).all():
         raise IntegrationError(f"the motion overflows: a step of {plan.h:g} is too long")
-    energy = motion.energy(state, rear) + float(at["lost"])
+    energy, momentum = motion.energy(state, rear) + float(at["lost"]), motion.momentum_drift(state)
     left = beads.left if followed is None else followed
-    for row, j in enumerate(seen.watched):
-        late = seen.time > left[j]
-        seen.y[row, late] = seen.v[row, late] = np.nan
-    momentum = motion.momentum_drift(state)
-    records = _recorded(motion.scene, chain, beads, seen)
+    path = recorder.path(left)
+    records = {"time": time} | recorded(motion, needed, recorder.y, recorder.v)
     evaluations = tries * SCHEMES[given.method].stages
     state.reshape(2, n)[:, np.isfinite(left[:n])] = np.nan
-    return finished(
-        motion, state, records, energy, momentum, steps, evaluations, moves, window
-    ), left
+    run = finished(
+        motion, state, records, energy, momentum, steps, evaluations, moves, window, path
+    )
+    return run, left
 
 
 @lru_cache
 def _tableau(method: str, k: float) -> Tableau:
     scheme = SCHEMES[method]
     nothing, table = np.zeros(0), np.zeros((0, 0))
-    if not isinstance(scheme, Pair):
-        return Tableau(scheme.kicks, scheme.drifts, nothing, table, table, 0, table)
     points = table
-    if k < scheme.order:  # else no kink is left that the pair sees
+    if k < scheme.order:  # else the scheme sees no kink
         u, w = scipy.special.roots_jacobi(_POINTS, 0.0, k)
         points = np.stack(((1 + u) / 2, w / 2 ** (k + 1)))
-    return Tableau(nothing, nothing, *scheme.arrays(kernel.WIDTH), scheme.lower, points)
+    if not isinstance(scheme, Pair):
+        return Tableau(scheme.kicks, scheme.drifts, nothing, table, table, 0, points)
+    return Tableau(nothing, nothing, *scheme.arrays(WIDTH), scheme.lower, points)
 
 
 def _plan(motion: Motion, given: Given, chain: Chain, window: int | None, step: float) -> Plan:
@@ -197,7 +196,7 @@ def _plan(motion: Motion, given: Given, chain: Chain, window: int | None, step: 
 
 def _chain(motion: Motion) -> Chain:
     """Padded by beads of infinite mass: the first is the wall."""
-    inverse, A, rest, load = rows = np.zeros((4, motion.size + 2 * kernel.SHORTEST))
+    inverse, A, rest, load = rows = np.zeros((4, motion.size + 2 * SHORTEST))
     given = 1 / motion.masses, motion.stiffnesses, motion.rest, motion.load
     for row, values in zip(rows, given, strict=True):
         row[: len(values)] = values
@@ -208,49 +207,13 @@ def _front(motion: Motion) -> int:
     """The first bead that is still, and a margin."""
     y, v = np.abs(motion.start.reshape(2, motion.size))
     moving = np.flatnonzero((y > _NOISE * y.max()) | (v > _NOISE * v.max()))
-    return min(motion.size, kernel.MARGIN + (int(moving[-1]) + 1 if len(moving) else 0))
+    return min(motion.size, MARGIN + (int(moving[-1]) + 1 if len(moving) else 0))
 
 
-def _start(motion: Motion, padded: int) -> tuple[Beads, Samples]:
-    """The beads as they start, and the samples of the sensors' beads and of their contacts'."""
-    scene, n = motion.scene, motion.size
+def _start(motion: Motion, padded: int) -> Beads:
+    """The beads as they start."""
+    n = motion.size
     y, v, next_y, next_v, left = np.zeros((5, padded + 1))
     y[:n], v[:n], left[:] = motion.start[:n], motion.start[n:], np.inf
-    sums, force = np.zeros((4, padded + 1)), np.zeros((2 * kernel.WIDTH, padded + 1))
-    near = {i + m for i in scene.contact_sensors for m in (0, 1)}
-    near |= {j + m for j in scene.bead_sensors for m in (-1, 0, 1) if j + m >= 0}
-    watched = np.array(sorted(near), int)
-    # np.linspace takes three times as long
-    time = np.arange(scene.samples) / (scene.samples - 1) * scene.duration
-    seen_y, seen_v = np.empty((2, len(watched), len(time)))
-    seen_y[:], seen_v[:] = y[watched, None], v[watched, None]
-    knots, room = np.zeros((3, 4, len(watched))), np.zeros((17, 12))
-    beads = Beads(y, v, next_y, next_v, left, force, sums, kinks=np.zeros((padded + 1, 7)))
-    return beads, Samples(time, watched, knots, seen_y, seen_v, room)
-
-
-def _recorded(scene: Scene, chain: Chain, beads: Beads, seen: Samples) -> dict[str, Array]:
-    """By the sensors."""
-
-    def contact(i: NDArray[np.int_]) -> tuple[Array, Array]:
-        """Compression and force; contact -1 is a padded one, without stiffness."""
-        row = np.searchsorted(seen.watched, i)
-        compression = chain.rest[i, None] + seen.y[row] - seen.y[row + 1]
-        force = chain.A[i, None] * power(compression, scene.k)
-        return compression, force
-
-    contacts, sensors = (np.array(row, int) for row in (scene.contact_sensors, scene.bead_sensors))
-    none = np.zeros((0, len(seen.time)))
-    compression, force = contact(contacts) if len(contacts) else (none, none)
-    mean, y, v = none, none, none
-    if len(sensors):
-        row = np.searchsorted(seen.watched, sensors)
-        mean, y, v = (contact(sensors - 1)[1] + contact(sensors)[1]) / 2, seen.y[row], seen.v[row]
-    return {
-        "time": seen.time,
-        "contact_force": force,
-        "compression": compression,
-        "bead_force": mean,
-        "bead_displacement": y,
-        "bead_velocity": v,
-    }
+    sums, force = np.zeros((4, padded + 1)), np.zeros((2 * WIDTH, padded + 1))
+    return Beads(y, v, next_y, next_v, left, force, sums)

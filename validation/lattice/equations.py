@@ -23,13 +23,15 @@ from validation.scenes.scene import Scene
 
 @dataclass(frozen=True)
 class Scales:
-    """What the energy of a state, and the weights, could do to a bead or a contact.
+    """Characteristic scales of a scene.
 
-    energy : above equilibrium. compression : of a contact.
-    displacement, velocity : of a bead, 1 where there is no energy.
-    time : the shortest √(m/spring) of a bead between its contacts at that compression; infinite
-        where nothing presses.
-    rounding : of the static compressions, over the displacement.
+    energy : initial energy above equilibrium.
+    compression : greatest compression that the energy or the static forces can bring about.
+    displacement, velocity : of a bead with this energy; in equilibrium those that the static
+        compression sets, and 1 where nothing presses.
+    time : shortest √(m/spring) of a bead between its contacts at this compression; infinite where
+        nothing presses.
+    rounding : rounding error of the static compressions, in units of the displacement.
     """
 
     energy: float
@@ -132,7 +134,7 @@ class Motion:
         time = 1 / np.sqrt((springs / self.masses).max() * self.k * stiffening)
         _held("stiffest spring", stiffest * stiffening)
         _held("shortest time", time)
-        y, v, rounding = 1.0, 1.0, 0.0
+        y, v, rounding = deepest, deepest / time, 0.0
         if energy > 0:
             y, v = (
                 np.sqrt(energy / (stiffest * stiffening)),

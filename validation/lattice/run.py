@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from importlib import import_module
 from typing import Any
 
@@ -11,6 +11,7 @@ import numpy as np
 
 from lwa.base.arrays import Array, ArrayValue
 from validation.lattice.equations import Motion
+from validation.lattice.signal import Path, Signal, signal
 from validation.pictures.figure import Pictured
 from validation.pictures.panel import Curve, Map, Panel
 from validation.scenes.checks import Failure, SceneError
@@ -135,6 +136,7 @@ class Run(Records):
     step : mean step.
     window : number of beads followed behind the front; what lies further behind is NaN in all
         arrays. None for the whole chain.
+    path : motion of the beads near sensors throughout the run, for `signal`.
     """
 
     displacements: Array
@@ -145,6 +147,22 @@ class Run(Records):
     bead_evaluations: int
     step: float
     window: int | None = None
+    path: Path | None = field(default=None, compare=False)
+
+    def signal(self, kind: str, number: int, quantity: str = "force") -> Signal:
+        """The motion at a sensor as a function of time, of which the records are samples.
+
+        Parameters
+        ----------
+        kind : "contact" or "bead".
+        number : of the contact or bead, from 0, as in the scene's sensors.
+        quantity : "force"; "compression" of a contact; "displacement" or "velocity" of a bead.
+
+        Raises `SceneError` where there is no such sensor, or too many steps to keep the motion.
+        """
+        if self.path is None:
+            raise SceneError("the run has too many steps to keep the motion: read its samples")
+        return signal(Motion(self.scene), self.path, kind, number, quantity)
 
 
 def finished(
@@ -157,6 +175,7 @@ def finished(
     evaluations: int,
     bead_evaluations: int,
     window: int | None = None,
+    path: Path | None = None,
 ) -> Run:
     """The run that ended in the state ``end`` with this energy and change of momentum."""
     n, before = motion.size, motion.scales.energy
@@ -171,5 +190,6 @@ def finished(
         bead_evaluations=bead_evaluations,
         step=motion.scene.duration / steps,
         window=window,
+        path=path,
         **arrays,
     )

@@ -18,28 +18,25 @@ from time import perf_counter
 from typing import Any
 
 import numpy as np
-import scipy
 
-from lwa.base.arrays import Array
 from lwa.base.exact import shorten
-from validation.lattice.effort import EXCESS, RunProgress, adaptive, beyond, silent
+from validation.lattice.effort import RunProgress, silent
 from validation.lattice.equations import Motion
-from validation.lattice.run import IntegrationError, Run, finished
+from validation.lattice.run import IntegrationError, Run
 from validation.lattice.schemes import SCHEMES
+from validation.lattice.signal import RECORDS
+from validation.lattice.steppers import METHODS, integrate
 from validation.lattice.threads import cores, threads
 from validation.scenes.checks import SceneError, between, one_of
 from validation.scenes.scene import Scene
 
-METHODS = ("DOP853", "RK45", "RK23", "LSODA")
-"""SciPy's: explicit Runge–Kutta pairs of order 8, 5 and 3, and Adams and BDF of varying order."""
+__all__ = ["COMPILED", "METHODS", "simulate", "simulate_many", "twice"]
 
 COMPILED = tuple(SCHEMES)
 """The engine's: an adaptive Runge–Kutta–Nyström pair, the default, and a symplectic splitting."""
 
 _BATCH, _SPELL = 8, 0.02  # scenes that a thread is given at a time, at most, and for seconds
-_BLOCK = 1_000_000  # numbers that the interpolant gives at a time
-_RECORDS = ("contact_force", "compression", "bead_force", "bead_displacement", "bead_velocity")
-_FINITE = (*_RECORDS, "displacements", "velocities")
+_FINITE = (*RECORDS, "displacements", "velocities")
 
 
 def simulate(
@@ -92,7 +89,7 @@ def simulate(
 
             run = follow(motion, method, rtol, step, window, progress)
         else:
-            run = _adaptive(motion, method, rtol, atol, progress)
+            run = integrate(motion, method, rtol, atol, progress)
         # of a window NaN is what was not followed, and overflows raise in the engine
         add = np.nansum if run.window else np.sum
         sums = [float(add(getattr(run, name))) for name in _FINITE]
@@ -150,54 +147,3 @@ def twice(scene: Scene, fine: float, coarse: float, **options: Any) -> tuple[Run
     """`simulate` at two tolerances, by whose difference `validation.pulses.pulse.compared` goes."""
     run, check = (simulate(scene, rtol=t, atol=t, **options) for t in (fine, coarse))
     return run, check
-
-
-def _adaptive(motion: Motion, method: str, rtol: float, atol: float, progress: RunProgress) -> Run:
-    """`simulate` by a method of SciPy's."""
-    scales, end = motion.scales, motion.scene.duration
-    y, v = scales.displacement, scales.velocity
-    taken = adaptive(motion.scene, method, rtol, scales.time)
-    taken.check()
-    stepper = getattr(scipy.integrate, method)(
-        motion, 0.0, motion.start, end, rtol=rtol, atol=atol * np.repeat([y, v], motion.size),
-        first_step=min(1e-3 * y / v, end),  # SciPy's own guess depends on the units
-    )  # fmt: skip
-    time = np.linspace(0.0, end, motion.scene.samples)
-    contacts, beads = len(motion.scene.contact_sensors), len(motion.scene.bead_sensors)
-    rows = zip(_RECORDS, (contacts, contacts, beads, beads, beads), strict=True)
-    records = {"time": time} | {name: np.empty((row, len(time))) for name, row in rows}
-    steps, done = 0, 0 if contacts + beads else len(time)
-    block = max(1, _BLOCK // (2 * motion.size))
-    with progress(taken) as tell:
-        while stepper.status == "running":
-            if steps > EXCESS * taken.steps:
-                raise IntegrationError(beyond(taken, steps, stepper.t))
-            message = stepper.step()
-            steps += 1
-            if stepper.status == "failed":
-                raise IntegrationError(f"integration stopped at t = {stepper.t:g}: {message}")
-            due = int(np.searchsorted(time, stepper.t, side="right"))
-            if due > done:
-                state = stepper.dense_output()
-                for first in range(done, due, block):  # few at a time, as all beads are computed
-                    part = slice(first, min(due, first + block))
-                    _keep(motion, state(time[part]), {n: r[..., part] for n, r in records.items()})
-                done = due
-            tell(stepper.t / end)
-    energy, evaluations = motion.energy(stepper.y), int(stepper.nfev)
-    moves = evaluations * motion.size
-    momentum = motion.momentum_drift(stepper.y)
-    return finished(motion, stepper.y, records, energy, momentum, steps, evaluations, moves)
-
-
-def _keep(motion: Motion, states: Array, kept: dict[str, Array]) -> None:
-    """What the sensors see of states of shape (2n, samples), into arrays (sensors, samples)."""
-    contacts, beads = list(motion.scene.contact_sensors), list(motion.scene.bead_sensors)
-    compression = motion.compression(states[: motion.size])
-    force = motion.force(compression)
-    kept["compression"][:] = compression[contacts]
-    kept["contact_force"][:] = force[contacts]
-    kept["bead_displacement"][:] = states[: motion.size][beads]
-    kept["bead_velocity"][:] = states[motion.size :][beads]
-    for row, bead in enumerate(beads):  # an end without a contact counts as 0
-        kept["bead_force"][row] = force[max(bead - 1, 0) : bead + 1].sum(axis=0) / 2

@@ -1,7 +1,9 @@
-"""What is read off the record of a pulse: arrival, peak, width, and the speed of two.
+"""Pulses of a signal: arrival, peak, width, and the speed between two sensors.
 
-A record is a signal sampled in time, dense enough that a cubic spline through it (SciPy) is the
-signal: the peak is a root of the spline's derivative, a flank a root of spline - peak/2.
+A signal is a function of time that is smooth between given times (`Signal`): the dense output of a
+run, or a spline through samples. A pulse is found on a grid of `_POINTS` points in each smooth
+interval. Its arrival is the root of the derivative of a Chebyshev interpolant about the highest
+grid point; its flanks are the roots of signal - peak/2. So a pulse is as accurate as its signal.
 """
 
 from __future__ import annotations
@@ -9,29 +11,84 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TypeVar
+from itertools import pairwise
+from typing import Any, Protocol, TypeVar
 
 import numpy as np
 import scipy
-from numpy.typing import ArrayLike, NDArray
+from numpy.polynomial import chebyshev
+from numpy.typing import ArrayLike
 
 from lwa.base.arrays import Array
 from lwa.base.exact import InputError
 
 Source = TypeVar("Source")
 
-FEWEST = 8  # samples above half the peak, below which a record is too coarse to be measured
-FORGOTTEN = 32  # samples beyond the flanks that a spline goes through: it keeps 0.27 of each a step
+FEWEST = 8  # samples above half the peak; a record with fewer is too coarse
+_POINTS = 4  # grid points in each smooth interval
+_DEGREE = 10  # of the interpolant about a peak, over half an interval: error about 1e-16
+_NOISE = 1e-6  # of the largest |signal|: less may be rounding, or a spline's overshoot
+_PARTLY = "the pulse is not wholly in the record:"
 
 
 class MeasureError(InputError):
-    """A record that does not hold what is to be measured; the message says what is missing."""
+    """A record without the wanted pulse; the message says what is missing."""
+
+
+class Signal(Protocol):
+    """A function of time, called with times of any shape; NaN where it is not known."""
+
+    @property
+    def times(self) -> Array:
+        """Increasing times; the signal is smooth from each to the next."""
+        ...
+
+    def __call__(self, time: ArrayLike, /) -> Array: ...
+
+
+class Sampled:
+    """The cubic spline through samples, as a `Signal`.
+
+    Raises `MeasureError` unless time and values are finite, at least four, and time increases.
+    """
+
+    def __init__(self, time: ArrayLike, values: ArrayLike) -> None:
+        self.times, f = _record(time, values)
+        # Scaled by powers of two, which cost no digit: slopes may overflow where values do not.
+        scales = (self.times[-1] - self.times[0], np.abs(f).max())
+        self._pace, self._height = (2.0 ** (math.frexp(x)[1] - 1) for x in scales)
+        self._spline = scipy.interpolate.CubicSpline(self.times / self._pace, f / self._height)
+
+    def __call__(self, time: ArrayLike, /) -> Array:
+        """Values at any times within the record."""
+        scaled = np.asarray(time, float) / self._pace
+        return np.asarray(self._spline(scaled) * self._height)
+
+
+@dataclass(frozen=True)
+class Mapped:
+    """A function of the values of a signal, as a `Signal`."""
+
+    signal: Signal
+    function: Callable[[Array], Array]
+
+    @property
+    def times(self) -> Array:
+        """Those of the signal."""
+        return self.signal.times
+
+    def __call__(self, time: ArrayLike, /) -> Array:
+        """The function of the signal at these times."""
+        return self.function(self.signal(time))
 
 
 @dataclass(frozen=True)
 class Pulse:
-    """A pulse in a record, in the record's units: when it peaks, the signal there, and when the
-    signal passes half of it, before (rise) and behind (fall)."""
+    """A pulse in the units of its record.
+
+    arrival : time of the peak. peak : value of the signal there. rise, fall : times at which the
+    signal passes half its peak, before and after.
+    """
 
     arrival: float
     peak: float
@@ -44,9 +101,212 @@ class Pulse:
         return self.fall - self.rise
 
 
+def measure(time: ArrayLike, signal: ArrayLike) -> Pulse:
+    """Measure the highest pulse of a sampled record, both (S,), with increasing times.
+
+    Raises `MeasureError` for a record without a pulse, for a pulse that is not wholly in the
+    record, and for fewer than `FEWEST` samples above half its peak.
+
+    >>> t = np.linspace(-1, 1, 201)
+    >>> pulse = measure(t, np.cos(np.pi * t / 2) ** 2)
+    >>> round(pulse.peak, 6), round(pulse.fwhm, 6)
+    (1.0, 1.0)
+    """
+    sampled = Sampled(time, signal)
+    return dense(sampled, highest_pulse(sampled))
+
+
+def pulses(time: ArrayLike, signal: ArrayLike, least: float = 0.01) -> list[Pulse]:
+    """Measure all pulses of a sampled record, both (S,), in the order of their arrivals.
+
+    least : smallest height of a pulse above its surroundings (prominence), over the highest peak.
+
+    Pulses of which a flank does not fall to half the peak, as of two that overlap, are left out.
+    Raises `MeasureError` for a record without any pulse.
+
+    >>> t = np.linspace(0, 4 * np.pi, 1001)
+    >>> [round(pulse.peak, 3) for pulse in pulses(t, np.sin(t) * np.exp(-t / 10))]
+    [0.857, 0.457]
+    """
+    sampled = Sampled(time, signal)
+    return [dense(sampled, pulse) for pulse in all_pulses(sampled, least)]
+
+
+def dense(record: Sampled, pulse: Pulse) -> Pulse:
+    """The same pulse; raises `MeasureError` for fewer than `FEWEST` samples above half its peak."""
+    inside = np.count_nonzero((record.times > pulse.rise) & (record.times < pulse.fall))
+    if inside < FEWEST:
+        few = f"{inside} samples lie above half the pulse's peak"
+        raise MeasureError(f"{few}: at least {FEWEST} are wanted")
+    return pulse
+
+
+def highest_pulse(signal: Signal, end: float = math.inf) -> Pulse:
+    """Measure the highest pulse of a signal up to the time ``end``."""
+    grid = _Grid(signal, end)
+    return grid.pulse(0, len(grid.f))
+
+
+def first_pulse(signal: Signal) -> Pulse:
+    """Measure the first stretch of a signal above half its highest value.
+
+    Later pulses, such as the echo from a wall, may be higher than the first one.
+    """
+    grid = _Grid(signal)
+    f = grid.f
+    above = f > f.max() / 2
+    start = int(np.argmax(above))
+    stop = start + int(np.argmin(np.append(above[start:], False)))
+    # Beyond, the record counts up to where it is as high again.
+    again = np.append(f[stop:] >= f[start:stop].max(initial=0.0), True)
+    return grid.pulse(0, stop + int(np.argmax(again)))
+
+
+def leading_pulse(signal: Signal, k: float = 1.0, share: float = 0.5) -> Pulse:
+    """Measure the leading pulse of a contact's compression δ, or of its force F = A δ^k.
+
+    The pulse ends where the compression first falls to a quarter of its highest value so far.
+
+    k : exponent of the signal in terms of the compression. share : fraction of the peak that the
+        signal passes at the rise and fall of the measured pulse.
+    """
+    return leading_pulses(signal, k, (share,))[0]
+
+
+def leading_pulses(signal: Signal, k: float, shares: Sequence[float]) -> list[Pulse]:
+    """The same `leading_pulse` with its rise and fall at several fractions of the peak."""
+    grid, quarter = _Grid(signal), 0.25**k
+    start = int(np.argmax(grid.f > quarter * grid.f.max()))
+    relieved = grid.f[start:] < quarter * np.maximum.accumulate(grid.f[start:])
+    stop = start + int(np.argmax(relieved)) + 1 if relieved.any() else len(grid.f)
+    return grid.pulses(0, stop, shares)
+
+
+def first_passage(signal: Signal, level: float) -> float:
+    """First time at which a signal rises above a level; `MeasureError` if it never does."""
+    grid = _Grid(signal)
+    above = int(np.argmax(grid.f > level))
+    if not above:
+        raise MeasureError(f"the signal does not rise above {level:g} within the record")
+    return grid.crossing(above - 1, level)
+
+
+def integral(signal: Signal, low: float, high: float) -> float:
+    """Integral of a signal over time, by Gauss's quadrature on each smooth interval."""
+    inside = signal.times[(signal.times > low) & (signal.times < high)]
+    edges = np.concatenate(([low], inside, [high]))
+    nodes, weights = np.polynomial.legendre.leggauss(_DEGREE)
+    half = np.diff(edges) / 2
+    return float(half @ (weights @ signal(edges[:-1] + half * (nodes[:, None] + 1))))
+
+
+def all_pulses(signal: Signal, least: float = 0.01) -> list[Pulse]:
+    """Measure all pulses of a signal, see `pulses`."""
+    grid = _Grid(signal)
+    tops, _ = scipy.signal.find_peaks(grid.f, height=0.0, prominence=least * grid.f.max())
+    found = []
+    for top in tops.tolist():
+        higher = np.flatnonzero(grid.f > grid.f[top])
+        place = int(np.searchsorted(higher, top))
+        start = int(higher[place - 1]) + 1 if place else 0
+        stop = int(higher[place]) if place < len(higher) else len(grid.f)
+        try:
+            found.append(grid.pulse(start, stop))
+        except MeasureError:
+            continue
+    if not found:
+        raise MeasureError("no pulse is in the record")
+    return found
+
+
+class _Grid:
+    """Values of a signal at `_POINTS` points in each smooth interval; -∞ where it is not known."""
+
+    def __init__(self, signal: Signal, end: float = math.inf) -> None:
+        times = signal.times[: np.searchsorted(signal.times, end, side="right")]
+        between = times[:-1, None] + np.diff(times)[:, None] * (np.arange(_POINTS) / _POINTS)
+        self.signal, self.t = signal, np.append(between.ravel(), times[-1])
+        f = signal(self.t)
+        self.f = np.where(np.isnan(f), -np.inf, f)
+        if not self.f.max() > _NOISE * np.nanmax(np.abs(f), initial=0.0):
+            raise MeasureError(
+                "not followed: a window had left the sensor"
+                if np.isnan(f).any()
+                else "no pulse is in the record: its signal is nowhere positive"
+            )
+
+    def pulse(self, start: int, stop: int) -> Pulse:
+        """The highest pulse among the grid points from ``start`` on and before ``stop``."""
+        return self.pulses(start, stop, (0.5,))[0]
+
+    def pulses(self, start: int, stop: int, shares: Sequence[float]) -> list[Pulse]:
+        """The same pulse with its rise and fall at several fractions of the peak."""
+        t, f = self.t, self.f[:stop]
+        top = start + int(np.argmax(f[start:]))
+        if top in (0, len(self.f) - 1):
+            end = "end" if top else "start"
+            raise MeasureError(f"{_PARTLY} it peaks at the {end} of the record")
+        arrival, peak = self._crest(t[top - 1], t[top + 1])
+        flanks = (self._flanks(f, top, share * peak) for share in shares)
+        return [Pulse(arrival, peak, *sides) for sides in flanks]
+
+    def _flanks(self, f: Array, top: int, level: float) -> tuple[float, float]:
+        """Times next to the grid point ``top`` at which the signal passes a level."""
+        below = np.flatnonzero(f <= level)
+        place = int(np.searchsorted(below, top))
+        for side, there in (("front", place > 0), ("back", place < len(below))):
+            if not there:
+                raise MeasureError(f"{_PARTLY} its {side} does not pass half its peak")
+        before, after = int(below[place - 1]), int(below[place])
+        if np.isinf(f[[before, after]]).any():
+            raise MeasureError("not followed: a window had left the sensor before the pulse passed")
+        return self.crossing(before, level), self.crossing(after - 1, level)
+
+    def crossing(self, i: int, level: float) -> float:
+        """Time between grid points i and i+1 at which the signal passes a level."""
+        low, step = self.t[i], self.t[i + 1] - self.t[i]
+
+        def above(part: float) -> float:
+            return float(self.signal(low + part * step)) / level - 1
+
+        return float(low + scipy.optimize.brentq(above, 0.0, 1.0, xtol=1e-12) * step)
+
+    def _crest(self, low: float, high: float) -> tuple[float, float]:
+        """Time and value of the maximum between two times."""
+        inside = self.signal.times[(self.signal.times > low) & (self.signal.times < high)]
+        found = []
+        for a, b in pairwise((low, *inside.tolist(), high)):
+
+            def scaled(x: Any, middle: float = (a + b) / 2, half: float = (b - a) / 2) -> Any:
+                return self.signal(middle + half * x)
+
+            series = chebyshev.chebinterpolate(scaled, _DEGREE)
+            roots = chebyshev.chebroots(chebyshev.chebder(series))
+            real = roots.real[np.abs(roots.imag) < 1e-6].clip(-1, 1)
+            x = np.append(real, (-1.0, 1.0))
+            values = chebyshev.chebval(x, series)
+            best = int(np.argmax(values))
+            found.append((float(values[best]), float((a + b) / 2 + (b - a) / 2 * x[best])))
+        peak, arrival = max(found)
+        return arrival, peak
+
+
+def speed(first: Pulse, second: Pulse, distance: float) -> float:
+    """Distance over the time between two arrivals.
+
+    Raises `MeasureError` unless the second pulse arrives later.
+    """
+    if not second.arrival > first.arrival:
+        arrivals = f"the pulse arrives at {first.arrival:g} and then at {second.arrival:g}"
+        raise MeasureError(f"{arrivals}: a speed needs a later second arrival")
+    if not math.isfinite(found := float(distance) / (second.arrival - first.arrival)):
+        raise MeasureError(f"the speed comes out as {found}: choose other units")
+    return found
+
+
 @dataclass(frozen=True)
 class Measured:
-    """A number, and the same number measured less well; their difference is its error.
+    """A number, and the same number from a less accurate computation; the difference is its error.
 
     >>> Measured(2.5e300, 2.50003e300)
     2.50000e+300 ± 3e+295
@@ -77,12 +337,12 @@ class Measured:
 
 
 def derived(function: Callable[..., float], *numbers: Measured) -> Measured:
-    """A function of measured numbers, with the error that theirs make in it."""
+    """A function of measured numbers, with the error that their errors make."""
     return Measured(function(*(n.value for n in numbers)), function(*(n.check for n in numbers)))
 
 
 def exponent(x: Sequence[Measured], y: Sequence[Measured]) -> Measured:
-    """p of y ~ x^p, by least squares of their logarithms."""
+    """The p of y ~ x^p, by least squares of the logarithms."""
 
     def fitted(*numbers: float) -> float:
         one, other = np.split(np.log(numbers), 2)
@@ -94,101 +354,9 @@ def exponent(x: Sequence[Measured], y: Sequence[Measured]) -> Measured:
 def compared(
     numbers: Callable[[Source], Mapping[str, float]], fine: Source, coarse: Source
 ) -> dict[str, Measured]:
-    """Numbers read off two runs, of which the less accurate one gives the errors."""
+    """Numbers read off an accurate run, with errors from a less accurate one."""
     less = numbers(coarse)
     return {name: Measured(value, less[name]) for name, value in numbers(fine).items()}
-
-
-def measure(time: ArrayLike, signal: ArrayLike) -> Pulse:
-    """Measure the highest pulse of a record, of shapes (S,) and with increasing times.
-
-    Raises `MeasureError` when the pulse is not wholly in the record (its peak or a flank lies
-    outside), when there is none, or when fewer than `FEWEST` samples lie above half its peak.
-
-    >>> t = np.linspace(-1, 1, 201)
-    >>> pulse = measure(t, np.cos(np.pi * t / 2) ** 2)
-    >>> round(pulse.peak, 6), round(pulse.fwhm, 6)
-    (1.0, 1.0)
-    """
-    t, f = _record(time, signal)
-    top = int(np.argmax(f))
-    partly = "the pulse is not wholly in the record:"
-    if not f[top] > 0:
-        raise MeasureError("no pulse is in the record: its signal is nowhere positive")
-    if top in (0, len(f) - 1):
-        raise MeasureError(f"{partly} it peaks at the {'last' if top else 'first'} sample")
-    low = f <= f[top] / 2
-    start = top - int(np.argmax(low[top::-1])) if low[:top].any() else 0
-    stop = top + int(np.argmax(low[top:])) if low[top:].any() else len(f)
-    start, stop = max(0, start - FORGOTTEN), stop + FORGOTTEN
-    t, f, top = t[start:stop], f[start:stop], top - start
-    # Powers of two, which cost no digit: slopes of a spline may overflow where its values do not.
-    pace, height = (2.0 ** (math.frexp(x)[1] - 1) for x in (t[-1] - t[0], f[top]))
-    t, f = t / pace, f / height
-    arrival, peak, rise, fall = (float(x[0]) for x in read(t, f[None], np.array([top])))
-    for side, found in (("front", rise), ("back", fall)):
-        if math.isnan(found):
-            raise MeasureError(f"{partly} its {side} does not pass half its peak")
-    if (inside := np.count_nonzero((t > rise) & (t < fall))) < FEWEST:
-        few = f"{inside} samples lie above half the pulse's peak"
-        raise MeasureError(f"{few}: at least {FEWEST} are wanted")
-    return Pulse(arrival * pace, peak * height, rise * pace, fall * pace)
-
-
-def read(time: Array, rows: Array, top: NDArray[np.intp]) -> tuple[Array, Array, Array, Array]:
-    """Arrival, peak, rise and fall of the pulse in each row, whose highest sample is at ``top``.
-
-    All rows, of shape (R, S), are at the same times, ``top`` at neither end; NaN where a flank is
-    not in the record.
-    """
-    spline = scipy.interpolate.CubicSpline(time, rows, axis=1)
-    row, steps = np.arange(len(rows)), np.diff(time)
-
-    def piece(i: NDArray[np.intp]) -> Array:
-        """One for each row: coefficients of a cubic in 0 … 1."""
-        powers = np.arange(3, -1, -1).reshape(4, *(1,) * i.ndim)
-        return np.asarray(spline.c[:, i, row] * steps[i] ** powers)
-
-    def at(cubic: Array, x: Array) -> Array:
-        return np.asarray(((cubic[0] * x + cubic[1]) * x + cubic[2]) * x + cubic[3])
-
-    # The peak may lie on either side of the highest sample.
-    crest = top - (spline.c[2, top, row] <= 0)
-    a, b, c, _ = cubic = piece(crest)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        x = np.nan_to_num(c / (np.sqrt(np.maximum(b * b - 3 * a * c, 0)) - b)).clip(0, 1)
-    peak = np.maximum(at(cubic, x), rows[row, top])
-    arrival = time[crest] + x * steps[crest]
-    below, place = rows <= peak[:, None] / 2, np.arange(len(time))
-    before = np.where(below & (place < top[:, None]), place, -1).max(axis=1)
-    behind = np.where(below & (place > top[:, None]), place, len(time)).min(axis=1)
-
-    def flanks(i: NDArray[np.intp]) -> Array:
-        """Where it passes half of the peak, rising in i[0] and falling in i[1]."""
-        cubic, low, high = piece(i), np.zeros(i.shape), np.ones(i.shape)
-        rising = np.array([[True], [False]])
-        for _ in range(53):  # by bisection: the spline passes half of the peak once
-            x = (low + high) / 2
-            under = (at(cubic, x) < peak / 2) == rising
-            low, high = np.where(under, x, low), np.where(under, high, x)
-        return np.asarray(time[i] + high * steps[i])
-
-    rise, fall = flanks(np.stack((np.maximum(before, 0), np.minimum(behind, len(time) - 1) - 1)))
-    rise[before < 0] = fall[behind == len(time)] = np.nan
-    return arrival, peak, rise, fall
-
-
-def speed(first: Pulse, second: Pulse, distance: float) -> float:
-    """Distance over the time from the first pulse's arrival to the second's.
-
-    Raises `MeasureError` unless the second arrives later.
-    """
-    if not second.arrival > first.arrival:
-        arrivals = f"the pulse arrives at {first.arrival:g} and then at {second.arrival:g}"
-        raise MeasureError(f"{arrivals}: a speed needs a later second arrival")
-    if not math.isfinite(found := float(distance) / (second.arrival - first.arrival)):
-        raise MeasureError(f"the speed comes out as {found}: choose other units")
-    return found
 
 
 def _record(time: ArrayLike, signal: ArrayLike) -> tuple[Array, Array]:

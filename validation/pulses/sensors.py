@@ -1,16 +1,16 @@
-"""What a scene's sensors tell: arrival, peak force and FWHM of the first pulse, and its speed.
+"""Pulses at the sensors of a scene: arrival, peak force, FWHM, and the speed between sensors.
 
-The first pulse at a sensor is the first stretch of its force above half the record's highest, so
-that what follows, such as the wall's echo, does not count. Forces are dynamic: what gravity and
-precompression hold there at rest is subtracted. Every number is measured in two runs, and the less
-accurate one, of a tolerance `LESS` times as large, gives its error.
+The first pulse at a sensor is the first stretch of its force above half the highest value, so that
+an echo from the wall does not count. Forces are dynamic: the static force of gravity and
+precompression is subtracted. Every number is measured in two runs; its error is the difference to
+the less accurate run, whose tolerance is `LESS` times as large.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from itertools import pairwise
 from typing import Any
 
@@ -21,24 +21,35 @@ from validation.lattice.effort import RunProgress, silent
 from validation.lattice.equations import Motion
 from validation.lattice.run import Run
 from validation.lattice.simulate import COMPILED, twice
-from validation.pulses.pulse import Measured, MeasureError, Pulse, compared, measure, speed
+from validation.pulses.pulse import (
+    Mapped,
+    Measured,
+    MeasureError,
+    Pulse,
+    Sampled,
+    Signal,
+    all_pulses,
+    compared,
+    first_pulse,
+    speed,
+)
 from validation.scenes.checks import SceneError, between
 from validation.scenes.scene import Scene
 
-TOLERANCE = 1e-10  # of the run that counts, unless another one is asked for
-LESS = 1e3  # by how much that of the run that gives its errors is larger
-_ROUNDING = 10  # times rtol: what rounding may take of a motion, lest the steps follow its noise
-READINGS = {"arrival": "arrival", "peak": "peak force", "fwhm": "FWHM"}  # off a pulse
-SPEEDS = {"speed_sites": "sites/time", "speed": "length/time"}  # in sites and in length over time
+TOLERANCE = 1e-10  # default tolerance of the accurate run
+LESS = 1e3  # tolerance of the less accurate run over that of the accurate one
+_ROUNDING = 10  # rounding of the static compression over rtol; with more, steps follow the noise
+READINGS = ("arrival", "peak", "fwhm")  # names of the numbers of a pulse
+SPEEDS = ("speed_sites", "speed")  # in sites per time, and in length per time
 
 
 @dataclass(frozen=True)
 class Reading:
-    """What a "bead" or "contact" sensor tells, or one and the next of its kind; or the reason why
-    nothing.
+    """Numbers of one pulse at a sensor, or of its way from one sensor to another.
 
-    places : the number of the sensor, or of the two, counted from 1.
-    numbers : `READINGS`; of two `SPEEDS`, the second one if the scene has spacings.
+    kind : "bead" or "contact". places : number of the sensor, or of both, counted from 1.
+    numbers : `READINGS`, or `SPEEDS` (the second one if the scene has spacings).
+    static : static force at the (first) sensor. missing : reason why there are no numbers.
     """
 
     kind: str
@@ -49,13 +60,13 @@ class Reading:
 
     @property
     def name(self) -> str:
-        """What people read, such as bead 15 → 34."""
+        """Kind and places, such as bead 15 → 34."""
         return f"{self.kind} {' → '.join(map(str, self.places))}"
 
 
 @dataclass(frozen=True, eq=False)
 class Recording:
-    """A run, what its sensors tell, and the speeds from each sensor to the next of its kind."""
+    """A run, the pulses at its sensors, and their speeds between neighbouring sensors."""
 
     run: Run
     sensors: tuple[Reading, ...]
@@ -64,19 +75,22 @@ class Recording:
 
 @dataclass(frozen=True, eq=False)
 class Track:
-    """One sensor's dynamic force; ``place`` is where it sits, by what of `SPEEDS` it serves."""
+    """The dynamic force at one sensor as a function of time.
+
+    number : of the bead or contact, counted from 1. place : position along the chain by `SPEEDS`,
+    in sites and in lengths. static : static force at the sensor.
+    """
 
     kind: str
     number: int
-    time: Array
-    force: Array
+    force: Signal
     place: Mapping[str, float]
     static: float
 
     @cached_property
     def pulse(self) -> Pulse:
-        """The first pulse; raises `MeasureError` for what is missing in the record."""
-        return first_pulse(self.time, self.force)
+        """The first pulse; raises `MeasureError` if there is none."""
+        return first_pulse(self.force)
 
 
 Tracks = tuple[Track, ...]
@@ -87,12 +101,15 @@ def record(
     *,
     method: str = COMPILED[0],
     rtol: Any = TOLERANCE,
+    every: bool = False,
+    window: bool | int = False,
     progress: RunProgress = silent,
 ) -> Recording:
-    """Simulate a scene and read its sensors.
+    """Simulate a scene and measure the pulses at its sensors.
 
-    The options are those of `validation.simulate`, but for rtol, from 1e-13 to 1e-5. Raises what
-    that raises, and `SceneError` where rounding hides what rtol asks for.
+    rtol : relative tolerance, from 1e-13 to 1e-5. every : all pulses at each sensor, not only the
+    first. Other options are those of `validation.simulate`, which also says what is raised.
+    Raises `SceneError` where rounding hides the motion at this tolerance.
     """
     rtol = between(rtol, "rtol", 1e-13, 1e-2 / LESS)
     motion = Motion(scene)
@@ -101,25 +118,40 @@ def record(
             f"rtol is {rtol:g}: rounding of the static compression, {motion.rest.max():.1g}, takes "
             f"{lost:.1g} of the motion; {lost / _ROUNDING:.1g} or more is wanted"
         )
-    run, check = twice(scene, rtol, LESS * rtol, method=method, progress=progress)
-    pairs = tuple(zip(tracks(run), tracks(check), strict=True))
-    sensors = tuple(_reading(_pulse, (fine,), (coarse,)) for fine, coarse in pairs)
+    options = {"method": method, "window": window, "progress": progress}
+    run, check = twice(scene, rtol, LESS * rtol, **options)
+    pairs = tuple(zip(tracks(run), tracks(check, every=2), strict=True))
+    sensors = (_train(*pair) if every else (_reading(_pulse, *pair),) for pair in pairs)
     both = (zip(*two, strict=True) for two in pairwise(pairs) if two[0][0].kind == two[1][0].kind)
-    return Recording(run, sensors, tuple(_reading(_speed, *two) for two in both))
+    return Recording(
+        run,
+        tuple(reading for train in sensors for reading in train),
+        tuple(_reading(_speed, *two) for two in both),
+    )
 
 
-def tracks(run: Run) -> Tracks:
-    """What the sensors of a run recorded, beads first. A contact sits midway between its beads,
-    that with the wall half a spacing behind the last one."""
+def tracks(run: Run, every: int = 1) -> Tracks:
+    """The dynamic forces at the sensors of a run, beads first.
+
+    A contact's place is midway between its beads, the wall's contact half a spacing behind the last
+    bead. Of a run with too many steps to keep its motion, every sample (or every other one, with
+    ``every=2``) is read.
+    """
     scene = run.scene
     load = np.zeros(scene.size + 1)  # of the contacts on the left and right of the beads
     load[1 : scene.contact_count + 1] = scene.load
     x = np.cumsum((0.0, *scene.spacings, *scene.spacings[-1:]))
 
-    def track(kind: str, i: int, site: float, force: Array, static: float) -> Track:
+    def track(kind: str, i: int, site: float, samples: Array, static: float) -> Track:
         length = [float(np.interp(site, range(len(x)), x))] if scene.spacings else []
         place = dict(zip(SPEEDS, (site, *length), strict=False))
-        return Track(kind, i + 1, run.time, force - static, place, float(static))
+        force: Signal = (
+            Sampled(run.time[::every], samples[::every])
+            if run.path is None
+            else run.signal(kind, i)
+        )
+        dynamic = Mapped(force, lambda f: f - static) if static else force
+        return Track(kind, i + 1, dynamic, place, float(static))
 
     beads = zip(scene.bead_sensors, run.bead_force, strict=True)
     contacts = zip(scene.contact_sensors, run.contact_force, strict=True)
@@ -129,31 +161,30 @@ def tracks(run: Run) -> Tracks:
     )
 
 
-def first_pulse(time: Array, force: Array) -> Pulse:
-    """`measure` the first stretch of a record that is above half its highest value."""
-    if not force.max() > 0:
-        return measure(time, force)  # which says what is wrong
-    above = force > force.max() / 2
-    start = int(np.argmax(above))
-    stop = start + int(np.argmin(np.append(above[start:], False)))
-    # Behind it the record counts up to where it is as high again.
-    again = np.append(force[stop:] >= force[start:stop].max(), True)
-    end = max(stop + int(np.argmax(again)), 4)
-    return measure(time[:end], force[:end])
-
-
 def _reading(
-    read: Callable[[Tracks], Mapping[str, float]], fine: Tracks, coarse: Tracks
+    read: Callable[[Tracks], Mapping[str, float]], fine: Tracks | Track, coarse: Tracks | Track
 ) -> Reading:
-    kind, places = fine[0].kind, tuple(track.number for track in fine)
+    one, other = ((part,) if isinstance(part, Track) else part for part in (fine, coarse))
+    kind, places, static = one[0].kind, tuple(track.number for track in one), one[0].static
     try:
-        return Reading(kind, places, compared(read, fine, coarse), fine[0].static)
+        return Reading(kind, places, compared(read, one, other), static)
     except MeasureError as error:
-        return Reading(kind, places, {}, fine[0].static, str(error))
+        return Reading(kind, places, {}, static, str(error))
 
 
-def _pulse(heard: Tracks) -> dict[str, float]:
-    return {name: getattr(heard[0].pulse, name) for name in READINGS}
+def _train(fine: Track, coarse: Track) -> list[Reading]:
+    """All pulses of one sensor, as far as both runs show the same ones."""
+    try:
+        count = min(len(all_pulses(track.force)) for track in (fine, coarse))
+    except MeasureError:
+        return [_reading(_pulse, fine, coarse)]
+    return [_reading(partial(_pulse, number=i), fine, coarse) for i in range(count)]
+
+
+def _pulse(heard: Tracks, number: int | None = None) -> dict[str, float]:
+    track = heard[0]
+    pulse = track.pulse if number is None else all_pulses(track.force)[number]
+    return {name: getattr(pulse, name) for name in READINGS}
 
 
 def _speed(heard: Tracks) -> dict[str, float]:

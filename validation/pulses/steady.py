@@ -29,7 +29,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -40,7 +40,7 @@ from lwa.base.arrays import Array
 from lwa.base.exact import InputError
 from validation.lattice.run import IntegrationError, Run
 from validation.lattice.simulate import simulate
-from validation.pulses.pulse import FEWEST, FORGOTTEN, Measured, MeasureError, read
+from validation.pulses.pulse import Measured, MeasureError, Pulse, leading_pulses
 from validation.scenes.chains import struck
 
 QUANTITIES = {  # what is measured, and what it is called
@@ -52,7 +52,6 @@ QUANTITIES = {  # what is measured, and what it is called
 PLACES = 10  # cells at which the pulse is recorded
 STRETCH = 4  # cells from one to the next, for k from 3/2 on, unless a sweep sets another number
 TOLERANCES = (1e-6, 1e-5)  # of the run that counts and of the one that gives its error
-_SAMPLES = 40.0  # per unit of time, in the run that counts, at k ≤ 3/2 and ω from 1/4 to 1
 _GROWTH, _LONGEST = 1.6, 16  # by how much, and how often, a run is made longer, at most
 _SLOWEST = 0.9  # ratio of two differences, next to 1 of which nothing can be said of their sum
 
@@ -87,13 +86,13 @@ def point(k: sp.Rational, omega: sp.Rational, stretch: int) -> Point:
 
 
 def _point(k: sp.Rational, omega: sp.Rational, stretch: int) -> Point:
-    chain = Chain(float(k), float(omega), 2 * cells_apart(float(k), stretch))
+    chain = StruckDimer(float(k), float(omega), 2 * cells_apart(float(k), stretch))
     rtol, less = TOLERANCES
-    rough = chain.passed(chain.crossing, less, _SAMPLES / 2)
-    fine = chain.passed(1.01 * rough.until, rtol, _SAMPLES)
+    rough = chain.passed(chain.crossing, less)
+    fine = chain.passed(1.01 * rough.until, rtol)
     numbers, check = chain.numbers(fine), chain.numbers(rough)
     errors = np.maximum(_unsettled(numbers), np.abs(numbers - check)[:, 2:])
-    # Relatively; of the force where it is its decay.
+    # Relative errors; for the decay, the error of the force after a stretch.
     worst = np.vstack((errors[:3] / numbers[:3, 2:], chain.sites * errors[3])).max(axis=0)
     if np.isnan(worst).all():
         raise MeasureError("the pulse does not arrive later at each place than at the one before")
@@ -105,7 +104,7 @@ def _point(k: sp.Rational, omega: sp.Rational, stretch: int) -> Point:
 
 
 def _unsettled(numbers: Array) -> Array:
-    """How far each stretch's numbers, from the third one on, may be from what they settle at."""
+    """Distance of each stretch's numbers, from the third one on, to their limits; an estimate."""
     steps = np.abs(np.diff(numbers))
     last, before = steps[:, 1:], steps[:, :-1]
     ratio = np.minimum(last / np.where(before > 0, before, np.inf), _SLOWEST)
@@ -113,17 +112,23 @@ def _unsettled(numbers: Array) -> Array:
     return np.asarray(seen + last * ratio / (1 - ratio))
 
 
-class Record(NamedTuple):
-    """A run, the pulse's part of each contact's record, and how long it has to be."""
+class Passage(NamedTuple):
+    """A run, the leading pulse at each contact, and the time that the pulse needs.
+
+    Each pulse is given twice: with its flanks at half of the force and at half of the compression.
+    """
 
     run: Run
-    parts: tuple[slice, ...]
+    pulses: list[list[Pulse]]
     until: float
 
 
 @dataclass(frozen=True)
-class Chain:
-    """A dimer chain whose first bead is struck, with so many sites from place to place."""
+class StruckDimer:
+    """A dimer chain of masses 1, ω whose first bead is struck.
+
+    sites : number of sites from one place of measurement to the next.
+    """
 
     k: float
     omega: float
@@ -131,56 +136,40 @@ class Chain:
 
     @property
     def crossing(self) -> float:
-        """A pulse's of force 1, by the long-wave speed 2/√((k+1)(1+ω)), and half as long again."""
+        """Time for a pulse of force 1 at the long-wave speed 2/√((k+1)(1+ω)), and half more."""
         return 0.75 * self.sites * PLACES * math.sqrt((self.k + 1) * (1 + self.omega))
 
-    def passed(self, duration: float, rtol: float, samples: float = _SAMPLES) -> Record:
-        """A run of this duration, or longer, with ``samples`` per unit of time, more where hits are
-        shorter. Raises `MeasureError` where the pulse does not come through."""
-        units = min(1.0, 4 * self.omega) * max(1.0, self.omega)
-        samples *= max(1.0, self.k / 1.5) / math.sqrt(units)
+    def passed(self, duration: float, rtol: float) -> Passage:
+        """A run of this duration, or longer, in which the pulse passes all places.
+
+        Raises `MeasureError` for a pulse that takes `_LONGEST` times too long.
+        """
         last = self.sites * PLACES
         places = range(self.sites, last + 1, self.sites)
         sensors = tuple(place + side for place in places for side in (0, 1))
+        chain = struck((1.0, self.omega), last + 12, self.k, contact_sensors=sensors, duration=1)
         for _ in range(_LONGEST):
-            scene = struck(
-                (1.0, self.omega),
-                last + 12,
-                self.k,
-                contact_sensors=sensors,
-                duration=duration,
-                samples=math.ceil(samples * duration),
-            )
-            run = simulate(scene, rtol=rtol)
-            parts = tuple(leading_pulse(force, self.k) for force in run.contact_force)
-            # One place's time more, lest the front of a pulse yet to come be taken for it.
-            until = (1 + 1 / PLACES) * float(run.time[max(part.stop for part in parts) - 1])
+            run = simulate(replace(chain, duration=duration, samples=2), rtol=rtol)
+            signals = (run.signal("contact", i) for i in sensors)
+            shares = (0.5, 0.5**self.k)  # half of the force, and half of the compression
+            try:
+                pulses = [leading_pulses(signal, self.k, shares) for signal in signals]
+            except MeasureError:  # it has yet to come
+                until = math.inf
+            else:
+                # A place's time more: the front of a later, slower pulse is no leading pulse.
+                until = (1 + 1 / PLACES) * max(pulse.fall for pulse, _ in pulses)
             if until <= duration:
-                return Record(run, parts, until)
+                return Passage(run, pulses, until)
             duration *= _GROWTH
         end = duration / _GROWTH
         raise MeasureError(f"the pulse has not passed {last} sites by t = {end:.3g}")
 
-    def numbers(self, record: Record) -> Array:
+    def numbers(self, passage: Passage) -> Array:
         """`QUANTITIES` (rows) of each stretch; NaN where the pulse does not arrive later."""
-        time, force = record.run.time, record.run.contact_force
-        pulses = [f[part] for f, part in zip(force, record.parts, strict=True)]
-        tops = np.array([part.start for part in record.parts]) + list(map(np.argmax, pulses))
-        # As far as where the longest one has half of its strain, and where a spline forgets.
-        high = max(np.count_nonzero(f > f.max() / 2**self.k) for f in pulses)
-        step, reach = time[1], high + FORGOTTEN
-        near = np.arange(-reach, reach + 1)
-        places = np.clip(tops[:, None] + near, 0, len(time) - 1)
-        rows = np.take_along_axis(force, places, axis=1)
-        rows = np.concatenate((rows, rows ** (1 / self.k)))
-        found = read(step * near, rows, np.full(len(rows), reach))
         # Places down, contacts of a cell across.
-        arrival, peak, rise, back = (x.reshape(2, PLACES, 2) for x in found)
-        width, strain_width = widths = back - rise
-        if not (widths > FEWEST * step).all():
-            few = f"at least {FEWEST} samples above half of its peak"
-            raise MeasureError(f"the pulse is not wholly in the record, with {few}")
-        arrival, peak = arrival[0] + time[tops].reshape(PLACES, 2), peak[0]
+        read = [(one.arrival, one.peak, one.fwhm, two.fwhm) for one, two in passage.pulses]
+        arrival, peak, width, strain_width = np.array(read).T.reshape(4, PLACES, 2)
         elapsed, fall = np.diff(arrival, axis=0), -np.diff(np.log(peak), axis=0)
         elapsed[elapsed <= 0] = np.nan
         q = (self.k - 1) / (2 * self.k)
@@ -188,12 +177,3 @@ class Chain:
         here = speed * peak[1:] ** q
         numbers = (width[1:] * here, strain_width[1:] * here, speed, fall / self.sites)
         return np.asarray(np.mean(numbers, axis=2))
-
-
-def leading_pulse(force: Array, k: float) -> slice:
-    """Where the leading pulse is in a contact's record, at most to its end, with as much before."""
-    quarter = 0.25**k  # of the compression
-    start = int(np.argmax(force > quarter * force.max()))
-    relieved = force[start:] < quarter * np.maximum.accumulate(force[start:])
-    length = int(np.argmax(relieved)) + 1 if relieved.any() else len(force) - start
-    return slice(max(0, start - length), start + length)

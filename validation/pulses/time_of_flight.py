@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from validation.lattice.run import Run
 from validation.lattice.simulate import twice
-from validation.pulses.pulse import Measured, compared, derived, measure, speed
+from validation.pulses.pulse import Measured, compared, derived, highest_pulse, speed
 from validation.scenes.scene import Scene
 
 
@@ -29,9 +29,9 @@ def passage(scene: Scene, rtol: float = 1e-6) -> Passage:
     a, b = scene.contact_sensors
 
     def numbers(run: Run) -> dict[str, float]:
-        first, second = (measure(run.time, force) for force in run.contact_force)
+        first, second = (highest_pulse(run.signal("contact", i)) for i in (a, b))
+        deepest = highest_pulse(run.signal("contact", b, "compression")).peak
         V = speed(first, second, b - a)
-        deepest = measure(run.time, run.compression[1]).peak
         return {"speed": V, "fwhm": second.fwhm * V, "force": second.peak, "strain": deepest}
 
     run, check = twice(scene, rtol, 10 * rtol, window=False)

@@ -1,11 +1,11 @@
-"""A study as a command: its options, where its result goes, its progress and its exit status."""
+"""A study as a command: its options, the output of its result, its progress and exit status."""
 
 from __future__ import annotations
 
 import inspect
 import json
 import sys
-import time
+import warnings
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import update_wrapper
@@ -15,7 +15,7 @@ from typing import Any, Generic, ParamSpec, Protocol, TypeVar
 import click
 from tqdm import tqdm
 
-from lwa.base.progress import announce
+from lwa.base.progress import lines, shown
 from lwa.command.terminal import HELP, called, quantity
 from lwa.command.terminal import run as run_command
 from validation.lattice.effort import Effort
@@ -29,10 +29,10 @@ T = TypeVar("T")
 
 
 class Result(Protocol):
-    """A study's typed result."""
+    """Typed result of a study."""
 
     def report(self) -> Report:
-        """What it looks like."""
+        """The result as a `Report`."""
         ...
 
 
@@ -40,7 +40,7 @@ R = TypeVar("R", bound=Result | Report)
 
 
 class Study(Generic[P, R]):
-    """A function that computes a result, and the ``command`` that shows it."""
+    """A function that computes a result, and the ``command`` that prints it."""
 
     def __init__(
         self, function: Callable[P, R], name: str, options: Iterable[Any], epilog: str
@@ -54,7 +54,7 @@ class Study(Generic[P, R]):
 
     @property
     def command(self) -> click.Command:
-        """Of its options, ``--format`` and ``--plot``; it ends with 1 where a finding fails."""
+        """The Click command; its exit status is 1 if a finding fails."""
         wants = inspect.signature(self.function).parameters
         function: Callable[..., R] = self.function
 
@@ -62,7 +62,9 @@ class Study(Generic[P, R]):
             offered = {"progress": progress, "run_progress": run_progress, "picture": picture}
             values |= {name: value for name, value in offered.items() if name in wants}
             try:
-                found = function(**values)
+                with warnings.catch_warnings():  # NumPy's: what overflows is refused or NaN
+                    warnings.simplefilter("ignore", RuntimeWarning)
+                    found = function(**values)
             except Failure as error:
                 raise click.ClickException(str(error)) from None
             report = found if isinstance(found, Report) else found.report()
@@ -91,21 +93,21 @@ class Study(Generic[P, R]):
 def study(
     *options: Any, name: str = "", epilog: str = ""
 ) -> Callable[[Callable[P, R]], Study[P, R]]:
-    """Make a study of a function that returns a `Report`, or what has one.
+    """Make a study of a function that returns a `Report`, or a result with ``report()``.
 
-    options : of the command, as `option`, or Click's; the function's parameters have their names.
-    name : of the command; by default the function's.
-    epilog : what stands below the options in its help.
+    options : of the command, made by `option` or Click; each is a parameter of the function.
+    name : of the command, by default the function's.
+    epilog : text below the options in the command's help.
 
-    What the function's parameters name it is given besides: ``progress`` to show cases on their
-    way, ``run_progress`` one run (`validation.lattice.effort.RunProgress`), and ``picture``, the
-    file that is asked for.
+    The command also passes, to parameters of these names: ``progress``, which shows how many cases
+    are done, ``run_progress``, which shows how far a lattice run is
+    (`validation.lattice.effort.RunProgress`), and ``picture``, the file of ``--plot``.
     """
     return lambda function: Study(function, name or function.__name__, options, epilog)
 
 
 def option(*names: str, default: Any = None, says: str = "", **more: Any) -> Any:
-    """An option with its default and its help; a number's type is that of the default."""
+    """A Click option with its default and help ``says``; a number has the type of its default."""
     more.setdefault("show_default", default is not None)
     if type(default) in (int, float) and "flag_value" not in more:
         kind, reader = ("INTEGER", whole) if isinstance(default, int) else ("NUMBER", number)
@@ -115,7 +117,7 @@ def option(*names: str, default: Any = None, says: str = "", **more: Any) -> Any
 
 
 def whole(context: click.Context, given: click.Parameter, value: str | None) -> int | None:
-    """Callback of an option that is an integer."""
+    """Read an option that is an integer."""
     found = quantity(context, given, value)
     if found is not None and not found.is_Integer:
         raise SceneError(f"{called(given)} is {found}: an integer is wanted")
@@ -123,7 +125,7 @@ def whole(context: click.Context, given: click.Parameter, value: str | None) -> 
 
 
 def number(context: click.Context, given: click.Parameter, value: str | None) -> float | None:
-    """Callback of an option that is a number: an integer, a decimal or a fraction."""
+    """Read an option that is an integer, a decimal or a fraction."""
     found = quantity(context, given, value)
     if found is None:
         return None
@@ -136,20 +138,14 @@ EXPONENT = option("--k", callback=number, default="3/2", says="Exponent of F = Î
 
 
 def progress(cases: Iterable[T]) -> Iterable[T]:
-    """Show the cases on their way, on a terminal."""
-    # disable=None: only on a terminal
-    bar: Iterable[T] = tqdm(cases, desc="cases", disable=None, leave=False, file=sys.stderr)
-    return bar
-
-
-SILENCE = 60.0
-"""Seconds after which a run that was not expected to take long says how far it is."""
+    """Show how many cases are done."""
+    return shown(cases, "cases")
 
 
 @contextmanager
 def run_progress(effort: Effort) -> Iterator[Callable[[float], None]]:
-    """What one run takes, and how far it is."""
-    start, said = time.monotonic(), announce(str(effort), effort.seconds)
+    """Show how far a lattice run is: a bar on a terminal, elsewhere a line every 30 s."""
+    tell = lines("lattice run")
     with tqdm(
         total=1.0,
         desc="lattice run",
@@ -160,14 +156,12 @@ def run_progress(effort: Effort) -> Iterator[Callable[[float], None]]:
         bar_format="{desc}: {percentage:.1f} %|{bar}| {elapsed}<{remaining}",
     ) as bar:
 
-        def tell(share: float) -> None:
-            nonlocal said
+        def update(share: float) -> None:
             bar.update(share - bar.n)
-            if not said and time.monotonic() - start > SILENCE:
-                said = True
-                click.echo(f"{share:.1%} of the run is done", err=True)
+            if bar.disable:
+                tell(share)
 
-        yield tell
+        yield update
 
 
 def _picture(context: click.Context, given: click.Parameter, path: str | None) -> Path | None:

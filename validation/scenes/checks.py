@@ -58,7 +58,8 @@ def between(value: Any, name: str, low: float, high: float, wanted: str = "") ->
     number = real(value, name)
     if not low <= number <= high:
         wanted = wanted or f"it lies between {low:g} and {high:g}"
-        raise SceneError(f"{name} is {number:g}: {wanted}")
+        digits = repr(number).removesuffix(".0")  # all of them: 1.0000001 is not 1
+        raise SceneError(f"{name} is {digits}: {wanted}")
     return number
 
 

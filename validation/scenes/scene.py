@@ -89,7 +89,7 @@ class Scene:
         if not math.isfinite(sum(self.spacings)):
             raise SceneError("the chain's length comes out as inf: choose other units")
         if self.k < 1:
-            raise SceneError(f"k is {self.k:g}: the contact law A δ^k is simulated for k ≥ 1")
+            raise SceneError(f"k is {self.k}: the contact law A δ^k is simulated for k ≥ 1")
         for name, act in (("gravity", "pull towards"), ("precompression", "push against")):
             if (value := getattr(self, name)) < 0 or (value > 0 and self.wall is None):
                 wanted = f"it must be positive and needs a wall to {act}"

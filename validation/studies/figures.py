@@ -1,9 +1,9 @@
-"""The figures and stated numbers of Porter et al. (2008), computed.
+"""Figures and stated numbers of Porter et al. (2008), computed.
 
 Figure 2: the force over time at three beads of the 1:1 and the 2:1 chain; with it N:1 chains up to
-22:1, as far as the paper's numerics go. Figure 3a: peak force against speed over the striker's drop
-heights, with both moduli of PTFE, and the exponent of V_s ~ F_m^e. Figure 3b is
-`validation.studies.porter2008.widths`.
+22:1, the range of the paper's numerics. Figure 3a: peak force against speed over the striker's drop
+heights, with both moduli of PTFE, and the exponent of V_s ~ F_m^e. Figure 3b, the FWHM from bead to
+bead, is drawn by `book/studies/widths.py`.
 """
 
 from __future__ import annotations
@@ -12,33 +12,25 @@ import math
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
-import numpy as np
-import scipy
-
-from lwa import canonical_wave
+from lwa import PhysicalWave, canonical_wave
 from lwa.base.arrays import Array
 from lwa.base.progress import Progress
 from validation.lattice.run import Run
 from validation.lattice.simulate import simulate_many
-from validation.pulses.pulse import Measured, compared, exponent
+from validation.pictures.panel import Curve, Panel
+from validation.pulses.pulse import Measured, compared, exponent, first_passage
 from validation.report.command import study
-from validation.report.panel import Curve, Panel
 from validation.report.result import Report
 from validation.report.table import Column, Table
 from validation.report.text import percent
-from validation.scenes.materials import DIAMETER, PTFE_BEAD
+from validation.scenes.materials import DIAMETER, PTFE, PTFE_BEAD
 from validation.studies import paper
 from validation.studies.paper import HERTZ, Train, chain_cell, chain_runs
-from validation.waves.theory import Compacton
 
-RECORDED = {1: (15, 24, 33), 2: (16, 24, 34)}  # N → figure 2's beads; 24 is PTFE
-MOST = 22  # the largest N of the paper's numerics
+RECORDED = {1: (15, 24, 33), 2: (16, 24, 34)}  # N → beads of figure 2; 24 is PTFE
+MOST = 22  # the largest N
 HEIGHTS = (0.1, 0.2, 0.4, 0.6, 0.8, 1.0, 1.2)  # drop heights of figure 3a, in m
-MODULI = (1.46e9, 0.6e9)  # of PTFE, in Pa: dynamic, which the paper uses, and nominal static
-
-_N_TO_1 = """\
-N:1 chains; the theory is that of the canonical field at the lattice's peak force; ±: by how
-much a less accurate run differs"""
+MODULI = (1.46e9, 0.6e9)  # of PTFE, in Pa: dynamic, as in the paper, and nominal static
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,7 +44,7 @@ class Forces:
 
 
 class Speed(NamedTuple):
-    """The leading pulse of an N:1 chain, and the canonical theory's speed at its peak force."""
+    """Speed and peak force of an N:1 chain, and the canonical theory's speed at this force."""
 
     N: int
     speed: Measured
@@ -83,6 +75,9 @@ _SPEEDS = (
     Column("theory_value", "V_s theory", "m/s", format=".2f"),
     Column("", "error", format=percent),
 )
+_SPEEDS_TITLE = """\
+N:1 chains; theory: speed of the canonical wave with the lattice's peak force; ±: change in a less
+accurate run"""
 _SCALINGS = (
     Column("modulus_value", "E of PTFE", "GPa", format=lambda E: f"{E / 1e9:g}"),
     Column("exponent", "exponent of V_s in F_m", error=True),
@@ -93,11 +88,12 @@ _SCALINGS = (
     Column("force_error_value"),
     Column("theory_value", "V_s theory", "m/s", format=lambda V: f"{V[0]:.1f} … {V[-1]:.1f}"),
 )
+_SCALINGS_TITLE = f"drop heights {HEIGHTS[0]:g} … {HEIGHTS[-1]:g} m; the paper fits 0.1666"
 
 
 @dataclass(frozen=True, eq=False)
 class Figures:
-    """All of them."""
+    """The records of figure 2, the N:1 chains and figure 3a."""
 
     forces: tuple[Forces, ...]
     speeds: tuple[Speed, ...]
@@ -105,26 +101,30 @@ class Figures:
 
     def report(self) -> Report:
         """``speeds``: ``N``, ``speed``, ``force`` and ``theory``, each ``_value``; ``scalings``:
-        ``modulus_value``, ``exponent_value`` and a list over the drop heights of ``speed_value``,
-        ``force_value`` and ``theory_value``; ``scaling``: that of the paper, with the
-        dynamic modulus; ``forces``: ``N``, ``beads``, ``time_value``, ``force_value``."""
+        ``modulus_value``, ``exponent_value`` and lists over the drop heights ``speed_value``,
+        ``force_value``, ``theory_value``; ``scaling``: the one with the dynamic modulus;
+        ``forces``: ``N``, ``beads``, ``time_value``, ``force_value``."""
         speeds = tuple((*s, s.theory / s.speed.value - 1) for s in self.speeds)
-        rows = tuple((s.E, s.exponent, s.exponent.value - 1 / 6,
-                      [V.value for V in s.speeds], [V.error for V in s.speeds],
-                      [F.value for F in s.forces], [F.error for F in s.forces], s.theory)
-                     for s in self.scaling)  # fmt: skip
-        heights = f"drop heights {HEIGHTS[0]:g} … {HEIGHTS[-1]:g} m; the paper fits 0.1666"
-        scalings = Table(_SCALINGS, rows, "scalings", title=heights)
+        rows = []
+        for s in self.scaling:
+            numbers = (
+                [part.value for part in s.speeds],
+                [part.error for part in s.speeds],
+                [part.value for part in s.forces],
+                [part.error for part in s.forces],
+            )
+            rows.append((s.E, s.exponent, s.exponent.value - 1 / 6, *numbers, s.theory))
+        scalings = Table(_SCALINGS, tuple(rows), "scalings", title=_SCALINGS_TITLE)
+        records = [
+            {"N": f.N, "beads": f.beads, "time_value": f.time, "force_value": f.force}
+            for f in self.forces
+        ]
         return Report(
             "",
-            (Table(_SPEEDS, speeds, "speeds", title=_N_TO_1), scalings),
+            (Table(_SPEEDS, speeds, "speeds", title=_SPEEDS_TITLE), scalings),
             panels=(*map(_forces_panel, self.forces), _scaling_panel(self.scaling)),
-            data={
-                "scaling": scalings.document()[0],
-                "forces": [{"N": f.N, "beads": f.beads, "time_value": f.time,
-                            "force_value": f.force} for f in self.forces],
-            },
-        )  # fmt: skip
+            data={"scaling": scalings.document()[0], "forces": records},
+        )
 
 
 def _forces_panel(record: Forces) -> Panel:
@@ -150,10 +150,9 @@ def figures(progress: Progress[Any] = iter) -> Figures:
     parts += [(chain_speed, N) for N in range(1, MOST + 1)]
     parts += [(scaling, E) for E in MODULI]
     found: dict[Any, list[Any]] = {}
-    for part, *of in progress(parts):
-        found.setdefault(part, []).append(part(*of))
-    records, speeds, scalings = found.values()
-    return Figures(tuple(records), tuple(speeds), tuple(scalings))
+    for part, *arguments in progress(parts):
+        found.setdefault(part, []).append(part(*arguments))
+    return Figures(*map(tuple, found.values()))
 
 
 def forces(N: int) -> Forces:
@@ -163,11 +162,11 @@ def forces(N: int) -> Forces:
 
 
 def chain_speed(N: int) -> Speed:
-    """The leading pulse of the N:1 chain over some periods far from the striker, and the theory's.
+    """Speed of the leading pulse of the N:1 chain far from the striker, beside the theory's.
 
-    It is timed from steel bead to steel bead, over three periods or 18 beads at least, by its
-    front, a tenth of its peak: in chains of large N it has several humps, and not the same one
-    stays the highest.
+    The pulse is timed from steel bead to steel bead over three periods, or 18 beads at least, by
+    its front at a tenth of its peak: in chains of large N the pulse has several humps, and their
+    order of height changes on the way.
     """
     period = N + 1
     before, across = (max(3, math.ceil(beads / period)) for beads in (14, 18))
@@ -176,34 +175,26 @@ def chain_speed(N: int) -> Speed:
     def numbers(run: Run) -> dict[str, float]:
         train = Train.of(run)
         first, second = (
-            _front(run.time, force - pulse.peak / 10)
-            for force, pulse in zip(run.bead_force, train.pulses.values(), strict=True)
+            first_passage(run.signal("bead", sensor - 1), pulse.peak / 10)
+            for sensor, pulse in zip(sensors, train.pulses.values(), strict=True)
         )
         return {"speed": across * period * DIAMETER / (second - first), "force": train.peak}
 
     runs = chain_runs(sensors, N=N, beads=max(paper.BEADS, (before + across + 3) * period))
     found = compared(numbers, *runs)
-    wave = canonical_wave(chain_cell(N), HERTZ)
-    theory = Compacton.of_bead_force(wave, found["force"].value).speed
-    return Speed(N, found["speed"], found["force"], theory)
-
-
-def _front(time: Array, above: Array) -> float:
-    """When a signal first passes zero, by a cubic spline."""
-    first = int(np.argmax(above > 0))
-    spline = scipy.interpolate.CubicSpline(time, above)
-    return float(scipy.optimize.brentq(spline, time[first - 1], time[first]))
+    wave = PhysicalWave(canonical_wave(chain_cell(N), HERTZ), found["force"].value, "bead")
+    return Speed(N, found["speed"], found["force"], float(wave.speed))
 
 
 def scaling(E: float) -> Scaling:
-    """Figure 3a for a modulus of PTFE, without gravity in the chain."""
-    ptfe = replace(PTFE_BEAD, material=replace(PTFE_BEAD.material, E=E))
+    """Figure 3a for a modulus of PTFE, without gravity."""
+    ptfe = replace(PTFE_BEAD, material=replace(PTFE, E=E))
     velocities = (math.sqrt(2 * paper.GRAVITY * h) for h in HEIGHTS)
     drops = [paper.recorded_chain(paper.SENSORS, v, ptfe=ptfe) for v in velocities]
     pairs = zip(*(simulate_many(drops, rtol=rtol) for rtol in paper.TOLERANCES), strict=True)
-    found = [(Measured(fine.speed, coarse.speed), Measured(fine.peak, coarse.peak))
-             for fine, coarse in (map(Train.of, pair) for pair in pairs)]  # fmt: skip
-    speeds, forces = zip(*found, strict=True)
+    trains = [tuple(map(Train.of, pair)) for pair in pairs]
+    speeds = tuple(Measured(fine.speed, coarse.speed) for fine, coarse in trains)
+    forces = tuple(Measured(fine.peak, coarse.peak) for fine, coarse in trains)
     wave = canonical_wave(chain_cell(ptfe=ptfe), HERTZ)
-    theory = tuple(Compacton.of_bead_force(wave, force.value).speed for force in forces)
-    return Scaling(E, speeds, forces, theory)
+    theory = wave.at_force([force.value for force in forces], of="bead").speed
+    return Scaling(E, speeds, forces, tuple(theory.tolist()))

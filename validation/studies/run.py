@@ -87,7 +87,8 @@ def _readings(run: Run) -> dict[str, str]:
 
 def _speeds(scene: Scene) -> dict[str, str]:
     """Column labels of `SPEEDS`."""
-    return dict(zip(SPEEDS, ("sites/s", "m/s") if scene.units else SPEEDS.values(), strict=True))
+    units = ("sites/s", "m/s") if scene.units else ("sites/time", "length/time")
+    return dict(zip(SPEEDS, units, strict=True))
 
 
 def _table(

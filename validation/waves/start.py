@@ -24,11 +24,13 @@ from numpy.typing import ArrayLike
 
 from lwa.base.arrays import Array
 from lwa.wave.quadrature import NumericBackground
-from validation.pulses.steady import PLACES, STRETCH, Chain, cells_apart
+from validation.pulses.pulse import leading_pulse
+from validation.pulses.steady import PLACES, STRETCH, StruckDimer, cells_apart
 from validation.waves import newton
 from validation.waves.profile import Profile
 
 FARTHEST = 60  # cells from one place to the next
+_CENTER = 2001  # times between which the center of a pulse is summed
 TOLERANCE = 1e-7  # rtol of the struck chain
 _STEP = 0.01  # grid of the struck chain's profile, in ξ
 _LONG = 2.0  # ample half periods on which the profile is kept
@@ -117,28 +119,30 @@ def struck_pulse(k: float, omega: float) -> StruckPulse:
         other = struck_pulse(k, 1 / omega)
         front = other.front[::-1].copy()
         return replace(other, masses=(1.0, omega), c2=other.c2 / omega, front=front)
-    chain = Chain(k, omega, 2 * min(cells_apart(k, STRETCH), FARTHEST))
-    record = chain.passed(chain.crossing, TOLERANCE)
+    chain = StruckDimer(k, omega, 2 * min(cells_apart(k, STRETCH), FARTHEST))
+    passage = chain.passed(chain.crossing, TOLERANCE)
     place = PLACES - 3  # the tail behind the pulse is recorded there, too
-    time, cell = record.run.time, slice(2 * place, 2 * place + 2)
+    run, quarter = passage.run, 0.25**k
+    cell = run.scene.contact_sensors[2 * place : 2 * place + 2]
     centers, peaks = [], []
-    for part, whole in zip(record.parts[cell], record.run.contact_force[cell], strict=True):
-        force = whole[part]
+    for contact in cell:
+        force = run.signal("contact", contact)
         # A leading pulse ends at a quarter of its peak strain: the same cut on both sides.
-        weights = np.maximum(force - force.max() / 4**k, 0)
-        centers.append(np.average(time[part], weights=weights))
-        peaks.append(float(force.max()))
+        cut = leading_pulse(force, k, share=quarter)
+        time = np.linspace(cut.rise, cut.fall, _CENTER)
+        centers.append(np.average(time, weights=force(time) - quarter * cut.peak))
+        peaks.append(cut.peak)
     middle, peak = float(np.mean(centers)), math.sqrt(math.prod(peaks))
-    width, strain_width, c, _ = chain.numbers(record)[:, place - 1].tolist()
+    width, strain_width, c, _ = chain.numbers(passage)[:, place - 1].tolist()
     here = c * peak ** ((k - 1) / (2 * k))
     ample = newton.ample_half_period((1.0, omega), k)
     half = np.arange(0, _LONG * ample, _STEP)
     xi = np.append(-half[:0:-1], half)
     a, b = (
-        scipy.interpolate.CubicSpline(time, strain)(
-            np.clip(middle + (site - xi) / here, 0, time[-1])
+        run.signal("contact", contact, "compression")(
+            np.clip(middle + (site - xi) / here, 0, run.scene.duration)
         )
-        for strain, site in zip(record.run.compression[cell], (-0.5, 0.5), strict=True)
+        for contact, site in zip(cell, (-0.5, 0.5), strict=True)
     )
     front = (a + b[::-1]) / 2 / peak ** (1 / k)
     return StruckPulse((1.0, omega), k, c * c, ample, xi, front, (width, strain_width))

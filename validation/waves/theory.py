@@ -1,10 +1,8 @@
-"""The theory's traveling wave in numbers, as the lattice would see it.
+"""The theory's traveling waves that the lattice is compared with.
 
-The strain is v(x) = B cos^m(βx), m = 2/(k-1), on |x| ≤ π/(2β) (Porter et al. 2008). The
-lattice knows it through its contacts and beads, in the units of the cell:
-
-    contact   compression D v, force A (D v)^k,
-    bead      velocity V v, and the mean of the forces half a spacing D before and behind it.
+`lwa.PhysicalWave` is the wave of a given peak force. Here are its inverses, the wave of a given
+speed dx/dt or momentum, and the width of the force inside a bead, the mean of the bead's two
+contact forces.
 """
 
 from __future__ import annotations
@@ -16,11 +14,13 @@ from typing import Any
 
 import numpy as np
 import scipy
+import sympy as sp
 from numpy.typing import ArrayLike
 
-from lwa import Dimer, TravelingWave, canonical_wave, homogenize
+from lwa import Dimer, PhysicalWave, TravelingWave, canonical_wave, homogenize
 from lwa.base.arrays import Array
-from lwa.wave.curves import arch, number
+from lwa.base.exact import number
+from lwa.wave.closed import CompactWave
 from validation.scenes.checks import SceneError, positive
 
 
@@ -117,10 +117,15 @@ class Compacton:
         )
 
 
+def arch(y: Array, power: float) -> Array:
+    """cos^power y on |y| < π/2, 0 outside."""
+    return np.where(np.abs(y) < np.pi / 2, np.cos(y), 0.0) ** power
+
+
 def theory_at(k: Any, omega: Any, closure: str = "linear") -> TravelingWave:
     """The theory's wave for masses 1 and ω, equal contacts A = 1 and D = 1.
 
-    closure : "linear", the paper's, or "full", or "canonical": the full closure's canonical field.
+    closure : "linear" (the paper's), "full", or "canonical" (the canonical field of the full one).
 
     >>> theory_at("3/2", 1).width
     sqrt(10)*pi/2
@@ -129,6 +134,51 @@ def theory_at(k: Any, omega: Any, closure: str = "linear") -> TravelingWave:
     if closure == "canonical":
         return canonical_wave(cell, k)
     return homogenize(cell, k=k, closure=closure).pde.traveling_wave()
+
+
+def of_speed(wave: TravelingWave, speed: float) -> PhysicalWave:
+    """The wave with a speed dx/dt, which scales as F^{(k-1)/(2k)}.
+
+    Raises `SceneError` unless the speed is positive and the force is a float.
+    """
+    unit, k = PhysicalWave(wave, sp.S.One), wave.k
+    return _with(wave, "speed", speed, unit.speed, (k - 1) / (2 * k))
+
+
+def of_momentum(wave: TravelingWave, momentum: float) -> PhysicalWave:
+    """The wave with a momentum, which scales as F^{(k+1)/(2k)}.
+
+    Raises `SceneError` unless the momentum is positive and the force is a float.
+    """
+    unit, k = PhysicalWave(wave, sp.S.One), wave.k
+    return _with(wave, "momentum", momentum, unit.momentum, (k + 1) / (2 * k))
+
+
+def _with(
+    wave: TravelingWave, name: str, amount: float, unit: sp.Expr, exponent: sp.Expr
+) -> PhysicalWave:
+    """The wave with an amount that is ``unit`` at force 1 and scales as F^exponent."""
+    log = math.log(positive(amount, name) / number(unit)) / number(exponent)
+    if abs(log) > 700:
+        raise SceneError(f"{name} is {amount:g}: the force e^{log:.0f} is no float")
+    return PhysicalWave(wave, math.exp(log))
+
+
+def bead_fwhm(wave: CompactWave) -> float:
+    """Full width at half maximum of the force inside a bead, a length; the same at every force.
+
+    The force is cos^p(β(x - D/2)) + cos^p(β(x + D/2)), p = 2k/(k-1), each term on its own arch.
+    """
+    k, D = number(wave.k), number(wave.D)
+    beta = (k - 1) / (2 * D * math.sqrt(number(wave.dispersion)))
+
+    def force(x: float) -> float:
+        sides = (beta * (x + side) for side in (-D / 2, D / 2))
+        return math.fsum(math.cos(y) ** (2 * k / (k - 1)) for y in sides if abs(y) < math.pi / 2)
+
+    half, end = force(0.0) / 2, (math.pi / beta + D) / 2
+    found: float = scipy.optimize.brentq(lambda x: force(x) - half, 0, end, xtol=1e-14 * end)
+    return 2 * found
 
 
 def _strain(name: str, amount: float, unit: float, power: float) -> float:

@@ -145,7 +145,7 @@ def test_the_command(capsys):
         ({"masses": ("m",)}, "mass is m: a number is wanted"),
         ({"masses": (-1,)}, "-1"),
         ({"ratios": (0,)}, "ratio is 0: it lies between"),
-        ({"ratios": (1e9,)}, "ratio is 1e"),
+        ({"ratios": (1e9,)}, "ratio is 1"),
         ({"ratios": ()}, "ratios is empty"),
         ({"k": 1}, "k is 1: it lies between"),
     ],

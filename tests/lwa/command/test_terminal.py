@@ -10,7 +10,7 @@ from importlib.metadata import version
 import pytest
 
 import lwa
-from lwa.command.start import INTERRUPTED, start
+from lwa.command.interrupt import INTERRUPTED, start
 from lwa.command.terminal import SIGNS
 from tests.lwa.command.answers import run
 
@@ -75,14 +75,14 @@ def test_ctrl_c_while_the_command_is_loaded_is_one_line(tmp_path):
         """)
     )
     code = f"import sys; sys.path.insert(0, {str(tmp_path)!r}); "
-    code += "from lwa.command.start import start; start('lwa', 'slow')"
+    code += "from lwa.command.interrupt import start; start('lwa', 'slow')"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120)
     assert (done.returncode, done.stdout) == (INTERRUPTED, "")
     assert done.stderr == "lwa: interrupted\n"
 
 
 def test_nothing_is_loaded_before_ctrl_c_is_heard():
-    code = "import sys, lwa.__main__, lwa.command.start; print('sympy' in sys.modules)"
+    code = "import sys, lwa.__main__, lwa.command.interrupt; print('sympy' in sys.modules)"
     done = subprocess.run(
         [sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=120
     )

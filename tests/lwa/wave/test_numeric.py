@@ -71,7 +71,7 @@ def test_bad_input():
     for arguments in ((np.nan, 1.0), (1.5, np.inf), (1.5, 0.0), (1.5, -1.0)):
         with pytest.raises(InputError):
             NUMERIC.beta(*arguments)
-    with pytest.raises(InputError, match="B must be positive"):
+    with pytest.raises(InputError, match=r"B is -1\.0: it must be positive"):
         NUMERIC.speed(1.5, 1.0, B=-1.0)
     with pytest.raises(InputError, match="symbol k and a cell of two masses"):
         WAVE.at(k="3/2").numeric()

@@ -120,7 +120,7 @@ BEYOND = [
 
 @pytest.mark.parametrize(("what", "options", "message"), BEYOND, ids=[b[2][:40] for b in BEYOND])
 def test_what_is_beyond_reason_is_refused_before_it_starts(monkeypatch, what, options, message):
-    monkeypatch.setattr("validation.lattice.simulate.scipy", None)
+    monkeypatch.setattr("validation.lattice.steppers.scipy", None)
     monkeypatch.setattr("validation.lattice.engine.advance", None)
     with pytest.raises(SceneError, match=f"^{message}$"):
         simulate(what, **options)

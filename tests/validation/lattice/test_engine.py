@@ -5,13 +5,13 @@ import subprocess
 import sys
 from dataclasses import replace
 from itertools import pairwise
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 import scipy
 
-from validation.lattice import engine, kernel
+from validation.lattice.kernel.arrays import Chain
+from validation.lattice.kernel.kinks import ramp
 from validation.lattice.run import IntegrationError
 from validation.lattice.schemes import LAWS, SCHEMES
 from validation.lattice.simulate import COMPILED, simulate, simulate_many
@@ -218,43 +218,22 @@ def test_chains_that_fly_apart_and_meet(seed):
         assert run.velocities == pytest.approx(exact.velocities, abs=100 * rtol), rtol
 
 
-def test_the_correction_of_kinks_saves_half_the_steps(monkeypatch):
-    scene = struck(60, duration=55.0, contact_sensors=(40,), samples=1101)
-    corrected, tableau = simulate(scene, rtol=1e-10), engine._tableau
-
-    def plain(method, k):
-        return tableau(method, k)._replace(points=np.zeros((0, 0)))
-
-    monkeypatch.setattr(engine, "_tableau", plain)
-    uncorrected = simulate(scene, rtol=1e-10)
-    assert corrected.evaluations < uncorrected.evaluations / 2
-    peaks = (run.contact_force.max() for run in (corrected, uncorrected))
-    assert next(peaks) == pytest.approx(next(peaks), rel=1e-9)
-
-
-def test_how_fast_a_contact_closes_is_the_difference_of_two_accelerations():
-    force, inverse = np.array([0.3, 2.0, -1.0, 0.7]), np.array([0.5, 4.0, 1.5])
-    accelerations = (force[:-1] - force[1:]) * inverse
-    for i in (0, 1):
-        found = kernel._relative.py_func(force, inverse, i)
-        assert found == pytest.approx(accelerations[i] - accelerations[i + 1], rel=1e-15)
-
-
 @pytest.mark.parametrize("k", [1.5, 2.5])
 @pytest.mark.parametrize(("root", "q"), [(-0.6, 1.0), (0.3, 1.0), (0.3, -1.0), (1.7, -1.0)])
 def test_the_integrals_of_a_force_with_a_kink(k, root, q):
     """Of p_+^k and (1 - u) p_+^k over a step, against SciPy's quadrature of the same polynomial."""
-    chain = kernel.Chain(*np.zeros((4, 1)), LAWS.get(k, 0), k)
+    chain = Chain(*np.zeros((4, 1)), LAWS.get(k, 0), k)
     coefficients = q * np.array([1.0, 0.2, -0.1, 0.05, 0.02])
-    row = np.array([0.0, root, *coefficients])
+    u, w = scipy.special.roots_jacobi(8, 0.0, k)
+    points = np.stack(((1 + u) / 2, w / 2 ** (k + 1)))
 
     def force(u):
         return max((u - root) * np.polyval(coefficients[::-1], u), 0.0) ** k
 
-    def ramp(z):
-        return np.array(kernel._ramp(chain, engine._tableau("RKN86", k).points, row, z))
+    def integrals(z):
+        return np.array(ramp(chain, points, (root, *coefficients.tolist()), z))
 
-    (far, speed), (near, start) = ramp(1.0), ramp(0.0)
+    (far, speed), (near, start) = integrals(1.0), integrals(0.0)
     ends = sorted((0.0, min(max(root, 0.0), 1.0), 1.0))
     parts = [(a, b) for a, b in pairwise(ends) if b > a]
     once, twice = (
@@ -428,16 +407,3 @@ def test_rounding_noise_in_a_start_is_no_front():
     a, b = (simulate(scene, method="SRKN14", window=True) for scene in (chain, noisy))
     assert a.contact_force.max() > 0.5
     assert np.abs(a.contact_force - b.contact_force).max() < 1e-9
-
-
-@pytest.mark.parametrize("terminal", [True, False])
-def test_a_first_run_says_that_it_compiles(capsys, monkeypatch, tmp_path, terminal):
-    stats = SimpleNamespace(cache_path=tmp_path)
-    monkeypatch.setattr(engine, "advance", SimpleNamespace(overloads=[], stats=stats))
-    monkeypatch.setattr(engine.sys.stderr, "isatty", lambda: terminal)
-    engine._say_if_compiled()
-    said = capsys.readouterr().err
-    assert said == ("the engine is compiled for this machine, once\n" if terminal else "")
-    (tmp_path / "kernel.advance-100.nbi").write_bytes(b"")  # newer than the source
-    engine._say_if_compiled()
-    assert capsys.readouterr().err == ""

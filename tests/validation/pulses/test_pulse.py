@@ -73,8 +73,8 @@ T = np.linspace(-2, 2, 401)
 @pytest.mark.parametrize(
     ("time", "signal", "message"),
     [
-        (T[:200], arch(T[:200]), r"the pulse is not wholly in the record: it peaks at the last"),
-        (T[201:], arch(T[201:]), r"the pulse is not wholly in the record: it peaks at the first"),
+        (T[:200], arch(T[:200]), r"the pulse is not wholly in the record: it peaks at the end"),
+        (T[201:], arch(T[201:]), r"the pulse is not wholly in the record: it peaks at the start"),
         (T[:220], arch(T[:220]), r"the pulse is not wholly .*: its back does not pass half"),
         (T[180:], arch(T[180:]), r"the pulse is not wholly .*: its front does not pass half"),
         (T, 0 * T, r"no pulse is in the record"),

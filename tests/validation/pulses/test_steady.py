@@ -10,7 +10,8 @@ import sympy as sp
 from validation.lattice.run import IntegrationError
 from validation.lattice.simulate import simulate
 from validation.pulses import steady
-from validation.pulses.steady import QUANTITIES, STRETCH, leading_pulse, point
+from validation.pulses.pulse import Sampled, leading_pulse
+from validation.pulses.steady import QUANTITIES, STRETCH, point
 from validation.scenes.scene import Scene
 from validation.waves.solver import exact_wave, solve
 
@@ -91,7 +92,6 @@ SETTINGS = (
     {"stretch": 3},
     {"stretch": 7},
     {"TOLERANCES": (1e-7, 1e-6)},
-    {"_SAMPLES": 25.0},
     {"PLACES": 14},
 )
 
@@ -125,16 +125,16 @@ def test_what_a_geometric_approach_has_before_it_is_in_the_error():
 def test_the_leading_pulse_is_not_a_later_and_higher_one():
     time = np.linspace(0, 20, 2001)
     first, second = np.exp(-((time - 5) ** 2)), 2 * np.exp(-((time - 12) ** 2))
-    part = leading_pulse(first + second, 1.5)
-    assert time[part][np.argmax((first + second)[part])] == pytest.approx(5, abs=0.01)
+    pulse = leading_pulse(Sampled(time, first + second), 1.5)
+    assert pulse.arrival == pytest.approx(5, abs=1e-6)
     # two humps are one pulse while the compression between them stays above a quarter
-    part = leading_pulse(first + np.exp(-((time - 7) ** 2)), 1.5)
-    assert time[part.stop] > 8
+    pulse = leading_pulse(Sampled(time, first + np.exp(-((time - 7) ** 2))), 1.5, share=0.25)
+    assert pulse.fall > 8
 
 
 def test_a_pulse_that_does_not_come_through_is_told(monkeypatch):
     monkeypatch.setattr(steady, "_LONGEST", 1)
-    monkeypatch.setattr(steady.Chain, "crossing", 10.0)
+    monkeypatch.setattr(steady.StruckDimer, "crossing", 10.0)
     found = point(HERTZ, R(1), STRETCH)
     assert found.missing == "the pulse has not passed 80 sites by t = 10"
     assert (found.sites, found.numbers) == (None, {})

@@ -19,6 +19,7 @@ def test_a_tolerance_of_any_kind_is_a_float(call, method):
     for value, said in (
         (Fraction(1, 2), "rtol is 0.5: it lies between 1e-13 and "),
         (Decimal(1), "rtol is 1: it lies"),
+        (0.1000000001, "rtol is 0.1000000001: it lies"),
         (Decimal("sNaN"), r"rtol is Decimal\('sNaN'\): a number is wanted"),
         (Decimal("NaN"), "rtol is nan: a finite number"),
         ([1e-9], r"rtol is \[1e-09\]: a number is wanted"),

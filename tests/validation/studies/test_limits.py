@@ -11,8 +11,8 @@ from validation.studies.limits import (
     LAWS,
     LIGHT,
     QUANTITIES,
-    _quantity_rows,
     limits,
+    quantity_rows,
     theory_at,
     theory_values,
 )
@@ -134,10 +134,10 @@ def test_a_theory_off_by_half_a_permille_is_refused(limits_result, quantity, ome
     rows = [found(limits_result, quantity, k, omega) for k in EXPONENTS]
     lattice = [row.lattice for row in rows]
     assert all(
-        row.finding.ok for row in _quantity_rows(quantity, omega, [r.theory for r in rows], lattice)
+        row.finding.ok for row in quantity_rows(quantity, omega, [r.theory for r in rows], lattice)
     )
     changed = [row.theory * sp.Rational(str(wrong)) for row in rows]
-    assert not all(row.finding.ok for row in _quantity_rows(quantity, omega, changed, lattice))
+    assert not all(row.finding.ok for row in quantity_rows(quantity, omega, changed, lattice))
 
 
 def test_a_row_fails_beyond_its_bound_or_when_the_lattice_is_too_rough(limits_result):

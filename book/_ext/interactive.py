@@ -1,0 +1,73 @@
+"""Give the pages that can be turned their script and its formulas.
+
+A page with an element of class ``lwa-chain`` or ``lwa-calculator`` gets `chain.js` and before it,
+inline, the functions that `chain.js` calls: the JavaScript that `lwa` writes of its own closed
+forms, and its table of materials.
+"""
+
+from __future__ import annotations
+
+import json
+from functools import cache
+
+import sympy as sp
+from sphinx.application import Sphinx
+
+from lwa import Cell, Material, Sphere, canonical_wave, hertz
+from lwa.code.languages import LANGUAGES
+from lwa.code.writer import Function
+
+
+@cache
+def formulas() -> str:
+    """A script that defines the object ``lwaFormulas``: closed forms by name, and materials."""
+    k, m1, m2, A, D, F = sp.symbols("k m1 m2 A D F", positive=True)
+    F_0, p_0, v = sp.symbols("F_0 p_0 v", positive=True)
+    wave = canonical_wave(Cell([m1, m2]), k)
+    chain = canonical_wave(Cell([m1, m2], stiffnesses=[A, A], spacing=D), k)
+    pulse, loaded = chain.at_force(F), chain.at_force(F, precompression=F_0)
+    strain = canonical_wave(Cell([1]), k).on_background(p_0)
+    solids = sp.symbols("E1 nu1 R1 E2 nu2 R2", positive=True)
+    one, two = (Sphere(1, R, Material(E=E, nu=nu)) for E, nu, R in (solids[:3], solids[3:]))
+    values = (k, A, m1, m2, D)
+    more = (
+        Function("dispersion_I", "I of the canonical wave equation", (m1, m2, wave.D), wave.I),
+        Function("hertz_A", "A of two spheres", solids, hertz.stiffness(one, two)),
+        Function("pulse_speed", "dx/dt at the peak force F", (F, *values), pulse.speed),
+        Function("pulse_time", "FWHM of F in time", (F, *values), pulse.fwhm("force", "time")),
+        Function("sound_speed", "dx/dt of small waves", (F_0, *values), loaded.sound_speed),
+        Function("loaded_speed", "dx/dt at the peak force F", (F, F_0, *values), loaded.speed),
+        Function("rise_Q", "V_s^2 of a wave that rises by v", (v, p_0, k), strain.speed(v) ** 2),
+    )  # fmt: skip
+    names = [
+        "beta width fwhm_strain fwhm_force fwhm_velocity speed amplitude profile",
+        *(function.name for function in more),
+    ]
+    materials = {
+        name: {key: float(getattr(solid, key)) for key in ("E", "nu", "density")}
+        for name, solid in hertz.MATERIALS.items()
+    }
+    return "\n".join(
+        [
+            "const lwaFormulas = (() => {",
+            wave.code("javascript"),
+            LANGUAGES["javascript"](more).module(["Chains in units, written by lwa"]),
+            f"const materials = {json.dumps(materials)};",
+            f"return {{{', '.join(' '.join(names).split())}, materials}};",
+            "})();",
+        ]
+    )
+
+
+def turn(app: Sphinx, page: str, template: str, context: dict, doctree: object) -> None:
+    """Append the scripts to a page that has something to turn."""
+    body = context.get("body", "")
+    if 'class="lwa-' in body:
+        root = context["pathto"]("_static/chain.js", resource=True)
+        context["body"] = f'{body}<script>{formulas()}</script><script src="{root}"></script>'
+
+
+def setup(app: Sphinx) -> dict[str, bool]:
+    """Sphinx's hook."""
+    app.connect("html-page-context", turn)
+    return {"parallel_read_safe": True, "parallel_write_safe": True}

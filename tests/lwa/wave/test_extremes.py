@@ -1,0 +1,181 @@
+"""Waves on a background where floats are in danger: poles, open contacts, steep laws, limits."""
+
+import mpmath
+import numpy as np
+import pytest
+import sympy as sp
+
+from lwa import (
+    Cell,
+    InputError,
+    Law,
+    NoSolitaryWave,
+    Power,
+    background_wave,
+    canonical_wave,
+    homogenize,
+)
+from lwa.law import DELTA, named
+
+CHAIN = Cell([1], spacing=1)
+LIMITED = Law(DELTA + DELTA**2 - DELTA**3)  # Q(v) = 1 + 2v/3 - v²/2 about 0: waves up to 2/3
+
+CASES = [
+    (Power("1/2"), 1, -0.99),
+    (Power("1/2"), 1, -0.999),
+    (Power(20), 1, 1.0),
+    (Power(50), 0.5, 1.0),
+    (Power("3/2"), 1, 1e-12),
+    (named("lennard-jones", 1), 0, 0.95),
+    (named("lennard-jones", 1), 0, 0.99),
+    (named("magnetic", 4, 1), 0, 0.99),
+    (LIMITED, 0, 0.6),
+    (LIMITED, 0, 0.6666),
+]
+
+
+def truth(law, p0, B):
+    """V and the FWHM of strain and force by mpmath's quadrature in the strain.
+
+    I F′ v′² = v² (Q(B) - Q(v)), so that ξ = ∫ √(I F′/(Q(B) - Q(v))) dv/v down from the peak.
+    """
+    with mpmath.workdps(40 + 3 * max(0, int(-np.log10(abs(B))))):  # Q cancels at small B
+        W, F, slope = (
+            sp.lambdify(DELTA, x, "mpmath") for x in (law.energy, law.F, law.F.diff(DELTA))
+        )
+        if isinstance(law, Power):
+            k = mpmath.mpf(int(law.k.p)) / int(law.k.q)
+            W, F, slope = (lambda p: p ** (k + 1) / (k + 1) / k, lambda p: p**k / k,
+                           lambda p: p ** (k - 1))  # fmt: skip
+        p0, B = mpmath.mpf(p0), mpmath.mpf(B)
+
+        def Q(v):
+            return 2 * (W(p0 + v) - W(p0) - F(p0) * v) / v**2
+
+        top, half = Q(B), (F(p0) + F(p0 + B)) / 2
+        at_half = mpmath.findroot(lambda v: F(p0 + v) / half - 1, (B / 3, B), solver="anderson")
+
+        root = mpmath.sqrt(12)  # 1/√I
+
+        def rate(t):  # v = B (1 - t²) takes the root out of the peak
+            v = B * (1 - t**2)
+            return 2 * t / (1 - t**2) * mpmath.sqrt(slope(p0 + v) / (top - Q(v)))
+
+        def width(v):
+            end = mpmath.sqrt(1 - v / B)
+            pieces = [0, *(end / 4**n for n in range(5, -1, -1))]
+            return 2 * mpmath.quad(rate, pieces, method="gauss-legendre", maxdegree=4) / root
+
+        return float(mpmath.sqrt(top)), float(width(B / 2)), float(width(at_half))
+
+
+@pytest.mark.parametrize(("law", "p0", "B"), CASES, ids=str)
+def test_speed_and_widths_to_the_last_digits(law, p0, B):
+    """To 1e-12, by 15 digits and by float64; next to a pole the rounding of p0 + B counts."""
+    speed, *widths = truth(law, p0, B)
+    wave = background_wave(CHAIN, sp.Rational(p0), law=law)
+    numeric = wave.numeric()
+    assert float(numeric.speed(p0, B)) == pytest.approx(speed, rel=2e-14)
+    for quantity, width in zip(("strain", "force"), widths, strict=True):
+        assert float(wave.fwhm(sp.Rational(B), quantity)) == pytest.approx(width, rel=1e-12)
+        assert float(numeric.fwhm(p0, B, quantity)) == pytest.approx(width, rel=1e-12)
+
+
+@pytest.mark.parametrize("ratio", [1e-300, 1e-100, 1e100, 1e308])
+def test_ratios_of_load_and_wave_that_no_difference_survives(ratio):
+    """The compact wave's numbers at small p0/B and those of KdV at large, to the last digits."""
+    wave = background_wave(CHAIN, law=Power("3/2"))
+    numeric, compact = wave.numeric(), canonical_wave(CHAIN, "3/2")
+    kdv = wave.on(sp.Rational(ratio)).kdv
+    if ratio < 1:
+        speed, width = float(compact.speed(1)), float(compact.fwhm())
+    else:
+        speed = float(kdv.sound_speed)
+        width = float(2 * mpmath.acosh(mpmath.sqrt(2)) * sp.N(kdv.width(1), 20))
+    assert float(numeric.speed(ratio, 1.0)) == pytest.approx(speed, rel=1e-14)
+    assert float(numeric.fwhm(ratio, 1.0)) == pytest.approx(width, rel=1e-13)
+    assert float(wave.on(sp.Rational(ratio)).fwhm(1)) == pytest.approx(width, rel=1e-13)
+
+
+def test_a_heavy_wave_has_a_width_in_floats():
+    assert float(background_wave(CHAIN).at(k="3/2").numeric().fwhm(1.0, 1e250)) == pytest.approx(
+        float(canonical_wave(CHAIN, "3/2").fwhm()), rel=1e-14
+    )
+
+
+@pytest.mark.parametrize("B", ["0.1", "0.666", "2/3", "0.667", "0.669", "1", "2"])
+def test_the_limiting_amplitude_is_where_the_speed_stops_growing(B):
+    """Q′(B) = 2/3 - B decides, the same for speed, width, profile and floats."""
+    wave = background_wave(CHAIN, 0, law=LIMITED)
+    numeric, number = wave.numeric(), float(sp.Rational(B))
+    calls = (
+        lambda: wave.speed(B),
+        lambda: wave.fwhm(B),
+        lambda: wave.profile(1, B),
+        lambda: numeric.speed(0.0, number),
+        lambda: numeric.fwhm(0.0, number, "force"),
+        lambda: numeric.profile([0.0, 1.0], 0.0, number),
+    )
+    for call in calls[:3] if B == "2/3" else calls:  # no float is 2/3
+        if sp.Rational(B) < sp.Rational(2, 3):
+            assert np.all(np.isfinite(np.asarray(call(), float)))
+        else:
+            with pytest.raises(NoSolitaryWave):
+                call()
+
+
+def test_the_pole_of_a_magnet():
+    """No wave reaches it, and the compression is found up to it."""
+    for n in (3, 4):
+        law = named("magnetic", n, 1)
+        wave = background_wave(CHAIN, 0, law=law)
+        for B in ("1", "1.1"):
+            for call in (
+                lambda B=B, wave=wave: wave.speed(B),
+                lambda B=B, wave=wave: wave.numeric().speed(0.0, float(B)),
+            ):
+                with pytest.raises(NoSolitaryWave):
+                    call()
+        for force in ("1e3", "6.1e4", "1e8", "1e30"):
+            delta = law.compression(CHAIN, sp.Rational(force))
+            exact = 1 - (1 + sp.Rational(force)) ** sp.Rational(-1, n)
+            assert abs(delta / exact.n(45) - 1) < 1e-33
+    with pytest.raises(InputError, match="does not reach"):
+        Law(DELTA - DELTA**2).compression(CHAIN, sp.Rational(1, 3))
+
+
+@pytest.mark.parametrize("excess", ["1e-6", "1e-8", "1e-16", "1e-30"])
+def test_a_force_next_to_the_load(excess):
+    """Width in time, with a spacing that is a symbol and one that is a number, and KdV's."""
+    F = 1 + sp.Rational(excess)
+    D = sp.Symbol("D", positive=True)
+    wave, unit = (
+        canonical_wave(cell, "3/2").at_force(F, precompression=1) for cell in (Cell([1]), CHAIN)
+    )
+    kdv = unit.background.kdv
+    length = 2 * mpmath.acosh(mpmath.sqrt(2)) * sp.N(kdv.width(unit.strain), 20, maxn=200)
+    expected = float(length / sp.N(unit.sound_speed, 20))
+    for found in (wave.fwhm("strain", "time"), unit.fwhm("strain", "time")):
+        assert float(found.subs(D, 1)) == pytest.approx(expected, rel=float(excess) + 1e-13)
+
+
+def test_arrays_that_hold_no_numbers():
+    background = background_wave(CHAIN, law=Power("3/2")).numeric()
+    wave = homogenize(Cell(["m1", "m2"])).pde.traveling_wave().numeric()
+    for bad in ("x", 10**400, [1.0, None], float("inf")):
+        for call in (
+            lambda x: background.speed(x, 1.0),
+            lambda x: background.fwhm(1.0, x),
+            lambda x: background.profile(x, 1.0, 1.0),
+            lambda x: wave.beta(x, 1.0),
+            lambda x: wave.speed(1.5, 1.0, x),
+        ):
+            with pytest.raises(InputError):
+                call(bad)
+
+
+def test_linear_waves_are_no_waves_of_kdv():
+    """At k = 1, and where F″ = 0, waves of small amplitude have no width of their own."""
+    for law, p0 in ((Power(1), 1), (named("polynomial", 0, 1), 0)):
+        with pytest.raises(NoSolitaryWave, match="F″ is 0"):
+            _ = background_wave(CHAIN, p0, law=law).kdv

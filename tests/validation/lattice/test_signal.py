@@ -1,0 +1,98 @@
+"""Signals: the motion at a sensor at any time, against exact motions and the run's own samples."""
+
+import pickle
+
+import numpy as np
+import pytest
+
+from validation.lattice.simulate import simulate
+from validation.scenes.scene import Scene, SceneError
+
+LINEAR = Scene(
+    masses=(1, 1), stiffnesses=(1,), k=1, velocities=(1,), duration=17.58, samples=1759,
+    bead_sensors=(0,), contact_sensors=(0,),
+)  # fmt: skip
+
+
+def collision(t):
+    """Velocity of the first of two beads in a linear contact: until they part at π/√2."""
+    return np.where(t < np.pi / np.sqrt(2), (1 + np.cos(np.sqrt(2) * t)) / 2, 0.0)
+
+
+@pytest.mark.parametrize("rtol", [1e-5, 1e-7, 1e-9, 1e-11])
+def test_a_contact_that_touches_and_closes_and_one_that_opens(rtol):
+    """k = 1: the force's slope jumps at the start and, within a long step, where the beads part."""
+    run = simulate(LINEAR, rtol=rtol)
+    assert np.abs(run.bead_velocity[0] - collision(run.time)).max() < 3 * rtol
+    velocity = run.signal("bead", 0, "velocity")
+    assert velocity.times[[0, -1]].tolist() == [0, 17.58]
+    assert np.abs(velocity.times - np.pi / np.sqrt(2)).min() < 10 * rtol
+
+
+@pytest.mark.parametrize("method", ["RKN86", "SRKN14", "DOP853", "RK45", "LSODA"])
+def test_samples_are_values_of_the_signals(method):
+    """Of every quantity, at shapes of any kind; the last bead touches a wall under a load."""
+    scene = Scene(
+        masses=(1, 0.4, 2, 1), stiffnesses=(1, 3, 1), wall=2, k=1.5, precompression=0.3,
+        gravity=0.1, velocities=(0.5,), duration=9, samples=51,
+        contact_sensors=(0, 3), bead_sensors=(3, 1),
+    )  # fmt: skip
+    run = simulate(scene, method=method, rtol=1e-6)
+    records = {
+        ("contact", "force"): run.contact_force,
+        ("contact", "compression"): run.compression,
+        ("bead", "force"): run.bead_force,
+        ("bead", "displacement"): run.bead_displacement,
+        ("bead", "velocity"): run.bead_velocity,
+    }
+    for (kind, quantity), rows in records.items():
+        numbers = scene.contact_sensors if kind == "contact" else scene.bead_sensors
+        for number, row in zip(numbers, rows, strict=True):
+            signal = run.signal(kind, number, quantity)
+            np.testing.assert_allclose(signal(run.time), row, atol=1e-14)
+            table = run.time[:50].reshape(5, 10)
+            np.testing.assert_allclose(signal(table), row[:50].reshape(5, 10), atol=1e-14)
+            assert np.isnan(signal([-1e-9, 9.0001])).all()
+            assert (np.diff(signal.times) > 0).all()
+
+
+def test_a_signal_is_as_good_as_the_run_between_any_samples():
+    """Peak of the contact force of two beads, in closed form, though there are two samples only."""
+    k, deepest = 1.5, (2.5 / 4) ** 0.4
+    run = simulate(
+        Scene(
+            masses=(1, 1), stiffnesses=(1,), k=k, velocities=(1,), duration=6, samples=2,
+            contact_sensors=(0,),
+        ),
+        rtol=1e-10,
+    )  # fmt: skip
+    force = run.signal("contact", 0)
+    assert force(np.linspace(0, 6, 20001)).max() == pytest.approx(deepest**k, rel=1e-7)
+
+
+@pytest.mark.parametrize("method", ["RKN86", "DOP853"])
+def test_a_signal_survives_a_pickle(method):
+    run = simulate(LINEAR, method=method)
+    again = pickle.loads(pickle.dumps(run))
+    t = np.linspace(0, 17, 100)
+    assert np.array_equal(again.signal("contact", 0)(t), run.signal("contact", 0)(t))
+
+
+def test_behind_a_window_a_signal_is_not_a_number():
+    scene = Scene(
+        masses=(1,) * 160, stiffnesses=(1,) * 159, k=1.5, velocities=(1,), duration=130,
+        contact_sensors=(20,), samples=4001,
+    )  # fmt: skip
+    run = simulate(scene, rtol=1e-6, window=24)
+    force = run.signal("contact", 20)
+    assert np.array_equal(np.isnan(force(run.time)), np.isnan(run.contact_force[0]))
+
+
+def test_what_is_no_sensor_is_refused():
+    run = simulate(LINEAR)
+    for arguments, message in (
+        (("contact", 1), "number is 1: the scene has no sensor at this contact"),
+        (("bead", 0, "compression"), "no bead has a compression: contact: force, compression; .*"),
+    ):
+        with pytest.raises(SceneError, match=f"^{message}$"):
+            run.signal(*arguments)

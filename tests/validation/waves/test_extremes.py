@@ -1,0 +1,304 @@
+"""Theory, Newton's method and lattice at extreme k and ω, where waves vanish or lose their meaning.
+
+Lengths in D; m1 = A = D = 1.
+"""
+
+import math
+from contextlib import suppress
+
+import mpmath as mp
+import numpy as np
+import pytest
+import scipy
+import sympy as sp
+
+from lwa import Dimer, NoSolitaryWave, canonical_wave, homogenize
+from validation.lattice.run import IntegrationError
+from validation.lattice.simulate import simulate
+from validation.pulses.steady import STRETCH, point
+from validation.pulses.time_of_flight import passage, ratio
+from validation.scenes.chains import carrying, launched, struck
+from validation.waves.asymptotics import LAWS
+from validation.waves.solver import NoWave, solve
+from validation.waves.theory import Compacton, theory_at
+
+
+def theory_errors(wave):
+    """Theory over a uniform chain's exact wave, less 1."""
+    theory = Compacton(theory_at(sp.Rational(str(wave.k)), sp.Integer(1)), 1.0)
+    errors = {f"FWHM of {q}": theory.fwhm(q) / wave.fwhm(q) - 1 for q in ("force", "strain")}
+    return errors | {"speed V_s at B = 1": theory.speed / wave.c - 1}
+
+
+# k near 1
+
+
+def test_the_theorys_error_vanishes_by_its_law_as_k_goes_to_one():
+    for epsilon in (0.01, 0.001):
+        for quantity, error in theory_errors(solve((1.0, 1.0), 1 + epsilon)).items():
+            law = LAWS[quantity]
+            share = error / epsilon**law.order / float(law.coefficient)
+            # the next term of the series is O(ε) of this one
+            assert abs(share - 1) < 3 * epsilon, quantity
+
+
+def test_the_lattice_carries_the_theorys_wave_at_k_of_1_001():
+    """A force of 30 sites at half maximum: a chain of 620 beads."""
+    k = 1.001
+    theory = Compacton(theory_at(sp.Rational(str(k)), sp.Integer(1)), 1.0)
+    start, sites = 160, 300
+    bead = np.arange(2 * start + sites) - start
+    scene = carrying(
+        (1.0,) * len(bead),
+        k,
+        theory.compression(bead[:-1] + 0.5),
+        theory.velocity(bead),
+        contact_sensors=(start + 60, start + sites),
+        samples=4001,
+        duration=(sites + 0.7 * start) / theory.speed,
+    )
+    passed = passage(scene)
+    at_equal_strain = passed.speed.value / passed.strain.value ** ((k - 1) / 2)
+    assert abs(at_equal_strain / theory.speed - 1) < (k - 1) ** 2
+    assert abs(passed.fwhm.value / float(theory.fwhm("force")) - 1) < k - 1
+    assert abs(passed.energy_drift) < 1e-9
+
+
+def test_an_amplitude_beyond_the_floats_has_its_logarithm():
+    """B = V^{2/(k-1)} has 600,000 digits before or behind the point at k = 1.001."""
+    wave = homogenize(Dimer("m1", "m2", spacing=1)).pde.traveling_wave().numeric()
+    for V, sign in ((1e300, 1), (1e-300, -1)):
+        assert sign * wave.log_amplitude(1.001, 1.0, V) / math.log(10) > 308
+
+
+# k = 2 and 3
+
+
+@pytest.mark.parametrize(("k", "vanishes"), [("5/2", False), ("2", True), ("3", False)])
+def test_the_term_of_g_vanishes_at_k_of_two_only(k, vanishes):
+    paper = homogenize(Dimer("m1", "m2"), k=k).pde
+    full = homogenize(Dimer("m1", "m2"), k=k, closure="full", field="center").pde
+    assert [pde.G == 0 for pde in (paper, full)] == [vanishes] * 2
+
+
+@pytest.mark.parametrize("k", [2.0, 3.0])
+def test_theory_and_lattice_pass_smoothly_through_exponents_where_terms_vanish(k):
+    waves = {x: solve((1.0, 1.0), x) for x in (k - 0.05, k, k + 0.05)}
+    below, here, above = map(theory_errors, waves.values())
+    for quantity, error in here.items():
+        # a smooth function's second difference over 0.05² is of the size of 1/10
+        assert abs(error - (below[quantity] + above[quantity]) / 2) < 2.5e-4, quantity
+    passed = passage(launched(waves[k], 12, 60), 1e-7)
+    assert abs(ratio(passed.speed, waves[k].c).value) < 1e-6
+    assert abs(ratio(passed.fwhm, waves[k].fwhm("force")).value) < 1e-6
+
+
+# k = 20, near hard spheres
+
+
+def contact_time(k, omega):
+    """Time of contact of beads of masses 1 and ω that meet with relative velocity 1; A = 1.
+
+    2 ∫ dδ / √(1 - (δ/d)^n), n = k + 1, from 0 to the deepest compression d: a beta function.
+    """
+    n = k + 1
+    deepest = (n * omega / (1 + omega) / 2) ** (1 / n)
+    return 2 * deepest * scipy.special.beta(1 / n, 0.5) / n
+
+
+def collision_fwhm(k):
+    """FWHM in time of the force of a collision with peak compression 1, times the velocity.
+
+    2 ∫ dδ / √(1 - δ^n), n = k + 1, from half of the force, δ^k = 1/2, to 1.
+    """
+    n = k + 1
+    share = scipy.special.betaincc(1 / n, 0.5, 0.5 ** (n / k))
+    return 2 * scipy.special.beta(1 / n, 0.5) / n * share
+
+
+def test_two_linear_springs_touch_for_half_a_period():
+    assert contact_time(1.0, 1.0) == pytest.approx(math.pi / math.sqrt(2), rel=1e-14)
+    # of a half sine, between the angles π/6 and 5π/6
+    assert collision_fwhm(1.0) == pytest.approx(2 * math.pi / 3, rel=1e-14)
+
+
+@pytest.mark.parametrize("k", [1.5, 20.0])
+def test_a_collision_is_an_incomplete_beta_function(k):
+    """∫ dδ / √(1 - δ^n) from d to 1 is ∫ x^{1/n - 1} (1 - x)^{-1/2} dx / n from d^n, by x = δ^n."""
+    n = k + 1
+    found = float(2 * mp.betainc(1 / n, 0.5, 0.5 ** (n / k), 1) / n)
+    assert collision_fwhm(k) == pytest.approx(found, rel=1e-13)
+
+
+@pytest.mark.parametrize("omega", [1.0, 0.3])
+def test_two_hard_beads_collide_as_the_closed_forms_say(omega):
+    scene = struck((1, omega), 2, 20.0, duration=6, contact_sensors=(0,), samples=2)
+    run = simulate(scene, rtol=1e-9)
+    # Apart, the beads leave with the relative velocity 1 at which they met.
+    lasted = scene.duration + float(run.compression[0, -1])
+    assert lasted == pytest.approx(contact_time(20.0, omega), rel=1e-10)
+    assert float(run.velocities[0]) == pytest.approx((1 - omega) / (1 + omega), abs=1e-10)
+
+
+@pytest.fixture(scope="module")
+def hard_wave():
+    wave = solve((1.0, 1.0), 3.0)
+    for exponent, points in ((5.0, 90), (8.0, 110), (12.0, 140), (20.0, 160)):
+        wave = solve((1.0, 1.0), exponent, points=points, start=wave)
+    return wave
+
+
+def test_near_hard_spheres_a_pulse_is_a_row_of_collisions(hard_wave):
+    velocity = 2 / math.sqrt(21)  # before a collision of two equal beads whose force peaks at 1
+    assert hard_wave.peak("velocity")[1] == pytest.approx(velocity, rel=1e-5)
+    lasted = hard_wave.fwhm("force") / hard_wave.c
+    assert lasted == pytest.approx(collision_fwhm(20.0) / velocity, rel=1e-10)
+    assert hard_wave.fwhm("force") < 0.2
+    scene = launched(hard_wave, 10, 40)
+    passed = passage(scene, 1e-9)
+    assert abs(ratio(passed.speed, hard_wave.c).value) < 1e-5
+    assert abs(ratio(passed.fwhm, hard_wave.fwhm("force")).value) < 1e-4
+    # a long-wave theory is several times too wide here
+    assert theory_errors(hard_wave)["FWHM of force"] > 1
+    with pytest.raises(IntegrationError):
+        simulate(scene, method="SRKN14", rtol=1e-3)
+
+
+# ω from 1e-6 to 1e6
+
+
+@pytest.fixture(scope="module")
+def uniform():
+    return solve((1.0, 1.0), 1.5)
+
+
+def slaved(uniform, heavy, light):
+    """Heavy beads with the uniform chain's wave at spacing 2D, the light ones at rest among them.
+
+    A heavy bead has the next one behind two springs in a row, of 2^{-k}: both contacts have half of
+    the strain 2 r, velocities are √2 times as large.
+    """
+    start, cells = 20, 60
+    site = np.arange(2 * cells) - start
+    pair = np.floor(site[:-1] / 2) + 0.5
+    behind, ahead = (uniform.velocity(np.floor((site + i) / 2)) for i in (0, 1))
+    pace = math.sqrt(2) * uniform.c / math.sqrt(heavy)
+    return carrying(
+        tuple(np.where(site % 2 == 0, heavy, light)),
+        uniform.k,
+        uniform.strain(pair),
+        (behind + ahead) / 2 * math.sqrt(2 / heavy),
+        duration=70 / pace,
+        contact_sensors=(40, 80),
+        samples=4001,
+    )
+
+
+@pytest.mark.parametrize("omega", [1e-2, 1e-3, 1e-6])
+def test_slaved_beads_slow_the_limit_by_a_share_of_their_mass(uniform, omega):
+    """Every cell has the mass 1 + ω: a speed lower by ω/2 at most, and by no less than ω/4."""
+    passed = passage(slaved(uniform, 1.0, omega), 1e-9)
+    off = ratio(passed.speed, math.sqrt(2) * uniform.c).value
+    assert -omega / 2 < off < -omega / 4
+    assert abs(passed.momentum_drift) < 1e-12
+    assert abs(passed.energy_drift) < 1e-9
+    # light first or heavy first, the chain is the same in other units of mass
+    mirrored = passage(slaved(uniform, 1 / omega, 1.0), 1e-9)
+    pace = mirrored.speed.value / math.sqrt(omega)
+    assert pace == pytest.approx(passed.speed.value, rel=1e-9)
+
+
+def test_the_theories_at_both_ends_of_the_mass_ratio(uniform):
+    """The canonical theory is as wide as for equal beads at both ends, the paper's at ω ≪ 1 only;
+    the lattice's width there is twice the uniform chain's."""
+    fwhm = uniform.fwhm("force")
+    same = Compacton(theory_at("3/2", 1), 1.0).fwhm("force") / fwhm - 1
+
+    def error(omega, closure):
+        theory = Compacton(theory_at("3/2", sp.Rational(omega), closure), 1.0)
+        return theory.fwhm("force") / (2 * fwhm) - 1 - same
+
+    for omega in ("1/1000000", "1000000"):
+        assert abs(error(omega, "canonical")) < 1e-5
+    assert abs(error("1/1000000", "linear")) < 1e-5
+    assert abs(error("1000000", "linear")) > 0.1
+
+
+# The resonance
+
+
+@pytest.mark.parametrize(
+    ("omega", "low", "high"),
+    [
+        ("0.6", 0.005, 0.02),
+        ("0.34284539", -1e-7, 1e-7),
+        ("0.55", 0.005, 0.02),
+    ],
+)
+def test_near_the_resonance_a_pulse_decays_and_elsewhere_it_does_not(omega, low, high):
+    """The light beads oscillate in step with the pulse, which leaves its force to them."""
+    rate = point(sp.Rational(3, 2), sp.Rational(omega), STRETCH).numbers["decay"]
+    assert low < rate.value - rate.error <= rate.value + rate.error < high
+
+
+@pytest.mark.parametrize("omega", [0.55, 0.58, 0.6, 0.62])
+def test_at_the_resonance_newtons_waves_stand_on_a_tail(omega):
+    """The theory, which slaves the light beads, has a wave there all the same."""
+    waves = []
+    for half_period in (10.4, 11.2):
+        with suppress(NoWave):
+            waves.append(solve((1.0, omega), 1.5, half_period))
+    assert waves
+    assert min(wave.tail for wave in waves) > 0.1
+    assert not any(wave.solitary for wave in waves)
+    assert canonical_wave(Dimer(1, sp.Rational(str(omega)), spacing=1), "3/2").width > 0
+
+
+# No compact wave
+
+
+def refusal(k, omega):
+    try:
+        theory_at(k, omega)
+    except NoSolitaryWave as reason:
+        return str(reason)
+    return "has a wave"
+
+
+@pytest.mark.parametrize(
+    ("k", "omega", "says"),
+    [
+        ("3", "2.999", "has a wave"),
+        ("3", "3", "(G+H+I)/D² is 0"),
+        ("3", "3.001", "(G+H+I)/D² is -"),
+        ("20", "5", "(G+H+I)/D² is -"),
+        ("3/2", "1000000", "has a wave"),
+        ("8/5", "7", "V²/B^(k-1) is -"),
+    ],
+)
+def test_the_closure_is_refused_where_one_of_its_numbers_is_not_positive(k, omega, says):
+    """6 (1+ω)² (G+H+I)/D² as the paper has it; at k = 3 it is 2 (3 - ω)(2 + ω)."""
+    k, omega = sp.Rational(k), sp.Rational(omega)
+    assert refusal(k, omega).startswith(says)
+    terms = (k - 2) * (k - 1), 2 * (k - 1) * (2 - omega) * (1 + omega), 2 * (1 - omega + omega**2)
+    assert (sum(terms) <= 0) == says.startswith("(G")
+
+
+@pytest.mark.parametrize(
+    ("k", "exponents", "sign"),
+    [("3", (1.6, 2.0, 2.5, 3.0), "(G+H+I)"), ("8/5", (1.6,), "V²")],
+)
+def test_where_the_papers_closure_has_no_wave_the_lattice_has_one(k, exponents, sign):
+    """At a special ratio ω < 1 the wave is solitary; the same chain, its beads named the other way
+    round, has 1/ω, which the paper's closure treats as another one."""
+    wave = solve((1.0, 0.1548), 1.5, free=True)
+    for exponent in exponents:
+        wave = solve(wave.masses, exponent, start=wave, free=True)
+    assert refusal(sp.Rational(k), sp.Rational(f"{1 / wave.omega:.4f}")).startswith(sign)
+    assert wave.tail < 1e-9
+    assert wave.residual < 1e-9
+    passed = passage(launched(wave, 24, 64, samples=8001), 1e-7)
+    assert abs(ratio(passed.speed, wave.c).value) < 1e-5
+    assert abs(ratio(passed.force, 1.0).value) < 1e-4
+    theory = Compacton(theory_at(sp.Rational(k), sp.Rational(wave.omega), "canonical"), 1.0)
+    assert abs(theory.speed / wave.c - 1) < 0.05

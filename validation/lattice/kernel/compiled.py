@@ -1,0 +1,80 @@
+"""Options of the compiler, and a cache of machine code that knows all sources of the kernel.
+
+Numba compares a cached function with its own file and with the values that it closes over, not
+with the functions that it calls. So those that are cached close over `SOURCES`.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import sys
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numpy as np
+from numba import njit
+from numba.core.event import Event, Listener, register
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+SOURCES = int.from_bytes(
+    hashlib.blake2b(
+        b"".join(file.read_bytes() for file in sorted(Path(__file__).parent.glob("*.py"))),
+        digest_size=7,
+    ).digest()
+)
+"""A hash of all files of the kernel."""
+
+# Without "reassoc" rounding does not depend on the order of a sum, without "nnan" and "ninf" an
+# overflow is seen; in numba's own error model every division by zero would be an exception's way
+# out. Nothing is allocated: to count the references to arrays takes longer than the arithmetic.
+_OPTIONS: Any = dict(
+    fastmath={"nsz", "arcp", "contract"}, error_model="numpy", nogil=True, _nrt=False
+)
+compiled: Callable[[Function], Function] = njit(**_OPTIONS)
+# Sums and maxima in the order of the machine's registers, the same in every run.
+summed: Callable[[Function], Function] = njit(
+    **_OPTIONS | {"fastmath": {"nsz", "arcp", "contract", "reassoc"}}
+)
+# Written out where it is called: to pass the arrays would take as long as the rest.
+part: Callable[[Function], Function] = njit(inline="always", **_OPTIONS)
+# An index without a sign is never one from the end, which would keep a loop from vectorising.
+index = np.uint64
+ZERO, ONE, TWO, THREE = map(index, range(4))
+
+
+def cached(function: Function) -> Function:
+    """Compile a function, and keep its machine code on disk where a directory can be written."""
+    try:
+        result, kept = njit(cache=True, **_OPTIONS)(function), True
+    except (RuntimeError, OSError):  # numba finds no directory for its cache
+        result, kept = compiled(function), False
+    register("numba:compile", _Announcement(result, kept))  # type: ignore[no-untyped-call]
+    return result  # type: ignore[no-any-return]
+
+
+@cache
+def _say(message: str) -> None:
+    """Print a line about the compilation, once."""
+    print(message, file=sys.stderr, flush=True)
+
+
+class _Announcement(Listener):
+    """Says that a function is about to be compiled, as its machine code is in no cache."""
+
+    def __init__(self, function: Any, kept: bool) -> None:
+        self.function, self.kept = function, kept
+
+    def on_start(self, event: Event) -> None:
+        """Called by numba before it compiles any function."""
+        if event.data["dispatcher"] is not self.function:
+            return
+        if not self.kept:
+            _say("no directory for machine code can be written: it is compiled for this run only")
+        elif sys.stderr.isatty():
+            _say("the engine is compiled for this machine, once")
+
+    def on_end(self, event: Event) -> None:
+        """Called by numba afterwards."""

@@ -1,0 +1,81 @@
+"""Contact forces F = A [δ]_+^k, for all contacts of a stage or for one."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from lwa.base.arrays import Array
+from validation.lattice.kernel.arrays import Beads, Chain
+from validation.lattice.kernel.compiled import ONE, index, part
+
+NOTHING = 1e-60  # of the greatest compression: open, lest the front decay into denormal numbers
+
+
+@part
+def press(chain: Chain, y: Array, force: Array, s: Any, lo: int, hi: int, nothing: float) -> None:
+    """Forces ahead of the beads lo … hi-1, less their static forces, as those of stage s.
+
+    Exponents without a power have loops of their own (`validation.lattice.schemes.LAWS`).
+    """
+    A, rest, load, law, k = chain.A, chain.rest, chain.load, chain.law, chain.k
+    if law == 3:
+        for i in range(index(lo), index(hi)):
+            d = rest[i] + y[i] - y[i + ONE]
+            d = d if d > nothing else 0.0
+            force[s, i + ONE] = A[i] * (d * np.sqrt(d)) - load[i]
+    elif law == 1:
+        for i in range(index(lo), index(hi)):
+            d = rest[i] + y[i] - y[i + ONE]
+            d = d if d > nothing else 0.0
+            force[s, i + ONE] = A[i] * d - load[i]
+    elif law == 2:
+        for i in range(index(lo), index(hi)):
+            d = rest[i] + y[i] - y[i + ONE]
+            d = d if d > nothing else 0.0
+            force[s, i + ONE] = A[i] * (d * np.sqrt(np.sqrt(d))) - load[i]
+    elif law == 4:
+        for i in range(index(lo), index(hi)):
+            d = rest[i] + y[i] - y[i + ONE]
+            d = d if d > nothing else 0.0
+            force[s, i + ONE] = A[i] * (d * d) - load[i]
+    elif law == 5:
+        for i in range(index(lo), index(hi)):
+            d = rest[i] + y[i] - y[i + ONE]
+            d = d if d > nothing else 0.0
+            force[s, i + ONE] = A[i] * (d * d * d) - load[i]
+    else:
+        for i in range(index(lo), index(hi)):
+            d = rest[i] + y[i] - y[i + ONE]
+            d = d if d > nothing else 0.0
+            force[s, i + ONE] = A[i] * d**k - load[i]
+
+
+@part
+def power(chain: Chain, d: float) -> float:
+    """[d]_+^k."""
+    d = max(d, 0.0)
+    return float(d * np.sqrt(d) if chain.law == 3 else d**chain.k)
+
+
+@part
+def stiffness(chain: Chain, d: float, rising: bool) -> float:
+    """k [d]^{k-1}, the derivative of the power; at d = 0 that on the side to which d moves."""
+    if d > 0.0 or (d == 0.0 and rising):
+        return float(chain.k * (np.sqrt(d) if chain.law == 3 else d ** (chain.k - 1.0)))
+    return 0.0
+
+
+@part
+def relative(force: Array, inverse: Array, i: int) -> float:
+    """The acceleration of bead i less that of the next, from the forces of a stage."""
+    near, far = (force[i] - force[i + 1]) * inverse[i], (force[i + 1] - force[i + 2])
+    return float(near - far * inverse[i + 1])
+
+
+@part
+def elastic(chain: Chain, beads: Beads, i: int) -> float:
+    """The elastic energy of contact i of a chain without load."""
+    d = max(beads.y[i] - beads.y[i + 1], 0.0)
+    return float(chain.A[i] * power(chain, d) * d / (chain.k + 1.0))

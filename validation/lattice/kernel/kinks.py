@@ -1,0 +1,97 @@
+"""A contact that opens or closes within a step or near it.
+
+There F = A δ^k has no derivative of order k + 1. The compression is about a quintic p(x), x = 0 … 1
+over the step, with δ, δ' and δ'' of both ends. If p has one root r, it is (x - r) q(x), and on its
+closed side ∫ |x - r|^k q^k dx is a Gauss–Jacobi sum: p_+^k is integrated without an error of order.
+"""
+
+from __future__ import annotations
+
+from lwa.base.arrays import Array
+from validation.lattice.kernel.arrays import Chain
+from validation.lattice.kernel.compiled import compiled, part, summed
+from validation.lattice.kernel.force import power
+
+Quintic = tuple[float, float, float, float, float, float]
+"""Coefficients; for a kink the root r, then those of q."""
+
+NEAR = 0.5  # of a contact's greater compression at the ends of a step: a kink is near
+FAR = 1.0  # steps that a kink may be away
+_EVEN = 0.2  # of the greatest q: the least
+NONE: Quintic = (float("nan"), 0.0, 0.0, 0.0, 0.0, 0.0)
+
+
+@part
+def quintic(c: Quintic, x: float) -> float:
+    """The polynomial at x."""
+    return c[0] + x * (c[1] + x * (c[2] + x * (c[3] + x * (c[4] + x * c[5]))))
+
+
+@part
+def fitted(d: float, v: float, a: float, end: float, end_v: float, end_a: float) -> Quintic:
+    """The quintic with these values and derivatives at x = 0 and 1."""
+    c2 = a / 2
+    r0 = end - d - v - c2
+    r1 = end_v - v - 2 * c2
+    r2 = end_a - 2 * c2
+    return (
+        d,
+        v,
+        c2,
+        10 * r0 - 4 * r1 + r2 / 2,
+        -15 * r0 + 7 * r1 - r2,
+        6 * r0 - 3 * r1 + r2 / 2,
+    )
+
+
+@compiled
+def kink(c: Quintic, end: float) -> Quintic:
+    """The one root r of a quintic p, which is ``end`` at x = 1, and q in p = (x - r) q(x).
+
+    `NONE` where p has no root within the step or `FAR` from it, or where q varies too much for the
+    quadrature.
+    """
+    rising = end > c[0]
+    low, high, x = 0.0, 1.0, c[0] / (c[0] - end)
+    if c[0] * end >= 0.0:
+        low, high = (-FAR, 0.0) if rising else (1.0, 1.0 + FAR)
+        if quintic(c, low if rising else high) >= 0.0:
+            return NONE
+    for _ in range(30):  # Newton's method, or else the middle
+        p = quintic(c, x)
+        slope = c[1] + x * (2 * c[2] + x * (3 * c[3] + x * (4 * c[4] + x * 5 * c[5])))
+        low, high = (low, x) if (p > 0.0) == rising else (x, high)
+        guess = x - p / slope
+        guess = guess if low < guess < high else (low + high) / 2
+        x, moved = guess, abs(guess - x)
+        if moved < 1e-9:  # its square is left
+            break
+    q3 = c[4] + x * c[5]
+    q2 = c[3] + x * q3
+    q1 = c[2] + x * q2
+    q0 = c[1] + x * q1
+    sign = 1.0 if rising else -1.0
+    start, finish = sign * q0, sign * (q0 + q1 + q2 + q3 + c[5])
+    root = sign * (q0 + x * (q1 + x * (q2 + x * (q3 + x * c[5]))))
+    if not min(start, finish, root) >= _EVEN * max(start, finish, root):
+        return NONE
+    return x, q0, q1, q2, q3, c[5]
+
+
+@summed
+def ramp(chain: Chain, points: Array, p: Quintic, z: float) -> tuple[float, float]:
+    """∫∫ and ∫ of p_+^k from its root r to z, for p = (x - r) q(x).
+
+    points : nodes and weights of ∫ u^k q(u) du from 0 to 1.
+    """
+    side = z - p[0]
+    once = twice = 0.0
+    if side * p[1] > 0.0:
+        for m in range(points.shape[1]):
+            u = points[0, m]
+            x = p[0] + side * u
+            q = p[1] + x * (p[2] + x * (p[3] + x * (p[4] + x * p[5])))
+            f = points[1, m] * power(chain, side * q)
+            once += f
+            twice += f * (1.0 - u)
+    return side * side * twice, side * once

@@ -1,0 +1,184 @@
+"""A step of an adaptive Runge–Kutta–Nyström pair; kinks are integrated by their own quadrature."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from lwa.base.arrays import Array
+from validation.lattice.kernel.arrays import WIDTH, Beads, Chain, Plan, Tableau
+from validation.lattice.kernel.compiled import ONE, THREE, TWO, ZERO, index, part, summed
+from validation.lattice.kernel.force import NOTHING, power, press, relative
+from validation.lattice.kernel.kinks import NEAR, Quintic, fitted, kink, quintic, ramp
+
+_STEADY = 0.5  # of the greater closing speed at the ends of a step: the least for a kink nearby
+_SLIGHT = 10.0  # times the error that is allowed: what a contact near a kink may bring about
+
+
+@part
+def _add_up(
+    sums: Array,
+    q: Any,
+    force: Array,
+    table: Array,
+    row: int,
+    scale: float,
+    stages: int,
+    lo: int,
+    hi: int,
+) -> None:
+    """scale Σ_j table[row, j] force[j] over the first stages."""
+    sums[q, lo] = 0.0
+    for first in range(0, stages, WIDTH):
+        a, b = scale * table[row, first], scale * table[row, first + 1]
+        c, d = scale * table[row, first + 2], scale * table[row, first + 3]
+        e = scale * table[row, first + 4]
+        j = index(first)
+        j1, j2, j3, j4 = j + ONE, j + index(2), j + index(3), j + index(4)
+        if first == 0:
+            for i in range(index(lo) + ONE, index(hi) + ONE):
+                four = a * force[j, i] + b * force[j1, i] + c * force[j2, i] + d * force[j3, i]
+                sums[q, i] = four + e * force[j4, i]
+        else:
+            for i in range(index(lo) + ONE, index(hi) + ONE):
+                four = a * force[j, i] + b * force[j1, i] + c * force[j2, i] + d * force[j3, i]
+                sums[q, i] += four + e * force[j4, i]
+
+
+@summed
+def _square(sums: Array, inverse: Array, lo: int, hi: int) -> float:
+    """Sum of the squares of the beads' errors, in units of those that are allowed."""
+    total = 0.0
+    for i in range(index(lo), index(hi)):
+        y = (sums[TWO, i] - sums[TWO, i + ONE]) * inverse[i]
+        v = (sums[THREE, i] - sums[THREE, i + ONE]) * inverse[i]
+        total += y * y + v * v
+    return total
+
+
+@part
+def _attempt(chain: Chain, beads: Beads, plan: Plan, lo: int, h: float, hi: int) -> float:
+    """Try a step of the beads lo … hi-1; return its error in units of the error that is allowed."""
+    nothing, stages = NOTHING * plan.deepest, len(plan.scheme.nodes)
+    y, v, next_y, next_v = beads.y, beads.v, beads.next_y, beads.next_v
+    inverse, rest, force, sums = chain.inverse, chain.rest, beads.force, beads.sums
+    rows, ends, nodes = plan.scheme.rows, plan.scheme.ends, plan.scheme.nodes
+    for s in range(1, stages):
+        _add_up(sums, ZERO, force, rows, s, h * h, s, lo, hi)
+        ch = nodes[s] * h
+        behind = 0.0
+        for i in range(index(lo), index(hi)):
+            ahead = sums[ZERO, i + ONE]
+            next_y[i] = y[i] + ch * v[i] + (behind - ahead) * inverse[i]
+            behind = ahead
+        press(chain, next_y, force, index(s), lo, hi, nothing)
+    _add_up(sums, ONE, force, ends, 0, h, stages, lo, hi)
+    _add_up(sums, TWO, force, ends, 1, h * h / plan.y, stages, lo, hi)
+    _add_up(sums, THREE, force, ends, 2, h / plan.v, stages, lo, hi)
+    for i in range(index(lo), index(hi)):
+        next_v[i] = v[i] + (sums[ONE, i] - sums[ONE, i + ONE]) * inverse[i]
+    # Contacts that open or close within the step or near it, and press enough to count.
+    least = (_SLIGHT * plan.v / (h * plan.quickest)) ** (1.0 / chain.k)
+    near = 0
+    for i in range(index(lo), index(hi)):
+        before = rest[i] + y[i] - y[i + ONE]
+        after = rest[i] + next_y[i] - next_y[i + ONE]
+        most = max(before, after)
+        kinked = (most > least) & (min(before, after) < NEAR * most)
+        sums[ZERO, i + ONE] = most if kinked else 0.0
+        near += 1 if kinked else 0
+    if near > 0:
+        _mend(chain, beads, plan, lo, h, hi)
+    return math.sqrt(_square(sums, inverse, lo, hi))
+
+
+@part
+def _mend(chain: Chain, beads: Beads, plan: Plan, lo: int, h: float, hi: int) -> None:
+    """Correct for the kinks of contacts whose greater compression is in the first sum."""
+    y, v, next_y, next_v = beads.y, beads.v, beads.next_y, beads.next_v
+    inverse, rest = chain.inverse, chain.rest
+    for i in range(lo, hi):
+        most = beads.sums[0, i + 1]
+        if most > 0.0:
+            within = (rest[i] + y[i] - y[i + 1]) * (rest[i] + next_y[i] - next_y[i + 1]) < 0.0
+            speed, later = v[i] - v[i + 1], next_v[i] - next_v[i + 1]
+            steady = min(speed / later, later / speed) > _STEADY
+            kick = h * chain.A[i] * power(chain, most) * max(inverse[i], inverse[i + 1])
+            counts = kick > _SLIGHT * plan.v and plan.scheme.points.shape[1] > 0
+            if counts and (within or steady):
+                _correct(chain, beads, plan, h, i)
+
+
+@part
+def _correct(chain: Chain, beads: Beads, plan: Plan, h: float, i: int) -> None:
+    """Take the pair's error in the impulse of contact i, which opens or closes, off the step.
+
+    The pair integrates what is left of the force beside p_+^k, which is smoother.
+    """
+    inverse, scheme = chain.inverse, plan.scheme
+    p, end = _course(chain, beads, h, len(scheme.nodes) - 1, i)
+    found = kink(p, end)
+    if math.isnan(found[0]):
+        return
+    twice, once = ramp(chain, scheme.points, found, 1.0)
+    start_twice, start_once = ramp(chain, scheme.points, found, 0.0)
+    pair_twice, pair_once, error, error_once = _pair_sums(chain, scheme, p)
+    impulse = chain.A[i] * h * (once - start_once - pair_once)
+    moment = chain.A[i] * h * h * (twice - start_twice - start_once - pair_twice)
+    # The correction moves the contact by e ~ u^{k+2} from the root on, so that p is not quite its
+    # compression: where ∫ k A p^{k-1} e counts, the pair's own estimate is the better judge.
+    most = max(p[0], end)
+    stiff = chain.k * chain.A[i] * power(chain, most) / most
+    apart = (inverse[i] + inverse[i + 1]) * abs(moment)
+    if h * stiff * apart * max(inverse[i], inverse[i + 1]) > (2.0 * chain.k + 2.0) * plan.v:
+        return
+    beads.next_v[i] -= impulse * inverse[i]
+    beads.next_v[i + 1] += impulse * inverse[i + 1]
+    beads.next_y[i] -= moment * inverse[i]
+    beads.next_y[i + 1] += moment * inverse[i + 1]
+    beads.sums[2, i + 1] -= chain.A[i] * h * h * error / plan.y
+    beads.sums[3, i + 1] -= chain.A[i] * h * error_once / plan.v
+
+
+@part
+def _course(chain: Chain, beads: Beads, h: float, last: int, i: int) -> tuple[Quintic, float]:
+    """The quintic of contact i's compression over the step, and its value at the end."""
+    y, v, force, inverse = beads.y, beads.v, beads.force, chain.inverse
+    d = chain.rest[i] + y[i] - y[i + 1]
+    end = chain.rest[i] + beads.next_y[i] - beads.next_y[i + 1]
+    speed, later = h * (v[i] - v[i + 1]), h * (beads.next_v[i] - beads.next_v[i + 1])
+    a = h * h * relative(force[0], inverse, i)
+    end_a = h * h * relative(force[last], inverse, i)
+    return fitted(d, speed, a, end, later, end_a), end
+
+
+@summed
+def _pair_sums(chain: Chain, scheme: Tableau, p: Quintic) -> tuple[float, float, float, float]:
+    """The pair's own ∫∫ and ∫ of p_+^k over a step, and its errors of both."""
+    nodes, last = scheme.nodes, len(scheme.nodes) - 1
+    once = twice = error = error_once = 0.0
+    for s in range(last + 1):
+        f = power(chain, quintic(p, nodes[s]))
+        once += scheme.ends[0, s] * f
+        twice += scheme.rows[last, s] * f
+        error += scheme.ends[1, s] * f
+        error_once += scheme.ends[2, s] * f
+    return twice, once, error, error_once
+
+
+@part
+def accepted(chain: Chain, beads: Beads, plan: Plan, at: Any, h: float, hi: int) -> bool:
+    """Try a step, choose the next one by its error, and tell whether the step is made."""
+    error = _attempt(chain, beads, plan, at.lo, h, hi)
+    if not error <= 1.0:
+        shrink = 0.9 * error ** (-1.0 / (plan.scheme.lower + 1)) if error < 1e9 else 0.0
+        at.h = h * max(0.1, shrink)
+        if not error < 1e9:
+            beads.force[1:] = 0.0  # overflows must not last
+        return False
+    for i in range(index(at.lo), index(hi)):
+        beads.y[i], beads.v[i] = beads.next_y[i], beads.next_v[i]
+    press(chain, beads.y, beads.force, ZERO, at.lo, hi, NOTHING * plan.deepest)
+    grow = 0.9 * max(error, 1e-9) ** (-1.0 / (plan.scheme.lower + 1))
+    at.h = min(plan.longest, h * min(5.0, grow))
+    return True

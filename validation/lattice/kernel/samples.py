@@ -1,0 +1,187 @@
+"""The motion of watched beads between the ends of steps.
+
+Displacements are the polynomials of degree 7 with y, y', y'' and y''' at both ends of a step
+(Hermite). Where a bead's own contact opens or closes, the double integral of its p_+^k
+(`validation.lattice.kernel.kinks`) is taken off first, and added again.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lwa.base.arrays import Array
+from validation.lattice.kernel.arrays import Beads, Chain, Knots, Plan
+from validation.lattice.kernel.compiled import SOURCES, ZERO, cached, part
+from validation.lattice.kernel.force import NOTHING, power, press, stiffness
+from validation.lattice.kernel.kinks import NEAR, NONE, Quintic, fitted, kink, quintic, ramp
+
+Four = tuple[float, float, float, float]
+
+
+@part
+def keep(chain: Chain, beads: Beads, plan: Plan, knots: Knots, at: Any, hi: int) -> None:
+    """Append the present state of the watched beads to the knots."""
+    if len(knots.watched) == 0:
+        return
+    if len(plan.scheme.nodes) == 0:  # a splitting does not end with the forces there
+        press(chain, beads.y, beads.force, ZERO, at.lo, hi, NOTHING * plan.deepest)
+    knots.time[at.kept] = at.t
+    for q in range(len(knots.watched)):
+        j, state = knots.watched[q], knots.state[at.kept, q]
+        state[0] = beads.y[j] if j >= at.lo else np.nan
+        state[1] = beads.v[j] if j >= at.lo else np.nan
+        force = beads.force[0, j] - beads.force[0, j + 1]
+        state[2] = force * chain.inverse[j] if j >= at.lo else np.nan
+    at.kept += 1
+
+
+@part
+def _adjacent(watched: NDArray[np.int_], q: int) -> bool:
+    """Whether the beads of rows q and q + 1 are neighbours."""
+    return q >= 0 and q + 1 < len(watched) and watched[q + 1] == watched[q] + 1
+
+
+@part
+def _compression(chain: Chain, knots: Knots, n: int, q: int) -> tuple[float, float, float]:
+    """δ, δ' and δ'' of the contact between the beads of rows q and q + 1, at knot n."""
+    near, far = knots.state[n, q], knots.state[n, q + 1]
+    rest = chain.rest[knots.watched[q]]
+    return rest + near[0] - far[0], near[1] - far[1], near[2] - far[2]
+
+
+@part
+def course(chain: Chain, points: Array, knots: Knots, n: int, q: int) -> Quintic:
+    """The kink in step n of the contact between the beads of rows q and q + 1, or `NONE`."""
+    if points.shape[1] == 0 or not _adjacent(knots.watched, q):
+        return NONE
+    h = knots.time[n + 1] - knots.time[n]
+    d, v, a = _compression(chain, knots, n, q)
+    end, end_v, end_a = _compression(chain, knots, n + 1, q)
+    most = max(d, end)
+    if not (most > 0.0 and min(d, end) < NEAR * most):
+        return NONE
+    return kink(fitted(d, h * v, h * h * a, end, h * end_v, h * h * end_a), end)
+
+
+@part
+def _rate(chain: Chain, knots: Knots, n: int, q: int, side: float) -> float:
+    """The rate of the force between the beads of rows q and q + 1, at knot n; on the side of later
+    times for side = 1, of earlier ones for -1."""
+    if not _adjacent(knots.watched, q):
+        return 0.0
+    d, v, _ = _compression(chain, knots, n, q)
+    return float(chain.A[knots.watched[q]] * stiffness(chain, d, side * v > 0.0) * v)
+
+
+@part
+def _knot(chain: Chain, knots: Knots, n: int, q: int, h: float, side: float) -> Four:
+    """y, y', y'' and y''' of the bead of row q, over a step of h as the unit of time."""
+    state = knots.state[n, q]
+    back, ahead = _rate(chain, knots, n, q - 1, side), _rate(chain, knots, n, q, side)
+    jerk = (0.0 if math.isnan(back) else back) - ahead
+    return (
+        state[0],
+        h * state[1],
+        h * h * state[2],
+        h * h * h * jerk * chain.inverse[knots.watched[q]],
+    )
+
+
+@part
+def _without(chain: Chain, points: Array, knot: Four, p: Quintic, unit: float, z: float) -> Four:
+    """A knot less what the kink p, times ``unit``, adds at z."""
+    if math.isnan(p[0]):
+        return knot
+    y, v = ramp(chain, points, p, z)
+    q = p[1] + z * (p[2] + z * (p[3] + z * (p[4] + z * p[5])))
+    rise = p[2] + z * (2 * p[3] + z * (3 * p[4] + z * 4 * p[5]))
+    d, slope = (z - p[0]) * q, q + (z - p[0]) * rise
+    rate = stiffness(chain, d, (slope > 0.0) == (z == 0.0)) * slope
+    return (
+        knot[0] - unit * y,
+        knot[1] - unit * v,
+        knot[2] - unit * power(chain, d),
+        knot[3] - unit * rate,
+    )
+
+
+@part
+def _kinked(chain: Chain, points: Array, p: Quintic, unit: float, x: float) -> tuple[float, float]:
+    """Displacement and velocity that a kink adds at x."""
+    if math.isnan(p[0]):
+        return 0.0, 0.0
+    y, v = ramp(chain, points, p, x)
+    return unit * y, unit * v
+
+
+@part
+def _polynomial(
+    chain: Chain, points: Array, knots: Knots, n: int, q: int, behind: Quintic, ahead: Quintic
+) -> tuple[Quintic, float, float]:
+    """Coefficients of y over step n, less the kinks of the bead's two contacts: six and two."""
+    h = knots.time[n + 1] - knots.time[n]
+    push, pull = _units(chain, knots, q, h)
+    a, b = _knot(chain, knots, n, q, h, 1.0), _knot(chain, knots, n + 1, q, h, -1.0)
+    a = _without(chain, points, _without(chain, points, a, behind, push, 0.0), ahead, pull, 0.0)
+    b = _without(chain, points, _without(chain, points, b, behind, push, 1.0), ahead, pull, 1.0)
+    c2, c3 = a[2] / 2, a[3] / 6
+    r0, r1 = b[0] - a[0] - a[1] - c2 - c3, b[1] - a[1] - 2 * c2 - 3 * c3
+    r2, r3 = b[2] - 2 * c2 - 6 * c3, b[3] - 6 * c3
+    c4, c5 = 35 * r0 - 15 * r1 + 2.5 * r2 - r3 / 6, -84 * r0 + 39 * r1 - 7 * r2 + r3 / 2
+    c6, c7 = 70 * r0 - 34 * r1 + 6.5 * r2 - r3 / 2, -20 * r0 + 10 * r1 - 2 * r2 + r3 / 6
+    return (a[0], a[1], c2, c3, c4, c5), c6, c7
+
+
+@part
+def _units(chain: Chain, knots: Knots, q: int, h: float) -> tuple[float, float]:
+    """h² A/m of the contacts behind and ahead of the bead of row q, as they accelerate it."""
+    i = knots.watched[q]
+    unit = h * h * chain.inverse[i]
+    return unit * chain.A[i - 1], -unit * chain.A[i]
+
+
+def _built(sources: int) -> Any:
+    """`interpolate`, whose cached code is known by the sources."""
+
+    @cached
+    def interpolate(
+        chain: Chain,
+        points: Array,
+        knots: Knots,
+        rows: NDArray[np.int_],
+        time: Array,
+        step: NDArray[np.int_],
+        y: Array,
+        v: Array,
+    ) -> int:
+        """Find displacements and velocities y, v (R, S) of the beads of some rows at times (S,),
+        each within the step of that number."""
+        for r in range(len(rows)):
+            q, n = rows[r], -1
+            behind = ahead = low = NONE
+            start = h = c6 = c7 = push = pull = 0.0
+            for s in range(len(time)):
+                if step[s] != n:
+                    n = step[s]
+                    start, h = knots.time[n], knots.time[n + 1] - knots.time[n]
+                    push, pull = _units(chain, knots, q, h)
+                    behind = course(chain, points, knots, n, q - 1)
+                    ahead = course(chain, points, knots, n, q)
+                    low, c6, c7 = _polynomial(chain, points, knots, n, q, behind, ahead)
+                x = (time[s] - start) / h
+                more_y, more_v = _kinked(chain, points, ahead, pull, x)
+                back_y, back_v = _kinked(chain, points, behind, push, x)
+                y[r, s] = quintic(low, x) + x * x * x * x * x * x * (c6 + x * c7) + back_y + more_y
+                slope = 4 * low[4] + x * (5 * low[5] + x * (6 * c6 + x * 7 * c7))
+                slope = low[1] + x * (2 * low[2] + x * (3 * low[3] + x * slope))
+                v[r, s] = (slope + back_v + more_v) / h
+        return sources
+
+    return interpolate
+
+
+interpolate = _built(SOURCES)

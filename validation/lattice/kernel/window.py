@@ -1,0 +1,25 @@
+"""The beads that are moved: behind a front, and within a window if there is one."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from validation.lattice.kernel.arrays import MARGIN, Beads, Chain, Plan
+from validation.lattice.kernel.compiled import part
+from validation.lattice.kernel.force import elastic
+
+_STILL = 1e-13  # of the peak compression: beads that have moved less are still
+
+
+@part
+def follow(chain: Chain, beads: Beads, plan: Plan, at: Any) -> None:
+    """Move the front to the first bead that is still, and the rear of a window behind it."""
+    while at.front < plan.size and abs(beads.y[at.front - MARGIN]) > _STILL * plan.deepest:
+        at.front += 1
+    while plan.window > 0 and at.front - at.lo > plan.window:
+        lo = at.lo
+        at.lost += elastic(chain, beads, lo)
+        beads.left[lo] = at.t
+        at.lo = lo + 1
+        for s in range(len(beads.force)):
+            beads.force[s, lo + 1] = 0.0

@@ -1,0 +1,101 @@
+"""The motion of the beads near sensors, from their states at the ends of the engine's steps."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lwa.base.arrays import Array
+from validation.lattice.kernel.arrays import Chain, Knots
+from validation.lattice.kernel.samples import interpolate
+from validation.lattice.signal import Beads
+
+_PART = 2**18  # numbers that the loops write before they hand them over
+_KEPT = 2**28  # bytes of knots that a run keeps
+
+
+@dataclass(frozen=True, eq=False)
+class KnotPath:
+    """A `validation.lattice.signal.Path` through knots (`validation.lattice.kernel.samples`).
+
+    points : nodes and weights of the quadrature at kinks. left : times at which a window left the
+    beads behind; infinite for those it follows.
+    """
+
+    chain: Chain
+    points: Array
+    knots: Knots
+    left: Array
+    kinks: dict[int, Array] = field(default_factory=dict)
+
+    @property
+    def time(self) -> Array:
+        """The ends of the steps."""
+        return self.knots.time
+
+    def __call__(self, beads: Beads, time: Array) -> tuple[Array, Array]:
+        """Displacements and velocities (beads, S) at times (S,) within the run."""
+        rows = np.searchsorted(self.knots.watched, beads)
+        step = np.searchsorted(self.time[1:-1], time, side="right")
+        y, v = np.empty((2, len(rows), len(time)))
+        interpolate(self.chain, self.points, self.knots, rows, time, step, y, v)
+        if np.isfinite(self.left).any():
+            late = time > self.left[rows, None]
+            y[late] = v[late] = np.nan
+        return y, v
+
+
+class Recorder:
+    """Receives the knots of a run in parts, takes the samples, and keeps the knots for signals.
+
+    needed : numbers of the beads that the sensors need. time : (S,), of the samples.
+    """
+
+    def __init__(self, chain: Chain, points: Array, needed: NDArray[np.int_], time: Array) -> None:
+        self.chain, self.points, self.needed, self.time = chain, points, needed, time
+        # A bead's acceleration changes with its neighbours' displacements.
+        near = {j + m for j in needed.tolist() for m in (-1, 0, 1)}
+        watched = np.array(sorted(near - {-1}), int)
+        most = 2 + _PART // (3 * len(watched) + 1)
+        self.knots = Knots(np.empty(most), watched, np.empty((most, len(watched), 3)))
+        self.y, self.v = np.empty((2, len(needed), len(time)))
+        self.left = np.full(len(watched), np.inf)
+        self.parts: list[tuple[Array, Array]] = []
+        self.done = self.size = 0
+
+    def take(self, count: int) -> int:
+        """Take ``count`` knots over, and return the number of those that stay: the last one."""
+        time, watched, state = self.knots
+        if not len(watched):
+            return 0
+        part = time[:count].copy(), state[:count].copy()
+        path = KnotPath(self.chain, self.points, Knots(part[0], watched, part[1]), self.left)
+        due = int(np.searchsorted(self.time, part[0][-1], side="right"))
+        now = slice(self.done, due)
+        self.y[:, now], self.v[:, now] = path(self.needed, self.time[now])
+        self.done, self.size = due, self.size + part[1].nbytes
+        if self.size <= _KEPT:
+            self.parts.append(part)
+        else:
+            self.parts.clear()
+        time[0], state[0] = time[count - 1], state[count - 1]
+        return 1
+
+    def path(self, left: Array) -> KnotPath | None:
+        """The motion of the whole run, for times at which a window left each bead of the chain.
+
+        None where the knots take more than `_KEPT` bytes. The samples are NaN from these times on.
+        """
+        late = self.time > left[self.needed, None]
+        self.y[late] = self.v[late] = np.nan
+        if not self.parts:
+            return None
+        # Each part begins with the last knot of the part before.
+        time, state = (
+            np.concatenate((arrays[0], *(array[1:] for array in arrays[1:])))
+            for arrays in zip(*self.parts, strict=True)
+        )
+        watched = self.knots.watched
+        return KnotPath(self.chain, self.points, Knots(time, watched, state), left[watched])

@@ -1,0 +1,350 @@
+"""Hard cases: the last digits at extreme k, ω and loads, contacts that open, and long runs.
+
+Each case asks a question and holds its numbers to bounds that follow from a law, a closed form or
+another method. Closed forms in float64 are compared with exact expressions that mpmath evaluates at
+`DIGITS` digits for the same float64 arguments. An ulp is the distance of neighbouring float64
+numbers at the exact value: perfect rounding loses half an ulp.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import click
+import mpmath as mp
+import numpy as np
+import sympy as sp
+
+from lwa import Cell, Dimer, Power, TravelingWave, background_wave, homogenize
+from lwa.base.arrays import Array
+from lwa.base.progress import Progress
+from lwa.wave.background import BackgroundWave
+from validation.lattice.simulate import simulate
+from validation.pictures.panel import Curve, Panel
+from validation.report.command import option, study
+from validation.report.result import Report
+from validation.report.table import Column, Finding, Table
+from validation.scenes.checks import one_of
+from validation.scenes.scene import Scene
+
+B = 0.7  # rise of a wave on a background; no power of 2
+DIGITS = 80  # cancellation on the grid leaves more than 50 of them
+ALLOWED = 2.0  # ulps that a closed form may lose
+PRINTED, METHOD = "as printed", "SRKN14"  # the formulas of the paper; the splitting
+
+EXPONENTS = 1 + np.array([1e-6, 1e-4, 0.01, 0.1, 0.5, 1, 1 + 2**-30, 1.5, 2 - 2**-30, 2, 4, 19])
+RATIOS = np.unique([*10.0 ** np.arange(-6, 6.1, 0.5), 0.2733, 1 - 2**-40, 1 + 2**-40, 3.0, 4.0])
+LOADS = 10.0 ** np.arange(-12, 12.5, 0.5)
+"""Grid of k, of ω = m2/m1 (0.2733 is the paper's) and of p0/B."""
+
+CLOSURES: Mapping[str, Mapping[str, Any]] = {
+    "paper's closure": {},
+    "full closure": {"closure": "full"},
+    "canonical field": {"closure": "full", "field": "center"},
+}
+"""Waves that are compared, as options of `lwa.homogenize`."""
+
+FORMS: Mapping[str, tuple[Any, ...]] = {
+    "β": ("beta",),
+    "width π/β": ("width",),
+    **{f"FWHM of {quantity}": ("fwhm", quantity) for quantity in ("strain", "force", "velocity")},
+    "speed at B = 2": ("speed", 2),
+    "ln B at V = 2": ("log_amplitude", 2),
+    "ln B at V = 2^1000": ("log_amplitude", 2**1000),  # B itself overflows where k < 3
+}
+"""Closed forms: names of a wave's attribute, and its arguments."""
+
+
+def form(wave: TravelingWave, name: str, *arguments: Any) -> sp.Expr:
+    """An entry of `FORMS`, exact; ln B of a wave of speed V is (2 ln V - ln V²(B = 1))/(k - 1)."""
+    if name == "log_amplitude":
+        return (2 * sp.log(*arguments) - sp.log(wave.speed_factor)) / (wave.k - 1)
+    found = getattr(wave, name)
+    return found(*arguments) if arguments else found
+
+
+def closed_wave(closure: str) -> TravelingWave:
+    """The wave of one of `CLOSURES`, D = 1, with k, m1, m2 as symbols."""
+    return homogenize(Dimer("m1", "m2", spacing=1), **CLOSURES[closure]).pde.traveling_wave()
+
+
+def exact(wave: TravelingWave, expression: sp.Expr, k: Array, omega: Array) -> Any:
+    """An expression of a `closed_wave` at points (k, ω), by mpmath; None without a wave."""
+    m1, m2 = wave.cell.masses
+    value, *positive = (
+        sp.lambdify((wave.k, m2), each.subs(m1, 1), "mpmath")
+        for each in (expression, wave.dispersion, wave.speed_factor)
+    )
+
+    def at(*point: float) -> Any:
+        numbers = tuple(map(mp.mpf, point))
+        return value(*numbers) if all(each(*numbers) > 0 for each in positive) else None
+
+    with mp.workdps(DIGITS):
+        return np.frompyfunc(at, 2, 1)(k, omega)
+
+
+def in_ulps(value: Array, exact: Any) -> Array:
+    """|value - exact| over the spacing of float64 there; ∞ for no number, NaN for no wave."""
+
+    def loss(found: float, true: Any) -> float:
+        if true is None or not math.isfinite(found):
+            return math.nan if true is None else math.inf
+        return float(abs(mp.mpf(found) - true) / float(np.spacing(abs(float(true)))))
+
+    with mp.workdps(DIGITS):
+        return np.asarray(np.frompyfunc(loss, 2, 1)(value, exact), float)
+
+
+def printed_beta(k: Array, omega: Array) -> Array:
+    """|β| by the formulas of Porter et al. (2008), in float64, for m1 = D = 1.
+
+    The root p of (G+H+I) p² - (H+3I) p + 2I = 0 is that with the minus sign; NaN where p is complex
+    or 0/0 comes up.
+    """
+    M = 1 + omega
+    G = (2 - 3 * k + k**2) / (6 * M**2)
+    H = 2 * (k - 1) * (2 + omega - omega**2) / (6 * M**2)
+    I = 2 * (1 - omega + omega**2) / (6 * M**2)
+    with np.errstate(all="ignore"):  # outside the formulas' domain, which NaN and ∞ show
+        p = ((H + 3 * I) - np.sqrt((H + 3 * I) ** 2 - 8 * (G + H + I) * I)) / (2 * (G + H + I))
+        a = 1 - k * p + 3 * (p - 1) + p * H / I
+        return np.asarray(np.abs(np.sqrt(1 / (I * (k * p + a))) * (k * p - p) / 2))
+
+
+def losses(exponents: Array = EXPONENTS, ratios: Array = RATIOS) -> dict[tuple[str, str], Array]:
+    """Ulps lost by every form, by form and closure, and by β as printed: (k, ω), as `in_ulps`."""
+    k, omega = np.meshgrid(exponents, ratios, indexing="ij")
+    found = {}
+    for closure in CLOSURES:
+        wave = closed_wave(closure)
+        numeric = wave.numeric(missing="nan")
+        for label, (name, *arguments) in FORMS.items():
+            given = [x if isinstance(x, str) else float(x) for x in arguments]
+            value = getattr(numeric, name)(k, omega, *given)
+            lost = in_ulps(value, exact(wave, form(wave, name, *arguments), k, omega))
+            lost[np.isnan(lost) & np.isfinite(value)] = np.inf  # a number without a wave
+            found[label, closure] = lost
+    wave = closed_wave("paper's closure")
+    found["β", PRINTED] = in_ulps(printed_beta(k, omega), exact(wave, wave.beta, k, omega))
+    return found
+
+
+def ulps() -> Report:
+    """k = 1 + 1e-6 … 20, ω = 1e-6 … 1e6: how many ulps does float64 lose against 50 digits?"""
+    found = losses()
+    largest = {at: float(np.max(x, initial=0, where=np.isfinite(x))) for at, x in found.items()}
+    missing = {at: int(np.count_nonzero(np.isinf(x))) for at, x in found.items()}
+    ours, beta = [at for at in found if at[1] != PRINTED], ("β", PRINTED)
+    worst, none = max(largest[at] for at in ours), sum(missing[at] for at in ours)
+    findings = (
+        Finding("largest loss of all in ulps", worst, 0, ALLOWED, key="loss_ulps"),
+        Finding("points at which a form has no number", none, 0, 0, key="missing"),
+        Finding("β as printed: loss in ulps", largest[beta], ALLOWED, key="printed_loss_ulps"),
+        Finding("β as printed: points without", missing[beta], 1, key="printed_missing"),
+    )
+    sources = (*CLOSURES, PRINTED)
+    columns = (Column(label="largest loss, ulps"), *(Column("", x, format=".2g") for x in sources))
+    rows = tuple((form, *(largest.get((form, source)) for source in sources)) for form in FORMS)
+    curves = []
+    for label, at in (("lwa", ("β", "paper's closure")), (PRINTED, beta)):
+        lost = np.max(found[at], axis=1, where=np.isfinite(found[at]), initial=0.0)
+        curves.append(Curve.of(label, EXPONENTS - 1, lost))
+    answer = (
+        f"Less than {ALLOWED:g}, in every closed form and closure, and there is always a number. "
+        "The paper's route through the root p loses all digits where G+H+I nearly vanishes and "
+        "gives no number where p is complex."
+    )
+    panel = Panel("k - 1", "largest loss of β, in ulps", tuple(curves), "xy")
+    return Report(ulps.__doc__ or "", (Table(columns, rows),), findings, (panel,), (answer,))
+
+
+def width_error(wave: BackgroundWave, p0: float, quantity: str) -> float:
+    """Relative error of a wave's FWHM on a background in float64."""
+    true = wave.on(sp.Rational(p0)).fwhm(sp.Rational(B), quantity, 50)
+    return abs(float(sp.Float(float(wave.numeric().fwhm(p0, B, quantity)), 50) / true - 1))
+
+
+def under_load() -> Report:
+    """p0/B = 1e-12 … 1e12: does V² - c0² cancel, and how well are widths known, in float64?"""
+    findings, curves = [], []
+    for k in (sp.Rational(11, 10), sp.Rational(3, 2), sp.Integer(2), sp.Integer(3)):
+        wave = background_wave(Cell((1,), spacing=1), law=Power(k))
+        p0s = map(sp.Rational, LOADS * B)  # the floats themselves
+        with mp.workdps(DIGITS):
+            true = [mp.mpf(sp.N(wave.on(p0).stiffness(sp.Rational(B)), DIGITS)) for p0 in p0s]
+        ulps = in_ulps(wave.numeric().speed_squared(LOADS * B, B), np.array(true, object))
+        name, key = f"V² at k = {k}: largest loss in ulps", "loss_ulps" * (k == sp.Rational(3, 2))
+        findings.append(Finding(name, float(ulps.max()), 0, 4.0, key=key))
+        curves.append(Curve.of(f"k = {k}", LOADS, np.maximum(ulps, 0.01)))
+    for chain, masses in (("equal beads", (1,)), ("masses 1, 1/4", (1, "1/4"))):
+        wave = background_wave(Cell(masses, spacing=1), law=Power("3/2"))
+        for quantity in ("strain", "force"):
+            worst = max(width_error(wave, p0, quantity) for p0 in LOADS[::12] * B)
+            key = f"{quantity}_error" if len(masses) == 1 else ""
+            name = f"FWHM of the {quantity}, {chain}: largest relative error"
+            findings.append(Finding(name, worst, 0, 1e-12, key=key))
+    answer = "V² to less than 4 ulps and widths to 1e-12 at any load: differences are integrals."
+    panel = Panel("p0 / B", "loss of V², in ulps", tuple(curves), "xy")
+    return Report(under_load.__doc__ or "", (), tuple(findings), (panel,), (answer,))
+
+
+def contact_loss() -> Report:
+    """Contacts that open and close, where F = δ^k has k derivatives: which order is left?"""
+    findings, curves = [], []
+    for opens, (coarse, fine), order in ((False, (0.2, 0.1), 6.0), (True, (0.2, 0.012), 2.5)):
+        steps = np.geomspace(coarse, fine, 5)
+        errors = splitting_errors(1.5, opens, steps)
+        (slope, _), covariance = np.polyfit(np.log(steps), np.log(errors), 1, cov=True)
+        how, error = "opening" if opens else "closed", math.sqrt(covariance[0, 0])
+        low, high, name = order - 0.35, order + 0.35, f"{METHOD}, k = 3/2, contacts {how}: order"
+        findings.append(Finding(name, float(slope), low, high, error, f"order_{how}"))
+        curves.append(Curve.of(how, steps, errors))
+    answer = (
+        "k + 1: 2.5 of 6 at k = 3/2. A smaller step, not a higher order, is what helps the "
+        "splitting, whose step follows this law; the adaptive pair treats kinks on their own."
+    )
+    panel = Panel("step", "error of the displacements at t = 8", tuple(curves), "xy")
+    return Report(contact_loss.__doc__ or "", (), tuple(findings), (panel,), (answer,))
+
+
+def splitting_errors(k: float, opens: bool, steps: Array) -> Array:
+    """Root mean square error at each step of six unequal beads under a load against a wall.
+
+    The cost of an opening depends on its place within a step: the mean is that over six initial
+    velocities and nine factors of the step.
+    """
+    squares, factors = np.zeros(len(steps)), np.linspace(0.8, 1.25, 9)
+    starts = np.random.default_rng(8).uniform(-1, 1, (6, 6))
+    for start in starts:
+        scene = pressed(
+            (1.0, 0.3, 2.0, 0.7, 1.1, 0.5), start if opens else start / 10, opens, 8.0, k
+        )
+        reference = simulate(scene, method=METHOD, step=5e-4).displacements
+        for i, step in enumerate(steps):
+            for factor in factors:
+                run = simulate(scene, method=METHOD, step=step * factor)
+                squares[i] += np.abs(run.displacements - reference).max() ** 2
+    return np.asarray(np.sqrt(squares / len(starts) / len(factors)))
+
+
+def long_run(lasting: float = 1e6, segments: int = 200) -> Report:
+    """10⁶ time units of three beads against a wall: does the energy drift?"""
+    smooth = energy_errors(False, 0.5, lasting, segments)
+    walk = energy_errors(True, 0.25, lasting, segments)
+    largest, tenth = float(np.abs(smooth).max()), segments // 10
+    early, late = (float(np.abs(part).max()) for part in (smooth[:tenth], smooth[-tenth:]))
+    time = lasting / segments * np.arange(segments + 1)
+    drift = simulate(three_beads(False, 2e2), method="DOP853").energy_drift / 2e2
+    trend = float(np.polyfit(time, smooth, 1)[0]) * lasting / largest
+    power, opening = spreading(walk), float(np.abs(walk).max())
+    closed = f"closed contacts, {METHOD} at step 0.5"
+    findings = (
+        Finding(f"{closed}: largest energy error", largest, 0.0, 5e-5, key="energy_error"),
+        Finding(f"{closed}: last tenth over first", late / early, 0.5, 1.5, key="last_over_first"),
+        Finding(f"{closed}: trend over largest error", trend, -0.2, 0.2, key="trend"),
+        Finding("closed contacts, DOP853 at 1e-9: drift, extrapolated", drift * lasting),
+        Finding("opening, step 0.25: energy error", opening, 0.0, 0.3, key="energy_error_opening"),
+        Finding("opening: power of time, 1/2 at random", power, 0.3, 0.75, key="power_of_walk"),
+    )
+    curves = (
+        Curve.of("contacts closed", time[1:], np.abs(smooth[1:])),
+        Curve.of("contacts opening", time[1:], np.abs(walk[1:])),
+        Curve.of("closed, DOP853 at 1e-9, extrapolated", time[1:], abs(drift) * time[1:]),
+    )
+    answer = (
+        "As long as contacts stay closed it does not, while DOP853's drifts in proportion to the "
+        "time. Contacts that open make it walk at random, some percent in 10⁶ at this step: no "
+        "splitting is symplectic enough for a force without a second derivative."
+    )
+    panel = Panel("time", "|energy error|, relative", curves, "xy")
+    return Report(long_run.__doc__ or "", (), findings, (panel,), (answer,))
+
+
+def pressed(
+    masses: tuple[float, ...], start: Sequence[float], opens: bool, duration: float, k: float = 1.5
+) -> Scene:
+    """Beads under a load against a wall; the lighter load lets contacts open."""
+    return Scene(
+        masses=masses,
+        stiffnesses=(1.0, 2.0, 0.5, 1.5, 3.0)[: len(masses) - 1],
+        wall=1.0,
+        k=k,
+        precompression=0.2 if opens else 1.0,
+        velocities=tuple(start),
+        duration=duration,
+        samples=2,
+    )
+
+
+def three_beads(opens: bool, duration: float) -> Scene:
+    """Scene of `long_run`."""
+    start = (0.0, 0.8, -0.6) if opens else (0.0, 0.1, -0.05)
+    return pressed((1.0, 0.3, 2.0), start, opens, duration)
+
+
+def energy_errors(opens: bool, step: float, lasting: float, segments: int) -> Array:
+    """Relative energy error of `three_beads` at the ends of equal segments, 0 first."""
+    scene, energy = three_beads(opens, lasting / segments), [1.0]
+    for _ in range(segments):
+        run = simulate(scene, method=METHOD, step=step)
+        energy.append(energy[-1] * (1 + run.energy_drift))
+        displacements, velocities = tuple(run.displacements), tuple(run.velocities)
+        scene = replace(scene, displacements=displacements, velocities=velocities)
+    return np.array(energy) - 1
+
+
+def spreading(walk: Array) -> float:
+    """Exponent of the root mean square difference of a record in its lag."""
+    lags = 2 ** np.arange(6)
+    spread = [math.sqrt(np.mean((walk[lag:] - walk[:-lag]) ** 2)) for lag in lags]
+    return float(np.polyfit(np.log(lags), np.log(spread), 1)[0])
+
+
+_FINDING = "quantity", "measured_value", "error_value", "least_value", "most_value", "ok"
+
+CASES: Mapping[str, Callable[[], Report]] = {
+    "contact-loss": contact_loss,
+    "long-run": long_run,
+    "ulps": ulps,
+    "under-load": under_load,
+}
+"""The cases by their names."""
+
+
+@study(
+    option(
+        "--case",
+        "names",
+        multiple=True,
+        type=click.Choice(tuple(CASES)),
+        says="Only this case; may be given again.",
+    ),
+)
+def hard(names: Collection[str] = (), progress: Progress[str] = iter) -> Report:
+    """Last digits at extreme k, ω and loads, contacts that open, and long runs. Half a minute.
+
+    names: cases to run, by default all; raises `lwa.InputError` for a name beside `CASES`. JSON:
+    ``cases``, each with ``case``, ``question``, ``outcome``, numbers, ``findings`` and ``panel``.
+    """
+    wanted = {one_of(name, CASES, "case") for name in names} or set(CASES)
+    rows, cases, parts = [], [], []
+    for name in progress([name for name in CASES if name in wanted]):
+        outcome = CASES[name]()
+        document, (panel,), (answer,) = outcome.document(), outcome.panels, outcome.notes
+        if failed := sum(not finding.ok for finding in outcome.findings):
+            answer = f"{failed} not as expected, which was: {answer}"
+        told = {"case": name, "question": outcome.title, "outcome": answer}
+        rows += [(name, *finding.values()) for finding in document["findings"]]
+        cases.append(told | document | {"panel": panel.document()})
+        title, drawn = f"{name}\n{outcome.title}", replace(panel, title=name)
+        parts.append(replace(outcome, title=title, notes=(answer,), panels=(drawn,)))
+    failing = sum(not part.ok for part in parts)
+    title = (
+        f"{len(cases)} case{'s' * (len(cases) > 1)}: {f'{failing} fail' if failing else 'all hold'}"
+    )
+    table = Table(tuple(map(Column, ("case", *_FINDING))), tuple(rows))
+    return Report(title, (table,), data={"cases": cases}, parts=tuple(parts))

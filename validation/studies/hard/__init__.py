@@ -1,1 +1,0 @@
-"""Hard cases, each held to a bound."""
