@@ -20,7 +20,6 @@ import sympy as sp
 from lwa.base.exact import InputError, root
 from lwa.base.frozen import Value
 from lwa.envelopes.schrodinger import KINDS, Envelope
-from lwa.law import Power
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -95,7 +94,7 @@ class Breather(Value):
         3/128
         """
         mode = self.envelope
-        if not isinstance(mode.law, Power):
+        if not mode.law.homogeneous:
             return sp.oo * sp.sign(self.detuning)
         pairs = zip(mode.static_compressions, mode.strains, strict=True)
         squares = (delta**2 / (4 * d) for delta, d in pairs if d)
@@ -105,11 +104,11 @@ class Breather(Value):
     def opening_load(self) -> sp.Expr:
         """The static force at which contacts open at this frequency, ω ∝ F0^{(k-1)/(2k)}."""
         law, cell = self.envelope.law, self.envelope.cell
-        if not isinstance(law, Power):
+        if not law.homogeneous:
             raise InputError("contacts open under a power law only")
         ratio = (1 - self.detuning) / (1 - self.opening_detuning)
-        load = cell.stiffness(law.k) * self.envelope.compression**law.k
-        return load * ratio ** (2 * law.k / (law.k - 1))
+        load = cell.stiffness(law.exponent) * self.envelope.compression**law.exponent
+        return load * ratio ** (2 * law.exponent / (law.exponent - 1))
 
     def displacements(self, cells: ArrayLike) -> Array:
         """Displacements of the beads at t = 0 to leading order, a row for each cell; in floats."""

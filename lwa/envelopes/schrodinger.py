@@ -19,7 +19,7 @@ from lwa.base.frozen import Value
 from lwa.cell import Cell, substitution
 from lwa.envelopes.exact import exact_mode
 from lwa.envelopes.modes import Coefficients, NumericMode, numeric_mode
-from lwa.law import Law, Power, compression, for_cell
+from lwa.law import ContactLaw, for_cell
 
 if TYPE_CHECKING:
     from lwa.envelopes.breather import Breather
@@ -48,7 +48,7 @@ class Envelope(Value):
     """
 
     cell: Cell
-    law: Power | Law
+    law: ContactLaw
     compression: sp.Expr
     wavenumber: sp.Expr
     branch: int
@@ -92,6 +92,7 @@ class Envelope(Value):
     def frequency(self) -> sp.Expr:
         """ω of the mode.
 
+        >>> from lwa import Power
         >>> envelope(Cell(["m1", "m2"]), Power("3/2"), precompression=1).frequency
         sqrt(3)/sqrt(m2)
         """
@@ -108,6 +109,7 @@ class Envelope(Value):
     def dispersion(self) -> sp.Expr:
         """ω″ = d²ω/dκ².
 
+        >>> from lwa import Power
         >>> envelope(Cell(["m"], ["K"]), Power(1), background="p0", wavenumber="q").dispersion
         -sqrt(K)*sin(q/2)/(2*sqrt(m))
         """
@@ -172,16 +174,13 @@ class Envelope(Value):
     @property
     def static_compressions(self) -> tuple[sp.Expr, ...]:
         """δ0 of each contact."""
-        shares = (
-            self.cell.shares(self.law.k) if isinstance(self.law, Power) else (1,) * self.cell.size
-        )
-        return tuple(share * self.compression for share in shares)
+        return tuple(c * self.compression for c in self.cell.shares(self.law.exponent))
 
     @cached_property
     def _curvatures(self) -> tuple[sp.Expr, sp.Expr, sp.Expr, sp.Expr]:
         """K2 of the first contact, K3 ℓ/K2 and K4 ℓ²/K2, and the length ℓ."""
         law, delta = self.law, self.static_compressions[0]
-        if isinstance(law, Law) and law.formless:
+        if law.formless:
             K2, K3, K4 = sp.symbols("K2 K3 K4", positive=True)
             return K2, K3 / K2, K4 / K2, sp.S.One
         stiffness = sp.powsimp(self.cell.stiffnesses[0] * law.at(delta, 1))
@@ -194,9 +193,9 @@ class Envelope(Value):
     @cached_property
     def _springs(self) -> list[sp.Expr]:
         """K2 of each contact over that of the first one."""
-        if not isinstance(self.law, Power) or len({*self.cell.stiffnesses}) == 1:
+        if len({*self.cell.stiffnesses}) == 1:
             return [sp.S.One] * self.cell.size
-        compliances = self.cell.compliances(self.law.k)
+        compliances = self.cell.compliances(self.law.exponent)
         return [sp.powsimp(compliances[0] / c) for c in compliances]
 
     def _rows(self, springs: list[sp.Expr]) -> list[list[sp.Expr]]:
@@ -288,7 +287,7 @@ class Envelope(Value):
 
 
 def envelope(
-    cell: Cell, law: Power | Law, *, background: Any = None, precompression: Any = None,
+    cell: Cell, law: ContactLaw, *, background: Any = None, precompression: Any = None,
     wavenumber: Any = sp.pi, branch: Any = None,
 ) -> Envelope:  # fmt: skip
     """The nonlinear Schrödinger equation of a mode of a chain under load.
@@ -311,6 +310,7 @@ def envelope(
     second harmonic is itself a mode, and at the resonance of a mode that moves with sound,
     c_g = c_0.
 
+    >>> from lwa import Power
     >>> envelope(Cell(["m"], spacing=1), Power(2), background="p0").nonlinearity
     -4*sqrt(2)/(m**(3/2)*p0**(3/2))
     """
@@ -318,14 +318,10 @@ def envelope(
     if (background is None) == (precompression is None):
         raise InputError("background or precompression: one of the two is wanted")
     if precompression is not None:
-        static = compression(cell, law, positive(precompression, "precompression"))
+        static = law.compression(cell, positive(precompression, "precompression"))
     else:
-        strain = (
-            positive(background, "background")
-            if isinstance(law, Power)
-            else real(background, "background")
-        )
-        static = cell.spacing * strain
+        read = positive if law.homogeneous else real  # powers only push
+        static = cell.spacing * read(background, "background")
     kappa = real(wavenumber, "wavenumber")
     if kappa.is_number and not 0 <= kappa <= sp.pi:
         raise InputError(f"wavenumber is {shorten(kappa)}: 0 … pi per cell is wanted")
