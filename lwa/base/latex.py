@@ -1,33 +1,106 @@
 """LaTeX in the notation and order of the paper: rows, displays, sums and derivatives.
 
-Derivations write themselves as rows (`latex_rows`); a notebook shows them (`_repr_latex_`), and
-``--format latex`` prints the same with all orders.
+A derivation writes itself as rows (`latex_rows`); a notebook shows them (`_repr_latex_`), and
+``--format latex`` prints the same to all orders. Rows that are wider than a page are broken at the
+signs between their terms.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+import re
+from collections.abc import Iterable, Iterator, Mapping
 
 import sympy as sp
+
+WIDTH = 64
+"""Symbols in a line of a display; a page of LaTeX's article holds about 70 of them."""
+
+NOTAG = r" \notag"
 
 
 def display(rows: list[str]) -> str:
     """Rows as one display for a notebook."""
-    return f"$$\\begin{{aligned}}\n{_aligned(rows)}\n\\end{{aligned}}$$"
+    return f"$$\\begin{{aligned}}\n{_aligned(rows, '')}\n\\end{{aligned}}$$"
 
 
 def align(rows: list[str]) -> str:
-    """Rows as an environment of a paper."""
-    return f"\\begin{{align}}\n{_aligned(rows)}\n\\end{{align}}"
+    """Rows as an environment of a paper, one number a row."""
+    return f"\\begin{{align}}\n{_aligned(rows, NOTAG)}\n\\end{{align}}"
 
 
-def _aligned(rows: list[str]) -> str:
-    return " \\\\\n".join(row.replace("=", "&=", 1) for row in rows)
+def _aligned(rows: list[str], unnumbered: str) -> str:
+    lines = (f"{unnumbered} \\\\\n&\\quad ".join(_broken(row)) for row in rows)
+    return " \\\\\n".join(line.replace("=", "&=", 1) for line in lines)
+
+
+def _broken(row: str) -> list[str]:
+    """The lines of a row: terms are put on a line as long as they fit."""
+    lines = [""]
+    for term in _terms(row):
+        if lines[-1] and width(lines[-1] + term) > WIDTH:
+            lines.append("")
+        lines[-1] += f" {term}" if lines[-1] else term
+    return lines
+
+
+def _terms(row: str) -> Iterator[str]:
+    """The parts of a row from one sign to the next, outside of braces and of \\left … \\right."""
+    depth, start = 0, 0
+    for token in re.finditer(r"\\left|\\right|[{}]|(?<=\S) (?=[+-] )", row):
+        if token[0] == " ":
+            if depth == 0:
+                yield row[start : token.start()]
+                start = token.end()
+        else:
+            depth += 1 if token[0] in ("\\left", "{") else -1
+    yield row[start:]
+
+
+def width(text: str) -> int:
+    r"""The number of symbols in a line; a fraction is as wide as its wider part.
+
+    >>> width(r"\frac{a^{2} + b}{c} x_{1}")
+    6
+    """
+    text = re.sub(r"\\(left|right|Bigl|Bigr|quad|,)", "", text).replace(" ", "")
+    text = re.sub(r"\\(?!frac)[A-Za-z]+|\\operatorname", "x", text)
+    while "{" in text:
+        shorter = re.sub(r"(?<!\\frac)(?<!\})[_^]?\{([^{}]*)\}", r"\1", text)
+        shorter = re.sub(
+            r"\\frac\{([^{}]*)\}\{([^{}]*)\}", lambda parts: max(parts.groups(), key=len), shorter
+        )
+        if shorter == text:
+            break
+        text = shorter
+    return len(re.sub(r"[_^]", "", text))
 
 
 def row(name: str, value: sp.Expr) -> str:
     """name = value."""
-    return f"{name} = {sp.latex(value)}"
+    return f"{name} = {expression(value)}"
+
+
+def expression(value: sp.Expr) -> str:
+    """The value; a fraction wider than a line as its factors, whose longest sum can be broken.
+
+    >>> x, y = sp.symbols("x y")
+    >>> expression((x + y) / 2)
+    '\\\\frac{x}{2} + \\\\frac{y}{2}'
+    """
+    plain = str(sp.latex(value))
+    if width(plain) <= WIDTH or value.is_Add:
+        return plain
+    powers = [f for f in sp.Mul.make_args(value) if f.as_base_exp()[0].is_Add]
+    powers = [f for f in powers if f.as_base_exp()[1].is_positive and f.as_base_exp()[1].is_Integer]
+    longest = max(powers, key=lambda f: len(f.as_base_exp()[0].args), default=None)
+    if longest is None:
+        return plain
+    total, e = longest.as_base_exp()
+    if width(str(sp.latex(total))) < WIDTH / 2:
+        return plain
+    rest = sp.Mul(*(f for f in sp.Mul.make_args(value) if f is not longest), evaluate=False)
+    raised = f"^{{{e}}}" if e > 1 else ""
+    return rf"{sp.latex(rest)} \Bigl({sp.latex(total)}\Bigr){raised}".removeprefix("1 ")
 
 
 def values(found: Mapping[str, sp.Expr]) -> list[str]:
@@ -63,7 +136,7 @@ def total(terms: Iterable[tuple[sp.Expr, str]]) -> str:
     for i, (coefficient, factor) in enumerate(terms):
         minus = coefficient.could_extract_minus_sign()
         size = -coefficient if minus else coefficient
-        value = rf"\left({sp.latex(size)}\right)" if size.is_Add else sp.latex(size)
+        value = rf"\left({sp.latex(size)}\right)" if size.is_Add else expression(size)
         sign = "-" if minus else "+" if i else ""
         written.append(f"{sign} {'' if value == '1' else value} {factor}".strip())
     return " ".join(" ".join(written).split()) or "0"

@@ -3,32 +3,17 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import click
 import sympy as sp
 
 from lwa.base.exact import InputError, exact
-from lwa.base.progress import announce
 from lwa.cell import Cell, D, k
 from lwa.code.languages import LANGUAGES
-from lwa.command.document import (
-    SI,
-    dispersion_json,
-    expansion_json,
-    force_json,
-    theory_json,
-    wave_json,
-)
-from lwa.command.load import (
-    background_json,
-    background_text,
-    loaded_json,
-    loaded_text,
-    precompressed_json,
-    precompressed_text,
-)
+from lwa.command import derivation, series, waves
 from lwa.command.options import (
     FORCE,
     SPHERES,
@@ -40,14 +25,8 @@ from lwa.command.options import (
     setting,
 )
 from lwa.command.reserved_names import demand_free
-from lwa.command.source import theory_latex, theory_python, wave_latex
-from lwa.command.terminal import (
-    HELP,
-    quantity,
-    run,
-    version,
-)
-from lwa.command.text import dispersion_text, expansion_text, force_text, theory_text, wave_text
+from lwa.command.rows import Answer
+from lwa.command.terminal import HELP, quantity, run, version
 from lwa.expansion.expand import expand
 from lwa.expansion.physical import ExpandedWave
 from lwa.law import ContactLaw, Law, Power
@@ -58,21 +37,13 @@ from lwa.theory import Theory, homogenize
 from lwa.wave.background import BackgroundWave
 from lwa.wave.precompressed import PrecompressedWave
 
-THEORY = {
-    "text": theory_text,
-    "json": theory_json,
-    "latex": theory_latex,
-    "python": theory_python,
+DERIVATION = {
+    "text": derivation.derivation_text,
+    "json": derivation.derivation_json,
+    "latex": derivation.derivation_latex,
+    "python": derivation.derivation_python,
 }
-WAVE = {"text": wave_text, "json": wave_json, "latex": wave_latex} | {
-    language: lambda _, wave, language=language: wave.code(language) for language in LANGUAGES
-}
-FORCED = {"text": force_text, "json": force_json}
-BACKGROUND = {"text": background_text, "json": background_json}
-PRECOMPRESSED = {"text": precompressed_text, "json": precompressed_json}
-LOADED = {"text": loaded_text, "json": loaded_json}
-DISPERSION = {"text": dispersion_text, "json": dispersion_json}
-EXPANSION = {"text": expansion_text, "json": expansion_json}
+STYLES = ("text", "json", "latex")
 
 
 def _theory(
@@ -91,25 +62,12 @@ def _theory(
     return homogenize(cell, order, k=k, law=law, **kind)
 
 
-SECONDS_A_TERM = 3e-4
-"""To convert and to write a term of a coefficient."""
-
-
-def _write_out(theory: Theory) -> None:
-    """Where that takes long, say so and show the progress; what is written is kept."""
-    length = sum(found.length(jet) for found in theory.orders for jet in found)
-    if announce(f"{length} terms to be written", length * SECONDS_A_TERM):
-        from tqdm import tqdm  # here, for a quick start of the others
-
-        with tqdm(total=length, desc="terms", leave=False, disable=None) as progress:
-            for found in theory.orders:
-                for jet in found:
-                    found.written(jet)
-                    progress.update(found.length(jet))
-
-
 def _show(result: Any) -> None:
     click.echo(result if isinstance(result, str) else json.dumps(result, indent=2))
+
+
+def _answer(style: str, answer: Answer) -> None:
+    _show({"text": answer.text, "json": answer.json, "latex": answer.latex}[style]())
 
 
 @click.group(context_settings=HELP)
@@ -122,16 +80,38 @@ def lwa() -> None:
 
 
 @lwa.command()
-@of_chain(THEORY)
+@of_chain(DERIVATION)
 def derive(style: str, **chain: Any) -> None:
     """The ansatz, the wave equation and the defect between the equations of motion."""
     theory = _theory("derive", **chain)
-    _write_out(theory)
-    _show(THEORY[style](theory))
+    derivation.write_out(theory)
+    _show(DERIVATION[style](theory))
+
+
+@dataclass(frozen=True)
+class _Load:
+    """Options that say how strongly a chain is pressed and which wave runs in it."""
+
+    force: sp.Expr | None
+    background: sp.Expr | None
+    precompression: sp.Expr | None
+
+    def under(self, law: ContactLaw | None) -> bool:
+        """Whether there is a load, or a law under which all waves are those of `lwa.wave`."""
+        if self.background is not None and self.precompression is not None:
+            raise InputError("--background and --precompression are both given: one says the other")
+        load = self.precompression if self.background is None else self.background
+        return load is not None and (not load.is_zero or isinstance(law, Law))
+
+    def demand_free(self, output: str) -> None:
+        """Refuse symbols with names of the output."""
+        named = ((self.force, "F"), (self.precompression, "F0"), (self.background, "p0"))
+        for value, own in named:
+            demand_free(output, () if value is None else (value,), own)
 
 
 @lwa.command()
-@of_chain(WAVE)
+@of_chain((*STYLES, *LANGUAGES))
 @FORCE
 @SPHERES
 @click.option("--background", callback=quantity, help="Strain of the chain ahead of the wave.")
@@ -152,49 +132,42 @@ def wave(
     --spheres all of it in m, s, kg and N. With --background or --precompression the wave of the
     canonical field in a chain under load.
     """
+    units: dict[str, str] = {}
     if spheres is not None:
-        chain |= _of_spheres(spheres)
-    units = {} if spheres is None else SI
-    loaded = _under_load(background, precompression, chain["law"])
-    output = "wave under load" if loaded or isinstance(chain["law"], Law) else "wave"
-    for load, own in ((force, "F"), (precompression, "F0"), (background, "p0")):
-        demand_free(output, () if load is None else (load,), own)
-    if loaded:
-        _wave_under_load(style, force, background, precompression, units, chain)
-        return
+        units, static = _from_file(spheres, chain)
+        if static and (background is not None or precompression is not None):
+            raise InputError(f"the file has a precompression of {static}: give no other load")
+        precompression = static or precompression
+    load = _Load(force, background, precompression)
+    under_load = load.under(chain["law"])
+    output = "wave under load" if under_load or isinstance(chain["law"], Law) else "wave"
+    load.demand_free(output)
+    if under_load:
+        _canonical(chain)
     theory = _theory(output, **chain)
-    found = theory.pde.traveling_wave()
-    if style in FORCED and (force is not None or spheres is not None):
-        peak = exact("F", "force") if force is None else force
-        _show(FORCED[style](theory, found, peak, units))
-    elif force is not None:
-        raise InputError(
-            f"--format {style} is for any force: --force goes with {', '.join(FORCED)}"
-        )
+    if style in LANGUAGES:
+        if force is not None:
+            raise InputError(f"--format {style} is for any force: --force goes with {_STYLES}")
+        _show(_source(theory, load if under_load else None, style))
+    elif under_load:
+        _answer(style, _under_load(theory, load, units))
     else:
-        _show(WAVE[style](theory, found))
+        found = theory.pde.traveling_wave()
+        if force is None and spheres is None:
+            _answer(style, waves.compact(theory, found))
+        else:
+            _answer(style, waves.at_force(theory, found, _peak(force), units))
 
 
-def _under_load(
-    background: sp.Expr | None, precompression: sp.Expr | None, law: ContactLaw | None
-) -> bool:
-    """Whether a load is given, or a law under which there are no other waves."""
-    if background is not None and precompression is not None:
-        raise InputError("--background and --precompression are both given: one says the other")
-    load = precompression if background is None else background
-    return load is not None and (not load.is_zero or isinstance(law, Law))
+_STYLES = ", ".join(STYLES)
 
 
-def _wave_under_load(
-    style: str,
-    force: sp.Expr | None,
-    background: sp.Expr | None,
-    precompression: sp.Expr | None,
-    units: Mapping[str, str],
-    chain: dict[str, Any],
-) -> None:
-    if style not in FORCED:
-        raise InputError(f"--format {style} has no wave under load: {', '.join(FORCED)} have")
+def _peak(force: sp.Expr | None) -> sp.Expr:
+    return exact("F", "force") if force is None else force
+
+
+def _canonical(chain: dict[str, Any]) -> None:
+    """Set the closure of waves under load; refuse another one."""
     for name, wanted in (("closure", "full"), ("field", "center"), ("branch", "acoustic")):
         if given(name) and chain[name] != wanted:
             raise InputError(
@@ -202,34 +175,46 @@ def _wave_under_load(
                 f"{name} {wanted!r}"
             )
         chain[name] = wanted
-    theory = _theory("wave under load", **chain)
-    if precompression is not None:
-        peak = exact("F", "force") if force is None else force
-        loaded = PrecompressedWave(theory.cell, theory.law, peak, precompression)
-        _show(PRECOMPRESSED[style](theory, loaded, units))
-    elif force is not None:
+
+
+def _under_load(theory: Theory, load: _Load, units: dict[str, str]) -> Answer:
+    if load.precompression is not None:
+        F, F0 = _peak(load.force), load.precompression
+        return waves.precompressed(theory, PrecompressedWave(theory.cell, theory.law, F, F0), units)
+    if load.force is not None:
         raise InputError("--force goes with --precompression, a force; --background is a strain")
-    else:
-        assert background is not None
-        _show(BACKGROUND[style](theory, BackgroundWave(theory.cell, theory.law, background)))
+    return waves.on_background(theory, BackgroundWave(theory.cell, theory.law, load.background))
 
 
-def _of_spheres(file: str) -> dict[str, Any]:
-    """The chain of a file of spheres, which no other option may describe."""
-    from lwa.spheres.beads import (
-        read_spheres,  # here, so that other commands do not load the parsers
-    )
+def _source(theory: Theory, load: _Load | None, language: str) -> str:
+    if load is None:
+        return theory.pde.traveling_wave().code(language)
+    p0 = load.background
+    if load.precompression is not None:
+        loaded = PrecompressedWave(theory.cell, theory.law, exact("F", "F"), load.precompression)
+        p0 = loaded.background.p0
+    return BackgroundWave(theory.cell, theory.law, p0).code(language)
+
+
+def _from_file(file: str, chain: dict[str, Any]) -> tuple[dict[str, str], sp.Expr]:
+    """Put the chain of a file in place of the options; its units and its static load.
+
+    Raises `lwa.InputError` where an option describes a chain too.
+    """
+    from lwa.command.chain_file import read_chain  # here: other commands do not load the parsers
 
     for name in ("k", "law", "masses", "stiffnesses", "spacing"):
         if given(name):
             raise InputError(f"--{name} and --spheres are both given: spheres have their own")
-    cell = Cell.of_spheres(read_spheres(file))
-    parts = {name: getattr(cell, name) for name in ("masses", "stiffnesses", "spacing")}
-    return {"k": EXPONENT, **parts}
+    found = read_chain(file)
+    chain |= {name: getattr(found.cell, name) for name in ("masses", "stiffnesses", "spacing")}
+    chain |= {"k": found.law.exponent} if found.law.homogeneous else {"law": found.law}
+    exponent = found.law.exponent if found.law.homogeneous else EXPONENT
+    return (waves.si_units(exponent) if found.si else {}), found.precompression
 
 
 @lwa.command()
-@of_series("1", "Highest power of κ in Ω².", DISPERSION)
+@of_series("1", "Highest power of κ in Ω².", STYLES)
 @click.option(
     "--precompression",
     callback=quantity,
@@ -249,17 +234,16 @@ def dispersion(
     The exponent matters for unequal contacts, which share the strain by it. With --precompression,
     and masses, stiffnesses and spacing in SI, also the bands in s⁻¹ and the speeds in m/s.
     """
-    if precompression is None:
-        _show(DISPERSION[style](Dispersion(cell, k), order))
-        return
-    cell = Cell(cell.masses, cell.stiffnesses, spacing)
-    k = k if given("k") else EXPONENT
-    loaded = LoadedChain(cell, Power(k), precompression)
-    _show(LOADED[style](Dispersion(cell, k), loaded, order))
+    loaded = None
+    if precompression is not None:
+        cell = Cell(cell.masses, cell.stiffnesses, spacing)
+        k = k if given("k") else EXPONENT
+        loaded = LoadedChain(cell, Power(k), precompression)
+    _answer(style, series.dispersion(Dispersion(cell, k), order, loaded))
 
 
 @lwa.command()
-@of_series(k.name, "Highest power of ε = k - 1.", EXPANSION)
+@of_series(k.name, "Highest power of ε = k - 1.", STYLES)
 @law_option("In place of --k: power:K; no other law has an ε.")
 @FORCE
 @SPHERES
@@ -274,17 +258,27 @@ def expansion(
 ) -> None:
     """The lattice's wave as a series in ε = k - 1, summed where k and the cell are numbers.
 
-    With --spheres, in m, s, kg and N; with --force also the wave of that peak force on the first
-    contact, in space and time.
+    With --spheres also the wave of the peak force --force (1 N where it is not given) on the first
+    contact, in m, s and N, in an endless chain without load.
     """
+    units: dict[str, str] = {}
+    notes: list[str] = []
     if spheres is not None:
-        chain = _of_spheres(spheres)
-        k = chain.pop("k")
+        chain: dict[str, Any] = {"k": k, "law": law}
+        units, static = _from_file(spheres, chain)
+        k, law = chain.pop("k"), chain.pop("law")
         cell = Cell(**chain)
+        force = sp.S.One if force is None else force
+        if static:
+            said = f"{float(static):g} {units.get('force', '')}".rstrip()
+            notes = [f"the load of the file, {said}, is left out: the series has none"]
     elif force is not None:
         raise InputError("--force goes with --spheres: other chains have no units")
     found = expand(cell, order, k=k, law=law)
-    _show(EXPANSION[style](found, None if force is None else ExpandedWave(found, force)))
+    physical = None
+    if force is not None and cell.spacing.is_number:
+        physical = ExpandedWave(found, force)
+    _answer(style, series.expansion(found, physical, units, notes))
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

@@ -19,8 +19,8 @@ A file of spheres holds, in units that agree (SI if A is to be in N/m^{3/2})::
     [chain]
     cell = ["ball", "light"]      # names of beads, in their order
 
-These are tables of a scene (`validation.scenes.scenefile`), and any scene of beads without
-precompression is such a file: what else it says about its finite chain is not asked for here.
+These are tables of a scene (`validation.scenes.scenefile`), and any scene of beads is such a file:
+the spheres say nothing of its load, nor of the rest of its finite chain.
 """
 
 from __future__ import annotations
@@ -37,8 +37,18 @@ from lwa.spheres.hertz import Material, Sphere
 from lwa.spheres.materials import MATERIALS
 
 SCENE = (
-    "duration", "samples", "units", "gravity", "defects", "wall", "striker", "start", "sensors",
-)  # fmt: skip
+    "duration",
+    "samples",
+    "units",
+    "gravity",
+    "defects",
+    "wall",
+    "striker",
+    "start",
+    "sensors",
+    "damping",
+    "drive",
+)
 """Keys of a scene that say nothing about its cell."""
 
 
@@ -71,8 +81,6 @@ def spheres(content: Any) -> list[Sphere]:
     [1, 1]
     """
     file = Table(content, "", ("materials", "beads", "chain", "precompression", *SCENE))
-    if file.read("precompression", real, 0.0):
-        raise InputError("precompression is given: the wave is that of a chain without load")
     beads = read_beads(file, read_materials(file))
     cell = file.read("chain", table(("cell", "repeat"))).read("cell", array)
     if not cell:

@@ -260,6 +260,23 @@ class BackgroundWave(Value):
 
         return NumericBackground(self.cell, self.law)
 
+    def code(self, language: str) -> str:
+        """Speeds, small waves and τ/t as functions in a program's source text.
+
+        ``language`` as in `lwa.TravelingWave.code`; arguments are told in `lwa.wave.functions`.
+        """
+        from lwa.wave.functions import loaded_code  # here, for a quick start of the others
+
+        forms = {"speed": self.speed(), "time_scale": self.time_scale}
+        try:
+            kdv = self.kdv
+        except NoSolitaryWave:
+            kdv = None
+        if kdv:
+            forms |= {"sound_speed": kdv.sound_speed, "kdv_speed": kdv.speed()}
+            forms["kdv_width"] = kdv.width()
+        return loaded_code(self.cell, self.law, self.p0, forms, language)
+
     def on(self, p0: Any) -> Self:
         """The waves of the same chain on another strain."""
         return replace(self, p0=p0)

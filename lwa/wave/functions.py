@@ -15,7 +15,7 @@ the end of the support: the profile is good to 1e-14 B at a ξ that is off by 1e
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial
 
@@ -23,13 +23,15 @@ import sympy as sp
 
 from lwa.base.exact import InputError, shorten
 from lwa.base.quantities import QUANTITIES, strain_power
+from lwa.cell import Cell
 from lwa.code.languages import LANGUAGES
 from lwa.code.writer import Function, Local
+from lwa.law import ContactLaw
 from lwa.wave.closed import CompactWave
 
 _XI = sp.Dummy("xi", real=True)
-_B, _V = (sp.Dummy(name, positive=True) for name in ("B", "V_s"))
-OWN = (_XI, _B, _V)
+_B, _V, _F = (sp.Dummy(name, positive=True) for name in ("B", "V_s", "F"))
+OWN = (_XI, _B, _V, _F)
 _SHIFT, _INSIDE = (sp.Dummy(name, real=True) for name in ("k_2", "inside"))
 _LONGEST_SUM = 64
 
@@ -38,6 +40,20 @@ _TITLE = (
     "xi = x - V_s tau, |xi| <= pi/(2 beta), written by lwa. There is one where",
     "k > 1, G + H + I > 0 and V_s^2 > 0, which is not checked here.",
 )
+_LOADED_TITLE = (
+    "Waves u_x = p0 + v(xi), xi = x - V_s tau, whose strain rises from p0 by B,",
+    "written by lwa. They exist where V_s^2 > 0 grows with B, which is not checked.",
+)
+_STRAIN_DOC = "B of the wave whose contact force peaks at F"
+_FORCE_DOC = "dx/dt, in m/s for a chain in SI, of the wave whose force peaks at F"
+_SCALE_DOC = "tau/t: dx/dt = V_s tau/t"
+_LOADED_DOCS = {
+    "speed": "V_s = dx/dtau; loses digits as B/p0 falls: kdv_speed is for small B",
+    "time_scale": _SCALE_DOC,
+    "sound_speed": "V_s of long small waves",
+    "kdv_speed": "V_s of a small wave",
+    "kdv_width": "L of a small wave v = B sech^2(xi/L)",
+}
 
 
 def wave_code(wave: CompactWave, language: str) -> str:
@@ -47,14 +63,30 @@ def wave_code(wave: CompactWave, language: str) -> str:
 
     Raises `lwa.InputError` for another language.
     """
-    if language not in LANGUAGES:
-        raise InputError(
-            f"language is {shorten(language)}: one of {', '.join(LANGUAGES)} is wanted"
-        )
+    _known(language)
     functions = wave_functions(wave)
     if language == "python":
         functions |= reduction_functions(wave, functions["amplitude"])
     return LANGUAGES[language](list(functions.values()), OWN).module(_TITLE)
+
+
+def loaded_code(
+    cell: Cell, law: ContactLaw, p0: sp.Expr, forms: Mapping[str, sp.Expr], language: str
+) -> str:
+    """The source text of `loaded_functions` in one of the `LANGUAGES`.
+
+    Raises `lwa.InputError` for another language.
+    """
+    _known(language)
+    functions = loaded_functions(cell, law, p0, forms)
+    return LANGUAGES[language](list(functions.values()), OWN).module(_LOADED_TITLE)
+
+
+def _known(language: str) -> None:
+    if language not in LANGUAGES:
+        raise InputError(
+            f"language is {shorten(language)}: one of {', '.join(LANGUAGES)} is wanted"
+        )
 
 
 def wave_functions(wave: CompactWave) -> dict[str, Function]:
@@ -80,11 +112,50 @@ def wave_functions(wave: CompactWave) -> dict[str, Function]:
     profile = _B * sp.sin((_INSIDE + sp.Abs(_INSIDE)) / 2) ** (2 / (k - 1))
     inside = sp.pi / 2 - sp.Abs(beta.call * _XI)
     functions += [
-        define("speed", "V_s of the wave whose strain peaks at B", speed, local),
+        define("speed", "V_s = dx/dtau of the wave whose strain peaks at B", speed, local),
         define("amplitude", "B, the peak strain of the wave of speed V_s", amplitude, local),
         define("profile", "v at xi, 0 outside of the support", profile, ((_INSIDE, inside),)),
     ]
+    strain = define("strain", _STRAIN_DOC, _strain(wave.cell, k))
+    scale = define("time_scale", _SCALE_DOC, wave.cell.time_scale(k))
+    in_time = functions[5].call.subs(_B, strain.call) * scale.call
+    functions += [scale, strain, define("speed_at_force", _FORCE_DOC, in_time)]
     return {function.name: function for function in functions}
+
+
+def loaded_functions(
+    cell: Cell, law: ContactLaw, p0: sp.Expr, forms: Mapping[str, sp.Expr]
+) -> dict[str, Function]:
+    """The closed forms of a wave under load, and under a power law its speed at a force, by name.
+
+    forms : by the names of `_LOADED_DOCS`, in the symbol B for the rise of the strain.
+
+    Arguments stand in this order, each where it is used: B; F; p0; the symbols of the law, of the
+    masses, of the stiffnesses and of the spacing.
+    """
+    parts = (p0, *law.symbols, *cell.masses, *cell.stiffnesses, cell.spacing)
+    define = partial(function_of, in_order(*parts))
+    functions = {
+        name: define(
+            name,
+            _LOADED_DOCS[name],
+            value.xreplace({s: _B for s in value.free_symbols if s.name == "B"}),
+        )
+        for name, value in forms.items()
+    }
+    if law.homogeneous:
+        strain = define("strain", _STRAIN_DOC, _strain(cell, law.exponent) - p0)
+        in_time = functions["speed"].call.subs(_B, strain.call) * functions["time_scale"].call
+        functions |= {
+            "strain": strain,
+            "speed_at_force": define("speed_at_force", _FORCE_DOC, in_time),
+        }
+    return functions
+
+
+def _strain(cell: Cell, k: sp.Expr) -> sp.Expr:
+    """The strain at which the contacts of a cell push with F."""
+    return (_F / cell.stiffness(k)) ** (1 / k) / cell.spacing
 
 
 def reduction_functions(wave: CompactWave, amplitude: Function) -> dict[str, Function]:

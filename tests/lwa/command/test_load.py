@@ -6,6 +6,7 @@ import pytest
 import sympy as sp
 
 from lwa import Cell, Dimer, Power, background_wave, canonical_wave, general, homogenize
+from lwa.law import named
 from tests.lwa.command.answers import result, run
 
 
@@ -83,7 +84,69 @@ def test_wave_in_forces(capsys):
         assert found[name] == pytest.approx(expected, rel=1e-14)
     status, out, _ = run(capsys, "wave", *options, "--precompression", "3", "--force", "10")
     assert status == 0
-    assert f"speed = {sp.N(wave.speed, 15)}"[:20] in out
+    assert f"{sp.N(wave.speed, 15)}"[:16] in out
+
+
+@pytest.mark.parametrize("load", [("--background", "1/2"), ("--precompression", "1/2")])
+@pytest.mark.parametrize("law", [("--k", "3/2"), ("--law", "hertz2:1,1/3")])
+def test_a_wave_under_load_in_a_program(capsys, load, law):
+    """Functions of B and F against the closed forms in 30 digits."""
+    chain = ("--masses", "1,3", "--spacing", "1", *law)
+    status, out, err = run(capsys, "wave", *chain, *load, "--format", "python")
+    assert (status, err) == (0, "")
+    module = {}
+    exec(out, module)  # our own output, which is what is on trial
+    power = law[0] == "--k"
+    cell = Cell([1, 3], spacing=1)
+    contact = Power("3/2") if power else named("hertz2", 1, "1/3")
+    p0 = contact.compression(cell, sp.S.Half) if load[0] == "--precompression" else "1/2"
+    wave = background_wave(cell, p0, law=contact)
+    for B in ("1/3", "7/2"):
+        assert module["speed"](float(sp.Rational(B))) == pytest.approx(
+            float(sp.N(wave.speed(B), 30)), rel=1e-13
+        )
+        kdv = float(sp.N(wave.kdv.width(B), 30))
+        assert module["kdv_width"](float(sp.Rational(B))) == pytest.approx(kdv, rel=1e-14)
+    assert module["time_scale"]() == pytest.approx(float(wave.time_scale), rel=1e-15)
+    assert ("speed_at_force" in module) == power
+    if power and load[0] == "--precompression":
+        at = result(capsys, "wave", *chain, *load, "--force", "5")
+        assert module["speed_at_force"](5.0) == pytest.approx(at["speed_value"], rel=1e-13)
+
+
+@pytest.mark.parametrize("language", ["numpy", "c", "fortran", "julia"])
+def test_a_wave_under_load_has_all_languages(capsys, language):
+    options = ("--law", "hertz2", "--background", "p0", "--format", language)
+    status, out, err = run(capsys, "wave", *options)
+    assert (status, err) == (0, "")
+    assert "kdv_width" in out
+    assert "tau/t" in out
+
+
+@pytest.mark.parametrize(
+    ("options", "parts"),
+    [
+        (("--background", "p0"), (r"V_{s} &= ", r"c_{0} &= ", "p_{0} &= p_{0}")),
+        (("--precompression", "1", "--force", "2", "--k", "3/2"), ("F_{0} &= 1", "u_{t} &= ")),
+        (("--force", "f"), (r"\mathrm{d}x/\mathrm{d}t &= ", "F &= f")),
+    ],
+)
+def test_waves_in_latex(capsys, options, parts):
+    status, out, err = run(capsys, "wave", "--format", "latex", "--masses", "1", *options)
+    assert (status, err) == (0, "")
+    assert out.startswith("\\begin{align}\n")
+    assert all(part in out for part in parts)
+
+
+def test_unlike_beads_without_a_solitary_wave_are_told(capsys):
+    """ω = 0.55 has no solitary wave, ω = 0.02 and 0.9 radiate next to nothing."""
+    for omega, told in (("0.55", True), ("0.2", True), ("0.9", False), ("0.02", False)):
+        for command in (("wave", "--closure", "full", "--field", "center"), ("expansion",)):
+            options = (*command, "--k", "3/2", "--masses", f"1,{omega}")
+            assert ("notes" in result(capsys, *options)) == told
+            status, out, _ = run(capsys, *options)
+            assert status == 0
+            assert ("no true solitary wave" in out) == told
 
 
 def test_bands_in_si(capsys):
@@ -128,7 +191,7 @@ BAD = [
     (("wave", "--background", "1", "--closure", "linear"), "canonical field"),
     (("wave", "--background", "1", "--precompression", "1"), "both given"),
     (("wave", "--background", "1", "--force", "1"), "goes with --precompression"),
-    (("wave", "--background", "1", "--format", "c"), "under load"),
+    (("wave", "--precompression", "1", "--force", "2", "--format", "c"), "for any force"),
     (("wave", "--background", "B"), "'B'"),
     (("wave", "--background", "1", "--law", "hertz2:A,B"), "'A': the name means the stiffness"),
     (("wave", "--background", "1", "--law", "hertz2:1,B"), "'B': the name means the peak strain"),

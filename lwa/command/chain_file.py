@@ -1,0 +1,106 @@
+"""The chain of a scene's file: its cell, contact law and static load, in SI where it says so.
+
+Every file that `lwa-validate run` takes describes such a chain. What it says besides, of the length
+of the chain, its striker, wall, defects and sensors, is not of the theory.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import sympy as sp
+
+from lwa.base.exact import InputError
+from lwa.base.files import load
+from lwa.base.tables import Table, array, each, positive, real, table
+from lwa.cell import Cell, D
+from lwa.law import ContactLaw, Power, named
+from lwa.spheres.beads import SCENE, spheres
+from lwa.spheres.hertz import EXPONENT
+
+CHAIN = ("cell", "repeat", "k", "law", "stiffnesses", "spacings")
+
+
+@dataclass(frozen=True)
+class ChainFile:
+    """A chain as a file describes it.
+
+    precompression : the static load, 0 for none.
+    si : whether the file is in SI.
+    """
+
+    cell: Cell
+    law: ContactLaw
+    precompression: sp.Expr
+    si: bool
+
+
+def read_chain(path: str | Path) -> ChainFile:
+    """The chain of a file.
+
+    Raises `lwa.InputError`, in one line that names file and key, for whatever it cannot mean.
+    """
+    return load(path, "a list of spheres", _chain)
+
+
+def _chain(content: Any) -> ChainFile:
+    if isinstance(content, dict) and "scene" in content:  # as `lwa-validate run --out` writes
+        content = content["scene"]
+    file = Table(content, "", ("materials", "beads", "chain", "precompression", *SCENE))
+    chain = file.read("chain", table(CHAIN))
+    row = chain.read("cell", array)
+    if not row:
+        raise InputError("chain.cell is empty: the names of one bead or more are wanted")
+    load = sp.Rational(str(file.read("precompression", real, 0.0)))
+    if load < 0:
+        raise InputError(f"precompression is {load}: it must not be negative")
+    if isinstance(row[0], int | float):
+        return ChainFile(*_masses(chain), load, file.read("units", _text, "") == "SI")
+    return ChainFile(Cell.of_spheres(spheres(content)), Power(EXPONENT), load, True)
+
+
+def _masses(chain: Table) -> tuple[Cell, ContactLaw]:
+    """The smallest cell that, repeated, is a row of masses and its contacts."""
+    repeat = int(chain.read("repeat", positive, 1))
+    masses = chain.read("cell", each(positive))
+    contacts = partial(_contacts, period=len(masses), beads=len(masses) * repeat)
+    stiffnesses = chain.read("stiffnesses", contacts, [1.0])
+    spacings = chain.read("spacings", contacts, [])
+    P = _period(masses, repeat, stiffnesses)
+    stiffnesses = [stiffnesses[i % len(stiffnesses)] for i in range(P)]
+    spacing = sp.Rational(str(sum(spacings) / len(spacings))) if spacings else D
+    cell = Cell(tuple(masses[:P]), tuple(stiffnesses), spacing)
+    if "law" not in chain:
+        return cell, Power(chain.read("k", real))
+    name, colon, parameters = chain.read("law", _text).partition(":")
+    return cell, named(name, *(parameters.split(",") if colon else ()))
+
+
+def _contacts(value: Any, name: str, period: int, beads: int) -> list[float]:
+    """One number for all contacts, those of the cell, or one for each of the chain."""
+    if not isinstance(value, list):
+        return [positive(value, name)]
+    found: list[float] = each(positive)(value, name)
+    if len(found) not in (period, beads - 1, beads):
+        raise InputError(f"{name} holds {len(found)}: {period} or {beads - 1} are wanted")
+    return found
+
+
+def _period(masses: Sequence[float], repeat: int, stiffnesses: Sequence[float]) -> int:
+    """The length of the smallest cell of a chain."""
+    row = list(masses) * (2 if repeat > 1 else 1)
+
+    def repeats(values: Sequence[float], P: int) -> bool:
+        return all(a == b for a, b in zip(values, values[P:], strict=False))
+
+    return next(P for P in range(1, len(row) + 1) if repeats(row, P) and repeats(stiffnesses, P))
+
+
+def _text(value: Any, name: str) -> str:
+    if not isinstance(value, str):
+        raise InputError(f"{name} is {value!r}: a text is wanted")
+    return value

@@ -1,0 +1,263 @@
+"""A derivation as text, JSON, LaTeX and the source of a Python module: `lwa derive`."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import sympy as sp
+
+from lwa.base import latex
+from lwa.base.exact import InputError
+from lwa.base.progress import announce
+from lwa.code.languages import LANGUAGES
+from lwa.equation.terms import Jet, Terms
+from lwa.law import Law, Power
+from lwa.theory import Theory
+from lwa.wave.functions import function_of, in_order
+
+SECONDS_A_TERM = 3e-4
+"""To convert and to write one term of a coefficient: measured at orders 8 to 12."""
+
+FIELDS = {
+    "first": "u is the displacement of the cell's first particle",
+    "center": "u is the canonical field, the mass-weighted mean of the fields at one point",
+}
+
+
+def write_out(theory: Theory) -> None:
+    """Write all coefficients as text, which is kept; with progress where it takes long."""
+    length = sum(found.length(jet) for found in theory.orders for jet in found)
+    if announce(f"{length} terms to be written", length * SECONDS_A_TERM):
+        from tqdm import tqdm  # here, for a quick start of the others
+
+        with tqdm(total=length, desc="terms", leave=False, disable=None) as progress:
+            for found in theory.orders:
+                for jet in found:
+                    found.written(jet)
+                    progress.update(found.length(jet))
+
+
+def chain_json(theory: Theory) -> dict[str, Any]:
+    """The chain, its law and the settings of a derivation; φ_n are functions of the compression."""
+    law = {}
+    if not isinstance(theory.law, Power):
+        law = {"law": str(theory.law.F), "phi": {str(n): str(x) for n, x in _phi(theory).items()}}
+    return {
+        "k": str(theory.k),
+        **law,
+        "masses": [str(m) for m in theory.cell.masses],
+        "stiffnesses": [str(A) for A in theory.cell.stiffnesses],
+        "spacing": str(theory.cell.spacing),
+        "order": theory.order,
+        "closure": theory.closure.name,
+        "branch": theory.closure.ring.branch,
+        "field": theory.closure.field,
+    }
+
+
+def chain_text(theory: Theory) -> str:
+    """The chain and its contact law on one line."""
+    law, cell = theory.law, theory.cell
+    force = f"A δ^k, k = {law.k}" if isinstance(law, Power) else f"A F({law.delta}), F = {law.F}"
+    return (
+        f"masses {listed(cell.masses)}; contact force F = {force}, "
+        f"A = {listed(cell.stiffnesses)}; spacing D = {cell.spacing}"
+    )
+
+
+def listed(values: tuple[sp.Expr, ...]) -> str:
+    """The values, separated by commas."""
+    return ", ".join(map(str, values))
+
+
+def _phi(theory: Theory) -> dict[int, sp.Expr]:
+    """n → φ_n in the compression, for a law that has a form."""
+    law = theory.law
+    known = isinstance(law, Law) and not law.formless
+    return {n: law.phi(n) for n in range(2, max(theory.order, 3))} if known else {}
+
+
+# --- JSON -------------------------------------------------------------------------------------
+
+
+def derivation_json(theory: Theory) -> dict[str, Any]:
+    """The object that `lwa derive --format json` prints.
+
+    ``terms`` are the right-hand side of u_ττ after its leading term. ``slaved`` (full closure) are
+    the terms W_n of w_i = u + u_x Σ D^n W_n by particle, 1 being the first, in the same form.
+    """
+    found = theory.pde.third_order
+    return {
+        **chain_json(theory),
+        "lambda": str(theory.amplitude_ratio),
+        "ansatz": {str(n): str(b) for n, b in theory.ansatz.items()},
+        **{name: str(found[name]) if found else None for name in "GHI"},
+        "terms": _terms_json(theory.pde.coefficients),
+        "vanishing": list(theory.pde.vanishing),
+        "slaved": [
+            {"particle": i + 1, **term}
+            for i, series in theory.slaved.items()
+            for term in _terms_json(series)
+        ],
+        "defect": _terms_json(theory.defect),
+        "conservative": theory.pde.conservative,
+    }
+
+
+def _terms_json(coefficients: Mapping[int, Terms]) -> list[dict[str, Any]]:
+    return [
+        {
+            "order": n,
+            "jet": [list(power) for power in jet.x],
+            "jet_t": [list(power) for power in jet.t],
+            "coefficient": found.written(jet),
+        }
+        for n, found in coefficients.items()
+        for jet in found
+    ]
+
+
+# --- text -------------------------------------------------------------------------------------
+
+
+def derivation_text(theory: Theory) -> str:
+    """The lines that `lwa derive` prints."""
+    lines = [
+        chain_text(theory),
+        f"closure {theory.closure.name}, {theory.closure.ring.branch} branch, to "
+        f"D^{theory.order}; τ = t·{theory.pde.time_scale}",
+        FIELDS[theory.closure.field],
+        *_law_text(theory),
+        "",
+        *_ansatz_text(theory),
+        *_equation_text(theory),
+        "",
+        *_consistency_text(theory),
+    ]
+    return "\n".join(lines)
+
+
+def _law_text(theory: Theory) -> list[str]:
+    """The φ_n of a law other than a power."""
+    law = theory.law
+    if isinstance(law, Power):
+        return []
+    lines = [f"phi_n = {law.delta}^(n-1) F^(n)/F', at {law.delta} = D u_x; F' is taken there"]
+    return lines + [f"  phi{n} = {value}" for n, value in _phi(theory).items()]
+
+
+def _ansatz_text(theory: Theory) -> list[str]:
+    blocks: list[list[str]] = []
+    for i, series in theory.slaved.items():
+        w = i == 1  # the second particle's field, whose linear part is the ansatz
+        shown = {n: W.without(_is_linear) if w else W for n, W in series.items()}
+        if rows := _orders(shown, "D^", ""):
+            name = "nonlinear terms of w" if w else f"field of particle {i + 1}, less u"
+            blocks.append([f"{name}:", *rows, ""])
+    if theory.ansatz:
+        ansatz = ["w = λ (u + Σ b_n D^n ∂_x^n u), the linear part of the second particle's field"]
+        ansatz.append(f"  λ = {theory.amplitude_ratio}")
+        ansatz += [f"  b{n} = {b}" for n, b in theory.ansatz.items()]
+        blocks.insert(0, [*ansatz, ""])
+    return [line for block in blocks for line in block]
+
+
+def _is_linear(jet: Jet) -> bool:
+    return not jet.t and sum(e for _, e in jet.x) <= 1
+
+
+def _equation_text(theory: Theory) -> list[str]:
+    found = theory.pde.third_order
+    if theory.closure.ring.branch == "optical":
+        lines = ["u_ττ = -u^k + …   (contacts that also pull: the odd law |δ|^(k-1) δ)"]
+    elif theory.order == 1:
+        lines = ["the wave equation starts at D^(k+1), that is at order 2 of the ansatz"]
+    else:
+        powers = ("F'", "F' u_x^-2", "F' u_x^-1", "F'")
+        if isinstance(theory.law, Power):
+            powers = ("u_x^(k-1)", "u_x^(k-3)", "u_x^(k-2)", "u_x^(k-1)")
+        jets = ("u_xx", "u_xx^3", "u_xx u_xxx", "u_4x")
+        parts = [f"{name}{p} {jet}" for name, p, jet in zip(_LETTERS, powers, jets, strict=True)]
+        more = theory.order > (4 if found else 2)
+        lines = ["u_ττ = " + " + ".join(parts if found else parts[:1]) + (" + …" if more else "")]
+        lines += [f"  {name} = {value}" for name, value in found.items()]
+    prefix, suffix = _order_name(theory)
+    shown = {n: c for n, c in theory.pde.coefficients.items() if not (found and n == 3)}
+    lines += _orders(shown, prefix, suffix)
+    vanishing = ", ".join(f"{prefix}{n}{suffix}" for n in theory.pde.vanishing)
+    return [*lines, f"  vanishing identically: {vanishing}"] if vanishing else lines
+
+
+_LETTERS = ("", "G ", "H ", "I ")
+
+
+def _order_name(theory: Theory) -> tuple[str, str]:
+    """The text before and behind the n of an order: the power of D where there is one."""
+    if isinstance(theory.law, Law):
+        return "order ", ""
+    return ("D^(k+", ")") if theory.closure.ring.branch == "acoustic" else ("D^", "")
+
+
+def _consistency_text(theory: Theory) -> list[str]:
+    if not theory.defect:
+        lines = ["all equations of motion are satisfied at every order shown"]
+    else:
+        lines = ["defect: u_ττ by the first equation of motion minus u_ττ by the second"]
+        lines += _orders(theory.defect, *_order_name(theory))
+    if theory.closure.ring.branch == "acoustic" and not theory.pde.conservative:
+        lines.append(
+            "not in conservation form: the linear closure of unequal particles does not conserve "
+            "momentum; see --closure full"
+            if theory.closure.name == "linear"
+            else "not in conservation form in this field; see --field center"
+        )
+    return lines
+
+
+def _orders(coefficients: Mapping[int, Terms], prefix: str, suffix: str) -> list[str]:
+    lines = []
+    for n, found in coefficients.items():
+        rows = [f"    {found.text(jet)}: {found.written(jet)}" for jet in found]
+        lines += [f"  {prefix}{n}{suffix}:", *rows] if rows else []
+    return lines
+
+
+# --- LaTeX and Python -------------------------------------------------------------------------
+
+
+def derivation_latex(theory: Theory) -> str:
+    """The law, the ansatz and the wave equation to all orders, as LaTeX."""
+    return latex.align(
+        [*_law_latex(theory), *theory.closure.latex_rows(), *theory.pde.latex_rows()]
+    )
+
+
+def _law_latex(theory: Theory) -> list[str]:
+    law = theory.law
+    if isinstance(law, Power):
+        return []
+    delta = sp.latex(law.delta)
+    rows = [] if law.formless else [latex.row(rf"F({delta})", law.F)]
+    definition = rf"\frac{{{delta}^{{n-1}} F^{{(n)}}({delta})}}{{F'({delta})}}"
+    place = rf"{delta} = {sp.latex(theory.cell.spacing)} u_{{x}}"
+    rows.append(rf"\phi_{{n}} = {definition} \quad \text{{and}}\ F'({delta})\ \text{{at}}\ {place}")
+    return rows + [latex.row(rf"\phi_{{{n}}}", value) for n, value in _phi(theory).items()]
+
+
+def derivation_python(theory: Theory) -> str:
+    """The source of a module with b1 …, G, H, I, and all coefficients by order and jet."""
+    if isinstance(theory.law, Law):
+        raise InputError("--format python is for power laws: others have text, json and latex")
+    cell = theory.cell
+    order = in_order(theory.k, *cell.masses, *cell.stiffnesses, cell.spacing)
+    table = {n: {jet: found[jet] for jet in found} for n, found in theory.pde.coefficients.items()}
+    values = {f"b{n}": b for n, b in theory.ansatz.items()} | theory.pde.third_order
+    functions = [
+        function_of(order, name, f"The coefficient {name}", v) for name, v in values.items()
+    ]
+    doc = "{n: {(jet, jet_t): c}}, orders D^(k+n), without the power of D"
+    functions.append(function_of(order, "coefficients", doc, sp.Dict(table)))
+    return LANGUAGES["python"](functions).module(
+        ["The ansatz and the wave equation. Written by lwa."]
+    )

@@ -1,0 +1,243 @@
+"""Results of a command as rows, each of which is written as text, JSON and LaTeX.
+
+A value is an exact expression, a tuple of them (one per contact), a sum with its error, or the
+fault that keeps a sum from being formed.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import sympy as sp
+
+from lwa.base import latex
+from lwa.base.exact import InputError
+from lwa.expansion.approximants import Resummed
+
+DIGITS = 15
+"""Significant digits of a printed number; all of them are correct."""
+
+LONG = 160
+"""Characters of an exact number beyond which text shows its digits alone."""
+
+SAME = object()
+"""The number of a row is its value."""
+
+Values = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Row:
+    """A result.
+
+    key : name in JSON; "fwhm.force" is the entry "force" of "fwhm". Not in JSON where empty.
+    label : name in text; not in text where empty.
+    symbol : name in LaTeX; not in LaTeX where empty.
+    number : the expression whose digits are told, where it is not the value; None for none.
+    exact : whether JSON has the expression itself, besides its digits.
+    formula : LaTeX of the value where it is not the value's own.
+    """
+
+    key: str
+    label: str
+    value: Any
+    symbol: str = ""
+    number: Any = SAME
+    exact: bool = True
+    formula: str = ""
+
+    @property
+    def digits(self) -> Any:
+        """What is told in digits."""
+        return self.value if self.number is SAME else self.number
+
+
+@dataclass(frozen=True)
+class Answer:
+    """The result of a command.
+
+    head : JSON of the chain and the settings.
+    rows : in the order of the text, whose other lines stand between them.
+    units : unit of the values by key, for a chain in SI.
+    spacing : the symbol of the unit of length, or a number.
+    equations : rows of LaTeX before the others.
+    notes : limits of the numbers.
+    parts : further answers by their key in JSON.
+    """
+
+    head: Mapping[str, Any]
+    rows: Sequence[Row | str]
+    units: Mapping[str, str] = field(default_factory=dict)
+    spacing: sp.Expr = sp.S.One
+    equations: Sequence[str] = ()
+    notes: Sequence[str] = ()
+    parts: Mapping[str, Answer] = field(default_factory=dict)
+
+    def plain(self, value: sp.Expr) -> sp.Expr:
+        """The value at V_s = 1 and B = 1, and at D = 1 where the spacing is a symbol."""
+        ones = {s: sp.S.One for s in value.free_symbols if s.name in ("V_s", "B")}
+        if self.spacing.is_Symbol:
+            ones[self.spacing] = sp.S.One
+        return value.subs(ones)
+
+    def unit(self, row: Row) -> str:
+        """The unit of a row in SI, empty where there is none."""
+        return self.units.get(row.key.partition(".")[0], "")
+
+    # --- JSON -------------------------------------------------------------------------------
+
+    def json(self) -> Values:
+        """The object that ``--format json`` prints.
+
+        Names ending in ``_value`` are floats, in the unit of length where the spacing is a symbol
+        and at V_s = 1 and B = 1. Symbols, complex numbers and numbers beyond a double have none.
+        """
+        result = dict(self.head)
+        rows = [row for row in self.rows if isinstance(row, Row) and row.key]
+        for row in rows:
+            if row.exact and isinstance(row.value, sp.Expr | tuple):
+                _put(result, row.key, "", _each(str, row.value))
+        for row in rows:
+            self._put_digits(result, row)
+        if self.units:
+            result["units"] = dict(self.units)
+        result |= {key: part.json() for key, part in self.parts.items()}
+        return result | ({"notes": list(self.notes)} if self.notes else {})
+
+    def _put_digits(self, result: Values, row: Row) -> None:
+        found = row.digits
+        if isinstance(found, Resummed):
+            _put(result, row.key, "_value", found.value)
+            _put(result, row.key, "_error_value", found.error)
+        elif isinstance(found, InputError):
+            _put(result, row.key, "_value", None)
+            _put(result, row.key, "_error_value", None)
+        elif found is not None:
+            floats = _each(lambda x: as_float(self.plain(x)), found)
+            if floats is not None:
+                _put(result, row.key, "_value", floats)
+
+    # --- text -------------------------------------------------------------------------------
+
+    def text(self) -> str:
+        """The lines that ``--format text`` prints."""
+        lines = []
+        for row in self.rows:
+            if isinstance(row, str):
+                lines.append(row)
+            elif row.label:
+                lines.append(f"  {row.label}{self._said(row)}")
+        lines += [part.text() for part in self.parts.values()]
+        return "\n".join([*lines, *(f"\nNote: {note}" for note in self.notes)])
+
+    def _said(self, row: Row) -> str:
+        unit = f" {self.unit(row)}".rstrip()
+        if isinstance(row.digits, InputError):
+            return f": {row.digits}"
+        if isinstance(row.digits, Resummed):
+            return f" = {summed(row.digits, unit)}"
+        parts = row.value if isinstance(row.value, tuple) else (row.value,)
+        if row.number is not SAME and row.exact is False and row.number is not None:
+            parts = (row.number,)
+        told = row.number is not None
+        return " = " + ", ".join(self._shown(x, told) for x in dict.fromkeys(parts)) + unit
+
+    def _shown(self, value: sp.Expr, told: bool) -> str:
+        """The value, and its digits behind it where they are told and it is no short number."""
+        if self.units:
+            return approximate(value)
+        plain = self.plain(value)
+        if not told or value.free_symbols - {self.spacing} or plain.is_Rational:
+            return str(value)
+        digits = sp.sstr(sp.N(plain, DIGITS), full_prec=False) + self._length_unit(value)
+        written = str(value)
+        return digits if plain.is_Float or len(written) > LONG else f"{written} ≈ {digits}"
+
+    def _length_unit(self, value: sp.Expr) -> str:
+        if not self.spacing.is_Symbol or self.spacing not in value.free_symbols:
+            return ""
+        power = sp.cancel(value.diff(self.spacing) * self.spacing / value)
+        if not power.is_number:
+            return ""
+        return f" {self.spacing}" if power == 1 else f" {self.spacing}^{power}"
+
+    # --- LaTeX ------------------------------------------------------------------------------
+
+    def latex(self) -> str:
+        """The display that ``--format latex`` prints, notes as comments behind it."""
+        display = latex.align(self._equations())
+        return "\n".join([display, *(f"% {note}" for note in self.notes)])
+
+    def _equations(self) -> list[str]:
+        rows = [row for row in self.rows if isinstance(row, Row) and row.symbol]
+        lines = [f"{row.symbol} = {text}" for row in rows if (text := self._formula(row))]
+        parts = (line for part in self.parts.values() for line in part._equations())
+        return [*self.equations, *lines, *parts]
+
+    def _formula(self, row: Row) -> str:
+        found = row.digits if isinstance(row.digits, Resummed | InputError) else row.value
+        unit = rf"\ \mathrm{{{self.unit(row)}}}" if self.unit(row) else ""
+        if row.formula or found is None or isinstance(found, InputError):
+            return row.formula
+        if isinstance(found, Resummed):
+            return rf"{_decimal(found.value)} \pm {_decimal(found.error, 2)}{unit}"
+        parts = dict.fromkeys(found if isinstance(found, tuple) else (found,))
+        if self.units:
+            return r",\ ".join(map(_approximate_latex, parts)) + unit
+        return r",\ ".join(map(latex.expression, parts)) + unit
+
+
+def _put(result: Values, key: str, suffix: str, value: Any) -> None:
+    group, dot, entry = key.partition(".")
+    if dot:
+        result.setdefault(group + suffix, {})[entry] = value
+    else:
+        result[group + suffix] = value
+
+
+def _each(read: Callable[[sp.Expr], Any], value: Any) -> Any:
+    """``read`` of an expression or of each in a tuple; None where it is None of one."""
+    if isinstance(value, sp.Expr):
+        return read(value)
+    found = [read(x) for x in value]
+    return None if None in found else found
+
+
+def as_float(value: sp.Expr) -> float | None:
+    """The nearest float of an exact number, None for what is symbolic, complex or out of range."""
+    if value.free_symbols:
+        return None
+    number = sp.N(value, 30)
+    if not number.is_real or not (number == 0 or 1e-300 < abs(number) < 1e300):
+        return None
+    return float(number)
+
+
+def approximate(value: sp.Expr) -> str:
+    """A number in digits; an expression in symbols with its numeric factor in digits."""
+    factor, rest = value.as_independent(*value.free_symbols, as_Add=False)
+    number = sp.sstr(sp.N(factor, DIGITS), full_prec=False)
+    return str(rest) if factor == 1 and rest != 1 else number if rest == 1 else f"{number}·{rest}"
+
+
+def _approximate_latex(value: sp.Expr) -> str:
+    factor, rest = value.as_independent(*value.free_symbols, as_Add=False)
+    number = sp.latex(sp.N(factor, DIGITS))
+    return str(
+        number if rest == 1 else sp.latex(rest) if factor == 1 else rf"{number} {sp.latex(rest)}"
+    )
+
+
+def summed(found: Resummed, unit: str = "") -> str:
+    """A sum to as many digits as the error lets stand, and one more."""
+    digits = min(16, 2 - math.floor(math.log10(found.error / found.value)))
+    note = "; higher orders do not help" if found.asymptotic else ""
+    value = f"{found.value:.{digits}g} ± {found.error:.1e}{unit}"
+    return f"{value} (to ε^{found.order}{note})"
+
+
+def _decimal(value: float, digits: int = 10) -> str:
+    return str(sp.latex(sp.Float(value, digits)))

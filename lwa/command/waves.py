@@ -1,0 +1,256 @@
+"""Traveling waves as rows: the compact wave, the wave of a given force, waves under load."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import sympy as sp
+
+from lwa.base import latex
+from lwa.base.exact import InputError
+from lwa.base.quantities import QUANTITIES, NoSolitaryWave
+from lwa.cell import Cell
+from lwa.command.derivation import FIELDS, chain_json, chain_text, listed
+from lwa.command.rows import Answer, Row, Values
+from lwa.theory import Theory
+from lwa.wave.background import BackgroundWave
+from lwa.wave.precompressed import PrecompressedWave
+from lwa.wave.traveling import TravelingWave
+
+RADIATES = 0.05
+"""Share of c² and of the widths, by the bound of `lwa.Radiation`, from which on a wave of unlike
+beads is said to radiate; for dimers of spheres m2/m1 = 0.06 … 0.73."""
+
+
+def si_units(k: sp.Expr) -> dict[str, str]:
+    """Unit in SI by key, for the exponent k; other keys are numbers (τ is a length)."""
+    lengths = ("spacing", "width", "fwhm", "compression", "compressions", "static_compression")
+    return {
+        "masses": "kg",
+        "stiffnesses": f"N/m^({k})",
+        "beta": "1/m",
+        **dict.fromkeys(lengths, "m"),
+        "fwhm_time": "s",
+        **dict.fromkeys(("force", "precompression"), "N"),
+        **dict.fromkeys(("speed", "bead_velocity", "sound_speed", "time_scale"), "m/s"),
+    }
+
+
+def radiation_note(cell: Cell, k: sp.Expr) -> list[str]:
+    """The note that a wave of unlike beads radiates, where it does so by more than `RADIATES`."""
+    if k.free_symbols or len({*cell.masses}) == len({*cell.stiffnesses}) == 1:
+        return []
+    from lwa.expansion.radiation import radiation  # here, for a quick start of the others
+
+    found = radiation(cell, k)
+    lost = found.relative(float(k)) if found else 0.0
+    if lost < RADIATES:
+        return []
+    return [
+        "between isolated mass ratios these unlike beads have no true solitary wave: a pulse "
+        f"radiates and decays, which the theory leaves out (bound on speed² and widths: {lost:.0%})"
+        "; the force of a contact may have several humps, of which a width is the highest one's"
+    ]
+
+
+def _fwhm(wave: Any, *extent: str) -> dict[str, sp.Expr]:
+    return {quantity: wave.fwhm(quantity, *extent) for quantity in QUANTITIES}
+
+
+def _fwhm_rows(key: str, label: str, widths: Mapping[str, sp.Expr], **settings: Any) -> list[Row]:
+    symbol = r"\mathrm{{FWHM}}_{{\mathrm{{{}}}{}}}"
+    of_time = r",\,\tau" if "time" in key else ""
+    return [
+        Row(f"{key}.{q}", label.format(q), width, symbol.format(q, of_time), **settings)
+        for q, width in widths.items()
+    ]
+
+
+def compact(theory: Theory, wave: TravelingWave) -> Answer:
+    """The compact wave of no force in particular: `lwa wave`.
+
+    Its values are at V_s = 1 (B, mu) and B = 1 (speed).
+    """
+    one, other = (wave.reduction(root) for root in (0, 1))
+    names = ("p", "a", "mu", "eta", "sigma", "s")
+    roots = [{name: str(getattr(r, name)) for name in names} for r in (one, other)]
+    log_B = -sp.log(wave.speed_factor) / (wave.k - 1)
+    rows: list[Row | str] = [
+        f"masses {listed(theory.cell.masses)}; k = {wave.k}; closure {theory.closure.name}; "
+        + FIELDS[theory.closure.field],
+        "v = u_x = B cos^(2/(k-1))(β ξ), ξ = x - V_s τ, on |ξ| ≤ π/(2β)",
+        "",
+        Row("beta", "β", wave.beta, r"\beta"),
+        Row("width", "width π/β", wave.width, "L"),
+        *_fwhm_rows("fwhm", "FWHM of the {}", _fwhm(wave)),
+        Row("B", "B", wave.amplitude(), "B"),
+        Row("speed", "V_s", wave.speed(), "V_{s}"),
+        f"  F_m ∝ V_s^({wave.force_exponent});  dx/dt = V_s · {wave.speed_scale}",
+        Row("speed_factor", "", wave.speed_factor, number=None),
+        Row("time_scale", "", wave.speed_scale, r"\mathrm{d}x/\mathrm{d}t / V_{s}", number=None),
+        Row("log_B", "", log_B, exact=False),
+        "",
+        "v = z^p, integrating factor z^a: z'' = μ z^η - σ z",
+        *_reduction_rows(theory, one),
+        Row("", "the other root, p", other.p),
+        Row("", "with a", other.a),
+    ]
+    head = chain_json(theory) | {"roots": roots}
+    notes = radiation_note(theory.cell, wave.k)
+    return Answer(head, rows, spacing=wave.D, notes=notes)
+
+
+def _reduction_rows(theory: Theory, found: Any) -> list[Row]:
+    """p, a, μ, η, σ and s; in LaTeX by p and a, as the paper has them, where they are long."""
+    formulas = {
+        "a": r"1 - k p + 3 (p - 1) + \frac{p H}{I}",
+        "mu": r"\frac{V_{s}^{2}}{I (p + a)}",
+        "eta": "1 + p - k p",
+        "sigma": r"\frac{1}{I (k p + a)}",
+        "s": r"\frac{2}{1 - \eta}",
+    }
+    rows = []
+    for name in ("p", *formulas):
+        value = getattr(found, name)
+        wide = latex.width(str(sp.latex(value))) > latex.WIDTH
+        symbol = str(sp.latex(sp.Symbol(name)))
+        rows.append(Row(name, name, value, symbol, formula=formulas.get(name, "") if wide else ""))
+    if any(row.formula for row in rows):
+        rows += [Row("", "", theory.pde.third_order[name], name) for name in "HI"]
+    return rows
+
+
+def at_force(theory: Theory, wave: TravelingWave, F: sp.Expr, units: Mapping[str, str]) -> Answer:
+    """The compact wave of peak contact force F: `lwa wave --force F`.
+
+    B and V_s = dx/dτ are those of this wave, ``speed`` is dx/dt. ``compressions`` are those of the
+    cell's contacts, ``compression`` their mean, ``fwhm`` lengths and ``fwhm_time`` times.
+    """
+    cell, answer = theory.cell, wave.at_force(F)
+    rows: list[Row | str] = [
+        f"closure {theory.closure.name}; {FIELDS[theory.closure.field]}",
+        f"contact force F = A δ^k, k = {theory.k}; an endless chain without load",
+        *_chain_rows(cell, units),
+        "",
+        Row("force", "peak contact force F", answer.force, "F"),
+        Row("strain", "peak strain B", answer.strain),
+        Row("compression", "", answer.compression, r"\delta"),
+        Row("compressions", "peak compression", answer.compressions),
+        Row("speed", "speed dx/dt", answer.speed, r"\mathrm{d}x/\mathrm{d}t"),
+        Row("bead_velocity", "peak velocity of the beads", answer.bead_velocity, "u_{t}"),
+        *_fwhm_rows("fwhm", "FWHM of the {}", _fwhm(answer)),
+        *_fwhm_rows("fwhm_time", "FWHM of the {} in time", _fwhm(answer, "time")),
+        Row("beta", "", wave.beta, r"\beta"),
+        Row("width", "", wave.width, "L"),
+        Row("speed_factor", "", wave.speed_factor),
+        Row("time_scale", "", wave.speed_scale, r"\mathrm{d}x/\mathrm{d}t / V_{s}"),
+        Row("B", "", answer.strain, "B"),
+        Row("V_s", "", wave.speed(answer.strain), "V_{s}"),
+    ]
+    notes = radiation_note(cell, wave.k)
+    return Answer(chain_json(theory), rows, units, wave.D, notes=notes)
+
+
+def _chain_rows(cell: Cell, units: Mapping[str, str]) -> list[Row]:
+    """Masses, stiffnesses and spacing; without units they are in the head of the JSON alone."""
+    named = (
+        ("masses", "masses", cell.masses, "m"),
+        ("stiffnesses", "A", cell.stiffnesses, "A"),
+        ("spacing", "spacing D", cell.spacing, "D"),
+    )
+    if units:
+        return [Row(*parts) for parts in named]
+    return [Row("", label, value) for _, label, value, _ in named]
+
+
+def on_background(theory: Theory, wave: BackgroundWave) -> Answer:
+    """The waves on a strain p0: `lwa wave --background P0`.
+
+    ``speed`` is V_s in p0 and B, ``kdv`` the limit of small B with the sech² wave's speed and its
+    ``width`` L, v = B sech²(ξ/L); null where no sound runs. Values are those at B = 1, and are left
+    out where that wave does not exist.
+    """
+    head: Values = chain_json(theory)
+    speed, widths = _at_one(wave)
+    rows: list[Row | str] = [
+        chain_text(theory),
+        FIELDS[theory.closure.field],
+        f"u_x = p0 + v(ξ), ξ = x - V_s τ, p0 = {wave.p0}; v rises by B",
+        "",
+        Row("background", "", wave.p0, "p_{0}", number=None),
+        Row("I", "", wave.I, "I", number=None),
+        Row("speed", "V_s", wave.speed(), "V_{s}", number=None),
+        Row("time_scale", "dx/dt over V_s", wave.time_scale, _SCALE, number=None),
+    ]
+    if speed is not None:
+        rows.append(Row("speed", "V_s at B = 1", sp.S.Zero, number=speed, exact=False))
+    rows += _fwhm_rows("fwhm", "FWHM of the {} at B = 1", widths, exact=False)
+    try:
+        kdv = wave.kdv
+    except NoSolitaryWave:
+        head["kdv"] = None
+        rows += ["", "no sound runs on this background: no wave is small"]
+    else:
+        rows += [
+            "",
+            "small waves: v_τ + c0 v_x + α v v_x + γ v_xxx = 0, v = B sech²(ξ/L)",
+            Row("kdv.sound_speed", "c0", kdv.sound_speed, "c_{0}"),
+            Row("kdv.nonlinearity", "α", kdv.nonlinearity, r"\alpha"),
+            Row("kdv.dispersion", "γ", kdv.dispersion, r"\gamma"),
+            Row("kdv.speed", "V_s of a small wave", kdv.speed(), r"V_{s} (B \to 0)"),
+            Row("kdv.width", "L", kdv.width(), "L"),
+        ]
+    return Answer(head, rows, spacing=wave.cell.spacing)
+
+
+_SCALE = r"\mathrm{d}x/\mathrm{d}t / V_{s}"
+
+
+def _at_one(wave: BackgroundWave) -> tuple[sp.Expr | None, dict[str, sp.Expr]]:
+    """Speed and widths of the wave of B = 1; none where there is no wave, or symbols."""
+    try:
+        speed = wave.speed(1)
+        if speed.free_symbols - {wave.cell.spacing}:
+            return None, {}
+        return speed, {q: wave.fwhm(1, q) for q in QUANTITIES}
+    except NoSolitaryWave:
+        return None, {}
+    except InputError:
+        return speed, {}
+
+
+def precompressed(theory: Theory, wave: PrecompressedWave, units: Mapping[str, str]) -> Answer:
+    """The wave of a force in a chain under load: `lwa wave --precompression F0 --force F`.
+
+    ``speed`` and ``sound_speed`` are dx/dt, ``V_s`` dx/dτ; ``background`` is the strain under the
+    load, B the rise of the strain in the wave, ``compressions`` the rises of the cell's contacts.
+    Widths are numbers, lengths and (``fwhm_time_value``) times.
+    """
+    rows: list[Row | str] = [
+        chain_text(theory) if not units else f"contact force F = A δ^k, k = {theory.k}",
+        FIELDS[theory.closure.field],
+        *(_chain_rows(theory.cell, units) if units else []),
+        "",
+        Row("precompression", "static force F0", wave.precompression, "F_{0}"),
+        Row("force", "peak contact force F, in all", wave.force, "F"),
+        Row("background", "static strain p0", wave.background.p0, "p_{0}"),
+        Row("static_compression", "static compression", wave.static_compression, r"\delta_{0}"),
+        Row("B", "rise of the strain B", wave.strain, "B"),
+        Row("compression", "rise of the compression", wave.compression, r"\delta - \delta_{0}"),
+        Row("compressions", "rise by contact", wave.compressions),
+        Row("V_s", "V_s", wave.background.speed(wave.strain), "V_{s}"),
+        Row("time_scale", "dx/dt over V_s", wave.background.time_scale, _SCALE),
+        Row("speed", "speed dx/dt", wave.speed, r"\mathrm{d}x/\mathrm{d}t"),
+        Row("sound_speed", "speed of sound dx/dt", wave.sound_speed, r"c_{0}"),
+        Row("bead_velocity", "peak velocity of the beads", wave.bead_velocity, "u_{t}"),
+    ]
+    for key, label, extent in (
+        ("fwhm", "FWHM of the {}", "length"),
+        ("fwhm_time", "FWHM of the {} in time", "time"),
+    ):
+        try:
+            rows += _fwhm_rows(key, label, _fwhm(wave, extent), exact=False)
+        except InputError:  # something is a symbol
+            break
+    return Answer(chain_json(theory), rows, units, theory.cell.spacing)

@@ -1,0 +1,115 @@
+"""Chains of scene files: `lwa wave --spheres` and `lwa expansion --spheres`."""
+
+import json
+
+import pytest
+
+from lwa.command.chain_file import read_chain
+from tests.lwa.command.answers import result, run
+
+MASSES = {
+    "duration": 1e-3,
+    "units": "SI",
+    "precompression": 2.0,
+    "chain": {
+        "cell": [4.5e-4, 4.5e-4],
+        "k": 1.5,
+        "stiffnesses": 8.4e7,
+        "spacings": 4.76e-3,
+        "repeat": 19,
+    },
+    "wall": {"stiffness": 8.4e7},
+    "damping": {"contact": 1.0},
+}
+BEADS = {
+    "duration": 1e-3,
+    "precompression": 2.0,
+    "beads": {"ball": {"radius": 2.38e-3, "mass": 0.45e-3, "material": "steel 316"}},
+    "chain": {"cell": ["ball"], "repeat": 38},
+    "wall": {"material": "steel 316"},
+}
+
+
+@pytest.fixture
+def scene(tmp_path):
+    """Write a scene to a file, with some entries of its chain replaced."""
+
+    def write(content, **chain):
+        file = tmp_path / "scene.json"
+        file.write_text(json.dumps(content | {"chain": content["chain"] | chain}))
+        return str(file)
+
+    return write
+
+
+def without_load(content):
+    return {key: value for key, value in content.items() if key != "precompression"}
+
+
+def test_a_scene_of_masses_is_the_chain_of_its_options(capsys, scene):
+    options = ("--k", "3/2", "--masses", "4.5e-4", "--stiffnesses", "8.4e7")
+    options += ("--spacing", "4.76e-3", "--force", "20", "--precompression", "2")
+    expected = result(capsys, "wave", *options)
+    found = result(capsys, "wave", "--spheres", scene(MASSES), "--force", "20")
+    assert found["units"]["speed"] == "m/s"
+    for name, value in expected.items():
+        if name.endswith("_value"):
+            assert found[name] == pytest.approx(value, rel=1e-14), name
+    again = result(capsys, "wave", "--spheres", scene({"scene": MASSES, **MASSES}), "--force", "20")
+    assert again == found
+
+
+@pytest.mark.parametrize("content", [MASSES, BEADS], ids=["masses", "beads"])
+def test_every_command_answers_in_si(capsys, scene, content):
+    loaded = result(capsys, "wave", "--spheres", scene(content), "--force", "20")
+    free = result(capsys, "wave", "--spheres", scene(without_load(content)), "--force", "20")
+    series = result(capsys, "expansion", "--spheres", scene(content), "--force", "20")
+    speed = series["physical"]["speed_value"]
+    assert series["physical"]["units"] == {"force": "N", "speed": "m/s", "fwhm": "m",
+                                           "fwhm_time": "s"}  # fmt: skip
+    assert free["speed_value"] == pytest.approx(speed, rel=0.02)  # c² of the theory: -2.4 %
+    assert loaded["speed_value"] > free["speed_value"]
+    assert "2 N, is left out" in series["notes"][0]
+    plain = result(capsys, "expansion", "--spheres", scene(without_load(content)), "--force", "20")
+    assert plain.pop("notes", None) is None
+    assert {k: v for k, v in series.items() if k != "notes"} == plain
+    status, out, _ = run(capsys, "expansion", "--spheres", scene(content))
+    assert status == 0
+    assert "peak contact force 1 N:" in out
+    assert " m/s (to " in out
+
+
+def test_the_cell_is_the_smallest_one_and_lengths_may_have_no_unit(scene):
+    found = read_chain(scene(MASSES, cell=[1, 2, 1, 2], stiffnesses=[3, 4, 3, 4]))
+    assert (found.cell.masses, found.cell.stiffnesses) == ((1, 2), (3, 4))
+    bare = without_load(MASSES) | {"chain": {"cell": [1, 2, 1], "k": 2}}
+    found = read_chain(scene(bare))
+    assert found.cell.masses == (1, 2)
+    assert found.cell.spacing.is_Symbol
+    assert found.precompression == 0
+
+
+def test_a_law_of_the_file(capsys, scene):
+    chain = {"cell": [1.0], "law": "hertz2:1,2", "spacings": 1.0}
+    file = scene(MASSES | {"chain": chain})
+    found = result(capsys, "wave", "--spheres", file, "--force", "20")
+    options = ("--law", "hertz2:1,2", "--masses", "1", "--spacing", "1", "--precompression", "2")
+    assert found["speed"] == result(capsys, "wave", *options, "--force", "20")["speed"]
+
+
+@pytest.mark.parametrize(
+    ("chain", "more", "words"),
+    [
+        ({"cell": []}, (), "chain.cell is empty"),
+        ({"cell": [1, -1]}, (), "chain.cell number 2 is -1"),
+        ({"stiffnesses": [1, 2, 3]}, (), "chain.stiffnesses holds 3"),
+        ({"law": 3}, (), "chain.law is 3: a text is wanted"),
+        ({"mass": 1}, (), "chain.mass is unknown"),
+        ({}, ("--precompression", "1"), "the file has a precompression of 2"),
+        ({}, ("--force", "1"), "only B > 0"),
+    ],
+)
+def test_bad_files_are_one_line(capsys, scene, chain, more, words):
+    status, out, err = run(capsys, "wave", "--spheres", scene(MASSES, **chain), *more)
+    assert (status, out, err.count("\n")) == (2, "", 1)
+    assert words in err
