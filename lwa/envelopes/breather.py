@@ -19,96 +19,86 @@ import sympy as sp
 
 from lwa.base.exact import InputError, root
 from lwa.base.frozen import Value
-from lwa.envelopes.schrodinger import KINDS, Envelope
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from lwa.base.arrays import Array
 
+KINDS = ("bright", "dark")
+"""An envelope that is localised, ω″χ < 0, and a dip in a wave train."""
+
 
 @dataclass(frozen=True)
 class Breather(Value):
-    """The standing envelope of the frequency (1 - ν) ω, ν the detuning.
+    """The standing envelope of the frequency (1 - ν) ω (see `lwa.Envelope.breather`).
 
-    Raises `lwa.InputError` unless the mode stands (its group velocity is zero), for a detuning to
-    the side where there is no such envelope, and, under a power law, where contacts open.
+    edge, dispersion, nonlinearity, mode, wavenumber : ω, ω″, χ, φ and κ of the envelope's equation.
+    opening : |A|² at which contacts begin to open, to leading order; infinite where contacts pull.
+    detuning, kind : ν, and one of `KINDS`.
+
+    Raises `lwa.InputError` for a detuning to the side where there is no such envelope, and for one
+    at which contacts open.
     """
 
-    envelope: Envelope
+    edge: sp.Expr
+    dispersion: sp.Expr
+    nonlinearity: sp.Expr
+    mode: tuple[sp.Expr, ...]
+    wavenumber: sp.Expr
+    opening: sp.Expr
     detuning: sp.Expr
     kind: str
 
     def __post_init__(self) -> None:
-        mode = self.envelope
-        if mode.group_velocity.is_zero is not True:
-            raise InputError(f"wavenumber is {mode.wavenumber}: a breather stands where ω′ = 0")
+        given = f"frequency is {sp.N(self.frequency, 8)}"
         if self._square.is_number and not self._square > 0:
-            side = "below" if mode.nonlinearity < 0 else "above"
-            raise InputError(
-                f"frequency is {sp.N(self.frequency, 8)}: {self.kind} breathers lie {side} "
-                f"{sp.N(mode.frequency, 8)}"
-            )
+            side = "below" if self.nonlinearity < 0 else "above"
+            raise InputError(f"{given}: {self.kind} breathers lie {side} {sp.N(self.edge, 8)}")
         part = self.detuning / self.opening_detuning
         if part.is_number and part > 1:
-            end = (1 - self.opening_detuning) * mode.frequency
+            end = (1 - self.opening_detuning) * self.edge
             raise InputError(
-                f"frequency is {sp.N(self.frequency, 8)}: contacts open from {sp.N(end, 8)} on, a "
-                f"detuning of {sp.N(self.opening_detuning, 5)}"
+                f"{given}: contacts open from {sp.N(end, 8)} on, a detuning of "
+                f"{sp.N(self.opening_detuning, 5)}"
             )
 
     @property
     def frequency(self) -> sp.Expr:
         """(1 - ν) ω."""
-        return (1 - self.detuning) * self.envelope.frequency
+        return (1 - self.detuning) * self.edge
 
     @property
     def _shift(self) -> sp.Expr:
         """2Ω of bright, Ω of dark breathers, over ν."""
-        return -(2 if self.kind == KINDS[0] else 1) * self.envelope.frequency
+        return -(2 if self.kind == KINDS[0] else 1) * self.edge
 
     @cached_property
     def _square(self) -> sp.Expr:
         """a², the largest |A|²."""
-        return sp.powsimp(sp.factor(self._shift * self.detuning / self.envelope.nonlinearity))
+        return sp.powsimp(sp.factor(self._shift * self.detuning / self.nonlinearity))
 
     @cached_property
     def amplitude(self) -> tuple[sp.Expr, ...]:
         """Largest displacement 2aφ of each bead of a cell, with the sign of the mode."""
-        return tuple(2 * root(self._square) * phi for phi in self.envelope.mode)
+        return tuple(2 * root(self._square) * phi for phi in self.mode)
 
     @cached_property
     def width(self) -> sp.Expr:
         """1/b in cells, of sech(bn) or tanh(bn)."""
-        ratio = self.envelope.dispersion / (self._shift * self.detuning)
+        ratio = self.dispersion / (self._shift * self.detuning)
         return root(sp.factor(-ratio if self.kind == KINDS[0] else ratio))
 
     @cached_property
     def opening_detuning(self) -> sp.Expr:
-        """The detuning at which contacts begin to open, to leading order; under a power law only.
+        """The detuning at which contacts begin to open; infinite where contacts pull.
 
-        >>> from lwa import Cell, Power
-        >>> from lwa import envelope
-        >>> e = envelope(Cell([1, "1/2"]), Power("3/2"), precompression=1)
-        >>> e.breather(detuning="1/1000").opening_detuning
+        >>> from lwa import Cell, Power, envelope
+        >>> chain = envelope(Cell([1, "1/2"]), Power("3/2"), precompression=1)
+        >>> chain.breather(detuning="1/1000").opening_detuning
         3/128
         """
-        mode = self.envelope
-        if not mode.law.homogeneous:
-            return sp.oo * sp.sign(self.detuning)
-        pairs = zip(mode.static_compressions, mode.strains, strict=True)
-        squares = (delta**2 / (4 * d) for delta, d in pairs if d)
-        return sp.simplify(sp.Min(*squares) * mode.nonlinearity / self._shift)
-
-    @property
-    def opening_load(self) -> sp.Expr:
-        """The static force at which contacts open at this frequency, ω ∝ F0^{(k-1)/(2k)}."""
-        law, cell = self.envelope.law, self.envelope.cell
-        if not law.homogeneous:
-            raise InputError("contacts open under a power law only")
-        ratio = (1 - self.detuning) / (1 - self.opening_detuning)
-        load = cell.stiffness(law.exponent) * self.envelope.compression**law.exponent
-        return load * ratio ** (2 * law.exponent / (law.exponent - 1))
+        return sp.simplify(self.opening * self.nonlinearity / self._shift)
 
     def displacements(self, cells: ArrayLike) -> Array:
         """Displacements of the beads at t = 0 to leading order, a row for each cell; in floats."""
@@ -117,5 +107,5 @@ class Breather(Value):
         n = np.asarray(cells, float)
         shape = n / float(self.width)
         envelope = 1 / np.cosh(shape) if self.kind == KINDS[0] else np.tanh(shape)
-        phase = np.cos(float(self.envelope.wavenumber) * n)
+        phase = np.cos(float(self.wavenumber) * n)
         return np.asarray(np.multiply.outer(envelope * phase, np.array(self.amplitude, float)))

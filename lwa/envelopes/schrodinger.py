@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import sympy as sp
 
@@ -17,18 +17,13 @@ from lwa.base import latex
 from lwa.base.exact import InputError, integer, positive, real, root, shorten
 from lwa.base.frozen import Value
 from lwa.cell import Cell, substitution
+from lwa.envelopes.breather import KINDS, Breather
 from lwa.envelopes.exact import exact_mode
 from lwa.envelopes.modes import Coefficients, NumericMode, numeric_mode
 from lwa.law import ContactLaw, for_cell
 
-if TYPE_CHECKING:
-    from lwa.envelopes.breather import Breather
-
 BRANCHES = ("acoustic", "optical")
 """Names of the two lowest branches."""
-
-KINDS = ("bright", "dark")
-"""An envelope that is localised, ω″χ < 0, and a dip in a wave train."""
 
 LONG = 400
 """Operations in a result from which on it is not factored."""
@@ -161,13 +156,24 @@ class Envelope(Value):
 
         Raises `lwa.InputError` as `lwa.Breather` does.
         """
-        from lwa.envelopes.breather import Breather  # here: it holds an envelope
-
         if (frequency is None) == (detuning is None):
             raise InputError("frequency or detuning: one of the two is wanted")
         if detuning is None:
             detuning = 1 - positive(frequency, "frequency") / self.frequency
-        return Breather(self, real(detuning, "detuning"), kind or self.kind)
+        if self.group_velocity.is_zero is not True:
+            raise InputError(f"wavenumber is {self.wavenumber}: a breather stands where dω/dκ = 0")
+        return Breather(
+            self.frequency, self.dispersion, self.nonlinearity, self.mode, self.wavenumber,
+            self._opening, real(detuning, "detuning"), kind or self.kind,
+        )  # fmt: skip
+
+    @property
+    def _opening(self) -> sp.Expr:
+        """|A|² at which the alternating compression 2|A||d| of a contact reaches the static one."""
+        if not self.law.homogeneous:
+            return sp.oo
+        pairs = zip(self.static_compressions, self.strains, strict=True)
+        return sp.Min(*(delta**2 / (4 * d) for delta, d in pairs if d))
 
     # --- the chain in units of its first mass and contact ---
 

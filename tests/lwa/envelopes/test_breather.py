@@ -65,20 +65,13 @@ def test_where_contacts_open_a_breather_is_refused_with_the_number():
     chain = envelope(Dimer(1, "1/2"), HERTZ, precompression=1)
     edge = chain.breather(detuning="3/128")
     assert float(edge.amplitude[1]) == pytest.approx(1, rel=1e-12)  # δ0
-    assert float(edge.opening_load) == pytest.approx(1, rel=1e-12)
     with pytest.raises(InputError, match=r"contacts open from 2\.392.* a detuning of 0\.02343"):
         chain.breather(detuning="1/40")
-    inside = chain.breather(detuning="1/100")
-    load = inside.opening_load  # at this frequency
-    stiffer = envelope(Dimer(1, "1/2"), HERTZ, precompression=load)
-    assert float(
-        stiffer.breather(frequency=inside.frequency * (1 + 1e-9)).amplitude[1]
-    ) == pytest.approx(float(load) ** (2 / 3), rel=1e-6)
 
 
 def test_contacts_that_pull_do_not_open():
     chain = envelope(Cell([1], spacing=1), named("exponential", 1), background=0)
-    assert chain.breather(detuning="1/2").opening_detuning == sp.oo
+    assert chain.breather(detuning="1/2").opening == sp.oo
 
 
 @pytest.mark.parametrize(
@@ -91,7 +84,7 @@ def test_contacts_that_pull_do_not_open():
 def test_what_is_no_breather_is_refused(options, message):
     with pytest.raises(InputError, match=message):
         envelope(Dimer(1, "1/2"), HERTZ, precompression=1).breather(**options)
-    with pytest.raises(InputError, match="a breather stands where ω′ = 0"):
+    with pytest.raises(InputError, match=r"a breather stands where dω/dκ = 0"):
         envelope(Cell([1]), HERTZ, precompression=1, wavenumber=1).breather(detuning="1/100")
 
 
