@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from lwa.base.arrays import Array
-from validation.lattice.effort import RunProgress, silent
+from validation.lattice.cost import RunProgress, silent
 from validation.lattice.equations import Motion
 from validation.lattice.run import Run
 from validation.lattice.simulate import COMPILED, twice

@@ -9,7 +9,7 @@ from pathlib import Path
 import click
 
 import validation.scenes
-from validation.lattice.effort import RunProgress
+from validation.lattice.cost import RunProgress
 from validation.lattice.run import Run
 from validation.lattice.simulate import COMPILED, METHODS
 from validation.pulses.sensors import READINGS, SPEEDS, TOLERANCE, Reading, Recording, record
