@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from lwa.closure.motion import Solution
     from lwa.envelopes.breather import Breather
     from lwa.envelopes.schrodinger import Envelope, envelope
+    from lwa.equation.evolution import Evolution
     from lwa.equation.pde import PDE
     from lwa.equation.terms import Jet, Powers, Terms
     from lwa.expansion.approximants import Resummed
@@ -64,6 +65,7 @@ __all__ = [
     "Dispersion",
     "Envelope",
     "EpsilonSeries",
+    "Evolution",
     "ExpandedWave",
     "Expansion",
     "InputError",
@@ -135,6 +137,7 @@ _MODULES = {
     "law": "ContactLaw Law Power general",
     "linear.dispersion": "Dispersion",
     "linear.loaded": "LoadedChain",
+    "equation.evolution": "Evolution",
     "equation.pde": "PDE",
     "base.quantities": "NoSolitaryWave",
     "wave.reduction": "Reduction",
