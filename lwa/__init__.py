@@ -33,8 +33,7 @@ if TYPE_CHECKING:
     from lwa.expansion.series import EpsilonSeries
     from lwa.expansion.strike import Strike, graded_force, pulse_of_strike, transmitted_force
     from lwa.law import ContactLaw, Law, Power, general
-    from lwa.linear.dispersion import Dispersion
-    from lwa.linear.loaded import LoadedChain
+    from lwa.linear.dispersion import Dispersion, LoadedChain
     from lwa.spheres import hertz
     from lwa.spheres.hertz import Material, Sphere
     from lwa.theory import Theory, homogenize
@@ -135,8 +134,7 @@ _MODULES = {
     "expansion.series": "EpsilonSeries",
     "expansion.strike": "Strike graded_force pulse_of_strike transmitted_force",
     "law": "ContactLaw Law Power general",
-    "linear.dispersion": "Dispersion",
-    "linear.loaded": "LoadedChain",
+    "linear.dispersion": "Dispersion LoadedChain",
     "equation.evolution": "Evolution",
     "equation.pde": "PDE",
     "base.quantities": "NoSolitaryWave",

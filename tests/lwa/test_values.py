@@ -17,7 +17,7 @@ from lwa import (
     general,
     homogenize,
 )
-from lwa.linear.loaded import LoadedChain
+from lwa.linear.dispersion import LoadedChain
 
 m1, m2 = sp.symbols("m1 m2", positive=True)
 
@@ -105,6 +105,16 @@ def test_repr_is_one_short_line(order):
         assert "\n" not in repr(piece)
         assert len(repr(piece)) < 600
     assert repr(theory().pde.coefficients[2]) == "{}"
+
+
+@pytest.mark.parametrize("make", MADE.values(), ids=MADE)
+def test_a_notebook_shows_it_in_latex(make):
+    """A display whose braces match, without Python's names of functions."""
+    shown = make()._repr_latex_()
+    assert shown.startswith("$$")
+    assert shown.endswith("$$")
+    assert shown.count("{") == shown.count("}")
+    assert "sqrt(" not in shown
 
 
 def test_latex_is_the_papers_equation_at_any_order():
