@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 
 import sympy as sp
 
+from lwa.base import latex
 from lwa.base.exact import InputError, root
 from lwa.base.frozen import Value
 
@@ -62,6 +63,11 @@ class Breather(Value):
                 f"{given}: contacts open from {sp.N(end, 8)} on, a detuning of "
                 f"{sp.N(self.opening_detuning, 5)}"
             )
+
+    def _repr_latex_(self) -> str:
+        shape = r"\operatorname{sech}" if self.kind == KINDS[0] else r"\tanh"
+        rows = [rf"|A| = a {shape}(b n)", latex.row("a^{2}", self._square)]
+        return latex.display([*rows, latex.row("b^{-1}", self.width)])
 
     @property
     def frequency(self) -> sp.Expr:
