@@ -21,6 +21,9 @@ if TYPE_CHECKING:
     from lwa.cell import Cell, D, Dimer, k
     from lwa.closure.consistency import Closure
     from lwa.closure.motion import Solution
+    from lwa.envelopes.breather import Breather
+    from lwa.envelopes.schrodinger import Envelope, envelope
+    from lwa.equation.evolution import Evolution
     from lwa.equation.pde import PDE
     from lwa.equation.terms import Jet, Powers, Terms
     from lwa.expansion.approximants import Resummed
@@ -30,8 +33,7 @@ if TYPE_CHECKING:
     from lwa.expansion.series import EpsilonSeries
     from lwa.expansion.strike import Strike, graded_force, pulse_of_strike, transmitted_force
     from lwa.law import ContactLaw, Law, Power, general
-    from lwa.linear.dispersion import Dispersion
-    from lwa.linear.loaded import LoadedChain
+    from lwa.linear.dispersion import Dispersion, LoadedChain
     from lwa.spheres import hertz
     from lwa.spheres.hertz import Material, Sphere
     from lwa.theory import Theory, homogenize
@@ -51,6 +53,7 @@ __all__ = [
     "PDE",
     "Array",
     "BackgroundWave",
+    "Breather",
     "Cell",
     "Closure",
     "Coefficients",
@@ -59,7 +62,9 @@ __all__ = [
     "D",
     "Dimer",
     "Dispersion",
+    "Envelope",
     "EpsilonSeries",
+    "Evolution",
     "ExpandedWave",
     "Expansion",
     "InputError",
@@ -92,6 +97,7 @@ __all__ = [
     "TravelingWave",
     "background_wave",
     "canonical_wave",
+    "envelope",
     "expand",
     "general",
     "graded_force",
@@ -119,6 +125,8 @@ _MODULES = {
     "wave.physical": "PhysicalWave",
     "wave.closed": "CompactWave",
     "base.exact": "InputError Quantity",
+    "envelopes.breather": "Breather",
+    "envelopes.schrodinger": "Envelope envelope",
     "expansion.approximants": "Resummed",
     "expansion.expand": "Expansion expand",
     "expansion.physical": "ExpandedWave",
@@ -126,8 +134,8 @@ _MODULES = {
     "expansion.series": "EpsilonSeries",
     "expansion.strike": "Strike graded_force pulse_of_strike transmitted_force",
     "law": "ContactLaw Law Power general",
-    "linear.dispersion": "Dispersion",
-    "linear.loaded": "LoadedChain",
+    "linear.dispersion": "Dispersion LoadedChain",
+    "equation.evolution": "Evolution",
     "equation.pde": "PDE",
     "base.quantities": "NoSolitaryWave",
     "wave.reduction": "Reduction",

@@ -83,8 +83,15 @@ class BackgroundWave(Value):
     def __repr__(self) -> str:
         return f"BackgroundWave({self.cell!r}, {self.law!r}, p0={self.p0})"
 
-    def _repr_latex_(self) -> str:
-        return latex.display([latex.row("V_{s}", self.speed())])
+    def latex_rows(self) -> list[str]:
+        energy = "V_{s}^{2} v^{2} - 2 [W(p_{0} + v) - W(p_{0}) - F(p_{0}) v]"
+        return [
+            rf"I F'(p_{{0}} + v) v_{{\xi}}^{{2}} = {energy}, \quad W' = F",
+            *self.law.latex_rows(),
+            latex.row("p_{0}", self.p0),
+            latex.row("I", self.I),
+            latex.row("V_{s}", self.speed()),
+        ]
 
     @cached_property
     def I(self) -> sp.Expr:
@@ -330,9 +337,8 @@ class BackgroundWave(Value):
                 _, _, Q = self._functions()
                 number = self._number(B)
                 found.append(Q(number) - Q(number / 2))
-                if len(found) > 1 and abs(found[-1] - found[-2]) <= abs(found[-1]) * mpmath.mpf(
-                    10
-                ) ** (-2 * digits):
+                change = abs(found[-1] - found[-2]) if len(found) > 1 else mpmath.inf
+                if 0 != abs(found[-1]) * mpmath.mpf(10) ** (-2 * digits) >= change:
                     return working // 2
             working *= 2
         raise InputError(f"B is {shorten(B)}: too small beside p0, use `kdv`")

@@ -16,7 +16,8 @@ from typing import Any
 
 import sympy as sp
 
-from lwa.base.exact import MOST_CANCELLED, positive
+from lwa.base import latex
+from lwa.base.exact import evaluated, positive
 from lwa.base.frozen import Value
 from lwa.base.quantities import NoSolitaryWave, known_extent
 from lwa.cell import Cell, meant, substitution
@@ -56,6 +57,10 @@ class PrecompressedWave(Value):
             raise NoSolitaryWave(
                 f"force and precompression are both {self.force}: there is no wave"
             )
+
+    def latex_rows(self) -> list[str]:
+        rows = {"F_{0}": self.precompression, "F": self.force, "B": self.strain}
+        return [*self.law.latex_rows(), *latex.rows(rows | {latex.SPEED: self.speed})]
 
     @cached_property
     def static_compression(self) -> sp.Expr:
@@ -110,7 +115,7 @@ class PrecompressedWave(Value):
         if extent == "length":
             return length
         # In units of D, where D is a symbol: SymPy does not follow terms with symbols that cancel.
-        speed = sp.N(self.background.in_unit(self.speed), digits, maxn=MOST_CANCELLED)
+        speed = evaluated(self.background.in_unit(self.speed), digits)
         return length / (speed * self.background.unit)
 
     def at(self, **values: Any) -> PrecompressedWave:
