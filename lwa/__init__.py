@@ -21,6 +21,9 @@ if TYPE_CHECKING:
     from lwa.cell import Cell, D, Dimer, k
     from lwa.closure.consistency import Closure
     from lwa.closure.motion import Solution
+    from lwa.envelopes.breather import Breather
+    from lwa.envelopes.schrodinger import Envelope, envelope
+    from lwa.equation.evolution import Evolution
     from lwa.equation.pde import PDE
     from lwa.equation.terms import Jet, Powers, Terms
     from lwa.expansion.approximants import Resummed
@@ -50,6 +53,7 @@ __all__ = [
     "PDE",
     "Array",
     "BackgroundWave",
+    "Breather",
     "Cell",
     "Closure",
     "Coefficients",
@@ -58,7 +62,9 @@ __all__ = [
     "D",
     "Dimer",
     "Dispersion",
+    "Envelope",
     "EpsilonSeries",
+    "Evolution",
     "ExpandedWave",
     "Expansion",
     "InputError",
@@ -91,6 +97,7 @@ __all__ = [
     "TravelingWave",
     "background_wave",
     "canonical_wave",
+    "envelope",
     "expand",
     "general",
     "graded_force",
@@ -118,6 +125,8 @@ _MODULES = {
     "wave.physical": "PhysicalWave",
     "wave.closed": "CompactWave",
     "base.exact": "InputError Quantity",
+    "envelopes.breather": "Breather",
+    "envelopes.schrodinger": "Envelope envelope",
     "expansion.approximants": "Resummed",
     "expansion.expand": "Expansion expand",
     "expansion.physical": "ExpandedWave",
@@ -126,6 +135,7 @@ _MODULES = {
     "expansion.strike": "Strike graded_force pulse_of_strike transmitted_force",
     "law": "ContactLaw Law Power general",
     "linear.dispersion": "Dispersion LoadedChain",
+    "equation.evolution": "Evolution",
     "equation.pde": "PDE",
     "base.quantities": "NoSolitaryWave",
     "wave.reduction": "Reduction",
