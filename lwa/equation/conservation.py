@@ -21,8 +21,8 @@ from lwa.closure.consistency import Closure
 
 def flux(closure: Closure, n: int) -> fmpq_mpoly | None:
     """F with E_n u_x^k = ∂_x (u_x^k F), n ≥ 2; None where there is none."""
-    algebra = closure.algebra
-    return algebra.antiderivative(closure.acceleration[n], closure.ring.exponent(algebra.context))
+    algebra, ring = closure.algebra, closure.model.ring
+    return algebra.antiderivative(closure.acceleration[n], ring.exponent(algebra.context))
 
 
 def variational_derivative(
@@ -50,7 +50,7 @@ def potential(closure: Closure, n: int, density: fmpq_mpoly | None) -> fmpq_mpol
     density : the order's `flux`.
     """
     algebra = closure.algebra
-    k = closure.ring.exponent(algebra.context)
+    k = closure.model.ring.exponent(algebra.context)
     if density is None or algebra.velocity_slopes(closure.acceleration[n]):
         return None
     if variational_derivative(algebra, k, density, n - 1) != -(k + 1) * closure.acceleration[n]:

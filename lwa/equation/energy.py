@@ -34,7 +34,7 @@ def energy(closure: Closure) -> tuple[JetAlgebra, list[fmpq_mpoly]]:
 
     Raises `lwa.InputError` on the optical branch, and where the closure leaves a defect.
     """
-    if closure.ring.branch != "acoustic":
+    if closure.model.branch != "acoustic":
         raise InputError("the energy in the slaved fields is that of the acoustic branch")
     if any(not d.is_zero() for d in closure.defect):
         raise InputError(
@@ -51,11 +51,11 @@ class _Fields:
     """Velocities and strains of a closure, in an algebra that has s_0."""
 
     def __init__(self, closure: Closure) -> None:
-        ring, old = closure.ring, closure.algebra
-        self.algebra = algebra = ring.algebra(old.weight, velocity=True, rest=True)
-        self.k = ring.exponent(algebra.context)
-        self.mu = ring.masses.elements(algebra.context)
-        self.c = ring.contacts.elements(algebra.context)
+        model, old = closure.model, closure.algebra
+        self.algebra = algebra = model.algebra(old.weight, velocity=True, rest=True)
+        self.k = model.ring.exponent(algebra.context)
+        self.mu = model.ring.masses.elements(algebra.context)
+        self.c = model.ring.contacts.elements(algebra.context)
         E = self._series(closure.acceleration, old, self.k)
         self.S = S = [self._series(row, old, algebra.one) for row in closure.fields]
         size = max(closure.order - 1, 0)
