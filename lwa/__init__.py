@@ -23,6 +23,9 @@ if TYPE_CHECKING:
     from lwa.cell import k as k
     from lwa.closure.consistency import Closure
     from lwa.closure.solution import Solution
+    from lwa.envelopes.breather import Breather
+    from lwa.envelopes.schrodinger import Envelope, envelope
+    from lwa.equation.evolution import Evolution
     from lwa.equation.pde import PDE
     from lwa.equation.terms import Jet, Powers, Terms
     from lwa.expansion.approximants import Resummed
@@ -32,8 +35,7 @@ if TYPE_CHECKING:
     from lwa.expansion.series import EpsilonSeries
     from lwa.expansion.strike import Strike, graded_force, pulse_of_strike, transmitted_force
     from lwa.law import ContactLaw, Law, Power, general
-    from lwa.linear.dispersion import Dispersion
-    from lwa.linear.loaded import LoadedChain
+    from lwa.linear.dispersion import Dispersion, LoadedChain
     from lwa.spheres import hertz
     from lwa.spheres.hertz import Material, Sphere
     from lwa.theory import Theory, homogenize
@@ -53,6 +55,7 @@ __all__ = [
     "PDE",
     "Array",
     "BackgroundWave",
+    "Breather",
     "Cell",
     "Closure",
     "CoefficientRing",
@@ -60,7 +63,9 @@ __all__ = [
     "ContactLaw",
     "Dimer",
     "Dispersion",
+    "Envelope",
     "EpsilonSeries",
+    "Evolution",
     "ExpandedWave",
     "Expansion",
     "InputError",
@@ -90,6 +95,7 @@ __all__ = [
     "TravelingWave",
     "background_wave",
     "canonical_wave",
+    "envelope",
     "expand",
     "general",
     "graded_force",
@@ -116,6 +122,8 @@ _MODULES = {
     "wave.physical": "PhysicalWave",
     "wave.closed": "CompactWave",
     "base.exact": "InputError Quantity",
+    "envelopes.breather": "Breather",
+    "envelopes.schrodinger": "Envelope envelope",
     "expansion.approximants": "Resummed",
     "expansion.expand": "Expansion expand",
     "expansion.physical": "ExpandedWave",
@@ -123,8 +131,8 @@ _MODULES = {
     "expansion.series": "EpsilonSeries",
     "expansion.strike": "Strike graded_force pulse_of_strike transmitted_force",
     "law": "ContactLaw Law Power general",
-    "linear.dispersion": "Dispersion",
-    "linear.loaded": "LoadedChain",
+    "linear.dispersion": "Dispersion LoadedChain",
+    "equation.evolution": "Evolution",
     "equation.pde": "PDE",
     "base.quantities": "NoSolitaryWave",
     "wave.reduction": "Reduction",

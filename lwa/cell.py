@@ -19,6 +19,7 @@ from typing import Any
 
 import sympy as sp
 
+from lwa.base import latex
 from lwa.base.exact import InputError, exact, integer, positive, power, root, shorten
 from lwa.base.frozen import Value
 from lwa.spheres.hertz import Sphere, stiffness
@@ -87,6 +88,10 @@ class Cell(Value):
         spacing = positive(self.spacing, "spacing")
         object.__setattr__(self, "spacing", meant(spacing, "spacing", D.name))
         unmistakable(self.symbols)
+
+    def latex_rows(self) -> list[str]:
+        m, A = sp.Tuple(*self.masses), sp.Tuple(*self.stiffnesses)
+        return latex.rows({"m": m, "A": A, "D": self.spacing})
 
     @classmethod
     def of_spheres(cls, spheres: Sequence[Sphere]) -> Cell:

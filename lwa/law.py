@@ -19,6 +19,7 @@ import mpmath
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
+from lwa.base import latex
 from lwa.base.exact import InputError, exact, positive, real, shorten
 from lwa.base.frozen import Value
 from lwa.cell import RESERVED, Cell, exponent, meant, unmistakable
@@ -45,6 +46,9 @@ class ContactLaw(Value):
     F: sp.Expr
     delta: sp.Symbol
     homogeneous: ClassVar[bool] = False
+
+    def latex_rows(self) -> list[str]:
+        return latex.rows({f"F({sp.latex(self.delta)})": self.F})
 
     @property
     def symbols(self) -> tuple[sp.Symbol, ...]:

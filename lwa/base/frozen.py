@@ -1,19 +1,29 @@
-"""Values: frozen dataclasses that are known by what they were made from.
-
-Two that were made from the same are equal and hash alike. What one has computed and kept (its
-cached properties) neither counts nor travels when it is pickled or copied.
-"""
+"""Base class of the package's frozen dataclasses: equality, pickles and notebooks."""
 
 from __future__ import annotations
 
 from dataclasses import Field, fields
 from typing import Any, ClassVar
 
+from lwa.base import latex
+
 
 class Value:
-    """Base of the frozen dataclasses of this package."""
+    """Base of frozen dataclasses that are known by their fields.
+
+    Two values with equal fields are equal and hash alike. Cached properties take no part in that,
+    and do not travel with a pickle or a copy. A notebook shows the rows of `latex_rows`.
+    """
 
     __dataclass_fields__: ClassVar[dict[str, Field[Any]]]
 
     def __getstate__(self) -> dict[str, Any]:
         return {field.name: getattr(self, field.name) for field in fields(self)}
+
+    def latex_rows(self) -> list[str]:
+        """Rows of the value as a paper would print it, such as ``I = …``; empty for its repr."""
+        return []
+
+    def _repr_latex_(self) -> str | None:
+        rows = self.latex_rows()
+        return latex.display(rows) if rows else None

@@ -103,6 +103,20 @@ def expression(value: sp.Expr) -> str:
     return rf"{sp.latex(rest)} \Bigl({sp.latex(total)}\Bigr){raised}".removeprefix("1 ")
 
 
+SPEED = r"\frac{dx}{dt}"
+"""The speed in space and time."""
+
+
+def rows(found: Mapping[str, sp.Expr]) -> list[str]:
+    """name = value, the names in LaTeX; without rows such as F = F.
+
+    >>> rows({r"\\beta": sp.Integer(2)})
+    ['\\\\beta = 2']
+    """
+    written = {name: row(name, value) for name, value in found.items()}
+    return [text for name, text in written.items() if text != f"{name} = {name}"]
+
+
 def values(found: Mapping[str, sp.Expr]) -> list[str]:
     """name = value, the names as symbols."""
     return [row(sp.latex(sp.Symbol(name)), value) for name, value in found.items()]

@@ -33,8 +33,7 @@ from lwa.expansion.expand import expand
 from lwa.expansion.physical import ExpandedWave
 from lwa.expansion.strike import pulse_of_strike
 from lwa.law import ContactLaw, Law, Power
-from lwa.linear.dispersion import Dispersion
-from lwa.linear.loaded import LoadedChain
+from lwa.linear.dispersion import Dispersion, LoadedChain
 from lwa.spheres.hertz import EXPONENT
 from lwa.theory import Theory, homogenize
 from lwa.wave.background import BackgroundWave

@@ -21,8 +21,7 @@ from lwa.expansion.expand import DAMPINGS, Expansion
 from lwa.expansion.physical import ExpandedWave
 from lwa.expansion.series import EpsilonSeries
 from lwa.expansion.strike import Strike
-from lwa.linear.dispersion import Dispersion
-from lwa.linear.loaded import LoadedChain
+from lwa.linear.dispersion import Dispersion, LoadedChain
 
 PLACES = 8
 """Intervals of the wavenumbers, 0 to π/(PD), at which bands are printed."""

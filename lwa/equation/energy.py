@@ -1,19 +1,40 @@
-"""The chain's own energy in the slaved fields, conserved to the order of the closure.
+"""Conserved quantities of the wave equation: momentum, energy, and the potential behind them.
 
-With w_i the field of particle i and p (1 + X_i) the strain of contact i over its share c_i, the
-energy of a cell per length, in the units of the wave equation, is
+**Momentum.** u_ττ = u_x^k Σ D^{n-1} E_n conserves ∫ u_τ dx if every order is the derivative of a
+flux.
+
+**Potential.** The equation is variational, u_ττ = -δV/δu, if every order is minus the variational
+derivative of a density V_n. An order of degree k in u that is the derivative of u_x^k F_n has
+V_n = u_x^{k+1} F_n / (k+1) as its only candidate up to derivatives (Euler's theorem on homogeneous
+functions), and the test is whether that candidate gives E_n back. Then φ_τ²/2 + V is the density of
+a conserved energy. With V = p^{k+1} f the variational derivative is formed in the jets' algebra by
+∂V/∂u_x = p^k ((k+1) f - Σ r_n ∂f/∂r_n) and ∂V/∂(∂_x^{n+1} u) = p^k ∂f/∂r_n.
+
+**Energy of the chain.** With w_i the field of particle i and p (1 + X_i) the strain of contact i
+over its share c_i, the energy of a cell per length, in the units of the wave equation, is
 
     e = ½ Σ μ_i (∂_τ w_i)² + Σ c_i W(p (1 + X_i)) / P = u_τ²/2 + W(u_x) + …,
 
-W′ = F the force, p^k/k for a power. The work of F(p) on the strains, Σ c_i p X_i, is by parts that
-of its derivative on a displacement. The equations of motion give
+W′ = F the force, p^k/k for a power. The equations of motion give
 
     ∂_τ e = (e^{PD∂} - 1) (F_{-1} ∂_τ w_0) / (PD),
 
 the derivative of the flux of energy. That holds for any wave equation that the slaved fields
-satisfy, in every field, whether or not the equation derives from a potential.
+satisfy, in every field, whether or not the equation derives from a potential. The density is given
+up to derivatives, so that no highest jet stands in it linearly.
 
-The density is given up to derivatives, so that no highest jet stands in it linearly.
+**Theorem.** At D^{k+3} the equation of the canonical field derives from a potential for every cell:
+G = I(k-1)(k-2)/2, H = 2I(k-1), and I is that of the linear chain, Ω² = κ² (1 - Iκ² + …). For write
+w_i = e^{x_i D∂} (φ + D² e_i φ_xx + …), x_i = c_0 + … + c_{i-1}, with Σ μ_i e_i = 0, which defines
+φ. The kinetic energy is φ_τ²/2 up to D⁴. The strain of contact i at its middle is
+c_i φ_x + D (e_{i+1} - e_i) φ_xx + D² (c_i³/24 + c_i (e_i + e_{i+1})/2) φ_xxx, A_i c_i^k is the same
+for all contacts, the linear term telescopes round the cell, and by parts one monomial is left of
+the elastic energy at D²: k A φ_x^{k-1} φ_xx² S(e),
+
+    S = Σ [-c_i³/24 - c_i (e_i + e_{i+1})/2 + (e_{i+1} - e_i)²/(2 c_i)],    I = -(2/P) D² min S.
+
+The minimising e does not know k, hence I is that of k = 1. With W(φ_x) in place of the power the
+same holds for every law with equal contacts.
 """
 
 from __future__ import annotations
@@ -29,10 +50,50 @@ from lwa.base.exact import InputError
 from lwa.closure.consistency import Closure
 
 
+def flux(closure: Closure, n: int) -> fmpq_mpoly | None:
+    """The flux F with E_n u_x^k = ∂_x (u_x^k F), n ≥ 2; None if order n is no derivative."""
+    algebra = closure.algebra
+    k = closure.model.ring.exponent(algebra.context)
+    return algebra.antiderivative(closure.acceleration[n], k)
+
+
+def variational_derivative(
+    algebra: JetAlgebra, k: fmpq_mpoly, density: fmpq_mpoly, n: int
+) -> fmpq_mpoly:
+    """p^{-k} δ/δu of ∫ p^{k+1} f dx for a density f of weight n without the velocity.
+
+    The variational derivative is Σ_j (-∂_x)^j ∂V/∂(∂_x^j u), of weight n + 1.
+    """
+    slopes = [algebra.slope(density, j) for j in range(1, n + 1)]
+    first = (k + 1) * density
+    for j, slope in enumerate(slopes, start=1):
+        first = first - algebra.r[j] * slope
+    total = algebra.zero
+    for j, part in enumerate([first, *slopes], start=1):
+        for _ in range(j):
+            part = -algebra.dx(part, k)
+        total = total + part
+    return total
+
+
+def potential(closure: Closure, n: int, density: fmpq_mpoly | None) -> fmpq_mpoly | None:
+    """(k+1) V_n / u_x^{k+1} of a variational order n, else None (as for orders with velocity jets).
+
+    density : the `flux` of order n.
+    """
+    algebra = closure.algebra
+    k = closure.model.ring.exponent(algebra.context)
+    if density is None or algebra.velocity_slopes(closure.acceleration[n]):
+        return None
+    if variational_derivative(algebra, k, density, n - 1) != -(k + 1) * closure.acceleration[n]:
+        return None
+    return algebra.by_parts(density, k + 1)
+
+
 def energy(closure: Closure) -> tuple[JetAlgebra, list[fmpq_mpoly]]:
     """(e - W(u_x)) / (u_x² F′(u_x)), a series in D up to D^{order-2}, in an algebra that has s_0.
 
-    Raises `lwa.InputError` on the optical branch, and where the closure leaves a defect.
+    Raises `lwa.InputError` on the optical branch, and for a closure that leaves a defect.
     """
     if closure.model.branch != "acoustic":
         raise InputError("the energy in the slaved fields is that of the acoustic branch")

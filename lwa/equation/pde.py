@@ -27,8 +27,7 @@ from lwa.base.exact import InputError, exact, integer, power, root
 from lwa.base.frozen import Value
 from lwa.cell import Cell
 from lwa.closure.consistency import Closure
-from lwa.equation.conservation import flux, potential
-from lwa.equation.energy import energy
+from lwa.equation.energy import energy, flux, potential
 from lwa.equation.fields import change_field
 from lwa.equation.terms import ENERGY, Jet, Terms, base_order, terms
 from lwa.law import ContactLaw

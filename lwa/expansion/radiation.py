@@ -13,8 +13,7 @@ exponentially small in 1/ε where K_0 is large. It is computed with F = exp(φ_0
 the integral passes through zero (at the mass ratios without a tail), as the greatest of some K_0.
 
 What c² and the widths lose by it was fitted, as a bound, to exact waves of dimers with tails from
-1e-9 to 0.1 and to pulses of struck chains: `Radiation.relative`. It bounds; a struck chain's pulse
-is closer, by a factor from 10 to 70.
+1e-9 to 0.1 and to pulses of struck chains: `Radiation.relative`. The bound is measured, not proved.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The linear chain: its exact dispersion relation, the series of its branches, and Bloch's bands.
+"""The linear chain: its dispersion relation, the series of its branches, its bands under a load.
 
 A chain at k = 1, or one of any k linearised about a uniform compression, is a chain of springs of
 compliances c_i (`Cell.shares`). In the theory's units (time τ, wavenumber κ = qD, so that Ω = κ to
@@ -23,10 +23,10 @@ from flint import fmpq_mpoly
 
 from lwa.algebra.model import Model
 from lwa.base import latex
-from lwa.base.exact import InputError, integer, shorten
+from lwa.base.exact import InputError, integer, positive, shorten
 from lwa.base.frozen import Value
 from lwa.cell import Cell, exponent, substitution
-from lwa.law import Power
+from lwa.law import ContactLaw, Power, for_cell
 from lwa.linear.bloch import BRANCHES, Bloch
 
 if TYPE_CHECKING:
@@ -74,9 +74,8 @@ class Dispersion(Value):
         new = substitution(values, self.cell, self.k)
         return Dispersion(self.cell.replaced(new), self.k.xreplace(new))
 
-    def _repr_latex_(self) -> str:
-        row = rf"\Omega^{{2}} = \kappa^{{2}} - {sp.latex(self.I)} \, \kappa^{{4}} + \cdots"
-        return latex.display([row])
+    def latex_rows(self) -> list[str]:
+        return [rf"\Omega^{{2}} = \kappa^{{2}} - {sp.latex(self.I)} \, \kappa^{{4}} + \cdots"]
 
     # --- exact ------------------------------------------------------------------------------
 
@@ -222,3 +221,102 @@ class Dispersion(Value):
         if not np.all(numbers > 0):
             raise InputError("masses or compliances differ by more than a float can tell")
         return numbers
+
+
+@dataclass(frozen=True)
+class LoadedChain(Value):
+    """The linear chain about the static load ``precompression``, the same in all contacts.
+
+    Frequencies and speeds are in the units of the cell, s⁻¹ and m/s in SI. About the load F0
+    contact i is a spring of the constant A_i F′(δ_i), A_i F(δ_i) = F0; for A δ^k that is
+    k A_i^{1/k} F0^{(k-1)/k}.
+
+    Raises `lwa.InputError` unless the load is positive, and for unlike contacts under a law that
+    is no power.
+
+    >>> from lwa import Power
+    >>> LoadedChain(Cell(["m"], ["A"]), Power("3/2"), "F0").spring_constants
+    (3*A**(2/3)*F0**(1/3)/2,)
+    >>> LoadedChain(Cell([1], [1], 1), Power("3/2"), 8).band_edges().round(9)
+    array([[0.        , 3.46410162]])
+    """
+
+    cell: Cell
+    law: ContactLaw
+    precompression: sp.Expr
+
+    def __post_init__(self) -> None:
+        for_cell(self.law, self.cell)
+        load = positive(self.precompression, "precompression")
+        object.__setattr__(self, "precompression", load)
+
+    def latex_rows(self) -> list[str]:
+        constants = {f"K_{{{i}}}": K for i, K in enumerate(self.spring_constants, start=1)}
+        return latex.rows({"F_{0}": self.precompression} | constants | {"c_{0}": self.sound_speed})
+
+    @cached_property
+    def static_compressions(self) -> tuple[sp.Expr, ...]:
+        """δ_i of each contact under the load."""
+        return self.law.compressions(self.cell, self.precompression)
+
+    @cached_property
+    def spring_constants(self) -> tuple[sp.Expr, ...]:
+        """A_i F′(δ_i)."""
+        pairs = zip(self.cell.stiffnesses, self.static_compressions, strict=True)
+        return tuple(sp.powsimp(A * self.law.at(delta, 1)) for A, delta in pairs)
+
+    @cached_property
+    def springs(self) -> Dispersion:
+        """The chain of these springs, Ω(κ) in the theory's units."""
+        constants = (
+            sp.nsimplify(K, rational=True) if K.has(sp.Float) else K for K in self.spring_constants
+        )
+        return Dispersion(Cell(self.cell.masses, tuple(constants), self.cell.spacing))
+
+    @cached_property
+    def rate(self) -> sp.Expr:
+        """ω/Ω, in s⁻¹ where the cell is in SI."""
+        springs = self.springs.cell
+        return springs.time_scale(1) / springs.spacing
+
+    @cached_property
+    def sound_speed(self) -> sp.Expr:
+        """dω/dq of long waves."""
+        return self.cell.spacing * self.rate
+
+    def branches(self, q: ArrayLike) -> Array:
+        """ω_j(q), ascending along a last axis of length P; q is a wavenumber, q D = κ."""
+        import numpy as np  # start-up: `import lwa` does not load it
+
+        return self.springs.branches(np.asarray(q) * self._length) * self._rate
+
+    def group_velocity(self, q: ArrayLike) -> Array:
+        """dω_j/dq in the order of `branches`."""
+        import numpy as np  # start-up: `import lwa` does not load it
+
+        slopes = self.springs.group_velocity(np.asarray(q) * self._length)
+        return slopes * (self._rate * self._length)
+
+    def band_edges(self) -> Array:
+        """(min, max) of ω of each branch, shape (P, 2)."""
+        return self.springs.band_edges() * self._rate
+
+    def gaps(self) -> Array:
+        """(from, to) of the intervals of ω between the bands."""
+        return self.springs.gaps() * self._rate
+
+    @property
+    def _rate(self) -> float:
+        return self._float(self.rate)
+
+    @property
+    def _length(self) -> float:
+        """D; 1 where it is a symbol."""
+        D = self.cell.spacing
+        return 1.0 if D.is_Symbol else self._float(D)
+
+    def _float(self, value: sp.Expr) -> float:
+        if value.free_symbols:
+            name = min(map(str, value.free_symbols))
+            raise InputError(f"{name!r} has no value: bands under a load are numbers")
+        return float(value)

@@ -83,8 +83,15 @@ class BackgroundWave(Value):
     def __repr__(self) -> str:
         return f"BackgroundWave({self.cell!r}, {self.law!r}, p0={self.p0})"
 
-    def _repr_latex_(self) -> str:
-        return latex.display([latex.row("V_{s}", self.speed())])
+    def latex_rows(self) -> list[str]:
+        energy = "V_{s}^{2} v^{2} - 2 [W(p_{0} + v) - W(p_{0}) - F(p_{0}) v]"
+        return [
+            rf"I F'(p_{{0}} + v) v_{{\xi}}^{{2}} = {energy}, \quad W' = F",
+            *self.law.latex_rows(),
+            latex.row("p_{0}", self.p0),
+            latex.row("I", self.I),
+            latex.row("V_{s}", self.speed()),
+        ]
 
     @cached_property
     def I(self) -> sp.Expr:

@@ -74,14 +74,12 @@ class CompactWave(Value):
     def __repr__(self) -> str:
         return f"{type(self).__name__}({self.cell!r}, k={self.k}, β={shorten(self.beta)})"
 
-    def _repr_latex_(self) -> str:
-        return latex.display(
-            [
-                r"v = u_{x} = B \cos^{2/(k-1)}(\beta \xi), \quad |\xi| \leq \frac{\pi}{2\beta}",
-                latex.row(r"\beta", self.beta),
-                latex.row("V_{s}", self.speed()),
-            ]
-        )
+    def latex_rows(self) -> list[str]:
+        return [
+            r"v = u_{x} = B \cos^{2/(k-1)}(\beta \xi), \quad |\xi| \leq \frac{\pi}{2\beta}",
+            latex.row(r"\beta", self.beta),
+            latex.row("V_{s}", self.speed()),
+        ]
 
     @property
     def D(self) -> sp.Expr:

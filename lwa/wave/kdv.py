@@ -7,6 +7,7 @@ from typing import Any
 
 import sympy as sp
 
+from lwa.base import latex
 from lwa.base.exact import exact, real, root
 from lwa.base.frozen import Value
 from lwa.base.quantities import RISE
@@ -22,6 +23,12 @@ class KdV(Value):
     sound_speed: sp.Expr
     nonlinearity: sp.Expr
     dispersion: sp.Expr
+
+    def latex_rows(self) -> list[str]:
+        names = {"c_{0}": self.sound_speed, r"\alpha": self.nonlinearity}
+        names[r"\gamma"] = self.dispersion
+        equation = r"v_{\tau} + c_{0} v_{x} + \alpha v v_{x} + \gamma v_{xxx} = 0"
+        return [equation, *latex.rows(names)]
 
     def speed(self, B: Any = RISE) -> sp.Expr:
         """V = c0 + α B/3 of the wave v = B sech²(ξ/L)."""

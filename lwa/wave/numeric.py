@@ -59,8 +59,8 @@ class NumericWave(Value):
                 "m1 and m2, with equal contacts"
             )
 
-    def _repr_latex_(self) -> str:
-        return self.wave._repr_latex_()
+    def latex_rows(self) -> list[str]:
+        return self.wave.latex_rows()
 
     @property
     def _symbols(self) -> tuple[sp.Expr, ...]:

@@ -94,10 +94,11 @@ class PhysicalWave(Value):
     def __hash__(self) -> int:
         return hash(self._key)
 
-    def _repr_latex_(self) -> str:
-        rows = {"F": self.force, "B": self.strain, r"\dot{x}": self.speed}
-        exact = {name: x for name, x in rows.items() if isinstance(x, sp.Expr)}
-        return latex.display([latex.row(name, x) for name, x in exact.items()]) if exact else ""
+    def latex_rows(self) -> list[str]:
+        if not isinstance(self.force, sp.Expr):
+            return []
+        values = {"F": self.contact_force, "B": self.strain, latex.SPEED: self.speed}
+        return latex.rows(values)
 
     # --- the wave's answers -----------------------------------------------------------------
 

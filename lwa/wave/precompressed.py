@@ -16,6 +16,7 @@ from typing import Any
 
 import sympy as sp
 
+from lwa.base import latex
 from lwa.base.exact import MOST_CANCELLED, positive
 from lwa.base.frozen import Value
 from lwa.base.quantities import NoSolitaryWave, known_extent
@@ -56,6 +57,10 @@ class PrecompressedWave(Value):
             raise NoSolitaryWave(
                 f"force and precompression are both {self.force}: there is no wave"
             )
+
+    def latex_rows(self) -> list[str]:
+        rows = {"F_{0}": self.precompression, "F": self.force, "B": self.strain}
+        return [*self.law.latex_rows(), *latex.rows(rows | {latex.SPEED: self.speed})]
 
     @cached_property
     def static_compression(self) -> sp.Expr:

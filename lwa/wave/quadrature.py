@@ -78,6 +78,9 @@ class NumericBackground(Value):
         if free := (self._I.free_symbols | slope.free_symbols) - {_STRAIN}:
             raise InputError(f"{min(map(str, free))!r} has no value: numbers are wanted")
 
+    def latex_rows(self) -> list[str]:
+        return self.law.latex_rows()
+
     def speed_squared(self, p0: ArrayLike, B: ArrayLike) -> Array:
         """V² = Q(B), for power laws to k = 5 good to 6 ulps at any p0/B."""
         p0, B, unit = self._waves(p0, B)

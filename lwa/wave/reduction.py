@@ -8,6 +8,7 @@ import sympy as sp
 
 from lwa.algebra.jets import JetAlgebra, Monomial
 from lwa.algebra.partition import number
+from lwa.base import latex
 from lwa.base.frozen import Value
 
 
@@ -47,6 +48,11 @@ class Reduction(Value):
     p: sp.Expr
     a: sp.Expr
     V: sp.Expr
+
+    def latex_rows(self) -> list[str]:
+        names = {"p": self.p, "a": self.a, r"\mu": self.mu, r"\eta": self.eta}
+        names[r"\sigma"] = self.sigma
+        return [r"z'' = \mu z^{\eta} - \sigma z, \quad v = z^{p}", *latex.rows(names)]
 
     @property
     def mu(self) -> sp.Expr:

@@ -13,10 +13,11 @@ from lwa import (
     Power,
     background_wave,
     canonical_wave,
+    envelope,
     general,
     homogenize,
 )
-from lwa.linear.loaded import LoadedChain
+from lwa.linear.dispersion import LoadedChain
 
 m1, m2 = sp.symbols("m1 m2", positive=True)
 
@@ -46,6 +47,8 @@ MADE = {
     "background": lambda: background_wave(Dimer(m1, m2)),
     "kdv": lambda: background_wave(Dimer(m1, m2)).kdv,
     "precompressed": lambda: canonical_wave(Dimer(m1, m2)).at_force("F", precompression="F0"),
+    "envelope": lambda: envelope(Dimer(m1, m2), Power("k"), background="p0"),
+    "breather": lambda: envelope(Dimer(2, 1), Power(2), background=1).breather(detuning="1/100"),
     "loaded": lambda: LoadedChain(Dimer(m1, m2), Power("3/2"), "F0"),
 }
 
@@ -102,6 +105,16 @@ def test_repr_is_one_short_line(order):
         assert "\n" not in repr(piece)
         assert len(repr(piece)) < 600
     assert repr(theory().pde.coefficients[2]) == "{}"
+
+
+@pytest.mark.parametrize("make", MADE.values(), ids=MADE)
+def test_a_notebook_shows_it_in_latex(make):
+    """A display whose braces match, without Python's names of functions."""
+    shown = make()._repr_latex_()
+    assert shown.startswith("$$")
+    assert shown.endswith("$$")
+    assert shown.count("{") == shown.count("}")
+    assert "sqrt(" not in shown
 
 
 def test_latex_is_the_papers_equation_at_any_order():

@@ -636,7 +636,7 @@ def test_a_long_run_shows_its_progress_and_stops_at_ctrl_c(scene_file, method, d
 def test_progress_without_a_terminal_is_a_line_every_30_s(capsys, monkeypatch):
     now = iter([0.0, 1.0, 31.0, 32.0, 99.0, 0.0, 29.0, 60.0, 61.0])
     monkeypatch.setattr(progress, "monotonic", lambda: next(now))
-    with command.run_progress(None) as tell:
+    with command.run_progress() as tell:
         for share in (0.0, 0.25, 0.5, 0.75):
             tell(share)
     assert capsys.readouterr().err == (

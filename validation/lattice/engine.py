@@ -32,8 +32,7 @@ import numpy as np
 import scipy
 
 from lwa.base.arrays import Array
-from validation.lattice import effort
-from validation.lattice.effort import EXCESS, RunProgress
+from validation.lattice.cost import RunProgress, beyond, mean_step, most_steps
 from validation.lattice.equations import Motion
 from validation.lattice.kernel.advance import advance
 from validation.lattice.kernel.arrays import (
@@ -58,7 +57,12 @@ _SUPPORTS = 8  # widths of the long-wave pulse in a window of the engine's choic
 _CHANGE = 10.0  # rtol: by how much a longer window may change the leading pulse's velocities
 _POINTS = 8  # of the quadrature at a kink
 _NOISE = sys.float_info.epsilon  # of the greatest: rounding is no front
-_GLANCE = 0.2  # seconds, about, from one look at the progress to the next, or at Ctrl-C
+_GLANCE = (
+    5e7  # bead evaluations, some tenths of a second, from one look at the progress to the next
+)
+_KINKS = 0.01  # (rtol/this)^0.4 natural times a stage of a splitting; of a Hertz dimer of 560 beads
+_CAREFUL = 100  # steps more than expected, as a pair makes its first one shorter
+_COARSEST = 0.2  # natural times a stage: the splitting is stable
 
 
 @dataclass(frozen=True)
@@ -77,7 +81,7 @@ def follow(
     """`validation.simulate` for a method of `SCHEMES`."""
     beads = _window(motion, window)
     end = motion.scene.duration
-    natural = effort.step(method, rtol) * min(motion.scales.time, end)
+    natural = _step(method, rtol) * min(motion.scales.time, end)
     longest = math.inf if step is None else positive(step, "step")
     shorter = step is None or (natural < longest and isinstance(SCHEMES[method], Pair))
     given = Given(method, rtol, natural if shorter else longest, longest)
@@ -87,6 +91,14 @@ def follow(
     long, _ = _integrated(motion, given, 2 * beads, progress, left)
     _compare(motion, rtol, short, long)
     return replace(long, window=beads)
+
+
+def _step(method: str, rtol: float) -> float:
+    """The step in units of the scene's shortest time; of a pair the mean one that is expected."""
+    scheme = SCHEMES[method]
+    if isinstance(scheme, Pair):
+        return mean_step(method, rtol)
+    return float(min((rtol / _KINKS) ** 0.4, _COARSEST)) * scheme.stages
 
 
 def _window(motion: Motion, window: Any) -> int | None:
@@ -137,25 +149,26 @@ def _integrated(
     """
     n, end = motion.size, motion.scene.duration
     window = None if window is None or window >= n else window
-    taken = effort.compiled(motion.scene, given.method, end / given.step, window or n)
-    taken.check()
+    steps = end / given.step
+    most = most_steps(motion.scene, given.method, steps, 16)
+    few = _CAREFUL if isinstance(SCHEMES[given.method], Pair) else 0
     chain = _chain(motion)
     beads = _start(motion, len(chain.A))
-    plan = _plan(motion, given, chain, window, end / math.ceil(taken.steps))
+    plan = _plan(motion, given, chain, window, end / math.ceil(steps + few))
     time, needed = sampled(motion)
     recorder = Recorder(chain, plan.scheme.points, needed, time)
     at = beginning(plan, _front(motion))
-    glance = max(1, int(_GLANCE * taken.steps / taken.seconds))
+    glance = 1 + int(_GLANCE / (SCHEMES[given.method].stages * max(n, SHORTEST)))
     t = 0.0
-    with progress(taken) as tell:
+    with progress() as tell:
         while t < end:
             tell(t / end)
             t, _ = advance(chain, beads, plan, recorder.knots, at, glance)
-            if t < end and at["tries"] > EXCESS * taken.steps:
-                raise IntegrationError(effort.beyond(taken, int(at["tries"]), t))
+            if t < end and at["tries"] > most:
+                raise IntegrationError(beyond(given.method, int(at["tries"]), t, end))
             if t == end or at["kept"] == len(recorder.knots.time):
                 at["kept"] = recorder.take(int(at["kept"]))
-    rear, steps, tries, moves = (int(at[name]) for name in ("lo", "steps", "tries", "evaluations"))
+    rear, made, tries, moves = (int(at[name]) for name in ("lo", "steps", "tries", "evaluations"))
     state = np.concatenate((beads.y[:n], beads.v[:n]))
     if not np.isfinite(state).all():
         raise IntegrationError(f"the motion overflows: a step of {plan.h:g} is too long")
@@ -165,9 +178,7 @@ def _integrated(
     records = {"time": time} | recorded(motion, needed, recorder.y, recorder.v)
     evaluations = tries * SCHEMES[given.method].stages
     state.reshape(2, n)[:, np.isfinite(left[:n])] = np.nan
-    run = finished(
-        motion, state, records, energy, momentum, steps, evaluations, moves, window, path
-    )
+    run = finished(motion, state, records, energy, momentum, made, evaluations, moves, window, path)
     return run, left
 
 

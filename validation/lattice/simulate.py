@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 
 from lwa.base.exact import shorten
-from validation.lattice.effort import RunProgress, silent
+from validation.lattice.cost import RunProgress, silent
 from validation.lattice.equations import Motion
 from validation.lattice.run import IntegrationError, Run
 from validation.lattice.schemes import SCHEMES
@@ -64,10 +64,10 @@ def simulate(
         pulse, or True for eight widths of the long-wave pulse; the chain must end freely and
         k exceed 1. The run is made with this window and with one twice as long, whose numbers are
         returned; beads further behind are NaN in all arrays. By default the whole chain.
-    progress : is shown what a run takes before it starts, and then how far it is.
+    progress : opens a display, which is called with the share of the run that is done.
 
     Raises `SceneError` for a tolerance or method that cannot be meant, and for a run that takes
-    longer or more memory than `validation.lattice.effort` allows, and `IntegrationError` when the
+    more steps or memory than `validation.lattice.cost` allows, and `IntegrationError` when the
     integrator fails or the longer window changes the leading pulse by more than some rtol.
 
     >>> scene = Scene(masses=(1, 1), stiffnesses=(1,), k=1.5, duration=9, velocities=(1,))

@@ -9,7 +9,7 @@ import scipy
 from numpy.typing import NDArray
 
 from lwa.base.arrays import Array
-from validation.lattice.effort import EXCESS, RunProgress, adaptive, beyond
+from validation.lattice.cost import RunProgress, beyond, mean_step, most_steps
 from validation.lattice.equations import Motion
 from validation.lattice.run import IntegrationError, Run, finished
 from validation.lattice.signal import Beads, recorded, sampled
@@ -68,8 +68,9 @@ def integrate(motion: Motion, method: str, rtol: float, atol: float, progress: R
     """Integrate a scene with one of `METHODS`; the arguments are those of `simulate`."""
     scales, end, n = motion.scales, motion.scene.duration, motion.size
     y, v = scales.displacement, scales.velocity
-    taken = adaptive(motion.scene, method, rtol, scales.time)
-    taken.check()
+    steps = end / scales.time / mean_step(method, rtol)
+    jacobian = (2 * n) ** 2 * 8 if method == "LSODA" else 0
+    most = most_steps(motion.scene, method, steps, 4, jacobian)
     stepper = getattr(scipy.integrate, method)(
         motion,
         0.0,
@@ -82,10 +83,10 @@ def integrate(motion: Motion, method: str, rtol: float, atol: float, progress: R
     time, beads = sampled(motion)
     nodes, held = chebyshev(_COEFFICIENTS[method]), beads[beads < n]
     ends, states = [0.0], []
-    with progress(taken) as tell:
+    with progress() as tell:
         while stepper.status == "running":
-            if len(ends) > EXCESS * taken.steps:
-                raise IntegrationError(beyond(taken, len(ends), stepper.t))
+            if len(ends) > most:
+                raise IntegrationError(beyond(method, len(ends), stepper.t, end))
             message = stepper.step()
             if stepper.status == "failed":
                 raise IntegrationError(f"integration stopped at t = {stepper.t:g}: {message}")
@@ -100,7 +101,7 @@ def integrate(motion: Motion, method: str, rtol: float, atol: float, progress: R
     records = {"time": time} | recorded(motion, beads, *path(beads, time))
     evaluations = int(stepper.nfev)
     energy, momentum = motion.energy(stepper.y), motion.momentum_drift(stepper.y)
-    moves, steps = evaluations * n, len(ends) - 1
+    moves, made = evaluations * n, len(ends) - 1
     return finished(
-        motion, stepper.y, records, energy, momentum, steps, evaluations, moves, None, path
+        motion, stepper.y, records, energy, momentum, made, evaluations, moves, None, path
     )

@@ -342,13 +342,15 @@ def derived(function: Callable[..., float], *numbers: Measured) -> Measured:
 
 
 def exponent(x: Sequence[Measured], y: Sequence[Measured]) -> Measured:
-    """The p of y ~ x^p, by least squares of the logarithms."""
+    """The p of y ~ x^p, by least squares of the logarithms.
 
-    def fitted(*numbers: float) -> float:
-        one, other = np.split(np.log(numbers), 2)
-        return float(np.polyfit(one, other, 1)[0])
-
-    return derived(fitted, *x, *y)
+    The errors of all numbers add up: differences of runs have a common sign, which would cancel.
+    """
+    logs = np.log([number.value for number in x]) - np.log([number.value for number in x]).mean()
+    weights = logs / (logs @ logs)
+    p = float(weights @ np.log([number.value for number in y]))
+    off = [b.relative_error + abs(p) * a.relative_error for a, b in zip(x, y, strict=True)]
+    return Measured(p, p + float(np.abs(weights) @ off))
 
 
 def compared(

@@ -18,7 +18,6 @@ from tqdm import tqdm
 from lwa.base.progress import lines, shown
 from lwa.command.terminal import HELP, called, quantity
 from lwa.command.terminal import run as run_command
-from validation.lattice.effort import Effort
 from validation.pictures.figure import SUFFIXES
 from validation.report.files import output_file
 from validation.report.result import Report
@@ -101,7 +100,7 @@ def study(
 
     The command also passes, to parameters of these names: ``progress``, which shows how many cases
     are done, ``run_progress``, which shows how far a lattice run is
-    (`validation.lattice.effort.RunProgress`), and ``picture``, the file of ``--plot``.
+    (`validation.lattice.cost.RunProgress`), and ``picture``, the file of ``--plot``.
     """
     return lambda function: Study(function, name or function.__name__, options, epilog)
 
@@ -143,7 +142,7 @@ def progress(cases: Iterable[T]) -> Iterable[T]:
 
 
 @contextmanager
-def run_progress(effort: Effort) -> Iterator[Callable[[float], None]]:
+def run_progress() -> Iterator[Callable[[float], None]]:
     """Show how far a lattice run is: a bar on a terminal, elsewhere a line every 30 s."""
     tell = lines("lattice run")
     with tqdm(

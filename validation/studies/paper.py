@@ -25,7 +25,7 @@ import sympy as sp
 
 from lwa import Cell, PhysicalWave, Sphere, canonical_wave, homogenize
 from lwa.command.terminal import quantities
-from validation.lattice.effort import RunProgress, silent
+from validation.lattice.cost import RunProgress, silent
 from validation.lattice.run import Run
 from validation.lattice.simulate import twice
 from validation.pictures.panel import Curve, Panel

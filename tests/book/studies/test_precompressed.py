@@ -11,7 +11,7 @@ import scipy
 
 from book.studies.precompressed import Wave, precompressed
 from lwa import Cell, Power
-from lwa.linear.loaded import LoadedChain
+from lwa.linear.dispersion import LoadedChain
 from lwa.wave.quadrature import NumericBackground
 from tests.commands import ended
 from validation.lattice.simulate import simulate

@@ -5,7 +5,7 @@ import pytest
 
 from lwa import Cell, InputError, Power, canonical_wave
 from lwa.law import general, named
-from lwa.linear.loaded import LoadedChain
+from lwa.linear.dispersion import LoadedChain
 
 
 def test_one_bead_a_cell():

@@ -162,7 +162,7 @@ def test_beyond_a_window_nothing_is_a_number():
 @pytest.mark.parametrize("method", COMPILED)
 def test_the_peak_force_of_the_560_beads(method):
     """0.29635394421 at contact 480 and t = 499.87256149: by located kinks and by small steps of the
-    splitting (`validation.studies.accuracy.reference`); DOP853 is compared on fewer beads below."""
+    splitting (`tests/benchmarks/located.py`); DOP853 is compared on fewer beads below."""
     scene = struck(560, duration=510.0, contact_sensors=(480,), samples=10201)
     for window in (True, False):
         run = simulate(scene, method=method, rtol=1e-7, window=window)

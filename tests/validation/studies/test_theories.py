@@ -13,7 +13,7 @@ import sympy as sp
 
 from lwa import Cell, Expansion, expand
 from validation.pulses.steady import STRETCH, point
-from validation.studies.accuracy.theories import HERTZ, NAMES, THEORIES, Ladder, place
+from validation.studies.theories import HERTZ, NAMES, THEORIES, cost, ladder, place
 from validation.waves.solver import ExactWave, exact_wave
 
 
@@ -128,30 +128,29 @@ def test_between_resonances_the_series_claims_no_digit() -> None:
 
 
 def test_ladder_in_all_forms() -> None:
-    result = Ladder((place(sp.Rational(11, 10), sp.S.One),))
-    (at,) = result.places
-    errors = {rung.theory: abs(rung.errors["force"]) for rung in at.rungs if rung.errors}
+    at = place(sp.Rational(11, 10), sp.S.One)
+    errors = {rung.theory: abs(rung.error_value["force"]) for rung in at.rungs if rung.error_value}
     # For equal beads all closures are one theory; each order of the series is better.
     assert errors["linear closure"] == pytest.approx(errors["full closure"], rel=1e-9)
     rising = [errors[name] for name in THEORIES if name.startswith("ε")]
     assert rising == sorted(rising, reverse=True)
     assert errors["canonical field"] > rising[0]
-    report = result.report()
+    report = ladder([at])
     printed = report.text()
     assert "linear closure" in printed
     assert printed.count("theory over truth - 1") == len(NAMES)
     rows = report.document()["theories"][0]["rows"]
     assert [row["theory"] for row in rows] == list(THEORIES)
     assert all(row["seconds"] >= 0 for row in rows)
-    assert result.cost(THEORIES[0]) >= 0
+    assert cost([at], THEORIES[0]) >= 0
     lines = list(csv.DictReader(io.StringIO(report.csv())))
     for line, name in zip(lines, NAMES, strict=True):
         assert line["quantity"] == name
         assert float(line["truth_value"]) == at.truth[name].value
         for rung in at.rungs:
-            assert float(line[f"error_value.{rung.theory}"]) == rung.errors[name]
+            assert float(line[f"error_value.{rung.theory}"]) == rung.error_value[name]
             estimate = line[f"estimate_value.{rung.theory}"]
-            assert not estimate if rung.estimates is None else float(estimate) > 0
+            assert not estimate if rung.estimate_value is None else float(estimate) > 0
     page = report._repr_html_()
     assert page.count("<tr>") == 2 * len(NAMES)
     assert "<svg" in page
@@ -160,7 +159,7 @@ def test_ladder_in_all_forms() -> None:
 def test_a_sum_that_is_refused_is_missing_with_the_reason() -> None:
     """One order tells nothing at k = 3, and a ladder that ends there is no ladder."""
     (rung,) = (rung for rung in place(sp.S(3), sp.S.One).rungs if rung.theory == "ε^1")
-    assert rung.errors is None
+    assert rung.error_value is None
     assert rung.missing is not None
     assert rung.missing.startswith("no sum at k = 3: to ε^1")
 
@@ -169,10 +168,10 @@ def test_what_the_ladder_leaves_out_is_told() -> None:
     """The approximants are those of equal beads; no error is claimed for others."""
     at = place(HERTZ, sp.Rational("0.0901277691"))
     rungs = {rung.theory: rung for rung in at.rungs}
-    assert rungs["[1/1]"].errors is None
+    assert rungs["[1/1]"].error_value is None
     assert rungs["[1/1]"].missing == "a formula for equal beads"
-    assert "[1/1] " not in Ladder((at,)).report().text().splitlines()[-1]
-    report = Ladder((at, place(HERTZ, sp.S.One))).report()
+    assert "[1/1] " not in ladder([at]).text().splitlines()[-1]
+    report = ladder([at, place(HERTZ, sp.S.One)])
     (row,) = [row for row in report.document()["theories"][0]["rows"] if row["theory"] == "[1/1]"]
     assert (row["error_value"], row["estimate_value"]) == (None, None)
     equal, dimers = report.panels

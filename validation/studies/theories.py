@@ -8,10 +8,12 @@ contact force 1, m1 = A = D = 1. The cost is the CPU time of deriving and evalua
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import partial
+from itertools import chain, product
 from statistics import median
 from typing import Any
 
@@ -19,13 +21,13 @@ import sympy as sp
 
 from lwa import Cell, InputError, NoSolitaryWave, expand
 from lwa.expansion.series import EpsilonSeries
+from validation.pictures.panel import Curve, Panel
 from validation.pulses.pulse import Measured
 from validation.pulses.steady import STRETCH, point
-from validation.report.panel import Curve, Panel
 from validation.report.result import Report
 from validation.report.table import Column, Table
 from validation.waves.solver import exact_wave, measured
-from validation.waves.theory import Compacton, theory_at
+from validation.waves.theory import theory_at
 
 _HEADS = {
     "force": "FWHM of a contact's force: theory over truth - 1",
@@ -39,8 +41,8 @@ Prediction = tuple[Sequence[float], Sequence[float] | None]
 
 
 def _closed(closure: str, k: sp.Rational, omega: sp.Rational) -> Prediction:
-    wave = Compacton(theory_at(k, omega, closure), 1.0)
-    return (wave.fwhm("force"), wave.fwhm("strain"), wave.speed), None
+    wave = theory_at(k, omega, closure).at_force(1)
+    return tuple(map(float, (wave.fwhm("force"), wave.fwhm("strain"), wave.speed))), None
 
 
 def _series(order: int, omega: sp.Rational, **k: sp.Rational) -> list[EpsilonSeries]:
@@ -49,14 +51,14 @@ def _series(order: int, omega: sp.Rational, **k: sp.Rational) -> list[EpsilonSer
 
 
 def _approximant(n: int, k: sp.Rational, omega: sp.Rational) -> Prediction:
-    """[n/n] of the series of equal beads, a closed formula in k."""
+    """Padé approximant [n/n] of the series of equal beads, a closed formula in k."""
     if omega != 1:
         raise NoSolitaryWave("a formula for equal beads")
     return [float(row.pade(k, n, n)) for row in _series(2 * n, omega)], None
 
 
 def _summed(n: int, k: sp.Rational, omega: sp.Rational) -> Prediction:
-    """n orders of the series in ε."""
+    """Sums of n orders of the series in ε."""
     sums = [row.at() for row in _series(n, omega, k=k)]
     return [found.value for found in sums], [abs(found.error / found.value) for found in sums]
 
@@ -73,7 +75,7 @@ THEORIES = tuple(_PREDICTIONS)
 SOLITARY, STRUCK_CHAIN = "solitary wave", "struck chain"
 HERTZ = sp.Rational(3, 2)
 
-# k, ω, and what is the truth there; the ratios of solitary waves of the Hertz dimer are by
+# k, ω and the kind of truth; mass ratios of the Hertz dimer's solitary waves are from
 # `validation.waves.resonances`.
 CASES = tuple(
     (sp.Rational(k), sp.Rational(omega), kind)
@@ -92,24 +94,22 @@ CASES = tuple(
 class Rung:
     """One theory at one k and ω.
 
-    errors : theory over truth - 1, by `NAMES`; None where the theory has no wave, see ``missing``.
-    estimates : what the theory itself says of the size of these; the series in ε does.
-    seconds : CPU time of derivation and evaluation.
+    error_value: theory over truth - 1, by `NAMES`; None without a wave, with the reason in
+        ``missing``.
+    estimate_value: the theory's own estimate of the size of its errors; None but for sums in ε.
+    seconds: CPU time of derivation and evaluation.
     """
 
     theory: str
-    errors: Mapping[str, float] | None
-    estimates: Mapping[str, float] | None
+    error_value: Mapping[str, float] | None
+    estimate_value: Mapping[str, float] | None
     seconds: float
     missing: str | None = None
 
 
 @dataclass(frozen=True)
 class Place:
-    """All theories at one k and ω, with the truth by `NAMES`.
-
-    kind : of the truth: `SOLITARY`, or `STRUCK_CHAIN` where there is no such wave.
-    """
+    """All theories at one k and ω, with the truth by `NAMES` and its ``kind``."""
 
     k: sp.Rational
     omega: sp.Rational
@@ -118,53 +118,50 @@ class Place:
     rungs: tuple[Rung, ...]
 
     def document(self) -> dict[str, Any]:
-        """For JSON."""
-        return {
-            "k": self.k, "omega": self.omega, "truth": self.kind,
-            "truth_value": {name: found.value for name, found in self.truth.items()},
-            "truth_error_value": {name: found.error for name, found in self.truth.items()},
-            "rows": [
-                {"theory": r.theory, "error_value": r.errors, "estimate_value": r.estimates,
-                 "seconds": r.seconds, "missing": r.missing} for r in self.rungs
-            ],
-        }  # fmt: skip
+        """Fields for JSON."""
+        head = {"k": self.k, "omega": self.omega, "truth": self.kind}
+        for name in ("value", "error"):
+            key = "truth_value" if name == "value" else "truth_error_value"
+            head[key] = {quantity: getattr(x, name) for quantity, x in self.truth.items()}
+        return head | {"rows": [asdict(rung) for rung in self.rungs]}
 
 
-@dataclass(frozen=True)
-class Ladder:
-    """Theories against truth over (k, ω)."""
+def cost(places: Sequence[Place], theory: str) -> float:
+    """Median CPU time of a theory over the places where it has a wave; NaN without any."""
+    rungs = (place.rungs[THEORIES.index(theory)] for place in places)
+    return median([rung.seconds for rung in rungs if rung.error_value] or [math.nan])
 
-    places: tuple[Place, ...]
 
-    def cost(self, theory: str) -> float:
-        """The median of its seconds, where it has a wave."""
-        rungs = (place.rungs[THEORIES.index(theory)] for place in self.places)
-        return median(rung.seconds for rung in rungs if rung.errors)
+def ladder(places: Sequence[Place]) -> Report:
+    """Table of errors of theories over k and ω, and |error| of the force's width as the picture.
 
-    def report(self) -> Report:
-        """``theories``: ``k``, ``omega``, ``truth`` (its kind), ``truth_value``,
-        ``truth_error_value``, and ``rows``, as of `Rung`; in the picture |error| of the force's
-        width over k and over m2/m1."""
-        found = {rung.theory for p in self.places for rung in p.rungs if rung.errors}
-        told = (f"{name} {1e3 * self.cost(name):.3g}" for name in THEORIES if name in found)
-        note = (
-            "ε^n: the series in k - 1 summed from n orders, in brackets its own estimate of the "
-            "error;\n[n/n]: its closed approximants for equal beads. Truth: by the solitary wave "
-            "or, where\nthere is none, the pulse of a struck chain.\n"
-            f"Median cost of derivation and evaluation (ms of CPU): {', '.join(told)}."
-        )
-        rows = tuple((name, p.k, p.omega, p.truth[name], p.kind,
-                      *(cell for rung in p.rungs for cell in _cells(rung, name)))
-                     for name in NAMES for p in self.places)  # fmt: skip
-        equal = [(p.k - 1, p) for p in self.places if p.omega == 1]
-        dimers = [(p.omega, p) for p in self.places if p.omega != 1 and p.k == HERTZ]
-        return Report(
-            "Theories against true waves",
-            (Table(_COLUMNS, rows, by="quantity", heads=_HEADS, note=note),),
-            panels=(_panel("k - 1", "theories, equal beads", equal),
-                    _panel("m2/m1", "theories, dimers, k = 3/2", dimers)),
-            data={"theories": [p.document() for p in self.places]},
-        )  # fmt: skip
+    JSON: ``theories``, each with ``k``, ``omega``, ``truth``, and ``rows`` of `Rung`.
+    """
+    costs = ((name, 1e3 * cost(places, name)) for name in THEORIES)
+    note = (
+        "ε^n: the series in k - 1 summed from n orders, in brackets its own estimate of the "
+        "error;\n[n/n]: its closed approximants for equal beads. Truth: the solitary wave or, "
+        "where\nthere is none, the pulse of a struck chain.\nMedian cost of derivation and "
+        f"evaluation (ms of CPU): {', '.join(f'{n} {c:.3g}' for n, c in costs if c == c)}."
+    )
+    rows = []
+    for name, p in product(NAMES, places):
+        cells = (cell for rung in p.rungs for cell in _cells(rung, name))
+        rows.append((name, p.k, p.omega, p.truth[name], p.kind, *cells))
+    equal = [(p.k - 1, p) for p in places if p.omega == 1]
+    dimers = [(p.omega, p) for p in places if p.omega != 1 and p.k == HERTZ]
+    parts = [
+        (Column(f"error_value.{n}"), Column(f"estimate_value.{n}"), Column("", n)) for n in THEORIES
+    ]
+    return Report(
+        "Theories against true waves",
+        (Table((*_COLUMNS, *chain(*parts)), tuple(rows), by="quantity", heads=_HEADS, note=note),),
+        panels=(
+            _panel("k - 1", "theories, equal beads", equal),
+            _panel("m2/m1", "theories, dimers, k = 3/2", dimers),
+        ),
+        data={"theories": [p.document() for p in places]},
+    )
 
 
 _COLUMNS = (
@@ -173,16 +170,15 @@ _COLUMNS = (
     Column("omega", "m2/m1", format=lambda omega: f"{float(omega):.4g}"),
     Column("truth", "truth", format=".6g", error=True),
     Column("truth", "by", format=lambda kind: kind.split()[0]),
-    *(column for name in THEORIES for column in
-      (Column(f"error_value.{name}"), Column(f"estimate_value.{name}"), Column("", name))),
-)  # fmt: skip
+)
 
 
 def _cells(rung: Rung, name: str) -> tuple[float | None, float | None, str | None]:
-    """Error, estimate, and both for people."""
-    if rung.errors is None:
+    """Error, estimate, and the text of both."""
+    if rung.error_value is None:
         return None, None, None
-    error, estimate = rung.errors[name], rung.estimates[name] if rung.estimates else None
+    error, sizes = rung.error_value[name], rung.estimate_value
+    estimate = sizes[name] if sizes else None
     told = "" if estimate is None else f" ({estimate:.0e})"
     return error, estimate, f"{error:+.1e}{told}"
 
@@ -190,8 +186,11 @@ def _cells(rung: Rung, name: str) -> tuple[float | None, float | None, str | Non
 def _panel(axis: str, title: str, places: Sequence[tuple[sp.Rational, Place]]) -> Panel:
     curves = []
     for i, (name, mark) in enumerate(zip(THEORIES, "osD^v<>Pd", strict=True)):
-        points = sorted((float(at), abs(errors["force"])) for at, place in places
-                        if (errors := place.rungs[i].errors))  # fmt: skip
+        points = sorted(
+            (float(at), abs(errors["force"]))
+            for at, place in places
+            if (errors := place.rungs[i].error_value)
+        )
         if points:
             x, y = zip(*points, strict=True)
             curves.append(Curve.of(name, x, y, f"C{i}{mark}-"))

@@ -1,0 +1,95 @@
+"""CPU time of the engine and of CyRK on the tasks of `lwa-validate accuracy`, and many chains.
+
+    python -m pytest -s tests/benchmarks/bench_integrators.py
+
+Wants CyRK and prints, for each task, the CPU time of the cheapest run from which on the peak force
+is good to 1e-4 … 1e-10, and for many chains the wall time a chain over a thread a core. LAMMPS'
+GRANULAR package, which is not run here, takes 20 ms for the task "experiment" to 2e-6 and 204 ms to
+2e-8, where the engine takes 0.4 and 0.6 ms (one core; LAMMPS with timesteps of 1e-7 and 1e-8 s). No
+time is asserted; every method must come to the reference.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import partial
+from time import perf_counter
+
+import numpy as np
+import pytest
+
+from tests.benchmarks import cyrk
+from validation.lattice.simulate import COMPILED, simulate, simulate_many
+from validation.lattice.threads import cores, threads
+from validation.studies.accuracy import FINEST, TASKS, WANTED, Row, cost, timed
+
+pytestmark = [
+    pytest.mark.optional("CyRK"),
+    pytest.mark.filterwarnings("default::DeprecationWarning"),
+]
+
+
+def tolerances(finest):
+    """Half decades from 1e-4 on."""
+    return 10.0 ** -np.arange(4, -np.log10(finest) + 0.1, 0.5)
+
+
+@pytest.mark.parametrize("name", TASKS)
+def test_cost(name):
+    task = TASKS[name]()
+    truth = task.truth or task.read(task.force(simulate(task.scene, rtol=FINEST)))
+    methods = {}
+    for method in COMPILED:
+        simulate(task.scene, method=method, rtol=1e-3)  # compiles
+        methods[method] = (
+            1e-12,
+            lambda rtol, m=method: task.force(simulate(task.scene, method=m, rtol=rtol)),
+        )
+    for method, finest in cyrk.METHODS.items():
+        solve = cyrk.prepared(task, method)
+        methods[f"CyRK {method}"] = finest, lambda rtol, s=solve: cyrk.force(task, s(rtol, task))
+    print(f"\n{name}, CPU time (ms) for the peak force to {WANTED}")
+    for method, (finest, run) in methods.items():
+        rows = []
+        for rtol in tolerances(finest):
+            force, seconds = timed(partial(run, rtol))
+            errors = task.errors(force, truth)
+            rows.append(Row(name, method, False, rtol, errors, seconds))
+        assert min(row.errors["peak"] for row in rows) < 1e-5
+        print(method, *(f"{1e3 * cost(rows, wanted):.3g}" for wanted in WANTED))
+
+
+def test_many_chains():
+    """100 of the paper's chains with random masses, each method at a median error of 1e-6."""
+    task, random = TASKS["experiment"](), np.random.default_rng(38)
+    factors = random.lognormal(0.0, 0.1, (100, task.scene.size))
+    tasks = [
+        replace(task, scene=replace(task.scene, masses=tuple(row * task.scene.masses)))
+        for row in factors
+    ]
+
+    def engine(rtol, workers):
+        runs = simulate_many((t.scene for t in tasks), workers=workers, rtol=rtol)
+        return [t.force(run) for t, run in zip(tasks, runs, strict=True)]
+
+    def peer(solve, rtol, workers):
+        with threads(workers) as pool:
+            return list(pool.map(lambda t: cyrk.force(t, solve(rtol, t)), tasks))
+
+    def peaks(forces):
+        return np.array([t.read(force).peak for t, force in zip(tasks, forces, strict=True)])
+
+    methods = {COMPILED[0]: engine}
+    methods |= {
+        f"CyRK {m}": partial(peer, cyrk.prepared(task, m)) for m in ("TSIT5", "VERN7", "DOP853")
+    }
+    truth = peaks(engine(FINEST, cores()))
+    print(f"\nwall time (ms) a chain on {cores()} threads, on one, share of the ideal gain")
+    for name, run in methods.items():
+        for rtol in tolerances(1e-9):
+            if np.median(np.abs(peaks(run(rtol, 1)) / truth - 1)) <= 1e-6:
+                break
+        else:
+            pytest.fail(f"{name} does not reach 1e-6")
+        both, one = (timed(partial(run, rtol, n), perf_counter)[1] for n in (cores(), 1))
+        print(name, f"{10 * both:.3g} {10 * one:.3g} {one / both / cores():.2f}")

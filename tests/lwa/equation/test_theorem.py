@@ -1,0 +1,94 @@
+"""The canonical equation of every cell: G = I(k-1)(k-2)/2, H = 2I(k-1), I the linear chain's.
+
+Write the field of particle i, which sits at x_i = c_0 + … + c_{i-1}, as
+w_i = e^{x_i D∂} (φ + D² e_i φ_xx + …) with Σ μ_i e_i = 0, which defines φ. The kinetic energy of a
+cell is φ_t²/2 to D², and of the elastic energy at D² one monomial is left,
+k A φ_x^{k-1} φ_xx² S(e). So the equation is that of one density for every cell, and e minimises a
+form that does not know k.
+"""
+
+from itertools import pairwise
+
+import pytest
+import sympy as sp
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from lwa import Cell, Dispersion, homogenize
+
+K = 2
+"""The exponent of the closures below: A_i = c_i^{-2} is rational where the share c_i is."""
+
+fractions = st.fractions("1/9", 9, max_denominator=9).map(
+    lambda x: sp.Rational(x.numerator, x.denominator)
+)
+cells = st.integers(1, 6).flatmap(
+    lambda P: st.tuples(
+        st.lists(fractions, min_size=P, max_size=P), st.lists(fractions, min_size=P, max_size=P)
+    )
+)
+
+
+def test_one_monomial_is_left_of_a_contact():
+    """The strain of a contact about its middle, from the shifts of its two particles."""
+    c, e, f, k, D = sp.symbols("c e f k D", positive=True)
+    phi = sp.symbols("phi1:5", positive=True)  # the derivatives φ′ … φ⁗
+
+    def shifted(distance, coefficient):
+        """e^{D distance ∂} (φ + D² coefficient φ″) less φ, to D³."""
+        taylor = sum((D * distance) ** n / sp.factorial(n) * phi[n - 1] for n in range(1, 4))
+        second = phi[1] + D * distance * phi[2]
+        return taylor + D**2 * coefficient * second
+
+    strain = sp.expand((shifted(c / 2, f) - shifted(-c / 2, e)) / D)
+    energy = sp.series((strain / c) ** (k + 1), D, 0, 3).removeO() * c / (k + 1)  # over A c^k
+    second = sp.expand(energy).coeff(D, 2)
+    # by parts: ∫ φ′^k φ‴ = -k ∫ φ′^{k-1} φ″², and φ′^k φ″ at order D is a derivative
+    third = second.coeff(phi[2]) / phi[0] ** k
+    left = (second - second.coeff(phi[2]) * phi[2]) / (k * phi[0] ** (k - 1) * phi[1] ** 2) - third
+    S = -(c**3) / 24 - c * (e + f) / 2 + (f - e) ** 2 / (2 * c)
+    assert sp.simplify(left - S) == 0
+
+
+def least(masses, shares):
+    """The minimum of S(e) under Σ μ_i e_i = 0, exactly: stationary with a multiplier."""
+    P, total = len(shares), sum(masses)
+    e = sp.symbols(f"e0:{P}")
+    around = [*e, e[0]]
+    S = sum(
+        -(c**3) / 24 - c * (a + b) / 2 + (b - a) ** 2 / (2 * c)
+        for c, (a, b) in zip(shares, pairwise(around), strict=True)
+    )
+    held, multiplier = sum(m / total * a for m, a in zip(masses, e, strict=True)), sp.Symbol("l")
+    equations = [sp.diff(S + multiplier * held, a) for a in e] + [held]
+    (found,) = sp.linsolve(equations, [*e, multiplier])
+    return S.subs(dict(zip(e, found, strict=False)))
+
+
+@settings(max_examples=25)
+@given(cells)
+def test_the_coefficient_is_the_minimum_and_the_linear_chains(cell):
+    """I/D² = -(2/P) min S, and that of the acoustic branch Ω² = κ² (1 - Iκ² + …)."""
+    masses, shares = cell
+    P, total = len(shares), sum(shares)
+    shares = [P * c / total for c in shares]
+    chain = Cell(masses, [c**-K for c in shares], 1)
+    I = -sp.Rational(2, P) * least(masses, shares)
+    assert Dispersion(chain, K).I == I
+    assert Dispersion(Cell(masses, [1 / c for c in shares], 1)).I == I  # springs of these shares
+
+
+@pytest.mark.parametrize("k", [K, "k"])
+@pytest.mark.parametrize("P", [1, 2, 3, 4, 5, 6])
+def test_the_closure_comes_to_the_same_equation(k, P):
+    """The recursion on P fields, which knows nothing of energies, for all contacts alike or not."""
+    masses = [sp.Rational(3 * i * i + 2, i + 4) for i in range(P)]
+    shares = [sp.Rational(i + 1, 2 + i % 3) for i in range(P)] if k == K else [1] * P
+    shares = [P * sp.sympify(c) / sum(shares) for c in shares]
+    chain = Cell(masses, [c**-K for c in shares], 1)
+    pde = homogenize(chain, 4, k=k, closure="full", field="center").pde
+    I = -sp.Rational(2, P) * least(masses, shares)
+    k = pde.k
+    assert pde.I == I
+    assert sp.expand(pde.G - I * (k - 1) * (k - 2) / 2) == 0
+    assert sp.expand(pde.H - 2 * I * (k - 1)) == 0

@@ -1,0 +1,46 @@
+"""CyRK, the peer of the benchmarks, integrates the same motion."""
+
+import numpy as np
+import pytest
+from scipy import integrate as scipy
+
+from tests.benchmarks import cyrk
+from tests.benchmarks.located import integrate
+from validation.scenes.scene import Scene, SceneError
+from validation.studies.accuracy import Task, struck
+
+
+def loaded():
+    """A light chain under weight and a wall, to see that rest, load and wall are passed on."""
+    scene = Scene(
+        masses=(1.0, 0.3, 2.0, 0.7),
+        stiffnesses=(1.0, 2.0, 0.5),
+        wall=1.5,
+        gravity=0.1,
+        k=1.5,
+        velocities=(0.3,),
+        duration=8.0,
+        samples=161,
+        contact_sensors=(2,),
+    )
+    return Task(scene, 1.0)
+
+
+@pytest.mark.optional("CyRK")
+@pytest.mark.parametrize("method", cyrk.METHODS)
+@pytest.mark.filterwarnings("default::DeprecationWarning")
+def test_a_peer_agrees_with_scipy(method):
+    """To 1e-6, what kinks leave of tolerances of 1e-10."""
+    for task in (struck(0.2733, 16, 10, 5.0, 17.0), loaded()):
+        y = cyrk.prepared(task, method)(1e-10, task)
+        assert y.shape == (task.scene.size, len(task.times))
+        expected = integrate(task, scipy.DOP853, 1e-11)
+        np.testing.assert_allclose(cyrk.force(task, y), expected, atol=3e-6 * expected.max())
+
+
+def test_other_exponents_are_refused():
+    scene = Scene(
+        masses=(1, 1), stiffnesses=(1,), k=2, duration=1, velocities=(1,), contact_sensors=(0,)
+    )
+    with pytest.raises(SceneError, match=r"^k is 2: "):
+        cyrk.constants(Task(scene, 0.0))

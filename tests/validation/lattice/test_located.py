@@ -1,0 +1,78 @@
+"""The engine at its finest against DOP853 with located kinks, which shares only the equations."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy import integrate as scipy
+
+from tests.benchmarks.located import Located, integrate, located
+from validation.lattice.equations import Motion
+from validation.lattice.simulate import simulate
+from validation.scenes.scene import Scene
+from validation.studies.accuracy import FINEST, NUMBERS, TASKS, exact, struck
+
+
+def compiled(task):
+    return task.read(task.force(simulate(task.scene, rtol=FINEST)))
+
+
+def off(pulse, reference):
+    return {name: abs(getattr(pulse, name) / getattr(reference, name) - 1) for name in NUMBERS}
+
+
+def short(omega):
+    return struck(omega, 30, 20, *{1.0: (14.0, 34.0), 0.2733: (10.0, 30.0)}[omega])
+
+
+@pytest.mark.parametrize("omega", [1.0, 0.2733])
+def test_both_routes_agree(omega):
+    """Both are good to a few 1e-13: rounding in a thousand steps and more."""
+    task = short(omega)
+    assert max(off(located(task), compiled(task)).values()) < 2e-12
+
+
+def test_located_kinks_make_the_error_follow_the_tolerance():
+    """In proportion to it; plain DOP853, which steps over the kinks, errs far more at its least."""
+    task = short(0.2733)
+    truth = compiled(task)
+
+    def error(method, rtol):
+        return task.errors(integrate(task, method, rtol), truth)["peak"]
+
+    tolerances = np.array([1e-9, 1e-11, 1e-13])
+    found = [error(Located, rtol) for rtol in tolerances]
+    assert np.polyfit(np.log(tolerances), np.log(found), 1)[0] == pytest.approx(1, abs=0.2)
+    assert error(scipy.DOP853, 1e-13) > 10 * found[-1]
+
+
+def test_the_end_of_a_collision_is_found_where_it_is():
+    """Two beads are in contact for (2 δ/v) √π Γ(1+s)/Γ(1/2+s), s = 1/(k+1), δ the deepest."""
+    k, reduced = 1.5, 1 / (1 + 1 / 0.3)
+    scene = Scene(masses=(1, 0.3), stiffnesses=(1,), k=k, velocities=(1,), duration=9)
+    s = 1 / (k + 1)
+    deepest = (reduced / (2 * s)) ** s
+    duration = 2 * deepest * math.sqrt(math.pi) * math.gamma(1 + s) / math.gamma(0.5 + s)
+    stepper = Located(Motion(scene), 0.0, np.array([0.0, 0, 1, 0]), 9.0, rtol=2.5e-14, atol=1e-15)
+    while not stepper.events:
+        assert stepper.step() is None
+    assert stepper.t == pytest.approx(duration, rel=1e-12)
+    while stepper.status == "running":
+        assert stepper.step() is None
+    assert stepper.events == 1
+    assert stepper.y[3] - stepper.y[2] == pytest.approx(1.0, rel=1e-12)  # elastic
+
+
+def test_the_exact_wave_arrives_as_it_must():
+    """Within the residual of the wave itself, which is 1e-12 of its speed at most."""
+    task = exact(20)
+    for pulse in (located(task), compiled(task)):
+        assert max(off(pulse, task.truth).values()) < 5e-12
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["uniform", "dimer", "experiment"])
+def test_the_references_agree(name):
+    """480 contacts: rounding over a million steps is what is left."""
+    task = TASKS[name]()
+    assert max(off(located(task), compiled(task)).values()) < 5e-12

@@ -1,0 +1,209 @@
+"""Every number with ± against the same computation at a hundred times the cost: it is within ±.
+
+A study's cost is set by constants of its module: tolerances, distances, samples. The finer run of
+each case sets them by `monkeypatch`.
+"""
+
+import importlib
+import tomllib
+
+import numpy as np
+import pytest
+import sympy as sp
+
+from lwa import Cell
+from validation.pulses import steady
+from validation.pulses.pulse import Measured
+from validation.pulses.sensors import record
+from validation.scenes import scenefile
+from validation.waves.solver import exact_wave, measured, solve
+
+paper, figures, limits, runs = (
+    importlib.import_module(f"validation.studies.{name}")
+    for name in ("paper", "figures", "limits", "run")
+)
+disorder, gravity, precompressed, widths = (
+    importlib.import_module(f"book.studies.{name}")
+    for name in ("disorder", "gravity", "precompressed", "widths")
+)
+
+
+def held(numbers, finer):
+    """Each number's difference from the finer one is within its ±."""
+    assert numbers.keys() == finer.keys()
+    assert numbers
+    for name, number in numbers.items():
+        off = abs(number.value - finer[name].value)
+        assert off <= number.error, (name, number, finer[name], off / (number.error or 1e-300))
+
+
+def of_run(name, rtol):
+    found = record(scenefile.scene(tomllib.loads(runs.EXAMPLES[name][1])), rtol=rtol)
+    return {
+        (reading.name, key): number
+        for reading in (*found.sensors, *found.speeds)
+        for key, number in reading.numbers.items()
+    }
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["paper", *(pytest.param(name, marks=pytest.mark.slow) for name in runs.EXAMPLES
+                if name != "paper")],
+)  # fmt: skip
+def test_run(name):
+    held(of_run(name, 1e-8), of_run(name, 1e-12))
+
+
+def test_paper(monkeypatch):
+    few = {"beads": 24, "sensors": (8, 19)}
+    found = [paper.paper(**options) for options in (few, {})]
+    monkeypatch.setattr(paper, "TOLERANCES", (1e-13, 1e-12))
+    for one, options in zip(found, (few, {}), strict=True):
+        finer = {row.quantity: row.lattice for row in paper.paper(**options).rows}
+        held({row.quantity: row.lattice for row in one.rows}, finer)
+
+
+def test_two_commands_print_the_same_value():
+    """The paper's chain by `paper` and by `run` on its own example."""
+    by_name = {row.quantity: row.lattice for row in paper.paper().rows}
+    scene = scenefile.scene(tomllib.loads(runs.EXAMPLES["paper"][1]))
+    found = record(scene)
+    first, second = (reading.numbers["peak"] for reading in found.sensors[:2])
+    pairs = [
+        (by_name["peak bead force F_15"], first),
+        (by_name["peak bead force F_34"], second),
+        (by_name["speed V_s"], found.speeds[0].numbers["speed"]),
+    ]
+    for one, other in pairs:
+        assert abs(one.value - other.value) <= one.error + other.error
+        assert one.value == pytest.approx(other.value, rel=1e-9)
+
+
+def of_figures(chains, moduli):
+    speeds = {N: figures.chain_speed(N) for N in chains}
+    found = {(N, name): getattr(s, name) for N, s in speeds.items() for name in ("speed", "force")}
+    for E in moduli:
+        scaling = figures.scaling(E)
+        found |= {(E, "V", i): number for i, number in enumerate(scaling.speeds)}
+        found |= {(E, "F", i): number for i, number in enumerate(scaling.forces)}
+        found[E, "exponent"] = scaling.exponent
+    return found
+
+
+@pytest.mark.parametrize(
+    ("chains", "moduli"),
+    [((1, 2), ()), pytest.param((3, 5, 11, 22), figures.MODULI, marks=pytest.mark.slow)],
+)
+def test_figures(monkeypatch, chains, moduli):
+    found = of_figures(chains, moduli)
+    monkeypatch.setattr(paper, "TOLERANCES", (1e-13, 1e-12))
+    held(found, of_figures(chains, moduli))
+
+
+@pytest.mark.slow
+def test_limits(monkeypatch):
+    """Twice the distance at a thousandth of the tolerance; and the exact waves of equal beads."""
+    rows = limits.limits().rows
+    found = {(row.quantity, row.k, row.omega): row.lattice for row in rows}
+    for k in limits.EXPONENTS:
+        wave = exact_wave([1], float(k))
+        true = wave.fwhm("force"), wave.fwhm("strain"), wave.c / float(k) ** 0.5
+        for name, value in zip(np.delete(limits.QUANTITIES, 2), true, strict=True):
+            number = found[name, k, limits.EQUAL]
+            assert abs(number.value - value) <= number.error, (name, k)
+    monkeypatch.setattr(limits, "PLACES", (8, 16, 24))
+    monkeypatch.setattr(limits, "TOLERANCES", {1: (1e-12, 1e-12), 2: (1e-10, 1e-9)})
+    held(found, {(row.quantity, row.k, row.omega): row.lattice for row in limits.limits().rows})
+
+
+@pytest.mark.parametrize(
+    ("masses", "k"),
+    [([1], 1.5), pytest.param([1, 0.8], 1.5, marks=pytest.mark.slow),
+     pytest.param([1], 1.05, marks=pytest.mark.slow), pytest.param([1], 5, marks=pytest.mark.slow)],
+)  # fmt: skip
+def test_exact(masses, k):
+    """On a grid almost three times as fine: Newton's method costs the third power of its size."""
+    wave = exact_wave(masses, k)
+    finer = solve(wave.masses, k, wave.half_period, int(2.7 * len(wave.even)), wave)
+    held(measured(wave), measured(finer))
+
+
+def of_precompressed(masses, ratios):
+    waves = {
+        ratio: precompressed.Wave(Cell(masses, spacing=1), 1.5, ratio).row() for ratio in ratios
+    }
+    return {
+        (ratio, name): number
+        for ratio, row in waves.items()
+        for name, number in row.items()
+        if isinstance(number, Measured)
+    }
+
+
+@pytest.mark.parametrize(
+    ("masses", "ratios"),
+    [((1,), (1.0,)), pytest.param((1,), (0.03, 0.3, 10, 100), marks=pytest.mark.slow),
+     pytest.param((1, "1/2"), (0.1, 3), marks=pytest.mark.slow)],
+)  # fmt: skip
+def test_precompressed(monkeypatch, masses, ratios):
+    found = of_precompressed(masses, ratios)
+    monkeypatch.setattr(precompressed, "_TOLERANCES", (1e-11, 1e-10))
+    held(found, of_precompressed(masses, ratios))
+
+
+def of_gravity(masses, beads):
+    chain = gravity.Upright(Cell(masses, spacing=1), 1.5, beads)
+    return dict(zip(("exponent", "prefactor"), chain.fitted(*chain.fronts()), strict=True))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("masses", [(1,), (1, "1/2")])
+def test_gravity(masses):
+    """Ten times as deep; the exponent's limit is 1/3."""
+    found = of_gravity(masses, 1000)
+    held(found, of_gravity(masses, 10_000))
+    assert abs(found["exponent"].value - 1 / 3) <= found["exponent"].error
+
+
+def of_disorder(spread):
+    singles = disorder.single_losses((spread, -spread))
+    report = disorder.disorder(spread=spread, chains=4, sites=60)
+    rows = report.tables[0].rows
+    decay = Measured(report.data["decay_value"], report.data["decay_value"] + 0.0)
+    found = {(row[0], i): row[i] for row in rows[1:] for i in (1, 3)}
+    return singles, found, decay
+
+
+def test_disorder(monkeypatch):
+    """The same chains, more accurately: errors over chains are far larger than the integration's,
+    which is what the losses at single beads state."""
+    singles, found, _ = of_disorder(0.2)
+    monkeypatch.setattr(disorder, "_TOLERANCE", 1e-9)
+    monkeypatch.setattr(disorder, "_FINE", 1e-12)
+    finer, again, _ = of_disorder(0.2)
+    held(dict(enumerate(singles)), dict(enumerate(finer)))
+    held(found, again)
+
+
+def test_widths(monkeypatch):
+    found = widths.widths()
+    monkeypatch.setattr(paper, "TOLERANCES", (1e-13, 1e-12))
+    finer = widths.widths()
+    held(dict(enumerate(found.times)), dict(enumerate(finer.times)))
+    one, other = (dict(enumerate(d.average for d in w.definitions)) for w in (found, finer))
+    held(one, other)
+
+
+POINTS = [("3/2", "1/2"), ("3/2", "1"), ("3/2", "1/5"), ("5/4", "3/4"), ("2", "3/10")]
+
+
+@pytest.mark.parametrize(
+    ("k", "omega"),
+    [POINTS[0], *(pytest.param(*point, marks=pytest.mark.slow) for point in POINTS[1:])],
+)
+def test_sweep(monkeypatch, k, omega):
+    """Four times as far, at a hundredth of the tolerance."""
+    found = steady.point(sp.Rational(k), sp.Rational(omega), steady.STRETCH).numbers
+    monkeypatch.setattr(steady, "TOLERANCES", (1e-8, 1e-7))
+    held(found, steady.point(sp.Rational(k), sp.Rational(omega), 4 * steady.STRETCH).numbers)

@@ -1,1 +1,0 @@
-"""Speed against error: integrators on fixed tasks, theories against true waves."""

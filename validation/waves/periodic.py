@@ -1,0 +1,258 @@
+"""Time-periodic orbits of a chain under constant load, and their stability.
+
+A constant force F0 presses the first bead, and the last one against it or against a wall, so that
+every contact has the static compression (F0/A_i)^{1/k}. With u the displacements from equilibrium
+and B u the further compressions of the contacts, (B u)_i = u_i - u_{i+1},
+
+    M ü = -Bᵀ [F(δ0 + B u) - F0].
+
+**Orbits.** u(t) = Σ_h a_h cos(hωt), h = 0 … H, for orbits that are at rest at t = 0. The equations
+are projected on the same cosines by the trapezoidal rule, which is spectrally accurate, and solved
+by Newton's method with a sparse Jacobian (SciPy). Without a wall the mean displacement is held at
+0. Newton's method starts from a near motion, such as an envelope (`lwa.envelope`), and `continued`
+follows an orbit in frequency.
+
+**Stability.** The Floquet multipliers are the eigenvalues of the linearised motion over a period
+(SciPy's DOP853). They come in pairs λ, 1/λ; an orbit is linearly stable if all |λ| = 1. The phase
+of the orbit and, without a wall, the motion of the whole chain give double multipliers 1, which
+the integration's error ε splits by √ε. (Flach & Gorbach, Phys. Rep. 467, 1, 2008.)
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import scipy
+from numpy.typing import ArrayLike, NDArray
+
+from lwa.base.arrays import Array
+from lwa.base.exact import InputError
+from validation.scenes.checks import SceneError, integer, positive
+
+HARMONICS = 5  # H
+MOST_STEPS = 30  # of Newton's method
+CLOSE = 1e-8  # last step over the largest displacement, at most
+SMALL, LARGE = 1e-2, 1e3  # least motion over the start's, and largest over the static compression
+SMALLEST = 1e-3  # of the way in frequency, the shortest step of a continuation
+TOLERANCE = 1e-10  # rtol of the linearised motion
+
+
+class NoOrbit(InputError):
+    """Newton's method found no orbit; the message names the frequency."""
+
+
+@dataclass(frozen=True, eq=False)
+class PressedChain:
+    """A chain of contacts F = A δ^k under a constant load.
+
+    masses : (N,). stiffnesses : A of the N - 1 contacts, and of the contact with a wall behind the
+        last bead if there is one; without it the load presses the last bead, too. load : F0.
+    """
+
+    masses: Array
+    stiffnesses: Array
+    k: float
+    load: float
+
+    def __post_init__(self) -> None:
+        for name in ("masses", "stiffnesses"):
+            values = [positive(x, name) for x in getattr(self, name)]
+            object.__setattr__(self, name, np.array(values))
+        if len(self.masses) - len(self.stiffnesses) not in (0, 1):
+            raise SceneError(
+                f"stiffnesses are {len(self.stiffnesses)} of {len(self.masses)} beads: one between "
+                "two beads, and one more for a wall, are wanted"
+            )
+        object.__setattr__(self, "load", positive(self.load, "load"))
+
+    @cached_property
+    def rest(self) -> Array:
+        """Static compressions δ0 of the contacts."""
+        return np.asarray((self.load / self.stiffnesses) ** (1 / self.k))
+
+    @cached_property
+    def strains(self) -> Any:
+        """B, sparse."""
+        contacts, beads = len(self.stiffnesses), len(self.masses)
+        ones = np.ones(contacts)
+        return scipy.sparse.diags_array((ones, -ones), offsets=(0, 1), shape=(contacts, beads))
+
+    def forces(self, u: Array) -> Array:
+        """F - F0 of the contacts at displacements u, (N,) or (N, times), without cancellation."""
+        share = self._shares(u)
+        with np.errstate(divide="ignore"):  # an open contact
+            return np.asarray(self.load * np.expm1(self.k * np.log1p(share)))
+
+    def slopes(self, u: Array) -> Array:
+        """F′ of the contacts."""
+        static = self.k * self.load / self._column(self.rest, u)
+        return np.asarray(static * (1 + self._shares(u)) ** (self.k - 1))
+
+    def energy(self, u: Array) -> float:
+        """Elastic energy at displacements u (N,), less the work of the loads; 0 in equilibrium."""
+        share, k = self._shares(u), self.k
+        with np.errstate(divide="ignore"):
+            stored = np.expm1((k + 1) * np.log1p(share)) / (k + 1)
+        return float(self.load * self.rest @ (stored - (self.strains @ u) / self.rest))
+
+    def _shares(self, u: Array) -> Array:
+        """Further compressions over the static ones, -1 in open contacts."""
+        return np.asarray(np.maximum(self.strains @ u / self._column(self.rest, u), -1))
+
+    @staticmethod
+    def _column(values: Array, like: Array) -> Array:
+        return values[:, None] if like.ndim > 1 else values
+
+
+@dataclass(frozen=True, eq=False)
+class Orbit:
+    """A time-periodic motion u(t) = Σ_h a_h cos(hωt) of a chain.
+
+    frequency : ω, in radians per unit of time. coefficients : a, (N, H + 1).
+    residual : largest force that the equations of motion miss, over the load, at times between
+        those of the solution.
+    """
+
+    chain: PressedChain
+    frequency: float
+    coefficients: Array
+    residual: float
+
+    @property
+    def period(self) -> float:
+        """2π/ω."""
+        return 2 * math.pi / self.frequency
+
+    @property
+    def amplitude(self) -> Array:
+        """Amplitude of the first harmonic of each bead, with its sign."""
+        return np.asarray(self.coefficients[:, 1])
+
+    @property
+    def energy(self) -> float:
+        """Energy above the state of rest."""
+        return self.chain.energy(self.displacements(0.0))
+
+    def displacements(self, t: ArrayLike) -> Array:
+        """Displacements of the beads at times t, (N, *shape of t)."""
+        return self.coefficients @ _cosines(self.coefficients, self.frequency * np.asarray(t))
+
+    @cached_property
+    def multipliers(self) -> NDArray[np.complex128]:
+        """Floquet multipliers, the largest first."""
+        chain, n = self.chain, len(self.chain.masses)
+        B, inverse = chain.strains, 1 / chain.masses[:, None]
+
+        def rate(t: float, state: Array) -> Array:
+            x, v = state.reshape(2, n, 2 * n)
+            push = B.T @ (chain.slopes(self.displacements(t))[:, None] * (B @ x))
+            return np.concatenate((v, -inverse * push)).ravel()
+
+        # Velocities in units of displacement times ω: all entries have one scale.
+        unit = np.append(np.ones(n), np.full(n, self.frequency))
+        end = scipy.integrate.solve_ivp(
+            rate, (0, self.period), np.diag(unit).ravel(), "DOP853", [self.period],
+            rtol=TOLERANCE, atol=TOLERANCE,
+        ).y[:, -1]  # fmt: skip
+        found = np.linalg.eigvals(end.reshape(2 * n, 2 * n) / unit[:, None])
+        return np.asarray(found[np.argsort(-np.abs(found))])
+
+
+def orbit(
+    chain: PressedChain, frequency: float, start: ArrayLike, harmonics: int = HARMONICS
+) -> Orbit:
+    """The orbit of a frequency, by Newton's method.
+
+    start : displacements at t = 0, (N,), for a start with one harmonic, or coefficients (N, H + 1).
+    harmonics : H.
+
+    Raises `NoOrbit` if Newton's method does not converge, or converges to the state of rest.
+    """
+    omega, H = positive(frequency, "frequency"), integer(harmonics, "harmonics", 1, 100)
+    given = np.asarray(start, float)
+    a = np.zeros((len(chain.masses), H + 1))
+    if given.ndim == 1:
+        a[:, 1] = given
+    else:
+        a[:, : given.shape[1]] = given[:, : H + 1]
+    least, before = SMALL * np.abs(a).max(), math.inf
+    for _ in range(MOST_STEPS):
+        step = _newton_step(chain, omega, a)
+        a = a - step
+        size, largest = np.abs(step).max(), np.abs(a).max()
+        if not least < largest < LARGE * chain.rest.max():
+            break
+        # Rounding stops the fall of the steps; a wide orbit is easily shifted along the chain.
+        if size < CLOSE * largest and size > before / 4:
+            return Orbit(chain, omega, a, _residual(chain, omega, a))
+        before = size
+    raise NoOrbit(f"frequency is {omega:.8g}: Newton's method finds no orbit from this start")
+
+
+def continued(begin: Orbit, frequency: float) -> Orbit:
+    """The orbit of another frequency, followed from an orbit in steps of adapted length.
+
+    The start of a step is extrapolated from the two orbits before. Raises `NoOrbit` if the orbit is
+    lost on the way.
+    """
+    frequency = positive(frequency, "frequency")
+    whole, done, step = frequency - begin.frequency, 0.0, 0.25
+    here, before = begin, begin
+    while done < 1:
+        step = min(step, 1 - done)
+        omega = frequency if done + step == 1 else begin.frequency + (done + step) * whole
+        ahead = here.coefficients
+        if before.frequency != here.frequency:
+            share = (omega - here.frequency) / (here.frequency - before.frequency)
+            ahead = ahead + share * (ahead - before.coefficients)
+        try:
+            found = orbit(here.chain, omega, ahead, ahead.shape[1] - 1)
+        except NoOrbit:
+            step /= 2
+            if step < SMALLEST:
+                raise
+            continue
+        before, here, done, step = here, found, done + step, 1.5 * step
+    return here
+
+
+def _cosines(a: Array, phase: Array) -> Array:
+    """cos(hφ) for h = 0 … H, (H + 1, *shape of φ)."""
+    return np.cos(np.multiply.outer(np.arange(a.shape[1]), phase))
+
+
+def _newton_step(chain: PressedChain, omega: float, a: Array) -> Array:
+    """Newton's step at the coefficients a, of shape (N, H + 1)."""
+    n, terms = a.shape
+    times = 2 * terms  # of half a period: twice as many as are needed
+    cosines = _cosines(a, np.pi / times * np.arange(times + 1))
+    project = cosines * (2 / times)
+    project[0] /= 2
+    project[:, [0, -1]] /= 2  # the trapezoidal rule
+    u, B = a @ cosines, chain.strains
+    fault = omega**2 * chain.masses[:, None] * np.arange(terms) ** 2 * a
+    fault -= B.T @ (chain.forces(u) @ project.T)
+    blocks = np.einsum("ht,ct,gt->chg", project, chain.slopes(u), cosines)
+    each = scipy.sparse.eye_array(terms)
+    wide = scipy.sparse.kron(B, each)
+    inertia = omega**2 * np.outer(chain.masses, np.arange(terms) ** 2).ravel()
+    matrix = scipy.sparse.diags_array(inertia) - wide.T @ scipy.sparse.block_diag(blocks) @ wide
+    right = fault.ravel()
+    if len(chain.stiffnesses) < n:  # no wall: the mean displacement is held
+        mean = np.kron(chain.masses, np.eye(1, terms)[0])[None]
+        matrix = scipy.sparse.block_array([[matrix, mean.T], [mean, None]])
+        right = np.append(right, mean @ a.ravel())
+    solved = scipy.sparse.linalg.spsolve(scipy.sparse.csc_array(matrix), right)
+    return np.asarray(solved[: n * terms].reshape(n, terms))
+
+
+def _residual(chain: PressedChain, omega: float, a: Array) -> float:
+    phase = np.linspace(0, np.pi, 8 * a.shape[1] + 3)
+    cosines = _cosines(a, phase)
+    speed_up = -(a * (omega * np.arange(a.shape[1])) ** 2) @ cosines
+    push = chain.masses[:, None] * speed_up + chain.strains.T @ chain.forces(a @ cosines)
+    return float(np.abs(push).max()) / chain.load
