@@ -62,6 +62,26 @@ window.addEventListener("load", async () => {
     a === body.parentElement || !a ? right(e) > innerWidth + 1
     : scrolls(a) ? false : hides(a) && right(e) > edge(a) + 1 || cut(e, a.parentElement);
   const clipped = e => e.tagName === "PRE" && hides(e) && e.scrollWidth > e.clientWidth + 1;
+  const numbers = color => (color.match(/[\d.]+/g) || [0, 0, 0, 0]).map(Number);
+  const light = color => {
+    const [r, g, b] = numbers(color).map(c => {
+      const s = c / 255;
+      return s <= 0.04045 ? s / 12.92 : ((s + 0.055) / 1.055) ** 2.4;
+    });
+    return 0.2126 * r + 0.7152 * g + 0.0722 * b;
+  };
+  const solid = e => {
+    for (let a = e; a; a = a.parentElement) {
+      const color = getComputedStyle(a).backgroundColor;
+      const [, , , alpha = 1] = numbers(color);
+      if (alpha > 0.5) return color;
+    }
+    return "rgb(255, 255, 255)";
+  };
+  const contrast = e => {
+    const [a, b] = [light(getComputedStyle(e).color), light(solid(e))];
+    return (Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05);
+  };
   const parts = [...body.querySelectorAll("pre, table, img, svg, input, mjx-math, dt, h1, h2, p")];
   const apart = "pre, code, script, style, mjx-container";
   for (const element of text.querySelectorAll(apart)) element.remove();
@@ -79,6 +99,9 @@ window.addEventListener("load", async () => {
     crumbled: [...body.querySelectorAll("td span.pre")]
       .filter(e => e.getClientRects().length > 2).map(e => e.textContent),
     wider: document.scrollingElement.scrollWidth > innerWidth + 1,
+    faint: [...body.querySelectorAll("p, td, th, pre, figcaption, output, label, .tag")]
+      .filter(e => e.textContent.trim() && e.getClientRects().length && contrast(e) < 3)
+      .map(e => e.textContent.trim().slice(0, 60)),
     silent: [...body.querySelectorAll("img")].filter(i => !i.alt).map(i => i.src),
     unnamed: [...body.querySelectorAll("canvas, input, select")]
       .filter(e => !e.getAttribute("aria-label") && !e.closest("label")).map(e => e.outerHTML),
@@ -116,8 +139,9 @@ class Visit:
 class _Server(ThreadingHTTPServer):
     daemon_threads = True
 
-    def __init__(self, folder: Path, pages: Sequence[str], visit: Visit) -> None:
+    def __init__(self, folder: Path, pages: Sequence[str], visit: Visit, mode: str) -> None:
         self.left = list(pages)
+        self.mode = mode
         self.visit = visit
         self.progress = threading.Event()
         super().__init__(("127.0.0.1", 0), partial(_Handler, directory=str(folder)))
@@ -137,7 +161,9 @@ class _Handler(SimpleHTTPRequestHandler):
             return self._send(f'<iframe src="/{page}" width="{width}" height="900"></iframe>')
         if path.suffix != ".html" or not path.is_file():
             return super().do_GET()
-        self._send(path.read_text().replace("</body>", PROBE + "</body>"))
+        mode = "".join(f'localStorage.{name} = "{self.server.mode}";' for name in ("mode", "theme"))
+        text = path.read_text().replace("<head>", f"<head><script>{mode}</script>", 1)
+        self._send(text.replace("</body>", PROBE + "</body>"))
 
     def _send(self, text: str) -> None:
         page = text.encode()
@@ -165,17 +191,20 @@ class _Handler(SimpleHTTPRequestHandler):
 
 
 @contextmanager
-def _served(folder: Path, pages: Sequence[str], visit: Visit) -> Iterator[_Server]:
-    with _Server(folder, pages, visit) as server:
+def _served(folder: Path, pages: Sequence[str], visit: Visit, mode: str) -> Iterator[_Server]:
+    with _Server(folder, pages, visit, mode) as server:
         threading.Thread(target=server.serve_forever, daemon=True).start()
         yield server
         server.shutdown()
 
 
-def visited(folder: Path, pages: Sequence[str], width: int | None = None) -> Visit:
+def visited(
+    folder: Path, pages: Sequence[str], width: int | None = None, mode: str = "light"
+) -> Visit:
     """Open the pages, one after another, and tell what was seen.
 
     width : of the page, in CSS pixels; by default that of Chromium's window.
+    mode : "light" or "dark".
 
     Raises `FileNotFoundError` without Chromium and `TimeoutError` when a page does not report.
     """
@@ -186,7 +215,7 @@ def visited(folder: Path, pages: Sequence[str], width: int | None = None) -> Vis
     first, *rest = ("/" + page for page in pages)
     if width is not None:
         first = f"{FRAME}{width}{first}"
-    with tempfile.TemporaryDirectory() as home, _served(folder, rest, visit) as server:
+    with tempfile.TemporaryDirectory() as home, _served(folder, rest, visit, mode) as server:
         log = Path(home, "net-log.json")
         options = (f"--user-data-dir={home}/profile", f"--log-net-log={log}")
         browser = subprocess.Popen(

@@ -13,6 +13,7 @@ from lwa import (
     Power,
     background_wave,
     canonical_wave,
+    envelope,
     general,
     homogenize,
 )
@@ -46,6 +47,8 @@ MADE = {
     "background": lambda: background_wave(Dimer(m1, m2)),
     "kdv": lambda: background_wave(Dimer(m1, m2)).kdv,
     "precompressed": lambda: canonical_wave(Dimer(m1, m2)).at_force("F", precompression="F0"),
+    "envelope": lambda: envelope(Dimer(m1, m2), Power("k"), background="p0"),
+    "breather": lambda: envelope(Dimer(2, 1), Power(2), background=1).breather(detuning="1/100"),
     "loaded": lambda: LoadedChain(Dimer(m1, m2), Power("3/2"), "F0"),
 }
 

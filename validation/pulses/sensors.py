@@ -9,7 +9,7 @@ the less accurate run, whose tolerance is `LESS` times as large.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from itertools import pairwise
 from typing import Any
@@ -50,6 +50,7 @@ class Reading:
     kind : "bead" or "contact". places : number of the sensor, or of both, counted from 1.
     numbers : `READINGS`, or `SPEEDS` (the second one if the scene has spacings).
     static : static force at the (first) sensor. missing : reason why there are no numbers.
+    pulse : number of the pulse at the sensor, counted from 1.
     """
 
     kind: str
@@ -57,6 +58,7 @@ class Reading:
     numbers: Mapping[str, Measured]
     static: float
     missing: str | None = None
+    pulse: int = 1
 
     @property
     def name(self) -> str:
@@ -91,6 +93,11 @@ class Track:
     def pulse(self) -> Pulse:
         """The first pulse; raises `MeasureError` if there is none."""
         return first_pulse(self.force)
+
+    @cached_property
+    def train(self) -> list[Pulse]:
+        """All pulses; raises `MeasureError` if there is none."""
+        return all_pulses(self.force)
 
 
 Tracks = tuple[Track, ...]
@@ -173,17 +180,18 @@ def _reading(
 
 
 def _train(fine: Track, coarse: Track) -> list[Reading]:
-    """All pulses of one sensor, as far as both runs show the same ones."""
+    """All pulses of one sensor that both runs show."""
     try:
-        count = min(len(all_pulses(track.force)) for track in (fine, coarse))
+        count = min(len(track.train) for track in (fine, coarse))
     except MeasureError:
         return [_reading(_pulse, fine, coarse)]
-    return [_reading(partial(_pulse, number=i), fine, coarse) for i in range(count)]
+    readings = (_reading(partial(_pulse, number=i), fine, coarse) for i in range(count))
+    return [replace(reading, pulse=i) for i, reading in enumerate(readings, start=1)]
 
 
 def _pulse(heard: Tracks, number: int | None = None) -> dict[str, float]:
     track = heard[0]
-    pulse = track.pulse if number is None else all_pulses(track.force)[number]
+    pulse = track.pulse if number is None else track.train[number]
     return {name: getattr(pulse, name) for name in READINGS}
 
 

@@ -77,9 +77,11 @@ def blocks(table: Table) -> list[tuple[str, Lines]]:
 
 
 def cell(column: Column, value: Any) -> str:
-    """Format one cell; ``-`` for None."""
+    """Format one cell; ``-`` for None, and a text in place of a number as it is."""
     if value is None:
         return "-"
+    if isinstance(value, str) and column.error:
+        return value
     if callable(column.format):
         return column.format(value)
     if isinstance(value, bool):

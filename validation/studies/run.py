@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from importlib.resources import files
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -13,7 +14,7 @@ from validation.lattice.cost import RunProgress
 from validation.lattice.run import Run
 from validation.lattice.simulate import COMPILED, METHODS
 from validation.pulses.sensors import READINGS, SPEEDS, TOLERANCE, Reading, Recording, record
-from validation.report.command import option, study
+from validation.report.command import option, study, whole
 from validation.report.files import output_file
 from validation.report.result import Report
 from validation.report.table import Column, Table
@@ -22,7 +23,7 @@ from validation.scenes.scene import Scene
 from validation.scenes.scenefile import document, read
 from validation.studies.records import KEPT, SUFFIXES, load, store
 
-_NOTE = "First pulse at each sensor, in {} units. ±: difference to a less accurate run."
+_NOTE = "{} at each sensor, in {} units. ±: difference to a less accurate run."
 _DYNAMIC = "\nDynamic force: force less the static force at the sensor."
 
 
@@ -48,26 +49,26 @@ A scene file, in SI units if its beads are of materials:
 All keys: python -m pydoc validation.scenes.scenefile"""
 
 
-def report(found: Recording) -> Report:
-    """The result of a run.
+def report(found: Recording, every: bool = False) -> Report:
+    """The result of a run; ``every``: with all pulses at each sensor, not only the first.
 
-    ``scene`` (as in a file, see `validation.scenes.scenefile`); ``sensors``: ``kind``, ``number``,
-    ``arrival_value``, ``peak_value`` (of the dynamic force), ``fwhm_value``,
-    ``static_force_value``; ``speeds``: ``kind``, ``from``, ``to``, ``speed_sites_value``,
-    ``speed_value`` (null without spacings); each measured value with its error, as
-    ``arrival_error_value``, and all null where ``missing`` says why; ``energy_drift_value``, and
-    ``momentum_drift_value``, null with a wall. The picture shows the force at all sensors.
+    ``scene`` (as in a file, see `validation.scenes.scenefile`);
+    ``sensors``: ``kind``, ``number``, with ``every`` ``pulse``, counted from 1, ``arrival_value``,
+    ``peak_value`` (of the dynamic force), ``fwhm_value``, ``static_force_value``, ``missing``;
+    ``speeds``: ``kind``, ``from``, ``to``, ``speed_sites_value``, ``speed_value`` (null without
+    spacings), ``missing``; each measured value with its error, as ``arrival_error_value``, and all
+    null where ``missing`` says why;
+    ``energy_drift_value``, and ``momentum_drift_value``, null with a wall.
+    The picture shows the force at all sensors.
     """
     run, scene = found.run, found.run.scene
     momentum = "not conserved" if (p := run.momentum_drift) is None else f"drift {p:.0e}"
     missing = [f"{r.name}: {r.missing}" for r in found.sensors + found.speeds if r.missing]
-    note = _NOTE.format(scene.units or "the scene's own") + _DYNAMIC * any(scene.load)
+    which = "All pulses" if every else "First pulse"
+    note = _NOTE.format(which, scene.units or "the scene's own") + _DYNAMIC * any(scene.load)
     return Report(
         f"{scene}, energy drift {run.energy_drift:.0e}, momentum {momentum}",
-        (
-            _table("sensor", ("number",), _readings(run), found.sensors, static=True),
-            _table("speed", ("from", "to"), _speeds(scene), found.speeds),
-        ),
+        (_sensors(run, found.sensors, every), _speeds(scene, found.speeds)),
         panels=tuple(run.pictured()),
         notes=("\n".join(missing), note if found.sensors else ""),
         data={
@@ -78,34 +79,43 @@ def report(found: Recording) -> Report:
     )
 
 
-def _readings(run: Run) -> dict[str, str]:
-    """Column labels of `READINGS`."""
+def _sensors(run: Run, found: Sequence[Reading], every: bool) -> Table:
+    """The pulses at the sensors; ``static_force_value`` is for programs only."""
     peak = "peak dynamic force" if any(run.scene.load) else "peak force"
     labels = (run.label("arrival"), run.label(peak), run.label("FWHM"))
-    return dict(zip(READINGS, labels, strict=True))
-
-
-def _speeds(scene: Scene) -> dict[str, str]:
-    """Column labels of `SPEEDS`."""
-    units = ("sites/s", "m/s") if scene.units else ("sites/time", "length/time")
-    return dict(zip(SPEEDS, units, strict=True))
-
-
-def _table(
-    what: str,
-    places: Sequence[str],
-    labels: Mapping[str, str],
-    found: Sequence[Reading],
-    static: bool = False,
-) -> Table:
-    measured = [Column(name, label, "", ".8g", error=True) for name, label in labels.items()]
-    columns = [Column("", what), *map(Column, ("kind", *places)), *measured]
-    columns += [Column("static_force_value")] * static + [Column("missing")]
+    columns = (
+        *(Column("", "sensor"), Column("kind"), Column("number")),
+        *[Column("pulse", "pulse")] * every,
+        *_measured(READINGS, labels),
+        *(Column("static_force_value"), Column("missing")),
+    )
     rows = (
-        (r.name, r.kind, *r.places, *map(r.numbers.get, labels), *[r.static] * static, r.missing)
+        (r.name, r.kind, *r.places, *[r.pulse] * every, *_cells(r, READINGS), r.static, r.missing)
         for r in found
     )
-    return Table(tuple(columns), tuple(rows), f"{what}s")
+    return Table(columns, tuple(rows), "sensors")
+
+
+def _speeds(scene: Scene, found: Sequence[Reading]) -> Table:
+    labels = ("sites/s", "m/s") if scene.units else ("sites/time", "length/time")
+    columns = (
+        *(Column("", "speed"), Column("kind"), Column("from"), Column("to")),
+        *(*_measured(SPEEDS, labels), Column("missing")),
+    )
+    rows = ((r.name, r.kind, *r.places, *_cells(r, SPEEDS), r.missing) for r in found)
+    return Table(columns, tuple(rows), "speeds")
+
+
+def _measured(names: Sequence[str], labels: Sequence[str]) -> list[Column]:
+    pairs = zip(names, labels, strict=True)
+    return [Column(name, label, "", ".8g", error=True) for name, label in pairs]
+
+
+def _cells(found: Reading, names: Sequence[str]) -> list[Any]:
+    """The numbers by name; in place of the first one "not followed", where a window had left."""
+    first, *others = names
+    left = "not followed" if (found.missing or "").startswith("not followed") else None
+    return [found.numbers.get(first, left), *map(found.numbers.get, others)]
 
 
 def _read(path: str) -> Scene:
@@ -114,6 +124,11 @@ def _read(path: str) -> Scene:
 
 def _out(context: click.Context, given: click.Parameter, path: str | None) -> Path | None:
     return None if path is None else output_file("out", path, SUFFIXES)
+
+
+def _window(context: click.Context, given: click.Parameter, value: str | None) -> bool | int:
+    """False without the option, True without its value, or the number of beads."""
+    return value == "" or (whole(context, given, value) or False)
 
 
 def _show(context: click.Context, given: click.Parameter, name: str | None) -> None:
@@ -152,6 +167,21 @@ def _show(context: click.Context, given: click.Parameter, name: str | None) -> N
         default=TOLERANCE,
         says="Relative tolerance. Errors are differences to a run with 1000 times as much.",
     ),
+    option(
+        "--window",
+        callback=_window,
+        is_flag=False,
+        flag_value="",
+        metavar="[BEADS]",
+        says="Follow the leading pulse only, with at least so many beads behind its front.",
+    ),
+    option(
+        "--pulses",
+        is_flag=True,
+        default=False,
+        show_default=False,
+        says="Measure all pulses at each sensor, not only the first.",
+    ),
     epilog=_EPILOG,
 )
 def run(
@@ -159,6 +189,8 @@ def run(
     out: Path | None,
     method: str,
     rtol: float,
+    window: bool | int,
+    pulses: bool,
     picture: Path | None,
     run_progress: RunProgress,
 ) -> Report:
@@ -171,8 +203,10 @@ def run(
             raise SceneError(f"{name} is {file}: it is the scene's own file, which would be lost")
         if file.suffix.lower() not in KEPT and not (what.bead_sensors or what.contact_sensors):
             raise SceneError(f"{name} is {file}, but the scene names no sensors")
-    found = record(what, method=method, rtol=rtol, progress=run_progress)
-    result = report(found)
+    found = record(
+        what, method=method, rtol=rtol, every=pulses, window=window, progress=run_progress
+    )
+    result = report(found, every=pulses)
     if out is not None:
         store(found.run, result.document(), out)
     return result

@@ -2,6 +2,8 @@
 
 import csv
 import io
+import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,6 +11,7 @@ import pytest
 from lwa import InputError
 from validation.pulses.sensors import record
 from validation.scenes.chains import struck
+from validation.scenes.scene import Scene
 from validation.studies.run import report
 
 
@@ -59,3 +62,38 @@ def test_a_scene_without_sensors_has_no_picture():
     assert bare.document()["sensors"] == bare.document()["speeds"] == []
     with pytest.raises(InputError, match="this result has no picture"):
         bare.figure()
+
+
+def test_every_pulse_of_a_train_is_listed():
+    """A heavy striker sends a train; each pulse is the higher the earlier it arrives."""
+    masses = (10.0, *(1.0,) * 60)
+    scene = Scene(
+        masses=masses, stiffnesses=(1.0,) * 60, k=1.5, duration=60, velocities=(1,),
+        contact_sensors=(30,),
+    )  # fmt: skip
+    found = record(scene, every=True)
+    rows = report(found, every=True).document()["sensors"]
+    assert [row["pulse"] for row in rows] == list(range(1, len(rows) + 1))
+    assert len(rows) >= 4
+    arrivals, peaks = ([row[name] for row in rows] for name in ("arrival_value", "peak_value"))
+    assert arrivals == sorted(arrivals)
+    assert peaks == sorted(peaks, reverse=True)
+    (first,) = record(scene).sensors
+    assert first.numbers == found.sensors[0].numbers
+    assert "pulse" not in report(record(scene)).document()["sensors"][0]
+
+
+def test_a_sensor_that_a_window_has_left_is_not_followed():
+    scene = struck((1,), 300, duration=160, contact_sensors=(3, 150))
+    found = record(scene, window=40)
+    whole = record(scene)
+    assert found.run.window >= 40
+    assert np.isnan(found.run.contact_force[0, -1])
+    for one, other in zip(found.sensors, whole.sensors, strict=True):
+        for name, measured in one.numbers.items():
+            bound = measured.error + other.numbers[name].error
+            assert abs(measured.value - other.numbers[name].value) <= bound
+    left = replace(found.sensors[0], numbers={}, missing="not followed: a window had left")
+    shown = report(replace(found, sensors=(left,)))
+    assert re.search(r"contact 4 +not followed +- +-\n", shown.text())
+    assert shown.document()["sensors"][0]["arrival_value"] is None

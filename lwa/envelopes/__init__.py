@@ -1,0 +1,1 @@
+"""Envelopes of a loaded chain's modes: the nonlinear Schrödinger equation, and its breathers."""

@@ -1,0 +1,98 @@
+"""Breathers: they solve their equation; the gap breather of a dimer; where contacts open."""
+
+import numpy as np
+import pytest
+import sympy as sp
+
+from lwa import Cell, Dimer, InputError, Power, envelope
+from lwa.law import named
+
+m1, m2, F0, nu, X = sp.symbols("m1 m2 F0 nu X", positive=True)
+k = sp.Symbol("k", positive=True)
+HERTZ = Power("3/2")
+
+
+@pytest.mark.parametrize(
+    ("chain", "kind"),
+    [
+        (envelope(Dimer(1, "1/2"), HERTZ, precompression=1), "bright"),
+        (envelope(Cell([2], [3]), Power(2), precompression=1), "dark"),
+        (envelope(Dimer(1, "1/2"), HERTZ, precompression=1, wavenumber=0), "dark"),
+    ],
+)
+def test_the_profile_solves_the_equation(chain, kind):
+    """Ω A + ½ω″A_XX = χ|A|²A for a f(bX), a from the amplitude of a bead."""
+    found = chain.breather(detuning="1/200")
+    assert found.kind == kind
+    bead = max(range(chain.cell.size), key=lambda i: abs(float(chain.mode[i])))
+    a = found.amplitude[bead] / (2 * chain.mode[bead])
+    A = a * (sp.sech if kind == "bright" else sp.tanh)(X / found.width)
+    rest = (found.frequency - chain.frequency) * A + chain.dispersion * A.diff(X, 2) / 2
+    for place in (0.3, 1, 4):
+        terms = [float(t.subs(X, place)) for t in (rest, chain.nonlinearity * A**3)]
+        assert terms[0] == pytest.approx(terms[1], rel=1e-12)
+
+
+def test_the_gap_breather_of_a_dimer():
+    """U = δ0 √(32ν/(k(k-1))) of the light bead, whatever the masses; b² = 4νω²(m1 - m2)/K2."""
+    chain = envelope(Dimer(m1, m2), Power("k"), precompression="F0")
+    found = chain.breather(detuning="nu", kind="bright")
+    static = F0 ** (1 / k)
+    assert found.amplitude[0] == 0
+    assert (
+        sp.simplify(
+            found.amplitude[1] ** 2 - static**2 * 32 * sp.Symbol("nu", real=True) / (k * (k - 1))
+        )
+        == 0
+    )
+    K2 = k * F0 ** (1 - 1 / k)
+    b2 = 4 * sp.Symbol("nu", real=True) * chain.frequency**2 * (m1 - m2) / K2
+    assert sp.simplify(1 / found.width**2 / b2) == 1
+    assert sp.simplify(found.opening_detuning - k * (k - 1) / 32) == 0
+
+
+def test_units_of_a_breather():
+    """Displacements scale as the static compression; detunings, in cells, do not change."""
+    plain = envelope(Dimer(1, "1/2"), HERTZ, precompression=1).breather(detuning="1/500")
+    real = envelope(Dimer("1/100", "1/200", stiffnesses=("1e9", "1e9")), HERTZ, precompression=20)
+    found = real.breather(frequency=float(real.frequency) * (1 - 1 / 500))
+    ratio = (20 / 1e9) ** (2 / 3)
+    assert float(found.amplitude[1] / plain.amplitude[1]) == pytest.approx(ratio, rel=1e-9)
+    assert float(found.width) == pytest.approx(float(plain.width), rel=1e-9)
+
+
+def test_where_contacts_open_a_breather_is_refused_with_the_number():
+    chain = envelope(Dimer(1, "1/2"), HERTZ, precompression=1)
+    edge = chain.breather(detuning="3/128")
+    assert float(edge.amplitude[1]) == pytest.approx(1, rel=1e-12)  # δ0
+    with pytest.raises(InputError, match=r"contacts open from 2\.392.* a detuning of 0\.02343"):
+        chain.breather(detuning="1/40")
+
+
+def test_contacts_that_pull_do_not_open():
+    chain = envelope(Cell([1], spacing=1), named("exponential", 1), background=0)
+    assert chain.breather(detuning="1/2").opening == sp.oo
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"detuning": "-1/100"}, r"frequency is 2\.47.*: bright breathers lie below 2\.449"),
+        ({}, "frequency or detuning: one of the two is wanted"),
+    ],
+)
+def test_what_is_no_breather_is_refused(options, message):
+    with pytest.raises(InputError, match=message):
+        envelope(Dimer(1, "1/2"), HERTZ, precompression=1).breather(**options)
+    with pytest.raises(InputError, match=r"a breather stands where dω/dκ = 0"):
+        envelope(Cell([1]), HERTZ, precompression=1, wavenumber=1).breather(detuning="1/100")
+
+
+def test_displacements_along_the_chain():
+    found = envelope(Dimer(1, "1/2"), HERTZ, precompression=1).breather(detuning="1/500")
+    cells = np.arange(-3, 4)
+    u = found.displacements(cells)
+    assert u.shape == (7, 2)
+    assert np.all(u[:, 0] == 0)
+    expected = float(found.amplitude[1]) * (-1.0) ** cells / np.cosh(cells / float(found.width))
+    assert u[:, 1] == pytest.approx(expected)

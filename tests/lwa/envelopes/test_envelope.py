@@ -1,0 +1,323 @@
+"""The envelope's equation: closed forms, KdV, Toda, the lattice, exact numbers beside floats."""
+
+import mpmath
+import numpy as np
+import pytest
+import scipy
+import sympy as sp
+from hypothesis import given
+from hypothesis import strategies as st
+
+from lwa import (
+    Cell,
+    Dimer,
+    InputError,
+    Law,
+    Material,
+    Power,
+    Sphere,
+    background_wave,
+    envelope,
+    general,
+)
+from lwa.envelopes.modes import Springs
+from lwa.law import DELTA, named
+from lwa.linear import bands
+
+K2, K3, K4 = sp.symbols("K2 K3 K4", positive=True)
+k, m1, m2, q, p0 = sp.symbols("k m1 m2 q p0", positive=True)
+HERTZ = Power("3/2")
+
+
+def same(left, right):
+    return sp.simplify(left - right) == 0
+
+
+# --- closed forms (theory notes, section 13) ---
+
+
+def test_equal_beads_at_any_wavenumber():
+    found = envelope(Cell([1]), general(), background=0, wavenumber=q)
+    s, cot = sp.sin(q / 2), sp.cot(q / 2)
+    chi = sp.sqrt(K2) * (2 * s) ** 3 * (3 * K4 / (2 * K2) - (K3 / K2) ** 2 * (2 + cot**2))
+    assert same(found.frequency, 2 * sp.sqrt(K2) * s)
+    assert same(found.group_velocity, found.frequency.diff(q))
+    assert same(found.dispersion, found.frequency.diff(q, 2))
+    assert same(found.nonlinearity.rewrite(sp.sin), chi.rewrite(sp.sin))
+
+
+def test_equal_beads_under_a_power_are_dark():
+    found = envelope(Cell(["m"], spacing=1), Power("k"), background="p0", wavenumber=q)
+    m = sp.Symbol("m", positive=True)
+    chi = -found.frequency * (k - 1) * (k - 1 + sp.sin(q / 2) ** 2) / (m * p0**2)
+    assert same(sp.powsimp(found.nonlinearity / chi), 1)
+    for kappa, exponent in ((1, "11/10"), (3, "3/2"), (2, 4)):
+        assert found.at(q=kappa, k=exponent, m=1, p0=1).kind == "dark"
+
+
+def test_the_optical_band_of_a_dimer_begins_with_the_light_bead():
+    found = envelope(Dimer(m1, m2), general(), background=0)
+    omega = sp.sqrt(2 * K2 / m2)
+    assert same(found.frequency, omega)
+    assert found.group_velocity == 0
+    assert same(found.dispersion, K2 / (2 * omega * (m1 - m2)))
+    assert same(found.nonlinearity, (3 * K2 * K4 - 4 * K3**2) / (K2 * m2**2 * omega))
+    assert found.mode[0] == 0
+    assert same(found.mode[1], 1 / sp.sqrt(m2))
+
+
+def test_mean_flow_and_second_harmonic_of_equal_beads():
+    """By hand: e2 = -(1 + e^{iκ})² K3/(K2 m) and, with the flow, e0 = -8 K3/(K2 m) at every κ."""
+    found = envelope(Cell([m1]), general(), background=0, wavenumber=q)
+    assert same(found.second_harmonic[0], -((1 + sp.exp(sp.I * q)) ** 2) * K3 / (K2 * m1))
+    assert same(found.mean_strain[0], -8 * K3 / (K2 * m1))
+
+
+# --- limits ---
+
+
+@pytest.mark.parametrize(
+    "cell", [Cell([2], [3], 1), Dimer(1, "1/3", spacing=1)], ids=["equal", "dimer"]
+)
+def test_long_waves_have_the_envelope_of_kdv(cell):
+    """KdV's own: v a plane wave of wavenumber κ, v2 = α v²/(6γκ²), v0 = -α|v|²/(3γκ²), so that its
+    frequency falls by α²|v|²/(6γκ). A cell is P long, and |v| = κ|A|/√M; the error falls as κ²."""
+    kdv = background_wave(cell, "1/2", law=HERTZ).kdv
+    scale = background_wave(cell, "1/2", law=HERTZ).time_scale
+    errors = []
+    for long in (0.1, 0.05):
+        chi = (
+            envelope(cell, HERTZ, background="1/2", wavenumber=long, branch=0)
+            .numeric()
+            .nonlinearity
+        )
+        kappa = long / cell.size
+        ours = -scale * kdv.nonlinearity**2 * kappa / (6 * kdv.dispersion * cell.mass)
+        errors.append(float(chi / ours - 1))
+    assert abs(errors[1]) < 2e-3
+    assert errors[1] == pytest.approx(errors[0] / 4, rel=0.02)
+
+
+@pytest.mark.parametrize("kappa", ["0.4", "1.5", "3"])
+def test_todas_cnoidal_wave(kappa):
+    """F = e^δ - 1 = (2Kν)² (dn² - E/K) travels with (2Kν)² (1/sn²(Kκ/π) - 1 + E/K) = 1 (Toda 1967).
+
+    Its frequency rises over the linear one by χ|A|², but for the mean compression, which is its own
+    and not that of the envelope's mean flow, and changes ω as the static strain does.
+    """
+    chain = envelope(
+        Cell([1], spacing=1), named("exponential", 1), background="p0", wavenumber=kappa
+    )
+    loaded = chain.at(p0=0)
+    stretched = chain.frequency.diff(sp.Symbol("p0", real=True)).subs(sp.Symbol("p0", real=True), 0)
+    with mpmath.workdps(40):
+        size, m = 64, mpmath.mpf("1e-5")
+        K, E, number = mpmath.ellipk(m), mpmath.ellipe(m), mpmath.mpf(kappa)
+        sn = mpmath.ellipfun("sn", K * number / mpmath.pi, m=m)
+        rate = 1 / mpmath.sqrt(1 / sn**2 - 1 + E / K)  # 2Kν
+        places = [2 * K * j / size for j in range(size)]
+        delta = [
+            mpmath.log1p(rate**2 * (mpmath.ellipfun("dn", x, m=m) ** 2 - E / K)) for x in places
+        ]
+        mean = mpmath.fsum(delta) / size
+        first = (
+            2
+            * mpmath.fsum(d * mpmath.cos(2 * mpmath.pi * j / size) for j, d in enumerate(delta))
+            / size
+        )
+        square = (first / (4 * mpmath.sin(number / 2))) ** 2  # δ = 2|A||1 - e^{iκ}| cos
+        shift = mpmath.pi * rate / K - 2 * mpmath.sin(number / 2)
+        flow = mpmath.mpf(sp.N(loaded.mean_strain[0], 40)) * square
+        chi = (shift - mpmath.mpf(sp.N(stretched, 40)) * (mean - flow)) / square
+        assert abs(chi / mpmath.mpf(sp.N(loaded.nonlinearity, 40)) - 1) < 1e-4
+
+
+# --- the lattice ---
+
+
+def lattice_shift(springs, kappa, frequency, phi, flow, A, harmonics=5):
+    """Frequency of the lattice's plane wave of projection A on the mode, less the linear one.
+
+    Newton's method for complex Fourier coefficients of each bead in θ = κn - ωt; cells are longer
+    by -flow, the mean compression of the envelope's mean flow.
+    """
+    P, n = len(springs.masses), 4 * harmonics
+    h, theta = np.arange(1, harmonics + 1), 2 * np.pi * np.arange(n) / n
+    waves = np.exp(1j * np.outer(h, theta))
+    steps = np.exp(1j * kappa * h)
+
+    def residual(v):
+        mean, parts, omega = v[:P], v[P:-1].reshape(2, P, harmonics), v[-1]
+        U = parts[0] + 1j * parts[1]
+        u = 2 * (U @ waves).real + mean[:, None]
+        after = 2 * ((U[:1] * steps) @ waves).real + mean[0] - flow
+        delta = u - np.vstack([u[1:], after])
+        K = [c[:, None] for c in (springs.K2, springs.K3, springs.K4)]
+        force = (
+            np.fft.rfft(sum(c * delta ** (i + 1) for i, c in enumerate(K)), axis=1)[
+                :, : harmonics + 1
+            ]
+            / n
+        )
+        before = np.vstack([force[-1:] * np.append(1, 1 / steps), force[:-1]])
+        push = before - force
+        rest = -(omega**2) * springs.masses[:, None] * U * h**2 - push[:, 1:]
+        held = (springs.masses * phi.conj() * U[:, 0]).sum() - A
+        return np.concatenate(
+            [
+                push[:-1, 0].real,
+                [mean.sum()],
+                rest.real.ravel(),
+                rest.imag.ravel(),
+                [held.real, held.imag],
+            ]
+        )
+
+    start = np.zeros((P, harmonics), complex)
+    start[:, 0] = A * phi
+    v = np.concatenate([np.zeros(P), start.real.ravel(), start.imag.ravel(), [frequency]])
+    found = scipy.optimize.least_squares(
+        residual, v, x_scale="jac", xtol=1e-15, ftol=1e-15, gtol=1e-15
+    )
+    assert np.abs(found.fun).max() < 1e-13
+    return found.x[-1] - frequency
+
+
+@pytest.mark.parametrize("P", [1, 2, 3, 4])
+@pytest.mark.parametrize("seed", [0, 1])
+def test_plane_waves_of_random_cells_on_the_lattice(P, seed):
+    """χ to four digits: the shift at two amplitudes, whose next order, in |A|⁴, is taken off."""
+    rng = np.random.default_rng([P, seed])
+    masses, stiffnesses = (
+        [sp.Rational(int(n), 8) for n in rng.integers(4, 17, P)] for _ in range(2)
+    )
+    kappa, branch = float(rng.uniform(0.5, 3)), int(rng.integers(P))
+    found = envelope(
+        Cell(masses, stiffnesses, 1), Power("5/2"), background=1, wavenumber=kappa, branch=branch
+    ).numeric()
+    shares = np.array(found.static_compressions, float)
+    A = np.array(stiffnesses, float)
+    springs = Springs(
+        np.array(masses, float), 2.5 * A * shares**1.5, 2.5 * 1.5 / 2 * A * shares**0.5,
+        2.5 * 1.5 * 0.5 / 6 * A * shares**-0.5,
+    )  # fmt: skip
+    chi, omega = float(found.nonlinearity), float(found.frequency)
+    phi, flow = np.array(found.mode, complex), float(sum(found.mean_strain))
+    shifts = []
+    for part in (2e-5, 5e-6):
+        square = part * omega / abs(chi)
+        shift = lattice_shift(springs, kappa, omega, phi, flow * square, square**0.5)
+        shifts.append(shift / square / chi)
+    assert (4 * shifts[1] - shifts[0]) / 3 == pytest.approx(1, abs=1e-4)
+
+
+# --- exact and floats ---
+
+
+@pytest.mark.parametrize("kappa", [0, sp.pi / 3, sp.pi / 2, sp.pi])
+@pytest.mark.parametrize(
+    "cell",
+    [
+        Cell([1, "1/2"], [1, 8], 1),
+        Cell([1, "1/2", "1/3"], spacing=1),
+        Cell([1, 2, "1/3", "3/4"], [1, 8, 1, 27], 1),
+    ],
+    ids=["contacts", "three", "four"],
+)
+def test_exact_numbers_are_those_of_floats(cell, kappa):
+    chain = envelope(cell, HERTZ, background="1/2", wavenumber=kappa, branch=cell.size - 1)
+    floats = chain.numeric()
+    for name in ("frequency", "group_velocity", "dispersion", "nonlinearity"):
+        ours, theirs = (complex(getattr(e, name)) for e in (chain, floats))
+        assert ours == pytest.approx(theirs, rel=1e-9, abs=1e-12)
+    for name in ("second_harmonic", "mean_strain", "strains"):
+        pairs = zip(getattr(chain, name), getattr(floats, name), strict=True)
+        assert all(complex(a) == pytest.approx(complex(b), rel=1e-9, abs=1e-10) for a, b in pairs)
+    if kappa in (0, sp.pi):
+        assert not chain.nonlinearity.has(sp.Float)
+
+
+def test_symbols_first_or_numbers_first():
+    chain = envelope(Cell([m1, m2], ["A1", "A2"], 1), Power("k"), background="p0")
+    values = {"m1": 3, "m2": "1/2", "A1": 1, "A2": 4, "k": 2, "p0": "1/5"}
+    late = chain.nonlinearity.xreplace(
+        {s: sp.sympify(values[s.name]) for s in chain.nonlinearity.free_symbols}
+    )
+    assert float(late) == pytest.approx(float(chain.at(**values).numeric().nonlinearity), rel=1e-12)
+
+
+def test_units_of_real_spheres():
+    """Cut-offs of aluminium and steel beads of 19.05 mm at 20 N, by arithmetic: √(2 K2/m) and
+    √(2 K2 (1/m1 + 1/m2)), the bands of Boechler et al., PRL 104, 244302 (2010)."""
+    radius = "9.525e-3"
+    spheres = [Sphere.solid(radius, Material.named(name)) for name in ("steel 316", "aluminium")]
+    cell = Cell.of_spheres(spheres)
+    heavy, light = (float(m) for m in cell.masses)
+    stiffness = 1.5 * float(cell.stiffnesses[0]) ** (2 / 3) * 20 ** (1 / 3)
+    edges = [
+        (sp.pi, "acoustic", (2 * stiffness / heavy) ** 0.5),
+        (sp.pi, "optical", (2 * stiffness / light) ** 0.5),
+        (0, "optical", (2 * stiffness * (1 / heavy + 1 / light)) ** 0.5),
+    ]
+    for kappa, branch, omega in edges:
+        found = envelope(cell, HERTZ, precompression=20, wavenumber=kappa, branch=branch).numeric()
+        assert float(found.frequency) == pytest.approx(omega, rel=1e-9)
+    load = envelope(cell, HERTZ, precompression=20)
+    static = envelope(cell, HERTZ, background=load.compression / cell.spacing)
+    assert float(static.nonlinearity) == pytest.approx(float(load.nonlinearity), rel=1e-9)
+
+
+# --- refusals ---
+
+
+@pytest.mark.parametrize(
+    ("cell", "options", "message"),
+    [
+        (Cell([1, 1]), {}, "two branches touch at this wavenumber"),
+        (Cell([1]), {"wavenumber": 0}, "the frequency is zero at this wavenumber"),
+        (Dimer(1, 2), {"branch": 2}, "branch is 2: a cell of 2 has 2 branches"),
+        (Dimer(1, 2), {"wavenumber": 4}, r"wavenumber is 4: 0 … pi per cell is wanted"),
+        (Dimer(1, 2), {"wavenumber": 1}, "exact where cos κ is rational"),
+        (Dimer(1, 2), {"precompression": 1}, "background or precompression: one of the two"),
+    ],
+)
+def test_what_has_no_envelope_is_refused(cell, options, message):
+    with pytest.raises(InputError, match=message):
+        envelope(cell, HERTZ, **({"background": 1} | options)).frequency  # noqa: B018
+
+
+def test_resonances_are_refused_by_name():
+    """Long acoustic waves move with sound; second harmonics may be optical modes."""
+    with pytest.raises(InputError, match="group velocity is the speed of sound, c_g = c_0"):
+        envelope(Cell([1]), HERTZ, background=1, wavenumber=1e-6).nonlinearity  # noqa: B018
+
+    def square(kappa, sign):
+        """ω² of masses 1 and 1/2, over K2."""
+        return 3 + sign * np.sqrt(9 - 8 * np.sin(kappa / 2) ** 2)
+
+    place = scipy.optimize.brentq(
+        lambda q: 4 * square(q, -1) - square(2 * q, 1), 0.1, 3, xtol=1e-15
+    )
+    options = {"background": 1, "wavenumber": place, "branch": 0}
+    ringing = envelope(Dimer(1, "1/2", spacing=1), HERTZ, **options)
+    with pytest.raises(InputError, match="the second harmonic is a mode too"):
+        ringing.numeric().nonlinearity  # noqa: B018
+
+
+@given(
+    st.lists(st.floats(0.1, 10), min_size=2, max_size=5),
+    st.lists(st.floats(0.1, 10), min_size=5, max_size=5),
+    st.floats(0.01, 3.1),
+)
+def test_no_mode_is_faster_than_sound(weights, springs, kappa):
+    """c_g < c_0 in every chain of springs, so that no other mode resonates with the mean flow."""
+    mu, c = np.array(weights) / sum(weights), np.array(springs[: len(weights)])
+    velocity = bands.group_velocity(mu, c * len(c) / c.sum(), kappa / len(c))
+    assert np.abs(velocity).max() < 1
+
+
+def test_a_law_of_its_own():
+    """δ + a δ² + b δ³ without load is K2 = 1, K3 = a, K4 = b."""
+    a, b = sp.symbols("a b", real=True)
+    found = envelope(Cell([1]), Law(DELTA + a * DELTA**2 + b * DELTA**3, DELTA), background=0)
+    assert same(found.nonlinearity, 8 * (3 * b / 2 - 2 * a**2))

@@ -1,0 +1,100 @@
+"""The equation that can be integrated: its derivation, its energy, its waves."""
+
+import pytest
+import sympy as sp
+
+from lwa import Cell, Dimer, Evolution, InputError, Power, background_wave, general, homogenize
+from lwa.law import named
+
+x = sp.Symbol("x", real=True)
+CELLS = {
+    "symbols": Dimer("m1", "m2"),
+    "equal": Cell([1]),
+    "contacts": Cell([1, 1], [1, 8]),
+    "three": Cell([1, 2, "1/3"]),
+}
+
+
+def expanded(coefficients, phi, I):
+    """(1 + I ∂²) ∂ F(u_x) to D²: I (F′ u_4x + 3 F″ u_xx u_xxx + F‴ u_xx³), in the jets."""
+    jets = {((2, 3),): phi[3], ((2, 1), (3, 1)): 3 * phi[2], ((4, 1),): sp.S.One}
+    return [sp.simplify(coefficients[jet] - I * value) for jet, value in jets.items()]
+
+
+@pytest.mark.parametrize("name", CELLS)
+def test_it_is_the_canonical_equation_in_its_field(name):
+    cell = CELLS[name]
+    k = sp.Integer(3) if name == "contacts" else sp.Symbol("k", positive=True)
+    theory = homogenize(cell, k=k, closure="full", field="center")
+    evolution = theory.evolution
+    pde = theory.pde.in_field(evolution.field)
+    phi = {2: k - 1, 3: (k - 1) * (k - 2)}
+    assert evolution.time_scale == pde.time_scale
+    assert not any(expanded(pde.coefficients[3], phi, evolution.I / cell.spacing**2))
+
+
+def test_it_is_derived_for_any_law():
+    theory = homogenize(Dimer("m1", "m2"), law=general(), closure="full", field="center")
+    pde = theory.pde.in_field(theory.evolution.field)
+    phi = {n: sp.Symbol(f"phi{n}", real=True) for n in (2, 3)}
+    assert not any(expanded(pde.coefficients[3], phi, theory.evolution.I / theory.cell.spacing**2))
+
+
+@pytest.mark.parametrize(
+    "law", [Power("k"), named("polynomial", "a", "b"), named("exponential", 1)]
+)
+def test_the_energy_is_conserved(law):
+    """∂_τ e is ∂_x of the flux u_τ (F + I u_xττ): for u_ττ free, by the equation."""
+    evolution = Evolution(Cell([1], spacing=1), law)
+    t = sp.Symbol("t", real=True)
+    u = sp.Function("u")(x, t)
+    density = evolution.energy_density(u.diff(x), u.diff(t), x)
+    F = evolution.law.of_strain(u.diff(x), sp.S.One, 0)
+    flux = u.diff(t) * (F + evolution.I * u.diff(x, t, t))
+    equation = u.diff(t, 2) - evolution.I * u.diff(x, 2, t, 2) - F.diff(x)
+    assert sp.simplify(density.diff(t) - flux.diff(x) - u.diff(t) * equation) == 0
+
+
+@pytest.mark.parametrize("k", ["6/5", "3/2", "3"])
+def test_the_wave_solves_the_equation(k):
+    """V² v - I V² v″ = F(v), the equation integrated twice in ξ = x - V τ."""
+    evolution = Evolution(Dimer(1, "1/3", spacing=1), Power(k))
+    V, v = evolution.speed(2), evolution.profile(x, 2)
+    rest = V**2 * (v - evolution.I * v.diff(x, 2)) - evolution.law.of_strain(v, sp.S.One, 0)
+    for place in (0, "0.3", 1, 2):
+        assert abs(rest.subs(x, sp.Rational(place)).n(30)) < 1e-25
+
+
+def test_speeds_under_load_are_those_of_the_canonical_field():
+    evolution = Evolution(Cell([1], spacing=1), Power("3/2"))
+    ours = evolution.speed(2, p0=1)
+    assert float(ours) == pytest.approx(
+        float(background_wave(Cell([1], spacing=1), 1, law=Power("3/2")).speed(2))
+    )
+    assert float(evolution.speed(sp.Rational(1, 10**6), p0=1)) == pytest.approx(1, abs=1e-6)
+
+
+def test_hertz_s_pulse_is_too_narrow():
+    """FWHM of the strain 1.400 where the lattice has 1.7257 (theory notes, section 12)."""
+    v = Evolution(Cell([1], spacing=1), Power("3/2")).profile(x, 1)
+    half = sp.nsolve(v - sp.Rational(1, 2), x, 0.7)
+    assert float(2 * half) == pytest.approx(1.400, abs=1e-3)
+
+
+def test_short_waves_keep_a_bounded_frequency():
+    """Ω = c0 q/√(1 + I q²): that of the lattice to q³, below c0/√I for all q."""
+    evolution = Evolution(Dimer("m1", "m2", spacing=1), Power("k"))
+    q = sp.Symbol("q", positive=True)
+    square = evolution.frequency(q, 1) ** 2
+    assert sp.simplify(sp.series(square, q, 0, 6).removeO() - q**2 + evolution.I * q**4) == 0
+    assert (
+        sp.limit(square, q, sp.oo) == 1 / evolution.I
+        or sp.simplify(sp.limit(square, q, sp.oo) * evolution.I) == 1
+    )
+
+
+def test_what_has_no_such_equation_or_profile_is_refused():
+    with pytest.raises(InputError, match="belongs to the acoustic branch"):
+        homogenize(Dimer(1, 2), branch="optical").evolution  # noqa: B018
+    with pytest.raises(InputError, match="under a power law only"):
+        Evolution(Cell([1]), named("exponential", 1)).profile(0, 1)

@@ -1,0 +1,67 @@
+"""Measured records against their scene: shifts, scales and pulses that are known."""
+
+import json
+
+import numpy as np
+import pytest
+
+from tests.commands import ended
+from validation import cli, simulate
+from validation.scenes.scene import SceneError
+from validation.scenes.scenefile import read
+from validation.studies.compare import compare
+
+SCENE = """
+duration = 25
+precompression = 0.1
+wall = {stiffness = 1}
+chain = {cell = [1, 0.5], repeat = 10, k = 1.5}
+striker = {velocity = 1}
+sensors = {contacts = [4, 8]}
+"""
+LATE, STRONGER = 2.5, 1.02
+
+
+@pytest.fixture
+def files(tmp_path):
+    scene, measured = tmp_path / "scene.toml", tmp_path / "measured.csv"
+    scene.write_text(SCENE)
+    run = simulate(read(scene), rtol=1e-10)
+    first, second = run.contact_force
+    np.savetxt(
+        measured,
+        np.column_stack((run.time - LATE, first, STRONGER * (second - 0.1))),
+        delimiter=",",
+        header="time (s),contact 4 force (N),contact 8 dynamic force (N)",
+        comments="",
+    )
+    return str(scene), str(measured)
+
+
+def test_a_shift_and_a_scale_come_back(capsys, files, tmp_path):
+    picture = tmp_path / "p.svg"
+    options = ("--format", "json", "--plot", str(picture))
+    status, out, err = ended(capsys, cli.main, "compare", *files, *options)
+    assert (status, err) == (0, "")
+    found = json.loads(out)
+    assert found["shift_value"] == pytest.approx(LATE, abs=1e-6)
+    first, second = found["rows"]
+    assert (first["number"], second["number"]) == (4, 8)
+    for row, scale in ((first, 1.0), (second, STRONGER)):
+        for name in ("arrival", "fwhm"):
+            difference, error = (
+                row[f"{name}_difference_{part}"] for part in ("value", "error_value")
+            )
+            assert abs(difference) <= error < 1e-3
+        peak = row["peak_measured_value"] / row["peak_value"]
+        assert peak == pytest.approx(scale, rel=1e-5)
+    assert "contact 4, simulated" in picture.read_text()
+
+
+def test_what_was_not_measured_is_told(files, tmp_path):
+    other = tmp_path / "other.csv"
+    other.write_text("time,bead 4 force\n" + "".join(f"{i},{i}\n" for i in range(9)))
+    with pytest.raises(SceneError, match=r"no column is contact 4 force or contact 8 force$"):
+        compare(files[0], str(other))
+    with pytest.raises(SceneError, match="one column time is wanted, the header has"):
+        compare(files[0], files[0])

@@ -1,0 +1,136 @@
+"""The contact law read off pulses: exact data, noise, the lattice, and bad files."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+import sympy as sp
+
+from lwa import Cell
+from tests.commands import ended
+from validation import cli, simulate
+from validation.pulses.contact_law import Chain, fit_power, free_law
+from validation.scenes.scene import SceneError
+from validation.studies import paper
+from validation.studies.law import law
+from validation.studies.run import EXAMPLES
+
+FORCES = np.geomspace(0.1, 10, 12)
+
+
+@pytest.fixture(scope="module")
+def chain():
+    return Chain.of(Cell((2,), spacing=3))
+
+
+def speeds(chain, k, A, force=FORCES):
+    """V of the lattice's wave of F = A δ^k."""
+    c2 = float(chain.ratio(k)) * 2 / ((k + 1) * chain.mass) * A ** (1 / k) * force ** ((k - 1) / k)
+    return chain.spacing * np.sqrt(c2)
+
+
+def test_the_speed_ratio_is_that_of_the_exact_wave(chain):
+    """c² of the Hertz chain, 0.8199588, over 2/(k+1)."""
+    assert float(chain.ratio(1.5)) == pytest.approx(0.8199588213 * 1.25, rel=1e-6)
+    assert float(chain.ratio(1.0)) == 1
+
+
+@pytest.mark.parametrize(("k", "A"), [(1.5, 0.7), (2.0, 3.0)])
+def test_one_power_comes_back_from_its_own_speeds(chain, k, A):
+    noise = 1 + 1e-9 * np.random.default_rng(1).normal(size=len(FORCES))
+    fit = fit_power(chain, FORCES, speeds(chain, k, A) * noise)
+    assert abs(fit.k.value - k) <= fit.k.error < 1e-7
+    assert abs(fit.A.value - A) <= fit.A.error < 1e-6
+    assert fit.one_power
+    assert abs(fit.hertz.value - A) <= fit.hertz.error or k != 1.5
+    compression, error = free_law(chain, FORCES, speeds(chain, k, A) * noise)
+    assert A * compression**k == pytest.approx(FORCES, rel=1e-6)
+    assert np.all(error < 1e-5 * FORCES)
+
+
+def test_k_is_within_its_error_in_95_of_100_draws_of_1_percent_noise(chain):
+    rng, exact = np.random.default_rng(2), speeds(chain, 1.5, 1.0)
+    hits = 0
+    for _ in range(100):
+        force, speed = (1 + 0.01 * rng.normal(size=(2, len(FORCES)))) * (FORCES, exact)
+        fit = fit_power(chain, force, speed)
+        hits += abs(fit.k.value - 1.5) <= fit.k.error
+    assert hits >= 95
+
+
+def test_a_law_of_two_powers_is_not_one_power(chain):
+    """F = δ^{3/2} + δ^{5/2}, its speeds by S = 2 W/δ² and R of the local exponent."""
+    delta = np.geomspace(0.05, 2, 22)
+    force, energy = delta**1.5 + delta**2.5, delta**2.5 / 2.5 + delta**3.5 / 3.5
+    S = 2 * energy / delta**2
+    s = np.gradient(np.log(S), np.log(force), edge_order=2)
+    k = 1 / (1 - s)
+    for _ in range(20):  # R changes with F, too
+        V = np.sqrt(chain.ratio(k) * S / chain.mass) * chain.spacing
+        k = 1 / (1 - 2 * np.gradient(np.log(V), np.log(force), edge_order=2))
+    assert not fit_power(chain, force, V).one_power
+    compression, error = free_law(chain, force, V)
+    true = compression**1.5 + compression**2.5
+    assert true[1:-1] == pytest.approx(force[1:-1], rel=0.01)
+    assert np.all(error > 0)
+
+
+@pytest.mark.slow
+def test_the_modulus_of_ptfe_comes_back_from_the_papers_chain(tmp_path):
+    """Twelve drop heights; timed between beads of one kind, 16 and 34, as unlike peaks do not."""
+    rows = []
+    for height in np.geomspace(0.02, 1.2, 12):
+        scene = paper.recorded_chain((16, 34), math.sqrt(2 * 9.81 * height))
+        run = simulate(scene, rtol=1e-8)
+        contacts = paper.Train.of(run, "contact")
+        rows.append((contacts.peak, paper.Train.of(run).speed))
+    data, beads = tmp_path / "data.csv", tmp_path / "beads.toml"
+    np.savetxt(data, rows, delimiter=",", header="force (N),speed (m/s)", comments="")
+    beads.write_text(EXAMPLES["paper"][1])
+    found = law(str(data), spheres=str(beads), material="ptfe").document()
+    assert found["k_value"] == pytest.approx(1.5, rel=1e-6)
+    # The pulse is the steady one to some tenths of a percent of its speed; E goes as V³.
+    assert found["E_value"] == pytest.approx(1.46e9, rel=0.005)
+
+
+def written(tmp_path, text):
+    file = tmp_path / "data.csv"
+    file.write_text(text)
+    return str(file)
+
+
+def test_the_command(capsys, tmp_path, chain):
+    V = speeds(chain, 1.5, 1.0) * (1 + 1e-6 * np.random.default_rng(3).normal(size=len(FORCES)))
+    rows = "\n".join(f"{F!r},{v!r}" for F, v in zip(FORCES.tolist(), V.tolist(), strict=True))
+    data, picture = written(tmp_path, f"force (N),speed (m/s)\n{rows}\n"), tmp_path / "law.svg"
+    options = ("--masses", "2", "--spacing", "3")
+    status, out, err = ended(
+        capsys, cli.main, "law", data, *options, "--format", "json", "--plot", str(picture)
+    )
+    assert (status, err) == (0, "")
+    found = json.loads(out)
+    assert found["k_value"] == pytest.approx(1.5, abs=found["k_error_value"])
+    assert {"compression_value", "force_value", "force_error_value"} <= set(found["rows"][0])
+    assert found["one_power"] is True
+    assert picture.exists()
+    assert "One power is enough" in ended(capsys, cli.main, "law", data, *options)[1]
+
+
+@pytest.mark.parametrize(
+    ("text", "options", "message"),
+    [
+        ("", {}, "one column force is wanted"),
+        ("force,time\n1,2\n", {}, "one column speed is wanted"),
+        ("force,speed\n1,2\n", {}, "at least 6 pulses of positive force and speed"),
+        ("force,speed\n" + "1,fast\n" * 9, {}, "column speed: could not convert .*fast"),
+        ("force,speed\n" + "1,nan\n" * 9, {}, "column speed: finite numbers are wanted"),
+        ("force,speed\n" + "-1,2\n" * 9, {}, "positive force and speed"),
+        ("force,speed\n" + "1,2\n" * 9, {"masses": (1, 2, 3)}, "the cell has 3 beads"),
+        ("force,speed\n" + "1,2\n" * 9, {"masses": (sp.Symbol("m"),)}, "mass is m: a number"),
+    ],
+)
+def test_bad_files_are_one_line(tmp_path, text, options, message):
+    with pytest.raises(SceneError, match=message) as refused:
+        law(written(tmp_path, text), **options)
+    assert "\n" not in str(refused.value)

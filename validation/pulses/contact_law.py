@@ -1,0 +1,190 @@
+"""The contact law of a chain, read off its pulses: from peak contact forces F and speeds V.
+
+**One power.** For F = A δ^k, mean mass m̄ and spacing D the lattice's wave has
+
+    V²/D² = R(k) 2/((k+1) m̄) A^{1/k} F^{(k-1)/k},
+
+R being the squared speed of the lattice's wave over that of the long-wave theory. So ln V is linear
+in ln F; least squares give k and A, and with k = 3/2 (Hertz) the unknown E of one material.
+
+**Any law** F(δ) = W'(δ). In the long-wave theory S = m̄ V²/(R D²) is 2 W/δ², δ the peak
+compression. The derivative of S δ² = 2 W by F is
+
+    dδ/dF = δ² S_F / (2 (F - S δ)),   k = 1/(1 - 2 d ln V/d ln F),
+
+integrated downwards from the strongest pulse, where δ = 2 F/((k+1) S); upwards it is unstable. Here
+ln V is a polynomial of ln F, and R is that of the local exponent k.
+
+R comes from the series in k - 1 for equal beads, and otherwise from the steady pulses of struck
+chains (`validation.pulses.steady`). Errors are 95 % intervals; those of the free law are from
+refits with resampled noise.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+import scipy
+import sympy as sp
+from numpy.polynomial import polynomial
+
+from lwa import Cell, expand
+from lwa.base.arrays import Array
+from validation.pulses.pulse import Measured
+from validation.pulses.steady import STRETCH, point
+from validation.scenes.checks import SceneError
+
+_EXPONENTS = ("5/4", "3/2", "2", "5/2", "3", "4")  # at which R is known; R(1) = 1
+_ORDER = 8  # of the series of R for equal beads
+_DRAWS = 200  # of resampled noise
+_STEPS = 60  # of ln F, at which the free law is integrated
+_HERTZ = 1.5
+
+
+@lru_cache(maxsize=16)
+def speed_ratio(omega: sp.Rational) -> Callable[[Any], Array]:
+    """R(k) of a chain of masses 1, ω in turn, as a function of floats 1 ≤ k ≤ 4."""
+    nodes, found = [1.0], [1.0]
+    for k in map(sp.Rational, _EXPONENTS):
+        if omega == 1:
+            c2 = expand(Cell((1,), spacing=1), _ORDER).c2.at(k=k).value
+        else:
+            read = point(k, omega, STRETCH)
+            if read.missing:
+                raise SceneError(f"no speed of the lattice's pulse at k = {k}: {read.missing}")
+            c2 = read.numbers["speed"].value ** 2
+        nodes.append(float(k))
+        found.append(c2 * float((k + 1) * (1 + omega) / 4))
+    spline = scipy.interpolate.CubicSpline(nodes, found)
+    return lambda k: np.asarray(spline(np.clip(k, nodes[0], nodes[-1])))
+
+
+@dataclass(frozen=True, eq=False)
+class Chain:
+    """Mean mass m̄, spacing D and speed ratio R(k) of the chain in which pulses were measured."""
+
+    mass: float
+    spacing: float
+    ratio: Callable[[Any], Array]
+
+    @classmethod
+    def of(cls, cell: Cell) -> Chain:
+        """The chain of a cell of one or two masses, in numbers."""
+        if cell.size > 2:
+            raise SceneError(f"the cell has {cell.size} beads: one or two are wanted")
+        ratio = speed_ratio(sp.Rational(cell.masses[-1] / cell.masses[0]))
+        return cls(float(sum(cell.masses)) / cell.size, float(cell.spacing), ratio)
+
+    def log_stiffness(self, slope: float, constant: float) -> float:
+        """ln A of the power law with ln V = slope · ln F + constant."""
+        k = 1 / (1 - 2 * slope)
+        unit = math.log(2 * float(self.ratio(k)) / ((k + 1) * self.mass)) / 2
+        return 2 * k * (constant - math.log(self.spacing) - unit)
+
+
+@dataclass(frozen=True, eq=False)
+class PowerFit:
+    """k and A of one power, the correlation of k and ln A, and A at k = 3/2.
+
+    curvature : d² ln V/d(ln F)² /2 of a parabola through the data; 0 for one power.
+    residual : root mean square of the residuals of ln V.
+    """
+
+    k: Measured
+    A: Measured
+    correlation: float
+    hertz: Measured
+    curvature: Measured
+    residual: float
+
+    @property
+    def one_power(self) -> bool:
+        """True if the curvature is 0 within its error."""
+        return abs(self.curvature.value) <= self.curvature.error
+
+
+def fit_power(chain: Chain, force: Array, speed: Array) -> PowerFit:
+    """Fit one power F = A δ^k to peak forces and speeds (N,), N ≥ 4, by least squares of ln V."""
+    x, y = np.log(force), np.log(speed)
+    middle = x.mean()  # slope and constant are uncorrelated about it
+    (slope, constant), covariance = np.polyfit(x - middle, y, 1, cov=True)
+    interval = scipy.stats.t.ppf(0.975, len(x) - 2)
+
+    def read(slope: float, constant: float) -> Array:
+        """k and ln A."""
+        return np.array(
+            [1 / (1 - 2 * slope), chain.log_stiffness(slope, constant - slope * middle)]
+        )
+
+    value = read(slope, constant)
+    step = 1e-6
+    jacobian = (
+        np.array([read(slope + step, constant), read(slope, constant + step)]) - value
+    ).T / step
+    spread = jacobian @ covariance @ jacobian.T
+    k_error, log_error = interval * np.sqrt(np.diag(spread))
+    sixth = (_HERTZ - 1) / (2 * _HERTZ)
+    apart = y - sixth * x
+    hertz = chain.log_stiffness(sixth, apart.mean())
+    hertz_error = 2 * _HERTZ * interval * apart.std(ddof=1) / math.sqrt(len(x))
+    parabola, noise = np.polyfit(x - middle, y, 2, cov=True)
+    bound = scipy.stats.t.ppf(0.975, len(x) - 3) * math.sqrt(noise[0, 0])
+    return PowerFit(
+        Measured(value[0], value[0] + k_error),
+        Measured(math.exp(value[1]), math.exp(value[1] + log_error)),
+        float(spread[0, 1] / math.sqrt(spread[0, 0] * spread[1, 1])),
+        Measured(math.exp(hertz), math.exp(hertz + hertz_error)),
+        Measured(parabola[0], parabola[0] + bound),
+        float(np.std(y - np.polyval((slope, constant), x - middle))),
+    )
+
+
+def free_law(
+    chain: Chain, force: Array, speed: Array, degree: int = 3, seed: int = 0
+) -> tuple[Array, Array]:
+    """The compression at each force (N,), and the error of the force at this compression (N,).
+
+    degree : of the polynomial ln V(ln F). seed : of the resampled noise.
+    """
+    x, y = np.log(force), np.log(speed)
+    middle = x.mean()
+    best = polynomial.polyfit(x - middle, y, degree)
+    rest = y - polynomial.polyval(x - middle, best)
+    noise = rest.std() * math.sqrt(len(x) / (len(x) - degree - 1))
+    drawn = np.random.default_rng(seed).normal(0, noise, (len(x), _DRAWS))
+    fitted = polynomial.polyfit(x - middle, (y - rest)[:, None] + drawn, degree)
+    rows = np.column_stack((best, fitted))  # (degree + 1, 1 + draws)
+    grid = np.linspace(x.max(), x.min(), _STEPS)
+    log_delta = _integrated(chain, rows, grid, middle)
+    at = scipy.interpolate.CubicSpline(grid[::-1], log_delta[::-1])
+    steepness = 1 / at(x, 1)[:, 0]  # d ln F/d ln δ
+    spread = np.ptp(np.quantile(at(x), (0.025, 0.975), axis=1), axis=0) / 2
+    return np.exp(at(x)[:, 0]), force * np.abs(steepness) * spread
+
+
+def _integrated(chain: Chain, rows: Array, grid: Array, middle: float) -> Array:
+    """ln δ on a falling grid of ln F, for each column of coefficients of ln V."""
+
+    def log_S(x: float) -> tuple[Array, Array]:
+        """ln S and the local exponent."""
+        slope = polynomial.polyval(x - middle, polynomial.polyder(rows))
+        k = 1 / (1 - 2 * np.minimum(slope, 0.49))
+        log_V = polynomial.polyval(x - middle, rows)
+        return 2 * (log_V - math.log(chain.spacing)) + np.log(chain.mass / chain.ratio(k)), k
+
+    def slope(x: float, log_delta: Array) -> Array:
+        """d ln δ/d ln F."""
+        S, step = log_S(x)[0], 1e-4
+        change = (log_S(x + step)[0] - log_S(x - step)[0]) / (2 * step)
+        share = np.minimum(np.exp(S + log_delta - x), 1 - 1e-6)  # S δ/F = 2/(k+1) of a power
+        return np.asarray(change / 2 * share / (1 - share))
+
+    S, k = log_S(grid[0])
+    start = math.log(2) + grid[0] - np.log(k + 1) - S
+    path = scipy.integrate.solve_ivp(slope, grid[[0, -1]], start, t_eval=grid, rtol=1e-8)
+    return np.asarray(path.y.T)

@@ -1,0 +1,121 @@
+"""Measured records of forces beside the simulation of their scene, aligned by arrival."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+import click
+
+from lwa.base.arrays import Array
+from validation.lattice.cost import RunProgress, silent
+from validation.pictures.panel import Curve, Panel
+from validation.pulses.pulse import Measured, Pulse, Sampled, compared, dense, derived, first_pulse
+from validation.pulses.sensors import READINGS, Track, record, tracks
+from validation.report.command import study
+from validation.report.result import Report
+from validation.report.table import Column, Table
+from validation.scenes.checks import SceneError
+from validation.scenes.scenefile import read
+from validation.studies.records import columns
+
+_NOTE = (
+    "First pulses of dynamic forces. Measured times are shifted by {}, so that the pulses arrive "
+    "together at {}. ±: of the simulation, difference to a less accurate run; of the measurement, "
+    "to every other sample."
+)
+
+
+@study(click.argument("scene"), click.argument("measured"))
+def compare(scene: str, measured: str, run_progress: RunProgress = silent) -> Report:
+    """Measured forces at the sensors of a scene beside the simulated ones: arrival, peak, FWHM.
+
+    The file of measurements, CSV, has the columns time and, for each sensor such as bead 15,
+    "bead 15 force" (static force included) or "bead 15 dynamic force"; with one sensor in the
+    scene also plain "force" or "dynamic force". ``rows``: ``kind``, ``number``, and of each of
+    ``arrival``, ``peak``, ``fwhm`` the ``…_value``, ``…_measured_value`` and
+    ``…_difference_value`` (measured less simulated) with errors; ``shift_value``.
+    """
+    what = read(scene)
+    if not (what.bead_sensors or what.contact_sensors):
+        raise SceneError(f"{scene}: the scene names no sensors")
+    found = record(what, progress=run_progress)
+    heard = tracks(found.run)
+    records = dict(_records(measured, heard))
+    pairs = [
+        (reading, track)
+        for reading, track in zip(found.sensors, heard, strict=True)
+        if (track.kind, track.number) in records
+    ]
+    for reading, _ in pairs:
+        if reading.missing:
+            raise SceneError(f"{reading.name}: {reading.missing}")
+    rows, curves, shift = [], [], 0.0
+    for i, (reading, track) in enumerate(pairs):
+        time, force = records[track.kind, track.number]
+        seen = compared(_numbers, (time, force), (time[::2], force[::2]))
+        if i == 0:
+            shift = reading.numbers["arrival"].value - seen["arrival"].value
+        seen["arrival"] = derived(lambda t, by=shift: t + by, seen["arrival"])
+        rows.append((reading.name, track.kind, track.number, *_cells(reading.numbers, seen)))
+        t = found.run.time
+        curves += [
+            Curve(f"{reading.name}, simulated", t, track.force(t), f"C{i}-"),
+            Curve("measured", time + shift, force, f"C{i}."),
+        ]
+    label = found.run.label
+    first = pairs[0][0].name
+    labels = dict(zip(READINGS, map(label, ("arrival", "peak dynamic force", "FWHM")), strict=True))
+    table = (
+        *(Column("", "sensor"), Column("kind"), Column("number")),
+        *(
+            column
+            for name in READINGS
+            for column in (
+                Column(name, labels[name], error=True, format=".6g"),
+                Column(f"{name}_measured", "measured", error=True, format=".6g"),
+                Column(f"{name}_difference", "difference", error=True, format=".2g"),
+            )
+        ),
+    )
+    unit = f"{shift:.6g} s" if what.units else f"{shift:.6g}"
+    return Report(
+        str(what),
+        (Table(table, tuple(rows), "rows"),),
+        panels=(Panel(label("time"), label("dynamic force"), tuple(curves), legend=(0.0, 1.0)),),
+        notes=(_NOTE.format(unit, first),),
+        data={"shift_value": shift},
+    )
+
+
+def _records(
+    path: str, heard: tuple[Track, ...]
+) -> Iterator[tuple[tuple[str, int], tuple[Array, Array]]]:
+    """Measured time and dynamic force by kind and number of the sensor."""
+    names = {f"{track.kind} {track.number} ": track for track in heard}
+    if len(heard) == 1:
+        names[""] = heard[0]
+    kinds = ("force", "dynamic force")
+    found = columns(path, "time", optional=[name + kind for name in names for kind in kinds])
+    if len(found) == 1:
+        wanted = " or ".join(f"{name}force" for name in names)
+        raise SceneError(f"{path}: no column is {wanted}")
+    for name, track in names.items():
+        for kind in kinds:
+            if name + kind in found:
+                static = 0.0 if kind == "dynamic force" else track.static
+                yield (track.kind, track.number), (found["time"], found[name + kind] - static)
+
+
+def _numbers(samples: tuple[Array, Array]) -> dict[str, float]:
+    sampled = Sampled(*samples)
+    pulse: Pulse = dense(sampled, first_pulse(sampled))
+    return {name: getattr(pulse, name) for name in READINGS}
+
+
+def _cells(simulated: Mapping[str, Measured], seen: Mapping[str, Measured]) -> Iterator[Measured]:
+    """Of each number the simulated and the measured one, and their difference."""
+    for name in READINGS:
+        one, other = simulated[name], seen[name]
+        error = one.error + other.error
+        difference = other.value - one.value
+        yield from (one, other, Measured(difference, difference + error))

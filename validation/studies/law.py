@@ -1,0 +1,158 @@
+"""The contact law of a chain from measured peak forces and speeds, as a report."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Sequence
+from typing import Any
+
+import click
+import numpy as np
+import scipy
+import sympy as sp
+
+from lwa import Cell
+from lwa.base.arrays import Array
+from lwa.base.exact import shorten
+from lwa.base.files import load
+from lwa.base.tables import entries
+from lwa.command.terminal import quantities, quantity
+from lwa.spheres.beads import spheres as read_spheres
+from validation.pictures.panel import Curve, Panel
+from validation.pulses.contact_law import Chain, PowerFit, fit_power, free_law
+from validation.pulses.pulse import Measured
+from validation.report.command import option, study
+from validation.report.result import Report
+from validation.report.table import Column, Table
+from validation.scenes.chains import numbered
+from validation.scenes.checks import SceneError, integer, of_scene
+from validation.studies.records import columns
+
+_LAW = (
+    Column("compression_value", "compression", format=".6g"),
+    Column("force", "force", error=True),
+    Column("", "of the power law", format=".6g"),
+)
+_NOTE = "±: 95 % intervals. The free law needs no power; its compression is that of a contact."
+
+
+@study(
+    click.argument("data"),
+    option("--masses", callback=quantities, says="Masses of the chain, one or two in turn."),
+    option("--spacing", callback=quantity, says="Distance of neighbours, with --masses."),
+    option("--spheres", metavar="FILE", says="File of the chain's spheres, in place of --masses."),
+    option("--material", metavar="NAME", says="Material of the file whose E is unknown."),
+    option("--degree", default=3, says="Degree of the polynomial ln V(ln F) of the free law."),
+)
+def law(
+    data: str,
+    masses: Sequence[Any] = (),
+    spacing: Any = None,
+    spheres: str | None = None,
+    material: str | None = None,
+    degree: int = 3,
+) -> Report:
+    """Contact law from a CSV file of pulses with columns force and speed.
+
+    Peak contact forces and speeds are in the units of the masses and the spacing, by default those
+    of unit mass and spacing; with spheres they are in N and m/s. ``k_value``, ``A_value`` and, of
+    an unknown material, ``E_value``, with their errors; ``correlation_value`` of k and ln A;
+    ``residual_value`` of ln V; ``one_power``; ``rows`` of the free law: ``compression_value``,
+    ``force_value``, ``force_error_value``.
+    """
+    force, speed = columns(data, "force", "speed").values()
+    degree = integer(degree, "degree", 1, 6)
+    if len(force) < degree + 3 or not (force.min() > 0 and speed.min() > 0):
+        raise SceneError(
+            f"{data}: at least {degree + 3} pulses of positive force and speed are wanted"
+        )
+    content = None if spheres is None else load(spheres, "a list of spheres", _content)
+    if content is None:
+        cell = numbered(masses or (1,))
+        cell = Cell(cell.masses, spacing=1 if spacing is None else spacing)
+    else:
+        cell = Cell.of_spheres(of_scene(read_spheres)(content))
+    chain = Chain.of(cell)
+    fit = fit_power(chain, force, speed)
+    rows: list[tuple[str, Measured]] = [("k", fit.k), ("A", fit.A)]
+    if material is not None:
+        if content is None:
+            raise SceneError("material is given: its E needs --spheres")
+        rows.append(("E", _modulus(content, material, fit.hertz)))
+    found = {f"{name}_value": value.value for name, value in rows}
+    errors = {f"{name}_error_value": value.error for name, value in rows}
+    compression, error = free_law(chain, force, speed, degree)
+    order = np.argsort(force)
+    free = tuple(
+        (d, Measured(F, F + e), fit.A.value * d**fit.k.value)
+        for d, F, e in zip(compression[order], force[order], error[order], strict=True)
+    )
+    return Report(
+        f"{len(force)} pulses, forces {force.min():.4g} … {force.max():.4g}",
+        (
+            Table((Column("", "F = A δ^k"), Column("", "value", error=True)), tuple(rows)),
+            Table(_LAW, free, "rows", "free law F(δ)"),
+        ),
+        panels=_panels(force, speed, compression, error, fit),
+        notes=(_verdict(fit), _NOTE),
+        data=found
+        | errors
+        | {
+            "correlation_value": fit.correlation,
+            "residual_value": fit.residual,
+            "one_power": fit.one_power,
+        },
+    )
+
+
+def _content(content: Any) -> dict[str, Any]:
+    return entries(content, "the file")
+
+
+def _modulus(content: dict[str, Any], material: str, stiffness: Measured) -> Measured:
+    """E of a material of a file of spheres, from A of their Hertz contacts."""
+
+    def log_stiffness(log_E: float) -> float:
+        """ln A, by the mean compression of a cell's contacts."""
+        changed = copy.deepcopy(content)
+        given = changed.setdefault("materials", {}).setdefault(material, {"like": material})
+        given["E"] = float(np.exp(log_E))
+        cell = Cell.of_spheres(of_scene(read_spheres)(changed))
+        A = np.array([float(sp.N(contact)) for contact in cell.stiffnesses])
+        return float(-1.5 * np.log(np.mean(A ** (-1 / 1.5))))
+
+    low, high = np.log(1e3), np.log(1e15)
+    if not log_stiffness(low) < np.log(stiffness.value) < log_stiffness(high):
+        raise SceneError(
+            f"material is {shorten(material)}: no E of it makes the contacts' A = "
+            f"{stiffness.value:.4g}"
+        )
+
+    def modulus(A: float) -> float:
+        root = scipy.optimize.brentq(lambda x: log_stiffness(x) - np.log(A), low, high)
+        return float(np.exp(root))
+
+    return Measured(modulus(stiffness.value), modulus(stiffness.check))
+
+
+def _verdict(fit: PowerFit) -> str:
+    """Whether one power is enough, in a sentence."""
+    bend = f"curvature of ln V against ln F {fit.curvature.value:.2g} ± {fit.curvature.error:.1g}"
+    return f"One power is {'enough' if fit.one_power else 'not enough'}: {bend}."
+
+
+def _panels(
+    force: Array, speed: Array, compression: Array, error: Array, fit: PowerFit
+) -> tuple[Panel, Panel]:
+    order = np.argsort(force)
+    F, V, d = force[order], speed[order], compression[order]
+    power = np.exp(np.polyval(np.polyfit(np.log(F), np.log(V), 1), np.log(F)))
+    speeds = (Curve("measured", F, V, "C0o"), Curve("one power", F, power, "C1-"))
+    laws = (
+        Curve("free law", d, F, "C0o", error[order]),
+        Curve("one power", d, fit.A.value * d**fit.k.value, "C1-"),
+    )
+    return (
+        Panel("peak contact force", "speed", speeds, "xy"),
+        Panel("compression", "contact force", laws, "xy"),
+    )
