@@ -14,7 +14,7 @@ from typing import Any
 import sympy as sp
 
 from lwa.base import latex
-from lwa.base.exact import InputError
+from lwa.base.exact import InputError, evaluated
 from lwa.expansion.approximants import Resummed
 
 DIGITS = 15
@@ -66,6 +66,7 @@ class Answer:
     equations : rows of LaTeX before the others.
     notes : limits of the numbers.
     parts : further answers by their key in JSON.
+    orders : whether text says to which order of k - 1 a sum goes.
     """
 
     head: Mapping[str, Any]
@@ -75,6 +76,7 @@ class Answer:
     equations: Sequence[str] = ()
     notes: Sequence[str] = ()
     parts: Mapping[str, Answer] = field(default_factory=dict)
+    orders: bool = True
 
     def plain(self, value: sp.Expr) -> sp.Expr:
         """The value at V_s = 1 and B = 1, and at D = 1 where the spacing is a symbol."""
@@ -85,7 +87,7 @@ class Answer:
 
     def unit(self, row: Row) -> str:
         """The unit of a row in SI, empty where there is none."""
-        return self.units.get(row.key.partition(".")[0], "")
+        return self.units.get(row.key, self.units.get(row.key.partition(".")[0], ""))
 
     # --- JSON -------------------------------------------------------------------------------
 
@@ -138,7 +140,7 @@ class Answer:
         if isinstance(row.digits, InputError):
             return f": {row.digits}"
         if isinstance(row.digits, Resummed):
-            return f" = {summed(row.digits, unit)}"
+            return f" = {summed(row.digits, unit, self.orders)}"
         parts = row.value if isinstance(row.value, tuple) else (row.value,)
         if row.number is not SAME and row.exact is False and row.number is not None:
             parts = (row.number,)
@@ -152,15 +154,15 @@ class Answer:
         plain = self.plain(value)
         if not told or value.free_symbols - {self.spacing} or plain.is_Rational:
             return str(value)
-        digits = sp.sstr(sp.N(plain, DIGITS), full_prec=False) + self._length_unit(value)
+        digits = sp.sstr(evaluated(plain, DIGITS), full_prec=False) + self._length_unit(value)
         written = str(value)
         return digits if plain.is_Float or len(written) > LONG else f"{written} ≈ {digits}"
 
     def _length_unit(self, value: sp.Expr) -> str:
         if not self.spacing.is_Symbol or self.spacing not in value.free_symbols:
             return ""
-        power = sp.cancel(value.diff(self.spacing) * self.spacing / value)
-        if not power.is_number:
+        power = sp.nsimplify(sp.cancel(value.diff(self.spacing) * self.spacing / value))
+        if not power.is_number or power.is_zero:
             return ""
         return f" {self.spacing}" if power == 1 else f" {self.spacing}^{power}"
 
@@ -210,7 +212,7 @@ def as_float(value: sp.Expr) -> float | None:
     """The nearest float of an exact number, None for what is symbolic, complex or out of range."""
     if value.free_symbols:
         return None
-    number = sp.N(value, 30)
+    number = evaluated(value, 30)
     if not number.is_real or not (number == 0 or 1e-300 < abs(number) < 1e300):
         return None
     return float(number)
@@ -219,24 +221,24 @@ def as_float(value: sp.Expr) -> float | None:
 def approximate(value: sp.Expr) -> str:
     """A number in digits; an expression in symbols with its numeric factor in digits."""
     factor, rest = value.as_independent(*value.free_symbols, as_Add=False)
-    number = sp.sstr(sp.N(factor, DIGITS), full_prec=False)
+    number = sp.sstr(evaluated(factor, DIGITS), full_prec=False)
     return str(rest) if factor == 1 and rest != 1 else number if rest == 1 else f"{number}·{rest}"
 
 
 def _approximate_latex(value: sp.Expr) -> str:
     factor, rest = value.as_independent(*value.free_symbols, as_Add=False)
-    number = sp.latex(sp.N(factor, DIGITS))
+    number = sp.latex(evaluated(factor, DIGITS))
     return str(
         number if rest == 1 else sp.latex(rest) if factor == 1 else rf"{number} {sp.latex(rest)}"
     )
 
 
-def summed(found: Resummed, unit: str = "") -> str:
-    """A sum to as many digits as the error lets stand, and one more."""
+def summed(found: Resummed, unit: str, order: bool) -> str:
+    """A sum to as many digits as the error lets stand, and one more; with its order."""
     digits = min(16, 2 - math.floor(math.log10(found.error / found.value)))
     note = "; higher orders do not help" if found.asymptotic else ""
     value = f"{found.value:.{digits}g} ± {found.error:.1e}{unit}"
-    return f"{value} (to ε^{found.order}{note})"
+    return f"{value} (to ε^{found.order}{note})" if order else value
 
 
 def _decimal(value: float, digits: int = 10) -> str:

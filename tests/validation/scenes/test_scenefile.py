@@ -19,7 +19,7 @@ from lwa.spheres.hertz import Material, Sphere
 from validation.scenes import scenefile
 from validation.scenes.materials import STEEL, contact_stiffness
 from validation.scenes.scene import Scene, SceneError
-from validation.scenes.scenefile import document, read, scene
+from validation.scenes.scenefile import document, read_scene, scene
 from validation.studies.paper import chain_scene
 
 # The experiment of Porter et al. (2008), standing upright: SI units.
@@ -103,6 +103,7 @@ def test_the_modules_own_example_holds_every_key():
     for name in ("chain", "striker", "start", "sensors"):
         assert set(content[name]) == set(scenefile.KEYS[name])
     start = content.pop("start")  # what excludes each other
+    assert content["chain"].pop("law") == "hertz2:1,2"
     balls = {key: content["chain"].pop(key) for key in ("k", "stiffnesses", "spacings")}
     assert scene(content).size == 38
     del content["striker"]
@@ -212,8 +213,8 @@ def test_a_scene_written_is_read_back_equal(what):
 def test_files_there_and_back(tmp_path, text):
     file, first = tmp_path / "scene.json", tmp_path / "first.toml"
     first.write_text(text)
-    file.write_text(json.dumps(document(read(first))))
-    assert read(file) == read(first)
+    file.write_text(json.dumps(document(read_scene(first))))
+    assert read_scene(file) == read_scene(first)
     assert len(file.read_text()) < 800  # a periodic chain is written as its cell
 
 
@@ -259,7 +260,7 @@ BAD = [
     ({"chain": {"cell": ["ball", 1]}}, "chain.cell number 2 is 1: one of ball is wanted"),
     ({"chain": {"cell": ["bal"]}}, "chain.cell number 1 is 'bal': did you mean ball"),
     ({"chain": {"cell": ["ball"]}, "beads": {}}, "chain.cell number 1 is 'ball': none is defined"),
-    ({"chain": {"cell": [1]}}, "chain.k is missing"),
+    ({"chain": {"cell": [1]}}, "chain has neither k nor law: one is wanted"),
     ({"chain": {"cell": [1, 2], "k": 0.5}}, "k is 0.5: the contact law .* k ≥ 1"),
     ({"chain": {"cell": ["ball"], "k": 1.5}}, "chain.k is given, but named beads are in Hertz"),
     ({"chain": {"cell": [1, 2, 3], "k": 2, "stiffnesses": [1]}}, "chain.stiffnesses holds 1: 2 or"),
@@ -381,7 +382,7 @@ def test_bad_files(tmp_path, name, content, message):
     if content is not None:
         file.write_bytes(content)
     with pytest.raises(SceneError) as caught:
-        read(file)
+        read_scene(file)
     found = str(caught.value)
     assert found.startswith(f"{file}: ")
     assert re.match(message, found.removeprefix(f"{file}: "))
@@ -392,7 +393,7 @@ def test_a_file_without_end_is_refused(monkeypatch, tmp_path):
     monkeypatch.setitem(files.MOST_BYTES, ".toml", 10)
     (tmp_path / "s.toml").write_text("duration = 1")
     with pytest.raises(SceneError, match=r"s.toml: more than 10 bytes, the most that is read$"):
-        read(tmp_path / "s.toml")
+        read_scene(tmp_path / "s.toml")
 
 
 leaves = st.one_of(
@@ -428,3 +429,14 @@ def test_whatever_a_file_holds_is_read_or_refused_in_one_line(data):
     else:
         message = ""
     assert "\n" not in message
+
+
+@pytest.mark.parametrize(
+    "law",
+    ["hertz2:1,1/2", "magnetic:4,2", "polynomial:1/4,-1/10", "polynomial:0,1", "exponential:3/2",
+     "lennard-jones:3", "power:3/2"],
+)  # fmt: skip
+def test_a_law_is_read_and_written(law):
+    read = scene({"duration": 1, "chain": {"cell": [1, 2], "law": law}})
+    assert scene(document(read)) == read
+    assert (read.law is None) == law.startswith("power")
