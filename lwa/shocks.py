@@ -22,6 +22,7 @@ from typing import Any
 import mpmath
 import sympy as sp
 
+from lwa.base import latex
 from lwa.base.exact import InputError, exact, positive, root, shorten
 from lwa.base.frozen import Value
 from lwa.cell import Cell, substitution
@@ -51,6 +52,10 @@ class Shock(Value):
     law: ContactLaw
     behind: sp.Expr
     ahead: sp.Expr
+
+    def _repr_latex_(self) -> str:
+        rows = {"v_{p}": self.plateau, "c_{-}/c_{+}": self.ratio}
+        return latex.display([latex.row(name, value) for name, value in rows.items()])
 
     @property
     def kind(self) -> str:
