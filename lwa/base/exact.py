@@ -164,7 +164,12 @@ def number(value: sp.Expr) -> float:
     if value.free_symbols:
         names = ", ".join(sorted(map(str, value.free_symbols)))
         raise InputError(f"{names}: a curve needs numbers for all symbols; give them by at(…)")
-    return float(sp.N(value, 20, maxn=MOST_CANCELLED))
+    return float(evaluated(value, 20))
+
+
+def evaluated(value: sp.Expr, digits: int) -> sp.Expr:
+    """An exact number to so many digits, however many its terms cancel (up to thousands)."""
+    return sp.N(value, digits, maxn=MOST_CANCELLED)
 
 
 class Kept(sp.UnevaluatedExpr):  # type: ignore[misc]  # untyped in SymPy

@@ -14,7 +14,7 @@ from typing import Any
 import sympy as sp
 
 from lwa.base import latex
-from lwa.base.exact import InputError
+from lwa.base.exact import InputError, evaluated
 from lwa.expansion.approximants import Resummed
 
 DIGITS = 15
@@ -152,15 +152,15 @@ class Answer:
         plain = self.plain(value)
         if not told or value.free_symbols - {self.spacing} or plain.is_Rational:
             return str(value)
-        digits = sp.sstr(sp.N(plain, DIGITS), full_prec=False) + self._length_unit(value)
+        digits = sp.sstr(evaluated(plain, DIGITS), full_prec=False) + self._length_unit(value)
         written = str(value)
         return digits if plain.is_Float or len(written) > LONG else f"{written} ≈ {digits}"
 
     def _length_unit(self, value: sp.Expr) -> str:
         if not self.spacing.is_Symbol or self.spacing not in value.free_symbols:
             return ""
-        power = sp.cancel(value.diff(self.spacing) * self.spacing / value)
-        if not power.is_number:
+        power = sp.nsimplify(sp.cancel(value.diff(self.spacing) * self.spacing / value))
+        if not power.is_number or power.is_zero:
             return ""
         return f" {self.spacing}" if power == 1 else f" {self.spacing}^{power}"
 
@@ -210,7 +210,7 @@ def as_float(value: sp.Expr) -> float | None:
     """The nearest float of an exact number, None for what is symbolic, complex or out of range."""
     if value.free_symbols:
         return None
-    number = sp.N(value, 30)
+    number = evaluated(value, 30)
     if not number.is_real or not (number == 0 or 1e-300 < abs(number) < 1e300):
         return None
     return float(number)
@@ -219,13 +219,13 @@ def as_float(value: sp.Expr) -> float | None:
 def approximate(value: sp.Expr) -> str:
     """A number in digits; an expression in symbols with its numeric factor in digits."""
     factor, rest = value.as_independent(*value.free_symbols, as_Add=False)
-    number = sp.sstr(sp.N(factor, DIGITS), full_prec=False)
+    number = sp.sstr(evaluated(factor, DIGITS), full_prec=False)
     return str(rest) if factor == 1 and rest != 1 else number if rest == 1 else f"{number}·{rest}"
 
 
 def _approximate_latex(value: sp.Expr) -> str:
     factor, rest = value.as_independent(*value.free_symbols, as_Add=False)
-    number = sp.latex(sp.N(factor, DIGITS))
+    number = sp.latex(evaluated(factor, DIGITS))
     return str(
         number if rest == 1 else sp.latex(rest) if factor == 1 else rf"{number} {sp.latex(rest)}"
     )

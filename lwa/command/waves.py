@@ -188,9 +188,9 @@ def on_background(theory: Theory, wave: BackgroundWave) -> Answer:
     rows += _fwhm_rows("fwhm", "FWHM of the {} at B = 1", widths, exact=False)
     try:
         kdv = wave.kdv
-    except NoSolitaryWave:
+    except NoSolitaryWave as reason:
         head["kdv"] = None
-        rows += ["", "no sound runs on this background: no wave is small"]
+        rows += ["", str(reason)]
     else:
         rows += [
             "",

@@ -337,9 +337,8 @@ class BackgroundWave(Value):
                 _, _, Q = self._functions()
                 number = self._number(B)
                 found.append(Q(number) - Q(number / 2))
-                if len(found) > 1 and abs(found[-1] - found[-2]) <= abs(found[-1]) * mpmath.mpf(
-                    10
-                ) ** (-2 * digits):
+                change = abs(found[-1] - found[-2]) if len(found) > 1 else mpmath.inf
+                if 0 != abs(found[-1]) * mpmath.mpf(10) ** (-2 * digits) >= change:
                     return working // 2
             working *= 2
         raise InputError(f"B is {shorten(B)}: too small beside p0, use `kdv`")

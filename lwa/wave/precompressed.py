@@ -17,7 +17,7 @@ from typing import Any
 import sympy as sp
 
 from lwa.base import latex
-from lwa.base.exact import MOST_CANCELLED, positive
+from lwa.base.exact import evaluated, positive
 from lwa.base.frozen import Value
 from lwa.base.quantities import NoSolitaryWave, known_extent
 from lwa.cell import Cell, meant, substitution
@@ -115,7 +115,7 @@ class PrecompressedWave(Value):
         if extent == "length":
             return length
         # In units of D, where D is a symbol: SymPy does not follow terms with symbols that cancel.
-        speed = sp.N(self.background.in_unit(self.speed), digits, maxn=MOST_CANCELLED)
+        speed = evaluated(self.background.in_unit(self.speed), digits)
         return length / (speed * self.background.unit)
 
     def at(self, **values: Any) -> PrecompressedWave:

@@ -48,7 +48,7 @@ from validation.lattice.kernel.arrays import (
 )
 from validation.lattice.knots import Recorder
 from validation.lattice.run import IntegrationError, Run, finished
-from validation.lattice.schemes import LAWS, SCHEMES
+from validation.lattice.schemes import GENERATED, LAWS, SCHEMES
 from validation.lattice.schemes.nystrom import Pair
 from validation.lattice.signal import recorded, sampled
 from validation.scenes.checks import SceneError, integer, positive
@@ -105,7 +105,7 @@ def _window(motion: Motion, window: Any) -> int | None:
     """The number of beads to follow behind the front; None for the whole chain."""
     if window is False:
         return None
-    if motion.scene.wall is not None or motion.k == 1:
+    if motion.scene.wall is not None or (motion.k == 1 and window is True):
         raise SceneError(
             f"window is {window}: behind a wall, and at k = 1, waves come back; "
             "the whole chain is wanted"
@@ -197,12 +197,19 @@ def _tableau(method: str, k: float) -> Tableau:
 
 def _plan(motion: Motion, given: Given, chain: Chain, window: int | None, step: float) -> Plan:
     """The integration plan of a run."""
-    scales = motion.scales
+    scales, chosen = motion.scales, motion.k if motion.contact.law is None else math.inf
     return Plan(
-        _tableau(given.method, motion.k), given.rtol * scales.displacement,
-        given.rtol * scales.velocity, step, given.longest, motion.scene.duration,
-        scales.compression, chain.A.max() * chain.inverse.max(), motion.size, window or 0,
-    )  # fmt: skip
+        scheme=_tableau(given.method, chosen),
+        y=given.rtol * scales.displacement,
+        v=given.rtol * scales.velocity,
+        h=step,
+        longest=given.longest,
+        end=motion.scene.duration,
+        deepest=scales.compression,
+        quickest=chain.A.max() * chain.inverse.max(),
+        size=motion.size,
+        window=window or 0,
+    )
 
 
 def _chain(motion: Motion) -> Chain:
@@ -211,7 +218,9 @@ def _chain(motion: Motion) -> Chain:
     given = 1 / motion.masses, motion.stiffnesses, motion.rest, motion.load
     for row, values in zip(rows, given, strict=True):
         row[: len(values)] = values
-    return Chain(inverse, A, rest, load, LAWS.get(motion.k, 0), motion.k)
+    contact = motion.contact
+    law = LAWS.get(motion.k, 0) if contact.law is None else GENERATED
+    return Chain(inverse, A, rest, load, law, motion.k, *contact.addresses, contact.pulls)
 
 
 def _front(motion: Motion) -> int:

@@ -17,6 +17,7 @@ import numpy as np
 
 from lwa.base.arrays import Array
 from lwa.base.tables import LEAST
+from validation.lattice.laws import Contact
 from validation.scenes.checks import SceneError
 from validation.scenes.scene import Scene
 
@@ -42,12 +43,6 @@ class Scales:
     rounding: float = 0.0
 
 
-def power(compression: Array, k: float) -> Array:
-    """[δ]_+^k."""
-    pressed = np.maximum(compression, 0.0)
-    return np.asarray(pressed * np.sqrt(pressed) if k == 1.5 else pressed**k)
-
-
 class Motion:
     """The right-hand side for one scene, in the state (y_0 … y_{n-1}, v_0 … v_{n-1}), the ``start``
     of it, and whether it is ``loaded``, by gravity or a precompression."""
@@ -57,12 +52,12 @@ class Motion:
         self.scene, self.size = scene, scene.size
         self.masses = np.array(scene.masses)
         self.stiffnesses = np.array(scene.stiffnesses + wall)
-        self.k = scene.k
+        self.k, self.contact = scene.k, Contact(scene.k, scene.law)
         with np.errstate(over="ignore", invalid="ignore"):
             self.rest = self.load = np.zeros(len(self.stiffnesses))
             self.loaded = bool(scene.gravity or scene.precompression)
             if self.loaded:
-                self.rest = (np.array(scene.load) / self.stiffnesses) ** (1 / self.k)
+                self.rest = self.contact.compressed_by(np.array(scene.load) / self.stiffnesses)
                 # The load from the rest compressions, so that equilibrium is an exact zero.
                 self.load = self.force(self.rest)
         self.start = np.zeros(2 * scene.size)
@@ -79,8 +74,8 @@ class Motion:
         return np.asarray((self.rest + dynamic.T).T) if self.loaded else dynamic
 
     def force(self, compression: Array) -> Array:
-        """F_i = A_i [δ_i]_+^k."""
-        return np.asarray((self.stiffnesses * power(compression, self.k).T).T)
+        """F_i = A_i F(δ_i), of a power A_i [δ_i]_+^k."""
+        return np.asarray((self.stiffnesses * self.contact.force(compression).T).T)
 
     def __call__(self, time: float, state: Array) -> Array:
         y, v = state[: self.size], state[self.size :]
@@ -96,7 +91,11 @@ class Motion:
         Contacts before the ``first`` do not count.
         """
         compression, v = self.compression(state[: self.size]), state[self.size :]
-        stored = (self.force(compression) * compression - self.load * self.rest) / (self.k + 1)
+        if self.contact.law is None:
+            stored = (self.force(compression) * compression - self.load * self.rest) / (self.k + 1)
+        else:
+            energies = self.contact.energy(compression) - self.contact.energy(self.rest)
+            stored = self.stiffnesses * energies
         if self.loaded:
             stored -= self.load * (compression - self.rest)
         return float(self.masses @ v**2 / 2 + stored[first:].sum())
@@ -124,10 +123,12 @@ class Motion:
         if not math.isfinite(energy) or (energy == 0 and self._stirred(deepest)):
             _held("energy", energy)
         if energy > 0 and len(A):
-            deepest = max(deepest, np.float64(energy / stiffest) ** (1 / (self.k + 1)))
+            deepest = max(deepest, self.contact.reached_by(energy / stiffest, deepest))
         if not deepest:
             return Scales(energy, 0.0, 1.0, 1.0, math.inf)
         stiffening = deepest ** (self.k - 1)
+        if self.contact.law is not None:  # k is 1
+            stiffening = self.contact.stiffness(np.array([at_rest, deepest])).max()
         springs = np.zeros(n)
         springs[: len(A)] = A
         springs[1:] += A[: n - 1]

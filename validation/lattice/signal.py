@@ -15,7 +15,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lwa.base.arrays import Array
-from validation.lattice.equations import Motion, power
+from validation.lattice.equations import Motion
+from validation.lattice.laws import Contact
 from validation.scenes.checks import SceneError
 
 _REGULA_FALSI = 9  # steps, that leave less than 1e-12 of a step of the integrator
@@ -55,7 +56,7 @@ class Sensor:
     """A "contact" or "bead" sensor of a scene, with the contacts on which its records depend.
 
     number : of the contact or bead, from 0. first : number of the first contact. rest,
-    stiffnesses : static compressions and stiffnesses of these contacts. k : their exponent.
+    stiffnesses : static compressions and stiffnesses of these contacts. contact : their law.
     """
 
     kind: str
@@ -63,7 +64,7 @@ class Sensor:
     first: int
     rest: tuple[float, ...]
     stiffnesses: tuple[float, ...]
-    k: float
+    contact: Contact
 
     @classmethod
     def of(cls, motion: Motion, kind: str, number: int) -> Sensor:
@@ -71,7 +72,7 @@ class Sensor:
         first = number if kind == "contact" else max(number - 1, 0)
         contacts = slice(first, number + 1)
         A, rest = motion.stiffnesses[contacts], motion.rest[contacts]
-        return cls(kind, number, first, tuple(rest), tuple(A), motion.k)
+        return cls(kind, number, first, tuple(rest), tuple(A), motion.contact)
 
     @property
     def beads(self) -> range:
@@ -85,7 +86,7 @@ class Sensor:
     def values(self, y: Array, v: Array) -> dict[str, Array]:
         """Each quantity of the sensor from the motion (beads, S) of its beads."""
         compressions = self.compressions(y)
-        forces = np.array(self.stiffnesses)[:, None] * power(compressions, self.k)
+        forces = np.array(self.stiffnesses)[:, None] * self.contact.force(compressions)
         if self.kind == "contact":
             return {"force": forces[0], "compression": compressions[0]}
         own = self.number - self.first  # an end without a contact counts as 0

@@ -24,11 +24,14 @@ from lwa import Cell
 from lwa.base.exact import shorten
 from lwa.base.tables import Reader
 from lwa.cell import exponent
+from lwa.law import ContactLaw
 from lwa.spheres.hertz import Material, Sphere, stiffness
 from validation.scenes import checks
 from validation.scenes.checks import SceneError, integer, items, of_scene, positive, real
 
 __all__ = ["Scene", "SceneError"]
+
+_MISSING = math.nan
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
@@ -40,6 +43,8 @@ class Scene:
     masses : of the n beads.
     stiffnesses : A_i of the n-1 contacts between beads.
     k : exponent of the contact law, at least 1; a number or a text such as "3/2".
+    law : any contact law of `lwa.law` without symbols, in place of k: a contact pushes with A F(δ).
+        Where F′(0) > 0 it also pulls (Toda's, for one); else it opens. Such a scene's k is 1.
     duration : time to simulate.
     wall : stiffness of the contact between the last bead and a fixed wall.
     gravity : acceleration towards the wall.
@@ -60,7 +65,7 @@ class Scene:
 
     masses: tuple[float, ...]
     stiffnesses: tuple[float, ...]
-    k: float
+    k: float = _MISSING
     duration: float
     wall: float | None = None
     gravity: float = 0.0
@@ -72,8 +77,10 @@ class Scene:
     precompression: float = 0.0
     spacings: tuple[float, ...] = ()
     units: str = ""
+    law: ContactLaw | None = None
 
     def __post_init__(self) -> None:
+        self._read_law()
         for name, read in _READERS.items():
             if name != "wall" or self.wall is not None:
                 object.__setattr__(self, name, read(getattr(self, name), name))
@@ -97,6 +104,23 @@ class Scene:
         for name, count in (("contact_sensors", self.contact_count), ("bead_sensors", n)):
             object.__setattr__(self, name, _sensors(getattr(self, name), name, count))
 
+    def _read_law(self) -> None:
+        """Check the law, and let a power be its exponent."""
+        law = self.law
+        if law is None:
+            if self.k is _MISSING:
+                raise SceneError("k is missing: an exponent or a law is wanted")
+            return
+        if not isinstance(law, ContactLaw):
+            raise SceneError(f"law is {shorten(law)}: a law of lwa.law is wanted")
+        if self.k is not _MISSING and self.k != 1:
+            raise SceneError(f"k is {shorten(self.k)} and law {law.F}: one of them is wanted")
+        if law.symbols or law.formless:
+            raise SceneError(f"law is {law.F}: the lattice needs numbers in place of symbols")
+        if law.homogeneous:
+            object.__setattr__(self, "law", None)
+        object.__setattr__(self, "k", float(law.exponent))
+
     def __repr__(self) -> str:
         return f"Scene({self})"
 
@@ -109,7 +133,8 @@ class Scene:
         n, c = self.size, self.contact_count
         wall = ", the last one the wall's" if self.wall is not None else ""
         size = f"{n} bead{'s' * (n != 1)}, {c} contact{'s' * (c != 1)}{wall}"
-        return f"{size}, k = {self.k:g}; duration {self.duration:g}{' s' if self.units else ''}"
+        law = f"k = {self.k:g}" if self.law is None else f"F = {self.law.F}"
+        return f"{size}, {law}; duration {self.duration:g}{' s' if self.units else ''}"
 
     def _repr_html_(self) -> str:
         """The fields that differ from their defaults as a table, for a notebook."""

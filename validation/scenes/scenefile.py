@@ -18,6 +18,7 @@ All keys but ``duration`` and ``chain.cell`` are optional, and what is not named
     [chain]
     cell = ["ball", "ball"]       # names of beads, in Hertz contact; or masses, and for them alone
     k = 1.5                       #   the exponent, which masses need,
+    law = "hertz2:1,2"            #   or a law of `lwa.law.named` in its place, with parameters,
     stiffnesses = [1.0, 2.0]      #   A of each contact or one for all (1 if not given),
     spacings = 1.0                #   likewise the neighbours' distance (speeds are in sites if not)
     repeat = 19                   # of the cell, 1 if not given
@@ -54,14 +55,18 @@ an equal scene, to the last bit.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from functools import partial
-from itertools import pairwise
+from itertools import pairwise, product
 from pathlib import Path
 from typing import Any
 
-from lwa.base.exact import shorten
+import sympy as sp
+
+from lwa.base.exact import InputError, shorten
 from lwa.base.files import load
 from lwa.base.tables import Reader, Table, among, array, entries, flag, place, places, table
+from lwa.law import NAMES, ContactLaw, named
 from lwa.spheres.beads import read_beads, read_materials
 from lwa.spheres.hertz import Material, Sphere
 from validation.scenes.checks import SceneError, each, integer, of_scene, positive, real
@@ -86,7 +91,7 @@ KEYS = {
         "start",
         "sensors",
     ),
-    "chain": ("cell", "k", "stiffnesses", "spacings", "repeat"),
+    "chain": ("cell", "k", "law", "stiffnesses", "spacings", "repeat"),
     "wall": ("material", "stiffness"),
     "striker": ("velocity",),
     "start": ("velocities", "displacements", "overlap"),
@@ -184,7 +189,7 @@ def _chain(
         raise SceneError(f"{made}: 1 … {MOST_BEADS} are wanted")
     row: list[Sphere] = []
     if isinstance(cell[0], str):
-        for key in ("k", "stiffnesses", "spacings"):
+        for key in ("k", "law", "stiffnesses", "spacings"):
             if key in given:
                 raise SceneError(f"chain.{key} is given, but named beads are in Hertz contact")
         row = each(among(beads))(cell, "chain.cell") * repeat
@@ -193,11 +198,15 @@ def _chain(
                 row[defect.read("bead", place(n))] = defect.read("like", among(beads))
         plain = Scene.of_beads(row, duration=1)
         masses, stiffnesses = list(plain.masses), list(plain.stiffnesses)
-        k, spacings = plain.k, plain.spacings
+        law, spacings = {"k": plain.k}, plain.spacings
     else:
         masses = each(positive)(cell, "chain.cell") * repeat
         of_contacts = partial(_of_contacts, period=len(cell), count=n - 1)
-        k = given.read("k", real)
+        law = {
+            given.one("k", "law"): given.read("k", real)
+            if "k" in given
+            else given.read("law", _law)
+        }
         stiffnesses = given.read("stiffnesses", of_contacts, [1.0] * (n - 1))
         spacings = given.read("spacings", of_contacts, ())
     for defect in defects:
@@ -208,7 +217,31 @@ def _chain(
             masses[defect.read("bead", place(n))] = defect.read("mass", positive)
         elif not row:
             raise SceneError(f"{defect.path('like')} names a bead in a chain of masses")
-    return row, {"masses": masses, "stiffnesses": stiffnesses, "k": k, "spacings": spacings}
+    return row, {"masses": masses, "stiffnesses": stiffnesses, "spacings": spacings} | law
+
+
+def _law(value: Any, name: str) -> ContactLaw:
+    """Read a law by its name and parameters, such as "hertz2:1,2"."""
+    if not isinstance(value, str):
+        raise SceneError(f"{name} is {shorten(value)}: a text such as 'hertz2:1,2' is wanted")
+    title, colon, parameters = value.partition(":")
+    return named(title.strip(), *(parameters.split(",") if colon else ()))
+
+
+def _law_text(law: ContactLaw) -> str:
+    """The text that `_law` reads; raises `SceneError` for a law without a name.
+
+    A named law's parameters are among the numbers in F, their negatives and their reciprocals.
+    """
+    numbers = {x for x in law.F.atoms(sp.Number) if x}
+    numbers |= {1 / x for x in numbers} | {sp.S.One}
+    numbers |= {-x for x in numbers} | {sp.S.Zero}
+    for title in NAMES:
+        for values in product(sorted(numbers), repeat=len(named(title).symbols)):
+            with suppress(InputError):
+                if named(title, *values) == law:
+                    return f"{title}:{','.join(map(str, values))}"
+    raise SceneError(f"law is {law.F}: a file holds the laws {', '.join(NAMES)}")
 
 
 def _of_contacts(value: Any, name: str, period: int, count: int) -> list[float]:
@@ -242,7 +275,8 @@ def _overlap(what: Scene) -> int:
 def document(what: Scene) -> dict[str, Any]:
     """The file of a scene, for JSON; `scene` makes an equal scene of it."""
     period = _period(what)
-    chain: dict[str, Any] = {"cell": list(what.masses[:period]), "k": what.k}
+    chain: dict[str, Any] = {"cell": list(what.masses[:period])}
+    chain |= {"k": what.k} if what.law is None else {"law": _law_text(what.law)}
     if period < what.size:
         chain["repeat"] = what.size // period
     for name in ("stiffnesses", "spacings"):

@@ -103,6 +103,7 @@ def test_the_modules_own_example_holds_every_key():
     for name in ("chain", "striker", "start", "sensors"):
         assert set(content[name]) == set(scenefile.KEYS[name])
     start = content.pop("start")  # what excludes each other
+    assert content["chain"].pop("law") == "hertz2:1,2"
     balls = {key: content["chain"].pop(key) for key in ("k", "stiffnesses", "spacings")}
     assert scene(content).size == 38
     del content["striker"]
@@ -259,7 +260,7 @@ BAD = [
     ({"chain": {"cell": ["ball", 1]}}, "chain.cell number 2 is 1: one of ball is wanted"),
     ({"chain": {"cell": ["bal"]}}, "chain.cell number 1 is 'bal': did you mean ball"),
     ({"chain": {"cell": ["ball"]}, "beads": {}}, "chain.cell number 1 is 'ball': none is defined"),
-    ({"chain": {"cell": [1]}}, "chain.k is missing"),
+    ({"chain": {"cell": [1]}}, "chain has neither k nor law: one is wanted"),
     ({"chain": {"cell": [1, 2], "k": 0.5}}, "k is 0.5: the contact law .* k ≥ 1"),
     ({"chain": {"cell": ["ball"], "k": 1.5}}, "chain.k is given, but named beads are in Hertz"),
     ({"chain": {"cell": [1, 2, 3], "k": 2, "stiffnesses": [1]}}, "chain.stiffnesses holds 1: 2 or"),
@@ -428,3 +429,14 @@ def test_whatever_a_file_holds_is_read_or_refused_in_one_line(data):
     else:
         message = ""
     assert "\n" not in message
+
+
+@pytest.mark.parametrize(
+    "law",
+    ["hertz2:1,1/2", "magnetic:4,2", "polynomial:1/4,-1/10", "polynomial:0,1", "exponential:3/2",
+     "lennard-jones:3", "power:3/2"],
+)  # fmt: skip
+def test_a_law_is_read_and_written(law):
+    read = scene({"duration": 1, "chain": {"cell": [1, 2], "law": law}})
+    assert scene(document(read)) == read
+    assert (read.law is None) == law.startswith("power")

@@ -20,6 +20,8 @@ class Chain(NamedTuple):
 
     inverse : inverse masses. A, rest, load : stiffnesses, static compressions and static forces of
     the contacts. law, k : number of the force's loop (`validation.lattice.schemes.LAWS`), exponent.
+    force, slope, energy : for a law that is no power, addresses of its functions. pulls : whether
+    contacts hold where δ < 0.
     """
 
     inverse: Array
@@ -28,6 +30,10 @@ class Chain(NamedTuple):
     load: Array
     law: int
     k: float
+    force: int
+    slope: int
+    energy: int
+    pulls: bool
 
 
 class Beads(NamedTuple):

@@ -14,8 +14,10 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
-from numba import njit
+from llvmlite import ir
+from numba import njit, types
 from numba.core.event import Event, Listener, register
+from numba.extending import intrinsic
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -43,6 +45,19 @@ part: Callable[[Function], Function] = njit(inline="always", **_OPTIONS)
 # An index without a sign is never one from the end, which would keep a loop from vectorising.
 index = np.uint64
 ZERO, ONE, TWO, THREE = map(index, range(4))
+
+
+def _call(typing: Any, address: Any, x: Any) -> Any:
+    """The value at x of the compiled function of one float at this address."""
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        kind = ir.FunctionType(ir.DoubleType(), [ir.DoubleType()])
+        return builder.call(builder.inttoptr(arguments[0], kind.as_pointer()), [arguments[1]])
+
+    return types.float64(types.int64, types.float64), generate
+
+
+call: Any = intrinsic(_call)
 
 
 def cached(function: Function) -> Function:

@@ -8,7 +8,7 @@ import numpy as np
 
 from lwa.base.arrays import Array
 from validation.lattice.kernel.arrays import Beads, Chain
-from validation.lattice.kernel.compiled import ONE, index, part
+from validation.lattice.kernel.compiled import ONE, call, index, part
 
 NOTHING = 1e-60  # of the greatest compression: open, lest the front decay into denormal numbers
 
@@ -45,6 +45,11 @@ def press(chain: Chain, y: Array, force: Array, s: Any, lo: int, hi: int, nothin
             d = rest[i] + y[i] - y[i + ONE]
             d = d if d > nothing else 0.0
             force[s, i + ONE] = A[i] * (d * d * d) - load[i]
+    elif law == 6:
+        for i in range(index(lo), index(hi)):
+            d = rest[i] + y[i] - y[i + ONE]
+            f = A[i] * call(chain.force, d) if A[i] > 0.0 and (chain.pulls or d > 0.0) else 0.0
+            force[s, i + ONE] = f - load[i]
     else:
         for i in range(index(lo), index(hi)):
             d = rest[i] + y[i] - y[i + ONE]
@@ -61,7 +66,10 @@ def power(chain: Chain, d: float) -> float:
 
 @part
 def stiffness(chain: Chain, d: float, rising: bool) -> float:
-    """k [d]^{k-1}, the derivative of the power; at d = 0 that on the side to which d moves."""
+    """F′ of a contact of unit stiffness, k [d]^{k-1} of a power; at d = 0, on the closed side if d
+    is rising."""
+    if chain.law == 6:
+        return float(call(chain.slope, d) if chain.pulls or d > 0.0 else 0.0)
     if d > 0.0 or (d == 0.0 and rising):
         return float(chain.k * (np.sqrt(d) if chain.law == 3 else d ** (chain.k - 1.0)))
     return 0.0
@@ -78,4 +86,6 @@ def relative(force: Array, inverse: Array, i: int) -> float:
 def elastic(chain: Chain, beads: Beads, i: int) -> float:
     """The elastic energy of contact i of a chain without load."""
     d = max(beads.y[i] - beads.y[i + 1], 0.0)
+    if chain.law == 6:
+        return float(chain.A[i] * call(chain.energy, beads.y[i] - beads.y[i + 1]))
     return float(chain.A[i] * power(chain, d) * d / (chain.k + 1.0))

@@ -87,7 +87,7 @@ def _attempt(chain: Chain, beads: Beads, plan: Plan, lo: int, h: float, hi: int)
         kinked = (most > least) & (min(before, after) < NEAR * most)
         sums[ZERO, i + ONE] = most if kinked else 0.0
         near += 1 if kinked else 0
-    if near > 0:
+    if near > 0 and plan.scheme.points.shape[1] > 0:
         _mend(chain, beads, plan, lo, h, hi)
     return math.sqrt(_square(sums, inverse, lo, hi))
 
@@ -104,8 +104,7 @@ def _mend(chain: Chain, beads: Beads, plan: Plan, lo: int, h: float, hi: int) ->
             speed, later = v[i] - v[i + 1], next_v[i] - next_v[i + 1]
             steady = min(speed / later, later / speed) > _STEADY
             kick = h * chain.A[i] * power(chain, most) * max(inverse[i], inverse[i + 1])
-            counts = kick > _SLIGHT * plan.v and plan.scheme.points.shape[1] > 0
-            if counts and (within or steady):
+            if kick > _SLIGHT * plan.v and (within or steady):
                 _correct(chain, beads, plan, h, i)
 
 

@@ -1,0 +1,94 @@
+"""Contact laws that are no powers: Toda's exact soliton, SciPy, and what is refused."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import sympy as sp
+
+from lwa.law import Law, Power, general, named
+from validation.lattice.simulate import simulate
+from validation.scenes.scene import Scene, SceneError
+
+NAMES = ("contact_force", "compression", "bead_velocity", "displacements", "velocities")
+
+
+def test_todas_soliton_runs_through_200_beads_at_its_own_speed():
+    """e^{δ_n} - 1 = sinh²κ sech²(κ n - t sinh κ) (Toda 1967), with dδ_n/dt = v_n - v_{n+1}."""
+    n, kappa, first = 200, 1.0, 20
+    c = np.sinh(kappa)
+
+    def compression(i, t):
+        return np.log1p((c / np.cosh(kappa * (i - first) - c * t)) ** 2)
+
+    beads = np.arange(n)
+    y = np.append(np.cumsum(compression(beads[:-1], 0)[::-1])[::-1], 0)
+    v = c * np.diff(np.tanh(kappa * (np.arange(-1, n) - first)))
+    scene = Scene(
+        masses=[1] * n, stiffnesses=[1] * (n - 1), law=named("exponential", 1), displacements=y,
+        velocities=v, duration=140 * kappa / c, contact_sensors=(90, 150), samples=501,
+    )  # fmt: skip
+    run = simulate(scene, rtol=1e-12)
+    for i, row in zip(scene.contact_sensors, run.compression, strict=True):
+        assert np.abs(row - compression(i, run.time)).max() < 1e-9
+    assert abs(run.energy_drift) < 1e-10
+
+
+LAWS = {
+    "hertz2": named("hertz2", 1, "1/2"),
+    "magnets": named("magnetic", 4, 2),
+    "FPUT": named("polynomial", "1/4", "1/10"),
+    "Toda": named("exponential", 1),
+    "softening": Law(sp.tanh(sp.Symbol("x")), sp.Symbol("x")),
+}
+
+
+@pytest.mark.parametrize("name", LAWS)
+@pytest.mark.parametrize("loaded", [False, True])
+def test_random_chains_agree_with_scipy(name, loaded):
+    random = np.random.default_rng((24, len(name), loaded))
+    n = 12
+    scene = Scene(
+        masses=random.uniform(0.5, 2, n), stiffnesses=random.uniform(0.5, 2, n - 1), wall=1.0,
+        law=LAWS[name], velocities=random.uniform(-0.3, 0.3, n), duration=12, samples=201,
+        contact_sensors=(0, 5, 11), bead_sensors=(0, 6, 11), precompression=0.2 * loaded,
+    )  # fmt: skip
+    exact = simulate(scene, method="DOP853", rtol=1e-12, atol=1e-12)
+    run = simulate(scene)
+    for record in NAMES:
+        difference = np.abs(getattr(run, record) - getattr(exact, record)).max()
+        assert difference < 1e-7, record  # chaotic rattling amplifies 1e-9 where contacts open
+    assert abs(run.energy_drift) < 1e-7
+    # contacts of a law with F'(0) > 0 pull
+    assert loaded or (exact.contact_force.min() < 0) == (name != "hertz2")
+
+
+def test_a_law_that_is_a_power_is_the_power():
+    scene = Scene(masses=(1, 1), stiffnesses=(1,), k="3/2", duration=2, velocities=(1,))
+    assert replace(scene, k=1, law=Power("3/2")) == scene
+    same = Law(sp.Symbol("x", positive=True) ** sp.Rational(3, 2), sp.Symbol("x", positive=True))
+    run = simulate(replace(scene, k=1, law=same))
+    assert run.velocities == pytest.approx(simulate(scene).velocities, abs=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({}, "k is missing: an exponent or a law is wanted"),
+        ({"law": "hertz2"}, "law is 'hertz2': a law of lwa.law is wanted"),
+        ({"law": named("hertz2")}, "law is .*: the lattice needs numbers in place of symbols"),
+        ({"law": general()}, "law is .*: the lattice needs numbers in place of symbols"),
+        ({"law": named("exponential", 1), "k": 2}, "k is 2 and law .*: one of them is wanted"),
+    ],
+)
+def test_what_is_no_law_is_refused(given, message):
+    with pytest.raises(SceneError, match=f"^{message}$"):
+        Scene(masses=(1, 1), stiffnesses=(1,), duration=1, **given)
+
+
+def test_a_load_beyond_a_laws_reach_is_refused():
+    scene = Scene(
+        masses=(1,), stiffnesses=(), wall=1, law=LAWS["softening"], precompression=2, duration=1
+    )
+    with pytest.raises(ValueError, match=r"^force is 2.0+: the law does not reach it$"):
+        simulate(scene)

@@ -1,0 +1,118 @@
+"""Contact laws in numbers: force, stiffness and energy of a contact of unit stiffness.
+
+A law with F′(0) > 0 also pulls: Toda's, Fermi, Pasta, Ulam and Tsingou's, magnets. Any other law
+opens where δ < 0, as a power does.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from typing import Any
+
+import numpy as np
+import scipy
+import sympy as sp
+from sympy.codegen.rewriting import expm1_opt, optimize
+
+from lwa import Cell
+from lwa.base.arrays import Array
+from lwa.law import ContactLaw
+
+
+@dataclass(frozen=True)
+class Contact:
+    """The force F(δ) of a contact of unit stiffness, for `ContactLaw` or for the power δ^k."""
+
+    k: float
+    law: ContactLaw | None = None
+
+    @cached_property
+    def pulls(self) -> bool:
+        """Whether the contact holds where δ < 0."""
+        return self.law is not None and bool(self.law.at(sp.S.Zero, 1).is_positive)
+
+    def force(self, compression: Array) -> Array:
+        """F; [δ]_+^k for a power."""
+        if self.law is not None:
+            return self._held(0, compression)
+        pressed = np.maximum(compression, 0.0)
+        return np.asarray(pressed * np.sqrt(pressed) if self.k == 1.5 else pressed**self.k)
+
+    def stiffness(self, compression: Array) -> Array:
+        """F′."""
+        if self.law is not None:
+            return self._held(1, compression)
+        return np.asarray(self.k * np.maximum(compression, 0.0) ** (self.k - 1))
+
+    def energy(self, compression: Array) -> Array:
+        """∫ F dδ from 0."""
+        if self.law is not None:
+            return self._held(2, compression)
+        return np.asarray(self.force(compression) * compression / (self.k + 1))
+
+    def _held(self, order: int, compression: Array) -> Array:
+        function = _functions(self.law)[order]
+        closed = compression if self.pulls else np.maximum(compression, 0.0)
+        with np.errstate(all="ignore"):  # beyond a singular law's reach: inf or NaN
+            values = np.broadcast_to(function(closed), compression.shape)
+        return np.asarray(values if self.pulls else np.where(compression > 0, values, 0.0))
+
+    def compressed_by(self, forces: Array) -> Array:
+        """The static compressions under forces; raises `lwa.InputError` beyond the law's reach."""
+        if self.law is None:
+            return np.asarray(forces ** (1 / self.k))
+        law, cell = self.law, Cell((1,))
+        known = {F: float(law.compression(cell, sp.Float(F, 40))) for F in set(forces.tolist())}
+        return np.array([known[F] for F in forces.tolist()])
+
+    def reached_by(self, energy: float, start: float) -> float:
+        """The compression beyond ``start`` that stores so much energy above that at ``start``."""
+        if self.law is None:
+            return float(np.float64(energy) ** (1 / (self.k + 1)))
+
+        def excess(end: float) -> float:
+            d = np.array([start, end])
+            stored = np.diff(self.energy(d)) - self.force(d)[0] * np.diff(d)
+            return float(stored[0]) - energy
+
+        low, step = start, 1e-3
+        while step > 1e-12 * max(low, 1e-3):  # towards a pole in ever smaller steps
+            above = excess(low + step)
+            if above > 0:
+                return float(scipy.optimize.brentq(excess, low, low + step))
+            low, step = (low + step, 1.5 * step) if np.isfinite(above) else (low, step / 2)
+        return low
+
+    @property
+    def addresses(self) -> tuple[int, int, int]:
+        """Addresses of the machine code of F, F′ and the energy; (0, 0, 0) for a power."""
+        if self.law is None:
+            return 0, 0, 0
+        force, slope, energy = _machine_code(self.law)
+        return force.address, slope.address, energy.address
+
+
+def _expressions(law: ContactLaw) -> tuple[sp.Expr, ...]:
+    """F, F′ and the energy in floats, written so that e^x - 1 loses no digits."""
+    energy = law.energy
+    rows = law.F, law.slope(), energy - sp.limit(energy, law.delta, 0, "+")
+    return tuple(optimize(sp.N(sp.sympify(row), 20), [expm1_opt]) for row in rows)
+
+
+@lru_cache
+def _functions(law: ContactLaw | None) -> tuple[Callable[[Array], Any], ...]:
+    assert law is not None
+    return tuple(sp.lambdify(law.delta, row, "numpy") for row in _expressions(law))
+
+
+@lru_cache
+def _machine_code(law: ContactLaw) -> tuple[Any, ...]:
+    """The same functions of one float, compiled once for a law."""
+    from numba import cfunc  # start-up
+
+    return tuple(
+        cfunc("f8(f8)", error_model="numpy")(sp.lambdify(law.delta, row, "math"))
+        for row in _expressions(law)
+    )
