@@ -12,15 +12,17 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from lwa.algebra.coefficients import Coefficients
-    from lwa.algebra.jets import JetAlgebra, Ladder, Monomial, Term
-    from lwa.algebra.partition import Partition
+    from lwa.algebra.coefficients import CoefficientRing
+    from lwa.algebra.jets import Monomial
+    from lwa.algebra.model import Model
     from lwa.base.arrays import Array
     from lwa.base.exact import InputError, Quantity
     from lwa.base.quantities import NoSolitaryWave
-    from lwa.cell import Cell, D, Dimer, k
+    from lwa.cell import Cell, Dimer
+    from lwa.cell import D as D
+    from lwa.cell import k as k
     from lwa.closure.consistency import Closure
-    from lwa.closure.motion import Solution
+    from lwa.closure.solution import Solution
     from lwa.envelopes.breather import Breather
     from lwa.envelopes.schrodinger import Envelope, envelope
     from lwa.equation.evolution import Evolution
@@ -56,10 +58,9 @@ __all__ = [
     "Breather",
     "Cell",
     "Closure",
-    "Coefficients",
+    "CoefficientRing",
     "CompactWave",
     "ContactLaw",
-    "D",
     "Dimer",
     "Dispersion",
     "Envelope",
@@ -69,17 +70,15 @@ __all__ = [
     "Expansion",
     "InputError",
     "Jet",
-    "JetAlgebra",
     "KdV",
-    "Ladder",
     "Law",
     "LoadedChain",
     "Material",
+    "Model",
     "Monomial",
     "NoSolitaryWave",
     "NumericBackground",
     "NumericWave",
-    "Partition",
     "PhysicalWave",
     "Power",
     "Powers",
@@ -91,7 +90,6 @@ __all__ = [
     "Solution",
     "Sphere",
     "Strike",
-    "Term",
     "Terms",
     "Theory",
     "TravelingWave",
@@ -103,23 +101,22 @@ __all__ = [
     "graded_force",
     "hertz",
     "homogenize",
-    "k",
     "pulse_of_strike",
     "transmitted_force",
 ]
 
 
 _MODULES = {
-    "algebra.coefficients": "Coefficients",
-    "algebra.jets": "JetAlgebra Ladder Monomial Term",
-    "algebra.partition": "Partition",
+    "algebra.coefficients": "CoefficientRing",
+    "algebra.jets": "Monomial",
+    "algebra.model": "Model",
     "wave.background": "BackgroundWave background_wave",
     "wave.kdv": "KdV",
     "wave.precompressed": "PrecompressedWave",
     "wave.quadrature": "NumericBackground",
     "cell": "Cell D Dimer k",
     "closure.consistency": "Closure",
-    "closure.motion": "Solution",
+    "closure.solution": "Solution",
     "base.arrays": "Array",
     "wave.numeric": "NumericWave",
     "wave.physical": "PhysicalWave",

@@ -35,7 +35,7 @@ from validation.scenes.checks import SceneError, integer, positive
 
 HARMONICS = 5  # H
 MOST_STEPS = 30  # of Newton's method
-CLOSE = 1e-8  # last step over the largest displacement, at most
+CLOSE = 1e-10  # largest force that a solution misses, over the load
 SMALL, LARGE = 1e-2, 1e3  # least motion over the start's, and largest over the static compression
 SMALLEST = 1e-3  # of the way in frequency, the shortest step of a continuation
 TOLERANCE = 1e-10  # rtol of the linearised motion
@@ -181,15 +181,13 @@ def orbit(
         a[:, : given.shape[1]] = given[:, : H + 1]
     least, before = SMALL * np.abs(a).max(), math.inf
     for _ in range(MOST_STEPS):
-        step = _newton_step(chain, omega, a)
-        a = a - step
-        size, largest = np.abs(step).max(), np.abs(a).max()
-        if not least < largest < LARGE * chain.rest.max():
-            break
-        # Rounding stops the fall of the steps; a wide orbit is easily shifted along the chain.
-        if size < CLOSE * largest and size > before / 4:
+        step, fault = _newton_step(chain, omega, a)
+        # Rounding stops the fall. Steps say less: a wide orbit is easily shifted along the chain.
+        if fault < CLOSE * chain.load and fault > before / 4:
             return Orbit(chain, omega, a, _residual(chain, omega, a))
-        before = size
+        a, before = a - step, fault
+        if not least < np.abs(a).max() < LARGE * chain.rest.max():
+            break
     raise NoOrbit(f"frequency is {omega:.8g}: Newton's method finds no orbit from this start")
 
 
@@ -225,8 +223,8 @@ def _cosines(a: Array, phase: Array) -> Array:
     return np.cos(np.multiply.outer(np.arange(a.shape[1]), phase))
 
 
-def _newton_step(chain: PressedChain, omega: float, a: Array) -> Array:
-    """Newton's step at the coefficients a, of shape (N, H + 1)."""
+def _newton_step(chain: PressedChain, omega: float, a: Array) -> tuple[Array, float]:
+    """Newton's step at the coefficients a, (N, H + 1), and the largest fault of the equations."""
     n, terms = a.shape
     times = 2 * terms  # of half a period: twice as many as are needed
     cosines = _cosines(a, np.pi / times * np.arange(times + 1))
@@ -247,7 +245,7 @@ def _newton_step(chain: PressedChain, omega: float, a: Array) -> Array:
         matrix = scipy.sparse.block_array([[matrix, mean.T], [mean, None]])
         right = np.append(right, mean @ a.ravel())
     solved = scipy.sparse.linalg.spsolve(scipy.sparse.csc_array(matrix), right)
-    return np.asarray(solved[: n * terms].reshape(n, terms))
+    return solved[: n * terms].reshape(n, terms), float(np.abs(fault).max())
 
 
 def _residual(chain: PressedChain, omega: float, a: Array) -> float:

@@ -1,0 +1,164 @@
+"""Periodic orbits of loaded chains: quadrature, linear modes, envelopes, and the engine itself."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+from scipy.optimize import brentq
+
+from validation import Scene, simulate
+from validation.scenes.checks import SceneError
+from validation.waves.periodic import NoOrbit, PressedChain, continued, orbit
+
+HERTZ = 1.5
+
+
+def dimer(beads, light=0.5, wall=False):
+    """Masses 1 and ``light`` with a light bead in the middle, A = F0 = 1; and its index."""
+    middle = beads // 2
+    masses = np.where((np.arange(beads) - middle) % 2, 1.0, light)
+    return PressedChain(masses, np.ones(beads - 1 + wall), HERTZ, 1.0), middle
+
+
+def gap_breather(nu, beads, wall=False, light=0.5):
+    """The orbit at the detuning ν below the optical band, from its envelope; and U in theory.
+
+    U = δ0 √(32 ν/(k(k-1))), sech(bn), b² = 4ν ω0² (m1-m2)/K2, the light beads in antiphase.
+    """
+    chain, middle = dimer(beads, light, wall)
+    stiffness = HERTZ
+    omega = math.sqrt(2 * stiffness / light)
+    b = math.sqrt(4 * nu * omega**2 * (1 - light) / stiffness)
+    U = math.sqrt(32 * nu / (HERTZ * (HERTZ - 1)))
+    n = (np.arange(beads) - middle) / 2
+    start = np.where(n % 1, 0, (-1.0) ** np.floor(n)) * U / np.cosh(b * n)
+    return orbit(chain, omega * (1 - nu), start), U, middle
+
+
+def test_two_beads_swing_as_quadrature_says():
+    """One degree of freedom, y = u_1 - u_2: μ ÿ = -(F - F0), its period by its energy."""
+    chain = PressedChain([1.0, 0.5], [2.0], HERTZ, 1.0)
+    rest, mass, top = chain.rest[0], 1 / 3, 0.3
+
+    def stored(y):
+        return 2.0 * ((rest + y) ** 2.5 - rest**2.5) / 2.5 - y
+
+    low = brentq(lambda y: stored(y) - stored(top), -0.999 * rest, -1e-3)
+
+    def time(phase):  # y runs from low to top as (1 - cos φ)/2 does
+        y = low + (top - low) * (1 - math.cos(phase)) / 2
+        rise = (top - low) * math.sin(phase) / 2
+        return rise / math.sqrt(2 * (stored(top) - stored(y)) / mass)
+
+    half, _ = quad(time, 0, math.pi, epsabs=1e-12, limit=200)
+    found = orbit(chain, math.pi / half, [top / 3, -2 * top / 3], harmonics=16)
+    u = found.displacements(np.array([0.0, found.period / 2]))
+    assert u[0] - u[1] == pytest.approx([top, low], abs=1e-9)
+    assert found.residual < 1e-9
+    assert found.energy == pytest.approx(stored(top), rel=1e-9)
+
+
+def linear_modes(chain):
+    """Squared frequencies of the chain's linear modes, and their displacements in columns."""
+    B, masses = chain.strains.toarray(), chain.masses
+    stiffness = B.T @ np.diag(chain.slopes(np.zeros(len(masses)))) @ B
+    squares, modes = np.linalg.eigh(stiffness / np.sqrt(np.outer(masses, masses)))
+    return squares, modes / np.sqrt(masses)[:, None]
+
+
+def test_a_small_orbit_is_a_linear_mode_with_its_multipliers():
+    """e^{±iΩT} of all modes of the linear chain, at an amplitude of 1e-6."""
+    chain, middle = dimer(9)
+    squares, modes = linear_modes(chain)
+    mode = modes[:, -1]
+    omega = math.sqrt(squares[-1])
+    shift = 1e-7  # of the frequency: it fixes the amplitude
+    found = orbit(chain, omega * (1 - shift), 1e-3 * mode / np.abs(mode).max())
+    ratio = found.amplitude / mode
+    assert ratio == pytest.approx(ratio[middle], rel=1e-3)
+    phases = np.sqrt(np.abs(squares[1:-1])) * found.period
+    expected = np.sort(np.concatenate((np.cos(phases), np.cos(phases), [1] * 4)))
+    assert np.sort(found.multipliers.real) == pytest.approx(expected, abs=1e-3)
+    assert np.abs(found.multipliers) == pytest.approx(1, abs=1e-3)
+
+
+@pytest.mark.parametrize("light", [0.5, 0.2])
+def test_a_gap_breather_is_its_envelope_up_to_the_detuning(light):
+    """Within 0.2, 0.4 and 0.8 % at ν = 0.0005, 0.001, 0.002, and the error falls linearly."""
+    errors = []
+    for nu, beads in ((0.002, 201), (0.001, 281), (0.0005, 401)):
+        found, U, middle = gap_breather(nu, beads, light=light)
+        errors.append(1 - found.amplitude[middle] / U)
+        assert 0 < errors[-1] < 4 * nu
+    assert np.array(errors[:-1]) / errors[1:] == pytest.approx([2, 2], rel=0.05)
+
+
+def followed(found):
+    """Displacements after a hundred periods, by the engine; its scenes under load have a wall."""
+    chain = found.chain
+    scene = Scene(
+        masses=chain.masses,
+        stiffnesses=chain.stiffnesses[:-1],
+        wall=chain.stiffnesses[-1],
+        precompression=chain.load,
+        k=HERTZ,
+        displacements=found.displacements(0.0),
+        duration=100 * found.period,
+        samples=2,
+    )
+    return simulate(scene, rtol=1e-12).displacements
+
+
+def test_the_engine_returns_to_the_orbit():
+    """A gap mode at a heavier light bead: a free breather would be pushed away by the wall."""
+    chain, middle = dimer(61, wall=True)
+    masses = chain.masses.copy()
+    masses[middle] = 0.7
+    pinned = PressedChain(masses, chain.stiffnesses, HERTZ, 1.0)
+    squares, modes = linear_modes(pinned)
+    in_gap = (squares > 3.1) & (squares < 5.95)
+    place = int(np.argmax(np.where(in_gap, np.abs(modes[middle]), 0)))
+    start = 0.3 * modes[:, place] / np.abs(modes[:, place]).max()
+    found = orbit(pinned, 0.995 * math.sqrt(squares[place]), start, harmonics=12)
+    size = np.abs(found.amplitude).max()
+    assert size > 0.1 * chain.rest[0]
+    assert found.residual < 1e-10
+    assert followed(found) == pytest.approx(found.displacements(0.0), abs=1e-7 * size)
+    # five harmonics are as good as their residual
+    rough = orbit(pinned, found.frequency, found.coefficients, harmonics=5)
+    assert rough.amplitude[middle] == pytest.approx(found.amplitude[middle], rel=1e-5)
+    assert rough.residual > 1e3 * found.residual
+
+
+def test_a_continued_orbit_is_the_one_found_directly():
+    begin, _, _ = gap_breather(0.002, 121)
+    direct, _, _ = gap_breather(0.004, 121)
+    found = continued(begin, direct.frequency)
+    assert found.amplitude == pytest.approx(direct.amplitude, abs=1e-9)
+    assert continued(found, begin.frequency).amplitude == pytest.approx(begin.amplitude, abs=1e-9)
+
+
+def test_a_breather_is_stable_or_hardly_unstable_and_its_multipliers_come_in_pairs():
+    found, _, _ = gap_breather(0.004, 61)
+    multipliers = found.multipliers
+    assert len(multipliers) == 122
+    assert np.abs(multipliers[0]) < 1.01
+    inverse = 1 / multipliers
+    apart = np.abs(multipliers[:, None] - inverse[None]).min(axis=1)
+    assert apart.max() < 1e-4  # double multipliers are known to the root of the error
+    assert np.count_nonzero(np.abs(multipliers - 1) < 1e-3) >= 4
+
+
+def test_what_is_refused():
+    chain, middle = dimer(21)
+    with pytest.raises(SceneError, match="stiffnesses are 3 of 2 beads"):
+        PressedChain([1, 1], [1, 1, 1], HERTZ, 1)
+    with pytest.raises(SceneError, match="load is 0"):
+        PressedChain([1, 1], [1], HERTZ, 0)
+    with pytest.raises(SceneError, match="frequency is -1"):
+        orbit(chain, -1, np.zeros(21))
+    start = np.zeros(21)
+    start[middle] = 1e-4
+    with pytest.raises(NoOrbit, match=r"^frequency is 2\.3: Newton's method finds no orbit"):
+        orbit(chain, 2.3, start)
