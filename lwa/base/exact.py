@@ -33,7 +33,7 @@ _ROOTLESS = 1024  # bits of an integer beyond a double
 _TOO_LONG = f"at most {_DIGITS} digits are wanted, before the point and behind it"
 
 
-MOST_CANCELLED = 5000
+MOST_CANCELLED = 20_000
 """Digits that the terms of an exact number may cancel before it is evaluated in vain."""
 
 
