@@ -16,7 +16,7 @@ from validation.lattice.simulate import simulate
 from validation.scenes.scene import Scene
 run = simulate(Scene(masses=(1, 1), stiffnesses=(1,), k=1.5, duration=9, velocities=(1,)))
 from validation.lattice.kernel.advance import advance
-print(run.velocities.round(6).tolist(), sum(advance.stats.cache_hits.values()))
+print((run.velocities.round(6) + 0.0).tolist(), sum(advance.stats.cache_hits.values()))
 """
 
 
