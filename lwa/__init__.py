@@ -12,15 +12,17 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from lwa.algebra.coefficients import Coefficients
-    from lwa.algebra.jets import JetAlgebra, Ladder, Monomial, Term
-    from lwa.algebra.partition import Partition
+    from lwa.algebra.coefficients import CoefficientRing
+    from lwa.algebra.jets import Monomial
+    from lwa.algebra.model import Model
     from lwa.base.arrays import Array
     from lwa.base.exact import InputError, Quantity
     from lwa.base.quantities import NoSolitaryWave
-    from lwa.cell import Cell, D, Dimer, k
+    from lwa.cell import Cell, Dimer
+    from lwa.cell import D as D
+    from lwa.cell import k as k
     from lwa.closure.consistency import Closure
-    from lwa.closure.motion import Solution
+    from lwa.closure.solution import Solution
     from lwa.envelopes.breather import Breather
     from lwa.envelopes.schrodinger import Envelope, envelope
     from lwa.equation.evolution import Evolution
@@ -34,6 +36,7 @@ if TYPE_CHECKING:
     from lwa.expansion.strike import Strike, graded_force, pulse_of_strike, transmitted_force
     from lwa.law import ContactLaw, Law, Power, general
     from lwa.linear.dispersion import Dispersion, LoadedChain
+    from lwa.shocks import Shock, piston, shock
     from lwa.spheres import hertz
     from lwa.spheres.hertz import Material, Sphere
     from lwa.theory import Theory, homogenize
@@ -56,10 +59,9 @@ __all__ = [
     "Breather",
     "Cell",
     "Closure",
-    "Coefficients",
+    "CoefficientRing",
     "CompactWave",
     "ContactLaw",
-    "D",
     "Dimer",
     "Dispersion",
     "Envelope",
@@ -69,17 +71,15 @@ __all__ = [
     "Expansion",
     "InputError",
     "Jet",
-    "JetAlgebra",
     "KdV",
-    "Ladder",
     "Law",
     "LoadedChain",
     "Material",
+    "Model",
     "Monomial",
     "NoSolitaryWave",
     "NumericBackground",
     "NumericWave",
-    "Partition",
     "PhysicalWave",
     "Power",
     "Powers",
@@ -88,10 +88,10 @@ __all__ = [
     "Radiation",
     "Reduction",
     "Resummed",
+    "Shock",
     "Solution",
     "Sphere",
     "Strike",
-    "Term",
     "Terms",
     "Theory",
     "TravelingWave",
@@ -103,23 +103,24 @@ __all__ = [
     "graded_force",
     "hertz",
     "homogenize",
-    "k",
+    "piston",
     "pulse_of_strike",
+    "shock",
     "transmitted_force",
 ]
 
 
 _MODULES = {
-    "algebra.coefficients": "Coefficients",
-    "algebra.jets": "JetAlgebra Ladder Monomial Term",
-    "algebra.partition": "Partition",
+    "algebra.coefficients": "CoefficientRing",
+    "algebra.jets": "Monomial",
+    "algebra.model": "Model",
     "wave.background": "BackgroundWave background_wave",
     "wave.kdv": "KdV",
     "wave.precompressed": "PrecompressedWave",
     "wave.quadrature": "NumericBackground",
     "cell": "Cell D Dimer k",
     "closure.consistency": "Closure",
-    "closure.motion": "Solution",
+    "closure.solution": "Solution",
     "base.arrays": "Array",
     "wave.numeric": "NumericWave",
     "wave.physical": "PhysicalWave",
@@ -139,6 +140,7 @@ _MODULES = {
     "equation.pde": "PDE",
     "base.quantities": "NoSolitaryWave",
     "wave.reduction": "Reduction",
+    "shocks": "Shock piston shock",
     "spheres.hertz": "Material Sphere",
     "equation.terms": "Jet Powers Terms",
     "theory": "Theory homogenize",

@@ -8,8 +8,7 @@ from typing import Any
 
 import sympy as sp
 
-from lwa.algebra.coefficients import Coefficients
-from lwa.algebra.smooth import smooth
+from lwa.algebra.model import Model, model_of
 from lwa.base import latex
 from lwa.base.exact import InputError, integer, shorten
 from lwa.base.frozen import Value
@@ -20,7 +19,7 @@ from lwa.closure.consistency import BRANCHES, CLOSURES, FIELDS, Closure, solve
 from lwa.equation.evolution import Evolution
 from lwa.equation.pde import PDE
 from lwa.equation.terms import STRAIN, Terms, terms
-from lwa.law import ContactLaw, demand_one, for_cell
+from lwa.law import ContactLaw, Power, demand_one, for_cell
 
 SLOW_ORDER = 12
 """The order from which a derivation shows its progress."""
@@ -38,17 +37,17 @@ class Theory(Value):
     @property
     def cell(self) -> Cell:
         """The chain."""
-        return self.closure.ring.cell
+        return self.closure.model.cell
 
     @property
     def k(self) -> sp.Expr:
         """The exponent of the contact law; of one that is no power 1 + φ_2."""
-        return self.closure.ring.k
+        return self.closure.model.k
 
     @property
     def law(self) -> ContactLaw:
         """The contact law."""
-        return self.closure.ring.law
+        return self.closure.model.law
 
     @property
     def order(self) -> int:
@@ -166,26 +165,25 @@ def homogenize(
     _one_of(closure, CLOSURES, "closure")
     _one_of(branch, BRANCHES, "branch")
     _one_of(field, FIELDS, "field")
-    ring = _ring(cell, k, law, branch, order)
+    model = _model(cell, k, law, branch, order)
+    ring = model.ring
     parameters = len(ring.names) - max(len(ring.variables) - 1, 0)  # the φ_n grow as powers of k
     _affordable(order, parameters, closure)
     ring.writable(order)
-    return Theory(solve(ring, order, closure, field, iter if order < SLOW_ORDER else shown))
+    return Theory(solve(model, order, closure, field, iter if order < SLOW_ORDER else shown))
 
 
-def _ring(cell: Cell, k: Any, law: ContactLaw | None, branch: str, order: int) -> Coefficients:
+def _model(cell: Cell, k: Any, law: ContactLaw | None, branch: str, order: int) -> Model:
     if law is None:
-        return Coefficients(cell, exponent(k, cell), branch)
+        return Model(cell, Power(exponent(k, cell)), branch)
     demand_one(k, law)
     law = for_cell(law, cell)
-    if law.homogeneous:
-        return Coefficients(cell, law.exponent, branch)
-    if branch != "acoustic":
+    if not law.homogeneous and branch != "acoustic":
         raise InputError(
             f"branch is {branch!r}: its contacts also pull, and its unit of time is that of a "
             "power law; a law given for compression has the acoustic branch"
         )
-    return smooth(cell, law, order)
+    return model_of(cell, law, branch, order)
 
 
 def _affordable(order: int, parameters: int, closure: str) -> None:

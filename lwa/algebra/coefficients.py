@@ -1,67 +1,47 @@
-"""The coefficient ring of a derivation, Q[k, μ, c], and its door to SymPy.
+"""The coefficient ring of a derivation, Q[k, μ, c], and its conversion to SymPy.
 
 Everything the theory derives is a polynomial in the jets of the field whose coefficients are
 polynomials in the exponent k, the mass fractions μ_i = m_i/M and the strain shares c_i of the
-contacts. What is rational among these enters as a number; what is not becomes one generator of a
-python-flint polynomial ring per distinct value (less one, since Σ μ_i = 1 and Σ c_i = P).
-Polynomials leave as factored SymPy expressions in the caller's own symbols.
+contacts. The rational ones among these enter as numbers; each other distinct value becomes one
+generator of a python-flint polynomial ring (less one, since Σ μ_i = 1 and Σ c_i = P). Under a law
+other than a power φ_2, φ_3, … stand in the place of k. Polynomials leave as factored SymPy
+expressions in the caller's own symbols.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from functools import cached_property, cmp_to_key
-from typing import Any, Self
+from typing import Any
 
 import sympy as sp
 from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
-from lwa.algebra.jets import JetAlgebra
 from lwa.algebra.partition import Partition, number, rational
 from lwa.base.exact import InputError
 from lwa.base.frozen import Value
-from lwa.cell import Cell, exponent, substitution
-from lwa.law import ContactLaw, Power
 
 MOST_DIGITS = 4000
-"""Of a coefficient; Python prints no integers of more than 4,300."""
+"""Digits of a coefficient; Python prints no integers of more than 4,300."""
 
 
 @dataclass(frozen=True)
-class Coefficients(Value):
-    """The ring Q[k, μ, c] for one cell, one exponent and one branch.
+class CoefficientRing(Value):
+    """The ring Q[variables, μ, c, constants].
 
-    On the optical branch the two contacts move by equal amounts, so that they enter with their
-    shares of the stiffness, A_i / Σ A_j, instead of their shares of the strain. ``constants``
-    are further expressions with which the ring is extended.
+    k : the exponent, a number, a variable, or 1 + φ_2.
+    variables : k unless it is rational, or the symbols of φ_2, φ_3, ….
+    masses, contacts : the mass fractions μ_i and the shares c_i of the contacts.
+    constants : further expressions.
     """
 
-    cell: Cell
     k: sp.Expr
-    branch: str = "acoustic"
+    variables: tuple[sp.Expr, ...]
+    masses: Partition
+    contacts: Partition
     constants: tuple[sp.Expr, ...] = ()
-
-    @cached_property
-    def masses(self) -> Partition:
-        """The mass fractions μ_i."""
-        return Partition(self.cell.masses, 1, "mu")
-
-    @cached_property
-    def contacts(self) -> Partition:
-        """The shares c_i of the contacts."""
-        stiffnesses = self.cell.stiffnesses
-        if self.branch == "optical":
-            return Partition(stiffnesses, 1, "c")
-        equal = len(set(stiffnesses)) == 1
-        weights = stiffnesses if equal else self.cell.compliances(self.k)
-        return Partition(weights, self.cell.size, "c")
-
-    @property
-    def variables(self) -> tuple[sp.Expr, ...]:
-        """What the law's own generators stand for: k, unless it is rational."""
-        return () if self.k.is_Rational else (self.k,)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -70,34 +50,10 @@ class Coefficients(Value):
 
     @property
     def _own(self) -> tuple[str, ...]:
-        return ("k",) if self.variables else ()
-
-    @property
-    def law(self) -> ContactLaw:
-        """The contact law."""
-        return Power(self.k)
-
-    @property
-    def time_scale(self) -> sp.Expr:
-        """τ/t of the acoustic branch."""
-        return self.cell.time_scale(self.k)
-
-    def algebra(self, weight: int, velocity: bool = False, rest: bool = False) -> JetAlgebra:
-        """The jets over this ring, with those of the velocity where they are wanted."""
-        return JetAlgebra(self.names, weight, self.exponent if velocity else None, rest)
-
-    def substitution(
-        self, values: Mapping[str, Any], more: Sequence[sp.Symbol]
-    ) -> dict[sp.Symbol, sp.Expr]:
-        """`lwa.cell.substitution` among the symbols of cell and law, and more."""
-        return substitution(values, self.cell, self.k, more)
-
-    def anew(self, new: Mapping[sp.Symbol, sp.Expr], order: int) -> Self:
-        """The ring for these values of its symbols, and for this order."""
-        return replace(self, cell=self.cell.replaced(new), k=exponent(self.k.xreplace(new)))
+        return ("k",) if self.variables == (self.k,) else tuple(map(str, self.variables))
 
     def writable(self, order: int) -> None:
-        """Refuse an order whose coefficients, powers of the cell's numbers, Python cannot print."""
+        """Refuse an order whose coefficients, powers of the ring's numbers, Python cannot print."""
         values = (self.k, *(self.masses.values or ()), *(self.contacts.values or ()))
         parts = [int(part) for x in values if x.is_Rational for part in (x.p, x.q)]
         digits = max((part.bit_length() for part in parts), default=0) * math.log10(2)
@@ -111,7 +67,8 @@ class Coefficients(Value):
         """k as an element of a ring that has `names` among its generators."""
         if self.k.is_Rational:
             return context.constant(rational(self.k))
-        return context.gen(context.variable_to_index("k"))
+        generator = context.gen(context.variable_to_index(self._own[0]))
+        return generator if self.variables == (self.k,) else 1 + generator
 
     def constant(self, i: int, context: fmpq_mpoly_ctx) -> fmpq_mpoly:
         """The i-th constant as an element of a ring that has `names` among its generators."""
@@ -156,24 +113,25 @@ class Coefficients(Value):
         The exponents stand in the order of `names`.
 
         >>> m1, m2, k = sp.symbols("m1 m2 k")
-        >>> Coefficients(Cell((m1, m2)), k).expression([((1, 1), fmpq(1)), ((1, 2), fmpq(-1))])
+        >>> ring = CoefficientRing(k, (k,), Partition((m1, m2), 1, "mu"), Partition((1,), 1, "c"))
+        >>> ring.expression([((1, 1), fmpq(1)), ((1, 2), fmpq(-1))])
         k*m1*m2/(m1 + m2)**2
         """
-        return self._door(terms)
+        return self._converter(terms)
 
     @cached_property
-    def _door(self) -> Door:
-        return Door(self)
+    def _converter(self) -> SymPyConverter:
+        return SymPyConverter(self)
 
 
-class Door:
+class SymPyConverter:
     """Conversion of polynomials in (k, μ, c) to factored SymPy expressions.
 
     μ_i and c_i are replaced by w_i/Σw with one common denominator per partition, in a second
     flint ring whose generators are the caller's symbols; the numerator is factored there.
     """
 
-    def __init__(self, ring: Coefficients) -> None:
+    def __init__(self, ring: CoefficientRing) -> None:
         partitions = [part for part in (ring.masses, ring.contacts) if part.names]
         values = [w for part in partitions for w in part.distinct]
         opaque_constants = [c for i, c in enumerate(ring.constants) if f"a{i}" in ring.names]

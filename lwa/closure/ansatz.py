@@ -1,7 +1,7 @@
 """The closure of the paper (the ansatz of Porter et al. 2008): linear, for the slaved field.
 
 For the dimer, u = w_0 and w = w_1 = λ (u + Σ b_n D^n ∂_x^n u), with the b_n found from the demand
-that both equations of `lwa.closure.motion` are identical at each order. A linear ansatz has one
+that both equations of `lwa.closure.solution` are identical at each order. A linear ansatz has one
 unknown per order, which settles the monomial ∂_x^n u; the wave equation is then read off the first
 equation, and what the second one says otherwise is kept as the defect.
 """
@@ -12,29 +12,29 @@ from math import factorial
 
 from flint import fmpq, fmpq_mpoly
 
-from lwa.algebra.coefficients import Coefficients
 from lwa.algebra.contact import contact
 from lwa.algebra.jets import JetAlgebra, Ladder, exact_quotient
+from lwa.algebra.model import Model
 from lwa.base.exact import InputError
 from lwa.base.progress import Progress
-from lwa.closure.motion import Solution
+from lwa.closure.solution import Solution
 
 
-def linear(ring: Coefficients, order: int, progress: Progress[int] = iter) -> Solution:
-    """The paper's closure, to D^order in the ansatz, on the branch of ``ring``.
+def linear(model: Model, order: int, progress: Progress[int] = iter) -> Solution:
+    """The paper's closure, to D^order in the ansatz, on the branch of the model.
 
     Raises `lwa.InputError` for cells of more than two particles, which the ansatz does not cover.
     """
-    size = ring.cell.size
-    if size == 1 and ring.branch == "acoustic":
-        return _uniform(ring, order, progress)
+    size = model.cell.size
+    if size == 1 and model.branch == "acoustic":
+        return _uniform(model, order, progress)
     if size != 2:
         raise InputError(
-            f"the cell has {size} masses: the linear closure's {ring.branch} branch wants two; "
+            f"the cell has {size} masses: the linear closure's {model.branch} branch wants two; "
             'closure="full" (--closure full) covers the acoustic branch of any cell'
         )
-    branch = _acoustic if ring.branch == "acoustic" else _optical
-    return branch(ring, order, progress)
+    branch = _acoustic if model.branch == "acoustic" else _optical
+    return branch(model, order, progress)
 
 
 def _applied(b: list[fmpq_mpoly], f: Ladder, n: int) -> fmpq_mpoly:
@@ -42,11 +42,11 @@ def _applied(b: list[fmpq_mpoly], f: Ladder, n: int) -> fmpq_mpoly:
     return sum((b[j] * f.dx(n - j, j) for j in range(1, min(n, len(f)))), f.algebra.zero)
 
 
-def _acoustic(ring: Coefficients, order: int, progress: Progress[int]) -> Solution:
-    algebra = ring.algebra(max(order - 1, 1))
-    k = ring.exponent(algebra.context)
-    mu = ring.masses.elements(algebra.context)
-    c = ring.contacts.elements(algebra.context)
+def _acoustic(model: Model, order: int, progress: Progress[int]) -> Solution:
+    algebra = model.algebra(max(order - 1, 1))
+    k = model.ring.exponent(algebra.context)
+    mu = model.ring.masses.elements(algebra.context)
+    c = model.ring.contacts.elements(algebra.context)
     right, left = contact(algebra, k), contact(algebra, k)  # of w - u, and of u - w one cell on
     first, second = Ladder(algebra, k), Ladder(algebra, k)  # E by equation 1 and by equation 2
     first.append(algebra.zero)
@@ -66,16 +66,16 @@ def _acoustic(ring: Coefficients, order: int, progress: Progress[int]) -> Soluti
         first.append(exact_quotient(one + xi * r_n, 2 * mu[0]))
         second.append(exact_quotient(two - xi * r_n, 2 * mu[1]) - _applied(b, second, n))
         b.append(c[0] * (mean + c[1] * xi / 2))
-    return _solution(ring, algebra, b[: order + 1], first, second)
+    return _solution(model, algebra, b[: order + 1], first, second)
 
 
-def _optical(ring: Coefficients, order: int, progress: Progress[int]) -> Solution:
+def _optical(model: Model, order: int, progress: Progress[int]) -> Solution:
     # Contacts here also pull: the branch belongs to the odd extension of δ^k (or to odd k).
     # w - u = -(u/μ_1)(1 + Y) and u(x + 2D) - w = (u/μ_1)(1 + Z); E = 1 + kε.
-    algebra = ring.algebra(max(order, 1))
-    k = ring.exponent(algebra.context)
-    mu = ring.masses.elements(algebra.context)
-    stiffness = ring.contacts.elements(algebra.context)
+    algebra = model.algebra(max(order, 1))
+    k = model.ring.exponent(algebra.context)
+    mu = model.ring.masses.elements(algebra.context)
+    stiffness = model.ring.contacts.elements(algebra.context)
     right, left = contact(algebra, k), contact(algebra, k)  # 1 + Y and 1 + Z
     first, second, leading = Ladder(algebra, k), Ladder(algebra, k), Ladder(algebra, k)
     first.append(algebra.zero)
@@ -91,27 +91,27 @@ def _optical(ring: Coefficients, order: int, progress: Progress[int]) -> Solutio
         force = stiffness[0] * right.Phi[n] + stiffness[1] * left.Phi[n]
         first.append(force + carried)
         second.append(force - b[n] * leading.dx(0, n - 1) - _applied(b, second, n))
-    return _solution(ring, algebra, b, first, second)
+    return _solution(model, algebra, b, first, second)
 
 
-def _uniform(ring: Coefficients, order: int, progress: Progress[int]) -> Solution:
+def _uniform(model: Model, order: int, progress: Progress[int]) -> Solution:
     # One particle per cell: nothing is slaved, and the one equation is the wave equation.
-    algebra = ring.algebra(max(order - 1, 1))
-    k = ring.exponent(algebra.context)
+    algebra = model.algebra(max(order - 1, 1))
+    k = model.ring.exponent(algebra.context)
     force, E = contact(algebra, k), Ladder(algebra, k)
     E.append(algebra.zero)
     for n in progress(range(1, order)):
         force.append(algebra.r[n] * fmpq(1, factorial(n + 1)))
         E.append(-force.carried(-1, n))
-    return _solution(ring, algebra, [], E, E)
+    return _solution(model, algebra, [], E, E)
 
 
 def _solution(
-    ring: Coefficients, algebra: JetAlgebra, b: list[fmpq_mpoly], first: Ladder, second: Ladder
+    model: Model, algebra: JetAlgebra, b: list[fmpq_mpoly], first: Ladder, second: Ladder
 ) -> Solution:
     acceleration = [first[n] for n in range(len(first))]
-    if ring.branch == "optical":
-        k = ring.exponent(algebra.context)
+    if model.branch == "optical":
+        k = model.ring.exponent(algebra.context)
         acceleration = [algebra.one, *(k * e for e in acceleration[1:])]
     return Solution(
         algebra=algebra,

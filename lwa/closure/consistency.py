@@ -1,7 +1,7 @@
 """The consistency condition: slaved fields that satisfy the equations of motion order by order.
 
 ``linear`` is the closure of the paper (`lwa.closure.ansatz`), ``full`` the one that satisfies all
-equations of motion (`lwa.closure.slaving`). Both solve `lwa.closure.motion` in one algebra,
+equations of motion (`lwa.closure.slaving`). Both solve `lwa.closure.solution` in one algebra,
 `lwa.algebra.jets`.
 """
 
@@ -15,15 +15,15 @@ from typing import Any
 import sympy as sp
 from flint import fmpq_mpoly
 
-from lwa.algebra.coefficients import Coefficients
 from lwa.algebra.jets import JetAlgebra, Monomial
+from lwa.algebra.model import Model
 from lwa.base import latex
 from lwa.base.exact import InputError
 from lwa.base.progress import Progress
 from lwa.cell import Cell
 from lwa.closure.ansatz import linear
-from lwa.closure.motion import Solution
 from lwa.closure.slaving import full
+from lwa.closure.solution import Solution
 
 BRANCHES = ("acoustic", "optical")
 CLOSURES = ("linear", "full")
@@ -41,7 +41,7 @@ class Closure:
     solution : E_n, b_n, S_n and the defect.
     """
 
-    ring: Coefficients
+    model: Model
     order: int
     name: str
     field: str
@@ -71,7 +71,7 @@ class Closure:
     @property
     def key(self) -> tuple[Any, ...]:
         """What it is known by: the arguments of `solve`."""
-        return (self.ring, self.order, self.name, self.field)
+        return (self.model, self.order, self.name, self.field)
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Closure) and self.key == other.key
@@ -84,8 +84,8 @@ class Closure:
 
     def __repr__(self) -> str:
         return (
-            f"Closure({self.ring.cell!r}, order={self.order}, k={self.ring.k}, "
-            f"closure={self.name!r}, branch={self.ring.branch!r}, field={self.field!r})"
+            f"Closure({self.model.cell!r}, order={self.order}, k={self.model.k}, "
+            f"closure={self.name!r}, branch={self.model.branch!r}, field={self.field!r})"
         )
 
     def latex_rows(self, most: int | None = None) -> list[str]:
@@ -93,7 +93,7 @@ class Closure:
         if not self.ansatz:
             return []
         last = min(len(self.ansatz) - 1, most or len(self.ansatz))
-        D = self.ring.cell.spacing
+        D = self.model.cell.spacing
         parts = [f"b_{{{n}}} {latex.power(D, n)} {latex.derivative(n)}" for n in range(1, last + 1)]
         if self.name == "full" or last < len(self.ansatz) - 1:
             parts.append(r"\cdots")
@@ -108,7 +108,7 @@ class Closure:
     def b(self) -> dict[int, sp.Expr]:
         """n → b_n of the ansatz, n ≥ 1."""
         return {
-            n: self.ring.expression(self.algebra.terms(b).get(Monomial(()), []))
+            n: self.model.ring.expression(self.algebra.terms(b).get(Monomial(()), []))
             for n, b in enumerate(self.ansatz)
             if n > 0
         }
@@ -130,14 +130,14 @@ class Closure:
 
     def at(self, **values: Any) -> Closure:
         """The closure for these values of the named symbols; see `lwa.cell.substitution`."""
-        return self.anew(self.ring.substitution(values, self.symbols))
+        return self.anew(self.model.substitution(values, self.symbols))
 
     def anew(
         self, new: Mapping[sp.Symbol, sp.Expr] | None = None, order: int | None = None
     ) -> Closure:
         """The same derivation with these values of its symbols, or to this order."""
         order = order or self.order
-        return solve(self.ring.anew(new or {}, order), order, self.name, self.field)
+        return solve(self.model.replaced(new or {}, order), order, self.name, self.field)
 
 
 def amplitude_ratios(cell: Cell) -> dict[str, sp.Expr]:
@@ -154,31 +154,31 @@ def amplitude_ratios(cell: Cell) -> dict[str, sp.Expr]:
 
 
 def solve(
-    ring: Coefficients, order: int, closure: str, field: str, progress: Progress[int] = iter
+    model: Model, order: int, closure: str, field: str, progress: Progress[int] = iter
 ) -> Closure:
     """The consistency condition by the named closure, for the named field.
 
     Raises `lwa.InputError` for the combinations that have no solution.
     """
-    solution = _solution(ring, order, closure, field, progress)
-    acoustic = ring.branch == "acoustic"
-    ratio = sp.S.One if acoustic else amplitude_ratios(ring.cell)["optical"]
-    return Closure(ring, order, closure, field, ratio, solution)
+    solution = _solution(model, order, closure, field, progress)
+    acoustic = model.branch == "acoustic"
+    ratio = sp.S.One if acoustic else amplitude_ratios(model.cell)["optical"]
+    return Closure(model, order, closure, field, ratio, solution)
 
 
 def _solution(
-    ring: Coefficients, order: int, closure: str, field: str, progress: Progress[int]
+    model: Model, order: int, closure: str, field: str, progress: Progress[int]
 ) -> Solution:
     if closure == "linear" and field != "first":
         raise InputError(
             f"field is {field!r}: with the linear closure it is 'first', as in the paper"
         )
     if closure == "linear":
-        return linear(ring, order, progress)
-    if ring.branch == "acoustic":
-        return full(ring, order, field, progress)
-    if ring.k == 1 and field == "first":
-        return linear(ring, order, progress)  # the linear chain has a linear closure
+        return linear(model, order, progress)
+    if model.branch == "acoustic":
+        return full(model, order, field, progress)
+    if model.k == 1 and field == "first":
+        return linear(model, order, progress)  # the linear chain has a linear closure
     raise InputError(
         "the optical branch oscillates at order D^0 and slaves no field algebraically unless "
         "k = 1: use the linear closure, or k = 1 with the field 'first'"

@@ -1,6 +1,6 @@
 """The full closure: slaved fields that satisfy every equation of motion, at every order.
 
-In `lwa.closure.motion` S_i may be any polynomial in the jets of φ and of φ_τ. All P equations can
+In `lwa.closure.solution` S_i may be any polynomial in the jets of φ and of φ_τ. All P equations can
 then be satisfied, and nothing has to be solved for: their sum (momentum) gives the next term of the
 wave equation from lower orders, their partial sums the differences of the contact forces, and these
 the strains.
@@ -12,15 +12,15 @@ from math import factorial
 
 from flint import fmpq, fmpq_mpoly
 
-from lwa.algebra.coefficients import Coefficients
 from lwa.algebra.contact import contact
 from lwa.algebra.jets import JetAlgebra, Ladder
+from lwa.algebra.model import Model
 from lwa.base.progress import Progress
-from lwa.closure.motion import Solution
+from lwa.closure.solution import Solution
 
 
 def full(
-    ring: Coefficients, order: int, field: str = "first", progress: Progress[int] = iter
+    model: Model, order: int, field: str = "first", progress: Progress[int] = iter
 ) -> Solution:
     """The closure that satisfies all equations of motion, to D^order in the slaved fields.
 
@@ -28,7 +28,7 @@ def full(
     "center", the mean Σ μ_i w_i of the sublattice fields at one point, each w_i shifted back to x
     from where its particle rests in units of strain, x_i = c_0 + … + c_{i-1}.
     """
-    chain = _Slaving(ring, order, field)
+    chain = _Slaving(model, order, field)
     for n in progress(range(1, order)):
         chain.extend(n)
     S = [particle.S for particle in chain.particles]
@@ -66,17 +66,17 @@ class _Particle:
 class _Slaving:
     """The recursion of the full closure, one order of D at a time."""
 
-    def __init__(self, ring: Coefficients, order: int, field: str) -> None:
-        self.algebra = algebra = ring.algebra(max(order - 1, 1), velocity=True)
+    def __init__(self, model: Model, order: int, field: str) -> None:
+        self.algebra = algebra = model.algebra(max(order - 1, 1), velocity=True)
         self.order = order
-        k = ring.exponent(algebra.context)
+        k = model.ring.exponent(algebra.context)
         self.E = Ladder(algebra, k)
         self.E.append(algebra.zero)
         self.particles: list[_Particle] = []
         x = algebra.zero
         for mu, c in zip(
-            ring.masses.elements(algebra.context),
-            ring.contacts.elements(algebra.context),
+            model.ring.masses.elements(algebra.context),
+            model.ring.contacts.elements(algebra.context),
             strict=True,
         ):
             self.particles.append(_Particle(algebra, k, mu, c, x))

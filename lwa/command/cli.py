@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 import sympy as sp
@@ -13,28 +13,37 @@ import sympy as sp
 from lwa.base.exact import InputError, exact
 from lwa.cell import Cell, D, k
 from lwa.code.languages import LANGUAGES
-from lwa.command import derivation, series, waves
+from lwa.command import derivation, envelopes, series, waves
 from lwa.command.options import (
     FORCE,
     SPHERES,
+    SPHERES_HELP,
     demand_free_names,
     given,
     law_option,
+    of_cell,
     of_chain,
     of_series,
     setting,
+    style_option,
 )
+from lwa.command.reading import angle, quantity
 from lwa.command.reserved_names import demand_free
 from lwa.command.rows import Answer
-from lwa.command.terminal import HELP, quantity, run, version
+from lwa.command.terminal import HELP, run, version
+from lwa.envelopes.schrodinger import envelope
 from lwa.expansion.expand import expand
 from lwa.expansion.physical import ExpandedWave
+from lwa.expansion.strike import pulse_of_strike
 from lwa.law import ContactLaw, Law, Power
 from lwa.linear.dispersion import Dispersion, LoadedChain
 from lwa.spheres.hertz import EXPONENT
 from lwa.theory import Theory, homogenize
 from lwa.wave.background import BackgroundWave
 from lwa.wave.precompressed import PrecompressedWave
+
+if TYPE_CHECKING:
+    from lwa.command.chain_file import ChainFile
 
 DERIVATION = {
     "text": derivation.derivation_text,
@@ -200,12 +209,10 @@ def _from_file(file: str, chain: dict[str, Any]) -> tuple[dict[str, str], sp.Exp
 
     Raises `lwa.InputError` where an option describes a chain too.
     """
-    from lwa.command.chain_file import read_chain  # here: other commands do not load the parsers
-
     for name in ("k", "law", "masses", "stiffnesses", "spacing"):
         if given(name):
             raise InputError(f"--{name} and --spheres are both given: spheres have their own")
-    found = read_chain(file)
+    found = _read(file)
     chain |= {name: getattr(found.cell, name) for name in ("masses", "stiffnesses", "spacing")}
     chain |= {"k": found.law.exponent} if found.law.homogeneous else {"law": found.law}
     exponent = found.law.exponent if found.law.homogeneous else EXPONENT
@@ -268,9 +275,7 @@ def expansion(
         k, law = chain.pop("k"), chain.pop("law")
         cell = Cell(**chain)
         force = sp.S.One if force is None else force
-        if static:
-            said = f"{float(static):g} {units.get('force', '')}".rstrip()
-            notes = [f"the load of the file, {said}, is left out: the series has none"]
+        notes = _left_out(static, units)
     elif force is not None:
         raise InputError("--force goes with --spheres: other chains have no units")
     found = expand(cell, order, k=k, law=law)
@@ -278,6 +283,85 @@ def expansion(
     if force is not None and cell.spacing.is_number:
         physical = ExpandedWave(found, force)
     _answer(style, series.expansion(found, physical, units, notes))
+
+
+@lwa.command()
+@click.option("--spheres", metavar="FILE", required=True, help=SPHERES_HELP)
+@click.option("--velocity", callback=quantity, help="Velocity of the striker.")
+@click.option("--drop", callback=quantity, help="Height from which the striker falls.")
+@click.option("--mass", callback=quantity, help="Mass of the striker; a bead of the chain if not.")
+@style_option(STYLES)
+def strike(
+    spheres: str,
+    velocity: sp.Expr | None,
+    drop: sp.Expr | None,
+    mass: sp.Expr | None,
+    style: str,
+) -> None:
+    """The leading pulse of a chain of equal beads that a mass strikes: force, speed and width."""
+    found = _read(spheres)
+    mass = found.cell.masses[0] if mass is None else mass
+    pulse = pulse_of_strike(found.cell, mass, velocity, drop=drop, k=found.law.exponent)
+    units = waves.si_units(found.law.exponent) if found.si else {}
+    _answer(style, series.strike(pulse, units, _left_out(found.precompression, units)))
+
+
+@lwa.command("envelope")
+@of_cell(STYLES)
+@SPHERES
+@click.option("--background", callback=quantity, help="Static strain.")
+@click.option("--precompression", callback=quantity, help="Static force.")
+@setting("--wavenumber", "pi", "κ per cell: a number, a name, or a part of pi.", callback=angle)
+@click.option("--branch", help="acoustic, optical or a number from 0; optical where there is one.")
+@click.option("--frequency", callback=quantity, help="Frequency of a breather, rad per time.")
+@click.option("--detuning", callback=quantity, help="1 - frequency/ω of a breather.")
+def envelope_of_a_mode(
+    style: str,
+    spheres: str | None,
+    background: sp.Expr | None,
+    precompression: sp.Expr | None,
+    wavenumber: sp.Expr,
+    branch: str | None,
+    frequency: sp.Expr | None,
+    detuning: sp.Expr | None,
+    **chain: Any,
+) -> None:
+    """The nonlinear Schrödinger equation of a mode of a chain under load, and its breathers."""
+    units: dict[str, str] = {}
+    if spheres is not None:
+        units, static = _from_file(spheres, chain)
+        precompression = static or precompression
+    if frequency is not None and detuning is not None:
+        raise InputError("--frequency and --detuning are both given: one says the other")
+    cell, law = Cell(chain["masses"], chain["stiffnesses"], chain["spacing"]), chain["law"]
+    law = Power(chain["k"]) if law is None else law
+    given_symbols = (background, precompression, frequency, detuning, wavenumber)
+    demand_free_names(cell, *law.symbols, *(x for x in given_symbols if x is not None))
+    place = int(branch) if branch and branch.isdecimal() else branch
+    load = {"background": background, "precompression": precompression}
+    found = envelope(cell, law, **load, wavenumber=wavenumber, branch=place)
+    symbols = {*cell.symbols, *found.compression.free_symbols, *wavenumber.free_symbols}
+    if not symbols - {cell.spacing} and (cell.size > 2 or not sp.cos(wavenumber).is_Rational):
+        found = found.numeric()  # exact results want a frequency that is algebraic
+    breather = None
+    if frequency is not None or detuning is not None:
+        breather = found.breather(frequency, detuning=detuning)
+    said = f"masses {derivation.listed(cell.masses)}; contact force A F, F = {law.F}"
+    _answer(style, envelopes.envelope(found, breather, envelopes.UNITS if units else {}, said))
+
+
+def _read(file: str) -> ChainFile:
+    from lwa.command.chain_file import read_chain  # here: other commands do not load the parsers
+
+    return read_chain(file)
+
+
+def _left_out(static: sp.Expr, units: dict[str, str]) -> list[str]:
+    """The note that the load of a file does not enter."""
+    if not static:
+        return []
+    said = f"{float(static):g} {units.get('force', '')}".rstrip()
+    return [f"the load of the file, {said}, is left out: the theory used is of a chain without"]
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

@@ -51,7 +51,7 @@ def chain_json(theory: Theory) -> dict[str, Any]:
         "spacing": str(theory.cell.spacing),
         "order": theory.order,
         "closure": theory.closure.name,
-        "branch": theory.closure.ring.branch,
+        "branch": theory.closure.model.branch,
         "field": theory.closure.field,
     }
 
@@ -125,7 +125,7 @@ def derivation_text(theory: Theory) -> str:
     """The lines that `lwa derive` prints."""
     lines = [
         chain_text(theory),
-        f"closure {theory.closure.name}, {theory.closure.ring.branch} branch, to "
+        f"closure {theory.closure.name}, {theory.closure.model.branch} branch, to "
         f"D^{theory.order}; τ = t·{theory.pde.time_scale}",
         FIELDS[theory.closure.field],
         *_law_text(theory),
@@ -169,7 +169,7 @@ def _is_linear(jet: Jet) -> bool:
 
 def _equation_text(theory: Theory) -> list[str]:
     found = theory.pde.third_order
-    if theory.closure.ring.branch == "optical":
+    if theory.closure.model.branch == "optical":
         lines = ["u_ττ = -u^k + …   (contacts that also pull: the odd law |δ|^(k-1) δ)"]
     elif theory.order == 1:
         lines = ["the wave equation starts at D^(k+1), that is at order 2 of the ansatz"]
@@ -196,7 +196,7 @@ def _order_name(theory: Theory) -> tuple[str, str]:
     """The text before and behind the n of an order: the power of D where there is one."""
     if isinstance(theory.law, Law):
         return "order ", ""
-    return ("D^(k+", ")") if theory.closure.ring.branch == "acoustic" else ("D^", "")
+    return ("D^(k+", ")") if theory.closure.model.branch == "acoustic" else ("D^", "")
 
 
 def _consistency_text(theory: Theory) -> list[str]:
@@ -205,7 +205,7 @@ def _consistency_text(theory: Theory) -> list[str]:
     else:
         lines = ["defect: u_ττ by the first equation of motion minus u_ττ by the second"]
         lines += _orders(theory.defect, *_order_name(theory))
-    if theory.closure.ring.branch == "acoustic" and not theory.pde.conservative:
+    if theory.closure.model.branch == "acoustic" and not theory.pde.conservative:
         lines.append(
             "not in conservation form: the linear closure of unequal particles does not conserve "
             "momentum; see --closure full"

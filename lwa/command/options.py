@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from functools import reduce, wraps
 from typing import Any
 
@@ -12,17 +12,30 @@ from click.core import ParameterSource
 
 from lwa.cell import Cell, D, k
 from lwa.closure.consistency import BRANCHES, CLOSURES, FIELDS
+from lwa.command.reading import contact_law, count, quantities, quantity
 from lwa.command.reserved_names import demand_free
-from lwa.command.terminal import contact_law, count, quantities, quantity
 from lwa.law import NAMES
 
 Command = Callable[..., None]
 Option = Callable[[Command], Command]
 
 
-def setting(name: str, default: Any, help_text: str, **settings: Any) -> Option:
+def setting(
+    name: str, default: Any, help_text: str, names: Sequence[str] = (), **settings: Any
+) -> Option:
     """An option whose default the help shows."""
-    return click.option(name, default=default, show_default=True, help=help_text, **settings)
+    return click.option(
+        name, *names, default=default, show_default=True, help=help_text, **settings
+    )
+
+
+def _one_of(values: Iterable[str]) -> click.Choice[str]:
+    return click.Choice(list(values))
+
+
+def _choice(name: str, values: Sequence[str], help_text: str) -> Option:
+    """An option that is one of a few names, the first by default."""
+    return setting(name, values[0], help_text, type=_one_of(values))
 
 
 def exponent(default: str) -> Option:
@@ -37,15 +50,20 @@ def order_option(help_text: str) -> Option:
 
 def law_option(help_text: str) -> Option:
     """``--law``."""
-    return click.option("--law", metavar="NAME[:PARAM,…]", callback=contact_law, help=help_text)
+    return click.option(
+        "--law",
+        metavar="NAME[:PARAM,…]",
+        callback=contact_law,
+        help=help_text,
+        shell_complete=lambda _, __, start: [name for name in NAMES if name.startswith(start)],
+    )
 
 
 def style_option(formats: Iterable[str]) -> Option:
     """``--format``, one of these."""
-    return click.option(
-        "--format", "style", type=click.Choice(list(formats)), default="text", show_default=True,
-        help="How to print the result.",
-    )  # fmt: skip
+    return setting(
+        "--format", "text", "How to print the result.", names=("style",), type=_one_of(formats)
+    )
 
 
 MASSES = setting("--masses", "m1,m2", "Masses of the cell's particles.", callback=quantities)
@@ -61,15 +79,22 @@ def _with(options: tuple[Option, ...], command: Command) -> Command:
 def of_chain(formats: Iterable[str]) -> Option:
     """The options that name a chain and its theory."""
     options = (
+        order_option("Highest power of D in the ansatz."),
+        _choice("--closure", CLOSURES, "Consistency condition; linear is the paper's."),
+        _choice("--field", FIELDS, "Field described; center wants closure full."),
+        _choice("--branch", BRANCHES, "Branch of the motion."),
+    )
+    return lambda command: of_cell(formats)(_with(options, command))
+
+
+def of_cell(formats: Iterable[str]) -> Option:
+    """The options that name a chain and its contact law."""
+    options = (
         exponent(k.name),
         law_option(f"Contact law in place of the power: {', '.join(NAMES)}."),
         MASSES,
         STIFFNESSES,
         setting("--spacing", D.name, "Distance of neighbouring particles.", callback=quantity),
-        order_option("Highest power of D in the ansatz."),
-        setting("--closure", "linear", f"Consistency condition: {' or '.join(CLOSURES)}."),
-        setting("--field", "first", f"Field described: {' or '.join(FIELDS)} (closure full)."),
-        setting("--branch", "acoustic", f"{' or '.join(BRANCHES).capitalize()}."),
         style_option(formats),
     )
     return lambda command: _with(options, command)
@@ -109,7 +134,6 @@ def demand_free_names(cell: Cell, *more: sp.Expr, output: str = "") -> None:
     demand_free(output, cell.stiffnesses, own="A")
 
 
+SPHERES_HELP = "Chain of a file: spheres, or any scene of `lwa-validate run`; in SI where it is."
 FORCE = click.option("--force", callback=quantity, help="Peak contact force, for speed, widths, ….")
-SPHERES = click.option(
-    "--spheres", metavar="FILE", help="Beads, a TOML file (`lwa.spheres.beads`), in SI units."
-)
+SPHERES = click.option("--spheres", metavar="FILE", help=SPHERES_HELP)

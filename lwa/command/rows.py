@@ -66,6 +66,7 @@ class Answer:
     equations : rows of LaTeX before the others.
     notes : limits of the numbers.
     parts : further answers by their key in JSON.
+    orders : whether text says to which order of k - 1 a sum goes.
     """
 
     head: Mapping[str, Any]
@@ -75,6 +76,7 @@ class Answer:
     equations: Sequence[str] = ()
     notes: Sequence[str] = ()
     parts: Mapping[str, Answer] = field(default_factory=dict)
+    orders: bool = True
 
     def plain(self, value: sp.Expr) -> sp.Expr:
         """The value at V_s = 1 and B = 1, and at D = 1 where the spacing is a symbol."""
@@ -85,7 +87,7 @@ class Answer:
 
     def unit(self, row: Row) -> str:
         """The unit of a row in SI, empty where there is none."""
-        return self.units.get(row.key.partition(".")[0], "")
+        return self.units.get(row.key, self.units.get(row.key.partition(".")[0], ""))
 
     # --- JSON -------------------------------------------------------------------------------
 
@@ -138,7 +140,7 @@ class Answer:
         if isinstance(row.digits, InputError):
             return f": {row.digits}"
         if isinstance(row.digits, Resummed):
-            return f" = {summed(row.digits, unit)}"
+            return f" = {summed(row.digits, unit, self.orders)}"
         parts = row.value if isinstance(row.value, tuple) else (row.value,)
         if row.number is not SAME and row.exact is False and row.number is not None:
             parts = (row.number,)
@@ -218,12 +220,16 @@ def as_float(value: sp.Expr) -> float | None:
 
 def approximate(value: sp.Expr) -> str:
     """A number in digits; an expression in symbols with its numeric factor in digits."""
+    if value.is_zero:
+        return "0"
     factor, rest = value.as_independent(*value.free_symbols, as_Add=False)
     number = sp.sstr(evaluated(factor, DIGITS), full_prec=False)
     return str(rest) if factor == 1 and rest != 1 else number if rest == 1 else f"{number}·{rest}"
 
 
 def _approximate_latex(value: sp.Expr) -> str:
+    if value.is_zero:
+        return "0"
     factor, rest = value.as_independent(*value.free_symbols, as_Add=False)
     number = sp.latex(evaluated(factor, DIGITS))
     return str(
@@ -231,12 +237,12 @@ def _approximate_latex(value: sp.Expr) -> str:
     )
 
 
-def summed(found: Resummed, unit: str = "") -> str:
-    """A sum to as many digits as the error lets stand, and one more."""
+def summed(found: Resummed, unit: str, order: bool) -> str:
+    """A sum to as many digits as the error lets stand, and one more; with its order."""
     digits = min(16, 2 - math.floor(math.log10(found.error / found.value)))
     note = "; higher orders do not help" if found.asymptotic else ""
     value = f"{found.value:.{digits}g} ± {found.error:.1e}{unit}"
-    return f"{value} (to ε^{found.order}{note})"
+    return f"{value} (to ε^{found.order}{note})" if order else value
 
 
 def _decimal(value: float, digits: int = 10) -> str:

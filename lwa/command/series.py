@@ -20,6 +20,7 @@ from lwa.expansion.approximants import Resummed
 from lwa.expansion.expand import DAMPINGS, Expansion
 from lwa.expansion.physical import ExpandedWave
 from lwa.expansion.series import EpsilonSeries
+from lwa.expansion.strike import Strike
 from lwa.linear.dispersion import Dispersion, LoadedChain
 
 PLACES = 8
@@ -210,6 +211,32 @@ def _with_wave(answer: Answer, wave: ExpandedWave, units: Mapping[str, str]) -> 
 
 
 _SPEED = r"\mathrm{d}x/\mathrm{d}t"
+
+
+def strike(found: Strike, units: Mapping[str, str], notes: list[str]) -> Answer:
+    """The leading pulse of a struck chain; ``fwhm`` is that of a contact's force."""
+    cell = found.chain.cell
+    kept = {key: unit for key, unit in units.items() if key in ("force", "speed", "velocity")}
+    if units:
+        kept |= {"fwhm.length": "m", "fwhm.time": "s", "mass": "kg", "velocity": "m/s"}
+    rows: list[Row | str] = [
+        f"chain of equal beads; F = A δ^k, k = {found.chain.k}",
+        Row("", "mass of the beads", cell.masses[0]),
+        Row("mass", "mass of the striker", found.mass, "m_{s}", exact=False),
+        Row("velocity", "velocity of the striker", found.velocity, "v", exact=False),
+        "",
+        "leading pulse:",
+        Row("force", "peak contact force", found.force, "F"),
+        Row("speed", "speed dx/dt", found.speed, _SPEED),
+        Row("fwhm.length", "FWHM of the force", found.fwhm("force", "length"), _WIDTH),
+        Row("fwhm.time", "FWHM of the force in time", found.fwhm("force", "time"), _WIDTH + "/c"),
+    ]
+    if found.train:
+        notes = [*notes, "a striker heavier than two beads sends further pulses behind this one"]
+    return Answer({}, rows, kept, notes=notes, orders=False)
+
+
+_WIDTH = r"\mathrm{FWHM}_{\mathrm{force}}"
 
 
 def _series_json(series: EpsilonSeries) -> Values:

@@ -53,7 +53,8 @@ from lwa.closure.consistency import Closure
 def flux(closure: Closure, n: int) -> fmpq_mpoly | None:
     """The flux F with E_n u_x^k = ∂_x (u_x^k F), n ≥ 2; None if order n is no derivative."""
     algebra = closure.algebra
-    return algebra.antiderivative(closure.acceleration[n], closure.ring.exponent(algebra.context))
+    k = closure.model.ring.exponent(algebra.context)
+    return algebra.antiderivative(closure.acceleration[n], k)
 
 
 def variational_derivative(
@@ -81,7 +82,7 @@ def potential(closure: Closure, n: int, density: fmpq_mpoly | None) -> fmpq_mpol
     density : the `flux` of order n.
     """
     algebra = closure.algebra
-    k = closure.ring.exponent(algebra.context)
+    k = closure.model.ring.exponent(algebra.context)
     if density is None or algebra.velocity_slopes(closure.acceleration[n]):
         return None
     if variational_derivative(algebra, k, density, n - 1) != -(k + 1) * closure.acceleration[n]:
@@ -94,7 +95,7 @@ def energy(closure: Closure) -> tuple[JetAlgebra, list[fmpq_mpoly]]:
 
     Raises `lwa.InputError` on the optical branch, and for a closure that leaves a defect.
     """
-    if closure.ring.branch != "acoustic":
+    if closure.model.branch != "acoustic":
         raise InputError("the energy in the slaved fields is that of the acoustic branch")
     if any(not d.is_zero() for d in closure.defect):
         raise InputError(
@@ -111,11 +112,11 @@ class _Fields:
     """Velocities and strains of a closure, in an algebra that has s_0."""
 
     def __init__(self, closure: Closure) -> None:
-        ring, old = closure.ring, closure.algebra
-        self.algebra = algebra = ring.algebra(old.weight, velocity=True, rest=True)
-        self.k = ring.exponent(algebra.context)
-        self.mu = ring.masses.elements(algebra.context)
-        self.c = ring.contacts.elements(algebra.context)
+        model, old = closure.model, closure.algebra
+        self.algebra = algebra = model.algebra(old.weight, velocity=True, rest=True)
+        self.k = model.ring.exponent(algebra.context)
+        self.mu = model.ring.masses.elements(algebra.context)
+        self.c = model.ring.contacts.elements(algebra.context)
         E = self._series(closure.acceleration, old, self.k)
         self.S = S = [self._series(row, old, algebra.one) for row in closure.fields]
         size = max(closure.order - 1, 0)

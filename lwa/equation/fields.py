@@ -20,7 +20,7 @@ from lwa.algebra.contact import Binomial, Powers
 from lwa.algebra.jets import Ladder, Monomial
 from lwa.base.exact import InputError
 from lwa.closure.consistency import Closure
-from lwa.closure.motion import Solution
+from lwa.closure.solution import Solution
 
 Series = list[fmpq_mpoly]
 
@@ -57,7 +57,7 @@ class ChangedClosure(Closure):
     def symbols(self) -> tuple[sp.Symbol, ...]:
         """Those of the α_n."""
         own = set().union(*(alpha.free_symbols for _, alpha in self.alphas))
-        own -= {*self.ring.cell.symbols, *self.ring.law.symbols, *self.origin.symbols}
+        own -= {*self.model.cell.symbols, *self.model.law.symbols, *self.origin.symbols}
         return (*self.origin.symbols, *sorted(own, key=str))
 
     def anew(
@@ -73,7 +73,7 @@ def change_field(closure: Closure, alphas: Mapping[int, sp.Expr]) -> ChangedClos
 
     Raises `lwa.InputError` on the optical branch and for n < 1.
     """
-    if closure.ring.branch != "acoustic":
+    if closure.model.branch != "acoustic":
         raise InputError("the change of field is for the acoustic branch")
     if any(n < 1 for n in alphas):
         raise InputError(f"n is {min(alphas)}: α_n D^n ∂_x^n changes the field for n from 1 on")
@@ -84,16 +84,16 @@ class _Change:
     def __init__(self, closure: Closure, alphas: Mapping[int, sp.Expr]) -> None:
         self.closure, self.alphas = closure, alphas
         old = closure.algebra
-        self.ring = replace(closure.ring, constants=(*closure.ring.constants, *alphas.values()))
-        self.algebra = self.ring.algebra(old.weight, velocity=bool(old.s))
-        self.k = self.ring.exponent(self.algebra.context)
-        first = len(closure.ring.constants)
+        self.model = replace(closure.model, constants=(*closure.model.constants, *alphas.values()))
+        self.algebra = self.model.algebra(old.weight, velocity=bool(old.s))
+        self.k = self.model.ring.exponent(self.algebra.context)
+        first = len(closure.model.constants)
         self.size = closure.order
         zero, one = self.algebra.zero, self.algebra.one
         self.alpha = [one] + [zero] * self.size
         for i, n in enumerate(alphas):
             if n <= self.size:
-                self.alpha[n] = self.ring.constant(first + i, self.algebra.context)
+                self.alpha[n] = self.model.ring.constant(first + i, self.algebra.context)
         self.inverse = [one]
         for n in range(1, self.size + 1):
             terms = (self.alpha[j] * self.inverse[n - j] for j in range(1, n + 1))
@@ -102,7 +102,7 @@ class _Change:
     def result(self) -> ChangedClosure:
         closure = self.closure
         return ChangedClosure(
-            self.ring,
+            self.model,
             closure.order,
             closure.name,
             "changed",

@@ -43,23 +43,23 @@ class PDE(Value):
     @property
     def cell(self) -> Cell:
         """The chain."""
-        return self.closure.ring.cell
+        return self.closure.model.cell
 
     @property
     def k(self) -> sp.Expr:
         """The exponent of the contact law; of one that is no power 1 + φ_2."""
-        return self.closure.ring.k
+        return self.closure.model.k
 
     @property
     def law(self) -> ContactLaw:
         """The contact law."""
-        return self.closure.ring.law
+        return self.closure.model.law
 
     @cached_property
     def time_scale(self) -> sp.Expr:
         """τ/t."""
         if self.acoustic:
-            return self.closure.ring.time_scale
+            return self.closure.model.time_scale
         # w = λu strains each contact by (λ - 1)u, and 1 - λ = M/m2.
         m1, m2 = self.cell.masses
         stretch = power(self.cell.mass / m2, self.k)
@@ -71,7 +71,7 @@ class PDE(Value):
 
         The leading term is left out: `coefficients` starts behind u_x^{k-1} u_xx (or -u^k).
         """
-        base = base_order(self.closure.ring)
+        base = base_order(self.closure.model)
         sign = 1 if base else -1
         acceleration = enumerate(self.closure.acceleration)
         return {n: terms(self.closure, sign * E) for n, E in acceleration if n > base}
@@ -86,7 +86,7 @@ class PDE(Value):
     @property
     def acoustic(self) -> bool:
         """Whether it is the acoustic branch's equation."""
-        return self.closure.ring.branch == "acoustic"
+        return self.closure.model.branch == "acoustic"
 
     @property
     def third_order(self) -> dict[str, sp.Expr]:
@@ -106,7 +106,7 @@ class PDE(Value):
                 parts.append(r"\cdots")
                 break
             elif found:
-                D = latex.power(self.cell.spacing, n - base_order(self.closure.ring))
+                D = latex.power(self.cell.spacing, n - base_order(self.closure.model))
                 parts.append(rf"{D} \Bigl({found.latex_total()}\Bigr)")
         rows = [latex.row(letter, value) for letter, value in letters.items()]
         return [rf"u_{{\tau\tau}} = {' + '.join(parts)}", *rows]
@@ -207,7 +207,7 @@ class PDE(Value):
         algebra, found = energy(self.closure)
         rows = {n: terms(self.closure, e, ENERGY, algebra=algebra) for n, e in enumerate(found)}
         if found and self.law.homogeneous:
-            k = self.closure.ring.exponent(algebra.context)
+            k = self.closure.model.ring.exponent(algebra.context)
             divided = k * (k + 1) * found[0] + 1
             rows[0] = terms(self.closure, divided, ENERGY, self.k * (self.k + 1), algebra)
         return rows
@@ -256,7 +256,7 @@ class PDE(Value):
         >>> homogenize(Cell([1]), k=1, order=4).pde.right_side(sp.exp(x), x)
         D**2*exp(x)/12 + exp(x)
         """
-        base = base_order(self.closure.ring)
+        base = base_order(self.closure.model)
         D, law = self.cell.spacing, self.law
         leading = law.of_strain(u.diff(x), D, 1) * u.diff(x, 2) if base else -(u**law.exponent)
         rest = (

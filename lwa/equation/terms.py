@@ -14,8 +14,8 @@ from typing import Any, NamedTuple
 import sympy as sp
 from flint import fmpq_mpoly
 
-from lwa.algebra.coefficients import Coefficients
 from lwa.algebra.jets import JetAlgebra, Term
+from lwa.algebra.model import Model
 from lwa.base import latex
 from lwa.closure.consistency import Closure
 
@@ -52,13 +52,13 @@ class Terms(Mapping[Jet, sp.Expr]):
 
     def __init__(
         self,
-        ring: Coefficients,
+        model: Model,
         raw: dict[Jet, list[Term]],
         power: tuple[int, int] = FORCE,
         divisor: sp.Expr = sp.S.One,
     ) -> None:
         self.power = power
-        self._ring = ring
+        self._model = model
         self._raw = raw
         self._divisor = divisor
         self._converted: dict[Jet, sp.Expr] = {}
@@ -67,7 +67,7 @@ class Terms(Mapping[Jet, sp.Expr]):
     def __getitem__(self, jet: Jet | Powers) -> sp.Expr:
         jet = jet if isinstance(jet, Jet) else Jet(jet)
         if jet not in self._converted:
-            self._converted[jet] = self._ring.expression(self._raw[jet]) / self._divisor
+            self._converted[jet] = self._model.ring.expression(self._raw[jet]) / self._divisor
         return self._converted[jet]
 
     def __iter__(self) -> Iterator[Jet]:
@@ -85,10 +85,10 @@ class Terms(Mapping[Jet, sp.Expr]):
         return hash(frozenset(self._raw))
 
     def __getstate__(self) -> tuple[Any, ...]:
-        return (self._ring, self._raw, self.power, self._divisor)
+        return (self._model, self._raw, self.power, self._divisor)
 
     def __setstate__(self, state: tuple[Any, ...]) -> None:
-        self._ring, self._raw, self.power, self._divisor = state
+        self._model, self._raw, self.power, self._divisor = state
         self._converted, self._written = {}, {}
 
     def __repr__(self) -> str:
@@ -130,7 +130,7 @@ class Terms(Mapping[Jet, sp.Expr]):
     def _before(self, jet: Jet, base: str, style: str) -> list[str]:
         """The powers of the base that stand before the jet; of F′ too where the law is no power."""
         a, b = jet.over(self.power)
-        if self._ring.law.homogeneous:
+        if self._model.law.homogeneous:
             return [_raised(base, _exponent(a, b), style)] if a or b else []
         powers = (("F'", b), (base, a + b))
         return [_raised(name, str(e), style) for name, e in powers if e]
@@ -145,19 +145,19 @@ class Terms(Mapping[Jet, sp.Expr]):
     def without(self, left_out: Callable[[Jet], bool]) -> Terms:
         """The terms but those of some jets."""
         raw = {jet: c for jet, c in self._raw.items() if not left_out(jet)}
-        rest = Terms(self._ring, raw, self.power, self._divisor)
+        rest = Terms(self._model, raw, self.power, self._divisor)
         rest._converted, rest._written = self._converted, self._written
         return rest
 
     @property
     def base(self) -> int:
         """The order of the derivative that the jets are normalised by: 1 (u_x) or 0 (u)."""
-        return base_order(self._ring)
+        return base_order(self._model)
 
     def of_fields(self, u: sp.Expr, velocity: sp.Expr, x: sp.Symbol) -> sp.Expr:
         """Σ coefficient · base^{a + bk} · jet for fields u(x) and u_τ(x)."""
-        base, law = (u.diff(x) if self.base else u), self._ring.law
-        D = self._ring.cell.spacing
+        base, law = (u.diff(x) if self.base else u), self._model.law
+        D = self._model.cell.spacing
         total = sp.S.Zero
         for jet, coefficient in self.items():
             a, b = (
@@ -190,19 +190,19 @@ def terms(
     algebra: JetAlgebra | None = None,
 ) -> Terms:
     """A polynomial of the closure's algebra (or another one) as jets of the field."""
-    base = base_order(closure.ring)
+    base = base_order(closure.model)
     found = (algebra or closure.algebra).terms(polynomial)
     raw = {
         Jet(tuple((n + base, e) for n, e in monomial.x), monomial.t): coefficient
         for monomial, coefficient in found.items()
     }
     ordered = dict(sorted(raw.items(), key=lambda item: _complexity(item[0])))
-    return Terms(closure.ring, ordered, power, divisor)
+    return Terms(closure.model, ordered, power, divisor)
 
 
-def base_order(ring: Coefficients) -> int:
+def base_order(model: Model) -> int:
     """1 where jets are normalised by u_x, 0 on the optical branch, where they are by u."""
-    return 1 if ring.branch == "acoustic" else 0
+    return 1 if model.branch == "acoustic" else 0
 
 
 def _complexity(jet: Jet) -> tuple[bool, int, Jet]:

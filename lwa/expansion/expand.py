@@ -21,10 +21,10 @@ from lwa.base.quantities import QUANTITIES as QUANTITIES
 from lwa.base.quantities import known
 from lwa.cell import Cell, exponent, substitution
 from lwa.cell import k as symbol_k
-from lwa.expansion.core import descent
-from lwa.expansion.effort import affordable, short
-from lwa.expansion.observables import Observables, ring
+from lwa.expansion.cost import affordable, short
+from lwa.expansion.observables import Observables, shares_model
 from lwa.expansion.series import EpsilonSeries
+from lwa.expansion.validity import descent
 from lwa.law import ContactLaw, demand_one
 
 DAMPINGS = ("linear", "kuwabara_kono")
@@ -48,7 +48,7 @@ class Expansion(Value):
 
     @cached_property
     def _read(self) -> Observables:
-        own = ring(self.cell, self.k)
+        own = shares_model(self.cell, self.k)
         effort = affordable(own, self.order)
         return Observables(own, self.order, effort.progress(f"the expansion to ε^{self.order}"))
 
@@ -112,6 +112,17 @@ class Expansion(Value):
         """P²/(2E), the mass of a particle with the wave's momentum and energy, at any force."""
         unit = sp.sqrt(2 * sp.pi * self.I) * self.cell.mass / self.cell.size
         return self._series("effective_mass", unit, -sp.S.Half)
+
+    @cached_property
+    def peak_velocity(self) -> EpsilonSeries:
+        """The largest velocity of a bead, in a chain of equal beads.
+
+        Raises `lwa.InputError` for unlike beads or contacts.
+        """
+        if len({*self.cell.masses}) + len({*self.cell.stiffnesses}) > 2:
+            raise InputError("the beads or contacts differ: their velocities peak one by one")
+        unit = sp.sqrt(self._sound) * self.compliance
+        return self._series("peak_velocity", unit, sp.S.Zero)
 
     def dissipation(self, kind: str) -> EpsilonSeries:
         """Energy that the wave loses per contact, over a small damping constant γ.
@@ -287,7 +298,7 @@ def expand(
             short(value, name)
     if not k.free_symbols and k <= 1:
         raise InputError(f"k is {k}: the expansion in k - 1 wants k > 1")
-    affordable(ring(cell, k), order)
+    affordable(shares_model(cell, k), order)
     return Expansion(cell, order, k)
 
 

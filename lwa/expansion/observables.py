@@ -1,6 +1,6 @@
 """What is read off a wave of `lwa.expansion.recursion`: speed, widths, momentum, energy, profile.
 
-Each is a series in t whose even terms, polynomials in √log 2 over the recursion's ring, leave as
+Each is a series in t whose even terms, polynomials in √log 2 over the recursion's model, leave as
 the coefficients of a series in ε, in the caller's symbols.
 """
 
@@ -14,7 +14,7 @@ from typing import Any
 import sympy as sp
 from flint import fmpq, fmpq_mpoly
 
-from lwa.algebra.coefficients import Coefficients
+from lwa.algebra.model import Model
 from lwa.algebra.partition import number, rational
 from lwa.base.progress import Progress
 from lwa.cell import Cell
@@ -30,18 +30,19 @@ from lwa.expansion.pulse import (
     wider,
 )
 from lwa.expansion.recursion import Recursion
+from lwa.law import Power
 
 
 class Observables:
     """The quantities of one wave as series in t, each computed when it is first asked for.
 
-    ring : of the cell, at its exponent.
+    model : the cell at its exponent.
     order : of ε.
     """
 
-    def __init__(self, ring: Coefficients, order: int, progress: Progress[int] = iter) -> None:
-        self.ring, self.order = ring, order
-        self.wave = Recursion(ring, 2 * order, progress)
+    def __init__(self, model: Model, order: int, progress: Progress[int] = iter) -> None:
+        self.model, self.order = model, order
+        self.wave = Recursion(model, 2 * order, progress)
 
     @property
     def c2(self) -> Series:
@@ -65,24 +66,33 @@ class Observables:
 
     @cached_property
     def velocity(self) -> Series:
-        """That of the first bead's velocity, in the same unit.
+        """The first bead's velocity's width, in the same unit."""
+        log: Series = []
+        for _ in self._slope:
+            log.append(log_term(self._slope, log))
+        return half_width(log)
 
-        Seen half a cell off, where the velocity of equal beads is even: (P∂/2)/sinh(P∂/2) of the
-        mean strain.
+    @cached_property
+    def peak_velocity(self) -> Series:
+        """The peak velocity of equal beads over its leading term: c times the slope at Z = 0."""
+        zero = self.wave.zero
+        return product(self.c, [by_degree(term).get(0, zero) for term in self._slope])
+
+    @cached_property
+    def _slope(self) -> Series:
+        """The first bead's slope half a cell off, where it is even for equal beads.
+
+        It is (P∂/2)/sinh(P∂/2) of the mean strain.
         """
         wave = self.wave
         weights = [
             (fmpq(2) ** (1 - m) - 1) * fmpq(wave.P**m, factorial(m)) * rational(sp.bernoulli(m))
             for m in range(0, 2 * self.order + 1, 2)
         ]
-        slope = [
+        return [
             sum((w * term for w, term in zip(weights, terms[::2], strict=False)), wave.zero)
             for terms in wave.fields.means
         ]
-        log: Series = []
-        for _ in slope:
-            log.append(log_term(slope, log))
-        return half_width(log)
 
     @cached_property
     def momentum(self) -> Series:
@@ -170,7 +180,7 @@ class Observables:
     def over(self, numerator: fmpq_mpoly, power: int) -> sp.Expr:
         """numerator / I^power, in the caller's symbols."""
         I = self.wave.I
-        if not self.ring.names:
+        if not self.model.ring.names:
             return number(_constant(numerator) / _constant(I) ** power)
         while power:
             quotient, remainder = divmod(numerator, I)
@@ -192,7 +202,7 @@ class Observables:
         terms: list[tuple[tuple[int, ...], Any]] = [
             (tuple(map(int, e[1:])), c) for e, c in polynomial.terms()
         ]
-        return self.ring.expression(terms)
+        return self.model.ring.expression(terms)
 
 
 def _constant(polynomial: fmpq_mpoly) -> fmpq:
@@ -210,15 +220,15 @@ def _sum(weights: Series, rows: Iterable[Series], zero: fmpq_mpoly) -> Series:
     return [sum(terms, zero) for terms in zip(*weighted, strict=True)]
 
 
-def ring(cell: Cell, k: sp.Expr) -> Coefficients:
-    """The ring of the shares alone: an exponent that they do not depend on is none of it."""
+def shares_model(cell: Cell, k: sp.Expr) -> Model:
+    """The model with k = 1 where contacts are equal: their shares do not depend on k then."""
     equal = len({*cell.stiffnesses}) == 1
-    return Coefficients(cell, sp.S.One if equal else k)
+    return Model(cell, Power(sp.S.One if equal else k))
 
 
 @lru_cache(maxsize=4)
 def _equal_beads(order: int) -> Observables:
-    return Observables(Coefficients(Cell((1,)), sp.S.One), order)
+    return Observables(Model(Cell((1,)), Power(sp.S.One)), order)
 
 
 @lru_cache(maxsize=32)

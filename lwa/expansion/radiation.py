@@ -27,11 +27,12 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from flint import fmpq_mpoly
 
-from lwa.algebra.coefficients import Coefficients
+from lwa.algebra.model import Model
 from lwa.base.frozen import Value
 from lwa.cell import Cell
 from lwa.expansion.pulse import by_degree
 from lwa.expansion.recursion import Recursion
+from lwa.law import Power
 from lwa.linear.bloch import Bloch
 
 if TYPE_CHECKING:
@@ -107,15 +108,15 @@ def radiation(cell: Cell, k: sp.Expr) -> Radiation | None:
     alike = len({*cell.stiffnesses}) == 1
     if alike and len({*cell.masses}) == 1:
         return None
-    ring = Coefficients(cell, sp.S.One if alike else k)
-    if any(x.free_symbols for x in (*cell.masses, *cell.stiffnesses, ring.k)):
+    model = Model(cell, Power(sp.S.One if alike else k))
+    if any(x.free_symbols for x in (*cell.masses, *cell.stiffnesses, model.k)):
         return None
     import numpy as np  # start-up: `import lwa` does not load it
 
-    values = _values(ring)
-    trace = [_float(t, values) for t in Bloch(ring).trace(cell.size)]
+    values = _values(model)
+    trace = [_float(t, values) for t in Bloch(model).trace(cell.size)]
     trace[0] = 0.0  # 2 cos(Pκ) = 2 at κ = 0, where one root is 0
-    wave = Recursion(ring, 2)
+    wave = Recursion(model, 2)
     I = _float(wave.I, (1.0, *values))
     first = by_degree(wave.fields.log_force[0][2])
     quadratic, quartic = (_float(first.get(d, wave.zero), (1.0, *values)) for d in (2, 4))
@@ -129,10 +130,10 @@ def radiation(cell: Cell, k: sp.Expr) -> Radiation | None:
     )
 
 
-def _values(ring: Coefficients) -> tuple[float, ...]:
-    """Those of the ring's generators."""
-    values = [] if ring.k.is_Rational else [ring.k]
-    for part in (ring.masses, ring.contacts):
+def _values(model: Model) -> tuple[float, ...]:
+    """Values of the generators of the coefficient ring."""
+    values = [] if model.k.is_Rational else [model.k]
+    for part in (model.ring.masses, model.ring.contacts):
         if part.names:
             values += [part.total * w / part.sum for w in part.distinct[:-1]]
     return tuple(float(sp.N(value)) for value in values)

@@ -31,7 +31,7 @@ from math import factorial
 from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 from sympy import bernoulli
 
-from lwa.algebra.coefficients import Coefficients
+from lwa.algebra.model import Model
 from lwa.algebra.partition import rational
 from lwa.base.progress import Progress
 from lwa.expansion.pulse import Series, by_degree, exp_term, log_term
@@ -87,13 +87,13 @@ class Fields:
 class Recursion:
     """The `fields` of a wave, order by order in t, over the ring Q[μ, c], Z its first generator."""
 
-    def __init__(self, ring: Coefficients, order: int, progress: Progress[int] = iter) -> None:
-        self.context = fmpq_mpoly_ctx.get(("Z", *ring.names), Ordering.lex)
+    def __init__(self, model: Model, order: int, progress: Progress[int] = iter) -> None:
+        self.context = fmpq_mpoly_ctx.get(("Z", *model.ring.names), Ordering.lex)
         self.Z, self.zero = self.context.gen(0), self.context.constant(0)
-        self.mu = ring.masses.elements(self.context)
-        self.c = ring.contacts.elements(self.context)
-        self.P = ring.cell.size
-        quartic = Bloch(ring).acoustic(2)[2]
+        self.mu = model.ring.masses.elements(self.context)
+        self.c = model.ring.contacts.elements(self.context)
+        self.P = model.cell.size
+        quartic = Bloch(model).acoustic(2)[2]
         self.I = -self.context.from_dict({(0, *map(int, e)): c for e, c in quartic.terms()})
         self.epsilon = self.I**3  # of t²
         self._half = self.Z / 2

@@ -12,7 +12,7 @@ from lwa.base.frozen import Value
 from lwa.cell import Cell, exponent
 from lwa.cell import k as symbol_k
 from lwa.expansion.approximants import Resummed, pade, resum
-from lwa.expansion.effort import short
+from lwa.expansion.cost import short
 from lwa.expansion.observables import equal_beads
 from lwa.expansion.radiation import Radiation, radiation
 
@@ -29,6 +29,7 @@ _LETTERS = {
     "kinetic": "T",
     "energy": "E",
     "effective_mass": r"m_\mathrm{eff}",
+    "peak_velocity": r"v_\mathrm{max}",
     "linear_loss": "D_0",
     "kuwabara_kono_loss": "D_1",
 }

@@ -16,7 +16,7 @@ from math import factorial
 
 from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
-from lwa.algebra.coefficients import Coefficients
+from lwa.algebra.model import Model
 
 BRANCHES = ("acoustic", "optical")
 
@@ -27,11 +27,11 @@ Polynomial = list[fmpq_mpoly]
 class Bloch:
     """The dispersion relation of a cell and the series of its branches, over a ring Q[k, μ, c]."""
 
-    def __init__(self, ring: Coefficients) -> None:
-        context = fmpq_mpoly_ctx.get(ring.names, Ordering.degrevlex)
-        self.P = ring.cell.size
-        self.mu = ring.masses.elements(context)
-        self.c = ring.contacts.elements(context)
+    def __init__(self, model: Model) -> None:
+        context = fmpq_mpoly_ctx.get(model.ring.names, Ordering.degrevlex)
+        self.P = model.cell.size
+        self.mu = model.ring.masses.elements(context)
+        self.c = model.ring.contacts.elements(context)
         self.one, self.zero = context.constant(1), context.constant(0)
 
     def trace(self, most: int) -> Polynomial:

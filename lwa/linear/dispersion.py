@@ -21,12 +21,12 @@ from typing import TYPE_CHECKING, Any
 import sympy as sp
 from flint import fmpq_mpoly
 
-from lwa.algebra.coefficients import Coefficients
+from lwa.algebra.model import Model
 from lwa.base import latex
 from lwa.base.exact import InputError, integer, positive, shorten
 from lwa.base.frozen import Value
 from lwa.cell import Cell, exponent, substitution
-from lwa.law import ContactLaw, for_cell
+from lwa.law import ContactLaw, Power, for_cell
 from lwa.linear.bloch import BRANCHES, Bloch
 
 if TYPE_CHECKING:
@@ -128,17 +128,17 @@ class Dispersion(Value):
         return -self.acoustic(4)[4]
 
     @cached_property
-    def _ring(self) -> Coefficients:
-        return Coefficients(self.cell, self.k)
+    def _model(self) -> Model:
+        return Model(self.cell, Power(self.k))
 
     @cached_property
     def _bloch(self) -> Bloch:
-        return Bloch(self._ring)
+        return Bloch(self._model)
 
     def _expression(self, polynomial: fmpq_mpoly) -> sp.Expr:
-        count = len(self._ring.names)
+        count = len(self._model.ring.names)
         terms = [(tuple(map(int, e[:count])), c) for e, c in polynomial.terms()]
-        return sp.together(self._ring.expression(terms))  # compliances enter as 1/A
+        return sp.together(self._model.ring.expression(terms))  # compliances enter as 1/A
 
     def _length(self, order: Any) -> int:
         """The number of powers of κ² up to κ^order, refused where it would take too long.
@@ -149,14 +149,14 @@ class Dispersion(Value):
         highest = integer(order, "order", 1)
         n = highest // 2
         terms = n * n
-        for part in (self._ring.masses, self._ring.contacts):
+        for part in (self._model.ring.masses, self._model.ring.contacts):
             terms *= comb(2 * max(n, 1) - 2 + len(part.names), len(part.names))
         if terms > MOST_TERMS:
             raise InputError(
                 f"order is {shorten(order)}: about {min(terms, 10**30):.0e} terms, too many; give "
                 "numbers for the cell, or a lower order"
             )
-        self._ring.writable(highest)
+        self._model.ring.writable(highest)
         return n
 
     def _demand_dimer(self, what: str) -> None:

@@ -23,15 +23,16 @@ from pytest_benchmark.fixture import BenchmarkFixture
 from sympy.core.cache import clear_cache
 
 from lwa import Dimer, homogenize
-from lwa.algebra.coefficients import Coefficients
+from lwa.algebra.model import Model
 from lwa.cell import k
 from lwa.closure.ansatz import linear
-from lwa.closure.motion import Solution
 from lwa.closure.slaving import full
+from lwa.closure.solution import Solution
+from lwa.law import Power
 from tests.benchmarks import peers
 
 DIMER = Dimer("m1", "m2")
-RING = Coefficients(DIMER, k)
+MODEL = Model(DIMER, Power(k))
 
 every_order = pytest.mark.parametrize("order", [4, 6, 8, 10, 12])
 peers_orders = pytest.mark.parametrize("order", [4, 6])
@@ -47,16 +48,16 @@ def _table(benchmark: BenchmarkFixture, order: int) -> None:
 @both_closures
 @every_order
 def test_kernel(
-    benchmark: BenchmarkFixture, closure: Callable[[Coefficients, int], Solution], order: int
+    benchmark: BenchmarkFixture, closure: Callable[[Model, int], Solution], order: int
 ) -> None:
-    benchmark.extra_info["terms"] = len(closure(RING, order).acceleration[-1])
-    benchmark(closure, RING, order)
+    benchmark.extra_info["terms"] = len(closure(MODEL, order).acceleration[-1])
+    benchmark(closure, MODEL, order)
 
 
 @both_closures
 @every_order
 def test_converted(
-    benchmark: BenchmarkFixture, closure: Callable[[Coefficients, int], Solution], order: int
+    benchmark: BenchmarkFixture, closure: Callable[[Model, int], Solution], order: int
 ) -> None:
     def convert() -> int:
         theory = homogenize(DIMER, order, closure=closure.__name__)
@@ -91,7 +92,7 @@ def test_maxima(benchmark: BenchmarkFixture, order: int) -> None:
 
 def _checked(derived: peers.Derived, order: int) -> int:
     """The number of terms of a peer's highest E_n, after all of its E_n and b_n are lwa's."""
-    closure = linear(RING, order)
+    closure = linear(MODEL, order)
     generators = sp.symbols(f"k b r1:{order}")
     assert len(closure.algebra.context.names()) == len(generators)
     for own, found in zip((closure.acceleration, closure.ansatz), derived, strict=True):

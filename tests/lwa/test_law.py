@@ -167,10 +167,10 @@ def test_the_energy_of_a_law_without_form_is_conserved(cell, field):
     order = 7
     closure = homogenize(cell, order, law=general(), closure="full", field=field).closure
     _, density = energy(closure)
-    algebra = closure.ring.algebra(order, velocity=True, rest=True)
-    k = closure.ring.exponent(algebra.context)
+    algebra = closure.model.algebra(order, velocity=True, rest=True)
+    k = closure.model.ring.exponent(algebra.context)
     E, e = Ladder(algebra, k), Ladder(algebra, k + 1)
-    old = closure.ring.algebra(closure.algebra.weight, velocity=True, rest=True)
+    old = closure.model.algebra(closure.algebra.weight, velocity=True, rest=True)
     for row, source, terms in (
         (E, closure.algebra, closure.acceleration),
         (e, old, density),

@@ -14,6 +14,7 @@ WORDS = re.compile(r"(?<![.'\"\w])[A-Za-z_]\w*(?:\.\w+)*")
 OTHERS = re.compile(
     r"(sp|np|click)\.\w+|None|Any|Self|Literal|Mapping|Sequence|Callable|Iterable|Iterator|ClassVar"
     r"|fmpq|fmpq_mpoly|fmpq_mpoly_ctx|NDArray|ArrayLike|Fraction|Decimal|NamedTuple|int|float|bool|str|tuple|list|dict|set|object"
+    r"|JetAlgebra|Partition|Term"  # of derivations from within: found in lwa.algebra
 )
 
 
@@ -67,7 +68,7 @@ def test_each_name_is_loaded_from_where_the_types_have_it():
     typed = {name.name: node.module for node in imports for name in node.names}
     loaded = {name: f"lwa.{module}" for name, module in lwa._HOMES.items()}
     assert typed == loaded | {"hertz": "lwa.spheres"}
-    assert sorted(lwa.__all__) == sorted(typed)
+    assert sorted({*lwa.__all__, "D", "k"}) == sorted(typed)  # short names are bound by asking
     assert set(lwa.__all__) <= set(dir(lwa))
 
 

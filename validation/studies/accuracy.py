@@ -25,21 +25,20 @@ import time
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import partial
 from itertools import takewhile
 from statistics import median
 from typing import Any, TypeVar
 
 import click
 import numpy as np
-import scipy
 
-from lwa.base.arrays import Array
 from lwa.base.progress import Progress
 from validation.lattice.run import IntegrationError, Run
 from validation.lattice.simulate import COMPILED, simulate
 from validation.pictures.panel import Curve, Panel
-from validation.pulses.pulse import MeasureError, Pulse, measure
+from validation.pulses.pulse import MeasureError, Pulse, highest_pulse
+from validation.pulses.signals import Mapped
 from validation.report.command import option, study
 from validation.report.result import Report
 from validation.report.table import Column, Finding, Table
@@ -67,22 +66,15 @@ METHODS: Mapping[str, Sequence[float]] = {
 }
 """Tolerances of each method."""
 
-_SAMPLING = 0.05  # time between samples, for a pulse with an FWHM of 1.4 or more
-_FINER = 128  # samples of the spline's table in a sample of the record
-_FOOT = 0.25  # share of the peak at which that table ends
 _ENOUGH, _REPEATS = 0.15, 7  # seconds and times after which a run is not repeated
 _AHEAD = 5.0  # least ratio of SciPy's cost to the engine's; 30 to 300 were measured
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True)
 class Task:
-    """A scene with one contact sensor, read from the time ``listen`` to its end.
-
-    truth: the pulse at the sensor, where known beforehand.
-    """
+    """A scene whose highest pulse at one contact sensor is measured; its ``truth`` where known."""
 
     scene: Scene
-    listen: float
     truth: Pulse | None = None
 
     @property
@@ -90,58 +82,40 @@ class Task:
         """The sensor."""
         return self.scene.contact_sensors[0]
 
-    @cached_property
-    def times(self) -> Array:
-        """Times of the samples that are read, (S,)."""
-        every = np.linspace(0.0, self.scene.duration, self.scene.samples)
-        return np.asarray(every[every >= self.listen])
+    def read(self, run: Run) -> Pulse:
+        """The pulse of the dynamic force.
 
-    def force(self, run: Run) -> Array:
-        """Force of the contact at `times`, in a run of the scene, (S,)."""
-        return np.asarray(run.contact_force[0, -len(self.times) :])
-
-    def read(self, force: Array) -> Pulse:
-        """The pulse of the dynamic force, from the contact's force at `times`.
-
-        A spline of degree 7 through the samples is the signal; its own error is below 1e-12.
-        Raises `validation.pulses.pulse.MeasureError` when the pulse is not wholly there.
+        Raises `validation.pulses.pulse.MeasureError` when the pulse is not wholly in the record.
         """
-        known = np.isfinite(force)  # a window leaves the contact behind
-        times, force = self.times[known], force[known] - self.scene.load[self.contact]
-        low, top = np.flatnonzero(force < _FOOT * force.max()), force.argmax()
-        before, behind = low[low < top], low[low > top]
-        first, last = before[-1] if len(before) else 0, behind[0] if len(behind) else -1
-        fine = np.linspace(times[first], times[last], _FINER * len(times[first:last]) + 1)
-        return measure(fine, scipy.interpolate.make_interp_spline(times, force, 7)(fine))
+        load = self.scene.load[self.contact]
+        return highest_pulse(Mapped(run.signal("contact", self.contact), lambda f: f - load))
 
-    def errors(self, force: Array, truth: Pulse) -> dict[str, float]:
-        """Relative errors of the pulse in a force at `times`, by `NUMBERS`; ∞ without a pulse."""
+    def errors(self, run: Run, truth: Pulse) -> dict[str, float]:
+        """Relative errors by `NUMBERS`; ∞ without a pulse."""
         try:
-            pulse = self.read(force)
+            return relative_errors(self.read(run), truth)
         except MeasureError:
             return dict.fromkeys(NUMBERS, math.inf)
-        return {name: abs(getattr(pulse, name) / getattr(truth, name) - 1) for name in NUMBERS}
 
 
-def struck(omega: float, beads: int, contact: int, listen: float, duration: float) -> Task:
+def relative_errors(pulse: Pulse, truth: Pulse) -> dict[str, float]:
+    """Relative differences of two pulses, by `NUMBERS`."""
+    return {name: abs(getattr(pulse, name) / getattr(truth, name) - 1) for name in NUMBERS}
+
+
+def struck(omega: float, beads: int, contact: int, duration: float) -> Task:
     """A dimer chain, m1 = A = 1 and k = 3/2, whose first bead has velocity 1."""
-    scene = chains.struck((1.0, omega), beads, contact_sensors=(contact,), **_recorded(duration))
-    return Task(scene, listen)
-
-
-def _recorded(duration: float) -> dict[str, Any]:
-    """Duration and number of samples, `_SAMPLING` apart."""
-    count = round(duration / _SAMPLING)
-    return {"duration": _SAMPLING * count, "samples": count + 1}
+    sensors: dict[str, Any] = {"contact_sensors": (contact,), "samples": 2}
+    return Task(chains.struck((1.0, omega), beads, duration=duration, **sensors))
 
 
 def exact(sites: int = 100) -> Task:
     """The solitary wave of equal beads, from bead 16 to the contact ``sites`` further."""
     start, wave = 16, exact_wave([1], 1.5)
     arrival, width = (sites + 0.5) / wave.c, wave.fwhm("force") / wave.c
-    recorded = {"contact_sensors": (start + sites,), **_recorded(arrival + 10)}
+    recorded = {"contact_sensors": (start + sites,), "duration": arrival + 10, "samples": 2}
     truth = Pulse(arrival, 1.0, arrival - width / 2, arrival + width / 2)
-    return Task(chains.launched(wave, start, sites, **recorded), arrival - 10, truth)
+    return Task(chains.launched(wave, start, sites, **recorded), truth)
 
 
 def experiment() -> Task:
@@ -156,14 +130,13 @@ def experiment() -> Task:
         velocities=(1.0,),
         contact_sensors=(32,),
         duration=172.0,
-        samples=689,  # the pulse's FWHM is 18
+        samples=2,
     )
-    return Task(scene, 130.0)
+    return Task(scene)
 
 
 def precompressed(beads: int = 200, sites: int = 150) -> Task:
     """Equal beads under a static force of 1; from the first to the contact ``sites`` further."""
-    arrival = 0.814 * sites  # units of time a site
     scene = Scene(
         masses=(1.0,) * beads,
         stiffnesses=(1.0,) * (beads - 1),
@@ -172,14 +145,15 @@ def precompressed(beads: int = 200, sites: int = 150) -> Task:
         k=1.5,
         velocities=(1.0,),
         contact_sensors=(sites,),
-        **_recorded(arrival + 10),
+        duration=0.814 * sites + 10,  # the pulse takes 0.814 units of time a site
+        samples=2,
     )
-    return Task(scene, arrival - 10)
+    return Task(scene)
 
 
 TASKS: Mapping[str, Callable[[], Task]] = {
-    "uniform": partial(struck, 1.0, 560, 480, 562.0, 582.0),
-    "dimer": partial(struck, 0.2733, 560, 480, 490.0, 510.0),
+    "uniform": partial(struck, 1.0, 560, 480, 582.0),
+    "dimer": partial(struck, 0.2733, 560, 480, 510.0),
     "exact": exact,
     "experiment": experiment,
     "precompressed": precompressed,
@@ -249,7 +223,7 @@ def runs(name: str, task: Task, truth: Pulse) -> Iterator[Row]:
                 run_once = partial(simulate, task.scene, rtol=rtol, atol=rtol, **options)
                 with suppress(IntegrationError):  # two windows differ
                     run, seconds = timed(run_once)
-                    errors = task.errors(task.force(run), truth)
+                    errors = task.errors(run, truth)
                     yield Row(name, method, window, rtol, errors, seconds)
 
 
@@ -326,7 +300,7 @@ def accuracy(names: Collection[str] = (), progress: Progress[str] = iter) -> Rep
             theories = (ladder([place(*case) for case in CASES]),)
             continue
         task = TASKS[name]()
-        truth = task.truth or task.read(task.force(simulate(task.scene, rtol=FINEST)))
+        truth = task.truth or task.read(simulate(task.scene, rtol=FINEST))
         rows[name] = list(runs(name, task, truth))
         references.append((name, *(getattr(truth, number) for number in NUMBERS)))
     heads = {

@@ -4,6 +4,7 @@ import json
 
 import pytest
 
+from lwa import pulse_of_strike
 from lwa.command.chain_file import read_chain
 from tests.lwa.command.answers import result, run
 
@@ -113,3 +114,33 @@ def test_bad_files_are_one_line(capsys, scene, chain, more, words):
     status, out, err = run(capsys, "wave", "--spheres", scene(MASSES, **chain), *more)
     assert (status, out, err.count("\n")) == (2, "", 1)
     assert words in err
+
+
+def test_a_strike_in_si(capsys, scene):
+    """The striker is one of the beads unless its mass is given; 0.5 m of fall are 3.13 m/s."""
+    file = scene(without_load(BEADS))
+    found = result(capsys, "strike", "--spheres", file, "--drop", "0.5")
+    cell = read_chain(file).cell
+    expected = pulse_of_strike(cell, cell.masses[0], drop="0.5")
+    assert found["force_value"] == expected.force.value
+    assert found["force_error_value"] == expected.force.error
+    assert found["velocity_value"] == pytest.approx((2 * 9.80665 * 0.5) ** 0.5)
+    for extent, width in found["fwhm_value"].items():
+        assert width == expected.fwhm("force", extent).value
+    assert found["fwhm_value"]["length"] / found["fwhm_value"]["time"] == pytest.approx(
+        found["speed_value"]
+    )
+    heavy = ("strike", "--spheres", file, "--velocity", "1", "--mass", "2e-3")
+    assert "further pulses" in result(capsys, *heavy)["notes"][0]
+    status, out, _ = run(capsys, *heavy)
+    assert status == 0
+    assert "peak contact force = " in out
+    for options, words in (
+        ((), "velocity or drop"),
+        (("--velocity", "1", "--drop", "1"), "velocity or drop"),
+        (("--velocity", "v"), "velocity is v: a number is wanted"),
+        (("--drop", "-1"), "drop is -1: it must be positive"),
+    ):
+        status, out, err = run(capsys, "strike", "--spheres", file, *options)
+        assert (status, out, err.count("\n")) == (2, "", 1)
+        assert words in err

@@ -128,3 +128,29 @@ def test_digits_are_those_of_ascii_everywhere(capsys, arguments):
     status, out, err = run(capsys, *arguments)
     assert (status, out, err.count("\n")) == (2, "", 1)
     assert f"{arguments[1][2:]} is " in err
+
+
+@pytest.mark.parametrize(
+    ("words", "offered"),
+    [
+        ("lwa derive --closure ", "linear full"),
+        ("lwa derive --law h", "hertz2"),
+        ("lwa-validate run --method D", "DOP853"),
+        ("lwa-validate hard --case u", "ulps under-load"),
+    ],
+)
+def test_the_shell_completes_names(words, offered):
+    """As bash asks click's programs: the line in COMP_WORDS, the place of the word to complete."""
+    program = words.split()[0]
+    module = {"lwa": "lwa.command.cli", "lwa-validate": "validation.cli"}[program]
+    asked = {"COMP_WORDS": words, "COMP_CWORD": str(words.count(" "))}
+    variable = f"_{program.upper().replace('-', '_')}_COMPLETE"
+    code = f"from {module} import main; main()"
+    done = subprocess.run(
+        [sys.executable, "-c", code],
+        capture_output=True,
+        text=True,
+        timeout=120,
+        env={**os.environ, **asked, variable: "bash_complete"},
+    )
+    assert done.stdout.split() == [f"plain,{name}" for name in offered.split()]

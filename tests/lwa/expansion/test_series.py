@@ -17,12 +17,12 @@ import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lwa import Cell, Dimer, InputError, expand
-from lwa.algebra.coefficients import Coefficients
+from lwa import Cell, Dimer, InputError, Power, expand
+from lwa.algebra.model import Model
 from lwa.base.exact import real
 from lwa.base.quantities import QUANTITIES
 from lwa.command.cli import main
-from lwa.expansion.effort import Effort, affordable
+from lwa.expansion.cost import Effort, affordable
 from lwa.expansion.radiation import radiation
 
 # --- k ---
@@ -242,10 +242,10 @@ def test_what_takes_minutes_is_said_and_what_takes_hours_refused(capsys) -> None
     for cell, order in ((Cell(["a", "b"]), 100), (Cell([1]), 10**18), (Cell([1, "1/50"]), 400)):
         with pytest.raises(InputError, match=r"this takes (about|over) .* (hours|days|years)"):
             expand(cell, order)
-    ring = Coefficients(Cell([1, "1/50"]), sp.S.One)
-    assert [*affordable(ring, 16).progress("it takes")(range(3))] == [0, 1, 2]
+    model = Model(Cell([1, "1/50"]), Power(sp.S.One))
+    assert [*affordable(model, 16).progress("it takes")(range(3))] == [0, 1, 2]
     assert capsys.readouterr().err == ""
-    assert [*affordable(ring, 100).progress("it takes")(range(3))] == [0, 1, 2]
+    assert [*affordable(model, 100).progress("it takes")(range(3))] == [0, 1, 2]
     assert re.fullmatch(r"it takes: about .* minutes\n", capsys.readouterr().err)
 
 
@@ -259,7 +259,7 @@ def test_what_takes_minutes_is_said_and_what_takes_hours_refused(capsys) -> None
 def test_more_never_takes_less(order: int, size: int, symbols: int, digits: int) -> None:
     def seconds(order: int, size: int, symbols: int, digits: int) -> float:
         masses = [*(f"n{i}" for i in range(symbols)), *[1] * size, 10**digits]
-        return Effort.of(Coefficients(Cell(masses), sp.S.One), order).seconds
+        return Effort.of(Model(Cell(masses), Power(1)), order).seconds
 
     at = seconds(order, size, symbols, digits)
     assert seconds(order + 1, size, symbols, digits) > at

@@ -19,7 +19,7 @@ from lwa.spheres.hertz import Material, Sphere
 from validation.scenes import scenefile
 from validation.scenes.materials import STEEL, contact_stiffness
 from validation.scenes.scene import Scene, SceneError
-from validation.scenes.scenefile import document, read, scene
+from validation.scenes.scenefile import document, read_scene, scene
 from validation.studies.paper import chain_scene
 
 # The experiment of Porter et al. (2008), standing upright: SI units.
@@ -103,6 +103,9 @@ def test_the_modules_own_example_holds_every_key():
     for name in ("chain", "striker", "start", "sensors"):
         assert set(content[name]) == set(scenefile.KEYS[name])
     start = content.pop("start")  # what excludes each other
+    assert [set(content.pop(name)) for name in ("damping", "drive")] == [
+        set(scenefile.KEYS[name]) for name in ("damping", "drive")
+    ]
     assert content["chain"].pop("law") == "hertz2:1,2"
     balls = {key: content["chain"].pop(key) for key in ("k", "stiffnesses", "spacings")}
     assert scene(content).size == 38
@@ -213,8 +216,8 @@ def test_a_scene_written_is_read_back_equal(what):
 def test_files_there_and_back(tmp_path, text):
     file, first = tmp_path / "scene.json", tmp_path / "first.toml"
     first.write_text(text)
-    file.write_text(json.dumps(document(read(first))))
-    assert read(file) == read(first)
+    file.write_text(json.dumps(document(read_scene(first))))
+    assert read_scene(file) == read_scene(first)
     assert len(file.read_text()) < 800  # a periodic chain is written as its cell
 
 
@@ -382,7 +385,7 @@ def test_bad_files(tmp_path, name, content, message):
     if content is not None:
         file.write_bytes(content)
     with pytest.raises(SceneError) as caught:
-        read(file)
+        read_scene(file)
     found = str(caught.value)
     assert found.startswith(f"{file}: ")
     assert re.match(message, found.removeprefix(f"{file}: "))
@@ -393,7 +396,7 @@ def test_a_file_without_end_is_refused(monkeypatch, tmp_path):
     monkeypatch.setitem(files.MOST_BYTES, ".toml", 10)
     (tmp_path / "s.toml").write_text("duration = 1")
     with pytest.raises(SceneError, match=r"s.toml: more than 10 bytes, the most that is read$"):
-        read(tmp_path / "s.toml")
+        read_scene(tmp_path / "s.toml")
 
 
 leaves = st.one_of(
@@ -440,3 +443,34 @@ def test_a_law_is_read_and_written(law):
     read = scene({"duration": 1, "chain": {"cell": [1, 2], "law": law}})
     assert scene(document(read)) == read
     assert (read.law is None) == law.startswith("power")
+
+
+@pytest.mark.parametrize(
+    ("key", "table"),
+    [
+        ("damping", {"contact": 0.1}),
+        ("damping", {"kuwabara_kono": 0.1}),
+        ("damping", {"restitution": 0.9}),
+        ("drive", {"velocity": 0.0}),
+        ("drive", {"amplitude": 0.1, "frequency": 2.0, "ramp": 0.5}),
+        ("drive", {"time": [0.0, 0.3, 0.6, 1.0], "displacement": [0.0, 1.0, 0.0, 0.0]}),
+    ],
+)
+def test_damping_and_drive_are_read_and_written(key, table):
+    read = scene({"duration": 1, "chain": {"cell": [1, 2], "k": 1.5}, key: table})
+    assert document(read)[key] == table
+    assert scene(document(read)) == read
+
+
+def test_a_drive_is_read_from_a_file(tmp_path):
+    path = tmp_path / "shaker.csv"
+    chain = {"duration": 1, "chain": {"cell": [1, 2], "k": 1.5}, "drive": {"file": str(path)}}
+    for titles in ("", "time (s),displacement\n", "# a comment\n"):
+        path.write_text(titles + "0,0\n0.5,1e-3\n1,2e-3\n2,0\n")
+        assert scene(chain).drive.displacement == (0, 1e-3, 2e-3, 0)
+    for content in ("0,1,2\n", "a,b\nc,d\n", ""):
+        path.write_text(content)
+        with pytest.raises(SceneError, match=r"^drive.* wanted"):
+            scene(chain)
+    with pytest.raises(SceneError, match=r"^drive.file is 'none.csv': two columns"):
+        scene(chain | {"drive": {"file": "none.csv"}})

@@ -11,7 +11,7 @@ from math import comb, lcm
 
 import sympy as sp
 
-from lwa.algebra.coefficients import Coefficients
+from lwa.algebra.model import Model
 from lwa.algebra.partition import Partition
 from lwa.base.exact import InputError
 from lwa.base.progress import Progress, announce, shown, words
@@ -32,17 +32,17 @@ class Effort:
     terms: float
 
     @classmethod
-    def of(cls, ring: Coefficients, order: int) -> Effort:
+    def of(cls, model: Model, order: int) -> Effort:
         """Of an expansion to ε^order.
 
         A polynomial at t^n has about 3n/2 powers of Z, and as many monomials as there are of
         degree 3n in the symbolic ratios; its numbers have about n times the digits of the ratios.
         """
-        P, ratios = ring.cell.size, len(ring.masses.names) + len(ring.contacts.names)
+        P, ratios = model.cell.size, len(model.ring.masses.names) + len(model.ring.contacts.names)
         order = min(order, 10**6)
         monomials = comb(6 * order + 4 + ratios, ratios)
         symbols = 1 + (monomials / 6) ** 0.9 if ratios else 1.0
-        bits = sum(_integer(part).bit_length() for part in (ring.masses, ring.contacts))
+        bits = sum(_integer(part).bit_length() for part in (model.ring.masses, model.ring.contacts))
         fields = 3e-5 * order**3.3 * (P + 2) / 4 + 2e-5 * P**2 * order
         return cls(
             seconds=(0.015 * order + fields) * (1 + order * bits / 400) * symbols,
@@ -54,22 +54,22 @@ class Effort:
         return shown if announce(what, self.seconds) else iter
 
 
-def affordable(ring: Coefficients, order: int) -> Effort:
+def affordable(model: Model, order: int) -> Effort:
     """The effort of an expansion.
 
     Raises `lwa.InputError` where it is beyond `LONGEST`, `MOST_TERMS` or `MOST_DIGITS`.
     """
-    for part, name in ((ring.masses, "masses"), (ring.contacts, "stiffnesses")):
+    for part, name in ((model.ring.masses, "masses"), (model.ring.contacts, "stiffnesses")):
         if _integer(part) >= 10**MOST_DIGITS:
             raise InputError(
                 f"{name} have ratios of more than {MOST_DIGITS} digits: give numbers of fewer"
             )
-    effort = Effort.of(ring, order)
+    effort = Effort.of(model, order)
     if effort.seconds > LONGEST or effort.terms > MOST_TERMS:
-        ratios = len(ring.masses.names) + len(ring.contacts.names)
+        ratios = len(model.ring.masses.names) + len(model.ring.contacts.names)
         other = "give numbers for the cell, or a lower order" if ratios else "a lower order"
         raise InputError(
-            f"order is {order}: with {ratios} symbolic ratios in a cell of {ring.cell.size} this "
+            f"order is {order}: with {ratios} symbolic ratios in a cell of {model.cell.size} this "
             f"takes {words(effort.seconds)} and {effort.terms:.0e} terms; {other}"
         )
     return effort

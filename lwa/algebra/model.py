@@ -1,0 +1,91 @@
+"""The model of a derivation: a cell, its contact law and a branch of its motion."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import sympy as sp
+
+from lwa.algebra.coefficients import CoefficientRing
+from lwa.algebra.jets import JetAlgebra
+from lwa.algebra.partition import Partition
+from lwa.base.frozen import Value
+from lwa.cell import Cell, substitution
+from lwa.law import ContactLaw, for_cell, phi_symbol
+
+
+@dataclass(frozen=True)
+class Model(Value):
+    """A cell, a contact law and a branch.
+
+    highest : n of the highest φ_n that a derivation needs, for a law other than a power.
+    constants : further expressions with which the coefficient ring is extended.
+    """
+
+    cell: Cell
+    law: ContactLaw
+    branch: str = "acoustic"
+    highest: int = 0
+    constants: tuple[sp.Expr, ...] = ()
+
+    @property
+    def k(self) -> sp.Expr:
+        """The exponent of a power; of another law the local one, d ln(δ F′)/d ln δ = 1 + φ_2."""
+        return self.law.exponent if self.law.homogeneous else 1 + phi_symbol(2)
+
+    @property
+    def time_scale(self) -> sp.Expr:
+        """τ/t of the acoustic branch."""
+        return self.cell.time_scale(self.law.exponent)
+
+    @cached_property
+    def ring(self) -> CoefficientRing:
+        """The ring of the coefficients.
+
+        The contacts of the optical branch move by equal amounts, so that they enter with their
+        shares of the stiffness, A_i / Σ A_j, instead of their shares of the strain.
+        """
+        stiffnesses = self.cell.stiffnesses
+        if self.branch == "optical":
+            contacts = Partition(stiffnesses, 1, "c")
+        else:
+            equal = len(set(stiffnesses)) == 1
+            weights = stiffnesses if equal else self.cell.compliances(self.k)
+            contacts = Partition(weights, self.cell.size, "c")
+        variables: tuple[sp.Expr, ...] = () if self.k.is_Rational else (self.k,)
+        if not self.law.homogeneous:
+            variables = tuple(map(phi_symbol, range(2, self.highest + 1)))
+        masses = Partition(self.cell.masses, 1, "mu")
+        return CoefficientRing(self.k, variables, masses, contacts, self.constants)
+
+    def algebra(self, weight: int, velocity: bool = False, rest: bool = False) -> JetAlgebra:
+        """The jets over the ring, with those of the velocity where they are wanted."""
+        exponent = self.ring.exponent if velocity else None
+        return JetAlgebra(self.ring.names, weight, exponent, rest, smooth=self.highest)
+
+    def substitution(
+        self, values: Mapping[str, Any], more: Sequence[sp.Symbol]
+    ) -> dict[sp.Symbol, sp.Expr]:
+        """`lwa.cell.substitution` among the symbols of cell and law, and more."""
+        if self.law.homogeneous:
+            return substitution(values, self.cell, self.k, more)
+        return substitution(values, self.cell, more=(*self.law.symbols, *more))
+
+    def replaced(self, new: Mapping[sp.Symbol, sp.Expr], order: int) -> Model:
+        """The model for these values of its symbols, and for this order."""
+        cell = self.cell.replaced(new)
+        law = for_cell(self.law.replaced(new), cell)
+        return replace(self, cell=cell, law=law, highest=_highest(law, order))
+
+
+def model_of(cell: Cell, law: ContactLaw, branch: str, order: int) -> Model:
+    """The model of a derivation to this order."""
+    return Model(cell, law, branch, _highest(law, order))
+
+
+def _highest(law: ContactLaw, order: int) -> int:
+    """The n of the highest φ_n at D^{order-1}; the exponent holds φ_2 in any case."""
+    return 0 if law.homogeneous else max(order - 1, 2)
