@@ -25,7 +25,7 @@ import sympy as sp
 from lwa import Cell, Power
 from lwa.base.arrays import Array
 from lwa.base.progress import Progress
-from lwa.command.terminal import quantities
+from lwa.command.reading import quantities
 from lwa.equation.evolution import Evolution
 from validation.lattice.simulate import simulate
 from validation.pictures.panel import Curve, Panel
