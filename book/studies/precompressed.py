@@ -27,7 +27,7 @@ import numpy as np
 from lwa import Cell, Power, background_wave
 from lwa.base.arrays import Array
 from lwa.base.progress import Progress
-from lwa.command.terminal import quantities
+from lwa.command.reading import quantities
 from lwa.wave.quadrature import NumericBackground
 from validation.lattice.run import Run
 from validation.lattice.simulate import twice

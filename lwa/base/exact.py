@@ -17,6 +17,8 @@ from typing import Any
 
 import sympy as sp
 
+from lwa.base.errors import InputError as InputError
+
 Quantity = int | float | str | Fraction | Decimal | sp.Expr
 """Accepted types of an exponent, a mass, a stiffness or a length."""
 
@@ -33,10 +35,6 @@ _TOO_LONG = f"at most {_DIGITS} digits are wanted, before the point and behind i
 
 MOST_CANCELLED = 20_000
 """Digits that the terms of an exact number may cancel before it is evaluated in vain."""
-
-
-class InputError(ValueError):
-    """Bad input: the message names the argument and says which values are right."""
 
 
 def shorten(value: object) -> str:

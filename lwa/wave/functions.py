@@ -9,8 +9,8 @@ The formulas are written in forms that keep their digits in floating point:
 
 The functions have relative errors of 1e-14, with three exceptions that lie in the formulas. The
 amplitude's exponent 2/(k-1) makes each rounding |ln B| times larger. Near the edge of the domain of
-waves (G + H + I → 0, V² → 0) a last digit of k or of a mass changes the result by more. Near the end
-of the support so does a last digit of ξ: the profile is right to 1e-14 B at a ξ off by 1e-14 ξ.
+waves (G + H + I → 0, V² → 0) a last digit of k or of a mass changes the result by more. Near the
+end of the support so does a last digit of ξ: the profile is right to 1e-14 B at a ξ off by 1e-14 ξ.
 """
 
 from __future__ import annotations

@@ -16,7 +16,7 @@ from lwa.base.arrays import Array
 from lwa.base.exact import shorten
 from lwa.base.files import load
 from lwa.base.tables import entries
-from lwa.command.terminal import quantities, quantity
+from lwa.command.reading import quantities, quantity
 from lwa.spheres.beads import spheres as read_spheres
 from validation.pictures.panel import Curve, Panel
 from validation.pulses.contact_law import Chain, PowerFit, fit_power, free_law
@@ -33,7 +33,10 @@ _LAW = (
     Column("force", "force", error=True),
     Column("", "of the power law", format=".6g"),
 )
-_NOTE = "±: 95 % intervals. The free law needs no power; its compression is that of a contact."
+_NOTE = (
+    "±: 95 % intervals by the scatter of the data; the long-wave theory's own error in the free "
+    "law is not included. Its compression is that of a contact."
+)
 
 
 @study(
