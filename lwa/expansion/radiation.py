@@ -101,7 +101,7 @@ def _rattle(K: Array, slope: Array, step: float) -> float:
 
 @lru_cache(maxsize=64)
 def radiation(cell: Cell, k: sp.Expr) -> Radiation | None:
-    """What a chain of numbers radiates; None for equal beads and contacts, and for symbols.
+    """The radiation of a chain in numbers; None for equal beads and contacts, and for symbols.
 
     k may be a symbol where contacts are equal; others share the strain by it.
     """
@@ -111,6 +111,8 @@ def radiation(cell: Cell, k: sp.Expr) -> Radiation | None:
     model = Model(cell, Power(sp.S.One if alike else k))
     if any(x.free_symbols for x in (*cell.masses, *cell.stiffnesses, model.k)):
         return None
+    if not all(float(x) for x in (*cell.fractions, *cell.shares(model.k))):
+        return None  # a mass or a compliance that no float tells from 0
     import numpy as np  # start-up: `import lwa` does not load it
 
     values = _values(model)
