@@ -137,6 +137,7 @@ class Run(Records):
     window : number of beads followed behind the front; what lies further behind is NaN in all
         arrays. None for the whole chain.
     path : motion of the beads near sensors throughout the run, for `signal`.
+    dissipated, work : energy that damped contacts have turned into heat, and work of the drive.
     """
 
     displacements: Array
@@ -148,6 +149,8 @@ class Run(Records):
     step: float
     window: int | None = None
     path: Path | None = field(default=None, compare=False)
+    dissipated: float = 0.0
+    work: float = 0.0
 
     def signal(self, kind: str, number: int, quantity: str = "force") -> Signal:
         """The motion at a sensor as a function of time, of which the records are samples.
@@ -179,9 +182,10 @@ def finished(
 ) -> Run:
     """The run that ended in the state ``end`` with this energy and change of momentum."""
     n, before = motion.size, motion.scales.energy
-    arrays = records | {"displacements": end[:n].copy(), "velocities": end[n:].copy()}
+    arrays = records | {"displacements": end[:n].copy(), "velocities": end[n : 2 * n].copy()}
     for array in arrays.values():
         array.setflags(write=False)
+    dissipated, work = map(float, end[2 * n :] if len(end) > 2 * n else (0, 0))
     return Run(
         scene=motion.scene,
         energy_drift=(energy - before) / before if before else 0.0,
@@ -191,5 +195,7 @@ def finished(
         step=motion.scene.duration / steps,
         window=window,
         path=path,
+        dissipated=dissipated,
+        work=work,
         **arrays,
     )
