@@ -30,7 +30,7 @@ _LABELLED = re.compile(r"\$\$\n?(.*?)\n?\$\$ \(([\w-]+)\)", re.DOTALL)
 _FENCE = re.compile(r"^(`{3,}|:{3,})\{([\w:-]+)\} *([^\n]*)\n(.*?)^\1 *$", re.DOTALL | re.MULTILINE)
 _OPTION = re.compile(r"\A(?::[\w-]+:[^\n]*\n)+")
 _TARGET = re.compile(r"^\([\w-]+\)=\n", re.MULTILINE)
-_HTML = re.compile(r"<(?:canvas|script|div|p|form)\b.*", re.DOTALL)
+_HTML = re.compile(r"^<div\b[^\n]*\n", re.MULTILINE)
 
 
 @dataclass(frozen=True)
