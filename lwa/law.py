@@ -20,6 +20,7 @@ import sympy as sp
 from sympy.core.function import AppliedUndef
 
 from lwa.base import latex
+from lwa.base.calculus import growing_root, integral, ratio
 from lwa.base.exact import InputError, exact, positive, real, shorten
 from lwa.base.frozen import Value
 from lwa.cell import RESERVED, Cell, exponent, meant, unmistakable
@@ -31,10 +32,6 @@ DELTA = sp.Symbol("delta", positive=True)
 
 TAKEN = {**RESERVED, "A": "the stiffness of a contact", "p0": "the strain ahead of a wave"}
 """Names that stand beside a law in results, and what they mean there."""
-
-
-LARGE = 32
-"""The exponent from which on a power of a sum is not multiplied out."""
 
 
 class ContactLaw(Value):
@@ -70,8 +67,7 @@ class ContactLaw(Value):
         if self.F.atoms(AppliedUndef):
             s = sp.Dummy("s", positive=True)
             return sp.Integral(self.F.subs(self.delta, s), (s, 0, self.delta))
-        parts = sp.Add.make_args(self.F) if _unexpanded(self.F) else (self.F,)
-        return sp.Add(*(_integral(part, self.delta) for part in parts))
+        return integral(self.F, self.delta)
 
     def phi(self, n: int) -> sp.Expr:
         """φ_n = δ^{n-1} F^{(n)}/F′ as an expression in δ.
@@ -79,8 +75,7 @@ class ContactLaw(Value):
         >>> named("exponential", 1).phi(3)
         delta**2
         """
-        top, bottom, large = _large_powers(self.delta ** (n - 1) * self.slope(n), self.slope())
-        return sp.cancel(sp.powsimp(sp.expand(top) / sp.expand(bottom))).xreplace(large)
+        return ratio(self.delta ** (n - 1) * self.slope(n), self.slope())
 
     def at(self, delta: sp.Expr, n: int = 0) -> sp.Expr:
         """F^{(n)} at a compression."""
@@ -141,16 +136,13 @@ class ContactLaw(Value):
 
         Raises `lwa.InputError` for a force beyond the law's reach, and for symbols.
         """
-        ratio = force / cell.stiffnesses[0]
-        if free := ratio.free_symbols | self.F.free_symbols - {self.delta}:
+        share = force / cell.stiffnesses[0]
+        if free := share.free_symbols | self.F.free_symbols - {self.delta}:
             raise InputError(
                 f"{min(map(str, free))!r} has no value: the load under {self.F} needs numbers"
             )
         with mpmath.workdps(50):
-            F, slope = (
-                sp.lambdify(self.delta, x, "mpmath") for x in (self.F - ratio, self.slope())
-            )
-            found = _where_it_grows_to_zero(F, slope)
+            found = growing_root(self.F - share, self.delta)
             if found is None:
                 raise InputError(f"force is {shorten(force)}: the law does not reach it")
             return sp.Float(found, 35)
@@ -158,33 +150,6 @@ class ContactLaw(Value):
     def replaced(self, new: Mapping[sp.Symbol, sp.Expr]) -> Self:
         """The law with the values that `lwa.cell.substitution` gives for its symbols."""
         raise NotImplementedError
-
-
-def _where_it_grows_to_zero(F: Callable[[Any], Any], slope: Callable[[Any], Any]) -> Any:
-    """δ > 0 with F(δ) = 0, F growing from δ = 0 to there; None if F stops growing before.
-
-    Steps that leave the interval on which F is real and grows (its pole, its maximum) are halved.
-    """
-    low, step, least = mpmath.mpf(0), mpmath.mpf(2) ** -20, mpmath.mpf(2) ** -150
-    below = F(low)
-    while True:
-        try:
-            above, grows = F(low + step), slope(low + step)
-        except ZeroDivisionError:
-            above = grows = mpmath.nan
-        if mpmath.im(above) == mpmath.im(grows) == 0 and above > below and grows > 0:
-            if above >= 0:
-                break
-            low, below, step = low + step, above, step * mpmath.mpf("1.2")
-        else:
-            step /= 2
-        if step < least * max(low, 1) or low > 2**40:
-            return None
-    high = low + step
-    while high - low > mpmath.eps * high:  # F may be anything between: bisection
-        middle = (low + high) / 2
-        low, high = (middle, high) if F(middle) < 0 else (low, middle)
-    return high
 
 
 @dataclass(frozen=True)
@@ -283,48 +248,6 @@ def general() -> Law:
 def phi_symbol(n: int) -> sp.Symbol:
     """φ_n, as it stands in results."""
     return sp.Symbol(f"phi{n}", real=True)
-
-
-def _large(*values: sp.Expr) -> set[sp.Expr]:
-    """The powers b^e with |e| > `LARGE` in the values."""
-    powers: set[sp.Expr] = set().union(*(value.atoms(sp.Pow) for value in values))
-    return {power for power in powers if power.exp.is_Rational and abs(power.exp) > LARGE}
-
-
-def _unexpanded(F: sp.Expr) -> bool:
-    """Whether F has large powers or poles, which SymPy's integral would multiply out.
-
-    The terms of a multiplied out pole cancel next to it.
-    """
-    powers = (power.exp for power in F.atoms(sp.Pow) if power.exp.is_Rational)
-    return any(abs(e) > LARGE or e < -1 for e in powers)
-
-
-def _integral(value: sp.Expr, x: sp.Symbol) -> sp.Expr:
-    """∫ value dx; that of a power of a linear base by its own rule."""
-    factor, power = value.as_independent(x, as_Add=False)
-    base, e = power.as_base_exp()
-    if _unexpanded(power) and e.is_Rational and not base.diff(x).has(x):
-        return factor * base ** (e + 1) / (base.diff(x) * (e + 1))
-    return sp.integrate(value, x, conds="none")
-
-
-def _large_powers(*values: sp.Expr) -> tuple[Any, ...]:
-    """The values with b^e, |e| > `LARGE`, written as c b^{e - e0}, and the mapping c → b^{e0}.
-
-    The exponents of F′ and of F^{(n)} differ by a few, and c cancels in their ratio; b^e itself
-    SymPy would multiply out, in e terms.
-    """
-    found: dict[sp.Expr, sp.Expr] = {}  # b → b^{e0}
-    new: dict[sp.Expr, sp.Expr] = {}
-    names: dict[sp.Expr, sp.Expr] = {}
-    for power in sorted(_large(*values), key=sp.default_sort_key):
-        first = found.setdefault(power.base, power)
-        rest = power.exp - first.exp
-        if rest.is_Integer and abs(rest) <= LARGE:
-            c = names.setdefault(first, sp.Dummy("c", positive=True))
-            new[power] = c * power.base**rest
-    return *(x.xreplace(new) for x in values), {c: first for first, c in names.items()}
 
 
 Builder = Callable[..., sp.Expr]

@@ -1,9 +1,9 @@
-"""The lattice itself, integrated and measured, to be put beside the theory of `lwa`.
+"""Numerical validation: chains of beads, simulated and measured beside the theory of `lwa`.
 
 >>> from validation import Scene, measure, simulate
 >>> chain = dict(masses=(1,) * 60, stiffnesses=(1,) * 59, k=1.5, duration=60)
 >>> run = simulate(Scene(**chain, velocities=(1,), contact_sensors=(20, 40)))
->>> first, second = (measure(run.time, force) for force in run.contact_force)
+>>> first, second = (measure(run.signal("contact", i)) for i in (20, 40))
 >>> speed = 20 / (second.arrival - first.arrival)
 >>> round(second.fwhm * speed, 4)  # sites under the contact force of a Hertz chain's pulse
 1.4119
@@ -13,16 +13,19 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from validation.lattice.run import Run
+    from validation.lattice.run import IntegrationError, Run
     from validation.lattice.simulate import simulate, simulate_many
-    from validation.pulses.pulse import Pulse, measure
+    from validation.pulses.pulse import MeasureError, Pulse, measure
     from validation.scenes.scene import Scene, SceneError
+    from validation.scenes.scenefile import read_scene
     from validation.studies.records import load
     from validation.waves.profile import ExactWave
     from validation.waves.solver import exact_wave
 
 __all__ = [
     "ExactWave",
+    "IntegrationError",
+    "MeasureError",
     "Pulse",
     "Run",
     "Scene",
@@ -30,24 +33,26 @@ __all__ = [
     "exact_wave",
     "load",
     "measure",
+    "read_scene",
     "simulate",
     "simulate_many",
 ]
 
 _PLACES = {
-    "lattice.run": ("Run",),
+    "lattice.run": ("IntegrationError", "Run"),
     "lattice.simulate": ("simulate", "simulate_many"),
-    "pulses.pulse": ("Pulse", "measure"),
+    "pulses.pulse": ("MeasureError", "Pulse", "measure"),
     "scenes.scene": ("Scene", "SceneError"),
+    "scenes.scenefile": ("read_scene",),
     "studies.records": ("load",),
     "waves.profile": ("ExactWave",),
     "waves.solver": ("exact_wave",),
 }
-"""Module → what stands here of it."""
+"""Public names by module."""
 
 
 def __getattr__(name: str) -> Any:
-    """A module is loaded when a name of it is asked for: a command's help wants no SciPy."""
+    """Load the module of a public name when the name is used: `--help` does not load SciPy."""
     for module, names in _PLACES.items():
         if name in names:
             return getattr(import_module(f"validation.{module}"), name)

@@ -1,7 +1,7 @@
-"""The command `lwa-validate`: the lattice, measured against the theory.
+"""The command `lwa-validate`, with one command for each study in `validation.studies`.
 
-Every `validation.report.command.study` in `validation.studies` is a command of it. They are found
-by reading the modules' text, and one is loaded only when it is called: help wants no SciPy.
+Studies are found in the text of their modules, and a module is loaded when its command is called:
+`--help` does not load SciPy.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ _STUDIES = Path(__file__).parent / "studies"
 
 @cache
 def studies() -> dict[str, tuple[str, str, str]]:
-    """Command → its module, its function and its help in one line.
+    """Module, function and help of each command.
 
     >>> studies()["limits"][:2]
     ('validation.studies.limits', 'limits')
@@ -47,23 +47,23 @@ def _in(file: Path) -> Iterator[tuple[str, str, str, str]]:
 
 
 class Studies(click.Group):
-    """A group whose commands are loaded one by one."""
+    """A Click group that loads a command when it is called."""
 
     def list_commands(self, context: click.Context) -> list[str]:
-        """Their names."""
+        """Names of all commands."""
         return sorted(studies())
 
     def get_command(self, context: click.Context, name: str) -> click.Command | None:
-        """One of them."""
+        """The command of this name, or None."""
         if name not in studies():
             return None
         module, function, _ = studies()[name]
-        # here, for a quick start: a study loads SciPy and what else it needs
+        # here, for a quick start: a study loads SciPy
         found: click.Command = getattr(import_module(module), function).command
         return found
 
     def format_commands(self, context: click.Context, formatter: click.HelpFormatter) -> None:
-        """The list of them, without loading any."""
+        """Write the list of commands without loading them."""
         with formatter.section("Commands"):
             formatter.write_dl([(name, says) for name, (_, _, says) in sorted(studies().items())])
 
@@ -71,9 +71,9 @@ class Studies(click.Group):
 @click.group(cls=Studies, context_settings=HELP)
 @version
 def validate() -> None:
-    """The lattice of F = A δ^k contacts, measured against the long-wave theory.
+    """Simulate chains with contacts F = A δ^k and compare them with the long-wave theory.
 
-    Ends with 1 when a comparison does not hold and with 2 on bad input.
+    The exit status is 1 if a comparison fails, and 2 for bad input.
     """
 
 

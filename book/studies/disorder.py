@@ -30,9 +30,9 @@ from lwa.base.arrays import Array
 from lwa.base.progress import Progress
 from validation.lattice.run import Run
 from validation.lattice.simulate import simulate, simulate_many
+from validation.pictures.panel import Curve, Panel
 from validation.pulses.pulse import Measured, highest_pulse
 from validation.report.command import EXPONENT, option, study
-from validation.report.panel import Curve, Panel
 from validation.report.result import Report
 from validation.report.table import Column, Finding, Table
 from validation.scenes.chains import struck

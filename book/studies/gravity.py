@@ -40,14 +40,14 @@ import scipy
 from lwa import Cell, Power, background_wave
 from lwa.base.arrays import Array
 from lwa.base.progress import Progress
-from lwa.command.terminal import quantities
+from lwa.command.reading import quantities
 from lwa.wave.background import BackgroundWave
 from validation.lattice.run import Run
 from validation.lattice.simulate import simulate, twice
+from validation.pictures.panel import Curve, Panel
 from validation.pulses.pulse import Measured, highest_pulse, leading_pulse
 from validation.pulses.sensors import tracks
 from validation.report.command import EXPONENT, option, study
-from validation.report.panel import Curve, Panel
 from validation.report.result import Report
 from validation.report.table import Column, Finding, Table
 from validation.report.text import percent

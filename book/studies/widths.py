@@ -15,9 +15,9 @@ from dataclasses import dataclass
 
 from lwa import Dimer, TravelingWave, canonical_wave, homogenize
 from validation.lattice.run import Run
+from validation.pictures.panel import Curve, Panel
 from validation.pulses.pulse import Measured, compared, derived
 from validation.report.command import study
-from validation.report.panel import Curve, Panel
 from validation.report.result import Report
 from validation.report.table import Column, Table
 from validation.report.text import percent

@@ -17,6 +17,8 @@ from typing import Any
 
 import sympy as sp
 
+from lwa.base.errors import InputError as InputError
+
 Quantity = int | float | str | Fraction | Decimal | sp.Expr
 """What a caller may give for an exponent, a mass, a stiffness or a length."""
 
@@ -31,12 +33,8 @@ _ROOTLESS = 1024  # bits of an integer beyond a double
 _TOO_LONG = f"at most {_DIGITS} digits are wanted, before the point and behind it"
 
 
-MOST_CANCELLED = 5000
+MOST_CANCELLED = 20_000
 """Digits that the terms of an exact number may cancel before it is evaluated in vain."""
-
-
-class InputError(ValueError):
-    """An argument that cannot be meant: the message names it and says what would be right."""
 
 
 def shorten(value: object) -> str:

@@ -6,6 +6,7 @@ from typing import Any
 
 import sympy as sp
 
+from lwa.base.errors import NoSolitaryWave as NoSolitaryWave
 from lwa.base.exact import InputError, shorten
 
 RISE = sp.Symbol("B", positive=True)
@@ -19,10 +20,6 @@ QUANTITIES = ("strain", "force", "velocity")
 
 EXTENTS = ("length", "time")
 """The kinds of a width: an extent in space, or the time of passage."""
-
-
-class NoSolitaryWave(ValueError):
-    """No traveling wave exists for these parameters; the message names the reason."""
 
 
 def strain_power(quantity: str, k: Any) -> Any:

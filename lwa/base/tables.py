@@ -6,7 +6,7 @@ A reader takes a value and what messages call it, and returns the value checked 
 >>> real("1.5", "duration")
 Traceback (most recent call last):
     ...
-lwa.base.exact.InputError: duration is '1.5': a number is wanted
+lwa.base.errors.InputError: duration is '1.5': a number is wanted
 """
 
 from __future__ import annotations
@@ -68,7 +68,7 @@ class Table:
     >>> Table({"masss": 1}, "bead", ("mass", "radius"))
     Traceback (most recent call last):
         ...
-    lwa.base.exact.InputError: bead.masss is unknown: did you mean mass?
+    lwa.base.errors.InputError: bead.masss is unknown: did you mean mass?
     """
 
     def __init__(self, value: Any, name: str, known: Sequence[str]) -> None:

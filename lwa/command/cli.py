@@ -13,7 +13,7 @@ import sympy as sp
 from lwa.base.exact import InputError, exact
 from lwa.cell import Cell, D, k
 from lwa.code.languages import LANGUAGES
-from lwa.command import derivation, series, waves
+from lwa.command import derivation, envelopes, series, waves
 from lwa.command.options import (
     FORCE,
     SPHERES,
@@ -21,14 +21,17 @@ from lwa.command.options import (
     demand_free_names,
     given,
     law_option,
+    of_cell,
     of_chain,
     of_series,
     setting,
     style_option,
 )
+from lwa.command.reading import angle, quantity
 from lwa.command.reserved_names import demand_free
 from lwa.command.rows import Answer
-from lwa.command.terminal import HELP, quantity, run, version
+from lwa.command.terminal import HELP, run, version
+from lwa.envelopes.schrodinger import envelope
 from lwa.expansion.expand import expand
 from lwa.expansion.physical import ExpandedWave
 from lwa.expansion.strike import pulse_of_strike
@@ -301,6 +304,50 @@ def strike(
     pulse = pulse_of_strike(found.cell, mass, velocity, drop=drop, k=found.law.exponent)
     units = waves.si_units(found.law.exponent) if found.si else {}
     _answer(style, series.strike(pulse, units, _left_out(found.precompression, units)))
+
+
+@lwa.command("envelope")
+@of_cell(STYLES)
+@SPHERES
+@click.option("--background", callback=quantity, help="Static strain.")
+@click.option("--precompression", callback=quantity, help="Static force.")
+@setting("--wavenumber", "pi", "κ per cell: a number, a name, or a part of pi.", callback=angle)
+@click.option("--branch", help="acoustic, optical or a number from 0; optical where there is one.")
+@click.option("--frequency", callback=quantity, help="Frequency of a breather, rad per time.")
+@click.option("--detuning", callback=quantity, help="1 - frequency/ω of a breather.")
+def envelope_of_a_mode(
+    style: str,
+    spheres: str | None,
+    background: sp.Expr | None,
+    precompression: sp.Expr | None,
+    wavenumber: sp.Expr,
+    branch: str | None,
+    frequency: sp.Expr | None,
+    detuning: sp.Expr | None,
+    **chain: Any,
+) -> None:
+    """The nonlinear Schrödinger equation of a mode of a chain under load, and its breathers."""
+    units: dict[str, str] = {}
+    if spheres is not None:
+        units, static = _from_file(spheres, chain)
+        precompression = static or precompression
+    if frequency is not None and detuning is not None:
+        raise InputError("--frequency and --detuning are both given: one says the other")
+    cell, law = Cell(chain["masses"], chain["stiffnesses"], chain["spacing"]), chain["law"]
+    law = Power(chain["k"]) if law is None else law
+    given_symbols = (background, precompression, frequency, detuning, wavenumber)
+    demand_free_names(cell, *law.symbols, *(x for x in given_symbols if x is not None))
+    place = int(branch) if branch and branch.isdecimal() else branch
+    load = {"background": background, "precompression": precompression}
+    found = envelope(cell, law, **load, wavenumber=wavenumber, branch=place)
+    symbols = {*cell.symbols, *found.compression.free_symbols, *wavenumber.free_symbols}
+    if not symbols - {cell.spacing} and (cell.size > 2 or not sp.cos(wavenumber).is_Rational):
+        found = found.numeric()  # exact results want a frequency that is algebraic
+    breather = None
+    if frequency is not None or detuning is not None:
+        breather = found.breather(frequency, detuning=detuning)
+    said = f"masses {derivation.listed(cell.masses)}; contact force A F, F = {law.F}"
+    _answer(style, envelopes.envelope(found, breather, envelopes.UNITS if units else {}, said))
 
 
 def _read(file: str) -> ChainFile:

@@ -12,8 +12,8 @@ from click.core import ParameterSource
 
 from lwa.cell import Cell, D, k
 from lwa.closure.consistency import BRANCHES, CLOSURES, FIELDS
+from lwa.command.reading import contact_law, count, quantities, quantity
 from lwa.command.reserved_names import demand_free
-from lwa.command.terminal import contact_law, count, quantities, quantity
 from lwa.law import NAMES
 
 Command = Callable[..., None]
@@ -79,15 +79,22 @@ def _with(options: tuple[Option, ...], command: Command) -> Command:
 def of_chain(formats: Iterable[str]) -> Option:
     """The options that name a chain and its theory."""
     options = (
+        order_option("Highest power of D in the ansatz."),
+        _choice("--closure", CLOSURES, "Consistency condition; linear is the paper's."),
+        _choice("--field", FIELDS, "Field described; center wants closure full."),
+        _choice("--branch", BRANCHES, "Branch of the motion."),
+    )
+    return lambda command: of_cell(formats)(_with(options, command))
+
+
+def of_cell(formats: Iterable[str]) -> Option:
+    """The options that name a chain and its contact law."""
+    options = (
         exponent(k.name),
         law_option(f"Contact law in place of the power: {', '.join(NAMES)}."),
         MASSES,
         STIFFNESSES,
         setting("--spacing", D.name, "Distance of neighbouring particles.", callback=quantity),
-        order_option("Highest power of D in the ansatz."),
-        _choice("--closure", CLOSURES, "Consistency condition; linear is the paper's."),
-        _choice("--field", FIELDS, "Field described; center wants closure full."),
-        _choice("--branch", BRANCHES, "Branch of the motion."),
         style_option(formats),
     )
     return lambda command: _with(options, command)

@@ -18,6 +18,7 @@ NAMES = {
     "derive": EQUATION,
     "wave": "u v x z t tau τ delta δ A F G H p a mu μ eta η sigma σ s xi ξ beta β π",
     "wave under load": "u v x t tau τ delta δ A F F0 I p0 xi ξ c0 alpha α gamma γ L",
+    "envelope": "A F T X i n t u phi φ kappa κ omega ω chi χ nu ν a b delta δ",
     "dispersion": "t tau τ delta δ A kappa κ Omega Ω q",
     "expansion": "t delta δ A F c epsilon ε xi ξ",
 }
@@ -32,7 +33,7 @@ def demand_free(output: str, values: Iterable[sp.Expr], own: str = "") -> None:
 
     >>> demand_free("wave", [sp.Symbol("m1") + sp.Symbol("p")])  # doctest: +ELLIPSIS
     Traceback (most recent call last):
-    lwa.base.exact.InputError: 'p' has a meaning of its own in what `lwa wave` prints: ...
+    lwa.base.errors.InputError: 'p' has a meaning of its own in what `lwa wave` prints: ...
     """
     names = NAMES[output].split()
     numbered = re.compile(rf"{_NUMBERED[output]}[0-9]+") if output in _NUMBERED else None

@@ -220,12 +220,16 @@ def as_float(value: sp.Expr) -> float | None:
 
 def approximate(value: sp.Expr) -> str:
     """A number in digits; an expression in symbols with its numeric factor in digits."""
+    if value.is_zero:
+        return "0"
     factor, rest = value.as_independent(*value.free_symbols, as_Add=False)
     number = sp.sstr(evaluated(factor, DIGITS), full_prec=False)
     return str(rest) if factor == 1 and rest != 1 else number if rest == 1 else f"{number}·{rest}"
 
 
 def _approximate_latex(value: sp.Expr) -> str:
+    if value.is_zero:
+        return "0"
     factor, rest = value.as_independent(*value.free_symbols, as_Add=False)
     number = sp.latex(evaluated(factor, DIGITS))
     return str(

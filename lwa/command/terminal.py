@@ -1,4 +1,4 @@
-"""How a command of this project meets its user: exact options in, one clear line for a fault.
+"""The end of every command of this project: output, exit status, one clear line for a fault.
 
 Where the output's encoding lacks a letter (a redirection on Windows is cp1252) its name is
 printed: beta for β.
@@ -16,46 +16,9 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 import click
-import sympy as sp
 
-from lwa.base.exact import InputError, exact, integer
-from lwa.base.quantities import NoSolitaryWave
+from lwa.base.errors import InputError, NoSolitaryWave
 from lwa.command.interrupt import INTERRUPTED
-from lwa.law import ContactLaw, named
-
-
-def quantity(context: click.Context, option: click.Parameter, value: str | None) -> sp.Expr | None:
-    """Callback of an option that is an integer, a decimal, a fraction or a plain name."""
-    return None if value is None else exact(value, called(option))
-
-
-def quantities(
-    context: click.Context, option: click.Parameter, value: str | None
-) -> tuple[sp.Expr, ...]:
-    """Callback of an option that is a list of quantities, separated by commas; () when absent."""
-    return tuple(exact(part, called(option)) for part in value.split(",")) if value else ()
-
-
-def count(context: click.Context, option: click.Parameter, value: str) -> int:
-    """Callback of an option that is an integer from 1 on."""
-    name = called(option)
-    return integer(exact(value, name), name, 1)
-
-
-def contact_law(
-    context: click.Context, option: click.Parameter, value: str | None
-) -> ContactLaw | None:
-    """Callback of an option that is NAME or NAME:PARAM,…, as `lwa.law.named` takes them."""
-    if value is None:
-        return None
-    name, colon, parameters = value.partition(":")
-    return named(name, *(parameters.split(",") if colon else ()))
-
-
-def called(option: click.Parameter) -> str:
-    """An option's name in messages, without its dashes."""
-    return option.opts[0].lstrip("-")
-
 
 HELP = {"help_option_names": ["-h", "--help"]}
 """Settings of a command: both ways to ask for help."""

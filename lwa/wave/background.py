@@ -15,7 +15,6 @@ singularities (`lwa.wave.profile`, `lwa.wave.quadrature`).
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Self
@@ -31,7 +30,7 @@ from lwa.cell import RESERVED, Cell, meant, substitution
 from lwa.law import ContactLaw, Power, for_cell
 from lwa.linear.dispersion import Dispersion
 from lwa.wave.kdv import KdV
-from lwa.wave.profile import Function, Profile
+from lwa.wave.profile import Profile, Strains, mpmath_number
 
 if TYPE_CHECKING:
     from lwa.wave.quadrature import NumericBackground
@@ -40,9 +39,6 @@ DIGITS = 15
 """Digits of a width or a profile, unless the caller asks for others."""
 
 MOST_DIGITS = 200
-
-_MOST_PRECISION = 20_000
-"""Digits beyond which differences are not followed."""
 
 _LOOKS = 64
 """Places between 0 and B at which existence is decided for a law that is no power."""
@@ -172,24 +168,23 @@ class BackgroundWave(Value):
         """Why another law has no wave."""
         if self._free(B):
             return ""
+        places = [sp.Rational(i, _LOOKS) for i in range(_LOOKS + 1)]
         with mpmath.workdps(30):
-            _, slope, _ = self._functions()
-            for i in range(_LOOKS + 1):
-                v = self._number(B) * i / _LOOKS
+            _, slope, _ = self._strains.functions()
+            for v in (mpmath_number(self.in_unit(B) * s) for s in places):
                 stiff = slope(v)
                 if mpmath.im(stiff) != 0 or not 0 < stiff < mpmath.inf:
                     return f"F′ is not positive at the strain p0 + {mpmath.nstr(v, 5)}"
-        with mpmath.workdps(self._precision(B, DIGITS)):
-            number = self._number(B)
-            F, _, Q = self._functions()
-            top, higher = Q(number), "a wave of the height {} would be as fast"
+        rise, working = self._wave(B, DIGITS)
+        with mpmath.workdps(working):
+            F, _, Q = self._strains.functions()
+            number = mpmath_number(rise)
+            top, reason = Q(number), "the law does not stiffen towards it: a wave of the height "
             if not (F(number) - F(mpmath.mpf(0))) / number > top:  # B Q′(B)/2 = this - Q(B)
-                return f"the law does not stiffen towards it: {higher.format('just below')}"
-            for i in range(1, _LOOKS):
-                v = number * i / _LOOKS
+                return f"{reason}just below would be as fast"
+            for v in (number * i / _LOOKS for i in range(1, _LOOKS)):
                 if not Q(v) < top:
-                    height = mpmath.nstr(v, 5)
-                    return f"the law does not stiffen towards it: {higher.format(height)}"
+                    return f"{reason}{mpmath.nstr(v, 5)} would be as fast"
         return ""
 
     @property
@@ -224,8 +219,9 @@ class BackgroundWave(Value):
             power = k if known(quantity) == "force" else 1
             return 2 * sp.acos(2 ** (-(k - 1) / (2 * power))) / beta
         digits = self._digits(digits)
-        with mpmath.workdps(self._precision(B, digits)):
-            found = self._profile(B, digits)
+        rise, working = self._wave(B, digits)
+        with mpmath.workdps(working):
+            found = self._profile(rise, digits)
             length = 2 * found.place(found.half(known(quantity)))
         return sp.Float(length, digits) * self.unit
 
@@ -251,12 +247,10 @@ class BackgroundWave(Value):
         if place.free_symbols:
             raise InputError(f"xi is {shorten(xi)}: a number, in D, is wanted")
         digits = self._digits(digits)
-        with mpmath.workdps(self._precision(B, digits)):
-            target = abs(mpmath.mpf(sp.N(place, mpmath.mp.dps)))
-            if not target:
-                return sp.Float(self._number(B), digits)
-            found = self._profile(B, digits)
-            return sp.Float(found.strain(found.theta(target)), digits)
+        rise, working = self._wave(B, digits)
+        with mpmath.workdps(working):
+            target, found = abs(mpmath_number(place)), self._profile(rise, digits)
+            return sp.Float(found.strain(found.theta(target) if target else 0), digits)
 
     def numeric(self) -> NumericBackground:
         """Vectorised float64 functions of (p0, B) for this cell and law; p0 is an argument there.
@@ -320,53 +314,25 @@ class BackgroundWave(Value):
             raise InputError(f"digits is {digits}: at most {MOST_DIGITS} are given")
         return digits
 
-    def _precision(self, B: sp.Expr, digits: int) -> int:
-        """Working digits with which Q(B) - Q(v) keeps twice the digits that are asked for.
+    @cached_property
+    def _strains(self) -> Strains:
+        v = sp.Dummy("v", real=True)
+        values = (self.force(self.p0 + v), self.force(self.p0 + v, 1), self._stiffness(v))
+        return Strains(v, *map(self.in_unit, values))
 
-        Twice, because the difference falls as θ² towards the peak. How many the terms of Q cancel
-        is measured: the difference must not change with twice the working digits.
-        """
+    def _wave(self, B: sp.Expr, digits: int) -> tuple[sp.Expr, int]:
+        """B and the working digits for a wave of this rise, all in numbers."""
         if free := self._free(B):
             raise InputError(
                 f"{min(map(str, free))!r} has no value: a width or a profile on a background is a "
                 "number and wants numbers"
             )
-        working, found = 2 * digits + 15, []
-        while working < _MOST_PRECISION:
-            with mpmath.workdps(working):
-                _, _, Q = self._functions()
-                number = self._number(B)
-                found.append(Q(number) - Q(number / 2))
-                change = abs(found[-1] - found[-2]) if len(found) > 1 else mpmath.inf
-                if 0 != abs(found[-1]) * mpmath.mpf(10) ** (-2 * digits) >= change:
-                    return working // 2
-            working *= 2
-        raise InputError(f"B is {shorten(B)}: too small beside p0, use `kdv`")
-
-    def _number(self, value: sp.Expr) -> Any:
-        return mpmath.mpf(sp.N(self.in_unit(value), mpmath.mp.dps + 5, maxn=_MOST_PRECISION))
-
-    @cached_property
-    def _compiled(self) -> list[tuple[Function, list[sp.Rational]]]:
-        """F, F′ and Q at p0 + v: functions of v and of their own fractions."""
-        v, found = sp.Dummy("v", real=True), []
-        for value in (self.force(self.p0 + v), self.force(self.p0 + v, 1), self._stiffness(v)):
-            value = self.in_unit(value)
-            numbers = {a: sp.Dummy() for a in value.atoms(sp.Rational) if not a.is_Integer}
-            function = sp.lambdify((v, *numbers.values()), value.xreplace(numbers), "mpmath")
-            found.append((function, list(numbers)))
-        return found
-
-    def _functions(self) -> list[Function]:
-        """F, F′ and Q at p0 + v in mpmath's working precision: fractions are no floats there."""
-        return [
-            _given(function, [mpmath.mpf(int(a.p)) / int(a.q) for a in numbers])
-            for function, numbers in self._compiled
-        ]
+        return self.in_unit(B), self._strains.precision(self.in_unit(B), digits)
 
     def _profile(self, B: sp.Expr, digits: int) -> Profile:
-        """In mpmath's working precision."""
-        return Profile(self._number(B), self._number(self.I), digits, *self._functions())
+        """The profile in mpmath's working precision."""
+        I = mpmath_number(self.in_unit(self.I))
+        return Profile(mpmath_number(B), I, digits, *self._strains.functions())
 
 
 def background_wave(cell: Cell, p0: Any = "p0", *, law: ContactLaw | None = None) -> BackgroundWave:
@@ -376,15 +342,3 @@ def background_wave(cell: Cell, p0: Any = "p0", *, law: ContactLaw | None = None
     p0**(1/4)
     """
     return BackgroundWave(cell, Power("k") if law is None else law, p0)
-
-
-def _given(function: Callable[..., Any], numbers: list[Any]) -> Function:
-    """The function of v alone; NaN at a pole."""
-
-    def value(v: Any) -> Any:
-        try:
-            return function(v, *numbers)
-        except ZeroDivisionError:
-            return mpmath.nan
-
-    return value

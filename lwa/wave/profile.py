@@ -17,19 +17,83 @@ from itertools import pairwise
 from typing import Any
 
 import mpmath
+import sympy as sp
 from mpmath.calculus.quadrature import GaussLegendre
+
+from lwa.base.exact import InputError, evaluated, shorten
 
 Function = Callable[[Any], Any]
 
 _GAUSS = GaussLegendre(mpmath.mp)
 
+_MOST_PRECISION = 20_000
+"""Working digits beyond which a difference is not followed."""
+
 _RULES = ((-1, 0), (0, 0), (0, 4), (1, 8), (1, 20), (2, 40), (2, 80))
 """Degrees of Gauss's rule beyond the usual one, and halvings of the piece next to θ = 0."""
 
 
+def mpmath_number(value: sp.Expr) -> Any:
+    """An exact number in mpmath's working precision."""
+    return mpmath.mpf(evaluated(value, mpmath.mp.dps + 5))
+
+
+@dataclass(frozen=True)
+class Strains:
+    """F, F′ and Q as expressions in v, the strain above a background, for any number of digits."""
+
+    v: sp.Symbol
+    force: sp.Expr
+    slope: sp.Expr
+    stiffness: sp.Expr
+
+    @cached_property
+    def _compiled(self) -> list[tuple[Function, list[sp.Rational]]]:
+        """Functions of v and of the fractions in the expressions, which would become floats."""
+        found = []
+        for value in (self.force, self.slope, self.stiffness):
+            numbers = {a: sp.Dummy() for a in value.atoms(sp.Rational) if not a.is_Integer}
+            function = sp.lambdify((self.v, *numbers.values()), value.xreplace(numbers), "mpmath")
+            found.append((function, list(numbers)))
+        return found
+
+    def functions(self) -> list[Function]:
+        """F, F′ and Q as functions of v in mpmath's working precision, NaN at a pole."""
+        return [
+            _at_poles_too(function, [mpmath.mpf(int(a.p)) / int(a.q) for a in numbers])
+            for function, numbers in self._compiled
+        ]
+
+    def precision(self, B: sp.Expr, digits: int) -> int:
+        """Working digits with which Q(B) - Q(v) keeps twice the digits that are asked for.
+
+        Twice, because the difference falls as θ² towards the peak. How many the terms of Q cancel
+        is measured: the difference must not change with twice the working digits.
+        """
+        working, before = 2 * digits + 15, mpmath.inf
+        while working < _MOST_PRECISION:
+            with mpmath.workdps(working):
+                Q, number = self.functions()[2], mpmath_number(B)
+                found = Q(number) - Q(number / 2)
+                if 0 != abs(found) * mpmath.mpf(10) ** (-2 * digits) >= abs(found - before):
+                    return working // 2
+            working, before = 2 * working, found
+        raise InputError(f"B is {shorten(B)}: too small beside p0, use `kdv`")
+
+
+def _at_poles_too(function: Callable[..., Any], numbers: list[Any]) -> Function:
+    def value(v: Any) -> Any:
+        try:
+            return function(v, *numbers)
+        except ZeroDivisionError:
+            return mpmath.nan
+
+    return value
+
+
 @dataclass(frozen=True)
 class Profile:
-    """A wave of the rise B, to so many digits; mpmath works with those that differences lose.
+    """A wave of the rise B to so many digits; mpmath works with those that differences lose.
 
     force, slope and stiffness are F, F′ and Q at the strain v above the background.
     """

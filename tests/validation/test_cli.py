@@ -30,7 +30,7 @@ from validation.report import command
 from validation.report.result import Report
 from validation.scenes.chains import chain_scene
 from validation.scenes.checks import SceneError
-from validation.scenes.scenefile import document, read, scene
+from validation.scenes.scenefile import document, read_scene, scene
 from validation.studies.limits import Limits
 from validation.studies.run import EXAMPLES
 
@@ -177,7 +177,7 @@ def test_what_a_run_stored_is_loaded_and_runs_again(capsys, monkeypatch, scene_f
     assert first[0] == 0
     assert run(capsys, "run", stored, "--out", f"again{suffix}") == first
     found = load_run(stored)
-    assert found.scene == read("scene.toml")
+    assert found.scene == read_scene("scene.toml")
     assert found.contact_force.shape == (3, 601)
     assert list(found.sensors["kind"]) == ["bead", "contact", "contact", "contact"]
     heard = found.contact_force.max(axis=1)

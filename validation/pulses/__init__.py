@@ -1,1 +1,1 @@
-"""What is read off a motion: arrival, peak, widths, speeds and decay of pulses."""
+"""Measurements of motions: arrival, peak, width, speed and decay of pulses."""

@@ -1,9 +1,9 @@
 """Pulses of a signal: arrival, peak, width, and the speed between two sensors.
 
-A signal is a function of time that is smooth between given times (`Signal`): the dense output of a
-run, or a spline through samples. A pulse is found on a grid of `_POINTS` points in each smooth
-interval. Its arrival is the root of the derivative of a Chebyshev interpolant about the highest
-grid point; its flanks are the roots of signal - peak/2. So a pulse is as accurate as its signal.
+A pulse of a signal (`validation.pulses.signals`) is found on a grid of `_POINTS` points in each
+smooth interval. Its arrival is the root of the derivative of a Chebyshev interpolant about the
+highest grid point; its flanks are the roots of signal - peak/2. So a pulse is as accurate as its
+signal.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any, Protocol, TypeVar
+from typing import Any, TypeVar, cast
 
 import numpy as np
 import scipy
@@ -20,7 +20,8 @@ from numpy.polynomial import chebyshev
 from numpy.typing import ArrayLike
 
 from lwa.base.arrays import Array
-from lwa.base.exact import InputError
+from validation.pulses.signals import MeasureError as MeasureError
+from validation.pulses.signals import Sampled, Signal
 
 Source = TypeVar("Source")
 
@@ -29,57 +30,6 @@ _POINTS = 4  # grid points in each smooth interval
 _DEGREE = 10  # of the interpolant about a peak, over half an interval: error about 1e-16
 _NOISE = 1e-6  # of the largest |signal|: less may be rounding, or a spline's overshoot
 _PARTLY = "the pulse is not wholly in the record:"
-
-
-class MeasureError(InputError):
-    """A record without the wanted pulse; the message says what is missing."""
-
-
-class Signal(Protocol):
-    """A function of time, called with times of any shape; NaN where it is not known."""
-
-    @property
-    def times(self) -> Array:
-        """Increasing times; the signal is smooth from each to the next."""
-        ...
-
-    def __call__(self, time: ArrayLike, /) -> Array: ...
-
-
-class Sampled:
-    """The cubic spline through samples, as a `Signal`.
-
-    Raises `MeasureError` unless time and values are finite, at least four, and time increases.
-    """
-
-    def __init__(self, time: ArrayLike, values: ArrayLike) -> None:
-        self.times, f = _record(time, values)
-        # Scaled by powers of two, which cost no digit: slopes may overflow where values do not.
-        scales = (self.times[-1] - self.times[0], np.abs(f).max())
-        self._pace, self._height = (2.0 ** (math.frexp(x)[1] - 1) for x in scales)
-        self._spline = scipy.interpolate.CubicSpline(self.times / self._pace, f / self._height)
-
-    def __call__(self, time: ArrayLike, /) -> Array:
-        """Values at any times within the record."""
-        scaled = np.asarray(time, float) / self._pace
-        return np.asarray(self._spline(scaled) * self._height)
-
-
-@dataclass(frozen=True)
-class Mapped:
-    """A function of the values of a signal, as a `Signal`."""
-
-    signal: Signal
-    function: Callable[[Array], Array]
-
-    @property
-    def times(self) -> Array:
-        """Those of the signal."""
-        return self.signal.times
-
-    def __call__(self, time: ArrayLike, /) -> Array:
-        """The function of the signal at these times."""
-        return self.function(self.signal(time))
 
 
 @dataclass(frozen=True)
@@ -101,18 +51,26 @@ class Pulse:
         return self.fall - self.rise
 
 
-def measure(time: ArrayLike, signal: ArrayLike) -> Pulse:
-    """Measure the highest pulse of a sampled record, both (S,), with increasing times.
+def measure(time: ArrayLike | Signal, values: ArrayLike | None = None) -> Pulse:
+    """Measure the highest pulse of a signal, or of samples.
 
-    Raises `MeasureError` for a record without a pulse, for a pulse that is not wholly in the
-    record, and for fewer than `FEWEST` samples above half its peak.
+    time : a signal such as `Run.signal(...)`, or increasing sample times (S,).
+    values : (S,), of the samples.
+
+    A signal is measured as accurately as it is known, samples as accurately as the cubic spline
+    through them. Raises `MeasureError` for a record without a pulse, for a pulse that is not wholly
+    in the record, and for fewer than `FEWEST` samples above half its peak.
 
     >>> t = np.linspace(-1, 1, 201)
     >>> pulse = measure(t, np.cos(np.pi * t / 2) ** 2)
     >>> round(pulse.peak, 6), round(pulse.fwhm, 6)
     (1.0, 1.0)
     """
-    sampled = Sampled(time, signal)
+    if values is None:
+        if not callable(time):
+            raise MeasureError("values are missing: they are wanted beside the sample times")
+        return highest_pulse(time)
+    sampled = Sampled(cast(ArrayLike, time), values)
     return dense(sampled, highest_pulse(sampled))
 
 
@@ -359,16 +317,3 @@ def compared(
     """Numbers read off an accurate run, with errors from a less accurate one."""
     less = numbers(coarse)
     return {name: Measured(value, less[name]) for name, value in numbers(fine).items()}
-
-
-def _record(time: ArrayLike, signal: ArrayLike) -> tuple[Array, Array]:
-    try:
-        t, f = np.asarray(time, float), np.asarray(signal, float)
-    except (TypeError, ValueError) as reason:
-        raise MeasureError(f"time and signal must be rows of numbers: {reason}") from None
-    if t.ndim != 1 or t.shape != f.shape or len(t) < 4:
-        shapes = f"time and signal have the shapes {t.shape} and {f.shape}"
-        raise MeasureError(f"{shapes}: two equally long rows of at least 4 samples are wanted")
-    if not (np.all(np.isfinite(t)) and np.all(np.isfinite(f)) and np.all(np.diff(t) > 0)):
-        raise MeasureError("time and signal must be finite, and time must increase")
-    return t, f

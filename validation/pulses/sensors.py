@@ -22,17 +22,15 @@ from validation.lattice.equations import Motion
 from validation.lattice.run import Run
 from validation.lattice.simulate import COMPILED, twice
 from validation.pulses.pulse import (
-    Mapped,
     Measured,
     MeasureError,
     Pulse,
-    Sampled,
-    Signal,
     all_pulses,
     compared,
     first_pulse,
     speed,
 )
+from validation.pulses.signals import Mapped, Sampled, Signal
 from validation.scenes.checks import SceneError, between
 from validation.scenes.scene import Scene
 

@@ -1,1 +1,1 @@
-"""What a result looks like: findings and curves, text, documents, pictures, files."""
+"""Results of studies: tables, findings, pictures, and commands that print them."""

@@ -16,7 +16,8 @@ import click
 from tqdm import tqdm
 
 from lwa.base.progress import lines, shown
-from lwa.command.terminal import HELP, called, quantity
+from lwa.command.reading import called, quantity
+from lwa.command.terminal import HELP
 from lwa.command.terminal import run as run_command
 from validation.pictures.figure import SUFFIXES
 from validation.report.files import output_file

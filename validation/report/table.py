@@ -1,4 +1,4 @@
-"""What a result is told in: tables of values, and findings that hold or do not."""
+"""Tables of values, and findings: numbers held to bounds, or statements."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ from validation.pulses.pulse import Measured
 
 @dataclass(frozen=True)
 class Column:
-    """One quantity.
+    """Column of a table.
 
-    key : its JSON name; of what stands in a mapping with a dot, as in "theory_value.speed". None
-        for people only.
-    label : what people read above it, with the unit; none for programs only.
-    format : of a cell: a format specification such as ".1e", or a function.
-    error : whether cells are `validation.pulses.pulse.Measured`, or None: programs read two
+    key : JSON name, with a dot for an entry of a mapping, as in "theory_value.speed"; empty for a
+        column that is only printed.
+    label, unit : printed above the column; without a label the column is not printed.
+    format : of printed cells, a format specification such as ".1e" or a function.
+    error : True for cells that are `validation.pulses.pulse.Measured` (or None): in JSON two
         numbers, KEY_value and KEY_error_value.
     """
 
@@ -35,7 +35,7 @@ class Column:
     error: bool = False
 
     def values(self, cell: Any) -> Iterator[tuple[str, Any]]:
-        """Names and plain values for programs.
+        """JSON names and values of a cell.
 
         >>> dict(Column("speed.m1", error=True).values(Measured(2.0, 1.75)))
         {'speed_value.m1': 2.0, 'speed_error_value.m1': 0.25}
@@ -50,11 +50,12 @@ class Column:
 
 @dataclass(frozen=True, eq=False)
 class Table:
-    """Rows of cells, one for each column.
+    """Rows of cells, one cell for each column.
 
-    key : its name in a document, where it has one; the first table of a report is its CSV.
-    by : key of a column: for people the table falls into one for each of its values, with what
-        ``heads`` says of the value above it.
+    key : JSON name of the table; the first table with keys is the CSV of a report.
+    title, note : printed above and below the table.
+    by : key of a column by whose values the printed table is divided.
+    heads : printed heading of each part, by the value; by default the value itself.
     """
 
     columns: tuple[Column, ...]
@@ -66,7 +67,7 @@ class Table:
     heads: Mapping[str, str] = field(default_factory=dict)
 
     def records(self) -> list[dict[str, Any]]:
-        """Each row's names and plain values, in the columns' order, names with their dots."""
+        """JSON names (with their dots) and values of each row, in the order of the columns."""
         keyed = [(i, column) for i, column in enumerate(self.columns) if column.key]
         return [
             dict(pair for i, column in keyed for pair in column.values(row[i])) for row in self.rows
@@ -81,7 +82,7 @@ class Table:
         return [_nested(record) for record in self.records()]
 
     def csv(self) -> str:
-        """A header of keys, and a line for each row; empty where there is no value.
+        """The table as CSV: a header of keys and a line for each row, with empty cells for None.
 
         >>> print(Table((Column("k"), Column("c", error=True)), ((2, None),)).csv(), end="")
         k,c_value,c_error_value
@@ -102,7 +103,7 @@ class Table:
 
 
 def plain(value: Any) -> Any:
-    """A value as JSON holds it: exact numbers as texts that SymPy reads, None for no number."""
+    """Convert a value for JSON: exact numbers to texts that SymPy reads, NaN and ∞ to None."""
     if isinstance(value, sp.Basic):
         return str(value)
     if isinstance(value, np.ndarray | np.generic):
@@ -129,11 +130,11 @@ def _nested(record: Mapping[str, Any]) -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class Finding:
-    """One measured number.
+    """A number held to bounds.
 
-    low, high : what it must lie between, its error included; a number without either is only told.
-    error : of the value; None where the number is itself an error, or exact.
-    key : by which a program finds it in the document; none for the many of a loop.
+    low, high : bounds of the value, its error included; without them every number holds.
+    error : of the value; None if the value is exact, or itself an error.
+    key : JSON name, KEY_value; by default none.
 
     >>> Finding("order", 2.4, 2.0, 3.0, error=0.1).ok
     True
@@ -152,17 +153,17 @@ class Finding:
     def of(
         cls, quantity: str, measured: Measured, low: float, high: float, key: str = ""
     ) -> Finding:
-        """A number that was measured twice."""
+        """A finding of a measured number with its error."""
         return cls(quantity, measured.value, low, high, measured.error, key)
 
     @property
     def ok(self) -> bool:
-        """Whether it lies where it must; a NaN never does."""
+        """True if the value lies within its bounds; False for NaN."""
         error = self.error or 0.0
         return bool(self.low <= self.value - error and self.value + error <= self.high)
 
     def document(self) -> dict[str, Any]:
-        """For JSON; null is the error of what is exact or itself an error, and no bound."""
+        """The finding for JSON, with null for a missing error or bound."""
         found = {
             "quantity": self.quantity,
             "measured_value": self.value,
@@ -176,7 +177,7 @@ class Finding:
 
 @dataclass(frozen=True)
 class Statement:
-    """What holds or does not, such as that something is refused, in the words of the refusal."""
+    """A statement that holds or not, such as a refusal in its own words."""
 
     quantity: str
     says: str

@@ -1,1 +1,1 @@
-"""What is simulated: beads, contacts, sensors, and the files that describe them."""
+"""Scenes: beads, contacts, initial states, sensors, and the files that describe them."""

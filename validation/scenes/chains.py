@@ -1,7 +1,4 @@
-"""Chains with a motion put into them: a blow at the first bead, or a wave on its way; A = 1.
-
-The paper's, `chain_scene`, is in SI units.
-"""
+"""Scenes of chains that are struck or carry a wave, with A = 1, and the paper's chain in SI."""
 
 from __future__ import annotations
 
@@ -20,7 +17,7 @@ from validation.scenes.scene import Scene
 
 
 def struck(masses: Sequence[float], beads: int, k: float = 1.5, **rest: Any) -> Scene:
-    """So many beads at rest, whose masses repeat; the first one has velocity 1 by default.
+    """A chain of beads with repeating masses, the first of which has velocity 1 by default.
 
     >>> struck((1, 0.5), 3, duration=1).masses
     (1.0, 0.5, 1.0)
@@ -31,7 +28,7 @@ def struck(masses: Sequence[float], beads: int, k: float = 1.5, **rest: Any) -> 
 
 
 def numbered(masses: Sequence[Any]) -> Cell:
-    """The theory's cell of these masses at D = 1. Raises `SceneError` unless they are numbers."""
+    """The cell of these masses with spacing 1; `SceneError` unless they are numbers."""
     cell = Cell(tuple(masses), spacing=1)
     for mass in cell.masses:
         if not mass.is_number:
@@ -48,8 +45,10 @@ def chain_scene(
     N: int = 1,
     ptfe: Sphere = PTFE_BEAD,
 ) -> Scene:
-    """The N:1 chain of steel and PTFE of Porter et al. (2008), which ends in a steel wall and is
-    struck by its first bead; it records the sensor beads, their two contacts each, and the wall's.
+    """The N:1 chain of steel and PTFE of Porter et al. (2008), struck by its first bead.
+
+    It ends in a steel wall. Sensors, counted from 1: the given beads, the two contacts of each of
+    them, and the wall's contact.
     """
     around = sorted({bead - 1 + side for bead in sensors for side in (-1, 0)})
     return Scene.of_beads(
@@ -67,7 +66,7 @@ def chain_scene(
 def carrying(
     masses: Sequence[float], k: float, compression: ArrayLike, velocity: ArrayLike, **rest: Any
 ) -> Scene:
-    """A chain with these compressions of its contacts and velocities of its beads."""
+    """A chain that starts with these compressions of its contacts and velocities of its beads."""
     strain = np.asarray(compression, float)
     return Scene(
         masses=tuple(masses),
@@ -81,8 +80,11 @@ def carrying(
 
 
 class Wave(Protocol):
-    """A traveling wave of a dimer: its speed c, and at ξ the strain of contacts behind beads of
-    either mass and the velocity of such beads."""
+    """Attributes that a traveling wave of a dimer must provide to be launched.
+
+    c : speed. strain, velocity : at ξ = x - ct, of contacts behind a bead of either mass (0: m1,
+    1: m2), and of such beads.
+    """
 
     @property
     def k(self) -> float: ...
@@ -95,13 +97,14 @@ class Wave(Protocol):
 
 
 def launched(wave: Wave, start: int, sites: int, **rest: Any) -> Scene:
-    """A chain with a wave at bead ``start``, an m1, to run so many sites further; by default with
-    sensors at the contacts half way and at the end."""
+    """A chain that carries a wave at bead ``start``, of mass m1, and is long enough for ``sites``.
+
+    By default the contacts halfway and at the end have sensors.
+    """
     bead = np.arange(2 * start + sites) - start
     at, even = bead[:-1] + 0.5, bead % 2 == 0
     options: dict[str, Any] = dict(
         contact_sensors=(start + sites // 2, start + sites),
-        samples=4001,
         duration=(sites + start / 2) / wave.c,
     )
     strain = np.where(even[:-1], wave.strain(at, 0), wave.strain(at, 1))

@@ -1,8 +1,4 @@
-"""Numbers that enter a scene become finite floats here, or are refused.
-
-The counterpart of `lwa.base.exact` for the lattice: every fault is one line that names the value
-and says what would be right.
-"""
+"""Checked input of scenes: finite floats, or one line that names the value and the remedy."""
 
 from __future__ import annotations
 
@@ -21,22 +17,22 @@ T = TypeVar("T")
 
 
 class SceneError(InputError):
-    """A scene, or a part of one, that cannot be meant: the message says what would be right."""
+    """Invalid input of a scene; the message names the value and what would be right."""
 
 
 class Failure(RuntimeError):
-    """A computation that could not go on, of good input: the message says where and why."""
+    """A computation with valid input that could not go on; the message says where and why."""
 
 
 def one_of(value: Any, choices: Collection[str], name: str) -> str:
-    """A text that is one of the choices; raises `SceneError` for anything else."""
+    """Check that a text is one of the choices."""
     if not isinstance(value, str) or value not in choices:
         raise SceneError(f"{name} is {shorten(value)}: one of {', '.join(choices)} is wanted")
     return value
 
 
 def of_scene(read: Callable[P, T]) -> Callable[P, T]:
-    """The same function, whose refusals are `SceneError`."""
+    """The same function, which raises `SceneError` in place of `lwa.InputError`."""
 
     @wraps(read)
     def checked(*args: P.args, **options: P.kwargs) -> T:
@@ -54,7 +50,7 @@ integer = of_scene(tables.integer)
 
 
 def between(value: Any, name: str, low: float, high: float, wanted: str = "") -> float:
-    """`real`, and refused unless it lies there; ``wanted`` is what would be right."""
+    """Read a finite number between two limits; ``wanted`` ends the message of a refusal."""
     number = real(value, name)
     if not low <= number <= high:
         wanted = wanted or f"it lies between {low:g} and {high:g}"
@@ -66,9 +62,9 @@ def between(value: Any, name: str, low: float, high: float, wanted: str = "") ->
 def row(
     values: Sequence[Any], read: Callable[[Any, str], float], name: Callable[[int], str]
 ) -> Any:
-    """Every value by a reader; ``name`` is what messages call number i of them, from 0.
+    """Read every value of a row; ``name(i)`` is the name of value i in messages.
 
-    `real` and `positive` check a row of a million numbers at once.
+    `real` and `positive` check a row of numbers at once: a chain may have a million beads.
     """
     if read in (real, positive) and set(map(type, values)) <= {int, float, np.float64}:
         try:
@@ -81,12 +77,12 @@ def row(
 
 
 def each(reader: Reader) -> Reader:
-    """`lwa.base.tables.each`, by `row`."""
+    """Reader of a list whose items are read alike, fast for numbers."""
     return lambda value, name: row(array(value, name), reader, lambda i: f"{name} number {i + 1}")
 
 
 def items(values: Any, name: str) -> tuple[Any, ...]:
-    """The items of a sequence; raises `SceneError` for a text or a single value."""
+    """The items of a sequence; `SceneError` for a text or a single value."""
     if isinstance(values, str | bytes) or not hasattr(values, "__iter__"):
         raise SceneError(f"{name} is {shorten(values)}: a sequence is wanted")
     return tuple(values)

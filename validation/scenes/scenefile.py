@@ -99,7 +99,7 @@ KEYS = {
 }
 
 
-def read(path: str | Path) -> Scene:
+def read_scene(path: str | Path) -> Scene:
     """Read a scene from a TOML or a JSON file.
 
     Raises `SceneError`, in one line, for a file that cannot be read or is not a scene.

@@ -1,1 +1,1 @@
-"""The studies, each a comparison of theory and lattice."""
+"""Studies: comparisons of theory and lattice, each a command of `lwa-validate`."""

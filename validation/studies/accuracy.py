@@ -37,7 +37,8 @@ from lwa.base.progress import Progress
 from validation.lattice.run import IntegrationError, Run
 from validation.lattice.simulate import COMPILED, simulate
 from validation.pictures.panel import Curve, Panel
-from validation.pulses.pulse import Mapped, MeasureError, Pulse, highest_pulse
+from validation.pulses.pulse import MeasureError, Pulse, highest_pulse
+from validation.pulses.signals import Mapped
 from validation.report.command import option, study
 from validation.report.result import Report
 from validation.report.table import Column, Finding, Table

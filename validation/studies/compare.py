@@ -9,13 +9,14 @@ import click
 from lwa.base.arrays import Array
 from validation.lattice.cost import RunProgress, silent
 from validation.pictures.panel import Curve, Panel
-from validation.pulses.pulse import Measured, Pulse, Sampled, compared, dense, derived, first_pulse
+from validation.pulses.pulse import Measured, Pulse, compared, dense, derived, first_pulse
 from validation.pulses.sensors import READINGS, Track, record, tracks
+from validation.pulses.signals import Sampled
 from validation.report.command import study
 from validation.report.result import Report
 from validation.report.table import Column, Table
 from validation.scenes.checks import SceneError
-from validation.scenes.scenefile import read
+from validation.scenes.scenefile import read_scene
 from validation.studies.records import columns
 
 _NOTE = (
@@ -35,7 +36,7 @@ def compare(scene: str, measured: str, run_progress: RunProgress = silent) -> Re
     ``arrival``, ``peak``, ``fwhm`` the ``…_value``, ``…_measured_value`` and
     ``…_difference_value`` (measured less simulated) with errors; ``shift_value``.
     """
-    what = read(scene)
+    what = read_scene(scene)
     if not (what.bead_sensors or what.contact_sensors):
         raise SceneError(f"{scene}: the scene names no sensors")
     found = record(what, progress=run_progress)

@@ -24,7 +24,7 @@ import numpy as np
 import sympy as sp
 
 from lwa import Cell, PhysicalWave, Sphere, canonical_wave, homogenize
-from lwa.command.terminal import quantities
+from lwa.command.reading import quantities
 from validation.lattice.cost import RunProgress, silent
 from validation.lattice.run import Run
 from validation.lattice.simulate import twice

@@ -20,7 +20,7 @@ from validation.report.result import Report
 from validation.report.table import Column, Table
 from validation.scenes.checks import SceneError
 from validation.scenes.scene import Scene
-from validation.scenes.scenefile import document, read
+from validation.scenes.scenefile import document, read_scene
 from validation.studies.records import KEPT, SUFFIXES, load, store
 
 _NOTE = "{} at each sensor, in {} units. ±: difference to a less accurate run."
@@ -119,7 +119,7 @@ def _cells(found: Reading, names: Sequence[str]) -> list[Any]:
 
 
 def _read(path: str) -> Scene:
-    return load(path).scene if path.lower().endswith(".npz") else read(path)
+    return load(path).scene if path.lower().endswith(".npz") else read_scene(path)
 
 
 def _out(context: click.Context, given: click.Parameter, path: str | None) -> Path | None:

@@ -11,8 +11,9 @@ from scipy.special import erf
 from lwa import Dimer
 from lwa.linear.dispersion import Dispersion
 from validation.lattice.simulate import simulate
-from validation.pulses.pulse import MeasureError, Sampled, all_pulses, derived, first_pulse
+from validation.pulses.pulse import MeasureError, all_pulses, derived, first_pulse
 from validation.pulses.sensors import record, tracks
+from validation.pulses.signals import Sampled
 from validation.scenes.chains import struck
 from validation.scenes.scene import Scene, SceneError
 from validation.scenes.scenefile import scene

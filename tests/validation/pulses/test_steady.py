@@ -10,7 +10,8 @@ import sympy as sp
 from validation.lattice.run import IntegrationError
 from validation.lattice.simulate import simulate
 from validation.pulses import steady
-from validation.pulses.pulse import Sampled, leading_pulse
+from validation.pulses.pulse import leading_pulse
+from validation.pulses.signals import Sampled
 from validation.pulses.steady import QUANTITIES, STRETCH, point
 from validation.scenes.scene import Scene
 from validation.waves.solver import exact_wave, solve

@@ -19,7 +19,7 @@ from lwa.spheres.hertz import Material, Sphere
 from validation.scenes import scenefile
 from validation.scenes.materials import STEEL, contact_stiffness
 from validation.scenes.scene import Scene, SceneError
-from validation.scenes.scenefile import document, read, scene
+from validation.scenes.scenefile import document, read_scene, scene
 from validation.studies.paper import chain_scene
 
 # The experiment of Porter et al. (2008), standing upright: SI units.
@@ -213,8 +213,8 @@ def test_a_scene_written_is_read_back_equal(what):
 def test_files_there_and_back(tmp_path, text):
     file, first = tmp_path / "scene.json", tmp_path / "first.toml"
     first.write_text(text)
-    file.write_text(json.dumps(document(read(first))))
-    assert read(file) == read(first)
+    file.write_text(json.dumps(document(read_scene(first))))
+    assert read_scene(file) == read_scene(first)
     assert len(file.read_text()) < 800  # a periodic chain is written as its cell
 
 
@@ -382,7 +382,7 @@ def test_bad_files(tmp_path, name, content, message):
     if content is not None:
         file.write_bytes(content)
     with pytest.raises(SceneError) as caught:
-        read(file)
+        read_scene(file)
     found = str(caught.value)
     assert found.startswith(f"{file}: ")
     assert re.match(message, found.removeprefix(f"{file}: "))
@@ -393,7 +393,7 @@ def test_a_file_without_end_is_refused(monkeypatch, tmp_path):
     monkeypatch.setitem(files.MOST_BYTES, ".toml", 10)
     (tmp_path / "s.toml").write_text("duration = 1")
     with pytest.raises(SceneError, match=r"s.toml: more than 10 bytes, the most that is read$"):
-        read(tmp_path / "s.toml")
+        read_scene(tmp_path / "s.toml")
 
 
 leaves = st.one_of(

@@ -8,7 +8,7 @@ import pytest
 from tests.commands import ended
 from validation import cli, simulate
 from validation.scenes.scene import SceneError
-from validation.scenes.scenefile import read
+from validation.scenes.scenefile import read_scene
 from validation.studies.compare import compare
 
 SCENE = """
@@ -26,7 +26,7 @@ LATE, STRONGER = 2.5, 1.02
 def files(tmp_path):
     scene, measured = tmp_path / "scene.toml", tmp_path / "measured.csv"
     scene.write_text(SCENE)
-    run = simulate(read(scene), rtol=1e-10)
+    run = simulate(read_scene(scene), rtol=1e-10)
     first, second = run.contact_force
     np.savetxt(
         measured,

@@ -13,10 +13,10 @@ import scipy
 import sympy as sp
 
 from lwa import Dimer, NoSolitaryWave, canonical_wave, homogenize
+from tests.passage import passage, ratio
 from validation.lattice.run import IntegrationError
 from validation.lattice.simulate import simulate
 from validation.pulses.steady import STRETCH, point
-from validation.pulses.time_of_flight import passage, ratio
 from validation.scenes.chains import carrying, launched, struck
 from validation.waves.asymptotics import LAWS
 from validation.waves.solver import NoWave, solve

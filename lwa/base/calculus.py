@@ -1,0 +1,88 @@
+"""Integrals and ratios of powers that SymPy would multiply out, and roots of growing functions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import mpmath
+import sympy as sp
+
+LARGE = 32
+"""The exponent from which on a power of a sum is not multiplied out."""
+
+
+def integral(F: sp.Expr, x: sp.Symbol) -> sp.Expr:
+    """∫ F dx; terms with large powers or poles of linear functions by the rule for powers.
+
+    SymPy multiplies these out: large powers take long, and the terms of a pole cancel next to it.
+    """
+    parts = sp.Add.make_args(F) if _unexpanded(F) else (F,)
+    return sp.Add(*(_integral(part, x) for part in parts))
+
+
+def _unexpanded(F: sp.Expr) -> bool:
+    powers = (power.exp for power in F.atoms(sp.Pow) if power.exp.is_Rational)
+    return any(abs(e) > LARGE or e < -1 for e in powers)
+
+
+def _integral(value: sp.Expr, x: sp.Symbol) -> sp.Expr:
+    factor, power = value.as_independent(x, as_Add=False)
+    base, e = power.as_base_exp()
+    if _unexpanded(power) and e.is_Rational and not base.diff(x).has(x):
+        return factor * base ** (e + 1) / (base.diff(x) * (e + 1))
+    return sp.integrate(value, x, conds="none")
+
+
+def ratio(top: sp.Expr, bottom: sp.Expr) -> sp.Expr:
+    """top/bottom in lowest terms, large powers not multiplied out.
+
+    b^e with |e| > `LARGE` is written as c b^{e - e0} with a symbol c for b^{e0}. The exponents of
+    derivatives of one function differ by a few, and c cancels in their ratio.
+    """
+    found: dict[sp.Expr, sp.Expr] = {}  # b → b^{e0}
+    new: dict[sp.Expr, sp.Expr] = {}
+    names: dict[sp.Expr, sp.Expr] = {}
+    powers = {p for p in (top.atoms(sp.Pow) | bottom.atoms(sp.Pow)) if p.exp.is_Rational}
+    for power in sorted((p for p in powers if abs(p.exp) > LARGE), key=sp.default_sort_key):
+        first = found.setdefault(power.base, power)
+        rest = power.exp - first.exp
+        if rest.is_Integer and abs(rest) <= LARGE:
+            c = names.setdefault(first, sp.Dummy("c", positive=True))
+            new[power] = c * power.base**rest
+    top, bottom = (sp.expand(x.xreplace(new)) for x in (top, bottom))
+    return sp.cancel(sp.powsimp(top / bottom)).xreplace({c: p for p, c in names.items()})
+
+
+def growing_root(F: sp.Expr, x: sp.Symbol) -> Any:
+    """x > 0 with F = 0 in mpmath's working precision, if F grows from x = 0 up to there, else None.
+
+    Steps that leave the interval on which F is real and grows (its pole, its maximum) are halved.
+    """
+    value, slope = (_real(sp.lambdify(x, f, "mpmath")) for f in (F, F.diff(x)))
+    low, step, least = mpmath.mpf(0), mpmath.mpf(2) ** -20, mpmath.mpf(2) ** -150
+    while (above := value(low + step)) < 0 or not slope(low + step) > 0:
+        if above > value(low) and slope(low + step) > 0:
+            low, step = low + step, step * mpmath.mpf("1.2")
+        else:
+            step /= 2
+        if step < least * max(low, 1) or low > 2**40:
+            return None
+    high = low + step
+    while high - low > mpmath.eps * high:  # bisection: F may be anything between
+        middle = (low + high) / 2
+        low, high = (middle, high) if value(middle) < 0 else (low, middle)
+    return high
+
+
+def _real(function: Callable[[Any], Any]) -> Callable[[Any], Any]:
+    """The function, -∞ at its poles and where it is not real."""
+
+    def value(x: Any) -> Any:
+        try:
+            found = function(x)
+        except ZeroDivisionError:
+            return -mpmath.inf
+        return mpmath.re(found) if mpmath.im(found) == 0 else -mpmath.inf
+
+    return value

@@ -1,0 +1,70 @@
+"""The command `lwa envelope`."""
+
+import math
+
+import pytest
+import sympy as sp
+
+from tests.lwa.command.answers import result, run
+
+
+def test_a_gap_breather_of_a_dimer(capsys):
+    """The light bead moves by p0 √(32 ν/(k (k - 1))), whatever the masses."""
+    options = ("envelope", "--masses", "1,1/2", "--k", "3/2", "--spacing", "1", "--background", "2")
+    found = result(capsys, *options, "--detuning", "1/1000")
+    heavy, light = found["amplitude_value"]
+    assert heavy == 0
+    assert light == pytest.approx(2 * math.sqrt(0.032 / 0.75), rel=1e-14)
+    assert (found["kind"], found["branch"], found["group_velocity_value"]) == ("bright", "1", 0)
+    edge = found["frequency_value"]
+    again = result(capsys, *options, "--frequency", f"{0.999 * edge:.16g}")
+    assert again["width_value"] == pytest.approx(found["width_value"], rel=1e-10)
+    status, out, _ = run(capsys, *options, "--detuning", "1/1000")
+    assert status == 0
+    assert "bright breather, |A| = a sech(b n):" in out
+
+
+def test_equal_beads_in_symbols(capsys):
+    """χ = -ω (k-1) (k - cos² κ/2)/(m δ0²) at any wavenumber."""
+    options = ("envelope", "--masses", "m", "--spacing", "1", "--background", "p0")
+    found = result(capsys, *options, "--wavenumber", "q")
+    k, m, p0, q = symbols = sp.symbols("k m p0 q", positive=True)
+    omega, chi = (
+        sp.sympify(found[name], locals={s.name: s for s in symbols})
+        for name in ("frequency", "nonlinearity")
+    )
+    expected = -omega * (k - 1) * (k - sp.cos(q / 2) ** 2) / (m * p0**2)
+    assert sp.simplify(chi - expected) == 0
+    assert found["kind"] is None
+    status, out, _ = run(capsys, *options, "--format", "latex")
+    assert status == 0
+    assert r"\chi &= " in out
+
+
+def test_any_wavenumber_and_cell_in_numbers(capsys):
+    options = ("envelope", "--masses", "1,2,3", "--k", "3/2", "--precompression", "1")
+    found = result(capsys, *options, "--wavenumber", "2pi/3", "--branch", "0")
+    exact = result(capsys, "dispersion", "--masses", "1,2,3", "--precompression", "1")
+    low, high = exact["band_edges_value"][0]
+    assert low < found["frequency_value"] < high
+    again = result(capsys, *options, "--wavenumber", "2.0943951023931953", "--branch", "acoustic")
+    assert again["nonlinearity_value"] == pytest.approx(found["nonlinearity_value"], rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ((), "background or precompression"),
+        (("--background", "1", "--precompression", "1"), "background or precompression"),
+        (("--background", "1", "--wavenumber", "4"), "0 … pi"),
+        (("--background", "1", "--wavenumber", "pi*2"), "wavenumber is 'pi*2'"),
+        (("--background", "1", "--branch", "up"), "branch is 'up'"),
+        (("--background", "1", "--detuning", "1", "--frequency", "1"), "both given"),
+        (("--background", "1", "--masses", "chi,1"), "'chi' has a meaning of its own"),
+        (("--precompression", "1", "--masses", "1,1/2", "--k", "2", "--detuning", "-1"), "below"),
+    ],
+)
+def test_bad_input_is_one_line(capsys, options, words):
+    status, out, err = run(capsys, "envelope", *options)
+    assert (status, out, err.count("\n")) == (2, "", 1)
+    assert words in err
