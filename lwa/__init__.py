@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from lwa.expansion.strike import Strike, graded_force, pulse_of_strike, transmitted_force
     from lwa.law import ContactLaw, Law, Power, general
     from lwa.linear.dispersion import Dispersion, LoadedChain
+    from lwa.shocks import Shock, piston, shock
     from lwa.spheres import hertz
     from lwa.spheres.hertz import Material, Sphere
     from lwa.theory import Theory, homogenize
@@ -87,6 +88,7 @@ __all__ = [
     "Radiation",
     "Reduction",
     "Resummed",
+    "Shock",
     "Solution",
     "Sphere",
     "Strike",
@@ -101,7 +103,9 @@ __all__ = [
     "graded_force",
     "hertz",
     "homogenize",
+    "piston",
     "pulse_of_strike",
+    "shock",
     "transmitted_force",
 ]
 
@@ -136,6 +140,7 @@ _MODULES = {
     "equation.pde": "PDE",
     "base.quantities": "NoSolitaryWave",
     "wave.reduction": "Reduction",
+    "shocks": "Shock piston shock",
     "spheres.hertz": "Material Sphere",
     "equation.terms": "Jet Powers Terms",
     "theory": "Theory homogenize",

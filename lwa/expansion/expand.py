@@ -113,6 +113,17 @@ class Expansion(Value):
         unit = sp.sqrt(2 * sp.pi * self.I) * self.cell.mass / self.cell.size
         return self._series("effective_mass", unit, -sp.S.Half)
 
+    @cached_property
+    def peak_velocity(self) -> EpsilonSeries:
+        """The largest velocity of a bead, in a chain of equal beads.
+
+        Raises `lwa.InputError` for unlike beads or contacts.
+        """
+        if len({*self.cell.masses}) + len({*self.cell.stiffnesses}) > 2:
+            raise InputError("the beads or contacts differ: their velocities peak one by one")
+        unit = sp.sqrt(self._sound) * self.compliance
+        return self._series("peak_velocity", unit, sp.S.Zero)
+
     def dissipation(self, kind: str) -> EpsilonSeries:
         """Energy that the wave loses per contact, over a small damping constant γ.
 

@@ -66,24 +66,33 @@ class Observables:
 
     @cached_property
     def velocity(self) -> Series:
-        """That of the first bead's velocity, in the same unit.
+        """The first bead's velocity's width, in the same unit."""
+        log: Series = []
+        for _ in self._slope:
+            log.append(log_term(self._slope, log))
+        return half_width(log)
 
-        Seen half a cell off, where the velocity of equal beads is even: (P∂/2)/sinh(P∂/2) of the
-        mean strain.
+    @cached_property
+    def peak_velocity(self) -> Series:
+        """The peak velocity of equal beads over its leading term: c times the slope at Z = 0."""
+        zero = self.wave.zero
+        return product(self.c, [by_degree(term).get(0, zero) for term in self._slope])
+
+    @cached_property
+    def _slope(self) -> Series:
+        """The first bead's slope half a cell off, where it is even for equal beads.
+
+        It is (P∂/2)/sinh(P∂/2) of the mean strain.
         """
         wave = self.wave
         weights = [
             (fmpq(2) ** (1 - m) - 1) * fmpq(wave.P**m, factorial(m)) * rational(sp.bernoulli(m))
             for m in range(0, 2 * self.order + 1, 2)
         ]
-        slope = [
+        return [
             sum((w * term for w, term in zip(weights, terms[::2], strict=False)), wave.zero)
             for terms in wave.fields.means
         ]
-        log: Series = []
-        for _ in slope:
-            log.append(log_term(slope, log))
-        return half_width(log)
 
     @cached_property
     def momentum(self) -> Series:

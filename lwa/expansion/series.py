@@ -29,6 +29,7 @@ _LETTERS = {
     "kinetic": "T",
     "energy": "E",
     "effective_mass": r"m_\mathrm{eff}",
+    "peak_velocity": r"v_\mathrm{max}",
     "linear_loss": "D_0",
     "kuwabara_kono_loss": "D_1",
 }

@@ -16,6 +16,7 @@ from lwa import (
     envelope,
     general,
     homogenize,
+    shock,
 )
 from lwa.linear.dispersion import LoadedChain
 
@@ -49,6 +50,7 @@ MADE = {
     "precompressed": lambda: canonical_wave(Dimer(m1, m2)).at_force("F", precompression="F0"),
     "envelope": lambda: envelope(Dimer(m1, m2), Power("k"), background="p0"),
     "breather": lambda: envelope(Dimer(2, 1), Power(2), background=1).breather(detuning="1/100"),
+    "shock": lambda: shock(Dimer(2, 1), Power(2), 2, 1),
     "loaded": lambda: LoadedChain(Dimer(m1, m2), Power("3/2"), "F0"),
 }
 

@@ -52,7 +52,14 @@ class Motion:
         self.scene, self.size = scene, scene.size
         self.masses = np.array(scene.masses)
         self.stiffnesses = np.array(scene.stiffnesses + wall)
-        self.k, self.contact = scene.k, Contact(scene.k, scene.law)
+        damping = scene.damping
+        braked = None if damping is None else damping.power(scene.k)
+        self.k, self.contact = scene.k, Contact(scene.k, scene.law, braked)
+        self.damping = np.zeros(len(self.stiffnesses))
+        if damping is not None:
+            heavier = np.append(self.masses[1:], math.inf)[: len(self.stiffnesses)]
+            reduced = 1 / (1 / self.masses[: len(self.stiffnesses)] + 1 / heavier)
+            self.damping = damping.coefficients(self.k, self.stiffnesses, reduced)
         with np.errstate(over="ignore", invalid="ignore"):
             self.rest = self.load = np.zeros(len(self.stiffnesses))
             self.loaded = bool(scene.gravity or scene.precompression)
@@ -73,6 +80,11 @@ class Motion:
         dynamic = row[:-1] - row[1:]
         return np.asarray((self.rest + dynamic.T).T) if self.loaded else dynamic
 
+    def rate(self, v: Array) -> Array:
+        """dδ_i/dt, for velocities of shape (n,)."""
+        row = np.append(v, 0.0) if len(self.rest) == len(v) else v
+        return np.asarray(row[:-1] - row[1:])
+
     def force(self, compression: Array) -> Array:
         """F_i = A_i F(δ_i), of a power A_i [δ_i]_+^k."""
         return np.asarray((self.stiffnesses * self.contact.force(compression).T).T)
@@ -90,7 +102,7 @@ class Motion:
 
         Contacts before the ``first`` do not count.
         """
-        compression, v = self.compression(state[: self.size]), state[self.size :]
+        compression, v = self.compression(state[: self.size]), state[self.size : 2 * self.size]
         if self.contact.law is None:
             stored = (self.force(compression) * compression - self.load * self.rest) / (self.k + 1)
         else:
@@ -100,24 +112,34 @@ class Motion:
             stored -= self.load * (compression - self.rest)
         return float(self.masses @ v**2 / 2 + stored[first:].sum())
 
+    def balance(self, state: Array) -> float:
+        """The energy, with what has entered and left since the start taken off."""
+        return self.energy(state)
+
+    @property
+    def driven(self) -> float:
+        """The energy that a drive can give to a bead."""
+        return 0.0
+
     def momentum_drift(self, end: Array) -> float | None:
-        """Change of the momentum, from the start to a state, over Σ m|v|; None with a wall."""
-        if self.scene.wall is not None:
+        """Change of the momentum since the start over Σ m|v|; None with a wall or a drive."""
+        if self.scene.wall is not None or self.scene.drive is not None:
             return None
-        before, after = self.start[self.size :], end[self.size :]
+        moving = slice(self.size, 2 * self.size)
+        before, after = self.start[moving], end[moving]
         total = self.masses @ np.abs(after)
         return float(self.masses @ (after - before) / total) if total else 0.0
 
     def _stirred(self, rest: float) -> bool:
         """Whether a bead moves, or a contact is pressed more than at rest, to begin with."""
         pressed = self.compression(self.start[: self.size]).max(initial=0.0) > rest
-        return bool(pressed or np.any(self.start[self.size :]))
+        return bool(pressed or np.any(self.start[self.size : 2 * self.size]))
 
     @cached_property
     @np.errstate(all="ignore")
     def scales(self) -> Scales:
         """Of the motion from its start. Raises `SceneError` where a float cannot hold one."""
-        energy, n, A = self.energy(self.start), self.size, self.stiffnesses
+        energy, n, A = self.energy(self.start) + self.driven, self.size, self.stiffnesses
         deepest = at_rest = self.rest.max(initial=0.0) if self.loaded else 0.0
         stiffest = A.max(initial=0.0)
         if not math.isfinite(energy) or (energy == 0 and self._stirred(deepest)):

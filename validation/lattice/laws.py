@@ -23,10 +23,14 @@ from lwa.law import ContactLaw
 
 @dataclass(frozen=True)
 class Contact:
-    """The force F(δ) of a contact of unit stiffness, for `ContactLaw` or for the power δ^k."""
+    """The force F(δ) of a contact of unit stiffness, for `ContactLaw` or for the power δ^k.
+
+    braked : exponent of δ beside the rate in the damping of the contact; None without damping.
+    """
 
     k: float
     law: ContactLaw | None = None
+    braked: float | None = None
 
     @cached_property
     def pulls(self) -> bool:
@@ -51,6 +55,14 @@ class Contact:
         if self.law is not None:
             return self._held(2, compression)
         return np.asarray(self.force(compression) * compression / (self.k + 1))
+
+    def damped(self, elastic: Array, damping: Array, compression: Array, rate: Array) -> Array:
+        """The forces of contacts (contacts, …) whose elastic parts and damping these are."""
+        if self.braked is None:
+            return elastic
+        closed = compression if self.pulls else np.maximum(compression, 0.0)
+        total = elastic + (damping * (closed**self.braked * rate).T).T
+        return total if self.pulls else np.where(compression > 0, np.maximum(total, 0.0), 0.0)
 
     def _held(self, order: int, compression: Array) -> Array:
         function = _functions(self.law)[order]

@@ -25,6 +25,7 @@ _SI = {
     "compression": "m",
     "displacement": "m",
     "velocity": "m/s",
+    "energy": "J",
 }
 _MOST = 10  # sensors of one kind that are drawn as curves; more are drawn as a map
 _FINEST = 1000  # places, and times, of a map
@@ -72,8 +73,27 @@ class Records(ArrayValue, Pictured):
         """
         return f"{quantity} ({_SI[quantity.split()[-1]]})" if self.scene.units else quantity
 
+    @property
+    def energy(self) -> Array:
+        """Kinetic and elastic energy above equilibrium at the sample times, (S,).
+
+        Raises `SceneError` unless the scene has sensors at all beads.
+        """
+        sensors, size = self.scene.bead_sensors, self.scene.size
+        if len(sensors) < size:
+            raise SceneError(
+                f"energy needs sensors at all {size} beads: the scene has {len(sensors)}"
+            )
+        order = np.argsort(sensors)
+        states = np.concatenate((self.bead_displacement[order], self.bead_velocity[order]))
+        motion = Motion(self.scene)
+        return np.array([motion.energy(state) for state in states.T])
+
     def columns(self) -> dict[str, Array]:
-        """Time and all records, each (S,), by names such as "bead 15 force (N)"."""
+        """Time and all records, each (S,), by names such as "bead 15 force (N)".
+
+        With sensors at all beads also the energy.
+        """
         scene = self.scene
         found = {"time": self.time}
         for row, i in enumerate(scene.bead_sensors):
@@ -82,6 +102,8 @@ class Records(ArrayValue, Pictured):
         for row, i in enumerate(scene.contact_sensors):
             found[f"contact {i + 1} force"] = self.contact_force[row]
             found[f"contact {i + 1} compression"] = self.compression[row]
+        if len(scene.bead_sensors) == scene.size:
+            found["energy"] = self.energy
         return {self.label(name): values for name, values in found.items()}
 
     def to_pandas(self) -> Any:
@@ -137,6 +159,7 @@ class Run(Records):
     window : number of beads followed behind the front; what lies further behind is NaN in all
         arrays. None for the whole chain.
     path : motion of the beads near sensors throughout the run, for `signal`.
+    dissipated, work : energy that damped contacts have turned into heat, and work of the drive.
     """
 
     displacements: Array
@@ -148,6 +171,8 @@ class Run(Records):
     step: float
     window: int | None = None
     path: Path | None = field(default=None, compare=False)
+    dissipated: float = 0.0
+    work: float = 0.0
 
     def signal(self, kind: str, number: int, quantity: str = "force") -> Signal:
         """The motion at a sensor as a function of time, of which the records are samples.
@@ -179,9 +204,10 @@ def finished(
 ) -> Run:
     """The run that ended in the state ``end`` with this energy and change of momentum."""
     n, before = motion.size, motion.scales.energy
-    arrays = records | {"displacements": end[:n].copy(), "velocities": end[n:].copy()}
+    arrays = records | {"displacements": end[:n].copy(), "velocities": end[n : 2 * n].copy()}
     for array in arrays.values():
         array.setflags(write=False)
+    dissipated, work = map(float, end[2 * n :] if len(end) > 2 * n else (0, 0))
     return Run(
         scene=motion.scene,
         energy_drift=(energy - before) / before if before else 0.0,
@@ -191,5 +217,7 @@ def finished(
         step=motion.scene.duration / steps,
         window=window,
         path=path,
+        dissipated=dissipated,
+        work=work,
         **arrays,
     )

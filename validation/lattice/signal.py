@@ -56,7 +56,8 @@ class Sensor:
     """A "contact" or "bead" sensor of a scene, with the contacts on which its records depend.
 
     number : of the contact or bead, from 0. first : number of the first contact. rest,
-    stiffnesses : static compressions and stiffnesses of these contacts. contact : their law.
+    stiffnesses, damping : static compressions, stiffnesses and damping coefficients of these
+    contacts. contact : their law.
     """
 
     kind: str
@@ -64,6 +65,7 @@ class Sensor:
     first: int
     rest: tuple[float, ...]
     stiffnesses: tuple[float, ...]
+    damping: tuple[float, ...]
     contact: Contact
 
     @classmethod
@@ -71,8 +73,9 @@ class Sensor:
         """The sensor at this contact or bead of a scene."""
         first = number if kind == "contact" else max(number - 1, 0)
         contacts = slice(first, number + 1)
-        A, rest = motion.stiffnesses[contacts], motion.rest[contacts]
-        return cls(kind, number, first, tuple(rest), tuple(A), motion.contact)
+        rows = motion.rest, motion.stiffnesses, motion.damping
+        rest, A, damping = (tuple(row[contacts]) for row in rows)
+        return cls(kind, number, first, rest, A, damping, motion.contact)
 
     @property
     def beads(self) -> range:
@@ -86,7 +89,9 @@ class Sensor:
     def values(self, y: Array, v: Array) -> dict[str, Array]:
         """Each quantity of the sensor from the motion (beads, S) of its beads."""
         compressions = self.compressions(y)
-        forces = np.array(self.stiffnesses)[:, None] * self.contact.force(compressions)
+        elastic = np.array(self.stiffnesses)[:, None] * self.contact.force(compressions)
+        damping = np.array(self.damping)
+        forces = self.contact.damped(elastic, damping, compressions, v[:-1] - v[1:])
         if self.kind == "contact":
             return {"force": forces[0], "compression": compressions[0]}
         own = self.number - self.first  # an end without a contact counts as 0

@@ -21,7 +21,7 @@ import numpy as np
 
 from lwa.base.exact import shorten
 from validation.lattice.cost import RunProgress, silent
-from validation.lattice.equations import Motion
+from validation.lattice.forced import motion_of
 from validation.lattice.run import IntegrationError, Run
 from validation.lattice.schemes import SCHEMES
 from validation.lattice.signal import RECORDS
@@ -58,7 +58,8 @@ def simulate(
         it at its end. Of the splitting it is what the peak is off by in the mean. ``atol`` does not
         count. Of SciPy's: local error per step, relative to each component and to the scene's own
         scale of displacement and velocity.
-    method : one of `COMPILED` or of `METHODS`.
+    method : one of `COMPILED` or of `METHODS`. Forces that depend on velocities or on time, of
+        damping or a drive, take one of `METHODS`: DOP853 where the default is given.
     step : of a compiled method, the largest, in place of that which ``rtol`` gives.
     window : of a compiled method, the number of beads to follow behind the front of a leading
         pulse, or True for eight widths of the long-wave pulse; the chain must end freely and
@@ -82,8 +83,16 @@ def simulate(
         if method not in COMPILED and value is not None:
             needs = f"it needs one of {', '.join(COMPILED)}"
             raise SceneError(f"{name} is {shorten(value)}: {needs}")
+    forced = scene.damping is not None or scene.drive is not None
+    if forced and method in COMPILED:
+        if method != COMPILED[0] or window or step is not None:
+            raise SceneError(
+                f"method is {method}: a scene with damping or a drive takes one of "
+                f"{', '.join(METHODS)}, without step or window"
+            )
+        method = METHODS[0]
     with np.errstate(over="ignore", invalid="ignore"):  # told by what comes of it
-        motion = Motion(scene)
+        motion = motion_of(scene)
         if method in COMPILED:
             from validation.lattice.engine import follow  # start-up: numba takes its time
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -67,7 +68,7 @@ def chebyshev(count: int) -> Array:
 def integrate(motion: Motion, method: str, rtol: float, atol: float, progress: RunProgress) -> Run:
     """Integrate a scene with one of `METHODS`; the arguments are those of `simulate`."""
     scales, end, n = motion.scales, motion.scene.duration, motion.size
-    y, v = scales.displacement, scales.velocity
+    y, v, drive = scales.displacement, scales.velocity, motion.scene.drive
     steps = end / scales.time / mean_step(method, rtol)
     jacobian = (2 * n) ** 2 * 8 if method == "LSODA" else 0
     most = most_steps(motion.scene, method, steps, 4, jacobian)
@@ -77,7 +78,8 @@ def integrate(motion: Motion, method: str, rtol: float, atol: float, progress: R
         motion.start,
         end,
         rtol=rtol,
-        atol=atol * np.repeat([y, v], n),
+        atol=atol * np.append(np.repeat([y, v], n), [scales.energy] * (len(motion.start) - 2 * n)),
+        max_step=math.inf if drive is None else drive.longest_step,
         first_step=min(1e-3 * y / v, end),  # SciPy's own guess depends on the units
     )
     time, beads = sampled(motion)
@@ -93,14 +95,14 @@ def integrate(motion: Motion, method: str, rtol: float, atol: float, progress: R
             if len(beads):
                 state = stepper.dense_output()(ends[-1] + nodes * (stepper.t - ends[-1]))
                 states.append(np.zeros((len(nodes), 2, len(beads))))
-                states[-1][..., : len(held)] = state.T.reshape(-1, 2, n)[..., held]
+                states[-1][..., : len(held)] = state.T[:, : 2 * n].reshape(-1, 2, n)[..., held]
             ends.append(stepper.t)
             tell(stepper.t / end)
     nothing = np.zeros((len(ends) - 1, len(nodes), 2, 0))
     path = NodePath(np.array(ends), beads, np.array(states) if states else nothing)
     records = {"time": time} | recorded(motion, beads, *path(beads, time))
     evaluations = int(stepper.nfev)
-    energy, momentum = motion.energy(stepper.y), motion.momentum_drift(stepper.y)
+    energy, momentum = motion.balance(stepper.y), motion.momentum_drift(stepper.y)
     moves, made = evaluations * n, len(ends) - 1
     return finished(
         motion, stepper.y, records, energy, momentum, made, evaluations, moves, None, path

@@ -28,6 +28,7 @@ from lwa.law import ContactLaw
 from lwa.spheres.hertz import Material, Sphere, stiffness
 from validation.scenes import checks
 from validation.scenes.checks import SceneError, integer, items, of_scene, positive, real
+from validation.scenes.forcing import Damping, Drive
 
 __all__ = ["Scene", "SceneError"]
 
@@ -45,6 +46,8 @@ class Scene:
     k : exponent of the contact law, at least 1; a number or a text such as "3/2".
     law : any contact law of `lwa.law` without symbols, in place of k: a contact pushes with A F(δ).
         Where F′(0) > 0 it also pulls (Toda's, for one); else it opens. Such a scene's k is 1.
+    damping : dissipation in the contacts, a `validation.scenes.forcing.Damping`.
+    drive : given motion of bead 0, a `validation.scenes.forcing.Drive`.
     duration : time to simulate.
     wall : stiffness of the contact between the last bead and a fixed wall.
     gravity : acceleration towards the wall.
@@ -78,6 +81,8 @@ class Scene:
     spacings: tuple[float, ...] = ()
     units: str = ""
     law: ContactLaw | None = None
+    damping: Damping | None = None
+    drive: Drive | None = None
 
     def __post_init__(self) -> None:
         self._read_law()
@@ -103,6 +108,25 @@ class Scene:
                 raise SceneError(f"{name} is {value:g}: {wanted}")
         for name, count in (("contact_sensors", self.contact_count), ("bead_sensors", n)):
             object.__setattr__(self, name, _sensors(getattr(self, name), name, count))
+
+        self._check_forcing()
+
+    def _check_forcing(self) -> None:
+        """Check the damping and the drive."""
+        for name, kind in (("damping", Damping), ("drive", Drive)):
+            value = getattr(self, name)
+            if value is not None and not isinstance(value, kind):
+                raise SceneError(f"{name} is {shorten(value)}: a {kind.__name__} is wanted")
+        if self.damping is not None and self.damping.kind != "contact" and self.law is not None:
+            raise SceneError(f"damping is {self.damping.kind}: it is known for powers only")
+        if self.drive is None:
+            return
+        if any(row[:1] != (0,) * len(row[:1]) for row in (self.velocities, self.displacements)):
+            raise SceneError("drive moves bead 1, which has a velocity or displacement of its own")
+        if self.drive.time and self.drive.time[-1] < self.duration:
+            raise SceneError(
+                f"drive.time ends at {self.drive.time[-1]:g}: the duration is {self.duration:g}"
+            )
 
     def _read_law(self) -> None:
         """Check the law, and let a power be its exponent."""

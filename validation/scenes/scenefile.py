@@ -1,6 +1,6 @@
-"""A `Scene` as a file, TOML or JSON, that reads like the experiment.
+"""Files of scenes, TOML or JSON.
 
-All keys but ``duration`` and ``chain.cell`` are optional, and what is not named is not there::
+All keys but ``duration`` and ``chain.cell`` are optional::
 
     duration = 1e-3               # of the simulation
     samples = 2001                # of the sensors, from 0 to the duration; 1001 if not given
@@ -32,6 +32,18 @@ All keys but ``duration`` and ``chain.cell`` are optional, and what is not named
     material = "steel"            # or stiffness = 2.0
     [striker]
     velocity = 1.37               # of bead 1
+    [damping]                     # of every contact: one of
+    contact = 0.1                 #   γ in γ dδ/dt,
+    kuwabara_kono = 0.1           #   γ in γ δ^{k-1} dδ/dt,
+    restitution = 0.9             #   the coefficient of restitution of two beads
+    [drive]                       # of bead 1, in place of a striker: one of
+    velocity = 1.0                #   that of a piston,
+    amplitude = 1e-6              #   y = amplitude sin(2π frequency t),
+    frequency = 5e3
+    ramp = 1e-3                   #   which grows to its size within this time,
+    file = "shaker.csv"           #   or two columns, time and displacement (lists in JSON:
+    time = [0.0, 1.0, 2.0, 3.0]   #   these)
+    displacement = [0, 1, 1, 0]
     [start]                       # instead of a striker; from bead 1 on, the others at 0
     velocities = [1.0, 1.0]
     displacements = [0.1, 0.1]    # from the equilibrium
@@ -56,6 +68,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
+from dataclasses import fields
 from functools import partial
 from itertools import pairwise, product
 from pathlib import Path
@@ -70,6 +83,7 @@ from lwa.law import NAMES, ContactLaw, named
 from lwa.spheres.beads import read_beads, read_materials
 from lwa.spheres.hertz import Material, Sphere
 from validation.scenes.checks import SceneError, each, integer, of_scene, positive, real
+from validation.scenes.forcing import DAMPINGS, Damping, Drive
 from validation.scenes.materials import contact_stiffness
 from validation.scenes.scene import Scene
 
@@ -87,12 +101,16 @@ KEYS = {
         "chain",
         "defects",
         "wall",
+        "damping",
+        "drive",
         "striker",
         "start",
         "sensors",
     ),
     "chain": ("cell", "k", "law", "stiffnesses", "spacings", "repeat"),
     "wall": ("material", "stiffness"),
+    "damping": DAMPINGS,
+    "drive": ("velocity", "amplitude", "frequency", "ramp", "file", "time", "displacement"),
     "striker": ("velocity",),
     "start": ("velocities", "displacements", "overlap"),
     "sensors": ("beads", "contacts"),
@@ -109,13 +127,13 @@ def read_scene(path: str | Path) -> Scene:
 
 @of_scene
 def scene(content: Any) -> Scene:
-    """The scene of a parsed file, see the module; raises `SceneError`."""
+    """The scene of a parsed file; `SceneError` for unknown keys and invalid values."""
     if isinstance(content, dict) and "scene" in content:
         content = content["scene"]
     file = Table(content, "", KEYS["file"])
     tables = {
         name: file.read(name, table(KEYS[name]), Table({}, name, KEYS[name]))
-        for name in ("wall", "striker", "start", "sensors")
+        for name in ("wall", "damping", "drive", "striker", "start", "sensors")
     }
     materials = read_materials(file)
     beads = read_beads(file, materials)
@@ -138,6 +156,8 @@ def scene(content: Any) -> Scene:
         precompression=file.read("precompression", real, 0.0),
         displacements=start.read("displacements", each(real), ()),
         velocities=velocities,
+        damping=_damping(tables["damping"]) if "damping" in file else None,
+        drive=_drive(tables["drive"]) if "drive" in file else None,
         bead_sensors=sensors.read("beads", _heard(n), ()),
         contact_sensors=sensors.read("contacts", _heard(n - (wall is None)), ()),
     )
@@ -180,7 +200,7 @@ def _defects(value: Any, name: str) -> list[Table]:
 def _chain(
     given: Table, beads: Mapping[str, Sphere], defects: Sequence[Table]
 ) -> tuple[list[Sphere], dict[str, Any]]:
-    """The beads, where they are named, and what the chain gives a `Scene`."""
+    """The named beads (none in a chain of masses), and the fields of the `Scene`."""
     cell = given.read("cell", array)
     repeat = given.read("repeat", partial(integer, least=1), 1)
     n = len(cell) * repeat
@@ -245,7 +265,7 @@ def _law_text(law: ContactLaw) -> str:
 
 
 def _of_contacts(value: Any, name: str, period: int, count: int) -> list[float]:
-    """One number for all of the contacts, one for each, or those of a cell."""
+    """Read the numbers of all contacts from one number, those of a cell, or one for each."""
     if not isinstance(value, list):
         return [positive(value, name)] * count
     if len(value) not in (period, count):
@@ -263,8 +283,42 @@ def _wall(given: Table, row: Sequence[Sphere], materials: Mapping[str, Material]
     return contact_stiffness(row[-1], given.read("material", among(materials)))
 
 
+def _damping(given: Table) -> Damping:
+    kind = given.one(*DAMPINGS)
+    return Damping(kind, given.read(kind, real))
+
+
+def _drive(given: Table) -> Drive:
+    """The motion of bead 1; raises `SceneError` for a file that has not two columns of numbers."""
+    rows = {name: given.read(name, each(real), ()) for name in ("time", "displacement")}
+    if "file" in given:
+        path = given.entries["file"]
+        try:
+            columns = _columns(Path(path).read_text(encoding="utf-8"))
+            rows = dict(zip(rows, columns, strict=True))
+        except (OSError, TypeError, ValueError) as error:
+            raise SceneError(
+                f"drive.file is {shorten(path)}: two columns, time and displacement, are wanted "
+                f"({str(error).splitlines()[0]})"
+            ) from None
+    numbers = {
+        name: given.read(name, real)
+        for name in ("velocity", "amplitude", "frequency", "ramp")
+        if name in given
+    }
+    return Drive(**rows, **numbers)
+
+
+def _columns(text: str) -> list[list[float]]:
+    """The columns of a CSV file of numbers, below a line of names if there is one."""
+    lines = [line for line in text.splitlines() if line.partition("#")[0].strip()]
+    named_columns = lines and any(c.isalpha() and c not in "eE" for c in lines[0])
+    numbers = [list(map(float, line.split(","))) for line in lines[bool(named_columns) :]]
+    return [list(column) for column in zip(*numbers, strict=True)]
+
+
 def _overlap(what: Scene) -> int:
-    """The number of the first contact that displacements press though it carries nothing, or 0."""
+    """Number of the first contact without static force that the start compresses, or 0."""
     if what.gravity or what.precompression:
         return 0
     pairs = pairwise((*what.displacements, 0.0))  # beyond them, and at the wall
@@ -273,7 +327,7 @@ def _overlap(what: Scene) -> int:
 
 
 def document(what: Scene) -> dict[str, Any]:
-    """The file of a scene, for JSON; `scene` makes an equal scene of it."""
+    """The content of a scene's file, for JSON; `scene` reads an equal scene from it."""
     period = _period(what)
     chain: dict[str, Any] = {"cell": list(what.masses[:period])}
     chain |= {"k": what.k} if what.law is None else {"law": _law_text(what.law)}
@@ -287,6 +341,15 @@ def document(what: Scene) -> dict[str, Any]:
     result |= {name: value for name, value in own.items() if value} | {"chain": chain}
     if what.wall is not None:
         result["wall"] = {"stiffness": what.wall}
+    if what.damping is not None:
+        result["damping"] = {what.damping.kind: what.damping.value}
+    if what.drive is not None:
+        drive = {f.name: getattr(what.drive, f.name) for f in fields(what.drive)}
+        result["drive"] = {
+            name: list(value) if isinstance(value, tuple) else value
+            for name, value in drive.items()
+            if value or (value == 0 and name != "ramp")
+        }
     if len(what.velocities) == 1 and not what.displacements:
         result["striker"] = {"velocity": what.velocities[0]}
     elif what.velocities or what.displacements:
@@ -300,7 +363,7 @@ def document(what: Scene) -> dict[str, Any]:
 
 
 def _period(what: Scene) -> int:
-    """The size of the smallest cell that, repeated, is the chain."""
+    """Size of the smallest cell whose repetition is the chain."""
     n, rows = what.size, (what.masses, what.stiffnesses, what.spacings)
     return next(
         p

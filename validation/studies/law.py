@@ -33,7 +33,10 @@ _LAW = (
     Column("force", "force", error=True),
     Column("", "of the power law", format=".6g"),
 )
-_NOTE = "±: 95 % intervals. The free law needs no power; its compression is that of a contact."
+_NOTE = (
+    "±: 95 % intervals by the scatter of the data; the long-wave theory's own error in the free "
+    "law is not included. Its compression is that of a contact."
+)
 
 
 @study(

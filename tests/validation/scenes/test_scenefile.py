@@ -103,6 +103,9 @@ def test_the_modules_own_example_holds_every_key():
     for name in ("chain", "striker", "start", "sensors"):
         assert set(content[name]) == set(scenefile.KEYS[name])
     start = content.pop("start")  # what excludes each other
+    assert [set(content.pop(name)) for name in ("damping", "drive")] == [
+        set(scenefile.KEYS[name]) for name in ("damping", "drive")
+    ]
     assert content["chain"].pop("law") == "hertz2:1,2"
     balls = {key: content["chain"].pop(key) for key in ("k", "stiffnesses", "spacings")}
     assert scene(content).size == 38
@@ -440,3 +443,34 @@ def test_a_law_is_read_and_written(law):
     read = scene({"duration": 1, "chain": {"cell": [1, 2], "law": law}})
     assert scene(document(read)) == read
     assert (read.law is None) == law.startswith("power")
+
+
+@pytest.mark.parametrize(
+    ("key", "table"),
+    [
+        ("damping", {"contact": 0.1}),
+        ("damping", {"kuwabara_kono": 0.1}),
+        ("damping", {"restitution": 0.9}),
+        ("drive", {"velocity": 0.0}),
+        ("drive", {"amplitude": 0.1, "frequency": 2.0, "ramp": 0.5}),
+        ("drive", {"time": [0.0, 0.3, 0.6, 1.0], "displacement": [0.0, 1.0, 0.0, 0.0]}),
+    ],
+)
+def test_damping_and_drive_are_read_and_written(key, table):
+    read = scene({"duration": 1, "chain": {"cell": [1, 2], "k": 1.5}, key: table})
+    assert document(read)[key] == table
+    assert scene(document(read)) == read
+
+
+def test_a_drive_is_read_from_a_file(tmp_path):
+    path = tmp_path / "shaker.csv"
+    chain = {"duration": 1, "chain": {"cell": [1, 2], "k": 1.5}, "drive": {"file": str(path)}}
+    for titles in ("", "time (s),displacement\n", "# a comment\n"):
+        path.write_text(titles + "0,0\n0.5,1e-3\n1,2e-3\n2,0\n")
+        assert scene(chain).drive.displacement == (0, 1e-3, 2e-3, 0)
+    for content in ("0,1,2\n", "a,b\nc,d\n", ""):
+        path.write_text(content)
+        with pytest.raises(SceneError, match=r"^drive.* wanted"):
+            scene(chain)
+    with pytest.raises(SceneError, match=r"^drive.file is 'none.csv': two columns"):
+        scene(chain | {"drive": {"file": "none.csv"}})

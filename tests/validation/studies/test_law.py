@@ -8,8 +8,9 @@ import pytest
 import sympy as sp
 
 from lwa import Cell
+from lwa.law import Law
 from tests.commands import ended
-from validation import cli, simulate
+from validation import Scene, cli, measure, simulate, simulate_many
 from validation.pulses.contact_law import Chain, fit_power, free_law
 from validation.scenes.scene import SceneError
 from validation.studies import paper
@@ -74,6 +75,37 @@ def test_a_law_of_two_powers_is_not_one_power(chain):
     true = compression**1.5 + compression**2.5
     assert true[1:-1] == pytest.approx(force[1:-1], rel=0.01)
     assert np.all(error > 0)
+
+
+LAWS = {  # local exponents from 1.55 to 1.85, 1.57 to 1.74, 1.77 to 1.83 in the pulses below
+    "d**(3/2) + d**(9/4)": lambda d: d**1.5 + d**2.25,
+    "d**(3/2) + d**2": lambda d: d**1.5 + d**2,
+    "d**(7/4) + d**(9/4)/5": lambda d: d**1.75 + d**2.25 / 5,
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("text", LAWS)
+def test_any_law_comes_back_from_22_struck_chains(text):
+    """Pulses of chains of equal beads; the free law knows nothing of how the law is made."""
+    d, F = sp.Symbol("d", positive=True), LAWS[text]
+    law = Law(sp.sympify(text, locals={"d": d}, rational=True), d)
+    scenes = [
+        Scene(
+            masses=(1,) * 90, stiffnesses=(1,) * 89, law=law, velocities=(v,), samples=2,
+            contact_sensors=(45, 75), duration=150 / math.sqrt(F(v**0.8) / v**0.8),
+        )
+        for v in np.geomspace(0.03, 3, 22)
+    ]  # fmt: skip
+    rows = []
+    for run in simulate_many(scenes, rtol=1e-7):
+        first, second = (measure(run.signal("contact", i)) for i in (45, 75))
+        rows.append((second.peak, 30 / (second.arrival - first.arrival)))
+    force, V = np.array(rows).T
+    unit = Chain.of(Cell((1,), spacing=1))
+    assert not fit_power(unit, force, V).one_power
+    compression, _ = free_law(unit, force, V)
+    assert F(compression) == pytest.approx(force, rel=0.003)
 
 
 @pytest.mark.slow

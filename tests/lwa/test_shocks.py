@@ -1,0 +1,214 @@
+"""The Riemann problem: exact edges, Toda, KdV, hard spheres, other cells, units."""
+
+import pytest
+import scipy
+import sympy as sp
+
+from lwa import Cell, Dimer, Dispersion, InputError, Power, Shock, piston, shock
+from lwa.law import named
+
+EQUAL = Cell([1], spacing=1)
+HERTZ = Power("3/2")
+TODA = named("exponential", 1)
+
+
+# --- exact ---
+
+
+def test_edges_of_equal_beads_solve_els_equations():
+    """(1 - f′)/f dκ from 0 to κ₋ is ln r for s₋ = 2c₊ - c₋; likewise at imaginary κ; by SymPy."""
+    kappa, r = sp.symbols("kappa r", positive=True)
+    f = 2 * sp.sin(kappa / 2)
+    for sign, curve, speed in (
+        (1, f, lambda q: sp.cos(q / 2) * r),
+        (-1, 2 * sp.sinh(kappa / 2), lambda q: 2 * sp.sinh(q / 2) / q),
+    ):
+        # ∫ (1 - f′)/f = -2 ln cos κ/4, ∫ (f̃′ - 1)/f̃ = 2 ln cosh q/4
+        primitive = -2 * sp.log(sp.cos(kappa / 4)) if sign > 0 else 2 * sp.log(sp.cosh(kappa / 4))
+        rest = primitive.diff(kappa) - sign * (1 - curve.diff(kappa)) / curve
+        assert abs(rest.subs(kappa, sp.Rational(6, 5)).n(30)) < 1e-25
+        angle = 4 * (sp.acos(1 / sp.sqrt(r)) if sign > 0 else sp.acosh(sp.sqrt(r)))
+        ours = 2 - r if sign > 0 else sp.sqrt(r * (r - 1)) / sp.acosh(sp.sqrt(r))
+        for value in ("11/10", "5/4"):
+            gap = (speed(angle) - ours).subs(r, sp.Rational(value))
+            assert abs(gap.n(30)) < 1e-25
+
+
+def test_a_toda_soliton_on_els_edge_moves_its_beads_at_twice_the_wall():
+    """Soliton e^{δ-p} - 1 = sinh²κ sech²: speed c₊ sinh κ/κ, beads at 2c₊(cosh κ - 1) (Toda 1967).
+
+    El's edge has the speed of κ = 2 arcosh √r, and v_p = 2c₊(r - 1) under F = e^δ - 1.
+    """
+    r = sp.Symbol("r", positive=True)
+    kappa = 2 * sp.acosh(sp.sqrt(r))
+    edge = sp.sqrt(r * (r - 1)) / sp.acosh(sp.sqrt(r))
+    assert sp.simplify(sp.expand_trig(sp.sinh(kappa)) / kappa - edge) == 0
+    assert sp.simplify(sp.expand_trig(2 * (sp.cosh(kappa) - 1)) - 2 * 2 * (r - 1)) == 0
+    found = shock(EQUAL, TODA, sp.log(sp.Rational(25, 16)), 0)
+    assert sp.simplify(found.ratio - sp.Rational(5, 4)) == 0
+    assert sp.simplify(found.plateau - sp.S.Half) == 0
+    assert sp.simplify(found.leading_speed("dispersion") - edge.subs(r, sp.Rational(5, 4))) == 0
+
+
+def test_plateau_and_rule_under_a_power_without_load():
+    """B/p₋ = (8k/(k+1))^{1/(k+1)} and s₊/c₋ = 4/(k+1) (8k/(k+1))^{-1/(k+1)}."""
+    k = sp.Symbol("k", positive=True)
+    found = shock(EQUAL, Power("k"), "p", 0)
+    p = sp.Symbol("p", positive=True)
+    rise = (8 * k / (k + 1)) ** (1 / (k + 1))
+    for value in (sp.Rational(3, 2), 2, 5):
+        numbers = {k: value, p: sp.Rational(1, 3)}
+        speed = found.leading_speed() / found.sound(p)
+        assert float((found.rise / p / rise).subs(numbers)) == pytest.approx(1, rel=1e-12)
+        assert float((speed * rise * (k + 1) / 4).subs(numbers)) == pytest.approx(1, rel=1e-12)
+
+
+# --- limits ---
+
+
+@pytest.mark.parametrize("law", [HERTZ, Power(3), TODA], ids=["hertz", "cubic", "toda"])
+def test_small_jumps_are_those_of_kdv(law):
+    """As r → 1 the edges stand -1 and 2/3 of the jump of c off c₊, and the leading pulse at 2."""
+    errors = []
+    for jump in (sp.Rational(1, 50), sp.Rational(1, 100)):
+        found = shock(EQUAL, law, 1 + jump, 1)
+        c, step = found.sound(found.ahead), found.sound(found.behind) - found.sound(found.ahead)
+        edges = [found.trailing_speed, found.leading_speed("dispersion"), found.leading_speed()]
+        numbers = [float((s - c) / step) for s in edges] + [float(found.rise / jump)]
+        errors.append([abs(n - x) for n, x in zip(numbers, (-1, 2 / 3, 2 / 3, 2), strict=True)])
+    for far, near in zip(*errors, strict=True):
+        assert near < 0.02
+        assert near < 0.6 * far + 1e-12
+
+
+def test_hard_spheres():
+    """As k → ∞ a wall at v drives the first bead at 2v, and the pulse's bead velocity is a bead's
+    own: the strike of equal hard spheres. The canonical wave tends to B = p₋, s₊/c₋ to 0 as 4/k."""
+    found = shock(EQUAL, Power(1000), 1, 0)
+    assert float(found.rise) == pytest.approx(1, abs=0.01)
+    assert float(1000 * found.leading_speed() / found.sound(found.behind)) == pytest.approx(
+        4, rel=0.01
+    )
+
+
+# --- the lattice's own wave ---
+
+
+def test_the_series_in_k_minus_1_has_beads_at_twice_the_wall():
+    """Hertz without load: the rule on the exact wave gives 0.8477 c₋ and 1.7277 p₋, where the
+    driven lattice has 0.8487 and 1.7360 (theory notes, section 14)."""
+    found = shock(EQUAL, HERTZ, 1, 0)
+    wave = found.wave
+    peak = wave.expansion.peak_velocity.at().value * float(wave.F) ** (5 / 6)
+    assert peak == pytest.approx(2 * float(found.plateau), rel=1e-12)
+    assert wave.speed.value / float(found.sound(found.behind)) == pytest.approx(0.8477, abs=1e-4)
+    assert float(wave.F) ** (2 / 3) == pytest.approx(1.7277, abs=1e-4)
+
+
+@pytest.mark.parametrize("k", ["6/5", "3/2", "2"])
+def test_peak_velocity_of_the_exact_wave(k):
+    """From the force found by Fourier: the velocity is its mean over a site, over c."""
+    from lwa import expand
+    from tests.lwa.expansion.test_exact_waves import lattice
+
+    values, xi, force = lattice(float(sp.Rational(k)))
+    inside = scipy.interpolate.CubicSpline(xi, force).integrate(-0.5, 0.5)
+    found = expand(EQUAL, 10, k=k).peak_velocity.at()
+    assert abs(found.value - inside / values["c2"] ** 0.5) < found.error < 1e-3
+
+
+# --- other cells and laws ---
+
+
+def test_a_cell_of_two_equal_beads_is_the_chain_of_equal_beads():
+    """By quadrature on the folded branch what has a closed form for one bead."""
+    one, two = (shock(cell, HERTZ, "7/5", 1) for cell in (EQUAL, Cell([1, 1], spacing=1)))
+    assert float(two.trailing_speed) == pytest.approx(float(one.trailing_speed), rel=1e-14)
+    for rule in ("dispersion", "doubling"):
+        ours, theirs = (float(s.leading_speed(rule)) for s in (two, one))
+        assert ours == pytest.approx(theirs, rel=1e-14)
+
+
+def test_edges_of_a_dimer_by_the_bands_themselves():
+    """The trailing edge satisfies El's equation with f and f′ of the numerical bands."""
+    cell = Dimer(1, "1/3", spacing=1)
+    found = shock(cell, HERTZ, "5/4", 1)
+    chain = Dispersion(cell)
+
+    def rate(kappa):
+        return (1 - float(chain.group_velocity(kappa)[0])) / float(chain.branches(kappa)[0])
+
+    slope = float(found.trailing_speed / found.sound(found.behind))
+    kappa = scipy.optimize.brentq(lambda q: float(chain.group_velocity(q)[0]) - slope, 0.1, 1.5)
+    area, _ = scipy.integrate.quad(rate, 1e-6, kappa)
+    assert area == pytest.approx(float(sp.log(found.ratio)), rel=1e-5)
+    leading = float(found.leading_speed("dispersion") / found.sound(found.ahead))
+    assert 1 < leading < float(found.ratio)
+
+
+def test_a_law_without_closed_forms():
+    """hertz2: v_p by SciPy's quadrature, and the rule's equation for B."""
+    law = named("hertz2", 1, 1)
+    found = shock(EQUAL, law, 2, 1)
+    F = sp.lambdify(law.delta, law.slope(1))
+    area, _ = scipy.integrate.quad(lambda p: F(p) ** 0.5, 1, 2)
+    assert float(found.plateau) == pytest.approx(area, rel=1e-10)
+    W = sp.lambdify(law.delta, law.energy)
+    B = float(found.rise)
+    work = W(1 + B) - W(1) - float(law.at(sp.S.One)) * B
+    assert work == pytest.approx(2 * area**2, rel=1e-10)
+    assert float(piston(EQUAL, law, found.plateau.n(25), 1).behind) == pytest.approx(2, rel=1e-12)
+
+
+def test_the_opposite_jump_is_a_rarefaction():
+    found = shock(EQUAL, HERTZ, 1, 2)
+    assert found.kind == "rarefaction"
+    assert found.trailing_speed == found.sound(found.behind)
+    assert found.leading_speed() == found.leading_speed("dispersion") == found.sound(found.ahead)
+    assert float(found.fan(found.sound(sp.Rational(3, 2)))) == pytest.approx(1.5)
+    assert found.plateau < 0
+
+
+# --- units ---
+
+
+def test_si_units():
+    """v ~ c p, F ~ A (D p)^k: a piston at the same v/c and p gives the same shape."""
+    real = Cell(["1/2000"], ["1e9"], "1/200")
+    scale = float(real.time_scale("3/2"))
+    plain, found = piston(EQUAL, HERTZ, 1, "1/2"), piston(real, HERTZ, scale / 1.5**0.5, "1/2")
+    assert float(found.plateau) == pytest.approx(scale / 1.5**0.5, rel=1e-9)
+    assert float(found.behind) == pytest.approx(float(plain.behind), rel=1e-9)
+    ratio = float(found.leading_speed() / plain.leading_speed())
+    assert ratio == pytest.approx(scale / 1.5**0.5, rel=1e-9)
+    peak = 1e9 * (float(found.peak) / 200) ** 1.5
+    assert float(found.peak_force) == pytest.approx(peak, rel=1e-9)
+    speeds = [
+        piston(cell, HERTZ, v).wave.speed.value
+        for cell, v in ((EQUAL, 1), (real, scale / 1.5**0.5))
+    ]
+    assert speeds[1] / speeds[0] == pytest.approx(scale / 1.5**0.5, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: shock(EQUAL, HERTZ, 1, 1), "behind and ahead are both 1: there is no front"),
+        (lambda: shock(EQUAL, HERTZ, 1, -1), "ahead is -1: contacts of a power law only push"),
+        (lambda: shock(EQUAL, HERTZ, 4, 1).trailing_speed, "the trailing edge holds up to 1.3"),
+        (lambda: shock(EQUAL, HERTZ, 1, 0).leading_speed("dispersion"), "ahead is 0: no sound"),
+        (lambda: shock(Dimer(1, 2), HERTZ, 2, 1).rise, "doubling holds for equal beads only"),
+        (lambda: shock(EQUAL, HERTZ, 2, 1).wave, "of a power law without load"),
+        (lambda: shock(EQUAL, HERTZ, 2, 1).leading_speed("el"), "rule is 'el': dispersion or"),
+        (lambda: shock(EQUAL, Power("k"), "p", 1).kind, "kind depends on symbols"),
+    ],
+)
+def test_limits_are_refused(make, message):
+    with pytest.raises(InputError, match=message):
+        make()
+
+
+def test_symbols_first_or_numbers_first():
+    late = shock(EQUAL, Power("k"), "p", "q").at(k=3, p=2, q="9/5")
+    assert late == shock(EQUAL, Power(3), 2, "9/5")
+    assert isinstance(late, Shock)

@@ -1,0 +1,150 @@
+"""Damped contacts and driven chains: exact collisions, the ledger of energy, pulses."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from lwa import Cell, expand
+from lwa.expansion.physical import ExpandedWave
+from lwa.law import named
+from validation.lattice.simulate import simulate
+from validation.pulses.pulse import highest_pulse
+from validation.scenes.chains import launched
+from validation.scenes.forcing import Damping, Drive
+from validation.scenes.scene import Scene, SceneError
+from validation.waves.solver import exact_wave
+
+TIGHT = dict(rtol=1e-12, atol=1e-12)
+
+
+def pair(k, v=1.0, **rest):
+    return Scene(
+        masses=(1.0, 3.0), stiffnesses=(2.0,), k=k, velocities=(v,),
+        duration=12 * v ** (2 / (k + 1) - 1),
+        contact_sensors=(0,), **rest,
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("share", [0.9, 0.3, 0.05])
+@pytest.mark.parametrize(("k", "v"), [(1, 1), (1.5, 1), (1.5, 10), (3, 0.2)])
+def test_beads_part_with_a_share_of_their_speed(k, v, share):
+    run = simulate(pair(k, v, damping=Damping("restitution", share)), **TIGHT)
+    assert run.velocities[1] - run.velocities[0] == pytest.approx(share * v, rel=1e-8)
+    assert run.contact_force.min() == 0  # no contact pulls
+    lost = (1 - share**2) * 0.75 * v**2 / 2
+    assert run.dissipated == pytest.approx(lost, rel=1e-8)
+    assert abs(run.energy_drift) < 1e-8
+    assert abs(run.momentum_drift) < 1e-12
+
+
+@pytest.mark.parametrize("kind", ["contact", "kuwabara_kono"])
+def test_what_is_lost_is_what_was_dissipated(kind):
+    scene = Scene(
+        masses=(1, 0.4, 2, 1, 1), stiffnesses=(1, 2, 1, 1), wall=1, k=1.5, gravity=0.1,
+        velocities=(1, 0, -0.5), duration=20, damping=Damping(kind, 0.05), contact_sensors=(0, 4),
+    )  # fmt: skip
+    run = simulate(scene, **TIGHT)
+    assert 0.1 < run.dissipated < 1
+    assert abs(run.energy_drift) < 1e-8  # the force jumps where a contact closes
+    force = run.signal("contact", 4)
+    np.testing.assert_allclose(force(run.time), run.contact_force[1], atol=1e-14)
+
+
+def test_without_damping_no_bit_changes():
+    scene = pair(1.5)
+    assert np.array_equal(
+        simulate(replace(scene, damping=None)).velocities, simulate(scene).velocities
+    )
+    weak = simulate(pair(1.5, damping=Damping("contact", 1e-12)))
+    assert weak.velocities == pytest.approx(simulate(scene).velocities, abs=1e-8)
+
+
+@pytest.mark.parametrize(("kind", "ledger"), [("contact", "linear"), ("kuwabara_kono",) * 2])
+def test_the_slowing_down_of_a_pulse(kind, ledger):
+    """V, or 1/V, changes linearly along the chain, as the expansion's dissipation says: to first
+    order in γ, so that the error halves with γ."""
+    theory = ExpandedWave(expand(Cell((1,), spacing=1), 8, k="3/2"), 1).slowdown(ledger).value
+    chain, places = launched(exact_wave([1], 1.5), 16, 60), np.arange(26, 72, 5)
+    chain = replace(chain, contact_sensors=places.tolist(), samples=11)
+    errors = []
+    for gamma in (0.004, 0.002):
+        run = simulate(replace(chain, damping=Damping(kind, gamma)), rtol=1e-8, atol=1e-8)
+        arrivals = [highest_pulse(run.signal("contact", int(i))).arrival for i in places]
+        speed = np.diff(places) / np.diff(arrivals)
+        x = speed if ledger == "linear" else 1 / speed
+        between = (places[1:] + places[:-1]) / 2
+        line, (square,) = np.polyfit(between, x, 1), np.polyfit(between, x, 2)[:1]
+        errors.append(abs(line[0]) / (gamma * theory) - 1)
+        assert abs(square) * 50 < 0.1 * abs(line[0])  # straight
+    assert abs(errors[1]) < 0.03
+    assert abs(errors[1]) < 0.75 * abs(errors[0])
+
+
+def test_a_piston_makes_a_wave_behind_which_beads_move_at_its_speed():
+    scene = Scene(
+        masses=(1,) * 60, stiffnesses=(1,) * 59, k=1.5, duration=60, drive=Drive(velocity=0.3),
+        bead_sensors=(0, 5), contact_sensors=(20,),
+    )  # fmt: skip
+    run = simulate(scene, **TIGHT)
+    assert run.bead_displacement[0] == pytest.approx(0.3 * run.time, abs=1e-7)
+    assert run.bead_velocity[1, -300:].mean() == pytest.approx(0.3, rel=0.01)
+    assert run.work > 0
+    assert abs(run.energy_drift) < 1e-8
+    assert run.momentum_drift is None
+
+
+def test_a_driven_toda_chain_keeps_its_ledger():
+    scene = Scene(
+        masses=(1,) * 20, stiffnesses=(1,) * 19, wall=1, law=named("exponential", 1), duration=40,
+        damping=Damping("contact", 0.1), drive=Drive(amplitude=0.2, frequency=0.2, ramp=20),
+    )  # fmt: skip
+    run = simulate(scene)
+    assert run.dissipated > 0.01
+    assert abs(run.energy_drift) < 1e-7
+
+
+def test_a_linear_chain_under_load_answers_in_its_own_frequency():
+    """One free bead between the driven bead and a wall, k = 1: y = a κ/(2κ - w²) sin(wt), in steady
+    motion, with a resonant part that a long ramp does not excite."""
+    w, a = 0.5, 0.01
+    scene = Scene(
+        masses=(1, 1), stiffnesses=(1,), wall=1, k=1, precompression=1, bead_sensors=(0, 1),
+        duration=600, samples=6001,
+        drive=Drive(amplitude=a, frequency=w / (2 * math.pi), ramp=400),
+    )  # fmt: skip
+    run = simulate(scene)
+    late = run.time > 450
+    assert run.bead_displacement[0, late] == pytest.approx(a * np.sin(w * run.time[late]), abs=1e-8)
+    answer = a / (2 - w * w) * np.sin(w * run.time[late])
+    assert run.bead_displacement[1, late] == pytest.approx(answer, abs=1e-7)
+
+
+def test_a_drive_from_rows_is_the_motion_that_they_sample():
+    t = np.linspace(0, 20, 400)
+    rows = Drive(time=t, displacement=0.1 * t**3 / 400)
+    scene = Scene(masses=(1, 1, 1), stiffnesses=(1, 1), k=1.5, duration=20, drive=rows,
+                  bead_sensors=(0,))  # fmt: skip
+    run = simulate(scene)
+    assert run.bead_displacement[0] == pytest.approx(0.1 * run.time**3 / 400, abs=1e-7)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "message"),
+    [
+        (lambda: Damping("x", 1), "damping is 'x': one of contact, kuwabara_kono, restitution"),
+        (lambda: Damping("restitution", 2), "restitution is 2: a coefficient from 0.01 to 1"),
+        (lambda: Damping("contact", -1), "contact is -1: it must be positive"),
+        (lambda: Drive(), "drive has not one motion"),
+        (lambda: Drive(velocity=1, amplitude=1), "drive has not one motion"),
+        (lambda: Drive(amplitude=1, frequency=0), "drive.frequency is 0: it must be positive"),
+        (lambda: Drive(time=(0, 1), displacement=(0, 1)), "drive has 2 times and 2 displacements"),
+        (lambda: pair(1.5, drive=Drive(velocity=1)), "drive moves bead 1, which has a velocity"),
+        (lambda: simulate(pair(1.5, damping=Damping("contact", 1)), method="SRKN14"),
+         "method is SRKN14: a scene with damping or a drive takes one of DOP853"),
+    ],
+)  # fmt: skip
+def test_what_is_no_forcing_is_refused(wrong, message):
+    with pytest.raises(SceneError, match=f"^{message}"):
+        wrong()

@@ -1,0 +1,162 @@
+"""Damping of the contacts and the drive of the first bead."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from lwa.base.arrays import Array
+from validation.scenes.checks import SceneError, between, each, one_of, positive, real
+
+DAMPINGS = ("contact", "kuwabara_kono", "restitution")
+
+
+@dataclass(frozen=True)
+class Damping:
+    """Dissipation in every contact; a damped contact of a law that opens never pulls.
+
+    kind : "contact" adds γ dδ/dt to the force of a closed contact. "kuwabara_kono" adds
+        γ δ^{k-1} dδ/dt (Kuwabara and Kono 1987). "restitution" adds c δ^{(k-1)/2} dδ/dt: two beads
+        that collide part with the same share of their speed, whatever the speed (`restitution`).
+    value : γ, or the share, the coefficient of restitution.
+    """
+
+    kind: str
+    value: float
+
+    def __post_init__(self) -> None:
+        one_of(self.kind, DAMPINGS, "damping")
+        read = _share if self.kind == "restitution" else positive
+        object.__setattr__(self, "value", read(self.value, self.kind))
+
+    def power(self, k: float) -> float:
+        """The exponent of δ beside the rate."""
+        return {"contact": 0.0, "kuwabara_kono": k - 1, "restitution": (k - 1) / 2}[self.kind]
+
+    def coefficients(self, k: float, stiffnesses: Array, masses: Array) -> Array:
+        """The factor beside δ^power dδ/dt of each contact; ``masses`` are the reduced ones."""
+        if self.kind != "restitution":
+            return np.full(len(stiffnesses), self.value)
+        return 2 * damping_ratio(self.value) * np.sqrt((k + 1) / 2 * masses * stiffnesses)
+
+
+def _share(value: Any, name: str) -> float:
+    return between(value, name, 0.01, 1, "a coefficient from 0.01 to 1 is wanted")
+
+
+def restitution(ratio: float) -> float:
+    """The coefficient of restitution at a damping ratio ζ.
+
+    With s = δ^{(k+1)/2} a collision under F = A δ^k + c δ^{(k-1)/2} dδ/dt is a damped linear
+    oscillator, ζ = c/√(2(k+1) m A) with the reduced mass m (Antypov and Elliott 2011, EPL 94,
+    50004, for k = 3/2). As contacts do not pull, it ends where the force is zero (Schwager and
+    Pöschel 2007, Granular Matter 9, 465).
+    """
+    if ratio < 1:
+        turn = math.sqrt(1 - ratio * ratio)
+        phase = math.pi - math.atan2(2 * ratio * turn, 1 - 2 * ratio * ratio)
+        return math.exp(-ratio / turn * phase)
+    turn = math.sqrt(ratio * ratio - 1) or 1e-8  # the limit is e^{-2}
+    return math.exp(-ratio / turn * math.log((ratio + turn) / (ratio - turn)))
+
+
+def damping_ratio(share: float) -> float:
+    """The damping ratio of a coefficient of restitution, by bisection."""
+    low, high = 0.0, 1e3
+    for _ in range(100):
+        middle = (low + high) / 2
+        low, high = (middle, high) if restitution(middle) > share else (low, middle)
+    return low
+
+
+@dataclass(frozen=True, kw_only=True)
+class Drive:
+    """The given motion of bead 1 (the first one); exactly one of three kinds.
+
+    velocity : constant, of a piston. amplitude, frequency : of y = amplitude sin(2π frequency t),
+    which grows to its full size, smoothly, within the time ``ramp``. time, displacement : rows of
+    equal length from time 0 to the duration or beyond, joined by a cubic spline.
+    """
+
+    velocity: float | None = None
+    amplitude: float | None = None
+    frequency: float | None = None
+    ramp: float = 0.0
+    time: tuple[float, ...] = ()
+    displacement: tuple[float, ...] = ()
+
+    def __post_init__(self) -> None:
+        for name in ("time", "displacement"):
+            row = tuple(each(real)(list(getattr(self, name)), f"drive.{name}"))
+            object.__setattr__(self, name, row)
+        harmonic = self.amplitude is not None or self.frequency is not None
+        if (self.velocity is not None) + harmonic + bool(self.time or self.displacement) != 1:
+            raise SceneError(
+                "drive has not one motion: velocity, amplitude and frequency, or time and "
+                "displacement are wanted"
+            )
+        if self.velocity is not None:
+            real(self.velocity, "drive.velocity")
+        elif harmonic:
+            real(self.amplitude, "drive.amplitude")
+            positive(self.frequency, "drive.frequency")
+            between(self.ramp, "drive.ramp", 0, math.inf, "it must not be negative")
+        else:
+            self._check_rows()
+
+    def _check_rows(self) -> None:
+        if len(self.time) != len(self.displacement) or len(self.time) < 4:
+            raise SceneError(
+                f"drive has {len(self.time)} times and {len(self.displacement)} displacements: "
+                "equally many, four or more, are wanted"
+            )
+        if self.time[0] != 0 or not (np.diff(self.time) > 0).all():
+            raise SceneError("drive.time must begin with 0 and increase")
+
+    @cached_property
+    def _spline(self) -> Any:
+        from scipy.interpolate import CubicSpline  # start-up
+
+        return CubicSpline(self.time, self.displacement)
+
+    def at(self, t: float) -> tuple[float, float, float]:
+        """Displacement, velocity and acceleration of the bead at a time."""
+        if self.velocity is not None:
+            return self.velocity * t, self.velocity, 0.0
+        if self.time:
+            y, v, a = (float(self._spline(t, order)) for order in range(3))
+            return y, v, a
+        assert self.amplitude is not None
+        assert self.frequency is not None
+        w = 2 * math.pi * self.frequency
+        s = min(t / self.ramp, 1.0) if self.ramp else 1.0
+        pace = 1 / self.ramp if s < 1 else 0.0
+        # s³ (10 - 15 s + 6 s²) has two derivatives that vanish at both ends
+        r, dr = s**3 * (10 - 15 * s + 6 * s * s), 30 * s * s * (1 - s) ** 2 * pace
+        ddr = 60 * s * (1 - s) * (1 - 2 * s) * pace * pace
+        sin, cos = math.sin(w * t), math.cos(w * t)
+        y, v = r * sin, dr * sin + r * w * cos
+        a = ddr * sin + 2 * dr * w * cos - r * w * w * sin
+        return self.amplitude * y, self.amplitude * v, self.amplitude * a
+
+    @property
+    def fastest(self) -> float:
+        """About the greatest speed of the bead."""
+        if self.velocity is not None:
+            return abs(self.velocity)
+        if self.time:
+            return float(np.abs(self._spline(self.time, 1)).max())
+        assert self.amplitude is not None
+        assert self.frequency is not None
+        return abs(self.amplitude) * 2 * math.pi * self.frequency
+
+    @property
+    def longest_step(self) -> float:
+        """A step that no change of the drive escapes."""
+        if self.frequency is not None:
+            return 1 / (8 * self.frequency)
+        return float(np.diff(self.time).max()) if self.time else math.inf
