@@ -365,9 +365,8 @@ def test_output_on_a_full_disk_is_one_line(scene_file):
 
 
 def test_an_integrator_that_fails_is_one_line(capsys, scene_file):
-    scene_file.write_text(
-        SCENE.replace("k = 1.5", "k = 40").replace("10,", "100,").replace("30", "60")
-    )
+    text = SCENE.replace("k = 1.5", "k = 40").replace("0.5", "0.6").replace("10,", "100,")
+    scene_file.write_text(text.replace("= 30", "= 60"))
     options = ("--method", "SRKN14", "--rtol", "1e-5")
     status, out, err = run(capsys, "run", str(scene_file), *options)
     assert (status, out) == (2, "")
