@@ -120,7 +120,7 @@ def _directive(match: re.Match[str]) -> str:
     title, body = match[3], _OPTION.sub("", match[4])
     if match[2] in ("eval-rst", "bibliography", "raw"):
         return ""
-    return f"**{title}.** {body}" if title else body
+    return f"**{title}.**\n{body}" if title and match[2] != "grid" else body
 
 
 def _role(name: str, text: str, book: Book) -> str:
