@@ -45,8 +45,8 @@ def truth(law, p0, B):
         )
         if isinstance(law, Power):
             k = mpmath.mpf(int(law.k.p)) / int(law.k.q)
-            W, F, slope = (lambda p: p ** (k + 1) / (k + 1) / k, lambda p: p**k / k,
-                           lambda p: p ** (k - 1))  # fmt: skip
+            F, slope = lambda p: p**k / k, lambda p: p ** (k - 1)
+            W = lambda p: p ** (k + 1) / (k + 1) / k  # noqa: E731
         p0, B = mpmath.mpf(p0), mpmath.mpf(B)
 
         def Q(v):
