@@ -37,17 +37,17 @@ RESERVED = {
     "V_s": "the speed",
     "tau": "time",
 }
-"""Names that stand in results, and what they mean there: they are refused for anything else."""
+"""Names that results use, and their meaning there; user symbols may not have them."""
 
 
 MOST_BITS = 4096
-"""By which the shares of contacts may differ; floats end at 1024."""
+"""Bits by which the shares of contacts may differ; floats end at 1024."""
 
 MOST_EXPONENT = 1000
-"""Exact numbers of the kind of 2^k have more digits than anyone reads beyond it."""
+"""Largest exponent; beyond it exact numbers such as 2^k have more digits than anyone reads."""
 
 MOST_PARTICLES = 1000
-"""In a cell; beyond it even the simplest of its theories takes minutes."""
+"""Most particles of a cell; beyond them even the simplest theory takes minutes."""
 
 
 @dataclass(frozen=True)
@@ -95,7 +95,7 @@ class Cell(Value):
 
     @classmethod
     def of_spheres(cls, spheres: Sequence[Sphere]) -> Cell:
-        """The cell of spheres in Hertz contact (k = 3/2), in their units: SI throughout, say.
+        """The cell of spheres in Hertz contact (k = 3/2), in the units of the spheres, such as SI.
 
         The spacing of unequal spheres is the mean distance of neighbours' centers, Σ 2 R_i / P.
         The theory's x counts sites, times D; with this D a cell is as long as its spheres, so that
@@ -134,7 +134,7 @@ class Cell(Value):
         return self.replaced(substitution(values, self))
 
     def replaced(self, new: Mapping[sp.Symbol, sp.Expr]) -> Cell:
-        """The cell with what `substitution` gives for some of its symbols."""
+        """The cell with the values that `substitution` gives for some of its symbols."""
         return Cell(
             masses=tuple(x.xreplace(new) for x in self.masses),
             stiffnesses=tuple(x.xreplace(new) for x in self.stiffnesses),
@@ -157,9 +157,9 @@ class Cell(Value):
         return tuple(sp.cancel(m / self.mass) for m in self.masses)
 
     def compliances(self, k: Any = k) -> tuple[sp.Expr, ...]:
-        """A_i^{-1/k}: how much of the strain contact i takes, up to a common factor.
+        """A_i^{-1/k}, the strain of contact i up to a common factor.
 
-        Raises `lwa.InputError` where these are numbers beyond what can be written.
+        Raises `lwa.InputError` for numbers of more than `MOST_BITS`.
         """
         k = exponent(k)
         return tuple(_root(A, k, f"stiffness {i}") for i, A in enumerate(self.stiffnesses, 1))
@@ -173,7 +173,7 @@ class Cell(Value):
         return tuple(self.size * a / total for a in compliances)
 
     def stiffness(self, k: Any = k) -> sp.Expr:
-        """A_eff, the stiffness of the equal contacts that would respond alike."""
+        """A_eff, the stiffness of equal contacts with the same response."""
         if len(set(self.stiffnesses)) == 1:
             return self.stiffnesses[0]
         return power(sp.Add(*self.compliances(k)) / self.size, -exponent(k))
@@ -205,7 +205,7 @@ def Dimer(
 
 
 def exponent(value: Any, cell: Cell | None = None) -> sp.Expr:
-    """Read the exponent k of F = A δ^k exactly, for a chain of this cell.
+    """Read the exponent k of F = A δ^k exactly, for the chain of a cell.
 
     Raises `lwa.InputError` unless 0 < k ≤ `MOST_EXPONENT`, and for a name that means something
     else.
@@ -232,7 +232,7 @@ def substitution(
     k: sp.Expr = sp.S.One,
     more: Sequence[sp.Symbol] = (),
 ) -> dict[sp.Symbol, sp.Expr]:
-    """Symbol → what is given for its name, among the symbols of a cell, its exponent, and more.
+    """Map symbols of a cell, of its exponent and more to the values given for their names.
 
     ``omega``, where no symbol is called so, is the ratio m2/m1 of the cell's second mass to its
     first: it replaces m2, or m1 where m2 has a value.
@@ -269,7 +269,7 @@ def _from_ratio(
 
 
 def _root(A: sp.Expr, k: sp.Expr, name: str) -> sp.Expr:
-    """A^{-1/k}, refused where it is a number of more than `MOST_BITS`."""
+    """A^{-1/k}; a number of more than `MOST_BITS` is refused."""
     if A.is_Rational and k.is_Rational:
         bits = abs(math.log2(A.p) - math.log2(A.q)) * float(1 / k)
         if bits > MOST_BITS:
@@ -281,7 +281,7 @@ def _root(A: sp.Expr, k: sp.Expr, name: str) -> sp.Expr:
 
 
 def unmistakable(symbols: Sequence[sp.Symbol]) -> None:
-    """Refuse two symbols that print alike: one name with different assumptions."""
+    """Raise `lwa.InputError` for two symbols of one name with different assumptions."""
     names = [s.name for s in symbols]
     twice = {name for name in names if names.count(name) > 1}
     if twice:
@@ -291,8 +291,11 @@ def unmistakable(symbols: Sequence[sp.Symbol]) -> None:
 def meant(
     value: sp.Expr, field: str, own: str = "", taken: Mapping[str, str] = RESERVED
 ) -> sp.Expr:
-    """The value, refused where a symbol in it has a name that is ``taken`` (name → its meaning);
-    ``own`` is the one that the field itself has."""
+    """Return the value; raise `lwa.InputError` if a symbol in it has a name of another meaning.
+
+    field : the name of the value in messages; ``own`` is the symbol name it may have.
+    taken : name → its meaning.
+    """
     for name in sorted(s.name for s in value.free_symbols):
         if name in taken and name != own:
             raise InputError(f"{field} {name!r}: the name means {taken[name]} here")

@@ -1,6 +1,6 @@
-"""The contact law F(δ) as a value: a power, any smooth expression, or no particular one.
+"""Contact laws F(δ): a power, any smooth expression, or a function without one.
 
-The theory asks of a law only how it changes with the strain p = δ/D,
+The theory needs the change of a law with the strain p = δ/D,
 
     φ_n = δ^{n-1} F^{(n)}(δ) / F'(δ),    φ_1 = 1,
 
@@ -27,11 +27,11 @@ from lwa.cell import RESERVED, Cell, exponent, meant, unmistakable
 from lwa.cell import k as symbol_k
 
 DELTA = sp.Symbol("delta", positive=True)
-"""δ, the compression of a contact, where the caller names no other symbol."""
+"""δ, the compression of a contact, unless the caller names another symbol."""
 
 
 TAKEN = {**RESERVED, "A": "the stiffness of a contact", "p0": "the strain ahead of a wave"}
-"""Names that stand beside a law in results, and what they mean there."""
+"""Names that results use beside a law, and their meaning there."""
 
 
 class ContactLaw(Value):
@@ -237,7 +237,7 @@ class Law(ContactLaw):
 
 
 def general() -> Law:
-    """Any law: results hold φ_2, φ_3, … as the symbols phi2, phi3, ….
+    """A law without an expression: results hold φ_2, φ_3, … as the symbols phi2, phi3, ….
 
     >>> general().F
     F(delta)
@@ -246,7 +246,7 @@ def general() -> Law:
 
 
 def phi_symbol(n: int) -> sp.Symbol:
-    """φ_n, as it stands in results."""
+    """The symbol of φ_n in results."""
     return sp.Symbol(f"phi{n}", real=True)
 
 
@@ -262,7 +262,7 @@ _NAMED: Mapping[str, tuple[tuple[str, ...], Builder]] = {
 }
 _OF_EITHER_SIGN = ("polynomial",)
 NAMES = ("power", *_NAMED, "general")
-"""What `named` knows."""
+"""The names of laws."""
 
 
 def demand_one(k: Any, law: ContactLaw) -> None:
@@ -272,7 +272,7 @@ def demand_one(k: Any, law: ContactLaw) -> None:
 
 
 def named(name: str, *parameters: Any) -> ContactLaw:
-    """A law by its name; parameters that are not given are symbols.
+    """Make a law by its name; parameters that are not given are symbols.
 
     - power: δ^k.
     - hertz2: a δ^{3/2} + b δ^{5/2}, Hertz and its next order.
@@ -281,9 +281,9 @@ def named(name: str, *parameters: Any) -> ContactLaw:
       value at δ = 0 and less it.
     - polynomial: δ + a δ² + b δ³, of Fermi, Pasta, Ulam and Tsingou; a and b of either sign.
     - lennard-jones: (1 - δ/d)^{-13} - (1 - δ/d)^{-7}, d the distance of rest.
-    - general: any.
+    - general: a law without an expression (`general`).
 
-    Raises `lwa.InputError` for other names, too many parameters, and values that cannot be meant.
+    Raises `lwa.InputError` for other names, too many parameters, and bad values.
 
     >>> named("hertz2", 1, "1/10").F
     delta**(5/2)/10 + delta**(3/2)

@@ -303,7 +303,7 @@ def _panels(found: Sequence[tuple[Wave, dict[str, Any]]]) -> Iterator[Panel]:
                 for wave, row in those
             ]
             x, y, error = zip(*points, strict=True)
-            curves.append(Curve.of(", ".join(map(str, cell.masses)), x, y, mark, error))
+            curves.append(Curve.of(f"masses {', '.join(map(str, cell.masses))}", x, y, mark, error))
         yield Panel("F/F0", label, tuple(curves), scale)
 
 

@@ -1,4 +1,4 @@
-"""Types of NumPy arrays, arrays that enter from outside, and values that hold arrays."""
+"""Types of NumPy arrays, a reader of arrays, and values that hold arrays."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Extended = NDArray[np.longdouble]
 def finite(values: ArrayLike, name: str) -> Array:
     """Read an array of finite real numbers.
 
-    Raises `lwa.InputError` for anything else; ``name`` is what the message calls it.
+    Raises `lwa.InputError` for anything else; ``name`` names the array in the message.
     """
     try:
         array = np.asarray(values)

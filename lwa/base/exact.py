@@ -1,8 +1,8 @@
-"""What enters from outside becomes exact here, or is refused.
+"""Exact numbers and symbols from user input, and exact arithmetic of large numbers.
 
-Numbers are read exactly (a float as the decimal it prints as, so ``0.1`` is 1/10), names become
-positive symbols, and nothing is ever evaluated: a text is matched against the grammar of an
-integer, a decimal, a fraction or a plain name, and anything else is refused.
+Numbers are read exactly (a float as the decimal that it prints as: ``0.1`` is 1/10), and names
+become positive symbols. Text is never evaluated: it is matched against the grammar of an integer, a
+decimal, a fraction or a plain name, and anything else is refused.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ import sympy as sp
 from lwa.base.errors import InputError as InputError
 
 Quantity = int | float | str | Fraction | Decimal | sp.Expr
-"""What a caller may give for an exponent, a mass, a stiffness or a length."""
+"""Accepted types of an exponent, a mass, a stiffness or a length."""
 
 _NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?")
 _FRACTION = re.compile(r"[+-]?[0-9]+/[0-9]+")
@@ -38,7 +38,7 @@ MOST_CANCELLED = 20_000
 
 
 def shorten(value: object) -> str:
-    """``repr`` of an offending value, cut to one short line for a message."""
+    """The ``repr`` of an offending value, cut to one short line for a message."""
     try:
         text = repr(value)
     except ValueError:  # Python writes no integer of more than some thousand digits
@@ -49,10 +49,10 @@ def shorten(value: object) -> str:
 def exact(value: Any, name: str) -> sp.Expr:
     """Read ``value`` (see `Quantity`) as an exact SymPy expression.
 
-    ``name`` is what messages call it. Texts are integers, decimals, fractions or plain names;
+    ``name`` names the value in messages. Texts are integers, decimals, fractions or plain names;
     a name becomes a positive symbol.
 
-    Raises `InputError` for NaN, infinities, complex numbers and text that is none of these.
+    Raises `InputError` for NaN, infinities, complex numbers and other text.
 
     >>> exact(0.1, "k"), exact("3/2", "k"), exact("m1", "mass")
     (1/10, 3/2, m1)
@@ -82,7 +82,7 @@ def exact(value: Any, name: str) -> sp.Expr:
 
 
 def integer(value: Any, name: str, low: int) -> int:
-    """Read an integer (Python's, NumPy's or SymPy's) from ``low`` on.
+    """Read an integer (Python's, NumPy's or SymPy's) of at least ``low``.
 
     >>> integer(4, "order", 1)
     4
@@ -101,7 +101,7 @@ def integer(value: Any, name: str, low: int) -> int:
 
 
 def positive(value: Any, name: str) -> sp.Expr:
-    """`exact`, and refused unless it is positive (a symbol may be, and is then assumed to be)."""
+    """Read an exact positive number, or an expression in symbols that may be positive."""
     expression = exact(value, name)
     if expression.is_positive is False or (expression.is_number and not expression.is_positive):
         raise InputError(f"{name} is {expression}: it must be positive")
@@ -109,7 +109,7 @@ def positive(value: Any, name: str) -> sp.Expr:
 
 
 def real(value: Any, name: str) -> sp.Expr:
-    """`exact`, but a plain name becomes a real symbol, of either sign: a place such as ξ.
+    """Read an exact real number; a plain name becomes a real symbol of either sign, such as ξ.
 
     >>> real("xi", "xi").is_positive is None
     True
@@ -148,7 +148,7 @@ def _from_expression(value: sp.Expr, name: str) -> sp.Expr:
 
 
 def _writable(number: sp.Rational, name: str) -> sp.Rational:
-    """Refuse what Python could not print any more after a few multiplications."""
+    """Return the number; raise `InputError` if its powers would be too long for Python to print."""
     if max(int(number.p).bit_length(), int(number.q).bit_length()) > _BITS:
         raise InputError(f"{name} is a number of too many digits: {_TOO_LONG}")
     return number
@@ -171,7 +171,7 @@ def evaluated(value: sp.Expr, digits: int) -> sp.Expr:
 
 
 class Kept(sp.UnevaluatedExpr):  # type: ignore[misc]  # untyped in SymPy
-    """A number under a power that is left as it is: printed, compared and evaluated as itself."""
+    """A number under a power that SymPy leaves as it is, printed and evaluated as itself."""
 
     def _eval_is_positive(self) -> bool:
         return bool(self.args[0].is_positive)
@@ -181,10 +181,10 @@ class Kept(sp.UnevaluatedExpr):  # type: ignore[misc]  # untyped in SymPy
 
 
 def power(base: sp.Expr, exponent: sp.Expr) -> sp.Expr:
-    """base^exponent, in which no number is written out beyond a thousand digits.
+    """base^exponent without numbers of more than a thousand digits.
 
-    SymPy takes whole powers out of roots, and would make such a number of 3^(1 + 1/99999). Of
-    integers beyond a double it takes no roots at all (`math.log` of python-flint's integers).
+    SymPy takes whole powers out of roots, and would make such a number of 3^(1 + 1/99999). It fails
+    on roots of integers beyond a double (`math.log` of python-flint's integers).
 
     >>> power(sp.Rational(9, 4), sp.Rational(3, 2)), power(sp.Rational(9, 4), sp.Rational(1, 9999))
     (27/8, (9/4)**(1/9999))
@@ -206,5 +206,5 @@ def power(base: sp.Expr, exponent: sp.Expr) -> sp.Expr:
 
 
 def root(value: sp.Expr) -> sp.Expr:
-    """√value, as `power` takes it."""
+    """√value, by `power`."""
     return power(value, sp.S.Half)

@@ -1,4 +1,4 @@
-"""Files that are read: regular ones of a stated size, TOML or JSON, each fault in one line."""
+"""Readers of TOML and JSON files: regular files of limited size, each fault in one line."""
 
 from __future__ import annotations
 
@@ -17,17 +17,19 @@ from lwa.base.exact import InputError, shorten
 T = TypeVar("T")
 
 MOST_BYTES = {".toml": 8_000_000, ".json": 64_000_000}
-"""Of a file; Python reads about 1 MB of TOML a second."""
+"""Size limits of a file; Python reads about 1 MB of TOML a second."""
 
 # Without O_NONBLOCK, opening a pipe waits for a writer.
 _AT_ONCE = getattr(os, "O_NONBLOCK", 0)
 
 
 def load(path: str | Path, what: str, reader: Callable[[Any], T]) -> T:
-    """What ``reader`` makes of a parsed file; ``what`` messages say that it should be.
+    """Parse a file and pass its content to ``reader``, whose result is returned.
 
-    Raises `lwa.InputError`, in one line that names the file, for one that cannot be read or parsed
-    and for what the reader refuses.
+    ``what`` names the expected kind of file in messages, such as "a scene".
+
+    Raises `lwa.InputError`, in one line that names the file, if the file cannot be read or parsed,
+    or if the reader refuses its content.
     """
     file = Path(path)
     suffix = file.suffix.lower()
@@ -50,10 +52,10 @@ def load(path: str | Path, what: str, reader: Callable[[Any], T]) -> T:
 
 
 def content(file: Path, most: int) -> bytes:
-    """The content of a regular file.
+    """Read a regular file of at most ``most`` bytes.
 
-    Raises `OSError` where it cannot be read, and `lwa.InputError` for a folder, a pipe or a
-    device, of which nothing is read, and for more than ``most`` bytes.
+    Raises `OSError` if it cannot be read, and `lwa.InputError` for a folder, a pipe or a device
+    (nothing is read then) and for a larger file.
     """
     with open(file, "rb", opener=_regular) as stream:
         found = stream.read(most + 1)
@@ -72,18 +74,18 @@ def _regular(path: str, flags: int) -> int:
 
 
 def kind(mode: int) -> str:
-    """What a file of this mode is called that is not a regular one."""
+    """Name the kind of a file that is not a regular one, such as "a folder"."""
     named = {stat.S_IFDIR: "a folder", stat.S_IFIFO: "a pipe", stat.S_IFSOCK: "a socket"}
     return named.get(stat.S_IFMT(mode), "a device")
 
 
 def reason(error: Exception) -> str:
-    """What the system says of a fault, without the number and the name of the file."""
+    """The system's words for a fault, without its number and the name of the file."""
     return (isinstance(error, OSError) and error.strerror) or str(error)
 
 
 _DEEP = re.compile(r"""(?:\.[ \t]*+(?=["'\w-]*[A-Za-z_"'-])["'\w-]++[ \t]*+){20}""")
-"""Keys within keys: tomllib takes time in proportion to the square of their depth."""
+"""Deeply nested keys, for which tomllib takes time in proportion to the square of the depth."""
 
 
 def _toml(text: str) -> Any:

@@ -1,4 +1,4 @@
-"""How long something takes, in words, and the progress of what takes long."""
+"""Durations in words, and the progress of long computations."""
 
 from __future__ import annotations
 
@@ -9,20 +9,20 @@ from time import monotonic
 from typing import TypeVar
 
 LONG = 30.0
-"""Seconds from which it is said that something takes long, with a progress bar on a terminal."""
+"""Seconds from which a computation is announced as long, with a progress bar on a terminal."""
 
 EVERY = 30.0
-"""Seconds between two lines of progress, where there is no terminal for a bar."""
+"""Seconds between two lines of progress without a terminal."""
 
 T = TypeVar("T")
 Progress = Callable[[Iterable[T]], Iterable[T]]
-"""What the orders or cases of a computation are run through on their way, as `tqdm.tqdm`."""
+"""A wrapper of an iterable that shows how far an iteration is, such as `tqdm.tqdm`."""
 
 _UNITS = (("years", 3.156e7), ("days", 86400.0), ("hours", 3600.0), ("minutes", 60.0))
 
 
 def words(seconds: float) -> str:
-    """A duration in round words.
+    """A duration in rounded words.
 
     >>> words(7.2e3), words(3), words(1e12)
     ('about 2 hours', 'about 3 s', 'over 1000 years')
@@ -40,7 +40,7 @@ def _round(number: float) -> str:
 
 
 def announce(what: str, seconds: float) -> bool:
-    """Say on the standard error what takes how long, where it takes long; whether it does."""
+    """Print a long computation's duration on standard error; return whether it is long."""
     if seconds > LONG:
         # before the line: Python may lose a Ctrl-C that meets it in an import
         import_module("tqdm")
@@ -49,7 +49,7 @@ def announce(what: str, seconds: float) -> bool:
 
 
 def shown(items: Iterable[T], label: str = "orders") -> Iterable[T]:
-    """The items behind a progress bar on a terminal; elsewhere a line is printed every 30 s."""
+    """Yield the items behind a progress bar on a terminal; elsewhere print a line every 30 s."""
     if sys.stderr is None or not sys.stderr.isatty():
         return _counted(items, label)
     from tqdm import tqdm  # here, so that `import lwa` does not load it
@@ -67,7 +67,7 @@ def _counted(items: Iterable[T], label: str) -> Iterator[T]:
 
 
 def lines(label: str) -> Callable[[float], None]:
-    """A function of the completed fraction that prints a line with the time left every 30 s."""
+    """Make a function of the completed fraction that prints the time left every 30 s."""
     start = said = monotonic()
 
     def tell(fraction: float) -> None:

@@ -23,7 +23,7 @@ from lwa.base.exact import InputError, shorten
 Reader = Callable[[Any, str], Any]
 
 LEAST = sys.float_info.min
-"""Of what is positive."""
+"""The least positive number with all digits of a float."""
 
 
 def real(value: Any, name: str) -> float:
@@ -41,7 +41,7 @@ def real(value: Any, name: str) -> float:
 
 
 def positive(value: Any, name: str) -> float:
-    """`real`, and refused unless it is positive and a float of all digits."""
+    """Read one positive number that has all digits of a float."""
     number = real(value, name)
     if not number > 0:
         raise InputError(f"{name} is {number:g}: it must be positive")
@@ -63,7 +63,7 @@ def integer(value: Any, name: str, least: int, most: int | None = None) -> int:
 
 
 class Table:
-    """A table whose keys are known.
+    """A table of a file, refused if it holds unknown keys.
 
     >>> Table({"masss": 1}, "bead", ("mass", "radius"))
     Traceback (most recent call last):
@@ -81,11 +81,11 @@ class Table:
         return key in self.entries
 
     def path(self, key: str) -> str:
-        """The full name of a key."""
+        """The full name of a key, such as ``bead.mass``."""
         return f"{self.name}.{_plain(key)}" if self.name else _plain(key)
 
     def read(self, key: str, reader: Reader, default: Any = None) -> Any:
-        """An entry, checked; one without a default must be there."""
+        """Read an entry by ``reader``; an entry without a default must be present."""
         if key in self:
             return reader(self.entries[key], self.path(key))
         if default is None:
@@ -93,7 +93,7 @@ class Table:
         return default
 
     def one(self, *keys: str) -> str:
-        """The one of the keys that is there."""
+        """Return the key that is present; exactly one of the keys must be."""
         found = [key for key in keys if key in self]
         if len(found) != 1:
             there = f"both {' and '.join(found)}" if found else f"neither {' nor '.join(keys)}"
@@ -102,19 +102,19 @@ class Table:
 
 
 def table(known: Sequence[str]) -> Reader:
-    """Reader of a `Table`."""
+    """Reader of a `Table` with these keys."""
     return lambda value, name: Table(value, name, known)
 
 
 def entries(value: Any, name: str) -> dict[str, Any]:
-    """Read a table without looking at its keys."""
+    """Read a table with any keys."""
     if not isinstance(value, dict):
         raise InputError(f"{name} is {shorten(value)}: a table of keys is wanted")
     return value
 
 
 def named(reader: Reader) -> Reader:
-    """Reader of a table of any names, whose entries are read alike."""
+    """Reader of a table with any names, each entry read by ``reader``."""
     return lambda value, name: {
         key: reader(entry, f"{name}.{_plain(key)}") for key, entry in entries(value, name).items()
     }
@@ -128,14 +128,14 @@ def array(value: Any, name: str) -> list[Any]:
 
 
 def each(reader: Reader) -> Reader:
-    """Reader of a list whose items are read alike."""
+    """Reader of a list, each item read by ``reader``."""
     return lambda value, name: [
         reader(item, f"{name} number {i}") for i, item in enumerate(array(value, name), start=1)
     ]
 
 
 def among(values: Mapping[str, Any]) -> Reader:
-    """Reader of a name, for which the value of that name is returned."""
+    """Reader of one of the names in ``values``; returns the value of that name."""
 
     def read(value: Any, name: str) -> Any:
         if not isinstance(value, str) or value not in values:

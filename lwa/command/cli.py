@@ -13,7 +13,7 @@ import sympy as sp
 from lwa.base.exact import InputError, exact
 from lwa.cell import Cell, D, k
 from lwa.code.languages import LANGUAGES
-from lwa.command import derivation, envelopes, series, waves
+from lwa.command import derivation, waves
 from lwa.command.options import (
     FORCE,
     SPHERES,
@@ -31,12 +31,7 @@ from lwa.command.reading import angle, quantity
 from lwa.command.reserved_names import demand_free
 from lwa.command.rows import Answer
 from lwa.command.terminal import HELP, run, version
-from lwa.envelopes.schrodinger import envelope
-from lwa.expansion.expand import expand
-from lwa.expansion.physical import ExpandedWave
-from lwa.expansion.strike import pulse_of_strike
 from lwa.law import ContactLaw, Law, Power
-from lwa.linear.dispersion import Dispersion, LoadedChain
 from lwa.spheres.hertz import EXPONENT
 from lwa.theory import Theory, homogenize
 from lwa.wave.background import BackgroundWave
@@ -240,6 +235,9 @@ def dispersion(
     The exponent matters for unequal contacts, which share the strain by it. With --precompression,
     and masses, stiffnesses and spacing in SI, also the bands in s⁻¹ and the speeds in m/s.
     """
+    from lwa.command import series  # here and below: each command loads what it needs
+    from lwa.linear.dispersion import Dispersion, LoadedChain
+
     loaded = None
     if precompression is not None:
         cell = Cell(cell.masses, cell.stiffnesses, spacing)
@@ -267,6 +265,10 @@ def expansion(
     With --spheres also the wave of the peak force --force (1 N where it is not given) on the first
     contact, in m, s and N, in an endless chain without load.
     """
+    from lwa.command import series
+    from lwa.expansion.expand import expand
+    from lwa.expansion.physical import ExpandedWave
+
     units: dict[str, str] = {}
     notes: list[str] = []
     if spheres is not None:
@@ -299,6 +301,9 @@ def strike(
     style: str,
 ) -> None:
     """The leading pulse of a chain of equal beads that a mass strikes: force, speed and width."""
+    from lwa.command import series
+    from lwa.expansion.strike import pulse_of_strike
+
     found = _read(spheres)
     mass = found.cell.masses[0] if mass is None else mass
     pulse = pulse_of_strike(found.cell, mass, velocity, drop=drop, k=found.law.exponent)
@@ -327,6 +332,9 @@ def envelope_of_a_mode(
     **chain: Any,
 ) -> None:
     """The nonlinear Schrödinger equation of a mode of a chain under load, and its breathers."""
+    from lwa.command import envelopes
+    from lwa.envelopes.schrodinger import envelope
+
     units: dict[str, str] = {}
     if spheres is not None:
         units, static = _from_file(spheres, chain)
@@ -351,7 +359,7 @@ def envelope_of_a_mode(
 
 
 def _read(file: str) -> ChainFile:
-    from lwa.command.chain_file import read_chain  # here: other commands do not load the parsers
+    from lwa.command.chain_file import read_chain
 
     return read_chain(file)
 

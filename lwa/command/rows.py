@@ -24,7 +24,7 @@ LONG = 160
 """Characters of an exact number beyond which text shows its digits alone."""
 
 SAME = object()
-"""The number of a row is its value."""
+"""Marker: the digits of a row are those of its value."""
 
 Values = dict[str, Any]
 
@@ -38,7 +38,7 @@ class Row:
     symbol : name in LaTeX; not in LaTeX where empty.
     number : the expression whose digits are told, where it is not the value; None for none.
     exact : whether JSON has the expression itself, besides its digits.
-    formula : LaTeX of the value where it is not the value's own.
+    formula : LaTeX in place of the value's own where that is wider than a line.
     """
 
     key: str
@@ -51,7 +51,7 @@ class Row:
 
     @property
     def digits(self) -> Any:
-        """What is told in digits."""
+        """The expression or sum whose digits are printed."""
         return self.value if self.number is SAME else self.number
 
 
@@ -83,7 +83,7 @@ class Answer:
         ones = {s: sp.S.One for s in value.free_symbols if s.name in ("V_s", "B")}
         if self.spacing.is_Symbol:
             ones[self.spacing] = sp.S.One
-        return value.subs(ones)
+        return value.xreplace(ones)
 
     def unit(self, row: Row) -> str:
         """The unit of a row in SI, empty where there is none."""
@@ -100,7 +100,7 @@ class Answer:
         result = dict(self.head)
         rows = [row for row in self.rows if isinstance(row, Row) and row.key]
         for row in rows:
-            if row.exact and isinstance(row.value, sp.Expr | tuple):
+            if row.exact and isinstance(row.value, sp.Expr | tuple | list):
                 _put(result, row.key, "", _each(str, row.value))
         for row in rows:
             self._put_digits(result, row)
@@ -148,11 +148,13 @@ class Answer:
         return " = " + ", ".join(self._shown(x, told) for x in dict.fromkeys(parts)) + unit
 
     def _shown(self, value: sp.Expr, told: bool) -> str:
-        """The value, and its digits behind it where they are told and it is no short number."""
+        """The value, followed by its digits where it is a number that is not rational."""
         if self.units:
             return approximate(value)
+        if not told or value.free_symbols - {self.spacing}:
+            return str(value)
         plain = self.plain(value)
-        if not told or value.free_symbols - {self.spacing} or plain.is_Rational:
+        if plain.is_Rational:
             return str(value)
         digits = sp.sstr(evaluated(plain, DIGITS), full_prec=False) + self._length_unit(value)
         written = str(value)
@@ -182,13 +184,15 @@ class Answer:
     def _formula(self, row: Row) -> str:
         found = row.digits if isinstance(row.digits, Resummed | InputError) else row.value
         unit = rf"\ \mathrm{{{self.unit(row)}}}" if self.unit(row) else ""
-        if row.formula or found is None or isinstance(found, InputError):
-            return row.formula
+        if found is None or isinstance(found, InputError):
+            return ""
         if isinstance(found, Resummed):
             return rf"{_decimal(found.value)} \pm {_decimal(found.error, 2)}{unit}"
         parts = dict.fromkeys(found if isinstance(found, tuple) else (found,))
         if self.units:
             return r",\ ".join(map(_approximate_latex, parts)) + unit
+        if row.formula and latex.width(str(sp.latex(row.value))) > latex.WIDTH:
+            return row.formula
         return r",\ ".join(map(latex.expression, parts)) + unit
 
 
@@ -201,9 +205,11 @@ def _put(result: Values, key: str, suffix: str, value: Any) -> None:
 
 
 def _each(read: Callable[[sp.Expr], Any], value: Any) -> Any:
-    """``read`` of an expression or of each in a tuple; None where it is None of one."""
+    """Apply ``read`` to an expression or to each of a collection; None if any result is None."""
     if isinstance(value, sp.Expr):
         return read(value)
+    if isinstance(value, list):
+        return [{name: read(x) for name, x in entry.items()} for entry in value]
     found = [read(x) for x in value]
     return None if None in found else found
 

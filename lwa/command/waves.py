@@ -7,7 +7,6 @@ from typing import Any
 
 import sympy as sp
 
-from lwa.base import latex
 from lwa.base.exact import InputError
 from lwa.base.quantities import QUANTITIES, NoSolitaryWave
 from lwa.cell import Cell
@@ -19,8 +18,8 @@ from lwa.wave.precompressed import PrecompressedWave
 from lwa.wave.traveling import TravelingWave
 
 RADIATES = 0.05
-"""Share of c² and of the widths, by the bound of `lwa.Radiation`, from which on a wave of unlike
-beads is said to radiate; for dimers of spheres m2/m1 = 0.06 … 0.73."""
+"""Bound of `lwa.Radiation` on c² and the widths from which on a note is printed: for dimers of
+spheres m2/m1 = 0.06 … 0.73."""
 
 
 def si_units(k: sp.Expr) -> dict[str, str]:
@@ -74,7 +73,7 @@ def compact(theory: Theory, wave: TravelingWave) -> Answer:
     """
     one, other = (wave.reduction(root) for root in (0, 1))
     names = ("p", "a", "mu", "eta", "sigma", "s")
-    roots = [{name: str(getattr(r, name)) for name in names} for r in (one, other)]
+    roots = [{name: getattr(r, name) for name in names} for r in (one, other)]
     log_B = -sp.log(wave.speed_factor) / (wave.k - 1)
     rows: list[Row | str] = [
         f"masses {listed(theory.cell.masses)}; k = {wave.k}; closure {theory.closure.name}; "
@@ -90,19 +89,19 @@ def compact(theory: Theory, wave: TravelingWave) -> Answer:
         Row("speed_factor", "", wave.speed_factor, number=None),
         Row("time_scale", "", wave.speed_scale, r"\mathrm{d}x/\mathrm{d}t / V_{s}", number=None),
         Row("log_B", "", log_B, exact=False),
+        Row("roots", "", roots, number=None),
         "",
         "v = z^p, integrating factor z^a: z'' = μ z^η - σ z",
         *_reduction_rows(theory, one),
         Row("", "the other root, p", other.p),
         Row("", "with a", other.a),
     ]
-    head = chain_json(theory) | {"roots": roots}
     notes = radiation_note(theory.cell, wave.k)
-    return Answer(head, rows, spacing=wave.D, notes=notes)
+    return Answer(chain_json(theory), rows, spacing=wave.D, notes=notes)
 
 
 def _reduction_rows(theory: Theory, found: Any) -> list[Row]:
-    """p, a, μ, η, σ and s; in LaTeX by p and a, as the paper has them, where they are long."""
+    """p, a, μ, η, σ and s; in LaTeX by p, a, H and I, as the paper has them, where long."""
     formulas = {
         "a": r"1 - k p + 3 (p - 1) + \frac{p H}{I}",
         "mu": r"\frac{V_{s}^{2}}{I (p + a)}",
@@ -110,15 +109,15 @@ def _reduction_rows(theory: Theory, found: Any) -> list[Row]:
         "sigma": r"\frac{1}{I (k p + a)}",
         "s": r"\frac{2}{1 - \eta}",
     }
-    rows = []
-    for name in ("p", *formulas):
-        value = getattr(found, name)
-        wide = latex.width(str(sp.latex(value))) > latex.WIDTH
-        symbol = str(sp.latex(sp.Symbol(name)))
-        rows.append(Row(name, name, value, symbol, formula=formulas.get(name, "") if wide else ""))
-    if any(row.formula for row in rows):
-        rows += [Row("", "", theory.pde.third_order[name], name) for name in "HI"]
-    return rows
+    rows = [
+        Row(name, name, getattr(found, name), symbol, formula=formulas.get(name, ""))
+        for name, symbol in _SYMBOLS.items()
+    ]
+    found_terms = theory.pde.third_order
+    return rows + [Row("", "", found_terms[name], name) for name in "HI"]
+
+
+_SYMBOLS = {"p": "p", "a": "a", "mu": r"\mu", "eta": r"\eta", "sigma": r"\sigma", "s": "s"}
 
 
 def at_force(theory: Theory, wave: TravelingWave, F: sp.Expr, units: Mapping[str, str]) -> Answer:

@@ -27,9 +27,9 @@ Series = list[fmpq_mpoly]
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class ChangedClosure(Closure):
-    """A closure written for φ = u + Σ α_n D^n ∂_x^n u; without the ansatz and the defect.
+    """A closure written for φ = u + Σ α_n D^n ∂_x^n u, without ansatz and defect.
 
-    alphas : the (n, α_n), n ≥ 1. It is known by them and by the ``origin``, the closure of u.
+    alphas : the (n, α_n), n ≥ 1; ``origin`` is the closure of u.
     """
 
     origin: Closure
@@ -37,7 +37,7 @@ class ChangedClosure(Closure):
 
     @property
     def key(self) -> tuple[Any, ...]:
-        """What it is known by: the arguments of `change_field`."""
+        """The arguments of `change_field`, by which closures are compared."""
         return (self.origin, self.alphas)
 
     def __reduce__(self) -> tuple[Callable[..., Closure], tuple[Any, ...]]:
@@ -49,13 +49,13 @@ class ChangedClosure(Closure):
 
     @cached_property
     def fields(self) -> tuple[tuple[fmpq_mpoly, ...], ...]:
-        """The S_i of w_i = φ + D φ_x S_i in the new jets, found when they are asked for."""
+        """The S_i of w_i = φ + D φ_x S_i in the new jets."""
         change = _Change(self.origin, dict(self.alphas))
         return tuple(map(change.slaved, self.origin.fields))
 
     @property
     def symbols(self) -> tuple[sp.Symbol, ...]:
-        """Those of the α_n."""
+        """Symbols of the original closure and of the α_n."""
         own = set().union(*(alpha.free_symbols for _, alpha in self.alphas))
         own -= {*self.model.cell.symbols, *self.model.law.symbols, *self.origin.symbols}
         return (*self.origin.symbols, *sorted(own, key=str))
@@ -63,7 +63,7 @@ class ChangedClosure(Closure):
     def anew(
         self, new: Mapping[sp.Symbol, sp.Expr] | None = None, order: int | None = None
     ) -> Closure:
-        """The same derivation with these values of its symbols, or to this order."""
+        """The derivation for other values of its symbols, or to another order."""
         alphas = {n: alpha.xreplace(new or {}) for n, alpha in self.alphas}
         return change_field(self.origin.anew(new, order), alphas)
 
@@ -125,7 +125,7 @@ class _Change:
         )
 
     def slaved(self, S: Sequence[fmpq_mpoly]) -> tuple[fmpq_mpoly, ...]:
-        """w - φ = (u - φ) + D u_x S, over D φ_x."""
+        """w - φ = (u - φ) + D u_x S, over D φ_x, in the jets of φ."""
         moved = self._replaced(S, self.algebra.one)
         return tuple(self.inverse[n + 1] * self.algebra.r[n] + moved[n] for n in range(self.size))
 
@@ -162,7 +162,10 @@ class _Change:
         return series
 
     def _of_strain(self, coefficient: fmpq_mpoly, degree: fmpq_mpoly, size: int) -> Series:
-        """coefficient · (1 + X)^degree, which a power of u_x becomes, with what is in p itself."""
+        """coefficient · (1 + X)^degree, a power of u_x over that of φ_x.
+
+        Under a law that is no power the coefficient depends on p too.
+        """
         X = [self.inverse[n] * self.algebra.r[n] for n in range(1, size)]
         if not self.algebra.phi:
             strain = Binomial(self.algebra, degree)

@@ -5,11 +5,11 @@ Acoustic branch (the wave equation of Porter et al. 2008 is order 4 of the dimer
 
     u_ττ = u_x^{k-1} u_xx + u_x^k Σ_{n≥2} D^{n-1} Σ_jets coefficient · Π_i (∂_x^i u / u_x)^{e_i},
 
-where n stands at D^{k+n} of the equations of motion; n = 3 holds G, H and I. Of a law F(δ) that is
-no power F′(D u_x) stands for u_x^{k-1}, and the coefficients hold φ_2, φ_3, …. Optical branch, in
+where n stands at D^{k+n} of the equations of motion; n = 3 holds G, H and I. For a law F(δ) that
+is no power F′(D u_x) replaces u_x^{k-1}, and the coefficients hold φ_2, φ_3, …. Optical branch, in
 its own time unit: u_ττ = -u^k + u^k Σ_{n≥1} D^n Σ_jets coefficient · Π_i (∂_x^i u / u)^{e_i}.
 
-Coefficients are converted to SymPy when they are asked for, one by one.
+Coefficients are converted to SymPy one by one, when they are looked up.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ from lwa.wave.traveling import TravelingWave
 
 @dataclass(frozen=True)
 class PDE(Value):
-    """The wave equation that a closure leads to (see the module's first lines for its form)."""
+    """The wave equation of a closure (its form stands at the head of the module)."""
 
     closure: Closure
 
@@ -47,7 +47,7 @@ class PDE(Value):
 
     @property
     def k(self) -> sp.Expr:
-        """The exponent of the contact law; of one that is no power 1 + φ_2."""
+        """The exponent of the contact law, 1 + φ_2 for a law that is no power."""
         return self.closure.model.k
 
     @property
@@ -67,9 +67,9 @@ class PDE(Value):
 
     @cached_property
     def coefficients(self) -> Mapping[int, Terms]:
-        """n → the terms at D^{k+n} (optical: D^n), without the power of D; {} where none stand.
+        """Terms at D^{k+n} (optical: D^n) by n, without the power of D; {} if they vanish.
 
-        The leading term is left out: `coefficients` starts behind u_x^{k-1} u_xx (or -u^k).
+        The leading term u_x^{k-1} u_xx (or -u^k) is left out.
         """
         base = base_order(self.closure.model)
         sign = 1 if base else -1
@@ -85,7 +85,7 @@ class PDE(Value):
 
     @property
     def acoustic(self) -> bool:
-        """Whether it is the acoustic branch's equation."""
+        """True for the equation of the acoustic branch."""
         return self.closure.model.branch == "acoustic"
 
     @property
@@ -95,7 +95,7 @@ class PDE(Value):
         return {"G": self.G, "H": self.H, "I": self.I} if known else {}
 
     def latex_rows(self, most: int | None = None) -> list[str]:
-        """The equation, the terms at D^{k+3} with the letters G, H, I; to D^{k+most} or all."""
+        """The equation to D^{k+most} (or all), with G, H, I at D^{k+3}, and their values."""
         letters = self.third_order
         leading = "u_{x}^{k-1}" if self.law.homogeneous else "F'"
         parts = [f"{leading} u_{{xx}}" if self.acoustic else "-u^{k}"]
@@ -145,10 +145,10 @@ class PDE(Value):
 
     @cached_property
     def conservative(self) -> bool:
-        """Whether every order is ∂_x of a flux, so that the momentum ∫ u_τ dx is conserved.
+        """True if every order is ∂_x of a flux, so that the momentum ∫ u_τ dx is conserved.
 
-        What speaks against it stands at D^{k+3} at the earliest, which is asked for an equation of
-        lower order too.
+        The first order that may not be one is D^{k+3}; it is derived for an equation of lower order
+        too.
         """
         return self.acoustic and None not in self._at_least_to_third_order._fluxes.values()
 
@@ -158,19 +158,19 @@ class PDE(Value):
 
     @cached_property
     def _fluxes(self) -> dict[int, fmpq_mpoly | None]:
-        """n → F_n, None where order D^{k+n} has none."""
+        """F_n by n, None for an order D^{k+n} without a flux."""
         return {n: flux(self.closure, n) for n in self._orders}
 
     @cached_property
     def fluxes(self) -> Mapping[int, Terms]:
-        """n → F_n, u_x^k E_n = ∂_x (u_x^k F_n), for the orders D^{k+n}, n ≥ 2, that have one."""
+        """Fluxes F_n by n ≥ 2, u_x^k E_n = ∂_x (u_x^k F_n), of the orders D^{k+n} that have one."""
         return {n: terms(self.closure, F) for n, F in self._fluxes.items() if F is not None}
 
     @cached_property
     def potentials(self) -> Mapping[int, Terms]:
-        """n → (k+1) V_n / u_x^{k+1} for the variational orders among D^{k+n}, n ≥ 2.
+        """Potentials (k+1) V_n / u_x^{k+1} by n ≥ 2, of the variational orders among D^{k+n}.
 
-        Where all orders are there, u_ττ is minus the variational derivative of Σ D^{n-1} V_n with
+        If all orders have one, u_ττ is minus the variational derivative of Σ D^{n-1} V_n with
         V_1 = u_x^{k+1}/(k(k+1)), and u_τ²/2 + Σ D^{n-1} V_n is the density of a conserved energy.
 
         Raises `lwa.InputError` for laws that are no power.
@@ -185,7 +185,7 @@ class PDE(Value):
 
     @cached_property
     def variational(self) -> bool:
-        """Whether every order (D^{k+3} in any case) derives from a potential; see `potentials`."""
+        """True if every order (D^{k+3} in any case) derives from a potential; see `potentials`."""
         pde = self._at_least_to_third_order
         return bool(pde._orders) and all(n in pde.potentials for n in pde._orders)
 
@@ -195,14 +195,13 @@ class PDE(Value):
 
     @cached_property
     def energy(self) -> Mapping[int, Terms]:
-        """n → e_n / u_x^{k+1} of the energy's density Σ D^n e_n, to n = order - 2.
+        """Terms e_n / u_x^{k+1} of the energy's density Σ D^n e_n by n, to n = order - 2.
 
-        It is the chain's own energy in the slaved fields (`lwa.equation.energy`), so that ∂_τ of it
-        is ∂_x of a flux to the order of the closure, in every field.
-        e_0 = u_τ²/2 + u_x^{k+1}/(k(k+1)).
-        Of a law that is no power, e_n / (u_x² F′), and e_0 stands without W(u_x), W′ = F.
+        It is the chain's own energy in the slaved fields (`lwa.equation.energy`): its ∂_τ is ∂_x of
+        a flux to the order of the closure, in every field. e_0 = u_τ²/2 + u_x^{k+1}/(k(k+1)). For a
+        law that is no power the terms are e_n / (u_x² F′), and e_0 lacks W(u_x), W′ = F.
 
-        Raises `lwa.InputError` on the optical branch, and where the closure leaves a defect.
+        Raises `lwa.InputError` on the optical branch, and for a closure that leaves a defect.
         """
         algebra, found = energy(self.closure)
         rows = {n: terms(self.closure, e, ENERGY, algebra=algebra) for n, e in enumerate(found)}
@@ -213,7 +212,7 @@ class PDE(Value):
         return rows
 
     def energy_density(self, u: sp.Expr, x: sp.Symbol, velocity: sp.Expr = sp.S.Zero) -> sp.Expr:
-        """`energy` for fields u(x) and u_τ(x): the density of a conserved energy.
+        """The density of the conserved `energy` for fields u(x) and u_τ(x).
 
         Raises `lwa.InputError` as `energy` does.
 
@@ -229,7 +228,7 @@ class PDE(Value):
         return sp.Add(*parts)
 
     def in_field(self, alphas: Mapping[int, Any]) -> PDE:
-        """The wave equation of φ = u + Σ α_n D^n ∂_x^n u, for {n: α_n}.
+        """The wave equation of the field φ = u + Σ α_n D^n ∂_x^n u, for {n: α_n}.
 
         Raises `lwa.InputError` on the optical branch, for n < 1 or α_n that are no quantities.
 
@@ -244,7 +243,7 @@ class PDE(Value):
     def at(self, **values: Any) -> PDE:
         """The equation for these values of the named symbols, and of ω = m2/m1 by ``omega``.
 
-        Raises `lwa.InputError` for a name that does not occur or a value that cannot be meant.
+        Raises `lwa.InputError` for a name that does not occur or a value that is no quantity.
         """
         return PDE(self.closure.at(**values))
 
@@ -268,9 +267,9 @@ class PDE(Value):
     def traveling_wave(self) -> TravelingWave:
         """The compact wave of the equation truncated at D^{k+3}, in closed form.
 
-        Raises `lwa.NoSolitaryWave` where numbers show that there is none, and `lwa.InputError`
-        when the order is below 4, the branch optical, or D^{k+2} does not vanish (the linear
-        closure with unequal contacts), so that the closed form does not apply.
+        Raises `lwa.NoSolitaryWave` for numbers without a wave, and `lwa.InputError` if the closed
+        form does not apply: the order is below 4, the branch optical, or D^{k+2} does not vanish
+        (the linear closure with unequal contacts).
         """
         if not self.law.homogeneous:
             raise InputError(

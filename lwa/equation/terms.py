@@ -22,7 +22,7 @@ from lwa.closure.consistency import Closure
 Powers = tuple[tuple[int, int], ...]
 
 FORCE, STRAIN, ENERGY = (0, 1), (1, 0), (1, 1)
-"""The power (a, b) of the base, base^{a + bk}, that a force, a strain and an energy have."""
+"""Powers (a, b) of the base, base^{a + bk}, of a force, a strain and an energy."""
 
 _SHOWN = 3
 """Terms that `Terms.__repr__` prints in full."""
@@ -38,13 +38,13 @@ class Jet(NamedTuple):
     t: Powers = ()
 
     def over(self, power: tuple[int, int]) -> tuple[Fraction, Fraction]:
-        """What is left of base^{a + bk} beside the derivatives themselves, as (a, b)."""
+        """The power of the base beside the derivatives of this jet in base^{a + bk}, as (a, b)."""
         halves = Fraction(sum(e for _, e in self.t), 2)
         return power[0] - sum(e for _, e in self.x) - halves, power[1] - halves
 
 
 class Terms(Mapping[Jet, sp.Expr]):
-    """Jet → coefficient at one order; a coefficient becomes SymPy when it is looked up.
+    """Mapping from jets to coefficients at one order; a coefficient becomes SymPy on lookup.
 
     A jet without u_τ may also be given by its plain tuple, as in ``terms[(2, 1), (3, 1)]``.
     ``divisor`` divides all coefficients.
@@ -92,7 +92,7 @@ class Terms(Mapping[Jet, sp.Expr]):
         self._converted, self._written = {}, {}
 
     def __repr__(self) -> str:
-        """The first terms, where they are short."""
+        """The first terms; only the number of terms of a long coefficient."""
         first = [jet for jet in self if len(self._raw[jet]) <= _SHOWN][:_SHOWN]
         rows = [f"{jet}: {self[jet]}" for jet in first]
         more = len(self) - len(rows)
@@ -104,13 +104,13 @@ class Terms(Mapping[Jet, sp.Expr]):
         return len(self._raw[jet])
 
     def written(self, jet: Jet) -> str:
-        """The coefficient as text, which for long ones takes longest of all; kept."""
+        """The coefficient as text; writing takes longest of all and is done once."""
         if jet not in self._written:
             self._written[jet] = str(self[jet])
         return self._written[jet]
 
     def text(self, jet: Jet) -> str:
-        """The jet as it stands in the equation, such as u_x^(k-3) u_2x^3."""
+        """The jet as text with its power of the base, such as u_x^(k-3) u_2x^3."""
         factors = self._before(jet, "u_x" if self.base else "u", "({})")
         for mark, powers in (("", jet.x), ("τ", jet.t)):
             for i, e in powers:
@@ -119,7 +119,7 @@ class Terms(Mapping[Jet, sp.Expr]):
         return " ".join(factors) or "1"
 
     def latex(self, jet: Jet) -> str:
-        """The jet as the paper writes it, such as u_x^{k-3} u_{xx}^{3}."""
+        """The jet in the paper's notation, such as u_x^{k-3} u_{xx}^{3}."""
         factors = self._before(jet, "u_{x}" if self.base else "u", "{{{}}}")
         for mark, powers in (("", jet.x), (r"\tau", jet.t)):
             for i, e in powers:
@@ -128,7 +128,7 @@ class Terms(Mapping[Jet, sp.Expr]):
         return " ".join(factors) or "1"
 
     def _before(self, jet: Jet, base: str, style: str) -> list[str]:
-        """The powers of the base that stand before the jet; of F′ too where the law is no power."""
+        """The powers of the base before the jet, and of F′ for a law that is no power."""
         a, b = jet.over(self.power)
         if self._model.law.homogeneous:
             return [_raised(base, _exponent(a, b), style)] if a or b else []
@@ -143,7 +143,7 @@ class Terms(Mapping[Jet, sp.Expr]):
         return latex.display([self.latex_total()])
 
     def without(self, left_out: Callable[[Jet], bool]) -> Terms:
-        """The terms but those of some jets."""
+        """The terms without those of some jets."""
         raw = {jet: c for jet, c in self._raw.items() if not left_out(jet)}
         rest = Terms(self._model, raw, self.power, self._divisor)
         rest._converted, rest._written = self._converted, self._written
@@ -151,7 +151,7 @@ class Terms(Mapping[Jet, sp.Expr]):
 
     @property
     def base(self) -> int:
-        """The order of the derivative that the jets are normalised by: 1 (u_x) or 0 (u)."""
+        """Order of the derivative in the jets' denominators: 1 (u_x) or 0 (u)."""
         return base_order(self._model)
 
     def of_fields(self, u: sp.Expr, velocity: sp.Expr, x: sp.Symbol) -> sp.Expr:
@@ -175,7 +175,7 @@ def _raised(name: str, power: str, style: str) -> str:
 
 
 def _exponent(a: Fraction, b: Fraction) -> str:
-    """a + bk, such as k-3."""
+    """The exponent a + bk as text, such as k-3."""
     if not b:
         return str(a)
     slope = {"1": "k", "-1": "-k"}.get(str(b), f"{b}k")
@@ -189,7 +189,7 @@ def terms(
     divisor: sp.Expr = sp.S.One,
     algebra: JetAlgebra | None = None,
 ) -> Terms:
-    """A polynomial of the closure's algebra (or another one) as jets of the field."""
+    """Convert a polynomial of the closure's algebra (or another one) into jets of the field."""
     base = base_order(closure.model)
     found = (algebra or closure.algebra).terms(polynomial)
     raw = {
@@ -201,10 +201,10 @@ def terms(
 
 
 def base_order(model: Model) -> int:
-    """1 where jets are normalised by u_x, 0 on the optical branch, where they are by u."""
+    """1 for jets over u_x; 0 for jets over u, on the optical branch."""
     return 1 if model.branch == "acoustic" else 0
 
 
 def _complexity(jet: Jet) -> tuple[bool, int, Jet]:
-    """The paper's order: u_xx³, u_xx u_xxx, u_xxxx; those with u_τ last."""
+    """Sort key of the paper's order: u_xx³, u_xx u_xxx, u_xxxx; jets with u_τ last."""
     return bool(jet.t), -sum(e for _, e in jet.x), jet

@@ -1,4 +1,4 @@
-"""Bloch's bands in numbers: frequencies and group velocities of the linear chain.
+"""Bloch's bands in floats: frequencies and group velocities of the linear chain.
 
 The equations of `lwa.linear.bloch` read f = B(κ) a in the variables a_i √(P μ_i), f_i √c_i, so
 that the Ω_j are the singular values of B. Eigenvalues of BᴴB would lose half the digits of a small
@@ -17,7 +17,7 @@ Complex = NDArray[np.complex128]
 
 
 def branches(fractions: Array, shares: Array, kappa: ArrayLike) -> Array:
-    """Ω_j(κ), ascending along a last axis of length P; error about 1e-15 of the largest.
+    """Frequencies Ω_j(κ), ascending along a last axis of length P, to 1e-15 of the largest.
 
     fractions, shares : the μ_i and the c_i. Raises `lwa.InputError` for a κ that is no finite
     number.
@@ -27,7 +27,7 @@ def branches(fractions: Array, shares: Array, kappa: ArrayLike) -> Array:
 
 
 def group_velocity(fractions: Array, shares: Array, kappa: ArrayLike) -> Array:
-    """dΩ_j/dκ in the order of `branches`, by dΩ = Re (left vector)ᴴ dB (right vector).
+    """Slopes dΩ_j/dκ in the order of `branches`, by dΩ = Re (left vector)ᴴ dB (right vector).
 
     Where branches touch, or touch zero, they have a kink: there it is the slope towards larger κ.
     """
@@ -50,14 +50,14 @@ def group_velocity(fractions: Array, shares: Array, kappa: ArrayLike) -> Array:
 
 
 def edges(fractions: Array, shares: Array) -> Array:
-    """(min, max) of Ω of each branch, shape (P, 2): each is monotone between κ = 0 and π/P."""
+    """(min, max) of Ω of each branch, shape (P, 2); branches are monotone from κ = 0 to π/P."""
     ends = branches(fractions, shares, [0.0, np.pi / len(fractions)])
     result: Array = np.sort(ends, axis=0).T
     return result
 
 
 def _strains(fractions: Array, shares: Array, kappa: ArrayLike) -> tuple[Complex, Complex]:
-    """B(κ), which takes a_i √(P μ_i) to f_i √c_i, and the one entry of dB/dκ (last row)."""
+    """The matrix B(κ) from a_i √(P μ_i) to f_i √c_i, and the one entry of dB/dκ (last row)."""
     wave = _finite(kappa)
     # by whole turns less, which e^{iκ} takes off exactly
     wave = np.where(np.abs(wave) <= np.pi, wave, np.angle(np.exp(1j * wave)))

@@ -21,7 +21,7 @@ from lwa.algebra.model import Model
 BRANCHES = ("acoustic", "optical")
 
 Polynomial = list[fmpq_mpoly]
-"""A polynomial in Ω², truncated: its coefficients."""
+"""Coefficients of a truncated polynomial in Ω²."""
 
 
 class Bloch:
@@ -35,7 +35,7 @@ class Bloch:
         self.one, self.zero = context.constant(1), context.constant(0)
 
     def trace(self, most: int) -> Polynomial:
-        """t_m for m up to P, or up to ``most``: Σ t_m Ω^{2m} is the trace of what takes (a, f) on.
+        """t_0 … t_P (or t_most), Σ t_m Ω^{2m} being the trace of the matrix (a, f) → next cell.
 
         From a = 1, f = 0 it takes the a of the next cell, from a = 0, f = 1 the f. Both are
         polynomials in Ω², lists of their coefficients.
@@ -48,7 +48,7 @@ class Bloch:
         return [a_m + f_m for a_m, f_m in zip(a, f, strict=True)]
 
     def _carried(self, a: Polynomial, f: Polynomial) -> tuple[Polynomial, Polynomial]:
-        """(a, f) one cell further."""
+        """The pair (a, f) one cell further."""
         for mu, c in zip(self.mu, self.c, strict=True):
             inertia = [self.zero, *(self.P * mu * a_m for a_m in a[:-1])]
             f = [f_m - i_m for f_m, i_m in zip(f, inertia, strict=True)]

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from lwa.base.arrays import Array
 
 MOST_TERMS = 200_000
-"""What a series may take, by the estimate of `Dispersion._length`: about half a minute."""
+"""Terms of the longest series (estimate of `Dispersion._length`); it takes about half a minute."""
 
 
 @dataclass(frozen=True)
@@ -67,7 +67,7 @@ class Dispersion(Value):
         object.__setattr__(self, "k", exponent(self.k, self.cell))
 
     def at(self, **values: Any) -> Dispersion:
-        """The chain for these values of the named symbols, and of ω = m2/m1 by ``omega``.
+        """The chain with values for named symbols, and for ω = m2/m1 by ``omega``.
 
         Raises `lwa.InputError` for a name that does not occur or a value that is not positive.
         """
@@ -81,7 +81,7 @@ class Dispersion(Value):
 
     @cached_property
     def trace(self) -> dict[int, sp.Expr]:
-        """m → t_m of the exact dispersion relation 2 cos(Pκ) = Σ t_m Ω^{2m}, m = 0 … P.
+        """t_m by m of the exact dispersion relation 2 cos(Pκ) = Σ t_m Ω^{2m}, m = 0 … P.
 
         >>> Dispersion(Cell([1])).trace
         {0: 2, 1: -1}
@@ -89,12 +89,12 @@ class Dispersion(Value):
         return {m: self._expression(t) for m, t in enumerate(self._bloch.trace(self.cell.size))}
 
     def acoustic(self, order: int = 4) -> dict[int, sp.Expr]:
-        """n → the coefficient of κ^n in Ω² of the acoustic branch, n = 2, 4, … ≤ ``order``."""
+        """Coefficients of κ^n in Ω² of the acoustic branch by n = 2, 4, … ≤ ``order``."""
         series = self._bloch.acoustic(self._length(order))
         return {2 * n: self._expression(c) for n, c in enumerate(series) if n > 0}
 
     def optical(self, order: int = 4) -> dict[int, sp.Expr]:
-        """n → the coefficient of κ^n in Ω² of a dimer's optical branch, n = 0, 2, … ≤ ``order``.
+        """Coefficients of κ^n in Ω² of a dimer's optical branch by n = 0, 2, … ≤ ``order``.
 
         Raises `lwa.InputError` unless the cell has two particles.
         """
@@ -103,9 +103,9 @@ class Dispersion(Value):
         return {0: 1 / self._expression(self._bloch.nu)} | {n: -c for n, c in acoustic.items()}
 
     def amplitude_ratio(self, order: int = 4, branch: str = "acoustic") -> dict[int, sp.Expr]:
-        """n → the coefficient of (iκ)^n in a_1/a_0 = w/u of a dimer, n = 0 … ``order``.
+        """Coefficients of (iκ)^n in a_1/a_0 = w/u of a dimer by n = 0 … ``order``.
 
-        These are λ b_n of the ansatz w = λ Σ b_n D^n ∂_x^n u: a_1 is taken at the place of a_0.
+        They are the λ b_n of the ansatz w = λ Σ b_n D^n ∂_x^n u, with a_1 at the place of a_0.
 
         Raises `lwa.InputError` unless the cell has two particles.
         """
@@ -120,7 +120,7 @@ class Dispersion(Value):
 
     @cached_property
     def I(self) -> sp.Expr:
-        """I of Ω² = κ² (1 - I κ² + …): the wave equation's coefficient of u_4x, over D².
+        """I of Ω² = κ² (1 - I κ² + …), the wave equation's coefficient of u_4x over D².
 
         >>> Dispersion(Cell(["1/2", "1/3", "1/6"])).I
         5/36
@@ -141,7 +141,7 @@ class Dispersion(Value):
         return sp.together(self._model.ring.expression(terms))  # compliances enter as 1/A
 
     def _length(self, order: Any) -> int:
-        """The number of powers of κ² up to κ^order, refused where it would take too long.
+        """The number of powers of κ² up to κ^order; too long a series is refused.
 
         The coefficient of κ^{2n} has the degree 2n - 2 in the masses and in the compliances, and
         comes from about n² products.
@@ -171,7 +171,7 @@ class Dispersion(Value):
     # --- numbers ----------------------------------------------------------------------------
 
     def branches(self, kappa: ArrayLike) -> Array:
-        """Ω_j(κ), ascending along a last axis of length P; error about 1e-15 of the largest.
+        """Frequencies Ω_j(κ), ascending along a last axis of length P, to 1e-15 of the largest.
 
         Raises `lwa.InputError` for a κ that is no finite number, and where masses, stiffnesses or
         k are symbols.
@@ -184,19 +184,19 @@ class Dispersion(Value):
         return bands.branches(*self._weights, kappa)
 
     def group_velocity(self, kappa: ArrayLike) -> Array:
-        """dΩ_j/dκ in the order of `branches`; the slope towards larger κ where branches touch."""
+        """Slopes dΩ_j/dκ in the order of `branches`; if branches touch, those towards larger κ."""
         from lwa.linear import bands  # start-up: it loads NumPy
 
         return bands.group_velocity(*self._weights, kappa)
 
     def band_edges(self) -> Array:
-        """(min, max) of Ω of each branch, shape (P, 2): each is monotone between κ = 0 and π/P."""
+        """(min, max) of Ω of each branch, shape (P, 2); branches are monotone from κ = 0 to π/P."""
         from lwa.linear import bands  # start-up: it loads NumPy
 
         return bands.edges(*self._weights)
 
     def gaps(self) -> Array:
-        """(from, to) of the P - 1 intervals of Ω between the bands; closed ones are of length 0."""
+        """(from, to) of the P - 1 gaps of Ω between the bands; closed gaps have length 0."""
         import numpy as np  # start-up: `import lwa` does not load it
 
         edges = self.band_edges()
@@ -204,7 +204,7 @@ class Dispersion(Value):
 
     @property
     def _weights(self) -> tuple[Array, Array]:
-        """μ_i and c_i as floats."""
+        """The μ_i and c_i as floats."""
         return self._floats(self.cell.fractions), self._floats(self.cell.shares(self.k))
 
     def _floats(self, values: Iterable[sp.Expr]) -> Array:
@@ -256,18 +256,18 @@ class LoadedChain(Value):
 
     @cached_property
     def static_compressions(self) -> tuple[sp.Expr, ...]:
-        """δ_i of each contact under the load."""
+        """The compression δ_i of each contact under the load."""
         return self.law.compressions(self.cell, self.precompression)
 
     @cached_property
     def spring_constants(self) -> tuple[sp.Expr, ...]:
-        """A_i F′(δ_i)."""
+        """The spring constants A_i F′(δ_i)."""
         pairs = zip(self.cell.stiffnesses, self.static_compressions, strict=True)
         return tuple(sp.powsimp(A * self.law.at(delta, 1)) for A, delta in pairs)
 
     @cached_property
     def springs(self) -> Dispersion:
-        """The chain of these springs, Ω(κ) in the theory's units."""
+        """The dispersion of the chain of these springs, Ω(κ) in the theory's units."""
         constants = (
             sp.nsimplify(K, rational=True) if K.has(sp.Float) else K for K in self.spring_constants
         )
@@ -275,23 +275,23 @@ class LoadedChain(Value):
 
     @cached_property
     def rate(self) -> sp.Expr:
-        """ω/Ω, in s⁻¹ where the cell is in SI."""
+        """The ratio ω/Ω, in s⁻¹ for a cell in SI."""
         springs = self.springs.cell
         return springs.time_scale(1) / springs.spacing
 
     @cached_property
     def sound_speed(self) -> sp.Expr:
-        """dω/dq of long waves."""
+        """The speed dω/dq of long waves."""
         return self.cell.spacing * self.rate
 
     def branches(self, q: ArrayLike) -> Array:
-        """ω_j(q), ascending along a last axis of length P; q is a wavenumber, q D = κ."""
+        """Frequencies ω_j(q), ascending along a last axis of length P; κ = qD."""
         import numpy as np  # start-up: `import lwa` does not load it
 
         return self.springs.branches(np.asarray(q) * self._length) * self._rate
 
     def group_velocity(self, q: ArrayLike) -> Array:
-        """dω_j/dq in the order of `branches`."""
+        """Group velocities dω_j/dq in the order of `branches`."""
         import numpy as np  # start-up: `import lwa` does not load it
 
         slopes = self.springs.group_velocity(np.asarray(q) * self._length)
@@ -302,7 +302,7 @@ class LoadedChain(Value):
         return self.springs.band_edges() * self._rate
 
     def gaps(self) -> Array:
-        """(from, to) of the intervals of ω between the bands."""
+        """(from, to) of the gaps of ω between the bands."""
         return self.springs.gaps() * self._rate
 
     @property
@@ -311,7 +311,7 @@ class LoadedChain(Value):
 
     @property
     def _length(self) -> float:
-        """D; 1 where it is a symbol."""
+        """D, or 1 for a symbol."""
         D = self.cell.spacing
         return 1.0 if D.is_Symbol else self._float(D)
 

@@ -1,4 +1,4 @@
-"""Beads and their materials as a file names them: a scene of the lattice, or a cell's spheres.
+"""Beads and their materials in files: scenes of the lattice, or the spheres of a cell.
 
 A file of spheres holds, in units that agree (SI if A is to be in N/m^{3/2})::
 
@@ -49,7 +49,7 @@ SCENE = (
     "damping",
     "drive",
 )
-"""Keys of a scene that say nothing about its cell."""
+"""Keys of a scene that do not concern its cell."""
 
 
 def read_materials(file: Table) -> dict[str, Material]:
@@ -73,7 +73,7 @@ def read_spheres(path: str | Path) -> list[Sphere]:
 
 
 def spheres(content: Any) -> list[Sphere]:
-    """The spheres of the cell of a parsed file, see the module.
+    """Read the spheres of the cell of a parsed file (see the module), in their order.
 
     >>> steel, ball = {"E": 193e9, "nu": 0.3}, {"mass": 1, "radius": 0.5, "material": "steel"}
     >>> content = {"materials": {"steel": steel}, "beads": {"ball": ball}}

@@ -29,7 +29,7 @@ EXPONENT = sp.Rational(3, 2)
 class Material(Value):
     """An isotropic elastic solid: Young's modulus E, Poisson's ratio ν and perhaps its density.
 
-    They are numbers or symbols. Raises `lwa.InputError` unless E > 0, -1 < ν ≤ 1/2, and the
+    The values are numbers or symbols. Raises `lwa.InputError` unless E > 0, -1 < ν ≤ 1/2, and the
     density, where it is given, is positive.
     """
 
@@ -52,9 +52,9 @@ class Material(Value):
 
     @classmethod
     def named(cls, name: str, *, E: Any = None, nu: Any = None, density: Any = None) -> Material:
-        """A material of `lwa.spheres.materials`, in SI, with other values where they are given.
+        """A material of `lwa.spheres.materials`, in SI, with some of its values replaced.
 
-        Raises `lwa.InputError`, with the names that there are, for another name.
+        Raises `lwa.InputError`, with the known names, for another name.
 
         >>> Material.named("PTFE", E="0.6e9")
         Material(E=600000000, nu=23/50, density=2178)
@@ -132,7 +132,7 @@ def stiffness(sphere: Sphere, other: Sphere | Material) -> sp.Expr:
 
 
 def contact(sphere: Any, other: Any, sqrt: Callable[[Any], Any]) -> Any:
-    """`stiffness` in the arithmetic of ``sqrt``: `math.sqrt` where all that is given is floats."""
+    """`stiffness` in the arithmetic of ``sqrt``, `math.sqrt` for floats."""
     first, second = sphere.material, getattr(other, "material", other)
     wall = second is other
     R = sphere.radius if wall else sphere.radius * other.radius / (sphere.radius + other.radius)

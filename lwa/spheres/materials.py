@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 
 class Solid(NamedTuple):
-    """E in Pa, ν and the density in kg/m³, as decimals, and where they are from."""
+    """E in Pa, ν and the density in kg/m³, as decimals, and their source."""
 
     E: str
     nu: str
@@ -46,4 +46,4 @@ MATERIALS = {
         "acetal homopolymer: DuPont, Delrin Design Guide, Module III, Delrin 500",
     ),
 }  # fmt: skip
-"""By name."""
+"""The materials by name."""

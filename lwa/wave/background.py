@@ -45,7 +45,7 @@ _LOOKS = 64
 
 
 def taken_names(cell: Cell, law: ContactLaw) -> dict[str, str]:
-    """Names that no load may have, and what each means: those of chain, law and wave."""
+    """Names of chain, law and wave that no load may have, with their meanings."""
     chain = dict.fromkeys((s.name for s in cell.symbols), "a property of the cell")
     return chain | dict.fromkeys((s.name for s in law.symbols), "a symbol of the law") | RESERVED
 
@@ -321,7 +321,7 @@ class BackgroundWave(Value):
         return Strains(v, *map(self.in_unit, values))
 
     def _wave(self, B: sp.Expr, digits: int) -> tuple[sp.Expr, int]:
-        """B and the working digits for a wave of this rise, all in numbers."""
+        """B over the unit, and the working digits for a wave of this rise."""
         if free := self._free(B):
             raise InputError(
                 f"{min(map(str, free))!r} has no value: a width or a profile on a background is a "

@@ -1,16 +1,16 @@
-"""A wave as the source of a program: β, widths, speed, amplitude and profile as plain functions.
+"""Source text of programs: a wave's β, widths, speed, amplitude and profile as plain functions.
 
-What is written are not the formulas as they stand but forms of them that keep their digits:
+The formulas are written in forms that keep their digits in floating point:
 
 - sums that hold k are polynomials in k - 2, an exact number, in which less cancels than in k;
 - arccos(2^{-x}) = arctan √(2^{x+1} sinh(x ln 2)), good as x → 0;
 - ln f = 2 arsinh((f-1)/(2√f)), f = V²/B^{k-1}, good as f → 1, that is as k → 1;
 - cos(βξ) on the support and 0 outside of it is sin((h + |h|)/2), h = π/2 - |βξ|.
 
-So the functions are good to 1e-14, relatively, but for three things that no arrangement mends. The
+The functions have relative errors of 1e-14, with three exceptions that lie in the formulas. The
 amplitude's exponent 2/(k-1) makes each rounding |ln B| times larger. Near the edge of the domain of
-a wave (G + H + I → 0, V² → 0) a last digit of k or a mass is more than that. And so it is of ξ near
-the end of the support: the profile is good to 1e-14 B at a ξ that is off by 1e-14 of itself.
+waves (G + H + I → 0, V² → 0) a last digit of k or of a mass changes the result by more. Near the
+end of the support so does a last digit of ξ: the profile is right to 1e-14 B at a ξ off by 1e-14 ξ.
 """
 
 from __future__ import annotations

@@ -32,7 +32,7 @@ class NumericWave(Value):
     """β, width, FWHM, speed and amplitude of an N:1 dimer's wave, for arrays of k and ω.
 
     ``wave`` has the symbol k for its exponent and two symbols m1, m2 for its masses; k and ω
-    broadcast against each other. Where there is no wave (k ≤ 1, G + H + I ≤ 0, V² ≤ 0) the
+    broadcast against each other. For points without a wave (k ≤ 1, G + H + I ≤ 0, V² ≤ 0) the
     functions raise `lwa.NoSolitaryWave` and name the first such point, or, with
     ``missing="nan"``, return NaN there.
 
@@ -115,7 +115,7 @@ class NumericWave(Value):
         return beta
 
     def _wave(self, k: ArrayLike, omega: ArrayLike) -> tuple[Extended, Extended, Extended]:
-        """k and ω as arrays of one shape, NaN where there is no wave, and (G+H+I)/D²."""
+        """k and ω as arrays of one shape, NaN at points without a wave, and (G+H+I)/D²."""
         given = (finite(x, name).astype(np.longdouble) for x, name in ((k, "k"), (omega, "ω")))
         k, omega = np.broadcast_arrays(*given)
         if not np.all(omega > 0):
@@ -151,7 +151,7 @@ def _positive(value: ArrayLike, name: str) -> Extended:
 
 
 def _function(ratio: sp.Expr, k: sp.Symbol, m1: sp.Symbol, m2: sp.Symbol) -> Function:
-    """A function of (k, ω) from a rational expression homogeneous in the masses."""
+    """Compile a rational expression homogeneous in the masses to a function of (k, ω)."""
     shifted, omega = sp.symbols("kappa omega", cls=sp.Dummy)
     ratio = ratio.subs({m1: 1, m2: omega, k: shifted + 2}, simultaneous=True)
     numerator, denominator = (

@@ -27,13 +27,13 @@ _TAIL = (2.5, 5.0, 9.0, 20.0)
 """Ends of the panels below v = B/2; s is 1.7e-17 at the last."""
 
 LEVELS = ((1, 0), (2, 3), (6, 4), (24, 3), (24, 23))
-"""Panels above v = B/2, and halvings of the first; θ² is a float's last digit after 27."""
+"""Panels above v = B/2, and halvings of the first; 23 more reach the last digit of θ²."""
 
 CONVERGED = 1e-13
 """The last two Legendre coefficients of dξ/dθ on each panel, over the largest dξ/dθ."""
 
 ROUNDING = 1e-9
-"""The same on the finest panels, where they are rounding errors of p next to a law's pole."""
+"""These coefficients on the finest panels: rounding errors of p next to a law's pole."""
 
 
 class Grid(NamedTuple):
@@ -58,7 +58,7 @@ class Grid(NamedTuple):
         return values[..., : len(self.kernel)].reshape(*values.shape[:-1], len(self.starts), POINTS)
 
     def converged(self, rate: Array, most: float = CONVERGED) -> NDArray[np.bool_]:
-        """Whether dξ/dθ at the upper nodes is resolved on each of their panels."""
+        """True for waves whose dξ/dθ at the upper nodes is resolved on each panel."""
         last = np.abs(self.panels(rate) @ _fitted()[-2:].T).max(axis=(1, 2))
         found: NDArray[np.bool_] = last <= most * np.abs(rate).max(axis=1)
         return found
@@ -88,7 +88,7 @@ def integrated() -> Array:
 
 @cache
 def grid(parts: int = 1, halvings: int = 0, deep: bool = False) -> Grid:
-    """The grid of so many panels above v = B/2, the first halved so many times."""
+    """The grid with ``parts`` panels above v = B/2, the first halved ``halvings`` times."""
     x, w = gauss()
     above = [0.0, *(_HALF / parts / 2.0 ** np.arange(halvings, 0, -1))]
     above += [_HALF * i / parts for i in range(1, parts + 1)] + [1.3, 1.8] * deep
@@ -141,7 +141,7 @@ def _below(theta: Array, at: float) -> Array:
 
 
 def strains(g: Grid, p0: Array, B: Array) -> Array:
-    """p at the nodes, from whichever end is nearer."""
+    """Strains at the nodes, computed from the nearer end of the wave."""
     near = (p0 + B)[:, None] - B[:, None] * g.y2
     found: Array = np.where(g.y2 < 0.5, near, p0[:, None] + B[:, None] * g.s)
     return found
@@ -154,7 +154,7 @@ def value_at(coefficients: Any, x: Array) -> Array:
 
 
 def inverse(coefficients: Array, target: Array) -> Array:
-    """x in [0, 1] at which growing Legendre series reach their targets: Newton, kept inside."""
+    """The x in [0, 1] at which growing Legendre series reach their targets, by Newton's method."""
     slopes = np.moveaxis(legendre.legder(np.moveaxis(coefficients, -1, 0), scl=2), 0, -1)
     x: Any = np.full(target.shape, 0.5)
     for _ in range(60):

@@ -31,7 +31,7 @@ class PrecompressedWave(Value):
 
     Both are total forces, numbers or symbols, in the units of the cell; the dynamic force is their
     difference. A force below the load is that of a rarefaction wave. Under a law that is no power
-    they are numbers, as all of the chain then is.
+    forces and chain must be numbers.
 
     Raises `lwa.InputError` unless both are positive, and `lwa.NoSolitaryWave` without a wave.
 
@@ -106,9 +106,9 @@ class PrecompressedWave(Value):
     def fwhm(
         self, quantity: str = "force", extent: str = "length", digits: int = DIGITS
     ) -> sp.Expr:
-        """Full width at half maximum of what "strain", "force" or "velocity" rise by.
+        """Full width at half maximum of the rise of "strain", "force" or "velocity".
 
-        A "length", or the "time" in which it passes; all of the chain must be numbers.
+        ``extent`` is "length" or "time" (of passage). All of the chain must be numbers.
         """
         known_extent(extent)
         length = self.background.fwhm(self.strain, quantity, digits)
@@ -119,9 +119,9 @@ class PrecompressedWave(Value):
         return length / (speed * self.background.unit)
 
     def at(self, **values: Any) -> PrecompressedWave:
-        """The same with numbers (or other symbols) for the named symbols.
+        """The wave with numbers (or other symbols) for the named symbols.
 
-        Raises `lwa.InputError` for a name that does not occur or a value that cannot be meant.
+        Raises `lwa.InputError` for a name that does not occur or a value that is no quantity.
         """
         forces = self.force.free_symbols | self.precompression.free_symbols
         more = (*self.law.symbols, *sorted(forces, key=str))

@@ -65,7 +65,7 @@ class Strains:
         ]
 
     def precision(self, B: sp.Expr, digits: int) -> int:
-        """Working digits with which Q(B) - Q(v) keeps twice the digits that are asked for.
+        """Working digits with which Q(B) - Q(v) keeps twice the digits of the result.
 
         Twice, because the difference falls as θ² towards the peak. How many the terms of Q cancel
         is measured: the difference must not change with twice the working digits.

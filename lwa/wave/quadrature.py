@@ -50,7 +50,7 @@ from lwa.wave.panels import (
 )
 
 _BLOCK = 256
-"""Waves that are computed at once, so that their samples stay in the processor's cache."""
+"""Waves computed at once; their samples stay in the processor's cache."""
 
 
 @dataclass(frozen=True)
@@ -135,7 +135,7 @@ class NumericBackground(Value):
         return found
 
     def _half_widths(self, p0: Array, B: Array, force: bool, deep: bool = False) -> Array:
-        """ξ where the strain, or the force, has half of its rise."""
+        """The place ξ at which the strain, or the force, has half of its rise."""
         found = np.empty_like(p0)
         for rows, g, p, _, rate in self._resolved(p0, B, deep):
             part, (_, w) = g.panels(rate), gauss()
@@ -188,7 +188,7 @@ class NumericBackground(Value):
     def _rates(self, g: Grid, p0: Array, B: Array, passed: Array) -> tuple[Array, Array, Array]:
         """p and F″ at the nodes, and dξ/dθ at the upper ones.
 
-        passed : Q of the whole wave less Q(B), for a B further down its flank.
+        passed : Q of the whole wave less Q(B), for the part of its flank below B.
         """
         p = strains(g, p0, B)
         n = len(g.kernel)
@@ -227,7 +227,7 @@ class NumericBackground(Value):
 
     @property
     def _D(self) -> sp.Expr:
-        """The spacing, 1 where the law has no length to compare it with."""
+        """The spacing, or 1 for a symbol under a power law, which has no length of its own."""
         D = self.cell.spacing
         return sp.S.One if D.is_Symbol and self.law.homogeneous else D
 
@@ -248,7 +248,7 @@ class NumericBackground(Value):
         return _compiled(self.law.of_strain(_STRAIN, self._D, 2))
 
     def _scale(self, unit: Array) -> Any:
-        """V² in units of strain^{k-1}, in extended precision."""
+        """The factor unit^{k-1} of V², in extended precision."""
         if not self.law.homogeneous:
             return 1.0
         return unit.astype(np.longdouble) ** np.longdouble(str(sp.N(self.law.exponent - 1, 25)))
@@ -279,7 +279,7 @@ class NumericBackground(Value):
         return base / unit, rise / unit, unit
 
     def _exists(self, p0: Array, B: Array) -> Array:
-        """Whether F′ is positive and finite and Q(v) < Q(B) from v = B down, Q′(B) B > 0 first."""
+        """1.0 for waves with 0 < F′ < ∞, B Q′(B) > 0, and Q(v) < Q(B) below; else 0.0."""
         g = grid(*LEVELS[1])
         good = np.isfinite(self._slope(p0 + B)) & (self._slope(p0 + B) > 0)
         passed = np.zeros_like(p0)
@@ -298,11 +298,11 @@ class NumericBackground(Value):
 _STRAIN = sp.Symbol("p", positive=True)
 
 _LEAST = 1e-280
-"""Strains of a profile that are 0 beside its peak 1."""
+"""Strains of a profile, over its peak, that are taken as 0."""
 
 
 def _compiled(value: sp.Expr) -> Callable[[Array], Array]:
-    """A function of arrays of strains."""
+    """Compile an expression in the strain to a function of arrays."""
     long = {x: sp.Float(x, 17) for x in value.atoms(sp.Rational) if x.p.bit_length() > 53}
     function = sp.lambdify(_STRAIN, value.xreplace(long), "numpy")
 

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 class TravelingWave(CompactWave):
-    """The compact traveling wave of a chain: `CompactWave` and what is computed from it."""
+    """The compact traveling wave of a chain, with units, loads, floats, plots and source text."""
 
     def at_force(
         self, F: Any = "F", of: str = "contact", *, precompression: Any = 0

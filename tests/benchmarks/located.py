@@ -103,9 +103,10 @@ def integrate(
     return force
 
 
-def around(truth: Pulse) -> Array:
-    """Times of samples about a pulse, from 4 of its widths before its peak to 3 behind."""
-    return np.asarray(truth.arrival + truth.fwhm * np.linspace(-4, 3, 300))
+def around(task: Task, truth: Pulse) -> Array:
+    """Times of samples about a pulse: 4 of its widths before its peak, 3 behind or to the end."""
+    times = truth.arrival + truth.fwhm * np.linspace(-4, 3, 300)
+    return np.asarray(times[times <= task.scene.duration])
 
 
 class Septic:
@@ -126,6 +127,6 @@ def read(task: Task, times: Array, force: Array) -> Pulse:
 
 def located(task: Task, truth: Pulse) -> Pulse:
     """The pulse of a task by DOP853 with every kink located, sampled about where it is expected."""
-    times = around(truth)
+    times = around(task, truth)
     # about the least tolerance that SciPy takes
     return read(task, times, integrate(task, times, Located, 2.5e-14, atol=2.5e-15))

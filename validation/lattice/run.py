@@ -25,6 +25,7 @@ _SI = {
     "compression": "m",
     "displacement": "m",
     "velocity": "m/s",
+    "energy": "J",
 }
 _MOST = 10  # sensors of one kind that are drawn as curves; more are drawn as a map
 _FINEST = 1000  # places, and times, of a map
@@ -72,8 +73,27 @@ class Records(ArrayValue, Pictured):
         """
         return f"{quantity} ({_SI[quantity.split()[-1]]})" if self.scene.units else quantity
 
+    @property
+    def energy(self) -> Array:
+        """Kinetic and elastic energy above equilibrium at the sample times, (S,).
+
+        Raises `SceneError` unless the scene has sensors at all beads.
+        """
+        sensors, size = self.scene.bead_sensors, self.scene.size
+        if len(sensors) < size:
+            raise SceneError(
+                f"energy needs sensors at all {size} beads: the scene has {len(sensors)}"
+            )
+        order = np.argsort(sensors)
+        states = np.concatenate((self.bead_displacement[order], self.bead_velocity[order]))
+        motion = Motion(self.scene)
+        return np.array([motion.energy(state) for state in states.T])
+
     def columns(self) -> dict[str, Array]:
-        """Time and all records, each (S,), by names such as "bead 15 force (N)"."""
+        """Time and all records, each (S,), by names such as "bead 15 force (N)".
+
+        With sensors at all beads also the energy.
+        """
         scene = self.scene
         found = {"time": self.time}
         for row, i in enumerate(scene.bead_sensors):
@@ -82,6 +102,8 @@ class Records(ArrayValue, Pictured):
         for row, i in enumerate(scene.contact_sensors):
             found[f"contact {i + 1} force"] = self.contact_force[row]
             found[f"contact {i + 1} compression"] = self.compression[row]
+        if len(scene.bead_sensors) == scene.size:
+            found["energy"] = self.energy
         return {self.label(name): values for name, values in found.items()}
 
     def to_pandas(self) -> Any:

@@ -1,28 +1,28 @@
-"""The steady pulse of a dimer chain: its width, its speed and its decay, at one k and one ω.
+"""The steady pulse of a struck dimer chain: its width, speed and decay at one k and one ω.
 
-Bead 0 of a chain of masses 1, ω, 1, … at rest is struck (A = D = 1), and the pulse recorded at
-`PLACES` cells, equally far from each other. As F = A δ^k has no scale of its own, a
-pulse that leaves something behind in every cell comes to lose the same share of its force F in
-each, F ~ e^{-d n} after n sites, and is similar to itself ever after: its speed goes as
-F^{(k-1)/(2k)} and its width, in sites, does not change. From one place to the next, N sites on,
+Bead 0 of a chain of masses 1, ω, 1, … at rest is struck (A = D = 1), and the pulse is recorded at
+`PLACES` cells at equal distances. F = A δ^k has no scale of its own. So a pulse that leaves
+something behind in every cell comes to lose the same share of its force F in each cell,
+F ~ e^{-d n} after n sites; its speed then goes as F^{(k-1)/(2k)}, and its width, in sites, stays
+the same. Between two places, N sites apart, at which the peak forces are F_1 and F_2,
 
     decay  d = ln(F_1/F_2) / N,
     speed  c = N (e^z - 1) / (z T F_1^q),   q = (k-1)/(2k),  z = q d N,
 
-T the time between the two peaks: c is the speed at contact force 1, exactly so for a pulse whose
-speed is c F^q all the way. Widths are times at a contact times the speed there. Every number is
-the mean over the two contacts of a cell, on that stretch where its error is least.
+T being the time between the peaks: c is the speed at contact force 1 of a pulse whose speed is
+c F^q all the way. Widths are times at a contact times the speed there. All numbers are means over
+the two contacts of a cell, from the stretch between two places where their errors are least.
 
-A number x_n of stretch n differs from its limit by what the pulse has yet to shed. Its error is
-the largest of |x_n - x_{n-1}|, |x_n - x_{n-2}| and the difference from a less accurate run, and on
-top of it what the differences add up to if they go on to shrink as they do: δ r / (1 - r), δ the
-last one, r its ratio to the one before, of which 0.9 is the most that is believed.
+The number x_n of stretch n still differs from its limit. Its error is the largest of
+|x_n - x_{n-1}|, |x_n - x_{n-2}| and the difference to a less accurate run, plus the sum of all
+further differences if they go on to shrink as the last two did: δ r / (1 - r), δ being the last
+difference and r, at most 0.9, its ratio to the one before.
 
-The leading pulse ends at a contact where the compression first falls to a quarter of its highest
-so far. Between special mass ratios the force has several humps, as the light bead hits to and fro;
-a width is that of the highest, so that it jumps where the dip before another hump passes half.
-Where a pulse decays fast, another may overtake it (k ≥ 3/2, ω from 0.53 to 0.65). The errors say
-nothing of the other one: numbers are those of the pulse that leads at the `Point.sites`.
+The leading pulse at a contact ends where the compression first falls to a quarter of its highest
+value so far. Between special mass ratios the force has several humps, as the light bead hits to and
+fro; a width is that of the highest hump, and jumps where the dip before another hump passes half.
+Where a pulse decays fast, another pulse may overtake it (k ≥ 3/2, ω from 0.53 to 0.65): numbers are
+those of the pulse that leads at `Point.sites`, and their errors do not cover the other pulse.
 """
 
 from __future__ import annotations
@@ -43,23 +43,26 @@ from validation.lattice.simulate import simulate
 from validation.pulses.pulse import Measured, MeasureError, Pulse, leading_pulses
 from validation.scenes.chains import struck
 
-QUANTITIES = {  # what is measured, and what it is called
+QUANTITIES = {  # measured numbers and their labels
     "width": "FWHM of the contact force (sites)",
     "strain_width": "FWHM of the contact strain (sites)",
     "speed": "speed at contact force 1 (sites/time)",
     "decay": "decay of the peak force per site",
 }
 PLACES = 10  # cells at which the pulse is recorded
-STRETCH = 4  # cells from one to the next, for k from 3/2 on, unless a sweep sets another number
-TOLERANCES = (1e-6, 1e-5)  # of the run that counts and of the one that gives its error
-_GROWTH, _LONGEST = 1.6, 16  # by how much, and how often, a run is made longer, at most
-_SLOWEST = 0.9  # ratio of two differences, next to 1 of which nothing can be said of their sum
+STRETCH = 4  # default number of cells from one place to the next, for k ≥ 3/2
+TOLERANCES = (1e-6, 1e-5)  # of the accurate run and of the one that gives its error
+_GROWTH, _LONGEST = 1.6, 16  # factor by which, and times that, a run is made longer at most
+_SLOWEST = 0.9  # largest ratio of two differences for which their sum is estimated
 
 
 @dataclass(frozen=True)
 class Point:
-    """What one k and ω gave: `QUANTITIES` by name, or the reason why there are none; and the sites
-    (beads from the struck one) at both ends of the stretch that was measured."""
+    """Measured numbers at one k and ω, or the reason why there are none.
+
+    sites : beads from the struck one to both ends of the stretch of measurement. numbers : by the
+    names of `QUANTITIES`. missing : the reason.
+    """
 
     k: sp.Rational
     omega: sp.Rational
@@ -69,7 +72,7 @@ class Point:
 
 
 def cells_apart(k: float, stretch: int) -> int:
-    """Cells from one place to the next: as k → 1 a pulse needs longer to leave its wake behind.
+    """Number of cells between two places: as k → 1 a pulse leaves its wake behind more slowly.
 
     >>> [cells_apart(k, 4) for k in (3, 1.5, 1.1)]
     [4, 4, 30]
@@ -78,7 +81,7 @@ def cells_apart(k: float, stretch: int) -> int:
 
 
 def point(k: sp.Rational, omega: sp.Rational, stretch: int) -> Point:
-    """Strike the chain and measure its pulse; what cannot be measured, the point itself tells."""
+    """Strike the chain and measure its pulse; a failure is the ``missing`` of the point."""
     try:
         return _point(k, omega, stretch)
     except (InputError, IntegrationError, ArithmeticError) as error:

@@ -1,6 +1,6 @@
-"""A `Scene` as a file, TOML or JSON, that reads like the experiment.
+"""Files of scenes, TOML or JSON.
 
-All keys but ``duration`` and ``chain.cell`` are optional, and what is not named is not there::
+All keys but ``duration`` and ``chain.cell`` are optional::
 
     duration = 1e-3               # of the simulation
     samples = 2001                # of the sensors, from 0 to the duration; 1001 if not given
@@ -127,7 +127,7 @@ def read_scene(path: str | Path) -> Scene:
 
 @of_scene
 def scene(content: Any) -> Scene:
-    """The scene of a parsed file, see the module; raises `SceneError`."""
+    """The scene of a parsed file; `SceneError` for unknown keys and invalid values."""
     if isinstance(content, dict) and "scene" in content:
         content = content["scene"]
     file = Table(content, "", KEYS["file"])
@@ -200,7 +200,7 @@ def _defects(value: Any, name: str) -> list[Table]:
 def _chain(
     given: Table, beads: Mapping[str, Sphere], defects: Sequence[Table]
 ) -> tuple[list[Sphere], dict[str, Any]]:
-    """The beads, where they are named, and what the chain gives a `Scene`."""
+    """The named beads (none in a chain of masses), and the fields of the `Scene`."""
     cell = given.read("cell", array)
     repeat = given.read("repeat", partial(integer, least=1), 1)
     n = len(cell) * repeat
@@ -265,7 +265,7 @@ def _law_text(law: ContactLaw) -> str:
 
 
 def _of_contacts(value: Any, name: str, period: int, count: int) -> list[float]:
-    """One number for all of the contacts, one for each, or those of a cell."""
+    """Read the numbers of all contacts from one number, those of a cell, or one for each."""
     if not isinstance(value, list):
         return [positive(value, name)] * count
     if len(value) not in (period, count):
@@ -318,7 +318,7 @@ def _columns(text: str) -> list[list[float]]:
 
 
 def _overlap(what: Scene) -> int:
-    """The number of the first contact that displacements press though it carries nothing, or 0."""
+    """Number of the first contact without static force that the start compresses, or 0."""
     if what.gravity or what.precompression:
         return 0
     pairs = pairwise((*what.displacements, 0.0))  # beyond them, and at the wall
@@ -327,7 +327,7 @@ def _overlap(what: Scene) -> int:
 
 
 def document(what: Scene) -> dict[str, Any]:
-    """The file of a scene, for JSON; `scene` makes an equal scene of it."""
+    """The content of a scene's file, for JSON; `scene` reads an equal scene from it."""
     period = _period(what)
     chain: dict[str, Any] = {"cell": list(what.masses[:period])}
     chain |= {"k": what.k} if what.law is None else {"law": _law_text(what.law)}
@@ -363,7 +363,7 @@ def document(what: Scene) -> dict[str, Any]:
 
 
 def _period(what: Scene) -> int:
-    """The size of the smallest cell that, repeated, is the chain."""
+    """Size of the smallest cell whose repetition is the chain."""
     n, rows = what.size, (what.masses, what.stiffnesses, what.spacings)
     return next(
         p

@@ -137,7 +137,8 @@ class Limits:
             x, y, error = zip(*points, strict=True)
             power = abs(float(law.coefficient)) * epsilon**law.order
             curves.append(Curve.of(quantity, x, y, f"C{i}{'osD^'[i]}", error))
-            curves.append(Curve.of("", epsilon, power, f"C{i}-"))
+            # Dashes, as two quantities share their leading order.
+            curves.append(Curve.of("", epsilon, power, f"C{i}{('-', '--', '-.', ':')[i]}"))
         title = f"m2/m1 = {omega}; lines: leading order"
         return Panel("k - 1", "|theory/lattice - 1|", tuple(curves), "xy", title)
 

@@ -124,7 +124,9 @@ class Paper:
             f"{self.beads} beads, steel (the striker, {self.velocity:g} m/s) and PTFE in turn, "
             f"steel wall, {gravity}; sensors in beads {self.sensors[0]} and {self.sensors[1]}",
             (Table(_COLUMNS, tuple(row.cells for row in self.rows), "rows"),),
-            panels=(Panel("time (µs)", "force, mean of the bead's contacts (N)", self.records),),
+            panels=(
+                Panel("time (µs)", "dynamic force, mean of the bead's contacts (N)", self.records),
+            ),
             notes=self.notes,
             data={
                 "velocity_value": self.velocity,
@@ -339,6 +341,6 @@ def _records(run: Run, pair: tuple[int, ...], theory: PhysicalWave) -> Iterator[
     )
     for i, bead in enumerate(pair):
         line = theory.curve(run.time - pulses[bead].arrival)
-        force, name = forces[bead - 1], "" if i else "theory, amplitude from F_m"
+        force = forces[bead - 1]
         yield Curve(f"bead {bead}, lattice", 1e6 * run.time, force - force[0], f"C{i}-")
-        yield Curve(name, 1e6 * run.time, line, f"C{i}--")
+        yield Curve(f"bead {bead}, theory by F_m", 1e6 * run.time, line, f"C{i}--")

@@ -58,16 +58,23 @@ def report(found: Recording, every: bool = False) -> Report:
     ``speeds``: ``kind``, ``from``, ``to``, ``speed_sites_value``, ``speed_value`` (null without
     spacings), ``missing``; each measured value with its error, as ``arrival_error_value``, and all
     null where ``missing`` says why;
-    ``energy_drift_value``, and ``momentum_drift_value``, null with a wall.
+    ``energy_drift_value``, and ``momentum_drift_value``, null with a wall; with damping the energy
+    ``dissipated_value``, with a drive its ``work_value``.
     The picture shows the force at all sensors.
     """
     run, scene = found.run, found.run.scene
     momentum = "not conserved" if (p := run.momentum_drift) is None else f"drift {p:.0e}"
     missing = [f"{r.name}: {r.missing}" for r in found.sensors + found.speeds if r.missing]
+    forced = {}
+    if scene.damping is not None:
+        forced["dissipated_value"] = run.dissipated
+    if scene.drive is not None:
+        forced["work_value"] = run.work
+    spent = "".join(f", {name.removesuffix('_value')} {E:.6g}" for name, E in forced.items())
     which = "All pulses" if every else "First pulse"
     note = _NOTE.format(which, scene.units or "the scene's own") + _DYNAMIC * any(scene.load)
     return Report(
-        f"{scene}, energy drift {run.energy_drift:.0e}, momentum {momentum}",
+        f"{scene}, energy drift {run.energy_drift:.0e}{spent}, momentum {momentum}",
         (_sensors(run, found.sensors, every), _speeds(scene, found.speeds)),
         panels=tuple(run.pictured()),
         notes=("\n".join(missing), note if found.sensors else ""),
@@ -75,7 +82,8 @@ def report(found: Recording, every: bool = False) -> Report:
             "scene": document(scene),
             "energy_drift_value": run.energy_drift,
             "momentum_drift_value": run.momentum_drift,
-        },
+        }
+        | forced,
     )
 
 

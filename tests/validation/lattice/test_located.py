@@ -40,7 +40,7 @@ def test_located_kinks_make_the_error_follow_the_tolerance():
     truth = compiled(task)
 
     def error(method, rtol):
-        found = read(task, around(truth), integrate(task, around(truth), method, rtol))
+        found = read(task, around(task, truth), integrate(task, around(task, truth), method, rtol))
         return relative_errors(found, truth)["peak"]
 
     tolerances = np.array([1e-9, 1e-11, 1e-13])

@@ -11,6 +11,7 @@ import pytest
 from lwa import InputError
 from validation.pulses.sensors import record
 from validation.scenes.chains import struck
+from validation.scenes.forcing import Damping
 from validation.scenes.scene import Scene
 from validation.studies.run import report
 
@@ -97,3 +98,12 @@ def test_a_sensor_that_a_window_has_left_is_not_followed():
     shown = report(replace(found, sensors=(left,)))
     assert re.search(r"contact 4 +not followed +- +-\n", shown.text())
     assert shown.document()["sensors"][0]["arrival_value"] is None
+
+
+def test_a_damped_run_tells_what_was_dissipated():
+    scene = struck((1,), 12, duration=12, contact_sensors=(5,), damping=Damping("contact", 0.05))
+    found = record(scene, rtol=1e-8)
+    shown = report(found)
+    assert shown.document()["dissipated_value"] == found.run.dissipated > 0
+    assert f"dissipated {found.run.dissipated:.6g}" in " ".join(shown.text().split())
+    assert "work_value" not in shown.document()
