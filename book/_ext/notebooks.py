@@ -30,7 +30,7 @@ _LABELLED = re.compile(r"\$\$\n?(.*?)\n?\$\$ \(([\w-]+)\)", re.DOTALL)
 _FENCE = re.compile(r"^(`{3,}|:{3,})\{([\w:-]+)\} *([^\n]*)\n(.*?)^\1 *$", re.DOTALL | re.MULTILINE)
 _OPTION = re.compile(r"\A(?::[\w-]+:[^\n]*\n)+")
 _TARGET = re.compile(r"^\([\w-]+\)=\n", re.MULTILINE)
-_HTML = re.compile(r"<(?:canvas|script|div|p|form)\b.*", re.DOTALL)
+_HTML = re.compile(r"^<div\b[^\n]*\n", re.MULTILINE)
 
 
 @dataclass(frozen=True)
@@ -120,7 +120,7 @@ def _directive(match: re.Match[str]) -> str:
     title, body = match[3], _OPTION.sub("", match[4])
     if match[2] in ("eval-rst", "bibliography", "raw"):
         return ""
-    return f"**{title}.** {body}" if title else body
+    return f"**{title}.**\n{body}" if title and match[2] != "grid" else body
 
 
 def _role(name: str, text: str, book: Book) -> str:
