@@ -77,15 +77,24 @@ class Widths:
             Column("unit", "in"),
             Column("average", "average", format=".4g", error=True),
             Column("error_value"),
-            *(Column("", f"{line}, {closure}", format=percent)
-              for closure in self.lines for line in STATED),
+            *(
+                Column("", f"{line}, {closure}", format=percent)
+                for closure in self.lines
+                for line in STATED
+            ),
             Column("reproduced", "stated errors met", format=lambda met: ", ".join(met) or "none"),
-        )  # fmt: skip
+        )
         rows = tuple(
-            (d.quantity, "s" if d.time else "sites", d.average, d.errors,
-             *(errors[line] for errors in d.errors.values() for line in STATED), d.reproduced)
+            (
+                d.quantity,
+                "s" if d.time else "sites",
+                d.average,
+                d.errors,
+                *(errors[line] for errors in d.errors.values() for line in STATED),
+                d.reproduced,
+            )
             for d in self.definitions
-        )  # fmt: skip
+        )
         stated = ", ".join(f"{100 * e:.1f} % ({line})" for line, e in STATED.items())
         title = (
             f"theory over the average from bead {FIRST_BEAD} on, less 1, for equal contacts and "
@@ -97,11 +106,13 @@ class Widths:
             panels=(self._panel(),),
             notes=(self._verdict(),),
             data={
-                "beads": self.beads, "fwhm_value": [width.value for width in self.times],
+                "beads": self.beads,
+                "fwhm_value": [width.value for width in self.times],
                 "fwhm_error_value": [width.error for width in self.times],
-                "lines_value": self.lines, "stated_error_value": STATED,
+                "lines_value": self.lines,
+                "stated_error_value": STATED,
             },
-        )  # fmt: skip
+        )
 
     def _verdict(self) -> str:
         best = max(self.definitions, key=lambda d: len(d.reproduced))
@@ -113,8 +124,10 @@ class Widths:
 
     def _panel(self) -> Panel:
         times = [1e6 * width.value for width in self.times]
-        curves = [Curve.of(f"lattice, {ball} bead", self.beads[i::2], times[i::2], style)
-                  for ball, i, style in (("steel", 1, "ko"), ("PTFE", 0, "ks"))]  # fmt: skip
+        curves = [
+            Curve.of(f"lattice, {ball} bead", self.beads[i::2], times[i::2], style)
+            for ball, i, style in (("steel", 1, "ko"), ("PTFE", 0, "ks"))
+        ]
         ends, first = (self.beads[0], self.beads[-1]), self.lines["linear"]
         for closure, lines in self.lines.items():
             for i, (line, width) in enumerate(lines.items()):
@@ -135,17 +148,23 @@ def widths() -> Widths:
 
     def theory(quantity: str, force: Measured, in_time: bool) -> dict[str, dict[str, float]]:
         """By closure and line."""
-        return {closure: {line: _width(wave, quantity, force.value, in_time)
-                          for line, wave in zip(STATED, lines, strict=True)}
-                for closure, lines in waves.items()}  # fmt: skip
+        return {
+            closure: {
+                line: _width(wave, quantity, force.value, in_time)
+                for line, wave in zip(STATED, lines, strict=True)
+            }
+            for closure, lines in waves.items()
+        }
 
     definitions = []
     for reading, (pulses, quantity) in READINGS.items():
         force = found["contacts' force" if pulses == "contacts" else "F_m"]
         sites = derived(lambda width, V: width * V / DIAMETER, found[pulses], found["speed"])
         for average, in_time in ((found[pulses], True), (sites, False)):
-            errors = {closure: {line: width / average.value - 1 for line, width in lines.items()}
-                      for closure, lines in theory(quantity, force, in_time).items()}  # fmt: skip
+            errors = {
+                closure: {line: width / average.value - 1 for line, width in lines.items()}
+                for closure, lines in theory(quantity, force, in_time).items()
+            }
             definitions.append(Definition(reading, in_time, average, errors))
     times = tuple(found[f"bead {bead}"] for bead in beads)
     return Widths(beads, times, theory("force", found["F_m"], True), tuple(definitions))
@@ -174,8 +193,10 @@ def _waves() -> dict[str, list[TravelingWave]]:
     heavy, light = cell.masses
     masses = (heavy / 10**12, light, heavy)  # the first for m2 → 0, exact to 12 digits
     cells = [Dimer(heavy, m2, stiffnesses=cell.stiffnesses, spacing=cell.spacing) for m2 in masses]
-    return {"linear": [homogenize(own, k=HERTZ).pde.traveling_wave() for own in cells],
-            "canonical": [canonical_wave(own, HERTZ) for own in cells]}  # fmt: skip
+    return {
+        "linear": [homogenize(own, k=HERTZ).pde.traveling_wave() for own in cells],
+        "canonical": [canonical_wave(own, HERTZ) for own in cells],
+    }
 
 
 def _width(wave: TravelingWave, quantity: str, force: float, in_time: bool) -> float:

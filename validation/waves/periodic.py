@@ -154,11 +154,9 @@ class Orbit:
 
         # Velocities in units of displacement times ω: all entries have one scale.
         unit = np.append(np.ones(n), np.full(n, self.frequency))
-        end = scipy.integrate.solve_ivp(
-            rate, (0, self.period), np.diag(unit).ravel(), "DOP853", [self.period],
-            rtol=TOLERANCE, atol=TOLERANCE,
-        ).y[:, -1]  # fmt: skip
-        found = np.linalg.eigvals(end.reshape(2 * n, 2 * n) / unit[:, None])
+        start, tolerance = np.diag(unit).ravel(), dict(rtol=TOLERANCE, atol=TOLERANCE)
+        end = scipy.integrate.solve_ivp(rate, (0, self.period), start, "DOP853", **tolerance)
+        found = np.linalg.eigvals(end.y[:, -1].reshape(2 * n, 2 * n) / unit[:, None])
         return np.asarray(found[np.argsort(-np.abs(found))])
 
 
