@@ -77,6 +77,8 @@ def simulate(
     >>> simulate(scene, method="DOP853").velocities.round(6) + 0.0
     array([0., 1.])
     """
+    if not isinstance(scene, Scene):
+        raise SceneError(f"scene is {shorten(scene)}: a Scene is wanted")
     one_of(method, COMPILED + METHODS, "method")
     rtol, atol = between(rtol, "rtol", 1e-13, 1e-2), between(atol, "atol", 1e-13, 1e-2)
     for name, value in (("step", step), ("window", window or None)):
