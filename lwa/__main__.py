@@ -4,7 +4,7 @@ from lwa.command.interrupt import start
 
 
 def main() -> None:
-    """Entry point, which loads the command's parts when it is called."""
+    """Entry point of `python -m lwa`, which then loads the command."""
     start("lwa", "lwa.command.cli")
 
 

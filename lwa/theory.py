@@ -1,4 +1,4 @@
-"""From a cell to its theory in one call."""
+"""The long-wave theory of a cell, by `homogenize`."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ SLOW_ORDER = 12
 """The order from which a derivation shows its progress."""
 
 MOST_TERMS = 1_000_000
-"""What a derivation may grow to, by the estimate of `_affordable`: some gigabytes of memory."""
+"""Estimated number of terms beyond which a derivation is refused: some gigabytes of memory."""
 
 
 @dataclass(frozen=True)
 class Theory(Value):
-    """What the consistency condition gives for a chain (see `homogenize`)."""
+    """The long-wave theory of a chain (see `homogenize`)."""
 
     closure: Closure
 
@@ -41,7 +41,7 @@ class Theory(Value):
 
     @property
     def k(self) -> sp.Expr:
-        """The exponent of the contact law; of one that is no power 1 + φ_2."""
+        """The exponent of a power law; the local exponent 1 + φ_2 of another law."""
         return self.closure.model.k
 
     @property
@@ -105,7 +105,7 @@ class Theory(Value):
 
     @property
     def orders(self) -> tuple[Terms, ...]:
-        """All terms that there are: of the wave equation, the slaved fields and the defect."""
+        """All terms of the wave equation, the slaved fields and the defect."""
         slaved = (found for series in self.slaved.values() for found in series.values())
         return (*self.pde.coefficients.values(), *slaved, *self.defect.values())
 

@@ -91,11 +91,11 @@ class CoefficientRing(Value):
 
     @cached_property
     def _constants(self) -> tuple[sp.Poly | None, ...]:
-        """The constants as polynomials in k and μ; None for one that is not, a generator then."""
+        """Each constant as a polynomial in k and μ, or None for one that becomes a generator."""
         return tuple(map(self._in_fractions, self.constants))
 
     def _in_fractions(self, constant: sp.Expr) -> sp.Poly | None:
-        """A function of k and the mass fractions alone, where it is a polynomial in them."""
+        """A constant as a polynomial in k and the mass fractions; None where it is none."""
         weights = self.masses.distinct if self.masses.names else ()
         scale = sp.Dummy(positive=True)
         scaled = constant.xreplace({w: scale * w for w in weights})
@@ -113,7 +113,8 @@ class CoefficientRing(Value):
         The exponents stand in the order of `names`.
 
         >>> m1, m2, k = sp.symbols("m1 m2 k")
-        >>> ring = CoefficientRing(k, (k,), Partition((m1, m2), 1, "mu"), Partition((1,), 1, "c"))
+        >>> contacts = Partition((sp.S.One,), 1, "c")
+        >>> ring = CoefficientRing(k, (k,), Partition((m1, m2), 1, "mu"), contacts)
         >>> ring.expression([((1, 1), fmpq(1)), ((1, 2), fmpq(-1))])
         k*m1*m2/(m1 + m2)**2
         """
@@ -192,7 +193,7 @@ class SymPyConverter:
         terms = list(self._terms(polynomial))
         if self._irrational or len(terms) == 1:
             return sp.Add(*terms)
-        # Its monomials differ and its coefficients are not zero: what SymPy would ask of each.
+        # The monomials differ and no coefficient is zero, which SymPy would check for each.
         return sp.Add(*sorted(terms, key=_canonical), evaluate=False)
 
     def _terms(self, polynomial: fmpq_mpoly) -> Iterator[sp.Expr]:
@@ -208,7 +209,7 @@ class SymPyConverter:
 
 
 def _canonical(term: sp.Expr) -> tuple[bool, Any]:
-    """The key by which SymPy sorts the terms of a sum: a number is the first."""
+    """Sort key of SymPy for the terms of a sum: numbers first."""
     return not term.is_Number, cmp_to_key(sp.Basic.compare)(term)
 
 

@@ -20,7 +20,7 @@ from lwa.algebra.jets import JetAlgebra, Ladder
 
 
 class Force(ABC):
-    """The series X and Φ of a contact, term by term; both hold the terms so far."""
+    """The series X and Φ of a contact; both hold the terms that are known so far."""
 
     def __init__(self, algebra: JetAlgebra, k: fmpq_mpoly) -> None:
         self.k = k
@@ -33,25 +33,25 @@ class Force(ABC):
 
     @property
     def known(self) -> fmpq_mpoly:
-        """Of the next Φ_n the part Φ_n - X_n, which depends on X_1 … X_{n-1} only."""
+        """Φ_n - X_n of the next order n, which depends on X_1 … X_{n-1} only."""
         if self._known is None:
             self._known = self._nonlinear(len(self.X))
         return self._known
 
     @abstractmethod
     def _nonlinear(self, n: int) -> fmpq_mpoly:
-        """`known` for Φ_n."""
+        """Compute `known` for Φ_n."""
 
     def append(self, X_n: fmpq_mpoly) -> None:
-        """Give the next term of X."""
+        """Append the next term of X, and of Φ."""
         self.Phi.append(X_n + self.known)
         self.X.append(X_n)
         self._known = None
 
     def carried(self, h: int, n: int) -> fmpq_mpoly:
-        """What the shift by hD adds to F(p) + p F' Φ at D^n, over p F'.
+        """Increment of the force F(p) + p F' Φ under the shift x → x + hD, at D^n and over p F'.
 
-        From F(p) it is h^n/n! ∂_x^{n-1} r_1.
+        The increment of F(p) is h^n/n! ∂_x^{n-1} r_1.
         """
         return self.Phi.carried(h, n) + self._one.dx(0, n - 1) * fmpq(h**n, factorial(n))
 
@@ -83,7 +83,7 @@ class Binomial(Force):
 
 
 class Smooth(Force):
-    """Φ of any law whose φ_m are parameters of the algebra."""
+    """Φ of a law whose φ_m are parameters of the algebra."""
 
     def __init__(self, algebra: JetAlgebra, k: fmpq_mpoly) -> None:
         super().__init__(algebra, k)
@@ -95,7 +95,7 @@ class Smooth(Force):
 
 
 class Powers:
-    """The powers X^m/m! of a graded series X = Σ_{n≥1} D^n X_n that may still grow."""
+    """Powers X^m/m! of a graded series X = Σ_{n≥1} D^n X_n, to which terms may be appended."""
 
     def __init__(self, X: Sequence[fmpq_mpoly]) -> None:
         self._X = X
@@ -121,5 +121,5 @@ class Powers:
 
 
 def contact(algebra: JetAlgebra, k: fmpq_mpoly) -> Force:
-    """The force of a contact under the law of the algebra, k its exponent."""
+    """The contact force for the law of the algebra, with the exponent k."""
     return Smooth(algebra, k) if algebra.phi else Binomial(algebra, k)

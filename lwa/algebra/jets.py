@@ -26,7 +26,7 @@ from typing import NamedTuple
 from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
 Powers = tuple[tuple[int, int], ...]
-"""((n, e), …): the product of the n-th jets to the powers e."""
+"""((n, e), …) for the product of the jets r_n^e."""
 
 Term = tuple[tuple[int, ...], fmpq]
 """One term of a coefficient: the exponents of the parameters, and its rational factor."""
@@ -127,12 +127,12 @@ class JetAlgebra:
         return result
 
     def velocity_slopes(self, f: fmpq_mpoly) -> list[tuple[int, fmpq_mpoly]]:
-        """(i, ∂f/∂s_i) for the s_i that stand in f."""
+        """(i, ∂f/∂s_i) for each s_i on which f depends."""
         start = self._velocity
         return [(i - start + self._lowest, f.derivative(i)) for i in self._present(f) if i >= start]
 
     def _present(self, f: fmpq_mpoly) -> list[int]:
-        """The indices of what depends on x in f, jets and φ_n."""
+        """Indices of the jets and the φ_n on which f depends."""
         degrees = f.degrees()
         return [i for i in self._moving if degrees[i] > 0]
 
@@ -148,7 +148,7 @@ class JetAlgebra:
         return result
 
     def slope(self, f: fmpq_mpoly, n: int) -> fmpq_mpoly:
-        """∂f/∂r_n. In f of weight n it is the coefficient of r_n, beside which no jet can stand."""
+        """∂f/∂r_n; for f of weight n the coefficient of r_n, which no other jet can multiply."""
         return f.derivative(self._offset + n - 1)
 
     def integral(self, f: fmpq_mpoly, n: int) -> fmpq_mpoly:
@@ -156,7 +156,7 @@ class JetAlgebra:
         return f.integral(self._offset + n - 1)
 
     def terms(self, f: fmpq_mpoly) -> dict[Monomial, list[Term]]:
-        """The jet monomials of f, each with the terms of its coefficient."""
+        """Jet monomial of f → the terms of its coefficient."""
         found: dict[Monomial, list[Term]] = {}
         for exponents, coefficient in f.terms():
             jets_x = exponents[self._offset : self._velocity]
@@ -167,7 +167,7 @@ class JetAlgebra:
         return found
 
     def antiderivative(self, f: fmpq_mpoly, exponent: fmpq_mpoly) -> fmpq_mpoly | None:
-        """g with ∂_x (p^e g) = p^e f, for f of weight 2 or more; None where there is none.
+        """Antiderivative g with ∂_x (p^e g) = p^e f, f of weight 2 or more; None if there is none.
 
         The highest jet of a total derivative stands in it linearly, and its coefficient is the
         slope of g in the jet below; taking that off lowers the highest jet, first of the velocity,
@@ -186,7 +186,7 @@ class JetAlgebra:
         return total if f.is_zero() else None
 
     def by_parts(self, f: fmpq_mpoly, exponent: fmpq_mpoly) -> fmpq_mpoly:
-        """f less some p^{-e} ∂_x (p^e g): no highest jet, of the velocity or the strain, is linear.
+        """Integrate by parts: f less some p^{-e} ∂_x (p^e g), without linear highest jets.
 
         f has one weight. In it s_n stands linearly beside lower jets of the velocity, r_n beside
         lower ones of the strain where there is no velocity; r_1 alone is the derivative of p^e / e.
@@ -205,11 +205,11 @@ class JetAlgebra:
         return f - self.dx(self._alone(f, index, higher).integral(index - 1), exponent)
 
     def _alone(self, f: fmpq_mpoly, index: int, others: Sequence[str]) -> fmpq_mpoly:
-        """The coefficient of the jet ``index`` in f where none of the others is there."""
+        """Coefficient of the jet ``index`` in the terms of f without the other jets."""
         return f.derivative(index).subs(dict.fromkeys(others, 0))
 
     def taken(self, f: fmpq_mpoly, other: JetAlgebra) -> fmpq_mpoly:
-        """f of another algebra of the same parameters in this one, which has its jets."""
+        """Convert f from an algebra of the same parameters whose jets are among these."""
         more_t = (0,) * (other._lowest - self._lowest)
         found = {}
         for exponents, coefficient in f.terms():
@@ -222,7 +222,7 @@ class JetAlgebra:
 
 
 def exact_quotient(numerator: fmpq_mpoly, divisor: fmpq_mpoly) -> fmpq_mpoly:
-    """numerator/divisor where the mathematics says that it is a polynomial."""
+    """numerator/divisor, which must be a polynomial."""
     quotient, remainder = divmod(numerator, divisor)
     if not remainder.is_zero():
         raise AssertionError(f"{divisor} does not divide what it should")
@@ -234,7 +234,7 @@ def _powers(exponents: Sequence[int], lowest: int) -> Powers:
 
 
 class Ladder:
-    """A graded series p^e Σ_n D^n f_n and its derivatives, computed once and kept."""
+    """A graded series p^e Σ_n D^n f_n with its derivatives, each of which is computed once."""
 
     def __init__(self, algebra: JetAlgebra, exponent: fmpq_mpoly) -> None:
         self.algebra = algebra
@@ -249,11 +249,11 @@ class Ladder:
         return self._rungs[n][0]
 
     def append(self, f_n: fmpq_mpoly) -> None:
-        """Give the next term of the series."""
+        """Append the next term of the series."""
         self._rungs.append([f_n])
 
     def carried(self, h: fmpq_mpoly | int, n: int) -> fmpq_mpoly:
-        """What the shift by hD adds at D^n: Σ_{0<j≤n} h^j/j! ∂_x^j f_{n-j}."""
+        """Increment of the series under the shift x → x + hD: Σ_{0<j≤n} h^j/j! ∂_x^j f_{n-j}."""
         total = self.algebra.zero
         for j in range(1, n + 1):
             part = self.dx(n - j, j)

@@ -33,7 +33,7 @@ class Model(Value):
 
     @property
     def k(self) -> sp.Expr:
-        """The exponent of a power; of another law the local one, d ln(δ F′)/d ln δ = 1 + φ_2."""
+        """Exponent of a power law; local exponent 1 + φ_2 = d ln(δ F′)/d ln δ of another law."""
         return self.law.exponent if self.law.homogeneous else 1 + phi_symbol(2)
 
     @property
@@ -62,14 +62,14 @@ class Model(Value):
         return CoefficientRing(self.k, variables, masses, contacts, self.constants)
 
     def algebra(self, weight: int, velocity: bool = False, rest: bool = False) -> JetAlgebra:
-        """The jets over the ring, with those of the velocity where they are wanted."""
+        """The algebra of the jets over the ring; with ``velocity`` also the jets of u_τ."""
         exponent = self.ring.exponent if velocity else None
         return JetAlgebra(self.ring.names, weight, exponent, rest, smooth=self.highest)
 
     def substitution(
         self, values: Mapping[str, Any], more: Sequence[sp.Symbol]
     ) -> dict[sp.Symbol, sp.Expr]:
-        """`lwa.cell.substitution` among the symbols of cell and law, and more."""
+        """Symbol → value by `lwa.cell.substitution`, for cell, law and more symbols."""
         if self.law.homogeneous:
             return substitution(values, self.cell, self.k, more)
         return substitution(values, self.cell, more=(*self.law.symbols, *more))

@@ -1,4 +1,4 @@
-"""What enters a derivation as a fraction of a whole: mass fractions, and shares of the strain.
+"""Mass fractions and shares of the strain: positive numbers with a given sum.
 
 Rational fractions are numbers, and what is not rational becomes one generator of a python-flint
 ring per distinct value, less one, since the fractions sum to the whole.
@@ -27,7 +27,7 @@ def number(value: fmpq) -> sp.Rational:
 
 @dataclass(frozen=True)
 class Partition(Value):
-    """Positive weights w_i that enter only as f_i = total · w_i / Σ_j w_j.
+    """Positive weights w_i of which only the fractions f_i = total · w_i / Σ_j w_j matter.
 
     The masses of a cell are such weights (total 1), and so are the compliances of its contacts
     (total P).
@@ -49,7 +49,7 @@ class Partition(Value):
 
     @cached_property
     def values(self) -> tuple[sp.Expr, ...] | None:
-        """f of each distinct weight if all of them are rational, else None."""
+        """f_i of each distinct weight if all are rational, else None."""
         first = self.distinct[0]
         ratios = [w / first if w.is_number else sp.cancel(w / first) for w in self.weights]
         if not all(ratio.is_Rational for ratio in ratios):

@@ -1,7 +1,7 @@
 """Rational expressions as one fraction of factored polynomials, by python-flint.
 
-What SymPy's `cancel` and `factor` do one after the other, in a ring of python-flint: a tenth of the
-time for the expressions of a wave. Whatever is not rational, such as A^{1/k}, is a symbol here.
+The result is that of SymPy's `cancel` and `factor`, in a tenth of their time for the expressions of
+a wave. Parts that are not rational, such as A^{1/k}, are taken as symbols.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ def factored(value: sp.Expr) -> sp.Expr:
 
 
 class _Field:
-    """Q(x, …), x the symbols of an expression and what else is not rational in it."""
+    """The field Q(x, …) over the symbols of an expression and its parts that are not rational."""
 
     def __init__(self, value: sp.Expr) -> None:
         self.value = value

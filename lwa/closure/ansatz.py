@@ -1,4 +1,4 @@
-"""The closure of the paper (the ansatz of Porter et al. 2008): linear, for the slaved field.
+"""The paper's closure (Porter et al. 2008): an ansatz that is linear in the field.
 
 For the dimer, u = w_0 and w = w_1 = λ (u + Σ b_n D^n ∂_x^n u), with the b_n found from the demand
 that both equations of `lwa.closure.solution` are identical at each order. A linear ansatz has one
@@ -38,7 +38,7 @@ def linear(model: Model, order: int, progress: Progress[int] = iter) -> Solution
 
 
 def _applied(b: list[fmpq_mpoly], f: Ladder, n: int) -> fmpq_mpoly:
-    """Σ_{0<j<n} b_j ∂_x^j f_{n-j}: what the ansatz adds to a series, short of the newest b_n."""
+    """Σ_{0<j<n} b_j ∂_x^j f_{n-j}, the ansatz applied to a series without the term of b_n."""
     return sum((b[j] * f.dx(n - j, j) for j in range(1, min(n, len(f)))), f.algebra.zero)
 
 

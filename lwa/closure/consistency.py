@@ -34,8 +34,7 @@ FIELDS = ("first", "center")
 class Closure:
     """The solved consistency condition, as polynomials.
 
-    It is known by its cell, exponent, order, closure, branch and field: by these it is compared,
-    and when it is copied or pickled it is derived again from them.
+    Equality, hash and pickle go by model, order, closure and field; a copy is derived again.
 
     ratio : λ of the branch.
     solution : E_n, b_n, S_n and the defect.
@@ -50,12 +49,12 @@ class Closure:
 
     @property
     def algebra(self) -> JetAlgebra:
-        """In which the solution's polynomials are."""
+        """The algebra of the solution's polynomials."""
         return self.solution.algebra
 
     @property
     def acceleration(self) -> tuple[fmpq_mpoly, ...]:
-        """E_n."""
+        """E_n of the wave equation; see `Solution`."""
         return self.solution.acceleration
 
     @property
@@ -70,7 +69,7 @@ class Closure:
 
     @property
     def key(self) -> tuple[Any, ...]:
-        """What it is known by: the arguments of `solve`."""
+        """The arguments of `solve`."""
         return (self.model, self.order, self.name, self.field)
 
     def __eq__(self, other: object) -> bool:
@@ -89,7 +88,7 @@ class Closure:
         )
 
     def latex_rows(self, most: int | None = None) -> list[str]:
-        """w = λ (u + b_1 D u_x + …), λ and the b_n; to D^most or all."""
+        """LaTeX of w = λ (u + b_1 D u_x + …), of λ and of the b_n, to D^most or all."""
         if not self.ansatz:
             return []
         last = min(len(self.ansatz) - 1, most or len(self.ansatz))
@@ -135,7 +134,7 @@ class Closure:
     def anew(
         self, new: Mapping[sp.Symbol, sp.Expr] | None = None, order: int | None = None
     ) -> Closure:
-        """The same derivation with these values of its symbols, or to this order."""
+        """Derive again with these values of the symbols, or to this order."""
         order = order or self.order
         return solve(self.model.replaced(new or {}, order), order, self.name, self.field)
 
@@ -156,7 +155,7 @@ def amplitude_ratios(cell: Cell) -> dict[str, sp.Expr]:
 def solve(
     model: Model, order: int, closure: str, field: str, progress: Progress[int] = iter
 ) -> Closure:
-    """The consistency condition by the named closure, for the named field.
+    """Solve the consistency condition by the named closure, for the named field.
 
     Raises `lwa.InputError` for the combinations that have no solution.
     """

@@ -42,13 +42,13 @@ def full(
 
 
 class _Particle:
-    """A particle w = φ + D φ_x S of the cell and the contact to the next one.
+    """A particle w = φ + D φ_x S of the cell and its contact to the next particle.
 
     mu, c : its mass fraction and the contact's share.
-    x : where it rests, in units of strain.
-    weight : with which it enters φ.
+    x : its place at rest, in units of the strain.
+    weight : its weight in φ = Σ weight_i w_i.
     rate : the series ∂_τ (D φ_x S).
-    force : that of the contact.
+    force : the force of the contact.
     """
 
     def __init__(
@@ -87,7 +87,7 @@ class _Slaving:
                 particle.weight = particle.mu
 
     def extend(self, n: int) -> None:
-        """E_n, and all series to D^n."""
+        """Compute E_n, and extend all series to D^n."""
         accelerations = [self.algebra.dt(particle.rate, self.E, n) for particle in self.particles]
         if n + 1 < self.order:
             for particle in self.particles:
@@ -97,7 +97,7 @@ class _Slaving:
         self._origin(n)
 
     def _momentum(self, n: int, accelerations: list[fmpq_mpoly]) -> None:
-        """The sum of the equations, whose forces cancel but for those at the cell's ends."""
+        """E_n from the sum of the equations: the forces at the cell's ends are left."""
         P = len(self.particles)
         E_n = -self.particles[-1].force.carried(-P, n) / P
         for particle, acceleration in zip(self.particles, accelerations, strict=True):
@@ -105,7 +105,7 @@ class _Slaving:
         self.E.append(E_n)
 
     def _strains(self, n: int, accelerations: list[fmpq_mpoly]) -> None:
-        """Partial sums give Φ_i - Φ_0, and all strains together w_0(x + PD) - w_0(x)."""
+        """X_n of each contact: partial sums give Φ_i - Φ_0, Σ strains = w_0(x + PD) - w_0(x)."""
         P = len(self.particles)
         first = self.particles[0]
         difference = self.algebra.zero
@@ -121,7 +121,7 @@ class _Slaving:
             particle.force.append(X / P + d)
 
     def _origin(self, n: int) -> None:
-        """What φ is, Σ weight_i w_i(x - x_i D) = φ, places the first particle."""
+        """S_n of each particle, from the definition Σ weight_i w_i(x - x_i D) = φ."""
         relative = [self.algebra.zero]
         for particle in self.particles[:-1]:
             relative.append(relative[-1] + particle.c * particle.force.X[n])
@@ -135,7 +135,7 @@ class _Slaving:
             particle.S.append(origin + own)
 
     def _shift(self, n: int) -> fmpq_mpoly:
-        """What the shift of φ by D adds at D^{n+1}, over φ_x."""
+        """Increment of φ under the shift x → x + D, at D^{n+1} and over φ_x."""
         return self.algebra.r[n] * fmpq(1, factorial(n + 1))
 
 

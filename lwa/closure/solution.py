@@ -1,4 +1,4 @@
-"""The equations of motion of a cell in its displacement fields, and what satisfies them.
+"""The equations of motion of a cell in its displacement fields, and their solution.
 
 All displacement fields w_0 … w_{P-1} of a cell are taken at the position x of its first particle
 and expressed by one field φ: w_i = φ + D φ_x S_i, S_i a series in D of polynomials in the jets of
@@ -18,7 +18,7 @@ from lwa.algebra.jets import JetAlgebra
 
 
 class Solution(NamedTuple):
-    """What a closure finds, as polynomials.
+    """The result of a closure, as polynomials.
 
     acceleration : E_n. Acoustic: φ_ττ = φ_x^k Σ_{n≥1} D^{n-1} E_n, E_1 = r_1 = φ_xx/φ_x.
         Optical: u_ττ = -u^k Σ_{n≥0} D^n E_n, E_0 = 1, in its own time unit.

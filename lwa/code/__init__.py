@@ -1,1 +1,1 @@
-"""A wave as functions in a program: what they compute, and the languages."""
+"""Source text of functions of real numbers in several programming languages."""

@@ -58,7 +58,7 @@ class Python(Writer, PythonCodePrinter):  # type: ignore[misc]  # untyped in Sym
         ]
 
     def entry(self, function: Function) -> list[str]:
-        """What is done to the arguments first."""
+        """Statements that prepare the arguments."""
         return []
 
 
@@ -69,7 +69,7 @@ class NumPy(Python, NumPyPrinter):  # type: ignore[misc]  # untyped in SymPy
     head = ("import numpy as np",)
 
     def entry(self, function: Function) -> list[str]:
-        """All arguments as floats: powers of NumPy's integers overflow."""
+        """Convert the arguments to floats, as powers of NumPy's integers overflow."""
         names = self.arguments(function)
         if len(function.arguments) < 2:
             return [f"    {names} = np.float64({names})"] if names else []
@@ -213,4 +213,4 @@ LANGUAGES: dict[str, type[Writer]] = {
     "julia": Julia,
     "javascript": JavaScript,
 }
-"""By name, as `lwa.TravelingWave.code` takes it."""
+"""Language by the name that `lwa.TravelingWave.code` takes."""

@@ -1,4 +1,4 @@
-"""Functions of real numbers as source text: what all languages share, on SymPy's code printers.
+"""Functions of real numbers as source text: the base of all languages, on SymPy's code printers.
 
 All numbers are doubles: integers and fractions stand as they are where a double holds their parts
 exactly, and as the nearest double elsewhere. Symbols keep their names where the language allows.
@@ -41,12 +41,12 @@ class Function:
 
     @property
     def call(self) -> sp.Expr:
-        """The function at its own arguments, for the value of another one."""
+        """A call with the function's own arguments, for the value of another function."""
         return sp.Function(self.name)(*self.arguments)
 
 
 class Writer(ABC):
-    """What the languages share; each is this and one of SymPy's printers."""
+    """Base of the languages, each of which also derives from one of SymPy's printers."""
 
     comment: ClassVar[str] = "#"
     indent: ClassVar[str] = "    "
@@ -62,7 +62,7 @@ class Writer(ABC):
     settings: ClassVar[dict[str, Any]] = {}
 
     def __init__(self, functions: Sequence[Function], own: Sequence[sp.Symbol] = ()) -> None:
-        """A writer of these functions; the names of the symbols ``own`` come before others."""
+        """Choose names for all symbols; the symbols ``own`` keep theirs before others."""
         super().__init__(dict(self.settings))  # type: ignore[call-arg]  # SymPy's
         self.functions = functions
         self.names: dict[sp.Symbol, str] = {symbol: symbol.name for symbol in own}
@@ -120,7 +120,7 @@ class Writer(ABC):
         return name not in self.reserved
 
     def _free(self, given: str, taken: set[str]) -> str:
-        """A name for the symbol called ``given`` that is not ``taken``, and now is."""
+        """A free name for the symbol called ``given``, which is added to ``taken``."""
         name = _ascii(given)
         while not self._allows(self._folded(name)) or self._folded(name) in taken:
             name += "_"
@@ -133,7 +133,7 @@ class Writer(ABC):
     _print_Dummy = _print_Symbol
 
     def parenthesize(self, item: sp.Basic, level: int, strict: bool = False) -> str:
-        """SymPy's, but for fractions that are one literal."""
+        """Parenthesize as SymPy does, except fractions that are one literal."""
         one = item.is_Rational and item.p > 0 and "/" not in self.text(item)
         return str(super().parenthesize(item, 0 if one else level, strict))  # type: ignore[misc]  # SymPy's
 

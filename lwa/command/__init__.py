@@ -1,1 +1,1 @@
-"""The command `lwa`: input at the door, and results as text, JSON, LaTeX and source."""
+"""The command `lwa`: options, and results as text, JSON, LaTeX and source code."""

@@ -1,7 +1,7 @@
-"""The first moments of a command: what it is made of takes most of a second to load.
+"""Ctrl-C while a command loads its modules, which takes most of a second.
 
-Ctrl-C meets a process in the middle of an import then, where Python may lose it or print where it
-was. Nothing is written yet, so that the process may end on the spot.
+In the middle of an import Python may lose the signal or print a traceback. Nothing is written yet,
+so that the process may end at once.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from importlib import import_module
 from types import FrameType
 
 INTERRUPTED = 130
-"""Exit status after Ctrl-C, as the shells have it."""
+"""Exit status after Ctrl-C, the shells' number for SIGINT."""
 
 
 def start(name: str, module: str) -> None:

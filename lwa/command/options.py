@@ -119,7 +119,7 @@ def of_series(k: str, order: str, formats: Iterable[str]) -> Option:
 
 
 def given(option: str) -> bool:
-    """Whether the option stands on the command line."""
+    """Whether the option was given on the command line."""
     source = click.get_current_context().get_parameter_source(option)
     return source is ParameterSource.COMMANDLINE
 

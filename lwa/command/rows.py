@@ -24,7 +24,7 @@ LONG = 160
 """Characters of an exact number beyond which text shows its digits alone."""
 
 SAME = object()
-"""The number of a row is its value."""
+"""Marker: the digits of a row are those of its value."""
 
 Values = dict[str, Any]
 
@@ -51,7 +51,7 @@ class Row:
 
     @property
     def digits(self) -> Any:
-        """What is told in digits."""
+        """The expression or sum whose digits are printed."""
         return self.value if self.number is SAME else self.number
 
 
@@ -148,7 +148,7 @@ class Answer:
         return " = " + ", ".join(self._shown(x, told) for x in dict.fromkeys(parts)) + unit
 
     def _shown(self, value: sp.Expr, told: bool) -> str:
-        """The value, and its digits behind it where they are told and it is no short number."""
+        """The value, followed by its digits where it is a number that is not rational."""
         if self.units:
             return approximate(value)
         if not told or value.free_symbols - {self.spacing}:
@@ -205,7 +205,7 @@ def _put(result: Values, key: str, suffix: str, value: Any) -> None:
 
 
 def _each(read: Callable[[sp.Expr], Any], value: Any) -> Any:
-    """``read`` of an expression or of each in a collection; None where it is None of one."""
+    """Apply ``read`` to an expression or to each of a collection; None if any result is None."""
     if isinstance(value, sp.Expr):
         return read(value)
     if isinstance(value, list):

@@ -168,7 +168,7 @@ def _sum(sum_up: Callable[[], Resummed]) -> Resummed | InputError:
 
 
 def _sums(found: Expansion, series: Mapping[str, EpsilonSeries]) -> dict[str, Any]:
-    """By key the sums, and those of the effective mass and, for equal beads, the dissipation."""
+    """Key → sum, with the effective mass and, for equal beads, the dissipation."""
     sums = {key: _sum(one.at) for key, one in series.items()}
     sums["effective_mass"] = _sum(found.effective_mass.at)
     if len({*found.cell.masses}) == len({*found.cell.stiffnesses}) == 1:
@@ -178,7 +178,7 @@ def _sums(found: Expansion, series: Mapping[str, EpsilonSeries]) -> dict[str, An
 
 
 def _told(sums: Mapping[str, Any]) -> Values:
-    """The estimate of the error of c² and the widths, and the reasons of what has no sum."""
+    """The error of c² and the widths, and the reason why a quantity has no sum."""
     known = [s for key, s in sums.items() if key.startswith(("c2", "fwhm"))]
     summed = [one for one in known if isinstance(one, Resummed)]
     return {

@@ -24,7 +24,7 @@ HELP = {"help_option_names": ["-h", "--help"]}
 """Settings of a command: both ways to ask for help."""
 
 CLOSED = 141
-"""Exit status where the reader of the output went away, as the shells have it for SIGPIPE."""
+"""Exit status where the reader of the output went away, the shells' number for SIGPIPE."""
 
 version = click.version_option(package_name="lwa", message="%(prog)s %(version)s")
 """The option ``--version`` of a command."""
@@ -33,11 +33,11 @@ SIGNS = {
     "≈": "~", "∝": "~", "≤": "<=", "≥": ">=", "√": "sqrt ", "∂": "d", "…": "...", "·": "*",
     "±": "+-", "¹": "1", "²": "^2", "³": "^3", "⁴": "^4", "⁻": "^-", "→": "->", "×": "x",
 }  # fmt: skip
-"""What stands for signs that an encoding lacks."""
+"""ASCII for signs that an encoding lacks."""
 
 
 def spelled(error: UnicodeError) -> tuple[str, int]:
-    """The names of letters that cannot be encoded, a handler of `codecs.register_error`.
+    """Spell letters that cannot be encoded; a handler of `codecs.register_error`.
 
     >>> codecs.register_error("spelled", spelled)
     >>> "ω ≤ Δδ".encode("ascii", "spelled")
@@ -107,7 +107,7 @@ def _unless_closed(call: Callable[[], Any]) -> Any:
 
 
 def _drop_output() -> None:
-    """Nothing is left to flush at the end of the process."""
+    """Discard output that is not flushed yet."""
     if sys.stdout is not None:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 

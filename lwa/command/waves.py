@@ -18,8 +18,8 @@ from lwa.wave.precompressed import PrecompressedWave
 from lwa.wave.traveling import TravelingWave
 
 RADIATES = 0.05
-"""Share of c² and of the widths, by the bound of `lwa.Radiation`, from which on a wave of unlike
-beads is said to radiate; for dimers of spheres m2/m1 = 0.06 … 0.73."""
+"""Bound of `lwa.Radiation` on c² and the widths from which on a note is printed: for dimers of
+spheres m2/m1 = 0.06 … 0.73."""
 
 
 def si_units(k: sp.Expr) -> dict[str, str]:

@@ -1,15 +1,16 @@
-"""Series in ε = k - 1 summed at a given k: Padé approximants, with an estimate of their error.
+"""Sums of series in ε = k - 1 by Padé approximants, with an estimate of the error.
 
-Of a series known to ε^N the approximants [n-m/m], m about n/2, of every n ≤ N are formed; one with
-a pole on or near 0 … 3ε/2 is spurious and left out (Baker & Graves-Morris, *Padé Approximants*,
-1996, section 2.2). Neighbours agree by chance now and then, so the error is not their difference
-but the largest difference within `WINDOW` orders; the order before which it is least is taken.
+For a series to ε^N the approximants [n-m/m], m about n/2, of every order n ≤ N are formed. An
+approximant with a pole on or near 0 … 3ε/2 is spurious and left out (Baker & Graves-Morris, *Padé
+Approximants*, 1996, section 2.2). Two neighbours may agree by chance, so that the error is the
+largest difference among the approximants of `WINDOW` orders; the window with the smallest one is
+taken.
 
-The chain of equal beads has a series that sums well. What unlike beads add to it is summed apart:
-close to equal masses its terms grow from the first on. Where no approximant is free of poles, the
-sum ends before its least term and the error is that term: the series is only asymptotic there, as
-it is where later windows spread more. What radiation costs (`lwa.expansion.radiation`) comes on
-top.
+The series of equal beads sums well. The difference that unlike beads make is summed apart, as its
+terms grow from the first on where masses are nearly equal. Where every approximant has a pole, the
+sum ends before its smallest term, which is the error: the series is only asymptotic there. It is
+also called asymptotic where later windows spread more. The error by radiation
+(`lwa.expansion.radiation`) is added.
 """
 
 from __future__ import annotations
@@ -25,16 +26,16 @@ from lwa.base.exact import InputError
 from lwa.base.frozen import Value
 
 WINDOW = 3
-"""Orders of ε that a window holds before its last one."""
+"""Number of orders in a window before its last order."""
 
 SAFETY = 2
-"""Error estimate over the spread of a window."""
+"""Ratio of the error estimate to the spread of a window."""
 
 DIGITS = 60
-"""Of the terms that are summed."""
+"""Decimal digits of the terms of a sum."""
 
 PRECISION = 300
-"""Bits with which approximants are computed; their linear systems lose some."""
+"""Bits of the arithmetic of approximants; their linear systems lose some."""
 
 
 @dataclass(frozen=True)
@@ -42,8 +43,8 @@ class Resummed(Value):
     """A series summed at one k.
 
     value, error : the sum, and the estimate of its absolute error.
-    order : of ε, up to which the series was of use.
-    asymptotic : whether higher orders cannot make it better: they grow, or radiation is larger.
+    order : the highest power of ε that was used.
+    asymptotic : whether higher orders do not improve the sum, as terms grow or radiation is larger.
     """
 
     value: float
@@ -61,8 +62,8 @@ def resum(
 ) -> Resummed:
     """unit · Σ coefficients[n] ε^n, all of them numbers, with an estimate of its error.
 
-    base : another series, with which the sum is begun; what the one adds to it is summed apart.
-    relative : an error, over the sum, that comes on top.
+    base : a series that is summed first; the difference to it is summed apart.
+    relative : a further error, relative to the sum.
     """
     with mpmath.workdps(DIGITS):
         small, scale = _mp(epsilon), _mp(unit)
@@ -105,7 +106,7 @@ def pade(a: Sequence[sp.Expr], L: int, M: int, epsilon: sp.Expr) -> sp.Expr:
 
 @dataclass(frozen=True)
 class _Sum:
-    """As `Resummed`, in mpmath's numbers."""
+    """A `Resummed` in mpmath's numbers."""
 
     value: mpmath.mpf
     error: mpmath.mpf
@@ -113,7 +114,7 @@ class _Sum:
     asymptotic: bool
 
     def times(self, epsilon: mpmath.mpf) -> _Sum:
-        """Of a series over ε."""
+        """The sum times ε."""
         return _Sum(epsilon * self.value, epsilon * self.error, self.order + 1, self.asymptotic)
 
 
@@ -124,7 +125,7 @@ def _mp(value: sp.Expr) -> mpmath.mpf:
 
 
 def _sum(a: Sequence[mpmath.mpf], epsilon: mpmath.mpf) -> _Sum:
-    """The approximants of the window that agree best."""
+    """The sum by the window whose approximants agree best."""
     with ctx.workprec(PRECISION):
         terms = [arb(x * epsilon**n) for n, x in enumerate(a)]
         line = {n: found for n in range(len(a)) if (found := _approximants(terms[: n + 1]))}
@@ -142,7 +143,7 @@ def _sum(a: Sequence[mpmath.mpf], epsilon: mpmath.mpf) -> _Sum:
 
 
 def _truncated(a: Sequence[mpmath.mpf], epsilon: mpmath.mpf) -> _Sum:
-    """The sum before the least term; all of it where the terms fall to the last."""
+    """The sum up to the smallest term, or of all terms where they fall to the last."""
     terms = [x * epsilon**n for n, x in enumerate(a)]
     least = min((n for n, term in enumerate(terms) if term), key=lambda n: abs(terms[n]))
     grows = least < len(terms) - 1
@@ -151,7 +152,7 @@ def _truncated(a: Sequence[mpmath.mpf], epsilon: mpmath.mpf) -> _Sum:
 
 
 def _approximants(terms: Sequence[arb]) -> list[mpmath.mpf]:
-    """The diagonal approximant of these terms first, then its neighbours; the low partial sums."""
+    """The diagonal approximant, then its neighbours; for one or two terms also the partial sum."""
     n = len(terms) - 1
     half = n // 2
     found = [

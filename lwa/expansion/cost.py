@@ -1,7 +1,7 @@
-"""What an expansion takes, known before it starts.
+"""Estimates of the time and memory of an expansion, before it starts.
 
-The estimates are a fit to chains of 1 to 100 beads, of numbers of 1 to 100 digits and of up to 5
-symbolic ratios, to within a factor of about 4: they say minutes from hours.
+The estimates were fitted to chains of 1 to 100 beads, with numbers of 1 to 100 digits and up to 5
+symbolic ratios. They are right to a factor of about 4, which tells minutes from hours.
 """
 
 from __future__ import annotations
@@ -17,23 +17,23 @@ from lwa.base.exact import InputError
 from lwa.base.progress import Progress, announce, shown, words
 
 LONGEST = 3600.0
-"""Seconds of what is not refused."""
+"""Estimated seconds beyond which an expansion is refused."""
 MOST_TERMS = 5_000_000
-"""Of all the polynomials that are kept at once: about a gigabyte."""
+"""Terms of all polynomials in memory: about a gigabyte."""
 MOST_DIGITS = 100
-"""Of the ratios of masses, and of stiffnesses, as integers; SymPy's roots want 300 at most."""
+"""Digits of the ratios of masses and of stiffnesses; SymPy takes roots of at most 300."""
 
 
 @dataclass(frozen=True)
 class Effort:
-    """What an expansion takes: ``seconds`` of an average core, ``terms`` in memory."""
+    """Estimated ``seconds`` on an average core, and ``terms`` in memory."""
 
     seconds: float
     terms: float
 
     @classmethod
     def of(cls, model: Model, order: int) -> Effort:
-        """Of an expansion to ε^order.
+        """Estimate an expansion to ε^order.
 
         A polynomial at t^n has about 3n/2 powers of Z, and as many monomials as there are of
         degree 3n in the symbolic ratios; its numbers have about n times the digits of the ratios.
@@ -50,14 +50,14 @@ class Effort:
         )
 
     def progress(self, what: str) -> Progress[int]:
-        """Say what takes long, where it does, and show how far it is."""
+        """An iterator that announces a long expansion and shows its progress."""
         return shown if announce(what, self.seconds) else iter
 
 
 def affordable(model: Model, order: int) -> Effort:
     """The effort of an expansion.
 
-    Raises `lwa.InputError` where it is beyond `LONGEST`, `MOST_TERMS` or `MOST_DIGITS`.
+    Raises `lwa.InputError` beyond `LONGEST`, `MOST_TERMS` or `MOST_DIGITS`.
     """
     for part, name in ((model.ring.masses, "masses"), (model.ring.contacts, "stiffnesses")):
         if _integer(part) >= 10**MOST_DIGITS:
@@ -76,7 +76,7 @@ def affordable(model: Model, order: int) -> Effort:
 
 
 def short(value: sp.Expr, name: str) -> sp.Expr:
-    """The value, refused where a number in it has more than `MOST_DIGITS`."""
+    """Return the value; refuse numbers of more than `MOST_DIGITS` in it."""
     numbers = (abs(int(part)) for x in value.atoms(sp.Rational) for part in (x.p, x.q))
     if max(numbers, default=0) >= 10**MOST_DIGITS:
         raise InputError(f"{name} has a number of more than {MOST_DIGITS} digits: give fewer")
@@ -84,5 +84,5 @@ def short(value: sp.Expr, name: str) -> sp.Expr:
 
 
 def _integer(part: Partition) -> int:
-    """The common denominator of the fractions of their sum; 1 where they are generators."""
+    """Common denominator of rational fractions; 1 where the fractions are generators."""
     return lcm(*(int(value.q) for value in part.values or ()))

@@ -1,10 +1,9 @@
 """The expansion of a chain's traveling waves in ε = k - 1, exact at every order.
 
-Near k = 1 a wave is long, of width 1/√ε, and the long-wave theory is its leading order. What is
-expanded are the lattice's own equations (`lwa.expansion.recursion`), not the theory's: for the
-chain of equal beads the first order is the wave of Chatterjee, Phys. Rev. E 59, 5912 (1999). Here
-its speed, profile, widths, momentum and energy (`lwa.expansion.observables`) get the cell's units
-and become series in ε (`lwa.expansion.series`), with sums and closed formulas.
+Near k = 1 a wave is long, of width 1/√ε, and the long-wave theory is its leading order. The
+lattice's own equations are expanded (`lwa.expansion.recursion`); for equal beads the first order is
+the wave of Chatterjee, Phys. Rev. E 59, 5912 (1999). Speed, profile, widths, momentum and energy
+(`lwa.expansion.observables`) become series in ε (`lwa.expansion.series`) in the cell's units.
 """
 
 from __future__ import annotations
@@ -31,15 +30,18 @@ DAMPINGS = ("linear", "kuwabara_kono")
 """Damping forces of a contact: γ dδ/dt and γ δ^{k-1} dδ/dt (Kuwabara and Kono 1987)."""
 
 FALLEN, MOVED = 0.01, 0.25
-"""Of its peak: to which a profile's force must fall, and by which its last order may move it."""
+"""Shares of the peak: a profile's force has to fall to the first, and its last order may move the
+force by the second."""
 
 
 @dataclass(frozen=True)
 class Expansion(Value):
     """The traveling wave of a chain as a series in ε = k - 1 (see `expand`).
 
-    Its first contact has the peak force 1; at a peak force F, c² is F^{(k-1)/k} times what stands
-    here, the widths are the same. Lengths are in D (sites), A and the masses in the cell's units.
+    The first contact has the peak force 1; at a peak force F, c² is F^{(k-1)/k} times as large and
+    the widths are the same. Lengths are in D (sites), masses and A in the cell's units. Behind a
+    striker the two contacts of a dimer differ (their peaks by 0.5 % at m2/m1 = 0.99, by 5 % at
+    0.9): widths and estimates of errors hold for the mean of the two.
     """
 
     cell: Cell
@@ -54,7 +56,7 @@ class Expansion(Value):
 
     @cached_property
     def numeric(self) -> bool:
-        """Whether k > 1 and the cell are numbers, so that the series can be summed."""
+        """Whether the series can be summed: k > 1 and the cell are numbers."""
         values = (*self.cell.masses, *self.cell.stiffnesses, self.k)
         return not any(x.free_symbols for x in values) and bool(self.k > 1)
 
@@ -94,7 +96,7 @@ class Expansion(Value):
 
     @cached_property
     def momentum(self) -> EpsilonSeries:
-        """Σ m v over the chain, which is (M/P) c times the displacement that the wave leaves."""
+        """Momentum Σ m v over the chain, (M/P) c times the displacement behind the wave."""
         return self._series("momentum", 2 * sp.sqrt(sp.pi * self.I / self._sound), -sp.S.Half)
 
     @cached_property
@@ -158,11 +160,10 @@ class Expansion(Value):
         return EpsilonSeries(unit, power, coefficients, self.k, self.cell, quantity)
 
     def log_force(self, contact: Any = 0, X: Any = None) -> dict[sp.Rational, sp.Expr]:
-        """n → φ_n(X) of log F = Σ ε^n φ_n(X), X = √ε ξ, n = 0, 1/2, 1, …; zero ones are left out.
+        """n → φ_n(X) of log F = Σ ε^n φ_n(X), X = √ε ξ, n = 0, 1/2, 1, …, where φ_n is not zero.
 
-        ξ is counted from the peak of the first contact, of force 1, and is that of the contact's
-        own cell: contact i stands i sites behind it. X is a symbol of this name, or another one
-        where it is given: a name becomes a real symbol.
+        ξ is measured from the peak of the first contact, in the frame of the contact's own cell:
+        contact i is i sites behind the first one. X is a symbol of this name unless it is given.
 
         >>> from lwa import Cell
         >>> expand(Cell([1]), 1).log_force()
@@ -195,14 +196,13 @@ class Expansion(Value):
         return sp.Piecewise((force, sp.And(*inside)), (0, True)) if inside else force
 
     def core(self, contact: Any = 0) -> tuple[sp.Expr, sp.Expr]:
-        """The ends in ξ of what the profile's series can tell: up to there its force falls.
+        """Interval of ξ in which the truncated series of a profile falls from its peak.
 
-        Beyond them a series that is cut may rise again, without bound; where it does not they are
-        infinite. They are rounded inwards, to 1/1000.
+        Beyond its ends a truncated series may rise without bound; where it does not they are
+        infinite. The ends are rounded inwards, to 1/1000.
 
-        Raises `lwa.InputError` where k or the cell are symbols, and where the series tells no
-        pulse: its force has no peak, does not fall to `FALLEN` of it, or is moved by its last
-        order by more than `MOVED`.
+        Raises `lwa.InputError` where k or the cell are symbols, and where the series has no pulse:
+        no peak, no fall to `FALLEN` of it, or a last order that moves it by more than `MOVED`.
 
         >>> from lwa import Cell
         >>> expand(Cell([1]), 3, k="3/2").core()
@@ -224,7 +224,7 @@ class Expansion(Value):
         return ends
 
     def _powers(self, contact: int, first: Any = 0) -> dict[int, sp.Expr]:
-        """d → the coefficient of ξ^d in the logarithm of a contact's force, from ε^first on."""
+        """d → the coefficient of ξ^d in log F of a contact, of the orders from ε^first on."""
         powers: dict[int, list[sp.Expr]] = {}
         for n, phi in self._read.log_force(contact).items():
             for d, a in phi.items() if n >= first else ():
@@ -249,7 +249,7 @@ class Expansion(Value):
         return number
 
     def _place(self, place: sp.Expr, name: str) -> sp.Expr:
-        """A place, refused where a symbol in it is called like one of the chain's."""
+        """Return a place; refuse symbols in it with the names of the chain's."""
         own = {s.name for s in (*self.cell.symbols, *self.k.free_symbols)}
         if shared := own & {s.name for s in place.free_symbols}:
             raise InputError(
@@ -271,7 +271,7 @@ def expand(
     cell : the periodic cell; numbers give rational coefficients, symbols rational functions.
     order : highest power of ε (relative to the leading one).
     k : exponent, a number or a symbol. Unlike contacts share the strain by it.
-    law : in its place, a power; no other law is a small change of the linear chain's, ε = k - 1.
+    law : a power law in place of k; other laws have no ε = k - 1.
 
     Raises `lwa.InputError` for anything else, and for orders beyond what the algebra can do.
 
@@ -303,7 +303,7 @@ def expand(
 
 
 def _no_letter(cell: Cell, k: sp.Expr) -> None:
-    """Refuse the name that a series has a meaning for."""
+    """Refuse names that a series uses itself."""
     for name in sorted(s.name for s in (*cell.symbols, *k.free_symbols)):
         if name in ("ε", "varepsilon"):
             raise InputError(f"{name!r} means k - 1 in a series: choose another name")

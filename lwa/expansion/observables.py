@@ -1,7 +1,7 @@
-"""What is read off a wave of `lwa.expansion.recursion`: speed, widths, momentum, energy, profile.
+"""Speed, widths, momentum, energy and profile of a wave of `lwa.expansion.recursion`.
 
-Each is a series in t whose even terms, polynomials in √log 2 over the recursion's model, leave as
-the coefficients of a series in ε, in the caller's symbols.
+Each is a series in t. Its even terms, polynomials in √log 2 over the recursion's ring, become the
+coefficients of a series in ε, in the caller's symbols.
 """
 
 from __future__ import annotations
@@ -34,10 +34,10 @@ from lwa.law import Power
 
 
 class Observables:
-    """The quantities of one wave as series in t, each computed when it is first asked for.
+    """The quantities of one wave as series in t, each computed on first use.
 
     model : the cell at its exponent.
-    order : of ε.
+    order : highest power of ε.
     """
 
     def __init__(self, model: Model, order: int, progress: Progress[int] = iter) -> None:
@@ -56,17 +56,17 @@ class Observables:
 
     @cached_property
     def force(self) -> Series:
-        """The force's full width at half maximum, over 4 √(I log 2/ε)."""
+        """Full width at half maximum of the force, over 4 √(I log 2/ε)."""
         return half_width(self.wave.fields.log_force[0])
 
     @cached_property
     def strain(self) -> Series:
-        """The strain's, in the same unit: the force's power 1/k."""
+        """Width of the strain, the force's power 1/k, in the same unit."""
         return wider(self.force, self.wave.epsilon)
 
     @cached_property
     def velocity(self) -> Series:
-        """The first bead's velocity's width, in the same unit."""
+        """Width of the first bead's velocity, in the same unit."""
         log: Series = []
         for _ in self._slope:
             log.append(log_term(self._slope, log))
@@ -80,9 +80,9 @@ class Observables:
 
     @cached_property
     def _slope(self) -> Series:
-        """The first bead's slope half a cell off, where it is even for equal beads.
+        """Slope of the first bead, half a cell on, where it is even for equal beads.
 
-        It is (P∂/2)/sinh(P∂/2) of the mean strain.
+        The slope is (P∂/2)/sinh(P∂/2) of the mean strain.
         """
         wave = self.wave
         weights = [
@@ -96,7 +96,7 @@ class Observables:
 
     @cached_property
     def momentum(self) -> Series:
-        """Σ m v over its leading term: M/P times c and the displacement that the wave leaves."""
+        """Σ m v over its leading term: M/P times c and the displacement behind the wave."""
         return product(self.c, [moment(terms[0], 2) for terms in self.wave.fields.means])
 
     @cached_property
@@ -153,7 +153,7 @@ class Observables:
         return product(self.c, [4 * moment(a, 1) / self.wave.P for a in total])
 
     def coefficients(self, quantity: str) -> tuple[sp.Expr, ...]:
-        """Those of ε^0, ε^1, …, Z² = log 2, of the quantity of this name."""
+        """Coefficients of ε^0, ε^1, … of the named quantity, at Z² = log 2."""
         terms: Series = getattr(self, quantity)
         found = []
         logs = [sp.log(2) ** m for m in range(self.order + 1)]
@@ -164,7 +164,7 @@ class Observables:
         return tuple(found)
 
     def log_force(self, contact: int) -> dict[sp.Rational, dict[int, sp.Expr]]:
-        """n → d → the coefficient of X^d in φ_n, n = 0, 1/2, 1, …; zero ones are left out."""
+        """n → d → the coefficient of X^d in φ_n, n = 0, 1/2, 1, …, where φ_n is not zero."""
         found = {sp.S.Zero: {2: -1 / (4 * self.I)}}
         for n, q in enumerate(self.wave.fields.log_force[contact]):
             if q:
@@ -233,7 +233,7 @@ def _equal_beads(order: int) -> Observables:
 
 @lru_cache(maxsize=32)
 def equal_beads(quantity: str, order: int) -> tuple[sp.Expr, ...]:
-    """The coefficients of the chain of equal beads, kept: every other chain's sum wants them.
+    """Coefficients of the chain of equal beads; cached, as the sums of other chains need them.
 
     >>> equal_beads("c2", 2)
     (1, -1/2, 2/5)

@@ -1,7 +1,7 @@
-"""The lattice's wave of a given peak force in the cell's own units, summed with error estimates.
+"""The lattice's wave of a given peak force in the cell's units, summed with error estimates.
 
-The contact law has no scale of its own: at a peak force F on the first contact the speed is
-F^{(k-1)/(2k)} times that at force 1, and widths, in sites, are the same.
+A power law has no scale of its own: the speed scales as F^{(k-1)/(2k)} with the peak force F of the
+first contact, and widths in sites do not depend on F.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from lwa.expansion.series import EpsilonSeries
 
 @dataclass(frozen=True)
 class ExpandedWave(Value):
-    """An expansion's wave whose force on the first contact peaks at F.
+    """The wave of an expansion whose force on the first contact peaks at F.
 
     Raises `lwa.InputError` unless k, the cell with its spacing, and F > 0 are numbers.
 
@@ -41,7 +41,7 @@ class ExpandedWave(Value):
 
     @property
     def speed(self) -> Resummed:
-        """dx/dt; raises `lwa.InputError` where the series has no sum."""
+        """Speed dx/dt; raises `lwa.InputError` where the series has no sum."""
         k, spacing = self.expansion.k, self.expansion.cell.spacing
         return _times(self.expansion.c.at(), float(spacing * self.F ** ((k - 1) / (2 * k))))
 

@@ -107,7 +107,7 @@ def _from_peak(log: Series) -> Series:
 
 
 def wider(width: Series, epsilon: fmpq_mpoly) -> Series:
-    """`half_width` of the pulse's power 1/(1+ε), at the same height: y² → (1+ε) y², ε of t².
+    """`half_width` of the pulse to the power 1/(1+ε), at the same height: y² → (1+ε) y², ε = O(t²).
 
     Each y^d of 4y Σ h_n t^n becomes (1+ε)^{(d+1)/2} y^d.
     """

@@ -1,19 +1,19 @@
-"""What a wave of unlike beads radiates: the size of the error that no order in ε removes.
+"""Radiation by a wave of unlike beads: an error of its series that no order in ε removes.
 
-The pulse carries the light beads' rattle along, whose wavenumber at rest in the pulse's frame is K,
+Light beads rattle under the pulse. A rattle that stands in the pulse's frame has the wavenumber K,
 
     K² = K_0² F^{(k-1)/k},    K_0² = Ω_o² - 1,
 
-Ω_o² the lowest optical Ω² at κ = 0 (1/ν for a dimer): contacts are stiffer where they are pressed,
-so the rattle slows down towards the pulse's ends. The slaved motion, of the size F', excites it by
+with Ω_o² the lowest optical Ω² at κ = 0 (1/ν for a dimer). Contacts are stiffer where they are
+pressed, so that K falls towards the pulse's ends. The slaved motion, of size F', excites a rattle
 
     R = |∫ K^{3/2} F' e^{i∫K} dξ|,
 
-exponentially small in 1/ε where K_0 is large. It is computed with F = exp(φ_0 + ε φ_1), and since
-the integral passes through zero (at the mass ratios without a tail), as the greatest of some K_0.
+exponentially small in 1/ε where K_0 is large. R is computed with F = exp(φ_0 + ε φ_1), as the
+largest value for some K_0 nearby, since the integral vanishes at the mass ratios without a tail.
 
-What c² and the widths lose by it was fitted, as a bound, to exact waves of dimers with tails from
-1e-9 to 0.1 and to pulses of struck chains: `Radiation.relative`. The bound is measured, not proved.
+`Radiation.relative`, a bound on the relative error of c² and the widths, was fitted to exact waves
+of dimers with tails from 1e-9 to 0.1 and to pulses of struck chains. It is measured, not proved.
 """
 
 from __future__ import annotations
@@ -40,18 +40,18 @@ if TYPE_CHECKING:
 
 POINTS = 8001
 SPAN = 20.0
-"""Half of the range of Z = X/√I that is integrated; F < e^{-100} at its ends."""
+"""Half the range of integration in Z = X/√I; F < e^{-100} at its ends."""
 
 PHASES = (0.85, 0.92, 1.0, 1.08, 1.16)
 """Factors of K_0² that move the integral off its zeros."""
 
 FACTOR, POWER = 1.0, 0.75
-"""Of the bound FACTOR · contrast · R^POWER."""
+"""Parameters of the bound FACTOR · contrast · R^POWER."""
 
 
 @dataclass(frozen=True)
 class Radiation(Value):
-    """The chain's numbers that radiation wants.
+    """The numbers of a chain on which its radiation depends.
 
     contrast : 0 for equal beads and contacts, (1 - 2b)² for a dimer of equal contacts.
     I : of Ω² = κ² - I κ⁴ + …
@@ -68,7 +68,7 @@ class Radiation(Value):
     quartic: float
 
     def relative(self, k: float) -> float:
-        """The bound of the relative error of c², widths, momentum and energy at this k."""
+        """Bound on the relative error of c², widths, momentum and energy at this k."""
         if self.contrast <= 0:
             return 0.0
         return float(FACTOR * self.contrast * self.amplitude(k) ** POWER)
@@ -92,7 +92,7 @@ class Radiation(Value):
 
 
 def _rattle(K: Array, slope: Array, step: float) -> float:
-    """|∫ K^{3/2} F' e^{i∫K} dξ| by trapezia, which are exact for what has ended."""
+    """|∫ K^{3/2} F' e^{i∫K} dξ| by the trapezoidal rule, spectral for decayed functions."""
     import numpy as np  # start-up: `import lwa` does not load it
 
     phase = np.concatenate([[0.0], np.cumsum((K[1:] + K[:-1]) / 2)]) * step
@@ -101,7 +101,7 @@ def _rattle(K: Array, slope: Array, step: float) -> float:
 
 @lru_cache(maxsize=64)
 def radiation(cell: Cell, k: sp.Expr) -> Radiation | None:
-    """What a chain of numbers radiates; None for equal beads and contacts, and for symbols.
+    """The radiation of a chain in numbers; None for equal beads and contacts, and for symbols.
 
     k may be a symbol where contacts are equal; others share the strain by it.
     """

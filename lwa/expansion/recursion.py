@@ -1,8 +1,8 @@
 """The recursion for a chain's traveling wave in ε = k - 1: polynomials, exact at every order.
 
-The lattice's own equations are expanded about a Gaussian. With r_i, f_i the strain and force of
-contact i, s_i = -u_i' the slope of bead i's displacement (its velocity over c), each in the frame
-of its cell, ∂ = d/dξ,
+The lattice's equations are expanded about a Gaussian. With the strain r_i and force f_i of contact
+i, and the slope s_i = -u_i' of bead i's displacement (its velocity over c), each in the frame of
+its cell, ∂ = d/dξ,
 
     f_i = f_{i-1} + P μ_i γ ∂s_i,    s_{i+1} = s_i + c_i ∂r_i,    f_i = r_i^k,
     ∫_0^P s_0(ξ + x) dx = Σ c_i r_i(ξ),    γ Σ P μ_i s_i(ξ) = ∫_0^P f_{P-1}(ξ - x) dx,
@@ -17,10 +17,10 @@ the q_n are polynomials over Q[μ, c, 1/I], and each solves q'' - Z q' + q = kno
 a triangular system; q_n(0) = q_n'(0) = 0 puts the peak, of force 1, at ξ = 0. The Gaussian as the
 limit: James & Pelinovsky, Proc. R. Soc. A 470, 20130462 (2014).
 
-The parameter in which the algebra runs is t, (ε/I)^{1/2} = I t: no denominators appear.
+The algebra is in powers of t, (ε/I)^{1/2} = I t, so that no denominators appear.
 
-q_n follows from the equations at t^{n+2}. From n = 3 on the fields are linear in it up to there, so
-that they are computed once, without it, and changed by what it brings when it is known.
+q_n follows from the equations at t^{n+2}. From n = 3 on the fields are linear in q_n up to that
+order: they are computed once with q_n = 0, and its contribution is added when q_n is known.
 """
 
 from __future__ import annotations
@@ -38,10 +38,10 @@ from lwa.expansion.pulse import Series, by_degree, exp_term, log_term
 from lwa.linear.bloch import Bloch
 
 LINEAR = 3
-"""The first n for which q_n² has no place up to t^{n+2}."""
+"""The first n for which q_n² is beyond t^{n+2}."""
 
 Term = Callable[[Series, Series, Series], fmpq_mpoly]
-"""The last term of an exponential or a logarithm from two fields and the wave's own."""
+"""Function of two fields and the wave's own: the last term of an exponential or a logarithm."""
 
 
 class Fields:
@@ -106,7 +106,7 @@ class Recursion:
         return self.I * (S.derivative(0) - self._half * S) if S else S
 
     def _solve(self, order: int, progress: Progress[int]) -> None:
-        """γ_2 closes the order at which the Gaussian does; then q_n and γ_{n+2} for n = 1, 2, …"""
+        """Solve for γ_2 at the order of the Gaussian, then for q_n and γ_{n+2}, n = 1, 2, …"""
         fields = self.fields
         for n in range(3):
             residual = self._extend(n)
@@ -138,9 +138,9 @@ class Recursion:
         return q, -left.get(0, self.zero)
 
     def _extend(self, n: int, q: fmpq_mpoly | None = None) -> fmpq_mpoly:
-        """Add the terms at t^n, those of q_n = 0 where it is not known; the residual there.
+        """Add the terms at t^n, with q_n = 0 unless it is known; return the residual there.
 
-        It is that of the momentum's balance, the last of the equations, over P.
+        The residual is that of the balance of momentum, the last of the equations, over P.
         """
 
         def exponential(log: Series, S: Series, _: Series) -> fmpq_mpoly:
@@ -160,7 +160,7 @@ class Recursion:
         return residual
 
     def _change(self, q: fmpq_mpoly) -> Fields:
-        """What q_n brings to the fields at t^n, t^{n+1} and t^{n+2}, n ≥ `LINEAR`."""
+        """Contribution of q_n to the fields at t^n, t^{n+1} and t^{n+2}, n ≥ `LINEAR`."""
 
         def exponential(log: Series, _: Series, S: Series) -> fmpq_mpoly:
             return _last(log, S)  # of δ e^S = e^S δS
@@ -184,7 +184,7 @@ class Recursion:
     ) -> None:
         """Add the terms at t^n to the wave's fields or to a change of them.
 
-        ``width`` is the term of the strain's logarithm that comes of the Gaussian.
+        ``width`` is the Gaussian's term of the logarithm of the strain.
         """
         own, P = self.fields, range(self.P)
         for i in P:

@@ -39,12 +39,10 @@ _LETTERS = {
 class EpsilonSeries(Value):
     """prefactor · ε^power · Σ coefficients[n] ε^n, ε = k - 1.
 
-    The series owns its k: where it is a number, it is the one at which the series is summed; where
-    it is a symbol, a number or another symbol takes its place, wherever it stands: the prefactor
-    and the shares of unlike contacts depend on it too.
-
-    cell, quantity : what it is the series of. `at` sums what the chain of equal beads has of it
-        apart, and adds to the error what the chain radiates.
+    k : the exponent. A number is the one at which the series is summed. A symbol may be replaced by
+        a number or another symbol, also in the prefactor and the shares of unlike contacts.
+    cell, quantity : the chain and the quantity of the series. `at` sums the part of equal beads
+        apart, and adds the error by radiation.
     """
 
     prefactor: sp.Expr
@@ -61,13 +59,13 @@ class EpsilonSeries(Value):
 
     @property
     def radiation(self) -> Radiation | None:
-        """What `at` adds to the error; None for symbols and for equal beads."""
+        """Radiation, which `at` adds to the error; None for symbols and for equal beads."""
         return radiation(self.cell, self.k) if self.cell else None
 
     def partial_sum(self, k: Any = None, order: Any = None) -> sp.Expr:
         """The sum to ε^order, exact.
 
-        k : a number or a symbol where the series' k is a symbol, which stays when none is given.
+        k : a number or a symbol in place of the series' own symbol k.
 
         >>> from lwa import Cell, expand
         >>> expand(Cell([1]), 2).c2.partial_sum("3/2")
@@ -105,9 +103,8 @@ class EpsilonSeries(Value):
     def at(self, k: Any = None) -> Resummed:
         """The sum and an estimate of its error; at a number k > 1 where the series' k is a symbol.
 
-        Raises `lwa.InputError` when k or the cell holds symbols, or k ≤ 1, or the series has a k
-        of its own and another is given, and where the error reaches the sum: what all these
-        quantities are is positive, and such a sum does not even tell that.
+        Raises `lwa.InputError` when k or the cell holds symbols, for k ≤ 1, for a k besides that of
+        the series, and where the error is as large as the sum of these positive quantities.
 
         >>> from lwa import Cell, expand
         >>> expand(Cell([1]), 10, k="3/2").fwhm("force").at().value.__round__(6)
@@ -158,7 +155,7 @@ class EpsilonSeries(Value):
         return f"EpsilonSeries({name} to ε^{self.order}, k={self.k}, {self.cell!r})"
 
     def latex(self) -> str:
-        r"""The series as a paper prints it: its name, its first `SHOWN` terms and what follows.
+        r"""The series as a paper prints it: its name, its first `SHOWN` terms and dots.
 
         >>> from lwa import Cell, expand
         >>> print(expand(Cell([1]), 6).c2.latex())

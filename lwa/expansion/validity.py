@@ -1,6 +1,6 @@
-"""Where a pulse is told by a polynomial for its logarithm, F = exp Σ a_d ξ^d: its core.
+"""Range of validity of a profile F = exp Σ a_d ξ^d with a truncated series in the exponent.
 
-Near its peak it falls; further out the polynomial, a series that is cut, may turn round.
+The profile falls from its peak; further out the truncated polynomial may rise again.
 """
 
 from __future__ import annotations
@@ -11,20 +11,22 @@ from collections.abc import Mapping
 import sympy as sp
 
 POINTS = 401
-"""At which the core is looked at."""
+"""Places at which a profile is evaluated."""
 
 DEEP = 40.0
-"""Below the peak's logarithm there is nothing to be seen."""
+"""Fall of log F from the peak beyond which a profile is taken as zero."""
 
 
 def descent(
     whole: Mapping[int, float], last: Mapping[int, float]
 ) -> tuple[tuple[sp.Expr, sp.Expr], float, float]:
-    """The ends of the core of exp Σ a ξ^d, and two shares of its peak: of the ends, of the last.
+    """Interval around the peak in which exp Σ a ξ^d falls, and two checks of the series.
 
-    whole, last : d → a, of the series and of its last order alone. The ends are rounded inwards.
-    The shares are the greater of the ends' heights, and the most by which the last order moves the
-    pulse; infinite where the series has no peak.
+    whole, last : d → a_d of the series, and of its last order alone.
+
+    Returns the ends of the interval, rounded inwards; the higher of the two values at the ends over
+    the peak; and the largest change of the profile by the last order, over the peak. Both ratios
+    are infinite where the series has no peak.
     """
     import numpy as np  # start-up: `import lwa` does not load it
     from numpy.polynomial import Polynomial  # likewise
