@@ -41,13 +41,12 @@ if TYPE_CHECKING:
     from lwa.spheres.hertz import Material, Sphere
     from lwa.theory import Theory, homogenize
     from lwa.wave.background import BackgroundWave, background_wave
-    from lwa.wave.closed import CompactWave
+    from lwa.wave.closed import CompactWave, Reduction
     from lwa.wave.kdv import KdV
     from lwa.wave.numeric import NumericWave
     from lwa.wave.physical import PhysicalWave
     from lwa.wave.precompressed import PrecompressedWave
     from lwa.wave.quadrature import NumericBackground
-    from lwa.wave.reduction import Reduction
     from lwa.wave.traveling import TravelingWave, canonical_wave
 
     __version__: str
@@ -124,7 +123,7 @@ _MODULES = {
     "base.arrays": "Array",
     "wave.numeric": "NumericWave",
     "wave.physical": "PhysicalWave",
-    "wave.closed": "CompactWave",
+    "wave.closed": "CompactWave Reduction",
     "base.exact": "InputError Quantity",
     "envelopes.breather": "Breather",
     "envelopes.schrodinger": "Envelope envelope",
@@ -139,7 +138,6 @@ _MODULES = {
     "equation.evolution": "Evolution",
     "equation.pde": "PDE",
     "base.quantities": "NoSolitaryWave",
-    "wave.reduction": "Reduction",
     "shocks": "Shock piston shock",
     "spheres.hertz": "Material Sphere",
     "equation.terms": "Jet Powers Terms",

@@ -1,23 +1,22 @@
-"""The compiled engine: a pair or a splitting, on a window that moves with the pulse.
+"""The compiled engine: an adaptive pair or a symplectic splitting, for the beads that move.
 
-Numba compiles it once and caches it on disk. A run is the same to the bit every time.
+Numba compiles the loops once and keeps them on disk. A run is the same to the last bit every time.
 
-Pair. The adaptive one for y'' = f(y) (`validation.lattice.schemes.nystrom`). The error of a step is
-the root of the sum of its beads' squares, in the scene's scales of displacement and velocity, and
-is kept at ``rtol``; the next step follows from it alone. F = A δ^k with k = 3/2 has no second
-derivative where a contact opens or closes: the step would err by O(h^{k+1}) there, and little less
-next to it. So p_+^k, for a polynomial p that is nearly the contact's δ, is taken off its force, and
-is integrated by a quadrature that knows the kink.
+Pair: adaptive, for y'' = f(y) (`validation.lattice.schemes.nystrom`). The error of a step, the root
+of the sum of the beads' squares in the scene's scales of displacement and velocity, is kept at
+``rtol`` and sets the next step. F = A δ^k with k = 3/2 has no second derivative where a contact
+opens or closes: the step would err by O(h^{k+1}) there. So the term p_+^k, with a polynomial p
+close to the contact's δ, is integrated by its own quadrature (`validation.lattice.kernel.kinks`).
 
-Splitting. Symplectic, at a fixed step (`validation.lattice.schemes.splitting`): with every kink it
-errs by O(h^{k+1}), and its step follows from that.
+Splitting: symplectic, with a fixed step (`validation.lattice.schemes.splitting`). Every kink leaves
+an error of O(h^{k+1}), which sets the step.
 
 Samples and signals: `validation.lattice.kernel.samples`.
 
-Window. Ahead of the front nothing has moved yet: these beads are left out, always. A window of N
-beads leaves out those more than N behind the front as well; their energy stays on the books, their
-motion is not known. What that does to the leading pulse is told by a second run, with twice the
-window: this is the one that is returned, as far as both follow it.
+Window: beads ahead of the front have not moved yet and are always left out. A window of N beads
+leaves out those more than N behind the front as well. Their energy stays on the books, their motion
+is unknown. A second run, with a window of 2N, shows how much the leading pulse depends on them; its
+numbers are returned for the beads that both runs follow.
 """
 
 from __future__ import annotations
@@ -53,21 +52,23 @@ from validation.lattice.schemes.nystrom import Pair
 from validation.lattice.signal import recorded, sampled
 from validation.scenes.checks import SceneError, integer, positive
 
-_SUPPORTS = 8  # widths of the long-wave pulse in a window of the engine's choice
-_CHANGE = 10.0  # rtol: by how much a longer window may change the leading pulse's velocities
-_POINTS = 8  # of the quadrature at a kink
-_NOISE = sys.float_info.epsilon  # of the greatest: rounding is no front
-_GLANCE = (
-    5e7  # bead evaluations, some tenths of a second, from one look at the progress to the next
-)
-_KINKS = 0.01  # (rtol/this)^0.4 natural times a stage of a splitting; of a Hertz dimer of 560 beads
-_CAREFUL = 100  # steps more than expected, as a pair makes its first one shorter
-_COARSEST = 0.2  # natural times a stage: the splitting is stable
+_SUPPORTS = 8  # supports of the long-wave pulse in a window of the engine's choice
+_CHANGE = 10.0  # in units of rtol: greatest change of the leading pulse by a longer window
+_POINTS = 8  # nodes of the quadrature at a kink
+_NOISE = sys.float_info.epsilon  # of the greatest value: less is rounding, and no front
+_GLANCE = 5e7  # bead evaluations between two reports of progress: some tenths of a second
+# The splitting's step per stage is (rtol/0.01)^0.4 in units of the scene's shortest time, measured
+# on a Hertz dimer of 560 beads; at 0.2 it is still stable.
+_KINKS, _COARSEST = 0.01, 0.2
+_CAREFUL = 100  # steps by which a pair's first step is shortened
 
 
 @dataclass(frozen=True)
-class Given:
-    """step : of a splitting; of a pair the one that is expected."""
+class Settings:
+    """A method with its tolerance and steps.
+
+    step : fixed step of a splitting; expected mean step of a pair. longest : greatest step.
+    """
 
     method: str
     rtol: float
@@ -78,13 +79,13 @@ class Given:
 def follow(
     motion: Motion, method: str, rtol: float, step: float | None, window: Any, progress: RunProgress
 ) -> Run:
-    """`validation.simulate` for a method of `SCHEMES`."""
+    """Integrate a scene by a method of `SCHEMES`; the arguments are those of `simulate`."""
     beads = _window(motion, window)
     end = motion.scene.duration
     natural = _step(method, rtol) * min(motion.scales.time, end)
     longest = math.inf if step is None else positive(step, "step")
     shorter = step is None or (natural < longest and isinstance(SCHEMES[method], Pair))
-    given = Given(method, rtol, natural if shorter else longest, longest)
+    given = Settings(method, rtol, natural if shorter else longest, longest)
     if beads is None:
         return _integrated(motion, given, None, progress)[0]
     short, left = _integrated(motion, given, beads, progress)
@@ -94,7 +95,7 @@ def follow(
 
 
 def _step(method: str, rtol: float) -> float:
-    """The step in units of the scene's shortest time; of a pair the mean one that is expected."""
+    """The step, or a pair's expected mean step, in units of the scene's shortest time."""
     scheme = SCHEMES[method]
     if isinstance(scheme, Pair):
         return mean_step(method, rtol)
@@ -136,16 +137,16 @@ def _compare(motion: Motion, rtol: float, short: Run, long: Run) -> None:
 
 def _integrated(
     motion: Motion,
-    given: Given,
+    given: Settings,
     window: int | None,
     progress: RunProgress,
     followed: Array | None = None,
 ) -> tuple[Run, Array]:
     """Integrate the whole chain, or the beads of a window.
 
-    followed : times up to which each bead's motion is told; by default as long as it is computed.
+    followed : times after which each bead is NaN in the run; by default when the window leaves it.
 
-    Returns the run, and the times up to which each bead is followed.
+    Returns the run and these times.
     """
     n, end = motion.size, motion.scene.duration
     window = None if window is None or window >= n else window
@@ -184,6 +185,7 @@ def _integrated(
 
 @lru_cache
 def _tableau(method: str, k: float) -> Tableau:
+    """Coefficients of a method, with the quadrature at kinks of the exponent k."""
     scheme = SCHEMES[method]
     nothing, table = np.zeros(0), np.zeros((0, 0))
     points = table
@@ -195,8 +197,8 @@ def _tableau(method: str, k: float) -> Tableau:
     return Tableau(nothing, nothing, *scheme.arrays(WIDTH), scheme.lower, points)
 
 
-def _plan(motion: Motion, given: Given, chain: Chain, window: int | None, step: float) -> Plan:
-    """The integration plan of a run."""
+def _plan(motion: Motion, given: Settings, chain: Chain, window: int | None, step: float) -> Plan:
+    """Build the integration plan of a run."""
     scales, chosen = motion.scales, motion.k if motion.contact.law is None else math.inf
     return Plan(
         scheme=_tableau(given.method, chosen),
@@ -213,7 +215,7 @@ def _plan(motion: Motion, given: Given, chain: Chain, window: int | None, step: 
 
 
 def _chain(motion: Motion) -> Chain:
-    """Padded by beads of infinite mass: the first is the wall."""
+    """The chain, padded by beads of infinite mass, of which the first is the wall."""
     inverse, A, rest, load = rows = np.zeros((4, motion.size + 2 * SHORTEST))
     given = 1 / motion.masses, motion.stiffnesses, motion.rest, motion.load
     for row, values in zip(rows, given, strict=True):
@@ -224,14 +226,14 @@ def _chain(motion: Motion) -> Chain:
 
 
 def _front(motion: Motion) -> int:
-    """The first bead that is still, and a margin."""
+    """Number of the first bead that is still, plus a margin."""
     y, v = np.abs(motion.start.reshape(2, motion.size))
     moving = np.flatnonzero((y > _NOISE * y.max()) | (v > _NOISE * v.max()))
     return min(motion.size, MARGIN + (int(moving[-1]) + 1 if len(moving) else 0))
 
 
 def _start(motion: Motion, padded: int) -> Beads:
-    """The beads as they start."""
+    """The initial state of the beads."""
     n = motion.size
     y, v, next_y, next_v, left = np.zeros((5, padded + 1))
     y[:n], v[:n], left[:] = motion.start[:n], motion.start[n:], np.inf

@@ -1,4 +1,4 @@
-"""The equations of motion of a scene, and the scales that its energy and weights give them.
+"""The equations of motion of a scene, and its characteristic scales.
 
     m_i y_i'' = F_{i-1} - F_i + m_i g,    F_i = A_i [δ_i⁰ + y_i - y_{i+1}]_+^k,
 
@@ -44,8 +44,11 @@ class Scales:
 
 
 class Motion:
-    """The right-hand side for one scene, in the state (y_0 … y_{n-1}, v_0 … v_{n-1}), the ``start``
-    of it, and whether it is ``loaded``, by gravity or a precompression."""
+    """The right-hand side of a scene's equations in the state (y_0 … y_{n-1}, v_0 … v_{n-1}).
+
+    start : the initial state. loaded : whether there is gravity or a precompression. rest, load :
+    static compressions and forces of the contacts. contact : their law.
+    """
 
     def __init__(self, scene: Scene) -> None:
         wall = () if scene.wall is None else (scene.wall,)
@@ -75,18 +78,18 @@ class Motion:
                 _held(f"static {name}", values.min(), values.max())
 
     def compression(self, y: Array) -> Array:
-        """δ_i, for displacements of shape (n,) or (n, S)."""
+        """Compressions δ_i from displacements of shape (n,) or (n, S)."""
         row = np.concatenate((y, np.zeros_like(y[:1]))) if len(self.rest) == len(y) else y
         dynamic = row[:-1] - row[1:]
         return np.asarray((self.rest + dynamic.T).T) if self.loaded else dynamic
 
     def rate(self, v: Array) -> Array:
-        """dδ_i/dt, for velocities of shape (n,)."""
+        """Rates dδ_i/dt of the compressions from velocities of shape (n,)."""
         row = np.append(v, 0.0) if len(self.rest) == len(v) else v
         return np.asarray(row[:-1] - row[1:])
 
     def force(self, compression: Array) -> Array:
-        """F_i = A_i F(δ_i), of a power A_i [δ_i]_+^k."""
+        """Elastic forces A_i F(δ_i), for a power A_i [δ_i]_+^k."""
         return np.asarray((self.stiffnesses * self.contact.force(compression).T).T)
 
     def __call__(self, time: float, state: Array) -> Array:
@@ -131,14 +134,14 @@ class Motion:
         return float(self.masses @ (after - before) / total) if total else 0.0
 
     def _stirred(self, rest: float) -> bool:
-        """Whether a bead moves, or a contact is pressed more than at rest, to begin with."""
+        """Whether a bead moves at the start, or a contact is pressed more than ``rest``."""
         pressed = self.compression(self.start[: self.size]).max(initial=0.0) > rest
         return bool(pressed or np.any(self.start[self.size : 2 * self.size]))
 
     @cached_property
     @np.errstate(all="ignore")
     def scales(self) -> Scales:
-        """Of the motion from its start. Raises `SceneError` where a float cannot hold one."""
+        """Characteristic scales; raises `SceneError` where a float cannot hold one."""
         energy, n, A = self.energy(self.start) + self.driven, self.size, self.stiffnesses
         deepest = at_rest = self.rest.max(initial=0.0) if self.loaded else 0.0
         stiffest = A.max(initial=0.0)
@@ -170,7 +173,7 @@ class Motion:
 
 
 def _held(name: str, *values: float) -> None:
-    """Refuse scales that overflow, or are too small for all digits of a float."""
+    """Raise `SceneError` for scales that overflow or are too small for all digits of a float."""
     for value in values:
         if not LEAST <= value < math.inf:
             raise SceneError(f"the scene's {name} comes out as {value:g}: choose other units")

@@ -36,6 +36,7 @@ COMPILED = tuple(SCHEMES)
 """The engine's: an adaptive Runge–Kutta–Nyström pair, the default, and a symplectic splitting."""
 
 _BATCH, _SPELL = 8, 0.02  # scenes that a thread is given at a time, at most, and for seconds
+_SHORTEST = 8  # beads of a window
 _FINITE = (*RECORDS, "displacements", "velocities")
 
 
@@ -77,6 +78,8 @@ def simulate(
     >>> simulate(scene, method="DOP853").velocities.round(6) + 0.0
     array([0., 1.])
     """
+    if not isinstance(scene, Scene):
+        raise SceneError(f"scene is {shorten(scene)}: a Scene is wanted")
     one_of(method, COMPILED + METHODS, "method")
     rtol, atol = between(rtol, "rtol", 1e-13, 1e-2), between(atol, "atol", 1e-13, 1e-2)
     for name, value in (("step", step), ("window", window or None)):
@@ -153,6 +156,11 @@ def _batch(scenes: list[Scene], options: dict[str, Any]) -> _Batch:
 
 
 def twice(scene: Scene, fine: float, coarse: float, **options: Any) -> tuple[Run, Run]:
-    """`simulate` at two tolerances, by whose difference `validation.pulses.pulse.compared` goes."""
-    run, check = (simulate(scene, rtol=t, atol=t, **options) for t in (fine, coarse))
-    return run, check
+    """Simulate a scene at two tolerances, for `validation.pulses.pulse.compared`.
+
+    With a window, the coarse run has half of it, so that the difference shows its effect as well.
+    """
+    run = simulate(scene, rtol=fine, atol=fine, **options)
+    if run.window is not None:
+        options["window"] = max(_SHORTEST, run.window // 2)
+    return run, simulate(scene, rtol=coarse, atol=coarse, **options)

@@ -69,7 +69,8 @@ def integrate(motion: Motion, method: str, rtol: float, atol: float, progress: R
     """Integrate a scene with one of `METHODS`; the arguments are those of `simulate`."""
     scales, end, n = motion.scales, motion.scene.duration, motion.size
     y, v, drive = scales.displacement, scales.velocity, motion.scene.drive
-    steps = end / scales.time / mean_step(method, rtol)
+    longest = math.inf if drive is None else drive.longest_step
+    steps = max(end / scales.time / mean_step(method, rtol), end / longest)
     jacobian = (2 * n) ** 2 * 8 if method == "LSODA" else 0
     most = most_steps(motion.scene, method, steps, 4, jacobian)
     stepper = getattr(scipy.integrate, method)(
@@ -79,7 +80,7 @@ def integrate(motion: Motion, method: str, rtol: float, atol: float, progress: R
         end,
         rtol=rtol,
         atol=atol * np.append(np.repeat([y, v], n), [scales.energy] * (len(motion.start) - 2 * n)),
-        max_step=math.inf if drive is None else drive.longest_step,
+        max_step=longest,
         first_step=min(1e-3 * y / v, end),  # SciPy's own guess depends on the units
     )
     time, beads = sampled(motion)

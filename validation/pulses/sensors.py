@@ -8,8 +8,8 @@ the less accurate run, whose tolerance is `LESS` times as large.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass
 from functools import cached_property, partial
 from itertools import pairwise
 from typing import Any
@@ -126,12 +126,12 @@ def record(
     options = {"method": method, "window": window, "progress": progress}
     run, check = twice(scene, rtol, LESS * rtol, **options)
     pairs = tuple(zip(tracks(run), tracks(check, every=2), strict=True))
-    sensors = (_train(*pair) if every else (_reading(_pulse, *pair),) for pair in pairs)
-    both = (zip(*two, strict=True) for two in pairwise(pairs) if two[0][0].kind == two[1][0].kind)
+    sensors = (_train(*pair) if every else [_reading(*pair)] for pair in pairs)
+    neighbours = (two for two in pairwise(pairs) if two[0][0].kind == two[1][0].kind)
     return Recording(
         run,
         tuple(reading for train in sensors for reading in train),
-        tuple(_reading(_speed, *two) for two in both),
+        tuple(_speed(*two) for two in neighbours),
     )
 
 
@@ -166,15 +166,19 @@ def tracks(run: Run, every: int = 1) -> Tracks:
     )
 
 
-def _reading(
-    read: Callable[[Tracks], Mapping[str, float]], fine: Tracks | Track, coarse: Tracks | Track
-) -> Reading:
-    one, other = ((part,) if isinstance(part, Track) else part for part in (fine, coarse))
-    kind, places, static = one[0].kind, tuple(track.number for track in one), one[0].static
+def _reading(fine: Track, coarse: Track, number: int | None = None) -> Reading:
+    """The first pulse of one sensor, or one of its train."""
+
+    def numbers(track: Track) -> dict[str, float]:
+        pulse = track.pulse if number is None else track.train[number]
+        return {name: getattr(pulse, name) for name in READINGS}
+
+    place = (fine.number,)
     try:
-        return Reading(kind, places, compared(read, one, other), static)
+        found, missing = compared(numbers, fine, coarse), None
     except MeasureError as error:
-        return Reading(kind, places, {}, static, str(error))
+        found, missing = {}, str(error)
+    return Reading(fine.kind, place, found, fine.static, missing, 1 + (number or 0))
 
 
 def _train(fine: Track, coarse: Track) -> list[Reading]:
@@ -182,21 +186,27 @@ def _train(fine: Track, coarse: Track) -> list[Reading]:
     try:
         count = min(len(track.train) for track in (fine, coarse))
     except MeasureError:
-        return [_reading(_pulse, fine, coarse)]
-    readings = (_reading(partial(_pulse, number=i), fine, coarse) for i in range(count))
-    return [replace(reading, pulse=i) for i, reading in enumerate(readings, start=1)]
+        return [_reading(fine, coarse)]
+    return [_reading(fine, coarse, number) for number in range(count)]
 
 
-def _pulse(heard: Tracks, number: int | None = None) -> dict[str, float]:
-    track = heard[0]
-    pulse = track.pulse if number is None else track.train[number]
-    return {name: getattr(pulse, name) for name in READINGS}
+def _speed(start: tuple[Track, Track], end: tuple[Track, Track]) -> Reading:
+    """The speed of the first pulse between two sensors, each in the accurate and the other run.
 
-
-def _speed(heard: Tracks) -> dict[str, float]:
-    start, end = heard
+    The errors of both arrivals add: in the less accurate run alone they may cancel.
+    """
+    (first, _), (second, _) = start, end
+    read = partial(Reading, first.kind, (first.number, second.number), static=first.static)
     try:
-        pulses = start.pulse, end.pulse
+        late = sum(abs(fine.pulse.arrival - coarse.pulse.arrival) for fine, coarse in (start, end))
     except MeasureError:
-        raise MeasureError("one of the two has no pulse") from None
-    return {unit: speed(*pulses, abs(end.place[unit] - at)) for unit, at in start.place.items()}
+        return read({}, missing="one of the two has no pulse")
+    found = {}
+    try:
+        for unit, at in first.place.items():
+            V = speed(first.pulse, second.pulse, abs(second.place[unit] - at))
+            apart = second.pulse.arrival - first.pulse.arrival
+            found[unit] = Measured(V, V * (1 + late / apart))
+    except MeasureError as error:
+        return read({}, missing=str(error))
+    return read(found)

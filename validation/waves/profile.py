@@ -20,7 +20,7 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike, NDArray
 
-from lwa.base.arrays import Array
+from lwa.base.arrays import Array, ArrayValue
 from lwa.base.quantities import QUANTITIES, strain_power
 from validation.pictures.figure import Pictured
 from validation.pictures.panel import Curve, Panel
@@ -34,7 +34,7 @@ _ROW = 16  # Fourier coefficients that are summed up together
 
 
 @dataclass(frozen=True, eq=False)
-class Profile(Pictured):
+class Profile(ArrayValue, Pictured):
     """A pulse as a function of ξ = x - ct, mirror symmetric about a bead; A = D = 1.
 
     masses : (m1, m2). k : exponent. c2 : c², the square of the speed dx/dt.

@@ -15,6 +15,7 @@ from lwa import (
     canonical_wave,
     homogenize,
 )
+from lwa.expansion.radiation import radiation
 from lwa.law import DELTA, named
 
 CHAIN = Cell([1], spacing=1)
@@ -172,6 +173,14 @@ def test_arrays_that_hold_no_numbers():
         ):
             with pytest.raises(InputError):
                 call(bad)
+
+
+def test_masses_beyond_floats():
+    """Closed forms are exact; the estimate of radiation, in floats, is left out."""
+    assert radiation(Cell(["1e400", 1]), sp.Rational(3, 2)) is None
+    wave = homogenize(Cell(["m1", "m2"])).pde.traveling_wave()
+    heavy = wave.at(omega=10**400, k="3/2", m1=1, D=1)
+    assert float(heavy.beta) == pytest.approx(np.sqrt(6) / 4, rel=1e-14)  # the limit ω → ∞
 
 
 def test_linear_waves_are_no_waves_of_kdv():

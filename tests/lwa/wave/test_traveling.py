@@ -7,7 +7,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from lwa import Cell, Dimer, InputError, NoSolitaryWave, canonical_wave, homogenize
-from lwa.wave.reduction import strain_equation
+from lwa.wave.closed import strain_equation
 
 masses = st.fractions(min_value="1/50", max_value=50, max_denominator=50)
 exponents = st.fractions(min_value="21/20", max_value=6, max_denominator=20)

@@ -406,6 +406,11 @@ def test_a_run_equals_its_pickle_and_no_other_run():
     assert run != simulate(replace(scene, contact_sensors=(0,), duration=2.9))
 
 
+def test_what_is_no_scene_is_refused():
+    with pytest.raises(SceneError, match=r"^scene is 'x': a Scene is wanted$"):
+        simulate("x")
+
+
 def test_pandas_is_optional(monkeypatch):
     monkeypatch.setitem(sys.modules, "pandas", None)
     scene = Scene(masses=(1, 1), stiffnesses=(1,), k=1.5, duration=1, contact_sensors=(0,))

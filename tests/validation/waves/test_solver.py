@@ -2,6 +2,7 @@
 
 import json
 import math
+import pickle
 from contextlib import suppress
 from dataclasses import replace
 from itertools import combinations, pairwise
@@ -599,3 +600,11 @@ def test_bad_counts_and_names(hertz):
             resonances(k, 1)
     with pytest.raises(ValueError, match="quantity is"):
         hertz.fwhm("mass")
+
+
+def test_a_wave_equals_its_pickle():
+    wave = exact_wave([1], 1.5)
+    copy = pickle.loads(pickle.dumps(wave))
+    assert copy == wave
+    assert hash(copy) == hash(wave)
+    assert copy != wave.scaled(force=2)

@@ -1,6 +1,6 @@
-"""The compiled integrators, by their coefficients.
+"""Coefficients of the compiled integrators.
 
-RKN86  `validation.lattice.schemes.nystrom`: adaptive, the one to take
+RKN86  `validation.lattice.schemes.nystrom`: adaptive, the default
 SRKN14 `validation.lattice.schemes.splitting`: symplectic, for runs of very many collisions
 """
 
@@ -12,7 +12,7 @@ from validation.lattice.schemes.splitting import SRKN14, Splitting
 SCHEMES: dict[str, Pair | Splitting] = {"RKN86": RKN86, "SRKN14": SRKN14}
 
 LAWS = {1.0: 1, 1.25: 2, 1.5: 3, 2.0: 4, 3.0: 5}
-"""Exponents that have loops of their own in `validation.lattice.kernel`, without a power."""
+"""Numbers of the loops for exponents that need no general power (kernel/force.py)."""
 
 GENERATED = 6
-"""The loop of laws that are no power, by functions that are compiled from their text."""
+"""Number of the loop for laws that are no powers, which calls functions of their own."""

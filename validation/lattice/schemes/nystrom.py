@@ -1,4 +1,4 @@
-"""Embedded Runge–Kutta–Nyström pairs for y'' = f(y), by their exact coefficients.
+"""Embedded Runge–Kutta–Nyström pairs for y'' = f(y), with exact coefficients.
 
 Stage s evaluates f at y + c_s h v + h² Σ a_sj f_j, with Σ_j a_sj = c_s²/2. A step ends at
 
@@ -24,7 +24,10 @@ Row = tuple[Fraction, ...]
 
 @dataclass(frozen=True)
 class Pair:
-    """rows : a. speeds : b'. low, low_speeds : b and b' of the lower order."""
+    """Coefficients of a pair; b is the last row of a.
+
+    rows : a. speeds : b'. low, low_speeds : b and b' of the solution of lower order.
+    """
 
     order: int
     lower: int
@@ -35,16 +38,16 @@ class Pair:
 
     @property
     def stages(self) -> int:
-        """Evaluations of the forces per step."""
+        """Number of evaluations of the forces per step."""
         return len(self.rows) - 1
 
     @property
     def nodes(self) -> tuple[float, ...]:
-        """c."""
+        """Nodes c of the stages."""
         return tuple(float(np.sqrt(float(2 * sum(row)))) for row in self.rows)
 
     def arrays(self, width: int) -> tuple[Array, Array, Array]:
-        """c, a, and the rows b', e and e', filled up with zeros to a multiple of ``width``."""
+        """Arrays c, a, and (b', e, e'), with zeros up to a multiple of ``width`` columns."""
         b = self.rows[-1]
         e, e_speeds = (
             tuple(x - y for x, y in zip(high, low, strict=True))

@@ -1,4 +1,4 @@
-"""A symmetric splitting of y'' = F(y)/m, by its coefficients.
+"""A symmetric splitting of y'' = F(y)/m, with its coefficients.
 
 A step of h applies kick 0, drift 0, kick 1, drift 1, …: a kick adds b h F(y)/m to v, a drift adds
 a h v to y. It is symplectic and time-reversible, and keeps the momentum to rounding.
@@ -17,7 +17,7 @@ from lwa.base.arrays import Array
 
 @dataclass(frozen=True, eq=False)
 class Splitting:
-    """The first kick is 0: its force is that of the last drift's end."""
+    """Coefficients of a splitting; the first kick is 0."""
 
     order: int
     kicks: Array
@@ -25,12 +25,12 @@ class Splitting:
 
     @property
     def stages(self) -> int:
-        """Evaluations of the forces per step."""
+        """Number of evaluations of the forces per step."""
         return len(self.kicks) - 1
 
 
 def _mirrored(order: int, kicks: list[float], drifts: list[float]) -> Splitting:
-    """From the first halves but for their last, which make the sums 1; one drift is the middle."""
+    """The palindrome with these first halves, without the last ones, which make the sums 1."""
     b = [*kicks, 0.5 - sum(kicks)]
     a = [*drifts, 1 - 2 * sum(drifts)]
     return Splitting(order, np.array([0.0, *b, *b[::-1]]), np.array([*a, *drifts[::-1]]))
