@@ -210,7 +210,7 @@ def test_the_document_holds_the_contract(capsys, monkeypatch, tmp_path):
     assert load["ok"]
     assert long["outcome"].startswith(f"{failed} not as expected, which was: ") == (failed > 0)
     assert long["question"].endswith("does the energy drift?")
-    assert 0 < load["loss_ulps_value"] < 4
+    assert 0 < load["loss_ulps_value"] < 8
     assert {"energy_error_value", "trend_value", "findings", "statements", "panel"} <= {*long}
     assert load["panel"]["scale"] == "xy"
     assert "<!-- under-load -->" in picture.read_text()
