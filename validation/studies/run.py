@@ -116,7 +116,7 @@ def _speeds(scene: Scene, found: Sequence[Reading]) -> Table:
 
 def _measured(names: Sequence[str], labels: Sequence[str]) -> list[Column]:
     pairs = zip(names, labels, strict=True)
-    return [Column(name, label, "", ".8g", error=True) for name, label in pairs]
+    return [Column(name, label, error=True) for name, label in pairs]
 
 
 def _cells(found: Reading, names: Sequence[str]) -> list[Any]:
