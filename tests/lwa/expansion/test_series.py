@@ -180,9 +180,30 @@ def test_at_gives_symbols_their_values() -> None:
 # --- symbols ---
 
 OURS = (
-    "X", "Z", "t", "y", "c0", "c1", "mu0", "mu1", "k0", "a0", "a1", "epsilon", "xi", "I", "P", "M",
-    "gamma", "p", "lambda", "math", "c", "omega", "x0",
-)  # fmt: skip
+    "X",
+    "Z",
+    "t",
+    "y",
+    "c0",
+    "c1",
+    "mu0",
+    "mu1",
+    "k0",
+    "a0",
+    "a1",
+    "epsilon",
+    "xi",
+    "I",
+    "P",
+    "M",
+    "gamma",
+    "p",
+    "lambda",
+    "math",
+    "c",
+    "omega",
+    "x0",
+)
 
 named = st.builds(
     lambda name, assumptions: sp.Symbol(name, **assumptions),
