@@ -21,7 +21,7 @@ from sympy.core.function import AppliedUndef
 
 from lwa.base import latex
 from lwa.base.calculus import growing_root, integral, ratio
-from lwa.base.exact import InputError, exact, positive, real, shorten
+from lwa.base.exact import InputError, exact, positive, shorten, signed
 from lwa.base.frozen import Value
 from lwa.cell import RESERVED, Cell, exponent, meant, unmistakable
 from lwa.cell import k as symbol_k
@@ -298,7 +298,7 @@ def named(name: str, *parameters: Any) -> ContactLaw:
         raise InputError(f"law is {shorten(name)}: one of {', '.join(NAMES)} is wanted")
     letters, build = _NAMED[name]
     _at_most(name, parameters, letters)
-    read = real if name in _OF_EITHER_SIGN else positive
+    read = signed if name in _OF_EITHER_SIGN else positive
     given = [*parameters, *letters[len(parameters) :]]
     values = [read(v, f"{name}'s {letter}") for v, letter in zip(given, letters, strict=True)]
     for value, letter in zip(values, letters, strict=True):

@@ -65,13 +65,18 @@ class Shock(Value):
             raise InputError("kind depends on symbols: give numbers")
         return "shock" if faster else "rarefaction"
 
-    def sound(self, p: sp.Expr) -> sp.Expr:
-        """Speed of sound dx/dt on the strain p."""
+    def sound(self, p: Any) -> sp.Expr:
+        """Speed of sound dx/dt on the strain p; 0 without load under a power law."""
+        p = exact(p, "p")
+        if self.law.homogeneous and p.is_zero:
+            return sp.S.Zero
         return root(self._force(p, 1)) * self._scale
 
     @cached_property
     def ratio(self) -> sp.Expr:
-        """r = c₋/c₊."""
+        """r = c₋/c₊, infinite without load."""
+        if self.sound(self.ahead).is_zero:
+            return sp.oo
         return sp.powsimp(root(self._force(self.behind, 1)) / root(self._force(self.ahead, 1)))
 
     @cached_property
@@ -82,7 +87,7 @@ class Shock(Value):
         >>> shock(Cell([1], spacing=1), Power("3/2"), "p", 0).plateau
         2*sqrt(6)*p**(5/4)/5
         """
-        return sp.powsimp(_impulse(self.law, self.cell, self.ahead, self.behind) * self._scale)
+        return sp.powsimp(self._area * self._scale)
 
     @cached_property
     def trailing_speed(self) -> sp.Expr:
@@ -139,7 +144,7 @@ class Shock(Value):
         self._demand_equal()
         if self._toda:
             return 2 * sp.log(2 * self.ratio - 1) / (self._toda * self.cell.spacing)
-        p, square = self.ahead, 2 * (self.plateau / self._scale) ** 2
+        p, square = self.ahead, 2 * self._area**2
         if self.law.homogeneous and p.is_zero:
             k = self.law.exponent
             return sp.powdenest((k * (k + 1) * square) ** (1 / (k + 1)), force=True)
@@ -169,7 +174,7 @@ class Shock(Value):
         self._demand_equal()
         k = self.law.exponent
         expansion = expand(self.cell, ORDER, k=k)
-        ratio = 2 * float(self.plateau) / expansion.peak_velocity.at().value
+        ratio = 2 * float(_mp(self.plateau)) / expansion.peak_velocity.at().value
         return ExpandedWave(expansion, ratio ** float(2 * k / (k + 1)))
 
     def fan(self, speed: Any) -> sp.Expr:
@@ -206,6 +211,11 @@ class Shock(Value):
         r = self.ratio
         return self.sound(self.ahead) * root(r * (r - 1)) / sp.acosh(root(r))
 
+    @cached_property
+    def _area(self) -> sp.Expr:
+        """v_p in the units of the wave equation, ∫ √F′ dp."""
+        return _impulse(self.law, self.cell, self.ahead, self.behind)
+
     @property
     def _scale(self) -> sp.Expr:
         return self.cell.time_scale(self.law.exponent)
@@ -219,7 +229,7 @@ class Shock(Value):
 
     def _edge(self, sign: int) -> Any:
         """f at an edge: ∫₀^f sign (dκ/df - 1)/f df = ln r, real (1) or imaginary (-1) f and κ."""
-        target = mpmath.log(mpmath.mpf(sp.N(self.ratio, DIGITS + 5)))
+        target = mpmath.log(_mp(self.ratio))
         top = (
             Dispersion(self.cell, self.law.exponent).band_edges()[0, 1] if sign > 0 else mpmath.inf
         )
@@ -240,7 +250,7 @@ class Shock(Value):
     def _trace(self) -> list[Any]:
         """Coefficients of T(y), y = f², 2 cos Pκ = T, the highest first."""
         row = Dispersion(self.cell, self.law.exponent).trace
-        return [mpmath.mpf(sp.N(row[m], 30)) for m in sorted(row, reverse=True)]
+        return [_mp(row[m]) for m in sorted(row, reverse=True)]
 
     def _slowness(self, y: Any) -> Any:
         """dκ/df = -T′/(P √(R (1 - R y/4))), T = 2 - R y."""
@@ -272,6 +282,8 @@ def shock(cell: Cell, law: ContactLaw, behind: Any, ahead: Any) -> Shock:
     for p, name in zip(strains, ("behind", "ahead"), strict=True):
         if law.homogeneous and p.is_negative:
             raise InputError(f"{name} is {shorten(p)}: contacts of a power law only push")
+        if law.homogeneous and p.is_zero and (law.exponent - 1).is_nonpositive:
+            raise InputError(f"{name} is 0 and k {law.exponent}: a front without load wants k > 1")
     if strains[0] == strains[1]:
         raise InputError(f"behind and ahead are both {shorten(strains[0])}: there is no front")
     return Shock(cell, law, strains[0], strains[1])
@@ -291,10 +303,10 @@ def piston(cell: Cell, law: ContactLaw, velocity: Any, ahead: Any = 0) -> Shock:
     if law.homogeneous:
         power = (law.exponent + 1) / 2
         return shock(cell, law, sp.powdenest((p**power + power * v) ** (1 / power), force=True), p)
-    speed = mpmath.mpf(sp.N(v, DIGITS))
+    speed = _mp(v)
     end = sp.Dummy("p", positive=True)
     reached = _number(_impulse(law, cell, p, p + end), end)
-    return shock(cell, law, p + sp.Float(_root(lambda x: reached(x) - speed, v), DIGITS), p)
+    return Shock(cell, law, p + sp.Float(_root(lambda x: reached(x) - speed, v), DIGITS), p)
 
 
 def _impulse(law: ContactLaw, cell: Cell, first: sp.Expr, last: sp.Expr) -> sp.Expr:
@@ -304,21 +316,33 @@ def _impulse(law: ContactLaw, cell: Cell, first: sp.Expr, last: sp.Expr) -> sp.E
         return 2 * (last ** ((k + 1) / 2) - first ** ((k + 1) / 2)) / (k + 1)
     c = sp.powdenest(sp.sqrt(law.of_strain(p, cell.spacing, 1)), force=True)
     found = sp.Integral(c, (p, first, last))
-    return found.doit() if isinstance(c, sp.exp) or not c.has(p) else found
+    if isinstance(c, sp.exp) or not c.has(p):
+        return found.doit()
+    return found if found.free_symbols else found.evalf(DIGITS)
 
 
 def _number(value: sp.Expr, symbol: sp.Symbol) -> Callable[[Any], Any]:
     """The value as a function of mpmath's numbers."""
-    if free := value.free_symbols - {symbol}:
-        raise InputError(f"{min(map(str, free))!r} has no value: numbers are wanted")
+    _demand_numbers(value.free_symbols - {symbol})
     function: Callable[[Any], Any] = sp.lambdify(symbol, value, "mpmath")
     return function
+
+
+def _mp(value: sp.Expr) -> Any:
+    """The value in mpmath's numbers."""
+    _demand_numbers(value.free_symbols)
+    return mpmath.mpf(sp.N(value, DIGITS + 5))
+
+
+def _demand_numbers(free: set[sp.Symbol]) -> None:
+    if free:
+        raise InputError(f"{min(map(str, free))!r} has no value: numbers are wanted")
 
 
 def _root(rising: Callable[[Any], Any], guess: Any) -> Any:
     """The root of a function that rises from a negative value at 0."""
     with mpmath.workdps(DIGITS + 5):
-        low, high = mpmath.mpf(0), mpmath.mpf(sp.N(guess, DIGITS))
+        low, high = mpmath.mpf(0), _mp(sp.sympify(guess))
         while not rising(high) > 0:
             low, high = high, 2 * high
         for _ in range(4 * DIGITS):

@@ -176,19 +176,25 @@ def _report(
     return Report(
         f"{title}; decay of ln F per site: {mean}, mean loss at a single bead: {theory:.3g}",
         (
-            Table(_ROWS, tuple(zip(places.tolist(), means, scatter, local, line, strict=True)),
-                  "rows"),
+            Table(
+                _ROWS, tuple(zip(places.tolist(), means, scatter, local, line, strict=True)), "rows"
+            ),
             Table(_SINGLE, beads, "single", note="Loss at one bead of mass 1 + e in equal ones."),
         ),
         (numerical, constant),
         (
-            Panel("site", "ln F, less that at the first place",
-                  (Curve.of("mean over chains", places, *bars),
-                   Curve.of(f"mean loss at a single bead {theory:.3g}", places, line, "C1-"))),
+            Panel(
+                "site",
+                "ln F, less that at the first place",
+                (
+                    Curve.of("mean over chains", places, *bars),
+                    Curve.of(f"mean loss at a single bead {theory:.3g}", places, line, "C1-"),
+                ),
+            ),
         ),
         ("F: peak force of a contact. ±: standard error of the mean over chains.",),
         {"decay_value": mean.value, "decay_error_value": mean.error, "theory_value": theory},
-    )  # fmt: skip
+    )
 
 
 def _slopes(places: Array, logs: Array) -> Array:

@@ -1,10 +1,10 @@
-"""Figure 3b of Porter et al. (2008): the FWHM from bead to bead, and what its average means.
+"""Figure 3b of Porter et al. (2008): the FWHM from bead to bead, and ten readings of its average.
 
-Three lines stand beside it, the theory for m1 ≫ m2, for the chain's own masses and for m1 = m2,
-whose stated errors against the computed average are 9.2 %, 2.5 % and 22.8 %. They are for equal
-contacts and an equal peak force, and the stated 1.092 / 0.772 = √2 says that they are times. What
-else the paper's FWHM is it does not say; every sensible definition is compared with the three
-stated errors, for the paper's closure and for the full one.
+The figure has three lines: the theory's width for m1 ≫ m2, for the chain's masses and for m1 = m2.
+The paper states that they differ from the computed average by 9.2 %, 2.5 % and 22.8 %. The lines
+are for equal contacts and an equal peak force, and the ratio 1.092/0.772 = √2 says that they are
+times. The paper does not say more about its FWHM; here every sensible definition is compared with
+the three stated errors, for the paper's closure and for the full one.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from validation.studies.paper import HERTZ, Train, chain_cell, chain_runs
 from validation.waves.theory import bead_fwhm
 
 FIRST_BEAD = 10  # from here on the width no longer changes on its way; the average starts here
-STATED = {"m1 ≫ m2": 0.092, "m2/m1 = 0.27": 0.025, "m1 = m2": 0.228}  # the paper's
+STATED = {"m1 ≫ m2": 0.092, "m2/m1 = 0.27": 0.025, "m1 = m2": 0.228}  # by the paper
 READINGS = {
     "contact force": ("contacts", "force"),
     "bead force": ("beads", "bead force"),
@@ -35,15 +35,15 @@ READINGS = {
     "steel beads' force, contact's theory": ("steel", "force"),
     "PTFE beads' force, contact's theory": ("PTFE", "force"),
 }
-"""What the FWHM may be: the pulses whose average it is, and the theory's quantity."""
+"""Reading of "the FWHM" → the pulses that are averaged, and the theory's quantity."""
 
 
 @dataclass(frozen=True)
 class Definition:
-    """One reading of "the FWHM": its computed average, and the three lines' errors against it.
+    """A reading of "the FWHM": its average on the lattice, and the errors of the three lines.
 
-    quantity : whose force is measured. time : whether the width is one in time, else in sites.
-    average : s or sites. errors : closure → line → theory over average, less 1.
+    quantity : the force that is measured. time : whether the width is a time, else in sites.
+    average : in s or sites. errors : closure → line → theory/average - 1.
     """
 
     quantity: str
@@ -53,15 +53,17 @@ class Definition:
 
     @property
     def reproduced(self) -> tuple[str, ...]:
-        """The lines of the paper's closure whose stated error comes out within half a percent."""
+        """Lines whose stated error is met within half a percent by the paper's closure."""
         found = self.errors["linear"]
         return tuple(line for line, e in STATED.items() if abs(abs(found[line]) - e) < 0.005)
 
 
 @dataclass(frozen=True, eq=False)
 class Widths:
-    """FWHM (s) of the beads' force by bead number, the three lines (closure → line → s) and the
-    definitions of the average."""
+    """FWHM of the force by bead number, and the readings of its average.
+
+    times : FWHM in s of each of ``beads``. lines : closure → line → s.
+    """
 
     beads: tuple[int, ...]
     times: tuple[Measured, ...]
@@ -77,15 +79,24 @@ class Widths:
             Column("unit", "in"),
             Column("average", "average", format=".4g", error=True),
             Column("error_value"),
-            *(Column("", f"{line}, {closure}", format=percent)
-              for closure in self.lines for line in STATED),
+            *(
+                Column("", f"{line}, {closure}", format=percent)
+                for closure in self.lines
+                for line in STATED
+            ),
             Column("reproduced", "stated errors met", format=lambda met: ", ".join(met) or "none"),
-        )  # fmt: skip
+        )
         rows = tuple(
-            (d.quantity, "s" if d.time else "sites", d.average, d.errors,
-             *(errors[line] for errors in d.errors.values() for line in STATED), d.reproduced)
+            (
+                d.quantity,
+                "s" if d.time else "sites",
+                d.average,
+                d.errors,
+                *(errors[line] for errors in d.errors.values() for line in STATED),
+                d.reproduced,
+            )
             for d in self.definitions
-        )  # fmt: skip
+        )
         stated = ", ".join(f"{100 * e:.1f} % ({line})" for line, e in STATED.items())
         title = (
             f"theory over the average from bead {FIRST_BEAD} on, less 1, for equal contacts and "
@@ -97,11 +108,13 @@ class Widths:
             panels=(self._panel(),),
             notes=(self._verdict(),),
             data={
-                "beads": self.beads, "fwhm_value": [width.value for width in self.times],
+                "beads": self.beads,
+                "fwhm_value": [width.value for width in self.times],
                 "fwhm_error_value": [width.error for width in self.times],
-                "lines_value": self.lines, "stated_error_value": STATED,
+                "lines_value": self.lines,
+                "stated_error_value": STATED,
             },
-        )  # fmt: skip
+        )
 
     def _verdict(self) -> str:
         best = max(self.definitions, key=lambda d: len(d.reproduced))
@@ -113,8 +126,10 @@ class Widths:
 
     def _panel(self) -> Panel:
         times = [1e6 * width.value for width in self.times]
-        curves = [Curve.of(f"lattice, {ball} bead", self.beads[i::2], times[i::2], style)
-                  for ball, i, style in (("steel", 1, "ko"), ("PTFE", 0, "ks"))]  # fmt: skip
+        curves = [
+            Curve.of(f"lattice, {ball} bead", self.beads[i::2], times[i::2], style)
+            for ball, i, style in (("steel", 1, "ko"), ("PTFE", 0, "ks"))
+        ]
         ends, first = (self.beads[0], self.beads[-1]), self.lines["linear"]
         for closure, lines in self.lines.items():
             for i, (line, width) in enumerate(lines.items()):
@@ -134,18 +149,24 @@ def widths() -> Widths:
     found, waves = compared(_numbers, *chain_runs(beads)), _waves()
 
     def theory(quantity: str, force: Measured, in_time: bool) -> dict[str, dict[str, float]]:
-        """By closure and line."""
-        return {closure: {line: _width(wave, quantity, force.value, in_time)
-                          for line, wave in zip(STATED, lines, strict=True)}
-                for closure, lines in waves.items()}  # fmt: skip
+        """FWHM by closure and line."""
+        return {
+            closure: {
+                line: _width(wave, quantity, force.value, in_time)
+                for line, wave in zip(STATED, lines, strict=True)
+            }
+            for closure, lines in waves.items()
+        }
 
     definitions = []
     for reading, (pulses, quantity) in READINGS.items():
         force = found["contacts' force" if pulses == "contacts" else "F_m"]
         sites = derived(lambda width, V: width * V / DIAMETER, found[pulses], found["speed"])
         for average, in_time in ((found[pulses], True), (sites, False)):
-            errors = {closure: {line: width / average.value - 1 for line, width in lines.items()}
-                      for closure, lines in theory(quantity, force, in_time).items()}  # fmt: skip
+            errors = {
+                closure: {line: width / average.value - 1 for line, width in lines.items()}
+                for closure, lines in theory(quantity, force, in_time).items()
+            }
             definitions.append(Definition(reading, in_time, average, errors))
     times = tuple(found[f"bead {bead}"] for bead in beads)
     return Widths(beads, times, theory("force", found["F_m"], True), tuple(definitions))
@@ -169,13 +190,15 @@ def _numbers(run: Run) -> dict[str, float]:
 
 
 def _waves() -> dict[str, list[TravelingWave]]:
-    """By closure, the waves for the chain's contacts and the masses of `STATED`."""
+    """Waves by closure, for the chain's contacts and the masses of `STATED`."""
     cell = chain_cell()
     heavy, light = cell.masses
     masses = (heavy / 10**12, light, heavy)  # the first for m2 → 0, exact to 12 digits
     cells = [Dimer(heavy, m2, stiffnesses=cell.stiffnesses, spacing=cell.spacing) for m2 in masses]
-    return {"linear": [homogenize(own, k=HERTZ).pde.traveling_wave() for own in cells],
-            "canonical": [canonical_wave(own, HERTZ) for own in cells]}  # fmt: skip
+    return {
+        "linear": [homogenize(own, k=HERTZ).pde.traveling_wave() for own in cells],
+        "canonical": [canonical_wave(own, HERTZ) for own in cells],
+    }
 
 
 def _width(wave: TravelingWave, quantity: str, force: float, in_time: bool) -> float:

@@ -108,10 +108,10 @@ def positive(value: Any, name: str) -> sp.Expr:
     return expression
 
 
-def real(value: Any, name: str) -> sp.Expr:
+def signed(value: Any, name: str) -> sp.Expr:
     """Read an exact real number; a plain name becomes a real symbol of either sign, such as ξ.
 
-    >>> real("xi", "xi").is_positive is None
+    >>> signed("xi", "xi").is_positive is None
     True
     """
     expression = exact(value, name)

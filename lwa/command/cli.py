@@ -358,6 +358,39 @@ def envelope_of_a_mode(
     _answer(style, envelopes.envelope(found, breather, envelopes.UNITS if units else {}, said))
 
 
+@lwa.command("shock")
+@of_cell(STYLES)
+@SPHERES
+@click.option("--behind", callback=quantity, help="Strain behind the front.")
+@click.option("--piston", callback=quantity, help="Velocity of the wall, in place of --behind.")
+@click.option("--ahead", callback=quantity, help="Strain ahead; 0, or the load of a file.")
+def front_of_a_wall(
+    style: str,
+    spheres: str | None,
+    behind: sp.Expr | None,
+    piston: sp.Expr | None,
+    ahead: sp.Expr | None,
+    **chain: Any,
+) -> None:
+    """The shock, or the rarefaction, of a chain that a wall drives."""
+    from lwa.command import shocks
+    from lwa.shocks import piston as driven
+    from lwa.shocks import shock
+
+    if (behind is None) == (piston is None):
+        raise InputError("--behind or --piston: one of the two is wanted")
+    units, static = _from_file(spheres, chain) if spheres is not None else ({}, sp.S.Zero)
+    cell, law = Cell(chain["masses"], chain["stiffnesses"], chain["spacing"]), chain["law"]
+    law = Power(chain["k"]) if law is None else law
+    strains = (x for x in (behind, piston, ahead) if x is not None)
+    demand_free_names(cell, *law.symbols, *strains)
+    if ahead is None:
+        ahead = law.compression(cell, static) / cell.spacing if static else sp.S.Zero
+    found = driven(cell, law, piston, ahead) if behind is None else shock(cell, law, behind, ahead)
+    said = f"masses {derivation.listed(cell.masses)}; contact force A F, F = {law.F}"
+    _answer(style, shocks.shock(found, shocks.UNITS if units else {}, said))
+
+
 def _read(file: str) -> ChainFile:
     from lwa.command.chain_file import read_chain
 

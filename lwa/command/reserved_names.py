@@ -19,6 +19,7 @@ NAMES = {
     "wave": "u v x z t tau τ delta δ A F G H p a mu μ eta η sigma σ s xi ξ beta β π",
     "wave under load": "u v x t tau τ delta δ A F F0 I p0 xi ξ c0 alpha α gamma γ L",
     "envelope": "A F T X i n t u phi φ kappa κ omega ω chi χ nu ν a b delta δ",
+    "shock": "A F x t delta δ c s v_p",
     "dispersion": "t tau τ delta δ A kappa κ Omega Ω q",
     "expansion": "t delta δ A F c epsilon ε xi ξ",
 }

@@ -17,7 +17,7 @@ from lwa.base import latex
 from lwa.base.exact import InputError, evaluated
 from lwa.expansion.approximants import Resummed
 
-DIGITS = 15
+PRINTED_DIGITS = 15
 """Significant digits of a printed number; all of them are correct."""
 
 LONG = 160
@@ -156,8 +156,8 @@ class Answer:
         plain = self.plain(value)
         if plain.is_Rational:
             return str(value)
-        digits = sp.sstr(evaluated(plain, DIGITS), full_prec=False) + self._length_unit(value)
-        written = str(value)
+        digits = sp.sstr(evaluated(plain, PRINTED_DIGITS), full_prec=False)
+        digits, written = digits + self._length_unit(value), str(value)
         return digits if plain.is_Float or len(written) > LONG else f"{written} ≈ {digits}"
 
     def _length_unit(self, value: sp.Expr) -> str:
@@ -187,7 +187,7 @@ class Answer:
         if found is None or isinstance(found, InputError):
             return ""
         if isinstance(found, Resummed):
-            return rf"{_decimal(found.value)} \pm {_decimal(found.error, 2)}{unit}"
+            return found.latex() + unit
         parts = dict.fromkeys(found if isinstance(found, tuple) else (found,))
         if self.units:
             return r",\ ".join(map(_approximate_latex, parts)) + unit
@@ -229,7 +229,7 @@ def approximate(value: sp.Expr) -> str:
     if value.is_zero:
         return "0"
     factor, rest = value.as_independent(*value.free_symbols, as_Add=False)
-    number = sp.sstr(evaluated(factor, DIGITS), full_prec=False)
+    number = sp.sstr(evaluated(factor, PRINTED_DIGITS), full_prec=False)
     return str(rest) if factor == 1 and rest != 1 else number if rest == 1 else f"{number}·{rest}"
 
 
@@ -237,7 +237,7 @@ def _approximate_latex(value: sp.Expr) -> str:
     if value.is_zero:
         return "0"
     factor, rest = value.as_independent(*value.free_symbols, as_Add=False)
-    number = sp.latex(evaluated(factor, DIGITS))
+    number = sp.latex(evaluated(factor, PRINTED_DIGITS))
     return str(
         number if rest == 1 else sp.latex(rest) if factor == 1 else rf"{number} {sp.latex(rest)}"
     )
@@ -249,7 +249,3 @@ def summed(found: Resummed, unit: str, order: bool) -> str:
     note = "; higher orders do not help" if found.asymptotic else ""
     value = f"{found.value:.{digits}g} ± {found.error:.1e}{unit}"
     return f"{value} (to ε^{found.order}{note})" if order else value
-
-
-def _decimal(value: float, digits: int = 10) -> str:
-    return str(sp.latex(sp.Float(value, digits)))

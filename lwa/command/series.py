@@ -14,7 +14,7 @@ from lwa.base import latex
 from lwa.base.exact import InputError
 from lwa.base.quantities import QUANTITIES
 from lwa.command.derivation import listed
-from lwa.command.rows import DIGITS, Answer, Row, Values
+from lwa.command.rows import PRINTED_DIGITS, Answer, Row, Values
 from lwa.command.waves import radiation_note
 from lwa.expansion.approximants import Resummed
 from lwa.expansion.expand import DAMPINGS, Expansion
@@ -91,7 +91,7 @@ def _bands_text(bands: Values) -> list[str]:
     lines = []
     for name, key in (("band", "band_edges_value"), ("gap", "gaps_value")):
         for i, (low, high) in enumerate(bands[key], start=1):
-            edges = f"{low:.{DIGITS}g} … {high:.{DIGITS}g}"
+            edges = f"{low:.{PRINTED_DIGITS}g} … {high:.{PRINTED_DIGITS}g}"
             lines.append(f"  {name} {i}: {edges}, in rad per unit of time")
     lines += ["", "  wavenumber: frequencies; group velocities"]
     for place in bands["branches_value"]:

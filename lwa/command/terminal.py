@@ -29,10 +29,8 @@ CLOSED = 141
 version = click.version_option(package_name="lwa", message="%(prog)s %(version)s")
 """The option ``--version`` of a command."""
 
-SIGNS = {
-    "≈": "~", "∝": "~", "≤": "<=", "≥": ">=", "√": "sqrt ", "∂": "d", "…": "...", "·": "*",
-    "±": "+-", "¹": "1", "²": "^2", "³": "^3", "⁴": "^4", "⁻": "^-", "→": "->", "×": "x",
-}  # fmt: skip
+_PAIRS = "≈~ ∝~ ≤<= ≥>= √sqrt_ ∂d …... ·* ±+- ¹1 ²^2 ³^3 ⁴^4 ⁻^- →-> ×x ½1/2_"
+SIGNS = {pair[0]: pair[1:].replace("_", " ") for pair in _PAIRS.split()}
 """ASCII for signs that an encoding lacks."""
 
 

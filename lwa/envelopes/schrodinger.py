@@ -14,7 +14,7 @@ from typing import Any
 import sympy as sp
 
 from lwa.base import latex
-from lwa.base.exact import InputError, integer, positive, real, root, shorten
+from lwa.base.exact import InputError, integer, positive, root, shorten, signed
 from lwa.base.frozen import Value
 from lwa.cell import Cell, substitution
 from lwa.envelopes.breather import KINDS, Breather
@@ -164,7 +164,7 @@ class Envelope(Value):
             raise InputError(f"wavenumber is {self.wavenumber}: a breather stands where dω/dκ = 0")
         return Breather(
             self.frequency, self.dispersion, self.nonlinearity, self.mode, self.wavenumber,
-            self._opening, real(detuning, "detuning"), kind or self.kind,
+            self._opening, signed(detuning, "detuning"), kind or self.kind,
         )  # fmt: skip
 
     @property
@@ -173,7 +173,8 @@ class Envelope(Value):
         if not self.law.homogeneous:
             return sp.oo
         pairs = zip(self.static_compressions, self.strains, strict=True)
-        return sp.Min(*(delta**2 / (4 * d) for delta, d in pairs if d))
+        found = sp.Min(*(delta**2 / (4 * d) for delta, d in pairs if d))
+        return sp.N(found) if self.floats else found
 
     # --- the chain in units of its first mass and contact ---
 
@@ -326,9 +327,9 @@ def envelope(
     if precompression is not None:
         static = law.compression(cell, positive(precompression, "precompression"))
     else:
-        read = positive if law.homogeneous else real  # powers only push
+        read = positive if law.homogeneous else signed  # powers only push
         static = cell.spacing * read(background, "background")
-    kappa = real(wavenumber, "wavenumber")
+    kappa = signed(wavenumber, "wavenumber")
     if kappa.is_number and not 0 <= kappa <= sp.pi:
         raise InputError(f"wavenumber is {shorten(kappa)}: 0 … pi per cell is wanted")
     if branch is None:

@@ -17,7 +17,7 @@ from typing import Any
 import sympy as sp
 
 from lwa.base import latex
-from lwa.base.exact import InputError, exact, power, real, root
+from lwa.base.exact import InputError, exact, power, root, signed
 from lwa.base.frozen import Value
 from lwa.cell import Cell, substitution
 from lwa.law import ContactLaw, for_cell
@@ -59,7 +59,7 @@ class Evolution(Value):
 
     def force(self, p: Any, n: int = 0) -> sp.Expr:
         """F^{(n)} at the strain p, in the units of the equation; W for n = -1."""
-        return self.law.of_strain(real(p, "p"), self.cell.spacing, n)
+        return self.law.of_strain(signed(p, "p"), self.cell.spacing, n)
 
     def energy_density(self, strain: sp.Expr, velocity: sp.Expr, x: sp.Symbol) -> sp.Expr:
         """½ u_τ² + ½ I u_xτ² + W(u_x) for u_x and u_τ as functions of x."""
@@ -68,7 +68,7 @@ class Evolution(Value):
 
     def frequency(self, q: Any, p0: Any) -> sp.Expr:
         """Ω = c0 q/√(1 + I q²) in τ of a small wave on the strain p0; bounded for short waves."""
-        q = real(q, "q")
+        q = signed(q, "q")
         return root(self.force(p0, 1)) * q / root(1 + self.I * q**2)
 
     def speed(self, B: Any, p0: Any = 0) -> sp.Expr:
@@ -85,7 +85,7 @@ class Evolution(Value):
         if not self.law.homogeneous:
             raise InputError("the profile has a closed form under a power law only")
         k = self.law.exponent
-        shape = sp.sech((k - 1) * real(xi, "xi") / (2 * root(self.I)))
+        shape = sp.sech((k - 1) * signed(xi, "xi") / (2 * root(self.I)))
         return exact(B, "B") * power(shape, 2 / (k - 1))
 
     def at(self, **values: Any) -> Evolution:

@@ -31,7 +31,7 @@ WINDOW = 3
 SAFETY = 2
 """Ratio of the error estimate to the spread of a window."""
 
-DIGITS = 60
+TERM_DIGITS = 60
 """Decimal digits of the terms of a sum."""
 
 PRECISION = 300
@@ -52,6 +52,14 @@ class Resummed(Value):
     order: int
     asymptotic: bool
 
+    def latex(self) -> str:
+        """The sum and its error, such as 1.411928 ± 3.0 · 10^{-6}."""
+        parts = ((self.value, 10), (self.error, 2))
+        return r" \pm ".join(str(sp.latex(sp.Float(x, digits))) for x, digits in parts)
+
+    def _repr_latex_(self) -> str:
+        return f"${self.latex()}$"
+
 
 def resum(
     coefficients: Sequence[sp.Expr],
@@ -65,7 +73,7 @@ def resum(
     base : a series that is summed first; the difference to it is summed apart.
     relative : a further error, relative to the sum.
     """
-    with mpmath.workdps(DIGITS):
+    with mpmath.workdps(TERM_DIGITS):
         small, scale = _mp(epsilon), _mp(unit)
         whole = [_mp(a) for a in coefficients]
         begun = [_mp(a) for a in base] if base else whole
@@ -121,7 +129,7 @@ class _Sum:
 def _mp(value: sp.Expr) -> mpmath.mpf:
     if value.is_Rational:
         return mpmath.mpf(int(value.p)) / int(value.q)
-    return mpmath.mpf(value.evalf(DIGITS)._mpf_)
+    return mpmath.mpf(value.evalf(TERM_DIGITS)._mpf_)
 
 
 def _sum(a: Sequence[mpmath.mpf], epsilon: mpmath.mpf) -> _Sum:

@@ -6,10 +6,12 @@ first contact, and widths in sites do not depend on F.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import sympy as sp
 
+from lwa.base import latex
 from lwa.base.exact import InputError, positive, shorten
 from lwa.base.frozen import Value
 from lwa.base.quantities import known_extent
@@ -96,6 +98,23 @@ class ExpandedWave(Value):
         factor = speed if kind == "linear" else 1 / speed
         value = float((k - 1) / (2 * (k + 1))) * loss / energy * factor
         return replace(parts[0], value=value, error=value * sum(x.error / x.value for x in parts))
+
+    def latex_rows(self) -> list[str]:
+        """LaTeX of peak force, speed and the width of the force, without units."""
+        rows = [latex.row("F", self.F)]
+        sums: dict[str, Callable[[], Resummed]] = {
+            r"\mathrm{d}x/\mathrm{d}t": lambda: self.speed,
+            r"\mathrm{FWHM}_{\mathrm{force}}": lambda: self.fwhm("force"),
+        }
+        for name, sum_up in sums.items():
+            try:
+                rows.append(f"{name} = {sum_up().latex()}")
+            except InputError:
+                rows.append(rf"{name} = \text{{no sum}}")
+        return rows
+
+    def _repr_latex_(self) -> str:
+        return latex.display(self.latex_rows())
 
     def _at_force(self, series: EpsilonSeries, power: sp.Expr) -> Resummed:
         """A quantity proportional to the compression to some power."""

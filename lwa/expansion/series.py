@@ -7,6 +7,7 @@ from typing import Any, overload
 
 import sympy as sp
 
+from lwa.base import latex
 from lwa.base.exact import InputError, integer, shorten
 from lwa.base.frozen import Value
 from lwa.cell import Cell, exponent
@@ -164,7 +165,7 @@ class EpsilonSeries(Value):
         body = ""
         for n, a in enumerate(self.coefficients[:SHOWN]):
             if a:
-                text = rf"\left({sp.latex(a)}\right)" if a.is_Add else sp.latex(a)
+                text = rf"\bigl({latex.expression(a)}\bigr)" if a.is_Add else latex.expression(a)
                 sign, text = ("-", text[1:].strip()) if text.startswith("-") else ("+", text)
                 power = rf"\varepsilon^{{{n}}}" if n > 1 else r"\varepsilon" * n
                 text = power if text == "1" and n else f"{text} {power}".rstrip()
@@ -172,7 +173,7 @@ class EpsilonSeries(Value):
         body += r" + \dots"
         unit = self.prefactor * sp.Symbol(r"\varepsilon") ** self.power
         name = f"{_LETTERS[self.quantity]} = " if self.quantity else ""
-        return name + (body if unit == 1 else rf"{sp.latex(unit)} \left({body}\right)")
+        return name + (body if unit == 1 else rf"{sp.latex(unit)} \Bigl({body}\Bigr)")
 
     def _repr_latex_(self) -> str:
-        return rf"$\displaystyle {self.latex()}$"
+        return latex.display([self.latex()])

@@ -15,6 +15,7 @@ from typing import Any
 
 import sympy as sp
 
+from lwa.base import latex
 from lwa.base.exact import InputError, positive, shorten
 from lwa.base.frozen import Value
 from lwa.cell import Cell, exponent
@@ -86,6 +87,10 @@ class Strike(Value):
         k, force = self.chain.k, self.force
         share = float((k - 1) / (2 * k)) * force.error / force.value
         return replace(found, error=found.error + found.value * share)
+
+    def _repr_latex_(self) -> str:
+        rows = [f"F = {self.force.latex()}", rf"\mathrm{{d}}x/\mathrm{{d}}t = {self.speed.latex()}"]
+        return latex.display([*rows, *self.wave.latex_rows()[2:]])
 
     @property
     def train(self) -> bool:

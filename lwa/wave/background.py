@@ -23,7 +23,7 @@ import mpmath
 import sympy as sp
 
 from lwa.base import latex
-from lwa.base.exact import InputError, exact, integer, real, root, shorten
+from lwa.base.exact import InputError, exact, integer, root, shorten, signed
 from lwa.base.frozen import Value
 from lwa.base.quantities import RISE, NoSolitaryWave, known
 from lwa.cell import RESERVED, Cell, meant, substitution
@@ -238,7 +238,7 @@ class BackgroundWave(Value):
 
         Raises the errors of `fwhm`, and `lwa.InputError` for a ξ that is no number in D.
         """
-        B, xi = self._amplitude(B), real(xi, "xi")
+        B, xi = self._amplitude(B), signed(xi, "xi")
         if self._compact is not None:
             k, beta = self._compact
             arch = B * sp.cos(beta * xi) ** (2 / (k - 1))

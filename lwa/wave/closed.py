@@ -27,7 +27,7 @@ from lwa.algebra.jets import JetAlgebra, Monomial
 from lwa.algebra.partition import number
 from lwa.algebra.rational import factored
 from lwa.base import latex
-from lwa.base.exact import InputError, positive, power, real, root, shorten
+from lwa.base.exact import InputError, positive, power, root, shorten, signed
 from lwa.base.frozen import Value
 from lwa.base.quantities import RISE, SPEED, NoSolitaryWave, strain_power
 from lwa.cell import Cell, exponent, substitution
@@ -236,7 +236,7 @@ class CompactWave(Value):
         >>> canonical_wave(Cell((1,)), 3).profile("xi", B=1)
         Piecewise((cos(sqrt(2)*xi/D), Abs(xi) <= sqrt(2)*pi*D/4), (0, True))
         """
-        xi = real(xi, "xi")
+        xi = signed(xi, "xi")
         arch = positive(B, "B") * sp.cos(self.beta * xi) ** self.m
         return sp.Piecewise((arch, sp.Abs(xi) <= self.width / 2), (0, True))
 

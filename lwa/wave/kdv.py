@@ -8,7 +8,7 @@ from typing import Any
 import sympy as sp
 
 from lwa.base import latex
-from lwa.base.exact import exact, real, root
+from lwa.base.exact import exact, root, signed
 from lwa.base.frozen import Value
 from lwa.base.quantities import RISE
 
@@ -40,4 +40,4 @@ class KdV(Value):
 
     def profile(self, xi: Any, B: Any = RISE) -> sp.Expr:
         """v = B sech²(ξ/L)."""
-        return exact(B, "B") * sp.sech(real(xi, "xi") / self.width(B)) ** 2
+        return exact(B, "B") * sp.sech(signed(xi, "xi") / self.width(B)) ** 2

@@ -120,8 +120,12 @@ def force(law, strain):
     return total
 
 
-LAWS = [named("hertz2", 2, "1/3"), named("polynomial", "1/2", -2), named("lennard-jones", 11),
-        Law(y**3 / (1 + y), y)]  # fmt: skip
+LAWS = [
+    named("hertz2", 2, "1/3"),
+    named("polynomial", "1/2", -2),
+    named("lennard-jones", 11),
+    Law(y**3 / (1 + y), y),
+]
 
 
 @pytest.mark.parametrize("law", LAWS, ids=lambda law: str(law.F))

@@ -204,6 +204,9 @@ def test_si_units():
         (lambda: shock(EQUAL, HERTZ, 2, 1).wave, "of a power law without load"),
         (lambda: shock(EQUAL, HERTZ, 2, 1).leading_speed("el"), "rule is 'el': dispersion or"),
         (lambda: shock(EQUAL, Power("k"), "p", 1).kind, "kind depends on symbols"),
+        (lambda: shock(EQUAL, Power(1), 1, 0), "a front without load wants k > 1"),
+        (lambda: shock(Cell(["m"]), HERTZ, 1, 0).wave, "has no value: numbers are wanted"),
+        (lambda: piston(Cell(["m"]), TODA, 1), "has no value: numbers are wanted"),
     ],
 )
 def test_limits_are_refused(make, message):

@@ -289,7 +289,8 @@ class Measured:
         size, last = abs(self.value), math.floor(math.log10(self.error))
         if size > self.error and not 1e-12 < size < 1e16:
             return f"{self.value:.{math.floor(math.log10(size)) - last}e} ± {self.error:.0e}"
-        return f"{self.value:.{min(max(0, -last), 12)}f} ± {self.error:.0e}"
+        most = 16 - math.floor(math.log10(size)) if size else 12  # digits of a float
+        return f"{self.value:.{min(max(0, -last), most)}f} ± {self.error:.0e}"
 
     __repr__ = __str__
 

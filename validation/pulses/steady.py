@@ -94,7 +94,7 @@ def _point(k: sp.Rational, omega: sp.Rational, stretch: int) -> Point:
     rough = chain.passed(chain.crossing, less)
     fine = chain.passed(1.01 * rough.until, rtol)
     numbers, check = chain.numbers(fine), chain.numbers(rough)
-    errors = np.maximum(_unsettled(numbers), np.abs(numbers - check)[:, 2:])
+    errors = np.maximum(unsettled(numbers), np.abs(numbers - check)[:, 2:])
     # Relative errors; for the decay, the error of the force after a stretch.
     worst = np.vstack((errors[:3] / numbers[:3, 2:], chain.sites * errors[3])).max(axis=0)
     if np.isnan(worst).all():
@@ -106,7 +106,7 @@ def _point(k: sp.Rational, omega: sp.Rational, stretch: int) -> Point:
     return Point(k, omega, sites, dict(zip(QUANTITIES, measured, strict=True)))
 
 
-def _unsettled(numbers: Array) -> Array:
+def unsettled(numbers: Array) -> Array:
     """Distance of each stretch's numbers, from the third one on, to their limits; an estimate."""
     steps = np.abs(np.diff(numbers))
     last, before = steps[:, 1:], steps[:, :-1]

@@ -3,22 +3,31 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from typing import Any
 
 import click
 
 from lwa.base.arrays import Array
 from validation.lattice.cost import RunProgress, silent
+from validation.lattice.run import Run
 from validation.pictures.panel import Curve, Panel
 from validation.pulses.pulse import Measured, Pulse, compared, dense, derived, first_pulse
-from validation.pulses.sensors import READINGS, Track, record, tracks
+from validation.pulses.sensors import READINGS, Reading, Track, record, tracks
 from validation.pulses.signals import Sampled
 from validation.report.command import study
 from validation.report.result import Report
 from validation.report.table import Column, Table
 from validation.scenes.checks import SceneError
+from validation.scenes.columns import columns
 from validation.scenes.scenefile import read_scene
-from validation.studies.records import columns
 
+_COLUMNS = (
+    *(Column("", "sensor"), Column("kind"), Column("number")),
+    *(Column("", "first pulse"), Column("quantity")),
+    Column("simulated", "simulated", error=True),
+    Column("measured", "measured", error=True),
+    Column("difference", "difference", error=True),
+)
 _NOTE = (
     "First pulses of dynamic forces. Measured times are shifted by {}, so that the pulses arrive "
     "together at {}. ±: of the simulation, difference to a less accurate run; of the measurement, "
@@ -32,9 +41,9 @@ def compare(scene: str, measured: str, run_progress: RunProgress = silent) -> Re
 
     The file of measurements, CSV, has the columns time and, for each sensor such as bead 15,
     "bead 15 force" (static force included) or "bead 15 dynamic force"; with one sensor in the
-    scene also plain "force" or "dynamic force". ``rows``: ``kind``, ``number``, and of each of
-    ``arrival``, ``peak``, ``fwhm`` the ``…_value``, ``…_measured_value`` and
-    ``…_difference_value`` (measured less simulated) with errors; ``shift_value``.
+    scene also plain "force" or "dynamic force". ``rows``: ``kind``, ``number``, ``quantity``
+    ("arrival", "peak" or "fwhm"), ``simulated_value``, ``measured_value`` and
+    ``difference_value``, measured less simulated, with errors; ``shift_value``.
     """
     what = read_scene(scene)
     if not (what.bead_sensors or what.contact_sensors):
@@ -50,38 +59,25 @@ def compare(scene: str, measured: str, run_progress: RunProgress = silent) -> Re
     for reading, _ in pairs:
         if reading.missing:
             raise SceneError(f"{reading.name}: {reading.missing}")
-    rows, curves, shift = [], [], 0.0
+    rows: list[tuple[Any, ...]] = []
+    curves, shift = [], 0.0
     for i, (reading, track) in enumerate(pairs):
         time, force = records[track.kind, track.number]
         seen = compared(_numbers, (time, force), (time[::2], force[::2]))
         if i == 0:
             shift = reading.numbers["arrival"].value - seen["arrival"].value
         seen["arrival"] = derived(lambda t, by=shift: t + by, seen["arrival"])
-        rows.append((reading.name, track.kind, track.number, *_cells(reading.numbers, seen)))
+        rows += _rows(reading, seen, found.run)
         t = found.run.time
         curves += [
             Curve(f"{reading.name}, simulated", t, track.force(t), f"C{i}-"),
             Curve("measured", time + shift, force, f"C{i}."),
         ]
-    label = found.run.label
-    first = pairs[0][0].name
-    labels = dict(zip(READINGS, map(label, ("arrival", "peak dynamic force", "FWHM")), strict=True))
-    table = (
-        *(Column("", "sensor"), Column("kind"), Column("number")),
-        *(
-            column
-            for name in READINGS
-            for column in (
-                Column(name, labels[name], error=True, format=".6g"),
-                Column(f"{name}_measured", "measured", error=True, format=".6g"),
-                Column(f"{name}_difference", "difference", error=True, format=".2g"),
-            )
-        ),
-    )
+    label, first = found.run.label, pairs[0][0].name
     unit = f"{shift:.6g} s" if what.units else f"{shift:.6g}"
     return Report(
         str(what),
-        (Table(table, tuple(rows), "rows"),),
+        (Table(_COLUMNS, tuple(rows), "rows"),),
         panels=(Panel(label("time"), label("dynamic force"), tuple(curves), legend=(0.0, 1.0)),),
         notes=(_NOTE.format(unit, first),),
         data={"shift_value": shift},
@@ -113,10 +109,12 @@ def _numbers(samples: tuple[Array, Array]) -> dict[str, float]:
     return {name: getattr(pulse, name) for name in READINGS}
 
 
-def _cells(simulated: Mapping[str, Measured], seen: Mapping[str, Measured]) -> Iterator[Measured]:
-    """Of each number the simulated and the measured one, and their difference."""
-    for name in READINGS:
-        one, other = simulated[name], seen[name]
-        error = one.error + other.error
-        difference = other.value - one.value
-        yield from (one, other, Measured(difference, difference + error))
+def _rows(simulated: Reading, seen: Mapping[str, Measured], run: Run) -> Iterator[tuple[Any, ...]]:
+    """A row for each number: simulated, measured, and their difference with both errors."""
+    names = dict(zip(READINGS, ("arrival", "peak dynamic force", "FWHM"), strict=True))
+    for name, quantity in names.items():
+        one, other = simulated.numbers[name], seen[name]
+        less = other.value - one.value
+        difference = Measured(less, less + one.error + other.error)
+        place = (simulated.name, simulated.kind, simulated.places[0])
+        yield (*place, run.label(quantity), name, one, other, difference)

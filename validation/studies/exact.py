@@ -23,8 +23,7 @@ from validation.waves.solver import exact_wave, measured
 _SOLITARY = "solitary: nothing is left behind", "Errors: residual, tail and rounding."
 _NANOPTERON = (
     "a nanopteron, not solitary:\nthe light beads rattle on both sides, with this tail",
-    "A member of a family, of half period {:g}. Errors: differences from the pulse of a struck "
-    "chain.",
+    "Half period {:g}, one of a family. Errors: differences from the pulse of a struck chain.",
 )
 _COLUMNS = (
     Column("of", "of"),
@@ -42,12 +41,7 @@ F^(1/k), velocities as F^((k+1)/2k), c as F^((k-1)/2k); widths do not depend on 
     option("--masses", callback=quantities, default="1", says="One mass, or the two of a dimer."),
     option("--speed", callback=number, says="Scale the wave to this speed, at D = 1."),
     option("--force", callback=number, says="Scale the wave to this peak force, at A = 1.  [1]"),
-    option(
-        "--background",
-        callback=number,
-        default="0",
-        says="Static compression of the contacts over the peak compression.",
-    ),
+    option("--background", callback=number, default="0", says="Static over peak compression."),
 )
 def exact(
     k: float,

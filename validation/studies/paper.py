@@ -219,12 +219,7 @@ def _momentum(velocity: float) -> float:
 @study(
     option("--velocity", callback=number, default=str(VELOCITY), says="Of the striker, in m/s."),
     option("--beads", default=BEADS, says="Number of beads, the striker included."),
-    option(
-        "--sensors",
-        callback=quantities,
-        default="15,34",
-        says="The two beads that are compared, counted from the striker, 1.",
-    ),
+    option("--sensors", callback=quantities, default="15,34", says="Two beads; the striker is 1."),
     option(
         "--gravity",
         flag_value=GRAVITY,

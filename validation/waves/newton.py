@@ -32,7 +32,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from copy import copy
 
 import numpy as np
 import scipy
@@ -42,9 +41,6 @@ from lwa.base.arrays import Array
 
 MOST_STEPS = 25  # of Newton's method
 FEWEST = 40  # points on 0 … L
-_FIRST, _FARTHEST = 0.01, 0.2  # arclength of a step along a branch, first and largest
-_STRAIGHT = 0.9  # cosine of the angle between two steps, at least
-_PLACES = 300  # steps along a branch, at most
 
 
 def widening(masses: tuple[float, float]) -> float:
@@ -158,39 +154,31 @@ class Problem:
             return to(at)
         return np.asarray((to(at) + to(-at)) * np.where(at % n == 0, 0.5, 1.0))
 
-    def wave(
-        self, z: Array, c2: float, unknown: str = "", along: Array | None = None
-    ) -> tuple[Array, float, float]:
+    def wave(self, z: Array, c2: float, unknown: str = "") -> tuple[Array, float, float]:
         """Forces, c² and the last unknown of the wave near ``z``, ``c2``.
 
-        unknown : "mass" (1/m2) or "kick" for T = 0; "k" for a step along a branch, in the plane
-            through the start normal to ``along``; "" for none, and the last number is c².
+        unknown : "mass" (1/m2) or "kick" for T = 0; "" for none, and the last number is c².
 
         Raises `numpy.linalg.LinAlgError` if Newton's method does not converge.
         """
-        last = {"": (), "mass": (self.inverse[1],), "kick": (0.0,), "k": (self.k,)}[unknown]
+        last = {"": (), "mass": (self.inverse[1],), "kick": (0.0,)}[unknown]
         size = np.append(np.full(self.count, 2 * self.height), [abs(x) or 1.0 for x in (c2, *last)])
         start = np.append(z[: self.count] * (self.height / z[0]), (c2, *last))
-        x = newton(lambda x: self._step(x, unknown, along, start), start, size)
+        x = newton(lambda x: self._step(x, unknown), start, size)
         return x[: self.count], float(x[self.count]), float(x[-1])
 
-    def _step(self, x: Array, unknown: str, along: Array | None, start: Array) -> Array:
+    def _step(self, x: Array, unknown: str) -> Array:
         """Newton step at the unknowns x: the residual, solved with its derivatives."""
         count, xi = self.count, self.xi
         z, c2 = x[:count], x[count]
         inverse = self.inverse[0], x[-1] if unknown == "mass" else self.inverse[1]
-        k = x[-1] if unknown == "k" else self.k
         a = self.strains(z, inverse) / c2
-        slope = k * np.maximum(self.p0 + a, 0) ** (k - 1) / c2
-        fault = z - rise(a, k, self.p0)
+        slope = self.k * np.maximum(self.p0 + a, 0) ** (self.k - 1) / c2
+        fault = z - rise(a, self.k, self.p0)
         columns, rows, rest = [slope * a], [np.eye(1, count)[0]], [z[0] - self.height]
         corner = np.zeros((1 + bool(unknown),) * 2)
         kick = xi * np.exp(-2 * xi**2) if unknown == "kick" else 0 * xi
-        if along is not None:
-            columns.append(-scipy.special.xlogy(np.maximum(a, 0) ** k, np.maximum(a, 0)))
-            rows, rest = [*rows, along[:count]], [*rest, along @ (x - start)]
-            corner[1] = along[count:]
-        elif unknown:  # c² T over Δξ, and its derivative by 1/m2
+        if unknown:  # c² T over Δξ, and its derivative by 1/m2
             one, two = (self.L / self.n * (xi * (xi < self.L) + s / 2) for s in (-1, 1))
             tail = inverse[0] * one + inverse[1] * two
             rows, rest = [*rows, tail], [*rest, tail @ z]
@@ -213,37 +201,6 @@ class Problem:
         )
         known[on] = found[: len(at)]
         return np.append(known, found[len(at) :])
-
-    def followed(self, z: Array, c2: float, k: float) -> tuple[Array, float]:
-        """Forces and approximate c² at another k, on the branch of the wave ``z``, ``c2``.
-
-        Pseudo-arclength continuation, which passes turns of the branch: each step ends in a plane
-        normal to the difference of the two waves before.
-
-        Raises `numpy.linalg.LinAlgError` if the branch is lost or does not reach k.
-        """
-        size = np.append(np.full(self.count, 1 / self.count), (1, 1))
-        here = np.append(z, (c2, self.k))
-        along, step = np.append(0 * here[:-1], math.copysign(1, k - self.k)), _FIRST
-        for place in range(_PLACES):
-            near, ahead = copy(self), here + step * along
-            near.k = ahead[-1]
-            try:
-                there = np.hstack(near.wave(ahead[:-2], ahead[-2], "k", size * along))
-                change = there - here
-                turn = change / math.sqrt(change @ (size * change))
-            except np.linalg.LinAlgError:
-                turn = -along
-            if place and turn @ (size * along) < _STRAIGHT:
-                step /= 2
-                if step < _FIRST / 1e4:
-                    break
-                continue
-            if (there[-1] - k) * (here[-1] - k) <= 0:
-                x = here + change * (k - here[-1]) / change[-1]
-                return x[:-2], float(x[-2])
-            here, along, step = there, turn, min(1.5 * step, _FARTHEST)
-        raise np.linalg.LinAlgError("the branch is lost")
 
 
 @np.errstate(all="ignore")  # an overflow or c² < 0 does not converge

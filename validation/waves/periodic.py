@@ -89,8 +89,8 @@ class PressedChain:
 
     def slopes(self, u: Array) -> Array:
         """F′ of the contacts."""
-        static = self.k * self.load / self._column(self.rest, u)
-        return np.asarray(static * (1 + self._shares(u)) ** (self.k - 1))
+        share = self.k * self.load * (1 + self._shares(u)) ** (self.k - 1)
+        return np.asarray((share.T / self.rest).T)
 
     def energy(self, u: Array) -> float:
         """Elastic energy at displacements u (N,), less the work of the loads; 0 in equilibrium."""
@@ -101,11 +101,7 @@ class PressedChain:
 
     def _shares(self, u: Array) -> Array:
         """Further compressions over the static ones, -1 in open contacts."""
-        return np.asarray(np.maximum(self.strains @ u / self._column(self.rest, u), -1))
-
-    @staticmethod
-    def _column(values: Array, like: Array) -> Array:
-        return values[:, None] if like.ndim > 1 else values
+        return np.asarray(np.maximum(((self.strains @ u).T / self.rest).T, -1))
 
 
 @dataclass(frozen=True, eq=False)
@@ -154,11 +150,9 @@ class Orbit:
 
         # Velocities in units of displacement times ω: all entries have one scale.
         unit = np.append(np.ones(n), np.full(n, self.frequency))
-        end = scipy.integrate.solve_ivp(
-            rate, (0, self.period), np.diag(unit).ravel(), "DOP853", [self.period],
-            rtol=TOLERANCE, atol=TOLERANCE,
-        ).y[:, -1]  # fmt: skip
-        found = np.linalg.eigvals(end.reshape(2 * n, 2 * n) / unit[:, None])
+        start, tolerance = np.diag(unit).ravel(), dict(rtol=TOLERANCE, atol=TOLERANCE)
+        end = scipy.integrate.solve_ivp(rate, (0, self.period), start, "DOP853", **tolerance)
+        found = np.linalg.eigvals(end.y[:, -1].reshape(2 * n, 2 * n) / unit[:, None])
         return np.asarray(found[np.argsort(-np.abs(found))])
 
 

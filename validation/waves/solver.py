@@ -46,6 +46,8 @@ from validation.waves.profile import ExactWave, Profile, at_unit_force
 FALLEN = 38.0  # e-foldings of a wave on a background from its flanks to L
 SHALLOWEST = 1e-4  # rise of a wave on a background over the peak strain, at least
 LESS = 0.125  # step of the background from wave to wave, at k > 3 on small backgrounds
+FIRST, SHORTEST = 0.1, 1e-3  # steps along a branch, in k
+HOP = 0.15  # change of the strain, over its peak, that leads to another branch
 STEEP = 2.0  # k from which branches are followed if Newton's method finds no wave
 PERIODS = np.arange(1.0, 1.8, 0.05)  # half periods of the search, over the ample one
 ROUGH = 0.35  # points of the search over those that resolve a wave
@@ -284,17 +286,21 @@ def _struck(pair: Pair, k: float) -> start.StruckPulse:
 
 
 def followed(begin: ExactWave, k: float) -> ExactWave:
-    """The wave at another k with the same half period, on the branch of the wave ``begin``.
+    """The wave at another k with the same half period, by steps in k from the wave ``begin``.
 
-    Raises `NoWave` if the branch ends before, or is lost.
+    Raises `NoWave` where the steps end: the branch turns back, or is lost.
     """
     masses, L = begin.masses, begin.half_period
-    problem = newton.Problem(masses, begin.k, L, _rough(masses, max(begin.k, k), L))
-    try:
-        z, c2, _ = problem.wave(*start.near(begin, masses, begin.k, problem.xi))
-        z, c2 = problem.followed(z, c2, k)
-    except np.linalg.LinAlgError:
-        lost = "the branch of waves ends, or is lost, on the way"
-        raise NoWave(lost, masses, k) from None
-    problem.k = k
-    return solve(masses, k, L, start=at_unit_force(masses, problem, z, c2))
+    points = _rough(masses, max(begin.k, k), L)
+    wave, step = solve(masses, begin.k, L, points, begin), math.copysign(FIRST, k - begin.k)
+    while wave.k != k:
+        to = k if abs(k - wave.k) <= abs(step) else wave.k + step
+        with suppress(NoWave):
+            found = solve(masses, to, L, points, wave)
+            if found.apart(wave) < HOP:
+                wave, step = found, 1.5 * step
+                continue
+        step /= 2
+        if abs(step) < SHORTEST:
+            raise NoWave("the branch of waves ends, or is lost, on the way", masses, k)
+    return solve(masses, k, L, start=wave)

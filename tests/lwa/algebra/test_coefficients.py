@@ -55,8 +55,10 @@ def test_factored_expressions_equal_the_polynomial(terms):
     ring = Model(Cell([m1, m2]), Power(k)).ring
     flint_terms = [(e, fmpq(c.numerator, c.denominator)) for e, c in terms]
     plain = sum(
-        (sp.Rational(c.numerator, c.denominator) * k**i * (m1 / (m1 + m2)) ** j
-         for (i, j), c in terms),
+        (
+            sp.Rational(c.numerator, c.denominator) * k**i * (m1 / (m1 + m2)) ** j
+            for (i, j), c in terms
+        ),
         sp.Integer(0),
-    )  # fmt: skip
+    )
     assert sp.cancel(ring.expression(flint_terms) - plain) == 0

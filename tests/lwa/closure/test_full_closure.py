@@ -87,8 +87,9 @@ class Series:
 
     def at_tau(self, m):
         """Times τ^m."""
-        return Series(self.degree, {(i, j, n + m): c for (i, j, n), c in self.terms.items()
-                                    if n + m <= TAU})  # fmt: skip
+        return Series(
+            self.degree, {(i, j, n + m): c for (i, j, n), c in self.terms.items() if n + m <= TAU}
+        )
 
 
 class Jets:

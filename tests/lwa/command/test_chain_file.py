@@ -66,8 +66,12 @@ def test_every_command_answers_in_si(capsys, scene, content):
     free = result(capsys, "wave", "--spheres", scene(without_load(content)), "--force", "20")
     series = result(capsys, "expansion", "--spheres", scene(content), "--force", "20")
     speed = series["physical"]["speed_value"]
-    assert series["physical"]["units"] == {"force": "N", "speed": "m/s", "fwhm": "m",
-                                           "fwhm_time": "s"}  # fmt: skip
+    assert series["physical"]["units"] == {
+        "force": "N",
+        "speed": "m/s",
+        "fwhm": "m",
+        "fwhm_time": "s",
+    }
     assert free["speed_value"] == pytest.approx(speed, rel=0.02)  # c² of the theory: -2.4 %
     assert loaded["speed_value"] > free["speed_value"]
     assert "2 N, is left out" in series["notes"][0]

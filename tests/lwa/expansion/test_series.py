@@ -17,9 +17,9 @@ import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lwa import Cell, Dimer, InputError, Power, expand
+from lwa import Cell, Dimer, ExpandedWave, InputError, Power, expand, pulse_of_strike
 from lwa.algebra.model import Model
-from lwa.base.exact import real
+from lwa.base.exact import signed
 from lwa.base.quantities import QUANTITIES
 from lwa.command.cli import main
 from lwa.expansion.cost import Effort, affordable
@@ -148,10 +148,20 @@ def test_a_long_series_has_a_short_repr_and_latex() -> None:
     series = expand(Cell([1]), 12).fwhm("force")
     assert len(repr(series)) < 120
     latex = series._repr_latex_()
-    assert latex.startswith(r"$\displaystyle \mathrm{FWHM}_\mathrm{force} = ")
-    assert r"\left(\frac{1}{10} - \frac{\log{\left(2 \right)}}{60}\right) \varepsilon" in latex
-    assert latex.endswith(r" + \dots\right)$")
-    assert expand(Cell([1]), 12)._repr_latex_() == expand(Cell([1]), 12).c2._repr_latex_()
+    assert latex.startswith("$$\\begin{aligned}\n\\mathrm{FWHM}_\\mathrm{force} &= ")
+    assert r"\bigl(\frac{1}{10} - \frac{\log{\left(2 \right)}}{60}\bigr) \varepsilon" in latex
+    assert r" + \dots\Bigr)" in latex
+
+
+def test_every_result_shows_itself_in_a_notebook() -> None:
+    chain = expand(Cell([1], spacing=1), 8, k="3/2")
+    assert r"c^2 &= 1 - \frac{1}{2} \varepsilon" in chain._repr_latex_()
+    assert chain.c2.at()._repr_latex_().startswith(r"$0.81995")
+    wave = ExpandedWave(chain, 64)._repr_latex_()
+    assert r"\mathrm{d}x/\mathrm{d}t &= 1.811" in wave
+    strike = pulse_of_strike(Cell([1], spacing=1), 1, 1)._repr_latex_()
+    assert r"F &= 0.63526" in strike
+    assert r"\mathrm{FWHM}_{\mathrm{force}} &= 1.411928" in strike
 
 
 def test_at_gives_symbols_their_values() -> None:
@@ -170,9 +180,30 @@ def test_at_gives_symbols_their_values() -> None:
 # --- symbols ---
 
 OURS = (
-    "X", "Z", "t", "y", "c0", "c1", "mu0", "mu1", "k0", "a0", "a1", "epsilon", "xi", "I", "P", "M",
-    "gamma", "p", "lambda", "math", "c", "omega", "x0",
-)  # fmt: skip
+    "X",
+    "Z",
+    "t",
+    "y",
+    "c0",
+    "c1",
+    "mu0",
+    "mu1",
+    "k0",
+    "a0",
+    "a1",
+    "epsilon",
+    "xi",
+    "I",
+    "P",
+    "M",
+    "gamma",
+    "p",
+    "lambda",
+    "math",
+    "c",
+    "omega",
+    "x0",
+)
 
 named = st.builds(
     lambda name, assumptions: sp.Symbol(name, **assumptions),
@@ -211,8 +242,8 @@ def test_no_name_is_captured(names: list[sp.Symbol], place: sp.Symbol) -> None:
 
 def test_a_place_is_real_and_a_mass_called_like_it_is_refused() -> None:
     assert expand(Cell([1]), 1, k=2).profile("xi").free_symbols == {sp.Symbol("xi", real=True)}
-    assert real("xi", "xi") == sp.Symbol("xi", real=True)
-    assert real("3/2", "xi") == sp.Rational(3, 2)
+    assert signed("xi", "xi") == sp.Symbol("xi", real=True)
+    assert signed("3/2", "xi") == sp.Rational(3, 2)
     wave = expand(Cell([sp.Symbol("X"), 2]), 1)
     with pytest.raises(InputError, match="X names a property of the chain"):
         wave.log_force()

@@ -111,6 +111,8 @@ def test_a_measured_number_carries_its_error():
     assert str(Measured(1.41192847, 1.41192831)) == "1.4119285 ± 2e-07"
     assert str(Measured(16300.0, 17000.0)) == "16300 ± 7e+02"
     assert str(Measured(1.5, 1.5)) == "1.5 ± 0"
+    assert str(Measured(4.350971956738e-4, 4.350971959e-4)) == "0.0004350971957 ± 2e-13"
+    assert str(Measured(0.0, 1e-20)) == "0.000000000000 ± 1e-20"
 
 
 def test_an_exponent_carries_the_errors_of_both_rows():

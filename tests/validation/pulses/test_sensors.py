@@ -62,6 +62,7 @@ def test_the_first_example_is_right_within_its_errors():
         ):
             assert abs(measured.value - true) <= measured.error
             assert measured.relative_error < 1e-8
+            assert abs(float(str(measured).split(" ")[0]) - true) <= measured.error  # as printed
 
 
 @pytest.mark.parametrize("method", ["RKN86", "DOP853"])

@@ -120,7 +120,7 @@ def test_what_a_geometric_approach_has_before_it_is_in_the_error():
     """x_n = r^n, whose limit is 0: each error is x_n at least, up to r = 0.9."""
     for r in (0.3, 0.8, 0.89):
         x = r ** np.arange(9.0)
-        assert np.all(steady._unsettled(x[None])[0] >= x[2:])
+        assert np.all(steady.unsettled(x[None])[0] >= x[2:])
 
 
 def test_the_leading_pulse_is_not_a_later_and_higher_one():

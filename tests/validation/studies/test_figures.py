@@ -97,7 +97,7 @@ def test_all_figures_as_a_picture_and_a_page(whole, tmp_path):
 
 def test_no_line_lies_on_another(whole):
     """The closures agree for m1 ≫ m2 and m1 = m2: their dashed lines were drawn on the others."""
-    for panel in whole.report()._panels():
+    for panel in whole.report().pictured():
         for one, other in combinations(panel.curves, 2):
             same = np.array_equal(one.x, other.x)
             assert not (same and np.allclose(one.y, other.y, rtol=1e-6)), one.label
@@ -118,7 +118,7 @@ def test_no_legend_lies_on_a_curve(whole):
 
 
 def test_the_scaling_panel_shows_the_theory_of_each_modulus(whole):
-    found = [panel for panel in whole.report()._panels() if panel.scale == "xy"]
+    found = [panel for panel in whole.report().pictured() if panel.scale == "xy"]
     assert len(found) == 1
     symbols, lines = found[0].curves[::2], found[0].curves[1::2]
     assert len(lines) == len(figures.MODULI)

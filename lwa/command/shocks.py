@@ -1,0 +1,81 @@
+"""Shocks and rarefactions of a chain driven by a wall, as rows: `lwa shock`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from lwa.base.errors import InputError
+from lwa.command.rows import Answer, Row
+from lwa.shocks import RULES, Shock
+
+
+def shock(found: Shock, units: Mapping[str, str], spoken: str) -> Answer:
+    """The front between two strains: velocity of the wall, speeds of the edges, leading pulse.
+
+    Speeds are dx/dt, ``plateau`` is the velocity of the wall and ``peak`` the strain of the leading
+    pulse by the doubling rule; for a power law without load ``series`` has the pulse's speed and
+    force from the series in k - 1. Where a theory does not reach, values are null, and ``notes``
+    say why.
+
+    spoken : the chain in text.
+    """
+
+    def speed(rule: str) -> Any:
+        return _value(found.leading_speed, rule)
+
+    head: dict[str, str | None] = {"kind": _told(lambda: found.kind)}
+    edges = [
+        Row(
+            f"leading_speed.{rule}",
+            f"leading edge, {rule}",
+            _value(found.leading_speed, rule),
+            r"s_{+}",
+        )
+        for rule in RULES
+    ]
+    rows: list[Row | str] = [
+        spoken,
+        Row("behind", "strain behind", found.behind, "p_{-}"),
+        Row("ahead", "strain ahead", found.ahead, "p_{+}"),
+        "",
+        f"{head['kind'] or 'front'}, speeds dx/dt:",
+        Row("plateau", "velocity of the wall and the plateau", found.plateau, "v_{p}"),
+        Row("trailing_speed", "trailing edge", _value(lambda: found.trailing_speed), "s_{-}"),
+        *edges,
+    ]
+    if head["kind"] != "rarefaction":
+        rows += [
+            Row("peak", "peak strain, doubling", _value(lambda: found.peak), "p_{+} + B"),
+            Row("peak_force", "peak force, doubling", _value(lambda: found.peak_force), "F"),
+        ]
+        if found.law.homogeneous and found.ahead.is_zero and not found.behind.free_symbols:
+            rows += [
+                Row("series.speed", "leading pulse, series", _value(lambda: found.wave.speed)),
+                Row(
+                    "series.force", "peak force, series", _value(lambda: found.wave.F), exact=False
+                ),
+            ]
+    faults = (row.value for row in rows if isinstance(row, Row))
+    notes = dict.fromkeys(str(fault) for fault in faults if isinstance(fault, InputError))
+    return Answer(head, rows, units, found.cell.spacing, notes=tuple(notes), orders=False)
+
+
+def _value(read: Callable[..., Any], *arguments: Any) -> Any:
+    """The result, or the fault that says why there is none."""
+    try:
+        return read(*arguments)
+    except InputError as fault:
+        return fault
+
+
+def _told(read: Callable[[], str]) -> str | None:
+    found = _value(read)
+    return found if isinstance(found, str) else None
+
+
+UNITS = dict.fromkeys(("plateau", "trailing_speed", "leading_speed", "series.speed"), "m/s") | {
+    "peak_force": "N",
+    "series.force": "N",
+}
+"""Units of a shock in SI."""

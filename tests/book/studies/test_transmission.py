@@ -1,0 +1,23 @@
+"""A shaken chain under load lets through what Bloch's bands let through."""
+
+import pytest
+
+from book.studies.transmission import transmission
+from validation.scenes.checks import SceneError
+
+
+@pytest.mark.parametrize("masses", [(1, "1/2"), pytest.param((1,), marks=pytest.mark.slow)])
+def test_a_shaken_chain_has_blochs_gaps(masses):
+    report = transmission(masses, frequencies=5)
+    assert report.ok
+    rows = report.document()["rows"]
+    held = [row for row in rows if row["attenuation_theory_value"] > 0.05]
+    assert held
+    assert len(held) < len(rows)
+    for row in held:
+        assert row["attenuation_value"] == pytest.approx(row["attenuation_theory_value"], rel=0.01)
+
+
+def test_too_short_a_chain_is_refused():
+    with pytest.raises(SceneError, match=r"^cells is 5: one of 40 … 1000 is wanted$"):
+        transmission(cells=5)

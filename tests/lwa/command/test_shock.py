@@ -1,0 +1,78 @@
+"""The command `lwa shock`: text, JSON, LaTeX, SI, and refusals in one line."""
+
+import json
+
+import pytest
+
+from lwa import Cell, Power, shock
+from lwa.command.cli import main
+from tests.commands import ended
+
+
+def run(capsys, *options):
+    return ended(capsys, main, "shock", *options)
+
+
+def result(capsys, *options):
+    status, out, err = run(capsys, *options, "--format", "json")
+    assert (status, err) == (0, "")
+    return json.loads(out)
+
+
+EQUAL = ("--masses", "1", "--spacing", "1", "--k", "3/2")
+
+
+def test_edges_and_peak_of_a_loaded_chain(capsys):
+    found = result(capsys, *EQUAL, "--behind", "2", "--ahead", "1")
+    expected = shock(Cell([1], spacing=1), Power("3/2"), 2, 1)
+    assert found["kind"] == "shock"
+    assert found["plateau_value"] == pytest.approx(float(expected.plateau))
+    assert found["trailing_speed_value"] == pytest.approx(float(expected.trailing_speed))
+    for rule, speed in found["leading_speed_value"].items():
+        assert speed == pytest.approx(float(expected.leading_speed(rule)))
+    assert found["peak_value"] == pytest.approx(float(expected.peak))
+    assert "acosh" in found["leading_speed"]["dispersion"]
+
+
+def test_where_a_theory_does_not_reach_there_is_null_and_a_note(capsys):
+    found = result(capsys, *EQUAL, "--behind", "1")
+    assert found["trailing_speed_value"] is found["leading_speed_value"]["dispersion"] is None
+    assert any("no sound runs there" in note for note in found["notes"])
+    speed = found["series_value"]["speed"] / (1.5**0.5)
+    assert speed == pytest.approx(0.8477, abs=1e-4)
+    dimer = result(capsys, "--behind", "2", "--ahead", "1", "--masses", "1,1/2", "--k", "3/2")
+    assert dimer["peak_value"] is None
+    assert dimer["leading_speed_value"]["dispersion"] > 0
+
+
+def test_symbols_text_and_latex(capsys):
+    status, out, _ = run(capsys, "--behind", "p", "--k", "k", "--masses", "m")
+    assert status == 0
+    assert "velocity of the wall" in out
+    status, out, _ = run(capsys, *EQUAL, "--behind", "2", "--ahead", "1", "--format", "latex")
+    assert status == 0
+    assert "v_{p} &= " in out
+
+
+def test_a_piston_and_a_rarefaction(capsys):
+    found = result(capsys, *EQUAL, "--piston", "1", "--ahead", "1")
+    assert found["plateau_value"] == pytest.approx(1)
+    falls = result(capsys, *EQUAL, "--behind", "1", "--ahead", "2")
+    assert falls["kind"] == "rarefaction"
+    assert "peak_value" not in falls
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ((), "--behind or --piston"),
+        (("--behind", "1", "--piston", "1"), "--behind or --piston"),
+        (("--behind", "1", "--ahead", "1"), "there is no front"),
+        (("--piston", "-1"), "velocity is -1: it must be positive"),
+        (("--behind", "v_p"), "has a meaning of its own"),
+    ],
+)
+def test_refusals_are_one_line(capsys, options, words):
+    status, out, err = run(capsys, *EQUAL, *options)
+    assert (status, out, err.count("\n")) == (2, "", 1)
+    assert words in err
