@@ -41,6 +41,7 @@ from validation.scenes.scene import Scene
 
 JUMPS = "3/2", 2, 3  # strains behind the front over those ahead of it
 FIRST, LAST = 0.6, 0.85  # of the chain: distances from the wall between which s₊ is measured
+PLACES = 0.1, 0.25, 0.4, 0.5, 0.7  # of the chain: further distances of the picture
 NEAR = 5  # contacts from the wall to that of the plateau
 END = 0.9  # of the chain: run by the leading pulse
 SAMPLES = 20  # per unit of time
@@ -102,10 +103,12 @@ class Driven:
         duration = END * n / (rule or edge or float(chain.sound(chain.behind)))
         load = float(chain.law.at(chain.ahead)) if chain.ahead else 0.0
         law: dict[str, Any] = {"law": chain.law}
+        last, first, *others = (round(place * n) for place in (LAST, FIRST, *PLACES))
+        distances = last, first, NEAR, *others
         scene = Scene(
             masses=tuple(masses), stiffnesses=(1.0,) * (n - 1), wall=1.0, precompression=load,
             velocities=(float(chain.plateau),) * n, duration=duration,
-            contact_sensors=tuple(n - 1 - d for d in (round(LAST * n), round(FIRST * n), NEAR)),
+            contact_sensors=tuple(n - 1 - d for d in distances),
             samples=math.ceil(SAMPLES * duration), **law,
         )  # fmt: skip
         return simulate(scene)
@@ -138,6 +141,14 @@ class Driven:
             options={"xatol": 1e-8},
         )  # fmt: skip
         return float(found.x), -float(found.fun)
+
+    def path(self) -> tuple[Array, Array]:
+        """Times at which the leading pulse passes contacts, and their distances from the wall."""
+        at = [i for i in range(len(self.run.scene.contact_sensors)) if i != 2]
+        sites = [len(self.run.displacements) - 1 - self.run.scene.contact_sensors[i] for i in at]
+        order = np.argsort(sites)
+        times = np.array([self._leading(i)[0] for i in at])
+        return times[order], np.array(sites, float)[order]
 
     def profile(self) -> tuple[Array, Array]:
         """Distance from the wall in sites, and the strain at the end of the run."""
@@ -195,17 +206,22 @@ def _report(found: Sequence[tuple[Driven, tuple[Any, ...]]]) -> Report:
     driven, row = found[-1]
     x, strain = driven.profile()
     duration = driven.run.scene.duration
-    edges = [
-        Curve.of(label, [s * duration] * 2, [strain.min(), strain.max()], style)
+    lines = [
+        (label, s, style)
         for label, s, style in (("s₊, doubling", row[7], "C1--"), ("s₊, dispersion", row[9], "C2:"))
         if s is not None
     ]
+    ends = [strain.min(), strain.max()]
+    edges = [Curve.of(label, [s * duration] * 2, ends, style) for label, s, style in lines]
+    paths = [Curve.of(label, [0, duration], [0, s * duration], style) for label, s, style in lines]
     return Report(
         "Chains driven by a wall: lattice and theory",
         (Table(_COLUMNS, tuple(row for _, row in found), "rows"),),
         tuple(findings),
         (Panel("sites from the wall", f"strain, {row[0]}",
-               (Curve.of("lattice", x, strain, "C0-"), *edges)),),
+               (Curve.of("lattice", x, strain, "C0-"), *edges)),
+         Panel("time", "sites from the wall",
+               (Curve.of("leading pulse", *driven.path(), "C0o"), *paths))),
         ("Speeds in sites per unit of time; peak: the pulse's strain at the last contact.",),
     )  # fmt: skip
 

@@ -173,7 +173,8 @@ class Envelope(Value):
         if not self.law.homogeneous:
             return sp.oo
         pairs = zip(self.static_compressions, self.strains, strict=True)
-        return sp.Min(*(delta**2 / (4 * d) for delta, d in pairs if d))
+        found = sp.Min(*(delta**2 / (4 * d) for delta, d in pairs if d))
+        return sp.N(found) if self.floats else found
 
     # --- the chain in units of its first mass and contact ---
 

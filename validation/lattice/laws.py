@@ -115,13 +115,14 @@ def _expressions(law: ContactLaw) -> tuple[sp.Expr, ...]:
 
 @lru_cache
 def _functions(law: ContactLaw | None) -> tuple[Callable[[Array], Any], ...]:
+    """F, F′ and the energy as functions of arrays."""
     assert law is not None
     return tuple(sp.lambdify(law.delta, row, "numpy") for row in _expressions(law))
 
 
 @lru_cache
 def _machine_code(law: ContactLaw) -> tuple[Any, ...]:
-    """The same functions of one float, compiled once for a law."""
+    """Machine code of these functions for single numbers, compiled once for a law."""
     from numba import cfunc  # start-up
 
     return tuple(

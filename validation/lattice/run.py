@@ -37,7 +37,7 @@ class IntegrationError(Failure):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Records(ArrayValue, Pictured):
-    """What the sensors of a scene recorded; S is the number of samples.
+    """Records of the sensors of a scene; S is the number of samples.
 
     Forces are total: the static force of gravity and precompression is included. Entries that were
     not computed, because a window had left the sensor, are NaN.

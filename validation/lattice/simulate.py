@@ -1,10 +1,9 @@
-"""The equations of motion of a scene (`validation.lattice.equations`), integrated.
+"""Simulation of a scene: `simulate`, `simulate_many` on threads, `twice` at two tolerances.
 
-One `simulate` stands before two engines. The compiled one (`validation.lattice.engine`), with an
-adaptive pair for y'' = f(y) and a symplectic splitting, moves the beads behind the front only.
-SciPy's steppers, whose own interpolant gives the samples, are the reference. Tolerances are
-relative to the scene's own scales, so that a run does not depend on the units. Either engine keeps
-only the sensors' samples.
+The compiled engine (`validation.lattice.engine`) has an adaptive pair for y'' = f(y) and a
+symplectic splitting. SciPy's methods (`validation.lattice.steppers`) are the reference, and
+integrate scenes with damping or a drive. Tolerances are relative to the scene's own scales, so that
+a run does not depend on the units. A run keeps the motion of the beads near its sensors only.
 """
 
 from __future__ import annotations
@@ -50,27 +49,26 @@ def simulate(
     window: bool | int = False,
     progress: RunProgress = silent,
 ) -> Run:
-    """Integrate a scene and return what its sensors recorded.
+    """Integrate a scene and return the records of its sensors.
 
     Parameters
     ----------
-    rtol, atol : of the pair ``rtol`` is about the most by which the peak force of a struck
-        chain's pulse is off, relatively; a motion that goes on bouncing may be off by some tens of
-        it at its end. Of the splitting it is what the peak is off by in the mean. ``atol`` does not
-        count. Of SciPy's: local error per step, relative to each component and to the scene's own
-        scale of displacement and velocity.
-    method : one of `COMPILED` or of `METHODS`. Forces that depend on velocities or on time, of
-        damping or a drive, take one of `METHODS`: DOP853 where the default is given.
-    step : of a compiled method, the largest, in place of that which ``rtol`` gives.
-    window : of a compiled method, the number of beads to follow behind the front of a leading
-        pulse, or True for eight widths of the long-wave pulse; the chain must end freely and
-        k exceed 1. The run is made with this window and with one twice as long, whose numbers are
-        returned; beads further behind are NaN in all arrays. By default the whole chain.
+    rtol, atol : error in units of the scene's own scales. For the pair, the peak force of a struck
+        chain's pulse errs by about ``rtol`` at most, and a motion with many collisions by some tens
+        of it at its end; for the splitting, ``rtol`` is the mean error of the peak. Both ignore
+        ``atol``. For SciPy's methods, the local error per step.
+    method : one of `COMPILED` or of `METHODS`. A scene with damping or a drive, whose forces depend
+        on velocities or time, takes one of `METHODS`, by default DOP853.
+    step : greatest step of a compiled method; by default ``rtol`` determines the steps.
+    window : number of beads that a compiled method follows behind the front of a leading pulse, or
+        True for eight supports of the long-wave pulse; the chain must end freely. A run with this
+        window and one with twice as many beads are made. The numbers of the second are returned;
+        beads further behind than the first one's window are NaN. By default the whole chain.
     progress : opens a display, which is called with the share of the run that is done.
 
-    Raises `SceneError` for a tolerance or method that cannot be meant, and for a run that takes
-    more steps or memory than `validation.lattice.cost` allows, and `IntegrationError` when the
-    integrator fails or the longer window changes the leading pulse by more than some rtol.
+    Raises `SceneError` for invalid arguments and for more steps or memory than
+    `validation.lattice.cost` allows. Raises `IntegrationError` when the integrator fails, or when
+    the longer window changes the leading pulse by more than ten times ``rtol``.
 
     >>> scene = Scene(masses=(1, 1), stiffnesses=(1,), k=1.5, duration=9, velocities=(1,))
     >>> simulate(scene).velocities.round(6) + 0.0  # equal masses exchange their velocities
@@ -94,7 +92,7 @@ def simulate(
                 f"{', '.join(METHODS)}, without step or window"
             )
         method = METHODS[0]
-    with np.errstate(over="ignore", invalid="ignore"):  # told by what comes of it
+    with np.errstate(over="ignore", invalid="ignore"):  # the result is checked
         motion = motion_of(scene)
         if method in COMPILED:
             from validation.lattice.engine import follow  # start-up: numba takes its time
@@ -102,7 +100,7 @@ def simulate(
             run = follow(motion, method, rtol, step, window, progress)
         else:
             run = integrate(motion, method, rtol, atol, progress)
-        # of a window NaN is what was not followed, and overflows raise in the engine
+        # NaN is legitimate behind a window; there the engine itself raises for an overflow
         add = np.nansum if run.window else np.sum
         sums = [float(add(getattr(run, name))) for name in _FINITE]
     if not all(map(math.isfinite, (run.energy_drift, *sums))):
@@ -113,13 +111,13 @@ def simulate(
 def simulate_many(
     scenes: Iterable[Scene], *, workers: int | None = None, **options: Any
 ) -> Iterator[Run]:
-    """The runs of many scenes, in their order, as `simulate` with the same options gives them.
+    """Simulate many scenes on threads; yields the runs in the order of the scenes.
 
-    workers : threads, by default as many as there are cores; compiled methods keep all of them
-        busy, as they hold no lock. Scenes are taken as they are needed, some ahead of the run
-        that is given.
+    workers : number of threads, by default that of the cores. Compiled methods hold no lock and
+        keep all of them busy. Scenes are drawn as they are needed, some ahead of the run that is
+        yielded. options : those of `simulate`.
 
-    Raises what `simulate` raises, in the place of the run.
+    Raises the exceptions of `simulate` in the place of the run.
 
     >>> chain = dict(masses=(1, 1), stiffnesses=(1,), k=1.5, duration=9)
     >>> [run.velocities[1].round(6) for run in
@@ -145,7 +143,7 @@ _Batch = tuple[list[Run], float, Exception | None]
 
 
 def _batch(scenes: list[Scene], options: dict[str, Any]) -> _Batch:
-    """The runs before one that fails, the seconds that each took, and why it fails."""
+    """Runs up to the first failure, seconds per run, and the failure or None."""
     runs: list[Run] = []
     start = perf_counter()
     try:

@@ -59,6 +59,9 @@ def test_units_of_a_breather():
     ratio = (20 / 1e9) ** (2 / 3)
     assert float(found.amplitude[1] / plain.amplitude[1]) == pytest.approx(ratio, rel=1e-9)
     assert float(found.width) == pytest.approx(float(plain.width), rel=1e-9)
+    floats = real.numeric().breather(detuning="1/500")
+    assert floats.opening_detuning.is_Float
+    assert float(floats.opening_detuning) == pytest.approx(3 / 128, rel=1e-9)
 
 
 def test_where_contacts_open_a_breather_is_refused_with_the_number():

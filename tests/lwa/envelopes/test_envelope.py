@@ -262,6 +262,12 @@ def test_units_of_real_spheres():
     for kappa, branch, omega in edges:
         found = envelope(cell, HERTZ, precompression=20, wavenumber=kappa, branch=branch).numeric()
         assert float(found.frequency) == pytest.approx(omega, rel=1e-9)
+    # the numbers of the theory notes: beads of 28.84 and 9.75 g, A = 5.46 N/μm^{3/2}
+    chain = Cell(["28.84e-3", "9.75e-3"], ["5.46e9", "5.46e9"])
+    for (kappa, branch, _), known in zip(edges, (4.711, 8.101, 9.371), strict=True):
+        found = envelope(chain, HERTZ, precompression=20, wavenumber=kappa, branch=branch)
+        kilohertz = float(found.numeric().frequency) / (2e3 * np.pi)
+        assert kilohertz == pytest.approx(known, rel=1e-3)
     load = envelope(cell, HERTZ, precompression=20)
     static = envelope(cell, HERTZ, background=load.compression / cell.spacing)
     assert float(static.nonlinearity) == pytest.approx(float(load.nonlinearity), rel=1e-9)

@@ -40,7 +40,7 @@ def told(what, **options):
 @pytest.mark.parametrize("what", [struck(20), struck(20, 0.01), struck(20, 0.5, 1.0), PRESSED])
 @pytest.mark.parametrize("rtol", [1e-4, 1e-6, 1e-10])
 def test_the_steps_of_adaptive_methods(method, what, rtol):
-    """At most three times as many as the module says; the bound on them is ten."""
+    """The steps are at most three times as many as expected; the limit is ten times."""
     rtol = max(rtol, 1e-7) if method == "RK23" else rtol
     run, shares = told(what, method=method, rtol=rtol, atol=rtol)
     expected = what.duration / Motion(what).scales.time / cost.mean_step(method, rtol)
@@ -50,7 +50,7 @@ def test_the_steps_of_adaptive_methods(method, what, rtol):
 
 
 def test_a_compiled_run_looks_up_on_the_way(monkeypatch):
-    """In the same bits as in one go."""
+    """A run in parts gives the same bits as a run in one go."""
     scene = struck(200, 0.3, duration=190.0, contact_sensors=(50,))
     whole = told(scene, method="SRKN14")
     monkeypatch.setattr("validation.lattice.engine._GLANCE", 1e4)

@@ -175,7 +175,7 @@ def test_the_peak_force_of_the_560_beads(method):
 @pytest.mark.parametrize("opens", [False, True])
 @pytest.mark.parametrize("rtol", [1e-6, 1e-9])
 def test_sampled_forces_are_as_good_as_the_steps(rtol, opens):
-    """At all times, between steps that are far longer than the samples' distance."""
+    """Samples are good at all times, though steps are far longer than their distance."""
     velocities = (1.5, -2.5, 2.0, -2.0) if opens else (0.0, 0.1, -0.05)
     scene = loaded(1.5, samples=2001, velocities=velocities)
     exact = simulate(scene, method="DOP853", rtol=1e-13, atol=1e-13)
@@ -221,8 +221,8 @@ def test_chains_that_fly_apart_and_meet(seed):
 @pytest.mark.parametrize("k", [1.5, 2.5])
 @pytest.mark.parametrize(("root", "q"), [(-0.6, 1.0), (0.3, 1.0), (0.3, -1.0), (1.7, -1.0)])
 def test_the_integrals_of_a_force_with_a_kink(k, root, q):
-    """Of p_+^k and (1 - u) p_+^k over a step, against SciPy's quadrature of the same polynomial."""
-    chain = Chain(*np.zeros((4, 1)), LAWS.get(k, 0), k)
+    """∫ p_+^k and ∫ (1 - u) p_+^k over a step, against SciPy's quadrature."""
+    chain = Chain(*np.zeros((4, 1)), LAWS.get(k, 0), k, 0, 0, 0, False)
     coefficients = q * np.array([1.0, 0.2, -0.1, 0.05, 0.02])
     u, w = scipy.special.roots_jacobi(8, 0.0, k)
     points = np.stack(((1 + u) / 2, w / 2 ** (k + 1)))
@@ -374,7 +374,7 @@ def test_a_step_that_is_too_long_is_not_silent():
         (dict(method="SRKN14", step=0), "step is 0: it must be positive"),
         (
             dict(method="SRKN14", step=1e-300),
-            "duration is 1: this makes 1.0e.300 steps of SRKN14, ",
+            "duration is 1: this makes 1.0e.300 steps of SRKN14; ",
         ),
         (dict(method="SRKN14", rtol=0), "rtol is 0: it lies between"),
         (dict(method="SRKN14", window=3), "window is 3: an integer from 8 on is wanted"),

@@ -54,7 +54,7 @@ def factor(tree):
 
 
 def stages(pair, tree):
-    """What the tree is in the stages."""
+    """The value of a tree in the stages."""
     c, (power, children) = nodes(pair), tree
     values = [x**power for x in c]
     for child in children:
@@ -93,7 +93,7 @@ def test_the_trees():
 
 @pytest.mark.parametrize("pair", [RKN86])
 def test_the_order_of_both_solutions(pair):
-    """Of y and v, and no more; the last stage is the next one's first."""
+    """The order of y and v, and no more; the last stage is the first one of the next step."""
     rows = (
         (pair.rows[-1], pair.speeds, pair.order),
         (pair.low, pair.low_speeds, pair.lower),

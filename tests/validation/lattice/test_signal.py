@@ -31,7 +31,7 @@ def test_a_contact_that_touches_and_closes_and_one_that_opens(rtol):
 
 @pytest.mark.parametrize("method", ["RKN86", "SRKN14", "DOP853", "RK45", "LSODA"])
 def test_samples_are_values_of_the_signals(method):
-    """Of every quantity, at shapes of any kind; the last bead touches a wall under a load."""
+    """Every quantity, at times of any shape; the last bead touches a wall under a load."""
     scene = Scene(
         masses=(1, 0.4, 2, 1), stiffnesses=(1, 3, 1), wall=2, k=1.5, precompression=0.3,
         gravity=0.1, velocities=(0.5,), duration=9, samples=51,
