@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 import sympy as sp
 
-from lwa.base.exact import InputError, exact
+from lwa.base.exact import InputError
 from lwa.cell import Cell, D, k
 from lwa.code.languages import LANGUAGES
 from lwa.command import derivation, waves
@@ -28,17 +27,11 @@ from lwa.command.options import (
     style_option,
 )
 from lwa.command.reading import angle, quantity
-from lwa.command.reserved_names import demand_free
 from lwa.command.rows import Answer
 from lwa.command.terminal import HELP, run, version
 from lwa.law import ContactLaw, Law, Power
 from lwa.spheres.hertz import EXPONENT
 from lwa.theory import Theory, homogenize
-from lwa.wave.background import BackgroundWave
-from lwa.wave.precompressed import PrecompressedWave
-
-if TYPE_CHECKING:
-    from lwa.command.chain_file import ChainFile
 
 DERIVATION = {
     "text": derivation.derivation_text,
@@ -91,28 +84,6 @@ def derive(style: str, **chain: Any) -> None:
     _show(DERIVATION[style](theory))
 
 
-@dataclass(frozen=True)
-class _Load:
-    """Options that say how strongly a chain is pressed and which wave runs in it."""
-
-    force: sp.Expr | None
-    background: sp.Expr | None
-    precompression: sp.Expr | None
-
-    def under(self, law: ContactLaw | None) -> bool:
-        """Whether there is a load, or a law under which all waves are those of `lwa.wave`."""
-        if self.background is not None and self.precompression is not None:
-            raise InputError("--background and --precompression are both given: one says the other")
-        load = self.precompression if self.background is None else self.background
-        return load is not None and (not load.is_zero or isinstance(law, Law))
-
-    def demand_free(self, output: str) -> None:
-        """Refuse symbols with names of the output."""
-        named = ((self.force, "F"), (self.precompression, "F0"), (self.background, "p0"))
-        for value, own in named:
-            demand_free(output, () if value is None else (value,), own)
-
-
 @lwa.command()
 @of_chain((*STYLES, *LANGUAGES))
 @FORCE
@@ -141,7 +112,7 @@ def wave(
         if static and (background is not None or precompression is not None):
             raise InputError(f"the file has a precompression of {static}: give no other load")
         precompression = static or precompression
-    load = _Load(force, background, precompression)
+    load = waves.Load(force, background, precompression)
     under_load = load.under(chain["law"])
     output = "wave under load" if under_load or isinstance(chain["law"], Law) else "wave"
     load.demand_free(output)
@@ -151,22 +122,18 @@ def wave(
     if style in LANGUAGES:
         if force is not None:
             raise InputError(f"--format {style} is for any force: --force goes with {_STYLES}")
-        _show(_source(theory, load if under_load else None, style))
+        _show(waves.source(theory, load if under_load else None, style))
     elif under_load:
-        _answer(style, _under_load(theory, load, units))
+        _answer(style, waves.under_load(theory, load, units))
     else:
         found = theory.pde.traveling_wave()
         if force is None and spheres is None:
             _answer(style, waves.compact(theory, found))
         else:
-            _answer(style, waves.at_force(theory, found, _peak(force), units))
+            _answer(style, waves.at_force(theory, found, waves.peak(force), units))
 
 
 _STYLES = ", ".join(STYLES)
-
-
-def _peak(force: sp.Expr | None) -> sp.Expr:
-    return exact("F", "force") if force is None else force
 
 
 def _canonical(chain: dict[str, Any]) -> None:
@@ -180,25 +147,6 @@ def _canonical(chain: dict[str, Any]) -> None:
         chain[name] = wanted
 
 
-def _under_load(theory: Theory, load: _Load, units: dict[str, str]) -> Answer:
-    if load.precompression is not None:
-        F, F0 = _peak(load.force), load.precompression
-        return waves.precompressed(theory, PrecompressedWave(theory.cell, theory.law, F, F0), units)
-    if load.force is not None:
-        raise InputError("--force goes with --precompression, a force; --background is a strain")
-    return waves.on_background(theory, BackgroundWave(theory.cell, theory.law, load.background))
-
-
-def _source(theory: Theory, load: _Load | None, language: str) -> str:
-    if load is None:
-        return theory.pde.traveling_wave().code(language)
-    p0 = load.background
-    if load.precompression is not None:
-        loaded = PrecompressedWave(theory.cell, theory.law, exact("F", "F"), load.precompression)
-        p0 = loaded.background.p0
-    return BackgroundWave(theory.cell, theory.law, p0).code(language)
-
-
 def _from_file(file: str, chain: dict[str, Any]) -> tuple[dict[str, str], sp.Expr]:
     """Put the chain of a file in place of the options; its units and its static load.
 
@@ -207,7 +155,9 @@ def _from_file(file: str, chain: dict[str, Any]) -> tuple[dict[str, str], sp.Exp
     for name in ("k", "law", "masses", "stiffnesses", "spacing"):
         if given(name):
             raise InputError(f"--{name} and --spheres are both given: spheres have their own")
-    found = _read(file)
+    from lwa.command.chain_file import read_chain
+
+    found = read_chain(file)
     chain |= {name: getattr(found.cell, name) for name in ("masses", "stiffnesses", "spacing")}
     chain |= {"k": found.law.exponent} if found.law.homogeneous else {"law": found.law}
     exponent = found.law.exponent if found.law.homogeneous else EXPONENT
@@ -277,7 +227,7 @@ def expansion(
         k, law = chain.pop("k"), chain.pop("law")
         cell = Cell(**chain)
         force = sp.S.One if force is None else force
-        notes = _left_out(static, units)
+        notes = waves.left_out(static, units)
     elif force is not None:
         raise InputError("--force goes with --spheres: other chains have no units")
     found = expand(cell, order, k=k, law=law)
@@ -302,13 +252,14 @@ def strike(
 ) -> None:
     """The leading pulse of a chain of equal beads that a mass strikes: force, speed and width."""
     from lwa.command import series
+    from lwa.command.chain_file import read_chain
     from lwa.expansion.strike import pulse_of_strike
 
-    found = _read(spheres)
+    found = read_chain(spheres)
     mass = found.cell.masses[0] if mass is None else mass
     pulse = pulse_of_strike(found.cell, mass, velocity, drop=drop, k=found.law.exponent)
     units = waves.si_units(found.law.exponent) if found.si else {}
-    _answer(style, series.strike(pulse, units, _left_out(found.precompression, units)))
+    _answer(style, series.strike(pulse, units, waves.left_out(found.precompression, units)))
 
 
 @lwa.command("envelope")
@@ -389,20 +340,6 @@ def front_of_a_wall(
     found = driven(cell, law, piston, ahead) if behind is None else shock(cell, law, behind, ahead)
     said = f"masses {derivation.listed(cell.masses)}; contact force A F, F = {law.F}"
     _answer(style, shocks.shock(found, shocks.UNITS if units else {}, said))
-
-
-def _read(file: str) -> ChainFile:
-    from lwa.command.chain_file import read_chain
-
-    return read_chain(file)
-
-
-def _left_out(static: sp.Expr, units: dict[str, str]) -> list[str]:
-    """The note that the load of a file does not enter."""
-    if not static:
-        return []
-    said = f"{float(static):g} {units.get('force', '')}".rstrip()
-    return [f"the load of the file, {said}, is left out: the theory used is of a chain without"]
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

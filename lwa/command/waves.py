@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import sympy as sp
 
-from lwa.base.exact import InputError
+from lwa.base.exact import InputError, exact
 from lwa.base.quantities import QUANTITIES, NoSolitaryWave
 from lwa.cell import Cell
 from lwa.command.derivation import FIELDS, chain_json, chain_text, listed
+from lwa.command.reserved_names import demand_free
 from lwa.command.rows import Answer, Row, Values
+from lwa.law import ContactLaw, Law
 from lwa.theory import Theory
 from lwa.wave.background import BackgroundWave
 from lwa.wave.precompressed import PrecompressedWave
@@ -253,3 +256,59 @@ def precompressed(theory: Theory, wave: PrecompressedWave, units: Mapping[str, s
         except InputError:  # something is a symbol
             break
     return Answer(chain_json(theory), rows, units, theory.cell.spacing)
+
+
+@dataclass(frozen=True)
+class Load:
+    """Options that say how strongly a chain is pressed and which wave runs in it."""
+
+    force: sp.Expr | None
+    background: sp.Expr | None
+    precompression: sp.Expr | None
+
+    def under(self, law: ContactLaw | None) -> bool:
+        """Whether there is a load, or a law under which all waves are those of `lwa.wave`."""
+        if self.background is not None and self.precompression is not None:
+            raise InputError("--background and --precompression are both given: one says the other")
+        load = self.precompression if self.background is None else self.background
+        return load is not None and (not load.is_zero or isinstance(law, Law))
+
+    def demand_free(self, output: str) -> None:
+        """Refuse symbols with names of the output."""
+        named = ((self.force, "F"), (self.precompression, "F0"), (self.background, "p0"))
+        for value, own in named:
+            demand_free(output, () if value is None else (value,), own)
+
+
+def peak(force: sp.Expr | None) -> sp.Expr:
+    """The force of a wave; the symbol F where none is given."""
+    return exact("F", "force") if force is None else force
+
+
+def under_load(theory: Theory, load: Load, units: dict[str, str]) -> Answer:
+    """The wave under a load as rows."""
+    if load.precompression is not None:
+        F, F0 = peak(load.force), load.precompression
+        return precompressed(theory, PrecompressedWave(theory.cell, theory.law, F, F0), units)
+    if load.force is not None:
+        raise InputError("--force goes with --precompression, a force; --background is a strain")
+    return on_background(theory, BackgroundWave(theory.cell, theory.law, load.background))
+
+
+def source(theory: Theory, load: Load | None, language: str) -> str:
+    """The wave as source text; of a chain without load where ``load`` is None."""
+    if load is None:
+        return theory.pde.traveling_wave().code(language)
+    p0 = load.background
+    if load.precompression is not None:
+        loaded = PrecompressedWave(theory.cell, theory.law, exact("F", "F"), load.precompression)
+        p0 = loaded.background.p0
+    return BackgroundWave(theory.cell, theory.law, p0).code(language)
+
+
+def left_out(static: sp.Expr, units: dict[str, str]) -> list[str]:
+    """The note that the load of a file does not enter."""
+    if not static:
+        return []
+    said = f"{float(static):g} {units.get('force', '')}".rstrip()
+    return [f"the load of the file, {said}, is left out: the theory used is of a chain without"]
