@@ -38,7 +38,7 @@ from validation.scenes.checks import SceneError, between, integer
 from validation.waves.periodic import Orbit, PressedChain, orbit
 
 DETUNINGS = "0.0005,0.001,0.002"
-_WIDE = 4.0  # widths 1/b in half the chain, at least
+_WIDE = {"bright": 4.0, "dark": 8.5}  # widths 1/b in half the chain, at least
 _HALF, _DIP = (
     2 * np.arccosh(2),
     2 * np.arctanh(0.5),
@@ -82,7 +82,8 @@ def breather(
         raise SceneError("detunings is empty: at least one is wanted")
     edge = envelope(cell, Power(k), precompression=1)
     for nu in detunings:
-        least = 2 * math.ceil(_WIDE * float(edge.breather(detuning=nu).width) * cell.size) + 1
+        width = _WIDE[edge.kind] * float(edge.breather(detuning=nu).width)
+        least = 2 * math.ceil(width * cell.size) + 1
         if beads < least:
             raise SceneError(
                 f"beads is {beads}: at a detuning of {float(nu):g} {least} or more are wanted"

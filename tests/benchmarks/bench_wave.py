@@ -34,7 +34,7 @@ COMMANDS = {
         1.06,
     ),
 }
-"""What Python runs, and seconds before."""
+"""Code that Python runs, and seconds before."""
 
 
 @pytest.mark.benchmark(timer=time.process_time)

@@ -17,7 +17,7 @@ from validation.scenes.checks import SceneError
 from validation.studies.accuracy import Task
 
 Solve = Callable[[float, Task, Array], Array]
-"""From a tolerance, a task and times (S,) to the force of the task's contact, (S,)."""
+"""Force of a task's contact, (S,), as a function of tolerance, task and times (S,)."""
 
 METHODS = {"RK45": 1e-9, "TSIT5": 1e-11, "VERN7": 1e-12, "DOP853": 1e-12}
 """Methods with their finest tolerances."""

@@ -100,7 +100,7 @@ class Maxima:
         self._ask(f"derived: derive({order})")
 
     def result(self) -> Derived:
-        """What `derive` found, in SymPy."""
+        """Result of `derive`, in SymPy."""
         text = self._ask("print(string(expand(ratdisrep(derived))))").replace("\\\n", "")
         E, ansatz = sp.sympify(re.sub(r"r\[(\d+)\]", r"r\1", text))
         return E, ansatz

@@ -67,22 +67,20 @@ an equal scene, to the last bit.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from contextlib import suppress
-from dataclasses import fields
 from functools import partial
-from itertools import pairwise, product
 from pathlib import Path
 from typing import Any
 
-import sympy as sp
-
-from lwa.base.exact import InputError, shorten
+from lwa.base.arrays import Array
+from lwa.base.exact import shorten
 from lwa.base.files import load
 from lwa.base.tables import Reader, Table, among, array, entries, flag, place, places, table
-from lwa.law import NAMES, ContactLaw, named
+from lwa.law import ContactLaw, named
 from lwa.spheres.beads import read_beads, read_materials
 from lwa.spheres.hertz import Material, Sphere
 from validation.scenes.checks import SceneError, each, integer, of_scene, positive, real
+from validation.scenes.columns import columns
+from validation.scenes.document import overlap
 from validation.scenes.forcing import DAMPINGS, Damping, Drive
 from validation.scenes.materials import contact_stiffness
 from validation.scenes.scene import Scene
@@ -165,7 +163,7 @@ def scene(content: Any) -> Scene:
     if result.samples * listening > MOST_SAMPLES:
         each_of = f"samples is {result.samples}, for each of {listening} sensors"
         raise SceneError(f"{each_of}: all may take {MOST_SAMPLES} together")
-    if (pressed := _overlap(result)) and not start.read("overlap", flag, False):
+    if (pressed := overlap(result)) and not start.read("overlap", flag, False):
         into = f"bead {pressed} into {'the wall' if pressed == n else f'bead {pressed + 1}'}"
         raise SceneError(f"start.displacements press {into}: start.overlap = true allows it")
     return result
@@ -248,22 +246,6 @@ def _law(value: Any, name: str) -> ContactLaw:
     return named(title.strip(), *(parameters.split(",") if colon else ()))
 
 
-def _law_text(law: ContactLaw) -> str:
-    """The text that `_law` reads; raises `SceneError` for a law without a name.
-
-    A named law's parameters are among the numbers in F, their negatives and their reciprocals.
-    """
-    numbers = {x for x in law.F.atoms(sp.Number) if x}
-    numbers |= {1 / x for x in numbers} | {sp.S.One}
-    numbers |= {-x for x in numbers} | {sp.S.Zero}
-    for title in NAMES:
-        for values in product(sorted(numbers), repeat=len(named(title).symbols)):
-            with suppress(InputError):
-                if named(title, *values) == law:
-                    return f"{title}:{','.join(map(str, values))}"
-    raise SceneError(f"law is {law.F}: a file holds the laws {', '.join(NAMES)}")
-
-
 def _of_contacts(value: Any, name: str, period: int, count: int) -> list[float]:
     """Read the numbers of all contacts from one number, those of a cell, or one for each."""
     if not isinstance(value, list):
@@ -288,85 +270,22 @@ def _damping(given: Table) -> Damping:
     return Damping(kind, given.read(kind, real))
 
 
+def _motion(value: Any, name: str) -> dict[str, Array]:
+    """Read the columns time and displacement of a CSV file."""
+    if not isinstance(value, str):
+        raise SceneError(f"{name} is {shorten(value)}: the name of a CSV file is wanted")
+    return columns(value, "time", "displacement")
+
+
 def _drive(given: Table) -> Drive:
-    """The motion of bead 1; raises `SceneError` for a file that has not two columns of numbers."""
-    rows = {name: given.read(name, each(real), ()) for name in ("time", "displacement")}
+    """The motion of bead 1, by numbers or from a file."""
+    names = ("time", "displacement")
+    rows: dict[str, Any] = {name: given.read(name, each(real), ()) for name in names}
     if "file" in given:
-        path = given.entries["file"]
-        try:
-            columns = _columns(Path(path).read_text(encoding="utf-8"))
-            rows = dict(zip(rows, columns, strict=True))
-        except (OSError, TypeError, ValueError) as error:
-            raise SceneError(
-                f"drive.file is {shorten(path)}: two columns, time and displacement, are wanted "
-                f"({str(error).splitlines()[0]})"
-            ) from None
+        rows = {name: column.tolist() for name, column in given.read("file", _motion).items()}
     numbers = {
         name: given.read(name, real)
         for name in ("velocity", "amplitude", "frequency", "ramp")
         if name in given
     }
     return Drive(**rows, **numbers)
-
-
-def _columns(text: str) -> list[list[float]]:
-    """The columns of a CSV file of numbers, below a line of names if there is one."""
-    lines = [line for line in text.splitlines() if line.partition("#")[0].strip()]
-    named_columns = lines and any(c.isalpha() and c not in "eE" for c in lines[0])
-    numbers = [list(map(float, line.split(","))) for line in lines[bool(named_columns) :]]
-    return [list(column) for column in zip(*numbers, strict=True)]
-
-
-def _overlap(what: Scene) -> int:
-    """Number of the first contact without static force that the start compresses, or 0."""
-    if what.gravity or what.precompression:
-        return 0
-    pairs = pairwise((*what.displacements, 0.0))  # beyond them, and at the wall
-    deeper = (i for i, (y, after) in enumerate(pairs, start=1) if y > after)
-    return next((i for i in deeper if i <= what.contact_count), 0)
-
-
-def document(what: Scene) -> dict[str, Any]:
-    """The content of a scene's file, for JSON; `scene` reads an equal scene from it."""
-    period = _period(what)
-    chain: dict[str, Any] = {"cell": list(what.masses[:period])}
-    chain |= {"k": what.k} if what.law is None else {"law": _law_text(what.law)}
-    if period < what.size:
-        chain["repeat"] = what.size // period
-    for name in ("stiffnesses", "spacings"):
-        if values := getattr(what, name):
-            chain[name] = values[0] if len(set(values)) == 1 else list(values[:period])
-    result: dict[str, Any] = {"duration": what.duration, "samples": what.samples}
-    own = {name: getattr(what, name) for name in ("units", "gravity", "precompression")}
-    result |= {name: value for name, value in own.items() if value} | {"chain": chain}
-    if what.wall is not None:
-        result["wall"] = {"stiffness": what.wall}
-    if what.damping is not None:
-        result["damping"] = {what.damping.kind: what.damping.value}
-    if what.drive is not None:
-        drive = {f.name: getattr(what.drive, f.name) for f in fields(what.drive)}
-        result["drive"] = {
-            name: list(value) if isinstance(value, tuple) else value
-            for name, value in drive.items()
-            if value or (value == 0 and name != "ramp")
-        }
-    if len(what.velocities) == 1 and not what.displacements:
-        result["striker"] = {"velocity": what.velocities[0]}
-    elif what.velocities or what.displacements:
-        start = {"velocities": what.velocities, "displacements": what.displacements}
-        result["start"] = {name: list(values) for name, values in start.items() if values}
-        if _overlap(what):
-            result["start"]["overlap"] = True
-    sensors = {"beads": what.bead_sensors, "contacts": what.contact_sensors}
-    heard = {name: [i + 1 for i in indices] for name, indices in sensors.items() if indices}
-    return result | ({"sensors": heard} if heard else {})
-
-
-def _period(what: Scene) -> int:
-    """Size of the smallest cell whose repetition is the chain."""
-    n, rows = what.size, (what.masses, what.stiffnesses, what.spacings)
-    return next(
-        p
-        for p in range(1, n + 1)
-        if n % p == 0 and all(row[p:] == row[: max(len(row) - p, 0)] for row in rows)
-    )

@@ -18,8 +18,8 @@ from validation.report.command import study
 from validation.report.result import Report
 from validation.report.table import Column, Table
 from validation.scenes.checks import SceneError
+from validation.scenes.columns import columns
 from validation.scenes.scenefile import read_scene
-from validation.studies.records import columns
 
 _COLUMNS = (
     *(Column("", "sensor"), Column("kind"), Column("number")),

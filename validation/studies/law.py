@@ -26,7 +26,7 @@ from validation.report.result import Report
 from validation.report.table import Column, Table
 from validation.scenes.chains import numbered
 from validation.scenes.checks import SceneError, integer, of_scene
-from validation.studies.records import columns
+from validation.scenes.columns import columns
 
 _LAW = (
     Column("compression_value", "compression", format=".6g"),

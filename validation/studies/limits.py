@@ -164,7 +164,7 @@ def limits(progress: Progress[Case] = iter) -> Limits:
             rows += quantity_rows(quantity, omega, [t[quantity] for t in theory], found)
     rows += _limit_rows([lattice[EXPONENTS[0], omega, 1.0] for omega in LIMIT])
     for k in EXPONENTS:
-        # The lattice scales exactly: the error is the integration's.
+        # The lattice scales exactly; the ± is that of speeds and forces that still settle.
         pulses = [lattice[k, EQUAL, B] for B in AMPLITUDES]
         power = exponent([p["speed"] for p in pulses], [p["force"] for p in pulses])
         force_exponent = waves[k, EQUAL].force_exponent

@@ -9,10 +9,9 @@ header, but neither result nor scene. Forces are total: static forces are includ
 
 from __future__ import annotations
 
-import csv
 import io
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -22,7 +21,6 @@ from numpy.typing import NDArray
 
 from lwa.base import files
 from lwa.base.arrays import Array
-from lwa.base.exact import shorten
 from validation.lattice.run import Records, Run
 from validation.report.files import replacing
 from validation.scenes.checks import SceneError, of_scene
@@ -83,35 +81,6 @@ def load(path: str | Path) -> Stored:
         raise SceneError(f"{path}: {files.reason(error)}") from None
     except Exception:  # NumPy's errors of damaged files are of many kinds
         raise SceneError(f"{path}: not what `lwa-validate run --out` writes") from None
-
-
-def columns(path: str | Path, *wanted: str, optional: Sequence[str] = ()) -> dict[str, Array]:
-    """Columns of a CSV file with a header, each (N,), by their names without units.
-
-    A header such as "force (N)" names the column "force". Raises `SceneError`, in one line, for a
-    file without a wanted column, and for entries that are no finite numbers.
-    """
-    try:
-        text = of_scene(files.content)(Path(path), _MOST_BYTES).decode("utf-8-sig")
-    except (OSError, UnicodeDecodeError) as error:
-        raise SceneError(f"{path}: {files.reason(error)}") from None
-    header, *rows = csv.reader(text.splitlines()) if text.strip() else [[]]
-    names = [name.partition("(")[0].strip() for name in header]
-    found = {}
-    for name in (*wanted, *optional):
-        if names.count(name) != 1 and (name in wanted or name in names):
-            there = shorten(names)
-            raise SceneError(f"{path}: one column {name} is wanted, the header has {there}")
-        if name in names:
-            place = names.index(name)
-            cells = [row[place] if place < len(row) else "" for row in rows if row]
-            try:
-                found[name] = np.array(cells, float)
-            except ValueError as error:
-                raise SceneError(f"{path}: column {name}: {error}") from None
-            if not np.isfinite(found[name]).all():
-                raise SceneError(f"{path}: column {name}: finite numbers are wanted")
-    return found
 
 
 def _text(file: Path) -> tuple[dict[str, Any], dict[str, Any]]:

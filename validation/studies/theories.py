@@ -109,7 +109,7 @@ class Rung:
 
 @dataclass(frozen=True)
 class Place:
-    """All theories at one k and ω, with the truth by `NAMES` and its ``kind``."""
+    """Rungs of all theories at one k and ω, with the truth by `NAMES` and its ``kind``."""
 
     k: sp.Rational
     omega: sp.Rational
@@ -198,7 +198,7 @@ def _panel(axis: str, title: str, places: Sequence[tuple[sp.Rational, Place]]) -
 
 
 def place(k: sp.Rational, omega: sp.Rational, kind: str = SOLITARY) -> Place:
-    """All theories at one k and ω."""
+    """Compare all theories with the truth at one k and ω."""
     numbers: Mapping[str, Measured]
     if kind == SOLITARY:
         numbers = measured(exact_wave((1.0,) if omega == 1 else (1.0, float(omega)), float(k)))

@@ -37,7 +37,9 @@ def test_the_loss_at_a_single_bead_is_quadratic_with_a_correction_of_opening_con
     assert np.polyfit(np.log(e), np.log(heavy * e**2), 1)[0] == pytest.approx(2.3, abs=0.05)
 
 
-@pytest.mark.parametrize(("spread", "share"), [(0.1, 0.3), (0.2, 0.15)])
+@pytest.mark.parametrize(
+    ("spread", "share"), [(0.1, 0.3), pytest.param(0.2, 0.15, marks=pytest.mark.slow)]
+)
 def test_the_decay_is_the_mean_loss_at_single_beads(spread, share):
     found = disorder(spread=spread, chains=40).document()
     off = found["decay_value"] - found["theory_value"]

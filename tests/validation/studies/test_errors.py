@@ -186,6 +186,7 @@ def test_disorder(monkeypatch):
     held(found, again)
 
 
+@pytest.mark.slow
 def test_widths(monkeypatch):
     found = widths.widths()
     monkeypatch.setattr(paper, "TOLERANCES", (1e-13, 1e-12))

@@ -94,7 +94,7 @@ def test_an_error_of_a_few_ulps_is_seen(monkeypatch):
 
 
 def test_the_printed_route_is_the_same_theory():
-    """Where nothing cancels both give the same β, to 1e-13 as some ten operations may."""
+    """Both give the same β where nothing cancels, to 1e-13 as some ten operations may."""
     k, omega = np.meshgrid([1.5, 2.0, 2.5], [0.1, 0.2733, 1.0])
     wave = closed_wave("paper's closure").numeric()
     np.testing.assert_allclose(printed_beta(k, omega), wave.beta(k, omega), rtol=1e-13)
@@ -210,7 +210,7 @@ def test_the_document_holds_the_contract(capsys, monkeypatch, tmp_path):
     assert load["ok"]
     assert long["outcome"].startswith(f"{failed} not as expected, which was: ") == (failed > 0)
     assert long["question"].endswith("does the energy drift?")
-    assert 0 < load["loss_ulps_value"] < 4
+    assert 0 < load["loss_ulps_value"] < 8
     assert {"energy_error_value", "trend_value", "findings", "statements", "panel"} <= {*long}
     assert load["panel"]["scale"] == "xy"
     assert "<!-- under-load -->" in picture.read_text()

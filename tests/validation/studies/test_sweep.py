@@ -107,7 +107,7 @@ class Stop(Exception):
 
 
 @given(cut=st.integers(min_value=0, max_value=10_000))
-@settings(max_examples=25)
+@settings(max_examples=8)
 def test_a_torn_end_costs_only_the_point_that_was_being_written(content, tmp_path_factory, cut):
     file = tmp_path_factory.mktemp("torn") / "s.jsonl"
     torn = content[: cut % (len(content) + 1)]
@@ -480,7 +480,7 @@ def test_bad_input_is_one_line_and_leaves_nothing(
     stop=st.fractions(3, 5, max_denominator=50),
     count=st.integers(2, 40),
 )
-@settings(max_examples=10)
+@settings(max_examples=4)
 def test_a_range_is_exact_and_equidistant(start, stop, count):
     seen = []
 
