@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from validation.lattice.run import IntegrationError, Run
     from validation.lattice.simulate import simulate, simulate_many
     from validation.pulses.pulse import MeasureError, Pulse, measure
+    from validation.scenes.forcing import Damping, Drive
     from validation.scenes.scene import Scene, SceneError
     from validation.scenes.scenefile import read_scene
     from validation.studies.records import load
@@ -23,6 +24,8 @@ if TYPE_CHECKING:
     from validation.waves.solver import exact_wave
 
 __all__ = [
+    "Damping",
+    "Drive",
     "ExactWave",
     "IntegrationError",
     "MeasureError",
@@ -42,6 +45,7 @@ _PLACES = {
     "lattice.run": ("IntegrationError", "Run"),
     "lattice.simulate": ("simulate", "simulate_many"),
     "pulses.pulse": ("MeasureError", "Pulse", "measure"),
+    "scenes.forcing": ("Damping", "Drive"),
     "scenes.scene": ("Scene", "SceneError"),
     "scenes.scenefile": ("read_scene",),
     "studies.records": ("load",),

@@ -118,6 +118,9 @@ def radiation(cell: Cell, k: sp.Expr) -> Radiation | None:
     values = _values(model)
     trace = [_float(t, values) for t in Bloch(model).trace(cell.size)]
     trace[0] = 0.0  # 2 cos(Pκ) = 2 at κ = 0, where one root is 0
+    squares = np.roots(trace[:0:-1]).real
+    if not squares.size:  # optical frequencies beyond a double: the pulse excites none
+        return None
     wave = Recursion(model, 2)
     I = _float(wave.I, (1.0, *values))
     first = by_degree(wave.fields.log_force[0][2])
@@ -125,7 +128,7 @@ def radiation(cell: Cell, k: sp.Expr) -> Radiation | None:
     return Radiation(
         contrast=(12 * I - 1) / 3,
         I=I,
-        optical=float(np.min(np.roots(trace[:0:-1]).real)),
+        optical=float(np.min(squares)),
         lightest=cell.size * min(_float(mu, (1.0, *values)) for mu in wave.mu),
         quadratic=quadratic / I**4,
         quartic=quartic / I**5,

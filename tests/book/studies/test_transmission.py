@@ -6,7 +6,7 @@ from book.studies.transmission import transmission
 from validation.scenes.checks import SceneError
 
 
-@pytest.mark.parametrize("masses", [(1, "1/2"), (1,)])
+@pytest.mark.parametrize("masses", [(1, "1/2"), pytest.param((1,), marks=pytest.mark.slow)])
 def test_a_shaken_chain_has_blochs_gaps(masses):
     report = transmission(masses, frequencies=5)
     assert report.ok

@@ -530,6 +530,7 @@ def test_powers_of_the_full_closure_are_written_once(capsys, options):
         "expansion --k 1.5123456789 --masses 1,2 --stiffnesses 1/7,3 --order 2",
         "wave --k 3/2 --masses 1,1 --stiffnesses 1e-400,1e-400 --force 1",
         "derive --law magnetic:1e9,m",
+        "wave --k 3/2 --masses 1,2 --stiffnesses 1,1e400 --closure full --field center",
     ],
 )
 def test_long_exponents_are_printed(capsys, command):

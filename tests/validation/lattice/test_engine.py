@@ -222,7 +222,7 @@ def test_chains_that_fly_apart_and_meet(seed):
 @pytest.mark.parametrize(("root", "q"), [(-0.6, 1.0), (0.3, 1.0), (0.3, -1.0), (1.7, -1.0)])
 def test_the_integrals_of_a_force_with_a_kink(k, root, q):
     """∫ p_+^k and ∫ (1 - u) p_+^k over a step, against SciPy's quadrature."""
-    chain = Chain(*np.zeros((4, 1)), LAWS.get(k, 0), k)
+    chain = Chain(*np.zeros((4, 1)), LAWS.get(k, 0), k, 0, 0, 0, False)
     coefficients = q * np.array([1.0, 0.2, -0.1, 0.05, 0.02])
     u, w = scipy.special.roots_jacobi(8, 0.0, k)
     points = np.stack(((1 + u) / 2, w / 2 ** (k + 1)))
@@ -374,7 +374,7 @@ def test_a_step_that_is_too_long_is_not_silent():
         (dict(method="SRKN14", step=0), "step is 0: it must be positive"),
         (
             dict(method="SRKN14", step=1e-300),
-            "duration is 1: this makes 1.0e.300 steps of SRKN14, ",
+            "duration is 1: this makes 1.0e.300 steps of SRKN14; ",
         ),
         (dict(method="SRKN14", rtol=0), "rtol is 0: it lies between"),
         (dict(method="SRKN14", window=3), "window is 3: an integer from 8 on is wanted"),
