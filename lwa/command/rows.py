@@ -113,7 +113,7 @@ class Answer:
         found = row.digits
         if isinstance(found, Resummed):
             _put(result, row.key, "_value", found.value)
-            _put(result, row.key, "_error_value", found.error)
+            _put(result, row.key, "_error_value", None if math.isnan(found.error) else found.error)
         elif isinstance(found, InputError):
             _put(result, row.key, "_value", None)
             _put(result, row.key, "_error_value", None)
@@ -245,6 +245,8 @@ def _approximate_latex(value: sp.Expr) -> str:
 
 def summed(found: Resummed, unit: str, order: bool) -> str:
     """A sum to as many digits as the error lets stand, and one more; with its order."""
+    if math.isnan(found.error):
+        return f"{found.value:.4g}{unit}, error unknown"
     digits = min(16, 2 - math.floor(math.log10(found.error / found.value)))
     note = "; higher orders do not help" if found.asymptotic else ""
     value = f"{found.value:.{digits}g} ± {found.error:.1e}{unit}"

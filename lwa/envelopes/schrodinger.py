@@ -158,6 +158,8 @@ class Envelope(Value):
         """
         if (frequency is None) == (detuning is None):
             raise InputError("frequency or detuning: one of the two is wanted")
+        if kind not in ("", *KINDS):
+            raise InputError(f"kind is {shorten(kind)}: {' or '.join(KINDS)} is wanted")
         if detuning is None:
             detuning = 1 - positive(frequency, "frequency") / self.frequency
         if self.group_velocity.is_zero is not True:

@@ -15,6 +15,7 @@ also called asymptotic where later windows spread more. The error by radiation
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -53,9 +54,10 @@ class Resummed(Value):
     asymptotic: bool
 
     def latex(self) -> str:
-        """The sum and its error, such as 1.411928 ± 3.0 · 10^{-6}."""
+        """The sum and its error, if known, such as 1.411928 ± 3.0 · 10^{-6}."""
         parts = ((self.value, 10), (self.error, 2))
-        return r" \pm ".join(str(sp.latex(sp.Float(x, digits))) for x, digits in parts)
+        known = ((x, digits) for x, digits in parts if not math.isnan(x))
+        return r" \pm ".join(str(sp.latex(sp.Float(x, digits))) for x, digits in known)
 
     def _repr_latex_(self) -> str:
         return f"${self.latex()}$"

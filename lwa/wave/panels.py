@@ -15,7 +15,7 @@ import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
-from lwa.base.arrays import Array
+from lwa.base.arrays import Array, Extended
 
 POINTS = 20
 """Gauss points of a panel."""
@@ -67,8 +67,17 @@ class Grid(NamedTuple):
 @cache
 def gauss() -> tuple[Array, Array]:
     """Nodes and weights on [0, 1]."""
-    x, w = legendre.leggauss(POINTS)
-    return (x + 1) / 2, w / 2
+    x, w = _extended_gauss()
+    return x.astype(np.float64), w.astype(np.float64)
+
+
+def _extended_gauss() -> tuple[Extended, Extended]:
+    """NumPy's nodes after a Newton step in extended precision, w = 2/((1-x²) P_n′²), on [0, 1]."""
+    basis = np.eye(POINTS + 1, dtype=np.longdouble)[-1]
+    slope = legendre.legder(basis)
+    x = legendre.leggauss(POINTS)[0].astype(np.longdouble)
+    x = x - legendre.legval(x, basis) / legendre.legval(x, slope)
+    return (x + 1) / 2, 1 / ((1 - x**2) * legendre.legval(x, slope) ** 2)
 
 
 @cache
@@ -94,8 +103,11 @@ def grid(parts: int = 1, halvings: int = 0, deep: bool = False) -> Grid:
     above += [_HALF * i / parts for i in range(1, parts + 1)] + [1.3, 1.8] * deep
     edges = np.array([*above, *_TAIL])
     starts, lengths = edges[:-1], np.diff(edges)
-    theta = (starts[:, None] + lengths[:, None] * x).ravel()
-    ds = _measure(theta) * (lengths[:, None] * w).ravel()
+    fine_x, fine_w = _extended_gauss()
+    fine = (starts[:, None] + lengths[:, None] * fine_x).ravel()
+    s, y2 = ((1 / np.cosh(fine) ** 2).astype(np.float64), (np.tanh(fine) ** 2).astype(np.float64))
+    ds = (_measure(fine) * (lengths[:, None] * fine_w).ravel()).astype(np.float64)
+    theta = fine.astype(np.float64)  # s, y2 and ds are rounded once: V² sums them
     upper = len(above) - 1
 
     def row(at: float) -> Array:
@@ -114,16 +126,14 @@ def grid(parts: int = 1, halvings: int = 0, deep: bool = False) -> Grid:
                 found[own] += part @ legendre.legvander(local, POINTS - 1) @ _fitted()
         return found
 
-    s, y2 = 1 / np.cosh(theta) ** 2, np.tanh(theta) ** 2
     kernel = np.array([row(at) for at in theta[: POINTS * upper]])
     last = row(float(edges[upper]))
     return Grid(s, y2, ds, starts[:upper], lengths[:upper], kernel, 2 * s * y2 * ds, last)
 
 
-def _measure(theta: Array) -> Array:
+def _measure(theta: Any) -> Any:
     """|ds/dθ|."""
-    found: Array = 2 * np.tanh(theta) / np.cosh(theta) ** 2
-    return found
+    return 2 * np.tanh(theta) / np.cosh(theta) ** 2
 
 
 def _above(theta: Array, at: float) -> Array:

@@ -82,7 +82,7 @@ class NumericBackground(Value):
         return self.law.latex_rows()
 
     def speed_squared(self, p0: ArrayLike, B: ArrayLike) -> Array:
-        """V² = Q(B), for power laws to k = 5 good to 6 ulps at any p0/B."""
+        """V² = Q(B), for power laws to k = 5 good to 4 ulps at any p0/B."""
         p0, B, unit = self._waves(p0, B)
         square = self._by_block(self._squares, p0, B)
         with np.errstate(over="ignore", under="ignore"):

@@ -62,7 +62,7 @@ class Mapped:
 
     @property
     def times(self) -> Array:
-        """Those of the signal."""
+        """Times of the underlying signal."""
         return self.signal.times
 
     def __call__(self, time: ArrayLike, /) -> Array:

@@ -1,4 +1,4 @@
-"""How the theory's error vanishes as k → 1, and what it is measured by.
+"""Leading powers of the theory's error as k → 1.
 
 The powers and the coefficients of the error follow from log v as a series in ε at fixed X = √ε x
 (D = 1, equal masses). The lattice's exact wave has -3X² + ε (18/5 X² - 3/10 X⁴) + …, the theory's
@@ -24,7 +24,7 @@ QUANTITIES = ("FWHM of force", "FWHM of strain", "support π/β", "speed V_s at 
 
 @dataclass(frozen=True)
 class Law:
-    """How the theory's error vanishes: coefficient · ε^order, and the bounds that hold it to that.
+    """Leading power of the theory's error, coefficient · ε^order, and bounds of a measurement.
 
     constant : |error| ≤ constant · ε^order at each k measured.
     order_bound, coefficient_bound : relative, on the fitted order and the extrapolated coefficient.
@@ -37,7 +37,7 @@ class Law:
     coefficient_bound: float
 
     def bound(self, k: sp.Expr) -> float:
-        """Of the error at k."""
+        """Bound of the error at k."""
         return self.constant * float(k - 1) ** self.order
 
 
@@ -48,6 +48,6 @@ LAWS = dict(zip(QUANTITIES, (_WIDTH, _WIDTH, _SUPPORT, _SPEED), strict=True))
 
 
 def theory_values(wave: TravelingWave) -> dict[str, sp.Expr]:
-    """`QUANTITIES` of the theory, exact."""
+    """Exact values of `QUANTITIES` for the theory's wave."""
     values = wave.fwhm("force"), wave.fwhm("strain"), wave.width, wave.speed(1)
     return dict(zip(QUANTITIES, values, strict=True))

@@ -120,6 +120,19 @@ def test_bad_files_are_one_line(capsys, scene, chain, more, words):
     assert words in err
 
 
+def test_an_error_that_was_not_measured_is_null(capsys, tmp_path):
+    """A strike at k = 6/5: beyond the exponents at which the rule's error was measured."""
+    file = tmp_path / "chain.toml"
+    file.write_text("[chain]\ncell = [1]\nk = 1.2\nspacings = [1]\n")
+    options = ("strike", "--spheres", str(file), "--velocity", "1")
+    assert result(capsys, *options)["force_error_value"] is None
+    for style, words in (("text", "error unknown"), ("latex", "F &= 0.4995")):
+        status, out, _ = run(capsys, *options, "--format", style)
+        assert status == 0
+        assert words in out
+        assert "NaN" not in out
+
+
 def test_a_strike_in_si(capsys, scene):
     """The striker is one of the beads unless its mass is given; 0.5 m of fall are 3.13 m/s."""
     file = scene(without_load(BEADS))

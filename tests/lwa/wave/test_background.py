@@ -149,7 +149,7 @@ def test_float64_is_the_quadrature_of_many_digits(law, load, rise, quantity):
     st.sampled_from(["strain", "force"]),
 )
 def test_float64_over_all_loads(exponent, rise, k, quantity):
-    """V² to 6 ulps of its definition at 120 digits, FWHM to 1e-12 of another quadrature's."""
+    """V² to 4 ulps of its definition at 120 digits, FWHM to 1e-12 of another quadrature's."""
     load = 10.0**exponent * rise
     numeric = NUMERIC[k]
     with mpmath.workdps(120):
@@ -160,7 +160,7 @@ def test_float64_over_all_loads(exponent, rise, k, quantity):
         )
         exact = 2 * ((a + b) ** (e + 1) - a ** (e + 1) - (e + 1) * a**e * b) / (e * (e + 1) * b * b)
         found = float(numeric.speed_squared(load, rise))
-        assert abs(found - exact) <= 6 * np.spacing(found)
+        assert abs(found - exact) <= 4 * np.spacing(found)
     wave = compression(law=k, load=sp.Rational(load))
     expected = wave.fwhm(sp.Rational(rise), quantity)
     assert float(numeric.fwhm(load, rise, quantity)) == pytest.approx(float(expected), rel=1e-12)
