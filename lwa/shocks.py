@@ -28,6 +28,7 @@ from lwa.base.frozen import Value
 from lwa.cell import Cell, substitution
 from lwa.expansion.expand import expand
 from lwa.expansion.physical import ExpandedWave
+from lwa.expansion.strike import ORDER
 from lwa.law import ContactLaw, for_cell
 from lwa.linear.dispersion import Dispersion
 
@@ -39,9 +40,6 @@ STEEPEST = sp.Rational(13, 10)
 
 DIGITS = 20
 """Digits of roots and quadratures."""
-
-ORDER = 10
-"""Order in k - 1 of `Shock.wave`."""
 
 
 @dataclass(frozen=True)

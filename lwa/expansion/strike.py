@@ -27,7 +27,7 @@ GRAVITY = sp.Rational("9.80665")
 """Standard gravity in m/s², of strikers that drop."""
 
 ORDER = 10
-"""Order in k - 1 of the sums that a strike uses."""
+"""Order in k - 1 of the sums for strikes and shocks."""
 
 
 @dataclass(frozen=True)
