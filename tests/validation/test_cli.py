@@ -359,7 +359,7 @@ def test_output_on_a_full_disk_is_one_line(scene_file):
             stderr=subprocess.PIPE,
             text=True,
             check=False,
-            timeout=120,
+            timeout=240,
         )
     said = "lwa-validate: the output: No space left on device\n"
     assert (ended.returncode, ended.stderr) == (2, said)
@@ -457,7 +457,7 @@ def test_help(study, flag):
 def test_it_says_its_version_and_its_name(program):
     for flag, first in (("--version", "lwa-validate "), ("-h", "Usage: lwa-validate ")):
         shown = subprocess.run(
-            [*program, flag], capture_output=True, text=True, check=True, timeout=120
+            [*program, flag], capture_output=True, text=True, check=True, timeout=240
         )
         assert shown.stdout.startswith(first)
 
@@ -465,7 +465,7 @@ def test_it_says_its_version_and_its_name(program):
 def test_the_installed_command():
     ended = subprocess.run(
         [COMMAND, "paper", "--beads", "20", "--sensors", "8,15", "--format", "json"],
-        capture_output=True, text=True, check=False, timeout=120
+        capture_output=True, text=True, check=False, timeout=240
     )  # fmt: skip
     assert (ended.returncode, ended.stderr) == (0, "")
     assert json.loads(ended.stdout)["rows"]
@@ -474,7 +474,7 @@ def test_the_installed_command():
         capture_output=True,
         text=True,
         check=False,
-        timeout=120,
+        timeout=240,
     )
     assert (ended.returncode, ended.stdout) == (2, "")
     assert ended.stderr.count("\n") == 1
@@ -486,7 +486,7 @@ def test_matplotlib_is_loaded_only_for_a_picture():
         "'--sensors', '4,8'], standalone_mode=False); assert 'matplotlib' not in sys.modules"
     )
     ended = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, check=False, timeout=120
+        [sys.executable, "-c", code], capture_output=True, check=False, timeout=240
     )
     assert ended.returncode == 0, ended.stderr
 
@@ -621,7 +621,7 @@ def test_a_closed_pipe_is_no_failure(scene_file):
             running.stdout.close()
             assert running.stderr is not None
             assert running.stderr.read() == b""
-            assert running.wait(timeout=120) == 141  # of Unix tools that lose their reader
+            assert running.wait(timeout=240) == 141  # of Unix tools that lose their reader
 
 
 @pytest.mark.parametrize(
@@ -699,7 +699,7 @@ def test_a_study_is_loaded_when_it_is_called():
             print({"numpy", "scipy", "numba", "matplotlib"} & {*sys.modules})
     """
     done = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=120
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=240
     )
     assert re.findall(r"(?m)^(?:set\(\)|\{.*)$", done.stdout) == ["set()"] * 3
 

@@ -84,7 +84,7 @@ def pulses(time: ArrayLike, signal: ArrayLike, least: float = 0.01) -> list[Puls
 
     >>> t = np.linspace(0, 4 * np.pi, 1001)
     >>> [round(pulse.peak, 3) for pulse in pulses(t, np.sin(t) * np.exp(-t / 10))]
-    [0.857, 0.457]
+    [0.859, 0.458]
     """
     sampled = Sampled(time, signal)
     return [dense(sampled, pulse) for pulse in all_pulses(sampled, least)]
