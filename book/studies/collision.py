@@ -24,6 +24,7 @@ import sympy as sp
 
 from lwa import Cell, Power
 from lwa.base.arrays import Array
+from lwa.base.exact import exact
 from lwa.base.progress import Progress
 from lwa.command.reading import quantities
 from lwa.equation.evolution import Evolution
@@ -79,11 +80,12 @@ def collision(
     """
     if not exponents:
         raise SceneError("k is empty: at least one exponent is wanted")
-    for k in exponents:
+    ks = [exact(k, "k") for k in exponents]
+    for k in ks:
         between(k, "k", 1.05, 3)
     between(second, "second", 0.1, 1)
     found = {}
-    for k in progress([sp.sympify(k) for k in exponents]):
+    for k in progress(ks):
         found[k] = tuple(
             [run(k, second, rtol, samples) for rtol, samples in _RUNS]
             for run in (in_equation, on_lattice)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 from collections.abc import Iterator, Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from html import escape
 from pathlib import Path
 from typing import Any
@@ -14,7 +14,7 @@ from validation.pictures.figure import Pictured, svg
 from validation.pictures.panel import Panel
 from validation.report import text as texts
 from validation.report.files import replacing
-from validation.report.table import Finding, Statement, Table, plain
+from validation.report.table import Finding, Table, plain
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,8 +23,7 @@ class Report(Pictured):
 
     title : what was computed, in one or a few lines.
     tables : text shows those with column labels, JSON those with a key.
-    findings : numbers held to bounds, and statements. Beside tables, text shows only those that
-        fail.
+    findings : numbers held to bounds. Beside tables, text shows only those that fail.
     panels : of the picture.
     notes : explanations below the tables.
     data : entries that go to JSON unchanged.
@@ -41,7 +40,7 @@ class Report(Pictured):
 
     title: str
     tables: tuple[Table, ...] = ()
-    findings: tuple[Finding | Statement, ...] = ()
+    findings: tuple[Finding, ...] = ()
     panels: tuple[Panel, ...] = ()
     notes: tuple[str, ...] = ()
     data: Mapping[str, Any] = field(default_factory=dict)
@@ -56,7 +55,7 @@ class Report(Pictured):
     def verdict(self) -> str:
         """Number of findings that hold; empty for a report without findings.
 
-        >>> Report("", findings=(Statement("refused", "k is 1", True),)).verdict
+        >>> Report("", findings=(Finding("order", 2.4, 2.0, 3.0),)).verdict
         '1 check: all hold'
         """
         count = len(found := self._all_findings())
@@ -72,16 +71,15 @@ class Report(Pictured):
     def document(self) -> dict[str, Any]:
         """The report for JSON: ``data``, each table under its key, and the findings.
 
-        With findings: ``ok``, ``findings``, ``statements``, and KEY_value of each finding that has
-        a key.
+        With findings: ``ok``, ``findings``, ``statements`` (empty), and KEY_value of each finding
+        that has a key.
         """
         found: dict[str, Any] = dict(plain(self.data))
         found |= {table.key: table.document() for table in self.tables if table.key}
         if self.findings:
-            numbers = [f for f in self.findings if isinstance(f, Finding)]
-            found |= {f"{f.key}_value": plain(f.value) for f in numbers if f.key}
-            found["findings"] = [f.document() for f in numbers]
-            found["statements"] = [asdict(s) for s in self.findings if isinstance(s, Statement)]
+            found |= {f"{f.key}_value": plain(f.value) for f in self.findings if f.key}
+            found["findings"] = [f.document() for f in self.findings]
+            found["statements"] = []  # a key of the format; all findings are numbers
         return found | ({"ok": self.ok} if self._all_findings() else {})
 
     def csv(self) -> str:
@@ -122,18 +120,18 @@ class Report(Pictured):
         for part in self.parts:
             yield from part._tree()
 
-    def _all_findings(self) -> list[Finding | Statement]:
+    def _all_findings(self) -> list[Finding]:
         return [found for report in self._tree() for found in report.findings]
 
-    def _listed(self) -> list[str]:
+    def _listed(self) -> str:
         shown = any(texts.blocks(table) for table in self.tables)
         return texts.listed(self.findings, failing=shown)
 
     def _blocks(self) -> list[str]:
         title, *notes = map(texts.filled, (self.title, *self.notes))
-        return [title, *map(texts.text, self.tables), *self._listed(), *notes]
+        return [title, *map(texts.text, self.tables), self._listed(), *notes]
 
     def _html(self) -> str:
         title, *notes = (f"<p>{escape(line)}</p>" for line in (self.title, *self.notes))
-        listed = [f"<pre>{escape(block)}</pre>" for block in self._listed()]
-        return "".join((title, *map(texts.html, self.tables), *listed, *notes))
+        listed = f"<pre>{escape(found)}</pre>" if (found := self._listed()) else ""
+        return "".join((title, *map(texts.html, self.tables), listed, *notes))

@@ -1,4 +1,4 @@
-"""Tables of values, and findings: numbers held to bounds, or statements."""
+"""Tables of values, and findings: numbers held to bounds."""
 
 from __future__ import annotations
 
@@ -173,12 +173,3 @@ class Finding:
             "ok": self.ok,
         }
         return {name: plain(part) for name, part in found.items()}
-
-
-@dataclass(frozen=True)
-class Statement:
-    """A statement that holds or not, such as a refusal in its own words."""
-
-    quantity: str
-    says: str
-    ok: bool

@@ -9,7 +9,7 @@ from textwrap import fill
 from typing import Any
 
 from validation.pulses.pulse import Measured
-from validation.report.table import Column, Finding, Statement, Table
+from validation.report.table import Column, Finding, Table
 
 Lines = Sequence[Sequence[str]]
 
@@ -121,17 +121,14 @@ def _element(name: str, text: str) -> str:
     return f"<{name}>{escape(text)}</{name}>" if text else ""
 
 
-def listed(findings: Iterable[Finding | Statement], failing: bool = False) -> list[str]:
-    """Statements line by line, then a table of numbers; with ``failing`` only numbers that fail."""
-    shown = [f for f in findings if not failing or isinstance(f, Statement) or not f.ok]
-    parts = []
+def listed(findings: Iterable[Finding], failing: bool = False) -> str:
+    """Findings as a table, empty without any; with ``failing`` only those that fail."""
     lines = [("measured", "value", "expected", "")]
-    for f in shown:
-        if isinstance(f, Statement):
-            parts.append(filled(f"{f.quantity}: {f.says}{'' if f.ok else '  FAILS'}"))
+    for f in findings:
+        if failing and f.ok:
             continue
         value = f"{f.value:.6g}" + ("" if f.error is None else f" ± {f.error:.0e}")
         expected = bounds(f.low, f.high)
         word = "FAILS" if not f.ok else "" if expected == "-" else "ok"
         lines.append((f.quantity, value, expected, word))
-    return [*parts, aligned(lines)] if lines[1:] else parts
+    return aligned(lines) if lines[1:] else ""

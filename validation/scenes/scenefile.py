@@ -87,25 +87,8 @@ from validation.scenes.scene import Scene
 
 MOST_BEADS = 1_000_000
 MOST_SAMPLES = 10_000_000  # of all sensors together
-KEYS = {
-    "file": (
-        "duration",
-        "samples",
-        "units",
-        "gravity",
-        "precompression",
-        "materials",
-        "beads",
-        "chain",
-        "defects",
-        "wall",
-        "damping",
-        "drive",
-        "striker",
-        "start",
-        "sensors",
-    ),
-    "chain": ("cell", "k", "law", "stiffnesses", "spacings", "repeat"),
+_CHAIN = ("cell", "k", "law", "stiffnesses", "spacings", "repeat")
+_TABLES = {  # that a file may leave out
     "wall": ("material", "stiffness"),
     "damping": DAMPINGS,
     "drive": ("velocity", "amplitude", "frequency", "ramp", "file", "time", "displacement"),
@@ -113,6 +96,9 @@ KEYS = {
     "start": ("velocities", "displacements", "overlap"),
     "sensors": ("beads", "contacts"),
 }
+_NUMBERS = ("duration", "samples", "units", "gravity", "precompression")
+_FILE = (*_NUMBERS, "materials", "beads", "chain", "defects", *_TABLES)
+KEYS: Mapping[str, Sequence[str]] = {"file": _FILE, "chain": _CHAIN, **_TABLES}
 
 
 def read_scene(path: str | Path) -> Scene:
@@ -130,8 +116,7 @@ def scene(content: Any) -> Scene:
         content = content["scene"]
     file = Table(content, "", KEYS["file"])
     tables = {
-        name: file.read(name, table(KEYS[name]), Table({}, name, KEYS[name]))
-        for name in ("wall", "damping", "drive", "striker", "start", "sensors")
+        name: file.read(name, table(keys), Table({}, name, keys)) for name, keys in _TABLES.items()
     }
     materials = read_materials(file)
     beads = read_beads(file, materials)

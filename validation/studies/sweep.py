@@ -124,10 +124,8 @@ class Sweep:
     def _maps(self) -> tuple[Panel, ...]:
         x, y = (np.array(axis, float) for axis in (self.omegas, self.ks))
         decay, theory = self.map("decay"), 100 * self.error("linear", "width")
-        least, largest = (
-            1e-7,
-            min(np.nanmax([*np.abs(theory).flat, 1e-3]), 50.0),
-        )  # where colours end
+        # Where colours end.
+        least, largest = 1e-7, min(np.nanmax([*np.abs(theory).flat, 1e-3]), 50.0)
         decay = np.maximum(decay, least / 2)  # positive, for the logarithm
         percents = f"FWHM of force: {CLOSURES['linear']}/lattice - 1 (%)"
         i, j = np.nonzero(self.map("width", "error") > 0.01 * self.map("width"))

@@ -8,13 +8,13 @@ import pytest
 from lwa import InputError
 from validation.pictures.panel import Curve, Panel
 from validation.report.result import Report
-from validation.report.table import Column, Finding, Statement, Table
+from validation.report.table import Column, Finding, Table
 from validation.studies.limits import Limits
 
 PART = Report(
     "a part",
     (Table((Column("n", "sites"),), ((8,),)),),
-    (Statement("refused", "k is 1", True),),
+    (Finding("drift", 0.5, 0.0, 1.0),),
     (Panel("x", "y", (Curve.of("c", [1, 2], [3, 4]),)),),
 )
 
