@@ -23,7 +23,7 @@ import mpmath
 import sympy as sp
 
 from lwa.base import latex
-from lwa.base.exact import InputError, exact, positive, root, shorten
+from lwa.base.exact import InputError, exact, one_of, positive, root, shorten
 from lwa.base.frozen import Value
 from lwa.cell import Cell, substitution
 from lwa.expansion.expand import expand
@@ -116,8 +116,7 @@ class Shock(Value):
         Raises `lwa.InputError` for the dispersion ahead of which no sound runs, and for the
         doubling of unequal beads, whose peaks were measured between 1.55 and 1.94 v_p.
         """
-        if rule not in RULES:
-            raise InputError(f"rule is {shorten(rule)}: {' or '.join(RULES)} is wanted")
+        one_of(rule, RULES, "rule")
         c = self.sound(self.ahead)
         if self._rarefies:
             return c

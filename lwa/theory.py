@@ -10,12 +10,11 @@ import sympy as sp
 
 from lwa.algebra.model import Model, model_of
 from lwa.base import latex
-from lwa.base.exact import InputError, integer, shorten
-from lwa.base.frozen import Value
+from lwa.base.exact import InputError, integer, one_of, shorten
 from lwa.base.progress import shown
 from lwa.cell import Cell, exponent
 from lwa.cell import k as symbol_k
-from lwa.closure.consistency import BRANCHES, CLOSURES, FIELDS, Closure, solve
+from lwa.closure.consistency import BRANCHES, CLOSURES, FIELDS, OfClosure, solve
 from lwa.equation.evolution import Evolution
 from lwa.equation.pde import PDE
 from lwa.equation.terms import STRAIN, Terms, terms
@@ -29,25 +28,8 @@ MOST_TERMS = 1_000_000
 
 
 @dataclass(frozen=True)
-class Theory(Value):
+class Theory(OfClosure):
     """The long-wave theory of a chain (see `homogenize`)."""
-
-    closure: Closure
-
-    @property
-    def cell(self) -> Cell:
-        """The chain."""
-        return self.closure.model.cell
-
-    @property
-    def k(self) -> sp.Expr:
-        """The exponent of a power law; the local exponent 1 + φ_2 of another law."""
-        return self.closure.model.k
-
-    @property
-    def law(self) -> ContactLaw:
-        """The contact law."""
-        return self.closure.model.law
 
     @property
     def order(self) -> int:
@@ -162,9 +144,12 @@ def homogenize(
     if not isinstance(cell, Cell):
         raise InputError(f"cell is {shorten(cell)}: a Cell such as Dimer(m1, m2) is wanted")
     order = integer(order, "order", 1)
-    _one_of(closure, CLOSURES, "closure")
-    _one_of(branch, BRANCHES, "branch")
-    _one_of(field, FIELDS, "field")
+    for word, known, name in (
+        (closure, CLOSURES, "closure"),
+        (branch, BRANCHES, "branch"),
+        (field, FIELDS, "field"),
+    ):
+        one_of(word, known, name)
     model = _model(cell, k, law, branch, order)
     ring = model.ring
     parameters = len(ring.names) - max(len(ring.variables) - 1, 0)  # the φ_n grow as powers of k
@@ -199,8 +184,3 @@ def _affordable(order: int, parameters: int, closure: str) -> None:
             f"order is {order}: about {terms:.0e} terms, beyond memory; give numbers for the "
             "exponent and the cell, or a lower order"
         )
-
-
-def _one_of(value: str, known: tuple[str, ...], name: str) -> None:
-    if value not in known:
-        raise InputError(f"{name} is {shorten(value)}: one of {', '.join(known)} is wanted")

@@ -11,6 +11,7 @@ import keyword
 import math
 import operator
 import re
+from collections.abc import Collection
 from decimal import Decimal
 from fractions import Fraction
 from typing import Any
@@ -106,6 +107,14 @@ def positive(value: Any, name: str) -> sp.Expr:
     if expression.is_positive is False or (expression.is_number and not expression.is_positive):
         raise InputError(f"{name} is {expression}: it must be positive")
     return expression
+
+
+def one_of(value: Any, known: Collection[str], name: str) -> str:
+    """Return a word; raise `InputError` unless it is among the known ones."""
+    if not isinstance(value, str) or value not in known:
+        wanted = " or ".join(known) if len(known) == 2 else f"one of {', '.join(known)}"
+        raise InputError(f"{name} is {shorten(value)}: {wanted} is wanted")
+    return value
 
 
 def signed(value: Any, name: str) -> sp.Expr:

@@ -7,7 +7,7 @@ from typing import Any
 import sympy as sp
 
 from lwa.base.errors import NoSolitaryWave as NoSolitaryWave
-from lwa.base.exact import InputError, shorten
+from lwa.base.exact import one_of
 
 RISE = sp.Symbol("B", positive=True)
 """B, the peak strain of a wave, unless the caller gives another."""
@@ -32,14 +32,9 @@ def strain_power(quantity: str, k: Any) -> Any:
 
 def known(quantity: str) -> str:
     """Return the quantity; raise `lwa.InputError` unless it is among `QUANTITIES`."""
-    if not isinstance(quantity, str) or quantity not in QUANTITIES:
-        raise InputError(
-            f"quantity is {shorten(quantity)}: one of {', '.join(QUANTITIES)} is wanted"
-        )
-    return quantity
+    return one_of(quantity, QUANTITIES, "quantity")
 
 
 def known_extent(extent: str) -> None:
     """Raise `lwa.InputError` unless the extent is among `EXTENTS`."""
-    if extent not in EXTENTS:
-        raise InputError(f"extent is {shorten(extent)}: {' or '.join(EXTENTS)} is wanted")
+    one_of(extent, EXTENTS, "extent")

@@ -19,11 +19,13 @@ from lwa.algebra.jets import JetAlgebra, Monomial
 from lwa.algebra.model import Model
 from lwa.base import latex
 from lwa.base.exact import InputError
+from lwa.base.frozen import Value
 from lwa.base.progress import Progress
 from lwa.cell import Cell
 from lwa.closure.ansatz import linear
 from lwa.closure.slaving import full
 from lwa.closure.solution import Solution
+from lwa.law import ContactLaw
 
 BRANCHES = ("acoustic", "optical")
 CLOSURES = ("linear", "full")
@@ -137,6 +139,28 @@ class Closure:
         """Derive again with these values of the symbols, or to this order."""
         order = order or self.order
         return solve(self.model.replaced(new or {}, order), order, self.name, self.field)
+
+
+@dataclass(frozen=True)
+class OfClosure(Value):
+    """Base of results that are read off a closure."""
+
+    closure: Closure
+
+    @property
+    def cell(self) -> Cell:
+        """The chain."""
+        return self.closure.model.cell
+
+    @property
+    def k(self) -> sp.Expr:
+        """The exponent of a power law; the local exponent 1 + φ_2 of another law."""
+        return self.closure.model.k
+
+    @property
+    def law(self) -> ContactLaw:
+        """The contact law."""
+        return self.closure.model.law
 
 
 def amplitude_ratios(cell: Cell) -> dict[str, sp.Expr]:

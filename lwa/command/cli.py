@@ -29,7 +29,7 @@ from lwa.command.options import (
 from lwa.command.reading import angle, quantity
 from lwa.command.rows import Answer
 from lwa.command.terminal import HELP, run, version
-from lwa.law import ContactLaw, Law, Power
+from lwa.law import ContactLaw, Power
 from lwa.spheres.hertz import EXPONENT
 from lwa.theory import Theory, homogenize
 
@@ -42,20 +42,29 @@ DERIVATION = {
 STYLES = ("text", "json", "latex")
 
 
-def _theory(
-    output: str,
-    *,
-    k: sp.Expr,
-    masses: tuple[sp.Expr, ...],
-    stiffnesses: tuple[sp.Expr, ...],
-    spacing: sp.Expr,
-    order: int,
-    law: ContactLaw | None,
-    **kind: Any,
-) -> Theory:
-    cell = Cell(masses, stiffnesses, spacing)
+def _theory(output: str, *, k: sp.Expr, law: ContactLaw | None, **chain: Any) -> Theory:
+    cell = _cell(chain)
     demand_free_names(cell, k, *(law.symbols if law else ()), output=output)
-    return homogenize(cell, order, k=k, law=law, **kind)
+    return homogenize(cell, k=k, law=law, **chain)
+
+
+def _cell(chain: dict[str, Any]) -> Cell:
+    """Take the options of a cell out of those of a chain."""
+    return Cell(*(chain.pop(name) for name in ("masses", "stiffnesses", "spacing")))
+
+
+def _chain(
+    spheres: str | None, options: dict[str, Any], symbols: Sequence[sp.Expr | None]
+) -> tuple[Cell, ContactLaw, sp.Expr, bool, str]:
+    """Cell, law, static load, whether it is in SI, and the chain in text.
+
+    symbols : values of the other options; symbols in them must not have names of the output.
+    """
+    units, static = _from_file(spheres, options) if spheres is not None else ({}, sp.S.Zero)
+    cell, law = _cell(options), options["law"] or Power(options["k"])
+    demand_free_names(cell, *law.symbols, *(x for x in symbols if x is not None))
+    said = f"masses {derivation.listed(cell.masses)}; contact force A F, F = {law.F}"
+    return cell, law, static, bool(units), said
 
 
 def _show(result: Any) -> None:
@@ -113,8 +122,10 @@ def wave(
             raise InputError(f"the file has a precompression of {static}: give no other load")
         precompression = static or precompression
     load = waves.Load(force, background, precompression)
-    under_load = load.under(chain["law"])
-    output = "wave under load" if under_load or isinstance(chain["law"], Law) else "wave"
+    law = chain["law"]
+    other = law is not None and not law.homogeneous
+    under_load = load.under(other)
+    output = "wave under load" if under_load or other else "wave"
     load.demand_free(output)
     if under_load:
         _canonical(chain)
@@ -286,18 +297,12 @@ def envelope_of_a_mode(
     from lwa.command import envelopes
     from lwa.envelopes.schrodinger import envelope
 
-    units: dict[str, str] = {}
-    if spheres is not None:
-        units, static = _from_file(spheres, chain)
-        precompression = static or precompression
     if frequency is not None and detuning is not None:
         raise InputError("--frequency and --detuning are both given: one says the other")
-    cell, law = Cell(chain["masses"], chain["stiffnesses"], chain["spacing"]), chain["law"]
-    law = Power(chain["k"]) if law is None else law
-    given_symbols = (background, precompression, frequency, detuning, wavenumber)
-    demand_free_names(cell, *law.symbols, *(x for x in given_symbols if x is not None))
+    values = (background, precompression, frequency, detuning, wavenumber)
+    cell, law, static, si, said = _chain(spheres, chain, values)
     place = int(branch) if branch and branch.isdecimal() else branch
-    load = {"background": background, "precompression": precompression}
+    load = {"background": background, "precompression": static or precompression}
     found = envelope(cell, law, **load, wavenumber=wavenumber, branch=place)
     symbols = {*cell.symbols, *found.compression.free_symbols, *wavenumber.free_symbols}
     if not symbols - {cell.spacing} and (cell.size > 2 or not sp.cos(wavenumber).is_Rational):
@@ -305,8 +310,7 @@ def envelope_of_a_mode(
     breather = None
     if frequency is not None or detuning is not None:
         breather = found.breather(frequency, detuning=detuning)
-    said = f"masses {derivation.listed(cell.masses)}; contact force A F, F = {law.F}"
-    _answer(style, envelopes.envelope(found, breather, envelopes.UNITS if units else {}, said))
+    _answer(style, envelopes.envelope(found, breather, envelopes.UNITS if si else {}, said))
 
 
 @lwa.command("shock")
@@ -330,16 +334,11 @@ def front_of_a_wall(
 
     if (behind is None) == (piston is None):
         raise InputError("--behind or --piston: one of the two is wanted")
-    units, static = _from_file(spheres, chain) if spheres is not None else ({}, sp.S.Zero)
-    cell, law = Cell(chain["masses"], chain["stiffnesses"], chain["spacing"]), chain["law"]
-    law = Power(chain["k"]) if law is None else law
-    strains = (x for x in (behind, piston, ahead) if x is not None)
-    demand_free_names(cell, *law.symbols, *strains)
+    cell, law, static, si, said = _chain(spheres, chain, (behind, piston, ahead))
     if ahead is None:
         ahead = law.compression(cell, static) / cell.spacing if static else sp.S.Zero
     found = driven(cell, law, piston, ahead) if behind is None else shock(cell, law, behind, ahead)
-    said = f"masses {derivation.listed(cell.masses)}; contact force A F, F = {law.F}"
-    _answer(style, shocks.shock(found, shocks.UNITS if units else {}, said))
+    _answer(style, shocks.shock(found, shocks.UNITS if si else {}, said))
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

@@ -12,7 +12,6 @@ from lwa.base.exact import InputError
 from lwa.base.progress import announce
 from lwa.code.languages import LANGUAGES
 from lwa.equation.terms import Jet, Terms
-from lwa.law import Law, Power
 from lwa.theory import Theory
 from lwa.wave.functions import function_of, in_order
 
@@ -41,7 +40,7 @@ def write_out(theory: Theory) -> None:
 def chain_json(theory: Theory) -> dict[str, Any]:
     """The chain, its law and the settings of a derivation; φ_n are functions of the compression."""
     law = {}
-    if not isinstance(theory.law, Power):
+    if not theory.law.homogeneous:
         law = {"law": str(theory.law.F), "phi": {str(n): str(x) for n, x in _phi(theory).items()}}
     return {
         "k": str(theory.k),
@@ -59,7 +58,7 @@ def chain_json(theory: Theory) -> dict[str, Any]:
 def chain_text(theory: Theory) -> str:
     """The chain and its contact law on one line."""
     law, cell = theory.law, theory.cell
-    force = f"A δ^k, k = {law.k}" if isinstance(law, Power) else f"A F({law.delta}), F = {law.F}"
+    force = f"A δ^k, k = {law.exponent}" if law.homogeneous else f"A F({law.delta}), F = {law.F}"
     return (
         f"masses {listed(cell.masses)}; contact force F = {force}, "
         f"A = {listed(cell.stiffnesses)}; spacing D = {cell.spacing}"
@@ -74,7 +73,7 @@ def listed(values: tuple[sp.Expr, ...]) -> str:
 def _phi(theory: Theory) -> dict[int, sp.Expr]:
     """n → φ_n in the compression, for a law that has a form."""
     law = theory.law
-    known = isinstance(law, Law) and not law.formless
+    known = not (law.homogeneous or law.formless)
     return {n: law.phi(n) for n in range(2, max(theory.order, 3))} if known else {}
 
 
@@ -141,7 +140,7 @@ def derivation_text(theory: Theory) -> str:
 def _law_text(theory: Theory) -> list[str]:
     """The φ_n of a law other than a power."""
     law = theory.law
-    if isinstance(law, Power):
+    if law.homogeneous:
         return []
     lines = [f"phi_n = {law.delta}^(n-1) F^(n)/F', at {law.delta} = D u_x; F' is taken there"]
     return lines + [f"  phi{n} = {value}" for n, value in _phi(theory).items()]
@@ -175,7 +174,7 @@ def _equation_text(theory: Theory) -> list[str]:
         lines = ["the wave equation starts at D^(k+1), that is at order 2 of the ansatz"]
     else:
         powers = ("F'", "F' u_x^-2", "F' u_x^-1", "F'")
-        if isinstance(theory.law, Power):
+        if theory.law.homogeneous:
             powers = ("u_x^(k-1)", "u_x^(k-3)", "u_x^(k-2)", "u_x^(k-1)")
         jets = ("u_xx", "u_xx^3", "u_xx u_xxx", "u_4x")
         parts = [f"{name}{p} {jet}" for name, p, jet in zip(_LETTERS, powers, jets, strict=True)]
@@ -194,7 +193,7 @@ _LETTERS = ("", "G ", "H ", "I ")
 
 def _order_name(theory: Theory) -> tuple[str, str]:
     """The text before and behind the n of an order: the power of D where there is one."""
-    if isinstance(theory.law, Law):
+    if not theory.law.homogeneous:
         return "order ", ""
     return ("D^(k+", ")") if theory.closure.model.branch == "acoustic" else ("D^", "")
 
@@ -235,7 +234,7 @@ def derivation_latex(theory: Theory) -> str:
 
 def _law_latex(theory: Theory) -> list[str]:
     law = theory.law
-    if isinstance(law, Power):
+    if law.homogeneous:
         return []
     delta = sp.latex(law.delta)
     rows = [] if law.formless else [latex.row(rf"F({delta})", law.F)]
@@ -247,7 +246,7 @@ def _law_latex(theory: Theory) -> list[str]:
 
 def derivation_python(theory: Theory) -> str:
     """The source of a module with b1 …, G, H, I, and all coefficients by order and jet."""
-    if isinstance(theory.law, Law):
+    if not theory.law.homogeneous:
         raise InputError("--format python is for power laws: others have text, json and latex")
     cell = theory.cell
     order = in_order(theory.k, *cell.masses, *cell.stiffnesses, cell.spacing)

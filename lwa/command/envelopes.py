@@ -46,14 +46,12 @@ def envelope(
             Row("detuning", "detuning ν", breather.detuning, r"\nu"),
             Row("amplitude", "largest displacement by bead", breather.amplitude, r"2 a \phi"),
             Row("width", "width 1/b in cells", breather.width, "b^{-1}"),
-            Row(
-                "opening_detuning",
-                "detuning from which on contacts open",
-                breather.opening_detuning,
-            ),
+            Row("opening_detuning", _OPENING, breather.opening_detuning),
         ]
     return Answer(head, rows, units, found.cell.spacing)
 
+
+_OPENING = "detuning from which on contacts open"
 
 UNITS = {
     "frequency": "rad/s",

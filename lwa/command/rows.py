@@ -190,7 +190,7 @@ class Answer:
             return found.latex() + unit
         parts = dict.fromkeys(found if isinstance(found, tuple) else (found,))
         if self.units:
-            return r",\ ".join(map(_approximate_latex, parts)) + unit
+            return r",\ ".join(approximate(x, tex=True) for x in parts) + unit
         if row.formula and latex.width(str(sp.latex(row.value))) > latex.WIDTH:
             return row.formula
         return r",\ ".join(map(latex.expression, parts)) + unit
@@ -224,23 +224,25 @@ def as_float(value: sp.Expr) -> float | None:
     return float(number)
 
 
-def approximate(value: sp.Expr) -> str:
+def attempt(read: Callable[..., Any], *arguments: Any) -> Any:
+    """The result of a call, or the fault that says why there is none."""
+    try:
+        return read(*arguments)
+    except InputError as fault:
+        return fault
+
+
+def approximate(value: sp.Expr, tex: bool = False) -> str:
     """A number in digits; an expression in symbols with its numeric factor in digits."""
     if value.is_zero:
         return "0"
     factor, rest = value.as_independent(*value.free_symbols, as_Add=False)
-    number = sp.sstr(evaluated(factor, PRINTED_DIGITS), full_prec=False)
-    return str(rest) if factor == 1 and rest != 1 else number if rest == 1 else f"{number}·{rest}"
-
-
-def _approximate_latex(value: sp.Expr) -> str:
-    if value.is_zero:
-        return "0"
-    factor, rest = value.as_independent(*value.free_symbols, as_Add=False)
-    number = sp.latex(evaluated(factor, PRINTED_DIGITS))
-    return str(
-        number if rest == 1 else sp.latex(rest) if factor == 1 else rf"{number} {sp.latex(rest)}"
-    )
+    digits = evaluated(factor, PRINTED_DIGITS)
+    number = sp.latex(digits) if tex else sp.sstr(digits, full_prec=False)
+    others = sp.latex(rest) if tex else str(rest)
+    if rest == 1:
+        return str(number)
+    return str(others) if factor == 1 else f"{number}{' ' if tex else '·'}{others}"
 
 
 def summed(found: Resummed, unit: str, order: bool) -> str:

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
-from functools import partial
 from string import ascii_lowercase
 from typing import Any
 
@@ -14,8 +13,8 @@ from lwa.base import latex
 from lwa.base.exact import InputError
 from lwa.base.quantities import QUANTITIES
 from lwa.command.derivation import listed
-from lwa.command.rows import PRINTED_DIGITS, Answer, Row, Values
-from lwa.command.waves import radiation_note
+from lwa.command.rows import PRINTED_DIGITS, Answer, Row, Values, attempt
+from lwa.command.waves import WIDTHS, radiation_note
 from lwa.expansion.approximants import Resummed
 from lwa.expansion.expand import DAMPINGS, Expansion
 from lwa.expansion.physical import ExpandedWave
@@ -160,20 +159,13 @@ _LABELS = {
 }
 
 
-def _sum(sum_up: Callable[[], Resummed]) -> Resummed | InputError:
-    try:
-        return sum_up()
-    except InputError as fault:
-        return fault
-
-
 def _sums(found: Expansion, series: Mapping[str, EpsilonSeries]) -> dict[str, Any]:
     """Key → sum, with the effective mass and, for equal beads, the dissipation."""
-    sums = {key: _sum(one.at) for key, one in series.items()}
-    sums["effective_mass"] = _sum(found.effective_mass.at)
+    sums = {key: attempt(one.at) for key, one in series.items()}
+    sums["effective_mass"] = attempt(found.effective_mass.at)
     if len({*found.cell.masses}) == len({*found.cell.stiffnesses}) == 1:
         for kind in DAMPINGS:
-            sums[f"dissipation.{kind}"] = _sum(found.dissipation(kind).at)
+            sums[f"dissipation.{kind}"] = attempt(found.dissipation(kind).at)
     return sums
 
 
@@ -196,14 +188,10 @@ def _with_wave(answer: Answer, wave: ExpandedWave, units: Mapping[str, str]) -> 
     """The answer with the wave of some force, its JSON under ``physical``."""
     unit = units.get("force", "")
     rows: list[Row | str] = ["", f"peak contact force {float(wave.F):g} {unit}".rstrip() + ":"]
-    rows.append(Row("speed", "speed dx/dt", _sum(lambda: wave.speed), _SPEED))
-    for key, label, extent in (
-        ("fwhm", "FWHM of the {}", "length"),
-        ("fwhm_time", "FWHM of the {} in time", "time"),
-    ):
+    rows.append(Row("speed", "speed dx/dt", attempt(lambda: wave.speed), _SPEED))
+    for key, label, extent in WIDTHS:
         rows += [
-            Row(f"{key}.{q}", label.format(q), _sum(partial(wave.fwhm, q, extent)))
-            for q in QUANTITIES
+            Row(f"{key}.{q}", label.format(q), attempt(wave.fwhm, q, extent)) for q in QUANTITIES
         ]
     own_units = {key: units[key] for key in ("force", "speed", "fwhm", "fwhm_time") if units}
     own = Answer({"force_value": float(wave.F)}, rows, own_units)

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from typing import Any
+from collections.abc import Mapping
 
 from lwa.base.errors import InputError
-from lwa.command.rows import Answer, Row
+from lwa.command.rows import Answer, Row, attempt
 from lwa.shocks import RULES, Shock
 
 
@@ -21,19 +20,8 @@ def shock(found: Shock, units: Mapping[str, str], spoken: str) -> Answer:
     spoken : the chain in text.
     """
 
-    def speed(rule: str) -> Any:
-        return _value(found.leading_speed, rule)
-
-    head: dict[str, str | None] = {"kind": _told(lambda: found.kind)}
-    edges = [
-        Row(
-            f"leading_speed.{rule}",
-            f"leading edge, {rule}",
-            _value(found.leading_speed, rule),
-            r"s_{+}",
-        )
-        for rule in RULES
-    ]
+    kind = attempt(lambda: found.kind)
+    head = {"kind": None if isinstance(kind, InputError) else kind}
     rows: list[Row | str] = [
         spoken,
         Row("behind", "strain behind", found.behind, "p_{-}"),
@@ -41,37 +29,25 @@ def shock(found: Shock, units: Mapping[str, str], spoken: str) -> Answer:
         "",
         f"{head['kind'] or 'front'}, speeds dx/dt:",
         Row("plateau", "velocity of the wall and the plateau", found.plateau, "v_{p}"),
-        Row("trailing_speed", "trailing edge", _value(lambda: found.trailing_speed), "s_{-}"),
-        *edges,
+        Row("trailing_speed", "trailing edge", attempt(lambda: found.trailing_speed), "s_{-}"),
     ]
-    if head["kind"] != "rarefaction":
+    for rule in RULES:
+        key, label = f"leading_speed.{rule}", f"leading edge, {rule}"
+        rows.append(Row(key, label, attempt(found.leading_speed, rule), "s_{+}"))
+    if kind != "rarefaction":
         rows += [
-            Row("peak", "peak strain, doubling", _value(lambda: found.peak), "p_{+} + B"),
-            Row("peak_force", "peak force, doubling", _value(lambda: found.peak_force), "F"),
+            Row("peak", "peak strain, doubling", attempt(lambda: found.peak), "p_{+} + B"),
+            Row("peak_force", "peak force, doubling", attempt(lambda: found.peak_force), "F"),
         ]
         if found.law.homogeneous and found.ahead.is_zero and not found.behind.free_symbols:
+            wave, force = attempt(lambda: found.wave.speed), attempt(lambda: found.wave.F)
             rows += [
-                Row("series.speed", "leading pulse, series", _value(lambda: found.wave.speed)),
-                Row(
-                    "series.force", "peak force, series", _value(lambda: found.wave.F), exact=False
-                ),
+                Row("series.speed", "leading pulse, series", wave),
+                Row("series.force", "peak force, series", force, exact=False),
             ]
     faults = (row.value for row in rows if isinstance(row, Row))
     notes = dict.fromkeys(str(fault) for fault in faults if isinstance(fault, InputError))
     return Answer(head, rows, units, found.cell.spacing, notes=tuple(notes), orders=False)
-
-
-def _value(read: Callable[..., Any], *arguments: Any) -> Any:
-    """The result, or the fault that says why there is none."""
-    try:
-        return read(*arguments)
-    except InputError as fault:
-        return fault
-
-
-def _told(read: Callable[[], str]) -> str | None:
-    found = _value(read)
-    return found if isinstance(found, str) else None
 
 
 UNITS = dict.fromkeys(("plateau", "trailing_speed", "leading_speed", "series.speed"), "m/s") | {

@@ -13,8 +13,7 @@ from lwa.base.quantities import QUANTITIES, NoSolitaryWave
 from lwa.cell import Cell
 from lwa.command.derivation import FIELDS, chain_json, chain_text, listed
 from lwa.command.reserved_names import demand_free
-from lwa.command.rows import Answer, Row, Values
-from lwa.law import ContactLaw, Law
+from lwa.command.rows import Answer, Row, Values, attempt
 from lwa.theory import Theory
 from lwa.wave.background import BackgroundWave
 from lwa.wave.precompressed import PrecompressedWave
@@ -54,6 +53,10 @@ def radiation_note(cell: Cell, k: sp.Expr) -> list[str]:
         f"radiates and decays, which the theory leaves out (bound on speed² and widths: {lost:.0%})"
         "; the force of a contact may have several humps, of which a width is the highest one's"
     ]
+
+
+WIDTHS = (("fwhm", "FWHM of the {}", "length"), ("fwhm_time", "FWHM of the {} in time", "time"))
+"""Key, label and extent of the widths of a wave with units."""
 
 
 def _fwhm(wave: Any, *extent: str) -> dict[str, sp.Expr]:
@@ -141,8 +144,7 @@ def at_force(theory: Theory, wave: TravelingWave, F: sp.Expr, units: Mapping[str
         Row("compressions", "peak compression", answer.compressions),
         Row("speed", "speed dx/dt", answer.speed, r"\mathrm{d}x/\mathrm{d}t"),
         Row("bead_velocity", "peak velocity of the beads", answer.bead_velocity, "u_{t}"),
-        *_fwhm_rows("fwhm", "FWHM of the {}", _fwhm(answer)),
-        *_fwhm_rows("fwhm_time", "FWHM of the {} in time", _fwhm(answer, "time")),
+        *(row for key, label, e in WIDTHS for row in _fwhm_rows(key, label, _fwhm(answer, e))),
         Row("beta", "", wave.beta, r"\beta"),
         Row("width", "", wave.width, "L"),
         Row("speed_factor", "", wave.speed_factor),
@@ -247,14 +249,9 @@ def precompressed(theory: Theory, wave: PrecompressedWave, units: Mapping[str, s
         Row("sound_speed", "speed of sound dx/dt", wave.sound_speed, r"c_{0}"),
         Row("bead_velocity", "peak velocity of the beads", wave.bead_velocity, "u_{t}"),
     ]
-    for key, label, extent in (
-        ("fwhm", "FWHM of the {}", "length"),
-        ("fwhm_time", "FWHM of the {} in time", "time"),
-    ):
-        try:
-            rows += _fwhm_rows(key, label, _fwhm(wave, extent), exact=False)
-        except InputError:  # something is a symbol
-            break
+    for key, label, extent in WIDTHS:
+        if not isinstance(widths := attempt(_fwhm, wave, extent), InputError):  # no symbols
+            rows += _fwhm_rows(key, label, widths, exact=False)
     return Answer(chain_json(theory), rows, units, theory.cell.spacing)
 
 
@@ -266,12 +263,15 @@ class Load:
     background: sp.Expr | None
     precompression: sp.Expr | None
 
-    def under(self, law: ContactLaw | None) -> bool:
-        """Whether there is a load, or a law under which all waves are those of `lwa.wave`."""
+    def under(self, other: bool) -> bool:
+        """Whether the wave runs under a load; one of 0 counts under a law ``other`` than a power.
+
+        Raises `lwa.InputError` for two loads.
+        """
         if self.background is not None and self.precompression is not None:
             raise InputError("--background and --precompression are both given: one says the other")
         load = self.precompression if self.background is None else self.background
-        return load is not None and (not load.is_zero or isinstance(law, Law))
+        return load is not None and (other or not load.is_zero)
 
     def demand_free(self, output: str) -> None:
         """Refuse symbols with names of the output."""

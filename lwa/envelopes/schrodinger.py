@@ -14,7 +14,7 @@ from typing import Any
 import sympy as sp
 
 from lwa.base import latex
-from lwa.base.exact import InputError, integer, positive, root, shorten, signed
+from lwa.base.exact import InputError, integer, one_of, positive, root, shorten, signed
 from lwa.base.frozen import Value
 from lwa.cell import Cell, substitution
 from lwa.envelopes.breather import KINDS, Breather
@@ -158,8 +158,8 @@ class Envelope(Value):
         """
         if (frequency is None) == (detuning is None):
             raise InputError("frequency or detuning: one of the two is wanted")
-        if kind not in ("", *KINDS):
-            raise InputError(f"kind is {shorten(kind)}: {' or '.join(KINDS)} is wanted")
+        if kind:
+            one_of(kind, KINDS, "kind")
         if detuning is None:
             detuning = 1 - positive(frequency, "frequency") / self.frequency
         if self.group_velocity.is_zero is not True:

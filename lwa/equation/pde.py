@@ -24,36 +24,16 @@ from flint import fmpq_mpoly
 
 from lwa.base import latex
 from lwa.base.exact import InputError, exact, integer, power, root
-from lwa.base.frozen import Value
-from lwa.cell import Cell
-from lwa.closure.consistency import Closure
+from lwa.closure.consistency import OfClosure
 from lwa.equation.energy import energy, flux, potential
 from lwa.equation.fields import change_field
 from lwa.equation.terms import ENERGY, Jet, Terms, base_order, terms
-from lwa.law import ContactLaw
 from lwa.wave.traveling import TravelingWave
 
 
 @dataclass(frozen=True)
-class PDE(Value):
+class PDE(OfClosure):
     """The wave equation of a closure (its form stands at the head of the module)."""
-
-    closure: Closure
-
-    @property
-    def cell(self) -> Cell:
-        """The chain."""
-        return self.closure.model.cell
-
-    @property
-    def k(self) -> sp.Expr:
-        """The exponent of the contact law, 1 + φ_2 for a law that is no power."""
-        return self.closure.model.k
-
-    @property
-    def law(self) -> ContactLaw:
-        """The contact law."""
-        return self.closure.model.law
 
     @cached_property
     def time_scale(self) -> sp.Expr:

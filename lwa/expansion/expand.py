@@ -15,7 +15,7 @@ from typing import Any
 import sympy as sp
 
 from lwa.base import latex
-from lwa.base.exact import InputError, integer, shorten, signed
+from lwa.base.exact import InputError, integer, one_of, shorten, signed
 from lwa.base.frozen import Value
 from lwa.base.quantities import QUANTITIES as QUANTITIES
 from lwa.base.quantities import known
@@ -139,8 +139,7 @@ class Expansion(Value):
 
         Raises `lwa.InputError` for other kinds, and for D1 of contacts that differ.
         """
-        if not isinstance(kind, str) or kind not in DAMPINGS:
-            raise InputError(f"kind is {shorten(kind)}: {' or '.join(DAMPINGS)} is wanted")
+        one_of(kind, DAMPINGS, "kind")
         unit = sp.sqrt(2 * sp.pi * self._sound / self.I) * self.compliance / 4
         if kind == "linear":
             unit *= self.compliance

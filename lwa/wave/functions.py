@@ -21,7 +21,7 @@ from functools import partial
 
 import sympy as sp
 
-from lwa.base.exact import InputError, shorten
+from lwa.base.exact import one_of
 from lwa.base.quantities import QUANTITIES, strain_power
 from lwa.cell import Cell
 from lwa.code.languages import LANGUAGES
@@ -63,7 +63,7 @@ def wave_code(wave: CompactWave, language: str) -> str:
 
     Raises `lwa.InputError` for another language.
     """
-    _known(language)
+    one_of(language, LANGUAGES, "language")
     functions = wave_functions(wave)
     if language == "python":
         functions |= reduction_functions(wave, functions["amplitude"])
@@ -77,16 +77,9 @@ def loaded_code(
 
     Raises `lwa.InputError` for another language.
     """
-    _known(language)
+    one_of(language, LANGUAGES, "language")
     functions = loaded_functions(cell, law, p0, forms)
     return LANGUAGES[language](list(functions.values()), OWN).module(_LOADED_TITLE)
-
-
-def _known(language: str) -> None:
-    if language not in LANGUAGES:
-        raise InputError(
-            f"language is {shorten(language)}: one of {', '.join(LANGUAGES)} is wanted"
-        )
 
 
 def wave_functions(wave: CompactWave) -> dict[str, Function]:

@@ -19,7 +19,7 @@ import sympy as sp
 from numpy.typing import ArrayLike
 
 from lwa.base.arrays import Array, Extended, finite
-from lwa.base.exact import InputError, shorten
+from lwa.base.exact import InputError, one_of
 from lwa.base.frozen import Value
 from lwa.base.quantities import NoSolitaryWave, strain_power
 from lwa.wave.closed import CompactWave
@@ -49,8 +49,7 @@ class NumericWave(Value):
     missing: Literal["raise", "nan"] = "raise"
 
     def __post_init__(self) -> None:
-        if self.missing not in ("raise", "nan"):
-            raise InputError(f"missing is {shorten(self.missing)}: 'raise' or 'nan' is wanted")
+        one_of(self.missing, ("raise", "nan"), "missing")
         free = self._symbols
         given = set(self.wave.dispersion.free_symbols | self.wave.speed_factor.free_symbols)
         if len(set(free)) != 3 or not all(x.is_Symbol for x in free) or not given <= set(free):

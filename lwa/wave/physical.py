@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Any
 import sympy as sp
 
 from lwa.base import latex
-from lwa.base.exact import InputError, number, positive, power, root, shorten
+from lwa.base.exact import InputError, number, one_of, positive, power, root, shorten
 from lwa.base.frozen import Value
 from lwa.base.quantities import known, known_extent, strain_power
 from lwa.cell import RESERVED, meant, unmistakable
@@ -63,7 +63,7 @@ class PhysicalWave(Value):
     of: str = "contact"
 
     def __post_init__(self) -> None:
-        _bearer(self.of)
+        one_of(self.of, BEARERS, "of")
         given = self.force
         many = not isinstance(given, str | bytes) and getattr(
             given, "shape", hasattr(given, "__len__")
@@ -257,7 +257,7 @@ class PhysicalWave(Value):
             y = beta * x
             return np.asarray(np.where(np.abs(y) < np.pi / 2, np.cos(y), 0.0) ** exponent)
 
-        if _bearer(of or self.of) == "bead" and quantity != "velocity":
+        if one_of(of or self.of, BEARERS, "of") == "bead" and quantity != "velocity":
             half = number(wave.D) / 2
             return np.asarray(number(peak) * (arch(xi - half) + arch(xi + half)) / 2)
         return np.asarray(number(peak) * arch(xi))
@@ -293,12 +293,6 @@ class PhysicalWave(Value):
 def _root(F: sp.Expr, A: sp.Expr, k: sp.Expr) -> sp.Expr:
     """(F/A)^{1/k}, the compression at which a contact pushes with F."""
     return power(F / A, 1 / k)
-
-
-def _bearer(of: str) -> str:
-    if of not in BEARERS:
-        raise InputError(f"of is {shorten(of)}: {' or '.join(BEARERS)} is wanted")
-    return of
 
 
 def _forces(values: Sequence[Any] | Array) -> Array:
