@@ -64,14 +64,16 @@ def chain_scene(
 
 
 def carrying(
-    masses: Sequence[float], k: float, compression: ArrayLike, velocity: ArrayLike, **rest: Any
+    masses: Sequence[float], compression: ArrayLike, velocity: ArrayLike, **rest: Any
 ) -> Scene:
-    """A chain that starts with these compressions of its contacts and velocities of its beads."""
+    """A chain that starts with these compressions of its contacts and velocities of its beads.
+
+    rest : further fields of the scene, ``k`` or ``law`` among them.
+    """
     strain = np.asarray(compression, float)
     return Scene(
         masses=tuple(masses),
         stiffnesses=(1.0,) * len(strain),
-        k=k,
         # The beads behind have moved by all compressions before them.
         displacements=tuple(np.append(np.cumsum(strain[::-1])[::-1], 0.0)),
         velocities=tuple(np.asarray(velocity, float)),
@@ -109,4 +111,5 @@ def launched(wave: Wave, start: int, sites: int, **rest: Any) -> Scene:
     )
     strain = np.where(even[:-1], wave.strain(at, 0), wave.strain(at, 1))
     velocity = np.where(even, wave.velocity(bead, 0), wave.velocity(bead, 1))
-    return carrying(tuple(np.where(even, *wave.masses)), wave.k, strain, velocity, **options | rest)
+    masses = tuple(np.where(even, *wave.masses))
+    return carrying(masses, strain, velocity, k=wave.k, **options | rest)

@@ -50,9 +50,9 @@ def test_the_lattice_carries_the_theorys_wave_at_k_of_1_001():
     bead = np.arange(2 * start + sites) - start
     scene = carrying(
         (1.0,) * len(bead),
-        k,
         theory.along(bead[:-1] + 0.5, "strain"),
         theory.along(bead, "velocity"),
+        k=k,
         contact_sensors=(start + 60, start + sites),
         samples=4001,
         duration=(sites + 0.7 * start) / float(theory.speed),
@@ -185,9 +185,9 @@ def slaved(uniform, heavy, light):
     pace = math.sqrt(2) * uniform.c / math.sqrt(heavy)
     return carrying(
         tuple(np.where(site % 2 == 0, heavy, light)),
-        uniform.k,
         uniform.strain(pair),
         (behind + ahead) / 2 * math.sqrt(2 / heavy),
+        k=uniform.k,
         duration=70 / pace,
         contact_sensors=(40, 80),
         samples=4001,
