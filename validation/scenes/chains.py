@@ -104,8 +104,7 @@ def launched(wave: Wave, start: int, sites: int, **rest: Any) -> Scene:
     bead = np.arange(2 * start + sites) - start
     at, even = bead[:-1] + 0.5, bead % 2 == 0
     options: dict[str, Any] = dict(
-        contact_sensors=(start + sites // 2, start + sites),
-        duration=(sites + start / 2) / wave.c,
+        contact_sensors=(start + sites // 2, start + sites), duration=(sites + start / 2) / wave.c
     )
     strain = np.where(even[:-1], wave.strain(at, 0), wave.strain(at, 1))
     velocity = np.where(even, wave.velocity(bead, 0), wave.velocity(bead, 1))

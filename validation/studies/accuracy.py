@@ -282,9 +282,7 @@ def _panel(task: str, rows: Sequence[Row]) -> Panel:
     return Panel(label, "CPU time (s)", tuple(curves), "xy", task)
 
 
-@study(
-    option("--task", "names", multiple=True, type=click.Choice(NAMES), says="Only this task."),
-)
+@study(option("--task", "names", multiple=True, type=click.Choice(NAMES), says="Only this task."))
 def accuracy(names: Collection[str] = (), progress: Progress[str] = iter) -> Report:
     """Speed against error: integrators on fixed tasks, theories against true waves. Three minutes.
 
