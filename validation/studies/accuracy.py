@@ -115,7 +115,7 @@ def exact(sites: int = 100) -> Task:
     arrival, width = (sites + 0.5) / wave.c, wave.fwhm("force") / wave.c
     recorded = {"contact_sensors": (start + sites,), "duration": arrival + 10, "samples": 2}
     truth = Pulse(arrival, 1.0, arrival - width / 2, arrival + width / 2)
-    return Task(chains.launched(wave, start, sites, **recorded), truth)
+    return Task(wave.launched(start, sites, **recorded), truth)
 
 
 def experiment() -> Task:
