@@ -270,11 +270,11 @@ def _costs(rows: Sequence[Row]) -> list[tuple[Any, ...]]:
 
 
 def _panel(task: str, rows: Sequence[Row]) -> Panel:
-    """CPU time over error: a colour and mark for each method, solid with a window."""
+    """CPU time over error: a colour for each method, other marks and solid lines with a window."""
     curves = []
     for name, its in by_name(rows).items():
         place = list(METHODS).index(its[0].method)
-        style = f"C{place}{'os^v<'[place]}" + ("-" if its[0].window else ":")
+        style = f"C{place}" + ("x+*12"[place] + "-" if its[0].window else "os^v<"[place] + ":")
         seen = [row for row in its if math.isfinite(row.error)]
         points = [row.error for row in seen], [row.seconds for row in seen]
         curves.append(Curve.of(name, *points, style=style))
