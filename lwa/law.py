@@ -23,7 +23,7 @@ from lwa.base import latex
 from lwa.base.calculus import growing_root, integral, ratio
 from lwa.base.exact import InputError, exact, positive, shorten, signed
 from lwa.base.frozen import Value
-from lwa.cell import RESERVED, Cell, exponent, meant, unmistakable
+from lwa.cell import RESERVED, Cell, exponent, meant, substitution, unmistakable
 from lwa.cell import k as symbol_k
 
 DELTA = sp.Symbol("delta", positive=True)
@@ -315,6 +315,18 @@ def _at_most(name: str, parameters: Sequence[Any], letters: tuple[str, ...]) -> 
     if len(parameters) > len(letters):
         wanted = f"at most {len(letters)} ({', '.join(letters)})" if letters else "none"
         raise InputError(f"law {name} has {len(parameters)} parameters: {wanted} are wanted")
+
+
+def substituted(
+    values: Mapping[str, Any], cell: Cell, law: ContactLaw, *expressions: sp.Expr
+) -> tuple[Any, ...]:
+    """Cell, law and expressions for the values given for their symbols' names, and for ω.
+
+    Raises the errors of `lwa.cell.substitution`.
+    """
+    own = set().union(*(x.free_symbols for x in expressions)) - {*cell.symbols, *law.symbols}
+    new = substitution(values, cell, more=(*law.symbols, *sorted(own, key=str)))
+    return cell.replaced(new), law.replaced(new), *(x.xreplace(new) for x in expressions)
 
 
 def for_cell(law: Any, cell: Cell) -> ContactLaw:

@@ -25,11 +25,11 @@ import sympy as sp
 from lwa.base import latex
 from lwa.base.exact import InputError, exact, one_of, positive, root, shorten
 from lwa.base.frozen import Value
-from lwa.cell import Cell, substitution
+from lwa.cell import Cell
 from lwa.expansion.expand import expand
 from lwa.expansion.physical import ExpandedWave
 from lwa.expansion.strike import ORDER
-from lwa.law import ContactLaw, for_cell
+from lwa.law import ContactLaw, for_cell, substituted
 from lwa.linear.dispersion import Dispersion
 
 RULES = ("dispersion", "doubling")
@@ -184,11 +184,7 @@ class Shock(Value):
 
     def at(self, **values: Any) -> Shock:
         """The front for these values of the named symbols."""
-        own = (self.behind.free_symbols | self.ahead.free_symbols) - {*self.cell.symbols}
-        more = (*self.law.symbols, *sorted(own - {*self.law.symbols}, key=str))
-        new = substitution(values, self.cell, more=more)
-        strains = (p.xreplace(new) for p in (self.behind, self.ahead))
-        return Shock(self.cell.replaced(new), self.law.replaced(new), *strains)
+        return Shock(*substituted(values, self.cell, self.law, self.behind, self.ahead))
 
     @property
     def _rarefies(self) -> bool:

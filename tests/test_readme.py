@@ -9,7 +9,7 @@ import pytest
 from PIL import Image
 
 ROOT = Path(__file__).parent.parent
-README = (ROOT / "README.md").read_text()
+README, CHANGELOG = ((ROOT / name).read_text() for name in ("README.md", "CHANGELOG.md"))
 
 
 def test_the_python_example(capsys):
@@ -26,9 +26,16 @@ def test_the_commands_exist():
 
     known = {"lwa": lwa.commands, "lwa-validate": studies()}
     shown = re.findall(r"^\$ (lwa\S*) (\w+)", README, re.MULTILINE)
-    assert {command for program, command in shown if program == "lwa-validate"} == set(studies())
-    for program, command in shown:
+    for program, commands in known.items():
+        assert {command for name, command in shown if name == program} == set(commands)
+    for program, command in re.findall(r"`(lwa|lwa-validate) (\w+)", CHANGELOG):
         assert command in known[program]
+
+
+def test_the_demonstrations_are_listed():
+    shown = re.findall(r"^\$ python book/studies/(\w+)\.py", README, re.MULTILINE)
+    there = {file.stem for file in (ROOT / "book" / "studies").glob("*.py")} - {"__init__"}
+    assert sorted(shown) == sorted(there)
 
 
 def test_the_picture_shows_what_its_script_computes():

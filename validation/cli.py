@@ -20,30 +20,28 @@ _STUDIES = Path(__file__).parent / "studies"
 
 
 @cache
-def studies() -> dict[str, tuple[str, str, str]]:
-    """Module, function and help of each command.
+def studies() -> dict[str, tuple[str, str]]:
+    """Module and help of each command, which has the name of its function.
 
-    >>> studies()["limits"][:2]
-    ('validation.studies.limits', 'limits')
+    >>> studies()["limits"][0]
+    'validation.studies.limits'
     """
-    found = (entry for file in sorted(_STUDIES.rglob("*.py")) for entry in _in(file))
-    return {name: (module, function, says) for name, module, function, says in found}
+    found = (entry for file in sorted(_STUDIES.glob("*.py")) for entry in _in(file))
+    return {name: (module, says) for module, name, says in found}
 
 
-def _in(file: Path) -> Iterator[tuple[str, str, str, str]]:
+def _in(file: Path) -> Iterator[tuple[str, str, str]]:
     text = file.read_text(encoding="utf-8")
     if "\n@study(" not in text:
         return
-    module = ".".join(("validation", "studies", *file.relative_to(_STUDIES).with_suffix("").parts))
+    module = f"validation.studies.{file.stem}"
     for node in ast.parse(text).body:
         if not isinstance(node, ast.FunctionDef):
             continue
         for mark in node.decorator_list:
             match mark:
-                case ast.Call(func=ast.Name(id="study"), keywords=words):
-                    names = [ast.literal_eval(word.value) for word in words if word.arg == "name"]
-                    says = (ast.get_docstring(node) or "").partition("\n\n")[0]
-                    yield (names or [node.name])[0], module, node.name, says
+                case ast.Call(func=ast.Name(id="study")):
+                    yield module, node.name, (ast.get_docstring(node) or "").partition("\n\n")[0]
 
 
 class Studies(click.Group):
@@ -57,15 +55,14 @@ class Studies(click.Group):
         """The command of this name, or None."""
         if name not in studies():
             return None
-        module, function, _ = studies()[name]
         # here, for a quick start: a study loads SciPy
-        found: click.Command = getattr(import_module(module), function).command
+        found: click.Command = getattr(import_module(studies()[name][0]), name).command
         return found
 
     def format_commands(self, context: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the list of commands without loading them."""
         with formatter.section("Commands"):
-            formatter.write_dl([(name, says) for name, (_, _, says) in sorted(studies().items())])
+            formatter.write_dl([(name, says) for name, (_, says) in sorted(studies().items())])
 
 
 @click.group(cls=Studies, context_settings=HELP)

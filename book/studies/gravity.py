@@ -310,9 +310,10 @@ def _findings(
     """The front's power law, and for equal beads the narrower of solitary wave and front."""
     for names, exponent, prefactor, theory, _ in weak:
         of = ", ".join(names)
-        yield Finding.of(f"{of}: exponent", exponent, 1 / 3 - 0.02, 1 / 3 + 0.02)
+        low, high = 1 / 3 - 0.02, 1 / 3 + 0.02
+        yield Finding(f"{of}: exponent", exponent.value, low, high, exponent.error)
         over = Measured(prefactor.value / theory, prefactor.check / theory)
-        yield Finding.of(f"{of}: prefactor/theory", over, 0.97, 1.03)
+        yield Finding(f"{of}: prefactor/theory", over.value, 0.97, 1.03, over.error)
     wave, front = ("solitary wave", -2), ("front", -1)
     for (name, one), (other, two) in ((wave, front), (front, wave)):
         off = [

@@ -117,11 +117,6 @@ def rows(found: Mapping[str, sp.Expr]) -> list[str]:
     return [text for name, text in written.items() if text != f"{name} = {name}"]
 
 
-def values(found: Mapping[str, sp.Expr]) -> list[str]:
-    """name = value, the names as symbols."""
-    return [row(sp.latex(sp.Symbol(name)), value) for name, value in found.items()]
-
-
 def power(symbol: sp.Expr, n: int) -> str:
     """symbol^n.
 

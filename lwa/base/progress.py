@@ -6,10 +6,7 @@ import sys
 from collections.abc import Callable, Iterable, Iterator
 from importlib import import_module
 from time import monotonic
-from typing import TypeVar
-
-LONG = 30.0
-"""Seconds from which a computation is announced as long, with a progress bar on a terminal."""
+from typing import Any, TypeVar
 
 EVERY = 30.0
 """Seconds between two lines of progress without a terminal."""
@@ -39,13 +36,12 @@ def _round(number: float) -> str:
     return f"{number:.0f}" if number > 10 else f"{number:.2g}"
 
 
-def announce(what: str, seconds: float) -> bool:
-    """Print a long computation's duration on standard error; return whether it is long."""
-    if seconds > LONG:
-        # before the line: Python may lose a Ctrl-C that meets it in an import
-        import_module("tqdm")
-        print(f"{what}: {words(seconds)}", file=sys.stderr, flush=True)
-    return seconds > LONG
+def announced(what: str) -> Progress[Any]:
+    """Say on standard error that a computation is long; return `shown`, for its progress."""
+    # before the line: Python may lose a Ctrl-C that meets it in an import
+    import_module("tqdm")
+    print(f"{what}: this may take minutes", file=sys.stderr, flush=True)
+    return shown
 
 
 def shown(items: Iterable[T], label: str = "orders") -> Iterable[T]:

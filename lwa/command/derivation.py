@@ -9,14 +9,14 @@ import sympy as sp
 
 from lwa.base import latex
 from lwa.base.exact import InputError
-from lwa.base.progress import announce
+from lwa.base.progress import announced
 from lwa.code.languages import LANGUAGES
 from lwa.equation.terms import Jet, Terms
 from lwa.theory import Theory
 from lwa.wave.functions import function_of, in_order
 
-SECONDS_A_TERM = 3e-4
-"""To convert and to write one term of a coefficient: measured at orders 8 to 12."""
+MANY_TERMS = 100_000
+"""Terms of coefficients that take half a minute to write, 0.3 ms each (orders 8 to 12)."""
 
 FIELDS = {
     "first": "u is the displacement of the cell's first particle",
@@ -26,15 +26,11 @@ FIELDS = {
 
 def write_out(theory: Theory) -> None:
     """Write all coefficients as text, which is kept; with progress where it takes long."""
-    length = sum(found.length(jet) for found in theory.orders for jet in found)
-    if announce(f"{length} terms to be written", length * SECONDS_A_TERM):
-        from tqdm import tqdm  # here, for a quick start of the others
-
-        with tqdm(total=length, desc="terms", leave=False, disable=None) as progress:
-            for found in theory.orders:
-                for jet in found:
-                    found.written(jet)
-                    progress.update(found.length(jet))
+    jets = [(found, jet) for found in theory.orders for jet in found]
+    length = sum(found.length(jet) for found, jet in jets)
+    progress = announced(f"{length} terms to be written") if length > MANY_TERMS else iter
+    for found, jet in progress(jets):
+        found.written(jet)
 
 
 def chain_json(theory: Theory) -> dict[str, Any]:

@@ -16,11 +16,11 @@ import sympy as sp
 from lwa.base import latex
 from lwa.base.exact import InputError, integer, one_of, positive, root, shorten, signed
 from lwa.base.frozen import Value
-from lwa.cell import Cell, substitution
+from lwa.cell import Cell
 from lwa.envelopes.breather import KINDS, Breather
 from lwa.envelopes.exact import exact_mode
 from lwa.envelopes.modes import Coefficients, NumericMode, numeric_mode
-from lwa.law import ContactLaw, for_cell
+from lwa.law import ContactLaw, for_cell, substituted
 
 BRANCHES = ("acoustic", "optical")
 """Names of the two lowest branches."""
@@ -70,16 +70,10 @@ class Envelope(Value):
 
         Raises `lwa.InputError` for a name that does not occur or a value that cannot be meant.
         """
-        own = self.compression.free_symbols | self.wavenumber.free_symbols
-        more = (*self.law.symbols, *sorted(own - {*self.cell.symbols, *self.law.symbols}, key=str))
-        new = substitution(values, self.cell, more=more)
-        return replace(
-            self,
-            cell=self.cell.replaced(new),
-            law=self.law.replaced(new),
-            compression=self.compression.xreplace(new),
-            wavenumber=self.wavenumber.xreplace(new),
+        cell, law, compression, wavenumber = substituted(
+            values, self.cell, self.law, self.compression, self.wavenumber
         )
+        return Envelope(cell, law, compression, wavenumber, self.branch, self.floats)
 
     # --- coefficients ---
 

@@ -17,11 +17,12 @@ import sympy as sp
 from lwa.base import latex
 from lwa.base.exact import InputError, integer, one_of, shorten, signed
 from lwa.base.frozen import Value
+from lwa.base.progress import announced
 from lwa.base.quantities import QUANTITIES as QUANTITIES
 from lwa.base.quantities import known
 from lwa.cell import Cell, exponent, substitution
 from lwa.cell import k as symbol_k
-from lwa.expansion.cost import affordable, short
+from lwa.expansion.cost import LONG_TERMS, affordable, short
 from lwa.expansion.observables import Observables, shares_model
 from lwa.expansion.series import EpsilonSeries
 from lwa.expansion.validity import descent
@@ -52,8 +53,9 @@ class Expansion(Value):
     @cached_property
     def _read(self) -> Observables:
         own = shares_model(self.cell, self.k)
-        effort = affordable(own, self.order)
-        return Observables(own, self.order, effort.progress(f"the expansion to ε^{self.order}"))
+        long = affordable(own, self.order) > LONG_TERMS
+        progress = announced(f"the expansion to ε^{self.order}") if long else iter
+        return Observables(own, self.order, progress)
 
     @cached_property
     def numeric(self) -> bool:

@@ -113,9 +113,6 @@ class ExpandedWave(Value):
                 rows.append(rf"{name} = \text{{no sum}}")
         return rows
 
-    def _repr_latex_(self) -> str:
-        return latex.display(self.latex_rows())
-
     def _at_force(self, series: EpsilonSeries, power: sp.Expr) -> Resummed:
         """A quantity proportional to the compression to some power."""
         return _times(series.at(), float(self.F ** (power / self.expansion.k)))

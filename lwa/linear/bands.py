@@ -10,8 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lwa.base.arrays import Array
-from lwa.base.exact import InputError, shorten
+from lwa.base.arrays import Array, finite
 
 Complex = NDArray[np.complex128]
 
@@ -58,7 +57,7 @@ def edges(fractions: Array, shares: Array) -> Array:
 
 def _strains(fractions: Array, shares: Array, kappa: ArrayLike) -> tuple[Complex, Complex]:
     """The matrix B(κ) from a_i √(P μ_i) to f_i √c_i, and the one entry of dB/dκ (last row)."""
-    wave = _finite(kappa)
+    wave = finite(kappa, "kappa")
     # by whole turns less, which e^{iκ} takes off exactly
     wave = np.where(np.abs(wave) <= np.pi, wave, np.angle(np.exp(1j * wave)))
     P = len(fractions)
@@ -71,17 +70,3 @@ def _strains(fractions: Array, shares: Array, kappa: ArrayLike) -> tuple[Complex
     end = np.exp(1j * P * wave) / (share[-1] * mass[0])
     B[..., -1, 0] += end
     return B, 1j * P * end
-
-
-def _finite(kappa: ArrayLike) -> Array:
-    try:
-        values = np.asarray(kappa)
-        array: Array = values.astype(
-            float, casting="safe" if values.dtype.kind != "O" else "unsafe"
-        )
-    except (TypeError, ValueError):
-        raise InputError(f"kappa is {shorten(kappa)}: real wavenumbers are wanted") from None
-    if not np.all(np.isfinite(array)):
-        value = array[~np.isfinite(array)].flat[0]
-        raise InputError(f"kappa is {value}: finite wavenumbers are wanted")
-    return array

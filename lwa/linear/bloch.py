@@ -69,11 +69,7 @@ class Bloch:
         P = self.P
         trace = self.trace(order)
         omega2 = [self.zero]
-        powers = [
-            [],
-            omega2,
-            *([self.zero] for _ in trace[2:]),
-        ]  # powers[m] is the series of Ω^{2m}
+        powers = [[], omega2, *([self.zero] for _ in trace[2:])]  # powers[m] is that of Ω^{2m}
         for n in range(1, order + 1):
             following = self.one * fmpq(-2 * (-1) ** n * P ** (2 * n - 2), factorial(2 * n))
             for m in range(2, len(trace)):

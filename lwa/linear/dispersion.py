@@ -23,7 +23,7 @@ from flint import fmpq_mpoly
 
 from lwa.algebra.model import Model
 from lwa.base import latex
-from lwa.base.exact import InputError, integer, positive, shorten
+from lwa.base.exact import InputError, integer, one_of, positive, shorten
 from lwa.base.frozen import Value
 from lwa.cell import Cell, exponent, substitution
 from lwa.law import ContactLaw, Power, for_cell
@@ -110,8 +110,7 @@ class Dispersion(Value):
         Raises `lwa.InputError` unless the cell has two particles.
         """
         self._demand_dimer("the amplitude ratio")
-        if branch not in BRANCHES:
-            raise InputError(f"branch is {shorten(branch)}: one of {', '.join(BRANCHES)} is wanted")
+        one_of(branch, BRANCHES, "branch")
         self._length(order)
         m1, m2 = self.cell.masses
         ratio = sp.Integer(1) if branch == "acoustic" else sp.cancel(-m1 / m2)

@@ -17,7 +17,7 @@ from typing import Any
 import sympy as sp
 
 from lwa.base import latex
-from lwa.base.exact import InputError, exact, positive, shorten
+from lwa.base.exact import InputError, exact, one_of, positive, shorten
 from lwa.base.frozen import Value
 from lwa.spheres.materials import MATERIALS
 
@@ -59,11 +59,7 @@ class Material(Value):
         >>> Material.named("PTFE", E="0.6e9")
         Material(E=600000000, nu=23/50, density=2178)
         """
-        if not isinstance(name, str) or name not in MATERIALS:
-            raise InputError(
-                f"material is {shorten(name)}: one of {', '.join(MATERIALS)} is wanted"
-            )
-        table = MATERIALS[name]
+        table = MATERIALS[one_of(name, MATERIALS, "material")]
         return cls(
             table.E if E is None else E,
             table.nu if nu is None else nu,

@@ -26,8 +26,8 @@ from lwa.base import latex
 from lwa.base.exact import InputError, exact, integer, root, shorten, signed
 from lwa.base.frozen import Value
 from lwa.base.quantities import RISE, NoSolitaryWave, known
-from lwa.cell import RESERVED, Cell, meant, substitution
-from lwa.law import ContactLaw, Power, for_cell
+from lwa.cell import RESERVED, Cell, meant
+from lwa.law import ContactLaw, Power, for_cell, substituted
 from lwa.linear.dispersion import Dispersion
 from lwa.wave.kdv import KdV
 from lwa.wave.profile import Profile, Strains, mpmath_number
@@ -287,11 +287,7 @@ class BackgroundWave(Value):
 
         Raises `lwa.InputError` for a name that does not occur or a value that is no quantity.
         """
-        more = (*self.law.symbols, *sorted(self.p0.free_symbols, key=str))
-        new = substitution(values, self.cell, more=more)
-        return BackgroundWave(
-            self.cell.replaced(new), self.law.replaced(new), self.p0.xreplace(new)
-        )
+        return BackgroundWave(*substituted(values, self.cell, self.law, self.p0))
 
     # --- numbers of many digits -------------------------------------------------------------
 

@@ -20,8 +20,8 @@ from lwa.base import latex
 from lwa.base.exact import evaluated, positive
 from lwa.base.frozen import Value
 from lwa.base.quantities import NoSolitaryWave, known_extent
-from lwa.cell import Cell, meant, substitution
-from lwa.law import ContactLaw, for_cell
+from lwa.cell import Cell, meant
+from lwa.law import ContactLaw, for_cell, substituted
 from lwa.wave.background import DIGITS, BackgroundWave, taken_names
 
 
@@ -123,8 +123,5 @@ class PrecompressedWave(Value):
 
         Raises `lwa.InputError` for a name that does not occur or a value that is no quantity.
         """
-        forces = self.force.free_symbols | self.precompression.free_symbols
-        more = (*self.law.symbols, *sorted(forces, key=str))
-        new = substitution(values, self.cell, more=more)
-        force, load = (x.xreplace(new) for x in (self.force, self.precompression))
-        return PrecompressedWave(self.cell.replaced(new), self.law.replaced(new), force, load)
+        own = (self.cell, self.law, self.force, self.precompression)
+        return PrecompressedWave(*substituted(values, *own))

@@ -67,8 +67,11 @@ def test_paper_options(capsys, tmp_path):
 
 def shown(capsys, found, *arguments):
     """Status and outputs of a study with this result."""
-    made = command.study(name="made")(lambda: found)
-    return ended(capsys, made.main, *arguments)
+
+    def made():
+        return found
+
+    return ended(capsys, command.study()(made).main, *arguments)
 
 
 def test_a_study_prints_its_result(capsys, limits_result):
@@ -679,7 +682,7 @@ def test_exact_scaled_to_a_speed_or_a_force(capsys):
 def test_the_list_of_studies_is_what_they_say():
     """The help is told without loading any of them."""
     context = click.Context(cli.validate)
-    for name, (_, _, says) in cli.studies().items():
+    for name, (_, says) in cli.studies().items():
         found = cli.validate.get_command(context, name)
         assert found.name == name
         assert " ".join(found.help.split()) == " ".join(says.split())
@@ -706,7 +709,7 @@ def test_a_study_is_loaded_when_it_is_called():
 
 @pytest.mark.parametrize("name", ["accuracy", "figures", "hard", "limits"])
 def test_a_long_command_says_in_its_help_how_long_it_takes(name):
-    says = cli.studies()[name][2]
+    says = cli.studies()[name][1]
     assert re.search(r"(minutes?|seconds)\b[^.]*\.$", says), says
 
 

@@ -59,7 +59,8 @@ class Records(ArrayValue, Pictured):
 
     def __repr__(self) -> str:
         sensors = len(self.scene.bead_sensors) + len(self.scene.contact_sensors)
-        return f"{type(self).__name__}({self.scene}; {sensors} sensors, {len(self.time)} samples)"
+        heard = f"{sensors} sensor{'s' * (sensors != 1)}, {len(self.time)} samples"
+        return f"{type(self).__name__}({self.scene}; {heard})"
 
     def label(self, quantity: str) -> str:
         """Name of a quantity with its unit, as in headers and on axes.

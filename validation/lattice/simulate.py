@@ -13,7 +13,6 @@ from collections import deque
 from collections.abc import Iterable, Iterator
 from concurrent.futures import Future
 from itertools import islice
-from time import perf_counter
 from typing import Any
 
 import numpy as np
@@ -34,7 +33,6 @@ __all__ = ["COMPILED", "METHODS", "simulate", "simulate_many", "twice"]
 COMPILED = tuple(SCHEMES)
 """The engine's: an adaptive Runge–Kutta–Nyström pair, the default, and a symplectic splitting."""
 
-_BATCH, _SPELL = 8, 0.02  # scenes that a thread is given at a time, at most, and for seconds
 _SHORTEST = 8  # beads of a window
 _FINITE = (*RECORDS, "displacements", "velocities")
 
@@ -124,33 +122,15 @@ def simulate_many(
     ...  simulate_many(Scene(**chain, velocities=(v,)) for v in (1, 2))]
     [np.float64(1.0), np.float64(2.0)]
     """
-    ahead: deque[Future[_Batch]] = deque()
-    waiting, size, count = iter(scenes), 1, cores() if workers is None else workers
+    ahead: deque[Future[Run]] = deque()
+    waiting, count = iter(scenes), cores() if workers is None else workers
     with threads(count) as pool:
         while True:
-            while len(ahead) <= 2 * count and (some := list(islice(waiting, size))):
-                ahead.append(pool.submit(_batch, some, options))
+            more = islice(waiting, 2 * count + 1 - len(ahead))
+            ahead.extend(pool.submit(simulate, scene, **options) for scene in more)
             if not ahead:
                 return
-            runs, seconds, error = ahead.popleft().result()
-            yield from runs
-            if error is not None:
-                raise error
-            size = math.ceil(min(_BATCH, _SPELL / seconds))
-
-
-_Batch = tuple[list[Run], float, Exception | None]
-
-
-def _batch(scenes: list[Scene], options: dict[str, Any]) -> _Batch:
-    """Runs up to the first failure, seconds per run, and the failure or None."""
-    runs: list[Run] = []
-    start = perf_counter()
-    try:
-        runs.extend(simulate(scene, **options) for scene in scenes)
-    except Exception as error:
-        return runs, 1.0, error
-    return runs, (perf_counter() - start) / len(scenes), None
+            yield ahead.popleft().result()
 
 
 def twice(scene: Scene, fine: float, coarse: float, **options: Any) -> tuple[Run, Run]:

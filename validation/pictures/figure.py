@@ -115,7 +115,14 @@ def draw(plot: Axes, panel: Panel) -> None:
             style = style[1:]
         colour = None if any(part in style for part in "Ckr") else f"C{i}"
         plot.errorbar(
-            curve.x, curve.y, curve.error, fmt=style, color=colour, ms=4, label=curve.label or None
+            curve.x,
+            curve.y,
+            curve.error,
+            fmt=style,
+            color=colour,
+            ms=4,
+            mfc="none",  # hollow marks show the curves below
+            label=curve.label or None,
         )
     for axis in panel.scale:
         _plain(getattr(plot, f"{axis}axis"))

@@ -98,9 +98,6 @@ class Track:
         return all_pulses(self.force)
 
 
-Tracks = tuple[Track, ...]
-
-
 def record(
     scene: Scene,
     *,
@@ -135,7 +132,7 @@ def record(
     )
 
 
-def tracks(run: Run, every: int = 1) -> Tracks:
+def tracks(run: Run, every: int = 1) -> tuple[Track, ...]:
     """The dynamic forces at the sensors of a run, beads first.
 
     A contact's place is midway between its beads, the wall's contact half a spacing behind the last

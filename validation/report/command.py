@@ -42,10 +42,8 @@ R = TypeVar("R", bound=Result | Report)
 class Study(Generic[P, R]):
     """A function that computes a result, and the ``command`` that prints it."""
 
-    def __init__(
-        self, function: Callable[P, R], name: str, options: Iterable[Any], epilog: str
-    ) -> None:
-        self.function, self.name = function, name
+    def __init__(self, function: Callable[P, R], options: Iterable[Any], epilog: str) -> None:
+        self.function, self.name = function, function.__name__
         self.options, self.epilog = tuple(options), epilog
         update_wrapper(self, function)
 
@@ -90,20 +88,19 @@ class Study(Generic[P, R]):
         run_command(self.command, f"{self.name}.py", arguments)
 
 
-def study(
-    *options: Any, name: str = "", epilog: str = ""
-) -> Callable[[Callable[P, R]], Study[P, R]]:
+def study(*options: Any, epilog: str = "") -> Callable[[Callable[P, R]], Study[P, R]]:
     """Make a study of a function that returns a `Report`, or a result with ``report()``.
 
+    The command has the function's name.
+
     options : of the command, made by `option` or Click; each is a parameter of the function.
-    name : of the command, by default the function's.
     epilog : text below the options in the command's help.
 
     The command also passes, to parameters of these names: ``progress``, which shows how many cases
     are done, ``run_progress``, which shows how far a lattice run is
     (`validation.lattice.cost.RunProgress`), and ``picture``, the file of ``--plot``.
     """
-    return lambda function: Study(function, name or function.__name__, options, epilog)
+    return lambda function: Study(function, options, epilog)
 
 
 def option(*names: str, default: Any = None, says: str = "", **more: Any) -> Any:

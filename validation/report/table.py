@@ -13,8 +13,6 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
-from validation.pulses.pulse import Measured
-
 
 @dataclass(frozen=True)
 class Column:
@@ -148,13 +146,6 @@ class Finding:
     high: float = math.inf
     error: float | None = None
     key: str = ""
-
-    @classmethod
-    def of(
-        cls, quantity: str, measured: Measured, low: float, high: float, key: str = ""
-    ) -> Finding:
-        """A finding of a measured number with its error."""
-        return cls(quantity, measured.value, low, high, measured.error, key)
 
     @property
     def ok(self) -> bool:

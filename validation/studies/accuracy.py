@@ -115,7 +115,7 @@ def exact(sites: int = 100) -> Task:
     arrival, width = (sites + 0.5) / wave.c, wave.fwhm("force") / wave.c
     recorded = {"contact_sensors": (start + sites,), "duration": arrival + 10, "samples": 2}
     truth = Pulse(arrival, 1.0, arrival - width / 2, arrival + width / 2)
-    return Task(chains.launched(wave, start, sites, **recorded), truth)
+    return Task(wave.launched(start, sites, **recorded), truth)
 
 
 def experiment() -> Task:
@@ -270,11 +270,11 @@ def _costs(rows: Sequence[Row]) -> list[tuple[Any, ...]]:
 
 
 def _panel(task: str, rows: Sequence[Row]) -> Panel:
-    """CPU time over error: a colour and mark for each method, solid with a window."""
+    """CPU time over error: a colour for each method, other marks and solid lines with a window."""
     curves = []
     for name, its in by_name(rows).items():
         place = list(METHODS).index(its[0].method)
-        style = f"C{place}{'os^v<'[place]}" + ("-" if its[0].window else ":")
+        style = f"C{place}" + ("x+*12"[place] + "-" if its[0].window else "os^v<"[place] + ":")
         seen = [row for row in its if math.isfinite(row.error)]
         points = [row.error for row in seen], [row.seconds for row in seen]
         curves.append(Curve.of(name, *points, style=style))
@@ -282,9 +282,7 @@ def _panel(task: str, rows: Sequence[Row]) -> Panel:
     return Panel(label, "CPU time (s)", tuple(curves), "xy", task)
 
 
-@study(
-    option("--task", "names", multiple=True, type=click.Choice(NAMES), says="Only this task."),
-)
+@study(option("--task", "names", multiple=True, type=click.Choice(NAMES), says="Only this task."))
 def accuracy(names: Collection[str] = (), progress: Progress[str] = iter) -> Report:
     """Speed against error: integrators on fixed tasks, theories against true waves. Three minutes.
 

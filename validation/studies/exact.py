@@ -12,6 +12,7 @@ from lwa.base.progress import Progress
 from lwa.base.quantities import QUANTITIES
 from lwa.command.reading import quantities
 from validation.pictures.panel import Curve, Panel
+from validation.pulses.steady import HUMPS
 from validation.report.command import EXPONENT, number, option, study
 from validation.report.result import Report
 from validation.report.table import Column, Table
@@ -23,7 +24,8 @@ from validation.waves.solver import exact_wave, measured
 _SOLITARY = "solitary: nothing is left behind", "Errors: residual, tail and rounding."
 _NANOPTERON = (
     "a nanopteron, not solitary:\nthe light beads rattle on both sides, with this tail",
-    "Half period {:g}, one of a family. Errors: differences from the pulse of a struck chain.",
+    "Half period {:g}, one of a family. Errors: differences from the pulse of a struck chain.\n"
+    f"{HUMPS}.",
 )
 _COLUMNS = (
     Column("of", "of"),

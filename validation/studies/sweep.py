@@ -30,7 +30,7 @@ from lwa.base.progress import Progress
 from validation.lattice.threads import cluster, threads
 from validation.pictures.panel import Curve, Map, Panel
 from validation.pulses.pulse import Measured
-from validation.pulses.steady import QUANTITIES, STRETCH, Point, point
+from validation.pulses.steady import HUMPS, QUANTITIES, STRETCH, Point, point
 from validation.report.command import option, study, whole
 from validation.report.files import output_file
 from validation.report.result import Report
@@ -54,6 +54,11 @@ Width: FWHM of a contact's force, in sites. Speed: sites over time at contact fo
 m1 = 1. Decay: of the logarithm of the peak force. ±: the largest change over two stretches, or from
 a less accurate run. Sites: places of the measurement, from the struck bead. linear, canonical:
 theory/lattice - 1 for the paper's closure and for the full closure's canonical field."""
+_HUMPED = Rational(1, 5), Rational(7, 10)  # m2/m1 between which the force has several humps
+_BEYOND = f"""\
+{HUMPS}
+(at k = 3/2 from 2.50 to 1.58 sites as m2/m1 rises beyond 0.55). The theory has one hump: from
+m2/m1 = {float(_HUMPED[0])} to {float(_HUMPED[1])} a width is no measure of its error."""
 
 
 class SweepError(Failure):
@@ -111,7 +116,10 @@ class Sweep:
         panels = self._maps() if min(len(self.ks), len(self.omegas)) > 1 else self._curves()
         data = {"stretch": self.stretch, "missing": len(told)}
         title = "The steady pulse of a struck dimer chain"
-        return Report(title, (table,), panels=panels, notes=("\n".join(told), _NOTE), data=data)
+        low, high = _HUMPED
+        beyond = _BEYOND if any(low < omega < high for omega in self.omegas) else ""
+        notes = ("\n".join(told), _NOTE, beyond)
+        return Report(title, (table,), panels=panels, notes=notes, data=data)
 
     def _maps(self) -> tuple[Panel, ...]:
         x, y = (np.array(axis, float) for axis in (self.omegas, self.ks))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import math
 import pickle
 import re
 import signal
@@ -22,7 +23,7 @@ from lwa.algebra.model import Model
 from lwa.base.exact import signed
 from lwa.base.quantities import QUANTITIES
 from lwa.command.cli import main
-from lwa.expansion.cost import Effort, affordable
+from lwa.expansion.cost import affordable
 from lwa.expansion.radiation import radiation
 
 # --- k ---
@@ -269,15 +270,10 @@ def test_the_series_own_letter_is_refused(name: str) -> None:
 # --- effort ---
 
 
-def test_what_takes_minutes_is_said_and_what_takes_hours_refused(capsys) -> None:
-    for cell, order in ((Cell(["a", "b"]), 100), (Cell([1]), 10**18), (Cell([1, "1/50"]), 400)):
-        with pytest.raises(InputError, match=r"this takes (about|over) .* (hours|days|years)"):
+def test_an_expansion_beyond_memory_is_refused() -> None:
+    for cell, order in ((Cell(["a", "b"]), 100), (Cell([1]), 10**18), (Cell([1, "1/50"]), 800)):
+        with pytest.raises(InputError, match=r"this takes more than .* terms"):
             expand(cell, order)
-    model = Model(Cell([1, "1/50"]), Power(sp.S.One))
-    assert [*affordable(model, 16).progress("it takes")(range(3))] == [0, 1, 2]
-    assert capsys.readouterr().err == ""
-    assert [*affordable(model, 100).progress("it takes")(range(3))] == [0, 1, 2]
-    assert re.fullmatch(r"it takes: about .* minutes\n", capsys.readouterr().err)
 
 
 @settings(max_examples=10, deadline=None)
@@ -285,18 +281,19 @@ def test_what_takes_minutes_is_said_and_what_takes_hours_refused(capsys) -> None
     order=st.integers(1, 200),
     size=st.integers(1, 12),
     symbols=st.integers(0, 12),
-    digits=st.integers(1, 99),
 )
-def test_more_never_takes_less(order: int, size: int, symbols: int, digits: int) -> None:
-    def seconds(order: int, size: int, symbols: int, digits: int) -> float:
-        masses = [*(f"n{i}" for i in range(symbols)), *[1] * size, 10**digits]
-        return Effort.of(Model(Cell(masses), Power(1)), order).seconds
+def test_more_never_takes_less(order: int, size: int, symbols: int) -> None:
+    def terms(order: int, size: int, symbols: int) -> float:
+        masses = [*(f"n{i}" for i in range(symbols)), *[1] * size, 7]
+        try:
+            return affordable(Model(Cell(masses), Power(1)), order)
+        except InputError:
+            return math.inf
 
-    at = seconds(order, size, symbols, digits)
-    assert seconds(order + 1, size, symbols, digits) > at
-    assert seconds(order, size + 1, symbols, digits) > at
-    assert seconds(order, size, symbols + 1, digits) > at
-    assert seconds(order, size, symbols, digits + 60) >= at
+    at = terms(order, size, symbols)
+    assert terms(order + 1, size, symbols) >= at
+    assert terms(order, size + 1, symbols) >= at
+    assert terms(order, size, symbols + 1) >= at
 
 
 @pytest.mark.parametrize(
@@ -337,7 +334,7 @@ def test_a_long_command_says_so_and_stops_at_an_interrupt() -> None:
             _, rest = run.communicate(timeout=60)  # of the minutes that it would take
         finally:
             run.kill()
-    assert re.fullmatch(r"the expansion to ε\^100: about .* minutes\n", first)
+    assert re.fullmatch(r"the expansion to ε\^100: this may take minutes\n", first)
     assert rest.strip() == "lwa: interrupted"
     assert run.returncode == 130
 

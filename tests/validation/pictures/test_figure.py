@@ -54,6 +54,11 @@ def test_a_logarithmic_axis_of_few_decades_has_plain_numbers(most, labels):
     assert any("10^" in tick.get_text() for tick in axes.get_yticklabels())  # too large for that
 
 
+def test_marks_are_hollow_and_show_the_curves_below(report):
+    (line,) = report.figure().axes[0].lines
+    assert line.get_markerfacecolor() == "none"
+
+
 def test_colours_marks_and_bars():
     curves = (
         Curve.of("bars", X, X, "C3s", [0.1, 0.2, 0.3]),

@@ -10,6 +10,7 @@ import subprocess
 import sys
 import time
 from concurrent.futures import BrokenExecutor, ThreadPoolExecutor
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
@@ -366,6 +367,12 @@ def test_the_text_has_a_table_for_each_k_and_the_reasons(result):
     width = float(result.theory["linear"]["width"][0, 1])
     assert percent(width / 2.5 - 1) in blocks[0].splitlines()[3]
     assert "nan" not in shown
+
+
+def test_the_text_says_where_a_width_is_no_measure_of_the_theory(result):
+    assert "is no measure of its error" in result.report().text()
+    few = replace(result, omegas=(R(1),), points=result.points[1::3], theory=theory(result.ks, [1]))
+    assert "is no measure of its error" not in few.report().text()
 
 
 def test_the_document_is_json_and_complete(result):

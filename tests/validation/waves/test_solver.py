@@ -384,7 +384,7 @@ def test_the_result_says_all_of_a_wave(masses):
         assert 0 < found["fwhm_error_value"][name] < 0.1
     assert found["solitary"] is (len(masses) == 1)
     text = wave_report(wave).text()
-    assert ("nanopteron" in text) is (len(masses) == 2)
+    assert ("nanopteron" in text) is ("jumps" in text) is (len(masses) == 2)
     assert str(measured(wave)["c"]) in text
 
 
