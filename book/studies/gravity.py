@@ -58,6 +58,7 @@ from validation.waves.profile import summit
 
 CHAINS = ((1,), (1, "1/2"))  # masses of the default cells
 WEAK, STRONG = 1e-4, (10.0, 100.0, 1000.0)  # velocities of the struck bead
+_UNLIKE = 1000  # largest ratio of masses: light beads need ever shorter steps, 100 takes 4 s of CPU
 FIRST = 100  # beads above the first place of the fit of a weak blow's front
 _PLACES = 24  # places of a weak blow
 _TOP, _FEW = 20, 7  # beads above the first place of a strong blow; number of its places
@@ -237,7 +238,11 @@ def gravity(
         "as the depth's third root, the more beads it takes to see it",
     )
     beads = integer(beads, "beads", 10 * FIRST, 20_000)
-    chains = [Upright(numbered(row), k, beads) for row in ([masses] if masses else CHAINS)]
+    cells = [numbered(row) for row in ([masses] if masses else CHAINS)]
+    for cell in cells:
+        ratio = float(max(cell.masses) / min(cell.masses))
+        between(ratio, "the largest mass over the least", 1, _UNLIKE)
+    chains = [Upright(cell, k, beads) for cell in cells]
     jobs = [(chain, blow) for chain in chains for blow in (WEAK, *STRONG)]
     found = {
         (chain, blow): chain.fronts() if blow == WEAK else chain.pulses(blow)

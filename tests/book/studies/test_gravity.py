@@ -134,6 +134,7 @@ def test_the_command(capsys):
         ({"masses": ("m",)}, "mass is m: a number is wanted"),
         ({"beads": 10 * FIRST - 1}, "beads is 999"),
         ({"k": 3}, "k is 3: one from 1.1 to 1.75"),
+        ({"masses": ("7/5", 1e9)}, "the largest mass over the least is 7142"),
         ({"k": "3/2"}, "a number is wanted"),
     ],
 )
