@@ -103,9 +103,9 @@ def on_lattice(k: sp.Expr, second: float, rtol: float, samples: int) -> Records:
     contact = x[:-1] + 0.5
     scene = carrying(
         (1.0,) * len(x),
-        float(k),
         first.strain(contact + d) + other.strain(away - contact),
         first.velocity(x + d) - other.velocity(away - x),
+        k=float(k),
         contact_sensors=(half - 1, half - 1 + d),
         duration=2.5 * d / first.c,
         samples=samples,

@@ -1,8 +1,9 @@
 """Waves in a chain under load against the theory, from weak to strong.
 
-A = D = 1, and all contacts carry the static force F0 = 1, held by a wall at the far end. Each chain
-starts with a wave, as a weak wave would need very many sites to form from a blow: equal beads with
-the lattice's own wave (`validation.waves.solver`), others with the theory's, which sheds its
+A = D = 1, and all contacts carry the static force F0 = F(1), held by a wall at the far end. F is
+δ^k or any contact law; speeds are in units of c0, the speed of sound, c0² = F′(1)/(mean mass). Each
+chain starts with a wave, as a weak wave would need very many sites to form from a blow: equal beads
+with the lattice's own wave (`validation.waves.solver`), others with the theory's, which sheds its
 difference from the lattice's wave. Contacts of a cell record the wave at three places; numbers are
 means over the contacts of a cell, and the theory is evaluated at the dynamic force measured there.
 Errors are the larger of two changes: of theory/lattice between the two stretches, and of the
@@ -23,10 +24,12 @@ from itertools import cycle, groupby
 from typing import Any
 
 import numpy as np
+import sympy as sp
 
-from lwa import Cell, Power, background_wave
+from lwa import Cell, ContactLaw, Power, background_wave
 from lwa.base.arrays import Array
 from lwa.base.progress import Progress
+from lwa.command.options import law_option
 from lwa.command.reading import quantities
 from lwa.wave.quadrature import NumericBackground
 from validation.lattice.run import Run
@@ -56,6 +59,7 @@ _WEAKEST, _STRONGEST = 1e-3, 1e4
 
 @study(
     EXPONENT,
+    law_option("Contact law in place of δ^k, such as hertz2:1,2."),
     option(
         "--masses",
         callback=quantities,
@@ -72,9 +76,12 @@ def precompressed(
     k: float = 1.5,
     masses: Sequence[Any] = (),
     ratios: Sequence[Any] = RATIOS,
+    law: ContactLaw | None = None,
     progress: Progress[Any] = iter,
 ) -> Report:
     """Waves in chains under load: speed, width and bead velocity. Fifteen seconds.
+
+    law: contact law of `lwa.law`, in place of k; Newton's waves are those of powers only.
 
     ``rows``: ``masses``, ``ratio_value`` (measured dynamic over static force), ``speed_value``
     (V/c0, c0 the speed of sound) with its error, ``theory_value``, ``error_value`` (theory/lattice
@@ -90,17 +97,28 @@ def precompressed(
     wanted = [between(ratio, "ratio", _WEAKEST, _STRONGEST) for ratio in ratios]
     if not wanted:
         raise SceneError("ratios is empty: at least one is wanted")
-    waves = [Wave(cell, k, ratio) for cell in cells for ratio in sorted(wanted)]
-    return _report(k, [(wave, wave.row()) for wave in progress(waves)])
+    law = Power(k) if law is None else law
+    waves = [Wave(cell, law, ratio) for cell in cells for ratio in sorted(wanted)]
+    return _report(law, [(wave, wave.row()) for wave in progress(waves)])
 
 
 @dataclass(frozen=True)
 class Wave:
-    """A wave with dynamic force ``ratio`` on F0 = 1; speeds in units of c0, lengths in sites."""
+    """A wave with dynamic force ``ratio`` F0 on F0; speeds in units of c0, lengths in sites."""
 
     cell: Cell
-    k: float
+    law: ContactLaw
     ratio: float
+
+    @cached_property
+    def load(self) -> float:
+        """F0 = F(1)."""
+        return float(self.law.at(sp.S.One))
+
+    @cached_property
+    def stiffness(self) -> float:
+        """F′(1)."""
+        return float(self.law.at(sp.S.One, 1))
 
     @cached_property
     def masses(self) -> Array:
@@ -110,38 +128,42 @@ class Wave:
     @cached_property
     def sound(self) -> float:
         """c0, in sites per unit of time."""
-        return math.sqrt(self.k / self.masses.mean())
+        return math.sqrt(self.stiffness / self.masses.mean())
 
     def unit(self, name: str) -> float:
         """Unit in which all chains fall on one curve: √(12 I) for a width."""
-        return (
-            math.sqrt(12 * background_wave(self.cell, law=Power(self.k)).I)
-            if name == "fwhm"
-            else 1.0
-        )
+        return math.sqrt(12 * background_wave(self.cell, law=self.law).I) if name == "fwhm" else 1.0
 
     @cached_property
     def exact(self) -> ExactWave | None:
-        """The lattice's own wave, for equal beads."""
-        if len(self.masses) > 1:
+        """The lattice's own wave, for equal beads and a power."""
+        if len(self.masses) > 1 or not self.law.homogeneous:
             return None
-        p0 = math.pow(1 + self.ratio, -1 / self.k)
-        found = exact_wave(self.masses.tolist(), self.k, background=p0)
+        k = float(self.law.exponent)
+        found = exact_wave(self.masses.tolist(), k, background=math.pow(1 + self.ratio, -1 / k))
         return found.scaled(force=1 + self.ratio)
 
     @cached_property
     def _theory(self) -> NumericBackground:
-        return background_wave(self.cell, law=Power(self.k)).numeric()
+        return background_wave(self.cell, law=self.law).numeric()
+
+    @cached_property
+    def _sound(self) -> float:
+        """c0 in the units of the wave equation."""
+        return math.sqrt(self.law.of_strain(sp.S.One, sp.S.One, 1))
 
     def theory(self, force: float) -> dict[str, float]:
-        """Speed, FWHM of the contact force and bead velocity at a dynamic force."""
+        """Speed, FWHM of the contact force and bead velocity at a dynamic force over F0."""
         B = self.strain(force)
-        speed, width = self._theory.speed(1.0, B), self._theory.fwhm(1.0, B, "force")
-        return {"speed": float(speed), "fwhm": float(width), "peak": B * float(speed) * self.sound}
+        speed = float(self._theory.speed(1.0, B)) / self._sound
+        width = float(self._theory.fwhm(1.0, B, "force"))
+        return {"speed": speed, "fwhm": width, "peak": B * speed * self.sound}
 
     def strain(self, force: float) -> float:
-        """Strain added by a dynamic force on F0."""
-        return math.expm1(math.log1p(force) / self.k)
+        """Strain added by a dynamic force over F0."""
+        if self.law.homogeneous:
+            return math.expm1(math.log1p(force) / float(self.law.exponent))
+        return float(self.law.compression(self.cell, sp.Float(self.load * (1 + force)))) - 1
 
     @cached_property
     def places(self) -> tuple[int, ...]:
@@ -169,11 +191,11 @@ class Wave:
         sensors = tuple(place + i for place in places for i in range(size))
         return carrying(
             np.resize(self.masses, beads).tolist(),
-            self.k,
             strain,
             velocity,
+            law=self.law,
             wall=1.0,
-            precompression=1.0,
+            precompression=self.load,
             contact_sensors=sensors,
             bead_sensors=sensors,
             duration=sites / self.sound,
@@ -186,10 +208,10 @@ class Wave:
         heard = tracks(run)
         beads, contacts = heard[: len(heard) // 2], heard[len(heard) // 2 :]
         for bead, contact in zip(beads, contacts, strict=True):
-            pulse = leading_pulse(contact.force, self.k)
+            pulse = leading_pulse(contact.force, self.stiffness / self.load)
             velocity = run.signal("bead", bead.number - 1, "velocity")
             fastest = highest_pulse(velocity, pulse.fall + pulse.fwhm).peak
-            rows.append((pulse.arrival, pulse.peak, pulse.fwhm, fastest))
+            rows.append((pulse.arrival, pulse.peak / self.load, pulse.fwhm, fastest))
         table = np.array(rows).reshape(3, len(self.masses), 4)[stretch : stretch + 2]
         arrival, force, width, velocity = np.moveaxis(table, 2, 0)
         sites = self.places[stretch + 2] - self.places[stretch + 1]
@@ -238,10 +260,10 @@ _COLUMNS = {
 }
 
 
-def _report(k: float, found: Sequence[tuple[Wave, dict[str, Any]]]) -> Report:
+def _report(law: ContactLaw, found: Sequence[tuple[Wave, dict[str, Any]]]) -> Report:
     rows = [cells for _, cells in found]
     return Report(
-        f"Waves on a static force F0 = 1: k = {k:g}, A = D = 1",
+        f"Waves on a static force F0 = {found[0][0].load:g}: F = {law.F}, A = D = 1",
         (
             Table(
                 tuple(_COLUMNS.values()),
@@ -249,7 +271,7 @@ def _report(k: float, found: Sequence[tuple[Wave, dict[str, Any]]]) -> Report:
                 "rows",
             ),
         ),
-        tuple(_findings(k, rows)),
+        tuple(_findings(law, rows)),
         tuple(_panels(found)),
         (
             "F: dynamic contact force, V: speed, c0: speed of sound. off: theory/lattice - 1. "
@@ -260,10 +282,10 @@ def _report(k: float, found: Sequence[tuple[Wave, dict[str, Any]]]) -> Report:
     )
 
 
-def _findings(k: float, rows: Sequence[dict[str, Any]]) -> Iterator[Finding]:
+def _findings(law: ContactLaw, rows: Sequence[dict[str, Any]]) -> Iterator[Finding]:
     """Bounds for equal beads, and for weak waves in all chains."""
     equal = [row for row in rows if len(row["masses"]) == 1]
-    if equal:
+    if equal and law.homogeneous:
         off = max(abs(row["speed"].value / row["exact"] - 1) for row in equal)
         yield Finding(
             "equal beads, V: lattice over exact wave - 1, at most",
@@ -281,7 +303,7 @@ def _findings(k: float, rows: Sequence[dict[str, Any]]) -> Iterator[Finding]:
             for row in those
             if row["force"] <= ratio * (1 + 1e-6)
         ]
-        if offs and (k == 1.5 or ratio < 1):
+        if offs and (law == Power("3/2") or ratio < 1):
             worst, error = max(offs)
             yield Finding(
                 f"{name}, V: |theory/lattice - 1|, at most", worst, high=bound, error=error

@@ -162,10 +162,8 @@ class Motion:
         _held("shortest time", time)
         y, v, rounding = deepest, deepest / time, 0.0
         if energy > 0:
-            y, v = (
-                np.sqrt(energy / (stiffest * stiffening)),
-                np.sqrt(energy / (self.masses.sum() / n)),
-            )
+            y = np.sqrt(energy / (stiffest * stiffening))
+            v = np.sqrt(energy / (self.masses.sum() / n))
             _held("displacement", y)
             _held("velocity", v)
             rounding = np.finfo(float).eps * at_rest / y

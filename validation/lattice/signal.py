@@ -21,10 +21,7 @@ from validation.scenes.checks import SceneError
 
 _REGULA_FALSI = 9  # steps, that leave less than 1e-12 of a step of the integrator
 
-_QUANTITIES = {
-    "contact": ("force", "compression"),
-    "bead": ("force", "displacement", "velocity"),
-}
+_QUANTITIES = {"contact": ("force", "compression"), "bead": ("force", "displacement", "velocity")}
 
 
 Beads = Sequence[int] | NDArray[np.int_]

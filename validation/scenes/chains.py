@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from lwa import Cell
-from lwa.base.arrays import Array
 from lwa.spheres.hertz import Sphere
 from validation.scenes.checks import SceneError
 from validation.scenes.materials import PTFE_BEAD, STEEL, STEEL_BEAD
@@ -64,49 +63,18 @@ def chain_scene(
 
 
 def carrying(
-    masses: Sequence[float], k: float, compression: ArrayLike, velocity: ArrayLike, **rest: Any
+    masses: Sequence[float], compression: ArrayLike, velocity: ArrayLike, **rest: Any
 ) -> Scene:
-    """A chain that starts with these compressions of its contacts and velocities of its beads."""
+    """A chain that starts with these compressions of its contacts and velocities of its beads.
+
+    rest : further fields of the scene, ``k`` or ``law`` among them.
+    """
     strain = np.asarray(compression, float)
     return Scene(
         masses=tuple(masses),
         stiffnesses=(1.0,) * len(strain),
-        k=k,
         # The beads behind have moved by all compressions before them.
         displacements=tuple(np.append(np.cumsum(strain[::-1])[::-1], 0.0)),
         velocities=tuple(np.asarray(velocity, float)),
         **rest,
     )
-
-
-class Wave(Protocol):
-    """Attributes that a traveling wave of a dimer must provide to be launched.
-
-    c : speed. strain, velocity : at ξ = x - ct, of contacts behind a bead of either mass (0: m1,
-    1: m2), and of such beads.
-    """
-
-    @property
-    def k(self) -> float: ...
-    @property
-    def c(self) -> float: ...
-    @property
-    def masses(self) -> tuple[float, float]: ...
-    def strain(self, xi: ArrayLike, contact: int = 0) -> Array: ...
-    def velocity(self, xi: ArrayLike, bead: int = 0) -> Array: ...
-
-
-def launched(wave: Wave, start: int, sites: int, **rest: Any) -> Scene:
-    """A chain that carries a wave at bead ``start``, of mass m1, and is long enough for ``sites``.
-
-    By default the contacts halfway and at the end have sensors.
-    """
-    bead = np.arange(2 * start + sites) - start
-    at, even = bead[:-1] + 0.5, bead % 2 == 0
-    options: dict[str, Any] = dict(
-        contact_sensors=(start + sites // 2, start + sites),
-        duration=(sites + start / 2) / wave.c,
-    )
-    strain = np.where(even[:-1], wave.strain(at, 0), wave.strain(at, 1))
-    velocity = np.where(even, wave.velocity(bead, 0), wave.velocity(bead, 1))
-    return carrying(tuple(np.where(even, *wave.masses)), wave.k, strain, velocity, **options | rest)

@@ -115,7 +115,7 @@ def exact(sites: int = 100) -> Task:
     arrival, width = (sites + 0.5) / wave.c, wave.fwhm("force") / wave.c
     recorded = {"contact_sensors": (start + sites,), "duration": arrival + 10, "samples": 2}
     truth = Pulse(arrival, 1.0, arrival - width / 2, arrival + width / 2)
-    return Task(chains.launched(wave, start, sites, **recorded), truth)
+    return Task(wave.launched(start, sites, **recorded), truth)
 
 
 def experiment() -> Task:
@@ -282,9 +282,7 @@ def _panel(task: str, rows: Sequence[Row]) -> Panel:
     return Panel(label, "CPU time (s)", tuple(curves), "xy", task)
 
 
-@study(
-    option("--task", "names", multiple=True, type=click.Choice(NAMES), says="Only this task."),
-)
+@study(option("--task", "names", multiple=True, type=click.Choice(NAMES), says="Only this task."))
 def accuracy(names: Collection[str] = (), progress: Progress[str] = iter) -> Report:
     """Speed against error: integrators on fixed tasks, theories against true waves. Three minutes.
 

@@ -322,7 +322,7 @@ CASES: Mapping[str, Callable[[], Report]] = {
         multiple=True,
         type=click.Choice(tuple(CASES)),
         says="Only this case; may be given again.",
-    ),
+    )
 )
 def hard(names: Collection[str] = (), progress: Progress[str] = iter) -> Report:
     """Last digits at extreme k, ω and loads, contacts that open, and long runs. Half a minute.

@@ -195,9 +195,9 @@ def _run(wave: TravelingWave, compact: PhysicalWave) -> Run:
     bead = np.arange(2 * cells) - start
     scene = carrying(
         [float(m) for m in wave.cell.masses] * cells,
-        float(wave.k),
         compact.along(bead[:-1] + 0.5, "strain"),
         compact.along(bead, "velocity"),
+        k=float(wave.k),
         contact_sensors=[place + side for place in places for side in (0, 1)],
         duration=(2 * cells - start - support / 4) / V,
     )

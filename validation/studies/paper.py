@@ -330,10 +330,8 @@ def _speeds(rows: Sequence[Comparison]) -> Iterator[str]:
 
 def _records(run: Run, pair: tuple[int, ...], theory: PhysicalWave) -> Iterator[Curve]:
     """Dynamic forces over time; the theory's peak stands at the lattice's."""
-    pulses, forces = (
-        Train.of(run).pulses,
-        dict(zip(run.scene.bead_sensors, run.bead_force, strict=True)),
-    )
+    pulses = Train.of(run).pulses
+    forces = dict(zip(run.scene.bead_sensors, run.bead_force, strict=True))
     for i, bead in enumerate(pair):
         line = theory.curve(run.time - pulses[bead].arrival)
         force = forces[bead - 1]

@@ -25,7 +25,9 @@ from lwa.base.quantities import QUANTITIES, strain_power
 from validation.pictures.figure import Pictured
 from validation.pictures.panel import Curve, Panel
 from validation.pulses.pulse import MeasureError
+from validation.scenes.chains import carrying
 from validation.scenes.checks import SceneError, positive
+from validation.scenes.scene import Scene
 from validation.waves import newton
 
 TOLERANCE = 1e-9  # tail and residual of a solitary wave over its peak strain, at most
@@ -133,6 +135,21 @@ class Profile(ArrayValue, Pictured):
         """Largest difference of two waves' strains over the pulse."""
         xi = np.linspace(-self.pulse, self.pulse, 401)
         return float(np.abs(self.strain(xi) - other.strain(xi)).max())
+
+    def launched(self, start: int, sites: int, **rest: Any) -> Scene:
+        """A chain, long enough for ``sites``, that carries the wave at bead ``start``, of mass m1.
+
+        rest : further fields of the scene; by default the contacts halfway and at the end have
+        sensors.
+        """
+        bead = np.arange(2 * start + sites) - start
+        at, even = bead[:-1] + 0.5, bead % 2 == 0
+        sensors = {"contact_sensors": (start + sites // 2, start + sites)}
+        options = sensors | {"duration": (sites + start / 2) / self.c} | rest
+        strain = np.where(even[:-1], self.strain(at, 0), self.strain(at, 1))
+        velocity = np.where(even, self.velocity(bead, 0), self.velocity(bead, 1))
+        masses = tuple(np.where(even, *self.masses))
+        return carrying(masses, strain, velocity, k=self.k, **options)
 
     def pictured(self) -> list[Panel]:
         """Strain, force and velocity, each over its peak."""

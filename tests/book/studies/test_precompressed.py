@@ -71,7 +71,7 @@ def test_masses_matter_to_widths_only():
 @pytest.fixture(scope="module")
 def radiating():
     """A wave of a dimer as strong as the load, run."""
-    wave = Wave(numbered((1, "1/2")), 1.5, 1.0)
+    wave = Wave(numbered((1, "1/2")), Power("3/2"), 1.0)
     return wave, simulate(wave.scene, method="SRKN14", rtol=1e-7)
 
 
@@ -120,6 +120,20 @@ def test_another_exponent():
     assert found.ok
     offs = [row["error_value"] for row in found.document()["rows"]]
     assert -0.0348 < offs[1] < offs[0] < 0
+
+
+def test_another_law(capsys):
+    """Weak waves of any law: V/c0 - 1 = F″(1)/(6 F′(1)) B, B = F0/F′(1) times the ratio."""
+    options = ("--law", "hertz2:1,2", "--masses", "1", "--ratios", "0.03,0.3", "--format", "json")
+    status, out, _ = ended(capsys, precompressed.main, *options)
+    weak, strong = json.loads(out)["rows"]
+    assert (status, weak["exact_value"]) == (0, None)
+    # F = δ^{3/2} + 2 δ^{5/2}: F0 = 3, F′ = 13/2, F″ = 33/4
+    small = 33 / 4 / (6 * 6.5) * 3 / 6.5 * weak["ratio_value"]
+    assert weak["speed_value"] - 1 == pytest.approx(small, rel=0.03)
+    assert weak["speed_value"] == pytest.approx(weak["theory_value"], rel=1e-4)
+    assert strong["speed_value"] == pytest.approx(strong["theory_value"], rel=1e-3)
+    assert abs(strong["fwhm_off_value"]) < 0.02
 
 
 def test_the_command(capsys):

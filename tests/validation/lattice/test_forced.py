@@ -11,7 +11,6 @@ from lwa.expansion.physical import ExpandedWave
 from lwa.law import named
 from validation.lattice.simulate import simulate
 from validation.pulses.pulse import highest_pulse
-from validation.scenes.chains import launched
 from validation.scenes.forcing import Damping, Drive
 from validation.scenes.scene import Scene, SceneError
 from validation.waves.solver import exact_wave
@@ -66,7 +65,7 @@ def test_the_slowing_down_of_a_pulse(kind, ledger):
     """V, or 1/V, changes linearly along the chain, as the expansion's dissipation says: to first
     order in γ, so that the error halves with γ."""
     theory = ExpandedWave(expand(Cell((1,), spacing=1), 8, k="3/2"), 1).slowdown(ledger).value
-    chain, places = launched(exact_wave([1], 1.5), 16, 60), np.arange(26, 72, 5)
+    chain, places = exact_wave([1], 1.5).launched(16, 60), np.arange(26, 72, 5)
     chain = replace(chain, contact_sensors=places.tolist(), samples=11)
     errors = []
     for gamma in (0.004, 0.002):

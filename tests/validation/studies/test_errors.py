@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from lwa import Cell
+from lwa import Cell, Power
 from validation.pulses import steady
 from validation.pulses.pulse import Measured
 from validation.pulses.sensors import record
@@ -146,7 +146,8 @@ def test_exact(masses, k):
 
 def of_precompressed(masses, ratios):
     waves = {
-        ratio: precompressed.Wave(Cell(masses, spacing=1), 1.5, ratio).row() for ratio in ratios
+        ratio: precompressed.Wave(Cell(masses, spacing=1), Power("3/2"), ratio).row()
+        for ratio in ratios
     }
     return {
         (ratio, name): number

@@ -17,7 +17,7 @@ from tests.passage import passage, ratio
 from validation.lattice.run import IntegrationError
 from validation.lattice.simulate import simulate
 from validation.pulses.steady import STRETCH, point
-from validation.scenes.chains import carrying, launched, struck
+from validation.scenes.chains import carrying, struck
 from validation.waves.asymptotics import LAWS
 from validation.waves.solver import NoWave, solve
 from validation.waves.theory import theory_at
@@ -50,9 +50,9 @@ def test_the_lattice_carries_the_theorys_wave_at_k_of_1_001():
     bead = np.arange(2 * start + sites) - start
     scene = carrying(
         (1.0,) * len(bead),
-        k,
         theory.along(bead[:-1] + 0.5, "strain"),
         theory.along(bead, "velocity"),
+        k=k,
         contact_sensors=(start + 60, start + sites),
         samples=4001,
         duration=(sites + 0.7 * start) / float(theory.speed),
@@ -88,7 +88,7 @@ def test_theory_and_lattice_pass_smoothly_through_exponents_where_terms_vanish(k
     for quantity, error in here.items():
         # a smooth function's second difference over 0.05² is of the size of 1/10
         assert abs(error - (below[quantity] + above[quantity]) / 2) < 2.5e-4, quantity
-    passed = passage(launched(waves[k], 12, 60), 1e-7)
+    passed = passage(waves[k].launched(12, 60), 1e-7)
     assert abs(ratio(passed.speed, waves[k].c).value) < 1e-6
     assert abs(ratio(passed.fwhm, waves[k].fwhm("force")).value) < 1e-6
 
@@ -154,7 +154,7 @@ def test_near_hard_spheres_a_pulse_is_a_row_of_collisions(hard_wave):
     lasted = hard_wave.fwhm("force") / hard_wave.c
     assert lasted == pytest.approx(collision_fwhm(20.0) / velocity, rel=1e-10)
     assert hard_wave.fwhm("force") < 0.2
-    scene = launched(hard_wave, 10, 40)
+    scene = hard_wave.launched(10, 40)
     passed = passage(scene, 1e-9)
     assert abs(ratio(passed.speed, hard_wave.c).value) < 1e-5
     assert abs(ratio(passed.fwhm, hard_wave.fwhm("force")).value) < 1e-4
@@ -185,9 +185,9 @@ def slaved(uniform, heavy, light):
     pace = math.sqrt(2) * uniform.c / math.sqrt(heavy)
     return carrying(
         tuple(np.where(site % 2 == 0, heavy, light)),
-        uniform.k,
         uniform.strain(pair),
         (behind + ahead) / 2 * math.sqrt(2 / heavy),
+        k=uniform.k,
         duration=70 / pace,
         contact_sensors=(40, 80),
         samples=4001,
@@ -297,7 +297,7 @@ def test_where_the_papers_closure_has_no_wave_the_lattice_has_one(k, exponents, 
     assert refusal(sp.Rational(k), sp.Rational(f"{1 / wave.omega:.4f}")).startswith(sign)
     assert wave.tail < 1e-9
     assert wave.residual < 1e-9
-    passed = passage(launched(wave, 24, 64, samples=8001), 1e-7)
+    passed = passage(wave.launched(24, 64, samples=8001), 1e-7)
     assert abs(ratio(passed.speed, wave.c).value) < 1e-5
     assert abs(ratio(passed.force, 1.0).value) < 1e-4
     theory = theory_at(sp.Rational(k), sp.Rational(wave.omega), "canonical").at_force(1)
