@@ -23,7 +23,7 @@ import mpmath
 import sympy as sp
 
 from lwa.base import latex
-from lwa.base.exact import InputError, exact, one_of, positive, root, shorten
+from lwa.base.exact import InputError, demand_numbers, exact, one_of, positive, root, shorten
 from lwa.base.frozen import Value
 from lwa.cell import Cell
 from lwa.expansion.expand import expand
@@ -316,20 +316,15 @@ def _impulse(law: ContactLaw, cell: Cell, first: sp.Expr, last: sp.Expr) -> sp.E
 
 def _number(value: sp.Expr, symbol: sp.Symbol) -> Callable[[Any], Any]:
     """The value as a function of mpmath's numbers."""
-    _demand_numbers(value.free_symbols - {symbol})
+    demand_numbers(value.free_symbols - {symbol}, "numbers are wanted")
     function: Callable[[Any], Any] = sp.lambdify(symbol, value, "mpmath")
     return function
 
 
 def _mp(value: sp.Expr) -> Any:
     """The value in mpmath's numbers."""
-    _demand_numbers(value.free_symbols)
+    demand_numbers(value.free_symbols, "numbers are wanted")
     return mpmath.mpf(sp.N(value, DIGITS + 5))
-
-
-def _demand_numbers(free: set[sp.Symbol]) -> None:
-    if free:
-        raise InputError(f"{min(map(str, free))!r} has no value: numbers are wanted")
 
 
 def _root(rising: Callable[[Any], Any], guess: Any) -> Any:
