@@ -58,7 +58,7 @@ class Shock(Value):
     @property
     def kind(self) -> str:
         """ "shock" where sound is faster behind the front, else "rarefaction"."""
-        faster = sp.simplify(self.sound(self.behind) - self.sound(self.ahead)).is_positive
+        faster = self._gain.is_positive
         if faster is None:
             raise InputError("kind depends on symbols: give numbers")
         return "shock" if faster else "rarefaction"
@@ -186,10 +186,15 @@ class Shock(Value):
         """The front for these values of the named symbols."""
         return Shock(*substituted(values, self.cell, self.law, self.behind, self.ahead))
 
+    @cached_property
+    def _gain(self) -> sp.Expr:
+        """c₋ - c₊, simplified: only then is its sign known beside symbols such as D."""
+        return sp.simplify(self.sound(self.behind) - self.sound(self.ahead))
+
     @property
     def _rarefies(self) -> bool:
         """Whether numbers say so; symbols stand for a shock."""
-        return (self.sound(self.behind) - self.sound(self.ahead)).is_negative is True
+        return self._gain.is_negative is True
 
     @cached_property
     def _toda(self) -> sp.Expr:
