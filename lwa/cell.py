@@ -227,10 +227,7 @@ def exponent(value: Any, cell: Cell | None = None) -> sp.Expr:
 
 
 def substitution(
-    values: Mapping[str, Any],
-    cell: Cell,
-    k: sp.Expr = sp.S.One,
-    more: Sequence[sp.Symbol] = (),
+    values: Mapping[str, Any], cell: Cell, k: sp.Expr = sp.S.One, more: Sequence[sp.Symbol] = ()
 ) -> dict[sp.Symbol, sp.Expr]:
     """Map symbols of a cell, of its exponent and more to the values given for their names.
 

@@ -21,7 +21,7 @@ from sympy.core.function import AppliedUndef
 
 from lwa.base import latex
 from lwa.base.calculus import growing_root, integral, ratio
-from lwa.base.exact import InputError, exact, positive, shorten, signed
+from lwa.base.exact import InputError, demand_numbers, exact, positive, shorten, signed
 from lwa.base.frozen import Value
 from lwa.cell import RESERVED, Cell, exponent, meant, substitution, unmistakable
 from lwa.cell import k as symbol_k
@@ -137,10 +137,8 @@ class ContactLaw(Value):
         Raises `lwa.InputError` for a force beyond the law's reach, and for symbols.
         """
         share = force / cell.stiffnesses[0]
-        if free := share.free_symbols | self.F.free_symbols - {self.delta}:
-            raise InputError(
-                f"{min(map(str, free))!r} has no value: the load under {self.F} needs numbers"
-            )
+        free = share.free_symbols | self.F.free_symbols - {self.delta}
+        demand_numbers(free, f"the load under {self.F} needs numbers")
         with mpmath.workdps(50):
             found = growing_root(self.F - share, self.delta)
             if found is None:

@@ -23,7 +23,7 @@ import mpmath
 import sympy as sp
 
 from lwa.base import latex
-from lwa.base.exact import InputError, exact, one_of, positive, root, shorten
+from lwa.base.exact import InputError, demand_numbers, exact, one_of, positive, root, shorten
 from lwa.base.frozen import Value
 from lwa.cell import Cell
 from lwa.expansion.expand import expand
@@ -58,7 +58,7 @@ class Shock(Value):
     @property
     def kind(self) -> str:
         """ "shock" where sound is faster behind the front, else "rarefaction"."""
-        faster = sp.simplify(self.sound(self.behind) - self.sound(self.ahead)).is_positive
+        faster = self._gain.is_positive
         if faster is None:
             raise InputError("kind depends on symbols: give numbers")
         return "shock" if faster else "rarefaction"
@@ -186,10 +186,15 @@ class Shock(Value):
         """The front for these values of the named symbols."""
         return Shock(*substituted(values, self.cell, self.law, self.behind, self.ahead))
 
+    @cached_property
+    def _gain(self) -> sp.Expr:
+        """c₋ - c₊, simplified: only then is its sign known beside symbols such as D."""
+        return sp.simplify(self.sound(self.behind) - self.sound(self.ahead))
+
     @property
     def _rarefies(self) -> bool:
         """Whether numbers say so; symbols stand for a shock."""
-        return (self.sound(self.behind) - self.sound(self.ahead)).is_negative is True
+        return self._gain.is_negative is True
 
     @cached_property
     def _toda(self) -> sp.Expr:
@@ -316,20 +321,15 @@ def _impulse(law: ContactLaw, cell: Cell, first: sp.Expr, last: sp.Expr) -> sp.E
 
 def _number(value: sp.Expr, symbol: sp.Symbol) -> Callable[[Any], Any]:
     """The value as a function of mpmath's numbers."""
-    _demand_numbers(value.free_symbols - {symbol})
+    demand_numbers(value.free_symbols - {symbol}, "numbers are wanted")
     function: Callable[[Any], Any] = sp.lambdify(symbol, value, "mpmath")
     return function
 
 
 def _mp(value: sp.Expr) -> Any:
     """The value in mpmath's numbers."""
-    _demand_numbers(value.free_symbols)
+    demand_numbers(value.free_symbols, "numbers are wanted")
     return mpmath.mpf(sp.N(value, DIGITS + 5))
-
-
-def _demand_numbers(free: set[sp.Symbol]) -> None:
-    if free:
-        raise InputError(f"{min(map(str, free))!r} has no value: numbers are wanted")
 
 
 def _root(rising: Callable[[Any], Any], guess: Any) -> Any:

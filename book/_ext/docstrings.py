@@ -138,7 +138,7 @@ class Studies(SphinxDirective):
     """Every study as a function."""
 
     def run(self) -> list[nodes.Node]:
-        found = (f"{module}.{name}" for module, name, _ in studies().values())
+        found = (f"{module}.{name}" for name, (module, _) in studies().items())
         text = "\n".join(line for name in found for line in _directive(name))
         return self.parse_text_to_nodes(text)
 

@@ -163,6 +163,12 @@ def _writable(number: sp.Rational, name: str) -> sp.Rational:
     return number
 
 
+def demand_numbers(free: Collection[sp.Symbol], why: str) -> None:
+    """Raise `InputError` where symbols are left; ``why`` says in the message what needs numbers."""
+    if free:
+        raise InputError(f"{min(map(str, free))!r} has no value: {why}")
+
+
 def number(value: sp.Expr) -> float:
     """The float of an exact number, right to the last digit however much its terms cancel.
 

@@ -184,12 +184,7 @@ def _from_file(file: str, chain: dict[str, Any]) -> tuple[dict[str, str], sp.Exp
 )
 @setting("--spacing", D.name, "Distance of neighbouring particles.", callback=quantity)
 def dispersion(
-    cell: Cell,
-    k: sp.Expr,
-    order: int,
-    style: str,
-    precompression: sp.Expr | None,
-    spacing: sp.Expr,
+    cell: Cell, k: sp.Expr, order: int, style: str, precompression: sp.Expr | None, spacing: sp.Expr
 ) -> None:
     """The linear chain: the series of Ω²(κ), Ω the frequency in τ and κ the wavenumber, times D.
 
@@ -255,11 +250,7 @@ def expansion(
 @click.option("--mass", callback=quantity, help="Mass of the striker; a bead of the chain if not.")
 @style_option(STYLES)
 def strike(
-    spheres: str,
-    velocity: sp.Expr | None,
-    drop: sp.Expr | None,
-    mass: sp.Expr | None,
-    style: str,
+    spheres: str, velocity: sp.Expr | None, drop: sp.Expr | None, mass: sp.Expr | None, style: str
 ) -> None:
     """The leading pulse of a chain of equal beads that a mass strikes: force, speed and width."""
     from lwa.command import series

@@ -101,10 +101,7 @@ def _bands_text(bands: Values) -> list[str]:
 
 
 def expansion(
-    found: Expansion,
-    wave: ExpandedWave | None,
-    units: Mapping[str, str],
-    notes: list[str],
+    found: Expansion, wave: ExpandedWave | None, units: Mapping[str, str], notes: list[str]
 ) -> Answer:
     """The series in ε = k - 1, and their sums where k and the cell are numbers.
 

@@ -8,7 +8,7 @@ from typing import Any, overload
 import sympy as sp
 
 from lwa.base import latex
-from lwa.base.exact import InputError, integer, shorten
+from lwa.base.exact import InputError, demand_numbers, integer, shorten
 from lwa.base.frozen import Value
 from lwa.cell import Cell, exponent
 from lwa.cell import k as symbol_k
@@ -114,8 +114,7 @@ class EpsilonSeries(Value):
         series = self._for(k)
         values = (series.k, series.prefactor, *series.coefficients)
         symbols = set().union(*(value.free_symbols for value in values))
-        if symbols:
-            raise InputError(f"{min(map(str, symbols))!r} has no value: a sum needs numbers")
+        demand_numbers(symbols, "a sum needs numbers")
         if not series.k > 1:
             raise InputError(f"k is {series.k}: the expansion in k - 1 is summed for k > 1")
         base = equal_beads(self.quantity, self.order) if series.radiation else ()

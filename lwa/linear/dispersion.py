@@ -23,7 +23,7 @@ from flint import fmpq_mpoly
 
 from lwa.algebra.model import Model
 from lwa.base import latex
-from lwa.base.exact import InputError, integer, one_of, positive, shorten
+from lwa.base.exact import InputError, demand_numbers, integer, one_of, positive, shorten
 from lwa.base.frozen import Value
 from lwa.cell import Cell, exponent, substitution
 from lwa.law import ContactLaw, Power, for_cell
@@ -210,12 +210,11 @@ class Dispersion(Value):
         import numpy as np  # start-up: `import lwa` does not load it
 
         values = tuple(values)
-        unknown = set().union(*(v.free_symbols for v in values))
-        if unknown:
-            raise InputError(
-                f"{min(map(str, unknown))!r} has no value: the numerical branches need numbers for "
-                "the masses, the stiffnesses and, with unequal contacts, k"
-            )
+        demand_numbers(
+            set().union(*(v.free_symbols for v in values)),
+            "the numerical branches need numbers for the masses, the stiffnesses and, with unequal "
+            "contacts, k",
+        )
         numbers = np.array([float(v) for v in values])
         if not np.all(numbers > 0):
             raise InputError("masses or compliances differ by more than a float can tell")
@@ -315,7 +314,5 @@ class LoadedChain(Value):
         return 1.0 if D.is_Symbol else self._float(D)
 
     def _float(self, value: sp.Expr) -> float:
-        if value.free_symbols:
-            name = min(map(str, value.free_symbols))
-            raise InputError(f"{name!r} has no value: bands under a load are numbers")
+        demand_numbers(value.free_symbols, "bands under a load are numbers")
         return float(value)

@@ -23,7 +23,7 @@ import mpmath
 import sympy as sp
 
 from lwa.base import latex
-from lwa.base.exact import InputError, exact, integer, root, shorten, signed
+from lwa.base.exact import InputError, demand_numbers, exact, integer, root, shorten, signed
 from lwa.base.frozen import Value
 from lwa.base.quantities import RISE, NoSolitaryWave, known
 from lwa.cell import RESERVED, Cell, meant
@@ -318,11 +318,8 @@ class BackgroundWave(Value):
 
     def _wave(self, B: sp.Expr, digits: int) -> tuple[sp.Expr, int]:
         """B over the unit, and the working digits for a wave of this rise."""
-        if free := self._free(B):
-            raise InputError(
-                f"{min(map(str, free))!r} has no value: a width or a profile on a background is a "
-                "number and wants numbers"
-            )
+        why = "a width or a profile on a background is a number and wants numbers"
+        demand_numbers(self._free(B), why)
         return self.in_unit(B), self._strains.precision(self.in_unit(B), digits)
 
     def _profile(self, B: sp.Expr, digits: int) -> Profile:

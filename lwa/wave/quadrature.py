@@ -30,7 +30,7 @@ import sympy as sp
 from numpy.typing import ArrayLike, NDArray
 
 from lwa.base.arrays import Array, finite
-from lwa.base.exact import InputError, number
+from lwa.base.exact import InputError, demand_numbers, number
 from lwa.base.frozen import Value
 from lwa.base.quantities import NoSolitaryWave, known
 from lwa.cell import Cell
@@ -75,8 +75,8 @@ class NumericBackground(Value):
 
     def __post_init__(self) -> None:
         slope = self.law.of_strain(_STRAIN, self._D, 1)
-        if free := (self._I.free_symbols | slope.free_symbols) - {_STRAIN}:
-            raise InputError(f"{min(map(str, free))!r} has no value: numbers are wanted")
+        free = (self._I.free_symbols | slope.free_symbols) - {_STRAIN}
+        demand_numbers(free, "numbers are wanted")
 
     def latex_rows(self) -> list[str]:
         return self.law.latex_rows()

@@ -218,3 +218,9 @@ def test_symbols_first_or_numbers_first():
     late = shock(EQUAL, Power("k"), "p", "q").at(k=3, p=2, q="9/5")
     assert late == shock(EQUAL, Power(3), 2, "9/5")
     assert isinstance(late, Shock)
+
+
+def test_a_rarefaction_is_one_where_masses_and_spacing_are_symbols() -> None:
+    found = shock(Cell(["m"]), HERTZ, 1, 2)
+    assert found.kind == "rarefaction"
+    assert found.leading_speed() == found.sound(2)
