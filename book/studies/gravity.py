@@ -58,7 +58,7 @@ from validation.waves.profile import summit
 
 CHAINS = ((1,), (1, "1/2"))  # masses of the default cells
 WEAK, STRONG = 1e-4, (10.0, 100.0, 1000.0)  # velocities of the struck bead
-_UNLIKE = 1000  # largest ratio of masses: light beads need ever shorter steps, 100 takes 4 s of CPU
+_UNLIKE = 1000  # largest ratio of masses: a light bead takes ever shorter steps
 FIRST = 100  # beads above the first place of the fit of a weak blow's front
 _PLACES = 24  # places of a weak blow
 _TOP, _FEW = 20, 7  # beads above the first place of a strong blow; number of its places
