@@ -17,7 +17,8 @@ ln V is a polynomial of ln F, and R is that of the local exponent k.
 
 R comes from the series in k - 1 for equal beads, and otherwise from the steady pulses of struck
 chains (`validation.pulses.steady`). Errors are 95 % intervals; those of the free law are from
-refits with resampled noise.
+refits with resampled noise. Standard deviations of the data, if known, weight the data; the size
+of the noise is read off the residuals in any case.
 """
 
 from __future__ import annotations
@@ -108,11 +109,25 @@ class PowerFit:
         return abs(self.curvature.value) <= self.curvature.error
 
 
-def fit_power(chain: Chain, force: Array, speed: Array) -> PowerFit:
-    """Fit one power F = A δ^k to peak forces and speeds (N,), N ≥ 4, by least squares of ln V."""
+def weights(force: Array, speed: Array, force_error: Array, speed_error: Array) -> Array:
+    """Weights (N,) of pulses, from the standard deviations of their forces and speeds.
+
+    A residual of ln V = slope · ln F + constant has the variance (σ_V/V)² + (slope σ_F/F)², with
+    the slope of a first fit without weights. The weights are the inverse standard deviations.
+    """
+    slope = np.polyfit(np.log(force), np.log(speed), 1)[0]
+    return np.asarray(1 / np.hypot(speed_error / speed, slope * force_error / force))
+
+
+def fit_power(chain: Chain, force: Array, speed: Array, weight: Array | None = None) -> PowerFit:
+    """Fit one power F = A δ^k to peak forces and speeds (N,), N ≥ 4, by least squares of ln V.
+
+    weight : (N,), see `weights`; by default all pulses weigh the same.
+    """
     x, y = np.log(force), np.log(speed)
-    middle = x.mean()  # slope and constant are uncorrelated about it
-    (slope, constant), covariance = np.polyfit(x - middle, y, 1, cov=True)
+    w = np.ones_like(x) if weight is None else weight
+    middle = np.average(x, weights=w**2)  # slope and constant are uncorrelated about it
+    (slope, constant), covariance = np.polyfit(x - middle, y, 1, w=w, cov=True)
     interval = scipy.stats.t.ppf(0.975, len(x) - 2)
 
     def read(slope: float, constant: float) -> Array:
@@ -130,9 +145,10 @@ def fit_power(chain: Chain, force: Array, speed: Array) -> PowerFit:
     k_error, log_error = interval * np.sqrt(np.diag(spread))
     sixth = (_HERTZ - 1) / (2 * _HERTZ)
     apart = y - sixth * x
-    hertz = chain.log_stiffness(sixth, apart.mean())
-    hertz_error = 2 * _HERTZ * interval * apart.std(ddof=1) / math.sqrt(len(x))
-    parabola, noise = np.polyfit(x - middle, y, 2, cov=True)
+    (mean,), variance = np.polyfit(x, apart, 0, w=w, cov=True)
+    hertz = chain.log_stiffness(sixth, mean)
+    hertz_error = 2 * _HERTZ * interval * math.sqrt(variance[0, 0])
+    parabola, noise = np.polyfit(x - middle, y, 2, w=w, cov=True)
     bound = scipy.stats.t.ppf(0.975, len(x) - 3) * math.sqrt(noise[0, 0])
     return PowerFit(
         Measured(value[0], value[0] + k_error),
@@ -145,19 +161,26 @@ def fit_power(chain: Chain, force: Array, speed: Array) -> PowerFit:
 
 
 def free_law(
-    chain: Chain, force: Array, speed: Array, degree: int = 3, seed: int = 0
+    chain: Chain,
+    force: Array,
+    speed: Array,
+    degree: int = 3,
+    seed: int = 0,
+    weight: Array | None = None,
 ) -> tuple[Array, Array]:
     """The compression at each force (N,), and the error of the force at this compression (N,).
 
     degree : of the polynomial ln V(ln F). seed : of the resampled noise.
+    weight : (N,), see `weights`; by default all pulses weigh the same.
     """
     x, y = np.log(force), np.log(speed)
+    w = np.ones_like(x) if weight is None else weight
     middle = x.mean()
-    best = polynomial.polyfit(x - middle, y, degree)
+    best = polynomial.polyfit(x - middle, y, degree, w=w)
     rest = y - polynomial.polyval(x - middle, best)
-    noise = rest.std() * math.sqrt(len(x) / (len(x) - degree - 1))
-    drawn = np.random.default_rng(seed).normal(0, noise, (len(x), _DRAWS))
-    fitted = polynomial.polyfit(x - middle, (y - rest)[:, None] + drawn, degree)
+    noise = math.sqrt(np.sum((w * rest) ** 2) / (len(x) - degree - 1)) / w
+    drawn = np.random.default_rng(seed).normal(0, noise[:, None], (len(x), _DRAWS))
+    fitted = polynomial.polyfit(x - middle, (y - rest)[:, None] + drawn, degree, w=w)
     rows = np.column_stack((best, fitted))  # (degree + 1, 1 + draws)
     grid = np.linspace(x.max(), x.min(), _STEPS)
     log_delta = _integrated(chain, rows, grid, middle)

@@ -19,7 +19,7 @@ from lwa.base.tables import entries
 from lwa.command.reading import quantities, quantity
 from lwa.spheres.beads import spheres as read_spheres
 from validation.pictures.panel import Curve, Panel
-from validation.pulses.contact_law import Chain, PowerFit, fit_power, free_law
+from validation.pulses.contact_law import Chain, PowerFit, fit_power, free_law, weights
 from validation.pulses.pulse import Measured
 from validation.report.command import option, study
 from validation.report.result import Report
@@ -57,18 +57,29 @@ def law(
 ) -> Report:
     """Contact law from a CSV file of pulses with columns force and speed.
 
+    Columns force_error and speed_error, if both are there, are standard deviations that weight the
+    pulses.
+
     Peak contact forces and speeds are in the units of the masses and the spacing, by default those
     of unit mass and spacing; with spheres they are in N and m/s. ``k_value``, ``A_value`` and, of
     an unknown material, ``E_value``, with their errors; ``correlation_value`` of k and ln A;
     ``residual_value`` of ln V; ``one_power``; ``rows`` of the free law: ``compression_value``,
     ``force_value``, ``force_error_value``.
     """
-    force, speed = columns(data, "force", "speed").values()
+    read = columns(data, "force", "speed", optional=("force_error", "speed_error"))
+    force, speed, *deviations = read.values()
     degree = integer(degree, "degree", 1, 6)
     if len(force) < degree + 3 or not (force.min() > 0 and speed.min() > 0):
         raise SceneError(
             f"{data}: at least {degree + 3} pulses of positive force and speed are wanted"
         )
+    weight = None
+    if deviations:
+        if len(deviations) != 2 or not min(map(np.min, deviations)) > 0:
+            raise SceneError(
+                f"{data}: force_error and speed_error are wanted together, and positive"
+            )
+        weight = weights(force, speed, *deviations)
     content = None if spheres is None else load(spheres, "a list of spheres", _content)
     if content is None:
         cell = numbered(masses or (1,))
@@ -76,7 +87,7 @@ def law(
     else:
         cell = Cell.of_spheres(of_scene(read_spheres)(content))
     chain = Chain.of(cell)
-    fit = fit_power(chain, force, speed)
+    fit = fit_power(chain, force, speed, weight)
     rows: list[tuple[str, Measured]] = [("k", fit.k), ("A", fit.A)]
     if material is not None:
         if content is None:
@@ -84,7 +95,7 @@ def law(
         rows.append(("E", _modulus(content, material, fit.hertz)))
     found = {f"{name}_value": value.value for name, value in rows}
     errors = {f"{name}_error_value": value.error for name, value in rows}
-    compression, error = free_law(chain, force, speed, degree)
+    compression, error = free_law(chain, force, speed, degree, weight=weight)
     order = np.argsort(force)
     free = tuple(
         (d, Measured(F, F + e), fit.A.value * d**fit.k.value)

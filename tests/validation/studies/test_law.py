@@ -11,7 +11,7 @@ from lwa import Cell
 from lwa.law import Law
 from tests.commands import ended
 from validation import Scene, cli, measure, simulate, simulate_many
-from validation.pulses.contact_law import Chain, fit_power, free_law
+from validation.pulses.contact_law import Chain, fit_power, free_law, weights
 from validation.scenes.scene import SceneError
 from validation.studies import paper
 from validation.studies.law import law
@@ -58,6 +58,46 @@ def test_k_is_within_its_error_in_95_of_100_draws_of_1_percent_noise(chain):
         fit = fit_power(chain, force, speed)
         hits += abs(fit.k.value - 1.5) <= fit.k.error
     assert hits >= 95
+
+
+def test_known_errors_weight_the_pulses(chain):
+    """Every second pulse has twenty times the noise: with weights k errs less, within its error."""
+    rng, exact = np.random.default_rng(3), speeds(chain, 1.5, 1.0)
+    noise = np.where(np.arange(len(FORCES)) % 2, 0.05, 0.0025)
+    hits, plain, weighted = 0, [], []
+    for _ in range(100):
+        force, speed = (1 + noise * rng.normal(size=(2, len(FORCES)))) * (FORCES, exact)
+        weight = weights(force, speed, noise * force, noise * speed)
+        fit = fit_power(chain, force, speed, weight)
+        hits += abs(fit.k.value - 1.5) <= fit.k.error
+        weighted.append(fit.k.value - 1.5)
+        plain.append(fit_power(chain, force, speed).k.value - 1.5)
+    assert hits >= 90  # 95 expected; the spread of 100 draws is 2.2
+    assert np.std(weighted) < np.std(plain) / 3
+    free = [free_law(chain, force, speed, weight=w)[1] / force for w in (weight, None)]
+    assert np.median(free[0][::2]) < np.median(free[1][::2]) / 2
+    even = fit_power(chain, force, speed, np.full_like(force, 7.0))
+    assert even.k.value == pytest.approx(fit_power(chain, force, speed).k.value, rel=1e-12)
+
+
+def test_errors_in_a_file_come_in_two_positive_columns(tmp_path, chain):
+    force, speed = FORCES, speeds(chain, 1.5, 1.0)
+    file = tmp_path / "pulses.csv"
+    for columns, header in (
+        ((force, speed, force), "force,speed,force_error"),
+        ((force, speed, 0 * force, speed), "force,speed,force_error,speed_error"),
+    ):
+        np.savetxt(file, np.transpose(columns), delimiter=",", header=header, comments="")
+        with pytest.raises(SceneError, match="together, and positive"):
+            law(str(file))
+    np.savetxt(
+        file,
+        np.transpose((force, speed, force / 100, speed / 100)),
+        delimiter=",",
+        header="force,speed,force_error,speed_error",
+        comments="",
+    )
+    assert law(str(file), masses=(2,), spacing=3).data["k_value"] == pytest.approx(1.5, rel=1e-9)
 
 
 def test_a_law_of_two_powers_is_not_one_power(chain):
