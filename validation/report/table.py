@@ -35,6 +35,7 @@ class Column:
     def values(self, cell: Any) -> Iterator[tuple[str, Any]]:
         """JSON names and values of a cell.
 
+        >>> from validation.pulses.pulse import Measured
         >>> dict(Column("speed.m1", error=True).values(Measured(2.0, 1.75)))
         {'speed_value.m1': 2.0, 'speed_error_value.m1': 0.25}
         """
