@@ -178,7 +178,7 @@ def under_load() -> Report:
             true = [mp.mpf(sp.N(wave.on(p0).stiffness(sp.Rational(B)), DIGITS)) for p0 in p0s]
         ulps = in_ulps(wave.numeric().speed_squared(LOADS * B, B), np.array(true, object))
         name, key = f"V² at k = {k}: largest loss in ulps", "loss_ulps" * (k == sp.Rational(3, 2))
-        findings.append(Finding(name, float(ulps.max()), 0, 8.0, key=key))
+        findings.append(Finding(name, float(ulps.max()), 0, 4.0, key=key))
         curves.append(Curve.of(f"k = {k}", LOADS, np.maximum(ulps, 0.01)))
     for chain, masses in (("equal beads", (1,)), ("masses 1, 1/4", (1, "1/4"))):
         wave = background_wave(Cell(masses, spacing=1), law=Power("3/2"))
@@ -187,7 +187,7 @@ def under_load() -> Report:
             key = f"{quantity}_error" if len(masses) == 1 else ""
             name = f"FWHM of the {quantity}, {chain}: largest relative error"
             findings.append(Finding(name, worst, 0, 1e-12, key=key))
-    answer = "V² to less than 8 ulps and widths to 1e-12 at any load: differences are integrals."
+    answer = "V² to less than 4 ulps and widths to 1e-12 at any load: differences are integrals."
     panel = Panel("p0 / B", "loss of V², in ulps", tuple(curves), "xy")
     return Report(under_load.__doc__ or "", (), tuple(findings), (panel,), (answer,))
 
