@@ -76,7 +76,7 @@ class Springs:
 
 @dataclass(frozen=True, eq=False)
 class Coefficients:
-    """What the envelope's coefficients are made of, at x = ω².
+    """Parts of the envelope's coefficients, at x = ω².
 
     slope, bend : 1/T′ and d²x/dκ²; dx/dκ = -2 sin κ · slope.
     excess : c_g² - c_0², zero at the resonance of the mode with sound.

@@ -62,7 +62,7 @@ class Envelope(Value):
         return latex.display([equation, *(latex.row(name, value) for name, value in names.items())])
 
     def numeric(self) -> Envelope:
-        """The same in floats, for any cell of numbers and any wavenumber."""
+        """Float values of the coefficients, for any cell of numbers and any wavenumber."""
         return replace(self, floats=True)
 
     def at(self, **values: Any) -> Envelope:

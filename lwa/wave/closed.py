@@ -274,7 +274,7 @@ class CompactWave(Value):
         return Reduction(k=self.k, I=self.I, p=self.roots[root], a=a, V=positive(V, "V"))
 
     def at(self, **values: Any) -> Self:
-        """The same wave with numbers (or other symbols) for the named symbols, and for ω = m2/m1.
+        """Substitute numbers (or other symbols) for the named symbols, and for ω = m2/m1.
 
         Raises `lwa.InputError` for a name that the wave does not contain or a value that is not
         positive, and `NoSolitaryWave` for values without a wave.

@@ -279,7 +279,7 @@ class PhysicalWave(Value):
         return draw(ax, t, {of: self.curve(t, of=of) for of in BEARERS}, *names)
 
     def at(self, **values: Any) -> PhysicalWave:
-        """The same wave with numbers (or other symbols) for the named symbols.
+        """Substitute numbers (or other symbols) for the named symbols.
 
         Symbols of the force are taken too. Raises the errors of `lwa.TravelingWave.at`.
         """

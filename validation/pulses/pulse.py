@@ -91,7 +91,7 @@ def pulses(time: ArrayLike, signal: ArrayLike, least: float = 0.01) -> list[Puls
 
 
 def dense(record: Sampled, pulse: Pulse) -> Pulse:
-    """The same pulse; raises `MeasureError` for fewer than `FEWEST` samples above half its peak."""
+    """Return the pulse; raise `MeasureError` below `FEWEST` samples above half its peak."""
     inside = np.count_nonzero((record.times > pulse.rise) & (record.times < pulse.fall))
     if inside < FEWEST:
         few = f"{inside} samples lie above half the pulse's peak"
@@ -132,7 +132,7 @@ def leading_pulse(signal: Signal, k: float = 1.0, share: float = 0.5) -> Pulse:
 
 
 def leading_pulses(signal: Signal, k: float, shares: Sequence[float]) -> list[Pulse]:
-    """The same `leading_pulse` with its rise and fall at several fractions of the peak."""
+    """Read the `leading_pulse` with its rise and fall at several fractions of the peak."""
     grid, quarter = _Grid(signal), 0.25**k
     start = int(np.argmax(grid.f > quarter * grid.f.max()))
     relieved = grid.f[start:] < quarter * np.maximum.accumulate(grid.f[start:])
@@ -198,7 +198,7 @@ class _Grid:
         return self.pulses(start, stop, (0.5,))[0]
 
     def pulses(self, start: int, stop: int, shares: Sequence[float]) -> list[Pulse]:
-        """The same pulse with its rise and fall at several fractions of the peak."""
+        """Read the pulse with its rise and fall at several fractions of the peak."""
         t, f = self.t, self.f[:stop]
         top = start + int(np.argmax(f[start:]))
         if top in (0, len(self.f) - 1):

@@ -32,7 +32,7 @@ def one_of(value: Any, choices: Collection[str], name: str) -> str:
 
 
 def of_scene(read: Callable[P, T]) -> Callable[P, T]:
-    """The same function, which raises `SceneError` in place of `lwa.InputError`."""
+    """Wrap a function so that `SceneError` takes the place of `lwa.InputError`."""
 
     @wraps(read)
     def checked(*args: P.args, **options: P.kwargs) -> T:

@@ -46,7 +46,7 @@ BEADS, SENSORS = 38, (15, 34)  # numbered from the striker, 1
 VELOCITY, GRAVITY = 1.37, 9.81  # of the striker in m/s; in m/s²
 TOLERANCES = (1e-10, 1e-7)  # rtol of the run that counts and of the run that gives its errors
 SOURCES = {"F_m": "peak bead force F_m", "speed": "speed V_s", "striker": None}
-"""What sets the theory's amplitude → the quantity that then agrees by construction."""
+"""Quantity that sets the theory's amplitude → the quantity that then agrees by construction."""
 
 UNITS = {"speed": "m/s", "peak": "N", "FWHM": "sites"}  # by the first word; µs "in time"
 

@@ -239,7 +239,7 @@ class ExactWave(Profile):
         return self.pulse * np.arange(-n, n) / n, self.pulse / n
 
     def scaled(self, *, speed: Any = None, force: Any = None) -> ExactWave:
-        """The same wave with another speed dx/dt or another peak contact force.
+        """Scale the wave to another speed dx/dt or another peak contact force.
 
         Raises `SceneError` unless exactly one is given, positive, and the strains are floats.
         """
