@@ -483,17 +483,6 @@ def test_the_installed_command():
     assert ended.stderr.count("\n") == 1
 
 
-def test_matplotlib_is_loaded_only_for_a_picture():
-    code = (
-        "import sys; from validation import cli; cli.validate.main(['paper', '--beads', '12', "
-        "'--sensors', '4,8'], standalone_mode=False); assert 'matplotlib' not in sys.modules"
-    )
-    ended = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, check=False, timeout=240
-    )
-    assert ended.returncode == 0, ended.stderr
-
-
 def test_exact(capsys, tmp_path):
     picture = tmp_path / "w.svg"
     status, out, err = run(capsys, "exact", "--format", "json", "--plot", str(picture))
@@ -688,23 +677,6 @@ def test_the_list_of_studies_is_what_they_say():
         assert " ".join(found.help.split()) == " ".join(says.split())
         assert {"--format", "--plot"} <= {o for p in found.params for o in p.opts}
     assert cli.validate.get_command(context, "nothing") is None
-
-
-def test_a_study_is_loaded_when_it_is_called():
-    code = """if True:
-        import sys
-        from validation.cli import validate
-        for arguments in (["--help"], ["--nothing"], ["nothing"]):
-            try:
-                validate.main(arguments, standalone_mode=False)
-            except Exception:
-                pass
-            print({"numpy", "scipy", "numba", "matplotlib"} & {*sys.modules})
-    """
-    done = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=240
-    )
-    assert re.findall(r"(?m)^(?:set\(\)|\{.*)$", done.stdout) == ["set()"] * 3
 
 
 @pytest.mark.parametrize("name", ["accuracy", "figures", "hard", "limits"])

@@ -1,8 +1,5 @@
 """A wave in numbers: curves over time, arrays of forces, forces of beads, and pictures."""
 
-import subprocess
-import sys
-
 import numpy as np
 import pytest
 import sympy as sp
@@ -160,15 +157,3 @@ def test_pictures(monkeypatch):
     assert bead.max() == pytest.approx(float(CHAIN.at_force(10).bead_force), rel=1e-12)
     assert (ax.get_xlabel(), ax.get_ylabel()) == ("t (s)", "force (N)")
     pyplot.close("all")
-
-
-def test_matplotlib_is_loaded_for_a_new_picture_only():
-    code = (
-        "import sys\nfrom lwa import Cell, canonical_wave\n"
-        "wave = canonical_wave(Cell([1], spacing=1), '3/2')\nwave.force([0], peak=1)\n"
-        "print('matplotlib' in sys.modules)"
-    )
-    done = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=120
-    )
-    assert done.stdout.strip() == "False"
