@@ -12,7 +12,7 @@ from functools import cache
 from typing import Any
 
 import sympy as sp
-from pulse import struck_pulse
+from pulse import StruckPulse, struck_pulse
 
 from lwa import Cell, Dimer, InputError, Resummed, canonical_wave, expand, homogenize
 
@@ -23,17 +23,17 @@ _M1, _M2 = sp.symbols("m1 m2", positive=True)
 
 @dataclass(frozen=True)
 class Trust:
-    """Errors of the theories at one mass ratio, and what the pulse loses on the lattice.
+    """Errors of the theories at one mass ratio.
 
+    pulse : the lattice's pulse between the contacts 40 and 80.
     errors : FWHM of the contact force, theory over lattice less one, in the order of `THEORIES`;
         NaN where the series gives no number or one that is less sure than asked for.
     estimate : error that the series expects of itself, over the lattice's width; NaN likewise.
-    decay : loss of ln F per site on the lattice, between the contacts 40 and 80.
     """
 
+    pulse: StruckPulse
     errors: tuple[float, float, float]
     estimate: float
-    decay: float
 
 
 def trust(k: Any, omega: Any, unsure: float = 0.3) -> Trust:
@@ -55,7 +55,7 @@ def trust(k: Any, omega: Any, unsure: float = 0.3) -> Trust:
         for wave in _compact()
     )
     paper, canonical, sum_error = (float(width) / pulse.width - 1 for width in (*compact, summed))
-    return Trust((paper, canonical, sum_error), estimate / pulse.width, pulse.decay)
+    return Trust(pulse, (paper, canonical, sum_error), estimate / pulse.width)
 
 
 @cache
