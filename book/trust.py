@@ -41,21 +41,18 @@ def trust(k: Any, omega: Any, unsure: float = 0.3) -> Trust:
 
     unsure : relative estimate of its own error from which on the series counts as refused.
     """
+    k, omega = sp.Rational(str(k)), sp.Rational(str(omega))
     pulse = struck_pulse(k, omega)
-    series = _series(sp.Rational(str(omega)))
+    widths = [float(wave.fwhm(float(k), float(omega), "force")) for wave in _compact()]
+    summed = estimate = math.nan
     try:
-        total = series.at(k)
-        summed, estimate = float(total.value), float(total.error)
+        total = _series(omega).at(k)
+        if total.error < unsure * total.value:
+            summed, estimate = float(total.value), float(total.error)
     except InputError:
-        summed, estimate = math.nan, math.nan
-    if not estimate < unsure * summed:
-        summed, estimate = math.nan, math.nan
-    compact = (
-        wave.fwhm(float(sp.Rational(k)), float(sp.Rational(str(omega))), "force")
-        for wave in _compact()
-    )
-    paper, canonical, sum_error = (float(width) / pulse.width - 1 for width in (*compact, summed))
-    return Trust(pulse, (paper, canonical, sum_error), estimate / pulse.width)
+        pass
+    paper, canonical, series = (width / pulse.width - 1 for width in (*widths, summed))
+    return Trust(pulse, (paper, canonical, series), estimate / pulse.width)
 
 
 @cache
