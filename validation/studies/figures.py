@@ -181,5 +181,5 @@ def scaling(E: float) -> Scaling:
     speeds = tuple(Measured(fine.speed, coarse.speed) for fine, coarse in trains)
     forces = tuple(Measured(fine.peak, coarse.peak) for fine, coarse in trains)
     wave = canonical_wave(chain_cell(ptfe=ptfe), HERTZ)
-    theory = wave.at_force([force.value for force in forces], of="bead").speed
-    return Scaling(E, speeds, forces, tuple(theory.tolist()))
+    theory = (float(wave.at_force(force.value, of="bead").speed) for force in forces)
+    return Scaling(E, speeds, forces, tuple(theory))
