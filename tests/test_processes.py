@@ -40,7 +40,7 @@ STEPS = {
     "from lwa.linear import dispersion": f"click tqdm {NUMBERS}",
     "from validation.cli import validate": NUMBERS,
     "call('--help'), call('nothing'), call('--nothing')": NUMBERS,
-    "lwa.canonical_wave(lwa.Cell([1], None, 1), '3/2').at_force(1).curve([0])": "scipy matplotlib",
+    "lwa.canonical_wave(lwa.Cell([1], [1], 1), '3/2').at_force(1).curve([0])": "scipy matplotlib",
     "call('run', '--example')": "numba matplotlib",
     "call('paper', '--beads', '12', '--sensors', '4,8')": "matplotlib",
 }
