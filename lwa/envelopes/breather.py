@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 import sympy as sp
 
 from lwa.base import latex
-from lwa.base.exact import InputError, root
+from lwa.base.exact import InputError, one_of, root
 from lwa.base.frozen import Value
 
 if TYPE_CHECKING:
@@ -52,6 +52,7 @@ class Breather(Value):
     kind: str
 
     def __post_init__(self) -> None:
+        one_of(self.kind, KINDS, "kind")
         given = f"frequency is {sp.N(self.frequency, 8)}"
         if self._square.is_number and not self._square > 0:
             side = "below" if self.nonlinearity < 0 else "above"

@@ -1,5 +1,7 @@
 """The envelope's equation: closed forms, KdV, Toda, the lattice, exact numbers beside floats."""
 
+from types import SimpleNamespace
+
 import mpmath
 import numpy as np
 import pytest
@@ -20,7 +22,6 @@ from lwa import (
     envelope,
     general,
 )
-from lwa.envelopes.modes import Springs
 from lwa.law import DELTA, named
 from lwa.linear import bands
 
@@ -197,10 +198,12 @@ def test_plane_waves_of_random_cells_on_the_lattice(P, seed):
     ).numeric()
     shares = np.array(found.static_compressions, float)
     A = np.array(stiffnesses, float)
-    springs = Springs(
-        np.array(masses, float), 2.5 * A * shares**1.5, 2.5 * 1.5 / 2 * A * shares**0.5,
-        2.5 * 1.5 * 0.5 / 6 * A * shares**-0.5,
-    )  # fmt: skip
+    springs = SimpleNamespace(
+        masses=np.array(masses, float),
+        K2=2.5 * A * shares**1.5,
+        K3=2.5 * 1.5 / 2 * A * shares**0.5,
+        K4=2.5 * 1.5 * 0.5 / 6 * A * shares**-0.5,
+    )
     chi, omega = float(found.nonlinearity), float(found.frequency)
     phi, flow = np.array(found.mode, complex), float(sum(found.mean_strain))
     shifts = []
@@ -280,7 +283,7 @@ def test_units_of_real_spheres():
     ("cell", "options", "message"),
     [
         (Cell([1, 1]), {}, "two branches touch at this wavenumber"),
-        (Cell([1]), {"wavenumber": 0}, "the frequency is zero at this wavenumber"),
+        (Cell([1]), {"wavenumber": 0}, "the frequency is zero at this wavenumber: sound"),
         (Dimer(1, 2), {"branch": 2}, "branch is 2: a cell of 2 has 2 branches"),
         (Dimer(1, 2), {"wavenumber": 4}, r"wavenumber is 4: 0 … pi per cell is wanted"),
         (Dimer(1, 2), {"wavenumber": 1}, "exact where cos κ is rational"),
@@ -293,9 +296,14 @@ def test_what_has_no_envelope_is_refused(cell, options, message):
 
 
 def test_resonances_are_refused_by_name():
-    """Long acoustic waves move with sound; second harmonics may be optical modes."""
-    with pytest.raises(InputError, match="group velocity is the speed of sound, c_g = c_0"):
-        envelope(Cell([1]), HERTZ, background=1, wavenumber=1e-6).nonlinearity  # noqa: B018
+    """Sound is the one mode with c_g = c_0; second harmonics may be optical modes."""
+    with pytest.raises(InputError, match="sound, c_g = c_0, has no envelope"):
+        envelope(Dimer(1, 2), HERTZ, background=1, wavenumber=0, branch=0).kind  # noqa: B018
+    long = envelope(Cell([1], spacing=1), HERTZ, background=1, wavenumber="1/1000")
+    with pytest.raises(InputError, match="too close to that of sound, c_g = c_0, for floats"):
+        long.numeric().nonlinearity  # noqa: B018
+    limit = -long.frequency / 4  # χ = -ω (k-1) (k - cos² κ/2) → -ω (k-1)²
+    assert float(long.nonlinearity / limit) == pytest.approx(1, abs=1e-6)
 
     def square(kappa, sign):
         """ω² of masses 1 and 1/2, over K2."""
