@@ -86,6 +86,8 @@ class Envelope(Value):
     @cached_property
     def group_velocity(self) -> sp.Expr:
         """dω/dκ, in cells per unit of time."""
+        if sp.sin(self.wavenumber).is_zero:  # the edge of a band, in floats as well
+            return sp.S.Zero
         return self._named(self._tidy(self._mode.slope * self._rate / (2 * self._omega)))
 
     @cached_property
@@ -150,8 +152,14 @@ class Envelope(Value):
             raise InputError(f"wavenumber is {self.wavenumber}: a breather stands where dω/dκ = 0")
         return Breather(
             self.frequency, self.dispersion, self.nonlinearity, self.mode, self.wavenumber,
-            self._opening, signed(detuning, "detuning"), kind or self.kind,
+            self._opening, self.load, self.law.exponent if self.law.homogeneous else sp.nan,
+            signed(detuning, "detuning"), kind or self.kind,
         )  # fmt: skip
+
+    @property
+    def load(self) -> sp.Expr:
+        """The static force F0."""
+        return self.cell.stiffnesses[0] * self.law.at(self.static_compressions[0])
 
     @property
     def static_compressions(self) -> tuple[sp.Expr, ...]:
@@ -161,7 +169,8 @@ class Envelope(Value):
     @property
     def _opening(self) -> sp.Expr:
         """|A|² at which the alternating compression 2|A||d| of a contact reaches the static one."""
-        if not self.law.homogeneous:
+        roots = (p for p in self.law.F.atoms(sp.Pow) if p.base == self.law.delta)
+        if not self.law.homogeneous and all(p.exp.is_integer for p in roots):  # real at δ < 0
             return sp.oo
         pairs = zip(self.static_compressions, self.strains, strict=True)
         found = sp.Min(*(delta**2 / (4 * d) for delta, d in pairs if d))
@@ -215,7 +224,8 @@ class Envelope(Value):
         if self.floats:
             demand_numbers(set().union(*(x.free_symbols for x in numbers)), "floats need numbers")
         *rows, s, t, number = map(self._sampled, numbers)
-        sample = Contacts(*np.array(rows).reshape(2, -1), s, t)
+        masses, c = np.array(rows).reshape(2, -1)
+        sample = Contacts(masses, c, s, t)
         found, bead = numeric_mode(sample, number, self.branch, self.floats)
         if self.floats:
             return found

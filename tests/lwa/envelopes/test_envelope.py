@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import scipy
 import sympy as sp
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from lwa import (
@@ -15,6 +15,7 @@ from lwa import (
     Dimer,
     InputError,
     Law,
+    LoadedChain,
     Material,
     Power,
     Sphere,
@@ -328,6 +329,31 @@ def test_no_mode_is_faster_than_sound(weights, springs, kappa):
     mu, c = np.array(weights) / sum(weights), np.array(springs[: len(weights)])
     velocity = bands.group_velocity(mu, c * len(c) / c.sum(), kappa / len(c))
     assert np.abs(velocity).max() < 1
+
+
+@given(
+    st.lists(st.integers(1, 9), min_size=2, max_size=5),
+    st.lists(st.integers(1, 9), min_size=5, max_size=5),
+    st.floats(0.3, 2.8),
+    st.integers(0, 4),
+)
+def test_frequencies_and_their_derivatives_are_those_of_the_bands(masses, stiffnesses, kappa, n):
+    """ω and c_g of `LoadedChain`, of κ per cell; ω″ by their differences, to the step squared."""
+    P = len(masses)
+    cell, branch = Cell(masses, stiffnesses[:P], 1), n % P
+    bands = LoadedChain(cell, HERTZ, 2)
+    omega = bands.branches(kappa / P)
+    assume(np.min(np.abs(np.delete(omega, branch) - omega[branch])) > 0.1)
+    options = {"precompression": 2, "wavenumber": kappa, "branch": branch}
+    try:
+        ours = envelope(cell, HERTZ, **options).numeric()
+        assert float(ours.frequency) == pytest.approx(omega[branch], rel=1e-10)
+    except InputError:  # the second harmonic is a mode
+        assume(False)
+    slope = [bands.group_velocity((kappa + h) / P)[branch] / P for h in (-1e-4, 0, 1e-4)]
+    assert float(ours.group_velocity) == pytest.approx(slope[1], abs=1e-9 * omega[-1])
+    bend = (slope[2] - slope[0]) / 2e-4
+    assert float(ours.dispersion) == pytest.approx(bend, abs=1e-4 * omega[-1])
 
 
 def test_a_law_of_its_own():
