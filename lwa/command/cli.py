@@ -82,7 +82,6 @@ def lwa() -> None:
 def derive(style: str, **chain: Any) -> None:
     """The ansatz, the wave equation and the defect between the equations of motion."""
     theory = _theory("derive", **chain)
-    derivation.write_out(theory)
     if style == "python":
         click.echo(derivation.source(theory))
     else:

@@ -9,29 +9,16 @@ import sympy as sp
 
 from lwa.base import latex
 from lwa.base.exact import InputError
-from lwa.base.progress import announced
 from lwa.code.languages import LANGUAGES
 from lwa.command.rows import Answer, Row, Values
 from lwa.equation.terms import Jet, Terms
 from lwa.theory import Theory
 from lwa.wave.functions import function_of, in_order
 
-MANY_TERMS = 100_000
-"""Terms of coefficients that take half a minute to write, 0.3 ms each (orders 8 to 12)."""
-
 FIELDS = {
     "first": "u is the displacement of the cell's first particle",
     "center": "u is the canonical field, the mass-weighted mean of the fields at one point",
 }
-
-
-def write_out(theory: Theory) -> None:
-    """Write all coefficients as text, which is kept; with progress where it takes long."""
-    jets = [(found, jet) for found in theory.orders for jet in found]
-    length = sum(found.length(jet) for found, jet in jets)
-    progress = announced(f"{length} terms to be written") if length > MANY_TERMS else iter
-    for found, jet in progress(jets):
-        found.written(jet)
 
 
 def chain_json(theory: Theory) -> dict[str, Any]:
