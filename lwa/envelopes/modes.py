@@ -114,6 +114,8 @@ def numeric_mode(contacts: Contacts, kappa: float, branch: int, resolved: bool) 
     the mode is too close to sound for floats.
     """
     z, root = complex(np.exp(1j * kappa)), np.sqrt(contacts.masses)
+    if abs(z.imag) < CLOSE:  # real modes at the edges
+        z = round(z.real)
     squares, vectors = np.linalg.eigh(contacts.stiffness(z) / np.outer(root, root))
     x, others = float(squares[branch]), np.delete(squares, branch)
     close = CLOSE / (contacts.c.min() * contacts.masses.min())
@@ -151,7 +153,7 @@ def _derivatives(
 
     B depends on κ in one entry, -e^{iκ}.
     """
-    B, turn = contacts.strains(z), np.zeros_like(modes)
+    B, turn = contacts.strains(z), np.zeros(modes.shape, complex)
     turn[-1, 0] = -1j * z  # dB/dκ; d²B/dκ² is i dB/dκ
     d, first = (part @ modes / np.sqrt(contacts.c)[:, None] for part in (B, turn))
     own = first.conj().T @ d[:, branch] + d.conj().T @ first[:, branch]  # φ_j† K′ φ
