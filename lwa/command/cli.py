@@ -33,12 +33,6 @@ from lwa.law import ContactLaw, Power
 from lwa.spheres.hertz import EXPONENT
 from lwa.theory import Theory, homogenize
 
-DERIVATION = {
-    "text": derivation.derivation_text,
-    "json": derivation.derivation_json,
-    "latex": derivation.derivation_latex,
-    "python": derivation.derivation_python,
-}
 STYLES = ("text", "json", "latex")
 
 
@@ -67,12 +61,11 @@ def _chain(
     return cell, law, static, bool(units), said
 
 
-def _show(result: Any) -> None:
-    click.echo(result if isinstance(result, str) else json.dumps(result, indent=2))
-
-
 def _answer(style: str, answer: Answer) -> None:
-    _show({"text": answer.text, "json": answer.json, "latex": answer.latex}[style]())
+    if style == "json":
+        click.echo(json.dumps(answer.json(), indent=2))
+    else:
+        click.echo(answer.latex() if style == "latex" else answer.text())
 
 
 @click.group(context_settings=HELP)
@@ -85,12 +78,14 @@ def lwa() -> None:
 
 
 @lwa.command()
-@of_chain(DERIVATION)
+@of_chain((*STYLES, "python"))
 def derive(style: str, **chain: Any) -> None:
     """The ansatz, the wave equation and the defect between the equations of motion."""
     theory = _theory("derive", **chain)
-    derivation.write_out(theory)
-    _show(DERIVATION[style](theory))
+    if style == "python":
+        click.echo(derivation.source(theory))
+    else:
+        _answer(style, derivation.derivation(theory, tex=style == "latex"))
 
 
 @lwa.command()
@@ -133,7 +128,7 @@ def wave(
     if style in LANGUAGES:
         if force is not None:
             raise InputError(f"--format {style} is for any force: --force goes with {_STYLES}")
-        _show(waves.source(theory, load if under_load else None, style))
+        click.echo(waves.source(theory, load if under_load else None, style))
     elif under_load:
         _answer(style, waves.under_load(theory, load, units))
     else:
