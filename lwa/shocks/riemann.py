@@ -4,10 +4,9 @@ A wall that moves at v_p into a chain of strain p₊ presses it to p₋, v_p = �
 sound is faster behind the front, r = c₋/c₊ > 1, the front is a dispersive shock, a wave train
 between two edges (`lwa.shocks.edges`); else a rarefaction c(p) = x/t joins c₋ and c₊.
 
-Doubling rule: the leading pulse is the solitary wave on p₊ whose beads move at 2 v_p at most. The
-rule is exact for Toda's law, for small jumps (KdV) and for hard spheres. For powers k = 3/2 … 3 the
-lattice's own wave of that velocity has the measured speed within 0.2 % and strain within 0.5 %; the
-closed forms here are those of the canonical wave (`lwa.shocks.pulse`), which is faster and higher.
+Doubling rule: the leading pulse is the solitary wave on p₊ whose beads move at 2 v_p at most; exact
+for Toda's law, small jumps (KdV) and hard spheres. For k = 3/2 … 3 the lattice's own such wave has
+the measured speed within 0.2 % and strain within 0.5 %; `lwa.shocks.pulse` has the closed forms.
 """
 
 from __future__ import annotations
@@ -48,9 +47,9 @@ class Shock(Value):
     @property
     def kind(self) -> str:
         """ "shock" where sound is faster behind the front, else "rarefaction"."""
-        if (faster := self._gain.is_positive) is None:
+        if self._gain.is_positive is None:
             raise InputError("kind depends on symbols: give numbers")
-        return "shock" if faster else "rarefaction"
+        return "shock" if self._gain.is_positive else "rarefaction"
 
     def sound(self, p: Any) -> sp.Expr:
         """Speed of sound dx/dt on the strain p; 0 without load under a power law."""
@@ -99,20 +98,25 @@ class Shock(Value):
         if self._rarefies:
             return self.sound(self.ahead)
         if rule == "doubling":
-            return self.pulse.speed * self._field.time_scale
+            return self._pulse.speed * self._field.time_scale
         return self.sound(self.ahead) * edges.leading(self._field.linear, self.ratio)
 
     @cached_property
-    def pulse(self) -> Pulse:
+    def _pulse(self) -> Pulse:
         """The leading pulse by doubling; `lwa.InputError` for unequal beads and rarefactions."""
         if self._rarefies:
             raise InputError("sound is slower behind the front: a rarefaction has no pulse")
         return Pulse(self._field, 2 * self._gained)
 
     @property
+    def rise(self) -> sp.Expr:
+        """B = 2 v_p/s₊ of the leading pulse by doubling, by which u_x rises."""
+        return self._pulse.rise
+
+    @property
     def peak(self) -> sp.Expr:
         """Strain of a contact at the peak of the leading pulse by doubling."""
-        return self.ahead + self.pulse.contact_rise
+        return self.ahead + self._pulse.contact_rise
 
     @property
     def peak_force(self) -> sp.Expr:
@@ -127,7 +131,7 @@ class Shock(Value):
         """
         if not (self.law.homogeneous and self.ahead.is_zero):
             raise InputError("the series in k - 1 are of a power law without load: ahead = 0")
-        velocity, k = self.pulse.velocity * self._field.time_scale, self.law.exponent
+        velocity, k = self._pulse.velocity * self._field.time_scale, self.law.exponent
         return wave_of_velocity(expand(self.cell, ORDER, k=k), velocity)
 
     def fan(self, speed: Any) -> sp.Expr:
@@ -165,7 +169,6 @@ def shock(cell: Cell, law: ContactLaw, behind: Any, ahead: Any) -> Shock:
 
     Strains are numbers or symbols, not negative under a power law. Results are exact for equal
     beads under a power law or Toda's, but for the doubling rule under load, else of 20 digits.
-
     Raises `lwa.InputError` for other strains, and equal ones.
 
     >>> from lwa import Cell, Power
@@ -189,7 +192,6 @@ def piston(cell: Cell, law: ContactLaw, velocity: Any, ahead: Any = 0) -> Shock:
     """The front that a wall moving at this velocity drives into a chain of strain ``ahead``.
 
     In SI units where the cell is (`lwa.Cell.of_spheres`): velocity in m/s, forces in N.
-
     >>> from lwa import Cell, Power
     >>> piston(Cell([1], spacing=1), Power(3), "v").behind
     sqrt(2)*3**(3/4)*sqrt(v)/3

@@ -84,7 +84,7 @@ def test_plateau_and_rule_under_a_power_without_load():
         numbers = {k: value, p: sp.Rational(1, 3)}
         speed, contact = found.leading_speed() / found.sound(p), 1 - (k - 1) / (2 * k * (k + 1))
         for ratio in (
-            found.pulse.rise / p / rise,
+            found.rise / p / rise,
             speed * rise * (k + 1) / 4,
             found.peak / p / rise / contact,
         ):
@@ -128,7 +128,7 @@ def test_small_jumps_are_those_of_kdv(law):
         c, step = found.sound(found.ahead), found.sound(found.behind) - found.sound(found.ahead)
         edges = [found.trailing_speed, found.leading_speed("dispersion"), found.leading_speed()]
         numbers = [float((s - c) / step) for s in edges] + [
-            float(x / jump) for x in (found.pulse.rise, found.peak - 1)
+            float(x / jump) for x in (found.rise, found.peak - 1)
         ]
         errors.append([abs(n - x) for n, x in zip(numbers, (-1, 2 / 3, 2 / 3, 2, 2), strict=True)])
     for far, near in zip(*errors, strict=True):
@@ -207,7 +207,7 @@ def test_a_law_without_closed_forms():
     area, _ = scipy.integrate.quad(lambda p: F(p) ** 0.5, 1, 2)
     assert float(found.plateau) == pytest.approx(area, rel=1e-10)
     W = sp.lambdify(law.delta, law.energy)
-    B = float(found.pulse.rise)
+    B = float(found.rise)
     work = W(1 + B) - W(1) - float(law.at(sp.S.One)) * B
     assert work == pytest.approx(2 * area**2, rel=1e-10)
     assert float(piston(EQUAL, law, found.plateau.n(25), 1).behind) == pytest.approx(2, rel=1e-12)
