@@ -326,8 +326,8 @@ def front_of_a_wall(
 ) -> None:
     """The shock, or the rarefaction, of a chain that a wall drives."""
     from lwa.command import shocks
-    from lwa.shocks import piston as driven
-    from lwa.shocks import shock
+    from lwa.shocks.riemann import piston as driven
+    from lwa.shocks.riemann import shock
 
     if (behind is None) == (piston is None):
         raise InputError("--behind or --piston: one of the two is wanted")
