@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from lwa.expansion.strike import Strike, graded_force, pulse_of_strike, transmitted_force
     from lwa.law import ContactLaw, Law, Power, general
     from lwa.linear.dispersion import Dispersion, LoadedChain
-    from lwa.shocks import Shock, piston, shock
+    from lwa.shocks.riemann import Shock, piston, shock
     from lwa.spheres import hertz
     from lwa.spheres.hertz import Material, Sphere
     from lwa.theory import Theory, homogenize
@@ -138,7 +138,7 @@ _MODULES = {
     "equation.evolution": "Evolution",
     "equation.pde": "PDE",
     "base.quantities": "NoSolitaryWave",
-    "shocks": "Shock piston shock",
+    "shocks.riemann": "Shock piston shock",
     "spheres.hertz": "Material Sphere",
     "equation.terms": "Jet Powers Terms",
     "theory": "Theory homogenize",

@@ -304,6 +304,14 @@ def named(name: str, *parameters: Any) -> ContactLaw:
     return Law(build(*values), DELTA)
 
 
+def read_law(value: Any, name: str) -> ContactLaw:
+    """Read a law from its name and parameters, such as "hertz2:1,2"; ``name`` is for messages."""
+    if not isinstance(value, str):
+        raise InputError(f"{name} is {shorten(value)}: a text such as 'hertz2:1,2' is wanted")
+    title, colon, parameters = value.partition(":")
+    return named(title.strip(), *(parameters.split(",") if colon else ()))
+
+
 def _uncaptured(value: sp.Expr, name: str, delta: sp.Symbol) -> None:
     """Refuse a law's parameter that holds the symbol of the compression."""
     meant(value, name, taken={delta.name: "the compression of a contact"})

@@ -85,12 +85,6 @@ class Theory(OfClosure):
             n: terms(self.closure, d) for n, d in enumerate(self.closure.defect) if not d.is_zero()
         }
 
-    @property
-    def orders(self) -> tuple[Terms, ...]:
-        """All terms of the wave equation, the slaved fields and the defect."""
-        slaved = (found for series in self.slaved.values() for found in series.values())
-        return (*self.pde.coefficients.values(), *slaved, *self.defect.values())
-
     def _repr_latex_(self) -> str:
         return latex.display([*self.closure.latex_rows(4), *self.pde.latex_rows(3)])
 

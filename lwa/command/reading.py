@@ -8,7 +8,7 @@ import click
 import sympy as sp
 
 from lwa.base.exact import exact, integer
-from lwa.law import ContactLaw, named
+from lwa.law import ContactLaw, read_law
 
 
 def quantity(context: click.Context, option: click.Parameter, value: str | None) -> sp.Expr | None:
@@ -41,10 +41,7 @@ def contact_law(
     context: click.Context, option: click.Parameter, value: str | None
 ) -> ContactLaw | None:
     """Callback of an option that is NAME or NAME:PARAM,…, as `lwa.law.named` takes them."""
-    if value is None:
-        return None
-    name, colon, parameters = value.partition(":")
-    return named(name, *(parameters.split(",") if colon else ()))
+    return None if value is None else read_law(value, called(option))
 
 
 def called(option: click.Parameter) -> str:

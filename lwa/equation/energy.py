@@ -76,18 +76,17 @@ def variational_derivative(
     return total
 
 
-def potential(closure: Closure, n: int, density: fmpq_mpoly | None) -> fmpq_mpoly | None:
-    """(k+1) V_n / u_x^{k+1} of a variational order n, else None (as for orders with velocity jets).
+def variational(closure: Closure, n: int, density: fmpq_mpoly | None) -> bool:
+    """Whether order n, of the flux ``density``, is minus a variational derivative.
 
-    density : the `flux` of order n.
+    False for an order without a flux, and for one with jets of the velocity.
     """
     algebra = closure.algebra
     k = closure.model.ring.exponent(algebra.context)
-    if density is None or algebra.velocity_slopes(closure.acceleration[n]):
-        return None
-    if variational_derivative(algebra, k, density, n - 1) != -(k + 1) * closure.acceleration[n]:
-        return None
-    return algebra.by_parts(density, k + 1)
+    E = closure.acceleration[n]
+    if density is None or algebra.velocity_slopes(E):
+        return False
+    return bool(variational_derivative(algebra, k, density, n - 1) == -(k + 1) * E)
 
 
 def energy(closure: Closure) -> tuple[JetAlgebra, list[fmpq_mpoly]]:

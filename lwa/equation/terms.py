@@ -99,10 +99,6 @@ class Terms(Mapping[Jet, sp.Expr]):
         rows += [f"{more} more" if rows else f"{more} terms"] if more else []
         return f"{{{', '.join(rows)}}}"
 
-    def length(self, jet: Jet) -> int:
-        """The number of terms of a coefficient."""
-        return len(self._raw[jet])
-
     def written(self, jet: Jet) -> str:
         """The coefficient as text; writing takes longest of all and is done once."""
         if jet not in self._written:
