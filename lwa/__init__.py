@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from lwa.algebra.coefficients import CoefficientRing as CoefficientRing
+    from lwa.algebra.jets import Powers as Powers
     from lwa.algebra.model import Model as Model
     from lwa.base.arrays import Array as Array
     from lwa.base.exact import InputError as InputError
@@ -30,7 +31,6 @@ if TYPE_CHECKING:
     from lwa.equation.evolution import Evolution as Evolution
     from lwa.equation.pde import PDE as PDE
     from lwa.equation.terms import Jet as Jet
-    from lwa.equation.terms import Powers as Powers
     from lwa.equation.terms import Terms as Terms
     from lwa.expansion.approximants import Resummed as Resummed
     from lwa.expansion.expand import Expansion as Expansion
@@ -72,6 +72,7 @@ if TYPE_CHECKING:
 
 _MODULES = {
     "algebra.coefficients": "CoefficientRing",
+    "algebra.jets": "Powers",
     "algebra.model": "Model",
     "wave.background": "BackgroundWave background_wave",
     "wave.kdv": "KdV",
@@ -100,7 +101,7 @@ _MODULES = {
     "base.quantities": "NoSolitaryWave",
     "shocks": "Shock piston shock",
     "spheres.hertz": "Material Sphere",
-    "equation.terms": "Jet Powers Terms",
+    "equation.terms": "Jet Terms",
     "theory": "Theory homogenize",
     "wave.traveling": "TravelingWave canonical_wave",
 }
@@ -109,7 +110,7 @@ __all__ = sorted(["hertz", *(name for name in _HOMES if name not in ("D", "k"))]
 
 
 def __getattr__(name: str) -> Any:
-    """Each name is loaded when it is first asked for: the command starts before SymPy does."""
+    """Load a public name on its first use, so that the command starts before SymPy does."""
     if name == "__version__":
         from importlib.metadata import version  # here: it takes as long as all the rest
 

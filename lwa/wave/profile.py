@@ -93,7 +93,7 @@ def _at_poles_too(function: Callable[..., Any], numbers: list[Any]) -> Function:
 
 @dataclass(frozen=True)
 class Profile:
-    """A wave of the rise B to so many digits; mpmath works with those that differences lose.
+    """A wave of the rise B to the given digits, in mpmath's larger working precision.
 
     force, slope and stiffness are F, F′ and Q at the strain v above the background.
     """
@@ -110,22 +110,22 @@ class Profile:
         return self.stiffness(self.B)
 
     def rate(self, theta: Any) -> Any:
-        """dξ/dθ, θ > 0."""
+        """The rate dξ/dθ, θ > 0."""
         v = self.strain(theta)
         gap = self._top - self.stiffness(v)
         return 2 * mpmath.tanh(theta) * mpmath.sqrt(self.I * self.slope(v) / gap)
 
     def strain(self, theta: Any) -> Any:
-        """v(θ)."""
+        """The strain v(θ) above the background."""
         return self.B / mpmath.cosh(theta) ** 2
 
     def place(self, theta: Any) -> Any:
-        """ξ(θ)."""
+        """The place ξ(θ)."""
         pieces = max(1, int(mpmath.ceil(theta)))
         return self._integral(mpmath.linspace(0, theta, pieces + 1))
 
     def half(self, quantity: str) -> Any:
-        """θ at which the quantity has half of its rise."""
+        """The θ at which the quantity has half of its rise."""
         if quantity != "force":
             return mpmath.acosh(mpmath.sqrt(2))
         rise = self.force(self.B) - self.force(mpmath.mpf(0))
@@ -136,7 +136,7 @@ class Profile:
         return mpmath.acosh(1 / mpmath.sqrt(self._root(above_half, 0, 1)))
 
     def theta(self, place: Any) -> Any:
-        """θ at a place ξ > 0."""
+        """The θ at a place ξ > 0."""
         start, here = mpmath.mpf(0), mpmath.mpf(0)
         while here + (step := self._integral([start, start + 1])) < place:
             start, here = start + 1, here + step
@@ -150,13 +150,13 @@ class Profile:
         return self._root(passed, start, start + 1)
 
     def _root(self, function: Function, low: Any, high: Any) -> Any:
-        """The root of a growing function of the size of 1, between two places."""
+        """The root of a growing function, of order 1 in size, between two places."""
         accuracy = mpmath.mpf(10) ** (-self.digits - 5)
         bracket = (mpmath.mpf(low), mpmath.mpf(high))
         return mpmath.findroot(function, bracket, solver="anderson", tol=accuracy, verify=False)
 
     def _integral(self, points: list[Any]) -> Any:
-        """∫ dξ by Gauss's rule on each piece, refined until the digits stand.
+        """The integral ∫ dξ by Gauss's rule on each piece, refined until the digits stand.
 
         Under a power with small k, n points err by 6^{-2n} on a piece of length 1, and degree d has
         n = 3·2^{d-1}. Steep laws, and waves next to their limiting amplitude, vary fast at θ = 0.
