@@ -48,9 +48,9 @@ if TYPE_CHECKING:
     from lwa.law import general as general
     from lwa.linear.dispersion import Dispersion as Dispersion
     from lwa.linear.dispersion import LoadedChain as LoadedChain
-    from lwa.shocks import Shock as Shock
-    from lwa.shocks import piston as piston
-    from lwa.shocks import shock as shock
+    from lwa.shocks.riemann import Shock as Shock
+    from lwa.shocks.riemann import piston as piston
+    from lwa.shocks.riemann import shock as shock
     from lwa.spheres import hertz as hertz
     from lwa.spheres.hertz import Material as Material
     from lwa.spheres.hertz import Sphere as Sphere
@@ -99,7 +99,7 @@ _MODULES = {
     "equation.evolution": "Evolution",
     "equation.pde": "PDE",
     "base.quantities": "NoSolitaryWave",
-    "shocks": "Shock piston shock",
+    "shocks.riemann": "Shock piston shock",
     "spheres.hertz": "Material Sphere",
     "equation.terms": "Jet Terms",
     "theory": "Theory homogenize",

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from lwa.base.errors import InputError
 from lwa.command.rows import Answer, Row, attempt
-from lwa.shocks import RULES, Shock
+from lwa.shocks.riemann import RULES, Shock
 
 
 def shock(found: Shock, units: Mapping[str, str], spoken: str) -> Answer:

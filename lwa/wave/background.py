@@ -92,7 +92,12 @@ class BackgroundWave(Value):
     @cached_property
     def I(self) -> sp.Expr:
         """The coefficient I of u_4x, D² included."""
-        return Dispersion(self.cell, self.law.exponent).I * self.cell.spacing**2
+        return self.linear.I * self.cell.spacing**2
+
+    @property
+    def linear(self) -> Dispersion:
+        """The dispersion of small waves in the units of the wave equation, at any strain."""
+        return Dispersion(self.cell, self.law.exponent)
 
     @property
     def time_scale(self) -> sp.Expr:
