@@ -5,10 +5,6 @@ from __future__ import annotations
 import copy
 import math
 import pickle
-import re
-import signal
-import subprocess
-import sys
 from collections.abc import Callable
 from fractions import Fraction
 
@@ -307,24 +303,6 @@ def test_k_of_thousands_of_digits_is_refused() -> None:
             expand(Cell([1], [3]), 2, k=k)
         with pytest.raises(InputError, match="digits"):
             expand(Cell([1], [3]), 2).c2.at(k)
-
-
-def test_a_long_command_says_so_and_stops_at_an_interrupt() -> None:
-    command = ["expansion", "--masses", "1,1/50", "--order", "100"]
-    code = f"from lwa.command.cli import main; main({command})"
-    with subprocess.Popen(
-        [sys.executable, "-c", code], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
-    ) as run:
-        assert run.stderr is not None
-        first = run.stderr.readline()
-        run.send_signal(signal.SIGINT)
-        try:
-            _, rest = run.communicate(timeout=60)  # of the minutes that it would take
-        finally:
-            run.kill()
-    assert re.fullmatch(r"the expansion to ε\^100: this may take minutes\n", first)
-    assert rest.strip() == "lwa: interrupted"
-    assert run.returncode == 130
 
 
 @pytest.mark.parametrize("masses", ["a0,m2", "a_n,m2", "a1,b2"])

@@ -1,8 +1,5 @@
 """A wave in numbers: curves over time, forces of beads, and a picture."""
 
-import subprocess
-import sys
-
 import numpy as np
 import pytest
 import sympy as sp
@@ -123,15 +120,3 @@ def test_a_picture(monkeypatch):
     assert strain.max() == 1
     assert np.ptp(sites[strain > 0]) == pytest.approx(np.pi * np.sqrt(5 / 2), rel=0.01)
     pyplot.close("all")
-
-
-def test_matplotlib_is_loaded_for_a_new_picture_only():
-    code = (
-        "import sys\nfrom lwa import Cell, canonical_wave\n"
-        "wave = canonical_wave(Cell([1], spacing=1), '3/2')\nwave.at_force(1).curve([0])\n"
-        "print('matplotlib' in sys.modules)"
-    )
-    done = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=120
-    )
-    assert done.stdout.strip() == "False"
