@@ -1,5 +1,14 @@
 """A command as its user meets it."""
 
+import fcntl
+import io
+import os
+import pty
+import select
+import struct
+import termios
+from contextlib import contextmanager, redirect_stderr, redirect_stdout
+
 import pytest
 
 
@@ -9,3 +18,56 @@ def ended(capsys, main, *arguments):
         main(arguments)
     captured = capsys.readouterr()
     return end.value.code, captured.out, captured.err
+
+
+def encoded(main, *arguments, encoding):
+    """Exit status and bytes of both outputs of one call, where the terminal has this encoding."""
+    outputs = [io.TextIOWrapper(io.BytesIO(), encoding=encoding) for _ in range(2)]
+    with (
+        redirect_stdout(outputs[0]),
+        redirect_stderr(outputs[1]),
+        pytest.raises(SystemExit) as end,
+    ):
+        main(arguments)
+    for output in outputs:
+        output.flush()
+    return end.value.code, *(output.buffer.getvalue() for output in outputs)
+
+
+def unwritable(capsys, main, *arguments, output):
+    """Exit status and standard error of one call into a file or a pipe that takes nothing."""
+    with output, redirect_stdout(output):
+        status, out, err = ended(capsys, main, *arguments)
+    assert out == ""
+    return status, err
+
+
+def full_disk():
+    """A file on a disk without room."""
+    return open("/dev/full", "w")
+
+
+def closed_pipe():
+    """A pipe whose reader is gone."""
+    reader, writer = os.pipe()
+    os.close(reader)
+    return open(writer, "w")
+
+
+@contextmanager
+def terminal():
+    """Make standard error a terminal; a function returns what was written to it so far."""
+    screen, keyboard = pty.openpty()
+    fcntl.ioctl(keyboard, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 80, 0, 0))
+
+    def written():
+        found = b""
+        while select.select([screen], [], [], 0)[0]:
+            found += os.read(screen, 4096)
+        return found.decode()
+
+    try:
+        with open(keyboard, "w") as output, redirect_stderr(output):
+            yield written
+    finally:
+        os.close(screen)

@@ -1,9 +1,10 @@
-"""Settings of all tests: threads, examples, signals, garbage, and the optional parts."""
+"""Settings of all tests: threads, examples, signals, garbage, folders, and the optional parts."""
 
 import gc
 import os
 import shutil
 import signal
+from contextlib import chdir
 from importlib.util import find_spec
 
 # The tests' linear systems are small: on a busy machine a second thread only waits for the first.
@@ -55,3 +56,10 @@ def _interruptible():
     signal.signal(signal.SIGINT, signal.default_int_handler)
     yield
     signal.signal(signal.SIGINT, before)
+
+
+@pytest.fixture
+def folder(tmp_path):
+    """An empty folder, which is the current one."""
+    with chdir(tmp_path):
+        yield tmp_path

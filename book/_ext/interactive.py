@@ -22,22 +22,23 @@ from lwa.code.writer import Function
 def formulas() -> str:
     """A script that defines the object ``lwaFormulas``: closed forms by name, and materials."""
     k, m1, m2, A, D, F = sp.symbols("k m1 m2 A D F", positive=True)
-    F_0, p_0, v = sp.symbols("F_0 p_0 v", positive=True)
+    F_0, p_0, v, B = sp.symbols("F_0 p_0 v B", positive=True)
     wave = canonical_wave(Cell([m1, m2]), k)
     chain = canonical_wave(Cell([m1, m2], stiffnesses=[A, A], spacing=D), k)
     pulse, loaded = chain.at_force(F), chain.at_force(F, precompression=F_0)
     strain = canonical_wave(Cell([1]), k).on_background(p_0)
+    gap = strain.stiffness(B) - strain.stiffness(v)
+    gradient = v * sp.sqrt(gap / (wave.I / wave.D**2 * strain.force(p_0 + v, 1)))
     solids = sp.symbols("E1 nu1 R1 E2 nu2 R2", positive=True)
     one, two = (Sphere(1, R, Material(E=E, nu=nu)) for E, nu, R in (solids[:3], solids[3:]))
     values = (k, A, m1, m2, D)
     more = (
-        Function("dispersion_I", "I of the canonical wave equation", (m1, m2, wave.D), wave.I),
         Function("hertz_A", "A of two spheres", solids, hertz.stiffness(one, two)),
         Function("pulse_speed", "dx/dt at the peak force F", (F, *values), pulse.speed),
         Function("pulse_time", "FWHM of F in time", (F, *values), pulse.fwhm("force", "time")),
         Function("sound_speed", "dx/dt of small waves", (F_0, *values), loaded.sound_speed),
         Function("loaded_speed", "dx/dt at the peak force F", (F, F_0, *values), loaded.speed),
-        Function("rise_Q", "V_s^2 of a wave that rises by v", (v, p_0, k), strain.speed(v) ** 2),
+        Function("gradient", "|dv/dxi| where it has risen by v", (v, B, p_0, k, m1, m2), gradient),
     )  # fmt: skip
     names = [
         "beta width fwhm_strain fwhm_force fwhm_velocity speed amplitude profile",

@@ -9,7 +9,7 @@
   // compression p0; velocity Verlet with a fixed step.
   class Chain {
     constructor({omega = 0.2733, k = 1.5, p0 = 0, v = 1} = {}) {
-      Object.assign(this, {omega, k, p0, v, time: 0, arrivals: [], trails: [], arch: null});
+      Object.assign(this, {omega, k, p0, v, load: Math.pow(p0, k), time: 0, arrivals: [], trails: [], arch: null});
       this.mass = Array.from({length: N}, (_, i) => (i % 2 ? omega : 1));
       this.u = new Float64Array(N); // displacements along the chain
       this.w = new Float64Array(N); // velocities
@@ -29,10 +29,8 @@
     }
 
     kick(h) {
-      const load = Math.pow(this.p0, this.k); // what presses on both ends
       for (let i = 0; i < N; i++) {
-        const left = i ? this.contact[i - 1] : load;
-        const right = i < N - 1 ? this.contact[i] : load;
+        const [left, right] = [this.contact[i - 1] ?? this.load, this.contact[i] ?? this.load];
         this.w[i] += (h * (left - right)) / this.mass[i];
       }
     }
@@ -50,49 +48,39 @@
       }
     }
 
-    energy() {
-      const n = this.k + 1;
-      const load = Math.pow(this.p0, this.k);
-      let sum = load * (this.u[N - 1] - this.u[0]);
-      for (let i = 0; i < N; i++) sum += (this.mass[i] * this.w[i] ** 2) / 2;
-      for (let i = 0; i < N - 1; i++) {
-        const delta = Math.max(this.p0 + this.u[i] - this.u[i + 1], 0);
-        sum += (Math.pow(delta, n) - Math.pow(this.p0, n)) / n;
-      }
-      return sum;
-    }
-
-    // The leading peak at each contact: its time and force, by a parabola through three steps. It
-    // is known when the force has fallen below half of it.
+    // The leading peak at each contact: its time and force, by a parabola through three steps, and
+    // its width at half maximum. Both are known when the force has fallen below half of the peak.
     watch() {
-      const load = Math.pow(this.p0, this.k);
       const first = this.arrivals.length;
       for (let i = first; i < Math.min(first + 9, N - 2); i++) {
-        const trail = (this.trails[i] ||= {best: {time: 0, force: 0}});
-        const now = [this.time, this.contact[i] - load];
+        const trail = (this.trails[i] ||= {best: {time: 0, force: 0}, past: []});
+        const now = [this.time, this.contact[i] - this.load];
         const {last, before} = trail;
         if (before && before[1] < last[1] && now[1] <= last[1] && last[1] > trail.best.force) {
           const curve = now[1] - 2 * last[1] + before[1];
           const slope = (now[1] - before[1]) / 2;
-          const time = last[0] - (slope / curve) * (last[0] - before[0]);
-          trail.best = {time, force: last[1] - (slope * slope) / (2 * curve)};
+          const ahead = -slope / curve; // in steps
+          trail.best = {time: last[0] + ahead * (last[0] - before[0]), force: last[1] + (slope * ahead) / 2};
         }
         Object.assign(trail, {before: last, last: now});
+        trail.past.push(now);
       }
       const least = 0.4 * (first ? this.arrivals[first - 1].force : 0.02 * this.v);
-      const {best, last} = this.trails[first] || {};
+      const {best, before, last, past} = this.trails[first] || {};
       if (!best || best.force < least || last[1] > best.force / 2) return;
-      this.arrivals.push(best);
+      const half = best.force / 2;
+      const crossing = ([t0, f0], [t1, f1]) => t0 + ((half - f0) / (f1 - f0)) * (t1 - t0);
+      const up = Math.max(past.findIndex(row => row[1] > half), 1);
+      this.arrivals.push({...best, width: crossing(before, last) - crossing(past[up - 1], past[up])});
       if (this.arrivals.length === 13) this.arch = this.theory();
     }
 
     // The theory's wave at the mean peak force of two neighbouring contacts, from where they peak.
     theory() {
       const [a, b] = this.arrivals.slice(-2);
-      const load = Math.pow(this.p0, this.k);
-      const force = (a.force + b.force) / 2 + load;
+      const force = (a.force + b.force) / 2 + this.load;
       const values = [this.k, 1, 1, this.omega, 1];
-      const speed = load > 0 ? f.loaded_speed(force, load, ...values) : f.pulse_speed(force, ...values);
+      const speed = this.load > 0 ? f.loaded_speed(force, this.load, ...values) : f.pulse_speed(force, ...values);
       return {force, speed, place: this.arrivals.length - 1, time: (a.time + b.time) / 2, profile: profile(this.k, this.p0, this.omega, force)};
     }
 
@@ -105,28 +93,31 @@
     }
   }
 
+  // Length in xi from the middle of the wave, where its strain has risen by B, to a rise v: the
+  // quadrature of lwaFormulas.gradient with v = B/cosh^2 s, by the midpoint rule.
+  function place(v, B, p0, k, omega) {
+    const h = Math.acosh(Math.sqrt(B / v)) / 200;
+    let sum = 0;
+    for (let s = h / 2; s < 200 * h; s += h) {
+      const here = B / Math.cosh(s) ** 2;
+      sum += (2 * h * Math.tanh(s) * here) / f.gradient(here, B, p0, k, 1, omega);
+    }
+    return sum;
+  }
+
   // Dynamic force of the theory's wave over xi, 0 at its middle; peak contact force F, load in it.
   function profile(k, p0, omega, F) {
     const B = Math.pow(F, 1 / k) - p0;
     if (p0 === 0) return xi => Math.pow(Math.max(f.profile(xi, B, k, 1, omega, 1), 0), k);
-    // I F'(p0+v) v'^2 = v^2 [Q(B) - Q(v)], with v = B/cosh^2 s, so that the ends are far away
-    const I = f.dispersion_I(1, omega, 1);
-    const speed2 = f.rise_Q(B, p0, k);
-    const table = [[0, B]];
-    const h = 0.02;
-    for (let s = h / 2, xi = 0; s < 8; s += h) {
-      const v = B / Math.cosh(s) ** 2;
-      const gap = Math.max(speed2 - f.rise_Q(v, p0, k), 1e-300);
-      xi += 2 * h * Math.tanh(s) * Math.sqrt((I * Math.pow(p0 + v, k - 1)) / gap);
-      table.push([xi, B / Math.cosh(s + h / 2) ** 2]);
-    }
+    const table = Array.from({length: 120}, (_, i) => {
+      const v = B / Math.cosh(i / 24) ** 2;
+      return [place(v, B, p0, k, omega), Math.pow(p0 + v, k) - Math.pow(p0, k)];
+    });
     return xi => {
-      const x = Math.abs(xi);
-      let j = table.findIndex(row => row[0] > x);
+      const j = table.findIndex(row => row[0] > Math.abs(xi));
       if (j < 1) return 0;
-      const [[x0, v0], [x1, v1]] = [table[j - 1], table[j]];
-      const v = v0 + ((v1 - v0) * (x - x0)) / (x1 - x0);
-      return Math.pow(p0 + v, k) - Math.pow(p0, k);
+      const [[x0, y0], [x1, y1]] = [table[j - 1], table[j]];
+      return y0 + ((y1 - y0) * (Math.abs(xi) - x0)) / (x1 - x0);
     };
   }
 
@@ -148,14 +139,13 @@
     canvas.height = height * ratio;
     const pen = canvas.getContext("2d");
     pen.scale(ratio, ratio);
-    const load = Math.pow(chain.p0, chain.k);
     const top = chain.scale || 1;
     const x = i => ((i + 1) / (N + 1)) * width;
     const base = height - 0.9 * x(0) - 6;
     const y = force => base - (force / top) * (base - 8);
     pen.fillStyle = "#56B4E9";
     chain.contact.forEach((force, i) => {
-      const high = Math.min(Math.max(force - load, 0), top);
+      const high = Math.min(Math.max(force - chain.load, 0), top);
       pen.fillRect(x(i + 0.5) - 0.3 * x(0), y(high), 0.6 * x(0), base - y(high));
     });
     if (chain.arch) {
@@ -216,8 +206,7 @@
 
     function report() {
       if (!chain.arch) return (output.textContent = "The blow sorts itself out into a pulse …");
-      const lattice = chain.speed();
-      const theory = chain.arch.speed;
+      const [lattice, theory] = [chain.speed(), chain.arch.speed];
       const error = lattice ? `; theory ${(100 * (theory / lattice - 1)).toFixed(1)} %` : "";
       output.textContent = `Peak force ${chain.arch.force.toFixed(3)}. Speed: theory ${theory.toFixed(3)}, lattice ${lattice ? lattice.toFixed(3) : "…"} sites per unit of time${error}`;
     }
@@ -256,72 +245,101 @@
     frame();
   }
 
-  // What a blow on spheres makes, from the page's table of struck chains on the lattice.
-  function calculate({a, b, radiusA, radiusB, load, blow, kind}, trust) {
+  // The lattice's pulse behind a blow on spheres, m1 = A = D = v = 1, under the static compression
+  // p0: dynamic force, width and decay at contacts 21 and 22, speed to 33 and 34.
+  function struck(omega, p0) {
+    const chain = new Chain({omega, k: 1.5, p0, v: 1});
+    while (chain.arrivals.length < 34 && chain.time < 3000) chain.advance(1);
+    const [a, b, c, d] = [20, 21, 32, 33].map(i => chain.arrivals[i] || {});
+    const [force, width] = [(a.force + b.force) / 2, (a.width + b.width) / 2];
+    const decay = Math.max(Math.log((2 * force) / (c.force + d.force)) / 12, 0);
+    return {force, width, decay, speed: 24 / (c.time + d.time - a.time - b.time)};
+  }
+
+  // Peak force, speed and duration behind a blow on spheres in SI units, by theory and lattice. A
+  // given force fixes the unit of length (m1 v^2/A)^(2/5), which the lattice's force depends on.
+  function calculate({a, b, radiusA, radiusB, load, blow, kind}) {
     const [one, two] = [f.materials[a], f.materials[b]];
-    const ball = (radius, solid) => (4 / 3) * Math.PI * radius ** 3 * solid.density;
-    const [m1, m2] = [ball(radiusA, one), ball(radiusB, two)];
+    const [m1, m2] = [[radiusA, one], [radiusB, two]].map(([R, solid]) => (4 / 3) * Math.PI * R ** 3 * solid.density);
     const A = f.hertz_A(one.E, one.nu, radiusA, two.E, two.nu, radiusB);
-    const D = radiusA + radiusB;
-    const omega = m2 / m1;
-    const at = (key, x = Math.log(omega)) => {
-      const rows = trust.map(row => [Math.log(row.omega), row[key]]);
-      const j = Math.min(Math.max(rows.findIndex(row => row[0] >= x), 1), rows.length - 1);
-      const [[x0, y0], [x1, y1]] = [rows[j - 1], rows[j]];
-      const part = Math.min(Math.max((x - x0) / (x1 - x0), 0), 1);
-      return y0 + part * (y1 - y0);
-    };
-    const F = kind === "force" ? blow : at("force") * A ** 0.4 * (m1 * blow ** 2) ** 0.6;
+    const [D, omega] = [radiusA + radiusB, m2 / m1];
+    const still = Math.pow(load / A, 2 / 3);
+    let unit = kind === "force" ? Math.pow((blow - load) / A, 2 / 3) : Math.pow((m1 * blow ** 2) / A, 0.4);
+    let found = struck(omega, still / unit);
+    for (let i = 0; kind === "force" && i < (load > 0 ? 6 : 2); i++) {
+      unit = Math.pow((blow - load) / (A * found.force), 2 / 3);
+      if (load > 0) found = struck(omega, still / unit);
+    }
+    const v = kind === "force" ? Math.sqrt((A * unit ** 2.5) / m1) : blow;
+    const F = kind === "force" ? blow : load + A * unit ** 1.5 * found.force;
     const values = [1.5, A, m1, m2, D];
     const speed = load > 0 ? f.loaded_speed(F, load, ...values) : f.pulse_speed(F, ...values);
-    const width = load > 0 ? NaN : f.pulse_time(F, ...values);
-    const sound = load > 0 ? f.sound_speed(load, ...values) : 0;
-    return {m1, m2, A, omega, F, speed, width, sound, errors: {speed: at("speed"), width: at("width"), decay: at("decay")}};
+    const [p0, B] = [still / D, Math.pow(F / A, 2 / 3) / D - still / D];
+    const half = Math.pow((F + load) / (2 * A), 2 / 3) / D - p0;
+    const width = load > 0 ? (2 * D * place(half, B, p0, 1.5, omega)) / speed : f.pulse_time(F, ...values);
+    const lattice = {speed: (found.speed * D * v) / unit, width: (found.width * unit) / v, decay: found.decay};
+    return {m1, m2, A, omega, F, v, speed, width, sound: load > 0 ? f.sound_speed(load, ...values) : 0, lattice};
+  }
+
+  const percent = x => (x === null ? "refused" : `${(100 * x).toFixed(1).replace("-", "−")} %`);
+
+  // Errors over the mass ratio, bright where small; the column next to omega is marked.
+  function strip(trust, omega) {
+    const light = Math.min(omega, 1 / omega);
+    const far = row => Math.abs(Math.log(row.omega / light));
+    const here = trust.reduce((best, row) => (far(row) < far(best) ? row : best));
+    const names = Object.keys(here).slice(1); // the theories, and last the decay
+    const told = names.map(name => `${name} ${percent(here[name])}`).join(", ");
+    const usable = names.slice(0, -1).filter(name => here[name] !== null && Math.abs(here[name]) < 0.06);
+    const best = usable.sort((a, b) => Math.abs(here[a]) - Math.abs(here[b]))[0];
+    const text = `Width by theory over lattice less one, without a load, at ω = ${here.omega.toPrecision(2)}: ${told} per bead. Use ${best ? `the ${best}` : "the lattice"}.`;
+    const grid = element("div", {class: "lwa-strip", role: "img", "aria-label": text});
+    for (const name of names) {
+      grid.append(element("span", {}, name));
+      for (const row of trust) {
+        const bad = row[name] === null ? 1 : Math.min(Math.abs(row[name]) * (name === "decay" ? 50 : 5), 1);
+        const style = `background: color-mix(in srgb, #00204d ${100 * bad}%, #fde737)`;
+        grid.append(element("i", row === here ? {style, class: "here"} : {style}));
+      }
+    }
+    return [grid, element("div", {"data-name": "trust"}, text)];
   }
 
   function calculatorIn(place) {
     const trust = JSON.parse(document.getElementById("lwa-trust").textContent);
-    const fields = {};
-    const form = element("div", {class: "lwa-panel"});
-    const field = (name, text, input) => {
-      fields[name] = input;
-      form.append(element("label", {}, `${text} `, input));
-      input.addEventListener("input", update);
-    };
-    const choice = (names, chosen) => element("select", {}, ...names.map(([value, text]) => element("option", value === chosen ? {value, selected: ""} : {value}, text)));
+    const choice = (names, chosen) => element("select", {}, ...names.map(([value, text = value]) => element("option", value === chosen ? {value, selected: ""} : {value}, text)));
     const number = (value, step) => element("input", {type: "number", min: 0, value, step});
-    const solids = Object.keys(f.materials).map(name => [name, name]);
+    const solids = Object.keys(f.materials).map(name => [name]);
+    const blows = [["velocity", "the striker's velocity in m/s"], ["force", "peak force in N, load included"]];
+    const fields = {
+      a: ["first bead (the striker)", choice(solids, "steel 316")],
+      radiusA: ["its radius in mm", number(2.38, 0.01)],
+      b: ["second bead", choice(solids, "PTFE")],
+      radiusB: ["its radius in mm", number(2.38, 0.01)],
+      kind: ["the blow is given as", choice(blows, "velocity")],
+      blow: ["its value", number(1.37, 0.01)],
+      load: ["static load in N", number(0, 0.1)],
+    };
     const output = element("output", {"aria-live": "polite"});
     const text = (name, tell) => output.append(element("div", {"data-name": name}, tell));
-    field("a", "first bead (the striker)", choice(solids, "steel 316"));
-    field("radiusA", "its radius in mm", number(2.38, 0.01));
-    field("b", "second bead", choice(solids, "PTFE"));
-    field("radiusB", "its radius in mm", number(2.38, 0.01));
-    field("kind", "the blow is given as", choice([["velocity", "the striker's velocity in m/s"], ["force", "peak force in N, load included"]], "velocity"));
-    field("blow", "its value", number(1.37, 0.01));
-    field("load", "static load in N", number(0, 0.1));
+    const labels = Object.values(fields).map(([label, input]) => element("label", {}, `${label} `, input));
+    const form = element("div", {class: "lwa-panel"}, ...labels);
+    form.addEventListener("input", update);
     place.append(form, output);
 
     function update() {
-      const given = Object.fromEntries(Object.entries(fields).map(([name, input]) => [name, input.type === "number" ? Number(input.value) : input.value]));
-      given.radiusA *= 1e-3;
-      given.radiusB *= 1e-3;
+      const value = (name, input) => (input.type === "number" ? input.value * (name.startsWith("radius") ? 1e-3 : 1) : input.value);
+      const given = Object.fromEntries(Object.entries(fields).map(([name, [, input]]) => [name, value(name, input)]));
       output.replaceChildren();
       if (!(given.radiusA > 0 && given.radiusB > 0 && given.blow > 0 && given.load >= 0)) return text("refused", "Radii and the blow must be positive, the load not negative.");
-      if (given.load > 0 && given.kind === "velocity") return text("refused", "Under a load give the peak force: the table of struck chains has none.");
       if (given.kind === "force" && given.blow <= given.load) return text("refused", "The peak force must exceed the load.");
-      const found = calculate(given, trust);
-      const percent = x => `${(100 * x).toFixed(1).replace("-", "−")} %`;
-      text("force", `peak force of a contact: ${found.F.toPrecision(4)} N`);
-      text("speed", `speed: ${found.speed.toPrecision(5)} m/s` + (found.sound ? ` (sound: ${found.sound.toPrecision(5)} m/s)` : ""));
-      if (found.width) text("width", `FWHM of the force in time: ${(1e6 * found.width).toPrecision(4)} µs`);
-      text("ratio", `mass ratio ω = ${found.omega.toPrecision(4)}, A = ${found.A.toPrecision(4)} N/m^1.5`);
-      const {speed, width, decay} = found.errors;
-      text("trust", `without a load, theory over lattice at this ratio: speed ${percent(speed)}, width ${percent(width)}; the force decays by ${percent(decay)} per bead`);
-      const worst = Math.max(Math.abs(speed), Math.abs(width));
-      const bar = element("div", {class: "lwa-trust", role: "img", "aria-label": `trust: ${worst < 0.06 ? "good" : worst < 0.12 ? "fair" : "poor"}`});
-      bar.style.setProperty("--trust", `${Math.max(5, 100 - 400 * worst)}%`);
-      output.append(bar);
+      const {F, v, speed, width, sound, omega, A, lattice} = calculate(given);
+      text("force", `peak force of a contact: ${F.toPrecision(4)} N, after a blow with ${v.toPrecision(4)} m/s`);
+      text("speed", `speed: ${speed.toPrecision(5)} m/s` + (sound ? ` (sound: ${sound.toPrecision(5)} m/s)` : ""));
+      text("width", `FWHM of the dynamic force in time: ${(1e6 * width).toPrecision(4)} µs`);
+      text("ratio", `mass ratio ω = ${omega.toPrecision(4)}, A = ${A.toPrecision(4)} N/m^1.5`);
+      text("lattice", `forty beads integrated here: speed ${lattice.speed.toPrecision(4)} m/s (theory ${percent(speed / lattice.speed - 1)}), FWHM ${(1e6 * lattice.width).toPrecision(4)} µs (theory ${percent(width / lattice.width - 1)}); the force decays by ${percent(lattice.decay)} per bead`);
+      output.append(...strip(trust, omega));
     }
     update();
   }

@@ -17,13 +17,14 @@ from lwa import Dimer, TravelingWave, canonical_wave, homogenize
 from validation.lattice.run import Run
 from validation.pictures.panel import Curve, Panel
 from validation.pulses.pulse import Measured, compared, derived
+from validation.pulses.train import Train
 from validation.report.command import study
 from validation.report.result import Report
 from validation.report.table import Column, Table
 from validation.report.text import percent
 from validation.scenes.materials import DIAMETER
 from validation.studies import paper
-from validation.studies.paper import HERTZ, Train, chain_cell, chain_runs
+from validation.studies.paper import HERTZ, chain_cell, chain_runs
 from validation.waves.theory import bead_fwhm
 
 FIRST_BEAD = 10  # from here on the width no longer changes on its way; the average starts here

@@ -25,15 +25,10 @@ from lwa.cell import k as symbol_k
 from lwa.expansion.cost import LONG_TERMS, affordable, short
 from lwa.expansion.observables import Observables, shares_model
 from lwa.expansion.series import EpsilonSeries
-from lwa.expansion.validity import descent
 from lwa.law import ContactLaw, demand_one
 
 DAMPINGS = ("linear", "kuwabara_kono")
 """Damping forces of a contact: γ dδ/dt and γ δ^{k-1} dδ/dt (Kuwabara and Kono 1987)."""
-
-FALLEN, MOVED = 0.01, 0.25
-"""Shares of the peak: a profile's force has to fall to the first, and its last order may move the
-force by the second."""
 
 
 @dataclass(frozen=True)
@@ -65,17 +60,17 @@ class Expansion(Value):
 
     @property
     def I(self) -> sp.Expr:
-        """I of the linear chain's Ω² = κ² - I κ⁴ + …, over D²."""
+        """The coefficient I of the linear chain's Ω² = κ² - I κ⁴ + …, over D²."""
         return self._read.I
 
     @cached_property
     def compliance(self) -> sp.Expr:
-        """ā, the mean of A_i^{-1/k}."""
+        """The mean ā of A_i^{-1/k}."""
         return sp.Add(*self.cell.compliances(self.k)) / self.cell.size
 
     @cached_property
     def c2(self) -> EpsilonSeries:
-        """c², the square of the speed in sites per unit of time.
+        """The square c² of the speed in sites per unit of time.
 
         >>> from lwa import Cell
         >>> expand(Cell([1]), 2).c2.coefficients
@@ -117,7 +112,7 @@ class Expansion(Value):
 
     @cached_property
     def effective_mass(self) -> EpsilonSeries:
-        """P²/(2E), the mass of a particle with the wave's momentum and energy, at any force."""
+        """The mass P²/(2E) of a particle with the wave's momentum and energy, at any force."""
         unit = sp.sqrt(2 * sp.pi * self.I) * self.cell.mass / self.cell.size
         return self._series("effective_mass", unit, -sp.S.Half)
 
@@ -157,7 +152,7 @@ class Expansion(Value):
 
     @cached_property
     def _sound(self) -> sp.Expr:
-        """c² at k = 1."""
+        """The value of c² at k = 1."""
         return self.cell.size / (self.cell.mass * self.compliance)
 
     def _series(self, quantity: str, unit: sp.Expr, power: sp.Expr) -> EpsilonSeries:
@@ -165,76 +160,27 @@ class Expansion(Value):
         return EpsilonSeries(unit, power, coefficients, self.k, self.cell, quantity)
 
     def log_force(self, contact: Any = 0, X: Any = None) -> dict[sp.Rational, sp.Expr]:
-        """n → φ_n(X) of log F = Σ ε^n φ_n(X), X = √ε ξ, n = 0, 1/2, 1, …, where φ_n is not zero.
+        """The φ_n(X) ≠ 0 by n = 0, 1/2, 1, … of log F = Σ ε^n φ_n(X), X = √ε ξ.
 
         ξ is measured from the peak of the first contact, in the frame of the contact's own cell:
         contact i is i sites behind the first one. X is a symbol of this name unless it is given.
+        A sum cut at some order is good near the peak; far out its last term may rise again.
 
         >>> from lwa import Cell
         >>> expand(Cell([1]), 1).log_force()
         {0: -3*X**2, 1: -3*X**4/10 + 3*X**2/5}
         """
+        number = integer(contact, "contact", 0)
+        if number >= self.cell.size:
+            raise InputError(f"contact is {shorten(number)}: 0 … {self.cell.size - 1} is wanted")
         place = sp.Symbol("X") if X is None else signed(X, "X")
-        self._place(place, "X")
+        own = {s.name for s in (*self.cell.symbols, *self.k.free_symbols)}
+        if shared := own & {s.name for s in place.free_symbols}:
+            raise InputError(f"{min(shared)} names a property of the chain: give X another name")
         return {
             n: sp.Add(*(a * place**d for d, a in phi.items()))
-            for n, phi in self._read.log_force(self._contact(contact)).items()
+            for n, phi in self._read.log_force(number).items()
         }
-
-    def profile(self, xi: Any, contact: Any = 0) -> sp.Expr:
-        """The force of a contact at ξ, exp Σ ε^n φ_n(√ε ξ) to the order ε^order, in D = 1.
-
-        ξ is a number, a name, which becomes a real symbol, or an expression. With numbers for k
-        and the cell it is 0 outside the `core`; with symbols it holds inside only.
-
-        Raises `lwa.InputError` as `core` does.
-
-        >>> from lwa import Cell
-        >>> expand(Cell([1]), 1, k=2).profile("xi")
-        exp(-3*xi**4/10 - 12*xi**2/5)
-        """
-        place = self._place(signed(xi, "xi"), "xi")
-        powers = self._powers(self._contact(contact))
-        force = sp.exp(sp.Add(*(a * place**d for d, a in powers.items())))
-        left, right = self.core(contact) if self.numeric else (-sp.oo, sp.oo)
-        inside = [place >= left] * left.is_finite + [place <= right] * right.is_finite
-        return sp.Piecewise((force, sp.And(*inside)), (0, True)) if inside else force
-
-    def core(self, contact: Any = 0) -> tuple[sp.Expr, sp.Expr]:
-        """Interval of ξ in which the truncated series of a profile falls from its peak.
-
-        Beyond its ends a truncated series may rise without bound; where it does not they are
-        infinite. The ends are rounded inwards, to 1/1000.
-
-        Raises `lwa.InputError` where k or the cell are symbols, and where the series has no pulse:
-        no peak, no fall to `FALLEN` of it, or a last order that moves it by more than `MOVED`.
-
-        >>> from lwa import Cell
-        >>> expand(Cell([1]), 3, k="3/2").core()
-        (-771/125, 771/125)
-        """
-        if not self.numeric:
-            raise InputError("k and the cell hold symbols: the core of a profile needs numbers")
-        number = self._contact(contact)
-        whole, last = (
-            {d: float(a) for d, a in self._powers(number, first).items()}
-            for first in (0, self.order - sp.S.Half)
-        )
-        ends, fallen, moved = descent(whole, last)
-        if fallen > FALLEN or moved > MOVED:
-            raise InputError(
-                f"no profile at k = {shorten(self.k)}: to ε^{self.order} the series tells no "
-                "pulse, which has one peak, falls, and is not moved by the last order"
-            )
-        return ends
-
-    def _powers(self, contact: int, first: Any = 0) -> dict[int, sp.Expr]:
-        """d → the coefficient of ξ^d in log F of a contact, of the orders from ε^first on."""
-        powers: dict[int, list[sp.Expr]] = {}
-        for n, phi in self._read.log_force(contact).items():
-            for d, a in phi.items() if n >= first else ():
-                powers.setdefault(d, []).append(a * (self.k - 1) ** (n + sp.Rational(d, 2)))
-        return {d: sp.Add(*terms) for d, terms in powers.items()}
 
     def at(self, **values: Any) -> Expansion:
         """The expansion for these values of the named symbols, and of ω = m2/m1 by ``omega``.
@@ -246,21 +192,6 @@ class Expansion(Value):
         """
         new = substitution(values, self.cell, self.k)
         return expand(self.cell.replaced(new), self.order, k=self.k.xreplace(new))
-
-    def _contact(self, contact: Any) -> int:
-        number = integer(contact, "contact", 0)
-        if number >= self.cell.size:
-            raise InputError(f"contact is {shorten(number)}: 0 … {self.cell.size - 1} is wanted")
-        return number
-
-    def _place(self, place: sp.Expr, name: str) -> sp.Expr:
-        """Return a place; refuse symbols in it with the names of the chain's."""
-        own = {s.name for s in (*self.cell.symbols, *self.k.free_symbols)}
-        if shared := own & {s.name for s in place.free_symbols}:
-            raise InputError(
-                f"{min(shared)} names a property of the chain: give {name} another name"
-            )
-        return place
 
     def _repr_latex_(self) -> str:
         shown = (self.c2, self.fwhm("force"), self.momentum, self.energy)

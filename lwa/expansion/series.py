@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any, overload
+from typing import Any
 
 import sympy as sp
 
@@ -38,7 +38,7 @@ _LETTERS = {
 
 @dataclass(frozen=True, repr=False)
 class EpsilonSeries(Value):
-    """prefactor · ε^power · Σ coefficients[n] ε^n, ε = k - 1.
+    """The series prefactor · ε^power · Σ coefficients[n] ε^n, ε = k - 1.
 
     k : the exponent. A number is the one at which the series is summed. A symbol may be replaced by
         a number or another symbol, also in the prefactor and the shares of unlike contacts.
@@ -79,14 +79,8 @@ class EpsilonSeries(Value):
         terms = (a * series._epsilon**n for n, a in enumerate(series.coefficients[: last + 1]))
         return series._unit * sp.Add(*terms)
 
-    @overload
-    def pade(self, numerator: int, denominator: int, /) -> sp.Expr: ...
-
-    @overload
-    def pade(self, k: Any, numerator: int, denominator: int, /) -> sp.Expr: ...
-
-    def pade(self, *arguments: Any) -> sp.Expr:
-        """``pade([k,] L, M)``: the approximant [L/M] in ε, exact, k as in `partial_sum`.
+    def pade(self, k: Any, numerator: int, denominator: int) -> sp.Expr:
+        """The approximant [L/M] in ε, exact; k as in `partial_sum`, None for the series' own.
 
         Raises `lwa.InputError` where the series is too short, or has none.
 
@@ -94,15 +88,12 @@ class EpsilonSeries(Value):
         >>> expand(Cell([1]), 2).c.pade("k", 1, 1)
         (17*k + 23)/(27*k + 13)
         """
-        if len(arguments) not in (2, 3):
-            raise InputError("pade takes k, where it is a symbol, and the two degrees of [L/M]")
-        *k, L, M = arguments
-        series = self._for(*k)
-        degrees = integer(L, "numerator", 0), integer(M, "denominator", 0)
+        series = self._for(k)
+        degrees = integer(numerator, "numerator", 0), integer(denominator, "denominator", 0)
         return series._unit * pade(series.coefficients, *degrees, series._epsilon)
 
     def at(self, k: Any = None) -> Resummed:
-        """The sum and an estimate of its error; at a number k > 1 where the series' k is a symbol.
+        """The sum and an estimate of its error, at a number k > 1 for a series in a symbol k.
 
         Raises `lwa.InputError` when k or the cell holds symbols, for k ≤ 1, for a k besides that of
         the series, and where the error is as large as the sum of these positive quantities.

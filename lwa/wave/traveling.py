@@ -18,9 +18,6 @@ from lwa.wave.physical import PhysicalWave
 from lwa.wave.precompressed import PrecompressedWave
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from lwa.base.arrays import Array
     from lwa.wave.numeric import NumericWave
 
 
@@ -34,12 +31,16 @@ class TravelingWave(CompactWave):
 
         Parameters
         ----------
-        F : the peak force, a number, a name, or an array of numbers.
+        F : the peak force, a number or a name.
         of : "contact" or "bead", whose force peaks at F.
         precompression : static load. F then is the total force of a contact, static and dynamic,
             and this wave must be the canonical field's, as in `on_background`.
 
-        >>> canonical_wave(Cell([1], spacing=1), "3/2").at_force([1, 64]).speed
+        A formula of the symbol F takes arrays once it is compiled:
+
+        >>> speed = canonical_wave(Cell([1], spacing=1), "3/2").at_force("F").speed
+        >>> import numpy as np
+        >>> sp.lambdify("F", speed)(np.array([1.0, 64.0])).round(8)
         array([0.89442719, 1.78885438])
         """
         load = exact(precompression, "precompression")
@@ -50,14 +51,6 @@ class TravelingWave(CompactWave):
             raise InputError(f"of is {shorten(of)}: under a load it is the force of a contact")
         return PrecompressedWave(self.cell, Power(self.k), F, load)
 
-    def force(self, t: ArrayLike, peak: Any, of: str = "contact") -> Array:
-        """The force of a contact or a bead at the times t, with its ``peak`` at t = 0.
-
-        >>> canonical_wave(Cell([1], spacing=1), "3/2").force([0, 99], peak=10)
-        array([10.,  0.])
-        """
-        return PhysicalWave(self, peak, of).curve(t)
-
     def plot(self, ax: Any = None) -> Any:
         """Draw strain and contact force along the chain on ``ax`` or a new figure.
 
@@ -65,14 +58,17 @@ class TravelingWave(CompactWave):
         """
         import numpy as np  # start-up: `lwa wave` does without
 
-        from lwa.wave.plots import draw  # start-up: it loads NumPy
+        from lwa.wave.plots import axes
 
         k, beta = number(self.k), number(self.beta * self.D)
         y = np.linspace(-0.6, 0.6, 501) * np.pi
         arch = np.where(np.abs(y) < np.pi / 2, np.cos(y), 0.0)
-        curves = {q: arch ** (2 * strain_power(q, k) / (k - 1)) for q in QUANTITIES[:2]}
-        title = f"compact wave, k = {self.k}"
-        return draw(ax, y / beta, curves, "ξ/D", "over its peak", title)
+        ax = axes(ax)
+        for q in QUANTITIES[:2]:
+            ax.plot(y / beta, arch ** (2 * strain_power(q, k) / (k - 1)), label=q)
+        ax.set(xlabel="ξ/D", ylabel="over its peak", title=f"compact wave, k = {self.k}")
+        ax.legend()
+        return ax
 
     def on_background(self, p0: Any = "p0") -> BackgroundWave:
         """The waves on a strain p0, for a wave of the canonical field.
@@ -107,7 +103,7 @@ class TravelingWave(CompactWave):
         return NumericWave(self, missing)
 
     def code(self, language: str) -> str:
-        """β, widths, speed, amplitude and profile as functions in a program's source text.
+        """Source text of a program: β, widths, speed, amplitude and profile as functions.
 
         ``language`` is one of `lwa.code.languages.LANGUAGES`, "python" (plain `math`) or "c" among
         them. `lwa.wave.functions` states arguments and accuracy.

@@ -113,6 +113,11 @@ window.addEventListener("load", async () => {
   if (window.lwaTurn) {
     const chain = new lwaTurn.Chain();
     while (chain.arrivals.length < 35) chain.advance(1);
+    const beads = {a: "steel 316", b: "PTFE", radiusA: 2.38e-3, radiusB: 2.38e-3};
+    report.blows = [
+      {load: 0, blow: 1.37, kind: "velocity"}, {load: 2, blow: 1.37, kind: "velocity"},
+      {load: 2, blow: 12, kind: "force"}, {load: 0, blow: 12, kind: "force"},
+    ].map(blow => [blow, lwaTurn.calculate({...beads, ...blow})]);
     report.chain = {speed: chain.speed(), force: chain.arrivals[12].force};
   }
   const answer = await fetch("/probe", {method: "POST", body: JSON.stringify(report)});

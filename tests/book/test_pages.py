@@ -110,28 +110,46 @@ def test_a_page_with_cells_is_there_as_a_notebook():
             )
 
 
+def paper_spheres():
+    """Steel and PTFE beads as the calculator weighs them: radius and density."""
+    R = sp.Rational("2.38e-3")
+    return [
+        Sphere(4 * sp.pi.n(30) / 3 * R**3 * sp.Rational(m.density), R, Material(E=m.E, nu=m.nu))
+        for m in (hertz.MATERIALS["steel 316"], hertz.MATERIALS["PTFE"])
+    ]
+
+
 def test_the_calculator_shows_the_numbers_of_python(visit):
     """Force, speed and duration of the default chain, as printed."""
     told = dict(visit.pages["experiment.html"]["calculator"])
     F, speed, width = (
         float(re.search(r": ([\d.e+]+) ", told[name])[1]) for name in ("force", "speed", "width")
     )
-    steel, ptfe = (hertz.MATERIALS[name] for name in ("steel 316", "PTFE"))
-    balls = [
-        Sphere(
-            mass=sp.Rational(4, 3)
-            * sp.pi.n(30)
-            * sp.Rational("2.38e-3") ** 3
-            * sp.Rational(solid.density),
-            radius="2.38e-3",
-            material=Material(E=solid.E, nu=solid.nu),
-        )
-        for solid in (steel, ptfe)
-    ]
-    chain = Cell.of_spheres(balls)
-    pulse = canonical_wave(chain, "3/2").at_force(F)
+    pulse = canonical_wave(Cell.of_spheres(paper_spheres()), "3/2").at_force(F)
     assert abs(speed / float(pulse.speed) - 1) < 2e-4  # F is printed with four digits
     assert abs(width / float(1e6 * pulse.fwhm("force", "time")) - 1) < 1e-3
+
+
+@pytest.mark.parametrize("n", range(4))
+def test_the_calculator_with_and_without_load(visit, n):
+    """Theory by the same closed forms, the beads of the page against the validated lattice."""
+    blow, found = visit.pages["experiment.html"]["blows"][n]
+    load, cell = blow["load"], Cell.of_spheres(paper_spheres())
+    loads = {"precompression": sp.Rational(load)} if load else {}
+    pulse = canonical_wave(cell, "3/2").at_force(sp.Float(found["F"], 17), **loads)
+    assert abs(found["speed"] / float(pulse.speed) - 1) < 1e-12
+    assert abs(found["width"] / float(pulse.fwhm("force", "time")) - 1) < 1e-4  # midpoint rule
+    assert abs(found["F" if blow["kind"] == "force" else "v"] / blow["blow"] - 1) < 1e-12
+    scene = Scene.of_cell(
+        cell, 20, "3/2", velocities=(found["v"],), duration=20.0 * 40e-3 / 160 / 5,
+        samples=20001, contact_sensors=(20, 21), precompression=float(load),
+        wall=float(cell.stiffnesses[0]) if load else None,
+    )  # fmt: skip
+    run = simulate(scene)
+    pulses = [measure(run.time, force - force[0]) for force in run.contact_force]
+    peak = sum(pulse.peak for pulse in pulses) / 2
+    assert abs((found["F"] - load) / peak - 1) < 2e-3  # steps of the page's Verlet
+    assert abs(found["lattice"]["width"] * 2 / sum(p.fwhm for p in pulses) - 1) < 1e-2
 
 
 def test_the_chain_on_the_page_is_the_chain_of_python(visit):

@@ -1,18 +1,10 @@
 """One call from cell to theory, and what it refuses."""
 
-import fcntl
-import os
-import pty
-import select
-import struct
-import subprocess
-import sys
-import termios
-
 import pytest
 import sympy as sp
 
 from lwa import Dimer, InputError, homogenize
+from tests.commands import terminal
 
 
 @pytest.mark.parametrize(
@@ -51,24 +43,11 @@ def test_floats_enter_as_their_decimals():
     assert not homogenize(Dimer(0.1, 0.7), k=1.1).pde.G.has(sp.Float)
 
 
-def progress_of(code):
-    """What a child process writes to its terminal's standard error."""
-    controller, terminal = pty.openpty()
-    fcntl.ioctl(terminal, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 80, 0, 0))
-    subprocess.run([sys.executable, "-c", code], stderr=terminal, check=True, timeout=120)
-    written = b""
-    while select.select([controller], [], [], 0)[0]:
-        written += os.read(controller, 4096)
-    os.close(controller)
-    os.close(terminal)
-    return written
-
-
-def test_high_orders_show_their_progress_on_a_terminal():
-    code = "from lwa import *; homogenize(Dimer(1, 2), {}, k='3/2')"
-    assert b"orders:" in progress_of(code.format(12))
-    assert progress_of(code.format(11)) == b""
-    piped = subprocess.run(
-        [sys.executable, "-c", code.format(12)], capture_output=True, check=True, timeout=120
-    )
-    assert piped.stderr == b""
+def test_high_orders_show_their_progress_on_a_terminal(capsys):
+    with terminal() as shown:
+        homogenize(Dimer(1, 2), 11, k="3/2")
+        assert shown() == ""
+        homogenize(Dimer(1, 2), 12, k="3/2")
+        assert "orders:" in shown()
+    homogenize(Dimer(1, 2), 12, k="3/2")
+    assert capsys.readouterr().err == ""

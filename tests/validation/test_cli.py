@@ -1,16 +1,9 @@
 """The command `lwa-validate`: exit status, standard error, JSON, pictures."""
 
-import contextlib
-import io
 import json
 import os
-import pty
 import re
-import select
-import signal
-import subprocess
 import sys
-import termios
 import tomllib
 from dataclasses import replace
 from pathlib import Path
@@ -18,11 +11,11 @@ from pathlib import Path
 import click
 import numpy as np
 import pytest
-from click.shell_completion import ShellComplete
 from click.testing import CliRunner
 
 from lwa.base import progress
-from tests.commands import ended
+from lwa.command.terminal import CLOSED
+from tests.commands import closed_pipe, ended, full_disk, terminal, unwritable
 from validation import cli
 from validation import load as load_run
 from validation.report import command
@@ -173,8 +166,7 @@ def test_run_stores_the_samples(capsys, scene_file, tmp_path):
 
 
 @pytest.mark.parametrize("suffix", [".json", ".npz"])
-def test_what_a_run_stored_is_loaded_and_runs_again(capsys, monkeypatch, scene_file, suffix):
-    monkeypatch.chdir(scene_file.parent)
+def test_what_a_run_stored_is_loaded_and_runs_again(capsys, folder, scene_file, suffix):
     stored = f"o{suffix}"
     scene_file.write_text(SCENE.replace("12]", "12, 19]").replace("= 30", "= 20"))
     first = run(capsys, "run", "scene.toml", "--out", stored)
@@ -253,16 +245,15 @@ def test_a_file_that_no_run_wrote_is_refused(tmp_path, name, content, message):
     assert "\n" not in str(refused.value)
 
 
-def test_the_scenes_own_file_is_not_overwritten(capsys, monkeypatch, tmp_path):
+def test_the_scenes_own_file_is_not_overwritten(capsys, folder):
     """In any spelling: this was done, and said nothing."""
-    monkeypatch.chdir(tmp_path)
     file, text = Path("same.json"), json.dumps(document(toml(SCENE)))
     file.write_text(text)
     Path("link.json").symlink_to("same.json")
     Path("hard.npz").hardlink_to(file)
     Path("p.svg").symlink_to("same.json")
     for given, option, out in (
-        ("same.json", "--out", "same.json"), ("same.json", "--out", f"{tmp_path}/same.json"),
+        ("same.json", "--out", "same.json"), ("same.json", "--out", f"{folder}/same.json"),
         ("link.json", "--out", "same.json"), ("same.json", "--out", "link.json"),
         ("same.json", "--out", "hard.npz"), ("same.json", "--plot", "p.svg"),
     ):  # fmt: skip
@@ -275,8 +266,7 @@ def test_the_scenes_own_file_is_not_overwritten(capsys, monkeypatch, tmp_path):
 
 
 @pytest.mark.parametrize("name", EXAMPLES)
-def test_every_example_runs_and_tells_its_units(capsys, monkeypatch, tmp_path, name):
-    monkeypatch.chdir(tmp_path)
+def test_every_example_runs_and_tells_its_units(capsys, folder, name):
     status, text, err = run(capsys, "run", "--example", name)
     assert (status, err, text.isascii()) == (0, "", True)  # whatever a shell writes it in
     assert max(map(len, text.splitlines())) < 80
@@ -339,33 +329,26 @@ BAD_OUTPUTS = [
 
 
 @pytest.mark.parametrize("command", BAD_OUTPUTS, ids=" ".join)
-def test_an_output_that_cannot_be_is_refused(capsys, monkeypatch, tmp_path, command):
+def test_an_output_that_cannot_be_is_refused(capsys, folder, command):
     *_, option, name = command
-    monkeypatch.chdir(tmp_path)
     Path("scene.toml").write_text(SCENE)
     for suffix in (".npz", ".svg"):
         Path(f"folder{suffix}").mkdir()
     for suffix in (".npz", ".jsonl"):
         os.mkfifo(f"pipe{suffix}")
-    before = sorted(tmp_path.iterdir())
+    before = sorted(folder.iterdir())
     status, out, err = run(capsys, *command)
     assert (status, out, err.count("\n")) == (2, "", 1)
     assert err.startswith(f"lwa-validate: {option[2:]} is {name[:50]}")
-    assert sorted(tmp_path.iterdir()) == before
+    assert sorted(folder.iterdir()) == before
 
 
-def test_output_on_a_full_disk_is_one_line(scene_file):
-    with open("/dev/full", "w") as full:
-        ended = subprocess.run(
-            [COMMAND, "run", scene_file],
-            stdout=full,
-            stderr=subprocess.PIPE,
-            text=True,
-            check=False,
-            timeout=240,
-        )
-    said = "lwa-validate: the output: No space left on device\n"
-    assert (ended.returncode, ended.stderr) == (2, said)
+def test_an_output_that_takes_nothing_is_no_result(capsys, scene_file):
+    """Status 1 is that of failed comparisons."""
+    for arguments in (("run", str(scene_file)), ("run", "--example"), ("--help",)):
+        assert unwritable(capsys, cli.main, *arguments, output=closed_pipe()) == (CLOSED, "")
+        status, err = unwritable(capsys, cli.main, *arguments, output=full_disk())
+        assert (status, err) == (2, "lwa-validate: the output: No space left on device\n")
 
 
 def test_an_integrator_that_fails_is_one_line(capsys, scene_file):
@@ -400,16 +383,13 @@ BAD_RUNS = [
 
 
 @pytest.mark.parametrize(("options", "content", "message"), BAD_RUNS)
-def test_bad_runs_are_one_line_and_leave_nothing(
-    capsys, monkeypatch, tmp_path, options, content, message
-):
-    monkeypatch.chdir(tmp_path)
+def test_bad_runs_are_one_line_and_leave_nothing(capsys, folder, options, content, message):
     Path("scene.toml").write_text(content)
     status, out, err = run(capsys, "run", "scene.toml", *options)
     assert (status, out) == (2, "")
     assert err.startswith(f"lwa-validate: {message}")
     assert err.count("\n") == 1
-    assert [f.name for f in tmp_path.iterdir()] == ["scene.toml"]
+    assert [f.name for f in folder.iterdir()] == ["scene.toml"]
 
 
 BAD = [
@@ -454,44 +434,6 @@ def test_help(study, flag):
     assert shown.exit_code == 0
     assert shown.output.startswith(" ".join(["Usage: lwa-validate", *study]))
     assert "--format" in shown.output or not study
-
-
-@pytest.mark.parametrize("program", [[COMMAND], [sys.executable, "-m", "validation"]], ids=len)
-def test_it_says_its_version_and_its_name(program):
-    for flag, first in (("--version", "lwa-validate "), ("-h", "Usage: lwa-validate ")):
-        shown = subprocess.run(
-            [*program, flag], capture_output=True, text=True, check=True, timeout=240
-        )
-        assert shown.stdout.startswith(first)
-
-
-def test_the_installed_command():
-    ended = subprocess.run(
-        [COMMAND, "paper", "--beads", "20", "--sensors", "8,15", "--format", "json"],
-        capture_output=True, text=True, check=False, timeout=240
-    )  # fmt: skip
-    assert (ended.returncode, ended.stderr) == (0, "")
-    assert json.loads(ended.stdout)["rows"]
-    ended = subprocess.run(
-        [COMMAND, "paper", "--beads", "two"],
-        capture_output=True,
-        text=True,
-        check=False,
-        timeout=240,
-    )
-    assert (ended.returncode, ended.stdout) == (2, "")
-    assert ended.stderr.count("\n") == 1
-
-
-def test_matplotlib_is_loaded_only_for_a_picture():
-    code = (
-        "import sys; from validation import cli; cli.validate.main(['paper', '--beads', '12', "
-        "'--sensors', '4,8'], standalone_mode=False); assert 'matplotlib' not in sys.modules"
-    )
-    ended = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, check=False, timeout=240
-    )
-    assert ended.returncode == 0, ended.stderr
 
 
 def test_exact(capsys, tmp_path):
@@ -559,45 +501,11 @@ LONG_RUNS = [
 @pytest.mark.parametrize(
     ("content", "options", "message"), LONG_RUNS, ids=[r[2] for r in LONG_RUNS]
 )
-def test_runs_beyond_reason_are_one_line(
-    capsys, monkeypatch, scene_file, content, options, message
-):
-    monkeypatch.chdir(scene_file.parent)
+def test_runs_beyond_reason_are_one_line(capsys, folder, scene_file, content, options, message):
     scene_file.write_text(content)
     status, out, err = run(capsys, "run", "scene.toml", "--out", "o.json", *options)
     assert (status, out, err.count("\n")) == (2, "", 1)
     assert re.match(f"lwa-validate: {message}", err), err
-    assert [f.name for f in scene_file.parent.iterdir()] == ["scene.toml"]
-
-
-@pytest.mark.parametrize(("method", "duration"), [("RKN86", 10_000), ("DOP853", 100)])
-def test_a_long_run_shows_its_progress_and_stops_at_ctrl_c(scene_file, method, duration):
-    """On a terminal, after a second."""
-    scene_file.write_text(
-        SCENE.replace("repeat = 10,", "repeat = 20_000,").replace("= 30", f"= {duration}")
-    )
-    folder = scene_file.parent
-    command = [COMMAND, "run", scene_file, "--plot", folder / "p.svg", "--out", folder / "o.npz"]
-    mine, theirs = pty.openpty()
-    termios.tcsetwinsize(theirs, (24, 80))
-    with subprocess.Popen(
-        [*command, "--method", method], stdout=subprocess.PIPE, stderr=theirs, text=True
-    ) as running:
-        os.close(theirs)
-        shown = b""
-        while b"lattice run:" not in shown:
-            assert select.select([mine], [], [], 120)[0], "no progress"
-            shown += os.read(mine, 1000)
-        running.send_signal(signal.SIGINT)
-        out, _ = running.communicate(timeout=60)
-    rest = b""
-    with contextlib.suppress(OSError):  # the other end is closed
-        while some := os.read(mine, 1000):
-            rest += some
-    os.close(mine)
-    assert (running.returncode, out) == (130, "")
-    assert rest.decode().splitlines()[-1].endswith("lwa-validate: interrupted")
-    assert b"Traceback" not in rest
     assert [f.name for f in folder.iterdir()] == ["scene.toml"]
 
 
@@ -612,34 +520,6 @@ def test_progress_without_a_terminal_is_a_line_every_30_s(capsys, monkeypatch):
     )
     assert list(command.progress(range(3))) == [0, 1, 2]
     assert capsys.readouterr().err == "cases: 67% done, about 30 s left\n"
-
-
-def test_a_closed_pipe_is_no_failure(scene_file):
-    """Status 1 is that of failed comparisons."""
-    for arguments in (["run", str(scene_file)], ["run", "--example"], ["--help"]):
-        with subprocess.Popen(
-            [COMMAND, *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE
-        ) as running:
-            assert running.stdout is not None
-            running.stdout.close()
-            assert running.stderr is not None
-            assert running.stderr.read() == b""
-            assert running.wait(timeout=240) == 141  # of Unix tools that lose their reader
-
-
-@pytest.mark.parametrize(
-    ("typed", "word", "choices"),
-    [
-        (["run", "--example"], "", ["paper", "vertical", "precompressed", "defect", "trimer"]),
-        (["run", "--method"], "RK", ["RKN86", "RK45", "RK23"]),
-        (["run"], "--form", ["--format"]),
-        ([], "pa", ["paper"]),
-    ],
-)
-def test_a_shell_completes(typed, word, choices):
-    """Completion as `eval "$(_LWA_VALIDATE_COMPLETE=bash_source lwa-validate)"` sets it up."""
-    found = ShellComplete(cli.validate, {}, "lwa-validate", "_LWA_VALIDATE_COMPLETE")
-    assert [item.value for item in found.get_completions(typed, word)] == choices
 
 
 @pytest.mark.filterwarnings("error::RuntimeWarning")
@@ -690,23 +570,6 @@ def test_the_list_of_studies_is_what_they_say():
     assert cli.validate.get_command(context, "nothing") is None
 
 
-def test_a_study_is_loaded_when_it_is_called():
-    code = """if True:
-        import sys
-        from validation.cli import validate
-        for arguments in (["--help"], ["--nothing"], ["nothing"]):
-            try:
-                validate.main(arguments, standalone_mode=False)
-            except Exception:
-                pass
-            print({"numpy", "scipy", "numba", "matplotlib"} & {*sys.modules})
-    """
-    done = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=240
-    )
-    assert re.findall(r"(?m)^(?:set\(\)|\{.*)$", done.stdout) == ["set()"] * 3
-
-
 @pytest.mark.parametrize("name", ["accuracy", "figures", "hard", "limits"])
 def test_a_long_command_says_in_its_help_how_long_it_takes(name):
     says = cli.studies()[name][1]
@@ -714,12 +577,11 @@ def test_a_long_command_says_in_its_help_how_long_it_takes(name):
 
 
 @pytest.mark.parametrize("cases", [[1], [1, 2, 3]])
-def test_the_bar_is_there_before_the_first_case_is_finished(monkeypatch, cases):
+def test_the_bar_is_there_before_the_first_case_is_finished(cases):
     """On a terminal, and before the second case is begun."""
-    terminal = io.StringIO()
-    monkeypatch.setattr(terminal, "isatty", lambda: True)
-    monkeypatch.setattr(sys, "stderr", terminal)
-    each = iter(command.progress(cases))
-    assert next(each) == 1
-    assert "cases:   0%|" in terminal.getvalue()
-    assert f" 0/{len(cases)} " in terminal.getvalue()
+    with terminal() as shown:
+        each = iter(command.progress(cases))
+        assert next(each) == 1
+        bar = shown()
+    assert "cases:   0%|" in bar
+    assert f" 0/{len(cases)} " in bar

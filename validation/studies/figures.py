@@ -9,38 +9,29 @@ bead, is drawn by `book/studies/widths.py`.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 from lwa import PhysicalWave, canonical_wave
-from lwa.base.arrays import Array
 from lwa.base.progress import Progress
 from validation.lattice.run import Run
 from validation.lattice.simulate import simulate_many
 from validation.pictures.panel import Curve, Panel
 from validation.pulses.pulse import Measured, compared, exponent, first_passage
+from validation.pulses.train import Train
 from validation.report.command import study
 from validation.report.result import Report
 from validation.report.table import Column, Table
 from validation.report.text import percent
 from validation.scenes.materials import DIAMETER, PTFE, PTFE_BEAD
 from validation.studies import paper
-from validation.studies.paper import HERTZ, Train, chain_cell, chain_runs
+from validation.studies.paper import HERTZ, chain_cell, chain_runs
 
 RECORDED = {1: (15, 24, 33), 2: (16, 24, 34)}  # N → beads of figure 2; 24 is PTFE
 MOST = 22  # the largest N
 HEIGHTS = (0.1, 0.2, 0.4, 0.6, 0.8, 1.0, 1.2)  # drop heights of figure 3a, in m
 MODULI = (1.46e9, 0.6e9)  # of PTFE, in Pa: dynamic, as in the paper, and nominal static
-
-
-@dataclass(frozen=True, eq=False)
-class Forces:
-    """Figure 2: the force of each sensor bead (mean of its contacts, N) over time (s)."""
-
-    N: int
-    beads: tuple[int, ...]
-    time: Array
-    force: Array
 
 
 class Speed(NamedTuple):
@@ -68,6 +59,7 @@ class Scaling:
         return exponent(self.forces, self.speeds)
 
 
+_PARTS = ("value", "error")
 _SPEEDS = (
     Column("N", "chain", format="{}:1".format),
     Column("speed", "V_s lattice", "m/s", error=True),
@@ -91,49 +83,36 @@ _SCALINGS = (
 _SCALINGS_TITLE = f"drop heights {HEIGHTS[0]:g} … {HEIGHTS[-1]:g} m; the paper fits 0.1666"
 
 
-@dataclass(frozen=True, eq=False)
-class Figures:
-    """The records of figure 2, the N:1 chains and figure 3a."""
-
-    forces: tuple[Forces, ...]
-    speeds: tuple[Speed, ...]
-    scaling: tuple[Scaling, ...]
-
-    def report(self) -> Report:
-        """``speeds``: ``N``, ``speed``, ``force`` and ``theory``, each ``_value``; ``scalings``:
-        ``modulus_value``, ``exponent_value`` and lists over the drop heights ``speed_value``,
-        ``force_value``, ``theory_value``; ``scaling``: the one with the dynamic modulus;
-        ``forces``: ``N``, ``beads``, ``time_value``, ``force_value``."""
-        speeds = tuple((*s, s.theory / s.speed.value - 1) for s in self.speeds)
-        rows = []
-        for s in self.scaling:
-            numbers = (
-                [part.value for part in s.speeds],
-                [part.error for part in s.speeds],
-                [part.value for part in s.forces],
-                [part.error for part in s.forces],
-            )
-            rows.append((s.E, s.exponent, s.exponent.value - 1 / 6, *numbers, s.theory))
-        scalings = Table(_SCALINGS, tuple(rows), "scalings", title=_SCALINGS_TITLE)
-        records = [
-            {"N": f.N, "beads": f.beads, "time_value": f.time, "force_value": f.force}
-            for f in self.forces
-        ]
-        return Report(
-            "",
-            (Table(_SPEEDS, speeds, "speeds", title=_SPEEDS_TITLE), scalings),
-            panels=(*map(_forces_panel, self.forces), _scaling_panel(self.scaling)),
-            data={"scaling": scalings.document()[0], "forces": records},
-        )
+def report(
+    records: Mapping[int, Run], speeds: Sequence[Speed], scalings: Sequence[Scaling]
+) -> Report:
+    """The runs of figure 2 by N, the N:1 chains and figure 3a as tables and panels."""
+    first = tuple((*s, s.theory / s.speed.value - 1) for s in speeds)
+    rows = []
+    for s in scalings:
+        parts = [[getattr(x, part) for x in row] for row in (s.speeds, s.forces) for part in _PARTS]
+        rows.append((s.E, s.exponent, s.exponent.value - 1 / 6, *parts, s.theory))
+    second = Table(_SCALINGS, tuple(rows), "scalings", title=_SCALINGS_TITLE)
+    forces = [
+        {"N": N, "beads": RECORDED[N], "time_value": run.time, "force_value": run.bead_force}
+        for N, run in records.items()
+    ]
+    panels = [_forces_panel(N, run) for N, run in records.items()]
+    return Report(
+        "",
+        (Table(_SPEEDS, first, "speeds", title=_SPEEDS_TITLE), second),
+        panels=(*panels, _scaling_panel(scalings)),
+        data={"scaling": second.document()[0], "forces": forces},
+    )
 
 
-def _forces_panel(record: Forces) -> Panel:
-    rows = enumerate(zip(record.beads, record.force, strict=True))
-    curves = (Curve(f"bead {bead}", 1e6 * record.time, f, f"C{i}-") for i, (bead, f) in rows)
-    return Panel("time (µs)", "force of the bead (N)", tuple(curves), title=f"{record.N}:1 chain")
+def _forces_panel(N: int, run: Run) -> Panel:
+    rows = enumerate(zip(RECORDED[N], run.bead_force, strict=True))
+    curves = (Curve(f"bead {bead}", 1e6 * run.time, f, f"C{i}-") for i, (bead, f) in rows)
+    return Panel("time (µs)", "force of the bead (N)", tuple(curves), title=f"{N}:1 chain")
 
 
-def _scaling_panel(rows: tuple[Scaling, ...]) -> Panel:
+def _scaling_panel(rows: Sequence[Scaling]) -> Panel:
     curves = []
     for i, row in enumerate(rows):
         label = f"E = {row.E / 1e9:g} GPa: exponent {row.exponent.value:.4f}"
@@ -144,21 +123,27 @@ def _scaling_panel(rows: tuple[Scaling, ...]) -> Panel:
 
 
 @study()
-def figures(progress: Progress[Any] = iter) -> Figures:
-    """The paper's figures: force records, N:1 chains, force against speed. Ten seconds."""
-    parts: list[tuple[Any, ...]] = [(forces, N) for N in RECORDED]
+def figures(progress: Progress[Any] = iter) -> Report:
+    """The paper's figures: force records, N:1 chains, force against speed. Ten seconds.
+
+    ``speeds``: ``N``, ``speed``, ``force`` and ``theory``, each ``_value``; ``scalings``:
+    ``modulus_value``, ``exponent_value`` and lists over the drop heights ``speed_value``,
+    ``force_value``, ``theory_value``; ``scaling``: the one with the dynamic modulus; ``forces``:
+    ``N``, ``beads``, ``time_value``, ``force_value``.
+    """
+    parts: list[tuple[Callable[[Any], Any], Any]] = [(forces, N) for N in RECORDED]
     parts += [(chain_speed, N) for N in range(1, MOST + 1)]
     parts += [(scaling, E) for E in MODULI]
-    found: dict[Any, list[Any]] = {}
-    for part, *arguments in progress(parts):
-        found.setdefault(part, []).append(part(*arguments))
-    return Figures(*map(tuple, found.values()))
+    found: dict[Any, dict[Any, Any]] = {}
+    for part, argument in progress(parts):
+        found.setdefault(part, {})[argument] = part(argument)
+    records, speeds, scalings = found.values()
+    return report(records, tuple(speeds.values()), tuple(scalings.values()))
 
 
-def forces(N: int) -> Forces:
-    """Figure 2 for the N:1 chain."""
-    run, _ = chain_runs(RECORDED[N], N=N)
-    return Forces(N, RECORDED[N], run.time, run.bead_force)
+def forces(N: int) -> Run:
+    """Figure 2 for the N:1 chain: the run whose bead sensors are `RECORDED`."""
+    return chain_runs(RECORDED[N], N=N)[0]
 
 
 def chain_speed(N: int) -> Speed:
@@ -196,5 +181,5 @@ def scaling(E: float) -> Scaling:
     speeds = tuple(Measured(fine.speed, coarse.speed) for fine, coarse in trains)
     forces = tuple(Measured(fine.peak, coarse.peak) for fine, coarse in trains)
     wave = canonical_wave(chain_cell(ptfe=ptfe), HERTZ)
-    theory = wave.at_force([force.value for force in forces], of="bead").speed
-    return Scaling(E, speeds, forces, tuple(theory.tolist()))
+    theory = (float(wave.at_force(force.value, of="bead").speed) for force in forces)
+    return Scaling(E, speeds, forces, tuple(theory))

@@ -15,8 +15,7 @@ if the pulse took all of it.
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import chain
 from typing import Any
 
@@ -29,8 +28,8 @@ from validation.lattice.cost import RunProgress, silent
 from validation.lattice.run import Run
 from validation.lattice.simulate import twice
 from validation.pictures.panel import Curve, Panel
-from validation.pulses.pulse import Measured, MeasureError, Pulse, compared, highest_pulse, speed
-from validation.pulses.sensors import tracks
+from validation.pulses.pulse import Measured, Pulse, compared
+from validation.pulses.train import Train
 from validation.report.command import number, option, study
 from validation.report.result import Report
 from validation.report.table import Column, Table
@@ -69,124 +68,6 @@ The force of a bead is the mean of its two contacts'; numbers that name no bead 
 sensor beads (odd ones are steel, even ones PTFE) or over their four contacts. The theory's
 amplitude is set by F_m, by V_s, or by all of the striker's momentum; error: theory/lattice - 1.
 ±: error of the integration."""
-
-
-@dataclass(frozen=True)
-class Comparison:
-    """A number of the lattice and the theory's, for each of `SOURCES`."""
-
-    quantity: str
-    lattice: Measured
-    theory: Mapping[str, float]
-
-    @property
-    def unit(self) -> str:
-        """The unit of the quantity."""
-        return "µs" if self.quantity.endswith("in time") else UNITS[self.quantity.split()[0]]
-
-    def error(self, source: str) -> float:
-        """Theory over lattice, less 1."""
-        return self.theory[source] / self.lattice.value - 1
-
-    @property
-    def cells(self) -> tuple[Any, ...]:
-        """Cells of the table."""
-        by_source = (
-            (
-                self.theory[source],
-                self.error(source),
-                "set" if quantity == self.quantity else percent(self.error(source)),
-            )
-            for source, quantity in SOURCES.items()
-        )
-        return self.quantity, self.unit, self.lattice, *chain.from_iterable(by_source)
-
-
-@dataclass(frozen=True, eq=False)
-class Paper:
-    """The chain, its numbers beside the theory's, and the force records at the sensors."""
-
-    velocity: float
-    beads: int
-    sensors: tuple[int, int]
-    gravity: float
-    rows: tuple[Comparison, ...]
-    records: tuple[Curve, ...]
-    notes: tuple[str, ...]
-
-    def report(self) -> Report:
-        """``velocity_value``, ``beads``, ``sensors``, ``gravity_value``, ``rows``: ``quantity``,
-        ``unit``, ``lattice_value``, ``lattice_error_value``, and by what sets the theory's
-        amplitude (``F_m``, ``speed``, ``striker``) ``theory_value`` {…} and ``error_value`` {…}.
-        """
-        gravity = f"gravity {self.gravity:g} m/s²" if self.gravity else "no gravity"
-        return Report(
-            f"{self.beads} beads, steel (the striker, {self.velocity:g} m/s) and PTFE in turn, "
-            f"steel wall, {gravity}; sensors in beads {self.sensors[0]} and {self.sensors[1]}",
-            (Table(_COLUMNS, tuple(row.cells for row in self.rows), "rows"),),
-            panels=(
-                Panel("time (µs)", "dynamic force, mean of the bead's contacts (N)", self.records),
-            ),
-            notes=self.notes,
-            data={
-                "velocity_value": self.velocity,
-                "beads": self.beads,
-                "sensors": self.sensors,
-                "gravity_value": self.gravity,
-            },
-        )
-
-
-@dataclass(frozen=True)
-class Train:
-    """Pulses by bead or contact number, in s and N."""
-
-    pulses: Mapping[int, Pulse]
-
-    @classmethod
-    def of(cls, run: Run, kind: str = "bead") -> Train:
-        """Dynamic pulses at the "bead" or "contact" sensors of a run, before the wall's answer.
-
-        The last contact sensor is the wall's. Raises `MeasureError` if a pulse is not whole.
-        """
-        end = float(run.time[np.argmax(run.contact_force[-1])])
-        pulses = {}
-        for track in tracks(run)[:-1]:
-            if track.kind == kind:
-                try:
-                    pulses[track.number] = highest_pulse(track.force, end)
-                except MeasureError as error:
-                    place = f"{kind} {track.number}, before the wave reaches the wall"
-                    raise MeasureError(f"{place}: {error}") from None
-        return cls(pulses)
-
-    @classmethod
-    def expected(cls, wave: PhysicalWave, sensors: Iterable[int], kind: str = "bead") -> Train:
-        """The theory's pulses at these sensors."""
-        V, peak = float(wave.speed), wave.bead_force if kind == "bead" else wave.contact_force
-        half = (bead_fwhm(wave.wave) if kind == "bead" else float(wave.fwhm("force"))) / V / 2
-        times = {number: number * DIAMETER / V for number in sensors}
-        return cls({i: Pulse(t, float(peak), t - half, t + half) for i, t in times.items()})
-
-    def only(self, wanted: Container[int]) -> Train:
-        """The pulses at the wanted numbers."""
-        return Train({number: pulse for number, pulse in self.pulses.items() if number in wanted})
-
-    @property
-    def speed(self) -> float:
-        """Speed from the first number to the last, in m/s."""
-        first, last = min(self.pulses), max(self.pulses)
-        return speed(self.pulses[first], self.pulses[last], (last - first) * DIAMETER)
-
-    @property
-    def peak(self) -> float:
-        """Mean peak, in N."""
-        return float(np.mean([pulse.peak for pulse in self.pulses.values()]))
-
-    @property
-    def fwhm(self) -> float:
-        """Mean FWHM, in s."""
-        return float(np.mean([pulse.fwhm for pulse in self.pulses.values()]))
 
 
 def chain_cell(N: int = 1, ptfe: Sphere = PTFE_BEAD) -> Cell:
@@ -235,11 +116,15 @@ def paper(
     sensors: tuple[int, int] = SENSORS,
     gravity: float = 0.0,
     run_progress: RunProgress = silent,
-) -> Paper:
+) -> Report:
     """The steel:PTFE chain of the paper: speed, peak force and FWHM.
 
     Gravity is in m/s², towards the wall. Raises `SceneError` for values out of range, and
     `MeasureError` if the pulse is not whole at a sensor before the wall throws it back.
+
+    ``velocity_value``, ``beads``, ``sensors``, ``gravity_value``, ``rows``: ``quantity``, ``unit``,
+    ``lattice_value``, ``lattice_error_value``, and by what sets the theory's amplitude (``F_m``,
+    ``speed``, ``striker``) ``theory_value`` {…} and ``error_value`` {…}, theory over lattice - 1.
     """
     if not 1e-6 <= real(velocity, "velocity") <= 1000:
         raise SceneError(f"velocity is {velocity:g} m/s: one from 1e-6 to 1000 is wanted")
@@ -255,25 +140,55 @@ def paper(
     heard = sorted({*pair, *chain.from_iterable(like_pairs(pair))})
     scene = chain_scene(velocity, beads, heard, gravity, duration)
     run, check = twice(scene, *TOLERANCES, progress=run_progress)
-    found = compared(lambda run: numbers(Train.of(run), Train.of(run, "contact"), pair), run, check)
-    waves = {
-        "F_m": PhysicalWave(wave, found["peak bead force F_m"].value, "bead"),
-        "speed": of_speed(wave, found["speed V_s"].value),
-        "striker": striker,
-    }
-    theory = {source: theory_numbers(wave, pair) for source, wave in waves.items()}
-    rows = tuple(
-        Comparison(name, value, {source: theory[source][name] for source in SOURCES})
-        for name, value in found.items()
+    lattice = compared(
+        lambda run: numbers(Train.of(run), Train.of(run, "contact"), pair), run, check
     )
-    records = tuple(_records(run, pair, waves["F_m"]))
-    return Paper(velocity, beads, pair, gravity, rows, records, (_NOTE, *_speeds(rows)))
+    by_force = PhysicalWave(wave, lattice["peak bead force F_m"].value, "bead")
+    by_speed = of_speed(wave, lattice["speed V_s"].value)
+    waves = dict(zip(SOURCES, (by_force, by_speed, striker), strict=True))
+    theory = {source: theory_numbers(found, pair) for source, found in waves.items()}
+    rows = tuple(
+        _row(name, value, {source: theory[source][name] for source in SOURCES})
+        for name, value in lattice.items()
+    )
+    under = f"gravity {gravity:g} m/s²" if gravity else "no gravity"
+    curves = tuple(_records(run, pair, by_force))
+    return Report(
+        f"{beads} beads, steel (the striker, {velocity:g} m/s) and PTFE in turn, steel wall, "
+        f"{under}; sensors in beads {pair[0]} and {pair[1]}",
+        (Table(_COLUMNS, rows, "rows"),),
+        panels=(Panel("time (µs)", "dynamic force, mean of the bead's contacts (N)", curves),),
+        notes=(_NOTE, *_speeds(lattice, theory["F_m"])),
+        data={
+            "velocity_value": velocity,
+            "beads": beads,
+            "sensors": pair,
+            "gravity_value": gravity,
+        },
+    )
+
+
+def _row(quantity: str, lattice: Measured, theory: Mapping[str, float]) -> tuple[Any, ...]:
+    """Cells of the table: the lattice's number, and the theory's number and error by `SOURCES`."""
+    unit = "µs" if quantity.endswith("in time") else UNITS[quantity.split()[0]]
+    cells: list[Any] = []
+    for source, value in theory.items():
+        error = value / lattice.value - 1
+        cells += [value, error, "set" if SOURCES[source] == quantity else percent(error)]
+    return quantity, unit, lattice, *cells
 
 
 def theory_numbers(wave: PhysicalWave, pair: tuple[int, ...] = SENSORS) -> dict[str, float]:
     """`numbers` of the theory's wave."""
-    heard = range(pair[0] - 1, pair[1] + 1)
-    return numbers(Train.expected(wave, heard), Train.expected(wave, heard, "contact"), pair)
+    V, sensors = float(wave.speed), range(pair[0] - 1, pair[1] + 1)
+
+    def train(peak: Any, fwhm: float) -> Train:
+        half, times = fwhm / V / 2, {i: i * DIAMETER / V for i in sensors}
+        pulses = {i: Pulse(t, float(peak), t - half, t + half) for i, t in times.items()}
+        return Train(pulses, DIAMETER)
+
+    beads = train(wave.bead_force, bead_fwhm(wave.wave))
+    return numbers(beads, train(wave.contact_force, float(wave.fwhm("force"))), pair)
 
 
 def numbers(beads: Train, contacts: Train, pair: tuple[int, ...]) -> dict[str, float]:
@@ -311,20 +226,18 @@ def like_pairs(pair: tuple[int, ...]) -> list[tuple[int, int]]:
     return [(first, second - 1), (first + 1, second)] if unlike else []
 
 
-def _speeds(rows: Sequence[Comparison]) -> Iterator[str]:
+def _speeds(lattice: Mapping[str, Measured], theory: Mapping[str, float]) -> Iterator[str]:
     """The speed V_s between unlike beads beside the speeds between beads of one kind."""
-    found = {row.quantity: row for row in rows}
-    like = [row.lattice.value for name, row in found.items() if name.startswith("speed from")]
+    like = [number.value for name, number in lattice.items() if name.startswith("speed from")]
     if like:
-        V, F, mean = found["speed V_s"], found["peak bead force F_m"].lattice.value, np.mean(like)
+        V, F = lattice["speed V_s"].value, lattice["peak bead force F_m"].value
         canonical = PhysicalWave(canonical_wave(chain_cell(), HERTZ), F, "bead")
-        off = (percent(float(c / mean - 1)) for c in (V.theory["F_m"], float(canonical.speed)))
+        speeds = theory["speed V_s"], float(canonical.speed)
+        off = [percent(float(c / np.mean(like) - 1)) for c in speeds]
         yield (
-            f"V_s, {V.lattice.value:.2f} m/s, compares peaks of different shape, in steel and in "
-            f"PTFE. Between beads of one kind the pulse has {like[0]:.2f} and {like[1]:.2f} m/s; "
-            "off their mean are, at F_m, the theory by {} and the canonical wave by {}.".format(
-                *off
-            )
+            f"V_s, {V:.2f} m/s, compares peaks of different shape, in steel and in PTFE. Between "
+            f"beads of one kind the pulse has {like[0]:.2f} and {like[1]:.2f} m/s; off their mean "
+            f"are, at F_m, the theory by {off[0]} and the canonical wave by {off[1]}."
         )
 
 

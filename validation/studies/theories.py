@@ -8,12 +8,10 @@ contact force 1, m1 = A = D = 1. The cost is the CPU time of deriving and evalua
 
 from __future__ import annotations
 
-import math
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from functools import partial
-from itertools import chain, product
 from statistics import median
 from typing import Any
 
@@ -106,6 +104,10 @@ class Rung:
     seconds: float
     missing: str | None = None
 
+    def error(self, name: str) -> float | None:
+        """Error of one of `NAMES`, None without a wave."""
+        return self.error_value[name] if self.error_value else None
+
 
 @dataclass(frozen=True)
 class Place:
@@ -119,49 +121,14 @@ class Place:
 
     def document(self) -> dict[str, Any]:
         """Fields for JSON."""
-        head = {"k": self.k, "omega": self.omega, "truth": self.kind}
-        for name in ("value", "error"):
-            key = "truth_value" if name == "value" else "truth_error_value"
-            head[key] = {quantity: getattr(x, name) for quantity, x in self.truth.items()}
-        return head | {"rows": [asdict(rung) for rung in self.rungs]}
-
-
-def cost(places: Sequence[Place], theory: str) -> float:
-    """Median CPU time of a theory over the places where it has a wave; NaN without any."""
-    rungs = (place.rungs[THEORIES.index(theory)] for place in places)
-    return median([rung.seconds for rung in rungs if rung.error_value] or [math.nan])
-
-
-def ladder(places: Sequence[Place]) -> Report:
-    """Table of errors of theories over k and ω, and |error| of the force's width as the picture.
-
-    JSON: ``theories``, each with ``k``, ``omega``, ``truth``, and ``rows`` of `Rung`.
-    """
-    costs = ((name, 1e3 * cost(places, name)) for name in THEORIES)
-    note = (
-        "ε^n: the series in k - 1 summed from n orders, in brackets its own estimate of the "
-        "error;\n[n/n]: its closed approximants for equal beads. Truth: the solitary wave or, "
-        "where\nthere is none, the pulse of a struck chain.\nMedian cost of derivation and "
-        f"evaluation (ms of CPU): {', '.join(f'{n} {c:.3g}' for n, c in costs if c == c)}."
-    )
-    rows = []
-    for name, p in product(NAMES, places):
-        cells = (cell for rung in p.rungs for cell in _cells(rung, name))
-        rows.append((name, p.k, p.omega, p.truth[name], p.kind, *cells))
-    equal = [(p.k - 1, p) for p in places if p.omega == 1]
-    dimers = [(p.omega, p) for p in places if p.omega != 1 and p.k == HERTZ]
-    parts = [
-        (Column(f"error_value.{n}"), Column(f"estimate_value.{n}"), Column("", n)) for n in THEORIES
-    ]
-    return Report(
-        "Theories against true waves",
-        (Table((*_COLUMNS, *chain(*parts)), tuple(rows), by="quantity", heads=_HEADS, note=note),),
-        panels=(
-            _panel("k - 1", "theories, equal beads", equal),
-            _panel("m2/m1", "theories, dimers, k = 3/2", dimers),
-        ),
-        data={"theories": [p.document() for p in places]},
-    )
+        return {
+            "k": self.k,
+            "omega": self.omega,
+            "truth": self.kind,
+            "truth_value": {name: number.value for name, number in self.truth.items()},
+            "truth_error_value": {name: number.error for name, number in self.truth.items()},
+            "rows": [asdict(rung) for rung in self.rungs],
+        }
 
 
 _COLUMNS = (
@@ -170,28 +137,47 @@ _COLUMNS = (
     Column("omega", "m2/m1", format=lambda omega: f"{float(omega):.4g}"),
     Column("truth", "truth", format=".6g", error=True),
     Column("truth", "by", format=lambda kind: kind.split()[0]),
+    *(Column(f"error_value.{theory}", theory, format="+.1e") for theory in THEORIES),
 )
+_NOTE = """\
+ε^n: the series in k - 1 summed from n orders; [n/n]: its closed approximants for equal beads.
+Truth: the solitary wave or, where there is none, the pulse of a struck chain."""
 
 
-def _cells(rung: Rung, name: str) -> tuple[float | None, float | None, str | None]:
-    """Error, estimate, and the text of both."""
-    if rung.error_value is None:
-        return None, None, None
-    error, sizes = rung.error_value[name], rung.estimate_value
-    estimate = sizes[name] if sizes else None
-    told = "" if estimate is None else f" ({estimate:.0e})"
-    return error, estimate, f"{error:+.1e}{told}"
+def ladder(places: Sequence[Place]) -> Report:
+    """Table of errors of theories over k and ω, and |error| of the force's width as the picture.
+
+    JSON: ``theories``, each with ``k``, ``omega``, ``truth``, and ``rows`` of `Rung`.
+    """
+    times = {
+        theory: [p.rungs[i].seconds for p in places if p.rungs[i].error_value]
+        for i, theory in enumerate(THEORIES)
+    }
+    costs = ", ".join(f"{name} {1e3 * median(its):.3g}" for name, its in times.items() if its)
+    rows = tuple(
+        (name, p.k, p.omega, p.truth[name], p.kind, *(r.error(name) for r in p.rungs))
+        for name in NAMES
+        for p in places
+    )
+    equal = [(p.k - 1, p) for p in places if p.omega == 1]
+    dimers = [(p.omega, p) for p in places if p.omega != 1 and p.k == HERTZ]
+    note = f"{_NOTE}\nMedian cost of derivation and evaluation (ms of CPU): {costs}."
+    return Report(
+        "Theories against true waves",
+        (Table(_COLUMNS, rows, by="quantity", heads=_HEADS, note=note),),
+        panels=(
+            _panel("k - 1", "theories, equal beads", equal),
+            _panel("m2/m1", "theories, dimers, k = 3/2", dimers),
+        ),
+        data={"theories": [p.document() for p in places]},
+    )
 
 
 def _panel(axis: str, title: str, places: Sequence[tuple[sp.Rational, Place]]) -> Panel:
     curves = []
     for i, (name, mark) in enumerate(zip(THEORIES, "osD^v<>Pd", strict=True)):
-        points = sorted(
-            (float(at), abs(errors["force"]))
-            for at, place in places
-            if (errors := place.rungs[i].error_value)
-        )
-        if points:
+        errors = ((float(at), place.rungs[i].error("force")) for at, place in places)
+        if points := sorted((at, abs(error)) for at, error in errors if error is not None):
             x, y = zip(*points, strict=True)
             curves.append(Curve.of(name, x, y, f"C{i}{mark}-"))
     return Panel(axis, "|error| of the FWHM of the force", tuple(curves), "xy", title)

@@ -42,7 +42,7 @@ def test_the_ptfe_beads_reproduce_two_of_the_stated_errors_and_nothing_all_three
 
 
 def test_the_width_agrees_with_the_experiment_of_the_paper_command(computed):
-    found = {row.quantity: row.lattice.value for row in paper().rows}
+    found = {row["quantity"]: row["lattice_value"] for row in paper().document()["rows"]}
     late = computed.times[computed.beads.index(34)].value
     width = late * found["speed V_s"] / DIAMETER
     assert width == pytest.approx(found["FWHM of F_34"], rel=1e-6)

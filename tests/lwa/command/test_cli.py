@@ -4,15 +4,12 @@ import json
 import math
 import os
 import re
-import subprocess
-import sys
 
 import numpy as np
 import pytest
 import sympy as sp
 
 from lwa import Dimer, Material, Sphere, homogenize
-from lwa.command.terminal import CLOSED
 from lwa.spheres import hertz
 from tests.lwa.command.answers import result, run
 
@@ -419,32 +416,6 @@ def test_bad_input_is_one_line_and_status_two(capsys, arguments):
     assert err.count("\n") == 1
 
 
-def test_the_installed_command():
-    command = [sys.executable, "-c", "from lwa.command.cli import main; main()"]
-    good = subprocess.run(
-        [*command, "wave", "--k", "3/2", "--masses", "1,1"],
-        capture_output=True,
-        text=True,
-        timeout=120,
-    )
-    assert good.returncode == 0
-    bad = subprocess.run(
-        [*command, "derive", "--k", "0"], capture_output=True, text=True, timeout=120
-    )
-    assert (bad.returncode, bad.stdout, bad.stderr.count("\n")) == (2, "", 1)
-
-
-def test_a_reader_that_stops_early_is_no_failed_comparison():
-    code = "import sys; from lwa.command.cli import main; main(['derive', '--order', '8'])"
-    process = subprocess.Popen(
-        [sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE
-    )
-    process.stdout.close()
-    assert process.stderr.read() == b""
-    process.stderr.close()
-    assert process.wait(120) == CLOSED
-
-
 @pytest.mark.parametrize(
     ("command", "says"),
     [
@@ -537,12 +508,3 @@ def test_long_exponents_are_printed(capsys, command):
     status, out, err = run(capsys, *command.split())
     assert (status, err) == (0, "")
     assert max(map(len, out.splitlines())) < 6000
-
-
-def test_what_takes_long_to_write_says_so(capsys, monkeypatch):
-    monkeypatch.setattr("lwa.command.derivation.MANY_TERMS", 10)
-    status, out, err = run(capsys, "derive", "--closure", "full")
-    assert status == 0
-    assert re.match(r"\d+ terms to be written: this may take minutes\n", err)
-    monkeypatch.undo()
-    assert run(capsys, "derive", "--closure", "full") == (0, out, "")

@@ -1,101 +1,39 @@
-"""Between a command and its user: encodings, closed and full outputs, Ctrl-C, digits."""
+"""Between a command and its user: encodings, closed and full outputs, completion, digits."""
 
-import os
-import signal
-import subprocess
-import sys
-import textwrap
+from contextlib import redirect_stdout
 from importlib.metadata import version
 
 import pytest
+from click.testing import CliRunner
 
 import lwa
-from lwa.command.interrupt import INTERRUPTED, start
-from lwa.command.terminal import SIGNS
+from lwa.command import cli
+from lwa.command.terminal import CLOSED
+from tests.commands import closed_pipe, encoded, full_disk, unwritable
 from tests.lwa.command.answers import run
+from validation.cli import validate
 
-COMMAND = [sys.executable, "-m", "lwa"]
-WAVE = [*COMMAND, "wave", "--k", "3/2", "--masses", "1,1"]
+WAVE = ("wave", "--k", "3/2", "--masses", "1,1")
 
 
 @pytest.mark.parametrize("encoding", ["cp1252", "latin-1", "utf-8"])
-def test_letters_that_an_encoding_lacks_are_spelled(encoding):
-    environment = os.environ | {"PYTHONIOENCODING": encoding}
-    done = subprocess.run(WAVE, capture_output=True, env=environment, timeout=120)
-    assert (done.returncode, done.stderr) == (0, b"")
-    text = done.stdout.decode(encoding)
-    assert ("width π/β = " if encoding == "utf-8" else "= sqrt(10)*pi*D/2") in text
-    assert "?" not in text
-    if encoding == "cp1252":
-        assert "width pi/beta = sqrt(10)*pi*D/2 ~ 4.96729413289805 D" in text
-        assert "z'' = mu z^eta - sigma z" in text
+def test_output_and_refusals_are_in_utf_8_whatever_the_locale(encoding):
+    status, out, err = encoded(cli.main, *WAVE, encoding=encoding)
+    assert (status, err) == (0, b"")
+    assert "width π/β = sqrt(10)*pi*D/2 ≈ 4.96729413289805 D" in out.decode("utf-8")
+    status, _, err = encoded(cli.main, "derive", "--masses", "κ κ", encoding=encoding)
+    assert status == 2
+    assert "'κ κ'" in err.decode("utf-8")
 
 
-def test_a_refusal_is_spelled_too():
-    environment = os.environ | {"PYTHONIOENCODING": "cp1252"}
-    done = subprocess.run(
-        [*COMMAND, "derive", "--masses", "κ κ"], capture_output=True, env=environment, timeout=120
-    )
-    assert done.returncode == 2
-    assert b"'kappa kappa'" in done.stderr
-
-
-def test_every_sign_stands_for_one_that_cp1252_or_ascii_lacks():
-    assert all(not sign.isascii() and plain.isascii() for sign, plain in SIGNS.items())
-
-
-@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="Linux's full device")
-def test_a_full_disk_is_one_line():
-    for arguments in (["derive", "--order", "8"], ["--version"], ["-h"]):
-        with open("/dev/full", "w") as full:
-            done = subprocess.run(
-                [*COMMAND, *arguments], stdout=full, stderr=subprocess.PIPE, timeout=120
-            )
-        assert (done.returncode, done.stderr.count(b"\n")) == (2, 1)
-        assert b"No space left" in done.stderr
-
-
-@pytest.mark.skipif(os.name != "posix", reason="a shell closes the output")
-def test_a_closed_output_is_one_line():
-    for redirection, lines in ((">&-", 1), (">&- 2>&-", 0)):
-        command = f'"{sys.executable}" -m lwa derive {redirection}'
-        done = subprocess.run(command, shell=True, stderr=subprocess.PIPE, timeout=120)
-        assert (done.returncode, done.stderr.count(b"\n")) == (2, lines)
-
-
-def test_ctrl_c_while_the_command_is_loaded_is_one_line(tmp_path):
-    (tmp_path / "slow.py").write_text(
-        textwrap.dedent("""
-            import os, signal
-            try:
-                os.kill(os.getpid(), signal.SIGINT)
-            except BaseException:  # as a library's own `except` may
-                pass
-            main = print
-        """)
-    )
-    code = f"import sys; sys.path.insert(0, {str(tmp_path)!r}); "
-    code += "from lwa.command.interrupt import start; start('lwa', 'slow')"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120)
-    assert (done.returncode, done.stdout) == (INTERRUPTED, "")
-    assert done.stderr == "lwa: interrupted\n"
-
-
-def test_nothing_is_loaded_before_ctrl_c_is_heard():
-    code = "import sys, lwa.__main__, lwa.command.interrupt; print('sympy' in sys.modules)"
-    done = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=120
-    )
-    assert done.stdout.strip() == "False"
-
-
-def test_once_loaded_the_command_hears_ctrl_c_itself(monkeypatch):
-    heard = []
-    monkeypatch.setattr(
-        "lwa.command.cli.main", lambda: heard.append(signal.getsignal(signal.SIGINT))
-    )
-    start("lwa", "lwa.command.cli")
-    assert heard == [signal.default_int_handler]
+def test_an_output_that_takes_nothing_is_no_result(capsys):
+    for arguments in (WAVE, ["--version"], ["-h"]):
+        status, err = unwritable(capsys, cli.main, *arguments, output=full_disk())
+        assert (status, err) == (2, "lwa: the output: No space left on device\n")
+        assert unwritable(capsys, cli.main, *arguments, output=closed_pipe()) == (CLOSED, "")
+    with redirect_stdout(None):
+        status, _, err = run(capsys, *WAVE)
+    assert (status, err.count("\n")) == (2, 1)
 
 
 def test_the_version(capsys):
@@ -135,22 +73,21 @@ def test_digits_are_those_of_ascii_everywhere(capsys, arguments):
     [
         ("lwa derive --closure ", "linear full"),
         ("lwa derive --law h", "hertz2"),
-        ("lwa-validate run --method D", "DOP853"),
+        ("lwa-validate pa", "paper"),
+        ("lwa-validate run --form", "--format"),
+        ("lwa-validate run --example ", "paper vertical precompressed defect trimer"),
+        ("lwa-validate run --method RK", "RKN86 RK45 RK23"),
         ("lwa-validate hard --case u", "ulps under-load"),
     ],
 )
-def test_the_shell_completes_names(words, offered):
+def test_a_shell_completes_names(words, offered):
     """As bash asks click's programs: the line in COMP_WORDS, the place of the word to complete."""
     program = words.split()[0]
-    module = {"lwa": "lwa.command.cli", "lwa-validate": "validation.cli"}[program]
-    asked = {"COMP_WORDS": words, "COMP_CWORD": str(words.count(" "))}
-    variable = f"_{program.upper().replace('-', '_')}_COMPLETE"
-    code = f"from {module} import main; main()"
-    done = subprocess.run(
-        [sys.executable, "-c", code],
-        capture_output=True,
-        text=True,
-        timeout=120,
-        env={**os.environ, **asked, variable: "bash_complete"},
-    )
-    assert done.stdout.split() == [f"plain,{name}" for name in offered.split()]
+    asked = {
+        "COMP_WORDS": words,
+        "COMP_CWORD": str(words.count(" ")),
+        f"_{program.upper().replace('-', '_')}_COMPLETE": "bash_complete",
+    }
+    command = {"lwa": cli.lwa, "lwa-validate": validate}[program]
+    shown = CliRunner(env=asked).invoke(command, prog_name=program)
+    assert shown.output.split() == [f"plain,{name}" for name in offered.split()]

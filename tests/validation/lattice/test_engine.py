@@ -1,8 +1,6 @@
 """The compiled engine against exact motions, SciPy's reference, and its own whole chain."""
 
 import math
-import subprocess
-import sys
 from dataclasses import replace
 from itertools import pairwise
 
@@ -390,11 +388,6 @@ def test_bad_options(options, message):
 def test_a_wall_needs_the_whole_chain():
     with pytest.raises(SceneError, match=r"^window is True: .*whole chain is wanted$"):
         simulate(loaded(1.5), method="SRKN14", window=True)
-
-
-def test_numba_is_imported_for_compiled_methods_only():
-    code = "import sys, validation.cli; assert 'numba' not in sys.modules"
-    subprocess.run([sys.executable, "-c", code], check=True, timeout=120)
 
 
 def test_rounding_noise_in_a_start_is_no_front():

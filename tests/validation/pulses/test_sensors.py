@@ -28,7 +28,7 @@ def numbers(found):
 @pytest.mark.parametrize("gravity", [0.0, 9.81])
 def test_the_experiment_of_the_paper(gravity):
     """The same numbers as `paper`'s, though here the wall's echo is in the record."""
-    rows = {row.quantity: row.lattice for row in paper(gravity=gravity).rows}
+    rows = {name: number for name, _, number, *_ in paper(gravity=gravity).tables[0].rows}
     found = record(chain_scene(1.37, 38, (15, 34), gravity, 2e-3))
     here, speed = numbers(found), found.speeds[0]
     assert speed.name == "bead 15 → 34"

@@ -24,12 +24,8 @@ from validation.studies.accuracy import (
     accuracy,
     cost,
     exact,
-    goals,
     struck,
 )
-
-SCIPY = [name for name in METHODS if name not in COMPILED]
-
 
 # The tasks
 
@@ -78,12 +74,11 @@ def test_rtol_is_the_error_of_the_peak_force(name):
     assert (0 if name == "precompressed" else 1 / 50) < np.median(shares) < 1
 
 
-# Costs and goals
+# Costs
 
 
-def row(seconds, peak, method="a", window=False, setting=1e-8):
-    off = {"arrival": 1e-9, "peak": peak, "fwhm": 1e-8}
-    return Row("dimer", method, window, setting, off, seconds)
+def row(seconds, peak):
+    return Row("dimer", "a", 1e-8, {"arrival": 1e-9, "peak": peak, "fwhm": 1e-8}, seconds)
 
 
 def test_a_cost_holds_from_there_on():
@@ -93,23 +88,6 @@ def test_a_cost_holds_from_there_on():
     assert cost(rows, 1e-8) == 4
     assert cost(rows, 1e-5) == 1
     assert cost(rows, 1e-10) == math.inf
-
-
-def test_goals_are_ratios_on_the_whole_chain():
-    rows = [
-        row(0.001, 2e-6, COMPILED[0]), row(0.004, 5e-7, COMPILED[0]),
-        row(0.0001, 1e-10, COMPILED[0], window=True),
-        row(0.004, 2e-6, SCIPY[0]), row(1.0, 9e-7, SCIPY[0]), row(3.0, 9e-9, SCIPY[1]),
-    ]  # fmt: skip
-    found = {goal.key: goal for goal in goals(rows)}
-    assert {key: goal.value for key, goal in found.items()} == pytest.approx(
-        {"dimer_scipy_1e-04": 4.0, "dimer_scipy_1e-06": 250.0, "dimer_scipy_1e-08": 0.0}
-    )
-    assert [goal.ok for goal in found.values()] == [False, True, False]
-    slower = [replace(each, seconds=7 * each.seconds) for each in rows]
-    assert [goal.value for goal in goals(slower)] == pytest.approx(
-        [goal.value for goal in found.values()]
-    )
 
 
 # The command
@@ -142,7 +120,7 @@ def test_the_command_prints_the_contract(capsys, short, tmp_path):
     chosen = ("--task", "dimer", "--task", "experiment")
     status, out, err = command(capsys, *chosen, "--plot", str(picture), "--format", "json")
     result = json.loads(out)
-    assert (status, err) == (0 if result["ok"] else 1, "")
+    assert (status, err) == (0, "")
     for row in result["rows"]:
         assert row["error"] == max(row[f"{name}_error"] for name in NUMBERS) < 0.1
         assert row["seconds"] > 0
@@ -154,7 +132,6 @@ def test_the_command_prints_the_contract(capsys, short, tmp_path):
     }  # fmt: skip
     assert [reference["task"] for reference in result["references"]] == ["dimer", "experiment"]
     assert {cost["task"] for cost in result["costs"]} == {"dimer", "experiment"}
-    assert result["dimer_scipy_1e-04_value"] > 0
     assert picture.read_text().startswith("<?xml")
 
 
@@ -171,7 +148,9 @@ def test_text_csv_and_notebook_tell_what_json_does(short):
     page = report._repr_html_()
     assert "<svg" in page
     (panel,) = report.panels
-    assert [curve.style[-1] for curve in panel.curves] == [":", "-", ":"]
+    assert [curve.label for curve in panel.curves] == list(
+        dict.fromkeys(row["method"] for row in document["rows"])
+    )
 
 
 def test_a_task_that_does_not_exist_is_named(capsys):
@@ -187,6 +166,6 @@ def test_the_command_with_every_method(capsys, monkeypatch):
     monkeypatch.setitem(module.TASKS, "dimer", small)
     status, out, _ = command(capsys, "--task", "dimer", "--task", "theory", "--format", "json")
     result = json.loads(out)
-    assert status == (0 if result["ok"] else 1)
+    assert status == 0
     assert {row["method"].removesuffix(", window") for row in result["rows"]} == set(METHODS)
     assert result["theories"]

@@ -13,7 +13,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from lwa import canonical_wave
 from validation.scenes.materials import PTFE_BEAD
 from validation.studies import figures
-from validation.studies.figures import Figures, chain_speed, forces, scaling
+from validation.studies.figures import chain_speed, forces, report, scaling
 from validation.studies.paper import HERTZ, chain_cell
 
 
@@ -59,45 +59,44 @@ def test_homogenization_holds_for_several_beads_per_cell(N):
 @pytest.mark.parametrize("N", figures.RECORDED)
 def test_force_records(N):
     found = forces(N)
-    assert found.force.shape == (3, len(found.time))
-    fronts = (found.force > 1).argmax(axis=1)  # 1 N; the wall's answer comes later, and higher
+    force = found.bead_force
+    assert force.shape == (3, len(found.time))
+    fronts = (force > 1).argmax(axis=1)  # 1 N; the wall's answer comes later, and higher
     assert np.all(np.diff(fronts) > 0)
-    incoming = found.force[0, : fronts[-1]].max()
+    incoming = force[0, : fronts[-1]].max()
     assert 4 < incoming < 14  # N, as on the paper's scale of 2 N per division
 
 
 @pytest.fixture(scope="module")
 def whole(scalings):
-    records = tuple(forces(N) for N in figures.RECORDED)
-    return Figures(records, (chain_speed(1), chain_speed(3)), tuple(scalings))
+    records = {N: forces(N) for N in figures.RECORDED}
+    return report(records, (chain_speed(1), chain_speed(3)), scalings)
 
 
 def test_all_figures_as_text_and_document(whole):
-    report = whole.report()
-    shown = report.text()
+    shown = whole.text()
     assert "E of PTFE (GPa)" in shown
     assert "\n0.6 " in shown
-    found = json.loads(json.dumps(report.document(), allow_nan=False))
+    found = json.loads(json.dumps(whole.document(), allow_nan=False))
     assert found["scaling"]["exponent_value"] == pytest.approx(1 / 6, abs=1e-6)
     assert found["scaling"] == found["scalings"][0]
-    rows = list(csv.DictReader(io.StringIO(report.csv())))
+    rows = list(csv.DictReader(io.StringIO(whole.csv())))
     assert [{name: float(value) for name, value in row.items()} for row in rows] == found["speeds"]
 
 
 def test_all_figures_as_a_picture_and_a_page(whole, tmp_path):
-    report = whole.report()
-    report.save(tmp_path / "figures.svg")
+    whole.save(tmp_path / "figures.svg")
     drawn = (tmp_path / "figures.svg").read_text()
     assert drawn.count("<svg") == 1
-    assert len(report.figure().axes) == 4  # one is empty
-    page = report._repr_html_()
+    assert len(whole.figure().axes) == 4  # one is empty
+    page = whole._repr_html_()
     assert page.count("<table>") == 2
     assert page.count("<svg") == 1
 
 
 def test_no_line_lies_on_another(whole):
     """The closures agree for m1 ≫ m2 and m1 = m2: their dashed lines were drawn on the others."""
-    for panel in whole.report().pictured():
+    for panel in whole.pictured():
         for one, other in combinations(panel.curves, 2):
             same = np.array_equal(one.x, other.x)
             assert not (same and np.allclose(one.y, other.y, rtol=1e-6)), one.label
@@ -105,7 +104,7 @@ def test_no_line_lies_on_another(whole):
 
 
 def test_no_legend_lies_on_a_curve(whole):
-    picture = whole.report().figure()
+    picture = whole.figure()
     FigureCanvasAgg(picture).draw()
     for axes in picture.axes[:3]:  # the fourth is empty
         box = axes.get_legend().get_window_extent()
@@ -117,12 +116,12 @@ def test_no_legend_lies_on_a_curve(whole):
             assert not box.count_contains(at), (axes.get_title(), line.get_label())
 
 
-def test_the_scaling_panel_shows_the_theory_of_each_modulus(whole):
-    found = [panel for panel in whole.report().pictured() if panel.scale == "xy"]
+def test_the_scaling_panel_shows_the_theory_of_each_modulus(whole, scalings):
+    found = [panel for panel in whole.pictured() if panel.scale == "xy"]
     assert len(found) == 1
     symbols, lines = found[0].curves[::2], found[0].curves[1::2]
     assert len(lines) == len(figures.MODULI)
-    for one, line, row in zip(symbols, lines, whole.scaling, strict=True):
+    for one, line, row in zip(symbols, lines, scalings, strict=True):
         assert (one.x.tolist(), line.y.tolist()) == (line.x.tolist(), list(row.theory))
         assert line.label.startswith("theory")
 
@@ -139,6 +138,7 @@ def test_every_figure_is_computed_in_one_call(monkeypatch):
 
     found = figures.figures(progress)
     assert len(shown) == len(figures.RECORDED) + 2 + 1
-    assert [f.N for f in found.forces] == list(figures.RECORDED)
-    assert [s.N for s in found.speeds] == [1, 2]
-    assert len(found.scaling) == 1
+    found = found.document()
+    assert [f["N"] for f in found["forces"]] == list(figures.RECORDED)
+    assert [s["N"] for s in found["speeds"]] == [1, 2]
+    assert len(found["scalings"]) == 1

@@ -472,14 +472,11 @@ def test_the_command(capsys, tmp_path):
     ],
     ids=str,
 )
-def test_bad_input_is_one_line_and_leaves_nothing(
-    capsys, monkeypatch, tmp_path, arguments, message
-):
-    monkeypatch.chdir(tmp_path)
+def test_bad_input_is_one_line_and_leaves_nothing(capsys, folder, arguments, message):
     status, out, err = ended(capsys, cli.main, "sweep", *arguments)
     assert (status, out, err.count("\n")) == (2, "", 1)
     assert err.startswith(f"lwa-validate: {message}")
-    assert list(tmp_path.iterdir()) == []
+    assert list(folder.iterdir()) == []
 
 
 @given(

@@ -1,0 +1,196 @@
+"""Commands as processes: how they begin, and how they end.
+
+A process takes a second of the machine, so that few are started, and each answers many questions.
+Everything else about a command is tested by a call of its ``main`` in the process of the tests.
+"""
+
+import contextlib
+import os
+import pty
+import re
+import select
+import signal
+import subprocess
+import sys
+import termios
+from pathlib import Path
+
+import pytest
+
+from lwa import __version__
+from lwa.command.interrupt import INTERRUPTED
+from lwa.command.terminal import CLOSED
+
+LWA = (sys.executable, "-m", "lwa")
+WAVE = (*LWA, "wave", "--k", "3/2", "--masses", "1,1")
+
+
+def ended(*command, **options):
+    """Exit status, standard output and standard error of a process."""
+    options = {"capture_output": True, "text": True, "timeout": 240} | options
+    done = subprocess.run(command, check=False, **options)
+    return done.returncode, done.stdout, done.stderr
+
+
+# What is loaded
+
+NUMBERS = "numpy scipy matplotlib numba"
+STEPS = {
+    "import lwa, lwa.__main__, validation.__main__": f"sympy click tqdm {NUMBERS}",
+    "from lwa.linear import dispersion": f"click tqdm {NUMBERS}",
+    "from validation.cli import validate": NUMBERS,
+    "call('--help'), call('nothing'), call('--nothing')": NUMBERS,
+    "lwa.canonical_wave(lwa.Cell([1], [1], 1), '3/2').at_force(1).curve([0])": "scipy matplotlib",
+    "call('run', '--example')": "numba matplotlib",
+    "call('paper', '--beads', '12', '--sensors', '4,8')": "matplotlib",
+}
+"""Statements, one after another, and the packages that none of them has loaded so far."""
+
+PROGRAM = """
+import contextlib, io, sys
+
+def call(*arguments):
+    with contextlib.suppress(Exception), contextlib.redirect_stdout(io.StringIO()):
+        validate.main(arguments, standalone_mode=False)
+
+for statement in sys.argv[1:]:
+    exec(statement)
+    print(*sys.modules)
+"""
+
+
+@pytest.fixture(scope="module")
+def loaded():
+    _, out, err = ended(sys.executable, "-c", PROGRAM, *STEPS)
+    assert err == ""
+    return dict(zip(STEPS, out.splitlines(), strict=True))
+
+
+@pytest.mark.parametrize("statement", STEPS)
+def test_a_package_is_loaded_where_it_is_used(loaded, statement):
+    assert not {*STEPS[statement].split()} & {*loaded[statement].split()}
+
+
+def test_the_engine_is_compiled_where_it_runs(loaded):
+    """The last statement runs a chain: that the others load no compiler is no accident."""
+    assert "numba" in loaded[list(STEPS)[-1]].split()
+
+
+# How a process begins and ends
+
+
+@pytest.mark.parametrize(
+    "program",
+    [
+        ("lwa",),
+        LWA,
+        ("lwa-validate",),
+        (sys.executable, "-m", "validation"),
+    ],
+    ids=["lwa", "-m lwa", "lwa-validate", "-m validation"],
+)
+def test_a_program_says_its_name_and_version(program):
+    if len(program) == 1:
+        program = (str(Path(sys.executable).with_name(program[0])),)
+    name = "lwa-validate" if "valid" in program[-1] else "lwa"
+    assert ended(*program, "--version") == (0, f"{name} {__version__}\n", "")
+
+
+def test_a_refusal_is_in_utf_8_whatever_the_locale():
+    environment = os.environ | {"PYTHONIOENCODING": "cp1252"}
+    status, out, err = ended(*LWA, "derive", "--masses", "κ κ", env=environment, encoding="utf-8")
+    assert (status, out, err.count("\n")) == (2, "", 1)
+    assert "'κ κ'" in err
+
+
+def test_a_full_disk_is_one_line():
+    with open("/dev/full", "w") as full:
+        status, _, err = ended(*WAVE, capture_output=False, stdout=full, stderr=subprocess.PIPE)
+    assert (status, err) == (2, "lwa: the output: No space left on device\n")
+
+
+def test_without_any_output_the_status_is_left():
+    assert ended(f"{' '.join(WAVE)} >&- 2>&-", shell=True) == (2, "", "")
+
+
+def test_a_reader_that_stops_early_is_no_failed_comparison():
+    with subprocess.Popen(WAVE, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+        process.stdout.close()
+        assert process.stderr.read() == b""
+        assert process.wait(120) == CLOSED
+
+
+# Ctrl-C
+
+
+QUICK = "import signal\ndef main(): print(signal.getsignal(signal.SIGINT).__name__)"
+SLOW = """if True:
+    import os, signal
+    try:
+        os.kill(os.getpid(), signal.SIGINT)
+    except BaseException:  # as a library's own `except` may
+        pass
+    main = print
+"""
+
+
+def test_ctrl_c_while_a_command_is_loaded_is_one_line(tmp_path):
+    """Once the command is loaded, it hears Ctrl-C itself."""
+    for name, source in (("quick", QUICK), ("slow", SLOW)):
+        (tmp_path / f"{name}.py").write_text(source)
+    code = "from lwa.command.interrupt import start; start('lwa', 'quick'); start('lwa', 'slow')"
+    paths = os.pathsep.join((str(tmp_path), *filter(None, sys.path)))
+    found = ended(sys.executable, "-u", "-c", code, env=os.environ | {"PYTHONPATH": paths})
+    assert found == (INTERRUPTED, "default_int_handler\n", "lwa: interrupted\n")
+
+
+def test_a_long_expansion_says_so_and_stops_at_ctrl_c():
+    command = (*LWA, "expansion", "--masses", "1,1/50", "--order", "100")
+    with subprocess.Popen(
+        command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
+    ) as running:
+        first = running.stderr.readline()
+        running.send_signal(signal.SIGINT)
+        try:
+            _, rest = running.communicate(timeout=60)  # of the minutes that it would take
+        finally:
+            running.kill()
+    assert re.fullmatch(r"the expansion to ε\^100: this may take minutes\n", first)
+    assert rest.strip() == "lwa: interrupted"
+    assert running.returncode == INTERRUPTED
+
+
+CHAIN = """
+duration = 10_000
+samples = 601
+chain = {cell = [1, 0.5], repeat = 20_000, k = 1.5, spacings = 2}
+striker = {velocity = 1}
+sensors = {beads = [9], contacts = [4, 12]}
+"""
+
+
+def test_a_long_run_shows_its_progress_on_a_terminal_and_stops_at_ctrl_c(tmp_path):
+    (tmp_path / "scene.toml").write_text(CHAIN)
+    command = (sys.executable, "-m", "validation", "run", "scene.toml")
+    mine, theirs = pty.openpty()
+    termios.tcsetwinsize(theirs, (24, 80))
+    with subprocess.Popen(
+        [*command, "--plot", "p.svg", "--out", "o.npz"],
+        stdout=subprocess.PIPE, stderr=theirs, text=True, cwd=tmp_path,
+    ) as running:  # fmt: skip
+        os.close(theirs)
+        shown = b""
+        while b"lattice run:" not in shown:
+            assert select.select([mine], [], [], 120)[0], "no progress"
+            shown += os.read(mine, 1000)
+        running.send_signal(signal.SIGINT)
+        out, _ = running.communicate(timeout=60)
+    rest = b""
+    with contextlib.suppress(OSError):  # the other end is closed
+        while some := os.read(mine, 1000):
+            rest += some
+    os.close(mine)
+    assert (running.returncode, out) == (INTERRUPTED, "")
+    assert rest.decode().splitlines()[-1].endswith("lwa-validate: interrupted")
+    assert b"Traceback" not in rest
+    assert [file.name for file in tmp_path.iterdir()] == ["scene.toml"]
