@@ -165,7 +165,7 @@ def _finished(file: Path, header: bytes) -> dict[Key, Point]:
     The first line holds the format and the settings, every other line a point:
 
         {"k": "3/2", "omega": "1", "sites": [56, 64], "numbers": {"width": [1.41192837, 1.4119], …}}
-        {"k": "3/2", "omega": "1/9", "missing": "not steady: the pulse has not passed 320 sites by t = 942"}
+        {"k": "3/2", "omega": "1/9", "missing": "not steady: the pulse has not passed 320 sites"}
 
     A number is followed by the less accurate one that gives its error.
     """
