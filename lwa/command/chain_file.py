@@ -40,7 +40,7 @@ class ChainFile:
 
 
 def read_chain(path: str | Path) -> ChainFile:
-    """The chain of a file.
+    """Read the chain of a file.
 
     Raises `lwa.InputError`, in one line that names file and key, for whatever it cannot mean.
     """
@@ -64,7 +64,7 @@ def _chain(content: Any) -> ChainFile:
 
 
 def _masses(chain: Table) -> tuple[Cell, ContactLaw]:
-    """The smallest cell that, repeated, is a row of masses and its contacts."""
+    """Read the masses and contacts of a chain as its smallest periodic cell, and its law."""
     repeat = int(chain.read("repeat", positive, 1))
     masses = chain.read("cell", each(positive))
     contacts = partial(_contacts, period=len(masses), beads=len(masses) * repeat)
@@ -78,7 +78,7 @@ def _masses(chain: Table) -> tuple[Cell, ContactLaw]:
 
 
 def _contacts(value: Any, name: str, period: int, beads: int) -> list[float]:
-    """One number for all contacts, those of the cell, or one for each of the chain."""
+    """Read the numbers of the contacts: one for all, those of a cell, or those of the chain."""
     if not isinstance(value, list):
         return [positive(value, name)]
     found: list[float] = each(positive)(value, name)

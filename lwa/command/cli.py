@@ -50,7 +50,7 @@ def _cell(chain: dict[str, Any]) -> Cell:
 def _chain(
     spheres: str | None, options: dict[str, Any], symbols: Sequence[sp.Expr | None]
 ) -> tuple[Cell, ContactLaw, sp.Expr, bool, str]:
-    """Cell, law, static load, whether it is in SI, and the chain in text.
+    """Read a chain: cell, law, static load, whether it is in SI, and the chain in text.
 
     symbols : values of the other options; symbols in them must not have names of the output.
     """
@@ -154,7 +154,7 @@ def _canonical(chain: dict[str, Any]) -> None:
 
 
 def _from_file(file: str, chain: dict[str, Any]) -> tuple[dict[str, str], sp.Expr]:
-    """Put the chain of a file in place of the options; its units and its static load.
+    """Put the chain of a file in place of the options; return its units and its static load.
 
     Raises `lwa.InputError` where an option describes a chain too.
     """

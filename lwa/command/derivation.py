@@ -55,7 +55,7 @@ def listed(values: tuple[sp.Expr, ...]) -> str:
 
 
 def _phi(theory: Theory) -> dict[int, sp.Expr]:
-    """n → φ_n in the compression, for a law that has a form."""
+    """Mapping from n to φ_n in the compression, for a law with an expression."""
     law = theory.law
     known = not (law.homogeneous or law.formless)
     return {n: law.phi(n) for n in range(2, max(theory.order, 3))} if known else {}
@@ -115,7 +115,7 @@ def _terms_json(coefficients: Mapping[int, Terms]) -> list[dict[str, Any]]:
 
 
 def _law_text(theory: Theory) -> list[str]:
-    """The φ_n of a law other than a power."""
+    """Lines of text on the φ_n of a law other than a power."""
     law = theory.law
     if law.homogeneous:
         return []

@@ -37,7 +37,7 @@ class PDE(OfClosure):
 
     @cached_property
     def time_scale(self) -> sp.Expr:
-        """τ/t."""
+        """The ratio τ/t of the times."""
         if self.acoustic:
             return self.closure.model.time_scale
         # w = λu strains each contact by (λ - 1)u, and 1 - λ = M/m2.
@@ -47,7 +47,7 @@ class PDE(OfClosure):
 
     @cached_property
     def coefficients(self) -> Mapping[int, Terms]:
-        """Terms at D^{k+n} (optical: D^n) by n, without the power of D; {} if they vanish.
+        """Terms by n at D^{k+n} (optical: D^n), without the power of D; {} for a vanishing order.
 
         The leading term u_x^{k-1} u_xx (or -u^k) is left out.
         """
@@ -138,7 +138,7 @@ class PDE(OfClosure):
 
     @cached_property
     def _fluxes(self) -> dict[int, fmpq_mpoly | None]:
-        """F_n by n ≥ 2, u_x^k E_n = ∂_x (u_x^k F_n); None for an order D^{k+n} without a flux."""
+        """Fluxes F_n by n ≥ 2, u_x^k E_n = ∂_x (u_x^k F_n); None for an order without a flux."""
         return {n: flux(self.closure, n) for n in self._orders}
 
     @cached_property

@@ -60,7 +60,7 @@ class ExpandedWave(Value):
 
     @property
     def momentum(self) -> Resummed:
-        """Σ m v over the chain, proportional to F^{(k+1)/(2k)}."""
+        """Momentum Σ m v of the chain, proportional to F^{(k+1)/(2k)}."""
         return self._at_force(self.expansion.momentum, (self.expansion.k + 1) / 2)
 
     @property
@@ -70,7 +70,7 @@ class ExpandedWave(Value):
 
     @property
     def effective_mass(self) -> Resummed:
-        """P²/(2E) of momentum P and energy E, the same at any force."""
+        """Effective mass P²/(2E) of momentum P and energy E, independent of the force."""
         return self.expansion.effective_mass.at()
 
     def dissipation(self, kind: str) -> Resummed:
