@@ -78,7 +78,7 @@ from lwa.base.tables import Reader, Table, among, array, entries, flag, place, p
 from lwa.law import read_law
 from lwa.spheres.beads import read_beads, read_materials
 from lwa.spheres.hertz import Material, Sphere
-from validation.scenes.checks import SceneError, each, integer, of_scene, positive, real
+from validation.scenes.checks import SceneError, each, integer, positive, real
 from validation.scenes.columns import columns
 from validation.scenes.document import overlap
 from validation.scenes.forcing import DAMPINGS, Damping, Drive
@@ -106,10 +106,9 @@ def read_scene(path: str | Path) -> Scene:
 
     Raises `SceneError`, in one line, for a file that cannot be read or is not a scene.
     """
-    return of_scene(load)(path, "a scene", scene)
+    return load(path, "a scene", scene)
 
 
-@of_scene
 def scene(content: Any) -> Scene:
     """The scene of a parsed file; `SceneError` for unknown keys and invalid values."""
     if isinstance(content, dict) and "scene" in content:
