@@ -1,7 +1,7 @@
 """The chain of a scene's file: its cell, contact law and static load, in SI where it says so.
 
-Every file that `lwa-validate run` takes describes such a chain. What it says besides, of the length
-of the chain, its striker, wall, defects and sensors, is not of the theory.
+Every scene file of `lwa-validate run` describes such a chain. Its other entries, such as length,
+striker, wall, defects and sensors, do not enter the theory.
 """
 
 from __future__ import annotations

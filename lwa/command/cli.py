@@ -186,7 +186,7 @@ def dispersion(
     The exponent matters for unequal contacts, which share the strain by it. With --precompression,
     and masses, stiffnesses and spacing in SI, also the bands in s⁻¹ and the speeds in m/s.
     """
-    from lwa.command import series  # here and below: each command loads what it needs
+    from lwa.command import series  # here and below: each command loads its own modules
     from lwa.linear.dispersion import Dispersion, LoadedChain
 
     loaded = None
