@@ -14,7 +14,7 @@ import pytest
 from hypothesis import settings
 
 # No wall time is asserted, on noisy machines.
-settings.register_profile("lwa", deadline=None, max_examples=40, derandomize=True)
+settings.register_profile("lwa", deadline=None, max_examples=20, derandomize=True)
 settings.load_profile("lwa")
 
 COMPLETE = "LWA_TESTS_COMPLETE"
