@@ -12,106 +12,67 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from lwa.algebra.coefficients import CoefficientRing
-    from lwa.algebra.jets import Monomial
-    from lwa.algebra.model import Model
-    from lwa.base.arrays import Array
-    from lwa.base.exact import InputError, Quantity
-    from lwa.base.quantities import NoSolitaryWave
-    from lwa.cell import Cell, Dimer
+    from lwa.algebra.coefficients import CoefficientRing as CoefficientRing
+    from lwa.algebra.jets import Powers as Powers
+    from lwa.algebra.model import Model as Model
+    from lwa.base.arrays import Array as Array
+    from lwa.base.exact import InputError as InputError
+    from lwa.base.exact import Quantity as Quantity
+    from lwa.base.quantities import NoSolitaryWave as NoSolitaryWave
+    from lwa.cell import Cell as Cell
     from lwa.cell import D as D
+    from lwa.cell import Dimer as Dimer
     from lwa.cell import k as k
-    from lwa.closure.consistency import Closure
-    from lwa.closure.solution import Solution
-    from lwa.envelopes.breather import Breather
-    from lwa.envelopes.schrodinger import Envelope, envelope
-    from lwa.equation.evolution import Evolution
-    from lwa.equation.pde import PDE
-    from lwa.equation.terms import Jet, Powers, Terms
-    from lwa.expansion.approximants import Resummed
-    from lwa.expansion.expand import Expansion, expand
-    from lwa.expansion.physical import ExpandedWave
-    from lwa.expansion.radiation import Radiation
-    from lwa.expansion.series import EpsilonSeries
-    from lwa.expansion.strike import Strike, graded_force, pulse_of_strike, transmitted_force
-    from lwa.law import ContactLaw, Law, Power, general
-    from lwa.linear.dispersion import Dispersion, LoadedChain
-    from lwa.shocks import Shock, piston, shock
-    from lwa.spheres import hertz
-    from lwa.spheres.hertz import Material, Sphere
-    from lwa.theory import Theory, homogenize
-    from lwa.wave.background import BackgroundWave, background_wave
-    from lwa.wave.closed import CompactWave, Reduction
-    from lwa.wave.kdv import KdV
-    from lwa.wave.numeric import NumericWave
-    from lwa.wave.physical import PhysicalWave
-    from lwa.wave.precompressed import PrecompressedWave
-    from lwa.wave.quadrature import NumericBackground
-    from lwa.wave.traveling import TravelingWave, canonical_wave
+    from lwa.closure.consistency import Closure as Closure
+    from lwa.closure.solution import Solution as Solution
+    from lwa.envelopes.breather import Breather as Breather
+    from lwa.envelopes.schrodinger import Envelope as Envelope
+    from lwa.envelopes.schrodinger import envelope as envelope
+    from lwa.equation.evolution import Evolution as Evolution
+    from lwa.equation.pde import PDE as PDE
+    from lwa.equation.terms import Jet as Jet
+    from lwa.equation.terms import Terms as Terms
+    from lwa.expansion.approximants import Resummed as Resummed
+    from lwa.expansion.expand import Expansion as Expansion
+    from lwa.expansion.expand import expand as expand
+    from lwa.expansion.physical import ExpandedWave as ExpandedWave
+    from lwa.expansion.radiation import Radiation as Radiation
+    from lwa.expansion.series import EpsilonSeries as EpsilonSeries
+    from lwa.expansion.strike import Strike as Strike
+    from lwa.expansion.strike import graded_force as graded_force
+    from lwa.expansion.strike import pulse_of_strike as pulse_of_strike
+    from lwa.expansion.strike import transmitted_force as transmitted_force
+    from lwa.law import ContactLaw as ContactLaw
+    from lwa.law import Law as Law
+    from lwa.law import Power as Power
+    from lwa.law import general as general
+    from lwa.linear.dispersion import Dispersion as Dispersion
+    from lwa.linear.dispersion import LoadedChain as LoadedChain
+    from lwa.shocks.riemann import Shock as Shock
+    from lwa.shocks.riemann import piston as piston
+    from lwa.shocks.riemann import shock as shock
+    from lwa.spheres import hertz as hertz
+    from lwa.spheres.hertz import Material as Material
+    from lwa.spheres.hertz import Sphere as Sphere
+    from lwa.theory import Theory as Theory
+    from lwa.theory import homogenize as homogenize
+    from lwa.wave.background import BackgroundWave as BackgroundWave
+    from lwa.wave.background import background_wave as background_wave
+    from lwa.wave.closed import CompactWave as CompactWave
+    from lwa.wave.closed import Reduction as Reduction
+    from lwa.wave.kdv import KdV as KdV
+    from lwa.wave.numeric import NumericWave as NumericWave
+    from lwa.wave.physical import PhysicalWave as PhysicalWave
+    from lwa.wave.precompressed import PrecompressedWave as PrecompressedWave
+    from lwa.wave.quadrature import NumericBackground as NumericBackground
+    from lwa.wave.traveling import TravelingWave as TravelingWave
+    from lwa.wave.traveling import canonical_wave as canonical_wave
 
     __version__: str
 
-__all__ = [
-    "PDE",
-    "Array",
-    "BackgroundWave",
-    "Breather",
-    "Cell",
-    "Closure",
-    "CoefficientRing",
-    "CompactWave",
-    "ContactLaw",
-    "Dimer",
-    "Dispersion",
-    "Envelope",
-    "EpsilonSeries",
-    "Evolution",
-    "ExpandedWave",
-    "Expansion",
-    "InputError",
-    "Jet",
-    "KdV",
-    "Law",
-    "LoadedChain",
-    "Material",
-    "Model",
-    "Monomial",
-    "NoSolitaryWave",
-    "NumericBackground",
-    "NumericWave",
-    "PhysicalWave",
-    "Power",
-    "Powers",
-    "PrecompressedWave",
-    "Quantity",
-    "Radiation",
-    "Reduction",
-    "Resummed",
-    "Shock",
-    "Solution",
-    "Sphere",
-    "Strike",
-    "Terms",
-    "Theory",
-    "TravelingWave",
-    "background_wave",
-    "canonical_wave",
-    "envelope",
-    "expand",
-    "general",
-    "graded_force",
-    "hertz",
-    "homogenize",
-    "piston",
-    "pulse_of_strike",
-    "shock",
-    "transmitted_force",
-]
-
-
 _MODULES = {
     "algebra.coefficients": "CoefficientRing",
-    "algebra.jets": "Monomial",
+    "algebra.jets": "Powers",
     "algebra.model": "Model",
     "wave.background": "BackgroundWave background_wave",
     "wave.kdv": "KdV",
@@ -138,17 +99,18 @@ _MODULES = {
     "equation.evolution": "Evolution",
     "equation.pde": "PDE",
     "base.quantities": "NoSolitaryWave",
-    "shocks": "Shock piston shock",
+    "shocks.riemann": "Shock piston shock",
     "spheres.hertz": "Material Sphere",
-    "equation.terms": "Jet Powers Terms",
+    "equation.terms": "Jet Terms",
     "theory": "Theory homogenize",
     "wave.traveling": "TravelingWave canonical_wave",
 }
 _HOMES = {name: module for module, names in _MODULES.items() for name in names.split()}
+__all__ = sorted(["hertz", *(name for name in _HOMES if name not in ("D", "k"))])
 
 
 def __getattr__(name: str) -> Any:
-    """Each name is loaded when it is first asked for: the command starts before SymPy does."""
+    """Load a public name on its first use, so that the command starts before SymPy does."""
     if name == "__version__":
         from importlib.metadata import version  # here: it takes as long as all the rest
 

@@ -143,21 +143,21 @@ class Cell(Value):
 
     @property
     def size(self) -> int:
-        """P, the number of particles in the cell."""
+        """The number P of particles in the cell."""
         return len(self.masses)
 
     @cached_property
     def mass(self) -> sp.Expr:
-        """M, the mass of the cell."""
+        """The mass M of the cell."""
         return sp.Add(*self.masses)
 
     @cached_property
     def fractions(self) -> tuple[sp.Expr, ...]:
-        """μ_i = m_i / M; they sum to 1."""
+        """The mass fractions μ_i = m_i / M, with the sum 1."""
         return tuple(sp.cancel(m / self.mass) for m in self.masses)
 
     def compliances(self, k: Any = k) -> tuple[sp.Expr, ...]:
-        """A_i^{-1/k}, the strain of contact i up to a common factor.
+        """The A_i^{-1/k}, the strains of the contacts up to a common factor.
 
         Raises `lwa.InputError` for numbers of more than `MOST_BITS`.
         """
@@ -165,7 +165,7 @@ class Cell(Value):
         return tuple(_root(A, k, f"stiffness {i}") for i, A in enumerate(self.stiffnesses, 1))
 
     def shares(self, k: Any = k) -> tuple[sp.Expr, ...]:
-        """c_i = P A_i^{-1/k} / Σ A_j^{-1/k}, the strain of contact i over the mean strain."""
+        """The shares c_i = P A_i^{-1/k} / Σ A_j^{-1/k}, strains of the contacts over their mean."""
         if len(set(self.stiffnesses)) == 1:
             return (sp.Integer(1),) * self.size
         compliances = self.compliances(k)
@@ -173,13 +173,13 @@ class Cell(Value):
         return tuple(self.size * a / total for a in compliances)
 
     def stiffness(self, k: Any = k) -> sp.Expr:
-        """A_eff, the stiffness of equal contacts with the same response."""
+        """The stiffness A_eff of equal contacts with the same response."""
         if len(set(self.stiffnesses)) == 1:
             return self.stiffnesses[0]
         return power(sp.Add(*self.compliances(k)) / self.size, -exponent(k))
 
     def time_scale(self, k: Any = k) -> sp.Expr:
-        """τ/t = √(P k A_eff D^{k+1} / M), by which u_ττ = u_x^{k-1} u_xx at leading order.
+        """The ratio τ/t = √(P k A_eff D^{k+1} / M) of the time in u_ττ = u_x^{k-1} u_xx + ….
 
         For the paper's dimer it is √(2 k D^{k+1} / (m1 + m2)).
         """
@@ -266,7 +266,7 @@ def _from_ratio(
 
 
 def _root(A: sp.Expr, k: sp.Expr, name: str) -> sp.Expr:
-    """A^{-1/k}; a number of more than `MOST_BITS` is refused."""
+    """The power A^{-1/k}; a number of more than `MOST_BITS` is refused."""
     if A.is_Rational and k.is_Rational:
         bits = abs(math.log2(A.p) - math.log2(A.q)) * float(1 / k)
         if bits > MOST_BITS:

@@ -58,19 +58,19 @@ class ContactLaw(Value):
         return sp.S.One
 
     def slope(self, n: int = 1) -> sp.Expr:
-        """F^{(n)}(δ)."""
+        """The n-th derivative F^{(n)}(δ)."""
         return self.F.diff(self.delta, n)
 
     @cached_property
     def energy(self) -> sp.Expr:
-        """W with W′ = F."""
+        """The energy W(δ) of a contact, W′ = F."""
         if self.F.atoms(AppliedUndef):
             s = sp.Dummy("s", positive=True)
             return sp.Integral(self.F.subs(self.delta, s), (s, 0, self.delta))
         return integral(self.F, self.delta)
 
     def phi(self, n: int) -> sp.Expr:
-        """φ_n = δ^{n-1} F^{(n)}/F′ as an expression in δ.
+        """The parameter φ_n = δ^{n-1} F^{(n)}/F′ as an expression in δ.
 
         >>> named("exponential", 1).phi(3)
         delta**2
@@ -78,11 +78,11 @@ class ContactLaw(Value):
         return ratio(self.delta ** (n - 1) * self.slope(n), self.slope())
 
     def at(self, delta: sp.Expr, n: int = 0) -> sp.Expr:
-        """F^{(n)} at a compression."""
+        """The n-th derivative F^{(n)} at a compression."""
         return self.slope(n).subs(self.delta, delta) if n else self.F.subs(self.delta, delta)
 
     def evaluated(self, value: sp.Expr, delta: sp.Expr) -> sp.Expr:
-        """An expression in φ_2, φ_3, … at a compression."""
+        """The value of an expression in φ_2, φ_3, … at a compression."""
         return value.xreplace({s: self._phi_at(s, delta) for s in value.free_symbols})
 
     def _phi_at(self, symbol: sp.Symbol, delta: sp.Expr) -> sp.Expr:
@@ -97,7 +97,7 @@ class ContactLaw(Value):
         return bool(self.F.atoms(AppliedUndef))
 
     def of_strain(self, p: sp.Expr, D: sp.Expr, n: int = 0) -> sp.Expr:
-        """F^{(n)} at a strain, in the units of the wave equation u_ττ = F′(u_x) u_xx; W for n = -1.
+        """The F^{(n)} at a strain in the units of u_ττ = F′(u_x) u_xx; the energy W for n = -1.
 
         It is F(Dp)/D, for a power p^k/k.
         """
@@ -106,7 +106,7 @@ class ContactLaw(Value):
         return self.at(D * p, n) * D ** (n - 1)
 
     def weight(self, p: sp.Expr, D: sp.Expr, a: sp.Expr, b: sp.Expr) -> sp.Expr:
-        """p^a (p F′)^b at a strain, the weight of a jet; p^{a + bk} under a power."""
+        """The weight p^a (p F′)^b of a jet at a strain; p^{a + bk} under a power."""
         return self.at(D * p, 1) ** b * p ** (a + b)
 
     def checked(self, cell: Cell) -> None:
@@ -152,7 +152,7 @@ class ContactLaw(Value):
 
 @dataclass(frozen=True)
 class Power(ContactLaw):
-    """F = δ^k, k > 0 a number or a symbol.
+    """The power law F = δ^k, k > 0 a number or a symbol.
 
     >>> Power("3/2").phi(3)
     -1/4
@@ -204,7 +204,7 @@ class Power(ContactLaw):
 
 @dataclass(frozen=True)
 class Law(ContactLaw):
-    """F(δ), a SymPy expression in the symbol ``delta`` with F′ ≠ 0; see also `general`.
+    """A law F(δ) by a SymPy expression in the symbol ``delta``, F′ ≠ 0; see also `general`.
 
     Raises `lwa.InputError` for anything else: a text is not evaluated.
 
@@ -304,6 +304,14 @@ def named(name: str, *parameters: Any) -> ContactLaw:
     return Law(build(*values), DELTA)
 
 
+def read_law(value: Any, name: str) -> ContactLaw:
+    """Read a law from its name and parameters, such as "hertz2:1,2"; ``name`` is for messages."""
+    if not isinstance(value, str):
+        raise InputError(f"{name} is {shorten(value)}: a text such as 'hertz2:1,2' is wanted")
+    title, colon, parameters = value.partition(":")
+    return named(title.strip(), *(parameters.split(",") if colon else ()))
+
+
 def _uncaptured(value: sp.Expr, name: str, delta: sp.Symbol) -> None:
     """Refuse a law's parameter that holds the symbol of the compression."""
     meant(value, name, taken={delta.name: "the compression of a contact"})
@@ -318,7 +326,7 @@ def _at_most(name: str, parameters: Sequence[Any], letters: tuple[str, ...]) -> 
 def substituted(
     values: Mapping[str, Any], cell: Cell, law: ContactLaw, *expressions: sp.Expr
 ) -> tuple[Any, ...]:
-    """Cell, law and expressions for the values given for their symbols' names, and for ω.
+    """Substitute values for the named symbols, and for ω, in a cell, a law and expressions.
 
     Raises the errors of `lwa.cell.substitution`.
     """
@@ -328,7 +336,7 @@ def substituted(
 
 
 def for_cell(law: Any, cell: Cell) -> ContactLaw:
-    """The law, if it is one and the contacts of the cell can share it.
+    """Return the law; refuse other objects, and a law that the contacts of the cell cannot share.
 
     Raises `lwa.InputError` for anything else.
     """

@@ -38,12 +38,12 @@ class Theory(OfClosure):
 
     @property
     def amplitude_ratio(self) -> sp.Expr:
-        """λ of the branch: 1 acoustic, -m1/m2 optical."""
+        """The amplitude ratio λ of the branch: 1 acoustic, -m1/m2 optical."""
         return self.closure.ratio
 
     @property
     def ansatz(self) -> dict[int, sp.Expr]:
-        """n → b_n of w = λ (u + Σ b_n D^n ∂_x^n u); empty for a cell of one particle.
+        """The b_n by n of w = λ (u + Σ b_n D^n ∂_x^n u); empty for a cell of one particle.
 
         In the full closure w, the field of the second particle, has nonlinear terms besides; all
         of them are in `slaved`.
@@ -52,7 +52,7 @@ class Theory(OfClosure):
 
     @cached_property
     def slaved(self) -> dict[int, dict[int, Terms]]:
-        """Particle i → n → the terms W_n of w_i = u + u_x Σ D^n W_n, full closure (u the field)."""
+        """Terms W_n by particle i and n of w_i = u + u_x Σ D^n W_n (full closure, u the field)."""
         return {
             i: {n: terms(self.closure, S, STRAIN) for n, S in enumerate(series, start=1)}
             for i, series in enumerate(self.closure.solution.slaved)
@@ -76,7 +76,7 @@ class Theory(OfClosure):
 
     @cached_property
     def defect(self) -> dict[int, Terms]:
-        """n → the terms at D^{k+n} of u_ττ by the first equation minus u_ττ by the second.
+        """Terms by n at D^{k+n} of u_ττ by the first equation minus u_ττ by the second.
 
         Only orders at which they disagree are listed: {} says that the ansatz satisfies both
         equations of motion to the order derived.
@@ -84,12 +84,6 @@ class Theory(OfClosure):
         return {
             n: terms(self.closure, d) for n, d in enumerate(self.closure.defect) if not d.is_zero()
         }
-
-    @property
-    def orders(self) -> tuple[Terms, ...]:
-        """All terms of the wave equation, the slaved fields and the defect."""
-        slaved = (found for series in self.slaved.values() for found in series.values())
-        return (*self.pde.coefficients.values(), *slaved, *self.defect.values())
 
     def _repr_latex_(self) -> str:
         return latex.display([*self.closure.latex_rows(4), *self.pde.latex_rows(3)])

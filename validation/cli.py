@@ -7,7 +7,7 @@ Studies are found in the text of their modules, and a module is loaded when its 
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from functools import cache
 from importlib import import_module
 from pathlib import Path
@@ -26,22 +26,19 @@ def studies() -> dict[str, tuple[str, str]]:
     >>> studies()["limits"][0]
     'validation.studies.limits'
     """
-    found = (entry for file in sorted(_STUDIES.glob("*.py")) for entry in _in(file))
-    return {name: (module, says) for module, name, says in found}
+    found = {}
+    for file in sorted(_STUDIES.glob("*.py")):
+        text = file.read_text(encoding="utf-8")
+        if "\n@study(" in text:
+            for node in ast.parse(text).body:
+                if isinstance(node, ast.FunctionDef) and any(map(_marked, node.decorator_list)):
+                    says = (ast.get_docstring(node) or "").partition("\n\n")[0]
+                    found[node.name] = f"validation.studies.{file.stem}", says
+    return found
 
 
-def _in(file: Path) -> Iterator[tuple[str, str, str]]:
-    text = file.read_text(encoding="utf-8")
-    if "\n@study(" not in text:
-        return
-    module = f"validation.studies.{file.stem}"
-    for node in ast.parse(text).body:
-        if not isinstance(node, ast.FunctionDef):
-            continue
-        for mark in node.decorator_list:
-            match mark:
-                case ast.Call(func=ast.Name(id="study")):
-                    yield module, node.name, (ast.get_docstring(node) or "").partition("\n\n")[0]
+def _marked(decorator: ast.expr) -> bool:
+    return ast.unparse(decorator).startswith("study(")
 
 
 class Studies(click.Group):

@@ -19,11 +19,11 @@ from typing import Any
 import sympy as sp
 from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
-from lwa.algebra.partition import Partition, number, rational
+from lwa.algebra.partition import Partition, to_flint, to_sympy
 from lwa.base.exact import InputError
 from lwa.base.frozen import Value
 
-MOST_DIGITS = 4000
+PRINTABLE_DIGITS = 4000
 """Digits of a coefficient; Python prints no integers of more than 4,300."""
 
 
@@ -57,16 +57,16 @@ class CoefficientRing(Value):
         values = (self.k, *(self.masses.values or ()), *(self.contacts.values or ()))
         parts = [int(part) for x in values if x.is_Rational for part in (x.p, x.q)]
         digits = max((part.bit_length() for part in parts), default=0) * math.log10(2)
-        if order * digits > MOST_DIGITS:
+        if order * digits > PRINTABLE_DIGITS:
             raise InputError(
                 f"order is {order}: with numbers of {digits:.0f} digits in the cell or the "
-                f"exponent, coefficients have more than {MOST_DIGITS}"
+                f"exponent, coefficients have more than {PRINTABLE_DIGITS}"
             )
 
     def exponent(self, context: fmpq_mpoly_ctx) -> fmpq_mpoly:
-        """k as an element of a ring that has `names` among its generators."""
+        """The exponent k as an element of a ring that has `names` among its generators."""
         if self.k.is_Rational:
-            return context.constant(rational(self.k))
+            return context.constant(to_flint(self.k))
         generator = context.gen(context.variable_to_index(self._own[0]))
         return generator if self.variables == (self.k,) else 1 + generator
 
@@ -78,7 +78,7 @@ class CoefficientRing(Value):
         names = ("k", *self.masses.names)[: len(polynomial.gens)]
         total = context.constant(0)
         for exponents, coefficient in polynomial.terms():
-            term = context.constant(rational(coefficient))
+            term = context.constant(to_flint(coefficient))
             for name, e in zip(names, exponents, strict=True):
                 if e:
                     term = term * context.gen(context.variable_to_index(name)) ** e
@@ -91,11 +91,11 @@ class CoefficientRing(Value):
 
     @cached_property
     def _constants(self) -> tuple[sp.Poly | None, ...]:
-        """Each constant as a polynomial in k and μ, or None for one that becomes a generator."""
+        """The constants as polynomials in k and μ; None for a constant that becomes a generator."""
         return tuple(map(self._in_fractions, self.constants))
 
     def _in_fractions(self, constant: sp.Expr) -> sp.Poly | None:
-        """A constant as a polynomial in k and the mass fractions; None where it is none."""
+        """Convert a constant to a polynomial in k and the mass fractions; None if impossible."""
         weights = self.masses.distinct if self.masses.names else ()
         scale = sp.Dummy(positive=True)
         scaled = constant.xreplace({w: scale * w for w in weights})
@@ -108,9 +108,9 @@ class CoefficientRing(Value):
         return _as_polynomial(sp.cancel(constant.xreplace(images)), [k, *free])
 
     def expression(self, terms: Sequence[tuple[tuple[int, ...], fmpq]]) -> sp.Expr:
-        """Σ coefficient · Π generator^exponent over `terms`, factored, in the caller's symbols.
+        """The factored SymPy expression of a polynomial, in the caller's symbols.
 
-        The exponents stand in the order of `names`.
+        terms : (exponents in the order of `names`, coefficient) of each of its terms.
 
         >>> m1, m2, k = sp.symbols("m1 m2 k")
         >>> contacts = Partition((sp.S.One,), 1, "c")
@@ -148,12 +148,12 @@ class SymPyConverter:
 
         def element(value: sp.Expr) -> fmpq_mpoly:
             if value.is_Rational:
-                return context.constant(rational(value))
+                return context.constant(to_flint(value))
             poly = polynomial[value]
             if poly is None:
                 return context.gen(self._generators.index(value))
             padding = (0,) * len(opaque)
-            return context.from_dict({(*e, *padding): rational(c) for e, c in poly.terms()})
+            return context.from_dict({(*e, *padding): to_flint(c) for e, c in poly.terms()})
 
         self._images = [element(value) for value in ring.variables]
         self._denominators: list[tuple[slice, fmpq_mpoly]] = []
@@ -187,7 +187,7 @@ class SymPyConverter:
         constant, factors = numerator.factor()
         powers += [self._sum(factor) ** int(multiplicity) for factor, multiplicity in factors]
         # One product: a number times a lone sum would be multiplied out.
-        return sp.Mul(number(constant), *powers)
+        return sp.Mul(to_sympy(constant), *powers)
 
     def _sum(self, polynomial: fmpq_mpoly) -> sp.Expr:
         terms = list(self._terms(polynomial))
@@ -201,7 +201,7 @@ class SymPyConverter:
             if exponents not in self._monomials:
                 powers = (g**e for g, e in zip(self._generators, exponents, strict=True) if e)
                 self._monomials[exponents] = sp.Mul.make_args(sp.Mul(*powers))
-            factor, monomial = number(coefficient), self._monomials[exponents]
+            factor, monomial = to_sympy(coefficient), self._monomials[exponents]
             if factor == 1 or self._irrational or monomial[0].is_Number:
                 yield sp.Mul(factor, *monomial)
             else:  # in canonical order already; sorting it anew would take most of the time

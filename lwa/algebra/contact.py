@@ -20,7 +20,7 @@ from lwa.algebra.jets import JetAlgebra, Ladder
 
 
 class Force(ABC):
-    """The series X and Φ of a contact; both hold the terms that are known so far."""
+    """The series X and Φ of a contact, to which terms are appended order by order."""
 
     def __init__(self, algebra: JetAlgebra, k: fmpq_mpoly) -> None:
         self.k = k
@@ -33,7 +33,7 @@ class Force(ABC):
 
     @property
     def known(self) -> fmpq_mpoly:
-        """Φ_n - X_n of the next order n, which depends on X_1 … X_{n-1} only."""
+        """The nonlinear part Φ_n - X_n of the next order n, known from X_1 … X_{n-1}."""
         if self._known is None:
             self._known = self._nonlinear(len(self.X))
         return self._known
@@ -56,7 +56,7 @@ class Force(ABC):
         return self.Phi.carried(h, n) + self._one.dx(0, n - 1) * fmpq(h**n, factorial(n))
 
     def work(self, n: int) -> fmpq_mpoly:
-        """∫ Φ dX at D^n: the energy less its linear part, over p² F'."""
+        """The coefficient of D^n in ∫ Φ dX, the energy less its linear part, over p² F'."""
         total = self.Phi[0]
         for j in range(1, n):
             total = total + j * self.X[j] * self.Phi[n - j]
@@ -64,7 +64,7 @@ class Force(ABC):
 
 
 class Binomial(Force):
-    """Φ of a power: (1 + X)^k = 1 + k Φ.
+    """The force series Φ of a power law, (1 + X)^k = 1 + k Φ.
 
     With Y = (1 + X)^k the recurrence n Y_n = Σ_{j=1..n} (k j - (n - j)) X_j Y_{n-j} gives
 
@@ -83,18 +83,18 @@ class Binomial(Force):
 
 
 class Smooth(Force):
-    """Φ of a law whose φ_m are parameters of the algebra."""
+    """The force series Φ of a law whose φ_m are parameters of the algebra."""
 
     def __init__(self, algebra: JetAlgebra, k: fmpq_mpoly) -> None:
         super().__init__(algebra, k)
         self._phi = algebra.phi
-        self._powers = Powers(self.X)
+        self._powers = SeriesPowers(self.X)
 
     def _nonlinear(self, n: int) -> fmpq_mpoly:
         return self._powers.sum(self._phi, n)
 
 
-class Powers:
+class SeriesPowers:
     """Powers X^m/m! of a graded series X = Σ_{n≥1} D^n X_n, to which terms may be appended."""
 
     def __init__(self, X: Sequence[fmpq_mpoly]) -> None:
@@ -102,7 +102,7 @@ class Powers:
         self._known: dict[tuple[int, int], fmpq_mpoly] = {}
 
     def term(self, m: int, n: int) -> fmpq_mpoly:
-        """X^m/m! at D^n, n ≥ m ≥ 1."""
+        """The coefficient of D^n in X^m/m!, n ≥ m ≥ 1."""
         if m == 1:
             return self._X[n]
         if (m, n) not in self._known:
@@ -113,7 +113,7 @@ class Powers:
         return self._known[m, n]
 
     def sum(self, coefficients: Sequence[fmpq_mpoly], n: int) -> fmpq_mpoly:
-        """Σ_{m≥2} c_m X^m/m! at D^n."""
+        """The coefficient of D^n in Σ_{m≥2} c_m X^m/m!."""
         total = self._X[0]
         for m in range(2, n + 1):
             total = total + coefficients[m] * self.term(m, n)

@@ -95,19 +95,19 @@ class JetAlgebra:
         self._moving = [*range(max(smooth - 1, 0)), *range(self._offset, self.context.nvars())]
 
     def _theta(self, n: int) -> fmpq_mpoly:
-        """p dφ_n/dp."""
+        """The derivative p dφ_n/dp of a parameter of the law."""
         phi = self.phi
         return phi[n + 1] + (n - 1) * phi[n] - phi[n] * phi[2]
 
     def scaled(self, f: fmpq_mpoly, exponent: fmpq_mpoly | int) -> fmpq_mpoly:
-        """p^{1-e} ∂_p (p^e f) at fixed jets, e the exponent."""
+        """The derivative p^{1-e} ∂_p (p^e f) with respect to p at fixed jets, e the exponent."""
         result = exponent * f
         for n in range(2, len(self.phi) - 1):
             result = result + f.derivative(n - 2) * self._theta(n)
         return result
 
     def dx(self, f: fmpq_mpoly, exponent: fmpq_mpoly | int) -> fmpq_mpoly:
-        """p^{-e} ∂_x (p^e f), e the exponent."""
+        """The derivative p^{-e} ∂_x (p^e f) in x, e the exponent."""
         if f.is_zero():
             return f
         return self._derivation(exponent * self.r[1] * f, f, self._dx)
@@ -127,7 +127,7 @@ class JetAlgebra:
         return result
 
     def velocity_slopes(self, f: fmpq_mpoly) -> list[tuple[int, fmpq_mpoly]]:
-        """(i, ∂f/∂s_i) for each s_i on which f depends."""
+        """Pairs (i, ∂f/∂s_i) for each velocity jet s_i on which f depends."""
         start = self._velocity
         return [(i - start + self._lowest, f.derivative(i)) for i in self._present(f) if i >= start]
 
@@ -139,7 +139,7 @@ class JetAlgebra:
     def _derivation(
         self, result: fmpq_mpoly, f: fmpq_mpoly, images: dict[int, fmpq_mpoly]
     ) -> fmpq_mpoly:
-        """result + Σ ∂f/∂g · image(g) over the jets g."""
+        """Add the derivation Σ ∂f/∂g · image(g) over the jets g to ``result``."""
         for index in self._present(f):
             if index not in images:
                 name = self.context.name(index)
@@ -148,15 +148,15 @@ class JetAlgebra:
         return result
 
     def slope(self, f: fmpq_mpoly, n: int) -> fmpq_mpoly:
-        """∂f/∂r_n; for f of weight n the coefficient of r_n, which no other jet can multiply."""
+        """The slope ∂f/∂r_n; for f of weight n the coefficient of the lone r_n."""
         return f.derivative(self._offset + n - 1)
 
     def integral(self, f: fmpq_mpoly, n: int) -> fmpq_mpoly:
-        """∫ f dr_n."""
+        """The integral ∫ f dr_n."""
         return f.integral(self._offset + n - 1)
 
     def terms(self, f: fmpq_mpoly) -> dict[Monomial, list[Term]]:
-        """Jet monomial of f → the terms of its coefficient."""
+        """Mapping from the jet monomials of f to the terms of their coefficients."""
         found: dict[Monomial, list[Term]] = {}
         for exponents, coefficient in f.terms():
             jets_x = exponents[self._offset : self._velocity]
@@ -167,7 +167,7 @@ class JetAlgebra:
         return found
 
     def antiderivative(self, f: fmpq_mpoly, exponent: fmpq_mpoly) -> fmpq_mpoly | None:
-        """Antiderivative g with ∂_x (p^e g) = p^e f, f of weight 2 or more; None if there is none.
+        """Antiderivative g with ∂_x (p^e g) = p^e f, f of weight 2 or more; None if f has none.
 
         The highest jet of a total derivative stands in it linearly, and its coefficient is the
         slope of g in the jet below; taking that off lowers the highest jet, first of the velocity,
@@ -222,7 +222,7 @@ class JetAlgebra:
 
 
 def exact_quotient(numerator: fmpq_mpoly, divisor: fmpq_mpoly) -> fmpq_mpoly:
-    """numerator/divisor, which must be a polynomial."""
+    """The quotient of two polynomials that divide without a remainder."""
     quotient, remainder = divmod(numerator, divisor)
     if not remainder.is_zero():
         raise AssertionError(f"{divisor} does not divide what it should")
@@ -262,14 +262,14 @@ class Ladder:
         return total
 
     def dx(self, n: int, j: int) -> fmpq_mpoly:
-        """p^{-e} ∂_x^j (p^e f_n)."""
+        """The j-th derivative p^{-e} ∂_x^j (p^e f_n)."""
         rungs = self._rungs[n]
         while len(rungs) <= j:
             rungs.append(self.algebra.dx(rungs[-1], self.exponent))
         return rungs[j]
 
     def velocity_slopes(self, n: int) -> list[tuple[int, fmpq_mpoly]]:
-        """`JetAlgebra.velocity_slopes` of f_n."""
+        """The `JetAlgebra.velocity_slopes` of f_n, computed once."""
         if n not in self._velocity_slopes:
             self._velocity_slopes[n] = self.algebra.velocity_slopes(self[n])
         return self._velocity_slopes[n]

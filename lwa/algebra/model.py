@@ -38,7 +38,7 @@ class Model(Value):
 
     @property
     def time_scale(self) -> sp.Expr:
-        """τ/t of the acoustic branch."""
+        """The ratio τ/t of the acoustic branch."""
         return self.cell.time_scale(self.law.exponent)
 
     @cached_property
@@ -69,7 +69,7 @@ class Model(Value):
     def substitution(
         self, values: Mapping[str, Any], more: Sequence[sp.Symbol]
     ) -> dict[sp.Symbol, sp.Expr]:
-        """Symbol → value by `lwa.cell.substitution`, for cell, law and more symbols."""
+        """Map symbols of cell, law and more to values; see `lwa.cell.substitution`."""
         if self.law.homogeneous:
             return substitution(values, self.cell, self.k, more)
         return substitution(values, self.cell, more=(*self.law.symbols, *more))
@@ -87,5 +87,5 @@ def model_of(cell: Cell, law: ContactLaw, branch: str, order: int) -> Model:
 
 
 def _highest(law: ContactLaw, order: int) -> int:
-    """The n of the highest φ_n at D^{order-1}; the exponent holds φ_2 in any case."""
+    """Index n of the highest φ_n at D^{order-1}; 2 at least, as the exponent holds φ_2."""
     return 0 if law.homogeneous else max(order - 1, 2)

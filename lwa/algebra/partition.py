@@ -15,19 +15,19 @@ from flint import fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 from lwa.base.frozen import Value
 
 
-def rational(value: sp.Expr) -> fmpq:
+def to_flint(value: sp.Expr) -> fmpq:
     """A SymPy rational as a python-flint one."""
     return fmpq(int(value.p), int(value.q))
 
 
-def number(value: fmpq) -> sp.Rational:
+def to_sympy(value: fmpq) -> sp.Rational:
     """A python-flint rational as a SymPy one."""
     return sp.Rational(int(value.p), int(value.q))
 
 
 @dataclass(frozen=True)
 class Partition(Value):
-    """Positive weights w_i of which only the fractions f_i = total · w_i / Σ_j w_j matter.
+    """Positive weights w_i that enter by their fractions f_i = total · w_i / Σ_j w_j only.
 
     The masses of a cell are such weights (total 1), and so are the compliances of its contacts
     (total P).
@@ -44,12 +44,12 @@ class Partition(Value):
 
     @cached_property
     def sum(self) -> sp.Expr:
-        """Σ w_i."""
+        """The sum Σ w_i of the weights."""
         return sp.Add(*self.weights)
 
     @cached_property
     def values(self) -> tuple[sp.Expr, ...] | None:
-        """f_i of each distinct weight if all are rational, else None."""
+        """The fraction f_i of each distinct weight if all are rational, else None."""
         first = self.distinct[0]
         ratios = [w / first if w.is_number else sp.cancel(w / first) for w in self.weights]
         if not all(ratio.is_Rational for ratio in ratios):
@@ -63,10 +63,10 @@ class Partition(Value):
         return tuple(f"{self.letter}{i}" for i in range(count))
 
     def elements(self, context: fmpq_mpoly_ctx) -> list[fmpq_mpoly]:
-        """f_0, f_1, … as elements of a ring that has `names` among its generators."""
+        """The fractions f_0, f_1, … in a ring that has `names` among its generators."""
         if self.values:
             of = {
-                w: context.constant(rational(f))
+                w: context.constant(to_flint(f))
                 for w, f in zip(self.distinct, self.values, strict=True)
             }
         else:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import sympy as sp
 from flint import Ordering, fmpq_mpoly, fmpq_mpoly_ctx
 
-from lwa.algebra.partition import number, rational
+from lwa.algebra.partition import to_flint, to_sympy
 
 Fraction = tuple[fmpq_mpoly, fmpq_mpoly]
 
@@ -43,11 +43,11 @@ class _Field:
         below, bottom = (denominator / common).factor()
         powers = [self._sum(factor) ** int(e) for factor, e in top]
         powers += [self._sum(factor) ** -int(e) for factor, e in bottom]
-        return sp.Mul(number(above) / number(below), *powers)
+        return sp.Mul(to_sympy(above) / to_sympy(below), *powers)
 
     def _fraction(self, value: sp.Expr) -> Fraction:
         if value.is_Rational:
-            return self.context.constant(rational(value)), self.one
+            return self.context.constant(to_flint(value)), self.one
         if value.is_Add:
             numerator, denominator = self.context.constant(0), self.one
             for n, d in map(self._fraction, value.args):
@@ -67,7 +67,7 @@ class _Field:
     def _sum(self, polynomial: fmpq_mpoly) -> sp.Expr:
         return sp.Add(
             *(
-                sp.Mul(number(c), *map(sp.Pow, self.generators, map(int, e)))
+                sp.Mul(to_sympy(c), *map(sp.Pow, self.generators, map(int, e)))
                 for e, c in polynomial.terms()
             )
         )

@@ -13,7 +13,7 @@ LARGE = 32
 
 
 def integral(F: sp.Expr, x: sp.Symbol) -> sp.Expr:
-    """∫ F dx; terms with large powers or poles of linear functions by the rule for powers.
+    """The integral ∫ F dx; large powers and poles of linear functions by the power rule.
 
     SymPy multiplies these out: large powers take long, and the terms of a pole cancel next to it.
     """
@@ -35,7 +35,7 @@ def _integral(value: sp.Expr, x: sp.Symbol) -> sp.Expr:
 
 
 def ratio(top: sp.Expr, bottom: sp.Expr) -> sp.Expr:
-    """top/bottom in lowest terms, large powers not multiplied out.
+    """The ratio top/bottom in lowest terms, large powers not multiplied out.
 
     b^e with |e| > `LARGE` is written as c b^{e - e0} with a symbol c for b^{e0}. The exponents of
     derivatives of one function differ by a few, and c cancels in their ratio.
@@ -55,7 +55,7 @@ def ratio(top: sp.Expr, bottom: sp.Expr) -> sp.Expr:
 
 
 def growing_root(F: sp.Expr, x: sp.Symbol) -> Any:
-    """x > 0 with F = 0 in mpmath's working precision, if F grows from x = 0 up to there, else None.
+    """The first root x > 0 of a function that grows up to there, by mpmath; None without a root.
 
     Steps that leave the interval on which F is real and grows (its pole, its maximum) are halved.
     """
@@ -76,7 +76,7 @@ def growing_root(F: sp.Expr, x: sp.Symbol) -> Any:
 
 
 def _real(function: Callable[[Any], Any]) -> Callable[[Any], Any]:
-    """The function, -∞ at its poles and where it is not real."""
+    """The function with the value -∞ at its poles and where it is not real."""
 
     def value(x: Any) -> Any:
         try:

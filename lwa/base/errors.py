@@ -4,8 +4,8 @@ from __future__ import annotations
 
 
 class InputError(ValueError):
-    """An argument that cannot be meant: the message names it and says what would be right."""
+    """Invalid argument; the message names the argument and says which values are valid."""
 
 
 class NoSolitaryWave(ValueError):
-    """Parameters for which the theory has no solitary wave; the message says why."""
+    """Parameters without a solitary wave in the theory; the message says why."""

@@ -164,7 +164,7 @@ def _writable(number: sp.Rational, name: str) -> sp.Rational:
 
 
 def demand_numbers(free: Collection[sp.Symbol], why: str) -> None:
-    """Raise `InputError` where symbols are left; ``why`` says in the message what needs numbers."""
+    """Raise `InputError` if any symbol is left; ``why`` ends the message."""
     if free:
         raise InputError(f"{min(map(str, free))!r} has no value: {why}")
 
@@ -181,7 +181,7 @@ def number(value: sp.Expr) -> float:
 
 
 def evaluated(value: sp.Expr, digits: int) -> sp.Expr:
-    """An exact number to so many digits, however many its terms cancel (up to thousands)."""
+    """An exact number to the given digits, although its terms cancel up to thousands."""
     return sp.N(value, digits, maxn=MOST_CANCELLED)
 
 
@@ -196,7 +196,7 @@ class Kept(sp.UnevaluatedExpr):  # type: ignore[misc]  # untyped in SymPy
 
 
 def power(base: sp.Expr, exponent: sp.Expr) -> sp.Expr:
-    """base^exponent without numbers of more than a thousand digits.
+    """The power base^exponent without numbers of more than a thousand digits.
 
     SymPy takes whole powers out of roots, and would make such a number of 3^(1 + 1/99999). It fails
     on roots of integers beyond a double (`math.log` of python-flint's integers).
@@ -221,5 +221,5 @@ def power(base: sp.Expr, exponent: sp.Expr) -> sp.Expr:
 
 
 def root(value: sp.Expr) -> sp.Expr:
-    """√value, by `power`."""
+    """The square root, by `power`."""
     return power(value, sp.S.Half)

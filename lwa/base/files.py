@@ -1,4 +1,4 @@
-"""Readers of TOML and JSON files: regular files of limited size, each fault in one line."""
+"""Readers of TOML and JSON files: regular files of limited size, faults in one line."""
 
 from __future__ import annotations
 

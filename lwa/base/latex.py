@@ -24,7 +24,7 @@ def display(rows: list[str]) -> str:
 
 
 def align(rows: list[str]) -> str:
-    """Rows as an environment of a paper, one number a row."""
+    """Rows as an ``align`` environment of a paper, one number a row."""
     return f"\\begin{{align}}\n{_aligned(rows, NOTAG)}\n\\end{{align}}"
 
 
@@ -76,12 +76,12 @@ def width(text: str) -> int:
 
 
 def row(name: str, value: sp.Expr) -> str:
-    """name = value."""
+    """The row ``name = value``."""
     return f"{name} = {expression(value)}"
 
 
 def expression(value: sp.Expr) -> str:
-    """The value; a fraction wider than a line as its factors, whose longest sum can be broken.
+    """LaTeX of a value; a fraction wider than a line as factors, whose longest sum can be broken.
 
     >>> x, y = sp.symbols("x y")
     >>> expression((x + y) / 2)
@@ -108,7 +108,7 @@ SPEED = r"\frac{dx}{dt}"
 
 
 def rows(found: Mapping[str, sp.Expr]) -> list[str]:
-    """name = value, the names in LaTeX; without rows such as F = F.
+    """Rows ``name = value``, the names in LaTeX; without rows such as F = F.
 
     >>> rows({r"\\beta": sp.Integer(2)})
     ['\\\\beta = 2']
@@ -118,7 +118,7 @@ def rows(found: Mapping[str, sp.Expr]) -> list[str]:
 
 
 def power(symbol: sp.Expr, n: int) -> str:
-    """symbol^n.
+    """The power symbol^n in LaTeX.
 
     >>> power(sp.Symbol("D"), 2)
     'D^{2}'
@@ -127,7 +127,7 @@ def power(symbol: sp.Expr, n: int) -> str:
 
 
 def derivative(n: int) -> str:
-    """∂_x^n u.
+    """The derivative ∂_x^n u in LaTeX.
 
     >>> derivative(2), derivative(4)
     ('u_{xx}', 'u_{4x}')
@@ -136,7 +136,7 @@ def derivative(n: int) -> str:
 
 
 def total(terms: Iterable[tuple[sp.Expr, str]]) -> str:
-    """Σ coefficient · factor, with the signs between the terms.
+    """The sum Σ coefficient · factor in LaTeX, with the signs between the terms.
 
     >>> total([(-sp.Symbol("G"), "u"), (sp.Integer(1), "v")])
     '- G u + v'

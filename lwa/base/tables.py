@@ -1,4 +1,4 @@
-"""Parsed files, checked entry by entry: what is unknown, missing or wrong is told by its full key.
+"""Readers of parsed files, entry by entry; faults are named by the full key of the entry.
 
 A reader takes a value and what messages call it, and returns the value checked or raises
 `lwa.InputError`. Numbers of a file are floats.

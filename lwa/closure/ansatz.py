@@ -38,7 +38,7 @@ def linear(model: Model, order: int, progress: Progress[int] = iter) -> Solution
 
 
 def _applied(b: list[fmpq_mpoly], f: Ladder, n: int) -> fmpq_mpoly:
-    """Σ_{0<j<n} b_j ∂_x^j f_{n-j}, the ansatz applied to a series without the term of b_n."""
+    """The ansatz applied to a series, Σ_{0<j<n} b_j ∂_x^j f_{n-j}, without the term of b_n."""
     return sum((b[j] * f.dx(n - j, j) for j in range(1, min(n, len(f)))), f.algebra.zero)
 
 

@@ -56,22 +56,22 @@ class Closure:
 
     @property
     def acceleration(self) -> tuple[fmpq_mpoly, ...]:
-        """E_n of the wave equation; see `Solution`."""
+        """The E_n of the wave equation; see `Solution`."""
         return self.solution.acceleration
 
     @property
     def ansatz(self) -> tuple[fmpq_mpoly, ...]:
-        """b_n, n = 0 … order; () for a cell of one particle."""
+        """The b_n, n = 0 … order, of the ansatz; () for a cell of one particle."""
         return self.solution.ansatz
 
     @property
     def defect(self) -> tuple[fmpq_mpoly, ...]:
-        """E_n by the first equation minus E_n by the second."""
+        """The differences of E_n between the first and the second equation of motion."""
         return self.solution.defect
 
     @property
     def key(self) -> tuple[Any, ...]:
-        """The arguments of `solve`."""
+        """The arguments of `solve`, by which closures are compared."""
         return (self.model, self.order, self.name, self.field)
 
     def __eq__(self, other: object) -> bool:
@@ -107,7 +107,7 @@ class Closure:
 
     @cached_property
     def b(self) -> dict[int, sp.Expr]:
-        """n → b_n of the ansatz, n ≥ 1."""
+        """Mapping from n ≥ 1 to b_n of the ansatz."""
         return {
             n: self.model.ring.expression(self.algebra.terms(b).get(Monomial(()), []))
             for n, b in enumerate(self.ansatz)
@@ -116,7 +116,7 @@ class Closure:
 
     @property
     def fields(self) -> tuple[tuple[fmpq_mpoly, ...], ...]:
-        """S_n of each particle, w_i = φ + D φ_x Σ D^n S_n (acoustic branch)."""
+        """The S_n of each particle, w_i = φ + D φ_x Σ D^n S_n (acoustic branch)."""
         if self.solution.slaved:
             return self.solution.slaved
         r, zero = self.algebra.r, self.algebra.zero
@@ -149,7 +149,7 @@ class OfClosure(Value):
 
     @property
     def cell(self) -> Cell:
-        """The chain."""
+        """The periodic cell of the chain."""
         return self.closure.model.cell
 
     @property
@@ -164,7 +164,7 @@ class OfClosure(Value):
 
 
 def amplitude_ratios(cell: Cell) -> dict[str, sp.Expr]:
-    """λ = w/u of the uniform motions (order D^0) of a two-particle cell, by branch.
+    """Ratios λ = w/u of the uniform motions (order D^0) of a two-particle cell, by branch.
 
     With s the force that w = λu puts on a contact, the equations are m1 ü = 2s and m2 λ ü = -2s.
     They agree where s = 0, that is w = u (acoustic), or where m2 λ + m1 = 0 (optical).

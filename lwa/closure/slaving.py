@@ -97,7 +97,7 @@ class _Slaving:
         self._origin(n)
 
     def _momentum(self, n: int, accelerations: list[fmpq_mpoly]) -> None:
-        """E_n from the sum of the equations: the forces at the cell's ends are left."""
+        """Compute E_n from the sum of the equations of motion, where only the end forces remain."""
         P = len(self.particles)
         E_n = -self.particles[-1].force.carried(-P, n) / P
         for particle, acceleration in zip(self.particles, accelerations, strict=True):
@@ -105,7 +105,7 @@ class _Slaving:
         self.E.append(E_n)
 
     def _strains(self, n: int, accelerations: list[fmpq_mpoly]) -> None:
-        """X_n of each contact: partial sums give Φ_i - Φ_0, Σ strains = w_0(x + PD) - w_0(x)."""
+        """Compute X_n of each contact: partial sums give Φ_i - Φ_0, the cell gives Σ strains."""
         P = len(self.particles)
         first = self.particles[0]
         difference = self.algebra.zero
@@ -121,7 +121,7 @@ class _Slaving:
             particle.force.append(X / P + d)
 
     def _origin(self, n: int) -> None:
-        """S_n of each particle, from the definition Σ weight_i w_i(x - x_i D) = φ."""
+        """Compute S_n of each particle, from the definition Σ weight_i w_i(x - x_i D) = φ."""
         relative = [self.algebra.zero]
         for particle in self.particles[:-1]:
             relative.append(relative[-1] + particle.c * particle.force.X[n])

@@ -49,7 +49,7 @@ class Python(Writer, PythonCodePrinter):  # type: ignore[misc]  # untyped in Sym
     head = ("import math",)
 
     def function(self, function: Function) -> list[str]:
-        """The lines of one function."""
+        """Source lines of a function."""
         return [
             *wrapped(f"def {function.name}({self.arguments(function)}):"),
             f'    """{function.doc}"""',
@@ -77,7 +77,7 @@ class NumPy(Python, NumPyPrinter):  # type: ignore[misc]  # untyped in SymPy
         return wrapped(line if len(line) <= WIDTH else line.replace(names, f"({names})", 1))
 
     def text(self, value: sp.Basic) -> str:
-        """A value on one line."""
+        """The text of a value, on one line."""
         return super().text(value).replace("numpy.", "np.")
 
 
@@ -92,7 +92,7 @@ class C(Writer, C99CodePrinter):  # type: ignore[misc]  # untyped in SymPy
     settings: ClassVar[dict[str, Any]] = {"math_macros": {}}
 
     def function(self, function: Function) -> list[str]:
-        """The lines of one function."""
+        """Source lines of a function."""
         arguments = self.arguments(function, "double ") or "void"
         return [
             f"// {function.doc}",
@@ -134,7 +134,7 @@ class Fortran(Writer, FCodePrinter):  # type: ignore[misc]  # untyped in SymPy
     }
 
     def function(self, function: Function) -> list[str]:
-        """The lines of one function."""
+        """Source lines of a function."""
         kind = "elemental" if function.arguments else "pure"
         head = f"    {kind} real(dp) function {function.name}({self.arguments(function)})"
         local = ", ".join(self.names[symbol] for symbol, _ in function.local)
@@ -168,7 +168,7 @@ class Julia(Writer, JuliaCodePrinter):  # type: ignore[misc]  # untyped in SymPy
     reserved = frozenset({*_MATHEMATICS, *_JULIA})
 
     def function(self, function: Function) -> list[str]:
-        """The lines of one function."""
+        """Source lines of a function."""
         return [
             f'"{function.doc}"',
             *wrapped(f"function {function.name}({self.arguments(function)})"),
@@ -177,7 +177,7 @@ class Julia(Writer, JuliaCodePrinter):  # type: ignore[misc]  # untyped in SymPy
         ]
 
     def text(self, value: sp.Basic) -> str:
-        """A value on one line, with the operators of numbers."""
+        """The text of a value on one line, with the operators of numbers."""
         text: str = re.sub(r" \.?([*/^]) ", r"\1", super().text(value))
         return text
 
@@ -190,7 +190,7 @@ class JavaScript(Writer, JavascriptCodePrinter):  # type: ignore[misc]  # untype
     end = ";"
 
     def function(self, function: Function) -> list[str]:
-        """The lines of one function."""
+        """Source lines of a function."""
         return [
             f"// {function.doc}",
             *wrapped(f"function {function.name}({self.arguments(function)}) {{"),

@@ -90,10 +90,10 @@ class Writer(ABC):
 
     @abstractmethod
     def function(self, function: Function) -> list[str]:
-        """The lines of one function."""
+        """Source lines of a function."""
 
     def text(self, value: sp.Basic) -> str:
-        """A value on one line."""
+        """The text of a value, on one line."""
         return str(self.doprint(value))  # type: ignore[attr-defined]  # SymPy's
 
     def arguments(self, function: Function, kind: str = "") -> str:
@@ -154,7 +154,7 @@ class Writer(ABC):
 
 
 def wrapped(line: str, more: str = "") -> list[str]:
-    """A statement in lines of at most 79 characters; all but the last one end in ``more``.
+    """Break a statement into lines of at most 79 characters; all but the last end in ``more``.
 
     It breaks in as few brackets as it can, behind a comma, a sum's sign or another operator, and
     goes on where the innermost bracket has begun.
@@ -189,7 +189,7 @@ def _breaks(line: str, i: int) -> bool:
 
 
 def _ascii(name: str) -> str:
-    """A name in ASCII letters, digits and underscores: μ1 is mu1."""
+    """Spell a name in ASCII letters, digits and underscores: mu1 for μ1."""
     spelled = "".join(c if re.fullmatch("[A-Za-z0-9_]", c) else _letter(c) for c in name)
     return (spelled if spelled[:1].isalpha() else f"x{spelled}")[:_LONGEST_NAME]
 

@@ -16,9 +16,9 @@ import sympy as sp
 
 from lwa.base.exact import InputError
 from lwa.base.files import load
-from lwa.base.tables import Table, array, each, positive, real, table
+from lwa.base.tables import Table, among, array, each, positive, real, table
 from lwa.cell import Cell, D
-from lwa.law import ContactLaw, Power, named
+from lwa.law import ContactLaw, Power, read_law
 from lwa.spheres.beads import SCENE, spheres
 from lwa.spheres.hertz import EXPONENT
 
@@ -40,7 +40,7 @@ class ChainFile:
 
 
 def read_chain(path: str | Path) -> ChainFile:
-    """The chain of a file.
+    """Read the chain of a file.
 
     Raises `lwa.InputError`, in one line that names file and key, for whatever it cannot mean.
     """
@@ -59,12 +59,12 @@ def _chain(content: Any) -> ChainFile:
     if load < 0:
         raise InputError(f"precompression is {load}: it must not be negative")
     if isinstance(row[0], int | float):
-        return ChainFile(*_masses(chain), load, file.read("units", _text, "") == "SI")
+        return ChainFile(*_masses(chain), load, file.read("units", among({"SI": True}), False))
     return ChainFile(Cell.of_spheres(spheres(content)), Power(EXPONENT), load, True)
 
 
 def _masses(chain: Table) -> tuple[Cell, ContactLaw]:
-    """The smallest cell that, repeated, is a row of masses and its contacts."""
+    """Read the masses and contacts of a chain as its smallest periodic cell, and its law."""
     repeat = int(chain.read("repeat", positive, 1))
     masses = chain.read("cell", each(positive))
     contacts = partial(_contacts, period=len(masses), beads=len(masses) * repeat)
@@ -74,14 +74,11 @@ def _masses(chain: Table) -> tuple[Cell, ContactLaw]:
     stiffnesses = [stiffnesses[i % len(stiffnesses)] for i in range(P)]
     spacing = sp.Rational(str(sum(spacings) / len(spacings))) if spacings else D
     cell = Cell(tuple(masses[:P]), tuple(stiffnesses), spacing)
-    if "law" not in chain:
-        return cell, Power(chain.read("k", real))
-    name, colon, parameters = chain.read("law", _text).partition(":")
-    return cell, named(name, *(parameters.split(",") if colon else ()))
+    return cell, chain.read("law", read_law) if "law" in chain else Power(chain.read("k", real))
 
 
 def _contacts(value: Any, name: str, period: int, beads: int) -> list[float]:
-    """One number for all contacts, those of the cell, or one for each of the chain."""
+    """Read the numbers of the contacts: one for all, those of a cell, or those of the chain."""
     if not isinstance(value, list):
         return [positive(value, name)]
     found: list[float] = each(positive)(value, name)
@@ -98,9 +95,3 @@ def _period(masses: Sequence[float], repeat: int, stiffnesses: Sequence[float]) 
         return all(a == b for a, b in zip(values, values[P:], strict=False))
 
     return next(P for P in range(1, len(row) + 1) if repeats(row, P) and repeats(stiffnesses, P))
-
-
-def _text(value: Any, name: str) -> str:
-    if not isinstance(value, str):
-        raise InputError(f"{name} is {value!r}: a text is wanted")
-    return value

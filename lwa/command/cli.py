@@ -33,12 +33,6 @@ from lwa.law import ContactLaw, Power
 from lwa.spheres.hertz import EXPONENT
 from lwa.theory import Theory, homogenize
 
-DERIVATION = {
-    "text": derivation.derivation_text,
-    "json": derivation.derivation_json,
-    "latex": derivation.derivation_latex,
-    "python": derivation.derivation_python,
-}
 STYLES = ("text", "json", "latex")
 
 
@@ -56,7 +50,7 @@ def _cell(chain: dict[str, Any]) -> Cell:
 def _chain(
     spheres: str | None, options: dict[str, Any], symbols: Sequence[sp.Expr | None]
 ) -> tuple[Cell, ContactLaw, sp.Expr, bool, str]:
-    """Cell, law, static load, whether it is in SI, and the chain in text.
+    """Read a chain: cell, law, static load, whether it is in SI, and the chain in text.
 
     symbols : values of the other options; symbols in them must not have names of the output.
     """
@@ -67,12 +61,11 @@ def _chain(
     return cell, law, static, bool(units), said
 
 
-def _show(result: Any) -> None:
-    click.echo(result if isinstance(result, str) else json.dumps(result, indent=2))
-
-
 def _answer(style: str, answer: Answer) -> None:
-    _show({"text": answer.text, "json": answer.json, "latex": answer.latex}[style]())
+    if style == "json":
+        click.echo(json.dumps(answer.json(), indent=2))
+    else:
+        click.echo(answer.latex() if style == "latex" else answer.text())
 
 
 @click.group(context_settings=HELP)
@@ -85,12 +78,14 @@ def lwa() -> None:
 
 
 @lwa.command()
-@of_chain(DERIVATION)
+@of_chain((*STYLES, "python"))
 def derive(style: str, **chain: Any) -> None:
     """The ansatz, the wave equation and the defect between the equations of motion."""
     theory = _theory("derive", **chain)
-    derivation.write_out(theory)
-    _show(DERIVATION[style](theory))
+    if style == "python":
+        click.echo(derivation.source(theory))
+    else:
+        _answer(style, derivation.derivation(theory, tex=style == "latex"))
 
 
 @lwa.command()
@@ -133,7 +128,7 @@ def wave(
     if style in LANGUAGES:
         if force is not None:
             raise InputError(f"--format {style} is for any force: --force goes with {_STYLES}")
-        _show(waves.source(theory, load if under_load else None, style))
+        click.echo(waves.source(theory, load if under_load else None, style))
     elif under_load:
         _answer(style, waves.under_load(theory, load, units))
     else:
@@ -159,7 +154,7 @@ def _canonical(chain: dict[str, Any]) -> None:
 
 
 def _from_file(file: str, chain: dict[str, Any]) -> tuple[dict[str, str], sp.Expr]:
-    """Put the chain of a file in place of the options; its units and its static load.
+    """Put the chain of a file in place of the options; return its units and its static load.
 
     Raises `lwa.InputError` where an option describes a chain too.
     """
@@ -271,8 +266,12 @@ def strike(
 @click.option("--precompression", callback=quantity, help="Static force.")
 @setting("--wavenumber", "pi", "κ per cell: a number, a name, or a part of pi.", callback=angle)
 @click.option("--branch", help="acoustic, optical or a number from 0; optical where there is one.")
-@click.option("--frequency", callback=quantity, help="Frequency of a breather, rad per time.")
-@click.option("--detuning", callback=quantity, help="1 - frequency/ω of a breather.")
+@click.option(
+    "--frequency",
+    callback=quantity,
+    help="Frequency f of a breather: in Hz for a file in SI, else in radians per unit of time.",
+)
+@click.option("--detuning", callback=quantity, help="1 - f/f0 of a breather, f0 the band's edge.")
 def envelope_of_a_mode(
     style: str,
     spheres: str | None,
@@ -284,7 +283,11 @@ def envelope_of_a_mode(
     detuning: sp.Expr | None,
     **chain: Any,
 ) -> None:
-    """The nonlinear Schrödinger equation of a mode of a chain under load, and its breathers."""
+    """The nonlinear Schrödinger equation of a mode of a chain under load, and its breathers.
+
+    Symbols and plain numbers have frequencies in radians per unit of time. A file in SI, of spheres
+    say, has m, N and Hz.
+    """
     from lwa.command import envelopes
     from lwa.envelopes.schrodinger import envelope
 
@@ -293,6 +296,8 @@ def envelope_of_a_mode(
     values = (background, precompression, frequency, detuning, wavenumber)
     cell, law, static, si, said = _chain(spheres, chain, values)
     place = int(branch) if branch and branch.isdecimal() else branch
+    if static and (background is not None or precompression is not None):
+        raise InputError(f"the file has a precompression of {static}: give no other load")
     load = {"background": background, "precompression": static or precompression}
     found = envelope(cell, law, **load, wavenumber=wavenumber, branch=place)
     symbols = {*cell.symbols, *found.compression.free_symbols, *wavenumber.free_symbols}
@@ -300,7 +305,8 @@ def envelope_of_a_mode(
         found = found.numeric()  # exact results want a frequency that is algebraic
     breather = None
     if frequency is not None or detuning is not None:
-        breather = found.breather(frequency, detuning=detuning)
+        angular = frequency and frequency * (2 * sp.pi if si else 1)
+        breather = found.breather(angular, detuning=detuning)
     _answer(style, envelopes.envelope(found, breather, envelopes.UNITS if si else {}, said))
 
 
@@ -320,8 +326,8 @@ def front_of_a_wall(
 ) -> None:
     """The shock, or the rarefaction, of a chain that a wall drives."""
     from lwa.command import shocks
-    from lwa.shocks import piston as driven
-    from lwa.shocks import shock
+    from lwa.shocks.riemann import piston as driven
+    from lwa.shocks.riemann import shock
 
     if (behind is None) == (piston is None):
         raise InputError("--behind or --piston: one of the two is wanted")

@@ -1,4 +1,4 @@
-"""A derivation as text, JSON, LaTeX and the source of a Python module: `lwa derive`."""
+"""A derivation as rows, and as the source of a Python module: `lwa derive`."""
 
 from __future__ import annotations
 
@@ -9,28 +9,16 @@ import sympy as sp
 
 from lwa.base import latex
 from lwa.base.exact import InputError
-from lwa.base.progress import announced
 from lwa.code.languages import LANGUAGES
+from lwa.command.rows import Answer, Row, Values
 from lwa.equation.terms import Jet, Terms
 from lwa.theory import Theory
 from lwa.wave.functions import function_of, in_order
-
-MANY_TERMS = 100_000
-"""Terms of coefficients that take half a minute to write, 0.3 ms each (orders 8 to 12)."""
 
 FIELDS = {
     "first": "u is the displacement of the cell's first particle",
     "center": "u is the canonical field, the mass-weighted mean of the fields at one point",
 }
-
-
-def write_out(theory: Theory) -> None:
-    """Write all coefficients as text, which is kept; with progress where it takes long."""
-    jets = [(found, jet) for found in theory.orders for jet in found]
-    length = sum(found.length(jet) for found, jet in jets)
-    progress = announced(f"{length} terms to be written") if length > MANY_TERMS else iter
-    for found, jet in progress(jets):
-        found.written(jet)
 
 
 def chain_json(theory: Theory) -> dict[str, Any]:
@@ -67,27 +55,26 @@ def listed(values: tuple[sp.Expr, ...]) -> str:
 
 
 def _phi(theory: Theory) -> dict[int, sp.Expr]:
-    """n → φ_n in the compression, for a law that has a form."""
+    """Mapping from n to φ_n in the compression, for a law with an expression."""
     law = theory.law
     known = not (law.homogeneous or law.formless)
     return {n: law.phi(n) for n in range(2, max(theory.order, 3))} if known else {}
 
 
-# --- JSON -------------------------------------------------------------------------------------
+def derivation(theory: Theory, tex: bool = False) -> Answer:
+    """The ansatz, the wave equation and the defect: `lwa derive`.
 
+    In JSON ``terms`` are the right-hand side of u_ττ after its leading term. ``slaved`` (full
+    closure) are the terms W_n of w_i = u + u_x Σ D^n W_n by particle, 1 being the first, in the
+    same form.
 
-def derivation_json(theory: Theory) -> dict[str, Any]:
-    """The object that `lwa derive --format json` prints.
-
-    ``terms`` are the right-hand side of u_ττ after its leading term. ``slaved`` (full closure) are
-    the terms W_n of w_i = u + u_x Σ D^n W_n by particle, 1 being the first, in the same form.
+    tex : whether LaTeX is wanted; that of a high order takes as long as the derivation.
     """
-    found = theory.pde.third_order
-    return {
+    head: Values = {
         **chain_json(theory),
         "lambda": str(theory.amplitude_ratio),
-        "ansatz": {str(n): str(b) for n, b in theory.ansatz.items()},
-        **{name: str(found[name]) if found else None for name in "GHI"},
+        "ansatz": {},
+        **dict.fromkeys("GHI"),
         "terms": _terms_json(theory.pde.coefficients),
         "vanishing": list(theory.pde.vanishing),
         "slaved": [
@@ -98,6 +85,20 @@ def derivation_json(theory: Theory) -> dict[str, Any]:
         "defect": _terms_json(theory.defect),
         "conservative": theory.pde.conservative,
     }
+    rows = [
+        chain_text(theory),
+        f"closure {theory.closure.name}, {theory.closure.model.branch} branch, to "
+        f"D^{theory.order}; τ = t·{theory.pde.time_scale}",
+        FIELDS[theory.closure.field],
+        *_law_text(theory),
+        "",
+        *_ansatz(theory),
+        *_equation(theory),
+        "",
+        *_consistency_text(theory),
+    ]
+    own = [*theory.closure.latex_rows(), *theory.pde.latex_rows()] if tex else []
+    return Answer(head, rows, equations=[*_law_latex(theory), *own])
 
 
 def _terms_json(coefficients: Mapping[int, Terms]) -> list[dict[str, Any]]:
@@ -113,28 +114,8 @@ def _terms_json(coefficients: Mapping[int, Terms]) -> list[dict[str, Any]]:
     ]
 
 
-# --- text -------------------------------------------------------------------------------------
-
-
-def derivation_text(theory: Theory) -> str:
-    """The lines that `lwa derive` prints."""
-    lines = [
-        chain_text(theory),
-        f"closure {theory.closure.name}, {theory.closure.model.branch} branch, to "
-        f"D^{theory.order}; τ = t·{theory.pde.time_scale}",
-        FIELDS[theory.closure.field],
-        *_law_text(theory),
-        "",
-        *_ansatz_text(theory),
-        *_equation_text(theory),
-        "",
-        *_consistency_text(theory),
-    ]
-    return "\n".join(lines)
-
-
 def _law_text(theory: Theory) -> list[str]:
-    """The φ_n of a law other than a power."""
+    """Lines of text on the φ_n of a law other than a power."""
     law = theory.law
     if law.homogeneous:
         return []
@@ -142,28 +123,35 @@ def _law_text(theory: Theory) -> list[str]:
     return lines + [f"  phi{n} = {value}" for n, value in _phi(theory).items()]
 
 
-def _ansatz_text(theory: Theory) -> list[str]:
-    blocks: list[list[str]] = []
+def _ansatz(theory: Theory) -> list[Row | str]:
+    rows: list[Row | str] = []
+    if theory.ansatz:
+        rows += [
+            "w = λ (u + Σ b_n D^n ∂_x^n u), the linear part of the second particle's field",
+            f"  λ = {theory.amplitude_ratio}",
+            *(_exact(f"ansatz.{n}", f"b{n}", b) for n, b in theory.ansatz.items()),
+            "",
+        ]
     for i, series in theory.slaved.items():
         w = i == 1  # the second particle's field, whose linear part is the ansatz
         shown = {n: W.without(_is_linear) if w else W for n, W in series.items()}
-        if rows := _orders(shown, "D^", ""):
+        if lines := _orders(shown, "D^", ""):
             name = "nonlinear terms of w" if w else f"field of particle {i + 1}, less u"
-            blocks.append([f"{name}:", *rows, ""])
-    if theory.ansatz:
-        ansatz = ["w = λ (u + Σ b_n D^n ∂_x^n u), the linear part of the second particle's field"]
-        ansatz.append(f"  λ = {theory.amplitude_ratio}")
-        ansatz += [f"  b{n} = {b}" for n, b in theory.ansatz.items()]
-        blocks.insert(0, [*ansatz, ""])
-    return [line for block in blocks for line in block]
+            rows += [f"{name}:", *lines, ""]
+    return rows
+
+
+def _exact(key: str, label: str, value: sp.Expr) -> Row:
+    return Row(key, label, value, number=None)
 
 
 def _is_linear(jet: Jet) -> bool:
     return not jet.t and sum(e for _, e in jet.x) <= 1
 
 
-def _equation_text(theory: Theory) -> list[str]:
+def _equation(theory: Theory) -> list[Row | str]:
     found = theory.pde.third_order
+    lines: list[Row | str]
     if theory.closure.model.branch == "optical":
         lines = ["u_ττ = -u^k + …   (contacts that also pull: the odd law |δ|^(k-1) δ)"]
     elif theory.order == 1:
@@ -176,7 +164,7 @@ def _equation_text(theory: Theory) -> list[str]:
         parts = [f"{name}{p} {jet}" for name, p, jet in zip(_LETTERS, powers, jets, strict=True)]
         more = theory.order > (4 if found else 2)
         lines = ["u_ττ = " + " + ".join(parts if found else parts[:1]) + (" + …" if more else "")]
-        lines += [f"  {name} = {value}" for name, value in found.items()]
+        lines += [_exact(name, name, value) for name, value in found.items()]
     prefix, suffix = _order_name(theory)
     shown = {n: c for n, c in theory.pde.coefficients.items() if not (found and n == 3)}
     lines += _orders(shown, prefix, suffix)
@@ -218,16 +206,6 @@ def _orders(coefficients: Mapping[int, Terms], prefix: str, suffix: str) -> list
     return lines
 
 
-# --- LaTeX and Python -------------------------------------------------------------------------
-
-
-def derivation_latex(theory: Theory) -> str:
-    """The law, the ansatz and the wave equation to all orders, as LaTeX."""
-    return latex.align(
-        [*_law_latex(theory), *theory.closure.latex_rows(), *theory.pde.latex_rows()]
-    )
-
-
 def _law_latex(theory: Theory) -> list[str]:
     law = theory.law
     if law.homogeneous:
@@ -240,7 +218,7 @@ def _law_latex(theory: Theory) -> list[str]:
     return rows + [latex.row(rf"\phi_{{{n}}}", value) for n, value in _phi(theory).items()]
 
 
-def derivation_python(theory: Theory) -> str:
+def source(theory: Theory) -> str:
     """The source of a module with b1 …, G, H, I, and all coefficients by order and jet."""
     if not theory.law.homogeneous:
         raise InputError("--format python is for power laws: others have text, json and latex")

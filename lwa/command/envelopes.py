@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+import sympy as sp
+
 from lwa.base.exact import InputError
 from lwa.command.rows import Answer, Row
 from lwa.envelopes.breather import Breather
@@ -15,18 +17,22 @@ def envelope(
 ) -> Answer:
     """The nonlinear Schrödinger equation of a mode, and the breather of a frequency.
 
-    Wavenumbers and lengths are in cells, ``frequency`` in radians per unit of time, ``amplitude``
-    the largest displacement of each bead and ``width`` 1/b of the envelope sech(bn) or tanh(bn).
+    Wavenumbers and lengths are in cells, frequencies in radians per unit of time, for a chain in
+    SI in Hz. ``amplitude`` is the largest displacement of each bead, ``width`` 1/b of the envelope
+    sech(bn) or tanh(bn), ``opening_load`` the static force at which contacts begin to open if the
+    frequency, or the amplitude, is held.
 
     spoken : the chain in text.
     """
+    turn = 2 * sp.pi if units else sp.S.One
+    name, symbol = ("ω/(2π)", r"\omega / 2 \pi") if units else ("ω", r"\omega")
     rows: list[Row | str] = [
         spoken,
         "u = A(X, T) φ e^{i(κ n - ω t)} + c.c., Σ m |φ|² = 1, n and κ per cell",
         "i A_T + ½ ω'' A_XX = χ |A|² A",
         "",
         Row("wavenumber", "κ", found.wavenumber, r"\kappa", number=None),
-        Row("frequency", "ω", found.frequency, r"\omega"),
+        Row("frequency", f"frequency {name}", found.frequency / turn, symbol),
         Row("group_velocity", "dω/dκ", found.group_velocity, r"\omega'"),
         Row("dispersion", "ω''", found.dispersion, r"\omega''"),
         Row("nonlinearity", "χ", found.nonlinearity, r"\chi"),
@@ -42,22 +48,34 @@ def envelope(
         rows += [
             "",
             f"{breather.kind} breather, |A| = a {shape}(b n):",
-            Row("breather_frequency", "frequency", breather.frequency, r"(1 - \nu) \omega"),
-            Row("detuning", "detuning ν", breather.detuning, r"\nu"),
+            Row("breather_frequency", f"frequency {name}", breather.frequency / turn),
+            Row("detuning", "detuning ν = 1 - f/f0", breather.detuning, r"\nu"),
             Row("amplitude", "largest displacement by bead", breather.amplitude, r"2 a \phi"),
             Row("width", "width 1/b in cells", breather.width, "b^{-1}"),
-            Row("opening_detuning", _OPENING, breather.opening_detuning),
         ]
+        if breather.opening != sp.oo:
+            rows.append(Row("opening_detuning", _OPENING, breather.opening_detuning))
+        if breather.opening != sp.oo and breather.k is not sp.nan:
+            for held, label in _LOADS.items():
+                load = breather.opening_load(held)
+                load = sp.N(load, 15) if load.is_Rational else load  # sixth powers have many digits
+                rows.append(Row(f"opening_load.{held}", label, load))
     return Answer(head, rows, units, found.cell.spacing)
 
 
-_OPENING = "detuning from which on contacts open"
+_OPENING = "contacts open from the detuning"
+_LOADS = {
+    "frequency": "at this frequency, from the load F0",
+    "amplitude": "at this amplitude, below the load F0",
+}
 
 UNITS = {
-    "frequency": "rad/s",
+    "frequency": "Hz",
     "group_velocity": "cells/s",
     "dispersion": "cells²/s",
-    "breather_frequency": "rad/s",
+    "nonlinearity": "1/(s kg m²)",
+    "breather_frequency": "Hz",
     "amplitude": "m",
+    "opening_load": "N",
 }
-"""Units of an envelope of a chain in SI; χ is in rad/(s kg m²)."""
+"""Units of an envelope of a chain in SI."""

@@ -34,22 +34,22 @@ def _one_of(values: Iterable[str]) -> click.Choice[str]:
 
 
 def _choice(name: str, values: Sequence[str], help_text: str) -> Option:
-    """An option that is one of a few names, the first by default."""
+    """An option with a few names for its values, the first by default."""
     return setting(name, values[0], help_text, type=_one_of(values))
 
 
 def exponent(default: str) -> Option:
-    """``--k``."""
+    """The option ``--k``."""
     return setting("--k", default, "Exponent of the contact law.", callback=quantity)
 
 
 def order_option(help_text: str) -> Option:
-    """``--order``."""
+    """The option ``--order``."""
     return setting("--order", "4", help_text, callback=count)
 
 
 def law_option(help_text: str) -> Option:
-    """``--law``."""
+    """The option ``--law``."""
     return click.option(
         "--law",
         metavar="NAME[:PARAM,…]",
@@ -60,7 +60,7 @@ def law_option(help_text: str) -> Option:
 
 
 def style_option(formats: Iterable[str]) -> Option:
-    """``--format``, one of these."""
+    """The option ``--format``."""
     return setting(
         "--format", "text", "How to print the result.", names=("style",), type=_one_of(formats)
     )

@@ -8,23 +8,23 @@ import click
 import sympy as sp
 
 from lwa.base.exact import exact, integer
-from lwa.law import ContactLaw, named
+from lwa.law import ContactLaw, read_law
 
 
 def quantity(context: click.Context, option: click.Parameter, value: str | None) -> sp.Expr | None:
-    """Callback of an option that is an integer, a decimal, a fraction or a plain name."""
+    """Callback of click that reads an integer, a decimal, a fraction or a plain name."""
     return None if value is None else exact(value, called(option))
 
 
 def quantities(
     context: click.Context, option: click.Parameter, value: str | None
 ) -> tuple[sp.Expr, ...]:
-    """Callback of an option that is a list of quantities, separated by commas; () when absent."""
+    """Callback of click that reads quantities separated by commas; () when absent."""
     return tuple(exact(part, called(option)) for part in value.split(",")) if value else ()
 
 
 def angle(context: click.Context, option: click.Parameter, value: str) -> sp.Expr:
-    """Callback of an option that is a quantity or a part of pi, such as pi, pi/3 or 2pi/3."""
+    """Callback of click that reads a quantity or a part of pi, such as pi, pi/3 or 2pi/3."""
     part = re.fullmatch(r"([0-9]*)\*?pi(?:/([1-9][0-9]*))?", value.strip())
     if part is None:
         return exact(value, called(option))
@@ -32,7 +32,7 @@ def angle(context: click.Context, option: click.Parameter, value: str) -> sp.Exp
 
 
 def count(context: click.Context, option: click.Parameter, value: str) -> int:
-    """Callback of an option that is an integer from 1 on."""
+    """Callback of click that reads an integer from 1 on."""
     name = called(option)
     return integer(exact(value, name), name, 1)
 
@@ -40,11 +40,8 @@ def count(context: click.Context, option: click.Parameter, value: str) -> int:
 def contact_law(
     context: click.Context, option: click.Parameter, value: str | None
 ) -> ContactLaw | None:
-    """Callback of an option that is NAME or NAME:PARAM,…, as `lwa.law.named` takes them."""
-    if value is None:
-        return None
-    name, colon, parameters = value.partition(":")
-    return named(name, *(parameters.split(",") if colon else ()))
+    """Callback of click that reads NAME or NAME:PARAM,… of a law in `lwa.law.named`."""
+    return None if value is None else read_law(value, called(option))
 
 
 def called(option: click.Parameter) -> str:

@@ -31,13 +31,13 @@ Values = dict[str, Any]
 
 @dataclass(frozen=True)
 class Row:
-    """A result.
+    """A result of a command: one value with its names in JSON, text and LaTeX.
 
     key : name in JSON; "fwhm.force" is the entry "force" of "fwhm". Not in JSON where empty.
     label : name in text; not in text where empty.
     symbol : name in LaTeX; not in LaTeX where empty.
     number : the expression whose digits are told, where it is not the value; None for none.
-    exact : whether JSON has the expression itself, besides its digits.
+    expression : whether JSON has the expression itself, besides its digits.
     formula : LaTeX in place of the value's own where that is wider than a line.
     """
 
@@ -46,7 +46,7 @@ class Row:
     value: Any
     symbol: str = ""
     number: Any = SAME
-    exact: bool = True
+    expression: bool = True
     formula: str = ""
 
     @property
@@ -100,7 +100,7 @@ class Answer:
         result = dict(self.head)
         rows = [row for row in self.rows if isinstance(row, Row) and row.key]
         for row in rows:
-            if row.exact and isinstance(row.value, sp.Expr | tuple | list):
+            if row.expression and isinstance(row.value, sp.Expr | tuple | list):
                 _put(result, row.key, "", _each(str, row.value))
         for row in rows:
             self._put_digits(result, row)
@@ -142,7 +142,7 @@ class Answer:
         if isinstance(row.digits, Resummed):
             return f" = {summed(row.digits, unit, self.orders)}"
         parts = row.value if isinstance(row.value, tuple) else (row.value,)
-        if row.number is not SAME and row.exact is False and row.number is not None:
+        if row.number is not SAME and row.expression is False and row.number is not None:
             parts = (row.number,)
         told = row.number is not None
         return " = " + ", ".join(self._shown(x, told) for x in dict.fromkeys(parts)) + unit
@@ -215,7 +215,7 @@ def _each(read: Callable[[sp.Expr], Any], value: Any) -> Any:
 
 
 def as_float(value: sp.Expr) -> float | None:
-    """The nearest float of an exact number, None for what is symbolic, complex or out of range."""
+    """The nearest float of an exact number; None if symbolic, complex or out of range."""
     if value.free_symbols:
         return None
     number = evaluated(value, 30)
@@ -225,7 +225,7 @@ def as_float(value: sp.Expr) -> float | None:
 
 
 def attempt(read: Callable[..., Any], *arguments: Any) -> Any:
-    """The result of a call, or the fault that says why there is none."""
+    """The result of a call, or the `InputError` that it raises."""
     try:
         return read(*arguments)
     except InputError as fault:
@@ -246,7 +246,7 @@ def approximate(value: sp.Expr, tex: bool = False) -> str:
 
 
 def summed(found: Resummed, unit: str, order: bool) -> str:
-    """A sum to as many digits as the error lets stand, and one more; with its order."""
+    """A sum in text: one digit more than its error leaves, the error, and the order."""
     if math.isnan(found.error):
         return f"{found.value:.4g}{unit}, error unknown"
     digits = min(16, 2 - math.floor(math.log10(found.error / found.value)))

@@ -157,7 +157,7 @@ _LABELS = {
 
 
 def _sums(found: Expansion, series: Mapping[str, EpsilonSeries]) -> dict[str, Any]:
-    """Key → sum, with the effective mass and, for equal beads, the dissipation."""
+    """Sums by key, with the effective mass and, for equal beads, the dissipation."""
     sums = {key: attempt(one.at) for key, one in series.items()}
     sums["effective_mass"] = attempt(found.effective_mass.at)
     if len({*found.cell.masses}) == len({*found.cell.stiffnesses}) == 1:
@@ -207,8 +207,8 @@ def strike(found: Strike, units: Mapping[str, str], notes: list[str]) -> Answer:
     rows: list[Row | str] = [
         f"chain of equal beads; F = A δ^k, k = {found.chain.k}",
         Row("", "mass of the beads", cell.masses[0]),
-        Row("mass", "mass of the striker", found.mass, "m_{s}", exact=False),
-        Row("velocity", "velocity of the striker", found.velocity, "v", exact=False),
+        Row("mass", "mass of the striker", found.mass, "m_{s}", expression=False),
+        Row("velocity", "velocity of the striker", found.velocity, "v", expression=False),
         "",
         "leading pulse:",
         Row("force", "peak contact force", found.force, "F"),
@@ -233,7 +233,7 @@ def _series_json(series: EpsilonSeries) -> Values:
 
 
 def _letter(expansion: Expansion) -> str:
-    """The first letter a for which no symbol is called a_n, a0, a1, …"""
+    """The letter of the coefficients in text: the first that no symbol uses with a number."""
     names = {s.name for s in (*expansion.cell.symbols, *expansion.k.free_symbols)}
     taken = {name[0] for name in names if name[1:] == "_n" or name[1:].isdecimal()}
     return next(letter for letter in ascii_lowercase if letter not in taken)

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from lwa.base.errors import InputError
 from lwa.command.rows import Answer, Row, attempt
-from lwa.shocks import RULES, Shock
+from lwa.shocks.riemann import RULES, Shock
 
 
 def shock(found: Shock, units: Mapping[str, str], spoken: str) -> Answer:
@@ -43,7 +43,7 @@ def shock(found: Shock, units: Mapping[str, str], spoken: str) -> Answer:
             wave, force = attempt(lambda: found.wave.speed), attempt(lambda: found.wave.F)
             rows += [
                 Row("series.speed", "leading pulse, series", wave),
-                Row("series.force", "peak force, series", force, exact=False),
+                Row("series.force", "peak force, series", force, expression=False),
             ]
     faults = (row.value for row in rows if isinstance(row, Row))
     notes = dict.fromkeys(str(fault) for fault in faults if isinstance(fault, InputError))

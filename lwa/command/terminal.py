@@ -1,17 +1,15 @@
 """The end of every command of this project: output, exit status, one clear line for a fault.
 
-Where the output's encoding lacks a letter (a redirection on Windows is cp1252) its name is
-printed: beta for β.
+Text is written in UTF-8 whatever the locale says, as its Greek letters need (a redirection on
+Windows would be cp1252).
 """
 
 from __future__ import annotations
 
-import codecs
 import errno
 import io
 import os
 import sys
-import unicodedata
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -29,30 +27,6 @@ CLOSED = 141
 version = click.version_option(package_name="lwa", message="%(prog)s %(version)s")
 """The option ``--version`` of a command."""
 
-_PAIRS = "≈~ ∝~ ≤<= ≥>= √sqrt_ ∂d …... ·* ±+- ¹1 ²^2 ³^3 ⁴^4 ⁻^- →-> ×x ½1/2_"
-SIGNS = {pair[0]: pair[1:].replace("_", " ") for pair in _PAIRS.split()}
-"""ASCII for signs that an encoding lacks."""
-
-
-def spelled(error: UnicodeError) -> tuple[str, int]:
-    """Spell letters that cannot be encoded; a handler of `codecs.register_error`.
-
-    >>> codecs.register_error("spelled", spelled)
-    >>> "ω ≤ Δδ".encode("ascii", "spelled")
-    b'omega <= Deltadelta'
-    """
-    if not isinstance(error, UnicodeEncodeError):
-        raise error
-    return "".join(map(_spelled, error.object[error.start : error.end])), error.end
-
-
-def _spelled(letter: str) -> str:
-    kind, _, name = unicodedata.name(letter, "").partition(" LETTER ")
-    if kind not in ("GREEK SMALL", "GREEK CAPITAL"):
-        return SIGNS.get(letter, "?")
-    name = name.split()[-1]
-    return name.lower() if kind == "GREEK SMALL" else name.capitalize()
-
 
 def run(command: click.Command, name: str, arguments: Sequence[str] | None = None) -> None:
     """Run a command and end the process with its status.
@@ -60,10 +34,9 @@ def run(command: click.Command, name: str, arguments: Sequence[str] | None = Non
     The status is the command's own (0, or 1 for comparisons that failed), 2 after one line on bad
     input, `INTERRUPTED` after Ctrl-C, and `CLOSED` where the reader of the output went away.
     """
-    codecs.register_error("spelled", spelled)
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
-            stream.reconfigure(errors="spelled")
+            stream.reconfigure(encoding="utf-8")
     sys.exit(_status(lambda: command.main(arguments, prog_name=name, standalone_mode=False), name))
 
 

@@ -25,7 +25,7 @@ spheres m2/m1 = 0.06 … 0.73."""
 
 
 def si_units(k: sp.Expr) -> dict[str, str]:
-    """Unit in SI by key, for the exponent k; other keys are numbers (τ is a length)."""
+    """SI units by key for the exponent k; values under other keys have none (τ is a length)."""
     lengths = ("spacing", "width", "fwhm", "compression", "compressions", "static_compression")
     return {
         "masses": "kg",
@@ -39,7 +39,7 @@ def si_units(k: sp.Expr) -> dict[str, str]:
 
 
 def radiation_note(cell: Cell, k: sp.Expr) -> list[str]:
-    """The note that a wave of unlike beads radiates, where it does so by more than `RADIATES`."""
+    """A note on the radiation of unlike beads, if its bound exceeds `RADIATES`."""
     if k.free_symbols or len({*cell.masses}) == len({*cell.stiffnesses}) == 1:
         return []
     from lwa.expansion.radiation import radiation  # here, for a quick start of the others
@@ -73,7 +73,7 @@ def _fwhm_rows(key: str, label: str, widths: Mapping[str, sp.Expr], **settings: 
 
 
 def compact(theory: Theory, wave: TravelingWave) -> Answer:
-    """The compact wave of no force in particular: `lwa wave`.
+    """The compact wave for a general peak force: `lwa wave`.
 
     Its values are at V_s = 1 (B, mu) and B = 1 (speed).
     """
@@ -94,7 +94,7 @@ def compact(theory: Theory, wave: TravelingWave) -> Answer:
         f"  F_m ∝ V_s^({wave.force_exponent});  dx/dt = V_s · {wave.speed_scale}",
         Row("speed_factor", "", wave.speed_factor, number=None),
         Row("time_scale", "", wave.speed_scale, r"\mathrm{d}x/\mathrm{d}t / V_{s}", number=None),
-        Row("log_B", "", log_B, exact=False),
+        Row("log_B", "", log_B, expression=False),
         Row("roots", "", roots, number=None),
         "",
         "v = z^p, integrating factor z^a: z'' = μ z^η - σ z",
@@ -107,7 +107,7 @@ def compact(theory: Theory, wave: TravelingWave) -> Answer:
 
 
 def _reduction_rows(theory: Theory, found: Any) -> list[Row]:
-    """p, a, μ, η, σ and s; in LaTeX by p, a, H and I, as the paper has them, where long."""
+    """Rows of p, a, μ, η, σ and s; long ones in LaTeX by p, a, H and I, as in the paper."""
     formulas = {
         "a": r"1 - k p + 3 (p - 1) + \frac{p H}{I}",
         "mu": r"\frac{V_{s}^{2}}{I (p + a)}",
@@ -157,7 +157,7 @@ def at_force(theory: Theory, wave: TravelingWave, F: sp.Expr, units: Mapping[str
 
 
 def _chain_rows(cell: Cell, units: Mapping[str, str]) -> list[Row]:
-    """Masses, stiffnesses and spacing; without units they are in the head of the JSON alone."""
+    """Rows of masses, stiffnesses and spacing; without units not in JSON, whose head has them."""
     named = (
         ("masses", "masses", cell.masses, "m"),
         ("stiffnesses", "A", cell.stiffnesses, "A"),
@@ -188,8 +188,8 @@ def on_background(theory: Theory, wave: BackgroundWave) -> Answer:
         Row("time_scale", "dx/dt over V_s", wave.time_scale, _SCALE, number=None),
     ]
     if speed is not None:
-        rows.append(Row("speed", "V_s at B = 1", sp.S.Zero, number=speed, exact=False))
-    rows += _fwhm_rows("fwhm", "FWHM of the {} at B = 1", widths, exact=False)
+        rows.append(Row("speed", "V_s at B = 1", sp.S.Zero, number=speed, expression=False))
+    rows += _fwhm_rows("fwhm", "FWHM of the {} at B = 1", widths, expression=False)
     try:
         kdv = wave.kdv
     except NoSolitaryWave as reason:
@@ -212,7 +212,7 @@ _SCALE = r"\mathrm{d}x/\mathrm{d}t / V_{s}"
 
 
 def _at_one(wave: BackgroundWave) -> tuple[sp.Expr | None, dict[str, sp.Expr]]:
-    """Speed and widths of the wave of B = 1; none where there is no wave, or symbols."""
+    """Speed and widths of the wave of B = 1; (None, {}) without a wave or with symbols."""
     try:
         speed = wave.speed(1)
         if speed.free_symbols - {wave.cell.spacing}:
@@ -251,7 +251,7 @@ def precompressed(theory: Theory, wave: PrecompressedWave, units: Mapping[str, s
     ]
     for key, label, extent in WIDTHS:
         if not isinstance(widths := attempt(_fwhm, wave, extent), InputError):  # no symbols
-            rows += _fwhm_rows(key, label, widths, exact=False)
+            rows += _fwhm_rows(key, label, widths, expression=False)
     return Answer(chain_json(theory), rows, units, theory.cell.spacing)
 
 

@@ -6,19 +6,19 @@ With A = a f(bn) e^{-iΩT}, Ω = -νω the distance from the band's edge, i A_T 
     dark,   ω″χ > 0:   f = tanh,   χ a² = Ω,    ω″ b² = Ω,
 
 so that Ω has the sign of χ. A bead moves by 2a|φ| at most, and a contact by 2a|d| about its static
-compression δ0: contacts begin to open about 2a|d| = δ0.
+compression δ0: contacts begin to open about 2a|d| = δ0, at a detuning ν_o since a² ∝ ν.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NoReturn
 
 import sympy as sp
 
 from lwa.base import latex
-from lwa.base.exact import InputError, root
+from lwa.base.exact import InputError, one_of, power, root
 from lwa.base.frozen import Value
 
 if TYPE_CHECKING:
@@ -29,6 +29,9 @@ if TYPE_CHECKING:
 KINDS = ("bright", "dark")
 """An envelope that is localised, ω″χ < 0, and a dip in a wave train."""
 
+HELD = ("frequency", "amplitude")
+"""What of a breather is kept while the load changes."""
+
 
 @dataclass(frozen=True)
 class Breather(Value):
@@ -36,6 +39,7 @@ class Breather(Value):
 
     edge, dispersion, nonlinearity, mode, wavenumber : ω, ω″, χ, φ and κ of the envelope's equation.
     opening : |A|² at which contacts begin to open, to leading order; infinite where contacts pull.
+    load, k : the static force F0, and the exponent of a power law, NaN for other laws.
     detuning, kind : ν, and one of `KINDS`.
 
     Raises `lwa.InputError` for a detuning to the side where there is no such envelope, and for one
@@ -48,26 +52,30 @@ class Breather(Value):
     mode: tuple[sp.Expr, ...]
     wavenumber: sp.Expr
     opening: sp.Expr
+    load: sp.Expr
+    k: sp.Expr
     detuning: sp.Expr
     kind: str
 
     def __post_init__(self) -> None:
-        given = f"frequency is {sp.N(self.frequency, 8)}"
+        one_of(self.kind, KINDS, "kind")
         if self._square.is_number and not self._square > 0:
-            side = "below" if self.nonlinearity < 0 else "above"
-            raise InputError(f"{given}: {self.kind} breathers lie {side} {sp.N(self.edge, 8)}")
+            side, sign = ("below", "> 0") if self.nonlinearity < 0 else ("above", "< 0")
+            self._refuse(f"{self.kind} breathers lie {side} f0, at values {sign}")
         part = self.detuning / self.opening_detuning
         if part.is_number and part > 1:
-            end = (1 - self.opening_detuning) * self.edge
-            raise InputError(
-                f"{given}: contacts open from {sp.N(end, 8)} on, a detuning of "
-                f"{sp.N(self.opening_detuning, 5)}"
-            )
+            loads = ""
+            if self.k.is_number and (load := self.opening_load("frequency")).is_number:
+                loads = f" at every load; this frequency wants a load of at most {float(load):.5g}"
+            self._refuse(f"contacts open from {float(self.opening_detuning):.5g} on{loads}")
 
-    def _repr_latex_(self) -> str:
+    def _refuse(self, why: str) -> NoReturn:
+        raise InputError(f"detuning 1 - f/f0 is {float(self.detuning):.5g}: {why}")
+
+    def latex_rows(self) -> list[str]:
         shape = r"\operatorname{sech}" if self.kind == KINDS[0] else r"\tanh"
         rows = [rf"|A| = a {shape}(b n)", latex.row("a^{2}", self._square)]
-        return latex.display([*rows, latex.row("b^{-1}", self.width)])
+        return [*rows, latex.row("b^{-1}", self.width)]
 
     @property
     def frequency(self) -> sp.Expr:
@@ -97,7 +105,9 @@ class Breather(Value):
 
     @cached_property
     def opening_detuning(self) -> sp.Expr:
-        """The detuning at which contacts begin to open; infinite where contacts pull.
+        """ν_o, at which contacts begin to open; infinite where contacts pull.
+
+        Under a power law it is the same at every load.
 
         >>> from lwa import Cell, Power, envelope
         >>> chain = envelope(Cell([1, "1/2"]), Power("3/2"), precompression=1)
@@ -105,6 +115,22 @@ class Breather(Value):
         3/128
         """
         return sp.simplify(self.opening * self.nonlinearity / self._shift)
+
+    def opening_load(self, held: str) -> sp.Expr:
+        """The static force at which contacts begin to open, ``held`` "frequency" or "amplitude".
+
+        Under F = A δ^k lengths scale as F0^{1/k} and frequencies as F0^{(k-1)/(2k)}, and contacts
+        open at the detuning ν_o whatever the load. If the amplitude is held, a² ∝ ν F0^{2/k} gives
+        F0 (ν/ν_o)^{k/2}: contacts open under *smaller* loads. If the frequency is held, (1 - ν)
+        F0^{(k-1)/(2k)} is, and F0 ((1-ν)/(1-ν_o))^{2k/(k-1)} results: contacts open under *greater*
+        loads, which lift the band, and the detuning and the amplitude with it.
+
+        NaN for other laws. Raises `lwa.InputError` for another word.
+        """
+        nu, limit, k = self.detuning, self.opening_detuning, self.k
+        if one_of(held, HELD, "held") == "amplitude":
+            return self.load * power(nu / limit, k / 2)
+        return self.load * power((1 - nu) / (1 - limit), 2 * k / (k - 1))
 
     def displacements(self, cells: ArrayLike) -> Array:
         """Displacements of the beads at t = 0 to leading order, a row for each cell; in floats."""

@@ -1,13 +1,14 @@
-"""Exact coefficients of an envelope: rational functions of x = ω², reduced by its own equation.
+"""Exact Bloch modes and their response: rational functions of x = ω², reduced by its equation.
 
-Ratios of masses and springs, z = e^{iκ} and x are generators of a field of rational functions, in
-which `lwa.envelopes.modes` is evaluated. Real results depend on z + 1/z = 2 cos κ only; and of x, a
-root of T(x) = 2 cos κ, a division with remainder leaves the lowest powers.
+Masses, compliances, z = e^{iκ} and x generate a field of rational functions, in which
+`lwa.envelopes.modes` is evaluated. Real results depend on z + 1/z = 2 cos κ only; and of x, a root
+of the dispersion relation T(x) = 2 cos κ, a division with remainder leaves the lowest powers. The
+relation is det(K(κ) - xM) Π c_i = T(x) - 2 cos κ; cf. `lwa.Dispersion.trace`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -16,42 +17,46 @@ import sympy as sp
 from sympy.polys.fields import sfield
 from sympy.polys.matrices import DomainMatrix
 
-from lwa.base.exact import InputError
-from lwa.envelopes.modes import Coefficients, Matrix, Springs, coefficients
+from lwa.base.exact import InputError, root
+from lwa.envelopes.modes import Contacts, Matrix, Mode
 
 X, Z = sp.symbols("x z", cls=sp.Dummy)
+
+SINE, COSINE = sp.symbols("s c", positive=True, cls=sp.Dummy)
+"""sin κ/2 and cos κ/2 in results for wavenumbers whose cosine is not rational."""
 
 
 @dataclass(frozen=True, eq=False)
 class Root:
-    """x = ω² of a mode, a root of an irreducible polynomial, at a wavenumber.
+    """x = ω² of a mode: a root of an irreducible polynomial, at a wavenumber.
 
-    cosine, phase : cos κ and e^{iκ}.
+    cosine, phase : cos κ and e^{iκ}. values : letter of the field → its value.
     """
 
     value: sp.Expr
     polynomial: sp.Poly
     cosine: sp.Expr
     phase: sp.Expr
+    values: dict[sp.Symbol, sp.Expr]
 
     def real(self, element: Any) -> sp.Expr:
-        """An element of the field that does not change with the sign of κ."""
-        parts = (in_cosine(part.as_expr(), self.cosine) for part in (element.numer, element.denom))
-        if self.polynomial.degree() == 1:
-            top, below = (part.xreplace({X: self.value}) for part in parts)
-            return sp.factor(top / below)
-        top, below = (sp.Poly(part, X, field=True) for part in parts)
+        """Value of an element of the field that does not change with the sign of κ."""
+        top, below = (
+            sp.Poly(_in_cosine(part.as_expr(), self.cosine), X, field=True).rem(self.polynomial)
+            for part in (element.numer, element.denom)
+        )
         found = (top * below.invert(self.polynomial)).rem(self.polynomial)
-        return sp.Add(*(sp.factor(c) * self.value**n for (n,), c in found.terms()))
+        reduced = sp.Add(*(sp.factor(c) * self.value**n for (n,), c in found.terms()))
+        return reduced.xreplace(self.values)
 
     def complex(self, element: Any) -> sp.Expr:
-        """Any element of the field."""
+        """Value of any element of the field."""
         if self.phase.is_Integer:
             return self.real(element)
-        return element.as_expr().xreplace({X: self.value, Z: self.phase})
+        return element.as_expr().xreplace({X: self.value, Z: self.phase}).xreplace(self.values)
 
 
-def in_cosine(polynomial: sp.Expr, cosine: sp.Expr) -> sp.Expr:
+def _in_cosine(polynomial: sp.Expr, cosine: sp.Expr) -> sp.Expr:
     """z^{-h} Σ a_n z^n, n ≤ 2h, a_n = a_{2h-n}, by z^n + z^{-n} = 2 T_n(cos κ)."""
     a = sp.Poly(polynomial, Z).all_coeffs()
     while len(a) > 1 and not a[-1]:
@@ -60,25 +65,18 @@ def in_cosine(polynomial: sp.Expr, cosine: sp.Expr) -> sp.Expr:
     return a[h] + sp.Add(*(2 * a[h - n] * sp.chebyshevt(n, cosine) for n in range(1, h + 1)))
 
 
-def root(
-    relation: Any, guess: float, sample: Mapping[sp.Symbol, Any], cosine: sp.Expr, phase: sp.Expr
-) -> Root:
-    """The root of T(x) - 2 cos κ nearest to ``guess`` where symbols have the values of ``sample``.
-
-    Raises `lwa.InputError` where it has no exact form.
-    """
-    found = []
-    for factor, _ in sp.factor_list(in_cosine(relation.numer.as_expr(), cosine))[1]:
+def _roots(relation: Any, *mode: Any) -> list[Root]:
+    """The roots x of T(x) = 2 cos κ; ``mode`` is the rest of `Root`."""
+    found: list[Root] = []
+    for factor, count in sp.factor_list(_in_cosine(relation.numer.as_expr(), mode[0]))[1]:
         if X in factor.free_symbols:
             polynomial = sp.Poly(factor, X, field=True)
-            for value in _roots(polynomial):
-                distance = abs(complex(value.xreplace(dict(sample))) - guess)
-                found.append((distance, value, polynomial))
-    _, value, polynomial = min(found, key=lambda row: row[0])
-    return Root(value, polynomial, cosine, phase)
+            found += count * [Root(x, polynomial, *mode) for x in _solutions(polynomial)]
+    return found
 
 
-def _roots(polynomial: sp.Poly) -> list[sp.Expr]:
+def _solutions(polynomial: sp.Poly) -> list[sp.Expr]:
+    """Roots of an irreducible polynomial; square roots up to degree 2."""
     if polynomial.degree() > 2:
         try:
             return list(polynomial.real_roots())
@@ -94,44 +92,55 @@ def _roots(polynomial: sp.Poly) -> list[sp.Expr]:
 
 
 def exact_mode(
-    ratios: Sequence[Sequence[sp.Expr]], cosine: sp.Expr, phase: sp.Expr, guess: float,
-    sample: Mapping[sp.Symbol, Any], reference: int,
-) -> tuple[sp.Expr, Coefficients]:  # fmt: skip
-    """x = ω² and the coefficients for rows of masses, K2, K3, K4.
+    contacts: Contacts, wavenumber: sp.Expr, branch: int, bead: int,
+    sampled: Callable[[sp.Expr], float],
+) -> Mode:  # fmt: skip
+    """The mode of a branch in exact numbers, in `SINE` and `COSINE` where cos κ is not rational.
 
-    cosine, phase : cos κ and e^{iκ}, integers at the ends of a band.
-    guess : x in floats where the symbols have the values of ``sample``.
+    bead : the one of positive φ. sampled : the float of an expression at a sample of its symbols;
+    roots ascend by it.
+
+    Raises `lwa.InputError` where the frequency has no exact form.
     """
-    P = len(ratios[0])
-    field, elements = sfield([X, Z, *(value for row in ratios for value in row)])
-    x, z, *numbers = elements
-    if phase.is_Integer:
-        z = field.one * int(phase)
-    springs = Springs(*np.array(numbers, object).reshape(4, P))
-    found = root(springs.trace(x)[0] - z - 1 / z, guess, sample, cosine, phase)
-    if P == 1:
-        x = springs.stiffness(z)[0, 0] / springs.masses[0]
-    elif found.polynomial.degree() == 1:
-        x = field.from_expr(found.value)
-    domain = field.to_domain()
+    P, cosine, phase = len(contacts.masses), sp.cos(wavenumber), sp.exp(sp.I * wavenumber)
+    sine = root(1 - cosine**2)
+    if not cosine.is_Rational:
+        sine, cosine = 2 * SINE * COSINE, 1 - 2 * SINE**2
+    numbers = (*contacts.masses, *contacts.c, contacts.s, contacts.t)
+    letters = {a: a if a.is_Rational else sp.Dummy(positive=True) for a in numbers}
+    field, (x, z, *elements) = sfield([X, Z, *(letters[a] for a in numbers)])
+    own = Contacts(*np.array(elements[:-2], object).reshape(2, P), *elements[-2:])
+    z = field.one * int(phase) if phase.is_Integer else z
 
     def matrix(entries: Matrix) -> DomainMatrix:
-        return DomainMatrix([[field.one * a for a in row] for row in entries], (P, P), domain)
+        rows = [[field.one * a for a in row] for row in entries]
+        return DomainMatrix(rows, (P, P), field.to_domain())
 
     def inverse(entries: Matrix) -> Matrix:
         return np.array(matrix(entries).inv().to_list(), object)
 
-    adjugate = matrix(springs.stiffness(z) - np.diag(springs.masses) * x).adjugate()
-    projector = np.array(adjugate.to_list(), object)
-    projector = projector / (np.diagonal(projector) * springs.masses).sum()
-    c = coefficients(springs, z, x, projector, reference, inverse)
-    scalars = map(found.real, (c.slope, c.bend, c.excess, c.cubic))
-    rows = (
-        (found.complex, c.second),
-        (found.real, c.mean),
-        (found.real, c.size),
-        (found.complex, c.mode),
-    )
-    return found.value, Coefficients(
-        *scalars, *(np.array(list(map(f, row)), object) for f, row in rows)
+    secular = matrix(own.stiffness(z) - np.diag(own.masses) * x)
+    relation = secular.det() * np.prod(own.c)  # T(x) - 2 cos κ
+    values = {letter: a for a, letter in letters.items()}
+    roots = _roots(relation, cosine, phase, values)
+    found = sorted(roots, key=lambda one: sampled(one.value.xreplace(values)))[branch]
+    first, following = relation.diff(x), relation.diff(x).diff(x)  # T′ and T″
+    square = -((z - 1 / z) ** 2) / first**2  # x′², x′ = -2 sin κ/T′
+    bend = (-(z + 1 / z) - following * square) / first  # x″
+    adjugate = np.array(secular.adjugate().to_list(), object)
+    projector = adjugate / (np.diagonal(adjugate) * own.masses).sum()
+    if P == 1:  # a rational function of z
+        x = (2 - z - 1 / z) / (own.masses[0] * own.c[0])
+    speed = own.masses.sum() * own.c.sum() * square / (4 * x)
+    cubic, second, mean, size = own.response(z, x, speed / (speed - 1), projector, bead, inverse)
+    unit = root(found.real(projector[bead, bead]))
+    return Mode(
+        found.value.xreplace(values),
+        -2 * sine * found.real(1 / first),
+        found.real(bend / 2 - square / (4 * x)),
+        found.real(cubic),
+        [found.complex(e) for e in second],
+        [found.real(e) for e in mean],
+        [found.real(e) for e in size],
+        [found.complex(e) / unit for e in projector[:, bead]],
     )

@@ -1,27 +1,30 @@
-"""Coefficients of the nonlinear Schrödinger equation from a Bloch mode, over any field of numbers.
+"""Weakly nonlinear response of a Bloch mode, over any field of numbers.
 
-About the static load contact i pushes with K2 δ + K3 δ² + K4 δ³ more, δ its further compression. A
-mode u = A(X,T) φ e^{i(κn - ωt)} + c.c. of the linear chain, Σ m|φ|² = 1, κ per cell, strains the
-contacts by d = B(κ)φ. At second order in A it drives (Remoissenet, *Waves Called Solitons*, 1999)
+In units of the cell's first bead and contact bead i has the mass m_i, and contact i, its static
+compression c_i, pushes under a further compression δ with K2 δ + K3 δ² + K4 δ³ more,
 
-    the second harmonic, e2 = -G K3 d²,   G = B(2κ) [K(2κ) - 4ω²M]^{-1} B(2κ)†,   per A²,
-    the mean inside a cell, K2 e0 + 2 K3 |d|² the same in all contacts, Σ e0 = 0,  per |A|²,
-    and the mean flow, the strain e of whole cells.
+    K2 = 1/c_i,    K3 = s/c_i²,    K4 = t/c_i³.
 
-The frequency changes with e by ω_s = Σ K3 σ |d|²/ω, σ the share of a contact, and the mode's action
-2ω|A|² per cell pushes with ω_s; e, of sound speed c_0, moves with the group velocity c_g:
-e = 2ω ω_s |A|²/(M_c (c_g² - c_0²)). At third order remains i A_T + ½ω″ A_XX = χ |A|²A with
+A mode u = A φ e^{i(κn - ωt)} + c.c., κ per cell, Σ m|φ|² = 1, strains the contacts by d = B(κ)φ,
+where δ_i = u_i - u_{i+1}. At second order it drives (Remoissenet, *Waves Called Solitons*, 1999)
 
-    χ = Γ/(2ω) + 2ω ω_s²/(M_c (c_g² - c_0²)),    Γ = Σ 3 K4 |d|⁴ + 2 K3 (d̄² e2 + |d|² e0).
+    the second harmonic   A² e2,    e2 = -G K3 d²,   G = B(2κ) [K(2κ) - 4ω²M]^{-1} B(2κ)†,
+    a lasting strain    |A|² e0,    K2 e0 + 2 K3 |d|² = f, the same in all contacts.
 
-Only the projector φφ† of the mode and e^{±iκ} enter, so that numbers may be floats or elements of a
-field of rational functions, as objects in NumPy's arrays.
+f is the lasting force. It accelerates the cells, whose mean strain moves with the group velocity:
+f = M c_g² Σ e0, M = Σ m. With v = c_g/c_0, c_0² = 1/(M Σ c), this is f = 2 Σ c K3|d|²/Σ c ·
+v²/(v² - 1), zero at a band's edge, where the load is held. At third order the frequency rises by
+χ|A|²,
+
+    2ω χ = Σ 3 K4 |d|⁴ + 2 K3 (d̄² e2 + |d|² e0).
+
+Only φφ† and e^{±iκ} enter: numbers may be floats, or elements of a field of rational functions.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, fields
+from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -30,143 +33,132 @@ from numpy.typing import NDArray
 from lwa.base.exact import InputError
 
 CLOSE = 1e-11
-"""Relative difference of squared frequencies, or of squared speeds, that counts as none."""
+"""Relative difference of squared frequencies that counts as none."""
+
+SOUND = 1e-5
+"""1 - (c_g/c_0)² from which on floats give the mean flow to six digits (1e-11/SOUND)."""
 
 Numbers = NDArray[Any]
 Matrix = NDArray[Any]
 
 
 @dataclass(frozen=True, eq=False)
-class Springs:
-    """Masses and the coefficients K2, K3, K4 of a cell's contacts, numbers of one field."""
+class Mode:
+    """A mode and its response.
+
+    square : x = ω².
+    slope, curvature : dω²/dκ, and ω d²ω/dκ².
+    cubic : 2ωχ.
+    second, mean, size : e2, e0 and |d|² of each contact.
+    shape : φ of each bead, positive for the bead with the largest displacement.
+    """
+
+    square: Any
+    slope: Any
+    curvature: Any
+    cubic: Any
+    second: Any
+    mean: Any
+    size: Any
+    shape: Any
+
+
+@dataclass(frozen=True, eq=False)
+class Contacts:
+    """Masses m and static compressions c of a cell, and the s and t of its contacts."""
 
     masses: Numbers
-    K2: Numbers
-    K3: Numbers
-    K4: Numbers
-
-    def stiffness(self, z: Any) -> Matrix:
-        """K(κ) = B(κ)† K2 B(κ) at z = e^{iκ}."""
-        return np.asarray(self.strains(1 / z).T @ np.diag(self.K2) @ self.strains(z))
+    c: Numbers
+    s: Any
+    t: Any
 
     def strains(self, z: Any) -> Matrix:
-        """B(κ) of δ_i = φ_i - φ_{i+1}; B(κ)† is its transpose at 1/z."""
-        P = len(self.masses)
-        B = np.asarray(np.outer(self.K2, self.K2) * (0 * z))
-        for i in range(P):
-            B[i, i] += 1
-            B[i, (i + 1) % P] -= z if i == P - 1 else 1
-        return B
+        """B(κ) at z = e^{iκ}, (contacts, beads); B(κ)† is its transpose at 1/z."""
+        one = np.diag(self.masses * 0 * z + 1)
+        after = np.roll(one, 1, axis=1)
+        after[-1] = after[-1] * z
+        return np.asarray(one - after)
 
-    def trace(self, x: Any) -> list[Any]:
-        """T(x) and its first two derivatives, where x = ω² has 2 cos κ = T(x).
+    def stiffness(self, z: Any) -> Matrix:
+        """K(κ) = B(κ)† K2 B(κ)."""
+        return np.asarray(self.strains(1 / z).T @ (self.strains(z) / self.c[:, None]))
 
-        T is the trace of the matrix that carries displacement and force through a cell.
+    def response(
+        self, z: Any, x: Any, flow: Any, projector: Matrix, bead: int,
+        inverse: Callable[[Matrix], Matrix],
+    ) -> tuple[Any, Numbers, Numbers, Numbers]:  # fmt: skip
+        """2ωχ, e2, e0 and |d|² by contact, for φφ† (beads, beads) of the mode with ω² = x.
+
+        flow : v²/(v² - 1). bead : of the displacement in phase with A. inverse : of a matrix.
         """
-        zero = np.array([0, 0, 0]) * x
-        total = zero
-        for column in range(2):
-            u, f = (zero + np.array([int(i == column), 0, 0]) for i in range(2))
-            for m, K in zip(self.masses, self.K2, strict=True):
-                f = f + np.array([x * u[0], u[0] + x * u[1], 2 * u[1] + x * u[2]]) * m
-                u = u - f / K
-            total = total + (u, f)[column]
-        return list(total)
+        c = self.c  # arrays stand first: elements of a field do not know arrays
+        K3, K4 = 1 / c**2 * self.s, 1 / c**3 * self.t
+        B = self.strains(z)
+        products = B @ projector @ self.strains(1 / z).T  # d d†
+        size = np.diagonal(products)
+        rest = self.stiffness(z * z) - np.diag(self.masses) * (4 * x)
+        G = self.strains(z * z) @ inverse(rest) @ self.strains(1 / (z * z)).T
+        d = (B @ projector)[:, bead]
+        second = -G @ (K3 * d * d / projector[bead, bead])
+        force = (c * K3 * size).sum() * 2 / c.sum() * flow
+        mean = c * (-2 * K3 * size + force)
+        cubic = (3 * K4 * size**2 + 2 * K3 * size * mean).sum()
+        return cubic - 2 * K3 @ (G * products.T**2) @ K3, second, mean, size
 
 
-@dataclass(frozen=True, eq=False)
-class Coefficients:
-    """Parts of the envelope's coefficients, at x = ω².
+def numeric_mode(contacts: Contacts, kappa: float, branch: int, resolved: bool) -> tuple[Mode, int]:
+    """The mode of a branch, counted from the lowest, in floats, and its bead that moves most.
 
-    slope, bend : 1/T′ and d²x/dκ²; dx/dκ = -2 sin κ · slope.
-    excess : c_g² - c_0², zero at the resonance of the mode with sound.
-    cubic : 2ω χ.
-    second, mean : contact → compression per A² at 2ω, and at zero frequency per |A|².
-    size : contact → |d|².
-    mode : bead → φ times the conjugate of φ of the bead of reference.
+    Raises `lwa.InputError` where the envelope's equation fails: where branches touch, at the
+    resonance with the second harmonic, and for sound, of zero frequency; ``resolved``, also where
+    the mode is too close to sound for floats.
     """
-
-    slope: Any
-    bend: Any
-    excess: Any
-    cubic: Any
-    second: Numbers
-    mean: Numbers
-    size: Numbers
-    mode: Numbers
-
-
-def coefficients(
-    springs: Springs, z: Any, x: Any, projector: Matrix, reference: int,
-    inverse: Callable[[Matrix], Matrix],
-) -> Coefficients:  # fmt: skip
-    """Evaluate the module's formulas for the mode with ω² = x at z = e^{iκ}.
-
-    projector : φφ†, of a φ with Σ m|φ|² = 1.
-    reference : the bead whose displacement is in phase with A.
-    inverse : of a matrix of these numbers.
-    """
-    m, K2, K3 = springs.masses, springs.K2, springs.K3
-    B = springs.strains(z)
-    D = B @ projector @ springs.strains(1 / z).T
-    size = np.diagonal(D)
-    rest = springs.stiffness(z * z) - np.diag(m) * (4 * x)
-    G = springs.strains(z * z) @ inverse(rest) @ springs.strains(1 / (z * z)).T
-    d = (B @ projector)[:, reference]
-    second = -G @ (K3 * d * d / projector[reference, reference])
-
-    compliance = (1 / K2).sum()
-    share = 1 / (K2 * compliance)
-    e0 = (-2 * K3 * size + (2 * K3 * size / K2).sum() / compliance) / K2
-    gamma = (3 * springs.K4 * size**2 + 2 * K3 * size * e0).sum() - 2 * K3 @ (G * D.T**2) @ K3
-
-    _, first, following = springs.trace(x)
-    sine = -((z - 1 / z) ** 2)  # 4 sin²κ
-    bend = (-(z + 1 / z) - following * sine / first**2) / first
-    excess = sine / (4 * x * first**2) - 1 / (compliance * m.sum())
-    g = (K3 * share * size).sum()  # ω ω_s
-    flow = 2 * g / (m.sum() * excess)
-    return Coefficients(
-        1 / first, bend, excess, gamma + 2 * g * flow, second, e0 + share * flow,
-        size, projector[:, reference],
-    )  # fmt: skip
-
-
-@dataclass(frozen=True, eq=False)
-class NumericMode:
-    """A mode in floats: x = ω², the bead with the largest displacement, and the coefficients."""
-
-    square: float
-    reference: int
-    coefficients: Coefficients
-
-
-def numeric_mode(rows: Sequence[Sequence[float]], kappa: float, branch: int) -> NumericMode:
-    """The mode of a branch, counted from the lowest, for rows of masses, K2, K3 and K4.
-
-    Raises `lwa.InputError` where the envelope's equation fails: where branches touch, at zero
-    frequency, and at the resonances with the second harmonic and with sound.
-    """
-    springs = Springs(*np.array(rows, float))
-    z, root = complex(np.exp(1j * kappa)), np.sqrt(springs.masses)
-    squares, vectors = np.linalg.eigh(springs.stiffness(z) / np.outer(root, root))
-    x, close = float(squares[branch]), CLOSE * springs.K2.max() / springs.masses.min()
-    if np.min(np.abs(np.delete(squares, branch) - x), initial=np.inf) < close:
+    z, root = complex(np.exp(1j * kappa)), np.sqrt(contacts.masses)
+    if abs(z.imag) < CLOSE:  # real modes at the edges
+        z = round(z.real)
+    squares, vectors = np.linalg.eigh(contacts.stiffness(z) / np.outer(root, root))
+    x, others = float(squares[branch]), np.delete(squares, branch)
+    close = CLOSE / (contacts.c.min() * contacts.masses.min())
+    if np.min(np.abs(others - x), initial=np.inf) < close:
         raise InputError("two branches touch at this wavenumber: an envelope has one mode")
     if x < close / 1000:
-        raise InputError("the frequency is zero at this wavenumber: sound has no envelope")
-    sound = 1 / ((1 / springs.K2).sum() * springs.masses.sum())
-    if sound - (np.sin(kappa) / springs.trace(x)[1]) ** 2 / x < CLOSE * sound:
         raise InputError(
-            "the mode's group velocity is the speed of sound, c_g = c_0: the mean flow is in "
-            "resonance with so long waves"
+            "the frequency is zero at this wavenumber: sound, c_g = c_0, has no envelope; its mean "
+            "flow runs along with it"
         )
-    doubled = np.linalg.eigvalsh(springs.stiffness(z * z) / np.outer(root, root))
-    if np.min(np.abs(doubled - 4 * x)) < close:
+    slope, bend = _derivatives(contacts, z, vectors / root[:, None], squares, branch)
+    speed = contacts.masses.sum() * contacts.c.sum() * slope**2 / (4 * x)  # (c_g/c_0)²
+    if resolved and 1 - speed < SOUND:
+        raise InputError(
+            "the mode's group velocity is too close to that of sound, c_g = c_0, for floats: its "
+            "mean flow runs along with it; exact results stand"
+        )
+    doubled = np.linalg.eigvalsh(contacts.stiffness(z * z) / np.outer(root, root))
+    if np.min(np.abs(doubled - 4 * x)) < close / 100:  # long waves come close, as κ⁴
         raise InputError("the second harmonic is a mode too: the envelope's equation fails")
     phi = vectors[:, branch] / root
-    reference = int(np.argmax(np.abs(phi)))
-    found = coefficients(springs, z, x, np.outer(phi, phi.conj()), reference, np.linalg.inv)
-    real = {part.name: np.real(getattr(found, part.name)) for part in fields(found)}
-    real |= {"second": found.second, "mode": found.mode}
-    return NumericMode(x, reference, Coefficients(**real))
+    bead = int(np.argmax(np.abs(phi)))
+    phi = phi * (phi[bead].conj() / abs(phi[bead]))
+    cubic, second, mean, size = contacts.response(
+        z, x, speed / (speed - 1), np.outer(phi, phi.conj()), bead, np.linalg.inv
+    )
+    curvature = bend / 2 - slope**2 / (4 * x)
+    return Mode(x, slope, curvature, cubic.real, second, mean.real, size.real, phi), bead
+
+
+def _derivatives(
+    contacts: Contacts, z: complex, modes: Matrix, squares: Matrix, branch: int
+) -> tuple[float, float]:
+    """dω²/dκ and d²ω²/dκ² by perturbation of K(κ); modes in columns, Σ m|φ|² = 1.
+
+    B depends on κ in one entry, -e^{iκ}.
+    """
+    B, turn = contacts.strains(z), np.zeros(modes.shape, complex)
+    turn[-1, 0] = -1j * z  # dB/dκ; d²B/dκ² is i dB/dκ
+    d, first = (part @ modes / np.sqrt(contacts.c)[:, None] for part in (B, turn))
+    own = first.conj().T @ d[:, branch] + d.conj().T @ first[:, branch]  # φ_j† K′ φ
+    bend = 2 * np.vdot(first[:, branch], first[:, branch]).real
+    bend += 2 * np.vdot(d[:, branch], 1j * first[:, branch]).real
+    gaps = np.delete(squares[branch] - squares, branch)
+    bend += 2 * (np.abs(np.delete(own, branch)) ** 2 / gaps).sum()
+    return float(own[branch].real), float(bend)

@@ -11,25 +11,24 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
+import numpy as np
 import sympy as sp
 
 from lwa.base import latex
-from lwa.base.exact import InputError, integer, one_of, positive, root, shorten, signed
+from lwa.base.exact import InputError, demand_numbers, integer, positive, root, shorten, signed
 from lwa.base.frozen import Value
 from lwa.cell import Cell
 from lwa.envelopes.breather import KINDS, Breather
-from lwa.envelopes.exact import exact_mode
-from lwa.envelopes.modes import Coefficients, NumericMode, numeric_mode
+from lwa.envelopes.exact import COSINE, SINE, exact_mode
+from lwa.envelopes.modes import Contacts, Mode, numeric_mode
 from lwa.law import ContactLaw, for_cell, substituted
+from lwa.linear.bloch import BRANCHES
 
-BRANCHES = ("acoustic", "optical")
-"""Names of the two lowest branches."""
+K2_ANY, K3_ANY, K4_ANY = sp.symbols("K2 K3 K4", positive=True)
+"""Coefficients of the force K2 δ + K3 δ² + K4 δ³ on top of the load, under `lwa.general()`."""
 
 LONG = 400
-"""Operations in a result from which on it is not factored."""
-
-SINE, COSINE = sp.symbols("s c", positive=True, cls=sp.Dummy)
-"""sin κ/2 and cos κ/2."""
+"""Operations in a result from which on it is not factored: that would take minutes."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -39,7 +38,8 @@ class Envelope(Value):
     compression : mean static compression of the contacts.
     branch : 0 is the acoustic branch, 1 the lowest optical one.
 
-    Time and length have the cell's units, frequencies are in radians per unit of time.
+    Time and length have the cell's units. Frequencies are in radians per unit of time: of spheres
+    in SI in rad/s, and over 2π in Hz.
     """
 
     cell: Cell
@@ -52,14 +52,10 @@ class Envelope(Value):
     def __repr__(self) -> str:
         return f"Envelope({self.cell!r}, κ={self.wavenumber}, branch={self.branch})"
 
-    def _repr_latex_(self) -> str:
-        names = {
-            r"\omega": self.frequency,
-            r"\omega''": self.dispersion,
-            r"\chi": self.nonlinearity,
-        }
+    def latex_rows(self) -> list[str]:
+        names = {r"\omega": self.frequency, r"\omega''": self.dispersion}
         equation = r"i A_{T} + \tfrac{1}{2} \omega'' A_{XX} = \chi |A|^{2} A"
-        return latex.display([equation, *(latex.row(name, value) for name, value in names.items())])
+        return [equation, *latex.rows(names | {r"\chi": self.nonlinearity})]
 
     def numeric(self) -> Envelope:
         """Float values of the coefficients, for any cell of numbers and any wavenumber."""
@@ -85,14 +81,14 @@ class Envelope(Value):
         >>> envelope(Cell(["m1", "m2"]), Power("3/2"), precompression=1).frequency
         sqrt(3)/sqrt(m2)
         """
-        return self._tidy(self._omega * self._rate)
+        return self._named(self._omega)
 
     @cached_property
     def group_velocity(self) -> sp.Expr:
         """dω/dκ, in cells per unit of time."""
-        halves = self._cosine.has(SINE)
-        sine = 2 * SINE * COSINE if halves else sp.sin(self.wavenumber)
-        return self._tidy(-sine * self._found.slope / self._omega * self._rate)
+        if sp.sin(self.wavenumber).is_zero:  # the edge of a band, in floats as well
+            return sp.S.Zero
+        return self._named(self._tidy(self._mode.slope * self._rate / (2 * self._omega)))
 
     @cached_property
     def dispersion(self) -> sp.Expr:
@@ -102,35 +98,33 @@ class Envelope(Value):
         >>> envelope(Cell(["m"], ["K"]), Power(1), background="p0", wavenumber="q").dispersion
         -sqrt(K)*sin(q/2)/(2*sqrt(m))
         """
-        square = (1 - self._cosine**2) * self._found.slope**2 / self._omega**2
-        return self._tidy((self._found.bend / 2 - square) / self._omega * self._rate)
+        return self._named(self._tidy(self._mode.curvature * self._rate / self._omega))
 
     @cached_property
     def nonlinearity(self) -> sp.Expr:
         """χ, the rise of the frequency over |A|²."""
-        found = self._found.cubic / (2 * self._omega)
-        return self._tidy(found * self._rate / (self._action * self._curvatures[3]))
+        found = self._mode.cubic * self._rate / (2 * self._omega)
+        return self._named(self._tidy(found / (self._mass * self._length**2)))
 
     @cached_property
     def second_harmonic(self) -> tuple[sp.Expr, ...]:
-        """Contact → compression at 2ω over A², a factor of e^{2i(κn - ωt)}; cf. `mode`."""
-        return tuple(self._tidy(e / self._action) for e in self._found.second)
+        """Compressions of the contacts at 2ω over A², a factor of e^{2i(κn - ωt)}; cf. `mode`."""
+        return self._each(self._mode.second, self._mass * self._length)
 
     @cached_property
     def mean_strain(self) -> tuple[sp.Expr, ...]:
-        """Contact → lasting compression over |A|², that of the mean flow included."""
-        return tuple(self._tidy(e / self._action) for e in self._found.mean)
+        """Lasting compressions of the contacts over |A|², that of the mean flow included."""
+        return self._each(self._mode.mean, self._mass * self._length)
 
     @cached_property
     def mode(self) -> tuple[sp.Expr, ...]:
         """φ of each bead, Σ m|φ|² = 1; positive for the bead with the largest displacement."""
-        unit = root(self._found.mode[self._start.reference] * self.cell.masses[0])
-        return tuple(self._tidy(value / unit) for value in self._found.mode)
+        return self._each(self._mode.shape, root(self._mass))
 
     @cached_property
     def strains(self) -> tuple[sp.Expr, ...]:
         """|d|² of each contact, the square of its compression over |A|²."""
-        return tuple(self._tidy(d / self.cell.masses[0]) for d in self._found.size)
+        return self._each(self._mode.size, self._mass)
 
     @property
     def kind(self) -> str:
@@ -152,141 +146,112 @@ class Envelope(Value):
         """
         if (frequency is None) == (detuning is None):
             raise InputError("frequency or detuning: one of the two is wanted")
-        if kind:
-            one_of(kind, KINDS, "kind")
         if detuning is None:
             detuning = 1 - positive(frequency, "frequency") / self.frequency
         if self.group_velocity.is_zero is not True:
             raise InputError(f"wavenumber is {self.wavenumber}: a breather stands where dω/dκ = 0")
         return Breather(
             self.frequency, self.dispersion, self.nonlinearity, self.mode, self.wavenumber,
-            self._opening, signed(detuning, "detuning"), kind or self.kind,
+            self._opening, self.load, self.law.exponent if self.law.homogeneous else sp.nan,
+            signed(detuning, "detuning"), kind or self.kind,
         )  # fmt: skip
 
     @property
-    def _opening(self) -> sp.Expr:
-        """|A|² at which the alternating compression 2|A||d| of a contact reaches the static one."""
-        if not self.law.homogeneous:
-            return sp.oo
-        pairs = zip(self.static_compressions, self.strains, strict=True)
-        found = sp.Min(*(delta**2 / (4 * d) for delta, d in pairs if d))
-        return sp.N(found) if self.floats else found
-
-    # --- the chain in units of its first mass and contact ---
+    def load(self) -> sp.Expr:
+        """The static force F0."""
+        return self.cell.stiffnesses[0] * self.law.at(self.static_compressions[0])
 
     @property
     def static_compressions(self) -> tuple[sp.Expr, ...]:
         """δ0 of each contact."""
         return tuple(c * self.compression for c in self.cell.shares(self.law.exponent))
 
-    @cached_property
-    def _curvatures(self) -> tuple[sp.Expr, sp.Expr, sp.Expr, sp.Expr]:
-        """K2 of the first contact, K3 ℓ/K2 and K4 ℓ²/K2, and the length ℓ."""
-        law, delta = self.law, self.static_compressions[0]
-        if law.formless:
-            K2, K3, K4 = sp.symbols("K2 K3 K4", positive=True)
-            return K2, K3 / K2, K4 / K2, sp.S.One
-        stiffness = sp.powsimp(self.cell.stiffnesses[0] * law.at(delta, 1))
-        if not delta.is_zero:
-            a, b = (law.phi(n).subs(law.delta, delta) for n in (2, 3))
-            return stiffness, a / 2, b / 6, delta
-        a, b = (law.at(delta, n) / law.at(delta, 1) for n in (2, 3))
-        return stiffness, a / 2, b / 6, sp.S.One
+    @property
+    def _opening(self) -> sp.Expr:
+        """|A|² at which the alternating compression 2|A||d| of a contact reaches the static one."""
+        roots = (p for p in self.law.F.atoms(sp.Pow) if p.base == self.law.delta)
+        if not self.law.homogeneous and all(p.exp.is_integer for p in roots):  # real at δ < 0
+            return sp.oo
+        pairs = zip(self.static_compressions, self.strains, strict=True)
+        found = sp.Min(*(delta**2 / (4 * d) for delta, d in pairs if d))
+        return sp.N(found) if self.floats else found
 
-    @cached_property
-    def _springs(self) -> list[sp.Expr]:
-        """K2 of each contact over that of the first one."""
-        if len({*self.cell.stiffnesses}) == 1:
-            return [sp.S.One] * self.cell.size
-        compliances = self.cell.compliances(self.law.exponent)
-        return [sp.powsimp(compliances[0] / c) for c in compliances]
-
-    def _rows(self, springs: list[sp.Expr]) -> list[list[sp.Expr]]:
-        """Masses, K2, K3 and K4 of the cell over those of its first bead and contact."""
-        _, a, b, _ = self._curvatures
-        masses = [m / self.cell.masses[0] for m in self.cell.masses]
-        return [masses, springs, [a * q**2 for q in springs], [b * q**3 for q in springs]]
-
-    @cached_property
-    def _letters(self) -> dict[sp.Expr, sp.Symbol]:
-        """Ratios of springs that are no fractions, and the letters that stand for them."""
-        return {q: sp.Dummy() for q in self._springs if not q.is_Rational}
-
-    @cached_property
-    def _sample(self) -> dict[sp.Symbol, Any]:
-        """Values of symbols by which branches are told apart: masses that fall along the cell."""
-        cell = self.cell
-        found = dict.fromkeys((*self.law.symbols, *self.wavenumber.free_symbols), 1.5)
-        for values in (cell.stiffnesses, cell.masses):
-            for i, value in enumerate(values):
-                found |= dict.fromkeys(value.free_symbols - found.keys(), 1 / (1 + i))
-        return found
-
-    @cached_property
-    def _free(self) -> set[sp.Symbol]:
-        """Symbols without a value, the spacing aside."""
-        values = (x for row in (*self._rows(self._springs), [self.wavenumber]) for x in row)
-        return set().union(*(value.free_symbols for value in values))
-
-    @cached_property
-    def _start(self) -> NumericMode:
-        """The mode in floats, at the sample where there are symbols."""
-        rows = self._rows(self._springs)
-        if self._free:  # K3 and K4 do not matter to the choice of the branch
-            rows[2:] = [[sp.S.Zero] * self.cell.size] * 2
-        numbers = [[float(x.xreplace(self._sample)) for x in row] for row in rows]
-        return numeric_mode(numbers, float(self.wavenumber.xreplace(self._sample)), self.branch)
-
-    @cached_property
-    def _found(self) -> Coefficients:
-        """Coefficients of the mode, exact or floats."""
-        if not self.floats:
-            return self._exact[1]
-        if self._free:
-            raise InputError(f"{min(map(str, self._free))!r} has no value: floats need numbers")
-        return self._start.coefficients
+    # --- the mode, in units of the cell's first bead and contact ---
 
     @property
-    def _cosine(self) -> sp.Expr:
-        cosine = sp.cos(self.wavenumber)
-        if self.floats or cosine.is_Rational:
-            return cosine
-        if self.cell.size > 1:
-            raise InputError(
-                f"wavenumber is {shorten(self.wavenumber)}: in a cell of {self.cell.size} results "
-                "are exact where cos κ is rational (0, π/3, π/2, 2π/3, π); numeric() gives floats"
-            )
-        return 1 - 2 * SINE**2
+    def _mass(self) -> sp.Expr:
+        return self.cell.masses[0]
+
+    @property
+    def _length(self) -> sp.Expr:
+        """The first contact's static compression; 1 without load and for any law."""
+        delta = self.static_compressions[0]
+        return sp.S.One if self.law.formless or delta.is_zero else delta
 
     @cached_property
-    def _exact(self) -> tuple[sp.Expr, Coefficients]:
-        start, sample, phase = self._start, self._sample, sp.exp(sp.I * self.wavenumber)
-        sample = sample | {SINE: float(sp.sin(self.wavenumber / 2).xreplace(sample))}
-        sample |= {letter: float(q.xreplace(sample)) for q, letter in self._letters.items()}
-        rows = self._rows([self._letters.get(q, q) for q in self._springs])
-        return exact_mode(rows, self._cosine, phase, start.square, sample, start.reference)
-
-    @property
-    def _omega(self) -> sp.Expr:
-        """ω over `_rate`."""
-        return root(self._exact[0]) if not self.floats else sp.Float(self._start.square) ** 0.5
-
-    @property
     def _rate(self) -> sp.Expr:
-        return root(self._curvatures[0] / self.cell.masses[0])
+        """The unit of ω²."""
+        K2 = K2_ANY if self.law.formless else self.law.at(self.static_compressions[0], 1)
+        return sp.powsimp(self.cell.stiffnesses[0] * K2 / self._mass)
 
-    @property
-    def _action(self) -> sp.Expr:
-        """Unit of |A|² over that of a compression."""
-        return self._curvatures[3] * self.cell.masses[0]
+    @cached_property
+    def _contacts(self) -> Contacts:
+        """The cell and its law, exact."""
+        cell, law, delta = self.cell, self.law, self.static_compressions[0]
+        if law.formless:
+            s, t = K3_ANY / K2_ANY, K4_ANY / K2_ANY
+        elif delta.is_zero:
+            s, t = (law.at(delta, n) / law.at(delta, 1) / sp.factorial(n) for n in (2, 3))
+        else:
+            s, t = (law.phi(n).subs(law.delta, delta) / sp.factorial(n) for n in (2, 3))
+        compliances = cell.compliances(law.exponent)
+        c = [sp.powsimp(part / compliances[0]) for part in compliances]
+        return Contacts(np.array([m / self._mass for m in cell.masses]), np.array(c), s, t)
+
+    def _sampled(self, value: sp.Expr) -> float:
+        """The float at a sample of the symbols, by which branches ascend: masses fall in a cell."""
+        symbols = dict.fromkeys(value.free_symbols, 1.5)
+        for values in (self.cell.stiffnesses, self.cell.masses):
+            for i, part in reversed([*enumerate(values)]):
+                symbols |= dict.fromkeys(part.free_symbols, 1 / (1 + i))
+        return float(value.xreplace(symbols))
+
+    @cached_property
+    def _mode(self) -> Mode:
+        """The mode, exact or in floats."""
+        contacts, kappa = self._contacts, self.wavenumber
+        numbers = (*contacts.masses, *contacts.c, contacts.s, contacts.t, kappa)
+        if self.floats:
+            demand_numbers(set().union(*(x.free_symbols for x in numbers)), "floats need numbers")
+        *rows, s, t, number = map(self._sampled, numbers)
+        masses, c = np.array(rows).reshape(2, -1)
+        sample = Contacts(masses, c, s, t)
+        found, bead = numeric_mode(sample, number, self.branch, self.floats)
+        if self.floats:
+            return found
+        if self.cell.size > 1 and not sp.cos(kappa).is_Rational:
+            raise InputError(
+                f"wavenumber is {shorten(kappa)}: in a cell of {self.cell.size} results are exact "
+                "where cos κ is rational (0, π/3, π/2, 2π/3, π); numeric() gives floats"
+            )
+        return exact_mode(contacts, kappa, self.branch, bead, self._sampled)
+
+    @cached_property
+    def _omega(self) -> sp.Expr:
+        """ω, in `SINE` where κ is general."""
+        return self._tidy(root(self._tidy(sp.sympify(self._mode.square) * self._rate)))
+
+    def _each(self, values: Any, unit: sp.Expr) -> tuple[sp.Expr, ...]:
+        return tuple(self._named(self._tidy(sp.sympify(value) / unit)) for value in values)
 
     def _tidy(self, value: sp.Expr) -> sp.Expr:
         if self.floats:
             return sp.N(value)
-        back = {SINE: sp.sin(self.wavenumber / 2), COSINE: sp.cos(self.wavenumber / 2)}
-        short = sp.count_ops(value) < LONG  # factors of long results take minutes
-        found = sp.powsimp(sp.factor(value)) if short else value
-        return found.xreplace(back | {letter: q for q, letter in self._letters.items()})
+        return sp.powsimp(sp.factor(value)) if sp.count_ops(value) < LONG else value
+
+    def _named(self, value: sp.Expr) -> sp.Expr:
+        half = self.wavenumber / 2
+        return value.xreplace({SINE: sp.sin(half), COSINE: sp.cos(half)})
 
 
 def envelope(

@@ -60,7 +60,7 @@ def flux(closure: Closure, n: int) -> fmpq_mpoly | None:
 def variational_derivative(
     algebra: JetAlgebra, k: fmpq_mpoly, density: fmpq_mpoly, n: int
 ) -> fmpq_mpoly:
-    """p^{-k} δ/δu of ∫ p^{k+1} f dx for a density f of weight n without the velocity.
+    """The variational derivative p^{-k} δ/δu of ∫ p^{k+1} f dx, f of weight n without the velocity.
 
     The variational derivative is Σ_j (-∂_x)^j ∂V/∂(∂_x^j u), of weight n + 1.
     """
@@ -76,22 +76,21 @@ def variational_derivative(
     return total
 
 
-def potential(closure: Closure, n: int, density: fmpq_mpoly | None) -> fmpq_mpoly | None:
-    """(k+1) V_n / u_x^{k+1} of a variational order n, else None (as for orders with velocity jets).
+def variational(closure: Closure, n: int, density: fmpq_mpoly | None) -> bool:
+    """Whether order n, of the flux ``density``, is minus a variational derivative.
 
-    density : the `flux` of order n.
+    False for an order without a flux, and for one with jets of the velocity.
     """
     algebra = closure.algebra
     k = closure.model.ring.exponent(algebra.context)
-    if density is None or algebra.velocity_slopes(closure.acceleration[n]):
-        return None
-    if variational_derivative(algebra, k, density, n - 1) != -(k + 1) * closure.acceleration[n]:
-        return None
-    return algebra.by_parts(density, k + 1)
+    E = closure.acceleration[n]
+    if density is None or algebra.velocity_slopes(E):
+        return False
+    return bool(variational_derivative(algebra, k, density, n - 1) == -(k + 1) * E)
 
 
 def energy(closure: Closure) -> tuple[JetAlgebra, list[fmpq_mpoly]]:
-    """(e - W(u_x)) / (u_x² F′(u_x)), a series in D up to D^{order-2}, in an algebra that has s_0.
+    """The energy (e - W(u_x)) / (u_x² F′(u_x)) to D^{order-2}, and an algebra with s_0 for it.
 
     Raises `lwa.InputError` on the optical branch, and for a closure that leaves a defect.
     """
@@ -137,7 +136,7 @@ class _Fields:
         return ladder
 
     def kinetic(self, n: int) -> fmpq_mpoly:
-        """½ Σ μ_i (∂_τ w_i)² at D^n, over p² F′."""
+        """The kinetic energy ½ Σ μ_i (∂_τ w_i)² at D^n, over p² F′."""
         total = self.algebra.zero
         for mu, row in zip(self.mu, self.velocities, strict=True):
             for j in range(n + 1):
@@ -145,7 +144,7 @@ class _Fields:
         return total
 
     def elastic(self, n: int) -> fmpq_mpoly:
-        """Σ c_i W(p (1 + X_i)) / P at D^n, n ≥ 1, over p² F′; nothing at D^0.
+        """The elastic energy Σ c_i W(p (1 + X_i)) / P at D^n, n ≥ 1, over p² F′; 0 for n = 0.
 
         Σ c_i p X_i / P = ∂_x Y with Y = Σ_j (PD∂_x)^j/(j+1)! w_0 - φ.
         """
@@ -162,7 +161,7 @@ class _Fields:
 
 
 def _strains(S: list[Ladder], n: int) -> list[fmpq_mpoly]:
-    """c_i X_i at D^n: w_{i+1} - w_i over D p, the last one's neighbour in the next cell."""
+    """The strains c_i X_i = (w_{i+1} - w_i)/(D p) at D^n; w_P is w_0 of the next cell."""
     P = len(S)
     inner = [after[n] - before[n] for before, after in pairwise(S)]
     jet = S[0].algebra.r[n] * fmpq(P ** (n + 1), factorial(n + 1))

@@ -16,7 +16,7 @@ from typing import Any
 import sympy as sp
 from flint import fmpq_mpoly
 
-from lwa.algebra.contact import Binomial, Powers
+from lwa.algebra.contact import Binomial, SeriesPowers
 from lwa.algebra.jets import Ladder, Monomial
 from lwa.base.exact import InputError
 from lwa.closure.consistency import Closure
@@ -113,7 +113,7 @@ class _Change:
         )
 
     def _acceleration(self) -> tuple[fmpq_mpoly, ...]:
-        """φ_ττ = (1 + Σ α_n D^n ∂_x^n) u_ττ."""
+        """The terms of φ_ττ = (1 + Σ α_n D^n ∂_x^n) u_ττ."""
         acceleration = Ladder(self.algebra, self.k)
         for term in self._replaced(self.closure.acceleration, self.k):
             acceleration.append(term)
@@ -125,7 +125,7 @@ class _Change:
         )
 
     def slaved(self, S: Sequence[fmpq_mpoly]) -> tuple[fmpq_mpoly, ...]:
-        """w - φ = (u - φ) + D u_x S, over D φ_x, in the jets of φ."""
+        """The terms of w - φ = (u - φ) + D u_x S, over D φ_x, in the jets of φ."""
         moved = self._replaced(S, self.algebra.one)
         return tuple(self.inverse[n + 1] * self.algebra.r[n] + moved[n] for n in range(self.size))
 
@@ -150,7 +150,7 @@ class _Change:
     def _monomial(
         self, monomial: Monomial, coefficient: fmpq_mpoly, exponent: fmpq_mpoly, size: int
     ) -> Series:
-        """coefficient · Π jets of u · u_x^e in the jets of φ, to ``size`` terms, over φ_x^e."""
+        """The term coefficient · Π jets of u · u_x^e in the jets of φ, to ``size`` terms."""
         powers_t = sum(e for _, e in monomial.t)
         degree = exponent - sum(e for _, e in monomial.x) - powers_t * (self.k + 1) / 2
         series = self._of_strain(coefficient, degree, size)
@@ -162,7 +162,7 @@ class _Change:
         return series
 
     def _of_strain(self, coefficient: fmpq_mpoly, degree: fmpq_mpoly, size: int) -> Series:
-        """coefficient · (1 + X)^degree, a power of u_x over that of φ_x.
+        """The series of coefficient · (1 + X)^degree, a power of u_x over the same power of φ_x.
 
         Under a law that is no power the coefficient depends on p too.
         """
@@ -176,7 +176,7 @@ class _Change:
         slopes = [coefficient]  # p^m ∂_p^m of it
         for m in range(size - 1):
             slopes.append(self.algebra.scaled(slopes[-1], degree - m))
-        powers = Powers([self.algebra.zero, *X])
+        powers = SeriesPowers([self.algebra.zero, *X])
         rest = (slopes[1] * X[n - 1] + powers.sum(slopes, n) for n in range(1, size))
         return [coefficient, *rest]
 

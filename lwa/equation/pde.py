@@ -25,7 +25,7 @@ from flint import fmpq_mpoly
 from lwa.base import latex
 from lwa.base.exact import InputError, exact, integer, power, root
 from lwa.closure.consistency import OfClosure
-from lwa.equation.energy import energy, flux, potential
+from lwa.equation.energy import energy, flux, variational
 from lwa.equation.fields import change_field
 from lwa.equation.terms import ENERGY, Jet, Terms, base_order, terms
 from lwa.wave.traveling import TravelingWave
@@ -37,7 +37,7 @@ class PDE(OfClosure):
 
     @cached_property
     def time_scale(self) -> sp.Expr:
-        """τ/t."""
+        """The ratio τ/t of the times."""
         if self.acoustic:
             return self.closure.model.time_scale
         # w = λu strains each contact by (λ - 1)u, and 1 - λ = M/m2.
@@ -47,7 +47,7 @@ class PDE(OfClosure):
 
     @cached_property
     def coefficients(self) -> Mapping[int, Terms]:
-        """Terms at D^{k+n} (optical: D^n) by n, without the power of D; {} if they vanish.
+        """Terms by n at D^{k+n} (optical: D^n), without the power of D; {} for a vanishing order.
 
         The leading term u_x^{k-1} u_xx (or -u^k) is left out.
         """
@@ -138,20 +138,14 @@ class PDE(OfClosure):
 
     @cached_property
     def _fluxes(self) -> dict[int, fmpq_mpoly | None]:
-        """F_n by n, None for an order D^{k+n} without a flux."""
+        """Fluxes F_n by n ≥ 2, u_x^k E_n = ∂_x (u_x^k F_n); None for an order without a flux."""
         return {n: flux(self.closure, n) for n in self._orders}
 
     @cached_property
-    def fluxes(self) -> Mapping[int, Terms]:
-        """Fluxes F_n by n ≥ 2, u_x^k E_n = ∂_x (u_x^k F_n), of the orders D^{k+n} that have one."""
-        return {n: terms(self.closure, F) for n, F in self._fluxes.items() if F is not None}
+    def variational(self) -> bool:
+        """True if every order (D^{k+3} in any case) is minus a variational derivative.
 
-    @cached_property
-    def potentials(self) -> Mapping[int, Terms]:
-        """Potentials (k+1) V_n / u_x^{k+1} by n ≥ 2, of the variational orders among D^{k+n}.
-
-        If all orders have one, u_ττ is minus the variational derivative of Σ D^{n-1} V_n with
-        V_1 = u_x^{k+1}/(k(k+1)), and u_τ²/2 + Σ D^{n-1} V_n is the density of a conserved energy.
+        Then u_ττ = -δV/δu, and u_τ²/2 + V is the density of the conserved `energy`.
 
         Raises `lwa.InputError` for laws that are no power.
         """
@@ -160,14 +154,9 @@ class PDE(OfClosure):
                 "a potential is found by Euler's theorem on homogeneous functions, which needs a "
                 "power law; `energy` is there for every law"
             )
-        found = {n: potential(self.closure, n, F) for n, F in self._fluxes.items()}
-        return {n: terms(self.closure, V) for n, V in found.items() if V is not None}
-
-    @cached_property
-    def variational(self) -> bool:
-        """True if every order (D^{k+3} in any case) derives from a potential; see `potentials`."""
         pde = self._at_least_to_third_order
-        return bool(pde._orders) and all(n in pde.potentials for n in pde._orders)
+        fluxes = pde._fluxes.items()
+        return bool(fluxes) and all(variational(pde.closure, n, F) for n, F in fluxes)
 
     @property
     def _orders(self) -> tuple[int, ...]:

@@ -14,12 +14,10 @@ from typing import Any, NamedTuple
 import sympy as sp
 from flint import fmpq_mpoly
 
-from lwa.algebra.jets import JetAlgebra, Term
+from lwa.algebra.jets import JetAlgebra, Powers, Term
 from lwa.algebra.model import Model
 from lwa.base import latex
 from lwa.closure.consistency import Closure
-
-Powers = tuple[tuple[int, int], ...]
 
 FORCE, STRAIN, ENERGY = (0, 1), (1, 0), (1, 1)
 """Powers (a, b) of the base, base^{a + bk}, of a force, a strain and an energy."""
@@ -99,10 +97,6 @@ class Terms(Mapping[Jet, sp.Expr]):
         rows += [f"{more} more" if rows else f"{more} terms"] if more else []
         return f"{{{', '.join(rows)}}}"
 
-    def length(self, jet: Jet) -> int:
-        """The number of terms of a coefficient."""
-        return len(self._raw[jet])
-
     def written(self, jet: Jet) -> str:
         """The coefficient as text; writing takes longest of all and is done once."""
         if jet not in self._written:
@@ -155,7 +149,7 @@ class Terms(Mapping[Jet, sp.Expr]):
         return base_order(self._model)
 
     def of_fields(self, u: sp.Expr, velocity: sp.Expr, x: sp.Symbol) -> sp.Expr:
-        """Σ coefficient · base^{a + bk} · jet for fields u(x) and u_τ(x)."""
+        """The sum Σ coefficient · base^{a + bk} · jet for fields u(x) and u_τ(x)."""
         base, law = (u.diff(x) if self.base else u), self._model.law
         D = self._model.cell.spacing
         total = sp.S.Zero
@@ -201,7 +195,7 @@ def terms(
 
 
 def base_order(model: Model) -> int:
-    """1 for jets over u_x; 0 for jets over u, on the optical branch."""
+    """Order of the derivative in the jets' denominators: 1 for u_x, 0 for u (optical branch)."""
     return 1 if model.branch == "acoustic" else 0
 
 

@@ -70,7 +70,7 @@ def resum(
     unit: sp.Expr = sp.S.One,
     relative: float = 0.0,
 ) -> Resummed:
-    """unit · Σ coefficients[n] ε^n, all of them numbers, with an estimate of its error.
+    """Sum unit · Σ coefficients[n] ε^n, all numbers, with an estimate of the error.
 
     base : a series that is summed first; the difference to it is summed apart.
     relative : a further error, relative to the sum.
@@ -95,7 +95,7 @@ def resum(
 
 
 def pade(a: Sequence[sp.Expr], L: int, M: int, epsilon: sp.Expr) -> sp.Expr:
-    """[L/M] of Σ a_n ε^n, exact.
+    """The exact Padé approximant [L/M] of Σ a_n ε^n.
 
     Raises `lwa.InputError` where the series is too short, or has none.
 
@@ -174,7 +174,7 @@ def _approximants(terms: Sequence[arb]) -> list[mpmath.mpf]:
 
 
 def _pade(a: Sequence[arb], L: int, M: int) -> mpmath.mpf | None:
-    """[L/M] of Σ a_n x^n at x = 1; None where it does not exist or has a pole near 0 … 3/2."""
+    """The value at x = 1 of [L/M] of Σ a_n x^n; None if absent or with a pole near 0 … 3/2."""
     system = arb_mat(M, M, [a[L + i - j] if L + i >= j else 0 for i in range(M) for j in range(M)])
     try:
         found = system.solve(arb_mat(M, 1, [-a[L + i + 1] for i in range(M)]))

@@ -16,7 +16,7 @@ MOST_TERMS = 3_000_000
 LONG_TERMS = 30_000
 """Terms from which an expansion takes half a minute or more."""
 
-MOST_DIGITS = 100
+ROOT_DIGITS = 100
 """Digits of the ratios of masses and of stiffnesses; SymPy takes roots of at most 300."""
 
 
@@ -26,12 +26,12 @@ def affordable(model: Model, order: int) -> int:
     A polynomial at t^n has about 3n/2 powers of Z, and as many monomials as there are of degree 3n
     in the symbolic ratios.
 
-    Raises `lwa.InputError` beyond `MOST_TERMS` or `MOST_DIGITS`.
+    Raises `lwa.InputError` beyond `MOST_TERMS` or `ROOT_DIGITS`.
     """
     for part, name in ((model.ring.masses, "masses"), (model.ring.contacts, "stiffnesses")):
-        if _integer(part) >= 10**MOST_DIGITS:
+        if _integer(part) >= 10**ROOT_DIGITS:
             raise InputError(
-                f"{name} have ratios of more than {MOST_DIGITS} digits: give numbers of fewer"
+                f"{name} have ratios of more than {ROOT_DIGITS} digits: give numbers of fewer"
             )
     P, ratios = model.cell.size, len(model.ring.masses.names) + len(model.ring.contacts.names)
     n = min(order, 10**6)
@@ -46,10 +46,10 @@ def affordable(model: Model, order: int) -> int:
 
 
 def short(value: sp.Expr, name: str) -> sp.Expr:
-    """Return the value; refuse numbers of more than `MOST_DIGITS` in it."""
+    """Return the value; refuse numbers of more than `ROOT_DIGITS` digits in it."""
     numbers = (abs(int(part)) for x in value.atoms(sp.Rational) for part in (x.p, x.q))
-    if max(numbers, default=0) >= 10**MOST_DIGITS:
-        raise InputError(f"{name} has a number of more than {MOST_DIGITS} digits: give fewer")
+    if max(numbers, default=0) >= 10**ROOT_DIGITS:
+        raise InputError(f"{name} has a number of more than {ROOT_DIGITS} digits: give fewer")
     return value
 
 

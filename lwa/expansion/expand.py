@@ -60,17 +60,17 @@ class Expansion(Value):
 
     @property
     def I(self) -> sp.Expr:
-        """I of the linear chain's Ω² = κ² - I κ⁴ + …, over D²."""
+        """The coefficient I of the linear chain's Ω² = κ² - I κ⁴ + …, over D²."""
         return self._read.I
 
     @cached_property
     def compliance(self) -> sp.Expr:
-        """ā, the mean of A_i^{-1/k}."""
+        """The mean ā of A_i^{-1/k}."""
         return sp.Add(*self.cell.compliances(self.k)) / self.cell.size
 
     @cached_property
     def c2(self) -> EpsilonSeries:
-        """c², the square of the speed in sites per unit of time.
+        """The square c² of the speed in sites per unit of time.
 
         >>> from lwa import Cell
         >>> expand(Cell([1]), 2).c2.coefficients
@@ -112,7 +112,7 @@ class Expansion(Value):
 
     @cached_property
     def effective_mass(self) -> EpsilonSeries:
-        """P²/(2E), the mass of a particle with the wave's momentum and energy, at any force."""
+        """The mass P²/(2E) of a particle with the wave's momentum and energy, at any force."""
         unit = sp.sqrt(2 * sp.pi * self.I) * self.cell.mass / self.cell.size
         return self._series("effective_mass", unit, -sp.S.Half)
 
@@ -152,7 +152,7 @@ class Expansion(Value):
 
     @cached_property
     def _sound(self) -> sp.Expr:
-        """c² at k = 1."""
+        """The value of c² at k = 1."""
         return self.cell.size / (self.cell.mass * self.compliance)
 
     def _series(self, quantity: str, unit: sp.Expr, power: sp.Expr) -> EpsilonSeries:
@@ -160,7 +160,7 @@ class Expansion(Value):
         return EpsilonSeries(unit, power, coefficients, self.k, self.cell, quantity)
 
     def log_force(self, contact: Any = 0, X: Any = None) -> dict[sp.Rational, sp.Expr]:
-        """n → φ_n(X) of log F = Σ ε^n φ_n(X), X = √ε ξ, n = 0, 1/2, 1, …, where φ_n is not zero.
+        """The φ_n(X) ≠ 0 by n = 0, 1/2, 1, … of log F = Σ ε^n φ_n(X), X = √ε ξ.
 
         ξ is measured from the peak of the first contact, in the frame of the contact's own cell:
         contact i is i sites behind the first one. X is a symbol of this name unless it is given.

@@ -15,7 +15,7 @@ import sympy as sp
 from flint import fmpq, fmpq_mpoly
 
 from lwa.algebra.model import Model
-from lwa.algebra.partition import number, rational
+from lwa.algebra.partition import to_flint, to_sympy
 from lwa.base.progress import Progress
 from lwa.cell import Cell
 from lwa.expansion.pulse import (
@@ -46,12 +46,12 @@ class Observables:
 
     @property
     def c2(self) -> Series:
-        """c² over its leading term, that of sound."""
+        """The square of the speed c² over its leading term."""
         return self.wave.gamma[: 2 * self.order + 1]
 
     @cached_property
     def c(self) -> Series:
-        """c over its leading term."""
+        """The speed c over its leading term."""
         return root(self.c2)
 
     @cached_property
@@ -86,7 +86,7 @@ class Observables:
         """
         wave = self.wave
         weights = [
-            (fmpq(2) ** (1 - m) - 1) * fmpq(wave.P**m, factorial(m)) * rational(sp.bernoulli(m))
+            (fmpq(2) ** (1 - m) - 1) * fmpq(wave.P**m, factorial(m)) * to_flint(sp.bernoulli(m))
             for m in range(0, 2 * self.order + 1, 2)
         ]
         return [
@@ -96,7 +96,7 @@ class Observables:
 
     @cached_property
     def momentum(self) -> Series:
-        """Σ m v over its leading term: M/P times c and the displacement behind the wave."""
+        """The momentum over its leading term: M/P times c and the displacement behind the wave."""
         return product(self.c, [moment(terms[0], 2) for terms in self.wave.fields.means])
 
     @cached_property
@@ -124,7 +124,7 @@ class Observables:
 
     @cached_property
     def effective_mass(self) -> Series:
-        """P²/(2E) of momentum and energy, over its leading term."""
+        """The effective mass P²/(2E) over its leading term."""
         return quotient(product(self.momentum, self.momentum), self.energy)
 
     @cached_property
@@ -146,7 +146,7 @@ class Observables:
         return self._loss(self.wave.c, fields.force, fields.strain)
 
     def _loss(self, weights: Series, first: list[Series], second: list[Series]) -> Series:
-        """c Σ weight ∫ (d first/dξ) (d second/dξ) dξ, over its leading term."""
+        """The loss c Σ weight ∫ (d first/dξ) (d second/dξ) dξ over its leading term."""
         slopes = ([list(map(_slope, row)) for row in rows] for rows in (first, second))
         products = (product(a, b, 2) for a, b in zip(*slopes, strict=True))
         total = _sum(weights, products, self.wave.zero)
@@ -164,7 +164,7 @@ class Observables:
         return tuple(found)
 
     def log_force(self, contact: int) -> dict[sp.Rational, dict[int, sp.Expr]]:
-        """n → d → the coefficient of X^d in φ_n, n = 0, 1/2, 1, …, where φ_n is not zero."""
+        """The coefficients of X^d in φ_n ≠ 0, by n = 0, 1/2, 1, … and d."""
         found = {sp.S.Zero: {2: -1 / (4 * self.I)}}
         for n, q in enumerate(self.wave.fields.log_force[contact]):
             if q:
@@ -174,14 +174,14 @@ class Observables:
 
     @cached_property
     def I(self) -> sp.Expr:
-        """I of the linear chain's Ω² = κ² - I κ⁴ + …, over D²."""
+        """The coefficient I of the linear chain's Ω² = κ² - I κ⁴ + …, over D²."""
         return self.over(self.wave.I, 0)
 
     def over(self, numerator: fmpq_mpoly, power: int) -> sp.Expr:
-        """numerator / I^power, in the caller's symbols."""
+        """The quotient numerator / I^power, in the caller's symbols."""
         I = self.wave.I
         if not self.model.ring.names:
-            return number(_constant(numerator) / _constant(I) ** power)
+            return to_sympy(_constant(numerator) / _constant(I) ** power)
         while power:
             quotient, remainder = divmod(numerator, I)
             if remainder:
@@ -210,18 +210,18 @@ def _constant(polynomial: fmpq_mpoly) -> fmpq:
 
 
 def _slope(term: fmpq_mpoly) -> fmpq_mpoly:
-    """e^{Z²/4} d/dZ of e^{-Z²/4} S(Z)."""
+    """The derivative e^{Z²/4} d/dZ [e^{-Z²/4} S(Z)]."""
     return term.derivative(0) - term.context().gen(0) * term / 2
 
 
 def _sum(weights: Series, rows: Iterable[Series], zero: fmpq_mpoly) -> Series:
-    """Σ weight · row."""
+    """The weighted sum Σ weight · row."""
     weighted = ([w * term for term in row] for w, row in zip(weights, rows, strict=True))
     return [sum(terms, zero) for terms in zip(*weighted, strict=True)]
 
 
 def shares_model(cell: Cell, k: sp.Expr) -> Model:
-    """The model with k = 1 where contacts are equal: their shares do not depend on k then."""
+    """The model of a cell; with k = 1 for equal contacts, whose shares do not depend on k."""
     equal = len({*cell.stiffnesses}) == 1
     return Model(cell, Power(sp.S.One if equal else k))
 

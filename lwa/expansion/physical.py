@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import sympy as sp
 
 from lwa.base import latex
-from lwa.base.exact import InputError, positive, shorten
+from lwa.base.exact import InputError, demand_numbers, positive, shorten
 from lwa.base.frozen import Value
 from lwa.base.quantities import known_extent
 from lwa.expansion.approximants import Resummed
@@ -60,7 +60,7 @@ class ExpandedWave(Value):
 
     @property
     def momentum(self) -> Resummed:
-        """Σ m v over the chain, proportional to F^{(k+1)/(2k)}."""
+        """Momentum Σ m v of the chain, proportional to F^{(k+1)/(2k)}."""
         return self._at_force(self.expansion.momentum, (self.expansion.k + 1) / 2)
 
     @property
@@ -70,7 +70,7 @@ class ExpandedWave(Value):
 
     @property
     def effective_mass(self) -> Resummed:
-        """P²/(2E) of momentum P and energy E, the same at any force."""
+        """Effective mass P²/(2E) of momentum P and energy E, independent of the force."""
         return self.expansion.effective_mass.at()
 
     def dissipation(self, kind: str) -> Resummed:
@@ -116,6 +116,22 @@ class ExpandedWave(Value):
     def _at_force(self, series: EpsilonSeries, power: sp.Expr) -> Resummed:
         """A quantity proportional to the compression to some power."""
         return _times(series.at(), float(self.F ** (power / self.expansion.k)))
+
+
+def wave_of_velocity(expansion: Expansion, velocity: sp.Expr) -> ExpandedWave:
+    """The wave of equal beads that move at this velocity at most, proportional to F^{(k+1)/(2k)}.
+
+    Raises `lwa.InputError` unless the chain and the velocity are numbers.
+
+    >>> from lwa import Cell, expand
+    >>> wave = wave_of_velocity(expand(Cell([1], spacing=1), 8, k="3/2"), sp.Integer(1))
+    >>> round(wave.expansion.peak_velocity.at().value * float(wave.F) ** (5 / 6), 9)
+    1.0
+    """
+    k = expansion.k
+    demand_numbers({*velocity.free_symbols, *k.free_symbols}, "sums of series are numbers")
+    ratio = float(velocity) / expansion.peak_velocity.at().value
+    return ExpandedWave(expansion, ratio ** float(2 * k / (k + 1)))
 
 
 def _times(found: Resummed, factor: float) -> Resummed:

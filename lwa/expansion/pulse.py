@@ -43,7 +43,7 @@ def exp_term(log: Series, S: Series) -> fmpq_mpoly:
 
 
 def by_degree(polynomial: fmpq_mpoly) -> dict[int, fmpq_mpoly]:
-    """d → the coefficient of Z^d."""
+    """Coefficients of Z^d by d."""
     parts: dict[int, dict[tuple[int, ...], Any]] = {}
     for exponents, coefficient in polynomial.terms():
         d, *rest = map(int, exponents)
@@ -64,7 +64,7 @@ def moment(polynomial: fmpq_mpoly, variance: int) -> fmpq_mpoly:
 
 
 def half_width(log: Series) -> Series:
-    """The h_n of the full width 4y Σ h_n t^n where e^{-Z²/4 + Σ log_n t^n} has e^{-y²} of its peak.
+    """Series h_n of the full width 4y Σ h_n t^n of e^{-Z²/4 + Σ log_n t^n} at e^{-y²} of its peak.
 
     In the result, polynomials in y², Z stands for y. Counted from the peak the exponent is
     -Z²/4 + p(Z), p = O(t), and Z²/4 = y² + p(Z) is solved by Lagrange's series
@@ -87,7 +87,7 @@ def half_width(log: Series) -> Series:
 
 
 def _from_peak(log: Series) -> Series:
-    """-Z²/4 + Σ log_n t^n about its maximum, without -Z²/4 and its value there.
+    """Shift -Z²/4 + Σ log_n t^n to its maximum; without -Z²/4 and the value there.
 
     The place of the maximum is moved to 0 order by order, Z → Z + z_n t^n.
     """
@@ -107,7 +107,7 @@ def _from_peak(log: Series) -> Series:
 
 
 def wider(width: Series, epsilon: fmpq_mpoly) -> Series:
-    """`half_width` of the pulse to the power 1/(1+ε), at the same height: y² → (1+ε) y², ε = O(t²).
+    """Width series of the pulse to the power 1/(1+ε) at the same height: y² → (1+ε) y², ε = O(t²).
 
     Each y^d of 4y Σ h_n t^n becomes (1+ε)^{(d+1)/2} y^d.
     """
@@ -129,7 +129,7 @@ def _over_square(polynomial: fmpq_mpoly, y: fmpq_mpoly) -> fmpq_mpoly:
 
 
 def _reweighted(polynomial: fmpq_mpoly, weight: Callable[[int], fmpq]) -> fmpq_mpoly:
-    """Σ weight(d) c Z^d of Σ c Z^d."""
+    """Multiply each term c Z^d of a polynomial by weight(d)."""
     found = {}
     for exponents, coefficient in polynomial.terms():
         d, *rest = map(int, exponents)
@@ -139,7 +139,7 @@ def _reweighted(polynomial: fmpq_mpoly, weight: Callable[[int], fmpq]) -> fmpq_m
 
 
 def product(a: Series, b: Series, step: int = 1) -> Series:
-    """a · b, as long as they are; of the terms at t^n only those of which ``step`` divides n."""
+    """The product a · b to the same length; only the terms at t^n with n a multiple of ``step``."""
     found = [0 * a[0] for _ in a]
     for n, x in enumerate(a):
         if x:
@@ -150,7 +150,7 @@ def product(a: Series, b: Series, step: int = 1) -> Series:
 
 
 def quotient(a: Series, b: Series) -> Series:
-    """a / b, b_0 = 1, by Q_n = a_n - Σ_{j≥1} b_j Q_{n-j}."""
+    """The quotient a / b, b_0 = 1, by Q_n = a_n - Σ_{j≥1} b_j Q_{n-j}."""
     Q: Series = []
     for n, term in enumerate(a):
         Q.append(sum((-b[j] * Q[n - j] for j in range(1, n + 1)), term))
@@ -158,7 +158,7 @@ def quotient(a: Series, b: Series) -> Series:
 
 
 def root(S: Series) -> Series:
-    """√(Σ S_n t^n), S_0 = 1, by 2 n R_n = Σ_{j≥1} (3j - 2n) S_j R_{n-j}."""
+    """The root √(Σ S_n t^n), S_0 = 1, by 2 n R_n = Σ_{j≥1} (3j - 2n) S_j R_{n-j}."""
     R = [S[0]]
     for n in range(1, len(S)):
         total = 0 * S[0]

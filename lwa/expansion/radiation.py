@@ -74,7 +74,7 @@ class Radiation(Value):
         return float(FACTOR * self.contrast * self.amplitude(k) ** POWER)
 
     def amplitude(self, k: float) -> float:
-        """R at this k, over the pulse's peak force."""
+        """The rattle R at this k, over the pulse's peak force."""
         import numpy as np  # start-up: `import lwa` does not load it
 
         epsilon = k - 1
@@ -92,7 +92,7 @@ class Radiation(Value):
 
 
 def _rattle(K: Array, slope: Array, step: float) -> float:
-    """|∫ K^{3/2} F' e^{i∫K} dξ| by the trapezoidal rule, spectral for decayed functions."""
+    """The rattle |∫ K^{3/2} F' e^{i∫K} dξ| by the trapezoidal rule, spectral for such F'."""
     import numpy as np  # start-up: `import lwa` does not load it
 
     phase = np.concatenate([[0.0], np.cumsum((K[1:] + K[:-1]) / 2)]) * step

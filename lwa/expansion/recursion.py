@@ -32,7 +32,7 @@ from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 from sympy import bernoulli
 
 from lwa.algebra.model import Model
-from lwa.algebra.partition import rational
+from lwa.algebra.partition import to_flint
 from lwa.base.progress import Progress
 from lwa.expansion.pulse import Series, by_degree, exp_term, log_term
 from lwa.linear.bloch import Bloch
@@ -40,12 +40,12 @@ from lwa.linear.bloch import Bloch
 LINEAR = 3
 """The first n for which q_n² is beyond t^{n+2}."""
 
-Term = Callable[[Series, Series, Series], fmpq_mpoly]
+LastTerm = Callable[[Series, Series, Series], fmpq_mpoly]
 """Function of two fields and the wave's own: the last term of an exponential or a logarithm."""
 
 
 class Fields:
-    """Fields e^{-Z²/4} Σ S_n t^n of a wave, or a change of them, as lists of the S_n.
+    """The fields e^{-Z²/4} Σ S_n t^n of a wave, or changes of the fields, as lists of S_n.
 
     For each contact `force` and `strain` with their logarithms, for each bead `slope`; `means` and
     `pushes` have the mean strain Σ c_i r_i / P and the last contact's force with their derivatives:
@@ -126,7 +126,7 @@ class Recursion:
         fields.truncate(order + 1)
 
     def _invert(self, residual: fmpq_mpoly) -> tuple[fmpq_mpoly, fmpq_mpoly]:
-        """q and γ of I³ (q'' - Z q' + q) = residual + γ, q(0) = q'(0) = 0."""
+        """Solve I³ (q'' - Z q' + q) = residual + γ, q(0) = q'(0) = 0, for q and γ."""
         left = by_degree(residual)
         q = self.zero
         for d in range(max(left, default=0), 1, -1):
@@ -179,8 +179,8 @@ class Recursion:
         n: int,
         q: fmpq_mpoly,
         width: fmpq_mpoly,
-        exponential: Term,
-        logarithm: Term,
+        exponential: LastTerm,
+        logarithm: LastTerm,
     ) -> None:
         """Add the terms at t^n to the wave's fields or to a change of them.
 
@@ -235,5 +235,5 @@ def _last(a: Series, b: Series) -> fmpq_mpoly:
 
 
 def _bernoulli(m: int) -> fmpq:
-    """B_m, with B_1 = -1/2."""
-    return fmpq(-1, 2) if m == 1 else rational(bernoulli(m))
+    """The Bernoulli number B_m, with B_1 = -1/2."""
+    return fmpq(-1, 2) if m == 1 else to_flint(bernoulli(m))

@@ -38,7 +38,7 @@ _LETTERS = {
 
 @dataclass(frozen=True, repr=False)
 class EpsilonSeries(Value):
-    """prefactor · ε^power · Σ coefficients[n] ε^n, ε = k - 1.
+    """The series prefactor · ε^power · Σ coefficients[n] ε^n, ε = k - 1.
 
     k : the exponent. A number is the one at which the series is summed. A symbol may be replaced by
         a number or another symbol, also in the prefactor and the shares of unlike contacts.
@@ -93,7 +93,7 @@ class EpsilonSeries(Value):
         return series._unit * pade(series.coefficients, *degrees, series._epsilon)
 
     def at(self, k: Any = None) -> Resummed:
-        """The sum and an estimate of its error; at a number k > 1 where the series' k is a symbol.
+        """The sum and an estimate of its error, at a number k > 1 for a series in a symbol k.
 
         Raises `lwa.InputError` when k or the cell holds symbols, for k ≤ 1, for a k besides that of
         the series, and where the error is as large as the sum of these positive quantities.

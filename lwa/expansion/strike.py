@@ -57,7 +57,7 @@ class Strike(Value):
 
     @cached_property
     def wave(self) -> ExpandedWave:
-        """The chain's wave of this peak force, without the error of the rule."""
+        """The chain's wave of the same peak force, without the error of the rule."""
         k, m = self.chain.k, self._effective
         w = 2 * float(self.mass * self.velocity) / (float(self.mass) + m)
         unit = self.chain.energy.at().value

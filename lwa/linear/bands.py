@@ -49,7 +49,7 @@ def group_velocity(fractions: Array, shares: Array, kappa: ArrayLike) -> Array:
 
 
 def edges(fractions: Array, shares: Array) -> Array:
-    """(min, max) of Ω of each branch, shape (P, 2); branches are monotone from κ = 0 to π/P."""
+    """Band edges (min, max) of Ω by branch, shape (P, 2); branches are monotone on [0, π/P]."""
     ends = branches(fractions, shares, [0.0, np.pi / len(fractions)])
     result: Array = np.sort(ends, axis=0).T
     return result

@@ -35,10 +35,10 @@ class Bloch:
         self.one, self.zero = context.constant(1), context.constant(0)
 
     def trace(self, most: int) -> Polynomial:
-        """t_0 … t_P (or t_most), Σ t_m Ω^{2m} being the trace of the matrix (a, f) → next cell.
+        """Coefficients t_0 … t_P (or t_most) of the trace Σ t_m Ω^{2m} of a cell's matrix.
 
-        From a = 1, f = 0 it takes the a of the next cell, from a = 0, f = 1 the f. Both are
-        polynomials in Ω², lists of their coefficients.
+        The matrix maps (a, f) of a cell to the next cell's; its diagonal is a of (1, 0) and f of
+        (0, 1), polynomials in Ω² as lists of coefficients.
         """
         powers = range(min(self.P, most) + 1)
         one = [self.one, *(self.zero for _ in powers[1:])]
@@ -57,11 +57,11 @@ class Bloch:
 
     @property
     def nu(self) -> fmpq_mpoly:
-        """ν = μ_0 μ_1 c_0 c_1 of the dimer, whose relation is sin²κ = Ω² - ν Ω⁴."""
+        """The ν = μ_0 μ_1 c_0 c_1 of a dimer's relation sin²κ = Ω² - ν Ω⁴."""
         return self.mu[0] * self.mu[1] * self.c[0] * self.c[1]
 
     def acoustic(self, order: int) -> list[fmpq_mpoly]:
-        """L_0 … L_order of the root Ω² = Σ L_n κ^{2n} that starts with κ².
+        """Coefficients L_0 … L_order of the acoustic root Ω² = Σ L_n κ^{2n} = κ² + ….
 
         The relation, over -P², reads Ω² = (2 - 2 cos Pκ)/P² + Σ_{m≥2} t_m/P² Ω^{2m}, and in the
         powers of Ω² on the right stand only earlier L_n.
@@ -82,7 +82,7 @@ class Bloch:
         return omega2
 
     def amplitudes(self, order: int, branch: str) -> list[fmpq_mpoly]:
-        """b_0 … b_order of a dimer's a_1/a_0 = λ Σ b_n q^n, q = iκ.
+        """Coefficients b_0 … b_order of a dimer's a_1/a_0 = λ Σ b_n q^n, q = iκ.
 
         The first particle's equation times c_0 c_1 is 2μ_0 c_0 c_1 Ω² = 2 - (c_1 + c_0 e^{-2q}) ρ.
         With Ω² of the acoustic branch, or 1/ν less it and λ = -μ_0/μ_1 taken out,

@@ -40,7 +40,7 @@ MOST_TERMS = 200_000
 
 @dataclass(frozen=True)
 class Dispersion(Value):
-    """Ω(κ) of the linear chain with a cell's masses and strain shares.
+    """The dispersion relation Ω(κ) of the linear chain with a cell's masses and strain shares.
 
     Ω is the frequency in τ times D and κ the wavenumber times D. In time t the frequency is
     Ω/D · `Cell.time_scale`, times p^{(k-1)/2} under a mean strain p.
@@ -81,7 +81,7 @@ class Dispersion(Value):
 
     @cached_property
     def trace(self) -> dict[int, sp.Expr]:
-        """t_m by m of the exact dispersion relation 2 cos(Pκ) = Σ t_m Ω^{2m}, m = 0 … P.
+        """Coefficients t_m by m of the dispersion relation 2 cos(Pκ) = Σ t_m Ω^{2m}, m = 0 … P.
 
         >>> Dispersion(Cell([1])).trace
         {0: 2, 1: -1}
@@ -119,7 +119,7 @@ class Dispersion(Value):
 
     @cached_property
     def I(self) -> sp.Expr:
-        """I of Ω² = κ² (1 - I κ² + …), the wave equation's coefficient of u_4x over D².
+        """The I of Ω² = κ² (1 - I κ² + …), the wave equation's coefficient of u_4x over D².
 
         >>> Dispersion(Cell(["1/2", "1/3", "1/6"])).I
         5/36
@@ -189,13 +189,13 @@ class Dispersion(Value):
         return bands.group_velocity(*self._weights, kappa)
 
     def band_edges(self) -> Array:
-        """(min, max) of Ω of each branch, shape (P, 2); branches are monotone from κ = 0 to π/P."""
+        """Band edges (min, max) of Ω by branch, shape (P, 2); branches are monotone on [0, π/P]."""
         from lwa.linear import bands  # start-up: it loads NumPy
 
         return bands.edges(*self._weights)
 
     def gaps(self) -> Array:
-        """(from, to) of the P - 1 gaps of Ω between the bands; closed gaps have length 0."""
+        """Edges (from, to) of the P - 1 gaps of Ω between the bands; closed gaps have length 0."""
         import numpy as np  # start-up: `import lwa` does not load it
 
         edges = self.band_edges()
@@ -296,11 +296,11 @@ class LoadedChain(Value):
         return slopes * (self._rate * self._length)
 
     def band_edges(self) -> Array:
-        """(min, max) of ω of each branch, shape (P, 2)."""
+        """Band edges (min, max) of ω by branch, shape (P, 2)."""
         return self.springs.band_edges() * self._rate
 
     def gaps(self) -> Array:
-        """(from, to) of the gaps of ω between the bands."""
+        """Edges (from, to) of the gaps of ω between the bands."""
         return self.springs.gaps() * self._rate
 
     @property
@@ -309,7 +309,7 @@ class LoadedChain(Value):
 
     @property
     def _length(self) -> float:
-        """D, or 1 for a symbol."""
+        """The spacing as a float, 1 for a symbol."""
         D = self.cell.spacing
         return 1.0 if D.is_Symbol else self._float(D)
 

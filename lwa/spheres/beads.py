@@ -27,11 +27,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import partial
-from pathlib import Path
 from typing import Any
 
 from lwa.base.exact import InputError
-from lwa.base.files import load
 from lwa.base.tables import Table, among, array, each, named, positive, real, table
 from lwa.spheres.hertz import Material, Sphere
 from lwa.spheres.materials import MATERIALS
@@ -62,14 +60,6 @@ def read_beads(file: Table, materials: Mapping[str, Material]) -> dict[str, Sphe
     """The beads of a file, by name."""
     beads: dict[str, Sphere] = file.read("beads", named(partial(_bead, materials=materials)), {})
     return beads
-
-
-def read_spheres(path: str | Path) -> list[Sphere]:
-    """The spheres of the cell that a file describes, in their order.
-
-    Raises `lwa.InputError`, in one line that names file and key, for whatever it cannot mean.
-    """
-    return load(path, "a list of spheres", spheres)
 
 
 def spheres(content: Any) -> list[Sphere]:

@@ -113,7 +113,7 @@ class Sphere(Value):
 
 
 def stiffness(sphere: Sphere, other: Sphere | Material) -> sp.Expr:
-    """A of F = A δ^{3/2} between a sphere and another one, or a flat wall of some material.
+    """Stiffness A of F = A δ^{3/2} between two spheres, or a sphere and a flat wall.
 
     >>> R, E, nu = sp.symbols("R E nu", positive=True)
     >>> ball = Sphere("m", R, Material(E, nu))
@@ -128,7 +128,7 @@ def stiffness(sphere: Sphere, other: Sphere | Material) -> sp.Expr:
 
 
 def contact(sphere: Any, other: Any, sqrt: Callable[[Any], Any]) -> Any:
-    """`stiffness` in the arithmetic of ``sqrt``, `math.sqrt` for floats."""
+    """The `stiffness` in the arithmetic of ``sqrt``; `math.sqrt` computes in floats."""
     first, second = sphere.material, getattr(other, "material", other)
     wall = second is other
     R = sphere.radius if wall else sphere.radius * other.radius / (sphere.radius + other.radius)

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 
 class Solid(NamedTuple):
-    """E in Pa, ν and the density in kg/m³, as decimals, and their source."""
+    """A material: E in Pa, ν, the density in kg/m³, all as decimals, and their source."""
 
     E: str
     nu: str

@@ -45,7 +45,7 @@ _LOOKS = 64
 
 
 def taken_names(cell: Cell, law: ContactLaw) -> dict[str, str]:
-    """Names of chain, law and wave that no load may have, with their meanings."""
+    """Names of chain, law and wave that the symbol of a load may not have, with their meanings."""
     chain = dict.fromkeys((s.name for s in cell.symbols), "a property of the cell")
     return chain | dict.fromkeys((s.name for s in law.symbols), "a symbol of the law") | RESERVED
 
@@ -91,25 +91,30 @@ class BackgroundWave(Value):
 
     @cached_property
     def I(self) -> sp.Expr:
-        """The coefficient of u_4x, D² included."""
-        return Dispersion(self.cell, self.law.exponent).I * self.cell.spacing**2
+        """The coefficient I of u_4x, D² included."""
+        return self.linear.I * self.cell.spacing**2
+
+    @property
+    def linear(self) -> Dispersion:
+        """The dispersion of small waves in the units of the wave equation, at any strain."""
+        return Dispersion(self.cell, self.law.exponent)
 
     @property
     def time_scale(self) -> sp.Expr:
-        """τ/t: the speed in space and time is dx/dt = V τ/t."""
+        """The ratio τ/t, by which dx/dt = V τ/t."""
         return self.cell.time_scale(self.law.exponent)
 
     def force(self, p: sp.Expr, n: int = 0) -> sp.Expr:
-        """F^{(n)} at a strain; W for n = -1."""
+        """The n-th derivative F^{(n)} at a strain; the energy W for n = -1."""
         return self.law.of_strain(p, self.cell.spacing, n)
 
     @cached_property
     def sound_speed(self) -> sp.Expr:
-        """c0 = √F′(p0), the speed of long small waves."""
+        """The speed c0 = √F′(p0) of long small waves."""
         return root(self.force(self.p0, 1))
 
     def stiffness(self, v: sp.Expr) -> sp.Expr:
-        """Q(v), the V² of the wave that rises by v."""
+        """The square Q(v) of the speed of the wave that rises by v."""
         return sp.powsimp(self._stiffness(v))
 
     def _stiffness(self, v: sp.Expr) -> sp.Expr:
@@ -119,7 +124,7 @@ class BackgroundWave(Value):
     # --- the wave ---------------------------------------------------------------------------
 
     def speed(self, B: Any = None) -> sp.Expr:
-        """V = dx/dτ of the wave whose strain rises from p0 to p0 + B (a symbol B when not given).
+        """Speed V = dx/dτ of the wave whose strain rises from p0 to p0 + B (default: a symbol B).
 
         Raises `lwa.NoSolitaryWave` for numbers without a wave.
 
@@ -150,7 +155,7 @@ class BackgroundWave(Value):
         return B
 
     def _missing(self, B: sp.Expr) -> str:
-        """Why a power law has no wave; empty where it has one, or where symbols leave it open."""
+        """Reason why a power law has no wave; empty if a wave exists or symbols leave it open."""
         excess = self.law.exponent - 1
         if excess.is_zero:
             return "at k = 1 the chain is linear, and its waves disperse"
@@ -165,7 +170,7 @@ class BackgroundWave(Value):
         return ""
 
     def _missing_numerically(self, B: sp.Expr) -> str:
-        """Why another law has no wave."""
+        """Reason why a law that is no power has no wave; empty if a wave exists."""
         if self._free(B):
             return ""
         places = [sp.Rational(i, _LOOKS) for i in range(_LOOKS + 1)]
@@ -189,7 +194,7 @@ class BackgroundWave(Value):
 
     @property
     def kdv(self) -> KdV:
-        """The limit B → 0.
+        """The equation of Korteweg and de Vries of the limit B → 0.
 
         Raises `lwa.NoSolitaryWave` where no sound runs (p0 = 0 under most laws), and at k = 1,
         where waves have no amplitude of their own.
@@ -227,14 +232,14 @@ class BackgroundWave(Value):
 
     @property
     def _compact(self) -> tuple[sp.Expr, sp.Expr] | None:
-        """k and β of the wave without load under a power law."""
+        """The k and β of the wave without load under a power law, else None."""
         if not (self.law.homogeneous and self.p0.is_zero):
             return None
         k = self.law.exponent
         return k, (k - 1) / root(2 * self.I * k * (k + 1))
 
     def profile(self, xi: Any, B: Any, digits: int = DIGITS) -> sp.Expr:
-        """v(ξ), the strain above p0: the compact wave without load, else a number.
+        """Strain v(ξ) above p0: a closed form without load under a power, else a number.
 
         Raises the errors of `fwhm`, and `lwa.InputError` for a ξ that is no number in D.
         """
@@ -317,7 +322,7 @@ class BackgroundWave(Value):
         return Strains(v, *map(self.in_unit, values))
 
     def _wave(self, B: sp.Expr, digits: int) -> tuple[sp.Expr, int]:
-        """B over the unit, and the working digits for a wave of this rise."""
+        """The rise B over the unit, and the working digits for a wave of this rise."""
         why = "a width or a profile on a background is a number and wants numbers"
         demand_numbers(self._free(B), why)
         return self.in_unit(B), self._strains.precision(self.in_unit(B), digits)

@@ -24,7 +24,7 @@ from typing import Any, Self
 import sympy as sp
 
 from lwa.algebra.jets import JetAlgebra, Monomial
-from lwa.algebra.partition import number
+from lwa.algebra.partition import to_sympy
 from lwa.algebra.rational import factored
 from lwa.base import latex
 from lwa.base.exact import InputError, positive, power, root, shorten, signed
@@ -37,7 +37,7 @@ _SHARES = sp.symbols("g h", cls=sp.Dummy)
 
 
 def strain_equation(p: sp.Expr, G: sp.Expr, H: sp.Expr, I: sp.Expr) -> dict[str, sp.Expr]:
-    """The equation of z, v = z^p, as the coefficients of its monomials in r_n = ∂^n z / z.
+    """Coefficients of the equation of z, v = z^p, by its monomials in r_n = ∂^n z / z.
 
     V² z^p p r_1 = z^{kp} (linear · r_1 + cubic · r_1³ + product · r_1 r_2 + third · r_3),
     derived in the algebra of the jets of z.
@@ -57,7 +57,7 @@ def strain_equation(p: sp.Expr, G: sp.Expr, H: sp.Expr, I: sp.Expr) -> dict[str,
     }
     return {
         name: sp.Add(
-            *(number(c) * sp.Mul(*map(sp.Pow, given, e)) for e, c in found[Monomial(monomial)])
+            *(to_sympy(c) * sp.Mul(*map(sp.Pow, given, e)) for e, c in found[Monomial(monomial)])
         )
         for name, monomial in monomials.items()
     }
@@ -80,32 +80,32 @@ class Reduction(Value):
 
     @property
     def mu(self) -> sp.Expr:
-        """μ = V² / (I (p + a))."""
+        """The coefficient μ = V² / (I (p + a))."""
         return self.V**2 / (self.I * (self.p + self.a))
 
     @property
     def eta(self) -> sp.Expr:
-        """η = 1 + p - kp."""
+        """The power η = 1 + p - kp."""
         return 1 + self.p - self.k * self.p
 
     @property
     def sigma(self) -> sp.Expr:
-        """σ = 1 / (I (kp + a))."""
+        """The coefficient σ = 1 / (I (kp + a))."""
         return 1 / (self.I * (self.k * self.p + self.a))
 
     @property
     def s(self) -> sp.Expr:
-        """s = 2 / (1 - η), the power of the cosine in z."""
+        """The power s = 2 / (1 - η) of the cosine in z."""
         return 2 / (1 - self.eta)
 
     @property
     def beta(self) -> sp.Expr:
-        """β = √σ (1 - η) / 2, the paper's form; equal to `TravelingWave.beta` for either root."""
+        """The paper's β = √σ (1 - η) / 2, equal to `TravelingWave.beta` for either root."""
         return sp.sqrt(self.sigma) * (1 - self.eta) / 2
 
     @property
     def B(self) -> sp.Expr:
-        """B = (μ / (β² s (s-1)))^{1/(k-1)}, the paper's form of `TravelingWave.amplitude`."""
+        """The paper's B = (μ / (β² s (s-1)))^{1/(k-1)}, equal to `TravelingWave.amplitude`."""
         ratio = self.mu / (self.beta**2 * self.s * (self.s - 1))
         return ratio ** (1 / (self.k - 1))
 
@@ -158,17 +158,17 @@ class CompactWave(Value):
 
     @property
     def D(self) -> sp.Expr:
-        """The spacing."""
+        """The spacing D of neighbouring particles."""
         return self.cell.spacing
 
     @cached_property
     def shares(self) -> tuple[sp.Expr, sp.Expr]:
-        """G/I and H/I; in the canonical field both depend on k alone."""
+        """The ratios G/I and H/I; in the canonical field both depend on k alone."""
         return factored(self.G / self.I), factored(self.H / self.I)
 
     @cached_property
     def dispersion(self) -> sp.Expr:
-        """(G + H + I) / D²."""
+        """The sum (G + H + I) / D²."""
         g, h = self.shares
         if (g + h).free_symbols <= self.k.free_symbols:  # then I stays the factor that it is
             return self.I / self.D**2 * factored(1 + g + h)
@@ -176,22 +176,22 @@ class CompactWave(Value):
 
     @property
     def m(self) -> sp.Expr:
-        """m = 2/(k-1), the power of the cosine in the strain."""
+        """The power m = 2/(k-1) of the cosine in the strain."""
         return 2 / (self.k - 1)
 
     @cached_property
     def beta(self) -> sp.Expr:
-        """β = (k-1) / (2 √(G+H+I))."""
+        """The wavenumber β = (k-1) / (2 √(G+H+I)) of the cosine."""
         return (self.k - 1) / (2 * self.D * _root(self.dispersion))
 
     @cached_property
     def width(self) -> sp.Expr:
-        """π/β, the length of the wave's support."""
+        """The length π/β of the wave's support."""
         return sp.pi / self.beta
 
     @property
     def sites(self) -> sp.Expr:
-        """π/(βD), the number of particles under the wave."""
+        """The number π/(βD) of particles under the wave."""
         return self.width / self.D
 
     def fwhm(self, quantity: str = "strain") -> sp.Expr:
@@ -206,31 +206,31 @@ class CompactWave(Value):
 
     @cached_property
     def speed_factor(self) -> sp.Expr:
-        """V²/B^{k-1} = 1 - β² [(H + 3I) m - 2I]."""
+        """The ratio V²/B^{k-1} = 1 - β² [(H + 3I) m - 2I]."""
         # With β² and m written out (k - 1) cancels: the result is rational in k and the masses.
         k, (g, h) = self.k, self.shares
         return factored(1 - (k - 1) * (h + 4 - k) / (2 * (1 + g + h)))
 
     def speed(self, B: Any = RISE) -> sp.Expr:
-        """V = dx/dτ of the wave whose strain peaks at B."""
+        """Speed V = dx/dτ of the wave whose strain peaks at B."""
         return _root(self.speed_factor) * power(positive(B, "B"), (self.k - 1) / 2)
 
     def amplitude(self, V: Any = SPEED) -> sp.Expr:
-        """B = (V² / speed_factor)^{1/(k-1)}, the peak strain of the wave of speed V = dx/dτ."""
+        """Peak strain B = (V² / speed_factor)^{1/(k-1)} of the wave of speed V = dx/dτ."""
         return power(positive(V, "V") ** 2 / self.speed_factor, 1 / (self.k - 1))
 
     @property
     def force_exponent(self) -> sp.Expr:
-        """2k/(k-1), the power of V to which the peak force F_m is proportional."""
+        """The power 2k/(k-1) of V to which the peak force F_m is proportional."""
         return 2 * self.k / (self.k - 1)
 
     @property
     def speed_scale(self) -> sp.Expr:
-        """τ/t: the speed in space and time is dx/dt = V τ/t."""
+        """The ratio τ/t, by which dx/dt = V τ/t."""
         return self.cell.time_scale(self.k)
 
     def profile(self, xi: Any, B: Any = RISE) -> sp.Expr:
-        """v(ξ) = B cos^m(βξ) on |ξ| ≤ π/(2β) and 0 outside, as a SymPy Piecewise.
+        """Strain v(ξ) = B cos^m(βξ) on |ξ| ≤ π/(2β) and 0 outside, as a SymPy Piecewise.
 
         >>> from lwa import Cell, canonical_wave
         >>> canonical_wave(Cell((1,)), 3).profile("xi", B=1)
@@ -251,7 +251,7 @@ class CompactWave(Value):
 
     @cached_property
     def _equation(self) -> tuple[sp.Symbol, dict[str, sp.Expr]]:
-        """p and `strain_equation` over I, with symbols for G/I and H/I."""
+        """The symbol p and `strain_equation` over I, with symbols for G/I and H/I."""
         p = sp.Dummy("p")
         return p, strain_equation(p, _SHARES[0], _SHARES[1], sp.S.One)
 
@@ -259,7 +259,7 @@ class CompactWave(Value):
         return value.xreplace(dict(zip(_SHARES, self.shares, strict=True)))
 
     def reduction(self, root: int = 0, V: Any = SPEED) -> Reduction:
-        """z'' = μ z^η - σ z for one root p (0: the paper's, 1: the other).
+        """Reduction to z'' = μ z^η - σ z for a root p (0: the paper's, 1: the other).
 
         With p the equation reads V² z^p p r_1 = z^{kp} p (r_1 + I r_3 + q r_1 r_2). Since
         ∂(z^e r_2) = z^e (r_3 + (e - 1) r_1 r_2), the factor z^a, kp + a = e = q/I + 1, makes it
@@ -291,7 +291,7 @@ class CompactWave(Value):
 
 
 def _root(value: sp.Expr) -> sp.Expr:
-    """√value of a rational expression in positive quantities, squares taken out of the root."""
+    """Square root of a rational expression in positive quantities, squares taken out."""
     plain, back = sp.posify(value)
     numerator, denominator = sp.fraction(plain)
     return (root(numerator) / root(denominator)).xreplace(back)

@@ -83,7 +83,7 @@ def loaded_code(
 
 
 def wave_functions(wave: CompactWave) -> dict[str, Function]:
-    """β, width, FWHM, speed, amplitude and profile, by name.
+    """Functions for β, width, FWHM, speed, amplitude and profile, by name.
 
     Arguments stand in this order, each where it is used: xi; B or V_s; the symbols of k, of the
     masses, of the stiffnesses and of the spacing.
@@ -152,7 +152,7 @@ def _strain(cell: Cell, k: sp.Expr) -> sp.Expr:
 
 
 def reduction_functions(wave: CompactWave, amplitude: Function) -> dict[str, Function]:
-    """p, a, μ, η, σ, s of `Reduction` as the paper writes them, and B, the amplitude again."""
+    """The p, a, μ, η, σ, s of the paper's `Reduction` and its amplitude B, by name."""
     found, define = wave.reduction(V=_V), _functions_of(wave)
     doc = "{} of the reduction v = z^p, z'' = mu z^eta - sigma z"
     p = define("p", doc.format("p"), found.p)
@@ -170,14 +170,14 @@ def _functions_of(wave: CompactWave) -> Callable[..., Function]:
 
 
 def in_order(*parts: sp.Expr) -> tuple[sp.Symbol, ...]:
-    """Their symbols, those of the first part first, by name within a part."""
+    """Symbols of the parts, in the order of the parts and by name within a part."""
     return tuple(dict.fromkeys(s for part in parts for s in sorted(part.free_symbols, key=str)))
 
 
 def function_of(
     order: tuple[sp.Symbol, ...], name: str, doc: str, value: sp.Basic, local: Local = ()
 ) -> Function:
-    """A function with those arguments and local variables that its value depends on."""
+    """A function with the arguments and local variables that its value depends on."""
     used = value.free_symbols
     for symbol, part in reversed(local):
         used |= part.free_symbols if symbol in used else set()
@@ -186,12 +186,12 @@ def function_of(
 
 
 def _half_angle(x: sp.Expr) -> sp.Expr:
-    """arccos(2^{-x})."""
+    """The angle arccos(2^{-x}), in a form that keeps its digits as x → 0."""
     return sp.atan(sp.sqrt(2 ** (x + 1) * sp.sinh(x * sp.log(2))))
 
 
 def _stable(ratio: sp.Expr, k: sp.Expr, parts: dict[sp.Expr, sp.Symbol]) -> sp.Expr:
-    """A rational expression, its sums in powers of k - 2.
+    """Rewrite the sums of a rational expression in powers of k - 2.
 
     What becomes a variable is added to ``parts``: A^{1/k}, and pieces of a sum too long for one
     statement (Fortran takes 256 lines).

@@ -1,4 +1,4 @@
-"""The equation of Korteweg and de Vries, to which waves on a background come down as B → 0."""
+"""The equation of Korteweg and de Vries, the limit B → 0 of waves on a background."""
 
 from __future__ import annotations
 
@@ -31,13 +31,13 @@ class KdV(Value):
         return [equation, *latex.rows(names)]
 
     def speed(self, B: Any = RISE) -> sp.Expr:
-        """V = c0 + α B/3 of the wave v = B sech²(ξ/L)."""
+        """Speed V = c0 + α B/3 of the wave v = B sech²(ξ/L)."""
         return self.sound_speed + self.nonlinearity * exact(B, "B") / 3
 
     def width(self, B: Any = RISE) -> sp.Expr:
-        """L = √(12 γ / (α B)) of v = B sech²(ξ/L); its FWHM is 2 arcosh(√2) L."""
+        """Width L = √(12 γ / (α B)) of v = B sech²(ξ/L); the FWHM is 2 arcosh(√2) L."""
         return root(12 * sp.simplify(self.dispersion / self.nonlinearity) / exact(B, "B"))
 
     def profile(self, xi: Any, B: Any = RISE) -> sp.Expr:
-        """v = B sech²(ξ/L)."""
+        """Strain v = B sech²(ξ/L) above the background."""
         return exact(B, "B") * sp.sech(signed(xi, "xi") / self.width(B)) ** 2

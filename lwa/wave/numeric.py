@@ -63,7 +63,7 @@ class NumericWave(Value):
 
     @property
     def _symbols(self) -> tuple[sp.Expr, ...]:
-        """k and the distinct masses, in their order."""
+        """The symbol k and the distinct masses, in their order."""
         return (self.wave.k, *dict.fromkeys(self.wave.cell.masses))
 
     @cached_property
@@ -76,15 +76,15 @@ class NumericWave(Value):
 
     @cached_property
     def _excess(self) -> Function:
-        """(V²/B^{k-1} - 1) / (k - 1)."""
+        """The excess (V²/B^{k-1} - 1) / (k - 1)."""
         return _function((self.wave.speed_factor - 1) / (self.wave.k - 1), *self._symbols)
 
     def beta(self, k: ArrayLike, omega: ArrayLike) -> Array:
-        """β D = (k-1) / (2 √((G+H+I)/D²))."""
+        """The wavenumber β D = (k-1) / (2 √((G+H+I)/D²))."""
         return _rounded(self._beta(k, omega))
 
     def width(self, k: ArrayLike, omega: ArrayLike) -> Array:
-        """π/(βD), the number of sites under the wave."""
+        """The number π/(βD) of sites under the wave."""
         return _rounded(_PI / self._beta(k, omega))
 
     def fwhm(self, k: ArrayLike, omega: ArrayLike, quantity: str = "strain") -> Array:
@@ -96,12 +96,12 @@ class NumericWave(Value):
         return _rounded(2 * np.arctan(np.sqrt(np.expm1(x * _LOG4))) / beta)
 
     def speed(self, k: ArrayLike, omega: ArrayLike, B: ArrayLike = 1.0) -> Array:
-        """V = dx/dτ of the wave whose strain peaks at B."""
+        """Speed V = dx/dτ of the wave whose strain peaks at B."""
         k, omega, _ = self._wave(k, omega)
         return _rounded(np.sqrt(self._factor(k, omega)) * _positive(B, "B") ** ((k - 1) / 2))
 
     def log_amplitude(self, k: ArrayLike, omega: ArrayLike, V: ArrayLike = 1.0) -> Array:
-        """ln B of the wave of speed V; finite where B, its peak strain, over- or underflows."""
+        """Logarithm of the peak strain of the wave of speed V; finite if B over- or underflows."""
         k, omega, _ = self._wave(k, omega)
         less_one = (k - 1) * self._excess(k, omega)  # V²/B^{k-1} - 1
         near = np.abs(less_one) < 0.5
@@ -114,7 +114,7 @@ class NumericWave(Value):
         return beta
 
     def _wave(self, k: ArrayLike, omega: ArrayLike) -> tuple[Extended, Extended, Extended]:
-        """k and ω as arrays of one shape, NaN at points without a wave, and (G+H+I)/D²."""
+        """Broadcast k and ω, NaN at points without a wave, and compute (G+H+I)/D²."""
         given = (finite(x, name).astype(np.longdouble) for x, name in ((k, "k"), (omega, "ω")))
         k, omega = np.broadcast_arrays(*given)
         if not np.all(omega > 0):

@@ -72,7 +72,10 @@ def gauss() -> tuple[Array, Array]:
 
 
 def _extended_gauss() -> tuple[Extended, Extended]:
-    """NumPy's nodes after a Newton step in extended precision, w = 2/((1-x²) P_n′²), on [0, 1]."""
+    """Gauss nodes and weights on [0, 1] in extended precision, w = 2/((1-x²) P_n′²).
+
+    NumPy's nodes after one step of Newton's method.
+    """
     basis = np.eye(POINTS + 1, dtype=np.longdouble)[-1]
     slope = legendre.legder(basis)
     x = legendre.leggauss(POINTS)[0].astype(np.longdouble)
@@ -132,18 +135,21 @@ def grid(parts: int = 1, halvings: int = 0, deep: bool = False) -> Grid:
 
 
 def _measure(theta: Any) -> Any:
-    """|ds/dθ|."""
+    """The weight |ds/dθ|."""
     return 2 * np.tanh(theta) / np.cosh(theta) ** 2
 
 
 def _above(theta: Array, at: float) -> Array:
-    """K/y² at s > u = v/B, with y and u at θ = ``at``."""
+    """The kernel K/y² at s > u = v/B, with y and u at θ = ``at``."""
     found: Array = np.tanh(theta) ** 4 / np.tanh(at) ** 2
     return found
 
 
 def _below(theta: Array, at: float) -> Array:
-    """K/y² = s (2 - s - s/u) / u at s < u = v/B, by 1 - s/u = sinh(θ-θ_u) sinh(θ+θ_u) / cosh²θ."""
+    """The kernel K/y² = s (2 - s - s/u) / u at s < u = v/B.
+
+    Here 1 - s/u = sinh(θ-θ_u) sinh(θ+θ_u) / cosh²θ, which does not cancel.
+    """
     s, u = 1 / np.cosh(theta) ** 2, 1 / np.cosh(at) ** 2
     apart = np.sinh(theta - at) * np.sinh(theta + at) * s
     found: Array = s / u * (np.tanh(theta) ** 2 + apart)

@@ -77,7 +77,7 @@ class PhysicalWave(Value):
 
     @cached_property
     def _bead_share(self) -> sp.Expr:
-        """cos^{mk}(βD/2), a bead's peak force over its contacts'."""
+        """Ratio cos^{mk}(βD/2) of a bead's peak force to its contacts'."""
         wave, k = self.wave, self.wave.k
         angle = (k - 1) / (4 * root(wave.dispersion))  # βD/2
         exponent = 2 * k / (k - 1)
@@ -101,24 +101,24 @@ class PhysicalWave(Value):
 
     @cached_property
     def strain(self) -> sp.Expr:
-        """B, the peak strain."""
+        """The peak strain B."""
         return self.compression / self.wave.cell.spacing
 
     @cached_property
     def compression(self) -> sp.Expr:
-        """D B, the peak compression of a contact; for unlike ones their mean (`compressions`)."""
+        """The peak compression D B of a contact; the mean of unlike contacts (`compressions`)."""
         k = self.wave.k
         return power(self.contact_force / self.wave.cell.stiffness(k), 1 / k)
 
     @cached_property
     def compressions(self) -> tuple[sp.Expr, ...]:
-        """(F/A_i)^{1/k}, the peak compression of each contact of the cell."""
+        """The peak compression (F/A_i)^{1/k} of each contact of the cell."""
         k, F = self.wave.k, self.contact_force
         return tuple(power(F / A, 1 / k) for A in self.wave.cell.stiffnesses)
 
     @cached_property
     def speed(self) -> sp.Expr:
-        """dx/dt = V τ/t."""
+        """The speed dx/dt = V τ/t."""
         wave, k = self.wave, self.wave.k
         factor = wave.speed_factor * wave.cell.size * k / wave.cell.mass
         powers = power(wave.cell.stiffness(k), 1 / (2 * k))
@@ -126,12 +126,12 @@ class PhysicalWave(Value):
 
     @cached_property
     def bead_velocity(self) -> sp.Expr:
-        """B dx/dt, the peak velocity u_t of the beads; in this theory all of a cell move alike."""
+        """The peak velocity u_t = B dx/dt of the beads, the same for all beads of a cell."""
         return self.strain * self.speed
 
     @cached_property
     def momentum(self) -> sp.Expr:
-        """Σ m u_t over the chain: M/(P D) · B dx/dt · ∫ cos^m(βξ) dξ."""
+        """The momentum Σ m u_t = M/(P D) · B dx/dt · ∫ cos^m(βξ) dξ of the chain."""
         return self._density * self._arch(self.wave.m) * self.bead_velocity
 
     @cached_property
@@ -147,7 +147,7 @@ class PhysicalWave(Value):
 
     @cached_property
     def effective_mass(self) -> sp.Expr:
-        """P²/(2E) of momentum and energy, which does not depend on the force.
+        """The effective mass P²/(2E) of momentum and energy, independent of the force.
 
         >>> from lwa import Cell, canonical_wave
         >>> round(canonical_wave(Cell([1]), "3/2").at_force(1).effective_mass.n(), 4)
@@ -162,7 +162,7 @@ class PhysicalWave(Value):
         return self.wave.cell.mass / (self.wave.cell.size * self.wave.D)
 
     def _arch(self, n: sp.Expr) -> sp.Expr:
-        """∫ cos^n(βξ) dξ over the wave."""
+        """The integral ∫ cos^n(βξ) dξ over the wave."""
         return sp.sqrt(sp.pi) * sp.gamma((n + 1) / 2) / (self.wave.beta * sp.gamma(n / 2 + 1))
 
     def fwhm(self, quantity: str = "force", extent: str = "length") -> sp.Expr:

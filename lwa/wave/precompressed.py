@@ -64,17 +64,17 @@ class PrecompressedWave(Value):
 
     @cached_property
     def static_compression(self) -> sp.Expr:
-        """δ0 of a contact under the load; of unequal ones, their mean."""
+        """The compression δ0 of a contact under the load; the mean of unequal contacts."""
         return self.law.compression(self.cell, self.precompression)
 
     @cached_property
     def compression(self) -> sp.Expr:
-        """δ1 - δ0, the peak compression that the wave adds."""
+        """The peak compression δ1 - δ0 that the wave adds."""
         return self.law.compression(self.cell, self.force) - self.static_compression
 
     @cached_property
     def compressions(self) -> tuple[sp.Expr, ...]:
-        """δ1 - δ0 of each contact of the cell."""
+        """The peak compression that the wave adds, for each contact of the cell."""
         shares = self.cell.shares(self.law.exponent)
         return tuple(share * self.compression for share in shares)
 
@@ -85,22 +85,22 @@ class PrecompressedWave(Value):
 
     @property
     def strain(self) -> sp.Expr:
-        """B, by which the strain rises."""
+        """The rise B of the strain."""
         return self.compression / self.cell.spacing
 
     @cached_property
     def speed(self) -> sp.Expr:
-        """dx/dt."""
+        """The speed dx/dt."""
         return self.background.speed(self.strain) * self.background.time_scale
 
     @cached_property
     def sound_speed(self) -> sp.Expr:
-        """dx/dt of long small waves."""
+        """The speed dx/dt of long small waves."""
         return sp.powdenest(self.background.sound_speed * self.background.time_scale)
 
     @property
     def bead_velocity(self) -> sp.Expr:
-        """B dx/dt, the peak velocity of the beads."""
+        """The peak velocity B dx/dt of the beads."""
         return self.strain * self.speed
 
     def fwhm(

@@ -93,7 +93,7 @@ def _at_poles_too(function: Callable[..., Any], numbers: list[Any]) -> Function:
 
 @dataclass(frozen=True)
 class Profile:
-    """A wave of the rise B to so many digits; mpmath works with those that differences lose.
+    """A wave of the rise B to the given digits, in mpmath's larger working precision.
 
     force, slope and stiffness are F, F′ and Q at the strain v above the background.
     """
@@ -110,59 +110,53 @@ class Profile:
         return self.stiffness(self.B)
 
     def rate(self, theta: Any) -> Any:
-        """dξ/dθ, θ > 0."""
+        """The rate dξ/dθ, θ > 0."""
         v = self.strain(theta)
         gap = self._top - self.stiffness(v)
         return 2 * mpmath.tanh(theta) * mpmath.sqrt(self.I * self.slope(v) / gap)
 
     def strain(self, theta: Any) -> Any:
-        """v(θ)."""
+        """The strain v(θ) above the background."""
         return self.B / mpmath.cosh(theta) ** 2
 
     def place(self, theta: Any) -> Any:
-        """ξ(θ)."""
+        """The place ξ(θ)."""
         pieces = max(1, int(mpmath.ceil(theta)))
         return self._integral(mpmath.linspace(0, theta, pieces + 1))
 
     def half(self, quantity: str) -> Any:
-        """θ at which the quantity has half of its rise."""
+        """The θ at which the quantity has half of its rise."""
         if quantity != "force":
             return mpmath.acosh(mpmath.sqrt(2))
-        half = (self.force(mpmath.mpf(0)) + self.force(self.B)) / 2
-        low, high = mpmath.mpf(0), self.B
-        v = self.B
-        for _ in range(20 * mpmath.mp.dps):  # Newton, or halves where it leaves the bracket
-            gap = self.force(v) - half
-            low, high = (low, v) if gap * mpmath.sign(self.B) > 0 else (v, high)
-            step = v - gap / self.slope(v)
-            inside = min(low, high) < step < max(low, high)
-            v, before = step if inside else (low + high) / 2, v
-            if abs(v - before) < abs(v) * mpmath.mpf(10) ** (-self.digits - 5):
-                break
-        return mpmath.acosh(mpmath.sqrt(self.B / v))
+        rise = self.force(self.B) - self.force(mpmath.mpf(0))
+
+        def above_half(share: Any) -> Any:
+            return (self.force(share * self.B) - self.force(mpmath.mpf(0))) / rise - mpmath.mpf(0.5)
+
+        return mpmath.acosh(1 / mpmath.sqrt(self._root(above_half, 0, 1)))
 
     def theta(self, place: Any) -> Any:
-        """θ at a place ξ > 0."""
-        accuracy = mpmath.mpf(10) ** (-self.digits - 5)
+        """The θ at a place ξ > 0."""
         start, here = mpmath.mpf(0), mpmath.mpf(0)
         while here + (step := self._integral([start, start + 1])) < place:
             start, here = start + 1, here + step
             if start > 3 * mpmath.mp.dps:  # v is nothing there
                 return start
-        low, high = start, start + 1
-        theta = (low + high) / 2
-        for _ in range(4 * mpmath.mp.dps):  # Newton, or halves where it leaves the panel
-            gap = here + self._integral([start, theta]) - place
-            low, high = (theta, high) if gap < 0 else (low, theta)
-            change = gap / self.rate(theta)
-            inside = low < theta - change < high
-            theta = theta - change if inside else (low + high) / 2
-            if abs(change) < accuracy or high - low < accuracy:
-                break
-        return theta
+
+        def passed(theta: Any) -> Any:
+            more = self._integral([start, theta]) if theta > start else 0
+            return (here + more - place) / step
+
+        return self._root(passed, start, start + 1)
+
+    def _root(self, function: Function, low: Any, high: Any) -> Any:
+        """The root of a growing function, of order 1 in size, between two places."""
+        accuracy = mpmath.mpf(10) ** (-self.digits - 5)
+        bracket = (mpmath.mpf(low), mpmath.mpf(high))
+        return mpmath.findroot(function, bracket, solver="anderson", tol=accuracy, verify=False)
 
     def _integral(self, points: list[Any]) -> Any:
-        """∫ dξ by Gauss's rule on each piece, refined until the digits stand.
+        """The integral ∫ dξ by Gauss's rule on each piece, refined until the digits stand.
 
         Under a power with small k, n points err by 6^{-2n} on a piece of length 1, and degree d has
         n = 3·2^{d-1}. Steep laws, and waves next to their limiting amplitude, vary fast at θ = 0.

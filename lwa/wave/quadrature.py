@@ -55,7 +55,7 @@ _BLOCK = 256
 
 @dataclass(frozen=True)
 class NumericBackground(Value):
-    """V, widths and profiles of the waves of a cell under a law, for arrays of p0 and B.
+    """Speeds, widths and profiles of the waves of a cell under a law, for arrays of p0 and B.
 
     p0 and B broadcast; strains are those of `lwa.BackgroundWave`; lengths are in units of D for a
     spacing that is a symbol under a power law. The functions raise `lwa.NoSolitaryWave`, which
@@ -82,14 +82,14 @@ class NumericBackground(Value):
         return self.law.latex_rows()
 
     def speed_squared(self, p0: ArrayLike, B: ArrayLike) -> Array:
-        """V² = Q(B), for power laws to k = 5 good to 4 ulps at any p0/B."""
+        """Square V² = Q(B) of the speed; for power laws to k = 5 good to 4 ulps at any p0/B."""
         p0, B, unit = self._waves(p0, B)
         square = self._by_block(self._squares, p0, B)
         with np.errstate(over="ignore", under="ignore"):
             return np.asarray(square * self._scale(unit), np.float64)[()]
 
     def speed(self, p0: ArrayLike, B: ArrayLike) -> Array:
-        """V = dx/dτ."""
+        """Speed V = dx/dτ."""
         return np.sqrt(self.speed_squared(p0, B))
 
     def fwhm(self, p0: ArrayLike, B: ArrayLike, quantity: str = "strain") -> Array:
@@ -100,7 +100,7 @@ class NumericBackground(Value):
         return 2 * half[()]
 
     def profile(self, xi: ArrayLike, p0: float, B: float) -> Array:
-        """v(ξ) of one wave at any places ξ."""
+        """Strain v(ξ) of one wave at any places ξ."""
         places = np.abs(finite(xi, "xi"))
         base, rise, unit = self._waves(p0, B)
         if base.ndim:
@@ -123,7 +123,7 @@ class NumericBackground(Value):
         return np.concatenate(parts).reshape(p0.shape)
 
     def _squares(self, p0: Array, B: Array) -> Array:
-        """V²: F′(p0) + B ∫(1-s)² F″ ds, or 2 ∫(1-s) F′ ds for waves that are not small."""
+        """Squares V² = F′(p0) + B ∫(1-s)² F″ ds; 2 ∫(1-s) F′ ds for waves that are not small."""
         found = np.empty_like(p0)
         for rows, g, p, bend, _ in self._resolved(p0, B, rough=True):
             first, second = g.ds * g.y2, g.ds * g.y2**2  # weights of 1/2 and 1/3, but for rounding
@@ -186,7 +186,7 @@ class NumericBackground(Value):
         )
 
     def _rates(self, g: Grid, p0: Array, B: Array, passed: Array) -> tuple[Array, Array, Array]:
-        """p and F″ at the nodes, and dξ/dθ at the upper ones.
+        """Compute p and F″ at the nodes, and dξ/dθ at the upper nodes.
 
         passed : Q of the whole wave less Q(B), for the part of its flank below B.
         """
@@ -256,7 +256,7 @@ class NumericBackground(Value):
     # --- existence --------------------------------------------------------------------------
 
     def _waves(self, p0: ArrayLike, B: ArrayLike) -> tuple[Array, Array, Array]:
-        """p0 and B of one shape over a unit, and the unit: a power of two under a power law."""
+        """Broadcast p0 and B over a unit, a power of two under a power law, and return the unit."""
         base, rise = np.broadcast_arrays(finite(p0, "p0"), finite(B, "B"))
         if not np.all(rise):
             raise InputError("B is 0: a wave rises or falls by B")
@@ -279,7 +279,7 @@ class NumericBackground(Value):
         return base / unit, rise / unit, unit
 
     def _exists(self, p0: Array, B: Array) -> Array:
-        """1.0 for waves with 0 < F′ < ∞, B Q′(B) > 0, and Q(v) < Q(B) below; else 0.0."""
+        """Existence: 1.0 if 0 < F′ < ∞, B Q′(B) > 0, and Q(v) < Q(B) below B; else 0.0."""
         g = grid(*LEVELS[1])
         good = np.isfinite(self._slope(p0 + B)) & (self._slope(p0 + B) > 0)
         passed = np.zeros_like(p0)

@@ -103,7 +103,7 @@ class TravelingWave(CompactWave):
         return NumericWave(self, missing)
 
     def code(self, language: str) -> str:
-        """β, widths, speed, amplitude and profile as functions in a program's source text.
+        """Source text of a program: β, widths, speed, amplitude and profile as functions.
 
         ``language`` is one of `lwa.code.languages.LANGUAGES`, "python" (plain `math`) or "c" among
         them. `lwa.wave.functions` states arguments and accuracy.

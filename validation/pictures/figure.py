@@ -7,7 +7,6 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from html import escape
-from itertools import compress
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -26,7 +25,6 @@ SUFFIXES = (".pdf", ".png", ".svg")
 _STYLES = ("o-", "s--", "^:", "D-.", "v-", "x--", "P:", "*-.")
 _FEW = 40  # points of a curve; markers at more of them would cover the curve
 _ACROSS = 5  # names in a row of a legend above the panel
-_MOST = 10  # names in the legend of a panel; more stand once below all panels
 
 
 class Pictured(ABC):
@@ -75,27 +73,13 @@ def figure(panels: Sequence[Panel]) -> Figure:
 
     columns = min(2, len(panels))
     rows = math.ceil(len(panels) / columns)
-    crowded = [len(panel.curves) > _MOST for panel in panels]
-    size = (6.5 if columns == 1 else 6 * columns, 4.2 * rows + any(crowded))
+    size = 6.5 if columns == 1 else 6 * columns, 4.2 * rows
     picture = Figure(figsize=size, layout="constrained")
     plots = picture.subplots(rows, columns, squeeze=False).ravel()
     for plot, panel in zip(plots, panels, strict=False):
         draw(plot, panel)
     for empty in plots[len(panels) :]:
         empty.set_visible(False)
-    names = {
-        label: handle
-        for plot in compress(plots, crowded)
-        for handle, label in zip(*plot.get_legend_handles_labels(), strict=True)
-    }
-    if names:
-        picture.legend(
-            names.values(),
-            names.keys(),
-            fontsize="small",
-            ncols=2 * columns + 1,
-            loc="outside lower center",
-        )
     return picture
 
 
@@ -126,7 +110,7 @@ def draw(plot: Axes, panel: Panel) -> None:
         )
     for axis in panel.scale:
         _plain(getattr(plot, f"{axis}axis"))
-    if 0 < sum(bool(curve.label) for curve in panel.curves) <= _MOST:
+    if any(curve.label for curve in panel.curves):
         above = panel.legend is not None and panel.legend[1] >= 1
         place = {"loc": "lower left", "bbox_to_anchor": panel.legend, "ncols": _ACROSS}
         other = {"loc": panel.legend or "best"}

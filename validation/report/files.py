@@ -1,7 +1,4 @@
-"""Output files: checked before the work, and replaced only by complete files.
-
-Every fault is one line, an `lwa.InputError`.
-"""
+"""Output files: checked before the work, and replaced only by complete files."""
 
 from __future__ import annotations
 
@@ -20,33 +17,32 @@ from lwa.base.files import reason
 def output_file(name: str, path: str, suffixes: Sequence[str]) -> Path:
     """Check that a file of one of the suffixes can be written; messages call it ``name``."""
     file = Path(path)
-    said = f"{name} is {path if len(path) <= 120 else path[:117] + '...'}"
-    if file.suffix.lower() not in suffixes:
-        raise InputError(f"{said}: a file ending in {', '.join(suffixes)} is wanted")
     try:
-        folder = Path(os.path.realpath(file)).parent
-        if not folder.is_dir():
-            fault = f"the folder {str(file.parent)[:120]} does not exist"
+        if file.suffix.lower() not in suffixes:
+            fault = f"a file ending in {', '.join(suffixes)} is wanted"
         elif file.exists() and not file.is_file():
             fault = "a regular file is wanted"
         else:
-            with tempfile.TemporaryFile(dir=folder):
+            with tempfile.TemporaryFile(dir=os.path.dirname(os.path.realpath(file))):
                 return file
+    except (FileNotFoundError, NotADirectoryError):
+        fault = f"the folder {str(file.parent)[:120]} does not exist"
     except (OSError, ValueError) as error:  # ValueError: a name with a null byte
         fault = f"it cannot be written, {reason(error)}"
-    raise InputError(f"{said}: {fault}")
+    said = path if len(path) <= 120 else path[:117] + "..."
+    raise InputError(f"{name} is {said}: {fault}")
 
 
 @contextmanager
 def replacing(file: Path) -> Iterator[Path]:
     """A temporary file that replaces ``file`` at the end, and vanishes on a failure.
 
-    The replaced file keeps its mode; a symbolic link stays, and its target is replaced.
+    The replaced file keeps its mode; a symbolic link stays, and its target is replaced. Raises
+    `lwa.InputError` where the file cannot be written.
     """
     target = Path(os.path.realpath(file))
     new = target.with_name(f".{uuid4().hex}{file.suffix.lower()}")
     try:
-        new.touch(exist_ok=False)
         yield new
         if target.exists():
             shutil.copymode(target, new)

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Sequence
-from functools import wraps
-from typing import Any, ParamSpec, TypeVar
+from typing import Any
 
 import numpy as np
 
@@ -12,12 +11,10 @@ from lwa.base import tables
 from lwa.base.exact import InputError, shorten
 from lwa.base.tables import LEAST, Reader, array
 
-P = ParamSpec("P")
-T = TypeVar("T")
+SceneError = InputError
+"""Invalid input of a scene, under the name that `validation` exports."""
 
-
-class SceneError(InputError):
-    """Invalid input of a scene; the message names the value and what would be right."""
+integer, positive, real = tables.integer, tables.positive, tables.real
 
 
 class Failure(RuntimeError):
@@ -29,24 +26,6 @@ def one_of(value: Any, choices: Collection[str], name: str) -> str:
     if not isinstance(value, str) or value not in choices:
         raise SceneError(f"{name} is {shorten(value)}: one of {', '.join(choices)} is wanted")
     return value
-
-
-def of_scene(read: Callable[P, T]) -> Callable[P, T]:
-    """Wrap a function so that `SceneError` takes the place of `lwa.InputError`."""
-
-    @wraps(read)
-    def checked(*args: P.args, **options: P.kwargs) -> T:
-        try:
-            return read(*args, **options)
-        except InputError as error:
-            raise SceneError(str(error)) from None
-
-    return checked
-
-
-real = of_scene(tables.real)
-positive = of_scene(tables.positive)
-integer = of_scene(tables.integer)
 
 
 def between(value: Any, name: str, low: float, high: float, wanted: str = "") -> float:

@@ -11,7 +11,7 @@ import numpy as np
 from lwa.base import files
 from lwa.base.arrays import Array
 from lwa.base.exact import shorten
-from validation.scenes.checks import SceneError, of_scene
+from validation.scenes.checks import SceneError
 
 _MOST_BYTES = 10**9
 
@@ -23,7 +23,7 @@ def columns(path: str | Path, *wanted: str, optional: Sequence[str] = ()) -> dic
     file without a wanted column, and for entries that are no finite numbers.
     """
     try:
-        text = of_scene(files.content)(Path(path), _MOST_BYTES).decode("utf-8-sig")
+        text = files.content(Path(path), _MOST_BYTES).decode("utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
         raise SceneError(f"{path}: {files.reason(error)}") from None
     header, *rows = csv.reader(text.splitlines()) if text.strip() else [[]]

@@ -27,7 +27,7 @@ from lwa.cell import exponent
 from lwa.law import ContactLaw
 from lwa.spheres.hertz import Material, Sphere, stiffness
 from validation.scenes import checks
-from validation.scenes.checks import SceneError, integer, items, of_scene, positive, real
+from validation.scenes.checks import SceneError, integer, items, positive, real
 from validation.scenes.forcing import Damping, Drive
 
 __all__ = ["Scene", "SceneError"]
@@ -244,7 +244,7 @@ def _all(read: Reader) -> Reader:
 
 def _exponent(value: Any, name: str) -> float:
     if isinstance(value, str | sp.Expr):
-        return _number(of_scene(exponent)(value), name)
+        return _number(exponent(value), name)
     return real(value, name)
 
 

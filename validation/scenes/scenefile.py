@@ -75,10 +75,10 @@ from lwa.base.arrays import Array
 from lwa.base.exact import shorten
 from lwa.base.files import load
 from lwa.base.tables import Reader, Table, among, array, entries, flag, place, places, table
-from lwa.law import ContactLaw, named
+from lwa.law import read_law
 from lwa.spheres.beads import read_beads, read_materials
 from lwa.spheres.hertz import Material, Sphere
-from validation.scenes.checks import SceneError, each, integer, of_scene, positive, real
+from validation.scenes.checks import SceneError, each, integer, positive, real
 from validation.scenes.columns import columns
 from validation.scenes.document import overlap
 from validation.scenes.forcing import DAMPINGS, Damping, Drive
@@ -106,10 +106,9 @@ def read_scene(path: str | Path) -> Scene:
 
     Raises `SceneError`, in one line, for a file that cannot be read or is not a scene.
     """
-    return of_scene(load)(path, "a scene", scene)
+    return load(path, "a scene", scene)
 
 
-@of_scene
 def scene(content: Any) -> Scene:
     """The scene of a parsed file; `SceneError` for unknown keys and invalid values."""
     if isinstance(content, dict) and "scene" in content:
@@ -208,7 +207,7 @@ def _chain(
         law = {
             given.one("k", "law"): given.read("k", real)
             if "k" in given
-            else given.read("law", _law)
+            else given.read("law", read_law)
         }
         stiffnesses = given.read("stiffnesses", of_contacts, [1.0] * (n - 1))
         spacings = given.read("spacings", of_contacts, ())
@@ -221,14 +220,6 @@ def _chain(
         elif not row:
             raise SceneError(f"{defect.path('like')} names a bead in a chain of masses")
     return row, {"masses": masses, "stiffnesses": stiffnesses, "spacings": spacings} | law
-
-
-def _law(value: Any, name: str) -> ContactLaw:
-    """Read a law by its name and parameters, such as "hertz2:1,2"."""
-    if not isinstance(value, str):
-        raise SceneError(f"{name} is {shorten(value)}: a text such as 'hertz2:1,2' is wanted")
-    title, colon, parameters = value.partition(":")
-    return named(title.strip(), *(parameters.split(",") if colon else ()))
 
 
 def _of_contacts(value: Any, name: str, period: int, count: int) -> list[float]:

@@ -92,13 +92,13 @@ def relative_errors(pulse: Pulse, truth: Pulse) -> dict[str, float]:
     return {name: abs(getattr(pulse, name) / getattr(truth, name) - 1) for name in NUMBERS}
 
 
-def struck(omega: float, beads: int, contact: int, duration: float) -> Task:
+def struck_chain(omega: float, beads: int, contact: int, duration: float) -> Task:
     """A dimer chain, m1 = A = 1 and k = 3/2, whose first bead has velocity 1."""
     sensors: dict[str, Any] = {"contact_sensors": (contact,), "samples": 2}
     return Task(chains.struck((1.0, omega), beads, duration=duration, **sensors))
 
 
-def exact(sites: int = 100) -> Task:
+def solitary_wave(sites: int = 100) -> Task:
     """The uniform chain's solitary wave, from bead 16 to the contact ``sites`` further.
 
     The wave itself tells arrival, peak and width.
@@ -134,14 +134,14 @@ def experiment() -> Task:
 
 def precompressed() -> Task:
     """200 equal beads under a static force of 1 against a wall, from the first to contact 150."""
-    loose = struck(1.0, 200, 150, 132.1).scene  # the pulse takes 0.814 units of time a site
+    loose = struck_chain(1.0, 200, 150, 132.1).scene  # the pulse takes 0.814 units of time a site
     return Task(replace(loose, wall=1.0, precompression=1.0))
 
 
 TASKS: Mapping[str, Callable[[], Task]] = {
-    "uniform": partial(struck, 1.0, 560, 480, 582.0),
-    "dimer": partial(struck, 0.2733, 560, 480, 510.0),  # ω of steel and PTFE
-    "exact": exact,
+    "uniform": partial(struck_chain, 1.0, 560, 480, 582.0),
+    "dimer": partial(struck_chain, 0.2733, 560, 480, 510.0),  # ω of steel and PTFE
+    "exact": solitary_wave,
     "experiment": experiment,
     "precompressed": precompressed,
 }
@@ -151,7 +151,7 @@ NAMES = (*TASKS, THEORY)
 
 
 @dataclass(frozen=True)
-class Row:
+class Timing:
     """One run of a method: relative errors by `NUMBERS`, infinite without a pulse; CPU seconds.
 
     method : with "window" where the run had one. setting : tolerance.
@@ -183,7 +183,7 @@ def timed(run: Callable[[], _Found]) -> tuple[_Found, float]:
             return found, median(taken)
 
 
-def cost(rows: Iterable[Row], wanted: float) -> float:
+def cost(rows: Iterable[Timing], wanted: float) -> float:
     """CPU time of a method's cheapest run from which on the peak force is good to ``wanted``.
 
     Single runs may be good by chance, where steps meet openings of contacts: every costlier run
@@ -194,7 +194,7 @@ def cost(rows: Iterable[Row], wanted: float) -> float:
     return min((row.seconds for row in good), default=math.inf)
 
 
-def runs(name: str, task: Task, truth: Pulse) -> Iterator[Row]:
+def runs(name: str, task: Task, truth: Pulse) -> Iterator[Timing]:
     """Rows of a task, for each method and tolerance."""
     for method, tolerances in METHODS.items():
         windowed = method in COMPILED and task.scene.wall is None
@@ -207,10 +207,10 @@ def runs(name: str, task: Task, truth: Pulse) -> Iterator[Row]:
                 with suppress(IntegrationError):  # two windows differ
                     run, seconds = timed(run_once)
                     title = method + ", window" * window
-                    yield Row(name, title, rtol, task.errors(run, truth), seconds)
+                    yield Timing(name, title, rtol, task.errors(run, truth), seconds)
 
 
-def by_method(rows: Iterable[Row]) -> dict[str, list[Row]]:
+def by_method(rows: Iterable[Timing]) -> dict[str, list[Timing]]:
     """Rows of each method, in their order."""
     return {name: list(its) for name, its in groupby(rows, lambda row: row.method)}
 
@@ -228,7 +228,7 @@ _COSTS = (
 _NOTE = "CPU time without compilation, on this machine; - where no run attains it from there on."
 
 
-def _costs(task: str, rows: Sequence[Row]) -> list[tuple[Any, ...]]:
+def _costs(task: str, rows: Sequence[Timing]) -> list[tuple[Any, ...]]:
     """Task, method and costs at `WANTED`, None where not attained; the best method first."""
     found = [
         (task, name, *(cost(its, wanted) for wanted in WANTED))
@@ -238,7 +238,7 @@ def _costs(task: str, rows: Sequence[Row]) -> list[tuple[Any, ...]]:
     return [tuple(None if part == math.inf else part for part in line) for line in found]
 
 
-def _panel(task: str, rows: Sequence[Row]) -> Panel:
+def _panel(task: str, rows: Sequence[Timing]) -> Panel:
     """CPU time over error, a curve for each method."""
     curves = []
     for name, its in by_method(rows).items():
@@ -256,7 +256,7 @@ def accuracy(names: Collection[str] = (), progress: Progress[str] = iter) -> Rep
     ``rows``, ``costs`` by method, ``references`` and ``theories``.
     """
     wanted = {one_of(name, NAMES, "task") for name in names} or set(NAMES)
-    rows: dict[str, list[Row]] = {}
+    rows: dict[str, list[Timing]] = {}
     references: list[tuple[Any, ...]] = []
     theories: tuple[Report, ...] = ()
     for name in progress([name for name in NAMES if name in wanted]):

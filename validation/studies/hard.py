@@ -71,7 +71,7 @@ def closed_wave(closure: str) -> TravelingWave:
     return homogenize(Dimer("m1", "m2", spacing=1), **CLOSURES[closure]).pde.traveling_wave()
 
 
-def exact(wave: TravelingWave, expression: sp.Expr, k: Array, omega: Array) -> Any:
+def true_values(wave: TravelingWave, expression: sp.Expr, k: Array, omega: Array) -> Any:
     """An expression of a `closed_wave` at points (k, ω), by mpmath; None without a wave."""
     m1, m2 = wave.cell.masses
     value, *positive = (
@@ -87,16 +87,16 @@ def exact(wave: TravelingWave, expression: sp.Expr, k: Array, omega: Array) -> A
         return np.frompyfunc(at, 2, 1)(k, omega)
 
 
-def in_ulps(value: Array, exact: Any) -> Array:
-    """|value - exact| over the spacing of float64 there; ∞ for no number, NaN for no wave."""
+def in_ulps(value: Array, true: Any) -> Array:
+    """|value - true| over the spacing of float64 there; ∞ for no number, NaN for no wave."""
 
-    def loss(found: float, true: Any) -> float:
-        if true is None or not math.isfinite(found):
-            return math.nan if true is None else math.inf
-        return float(abs(mp.mpf(found) - true) / float(np.spacing(abs(float(true)))))
+    def loss(found: float, at: Any) -> float:
+        if at is None or not math.isfinite(found):
+            return math.nan if at is None else math.inf
+        return float(abs(mp.mpf(found) - at) / float(np.spacing(abs(float(at)))))
 
     with mp.workdps(DIGITS):
-        return np.asarray(np.frompyfunc(loss, 2, 1)(value, exact), float)
+        return np.asarray(np.frompyfunc(loss, 2, 1)(value, true), float)
 
 
 def printed_beta(k: Array, omega: Array) -> Array:
@@ -125,11 +125,11 @@ def losses(exponents: Array = EXPONENTS, ratios: Array = RATIOS) -> dict[tuple[s
         for label, (name, *arguments) in FORMS.items():
             given = [x if isinstance(x, str) else float(x) for x in arguments]
             value = getattr(numeric, name)(k, omega, *given)
-            lost = in_ulps(value, exact(wave, form(wave, name, *arguments), k, omega))
+            lost = in_ulps(value, true_values(wave, form(wave, name, *arguments), k, omega))
             lost[np.isnan(lost) & np.isfinite(value)] = np.inf  # a number without a wave
             found[label, closure] = lost
     wave = closed_wave("paper's closure")
-    found["β", PRINTED] = in_ulps(printed_beta(k, omega), exact(wave, wave.beta, k, omega))
+    found["β", PRINTED] = in_ulps(printed_beta(k, omega), true_values(wave, wave.beta, k, omega))
     return found
 
 

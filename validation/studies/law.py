@@ -25,7 +25,7 @@ from validation.report.command import option, study
 from validation.report.result import Report
 from validation.report.table import Column, Table
 from validation.scenes.chains import numbered
-from validation.scenes.checks import SceneError, integer, of_scene
+from validation.scenes.checks import SceneError, integer
 from validation.scenes.columns import columns
 
 _LAW = (
@@ -85,7 +85,7 @@ def law(
         cell = numbered(masses or (1,))
         cell = Cell(cell.masses, spacing=1 if spacing is None else spacing)
     else:
-        cell = Cell.of_spheres(of_scene(read_spheres)(content))
+        cell = Cell.of_spheres(read_spheres(content))
     chain = Chain.of(cell)
     fit = fit_power(chain, force, speed, weight)
     rows: list[tuple[str, Measured]] = [("k", fit.k), ("A", fit.A)]
@@ -131,7 +131,7 @@ def _modulus(content: dict[str, Any], material: str, stiffness: Measured) -> Mea
         changed = copy.deepcopy(content)
         given = changed.setdefault("materials", {}).setdefault(material, {"like": material})
         given["E"] = float(np.exp(log_E))
-        cell = Cell.of_spheres(of_scene(read_spheres)(changed))
+        cell = Cell.of_spheres(read_spheres(changed))
         A = np.array([float(sp.N(contact)) for contact in cell.stiffnesses])
         return float(-1.5 * np.log(np.mean(A ** (-1 / 1.5))))
 

@@ -23,7 +23,7 @@ from lwa.base import files
 from lwa.base.arrays import Array
 from validation.lattice.run import Records, Run
 from validation.report.files import replacing
-from validation.scenes.checks import SceneError, of_scene
+from validation.scenes.checks import SceneError
 from validation.scenes.scenefile import scene
 
 KEPT = (".json", ".npz")  # suffixes of files with the scene and the result
@@ -84,13 +84,13 @@ def load(path: str | Path) -> Stored:
 
 
 def _text(file: Path) -> tuple[dict[str, Any], dict[str, Any]]:
-    document = of_scene(files.load)(file, "a stored run", dict)
+    document = files.load(file, "a stored run", dict)
     records = document["records"]
     return document, {name: np.array(records[f"{name}_value"], float) for name in RECORDS}
 
 
 def _archive(file: Path) -> tuple[dict[str, Any], dict[str, Any]]:
-    with np.load(io.BytesIO(of_scene(files.content)(file, _MOST_BYTES))) as held:
+    with np.load(io.BytesIO(files.content(file, _MOST_BYTES))) as held:
         return json.loads(str(held["document"])), {name: held[name] for name in RECORDS}
 
 

@@ -23,7 +23,7 @@ QUANTITIES = ("FWHM of force", "FWHM of strain", "support π/β", "speed V_s at 
 
 
 @dataclass(frozen=True)
-class Law:
+class LeadingPower:
     """Leading power of the theory's error, coefficient · ε^order, and bounds of a measurement.
 
     constant : |error| ≤ constant · ε^order at each k measured.
@@ -41,9 +41,9 @@ class Law:
         return self.constant * float(k - 1) ** self.order
 
 
-_WIDTH = Law(1, sp.Rational(3, 20) - sp.log(2) / 15, 0.113, 0.05, 0.01)
-_SUPPORT = Law(1, sp.Rational(1, 20), 0.077, 0.2, 0.02)
-_SPEED = Law(2, -sp.Rational(3, 40), 0.075, 0.15, 0.01)
+_WIDTH = LeadingPower(1, sp.Rational(3, 20) - sp.log(2) / 15, 0.113, 0.05, 0.01)
+_SUPPORT = LeadingPower(1, sp.Rational(1, 20), 0.077, 0.2, 0.02)
+_SPEED = LeadingPower(2, -sp.Rational(3, 40), 0.075, 0.15, 0.01)
 LAWS = dict(zip(QUANTITIES, (_WIDTH, _WIDTH, _SUPPORT, _SPEED), strict=True))
 
 

@@ -116,7 +116,7 @@ class Problem:
         points: int | None = None,
         p0: float = 0.0,
     ) -> None:
-        self.k, self.p0 = k, p0
+        self.masses, self.k, self.p0 = masses, k, p0
         self.L = half_period or ample_half_period(masses, k)
         self.n = points or enough(masses, k, self.L)
         self.height = -math.expm1(k * math.log(p0)) if p0 else 1.0

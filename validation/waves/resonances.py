@@ -25,8 +25,10 @@ from typing import Any
 import numpy as np
 
 from validation.scenes.checks import between, integer
+from validation.waves.newton import Problem
 from validation.waves.profile import ExactWave
 from validation.waves.solver import NoWave, solve, solved
+from validation.waves.start import initial
 
 MOST = 6  # ratios at one k
 HERTZ, PUBLISHED = 1.5, (0.3428, 0.1548)  # the first ratios at k = 3/2, as published
@@ -127,7 +129,8 @@ def _changes(
     for root in roots:
         for start in (None, wave):
             with suppress(NoWave):
-                found, kick = solved((1.0, root**-2), last.k, near=start, unknown="kick")
+                problem = Problem((1.0, root**-2), last.k)
+                found, kick = solved(problem, initial(problem, start), "kick")
                 if kick * before[1] < 0:
                     yield before, (root, kick), wave
                 before, wave = (root, kick), found
@@ -145,7 +148,8 @@ def _zero(low: tuple[float, float], high: tuple[float, float], wave: ExactWave) 
         if not left <= b <= right:
             return None
         try:
-            wave, kick = solved((1.0, b**-2), wave.k, near=wave, unknown="kick")
+            problem = Problem((1.0, b**-2), wave.k)
+            wave, kick = solved(problem, initial(problem, wave), "kick")
         except NoWave:
             return None
         f, g = g, kick

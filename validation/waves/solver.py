@@ -39,9 +39,10 @@ from lwa.base.progress import Progress
 from lwa.base.quantities import QUANTITIES
 from validation.lattice.run import IntegrationError
 from validation.pulses.pulse import Measured
-from validation.scenes.checks import SceneError, between, integer, items, positive
-from validation.waves import newton, start
+from validation.scenes.checks import SceneError, between, items, positive
+from validation.waves import newton
 from validation.waves.profile import ExactWave, Profile, at_unit_force
+from validation.waves.start import Start, StruckPulse, initial, struck_pulse, under_load
 
 FALLEN = 38.0  # e-foldings of a wave on a background from its flanks to L
 SHALLOWEST = 1e-4  # rise of a wave on a background over the peak strain, at least
@@ -122,30 +123,24 @@ def solve(
 
     Raises `NoWave` if the method does not converge.
     """
-    return solved(masses, k, half_period, points, start, "mass" if free else "")[0]
-
-
-def solved(
-    masses: Pair,
-    k: float,
-    half_period: float | None = None,
-    points: int | None = None,
-    near: Profile | None = None,
-    unknown: str = "",
-) -> tuple[ExactWave, float]:
-    """`solve`, with the last unknown of `newton.Problem.wave`: the "mass" or the "kick"."""
-    points = None if points is None else integer(points, "points", 8, 2000)
     problem = newton.Problem(masses, k, half_period, points)
-    begin = (
-        start.near(near, masses, k, problem.xi) if near else start.long_wave(masses, k, problem.xi)
-    )
+    return solved(problem, initial(problem, start), "mass" if free else "")[0]
+
+
+def solved(problem: newton.Problem, start: Start, unknown: str = "") -> tuple[ExactWave, float]:
+    """The wave near a start, and the last unknown of `newton.Problem.wave`, "mass" or "kick".
+
+    Raises `NoWave` if Newton's method does not converge.
+    """
+    masses = problem.masses
     try:
-        z, c2, found = problem.wave(*begin, unknown)
+        forces, c2, last = problem.wave(*start, unknown)
     except np.linalg.LinAlgError:
-        raise NoWave("Newton's method finds no wave", masses, k) from None
+        on = f" on {problem.p0:g}" if problem.p0 else ""
+        raise NoWave(f"Newton's method finds no wave{on}", masses, problem.k) from None
     if unknown == "mass":
-        masses = masses[0], 1 / found
-    return at_unit_force(masses, problem, z, c2), found
+        masses = masses[0], 1 / last
+    return at_unit_force(masses, problem, forces, c2), last
 
 
 def measured(wave: ExactWave) -> dict[str, Measured]:
@@ -160,7 +155,7 @@ def measured(wave: ExactWave) -> dict[str, Measured]:
         least = ROUNDING / (1 - wave.background) + wave.residual + wave.tail
         errors = {name: least * value for name, value in values.items()} | {"tail": least}
         return {name: Measured(value, value + errors[name]) for name, value in values.items()}
-    here, pulse = _numbers(wave.scaled(force=1)), start.struck_pulse(wave.k, wave.omega)
+    here, pulse = _numbers(wave.scaled(force=1)), struck_pulse(wave.k, wave.omega)
     there = _numbers(pulse, wave.masses[0])
     off = {name: abs(there[name] / here[name] - 1) for name in here}
     for name, width in zip(("fwhm force", "fwhm strain"), pulse.widths, strict=True):
@@ -169,7 +164,7 @@ def measured(wave: ExactWave) -> dict[str, Measured]:
     return {name: Measured(value, value * far[name]) for name, value in values.items()}
 
 
-def _numbers(wave: ExactWave | start.StruckPulse, mass: float = 1.0) -> dict[str, float]:
+def _numbers(wave: ExactWave | StruckPulse, mass: float = 1.0) -> dict[str, float]:
     """The numbers of a wave with m1 = 1, for m1 = ``mass``."""
     root = math.sqrt(mass)
     found = {"c2": wave.c2 / mass, "c": wave.c / root, "tail": wave.tail}
@@ -215,14 +210,10 @@ def _pressed(k: float, half_period: float | None, p0: float) -> tuple[ExactWave,
     problem = newton.Problem(pair, k, L, n, p0)
     if k > 3 and p0 < 0.5:  # the theory's wave is too wide: from the wave on a lower background
         lower = _uniform(k, None, max(0.0, p0 - LESS))
-        begin = lower.force(problem.xi), lower.c2
+        start = lower.force(problem.xi), lower.c2
     else:
-        begin = start.under_load(theory, k, p0, problem.xi)
-    try:
-        forces, c2, _ = problem.wave(*begin)
-    except np.linalg.LinAlgError:
-        raise NoWave(f"Newton's method finds no wave on {p0:g}", pair, k) from None
-    return at_unit_force(pair, problem, forces, c2), ample
+        start = under_load(theory, problem)
+    return solved(problem, start)[0], ample
 
 
 def _dimer(
@@ -277,10 +268,10 @@ def _rough(pair: Pair, k: float, half_period: float) -> int:
     return max(newton.FEWEST, int(ROUGH * newton.enough(pair, k, half_period)))
 
 
-def _struck(pair: Pair, k: float) -> start.StruckPulse:
+def _struck(pair: Pair, k: float) -> StruckPulse:
     """The pulse of a struck chain; raises `NoWave` if it does not arrive."""
     try:
-        return start.struck_pulse(k, pair[1])
+        return struck_pulse(k, pair[1])
     except (InputError, IntegrationError) as error:
         raise NoWave("no pulse of a struck chain", pair, k, f": {error}") from None
 

@@ -36,33 +36,39 @@ _STEP = 0.01  # grid of the struck chain's profile, in ξ
 _LONG = 2.0  # ample half periods on which the profile is kept
 
 
-def long_wave(masses: tuple[float, float], k: float, xi: Array) -> tuple[Array, float]:
-    """The theory's wave at leading order.
+Start = tuple[Array, float]
+"""Forces F_a on the circle of a `validation.waves.newton.Problem`, and c²."""
 
-    The force is cos^{2k/(k-1)}(βξ) and c² = 4/((k+1)(m1+m2)). The contacts of a cell are
-    (m2-m1)/(m1+m2) out of step, so that both beads of a cell move alike.
+
+def initial(problem: newton.Problem, wave: Profile | None = None) -> Start:
+    """A wave found for near masses and a near k; by default the theory's at leading order.
+
+    c² is that of the multiple of the wave with force 1 at ξ = 0; Newton's method scales the forces.
     """
-    beta = (k - 1) * math.sqrt(6 / (k * (k + 1))) / newton.widening(masses)
-    phase = beta * (xi - (masses[1] - masses[0]) / sum(masses) / 2)
+    if wave is None:
+        force, c2 = _long_wave(problem)
+    else:
+        force, c2 = wave.force(problem.xi), wave.c2 * sum(wave.masses) / sum(problem.masses)
+    return force, c2 * float(force[0]) ** ((1 - problem.k) / problem.k)
+
+
+def _long_wave(problem: newton.Problem) -> Start:
+    """The theory's wave: the force cos^{2k/(k-1)}(βξ), and c² = 4/((k+1)(m1+m2)).
+
+    The contacts of a cell are (m2-m1)/(m1+m2) out of step, so that both beads of a cell move alike.
+    """
+    k, (m1, m2) = problem.k, problem.masses
+    beta = (k - 1) * math.sqrt(6 / (k * (k + 1))) / newton.widening(problem.masses)
+    phase = beta * (problem.xi - (m2 - m1) / (m1 + m2) / 2)
     force = np.cos(np.clip(phase, -np.pi / 2, np.pi / 2)) ** (2 * k / (k - 1))
-    return _at_zero(force, 4 / ((k + 1) * sum(masses)), k)
+    return force, 4 / ((k + 1) * (m1 + m2))
 
 
-def near(wave: Profile, masses: tuple[float, float], k: float, xi: Array) -> tuple[Array, float]:
-    """A wave found for near masses and a near k."""
-    return _at_zero(wave.force(xi), wave.c2 * sum(wave.masses) / sum(masses), k)
-
-
-def under_load(theory: NumericBackground, k: float, p0: float, xi: Array) -> tuple[Array, float]:
+def under_load(theory: NumericBackground, problem: newton.Problem) -> Start:
     """The theory's wave of equal masses on a background strain p0, of peak strain 1."""
-    B = 1 - p0
-    force = newton.rise(theory.profile(xi, p0, B), k, p0)
-    return force, float(k * theory.speed_squared(p0, B))
-
-
-def _at_zero(force: Array, c2: float, k: float) -> tuple[Array, float]:
-    """c² of the multiple of the wave with force 1 at ξ = 0; Newton's method scales the forces."""
-    return force, c2 * float(force[0]) ** ((1 - k) / k)
+    k, p0 = problem.k, problem.p0
+    force = newton.rise(theory.profile(problem.xi, p0, 1 - p0), k, p0)
+    return force, float(k * theory.speed_squared(p0, 1 - p0))
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,9 +126,9 @@ def struck_pulse(k: float, omega: float) -> StruckPulse:
         front = other.front[::-1].copy()
         return replace(other, masses=(1.0, omega), c2=other.c2 / omega, front=front)
     chain = StruckDimer(k, omega, 2 * min(cells_apart(k, STRETCH), FARTHEST))
-    passage = chain.passed(chain.crossing, TOLERANCE)
+    places = [n * chain.sites for n in range(1, PLACES + 1)]
+    run, quarter = chain.run(places, chain.crossing(places[-1]), TOLERANCE), 0.25**k
     place = PLACES - 3  # the tail behind the pulse is recorded there, too
-    run, quarter = passage.run, 0.25**k
     cell = run.scene.contact_sensors[2 * place : 2 * place + 2]
     centers, peaks = [], []
     for contact in cell:
@@ -133,7 +139,7 @@ def struck_pulse(k: float, omega: float) -> StruckPulse:
         centers.append(np.average(time, weights=force(time) - quarter * cut.peak))
         peaks.append(cut.peak)
     middle, peak = float(np.mean(centers)), math.sqrt(math.prod(peaks))
-    width, strain_width, c, _ = chain.numbers(passage)[:, place - 1].tolist()
+    width, strain_width, c, _ = chain.numbers(chain.passages(run))[:, place - 1].tolist()
     here = c * peak ** ((k - 1) / (2 * k))
     ample = newton.ample_half_period((1.0, omega), k)
     half = np.arange(0, _LONG * ample, _STEP)

@@ -108,7 +108,7 @@ def test_a_law_of_the_file(capsys, scene):
         ({"cell": []}, (), "chain.cell is empty"),
         ({"cell": [1, -1]}, (), "chain.cell number 2 is -1"),
         ({"stiffnesses": [1, 2, 3]}, (), "chain.stiffnesses holds 3"),
-        ({"law": 3}, (), "chain.law is 3: a text is wanted"),
+        ({"law": 3}, (), "chain.law is 3: a text such as"),
         ({"mass": 1}, (), "chain.mass is unknown"),
         ({}, ("--precompression", "1"), "the file has a precompression of 2"),
         ({}, ("--force", "1"), "only B > 0"),

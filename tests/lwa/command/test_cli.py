@@ -508,12 +508,3 @@ def test_long_exponents_are_printed(capsys, command):
     status, out, err = run(capsys, *command.split())
     assert (status, err) == (0, "")
     assert max(map(len, out.splitlines())) < 6000
-
-
-def test_what_takes_long_to_write_says_so(capsys, monkeypatch):
-    monkeypatch.setattr("lwa.command.derivation.MANY_TERMS", 10)
-    status, out, err = run(capsys, "derive", "--closure", "full")
-    assert status == 0
-    assert re.match(r"\d+ terms to be written: this may take minutes\n", err)
-    monkeypatch.undo()
-    assert run(capsys, "derive", "--closure", "full") == (0, out, "")

@@ -49,6 +49,63 @@ def test_any_wavenumber_and_cell_in_numbers(capsys):
     assert low < found["frequency_value"] < high
     again = result(capsys, *options, "--wavenumber", "2.0943951023931953", "--branch", "acoustic")
     assert again["nonlinearity_value"] == pytest.approx(found["nonlinearity_value"], rel=1e-12)
+    edge = result(capsys, *options, "--branch", "2", "--detuning", "1/1000")
+    assert edge["group_velocity_value"] == 0
+    assert edge["breather_frequency_value"] == pytest.approx(0.999 * edge["frequency_value"])
+
+
+SPHERES = """
+precompression = 20
+[materials]
+steel = {E = 193e9, nu = 0.3}
+aluminium = {E = 73.5e9, nu = 0.33}
+[beads]
+heavy = {mass = 28.84e-3, radius = 9.525e-3, material = "steel"}
+light = {mass = 9.75e-3, radius = 9.525e-3, material = "aluminium"}
+[chain]
+cell = ["heavy", "light"]
+"""
+
+
+@pytest.fixture
+def spheres(tmp_path):
+    file = tmp_path / "spheres.toml"
+    file.write_text(SPHERES)
+    return ("envelope", "--spheres", str(file))
+
+
+def test_a_chain_of_spheres_has_hertz_and_metres(capsys, spheres):
+    """Aluminium and steel of 19.05 mm at 20 N: Hertz's contact and Bloch's edges by hand."""
+    compliance = (1 - 0.33**2) / 73.5e9 + (1 - 0.3**2) / 193e9
+    A = 4 / 3 * math.sqrt(9.525e-3 / 2) / compliance
+    K2, static = 1.5 * A ** (2 / 3) * 20 ** (1 / 3), (20 / A) ** (2 / 3)
+    heavy, light = 28.84e-3, 9.75e-3
+    edges = {("pi", "0"): 2 / heavy, ("pi", "1"): 2 / light, ("0", "1"): 2 / heavy + 2 / light}
+    for (kappa, branch), inverse in edges.items():
+        found = result(capsys, *spheres, "--wavenumber", kappa, "--branch", branch)
+        hertz = math.sqrt(K2 * inverse) / (2 * math.pi)
+        assert found["frequency_value"] == pytest.approx(hertz, rel=1e-12)
+    assert found["units"]["frequency"] == "Hz"
+    f0 = math.sqrt(2 * K2 / light) / (2 * math.pi)
+    assert f0 == pytest.approx(8101, abs=1)  # kHz: 4.711, 8.101, 9.371
+    found = result(capsys, *spheres, "--frequency", f"{0.995 * f0:.17g}")
+    assert found["detuning_value"] == pytest.approx(0.005, rel=1e-9)
+    amplitude = static * math.sqrt(32 * 0.005 / 0.75)  # U = δ0 √(32 ν/(k (k - 1)))
+    assert found["amplitude_value"] == pytest.approx([0, amplitude], rel=1e-9)
+    assert found["units"]["amplitude"] == "m"
+    loads = found["opening_load_value"]
+    assert loads["amplitude"] == pytest.approx(20 * (0.005 / (3 / 128)) ** 0.75, rel=1e-9)
+    assert loads["frequency"] == pytest.approx(20 * (0.995 / (125 / 128)) ** 6, rel=1e-9)
+    status, out, _ = run(capsys, *spheres, "--detuning", "1/200")
+    assert status == 0
+    assert "frequency ω/(2π) = 8101." in out
+    assert "below the load F0 = 6.278" in out
+
+
+def test_a_file_with_a_load_takes_no_other(capsys, spheres):
+    status, out, err = run(capsys, *spheres, "--precompression", "10")
+    assert (status, out) == (2, "")
+    assert "the file has a precompression of 20: give no other load" in err
 
 
 @pytest.mark.parametrize(

@@ -5,6 +5,7 @@ import pytest
 import sympy as sp
 
 from lwa import Cell, Dimer, InputError, Power, envelope
+from lwa.envelopes.breather import HELD
 from lwa.law import named
 
 m1, m2, F0, nu, X = sp.symbols("m1 m2 F0 nu X", positive=True)
@@ -65,22 +66,63 @@ def test_units_of_a_breather():
 
 
 def test_where_contacts_open_a_breather_is_refused_with_the_number():
-    chain = envelope(Dimer(1, "1/2"), HERTZ, precompression=1)
+    chain = envelope(Dimer(1, "1/2"), HERTZ, precompression=8)
     edge = chain.breather(detuning="3/128")
-    assert float(edge.amplitude[1]) == pytest.approx(1, rel=1e-12)  # δ0
-    with pytest.raises(InputError, match=r"contacts open from 2\.392.* a detuning of 0\.02343"):
+    assert float(edge.amplitude[1]) == pytest.approx(4, rel=1e-12)  # δ0
+    refusal = (
+        r"^detuning 1 - f/f0 is 0\.025: contacts open from 0\.023438 on at every load; "
+        r"this frequency wants a load of at most 7\.9"
+    )
+    with pytest.raises(InputError, match=refusal):
         chain.breather(detuning="1/40")
+    with pytest.raises(InputError, match=refusal):
+        chain.breather(frequency=chain.frequency * sp.Rational(39, 40))
+
+
+@pytest.mark.parametrize(
+    ("cell", "exponent"), [(Dimer(1, "1/2"), "3/2"), (Cell([1, "1/3"], [1, 8]), 2)]
+)
+def test_contacts_open_at_the_loads_that_are_told(cell, exponent):
+    """Under the load told a breather of the same frequency, or amplitude, is the last closed one.
+
+    The same frequency wants less load than that, the same amplitude more."""
+    law = Power(exponent)
+    found = envelope(cell, law, precompression=3).numeric().breather(detuning="1/100")
+    bead = int(np.argmax(np.abs(np.array(found.amplitude, float))))
+    for held, closed in (("frequency", "0.99"), ("amplitude", "1.01")):
+        load = sp.N(found.opening_load(held), 30)
+        there = envelope(cell, law, precompression=load).numeric()
+        if held == "frequency":
+            nu = 1 - found.frequency / there.frequency
+        else:  # a² rises as ν
+            small = there.breather(detuning="1/1000").amplitude[bead]
+            nu = (found.amplitude[bead] / small) ** 2 / 1000
+        assert float(nu / found.opening_detuning) == pytest.approx(1, rel=1e-9)
+        safe = envelope(cell, law, precompression=load * sp.Float(closed)).numeric()
+        assert safe.breather(detuning=nu * sp.Rational(9, 10)).kind == "bright"
+    symbols = envelope(Dimer(m1, m2), Power("k"), precompression="F0")
+    loads = [symbols.breather(detuning="nu", kind="bright").opening_load(h) for h in HELD]
+    values = {"F0": 3, "k": 1.5, "nu": 0.01}
+    plain = envelope(Dimer(1, "1/2"), HERTZ, precompression=3).breather(detuning="1/100")
+    for held, load in zip(HELD, loads, strict=True):
+        number = load.subs({x: values[x.name] for x in load.free_symbols})
+        assert float(number) == pytest.approx(float(plain.opening_load(held)), rel=1e-12)
 
 
 def test_contacts_that_pull_do_not_open():
+    """An exponential is a force at negative compressions, too; δ^{3/2} + δ^{5/2} is not."""
     chain = envelope(Cell([1], spacing=1), named("exponential", 1), background=0)
     assert chain.breather(detuning="1/2").opening == sp.oo
+    pushes = envelope(Cell([1], spacing=1), named("hertz2", 1, 1), background="1/2")
+    found = pushes.breather(detuning="1/1000")
+    assert 0.001 < found.opening_detuning < 1
+    assert found.opening_load("frequency") is sp.nan
 
 
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({"detuning": "-1/100"}, r"frequency is 2\.47.*: bright breathers lie below 2\.449"),
+        ({"detuning": "-1/100"}, r"is -0\.01: bright breathers lie below f0, at values > 0"),
         ({}, "frequency or detuning: one of the two is wanted"),
     ],
 )

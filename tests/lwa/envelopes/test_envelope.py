@@ -1,11 +1,13 @@
 """The envelope's equation: closed forms, KdV, Toda, the lattice, exact numbers beside floats."""
 
+from types import SimpleNamespace
+
 import mpmath
 import numpy as np
 import pytest
 import scipy
 import sympy as sp
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from lwa import (
@@ -13,6 +15,7 @@ from lwa import (
     Dimer,
     InputError,
     Law,
+    LoadedChain,
     Material,
     Power,
     Sphere,
@@ -20,7 +23,6 @@ from lwa import (
     envelope,
     general,
 )
-from lwa.envelopes.modes import Springs
 from lwa.law import DELTA, named
 from lwa.linear import bands
 
@@ -197,10 +199,12 @@ def test_plane_waves_of_random_cells_on_the_lattice(P, seed):
     ).numeric()
     shares = np.array(found.static_compressions, float)
     A = np.array(stiffnesses, float)
-    springs = Springs(
-        np.array(masses, float), 2.5 * A * shares**1.5, 2.5 * 1.5 / 2 * A * shares**0.5,
-        2.5 * 1.5 * 0.5 / 6 * A * shares**-0.5,
-    )  # fmt: skip
+    springs = SimpleNamespace(
+        masses=np.array(masses, float),
+        K2=2.5 * A * shares**1.5,
+        K3=2.5 * 1.5 / 2 * A * shares**0.5,
+        K4=2.5 * 1.5 * 0.5 / 6 * A * shares**-0.5,
+    )
     chi, omega = float(found.nonlinearity), float(found.frequency)
     phi, flow = np.array(found.mode, complex), float(sum(found.mean_strain))
     shifts = []
@@ -279,7 +283,7 @@ def test_units_of_real_spheres():
     ("cell", "options", "message"),
     [
         (Cell([1, 1]), {}, "two branches touch at this wavenumber"),
-        (Cell([1]), {"wavenumber": 0}, "the frequency is zero at this wavenumber"),
+        (Cell([1]), {"wavenumber": 0}, "the frequency is zero at this wavenumber: sound"),
         (Dimer(1, 2), {"branch": 2}, "branch is 2: a cell of 2 has 2 branches"),
         (Dimer(1, 2), {"wavenumber": 4}, r"wavenumber is 4: 0 … pi per cell is wanted"),
         (Dimer(1, 2), {"wavenumber": 1}, "exact where cos κ is rational"),
@@ -292,9 +296,14 @@ def test_what_has_no_envelope_is_refused(cell, options, message):
 
 
 def test_resonances_are_refused_by_name():
-    """Long acoustic waves move with sound; second harmonics may be optical modes."""
-    with pytest.raises(InputError, match="group velocity is the speed of sound, c_g = c_0"):
-        envelope(Cell([1]), HERTZ, background=1, wavenumber=1e-6).nonlinearity  # noqa: B018
+    """Sound is the one mode with c_g = c_0; second harmonics may be optical modes."""
+    with pytest.raises(InputError, match="sound, c_g = c_0, has no envelope"):
+        envelope(Dimer(1, 2), HERTZ, background=1, wavenumber=0, branch=0).kind  # noqa: B018
+    long = envelope(Cell([1], spacing=1), HERTZ, background=1, wavenumber="1/1000")
+    with pytest.raises(InputError, match="too close to that of sound, c_g = c_0, for floats"):
+        long.numeric().nonlinearity  # noqa: B018
+    limit = -long.frequency / 4  # χ = -ω (k-1) (k - cos² κ/2) → -ω (k-1)²
+    assert float(long.nonlinearity / limit) == pytest.approx(1, abs=1e-6)
 
     def square(kappa, sign):
         """ω² of masses 1 and 1/2, over K2."""
@@ -319,6 +328,31 @@ def test_no_mode_is_faster_than_sound(weights, springs, kappa):
     mu, c = np.array(weights) / sum(weights), np.array(springs[: len(weights)])
     velocity = bands.group_velocity(mu, c * len(c) / c.sum(), kappa / len(c))
     assert np.abs(velocity).max() < 1
+
+
+@given(
+    st.lists(st.integers(1, 9), min_size=2, max_size=5),
+    st.lists(st.integers(1, 9), min_size=5, max_size=5),
+    st.floats(0.3, 2.8),
+    st.integers(0, 4),
+)
+def test_frequencies_and_their_derivatives_are_those_of_the_bands(masses, stiffnesses, kappa, n):
+    """ω and c_g of `LoadedChain`, of κ per cell; ω″ by their differences, to the step squared."""
+    P = len(masses)
+    cell, branch = Cell(masses, stiffnesses[:P], 1), n % P
+    bands = LoadedChain(cell, HERTZ, 2)
+    omega = bands.branches(kappa / P)
+    assume(np.min(np.abs(np.delete(omega, branch) - omega[branch])) > 0.1)
+    options = {"precompression": 2, "wavenumber": kappa, "branch": branch}
+    try:
+        ours = envelope(cell, HERTZ, **options).numeric()
+        assert float(ours.frequency) == pytest.approx(omega[branch], rel=1e-10)
+    except InputError:  # the second harmonic is a mode
+        assume(False)
+    slope = [bands.group_velocity((kappa + h) / P)[branch] / P for h in (-1e-4, 0, 1e-4)]
+    assert float(ours.group_velocity) == pytest.approx(slope[1], abs=1e-9 * omega[-1])
+    bend = (slope[2] - slope[0]) / 2e-4
+    assert float(ours.dispersion) == pytest.approx(bend, abs=1e-4 * omega[-1])
 
 
 def test_a_law_of_its_own():

@@ -7,7 +7,7 @@ from scipy import integrate as scipy
 from tests.benchmarks import cyrk
 from tests.benchmarks.located import integrate
 from validation.scenes.scene import Scene, SceneError
-from validation.studies.accuracy import Task, struck
+from validation.studies.accuracy import Task, struck_chain
 
 
 def loaded():
@@ -31,7 +31,7 @@ def loaded():
 @pytest.mark.filterwarnings("default::DeprecationWarning")
 def test_a_peer_agrees_with_scipy(method):
     """To 1e-6, what kinks leave of tolerances of 1e-10."""
-    for task in (struck(0.2733, 16, 10, 17.0), loaded()):
+    for task in (struck_chain(0.2733, 16, 10, 17.0), loaded()):
         times = np.linspace(1.0, task.scene.duration, 141)
         found = cyrk.prepared(task, method)(1e-10, task, times)
         expected = integrate(task, times, scipy.DOP853, 1e-11)

@@ -10,7 +10,7 @@ from tests.benchmarks.located import Located, around, integrate, located, read
 from validation.lattice.equations import Motion
 from validation.lattice.simulate import simulate
 from validation.scenes.scene import Scene
-from validation.studies.accuracy import FINEST, TASKS, exact, relative_errors, struck
+from validation.studies.accuracy import FINEST, TASKS, relative_errors, solitary_wave, struck_chain
 
 
 def compiled(task):
@@ -24,7 +24,7 @@ def off(task):
 
 
 def short(omega):
-    return struck(omega, 30, 20, {1.0: 34.0, 0.2733: 30.0}[omega])
+    return struck_chain(omega, 30, 20, {1.0: 34.0, 0.2733: 30.0}[omega])
 
 
 @pytest.mark.parametrize("omega", [1.0, 0.2733])
@@ -68,7 +68,7 @@ def test_the_end_of_a_collision_is_found_where_it_is():
 
 def test_the_exact_wave_arrives_as_it_must():
     """Within the residual of the wave itself, which is 1e-12 of its speed at most."""
-    task = exact(20)
+    task = solitary_wave(20)
     for pulse in (located(task, task.truth), compiled(task)):
         assert max(relative_errors(pulse, task.truth).values()) < 5e-12
 
@@ -82,7 +82,7 @@ def test_the_references_agree(name):
 
 def test_a_pulse_is_read_to_twelve_digits():
     """cos^8 between its zeros, as narrow and as densely sampled as the tasks' pulses."""
-    task, times = struck(1.0, 30, 20, 20.0), np.linspace(10, 20, 201)
+    task, times = struck_chain(1.0, 30, 20, 20.0), np.linspace(10, 20, 201)
     width, centre, half = 1.6, 15.013, math.acos(0.5 ** (1 / 8))
     phase = (times - centre) * 2 * half / width
     force = 0.7 * np.where(np.abs(phase) < np.pi / 2, np.cos(phase), 0.0) ** 8

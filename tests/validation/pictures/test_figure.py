@@ -78,14 +78,6 @@ def test_colours_marks_and_bars():
     assert [t.get_text() for t in axes.get_legend().get_texts()] == ["bars", "own", "long"]
 
 
-def test_many_names_stand_once_below_all_panels():
-    crowded = Panel("x", "y", tuple(Curve.of(f"c{i}", X, i * X) for i in range(12)))
-    picture = figure((crowded, crowded))
-    assert all(axes.get_legend() is None for axes in picture.axes)
-    (legend,) = picture.legends
-    assert len(legend.get_texts()) == 12
-
-
 @pytest.mark.parametrize(("places", "scale"), [(X, ""), (np.array([0.01, 0.1, 1.0]), "x")])
 def test_a_map_has_a_colour_for_each_place(places, scale):
     values = np.array([[1.0, 2.0, np.nan], [4.0, 5.0, 60.0]])

@@ -14,7 +14,6 @@ from hypothesis import strategies as st
 from lwa import Cell
 from lwa.base import files
 from lwa.spheres import beads
-from lwa.spheres.beads import read_spheres
 from lwa.spheres.hertz import Material, Sphere
 from validation.scenes import scenefile
 from validation.scenes.document import document
@@ -163,9 +162,8 @@ def test_stiffnesses_of_a_cell_or_of_all_contacts():
         assert scene({"duration": 1, "chain": chain | {"stiffnesses": values}}).stiffnesses == found
 
 
-def test_the_cell_of_a_scene_is_read_by_the_theory(tmp_path):
-    (tmp_path / "scene.toml").write_text(PAPER)
-    cell, chain = Cell.of_spheres(read_spheres(tmp_path / "scene.toml")), toml_file(PAPER)
+def test_the_cell_of_a_scene_is_read_by_the_theory():
+    cell, chain = Cell.of_spheres(beads.spheres(tomllib.loads(PAPER))), toml_file(PAPER)
     assert chain.masses[:2] == tuple(map(float, cell.masses))
     assert chain.stiffnesses[:2] == pytest.approx([float(A) for A in cell.stiffnesses], rel=1e-15)
     assert chain.spacings[:2] == (float(cell.spacing),) * 2

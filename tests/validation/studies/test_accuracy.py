@@ -19,20 +19,20 @@ from validation.studies.accuracy import (
     METHODS,
     NUMBERS,
     TASKS,
-    Row,
     Task,
+    Timing,
     accuracy,
     cost,
-    exact,
-    struck,
+    solitary_wave,
+    struck_chain,
 )
 
 # The tasks
 
 
 def test_a_record_without_a_pulse_is_infinitely_wrong():
-    task = struck(1.0, 30, 20, 5.0)  # too short a time
-    assert set(task.errors(simulate(task.scene), exact(20).truth).values()) == {math.inf}
+    task = struck_chain(1.0, 30, 20, 5.0)  # too short a time
+    assert set(task.errors(simulate(task.scene), solitary_wave(20).truth).values()) == {math.inf}
 
 
 @pytest.mark.parametrize("name", TASKS)
@@ -48,7 +48,7 @@ def test_tasks_are_what_they_say(name):
 )
 def test_the_error_falls_with_the_tolerance(method, window):
     """The error falls a hundredfold at least where the tolerance falls by 1e4, to below 1e-6."""
-    task, options = exact(20), {"method": method.split()[-1]}
+    task, options = solitary_wave(20), {"method": method.split()[-1]}
     found = []
     for rtol in (1e-5, 1e-9):
         run = simulate(task.scene, rtol=rtol, atol=rtol, window=window, **options)
@@ -78,7 +78,7 @@ def test_rtol_is_the_error_of_the_peak_force(name):
 
 
 def row(seconds, peak):
-    return Row("dimer", "a", 1e-8, {"arrival": 1e-9, "peak": peak, "fwhm": 1e-8}, seconds)
+    return Timing("dimer", "a", 1e-8, {"arrival": 1e-9, "peak": peak, "fwhm": 1e-8}, seconds)
 
 
 def test_a_cost_holds_from_there_on():
@@ -94,7 +94,7 @@ def test_a_cost_holds_from_there_on():
 
 
 def small():
-    return struck(0.2733, 24, 16, 24.0)
+    return struck_chain(0.2733, 24, 16, 24.0)
 
 
 def walled():

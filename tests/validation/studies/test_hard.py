@@ -23,7 +23,6 @@ from validation.studies.hard import (
     PRINTED,
     closed_wave,
     energy_errors,
-    exact,
     form,
     hard,
     in_ulps,
@@ -33,6 +32,7 @@ from validation.studies.hard import (
     splitting_errors,
     spreading,
     three_beads,
+    true_values,
     width_error,
 )
 
@@ -62,7 +62,7 @@ def test_the_reference_is_the_exact_wave_of_these_numbers(closure):
     k, omega = np.array([1.5, 2.5]), np.array([0.2733, 1.5])
     symbolic = closed_wave(closure)
     for arguments in FORMS.values():
-        found = exact(symbolic, form(symbolic, *arguments), k, omega)
+        found = true_values(symbolic, form(symbolic, *arguments), k, omega)
         for i in range(2):
             cell = Dimer(1, sp.Rational(omega[i]), spacing=1)
             pde = homogenize(cell, k=sp.Rational(k[i]), **CLOSURES[closure]).pde
@@ -113,7 +113,7 @@ def printed_hertz_beta(w):
 def test_the_expression_of_beta_at_three_halves_is_sound_as_printed():
     wave = closed_wave("paper's closure")
     ratios = module.RATIOS
-    true = exact(wave, wave.beta, np.full(len(ratios), 1.5), ratios)
+    true = true_values(wave, wave.beta, np.full(len(ratios), 1.5), ratios)
     assert in_ulps(printed_hertz_beta(ratios), true).max() < 8
 
 

@@ -4,8 +4,20 @@ import pytest
 import scipy
 import sympy as sp
 
-from lwa import Cell, Dimer, Dispersion, InputError, Power, Shock, piston, shock
+from lwa import (
+    Cell,
+    Dimer,
+    Dispersion,
+    InputError,
+    Power,
+    Shock,
+    background_wave,
+    expand,
+    piston,
+    shock,
+)
 from lwa.law import named
+from lwa.shocks.pulse import Pulse
 
 EQUAL = Cell([1], spacing=1)
 HERTZ = Power("3/2")
@@ -35,35 +47,73 @@ def test_edges_of_equal_beads_solve_els_equations():
 
 
 def test_a_toda_soliton_on_els_edge_moves_its_beads_at_twice_the_wall():
-    """Soliton e^{δ-p} - 1 = sinh²κ sech²: speed c₊ sinh κ/κ, beads at 2c₊(cosh κ - 1) (Toda 1967).
+    """e^{δ-p} - 1 = sinh²κ sech²(κn - c₊ t sinh κ), beads at 2 c₊ (cosh κ - 1) (Toda 1967).
 
-    El's edge has the speed of κ = 2 arcosh √r, and v_p = 2c₊(r - 1) under F = e^δ - 1.
+    El's edge has the speed of κ = 2 arcosh √r, and v_p = 2 c₊ (r - 1) under F = e^δ - 1.
     """
-    r = sp.Symbol("r", positive=True)
+    r, n, t, c = sp.symbols("r n t c", positive=True)
+    q = sp.Symbol("q", positive=True)
+    factor = 1 + sp.sinh(q) ** 2 / sp.cosh(q * n - c * t * sp.sinh(q)) ** 2  # e^{δ-p}, c = e^{p/2}
+    pushed = c**2 * (factor.subs(n, n - 1) - 2 * factor + factor.subs(n, n + 1))
+    rest = sp.log(factor).diff(t, 2) - pushed
+    place = {n: sp.Rational(1, 3), t: sp.Rational(2, 7), q: sp.Rational(6, 5), c: sp.Rational(3, 2)}
+    assert abs(rest.subs(place).n(30)) < 1e-25
     kappa = 2 * sp.acosh(sp.sqrt(r))
     edge = sp.sqrt(r * (r - 1)) / sp.acosh(sp.sqrt(r))
     assert sp.simplify(sp.expand_trig(sp.sinh(kappa)) / kappa - edge) == 0
     assert sp.simplify(sp.expand_trig(2 * (sp.cosh(kappa) - 1)) - 2 * 2 * (r - 1)) == 0
-    found = shock(EQUAL, TODA, sp.log(sp.Rational(25, 16)), 0)
-    assert sp.simplify(found.ratio - sp.Rational(5, 4)) == 0
-    assert sp.simplify(found.plateau - sp.S.Half) == 0
-    for rule in ("dispersion", "doubling"):
-        assert sp.simplify(found.leading_speed(rule) - edge.subs(r, sp.Rational(5, 4))) == 0
-    soliton = sp.log(1 + sp.sinh(kappa) ** 2).subs(r, sp.Rational(5, 4))  # δ at its middle
-    assert abs((found.rise - soliton).n(30)) < 1e-25
+    for D in (1, sp.Rational(1, 2)):
+        found = shock(Cell([1], spacing=D), TODA, sp.log(sp.Rational(25, 16)) / D, 0)
+        assert sp.simplify(found.ratio - sp.Rational(5, 4)) == 0
+        assert sp.simplify(found.plateau - sp.S.Half) == 0
+        for rule in ("dispersion", "doubling"):
+            gap = found.leading_speed(rule) - D * edge.subs(r, sp.Rational(5, 4))
+            assert abs(gap.n(30)) < 1e-25
+        soliton = sp.log(1 + sp.sinh(kappa) ** 2).subs(r, sp.Rational(5, 4))  # δ at its middle
+        assert abs((D * found.peak - soliton).n(30)) < 1e-25
 
 
 def test_plateau_and_rule_under_a_power_without_load():
-    """B/p₋ = (8k/(k+1))^{1/(k+1)} and s₊/c₋ = 4/(k+1) (8k/(k+1))^{-1/(k+1)}."""
+    """B/p₋ = (8k/(k+1))^{1/(k+1)} and s₊/c₋ = 4/(k+1) (8k/(k+1))^{-1/(k+1)}; a contact's strain
+    is B (1 - (k-1)/(2k(k+1)))."""
     k = sp.Symbol("k", positive=True)
     found = shock(EQUAL, Power("k"), "p", 0)
     p = sp.Symbol("p", positive=True)
     rise = (8 * k / (k + 1)) ** (1 / (k + 1))
     for value in (sp.Rational(3, 2), 2, 5):
         numbers = {k: value, p: sp.Rational(1, 3)}
-        speed = found.leading_speed() / found.sound(p)
-        assert float((found.rise / p / rise).subs(numbers)) == pytest.approx(1, rel=1e-12)
-        assert float((speed * rise * (k + 1) / 4).subs(numbers)) == pytest.approx(1, rel=1e-12)
+        speed, contact = found.leading_speed() / found.sound(p), 1 - (k - 1) / (2 * k * (k + 1))
+        for ratio in (
+            found.rise / p / rise,
+            speed * rise * (k + 1) / 4,
+            found.peak / p / rise / contact,
+        ):
+            assert float(ratio.subs(numbers)) == pytest.approx(1, rel=1e-12)
+
+
+def test_a_contact_is_pressed_by_the_mean_of_the_slope_over_a_site():
+    """u_x + D² u_xxx/24, with u_xxx at the peak from I F′ v′² = v² (Q(B) - Q(v)), I = 1/12."""
+    field = background_wave(EQUAL, "2/3", law=HERTZ)
+    w = sp.Rational(7, 10)
+    pulse = Pulse(field, w)
+    v, B = sp.Symbol("v", positive=True), pulse.rise
+    square = (
+        v**2 * (field.stiffness(B) - field.stiffness(v)) / (field.I * field.force(field.p0 + v, 1))
+    )
+    bend = square.diff(v).subs(v, B) / 2  # v″ = d(v′²)/dv / 2
+    assert float(pulse.contact_rise) == pytest.approx(float(B + bend / 24), rel=1e-12)
+    assert float(pulse.speed**2) == pytest.approx(float(field.stiffness(B)), rel=1e-12)
+
+
+def test_a_pulse_is_the_lattices_own_to_the_next_order_in_k_minus_1():
+    """The series' wave of peak force 1 has contacts of strain 1: the closed form errs by O(ε²)."""
+    for k in (sp.Rational(101, 100), sp.Rational(1001, 1000)):
+        velocity = sp.Float(expand(EQUAL, 6, k=k).peak_velocity.at().value)
+        field = background_wave(EQUAL, 0, law=Power(k))
+        pulse = Pulse(field, velocity / field.time_scale.n())
+        slope, contact = ((x - 1) / (k - 1) for x in (pulse.rise, pulse.contact_rise))
+        assert float(slope) == pytest.approx(1 / 4, abs=float(k - 1))
+        assert abs(float(contact)) < float(k - 1)
 
 
 # --- limits ---
@@ -77,18 +127,19 @@ def test_small_jumps_are_those_of_kdv(law):
         found = shock(EQUAL, law, 1 + jump, 1)
         c, step = found.sound(found.ahead), found.sound(found.behind) - found.sound(found.ahead)
         edges = [found.trailing_speed, found.leading_speed("dispersion"), found.leading_speed()]
-        numbers = [float((s - c) / step) for s in edges] + [float(found.rise / jump)]
-        errors.append([abs(n - x) for n, x in zip(numbers, (-1, 2 / 3, 2 / 3, 2), strict=True)])
+        numbers = [float((s - c) / step) for s in edges] + [
+            float(x / jump) for x in (found.rise, found.peak - 1)
+        ]
+        errors.append([abs(n - x) for n, x in zip(numbers, (-1, 2 / 3, 2 / 3, 2, 2), strict=True)])
     for far, near in zip(*errors, strict=True):
         assert near < 0.02
         assert near < 0.6 * far + 1e-12
 
 
 def test_hard_spheres():
-    """As k → ∞ a wall at v drives the first bead at 2v, and the pulse's bead velocity is a bead's
-    own: the strike of equal hard spheres. The canonical wave tends to B = p₋, s₊/c₋ to 0 as 4/k."""
+    """As k → ∞ the peak of the canonical wave tends to the strain behind it, s₊/c₋ to 0 as 4/k."""
     found = shock(EQUAL, Power(1000), 1, 0)
-    assert float(found.rise) == pytest.approx(1, abs=0.01)
+    assert float(found.peak) == pytest.approx(1, abs=0.01)
     assert float(1000 * found.leading_speed() / found.sound(found.behind)) == pytest.approx(
         4, rel=0.01
     )
@@ -111,7 +162,6 @@ def test_the_series_in_k_minus_1_has_beads_at_twice_the_wall():
 @pytest.mark.parametrize("k", ["6/5", "3/2", "2"])
 def test_peak_velocity_of_the_exact_wave(k):
     """From the force found by Fourier: the velocity is its mean over a site, over c."""
-    from lwa import expand
     from tests.lwa.expansion.test_exact_waves import lattice
 
     values, xi, force = lattice(float(sp.Rational(k)))
@@ -200,12 +250,13 @@ def test_si_units():
         (lambda: shock(EQUAL, HERTZ, 1, -1), "ahead is -1: contacts of a power law only push"),
         (lambda: shock(EQUAL, HERTZ, 4, 1).trailing_speed, "the trailing edge holds up to 1.3"),
         (lambda: shock(EQUAL, HERTZ, 1, 0).leading_speed("dispersion"), "ahead is 0: no sound"),
-        (lambda: shock(Dimer(1, 2), HERTZ, 2, 1).rise, "doubling holds for equal beads only"),
+        (lambda: shock(Dimer(1, 2), HERTZ, 2, 1).peak, "known for equal beads only"),
+        (lambda: shock(EQUAL, HERTZ, 1, 2).peak, "a rarefaction has no pulse"),
         (lambda: shock(EQUAL, HERTZ, 2, 1).wave, "of a power law without load"),
         (lambda: shock(EQUAL, HERTZ, 2, 1).leading_speed("el"), "rule is 'el': dispersion or"),
         (lambda: shock(EQUAL, Power("k"), "p", 1).kind, "kind depends on symbols"),
         (lambda: shock(EQUAL, Power(1), 1, 0), "a front without load wants k > 1"),
-        (lambda: shock(Cell(["m"]), HERTZ, 1, 0).wave, "has no value: numbers are wanted"),
+        (lambda: shock(Cell(["m"]), HERTZ, 1, 0).wave, "has no value: sums of series"),
         (lambda: piston(Cell(["m"]), TODA, 1), "has no value: numbers are wanted"),
     ],
 )

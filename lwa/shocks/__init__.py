@@ -1,0 +1,1 @@
+"""Shocks and rarefactions of a chain driven by a wall: the Riemann problem."""

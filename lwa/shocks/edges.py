@@ -1,0 +1,94 @@
+"""Speeds of the two edges of a dispersive shock, from the acoustic branch of a chain.
+
+Behind the front sound is r times as fast as ahead of it. In units of the speed of sound let f(κ) be
+the acoustic branch, f ~ κ, and f̃(q) = -i f(iq). El's conditions (Chaos 15, 037103 (2005)) are
+
+    trailing edge   ∫₀^κ (1 - f′)/f dκ = ln r,      its speed over the sound behind is f′(κ),
+    leading edge    ∫₀^q (f̃′ - 1)/f̃ dq = ln r,      its speed over the sound ahead is f̃(q)/q.
+
+For equal beads f = 2 sin κ/2 makes the integrals -2 ln cos κ/4 and 2 ln cosh q/4, so that the
+speeds are 2/r - 1 and √(r(r-1))/arcosh √r. For other cells the dispersion relation 2 cos Pκ = T(f²)
+gives dκ/df, and the integrals over f are computed by quadrature.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import mpmath
+import sympy as sp
+
+from lwa.base.exact import InputError, demand_numbers, evaluated, root
+from lwa.linear.dispersion import Dispersion
+
+DIGITS = 20
+"""Digits of what is not in closed form."""
+
+STEEPEST = sp.Rational(13, 10)
+"""r up to which the trailing edge holds: 9 % off for Hertz contacts at p₋/p₊ = 3, r = 1.32."""
+
+
+def trailing(chain: Dispersion, r: sp.Expr) -> sp.Expr:
+    """Speed of the trailing edge over the speed of sound behind the front.
+
+    Raises `lwa.InputError` for numbers beyond r = 1.3, where the edge fails, or beyond the branch,
+    and for cells of several beads where r is a symbol.
+    """
+    if r.is_number and r > STEEPEST:
+        raise InputError(f"c₋/c₊ is {sp.N(r, 5)}: the trailing edge holds up to 1.3")
+    if chain.cell.size == 1:
+        return 2 / r - 1
+    with mpmath.workdps(DIGITS + 10):
+        return sp.Float(1 / _slowness(_trace(chain), _edge(chain, r, 1) ** 2), DIGITS)
+
+
+def leading(chain: Dispersion, r: sp.Expr) -> sp.Expr:
+    """Speed of the leading edge over the speed of sound ahead of the front.
+
+    Raises `lwa.InputError` without sound ahead, r = ∞, and for cells of several beads where r is a
+    symbol.
+    """
+    if r.is_infinite:
+        raise InputError("ahead is 0: no sound runs there, and dispersion gives no edge")
+    if chain.cell.size == 1:
+        return root(r * (r - 1)) / sp.acosh(root(r))
+    with mpmath.workdps(DIGITS + 10):
+        f = _edge(chain, r, -1)
+        q = mpmath.acosh(mpmath.polyval(_trace(chain), -(f**2)) / 2) / chain.cell.size
+        return sp.Float(f / q, DIGITS)
+
+
+def _edge(chain: Dispersion, r: sp.Expr, sign: int) -> Any:
+    """f at an edge: ∫₀^f sign (dκ/df - 1)/f df = ln r, for f and κ real (1) or imaginary (-1).
+
+    Newton's method starts from the root for small r - 1: dκ/df - 1 is (3/2) I f² to leading order.
+    """
+    demand_numbers(r.free_symbols, "edges of cells of several beads are numbers")
+    trace, target = _trace(chain), mpmath.log(mpmath.mpf(evaluated(r, DIGITS + 10)))
+
+    def density(f: Any) -> Any:
+        return sign * (_slowness(trace, sign * f * f) - 1) / f
+
+    def excess(f: Any) -> Any:
+        return mpmath.quad(density, [0, f]) - target
+
+    start = mpmath.sqrt(4 * target / (3 * mpmath.mpf(evaluated(chain.I, DIGITS + 10))))
+    if sign > 0:
+        top = chain.band_edges()[0, 1] * (1 - mpmath.mpf(10) ** -9)  # dκ/df has a pole at the edge
+        if excess(top) < 0:
+            raise InputError(f"c₋/c₊ is {sp.N(r, 5)}: the trailing edge leaves the acoustic branch")
+        start = min(start, top)
+    close = mpmath.mpf(10) ** (-2 * DIGITS)
+    return mpmath.findroot(excess, start, solver="newton", df=density, tol=close)
+
+
+def _trace(chain: Dispersion) -> list[Any]:
+    """Coefficients of T(y), y = f², the highest first."""
+    return [mpmath.mpf(evaluated(chain.trace[m], DIGITS + 10)) for m in sorted(chain.trace)[::-1]]
+
+
+def _slowness(trace: list[Any], y: Any) -> Any:
+    """dκ/df = -T′/(P √(R (1 - R y/4))), where T = 2 - R y."""
+    _, slope = mpmath.polyval(trace, y, derivative=True)
+    R = -mpmath.polyval(trace[:-1], y)
+    return -slope / ((len(trace) - 1) * mpmath.sqrt(R * (1 - R * y / 4)))
