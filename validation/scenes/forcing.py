@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from lwa.base.arrays import Array
-from validation.scenes.checks import SceneError, between, each, one_of, positive, real
+from validation.scenes.checks import SceneError, between, each, items, one_of, positive, real
 
 DAMPINGS = ("contact", "kuwabara_kono", "restitution")
 
@@ -91,7 +91,8 @@ class Drive:
 
     def __post_init__(self) -> None:
         for name in ("time", "displacement"):
-            row = tuple(each(real)(list(getattr(self, name)), f"drive.{name}"))
+            key = f"drive.{name}"
+            row = tuple(each(real)(list(items(getattr(self, name), key)), key))
             object.__setattr__(self, name, row)
         harmonic = self.amplitude is not None or self.frequency is not None
         if (self.velocity is not None) + harmonic + bool(self.time or self.displacement) != 1:

@@ -77,12 +77,11 @@ from lwa.base.files import load
 from lwa.base.tables import Reader, Table, among, array, entries, flag, place, places, table
 from lwa.law import read_law
 from lwa.spheres.beads import read_beads, read_materials
-from lwa.spheres.hertz import Material, Sphere
+from lwa.spheres.hertz import Material, Sphere, stiffness
 from validation.scenes.checks import SceneError, each, integer, positive, real
 from validation.scenes.columns import columns
 from validation.scenes.document import overlap
 from validation.scenes.forcing import DAMPINGS, Damping, Drive
-from validation.scenes.materials import contact_stiffness
 from validation.scenes.scene import Scene
 
 MOST_BEADS = 1_000_000
@@ -238,7 +237,7 @@ def _wall(given: Table, row: Sequence[Sphere], materials: Mapping[str, Material]
         return float(given.read("stiffness", positive))
     if not row:
         raise SceneError("wall.material is given, but a chain of masses needs wall.stiffness")
-    return contact_stiffness(row[-1], given.read("material", among(materials)))
+    return float(stiffness(row[-1], given.read("material", among(materials))))
 
 
 def _damping(given: Table) -> Damping:
@@ -255,13 +254,5 @@ def _motion(value: Any, name: str) -> dict[str, Array]:
 
 def _drive(given: Table) -> Drive:
     """The motion of bead 1, by numbers or from a file."""
-    names = ("time", "displacement")
-    rows: dict[str, Any] = {name: given.read(name, each(real), ()) for name in names}
-    if "file" in given:
-        rows = {name: column.tolist() for name, column in given.read("file", _motion).items()}
-    numbers = {
-        name: given.read(name, real)
-        for name in ("velocity", "amplitude", "frequency", "ramp")
-        if name in given
-    }
-    return Drive(**rows, **numbers)
+    motion = given.read("file", _motion, {})
+    return Drive(**{name: x for name, x in given.entries.items() if name != "file"} | motion)
