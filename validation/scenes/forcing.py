@@ -34,11 +34,11 @@ class Damping:
         object.__setattr__(self, "value", read(self.value, self.kind))
 
     def power(self, k: float) -> float:
-        """The exponent of δ beside the rate."""
+        """Exponent of δ in front of the rate dδ/dt."""
         return {"contact": 0.0, "kuwabara_kono": k - 1, "restitution": (k - 1) / 2}[self.kind]
 
     def coefficients(self, k: float, stiffnesses: Array, masses: Array) -> Array:
-        """The factor beside δ^power dδ/dt of each contact; ``masses`` are the reduced ones."""
+        """Factor of δ^power dδ/dt in each contact, (contacts,); ``masses`` are reduced masses."""
         if self.kind != "restitution":
             return np.full(len(stiffnesses), self.value)
         return 2 * damping_ratio(self.value) * np.sqrt((k + 1) / 2 * masses * stiffnesses)
@@ -146,7 +146,7 @@ class Drive:
 
     @property
     def fastest(self) -> float:
-        """About the greatest speed of the bead."""
+        """Approximate greatest speed of the bead."""
         if self.velocity is not None:
             return abs(self.velocity)
         if self.time:
@@ -157,7 +157,7 @@ class Drive:
 
     @property
     def longest_step(self) -> float:
-        """A step that no change of the drive escapes."""
+        """Longest step in time that resolves the drive."""
         if self.frequency is not None:
             return 1 / (8 * self.frequency)
         return float(np.diff(self.time).max()) if self.time else math.inf

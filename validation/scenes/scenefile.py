@@ -109,7 +109,7 @@ def read_scene(path: str | Path) -> Scene:
 
 
 def scene(content: Any) -> Scene:
-    """The scene of a parsed file; `SceneError` for unknown keys and invalid values."""
+    """Make the scene of a parsed file; `SceneError` for unknown keys and invalid values."""
     if isinstance(content, dict) and "scene" in content:
         content = content["scene"]
     file = Table(content, "", KEYS["file"])
@@ -181,7 +181,7 @@ def _defects(value: Any, name: str) -> list[Table]:
 def _chain(
     given: Table, beads: Mapping[str, Sphere], defects: Sequence[Table]
 ) -> tuple[list[Sphere], dict[str, Any]]:
-    """The named beads (none in a chain of masses), and the fields of the `Scene`."""
+    """Named beads (none in a chain of masses), and the chain's fields of the `Scene`."""
     cell = given.read("cell", array)
     repeat = given.read("repeat", partial(integer, least=1), 1)
     n = len(cell) * repeat
@@ -253,6 +253,6 @@ def _motion(value: Any, name: str) -> dict[str, Array]:
 
 
 def _drive(given: Table) -> Drive:
-    """The motion of bead 1, by numbers or from a file."""
+    """Read the motion of bead 1, by numbers or from a file."""
     motion = given.read("file", _motion, {})
     return Drive(**{name: x for name, x in given.entries.items() if name != "file"} | motion)
