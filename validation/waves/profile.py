@@ -1,4 +1,4 @@
-"""Profiles of traveling waves and the numbers read off them: peaks, widths, tails, energy.
+"""Profiles of traveling waves and the numbers read off them: peaks, widths, tails.
 
 A = D = 1. A contact's strain is a(ξ) or b(ξ) = a(-ξ), ξ = x - ct (`validation.waves.newton`). The
 contact law r_+^k has no scale of its own, so that multiples of a wave are waves: r → s r with
@@ -204,39 +204,6 @@ class ExactWave(Profile):
             return 0.0
         even, c2 = self._strains[0], self.c2 * self.masses[0]
         return float(abs(self.even[0] / c2 - even[0]) / even.sum())
-
-    @property
-    def energy(self) -> float:
-        """Kinetic and elastic energy of the pulse above the static state, in a whole chain.
-
-        The energy of a moment does not depend on the moment: its mean over all is an integral.
-        """
-        p0, k = self.background, self.k
-        xi, step = self._pulse_grid
-        density = 0 * xi
-        for i, mass in enumerate(self.masses):
-            r = self.strain(xi, i)
-            density += newton.rise(r, k + 1, p0) / (k + 1) - p0**k * r
-            density += mass / 2 * self.velocity(xi, i) ** 2
-        return float(density.sum()) * step / 2
-
-    @property
-    def momentum(self) -> float:
-        """Momentum of the pulse in a whole chain."""
-        xi, step = self._pulse_grid
-        one, two = (m * self.velocity(xi, i).sum() for i, m in enumerate(self.masses))
-        return float(one + two) * step / 2
-
-    @property
-    def effective_mass(self) -> float:
-        """Mass P²/(2E) of a particle with the pulse's momentum and energy."""
-        return self.momentum**2 / (2 * self.energy)
-
-    @property
-    def _pulse_grid(self) -> tuple[Array, float]:
-        """Points of the pulse and their distance, for sums that are exact for smooth pulses."""
-        n = 8 * self.samples
-        return self.pulse * np.arange(-n, n) / n, self.pulse / n
 
     def scaled(self, *, speed: Any = None, force: Any = None) -> ExactWave:
         """Scale the wave to another speed dx/dt or another peak contact force.
