@@ -15,7 +15,7 @@ from click.testing import CliRunner
 
 from lwa.base import progress
 from lwa.command.terminal import CLOSED
-from tests.commands import closed_pipe, ended, full_disk, terminal, unwritable
+from tests.commands import closed_pipe, ended, full_disk, small_disk, terminal, unwritable
 from validation import cli
 from validation import load as load_run
 from validation.report import command
@@ -297,21 +297,14 @@ def test_the_help_of_run_shows_the_format_and_the_examples():
 
 
 @pytest.mark.parametrize("name", ["out.json", "out.npz"])
-def test_a_result_that_cannot_be_written_leaves_the_old_one(
-    capsys, monkeypatch, scene_file, tmp_path, name
-):
-    file = tmp_path / name
-    file.write_text("old")
-
-    def full(*_):
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr("os.replace", full)
-    status, out, err = run(capsys, "run", str(scene_file), "--out", str(file))
+def test_a_result_that_cannot_be_written_leaves_the_old_one(capsys, folder, scene_file, name):
+    (folder / name).write_text("old")
+    with small_disk(1000):
+        status, out, err = run(capsys, "run", "scene.toml", "--out", name)
     assert (status, out) == (2, "")
-    assert err == f"lwa-validate: {file} is not written: No space left on device\n"
-    assert file.read_text() == "old"
-    assert {f.name for f in tmp_path.iterdir()} == {"scene.toml", name}
+    assert err == f"lwa-validate: {name} is not written: File too large\n"
+    assert (folder / name).read_text() == "old"
+    assert {file.name for file in folder.iterdir()} == {"scene.toml", name}
 
 
 LONG = "a" * 300
