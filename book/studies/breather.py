@@ -38,7 +38,9 @@ from validation.scenes.checks import SceneError, between, integer
 from validation.waves.periodic import Orbit, PressedChain, orbit
 
 DETUNINGS = "0.0005,0.001,0.002"
-_WIDE = {"bright": 4.0, "dark": 8.5}  # widths 1/b in half the chain, at least
+# Widths 1/b in half a chain. Free ends change the amplitude by about 4e^{-2w} of bright, 4e^{-w} of
+# dark envelopes: 3e-6 and 1e-5. In a much longer chain a dark one is hardly held in its place.
+_WIDE = {"bright": 7.0, "dark": 13.0}
 _HALF, _DIP = (
     2 * np.arccosh(2),
     2 * np.arctanh(0.5),
@@ -56,13 +58,13 @@ _FEWER = 0.75  # beads of the chain that gives the errors, over those of the cha
         default=DETUNINGS,
         says="ν = 1 - frequency over that of the band's edge.",
     ),
-    option("--beads", default=301, says="Number of beads."),
+    option("--beads", default=601, says="Most beads; a chain is as long as its breather needs."),
 )
 def breather(
     masses: Sequence[Any] = (1, "1/2"),
     k: float = 1.5,
     detunings: Sequence[Any] = tuple(map(float, DETUNINGS.split(","))),
-    beads: int = 301,
+    beads: int = 601,
     progress: Progress[Any] = iter,
 ) -> Report:
     """Breathers of a loaded chain, their envelopes and their stability. Twenty seconds.
@@ -72,7 +74,7 @@ def breather(
     ``multiplier_value`` (largest modulus of a Floquet multiplier), ``energy_value``.
 
     Raises `lwa.InputError` for parameters out of range, among them detunings at which contacts open
-    or the envelope is longer than the chain.
+    or which want more beads.
     """
     cell, beads = numbered(masses), integer(beads, "beads", 21, 2001)
     if cell.size > 2:
@@ -81,14 +83,15 @@ def breather(
     if not detunings:
         raise SceneError("detunings is empty: at least one is wanted")
     edge = envelope(cell, Power(k), precompression=1)
+    waves = []
     for nu in detunings:
-        width = _WIDE[edge.kind] * float(edge.breather(detuning=nu).width)
-        least = 2 * math.ceil(width * cell.size) + 1
-        if beads < least:
+        theory = edge.breather(detuning=nu)
+        half = math.ceil(_WIDE[edge.kind] * float(theory.width) * cell.size)
+        if beads < 2 * half + 1:
             raise SceneError(
-                f"beads is {beads}: at a detuning of {float(nu):g} {least} or more are wanted"
+                f"beads is {beads}: at a detuning of {float(nu):g} {2 * half + 1} are wanted"
             )
-    waves = [Standing(cell, k, edge.breather(detuning=nu), beads // 2) for nu in detunings]
+        waves.append(Standing(cell, k, theory, half))
     return _report(cell, k, [(wave, wave.row()) for wave in progress(waves)])
 
 

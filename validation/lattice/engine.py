@@ -13,6 +13,8 @@ an error of O(h^{k+1}), which sets the step.
 
 Samples and signals: `validation.lattice.kernel.samples`.
 
+Piston: a first bead of infinite mass. Its work is its velocity times the impulse of its contact.
+
 Window: beads ahead of the front have not moved yet and are always left out. A window of N beads
 leaves out those more than N behind the front as well. Their energy stays on the books, their motion
 is unknown. A second run, with a window of 2N, shows how much the leading pulse depends on them; its
@@ -130,8 +132,8 @@ def _compare(motion: Motion, rtol: float, short: Run, long: Run) -> None:
     change = np.abs(one - other)[leading].max() / motion.scales.velocity
     if change > _CHANGE * rtol:
         raise IntegrationError(
-            f"window is {short.window}: twice as many beads change the leading pulse by "
-            f"{change:.1g} where rtol is {rtol:g}; a longer window or the whole chain is wanted"
+            f"a window of {short.window} beads is too short: twice as many change the leading "
+            f"pulse by {change:.1g} where rtol is {rtol:g}; more or the whole chain is wanted"
         )
 
 
@@ -170,15 +172,18 @@ def _integrated(
             if t == end or at["kept"] == len(recorder.knots.time):
                 at["kept"] = recorder.take(int(at["kept"]))
     rear, made, tries, moves = (int(at[name]) for name in ("lo", "steps", "tries", "evaluations"))
-    state = np.concatenate((beads.y[:n], beads.v[:n]))
+    drive = motion.scene.drive
+    paid = () if drive is None else (0.0, beads.v[0] * float(at["impulse"]))
+    state = np.concatenate((beads.y[:n], beads.v[:n], paid))
     if not np.isfinite(state).all():
         raise IntegrationError(f"the motion overflows: a step of {plan.h:g} is too long")
-    energy, momentum = motion.energy(state, rear) + float(at["lost"]), motion.momentum_drift(state)
+    energy = motion.balance(state) if rear == 0 else motion.energy(state, rear) + float(at["lost"])
+    momentum = motion.momentum_drift(state)
     left = beads.left if followed is None else followed
     path = recorder.path(left)
     records = {"time": time} | recorded(motion, needed, recorder.y, recorder.v)
     evaluations = tries * SCHEMES[given.method].stages
-    state.reshape(2, n)[:, np.isfinite(left[:n])] = np.nan
+    state[: 2 * n].reshape(2, n)[:, np.isfinite(left[:n])] = np.nan
     run = finished(motion, state, records, energy, momentum, made, evaluations, moves, window, path)
     return run, left
 
@@ -220,6 +225,8 @@ def _chain(motion: Motion) -> Chain:
     given = 1 / motion.masses, motion.stiffnesses, motion.rest, motion.load
     for row, values in zip(rows, given, strict=True):
         row[: len(values)] = values
+    if motion.scene.drive is not None:
+        inverse[0] = 0.0
     contact = motion.contact
     law = LAWS.get(motion.k, 0) if contact.law is None else GENERATED
     return Chain(inverse, A, rest, load, law, motion.k, *contact.addresses, contact.pulls)
@@ -227,7 +234,7 @@ def _chain(motion: Motion) -> Chain:
 
 def _front(motion: Motion) -> int:
     """Number of the first bead that is still, plus a margin."""
-    y, v = np.abs(motion.start.reshape(2, motion.size))
+    y, v = np.abs(motion.start[: 2 * motion.size].reshape(2, motion.size))
     moving = np.flatnonzero((y > _NOISE * y.max()) | (v > _NOISE * v.max()))
     return min(motion.size, MARGIN + (int(moving[-1]) + 1 if len(moving) else 0))
 
@@ -236,6 +243,6 @@ def _start(motion: Motion, padded: int) -> Beads:
     """The initial state of the beads."""
     n = motion.size
     y, v, next_y, next_v, left = np.zeros((5, padded + 1))
-    y[:n], v[:n], left[:] = motion.start[:n], motion.start[n:], np.inf
+    y[:n], v[:n], left[:] = motion.start[:n], motion.start[n : 2 * n], np.inf
     sums, force = np.zeros((4, padded + 1)), np.zeros((2 * WIDTH, padded + 1))
     return Beads(y, v, next_y, next_v, left, force, sums)

@@ -2,8 +2,9 @@
 
 The compiled engine (`validation.lattice.engine`) has an adaptive pair for y'' = f(y) and a
 symplectic splitting. SciPy's methods (`validation.lattice.steppers`) are the reference, and
-integrate scenes with damping or a drive. Tolerances are relative to the scene's own scales, so that
-a run does not depend on the units. A run keeps the motion of the beads near its sensors only.
+integrate scenes with damping or a drive other than a piston. Tolerances are relative to the scene's
+own scales, so that a run does not depend on the units. A run keeps the motion of the beads near its
+sensors only.
 """
 
 from __future__ import annotations
@@ -56,7 +57,8 @@ def simulate(
         of it at its end; for the splitting, ``rtol`` is the mean error of the peak. Both ignore
         ``atol``. For SciPy's methods, the local error per step.
     method : one of `COMPILED` or of `METHODS`. A scene with damping or a drive, whose forces depend
-        on velocities or time, takes one of `METHODS`, by default DOP853.
+        on velocities or time, takes one of `METHODS`, by default DOP853; a drive of constant
+        velocity, a piston, takes the compiled pair as well, without a window.
     step : greatest step of a compiled method; by default ``rtol`` determines the steps.
     window : number of beads that a compiled method follows behind the front of a leading pulse, or
         True for eight supports of the long-wave pulse; the chain must end freely. A run with this
@@ -82,14 +84,15 @@ def simulate(
         if method not in COMPILED and value is not None:
             needs = f"it needs one of {', '.join(COMPILED)}"
             raise SceneError(f"{name} is {shorten(value)}: {needs}")
-    forced = scene.damping is not None or scene.drive is not None
-    if forced and method in COMPILED:
-        if method != COMPILED[0] or window or step is not None:
+    piston = scene.damping is None and scene.drive is not None and scene.drive.velocity is not None
+    forced = scene.damping is not None or (scene.drive is not None and not piston)
+    if (forced or piston) and method in COMPILED:
+        if method != COMPILED[0] or window or (forced and step is not None):
             raise SceneError(
                 f"method is {method}: a scene with damping or a drive takes one of "
                 f"{', '.join(METHODS)}, without step or window"
             )
-        method = METHODS[0]
+        method = METHODS[0] if forced else method
     with np.errstate(over="ignore", invalid="ignore"):  # the result is checked
         motion = motion_of(scene)
         if method in COMPILED:

@@ -13,24 +13,26 @@ T being the time between the peaks: c is the speed at contact force 1 of a pulse
 c F^q all the way. Widths are times at a contact times the speed there. All numbers are means over
 the two contacts of a cell, from the stretch between two places where their errors are least.
 
-The number x_n of stretch n still differs from its limit. Its error is the largest of
-|x_n - x_{n-1}|, |x_n - x_{n-2}| and the difference to a less accurate run, plus the sum of all
-further differences if they go on to shrink as the last two did: δ r / (1 - r), δ being the last
-difference and r, at most 0.9, its ratio to the one before.
+Each number is compared with the stretch before, with a less accurate run, and with a stretch that
+is `FARTHER` times as far as the last place. Its error is the largest of the first two differences
+and twice the third: a number that approaches its limit like n^{-1/2} has half the way behind it
+there, as 4^{-1/2} = 1/2.
+
+A pulse that decays is overtaken at last by a higher one from behind, as of two pulses the higher
+one is faster. So the highest pulse so far away must have the force that the decay foretells, within
+`STEADY`. Otherwise the pulse is not steady and the point has no numbers (k = 3/2: ω from 0.49 to
+0.7). A longer run finds the same numbers within their errors, or that the pulse is overtaken.
 
 The leading pulse at a contact ends where the compression first falls to a quarter of its highest
 value so far. Between special mass ratios the force has several humps, as the light bead hits to and
 fro; a width is that of the highest hump, and jumps where the dip before another hump passes half.
-Where a pulse decays fast, another pulse may overtake it (k ≥ 3/2, ω from 0.53 to 0.65): numbers are
-those of the pulse that leads at `Point.sites`, and their errors do not cover the other pulse.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
-from typing import NamedTuple
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 import scipy
@@ -40,7 +42,7 @@ from lwa.base.arrays import Array
 from lwa.base.exact import InputError
 from validation.lattice.run import IntegrationError, Run
 from validation.lattice.simulate import simulate
-from validation.pulses.pulse import Measured, MeasureError, Pulse, leading_pulses
+from validation.pulses.pulse import Measured, MeasureError, leading_pulses
 from validation.scenes.chains import struck
 
 QUANTITIES = {  # measured numbers and their labels
@@ -55,8 +57,9 @@ hump, and jumps where the dip before another hump passes half of the peak"""
 PLACES = 10  # cells at which the pulse is recorded
 STRETCH = 4  # default number of cells from one place to the next, for k ≥ 3/2
 TOLERANCES = (1e-6, 1e-5)  # of the accurate run and of the one that gives its error
-_GROWTH, _LONGEST = 1.6, 16  # factor by which, and times that, a run is made longer at most
-_SLOWEST = 0.9  # largest ratio of two differences for which their sum is estimated
+FARTHER = 4  # times as far as the last place: where the pulse must still be the highest
+STEADY = 0.1  # of the force that the decay foretells there: largest difference
+_WEAKEST = 1 / 50  # peak force of the slowest pulse that is awaited
 
 
 @dataclass(frozen=True)
@@ -93,40 +96,34 @@ def point(k: sp.Rational, omega: sp.Rational, stretch: int) -> Point:
 
 def _point(k: sp.Rational, omega: sp.Rational, stretch: int) -> Point:
     chain = StruckDimer(float(k), float(omega), 2 * cells_apart(float(k), stretch))
+    near = [n * chain.sites for n in range(1, PLACES + 1)]
+    far = int(FARTHER * near[-1])
     rtol, less = TOLERANCES
-    rough = chain.passed(chain.crossing, less)
-    fine = chain.passed(1.01 * rough.until, rtol)
-    numbers, check = chain.numbers(fine), chain.numbers(rough)
-    errors = np.maximum(unsettled(numbers), np.abs(numbers - check)[:, 2:])
+    distant = [*near, far - chain.sites, far]
+    rough = chain.passages(chain.run(distant, chain.crossing(far), less))
+    # A place's time more: the front of a later, slower pulse is no leading pulse.
+    until = (1 + 1 / PLACES) * float(rough[:PLACES, :, 4].max())
+    fine = chain.passages(chain.run(near, until, rtol))
+    numbers, others = chain.numbers(fine), chain.numbers(rough)
+    found, here, there = numbers[:, 1:], others[:, 1 : PLACES - 1], others[:, -1:]
+    steps = found - numbers[:, :-1], found - here, 2 * (found - there)
+    errors = np.abs(steps).max(axis=0)
     # Relative errors; for the decay, the error of the force after a stretch.
-    worst = np.vstack((errors[:3] / numbers[:3, 2:], chain.sites * errors[3])).max(axis=0)
+    worst = np.vstack((errors[:3] / found[:3], chain.sites * errors[3])).max(axis=0)
     if np.isnan(worst).all():
-        raise MeasureError("the pulse does not arrive later at each place than at the one before")
+        raise MeasureError("not steady: the pulse does not arrive later at each place")
     best = int(np.nanargmin(worst))
-    place, values = chain.sites * (best + 3), numbers[:, best + 2]
+    place, values = near[best + 1], found[:, best]
+    foretold = fine[-1, :, 1] * math.exp(values[3] * (near[-1] - far))
+    higher = float(np.mean(rough[-1, :, 5] / foretold))
+    if not abs(higher - 1) <= STEADY:
+        raise MeasureError(
+            f"not steady: at {far} sites the highest pulse has {higher:.3g} times the force that "
+            f"the leading pulse's decay at {place} sites foretells"
+        )
     measured = map(Measured, values.tolist(), (values + errors[:, best]).tolist())
     sites = place, place + chain.sites
     return Point(k, omega, sites, dict(zip(QUANTITIES, measured, strict=True)))
-
-
-def unsettled(numbers: Array) -> Array:
-    """Distance of each stretch's numbers, from the third one on, to their limits; an estimate."""
-    steps = np.abs(np.diff(numbers))
-    last, before = steps[:, 1:], steps[:, :-1]
-    ratio = np.minimum(last / np.where(before > 0, before, np.inf), _SLOWEST)
-    seen = np.maximum(last, np.abs(numbers[:, 2:] - numbers[:, :-2]))
-    return np.asarray(seen + last * ratio / (1 - ratio))
-
-
-class Passage(NamedTuple):
-    """A run, the leading pulse at each contact, and the time that the pulse needs.
-
-    Each pulse is given twice: with its flanks at half of the force and at half of the compression.
-    """
-
-    run: Run
-    pulses: list[list[Pulse]]
-    until: float
 
 
 @dataclass(frozen=True)
@@ -140,42 +137,46 @@ class StruckDimer:
     omega: float
     sites: int
 
-    @property
-    def crossing(self) -> float:
-        """Time for a pulse of force 1 at the long-wave speed 2/√((k+1)(1+ω)), and half more."""
-        return 0.75 * self.sites * PLACES * math.sqrt((self.k + 1) * (1 + self.omega))
+    def crossing(self, sites: int) -> float:
+        """Time in which the long-wave theory's pulse of the force `_WEAKEST` passes so many sites.
 
-    def passed(self, duration: float, rtol: float) -> Passage:
-        """A run of this duration, or longer, in which the pulse passes all places.
-
-        Raises `MeasureError` for a pulse that takes `_LONGEST` times too long.
+        Its speed is 2 F^q/√((k+1)(1+ω)), F the peak force of the contacts.
         """
-        last = self.sites * PLACES
-        places = range(self.sites, last + 1, self.sites)
-        sensors = tuple(place + side for place in places for side in (0, 1))
-        chain = struck((1.0, self.omega), last + 12, self.k, contact_sensors=sensors, duration=1)
-        for _ in range(_LONGEST):
-            run = simulate(replace(chain, duration=duration, samples=2), rtol=rtol)
-            signals = (run.signal("contact", i) for i in sensors)
-            shares = (0.5, 0.5**self.k)  # half of the force, and half of the compression
-            try:
-                pulses = [leading_pulses(signal, self.k, shares) for signal in signals]
-            except MeasureError:  # it has yet to come
-                until = math.inf
-            else:
-                # A place's time more: the front of a later, slower pulse is no leading pulse.
-                until = (1 + 1 / PLACES) * max(pulse.fall for pulse, _ in pulses)
-            if until <= duration:
-                return Passage(run, pulses, until)
-            duration *= _GROWTH
-        end = duration / _GROWTH
-        raise MeasureError(f"the pulse has not passed {last} sites by t = {end:.3g}")
+        weak = math.pow(_WEAKEST, (self.k - 1) / (2 * self.k))
+        return sites * math.sqrt((self.k + 1) * (1 + self.omega)) / (2 * weak)
 
-    def numbers(self, passage: Passage) -> Array:
-        """`QUANTITIES` (rows) of each stretch; NaN where the pulse does not arrive later."""
-        # Places down, contacts of a cell across.
-        read = [(one.arrival, one.peak, one.fwhm, two.fwhm) for one, two in passage.pulses]
-        arrival, peak, width, strain_width = np.array(read).T.reshape(4, PLACES, 2)
+    def run(self, places: Sequence[int], duration: float, rtol: float) -> Run:
+        """Strike the chain and record the two contacts of each place, up to the last one."""
+        sensors = tuple(place + side for place in places for side in (0, 1))
+        options = {"contact_sensors": sensors, "duration": duration, "samples": 2}
+        return simulate(struck((1.0, self.omega), places[-1] + 12, self.k, **options), rtol=rtol)
+
+    def passages(self, run: Run) -> Array:
+        """Measure the leading pulse at the two contacts of each place of a `run`.
+
+        Returns arrival, peak, FWHM of force and of compression, end, and the peak of the highest
+        pulse: (places, 2, 6). Raises `MeasureError` for a pulse that does not pass all in time.
+        """
+        shares = (0.5, 0.5**self.k)  # half of the force, and half of the compression
+        found, sensors = [], run.scene.contact_sensors
+        for i in sensors:
+            force = run.signal("contact", i)
+            try:
+                one, two = leading_pulses(force, self.k, shares)
+            except MeasureError:
+                sites, end = sensors[-2], run.scene.duration
+                missing = f"not steady: the pulse has not passed {sites} sites by t = {end:.3g}"
+                raise MeasureError(missing) from None
+            highest = max(one.peak, float(force(force.times).max()))
+            found.append((one.arrival, one.peak, one.fwhm, two.fwhm, one.fall, highest))
+        return np.array(found).reshape(-1, 2, 6)
+
+    def numbers(self, passages: Array) -> Array:
+        """`QUANTITIES` (rows) of each stretch; NaN where the pulse does not arrive later.
+
+        Only stretches of `sites` sites have a meaning.
+        """
+        arrival, peak, width, strain_width, *_ = np.moveaxis(passages, 2, 0)  # (places, contacts)
         elapsed, fall = np.diff(arrival, axis=0), -np.diff(np.log(peak), axis=0)
         elapsed[elapsed <= 0] = np.nan
         q = (self.k - 1) / (2 * self.k)

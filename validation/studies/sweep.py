@@ -47,17 +47,18 @@ CLOSURES = {"linear": "paper's closure", "canonical": "full closure, canonical f
 Key = tuple[Rational, Rational]  # k and ω of a point
 
 _MOST, _MOST_BYTES = 300, 10**9  # values of an axis; of the file
-_FORMAT = {"format": "lwa sweep", "version": 2}  # changes with the definition of a quantity
+_FORMAT = {"format": "lwa sweep", "version": 3}  # changes with the definition of a quantity
 _OMEGA = "ω = m2/m1"
 _NOTE = """\
 Width: FWHM of a contact's force, in sites. Speed: sites over time at contact force 1, with A = D =
-m1 = 1. Decay: of the logarithm of the peak force. ±: the largest change over two stretches, or from
-a less accurate run. Sites: places of the measurement, from the struck bead. linear, canonical:
-theory/lattice - 1 for the paper's closure and for the full closure's canonical field."""
+m1 = 1. Decay: of the logarithm of the peak force. Sites: places of the measurement, from the struck
+bead. ±: the largest change over a stretch, from a less accurate run, or twice that to 40 stretches.
+Not steady: by then a higher pulse has overtaken or follows. linear, canonical: theory/lattice - 1
+for the paper's closure and for the full closure's canonical field."""
 _HUMPED = Rational(1, 5), Rational(7, 10)  # m2/m1 between which the force has several humps
 _BEYOND = f"""\
 {HUMPS}
-(at k = 3/2 from 2.50 to 1.58 sites as m2/m1 rises beyond 0.55). The theory has one hump: from
+(at k = 3/2 it is 2.42 sites at m2/m1 = 0.45, and 1.43 at 0.75). The theory has one hump: from
 m2/m1 = {float(_HUMPED[0])} to {float(_HUMPED[1])} a width is no measure of its error."""
 
 
@@ -164,7 +165,7 @@ def _finished(file: Path, header: bytes) -> dict[Key, Point]:
     The first line holds the format and the settings, every other line a point:
 
         {"k": "3/2", "omega": "1", "sites": [56, 64], "numbers": {"width": [1.41192837, 1.4119], …}}
-        {"k": "3/2", "omega": "1/9", "missing": "the pulse has not passed 80 sites by t = 1e+05"}
+        {"k": "3/2", "omega": "1/9", "missing": "not steady: the pulse has not passed 320 sites"}
 
     A number is followed by the less accurate one that gives its error.
     """

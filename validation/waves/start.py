@@ -126,9 +126,9 @@ def struck_pulse(k: float, omega: float) -> StruckPulse:
         front = other.front[::-1].copy()
         return replace(other, masses=(1.0, omega), c2=other.c2 / omega, front=front)
     chain = StruckDimer(k, omega, 2 * min(cells_apart(k, STRETCH), FARTHEST))
-    passage = chain.passed(chain.crossing, TOLERANCE)
+    places = [n * chain.sites for n in range(1, PLACES + 1)]
+    run, quarter = chain.run(places, chain.crossing(places[-1]), TOLERANCE), 0.25**k
     place = PLACES - 3  # the tail behind the pulse is recorded there, too
-    run, quarter = passage.run, 0.25**k
     cell = run.scene.contact_sensors[2 * place : 2 * place + 2]
     centers, peaks = [], []
     for contact in cell:
@@ -139,7 +139,7 @@ def struck_pulse(k: float, omega: float) -> StruckPulse:
         centers.append(np.average(time, weights=force(time) - quarter * cut.peak))
         peaks.append(cut.peak)
     middle, peak = float(np.mean(centers)), math.sqrt(math.prod(peaks))
-    width, strain_width, c, _ = chain.numbers(passage)[:, place - 1].tolist()
+    width, strain_width, c, _ = chain.numbers(chain.passages(run))[:, place - 1].tolist()
     here = c * peak ** ((k - 1) / (2 * k))
     ample = newton.ample_half_period((1.0, omega), k)
     half = np.arange(0, _LONG * ample, _STEP)

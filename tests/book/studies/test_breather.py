@@ -12,7 +12,7 @@ from tests.commands import ended
 
 
 def test_bright_breathers_of_a_dimer():
-    report = breather(detunings=(0.002, 0.004), beads=181)
+    report = breather(detunings=(0.002, 0.004))
     assert report.ok
     assert report.data["kind"] == "bright"
     first, second = report.document()["rows"]
@@ -21,7 +21,8 @@ def test_bright_breathers_of_a_dimer():
         # U = p0 √(32 ν/(k(k-1))), whatever the masses
         U = math.sqrt(32 * row["detuning_value"] / 0.75)
         assert row["amplitude_theory_value"] == pytest.approx(U, rel=1e-12)
-        assert row["multiplier_value"] == pytest.approx(1, abs=1e-4)
+        # multipliers of some lengths of a chain meet off the real axis and leave the circle
+        assert row["multiplier_value"] == pytest.approx(1, abs=1e-3)
         assert 0 < row["energy_value"] < 5
     assert 0 < first["amplitude_off_value"] < 0.008
     ratio = second["amplitude_off_value"] / first["amplitude_off_value"]
@@ -29,15 +30,27 @@ def test_bright_breathers_of_a_dimer():
 
 
 def test_dark_breathers_of_equal_beads():
-    """A dip in a wave train that fills the chain: the widths are as good as the amplitudes."""
-    report = breather(masses=(1,), detunings=(0.002, 0.004), beads=201)
+    """Within 0.2, 0.4 and 0.8 % at ν = 0.0005, 0.001, 0.002, and the errors fall linearly.
+
+    The ends of 13 widths change the plateau by 4e-13/2 = 1e-5 of itself."""
+    cell = Cell((1,), spacing=1)
+    edge = envelope(cell, Power("3/2"), precompression=1)
+    errors = []
+    for nu in (0.002, 0.001, 0.0005):
+        theory = edge.breather(detuning=nu)
+        found = Standing(cell, 1.5, theory, math.ceil(13 * float(theory.width))).numbers()
+        amplitude = abs(float(theory.amplitude[0])) / found["amplitude"] - 1
+        errors.append([amplitude, float(theory.width) / found["width"] - 1])
+        assert 0 < amplitude < 4 * nu
+    assert np.divide(errors[:-1], errors[1:]) == pytest.approx(2, rel=0.02)
+
+
+def test_the_study_of_dark_breathers():
+    report = breather(masses=(1,), detunings=(0.008,))
     assert report.ok
     assert report.data["kind"] == "dark"
-    first, second = report.document()["rows"]
-    for name in ("amplitude", "width"):
-        assert abs(first[f"{name}_off_value"]) < 0.008
-        ratio = second[f"{name}_off_value"] / first[f"{name}_off_value"]
-        assert ratio == pytest.approx(2, rel=0.2)
+    row = report.document()["rows"][0]
+    assert row["multiplier_value"] == pytest.approx(1, abs=1e-3)
 
 
 @pytest.mark.slow
@@ -71,7 +84,7 @@ def test_aluminium_and_steel_at_20_newtons():
 
 
 def test_the_command(capsys):
-    options = ("--detunings", "0.004", "--beads", "101", "--format", "json")
+    options = ("--detunings", "0.004", "--beads", "161", "--format", "json")
     status, out, err = ended(capsys, breather.main, *options)
     assert (status, err) == (0, "")
     assert json.loads(out)["rows"][0]["detuning_value"] == 0.004

@@ -94,6 +94,37 @@ def test_a_piston_makes_a_wave_behind_which_beads_move_at_its_speed():
     assert run.momentum_drift is None
 
 
+@pytest.mark.parametrize("law", [dict(k=1.5), dict(k=1), dict(law=named("exponential", 1))])
+@pytest.mark.parametrize("load", [0.0, 0.5])
+def test_a_piston_of_the_compiled_pair_is_that_of_scipy(law, load):
+    """Motion, work and ledger, with contacts that open behind a gap and with waves off the wall."""
+    n, v = 12, 0.3
+    scene = Scene(
+        masses=(1.0,) * n, stiffnesses=(2.0,) + (1.0,) * (n - 2), wall=1.0, precompression=load,
+        displacements=(0.0, 0.4), duration=30.0, drive=Drive(velocity=v), contact_sensors=(0, 6),
+        bead_sensors=(0,), samples=301, **law,
+    )  # fmt: skip
+    ours, theirs = simulate(scene, rtol=1e-11), simulate(scene, method="DOP853", **TIGHT)
+    assert ours.bead_displacement[0] == pytest.approx(v * ours.time, abs=1e-13)
+    for name in ("compression", "velocities", "work"):
+        assert getattr(ours, name) == pytest.approx(getattr(theirs, name), abs=3e-8), name
+    assert abs(ours.energy_drift) < 1e-9
+
+
+@pytest.mark.parametrize("law", [dict(k="3/2"), dict(law=named("exponential", 1))])
+def test_a_piston_is_a_wall_that_a_chain_is_thrown_at(law):
+    """Galilei: the same contacts, until a wave comes back from the far end."""
+    n, v, end = 60, 0.5, 15.0
+    chain = dict(stiffnesses=(1.0,) * (n - 1), wall=1.0, precompression=1.0, duration=end, **law)
+    push = Scene(masses=(1.0,) * n, drive=Drive(velocity=v), contact_sensors=(0, 5, 12), **chain)
+    thrown = Scene(
+        masses=(1.0,) * n, velocities=(v,) * n, contact_sensors=(n - 1, n - 6, n - 13), **chain
+    )
+    one, other = (simulate(scene, rtol=1e-10).compression for scene in (push, thrown))
+    assert np.ptp(one[2]) > 0.1
+    assert one == pytest.approx(other, abs=1e-7)
+
+
 def test_a_driven_toda_chain_keeps_its_ledger():
     scene = Scene(
         masses=(1,) * 20, stiffnesses=(1,) * 19, wall=1, law=named("exponential", 1), duration=40,

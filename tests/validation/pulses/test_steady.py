@@ -1,6 +1,7 @@
 """The steady pulse of a struck chain: exact waves, symmetries, published ratios, its own errors."""
 
 import math
+import re
 from itertools import combinations
 
 import numpy as np
@@ -13,6 +14,7 @@ from validation.pulses import steady
 from validation.pulses.pulse import leading_pulse
 from validation.pulses.signals import Sampled
 from validation.pulses.steady import QUANTITIES, STRETCH, point
+from validation.scenes.chains import struck
 from validation.scenes.scene import Scene
 from validation.waves.solver import exact_wave, solve
 
@@ -57,7 +59,7 @@ def test_a_pulse_decays_but_for_the_special_ratio():
     # what a pulse leaves behind vanishes at the ratio as the square of the distance from it
     near = at(HERTZ, SPECIAL)["decay"]
     assert abs(near.value) < 1e-7
-    assert at(HERTZ, "0.59")["decay"].value > 0.01
+    assert at(HERTZ, "0.72")["decay"].value > 0.005
     below, above = (at(HERTZ, SPECIAL + step)["decay"].value for step in (-R(1, 50), R(1, 50)))
     assert min(below, above) > 1000 * abs(near.value)
     half = at(HERTZ, SPECIAL + R(1, 100))["decay"].value
@@ -68,16 +70,16 @@ def test_the_decay_is_that_per_site():
     """Against the slope of the log of peak forces over the site, from one run read by hand."""
     sites = tuple(range(30, 62, 2))
     scene = Scene(
-        masses=(1.0, 0.7) * 50, stiffnesses=(1.0,) * 99, k=1.5, velocities=(1.0,),
+        masses=(1.0, 0.75) * 50, stiffnesses=(1.0,) * 99, k=1.5, velocities=(1.0,),
         contact_sensors=sites, duration=100.0, samples=4001,
     )  # fmt: skip
     run = simulate(scene, rtol=1e-7, method="SRKN14", window=False)
     slope = -np.polyfit(sites, np.log([force.max() for force in run.contact_force]), 1)[0]
     # The pulse is steady to some percent there.
-    assert at(HERTZ, "0.7")["decay"].value == pytest.approx(slope, rel=0.05)
+    assert at(HERTZ, "0.75")["decay"].value == pytest.approx(slope, rel=0.05)
 
 
-@pytest.mark.parametrize(("k", "omega"), [("3/2", "0.7"), ("3/2", "0.2"), ("5/2", "0.8")])
+@pytest.mark.parametrize(("k", "omega"), [("3/2", "0.75"), ("3/2", "0.2"), ("5/2", "0.8")])
 def test_relabelling_the_masses_changes_the_unit_of_mass_only(k, omega):
     one, other = at(k, omega), at(k, 1 / R(omega))
     for name in ("width", "strain_width", "decay"):
@@ -99,10 +101,14 @@ SETTINGS = (
 
 @pytest.mark.parametrize(
     ("k", "omega"),
-    [("3/2", "0.6"), ("3/2", "0.1"), ("2", "0.65"), ("6/5", "1/2")],
+    [
+        ("3/2", "9/20"),
+        ("3/2", "0.1"),
+        ("2", "1/2"),
+        pytest.param("6/5", "1/2", marks=pytest.mark.slow),
+    ],
 )
 def test_the_errors_cover_what_other_settings_find(monkeypatch, k, omega):
-    """At ω = 0.6 the decay falls all along the chain."""
     found = [at(k, omega)]
     for options in SETTINGS:
         with monkeypatch.context() as changed:
@@ -116,11 +122,27 @@ def test_the_errors_cover_what_other_settings_find(monkeypatch, k, omega):
             assert abs(one[name].value - other[name].value) <= bound, name
 
 
-def test_what_a_geometric_approach_has_before_it_is_in_the_error():
-    """x_n = r^n, whose limit is 0: each error is x_n at least, up to r = 0.9."""
-    for r in (0.3, 0.8, 0.89):
-        x = r ** np.arange(9.0)
-        assert np.all(steady.unsettled(x[None])[0] >= x[2:])
+@pytest.mark.parametrize("omega", ["0.5", "0.55", "0.6", "0.65", "0.7"])
+def test_a_pulse_that_is_overtaken_is_not_steady(omega):
+    """At ω = 0.6 the width was 1.486290 ± 9e-6, and 1.5 ± 0.4 four times as far."""
+    found = point(HERTZ, R(omega), STRETCH)
+    assert (found.sites, found.numbers) == (None, {})
+    told = (
+        r"not steady: at 320 sites the highest pulse has [\d.]+ times the force that the leading "
+    )
+    assert re.match(told, found.missing)
+
+
+def test_the_pulse_that_overtakes_is_another_one():
+    """ω = 0.6, by the engine's records alone: up to site 100 the first pulse at a contact loses the
+    same share of its force at every site; at site 320 the force is ten times what is left of it."""
+    sites = (60, 80, 100, 320)
+    scene = struck((1.0, 0.6), 340, contact_sensors=sites, duration=480, samples=20_001)
+    forces = simulate(scene, rtol=1e-7).contact_force
+    first = [force[: np.argmax(force > 0.05) + 150].max() for force in forces]
+    near, far = np.diff(np.log(first))[[0, 1]] / 20, math.log(first[3] / first[1]) / 240
+    assert near[1] == pytest.approx(near[0], rel=0.05)
+    assert far - near[0] > math.log(10) / 240
 
 
 def test_the_leading_pulse_is_not_a_later_and_higher_one():
@@ -134,10 +156,9 @@ def test_the_leading_pulse_is_not_a_later_and_higher_one():
 
 
 def test_a_pulse_that_does_not_come_through_is_told(monkeypatch):
-    monkeypatch.setattr(steady, "_LONGEST", 1)
-    monkeypatch.setattr(steady.StruckDimer, "crossing", 10.0)
+    monkeypatch.setattr(steady.StruckDimer, "crossing", lambda *_: 10.0)
     found = point(HERTZ, R(1), STRETCH)
-    assert found.missing == "the pulse has not passed 80 sites by t = 10"
+    assert found.missing == "not steady: the pulse has not passed 320 sites by t = 10"
     assert (found.sites, found.numbers) == (None, {})
 
 

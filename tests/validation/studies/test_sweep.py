@@ -442,12 +442,12 @@ def test_the_command(capsys, tmp_path):
     file, picture = tmp_path / "s.jsonl", tmp_path / "s.svg"
     options = ("--k", "3/2", "--file", str(file), "--stretch", "3")
     status, out, err = ended(
-        capsys, cli.main, "sweep", *options, "--omega", "0.5:1:2,3/4", "--plot", str(picture),
+        capsys, cli.main, "sweep", *options, "--omega", "0.45:1:2,3/4", "--plot", str(picture),
         "--format", "json",
     )  # fmt: skip
     assert (status, err) == (0, "")
     half, middle, one = json.loads(out)["points"]
-    assert (half["omega"], middle["omega"], one["omega"]) == ("1/2", "3/4", "1")
+    assert (half["omega"], middle["omega"], one["omega"]) == ("9/20", "3/4", "1")
     assert abs(one["width_value"] - 1.411928) <= one["width_error_value"] + 5e-7
     assert half["decay_value"] > 1000 * abs(one["decay_value"])
     assert picture.read_text().startswith("<?xml")

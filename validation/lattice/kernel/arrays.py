@@ -105,7 +105,7 @@ class Plan(NamedTuple):
 
 
 _COUNTS = ("steps", "tries", "evaluations", "front", "lo", "kept")
-_REALS = ("t", "h", "lost")
+_REALS = ("t", "h", "lost", "impulse")
 _PROGRESS = np.dtype([(name, int) for name in _COUNTS] + [(name, float) for name in _REALS])
 
 
@@ -115,6 +115,7 @@ def beginning(plan: Plan, front: int) -> Any:
     steps, tries : their numbers. evaluations : of the forces, times the beads that each one moves.
     front : the first bead that is still. lo : the first bead that is followed. kept : number of
     knots. t, h : the time and the next step. lost : elastic energy of contacts that a window cut.
+    impulse : ∫ F dt of the first contact by a pair, less its static force.
     """
     at = np.zeros(1, _PROGRESS)[0]
     at["front"], at["h"] = front, plan.h

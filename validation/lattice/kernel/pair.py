@@ -135,6 +135,7 @@ def _correct(chain: Chain, beads: Beads, plan: Plan, h: float, i: int) -> None:
     beads.next_v[i + 1] += impulse * inverse[i + 1]
     beads.next_y[i] -= moment * inverse[i]
     beads.next_y[i + 1] += moment * inverse[i + 1]
+    beads.sums[1, i + 1] += impulse
     beads.sums[2, i + 1] -= chain.A[i] * h * h * error / plan.y
     beads.sums[3, i + 1] -= chain.A[i] * h * error_once / plan.v
 
@@ -178,6 +179,7 @@ def accepted(chain: Chain, beads: Beads, plan: Plan, at: Any, h: float, hi: int)
     for i in range(index(at.lo), index(hi)):
         beads.y[i], beads.v[i] = beads.next_y[i], beads.next_v[i]
     press(chain, beads.y, beads.force, ZERO, at.lo, hi, NOTHING * plan.deepest)
+    at.impulse += beads.sums[ONE, ONE] if at.lo == 0 else 0.0
     grow = 0.9 * max(error, 1e-9) ** (-1.0 / (plan.scheme.lower + 1))
     at.h = min(plan.longest, h * min(5.0, grow))
     return True

@@ -1,0 +1,110 @@
+"""Sources of the book's pages: tags, chapters, code that fits, one meaning a letter."""
+
+import re
+from collections import Counter
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+BOOK = Path(__file__).parents[2] / "book"
+NUMBERED = re.findall(r"file: (\w+)", (BOOK / "_toc.yml").read_text().partition("Appendices")[0])
+PENDING = {"exact", "expansion", "modes", "shocks", "disorder", "integration"}
+"""Pages still to be brought into this form; whoever has done one takes it out."""
+
+PAGES = [page for page in ("intro", *NUMBERED, "integration") if page not in PENDING]
+CHAPTERS = [page for page in NUMBERED if page not in PENDING | {"open"}]
+FRAME = {"In short", "Exercises", "What was checked"}
+ENTRANCE = {"Three doors", "How to read", "Install and derive"}
+"""Sections without results: the frame of a chapter, and the entrance of page one."""
+
+TAGS = {"the paper's", "known", "new here"}
+LINES = 4500
+COLUMN = 88
+"""Lines of Markdown at most, and characters of visible code."""
+
+
+def cells(page: str) -> Iterator[tuple[str, str]]:
+    """Tags and code of each cell of a page."""
+    text = (BOOK / f"{page}.md").read_text(encoding="utf-8")
+    for _, body in re.findall(
+        r"^(```)\{code-cell\} python\n(.*?)^```$", text, re.DOTALL | re.MULTILINE
+    ):
+        options = re.match(r"(?:---\n.*?^---\n|(?::.*\n)*)", body, re.DOTALL | re.MULTILINE)
+        yield options[0], body[options.end() :]
+
+
+def prose(page: str) -> str:
+    """Text of a page without its code."""
+    text = (BOOK / f"{page}.md").read_text(encoding="utf-8")
+    return re.sub(r"^```\{code-cell\}.*?^```$", "", text, flags=re.DOTALL | re.MULTILINE)
+
+
+def sections(page: str) -> list[tuple[str, str]]:
+    """Headings of a page below its title, and their text up to the next heading."""
+    _, *parts = re.split(r"^##+ (.*)\n", prose(page), flags=re.MULTILINE)
+    return list(zip(parts[::2], parts[1::2], strict=True))
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_every_section_begins_with_one_tag(page):
+    tag = re.compile(r'<span class="tag">([^<]*)</span>')
+    if page == "open":
+        return  # its tables have a column for the origin of each statement
+    for heading, text in sections(page):
+        found = tag.findall(text)
+        if heading in FRAME or (page == "intro" and heading in ENTRANCE):
+            assert not found or heading == "How to read", heading
+            continue
+        assert len(found) == 1, f"{heading}: {found}"
+        assert found[0] in TAGS, f"{heading}: {found}"
+        assert tag.match(text.lstrip()), f"{heading}: the tag is not its first word"
+        assert found[0] != "known" or "{cite}" in text, f"{heading}: known, without a source"
+
+
+@pytest.mark.parametrize("page", CHAPTERS)
+def test_a_chapter_has_its_frame(page):
+    """Scene, picture, question, answer; three exercises with folded solutions; the checks."""
+    text = (BOOK / f"{page}.md").read_text(encoding="utf-8")
+    opening = text[text.index("\n# ") : text.index("\n## ")]
+    marks = (r"^\w", r"^    name: fig-|^<div class", r"^\*[^*]+\?\*$", r"^\*\*The answer\.\*\* \w")
+    places = [
+        m.start() if (m := re.search(mark, opening, re.MULTILINE)) else None for mark in marks
+    ]
+    assert None not in places, f"of scene, picture, question and answer: {places}"
+    assert places == sorted(places), "scene, picture, question, answer: in this order"
+    assert [heading for heading, _ in sections(page)][-3:] == [
+        "In short",
+        "Exercises",
+        "What was checked",
+    ]
+    exercises = dict(sections(page))["Exercises"]
+    assert re.findall(r"^(\d)\\\. ", exercises, re.MULTILINE) == ["1", "2", "3"]
+    assert sum("hide-cell" in options for options, _ in cells(page)) == 3
+    assert "remove-cell" in list(cells(page))[-1][0], "the checks are not hidden"
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_visible_code_fits_the_column(page):
+    for options, code in cells(page):
+        if "remove-" not in options:
+            assert not [line for line in code.splitlines() if len(line) > COLUMN]
+
+
+def test_statements_say_what_they_are():
+    for page in PAGES:
+        for title in re.findall(r"^:::\{admonition\} (.*)$", prose(page), re.MULTILINE):
+            assert title.startswith(("Theorem", "Rule", "Conjecture")), f"{page}: {title}"
+
+
+def test_every_letter_has_one_meaning():
+    """No symbol stands twice in the first column of the table."""
+    table = prose("symbols").partition("## Index")[0]
+    rows = re.findall(r"^\| (\$.*?) \|", table, re.MULTILINE)
+    letters = [x.strip(" $") for row in rows for x in re.split("[,;]", row)]
+    assert len(letters) > 70
+    assert not [letter for letter, n in Counter(letters).items() if n > 1]
+
+
+def test_the_book_is_short():
+    assert sum(len(page.read_text("utf-8").splitlines()) for page in BOOK.glob("*.md")) <= LINES
