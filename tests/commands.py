@@ -4,6 +4,7 @@ import fcntl
 import io
 import os
 import pty
+import resource
 import select
 import struct
 import termios
@@ -45,6 +46,17 @@ def unwritable(capsys, main, *arguments, output):
 def full_disk():
     """A file on a disk without room."""
     return open("/dev/full", "w")
+
+
+@contextmanager
+def small_disk(size):
+    """Let no file of this process grow beyond so many bytes."""
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size, before[1]))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
 
 
 def closed_pipe():

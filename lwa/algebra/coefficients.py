@@ -19,7 +19,8 @@ from typing import Any
 import sympy as sp
 from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
-from lwa.algebra.partition import Partition, to_flint, to_sympy
+from lwa.algebra.partition import Partition
+from lwa.algebra.rational import to_flint, to_sympy
 from lwa.base.exact import InputError
 from lwa.base.frozen import Value
 

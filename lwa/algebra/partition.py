@@ -10,19 +10,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import sympy as sp
-from flint import fmpq, fmpq_mpoly, fmpq_mpoly_ctx
+from flint import fmpq_mpoly, fmpq_mpoly_ctx
 
+from lwa.algebra.rational import factored, to_flint
 from lwa.base.frozen import Value
-
-
-def to_flint(value: sp.Expr) -> fmpq:
-    """A SymPy rational as a python-flint one."""
-    return fmpq(int(value.p), int(value.q))
-
-
-def to_sympy(value: fmpq) -> sp.Rational:
-    """A python-flint rational as a SymPy one."""
-    return sp.Rational(int(value.p), int(value.q))
 
 
 @dataclass(frozen=True)
@@ -51,7 +42,7 @@ class Partition(Value):
     def values(self) -> tuple[sp.Expr, ...] | None:
         """The fraction f_i of each distinct weight if all are rational, else None."""
         first = self.distinct[0]
-        ratios = [w / first if w.is_number else sp.cancel(w / first) for w in self.weights]
+        ratios = [w / first if w.is_number else factored(w / first) for w in self.weights]
         if not all(ratio.is_Rational for ratio in ratios):
             return None
         return tuple(self.total * w / first / sp.Add(*ratios) for w in self.distinct)

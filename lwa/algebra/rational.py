@@ -7,11 +7,19 @@ a wave. Parts that are not rational, such as A^{1/k}, are taken as symbols.
 from __future__ import annotations
 
 import sympy as sp
-from flint import Ordering, fmpq_mpoly, fmpq_mpoly_ctx
-
-from lwa.algebra.partition import to_flint, to_sympy
+from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
 Fraction = tuple[fmpq_mpoly, fmpq_mpoly]
+
+
+def to_flint(value: sp.Expr) -> fmpq:
+    """A SymPy rational as a python-flint one."""
+    return fmpq(int(value.p), int(value.q))
+
+
+def to_sympy(value: fmpq) -> sp.Rational:
+    """A python-flint rational as a SymPy one."""
+    return sp.Rational(int(value.p), int(value.q))
 
 
 def factored(value: sp.Expr) -> sp.Expr:

@@ -24,8 +24,7 @@ from typing import Any, Self
 import sympy as sp
 
 from lwa.algebra.jets import JetAlgebra, Monomial
-from lwa.algebra.partition import to_sympy
-from lwa.algebra.rational import factored
+from lwa.algebra.rational import factored, to_sympy
 from lwa.base import latex
 from lwa.base.exact import InputError, positive, power, root, shorten, signed
 from lwa.base.frozen import Value

@@ -1,5 +1,7 @@
 """Whatever a caller's symbols are called, results mean the same, or the name is refused by name."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 import sympy as sp
@@ -86,7 +88,9 @@ def numbers(given):
     return [(name, sp.N(sp.sympify(x).xreplace(values), 30)) for name, x in results(**given)]
 
 
-EXPECTED = numbers(NEUTRAL)
+@cache
+def expected_numbers():
+    return numbers(NEUTRAL)
 
 
 def may_be_refused(given):
@@ -95,10 +99,9 @@ def may_be_refused(given):
     return {s.name for role, s in given.items() if own.get(role) != s.name} & {*RESERVED, "F"}
 
 
-@settings(max_examples=6, phases=(Phase.explicit, Phase.generate))  # shrinking would take minutes
+@settings(max_examples=2, phases=(Phase.explicit, Phase.generate))  # shrinking would take minutes
 @given(st.fixed_dictionaries(dict.fromkeys(ROLES, symbols)))
-@example({**NEUTRAL, "alpha": sp.Symbol("mu0")})
-@example({**NEUTRAL, "m1": sp.Symbol("lambda")})
+@example({**NEUTRAL, "m1": sp.Symbol("lambda"), "alpha": sp.Symbol("mu0")})
 @example({**NEUTRAL, "m1": sp.Symbol("p"), "m2": sp.Symbol("I")})
 @example({**NEUTRAL, "m2": sp.Symbol("omega"), "k": sp.Symbol("kappa")})
 @example({**NEUTRAL, "m1": sp.Symbol("k")})
@@ -112,7 +115,7 @@ def test_results_do_not_depend_on_names(given):
     if not found:
         assert any(repr(name) in message or f"{name} " in message for name in may_be_refused(given))
         return
-    for (name, expected), (same, number) in zip(EXPECTED, found, strict=True):
+    for (name, expected), (same, number) in zip(expected_numbers(), found, strict=True):
         assert name == same
         # 30 digits, less those that the alternating coefficients lose; doubles to 4 ulps
         tolerance = 4 * np.finfo(float).eps if name == "numeric" else 1e-25
@@ -132,7 +135,7 @@ def law_results(a, b):
         yield value.subs(dict.fromkeys(rise, 2)).subs(sp.Symbol("D", positive=True), 1)
 
 
-@settings(max_examples=10, phases=(Phase.explicit, Phase.generate))
+@settings(max_examples=5, phases=(Phase.explicit, Phase.generate))
 @given(a=symbols, b=symbols)
 @example(a=sp.Symbol("a"), b=sp.Symbol("B"))
 @example(a=DELTA, b=sp.Symbol("b"))

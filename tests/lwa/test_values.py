@@ -2,6 +2,7 @@
 
 import copy
 import pickle
+from itertools import combinations
 
 import pytest
 import sympy as sp
@@ -68,10 +69,10 @@ def test_equal_derivations_are_equal_and_travel(make):
         assert hash(other) == hash(one)
 
 
-@pytest.mark.parametrize("make", MADE.values(), ids=MADE)
-def test_different_ones_are_not(make):
-    others = [other() for name, other in MADE.items() if other is not make]
-    assert make() not in others
+def test_different_ones_are_not():
+    made = [make() for make in MADE.values()]
+    for one, other in combinations(made, 2):
+        assert one != other
 
 
 def test_what_is_derived_differently_differs():
@@ -98,7 +99,7 @@ def test_terms_are_compared_with_mappings():
     assert found[((4, 1),)] == theory(5, closure="full").pde.coefficients[3][((4, 1),)]
 
 
-@pytest.mark.parametrize("order", [4, 12])
+@pytest.mark.parametrize("order", [4, 9])
 def test_repr_is_one_short_line(order):
     found = homogenize(Dimer(m1, m2), order, closure="full")
     wave = canonical_wave(Cell(sp.symbols("a1:7")))

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import inspect
 import json
-import sys
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
@@ -13,9 +12,8 @@ from pathlib import Path
 from typing import Any, Generic, ParamSpec, Protocol, TypeVar
 
 import click
-from tqdm import tqdm
 
-from lwa.base.progress import lines, shown
+from lwa.base.progress import bar, shown
 from lwa.command.reading import called, quantity
 from lwa.command.terminal import HELP
 from lwa.command.terminal import run as run_command
@@ -141,24 +139,10 @@ def progress(cases: Iterable[T]) -> Iterable[T]:
 
 @contextmanager
 def run_progress() -> Iterator[Callable[[float], None]]:
-    """Show how far a lattice run is: a bar on a terminal, elsewhere a line every 30 s."""
-    tell = lines("lattice run")
-    with tqdm(
-        total=1.0,
-        desc="lattice run",
-        disable=None,
-        leave=False,
-        file=sys.stderr,
-        delay=1,
-        bar_format="{desc}: {percentage:.1f} %|{bar}| {elapsed}<{remaining}",
-    ) as bar:
-
-        def update(share: float) -> None:
-            bar.update(share - bar.n)
-            if bar.disable:
-                tell(share)
-
-        yield update
+    """Show how far a lattice run is, by a bar."""
+    form = "{desc}: {percentage:.1f} %|{bar}| {elapsed}<{remaining}"
+    with bar("lattice run", total=1.0, delay=1, bar_format=form) as shares:
+        yield lambda share: shares.update(share - shares.n)
 
 
 def _picture(context: click.Context, given: click.Parameter, path: str | None) -> Path | None:

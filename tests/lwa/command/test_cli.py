@@ -498,7 +498,7 @@ def test_powers_of_the_full_closure_are_written_once(capsys, options):
         "derive --k 1000 --masses 1,1e300 --branch optical",
         "derive --k 1.5123456789 --masses 1,2 --stiffnesses 1/7,3 --closure full",
         "wave --k 123.456789 --masses 1,2 --stiffnesses 1/7,3 --closure full --force 1.25",
-        "expansion --k 1.5123456789 --masses 1,2 --stiffnesses 1/7,3 --order 2",
+        "expansion --k 1.5123456789 --masses 1,2 --stiffnesses 1/7,3 --order 1",
         "wave --k 3/2 --masses 1,1 --stiffnesses 1e-400,1e-400 --force 1",
         "derive --law magnetic:1e9,m",
         "wave --k 3/2 --masses 1,2 --stiffnesses 1,1e400 --closure full --field center",

@@ -40,7 +40,7 @@ def test_a_series_of_a_number_k_is_summed_there_only() -> None:
             call()
 
 
-@pytest.mark.parametrize("cell", [Cell([1], [8]), Cell([1, 1], [1, 8]), Cell([1, 3], [1, 2])])
+@pytest.mark.parametrize("cell", [Cell([1], [8]), Cell([1, 3], [1, 2])])
 def test_k_replaces_the_symbol_wherever_it_stands(cell: Cell) -> None:
     """Prefactor, shares of unlike contacts, radiation."""
     k = sp.Rational(11, 10)
@@ -209,7 +209,7 @@ named = st.builds(
 
 
 @given(names=st.lists(named, min_size=3, max_size=3, unique_by=lambda s: s.name), place=named)
-@settings(max_examples=8, deadline=None)
+@settings(max_examples=4, deadline=None)
 def test_no_name_is_captured(names: list[sp.Symbol], place: sp.Symbol) -> None:
     """What two masses and k are called changes nothing but their names."""
     plain = [sp.Symbol(f"n{i}", **s._assumptions_orig) for i, s in enumerate(names)]

@@ -141,7 +141,7 @@ def test_float64_is_the_quadrature_of_many_digits(law, load, rise, quantity):
     assert numeric.profile([0.0, 0.5, 2.0], *at) == pytest.approx(v, rel=1e-12)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=30)
 @given(
     st.floats(-12, 12),
     st.floats(0.1, 10),

@@ -18,7 +18,7 @@ from lwa import Cell, Dimer, InputError, NoSolitaryWave, canonical_wave, homogen
 from lwa.code.languages import LANGUAGES
 from lwa.code.writer import Function, wrapped
 from lwa.command.cli import main
-from lwa.wave.functions import in_order, wave_functions
+from lwa.wave.functions import OWN, in_order, wave_functions
 from tests.lwa.code.compilers import PROGRAMS, compiled, in_node
 
 in_every_language = pytest.mark.parametrize(
@@ -30,42 +30,8 @@ in_every_language = pytest.mark.parametrize(
 )
 """Each generated language; some need a compiler, or Node.js."""
 
-EXPONENTS = (
-    1.01,
-    1.02,
-    1.1,
-    1.25,
-    1.5,
-    1.7,
-    1.999,
-    2.0,
-    2.000001,
-    2.3,
-    3.0,
-    3.7,
-    5.0,
-    6.1,
-    7.875,
-    8.0,
-)
-RATIOS = (
-    1e-3,
-    3e-3,
-    0.01,
-    0.05,
-    0.0977,
-    0.1,
-    0.2733,
-    0.5,
-    0.9,
-    1.0,
-    1.1,
-    1.7,
-    3.0,
-    10.0,
-    99.0,
-    1e3,
-)
+EXPONENTS = (1.01, 1.1, 1.5, 1.999, 2.0, 3.0, 5.0, 7.875)
+RATIOS = (1e-3, 0.0977, 0.2733, 0.9, 1.0, 3.0, 99.0)
 GRID = {"k": EXPONENTS, "m1": (1.0,), "m2": RATIOS, "D": (1.0,)}
 FEW = {"k": (1.01, 1.5, 2.001, 8.0), "m1": (0.3, 7.0), "m2": (2.0,), "m3": (1.1,), "D": (0.7,)}
 STIFF = {**FEW, "A1": (1.0, 50.0), "A2": (0.02, 3.0)}
@@ -95,7 +61,10 @@ def functions_in(name):
 
 @cache
 def code_of(name, language):
-    return wave_of(name).code(language)
+    """As `TravelingWave.code` writes it, but derived once for all languages."""
+    if language == "python":  # which has functions of its own
+        return wave_of(name).code(language)
+    return LANGUAGES[language](functions_in(name), OWN).module([name])
 
 
 def exact(value):
@@ -196,7 +165,7 @@ def test_every_language_is_good_to_1e14(functions_of, language, name):
             error = got - value - rest[function, at]  # without rounding where it is small
             # at k = 1.01 rounding the exponent 2/(k-1) of V_s costs |ln B| = 137 half ulps
             assert abs(error) <= 1e-14 * value, (function, at, values)
-    assert len(rows) == 1 or len(rows) > 7
+    assert len(rows) == 1 or len(rows) > 5
 
 
 @in_every_language
@@ -354,7 +323,7 @@ names = st.one_of(st.sampled_from(NAMES), st.text(max_size=6))
 
 
 @given(st.lists(names, min_size=4, max_size=4, unique=True), st.booleans())
-@settings(max_examples=12)
+@settings(max_examples=6)
 def test_a_name_changes_nothing_but_itself(drawn, assume_positive):
     symbols = [sp.Symbol(name, positive=assume_positive or None) for name in drawn]
     k, m1, m2, D = symbols
@@ -463,6 +432,8 @@ def test_the_command_prints_the_same(language, capsys):
     assert ended.value.code == 0
     wave = homogenize(Dimer(1, "math"), k="3/2").pde.traveling_wave()
     assert capsys.readouterr().out == wave.code(language) + "\n"
+    functions = LANGUAGES[language](list(wave_functions(wave).values()), OWN).module([])
+    assert language == "python" or wave.code(language).endswith(functions[-400:])
 
 
 def test_a_theory_with_awkward_names_is_a_module(capsys):

@@ -26,6 +26,7 @@ def loaded():
     return Task(scene)
 
 
+@pytest.mark.slow  # CyRK compiles its integrators
 @pytest.mark.optional("CyRK")
 @pytest.mark.parametrize("method", cyrk.METHODS)
 @pytest.mark.filterwarnings("default::DeprecationWarning")

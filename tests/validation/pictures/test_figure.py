@@ -1,8 +1,5 @@
 """Pictures: every format, complete files or none, and what the panels say."""
 
-import subprocess
-import sys
-
 import numpy as np
 import pytest
 from matplotlib import pyplot
@@ -10,6 +7,7 @@ from matplotlib.colors import same_color
 from matplotlib.figure import Figure
 
 from lwa import InputError
+from tests.commands import small_disk
 from validation.pictures import figure as drawing
 from validation.pictures.figure import figure
 from validation.pictures.panel import Curve, Map, Panel
@@ -126,32 +124,11 @@ def test_small_and_large_numbers_stand_before_a_power_of_ten(largest, power):
 
 
 def test_a_full_disk_is_one_line_and_leaves_the_old_picture(tmp_path):
-    """Full for this process: no file of it may be larger than a kilobyte."""
-    files = [tmp_path / f"picture{suffix}" for suffix in drawing.SUFFIXES]
-    for file in files:
+    report = Report("one", panels=(Panel("x", "y", (Curve.of("c", range(9), range(9)),)),))
+    for file in (tmp_path / f"picture{suffix}" for suffix in drawing.SUFFIXES):
         file.write_bytes(b"old")
-    code = """if True:
-        import resource, sys
-        from pathlib import Path
-        from validation.pictures.panel import Curve, Panel
-        from validation.report.result import Report
-        report = Report("one", panels=(Panel("x", "y", (Curve.of("c", range(9), range(9)),)),))
-        report.figure()  # Matplotlib writes a cache of fonts
-        resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))
-        for file in sys.argv[1:]:
-            try:
-                report.save(Path(file))
-            except ValueError as error:
-                print(error)
-    """
-    done = subprocess.run(
-        [sys.executable, "-c", code, *files],
-        capture_output=True,
-        text=True,
-        check=True,
-        timeout=120,
-    )
-    said = [f"{file} is not written: File too large" for file in files]
-    assert (done.stdout.splitlines(), done.stderr) == (said, "")
-    assert {file.read_bytes() for file in files} == {b"old"}
-    assert sorted(tmp_path.iterdir()) == sorted(files)
+        with small_disk(1000), pytest.raises(ValueError, match="is not written: ") as refused:
+            report.save(file)
+        assert str(refused.value) == f"{file} is not written: File too large"
+        assert file.read_bytes() == b"old"
+    assert len([*tmp_path.iterdir()]) == len(drawing.SUFFIXES)

@@ -14,10 +14,10 @@ from hypothesis import strategies as st
 from lwa import Cell
 from lwa.base import files
 from lwa.spheres import beads
-from lwa.spheres.hertz import Material, Sphere
+from lwa.spheres.hertz import Material, Sphere, stiffness
 from validation.scenes import scenefile
 from validation.scenes.document import document
-from validation.scenes.materials import STEEL, contact_stiffness
+from validation.scenes.materials import STEEL
 from validation.scenes.scene import Scene, SceneError
 from validation.scenes.scenefile import read_scene, scene
 from validation.studies.paper import chain_scene
@@ -148,7 +148,7 @@ def test_a_defect_may_be_a_bead_of_the_file_or_a_mass():
     )
     changed, plain = toml_file(text), toml_file(PAPER)
     steel = Sphere(mass=0.45e-3, radius=2.38e-3, material=STEEL)
-    assert changed.stiffnesses[2:4] == (contact_stiffness(steel, big),) * 2
+    assert changed.stiffnesses[2:4] == (float(stiffness(steel, big)),) * 2
     assert changed.spacings[2:4] == (7.38e-3,) * 2
     assert (changed.masses[3], changed.masses[6]) == (1e-3, 9)
     same = [i for i in range(38) if i not in (3, 6)]
@@ -435,7 +435,7 @@ def test_whatever_a_file_holds_is_read_or_refused_in_one_line(data):
 
 @pytest.mark.parametrize(
     "law",
-    ["hertz2:1,1/2", "magnetic:4,2", "polynomial:1/4,-1/10", "polynomial:0,1", "exponential:3/2",
+    ["hertz2:1,1/2", "magnetic:4,2", "polynomial:1/4,-1", "exponential:3/2",
      "lennard-jones:3", "power:3/2"],
 )  # fmt: skip
 def test_a_law_is_read_and_written(law):
