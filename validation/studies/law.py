@@ -150,7 +150,7 @@ def _modulus(content: dict[str, Any], material: str, stiffness: Measured) -> Mea
 
 
 def _verdict(fit: PowerFit) -> str:
-    """Whether one power is enough, in a sentence."""
+    """Sentence that says whether one power is enough."""
     bend = f"curvature of ln V against ln F {fit.curvature.value:.2g} ± {fit.curvature.error:.1g}"
     return f"One power is {'enough' if fit.one_power else 'not enough'}: {bend}."
 
