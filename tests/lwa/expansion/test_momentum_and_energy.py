@@ -50,7 +50,7 @@ def integrals(k):
 
 
 @pytest.mark.parametrize("k", ["6/5", "3/2", "2"])
-def test_the_ledger_is_that_of_the_lattice_s_wave(k):
+def test_momentum_energy_and_losses_are_those_of_the_lattice_s_wave(k):
     """The sums differ from integrals over a wave found by Fourier by less than their errors."""
     found, true = wave(k), integrals(float(wave(k).expansion.k))
     energy = true["kinetic"] + true["elastic"]
@@ -66,7 +66,7 @@ def test_the_ledger_is_that_of_the_lattice_s_wave(k):
 
 
 @pytest.mark.parametrize("k", ["4", "8", "12"])
-def test_a_sum_of_the_ledger_is_right_within_its_error_or_refused(k):
+def test_a_sum_is_right_within_its_error_or_refused(k):
     found, true = expand(EQUAL, 10, k=k), integrals(float(k))
     energy = true["kinetic"] + true["elastic"]
     mass = true["momentum"] ** 2 / (2 * energy)
