@@ -13,6 +13,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 os.environ.setdefault("SYMPY_CACHE_SIZE", "20000")
 
 import pytest
+from filelock import FileLock
 from hypothesis import settings
 
 # No wall time is asserted, on noisy machines.
@@ -58,6 +59,18 @@ def _interruptible():
     signal.signal(signal.SIGINT, signal.default_int_handler)
     yield
     signal.signal(signal.SIGINT, before)
+
+
+@pytest.fixture(scope="session")
+def engine(tmp_path_factory):
+    """Let the first of several processes of tests compile the lattice's engine, and others wait."""
+    if "PYTEST_XDIST_WORKER" in os.environ:
+        from validation.lattice.simulate import simulate
+        from validation.scenes.scene import Scene
+
+        pair = Scene(masses=(1, 1), stiffnesses=(1,), k=1.5, duration=1, velocities=(1,))
+        with FileLock(tmp_path_factory.getbasetemp().parent / "engine.lock"):
+            simulate(pair)
 
 
 @pytest.fixture
