@@ -25,6 +25,11 @@ COMPLETE = "LWA_TESTS_COMPLETE"
 everything optional is installed."""
 
 
+def pytest_collection_modifyitems(items):
+    """Put the theory first: of two processes one derives while the other compiles the engine."""
+    items.sort(key=lambda item: not item.nodeid.startswith(("tests/lwa/", "lwa/")))
+
+
 def pytest_collection_finish(session):
     """Look for garbage less often: SymPy's many small objects are none, and this saves a tenth."""
     gc.freeze()

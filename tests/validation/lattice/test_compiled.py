@@ -9,15 +9,12 @@ from pathlib import Path
 import pytest
 
 import validation
-from validation.lattice.simulate import simulate
-from validation.scenes.scene import Scene
 
 PACKAGES = Path(validation.__file__).parents[1]
-PAIR = "Scene(masses=(1, 1), stiffnesses=(1,), k=1.5, duration=9, velocities=(1,))"
-RUN = f"""
+RUN = """
 from validation.lattice.simulate import simulate
 from validation.scenes.scene import Scene
-run = simulate({PAIR})
+run = simulate(Scene(masses=(1, 1), stiffnesses=(1,), k=1.5, duration=9, velocities=(1,)))
 from validation.lattice.kernel.advance import advance
 print((run.velocities.round(6) + 0.0).tolist(), sum(advance.stats.cache_hits.values()))
 """
@@ -26,7 +23,7 @@ print((run.velocities.round(6) + 0.0).tolist(), sum(advance.stats.cache_hits.val
 @pytest.fixture
 def kernel(tmp_path):
     """The kernel's folder in a copy of the package, with its machine code."""
-    simulate(eval(PAIR))
+    exec(RUN, {})
     shutil.copytree(PACKAGES / "validation", tmp_path / "validation")
     return tmp_path / "validation" / "lattice" / "kernel"
 
