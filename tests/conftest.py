@@ -9,6 +9,7 @@ from importlib.util import find_spec
 
 # The tests' linear systems are small: on a busy machine a second thread only waits for the first.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+os.environ.setdefault("MPLBACKEND", "Agg")
 # SymPy forgets all but 1000 results of each of its functions: the tests derive an eighth faster.
 os.environ.setdefault("SYMPY_CACHE_SIZE", "20000")
 
