@@ -121,7 +121,7 @@ def homogenize(
         power the contacts of a cell must be alike, and results hold its φ_n as phi2, phi3, ….
     closure : "linear", the paper's, or "full", which satisfies every equation of motion.
     branch : "acoustic" (neighbours move together) or "optical" (against each other).
-    field : what the wave equation is about: "first", the first particle's displacement, or
+    field : unknown of the wave equation: "first", the first particle's displacement, or
         "center", the canonical field, the mass-weighted mean of the sublattice fields at one point
         (full closure).
 

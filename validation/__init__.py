@@ -13,51 +13,39 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from validation.lattice.run import IntegrationError, Run
-    from validation.lattice.simulate import simulate, simulate_many
-    from validation.pulses.pulse import MeasureError, Pulse, measure
-    from validation.scenes.forcing import Damping, Drive
-    from validation.scenes.scene import Scene, SceneError
-    from validation.scenes.scenefile import read_scene
-    from validation.studies.records import load
-    from validation.waves.profile import ExactWave
-    from validation.waves.solver import exact_wave
+    from validation.lattice.run import IntegrationError as IntegrationError
+    from validation.lattice.run import Run as Run
+    from validation.lattice.simulate import simulate as simulate
+    from validation.lattice.simulate import simulate_many as simulate_many
+    from validation.pulses.pulse import MeasureError as MeasureError
+    from validation.pulses.pulse import Pulse as Pulse
+    from validation.pulses.pulse import measure as measure
+    from validation.scenes.forcing import Damping as Damping
+    from validation.scenes.forcing import Drive as Drive
+    from validation.scenes.scene import Scene as Scene
+    from validation.scenes.scene import SceneError as SceneError
+    from validation.scenes.scenefile import read_scene as read_scene
+    from validation.studies.records import load as load
+    from validation.waves.profile import ExactWave as ExactWave
+    from validation.waves.solver import exact_wave as exact_wave
 
-__all__ = [
-    "Damping",
-    "Drive",
-    "ExactWave",
-    "IntegrationError",
-    "MeasureError",
-    "Pulse",
-    "Run",
-    "Scene",
-    "SceneError",
-    "exact_wave",
-    "load",
-    "measure",
-    "read_scene",
-    "simulate",
-    "simulate_many",
-]
-
-_PLACES = {
-    "lattice.run": ("IntegrationError", "Run"),
-    "lattice.simulate": ("simulate", "simulate_many"),
-    "pulses.pulse": ("MeasureError", "Pulse", "measure"),
-    "scenes.forcing": ("Damping", "Drive"),
-    "scenes.scene": ("Scene", "SceneError"),
-    "scenes.scenefile": ("read_scene",),
-    "studies.records": ("load",),
-    "waves.profile": ("ExactWave",),
-    "waves.solver": ("exact_wave",),
+_MODULES = {
+    "lattice.run": "IntegrationError Run",
+    "lattice.simulate": "simulate simulate_many",
+    "pulses.pulse": "MeasureError Pulse measure",
+    "scenes.forcing": "Damping Drive",
+    "scenes.scene": "Scene SceneError",
+    "scenes.scenefile": "read_scene",
+    "studies.records": "load",
+    "waves.profile": "ExactWave",
+    "waves.solver": "exact_wave",
 }
-"""Public names by module."""
+_HOMES = {name: module for module, names in _MODULES.items() for name in names.split()}
+__all__ = sorted(_HOMES)
 
 
 def __getattr__(name: str) -> Any:
-    """Load the module of a public name when the name is used: `--help` does not load SciPy."""
-    for module, names in _PLACES.items():
-        if name in names:
-            return getattr(import_module(f"validation.{module}"), name)
-    raise AttributeError(f"module 'validation' has no attribute {name!r}")
+    """Load a public name on its first use: `--help` does not load SciPy."""
+    if name not in _HOMES:
+        raise AttributeError(f"module 'validation' has no attribute {name!r}")
+    return getattr(import_module(f"validation.{_HOMES[name]}"), name)

@@ -30,6 +30,7 @@ _LABELLED = re.compile(r"\$\$\n?(.*?)\n?\$\$ \(([\w-]+)\)", re.DOTALL)
 _FENCE = re.compile(r"^(`{3,}|:{3,})\{([\w:-]+)\} *([^\n]*)\n(.*?)^\1 *$", re.DOTALL | re.MULTILINE)
 _OPTION = re.compile(r"\A(?::[\w-]+:[^\n]*\n)+")
 _TARGET = re.compile(r"^\([\w-]+\)=\n", re.MULTILINE)
+_TAG = re.compile(r'<span class="tag">([^<]*)</span>')
 _HTML = re.compile(r"^<div\b[^\n]*\n", re.MULTILINE)
 
 
@@ -107,7 +108,7 @@ def shared(code: str, folder: Path) -> Iterator[str]:
 
 def plain(text: str, book: Book) -> str:
     """MyST's text as Markdown: roles, directives, labels and targets rendered."""
-    text = _HTML.sub("", _TARGET.sub("", text))
+    text = _HTML.sub("", _TARGET.sub("", _TAG.sub(r"*[\1]*", text)))
     while (rendered := _FENCE.sub(_directive, text)) != text:
         text = rendered
     text = _LABELLED.sub(

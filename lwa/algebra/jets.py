@@ -73,7 +73,7 @@ class JetAlgebra:
         self._velocity = self._offset + weight
         self.r = [self.one, *generators[self._offset : self._offset + weight]]
         r1 = self.r[1]
-        # generator → (what ∂_x makes of it; what ∂_τ makes of it without E, over p^{(k-1)/2})
+        # generator → its derivative ∂_x; likewise ∂_τ without E, over p^{(k-1)/2}
         self._dx = {self._offset + n - 1: self.r[n + 1] - r1 * self.r[n] for n in jets[:-1]}
         self._dt: dict[int, fmpq_mpoly] = {}
         self.s: list[fmpq_mpoly] = []
@@ -225,7 +225,7 @@ def exact_quotient(numerator: fmpq_mpoly, divisor: fmpq_mpoly) -> fmpq_mpoly:
     """The quotient of two polynomials that divide without a remainder."""
     quotient, remainder = divmod(numerator, divisor)
     if not remainder.is_zero():
-        raise AssertionError(f"{divisor} does not divide what it should")
+        raise AssertionError(f"{divisor} does not divide the polynomial")
     return quotient
 
 

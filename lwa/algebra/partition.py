@@ -1,7 +1,7 @@
 """Mass fractions and shares of the strain: positive numbers with a given sum.
 
-Rational fractions are numbers, and what is not rational becomes one generator of a python-flint
-ring per distinct value, less one, since the fractions sum to the whole.
+Rational fractions are numbers; each other distinct value becomes one generator of a python-flint
+ring, less one, since the fractions sum to the whole.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The errors that this package raises for what a caller gives; loaded without SymPy."""
+"""Errors for invalid arguments and for waves that do not exist; loaded without SymPy."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """Readers of parsed files, entry by entry; faults are named by the full key of the entry.
 
-A reader takes a value and what messages call it, and returns the value checked or raises
+A reader takes a value and its name in messages, and returns the checked value or raises
 `lwa.InputError`. Numbers of a file are floats.
 
 >>> real("1.5", "duration")

@@ -2,8 +2,8 @@
 
 For the dimer, u = w_0 and w = w_1 = λ (u + Σ b_n D^n ∂_x^n u), with the b_n found from the demand
 that both equations of `lwa.closure.solution` are identical at each order. A linear ansatz has one
-unknown per order, which settles the monomial ∂_x^n u; the wave equation is then read off the first
-equation, and what the second one says otherwise is kept as the defect.
+unknown per order, which settles the monomial ∂_x^n u. The first equation then is the wave equation,
+and its difference to the second is the defect.
 """
 
 from __future__ import annotations

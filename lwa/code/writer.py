@@ -23,7 +23,7 @@ import sympy as sp
 from lwa.base.exact import InputError, shorten
 
 WIDTH = 79
-_LONGEST_NAME = 31  # letters that C99 guarantees to tell names apart
+_LONGEST_NAME = 31  # significant letters of an external name in C99
 
 Local = tuple[tuple[sp.Symbol, sp.Expr], ...]
 """Variables and their values."""
@@ -55,7 +55,7 @@ class Writer(ABC):
     ignores_case: ClassVar[bool] = False
     head: ClassVar[tuple[str, ...]] = ()
     tail: ClassVar[tuple[str, ...]] = ()
-    point: ClassVar[str] = ""  # behind an integer, what makes it a double
+    point: ClassVar[str] = ""  # suffix that makes an integer a double
     power: ClassVar[str] = "e"  # of ten, in a literal
     end: ClassVar[str] = ""  # of a statement
     more: ClassVar[str] = ""  # at the end of a line that the next one continues

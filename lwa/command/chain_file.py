@@ -1,13 +1,12 @@
 """The chain of a scene's file: its cell, contact law and static load, in SI where it says so.
 
-Every file that `lwa-validate run` takes describes such a chain. What it says besides, of the length
-of the chain, its striker, wall, defects and sensors, is not of the theory.
+Every scene file of `lwa-validate run` describes such a chain. Its other entries, such as length,
+striker, wall, defects and sensors, do not enter the theory.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -18,6 +17,7 @@ from lwa.base.exact import InputError
 from lwa.base.files import load
 from lwa.base.tables import Table, among, array, each, positive, real, table
 from lwa.cell import Cell, D
+from lwa.command.options import ChainInput
 from lwa.law import ContactLaw, Power, read_law
 from lwa.spheres.beads import SCENE, spheres
 from lwa.spheres.hertz import EXPONENT
@@ -25,21 +25,7 @@ from lwa.spheres.hertz import EXPONENT
 CHAIN = ("cell", "repeat", "k", "law", "stiffnesses", "spacings")
 
 
-@dataclass(frozen=True)
-class ChainFile:
-    """A chain as a file describes it.
-
-    precompression : the static load, 0 for none.
-    si : whether the file is in SI.
-    """
-
-    cell: Cell
-    law: ContactLaw
-    precompression: sp.Expr
-    si: bool
-
-
-def read_chain(path: str | Path) -> ChainFile:
+def read_chain(path: str | Path) -> ChainInput:
     """Read the chain of a file.
 
     Raises `lwa.InputError`, in one line that names file and key, for whatever it cannot mean.
@@ -47,7 +33,7 @@ def read_chain(path: str | Path) -> ChainFile:
     return load(path, "a list of spheres", _chain)
 
 
-def _chain(content: Any) -> ChainFile:
+def _chain(content: Any) -> ChainInput:
     if isinstance(content, dict) and "scene" in content:  # as `lwa-validate run --out` writes
         content = content["scene"]
     file = Table(content, "", ("materials", "beads", "chain", "precompression", *SCENE))
@@ -59,8 +45,8 @@ def _chain(content: Any) -> ChainFile:
     if load < 0:
         raise InputError(f"precompression is {load}: it must not be negative")
     if isinstance(row[0], int | float):
-        return ChainFile(*_masses(chain), load, file.read("units", among({"SI": True}), False))
-    return ChainFile(Cell.of_spheres(spheres(content)), Power(EXPONENT), load, True)
+        return ChainInput(*_masses(chain), load, file.read("units", among({"SI": True}), False))
+    return ChainInput(Cell.of_spheres(spheres(content)), Power(EXPONENT), load, True)
 
 
 def _masses(chain: Table) -> tuple[Cell, ContactLaw]:

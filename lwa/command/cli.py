@@ -17,6 +17,7 @@ from lwa.command.options import (
     FORCE,
     SPHERES,
     SPHERES_HELP,
+    ChainInput,
     demand_free_names,
     given,
     law_option,
@@ -29,36 +30,39 @@ from lwa.command.options import (
 from lwa.command.reading import angle, quantity
 from lwa.command.rows import Answer
 from lwa.command.terminal import HELP, run, version
-from lwa.law import ContactLaw, Power
+from lwa.law import Power, demand_one
 from lwa.spheres.hertz import EXPONENT
-from lwa.theory import Theory, homogenize
+from lwa.theory import homogenize
 
 STYLES = ("text", "json", "latex")
 
 
-def _theory(output: str, *, k: sp.Expr, law: ContactLaw | None, **chain: Any) -> Theory:
-    cell = _cell(chain)
-    demand_free_names(cell, k, *(law.symbols if law else ()), output=output)
-    return homogenize(cell, k=k, law=law, **chain)
+def _chain(spheres: str | None, options: dict[str, Any]) -> ChainInput:
+    """Take the chain out of the options of a command, or read that of a file; refuse both."""
+    names = ("masses", "stiffnesses", "spacing", "k", "law")
+    own = {name: options.pop(name) for name in names if name in options}
+    if spheres is not None:
+        for name in own:
+            if given(name):
+                raise InputError(f"--{name} and --spheres are both given: spheres have their own")
+        from lwa.command.chain_file import read_chain
+
+        return read_chain(spheres)
+    law = own.get("law")
+    if law is not None:
+        demand_one(own["k"], law)
+    cell = Cell(own["masses"], own["stiffnesses"], own.get("spacing", D))
+    return ChainInput(cell, law or Power(own["k"]))
 
 
-def _cell(chain: dict[str, Any]) -> Cell:
-    """Take the options of a cell out of those of a chain."""
-    return Cell(*(chain.pop(name) for name in ("masses", "stiffnesses", "spacing")))
-
-
-def _chain(
-    spheres: str | None, options: dict[str, Any], symbols: Sequence[sp.Expr | None]
-) -> tuple[Cell, ContactLaw, sp.Expr, bool, str]:
-    """Read a chain: cell, law, static load, whether it is in SI, and the chain in text.
-
-    symbols : values of the other options; symbols in them must not have names of the output.
-    """
-    units, static = _from_file(spheres, options) if spheres is not None else ({}, sp.S.Zero)
-    cell, law = _cell(options), options["law"] or Power(options["k"])
-    demand_free_names(cell, *law.symbols, *(x for x in symbols if x is not None))
-    said = f"masses {derivation.listed(cell.masses)}; contact force A F, F = {law.F}"
-    return cell, law, static, bool(units), said
+def _precompression(
+    chain: ChainInput, background: sp.Expr | None, precompression: sp.Expr | None
+) -> sp.Expr | None:
+    """The static force of a file or of the options; refuse a second load beside a file's."""
+    static = chain.precompression
+    if static and (background is not None or precompression is not None):
+        raise InputError(f"the file has a precompression of {static}: give no other load")
+    return static or precompression
 
 
 def _answer(style: str, answer: Answer) -> None:
@@ -79,9 +83,11 @@ def lwa() -> None:
 
 @lwa.command()
 @of_chain((*STYLES, "python"))
-def derive(style: str, **chain: Any) -> None:
+def derive(style: str, **options: Any) -> None:
     """The ansatz, the wave equation and the defect between the equations of motion."""
-    theory = _theory("derive", **chain)
+    chain = _chain(None, options)
+    demand_free_names(chain)
+    theory = homogenize(chain.cell, law=chain.law, **options)
     if style == "python":
         click.echo(derivation.source(theory))
     else:
@@ -102,7 +108,7 @@ def wave(
     spheres: str | None,
     background: sp.Expr | None,
     precompression: sp.Expr | None,
-    **chain: Any,
+    **options: Any,
 ) -> None:
     """The compact traveling wave: β, width, FWHM, amplitude and speed.
 
@@ -110,64 +116,42 @@ def wave(
     --spheres all of it in m, s, kg and N. With --background or --precompression the wave of the
     canonical field in a chain under load.
     """
-    units: dict[str, str] = {}
-    if spheres is not None:
-        units, static = _from_file(spheres, chain)
-        if static and (background is not None or precompression is not None):
-            raise InputError(f"the file has a precompression of {static}: give no other load")
-        precompression = static or precompression
-    load = waves.Load(force, background, precompression)
-    law = chain["law"]
-    other = law is not None and not law.homogeneous
+    chain = _chain(spheres, options)
+    load = waves.Load(force, background, _precompression(chain, background, precompression))
+    other = not chain.law.homogeneous
     under_load = load.under(other)
     output = "wave under load" if under_load or other else "wave"
     load.demand_free(output)
     if under_load:
-        _canonical(chain)
-    theory = _theory(output, **chain)
+        _canonical(options)
+    demand_free_names(chain, output=output)
+    theory = homogenize(chain.cell, law=chain.law, **options)
     if style in LANGUAGES:
         if force is not None:
             raise InputError(f"--format {style} is for any force: --force goes with {_STYLES}")
         click.echo(waves.source(theory, load if under_load else None, style))
     elif under_load:
-        _answer(style, waves.under_load(theory, load, units))
+        _answer(style, waves.under_load(theory, load, chain.units))
     else:
         found = theory.pde.traveling_wave()
         if force is None and spheres is None:
             _answer(style, waves.compact(theory, found))
         else:
-            _answer(style, waves.at_force(theory, found, waves.peak(force), units))
+            _answer(style, waves.at_force(theory, found, waves.peak(force), chain.units))
 
 
 _STYLES = ", ".join(STYLES)
 
 
-def _canonical(chain: dict[str, Any]) -> None:
+def _canonical(options: dict[str, Any]) -> None:
     """Set the closure of waves under load; refuse another one."""
     for name, wanted in (("closure", "full"), ("field", "center"), ("branch", "acoustic")):
-        if given(name) and chain[name] != wanted:
+        if given(name) and options[name] != wanted:
             raise InputError(
-                f"{name} is {chain[name]!r}: under load the wave is that of the canonical field, "
+                f"{name} is {options[name]!r}: under load the wave is that of the canonical field, "
                 f"{name} {wanted!r}"
             )
-        chain[name] = wanted
-
-
-def _from_file(file: str, chain: dict[str, Any]) -> tuple[dict[str, str], sp.Expr]:
-    """Put the chain of a file in place of the options; return its units and its static load.
-
-    Raises `lwa.InputError` where an option describes a chain too.
-    """
-    for name in ("k", "law", "masses", "stiffnesses", "spacing"):
-        if given(name):
-            raise InputError(f"--{name} and --spheres are both given: spheres have their own")
-    from lwa.command.chain_file import read_chain
-
-    found = read_chain(file)
-    chain |= {name: getattr(found.cell, name) for name in ("masses", "stiffnesses", "spacing")}
-    chain |= {"k": found.law.exponent} if found.law.homogeneous else {"law": found.law}
-    exponent = found.law.exponent if found.law.homogeneous else EXPONENT
-    return (waves.si_units(exponent) if found.si else {}), found.precompression
+        options[name] = wanted
 
 
 @lwa.command()
@@ -179,22 +163,24 @@ def _from_file(file: str, chain: dict[str, Any]) -> tuple[dict[str, str], sp.Exp
 )
 @setting("--spacing", D.name, "Distance of neighbouring particles.", callback=quantity)
 def dispersion(
-    cell: Cell, k: sp.Expr, order: int, style: str, precompression: sp.Expr | None, spacing: sp.Expr
+    order: int, style: str, precompression: sp.Expr | None, spacing: sp.Expr, **options: Any
 ) -> None:
     """The linear chain: the series of Ω²(κ), Ω the frequency in τ and κ the wavenumber, times D.
 
     The exponent matters for unequal contacts, which share the strain by it. With --precompression,
     and masses, stiffnesses and spacing in SI, also the bands in s⁻¹ and the speeds in m/s.
     """
-    from lwa.command import series  # here and below: each command loads what it needs
+    from lwa.command import series  # here and below: each command loads its own modules
     from lwa.linear.dispersion import Dispersion, LoadedChain
 
-    loaded = None
+    chain = _chain(None, options)
+    demand_free_names(chain)
+    cell, law, loaded = chain.cell, chain.law, None
     if precompression is not None:
         cell = Cell(cell.masses, cell.stiffnesses, spacing)
-        k = k if given("k") else EXPONENT
-        loaded = LoadedChain(cell, Power(k), precompression)
-    _answer(style, series.dispersion(Dispersion(cell, k), order, loaded))
+        law = law if given("k") else Power(EXPONENT)
+        loaded = LoadedChain(cell, law, precompression)
+    _answer(style, series.dispersion(Dispersion(cell, law.exponent), order, loaded))
 
 
 @lwa.command()
@@ -203,13 +189,7 @@ def dispersion(
 @FORCE
 @SPHERES
 def expansion(
-    cell: Cell,
-    k: sp.Expr,
-    law: ContactLaw | None,
-    order: int,
-    style: str,
-    force: sp.Expr | None,
-    spheres: str | None,
+    order: int, style: str, force: sp.Expr | None, spheres: str | None, **options: Any
 ) -> None:
     """The lattice's wave as a series in ε = k - 1, summed where k and the cell are numbers.
 
@@ -220,22 +200,15 @@ def expansion(
     from lwa.expansion.expand import expand
     from lwa.expansion.physical import ExpandedWave
 
-    units: dict[str, str] = {}
-    notes: list[str] = []
-    if spheres is not None:
-        chain: dict[str, Any] = {"k": k, "law": law}
-        units, static = _from_file(spheres, chain)
-        k, law = chain.pop("k"), chain.pop("law")
-        cell = Cell(**chain)
-        force = sp.S.One if force is None else force
-        notes = waves.left_out(static, units)
-    elif force is not None:
+    if force is not None and spheres is None:
         raise InputError("--force goes with --spheres: other chains have no units")
-    found = expand(cell, order, k=k, law=law)
+    chain = _chain(spheres, options)
+    demand_free_names(chain)
+    found = expand(chain.cell, order, law=chain.law)
     physical = None
-    if force is not None and cell.spacing.is_number:
-        physical = ExpandedWave(found, force)
-    _answer(style, series.expansion(found, physical, units, notes))
+    if spheres is not None and chain.cell.spacing.is_number:
+        physical = ExpandedWave(found, sp.S.One if force is None else force)
+    _answer(style, series.expansion(found, physical, chain.units, waves.left_out(chain)))
 
 
 @lwa.command()
@@ -249,14 +222,12 @@ def strike(
 ) -> None:
     """The leading pulse of a chain of equal beads that a mass strikes: force, speed and width."""
     from lwa.command import series
-    from lwa.command.chain_file import read_chain
     from lwa.expansion.strike import pulse_of_strike
 
-    found = read_chain(spheres)
-    mass = found.cell.masses[0] if mass is None else mass
-    pulse = pulse_of_strike(found.cell, mass, velocity, drop=drop, k=found.law.exponent)
-    units = waves.si_units(found.law.exponent) if found.si else {}
-    _answer(style, series.strike(pulse, units, waves.left_out(found.precompression, units)))
+    chain = _chain(spheres, {})
+    mass = chain.cell.masses[0] if mass is None else mass
+    pulse = pulse_of_strike(chain.cell, mass, velocity, drop=drop, k=chain.law.exponent)
+    _answer(style, series.strike(pulse, chain.units, waves.left_out(chain)))
 
 
 @lwa.command("envelope")
@@ -281,7 +252,7 @@ def envelope_of_a_mode(
     branch: str | None,
     frequency: sp.Expr | None,
     detuning: sp.Expr | None,
-    **chain: Any,
+    **options: Any,
 ) -> None:
     """The nonlinear Schrödinger equation of a mode of a chain under load, and its breathers.
 
@@ -293,21 +264,21 @@ def envelope_of_a_mode(
 
     if frequency is not None and detuning is not None:
         raise InputError("--frequency and --detuning are both given: one says the other")
-    values = (background, precompression, frequency, detuning, wavenumber)
-    cell, law, static, si, said = _chain(spheres, chain, values)
-    place = int(branch) if branch and branch.isdecimal() else branch
-    if static and (background is not None or precompression is not None):
-        raise InputError(f"the file has a precompression of {static}: give no other load")
-    load = {"background": background, "precompression": static or precompression}
-    found = envelope(cell, law, **load, wavenumber=wavenumber, branch=place)
+    chain = _chain(spheres, options)
+    demand_free_names(chain, background, precompression, frequency, detuning, wavenumber)
+    place, cell = int(branch) if branch and branch.isdecimal() else branch, chain.cell
+    precompression = _precompression(chain, background, precompression)
+    load = {"background": background, "precompression": precompression}
+    found = envelope(cell, chain.law, **load, wavenumber=wavenumber, branch=place)
     symbols = {*cell.symbols, *found.compression.free_symbols, *wavenumber.free_symbols}
     if not symbols - {cell.spacing} and (cell.size > 2 or not sp.cos(wavenumber).is_Rational):
         found = found.numeric()  # exact results want a frequency that is algebraic
     breather = None
     if frequency is not None or detuning is not None:
-        angular = frequency and frequency * (2 * sp.pi if si else 1)
+        angular = frequency and frequency * (2 * sp.pi if chain.si else 1)
         breather = found.breather(angular, detuning=detuning)
-    _answer(style, envelopes.envelope(found, breather, envelopes.UNITS if si else {}, said))
+    units = envelopes.UNITS if chain.si else {}
+    _answer(style, envelopes.envelope(found, breather, units, chain.text))
 
 
 @lwa.command("shock")
@@ -322,7 +293,7 @@ def front_of_a_wall(
     behind: sp.Expr | None,
     piston: sp.Expr | None,
     ahead: sp.Expr | None,
-    **chain: Any,
+    **options: Any,
 ) -> None:
     """The shock, or the rarefaction, of a chain that a wall drives."""
     from lwa.command import shocks
@@ -331,11 +302,13 @@ def front_of_a_wall(
 
     if (behind is None) == (piston is None):
         raise InputError("--behind or --piston: one of the two is wanted")
-    cell, law, static, si, said = _chain(spheres, chain, (behind, piston, ahead))
+    chain = _chain(spheres, options)
+    demand_free_names(chain, behind, piston, ahead)
+    cell, law, static = chain.cell, chain.law, chain.precompression
     if ahead is None:
         ahead = law.compression(cell, static) / cell.spacing if static else sp.S.Zero
     found = driven(cell, law, piston, ahead) if behind is None else shock(cell, law, behind, ahead)
-    _answer(style, shocks.shock(found, shocks.UNITS if si else {}, said))
+    _answer(style, shocks.shock(found, shocks.UNITS if chain.si else {}, chain.text))
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

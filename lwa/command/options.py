@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from functools import reduce, wraps
+from dataclasses import dataclass
+from functools import reduce
 from typing import Any
 
 import click
@@ -14,7 +15,8 @@ from lwa.cell import Cell, D, k
 from lwa.closure.consistency import BRANCHES, CLOSURES, FIELDS
 from lwa.command.reading import contact_law, count, quantities, quantity
 from lwa.command.reserved_names import demand_free
-from lwa.law import NAMES
+from lwa.law import NAMES, ContactLaw
+from lwa.spheres.hertz import EXPONENT
 
 Command = Callable[..., None]
 Option = Callable[[Command], Command]
@@ -102,20 +104,8 @@ def of_cell(formats: Iterable[str]) -> Option:
 
 def of_series(k: str, order: str, formats: Iterable[str]) -> Option:
     """The options of a command on a series: its cell, exponent and order; ``k`` by default."""
-
-    def decorated(command: Command) -> Command:
-        @wraps(command)
-        def of_cell(
-            masses: tuple[sp.Expr, ...], stiffnesses: tuple[sp.Expr, ...], **options: Any
-        ) -> None:
-            cell = Cell(masses, stiffnesses)
-            demand_free_names(cell, options["k"])
-            command(cell, **options)
-
-        options = (exponent(k), MASSES, STIFFNESSES, order_option(order), style_option(formats))
-        return _with(options, of_cell)
-
-    return decorated
+    options = (exponent(k), MASSES, STIFFNESSES, order_option(order), style_option(formats))
+    return lambda command: _with(options, command)
 
 
 def given(option: str) -> bool:
@@ -124,13 +114,54 @@ def given(option: str) -> bool:
     return source is ParameterSource.COMMANDLINE
 
 
-def demand_free_names(cell: Cell, *more: sp.Expr, output: str = "") -> None:
-    """Refuse symbols of a chain with names that the output has for something else.
+def si_units(k: sp.Expr) -> dict[str, str]:
+    """SI units by key for the exponent k; values under other keys have none (τ is a length)."""
+    lengths = ("spacing", "width", "fwhm", "compression", "compressions", "static_compression")
+    return {
+        "masses": "kg",
+        "stiffnesses": f"N/m^({k})",
+        "beta": "1/m",
+        **dict.fromkeys(lengths, "m"),
+        "fwhm_time": "s",
+        **dict.fromkeys(("force", "precompression"), "N"),
+        **dict.fromkeys(("speed", "bead_velocity", "sound_speed", "time_scale"), "m/s"),
+    }
+
+
+@dataclass(frozen=True)
+class ChainInput:
+    """A chain as the options of a command or a file describe it.
+
+    precompression : the static load of a file, 0 for none.
+    si : whether the numbers are in SI.
+    """
+
+    cell: Cell
+    law: ContactLaw
+    precompression: sp.Expr = sp.S.Zero
+    si: bool = False
+
+    @property
+    def units(self) -> dict[str, str]:
+        """Units of the results by key; {} for a chain that is not in SI."""
+        return si_units(self.law.exponent if self.law.homogeneous else EXPONENT) if self.si else {}
+
+    @property
+    def text(self) -> str:
+        """The chain on one line."""
+        masses = ", ".join(map(str, self.cell.masses))
+        return f"masses {masses}; contact force A F, F = {self.law.F}"
+
+
+def demand_free_names(chain: ChainInput, *values: sp.Expr | None, output: str = "") -> None:
+    """Refuse symbols of a chain, and of values, with names that the output has for something else.
 
     output: a key of `NAMES`, the command's own name when empty.
     """
     output = output or str(click.get_current_context().info_name)
-    demand_free(output, (*cell.masses, cell.spacing, *more))
+    more = (value for value in values if value is not None)
+    cell = chain.cell
+    demand_free(output, (*cell.masses, cell.spacing, *chain.law.symbols, *more))
     demand_free(output, cell.stiffnesses, own="A")
 
 

@@ -34,13 +34,13 @@ def demand_free(output: str, values: Iterable[sp.Expr], own: str = "") -> None:
 
     >>> demand_free("wave", [sp.Symbol("m1") + sp.Symbol("p")])  # doctest: +ELLIPSIS
     Traceback (most recent call last):
-    lwa.base.errors.InputError: 'p' has a meaning of its own in what `lwa wave` prints: ...
+    lwa.base.errors.InputError: 'p' has a meaning of its own in the output of `lwa wave`: ...
     """
     names = NAMES[output].split()
     numbered = re.compile(rf"{_NUMBERED[output]}[0-9]+") if output in _NUMBERED else None
     for name in sorted({s.name for value in values for s in value.free_symbols} - {own}):
         if name in names or (numbered and numbered.fullmatch(name)):
             raise InputError(
-                f"{name!r} has a meaning of its own in what `lwa {output.split()[0]}` "
-                "prints: use another name"
+                f"{name!r} has a meaning of its own in the output of `lwa {output.split()[0]}`: "
+                "use another name"
             )

@@ -36,7 +36,7 @@ class Row:
     key : name in JSON; "fwhm.force" is the entry "force" of "fwhm". Not in JSON where empty.
     label : name in text; not in text where empty.
     symbol : name in LaTeX; not in LaTeX where empty.
-    number : the expression whose digits are told, where it is not the value; None for none.
+    number : the expression whose digits are printed, by default the value; None for no digits.
     expression : whether JSON has the expression itself, besides its digits.
     formula : LaTeX in place of the value's own where that is wider than a line.
     """
@@ -144,14 +144,14 @@ class Answer:
         parts = row.value if isinstance(row.value, tuple) else (row.value,)
         if row.number is not SAME and row.expression is False and row.number is not None:
             parts = (row.number,)
-        told = row.number is not None
-        return " = " + ", ".join(self._shown(x, told) for x in dict.fromkeys(parts)) + unit
+        digits = row.number is not None
+        return " = " + ", ".join(self._shown(x, digits) for x in dict.fromkeys(parts)) + unit
 
-    def _shown(self, value: sp.Expr, told: bool) -> str:
+    def _shown(self, value: sp.Expr, numeric: bool) -> str:
         """The value, followed by its digits where it is a number that is not rational."""
         if self.units:
             return approximate(value)
-        if not told or value.free_symbols - {self.spacing}:
+        if not numeric or value.free_symbols - {self.spacing}:
             return str(value)
         plain = self.plain(value)
         if plain.is_Rational:

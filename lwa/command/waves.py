@@ -12,6 +12,7 @@ from lwa.base.exact import InputError, exact
 from lwa.base.quantities import QUANTITIES, NoSolitaryWave
 from lwa.cell import Cell
 from lwa.command.derivation import FIELDS, chain_json, chain_text, listed
+from lwa.command.options import ChainInput
 from lwa.command.reserved_names import demand_free
 from lwa.command.rows import Answer, Row, Values, attempt
 from lwa.theory import Theory
@@ -22,20 +23,6 @@ from lwa.wave.traveling import TravelingWave
 RADIATES = 0.05
 """Bound of `lwa.Radiation` on c² and the widths from which on a note is printed: for dimers of
 spheres m2/m1 = 0.06 … 0.73."""
-
-
-def si_units(k: sp.Expr) -> dict[str, str]:
-    """SI units by key for the exponent k; values under other keys have none (τ is a length)."""
-    lengths = ("spacing", "width", "fwhm", "compression", "compressions", "static_compression")
-    return {
-        "masses": "kg",
-        "stiffnesses": f"N/m^({k})",
-        "beta": "1/m",
-        **dict.fromkeys(lengths, "m"),
-        "fwhm_time": "s",
-        **dict.fromkeys(("force", "precompression"), "N"),
-        **dict.fromkeys(("speed", "bead_velocity", "sound_speed", "time_scale"), "m/s"),
-    }
 
 
 def radiation_note(cell: Cell, k: sp.Expr) -> list[str]:
@@ -306,9 +293,9 @@ def source(theory: Theory, load: Load | None, language: str) -> str:
     return BackgroundWave(theory.cell, theory.law, p0).code(language)
 
 
-def left_out(static: sp.Expr, units: dict[str, str]) -> list[str]:
-    """The note that the load of a file does not enter."""
-    if not static:
+def left_out(chain: ChainInput) -> list[str]:
+    """A note that the load of a file does not enter."""
+    if not chain.precompression:
         return []
-    said = f"{float(static):g} {units.get('force', '')}".rstrip()
+    said = f"{float(chain.precompression):g} {chain.units.get('force', '')}".rstrip()
     return [f"the load of the file, {said}, is left out: the theory used is of a chain without"]

@@ -2,8 +2,8 @@
 
 Inverted, u = φ + Σ ℓ_n D^n ∂_x^n φ, so that with X = Σ ℓ_n D^n r_n the strain of u is p (1 + X),
 its jets are (r_m + Σ ℓ_n D^n r_{m+n}) / (1 + X), those of its velocity likewise over
-(1 + X)^{(k+1)/2}, and φ_ττ = (1 + Σ α_n D^n ∂_x^n) u_ττ. Under a law that is no power what depends
-on p is expanded about φ_x instead, the coefficients' φ_n too.
+(1 + X)^{(k+1)/2}, and φ_ττ = (1 + Σ α_n D^n ∂_x^n) u_ττ. Under a law that is no power, functions
+of p, the φ_n in the coefficients among them, are expanded about φ_x.
 """
 
 from __future__ import annotations

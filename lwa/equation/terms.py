@@ -2,7 +2,7 @@
 
 A jet is a product of (∂_x^i u / base)^e and (∂_x^i u_τ / base^{(k+1)/2})^e, the base u_x (on the
 optical branch u). A term is coefficient · base^{a + bk} · jet, a + bk the same for all of them; the
-powers of the base cancel in what is printed, as in u_x^{k-3} u_xx^3.
+powers of the base are collected in print, as in u_x^{k-3} u_xx^3.
 """
 
 from __future__ import annotations

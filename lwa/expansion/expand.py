@@ -210,7 +210,7 @@ def expand(
     k : exponent, a number or a symbol. Unlike contacts share the strain by it.
     law : a power law in place of k; other laws have no ε = k - 1.
 
-    Raises `lwa.InputError` for anything else, and for orders beyond what the algebra can do.
+    Raises `lwa.InputError` for anything else, and for orders whose terms outgrow memory.
 
     >>> from lwa import Cell
     >>> wave = expand(Cell([1]), 10)

@@ -112,7 +112,7 @@ def radiation(cell: Cell, k: sp.Expr) -> Radiation | None:
     if any(x.free_symbols for x in (*cell.masses, *cell.stiffnesses, model.k)):
         return None
     if not all(float(x) for x in (*cell.fractions, *cell.shares(model.k))):
-        return None  # a mass or a compliance that no float tells from 0
+        return None  # a mass or a compliance that underflows
     import numpy as np  # start-up: `import lwa` does not load it
 
     values = _values(model)

@@ -38,9 +38,9 @@ class Strike(Value):
     mass, velocity : of the striker, whose contact is like those of the chain.
 
     The error of the force is the larger one of 0.7 % and b ln²(m_s/m_eff), b = 3 % for m_s ≥ m_eff
-    and 11 % for lighter strikers; for Hertz contacts 0.7 % from m_eff to 2 beads. It is a bound of
-    what struck chains differ by at k = 5/4 … 5/2 and m_s of ½ to 8 beads; at other exponents it is
-    NaN. A striker's contact half or twice as stiff as the others changes the force by up to 2 %.
+    and 11 % for lighter strikers; for Hertz contacts 0.7 % from m_eff to 2 beads. It bounds the
+    differences to struck chains at k = 5/4 … 5/2 and m_s of ½ to 8 beads, and is NaN at other
+    exponents. A contact of the striker half or twice as stiff changes the force by up to 2 %.
 
     >>> strike = pulse_of_strike(Cell([1], spacing=1), mass=1, velocity=1)
     >>> round(strike.force.value, 4), abs(0.63955 - strike.force.value) < strike.force.error < 0.014

@@ -217,7 +217,7 @@ class Dispersion(Value):
         )
         numbers = np.array([float(v) for v in values])
         if not np.all(numbers > 0):
-            raise InputError("masses or compliances differ by more than a float can tell")
+            raise InputError("masses or compliances differ by more than the range of a float")
         return numbers
 
 

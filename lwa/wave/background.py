@@ -269,7 +269,7 @@ class BackgroundWave(Value):
     def code(self, language: str) -> str:
         """Speeds, small waves and τ/t as functions in a program's source text.
 
-        ``language`` as in `lwa.TravelingWave.code`; arguments are told in `lwa.wave.functions`.
+        ``language`` as in `lwa.TravelingWave.code`; arguments as in `lwa.wave.functions`.
         """
         from lwa.wave.functions import loaded_code  # here, for a quick start of the others
 

@@ -6,7 +6,7 @@ With ξ = x - V τ the strain v = u_ξ obeys a third-order equation. The substit
 
     (G + H + I) p² - (H + 3I) p + 2I = 0
 
-removes z_ξ³, the integrating factor z^a makes the rest a total derivative, and what remains is
+removes z_ξ³, the integrating factor z^a makes the rest a total derivative, and there remains
 z'' = μ z^η - σ z (Porter et al. 2008). Its compact wave is v = B cos^m(βξ) on |ξ| ≤ π/(2β),
 m = 2/(k-1). Both roots p lead to the same
 

@@ -193,7 +193,7 @@ def _half_angle(x: sp.Expr) -> sp.Expr:
 def _stable(ratio: sp.Expr, k: sp.Expr, parts: dict[sp.Expr, sp.Symbol]) -> sp.Expr:
     """Rewrite the sums of a rational expression in powers of k - 2.
 
-    What becomes a variable is added to ``parts``: A^{1/k}, and pieces of a sum too long for one
+    New local variables are added to ``parts``: A^{1/k}, and pieces of a sum too long for one
     statement (Fortran takes 256 lines).
     """
 

@@ -119,7 +119,7 @@ class NumericWave(Value):
         k, omega = np.broadcast_arrays(*given)
         if not np.all(omega > 0):
             raise InputError(f"ω = m2/m1 is {omega.min()}: it must be positive")
-        with np.errstate(all="ignore"):  # outside the domain, which the next lines tell
+        with np.errstate(all="ignore"):  # outside the domain of waves, see below
             dispersion = self._dispersion(k, omega)
             exists = (k > 1) & (dispersion > 0) & (self._factor(k, omega) > 0)
         if np.all(exists):

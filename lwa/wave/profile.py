@@ -160,7 +160,7 @@ class Profile:
 
         Under a power with small k, n points err by 6^{-2n} on a piece of length 1, and degree d has
         n = 3·2^{d-1}. Steep laws, and waves next to their limiting amplitude, vary fast at θ = 0.
-        Nodes and weights need the digits only; what differences lose is lost in the integrand.
+        Nodes and weights need the digits only; the working digits are for the integrand.
         """
         precision = int(3.33 * self.digits) + 40
         usual = 4 + max(0, math.ceil(math.log2((self.digits + 5) / 36)))

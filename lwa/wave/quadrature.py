@@ -205,7 +205,7 @@ class NumericBackground(Value):
         """Panels of one wave to ξ = ``reach``: ξ and θ at the start, length, B, and ξ - ξ(start).
 
         The last are coefficients in Legendre polynomials. At v = B/2 the wave of that rise
-        goes on, its Q less by what has been passed.
+        continues the profile, its Q diminished by the integral so far.
         """
         rows, at, passed, least = [], 0.0, np.zeros(1), _LEAST * abs(B[0])
         ((_, g, _, bend, rate),) = (x for x in self._resolved(p0, B) if len(x[0]))

@@ -59,4 +59,5 @@ def test_roles_are_rendered(notebooks):
     text = "{doc}`wave` {eq}`eq-1` {numref}`fig-x` {cite}`a` {py:obj}`~lwa.Cell`"
     assert plain(text, book) == "*The wave* (1.2) Fig. 3.1 [A 2008] `lwa.Cell`"
     assert plain("$$\nx = 1\n$$ (eq-1)", book) == "$$\nx = 1 \\tag{1.2}\n$$"
+    assert plain('<span class="tag">known</span> Sound', book) == "*[known]* Sound"
     assert plain('<div class="lwa-chain"></div>\n\nText.', book) == "\nText."

@@ -1,9 +1,9 @@
-"""The engine, compiled once, and a result of `limits`: how it is shown takes no lattice."""
+"""The engine, compiled once, and rows of `limits`: how they are shown takes no lattice."""
 
 import pytest
 
 from validation.pulses.pulse import Measured
-from validation.studies.limits import EQUAL, EXPONENTS, LIGHT, Limits, Row
+from validation.studies.limits import EQUAL, EXPONENTS, LIGHT, Row
 from validation.waves.asymptotics import LAWS, theory_values
 from validation.waves.theory import theory_at
 
@@ -14,8 +14,8 @@ def _engine(engine):
 
 
 @pytest.fixture(scope="session")
-def limits_result():
-    """A result of `limits` as its laws have it."""
+def limits_rows():
+    """Rows of `limits` as its laws have them."""
     rows = []
     for omega in (EQUAL, LIGHT):
         for k in EXPONENTS:
@@ -25,4 +25,4 @@ def limits_result():
                 lattice = float(theory[quantity]) / (1 + error)
                 found = Measured(lattice, lattice * (1 + 1e-7))
                 rows.append(Row(quantity, k, omega, theory[quantity], found, law.bound(k)))
-    return Limits(tuple(rows))
+    return rows

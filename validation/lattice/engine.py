@@ -132,8 +132,8 @@ def _compare(motion: Motion, rtol: float, short: Run, long: Run) -> None:
     change = np.abs(one - other)[leading].max() / motion.scales.velocity
     if change > _CHANGE * rtol:
         raise IntegrationError(
-            f"window is {short.window}: twice as many beads change the leading pulse by "
-            f"{change:.1g} where rtol is {rtol:g}; a longer window or the whole chain is wanted"
+            f"a window of {short.window} beads is too short: twice as many change the leading "
+            f"pulse by {change:.1g} where rtol is {rtol:g}; more or the whole chain is wanted"
         )
 
 

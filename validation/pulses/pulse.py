@@ -313,8 +313,16 @@ def exponent(x: Sequence[Measured], y: Sequence[Measured]) -> Measured:
 
 
 def compared(
-    numbers: Callable[[Source], Mapping[str, float]], fine: Source, coarse: Source
+    numbers: Callable[[Source], Mapping[str, float]], fine: Source, coarse: Source, rtol: float = 0
 ) -> dict[str, Measured]:
-    """Numbers read off an accurate run, with errors from a less accurate one."""
+    """Read numbers off an accurate run, with errors from a less accurate one.
+
+    rtol : least relative error, the accurate run's tolerance: two runs may agree by chance.
+    """
     less = numbers(coarse)
-    return {name: Measured(value, less[name]) for name, value in numbers(fine).items()}
+
+    def checked(value: float, check: float) -> Measured:
+        least = rtol * abs(value)
+        return Measured(value, check if abs(check - value) >= least else value + least)
+
+    return {name: checked(value, less[name]) for name, value in numbers(fine).items()}

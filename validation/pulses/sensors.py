@@ -3,7 +3,7 @@
 The first pulse at a sensor is the first stretch of its force above half the highest value, so that
 an echo from the wall does not count. Forces are dynamic: the static force of gravity and
 precompression is subtracted. Every number is measured in two runs; its error is the difference to
-the less accurate run, whose tolerance is `LESS` times as large.
+the less accurate run, whose tolerance is `LESS` times as large, and no less than the tolerance.
 """
 
 from __future__ import annotations
@@ -123,12 +123,12 @@ def record(
     options = {"method": method, "window": window, "progress": progress}
     run, check = twice(scene, rtol, LESS * rtol, **options)
     pairs = tuple(zip(tracks(run), tracks(check, every=2), strict=True))
-    sensors = (_train(*pair) if every else [_reading(*pair)] for pair in pairs)
+    sensors = (_train(*pair, rtol) if every else [_reading(*pair, rtol)] for pair in pairs)
     neighbours = (two for two in pairwise(pairs) if two[0][0].kind == two[1][0].kind)
     return Recording(
         run,
         tuple(reading for train in sensors for reading in train),
-        tuple(_speed(*two) for two in neighbours),
+        tuple(_speed(*two, rtol) for two in neighbours),
     )
 
 
@@ -163,7 +163,7 @@ def tracks(run: Run, every: int = 1) -> tuple[Track, ...]:
     )
 
 
-def _reading(fine: Track, coarse: Track, number: int | None = None) -> Reading:
+def _reading(fine: Track, coarse: Track, rtol: float, number: int | None = None) -> Reading:
     """The first pulse of one sensor, or one of its train."""
 
     def numbers(track: Track) -> dict[str, float]:
@@ -172,22 +172,22 @@ def _reading(fine: Track, coarse: Track, number: int | None = None) -> Reading:
 
     place = (fine.number,)
     try:
-        found, missing = compared(numbers, fine, coarse), None
+        found, missing = compared(numbers, fine, coarse, rtol), None
     except MeasureError as error:
         found, missing = {}, str(error)
     return Reading(fine.kind, place, found, fine.static, missing, 1 + (number or 0))
 
 
-def _train(fine: Track, coarse: Track) -> list[Reading]:
+def _train(fine: Track, coarse: Track, rtol: float) -> list[Reading]:
     """All pulses of one sensor that both runs show."""
     try:
         count = min(len(track.train) for track in (fine, coarse))
     except MeasureError:
-        return [_reading(fine, coarse)]
-    return [_reading(fine, coarse, number) for number in range(count)]
+        return [_reading(fine, coarse, rtol)]
+    return [_reading(fine, coarse, rtol, number) for number in range(count)]
 
 
-def _speed(start: tuple[Track, Track], end: tuple[Track, Track]) -> Reading:
+def _speed(start: tuple[Track, Track], end: tuple[Track, Track], rtol: float) -> Reading:
     """The speed of the first pulse between two sensors, each in the accurate and the other run.
 
     The errors of both arrivals add: in the less accurate run alone they may cancel.
@@ -195,7 +195,8 @@ def _speed(start: tuple[Track, Track], end: tuple[Track, Track]) -> Reading:
     (first, _), (second, _) = start, end
     read = partial(Reading, first.kind, (first.number, second.number), static=first.static)
     try:
-        late = sum(abs(fine.pulse.arrival - coarse.pulse.arrival) for fine, coarse in (start, end))
+        arrivals = [[track.pulse.arrival for track in pair] for pair in (start, end)]
+        late = sum(max(abs(fine - coarse), rtol * fine) for fine, coarse in arrivals)
     except MeasureError:
         return read({}, missing="one of the two has no pulse")
     found = {}

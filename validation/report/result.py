@@ -115,7 +115,7 @@ class Report(Pictured):
         return "".join((*tables, svg(self.pictured()), verdict))
 
     def _tree(self) -> Iterator[Report]:
-        """This report and all its parts, depth first."""
+        """Iterate over this report and all its parts, depth first."""
         yield self
         for part in self.parts:
             yield from part._tree()

@@ -27,7 +27,7 @@ def struck(masses: Sequence[float], beads: int, k: float = 1.5, **rest: Any) -> 
 
 
 def numbered(masses: Sequence[Any]) -> Cell:
-    """The cell of these masses with spacing 1; `SceneError` unless they are numbers."""
+    """Unit cell of masses that are numbers, with spacing 1; `SceneError` for symbols."""
     cell = Cell(tuple(masses), spacing=1)
     for mass in cell.masses:
         if not mass.is_number:

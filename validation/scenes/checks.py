@@ -41,7 +41,7 @@ def between(value: Any, name: str, low: float, high: float, wanted: str = "") ->
 def row(
     values: Sequence[Any], read: Callable[[Any, str], float], name: Callable[[int], str]
 ) -> Any:
-    """Read every value of a row; ``name(i)`` is the name of value i in messages.
+    """Read a row of values; ``name(i)`` is the name of value i in messages.
 
     `real` and `positive` check a row of numbers at once: a chain may have a million beads.
     """

@@ -16,7 +16,7 @@ from validation.scenes.scene import Scene
 
 
 def _law_text(law: ContactLaw) -> str:
-    """The text of a law in a file, such as "hertz2:1,2"; `SceneError` for a law without a name.
+    """Text of a law in a file, such as "hertz2:1,2"; `SceneError` for a law without a name.
 
     A named law's parameters are among the numbers in F, their negatives and their reciprocals.
     """
@@ -32,7 +32,7 @@ def _law_text(law: ContactLaw) -> str:
 
 
 def overlap(what: Scene) -> int:
-    """Number of the first contact without static force that the start compresses, or 0."""
+    """Number (from 1) of the first contact that the start compresses without static force, or 0."""
     if what.gravity or what.precompression:
         return 0
     pairs = pairwise((*what.displacements, 0.0))  # beyond them, and at the wall

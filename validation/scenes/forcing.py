@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from lwa.base.arrays import Array
-from validation.scenes.checks import SceneError, between, each, one_of, positive, real
+from validation.scenes.checks import SceneError, between, each, items, one_of, positive, real
 
 DAMPINGS = ("contact", "kuwabara_kono", "restitution")
 
@@ -34,11 +34,11 @@ class Damping:
         object.__setattr__(self, "value", read(self.value, self.kind))
 
     def power(self, k: float) -> float:
-        """The exponent of δ beside the rate."""
+        """Exponent of δ in front of the rate dδ/dt."""
         return {"contact": 0.0, "kuwabara_kono": k - 1, "restitution": (k - 1) / 2}[self.kind]
 
     def coefficients(self, k: float, stiffnesses: Array, masses: Array) -> Array:
-        """The factor beside δ^power dδ/dt of each contact; ``masses`` are the reduced ones."""
+        """Factor of δ^power dδ/dt in each contact, (contacts,); ``masses`` are reduced masses."""
         if self.kind != "restitution":
             return np.full(len(stiffnesses), self.value)
         return 2 * damping_ratio(self.value) * np.sqrt((k + 1) / 2 * masses * stiffnesses)
@@ -91,7 +91,8 @@ class Drive:
 
     def __post_init__(self) -> None:
         for name in ("time", "displacement"):
-            row = tuple(each(real)(list(getattr(self, name)), f"drive.{name}"))
+            key = f"drive.{name}"
+            row = tuple(each(real)(list(items(getattr(self, name), key)), key))
             object.__setattr__(self, name, row)
         harmonic = self.amplitude is not None or self.frequency is not None
         if (self.velocity is not None) + harmonic + bool(self.time or self.displacement) != 1:
@@ -145,7 +146,7 @@ class Drive:
 
     @property
     def fastest(self) -> float:
-        """About the greatest speed of the bead."""
+        """Approximate greatest speed of the bead."""
         if self.velocity is not None:
             return abs(self.velocity)
         if self.time:
@@ -156,7 +157,7 @@ class Drive:
 
     @property
     def longest_step(self) -> float:
-        """A step that no change of the drive escapes."""
+        """Longest step in time that resolves the drive."""
         if self.frequency is not None:
             return 1 / (8 * self.frequency)
         return float(np.diff(self.time).max()) if self.time else math.inf

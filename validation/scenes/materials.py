@@ -2,15 +2,10 @@
 
 from __future__ import annotations
 
-from lwa.spheres.hertz import Material, Sphere, stiffness
+from lwa.spheres.hertz import Material, Sphere
 
 STEEL = Material("193e9", "0.3")  # stainless steel, type 316
 PTFE = Material("1.46e9", "0.46")  # with the dynamic modulus that the paper uses
 DIAMETER = 4.76e-3  # of all beads, in m
 STEEL_BEAD = Sphere("0.45e-3", DIAMETER / 2, STEEL)  # also the striker
 PTFE_BEAD = Sphere("0.123e-3", DIAMETER / 2, PTFE)
-
-
-def contact_stiffness(sphere: Sphere, other: Sphere | Material) -> float:
-    """A of F = A δ^{3/2} between a sphere and another one or a flat wall, in N/m^{3/2}."""
-    return float(stiffness(sphere, other))

@@ -12,9 +12,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from functools import partial
-from html import escape
 from itertools import accumulate, pairwise
 from typing import Any
 
@@ -159,16 +158,6 @@ class Scene:
         size = f"{n} bead{'s' * (n != 1)}, {c} contact{'s' * (c != 1)}{wall}"
         law = f"k = {self.k:g}" if self.law is None else f"F = {self.law.F}"
         return f"{size}, {law}; duration {self.duration:g}{' s' if self.units else ''}"
-
-    def _repr_html_(self) -> str:
-        """The fields that differ from their defaults as a table, for a notebook."""
-        given = ((f.name, getattr(self, f.name), f.default) for f in fields(self))
-        rows = (
-            f"<tr><td>{name}</td><td>{escape(shorten(value))}</td></tr>"
-            for name, value, default in given
-            if value != default
-        )
-        return f"<p>{escape(str(self))}</p><table><tbody>{''.join(rows)}</tbody></table>"
 
     @property
     def size(self) -> int:

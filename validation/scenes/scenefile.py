@@ -77,12 +77,11 @@ from lwa.base.files import load
 from lwa.base.tables import Reader, Table, among, array, entries, flag, place, places, table
 from lwa.law import read_law
 from lwa.spheres.beads import read_beads, read_materials
-from lwa.spheres.hertz import Material, Sphere
+from lwa.spheres.hertz import Material, Sphere, stiffness
 from validation.scenes.checks import SceneError, each, integer, positive, real
 from validation.scenes.columns import columns
 from validation.scenes.document import overlap
 from validation.scenes.forcing import DAMPINGS, Damping, Drive
-from validation.scenes.materials import contact_stiffness
 from validation.scenes.scene import Scene
 
 MOST_BEADS = 1_000_000
@@ -110,7 +109,7 @@ def read_scene(path: str | Path) -> Scene:
 
 
 def scene(content: Any) -> Scene:
-    """The scene of a parsed file; `SceneError` for unknown keys and invalid values."""
+    """Make the scene of a parsed file; `SceneError` for unknown keys and invalid values."""
     if isinstance(content, dict) and "scene" in content:
         content = content["scene"]
     file = Table(content, "", KEYS["file"])
@@ -182,7 +181,7 @@ def _defects(value: Any, name: str) -> list[Table]:
 def _chain(
     given: Table, beads: Mapping[str, Sphere], defects: Sequence[Table]
 ) -> tuple[list[Sphere], dict[str, Any]]:
-    """The named beads (none in a chain of masses), and the fields of the `Scene`."""
+    """Named beads (none in a chain of masses), and the chain's fields of the `Scene`."""
     cell = given.read("cell", array)
     repeat = given.read("repeat", partial(integer, least=1), 1)
     n = len(cell) * repeat
@@ -238,7 +237,7 @@ def _wall(given: Table, row: Sequence[Sphere], materials: Mapping[str, Material]
         return float(given.read("stiffness", positive))
     if not row:
         raise SceneError("wall.material is given, but a chain of masses needs wall.stiffness")
-    return contact_stiffness(row[-1], given.read("material", among(materials)))
+    return float(stiffness(row[-1], given.read("material", among(materials))))
 
 
 def _damping(given: Table) -> Damping:
@@ -254,14 +253,6 @@ def _motion(value: Any, name: str) -> dict[str, Array]:
 
 
 def _drive(given: Table) -> Drive:
-    """The motion of bead 1, by numbers or from a file."""
-    names = ("time", "displacement")
-    rows: dict[str, Any] = {name: given.read(name, each(real), ()) for name in names}
-    if "file" in given:
-        rows = {name: column.tolist() for name, column in given.read("file", _motion).items()}
-    numbers = {
-        name: given.read(name, real)
-        for name in ("velocity", "amplitude", "frequency", "ramp")
-        if name in given
-    }
-    return Drive(**rows, **numbers)
+    """Read the motion of bead 1, by numbers or from a file."""
+    motion = given.read("file", _motion, {})
+    return Drive(**{name: x for name, x in given.entries.items() if name != "file"} | motion)

@@ -61,14 +61,17 @@ _ENOUGH, _REPEATS = 0.15, 7  # seconds and times after which a run is not repeat
 
 @dataclass(frozen=True)
 class Task:
-    """A scene whose highest pulse at one contact sensor is measured; its ``truth`` where known."""
+    """A scene with one contact sensor, at which the highest pulse is measured.
+
+    truth : the pulse, where it is known without a simulation.
+    """
 
     scene: Scene
     truth: Pulse | None = None
 
     @property
     def contact(self) -> int:
-        """The sensor."""
+        """Index of the contact that is measured, from 0."""
         return self.scene.contact_sensors[0]
 
     def read(self, run: Run) -> Pulse:
@@ -88,20 +91,23 @@ class Task:
 
 
 def relative_errors(pulse: Pulse, truth: Pulse) -> dict[str, float]:
-    """Relative differences of two pulses, by `NUMBERS`."""
+    """Relative differences of two pulses' `NUMBERS`, by name."""
     return {name: abs(getattr(pulse, name) / getattr(truth, name) - 1) for name in NUMBERS}
 
 
 def struck_chain(omega: float, beads: int, contact: int, duration: float) -> Task:
-    """A dimer chain, m1 = A = 1 and k = 3/2, whose first bead has velocity 1."""
+    """A dimer chain, m1 = A = 1 and k = 3/2, whose first bead has velocity 1.
+
+    omega : m2/m1. contact : index of the contact that is measured.
+    """
     sensors: dict[str, Any] = {"contact_sensors": (contact,), "samples": 2}
     return Task(chains.struck((1.0, omega), beads, duration=duration, **sensors))
 
 
 def solitary_wave(sites: int = 100) -> Task:
-    """The uniform chain's solitary wave, from bead 16 to the contact ``sites`` further.
+    """The solitary wave of equal beads, measured ``sites`` further than its start at bead 16.
 
-    The wave itself tells arrival, peak and width.
+    Arrival, peak and width are those of the wave itself.
     """
     start, wave = 16, exact_wave([1], 1.5)
     arrival, width = (sites + 0.5) / wave.c, wave.fwhm("force") / wave.c
@@ -113,8 +119,8 @@ def solitary_wave(sites: int = 100) -> Task:
 def experiment() -> Task:
     """The 2:1 chain of Porter et al. (2008), figure 2(d): steel and PTFE up to a steel wall.
 
-    In units of the striker's mass and velocity and the first contact's stiffness; the contact of
-    beads 33 and 34, before the wall answers.
+    Units are the striker's mass and velocity and the first contact's stiffness. The contact of
+    beads 33 and 34 is measured, before the wall reflects the pulse.
     """
     si = chains.chain_scene(1.37, 38, (16, 34), 0.0, 1e-3, N=2)
     m, A = si.masses[0], si.stiffnesses[0]
@@ -133,7 +139,7 @@ def experiment() -> Task:
 
 
 def precompressed() -> Task:
-    """200 equal beads under a static force of 1 against a wall, from the first to contact 150."""
+    """200 equal beads under a static force of 1 against a wall, measured at contact 150."""
     loose = struck_chain(1.0, 200, 150, 132.1).scene  # the pulse takes 0.814 units of time a site
     return Task(replace(loose, wall=1.0, precompression=1.0))
 
@@ -152,9 +158,10 @@ NAMES = (*TASKS, THEORY)
 
 @dataclass(frozen=True)
 class Timing:
-    """One run of a method: relative errors by `NUMBERS`, infinite without a pulse; CPU seconds.
+    """Error and CPU time of one run.
 
-    method : with "window" where the run had one. setting : tolerance.
+    method : name of the integrator, with "window" where the run had one. setting : tolerance.
+    errors : relative, by `NUMBERS`; infinite without a pulse.
     """
 
     task: str
@@ -165,7 +172,7 @@ class Timing:
 
     @property
     def error(self) -> float:
-        """The largest of the errors."""
+        """Largest of the errors."""
         return max(self.errors.values())
 
 
@@ -173,7 +180,7 @@ _Found = TypeVar("_Found")
 
 
 def timed(run: Callable[[], _Found]) -> tuple[_Found, float]:
-    """Result of a run, and the median of its CPU times, repeated where they are short."""
+    """Result of a run and its CPU time in seconds; of a short run the median of several."""
     taken: list[float] = []
     while True:
         start = time.process_time()
@@ -184,10 +191,10 @@ def timed(run: Callable[[], _Found]) -> tuple[_Found, float]:
 
 
 def cost(rows: Iterable[Timing], wanted: float) -> float:
-    """CPU time of a method's cheapest run from which on the peak force is good to ``wanted``.
+    """CPU time at which a method's peak force errs by ``wanted`` at most; ∞ if it never does.
 
-    Single runs may be good by chance, where steps meet openings of contacts: every costlier run
-    must be as good. Infinite where the costliest is not.
+    It is that of the cheapest run such that every costlier run is as good: single runs may be good
+    by chance, where steps meet openings of contacts.
     """
     costly = sorted(rows, key=lambda row: -row.seconds)
     good = takewhile(lambda row: row.errors["peak"] <= wanted, costly)
@@ -195,7 +202,7 @@ def cost(rows: Iterable[Timing], wanted: float) -> float:
 
 
 def runs(name: str, task: Task, truth: Pulse) -> Iterator[Timing]:
-    """Rows of a task, for each method and tolerance."""
+    """Run a task by each method at each of its tolerances."""
     for method, tolerances in METHODS.items():
         windowed = method in COMPILED and task.scene.wall is None
         for window in (False, True) if windowed else (False,):
@@ -211,7 +218,7 @@ def runs(name: str, task: Task, truth: Pulse) -> Iterator[Timing]:
 
 
 def by_method(rows: Iterable[Timing]) -> dict[str, list[Timing]]:
-    """Rows of each method, in their order."""
+    """Group runs by their method."""
     return {name: list(its) for name, its in groupby(rows, lambda row: row.method)}
 
 
@@ -229,7 +236,7 @@ _NOTE = "CPU time without compilation, on this machine; - where no run attains i
 
 
 def _costs(task: str, rows: Sequence[Timing]) -> list[tuple[Any, ...]]:
-    """Task, method and costs at `WANTED`, None where not attained; the best method first."""
+    """Task, method and its costs at `WANTED` (None where not attained), the best method first."""
     found = [
         (task, name, *(cost(its, wanted) for wanted in WANTED))
         for name, its in by_method(rows).items()
@@ -250,7 +257,7 @@ def _panel(task: str, rows: Sequence[Timing]) -> Panel:
 
 @study(option("--task", "names", multiple=True, type=click.Choice(NAMES), says="Only this task."))
 def accuracy(names: Collection[str] = (), progress: Progress[str] = iter) -> Report:
-    """Speed against error: integrators on fixed tasks, theories against true waves. Three minutes.
+    """Speed against error: integrators on fixed tasks, theories against true waves (three minutes).
 
     names: tasks to run, by default all; raises `lwa.InputError` for a name beside `NAMES`. JSON:
     ``rows``, ``costs`` by method, ``references`` and ``theories``.

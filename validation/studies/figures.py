@@ -45,8 +45,11 @@ class Speed(NamedTuple):
 
 @dataclass(frozen=True)
 class Scaling:
-    """Figure 3a for one modulus of PTFE: V_s and F_m = (F_15 + F_34)/2 at each drop height, and
-    the canonical theory's speed at each F_m."""
+    """Figure 3a for one modulus of PTFE.
+
+    E : the modulus, in Pa. speeds, forces : V_s and F_m = (F_15 + F_34)/2 at each drop height.
+    theory : speed of the canonical wave at each F_m.
+    """
 
     E: float
     speeds: tuple[Measured, ...]
@@ -55,7 +58,7 @@ class Scaling:
 
     @property
     def exponent(self) -> Measured:
-        """The fitted e of V_s ~ F_m^e."""
+        """Exponent e of V_s ~ F_m^e, by least squares."""
         return exponent(self.forces, self.speeds)
 
 
@@ -124,7 +127,7 @@ def _scaling_panel(rows: Sequence[Scaling]) -> Panel:
 
 @study()
 def figures(progress: Progress[Any] = iter) -> Report:
-    """The paper's figures: force records, N:1 chains, force against speed. Ten seconds.
+    """The paper's figures: force records, N:1 chains, force against speed (ten seconds).
 
     ``speeds``: ``N``, ``speed``, ``force`` and ``theory``, each ``_value``; ``scalings``:
     ``modulus_value``, ``exponent_value`` and lists over the drop heights ``speed_value``,

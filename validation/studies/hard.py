@@ -59,7 +59,7 @@ FORMS: Mapping[str, tuple[Any, ...]] = {
 
 
 def form(wave: TravelingWave, name: str, *arguments: Any) -> sp.Expr:
-    """An entry of `FORMS`, exact; ln B of a wave of speed V is (2 ln V - ln V²(B = 1))/(k - 1)."""
+    """Exact value of an entry of `FORMS`; ln B at speed V is (2 ln V - ln V²(B = 1))/(k - 1)."""
     if name == "log_amplitude":
         return (2 * sp.log(*arguments) - sp.log(wave.speed_factor)) / (wave.k - 1)
     found = getattr(wave, name)
@@ -72,7 +72,10 @@ def closed_wave(closure: str) -> TravelingWave:
 
 
 def true_values(wave: TravelingWave, expression: sp.Expr, k: Array, omega: Array) -> Any:
-    """An expression of a `closed_wave` at points (k, ω), by mpmath; None without a wave."""
+    """Evaluate an expression of a `closed_wave` by mpmath, to `DIGITS` digits.
+
+    k, omega : arrays of one shape. Returns an array of mpmath numbers, None where there is no wave.
+    """
     m1, m2 = wave.cell.masses
     value, *positive = (
         sp.lambdify((wave.k, m2), each.subs(m1, 1), "mpmath")
@@ -88,7 +91,7 @@ def true_values(wave: TravelingWave, expression: sp.Expr, k: Array, omega: Array
 
 
 def in_ulps(value: Array, true: Any) -> Array:
-    """|value - true| over the spacing of float64 there; ∞ for no number, NaN for no wave."""
+    """|value - true| in units of float64's spacing there; ∞ for no number, NaN for no wave."""
 
     def loss(found: float, at: Any) -> float:
         if at is None or not math.isfinite(found):
@@ -116,7 +119,7 @@ def printed_beta(k: Array, omega: Array) -> Array:
 
 
 def losses(exponents: Array = EXPONENTS, ratios: Array = RATIOS) -> dict[tuple[str, str], Array]:
-    """Ulps lost by every form, by form and closure, and by β as printed: (k, ω), as `in_ulps`."""
+    """Ulps that float64 loses, by form and closure, and for β as printed: (exponents, ratios)."""
     k, omega = np.meshgrid(exponents, ratios, indexing="ij")
     found = {}
     for closure in CLOSURES:
@@ -163,7 +166,7 @@ def ulps() -> Report:
 
 
 def width_error(wave: BackgroundWave, p0: float, quantity: str) -> float:
-    """Relative error of a wave's FWHM on a background in float64."""
+    """Relative error of the FWHM in float64 of a wave on the background p0."""
     true = wave.on(sp.Rational(p0)).fwhm(sp.Rational(B), quantity, 50)
     return abs(float(sp.Float(float(wave.numeric().fwhm(p0, B, quantity)), 50) / true - 1))
 
@@ -212,10 +215,10 @@ def contact_loss() -> Report:
 
 
 def splitting_errors(k: float, opens: bool, steps: Array) -> Array:
-    """Root mean square error at each step of six unequal beads under a load against a wall.
+    """Error of the splitting at each step, for six unequal beads under a load against a wall.
 
-    The cost of an opening depends on its place within a step: the mean is that over six initial
-    velocities and nine factors of the step.
+    An opening costs more or less by its place within a step: the root mean square is taken over
+    six initial velocities and nine factors of the step.
     """
     squares, factors = np.zeros(len(steps)), np.linspace(0.8, 1.25, 9)
     starts = np.random.default_rng(8).uniform(-1, 1, (6, 6))
@@ -281,13 +284,13 @@ def pressed(
 
 
 def three_beads(opens: bool, duration: float) -> Scene:
-    """Scene of `long_run`."""
+    """Three unequal beads under a load against a wall, the scene of `long_run`."""
     start = (0.0, 0.8, -0.6) if opens else (0.0, 0.1, -0.05)
     return pressed((1.0, 0.3, 2.0), start, opens, duration)
 
 
 def energy_errors(opens: bool, step: float, lasting: float, segments: int) -> Array:
-    """Relative energy error of `three_beads` at the ends of equal segments, 0 first."""
+    """Relative energy error of `three_beads` at the ends of equal segments, (segments + 1,)."""
     scene, energy = three_beads(opens, lasting / segments), [1.0]
     for _ in range(segments):
         run = simulate(scene, method=METHOD, step=step)
@@ -298,7 +301,7 @@ def energy_errors(opens: bool, step: float, lasting: float, segments: int) -> Ar
 
 
 def spreading(walk: Array) -> float:
-    """Exponent of the root mean square difference of a record in its lag."""
+    """Exponent p of |x(t + lag) - x(t)| ~ lag^p in root mean square: 1/2 of a random walk."""
     lags = 2 ** np.arange(6)
     spread = [math.sqrt(np.mean((walk[lag:] - walk[:-lag]) ** 2)) for lag in lags]
     return float(np.polyfit(np.log(lags), np.log(spread), 1)[0])
@@ -315,17 +318,12 @@ CASES: Mapping[str, Callable[[], Report]] = {
 """The cases by their names."""
 
 
-@study(
-    option(
-        "--case",
-        "names",
-        multiple=True,
-        type=click.Choice(tuple(CASES)),
-        says="Only this case; may be given again.",
-    )
-)
+_NAMES = click.Choice(tuple(CASES))
+
+
+@study(option("--case", "names", multiple=True, type=_NAMES, says="Only this case."))
 def hard(names: Collection[str] = (), progress: Progress[str] = iter) -> Report:
-    """Last digits at extreme k, ω and loads, contacts that open, and long runs. Half a minute.
+    """Last digits at extreme k, ω and loads, contacts that open, and long runs (half a minute).
 
     names: cases to run, by default all; raises `lwa.InputError` for a name beside `CASES`. JSON:
     ``cases``, each with ``case``, ``question``, ``outcome``, numbers, ``findings`` and ``panel``.
@@ -337,14 +335,13 @@ def hard(names: Collection[str] = (), progress: Progress[str] = iter) -> Report:
         document, (panel,), (answer,) = outcome.document(), outcome.panels, outcome.notes
         if failed := sum(not finding.ok for finding in outcome.findings):
             answer = f"{failed} not as expected, which was: {answer}"
-        told = {"case": name, "question": outcome.title, "outcome": answer}
         rows += [(name, *finding.values()) for finding in document["findings"]]
-        cases.append(told | document | {"panel": panel.document()})
-        title, drawn = f"{name}\n{outcome.title}", replace(panel, title=name)
-        parts.append(replace(outcome, title=title, notes=(answer,), panels=(drawn,)))
+        head = {"case": name, "question": outcome.title, "outcome": answer}
+        cases.append(head | document | {"panel": panel.document()})
+        panels, title = (replace(panel, title=name),), f"{name}\n{outcome.title}"
+        parts.append(replace(outcome, title=title, notes=(answer,), panels=panels))
     failing = sum(not part.ok for part in parts)
-    title = (
-        f"{len(cases)} case{'s' * (len(cases) > 1)}: {f'{failing} fail' if failing else 'all hold'}"
-    )
+    verdict = f"{failing} fail" if failing else "all hold"
+    title = f"{len(cases)} case{'s' * (len(cases) > 1)}: {verdict}"
     table = Table(tuple(map(Column, ("case", *_FINDING))), tuple(rows))
     return Report(title, (table,), data={"cases": cases}, parts=tuple(parts))

@@ -71,7 +71,7 @@ amplitude is set by F_m, by V_s, or by all of the striker's momentum; error: the
 
 
 def chain_cell(N: int = 1, ptfe: Sphere = PTFE_BEAD) -> Cell:
-    """N steel beads and one of PTFE, in SI units."""
+    """Unit cell of N steel beads and one of PTFE, in SI units."""
     return Cell.of_spheres([STEEL_BEAD] * N + [ptfe])
 
 
@@ -89,7 +89,7 @@ def recorded_chain(
 
 
 def chain_runs(sensors: Sequence[int], **options: Any) -> tuple[Run, Run]:
-    """`recorded_chain`: the run that counts and the run that gives its errors."""
+    """Simulate a `recorded_chain` at both of `TOLERANCES`."""
     return twice(recorded_chain(sensors, **options), *TOLERANCES)
 
 
@@ -179,7 +179,7 @@ def _row(quantity: str, lattice: Measured, theory: Mapping[str, float]) -> tuple
 
 
 def theory_numbers(wave: PhysicalWave, pair: tuple[int, ...] = SENSORS) -> dict[str, float]:
-    """`numbers` of the theory's wave."""
+    """`numbers` of the theory's wave, as sensors around the two beads would record it."""
     V, sensors = float(wave.speed), range(pair[0] - 1, pair[1] + 1)
 
     def train(peak: Any, fwhm: float) -> Train:
@@ -242,7 +242,7 @@ def _speeds(lattice: Mapping[str, Measured], theory: Mapping[str, float]) -> Ite
 
 
 def _records(run: Run, pair: tuple[int, ...], theory: PhysicalWave) -> Iterator[Curve]:
-    """Dynamic forces over time; the theory's peak stands at the lattice's."""
+    """Dynamic forces over time, with the theory's wave shifted to the lattice's peak."""
     pulses = Train.of(run).pulses
     forces = dict(zip(run.scene.bead_sensors, run.bead_force, strict=True))
     for i, bead in enumerate(pair):

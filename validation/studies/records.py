@@ -35,7 +35,7 @@ _MOST_BYTES = 10**9
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Stored(Records):
-    """Records read from a file, and the result's tables.
+    """Records of a run as read from a file, with the tables of its result.
 
     sensors, speeds : columns of the tables by their keys; NaN without a pulse.
     """

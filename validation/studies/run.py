@@ -51,7 +51,7 @@ All keys: python -m pydoc validation.scenes.scenefile"""
 
 
 def report(found: Recording, every: bool = False) -> Report:
-    """The result of a run; ``every``: with all pulses at each sensor, not only the first.
+    """Report of a run, with all pulses at each sensor (``every``) or the first one.
 
     ``scene`` (as in a file, see `validation.scenes.scenefile`);
     ``sensors``: ``kind``, ``number``, with ``every`` ``pulse``, counted from 1, ``arrival_value``,
@@ -121,7 +121,7 @@ def _measured(names: Sequence[str], labels: Sequence[str]) -> list[Column]:
 
 
 def _cells(found: Reading, names: Sequence[str]) -> list[Any]:
-    """The numbers by name; in place of the first one "not followed", where a window had left."""
+    """Numbers by name; where a window had left the sensor "not followed" stands for the first."""
     first, *others = names
     left = "not followed" if (found.missing or "").startswith("not followed") else None
     return [found.numbers.get(first, left), *map(found.numbers.get, others)]
@@ -136,7 +136,7 @@ def _out(context: click.Context, given: click.Parameter, path: str | None) -> Pa
 
 
 def _window(context: click.Context, given: click.Parameter, value: str | None) -> bool | int:
-    """False without the option, True without its value, or the number of beads."""
+    """Read ``--window``: the number of beads, True without a value, False without the option."""
     return value == "" or (whole(context, given, value) or False)
 
 

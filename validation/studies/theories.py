@@ -49,14 +49,14 @@ def _series(order: int, omega: sp.Rational, **k: sp.Rational) -> list[EpsilonSer
 
 
 def _approximant(n: int, k: sp.Rational, omega: sp.Rational) -> Prediction:
-    """Padé approximant [n/n] of the series of equal beads, a closed formula in k."""
+    """Padé approximant [n/n] of the series for equal beads, a closed formula in k."""
     if omega != 1:
         raise NoSolitaryWave("a formula for equal beads")
     return [float(row.pade(k, n, n)) for row in _series(2 * n, omega)], None
 
 
 def _summed(n: int, k: sp.Rational, omega: sp.Rational) -> Prediction:
-    """Sums of n orders of the series in ε."""
+    """Sum of the series in ε to order n, with its own estimate of the error."""
     sums = [row.at() for row in _series(n, omega, k=k)]
     return [found.value for found in sums], [abs(found.error / found.value) for found in sums]
 
@@ -90,7 +90,7 @@ CASES = tuple(
 
 @dataclass(frozen=True)
 class Rung:
-    """One theory at one k and ω.
+    """Errors and cost of one theory at one k and ω.
 
     error_value: theory over truth - 1, by `NAMES`; None without a wave, with the reason in
         ``missing``.
@@ -105,13 +105,13 @@ class Rung:
     missing: str | None = None
 
     def error(self, name: str) -> float | None:
-        """Error of one of `NAMES`, None without a wave."""
+        """Theory over truth - 1 of one of `NAMES`; None without a wave."""
         return self.error_value[name] if self.error_value else None
 
 
 @dataclass(frozen=True)
 class Place:
-    """Rungs of all theories at one k and ω, with the truth by `NAMES` and its ``kind``."""
+    """All theories at one k and ω, with the truth by `NAMES` and its ``kind``."""
 
     k: sp.Rational
     omega: sp.Rational

@@ -44,20 +44,20 @@ FEWEST = 40  # points on 0 … L
 
 
 def widening(masses: tuple[float, float]) -> float:
-    """Length of the canonical wave over the length in the uniform chain, √(12 I/D²)."""
+    """Width of the canonical wave over that of equal masses, √(12 I/D²)."""
     m1, m2 = masses
     return 2 * math.sqrt(m1 * m1 - m1 * m2 + m2 * m2) / (m1 + m2)
 
 
 def ample_half_period(masses: tuple[float, float], k: float) -> float:
-    """Half period L at which a uniform chain's pulse has ended; a dimer's has at 0.6 L."""
+    """Half period L at which a pulse has ended: at L for equal masses, at 0.6 L in a dimer."""
     # Near k = 1, log r = -3 (k-1) ξ²; above, r falls like exp(-k^ξ). Twice 1e-8 makes 1e-16.
     length = 1 + 3.7 / math.sqrt(k - 1) if k < 2 else 1 + 3.7 / math.log2(k) ** 0.5
     return length if masses[0] == masses[1] else max(8.0, 1.15 * length * widening(masses))
 
 
 def enough(masses: tuple[float, float], k: float, half_period: float) -> int:
-    """Number of points on 0 … L that resolve the wave to rounding."""
+    """Number of points on 0 … L = ``half_period`` that resolve the wave to rounding."""
     # Per site: the pulse's Fourier width, its steeper flanks at large k, the light beads' rattling.
     beads = math.sqrt(sum(masses) / min(masses) - 1)
     dense = 3 + 9 * math.sqrt(k - 1) + 7 * max(k - 2, 0) + 1.5 * beads
@@ -65,7 +65,7 @@ def enough(masses: tuple[float, float], k: float, half_period: float) -> int:
 
 
 def rise(strain: Array, k: float, p0: float) -> Array:
-    """(p0 + r)_+^k - p0^k, without cancellation at small r."""
+    """Force over the static one, (p0 + r)_+^k - p0^k, without cancellation at small r."""
     if not p0:
         return np.asarray(np.maximum(strain, 0) ** k)
     with np.errstate(divide="ignore"):  # an open contact
@@ -75,7 +75,7 @@ def rise(strain: Array, k: float, p0: float) -> Array:
 def respond(
     force: NDArray[np.complex128], inverse: tuple[float, float], half_period: float
 ) -> NDArray[np.complex128]:
-    """Coefficients of c² a from those of F_a by (*), the mean set to 0.
+    """Fourier coefficients of c² a from those of F_a by (*), with mean 0.
 
     Coefficients are those of e^{iqξ}, q = 0 … πn/L; ``inverse`` is (1/m1, 1/m2).
     """
@@ -87,7 +87,7 @@ def respond(
 
 
 def coefficients(force: Array) -> tuple[Array, Array]:
-    """Coefficients of E in cos qξ and of O in sin qξ, from F_a on a `circle`."""
+    """Fourier coefficients of E in cos qξ and of O in sin qξ, from F_a on a `circle`."""
     n = len(force) // 2
     found = scipy.fft.rfft(force) / n
     found[[0, n]] /= 2
@@ -95,7 +95,7 @@ def coefficients(force: Array) -> tuple[Array, Array]:
 
 
 def circle(half_period: float, n: int) -> Array:
-    """ξ at 2n points of a period: 0 … L, then from -L to 0."""
+    """The 2n points ξ of a period: 0 … L, then from -L to 0."""
     return np.asarray(half_period / n * np.append(np.arange(n + 1), np.arange(1 - n, 0)))
 
 
@@ -126,18 +126,18 @@ class Problem:
         self.inverse = 1 / masses[0], 1 / masses[1]
 
     def forces(self, z: Array) -> Array:
-        """F_a on the whole circle."""
+        """F_a on the whole circle, (2 points,), from the forces z at the unknowns' places."""
         return np.append(z, z[self.n - 1 : 0 : -1]) if self.uniform else z
 
     def strains(self, z: Array, inverse: tuple[float, float]) -> Array:
-        """c² a at the unknowns' places; 0 at L."""
+        """c² a at the unknowns' places, (count,), 0 at L."""
         force = scipy.fft.rfft(self.forces(z))
         force = np.asarray(force.real if self.uniform else force, complex)  # no rounding over q²
         a = scipy.fft.irfft(respond(force, inverse, self.L), 2 * self.n)
         return np.asarray(a - a[self.n])[: self.count]
 
     def responses(self, at: NDArray[np.int_], inverse: tuple[float, float]) -> Array:
-        """Matrix of `strains` between the places ``at`` of the grid."""
+        """Jacobian of `strains` between the grid points ``at``, (len(at), len(at))."""
         n = self.n
         plus, minus = (respond(np.full(n + 1, f, complex), inverse, self.L) for f in (1, 1j))
         minus = 1j * minus
@@ -155,7 +155,7 @@ class Problem:
         return np.asarray((to(at) + to(-at)) * np.where(at % n == 0, 0.5, 1.0))
 
     def wave(self, z: Array, c2: float, unknown: str = "") -> tuple[Array, float, float]:
-        """Forces, c² and the last unknown of the wave near ``z``, ``c2``.
+        """Solve for the wave near the forces ``z`` and ``c2``; returns forces, c² and last unknown.
 
         unknown : "mass" (1/m2) or "kick" for T = 0; "" for none, and the last number is c².
 

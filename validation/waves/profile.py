@@ -1,4 +1,4 @@
-"""Profiles of traveling waves and the numbers read off them: peaks, widths, tails, energy.
+"""Profiles of traveling waves and the numbers read off them: peaks, widths, tails.
 
 A = D = 1. A contact's strain is a(ξ) or b(ξ) = a(-ξ), ξ = x - ct (`validation.waves.newton`). The
 contact law r_+^k has no scale of its own, so that multiples of a wave are waves: r → s r with
@@ -56,14 +56,14 @@ class Profile(ArrayValue, Pictured):
 
     @abstractmethod
     def _front(self, xi: Array) -> Array:
-        """a(ξ)."""
+        """Strain a(ξ), in the shape of ξ."""
 
     @abstractmethod
     def velocity(self, xi: ArrayLike, bead: int = 0) -> Array:
-        """Velocity of beads m1 (bead 0) or m2 (bead 1); a cell far away has no momentum."""
+        """Velocity of beads m1 (bead 0) or m2 (bead 1) at ξ; a cell far away has no momentum."""
 
     def strain(self, xi: ArrayLike, contact: int = 0) -> Array:
-        """Strain a(ξ) of contacts behind beads m1 (contact 0), or b(ξ) (contact 1)."""
+        """Strain a(ξ) of the contacts behind beads m1 (contact 0), or b(ξ) of the others (1)."""
         at = np.asarray(xi, float)
         return self._front(-at if contact % 2 else at)
 
@@ -73,7 +73,7 @@ class Profile(ArrayValue, Pictured):
 
     @property
     def c(self) -> float:
-        """Speed dx/dt."""
+        """Speed dx/dt of the wave."""
         return math.sqrt(self.c2)
 
     @property
@@ -95,7 +95,7 @@ class Profile(ArrayValue, Pictured):
         return np.asarray(getattr(self, name)(xi))
 
     def peak(self, name: str) -> tuple[float, float]:
-        """Place and value of the maximum of a quantity."""
+        """Place ξ and value of the maximum of a quantity."""
         xi = np.linspace(-self.half_period, self.half_period, 4 * self.samples + 1)
         return summit(lambda x: self.quantity(name, x), xi)
 
@@ -119,7 +119,7 @@ class Profile(ArrayValue, Pictured):
         return float(width)
 
     def rms_width(self, name: str = "strain") -> float:
-        """√(∫ (ξ - mean)² f / ∫ f) over the pulse, of the positive part f of a quantity."""
+        """Root mean square width √(∫ (ξ - mean)² f / ∫ f) of the positive part f of a quantity."""
         n = 8 * self.samples
         xi = self.pulse * np.arange(-n, n) / n  # trapezia: exact for a pulse that has ended
         f = np.maximum(self.quantity(name, xi), 0.0)
@@ -127,7 +127,7 @@ class Profile(ArrayValue, Pictured):
         return math.sqrt(f @ (xi - mean) ** 2 / f.sum())
 
     def rattle(self, start: float) -> float:
-        """Largest |a(ξ) - a(-ξ)|/2 on start ≤ |ξ| ≤ L: the displacement of the light beads."""
+        """Amplitude of the light beads' motion, the largest |a(ξ) - a(-ξ)|/2 on start ≤ |ξ| ≤ L."""
         outside = np.linspace(start, self.half_period, 2 * self.samples)
         return summit(lambda x: np.abs(self.strain(x) - self.strain(-x)) / 2, outside)[1]
 
@@ -196,47 +196,14 @@ class ExactWave(Profile):
 
     @cached_property
     def rest(self) -> float:
-        """Strain left at L by the forces in a chain of equal masses, over the peak strain.
+        """Strain that a wave of equal masses still has at L, over the peak strain.
 
-        The wave has strain 0 at L; the forces leave ∫ (1-|s|) F(L-s) ds / c², (*) at q = 0.
+        The profile is 0 at L; the forces make ∫ (1-|s|) F(L-s) ds / c² there, (*) at q = 0.
         """
         if self.omega != 1:
             return 0.0
         even, c2 = self._strains[0], self.c2 * self.masses[0]
         return float(abs(self.even[0] / c2 - even[0]) / even.sum())
-
-    @property
-    def energy(self) -> float:
-        """Kinetic and elastic energy of the pulse above the static state, in a whole chain.
-
-        The energy of a moment does not depend on the moment: its mean over all is an integral.
-        """
-        p0, k = self.background, self.k
-        xi, step = self._pulse_grid
-        density = 0 * xi
-        for i, mass in enumerate(self.masses):
-            r = self.strain(xi, i)
-            density += newton.rise(r, k + 1, p0) / (k + 1) - p0**k * r
-            density += mass / 2 * self.velocity(xi, i) ** 2
-        return float(density.sum()) * step / 2
-
-    @property
-    def momentum(self) -> float:
-        """Momentum of the pulse in a whole chain."""
-        xi, step = self._pulse_grid
-        one, two = (m * self.velocity(xi, i).sum() for i, m in enumerate(self.masses))
-        return float(one + two) * step / 2
-
-    @property
-    def effective_mass(self) -> float:
-        """P²/(2E), the mass of a particle of the pulse's momentum and energy."""
-        return self.momentum**2 / (2 * self.energy)
-
-    @property
-    def _pulse_grid(self) -> tuple[Array, float]:
-        """Points of the pulse and their distance, for sums that are exact for smooth pulses."""
-        n = 8 * self.samples
-        return self.pulse * np.arange(-n, n) / n, self.pulse / n
 
     def scaled(self, *, speed: Any = None, force: Any = None) -> ExactWave:
         """Scale the wave to another speed dx/dt or another peak contact force.
@@ -258,13 +225,13 @@ class ExactWave(Profile):
         return self.times(float(now))
 
     def times(self, s: float) -> ExactWave:
-        """The wave with s times these strains, on s times this background."""
+        """The wave of s times these strains and background; c² scales as s^{k-1}."""
         c2, force, p0 = float(self.c2 * s ** (self.k - 1)), s**self.k, s * self.background
         return replace(self, c2=c2, even=self.even * force, odd=self.odd * force, background=p0)
 
     @cached_property
     def _strains(self) -> tuple[Array, Array]:
-        """Coefficients of e and o."""
+        """Fourier coefficients of e and o."""
         light, c2 = 1 / self.omega, self.c2 * self.masses[0]  # 1/m1 itself may be out of range
         odd = self.odd if light != 1 else 0 * self.odd  # rounding, divided by q²
         found = newton.respond(self.even - 1j * odd, (1, light), self.half_period) / c2
@@ -282,14 +249,14 @@ class ExactWave(Profile):
         return np.where(self._ended(xi), 0.0, self._velocity(xi, bead) - mean)
 
     def _velocity(self, xi: ArrayLike, bead: int) -> Array:
-        """Velocity up to a constant, by c v' = (force behind - force ahead)/m."""
+        """Velocity less a constant, the integral of c v' = (force behind - force ahead)/m."""
         sign, q = (-1 if bead % 2 else 1), np.pi / self.half_period * np.arange(1, self.samples)
         push = -2 * np.sin(q / 2) * self.even[1:] + sign * 2 * np.cos(q / 2) * self.odd[1:]
         row = np.append(0.0, -push / q) / (self.masses[bead % 2] * self.c)
         return self._sum(xi, row, 0 * row)
 
     def _sum(self, xi: ArrayLike, even: Array, odd: Array) -> Array:
-        """Σ even_j cos(q_j ξ) + odd_j sin(q_j ξ)."""
+        """Fourier sum Σ even_j cos(q_j ξ) + odd_j sin(q_j ξ)."""
         rows = np.append(even - 1j * odd, np.zeros(-self.samples % _ROW)).reshape(-1, _ROW)
         q = np.pi / self.half_period * np.arange(rows.size)
         # e^{iqξ} of every q as a product of two of q's first 16 and of every 16th q.
@@ -297,14 +264,14 @@ class ExactWave(Profile):
         return np.asarray(((first @ rows.T) * every).real.sum(axis=-1))
 
     def _ended(self, xi: ArrayLike) -> NDArray[np.bool_]:
-        """Whether a solitary wave has ended: beyond L it is not repeated."""
+        """True beyond L for a solitary wave, which is not repeated there."""
         return np.asarray((np.abs(xi) >= self.half_period) & self.solitary)
 
 
 def at_unit_force(
     masses: tuple[float, float], problem: newton.Problem, forces: Array, c2: float
 ) -> ExactWave:
-    """The wave of a problem's solution, scaled to peak force 1, with its tail and residual."""
+    """Scale the solution of a problem to peak force 1; measure its tail and residual."""
     even, odd = newton.coefficients(problem.forces(forces))
     wave = ExactWave(masses, problem.k, c2, problem.L, even, odd, 0.0, 0.0, problem.p0)
     wave = wave.times(1 / (problem.p0 + wave.peak("strain")[1]))
@@ -317,7 +284,7 @@ def at_unit_force(
 
 
 def summit(f: Callable[[Any], Array], xi: Array) -> tuple[float, float]:
-    """Place, to 1e-8, and value of a smooth function's maximum, near the largest sample."""
+    """Place (to 1e-8) and value of a smooth function's maximum, near the largest sample."""
     value = f(xi)
     i = int(np.argmax(value))
     bounds = xi[max(i - 1, 0)], xi[min(i + 1, len(xi) - 1)]

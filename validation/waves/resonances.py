@@ -63,19 +63,19 @@ def resonances(k: Any, count: Any) -> Resonances:
 
 
 def _root(wave: ExactWave) -> float:
-    """√(m1/m2), to which the frequency of the light beads is proportional."""
+    """Root √(m1/m2), to which the frequency of the light beads is proportional."""
     return math.sqrt(1 / wave.omega)
 
 
 def _ladder(waves: list[ExactWave], count: int) -> tuple[ExactWave, ...]:
-    """The first waves and the next ones, down to the ``count``-th ratio."""
+    """Continue a list of waves to ``count`` waves, each at the next smaller ratio."""
     while len(waves) < count:
         waves.append(_next(*waves[-2:]))
     return tuple(waves[:count])
 
 
 def _followed(wave: ExactWave, k: float) -> ExactWave:
-    """The wave at another k whose ratio has the same place in the order."""
+    """Follow a wave in k: the ratio keeps its place in the order of all ratios."""
     e, end = math.log(wave.k - 1), math.log(k - 1)
     step, slope = 0.1, 0.0
     while e != end:
@@ -95,7 +95,7 @@ def _followed(wave: ExactWave, k: float) -> ExactWave:
 
 
 def _ending(root: float, k: float, start: ExactWave | None) -> ExactWave | None:
-    """The solitary wave near the ratio root^-2, from a near wave or the theory's; None if lost."""
+    """Solve for a solitary wave near the ratio root^-2; None if the solution is not solitary."""
     try:
         wave = solve((1.0, root**-2), k, start=start, free=True)
     except NoWave:

@@ -117,7 +117,7 @@ def solve(
     start: Profile | None = None,
     free: bool = False,
 ) -> ExactWave:
-    """One wave by Newton's method, scaled to peak force 1, on whatever branch the method reaches.
+    """Solve for one wave of peak force 1, on whatever branch Newton's method reaches.
 
     start : a near wave, by default the theory's. free : solve for the m2 of a solitary wave.
 
@@ -128,7 +128,7 @@ def solve(
 
 
 def solved(problem: newton.Problem, start: Start, unknown: str = "") -> tuple[ExactWave, float]:
-    """The wave near a start, and the last unknown of `newton.Problem.wave`, "mass" or "kick".
+    """Solve a problem from a start; returns the wave and the last unknown, "mass" or "kick".
 
     Raises `NoWave` if Newton's method does not converge.
     """
@@ -144,7 +144,7 @@ def solved(problem: newton.Problem, start: Start, unknown: str = "") -> tuple[Ex
 
 
 def measured(wave: ExactWave) -> dict[str, Measured]:
-    """c², c, tail, and amplitude, FWHM and rms width of each quantity, with errors.
+    """Numbers of a wave with errors: c², c, tail; amplitude, FWHM and rms width by quantity.
 
     A nanopteron's error is the difference from a struck chain's pulse, made symmetric and (for
     FWHM) as recorded, so that waves of all half periods agree within it. The relative error of a
@@ -165,7 +165,7 @@ def measured(wave: ExactWave) -> dict[str, Measured]:
 
 
 def _numbers(wave: ExactWave | StruckPulse, mass: float = 1.0) -> dict[str, float]:
-    """The numbers of a wave with m1 = 1, for m1 = ``mass``."""
+    """Numbers of a wave of m1 = 1 and peak force 1, rescaled to m1 = ``mass``."""
     root = math.sqrt(mass)
     found = {"c2": wave.c2 / mass, "c": wave.c / root, "tail": wave.tail}
     for name in QUANTITIES:
@@ -176,7 +176,7 @@ def _numbers(wave: ExactWave | StruckPulse, mass: float = 1.0) -> dict[str, floa
 
 
 def _uniform(k: float, half_period: float | None, p0: float) -> ExactWave:
-    """The wave of masses 1, 1, on a background or none."""
+    """The solitary wave of masses 1, 1, on a background p0 or none."""
     pair = 1.0, 1.0
     ample = newton.ample_half_period(pair, k)
     if p0:
@@ -264,7 +264,7 @@ def _search(
 
 
 def _rough(pair: Pair, k: float, half_period: float) -> int:
-    """Number of points that tells waves apart."""
+    """Number of points of a rough grid, enough to tell waves apart."""
     return max(newton.FEWEST, int(ROUGH * newton.enough(pair, k, half_period)))
 
 
@@ -277,7 +277,7 @@ def _struck(pair: Pair, k: float) -> StruckPulse:
 
 
 def followed(begin: ExactWave, k: float) -> ExactWave:
-    """The wave at another k with the same half period, by steps in k from the wave ``begin``.
+    """Follow a wave to another k at the same half period, by steps in k.
 
     Raises `NoWave` where the steps end: the branch turns back, or is lost.
     """

@@ -41,7 +41,7 @@ Start = tuple[Array, float]
 
 
 def initial(problem: newton.Problem, wave: Profile | None = None) -> Start:
-    """A wave found for near masses and a near k; by default the theory's at leading order.
+    """Start from a wave of near masses and near k; by default from the theory's leading order.
 
     c² is that of the multiple of the wave with force 1 at ξ = 0; Newton's method scales the forces.
     """
@@ -73,7 +73,7 @@ def under_load(theory: NumericBackground, problem: newton.Problem) -> Start:
 
 @dataclass(frozen=True, eq=False)
 class StruckPulse(Profile):
-    """The symmetric part of a struck chain's pulse at contact force 1; masses 1, ω.
+    """Symmetric part of a struck chain's pulse, scaled to contact force 1; masses 1, ω.
 
     half_period : the ample one of `validation.waves.newton`.
     xi, front : a(ξ), made symmetric, on a wider grid.
@@ -86,7 +86,7 @@ class StruckPulse(Profile):
 
     @property
     def samples(self) -> int:
-        """Number of points on 0 … L."""
+        """Number of points on 0 … L that resolve the profile."""
         return math.ceil(self.half_period / _STEP)
 
     @property
@@ -117,7 +117,7 @@ class StruckPulse(Profile):
 
 @lru_cache(maxsize=64)
 def struck_pulse(k: float, omega: float) -> StruckPulse:
-    """The pulse of a chain of masses 1, ω whose first bead, a heavy one, is struck.
+    """Strike the first bead, a heavy one, of a chain of masses 1, ω, and record the pulse.
 
     Raises `lwa.InputError` if the pulse does not reach the last place.
     """

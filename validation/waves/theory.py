@@ -34,7 +34,7 @@ def theory_at(k: Any, omega: Any, closure: str = "linear") -> TravelingWave:
 
 
 def of_speed(wave: TravelingWave, speed: float) -> PhysicalWave:
-    """The wave with a speed dx/dt, which scales as F^{(k-1)/(2k)}.
+    """Theory's wave of a given speed dx/dt, which scales as F^{(k-1)/(2k)}.
 
     Raises `SceneError` unless the speed is positive and the force is a float.
     """
@@ -43,7 +43,7 @@ def of_speed(wave: TravelingWave, speed: float) -> PhysicalWave:
 
 
 def of_momentum(wave: TravelingWave, momentum: float) -> PhysicalWave:
-    """The wave with a momentum, which scales as F^{(k+1)/(2k)}.
+    """Theory's wave of a given momentum, which scales as F^{(k+1)/(2k)}.
 
     Raises `SceneError` unless the momentum is positive and the force is a float.
     """

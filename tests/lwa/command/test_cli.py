@@ -424,7 +424,7 @@ def test_bad_input_is_one_line_and_status_two(capsys, arguments):
         ("wave --k V_s", "'V_s': the name means the speed"),
         ("wave --spacing B", "'B': the name means the peak strain"),
         ("derive --spacing k", "'k': the name means the exponent"),
-        ("wave --masses p,m2", "'p' has a meaning of its own in what `lwa wave` prints"),
+        ("wave --masses p,m2", "'p' has a meaning of its own in the output of `lwa wave`"),
         ("wave --masses m1,ξ", "'ξ' has a meaning"),
         ("wave --k eta", "'eta' has a meaning"),
         ("derive --masses u,m2", "'u' has a meaning"),

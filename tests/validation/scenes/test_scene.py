@@ -8,7 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from lwa import Cell, Dimer, InputError
-from validation.scenes.materials import PTFE_BEAD, STEEL, STEEL_BEAD, contact_stiffness
+from lwa.spheres.hertz import stiffness
+from validation.scenes.materials import PTFE_BEAD, STEEL, STEEL_BEAD
 from validation.scenes.scene import Scene, SceneError
 
 GOOD = dict(masses=(1, 2, 3), stiffnesses=(1, 1), k=1.5, duration=1.0)
@@ -117,10 +118,10 @@ def test_of_beads():
     scene = Scene.of_beads([STEEL_BEAD, PTFE_BEAD, PTFE_BEAD], wall=STEEL, duration=1)
     assert scene.masses == (0.45e-3, 0.123e-3, 0.123e-3)
     assert scene.stiffnesses == (
-        contact_stiffness(STEEL_BEAD, PTFE_BEAD),
-        contact_stiffness(PTFE_BEAD, PTFE_BEAD),
+        float(stiffness(STEEL_BEAD, PTFE_BEAD)),
+        float(stiffness(PTFE_BEAD, PTFE_BEAD)),
     )
-    assert scene.wall == contact_stiffness(PTFE_BEAD, STEEL)
+    assert scene.wall == float(stiffness(PTFE_BEAD, STEEL))
     assert scene.k == 1.5
     for bad in ([], [STEEL_BEAD, "bead"], STEEL_BEAD):
         with pytest.raises(SceneError, match=r"^bead"):

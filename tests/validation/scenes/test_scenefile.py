@@ -14,10 +14,10 @@ from hypothesis import strategies as st
 from lwa import Cell
 from lwa.base import files
 from lwa.spheres import beads
-from lwa.spheres.hertz import Material, Sphere
+from lwa.spheres.hertz import Material, Sphere, stiffness
 from validation.scenes import scenefile
 from validation.scenes.document import document
-from validation.scenes.materials import STEEL, contact_stiffness
+from validation.scenes.materials import STEEL
 from validation.scenes.scene import Scene, SceneError
 from validation.scenes.scenefile import read_scene, scene
 from validation.studies.paper import chain_scene
@@ -148,7 +148,7 @@ def test_a_defect_may_be_a_bead_of_the_file_or_a_mass():
     )
     changed, plain = toml_file(text), toml_file(PAPER)
     steel = Sphere(mass=0.45e-3, radius=2.38e-3, material=STEEL)
-    assert changed.stiffnesses[2:4] == (contact_stiffness(steel, big),) * 2
+    assert changed.stiffnesses[2:4] == (float(stiffness(steel, big)),) * 2
     assert changed.spacings[2:4] == (7.38e-3,) * 2
     assert (changed.masses[3], changed.masses[6]) == (1e-3, 9)
     same = [i for i in range(38) if i not in (3, 6)]
