@@ -1,15 +1,21 @@
-"""A result of `limits` as its laws have it: how it is shown takes no lattice."""
+"""The engine, compiled once, and rows of `limits`: how they are shown takes no lattice."""
 
 import pytest
 
 from validation.pulses.pulse import Measured
-from validation.studies.limits import EQUAL, EXPONENTS, LIGHT, Limits, Row
+from validation.studies.limits import EQUAL, EXPONENTS, LIGHT, Row
 from validation.waves.asymptotics import LAWS, theory_values
 from validation.waves.theory import theory_at
 
 
+@pytest.fixture(scope="session", autouse=True)
+def _engine(engine):
+    """Compile the engine in one process of the tests."""
+
+
 @pytest.fixture(scope="session")
-def limits_result():
+def limits_rows():
+    """Rows of `limits` as its laws have them."""
     rows = []
     for omega in (EQUAL, LIGHT):
         for k in EXPONENTS:
@@ -19,4 +25,4 @@ def limits_result():
                 lattice = float(theory[quantity]) / (1 + error)
                 found = Measured(lattice, lattice * (1 + 1e-7))
                 rows.append(Row(quantity, k, omega, theory[quantity], found, law.bound(k)))
-    return Limits(tuple(rows))
+    return rows

@@ -24,7 +24,7 @@ from validation.scenes.chains import chain_scene
 from validation.scenes.checks import SceneError
 from validation.scenes.document import document
 from validation.scenes.scenefile import read_scene, scene
-from validation.studies.limits import Limits
+from validation.studies.limits import report
 from validation.studies.run import EXAMPLES
 
 COMMAND = Path(sys.executable).with_name("lwa-validate")
@@ -67,17 +67,17 @@ def shown(capsys, found, *arguments):
     return ended(capsys, command.study()(made).main, *arguments)
 
 
-def test_a_study_prints_its_result(capsys, limits_result):
-    report = limits_result.report()
-    assert shown(capsys, limits_result) == (0, report.text() + "\n", "")
-    status, out, err = shown(capsys, limits_result, "--format", "json")
-    assert (status, json.loads(out), err) == (0, report.document(), "")
-    assert shown(capsys, limits_result, "--format", "csv") == (0, report.csv(), "")
+def test_a_study_prints_its_result(capsys, limits_rows):
+    found = report(limits_rows)
+    assert shown(capsys, found) == (0, found.text() + "\n", "")
+    status, out, err = shown(capsys, found, "--format", "json")
+    assert (status, json.loads(out), err) == (0, found.document(), "")
+    assert shown(capsys, found, "--format", "csv") == (0, found.csv(), "")
 
 
-def test_a_result_that_fails_is_printed_and_ends_with_1(capsys, limits_result):
-    first, *others = limits_result.rows
-    status, out, err = shown(capsys, Limits((replace(first, bound=1e-6), *others)))
+def test_a_result_that_fails_is_printed_and_ends_with_1(capsys, limits_rows):
+    first, *others = limits_rows
+    status, out, err = shown(capsys, report([replace(first, bound=1e-6), *others]))
     assert (status, err) == (1, "")
     assert "FAILS" in out
 

@@ -66,7 +66,7 @@ def speed_ratio(omega: sp.Rational) -> Callable[[Any], Array]:
 
 
 @dataclass(frozen=True, eq=False)
-class Chain:
+class Medium:
     """Mean mass m̄, spacing D and speed ratio R(k) of the chain in which pulses were measured."""
 
     mass: float
@@ -74,7 +74,7 @@ class Chain:
     ratio: Callable[[Any], Array]
 
     @classmethod
-    def of(cls, cell: Cell) -> Chain:
+    def of(cls, cell: Cell) -> Medium:
         """The chain of a cell of one or two masses, in numbers."""
         if cell.size > 2:
             raise SceneError(f"the cell has {cell.size} beads: one or two are wanted")
@@ -119,7 +119,7 @@ def weights(force: Array, speed: Array, force_error: Array, speed_error: Array) 
     return np.asarray(1 / np.hypot(speed_error / speed, slope * force_error / force))
 
 
-def fit_power(chain: Chain, force: Array, speed: Array, weight: Array | None = None) -> PowerFit:
+def fit_power(medium: Medium, force: Array, speed: Array, weight: Array | None = None) -> PowerFit:
     """Fit one power F = A δ^k to peak forces and speeds (N,), N ≥ 4, by least squares of ln V.
 
     weight : (N,), see `weights`; by default all pulses weigh the same.
@@ -133,7 +133,7 @@ def fit_power(chain: Chain, force: Array, speed: Array, weight: Array | None = N
     def read(slope: float, constant: float) -> Array:
         """k and ln A."""
         return np.array(
-            [1 / (1 - 2 * slope), chain.log_stiffness(slope, constant - slope * middle)]
+            [1 / (1 - 2 * slope), medium.log_stiffness(slope, constant - slope * middle)]
         )
 
     value = read(slope, constant)
@@ -146,7 +146,7 @@ def fit_power(chain: Chain, force: Array, speed: Array, weight: Array | None = N
     sixth = (_HERTZ - 1) / (2 * _HERTZ)
     apart = y - sixth * x
     (mean,), variance = np.polyfit(x, apart, 0, w=w, cov=True)
-    hertz = chain.log_stiffness(sixth, mean)
+    hertz = medium.log_stiffness(sixth, mean)
     hertz_error = 2 * _HERTZ * interval * math.sqrt(variance[0, 0])
     parabola, noise = np.polyfit(x - middle, y, 2, w=w, cov=True)
     bound = scipy.stats.t.ppf(0.975, len(x) - 3) * math.sqrt(noise[0, 0])
@@ -161,7 +161,7 @@ def fit_power(chain: Chain, force: Array, speed: Array, weight: Array | None = N
 
 
 def free_law(
-    chain: Chain,
+    medium: Medium,
     force: Array,
     speed: Array,
     degree: int = 3,
@@ -183,14 +183,14 @@ def free_law(
     fitted = polynomial.polyfit(x - middle, (y - rest)[:, None] + drawn, degree, w=w)
     rows = np.column_stack((best, fitted))  # (degree + 1, 1 + draws)
     grid = np.linspace(x.max(), x.min(), _STEPS)
-    log_delta = _integrated(chain, rows, grid, middle)
+    log_delta = _integrated(medium, rows, grid, middle)
     at = scipy.interpolate.CubicSpline(grid[::-1], log_delta[::-1])
     steepness = 1 / at(x, 1)[:, 0]  # d ln F/d ln δ
     spread = np.ptp(np.quantile(at(x), (0.025, 0.975), axis=1), axis=0) / 2
     return np.exp(at(x)[:, 0]), force * np.abs(steepness) * spread
 
 
-def _integrated(chain: Chain, rows: Array, grid: Array, middle: float) -> Array:
+def _integrated(medium: Medium, rows: Array, grid: Array, middle: float) -> Array:
     """ln δ on a falling grid of ln F, for each column of coefficients of ln V."""
 
     def log_S(x: float) -> tuple[Array, Array]:
@@ -198,7 +198,7 @@ def _integrated(chain: Chain, rows: Array, grid: Array, middle: float) -> Array:
         slope = polynomial.polyval(x - middle, polynomial.polyder(rows))
         k = 1 / (1 - 2 * np.minimum(slope, 0.49))
         log_V = polynomial.polyval(x - middle, rows)
-        return 2 * (log_V - math.log(chain.spacing)) + np.log(chain.mass / chain.ratio(k)), k
+        return 2 * (log_V - math.log(medium.spacing)) + np.log(medium.mass / medium.ratio(k)), k
 
     def slope(x: float, log_delta: Array) -> Array:
         """d ln δ/d ln F."""

@@ -19,7 +19,7 @@ from lwa.base.tables import entries
 from lwa.command.reading import quantities, quantity
 from lwa.spheres.beads import spheres as read_spheres
 from validation.pictures.panel import Curve, Panel
-from validation.pulses.contact_law import Chain, PowerFit, fit_power, free_law, weights
+from validation.pulses.contact_law import Medium, PowerFit, fit_power, free_law, weights
 from validation.pulses.pulse import Measured
 from validation.report.command import option, study
 from validation.report.result import Report
@@ -86,8 +86,8 @@ def law(
         cell = Cell(cell.masses, spacing=1 if spacing is None else spacing)
     else:
         cell = Cell.of_spheres(read_spheres(content))
-    chain = Chain.of(cell)
-    fit = fit_power(chain, force, speed, weight)
+    medium = Medium.of(cell)
+    fit = fit_power(medium, force, speed, weight)
     rows: list[tuple[str, Measured]] = [("k", fit.k), ("A", fit.A)]
     if material is not None:
         if content is None:
@@ -95,7 +95,7 @@ def law(
         rows.append(("E", _modulus(content, material, fit.hertz)))
     found = {f"{name}_value": value.value for name, value in rows}
     errors = {f"{name}_error_value": value.error for name, value in rows}
-    compression, error = free_law(chain, force, speed, degree, weight=weight)
+    compression, error = free_law(medium, force, speed, degree, weight=weight)
     order = np.argsort(force)
     free = tuple(
         (d, Measured(F, F + e), fit.A.value * d**fit.k.value)

@@ -10,7 +10,7 @@ With m1 ≫ m2 the light beads only pass the force on: a uniform chain of spacin
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -104,51 +104,52 @@ Lengths in D, m1 = A = D = 1; force and strain of a contact; error: theory/latti
 ±: change of the lattice's number over the last stretch. No k: from all k, as k → 1."""
 
 
-@dataclass(frozen=True)
-class Limits:
-    """All rows of the comparison."""
-
-    rows: tuple[Row, ...]
-
-    def report(self) -> Report:
-        """``rows``: ``quantity``, ``k`` and ``omega`` (exact; ``k`` null for results from all k,
-        ``omega`` 0 for the limit), ``theory`` (exact), ``theory_value``, ``lattice_value``,
-        ``lattice_error_value``, ``error_value`` (theory over lattice - 1), ``bound_value``, ``ok``.
-        """
-        rows = tuple(row.cells for row in self.rows)
-        return Report(
-            "The theory's limits on the lattice",
-            (Table(_COLUMNS, rows, "rows", by="omega", heads=_CHAINS, note=_NOTE),),
-            tuple(row.finding for row in self.rows),
-            tuple(self._panel(omega) for omega in (EQUAL, LIGHT)),
-        )
-
-    def _panel(self, omega: sp.Rational) -> Panel:
-        """|error| against k - 1, with its leading power."""
-        epsilon = np.geomspace(float(EXPONENTS[-1] - 1) / 2, float(EXPONENTS[0] - 1), 2)
-        curves = []
-        for i, (quantity, law) in enumerate(LAWS.items()):
-            rows = [row for row in self.rows if (row.quantity, row.omega) == (quantity, omega)]
-            points = [
-                (row.k - 1, abs(row.error), row.lattice.relative_error)
-                for row in rows
-                if row.k is not None
-            ]
-            x, y, error = zip(*points, strict=True)
-            power = abs(float(law.coefficient)) * epsilon**law.order
-            curves.append(Curve.of(quantity, x, y, f"C{i}{'osD^'[i]}", error))
-            # Dashes, as two quantities share their leading order.
-            curves.append(Curve.of("", epsilon, power, f"C{i}{('-', '--', '-.', ':')[i]}"))
-        title = f"m2/m1 = {omega}; lines: leading order"
-        return Panel("k - 1", "|theory/lattice - 1|", tuple(curves), "xy", title)
-
-
 Case = tuple[sp.Rational, sp.Rational, float]  # k, ω and B of one run
 
 
 @study()
-def limits(progress: Progress[Case] = iter) -> Limits:
-    """Limits of the theory: equal masses, m1 ≫ m2 and k → 1. A few seconds."""
+def limits(progress: Progress[Case] = iter) -> Report:
+    """Limits of the theory: equal masses, m1 ≫ m2 and k → 1. A few seconds.
+
+    ``rows``: ``quantity``, ``k`` and ``omega`` (exact; ``k`` null for results from all k, ``omega``
+    0 for the limit), ``theory`` (exact), ``theory_value``, ``lattice_value``,
+    ``lattice_error_value``, ``error_value`` (theory over lattice - 1), ``bound_value``, ``ok``.
+    """
+    return report(compare(progress))
+
+
+def report(rows: Sequence[Row]) -> Report:
+    """The table of a comparison, its findings, and its errors over k - 1."""
+    cells = tuple(row.cells for row in rows)
+    return Report(
+        "The theory's limits on the lattice",
+        (Table(_COLUMNS, cells, "rows", by="omega", heads=_CHAINS, note=_NOTE),),
+        tuple(row.finding for row in rows),
+        tuple(_panel(rows, omega) for omega in (EQUAL, LIGHT)),
+    )
+
+
+def _panel(rows: Sequence[Row], omega: sp.Rational) -> Panel:
+    """|error| against k - 1, with its leading power."""
+    epsilon = np.geomspace(float(EXPONENTS[-1] - 1) / 2, float(EXPONENTS[0] - 1), 2)
+    curves = []
+    for i, (quantity, law) in enumerate(LAWS.items()):
+        points = [
+            (row.k - 1, abs(row.error), row.lattice.relative_error)
+            for row in rows
+            if (row.quantity, row.omega) == (quantity, omega) and row.k is not None
+        ]
+        x, y, error = zip(*points, strict=True)
+        power = abs(float(law.coefficient)) * epsilon**law.order
+        curves.append(Curve.of(quantity, x, y, f"C{i}{'osD^'[i]}", error))
+        # Dashes, as two quantities share their leading order.
+        curves.append(Curve.of("", epsilon, power, f"C{i}{('-', '--', '-.', ':')[i]}"))
+    title = f"m2/m1 = {omega}; lines: leading order"
+    return Panel("k - 1", "|theory/lattice - 1|", tuple(curves), "xy", title)
+
+
+def compare(progress: Progress[Case] = iter) -> list[Row]:
+    """Measure all waves on the lattice, and compare them with the theory."""
     cases: dict[Case, None] = dict.fromkeys(
         [(k, omega, 1.0) for omega in (EQUAL, LIGHT) for k in EXPONENTS]
         + [(k, EQUAL, B) for k in EXPONENTS for B in AMPLITUDES]
@@ -169,7 +170,7 @@ def limits(progress: Progress[Case] = iter) -> Limits:
         power = exponent([p["speed"] for p in pulses], [p["force"] for p in pulses])
         force_exponent = waves[k, EQUAL].force_exponent
         rows.append(Row("exponent of F_m in V_s", k, EQUAL, force_exponent, power, 1e-5))
-    return Limits(tuple(rows))
+    return rows
 
 
 def lattice_wave(wave: TravelingWave, B: float = 1.0) -> dict[str, Measured]:

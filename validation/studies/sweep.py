@@ -8,28 +8,23 @@ with contact force 1 at its peak, in the paper's closure and for the full closur
 
 from __future__ import annotations
 
-import json
-import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import BrokenExecutor, CancelledError, as_completed
-from contextlib import contextmanager, nullcontext
-from dataclasses import dataclass
+from concurrent.futures import BrokenExecutor, CancelledError, Executor, as_completed
+from contextlib import AbstractContextManager, nullcontext
 from itertools import product
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from filelock import FileLock, Timeout
 from sympy import Rational
 
 from lwa import Dimer, canonical_wave, homogenize
 from lwa.base.arrays import Array
 from lwa.base.exact import InputError, exact, shorten
-from lwa.base.files import content
 from lwa.base.progress import Progress
 from validation.lattice.threads import cluster, threads
 from validation.pictures.panel import Curve, Map, Panel
-from validation.pulses.pulse import Measured
+from validation.pulses.points import Key, PointFile
 from validation.pulses.steady import HUMPS, QUANTITIES, STRETCH, Point, point
 from validation.report.command import option, study, whole
 from validation.report.files import output_file
@@ -44,10 +39,10 @@ RANGES = {"k": (Rational(21, 20), Rational(6)), "omega": (Rational(1, 100), Rati
 CLOSURES = {"linear": "paper's closure", "canonical": "full closure, canonical field"}
 """Theories beside the lattice, with their labels."""
 
-Key = tuple[Rational, Rational]  # k and ω of a point
+_MOST = 300  # values of an axis
+Axis = Sequence[Rational]
+Grids = Mapping[str, Array]  # quantity → (len(ks), len(omegas)); NaN where missing
 
-_MOST, _MOST_BYTES = 300, 10**9  # values of an axis; of the file
-_FORMAT = {"format": "lwa sweep", "version": 3}  # changes with the definition of a quantity
 _OMEGA = "ω = m2/m1"
 _NOTE = """\
 Width: FWHM of a contact's force, in sites. Speed: sites over time at contact force 1, with A = D =
@@ -66,161 +61,98 @@ class SweepError(Failure):
     """A worker failed, or is gone. Finished points are kept."""
 
 
-@dataclass(frozen=True, eq=False)
-class Sweep:
-    """Points for each k (outer) and ω (inner), both in rising order, beside the theories.
+def report(ks: Axis, omegas: Axis, points: Sequence[Point], stretch: int = STRETCH) -> Report:
+    """The points for each k (outer) and ω (inner), both in rising order, beside the theories.
 
-    theory: closure → width, strain_width and speed, each (len(ks), len(omegas)); NaN where the
-        theory has no wave.
+    Table ``points`` (missing values with their reason), and maps over ω and k, or curves.
     """
-
-    ks: tuple[Rational, ...]
-    omegas: tuple[Rational, ...]
-    stretch: int
-    points: tuple[Point, ...]
-    theory: Mapping[str, Mapping[str, Array]]
-
-    def map(self, quantity: str, part: str = "value") -> Array:
-        """A quantity, or its ``part`` "error": (len(ks), len(omegas)), NaN where missing."""
-        values = [getattr(p.numbers.get(quantity), part, np.nan) for p in self.points]
-        return np.array(values).reshape(len(self.ks), len(self.omegas))
-
-    def error(self, closure: str, quantity: str) -> Array:
-        """Theory over lattice, less 1: (len(ks), len(omegas)), NaN where either is missing."""
-        return np.asarray(self.theory[closure][quantity] / self.map(quantity) - 1)
-
-    def report(self) -> Report:
-        """Table ``points`` (missing values with their reason), and maps over ω and k, or curves."""
-        points = self.points
-        told = [f"k = {p.k}, ω = {p.omega}: {p.missing}" for p in points if p.missing is not None]
-        cells: list[tuple[Column, Iterable[Any]]] = [
-            (Column("k"), [p.k for p in points]),
-            (Column("omega", _OMEGA), [p.omega for p in points]),
-        ]
-        numbers = {name: [p.numbers.get(name) for p in points] for name in QUANTITIES}
-        for name in ("width", "speed"):
-            cells.append((Column(name, name, format=str, error=True), numbers[name]))
-            for closure in CLOSURES:
-                errors = [None if np.isnan(x) else x for x in self.error(closure, name).flat]
-                cells.append((Column("", closure, format=percent), errors))
-        cells += [
-            (Column("decay", "decay per site", format=".2e", error=True), numbers["decay"]),
-            (Column("sites", "sites", format="{0[0]} … {0[1]}".format), [p.sites for p in points]),
-            (Column("strain_width", error=True), numbers["strain_width"]),
-            (Column("missing"), [p.missing for p in points]),
-        ]
-        for closure, wave in self.theory.items():
-            cells += [(Column(f"theory.{closure}.{n}_value"), x.ravel()) for n, x in wave.items()]
-        columns, values = zip(*cells, strict=True)
-        heads = {str(k): f"k = {k}" for k in self.ks}
-        table = Table(columns, tuple(zip(*values, strict=True)), "points", by="k", heads=heads)
-        panels = self._maps() if min(len(self.ks), len(self.omegas)) > 1 else self._curves()
-        data = {"stretch": self.stretch, "missing": len(told)}
-        title = "The steady pulse of a struck dimer chain"
-        low, high = _HUMPED
-        beyond = _BEYOND if any(low < omega < high for omega in self.omegas) else ""
-        notes = ("\n".join(told), _NOTE, beyond)
-        return Report(title, (table,), panels=panels, notes=notes, data=data)
-
-    def _maps(self) -> tuple[Panel, ...]:
-        x, y = (np.array(axis, float) for axis in (self.omegas, self.ks))
-        decay, theory = self.map("decay"), 100 * self.error("linear", "width")
-        # Where colours end.
-        least, largest = 1e-7, min(np.nanmax([*np.abs(theory).flat, 1e-3]), 50.0)
-        decay = np.maximum(decay, least / 2)  # positive, for the logarithm
-        percents = f"FWHM of force: {CLOSURES['linear']}/lattice - 1 (%)"
-        i, j = np.nonzero(self.map("width", "error") > 0.01 * self.map("width"))
-        unsure = (Curve("", x[j], y[i], "rx"),)
-        title = "hatched: no value; red ×: width known to less than 1 %"
-        scale = "x" if x[-1] > 50 * x[0] else ""
-        return tuple(
-            Panel(_OMEGA, "k", unsure, scale, title, found)
-            for found in (
-                Map(QUANTITIES["width"], x, y, self.map("width")),
-                Map(QUANTITIES["speed"], x, y, self.map("speed")),
-                Map(QUANTITIES["decay"], x, y, decay, least, scale="log", colours="cividis"),
-                Map(percents, x, y, theory, -largest, largest, colours="PuOr"),
-            )
-        )
-
-    def _curves(self) -> tuple[Panel, ...]:
-        along_k = self.ks, "k", f"ω = {self.omegas[0]}"
-        axis, x, title = along_k if len(self.ks) > 1 else (self.omegas, _OMEGA, f"k = {self.ks[0]}")
-        panels = []
-        for name, label in QUANTITIES.items():
-            value, error = (self.map(name, part).ravel() for part in ("value", "error"))
-            if log := name == "decay":  # a decay below its error is drawn as its error
-                value = np.fmax(value, error)
-            curves = [Curve.of("lattice", axis, value, "ko", error)]
-            for style, (closure, wave) in zip(("C0-", "C1--"), self.theory.items(), strict=True):
-                if name in wave:
-                    curves.append(Curve.of(CLOSURES[closure], axis, wave[name].ravel(), style))
-            panels.append(Panel(x, label, tuple(curves), "y" * log, title))
-        return tuple(panels)
-
-
-def _finished(file: Path, header: bytes) -> dict[Key, Point]:
-    """Points of a sweep's file. A torn last line is dropped.
-
-    The first line holds the format and the settings, every other line a point:
-
-        {"k": "3/2", "omega": "1", "sites": [56, 64], "numbers": {"width": [1.41192837, 1.4119], …}}
-        {"k": "3/2", "omega": "1/9", "missing": "not steady: the pulse has not passed 320 sites"}
-
-    A number is followed by the less accurate one that gives its error.
-    """
-
-    def read(
-        k: str, omega: str, sites: Any = None, numbers: Any = (), missing: Any = None
-    ) -> Point:
-        pairs = {name: Measured(*map(float, numbers[name])) for name in QUANTITIES if numbers}
-        return Point(exact(k, "k"), exact(omega, "omega"), sites and (*sites,), pairs, missing)
-
-    found = content(file, _MOST_BYTES) if file.exists() else b""
-    if not header.startswith(found) and not found.startswith(header):
-        wanted = header.decode().strip()
-        raise InputError(f"{file} does not begin with {wanted}: choose another name")
-    end, points = found.rfind(b"\n") + 1, dict[Key, Point]()
-    for number, line in enumerate(found[:end].splitlines()[1:], start=2):
-        try:
-            point = read(**json.loads(line))
-        except (ValueError, TypeError, KeyError, RecursionError):
-            raise InputError(f"{file} is damaged in line {number}") from None
-        points[point.k, point.omega] = point
-    if end < len(found):
-        os.truncate(file, end)
-    return points
-
-
-def _keep(file: Path, header: bytes, point: Point) -> None:
-    """Append a point to a sweep's file; the point is on the disk when this returns."""
-    numbers = {name: [n.value, n.check] for name, n in point.numbers.items()}
-    entry = {"k": str(point.k), "omega": str(point.omega)} | (
-        {"missing": point.missing} if point.missing else {"sites": point.sites, "numbers": numbers}
+    shape, waves = (len(ks), len(omegas)), theory(ks, omegas)
+    found = {name: [p.numbers.get(name) for p in points] for name in QUANTITIES}
+    value, error = (
+        {
+            name: np.reshape([getattr(x, part, np.nan) for x in row], shape)
+            for name, row in found.items()
+        }
+        for part in ("value", "error")
     )
-    line = json.dumps(entry, ensure_ascii=False, allow_nan=False).encode() + b"\n"
-    with file.open("ab") as stream:
-        stream.write(line if stream.tell() else header + line)
-        stream.flush()
-        os.fsync(stream.fileno())
+    cells: list[tuple[Column, Iterable[Any]]] = [
+        (Column("k"), [p.k for p in points]),
+        (Column("omega", _OMEGA), [p.omega for p in points]),
+    ]
+    for name in ("width", "speed"):
+        cells.append((Column(name, name, format=str, error=True), found[name]))
+        for closure, wave in waves.items():
+            off = wave[name] / value[name] - 1
+            shown = [None if np.isnan(x) else x for x in off.flat]
+            cells.append((Column("", closure, format=percent), shown))
+    cells += [
+        (Column("decay", "decay per site", format=".2e", error=True), found["decay"]),
+        (Column("sites", "sites", format="{0[0]} … {0[1]}".format), [p.sites for p in points]),
+        (Column("strain_width", error=True), found["strain_width"]),
+        (Column("missing"), [p.missing for p in points]),
+    ]
+    for closure, wave in waves.items():
+        cells += [(Column(f"theory.{closure}.{n}_value"), x.ravel()) for n, x in wave.items()]
+    columns, values = zip(*cells, strict=True)
+    heads = {str(k): f"k = {k}" for k in ks}
+    table = Table(columns, tuple(zip(*values, strict=True)), "points", by="k", heads=heads)
+    panels = (_maps if min(shape) > 1 else _curves)(ks, omegas, value, error, waves)
+    told = [f"k = {p.k}, ω = {p.omega}: {p.missing}" for p in points if p.missing is not None]
+    low, high = _HUMPED
+    beyond = _BEYOND if any(low < omega < high for omega in omegas) else ""
+    return Report(
+        "The steady pulse of a struck dimer chain",
+        (table,),
+        panels=panels,
+        notes=("\n".join(told), _NOTE, beyond),
+        data={"stretch": stretch, "missing": len(told)},
+    )
 
 
-@contextmanager
-def _locked(file: Path) -> Iterator[None]:
-    """Keep other processes away from a sweep's file."""
-    lock = FileLock(f"{file}.lock", blocking=False)
-    try:
-        with lock:
-            try:
-                yield
-            finally:
-                Path(lock.lock_file).unlink()
-    except Timeout:
-        raise InputError(f"file is {file}: another sweep writes it") from None
+def _maps(
+    ks: Axis, omegas: Axis, value: Grids, error: Grids, waves: Mapping[str, Grids]
+) -> tuple[Panel, ...]:
+    x, y = (np.array(axis, float) for axis in (omegas, ks))
+    theory = 100 * (waves["linear"]["width"] / value["width"] - 1)
+    # Where colours end.
+    least, largest = 1e-7, min(np.nanmax([*np.abs(theory).flat, 1e-3]), 50.0)
+    decay = np.maximum(value["decay"], least / 2)  # positive, for the logarithm
+    percents = f"FWHM of force: {CLOSURES['linear']}/lattice - 1 (%)"
+    i, j = np.nonzero(error["width"] > 0.01 * value["width"])
+    unsure = (Curve("", x[j], y[i], "rx"),)
+    title = "hatched: no value; red ×: width known to less than 1 %"
+    scale = "x" if x[-1] > 50 * x[0] else ""
+    return tuple(
+        Panel(_OMEGA, "k", unsure, scale, title, found)
+        for found in (
+            Map(QUANTITIES["width"], x, y, value["width"]),
+            Map(QUANTITIES["speed"], x, y, value["speed"]),
+            Map(QUANTITIES["decay"], x, y, decay, least, scale="log", colours="cividis"),
+            Map(percents, x, y, theory, -largest, largest, colours="PuOr"),
+        )
+    )
 
 
-def theory(ks: Sequence[Rational], omegas: Sequence[Rational]) -> dict[str, dict[str, Array]]:
-    """Widths and speed of the compact waves with contact force 1, as in `Sweep`."""
+def _curves(
+    ks: Axis, omegas: Axis, value: Grids, error: Grids, waves: Mapping[str, Grids]
+) -> tuple[Panel, ...]:
+    along_k = ks, "k", f"ω = {omegas[0]}"
+    axis, x, title = along_k if len(ks) > 1 else (omegas, _OMEGA, f"k = {ks[0]}")
+    panels = []
+    for name, label in QUANTITIES.items():
+        shown, bar = value[name].ravel(), error[name].ravel()
+        if log := name == "decay":  # a decay below its error is drawn as its error
+            shown = np.fmax(shown, bar)
+        curves = [Curve.of("lattice", axis, shown, "ko", bar)]
+        for style, (closure, wave) in zip(("C0-", "C1--"), waves.items(), strict=True):
+            if name in wave:
+                curves.append(Curve.of(CLOSURES[closure], axis, wave[name].ravel(), style))
+        panels.append(Panel(x, label, tuple(curves), "y" * log, title))
+    return tuple(panels)
+
+
+def theory(ks: Axis, omegas: Axis) -> dict[str, dict[str, Array]]:
+    """Widths and speed of the compact waves with contact force 1, by closure and quantity."""
     k, omega = np.meshgrid(np.array(ks, float), np.array(omegas, float), indexing="ij")
     scale = np.sqrt(2 * k / (1 + omega))  # τ/t, for A = D = m1 = 1
     cell = Dimer("m1", "m2", spacing=1)
@@ -262,6 +194,38 @@ def _values(given: str | Iterable[Any], name: str) -> tuple[Rational, ...]:
     return tuple(sorted(values))
 
 
+def measured(
+    ks: Axis,
+    omegas: Axis,
+    stretch: int = STRETCH,
+    file: PointFile | None = None,
+    workers: AbstractContextManager[Executor] | None = None,
+    progress: Progress[Key] = iter,
+) -> list[Point]:
+    """Measure the points of a grid that are not yet in the file; the arguments are as in `sweep`.
+
+    workers: opens an executor, by default of threads.
+    """
+    with file.locked() if file else nullcontext():
+        points = file.read() if file else {}
+        todo = [key for key in product(ks, omegas) if key not in points]
+        with workers or threads() as executor:
+            underway = [executor.submit(point, *key, stretch) for key in todo]
+            try:
+                for _, future in zip(progress(todo), as_completed(underway), strict=True):
+                    found = future.result()
+                    points[found.k, found.omega] = found
+                    if file:
+                        file.append(found)
+            except (BrokenExecutor, CancelledError) as error:
+                gone = "the workers are gone before the sweep is done: killed, or out of memory?"
+                raise SweepError(gone) from error
+            finally:
+                for future in underway:
+                    future.cancel()
+    return [points[key] for key in product(ks, omegas)]
+
+
 _RANGES = "values and ranges start:stop:count, separated by commas."
 
 
@@ -281,7 +245,7 @@ def sweep(
     jobs: int | None = None,
     address: str | None = None,
     progress: Progress[Key] = iter,
-) -> Sweep:
+) -> Report:
     """Maps over k and m2/m1: width, speed and decay of a struck chain's pulse. The 160 points of
     the default grid take half a minute.
 
@@ -294,7 +258,7 @@ def sweep(
     Raises `lwa.InputError` for numbers outside `RANGES` or an unfit file, `SweepError` when a
     worker fails; finished points are kept.
 
-    >>> round(sweep(["3/2"], [1]).points[0].numbers["width"].value, 4)
+    >>> round(sweep(["3/2"], [1]).document()["points"][0]["width_value"], 4)
     1.4119
     """
     grid = _values(ks, "k"), _values(omegas, "omega")
@@ -302,22 +266,6 @@ def sweep(
     if address is not None and jobs is not None:
         raise InputError(f"jobs is {jobs}: a cluster has workers of its own")
     path = None if file is None else output_file("file", str(file), (".jsonl",))
-    header = json.dumps(_FORMAT | {"settings": {"stretch": stretch}}).encode() + b"\n"
-    with _locked(path) if path else nullcontext():
-        points = _finished(path, header) if path else {}
-        todo = [key for key in product(*grid) if key not in points]
-        with threads(jobs, "jobs") if address is None else cluster(address) as workers:
-            underway = [workers.submit(point, *key, stretch) for key in todo]
-            try:
-                for _, future in zip(progress(todo), as_completed(underway), strict=True):
-                    found = future.result()
-                    points[found.k, found.omega] = found
-                    if path:
-                        _keep(path, header, found)
-            except (BrokenExecutor, CancelledError) as error:
-                gone = "the workers are gone before the sweep is done: killed, or out of memory?"
-                raise SweepError(gone) from error
-            finally:
-                for future in underway:
-                    future.cancel()
-    return Sweep(*grid, stretch, tuple(points[key] for key in product(*grid)), theory(*grid))
+    kept = None if path is None else PointFile(path, stretch)
+    workers = threads(jobs, "jobs") if address is None else cluster(address)
+    return report(*grid, measured(*grid, stretch, kept, workers, progress), stretch)

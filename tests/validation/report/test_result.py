@@ -9,7 +9,7 @@ from lwa import InputError
 from validation.pictures.panel import Curve, Panel
 from validation.report.result import Report
 from validation.report.table import Column, Finding, Table
-from validation.studies.limits import Limits
+from validation.studies.limits import report
 
 PART = Report(
     "a part",
@@ -19,25 +19,25 @@ PART = Report(
 )
 
 
-def test_limits(limits_result):
-    found = json.loads(json.dumps(limits_result.report().document(), allow_nan=False))
+def test_limits(limits_rows):
+    found = json.loads(json.dumps(report(limits_rows).document(), allow_nan=False))
     assert found["ok"] is True
-    assert len(found["rows"]) == len(limits_result.rows)
-    for row, told in zip(limits_result.rows, found["rows"], strict=True):
+    assert len(found["rows"]) == len(limits_rows)
+    for row, told in zip(limits_rows, found["rows"], strict=True):
         assert told["lattice_value"] == row.lattice.value
         assert told["lattice_error_value"] == row.lattice.error
         error = told["theory_value"] / told["lattice_value"] - 1
         assert told["error_value"] == pytest.approx(error, rel=1e-12)
         assert abs(told["error_value"]) <= told["bound_value"]
-    shown = limits_result.report().text()
-    assert shown.count("  ok") == len(limits_result.rows)
+    shown = report(limits_rows).text()
+    assert shown.count("  ok") == len(limits_rows)
     assert shown.endswith("24 checks: all hold")
     assert "FAILS" not in shown
 
 
-def test_a_failing_row_is_shown(limits_result):
-    first, *others = limits_result.rows
-    broken = Limits((dataclasses.replace(first, bound=1e-6), *others)).report()
+def test_a_failing_row_is_shown(limits_rows):
+    first, *others = limits_rows
+    broken = report([dataclasses.replace(first, bound=1e-6), *others])
     assert not broken.ok
     assert broken.document()["ok"] is broken.document()["rows"][0]["ok"] is False
     assert broken.text().count("FAILS") == 2  # in the table, and alone below it

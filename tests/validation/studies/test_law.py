@@ -11,7 +11,7 @@ from lwa import Cell
 from lwa.law import Law
 from tests.commands import ended
 from validation import Scene, cli, measure, simulate, simulate_many
-from validation.pulses.contact_law import Chain, fit_power, free_law, weights
+from validation.pulses.contact_law import Medium, fit_power, free_law, weights
 from validation.scenes.scene import SceneError
 from validation.studies import paper
 from validation.studies.law import law
@@ -22,7 +22,7 @@ FORCES = np.geomspace(0.1, 10, 12)
 
 @pytest.fixture(scope="module")
 def chain():
-    return Chain.of(Cell((2,), spacing=3))
+    return Medium.of(Cell((2,), spacing=3))
 
 
 def speeds(chain, k, A, force=FORCES):
@@ -142,7 +142,7 @@ def test_any_law_comes_back_from_22_struck_chains(text):
         first, second = (measure(run.signal("contact", i)) for i in (45, 75))
         rows.append((second.peak, 30 / (second.arrival - first.arrival)))
     force, V = np.array(rows).T
-    unit = Chain.of(Cell((1,), spacing=1))
+    unit = Medium.of(Cell((1,), spacing=1))
     assert not fit_power(unit, force, V).one_power
     compression, _ = free_law(unit, force, V)
     assert F(compression) == pytest.approx(force, rel=0.003)

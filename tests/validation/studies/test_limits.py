@@ -11,8 +11,9 @@ from validation.studies.limits import (
     LAWS,
     LIGHT,
     QUANTITIES,
-    limits,
+    compare,
     quantity_rows,
+    report,
     theory_at,
     theory_values,
 )
@@ -24,9 +25,9 @@ SPEED = 1 - eps / 2 + 2 * eps**2 / 5  # c² = k V_s² of the lattice's wave, at 
 
 
 @pytest.fixture(scope="module")
-def limits_result():
+def limits_rows():
     """The lattice itself, ten seconds."""
-    return limits()
+    return compare()
 
 
 def test_the_lattices_series_solves_its_equation():
@@ -88,37 +89,37 @@ def test_the_limits_of_the_paper():
     assert equal["support π/β"] == sp.pi * sp.sqrt(10) / 2
 
 
-def test_all_hold(limits_result):
-    assert limits_result.report().ok
-    assert len(limits_result.rows) == 47
+def test_all_hold(limits_rows):
+    assert report(limits_rows).ok
+    assert len(limits_rows) == 47
 
 
-def found(limits_result, quantity, k, omega):
-    (row,) = (r for r in limits_result.rows if (r.quantity, r.k, r.omega) == (quantity, k, omega))
+def found(limits_rows, quantity, k, omega):
+    (row,) = (r for r in limits_rows if (r.quantity, r.k, r.omega) == (quantity, k, omega))
     return row
 
 
-def test_the_hertz_chain_to_all_its_digits(limits_result):
+def test_the_hertz_chain_to_all_its_digits(limits_rows):
     """1.411928 D and 1.725713 D, by Newton's method on the traveling-wave equation."""
     for quantity, width in (("FWHM of force", 1.411928), ("FWHM of strain", 1.725713)):
-        row = found(limits_result, quantity, EXPONENTS[0], EQUAL)
+        row = found(limits_rows, quantity, EXPONENTS[0], EQUAL)
         assert row.lattice.value == pytest.approx(width, abs=1e-6)
         assert row.lattice.error < 1e-6
 
 
 @pytest.mark.parametrize("quantity", QUANTITIES)
-def test_light_beads_only_hand_the_force_on(limits_result, quantity):
+def test_light_beads_only_hand_the_force_on(limits_rows, quantity):
     """ω → 0 is the uniform chain of twice the spacing, on the lattice as in the theory."""
     scale = 1 if quantity.startswith("speed") else 2
-    uniform = found(limits_result, quantity, EXPONENTS[0], EQUAL)
-    limit = found(limits_result, quantity, EXPONENTS[0], 0)
+    uniform = found(limits_rows, quantity, EXPONENTS[0], EQUAL)
+    limit = found(limits_rows, quantity, EXPONENTS[0], 0)
     assert sp.simplify(limit.theory - scale * uniform.theory) == 0
     # the extrapolation's own error, doubled: it is an estimate
     tolerance = 2 * limit.lattice.error + scale * uniform.lattice.error
     assert limit.lattice.value == pytest.approx(scale * uniform.lattice.value, abs=tolerance)
     assert limit.lattice.relative_error < 2e-5
     # and ω = 1/1000 is as near to it as the theory says: within 1.5 ω
-    near = found(limits_result, quantity, EXPONENTS[0], LIGHT)
+    near = found(limits_rows, quantity, EXPONENTS[0], LIGHT)
     assert near.lattice.value == pytest.approx(limit.lattice.value, rel=1.5 * float(LIGHT))
 
 
@@ -126,12 +127,12 @@ def test_light_beads_only_hand_the_force_on(limits_result, quantity):
 @pytest.mark.parametrize(
     ("omega", "wrong"), [(EQUAL, 0.9995), (EQUAL, 1.0005), (LIGHT, 0.998), (LIGHT, 1.002)]
 )
-def test_a_theory_off_by_half_a_permille_is_refused(limits_result, quantity, omega, wrong):
+def test_a_theory_off_by_half_a_permille_is_refused(limits_rows, quantity, omega, wrong):
     """Were the formula another one, by so little, at least one row would fail.
 
     At ω = 1/1000 by 2 ‰: the law there holds only to O(ω).
     """
-    rows = [found(limits_result, quantity, k, omega) for k in EXPONENTS]
+    rows = [found(limits_rows, quantity, k, omega) for k in EXPONENTS]
     lattice = [row.lattice for row in rows]
     assert all(
         row.finding.ok for row in quantity_rows(quantity, omega, [r.theory for r in rows], lattice)
@@ -140,8 +141,8 @@ def test_a_theory_off_by_half_a_permille_is_refused(limits_result, quantity, ome
     assert not all(row.finding.ok for row in quantity_rows(quantity, omega, changed, lattice))
 
 
-def test_a_row_fails_beyond_its_bound_or_when_the_lattice_is_too_rough(limits_result):
-    row = limits_result.rows[0]
+def test_a_row_fails_beyond_its_bound_or_when_the_lattice_is_too_rough(limits_rows):
+    row = limits_rows[0]
     assert not dataclasses.replace(row, bound=0.99 * abs(row.error)).finding.ok
     rough = dataclasses.replace(row.lattice, check=row.lattice.value * 1.1)
     assert not dataclasses.replace(row, lattice=rough).finding.ok

@@ -10,8 +10,7 @@ import subprocess
 import sys
 import time
 from concurrent.futures import BrokenExecutor, ThreadPoolExecutor
-from dataclasses import replace
-from itertools import pairwise
+from itertools import pairwise, product
 from pathlib import Path
 
 import numpy as np
@@ -22,13 +21,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lwa import InputError
-from tests.commands import ended
+from tests.commands import ended, small_disk
 from validation import cli
 from validation.lattice.threads import cluster
 from validation.pulses.pulse import Measured
 from validation.pulses.steady import QUANTITIES, Point
 from validation.report.text import percent
-from validation.studies.sweep import Sweep, SweepError, sweep, theory
+from validation.studies.sweep import SweepError, report, sweep, theory
 from validation.waves.theory import theory_at
 
 R = sp.Rational
@@ -45,8 +44,8 @@ def reference():
     return numbers(sweep(KS, OMEGAS, **QUICK))
 
 
-def numbers(result):
-    return [(p.k, p.omega, p.sites, p.missing, dict(p.numbers)) for p in result.points]
+def numbers(found):
+    return found.document()["points"]
 
 
 def stopping(after, error=KeyboardInterrupt):
@@ -130,7 +129,7 @@ def test_points_come_back_bit_for_bit(content, reference, tmp_path):
     file.write_bytes(content)
     found = sweep([2], [1, "1/2"], file=file, progress=watched([]), **QUICK)
     assert numbers(found) == reference[:2]
-    assert sweep([3], [1], file=file, **QUICK).points[0].missing == "it “broke”\n"
+    assert sweep([3], [1], file=file, **QUICK).document()["points"][0]["missing"] == "it “broke”\n"
     assert file.read_bytes() == content
 
 
@@ -170,18 +169,13 @@ def test_two_sweeps_do_not_write_one_file(tmp_path):
     assert not file.exists()
 
 
-def test_a_full_disk_leaves_what_is_finished(tmp_path, monkeypatch):
-    file, sync = tmp_path / "s.jsonl", os.fsync
-
-    def full(handle):
-        if file.read_bytes().count(b"\n") > 2:
-            raise OSError(28, "No space left on device")
-        sync(handle)
-
-    monkeypatch.setattr(os, "fsync", full)
-    with pytest.raises(OSError, match="No space left"):
+def test_a_full_disk_leaves_what_is_finished(content, tmp_path):
+    file = tmp_path / "s.jsonl"
+    finished = content[: content.rfind(b"{")]
+    file.write_bytes(finished)
+    with small_disk(len(finished) + 100), pytest.raises(OSError, match="File too large"):
         sweep(KS, OMEGAS, file=file, **QUICK)
-    monkeypatch.undo()
+    assert file.read_bytes().startswith(finished)
     sweep(KS, OMEGAS, file=file, **QUICK)
     lines = file.read_text().splitlines()
     assert len(lines) == len(set(lines)) == 1 + len(GRID)
@@ -333,53 +327,57 @@ def test_without_dask_the_extra_is_named(monkeypatch):
 # The result
 
 
+AXES = (R(3, 2), R(2), R(6)), (R(1, 2), R(1), R(50))
+
+
 @pytest.fixture(scope="module")
-def result():
+def points():
     """Exact functions in place of measurements, one unsure and one missing."""
-    ks, omegas = (R(3, 2), R(2), R(6)), (R(1, 2), R(1), R(50))
-    points = []
-    for k in ks:
-        for omega in omegas:
-            error = 0.1 if (k, omega) == (2, R(1, 2)) else 1e-9
-            values = map(float, (k + omega, k + 2 * omega, 1 / omega, (1 - omega) / 10))
-            read = {n: Measured(v, v + error) for n, v in zip(QUANTITIES, values, strict=True)}
-            points.append(Point(k, omega, (24, 32), read))
-    points[4] = Point(R(2), R(1), None, {}, "broke")
+    found = []
+    for k, omega in product(*AXES):
+        error = 0.1 if (k, omega) == (2, R(1, 2)) else 1e-9
+        values = map(float, (k + omega, k + 2 * omega, 1 / omega, (1 - omega) / 10))
+        read = {n: Measured(v, v + error) for n, v in zip(QUANTITIES, values, strict=True)}
+        found.append(Point(k, omega, (24, 32), read))
+    found[4] = Point(R(2), R(1), None, {}, "broke")
     # beyond ω = 6 the paper's closure has no wave at k = 6
-    return Sweep(ks, omegas, 4, tuple(points), theory(ks, omegas))
+    return found
+
+
+@pytest.fixture(scope="module")
+def result(points):
+    return report(*AXES, points)
 
 
 def test_the_maps_are_the_points(result):
     expected = [[k + omega for omega in (0.5, 1, 50)] for k in (1.5, 2, 6)]
     expected[1][1] = np.nan
-    np.testing.assert_array_equal(result.map("width"), expected)
-    assert result.map("width", "error")[1, 0] == pytest.approx(0.1)
+    np.testing.assert_array_equal(result.panels[0].map.values, expected)
 
 
 def test_the_text_has_a_table_for_each_k_and_the_reasons(result):
-    shown = result.report().text()
+    shown = result.text()
     title, *blocks = shown.split("\n\n")
     assert title == "The steady pulse of a struck dimer chain"
     assert [block.splitlines()[0] for block in blocks[:3]] == ["k = 3/2", "k = 2", "k = 6"]
     assert [line.split()[0] for line in blocks[0].splitlines()[2:]] == ["1/2", "1", "50"]
     assert blocks[3] == "k = 2, ω = 1: broke"
     assert blocks[1].splitlines()[3].split() == ["1", *8 * "-"]
-    width = float(result.theory["linear"]["width"][0, 1])
+    width = float(theory(*AXES)["linear"]["width"][0, 1])
     assert percent(width / 2.5 - 1) in blocks[0].splitlines()[3]
     assert "nan" not in shown
 
 
-def test_the_text_says_where_a_width_is_no_measure_of_the_theory(result):
-    assert "is no measure of its error" in result.report().text()
-    few = replace(result, omegas=(R(1),), points=result.points[1::3], theory=theory(result.ks, [1]))
-    assert "is no measure of its error" not in few.report().text()
+def test_the_text_says_where_a_width_is_no_measure_of_the_theory(result, points):
+    assert "is no measure of its error" in result.text()
+    assert "is no measure of its error" not in report(AXES[0], [R(1)], points[1::3]).text()
 
 
-def test_the_document_is_json_and_complete(result):
-    found = json.loads(json.dumps(result.report().document(), allow_nan=False))
+def test_the_document_is_json_and_complete(result, points):
+    found = json.loads(json.dumps(result.document(), allow_nan=False))
     assert (found["stretch"], found["missing"]) == (4, 1)
     assert [(p["k"], p["omega"]) for p in found["points"][2:4]] == [("3/2", "50"), ("2", "1/2")]
-    for p, point in zip(found["points"], result.points, strict=True):
+    for p, point in zip(found["points"], points, strict=True):
         for name in QUANTITIES:
             number = point.numbers.get(name)
             assert p[f"{name}_value"] == (None if number is None else number.value)
@@ -387,27 +385,26 @@ def test_the_document_is_json_and_complete(result):
         assert (p["missing"] is None) == (p["sites"] == [24, 32])
     last = found["points"][-1]["theory"]
     assert last["linear"] == {"width_value": None, "strain_width_value": None, "speed_value": None}
-    assert last["canonical"]["width_value"] == result.theory["canonical"]["width"][2, 2]
-    rows = list(csv.DictReader(io.StringIO(result.report().csv())))
+    assert last["canonical"]["width_value"] == theory(*AXES)["canonical"]["width"][2, 2]
+    rows = list(csv.DictReader(io.StringIO(result.csv())))
     for row, p in zip(rows, found["points"], strict=True):
         assert (row["k"], row["omega"]) == (p["k"], p["omega"])
         for name in ("width_value", "decay_error_value"):
             assert row[name] == ("" if p[name] is None else str(p[name]))
 
 
-def test_the_picture_has_maps_or_curves(result):
-    width, _, decay, theory_error = (panel.map for panel in result.report().panels)
-    np.testing.assert_array_equal(width.values, result.map("width"))
+def test_the_picture_has_maps_or_curves(result, points):
+    _, _, decay, theory_error = (panel.map for panel in result.panels)
     assert (decay.values[~np.isnan(decay.values)] > 0).all()
     assert theory_error.low == -theory_error.high
-    (unsure,) = result.report().panels[0].curves
+    (unsure,) = result.panels[0].curves
     assert (unsure.x.tolist(), unsure.y.tolist()) == ([0.5], [2.0])
-    for ks, omegas, step in ((result.ks[:1], result.omegas, 1), (result.ks, result.omegas[:1], 3)):
-        points = result.points[: 3 * step : step]
-        panels = Sweep(ks, omegas, 4, points, theory(ks, omegas)).report().panels
+    ks, omegas = AXES
+    for axes, step in (((ks[:1], omegas), 1), ((ks, omegas[:1]), 3)):
+        some = points[: 3 * step : step]
+        panels = report(*axes, some).panels
         assert [len(panel.curves) for panel in panels] == [3, 3, 3, 1]
-        found = [p.numbers["width"].value for p in points]
-        assert panels[0].curves[0].y.tolist() == found
+        assert panels[0].curves[0].y.tolist() == [p.numbers["width"].value for p in some]
 
 
 def test_the_theory_is_that_of_lwa():

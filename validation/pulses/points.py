@@ -1,0 +1,97 @@
+"""A file of measured points, which grows by a line for each point and can be continued.
+
+The first line holds the format and the settings, every other line a point:
+
+    {"k": "3/2", "omega": "1", "sites": [56, 64], "numbers": {"width": [1.41192837, 1.4119], …}}
+    {"k": "3/2", "omega": "1/9", "missing": "not steady: the pulse has not passed 320 sites …"}
+
+A number is followed by the less accurate number that gives its error.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from filelock import FileLock, Timeout
+from sympy import Rational
+
+from lwa.base.exact import InputError, exact
+from lwa.base.files import content
+from validation.pulses.pulse import Measured
+from validation.pulses.steady import QUANTITIES, Point
+
+Key = tuple[Rational, Rational]  # k and ω of a point
+
+_MOST_BYTES = 10**9
+_FORMAT = {"format": "lwa sweep", "version": 3}  # changes with the definition of a quantity
+
+
+@dataclass(frozen=True)
+class PointFile:
+    """A file of points that were measured with the same ``stretch``."""
+
+    path: Path
+    stretch: int
+
+    @property
+    def header(self) -> bytes:
+        """The first line."""
+        return json.dumps(_FORMAT | {"settings": {"stretch": self.stretch}}).encode() + b"\n"
+
+    @contextmanager
+    def locked(self) -> Iterator[None]:
+        """Keep other processes away from the file; raises `lwa.InputError` if one has it."""
+        lock = FileLock(f"{self.path}.lock", blocking=False)
+        try:
+            with lock:
+                try:
+                    yield
+                finally:
+                    Path(lock.lock_file).unlink()
+        except Timeout:
+            raise InputError(f"file is {self.path}: another sweep writes it") from None
+
+    def read(self) -> dict[Key, Point]:
+        """Read all points. A torn last line is dropped.
+
+        Raises `lwa.InputError` for another sweep's file, or one that is damaged.
+        """
+        found = content(self.path, _MOST_BYTES) if self.path.exists() else b""
+        if not self.header.startswith(found) and not found.startswith(self.header):
+            wanted = self.header.decode().strip()
+            raise InputError(f"{self.path} does not begin with {wanted}: choose another name")
+        end, points = found.rfind(b"\n") + 1, dict[Key, Point]()
+        for number, line in enumerate(found[:end].splitlines()[1:], start=2):
+            try:
+                point = _read(**json.loads(line))
+            except (ValueError, TypeError, KeyError, RecursionError):
+                raise InputError(f"{self.path} is damaged in line {number}") from None
+            points[point.k, point.omega] = point
+        if end < len(found):
+            os.truncate(self.path, end)
+        return points
+
+    def append(self, point: Point) -> None:
+        """Append a point, which is on the disk when this returns."""
+        entry: dict[str, Any] = {"k": str(point.k), "omega": str(point.omega)}
+        if point.missing:
+            entry["missing"] = point.missing
+        else:
+            entry["sites"] = point.sites
+            entry["numbers"] = {name: [n.value, n.check] for name, n in point.numbers.items()}
+        line = json.dumps(entry, ensure_ascii=False, allow_nan=False).encode() + b"\n"
+        with self.path.open("ab") as stream:
+            stream.write(line if stream.tell() else self.header + line)
+            stream.flush()
+            os.fsync(stream.fileno())
+
+
+def _read(k: str, omega: str, sites: Any = None, numbers: Any = (), missing: Any = None) -> Point:
+    pairs = {name: Measured(*map(float, numbers[name])) for name in QUANTITIES if numbers}
+    return Point(exact(k, "k"), exact(omega, "omega"), sites and (*sites,), pairs, missing)
