@@ -10,14 +10,15 @@ of motion of the P particles are
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from dataclasses import dataclass
 
 from flint import fmpq_mpoly
 
 from lwa.algebra.jets import JetAlgebra
 
 
-class Solution(NamedTuple):
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class Solution:
     """The result of a closure, as polynomials.
 
     acceleration : E_n. Acoustic: φ_ττ = φ_x^k Σ_{n≥1} D^{n-1} E_n, E_1 = r_1 = φ_xx/φ_x.
