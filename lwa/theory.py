@@ -52,10 +52,10 @@ class Theory(OfClosure):
 
     @cached_property
     def slaved(self) -> dict[int, dict[int, Terms]]:
-        """Terms W_n by particle i and n of w_i = u + u_x Σ D^n W_n (full closure, u the field)."""
+        """Terms J_n by particle i and n of w_i = u + u_x Σ D^n J_n (full closure, u the field)."""
         return {
             i: {n: terms(self.closure, S, STRAIN) for n, S in enumerate(series, start=1)}
-            for i, series in enumerate(self.closure.solution.slaved)
+            for i, series in enumerate(self.closure.slaved)
             if any(not S.is_zero() for S in series)
         }
 

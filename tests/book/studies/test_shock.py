@@ -5,9 +5,10 @@ import math
 
 import numpy as np
 import pytest
+import scipy
 
 from book.studies.shock import shock
-from lwa import Cell, InputError, Power
+from lwa import Cell, InputError, Material, Power, Sphere, piston
 from lwa import shock as front
 from tests.commands import ended
 from validation import Drive, Scene, simulate
@@ -93,6 +94,22 @@ def test_a_wall_that_recedes_makes_the_fan():
         errors.append(np.abs(strains / theory - 1).max())
     assert errors[0] < 0.02
     assert errors[1] < 0.6 * errors[0]
+
+
+def test_a_wall_at_one_metre_a_second():
+    """Steel beads of 4.76 mm: speed and force of the leading pulse, beside the chain in SI."""
+    bead = Sphere("0.45e-3", "2.38e-3", Material(E="193e9", nu="0.3"))
+    cell = Cell.of_spheres([bead])
+    theory = piston(cell, Power("3/2"), 1).wave
+    scene = Scene.of_cell(
+        cell, 400, "3/2", drive=Drive(velocity=1.0), duration=2.2e-3, contact_sensors=(200, 350),
+        samples=20_001,
+    )  # fmt: skip
+    run = simulate(scene)
+    peaks = [scipy.signal.find_peaks(force, height=1.0)[0][0] for force in run.contact_force]
+    speed = 150 * float(cell.spacing) / np.diff(run.time[peaks])[0]
+    assert theory.speed.value == pytest.approx(speed, rel=3e-3)
+    assert float(theory.F) == pytest.approx(run.contact_force[1, peaks[1]], rel=0.01)
 
 
 def test_the_program(capsys):
