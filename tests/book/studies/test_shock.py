@@ -123,7 +123,7 @@ def test_els_trailing_edge_and_its_limit(law, behind, least, most):
     part = np.digitize(place, np.linspace(place.min(), place.max(), 120))
     envelope = np.array([(place[part == i].mean(), rise[part == i].max()) for i in np.unique(part)])
     height = envelope[:, 1] / rise.max()
-    slope, offset = np.polyfit(*envelope[(0.15 < height) & (height < 0.5)].T, 1)
+    slope, offset = np.polyfit(*envelope[(height > 0.15) & (height < 0.5)].T, 1)
     assert least < edge / (-offset / slope) - 1 < most
 
 
