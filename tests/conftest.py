@@ -9,10 +9,12 @@ from importlib.util import find_spec
 
 # The tests' linear systems are small: on a busy machine a second thread only waits for the first.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+os.environ.setdefault("MPLBACKEND", "Agg")
 # SymPy forgets all but 1000 results of each of its functions: the tests derive an eighth faster.
 os.environ.setdefault("SYMPY_CACHE_SIZE", "20000")
 
 import pytest
+from filelock import FileLock
 from hypothesis import settings
 
 # No wall time is asserted, on noisy machines.
@@ -22,6 +24,11 @@ settings.load_profile("lwa")
 COMPLETE = "LWA_TESTS_COMPLETE"
 """Environment variable that makes a missing optional part an error; `.ci/run` sets it where
 everything optional is installed."""
+
+
+def pytest_collection_modifyitems(items):
+    """Put the theory first: of two processes one derives while the other compiles the engine."""
+    items.sort(key=lambda item: not item.nodeid.startswith(("tests/lwa/", "lwa/")))
 
 
 def pytest_collection_finish(session):
@@ -58,6 +65,18 @@ def _interruptible():
     signal.signal(signal.SIGINT, signal.default_int_handler)
     yield
     signal.signal(signal.SIGINT, before)
+
+
+@pytest.fixture(scope="session")
+def engine(tmp_path_factory):
+    """Let the first of several processes of tests compile the lattice's engine, and others wait."""
+    if "PYTEST_XDIST_WORKER" in os.environ:
+        from validation.lattice.simulate import simulate
+        from validation.scenes.scene import Scene
+
+        pair = Scene(masses=(1, 1), stiffnesses=(1,), k=1.5, duration=1, velocities=(1,))
+        with FileLock(tmp_path_factory.getbasetemp().parent / "engine.lock"):
+            simulate(pair)
 
 
 @pytest.fixture

@@ -97,6 +97,7 @@ class CoefficientRing(Value):
 
     def _in_fractions(self, constant: sp.Expr) -> sp.Poly | None:
         """Convert a constant to a polynomial in k and the mass fractions; None if impossible."""
+        # A function of the fractions is one of the masses that scaling all of them leaves as it is.
         weights = self.masses.distinct if self.masses.names else ()
         scale = sp.Dummy(positive=True)
         scaled = constant.xreplace({w: scale * w for w in weights})

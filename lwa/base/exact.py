@@ -210,7 +210,7 @@ def power(base: sp.Expr, exponent: sp.Expr) -> sp.Expr:
     p, q = int(exponent.p), int(exponent.q)
     parts = int(factor.p), int(factor.q)
     bits = [part.bit_length() for part in parts]
-    if max(bits) > _ROOTLESS and factor > 0 and q > 1 and abs(p) < q:
+    if max(bits) > _ROOTLESS and factor > 0 and q > 1 and abs(p) < q:  # exact roots, if any
         roots = [sp.integer_nthroot(part, q) for part in parts]
         whole = all(found for _, found in roots)
         number = sp.Rational(roots[0][0], roots[1][0]) ** p if whole else Kept(factor) ** exponent

@@ -19,7 +19,7 @@ from lwa.base.exact import InputError, demand_numbers, integer, positive, root, 
 from lwa.base.frozen import Value
 from lwa.cell import Cell
 from lwa.envelopes.breather import KINDS, Breather
-from lwa.envelopes.exact import COSINE, SINE, exact_mode
+from lwa.envelopes.exact import exact_mode
 from lwa.envelopes.modes import Contacts, Mode, numeric_mode
 from lwa.law import ContactLaw, for_cell, substituted
 from lwa.linear.bloch import BRANCHES
@@ -81,14 +81,15 @@ class Envelope(Value):
         >>> envelope(Cell(["m1", "m2"]), Power("3/2"), precompression=1).frequency
         sqrt(3)/sqrt(m2)
         """
-        return self._named(self._omega)
+        square = self._tidy(sp.sympify(self._mode.square) * self._rate)
+        return self._tidy(root(square).replace(sp.Abs, lambda x: x))  # sin κ/2 ≥ 0
 
     @cached_property
     def group_velocity(self) -> sp.Expr:
         """dω/dκ, in cells per unit of time."""
         if sp.sin(self.wavenumber).is_zero:  # the edge of a band, in floats as well
             return sp.S.Zero
-        return self._named(self._tidy(self._mode.slope * self._rate / (2 * self._omega)))
+        return self._tidy(self._mode.slope * self._rate / (2 * self.frequency))
 
     @cached_property
     def dispersion(self) -> sp.Expr:
@@ -98,13 +99,13 @@ class Envelope(Value):
         >>> envelope(Cell(["m"], ["K"]), Power(1), background="p0", wavenumber="q").dispersion
         -sqrt(K)*sin(q/2)/(2*sqrt(m))
         """
-        return self._named(self._tidy(self._mode.curvature * self._rate / self._omega))
+        return self._tidy(self._mode.curvature * self._rate / self.frequency)
 
     @cached_property
     def nonlinearity(self) -> sp.Expr:
         """χ, the rise of the frequency over |A|²."""
-        found = self._mode.cubic * self._rate / (2 * self._omega)
-        return self._named(self._tidy(found / (self._mass * self._length**2)))
+        found = self._mode.cubic * self._rate / (2 * self.frequency)
+        return self._tidy(found / (self._mass * self._length**2))
 
     @cached_property
     def second_harmonic(self) -> tuple[sp.Expr, ...]:
@@ -236,22 +237,13 @@ class Envelope(Value):
             )
         return exact_mode(contacts, kappa, self.branch, bead, self._sampled)
 
-    @cached_property
-    def _omega(self) -> sp.Expr:
-        """ω, in `SINE` where κ is general."""
-        return self._tidy(root(self._tidy(sp.sympify(self._mode.square) * self._rate)))
-
     def _each(self, values: Any, unit: sp.Expr) -> tuple[sp.Expr, ...]:
-        return tuple(self._named(self._tidy(sp.sympify(value) / unit)) for value in values)
+        return tuple(self._tidy(sp.sympify(value) / unit) for value in values)
 
     def _tidy(self, value: sp.Expr) -> sp.Expr:
         if self.floats:
             return sp.N(value)
         return sp.powsimp(sp.factor(value)) if sp.count_ops(value) < LONG else value
-
-    def _named(self, value: sp.Expr) -> sp.Expr:
-        half = self.wavenumber / 2
-        return value.xreplace({SINE: sp.sin(half), COSINE: sp.cos(half)})
 
 
 def envelope(

@@ -85,7 +85,7 @@ def resum(
             sums.append(_sum(rest[1:], small).times(small))
         value = scale * mpmath.fsum(s.value for s in sums)
         error = abs(scale) * mpmath.fsum(s.error for s in sums)
-        least = abs(value) * mpmath.mpf(2) ** -52
+        least = abs(value) * mpmath.mpf(2) ** -52  # an ulp: the sum leaves as a float
         return Resummed(
             float(value),
             float(error + abs(value) * relative + least),

@@ -126,7 +126,7 @@ def radiation(cell: Cell, k: sp.Expr) -> Radiation | None:
     first = by_degree(wave.fields.log_force[0][2])
     quadratic, quartic = (_float(first.get(d, wave.zero), (1.0, *values)) for d in (2, 4))
     return Radiation(
-        contrast=(12 * I - 1) / 3,
+        contrast=(12 * I - 1) / 3,  # a dimer has I = (1 - 3b + 3b²)/3, hence (1 - 2b)²
         I=I,
         optical=float(np.min(squares)),
         lightest=cell.size * min(_float(mu, (1.0, *values)) for mu in wave.mu),

@@ -1,4 +1,4 @@
-"""Rows of `limits` as its laws have them: how they are shown takes no lattice."""
+"""The engine, compiled once, and rows of `limits`: how they are shown takes no lattice."""
 
 import pytest
 
@@ -8,8 +8,14 @@ from validation.waves.asymptotics import LAWS, theory_values
 from validation.waves.theory import theory_at
 
 
+@pytest.fixture(scope="session", autouse=True)
+def _engine(engine):
+    """Compile the engine in one process of the tests."""
+
+
 @pytest.fixture(scope="session")
 def limits_rows():
+    """Rows of `limits` as its laws have them."""
     rows = []
     for omega in (EQUAL, LIGHT):
         for k in EXPONENTS:

@@ -108,11 +108,9 @@ def test_what_cannot_be_meant(call, words):
         call()
 
 
-def test_a_picture(monkeypatch):
-    monkeypatch.setenv("MPLBACKEND", "Agg")
+def test_a_picture():
     from matplotlib import pyplot
 
-    pyplot.switch_backend("Agg")
     wave = canonical_wave(Cell([1]), "3/2")
     ax = wave.plot()
     assert wave.plot(ax) is ax
