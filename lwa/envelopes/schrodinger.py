@@ -141,7 +141,8 @@ class Envelope(Value):
     def breather(self, frequency: Any = None, *, detuning: Any = None, kind: str = "") -> Breather:
         """The standing envelope of a frequency, or of the detuning ν = 1 - frequency/ω.
 
-        kind : "bright" or "dark", for symbols that leave it open.
+        frequency : in radians per unit of time.
+        kind : "bright" or "dark", for symbols that leave the kind open.
 
         Raises `lwa.InputError` as `lwa.Breather` does.
         """
@@ -159,7 +160,7 @@ class Envelope(Value):
 
     @property
     def load(self) -> sp.Expr:
-        """The static force F0."""
+        """The static force F0, in the units of the cell."""
         return self.cell.stiffnesses[0] * self.law.at(self.static_compressions[0])
 
     @property
@@ -230,11 +231,6 @@ class Envelope(Value):
         found, bead = numeric_mode(sample, number, self.branch, self.floats)
         if self.floats:
             return found
-        if self.cell.size > 1 and not sp.cos(kappa).is_Rational:
-            raise InputError(
-                f"wavenumber is {shorten(kappa)}: in a cell of {self.cell.size} results are exact "
-                "where cos κ is rational (0, π/3, π/2, 2π/3, π); numeric() gives floats"
-            )
         return exact_mode(contacts, kappa, self.branch, bead, self._sampled)
 
     def _each(self, values: Any, unit: sp.Expr) -> tuple[sp.Expr, ...]:
@@ -263,8 +259,8 @@ def envelope(
     branch : "acoustic", "optical" or the number of the branch from 0; by default 0 for equal beads,
         else 1.
 
-    Results are exact for symbols in cells of one or two beads, for cells of numbers whose frequency
-    is algebraic, and floats through `numeric` for any cell of numbers.
+    Results are exact for cells of one or two beads, in symbols and at any wavenumber, and for cells
+    of numbers where cos κ is rational; they are floats through `numeric` for any cell of numbers.
 
     Raises `lwa.InputError` for other arguments, where branches touch, at zero frequency, where the
     second harmonic is itself a mode, and at the resonance of a mode that moves with sound,
