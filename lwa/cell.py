@@ -5,8 +5,8 @@ to the next one (the last contact joins the cell to its neighbour) and pushes wi
 Theory and lattice both start from this object.
 
 At leading order in a long wave all contact forces of a cell are equal, so that contact i takes the
-share C_i = P A_i^{-1/k} / Σ_j A_j^{-1/k} of the strain (Σ C_i = P), and the cell responds like one
-with P equal contacts of stiffness A_eff, A_eff^{-1/k} = (1/P) Σ A_i^{-1/k}.
+share C_i = P A_i^{-1/k} / Σ_j A_j^{-1/k} of the strain (Σ C_i = P), and the cell responds like
+a cell with P equal contacts of stiffness A_eff, A_eff^{-1/k} = (1/P) Σ A_i^{-1/k}.
 """
 
 from __future__ import annotations
@@ -190,7 +190,7 @@ class Cell(Value):
 def Dimer(
     m1: Any, m2: Any, N: int = 1, *, stiffnesses: Sequence[Any] = (), spacing: Any = D
 ) -> Cell:
-    """The paper's N:1 dimer: N particles m1 (the first one's field is u) and one m2, at distance D.
+    """The paper's N:1 dimer: N particles m1 (u is the field of the first) and one m2.
 
     >>> m1, m2 = sp.symbols("m1 m2", positive=True)
     >>> Dimer(m1, m2).fractions

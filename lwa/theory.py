@@ -117,8 +117,8 @@ def homogenize(
     cell : the periodic cell.
     order : highest power N of D in the ansatz; the wave equation then reaches D^{k+N-1}.
     k : exponent of the contact law, a number or a symbol.
-    law : the contact law, `lwa.Power(k)` where it is not given; see `lwa.law`. Under one that is no
-        power the contacts of a cell must be alike, and results hold its φ_n as phi2, phi3, ….
+    law : the contact law, by default `lwa.Power(k)`; see `lwa.law`. Under a law that is no power
+        the contacts of a cell must be alike, and results hold its φ_n as phi2, phi3, ….
     closure : "linear", the paper's, or "full", which satisfies every equation of motion.
     branch : "acoustic" (neighbours move together) or "optical" (against each other).
     field : unknown of the wave equation: "first", the first particle's displacement, or

@@ -110,7 +110,7 @@ def positive(value: Any, name: str) -> sp.Expr:
 
 
 def one_of(value: Any, known: Collection[str], name: str) -> str:
-    """Return a word; raise `InputError` unless it is among the known ones."""
+    """Return a word; raise `InputError` unless it is among the known words."""
     if not isinstance(value, str) or value not in known:
         wanted = " or ".join(known) if len(known) == 2 else f"one of {', '.join(known)}"
         raise InputError(f"{name} is {shorten(value)}: {wanted} is wanted")

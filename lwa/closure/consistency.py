@@ -1,6 +1,6 @@
 """The consistency condition: slaved fields that satisfy the equations of motion order by order.
 
-``linear`` is the closure of the paper (`lwa.closure.ansatz`), ``full`` the one that satisfies all
+``linear`` is the closure of the paper (`lwa.closure.ansatz`), ``full`` the closure of all
 equations of motion (`lwa.closure.slaving`). Both solve `lwa.closure.solution` in one algebra,
 `lwa.algebra.jets`.
 """

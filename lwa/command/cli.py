@@ -144,7 +144,7 @@ _STYLES = ", ".join(STYLES)
 
 
 def _canonical(options: dict[str, Any]) -> None:
-    """Set the closure of waves under load; refuse another one."""
+    """Set the closure of waves under load; refuse any other."""
     for name, wanted in (("closure", "full"), ("field", "center"), ("branch", "acoustic")):
         if given(name) and options[name] != wanted:
             raise InputError(

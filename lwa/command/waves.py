@@ -250,7 +250,7 @@ class Load:
     precompression: sp.Expr | None
 
     def under(self, other: bool) -> bool:
-        """Whether the wave runs under a load; one of 0 counts under a law ``other`` than a power.
+        """Whether the wave runs under a load; 0 is a load if the law is no power (``other``).
 
         Raises `lwa.InputError` for two loads.
         """

@@ -141,7 +141,8 @@ class Envelope(Value):
     def breather(self, frequency: Any = None, *, detuning: Any = None, kind: str = "") -> Breather:
         """The standing envelope of a frequency, or of the detuning ν = 1 - frequency/ω.
 
-        kind : "bright" or "dark", for symbols that leave it open.
+        frequency : in radians per unit of time.
+        kind : "bright" or "dark", for symbols that leave the kind open.
 
         Raises `lwa.InputError` as `lwa.Breather` does.
         """
@@ -159,7 +160,7 @@ class Envelope(Value):
 
     @property
     def load(self) -> sp.Expr:
-        """The static force F0."""
+        """The static force F0, in the units of the cell."""
         return self.cell.stiffnesses[0] * self.law.at(self.static_compressions[0])
 
     @property

@@ -33,8 +33,8 @@ the elastic energy at D²: k A φ_x^{k-1} φ_xx² S(e),
 
     S = Σ [-C_i³/24 - C_i (e_i + e_{i+1})/2 + (e_{i+1} - e_i)²/(2 C_i)],    I = -(2/P) D² min S.
 
-The minimising e does not know k, hence I is that of k = 1. With W(φ_x) in place of the power the
-same holds for every law with equal contacts.
+The minimising e does not depend on k, hence I is its value at k = 1. With W(φ_x) in place of the
+power the same holds for every law with equal contacts.
 """
 
 from __future__ import annotations

@@ -206,7 +206,7 @@ def expand(
     Parameters
     ----------
     cell : the periodic cell; numbers give rational coefficients, symbols rational functions.
-    order : highest power of ε (relative to the leading one).
+    order : highest power of ε relative to the leading term.
     k : exponent, a number or a symbol. Unlike contacts share the strain by it.
     law : a power law in place of k; other laws have no ε = k - 1.
 

@@ -56,7 +56,7 @@ class Radiation(Value):
     contrast : 0 for equal beads and contacts, (1 - 2b)² for a dimer of equal contacts.
     I : of Ω² = κ² - I κ⁴ + …
     optical : the lowest optical Ω² at κ = 0.
-    lightest : the lightest bead's mass over the mean one.
+    lightest : the lightest bead's mass over the mean mass.
     quadratic, quartic : φ_1 = quadratic X² + quartic X⁴ + odd terms.
     """
 

@@ -89,7 +89,7 @@ class Bloch:
 
             (1 + C_0 (e^{-2q} - 1)/2) Σ b_n q^n = 1 - m̂ C_0 C_1 Ω²_acoustic,
 
-        m̂ being m̂_0 on the acoustic branch and m̂_1 on the optical one.
+        m̂ being m̂_0 on the acoustic branch and m̂_1 on the optical branch.
         """
         weight = self.mu[BRANCHES.index(branch)] * self.c[0] * self.c[1]
         omega2 = self.acoustic(order // 2)

@@ -1,8 +1,8 @@
 """The linear chain: its dispersion relation, the series of its branches, its bands under a load.
 
-A chain at k = 1, or one of any k linearised about a uniform compression, is a chain of springs of
-compliances C_i (`Cell.shares`). In the theory's units (time τ, wavenumber κ = qD, so that Ω = κ to
-leading order) its acoustic branch is a series
+A chain at k = 1, or a chain of any k linearised about a uniform compression, is a chain of springs
+of compliances C_i (`Cell.shares`). In the theory's units (time τ, wavenumber κ = qD, so that Ω = κ
+to leading order) its acoustic branch is a series
 
     Ω² = κ² (1 - I κ² + …)
 

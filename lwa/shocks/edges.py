@@ -25,7 +25,8 @@ DIGITS = 20
 """Digits of what is not in closed form."""
 
 STEEPEST = sp.Rational(13, 10)
-"""r up to which the trailing edge holds: 9 % off for Hertz contacts at p₋/p₊ = 3, r = 1.32."""
+"""r up to which the trailing edge is given; for Hertz contacts it is 3 % too slow at p₋/p₊ = 2,
+r = 1.19, and 9 % at p₋/p₊ = 3, r = 1.32."""
 
 
 def trailing(chain: Dispersion, r: sp.Expr) -> sp.Expr:
