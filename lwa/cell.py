@@ -5,8 +5,8 @@ to the next one (the last contact joins the cell to its neighbour) and pushes wi
 Theory and lattice both start from this object.
 
 At leading order in a long wave all contact forces of a cell are equal, so that contact i takes the
-share c_i = P A_i^{-1/k} / Σ_j A_j^{-1/k} of the strain (Σ c_i = P), and the cell responds like one
-with P equal contacts of stiffness A_eff, A_eff^{-1/k} = (1/P) Σ A_i^{-1/k}.
+share C_i = P A_i^{-1/k} / Σ_j A_j^{-1/k} of the strain (Σ C_i = P), and the cell responds like
+a cell with P equal contacts of stiffness A_eff, A_eff^{-1/k} = (1/P) Σ A_i^{-1/k}.
 """
 
 from __future__ import annotations
@@ -153,7 +153,7 @@ class Cell(Value):
 
     @cached_property
     def fractions(self) -> tuple[sp.Expr, ...]:
-        """The mass fractions μ_i = m_i / M, with the sum 1."""
+        """The mass fractions m̂_i = m_i / M, with the sum 1."""
         return tuple(sp.cancel(m / self.mass) for m in self.masses)
 
     def compliances(self, k: Any = k) -> tuple[sp.Expr, ...]:
@@ -165,7 +165,7 @@ class Cell(Value):
         return tuple(_root(A, k, f"stiffness {i}") for i, A in enumerate(self.stiffnesses, 1))
 
     def shares(self, k: Any = k) -> tuple[sp.Expr, ...]:
-        """The shares c_i = P A_i^{-1/k} / Σ A_j^{-1/k}, strains of the contacts over their mean."""
+        """The shares C_i = P A_i^{-1/k} / Σ A_j^{-1/k}, strains of the contacts over their mean."""
         if len(set(self.stiffnesses)) == 1:
             return (sp.Integer(1),) * self.size
         compliances = self.compliances(k)
@@ -190,7 +190,7 @@ class Cell(Value):
 def Dimer(
     m1: Any, m2: Any, N: int = 1, *, stiffnesses: Sequence[Any] = (), spacing: Any = D
 ) -> Cell:
-    """The paper's N:1 dimer: N particles m1 (the first one's field is u) and one m2, at distance D.
+    """The paper's N:1 dimer: N particles m1 (u is the field of the first) and one m2.
 
     >>> m1, m2 = sp.symbols("m1 m2", positive=True)
     >>> Dimer(m1, m2).fractions

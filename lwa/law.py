@@ -1,4 +1,4 @@
-"""Contact laws F(δ): a power, any smooth expression, or a function without one.
+"""Contact laws F(δ): a power, any smooth expression, or a function without an expression.
 
 The theory needs the change of a law with the strain p = δ/D,
 

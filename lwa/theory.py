@@ -52,10 +52,10 @@ class Theory(OfClosure):
 
     @cached_property
     def slaved(self) -> dict[int, dict[int, Terms]]:
-        """Terms W_n by particle i and n of w_i = u + u_x Σ D^n W_n (full closure, u the field)."""
+        """Terms J_n by particle i and n of w_i = u + u_x Σ D^n J_n (full closure, u the field)."""
         return {
             i: {n: terms(self.closure, S, STRAIN) for n, S in enumerate(series, start=1)}
-            for i, series in enumerate(self.closure.solution.slaved)
+            for i, series in enumerate(self.closure.slaved)
             if any(not S.is_zero() for S in series)
         }
 
@@ -117,8 +117,8 @@ def homogenize(
     cell : the periodic cell.
     order : highest power N of D in the ansatz; the wave equation then reaches D^{k+N-1}.
     k : exponent of the contact law, a number or a symbol.
-    law : the contact law, `lwa.Power(k)` where it is not given; see `lwa.law`. Under one that is no
-        power the contacts of a cell must be alike, and results hold its φ_n as phi2, phi3, ….
+    law : the contact law, by default `lwa.Power(k)`; see `lwa.law`. Under a law that is no power
+        the contacts of a cell must be alike, and results hold its φ_n as phi2, phi3, ….
     closure : "linear", the paper's, or "full", which satisfies every equation of motion.
     branch : "acoustic" (neighbours move together) or "optical" (against each other).
     field : unknown of the wave equation: "first", the first particle's displacement, or

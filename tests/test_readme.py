@@ -3,6 +3,7 @@
 import json
 import re
 import runpy
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -51,3 +52,16 @@ def test_the_picture_shows_what_its_script_computes():
         assert drawn[name] == pytest.approx(values, rel=0, abs=1e-4 * largest)
     for speed in (float(now.theory.speed), now.lattice_speed):
         assert f"at {speed:.1f} m/s" in README
+
+
+def test_citation_and_changelog_agree():
+    """Version and date of the release, in all three places."""
+    cited = (ROOT / "CITATION.cff").read_text()
+    release = tuple(
+        re.search(rf"^{key}: (\S+)$", cited, re.MULTILINE)[1]
+        for key in ("version", "date-released")
+    )
+    newest = re.search(r"^## \[(.*?)\] - (\S+)$", CHANGELOG, re.MULTILINE)
+    assert newest.groups() == release
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    assert project["version"] == release[0]

@@ -1,11 +1,11 @@
-"""The coefficient ring of a derivation, Q[k, μ, c], and its conversion to SymPy.
+"""The coefficient ring of a derivation, Q[k, m̂, C], and its conversion to SymPy.
 
 Everything the theory derives is a polynomial in the jets of the field whose coefficients are
-polynomials in the exponent k, the mass fractions μ_i = m_i/M and the strain shares c_i of the
-contacts. The rational ones among these enter as numbers; each other distinct value becomes one
-generator of a python-flint polynomial ring (less one, since Σ μ_i = 1 and Σ c_i = P). Under a law
-other than a power φ_2, φ_3, … stand in the place of k. Polynomials leave as factored SymPy
-expressions in the caller's own symbols.
+polynomials in the exponent k, the mass fractions m̂_i = m_i/M and the strain shares C_i of the
+contacts. Rational values enter as numbers; each other distinct value becomes a generator of a
+python-flint polynomial ring (less one, since Σ m̂_i = 1 and Σ C_i = P). Under a law other than a
+power φ_2, φ_3, … stand in the place of k. Polynomials leave as factored SymPy expressions in the
+caller's own symbols.
 """
 
 from __future__ import annotations
@@ -30,11 +30,11 @@ PRINTABLE_DIGITS = 4000
 
 @dataclass(frozen=True)
 class CoefficientRing(Value):
-    """The ring Q[variables, μ, c, constants].
+    """The ring Q[variables, m̂, C, constants].
 
     k : the exponent, a number, a variable, or 1 + φ_2.
     variables : k unless it is rational, or the symbols of φ_2, φ_3, ….
-    masses, contacts : the mass fractions μ_i and the shares c_i of the contacts.
+    masses, contacts : the mass fractions m̂_i and the shares C_i of the contacts.
     constants : further expressions.
     """
 
@@ -92,11 +92,12 @@ class CoefficientRing(Value):
 
     @cached_property
     def _constants(self) -> tuple[sp.Poly | None, ...]:
-        """The constants as polynomials in k and μ; None for a constant that becomes a generator."""
+        """The constants as polynomials in k and m̂; None for a constant that becomes a generator."""
         return tuple(map(self._in_fractions, self.constants))
 
     def _in_fractions(self, constant: sp.Expr) -> sp.Poly | None:
         """Convert a constant to a polynomial in k and the mass fractions; None if impossible."""
+        # A function of the fractions is one of the masses that scaling all of them leaves as it is.
         weights = self.masses.distinct if self.masses.names else ()
         scale = sp.Dummy(positive=True)
         scaled = constant.xreplace({w: scale * w for w in weights})
@@ -127,9 +128,9 @@ class CoefficientRing(Value):
 
 
 class SymPyConverter:
-    """Conversion of polynomials in (k, μ, c) to factored SymPy expressions.
+    """Conversion of polynomials in (k, m̂, C) to factored SymPy expressions.
 
-    μ_i and c_i are replaced by w_i/Σw with one common denominator per partition, in a second
+    m̂_i and C_i are replaced by w_i/Σw with one common denominator per partition, in a second
     flint ring whose generators are the caller's symbols; the numerator is factored there.
     """
 

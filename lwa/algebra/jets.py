@@ -115,7 +115,7 @@ class JetAlgebra:
     def dt(self, f: Ladder, E: Ladder, n: int) -> fmpq_mpoly:
         """The n-th term of ∂_τ (p^e Σ_m D^m f_m), over p^{e + (k-1)/2} and one power of D.
 
-        f is a series or the known beginning of one, f_m for m < n; E is the series of
+        f is a series of which the terms f_m, m < n, are known; E is the series of
         u_ττ = p^k Σ_j D^{j-1} E_j, of which E_1 … E_{n-1} enter.
         """
         result = last = f[n - 1]

@@ -13,12 +13,12 @@ Fraction = tuple[fmpq_mpoly, fmpq_mpoly]
 
 
 def to_flint(value: sp.Expr) -> fmpq:
-    """A SymPy rational as a python-flint one."""
+    """Convert a rational of SymPy to python-flint."""
     return fmpq(int(value.p), int(value.q))
 
 
 def to_sympy(value: fmpq) -> sp.Rational:
-    """A python-flint rational as a SymPy one."""
+    """Convert a rational of python-flint to SymPy."""
     return sp.Rational(int(value.p), int(value.q))
 
 

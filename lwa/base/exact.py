@@ -110,7 +110,7 @@ def positive(value: Any, name: str) -> sp.Expr:
 
 
 def one_of(value: Any, known: Collection[str], name: str) -> str:
-    """Return a word; raise `InputError` unless it is among the known ones."""
+    """Return a word; raise `InputError` unless it is among the known words."""
     if not isinstance(value, str) or value not in known:
         wanted = " or ".join(known) if len(known) == 2 else f"one of {', '.join(known)}"
         raise InputError(f"{name} is {shorten(value)}: {wanted} is wanted")
@@ -210,7 +210,7 @@ def power(base: sp.Expr, exponent: sp.Expr) -> sp.Expr:
     p, q = int(exponent.p), int(exponent.q)
     parts = int(factor.p), int(factor.q)
     bits = [part.bit_length() for part in parts]
-    if max(bits) > _ROOTLESS and factor > 0 and q > 1 and abs(p) < q:
+    if max(bits) > _ROOTLESS and factor > 0 and q > 1 and abs(p) < q:  # exact roots, if any
         roots = [sp.integer_nthroot(part, q) for part in parts]
         whole = all(found for _, found in roots)
         number = sp.Rational(roots[0][0], roots[1][0]) ** p if whole else Kept(factor) ** exponent

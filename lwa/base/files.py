@@ -74,7 +74,7 @@ def _regular(path: str, flags: int) -> int:
 
 
 def kind(mode: int) -> str:
-    """Name the kind of a file that is not a regular one, such as "a folder"."""
+    """Name the kind of a file other than a regular file, such as "a folder"."""
     named = {stat.S_IFDIR: "a folder", stat.S_IFIFO: "a pipe", stat.S_IFSOCK: "a socket"}
     return named.get(stat.S_IFMT(mode), "a device")
 

@@ -71,7 +71,7 @@ def _acoustic(model: Model, order: int, progress: Progress[int]) -> Solution:
 
 def _optical(model: Model, order: int, progress: Progress[int]) -> Solution:
     # Contacts here also pull: the branch belongs to the odd extension of δ^k (or to odd k).
-    # w - u = -(u/μ_1)(1 + Y) and u(x + 2D) - w = (u/μ_1)(1 + Z); E = 1 + kε.
+    # w - u = -(u/m̂_1)(1 + Y) and u(x + 2D) - w = (u/m̂_1)(1 + Z); E = 1 + kε.
     algebra = model.algebra(max(order, 1))
     k = model.ring.exponent(algebra.context)
     mu = model.ring.masses.elements(algebra.context)

@@ -1,6 +1,6 @@
 """The consistency condition: slaved fields that satisfy the equations of motion order by order.
 
-``linear`` is the closure of the paper (`lwa.closure.ansatz`), ``full`` the one that satisfies all
+``linear`` is the closure of the paper (`lwa.closure.ansatz`), ``full`` the closure of all
 equations of motion (`lwa.closure.slaving`). Both solve `lwa.closure.solution` in one algebra,
 `lwa.algebra.jets`.
 """
@@ -15,7 +15,7 @@ from typing import Any
 import sympy as sp
 from flint import fmpq_mpoly
 
-from lwa.algebra.jets import JetAlgebra, Monomial
+from lwa.algebra.jets import Monomial
 from lwa.algebra.model import Model
 from lwa.base import latex
 from lwa.base.exact import InputError
@@ -32,42 +32,29 @@ CLOSURES = ("linear", "full")
 FIELDS = ("first", "center")
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class Closure:
-    """The solved consistency condition, as polynomials.
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class Closure(Solution):
+    """The solved consistency condition of a model, as polynomials.
 
     Equality, hash and pickle go by model, order, closure and field; a copy is derived again.
-
-    ratio : λ of the branch.
-    solution : E_n, b_n, S_n and the defect.
     """
 
     model: Model
     order: int
     name: str
     field: str
-    ratio: sp.Expr
-    solution: Solution
 
     @property
-    def algebra(self) -> JetAlgebra:
-        """The algebra of the solution's polynomials."""
-        return self.solution.algebra
+    def ratio(self) -> sp.Expr:
+        """λ = w/u at order D^0: 1 on the acoustic branch, -m1/m2 on the optical one.
 
-    @property
-    def acceleration(self) -> tuple[fmpq_mpoly, ...]:
-        """The E_n of the wave equation; see `Solution`."""
-        return self.solution.acceleration
-
-    @property
-    def ansatz(self) -> tuple[fmpq_mpoly, ...]:
-        """The b_n, n = 0 … order, of the ansatz; () for a cell of one particle."""
-        return self.solution.ansatz
-
-    @property
-    def defect(self) -> tuple[fmpq_mpoly, ...]:
-        """The differences of E_n between the first and the second equation of motion."""
-        return self.solution.defect
+        With s the force that w = λu puts on a contact, the equations of motion are m1 ü = 2s and
+        m2 λ ü = -2s. They agree where s = 0, that is w = u, or where m2 λ + m1 = 0.
+        """
+        if self.model.branch == "acoustic":
+            return sp.S.One
+        m1, m2 = self.model.cell.masses
+        return -sp.cancel(m1 / m2)
 
     @property
     def key(self) -> tuple[Any, ...]:
@@ -117,8 +104,8 @@ class Closure:
     @property
     def fields(self) -> tuple[tuple[fmpq_mpoly, ...], ...]:
         """The S_n of each particle, w_i = φ + D φ_x Σ D^n S_n (acoustic branch)."""
-        if self.solution.slaved:
-            return self.solution.slaved
+        if self.slaved:
+            return self.slaved
         r, zero = self.algebra.r, self.algebra.zero
         first = tuple(zero for _ in range(self.order))
         second = tuple(b * r[n] for n, b in enumerate(self.ansatz[1:]))
@@ -163,19 +150,6 @@ class OfClosure(Value):
         return self.closure.model.law
 
 
-def amplitude_ratios(cell: Cell) -> dict[str, sp.Expr]:
-    """Ratios λ = w/u of the uniform motions (order D^0) of a two-particle cell, by branch.
-
-    With s the force that w = λu puts on a contact, the equations are m1 ü = 2s and m2 λ ü = -2s.
-    They agree where s = 0, that is w = u (acoustic), or where m2 λ + m1 = 0 (optical).
-
-    >>> amplitude_ratios(Cell(sp.symbols("m1 m2", positive=True)))
-    {'acoustic': 1, 'optical': -m1/m2}
-    """
-    m1, m2 = cell.masses
-    return {"acoustic": sp.Integer(1), "optical": -sp.cancel(m1 / m2)}
-
-
 def solve(
     model: Model, order: int, closure: str, field: str, progress: Progress[int] = iter
 ) -> Closure:
@@ -184,9 +158,7 @@ def solve(
     Raises `lwa.InputError` for the combinations that have no solution.
     """
     solution = _solution(model, order, closure, field, progress)
-    acoustic = model.branch == "acoustic"
-    ratio = sp.S.One if acoustic else amplitude_ratios(model.cell)["optical"]
-    return Closure(model, order, closure, field, ratio, solution)
+    return Closure(**vars(solution), model=model, order=order, name=closure, field=field)
 
 
 def _solution(

@@ -5,19 +5,20 @@ and expressed by one field φ: w_i = φ + D φ_x S_i, S_i a series in D of polyn
 φ. In the units of `Cell.time_scale`, with F_i the force of contact i over A_eff D^k, the equations
 of motion of the P particles are
 
-    P k D μ_i ∂_ττ w_i = F_i(x) - F_{i-1}(x),    F_{-1}(x) = F_{P-1}(x - P D).
+    P k D m̂_i ∂_ττ w_i = F_i(x) - F_{i-1}(x),    F_{-1}(x) = F_{P-1}(x - P D).
 """
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from dataclasses import dataclass
 
 from flint import fmpq_mpoly
 
 from lwa.algebra.jets import JetAlgebra
 
 
-class Solution(NamedTuple):
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class Solution:
     """The result of a closure, as polynomials.
 
     acceleration : E_n. Acoustic: φ_ττ = φ_x^k Σ_{n≥1} D^{n-1} E_n, E_1 = r_1 = φ_xx/φ_x.

@@ -28,7 +28,7 @@ CHAIN = ("cell", "repeat", "k", "law", "stiffnesses", "spacings")
 def read_chain(path: str | Path) -> ChainInput:
     """Read the chain of a file.
 
-    Raises `lwa.InputError`, in one line that names file and key, for whatever it cannot mean.
+    Raises `lwa.InputError`, in one line that names file and key, for invalid content.
     """
     return load(path, "a list of spheres", _chain)
 

@@ -67,7 +67,7 @@ def _precompression(
 
 def _answer(style: str, answer: Answer) -> None:
     if style == "json":
-        click.echo(json.dumps(answer.json(), indent=2))
+        click.echo(json.dumps(answer.json(), indent=2, default=str))
     else:
         click.echo(answer.latex() if style == "latex" else answer.text())
 
@@ -144,7 +144,7 @@ _STYLES = ", ".join(STYLES)
 
 
 def _canonical(options: dict[str, Any]) -> None:
-    """Set the closure of waves under load; refuse another one."""
+    """Set the closure of waves under load; refuse any other."""
     for name, wanted in (("closure", "full"), ("field", "center"), ("branch", "acoustic")):
         if given(name) and options[name] != wanted:
             raise InputError(

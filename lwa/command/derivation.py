@@ -65,7 +65,7 @@ def derivation(theory: Theory, tex: bool = False) -> Answer:
     """The ansatz, the wave equation and the defect: `lwa derive`.
 
     In JSON ``terms`` are the right-hand side of u_ττ after its leading term. ``slaved`` (full
-    closure) are the terms W_n of w_i = u + u_x Σ D^n W_n by particle, 1 being the first, in the
+    closure) are the terms J_n of w_i = u + u_x Σ D^n J_n by particle, 1 being the first, in the
     same form.
 
     tex : whether LaTeX is wanted; that of a high order takes as long as the derivation.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import reduce
 from typing import Any
@@ -31,13 +31,14 @@ def setting(
     )
 
 
-def _one_of(values: Iterable[str]) -> click.Choice[str]:
-    return click.Choice(list(values))
+def together(*options: Option) -> Option:
+    """One decorator of several options, in their order in the help."""
+    return lambda command: reduce(lambda c, option: option(c), reversed(options), command)
 
 
 def _choice(name: str, values: Sequence[str], help_text: str) -> Option:
     """An option with a few names for its values, the first by default."""
-    return setting(name, values[0], help_text, type=_one_of(values))
+    return setting(name, values[0], help_text, type=click.Choice(values))
 
 
 def exponent(default: str) -> Option:
@@ -61,11 +62,10 @@ def law_option(help_text: str) -> Option:
     )
 
 
-def style_option(formats: Iterable[str]) -> Option:
+def style_option(formats: Sequence[str]) -> Option:
     """The option ``--format``."""
-    return setting(
-        "--format", "text", "How to print the result.", names=("style",), type=_one_of(formats)
-    )
+    choice = click.Choice(formats)
+    return setting("--format", "text", "How to print the result.", names=("style",), type=choice)
 
 
 MASSES = setting("--masses", "m1,m2", "Masses of the cell's particles.", callback=quantities)
@@ -74,24 +74,9 @@ STIFFNESSES = click.option(
 )
 
 
-def _with(options: tuple[Option, ...], command: Command) -> Command:
-    return reduce(lambda c, option: option(c), reversed(options), command)
-
-
-def of_chain(formats: Iterable[str]) -> Option:
-    """The options that name a chain and its theory."""
-    options = (
-        order_option("Highest power of D in the ansatz."),
-        _choice("--closure", CLOSURES, "Consistency condition; linear is the paper's."),
-        _choice("--field", FIELDS, "Field described; center wants closure full."),
-        _choice("--branch", BRANCHES, "Branch of the motion."),
-    )
-    return lambda command: of_cell(formats)(_with(options, command))
-
-
-def of_cell(formats: Iterable[str]) -> Option:
+def of_cell(formats: Sequence[str]) -> Option:
     """The options that name a chain and its contact law."""
-    options = (
+    return together(
         exponent(k.name),
         law_option(f"Contact law in place of the power: {', '.join(NAMES)}."),
         MASSES,
@@ -99,13 +84,22 @@ def of_cell(formats: Iterable[str]) -> Option:
         setting("--spacing", D.name, "Distance of neighbouring particles.", callback=quantity),
         style_option(formats),
     )
-    return lambda command: _with(options, command)
 
 
-def of_series(k: str, order: str, formats: Iterable[str]) -> Option:
+def of_chain(formats: Sequence[str]) -> Option:
+    """The options that name a chain and its theory."""
+    return together(
+        of_cell(formats),
+        order_option("Highest power of D in the ansatz."),
+        _choice("--closure", CLOSURES, "Consistency condition; linear is the paper's."),
+        _choice("--field", FIELDS, "Field described; center wants closure full."),
+        _choice("--branch", BRANCHES, "Branch of the motion."),
+    )
+
+
+def of_series(k: str, order: str, formats: Sequence[str]) -> Option:
     """The options of a command on a series: its cell, exponent and order; ``k`` by default."""
-    options = (exponent(k), MASSES, STIFFNESSES, order_option(order), style_option(formats))
-    return lambda command: _with(options, command)
+    return together(exponent(k), MASSES, STIFFNESSES, order_option(order), style_option(formats))
 
 
 def given(option: str) -> bool:

@@ -100,7 +100,7 @@ class Answer:
         result = dict(self.head)
         rows = [row for row in self.rows if isinstance(row, Row) and row.key]
         for row in rows:
-            if row.expression and isinstance(row.value, sp.Expr | tuple | list):
+            if row.expression and isinstance(row.value, sp.Expr | tuple):
                 _put(result, row.key, "", _each(str, row.value))
         for row in rows:
             self._put_digits(result, row)
@@ -208,8 +208,6 @@ def _each(read: Callable[[sp.Expr], Any], value: Any) -> Any:
     """Apply ``read`` to an expression or to each of a collection; None if any result is None."""
     if isinstance(value, sp.Expr):
         return read(value)
-    if isinstance(value, list):
-        return [{name: read(x) for name, x in entry.items()} for entry in value]
     found = [read(x) for x in value]
     return None if None in found else found
 

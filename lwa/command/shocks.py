@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
+
+import sympy as sp
 
 from lwa.base.errors import InputError
 from lwa.command.rows import Answer, Row, attempt
@@ -20,6 +23,10 @@ def shock(found: Shock, units: Mapping[str, str], spoken: str) -> Answer:
     spoken : the chain in text.
     """
 
+    def row(key: str, label: str, value: Any, symbol: str = "") -> Row:
+        closed = isinstance(value, sp.Expr) and not value.has(sp.Float)
+        return Row(key, label, value, symbol, expression=closed)
+
     kind = attempt(lambda: found.kind)
     head = {"kind": None if isinstance(kind, InputError) else kind}
     rows: list[Row | str] = [
@@ -28,17 +35,16 @@ def shock(found: Shock, units: Mapping[str, str], spoken: str) -> Answer:
         Row("ahead", "strain ahead", found.ahead, "p_{+}"),
         "",
         f"{head['kind'] or 'front'}, speeds dx/dt:",
-        Row("plateau", "velocity of the wall and the plateau", found.plateau, "v_{p}"),
-        Row("trailing_speed", "trailing edge", attempt(lambda: found.trailing_speed), "s_{-}"),
+        row("plateau", "velocity of the wall and the plateau", found.plateau, "v_{p}"),
+        row("trailing_speed", "trailing edge", attempt(lambda: found.trailing_speed), "s_{-}"),
     ]
     for rule in RULES:
         key, label = f"leading_speed.{rule}", f"leading edge, {rule}"
-        rows.append(Row(key, label, attempt(found.leading_speed, rule), "s_{+}"))
+        rows.append(row(key, label, attempt(found.leading_speed, rule), "s_{+}"))
     if kind != "rarefaction":
-        rows += [
-            Row("peak", "peak strain, doubling", attempt(lambda: found.peak), "p_{+} + B"),
-            Row("peak_force", "peak force, doubling", attempt(lambda: found.peak_force), "F"),
-        ]
+        peak, force = attempt(lambda: found.peak), attempt(lambda: found.peak_force)
+        rows.append(row("peak", "peak strain, doubling", peak, r"p_{\max}"))
+        rows.append(row("peak_force", "peak force, doubling", force, r"F_{\max}"))
         if found.law.homogeneous and found.ahead.is_zero and not found.behind.free_symbols:
             wave, force = attempt(lambda: found.wave.speed), attempt(lambda: found.wave.F)
             rows += [

@@ -82,7 +82,6 @@ def compact(theory: Theory, wave: TravelingWave) -> Answer:
         Row("speed_factor", "", wave.speed_factor, number=None),
         Row("time_scale", "", wave.speed_scale, r"\mathrm{d}x/\mathrm{d}t / V_{s}", number=None),
         Row("log_B", "", log_B, expression=False),
-        Row("roots", "", roots, number=None),
         "",
         "v = z^p, integrating factor z^a: z'' = μ z^η - σ z",
         *_reduction_rows(theory, one),
@@ -90,7 +89,7 @@ def compact(theory: Theory, wave: TravelingWave) -> Answer:
         Row("", "with a", other.a),
     ]
     notes = radiation_note(theory.cell, wave.k)
-    return Answer(chain_json(theory), rows, spacing=wave.D, notes=notes)
+    return Answer(chain_json(theory) | {"roots": roots}, rows, spacing=wave.D, notes=notes)
 
 
 def _reduction_rows(theory: Theory, found: Any) -> list[Row]:
@@ -251,7 +250,7 @@ class Load:
     precompression: sp.Expr | None
 
     def under(self, other: bool) -> bool:
-        """Whether the wave runs under a load; one of 0 counts under a law ``other`` than a power.
+        """Whether the wave runs under a load; 0 is a load if the law is no power (``other``).
 
         Raises `lwa.InputError` for two loads.
         """

@@ -30,14 +30,15 @@ KINDS = ("bright", "dark")
 """An envelope that is localised, ω″χ < 0, and a dip in a wave train."""
 
 HELD = ("frequency", "amplitude")
-"""What of a breather is kept while the load changes."""
+"""Quantities of a breather that are held while the load changes."""
 
 
 @dataclass(frozen=True)
 class Breather(Value):
     """The standing envelope of the frequency (1 - ν) ω (see `lwa.Envelope.breather`).
 
-    edge, dispersion, nonlinearity, mode, wavenumber : ω, ω″, χ, φ and κ of the envelope's equation.
+    edge, dispersion, nonlinearity, mode, wavenumber : ω, ω″, χ, φ and κ of the envelope's equation,
+        with frequencies in radians per unit of time.
     opening : |A|² at which contacts begin to open, to leading order; infinite where contacts pull.
     load, k : the static force F0, and the exponent of a power law, NaN for other laws.
     detuning, kind : ν, and one of `KINDS`.
@@ -84,7 +85,7 @@ class Breather(Value):
 
     @property
     def _shift(self) -> sp.Expr:
-        """2Ω of bright, Ω of dark breathers, over ν."""
+        """2Ω/ν of bright, Ω/ν of dark breathers."""
         return -(2 if self.kind == KINDS[0] else 1) * self.edge
 
     @cached_property

@@ -22,9 +22,6 @@ from lwa.envelopes.modes import Contacts, Matrix, Mode
 
 X, Z = sp.symbols("x z", cls=sp.Dummy)
 
-SINE, COSINE = sp.symbols("s c", positive=True, cls=sp.Dummy)
-"""sin κ/2 and cos κ/2 in results for wavenumbers whose cosine is not rational."""
-
 
 @dataclass(frozen=True, eq=False)
 class Root:
@@ -71,31 +68,21 @@ def _roots(relation: Any, *mode: Any) -> list[Root]:
     for factor, count in sp.factor_list(_in_cosine(relation.numer.as_expr(), mode[0]))[1]:
         if X in factor.free_symbols:
             polynomial = sp.Poly(factor, X, field=True)
-            found += count * [Root(x, polynomial, *mode) for x in _solutions(polynomial)]
+            try:
+                roots = sp.roots(polynomial) if polynomial.degree() < 3 else polynomial.real_roots()
+            except (NotImplementedError, sp.PolynomialError):
+                raise InputError(
+                    "the frequency has no exact form at this wavenumber: numeric() gives floats"
+                ) from None
+            found += count * [Root(x, polynomial, *mode) for x in roots]
     return found
-
-
-def _solutions(polynomial: sp.Poly) -> list[sp.Expr]:
-    """Roots of an irreducible polynomial; square roots up to degree 2."""
-    if polynomial.degree() > 2:
-        try:
-            return list(polynomial.real_roots())
-        except (NotImplementedError, sp.PolynomialError):
-            raise InputError(
-                "the frequency has no exact form at this wavenumber: numeric() gives floats"
-            ) from None
-    *a, b, c = (sp.factor(value) for value in polynomial.all_coeffs())
-    if not a:
-        return [sp.factor(-c / b)]
-    half = sp.sqrt(sp.factor(b**2 - 4 * a[0] * c)) / (2 * a[0])
-    return [-b / (2 * a[0]) + half, -b / (2 * a[0]) - half]
 
 
 def exact_mode(
     contacts: Contacts, wavenumber: sp.Expr, branch: int, bead: int,
     sampled: Callable[[sp.Expr], float],
 ) -> Mode:  # fmt: skip
-    """The mode of a branch in exact numbers, in `SINE` and `COSINE` where cos κ is not rational.
+    """The mode of a branch in exact numbers, in sin κ/2 and cos κ/2 unless cos κ is rational.
 
     bead : the one of positive φ. sampled : the float of an expression at a sample of its symbols;
     roots ascend by it.
@@ -105,7 +92,8 @@ def exact_mode(
     P, cosine, phase = len(contacts.masses), sp.cos(wavenumber), sp.exp(sp.I * wavenumber)
     sine = root(1 - cosine**2)
     if not cosine.is_Rational:
-        sine, cosine = 2 * SINE * COSINE, 1 - 2 * SINE**2
+        half = wavenumber / 2
+        sine, cosine = 2 * sp.sin(half) * sp.cos(half), 1 - 2 * sp.sin(half) ** 2
     numbers = (*contacts.masses, *contacts.c, contacts.s, contacts.t)
     letters = {a: a if a.is_Rational else sp.Dummy(positive=True) for a in numbers}
     field, (x, z, *elements) = sfield([X, Z, *(letters[a] for a in numbers)])

@@ -126,7 +126,11 @@ def numeric_mode(contacts: Contacts, kappa: float, branch: int, resolved: bool) 
             "the frequency is zero at this wavenumber: sound, c_g = c_0, has no envelope; its mean "
             "flow runs along with it"
         )
-    slope, bend = _derivatives(contacts, z, vectors / root[:, None], squares, branch)
+    # T(x) - 2 cos κ = det(K - xM) Π c = Π m Π c Π (x_j - x), of modes j; cf. `lwa.envelopes.exact`
+    gaps = others - x
+    first = -np.prod(contacts.masses * contacts.c * np.append(gaps, 1))  # T′
+    slope = -2 * z.imag / first
+    bend = -2 * z.real / first + 2 * slope**2 * (1 / gaps).sum()
     speed = contacts.masses.sum() * contacts.c.sum() * slope**2 / (4 * x)  # (c_g/c_0)²
     if resolved and 1 - speed < SOUND:
         raise InputError(
@@ -144,21 +148,3 @@ def numeric_mode(contacts: Contacts, kappa: float, branch: int, resolved: bool) 
     )
     curvature = bend / 2 - slope**2 / (4 * x)
     return Mode(x, slope, curvature, cubic.real, second, mean.real, size.real, phi), bead
-
-
-def _derivatives(
-    contacts: Contacts, z: complex, modes: Matrix, squares: Matrix, branch: int
-) -> tuple[float, float]:
-    """dω²/dκ and d²ω²/dκ² by perturbation of K(κ); modes in columns, Σ m|φ|² = 1.
-
-    B depends on κ in one entry, -e^{iκ}.
-    """
-    B, turn = contacts.strains(z), np.zeros(modes.shape, complex)
-    turn[-1, 0] = -1j * z  # dB/dκ; d²B/dκ² is i dB/dκ
-    d, first = (part @ modes / np.sqrt(contacts.c)[:, None] for part in (B, turn))
-    own = first.conj().T @ d[:, branch] + d.conj().T @ first[:, branch]  # φ_j† K′ φ
-    bend = 2 * np.vdot(first[:, branch], first[:, branch]).real
-    bend += 2 * np.vdot(d[:, branch], 1j * first[:, branch]).real
-    gaps = np.delete(squares[branch] - squares, branch)
-    bend += 2 * (np.abs(np.delete(own, branch)) ** 2 / gaps).sum()
-    return float(own[branch].real), float(bend)

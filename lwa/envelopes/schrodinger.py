@@ -19,7 +19,7 @@ from lwa.base.exact import InputError, demand_numbers, integer, positive, root, 
 from lwa.base.frozen import Value
 from lwa.cell import Cell
 from lwa.envelopes.breather import KINDS, Breather
-from lwa.envelopes.exact import COSINE, SINE, exact_mode
+from lwa.envelopes.exact import exact_mode
 from lwa.envelopes.modes import Contacts, Mode, numeric_mode
 from lwa.law import ContactLaw, for_cell, substituted
 from lwa.linear.bloch import BRANCHES
@@ -81,14 +81,15 @@ class Envelope(Value):
         >>> envelope(Cell(["m1", "m2"]), Power("3/2"), precompression=1).frequency
         sqrt(3)/sqrt(m2)
         """
-        return self._named(self._omega)
+        square = self._tidy(sp.sympify(self._mode.square) * self._rate)
+        return self._tidy(root(square).replace(sp.Abs, lambda x: x))  # sin κ/2 ≥ 0
 
     @cached_property
     def group_velocity(self) -> sp.Expr:
         """dω/dκ, in cells per unit of time."""
         if sp.sin(self.wavenumber).is_zero:  # the edge of a band, in floats as well
             return sp.S.Zero
-        return self._named(self._tidy(self._mode.slope * self._rate / (2 * self._omega)))
+        return self._tidy(self._mode.slope * self._rate / (2 * self.frequency))
 
     @cached_property
     def dispersion(self) -> sp.Expr:
@@ -98,13 +99,13 @@ class Envelope(Value):
         >>> envelope(Cell(["m"], ["K"]), Power(1), background="p0", wavenumber="q").dispersion
         -sqrt(K)*sin(q/2)/(2*sqrt(m))
         """
-        return self._named(self._tidy(self._mode.curvature * self._rate / self._omega))
+        return self._tidy(self._mode.curvature * self._rate / self.frequency)
 
     @cached_property
     def nonlinearity(self) -> sp.Expr:
         """χ, the rise of the frequency over |A|²."""
-        found = self._mode.cubic * self._rate / (2 * self._omega)
-        return self._named(self._tidy(found / (self._mass * self._length**2)))
+        found = self._mode.cubic * self._rate / (2 * self.frequency)
+        return self._tidy(found / (self._mass * self._length**2))
 
     @cached_property
     def second_harmonic(self) -> tuple[sp.Expr, ...]:
@@ -140,7 +141,8 @@ class Envelope(Value):
     def breather(self, frequency: Any = None, *, detuning: Any = None, kind: str = "") -> Breather:
         """The standing envelope of a frequency, or of the detuning ν = 1 - frequency/ω.
 
-        kind : "bright" or "dark", for symbols that leave it open.
+        frequency : in radians per unit of time.
+        kind : "bright" or "dark", for symbols that leave the kind open.
 
         Raises `lwa.InputError` as `lwa.Breather` does.
         """
@@ -158,7 +160,7 @@ class Envelope(Value):
 
     @property
     def load(self) -> sp.Expr:
-        """The static force F0."""
+        """The static force F0, in the units of the cell."""
         return self.cell.stiffnesses[0] * self.law.at(self.static_compressions[0])
 
     @property
@@ -229,29 +231,15 @@ class Envelope(Value):
         found, bead = numeric_mode(sample, number, self.branch, self.floats)
         if self.floats:
             return found
-        if self.cell.size > 1 and not sp.cos(kappa).is_Rational:
-            raise InputError(
-                f"wavenumber is {shorten(kappa)}: in a cell of {self.cell.size} results are exact "
-                "where cos κ is rational (0, π/3, π/2, 2π/3, π); numeric() gives floats"
-            )
         return exact_mode(contacts, kappa, self.branch, bead, self._sampled)
 
-    @cached_property
-    def _omega(self) -> sp.Expr:
-        """ω, in `SINE` where κ is general."""
-        return self._tidy(root(self._tidy(sp.sympify(self._mode.square) * self._rate)))
-
     def _each(self, values: Any, unit: sp.Expr) -> tuple[sp.Expr, ...]:
-        return tuple(self._named(self._tidy(sp.sympify(value) / unit)) for value in values)
+        return tuple(self._tidy(sp.sympify(value) / unit) for value in values)
 
     def _tidy(self, value: sp.Expr) -> sp.Expr:
         if self.floats:
             return sp.N(value)
         return sp.powsimp(sp.factor(value)) if sp.count_ops(value) < LONG else value
-
-    def _named(self, value: sp.Expr) -> sp.Expr:
-        half = self.wavenumber / 2
-        return value.xreplace({SINE: sp.sin(half), COSINE: sp.cos(half)})
 
 
 def envelope(
@@ -271,8 +259,8 @@ def envelope(
     branch : "acoustic", "optical" or the number of the branch from 0; by default 0 for equal beads,
         else 1.
 
-    Results are exact for symbols in cells of one or two beads, for cells of numbers whose frequency
-    is algebraic, and floats through `numeric` for any cell of numbers.
+    Results are exact for cells of one or two beads, in symbols and at any wavenumber, and for cells
+    of numbers where cos κ is rational; they are floats through `numeric` for any cell of numbers.
 
     Raises `lwa.InputError` for other arguments, where branches touch, at zero frequency, where the
     second harmonic is itself a mode, and at the resonance of a mode that moves with sound,

@@ -11,9 +11,9 @@ a conserved energy. With V = p^{k+1} f the variational derivative is formed in t
 ∂V/∂u_x = p^k ((k+1) f - Σ r_n ∂f/∂r_n) and ∂V/∂(∂_x^{n+1} u) = p^k ∂f/∂r_n.
 
 **Energy of the chain.** With w_i the field of particle i and p (1 + X_i) the strain of contact i
-over its share c_i, the energy of a cell per length, in the units of the wave equation, is
+over its share C_i, the energy of a cell per length, in the units of the wave equation, is
 
-    e = ½ Σ μ_i (∂_τ w_i)² + Σ c_i W(p (1 + X_i)) / P = u_τ²/2 + W(u_x) + …,
+    e = ½ Σ m̂_i (∂_τ w_i)² + Σ C_i W(p (1 + X_i)) / P = u_τ²/2 + W(u_x) + …,
 
 W′ = F the force, p^k/k for a power. The equations of motion give
 
@@ -25,16 +25,16 @@ up to derivatives, so that no highest jet stands in it linearly.
 
 **Theorem.** At D^{k+3} the equation of the canonical field derives from a potential for every cell:
 G = I(k-1)(k-2)/2, H = 2I(k-1), and I is that of the linear chain, Ω² = κ² (1 - Iκ² + …). For write
-w_i = e^{x_i D∂} (φ + D² e_i φ_xx + …), x_i = c_0 + … + c_{i-1}, with Σ μ_i e_i = 0, which defines
+w_i = e^{x_i D∂} (φ + D² e_i φ_xx + …), x_i = C_0 + … + C_{i-1}, with Σ m̂_i e_i = 0, which defines
 φ. The kinetic energy is φ_τ²/2 up to D⁴. The strain of contact i at its middle is
-c_i φ_x + D (e_{i+1} - e_i) φ_xx + D² (c_i³/24 + c_i (e_i + e_{i+1})/2) φ_xxx, A_i c_i^k is the same
+C_i φ_x + D (e_{i+1} - e_i) φ_xx + D² (C_i³/24 + C_i (e_i + e_{i+1})/2) φ_xxx, A_i C_i^k is the same
 for all contacts, the linear term telescopes round the cell, and by parts one monomial is left of
 the elastic energy at D²: k A φ_x^{k-1} φ_xx² S(e),
 
-    S = Σ [-c_i³/24 - c_i (e_i + e_{i+1})/2 + (e_{i+1} - e_i)²/(2 c_i)],    I = -(2/P) D² min S.
+    S = Σ [-C_i³/24 - C_i (e_i + e_{i+1})/2 + (e_{i+1} - e_i)²/(2 C_i)],    I = -(2/P) D² min S.
 
-The minimising e does not know k, hence I is that of k = 1. With W(φ_x) in place of the power the
-same holds for every law with equal contacts.
+The minimising e does not depend on k, hence I is its value at k = 1. With W(φ_x) in place of the
+power the same holds for every law with equal contacts.
 """
 
 from __future__ import annotations
@@ -136,7 +136,7 @@ class _Fields:
         return ladder
 
     def kinetic(self, n: int) -> fmpq_mpoly:
-        """The kinetic energy ½ Σ μ_i (∂_τ w_i)² at D^n, over p² F′."""
+        """The kinetic energy ½ Σ m̂_i (∂_τ w_i)² at D^n, over p² F′."""
         total = self.algebra.zero
         for mu, row in zip(self.mu, self.velocities, strict=True):
             for j in range(n + 1):
@@ -144,9 +144,9 @@ class _Fields:
         return total
 
     def elastic(self, n: int) -> fmpq_mpoly:
-        """The elastic energy Σ c_i W(p (1 + X_i)) / P at D^n, n ≥ 1, over p² F′; 0 for n = 0.
+        """The elastic energy Σ C_i W(p (1 + X_i)) / P at D^n, n ≥ 1, over p² F′; 0 for n = 0.
 
-        Σ c_i p X_i / P = ∂_x Y with Y = Σ_j (PD∂_x)^j/(j+1)! w_0 - φ.
+        Σ C_i p X_i / P = ∂_x Y with Y = Σ_j (PD∂_x)^j/(j+1)! w_0 - φ.
         """
         if n == 0:
             return self.algebra.zero
@@ -161,7 +161,7 @@ class _Fields:
 
 
 def _strains(S: list[Ladder], n: int) -> list[fmpq_mpoly]:
-    """The strains c_i X_i = (w_{i+1} - w_i)/(D p) at D^n; w_P is w_0 of the next cell."""
+    """The strains C_i X_i = (w_{i+1} - w_i)/(D p) at D^n; w_P is w_0 of the next cell."""
     P = len(S)
     inner = [after[n] - before[n] for before, after in pairwise(S)]
     jet = S[0].algebra.r[n] * fmpq(P ** (n + 1), factorial(n + 1))

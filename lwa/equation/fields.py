@@ -20,7 +20,6 @@ from lwa.algebra.contact import Binomial, SeriesPowers
 from lwa.algebra.jets import Ladder, Monomial
 from lwa.base.exact import InputError
 from lwa.closure.consistency import Closure
-from lwa.closure.solution import Solution
 
 Series = list[fmpq_mpoly]
 
@@ -102,12 +101,12 @@ class _Change:
     def result(self) -> ChangedClosure:
         closure = self.closure
         return ChangedClosure(
-            self.model,
-            closure.order,
-            closure.name,
-            "changed",
-            closure.ratio,
-            Solution(self.algebra, self._acceleration()),
+            algebra=self.algebra,
+            acceleration=self._acceleration(),
+            model=self.model,
+            order=closure.order,
+            name=closure.name,
+            field="changed",
             origin=closure,
             alphas=tuple(self.alphas.items()),
         )

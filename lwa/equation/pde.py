@@ -127,7 +127,7 @@ class PDE(OfClosure):
     def conservative(self) -> bool:
         """True if every order is ∂_x of a flux, so that the momentum ∫ u_τ dx is conserved.
 
-        The first order that may not be one is D^{k+3}; it is derived for an equation of lower order
+        D^{k+3}, the first order that may have no flux, is derived for an equation of lower order
         too.
         """
         return self.acoustic and None not in self._at_least_to_third_order._fluxes.values()

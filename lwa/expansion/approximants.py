@@ -3,8 +3,8 @@
 For a series to ε^N the approximants [n-m/m], m about n/2, of every order n ≤ N are formed. An
 approximant with a pole on or near 0 … 3ε/2 is spurious and left out (Baker & Graves-Morris, *Padé
 Approximants*, 1996, section 2.2). Two neighbours may agree by chance, so that the error is the
-largest difference among the approximants of `WINDOW` orders; the window with the smallest one is
-taken.
+largest difference among the approximants of `WINDOW` orders; the window with the smallest
+is taken.
 
 The series of equal beads sums well. The difference that unlike beads make is summed apart, as its
 terms grow from the first on where masses are nearly equal. Where every approximant has a pole, the
@@ -85,7 +85,7 @@ def resum(
             sums.append(_sum(rest[1:], small).times(small))
         value = scale * mpmath.fsum(s.value for s in sums)
         error = abs(scale) * mpmath.fsum(s.error for s in sums)
-        least = abs(value) * mpmath.mpf(2) ** -52
+        least = abs(value) * mpmath.mpf(2) ** -52  # an ulp: the sum leaves as a float
         return Resummed(
             float(value),
             float(error + abs(value) * relative + least),

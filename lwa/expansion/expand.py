@@ -206,7 +206,7 @@ def expand(
     Parameters
     ----------
     cell : the periodic cell; numbers give rational coefficients, symbols rational functions.
-    order : highest power of ε (relative to the leading one).
+    order : highest power of ε relative to the leading term.
     k : exponent, a number or a symbol. Unlike contacts share the strain by it.
     law : a power law in place of k; other laws have no ε = k - 1.
 
@@ -229,7 +229,6 @@ def expand(
             )
         k = law.exponent
     k = exponent(k, cell)
-    _no_letter(cell, k)
     for name, values in (("mass", cell.masses), ("stiffness", cell.stiffnesses), ("k", (k,))):
         for value in values:
             short(value, name)
@@ -237,10 +236,3 @@ def expand(
         raise InputError(f"k is {k}: the expansion in k - 1 wants k > 1")
     affordable(shares_model(cell, k), order)
     return Expansion(cell, order, k)
-
-
-def _no_letter(cell: Cell, k: sp.Expr) -> None:
-    """Refuse names that a series uses itself."""
-    for name in sorted(s.name for s in (*cell.symbols, *k.free_symbols)):
-        if name in ("ε", "varepsilon"):
-            raise InputError(f"{name!r} means k - 1 in a series: choose another name")

@@ -109,7 +109,7 @@ class Observables:
 
     @cached_property
     def energy(self) -> Series:
-        """Kinetic and elastic energy in the same unit: (k + 3)/2 times the elastic one.
+        """Kinetic and elastic energy in the same unit: (k + 3)/2 times the elastic energy.
 
         That is the virial theorem: dE = c dP of waves of all amplitudes, P = 2 T/c.
         """

@@ -56,7 +56,7 @@ class Radiation(Value):
     contrast : 0 for equal beads and contacts, (1 - 2b)² for a dimer of equal contacts.
     I : of Ω² = κ² - I κ⁴ + …
     optical : the lowest optical Ω² at κ = 0.
-    lightest : the lightest bead's mass over the mean one.
+    lightest : the lightest bead's mass over the mean mass.
     quadratic, quartic : φ_1 = quadratic X² + quartic X⁴ + odd terms.
     """
 
@@ -126,7 +126,7 @@ def radiation(cell: Cell, k: sp.Expr) -> Radiation | None:
     first = by_degree(wave.fields.log_force[0][2])
     quadratic, quartic = (_float(first.get(d, wave.zero), (1.0, *values)) for d in (2, 4))
     return Radiation(
-        contrast=(12 * I - 1) / 3,
+        contrast=(12 * I - 1) / 3,  # a dimer has I = (1 - 3b + 3b²)/3, hence (1 - 2b)²
         I=I,
         optical=float(np.min(squares)),
         lightest=cell.size * min(_float(mu, (1.0, *values)) for mu in wave.mu),

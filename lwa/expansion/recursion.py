@@ -4,16 +4,16 @@ The lattice's equations are expanded about a Gaussian. With the strain r_i and f
 i, and the slope s_i = -u_i' of bead i's displacement (its velocity over c), each in the frame of
 its cell, ∂ = d/dξ,
 
-    f_i = f_{i-1} + P μ_i γ ∂s_i,    s_{i+1} = s_i + c_i ∂r_i,    f_i = r_i^k,
-    ∫_0^P s_0(ξ + x) dx = Σ c_i r_i(ξ),    γ Σ P μ_i s_i(ξ) = ∫_0^P f_{P-1}(ξ - x) dx,
+    f_i = f_{i-1} + P m̂_i γ ∂s_i,    s_{i+1} = s_i + C_i ∂r_i,    f_i = r_i^k,
+    ∫_0^P s_0(ξ + x) dx = Σ C_i r_i(ξ),    γ Σ P m̂_i s_i(ξ) = ∫_0^P f_{P-1}(ξ - x) dx,
 
-where the strains are in units of their leading shares c_i and c² = γ P/(M ā), ā the mean
+where the strains are in units of their leading shares C_i and c² = γ P/(M ā), ā the mean
 compliance. The averages are series in ∂. In the stretched place Z = √(ε/I) ξ, Ω² = κ² - I κ⁴ + …
 the linear chain's dispersion (`lwa.linear.bloch`), the force of the first contact is
 
     log f_0 = -Z²/4 + Σ_n q_n(Z) (ε/I)^{n/2},
 
-the q_n are polynomials over Q[μ, c, 1/I], and each solves q'' - Z q' + q = known + γ's next term,
+the q_n are polynomials over Q[m̂, C, 1/I], and each solves q'' - Z q' + q = known + γ's next term,
 a triangular system; q_n(0) = q_n'(0) = 0 puts the peak, of force 1, at ξ = 0. The Gaussian as the
 limit: James & Pelinovsky, Proc. R. Soc. A 470, 20130462 (2014).
 
@@ -48,7 +48,7 @@ class Fields:
     """The fields e^{-Z²/4} Σ S_n t^n of a wave, or changes of the fields, as lists of S_n.
 
     For each contact `force` and `strain` with their logarithms, for each bead `slope`; `means` and
-    `pushes` have the mean strain Σ c_i r_i / P and the last contact's force with their derivatives:
+    `pushes` have the mean strain Σ C_i r_i / P and the last contact's force with their derivatives:
     n → the terms at t^n of the 0-th, 1-st, …, n-th.
     """
 
@@ -85,7 +85,7 @@ class Fields:
 
 
 class Recursion:
-    """The `fields` of a wave, order by order in t, over the ring Q[μ, c], Z its first generator."""
+    """The `fields` of a wave, order by order in t, over the ring Q[m̂, C], Z its first generator."""
 
     def __init__(self, model: Model, order: int, progress: Progress[int] = iter) -> None:
         self.context = fmpq_mpoly_ctx.get(("Z", *model.ring.names), Ordering.lex)

@@ -40,8 +40,8 @@ _LETTERS = {
 class EpsilonSeries(Value):
     """The series prefactor · ε^power · Σ coefficients[n] ε^n, ε = k - 1.
 
-    k : the exponent. A number is the one at which the series is summed. A symbol may be replaced by
-        a number or another symbol, also in the prefactor and the shares of unlike contacts.
+    k : the exponent. The series is summed at a number; a symbol may be replaced by a number or
+        another symbol, also in the prefactor and the shares of unlike contacts.
     cell, quantity : the chain and the quantity of the series. `at` sums the part of equal beads
         apart, and adds the error by radiation.
     """

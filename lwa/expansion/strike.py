@@ -37,7 +37,7 @@ class Strike(Value):
     chain : the expansion of the chain's wave, all numbers.
     mass, velocity : of the striker, whose contact is like those of the chain.
 
-    The error of the force is the larger one of 0.7 % and b ln²(m_s/m_eff), b = 3 % for m_s ≥ m_eff
+    The error of the force is the larger of 0.7 % and b ln²(m_s/m_eff), b = 3 % for m_s ≥ m_eff
     and 11 % for lighter strikers; for Hertz contacts 0.7 % from m_eff to 2 beads. It bounds the
     differences to struck chains at k = 5/4 … 5/2 and m_s of ½ to 8 beads, and is NaN at other
     exponents. A contact of the striker half or twice as stiff changes the force by up to 2 %.
@@ -139,7 +139,7 @@ def graded_force(force: Any, stiffness: Any, other: Any, k: Any = "k") -> sp.Exp
 
 
 def transmitted_force(force: Any, cell: Cell, other: Cell, k: Any = "k") -> sp.Expr:
-    """Peak force of the leading pulse that passes from a chain of equal beads into another one.
+    """Peak force of the leading pulse that passes from a chain of equal beads into another chain.
 
     Two quasi-particles collide: 4 m m′/(m + m′)² of the energy e A^{-1/k} F^{(k+1)/k} passes. For
     Hertz contacts the rule is below the measured force, by up to 7.5 % at mass ratios of ¼ to 4,

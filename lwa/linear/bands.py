@@ -1,6 +1,6 @@
 """Bloch's bands in floats: frequencies and group velocities of the linear chain.
 
-The equations of `lwa.linear.bloch` read f = B(κ) a in the variables a_i √(P μ_i), f_i √c_i, so
+The equations of `lwa.linear.bloch` read f = B(κ) a in the variables a_i √(P m̂_i), f_i √C_i, so
 that the Ω_j are the singular values of B. Eigenvalues of BᴴB would lose half the digits of a small
 Ω.
 """
@@ -18,7 +18,7 @@ Complex = NDArray[np.complex128]
 def branches(fractions: Array, shares: Array, kappa: ArrayLike) -> Array:
     """Frequencies Ω_j(κ), ascending along a last axis of length P, to 1e-15 of the largest.
 
-    fractions, shares : the μ_i and the c_i. Raises `lwa.InputError` for a κ that is no finite
+    fractions, shares : the m̂_i and the C_i. Raises `lwa.InputError` for a κ that is no finite
     number.
     """
     B, _ = _strains(fractions, shares, kappa)
@@ -56,7 +56,7 @@ def edges(fractions: Array, shares: Array) -> Array:
 
 
 def _strains(fractions: Array, shares: Array, kappa: ArrayLike) -> tuple[Complex, Complex]:
-    """The matrix B(κ) from a_i √(P μ_i) to f_i √c_i, and the one entry of dB/dκ (last row)."""
+    """The matrix B(κ) from a_i √(P m̂_i) to f_i √C_i, and the one entry of dB/dκ (last row)."""
     wave = finite(kappa, "kappa")
     # by whole turns less, which e^{iκ} takes off exactly
     wave = np.where(np.abs(wave) <= np.pi, wave, np.angle(np.exp(1j * wave)))

@@ -1,13 +1,13 @@
-"""Bloch's dispersion relation of the linear chain as polynomials in (μ, c), solved in series.
+"""Bloch's dispersion relation of the linear chain as polynomials in (m̂, C), solved in series.
 
 The particles obey, in the theory's units and with f_i the force of contact i,
 
-    -P μ_i Ω² a_i = f_i - f_{i-1},    a_{i+1} - a_i = c_i f_i,    a_P = e^{iPκ} a_0.
+    -P m̂_i Ω² a_i = f_i - f_{i-1},    a_{i+1} - a_i = C_i f_i,    a_P = e^{iPκ} a_0.
 
 Carrying (a, f) through one cell gives a matrix of determinant 1 whose trace is a polynomial in Ω²,
 and the branches are the roots of 2 cos(Pκ) = trace (Brillouin, *Wave Propagation in Periodic
 Structures*, 1946). Since trace = 2 - P²Ω² + …, the coefficients of the acoustic root follow one
-from another. A dimer's two roots have the sum 1/ν, ν = μ_0 μ_1 c_0 c_1.
+from another. A dimer's two roots have the sum 1/Π, Π = m̂_0 m̂_1 C_0 C_1.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ Polynomial = list[fmpq_mpoly]
 
 
 class Bloch:
-    """The dispersion relation of a cell and the series of its branches, over a ring Q[k, μ, c]."""
+    """The dispersion relation of a cell and the series of its branches, over a ring Q[k, m̂, C]."""
 
     def __init__(self, model: Model) -> None:
         context = fmpq_mpoly_ctx.get(model.ring.names, Ordering.degrevlex)
@@ -57,7 +57,7 @@ class Bloch:
 
     @property
     def nu(self) -> fmpq_mpoly:
-        """The ν = μ_0 μ_1 c_0 c_1 of a dimer's relation sin²κ = Ω² - ν Ω⁴."""
+        """The Π = m̂_0 m̂_1 C_0 C_1 of a dimer's relation sin²κ = Ω² - Π Ω⁴."""
         return self.mu[0] * self.mu[1] * self.c[0] * self.c[1]
 
     def acoustic(self, order: int) -> list[fmpq_mpoly]:
@@ -84,12 +84,12 @@ class Bloch:
     def amplitudes(self, order: int, branch: str) -> list[fmpq_mpoly]:
         """Coefficients b_0 … b_order of a dimer's a_1/a_0 = λ Σ b_n q^n, q = iκ.
 
-        The first particle's equation times c_0 c_1 is 2μ_0 c_0 c_1 Ω² = 2 - (c_1 + c_0 e^{-2q}) ρ.
-        With Ω² of the acoustic branch, or 1/ν less it and λ = -μ_0/μ_1 taken out,
+        The first particle's equation times C_0 C_1 is 2m̂_0 C_0 C_1 Ω² = 2 - (C_1 + C_0 e^{-2q}) ρ.
+        With Ω² of the acoustic branch, or 1/Π less it and λ = -m̂_0/m̂_1 taken out,
 
-            (1 + c_0 (e^{-2q} - 1)/2) Σ b_n q^n = 1 - μ c_0 c_1 Ω²_acoustic,
+            (1 + C_0 (e^{-2q} - 1)/2) Σ b_n q^n = 1 - m̂ C_0 C_1 Ω²_acoustic,
 
-        μ being μ_0 on the acoustic branch and μ_1 on the optical one.
+        m̂ being m̂_0 on the acoustic branch and m̂_1 on the optical branch.
         """
         weight = self.mu[BRANCHES.index(branch)] * self.c[0] * self.c[1]
         omega2 = self.acoustic(order // 2)

@@ -1,8 +1,8 @@
 """The linear chain: its dispersion relation, the series of its branches, its bands under a load.
 
-A chain at k = 1, or one of any k linearised about a uniform compression, is a chain of springs of
-compliances c_i (`Cell.shares`). In the theory's units (time τ, wavenumber κ = qD, so that Ω = κ to
-leading order) its acoustic branch is a series
+A chain at k = 1, or a chain of any k linearised about a uniform compression, is a chain of springs
+of compliances C_i (`Cell.shares`). In the theory's units (time τ, wavenumber κ = qD, so that Ω = κ
+to leading order) its acoustic branch is a series
 
     Ω² = κ² (1 - I κ² + …)
 
@@ -203,7 +203,7 @@ class Dispersion(Value):
 
     @property
     def _weights(self) -> tuple[Array, Array]:
-        """The μ_i and c_i as floats."""
+        """The m̂_i and C_i as floats."""
         return self._floats(self.cell.fractions), self._floats(self.cell.shares(self.k))
 
     def _floats(self, values: Iterable[sp.Expr]) -> Array:

@@ -25,15 +25,17 @@ DIGITS = 20
 """Digits of what is not in closed form."""
 
 STEEPEST = sp.Rational(13, 10)
-"""r up to which the trailing edge holds: 9 % off for Hertz contacts at p₋/p₊ = 3, r = 1.32."""
+"""r up to which the trailing edge is given; for Hertz contacts it is 3 % too slow at p₋/p₊ = 2,
+r = 1.19, and 9 % at p₋/p₊ = 3, r = 1.32."""
 
 
 def trailing(chain: Dispersion, r: sp.Expr) -> sp.Expr:
     """Speed of the trailing edge over the speed of sound behind the front.
 
     Raises `lwa.InputError` for numbers beyond r = 1.3, where the edge fails, or beyond the branch,
-    and for cells of several beads where r is a symbol.
+    without sound ahead, r = ∞, and for cells of several beads where r is a symbol.
     """
+    _demand_sound(r)
     if r.is_number and r > STEEPEST:
         raise InputError(f"c₋/c₊ is {sp.N(r, 5)}: the trailing edge holds up to 1.3")
     if chain.cell.size == 1:
@@ -48,14 +50,18 @@ def leading(chain: Dispersion, r: sp.Expr) -> sp.Expr:
     Raises `lwa.InputError` without sound ahead, r = ∞, and for cells of several beads where r is a
     symbol.
     """
-    if r.is_infinite:
-        raise InputError("ahead is 0: no sound runs there, and dispersion gives no edge")
+    _demand_sound(r)
     if chain.cell.size == 1:
         return root(r * (r - 1)) / sp.acosh(root(r))
     with mpmath.workdps(DIGITS + 10):
         f = _edge(chain, r, -1)
         q = mpmath.acosh(mpmath.polyval(_trace(chain), -(f**2)) / 2) / chain.cell.size
         return sp.Float(f / q, DIGITS)
+
+
+def _demand_sound(r: sp.Expr) -> None:
+    if r.is_infinite:
+        raise InputError("ahead is 0: no sound runs there, and dispersion gives no edge")
 
 
 def _edge(chain: Dispersion, r: sp.Expr, sign: int) -> Any:

@@ -24,6 +24,7 @@ import sympy as sp
 
 from lwa.base.exact import InputError, root
 from lwa.base.frozen import Value
+from lwa.shocks.edges import DIGITS
 from lwa.shocks.simple import rising_root
 from lwa.wave.background import BackgroundWave
 
@@ -67,16 +68,18 @@ class Pulse(Value):
     @property
     def speed(self) -> sp.Expr:
         """V = dx/dτ."""
-        return self.velocity / self.rise
+        return _digits(self.velocity / self.rise)
 
     @cached_property
     def contact_rise(self) -> sp.Expr:
         """Rise of the strain of a contact at its peak."""
         if self._toda:
             return 2 * sp.log(self._cosh) / self._toda
-        field, B = self.field, self.rise
+        field, B, k = self.field, self.rise, self.field.law.exponent
+        if field.law.homogeneous and field.p0.is_zero:  # F = B^k/k, V² = 2 B^{k-1}/(k(k+1))
+            return B * (1 - (k - 1) / (2 * k * (k + 1)))
         bend = field.force(field.p0 + B) - field.force(field.p0) - self.velocity**2 / B
-        return sp.powsimp(sp.expand(B - bend / (2 * field.force(field.p0 + B, 1))))
+        return _digits(B - bend / (2 * field.force(field.p0 + B, 1)))
 
     @cached_property
     def _toda(self) -> sp.Expr:
@@ -88,3 +91,8 @@ class Pulse(Value):
     @property
     def _cosh(self) -> sp.Expr:
         return 1 + self._toda * self.velocity / (2 * self.field.sound_speed)
+
+
+def _digits(value: sp.Expr) -> sp.Expr:
+    """One number in place of an expression that holds a root of `rising_root`."""
+    return value.n(DIGITS) if value.has(sp.Float) and value.is_number else value

@@ -81,7 +81,7 @@ class Shock(Value):
         >>> shock(Cell([1], spacing=1), Power(3), 2, "9/5").trailing_speed
         8*sqrt(3)/5
         """
-        if self._rarefies:
+        if self._gain.is_negative:
             return self.sound(self.behind)
         return sp.expand(self.sound(self.behind) * edges.trailing(self._field.linear, self.ratio))
 
@@ -95,7 +95,7 @@ class Shock(Value):
         Raises `lwa.InputError` for dispersion without sound ahead, and doubling of unequal beads.
         """
         one_of(rule, RULES, "rule")
-        if self._rarefies:
+        if self._gain.is_negative:
             return self.sound(self.ahead)
         if rule == "doubling":
             return self._pulse.speed * self._field.time_scale
@@ -104,7 +104,7 @@ class Shock(Value):
     @cached_property
     def _pulse(self) -> Pulse:
         """The leading pulse by doubling; `lwa.InputError` for unequal beads and rarefactions."""
-        if self._rarefies:
+        if self._gain.is_negative:
             raise InputError("sound is slower behind the front: a rarefaction has no pulse")
         return Pulse(self._field, 2 * self._gained)
 
@@ -156,12 +156,9 @@ class Shock(Value):
 
     @cached_property
     def _gain(self) -> sp.Expr:
-        """c₋ - c₊, simplified: only then is its sign known beside symbols such as D."""
+        """c₋ - c₊; symbols stand for a shock."""
+        # simplified: only then is its sign known beside symbols such as D
         return sp.simplify(self.sound(self.behind) - self.sound(self.ahead))
-
-    @property
-    def _rarefies(self) -> bool:
-        return self._gain.is_negative is True  # symbols stand for a shock
 
 
 def shock(cell: Cell, law: ContactLaw, behind: Any, ahead: Any) -> Shock:
@@ -192,6 +189,7 @@ def piston(cell: Cell, law: ContactLaw, velocity: Any, ahead: Any = 0) -> Shock:
     """The front that a wall moving at this velocity drives into a chain of strain ``ahead``.
 
     In SI units where the cell is (`lwa.Cell.of_spheres`): velocity in m/s, forces in N.
+
     >>> from lwa import Cell, Power
     >>> piston(Cell([1], spacing=1), Power(3), "v").behind
     sqrt(2)*3**(3/4)*sqrt(v)/3

@@ -104,7 +104,7 @@ class NumericWave(Value):
         """Logarithm of the peak strain of the wave of speed V; finite if B over- or underflows."""
         k, omega, _ = self._wave(k, omega)
         less_one = (k - 1) * self._excess(k, omega)  # V²/B^{k-1} - 1
-        near = np.abs(less_one) < 0.5
+        near = np.abs(less_one) < 0.5  # log1p keeps the digits that V²/B^{k-1} loses at k → 1
         log_factor = np.where(near, np.log1p(less_one), np.log(self._factor(k, omega)))
         return _rounded((2 * np.log(_positive(V, "V")) - log_factor) / (k - 1))
 

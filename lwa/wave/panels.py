@@ -174,7 +174,8 @@ def inverse(coefficients: Array, target: Array) -> Array:
     slopes = np.moveaxis(legendre.legder(np.moveaxis(coefficients, -1, 0), scl=2), 0, -1)
     x: Any = np.full(target.shape, 0.5)
     for _ in range(60):
-        step = (value_at(coefficients, x) - target) / np.maximum(value_at(slopes, x), 1e-300)
+        slope = np.maximum(value_at(slopes, x), 1e-300)  # 0 at the end of a flat panel
+        step = (value_at(coefficients, x) - target) / slope
         x = np.clip(x - step, 0.0, 1.0)
         if np.all(np.abs(step) < 1e-15):
             break

@@ -132,38 +132,10 @@ class PhysicalWave(Value):
     @cached_property
     def momentum(self) -> sp.Expr:
         """The momentum Σ m u_t = M/(P D) · B dx/dt · ∫ cos^m(βξ) dξ of the chain."""
-        return self._density * self._arch(self.wave.m) * self.bead_velocity
-
-    @cached_property
-    def energy(self) -> sp.Expr:
-        """Kinetic and elastic energy of the chain, (k + 3)/(k + 1) times the kinetic energy.
-
-        That is the virial theorem, which holds for the lattice's waves and for the canonical
-        field's. The kinetic energy is M/(2 P D) · (B dx/dt)² · ∫ cos^{2m}(βξ) dξ.
-        """
-        k = self.wave.k
-        kinetic = self._density * self._arch(2 * self.wave.m) / 2
-        return (k + 3) / (k + 1) * kinetic * self.bead_velocity**2
-
-    @cached_property
-    def effective_mass(self) -> sp.Expr:
-        """The effective mass P²/(2E) of momentum and energy, independent of the force.
-
-        >>> from lwa import Cell, canonical_wave
-        >>> round(canonical_wave(Cell([1]), "3/2").at_force(1).effective_mass.n(), 4)
-        1.4192
-        """
-        k, m = self.wave.k, self.wave.m
-        return (k + 1) / (k + 3) * self._density * self._arch(m) ** 2 / self._arch(2 * m)
-
-    @property
-    def _density(self) -> sp.Expr:
-        """Mass per length."""
-        return self.wave.cell.mass / (self.wave.cell.size * self.wave.D)
-
-    def _arch(self, n: sp.Expr) -> sp.Expr:
-        """The integral ∫ cos^n(βξ) dξ over the wave."""
-        return sp.sqrt(sp.pi) * sp.gamma((n + 1) / 2) / (self.wave.beta * sp.gamma(n / 2 + 1))
+        wave, m = self.wave, self.wave.m
+        density = wave.cell.mass / (wave.cell.size * wave.D)
+        arch = sp.sqrt(sp.pi) * sp.gamma((m + 1) / 2) / (wave.beta * sp.gamma(m / 2 + 1))
+        return density * arch * self.bead_velocity
 
     def fwhm(self, quantity: str = "force", extent: str = "length") -> sp.Expr:
         """Full width at half maximum of "strain", "force" or "velocity", a "length" or a "time".

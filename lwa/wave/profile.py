@@ -162,7 +162,7 @@ class Profile:
         n = 3·2^{d-1}. Steep laws, and waves next to their limiting amplitude, vary fast at θ = 0.
         Nodes and weights need the digits only; the working digits are for the integrand.
         """
-        precision = int(3.33 * self.digits) + 40
+        precision = int(3.33 * self.digits) + 40  # bits: log2(10) = 3.32…, and 40 more
         usual = 4 + max(0, math.ceil(math.log2((self.digits + 5) / 36)))
         found = mpmath.mpf(0)
         for more, halvings in _RULES:

@@ -166,7 +166,7 @@ class NumericBackground(Value):
     ) -> Iterator[tuple[NDArray[np.intp], Grid, Array, Array, Array]]:
         """Rows of waves with a grid that resolves them, p and F″ at its nodes, and dξ/dθ.
 
-        Waves that no grid resolves are refused or, if ``rough``, come with the finest one.
+        Waves that no grid resolves are refused or, if ``rough``, come with the finest grid.
         """
         rows = np.arange(len(p0))
         for level in LEVELS:

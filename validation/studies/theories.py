@@ -20,7 +20,7 @@ import sympy as sp
 from lwa import Cell, InputError, NoSolitaryWave, expand
 from lwa.expansion.series import EpsilonSeries
 from validation.pictures.panel import Curve, Panel
-from validation.pulses.pulse import Measured
+from validation.pulses.pulse import Measured, MeasureError
 from validation.pulses.steady import STRETCH, point
 from validation.report.result import Report
 from validation.report.table import Column, Table
@@ -80,7 +80,7 @@ CASES = tuple(
     for exponents, ratios, kind in (
         (("1.1", "5/4", "3/2", "2", "3"), ("1",), SOLITARY),
         (("3/2",), ("0.3428457811", "0.1547515139", "0.0901277691"), SOLITARY),
-        (("3/2",), ("0.01", "0.05", "0.2", "0.55", "0.8", "0.9"), STRUCK_CHAIN),
+        (("3/2",), ("0.01", "0.05", "0.2", "0.8", "0.9"), STRUCK_CHAIN),
         (("5/4", "2"), ("0.05", "0.2", "0.8"), STRUCK_CHAIN),
     )
     for k in exponents
@@ -184,15 +184,19 @@ def _panel(axis: str, title: str, places: Sequence[tuple[sp.Rational, Place]]) -
 
 
 def place(k: sp.Rational, omega: sp.Rational, kind: str = SOLITARY) -> Place:
-    """Compare all theories with the truth at one k and ω."""
-    numbers: Mapping[str, Measured]
+    """Compare all theories with the truth at one k and ω.
+
+    Raises `MeasureError` where a struck chain's pulse is not steady.
+    """
     if kind == SOLITARY:
-        numbers = measured(exact_wave((1.0,) if omega == 1 else (1.0, float(omega)), float(k)))
-        names = "fwhm force", "fwhm strain", "c"
+        wave = measured(exact_wave((1.0,) if omega == 1 else (1.0, float(omega)), float(k)))
+        values = [wave[name] for name in ("fwhm force", "fwhm strain", "c")]
     else:
-        numbers = point(k, omega, STRETCH).numbers
-        names = "width", "strain_width", "speed"
-    truth = {mine: numbers[its] for mine, its in zip(NAMES, names, strict=True)}
+        pulse = point(k, omega, STRETCH)
+        if pulse.missing:
+            raise MeasureError(pulse.missing)
+        values = [pulse.numbers[name] for name in ("width", "strain_width", "speed")]
+    truth = dict(zip(NAMES, values, strict=True))
     return Place(k, omega, kind, truth, tuple(_rung(name, k, omega, truth) for name in THEORIES))
 
 

@@ -161,8 +161,8 @@ def orbit(
 ) -> Orbit:
     """The orbit of a frequency, by Newton's method.
 
+    frequency : ω, in radians per unit of time. harmonics : H.
     start : displacements at t = 0, (N,), for a start with one harmonic, or coefficients (N, H + 1).
-    harmonics : H.
 
     Raises `NoOrbit` if Newton's method does not converge, or converges to the state of rest.
     """

@@ -5,10 +5,12 @@ import math
 
 import numpy as np
 import pytest
+import scipy
 
 from book.studies.shock import shock
-from lwa import Cell, InputError, Power
+from lwa import Cell, InputError, Material, Power, Sphere, piston
 from lwa import shock as front
+from lwa.law import named
 from tests.commands import ended
 from validation import Drive, Scene, simulate
 
@@ -93,6 +95,52 @@ def test_a_wall_that_recedes_makes_the_fan():
         errors.append(np.abs(strains / theory - 1).max())
     assert errors[0] < 0.02
     assert errors[1] < 0.6 * errors[0]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("law", "behind", "least", "most"),
+    [
+        (named("exponential", "1/2"), 2, -0.02, 0.02),
+        (Power("3/2"), 2, -0.04, -0.02),
+        (Power("3/2"), 3, -0.1, -0.08),
+    ],
+)
+def test_els_trailing_edge_and_its_limit(law, behind, least, most):
+    """s₋ over the place x/t at which the line through the envelope's lower half ends, less 1."""
+    cell, end = Cell([1], spacing=1), 1500.0
+    found = front(cell, law, behind, 1)
+    edge = 2 * float(found.sound(1)) - float(found.sound(behind))  # as given up to r = 1.3
+    n = int(1.06 * float(found.leading_speed()) * end) + 40
+    scene = Scene(
+        masses=(1.0,) * n, stiffnesses=(1.0,) * (n - 1), wall=1.0, law=law,
+        precompression=float(law.at(found.ahead)), duration=end,
+        drive=Drive(velocity=float(found.plateau)),
+    )  # fmt: skip
+    strain = 1 - np.diff(simulate(scene, rtol=1e-7).displacements)
+    tops = scipy.signal.find_peaks(strain)[0]
+    place, rise = (tops + 0.5) / end, strain[tops] - behind
+    part = np.digitize(place, np.linspace(place.min(), place.max(), 120))
+    envelope = np.array([(place[part == i].mean(), rise[part == i].max()) for i in np.unique(part)])
+    height = envelope[:, 1] / rise.max()
+    slope, offset = np.polyfit(*envelope[(height > 0.15) & (height < 0.5)].T, 1)
+    assert least < edge / (-offset / slope) - 1 < most
+
+
+def test_a_wall_at_one_metre_a_second():
+    """Steel beads of 4.76 mm: speed and force of the leading pulse, beside the chain in SI."""
+    bead = Sphere("0.45e-3", "2.38e-3", Material(E="193e9", nu="0.3"))
+    cell = Cell.of_spheres([bead])
+    theory = piston(cell, Power("3/2"), 1).wave
+    scene = Scene.of_cell(
+        cell, 400, "3/2", drive=Drive(velocity=1.0), duration=2.2e-3, contact_sensors=(200, 350),
+        samples=20_001,
+    )  # fmt: skip
+    run = simulate(scene)
+    peaks = [scipy.signal.find_peaks(force, height=1.0)[0][0] for force in run.contact_force]
+    speed = 150 * float(cell.spacing) / np.diff(run.time[peaks])[0]
+    assert theory.speed.value == pytest.approx(speed, rel=3e-3)
+    assert float(theory.F) == pytest.approx(run.contact_force[1, peaks[1]], rel=0.01)
 
 
 def test_the_program(capsys):

@@ -1,10 +1,12 @@
 """The command `lwa shock`: text, JSON, LaTeX, SI, and refusals in one line."""
 
 import json
+import math
 
 import pytest
+import sympy as sp
 
-from lwa import Cell, Power, shock
+from lwa import Cell, Power, piston, shock
 from lwa.command.cli import main
 from tests.commands import ended
 
@@ -43,6 +45,38 @@ def test_where_a_theory_does_not_reach_there_is_null_and_a_note(capsys):
     dimer = result(capsys, "--behind", "2", "--ahead", "1", "--masses", "1,1/2", "--k", "3/2")
     assert dimer["peak_value"] is None
     assert dimer["leading_speed_value"]["dispersion"] > 0
+
+
+def test_exact_results_stand_in_json_where_they_are_closed(capsys):
+    numbers = result(capsys, *EQUAL, "--behind", "2", "--ahead", "1")
+    assert "acosh" in numbers["leading_speed"]["dispersion"]
+    assert "doubling" not in numbers["leading_speed"]
+    assert "peak" not in numbers
+    closed = result(capsys, "--behind", "p", "--k", "3/2", "--masses", "1", "--spacing", "1")
+    p = sp.Symbol("p", positive=True)
+    peak = sp.sympify(closed["peak"], locals={"p": p})
+    unit = shock(Cell([1], spacing=1), Power("3/2"), 1, 0)
+    assert sp.simplify(peak - p * unit.peak) == 0
+    assert set(closed["leading_speed"]) == {"doubling"}
+
+
+def test_a_wall_at_a_speed_in_si(capsys, tmp_path):
+    """Steel beads of 4.76 mm, a wall at 1 m/s: the pulse's speed and force are those of the lattice
+    that SI scales, v ~ c p and F ~ A (D p)^k."""
+    file = tmp_path / "beads.toml"
+    file.write_text(
+        "[materials]\nsteel = {E = 193e9, nu = 0.3}\n"
+        '[beads]\nball = {mass = 0.45e-3, radius = 2.38e-3, material = "steel"}\n'
+        '[chain]\ncell = ["ball"]\nrepeat = 40\n'
+    )
+    found = result(capsys, "--spheres", str(file), "--piston", "1")
+    assert found["plateau_value"] == pytest.approx(1)
+    A, m, D = 193e9 / (1 - 0.3**2) / 3 * math.sqrt(2 * 2.38e-3), 0.45e-3, 2 * 2.38e-3
+    unit = (A * D**1.5 / m * D) ** 0.5  # of speed
+    plain = piston(Cell([1], spacing=1), Power("3/2"), sp.Float(1 / unit)).wave
+    assert found["series_value"]["speed"] == pytest.approx(unit * plain.speed.value, rel=1e-9)
+    assert found["series_value"]["force"] == pytest.approx(A * D**1.5 * float(plain.F), rel=1e-9)
+    assert found["units"]["series.speed"] == "m/s"
 
 
 def test_symbols_text_and_latex(capsys):

@@ -243,15 +243,7 @@ def test_a_place_is_real_and_a_mass_called_like_it_is_refused() -> None:
     assert wave.log_force(X="Y")[0] == -(Y**2) / (4 * wave.I)
 
 
-@pytest.mark.parametrize("name", ["ε", "varepsilon"])
-def test_the_series_own_letter_is_refused(name: str) -> None:
-    with pytest.raises(InputError, match=r"k - 1"):
-        expand(Cell([name, 1]), 1)
-    with pytest.raises(InputError, match=r"k - 1"):
-        expand(Cell([1, 2]), 1, k=name)
-
-
-# --- effort ---
+# --- size ---
 
 
 def test_an_expansion_beyond_memory_is_refused() -> None:

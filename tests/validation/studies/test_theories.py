@@ -12,8 +12,9 @@ import pytest
 import sympy as sp
 
 from lwa import Cell, Expansion, expand
+from validation.pulses.pulse import MeasureError
 from validation.pulses.steady import STRETCH, point
-from validation.studies.theories import HERTZ, NAMES, THEORIES, ladder, place
+from validation.studies.theories import CASES, HERTZ, NAMES, STRUCK_CHAIN, THEORIES, ladder, place
 from validation.waves.solver import ExactWave, exact_wave
 
 
@@ -186,3 +187,16 @@ def test_what_the_ladder_leaves_out_is_told() -> None:
         c.label: c.style for c in equal.curves
     }.items()
     assert "[1/1]" not in {curve.label for curve in dimers.curves}
+
+
+def test_a_pulse_that_is_not_steady_is_no_truth() -> None:
+    """ω = 0.55 at k = 3/2: a later pulse overtakes the leading one."""
+    with pytest.raises(MeasureError, match=r"^not steady: "):
+        place(HERTZ, sp.Rational(11, 20), STRUCK_CHAIN)
+
+
+def test_every_case_of_the_ladder_has_a_truth() -> None:
+    """Struck chains alone: the masses of solitary waves are those of `resonances`."""
+    for k, omega, kind in CASES:
+        if kind == STRUCK_CHAIN and k == HERTZ and omega < sp.Rational(1, 2):
+            assert point(k, omega, STRETCH).missing is None, (k, omega)
