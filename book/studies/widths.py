@@ -10,8 +10,9 @@ the three stated errors, for the paper's closure and for the full one.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from lwa import Dimer, TravelingWave, canonical_wave, homogenize
 from validation.lattice.run import Run
@@ -39,6 +40,10 @@ READINGS = {
 """Reading of "the FWHM" → the pulses that are averaged, and the theory's quantity."""
 
 
+Lines = Mapping[str, Mapping[str, float]]
+"""Numbers by closure and line of `STATED`."""
+
+
 @dataclass(frozen=True)
 class Definition:
     """A reading of "the FWHM": its average on the lattice, and the errors of the three lines.
@@ -50,7 +55,7 @@ class Definition:
     quantity: str
     time: bool
     average: Measured
-    errors: Mapping[str, Mapping[str, float]]
+    errors: Lines
 
     @property
     def reproduced(self) -> tuple[str, ...]:
@@ -58,99 +63,40 @@ class Definition:
         found = self.errors["linear"]
         return tuple(line for line, e in STATED.items() if abs(abs(found[line]) - e) < 0.005)
 
+    @property
+    def cells(self) -> tuple[Any, ...]:
+        """Cells of the table."""
+        unit, its = "s" if self.time else "sites", self.errors.values()
+        shown = (errors[line] for errors in its for line in STATED)
+        return self.quantity, unit, self.average, self.errors, *shown, self.reproduced
 
-@dataclass(frozen=True, eq=False)
-class Widths:
-    """FWHM of the force by bead number, and the readings of its average.
 
-    times : FWHM in s of each of ``beads``. lines : closure → line → s.
-    """
-
-    beads: tuple[int, ...]
-    times: tuple[Measured, ...]
-    lines: Mapping[str, Mapping[str, float]]
-    definitions: tuple[Definition, ...]
-
-    def report(self) -> Report:
-        """``beads``, ``fwhm_value``, ``fwhm_error_value``, ``lines_value`` {closure: {line: …}},
-        ``stated_error_value``, and ``definitions``: ``quantity``, ``unit``, ``average_value``,
-        ``average_error_value``, ``error_value`` {closure: {line: …}}, ``reproduced``."""
-        columns = (
-            Column("quantity", "FWHM of"),
-            Column("unit", "in"),
-            Column("average", "average", format=".4g", error=True),
-            Column("error_value"),
-            *(
-                Column("", f"{line}, {closure}", format=percent)
-                for closure in self.lines
-                for line in STATED
-            ),
-            Column("reproduced", "stated errors met", format=lambda met: ", ".join(met) or "none"),
-        )
-        rows = tuple(
-            (
-                d.quantity,
-                "s" if d.time else "sites",
-                d.average,
-                d.errors,
-                *(errors[line] for errors in d.errors.values() for line in STATED),
-                d.reproduced,
-            )
-            for d in self.definitions
-        )
-        stated = ", ".join(f"{100 * e:.1f} % ({line})" for line, e in STATED.items())
-        title = (
-            f"theory over the average from bead {FIRST_BEAD} on, less 1, for equal contacts and "
-            f"equal force;\nthe paper states {stated}"
-        )
-        return Report(
-            "",
-            (Table(columns, rows, "definitions", title=title),),
-            panels=(self._panel(),),
-            notes=(self._verdict(),),
-            data={
-                "beads": self.beads,
-                "fwhm_value": [width.value for width in self.times],
-                "fwhm_error_value": [width.error for width in self.times],
-                "lines_value": self.lines,
-                "stated_error_value": STATED,
-            },
-        )
-
-    def _verdict(self) -> str:
-        best = max(self.definitions, key=lambda d: len(d.reproduced))
-        reading = f"{best.quantity}, in {'time' if best.time else 'sites'}."
-        if len(best.reproduced) == len(STATED):
-            return f"The stated errors are those of: {reading}"
-        none = "No definition meets all three stated errors within half a percent"
-        return f"{none}; nearest: {reading}"
-
-    def _panel(self) -> Panel:
-        times = [1e6 * width.value for width in self.times]
-        curves = [
-            Curve.of(f"lattice, {ball} bead", self.beads[i::2], times[i::2], style)
-            for ball, i, style in (("steel", 1, "ko"), ("PTFE", 0, "ks"))
-        ]
-        ends, first = (self.beads[0], self.beads[-1]), self.lines["linear"]
-        for closure, lines in self.lines.items():
-            for i, (line, width) in enumerate(lines.items()):
-                # for m1 ≫ m2 and m1 = m2 the closures agree
-                if lines is first or not math.isclose(width, first[line], rel_tol=1e-6):
-                    style = f"C{i}{'-' if lines is first else '--'}"
-                    label = f"{line}, {closure}" if closure != "linear" else line
-                    curves.append(Curve.of(label, ends, (1e6 * width,) * 2, style))
-        labels, free = ("number of the bead", "FWHM of its force (µs)"), (0.03, 0.47)
-        return Panel(*labels, tuple(curves), title="1:1 chain", legend=free)
+_COLUMNS = (
+    Column("quantity", "FWHM of"),
+    Column("unit", "in"),
+    Column("average", "average", format=".4g", error=True),
+    Column("error_value"),
+    *(
+        Column("", f"{line}, {closure}", format=percent)
+        for closure in ("linear", "canonical")
+        for line in STATED
+    ),
+    Column("reproduced", "stated errors met", format=lambda met: ", ".join(met) or "none"),
+)
 
 
 @study()
-def widths() -> Widths:
-    """FWHM of the force down the paper's 1:1 chain, and ten definitions of its average."""
+def widths() -> Report:
+    """FWHM of the force down the paper's 1:1 chain, and ten definitions of its average.
+
+    ``beads``, ``fwhm_value`` (s), ``fwhm_error_value``, ``lines_value`` {closure: {line: s}},
+    ``stated_error_value``, and ``definitions``: ``quantity``, ``unit``, ``average_value``,
+    ``average_error_value``, ``error_value`` {closure: {line: …}}, ``reproduced``.
+    """
     beads = tuple(range(4, paper.BEADS - 2))  # of PTFE and of steel in turn
     found, waves = compared(_numbers, *chain_runs(beads)), _waves()
 
-    def theory(quantity: str, force: Measured, in_time: bool) -> dict[str, dict[str, float]]:
-        """FWHM by closure and line."""
+    def theory(quantity: str, force: Measured, in_time: bool) -> Lines:
         return {
             closure: {
                 line: _width(wave, quantity, force.value, in_time)
@@ -169,8 +115,53 @@ def widths() -> Widths:
                 for closure, lines in theory(quantity, force, in_time).items()
             }
             definitions.append(Definition(reading, in_time, average, errors))
-    times = tuple(found[f"bead {bead}"] for bead in beads)
-    return Widths(beads, times, theory("force", found["F_m"], True), tuple(definitions))
+    times, lines = [found[f"bead {bead}"] for bead in beads], theory("force", found["F_m"], True)
+    stated = ", ".join(f"{100 * e:.1f} % ({line})" for line, e in STATED.items())
+    title = (
+        f"theory over the average from bead {FIRST_BEAD} on, less 1, for equal contacts and "
+        f"equal force;\nthe paper states {stated}"
+    )
+    rows = tuple(definition.cells for definition in definitions)
+    return Report(
+        "",
+        (Table(_COLUMNS, rows, "definitions", title=title),),
+        panels=(_panel(beads, times, lines),),
+        notes=(_verdict(definitions),),
+        data={
+            "beads": beads,
+            "fwhm_value": [width.value for width in times],
+            "fwhm_error_value": [width.error for width in times],
+            "lines_value": lines,
+            "stated_error_value": STATED,
+        },
+    )
+
+
+def _verdict(definitions: Sequence[Definition]) -> str:
+    best = max(definitions, key=lambda d: len(d.reproduced))
+    reading = f"{best.quantity}, in {'time' if best.time else 'sites'}."
+    if len(best.reproduced) == len(STATED):
+        return f"The stated errors are those of: {reading}"
+    none = "No definition meets all three stated errors within half a percent"
+    return f"{none}; nearest: {reading}"
+
+
+def _panel(beads: Sequence[int], widths: Sequence[Measured], lines: Lines) -> Panel:
+    times = [1e6 * width.value for width in widths]
+    curves = [
+        Curve.of(f"lattice, {ball} bead", beads[i::2], times[i::2], style)
+        for ball, i, style in (("steel", 1, "ko"), ("PTFE", 0, "ks"))
+    ]
+    ends, first = (beads[0], beads[-1]), lines["linear"]
+    for closure, its in lines.items():
+        for i, (line, width) in enumerate(its.items()):
+            # for m1 ≫ m2 and m1 = m2 the closures agree
+            if its is first or not math.isclose(width, first[line], rel_tol=1e-6):
+                style = f"C{i}{'-' if its is first else '--'}"
+                label = f"{line}, {closure}" if closure != "linear" else line
+                curves.append(Curve.of(label, ends, (1e6 * width,) * 2, style))
+    labels, free = ("number of the bead", "FWHM of its force (µs)"), (0.03, 0.47)
+    return Panel(*labels, tuple(curves), title="1:1 chain", legend=free)
 
 
 def _numbers(run: Run) -> dict[str, float]:

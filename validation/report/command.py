@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import update_wrapper
 from pathlib import Path
-from typing import Any, Generic, ParamSpec, Protocol, TypeVar
+from typing import Any, Generic, ParamSpec, TypeVar
 
 import click
 
@@ -26,33 +26,22 @@ P = ParamSpec("P")
 T = TypeVar("T")
 
 
-class Result(Protocol):
-    """Typed result of a study."""
+class Study(Generic[P]):
+    """A function that computes a `Report`, and the ``command`` that prints it."""
 
-    def report(self) -> Report:
-        """The result as a `Report`."""
-        ...
-
-
-R = TypeVar("R", bound=Result | Report)
-
-
-class Study(Generic[P, R]):
-    """A function that computes a result, and the ``command`` that prints it."""
-
-    def __init__(self, function: Callable[P, R], options: Iterable[Any], epilog: str) -> None:
+    def __init__(self, function: Callable[P, Report], options: Iterable[Any], epilog: str) -> None:
         self.function, self.name = function, function.__name__
         self.options, self.epilog = tuple(options), epilog
         update_wrapper(self, function)
 
-    def __call__(self, *arguments: P.args, **options: P.kwargs) -> R:
+    def __call__(self, *arguments: P.args, **options: P.kwargs) -> Report:
         return self.function(*arguments, **options)
 
     @property
     def command(self) -> click.Command:
         """The Click command; its exit status is 1 if a finding fails."""
         wants = inspect.signature(self.function).parameters
-        function: Callable[..., R] = self.function
+        function: Callable[..., Report] = self.function
 
         def run(style: str, picture: Path | None, **values: Any) -> int:
             offered = {"progress": progress, "run_progress": run_progress, "picture": picture}
@@ -60,10 +49,9 @@ class Study(Generic[P, R]):
             try:
                 with warnings.catch_warnings():  # NumPy's: what overflows is refused or NaN
                     warnings.simplefilter("ignore", RuntimeWarning)
-                    found = function(**values)
+                    report = function(**values)
             except Failure as error:
                 raise click.ClickException(str(error)) from None
-            report = found if isinstance(found, Report) else found.report()
             if style == "json":
                 written = json.dumps(report.document(), indent=2, allow_nan=False)
             else:
@@ -86,8 +74,8 @@ class Study(Generic[P, R]):
         run_command(self.command, f"{self.name}.py", arguments)
 
 
-def study(*options: Any, epilog: str = "") -> Callable[[Callable[P, R]], Study[P, R]]:
-    """Make a study of a function that returns a `Report`, or a result with ``report()``.
+def study(*options: Any, epilog: str = "") -> Callable[[Callable[P, Report]], Study[P]]:
+    """Make a study of a function that returns a `Report`.
 
     The command has the function's name.
 

@@ -16,7 +16,9 @@ from validation.scenes.scene import Scene
 
 
 def struck(masses: Sequence[float], beads: int, k: float = 1.5, **rest: Any) -> Scene:
-    """A chain of beads with repeating masses, the first of which has velocity 1 by default.
+    """A chain of beads with repeating masses, A = 1, whose first bead has velocity 1 by default.
+
+    rest : further fields of the scene.
 
     >>> struck((1, 0.5), 3, duration=1).masses
     (1.0, 0.5, 1.0)
@@ -46,8 +48,9 @@ def chain_scene(
 ) -> Scene:
     """The N:1 chain of steel and PTFE of Porter et al. (2008), struck by its first bead.
 
-    It ends in a steel wall. Sensors, counted from 1: the given beads, the two contacts of each of
-    them, and the wall's contact.
+    velocity, gravity, duration : in m/s, m/s² and s. sensors : beads, counted from 1; the two
+    contacts of each of them and the contact of the steel wall behind the chain are recorded too.
+    N : steel beads in a cell. ptfe : the other bead.
     """
     around = sorted({bead - 1 + side for bead in sensors for side in (-1, 0)})
     return Scene.of_beads(

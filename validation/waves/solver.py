@@ -119,7 +119,8 @@ def solve(
 ) -> ExactWave:
     """Solve for one wave of peak force 1, on whatever branch Newton's method reaches.
 
-    start : a near wave, by default the theory's. free : solve for the m2 of a solitary wave.
+    half_period, points : of the grid, as in `newton.Problem`. start : a near wave, by default the
+    theory's. free : solve for the m2 of a solitary wave.
 
     Raises `NoWave` if the method does not converge.
     """

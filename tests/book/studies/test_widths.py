@@ -19,16 +19,18 @@ def computed():
 
 
 def test_the_lines_for_both_limits_are_in_the_ratio_root_two(computed):
-    lines = computed.lines["linear"]
+    lines = computed.data["lines_value"]["linear"]
     # m2 → 0 is taken at m2/m1 = 1e-12
     assert lines["m1 ≫ m2"] / lines["m1 = m2"] == pytest.approx(math.sqrt(2), rel=1e-9)
     for line in ("m1 ≫ m2", "m1 = m2"):  # where the two closures agree
-        assert computed.lines["canonical"][line] == pytest.approx(lines[line], rel=1e-9)
+        assert computed.data["lines_value"]["canonical"][line] == pytest.approx(
+            lines[line], rel=1e-9
+        )
 
 
 def test_widths_alternate_from_bead_to_bead(computed):
-    times = np.array([width.value for width in computed.times])
-    late = times[list(computed.beads).index(FIRST_BEAD) :]
+    times = np.array(computed.data["fwhm_value"])
+    late = times[computed.data["beads"].index(FIRST_BEAD) :]
     even, odd = late[::2], late[1::2]
     assert np.all(odd > 1.4 * even)  # steel beads carry the humps of both neighbours
     assert np.ptp(even) < 0.02 * even.mean()
@@ -36,21 +38,22 @@ def test_widths_alternate_from_bead_to_bead(computed):
 
 
 def test_the_ptfe_beads_reproduce_two_of_the_stated_errors_and_nothing_all_three(computed):
-    found = {(d.quantity, d.time): d.reproduced for d in computed.definitions}
-    assert found["PTFE beads' force, contact's theory", True] == ("m1 ≫ m2", "m1 = m2")
+    rows = computed.document()["definitions"]
+    found = {(row["quantity"], row["unit"]): row["reproduced"] for row in rows}
+    assert found["PTFE beads' force, contact's theory", "s"] == ["m1 ≫ m2", "m1 = m2"]
     assert all(len(lines) < len(STATED) for lines in found.values())
 
 
 def test_the_width_agrees_with_the_experiment_of_the_paper_command(computed):
     found = {row["quantity"]: row["lattice_value"] for row in paper().document()["rows"]}
-    late = computed.times[computed.beads.index(34)].value
+    late = computed.data["fwhm_value"][computed.data["beads"].index(34)]
     width = late * found["speed V_s"] / DIAMETER
     assert width == pytest.approx(found["FWHM of F_34"], rel=1e-6)
 
 
 def test_no_line_lies_on_another(computed):
     """The closures agree for m1 ≫ m2 and m1 = m2: one line each is drawn."""
-    (panel,) = computed.report().panels
+    (panel,) = computed.panels
     for one, other in combinations(panel.curves, 2):
         same = np.array_equal(one.x, other.x)
         assert not (same and np.allclose(one.y, other.y, rtol=1e-6)), one.label
@@ -59,7 +62,5 @@ def test_no_line_lies_on_another(computed):
 def test_the_command(capsys, computed):
     status, out, err = ended(capsys, widths.main, "--format", "json")
     assert (status, err) == (0, "")
-    for told, definition in zip(json.loads(out)["definitions"], computed.definitions, strict=True):
-        assert told["error_value"] == definition.errors
-        assert told["reproduced"] == list(definition.reproduced)
-    assert "No definition meets all three stated errors" in computed.report().text()
+    assert json.loads(out) == json.loads(json.dumps(computed.document()))
+    assert "No definition meets all three stated errors" in computed.text()

@@ -12,6 +12,7 @@ from validation.pictures import figure as drawing
 from validation.pictures.figure import figure
 from validation.pictures.panel import Curve, Map, Panel
 from validation.report.result import Report
+from validation.studies import limits
 
 SIGNATURES = {".png": b"\x89PNG", ".pdf": b"%PDF", ".svg": b"<?xml"}
 X = np.array([1.0, 2.0, 3.0])
@@ -103,8 +104,8 @@ def test_a_panel_is_drawn_into_axes_that_are_given(report):
         Report("none").plot()
 
 
-def test_the_limits_picture_shows_every_quantity_at_every_k(limits_result):
-    left, right = limits_result.report().figure().axes
+def test_the_limits_picture_shows_every_quantity_at_every_k(limits_rows):
+    left, right = limits.report(limits_rows).figure().axes
     for axes in (left, right):
         bars = [c for c in axes.containers if c.has_yerr]
         assert len(bars) == 4
