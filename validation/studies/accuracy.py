@@ -28,7 +28,7 @@ from validation.lattice.run import IntegrationError, Run
 from validation.lattice.simulate import COMPILED, simulate
 from validation.pictures.panel import Curve, Panel
 from validation.pulses.pulse import MeasureError, Pulse, highest_pulse
-from validation.pulses.signals import Mapped
+from validation.pulses.sensors import tracks
 from validation.report.command import option, study
 from validation.report.result import Report
 from validation.report.table import Column, Table
@@ -79,8 +79,8 @@ class Task:
 
         Raises `validation.pulses.pulse.MeasureError` when the pulse is not wholly in the record.
         """
-        load = self.scene.load[self.contact]
-        return highest_pulse(Mapped(run.signal("contact", self.contact), lambda f: f - load))
+        (track,) = tracks(run)
+        return highest_pulse(track.force)
 
     def errors(self, run: Run, truth: Pulse) -> dict[str, float]:
         """Relative errors by `NUMBERS`; ∞ without a pulse."""
