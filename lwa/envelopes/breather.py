@@ -95,7 +95,7 @@ class Breather(Value):
 
     @cached_property
     def amplitude(self) -> tuple[sp.Expr, ...]:
-        """Largest displacement 2aφ of each bead of a cell, with the sign of the mode."""
+        """Largest displacement 2aφ of each bead, in the cell's units, with the sign of the mode."""
         return tuple(2 * root(self._square) * phi for phi in self.mode)
 
     @cached_property

@@ -8,7 +8,7 @@ import sympy as sp
 
 from lwa.base.exact import InputError, exact, number, shorten
 from lwa.base.quantities import QUANTITIES, strain_power
-from lwa.cell import Cell, exponent
+from lwa.cell import Cell
 from lwa.cell import k as symbol_k
 from lwa.law import Power
 from lwa.linear.dispersion import Dispersion
@@ -126,6 +126,4 @@ def canonical_wave(cell: Cell, k: Any = symbol_k) -> TravelingWave:
     >>> canonical_wave(Cell((1, 1)), "3/2").beta
     sqrt(10)/(5*D)
     """
-    k = exponent(k, cell)
-    I = Dispersion(cell, k).I * cell.spacing**2
-    return TravelingWave(cell=cell, k=k, G=I * (k - 1) * (k - 2) / 2, H=2 * I * (k - 1), I=I)
+    return TravelingWave.canonical(cell, k)

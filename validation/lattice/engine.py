@@ -49,7 +49,7 @@ from validation.lattice.kernel.arrays import (
 )
 from validation.lattice.knots import Recorder
 from validation.lattice.run import IntegrationError, Run, finished
-from validation.lattice.schemes import GENERATED, LAWS, SCHEMES
+from validation.lattice.schemes import SCHEMES
 from validation.lattice.schemes.nystrom import Pair
 from validation.lattice.signal import recorded, sampled
 from validation.scenes.checks import SceneError, integer, positive
@@ -228,8 +228,8 @@ def _chain(motion: Motion) -> Chain:
     if motion.scene.drive is not None:
         inverse[0] = 0.0
     contact = motion.contact
-    law = LAWS.get(motion.k, 0) if contact.law is None else GENERATED
-    return Chain(inverse, A, rest, load, law, motion.k, *contact.addresses, contact.pulls)
+    generated = contact.law is not None
+    return Chain(inverse, A, rest, load, motion.k, generated, *contact.addresses, contact.pulls)
 
 
 def _front(motion: Motion) -> int:

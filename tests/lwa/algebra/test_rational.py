@@ -22,6 +22,8 @@ expressions = st.recursive(
 @given(expressions)
 def test_it_is_the_same_in_lowest_terms(value):
     assume(not value.has(sp.zoo, sp.nan))
+    # x^{-y} is a symbol of its own there, and 1/p here
+    assume(not any((power.exp / y).is_negative for power in value.atoms(sp.Pow)))
     found = factored(value)
     plain = {sp.sqrt(2): sp.Symbol("r"), x**y: sp.Symbol("p"), sp.sin(x): sp.Symbol("s")}
     difference = sp.cancel((found - value).subs(plain))

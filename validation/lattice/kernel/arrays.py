@@ -19,17 +19,16 @@ class Chain(NamedTuple):
     """A chain, padded by beads of infinite mass, of which the first is the wall.
 
     inverse : inverse masses. A, rest, load : stiffnesses, static compressions and static forces of
-    the contacts. law, k : number of the force's loop (`validation.lattice.schemes.LAWS`), exponent.
-    force, slope, energy : for a law that is no power, addresses of its functions. pulls : whether
-    contacts hold where δ < 0.
+    the contacts. k : exponent of a power law. generated : whether the law is none, but given by
+    force, slope, energy : addresses of its functions. pulls : whether contacts hold where δ < 0.
     """
 
     inverse: Array
     A: Array
     rest: Array
     load: Array
-    law: int
     k: float
+    generated: bool
     force: int
     slope: int
     energy: int

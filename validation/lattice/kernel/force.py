@@ -13,65 +13,71 @@ from validation.lattice.kernel.compiled import ONE, call, index, part
 NOTHING = 1e-60  # of the greatest compression: open, lest the front decay into denormal numbers
 
 
+def _loop(value: Any) -> Any:
+    """The loop over contacts whose force, for unit stiffness, is a function of d ≥ 0 and k."""
+
+    @part
+    def loop(
+        chain: Chain, y: Array, force: Array, s: Any, lo: int, hi: int, nothing: float
+    ) -> None:
+        A, rest, load, k = chain.A, chain.rest, chain.load, chain.k
+        for i in range(index(lo), index(hi)):
+            d = rest[i] + y[i] - y[i + ONE]
+            d = d if d > nothing else 0.0
+            force[s, i + ONE] = A[i] * value(d, k) - load[i]
+
+    return loop
+
+
+_linear = _loop(part(lambda d, k: d))
+_five_quarters = _loop(part(lambda d, k: d * np.sqrt(np.sqrt(d))))
+_hertz = _loop(part(lambda d, k: d * np.sqrt(d)))
+_square = _loop(part(lambda d, k: d * d))
+_cube = _loop(part(lambda d, k: d * d * d))
+_power = _loop(part(lambda d, k: d**k))
+
+
 @part
 def press(chain: Chain, y: Array, force: Array, s: Any, lo: int, hi: int, nothing: float) -> None:
     """Forces ahead of the beads lo … hi-1, less their static forces, as those of stage s.
 
-    Exponents without a power have loops of their own (`validation.lattice.schemes.LAWS`).
+    Exponents that need no general power have loops of their own.
     """
-    A, rest, load, law, k = chain.A, chain.rest, chain.load, chain.law, chain.k
-    if law == 3:
+    if chain.generated:
         for i in range(index(lo), index(hi)):
-            d = rest[i] + y[i] - y[i + ONE]
-            d = d if d > nothing else 0.0
-            force[s, i + ONE] = A[i] * (d * np.sqrt(d)) - load[i]
-    elif law == 1:
-        for i in range(index(lo), index(hi)):
-            d = rest[i] + y[i] - y[i + ONE]
-            d = d if d > nothing else 0.0
-            force[s, i + ONE] = A[i] * d - load[i]
-    elif law == 2:
-        for i in range(index(lo), index(hi)):
-            d = rest[i] + y[i] - y[i + ONE]
-            d = d if d > nothing else 0.0
-            force[s, i + ONE] = A[i] * (d * np.sqrt(np.sqrt(d))) - load[i]
-    elif law == 4:
-        for i in range(index(lo), index(hi)):
-            d = rest[i] + y[i] - y[i + ONE]
-            d = d if d > nothing else 0.0
-            force[s, i + ONE] = A[i] * (d * d) - load[i]
-    elif law == 5:
-        for i in range(index(lo), index(hi)):
-            d = rest[i] + y[i] - y[i + ONE]
-            d = d if d > nothing else 0.0
-            force[s, i + ONE] = A[i] * (d * d * d) - load[i]
-    elif law == 6:
-        for i in range(index(lo), index(hi)):
-            d = rest[i] + y[i] - y[i + ONE]
-            f = A[i] * call(chain.force, d) if A[i] > 0.0 and (chain.pulls or d > 0.0) else 0.0
-            force[s, i + ONE] = f - load[i]
+            d = chain.rest[i] + y[i] - y[i + ONE]
+            closed = chain.A[i] > 0.0 and (chain.pulls or d > 0.0)
+            f = chain.A[i] * call(chain.force, d) if closed else 0.0
+            force[s, i + ONE] = f - chain.load[i]
+    elif chain.k == 1.5:
+        _hertz(chain, y, force, s, lo, hi, nothing)
+    elif chain.k == 1.0:
+        _linear(chain, y, force, s, lo, hi, nothing)
+    elif chain.k == 1.25:
+        _five_quarters(chain, y, force, s, lo, hi, nothing)
+    elif chain.k == 2.0:
+        _square(chain, y, force, s, lo, hi, nothing)
+    elif chain.k == 3.0:
+        _cube(chain, y, force, s, lo, hi, nothing)
     else:
-        for i in range(index(lo), index(hi)):
-            d = rest[i] + y[i] - y[i + ONE]
-            d = d if d > nothing else 0.0
-            force[s, i + ONE] = A[i] * d**k - load[i]
+        _power(chain, y, force, s, lo, hi, nothing)
 
 
 @part
 def power(chain: Chain, d: float) -> float:
     """[d]_+^k."""
     d = max(d, 0.0)
-    return float(d * np.sqrt(d) if chain.law == 3 else d**chain.k)
+    return float(d * np.sqrt(d) if chain.k == 1.5 else d**chain.k)
 
 
 @part
 def stiffness(chain: Chain, d: float, rising: bool) -> float:
     """F′ of a contact of unit stiffness, k [d]^{k-1} of a power; at d = 0, on the closed side if d
     is rising."""
-    if chain.law == 6:
+    if chain.generated:
         return float(call(chain.slope, d) if chain.pulls or d > 0.0 else 0.0)
     if d > 0.0 or (d == 0.0 and rising):
-        return float(chain.k * (np.sqrt(d) if chain.law == 3 else d ** (chain.k - 1.0)))
+        return float(chain.k * (np.sqrt(d) if chain.k == 1.5 else d ** (chain.k - 1.0)))
     return 0.0
 
 
@@ -86,6 +92,6 @@ def relative(force: Array, inverse: Array, i: int) -> float:
 def elastic(chain: Chain, beads: Beads, i: int) -> float:
     """The elastic energy of contact i of a chain without load."""
     d = max(beads.y[i] - beads.y[i + 1], 0.0)
-    if chain.law == 6:
+    if chain.generated:
         return float(chain.A[i] * call(chain.energy, beads.y[i] - beads.y[i + 1]))
     return float(chain.A[i] * power(chain, d) * d / (chain.k + 1.0))
