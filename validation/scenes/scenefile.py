@@ -59,9 +59,9 @@ or as many as the whole chain has contacts; spacings likewise. Units of named be
 masses and stiffnesses any that agree. A file with a key ``scene``, such as `lwa-validate run --out`
 writes, holds the scene under that key.
 
-Unknown keys are refused, and every fault is one line that names the key. A written file holds masses
-and stiffnesses, not the materials that they came from; the scene read from it is equal to the last
-bit.
+Unknown keys are refused, and every fault is one line that names the key. A written file holds
+masses and stiffnesses, not the materials that they came from; the scene read from it is equal to
+the last bit.
 """
 
 from __future__ import annotations
