@@ -32,7 +32,7 @@ _FINEST = 1000  # places, and times, of a map
 
 
 class IntegrationError(Failure):
-    """The integrator could not go on; the message says where and why."""
+    """Failure of an integrator; the message says where and why."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -146,7 +146,7 @@ class Records(ArrayValue, Pictured):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Run(Records):
-    """The records of a simulation, its final state, and how well it kept its invariants.
+    """Records of a simulation, its final state, and the drift of its invariants.
 
     All arrays are read-only; further fields are those of `Records`.
 
@@ -203,7 +203,7 @@ def finished(
     window: int | None = None,
     path: Path | None = None,
 ) -> Run:
-    """The run that ended in the state ``end`` with this energy and change of momentum."""
+    """Make a `Run` of its final state, records, final energy and change of momentum."""
     n, before = motion.size, motion.scales.energy
     arrays = records | {"displacements": end[:n].copy(), "velocities": end[n : 2 * n].copy()}
     for array in arrays.values():
