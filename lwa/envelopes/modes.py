@@ -11,7 +11,7 @@ where δ_i = u_i - u_{i+1}. At second order it drives (Remoissenet, *Waves Calle
     the second harmonic   A² e2,    e2 = -G K3 d²,   G = B(2κ) [K(2κ) - 4ω²M]^{-1} B(2κ)†,
     a lasting strain    |A|² e0,    K2 e0 + 2 K3 |d|² = f, the same in all contacts.
 
-f is the lasting force. It accelerates the cells, whose mean strain moves with the group velocity:
+f is the lasting force. It accelerates the cells, so that their mean strain Σ e0 moves with c_g:
 f = M c_g² Σ e0, M = Σ m. With v = c_g/c_0, c_0² = 1/(M Σ c), this is f = 2 Σ c K3|d|²/Σ c ·
 v²/(v² - 1), zero at a band's edge, where the load is held. At third order the frequency rises by
 χ|A|²,

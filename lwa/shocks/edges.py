@@ -22,7 +22,7 @@ from lwa.base.exact import InputError, demand_numbers, evaluated, root
 from lwa.linear.dispersion import Dispersion
 
 DIGITS = 20
-"""Digits of what is not in closed form."""
+"""Digits of results that are not in closed form."""
 
 STEEPEST = sp.Rational(13, 10)
 """r up to which the trailing edge is given; for Hertz contacts it is 3 % too slow at p₋/p₊ = 2,

@@ -1,4 +1,4 @@
-"""The solitary wave of equal beads on a background that gives its beads a known velocity.
+"""Solitary waves on a background by the velocity of their beads, between equal beads.
 
 A wave of speed V whose slope u_x rises by B moves its beads at w = V B at most, so that for the
 canonical wave (`lwa.wave.background`)
@@ -31,7 +31,9 @@ from lwa.wave.background import BackgroundWave
 
 @dataclass(frozen=True)
 class Pulse(Value):
-    """The wave on a background whose beads move at ``velocity`` du/dτ at most.
+    """Solitary wave whose beads move at most with a given velocity.
+
+    field : the background. velocity : du/dτ, a number or an expression.
 
     Without load under a power law, and for Toda's law, results are in closed form, else numbers.
 
@@ -53,7 +55,7 @@ class Pulse(Value):
 
     @cached_property
     def rise(self) -> sp.Expr:
-        """B = w/V."""
+        """B = w/V, by which u_x rises."""
         field, w = self.field, self.velocity
         if self._toda:
             C = self._cosh
@@ -67,12 +69,12 @@ class Pulse(Value):
 
     @property
     def speed(self) -> sp.Expr:
-        """V = dx/dτ."""
+        """Speed V = dx/dτ of the wave."""
         return _digits(self.velocity / self.rise)
 
     @cached_property
     def contact_rise(self) -> sp.Expr:
-        """Rise of the strain of a contact at its peak."""
+        """Strain of a contact at the peak of the wave, less p0."""
         if self._toda:
             return 2 * sp.log(self._cosh) / self._toda
         field, B, k = self.field, self.rise, self.field.law.exponent
@@ -94,5 +96,5 @@ class Pulse(Value):
 
 
 def _digits(value: sp.Expr) -> sp.Expr:
-    """One number in place of an expression that holds a root of `rising_root`."""
+    """Evaluate an expression of numbers that holds a root found by `rising_root`."""
     return value.n(DIGITS) if value.has(sp.Float) and value.is_number else value

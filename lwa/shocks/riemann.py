@@ -166,7 +166,7 @@ def shock(cell: Cell, law: ContactLaw, behind: Any, ahead: Any) -> Shock:
 
     Strains are numbers or symbols, not negative under a power law. Results are exact for equal
     beads under a power law or Toda's, but for the doubling rule under load, else of 20 digits.
-    Raises `lwa.InputError` for other strains, and equal ones.
+    Raises `lwa.InputError` for other strains, and where sound is equally fast on both.
 
     >>> from lwa import Cell, Power
     >>> found = shock(Cell([1], spacing=1), Power("3/2"), 1, 0)
@@ -180,9 +180,10 @@ def shock(cell: Cell, law: ContactLaw, behind: Any, ahead: Any) -> Shock:
             raise InputError(f"{name} is {shorten(p)}: contacts of a power law only push")
         if law.homogeneous and p.is_zero and (law.exponent - 1).is_nonpositive:
             raise InputError(f"{name} is 0 and k {law.exponent}: a front without load wants k > 1")
-    if strains["behind"] == strains["ahead"]:
-        raise InputError(f"behind and ahead are both {shorten(p)}: there is no front")
-    return Shock(cell, law, **strains)
+    found = Shock(cell, law, **strains)
+    if found._gain.is_zero:
+        raise InputError("sound is as fast behind as ahead: there is no shock and no rarefaction")
+    return found
 
 
 def piston(cell: Cell, law: ContactLaw, velocity: Any, ahead: Any = 0) -> Shock:

@@ -17,7 +17,9 @@ from lwa.wave.background import BackgroundWave
 
 
 def velocity(field: BackgroundWave, p: sp.Expr) -> sp.Expr:
-    """∫ √F′ from p0 to p, in closed form for powers and where √F′ is an exponential.
+    """Velocity that the beads gain while the strain rises from p0 to p, ∫ √F′ dp.
+
+    In closed form for powers and where √F′ is an exponential, else an integral or its value.
 
     >>> from lwa import background_wave, Cell, Power
     >>> velocity(background_wave(Cell([1]), 0, law=Power(3)), sp.Symbol("p"))

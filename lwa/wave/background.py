@@ -15,6 +15,8 @@ singularities (`lwa.wave.profile`, `lwa.wave.quadrature`).
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Self
@@ -29,6 +31,7 @@ from lwa.base.quantities import RISE, NoSolitaryWave, known
 from lwa.cell import RESERVED, Cell, meant
 from lwa.law import ContactLaw, Power, for_cell, substituted
 from lwa.linear.dispersion import Dispersion
+from lwa.wave.closed import CompactWave
 from lwa.wave.kdv import KdV
 from lwa.wave.profile import Profile, Strains, mpmath_number
 
@@ -180,14 +183,12 @@ class BackgroundWave(Value):
                 stiff = slope(v)
                 if mpmath.im(stiff) != 0 or not 0 < stiff < mpmath.inf:
                     return f"F′ is not positive at the strain p0 + {mpmath.nstr(v, 5)}"
-        rise, working = self._wave(B, DIGITS)
-        with mpmath.workdps(working):
-            F, _, Q = self._strains.functions()
-            number = mpmath_number(rise)
-            top, reason = Q(number), "the law does not stiffen towards it: a wave of the height "
-            if not (F(number) - F(mpmath.mpf(0))) / number > top:  # B Q′(B)/2 = this - Q(B)
+        with self._solved(B, DIGITS) as wave:
+            F, Q, top = wave.force, wave.stiffness, wave.stiffness(wave.B)
+            reason = "the law does not stiffen towards it: a wave of the height "
+            if not (F(wave.B) - F(mpmath.mpf(0))) / wave.B > top:  # B Q′(B)/2 = this - Q(B)
                 return f"{reason}just below would be as fast"
-            for v in (number * i / _LOOKS for i in range(1, _LOOKS)):
+            for v in (wave.B * i / _LOOKS for i in range(1, _LOOKS)):
                 if not Q(v) < top:
                     return f"{reason}{mpmath.nstr(v, 5)} would be as fast"
         return ""
@@ -220,23 +221,16 @@ class BackgroundWave(Value):
         """
         B = self._amplitude(B)
         if self._compact is not None:
-            k, beta = self._compact
-            power = k if known(quantity) == "force" else 1
-            return 2 * sp.acos(2 ** (-(k - 1) / (2 * power))) / beta
-        digits = self._digits(digits)
-        rise, working = self._wave(B, digits)
-        with mpmath.workdps(working):
-            found = self._profile(rise, digits)
-            length = 2 * found.place(found.half(known(quantity)))
+            return self._compact.fwhm(quantity)
+        with self._solved(B, digits) as wave:
+            length = 2 * wave.place(wave.half(known(quantity)))
         return sp.Float(length, digits) * self.unit
 
     @property
-    def _compact(self) -> tuple[sp.Expr, sp.Expr] | None:
-        """The k and β of the wave without load under a power law, else None."""
-        if not (self.law.homogeneous and self.p0.is_zero):
-            return None
-        k = self.law.exponent
-        return k, (k - 1) / root(2 * self.I * k * (k + 1))
+    def _compact(self) -> CompactWave | None:
+        """The wave without load under a power law, else None."""
+        compact = self.law.homogeneous and self.p0.is_zero
+        return CompactWave.canonical(self.cell, self.law.exponent) if compact else None
 
     def profile(self, xi: Any, B: Any, digits: int = DIGITS) -> sp.Expr:
         """Strain v(ξ) above p0: a closed form without load under a power, else a number.
@@ -245,17 +239,13 @@ class BackgroundWave(Value):
         """
         B, xi = self._amplitude(B), signed(xi, "xi")
         if self._compact is not None:
-            k, beta = self._compact
-            arch = B * sp.cos(beta * xi) ** (2 / (k - 1))
-            return sp.Piecewise((arch, sp.Abs(xi) <= sp.pi / (2 * beta)), (0, True))
+            return self._compact.profile(xi, B)
         place = self.in_unit(xi)
         if place.free_symbols:
             raise InputError(f"xi is {shorten(xi)}: a number, in D, is wanted")
-        digits = self._digits(digits)
-        rise, working = self._wave(B, digits)
-        with mpmath.workdps(working):
-            target, found = abs(mpmath_number(place)), self._profile(rise, digits)
-            return sp.Float(found.strain(found.theta(target) if target else 0), digits)
+        with self._solved(B, digits) as wave:
+            target = abs(mpmath_number(place))
+            return sp.Float(wave.strain(wave.theta(target) if target else 0), digits)
 
     def numeric(self) -> NumericBackground:
         """Vectorised float64 functions of (p0, B) for this cell and law; p0 is an argument there.
@@ -310,27 +300,23 @@ class BackgroundWave(Value):
         all_values = (*values, self.p0, self.I, self.force(self.p0 + sp.S.One, 1))
         return set().union(*(v.free_symbols for v in all_values)) - {self.unit}
 
-    def _digits(self, digits: int) -> int:
-        if integer(digits, "digits", 1) > MOST_DIGITS:
-            raise InputError(f"digits is {digits}: at most {MOST_DIGITS} are given")
-        return digits
-
     @cached_property
     def _strains(self) -> Strains:
         v = sp.Dummy("v", real=True)
         values = (self.force(self.p0 + v), self.force(self.p0 + v, 1), self._stiffness(v))
         return Strains(v, *map(self.in_unit, values))
 
-    def _wave(self, B: sp.Expr, digits: int) -> tuple[sp.Expr, int]:
-        """The rise B over the unit, and the working digits for a wave of this rise."""
+    @contextmanager
+    def _solved(self, B: sp.Expr, digits: int) -> Iterator[Profile]:
+        """The wave of the rise B, computed with as many digits as its differences need."""
+        if integer(digits, "digits", 1) > MOST_DIGITS:
+            raise InputError(f"digits is {digits}: at most {MOST_DIGITS} are given")
         why = "a width or a profile on a background is a number and wants numbers"
         demand_numbers(self._free(B), why)
-        return self.in_unit(B), self._strains.precision(self.in_unit(B), digits)
-
-    def _profile(self, B: sp.Expr, digits: int) -> Profile:
-        """The profile in mpmath's working precision."""
-        I = mpmath_number(self.in_unit(self.I))
-        return Profile(mpmath_number(B), I, digits, *self._strains.functions())
+        rise = self.in_unit(B)
+        with mpmath.workdps(self._strains.precision(rise, digits)):
+            I = mpmath_number(self.in_unit(self.I))
+            yield Profile(mpmath_number(rise), I, digits, *self._strains.functions())
 
 
 def background_wave(cell: Cell, p0: Any = "p0", *, law: ContactLaw | None = None) -> BackgroundWave:

@@ -30,6 +30,7 @@ from lwa.base.exact import InputError, positive, power, root, shorten, signed
 from lwa.base.frozen import Value
 from lwa.base.quantities import RISE, SPEED, NoSolitaryWave, strain_power
 from lwa.cell import Cell, exponent, substitution
+from lwa.linear.dispersion import Dispersion
 
 _SHARES = sp.symbols("g h", cls=sp.Dummy)
 """G/I and H/I in the algebra of the strain's equation."""
@@ -144,6 +145,13 @@ class CompactWave(Value):
             raise NoSolitaryWave(
                 f"V²/B^(k-1) is {self.speed_factor}: there is no wave with a real speed"
             )
+
+    @classmethod
+    def canonical(cls, cell: Cell, k: Any) -> Self:
+        """The wave of the canonical field of a cell; see `lwa.canonical_wave`."""
+        k = exponent(k, cell)
+        I = Dispersion(cell, k).I * cell.spacing**2
+        return cls(cell=cell, k=k, G=I * (k - 1) * (k - 2) / 2, H=2 * I * (k - 1), I=I)
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({self.cell!r}, k={self.k}, β={shorten(self.beta)})"

@@ -41,7 +41,7 @@ def test_dark_breathers_of_equal_beads():
         found = Standing(cell, 1.5, theory, math.ceil(13 * float(theory.width))).numbers()
         amplitude = abs(float(theory.amplitude[0])) / found["amplitude"] - 1
         errors.append([amplitude, float(theory.width) / found["width"] - 1])
-        assert 0 < amplitude < 4 * nu
+        assert amplitude == pytest.approx(2.7 * nu, rel=0.01)
     assert np.divide(errors[:-1], errors[1:]) == pytest.approx(2, rel=0.02)
 
 

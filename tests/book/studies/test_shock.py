@@ -16,7 +16,7 @@ from validation import Drive, Scene, simulate
 
 
 def test_plateau_speed_and_peak_of_three_laws():
-    """At a tenth of the time of the next test: trains are short at a jump of 3."""
+    """Trains are so short at a jump of 3 that a tenth of the time of the next test is enough."""
     found = shock(jumps=(3,), duration=250)
     assert found.ok
     toda, hertz, square = found.document()["rows"]
@@ -148,7 +148,7 @@ def test_the_program(capsys):
     status, out, err = ended(capsys, shock.main, *options)
     assert (status, err) == (0, "")
     assert json.loads(out)["rows"][0]["behind_value"] == 2
-    for jump, words in (("1", "there is no front"), ("1/2", "a strain above the one ahead")):
+    for jump, words in (("1", "there is no shock"), ("1/2", "a strain above the one ahead")):
         status, out, err = ended(capsys, shock.main, "--k", "3/2", "--jumps", jump)
         assert (status, out, err.count("\n")) == (2, "", 1)
         assert words in err

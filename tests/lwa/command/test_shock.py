@@ -101,7 +101,7 @@ def test_a_piston_and_a_rarefaction(capsys):
     [
         ((), "--behind or --piston"),
         (("--behind", "1", "--piston", "1"), "--behind or --piston"),
-        (("--behind", "1", "--ahead", "1"), "there is no front"),
+        (("--behind", "1", "--ahead", "1"), "there is no shock"),
         (("--piston", "-1"), "velocity is -1: it must be positive"),
         (("--behind", "v_p"), "has a meaning of its own"),
     ],

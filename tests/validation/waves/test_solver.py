@@ -411,7 +411,7 @@ STRUCK = (
 )  # fmt: skip
 """k, ω, and how far off c² may be, as a share of it: of the size of the tail."""
 
-FAST = (("3/2", "0.02"), ("3/2", "0.45"), ("6/5", "0.3"))
+FAST = (("3/2", "0.02"), ("3/2", "0.45"))
 
 
 @pytest.mark.parametrize(
@@ -437,7 +437,7 @@ def test_the_wave_is_that_of_a_struck_chain(k, omega, share):
 @pytest.mark.parametrize(("omega", "k"), [(0.9, 1.5), (0.05, 1.5), (0.3, 2.0)])
 def test_the_errors_of_nanopterons_cover_other_half_periods_and_grids(omega, k):
     waves = []
-    for L, points in ((9.0, None), (9.0, 110), (10.0, None), (12.0, None), (13.0, None)):
+    for L, points in ((9.0, None), (9.0, 110), (12.0, None), (13.0, None)):
         with suppress(NoWave):
             found = exact_wave([1, omega], k, half_period=L)
             waves.append(solve(found.masses, k, L, points, found) if points else found)
@@ -448,7 +448,7 @@ def test_the_errors_of_nanopterons_cover_other_half_periods_and_grids(omega, k):
             assert abs(one[name].value - other[name].value) <= bound, name
 
 
-@pytest.mark.parametrize("k", [1.01, 1.05, 1.5, 3.0])
+@pytest.mark.parametrize("k", [1.01, 1.5, 3.0])
 def test_the_errors_of_solitary_waves_cover_other_half_periods_and_grids(k, specials):
     for wave in (exact_wave([1], k), specials[1]):
         L, n = wave.half_period, len(wave.even) - 1
@@ -461,7 +461,7 @@ def test_the_errors_of_solitary_waves_cover_other_half_periods_and_grids(k, spec
                 assert abs(one[name].value - other[name].value) <= bound, name
 
 
-@pytest.mark.parametrize("k", [1.02, 1.1, 1.5, 2.0, 5.0])
+@pytest.mark.parametrize("k", [1.02, 1.5, 5.0])
 def test_a_half_period_that_is_too_short_is_refused(k):
     """At k = 3/2 and L = 3 it was called solitary, with c² off by 2e-4; accepted ones agree."""
     ample = exact_wave([1], k)
