@@ -158,7 +158,7 @@ class Answer:
             return str(value)
         digits = sp.sstr(evaluated(plain, PRINTED_DIGITS), full_prec=False)
         digits, written = digits + self._length_unit(value), str(value)
-        return digits if plain.is_Float or len(written) > LONG else f"{written} ≈ {digits}"
+        return digits if plain.has(sp.Float) or len(written) > LONG else f"{written} ≈ {digits}"
 
     def _length_unit(self, value: sp.Expr) -> str:
         if not self.spacing.is_Symbol or self.spacing not in value.free_symbols:

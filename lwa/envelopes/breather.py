@@ -60,6 +60,8 @@ class Breather(Value):
 
     def __post_init__(self) -> None:
         one_of(self.kind, KINDS, "kind")
+        if self.detuning.is_number and self.detuning >= 1:
+            self._refuse("a frequency is positive, and the detuning below 1")
         if self._square.is_number and not self._square > 0:
             side, sign = ("below", "> 0") if self.nonlinearity < 0 else ("above", "< 0")
             self._refuse(f"{self.kind} breathers lie {side} f0, at values {sign}")

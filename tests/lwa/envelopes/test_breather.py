@@ -113,6 +113,8 @@ def test_contacts_that_pull_do_not_open():
     """An exponential is a force at negative compressions, too; δ^{3/2} + δ^{5/2} is not."""
     chain = envelope(Cell([1], spacing=1), named("exponential", 1), background=0)
     assert chain.breather(detuning="1/2").opening == sp.oo
+    with pytest.raises(InputError, match="a frequency is positive, and the detuning below 1"):
+        chain.breather(detuning="3/2")
     pushes = envelope(Cell([1], spacing=1), named("hertz2", 1, 1), background="1/2")
     found = pushes.breather(detuning="1/1000")
     assert 0.001 < found.opening_detuning < 1
