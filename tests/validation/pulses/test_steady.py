@@ -178,7 +178,7 @@ def test_a_failure_is_the_points_own(monkeypatch):
 
 
 def test_the_end_of_the_chain_is_far_from_the_last_place():
-    """At k = 21/20 and ω = 1/100 the FWHM is 8.5 sites: 12 beads beyond the last place changed it."""
+    """At k = 21/20 and ω = 1/100 the FWHM is 8.5 sites, and 12 beads beyond the place too few."""
     chain = steady.StruckDimer(1.05, 0.01, 40)
     one, other = (
         chain.passages(chain.run(places, chain.crossing(160), 1e-6))[1]
