@@ -21,7 +21,7 @@ from sympy.core.function import AppliedUndef
 
 from lwa.base import latex
 from lwa.base.calculus import growing_root, integral, ratio
-from lwa.base.exact import InputError, demand_numbers, exact, positive, shorten, signed
+from lwa.base.exact import InputError, demand_numbers, exact, positive, power, shorten, signed
 from lwa.base.frozen import Value
 from lwa.cell import RESERVED, Cell, exponent, meant, substitution, unmistakable
 from lwa.cell import k as symbol_k
@@ -193,10 +193,10 @@ class Power(ContactLaw):
         exponent(self.k, cell)
 
     def compressions(self, cell: Cell, force: sp.Expr) -> tuple[sp.Expr, ...]:
-        return tuple((force / A) ** (1 / self.k) for A in cell.stiffnesses)
+        return tuple(power(force / A, 1 / self.k) for A in cell.stiffnesses)
 
     def compression(self, cell: Cell, force: sp.Expr) -> sp.Expr:
-        return (force / cell.stiffness(self.k)) ** (1 / self.k)
+        return power(force / cell.stiffness(self.k), 1 / self.k)
 
     def replaced(self, new: Mapping[sp.Symbol, sp.Expr]) -> Power:
         return Power(self.k.xreplace(new))

@@ -70,6 +70,9 @@ class _Field:
             n, d = self._fraction(value.base)
             e = int(value.exp)
             return (n**e, d**e) if e > 0 else (d**-e, n**-e)
+        if _is_reciprocal(value):
+            n, d = self._fraction(1 / value)
+            return d, n
         return self.context.gen(self.generators.index(value)), self.one
 
     def _sum(self, polynomial: fmpq_mpoly) -> sp.Expr:
@@ -88,4 +91,9 @@ def _atoms(value: sp.Expr) -> set[sp.Expr]:
         return set().union(*map(_atoms, value.args))
     if value.is_Pow and value.exp.is_Integer:
         return _atoms(value.base)
-    return {value}
+    return _atoms(1 / value) if _is_reciprocal(value) else {value}
+
+
+def _is_reciprocal(value: sp.Expr) -> bool:
+    """Whether it is a power such as x^{-y}, which is one over the symbol for x^y."""
+    return bool(value.is_Pow and value.exp.could_extract_minus_sign())

@@ -17,7 +17,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import mpmath
 import sympy as sp
@@ -52,6 +52,15 @@ class Resummed(Value):
     error: float
     order: int
     asymptotic: bool
+
+    def __mul__(self, factor: float) -> Resummed:
+        return replace(self, value=factor * self.value, error=factor * self.error)
+
+    def __truediv__(self, other: Resummed) -> Resummed:
+        """The quotient, with the sum of the relative errors and the numerator's order."""
+        value = self.value / other.value
+        error = value * (self.error / self.value + other.error / other.value)
+        return replace(self, value=value, error=error)
 
     def latex(self) -> str:
         """The sum and its error, if known, such as 1.411928 ± 3.0 · 10^{-6}."""

@@ -7,7 +7,7 @@ first contact, and widths in sites do not depend on F.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import sympy as sp
 
@@ -45,18 +45,13 @@ class ExpandedWave(Value):
     def speed(self) -> Resummed:
         """Speed dx/dt; raises `lwa.InputError` where the series has no sum."""
         k, spacing = self.expansion.k, self.expansion.cell.spacing
-        return _times(self.expansion.c.at(), float(spacing * self.F ** ((k - 1) / (2 * k))))
+        return self.expansion.c.at() * float(spacing * self.F ** ((k - 1) / (2 * k)))
 
     def fwhm(self, quantity: str = "strain", extent: str = "length") -> Resummed:
         """Full width at half maximum of "strain", "force" or "velocity", a "length" or a "time"."""
         known_extent(extent)
-        width = _times(self.expansion.fwhm(quantity).at(), float(self.expansion.cell.spacing))
-        if extent == "length":
-            return width
-        speed = self.speed
-        value = width.value / speed.value
-        error = value * (width.error / width.value + speed.error / speed.value)
-        return replace(width, value=value, error=error)
+        width = self.expansion.fwhm(quantity).at() * float(self.expansion.cell.spacing)
+        return width if extent == "length" else width / self.speed
 
     @property
     def momentum(self) -> Resummed:
@@ -93,11 +88,9 @@ class ExpandedWave(Value):
         >>> round(wave.slowdown("linear").value, 5), round(wave.slowdown("kuwabara_kono").value, 5)
         (0.09607, 0.0835)
         """
-        k, parts = self.expansion.k, (self.dissipation(kind), self.energy, self.speed)
-        loss, energy, speed = (part.value for part in parts)
-        factor = speed if kind == "linear" else 1 / speed
-        value = float((k - 1) / (2 * (k + 1))) * loss / energy * factor
-        return replace(parts[0], value=value, error=value * sum(x.error / x.value for x in parts))
+        k, loss, E, V = self.expansion.k, self.dissipation(kind), self.energy, self.speed
+        rate = loss / (E / V) if kind == "linear" else loss / E / V
+        return rate * float((k - 1) / (2 * (k + 1)))
 
     def latex_rows(self) -> list[str]:
         """LaTeX of peak force, speed and the width of the force, without units."""
@@ -115,7 +108,7 @@ class ExpandedWave(Value):
 
     def _at_force(self, series: EpsilonSeries, power: sp.Expr) -> Resummed:
         """A quantity proportional to the compression to some power."""
-        return _times(series.at(), float(self.F ** (power / self.expansion.k)))
+        return series.at() * float(self.F ** (power / self.expansion.k))
 
 
 def wave_of_velocity(expansion: Expansion, velocity: sp.Expr) -> ExpandedWave:
@@ -132,7 +125,3 @@ def wave_of_velocity(expansion: Expansion, velocity: sp.Expr) -> ExpandedWave:
     demand_numbers({*velocity.free_symbols, *k.free_symbols}, "sums of series are numbers")
     ratio = float(velocity) / expansion.peak_velocity.at().value
     return ExpandedWave(expansion, ratio ** float(2 * k / (k + 1)))
-
-
-def _times(found: Resummed, factor: float) -> Resummed:
-    return replace(found, value=factor * found.value, error=factor * found.error)

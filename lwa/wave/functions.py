@@ -26,7 +26,7 @@ from lwa.base.quantities import QUANTITIES, strain_power
 from lwa.cell import Cell
 from lwa.code.languages import LANGUAGES
 from lwa.code.writer import Function, Local
-from lwa.law import ContactLaw
+from lwa.law import ContactLaw, Power
 from lwa.wave.closed import CompactWave
 
 _XI = sp.Dummy("xi", real=True)
@@ -148,7 +148,7 @@ def loaded_functions(
 
 def _strain(cell: Cell, k: sp.Expr) -> sp.Expr:
     """The strain at which the contacts of a cell push with F."""
-    return (_F / cell.stiffness(k)) ** (1 / k) / cell.spacing
+    return Power(k).compression(cell, _F) / cell.spacing
 
 
 def reduction_functions(wave: CompactWave, amplitude: Function) -> dict[str, Function]:

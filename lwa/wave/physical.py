@@ -25,6 +25,7 @@ from lwa.base.exact import InputError, number, one_of, positive, power, root, sh
 from lwa.base.frozen import Value
 from lwa.base.quantities import known, known_extent, strain_power
 from lwa.cell import RESERVED, meant, unmistakable
+from lwa.law import Power
 from lwa.wave.closed import CompactWave
 
 if TYPE_CHECKING:
@@ -107,14 +108,12 @@ class PhysicalWave(Value):
     @cached_property
     def compression(self) -> sp.Expr:
         """The peak compression D B of a contact; the mean of unlike contacts (`compressions`)."""
-        k = self.wave.k
-        return power(self.contact_force / self.wave.cell.stiffness(k), 1 / k)
+        return Power(self.wave.k).compression(self.wave.cell, self.contact_force)
 
     @cached_property
     def compressions(self) -> tuple[sp.Expr, ...]:
         """The peak compression (F/A_i)^{1/k} of each contact of the cell."""
-        k, F = self.wave.k, self.contact_force
-        return tuple(power(F / A, 1 / k) for A in self.wave.cell.stiffnesses)
+        return Power(self.wave.k).compressions(self.wave.cell, self.contact_force)
 
     @cached_property
     def speed(self) -> sp.Expr:

@@ -11,7 +11,6 @@ from lwa.base.quantities import QUANTITIES, strain_power
 from lwa.cell import Cell
 from lwa.cell import k as symbol_k
 from lwa.law import Power
-from lwa.linear.dispersion import Dispersion
 from lwa.wave.background import BackgroundWave
 from lwa.wave.closed import CompactWave
 from lwa.wave.physical import PhysicalWave
@@ -82,11 +81,8 @@ class TravelingWave(CompactWave):
         return BackgroundWave(self.cell, Power(self.k), p0)
 
     def _demand_canonical(self) -> None:
-        k, (g, h) = self.k, self.shares
-        bloch = Dispersion(self.cell, k).I * self.D**2
-        if any(
-            sp.cancel(x) != 0 for x in (g - (k - 1) * (k - 2) / 2, h - 2 * (k - 1), self.I - bloch)
-        ):
+        canonical = CompactWave.canonical(self.cell, self.k)
+        if any(sp.cancel(getattr(self, x) - getattr(canonical, x)) != 0 for x in "GHI"):
             raise InputError(
                 "waves on a background are those of the canonical field, which conserves momentum "
                 'and energy: closure="full" with field="center" (--closure full --field center), '

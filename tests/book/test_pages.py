@@ -195,6 +195,8 @@ def test_no_request_leaves_the_machine(visit):
         ),
         ('<img src="nowhere.png">', "broken"),
         ("<pre>&lt;Figure size 650x520 with 1 Axes&gt;</pre>", "unshown"),
+        ('<svg width="9" height="9"></svg>', "silent"),
+        ('<div role="img">x</div>', "unnamed"),
     ],
 )
 def test_a_fault_is_seen(tmp_path, body, key):

@@ -1,1 +1,1 @@
-"""The motion of a chain: its equations, the integrators, and what a run takes."""
+"""Motion of a chain: equations, integrators, records, and the cost of a run."""

@@ -60,7 +60,7 @@ def most_steps(scene: Scene, method: str, steps: float, rows: int, memory: int =
 
 
 def beyond(method: str, steps: int, t: float, duration: float) -> str:
-    """The message for a method that takes too many steps."""
+    """Message of the error for too many steps."""
     return (
         f"{steps} steps of {method} reach t = {t:g} of {duration:g}: rounding hides the motion, "
         "or rtol is too small for it"

@@ -1,4 +1,4 @@
-"""The compiled engine: an adaptive pair or a symplectic splitting, for the beads that move.
+"""Compiled engine: an adaptive Runge–Kutta–Nyström pair and a symplectic splitting.
 
 Numba compiles the loops once and keeps them on disk. A run is the same to the last bit every time.
 

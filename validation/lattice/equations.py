@@ -116,7 +116,7 @@ class Motion:
         return float(self.masses @ v**2 / 2 + stored[first:].sum())
 
     def balance(self, state: Array) -> float:
-        """The energy, with what has entered and left since the start taken off."""
+        """Energy, plus the dissipated energy, less the drive's work: constant in exact motion."""
         return self.energy(state)
 
     @property

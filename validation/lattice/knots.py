@@ -1,4 +1,4 @@
-"""The motion of the beads near sensors, from their states at the ends of the engine's steps."""
+"""Motion of the beads near sensors, interpolated between the ends of the engine's steps."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ class KnotPath:
 
 
 class Recorder:
-    """Receives the knots of a run in parts, takes the samples, and keeps the knots for signals.
+    """Collector of a run's knots, which takes the samples and keeps the knots for signals.
 
     needed : numbers of the beads that the sensors need. time : (S,), of the samples.
     """
@@ -66,7 +66,7 @@ class Recorder:
         self.done = self.size = 0
 
     def take(self, count: int) -> int:
-        """Take ``count`` knots over, and return the number of those that stay: the last one."""
+        """Take over ``count`` knots; return the number of knots that stay, which is 1: the last."""
         time, watched, state = self.knots
         if not len(watched):
             return 0

@@ -57,7 +57,7 @@ class Contact:
         return np.asarray(self.force(compression) * compression / (self.k + 1))
 
     def damped(self, elastic: Array, damping: Array, compression: Array, rate: Array) -> Array:
-        """The forces of contacts (contacts, …) whose elastic parts and damping these are."""
+        """Total forces (contacts, …) from elastic forces, damping, compressions and rates."""
         if self.braked is None:
             return elastic
         closed = compression if self.pulls else np.maximum(compression, 0.0)
@@ -72,7 +72,7 @@ class Contact:
         return np.asarray(values if self.pulls else np.where(compression > 0, values, 0.0))
 
     def compressed_by(self, forces: Array) -> Array:
-        """The static compressions under forces; raises `lwa.InputError` beyond the law's reach."""
+        """Static compressions under given forces; `lwa.InputError` beyond the law's reach."""
         if self.law is None:
             return np.asarray(forces ** (1 / self.k))
         law, cell = self.law, Cell((1,))
@@ -80,7 +80,7 @@ class Contact:
         return np.array([known[F] for F in forces.tolist()])
 
     def reached_by(self, energy: float, start: float) -> float:
-        """The compression beyond ``start`` that stores so much energy above that at ``start``."""
+        """Compression beyond ``start`` at which a contact has stored so much more energy."""
         if self.law is None:
             return float(np.float64(energy) ** (1 / (self.k + 1)))
 

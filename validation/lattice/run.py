@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass, field
 from importlib import import_module
 from typing import Any
@@ -32,7 +31,7 @@ _FINEST = 1000  # places, and times, of a map
 
 
 class IntegrationError(Failure):
-    """The integrator could not go on; the message says where and why."""
+    """Failure of an integrator; the message says where and why."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -120,33 +119,28 @@ class Records(ArrayValue, Pictured):
 
     def pictured(self) -> list[Panel]:
         """Force over time at all sensors; an x–t map for a kind with more than ten sensors."""
-        return list(self._drawn())
-
-    def _drawn(self) -> Iterator[Panel]:
         time, force = self.label("time"), self.label("force")
         kinds = (
             ("bead", self.scene.bead_sensors, self.bead_force),
             ("contact", self.scene.contact_sensors, self.contact_force),
         )
-        curves = [
-            Curve(f"{kind} {i + 1}", self.time, row)
-            for kind, sensors, forces in kinds
-            if len(sensors) <= _MOST
-            for i, row in zip(sensors, forces, strict=True)
-        ]
-        if curves:
-            yield Panel(time, force, tuple(curves), legend=(0.0, 1.0))
+        curves, maps = [], []
         for kind, sensors, forces in kinds:
-            if len(sensors) > _MOST:
+            if len(sensors) <= _MOST:
+                rows = zip(sensors, forces, strict=True)
+                curves += [Curve(f"{kind} {i + 1}", self.time, row) for i, row in rows]
+            else:
                 x = np.argsort(sensors)[:: -(-len(sensors) // _FINEST)]
                 t = slice(None, None, -(-len(self.time) // _FINEST))
                 places = np.array(sensors, float)[x] + 1
-                yield Panel(kind, time, map=Map(force, places, self.time[t], forces[x, t].T))
+                shown = Map(force, places, self.time[t], forces[x, t].T)
+                maps.append(Panel(kind, time, map=shown))
+        return [Panel(time, force, tuple(curves), legend=(0.0, 1.0)), *maps] if curves else maps
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Run(Records):
-    """The records of a simulation, its final state, and how well it kept its invariants.
+    """Records of a simulation, its final state, and the drift of its invariants.
 
     All arrays are read-only; further fields are those of `Records`.
 
@@ -203,7 +197,7 @@ def finished(
     window: int | None = None,
     path: Path | None = None,
 ) -> Run:
-    """The run that ended in the state ``end`` with this energy and change of momentum."""
+    """Make a `Run` of its final state, records, final energy and change of momentum."""
     n, before = motion.size, motion.scales.energy
     arrays = records | {"displacements": end[:n].copy(), "velocities": end[n : 2 * n].copy()}
     for array in arrays.values():

@@ -1,4 +1,4 @@
-"""SciPy's methods, whose own interpolant gives samples and signals: the reference."""
+"""Integration by SciPy's methods, whose own interpolants give samples and signals."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _COEFFICIENTS = {"DOP853": 8, "RK45": 5, "RK23": 4, "LSODA": 13}
 
 @dataclass(frozen=True, eq=False)
 class NodePath:
-    """A `validation.lattice.signal.Path` through Chebyshev nodes within each step.
+    """Motion within each step as a polynomial through Chebyshev nodes; a `signal.Path`.
 
     time : (N + 1,), ends of the steps. beads : (B,). state : (N, P, 2, B), displacements and
     velocities at the P nodes of each step.

@@ -67,7 +67,7 @@ def speed_ratio(omega: sp.Rational) -> Callable[[Any], Array]:
 
 @dataclass(frozen=True, eq=False)
 class Medium:
-    """Mean mass m̄, spacing D and speed ratio R(k) of the chain in which pulses were measured."""
+    """Chain of the measured pulses: mean mass m̄, spacing D and speed ratio R(k)."""
 
     mass: float
     spacing: float
@@ -75,7 +75,7 @@ class Medium:
 
     @classmethod
     def of(cls, cell: Cell) -> Medium:
-        """The chain of a cell of one or two masses, in numbers."""
+        """Make the medium of a cell of one or two masses, in numbers."""
         if cell.size > 2:
             raise SceneError(f"the cell has {cell.size} beads: one or two are wanted")
         ratio = speed_ratio(sp.Rational(cell.masses[-1] / cell.masses[0]))

@@ -264,7 +264,7 @@ def speed(first: Pulse, second: Pulse, distance: float) -> float:
 
 @dataclass(frozen=True)
 class Measured:
-    """A number, and the same number from a less accurate computation; the difference is its error.
+    """Number whose error is its difference from a less accurate computation, the check.
 
     >>> Measured(2.5e300, 2.50003e300)
     2.50000e+300 ± 3e+295
@@ -301,7 +301,7 @@ def derived(function: Callable[..., float], *numbers: Measured) -> Measured:
 
 
 def exponent(x: Sequence[Measured], y: Sequence[Measured]) -> Measured:
-    """The p of y ~ x^p, by least squares of the logarithms.
+    """Exponent p of y ~ x^p, by least squares of the logarithms.
 
     The errors of all numbers add up: differences of runs have a common sign, which would cancel.
     """

@@ -43,7 +43,7 @@ SPEEDS = ("speed_sites", "speed")  # in sites per time, and in length per time
 
 @dataclass(frozen=True)
 class Reading:
-    """Numbers of one pulse at a sensor, or of its way from one sensor to another.
+    """Measured numbers of a pulse at a sensor, or of its speed between two sensors.
 
     kind : "bead" or "contact". places : number of the sensor, or of both, counted from 1.
     numbers : `READINGS`, or `SPEEDS` (the second one if the scene has spacings).
@@ -164,7 +164,7 @@ def tracks(run: Run, every: int = 1) -> tuple[Track, ...]:
 
 
 def _reading(fine: Track, coarse: Track, rtol: float, number: int | None = None) -> Reading:
-    """The first pulse of one sensor, or one of its train."""
+    """Measure the first pulse at a sensor, or a numbered pulse of its train."""
 
     def numbers(track: Track) -> dict[str, float]:
         pulse = track.pulse if number is None else track.train[number]

@@ -51,7 +51,7 @@ TOLERANCES = {1: (1e-9, 1e-9), 2: (1e-7, 1e-6)}
 
 @dataclass(frozen=True)
 class Row:
-    """One comparison; omega 0 is the limit ω → 0, k None a result from all `EXPONENTS`."""
+    """Comparison of one quantity; ω = 0: the limit; k None: a result from all `EXPONENTS`."""
 
     quantity: str
     k: sp.Rational | None
@@ -188,7 +188,7 @@ def lattice_wave(wave: TravelingWave, B: float = 1.0) -> dict[str, Measured]:
 
 
 def _run(wave: TravelingWave, compact: PhysicalWave) -> Run:
-    """The theory's wave, put on a chain and followed to the last place."""
+    """Simulate a chain that starts with the theory's wave, up to the last place."""
     support, V = float(wave.width), float(compact.speed)
     start = int(support / 2) + 1
     places = [2 * round((start + s * support) / 2) for s in PLACES]
@@ -231,7 +231,7 @@ def _numbers(run: Run, wave: TravelingWave, place: int) -> dict[str, float]:
 def quantity_rows(
     quantity: str, omega: sp.Rational, theory: list[sp.Expr], lattice: list[Measured]
 ) -> list[Row]:
-    """One quantity at each k, and how its error vanishes as ε → 0."""
+    """Rows of one quantity at each k, and of the order of its error as ε → 0."""
     law = LAWS[quantity]
     epsilon = np.array([float(k - 1) for k in EXPONENTS])
     rows = [
@@ -259,7 +259,7 @@ def quantity_rows(
 
 
 def _limit_rows(waves: list[dict[str, Measured]]) -> Iterator[Row]:
-    """ω → 0 at the first k, by linear extrapolation of the lattice in ω."""
+    """Rows of the limit ω → 0 at the first k, by linear extrapolation of the lattice in ω."""
     k = EXPONENTS[0]
     symbols = homogenize(Dimer("m1", "m2", spacing=1), k=k).pde.traveling_wave()
     m1, m2 = symbols.cell.masses

@@ -58,7 +58,7 @@ m2/m1 = {float(_HUMPED[0])} to {float(_HUMPED[1])} a width is no measure of its 
 
 
 class SweepError(Failure):
-    """A worker failed, or is gone. Finished points are kept."""
+    """Failure of a worker; finished points are kept."""
 
 
 def report(ks: Axis, omegas: Axis, points: Sequence[Point], stretch: int = STRETCH) -> Report:

@@ -41,7 +41,7 @@ def test_the_loss_at_a_single_bead_is_quadratic_with_a_correction_of_opening_con
     ("spread", "share"), [(0.1, 0.3), pytest.param(0.2, 0.15, marks=pytest.mark.slow)]
 )
 def test_the_decay_is_the_mean_loss_at_single_beads(spread, share):
-    found = disorder(spread=spread, chains=40).document()
+    found = disorder(spread=spread, chains=24).document()
     off = found["decay_value"] - found["theory_value"]
     assert abs(off) < 2 * found["decay_error_value"] + share * found["theory_value"]
     assert found["decay_value"] > 5 * found["decay_error_value"]

@@ -6,7 +6,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 import sympy as sp
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lwa.base.exact import InputError, exact, positive, power, root
@@ -55,6 +55,7 @@ def test_what_is_no_quantity_is_refused_in_one_line(value):
     assert len(message) < 200
 
 
+@settings(max_examples=30)
 @given(st.text())
 def test_text_is_read_or_refused_and_never_evaluated(text):
     try:

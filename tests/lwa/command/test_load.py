@@ -144,9 +144,9 @@ def test_unlike_beads_without_a_solitary_wave_are_told(capsys):
         for command in (("wave", "--closure", "full", "--field", "center"), ("expansion",)):
             options = (*command, "--k", "3/2", "--masses", f"1,{omega}")
             assert ("notes" in result(capsys, *options)) == told
-            status, out, _ = run(capsys, *options)
-            assert status == 0
-            assert ("no true solitary wave" in out) == told
+    status, out, _ = run(capsys, "wave", "--k", "3/2", "--masses", "1,0.55")
+    assert status == 0
+    assert "no true solitary wave" in out
 
 
 def test_bands_in_si(capsys):

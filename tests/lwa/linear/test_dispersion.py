@@ -246,7 +246,7 @@ def test_the_linear_wave_equation_is_the_series_to_order_12(cell, field):
 @pytest.mark.parametrize("stiffnesses", [(), ("A1", "A2")])
 def test_the_dimer_s_ansatz_is_the_amplitude_ratio(branch, stiffnesses):
     cell = Dimer("m1", "m2", stiffnesses=stiffnesses)
-    order = 6 if stiffnesses else 12
+    order = 6 if stiffnesses else 8
     theory = homogenize(cell, order, k=1, branch=branch)
     ratio = Dispersion(cell).amplitude_ratio(order, branch)
     assert ratio[0] == theory.amplitude_ratio
@@ -475,7 +475,7 @@ def test_symbols_have_no_numerical_branches():
         Dispersion(Cell([1, 2], stiffnesses=[1, 2]), "k").band_edges()
     # equal contacts have equal shares whatever k and A are
     assert Dispersion(Cell(["m"], stiffnesses=["A"]), "k").branches(np.pi) == pytest.approx(2)
-    with pytest.raises(InputError, match="than a float can tell"):
+    with pytest.raises(InputError, match="more than the range of a float"):
         Dispersion(Cell(["1e400", 1])).branches(1)
 
 

@@ -101,7 +101,6 @@ def test_kdv_in_closed_form():
 WAVES = [
     (Power("3/2"), 1, "1/2"),
     (Power("1/2"), 1, "-1/2"),
-    (named("hertz2", 1, "1/2"), "1/10", 1),
     (named("polynomial", 0, 1), 0, -1),
     (named("lennard-jones", 1), 0, "1/10"),
 ]

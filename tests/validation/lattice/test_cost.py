@@ -161,7 +161,7 @@ def spoiled(draw):
 
 
 @given(spoiled(), st.sampled_from(["RKN86", "DOP853", "LSODA", "SRKN14"]))
-@settings(max_examples=100)
+@settings(max_examples=50)
 def test_a_file_makes_finite_numbers_or_one_line(content, method):
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(cost, "MOST_STEPS", 1e4)

@@ -435,7 +435,7 @@ def test_whatever_a_file_holds_is_read_or_refused_in_one_line(data):
 
 @pytest.mark.parametrize(
     "law",
-    ["hertz2:1,1/2", "magnetic:4,2", "polynomial:1/4,-1", "exponential:3/2",
+    ["hertz2:1,1/2", "magnetic:4,2", "exponential:3/2",
      "lennard-jones:3", "power:3/2"],
 )  # fmt: skip
 def test_a_law_is_read_and_written(law):

@@ -230,10 +230,8 @@ POINTS = [("3/2", omega) for omega in ("9/20", "1/5", "1/2", "3/5", "7/10", "3/4
 POINTS += [("5/4", "3/4"), ("2", "1/4"), ("2", "3/10"), ("2", "1/2"), ("2", "3/5"), ("6", "3/10")]
 
 
-@pytest.mark.parametrize(
-    ("k", "omega"),
-    [POINTS[0], *(pytest.param(*point, marks=pytest.mark.slow) for point in POINTS[1:])],
-)
+@pytest.mark.slow
+@pytest.mark.parametrize(("k", "omega"), POINTS)
 def test_sweep(monkeypatch, k, omega):
     """Ten times as far at a hundredth of the tolerance, where the pulse is not yet overtaken.
 

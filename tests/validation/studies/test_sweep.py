@@ -107,7 +107,7 @@ class Stop(Exception):
 
 
 @given(cut=st.integers(min_value=0, max_value=10_000))
-@settings(max_examples=8)
+@settings(max_examples=4)
 def test_a_torn_end_costs_only_the_point_that_was_being_written(content, tmp_path_factory, cut):
     file = tmp_path_factory.mktemp("torn") / "s.jsonl"
     torn = content[: cut % (len(content) + 1)]

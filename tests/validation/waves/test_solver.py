@@ -34,7 +34,7 @@ def hertz():
 
 @pytest.fixture(scope="module")
 def specials():
-    return resonances(1.5, 3).waves
+    return resonances(1.5, 3)
 
 
 def test_the_widths_of_the_hertz_chain(hertz):
@@ -226,7 +226,7 @@ def test_the_tail_changes_from_none_to_some_through_a_special_ratio(specials):
 
 def test_special_ratios_for_other_exponents(specials):
     """They move with k: by steps of 0.1, and back in one; all are solitary."""
-    two = resonances(2, 2).waves
+    two = resonances(2, 2)
     ratios = [wave.omega for wave in two]
     assert ratios == sorted(ratios, reverse=True)
     assert all(wave.solitary and wave.residual < 1e-11 for wave in two)
@@ -235,7 +235,7 @@ def test_special_ratios_for_other_exponents(specials):
         for k in (1.6, 1.7, 1.8, 1.9, 2.0):
             path = solve(path.masses, k, start=path, free=True)
         assert path.omega == pytest.approx(end.omega, rel=1e-10)
-    assert resonances(2, 1).mass_ratios == (ratios[0],)
+    assert [wave.omega for wave in resonances(2, 1)] == ratios[:1]
 
 
 @pytest.mark.parametrize(
@@ -244,7 +244,7 @@ def test_special_ratios_for_other_exponents(specials):
 )
 def test_special_ratios_far_from_hertz(k, count):
     """Near k = 1, √(m1/m2) grows by equal steps: the light beads' oscillations, in order."""
-    waves = resonances(k, count).waves
+    waves = resonances(k, count)
     assert all(wave.solitary for wave in waves)
     assert max(wave.residual for wave in waves) < 1e-11
     roots = [wave.omega**-0.5 for wave in waves]
@@ -271,7 +271,7 @@ def test_light_beads_make_a_uniform_chain_of_twice_the_spacing(hertz):
     """ω → 0: the force is that of heavy beads at 2D, c² = 2c²; the error is of order ω."""
     errors = []
     for count in (3, 5):
-        wave = resonances(1.5, count).waves[-1]
+        wave = resonances(1.5, count)[-1]
         mean = lambda x, w=wave: (w.force(x - 0.5) + w.force(x + 0.5, 1)) / 2  # noqa: E731
         xi = np.linspace(-4, 4, 161)
         shape = mean(xi) / mean(0.0)
@@ -411,7 +411,7 @@ STRUCK = (
 )  # fmt: skip
 """k, ω, and how far off c² may be, as a share of it: of the size of the tail."""
 
-FAST = (("3/2", "0.02"), ("3/2", "0.45"), ("6/5", "0.3"))
+FAST = (("3/2", "0.02"), ("3/2", "0.45"))
 
 
 @pytest.mark.parametrize(
@@ -437,7 +437,7 @@ def test_the_wave_is_that_of_a_struck_chain(k, omega, share):
 @pytest.mark.parametrize(("omega", "k"), [(0.9, 1.5), (0.05, 1.5), (0.3, 2.0)])
 def test_the_errors_of_nanopterons_cover_other_half_periods_and_grids(omega, k):
     waves = []
-    for L, points in ((9.0, None), (9.0, 110), (10.0, None), (12.0, None), (13.0, None)):
+    for L, points in ((9.0, None), (9.0, 110), (12.0, None), (13.0, None)):
         with suppress(NoWave):
             found = exact_wave([1, omega], k, half_period=L)
             waves.append(solve(found.masses, k, L, points, found) if points else found)
@@ -448,7 +448,7 @@ def test_the_errors_of_nanopterons_cover_other_half_periods_and_grids(omega, k):
             assert abs(one[name].value - other[name].value) <= bound, name
 
 
-@pytest.mark.parametrize("k", [1.01, 1.05, 1.5, 3.0])
+@pytest.mark.parametrize("k", [1.01, 1.5, 3.0])
 def test_the_errors_of_solitary_waves_cover_other_half_periods_and_grids(k, specials):
     for wave in (exact_wave([1], k), specials[1]):
         L, n = wave.half_period, len(wave.even) - 1
@@ -461,7 +461,7 @@ def test_the_errors_of_solitary_waves_cover_other_half_periods_and_grids(k, spec
                 assert abs(one[name].value - other[name].value) <= bound, name
 
 
-@pytest.mark.parametrize("k", [1.02, 1.1, 1.5, 2.0, 5.0])
+@pytest.mark.parametrize("k", [1.02, 1.5, 5.0])
 def test_a_half_period_that_is_too_short_is_refused(k):
     """At k = 3/2 and L = 3 it was called solitary, with c² off by 2e-4; accepted ones agree."""
     ample = exact_wave([1], k)

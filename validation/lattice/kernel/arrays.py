@@ -1,4 +1,4 @@
-"""The arrays and numbers that the loops work on."""
+"""Arrays and numbers of the compiled loops."""
 
 from __future__ import annotations
 

@@ -48,7 +48,7 @@ ZERO, ONE, TWO, THREE = map(index, range(4))
 
 
 def _call(typing: Any, address: Any, x: Any) -> Any:
-    """The value at x of the compiled function of one float at this address."""
+    """Call the compiled function of one float at an address (an intrinsic of Numba)."""
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         kind = ir.FunctionType(ir.DoubleType(), [ir.DoubleType()])
@@ -77,7 +77,7 @@ def _say(message: str) -> None:
 
 
 class _Announcement(Listener):
-    """Says that a function is about to be compiled, as its machine code is in no cache."""
+    """Announcement of a compilation, made when no cache holds the machine code."""
 
     def __init__(self, function: Any, kept: bool) -> None:
         self.function, self.kept = function, kept

@@ -14,7 +14,7 @@ NOTHING = 1e-60  # of the greatest compression: open, lest the front decay into 
 
 
 def _loop(value: Any) -> Any:
-    """The loop over contacts whose force, for unit stiffness, is a function of d ≥ 0 and k."""
+    """Compile the loop over contacts of force A value(d, k), d ≥ 0 the compression."""
 
     @part
     def loop(

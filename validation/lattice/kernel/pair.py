@@ -27,7 +27,7 @@ def _add_up(
     lo: int,
     hi: int,
 ) -> None:
-    """scale Σ_j table[row, j] force[j] over the first stages."""
+    """sums[q] = scale Σ_j table[row, j] force[j] over the first stages."""
     sums[q, lo] = 0.0
     for first in range(0, stages, WIDTH):
         a, b = scale * table[row, first], scale * table[row, first + 1]
@@ -47,7 +47,7 @@ def _add_up(
 
 @summed
 def _square(sums: Array, inverse: Array, lo: int, hi: int) -> float:
-    """Sum of the squares of the beads' errors, in units of those that are allowed."""
+    """Sum of squares of the beads' errors, in units of the allowed errors."""
     total = 0.0
     for i in range(index(lo), index(hi)):
         y = (sums[TWO, i] - sums[TWO, i + ONE]) * inverse[i]
@@ -94,7 +94,7 @@ def _attempt(chain: Chain, beads: Beads, plan: Plan, lo: int, h: float, hi: int)
 
 @part
 def _mend(chain: Chain, beads: Beads, plan: Plan, lo: int, h: float, hi: int) -> None:
-    """Correct for the kinks of contacts whose greater compression is in the first sum."""
+    """Correct a step for the kinks of the marked contacts: sums[0] holds a compression."""
     y, v, next_y, next_v = beads.y, beads.v, beads.next_y, beads.next_v
     inverse, rest = chain.inverse, chain.rest
     for i in range(lo, hi):
@@ -110,7 +110,7 @@ def _mend(chain: Chain, beads: Beads, plan: Plan, lo: int, h: float, hi: int) ->
 
 @part
 def _correct(chain: Chain, beads: Beads, plan: Plan, h: float, i: int) -> None:
-    """Take the pair's error in the impulse of contact i, which opens or closes, off the step.
+    """Correct a step for the pair's error in the impulse of contact i, which opens or closes.
 
     The pair integrates what is left of the force beside p_+^k, which is smoother.
     """

@@ -93,7 +93,7 @@ def _knot(chain: Chain, knots: Knots, n: int, q: int, h: float, side: float) -> 
 
 @part
 def _without(chain: Chain, points: Array, knot: Four, p: Quintic, unit: float, z: float) -> Four:
-    """A knot less what the kink p, times ``unit``, adds at z."""
+    """Subtract the contribution of a kink p at z, times ``unit``, from a knot."""
     if math.isnan(p[0]):
         return knot
     y, v = ramp(chain, points, p, z)
@@ -111,7 +111,7 @@ def _without(chain: Chain, points: Array, knot: Four, p: Quintic, unit: float, z
 
 @part
 def _kinked(chain: Chain, points: Array, p: Quintic, unit: float, x: float) -> tuple[float, float]:
-    """Displacement and velocity that a kink adds at x."""
+    """Displacement and velocity contributed by a kink at x."""
     if math.isnan(p[0]):
         return 0.0, 0.0
     y, v = ramp(chain, points, p, x)

@@ -1,4 +1,4 @@
-"""The beads that are moved: behind a front, and within a window if there is one."""
+"""Range of the moving beads: from a window's rear, if there is one, to the front."""
 
 from __future__ import annotations
 
