@@ -37,7 +37,7 @@ All keys but ``duration`` and ``chain.cell`` are optional::
     kuwabara_kono = 0.1           #   γ in γ δ^{k-1} dδ/dt,
     restitution = 0.9             #   the coefficient of restitution of two beads
     [drive]                       # of bead 1, in place of a striker: one of
-    velocity = 1.0                #   that of a piston,
+    velocity = 1.0                #   the constant velocity of a piston,
     amplitude = 1e-6              #   y = amplitude sin(2π frequency t),
     frequency = 5e3
     ramp = 1e-3                   #   which grows to its size within this time,
@@ -59,9 +59,9 @@ or as many as the whole chain has contacts; spacings likewise. Units of named be
 masses and stiffnesses any that agree. A file with a key ``scene``, such as `lwa-validate run --out`
 writes, holds the scene under that key.
 
-Unknown keys are refused, and every fault is one line that names the key. Written are the masses
-and stiffnesses of a scene, not the materials that they came from; what is written is read back as
-an equal scene, to the last bit.
+Unknown keys are refused, and every fault is one line that names the key. A written file holds
+masses and stiffnesses, not the materials that they came from; the scene read from it is equal to
+the last bit.
 """
 
 from __future__ import annotations

@@ -28,7 +28,7 @@ from validation.lattice.run import IntegrationError, Run
 from validation.lattice.simulate import COMPILED, simulate
 from validation.pictures.panel import Curve, Panel
 from validation.pulses.pulse import MeasureError, Pulse, highest_pulse
-from validation.pulses.signals import Mapped
+from validation.pulses.sensors import tracks
 from validation.report.command import option, study
 from validation.report.result import Report
 from validation.report.table import Column, Table
@@ -79,8 +79,8 @@ class Task:
 
         Raises `validation.pulses.pulse.MeasureError` when the pulse is not wholly in the record.
         """
-        load = self.scene.load[self.contact]
-        return highest_pulse(Mapped(run.signal("contact", self.contact), lambda f: f - load))
+        (track,) = tracks(run)
+        return highest_pulse(track.force)
 
     def errors(self, run: Run, truth: Pulse) -> dict[str, float]:
         """Relative errors by `NUMBERS`; ∞ without a pulse."""
@@ -107,7 +107,7 @@ def struck_chain(omega: float, beads: int, contact: int, duration: float) -> Tas
 def solitary_wave(sites: int = 100) -> Task:
     """The solitary wave of equal beads, measured ``sites`` further than its start at bead 16.
 
-    Arrival, peak and width are those of the wave itself.
+    The wave's own numbers give arrival, peak and width.
     """
     start, wave = 16, exact_wave([1], 1.5)
     arrival, width = (sites + 0.5) / wave.c, wave.fwhm("force") / wave.c
@@ -193,8 +193,8 @@ def timed(run: Callable[[], _Found]) -> tuple[_Found, float]:
 def cost(rows: Iterable[Timing], wanted: float) -> float:
     """CPU time at which a method's peak force errs by ``wanted`` at most; ∞ if it never does.
 
-    It is that of the cheapest run such that every costlier run is as good: single runs may be good
-    by chance, where steps meet openings of contacts.
+    Every costlier run must be as good: single runs may be good by chance, where steps meet openings
+    of contacts.
     """
     costly = sorted(rows, key=lambda row: -row.seconds)
     good = takewhile(lambda row: row.errors["peak"] <= wanted, costly)

@@ -114,7 +114,7 @@ def resonances(k: float, count: int) -> Report:
     ``k_value`` and, in falling order, ``mass_ratios``, ``c2_value``, ``tail_value``,
     ``residual_value``.
     """
-    waves, xi = special_ratios(k, count).waves, np.linspace(-5, 5, 1001)
+    waves, xi = special_ratios(k, count), np.linspace(-5, 5, 1001)
     rows = tuple((wave.omega, wave.c2, wave.tail, wave.residual) for wave in waves)
     curves = (Curve.of(f"m2/m1 = {w.omega:.4f}", xi, w.force(xi), "-") for w in waves)
     names = ("mass_ratios", *(column.key for column in _RATIOS[1:]))

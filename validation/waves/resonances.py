@@ -18,7 +18,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from contextlib import suppress
-from dataclasses import dataclass
 from itertools import chain
 from typing import Any
 
@@ -35,31 +34,18 @@ HERTZ, PUBLISHED = 1.5, (0.3428, 0.1548)  # the first ratios at k = 3/2, as publ
 _FARTHEST = 0.15  # change of √(m1/m2) in one step along k; neighbours differ by 0.2 or more
 
 
-@dataclass(frozen=True, eq=False)
-class Resonances:
-    """Solitary waves at the largest special ratios m2/m1 < 1, in falling order; m1 = 1."""
+def resonances(k: Any, count: Any) -> tuple[ExactWave, ...]:
+    """Solitary waves at the ``count`` largest special ratios ω = m2/m1 < 1, for k from 1.1 to 5.
 
-    k: float
-    waves: tuple[ExactWave, ...]
-
-    @property
-    def mass_ratios(self) -> tuple[float, ...]:
-        """The ratios m2/m1."""
-        return tuple(wave.omega for wave in self.waves)
-
-
-def resonances(k: Any, count: Any) -> Resonances:
-    """Solitary waves at the ``count`` largest special ratios m2/m1 < 1, for k from 1.1 to 5.
-
-    Nearer to k = 1 the strain T is lost in rounding. Raises `SceneError` for numbers out of range,
-    and `NoWave` if fewer waves are found.
+    The waves have m1 = 1 and stand in falling order of ω. Nearer to k = 1 the strain T is lost in
+    rounding. Raises `SceneError` for numbers out of range, and `NoWave` if fewer waves are found.
     """
     k = between(k, "k", 1.1, 5, "special mass ratios are found for k from 1.1 to 5")
     count = integer(count, "count", 1, MOST)
     first = [solve((1.0, ratio), HERTZ, free=True) for ratio in PUBLISHED]
     if k <= HERTZ:
-        return Resonances(k, _ladder([_followed(wave, k) for wave in first], count))
-    return Resonances(k, tuple(_followed(wave, k) for wave in _ladder(first, count)))
+        return _ladder([_followed(wave, k) for wave in first], count)
+    return tuple(_followed(wave, k) for wave in _ladder(first, count))
 
 
 def _root(wave: ExactWave) -> float:

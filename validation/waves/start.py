@@ -43,7 +43,7 @@ Start = tuple[Array, float]
 def initial(problem: newton.Problem, wave: Profile | None = None) -> Start:
     """Start from a wave of near masses and near k; by default from the theory's leading order.
 
-    c² is that of the multiple of the wave with force 1 at ξ = 0; Newton's method scales the forces.
+    c² belongs to the multiple of the wave with force 1 at ξ = 0; Newton's method scales the forces.
     """
     if wave is None:
         force, c2 = _long_wave(problem)

@@ -34,7 +34,7 @@ def hertz():
 
 @pytest.fixture(scope="module")
 def specials():
-    return resonances(1.5, 3).waves
+    return resonances(1.5, 3)
 
 
 def test_the_widths_of_the_hertz_chain(hertz):
@@ -226,7 +226,7 @@ def test_the_tail_changes_from_none_to_some_through_a_special_ratio(specials):
 
 def test_special_ratios_for_other_exponents(specials):
     """They move with k: by steps of 0.1, and back in one; all are solitary."""
-    two = resonances(2, 2).waves
+    two = resonances(2, 2)
     ratios = [wave.omega for wave in two]
     assert ratios == sorted(ratios, reverse=True)
     assert all(wave.solitary and wave.residual < 1e-11 for wave in two)
@@ -235,7 +235,7 @@ def test_special_ratios_for_other_exponents(specials):
         for k in (1.6, 1.7, 1.8, 1.9, 2.0):
             path = solve(path.masses, k, start=path, free=True)
         assert path.omega == pytest.approx(end.omega, rel=1e-10)
-    assert resonances(2, 1).mass_ratios == (ratios[0],)
+    assert [wave.omega for wave in resonances(2, 1)] == ratios[:1]
 
 
 @pytest.mark.parametrize(
@@ -244,7 +244,7 @@ def test_special_ratios_for_other_exponents(specials):
 )
 def test_special_ratios_far_from_hertz(k, count):
     """Near k = 1, √(m1/m2) grows by equal steps: the light beads' oscillations, in order."""
-    waves = resonances(k, count).waves
+    waves = resonances(k, count)
     assert all(wave.solitary for wave in waves)
     assert max(wave.residual for wave in waves) < 1e-11
     roots = [wave.omega**-0.5 for wave in waves]
@@ -271,7 +271,7 @@ def test_light_beads_make_a_uniform_chain_of_twice_the_spacing(hertz):
     """ω → 0: the force is that of heavy beads at 2D, c² = 2c²; the error is of order ω."""
     errors = []
     for count in (3, 5):
-        wave = resonances(1.5, count).waves[-1]
+        wave = resonances(1.5, count)[-1]
         mean = lambda x, w=wave: (w.force(x - 0.5) + w.force(x + 0.5, 1)) / 2  # noqa: E731
         xi = np.linspace(-4, 4, 161)
         shape = mean(xi) / mean(0.0)
