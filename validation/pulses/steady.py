@@ -149,7 +149,8 @@ class StruckDimer:
         """Strike the chain and record the two contacts of each place, up to the last one."""
         sensors = tuple(place + side for place in places for side in (0, 1))
         options = {"contact_sensors": sensors, "duration": duration, "samples": 2}
-        return simulate(struck((1.0, self.omega), places[-1] + 12, self.k, **options), rtol=rtol)
+        beads = places[-1] + max(12, self.sites)  # the end is a pulse's length away as k → 1, too
+        return simulate(struck((1.0, self.omega), beads, self.k, **options), rtol=rtol)
 
     def passages(self, run: Run) -> Array:
         """Measure the leading pulse at the two contacts of each place of a `run`.
