@@ -204,9 +204,9 @@ class Power(ContactLaw):
 
 @dataclass(frozen=True)
 class Law(ContactLaw):
-    """A law F(δ) by a SymPy expression in the symbol ``delta``, F′ ≠ 0; see also `general`.
+    """A law F(δ) given by a SymPy expression and its symbol ``delta`` of the compression.
 
-    Raises `lwa.InputError` for anything else: a text is not evaluated.
+    Raises `lwa.InputError` if F′ = 0, and for text, which is not evaluated.
 
     >>> x = sp.Symbol("x", positive=True)
     >>> Law(x + x**2, x).phi(2)

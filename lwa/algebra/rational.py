@@ -95,5 +95,5 @@ def _atoms(value: sp.Expr) -> set[sp.Expr]:
 
 
 def _is_reciprocal(value: sp.Expr) -> bool:
-    """Whether it is a power such as x^{-y}, which is one over the symbol for x^y."""
+    """True for a power with a negative exponent, such as x^{-y}, the reciprocal of x^y."""
     return bool(value.is_Pow and value.exp.could_extract_minus_sign())

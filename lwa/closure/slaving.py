@@ -1,9 +1,13 @@
 """The full closure: slaved fields that satisfy every equation of motion, at every order.
 
-In `lwa.closure.solution` S_i may be any polynomial in the jets of φ and of φ_τ. All P equations can
-then be satisfied, and nothing has to be solved for: their sum (momentum) gives the next term of the
-wave equation from lower orders, their partial sums the differences of the contact forces, and these
-the strains.
+Letters and equations of motion as in `lwa.closure.solution`: w_i = φ + D φ_x Σ_n D^n S_n is the
+field of particle i, each S_n a polynomial in the jets of φ and of φ_τ. All P equations of motion
+can then be satisfied, order by order and without a system to solve:
+
+1. The sum of all equations, the balance of momentum, gives the next term E_n of the wave equation.
+2. The sum of the first i equations gives Φ_i - Φ_0, the difference of two contact forces.
+3. The force Φ_i of each contact gives the term X_n of its strain C_i φ_x (1 + Σ D^n X_n).
+4. The strains give the terms S_n of all fields, up to a shift that the definition of φ fixes.
 """
 
 from __future__ import annotations
@@ -42,11 +46,12 @@ def full(
 
 
 class _Particle:
-    """A particle w = φ + D φ_x S of the cell and its contact to the next particle.
+    """A particle of the cell, with the field w = φ + D φ_x S, and its contact to the next one.
 
-    mu, c : its mass fraction and the contact's share.
-    x : its place at rest, in units of the strain.
-    weight : its weight in φ = Σ weight_i w_i.
+    mu, c : mass fraction m̂_i of the particle, strain share C_i of the contact.
+    x : place x_i = C_0 + … + C_{i-1} of the particle at rest.
+    weight : weight g_i of the particle in the mean φ(x) = Σ g_i w_i(x - x_i D).
+    S : the series S.
     rate : the series ∂_τ (D φ_x S).
     force : the force of the contact.
     """
@@ -87,7 +92,7 @@ class _Slaving:
                 particle.weight = particle.mu
 
     def extend(self, n: int) -> None:
-        """Compute E_n, and extend all series to D^n."""
+        """Append the terms of order D^n to all series: E_n, X_n, Φ_n and S_n."""
         accelerations = [self.algebra.dt(particle.rate, self.E, n) for particle in self.particles]
         if n + 1 < self.order:
             for particle in self.particles:
@@ -97,7 +102,7 @@ class _Slaving:
         self._origin(n)
 
     def _momentum(self, n: int, accelerations: list[fmpq_mpoly]) -> None:
-        """Compute E_n from the sum of the equations of motion, where only the end forces remain."""
+        """Append E_n, from the sum of the equations of motion: only the end forces remain in it."""
         P = len(self.particles)
         E_n = -self.particles[-1].force.carried(-P, n) / P
         for particle, acceleration in zip(self.particles, accelerations, strict=True):
@@ -105,7 +110,7 @@ class _Slaving:
         self.E.append(E_n)
 
     def _strains(self, n: int, accelerations: list[fmpq_mpoly]) -> None:
-        """Compute X_n of each contact: partial sums give Φ_i - Φ_0, the cell gives Σ strains."""
+        """Append X_n of each contact, from Φ_i - Φ_0 and the sum of the strains of the cell."""
         P = len(self.particles)
         first = self.particles[0]
         difference = self.algebra.zero
@@ -121,7 +126,7 @@ class _Slaving:
             particle.force.append(X / P + d)
 
     def _origin(self, n: int) -> None:
-        """Compute S_n of each particle, from the definition Σ weight_i w_i(x - x_i D) = φ."""
+        """Append S_n of each particle, by the definition φ(x) = Σ g_i w_i(x - x_i D)."""
         relative = [self.algebra.zero]
         for particle in self.particles[:-1]:
             relative.append(relative[-1] + particle.c * particle.force.X[n])
@@ -135,7 +140,7 @@ class _Slaving:
             particle.S.append(origin + own)
 
     def _shift(self, n: int) -> fmpq_mpoly:
-        """Increment of φ under the shift x → x + D, at D^{n+1} and over φ_x."""
+        """Coefficient of D^{n+1} in (φ(x + D) - φ(x)) / φ_x."""
         return self.algebra.r[n] * fmpq(1, factorial(n + 1))
 
 

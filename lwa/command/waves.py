@@ -158,11 +158,12 @@ def _chain_rows(cell: Cell, units: Mapping[str, str]) -> list[Row]:
 
 
 def on_background(theory: Theory, wave: BackgroundWave) -> Answer:
-    """The waves on a strain p0: `lwa wave --background P0`.
+    """Return the rows of `lwa wave --background P0`: the waves on the strain p0.
 
-    ``speed`` is V_s in p0 and B, ``kdv`` the limit of small B with the sech² wave's speed and its
-    ``width`` L, v = B sech²(ξ/L); null where no sound runs. Values are those at B = 1, and are left
-    out where that wave does not exist.
+    In such a wave the strain rises from p0 to p0 + B at its peak and travels at V_s = dx/dτ.
+    ``speed`` is V_s as a function of p0 and B. ``kdv`` is the Korteweg–de Vries limit of small B,
+    the wave v = B sech²(ξ/L) of width L; it is null if the speed of sound is zero. Floats are for
+    B = 1, and are left out if the wave of B = 1 does not exist.
     """
     head: Values = chain_json(theory)
     speed, widths = _at_one(wave)

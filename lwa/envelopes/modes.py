@@ -1,24 +1,29 @@
 """Weakly nonlinear response of a Bloch mode, over any field of numbers.
 
-In units of the cell's first bead and contact bead i has the mass m_i, and contact i, its static
-compression c_i, pushes under a further compression δ with K2 δ + K3 δ² + K4 δ³ more,
+Units: the first bead's mass, the first contact's static compression δ0 and linear stiffness. Bead i
+has the mass m_i, contact i the static compression c_i. A further compression δ adds the force
+K2 δ + K3 δ² + K4 δ³,
 
-    K2 = 1/c_i,    K3 = s/c_i²,    K4 = t/c_i³.
+    K2 = 1/c_i,    K3 = s/c_i²,    K4 = t/c_i³,    s = δ0 F″/(2F′),    t = δ0² F‴/(6F′) at δ0.
 
-A mode u = A φ e^{i(κn - ωt)} + c.c., κ per cell, Σ m|φ|² = 1, strains the contacts by d = B(κ)φ,
-where δ_i = u_i - u_{i+1}. At second order it drives (Remoissenet, *Waves Called Solitons*, 1999)
+Vectors have one component per bead (displacements u, amplitudes φ) or per contact (c, d, e2, e0).
+The matrix B(κ) takes displacements to compressions, δ_i = u_i - u_{i+1}; B† is its adjoint,
+K(κ) = B(κ)† K2 B(κ) the stiffness matrix, M = diag(m_i) the mass matrix. The mode of frequency ω
+and wavenumber κ per cell, u = A φ e^{i(κn - ωt)} + c.c., Σ m_i |φ_i|² = 1, compresses the contacts
+by d = B(κ)φ and at second order drives (Remoissenet, *Waves Called Solitons*, 1999)
 
     the second harmonic   A² e2,    e2 = -G K3 d²,   G = B(2κ) [K(2κ) - 4ω²M]^{-1} B(2κ)†,
     a lasting strain    |A|² e0,    K2 e0 + 2 K3 |d|² = f, the same in all contacts.
 
-f is the lasting force. It accelerates the cells, so that their mean strain Σ e0 moves with c_g:
-f = M c_g² Σ e0, M = Σ m. With v = c_g/c_0, c_0² = 1/(M Σ c), this is f = 2 Σ c K3|d|²/Σ c ·
-v²/(v² - 1), zero at a band's edge, where the load is held. At third order the frequency rises by
-χ|A|²,
+The lasting force f accelerates the cells, and their mean strain Σ e0 travels at the group velocity
+c_g, hence f = c_g² Σm Σe0. With v = c_g/c_0, c_0² = 1/(Σm Σc) the speed of sound, this gives
+f = 2 Σ c K3|d|²/Σ c · v²/(v² - 1), zero at a band's edge, where the load is held. At third order
+the frequency rises by χ|A|²; summed over the contacts i,
 
-    2ω χ = Σ 3 K4 |d|⁴ + 2 K3 (d̄² e2 + |d|² e0).
+    2ω χ = Σ_i [3 K4_i |d_i|⁴ + 2 K3_i (d̄_i² e2_i + |d_i|² e0_i)].
 
-Only φφ† and e^{±iκ} enter: numbers may be floats, or elements of a field of rational functions.
+The results depend on the mode through φφ† and e^{±iκ} only, both of which are rational functions
+of ω² and e^{iκ}: numbers may be floats, or elements of a field of rational functions.
 """
 
 from __future__ import annotations
@@ -44,7 +49,7 @@ Matrix = NDArray[Any]
 
 @dataclass(frozen=True, eq=False)
 class Mode:
-    """A mode and its response.
+    """A mode and its nonlinear response; letters as in the module.
 
     square : x = ω².
     slope, curvature : dω²/dκ, and ω d²ω/dκ².
@@ -65,7 +70,7 @@ class Mode:
 
 @dataclass(frozen=True, eq=False)
 class Contacts:
-    """Masses m and static compressions c of a cell, and the s and t of its contacts."""
+    """Masses m_i, static compressions c_i, and the nonlinear coefficients s and t of a cell."""
 
     masses: Numbers
     c: Numbers
@@ -73,23 +78,24 @@ class Contacts:
     t: Any
 
     def strains(self, z: Any) -> Matrix:
-        """B(κ) at z = e^{iκ}, (contacts, beads); B(κ)† is its transpose at 1/z."""
+        """The matrix B(κ), shape (contacts, beads), z = e^{iκ}; B(κ)† is the transpose for 1/z."""
         one = np.diag(self.masses * 0 * z + 1)
         after = np.roll(one, 1, axis=1)
         after[-1] = after[-1] * z
         return np.asarray(one - after)
 
     def stiffness(self, z: Any) -> Matrix:
-        """K(κ) = B(κ)† K2 B(κ)."""
+        """The stiffness matrix K(κ) = B(κ)† K2 B(κ), shape (beads, beads)."""
         return np.asarray(self.strains(1 / z).T @ (self.strains(z) / self.c[:, None]))
 
     def response(
         self, z: Any, x: Any, flow: Any, projector: Matrix, bead: int,
         inverse: Callable[[Matrix], Matrix],
     ) -> tuple[Any, Numbers, Numbers, Numbers]:  # fmt: skip
-        """2ωχ, e2, e0 and |d|² by contact, for φφ† (beads, beads) of the mode with ω² = x.
+        """Return 2ωχ and, with one entry per contact, e2, e0 and |d|² of the mode with ω² = x.
 
-        flow : v²/(v² - 1). bead : index of the bead in phase with A. inverse : that of a matrix.
+        z : e^{iκ}. flow : v²/(v² - 1). projector : φφ†, shape (beads, beads).
+        bead : index of a bead whose φ is positive. inverse : function that inverts a matrix.
         """
         c = self.c  # arrays stand first: elements of a field do not know arrays
         K3, K4 = 1 / c**2 * self.s, 1 / c**3 * self.t
@@ -107,11 +113,11 @@ class Contacts:
 
 
 def numeric_mode(contacts: Contacts, kappa: float, branch: int, resolved: bool) -> tuple[Mode, int]:
-    """The mode of a branch, counted from the lowest, in floats, and its bead that moves most.
+    """Return the mode of a branch (0 the lowest) in floats, and the index of its largest φ_i.
 
     Raises `lwa.InputError` where the envelope's equation fails: where branches touch, at the
-    resonance with the second harmonic, and for sound, of zero frequency; ``resolved``, also where
-    the mode is too close to sound for floats.
+    resonance with the second harmonic, and for sound, of zero frequency; with ``resolved`` also
+    where c_g is too close to the speed of sound for floats.
     """
     z, root = complex(np.exp(1j * kappa)), np.sqrt(contacts.masses)
     if abs(z.imag) < CLOSE:  # real modes at the edges

@@ -211,7 +211,11 @@ class Envelope(Value):
         return Contacts(np.array([m / self._mass for m in cell.masses]), np.array(c), s, t)
 
     def _sampled(self, value: sp.Expr) -> float:
-        """The float at a sample of the symbols, by which branches ascend: masses fall in a cell."""
+        """Float of the value at sample numbers for its symbols, by which branches are ordered.
+
+        Samples are 1, 1/2, … along the cell, so that the first mass is the heaviest, and 1.5 for
+        symbols of neither masses nor stiffnesses.
+        """
         symbols = dict.fromkeys(value.free_symbols, 1.5)
         for values in (self.cell.stiffnesses, self.cell.masses):
             for i, part in reversed([*enumerate(values)]):

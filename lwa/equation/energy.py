@@ -1,40 +1,48 @@
 """Conserved quantities of the wave equation: momentum, energy, and the potential behind them.
 
-**Momentum.** u_ττ = u_x^k Σ D^{n-1} E_n conserves ∫ u_τ dx if every order is the derivative of a
-flux.
+Letters: D is the spacing, P the number of particles of a cell, m̂_i a mass fraction, C_i the strain
+share of a contact; p = u_x is the strain, r_n = ∂_x^n p / p (`lwa.algebra.jets`); E_n, a polynomial
+in the r_n, is the term of the wave equation u_ττ = u_x^k Σ_{n≥1} D^{n-1} E_n.
+
+**Momentum.** The momentum ∫ u_τ dx is conserved if every order has a flux, a polynomial F_n with
+u_x^k E_n = ∂_x (u_x^k F_n).
 
 **Potential.** The equation is variational, u_ττ = -δV/δu, if every order is minus the variational
-derivative of a density V_n. An order of degree k in u that is the derivative of u_x^k F_n has
-V_n = u_x^{k+1} F_n / (k+1) as its only candidate up to derivatives (Euler's theorem on homogeneous
-functions), and the test is whether that candidate gives E_n back. Then φ_τ²/2 + V is the density of
-a conserved energy. With V = p^{k+1} f the variational derivative is formed in the jets' algebra by
-∂V/∂u_x = p^k ((k+1) f - Σ r_n ∂f/∂r_n) and ∂V/∂(∂_x^{n+1} u) = p^k ∂f/∂r_n.
+derivative of a density V_n. An order of degree k in u with the flux F_n has one candidate for V_n
+up to derivatives, u_x^{k+1} F_n / (k+1) (Euler's theorem on homogeneous functions). The test is
+whether this candidate gives E_n back. Then u_τ²/2 + V is the density of a conserved energy. The
+variational derivative of V = p^{k+1} f follows from ∂V/∂u_x = p^k ((k+1) f - Σ r_n ∂f/∂r_n) and
+∂V/∂(∂_x^{n+1} u) = p^k ∂f/∂r_n.
 
-**Energy of the chain.** With w_i the field of particle i and p (1 + X_i) the strain of contact i
-over its share C_i, the energy of a cell per length, in the units of the wave equation, is
+**Energy of the chain.** Let w_i be the field of particle i, C_i p (1 + X_i) the strain of contact
+i, F the force in the units of the wave equation (p^k/k for a power) and W its energy, W′ = F. The
+energy of a cell per length is
 
-    e = ½ Σ m̂_i (∂_τ w_i)² + Σ C_i W(p (1 + X_i)) / P = u_τ²/2 + W(u_x) + …,
+    e = ½ Σ m̂_i (∂_τ w_i)² + Σ C_i W(p (1 + X_i)) / P = u_τ²/2 + W(u_x) + ….
 
-W′ = F the force, p^k/k for a power. The equations of motion give
+With F_{-1} the force on particle 0 from the cell before, the equations of motion give
 
-    ∂_τ e = (e^{PD∂} - 1) (F_{-1} ∂_τ w_0) / (PD),
+    ∂_τ e = (e^{PD∂} - 1) (F_{-1} ∂_τ w_0) / (PD),    ∂ = ∂_x,
 
-the derivative of the flux of energy. That holds for any wave equation that the slaved fields
+the derivative of the flux of energy. This holds for any wave equation that the slaved fields
 satisfy, in every field, whether or not the equation derives from a potential. The density is given
 up to derivatives, so that no highest jet stands in it linearly.
 
-**Theorem.** At D^{k+3} the equation of the canonical field derives from a potential for every cell:
-G = I(k-1)(k-2)/2, H = 2I(k-1), and I is that of the linear chain, Ω² = κ² (1 - Iκ² + …). For write
-w_i = e^{x_i D∂} (φ + D² e_i φ_xx + …), x_i = C_0 + … + C_{i-1}, with Σ m̂_i e_i = 0, which defines
-φ. The kinetic energy is φ_τ²/2 up to D⁴. The strain of contact i at its middle is
-C_i φ_x + D (e_{i+1} - e_i) φ_xx + D² (C_i³/24 + C_i (e_i + e_{i+1})/2) φ_xxx, A_i C_i^k is the same
-for all contacts, the linear term telescopes round the cell, and by parts one monomial is left of
-the elastic energy at D²: k A φ_x^{k-1} φ_xx² S(e),
+**Theorem.** At D^{k+3} the equation of the canonical field φ, the mean Σ m̂_i w_i of the fields
+shifted to one point, derives from a potential for every cell: G = I(k-1)(k-2)/2, H = 2I(k-1), and
+I is the coefficient in the linear chain's dispersion Ω² = κ² (1 - Iκ² + …).
+
+*Proof.* The fields are w_i = e^{x_i D∂} (φ + D² e_i φ_xx + …), x_i = C_0 + … + C_{i-1}, with
+numbers e_i; the definition of φ demands Σ m̂_i e_i = 0. The kinetic energy is φ_τ²/2 up to D⁴. The
+strain of contact i at its middle is
+C_i φ_x + D (e_{i+1} - e_i) φ_xx + D² (C_i³/24 + C_i (e_i + e_{i+1})/2) φ_xxx. As A = A_i C_i^k is
+the same for all contacts, the term with φ_xx sums to zero round the cell, and by parts the elastic
+energy at D² reduces to one monomial, k A φ_x^{k-1} φ_xx² S(e),
 
     S = Σ [-C_i³/24 - C_i (e_i + e_{i+1})/2 + (e_{i+1} - e_i)²/(2 C_i)],    I = -(2/P) D² min S.
 
-The minimising e does not depend on k, hence I is its value at k = 1. With W(φ_x) in place of the
-power the same holds for every law with equal contacts.
+The e_i that minimise S do not depend on k for given C_i, hence I is the same as at k = 1. With
+W(φ_x) in place of the power the theorem holds for every law with equal contacts.
 """
 
 from __future__ import annotations
@@ -51,7 +59,7 @@ from lwa.closure.consistency import Closure
 
 
 def flux(closure: Closure, n: int) -> fmpq_mpoly | None:
-    """The flux F with E_n u_x^k = ∂_x (u_x^k F), n ≥ 2; None if order n is no derivative."""
+    """The flux F_n, u_x^k E_n = ∂_x (u_x^k F_n), n ≥ 2; None if order n is no derivative."""
     algebra = closure.algebra
     k = closure.model.ring.exponent(algebra.context)
     return algebra.antiderivative(closure.acceleration[n], k)
@@ -77,9 +85,9 @@ def variational_derivative(
 
 
 def variational(closure: Closure, n: int, density: fmpq_mpoly | None) -> bool:
-    """Whether order n, of the flux ``density``, is minus a variational derivative.
+    """True if order n is minus a variational derivative; ``density`` is its flux F_n.
 
-    False for an order without a flux, and for one with jets of the velocity.
+    False for an order without a flux, and for an order with jets of the velocity.
     """
     algebra = closure.algebra
     k = closure.model.ring.exponent(algebra.context)
@@ -90,7 +98,7 @@ def variational(closure: Closure, n: int, density: fmpq_mpoly | None) -> bool:
 
 
 def energy(closure: Closure) -> tuple[JetAlgebra, list[fmpq_mpoly]]:
-    """The energy (e - W(u_x)) / (u_x² F′(u_x)) to D^{order-2}, and an algebra with s_0 for it.
+    """The terms of (e - W(u_x)) / (u_x² F′(u_x)) to D^{order-2}, and their algebra (with s_0).
 
     Raises `lwa.InputError` on the optical branch, and for a closure that leaves a defect.
     """
@@ -108,7 +116,7 @@ def energy(closure: Closure) -> tuple[JetAlgebra, list[fmpq_mpoly]]:
 
 
 class _Fields:
-    """Velocities and strains of a closure, in an algebra that has s_0."""
+    """Velocities and strains of a closure as series, in an algebra with s_0 = u_τ/p^{(k+1)/2}."""
 
     def __init__(self, closure: Closure) -> None:
         model, old = closure.model, closure.algebra
@@ -136,7 +144,7 @@ class _Fields:
         return ladder
 
     def kinetic(self, n: int) -> fmpq_mpoly:
-        """The kinetic energy ½ Σ m̂_i (∂_τ w_i)² at D^n, over p² F′."""
+        """Coefficient of D^n in the kinetic energy ½ Σ m̂_i (∂_τ w_i)², divided by p² F′."""
         total = self.algebra.zero
         for mu, row in zip(self.mu, self.velocities, strict=True):
             for j in range(n + 1):
@@ -144,7 +152,7 @@ class _Fields:
         return total
 
     def elastic(self, n: int) -> fmpq_mpoly:
-        """The elastic energy Σ C_i W(p (1 + X_i)) / P at D^n, n ≥ 1, over p² F′; 0 for n = 0.
+        """Coefficient of D^n in Σ C_i W(p (1 + X_i)) / P, divided by p² F′; 0 for n = 0.
 
         Σ C_i p X_i / P = ∂_x Y with Y = Σ_j (PD∂_x)^j/(j+1)! w_0 - φ.
         """
@@ -161,7 +169,7 @@ class _Fields:
 
 
 def _strains(S: list[Ladder], n: int) -> list[fmpq_mpoly]:
-    """The strains C_i X_i = (w_{i+1} - w_i)/(D p) at D^n; w_P is w_0 of the next cell."""
+    """Coefficients of D^n in the (w_{i+1} - w_i)/(D p), i < P; w_P is w_0 of the next cell."""
     P = len(S)
     inner = [after[n] - before[n] for before, after in pairwise(S)]
     jet = S[0].algebra.r[n] * fmpq(P ** (n + 1), factorial(n + 1))

@@ -1,4 +1,4 @@
-"""Bounds of an expansion's size, checked before it starts."""
+"""Limits on the size of an expansion, checked before the expansion starts."""
 
 from __future__ import annotations
 
@@ -21,12 +21,13 @@ ROOT_DIGITS = 100
 
 
 def affordable(model: Model, order: int) -> int:
-    """Estimate the terms in memory of an expansion to ε^order.
+    """Check that an expansion to ε^order fits in memory; return the estimated number of terms.
 
-    A polynomial at t^n has about 3n/2 powers of Z, and as many monomials as there are of degree 3n
-    in the symbolic ratios.
+    The coefficient of t^n (`lwa.expansion.recursion`) has about 3n/2 powers of Z, each times a
+    polynomial of degree 3n in the symbolic ratios of the cell.
 
-    Raises `lwa.InputError` beyond `MOST_TERMS` or `ROOT_DIGITS`.
+    Raises `lwa.InputError` for more than `MOST_TERMS` terms, and for ratios of masses or of
+    stiffnesses with more than `ROOT_DIGITS` digits.
     """
     for part, name in ((model.ring.masses, "masses"), (model.ring.contacts, "stiffnesses")):
         if _integer(part) >= 10**ROOT_DIGITS:
@@ -46,7 +47,7 @@ def affordable(model: Model, order: int) -> int:
 
 
 def short(value: sp.Expr, name: str) -> sp.Expr:
-    """Return the value; refuse numbers of more than `ROOT_DIGITS` digits in it."""
+    """Return the value; raise `lwa.InputError` if a number in it exceeds `ROOT_DIGITS` digits."""
     numbers = (abs(int(part)) for x in value.atoms(sp.Rational) for part in (x.p, x.q))
     if max(numbers, default=0) >= 10**ROOT_DIGITS:
         raise InputError(f"{name} has a number of more than {ROOT_DIGITS} digits: give fewer")

@@ -1,16 +1,20 @@
-"""Radiation by a wave of unlike beads: an error of its series that no order in ε removes.
+"""Radiation by the wave of a chain of unlike beads: the error that no order in ε removes.
 
-Light beads rattle under the pulse. A rattle that stands in the pulse's frame has the wavenumber K,
+Light beads rattle under the pulse and leave an oscillating tail. Let ξ be the position in the frame
+of the pulse, F(ξ) its contact force with the peak 1, F' = dF/dξ, and Ω_o² the lowest optical Ω² at
+κ = 0 (1/Π for a dimer, `lwa.linear.bloch`). An oscillation that stands in this frame has the
+wavenumber K,
 
     K² = K_0² F^{(k-1)/k},    K_0² = Ω_o² - 1,
 
-with Ω_o² the lowest optical Ω² at κ = 0 (1/ν for a dimer). Contacts are stiffer where they are
-pressed, so that K falls towards the pulse's ends. The slaved motion, of size F', excites a rattle
+which falls towards the pulse's ends, as contacts are stiffer where they are pressed. The pulse
+excites the oscillation in proportion to F'; the amplitude of the tail scales as
 
     R = |∫ K^{3/2} F' e^{i∫K} dξ|,
 
-exponentially small in 1/ε where K_0 is large. R is computed with F = exp(φ_0 + ε φ_1), as the
-largest value for some K_0 nearby, since the integral vanishes at the mass ratios without a tail.
+exponentially small in 1/ε where K_0 is large. R is computed with log F = φ_0 + ε φ_1, the first two
+terms in X = √ε ξ (`lwa.Expansion.log_force`, φ_0 = -X²/(4I)), and is the largest value for a few
+K_0 nearby, since the integral vanishes at the mass ratios without a tail.
 
 `Radiation.relative`, a bound on the relative error of c² and the widths, was fitted to exact waves
 of dimers with tails from 1e-9 to 0.1 and to pulses of struck chains. It is measured, not proved.
@@ -46,18 +50,19 @@ PHASES = (0.85, 0.92, 1.0, 1.08, 1.16)
 """Factors of K_0² that move the integral off its zeros."""
 
 FACTOR, POWER = 1.0, 0.75
-"""Parameters of the bound FACTOR · contrast · R^POWER."""
+"""Parameters of the bound `Radiation.relative`, FACTOR · contrast · amplitude^POWER."""
 
 
 @dataclass(frozen=True)
 class Radiation(Value):
-    """The numbers of a chain on which its radiation depends.
+    """Parameters of a chain that determine the radiation by its wave; letters as in the module.
 
-    contrast : 0 for equal beads and contacts, (1 - 2b)² for a dimer of equal contacts.
-    I : of Ω² = κ² - I κ⁴ + …
-    optical : the lowest optical Ω² at κ = 0.
-    lightest : the lightest bead's mass over the mean mass.
-    quadratic, quartic : φ_1 = quadratic X² + quartic X⁴ + odd terms.
+    contrast : how far the chain is from equal beads and contacts, 4I - 1/3: 0 for these,
+        (m1 - m2)²/(m1 + m2)² for a dimer of equal contacts.
+    I : coefficient I in the linear chain's dispersion Ω² = κ² - I κ⁴ + …
+    optical : lowest optical Ω² at κ = 0, the Ω_o² of the module.
+    lightest : mass of the lightest bead divided by the mean mass.
+    quadratic, quartic : coefficients of X² and X⁴ in φ_1.
     """
 
     contrast: float
@@ -74,7 +79,7 @@ class Radiation(Value):
         return float(FACTOR * self.contrast * self.amplitude(k) ** POWER)
 
     def amplitude(self, k: float) -> float:
-        """The rattle R at this k, over the pulse's peak force."""
+        """The amplitude R at this k for the peak force 1, times ``lightest``."""
         import numpy as np  # start-up: `import lwa` does not load it
 
         epsilon = k - 1
@@ -92,7 +97,7 @@ class Radiation(Value):
 
 
 def _rattle(K: Array, slope: Array, step: float) -> float:
-    """The rattle |∫ K^{3/2} F' e^{i∫K} dξ| by the trapezoidal rule; F' has decayed."""
+    """|∫ K^{3/2} F' e^{i∫K} dξ| by the trapezoidal rule; the ends, where F' ≈ 0, are left out."""
     import numpy as np  # start-up: `import lwa` does not load it
 
     phase = np.concatenate([[0.0], np.cumsum((K[1:] + K[:-1]) / 2)]) * step
@@ -101,9 +106,9 @@ def _rattle(K: Array, slope: Array, step: float) -> float:
 
 @lru_cache(maxsize=64)
 def radiation(cell: Cell, k: sp.Expr) -> Radiation | None:
-    """The radiation of a chain in numbers; None for equal beads and contacts, and for symbols.
+    """The `Radiation` of a chain in numbers; None for equal beads and contacts, and for symbols.
 
-    k may be a symbol where contacts are equal; others share the strain by it.
+    k may be a symbol where contacts are equal; the strain shares of unequal ones depend on k.
     """
     alike = len({*cell.stiffnesses}) == 1
     if alike and len({*cell.masses}) == 1:
@@ -126,7 +131,7 @@ def radiation(cell: Cell, k: sp.Expr) -> Radiation | None:
     first = by_degree(wave.fields.log_force[0][2])
     quadratic, quartic = (_float(first.get(d, wave.zero), (1.0, *values)) for d in (2, 4))
     return Radiation(
-        contrast=(12 * I - 1) / 3,  # a dimer has I = (1 - 3b + 3b²)/3, hence (1 - 2b)²
+        contrast=(12 * I - 1) / 3,  # a dimer has I = (1 - 3b + 3b²)/3, b = m̂_1, hence (1 - 2b)²
         I=I,
         optical=float(np.min(squares)),
         lightest=cell.size * min(_float(mu, (1.0, *values)) for mu in wave.mu),
@@ -136,7 +141,7 @@ def radiation(cell: Cell, k: sp.Expr) -> Radiation | None:
 
 
 def _values(model: Model) -> tuple[float, ...]:
-    """Values of the generators of the coefficient ring."""
+    """Float values of the generators of the model's coefficient ring, in their order."""
     values = [] if model.k.is_Rational else [model.k]
     for part in (model.ring.masses, model.ring.contacts):
         if part.names:

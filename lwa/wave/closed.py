@@ -100,12 +100,12 @@ class Reduction(Value):
 
     @property
     def beta(self) -> sp.Expr:
-        """The paper's β = √σ (1 - η) / 2, equal to `TravelingWave.beta` for either root."""
+        """Wavenumber β = √σ (1 - η) / 2 of the cosine, as `TravelingWave.beta` for either root."""
         return sp.sqrt(self.sigma) * (1 - self.eta) / 2
 
     @property
     def B(self) -> sp.Expr:
-        """The paper's B = (μ / (β² s (s-1)))^{1/(k-1)}, equal to `TravelingWave.amplitude`."""
+        """Amplitude of the wave, B = (μ/(β² s (s-1)))^{1/(k-1)}, as `TravelingWave.amplitude`."""
         ratio = self.mu / (self.beta**2 * self.s * (self.s - 1))
         return ratio ** (1 / (self.k - 1))
 

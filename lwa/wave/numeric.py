@@ -1,10 +1,11 @@
-"""The closed forms in float64: vectorised NumPy functions of (k, ω), ω = m2/m1, lengths in D.
+"""The compact wave's closed forms in float64: NumPy functions of arrays of k and ω = m2/m1.
 
-G + H + I cancels where k > 2 and ω ≫ 1, and V²/B^{k-1} approaches 1 as k → 1. The exact
-coefficients are therefore evaluated in extended precision (`numpy.longdouble`, 64 bits of
-significand on x86) as polynomials in k - 2, which is exact near k = 2, and the logarithm of
-V²/B^{k-1} near 1 by log1p of the difference, which is computed over k - 1. Results are rounded to
-float64 once, at the end: they are good to 2 ulps wherever the extended precision is there.
+Letters as in `lwa.wave.closed`; lengths are in units of D. The sum G + H + I loses digits where
+k > 2 and ω ≫ 1. The exact coefficients are therefore evaluated in extended precision
+(`numpy.longdouble`, 64 bits of significand on x86) as polynomials in k - 2, a difference without
+rounding error near k = 2. The ratio V²/B^{k-1} approaches 1 as k → 1: its logarithm is the log1p of
+V²/B^{k-1} - 1, which is computed as (k - 1) times a rational function. Results are rounded to
+float64 once, at the end, and are good to 2 ulps where the extended precision is available.
 """
 
 from __future__ import annotations
@@ -76,7 +77,7 @@ class NumericWave(Value):
 
     @cached_property
     def _excess(self) -> Function:
-        """The excess (V²/B^{k-1} - 1) / (k - 1)."""
+        """The function (V²/B^{k-1} - 1) / (k - 1) of (k, ω)."""
         return _function((self.wave.speed_factor - 1) / (self.wave.k - 1), *self._symbols)
 
     def beta(self, k: ArrayLike, omega: ArrayLike) -> Array:
@@ -88,7 +89,7 @@ class NumericWave(Value):
         return _rounded(_PI / self._beta(k, omega))
 
     def fwhm(self, k: ArrayLike, omega: ArrayLike, quantity: str = "strain") -> Array:
-        """FWHM of strain, contact force or velocity, over D (see `lwa.TravelingWave.fwhm`)."""
+        """FWHM of strain, contact force or velocity in units of D (`lwa.TravelingWave.fwhm`)."""
         beta = self._beta(k, omega)
         k = np.asarray(k, np.longdouble)
         # arccos(2^-x) = arctan √(4^x - 1), which keeps its digits as x → 0
@@ -101,7 +102,7 @@ class NumericWave(Value):
         return _rounded(np.sqrt(self._factor(k, omega)) * _positive(B, "B") ** ((k - 1) / 2))
 
     def log_amplitude(self, k: ArrayLike, omega: ArrayLike, V: ArrayLike = 1.0) -> Array:
-        """Logarithm of the peak strain of the wave of speed V; finite if B over- or underflows."""
+        """Logarithm of the peak strain B of the wave of speed V, finite where B is out of range."""
         k, omega, _ = self._wave(k, omega)
         less_one = (k - 1) * self._excess(k, omega)  # V²/B^{k-1} - 1
         near = np.abs(less_one) < 0.5  # log1p keeps the digits that V²/B^{k-1} loses at k → 1
@@ -114,7 +115,10 @@ class NumericWave(Value):
         return beta
 
     def _wave(self, k: ArrayLike, omega: ArrayLike) -> tuple[Extended, Extended, Extended]:
-        """Broadcast k and ω, NaN at points without a wave, and compute (G+H+I)/D²."""
+        """Return k, ω and (G+H+I)/D², broadcast; G, H, I are the wave equation's coefficients.
+
+        At points without a wave all three are NaN, or `lwa.NoSolitaryWave` is raised (``missing``).
+        """
         given = (finite(x, name).astype(np.longdouble) for x, name in ((k, "k"), (omega, "ω")))
         k, omega = np.broadcast_arrays(*given)
         if not np.all(omega > 0):

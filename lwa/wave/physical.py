@@ -1,13 +1,15 @@
 """The compact wave of a given peak force, in space and time.
 
-All contacts of a cell carry the same force at leading order, F = A_eff (D u_x)^k, so that the wave
-whose contact force peaks at F has the peak strain B = (F/A_eff)^{1/k} / D and, with V² = f B^{k-1}
-(`CompactWave.speed_factor`) and dx/dt = V √(P k A_eff D^{k+1} / M), the speed
+Letters as in `lwa.wave.closed` and `lwa.cell`: D is the spacing, P the number of particles of a
+cell, M its mass, A_eff its stiffness. All contacts of a cell carry the same force at leading order,
+F = A_eff (D u_x)^k. The wave whose contact force peaks at F has the peak strain
+B = (F/A_eff)^{1/k} / D and, by V² = f B^{k-1} with the number f of `CompactWave.speed_factor` and
+dx/dt = V √(P k A_eff D^{k+1} / M), the speed
 
     dx/dt = D √(f P k / M) A_eff^{1/(2k)} F^{(k-1)/(2k)}.
 
-A contact's force passes as F cos^{mk}(βξ), m = 2/(k-1), ξ = x - (dx/dt) t. A bead bears the mean of
-its two contacts, half a spacing before and behind it: at its peak the share cos^{mk}(βD/2) of F.
+A contact has the force F cos^{mk}(βξ), m = 2/(k-1), ξ = x - (dx/dt) t. A bead bears the mean force
+of its two contacts, half a spacing before and behind the bead, at its peak F cos^{mk}(βD/2).
 
 Everything is in the units of the cell: in SI for `lwa.Cell.of_spheres`.
 """
@@ -117,7 +119,7 @@ class PhysicalWave(Value):
 
     @cached_property
     def speed(self) -> sp.Expr:
-        """The speed dx/dt = V τ/t."""
+        """The physical speed dx/dt = V τ/t, in the units of the cell."""
         wave, k = self.wave, self.wave.k
         factor = wave.speed_factor * wave.cell.size * k / wave.cell.mass
         powers = power(wave.cell.stiffness(k), 1 / (2 * k))
@@ -139,7 +141,7 @@ class PhysicalWave(Value):
     def fwhm(self, quantity: str = "force", extent: str = "length") -> sp.Expr:
         """Full width at half maximum of "strain", "force" or "velocity", a "length" or a "time".
 
-        The force is that of a contact. Raises `lwa.InputError` for any other.
+        The force is that of a contact. Raises `lwa.InputError` for other words.
         """
         known_extent(extent)
         length = self.wave.fwhm(quantity)
@@ -148,12 +150,12 @@ class PhysicalWave(Value):
     # --- curves -----------------------------------------------------------------------------
 
     def curve(self, t: ArrayLike, quantity: str = "force", of: str = "") -> Array:
-        """A quantity at the times t, float64: "force", "strain" or "velocity"; its peak is at 0.
+        """Course in time: values of "force", "strain" or "velocity" at the times t, peak at t = 0.
 
-        ``of`` names a "contact" or a "bead", by default the bearer of the peak force. A bead's
-        force and strain are the mean of its two contacts', and velocities are those of beads.
+        ``of`` is "contact" or "bead", by default the one whose force the wave prescribes. A bead's
+        force and strain are the means over its two contacts; a velocity is always a bead's.
 
-        Raises `lwa.InputError` for any other, and unless all is in numbers.
+        Raises `lwa.InputError` for other words, and where the wave or its force holds symbols.
 
         >>> from lwa import Cell, canonical_wave
         >>> canonical_wave(Cell([1], spacing=1), "3/2").at_force(8).curve([-99, 0, 99])
@@ -164,7 +166,7 @@ class PhysicalWave(Value):
         return self._along(-number(self.speed) * finite(t, "t"), quantity, of)
 
     def along(self, x: ArrayLike, quantity: str = "force", of: str = "") -> Array:
-        """A quantity at the places x at one time, as `curve` at the times; its peak is at 0."""
+        """Profile in space: values at the positions x when the peak is at x = 0; see `curve`."""
         from lwa.base.arrays import finite  # start-up: it loads NumPy
 
         return self._along(finite(x, "x"), quantity, of)
