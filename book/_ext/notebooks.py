@@ -8,6 +8,7 @@ text, and equations and captions keep their numbers.
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
@@ -171,5 +172,7 @@ def offer(app: Sphinx, page: str, template: str, context: dict, doctree: object)
 
 def setup(app: Sphinx) -> dict[str, bool]:
     """Sphinx's hook."""
+    # for the kernels: their matrices are small, and threads that wait for each other burn time
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     app.connect("html-page-context", offer, priority=100)  # before the theme's buttons
     return {"parallel_read_safe": True, "parallel_write_safe": True}

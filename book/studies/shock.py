@@ -8,9 +8,9 @@ behind the front has the strain p₋. Measured are, from the piston on:
 - the speed s₊ of the leading pulse, from the times t(x) at which its peak passes contacts. It lags
   behind its edge by the logarithm of the time (Toda's and KdV's do), so that t = x/s₊ + a log x + b
   is fitted.
-- the pulse's peak strain, P + b/x at x → ∞.
+- the peak strain of the leading pulse at x → ∞, by the fit P + b/x.
 
-Errors of both are differences to the same fits through the farther half of the contacts.
+The error of a fit is the difference to the fit through the farther half of the contacts.
 
 Theory: El's leading edge on the chain's own dispersion, and for equal beads the doubling rule: on
 the lattice's own wave (Toda's soliton; for powers the series in k - 1 without load, and Newton's
@@ -43,7 +43,7 @@ from validation.report.command import option, study
 from validation.report.result import Report
 from validation.report.table import Column, Finding, Table
 from validation.scenes.chains import numbered
-from validation.scenes.checks import positive
+from validation.scenes.checks import between
 from validation.scenes.forcing import Drive
 from validation.scenes.scene import Scene
 from validation.waves.solver import exact_wave
@@ -54,7 +54,7 @@ SPAN = 0.25, 0.95  # of the way of the leading pulse, on which it is measured
 CONTACTS = 16  # at which it is measured
 NEAR = 4  # contacts from the piston to that of the plateau
 SAMPLES = 10  # per unit of time
-SHOWN = 120.0  # time of the picture
+SHORTEST, SHOWN = 100.0, 120.0  # least time of a run, time of the picture
 TOLERANCE = 1e-6  # rtol of the runs
 Pair = tuple[float | None, float | None]  # speed and peak strain of the leading pulse
 
@@ -83,14 +83,15 @@ def shock(
 
     ``rows``: ``law``, ``behind_value``, ``ahead_value`` (strains), ``ratio_value`` (c₋/c₊),
     ``plateau_value`` (measured strain) with ``plateau_error_value`` (over p₋, less 1),
-    ``speed_value`` and ``peak_value`` (of the leading pulse, measured), and by theory
+    ``speed_value`` and ``peak_value`` (of the leading pulse, with errors), and by theory
     ``doubling_value`` (the rule on the lattice's own wave) and ``canonical_value`` (the rule on the
     canonical wave), both {"speed", "peak"}, and ``dispersion_value`` {"speed"}, with
     ``…_error_value`` (theory over lattice, less 1).
 
     Raises `lwa.InputError` for parameters out of range.
     """
-    end, start, cell = positive(duration, "duration"), exact(ahead, "ahead"), numbered(masses)
+    end = between(duration, "duration", SHORTEST, math.inf, f"at least {SHORTEST:g} is wanted")
+    start, cell = exact(ahead, "ahead"), numbered(masses)
     laws = LAWS if k is None else (Power(k),)
     steps = [exact(jump, "jump") for jump in jumps]
     behind = [step * start if start else step for step in steps]
@@ -106,20 +107,20 @@ def shock(
 
 @dataclass(frozen=True)
 class Driven:
-    """A chain that a piston drives for a time, beside the theory of its front."""
+    """A chain that a piston drives for a time, and the theory of its front."""
 
     theory: Shock
     duration: float
 
     def scene(self) -> Scene:
-        """The chain, with contacts near the piston and on the way of the leading pulse."""
+        """Build the chain, with sensors near the piston and on the way of the leading pulse."""
         cell, reach = self.theory.cell.size, self._fastest * self.duration
         places = np.linspace(*SPAN, CONTACTS) * reach
         distances = {cell * round(place / cell) for place in places} - {NEAR}
         return self._scene(self.duration, (NEAR, *sorted(distances)), SAMPLES)
 
     def _scene(self, duration: float, contacts: tuple[int, ...], samples: float) -> Scene:
-        """Sensors at these contacts, the first of which is the piston's."""
+        """Build the chain for a time, with sensors at contacts counted from the piston's."""
         chain = self.theory
         cells = math.ceil((self._fastest * duration + 20) / chain.cell.size)
         masses = tuple(float(m) for m in chain.cell.masses) * cells
@@ -133,7 +134,7 @@ class Driven:
 
     @property
     def _fastest(self) -> float:
-        """No less than the speed of the leading pulse."""
+        """Upper bound of the speed of the leading pulse."""
         speeds = [speed for speed, _ in self.theories.values() if speed]
         return 1.02 * max(speeds, default=float(self.theory.sound(self.theory.behind)))
 
@@ -261,7 +262,7 @@ _PERCENT = "+.2%"
 
 
 def _theory_columns(name: str, label: str, *quantities: str) -> list[Column]:
-    """The values, in JSON only, and what they are off the lattice."""
+    """Columns of a theory's values, in JSON only, and of their errors."""
     return [
         column
         for quantity in quantities

@@ -67,7 +67,7 @@ def _precompression(
 
 def _answer(style: str, answer: Answer) -> None:
     if style == "json":
-        click.echo(json.dumps(answer.json(), indent=2, default=str))
+        click.echo(json.dumps(answer.json(), indent=2))
     else:
         click.echo(answer.latex() if style == "latex" else answer.text())
 

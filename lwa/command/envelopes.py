@@ -43,6 +43,7 @@ def envelope(
         rows.append(f"  {found.kind} envelopes")
     except InputError as fault:
         rows.append(f"  bright or dark: {fault}")
+    notes: list[str] = []
     if breather is not None:
         shape = "sech" if breather.kind == "bright" else "tanh"
         rows += [
@@ -55,15 +56,20 @@ def envelope(
         ]
         if breather.opening != sp.oo:
             rows.append(Row("opening_detuning", _OPENING, breather.opening_detuning))
+            notes.append(_EARLIER)
         if breather.opening != sp.oo and breather.k is not sp.nan:
             for held, label in _LOADS.items():
                 load = breather.opening_load(held)
                 load = sp.N(load, 15) if load.is_Rational else load  # sixth powers have many digits
                 rows.append(Row(f"opening_load.{held}", label, load))
-    return Answer(head, rows, units, found.cell.spacing)
+    return Answer(head, rows, units, found.cell.spacing, notes=notes)
 
 
 _OPENING = "contacts open from the detuning"
+_EARLIER = (
+    "contacts open at these values to leading order; on the lattice they open earlier, in dimers "
+    "of spheres at about three quarters of the detuning"
+)
 _LOADS = {
     "frequency": "at this frequency, from the load F0",
     "amplitude": "at this amplitude, below the load F0",

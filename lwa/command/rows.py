@@ -59,7 +59,7 @@ class Row:
 class Answer:
     """The result of a command.
 
-    head : JSON of the chain and the settings.
+    head : JSON of the chain and the settings; a value that only JSON needs may be a function.
     rows : in the order of the text, whose other lines stand between them.
     units : unit of the values by key, for a chain in SI.
     spacing : the symbol of the unit of length, or a number.
@@ -97,7 +97,7 @@ class Answer:
         Names ending in ``_value`` are floats, in the unit of length where the spacing is a symbol
         and at V_s = 1 and B = 1. Symbols, complex numbers and numbers beyond a double have none.
         """
-        result = dict(self.head)
+        result = {name: x() if callable(x) else x for name, x in self.head.items()}
         rows = [row for row in self.rows if isinstance(row, Row) and row.key]
         for row in rows:
             if row.expression and isinstance(row.value, sp.Expr | tuple):

@@ -66,7 +66,10 @@ def compact(theory: Theory, wave: TravelingWave) -> Answer:
     """
     one, other = (wave.reduction(root) for root in (0, 1))
     names = ("p", "a", "mu", "eta", "sigma", "s")
-    roots = [{name: getattr(r, name) for name in names} for r in (one, other)]
+
+    def roots() -> list[dict[str, str]]:
+        return [{name: str(getattr(r, name)) for name in names} for r in (one, other)]
+
     log_B = -sp.log(wave.speed_factor) / (wave.k - 1)
     rows: list[Row | str] = [
         f"masses {listed(theory.cell.masses)}; k = {wave.k}; closure {theory.closure.name}; "

@@ -84,8 +84,8 @@ def exact_mode(
 ) -> Mode:  # fmt: skip
     """The mode of a branch in exact numbers, in sin κ/2 and cos κ/2 unless cos κ is rational.
 
-    bead : the one of positive φ. sampled : the float of an expression at a sample of its symbols;
-    roots ascend by it.
+    bead : index of the bead whose φ is positive. sampled : the float of an expression at a sample
+    of its symbols, by which roots ascend.
 
     Raises `lwa.InputError` where the frequency has no exact form.
     """

@@ -89,7 +89,7 @@ class Contacts:
     ) -> tuple[Any, Numbers, Numbers, Numbers]:  # fmt: skip
         """2ωχ, e2, e0 and |d|² by contact, for φφ† (beads, beads) of the mode with ω² = x.
 
-        flow : v²/(v² - 1). bead : of the displacement in phase with A. inverse : of a matrix.
+        flow : v²/(v² - 1). bead : index of the bead in phase with A. inverse : that of a matrix.
         """
         c = self.c  # arrays stand first: elements of a field do not know arrays
         K3, K4 = 1 / c**2 * self.s, 1 / c**3 * self.t

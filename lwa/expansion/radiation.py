@@ -92,7 +92,7 @@ class Radiation(Value):
 
 
 def _rattle(K: Array, slope: Array, step: float) -> float:
-    """The rattle |∫ K^{3/2} F' e^{i∫K} dξ| by the trapezoidal rule, spectral for such F'."""
+    """The rattle |∫ K^{3/2} F' e^{i∫K} dξ| by the trapezoidal rule; F' has decayed."""
     import numpy as np  # start-up: `import lwa` does not load it
 
     phase = np.concatenate([[0.0], np.cumsum((K[1:] + K[:-1]) / 2)]) * step

@@ -103,5 +103,15 @@ def test_every_letter_has_one_meaning():
     assert not [letter for letter, n in Counter(letters).items() if n > 1]
 
 
+def test_every_label_stands_once():
+    """Labels of equations and figures are shared by all pages."""
+    label = re.compile(r"^\$\$ \(([\w-]+)\)$|^    name: (fig-[\w-]+)$", re.MULTILINE)
+    found = [
+        max(m.groups(""), key=len) for f in BOOK.glob("*.md") for m in label.finditer(f.read_text())
+    ]
+    assert len(found) > 90
+    assert not [name for name, n in Counter(found).items() if n > 1]
+
+
 def test_the_book_is_short():
     assert sum(len(page.read_text("utf-8").splitlines()) for page in BOOK.glob("*.md")) <= LINES

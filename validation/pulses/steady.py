@@ -86,18 +86,22 @@ def cells_apart(k: float, stretch: int) -> int:
     return math.ceil(stretch * max(1.0, math.pow(2 * (k - 1), -1.25)))
 
 
-def point(k: sp.Rational, omega: sp.Rational, stretch: int) -> Point:
-    """Strike the chain and measure its pulse; a failure is the ``missing`` of the point."""
+def point(k: sp.Rational, omega: sp.Rational, stretch: int, farther: float = FARTHER) -> Point:
+    """Strike the chain and measure its pulse; a failure is the ``missing`` of the point.
+
+    stretch : see `cells_apart`. farther : times as far as the last place, 1.2 or more, to which the
+    pulse must stay the highest.
+    """
     try:
-        return _point(k, omega, stretch)
+        return _point(k, omega, stretch, farther)
     except (InputError, IntegrationError, ArithmeticError) as error:
         return Point(k, omega, None, {}, str(error) or type(error).__name__)
 
 
-def _point(k: sp.Rational, omega: sp.Rational, stretch: int) -> Point:
+def _point(k: sp.Rational, omega: sp.Rational, stretch: int, farther: float) -> Point:
     chain = StruckDimer(float(k), float(omega), 2 * cells_apart(float(k), stretch))
     near = [n * chain.sites for n in range(1, PLACES + 1)]
-    far = int(FARTHER * near[-1])
+    far = int(farther * near[-1])
     rtol, less = TOLERANCES
     distant = [*near, far - chain.sites, far]
     rough = chain.passages(chain.run(distant, chain.crossing(far), less))
@@ -149,7 +153,8 @@ class StruckDimer:
         """Strike the chain and record the two contacts of each place, up to the last one."""
         sensors = tuple(place + side for place in places for side in (0, 1))
         options = {"contact_sensors": sensors, "duration": duration, "samples": 2}
-        return simulate(struck((1.0, self.omega), places[-1] + 12, self.k, **options), rtol=rtol)
+        beads = places[-1] + max(12, self.sites)  # the end is a pulse's length away as k → 1, too
+        return simulate(struck((1.0, self.omega), beads, self.k, **options), rtol=rtol)
 
     def passages(self, run: Run) -> Array:
         """Measure the leading pulse at the two contacts of each place of a `run`.

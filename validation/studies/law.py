@@ -66,20 +66,8 @@ def law(
     ``residual_value`` of ln V; ``one_power``; ``rows`` of the free law: ``compression_value``,
     ``force_value``, ``force_error_value``.
     """
-    read = columns(data, "force", "speed", optional=("force_error", "speed_error"))
-    force, speed, *deviations = read.values()
     degree = integer(degree, "degree", 1, 6)
-    if len(force) < degree + 3 or not (force.min() > 0 and speed.min() > 0):
-        raise SceneError(
-            f"{data}: at least {degree + 3} pulses of positive force and speed are wanted"
-        )
-    weight = None
-    if deviations:
-        if len(deviations) != 2 or not min(map(np.min, deviations)) > 0:
-            raise SceneError(
-                f"{data}: force_error and speed_error are wanted together, and positive"
-            )
-        weight = weights(force, speed, *deviations)
+    force, speed, weight = _pulses(data, degree + 3)
     content = None if spheres is None else load(spheres, "a list of spheres", _content)
     if content is None:
         cell = numbered(masses or (1,))
@@ -93,8 +81,6 @@ def law(
         if content is None:
             raise SceneError("material is given: its E needs --spheres")
         rows.append(("E", _modulus(content, material, fit.hertz)))
-    found = {f"{name}_value": value.value for name, value in rows}
-    errors = {f"{name}_error_value": value.error for name, value in rows}
     compression, error = free_law(medium, force, speed, degree, weight=weight)
     order = np.argsort(force)
     free = tuple(
@@ -109,14 +95,27 @@ def law(
         ),
         panels=_panels(force, speed, compression, error, fit),
         notes=(_verdict(fit), _NOTE),
-        data=found
-        | errors
+        data={f"{name}_value": number.value for name, number in rows}
+        | {f"{name}_error_value": number.error for name, number in rows}
         | {
             "correlation_value": fit.correlation,
             "residual_value": fit.residual,
             "one_power": fit.one_power,
         },
     )
+
+
+def _pulses(data: str, least: int) -> tuple[Array, Array, Array | None]:
+    """Read forces, speeds and, where deviations are given, weights of at least so many pulses."""
+    read = columns(data, "force", "speed", optional=("force_error", "speed_error"))
+    force, speed, *deviations = read.values()
+    if len(force) < least or not (force.min() > 0 and speed.min() > 0):
+        raise SceneError(f"{data}: at least {least} pulses of positive force and speed are wanted")
+    if not deviations:
+        return force, speed, None
+    if len(deviations) != 2 or not min(map(np.min, deviations)) > 0:
+        raise SceneError(f"{data}: force_error and speed_error are wanted together, and positive")
+    return force, speed, weights(force, speed, *deviations)
 
 
 def _content(content: Any) -> dict[str, Any]:

@@ -152,5 +152,7 @@ def test_the_program(capsys):
         status, out, err = ended(capsys, shock.main, "--k", "3/2", "--jumps", jump)
         assert (status, out, err.count("\n")) == (2, "", 1)
         assert words in err
+    with pytest.raises(InputError, match="duration is 5: at least 100 is wanted"):
+        shock(k="3/2", duration=5)
     with pytest.raises(InputError, match="contacts of a power law only push"):
         shock(k="3/2", ahead=-1)

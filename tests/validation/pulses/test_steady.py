@@ -175,3 +175,13 @@ def test_a_failure_is_the_points_own(monkeypatch):
     monkeypatch.setattr(steady, "simulate", broken)
     with pytest.raises(TypeError):
         point(HERTZ, R(1), STRETCH)
+
+
+def test_the_end_of_the_chain_is_far_from_the_last_place():
+    """At k = 21/20 and ω = 1/100 the FWHM is 8.5 sites, and 12 beads beyond the place too few."""
+    chain = steady.StruckDimer(1.05, 0.01, 40)
+    one, other = (
+        chain.passages(chain.run(places, chain.crossing(160), 1e-6))[1]
+        for places in ((40, 80), (40, 80, 160))
+    )
+    assert one[:, :4] == pytest.approx(other[:, :4], rel=1e-5)  # arrival, peak, both FWHM

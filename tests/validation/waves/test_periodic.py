@@ -139,6 +139,18 @@ def test_a_continued_orbit_is_the_one_found_directly():
     assert continued(found, begin.frequency).amplitude == pytest.approx(begin.amplitude, abs=1e-9)
 
 
+@pytest.mark.parametrize("light", [0.5, 0.3])
+def test_contacts_open_at_three_quarters_of_the_envelopes_detuning(light):
+    """Between 0.0175 and 0.0187; k(k-1)/32 = 0.0234 is to leading order."""
+    found, _, _ = gap_breather(0.008, 81, light=light)
+    edge, opens = math.sqrt(2 * HERTZ / light), []
+    for nu in (0.0175, 0.0187):
+        found = continued(found, edge * (1 - nu))
+        u = found.displacements(np.linspace(0, found.period / 2, 101))
+        opens.append((found.chain.rest + (found.chain.strains @ u).T).min() < 0)
+    assert opens == [False, True]
+
+
 def test_a_breather_is_stable_or_hardly_unstable_and_its_multipliers_come_in_pairs():
     found, _, _ = gap_breather(0.004, 61)
     multipliers = found.multipliers
