@@ -103,7 +103,8 @@ window.addEventListener("load", async () => {
       .filter(e => e.textContent.trim() && e.getClientRects().length && contrast(e) < 3)
       .map(e => e.textContent.trim().slice(0, 60)),
     silent: [...body.querySelectorAll("img, svg:not([aria-hidden])")]
-      .filter(i => !i.alt && !i.getAttribute("aria-label")).map(i => i.src || i.outerHTML),
+      .filter(i => !i.alt && !i.getAttribute("aria-label") && !i.closest("button"))
+      .map(i => i.src || i.outerHTML),
     unnamed: [...body.querySelectorAll("canvas, input, select, [role=img]")]
       .filter(e => !e.getAttribute("aria-label") && !e.closest("label")).map(e => e.outerHTML),
     sliders: body.querySelectorAll("input[type=range]").length,

@@ -86,18 +86,22 @@ def cells_apart(k: float, stretch: int) -> int:
     return math.ceil(stretch * max(1.0, math.pow(2 * (k - 1), -1.25)))
 
 
-def point(k: sp.Rational, omega: sp.Rational, stretch: int) -> Point:
-    """Strike the chain and measure its pulse; a failure is the ``missing`` of the point."""
+def point(k: sp.Rational, omega: sp.Rational, stretch: int, farther: float = FARTHER) -> Point:
+    """Strike the chain and measure its pulse; a failure is the ``missing`` of the point.
+
+    stretch : see `cells_apart`. farther : times as far as the last place, 1.2 or more, to which the
+    pulse must stay the highest.
+    """
     try:
-        return _point(k, omega, stretch)
+        return _point(k, omega, stretch, farther)
     except (InputError, IntegrationError, ArithmeticError) as error:
         return Point(k, omega, None, {}, str(error) or type(error).__name__)
 
 
-def _point(k: sp.Rational, omega: sp.Rational, stretch: int) -> Point:
+def _point(k: sp.Rational, omega: sp.Rational, stretch: int, farther: float) -> Point:
     chain = StruckDimer(float(k), float(omega), 2 * cells_apart(float(k), stretch))
     near = [n * chain.sites for n in range(1, PLACES + 1)]
-    far = int(FARTHER * near[-1])
+    far = int(farther * near[-1])
     rtol, less = TOLERANCES
     distant = [*near, far - chain.sites, far]
     rough = chain.passages(chain.run(distant, chain.crossing(far), less))
