@@ -84,7 +84,7 @@ def study(*options: Any, epilog: str = "") -> Callable[[Callable[P, Report]], St
 
     A function may have three further parameters, which the command sets: ``progress`` shows how
     many cases are done, ``run_progress`` how far a run of the lattice is
-    (`validation.lattice.cost.RunProgress`), and ``picture`` is the file of ``--plot``.
+    (`validation.lattice.run.RunProgress`), and ``picture`` is the file of ``--plot``.
     """
     return lambda function: Study(function, options, epilog)
 
