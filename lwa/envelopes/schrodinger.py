@@ -126,7 +126,7 @@ class Envelope(Value):
 
     @cached_property
     def strains(self) -> tuple[sp.Expr, ...]:
-        """Square |d|² for each contact: its compression is A d e^{i(κn - ωt)} + c.c. to first order."""
+        """Square |d|² for each contact, whose compression is A d e^{i(κn - ωt)} + c.c. + …."""
         return self._each(self._mode.size, self._mass)
 
     @property
