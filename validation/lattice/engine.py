@@ -35,7 +35,7 @@ import numpy as np
 import scipy
 
 from lwa.base.arrays import Array
-from validation.lattice.cost import RunProgress, beyond, mean_step, most_steps
+from validation.lattice.cost import beyond, mean_step, most_steps
 from validation.lattice.equations import Motion
 from validation.lattice.kernel.advance import advance
 from validation.lattice.kernel.arrays import (
@@ -50,7 +50,7 @@ from validation.lattice.kernel.arrays import (
     beginning,
 )
 from validation.lattice.knots import Recorder
-from validation.lattice.run import IntegrationError, Run, finished
+from validation.lattice.run import IntegrationError, Run, RunProgress, finished
 from validation.lattice.schemes import SCHEMES
 from validation.lattice.schemes.nystrom import Pair
 from validation.lattice.signal import recorded, sampled

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, field
 from importlib import import_module
 from typing import Any
@@ -32,6 +34,15 @@ _FINEST = 1000  # places, and times, of a map
 
 class IntegrationError(Failure):
     """Failure of an integrator; the message says where and why."""
+
+
+RunProgress = Callable[[], AbstractContextManager[Callable[[float], object]]]
+"""Opens a display of a run's progress, which is called with the share that is done."""
+
+
+def silent() -> AbstractContextManager[Callable[[float], object]]:
+    """The `RunProgress` that shows nothing."""
+    return nullcontext(lambda share: None)
 
 
 @dataclass(frozen=True, eq=False, repr=False)

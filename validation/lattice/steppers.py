@@ -10,9 +10,9 @@ import scipy
 from numpy.typing import NDArray
 
 from lwa.base.arrays import Array
-from validation.lattice.cost import RunProgress, beyond, mean_step, most_steps
+from validation.lattice.cost import beyond, mean_step, most_steps
 from validation.lattice.equations import Motion
-from validation.lattice.run import IntegrationError, Run, finished
+from validation.lattice.run import IntegrationError, Run, RunProgress, finished
 from validation.lattice.signal import Beads, recorded, sampled
 
 METHODS = ("DOP853", "RK45", "RK23", "LSODA")

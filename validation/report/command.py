@@ -84,7 +84,7 @@ def study(*options: Any, epilog: str = "") -> Callable[[Callable[P, Report]], St
 
     The command also passes, to parameters of these names: ``progress``, which shows how many cases
     are done, ``run_progress``, which shows how far a lattice run is
-    (`validation.lattice.cost.RunProgress`), and ``picture``, the file of ``--plot``.
+    (`validation.lattice.run.RunProgress`), and ``picture``, the file of ``--plot``.
     """
     return lambda function: Study(function, options, epilog)
 

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import os
-import shutil
 import tempfile
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from uuid import uuid4
 
 from lwa.base.exact import InputError
 from lwa.base.files import reason
@@ -37,17 +35,15 @@ def output_file(name: str, path: str, suffixes: Sequence[str]) -> Path:
 def replacing(file: Path) -> Iterator[Path]:
     """A temporary file that replaces ``file`` at the end, and vanishes on a failure.
 
-    The replaced file keeps its mode; a symbolic link stays, and its target is replaced. Raises
-    `lwa.InputError` where the file cannot be written.
+    A replaced file keeps its mode, and a symbolic link its target. Raises `lwa.InputError`.
     """
     target = Path(os.path.realpath(file))
-    new = target.with_name(f".{uuid4().hex}{file.suffix.lower()}")
     try:
-        yield new
-        if target.exists():
-            shutil.copymode(target, new)
-        new.replace(target)
+        with tempfile.TemporaryDirectory(prefix=".", dir=target.parent) as folder:
+            new = Path(folder, "new")
+            yield new
+            if target.exists():
+                new.chmod(target.stat().st_mode)
+            new.replace(target)
     except OSError as error:
         raise InputError(f"{file} is not written: {reason(error)}") from None
-    finally:
-        new.unlink(missing_ok=True)

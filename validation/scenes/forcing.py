@@ -65,12 +65,11 @@ def restitution(ratio: float) -> float:
 
 
 def damping_ratio(share: float) -> float:
-    """The damping ratio of a coefficient of restitution, by bisection."""
-    low, high = 0.0, 1e3
-    for _ in range(100):
-        middle = (low + high) / 2
-        low, high = (middle, high) if restitution(middle) > share else (low, middle)
-    return low
+    """The damping ratio of a coefficient of restitution."""
+    from scipy.optimize import brentq  # start-up
+
+    # all digits of a small ratio as well: near ζ = 0 the share is 1 - πζ
+    return float(brentq(lambda ratio: restitution(ratio) - share, 0, 1e3, xtol=1e-20, rtol=1e-15))
 
 
 @dataclass(frozen=True, kw_only=True)

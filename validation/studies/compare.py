@@ -8,8 +8,7 @@ from typing import Any
 import click
 
 from lwa.base.arrays import Array
-from validation.lattice.cost import RunProgress, silent
-from validation.lattice.run import Run
+from validation.lattice.run import Run, RunProgress, silent
 from validation.pictures.panel import Curve, Panel
 from validation.pulses.pulse import Measured, Pulse, compared, dense, derived, first_pulse
 from validation.pulses.sensors import READINGS, Reading, Track, record, tracks
