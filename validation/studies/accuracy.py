@@ -22,6 +22,7 @@ from typing import Any, TypeVar
 
 import click
 import numpy as np
+import sympy as sp
 
 from lwa.base.progress import Progress
 from validation.lattice.run import IntegrationError, Run
@@ -35,7 +36,7 @@ from validation.report.table import Column, Table
 from validation.scenes import chains
 from validation.scenes.checks import one_of
 from validation.scenes.scene import Scene
-from validation.studies.theories import CASES, ladder, place
+from validation.studies.theories import SOLITARY, STRUCK_CHAIN, ladder, place
 from validation.waves.solver import exact_wave
 
 NUMBERS = ("arrival", "peak", "fwhm")
@@ -154,6 +155,20 @@ TASKS: Mapping[str, Callable[[], Task]] = {
 THEORY = "theory"
 NAMES = (*TASKS, THEORY)
 """Names of all tasks, the ladder of theories among them."""
+
+# Mass ratios of the Hertz dimer's solitary waves are from `validation.waves.resonances`.
+CASES = tuple(
+    (sp.Rational(k), sp.Rational(omega), kind)
+    for exponents, ratios, kind in (
+        (("1.1", "5/4", "3/2", "2", "3"), ("1",), SOLITARY),
+        (("3/2",), ("0.3428457811", "0.1547515139", "0.0901277691"), SOLITARY),
+        (("3/2",), ("0.01", "0.05", "0.2", "0.8", "0.9"), STRUCK_CHAIN),
+        (("5/4", "2"), ("0.05", "0.2", "0.8"), STRUCK_CHAIN),
+    )
+    for k in exponents
+    for omega in ratios
+)
+"""k, ω and the kind of truth of each place of the ladder of theories."""
 
 
 @dataclass(frozen=True)
