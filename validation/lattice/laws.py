@@ -80,7 +80,7 @@ class Contact:
         return np.array([known[F] for F in forces.tolist()])
 
     def reached_by(self, energy: float, start: float) -> float:
-        """Return a compression that a further energy, beyond equilibrium at ``start``, brings about.
+        """Return a compression that a further energy beyond equilibrium at ``start`` brings about.
 
         For a power law the result is only a scale, energy^{1/(k+1)}, whatever the ``start``.
         """

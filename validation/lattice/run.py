@@ -41,7 +41,7 @@ RunProgress = Callable[[], AbstractContextManager[Callable[[float], object]]]
 
 
 def silent() -> AbstractContextManager[Callable[[float], object]]:
-    """The `RunProgress` that shows nothing."""
+    """Return the `RunProgress` that shows nothing."""
     return nullcontext(lambda share: None)
 
 
