@@ -113,10 +113,10 @@ class JetAlgebra:
         return self._derivation(exponent * self.r[1] * f, f, self._dx)
 
     def dt(self, f: Ladder, E: Ladder, n: int) -> fmpq_mpoly:
-        """The n-th term of ∂_τ (p^e Σ_m D^m f_m), over p^{e + (k-1)/2} and one power of D.
+        """Coefficient of D^{n-1} in ∂_τ (p^e Σ_m D^m f_m), divided by p^{e + (k-1)/2}.
 
-        f is a series of which the terms f_m, m < n, are known; E is the series of
-        u_ττ = p^k Σ_j D^{j-1} E_j, of which E_1 … E_{n-1} enter.
+        f : the series, whose terms f_m, m < n, are known.
+        E : the series of u_ττ = p^k Σ_j D^{j-1} E_j, whose terms E_1 … E_{n-1} are known.
         """
         result = last = f[n - 1]
         if not last.is_zero():
@@ -169,9 +169,9 @@ class JetAlgebra:
     def antiderivative(self, f: fmpq_mpoly, exponent: fmpq_mpoly) -> fmpq_mpoly | None:
         """Antiderivative g with ∂_x (p^e g) = p^e f, f of weight 2 or more; None if f has none.
 
-        The highest jet of a total derivative stands in it linearly, and its coefficient is the
-        slope of g in the jet below; taking that off lowers the highest jet, first of the velocity,
-        then of the strain.
+        A total derivative is linear in its highest jet, with the coefficient ∂g/∂(the jet below).
+        Subtracting the derivative of this part of g lowers the highest jet, first among those of
+        the velocity, then among those of the strain.
         """
         total = self.zero
         for index in reversed(range(self._offset, self.context.nvars())):
@@ -186,10 +186,10 @@ class JetAlgebra:
         return total if f.is_zero() else None
 
     def by_parts(self, f: fmpq_mpoly, exponent: fmpq_mpoly) -> fmpq_mpoly:
-        """Integrate by parts: f less some p^{-e} ∂_x (p^e g), without linear highest jets.
+        """Subtract a derivative p^{-e} ∂_x (p^e g) from f so that no highest jet remains linear.
 
-        f has one weight. In it s_n stands linearly beside lower jets of the velocity, r_n beside
-        lower ones of the strain where there is no velocity; r_1 alone is the derivative of p^e / e.
+        All terms of f have one weight. A highest jet is an s_n linear beside lower jets s_i, or,
+        in terms without s_i, an r_n beside lower r_i; r_1 alone is the derivative of p^e / e.
         """
         names = self.context.names()
         last = self.context.nvars() - 1
@@ -209,7 +209,7 @@ class JetAlgebra:
         return f.derivative(index).subs(dict.fromkeys(others, 0))
 
     def taken(self, f: fmpq_mpoly, other: JetAlgebra) -> fmpq_mpoly:
-        """Convert f from an algebra of the same parameters whose jets are among these."""
+        """Convert f from ``other``, an algebra with the same parameters and some of these jets."""
         more_t = (0,) * (other._lowest - self._lowest)
         found = {}
         for exponents, coefficient in f.terms():
@@ -253,7 +253,7 @@ class Ladder:
         self._rungs.append([f_n])
 
     def carried(self, h: fmpq_mpoly | int, n: int) -> fmpq_mpoly:
-        """Increment of the series under the shift x → x + hD: Σ_{0<j≤n} h^j/j! ∂_x^j f_{n-j}."""
+        """Coefficient Σ_{0<j≤n} h^j/j! ∂_x^j f_{n-j} of D^n in the increment under x → x + hD."""
         total = self.algebra.zero
         for j in range(1, n + 1):
             part = self.dx(n - j, j)

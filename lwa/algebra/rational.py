@@ -23,7 +23,7 @@ def to_sympy(value: fmpq) -> sp.Rational:
 
 
 def factored(value: sp.Expr) -> sp.Expr:
-    """The expression in lowest terms, numerator and denominator in factors.
+    """The expression as a fraction in lowest terms with factored numerator and denominator.
 
     >>> x, y = sp.symbols("x y")
     >>> factored(x / (x**2 - y**2) + y / (y**2 - x**2))

@@ -80,7 +80,7 @@ def kind(mode: int) -> str:
 
 
 def reason(error: Exception) -> str:
-    """The system's words for a fault, without its number and the name of the file."""
+    """Return the system's message for an error, without error number and file name."""
     return (isinstance(error, OSError) and error.strerror) or str(error)
 
 

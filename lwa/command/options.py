@@ -103,7 +103,7 @@ def of_series(k: str, order: str, formats: Sequence[str]) -> Option:
 
 
 def given(option: str) -> bool:
-    """Whether the option was given on the command line."""
+    """True if the option was given on the command line."""
     source = click.get_current_context().get_parameter_source(option)
     return source is ParameterSource.COMMANDLINE
 
@@ -126,8 +126,8 @@ def si_units(k: sp.Expr) -> dict[str, str]:
 class ChainInput:
     """A chain as the options of a command or a file describe it.
 
-    precompression : the static load of a file, 0 for none.
-    si : whether the numbers are in SI.
+    precompression : static force of the chain, 0 for none.
+    si : True if the numbers are in SI.
     """
 
     cell: Cell

@@ -167,7 +167,7 @@ def _sums(found: Expansion, series: Mapping[str, EpsilonSeries]) -> dict[str, An
 
 
 def _told(sums: Mapping[str, Any]) -> Values:
-    """The error of c² and the widths, and the reason why a quantity has no sum."""
+    """JSON of the largest error of c² and the widths, and of the reasons for missing sums."""
     known = [s for key, s in sums.items() if key.startswith(("c2", "fwhm"))]
     summed = [one for one in known if isinstance(one, Resummed)]
     return {
@@ -182,7 +182,7 @@ def _told(sums: Mapping[str, Any]) -> Values:
 
 
 def _with_wave(answer: Answer, wave: ExpandedWave, units: Mapping[str, str]) -> Answer:
-    """The answer with the wave of some force, its JSON under ``physical``."""
+    """Add to the answer the wave of a force, in JSON under ``physical``."""
     unit = units.get("force", "")
     rows: list[Row | str] = ["", f"peak contact force {float(wave.F):g} {unit}".rstrip() + ":"]
     rows.append(Row("speed", "speed dx/dt", attempt(lambda: wave.speed), _SPEED))

@@ -36,7 +36,7 @@ class Jet(NamedTuple):
     t: Powers = ()
 
     def over(self, power: tuple[int, int]) -> tuple[Fraction, Fraction]:
-        """The power of the base beside the derivatives of this jet in base^{a + bk}, as (a, b)."""
+        """Power (a, b) of the base, base^{a + bk}, that is left beside the bare derivatives."""
         halves = Fraction(sum(e for _, e in self.t), 2)
         return power[0] - sum(e for _, e in self.x) - halves, power[1] - halves
 
@@ -90,7 +90,7 @@ class Terms(Mapping[Jet, sp.Expr]):
         self._converted, self._written = {}, {}
 
     def __repr__(self) -> str:
-        """The first terms; only the number of terms of a long coefficient."""
+        """The first terms as text; a long coefficient is represented by its number of terms."""
         first = [jet for jet in self if len(self._raw[jet]) <= _SHOWN][:_SHOWN]
         rows = [f"{jet}: {self[jet]}" for jet in first]
         more = len(self) - len(rows)
@@ -98,7 +98,7 @@ class Terms(Mapping[Jet, sp.Expr]):
         return f"{{{', '.join(rows)}}}"
 
     def written(self, jet: Jet) -> str:
-        """The coefficient as text; writing takes longest of all and is done once."""
+        """The coefficient as text, cached because large coefficients take long to write."""
         if jet not in self._written:
             self._written[jet] = str(self[jet])
         return self._written[jet]
@@ -130,14 +130,14 @@ class Terms(Mapping[Jet, sp.Expr]):
         return [_raised(name, str(e), style) for name, e in powers if e]
 
     def latex_total(self) -> str:
-        """The sum of the terms."""
+        """LaTeX of the sum of the terms."""
         return latex.total((self[jet], self.latex(jet)) for jet in self)
 
     def _repr_latex_(self) -> str:
         return latex.display([self.latex_total()])
 
     def without(self, left_out: Callable[[Jet], bool]) -> Terms:
-        """The terms without those of some jets."""
+        """The terms except those of the jets for which ``left_out`` is true."""
         raw = {jet: c for jet, c in self._raw.items() if not left_out(jet)}
         rest = Terms(self._model, raw, self.power, self._divisor)
         rest._converted, rest._written = self._converted, self._written

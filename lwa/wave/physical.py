@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from lwa.base.arrays import Array
 
 BEARERS = ("contact", "bead")
-"""Whose force it is."""
+"""Bearers of the prescribed peak force."""
 
 
 @dataclass(frozen=True)

@@ -49,7 +49,7 @@ class Strains:
 
     @cached_property
     def _compiled(self) -> list[tuple[Function, list[sp.Rational]]]:
-        """Functions of v and of the fractions in the expressions, which would become floats."""
+        """For F, F′ and Q a function of v and of exact fractions, and the values of these."""
         found = []
         for value in (self.force, self.slope, self.stiffness):
             numbers = {a: sp.Dummy() for a in value.atoms(sp.Rational) if not a.is_Integer}
@@ -67,8 +67,9 @@ class Strains:
     def precision(self, B: sp.Expr, digits: int) -> int:
         """Working digits with which Q(B) - Q(v) keeps twice the digits of the result.
 
-        Twice, because the difference falls as θ² towards the peak. How many the terms of Q cancel
-        is measured: the difference must not change with twice the working digits.
+        Twice as many, because the difference falls as θ² towards the peak. The number of digits
+        that the terms of Q cancel is measured: doubling the working digits must not change the
+        difference.
         """
         working, before = 2 * digits + 15, mpmath.inf
         while working < _MOST_PRECISION:
