@@ -218,7 +218,7 @@ def _at_one(wave: BackgroundWave) -> tuple[sp.Expr | None, dict[str, sp.Expr]]:
 def precompressed(theory: Theory, wave: PrecompressedWave, units: Mapping[str, str]) -> Answer:
     """Return the rows of `lwa wave --precompression F0 --force F`: the wave under a load.
 
-    ``speed`` and ``sound_speed`` are dx/dt, ``V_s`` dx/dτ; ``background`` is the strain under the
+    ``speed`` and ``sound_speed`` are dx/dt, V_s is dx/dτ; ``background`` is the strain under the
     load, B the rise of the strain in the wave, ``compressions`` the rises of the cell's contacts.
     Widths are numbers, lengths and (``fwhm_time_value``) times.
     """

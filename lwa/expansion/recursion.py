@@ -47,9 +47,9 @@ LastTerm = Callable[[Series, Series, Series], fmpq_mpoly]
 class Fields:
     """The fields e^{-Z²/4} Σ S_n t^n of a wave, or changes of the fields, as lists of S_n.
 
-    For each contact `force` and `strain` with their logarithms, for each bead `slope`; `means` and
-    `pushes` have the mean strain Σ C_i r_i / P and the last contact's force with their derivatives:
-    n → the terms at t^n of the 0-th, 1-st, …, n-th.
+    `force` and `strain` (with their logarithms) have one field per contact, `slope` one per bead.
+    `means` and `pushes` map n to the coefficients of t^n in the mean strain Σ C_i r_i / P or the
+    last contact's force, and in the first n derivatives of these.
     """
 
     def __init__(self, size: int) -> None:

@@ -158,7 +158,7 @@ def _below(theta: Array, at: float) -> Array:
 
 
 def strains(g: Grid, p0: Array, B: Array) -> Array:
-    """Strains at the nodes, computed from the nearer end of the wave."""
+    """Strains p0 + sB at the nodes, computed from p0 or p0 + B, whichever is nearer."""
     near = (p0 + B)[:, None] - B[:, None] * g.y2
     found: Array = np.where(g.y2 < 0.5, near, p0[:, None] + B[:, None] * g.s)
     return found
