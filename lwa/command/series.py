@@ -157,7 +157,7 @@ _LABELS = {
 
 
 def _sums(found: Expansion, series: Mapping[str, EpsilonSeries]) -> dict[str, Any]:
-    """Sums by key, with the effective mass and, for equal beads, the dissipation."""
+    """Mapping from key to sum, with effective mass and, for equal beads, dissipation."""
     sums = {key: attempt(one.at) for key, one in series.items()}
     sums["effective_mass"] = attempt(found.effective_mass.at)
     if len({*found.cell.masses}) == len({*found.cell.stiffnesses}) == 1:

@@ -118,8 +118,9 @@ _SYMBOLS = {"p": "p", "a": "a", "mu": r"\mu", "eta": r"\eta", "sigma": r"\sigma"
 def at_force(theory: Theory, wave: TravelingWave, F: sp.Expr, units: Mapping[str, str]) -> Answer:
     """Return the rows of `lwa wave --force F`: the compact wave of peak contact force F.
 
-    B and V_s = dx/dτ are those of this wave, ``speed`` is dx/dt. ``compressions`` are those of the
-    cell's contacts, ``compression`` their mean, ``fwhm`` lengths and ``fwhm_time`` times.
+    B is the peak strain of this wave, V_s = dx/dτ and ``speed`` = dx/dt. ``compressions`` has the
+    peak compression of each contact, ``compression`` the mean. ``fwhm`` and ``fwhm_time`` are the
+    widths in space and time.
     """
     cell, answer = theory.cell, wave.at_force(F)
     rows: list[Row | str] = [

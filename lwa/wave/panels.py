@@ -40,9 +40,9 @@ ROUNDING = 1e-9
 class Grid(NamedTuple):
     """Gauss panels in θ from 0 to ∞; the upper ones reach down to v = B/2, or 0.1 B if ``deep``.
 
-    ``s`` and ``y2`` = 1 - s stand at all nodes, and ``ds`` are the weights of ∫ … ds. ``starts``
-    and ``lengths`` are those of the upper panels, and row j of ``kernel`` maps F″ to ∫ K F″ ds / y²
-    at their node j; ``first`` and ``last`` do so at θ = 0 and at the end of the upper panels.
+    ``s``, ``y2`` = 1 - s and ``ds``, the weights of ∫ … ds, have one entry per node. ``starts`` and
+    ``lengths`` have one per upper panel. Row j of ``kernel`` maps F″ at the nodes to ∫ K F″ ds / y²
+    at the upper node j; ``first`` and ``last`` map to θ = 0 and to the end of the upper panels.
     """
 
     s: Array
