@@ -108,9 +108,9 @@ def expansion(
     c² is the sum of ``c2[n]`` ε^n at peak force 1 on the first contact; the others are
     ``prefactor`` ε^``power`` times the sum of ``coefficients[n]`` ε^n. Sums are in D, each with
     an estimate of its absolute error; ``error_estimate`` is the largest for c² and the widths,
-    ``asymptotic`` is true if higher orders do not reduce one of these errors. A quantity without a
-    sum (`lwa.EpsilonSeries.at`) is null, for the reason in ``unsummed``. ``physical`` holds the wave
-    of some force in the units of the cell.
+    ``asymptotic`` is true if higher orders do not reduce one of these errors. A quantity without
+    a sum (`lwa.EpsilonSeries.at`) is null, for the reason in ``unsummed``. ``physical`` has the
+    wave of some force in the units of the cell.
     """
     cell = found.cell
     series = {"c2": found.c2} | {f"fwhm.{q}": found.fwhm(q) for q in QUANTITIES}
