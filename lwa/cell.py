@@ -166,7 +166,7 @@ class Cell(Value):
         return tuple(_root(A, k, f"stiffness {i}") for i, A in enumerate(self.stiffnesses, 1))
 
     def shares(self, k: Any = k) -> tuple[sp.Expr, ...]:
-        """The shares C_i = P A_i^{-1/k} / Σ A_j^{-1/k}: a contact's strain over the mean strain."""
+        """The shares C_i = P A_i^{-1/k} / Σ A_j^{-1/k}, strain of contact i divided by the mean."""
         if len(set(self.stiffnesses)) == 1:
             return (sp.Integer(1),) * self.size
         compliances = self.compliances(k)

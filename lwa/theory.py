@@ -169,8 +169,8 @@ def _model(cell: Cell, k: Any, law: ContactLaw | None, branch: str, order: int) 
 def _affordable(order: int, parameters: int, closure: str) -> None:
     """Refuse an order whose result would outgrow memory.
 
-    D^{k+n} has at most one monomial per partition of n, and its coefficient at most about n terms
-    per free parameter and power; the jets of the velocity bring about n times as many in all.
+    The order D^{k+n} has at most one monomial per partition of n. A coefficient has at most about n
+    terms per free parameter and power. The jets of the velocity multiply the total by about n.
     """
     terms = int(sp.functions.combinatorial.numbers.partition(min(order, 100))) * order**parameters
     terms *= order if closure == "full" else 1

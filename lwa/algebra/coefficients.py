@@ -143,7 +143,7 @@ class SymPyConverter:
         polynomial = {v: _as_polynomial(v, symbols) for v in values}
         opaque = [v for v in dict.fromkeys(values) if polynomial[v] is None and not v.is_Rational]
         self._generators: list[sp.Expr] = [*symbols, *opaque]
-        self._irrational = any(v.is_number for v in opaque)  # whose powers may be alike
+        self._irrational = any(v.is_number for v in opaque)  # their powers may coincide
         context = fmpq_mpoly_ctx.get([f"x{i}" for i in range(len(self._generators))], Ordering.lex)
         self._context = context
         self._monomials: dict[tuple[int, ...], tuple[sp.Expr, ...]] = {}

@@ -50,7 +50,7 @@ class Force(ABC):
         self._known = None
 
     def carried(self, h: int, n: int) -> fmpq_mpoly:
-        """Coefficient of D^n in the increment of F(p) + p F' Φ under x → x + hD, over p F'.
+        """Coefficient of D^n in [F(p) + p F' Φ](x + hD) - [F(p) + p F' Φ](x), divided by p F'.
 
         The part of F(p) in the increment is h^n/n! ∂_x^{n-1} r_1, r_1 = p_x/p.
         """

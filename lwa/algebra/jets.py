@@ -7,12 +7,12 @@ and ∂_x raises the weight by one:
 
     ∂_x (p^e f) = p^e (e r_1 f + Σ_n ∂f/∂r_n (r_{n+1} - r_1 r_n)).
 
-The velocity joins with its own jets s_i = ∂_x^i u_τ / p^{(k+1)/2} of weight i (p = u_x), and where
-u_ττ = p^k Σ_j D^{j-1} E_j is known, so is the derivative in time (`JetAlgebra.dt`). Since every
+The velocity has jets of its own, s_i = ∂_x^i u_τ / p^{(k+1)/2} of weight i (p = u_x). The wave
+equation u_ττ = p^k Σ_j D^{j-1} E_j then gives the derivative in time (`JetAlgebra.dt`). Since every
 factor D comes with one ∂_x, a series in the spacing D is a list of polynomials, the n-th of weight
 n. Coefficients live in Q[parameters]; polynomials are python-flint's `fmpq_mpoly`.
 
-For a law F(p) that is no power, p F'(p) stands in place of p^k, and k is its exponent
+For a law F(p) that is no power, p F'(p) replaces p^k, and k is the local exponent
 d ln(p F')/d ln p = 1 + φ_2. The φ_n = p^{n-1} F^{(n)}(p)/F'(p), φ_1 = 1, are parameters that depend
 on p: p dφ_n/dp = φ_{n+1} + (n-1) φ_n - φ_n φ_2. For δ^k they are (k-1) … (k-n+1).
 """
@@ -33,7 +33,7 @@ Term = tuple[tuple[int, ...], fmpq]
 
 
 class Monomial(NamedTuple):
-    """The product of r_n^e over ``x`` and s_n^e over ``t``."""
+    """The product of the r_n^e, (n, e) in ``x``, and the s_n^e, (n, e) in ``t``."""
 
     x: Powers
     t: Powers = ()
@@ -42,9 +42,9 @@ class Monomial(NamedTuple):
 class JetAlgebra:
     """Polynomials in r_1 … r_weight over Q[parameters], with ∂_x.
 
-    With ``exponent``, which gives k as an element of the ring, the jets s_1 … s_weight of the
-    velocity are there too, and ∂_τ; with ``rest`` also s_0 = u_τ / p^{(k+1)/2} itself. The first
-    parameters are φ_2 … φ_smooth of a law that is no power.
+    With ``exponent``, a function that gives k as an element of the ring, the algebra has the jets
+    s_1 … s_weight of the velocity and ∂_τ too; with ``rest`` also s_0 = u_τ / p^{(k+1)/2} itself.
+    The first parameters are φ_2 … φ_smooth of a law that is no power.
 
     >>> jets = JetAlgebra((), weight=2)
     >>> jets.dx(jets.r[1], 0)

@@ -21,7 +21,7 @@ from lwa.law import ContactLaw, for_cell, phi_symbol
 class Model(Value):
     """A cell, a contact law and a branch.
 
-    highest : n of the highest φ_n that a derivation needs, for a law other than a power.
+    highest : index n of the highest φ_n that a derivation needs, for a law other than a power.
     constants : further expressions with which the coefficient ring is extended.
     """
 

@@ -181,7 +181,7 @@ def number(value: sp.Expr) -> float:
 
 
 def evaluated(value: sp.Expr, digits: int) -> sp.Expr:
-    """An exact number to the given digits, although its terms cancel up to thousands."""
+    """Evaluate an exact number to the given digits, even if thousands of digits cancel."""
     return sp.N(value, digits, maxn=MOST_CANCELLED)
 
 

@@ -48,14 +48,14 @@ def _acoustic(model: Model, order: int, progress: Progress[int]) -> Solution:
     k = model.ring.exponent(algebra.context)
     mu = model.ring.masses.elements(algebra.context)
     c = model.ring.contacts.elements(algebra.context)
-    right, left = contact(algebra, k), contact(algebra, k)  # of w - u, and of u - w one cell on
+    right, left = contact(algebra, k), contact(algebra, k)  # in the cell and to the next one
     first, second = Ladder(algebra, k), Ladder(algebra, k)  # E by equation 1 and by equation 2
     first.append(algebra.zero)
     second.append(algebra.zero)
     b = [algebra.one, c[0]]  # order D^k: equal forces, so the first contact takes its share
     for n in progress(range(1, order)):
-        # The strains of both contacts sum to u(x + 2D) - u(x). Let theirs differ by ξ r_n at D^n;
-        # each equation is written as far as it is known, and its ξ r_n has the weight ±1.
+        # The strains of both contacts sum to u(x + 2D) - u(x). Let the two differ by ξ r_n at D^n;
+        # both equations are evaluated without ξ r_n, which enters with the factors ±1.
         known = right.known - left.known
         one, two = known - left.carried(-2, n), -known
         condition = mu[1] * one - mu[0] * two + 2 * mu[0] * mu[1] * _applied(b, first, n)

@@ -156,8 +156,8 @@ class Writer(ABC):
 def wrapped(line: str, more: str = "") -> list[str]:
     """Break a statement into lines of at most 79 characters; all but the last end in ``more``.
 
-    It breaks in as few brackets as it can, behind a comma, a sum's sign or another operator, and
-    goes on where the innermost bracket has begun.
+    A line breaks inside as few brackets as possible, after a comma, a sum's sign or another
+    operator; the next line is indented to the start of the innermost bracket.
 
     >>> wrapped("def beta(" + "k, " * 25 + "m):")[1]
     '         k, k, m):'

@@ -22,7 +22,7 @@ FIELDS = {
 
 
 def chain_json(theory: Theory) -> dict[str, Any]:
-    """The chain, its law and the settings of a derivation; φ_n are functions of the compression."""
+    """JSON of the chain, its law and the settings; the φ_n are functions of the compression."""
     law = {}
     if not theory.law.homogeneous:
         law = {"law": str(theory.law.F), "phi": {str(n): str(x) for n, x in _phi(theory).items()}}
@@ -62,7 +62,7 @@ def _phi(theory: Theory) -> dict[int, sp.Expr]:
 
 
 def derivation(theory: Theory, tex: bool = False) -> Answer:
-    """The ansatz, the wave equation and the defect: `lwa derive`.
+    """Return the rows of `lwa derive`: the ansatz, the wave equation and the defect.
 
     In JSON ``terms`` is the right-hand side of u_ττ after its leading term. ``slaved`` (full
     closure) has, for each particle from 1 on, the terms J_n of w_i = u + u_x Σ D^n J_n in the

@@ -25,19 +25,19 @@ Option = Callable[[Command], Command]
 def setting(
     name: str, default: Any, help_text: str, names: Sequence[str] = (), **settings: Any
 ) -> Option:
-    """An option whose default the help shows."""
+    """Make an option whose default value is shown in the help."""
     return click.option(
         name, *names, default=default, show_default=True, help=help_text, **settings
     )
 
 
 def together(*options: Option) -> Option:
-    """One decorator of several options, in their order in the help."""
+    """Combine several options into one decorator, in their order in the help."""
     return lambda command: reduce(lambda c, option: option(c), reversed(options), command)
 
 
 def _choice(name: str, values: Sequence[str], help_text: str) -> Option:
-    """An option with a few names for its values, the first by default."""
+    """Make an option with a few names for its values, the first by default."""
     return setting(name, values[0], help_text, type=click.Choice(values))
 
 

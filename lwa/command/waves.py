@@ -118,8 +118,9 @@ _SYMBOLS = {"p": "p", "a": "a", "mu": r"\mu", "eta": r"\eta", "sigma": r"\sigma"
 def at_force(theory: Theory, wave: TravelingWave, F: sp.Expr, units: Mapping[str, str]) -> Answer:
     """Return the rows of `lwa wave --force F`: the compact wave of peak contact force F.
 
-    B and V_s = dx/dτ are those of this wave, ``speed`` is dx/dt. ``compressions`` are those of the
-    cell's contacts, ``compression`` their mean, ``fwhm`` lengths and ``fwhm_time`` times.
+    B is the peak strain of this wave, V_s = dx/dτ and ``speed`` = dx/dt. ``compressions`` has the
+    peak compression of each contact, ``compression`` the mean. ``fwhm`` and ``fwhm_time`` are the
+    widths in space and time.
     """
     cell, answer = theory.cell, wave.at_force(F)
     rows: list[Row | str] = [
@@ -217,7 +218,7 @@ def _at_one(wave: BackgroundWave) -> tuple[sp.Expr | None, dict[str, sp.Expr]]:
 def precompressed(theory: Theory, wave: PrecompressedWave, units: Mapping[str, str]) -> Answer:
     """Return the rows of `lwa wave --precompression F0 --force F`: the wave under a load.
 
-    ``speed`` and ``sound_speed`` are dx/dt, ``V_s`` dx/dτ; ``background`` is the strain under the
+    ``speed`` and ``sound_speed`` are dx/dt, V_s is dx/dτ; ``background`` is the strain under the
     load, B the rise of the strain in the wave, ``compressions`` the rises of the cell's contacts.
     Widths are numbers, lengths and (``fwhm_time_value``) times.
     """

@@ -40,8 +40,8 @@ class Envelope(Value):
     compression : mean static compression of the contacts.
     branch : 0 is the acoustic branch, 1 the lowest optical one.
 
-    Time and length have the cell's units. Frequencies are in radians per unit of time: of spheres
-    in SI in rad/s, and over 2π in Hz.
+    Time and length have the cell's units. Frequencies are in radians per unit of time, for spheres
+    in SI in rad/s.
     """
 
     cell: Cell

@@ -30,8 +30,8 @@ from lwa.linear.dispersion import Dispersion
 class Evolution(Value):
     """The equation (1 - I ∂_x²) u_ττ = ∂_x F(u_x) of a cell and a law, exact.
 
-    Pulses of Hertz contacts are too narrow in it, by 19 % (FWHM of the strain): the equation is for
-    the evolution of long waves, not for the widths of short ones.
+    Pulses of Hertz contacts are too narrow by 19 % in this equation (FWHM of the strain), which is
+    meant for the evolution of long waves, not for the widths of short ones.
 
     >>> from lwa import Power
     >>> Evolution(Cell([1], spacing=1), Power("3/2")).speed("B")

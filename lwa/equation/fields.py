@@ -172,7 +172,7 @@ class _Change:
                 strain.append(X_n)
             rest = (coefficient * degree * strain.Phi[n] for n in range(1, size))
             return [coefficient, *rest]
-        slopes = [coefficient]  # p^m ∂_p^m of it
+        slopes = [coefficient]  # p^m ∂_p^m coefficient
         for m in range(size - 1):
             slopes.append(self.algebra.scaled(slopes[-1], degree - m))
         powers = SeriesPowers([self.algebra.zero, *X])

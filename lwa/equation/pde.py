@@ -35,7 +35,7 @@ from lwa.wave.traveling import TravelingWave
 
 @dataclass(frozen=True)
 class PDE(OfClosure):
-    """The wave equation of a closure (its form stands at the head of the module)."""
+    """The wave equation of a closure, in the form that the docstring of the module states."""
 
     @cached_property
     def time_scale(self) -> sp.Expr:

@@ -27,9 +27,10 @@ _SHOWN = 3
 
 
 class Jet(NamedTuple):
-    """The product of (∂_x^i u / base)^e over ``x`` and (∂_x^i u_τ / base^{(k+1)/2})^e over ``t``.
+    """A product of powers (∂_x^i u / base)^e and (∂_x^i u_τ / base^{(k+1)/2})^e.
 
-    Both are tuples of (i, e). The base is u_x, on the optical branch u.
+    ``x`` and ``t`` are the tuples of (i, e) of the two kinds. The base is u_x, or u on the
+    optical branch.
     """
 
     x: Powers

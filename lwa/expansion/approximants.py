@@ -81,7 +81,7 @@ def resum(
 ) -> Resummed:
     """Sum unit · Σ coefficients[n] ε^n, all numbers, with an estimate of the error.
 
-    base : a series that is summed first; the difference to it is summed apart.
+    base : a series that is summed first; the difference of the two series is summed apart.
     relative : a further error, relative to the sum.
     """
     with mpmath.workdps(TERM_DIGITS):
@@ -162,7 +162,7 @@ def _sum(a: Sequence[mpmath.mpf], epsilon: mpmath.mpf) -> _Sum:
 
 
 def _truncated(a: Sequence[mpmath.mpf], epsilon: mpmath.mpf) -> _Sum:
-    """The sum up to the smallest term, or of all terms where they fall to the last."""
+    """Sum up to the smallest term, or of all terms if the last is the smallest."""
     terms = [x * epsilon**n for n, x in enumerate(a)]
     least = min((n for n, term in enumerate(terms) if term), key=lambda n: abs(terms[n]))
     grows = least < len(terms) - 1

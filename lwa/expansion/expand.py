@@ -112,7 +112,7 @@ class Expansion(Value):
 
     @cached_property
     def effective_mass(self) -> EpsilonSeries:
-        """The mass P²/(2E) of a particle with the wave's momentum and energy, at any force."""
+        """The mass P²/(2E) of a particle with the wave's momentum P and energy E, at any force."""
         unit = sp.sqrt(2 * sp.pi * self.I) * self.cell.mass / self.cell.size
         return self._series("effective_mass", unit, -sp.S.Half)
 

@@ -14,7 +14,7 @@ the linear chain's dispersion (`lwa.linear.bloch`), the force of the first conta
     log f_0 = -Z²/4 + Σ_n q_n(Z) (ε/I)^{n/2},
 
 the q_n are polynomials over Q[m̂, C, 1/I], and each solves q'' - Z q' + q = known + γ's next term,
-a triangular system; q_n(0) = q_n'(0) = 0 puts the peak, of force 1, at ξ = 0. The Gaussian as the
+a triangular system; q_n(0) = q_n'(0) = 0 makes the peak force 1, at ξ = 0. The Gaussian as the
 limit: James & Pelinovsky, Proc. R. Soc. A 470, 20130462 (2014).
 
 The algebra is in powers of t, (ε/I)^{1/2} = I t, so that no denominators appear.
@@ -47,9 +47,9 @@ LastTerm = Callable[[Series, Series, Series], fmpq_mpoly]
 class Fields:
     """The fields e^{-Z²/4} Σ S_n t^n of a wave, or changes of the fields, as lists of S_n.
 
-    For each contact `force` and `strain` with their logarithms, for each bead `slope`; `means` and
-    `pushes` have the mean strain Σ C_i r_i / P and the last contact's force with their derivatives:
-    n → the terms at t^n of the 0-th, 1-st, …, n-th.
+    `force` and `strain` (with their logarithms) have one field per contact, `slope` one per bead.
+    `means` and `pushes` map n to the coefficients of t^n in the mean strain Σ C_i r_i / P or the
+    last contact's force, and in the first n derivatives of these.
     """
 
     def __init__(self, size: int) -> None:
@@ -85,7 +85,7 @@ class Fields:
 
 
 class Recursion:
-    """The `fields` of a wave, order by order in t, over the ring Q[m̂, C], Z its first generator."""
+    """The `fields` of a wave, order by order in t, with coefficients in the ring Q[Z, m̂, C]."""
 
     def __init__(self, model: Model, order: int, progress: Progress[int] = iter) -> None:
         self.context = fmpq_mpoly_ctx.get(("Z", *model.ring.names), Ordering.lex)
@@ -140,7 +140,7 @@ class Recursion:
     def _extend(self, n: int, q: fmpq_mpoly | None = None) -> fmpq_mpoly:
         """Add the terms at t^n, with q_n = 0 unless it is known; return the residual there.
 
-        The residual is that of the balance of momentum, the last of the equations, over P.
+        The residual is that of the last equation, the balance of momentum, divided by P.
         """
 
         def exponential(log: Series, S: Series, _: Series) -> fmpq_mpoly:

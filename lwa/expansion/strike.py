@@ -2,7 +2,7 @@
 
 The wave of a chain of equal beads has the momentum P and the energy E of a particle of mass
 m_eff = P²/(2E) (`lwa.ExpandedWave.effective_mass`), and collides nearly like such a particle. An
-elastic collision with a striker of mass m_s and velocity v gives it the velocity
+elastic collision with a striker of mass m_s and velocity v gives the quasi-particle the velocity
 w = 2 m_s v/(m_s + m_eff), hence E = ½ m_eff w², and E ∝ F^{(k+1)/k} gives the peak force F. This is
 a rule; its errors are bounds of measured ones (cf. Job et al., Granular Matter 10, 13 (2007)).
 """

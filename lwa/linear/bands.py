@@ -60,7 +60,7 @@ def edges(fractions: Array, shares: Array) -> Array:
 def _strains(fractions: Array, shares: Array, kappa: ArrayLike) -> tuple[Complex, Complex]:
     """Return the matrix B(κ) and the only nonzero entry of dB/dκ, which is in its last row."""
     wave = finite(kappa, "kappa")
-    # by whole turns less, which e^{iκ} takes off exactly
+    # reduce κ to [-π, π]; e^{iκ} drops whole turns exactly
     wave = np.where(np.abs(wave) <= np.pi, wave, np.angle(np.exp(1j * wave)))
     P = len(fractions)
     mass, share = np.sqrt(P * fractions), np.sqrt(shares)

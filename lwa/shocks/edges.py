@@ -31,7 +31,7 @@ r = 1.19, and 9 % at p₋/p₊ = 3, r = 1.32."""
 
 
 def trailing(chain: Dispersion, r: sp.Expr) -> sp.Expr:
-    """Speed of the trailing edge over the speed of sound behind the front.
+    """Speed of the trailing edge divided by the speed of sound behind the front.
 
     Raises `lwa.InputError` for numbers beyond r = 1.3, where the edge fails, or beyond the branch,
     without sound ahead, r = ∞, and for cells of several beads where r is a symbol.
@@ -46,7 +46,7 @@ def trailing(chain: Dispersion, r: sp.Expr) -> sp.Expr:
 
 
 def leading(chain: Dispersion, r: sp.Expr) -> sp.Expr:
-    """Speed of the leading edge over the speed of sound ahead of the front.
+    """Speed of the leading edge divided by the speed of sound ahead of the front.
 
     Raises `lwa.InputError` without sound ahead, r = ∞, and for cells of several beads where r is a
     symbol.

@@ -258,7 +258,7 @@ class CompactWave(Value):
 
     @cached_property
     def _equation(self) -> tuple[sp.Symbol, dict[str, sp.Expr]]:
-        """The symbol p and `strain_equation` over I, with symbols for G/I and H/I."""
+        """The symbol p, and `strain_equation` divided by I with symbols for G/I and H/I."""
         p = sp.Dummy("p")
         return p, strain_equation(p, _SHARES[0], _SHARES[1], sp.S.One)
 

@@ -59,7 +59,7 @@ _LOADED_DOCS = {
 def wave_code(wave: CompactWave, language: str) -> str:
     """The source text of `wave_functions` in one of the `LANGUAGES`.
 
-    Python has those of the paper's reduction, `reduction_functions`, besides.
+    In Python the functions of the paper's reduction, `reduction_functions`, are added.
 
     Raises `lwa.InputError` for another language.
     """

@@ -40,9 +40,9 @@ ROUNDING = 1e-9
 class Grid(NamedTuple):
     """Gauss panels in θ from 0 to ∞; the upper ones reach down to v = B/2, or 0.1 B if ``deep``.
 
-    ``s`` and ``y2`` = 1 - s stand at all nodes, and ``ds`` are the weights of ∫ … ds. ``starts``
-    and ``lengths`` are those of the upper panels, and row j of ``kernel`` maps F″ to ∫ K F″ ds / y²
-    at their node j; ``first`` and ``last`` do so at θ = 0 and at the end of the upper panels.
+    ``s``, ``y2`` = 1 - s and ``ds``, the weights of ∫ … ds, have one entry per node. ``starts`` and
+    ``lengths`` have one per upper panel. Row j of ``kernel`` maps F″ at the nodes to ∫ K F″ ds / y²
+    at the upper node j; ``first`` and ``last`` map to θ = 0 and to the end of the upper panels.
     """
 
     s: Array
@@ -158,7 +158,7 @@ def _below(theta: Array, at: float) -> Array:
 
 
 def strains(g: Grid, p0: Array, B: Array) -> Array:
-    """Strains at the nodes, computed from the nearer end of the wave."""
+    """Strains p0 + sB at the nodes, computed from p0 or p0 + B, whichever is nearer."""
     near = (p0 + B)[:, None] - B[:, None] * g.y2
     found: Array = np.where(g.y2 < 0.5, near, p0[:, None] + B[:, None] * g.s)
     return found

@@ -29,9 +29,9 @@ from lwa.wave.background import DIGITS, BackgroundWave, taken_names
 class PrecompressedWave(Value):
     """The wave whose contact force peaks at ``force`` in a chain with the load ``precompression``.
 
-    Both are total forces, numbers or symbols, in the units of the cell; the dynamic force is their
-    difference. A force below the load is that of a rarefaction wave. Under a law that is no power
-    forces and chain must be numbers.
+    Both forces are total ones, numbers or symbols in the units of the cell; the dynamic force is
+    the difference of the two. A ``force`` below the load is that of a rarefaction wave. Under a law
+    that is no power forces and chain must be numbers.
 
     Raises `lwa.InputError` unless both are positive, and `lwa.NoSolitaryWave` without a wave.
 

@@ -141,7 +141,7 @@ class Profile:
         start, here = mpmath.mpf(0), mpmath.mpf(0)
         while here + (step := self._integral([start, start + 1])) < place:
             start, here = start + 1, here + step
-            if start > 3 * mpmath.mp.dps:  # v is nothing there
+            if start > 3 * mpmath.mp.dps:  # v is zero to all digits there
                 return start
 
         def passed(theta: Any) -> Any:
@@ -157,7 +157,7 @@ class Profile:
         return mpmath.findroot(function, bracket, solver="anderson", tol=accuracy, verify=False)
 
     def _integral(self, points: list[Any]) -> Any:
-        """The integral ∫ dξ by Gauss's rule on each piece, refined until the digits stand.
+        """The integral ∫ dξ by Gauss's rule on each piece, refined until the digits converge.
 
         Under a power with small k, n points err by 6^{-2n} on a piece of length 1, and degree d has
         n = 3·2^{d-1}. Steep laws, and waves next to their limiting amplitude, vary fast at θ = 0.

@@ -1,8 +1,8 @@
 """Waves on a background in float64: speed, width and profile for arrays of (p0, B).
 
 `lwa.wave.background` writes V² = Q(B) and Q(B) - Q(v) as differences of W and F, which cancel. Here
-they are integrals of F′ and F″ over the strains of the wave, p = p0 + sB, 0 < s < 1, whose
-integrands keep one sign under a law that stiffens:
+they are integrals of F′ and F″, at the strains p = p0 + sB of the wave, over 0 < s < 1. Under a law
+that stiffens the integrands keep one sign:
 
     Q(B)        = 2 ∫ (1-s) F′ ds,
     Q(B) - Q(v) = B ∫ K F″ ds,    K = (1-s)² for s > v/B,  (1-s)² - (1 - sB/v)² below.
