@@ -16,16 +16,16 @@ _FEWEST = 100  # steps that an adaptive method takes to find its step, however s
 
 
 def mean_step(method: str, rtol: float) -> float:
-    """The expected mean step of an adaptive method, in units of a scene's shortest time."""
+    """Return the expected mean step of an adaptive method, in units of a scene's shortest time."""
     a, order = _STEPS[method]
     return float(rtol ** (1 / order)) / a
 
 
 def most_steps(scene: Scene, method: str, steps: float, rows: int, memory: int = 0) -> int:
-    """The number of steps at which a run is stopped.
+    """Return the number of steps at which a run is stopped.
 
-    steps : expected. rows : numbers that are held for each sensor and sample. memory : further
-    bytes. Raises `SceneError` for more than `MOST_STEPS` or `MOST_BYTES`.
+    steps : expected number of steps. rows : numbers stored for each sensor and sample. memory :
+    further bytes. Raises `SceneError` for more than `MOST_STEPS` steps or `MOST_BYTES` bytes.
     """
     sensors = len(scene.contact_sensors) + len(scene.bead_sensors)
     memory += 8 * (80 * scene.size + scene.samples * (rows * sensors + 20))
@@ -43,7 +43,7 @@ def most_steps(scene: Scene, method: str, steps: float, rows: int, memory: int =
 
 
 def beyond(method: str, steps: int, t: float, duration: float) -> str:
-    """Message of the error for too many steps."""
+    """Return the message of the error for too many steps."""
     return (
         f"{steps} steps of {method} reach t = {t:g} of {duration:g}: rounding hides the motion, "
         "or rtol is too small for it"

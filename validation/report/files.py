@@ -13,7 +13,10 @@ from lwa.base.files import reason
 
 
 def output_file(name: str, path: str, suffixes: Sequence[str]) -> Path:
-    """Check that a file of one of the suffixes can be written; messages call it ``name``."""
+    """Return the path of a file of one of the suffixes after checking that it can be written.
+
+    Messages call the file ``name``.
+    """
     file = Path(path)
     try:
         if file.suffix.lower() not in suffixes:
@@ -33,7 +36,7 @@ def output_file(name: str, path: str, suffixes: Sequence[str]) -> Path:
 
 @contextmanager
 def replacing(file: Path) -> Iterator[Path]:
-    """A temporary file that replaces ``file`` at the end, and vanishes on a failure.
+    """Yield a temporary file that replaces ``file`` at the end, and is removed after a failure.
 
     A replaced file keeps its mode, and a symbolic link its target. Raises `lwa.InputError`.
     """
