@@ -1,4 +1,4 @@
-"""Executors of many runs: threads (the compiled engine releases Python's lock), a Dask cluster."""
+"""Executors of many runs: threads, as compiled runs release Python's lock, or a Dask cluster."""
 
 from __future__ import annotations
 
@@ -36,9 +36,9 @@ def threads(count: int | None = None, name: str = "workers") -> Iterator[Executo
 
 @contextmanager
 def cluster(address: str, patience: float = 5.0) -> Iterator[Executor]:
-    """Yield an executor of a running Dask cluster; address : address of its scheduler.
+    """Yield an executor of a running Dask cluster, given the address of its scheduler.
 
-    The workers must have `lwa` installed. Raises `lwa.InputError` without Dask, and where no scheduler
+    The workers must have `lwa` installed. Raises `lwa.InputError` without Dask, and if no scheduler
     with workers answers within ``patience`` seconds.
     """
     try:

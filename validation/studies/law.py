@@ -106,10 +106,7 @@ def law(
 
 
 def _pulses(data: str, least: int) -> tuple[Array, Array, Array | None]:
-    """Read a file of at least ``least`` pulses; return forces, speeds and weights.
-
-    The weights are None for a file without standard deviations.
-    """
+    """Read a file of ``least`` or more pulses; return forces, speeds and weights (None if none)."""
     read = columns(data, "force", "speed", optional=("force_error", "speed_error"))
     force, speed, *deviations = read.values()
     if len(force) < least or not (force.min() > 0 and speed.min() > 0):
