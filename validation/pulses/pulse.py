@@ -302,8 +302,7 @@ def derived(function: Callable[..., float], *numbers: Measured) -> Measured:
 def exponent(x: Sequence[Measured], y: Sequence[Measured]) -> Measured:
     """Return the exponent p of y ~ x^p, from a least-squares fit of the logarithms.
 
-    The errors of all numbers are added with their absolute values: errors of similar runs tend to
-    have the same sign and would cancel.
+    Absolute errors are added, as errors of similar runs have a common sign and would cancel.
     """
     logs = np.log([number.value for number in x]) - np.log([number.value for number in x]).mean()
     weights = logs / (logs @ logs)

@@ -27,8 +27,7 @@ class LeadingPower:
     """Leading power of the theory's error, coefficient · ε^order, and bounds of a measurement.
 
     constant : |error| ≤ constant · ε^order at each k measured.
-    order_bound, coefficient_bound : bounds of the relative errors of the fitted order and of the
-        extrapolated coefficient.
+    order_bound, coefficient_bound : relative bounds for the fitted order and coefficient.
     """
 
     order: int

@@ -253,9 +253,8 @@ def _search(
 ) -> Iterator[ExactWave]:
     """Yield waves found from several starts.
 
-    The first start is the theory's wave on the full grid, which leads to solitary waves. Then
-    follow, on a rough grid, the struck pulse at each half period and, if no wave was found from the
-    struck pulse, the theory's wave.
+    First comes the theory's wave on the full grid, which leads to solitary waves; then, on a rough
+    grid, the struck pulse at each half period and, if that leads to no wave, the theory's wave.
     """
     first, *others = ((False, L) for L in periods)
     led = False
