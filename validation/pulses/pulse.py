@@ -131,7 +131,10 @@ def leading_pulse(signal: Signal, k: float = 1.0, share: float = 0.5) -> Pulse:
 
 
 def leading_pulses(signal: Signal, k: float, shares: Sequence[float]) -> list[Pulse]:
-    """Measure the `leading_pulse` with rise and fall at each of several fractions of the peak."""
+    """Measure the `leading_pulse` of a signal once for each fraction of the peak in ``shares``.
+
+    The pulses of the list differ in the levels at which rise and fall are timed.
+    """
     grid, quarter = _Grid(signal), 0.25**k
     start = int(np.argmax(grid.f > quarter * grid.f.max()))
     relieved = grid.f[start:] < quarter * np.maximum.accumulate(grid.f[start:])
