@@ -90,7 +90,7 @@ def pulses(time: ArrayLike, signal: ArrayLike, least: float = 0.01) -> list[Puls
 
 
 def dense(record: Sampled, pulse: Pulse) -> Pulse:
-    """Return the pulse; raise `MeasureError` below `FEWEST` samples above half its peak."""
+    """Return the pulse if at least `FEWEST` samples exceed half its peak, else `MeasureError`."""
     inside = np.count_nonzero((record.times > pulse.rise) & (record.times < pulse.fall))
     if inside < FEWEST:
         few = f"{inside} samples lie above half the pulse's peak"
@@ -277,12 +277,12 @@ class Measured:
 
     @property
     def error(self) -> float:
-        """|value - check|."""
+        """Absolute error |value - check|."""
         return abs(self.value - self.check)
 
     @property
     def relative_error(self) -> float:
-        """|1 - check/value|."""
+        """Relative error |1 - check/value|."""
         return abs(1 - self.check / self.value)
 
     def __str__(self) -> str:

@@ -173,7 +173,7 @@ def _panel(axis: str, title: str, places: Sequence[tuple[sp.Rational, Place]]) -
 
 
 def place(k: sp.Rational, omega: sp.Rational, kind: str = SOLITARY) -> Place:
-    """Compare all theories with the truth at one k and ω.
+    """Return the comparison of all theories with the truth at one k and ω.
 
     Raises `MeasureError` where a struck chain's pulse is not steady.
     """
