@@ -40,7 +40,7 @@ class KnotPath:
         return self.knots.time
 
     def __call__(self, beads: Beads, time: Array) -> tuple[Array, Array]:
-        """Displacements and velocities (beads, S) at times (S,) within the run."""
+        """Return displacements and velocities (beads, S) at times (S,) within the run."""
         rows = np.searchsorted(self.knots.watched, beads)
         step = np.searchsorted(self.time[1:-1], time, side="right")
         y, v = np.empty((2, len(rows), len(time)))

@@ -208,7 +208,7 @@ def finished(
     window: int | None = None,
     path: Path | None = None,
 ) -> Run:
-    """Make a `Run` of its final state, records, final energy and change of momentum."""
+    """Return the `Run` with a given final state, records, final energy and change of momentum."""
     n, before = motion.size, motion.scales.energy
     arrays = records | {"displacements": end[:n].copy(), "velocities": end[n : 2 * n].copy()}
     for array in arrays.values():

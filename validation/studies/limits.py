@@ -63,7 +63,7 @@ class Row:
 
     @property
     def theory_value(self) -> float:
-        """The theory's number."""
+        """The theory's value of the quantity, as a float."""
         return float(sp.N(self.theory, 17))
 
     @property
@@ -79,7 +79,7 @@ class Row:
 
     @property
     def cells(self) -> tuple[Any, ...]:
-        """Cells of the table."""
+        """Cells of the row in the printed table."""
         numbers = self.theory, self.theory_value, self.lattice, self.error, self.bound
         return self.quantity, self.k, self.omega, *numbers, self.finding.ok
 

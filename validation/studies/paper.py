@@ -88,7 +88,7 @@ def recorded_chain(
 
 
 def chain_runs(sensors: Sequence[int], **options: Any) -> tuple[Run, Run]:
-    """Simulate a `recorded_chain` at both of `TOLERANCES`."""
+    """Simulate a `recorded_chain` at both of `TOLERANCES`; return the finer run first."""
     return twice(recorded_chain(sensors, **options), *TOLERANCES)
 
 

@@ -96,7 +96,11 @@ class Rung:
 
 @dataclass(frozen=True)
 class Place:
-    """All theories at one k and ω, with the truth by `NAMES` and its ``kind``."""
+    """Predictions of all theories at one k and ω, beside the lattice's values.
+
+    ``truth`` maps the quantities `NAMES` to values of the lattice; ``kind`` says whether they are
+    those of its exact wave or of a struck chain.
+    """
 
     k: sp.Rational
     omega: sp.Rational
@@ -169,7 +173,7 @@ def _panel(axis: str, title: str, places: Sequence[tuple[sp.Rational, Place]]) -
 
 
 def place(k: sp.Rational, omega: sp.Rational, kind: str = SOLITARY) -> Place:
-    """Compare all theories with the truth at one k and ω.
+    """Return the comparison of all theories with the truth at one k and ω.
 
     Raises `MeasureError` where a struck chain's pulse is not steady.
     """

@@ -95,7 +95,7 @@ class Profile(ArrayValue, Pictured):
         return np.asarray(getattr(self, name)(xi))
 
     def peak(self, name: str) -> tuple[float, float]:
-        """Place ξ and value of the maximum of a quantity."""
+        """Return the place ξ and the value of the maximum of a quantity."""
         xi = np.linspace(-self.half_period, self.half_period, 4 * self.samples + 1)
         return summit(lambda x: self.quantity(name, x), xi)
 

@@ -59,7 +59,7 @@ Pair = tuple[float, float]  # m1 and m2
 
 
 class NoWave(InputError):
-    """No wave was found; the message names its parameters."""
+    """Failure to find a wave; the message names the wave's parameters."""
 
     def __init__(self, text: str, masses: Pair, k: float, more: str = "") -> None:
         super().__init__(f"{text} at k = {k:g}, masses {masses[0]:g}, {masses[1]:g}{more}")
