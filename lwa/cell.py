@@ -98,8 +98,9 @@ class Cell(Value):
         """The cell of spheres in Hertz contact (k = 3/2), in the units of the spheres, such as SI.
 
         The spacing of unequal spheres is the mean distance of neighbours' centers, Σ 2 R_i / P.
-        The theory's x counts sites, times D; with this D a cell is as long as its spheres, so that
-        speeds and widths are lengths in space, and D u_x is the mean compression of its contacts.
+        The theory's x is the number of sites times D. With this D the cell is as long as its
+        spheres, so that widths and speeds are those in space, and D u_x is the mean compression of
+        the contacts.
 
         >>> from lwa.spheres.hertz import Material
         >>> ball = Sphere("m", "R", Material(E="193e9", nu="0.3"))
@@ -165,7 +166,7 @@ class Cell(Value):
         return tuple(_root(A, k, f"stiffness {i}") for i, A in enumerate(self.stiffnesses, 1))
 
     def shares(self, k: Any = k) -> tuple[sp.Expr, ...]:
-        """The shares C_i = P A_i^{-1/k} / Σ A_j^{-1/k}, strains of the contacts over their mean."""
+        """The shares C_i = P A_i^{-1/k} / Σ A_j^{-1/k}, strain of contact i divided by the mean."""
         if len(set(self.stiffnesses)) == 1:
             return (sp.Integer(1),) * self.size
         compliances = self.compliances(k)
@@ -173,7 +174,7 @@ class Cell(Value):
         return tuple(self.size * a / total for a in compliances)
 
     def stiffness(self, k: Any = k) -> sp.Expr:
-        """The stiffness A_eff of equal contacts with the same response."""
+        """The stiffness A_eff of P equal contacts with the same response as the cell."""
         if len(set(self.stiffnesses)) == 1:
             return self.stiffnesses[0]
         return power(sp.Add(*self.compliances(k)) / self.size, -exponent(k))
@@ -231,8 +232,8 @@ def substitution(
 ) -> dict[sp.Symbol, sp.Expr]:
     """Map symbols of a cell, of its exponent and more to the values given for their names.
 
-    ``omega``, where no symbol is called so, is the ratio m2/m1 of the cell's second mass to its
-    first: it replaces m2, or m1 where m2 has a value.
+    Unless a symbol has this name, ``omega`` is the ratio m2/m1 of the cell's second mass to its
+    first: m2 becomes ω m1, or m1 becomes m2/ω if a value is given for m2.
 
     Raises `lwa.InputError` for a name that does not occur, and a value of the cell or the exponent
     that is not positive.
@@ -290,8 +291,8 @@ def meant(
 ) -> sp.Expr:
     """Return the value; raise `lwa.InputError` if a symbol in it has a name of another meaning.
 
-    field : the name of the value in messages; ``own`` is the symbol name it may have.
-    taken : name → its meaning.
+    field : name of the value in messages. own : name that a symbol in the value may have.
+    taken : mapping from each reserved name to its meaning.
     """
     for name in sorted(s.name for s in value.free_symbols):
         if name in taken and name != own:

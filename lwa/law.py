@@ -1,11 +1,11 @@
 """Contact laws F(δ): a power, any smooth expression, or a function without an expression.
 
-The theory needs the change of a law with the strain p = δ/D,
+A law enters the theory through dimensionless functions of the compression δ,
 
     φ_n = δ^{n-1} F^{(n)}(δ) / F'(δ),    φ_1 = 1,
 
-which for δ^k are the numbers (k-1) … (k-n+1). A contact pushes with A F(δ), A the stiffness that
-the cell gives it: unlike contacts share the strain alike at every strain only under a power.
+which for δ^k are the numbers (k-1) … (k-n+1). The force of a contact is A F(δ), A its stiffness in
+the cell. The shares of unlike contacts in the strain are the same at every strain only for a power.
 """
 
 from __future__ import annotations
@@ -93,20 +93,20 @@ class ContactLaw(Value):
 
     @property
     def formless(self) -> bool:
-        """Whether F is a function without an expression, as that of `general`."""
+        """True if F is a function without an expression, as that of `general`."""
         return bool(self.F.atoms(AppliedUndef))
 
     def of_strain(self, p: sp.Expr, D: sp.Expr, n: int = 0) -> sp.Expr:
-        """The F^{(n)} at a strain in the units of u_ττ = F′(u_x) u_xx; the energy W for n = -1.
+        """The n-th derivative of F at the strain p, in the units of u_ττ = F′(u_x) u_xx.
 
-        It is F(Dp)/D, for a power p^k/k.
+        For n = 0 this is F(Dp)/D (p^k/k for a power), for n = -1 the energy W.
         """
         if n < 0:
             return self.energy.subs(self.delta, D * p) / D**2
         return self.at(D * p, n) * D ** (n - 1)
 
     def weight(self, p: sp.Expr, D: sp.Expr, a: sp.Expr, b: sp.Expr) -> sp.Expr:
-        """The weight p^a (p F′)^b of a jet at a strain; p^{a + bk} under a power."""
+        """The factor p^a (p F′)^b of a jet at the strain p; p^{a + bk} under a power."""
         return self.at(D * p, 1) ** b * p ** (a + b)
 
     def checked(self, cell: Cell) -> None:
@@ -275,8 +275,8 @@ def named(name: str, *parameters: Any) -> ContactLaw:
     - power: δ^k.
     - hertz2: a δ^{3/2} + b δ^{5/2}, Hertz and its next order.
     - exponential: (e^{aδ} - 1)/a, Toda's.
-    - magnetic: (1 - δ/d)^{-n} - 1, a force r^{-n} of poles at the distance r = d - δ, over its
-      value at δ = 0 and less it.
+    - magnetic: (1 - δ/d)^{-n} - 1, a force r^{-n} of poles at the distance r = d - δ, divided
+      by its value at δ = 0, minus 1.
     - polynomial: δ + a δ² + b δ³, of Fermi, Pasta, Ulam and Tsingou; a and b of either sign.
     - lennard-jones: (1 - δ/d)^{-13} - (1 - δ/d)^{-7}, d the distance of rest.
     - general: a law without an expression (`general`).
@@ -313,7 +313,7 @@ def read_law(value: Any, name: str) -> ContactLaw:
 
 
 def _uncaptured(value: sp.Expr, name: str, delta: sp.Symbol) -> None:
-    """Refuse a law's parameter that holds the symbol of the compression."""
+    """Raise `lwa.InputError` if a law's parameter holds the symbol of the compression."""
     meant(value, name, taken={delta.name: "the compression of a contact"})
 
 

@@ -43,16 +43,16 @@ class Theory(OfClosure):
 
     @property
     def ansatz(self) -> dict[int, sp.Expr]:
-        """The b_n by n of w = λ (u + Σ b_n D^n ∂_x^n u); empty for a cell of one particle.
+        """Mapping n → b_n in w = λ (u + Σ b_n D^n ∂_x^n u); empty for a cell of one particle.
 
-        In the full closure w, the field of the second particle, has nonlinear terms besides; all
-        of them are in `slaved`.
+        Here w is the field of the second particle. In the full closure w has nonlinear terms too;
+        `slaved` holds all terms.
         """
         return self.closure.b
 
     @cached_property
     def slaved(self) -> dict[int, dict[int, Terms]]:
-        """Terms J_n by particle i and n of w_i = u + u_x Σ D^n J_n (full closure, u the field)."""
+        """Mapping i → n → terms J_n of particle i, w_i = u + u_x Σ D^n J_n (full closure)."""
         return {
             i: {n: terms(self.closure, S, STRAIN) for n, S in enumerate(series, start=1)}
             for i, series in enumerate(self.closure.slaved)
@@ -76,9 +76,10 @@ class Theory(OfClosure):
 
     @cached_property
     def defect(self) -> dict[int, Terms]:
-        """Terms by n at D^{k+n} of u_ττ by the first equation minus u_ττ by the second.
+        """Mapping from n to the terms of D^{k+n} in the defect.
 
-        Only orders at which they disagree are listed: {} says that the ansatz satisfies both
+        The defect is u_ττ from the first equation of motion minus u_ττ from the second. Orders at
+        which the equations agree are left out: {} says that the ansatz satisfies both
         equations of motion to the order derived.
         """
         return {
@@ -168,8 +169,8 @@ def _model(cell: Cell, k: Any, law: ContactLaw | None, branch: str, order: int) 
 def _affordable(order: int, parameters: int, closure: str) -> None:
     """Refuse an order whose result would outgrow memory.
 
-    D^{k+n} has at most one monomial per partition of n, and its coefficient at most about n terms
-    per free parameter and power; the jets of the velocity bring about n times as many in all.
+    The order D^{k+n} has at most one monomial per partition of n. A coefficient has at most about n
+    terms per free parameter and power. The jets of the velocity multiply the total by about n.
     """
     terms = int(sp.functions.combinatorial.numbers.partition(min(order, 100))) * order**parameters
     terms *= order if closure == "full" else 1

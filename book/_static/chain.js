@@ -205,7 +205,7 @@
     }
 
     function report() {
-      if (!chain.arch) return (output.textContent = "The blow sorts itself out into a pulse …");
+      if (!chain.arch) return (output.textContent = "The pulse is forming; the theory's line appears after thirteen contacts …");
       const [lattice, theory] = [chain.speed(), chain.arch.speed];
       const error = lattice ? `; theory ${(100 * (theory / lattice - 1)).toFixed(1)} %` : "";
       output.textContent = `Peak force ${chain.arch.force.toFixed(3)}. Speed: theory ${theory.toFixed(3)}, lattice ${lattice ? lattice.toFixed(3) : "…"} sites per unit of time${error}`;
@@ -292,7 +292,7 @@
     const told = names.map(name => `${name} ${percent(here[name])}`).join(", ");
     const usable = names.slice(0, -1).filter(name => here[name] !== null && Math.abs(here[name]) < 0.06);
     const best = usable.sort((a, b) => Math.abs(here[a]) - Math.abs(here[b]))[0];
-    const text = `Width by theory over lattice less one, without a load, at ω = ${here.omega.toPrecision(2)}: ${told} per bead. Use ${best ? `the ${best}` : "the lattice"}.`;
+    const text = `Width, theory divided by lattice, minus one, without a load, at ω = ${here.omega.toPrecision(2)}: ${told} per bead. Use ${best ? `the ${best}` : "the lattice"}.`;
     const grid = element("div", {class: "lwa-strip", role: "img", "aria-label": text});
     for (const name of names) {
       grid.append(element("span", {}, name));

@@ -2,10 +2,10 @@
 
 Everything the theory derives is a polynomial in the jets of the field whose coefficients are
 polynomials in the exponent k, the mass fractions m̂_i = m_i/M and the strain shares C_i of the
-contacts. Rational values enter as numbers; each other distinct value becomes a generator of a
-python-flint polynomial ring (less one, since Σ m̂_i = 1 and Σ C_i = P). Under a law other than a
-power φ_2, φ_3, … stand in the place of k. Polynomials leave as factored SymPy expressions in the
-caller's own symbols.
+P contacts. Rational values enter as numbers; each other distinct value but the last becomes a
+generator of a python-flint polynomial ring (since Σ m̂_i = 1 and Σ C_i = P). Under a law other than
+a power the parameters φ_2, φ_3, … of `lwa.law` stand in the place of k. Polynomials are returned
+as factored SymPy expressions in the caller's own symbols.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ PRINTABLE_DIGITS = 4000
 
 @dataclass(frozen=True)
 class CoefficientRing(Value):
-    """The ring Q[variables, m̂, C, constants].
+    """The ring Q[variables, m̂, C, constants] of a derivation's coefficients.
 
     k : the exponent, a number, a variable, or 1 + φ_2.
     variables : k unless it is rational, or the symbols of φ_2, φ_3, ….
@@ -54,7 +54,7 @@ class CoefficientRing(Value):
         return ("k",) if self.variables == (self.k,) else tuple(map(str, self.variables))
 
     def writable(self, order: int) -> None:
-        """Refuse an order whose coefficients, powers of the ring's numbers, Python cannot print."""
+        """Raise `lwa.InputError` if coefficients of this order are too long for Python to print."""
         values = (self.k, *(self.masses.values or ()), *(self.contacts.values or ()))
         parts = [int(part) for x in values if x.is_Rational for part in (x.p, x.q)]
         digits = max((part.bit_length() for part in parts), default=0) * math.log10(2)
@@ -143,7 +143,7 @@ class SymPyConverter:
         polynomial = {v: _as_polynomial(v, symbols) for v in values}
         opaque = [v for v in dict.fromkeys(values) if polynomial[v] is None and not v.is_Rational]
         self._generators: list[sp.Expr] = [*symbols, *opaque]
-        self._irrational = any(v.is_number for v in opaque)  # whose powers may be alike
+        self._irrational = any(v.is_number for v in opaque)  # their powers may coincide
         context = fmpq_mpoly_ctx.get([f"x{i}" for i in range(len(self._generators))], Ordering.lex)
         self._context = context
         self._monomials: dict[tuple[int, ...], tuple[sp.Expr, ...]] = {}

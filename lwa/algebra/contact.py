@@ -1,11 +1,12 @@
 """The force of a contact as a series in the spacing D, for a power and for any other law.
 
-A contact whose strain is p (1 + X), X = Σ_{n≥1} D^n X_n, pushes with
+Let p be the strain of the field and p (1 + X), X = Σ_{n≥1} D^n X_n, the strain of a contact divided
+by its share C_i. The force of the contact is
 
-    F(p (1 + X)) = F(p) + p F'(p) Φ,    Φ = Σ_{m≥1} φ_m X^m/m!,
+    F(p (1 + X)) = F(p) + p F'(p) Φ,    Φ = Σ_{m≥1} φ_m X^m/m! = Σ_{n≥1} D^n Φ_n,
 
-φ_m = p^{m-1} F^{(m)}(p)/F'(p). For F = p^k, Φ obeys a recurrence of its own; for any other law its
-terms are sums over the powers of X.
+φ_m = p^{m-1} F^{(m)}(p)/F'(p). For F = p^k the terms Φ_n obey a recurrence (`Binomial`); for any
+other law they are sums over the powers of X (`Smooth`).
 """
 
 from __future__ import annotations
@@ -40,23 +41,23 @@ class Force(ABC):
 
     @abstractmethod
     def _nonlinear(self, n: int) -> fmpq_mpoly:
-        """Compute `known` for Φ_n."""
+        """Compute Φ_n - X_n for `known`."""
 
     def append(self, X_n: fmpq_mpoly) -> None:
-        """Append the next term of X, and of Φ."""
+        """Append the next term X_n to X, and Φ_n to Φ."""
         self.Phi.append(X_n + self.known)
         self.X.append(X_n)
         self._known = None
 
     def carried(self, h: int, n: int) -> fmpq_mpoly:
-        """Increment of the force F(p) + p F' Φ under the shift x → x + hD, at D^n and over p F'.
+        """Coefficient of D^n in [F(p) + p F' Φ](x + hD) - [F(p) + p F' Φ](x), divided by p F'.
 
-        The increment of F(p) is h^n/n! ∂_x^{n-1} r_1.
+        The part of F(p) in the increment is h^n/n! ∂_x^{n-1} r_1, r_1 = p_x/p.
         """
         return self.Phi.carried(h, n) + self._one.dx(0, n - 1) * fmpq(h**n, factorial(n))
 
     def work(self, n: int) -> fmpq_mpoly:
-        """The coefficient of D^n in ∫ Φ dX, the energy less its linear part, over p² F'."""
+        """Coefficient of D^n in ∫ Φ dX = [W(p (1 + X)) - W(p) - p F(p) X] / (p² F'), W' = F."""
         total = self.Phi[0]
         for j in range(1, n):
             total = total + j * self.X[j] * self.Phi[n - j]
@@ -70,7 +71,7 @@ class Binomial(Force):
 
         Φ_n = X_n + ((k + 1)/n) Σ_{j<n} j X_j Φ_{n-j} - Σ_{j<n} X_j Φ_{n-j},
 
-    polynomial in k and without a division by it.
+    a polynomial in k, free of divisions by k.
     """
 
     def _nonlinear(self, n: int) -> fmpq_mpoly:
@@ -121,5 +122,5 @@ class SeriesPowers:
 
 
 def contact(algebra: JetAlgebra, k: fmpq_mpoly) -> Force:
-    """The contact force for the law of the algebra, with the exponent k."""
+    """Make the force of a contact: a `Smooth` law if the algebra has its φ_n, else δ^k."""
     return Smooth(algebra, k) if algebra.phi else Binomial(algebra, k)

@@ -7,12 +7,12 @@ and ∂_x raises the weight by one:
 
     ∂_x (p^e f) = p^e (e r_1 f + Σ_n ∂f/∂r_n (r_{n+1} - r_1 r_n)).
 
-The velocity joins with its own jets s_i = ∂_x^i u_τ / p^{(k+1)/2} of weight i (p = u_x), and where
-u_ττ = p^k Σ_j D^{j-1} E_j is known, so is the derivative in time (`JetAlgebra.dt`). Since every
+The velocity has jets of its own, s_i = ∂_x^i u_τ / p^{(k+1)/2} of weight i (p = u_x). The wave
+equation u_ττ = p^k Σ_j D^{j-1} E_j then gives the derivative in time (`JetAlgebra.dt`). Since every
 factor D comes with one ∂_x, a series in the spacing D is a list of polynomials, the n-th of weight
 n. Coefficients live in Q[parameters]; polynomials are python-flint's `fmpq_mpoly`.
 
-For a law F(p) that is no power, p F'(p) stands in place of p^k, and k is its exponent
+For a law F(p) that is no power, p F'(p) replaces p^k, and k is the local exponent
 d ln(p F')/d ln p = 1 + φ_2. The φ_n = p^{n-1} F^{(n)}(p)/F'(p), φ_1 = 1, are parameters that depend
 on p: p dφ_n/dp = φ_{n+1} + (n-1) φ_n - φ_n φ_2. For δ^k they are (k-1) … (k-n+1).
 """
@@ -33,7 +33,7 @@ Term = tuple[tuple[int, ...], fmpq]
 
 
 class Monomial(NamedTuple):
-    """The product of r_n^e over ``x`` and s_n^e over ``t``."""
+    """The product of the r_n^e, (n, e) in ``x``, and the s_n^e, (n, e) in ``t``."""
 
     x: Powers
     t: Powers = ()
@@ -42,9 +42,9 @@ class Monomial(NamedTuple):
 class JetAlgebra:
     """Polynomials in r_1 … r_weight over Q[parameters], with ∂_x.
 
-    With ``exponent``, which gives k as an element of the ring, the jets s_1 … s_weight of the
-    velocity are there too, and ∂_τ; with ``rest`` also s_0 = u_τ / p^{(k+1)/2} itself. The first
-    parameters are φ_2 … φ_smooth of a law that is no power.
+    With ``exponent``, a function that gives k as an element of the ring, the algebra has the jets
+    s_1 … s_weight of the velocity and ∂_τ too; with ``rest`` also s_0 = u_τ / p^{(k+1)/2} itself.
+    The first parameters are φ_2 … φ_smooth of a law that is no power.
 
     >>> jets = JetAlgebra((), weight=2)
     >>> jets.dx(jets.r[1], 0)
@@ -113,10 +113,10 @@ class JetAlgebra:
         return self._derivation(exponent * self.r[1] * f, f, self._dx)
 
     def dt(self, f: Ladder, E: Ladder, n: int) -> fmpq_mpoly:
-        """The n-th term of ∂_τ (p^e Σ_m D^m f_m), over p^{e + (k-1)/2} and one power of D.
+        """Coefficient of D^{n-1} in ∂_τ (p^e Σ_m D^m f_m), divided by p^{e + (k-1)/2}.
 
-        f is a series of which the terms f_m, m < n, are known; E is the series of
-        u_ττ = p^k Σ_j D^{j-1} E_j, of which E_1 … E_{n-1} enter.
+        f : the series, whose terms f_m, m < n, are known.
+        E : the series of u_ττ = p^k Σ_j D^{j-1} E_j, whose terms E_1 … E_{n-1} are known.
         """
         result = last = f[n - 1]
         if not last.is_zero():
@@ -169,9 +169,9 @@ class JetAlgebra:
     def antiderivative(self, f: fmpq_mpoly, exponent: fmpq_mpoly) -> fmpq_mpoly | None:
         """Antiderivative g with ∂_x (p^e g) = p^e f, f of weight 2 or more; None if f has none.
 
-        The highest jet of a total derivative stands in it linearly, and its coefficient is the
-        slope of g in the jet below; taking that off lowers the highest jet, first of the velocity,
-        then of the strain.
+        A total derivative is linear in its highest jet, with the coefficient ∂g/∂(the jet below).
+        Subtracting the derivative of this part of g lowers the highest jet, first among those of
+        the velocity, then among those of the strain.
         """
         total = self.zero
         for index in reversed(range(self._offset, self.context.nvars())):
@@ -186,10 +186,10 @@ class JetAlgebra:
         return total if f.is_zero() else None
 
     def by_parts(self, f: fmpq_mpoly, exponent: fmpq_mpoly) -> fmpq_mpoly:
-        """Integrate by parts: f less some p^{-e} ∂_x (p^e g), without linear highest jets.
+        """Subtract a derivative p^{-e} ∂_x (p^e g) from f so that no highest jet remains linear.
 
-        f has one weight. In it s_n stands linearly beside lower jets of the velocity, r_n beside
-        lower ones of the strain where there is no velocity; r_1 alone is the derivative of p^e / e.
+        All terms of f have one weight. A highest jet is an s_n linear beside lower jets s_i, or,
+        in terms without s_i, an r_n beside lower r_i; r_1 alone is the derivative of p^e / e.
         """
         names = self.context.names()
         last = self.context.nvars() - 1
@@ -209,7 +209,7 @@ class JetAlgebra:
         return f.derivative(index).subs(dict.fromkeys(others, 0))
 
     def taken(self, f: fmpq_mpoly, other: JetAlgebra) -> fmpq_mpoly:
-        """Convert f from an algebra of the same parameters whose jets are among these."""
+        """Convert f from ``other``, an algebra with the same parameters and some of these jets."""
         more_t = (0,) * (other._lowest - self._lowest)
         found = {}
         for exponents, coefficient in f.terms():
@@ -253,7 +253,7 @@ class Ladder:
         self._rungs.append([f_n])
 
     def carried(self, h: fmpq_mpoly | int, n: int) -> fmpq_mpoly:
-        """Increment of the series under the shift x → x + hD: Σ_{0<j≤n} h^j/j! ∂_x^j f_{n-j}."""
+        """Coefficient Σ_{0<j≤n} h^j/j! ∂_x^j f_{n-j} of D^n in the increment under x → x + hD."""
         total = self.algebra.zero
         for j in range(1, n + 1):
             part = self.dx(n - j, j)

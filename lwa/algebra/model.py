@@ -21,7 +21,7 @@ from lwa.law import ContactLaw, for_cell, phi_symbol
 class Model(Value):
     """A cell, a contact law and a branch.
 
-    highest : n of the highest φ_n that a derivation needs, for a law other than a power.
+    highest : index n of the highest φ_n that a derivation needs, for a law other than a power.
     constants : further expressions with which the coefficient ring is extended.
     """
 
@@ -45,8 +45,8 @@ class Model(Value):
     def ring(self) -> CoefficientRing:
         """The ring of the coefficients.
 
-        The contacts of the optical branch move by equal amounts, so that they enter with their
-        shares of the stiffness, A_i / Σ A_j, instead of their shares of the strain.
+        On the optical branch all contacts are compressed by equal amounts. There the C_i are shares
+        of the stiffness, proportional to A_i, instead of shares of the strain.
         """
         stiffnesses = self.cell.stiffnesses
         if self.branch == "optical":
@@ -75,7 +75,7 @@ class Model(Value):
         return substitution(values, self.cell, more=(*self.law.symbols, *more))
 
     def replaced(self, new: Mapping[sp.Symbol, sp.Expr], order: int) -> Model:
-        """The model for these values of its symbols, and for this order."""
+        """The model with values in place of its symbols, for a derivation to this order."""
         cell = self.cell.replaced(new)
         law = for_cell(self.law.replaced(new), cell)
         return replace(self, cell=cell, law=law, highest=_highest(law, order))
@@ -87,5 +87,5 @@ def model_of(cell: Cell, law: ContactLaw, branch: str, order: int) -> Model:
 
 
 def _highest(law: ContactLaw, order: int) -> int:
-    """Index n of the highest φ_n at D^{order-1}; 2 at least, as the exponent holds φ_2."""
+    """Index n of the highest φ_n needed at D^{order-1}; at least 2, as k = 1 + φ_2."""
     return 0 if law.homogeneous else max(order - 1, 2)

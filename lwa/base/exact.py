@@ -29,8 +29,8 @@ _NAME = re.compile(r"[A-Za-zα-ωΑ-Ω][A-Za-zα-ωΑ-Ω0-9_]*")
 _NOT_A_NUMBER = {"nan", "inf", "infinity", "none", "null", "true", "false"}
 _LONGEST = 200
 _DIGITS = 1000
-_BITS = 3322  # of as many digits
-_ROOTLESS = 1024  # bits of an integer beyond a double
+_BITS = 3322  # bits of an integer of _DIGITS digits
+_ROOTLESS = 1024  # bits of the largest integers within a double
 _TOO_LONG = f"at most {_DIGITS} digits are wanted, before the point and behind it"
 
 
@@ -181,12 +181,12 @@ def number(value: sp.Expr) -> float:
 
 
 def evaluated(value: sp.Expr, digits: int) -> sp.Expr:
-    """An exact number to the given digits, although its terms cancel up to thousands."""
+    """Evaluate an exact number to the given digits, even if thousands of digits cancel."""
     return sp.N(value, digits, maxn=MOST_CANCELLED)
 
 
 class Kept(sp.UnevaluatedExpr):  # type: ignore[misc]  # untyped in SymPy
-    """A number under a power that SymPy leaves as it is, printed and evaluated as itself."""
+    """A number that SymPy does not multiply out in a power; it prints and evaluates as usual."""
 
     def _eval_is_positive(self) -> bool:
         return bool(self.args[0].is_positive)

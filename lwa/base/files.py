@@ -46,7 +46,7 @@ def load(path: str | Path, what: str, reader: Callable[[Any], T]) -> T:
         raise InputError(f"{path}: not a text in UTF-8") from None
     except RecursionError:
         raise InputError(f"{path}: nested too deeply for {what}") from None
-    except ValueError as error:  # of the parsers
+    except ValueError as error:  # raised by the parsers
         fault = str(error).partition(";")[0]
         raise InputError(f"{path}: not {suffix[1:].upper()}: {fault}") from None
 
@@ -80,7 +80,7 @@ def kind(mode: int) -> str:
 
 
 def reason(error: Exception) -> str:
-    """The system's words for a fault, without its number and the name of the file."""
+    """Return the system's message for an error, without error number and file name."""
     return (isinstance(error, OSError) and error.strerror) or str(error)
 
 

@@ -19,12 +19,12 @@ NOTAG = r" \notag"
 
 
 def display(rows: list[str]) -> str:
-    """Rows as one display for a notebook."""
+    """LaTeX of the rows as one display for a notebook."""
     return f"$$\\begin{{aligned}}\n{_aligned(rows, '')}\n\\end{{aligned}}$$"
 
 
 def align(rows: list[str]) -> str:
-    """Rows as an ``align`` environment of a paper, one number a row."""
+    """LaTeX of the rows as an ``align`` environment for a paper, one equation number a row."""
     return f"\\begin{{align}}\n{_aligned(rows, NOTAG)}\n\\end{{align}}"
 
 
@@ -108,7 +108,7 @@ SPEED = r"\frac{dx}{dt}"
 
 
 def rows(found: Mapping[str, sp.Expr]) -> list[str]:
-    """Rows ``name = value``, the names in LaTeX; without rows such as F = F.
+    """Return the rows ``name = value``, names in LaTeX, leaving out rows such as F = F.
 
     >>> rows({r"\\beta": sp.Integer(2)})
     ['\\\\beta = 2']

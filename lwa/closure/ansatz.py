@@ -1,9 +1,10 @@
 """The paper's closure (Porter et al. 2008): an ansatz that is linear in the field.
 
-For the dimer, u = w_0 and w = w_1 = λ (u + Σ b_n D^n ∂_x^n u), with the b_n found from the demand
-that both equations of `lwa.closure.solution` are identical at each order. A linear ansatz has one
-unknown per order, which settles the monomial ∂_x^n u. The first equation then is the wave equation,
-and its difference to the second is the defect.
+For the dimer, u = w_0 is the field of the first particle and w = w_1 = λ (u + Σ b_n D^n ∂_x^n u)
+that of the second. The numbers b_n follow from the demand that both equations of motion
+(`lwa.closure.solution`) give the same u_ττ. As each order has one unknown b_n, this can be met for
+one monomial, ∂_x^n u. The first equation then is the wave equation; the difference between the two
+is the defect.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from lwa.closure.solution import Solution
 
 
 def linear(model: Model, order: int, progress: Progress[int] = iter) -> Solution:
-    """The paper's closure, to D^order in the ansatz, on the branch of the model.
+    """Solve the paper's closure to D^order in the ansatz, on the branch of the model.
 
     Raises `lwa.InputError` for cells of more than two particles, which the ansatz does not cover.
     """
@@ -38,7 +39,7 @@ def linear(model: Model, order: int, progress: Progress[int] = iter) -> Solution
 
 
 def _applied(b: list[fmpq_mpoly], f: Ladder, n: int) -> fmpq_mpoly:
-    """The ansatz applied to a series, Σ_{0<j<n} b_j ∂_x^j f_{n-j}, without the term of b_n."""
+    """Term n of the ansatz applied to a series f, Σ_{0<j<n} b_j ∂_x^j f_{n-j}, without b_n."""
     return sum((b[j] * f.dx(n - j, j) for j in range(1, min(n, len(f)))), f.algebra.zero)
 
 
@@ -47,14 +48,14 @@ def _acoustic(model: Model, order: int, progress: Progress[int]) -> Solution:
     k = model.ring.exponent(algebra.context)
     mu = model.ring.masses.elements(algebra.context)
     c = model.ring.contacts.elements(algebra.context)
-    right, left = contact(algebra, k), contact(algebra, k)  # of w - u, and of u - w one cell on
+    right, left = contact(algebra, k), contact(algebra, k)  # in the cell and to the next one
     first, second = Ladder(algebra, k), Ladder(algebra, k)  # E by equation 1 and by equation 2
     first.append(algebra.zero)
     second.append(algebra.zero)
     b = [algebra.one, c[0]]  # order D^k: equal forces, so the first contact takes its share
     for n in progress(range(1, order)):
-        # The strains of both contacts sum to u(x + 2D) - u(x). Let theirs differ by ξ r_n at D^n;
-        # each equation is written as far as it is known, and its ξ r_n has the weight ±1.
+        # The strains of both contacts sum to u(x + 2D) - u(x). Let the two differ by ξ r_n at D^n;
+        # both equations are evaluated without ξ r_n, which enters with the factors ±1.
         known = right.known - left.known
         one, two = known - left.carried(-2, n), -known
         condition = mu[1] * one - mu[0] * two + 2 * mu[0] * mu[1] * _applied(b, first, n)

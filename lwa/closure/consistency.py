@@ -77,7 +77,7 @@ class Closure(Solution):
         )
 
     def latex_rows(self, most: int | None = None) -> list[str]:
-        """LaTeX of w = λ (u + b_1 D u_x + …), of λ and of the b_n, to D^most or all."""
+        """LaTeX of w = λ (u + b_1 D u_x + …), λ and the b_n, to D^most (all orders if None)."""
         if not self.ansatz:
             return []
         last = min(len(self.ansatz) - 1, most or len(self.ansatz))
@@ -103,7 +103,7 @@ class Closure(Solution):
 
     @property
     def fields(self) -> tuple[tuple[fmpq_mpoly, ...], ...]:
-        """The S_n of each particle, w_i = φ + D φ_x Σ D^n S_n (acoustic branch)."""
+        """Polynomials S_0, S_1, … of each field w_i = φ + D φ_x Σ D^n S_n (acoustic branch)."""
         if self.slaved:
             return self.slaved
         r, zero = self.algebra.r, self.algebra.zero
@@ -130,7 +130,7 @@ class Closure(Solution):
 
 @dataclass(frozen=True)
 class OfClosure(Value):
-    """Base of results that are read off a closure."""
+    """Base of results that are computed from a closure."""
 
     closure: Closure
 

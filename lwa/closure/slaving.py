@@ -28,9 +28,8 @@ def full(
 ) -> Solution:
     """The closure that satisfies all equations of motion, to D^order in the slaved fields.
 
-    ``field`` says which φ describes the chain: "first", the displacement of the first particle, or
-    "center", the mean Σ m̂_i w_i of the sublattice fields at one point, each w_i shifted back to x
-    from where its particle rests in units of strain, x_i = C_0 + … + C_{i-1}.
+    field : the φ of the theory, "first", the displacement of the first particle, or "center", the
+        mean Σ m̂_i w_i(x - x_i D) of all fields at one point, x_i = C_0 + … + C_{i-1}.
     """
     chain = _Slaving(model, order, field)
     for n in progress(range(1, order)):

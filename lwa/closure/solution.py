@@ -2,8 +2,8 @@
 
 All displacement fields w_0 … w_{P-1} of a cell are taken at the position x of its first particle
 and expressed by one field φ: w_i = φ + D φ_x S_i, S_i a series in D of polynomials in the jets of
-φ. In the units of `Cell.time_scale`, with F_i the force of contact i over A_eff D^k, the equations
-of motion of the P particles are
+φ (`lwa.algebra.jets`). Let m̂_i be the mass fractions, τ the time of `Cell.time_scale`, and F_i the
+force of contact i divided by A_eff D^k. The equations of motion of the P particles are
 
     P k D m̂_i ∂_ττ w_i = F_i(x) - F_{i-1}(x),    F_{-1}(x) = F_{P-1}(x - P D).
 """
@@ -23,10 +23,10 @@ class Solution:
 
     acceleration : E_n. Acoustic: φ_ττ = φ_x^k Σ_{n≥1} D^{n-1} E_n, E_1 = r_1 = φ_xx/φ_x.
         Optical: u_ττ = -u^k Σ_{n≥0} D^n E_n, E_0 = 1, in its own time unit.
-    ansatz : b_n, n = 0 … order: the linear part λ Σ b_n D^n ∂_x^n φ of the second particle's
-        field, which is all of it in the linear closure (polynomials in the parameters).
-    slaved : for each particle S_n, n = 0 … order - 1, of w_i = φ + D φ_x Σ D^n S_n (full only).
-    defect : E_n by the first equation minus E_n by the second, for the same ansatz.
+    ansatz : b_n, n = 0 … order: the second particle's field is λ Σ b_n D^n ∂_x^n φ in the linear
+        closure, and has this linear part in the full one (polynomials in the parameters).
+    slaved : S_0 … S_{order-1} of each field w_i = φ + D φ_x Σ D^n S_n (full closure only).
+    defect : E_n from the first equation of motion minus E_n from the second, for the same ansatz.
     """
 
     algebra: JetAlgebra

@@ -42,7 +42,7 @@ _JAVASCRIPT = re.findall(
 
 
 class Python(Writer, PythonCodePrinter):  # type: ignore[misc]  # untyped in SymPy
-    """Python and its `math`, for numbers."""
+    """Writer of Python functions of numbers, by the module `math`."""
 
     gap = 2
     reserved = frozenset({*keyword.kwlist, "abs", "math", "l", "O", "I"})  # I, l, O: PEP 8
@@ -63,7 +63,7 @@ class Python(Writer, PythonCodePrinter):  # type: ignore[misc]  # untyped in Sym
 
 
 class NumPy(Python, NumPyPrinter):  # type: ignore[misc]  # untyped in SymPy
-    """NumPy, for arrays that broadcast."""
+    """Writer of Python functions of arrays that broadcast, by NumPy."""
 
     reserved = Python.reserved - {"math"} | {"np", "map"}
     head = ("import numpy as np",)
@@ -82,7 +82,7 @@ class NumPy(Python, NumPyPrinter):  # type: ignore[misc]  # untyped in SymPy
 
 
 class C(Writer, C99CodePrinter):  # type: ignore[misc]  # untyped in SymPy
-    """C99 and its <math.h>."""
+    """Writer of C99 functions, by <math.h>."""
 
     comment = "//"
     reserved = frozenset({*_MATHEMATICS, "fabs", *reserved_words, *reserved_words_c99, *_NEWER_C})
@@ -111,7 +111,7 @@ class C(Writer, C99CodePrinter):  # type: ignore[misc]  # untyped in SymPy
 
 
 class Fortran(Writer, FCodePrinter):  # type: ignore[misc]  # untyped in SymPy
-    """Fortran 2008, free form, and its intrinsic functions."""
+    """Writer of Fortran 2008 in free form, by the intrinsic functions."""
 
     comment = "!"
     indent = "        "
@@ -163,7 +163,7 @@ class Fortran(Writer, FCodePrinter):  # type: ignore[misc]  # untyped in SymPy
 
 
 class Julia(Writer, JuliaCodePrinter):  # type: ignore[misc]  # untyped in SymPy
-    """Julia, for numbers; f.(x, …) broadcasts."""
+    """Writer of Julia functions of numbers; f.(x, …) broadcasts them."""
 
     reserved = frozenset({*_MATHEMATICS, *_JULIA})
 
@@ -183,7 +183,7 @@ class Julia(Writer, JuliaCodePrinter):  # type: ignore[misc]  # untyped in SymPy
 
 
 class JavaScript(Writer, JavascriptCodePrinter):  # type: ignore[misc]  # untyped in SymPy
-    """JavaScript and its `Math`, for numbers: plain functions, in a page as in a module."""
+    """Writer of JavaScript functions of numbers, by `Math`, for pages and modules."""
 
     comment = "//"
     reserved = frozenset(_JAVASCRIPT)

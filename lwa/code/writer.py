@@ -31,7 +31,7 @@ Local = tuple[tuple[sp.Symbol, sp.Expr], ...]
 
 @dataclass(frozen=True)
 class Function:
-    """A function: its value in its arguments and in ``local`` variables, computed in order."""
+    """A function: its value as an expression in its arguments and in ``local`` variables."""
 
     name: str
     doc: str
@@ -56,8 +56,8 @@ class Writer(ABC):
     head: ClassVar[tuple[str, ...]] = ()
     tail: ClassVar[tuple[str, ...]] = ()
     point: ClassVar[str] = ""  # suffix that makes an integer a double
-    power: ClassVar[str] = "e"  # of ten, in a literal
-    end: ClassVar[str] = ""  # of a statement
+    power: ClassVar[str] = "e"  # letter before the power of ten in a literal
+    end: ClassVar[str] = ""  # text that ends a statement
     more: ClassVar[str] = ""  # at the end of a line that the next one continues
     settings: ClassVar[dict[str, Any]] = {}
 
@@ -97,11 +97,11 @@ class Writer(ABC):
         return str(self.doprint(value))  # type: ignore[attr-defined]  # SymPy's
 
     def arguments(self, function: Function, kind: str = "") -> str:
-        """The names of a function's arguments, each behind its kind."""
+        """The names of a function's arguments, each after the word ``kind``."""
         return ", ".join(kind + self.names[s] for s in function.arguments)
 
     def statements(self, function: Function, define: str, result: str) -> list[str]:
-        """The local variables behind ``define``, then the value behind ``result``."""
+        """Statements for the local variables, after ``define``, and the value, after ``result``."""
         rows = [(f"{define}{self.names[symbol]} = ", value) for symbol, value in function.local]
         return [line for row in (*rows, (result, function.value)) for line in self._line(*row)]
 
@@ -156,8 +156,8 @@ class Writer(ABC):
 def wrapped(line: str, more: str = "") -> list[str]:
     """Break a statement into lines of at most 79 characters; all but the last end in ``more``.
 
-    It breaks in as few brackets as it can, behind a comma, a sum's sign or another operator, and
-    goes on where the innermost bracket has begun.
+    A line breaks inside as few brackets as possible, after a comma, a sum's sign or another
+    operator; the next line is indented to the start of the innermost bracket.
 
     >>> wrapped("def beta(" + "k, " * 25 + "m):")[1]
     '         k, k, m):'
@@ -202,7 +202,7 @@ def _letter(c: str) -> str:
 
 
 def _nearest(p: int, q: int) -> float:
-    """The double nearest to p/q, refused where there is none."""
+    """The double nearest to p/q; raise `lwa.InputError` beyond the range of doubles."""
     try:
         value = p / q
     except OverflowError:

@@ -64,7 +64,7 @@ def _masses(chain: Table) -> tuple[Cell, ContactLaw]:
 
 
 def _contacts(value: Any, name: str, period: int, beads: int) -> list[float]:
-    """Read the numbers of the contacts: one for all, those of a cell, or those of the chain."""
+    """Read one stiffness for all contacts, one for each of a cell, or one for each of the chain."""
     if not isinstance(value, list):
         return [positive(value, name)]
     found: list[float] = each(positive)(value, name)

@@ -38,7 +38,7 @@ STYLES = ("text", "json", "latex")
 
 
 def _chain(spheres: str | None, options: dict[str, Any]) -> ChainInput:
-    """Take the chain out of the options of a command, or read that of a file; refuse both."""
+    """Return the chain of a file, or of the options, which are removed; refuse both."""
     names = ("masses", "stiffnesses", "spacing", "k", "law")
     own = {name: options.pop(name) for name in names if name in options}
     if spheres is not None:
@@ -58,7 +58,7 @@ def _chain(spheres: str | None, options: dict[str, Any]) -> ChainInput:
 def _precompression(
     chain: ChainInput, background: sp.Expr | None, precompression: sp.Expr | None
 ) -> sp.Expr | None:
-    """The static force of a file or of the options; refuse a second load beside a file's."""
+    """Return the static force of the file or of the options; refuse two loads."""
     static = chain.precompression
     if static and (background is not None or precompression is not None):
         raise InputError(f"the file has a precompression of {static}: give no other load")

@@ -22,7 +22,7 @@ FIELDS = {
 
 
 def chain_json(theory: Theory) -> dict[str, Any]:
-    """The chain, its law and the settings of a derivation; φ_n are functions of the compression."""
+    """JSON of the chain, its law and the settings; the φ_n are functions of the compression."""
     law = {}
     if not theory.law.homogeneous:
         law = {"law": str(theory.law.F), "phi": {str(n): str(x) for n, x in _phi(theory).items()}}
@@ -62,13 +62,13 @@ def _phi(theory: Theory) -> dict[int, sp.Expr]:
 
 
 def derivation(theory: Theory, tex: bool = False) -> Answer:
-    """The ansatz, the wave equation and the defect: `lwa derive`.
+    """Return the rows of `lwa derive`: the ansatz, the wave equation and the defect.
 
-    In JSON ``terms`` are the right-hand side of u_ττ after its leading term. ``slaved`` (full
-    closure) are the terms J_n of w_i = u + u_x Σ D^n J_n by particle, 1 being the first, in the
+    In JSON ``terms`` is the right-hand side of u_ττ after its leading term. ``slaved`` (full
+    closure) has, for each particle from 1 on, the terms J_n of w_i = u + u_x Σ D^n J_n in the
     same form.
 
-    tex : whether LaTeX is wanted; that of a high order takes as long as the derivation.
+    tex : True for LaTeX too, which for a high order takes as long as the derivation.
     """
     head: Values = {
         **chain_json(theory),
@@ -176,7 +176,7 @@ _LETTERS = ("", "G ", "H ", "I ")
 
 
 def _order_name(theory: Theory) -> tuple[str, str]:
-    """The text before and behind the n of an order: the power of D where there is one."""
+    """Texts before and after the number n of an order, such as "D^(k+" and ")"."""
     if not theory.law.homogeneous:
         return "order ", ""
     return ("D^(k+", ")") if theory.closure.model.branch == "acoustic" else ("D^", "")

@@ -25,19 +25,19 @@ Option = Callable[[Command], Command]
 def setting(
     name: str, default: Any, help_text: str, names: Sequence[str] = (), **settings: Any
 ) -> Option:
-    """An option whose default the help shows."""
+    """Make an option whose default value is shown in the help."""
     return click.option(
         name, *names, default=default, show_default=True, help=help_text, **settings
     )
 
 
 def together(*options: Option) -> Option:
-    """One decorator of several options, in their order in the help."""
+    """Combine several options into one decorator, in their order in the help."""
     return lambda command: reduce(lambda c, option: option(c), reversed(options), command)
 
 
 def _choice(name: str, values: Sequence[str], help_text: str) -> Option:
-    """An option with a few names for its values, the first by default."""
+    """Make an option with a few names for its values, the first by default."""
     return setting(name, values[0], help_text, type=click.Choice(values))
 
 
@@ -103,7 +103,7 @@ def of_series(k: str, order: str, formats: Sequence[str]) -> Option:
 
 
 def given(option: str) -> bool:
-    """Whether the option was given on the command line."""
+    """True if the option was given on the command line."""
     source = click.get_current_context().get_parameter_source(option)
     return source is ParameterSource.COMMANDLINE
 
@@ -126,8 +126,8 @@ def si_units(k: sp.Expr) -> dict[str, str]:
 class ChainInput:
     """A chain as the options of a command or a file describe it.
 
-    precompression : the static load of a file, 0 for none.
-    si : whether the numbers are in SI.
+    precompression : static force of the chain, 0 for none.
+    si : True if the numbers are in SI.
     """
 
     cell: Cell

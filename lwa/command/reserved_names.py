@@ -1,7 +1,7 @@
 """Names that the output of a command uses itself, and that no symbol of a caller may have.
 
-`lwa.cell.RESERVED` holds the names that stand in results. The names here stand beside them: on the
-left of an equals sign, or in the text that a command prints.
+`lwa.cell.RESERVED` holds the names that occur in results. This module adds the names that a command
+prints to the left of an equals sign or elsewhere in its text.
 """
 
 from __future__ import annotations

@@ -37,7 +37,7 @@ class Row:
     label : name in text; not in text where empty.
     symbol : name in LaTeX; not in LaTeX where empty.
     number : the expression whose digits are printed, by default the value; None for no digits.
-    expression : whether JSON has the expression itself, besides its digits.
+    expression : True if JSON has the expression besides its digits.
     formula : LaTeX in place of the value's own where that is wider than a line.
     """
 
@@ -60,13 +60,13 @@ class Answer:
     """The result of a command.
 
     head : JSON of the chain and the settings; a value that only JSON needs may be a function.
-    rows : in the order of the text, whose other lines stand between them.
+    rows : the results and the other lines of text, in their order.
     units : unit of the values by key, for a chain in SI.
     spacing : the symbol of the unit of length, or a number.
     equations : rows of LaTeX before the others.
-    notes : limits of the numbers.
+    notes : sentences on the validity of the numbers.
     parts : further answers by their key in JSON.
-    orders : whether text says to which order of k - 1 a sum goes.
+    orders : True if text states the highest power of k - 1 in a sum.
     """
 
     head: Mapping[str, Any]

@@ -29,9 +29,9 @@ PLACES = 8
 def dispersion(chain: Dispersion, order: int, loaded: LoadedChain | None = None) -> Answer:
     """The series of Ω² by power of κ; ``optical`` is null unless the cell has two particles.
 
-    Under a load ``band_edges_value`` are (from, to) of each branch's frequency and ``gaps_value``
-    those between them, in s⁻¹ where the cell is in SI; ``branches_value`` has frequencies and group
-    velocities by wavenumber, lengths in D where D is a symbol.
+    Under a load ``band_edges_value`` has the frequencies (from, to) of each branch, ``gaps_value``
+    those of the gaps between branches, in s⁻¹ where the cell is in SI; ``branches_value`` has
+    frequencies and group velocities by wavenumber, lengths in D where D is a symbol.
     """
     cell = chain.cell
     branches = {"acoustic": chain.acoustic(order)}
@@ -107,10 +107,10 @@ def expansion(
 
     c² is the sum of ``c2[n]`` ε^n at peak force 1 on the first contact; the others are
     ``prefactor`` ε^``power`` times the sum of ``coefficients[n]`` ε^n. Sums are in D, each with
-    an estimate of its absolute error; ``error_estimate`` is the largest of those of c² and the
-    widths, ``asymptotic`` says that no higher order lessens one of them. A quantity without a sum
-    (`lwa.EpsilonSeries.at`) is null, for the reason in ``unsummed``. ``physical`` holds the wave of
-    some force in the units of the cell.
+    an estimate of its absolute error; ``error_estimate`` is the largest for c² and the widths,
+    ``asymptotic`` is true if higher orders do not reduce one of these errors. A quantity without
+    a sum (`lwa.EpsilonSeries.at`) is null, for the reason in ``unsummed``. ``physical`` has the
+    wave of some force in the units of the cell.
     """
     cell = found.cell
     series = {"c2": found.c2} | {f"fwhm.{q}": found.fwhm(q) for q in QUANTITIES}
@@ -157,7 +157,7 @@ _LABELS = {
 
 
 def _sums(found: Expansion, series: Mapping[str, EpsilonSeries]) -> dict[str, Any]:
-    """Sums by key, with the effective mass and, for equal beads, the dissipation."""
+    """Mapping from key to sum, with effective mass and, for equal beads, dissipation."""
     sums = {key: attempt(one.at) for key, one in series.items()}
     sums["effective_mass"] = attempt(found.effective_mass.at)
     if len({*found.cell.masses}) == len({*found.cell.stiffnesses}) == 1:
@@ -167,7 +167,7 @@ def _sums(found: Expansion, series: Mapping[str, EpsilonSeries]) -> dict[str, An
 
 
 def _told(sums: Mapping[str, Any]) -> Values:
-    """The error of c² and the widths, and the reason why a quantity has no sum."""
+    """JSON of the largest error of c² and the widths, and of the reasons for missing sums."""
     known = [s for key, s in sums.items() if key.startswith(("c2", "fwhm"))]
     summed = [one for one in known if isinstance(one, Resummed)]
     return {
@@ -182,7 +182,7 @@ def _told(sums: Mapping[str, Any]) -> Values:
 
 
 def _with_wave(answer: Answer, wave: ExpandedWave, units: Mapping[str, str]) -> Answer:
-    """The answer with the wave of some force, its JSON under ``physical``."""
+    """Add to the answer the wave of a force, in JSON under ``physical``."""
     unit = units.get("force", "")
     rows: list[Row | str] = ["", f"peak contact force {float(wave.F):g} {unit}".rstrip() + ":"]
     rows.append(Row("speed", "speed dx/dt", attempt(lambda: wave.speed), _SPEED))

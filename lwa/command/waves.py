@@ -60,9 +60,9 @@ def _fwhm_rows(key: str, label: str, widths: Mapping[str, sp.Expr], **settings: 
 
 
 def compact(theory: Theory, wave: TravelingWave) -> Answer:
-    """The compact wave for a general peak force: `lwa wave`.
+    """Return the rows of `lwa wave`: the compact wave for a general peak force.
 
-    Its values are at V_s = 1 (B, mu) and B = 1 (speed).
+    Floats are for V_s = 1 (B, mu) and for B = 1 (speed).
     """
     one, other = (wave.reduction(root) for root in (0, 1))
     names = ("p", "a", "mu", "eta", "sigma", "s")
@@ -116,10 +116,11 @@ _SYMBOLS = {"p": "p", "a": "a", "mu": r"\mu", "eta": r"\eta", "sigma": r"\sigma"
 
 
 def at_force(theory: Theory, wave: TravelingWave, F: sp.Expr, units: Mapping[str, str]) -> Answer:
-    """The compact wave of peak contact force F: `lwa wave --force F`.
+    """Return the rows of `lwa wave --force F`: the compact wave of peak contact force F.
 
-    B and V_s = dx/dτ are those of this wave, ``speed`` is dx/dt. ``compressions`` are those of the
-    cell's contacts, ``compression`` their mean, ``fwhm`` lengths and ``fwhm_time`` times.
+    B is the peak strain of this wave, V_s = dx/dτ and ``speed`` = dx/dt. ``compressions`` has the
+    peak compression of each contact, ``compression`` the mean. ``fwhm`` and ``fwhm_time`` are the
+    widths in space and time.
     """
     cell, answer = theory.cell, wave.at_force(F)
     rows: list[Row | str] = [
@@ -215,9 +216,9 @@ def _at_one(wave: BackgroundWave) -> tuple[sp.Expr | None, dict[str, sp.Expr]]:
 
 
 def precompressed(theory: Theory, wave: PrecompressedWave, units: Mapping[str, str]) -> Answer:
-    """The wave of a force in a chain under load: `lwa wave --precompression F0 --force F`.
+    """Return the rows of `lwa wave --precompression F0 --force F`: the wave under a load.
 
-    ``speed`` and ``sound_speed`` are dx/dt, ``V_s`` dx/dτ; ``background`` is the strain under the
+    ``speed`` and ``sound_speed`` are dx/dt, V_s is dx/dτ; ``background`` is the strain under the
     load, B the rise of the strain in the wave, ``compressions`` the rises of the cell's contacts.
     Widths are numbers, lengths and (``fwhm_time_value``) times.
     """
@@ -254,7 +255,7 @@ class Load:
     precompression: sp.Expr | None
 
     def under(self, other: bool) -> bool:
-        """Whether the wave runs under a load; 0 is a load if the law is no power (``other``).
+        """True if the wave runs under a load; 0 is a load if the law is no power (``other``).
 
         Raises `lwa.InputError` for two loads.
         """

@@ -1,12 +1,15 @@
 """Standing envelopes at the edge of a band: bright and dark breathers of a prescribed frequency.
 
-With A = a f(bn) e^{-iΩT}, Ω = -νω the distance from the band's edge, i A_T + ½ω″A_XX = χ|A|²A has
+Letters as in `lwa.envelopes.schrodinger`: a mode φ at the edge of a band has the frequency ω and
+the envelope A(X,T), i A_T + ½ω″A_XX = χ|A|²A. A breather of the frequency (1 - ν) ω, ν the
+detuning, in the cells n is A = a f(bn) e^{-iΩT}, Ω = -νω, with
 
     bright, ω″χ < 0:   f = sech,   χ a² = 2Ω,   ω″ b² = -2Ω,
     dark,   ω″χ > 0:   f = tanh,   χ a² = Ω,    ω″ b² = Ω,
 
-so that Ω has the sign of χ. A bead moves by 2a|φ| at most, and a contact by 2a|d| about its static
-compression δ0: contacts begin to open about 2a|d| = δ0, at a detuning ν_o since a² ∝ ν.
+so that Ω has the sign of χ. A bead is displaced by 2a|φ| at most, and the compression of a contact
+differs from its static value δ0 by 2a|d|, d the contact's compression in the mode. Contacts begin
+to open at about 2a|d| = δ0, that is at a detuning ν_o, as a² ∝ ν.
 """
 
 from __future__ import annotations
@@ -27,7 +30,7 @@ if TYPE_CHECKING:
     from lwa.base.arrays import Array
 
 KINDS = ("bright", "dark")
-"""An envelope that is localised, ω″χ < 0, and a dip in a wave train."""
+"""Kinds of envelopes: "bright" is localised, ω″χ < 0; "dark" is a dip in a wave train."""
 
 HELD = ("frequency", "amplitude")
 """Quantities of a breather that are held while the load changes."""
@@ -82,17 +85,17 @@ class Breather(Value):
 
     @property
     def frequency(self) -> sp.Expr:
-        """(1 - ν) ω."""
+        """Frequency (1 - ν) ω of the breather, in radians per unit of time."""
         return (1 - self.detuning) * self.edge
 
     @property
     def _shift(self) -> sp.Expr:
-        """2Ω/ν of bright, Ω/ν of dark breathers."""
+        """The ratio χ a²/ν: 2Ω/ν for bright, Ω/ν for dark breathers."""
         return -(2 if self.kind == KINDS[0] else 1) * self.edge
 
     @cached_property
     def _square(self) -> sp.Expr:
-        """a², the largest |A|²."""
+        """Square a² of the envelope's amplitude."""
         return sp.powsimp(sp.factor(self._shift * self.detuning / self.nonlinearity))
 
     @cached_property
@@ -102,16 +105,16 @@ class Breather(Value):
 
     @cached_property
     def width(self) -> sp.Expr:
-        """1/b in cells, of sech(bn) or tanh(bn)."""
+        """Width 1/b, in cells, of the envelope sech(bn) or tanh(bn)."""
         ratio = self.dispersion / (self._shift * self.detuning)
         return root(sp.factor(-ratio if self.kind == KINDS[0] else ratio))
 
     @cached_property
     def opening_detuning(self) -> sp.Expr:
-        """ν_o, at which contacts begin to open, to leading order; infinite where contacts pull.
+        """Detuning ν_o at which contacts begin to open, to leading order; ∞ if contacts pull.
 
-        Under a power law it is the same at every load. Contacts of the lattice open earlier: of
-        spheres of mass ratios 0.3 to 0.5 at 0.018 in place of 3/128 = 0.0234.
+        Under a power law ν_o is the same at every load. In the lattice contacts open earlier: for
+        spheres of mass ratios 0.3 to 0.5 at 0.018 instead of 3/128 = 0.0234.
 
         >>> from lwa import Cell, Power, envelope
         >>> chain = envelope(Cell([1, "1/2"]), Power("3/2"), precompression=1)
@@ -124,10 +127,10 @@ class Breather(Value):
         """The static force at which contacts begin to open, ``held`` "frequency" or "amplitude".
 
         Under F = A δ^k lengths scale as F0^{1/k} and frequencies as F0^{(k-1)/(2k)}, and contacts
-        open at the detuning ν_o whatever the load. If the amplitude is held, a² ∝ ν F0^{2/k} gives
-        F0 (ν/ν_o)^{k/2}: contacts open under *smaller* loads. If the frequency is held, (1 - ν)
-        F0^{(k-1)/(2k)} is, and F0 ((1-ν)/(1-ν_o))^{2k/(k-1)} results: contacts open under *greater*
-        loads, which lift the band, and the detuning and the amplitude with it.
+        open at the detuning ν_o whatever the load. A held amplitude keeps a² ∝ ν F0^{2/k}, and the
+        result is F0 (ν/ν_o)^{k/2}: contacts open under *smaller* loads. A held frequency keeps
+        (1 - ν) F0^{(k-1)/(2k)}, and the result is F0 ((1-ν)/(1-ν_o))^{2k/(k-1)}: contacts open
+        under *greater* loads, which lift the band and so increase the detuning and the amplitude.
 
         NaN for other laws. Raises `lwa.InputError` for another word.
         """

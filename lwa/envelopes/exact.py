@@ -1,9 +1,10 @@
 """Exact Bloch modes and their response: rational functions of x = ω², reduced by its equation.
 
-Masses, compliances, z = e^{iκ} and x generate a field of rational functions, in which
-`lwa.envelopes.modes` is evaluated. Real results depend on z + 1/z = 2 cos κ only; and of x, a root
-of the dispersion relation T(x) = 2 cos κ, a division with remainder leaves the lowest powers. The
-relation is det(K(κ) - xM) Π c_i = T(x) - 2 cos κ; cf. `lwa.Dispersion.trace`.
+Letters as in `lwa.envelopes.modes`. The m_i, c_i, z = e^{iκ} and x generate a field of rational
+functions, in which the formulas of that module are evaluated. Real results depend on
+z + 1/z = 2 cos κ only. As x is a root of the dispersion relation T(x) = 2 cos κ, a polynomial
+equation, a division with remainder reduces the powers of x in a result to the lowest ones. The
+polynomial T follows from det(K(κ) - xM) Π c_i = T(x) - 2 cos κ; cf. `lwa.Dispersion.trace`.
 """
 
 from __future__ import annotations
@@ -25,9 +26,9 @@ X, Z = sp.symbols("x z", cls=sp.Dummy)
 
 @dataclass(frozen=True, eq=False)
 class Root:
-    """x = ω² of a mode: a root of an irreducible polynomial, at a wavenumber.
+    """Squared frequency x = ω² of a mode at a wavenumber, a root of an irreducible polynomial.
 
-    cosine, phase : cos κ and e^{iκ}. values : letter of the field → its value.
+    cosine, phase : cos κ and e^{iκ}. values : mapping from the field's generators to values.
     """
 
     value: sp.Expr
@@ -54,7 +55,7 @@ class Root:
 
 
 def _in_cosine(polynomial: sp.Expr, cosine: sp.Expr) -> sp.Expr:
-    """z^{-h} Σ a_n z^n, n ≤ 2h, a_n = a_{2h-n}, by z^n + z^{-n} = 2 T_n(cos κ)."""
+    """Write z^{-h} Σ_{n≤2h} a_n z^n, a_n = a_{2h-n}, in cos κ by Chebyshev's T_n(cos κ)."""
     a = sp.Poly(polynomial, Z).all_coeffs()
     while len(a) > 1 and not a[-1]:
         a.pop()
@@ -84,8 +85,8 @@ def exact_mode(
 ) -> Mode:  # fmt: skip
     """The mode of a branch in exact numbers, in sin κ/2 and cos κ/2 unless cos κ is rational.
 
-    bead : index of the bead whose φ is positive. sampled : the float of an expression at a sample
-    of its symbols, by which roots ascend.
+    bead : index of the bead whose φ is positive. sampled : function that gives a float of an
+    expression, its symbols replaced by sample numbers; the roots are ordered by these floats.
 
     Raises `lwa.InputError` where the frequency has no exact form.
     """

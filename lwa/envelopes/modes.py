@@ -18,7 +18,7 @@ by d = B(κ)φ and at second order drives (Remoissenet, *Waves Called Solitons*,
 The lasting force f accelerates the cells, and their mean strain Σ e0 travels at the group velocity
 c_g, hence f = c_g² Σm Σe0. With v = c_g/c_0, c_0² = 1/(Σm Σc) the speed of sound, this gives
 f = 2 Σ c K3|d|²/Σ c · v²/(v² - 1), zero at a band's edge, where the load is held. At third order
-the frequency rises by χ|A|²; summed over the contacts i,
+the frequency rises by χ|A|², with the sum of all contacts i
 
     2ω χ = Σ_i [3 K4_i |d_i|⁴ + 2 K3_i (d̄_i² e2_i + |d_i|² e0_i)].
 

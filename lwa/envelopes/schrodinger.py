@@ -1,8 +1,10 @@
 """The nonlinear Schrödinger equation i A_T + ½ω″ A_XX = χ |A|²A of a mode of a loaded chain.
 
-u = A(X,T) φ e^{i(κn - ωt)} + c.c., Σ m|φ|² = 1, with the cell n, and κ and X per cell, is the
-motion to leading order (`lwa.envelopes.modes`). The load is held, not the length. Equal beads under
-A δ^k have χ = -ω (k-1) (k - cos² κ/2)/(m δ0²), δ0 the static compression.
+To leading order the displacements in cell n are u = A(X,T) φ e^{i(κn - ωt)} + c.c.: φ is the mode,
+Σ m_i |φ_i|² = 1 over the beads of a cell, ω its frequency, κ its wavenumber per cell, ω″ = d²ω/dκ²,
+X = n - (dω/dκ) t, T = t, and χ the nonlinear coefficient (`lwa.envelopes.modes`). The load is held,
+not the length. Equal beads under A δ^k have χ = -ω (k-1) (k - cos² κ/2)/(m δ0²), δ0 the static
+compression.
 """
 
 from __future__ import annotations
@@ -38,8 +40,8 @@ class Envelope(Value):
     compression : mean static compression of the contacts.
     branch : 0 is the acoustic branch, 1 the lowest optical one.
 
-    Time and length have the cell's units. Frequencies are in radians per unit of time: of spheres
-    in SI in rad/s, and over 2π in Hz.
+    Time and length have the cell's units. Frequencies are in radians per unit of time, for spheres
+    in SI in rad/s.
     """
 
     cell: Cell
@@ -75,7 +77,7 @@ class Envelope(Value):
 
     @cached_property
     def frequency(self) -> sp.Expr:
-        """ω of the mode.
+        """Frequency ω of the mode, in radians per unit of time.
 
         >>> from lwa import Power
         >>> envelope(Cell(["m1", "m2"]), Power("3/2"), precompression=1).frequency
@@ -86,14 +88,14 @@ class Envelope(Value):
 
     @cached_property
     def group_velocity(self) -> sp.Expr:
-        """dω/dκ, in cells per unit of time."""
+        """Group velocity dω/dκ, in cells per unit of time."""
         if sp.sin(self.wavenumber).is_zero:  # the edge of a band, in floats as well
             return sp.S.Zero
         return self._tidy(self._mode.slope * self._rate / (2 * self.frequency))
 
     @cached_property
     def dispersion(self) -> sp.Expr:
-        """ω″ = d²ω/dκ².
+        """Dispersion coefficient ω″ = d²ω/dκ².
 
         >>> from lwa import Power
         >>> envelope(Cell(["m"], ["K"]), Power(1), background="p0", wavenumber="q").dispersion
@@ -103,28 +105,28 @@ class Envelope(Value):
 
     @cached_property
     def nonlinearity(self) -> sp.Expr:
-        """χ, the rise of the frequency over |A|²."""
+        """Nonlinear coefficient χ: the amplitude A raises the frequency by χ|A|²."""
         found = self._mode.cubic * self._rate / (2 * self.frequency)
         return self._tidy(found / (self._mass * self._length**2))
 
     @cached_property
     def second_harmonic(self) -> tuple[sp.Expr, ...]:
-        """Compressions of the contacts at 2ω over A², a factor of e^{2i(κn - ωt)}; cf. `mode`."""
+        """Factor e2 for each contact: its second harmonic is A² e2 e^{2i(κn - ωt)} + c.c."""
         return self._each(self._mode.second, self._mass * self._length)
 
     @cached_property
     def mean_strain(self) -> tuple[sp.Expr, ...]:
-        """Lasting compressions of the contacts over |A|², that of the mean flow included."""
+        """Lasting compression of each contact divided by |A|², with the mean flow's part."""
         return self._each(self._mode.mean, self._mass * self._length)
 
     @cached_property
     def mode(self) -> tuple[sp.Expr, ...]:
-        """φ of each bead, Σ m|φ|² = 1; positive for the bead with the largest displacement."""
+        """Mode φ, one component per bead; positive for the bead with the largest displacement."""
         return self._each(self._mode.shape, root(self._mass))
 
     @cached_property
     def strains(self) -> tuple[sp.Expr, ...]:
-        """|d|² of each contact, the square of its compression over |A|²."""
+        """Square |d|² for each contact, whose compression is A d e^{i(κn - ωt)} + c.c. + …."""
         return self._each(self._mode.size, self._mass)
 
     @property
@@ -165,12 +167,12 @@ class Envelope(Value):
 
     @property
     def static_compressions(self) -> tuple[sp.Expr, ...]:
-        """δ0 of each contact."""
+        """Static compression δ0 of each contact."""
         return tuple(c * self.compression for c in self.cell.shares(self.law.exponent))
 
     @property
     def _opening(self) -> sp.Expr:
-        """|A|² at which the alternating compression 2|A||d| of a contact reaches the static one."""
+        """The |A|² at which the compression 2|A||d| of a contact reaches its static δ0."""
         roots = (p for p in self.law.F.atoms(sp.Pow) if p.base == self.law.delta)
         if not self.law.homogeneous and all(p.exp.is_integer for p in roots):  # real at δ < 0
             return sp.oo
@@ -192,13 +194,13 @@ class Envelope(Value):
 
     @cached_property
     def _rate(self) -> sp.Expr:
-        """The unit of ω²."""
+        """Unit of ω²: the first contact's linear stiffness divided by the first bead's mass."""
         K2 = K2_ANY if self.law.formless else self.law.at(self.static_compressions[0], 1)
         return sp.powsimp(self.cell.stiffnesses[0] * K2 / self._mass)
 
     @cached_property
     def _contacts(self) -> Contacts:
-        """The cell and its law, exact."""
+        """Exact masses, compressions and nonlinear coefficients, in the units of the first bead."""
         cell, law, delta = self.cell, self.law, self.static_compressions[0]
         if law.formless:
             s, t = K3_ANY / K2_ANY, K4_ANY / K2_ANY

@@ -1,10 +1,12 @@
-"""The wave equation that can be integrated: (1 - I ∂_x²) u_ττ = ∂_x F(u_x).
+"""A form of the wave equation that can be integrated: (1 - I ∂_x²) u_ττ = ∂_x F(u_x).
 
-In the field u = φ + (I/2) φ_xx, φ the canonical one, the wave equation to D^{k+3} is this equation,
-for every cell and law: the terms of F″ u_xx² cancel, and the rest of I F′ u_xxx stands on the left
-to the same order (Rosenau, Phys. Lett. A 118, 222 (1986), for equal beads). The canonical equation
-cut at D^{k+3} amplifies short waves without bound; this one is well posed, and its energy
-∫ [½ u_τ² + ½ I u_xτ² + W(u_x)] dx, W′ = F, is positive. On a strain p0 its waves v obey
+Let φ be the canonical field, F the contact force and I the coefficient of dispersion in the units
+of `lwa.wave.background`. In the field u = φ + (I/2) φ_xx the terms of order D^{k+3} of the wave
+equation are I ∂_x³ F(u_x), for every cell and law, and equal I ∂_x² u_ττ to this order
+(Rosenau, Phys. Lett. A 118, 222 (1986), for equal beads). The canonical equation cut at D^{k+3}
+amplifies short waves without bound; this one is well posed, and its energy
+∫ [½ u_τ² + ½ I u_xτ² + W(u_x)] dx, W′ = F, is positive. Its waves on a strain p0, u_x = p0 + v(ξ),
+ξ = x - V τ, with the rise B obey
 
     I V² v′² = v² (V² - Q(v)),    Q(v) = 2 [W(p0+v) - W(p0) - F(p0) v]/v²,    V² = Q(B).
 """
@@ -28,8 +30,8 @@ from lwa.linear.dispersion import Dispersion
 class Evolution(Value):
     """The equation (1 - I ∂_x²) u_ττ = ∂_x F(u_x) of a cell and a law, exact.
 
-    Pulses of Hertz contacts are too narrow in it, by 19 % (FWHM of the strain): the equation is for
-    the evolution of long waves, not for the widths of short ones.
+    Pulses of Hertz contacts are too narrow by 19 % in this equation (FWHM of the strain), which is
+    meant for the evolution of long waves, not for the widths of short ones.
 
     >>> from lwa import Power
     >>> Evolution(Cell([1], spacing=1), Power("3/2")).speed("B")
@@ -44,41 +46,41 @@ class Evolution(Value):
 
     @property
     def I(self) -> sp.Expr:
-        """I of the linear chain's dispersion, D² included."""
+        """Coefficient I in the linear chain's dispersion Ω² = κ² - I κ⁴ + …, D² included."""
         return Dispersion(self.cell, self.law.exponent).I * self.cell.spacing**2
 
     @property
     def field(self) -> dict[int, sp.Expr]:
-        """n → α_n of the field φ + Σ α_n D^n ∂_x^n φ, φ canonical (`lwa.PDE.in_field`)."""
+        """Mapping n → α_n for the field φ + Σ α_n D^n ∂_x^n φ, φ canonical (`lwa.PDE.in_field`)."""
         return {2: self.I / (2 * self.cell.spacing**2)}
 
     @property
     def time_scale(self) -> sp.Expr:
-        """τ/t."""
+        """The ratio τ/t of the times."""
         return self.cell.time_scale(self.law.exponent)
 
     def force(self, p: Any, n: int = 0) -> sp.Expr:
-        """F^{(n)} at the strain p, in the units of the equation; W for n = -1."""
+        """The n-th derivative F^{(n)}(p) in the units of the equation; the energy W for n = -1."""
         return self.law.of_strain(signed(p, "p"), self.cell.spacing, n)
 
     def energy_density(self, strain: sp.Expr, velocity: sp.Expr, x: sp.Symbol) -> sp.Expr:
-        """½ u_τ² + ½ I u_xτ² + W(u_x) for u_x and u_τ as functions of x."""
+        """Energy density ½ u_τ² + ½ I u_xτ² + W(u_x) for u_x and u_τ as functions of x."""
         kinetic = velocity**2 + self.I * velocity.diff(x) ** 2
         return kinetic / 2 + self.law.of_strain(strain, self.cell.spacing, -1)
 
     def frequency(self, q: Any, p0: Any) -> sp.Expr:
-        """Ω = c0 q/√(1 + I q²) in τ of a small wave on the strain p0; bounded for short waves."""
+        """Frequency Ω = c0 q/√(1 + I q²) in τ of small waves of wavenumber q, c0 = √F′(p0)."""
         q = signed(q, "q")
         return root(self.force(p0, 1)) * q / root(1 + self.I * q**2)
 
     def speed(self, B: Any, p0: Any = 0) -> sp.Expr:
-        """V = dx/dτ of the wave that rises from the strain p0 by B."""
+        """Speed V = dx/dτ of the wave whose strain rises from p0 to p0 + B."""
         B, p0 = exact(B, "B"), exact(p0, "p0")
         W, W0 = (self.force(p, -1) for p in (p0 + B, p0))
         return root(sp.powsimp(sp.factor(2 * (W - W0 - self.force(p0) * B) / B**2)))
 
     def profile(self, xi: Any, B: Any) -> sp.Expr:
-        """v = B sech^{2/(k-1)}((k-1) ξ/(2√I)), the wave without load under a power law.
+        """Strain v = B sech^{2/(k-1)}((k-1) ξ/(2√I)) of the wave without load, for a power law.
 
         Raises `lwa.InputError` for other laws.
         """

@@ -1,7 +1,7 @@
 """The wave equation in another field, φ = u + Σ_n α_n D^n ∂_x^n u with constants α_n.
 
 Inverted, u = φ + Σ ℓ_n D^n ∂_x^n φ, so that with X = Σ ℓ_n D^n r_n the strain of u is p (1 + X),
-its jets are (r_m + Σ ℓ_n D^n r_{m+n}) / (1 + X), those of its velocity likewise over
+its jets are (r_m + Σ ℓ_n D^n r_{m+n}) / (1 + X), those of its velocity likewise divided by
 (1 + X)^{(k+1)/2}, and φ_ττ = (1 + Σ α_n D^n ∂_x^n) u_ττ. Under a law that is no power, functions
 of p, the φ_n in the coefficients among them, are expanded about φ_x.
 """
@@ -62,7 +62,7 @@ class ChangedClosure(Closure):
     def anew(
         self, new: Mapping[sp.Symbol, sp.Expr] | None = None, order: int | None = None
     ) -> Closure:
-        """The derivation for other values of its symbols, or to another order."""
+        """Derive again with these values of the symbols, or to this order."""
         alphas = {n: alpha.xreplace(new or {}) for n, alpha in self.alphas}
         return change_field(self.origin.anew(new, order), alphas)
 
@@ -124,7 +124,7 @@ class _Change:
         )
 
     def slaved(self, S: Sequence[fmpq_mpoly]) -> tuple[fmpq_mpoly, ...]:
-        """The terms of w - φ = (u - φ) + D u_x S, over D φ_x, in the jets of φ."""
+        """The terms of [(u - φ) + D u_x S] / (D φ_x) in the jets of φ; the numerator is w - φ."""
         moved = self._replaced(S, self.algebra.one)
         return tuple(self.inverse[n + 1] * self.algebra.r[n] + moved[n] for n in range(self.size))
 
@@ -161,7 +161,7 @@ class _Change:
         return series
 
     def _of_strain(self, coefficient: fmpq_mpoly, degree: fmpq_mpoly, size: int) -> Series:
-        """The series of coefficient · (1 + X)^degree, a power of u_x over the same power of φ_x.
+        """The series of coefficient · (1 + X)^degree, where 1 + X = u_x/φ_x.
 
         Under a law that is no power the coefficient depends on p too.
         """
@@ -172,7 +172,7 @@ class _Change:
                 strain.append(X_n)
             rest = (coefficient * degree * strain.Phi[n] for n in range(1, size))
             return [coefficient, *rest]
-        slopes = [coefficient]  # p^m ∂_p^m of it
+        slopes = [coefficient]  # p^m ∂_p^m coefficient
         for m in range(size - 1):
             slopes.append(self.algebra.scaled(slopes[-1], degree - m))
         powers = SeriesPowers([self.algebra.zero, *X])

@@ -5,9 +5,11 @@ Acoustic branch (the wave equation of Porter et al. 2008 is order 4 of the dimer
 
     u_ττ = u_x^{k-1} u_xx + u_x^k Σ_{n≥2} D^{n-1} Σ_jets coefficient · Π_i (∂_x^i u / u_x)^{e_i},
 
-where n stands at D^{k+n} of the equations of motion; n = 3 holds G, H and I. For a law F(δ) that
-is no power F′(D u_x) replaces u_x^{k-1}, and the coefficients hold φ_2, φ_3, …. Optical branch, in
-its own time unit: u_ττ = -u^k + u^k Σ_{n≥1} D^n Σ_jets coefficient · Π_i (∂_x^i u / u)^{e_i}.
+where a jet is a set of pairs (i, e_i), and order n collects the terms with D^{k+n} in the equations
+of motion; G, H and I are the coefficients of n = 3. Under a law F(δ) that is no power F′(D u_x)
+replaces u_x^{k-1}, and coefficients hold φ_2, φ_3, … (`lwa.law`). Optical branch, in its time unit:
+
+    u_ττ = -u^k + u^k Σ_{n≥1} D^n Σ_jets coefficient · Π_i (∂_x^i u / u)^{e_i}.
 
 Coefficients are converted to SymPy one by one, when they are looked up.
 """
@@ -33,7 +35,7 @@ from lwa.wave.traveling import TravelingWave
 
 @dataclass(frozen=True)
 class PDE(OfClosure):
-    """The wave equation of a closure (its form stands at the head of the module)."""
+    """The wave equation of a closure, in the form that the docstring of the module states."""
 
     @cached_property
     def time_scale(self) -> sp.Expr:
@@ -47,7 +49,7 @@ class PDE(OfClosure):
 
     @cached_property
     def coefficients(self) -> Mapping[int, Terms]:
-        """Terms by n at D^{k+n} (optical: D^n), without the power of D; {} for a vanishing order.
+        """Mapping from n to the terms of D^{k+n} (optical: D^n), without D; {} if they vanish.
 
         The leading term u_x^{k-1} u_xx (or -u^k) is left out.
         """
@@ -70,12 +72,12 @@ class PDE(OfClosure):
 
     @property
     def third_order(self) -> dict[str, sp.Expr]:
-        """G, H and I by their letters; {} below order 4 and on the optical branch."""
+        """Mapping from "G", "H", "I" to their values; {} below order 4 or on the optical branch."""
         known = self.acoustic and self.closure.order >= 4
         return {"G": self.G, "H": self.H, "I": self.I} if known else {}
 
     def latex_rows(self, most: int | None = None) -> list[str]:
-        """The equation to D^{k+most} (or all), with G, H, I at D^{k+3}, and their values."""
+        """LaTeX of the equation to D^{k+most} (all orders if None), and of G, H, I."""
         letters = self.third_order
         leading = "u_{x}^{k-1}" if self.law.homogeneous else "F'"
         parts = [f"{leading} u_{{xx}}" if self.acoustic else "-u^{k}"]
@@ -127,8 +129,7 @@ class PDE(OfClosure):
     def conservative(self) -> bool:
         """True if every order is ∂_x of a flux, so that the momentum ∫ u_τ dx is conserved.
 
-        D^{k+3}, the first order that may have no flux, is derived for an equation of lower order
-        too.
+        The order D^{k+3}, the first that may lack a flux, is derived and examined in any case.
         """
         return self.acoustic and None not in self._at_least_to_third_order._fluxes.values()
 
@@ -138,7 +139,7 @@ class PDE(OfClosure):
 
     @cached_property
     def _fluxes(self) -> dict[int, fmpq_mpoly | None]:
-        """Fluxes F_n by n ≥ 2, u_x^k E_n = ∂_x (u_x^k F_n); None for an order without a flux."""
+        """Mapping from n ≥ 2 to the flux F_n, u_x^k E_n = ∂_x (u_x^k F_n), or None without one."""
         return {n: flux(self.closure, n) for n in self._orders}
 
     @cached_property
@@ -164,10 +165,10 @@ class PDE(OfClosure):
 
     @cached_property
     def energy(self) -> Mapping[int, Terms]:
-        """Terms e_n / u_x^{k+1} of the energy's density Σ D^n e_n by n, to n = order - 2.
+        """Mapping from n ≤ order - 2 to the terms e_n / u_x^{k+1} of the energy density Σ D^n e_n.
 
-        It is the chain's own energy in the slaved fields (`lwa.equation.energy`): its ∂_τ is ∂_x of
-        a flux to the order of the closure, in every field. e_0 = u_τ²/2 + u_x^{k+1}/(k(k+1)). For a
+        This is the energy of the chain in the slaved fields (`lwa.equation.energy`). To the order
+        of the closure it is conserved, in every field. e_0 = u_τ²/2 + u_x^{k+1}/(k(k+1)). For a
         law that is no power the terms are e_n / (u_x² F′), and e_0 lacks W(u_x), W′ = F.
 
         Raises `lwa.InputError` on the optical branch, and for a closure that leaves a defect.

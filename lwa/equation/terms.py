@@ -27,16 +27,17 @@ _SHOWN = 3
 
 
 class Jet(NamedTuple):
-    """The product of (∂_x^i u / base)^e over ``x`` and (∂_x^i u_τ / base^{(k+1)/2})^e over ``t``.
+    """A product of powers (∂_x^i u / base)^e and (∂_x^i u_τ / base^{(k+1)/2})^e.
 
-    Both are tuples of (i, e). The base is u_x, on the optical branch u.
+    ``x`` and ``t`` are the tuples of (i, e) of the two kinds. The base is u_x, or u on the
+    optical branch.
     """
 
     x: Powers
     t: Powers = ()
 
     def over(self, power: tuple[int, int]) -> tuple[Fraction, Fraction]:
-        """The power of the base beside the derivatives of this jet in base^{a + bk}, as (a, b)."""
+        """Power (a, b) of the base, base^{a + bk}, that is left beside the bare derivatives."""
         halves = Fraction(sum(e for _, e in self.t), 2)
         return power[0] - sum(e for _, e in self.x) - halves, power[1] - halves
 
@@ -90,7 +91,7 @@ class Terms(Mapping[Jet, sp.Expr]):
         self._converted, self._written = {}, {}
 
     def __repr__(self) -> str:
-        """The first terms; only the number of terms of a long coefficient."""
+        """The first terms as text; a long coefficient is represented by its number of terms."""
         first = [jet for jet in self if len(self._raw[jet]) <= _SHOWN][:_SHOWN]
         rows = [f"{jet}: {self[jet]}" for jet in first]
         more = len(self) - len(rows)
@@ -98,7 +99,7 @@ class Terms(Mapping[Jet, sp.Expr]):
         return f"{{{', '.join(rows)}}}"
 
     def written(self, jet: Jet) -> str:
-        """The coefficient as text; writing takes longest of all and is done once."""
+        """The coefficient as text, cached because large coefficients take long to write."""
         if jet not in self._written:
             self._written[jet] = str(self[jet])
         return self._written[jet]
@@ -130,14 +131,14 @@ class Terms(Mapping[Jet, sp.Expr]):
         return [_raised(name, str(e), style) for name, e in powers if e]
 
     def latex_total(self) -> str:
-        """The sum of the terms."""
+        """LaTeX of the sum of the terms."""
         return latex.total((self[jet], self.latex(jet)) for jet in self)
 
     def _repr_latex_(self) -> str:
         return latex.display([self.latex_total()])
 
     def without(self, left_out: Callable[[Jet], bool]) -> Terms:
-        """The terms without those of some jets."""
+        """The terms except those of the jets for which ``left_out`` is true."""
         raw = {jet: c for jet, c in self._raw.items() if not left_out(jet)}
         rest = Terms(self._model, raw, self.power, self._divisor)
         rest._converted, rest._written = self._converted, self._written

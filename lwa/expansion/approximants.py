@@ -1,15 +1,15 @@
 """Sums of series in ε = k - 1 by Padé approximants, with an estimate of the error.
 
-For a series to ε^N the approximants [n-m/m], m about n/2, of every order n ≤ N are formed. An
-approximant with a pole on or near 0 … 3ε/2 is spurious and left out (Baker & Graves-Morris, *Padé
-Approximants*, 1996, section 2.2). Two neighbours may agree by chance, so that the error is the
-largest difference among the approximants of `WINDOW` orders; the window with the smallest
-is taken.
+For a series to ε^N the Padé approximants [n-m/m] (degrees of numerator and denominator), m about
+n/2, are formed for every order n ≤ N. An approximant with a pole on or near 0 … 3ε/2 is spurious
+and left out (Baker & Graves-Morris, *Padé Approximants*, 1996, section 2.2). Two neighbours may
+agree by chance, so that the error is the largest difference among the approximants of a window of
+`WINDOW` successive orders. The window with the smallest such difference gives the sum.
 
-The series of equal beads sums well. The difference that unlike beads make is summed apart, as its
-terms grow from the first on where masses are nearly equal. Where every approximant has a pole, the
-sum ends before its smallest term, which is the error: the series is only asymptotic there. It is
-also called asymptotic where later windows spread more. The error by radiation
+The series of equal beads sums well. The difference that unlike beads make is summed apart, since
+its terms grow from the first on where masses are nearly equal. If every approximant has a pole, the
+series is only asymptotic: the sum ends before the smallest term, whose size is the error. A series
+whose later windows spread more is called asymptotic too. The error by radiation
 (`lwa.expansion.radiation`) is added.
 """
 
@@ -45,7 +45,7 @@ class Resummed(Value):
 
     value, error : the sum, and the estimate of its absolute error.
     order : the highest power of ε that was used.
-    asymptotic : whether higher orders do not improve the sum, as terms grow or radiation is larger.
+    asymptotic : True if higher orders do not improve the sum: terms grow, or radiation is larger.
     """
 
     value: float
@@ -81,7 +81,7 @@ def resum(
 ) -> Resummed:
     """Sum unit · Σ coefficients[n] ε^n, all numbers, with an estimate of the error.
 
-    base : a series that is summed first; the difference to it is summed apart.
+    base : a series that is summed first; the difference of the two series is summed apart.
     relative : a further error, relative to the sum.
     """
     with mpmath.workdps(TERM_DIGITS):
@@ -125,7 +125,7 @@ def pade(a: Sequence[sp.Expr], L: int, M: int, epsilon: sp.Expr) -> sp.Expr:
 
 @dataclass(frozen=True)
 class _Sum:
-    """A `Resummed` in mpmath's numbers."""
+    """A sum, its error and its order, as a `Resummed` but in mpmath's numbers."""
 
     value: mpmath.mpf
     error: mpmath.mpf
@@ -144,7 +144,7 @@ def _mp(value: sp.Expr) -> mpmath.mpf:
 
 
 def _sum(a: Sequence[mpmath.mpf], epsilon: mpmath.mpf) -> _Sum:
-    """The sum by the window whose approximants agree best."""
+    """Sum Σ a_n ε^n by the window of approximants that agree best."""
     with ctx.workprec(PRECISION):
         terms = [arb(x * epsilon**n) for n, x in enumerate(a)]
         line = {n: found for n in range(len(a)) if (found := _approximants(terms[: n + 1]))}
@@ -162,7 +162,7 @@ def _sum(a: Sequence[mpmath.mpf], epsilon: mpmath.mpf) -> _Sum:
 
 
 def _truncated(a: Sequence[mpmath.mpf], epsilon: mpmath.mpf) -> _Sum:
-    """The sum up to the smallest term, or of all terms where they fall to the last."""
+    """Sum up to the smallest term, or of all terms if the last is the smallest."""
     terms = [x * epsilon**n for n, x in enumerate(a)]
     least = min((n for n, term in enumerate(terms) if term), key=lambda n: abs(terms[n]))
     grows = least < len(terms) - 1

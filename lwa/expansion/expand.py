@@ -54,13 +54,13 @@ class Expansion(Value):
 
     @cached_property
     def numeric(self) -> bool:
-        """Whether the series can be summed: k > 1 and the cell are numbers."""
+        """True if the series can be summed: k > 1 and the cell are numbers."""
         values = (*self.cell.masses, *self.cell.stiffnesses, self.k)
         return not any(x.free_symbols for x in values) and bool(self.k > 1)
 
     @property
     def I(self) -> sp.Expr:
-        """The coefficient I of the linear chain's Ω² = κ² - I κ⁴ + …, over D²."""
+        """Coefficient I in the linear chain's dispersion Ω² = κ² - I κ⁴ + …, in units of D²."""
         return self._read.I
 
     @cached_property
@@ -86,8 +86,8 @@ class Expansion(Value):
     def fwhm(self, quantity: str = "strain") -> EpsilonSeries:
         """Full width at half maximum of a contact's strain or force, or the first bead's velocity.
 
-        The two contacts of a dimer have one width here. Behind a striker they differ, their peaks
-        by 5 % at mass ratio 0.9, and the series is to be compared with their mean.
+        The series gives both contacts of a dimer the same width. Behind a striker the contacts
+        differ (`Expansion`); compare the series with the mean of the two.
 
         >>> from lwa import Cell
         >>> expand(Cell([1]), 1).fwhm("force").coefficients
@@ -102,7 +102,7 @@ class Expansion(Value):
 
     @cached_property
     def kinetic(self) -> EpsilonSeries:
-        """The kinetic energy, by the virial theorem (k + 1)/(k + 3) of the energy."""
+        """Kinetic energy of the chain: by the virial theorem (k + 1)/(k + 3) times the energy."""
         return self._energy("kinetic")
 
     @cached_property
@@ -112,7 +112,7 @@ class Expansion(Value):
 
     @cached_property
     def effective_mass(self) -> EpsilonSeries:
-        """The mass P²/(2E) of a particle with the wave's momentum and energy, at any force."""
+        """The mass P²/(2E) of a particle with the wave's momentum P and energy E, at any force."""
         unit = sp.sqrt(2 * sp.pi * self.I) * self.cell.mass / self.cell.size
         return self._series("effective_mass", unit, -sp.S.Half)
 
@@ -128,7 +128,7 @@ class Expansion(Value):
         return self._series("peak_velocity", unit, sp.S.Zero)
 
     def dissipation(self, kind: str) -> EpsilonSeries:
-        """Energy that the wave loses per contact, over a small damping constant γ.
+        """Energy that the wave loses per contact, divided by a small damping constant γ.
 
         kind : "linear" for the damping force γ dδ/dt, δ the compression: D0 = ∫ (dδ/dt)² dt;
             "kuwabara_kono" for γ δ^{k-1} dδ/dt: D1 = ∫ δ^{k-1} (dδ/dt)² dt. γ is the same in all
@@ -160,11 +160,11 @@ class Expansion(Value):
         return EpsilonSeries(unit, power, coefficients, self.k, self.cell, quantity)
 
     def log_force(self, contact: Any = 0, X: Any = None) -> dict[sp.Rational, sp.Expr]:
-        """The φ_n(X) ≠ 0 by n = 0, 1/2, 1, … of log F = Σ ε^n φ_n(X), X = √ε ξ.
+        """Mapping from n = 0, 1/2, 1, … to φ_n(X) ≠ 0 in log F = Σ ε^n φ_n(X), X = √ε ξ.
 
-        ξ is measured from the peak of the first contact, in the frame of the contact's own cell:
-        contact i is i sites behind the first one. X is a symbol of this name unless it is given.
-        A sum cut at some order is good near the peak; far out its last term may rise again.
+        F is the force of the contact, ξ the distance in sites from the peak of the first contact,
+        in the frame of the cell: contact i is i sites behind the first one. X is a symbol of this
+        name unless given. A truncated sum holds near the peak; far out its last term may rise.
 
         >>> from lwa import Cell
         >>> expand(Cell([1]), 1).log_force()

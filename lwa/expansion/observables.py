@@ -1,6 +1,7 @@
 """Speed, widths, momentum, energy and profile of a wave of `lwa.expansion.recursion`.
 
-Each is a series in t. Its even terms, polynomials in √log 2 over the recursion's ring, become the
+Letters as in that module. Each quantity, divided by its leading term or in the unit stated, is a
+series in t. The even terms, polynomials in √log 2 over the recursion's ring, become the
 coefficients of a series in ε, in the caller's symbols.
 """
 
@@ -46,27 +47,27 @@ class Observables:
 
     @property
     def c2(self) -> Series:
-        """The square of the speed c² over its leading term."""
+        """The square c² of the speed, divided by its leading term."""
         return self.wave.gamma[: 2 * self.order + 1]
 
     @cached_property
     def c(self) -> Series:
-        """The speed c over its leading term."""
+        """The speed c, divided by its leading term."""
         return root(self.c2)
 
     @cached_property
     def force(self) -> Series:
-        """Full width at half maximum of the force, over 4 √(I log 2/ε)."""
+        """Full width at half maximum of the force, in units of 4 √(I log 2/ε)."""
         return half_width(self.wave.fields.log_force[0])
 
     @cached_property
     def strain(self) -> Series:
-        """Width of the strain, the force's power 1/k, in the same unit."""
+        """Full width at half maximum of the strain F^{1/k}, in units of 4 √(I log 2/ε)."""
         return wider(self.force, self.wave.epsilon)
 
     @cached_property
     def velocity(self) -> Series:
-        """Width of the first bead's velocity, in the same unit."""
+        """Full width at half maximum of the first bead's velocity, in units of 4 √(I log 2/ε)."""
         log: Series = []
         for _ in self._slope:
             log.append(log_term(self._slope, log))
@@ -74,15 +75,15 @@ class Observables:
 
     @cached_property
     def peak_velocity(self) -> Series:
-        """The peak velocity of equal beads over its leading term: c times the slope at Z = 0."""
+        """Peak velocity of equal beads, c times the slope at Z = 0, divided by its leading term."""
         zero = self.wave.zero
         return product(self.c, [by_degree(term).get(0, zero) for term in self._slope])
 
     @cached_property
     def _slope(self) -> Series:
-        """Slope of the first bead, half a cell on, where it is even for equal beads.
+        """Slope s_0 of the first bead, shifted by half a cell to be even in ξ for equal beads.
 
-        The slope is (P∂/2)/sinh(P∂/2) of the mean strain.
+        This slope is the operator (P∂/2)/sinh(P∂/2) applied to the mean strain.
         """
         wave = self.wave
         weights = [
@@ -96,12 +97,12 @@ class Observables:
 
     @cached_property
     def momentum(self) -> Series:
-        """The momentum over its leading term: M/P times c and the displacement behind the wave."""
+        """Momentum, M/P · c · the displacement behind the wave, divided by its leading term."""
         return product(self.c, [moment(terms[0], 2) for terms in self.wave.fields.means])
 
     @cached_property
     def kinetic(self) -> Series:
-        """The kinetic energy over ā √(2πI/ε)."""
+        """Kinetic energy in units of ā √(2πI/ε)."""
         wave = self.wave
         squares = (product(s, s, 2) for s in wave.fields.slope)
         kinetic = _sum(wave.mu, squares, wave.zero)
@@ -109,9 +110,10 @@ class Observables:
 
     @cached_property
     def energy(self) -> Series:
-        """Kinetic and elastic energy in the same unit: (k + 3)/2 times the elastic energy.
+        """Kinetic and elastic energy in units of ā √(2πI/ε), (k + 3)/2 times the elastic energy.
 
-        That is the virial theorem: dE = c dP of waves of all amplitudes, P = 2 T/c.
+        This virial theorem follows from dE = c dP along the waves of all amplitudes, where
+        P = 2 T/c is the momentum and T the kinetic energy.
         """
         wave = self.wave
         pairs = zip(wave.fields.force, wave.fields.strain, strict=True)
@@ -124,12 +126,12 @@ class Observables:
 
     @cached_property
     def effective_mass(self) -> Series:
-        """The effective mass P²/(2E) over its leading term."""
+        """Effective mass P²/(2E), P the momentum and E the energy, divided by its leading term."""
         return quotient(product(self.momentum, self.momentum), self.energy)
 
     @cached_property
     def linear_loss(self) -> Series:
-        """Mean over the contacts of ∫ (dδ/dt)² dt, δ the compression, over its leading term.
+        """Contacts' mean of ∫ (dδ/dt)² dt, δ the compression, divided by its leading term.
 
         In the wave dδ/dt = -c dδ/dξ and dt = dξ/c, so that this is c ∫ (dδ/dξ)² dξ.
         """
@@ -138,7 +140,7 @@ class Observables:
 
     @cached_property
     def kuwabara_kono_loss(self) -> Series:
-        """Mean over equal contacts of ∫ δ^{k-1} (dδ/dt)² dt, over its leading term.
+        """Equal contacts' mean of ∫ δ^{k-1} (dδ/dt)² dt, divided by its leading term.
 
         With F = A δ^k the integrand is (dF/dt) (dδ/dt) / (k A).
         """
@@ -146,7 +148,7 @@ class Observables:
         return self._loss(self.wave.c, fields.force, fields.strain)
 
     def _loss(self, weights: Series, first: list[Series], second: list[Series]) -> Series:
-        """The loss c Σ weight ∫ (d first/dξ) (d second/dξ) dξ over its leading term."""
+        """The loss c Σ weight ∫ (d first/dξ) (d second/dξ) dξ, divided by its leading term."""
         slopes = ([list(map(_slope, row)) for row in rows] for rows in (first, second))
         products = (product(a, b, 2) for a, b in zip(*slopes, strict=True))
         total = _sum(weights, products, self.wave.zero)
@@ -164,7 +166,7 @@ class Observables:
         return tuple(found)
 
     def log_force(self, contact: int) -> dict[sp.Rational, dict[int, sp.Expr]]:
-        """The coefficients of X^d in φ_n ≠ 0, by n = 0, 1/2, 1, … and d."""
+        """Mapping n → d → coefficient of X^d in φ_n (`lwa.Expansion.log_force`)."""
         found = {sp.S.Zero: {2: -1 / (4 * self.I)}}
         for n, q in enumerate(self.wave.fields.log_force[contact]):
             if q:
@@ -174,7 +176,7 @@ class Observables:
 
     @cached_property
     def I(self) -> sp.Expr:
-        """The coefficient I of the linear chain's Ω² = κ² - I κ⁴ + …, over D²."""
+        """Coefficient I in the linear chain's dispersion Ω² = κ² - I κ⁴ + …, in units of D²."""
         return self.over(self.wave.I, 0)
 
     def over(self, numerator: fmpq_mpoly, power: int) -> sp.Expr:

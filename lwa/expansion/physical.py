@@ -69,17 +69,18 @@ class ExpandedWave(Value):
         return self.expansion.effective_mass.at()
 
     def dissipation(self, kind: str) -> Resummed:
-        """Energy lost per contact and damping constant; kind as in `Expansion.dissipation`."""
+        """Energy lost per contact, divided by the damping constant; see `Expansion.dissipation`."""
         k = self.expansion.k
         power = (k + 3 if kind == "linear" else 3 * k + 1) / 2
         return self._at_force(self.expansion.dissipation(kind), power)
 
     def slowdown(self, kind: str) -> Resummed:
-        """Rate at which a weak damping γ slows the pulse down, per site and γ, to first order.
+        """Slowing of the pulse by a weak damping γ: rate per site divided by γ, to first order.
 
-        For "linear" damping -dV/dn, for "kuwabara_kono" d(1/V)/dn, V = dx/dt. Both rates stay
-        the same along the chain while the force falls: E ∝ F^{(k+1)/k} and V ∝ F^{(k-1)/(2k)}
-        give dV/dn = -(k-1)/(2(k+1)) γ D V/E.
+        With V = dx/dt after n sites the rate is -dV/dn for "linear" damping and d(1/V)/dn for
+        "kuwabara_kono". Both stay the same along the chain while the force falls: with the energy
+        E ∝ F^{(k+1)/k} and the dissipation D, V ∝ F^{(k-1)/(2k)} gives
+        dV/dn = -(k-1)/(2(k+1)) γ D V/E.
 
         Raises `lwa.InputError` as `Expansion.dissipation` does.
 
@@ -107,7 +108,7 @@ class ExpandedWave(Value):
         return rows
 
     def _at_force(self, series: EpsilonSeries, power: sp.Expr) -> Resummed:
-        """A quantity proportional to the compression to some power."""
+        """Sum a quantity that scales as the compression to this power, at the peak force F."""
         return series.at() * float(self.F ** (power / self.expansion.k))
 
 

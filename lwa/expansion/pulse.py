@@ -64,10 +64,10 @@ def moment(polynomial: fmpq_mpoly, variance: int) -> fmpq_mpoly:
 
 
 def half_width(log: Series) -> Series:
-    """Series h_n of the full width 4y Σ h_n t^n of e^{-Z²/4 + Σ log_n t^n} at e^{-y²} of its peak.
+    """Coefficients h_n of the width of a pulse e^{-Z²/4 + Σ log_n t^n} at e^{-y²} times its peak.
 
-    In the result, polynomials in y², Z stands for y. Counted from the peak the exponent is
-    -Z²/4 + p(Z), p = O(t), and Z²/4 = y² + p(Z) is solved by Lagrange's series
+    The full width is 4y Σ h_n t^n; in the h_n, polynomials in y², Z stands for y. Counted from the
+    peak the exponent is -Z²/4 + p(Z), p = O(t), and Z²/4 = y² + p(Z) is solved by Lagrange's series
 
         Z/2 = y + Σ_{m≥1} 1/m! (d/dy²)^{m-1} p(2y)^m/(2y),
 
@@ -107,9 +107,10 @@ def _from_peak(log: Series) -> Series:
 
 
 def wider(width: Series, epsilon: fmpq_mpoly) -> Series:
-    """Width series of the pulse to the power 1/(1+ε) at the same height: y² → (1+ε) y², ε = O(t²).
+    """Width series h_n of the pulse raised to the power 1/(1+ε), at the same height; ε = O(t²).
 
-    Each y^d of 4y Σ h_n t^n becomes (1+ε)^{(d+1)/2} y^d.
+    Raising the pulse to this power replaces y² by (1+ε) y²: each y^d of 4y Σ h_n t^n becomes
+    (1+ε)^{(d+1)/2} y^d.
     """
     found = list(width)
     for n, term in enumerate(width):
@@ -120,7 +121,7 @@ def wider(width: Series, epsilon: fmpq_mpoly) -> Series:
 
 
 def _binomial_of_root(d: int, j: int) -> fmpq:
-    """The binomial coefficient of (d+1)/2 over j."""
+    """The binomial coefficient "(d+1)/2 choose j"."""
     return fmpq(prod(range(d + 1, d + 1 - 2 * j, -2)), 2**j * factorial(j))
 
 
@@ -139,7 +140,7 @@ def _reweighted(polynomial: fmpq_mpoly, weight: Callable[[int], fmpq]) -> fmpq_m
 
 
 def product(a: Series, b: Series, step: int = 1) -> Series:
-    """The product a · b to the same length; only the terms at t^n with n a multiple of ``step``."""
+    """The product a · b to the same length; only terms t^n with n a multiple of ``step``."""
     found = [0 * a[0] for _ in a]
     for n, x in enumerate(a):
         if x:

@@ -1,8 +1,8 @@
 """The recursion for a chain's traveling wave in ε = k - 1: polynomials, exact at every order.
 
 The lattice's equations are expanded about a Gaussian. With the strain r_i and force f_i of contact
-i, and the slope s_i = -u_i' of bead i's displacement (its velocity over c), each in the frame of
-its cell, ∂ = d/dξ,
+i, and the slope s_i = -u_i' of bead i's displacement (its velocity divided by c), each as a
+function of the place ξ of its cell in the frame of the wave, and ∂ = d/dξ,
 
     f_i = f_{i-1} + P m̂_i γ ∂s_i,    s_{i+1} = s_i + C_i ∂r_i,    f_i = r_i^k,
     ∫_0^P s_0(ξ + x) dx = Σ C_i r_i(ξ),    γ Σ P m̂_i s_i(ξ) = ∫_0^P f_{P-1}(ξ - x) dx,
@@ -14,7 +14,7 @@ the linear chain's dispersion (`lwa.linear.bloch`), the force of the first conta
     log f_0 = -Z²/4 + Σ_n q_n(Z) (ε/I)^{n/2},
 
 the q_n are polynomials over Q[m̂, C, 1/I], and each solves q'' - Z q' + q = known + γ's next term,
-a triangular system; q_n(0) = q_n'(0) = 0 puts the peak, of force 1, at ξ = 0. The Gaussian as the
+a triangular system; q_n(0) = q_n'(0) = 0 makes the peak force 1, at ξ = 0. The Gaussian as the
 limit: James & Pelinovsky, Proc. R. Soc. A 470, 20130462 (2014).
 
 The algebra is in powers of t, (ε/I)^{1/2} = I t, so that no denominators appear.
@@ -47,9 +47,9 @@ LastTerm = Callable[[Series, Series, Series], fmpq_mpoly]
 class Fields:
     """The fields e^{-Z²/4} Σ S_n t^n of a wave, or changes of the fields, as lists of S_n.
 
-    For each contact `force` and `strain` with their logarithms, for each bead `slope`; `means` and
-    `pushes` have the mean strain Σ C_i r_i / P and the last contact's force with their derivatives:
-    n → the terms at t^n of the 0-th, 1-st, …, n-th.
+    `force` and `strain` (with their logarithms) have one field per contact, `slope` one per bead.
+    `means` and `pushes` map n to the coefficients of t^n in the mean strain Σ C_i r_i / P or the
+    last contact's force, and in the first n derivatives of these.
     """
 
     def __init__(self, size: int) -> None:
@@ -67,7 +67,7 @@ class Fields:
         return [row for group in groups for row in group]
 
     def truncate(self, n: int) -> None:
-        """Forget the terms from t^n on."""
+        """Delete the terms from t^n on."""
         for row in self._rows:
             del row[n:]
         del self.means[n:], self.pushes[n:]
@@ -85,7 +85,7 @@ class Fields:
 
 
 class Recursion:
-    """The `fields` of a wave, order by order in t, over the ring Q[m̂, C], Z its first generator."""
+    """The `fields` of a wave, order by order in t, with coefficients in the ring Q[Z, m̂, C]."""
 
     def __init__(self, model: Model, order: int, progress: Progress[int] = iter) -> None:
         self.context = fmpq_mpoly_ctx.get(("Z", *model.ring.names), Ordering.lex)
@@ -95,14 +95,14 @@ class Recursion:
         self.P = model.cell.size
         quartic = Bloch(model).acoustic(2)[2]
         self.I = -self.context.from_dict({(0, *map(int, e)): c for e, c in quartic.terms()})
-        self.epsilon = self.I**3  # of t²
+        self.epsilon = self.I**3  # ε = I³ t²
         self._half = self.Z / 2
         self.gamma: Series = [self.context.constant(1)]
         self.fields = Fields(self.P)
         self._solve(order, progress)
 
     def derivative(self, S: fmpq_mpoly) -> fmpq_mpoly:
-        """The term at t^{n+1} of ∂ (e^{-Z²/4} S t^n)."""
+        """Coefficient of t^{n+1} in ∂ (e^{-Z²/4} S t^n), divided by e^{-Z²/4}."""
         return self.I * (S.derivative(0) - self._half * S) if S else S
 
     def _solve(self, order: int, progress: Progress[int]) -> None:
@@ -140,7 +140,7 @@ class Recursion:
     def _extend(self, n: int, q: fmpq_mpoly | None = None) -> fmpq_mpoly:
         """Add the terms at t^n, with q_n = 0 unless it is known; return the residual there.
 
-        The residual is that of the balance of momentum, the last of the equations, over P.
+        The residual is that of the last equation, the balance of momentum, divided by P.
         """
 
         def exponential(log: Series, S: Series, _: Series) -> fmpq_mpoly:
@@ -216,7 +216,7 @@ class Recursion:
                 slope = slope + self.c[i] * self.derivative(fields.strain[i][n - 1])
 
     def _accelerated(self, slope: Series, n: int) -> fmpq_mpoly:
-        """The term at t^n of γ s_i."""
+        """Coefficient of t^n in γ s_i."""
         total = self.zero
         for a, factor in enumerate(self.gamma[: n + 1]):
             if factor and slope[n - a]:
@@ -224,12 +224,12 @@ class Recursion:
         return total
 
     def _derivatives(self, term: fmpq_mpoly, rows: list[Series]) -> Series:
-        """The terms at t^n of a field and of its n first derivatives, after those of t^{n-1}."""
+        """Coefficients of t^n in a field and its n first derivatives, from those of t^{n-1}."""
         return [term, *map(self.derivative, rows[-1])] if rows else [term]
 
 
 def _last(a: Series, b: Series) -> fmpq_mpoly:
-    """The term of a · b at the end of a."""
+    """Coefficient of t^n in a · b, n the last order of a."""
     n = len(a) - 1
     return sum((x * b[n - j] for j, x in enumerate(a) if x), 0 * b[0])
 

@@ -42,8 +42,8 @@ class EpsilonSeries(Value):
 
     k : the exponent. The series is summed at a number; a symbol may be replaced by a number or
         another symbol, also in the prefactor and the shares of unlike contacts.
-    cell, quantity : the chain and the quantity of the series. `at` sums the part of equal beads
-        apart, and adds the error by radiation.
+    cell, quantity : the chain and the name of the quantity. With them `at` sums the series of
+        equal beads and the difference to it apart, and adds the error by radiation.
     """
 
     prefactor: sp.Expr

@@ -2,7 +2,7 @@
 
 The wave of a chain of equal beads has the momentum P and the energy E of a particle of mass
 m_eff = P²/(2E) (`lwa.ExpandedWave.effective_mass`), and collides nearly like such a particle. An
-elastic collision with a striker of mass m_s and velocity v gives it the velocity
+elastic collision with a striker of mass m_s and velocity v gives the quasi-particle the velocity
 w = 2 m_s v/(m_s + m_eff), hence E = ½ m_eff w², and E ∝ F^{(k+1)/k} gives the peak force F. This is
 a rule; its errors are bounds of measured ones (cf. Job et al., Granular Matter 10, 13 (2007)).
 """
@@ -35,7 +35,7 @@ class Strike(Value):
     """The leading pulse of a chain of equal beads struck by a mass.
 
     chain : the expansion of the chain's wave, all numbers.
-    mass, velocity : of the striker, whose contact is like those of the chain.
+    mass, velocity : mass and velocity of the striker; its contact is like those of the chain.
 
     The error of the force is the larger of 0.7 % and b ln²(m_s/m_eff), b = 3 % for m_s ≥ m_eff
     and 11 % for lighter strikers; for Hertz contacts 0.7 % from m_eff to 2 beads. It bounds the
@@ -94,7 +94,7 @@ class Strike(Value):
 
     @property
     def train(self) -> bool:
-        """Whether further pulses follow with more than a few per cent of the energy: m_s > 2 m."""
+        """True if further pulses follow with more than a few per cent of the energy: m_s > 2 m."""
         return bool(self.mass > 2 * self.chain.cell.masses[0])
 
 
@@ -106,8 +106,8 @@ def pulse_of_strike(
     Parameters
     ----------
     chain : the cell, with numbers for mass, stiffness and spacing.
-    mass : of the striker, in the units of the cell.
-    velocity, drop : its speed v, or the height in m of its free fall, v = √(2 g h): one of the two.
+    mass : mass of the striker, in the units of the cell.
+    velocity, drop : speed v of the striker, or the height h in m of its free fall, v = √(2 g h).
     k : exponent of the contact law.
 
     Raises `lwa.InputError` for other chains, and for values that are no positive numbers.

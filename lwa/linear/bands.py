@@ -1,8 +1,8 @@
 """Bloch's bands in floats: frequencies and group velocities of the linear chain.
 
-The equations of `lwa.linear.bloch` read f = B(κ) a in the variables a_i √(P m̂_i), f_i √C_i, so
-that the Ω_j are the singular values of B. Eigenvalues of BᴴB would lose half the digits of a small
-Ω.
+With the displacements a_i and forces f_i of `lwa.linear.bloch`, the vectors of the components
+a_i √(P m̂_i) and f_i √C_i are related by a matrix B(κ), whose singular values are the frequencies
+Ω_j. Eigenvalues of BᴴB would lose half the digits of a small Ω.
 """
 
 from __future__ import annotations
@@ -18,8 +18,9 @@ Complex = NDArray[np.complex128]
 def branches(fractions: Array, shares: Array, kappa: ArrayLike) -> Array:
     """Frequencies Ω_j(κ), ascending along a last axis of length P, to 1e-15 of the largest.
 
-    fractions, shares : the m̂_i and the C_i. Raises `lwa.InputError` for a κ that is no finite
-    number.
+    fractions, shares : mass fractions m̂_i and strain shares C_i.
+
+    Raises `lwa.InputError` for a κ that is no finite number.
     """
     B, _ = _strains(fractions, shares, kappa)
     return np.linalg.svd(B, compute_uv=False)[..., ::-1].astype(float)
@@ -28,7 +29,8 @@ def branches(fractions: Array, shares: Array, kappa: ArrayLike) -> Array:
 def group_velocity(fractions: Array, shares: Array, kappa: ArrayLike) -> Array:
     """Slopes dΩ_j/dκ in the order of `branches`, by dΩ = Re (left vector)ᴴ dB (right vector).
 
-    Where branches touch, or touch zero, they have a kink: there it is the slope towards larger κ.
+    A branch has a kink where it touches another branch or zero; the slope there is the one towards
+    larger κ.
     """
     B, dB = _strains(fractions, shares, kappa)
     left, omega, right = np.linalg.svd(B)
@@ -49,16 +51,16 @@ def group_velocity(fractions: Array, shares: Array, kappa: ArrayLike) -> Array:
 
 
 def edges(fractions: Array, shares: Array) -> Array:
-    """Band edges (min, max) of Ω by branch, shape (P, 2); branches are monotone on [0, π/P]."""
+    """Band edges (min, max) of each branch Ω_j, shape (P, 2), at κ = 0 and π/P."""
     ends = branches(fractions, shares, [0.0, np.pi / len(fractions)])
     result: Array = np.sort(ends, axis=0).T
     return result
 
 
 def _strains(fractions: Array, shares: Array, kappa: ArrayLike) -> tuple[Complex, Complex]:
-    """The matrix B(κ) from a_i √(P m̂_i) to f_i √C_i, and the one entry of dB/dκ (last row)."""
+    """Return the matrix B(κ) and the only nonzero entry of dB/dκ, which is in its last row."""
     wave = finite(kappa, "kappa")
-    # by whole turns less, which e^{iκ} takes off exactly
+    # reduce κ to [-π, π]; e^{iκ} drops whole turns exactly
     wave = np.where(np.abs(wave) <= np.pi, wave, np.angle(np.exp(1j * wave)))
     P = len(fractions)
     mass, share = np.sqrt(P * fractions), np.sqrt(shares)

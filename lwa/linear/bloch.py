@@ -1,6 +1,7 @@
 """Bloch's dispersion relation of the linear chain as polynomials in (m̂, C), solved in series.
 
-The particles obey, in the theory's units and with f_i the force of contact i,
+With a_i the amplitude of particle i, f_i that of the force of contact i, Ω the frequency and κ the
+wavenumber in the theory's units, m̂_i mass fractions and C_i strain shares, the particles obey
 
     -P m̂_i Ω² a_i = f_i - f_{i-1},    a_{i+1} - a_i = C_i f_i,    a_P = e^{iPκ} a_0.
 
@@ -48,7 +49,7 @@ class Bloch:
         return [a_m + f_m for a_m, f_m in zip(a, f, strict=True)]
 
     def _carried(self, a: Polynomial, f: Polynomial) -> tuple[Polynomial, Polynomial]:
-        """The pair (a, f) one cell further."""
+        """Displacement and force (a, f) of the next cell, from those of this cell."""
         for mu, c in zip(self.mu, self.c, strict=True):
             inertia = [self.zero, *(self.P * mu * a_m for a_m in a[:-1])]
             f = [f_m - i_m for f_m, i_m in zip(f, inertia, strict=True)]
@@ -63,8 +64,8 @@ class Bloch:
     def acoustic(self, order: int) -> list[fmpq_mpoly]:
         """Coefficients L_0 … L_order of the acoustic root Ω² = Σ L_n κ^{2n} = κ² + ….
 
-        The relation, over -P², reads Ω² = (2 - 2 cos Pκ)/P² + Σ_{m≥2} t_m/P² Ω^{2m}, and in the
-        powers of Ω² on the right stand only earlier L_n.
+        Divided by -P² the relation is Ω² = (2 - 2 cos Pκ)/P² + Σ_{m≥2} t_m/P² Ω^{2m}; each
+        coefficient of the powers on the right depends on earlier L_n only.
         """
         P = self.P
         trace = self.trace(order)

@@ -6,8 +6,8 @@ to leading order) its acoustic branch is a series
 
     Ω² = κ² (1 - I κ² + …)
 
-with I the coefficient of u_4x of the wave equation. `lwa.linear.bloch` derives relation and series,
-`lwa.linear.bands` computes frequencies and group velocities.
+where I D² is the coefficient of u_x^{k-1} u_4x in the wave equation. `lwa.linear.bloch` derives
+relation and series, `lwa.linear.bands` computes frequencies and group velocities.
 """
 
 from __future__ import annotations
@@ -81,7 +81,7 @@ class Dispersion(Value):
 
     @cached_property
     def trace(self) -> dict[int, sp.Expr]:
-        """Coefficients t_m by m of the dispersion relation 2 cos(Pκ) = Σ t_m Ω^{2m}, m = 0 … P.
+        """Mapping m → t_m, m = 0 … P, in the dispersion relation 2 cos(Pκ) = Σ t_m Ω^{2m}.
 
         >>> Dispersion(Cell([1])).trace
         {0: 2, 1: -1}
@@ -89,12 +89,12 @@ class Dispersion(Value):
         return {m: self._expression(t) for m, t in enumerate(self._bloch.trace(self.cell.size))}
 
     def acoustic(self, order: int = 4) -> dict[int, sp.Expr]:
-        """Coefficients of κ^n in Ω² of the acoustic branch by n = 2, 4, … ≤ ``order``."""
+        """Mapping from n = 2, 4, … ≤ ``order`` to the coefficient of κ^n in the acoustic Ω²."""
         series = self._bloch.acoustic(self._length(order))
         return {2 * n: self._expression(c) for n, c in enumerate(series) if n > 0}
 
     def optical(self, order: int = 4) -> dict[int, sp.Expr]:
-        """Coefficients of κ^n in Ω² of a dimer's optical branch by n = 0, 2, … ≤ ``order``.
+        """Mapping from n = 0, 2, … ≤ ``order`` to the coefficient of κ^n in a dimer's optical Ω².
 
         Raises `lwa.InputError` unless the cell has two particles.
         """
@@ -103,9 +103,10 @@ class Dispersion(Value):
         return {0: 1 / self._expression(self._bloch.nu)} | {n: -c for n, c in acoustic.items()}
 
     def amplitude_ratio(self, order: int = 4, branch: str = "acoustic") -> dict[int, sp.Expr]:
-        """Coefficients of (iκ)^n in a_1/a_0 = w/u of a dimer by n = 0 … ``order``.
+        """Mapping from n ≤ ``order`` to the coefficient of (iκ)^n in a dimer's a_1/a_0 = w/u.
 
-        They are the λ b_n of the ansatz w = λ Σ b_n D^n ∂_x^n u, with a_1 at the place of a_0.
+        a_0 and a_1 are the amplitudes of the two particles, taken at the place of the first. The
+        coefficients are the λ b_n of the ansatz w = λ Σ b_n D^n ∂_x^n u.
 
         Raises `lwa.InputError` unless the cell has two particles.
         """
@@ -119,7 +120,7 @@ class Dispersion(Value):
 
     @cached_property
     def I(self) -> sp.Expr:
-        """The I of Ω² = κ² (1 - I κ² + …), the wave equation's coefficient of u_4x over D².
+        """Coefficient I in Ω² = κ² (1 - I κ² + …): the wave equation's I divided by D².
 
         >>> Dispersion(Cell(["1/2", "1/3", "1/6"])).I
         5/36
@@ -140,7 +141,7 @@ class Dispersion(Value):
         return sp.together(self._model.ring.expression(terms))  # compliances enter as 1/A
 
     def _length(self, order: Any) -> int:
-        """The number of powers of κ² up to κ^order; too long a series is refused.
+        """Return the number of powers of κ² up to κ^order; raise `lwa.InputError` for too many.
 
         The coefficient of κ^{2n} has the degree 2n - 2 in the masses and in the compliances, and
         comes from about n² products.
@@ -189,7 +190,7 @@ class Dispersion(Value):
         return bands.group_velocity(*self._weights, kappa)
 
     def band_edges(self) -> Array:
-        """Band edges (min, max) of Ω by branch, shape (P, 2); branches are monotone on [0, π/P]."""
+        """Band edges (min, max) of each branch Ω_j, shape (P, 2), at κ = 0 and π/P."""
         from lwa.linear import bands  # start-up: it loads NumPy
 
         return bands.edges(*self._weights)
@@ -296,7 +297,7 @@ class LoadedChain(Value):
         return slopes * (self._rate * self._length)
 
     def band_edges(self) -> Array:
-        """Band edges (min, max) of ω by branch, shape (P, 2)."""
+        """Band edges (min, max) of each branch ω_j, shape (P, 2)."""
         return self.springs.band_edges() * self._rate
 
     def gaps(self) -> Array:

@@ -1,10 +1,11 @@
 """Speeds of the two edges of a dispersive shock, from the acoustic branch of a chain.
 
-Behind the front sound is r times as fast as ahead of it. In units of the speed of sound let f(κ) be
-the acoustic branch, f ~ κ, and f̃(q) = -i f(iq). El's conditions (Chaos 15, 037103 (2005)) are
+Let r be the speed of sound behind the front divided by that ahead, κ the wavenumber, f(κ) the
+frequency on the acoustic branch divided by the speed of sound, f ~ κ for small κ, and
+f̃(q) = -i f(iq). El's conditions (Chaos 15, 037103 (2005)) are
 
-    trailing edge   ∫₀^κ (1 - f′)/f dκ = ln r,      its speed over the sound behind is f′(κ),
-    leading edge    ∫₀^q (f̃′ - 1)/f̃ dq = ln r,      its speed over the sound ahead is f̃(q)/q.
+    trailing edge   ∫₀^κ (1 - f′)/f dκ = ln r,      speed f′(κ) in units of sound behind,
+    leading edge    ∫₀^q (f̃′ - 1)/f̃ dq = ln r,      speed f̃(q)/q in units of sound ahead.
 
 For equal beads f = 2 sin κ/2 makes the integrals -2 ln cos κ/4 and 2 ln cosh q/4, so that the
 speeds are 2/r - 1 and √(r(r-1))/arcosh √r. For other cells the dispersion relation 2 cos Pκ = T(f²)
@@ -30,7 +31,7 @@ r = 1.19, and 9 % at p₋/p₊ = 3, r = 1.32."""
 
 
 def trailing(chain: Dispersion, r: sp.Expr) -> sp.Expr:
-    """Speed of the trailing edge over the speed of sound behind the front.
+    """Speed of the trailing edge divided by the speed of sound behind the front.
 
     Raises `lwa.InputError` for numbers beyond r = 1.3, where the edge fails, or beyond the branch,
     without sound ahead, r = ∞, and for cells of several beads where r is a symbol.
@@ -45,7 +46,7 @@ def trailing(chain: Dispersion, r: sp.Expr) -> sp.Expr:
 
 
 def leading(chain: Dispersion, r: sp.Expr) -> sp.Expr:
-    """Speed of the leading edge over the speed of sound ahead of the front.
+    """Speed of the leading edge divided by the speed of sound ahead of the front.
 
     Raises `lwa.InputError` without sound ahead, r = ∞, and for cells of several beads where r is a
     symbol.
@@ -65,7 +66,7 @@ def _demand_sound(r: sp.Expr) -> None:
 
 
 def _edge(chain: Dispersion, r: sp.Expr, sign: int) -> Any:
-    """f at an edge: ∫₀^f sign (dκ/df - 1)/f df = ln r, for f and κ real (1) or imaginary (-1).
+    """Return f at an edge: ∫₀^f sign (dκ/df - 1)/f df = ln r, f real (sign 1) or imaginary (-1).
 
     Newton's method starts from the root for small r - 1: dκ/df - 1 is (3/2) I f² to leading order.
     """
@@ -89,12 +90,12 @@ def _edge(chain: Dispersion, r: sp.Expr, sign: int) -> Any:
 
 
 def _trace(chain: Dispersion) -> list[Any]:
-    """Coefficients of T(y), y = f², the highest first."""
+    """Coefficients of the polynomial T(y), y = f², the highest first."""
     return [mpmath.mpf(evaluated(chain.trace[m], DIGITS + 10)) for m in sorted(chain.trace)[::-1]]
 
 
 def _slowness(trace: list[Any], y: Any) -> Any:
-    """dκ/df = -T′/(P √(R (1 - R y/4))), where T = 2 - R y."""
+    """Derivative dκ/df = -T′/(P √(R (1 - R y/4))), where T = 2 - R y."""
     _, slope = mpmath.polyval(trace, y, derivative=True)
     R = -mpmath.polyval(trace[:-1], y)
     return -slope / ((len(trace) - 1) * mpmath.sqrt(R * (1 - R * y / 4)))

@@ -33,7 +33,7 @@ from lwa.wave.background import BackgroundWave
 class Pulse(Value):
     """Solitary wave whose beads move at most with a given velocity.
 
-    field : the background. velocity : du/dτ, a number or an expression.
+    field : the background. velocity : largest du/dτ of a bead, a number or an expression.
 
     Without load under a power law, and for Toda's law, results are in closed form, else numbers.
 
@@ -55,7 +55,7 @@ class Pulse(Value):
 
     @cached_property
     def rise(self) -> sp.Expr:
-        """B = w/V, by which u_x rises."""
+        """Rise B = w/V of the slope u_x."""
         field, w = self.field, self.velocity
         if self._toda:
             C = self._cosh
@@ -85,7 +85,7 @@ class Pulse(Value):
 
     @cached_property
     def _toda(self) -> sp.Expr:
-        """a D of the law (e^{aδ} - 1)/a, whose F″/F′ is constant; 0 for other laws."""
+        """Number a D of Toda's law (e^{aδ} - 1)/a, for which F″/F′ = a; 0 for other laws."""
         law = self.field.law
         a = sp.simplify(law.slope(2) / law.slope(1))
         return sp.S.Zero if a.has(law.delta) else a * self.field.cell.spacing

@@ -1,8 +1,9 @@
 """The Riemann problem of a chain: the shock or the rarefaction between two strains.
 
-A wall that moves at v_p into a chain of strain p₊ presses it to p₋, v_p = ∫ c dp, c = √F′(p). Where
-sound is faster behind the front, r = c₋/c₊ > 1, the front is a dispersive shock, a wave train
-between two edges (`lwa.shocks.edges`); else a rarefaction c(p) = x/t joins c₋ and c₊.
+A wall that moves at v_p into a chain of strain p₊ compresses the chain to the strain p₋, with
+v_p = ∫ c dp, c = √F′(p) the speed of sound. If r = c₋/c₊ > 1, sound is faster behind the front, and
+the front is a dispersive shock, a wave train between two edges (`lwa.shocks.edges`); else a
+rarefaction c(p) = x/t joins c₋ and c₊.
 
 Doubling rule: the leading pulse is the solitary wave on p₊ whose beads move at 2 v_p at most; exact
 for Toda's law, small jumps (KdV) and hard spheres. For k = 3/2 … 3 the lattice's own such wave has
@@ -29,7 +30,7 @@ from lwa.shocks import edges, simple
 from lwa.shocks.pulse import Pulse
 from lwa.wave.background import BackgroundWave
 
-RULES = ("dispersion", "doubling")  # El's edge; the solitary wave of beads at 2 v_p
+RULES = ("dispersion", "doubling")  # El's leading edge; the solitary wave with beads at 2 v_p
 
 
 @dataclass(frozen=True)
@@ -59,13 +60,13 @@ class Shock(Value):
 
     @cached_property
     def ratio(self) -> sp.Expr:
-        """r = c₋/c₊, infinite without load."""
+        """Ratio r = c₋/c₊ of the speeds of sound, infinite without load."""
         behind, ahead = (self.sound(p) / self._field.time_scale for p in (self.behind, self.ahead))
         return sp.oo if ahead.is_zero else sp.powsimp(behind / ahead)
 
     @cached_property
     def plateau(self) -> sp.Expr:
-        """v_p, the velocity of the beads behind the front.
+        """Velocity v_p of the beads behind the front.
 
         >>> from lwa import Cell, Power
         >>> shock(Cell([1], spacing=1), Power("3/2"), "p", 0).plateau
@@ -75,7 +76,9 @@ class Shock(Value):
 
     @cached_property
     def trailing_speed(self) -> sp.Expr:
-        """s₋ of El's edge, or c₋ of a rarefaction; raises `lwa.InputError` beyond r = 1.3.
+        """Speed s₋ of the trailing edge by El's condition; for a rarefaction the speed c₋.
+
+        Raises `lwa.InputError` for a shock beyond r = 1.3.
 
         >>> from lwa import Cell, Power
         >>> shock(Cell([1], spacing=1), Power(3), 2, "9/5").trailing_speed
@@ -86,13 +89,14 @@ class Shock(Value):
         return sp.expand(self.sound(self.behind) * edges.trailing(self._field.linear, self.ratio))
 
     def leading_speed(self, rule: str = "doubling") -> sp.Expr:
-        """s₊ by "doubling" or by El's "dispersion", or c₊ of a rarefaction.
+        """Speed s₊ of the leading pulse by "doubling", or of the leading edge by El's "dispersion".
 
         Doubling is exact for Toda's law, and above the lattice by up to 0.7 % for Hertz contacts,
         1.5 % for k = 3 at r = 2; the peaks of unequal beads, at 1.55 to 1.94 v_p, do not obey it.
         Dispersion holds within 1 % for Hertz contacts up to p₋/p₊ = 3, 2 % for two unequal beads.
 
-        Raises `lwa.InputError` for dispersion without sound ahead, and doubling of unequal beads.
+        For a rarefaction the speed is c₊. Raises `lwa.InputError` for dispersion without sound
+        ahead, and for doubling of unequal beads.
         """
         one_of(rule, RULES, "rule")
         if self._gain.is_negative:
@@ -103,14 +107,14 @@ class Shock(Value):
 
     @cached_property
     def _pulse(self) -> Pulse:
-        """The leading pulse by doubling; `lwa.InputError` for unequal beads and rarefactions."""
+        """The leading pulse by doubling; `lwa.InputError` for rarefactions and unequal beads."""
         if self._gain.is_negative:
             raise InputError("sound is slower behind the front: a rarefaction has no pulse")
         return Pulse(self._field, 2 * self._gained)
 
     @property
     def rise(self) -> sp.Expr:
-        """B = 2 v_p/s₊ of the leading pulse by doubling, by which u_x rises."""
+        """Rise B = 2 v_p/s₊ of u_x in the leading pulse, by doubling."""
         return self._pulse.rise
 
     @property
@@ -151,12 +155,12 @@ class Shock(Value):
 
     @cached_property
     def _gained(self) -> sp.Expr:
-        """v_p in the units of the wave equation."""
+        """Velocity v_p as du/dτ, in the units of the wave equation."""
         return simple.velocity(self._field, self.behind)
 
     @cached_property
     def _gain(self) -> sp.Expr:
-        """c₋ - c₊; symbols stand for a shock."""
+        """Difference c₋ - c₊, negative for a rarefaction; symbols are taken to mean a shock."""
         # simplified: only then is its sign known beside symbols such as D
         return sp.simplify(self.sound(self.behind) - self.sound(self.ahead))
 

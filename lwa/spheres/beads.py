@@ -19,8 +19,8 @@ A file of spheres holds, in units that agree (SI if A is to be in N/m^{3/2})::
     [chain]
     cell = ["ball", "light"]      # names of beads, in their order
 
-These are tables of a scene (`validation.scenes.scenefile`), and any scene of beads is such a file:
-the spheres say nothing of its load, nor of the rest of its finite chain.
+These are tables of a scene (`validation.scenes.scenefile`), and any scene of beads is such a file;
+the load and the other entries of the scene are ignored.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Materials of beads by name: Young's modulus in Pa, Poisson's ratio, density in kg/m³.
 
-Typical values at room temperature; those of a batch of beads differ by some per cent, and those of
-polymers, which are stiffer the faster they are pressed, by much more.
+The values are typical ones at room temperature. A batch of beads differs from them by some per
+cent. Polymers, which are stiffer the faster they are compressed, differ by much more.
 """
 
 from __future__ import annotations

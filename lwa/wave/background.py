@@ -1,9 +1,9 @@
 """Waves on a background: a chain under load, of any cell and any law.
 
-In the canonical field u_ττ = ∂_x [F(u_x) + I (F′ u_xxx + ½ F″ u_xx²)], F the force in the units of
-`lwa.equation.pde` (p^k/k for a power) and W′ = F. Its wave v on a strain p0,
-u_x = p0 + v(ξ), ξ = x - V τ, obeys (Nesterenko, *Dynamics of Heterogeneous Materials*, 2001, ch. 1,
-for equal spheres)
+The canonical field obeys u_ττ = ∂_x [F(u_x) + I (F′ u_xxx + ½ F″ u_xx²)]: F is the force in the
+units of `lwa.equation.pde` (p^k/k for a power), W its energy, W′ = F, and I the coefficient of
+dispersion, D² included. A wave v on a strain p0, u_x = p0 + v(ξ), ξ = x - V τ, obeys (Nesterenko,
+*Dynamics of Heterogeneous Materials*, 2001, ch. 1, for equal spheres)
 
     I F′(p0 + v) v′² = v² (Q(B) - Q(v)),    Q(v) = 2 [W(p0+v) - W(p0) - F(p0) v] / v²,
 
@@ -94,7 +94,7 @@ class BackgroundWave(Value):
 
     @cached_property
     def I(self) -> sp.Expr:
-        """The coefficient I of u_4x, D² included."""
+        """Coefficient I in the linear chain's Ω² = κ² - I κ⁴ + …, D² included."""
         return self.linear.I * self.cell.spacing**2
 
     @property
@@ -211,8 +211,9 @@ class BackgroundWave(Value):
     def fwhm(self, B: Any, quantity: str = "strain", digits: int = DIGITS) -> sp.Expr:
         """Full width at half maximum, a length in x: of the rise of the strain, or of the force.
 
-        The velocity's is the strain's. Without load under a power law the width is the compact
-        wave's closed form, else a number of so many digits, times D for a spacing that is a symbol.
+        The velocity has the width of the strain. Without load under a power law the width is the
+        compact wave's closed form, else a number of so many digits, times D for a spacing that is a
+        symbol.
 
         Raises `lwa.InputError` for other symbols, `lwa.NoSolitaryWave` without a wave.
 
@@ -293,7 +294,7 @@ class BackgroundWave(Value):
         return D if D.is_Symbol and self.law.homogeneous else sp.S.One
 
     def in_unit(self, value: sp.Expr) -> sp.Expr:
-        """A length or a speed over the `unit`."""
+        """A length or a speed divided by the `unit`."""
         return value.subs(self.unit, 1) if self.unit.is_Symbol else value
 
     def _free(self, *values: sp.Expr) -> set[sp.Symbol]:
@@ -308,7 +309,7 @@ class BackgroundWave(Value):
 
     @contextmanager
     def _solved(self, B: sp.Expr, digits: int) -> Iterator[Profile]:
-        """The wave of the rise B, computed with as many digits as its differences need."""
+        """Yield the wave of the rise B, at a working precision that resolves its differences."""
         if integer(digits, "digits", 1) > MOST_DIGITS:
             raise InputError(f"digits is {digits}: at most {MOST_DIGITS} are given")
         why = "a width or a profile on a background is a number and wants numbers"

@@ -37,7 +37,7 @@ _SHARES = sp.symbols("g h", cls=sp.Dummy)
 
 
 def strain_equation(p: sp.Expr, G: sp.Expr, H: sp.Expr, I: sp.Expr) -> dict[str, sp.Expr]:
-    """Coefficients of the equation of z, v = z^p, by its monomials in r_n = ∂^n z / z.
+    """Coefficients in the equation of z, v = z^p, named as below; r_n = ∂^n z / z.
 
     V² z^p p r_1 = z^{kp} (linear · r_1 + cubic · r_1³ + product · r_1 r_2 + third · r_3),
     derived in the algebra of the jets of z.
@@ -249,7 +249,7 @@ class CompactWave(Value):
 
     @cached_property
     def roots(self) -> tuple[sp.Expr, sp.Expr]:
-        """Both p for which v = z^p removes z_ξ³, the paper's first (2/(k+1) at equal masses)."""
+        """The two p for which v = z^p removes z_ξ³, the paper's first (2/(k+1) at equal masses)."""
         p, equation = self._equation
         quadratic = sp.Poly(sp.cancel(equation["cubic"] / p), p).all_coeffs()
         A, B, C = (factored(self._with_shares(c)) for c in quadratic)
@@ -258,7 +258,7 @@ class CompactWave(Value):
 
     @cached_property
     def _equation(self) -> tuple[sp.Symbol, dict[str, sp.Expr]]:
-        """The symbol p and `strain_equation` over I, with symbols for G/I and H/I."""
+        """The symbol p, and `strain_equation` divided by I with symbols for G/I and H/I."""
         p = sp.Dummy("p")
         return p, strain_equation(p, _SHARES[0], _SHARES[1], sp.S.One)
 
@@ -266,9 +266,9 @@ class CompactWave(Value):
         return value.xreplace(dict(zip(_SHARES, self.shares, strict=True)))
 
     def reduction(self, root: int = 0, V: Any = SPEED) -> Reduction:
-        """Reduction to z'' = μ z^η - σ z for a root p (0: the paper's, 1: the other).
+        """Reduction to z'' = μ z^η - σ z for one of the `roots` p (0: the paper's, 1: the other).
 
-        With p the equation reads V² z^p p r_1 = z^{kp} p (r_1 + I r_3 + q r_1 r_2). Since
+        For such a p the equation is V² z^p p r_1 = z^{kp} p (r_1 + I r_3 + q r_1 r_2). Since
         ∂(z^e r_2) = z^e (r_3 + (e - 1) r_1 r_2), the factor z^a, kp + a = e = q/I + 1, makes it
         a total derivative; integrated once it is the equation of z.
         """

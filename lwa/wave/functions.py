@@ -7,10 +7,10 @@ The formulas are written in forms that keep their digits in floating point:
 - ln f = 2 arsinh((f-1)/(2√f)), f = V²/B^{k-1}, good as f → 1, that is as k → 1;
 - cos(βξ) on the support and 0 outside of it is sin((h + |h|)/2), h = π/2 - |βξ|.
 
-The functions have relative errors of 1e-14, with three exceptions that lie in the formulas. The
+The functions have relative errors of 1e-14, with three exceptions, which are ill-conditioned. The
 amplitude's exponent 2/(k-1) makes each rounding |ln B| times larger. Near the edge of the domain of
-waves (G + H + I → 0, V² → 0) a last digit of k or of a mass changes the result by more. Near the
-end of the support so does a last digit of ξ: the profile is right to 1e-14 B at a ξ off by 1e-14 ξ.
+waves (G + H + I → 0, V² → 0) the last digit of k or of a mass changes the result by more. Near the
+end of the support the last digit of ξ does: the profile is right to 1e-14 B at a ξ off by 1e-14 ξ.
 """
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ _LOADED_DOCS = {
 def wave_code(wave: CompactWave, language: str) -> str:
     """The source text of `wave_functions` in one of the `LANGUAGES`.
 
-    Python has those of the paper's reduction, `reduction_functions`, besides.
+    In Python the functions of the paper's reduction, `reduction_functions`, are added.
 
     Raises `lwa.InputError` for another language.
     """
@@ -121,7 +121,7 @@ def loaded_functions(
 ) -> dict[str, Function]:
     """The closed forms of a wave under load, and under a power law its speed at a force, by name.
 
-    forms : by the names of `_LOADED_DOCS`, in the symbol B for the rise of the strain.
+    forms : expressions by their names in `_LOADED_DOCS`; B is the rise of the strain.
 
     Arguments stand in this order, each where it is used: B; F; p0; the symbols of the law, of the
     masses, of the stiffnesses and of the spacing.

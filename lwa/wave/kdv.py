@@ -17,6 +17,7 @@ from lwa.base.quantities import RISE
 class KdV(Value):
     """The limit of small waves, v_τ + c0 v_x + α v v_x + γ v_xxx = 0, and its sech² wave.
 
+    v is the strain above p0, c0 the speed of sound, α the nonlinearity and γ the dispersion.
     For a power α = (k-1) c0/(2 p0), γ = I c0/2, c0 = p0^{(k-1)/2}.
     """
 

@@ -1,6 +1,7 @@
 """Gauss panels along the flank of a wave, and the integrals of `lwa.wave.quadrature` on them.
 
-A wave of the rise B has the strain p0 + sB, s = 1/cosh²θ, 0 ≤ θ < ∞. Towards s = 0, where F′ of an
+Letters as in `lwa.wave.quadrature`: a wave of the rise B has the strain p0 + sB, s = 1/cosh²θ,
+0 ≤ θ < ∞, K is the kernel of Q(B) - Q(v). Towards s = 0, where F′ of an
 unloaded contact is singular, panels in θ become longer, as the integrands decay with s; towards
 s = 1 they are halved as often as steep laws, contacts about to open and waves next to their
 limiting amplitude demand.
@@ -30,18 +31,18 @@ LEVELS = ((1, 0), (2, 3), (6, 4), (24, 3), (24, 23))
 """Panels above v = B/2, and halvings of the first; 23 more reach the last digit of θ²."""
 
 CONVERGED = 1e-13
-"""The last two Legendre coefficients of dξ/dθ on each panel, over the largest dξ/dθ."""
+"""Bound on the last two Legendre coefficients of dξ/dθ on a panel, relative to dξ/dθ."""
 
 ROUNDING = 1e-9
-"""These coefficients on the finest panels: rounding errors of p next to a law's pole."""
+"""The same bound on the finest panels: p has rounding errors next to a law's pole."""
 
 
 class Grid(NamedTuple):
     """Gauss panels in θ from 0 to ∞; the upper ones reach down to v = B/2, or 0.1 B if ``deep``.
 
-    ``s`` and ``y2`` = 1 - s stand at all nodes, and ``ds`` are the weights of ∫ … ds. ``starts``
-    and ``lengths`` are those of the upper panels, and row j of ``kernel`` maps F″ to ∫ K F″ ds / y²
-    at their node j; ``first`` and ``last`` do so at θ = 0 and at the end of the upper panels.
+    ``s``, ``y2`` = 1 - s and ``ds``, the weights of ∫ … ds, have one entry per node. ``starts`` and
+    ``lengths`` have one per upper panel. Row j of ``kernel`` maps F″ at the nodes to ∫ K F″ ds / y²
+    at the upper node j; ``first`` and ``last`` map to θ = 0 and to the end of the upper panels.
     """
 
     s: Array
@@ -58,7 +59,7 @@ class Grid(NamedTuple):
         return values[..., : len(self.kernel)].reshape(*values.shape[:-1], len(self.starts), POINTS)
 
     def converged(self, rate: Array, most: float = CONVERGED) -> NDArray[np.bool_]:
-        """True for waves whose dξ/dθ at the upper nodes is resolved on each panel."""
+        """True for each wave whose dξ/dθ (``rate``, at the upper nodes) the panels resolve."""
         last = np.abs(self.panels(rate) @ _fitted()[-2:].T).max(axis=(1, 2))
         found: NDArray[np.bool_] = last <= most * np.abs(rate).max(axis=1)
         return found
@@ -157,7 +158,7 @@ def _below(theta: Array, at: float) -> Array:
 
 
 def strains(g: Grid, p0: Array, B: Array) -> Array:
-    """Strains at the nodes, computed from the nearer end of the wave."""
+    """Strains p0 + sB at the nodes, computed from p0 or p0 + B, whichever is nearer."""
     near = (p0 + B)[:, None] - B[:, None] * g.y2
     found: Array = np.where(g.y2 < 0.5, near, p0[:, None] + B[:, None] * g.s)
     return found

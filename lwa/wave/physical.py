@@ -9,7 +9,7 @@ dx/dt = V √(P k A_eff D^{k+1} / M), the speed
     dx/dt = D √(f P k / M) A_eff^{1/(2k)} F^{(k-1)/(2k)}.
 
 A contact has the force F cos^{mk}(βξ), m = 2/(k-1), ξ = x - (dx/dt) t. A bead bears the mean force
-of its two contacts, half a spacing before and behind the bead, at its peak F cos^{mk}(βD/2).
+of its two contacts, half a spacing before and behind the bead, which peaks at F cos^{mk}(βD/2).
 
 Everything is in the units of the cell: in SI for `lwa.Cell.of_spheres`.
 """
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from lwa.base.arrays import Array
 
 BEARERS = ("contact", "bead")
-"""Whose force it is."""
+"""Bearers of the prescribed peak force."""
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ from typing import Any
 
 
 def axes(ax: Any) -> Any:
-    """The given axes, or those of a new figure."""
+    """Return the axes ``ax``, or the axes of a new figure if ``ax`` is None."""
     if ax is None:
         from matplotlib import pyplot  # start-up: only a figure needs it
 

@@ -2,8 +2,8 @@
 
 At leading order the static load F0 and the peak force F of a wave are the same in all contacts of a
 cell, which under A F(δ) are at the mean compressions δ0 and δ1 with A F(δ) = F0 and F. The strain
-then rises from p0 = δ0/D by B = (δ1 - δ0)/D, and `compressed` has the wave. For equal spheres
-its speed is Nesterenko's,
+rises from p0 = δ0/D by B = (δ1 - δ0)/D in the wave (`lwa.wave.background`). For equal spheres with
+the speed of sound c0 the speed V of the wave is Nesterenko's,
 
     V²/c0² = (4/15) (3 + 2 ζ^{5/2} - 5 ζ) / (ζ - 1)²,    ζ = (F/F0)^{2/3}.
 """
@@ -29,9 +29,9 @@ from lwa.wave.background import DIGITS, BackgroundWave, taken_names
 class PrecompressedWave(Value):
     """The wave whose contact force peaks at ``force`` in a chain with the load ``precompression``.
 
-    Both are total forces, numbers or symbols, in the units of the cell; the dynamic force is their
-    difference. A force below the load is that of a rarefaction wave. Under a law that is no power
-    forces and chain must be numbers.
+    Both forces are total ones, numbers or symbols in the units of the cell; the dynamic force is
+    the difference of the two. A ``force`` below the load is that of a rarefaction wave. Under a law
+    that is no power forces and chain must be numbers.
 
     Raises `lwa.InputError` unless both are positive, and `lwa.NoSolitaryWave` without a wave.
 
@@ -80,7 +80,7 @@ class PrecompressedWave(Value):
 
     @cached_property
     def background(self) -> BackgroundWave:
-        """The waves on this load."""
+        """The waves on the strain of this load."""
         return BackgroundWave(self.cell, self.law, self.static_compression / self.cell.spacing)
 
     @property

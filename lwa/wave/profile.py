@@ -49,7 +49,7 @@ class Strains:
 
     @cached_property
     def _compiled(self) -> list[tuple[Function, list[sp.Rational]]]:
-        """Functions of v and of the fractions in the expressions, which would become floats."""
+        """For F, F′ and Q a function of v and of exact fractions, and the values of these."""
         found = []
         for value in (self.force, self.slope, self.stiffness):
             numbers = {a: sp.Dummy() for a in value.atoms(sp.Rational) if not a.is_Integer}
@@ -67,8 +67,9 @@ class Strains:
     def precision(self, B: sp.Expr, digits: int) -> int:
         """Working digits with which Q(B) - Q(v) keeps twice the digits of the result.
 
-        Twice, because the difference falls as θ² towards the peak. How many the terms of Q cancel
-        is measured: the difference must not change with twice the working digits.
+        Twice as many, because the difference falls as θ² towards the peak. The number of digits
+        that the terms of Q cancel is measured: doubling the working digits must not change the
+        difference.
         """
         working, before = 2 * digits + 15, mpmath.inf
         while working < _MOST_PRECISION:
@@ -140,7 +141,7 @@ class Profile:
         start, here = mpmath.mpf(0), mpmath.mpf(0)
         while here + (step := self._integral([start, start + 1])) < place:
             start, here = start + 1, here + step
-            if start > 3 * mpmath.mp.dps:  # v is nothing there
+            if start > 3 * mpmath.mp.dps:  # v is zero to all digits there
                 return start
 
         def passed(theta: Any) -> Any:
@@ -156,7 +157,7 @@ class Profile:
         return mpmath.findroot(function, bracket, solver="anderson", tol=accuracy, verify=False)
 
     def _integral(self, points: list[Any]) -> Any:
-        """The integral ∫ dξ by Gauss's rule on each piece, refined until the digits stand.
+        """The integral ∫ dξ by Gauss's rule on each piece, refined until the digits converge.
 
         Under a power with small k, n points err by 6^{-2n} on a piece of length 1, and degree d has
         n = 3·2^{d-1}. Steep laws, and waves next to their limiting amplitude, vary fast at θ = 0.

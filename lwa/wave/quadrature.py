@@ -1,8 +1,8 @@
 """Waves on a background in float64: speed, width and profile for arrays of (p0, B).
 
 `lwa.wave.background` writes V² = Q(B) and Q(B) - Q(v) as differences of W and F, which cancel. Here
-they are integrals of F′ and F″ over the strains of the wave, p = p0 + sB, 0 < s < 1, whose
-integrands keep one sign under a law that stiffens:
+they are integrals of F′ and F″, at the strains p = p0 + sB of the wave, over 0 < s < 1. Under a law
+that stiffens the integrands keep one sign:
 
     Q(B)        = 2 ∫ (1-s) F′ ds,
     Q(B) - Q(v) = B ∫ K F″ ds,    K = (1-s)² for s > v/B,  (1-s)² - (1 - sB/v)² below.
@@ -100,7 +100,7 @@ class NumericBackground(Value):
         return 2 * half[()]
 
     def profile(self, xi: ArrayLike, p0: float, B: float) -> Array:
-        """Strain v(ξ) of one wave at any places ξ."""
+        """Strain v(ξ) of one wave at the places ξ."""
         places = np.abs(finite(xi, "xi"))
         base, rise, unit = self._waves(p0, B)
         if base.ndim:
@@ -123,7 +123,7 @@ class NumericBackground(Value):
         return np.concatenate(parts).reshape(p0.shape)
 
     def _squares(self, p0: Array, B: Array) -> Array:
-        """Squares V² = F′(p0) + B ∫(1-s)² F″ ds; 2 ∫(1-s) F′ ds for waves that are not small."""
+        """V² = F′(p0) + B ∫(1-s)² F″ ds for small waves, 2 ∫(1-s) F′ ds for others."""
         found = np.empty_like(p0)
         for rows, g, p, bend, _ in self._resolved(p0, B, rough=True):
             first, second = g.ds * g.y2, g.ds * g.y2**2  # weights of 1/2 and 1/3, but for rounding
@@ -164,9 +164,9 @@ class NumericBackground(Value):
     def _resolved(
         self, p0: Array, B: Array, deep: bool = False, rough: bool = False
     ) -> Iterator[tuple[NDArray[np.intp], Grid, Array, Array, Array]]:
-        """Rows of waves with a grid that resolves them, p and F″ at its nodes, and dξ/dθ.
+        """Yield (indices of waves, a grid that resolves them, p and F″ at its nodes, dξ/dθ).
 
-        Waves that no grid resolves are refused or, if ``rough``, come with the finest grid.
+        Waves that no grid resolves raise `lwa.InputError` or, if ``rough``, get the finest grid.
         """
         rows = np.arange(len(p0))
         for level in LEVELS:
@@ -202,10 +202,10 @@ class NumericBackground(Value):
     def _panels(
         self, p0: Array, B: Array, reach: float
     ) -> list[tuple[float, float, float, float, Array]]:
-        """Panels of one wave to ξ = ``reach``: ξ and θ at the start, length, B, and ξ - ξ(start).
+        """Panels of one wave to ξ = ``reach``: (ξ and θ at the start, length, B, ξ - ξ(start)).
 
-        The last are coefficients in Legendre polynomials. At v = B/2 the wave of that rise
-        continues the profile, its Q diminished by the integral so far.
+        The last entry is a row of Legendre coefficients. Below v = B/2 the profile is computed as
+        that of a wave of rise B/2, with Q(B) - Q(v) corrected by the integral above.
         """
         rows, at, passed, least = [], 0.0, np.zeros(1), _LEAST * abs(B[0])
         ((_, g, _, bend, rate),) = (x for x in self._resolved(p0, B) if len(x[0]))
@@ -256,7 +256,7 @@ class NumericBackground(Value):
     # --- existence --------------------------------------------------------------------------
 
     def _waves(self, p0: ArrayLike, B: ArrayLike) -> tuple[Array, Array, Array]:
-        """Broadcast p0 and B over a unit, a power of two under a power law, and return the unit."""
+        """Return p0/unit, B/unit and unit, broadcast; unit is 1, or a power of two for δ^k."""
         base, rise = np.broadcast_arrays(finite(p0, "p0"), finite(B, "B"))
         if not np.all(rise):
             raise InputError("B is 0: a wave rises or falls by B")
@@ -279,7 +279,7 @@ class NumericBackground(Value):
         return base / unit, rise / unit, unit
 
     def _exists(self, p0: Array, B: Array) -> Array:
-        """Existence: 1.0 if 0 < F′ < ∞, B Q′(B) > 0, and Q(v) < Q(B) below B; else 0.0."""
+        """1.0 for each wave that exists, 0 < F′ < ∞, B Q′(B) > 0, Q(v) < Q(B) below B; else 0.0."""
         g = grid(*LEVELS[1])
         good = np.isfinite(self._slope(p0 + B)) & (self._slope(p0 + B) > 0)
         passed = np.zeros_like(p0)
@@ -298,7 +298,7 @@ class NumericBackground(Value):
 _STRAIN = sp.Symbol("p", positive=True)
 
 _LEAST = 1e-280
-"""Strains of a profile, over its peak, that are taken as 0."""
+"""Strains of a profile, relative to the peak, below which they are taken as 0."""
 
 
 def _compiled(value: sp.Expr) -> Callable[[Array], Array]:

@@ -70,7 +70,7 @@ class TravelingWave(CompactWave):
         return ax
 
     def on_background(self, p0: Any = "p0") -> BackgroundWave:
-        """The waves on a strain p0, for a wave of the canonical field.
+        """Return the waves of this chain on a strain p0; this wave must be the canonical field's.
 
         Raises `lwa.InputError` for the wave of another field, whose equation has no energy.
 

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from contextlib import AbstractContextManager, nullcontext
-
 from validation.scenes.checks import SceneError
 from validation.scenes.scene import Scene
 
@@ -14,35 +11,21 @@ EXCESS = 10  # times as many steps as are expected, at which an adaptive method 
 
 # (a, q): about a rtol^{-1/q} steps in a scene's shortest time √(m/spring), counted on uniform
 # chains, dimers and pressed beads, k = 1 … 3; at most 3 times as many.
-_ADAPTIVE = {
-    "RKN86": (0.25, 7),
-    "DOP853": (0.3, 8),
-    "RK45": (0.2, 5),
-    "RK23": (0.2, 3),
-    "LSODA": (1.5, 8),
-}
+_STEPS = dict(RKN86=(0.25, 7), DOP853=(0.3, 8), RK45=(0.2, 5), RK23=(0.2, 3), LSODA=(1.5, 8))
 _FEWEST = 100  # steps that an adaptive method takes to find its step, however slow the motion
-
-RunProgress = Callable[[], AbstractContextManager[Callable[[float], object]]]
-"""Opens a display of a run's progress, which is called with the share that is done."""
-
-
-def silent() -> AbstractContextManager[Callable[[float], object]]:
-    """The `RunProgress` that shows nothing."""
-    return nullcontext(lambda share: None)
 
 
 def mean_step(method: str, rtol: float) -> float:
-    """The expected mean step of an adaptive method, in units of a scene's shortest time."""
-    a, order = _ADAPTIVE[method]
+    """Return the expected mean step of an adaptive method, in units of a scene's shortest time."""
+    a, order = _STEPS[method]
     return float(rtol ** (1 / order)) / a
 
 
 def most_steps(scene: Scene, method: str, steps: float, rows: int, memory: int = 0) -> int:
-    """The number of steps at which a run is stopped.
+    """Return the number of steps at which a run is stopped.
 
-    steps : expected. rows : numbers that are held for each sensor and sample. memory : further
-    bytes. Raises `SceneError` for more than `MOST_STEPS` or `MOST_BYTES`.
+    steps : expected number of steps. rows : numbers stored for each sensor and sample. memory :
+    further bytes. Raises `SceneError` for more than `MOST_STEPS` steps or `MOST_BYTES` bytes.
     """
     sensors = len(scene.contact_sensors) + len(scene.bead_sensors)
     memory += 8 * (80 * scene.size + scene.samples * (rows * sensors + 20))
@@ -60,7 +43,7 @@ def most_steps(scene: Scene, method: str, steps: float, rows: int, memory: int =
 
 
 def beyond(method: str, steps: int, t: float, duration: float) -> str:
-    """Message of the error for too many steps."""
+    """Return the message of the error for too many steps."""
     return (
         f"{steps} steps of {method} reach t = {t:g} of {duration:g}: rounding hides the motion, "
         "or rtol is too small for it"

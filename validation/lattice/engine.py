@@ -1,12 +1,14 @@
-"""Compiled engine: an adaptive Runge–Kutta–Nyström pair and a symplectic splitting.
+"""Compiled engine: an embedded Runge–Kutta–Nyström pair and a symplectic splitting.
 
 Numba compiles the loops once and keeps them on disk. A run is the same to the last bit every time.
 
-Pair: adaptive, for y'' = f(y) (`validation.lattice.schemes.nystrom`). The error of a step, the root
-of the sum of the beads' squares in the scene's scales of displacement and velocity, is kept at
-``rtol`` and sets the next step. F = A δ^k with k = 3/2 has no second derivative where a contact
-opens or closes: the step would err by O(h^{k+1}) there. So the term p_+^k, with a polynomial p
-close to the contact's δ, is integrated by its own quadrature (`validation.lattice.kernel.kinks`).
+Pair: two embedded solutions of y'' = f(y), with adaptive steps h
+(`validation.lattice.schemes.nystrom`). The error of a step is the root of the sum over all beads of
+the squared errors, in the scene's scales of displacement and velocity; ``rtol`` bounds this error
+and so sets the steps. F = A δ^k with k = 3/2 has no second derivative at a kink, the time at which
+a contact opens or closes, and a step across a kink would err by O(h^{k+1}). So A p_+^k, with a
+polynomial p close to the contact's compression δ and p_+ = max(p, 0), is integrated by a quadrature
+of its own (`validation.lattice.kernel.kinks`).
 
 Splitting: symplectic, with a fixed step (`validation.lattice.schemes.splitting`). Every kink leaves
 an error of O(h^{k+1}), which sets the step.
@@ -16,9 +18,9 @@ Samples and signals: `validation.lattice.kernel.samples`.
 Piston: a first bead of infinite mass. Its work is its velocity times the impulse of its contact.
 
 Window: beads ahead of the front have not moved yet and are always left out. A window of N beads
-leaves out those more than N behind the front as well. Their energy stays on the books, their motion
-is unknown. A second run, with a window of 2N, shows how much the leading pulse depends on them; its
-numbers are returned for the beads that both runs follow.
+also leaves out the beads more than N behind the front: their energy is still counted, their motion
+is NaN. A second run, with a window of 2N beads, shows how much the leading pulse depends on N. The
+numbers of the second run are returned, for the beads inside the first run's window.
 """
 
 from __future__ import annotations
@@ -33,7 +35,7 @@ import numpy as np
 import scipy
 
 from lwa.base.arrays import Array
-from validation.lattice.cost import RunProgress, beyond, mean_step, most_steps
+from validation.lattice.cost import beyond, mean_step, most_steps
 from validation.lattice.equations import Motion
 from validation.lattice.kernel.advance import advance
 from validation.lattice.kernel.arrays import (
@@ -48,7 +50,7 @@ from validation.lattice.kernel.arrays import (
     beginning,
 )
 from validation.lattice.knots import Recorder
-from validation.lattice.run import IntegrationError, Run, finished
+from validation.lattice.run import IntegrationError, Run, RunProgress, finished
 from validation.lattice.schemes import SCHEMES
 from validation.lattice.schemes.nystrom import Pair
 from validation.lattice.signal import recorded, sampled
@@ -57,19 +59,20 @@ from validation.scenes.checks import SceneError, integer, positive
 _SUPPORTS = 8  # supports of the long-wave pulse in a window of the engine's choice
 _CHANGE = 10.0  # in units of rtol: greatest change of the leading pulse by a longer window
 _POINTS = 8  # nodes of the quadrature at a kink
-_NOISE = sys.float_info.epsilon  # of the greatest value: less is rounding, and no front
+_NOISE = sys.float_info.epsilon  # in units of the greatest value: a bead that moves less is still
 _GLANCE = 5e7  # bead evaluations between two reports of progress: some tenths of a second
 # The splitting's step per stage is (rtol/0.01)^0.4 in units of the scene's shortest time, measured
 # on a Hertz dimer of 560 beads; at 0.2 it is still stable.
 _KINKS, _COARSEST = 0.01, 0.2
-_CAREFUL = 100  # steps by which a pair's first step is shortened
+_CAREFUL = 100  # added to the expected number of steps for an embedded pair's (shorter) first step
 
 
 @dataclass(frozen=True)
 class Settings:
-    """A method with its tolerance and steps.
+    """A method of `SCHEMES` with its tolerance and steps.
 
-    step : fixed step of a splitting; expected mean step of a pair. longest : greatest step.
+    step : fixed step of a splitting; expected mean step of an embedded pair. longest : greatest
+    step.
     """
 
     method: str
@@ -97,7 +100,7 @@ def follow(
 
 
 def _step(method: str, rtol: float) -> float:
-    """The step, or a pair's expected mean step, in units of the scene's shortest time."""
+    """Return a splitting's step or an embedded pair's mean step, in units of `Scales.time`."""
     scheme = SCHEMES[method]
     if isinstance(scheme, Pair):
         return mean_step(method, rtol)
@@ -105,7 +108,7 @@ def _step(method: str, rtol: float) -> float:
 
 
 def _window(motion: Motion, window: Any) -> int | None:
-    """The number of beads to follow behind the front; None for the whole chain."""
+    """Return the number of beads to integrate behind the front; None for the whole chain."""
     if window is False:
         return None
     if motion.scene.wall is not None or (motion.k == 1 and window is True):
@@ -122,9 +125,9 @@ def _window(motion: Motion, window: Any) -> int | None:
 
 
 def _compare(motion: Motion, rtol: float, short: Run, long: Run) -> None:
-    """Raise `IntegrationError` where the longer window changes the leading pulse.
+    """Raise `IntegrationError` if the longer window changes the leading pulse.
 
-    Compared are velocities at the end, from the fastest bead on.
+    The velocities of both runs at the end are compared, from the fastest bead to the front.
     """
     followed = np.isfinite(short.velocities)
     one, other = short.velocities[followed], long.velocities[followed]
@@ -146,9 +149,10 @@ def _integrated(
 ) -> tuple[Run, Array]:
     """Integrate the whole chain, or the beads of a window.
 
-    followed : times after which each bead is NaN in the run; by default when the window leaves it.
+    followed : for each bead the time after which the results are NaN (infinite: none); by default
+        the time at which the window leaves the bead.
 
-    Returns the run and these times.
+    Returns the run and these times, ``followed`` or the window's own.
     """
     n, end = motion.size, motion.scene.duration
     window = None if window is None or window >= n else window
@@ -190,7 +194,7 @@ def _integrated(
 
 @lru_cache
 def _tableau(method: str, k: float) -> Tableau:
-    """Coefficients of a method, with the quadrature at kinks of the exponent k."""
+    """Return the coefficients of a method, and the quadrature for kinks of exponent k."""
     scheme = SCHEMES[method]
     nothing, table = np.zeros(0), np.zeros((0, 0))
     points = table
@@ -220,7 +224,7 @@ def _plan(motion: Motion, given: Settings, chain: Chain, window: int | None, ste
 
 
 def _chain(motion: Motion) -> Chain:
-    """The chain, padded by beads of infinite mass, of which the first is the wall."""
+    """Build the kernel's chain, padded by beads of infinite mass; the first of them is the wall."""
     inverse, A, rest, load = rows = np.zeros((4, motion.size + 2 * SHORTEST))
     given = 1 / motion.masses, motion.stiffnesses, motion.rest, motion.load
     for row, values in zip(rows, given, strict=True):
@@ -233,14 +237,14 @@ def _chain(motion: Motion) -> Chain:
 
 
 def _front(motion: Motion) -> int:
-    """Number of the first bead that is still, plus a margin."""
+    """Return the number of the first bead that is still, plus a margin."""
     y, v = np.abs(motion.start[: 2 * motion.size].reshape(2, motion.size))
     moving = np.flatnonzero((y > _NOISE * y.max()) | (v > _NOISE * v.max()))
     return min(motion.size, MARGIN + (int(moving[-1]) + 1 if len(moving) else 0))
 
 
 def _start(motion: Motion, padded: int) -> Beads:
-    """The initial state of the beads."""
+    """Build the kernel's initial state, arrays with room for ``padded`` + 1 beads."""
     n = motion.size
     y, v, next_y, next_v, left = np.zeros((5, padded + 1))
     y[:n], v[:n], left[:] = motion.start[:n], motion.start[n : 2 * n], np.inf

@@ -28,11 +28,11 @@ class Scales:
 
     energy : initial energy above equilibrium.
     compression : greatest compression that the energy or the static forces can bring about.
-    displacement, velocity : of a bead with this energy; in equilibrium those that the static
-        compression sets, and 1 where nothing presses.
-    time : shortest √(m/spring) of a bead between its contacts at this compression; infinite where
-        nothing presses.
-    rounding : rounding error of the static compressions, in units of the displacement.
+    displacement, velocity : displacement and velocity of a bead with this energy; in equilibrium
+        the static compression, and this compression divided by ``time``; 1 without compression.
+    time : shortest √(m/spring) of a bead between its contacts at the greatest compression; infinite
+        without compression.
+    rounding : rounding error of the static compressions divided by the displacement.
     """
 
     energy: float
@@ -44,10 +44,10 @@ class Scales:
 
 
 class Motion:
-    """The right-hand side of a scene's equations in the state (y_0 … y_{n-1}, v_0 … v_{n-1}).
+    """The time derivative of a scene's state (y_0 … y_{n-1}, v_0 … v_{n-1}), and its invariants.
 
-    start : the initial state. loaded : whether there is gravity or a precompression. rest, load :
-    static compressions and forces of the contacts. contact : their law.
+    start : initial state. loaded : True with gravity or precompression. rest, load : static
+    compressions and forces of the contacts. contact : law of the contacts.
     """
 
     def __init__(self, scene: Scene) -> None:
@@ -78,18 +78,18 @@ class Motion:
                 _held(f"static {name}", values.min(), values.max())
 
     def compression(self, y: Array) -> Array:
-        """Compressions δ_i from displacements of shape (n,) or (n, S)."""
+        """Return the compressions δ_i at displacements of shape (n,) or (n, S)."""
         row = np.concatenate((y, np.zeros_like(y[:1]))) if len(self.rest) == len(y) else y
         dynamic = row[:-1] - row[1:]
         return np.asarray((self.rest + dynamic.T).T) if self.loaded else dynamic
 
     def rate(self, v: Array) -> Array:
-        """Rates dδ_i/dt of the compressions from velocities of shape (n,)."""
+        """Return the rates dδ_i/dt of the compressions at velocities of shape (n,)."""
         row = np.append(v, 0.0) if len(self.rest) == len(v) else v
         return np.asarray(row[:-1] - row[1:])
 
     def force(self, compression: Array) -> Array:
-        """Elastic forces A_i F(δ_i), for a power A_i [δ_i]_+^k."""
+        """Return the elastic forces A_i F(δ_i); A_i [δ_i]_+^k for a power law."""
         return np.asarray((self.stiffnesses * self.contact.force(compression).T).T)
 
     def __call__(self, time: float, state: Array) -> Array:
@@ -101,9 +101,9 @@ class Motion:
         return np.concatenate((v, push / self.masses))
 
     def energy(self, state: Array, first: int = 0) -> float:
-        """Kinetic and elastic energy, less the work of the weights: 0 in equilibrium.
+        """Return kinetic plus elastic energy less the work of the static forces; 0 in equilibrium.
 
-        Contacts before the ``first`` do not count.
+        The elastic energy of contacts with numbers below ``first`` is left out.
         """
         compression, v = self.compression(state[: self.size]), state[self.size : 2 * self.size]
         if self.contact.law is None:
@@ -116,7 +116,7 @@ class Motion:
         return float(self.masses @ v**2 / 2 + stored[first:].sum())
 
     def balance(self, state: Array) -> float:
-        """Energy, plus the dissipated energy, less the drive's work: constant in exact motion."""
+        """Return energy plus dissipated energy less the drive's work; exact motion conserves it."""
         return self.energy(state)
 
     @property
@@ -125,7 +125,7 @@ class Motion:
         return 0.0
 
     def momentum_drift(self, end: Array) -> float | None:
-        """Change of the momentum since the start over Σ m|v|; None with a wall or a drive."""
+        """Return the momentum's change up to ``end`` divided by Σ m|v|; None with wall or drive."""
         if self.scene.wall is not None or self.scene.drive is not None:
             return None
         moving = slice(self.size, 2 * self.size)
@@ -134,14 +134,14 @@ class Motion:
         return float(self.masses @ (after - before) / total) if total else 0.0
 
     def _stirred(self, rest: float) -> bool:
-        """Whether a bead moves at the start, or a contact is pressed more than ``rest``."""
+        """Return True if initially a bead moves or a contact is compressed more than ``rest``."""
         pressed = self.compression(self.start[: self.size]).max(initial=0.0) > rest
         return bool(pressed or np.any(self.start[self.size : 2 * self.size]))
 
     @cached_property
     @np.errstate(all="ignore")
     def scales(self) -> Scales:
-        """Characteristic scales; raises `SceneError` where a float cannot hold one."""
+        """Characteristic scales; raises `SceneError` if a scale over- or underflows."""
         energy, n, A = self.energy(self.start) + self.driven, self.size, self.stiffnesses
         deepest = at_rest = self.rest.max(initial=0.0) if self.loaded else 0.0
         stiffest = A.max(initial=0.0)
@@ -171,7 +171,7 @@ class Motion:
 
 
 def _held(name: str, *values: float) -> None:
-    """Raise `SceneError` for scales that overflow or are too small for all digits of a float."""
+    """Raise `SceneError` for values that overflow or are too small for a float's full accuracy."""
     for value in values:
         if not LEAST <= value < math.inf:
             raise SceneError(f"the scene's {name} comes out as {value:g}: choose other units")

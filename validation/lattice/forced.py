@@ -1,7 +1,7 @@
 """The equations of motion of a scene with damping or a drive.
 
-The force depends on velocities and on time. The state has two more components: the energy that the
-contacts have dissipated and the work of the drive.
+Damping makes forces depend on velocities, and a drive makes the motion of bead 0 depend on time.
+The state has two more components than without them: dissipated energy and work of the drive.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from validation.scenes.scene import Scene
 
 
 class ForcedMotion(Motion):
-    """The right-hand side in the state (y, v, dissipated energy, work)."""
+    """The time derivative, as in `Motion`, of the state (y, v, dissipated energy, drive's work)."""
 
     def __init__(self, scene: Scene) -> None:
         super().__init__(scene)
@@ -52,6 +52,6 @@ class ForcedMotion(Motion):
 
 
 def motion_of(scene: Scene) -> Motion:
-    """The equations of motion of a scene."""
+    """Return the equations of motion of a scene, a `ForcedMotion` with damping or a drive."""
     forced = scene.damping is not None or scene.drive is not None
     return ForcedMotion(scene) if forced else Motion(scene)

@@ -1,4 +1,8 @@
-"""Motion of the beads near sensors, interpolated between the ends of the engine's steps."""
+"""Motion of the beads near sensors, interpolated between the ends of the engine's steps.
+
+A knot is the end of a step, with the motion of the beads stored by the engine; a sample is a value
+at one of the scene's sample times, interpolated between knots.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +25,7 @@ class KnotPath:
     """A `validation.lattice.signal.Path` through knots (`validation.lattice.kernel.samples`).
 
     points : nodes and weights of the quadrature at kinks. left : times at which a window left the
-    beads behind; infinite for those it follows.
+    watched beads behind, infinite for beads inside the window. kinks : see `Path`.
     """
 
     chain: Chain
@@ -48,9 +52,10 @@ class KnotPath:
 
 
 class Recorder:
-    """Collector of a run's knots, which takes the samples and keeps the knots for signals.
+    """Collector of a run's knots, which computes the samples and stores the knots for signals.
 
-    needed : numbers of the beads that the sensors need. time : (S,), of the samples.
+    needed : numbers of the B beads that the sensors need. time : (S,), sample times. y, v : (B, S),
+    samples of displacements and velocities.
     """
 
     def __init__(self, chain: Chain, points: Array, needed: NDArray[np.int_], time: Array) -> None:
@@ -66,7 +71,11 @@ class Recorder:
         self.done = self.size = 0
 
     def take(self, count: int) -> int:
-        """Take over ``count`` knots; return the number of knots that stay, which is 1: the last."""
+        """Compute the samples between the first ``count`` knots, and store these knots.
+
+        The last knot becomes the first in the arrays of the engine. Returns the number of knots
+        that stay there, 1, or 0 without sensors.
+        """
         time, watched, state = self.knots
         if not len(watched):
             return 0
@@ -84,9 +93,9 @@ class Recorder:
         return 1
 
     def path(self, left: Array) -> KnotPath | None:
-        """The motion of the whole run, for times at which a window left each bead of the chain.
+        """Return the motion of the whole run; None if the knots take more than `_KEPT` bytes.
 
-        None where the knots take more than `_KEPT` bytes. The samples are NaN from these times on.
+        left : time at which a window left each bead of the chain; later samples become NaN.
         """
         late = self.time > left[self.needed, None]
         self.y[late] = self.v[late] = np.nan

@@ -23,9 +23,9 @@ from lwa.law import ContactLaw
 
 @dataclass(frozen=True)
 class Contact:
-    """The force F(δ) of a contact of unit stiffness, for `ContactLaw` or for the power δ^k.
+    """The force F(δ) of a contact of unit stiffness, for a `ContactLaw` or for the power δ^k.
 
-    braked : exponent of δ beside the rate in the damping of the contact; None without damping.
+    braked : exponent p of the damping force ~ δ^p dδ/dt; None without damping.
     """
 
     k: float
@@ -34,30 +34,30 @@ class Contact:
 
     @cached_property
     def pulls(self) -> bool:
-        """Whether the contact holds where δ < 0."""
+        """True if the contact holds, and pulls, where δ < 0."""
         return self.law is not None and bool(self.law.at(sp.S.Zero, 1).is_positive)
 
     def force(self, compression: Array) -> Array:
-        """F; [δ]_+^k for a power."""
+        """Return F; [δ]_+^k for a power law."""
         if self.law is not None:
             return self._held(0, compression)
         pressed = np.maximum(compression, 0.0)
         return np.asarray(pressed * np.sqrt(pressed) if self.k == 1.5 else pressed**self.k)
 
     def stiffness(self, compression: Array) -> Array:
-        """F′."""
+        """Return F′."""
         if self.law is not None:
             return self._held(1, compression)
         return np.asarray(self.k * np.maximum(compression, 0.0) ** (self.k - 1))
 
     def energy(self, compression: Array) -> Array:
-        """∫ F dδ from 0."""
+        """Return the elastic energy ∫ F dδ, from 0 to the compression."""
         if self.law is not None:
             return self._held(2, compression)
         return np.asarray(self.force(compression) * compression / (self.k + 1))
 
     def damped(self, elastic: Array, damping: Array, compression: Array, rate: Array) -> Array:
-        """Total forces (contacts, …) from elastic forces, damping, compressions and rates."""
+        """Return the total forces (contacts, …); damping : coefficients, rate : dδ/dt."""
         if self.braked is None:
             return elastic
         closed = compression if self.pulls else np.maximum(compression, 0.0)
@@ -72,7 +72,7 @@ class Contact:
         return np.asarray(values if self.pulls else np.where(compression > 0, values, 0.0))
 
     def compressed_by(self, forces: Array) -> Array:
-        """Static compressions under given forces; `lwa.InputError` beyond the law's reach."""
+        """Return static compressions at given forces; `lwa.InputError` for unattainable forces."""
         if self.law is None:
             return np.asarray(forces ** (1 / self.k))
         law, cell = self.law, Cell((1,))
@@ -80,7 +80,10 @@ class Contact:
         return np.array([known[F] for F in forces.tolist()])
 
     def reached_by(self, energy: float, start: float) -> float:
-        """Compression beyond ``start`` at which a contact has stored so much more energy."""
+        """Return a compression that a further energy beyond equilibrium at ``start`` brings about.
+
+        For a power law the result is only a scale, energy^{1/(k+1)}, whatever the ``start``.
+        """
         if self.law is None:
             return float(np.float64(energy) ** (1 / (self.k + 1)))
 
@@ -107,7 +110,7 @@ class Contact:
 
 
 def _expressions(law: ContactLaw) -> tuple[sp.Expr, ...]:
-    """F, F′ and the energy in floats, written so that e^x - 1 loses no digits."""
+    """Return F, F′ and the energy, with float coefficients and e^x - 1 as expm1(x)."""
     energy = law.energy
     rows = law.F, law.slope(), energy - sp.limit(energy, law.delta, 0, "+")
     return tuple(optimize(sp.N(sp.sympify(row), 20), [expm1_opt]) for row in rows)
@@ -115,14 +118,14 @@ def _expressions(law: ContactLaw) -> tuple[sp.Expr, ...]:
 
 @lru_cache
 def _functions(law: ContactLaw | None) -> tuple[Callable[[Array], Any], ...]:
-    """F, F′ and the energy as functions of arrays."""
+    """Return F, F′ and the energy of a law as functions of arrays."""
     assert law is not None
     return tuple(sp.lambdify(law.delta, row, "numpy") for row in _expressions(law))
 
 
 @lru_cache
 def _machine_code(law: ContactLaw) -> tuple[Any, ...]:
-    """Machine code of these functions for single numbers, compiled once for a law."""
+    """Return compiled F, F′ and energy of a law as functions of one float."""
     from numba import cfunc  # start-up
 
     return tuple(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, field
 from importlib import import_module
 from typing import Any
@@ -34,6 +36,15 @@ class IntegrationError(Failure):
     """Failure of an integrator; the message says where and why."""
 
 
+RunProgress = Callable[[], AbstractContextManager[Callable[[float], object]]]
+"""Opens a display of a run's progress, which is called with the share that is done."""
+
+
+def silent() -> AbstractContextManager[Callable[[float], object]]:
+    """Return the `RunProgress` that shows nothing."""
+    return nullcontext(lambda share: None)
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class Records(ArrayValue, Pictured):
     """Records of the sensors of a scene; S is the number of samples.
@@ -41,7 +52,7 @@ class Records(ArrayValue, Pictured):
     Forces are total: the static force of gravity and precompression is included. Entries that were
     not computed, because a window had left the sensor, are NaN.
 
-    time : (S,).
+    time : (S,), sample times.
     contact_force, compression : (contacts, S), at the scene's contact sensors; a gap is a negative
         compression.
     bead_force, bead_displacement, bead_velocity : (beads, S), at the bead sensors; the force is the
@@ -145,14 +156,14 @@ class Run(Records):
     All arrays are read-only; further fields are those of `Records`.
 
     displacements, velocities : (n,), at the end.
-    energy_drift : change of the energy above equilibrium over its initial value (0 if that is 0);
-        beads that a window has left behind keep their energy.
-    momentum_drift : change of the momentum over Σ m|v| at the end; None with a wall.
+    energy_drift : change of the energy above equilibrium divided by its initial value (0 if this is
+        0); beads that a window has left behind keep their energy.
+    momentum_drift : change of the momentum divided by Σ m|v| at the end; None with a wall or drive.
     evaluations : number of evaluations of the equations of motion.
     bead_evaluations : sum over these evaluations of the number of beads that moved.
     step : mean step.
-    window : number of beads followed behind the front; what lies further behind is NaN in all
-        arrays. None for the whole chain.
+    window : number of beads integrated behind the front; values of beads further behind are NaN.
+        None for the whole chain.
     path : motion of the beads near sensors throughout the run, for `signal`.
     dissipated, work : energy that damped contacts have turned into heat, and work of the drive.
     """
@@ -170,15 +181,15 @@ class Run(Records):
     work: float = 0.0
 
     def signal(self, kind: str, number: int, quantity: str = "force") -> Signal:
-        """The motion at a sensor as a function of time, of which the records are samples.
+        """Return a quantity at a sensor as a function of time; the records are its samples.
 
         Parameters
         ----------
         kind : "contact" or "bead".
-        number : of the contact or bead, from 0, as in the scene's sensors.
+        number : number of the contact or bead, from 0, as in the scene's sensors.
         quantity : "force"; "compression" of a contact; "displacement" or "velocity" of a bead.
 
-        Raises `SceneError` where there is no such sensor, or too many steps to keep the motion.
+        Raises `SceneError` without such a sensor, and if the motion takes too much memory to store.
         """
         if self.path is None:
             raise SceneError("the run has too many steps to keep the motion: read its samples")

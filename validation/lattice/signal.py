@@ -29,10 +29,10 @@ Beads = Sequence[int] | NDArray[np.int_]
 
 
 class Path(Protocol):
-    """The motion of some beads throughout a run.
+    """The motion of some beads as a function of time, throughout a run.
 
-    Called with the numbers of beads, next to each other, and times (S,) within the run, a path
-    returns displacements and velocities (beads, S); NaN where a window had left the bead.
+    Called with the numbers of neighbouring beads and with times (S,) within the run, a path returns
+    displacements and velocities (beads, S); NaN from the time at which a window left the bead.
     """
 
     @property
@@ -42,7 +42,7 @@ class Path(Protocol):
 
     @property
     def kinks(self) -> dict[int, Array]:
-        """The times within steps at which contacts open or close, as far as they are known."""
+        """Times within steps at which each contact opens or closes: a cache for `_kinks`."""
         ...
 
     def __call__(self, beads: Beads, time: Array) -> tuple[Array, Array]: ...
@@ -52,9 +52,9 @@ class Path(Protocol):
 class Sensor:
     """A "contact" or "bead" sensor of a scene, with the contacts on which its records depend.
 
-    number : of the contact or bead, from 0. first : number of the first contact. rest,
+    number : number of the contact or bead, from 0. first : number of the first contact. rest,
     stiffnesses, damping : static compressions, stiffnesses and damping coefficients of these
-    contacts. contact : their law.
+    contacts. contact : law of the contacts.
     """
 
     kind: str
@@ -67,7 +67,7 @@ class Sensor:
 
     @classmethod
     def of(cls, motion: Motion, kind: str, number: int) -> Sensor:
-        """The sensor at this contact or bead of a scene."""
+        """Return the sensor at a contact or bead of a scene."""
         first = number if kind == "contact" else max(number - 1, 0)
         contacts = slice(first, number + 1)
         rows = motion.rest, motion.stiffnesses, motion.damping
@@ -76,15 +76,15 @@ class Sensor:
 
     @property
     def beads(self) -> range:
-        """The beads whose motion the sensor needs; bead n is the wall."""
+        """Numbers of the beads whose motion the sensor needs; bead n is the wall."""
         return range(self.first, self.first + len(self.rest) + 1)
 
     def compressions(self, y: Array) -> Array:
-        """Compressions (contacts, S) from the displacements (beads, S)."""
+        """Return compressions (contacts, S) from displacements (beads, S) of the sensor's beads."""
         return np.asarray(y[:-1] - y[1:] + np.array(self.rest)[:, None])
 
     def values(self, y: Array, v: Array) -> dict[str, Array]:
-        """Each quantity of the sensor from the motion (beads, S) of its beads."""
+        """Return each quantity, (S,), from the motion y, v, (beads, S), of the sensor's beads."""
         compressions = self.compressions(y)
         elastic = np.array(self.stiffnesses)[:, None] * self.contact.force(compressions)
         damping = np.array(self.damping)
@@ -97,12 +97,12 @@ class Sensor:
 
 @dataclass(frozen=True, eq=False)
 class Signal:
-    """A quantity at a sensor of a run, called with times of any shape.
+    """A quantity at a sensor of a run, as a function of times of any shape.
 
-    times : increasing, from 0 to the duration: ends of steps, and openings and closings of the
-        sensor's contacts. The signal is smooth from each to the next.
+    times : increasing times from 0 to the duration, the ends of steps and the openings and closings
+        of the sensor's contacts. The signal is smooth between neighbouring times.
 
-    Values are NaN outside of the run, and where a window had left the sensor.
+    Values are NaN outside the run, and after a window has left the sensor.
     """
 
     times: Array
@@ -119,7 +119,7 @@ class Signal:
 
 
 def sensors(motion: Motion) -> Iterator[Sensor]:
-    """The sensors of a scene, those at contacts first."""
+    """Yield the sensors of a scene, first at contacts, then at beads."""
     for i in motion.scene.contact_sensors:
         yield Sensor.of(motion, "contact", i)
     for j in motion.scene.bead_sensors:
@@ -127,7 +127,7 @@ def sensors(motion: Motion) -> Iterator[Sensor]:
 
 
 def signal(motion: Motion, path: Path, kind: str, number: int, quantity: str) -> Signal:
-    """The signal of a quantity at a sensor of a run.
+    """Return the signal of a quantity at a sensor of a run.
 
     Raises `SceneError` where the scene has no such sensor, or the sensor no such quantity.
     """
@@ -144,7 +144,7 @@ def signal(motion: Motion, path: Path, kind: str, number: int, quantity: str) ->
 
 
 def _kinks(motion: Motion, path: Path, contact: int) -> Array:
-    """Times within steps at which a contact opens or closes; kept by the path for other signals."""
+    """Return times within steps at which a contact opens or closes; cached in ``path.kinks``."""
     if contact not in path.kinks:
         sensor, time = Sensor.of(motion, "contact", contact), path.time
 
@@ -165,7 +165,7 @@ def _kinks(motion: Motion, path: Path, contact: int) -> Array:
 
 
 def recorded(motion: Motion, beads: NDArray[np.int_], y: Array, v: Array) -> dict[str, Array]:
-    """The records of all sensors by name, from the motion (B, S) of these beads."""
+    """Return the records of all sensors by name, from the motion y, v, (B, S), of the beads."""
     rows: dict[str, list[Array]] = {name: [] for name in RECORDS}
     for sensor in sensors(motion):
         near = np.searchsorted(beads, sensor.beads)
@@ -180,7 +180,7 @@ RECORDS = ("contact_force", "compression", "bead_force", "bead_displacement", "b
 
 
 def sampled(motion: Motion) -> tuple[Array, NDArray[np.int_]]:
-    """The sample times of a scene, and the numbers of the beads that its sensors need."""
+    """Return the sample times of a scene, and the numbers of the beads that its sensors need."""
     scene = motion.scene
     # np.linspace takes three times as long
     time = np.arange(scene.samples) / (scene.samples - 1) * scene.duration

@@ -19,9 +19,8 @@ from typing import Any
 import numpy as np
 
 from lwa.base.exact import shorten
-from validation.lattice.cost import RunProgress, silent
 from validation.lattice.forced import motion_of
-from validation.lattice.run import IntegrationError, Run
+from validation.lattice.run import IntegrationError, Run, RunProgress, silent
 from validation.lattice.schemes import SCHEMES
 from validation.lattice.signal import RECORDS
 from validation.lattice.steppers import METHODS, integrate
@@ -78,21 +77,8 @@ def simulate(
     """
     if not isinstance(scene, Scene):
         raise SceneError(f"scene is {shorten(scene)}: a Scene is wanted")
-    one_of(method, COMPILED + METHODS, "method")
+    method = _method(scene, one_of(method, COMPILED + METHODS, "method"), step, window)
     rtol, atol = between(rtol, "rtol", 1e-13, 1e-2), between(atol, "atol", 1e-13, 1e-2)
-    for name, value in (("step", step), ("window", window or None)):
-        if method not in COMPILED and value is not None:
-            needs = f"it needs one of {', '.join(COMPILED)}"
-            raise SceneError(f"{name} is {shorten(value)}: {needs}")
-    piston = scene.damping is None and scene.drive is not None and scene.drive.velocity is not None
-    forced = scene.damping is not None or (scene.drive is not None and not piston)
-    if (forced or piston) and method in COMPILED:
-        if method != COMPILED[0] or window or (forced and step is not None):
-            raise SceneError(
-                f"method is {method}: a scene with damping or a drive takes one of "
-                f"{', '.join(METHODS)}, without step or window"
-            )
-        method = METHODS[0] if forced else method
     with np.errstate(over="ignore", invalid="ignore"):  # the result is checked
         motion = motion_of(scene)
         if method in COMPILED:
@@ -107,6 +93,27 @@ def simulate(
     if not all(map(math.isfinite, (run.energy_drift, *sums))):
         raise IntegrationError("the motion overflows: choose other units")
     return run
+
+
+def _method(scene: Scene, method: str, step: float | None, window: bool | int) -> str:
+    """The method that integrates a scene: the first of `METHODS` for forces of velocity or time.
+
+    Raises `SceneError` for a scene, step or window that the chosen method does not take.
+    """
+    for name, value in (("step", step), ("window", window or None)):
+        if method not in COMPILED and value is not None:
+            needs = f"it needs one of {', '.join(COMPILED)}"
+            raise SceneError(f"{name} is {shorten(value)}: {needs}")
+    piston = scene.damping is None and scene.drive is not None and scene.drive.velocity is not None
+    forced = scene.damping is not None or (scene.drive is not None and not piston)
+    if not (forced or piston) or method not in COMPILED:
+        return method
+    if method != COMPILED[0] or window or (forced and step is not None):
+        raise SceneError(
+            f"method is {method}: a scene with damping or a drive takes one of "
+            f"{', '.join(METHODS)}, without step or window"
+        )
+    return METHODS[0] if forced else method
 
 
 def simulate_many(

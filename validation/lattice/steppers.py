@@ -10,9 +10,9 @@ import scipy
 from numpy.typing import NDArray
 
 from lwa.base.arrays import Array
-from validation.lattice.cost import RunProgress, beyond, mean_step, most_steps
+from validation.lattice.cost import beyond, mean_step, most_steps
 from validation.lattice.equations import Motion
-from validation.lattice.run import IntegrationError, Run, finished
+from validation.lattice.run import IntegrationError, Run, RunProgress, finished
 from validation.lattice.signal import Beads, recorded, sampled
 
 METHODS = ("DOP853", "RK45", "RK23", "LSODA")
@@ -25,10 +25,10 @@ _COEFFICIENTS = {"DOP853": 8, "RK45": 5, "RK23": 4, "LSODA": 13}
 
 @dataclass(frozen=True, eq=False)
 class NodePath:
-    """Motion within each step as a polynomial through Chebyshev nodes; a `signal.Path`.
+    """Motion in each step as a polynomial through Chebyshev nodes; a `signal.Path`.
 
-    time : (N + 1,), ends of the steps. beads : (B,). state : (N, P, 2, B), displacements and
-    velocities at the P nodes of each step.
+    time : (N + 1,), ends of the N steps. beads : (B,), numbers of the beads. state : (N, P, 2, B),
+    displacements and velocities at the P nodes of each step.
     """
 
     time: Array
@@ -37,7 +37,7 @@ class NodePath:
     kinks: dict[int, Array] = field(default_factory=dict)
 
     def __call__(self, beads: Beads, time: Array) -> tuple[Array, Array]:
-        """Displacements and velocities (beads, S) at times (S,) within the run."""
+        """Return displacements and velocities (beads, S) at times (S,) within the run."""
         block = 1 + _BLOCK // (1 + self.state[0].size)
         parts = [self._at(beads, time[i : i + block]) for i in range(0, len(time), block)]
         y, v = np.concatenate(parts, axis=2) if parts else np.empty((2, len(beads), 0))
@@ -61,7 +61,7 @@ class NodePath:
 
 
 def chebyshev(count: int) -> Array:
-    """Chebyshev points of the second kind from 0 to 1, both ends included."""
+    """Return the Chebyshev points of the second kind from 0 to 1, both ends included."""
     return np.asarray((1 - np.cos(np.pi * np.arange(count) / (count - 1))) / 2)
 
 

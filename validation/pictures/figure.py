@@ -35,7 +35,7 @@ class Pictured(ABC):
         """The panels of the picture, none for a result without a picture."""
 
     def figure(self) -> Figure:
-        """All panels in one Matplotlib figure; `lwa.InputError` without panels."""
+        """Return all panels in one Matplotlib figure; `lwa.InputError` without panels."""
         return figure(self._panels())
 
     def plot(self, ax: Axes | None = None) -> Axes:
@@ -59,7 +59,7 @@ class Pictured(ABC):
 
 
 def svg(panels: Sequence[Panel]) -> str:
-    """The figure of the panels as an SVG element; empty without panels."""
+    """Return the figure of the panels as an SVG element; empty without panels."""
     if not panels:
         return ""
     drawn = io.StringIO()
@@ -68,7 +68,7 @@ def svg(panels: Sequence[Panel]) -> str:
 
 
 def figure(panels: Sequence[Panel]) -> Figure:
-    """All panels in one figure, two in a row."""
+    """Return a figure of all panels, two in a row."""
     from matplotlib.figure import Figure  # here: loading Matplotlib takes half a second
 
     columns = min(2, len(panels))
@@ -118,7 +118,7 @@ def draw(plot: Axes, panel: Panel) -> None:
 
 
 def _plain(axis: Axis) -> None:
-    """Plain tick labels, not powers of ten, on a logarithmic axis of few decades."""
+    """Set plain tick labels, not powers of ten, on a logarithmic axis of few decades."""
     from matplotlib.ticker import LogLocator, NullFormatter  # loaded as late as Matplotlib
 
     low, high = sorted(axis.get_view_interval())
@@ -145,7 +145,7 @@ def _draw_map(plot: Axes, found: Map, scale: str) -> None:
 
 
 def _borders(places: Array, log: bool) -> Array:
-    """Borders of a map's cells: halfway between neighbouring places, on the axis' scale."""
+    """Return the borders of a map's cells, halfway between neighbouring places on the axis."""
     centres = np.log(places) if log else places
     half = np.diff(centres) / 2
     ends = [centres[0] - half[0]], centres[:-1] + half, [centres[-1] + half[-1]]

@@ -32,7 +32,7 @@ class Curve:
     def of(
         cls, label: str, x: ArrayLike, y: ArrayLike, style: str = "", error: ArrayLike | None = None
     ) -> Curve:
-        """A curve from any sequences of numbers."""
+        """Return a curve through any sequences of numbers."""
         bars = None if error is None else np.asarray(error, float)
         return cls(label, np.asarray(x, float), np.asarray(y, float), style, bars)
 
@@ -41,8 +41,8 @@ class Curve:
 class Map:
     """Values over two axes, shown as colours; cells without a value (NaN) are hatched.
 
-    label : of the colour bar.
-    x, y, values : (X,), (Y,), (Y, X).
+    label : label of the colour bar.
+    x, y, values : coordinates (X,) and (Y,), and values (Y, X).
     low, high : ends of the colour scale, by default the range of the values. Values beyond an end
         have the colour of that end.
     scale : "log" for logarithmic colours.

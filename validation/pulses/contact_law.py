@@ -4,21 +4,22 @@
 
     V²/D² = R(k) 2/((k+1) m̄) A^{1/k} F^{(k-1)/k},
 
-R being the squared speed of the lattice's wave over that of the long-wave theory. So ln V is linear
-in ln F; least squares give k and A, and with k = 3/2 (Hertz) the unknown E of one material.
+where R is the squared speed of the lattice's wave divided by that of the long-wave theory. So ln V
+is linear in ln F; least squares give k and A, and with k = 3/2 (Hertz) the unknown Young's modulus
+E of one material.
 
 **Any law** F(δ) = W'(δ). In the long-wave theory S = m̄ V²/(R D²) is 2 W/δ², δ the peak
-compression. The derivative of S δ² = 2 W by F is
+compression. Differentiation of S δ² = 2 W with respect to F gives
 
     dδ/dF = δ² S_F / (2 (F - S δ)),   k = 1/(1 - 2 d ln V/d ln F),
 
-integrated downwards from the strongest pulse, where δ = 2 F/((k+1) S); upwards it is unstable. Here
-ln V is a polynomial of ln F, and R is that of the local exponent k.
+with S_F = dS/dF and the local exponent k. The equation is integrated downwards from the strongest
+pulse, where δ = 2 F/((k+1) S), as it is unstable upwards. ln V is a polynomial of ln F, R = R(k).
 
 R comes from the series in k - 1 for equal beads, and otherwise from the steady pulses of struck
-chains (`validation.pulses.steady`). Errors are 95 % intervals; those of the free law are from
-refits with resampled noise. Standard deviations of the data, if known, weight the data; the size
-of the noise is read off the residuals in any case.
+chains (`validation.pulses.steady`). Errors are 95 % intervals, for the free law from refits with
+resampled noise. Standard deviations of the data, if known, only weight the data; the size of the
+noise is estimated from the residuals.
 """
 
 from __future__ import annotations
@@ -50,7 +51,7 @@ _NEAR = 1.2  # times 80 sites, over which the pulse must lead
 
 @lru_cache(maxsize=16)
 def speed_ratio(omega: sp.Rational) -> Callable[[Any], Array]:
-    """R(k) of a chain of masses 1, ω in turn, as a function of floats 1 ≤ k ≤ 4."""
+    """Return R(k) of a chain of masses 1, ω, 1, ω, … as a function of floats 1 ≤ k ≤ 4."""
     nodes, found = [1.0], [1.0]
     for k in map(sp.Rational, _EXPONENTS):
         if omega == 1:
@@ -84,7 +85,7 @@ class Medium:
         return cls(float(sum(cell.masses)) / cell.size, float(cell.spacing), ratio)
 
     def log_stiffness(self, slope: float, constant: float) -> float:
-        """ln A of the power law with ln V = slope · ln F + constant."""
+        """Return ln A of the power law with ln V = slope · ln F + constant."""
         k = 1 / (1 - 2 * slope)
         unit = math.log(2 * float(self.ratio(k)) / ((k + 1) * self.mass)) / 2
         return 2 * k * (constant - math.log(self.spacing) - unit)
@@ -92,9 +93,9 @@ class Medium:
 
 @dataclass(frozen=True, eq=False)
 class PowerFit:
-    """k and A of one power, the correlation of k and ln A, and A at k = 3/2.
+    """Fit of F = A δ^k: k, A, the correlation of k and ln A, and A at k = 3/2 (``hertz``).
 
-    curvature : d² ln V/d(ln F)² /2 of a parabola through the data; 0 for one power.
+    curvature : coefficient of (ln F)² in a parabola through the data ln V; 0 for one power.
     residual : root mean square of the residuals of ln V.
     """
 
@@ -112,7 +113,7 @@ class PowerFit:
 
 
 def weights(force: Array, speed: Array, force_error: Array, speed_error: Array) -> Array:
-    """Weights (N,) of pulses, from the standard deviations of their forces and speeds.
+    """Return the weights (N,) of pulses, from the standard deviations of their forces and speeds.
 
     A residual of ln V = slope · ln F + constant has the variance (σ_V/V)² + (slope σ_F/F)², with
     the slope of a first fit without weights. The weights are the inverse standard deviations.
@@ -133,7 +134,7 @@ def fit_power(medium: Medium, force: Array, speed: Array, weight: Array | None =
     interval = scipy.stats.t.ppf(0.975, len(x) - 2)
 
     def read(slope: float, constant: float) -> Array:
-        """k and ln A."""
+        """Return k and ln A."""
         return np.array(
             [1 / (1 - 2 * slope), medium.log_stiffness(slope, constant - slope * middle)]
         )
@@ -170,9 +171,9 @@ def free_law(
     seed: int = 0,
     weight: Array | None = None,
 ) -> tuple[Array, Array]:
-    """The compression at each force (N,), and the error of the force at this compression (N,).
+    """Return the compression at each force, and the error of the force at this compression, (N,).
 
-    degree : of the polynomial ln V(ln F). seed : of the resampled noise.
+    degree : degree of the polynomial ln V(ln F). seed : seed of the resampled noise.
     weight : (N,), see `weights`; by default all pulses weigh the same.
     """
     x, y = np.log(force), np.log(speed)
@@ -193,17 +194,17 @@ def free_law(
 
 
 def _integrated(medium: Medium, rows: Array, grid: Array, middle: float) -> Array:
-    """ln δ on a falling grid of ln F, for each column of coefficients of ln V."""
+    """Return ln δ on a falling grid of ln F, for each column of coefficients of ln V."""
 
     def log_S(x: float) -> tuple[Array, Array]:
-        """ln S and the local exponent."""
+        """Return ln S and the local exponent k."""
         slope = polynomial.polyval(x - middle, polynomial.polyder(rows))
         k = 1 / (1 - 2 * np.minimum(slope, 0.49))
         log_V = polynomial.polyval(x - middle, rows)
         return 2 * (log_V - math.log(medium.spacing)) + np.log(medium.mass / medium.ratio(k)), k
 
     def slope(x: float, log_delta: Array) -> Array:
-        """d ln δ/d ln F."""
+        """Return d ln δ/d ln F."""
         S, step = log_S(x)[0], 1e-4
         change = (log_S(x + step)[0] - log_S(x - step)[0]) / (2 * step)
         share = np.minimum(np.exp(S + log_delta - x), 1 - 1e-6)  # S δ/F = 2/(k+1) of a power

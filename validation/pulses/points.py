@@ -1,4 +1,4 @@
-"""A file of measured points, which grows by a line for each point and can be continued.
+"""A file of measured points (k, ω) of a sweep; each finished point appends a line.
 
 The first line holds the format and the settings, every other line a point:
 
@@ -34,14 +34,14 @@ _FORMAT = {"format": "lwa sweep", "version": 3}  # changes with the definition o
 
 @dataclass(frozen=True)
 class PointFile:
-    """A file of points that were measured with the same ``stretch``."""
+    """A file of points measured with the same ``stretch`` (`validation.pulses.steady.point`)."""
 
     path: Path
     stretch: int
 
     @property
     def header(self) -> bytes:
-        """The first line."""
+        """The file's first line, with the format and the settings."""
         return json.dumps(_FORMAT | {"settings": {"stretch": self.stretch}}).encode() + b"\n"
 
     @contextmanager
@@ -78,7 +78,7 @@ class PointFile:
         return points
 
     def append(self, point: Point) -> None:
-        """Append a point, which is on the disk when this returns."""
+        """Append a point, and return when the point is on the disk."""
         entry: dict[str, Any] = {"k": str(point.k), "omega": str(point.omega)}
         if point.missing:
             entry["missing"] = point.missing

@@ -1,9 +1,8 @@
 """Pulses of a signal: arrival, peak, width, and the speed between two sensors.
 
 A pulse of a signal (`validation.pulses.signals`) is found on a grid of `_POINTS` points in each
-smooth interval. Its arrival is the root of the derivative of a Chebyshev interpolant about the
-highest grid point; its flanks are the roots of signal - peak/2. So a pulse is as accurate as its
-signal.
+smooth interval. The pulse's arrival is the maximum of a Chebyshev interpolant around the highest
+grid point; its flanks are the roots of signal - peak/2. So a pulse is as accurate as the signal.
 """
 
 from __future__ import annotations
@@ -36,8 +35,8 @@ _PARTLY = "the pulse is not wholly in the record:"
 class Pulse:
     """A pulse in the units of its record.
 
-    arrival : time of the peak. peak : value of the signal there. rise, fall : times at which the
-    signal passes half its peak, before and after.
+    arrival : time of the peak. peak : value of the signal at the peak. rise, fall : times before
+    and after the arrival at which the signal passes half its peak.
     """
 
     arrival: float
@@ -55,7 +54,7 @@ def measure(time: ArrayLike | Signal, values: ArrayLike | None = None) -> Pulse:
     """Measure the highest pulse of a signal, or of samples.
 
     time : a signal such as `Run.signal(...)`, or increasing sample times (S,).
-    values : (S,), of the samples.
+    values : (S,), sample values.
 
     A signal is measured as accurately as it is known, samples as accurately as the cubic spline
     through them. Raises `MeasureError` for a record without a pulse, for a pulse that is not wholly
@@ -77,9 +76,9 @@ def measure(time: ArrayLike | Signal, values: ArrayLike | None = None) -> Pulse:
 def pulses(time: ArrayLike, signal: ArrayLike, least: float = 0.01) -> list[Pulse]:
     """Measure all pulses of a sampled record, both (S,), in the order of their arrivals.
 
-    least : smallest height of a pulse above its surroundings (prominence), over the highest peak.
+    least : smallest prominence of a pulse (height above its surroundings) over the highest peak.
 
-    Pulses of which a flank does not fall to half the peak, as of two that overlap, are left out.
+    A pulse with a flank that does not fall to half the peak, as when two overlap, is left out.
     Raises `MeasureError` for a record without any pulse.
 
     >>> t = np.linspace(0, 4 * np.pi, 1001)
@@ -106,7 +105,7 @@ def highest_pulse(signal: Signal, end: float = math.inf) -> Pulse:
 
 
 def first_pulse(signal: Signal) -> Pulse:
-    """Measure the first stretch of a signal above half its highest value.
+    """Measure the pulse in the first time interval in which a signal exceeds half its maximum.
 
     Later pulses, such as the echo from a wall, may be higher than the first one.
     """
@@ -125,14 +124,14 @@ def leading_pulse(signal: Signal, k: float = 1.0, share: float = 0.5) -> Pulse:
 
     The pulse ends where the compression first falls to a quarter of its highest value so far.
 
-    k : exponent of the signal in terms of the compression. share : fraction of the peak that the
-        signal passes at the rise and fall of the measured pulse.
+    k : exponent of the signal as a power of the compression. share : fraction of the peak at which
+        the rise and fall of the pulse are measured.
     """
     return leading_pulses(signal, k, (share,))[0]
 
 
 def leading_pulses(signal: Signal, k: float, shares: Sequence[float]) -> list[Pulse]:
-    """Read the `leading_pulse` with its rise and fall at several fractions of the peak."""
+    """Measure the `leading_pulse` with rise and fall at each of several fractions of the peak."""
     grid, quarter = _Grid(signal), 0.25**k
     start = int(np.argmax(grid.f > quarter * grid.f.max()))
     relieved = grid.f[start:] < quarter * np.maximum.accumulate(grid.f[start:])
@@ -141,7 +140,7 @@ def leading_pulses(signal: Signal, k: float, shares: Sequence[float]) -> list[Pu
 
 
 def first_passage(signal: Signal, level: float) -> float:
-    """First time at which a signal rises above a level; `MeasureError` if it never does."""
+    """Return the first time at which a signal rises above a level, else raise `MeasureError`."""
     grid = _Grid(signal)
     above = int(np.argmax(grid.f > level))
     if not above:
@@ -150,7 +149,7 @@ def first_passage(signal: Signal, level: float) -> float:
 
 
 def integral(signal: Signal, low: float, high: float) -> float:
-    """Integral of a signal over time, by Gauss's quadrature on each smooth interval."""
+    """Return the integral of a signal from time low to high, by Gauss quadrature."""
     inside = signal.times[(signal.times > low) & (signal.times < high)]
     edges = np.concatenate(([low], inside, [high]))
     nodes, weights = np.polynomial.legendre.leggauss(_DEGREE)
@@ -194,11 +193,11 @@ class _Grid:
             )
 
     def pulse(self, start: int, stop: int) -> Pulse:
-        """The highest pulse among the grid points from ``start`` on and before ``stop``."""
+        """Measure the highest pulse among the grid points from ``start`` on and before ``stop``."""
         return self.pulses(start, stop, (0.5,))[0]
 
     def pulses(self, start: int, stop: int, shares: Sequence[float]) -> list[Pulse]:
-        """Read the pulse with its rise and fall at several fractions of the peak."""
+        """Measure the same pulse with rise and fall at each of several fractions of the peak."""
         t, f = self.t, self.f[:stop]
         top = start + int(np.argmax(f[start:]))
         if top in (0, len(self.f) - 1):
@@ -209,7 +208,7 @@ class _Grid:
         return [Pulse(arrival, peak, *sides) for sides in flanks]
 
     def _flanks(self, f: Array, top: int, level: float) -> tuple[float, float]:
-        """Times next to the grid point ``top`` at which the signal passes a level."""
+        """Return the times next to grid point ``top`` at which the signal passes a level."""
         below = np.flatnonzero(f <= level)
         place = int(np.searchsorted(below, top))
         for side, there in (("front", place > 0), ("back", place < len(below))):
@@ -221,7 +220,7 @@ class _Grid:
         return self.crossing(before, level), self.crossing(after - 1, level)
 
     def crossing(self, i: int, level: float) -> float:
-        """Time between grid points i and i+1 at which the signal passes a level."""
+        """Return the time between grid points i and i+1 at which the signal passes a level."""
         low, step = self.t[i], self.t[i + 1] - self.t[i]
 
         def above(part: float) -> float:
@@ -230,7 +229,7 @@ class _Grid:
         return float(low + scipy.optimize.brentq(above, 0.0, 1.0, xtol=1e-12) * step)
 
     def _crest(self, low: float, high: float) -> tuple[float, float]:
-        """Time and value of the maximum between two times."""
+        """Return the time and value of the signal's maximum between two times."""
         inside = self.signal.times[(self.signal.times > low) & (self.signal.times < high)]
         found = []
         for a, b in pairwise((low, *inside.tolist(), high)):
@@ -250,7 +249,7 @@ class _Grid:
 
 
 def speed(first: Pulse, second: Pulse, distance: float) -> float:
-    """Distance over the time between two arrivals.
+    """Return the distance divided by the time between two arrivals.
 
     Raises `MeasureError` unless the second pulse arrives later.
     """
@@ -264,7 +263,7 @@ def speed(first: Pulse, second: Pulse, distance: float) -> float:
 
 @dataclass(frozen=True)
 class Measured:
-    """Number whose error is its difference from a less accurate computation, the check.
+    """Number with an error: the difference between ``value`` and a less accurate ``check``.
 
     >>> Measured(2.5e300, 2.50003e300)
     2.50000e+300 ± 3e+295
@@ -296,14 +295,15 @@ class Measured:
 
 
 def derived(function: Callable[..., float], *numbers: Measured) -> Measured:
-    """A function of measured numbers, with the error that their errors make."""
+    """Return a function of measured numbers, its ``check`` computed from their checks."""
     return Measured(function(*(n.value for n in numbers)), function(*(n.check for n in numbers)))
 
 
 def exponent(x: Sequence[Measured], y: Sequence[Measured]) -> Measured:
-    """Exponent p of y ~ x^p, by least squares of the logarithms.
+    """Return the exponent p of y ~ x^p, from a least-squares fit of the logarithms.
 
-    The errors of all numbers add up: differences of runs have a common sign, which would cancel.
+    The errors of all numbers are added with their absolute values: errors of similar runs tend to
+    have the same sign and would cancel.
     """
     logs = np.log([number.value for number in x]) - np.log([number.value for number in x]).mean()
     weights = logs / (logs @ logs)
@@ -315,9 +315,9 @@ def exponent(x: Sequence[Measured], y: Sequence[Measured]) -> Measured:
 def compared(
     numbers: Callable[[Source], Mapping[str, float]], fine: Source, coarse: Source, rtol: float = 0
 ) -> dict[str, Measured]:
-    """Read numbers off an accurate run, with errors from a less accurate one.
+    """Return the numbers of the run ``fine``, with errors from the less accurate ``coarse``.
 
-    rtol : least relative error, the accurate run's tolerance: two runs may agree by chance.
+    rtol : least relative error, the tolerance of ``fine``, as two runs may agree by chance.
     """
     less = numbers(coarse)
 

@@ -1,9 +1,9 @@
 """Pulses at the sensors of a scene: arrival, peak force, FWHM, and the speed between sensors.
 
-The first pulse at a sensor is the first stretch of its force above half the highest value, so that
-an echo from the wall does not count. Forces are dynamic: the static force of gravity and
-precompression is subtracted. Every number is measured in two runs; its error is the difference to
-the less accurate run, whose tolerance is `LESS` times as large, and no less than the tolerance.
+The first pulse at a sensor is the first time interval in which the force exceeds half its maximum,
+so that an echo from the wall does not count. Forces are dynamic: the static force of gravity and
+precompression is subtracted. Every number is measured in two runs, the second with a tolerance
+`LESS` times as large; the error is the difference, and at least the tolerance of the first run.
 """
 
 from __future__ import annotations
@@ -17,9 +17,8 @@ from typing import Any
 import numpy as np
 
 from lwa.base.arrays import Array
-from validation.lattice.cost import RunProgress, silent
 from validation.lattice.equations import Motion
-from validation.lattice.run import Run
+from validation.lattice.run import Run, RunProgress, silent
 from validation.lattice.simulate import COMPILED, twice
 from validation.pulses.pulse import (
     Measured,
@@ -43,7 +42,7 @@ SPEEDS = ("speed_sites", "speed")  # in sites per time, and in length per time
 
 @dataclass(frozen=True)
 class Reading:
-    """Measured numbers of a pulse at a sensor, or of its speed between two sensors.
+    """Measured numbers of a pulse at a sensor, or its speeds between two sensors.
 
     kind : "bead" or "contact". places : number of the sensor, or of both, counted from 1.
     numbers : `READINGS`, or `SPEEDS` (the second one if the scene has spacings).
@@ -60,13 +59,13 @@ class Reading:
 
     @property
     def name(self) -> str:
-        """Kind and places, such as bead 15 → 34."""
+        """The kind and the places as text, such as bead 15 → 34."""
         return f"{self.kind} {' → '.join(map(str, self.places))}"
 
 
 @dataclass(frozen=True, eq=False)
 class Recording:
-    """A run, the pulses at its sensors, and their speeds between neighbouring sensors."""
+    """A run, the pulses at the sensors, and the speeds from each sensor to the next."""
 
     run: Run
     sensors: tuple[Reading, ...]
@@ -77,8 +76,8 @@ class Recording:
 class Track:
     """The dynamic force at one sensor as a function of time.
 
-    number : of the bead or contact, counted from 1. place : position along the chain by `SPEEDS`,
-    in sites and in lengths. static : static force at the sensor.
+    number : number of the bead or contact, counted from 1. place : position along the chain in
+    sites and in lengths, by the names `SPEEDS`. static : static force at the sensor.
     """
 
     kind: str
@@ -89,12 +88,12 @@ class Track:
 
     @cached_property
     def pulse(self) -> Pulse:
-        """The first pulse; raises `MeasureError` if there is none."""
+        """Measure the first pulse; raises `MeasureError` without a pulse."""
         return first_pulse(self.force)
 
     @cached_property
     def train(self) -> list[Pulse]:
-        """All pulses; raises `MeasureError` if there is none."""
+        """Measure all pulses; raises `MeasureError` without a pulse."""
         return all_pulses(self.force)
 
 
@@ -133,11 +132,11 @@ def record(
 
 
 def tracks(run: Run, every: int = 1) -> tuple[Track, ...]:
-    """The dynamic forces at the sensors of a run, beads first.
+    """Return the dynamic forces at the sensors of a run, beads first.
 
     A contact's place is midway between its beads, the wall's contact half a spacing behind the last
-    bead. Of a run with too many steps to keep its motion, every sample (or every other one, with
-    ``every=2``) is read.
+    bead. If the motion of a run takes too much memory, the forces are splines through the samples,
+    or through every other sample (``every=2``).
     """
     scene = run.scene
     load = np.zeros(scene.size + 1)  # of the contacts on the left and right of the beads
@@ -164,7 +163,7 @@ def tracks(run: Run, every: int = 1) -> tuple[Track, ...]:
 
 
 def _reading(fine: Track, coarse: Track, rtol: float, number: int | None = None) -> Reading:
-    """Measure the first pulse at a sensor, or a numbered pulse of its train."""
+    """Measure the first pulse at a sensor, or pulse ``number`` of its train."""
 
     def numbers(track: Track) -> dict[str, float]:
         pulse = track.pulse if number is None else track.train[number]
@@ -179,7 +178,7 @@ def _reading(fine: Track, coarse: Track, rtol: float, number: int | None = None)
 
 
 def _train(fine: Track, coarse: Track, rtol: float) -> list[Reading]:
-    """All pulses of one sensor that both runs show."""
+    """Measure all pulses at one sensor that both runs show."""
     try:
         count = min(len(track.train) for track in (fine, coarse))
     except MeasureError:
@@ -188,9 +187,10 @@ def _train(fine: Track, coarse: Track, rtol: float) -> list[Reading]:
 
 
 def _speed(start: tuple[Track, Track], end: tuple[Track, Track], rtol: float) -> Reading:
-    """The speed of the first pulse between two sensors, each in the accurate and the other run.
+    """Measure the speed of the first pulse between two sensors.
 
-    The errors of both arrivals add: in the less accurate run alone they may cancel.
+    start, end : a sensor's track in the accurate and in the other run. The errors of both arrivals
+    are added, as they may cancel in the less accurate speed.
     """
     (first, _), (second, _) = start, end
     read = partial(Reading, first.kind, (first.number, second.number), static=first.static)

@@ -1,4 +1,4 @@
-"""Signals: functions of time that are smooth between given times.
+"""Signals: functions of time that are smooth on each interval between given times.
 
 The dense output of a run (`validation.lattice.run.Run.signal`) is a signal, and so is the cubic
 spline through samples.
@@ -28,7 +28,7 @@ class Signal(Protocol):
 
     @property
     def times(self) -> Array:
-        """Increasing times; the signal is smooth from each to the next."""
+        """Increasing times; the signal is smooth between neighbouring times."""
         ...
 
     def __call__(self, time: ArrayLike, /) -> Array: ...
@@ -48,7 +48,7 @@ class Sampled:
         self._spline = scipy.interpolate.CubicSpline(self.times / self._pace, f / self._height)
 
     def __call__(self, time: ArrayLike, /) -> Array:
-        """Values at any times within the record."""
+        """Return the spline's values at any times within the record."""
         scaled = np.asarray(time, float) / self._pace
         return np.asarray(self._spline(scaled) * self._height)
 
@@ -66,7 +66,7 @@ class Mapped:
         return self.signal.times
 
     def __call__(self, time: ArrayLike, /) -> Array:
-        """The function of the signal at these times."""
+        """Return ``function`` of the signal's values at these times."""
         return self.function(self.signal(time))
 
 

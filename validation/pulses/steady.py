@@ -1,31 +1,31 @@
 """The steady pulse of a struck dimer chain: its width, speed and decay at one k and one ω.
 
 Bead 0 of a chain of masses 1, ω, 1, … at rest is struck (A = D = 1), and the pulse is recorded at
-`PLACES` cells at equal distances. F = A δ^k has no scale of its own. So a pulse that leaves
-something behind in every cell comes to lose the same share of its force F in each cell,
-F ~ e^{-d n} after n sites; its speed then goes as F^{(k-1)/(2k)}, and its width, in sites, stays
-the same. Between two places, N sites apart, at which the peak forces are F_1 and F_2,
+`PLACES` cells at equal distances (the places). F = A δ^k has no scale of its own. So a pulse that
+leaves energy behind in every cell comes to lose the same fraction of its peak force F in each cell,
+F ~ e^{-d n} after n sites; the speed then scales as F^{(k-1)/(2k)}, and the width, in sites, stays
+constant. Between two places, N sites apart (a stretch), with peak forces F_1 and F_2,
 
     decay  d = ln(F_1/F_2) / N,
     speed  c = N (e^z - 1) / (z T F_1^q),   q = (k-1)/(2k),  z = q d N,
 
-T being the time between the peaks: c is the speed at contact force 1 of a pulse whose speed is
-c F^q all the way. Widths are times at a contact times the speed there. All numbers are means over
-the two contacts of a cell, from the stretch between two places where their errors are least.
+T being the time between the peaks: the speed at peak force F is c F^q, so that c is the speed at
+contact force 1. A width is a duration at a contact times the speed there. All numbers are means
+over the two contacts of a cell, from the stretch where their errors are least.
 
 Each number is compared with the stretch before, with a less accurate run, and with a stretch that
-is `FARTHER` times as far as the last place. Its error is the largest of the first two differences
-and twice the third: a number that approaches its limit like n^{-1/2} has half the way behind it
-there, as 4^{-1/2} = 1/2.
+is `FARTHER` times as far as the last place. The error is the largest of the first two differences
+and twice the third: a number that approaches its limit like n^{-1/2} has come half way there, as
+4^{-1/2} = 1/2.
 
-A pulse that decays is overtaken at last by a higher one from behind, as of two pulses the higher
-one is faster. So the highest pulse so far away must have the force that the decay foretells, within
+A pulse that decays is overtaken in the end by a higher one from behind, as higher pulses are
+faster. So at the far stretch the highest pulse must have the force predicted from the decay, within
 `STEADY`. Otherwise the pulse is not steady and the point has no numbers (k = 3/2: ω from 0.49 to
 0.7). A longer run finds the same numbers within their errors, or that the pulse is overtaken.
 
 The leading pulse at a contact ends where the compression first falls to a quarter of its highest
-value so far. Between special mass ratios the force has several humps, as the light bead hits to and
-fro; a width is that of the highest hump, and jumps where the dip before another hump passes half.
+value so far. Between special mass ratios the force has several humps, as the light bead moves to
+and fro; the width is that of the highest hump, and jumps where a dip between humps passes half.
 """
 
 from __future__ import annotations
@@ -66,8 +66,8 @@ _WEAKEST = 1 / 50  # peak force of the slowest pulse that is awaited
 class Point:
     """Measured numbers at one k and ω, or the reason why there are none.
 
-    sites : beads from the struck one to both ends of the stretch of measurement. numbers : by the
-    names of `QUANTITIES`. missing : the reason.
+    sites : number of beads from the struck bead to both ends of the stretch of measurement.
+    numbers : numbers by the names `QUANTITIES`. missing : reason without numbers.
     """
 
     k: sp.Rational
@@ -78,7 +78,7 @@ class Point:
 
 
 def cells_apart(k: float, stretch: int) -> int:
-    """Number of cells between two places: as k → 1 a pulse leaves its wake behind more slowly.
+    """Return the number of cells between two places; as k → 1 a pulse leaves its wake more slowly.
 
     >>> [cells_apart(k, 4) for k in (3, 1.5, 1.1)]
     [4, 4, 30]
@@ -87,10 +87,10 @@ def cells_apart(k: float, stretch: int) -> int:
 
 
 def point(k: sp.Rational, omega: sp.Rational, stretch: int, farther: float = FARTHER) -> Point:
-    """Strike the chain and measure its pulse; a failure is the ``missing`` of the point.
+    """Strike the chain and measure the pulse; after a failure ``missing`` of the point says why.
 
-    stretch : see `cells_apart`. farther : times as far as the last place, 1.2 or more, to which the
-    pulse must stay the highest.
+    stretch : see `cells_apart`. farther : distance up to which the pulse must be the highest, in
+    units of the last place's distance, 1.2 or more.
     """
     try:
         return _point(k, omega, stretch, farther)
@@ -142,9 +142,9 @@ class StruckDimer:
     sites: int
 
     def crossing(self, sites: int) -> float:
-        """Time in which the long-wave theory's pulse of the force `_WEAKEST` passes so many sites.
+        """Return the time in which the long-wave theory's pulse of force `_WEAKEST` passes sites.
 
-        Its speed is 2 F^q/√((k+1)(1+ω)), F the peak force of the contacts.
+        The pulse's speed is 2 F^q/√((k+1)(1+ω)), F the peak contact force.
         """
         weak = math.pow(_WEAKEST, (self.k - 1) / (2 * self.k))
         return sites * math.sqrt((self.k + 1) * (1 + self.omega)) / (2 * weak)
@@ -160,7 +160,7 @@ class StruckDimer:
         """Measure the leading pulse at the two contacts of each place of a `run`.
 
         Returns arrival, peak, FWHM of force and of compression, end, and the peak of the highest
-        pulse: (places, 2, 6). Raises `MeasureError` for a pulse that does not pass all in time.
+        pulse: (places, 2, 6). Raises `MeasureError` if a pulse does not pass all places in time.
         """
         shares = (0.5, 0.5**self.k)  # half of the force, and half of the compression
         found, sensors = [], run.scene.contact_sensors
@@ -177,9 +177,9 @@ class StruckDimer:
         return np.array(found).reshape(-1, 2, 6)
 
     def numbers(self, passages: Array) -> Array:
-        """`QUANTITIES` (rows) of each stretch; NaN where the pulse does not arrive later.
+        """Return `QUANTITIES` (rows) of each stretch; NaN where the pulse does not arrive later.
 
-        Only stretches of `sites` sites have a meaning.
+        A column is meaningful only if its two places are `sites` sites apart.
         """
         arrival, peak, width, strain_width, *_ = np.moveaxis(passages, 2, 0)  # (places, contacts)
         elapsed, fall = np.diff(arrival, axis=0), -np.diff(np.log(peak), axis=0)

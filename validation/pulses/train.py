@@ -14,7 +14,7 @@ from validation.pulses.sensors import tracks
 
 @dataclass(frozen=True)
 class Train:
-    """Pulses of dynamic forces by the number of their bead or contact, counted from 1.
+    """A pulse at several beads or contacts: ``pulses`` of dynamic force by number, from 1.
 
     spacing : distance of neighbours.
     """
@@ -24,10 +24,10 @@ class Train:
 
     @classmethod
     def of(cls, run: Run, kind: str = "bead") -> Train:
-        """Pulses at the "bead" or "contact" sensors of a run, before the wall's answer.
+        """Measure the pulses at the "bead" or "contact" sensors of a run, before the wall's echo.
 
-        The last contact sensor is the wall's; neighbours are equally far apart. Raises
-        `MeasureError` if a pulse is not whole.
+        The last contact sensor must be the wall's, and all spacings equal. Raises `MeasureError` if
+        a pulse is not wholly in the record.
         """
         end = float(run.time[np.argmax(run.contact_force[-1])])
         pulses = {}
@@ -41,13 +41,13 @@ class Train:
         return cls(pulses, run.scene.spacings[0])
 
     def only(self, wanted: Container[int]) -> Train:
-        """The pulses at the wanted numbers."""
+        """Return the train of the pulses with the wanted numbers."""
         chosen = {number: pulse for number, pulse in self.pulses.items() if number in wanted}
         return replace(self, pulses=chosen)
 
     @property
     def speed(self) -> float:
-        """Speed from the first number to the last, a length per time."""
+        """Speed of the pulse from the first sensor to the last, a length per time."""
         first, last = min(self.pulses), max(self.pulses)
         return speed(self.pulses[first], self.pulses[last], (last - first) * self.spacing)
 

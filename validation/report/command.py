@@ -1,4 +1,4 @@
-"""A study as a command: its options, the output of its result, its progress and exit status."""
+"""Studies: functions that return a `Report`, each with a command that prints the report."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ T = TypeVar("T")
 
 
 class Study(Generic[P]):
-    """A function that computes a `Report`, and the ``command`` that prints it."""
+    """A function that returns a `Report`, with a ``command`` that prints the report."""
 
     def __init__(self, function: Callable[P, Report], options: Iterable[Any], epilog: str) -> None:
         self.function, self.name = function, function.__name__
@@ -39,7 +39,7 @@ class Study(Generic[P]):
 
     @property
     def command(self) -> click.Command:
-        """The Click command; its exit status is 1 if a finding fails."""
+        """The Click command, named like the function; its exit status is 1 if a finding fails."""
         wants = inspect.signature(self.function).parameters
         function: Callable[..., Report] = self.function
 
@@ -70,27 +70,30 @@ class Study(Generic[P]):
         return command(run)
 
     def main(self, arguments: Sequence[str] | None = None) -> None:
-        """Run the study as a program of its own, for the file that defines it."""
+        """Run the command as a program, for a file that defines one study and is executed."""
         run_command(self.command, f"{self.name}.py", arguments)
 
 
 def study(*options: Any, epilog: str = "") -> Callable[[Callable[P, Report]], Study[P]]:
-    """Make a study of a function that returns a `Report`.
+    """Return a decorator that gives a function returning a `Report` a command (see `Study`).
 
     The command has the function's name.
 
-    options : of the command, made by `option` or Click; each is a parameter of the function.
+    options : options of the command, made by `option` or Click, one for each parameter.
     epilog : text below the options in the command's help.
 
-    The command also passes, to parameters of these names: ``progress``, which shows how many cases
-    are done, ``run_progress``, which shows how far a lattice run is
-    (`validation.lattice.cost.RunProgress`), and ``picture``, the file of ``--plot``.
+    A function may have three further parameters, which the command sets: ``progress`` shows how
+    many cases are done, ``run_progress`` how far a run of the lattice is
+    (`validation.lattice.run.RunProgress`), and ``picture`` is the file of ``--plot``.
     """
     return lambda function: Study(function, options, epilog)
 
 
 def option(*names: str, default: Any = None, says: str = "", **more: Any) -> Any:
-    """A Click option with its default and help ``says``; a number has the type of its default."""
+    """Return a Click option with a default and the help text ``says``.
+
+    An option whose default is a number accepts a number of the same type.
+    """
     more.setdefault("show_default", default is not None)
     if type(default) in (int, float) and "flag_value" not in more:
         kind, reader = ("INTEGER", whole) if isinstance(default, int) else ("NUMBER", number)

@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 import os
-import shutil
 import tempfile
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from uuid import uuid4
 
 from lwa.base.exact import InputError
 from lwa.base.files import reason
 
 
 def output_file(name: str, path: str, suffixes: Sequence[str]) -> Path:
-    """Check that a file of one of the suffixes can be written; messages call it ``name``."""
+    """Return the path of a file of one of the suffixes after checking that it can be written.
+
+    Messages call the file ``name``.
+    """
     file = Path(path)
     try:
         if file.suffix.lower() not in suffixes:
@@ -35,19 +36,17 @@ def output_file(name: str, path: str, suffixes: Sequence[str]) -> Path:
 
 @contextmanager
 def replacing(file: Path) -> Iterator[Path]:
-    """A temporary file that replaces ``file`` at the end, and vanishes on a failure.
+    """Yield a temporary file that replaces ``file`` at the end, and is removed after a failure.
 
-    The replaced file keeps its mode; a symbolic link stays, and its target is replaced. Raises
-    `lwa.InputError` where the file cannot be written.
+    A replaced file keeps its mode, and a symbolic link its target. Raises `lwa.InputError`.
     """
     target = Path(os.path.realpath(file))
-    new = target.with_name(f".{uuid4().hex}{file.suffix.lower()}")
     try:
-        yield new
-        if target.exists():
-            shutil.copymode(target, new)
-        new.replace(target)
+        with tempfile.TemporaryDirectory(prefix=".", dir=target.parent) as folder:
+            new = Path(folder, "new")
+            yield new
+            if target.exists():
+                new.chmod(target.stat().st_mode)
+            new.replace(target)
     except OSError as error:
         raise InputError(f"{file} is not written: {reason(error)}") from None
-    finally:
-        new.unlink(missing_ok=True)

@@ -22,12 +22,12 @@ class Report(Pictured):
     """Result of a study.
 
     title : what was computed, in one or a few lines.
-    tables : text shows those with column labels, JSON those with a key.
-    findings : numbers held to bounds. Beside tables, text shows only those that fail.
-    panels : of the picture.
+    tables : tables; text shows those with column labels, JSON those with a key.
+    findings : numbers with bounds. In a report with tables, text shows only the findings that fail.
+    panels : panels of the picture.
     notes : explanations below the tables.
     data : entries that go to JSON unchanged.
-    parts : reports that this report is made of.
+    parts : reports that this report consists of.
 
     >>> from validation.report.table import Column
     >>> row = Table((Column("n", "sites"), Column("c_value", "speed", format=".3f")), ((8, 1.25),))
@@ -102,7 +102,7 @@ class Report(Pictured):
         return [panel for report in self._tree() for panel in report.panels]
 
     def save(self, file: Path) -> None:
-        """Draw the picture into a file; an old file is replaced by a complete one only."""
+        """Draw the picture into a file; an old file is replaced only by a complete picture."""
         drawn = io.BytesIO()  # Matplotlib prints a traceback for a file that cannot be closed
         self.figure().savefig(drawn, dpi=150, format=file.suffix[1:].lower())
         with replacing(file) as new:

@@ -21,7 +21,7 @@ class Column:
     key : JSON name, with a dot for an entry of a mapping, as in "theory_value.speed"; empty for a
         column that is only printed.
     label, unit : printed above the column; without a label the column is not printed.
-    format : of printed cells, a format specification such as ".1e" or a function.
+    format : format of printed cells, a format specification such as ".1e" or a function.
     error : True for cells that are `validation.pulses.pulse.Measured` (or None): in JSON two
         numbers, KEY_value and KEY_error_value.
     """
@@ -33,7 +33,7 @@ class Column:
     error: bool = False
 
     def values(self, cell: Any) -> Iterator[tuple[str, Any]]:
-        """JSON names and values of a cell.
+        """Yield the JSON names and values of a cell.
 
         >>> from validation.pulses.pulse import Measured
         >>> dict(Column("speed.m1", error=True).values(Measured(2.0, 1.75)))
@@ -66,7 +66,7 @@ class Table:
     heads: Mapping[str, str] = field(default_factory=dict)
 
     def records(self) -> list[dict[str, Any]]:
-        """JSON names (with their dots) and values of each row, in the order of the columns."""
+        """Return JSON names (with their dots) and values of each row, in the order of columns."""
         keyed = [(i, column) for i, column in enumerate(self.columns) if column.key]
         return [
             dict(pair for i, column in keyed for pair in column.values(row[i])) for row in self.rows
@@ -129,10 +129,10 @@ def _nested(record: Mapping[str, Any]) -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class Finding:
-    """A number held to bounds.
+    """A number with bounds, within which it is expected.
 
-    low, high : bounds of the value, its error included; without them every number holds.
-    error : of the value; None if the value is exact, or itself an error.
+    low, high : bounds of the value, its error included; by default every number holds.
+    error : error of the value; None if the value is exact, or itself an error.
     key : JSON name, KEY_value; by default none.
 
     >>> Finding("order", 2.4, 2.0, 3.0, error=0.1).ok

@@ -60,9 +60,10 @@ def bounds(low: float, high: float) -> str:
 
 
 def blocks(table: Table) -> list[tuple[str, Lines]]:
-    """Printed parts of a table: a heading, and lines of cells that begin with the column labels.
+    """Return the printed parts of a table: headings, and lines of cells below column labels.
 
-    One part, or one for each value of the column ``table.by``; none without column labels.
+    There is one part for each value of the column ``table.by``, by default a single part, and none
+    without column labels.
     """
     shown = [(i, column) for i, column in enumerate(table.columns) if column.label]
     if not shown:
@@ -122,7 +123,7 @@ def _element(name: str, text: str) -> str:
 
 
 def listed(findings: Iterable[Finding], failing: bool = False) -> str:
-    """Findings as a table, empty without any; with ``failing`` only those that fail."""
+    """Return findings as a printed table (empty without any), with ``failing`` the failing ones."""
     lines = [("measured", "value", "expected", "")]
     for f in findings:
         if failing and f.ok:

@@ -16,7 +16,7 @@ from validation.scenes.scene import Scene
 
 
 def struck(masses: Sequence[float], beads: int, k: float = 1.5, **rest: Any) -> Scene:
-    """A chain of beads with repeating masses, A = 1, whose first bead has velocity 1 by default.
+    """Return a chain of beads with repeating masses, A = 1, and velocity 1 of the first bead.
 
     rest : further fields of the scene.
 
@@ -29,7 +29,7 @@ def struck(masses: Sequence[float], beads: int, k: float = 1.5, **rest: Any) -> 
 
 
 def numbered(masses: Sequence[Any]) -> Cell:
-    """Unit cell of masses that are numbers, with spacing 1; `SceneError` for symbols."""
+    """Return the unit cell of masses that are numbers, with spacing 1; `SceneError` for symbols."""
     cell = Cell(tuple(masses), spacing=1)
     for mass in cell.masses:
         if not mass.is_number:
@@ -46,7 +46,7 @@ def chain_scene(
     N: int = 1,
     ptfe: Sphere = PTFE_BEAD,
 ) -> Scene:
-    """The N:1 chain of steel and PTFE of Porter et al. (2008), struck by its first bead.
+    """Return the N:1 chain of steel and PTFE of Porter et al. (2008), struck by its first bead.
 
     velocity, gravity, duration : in m/s, m/s² and s. sensors : beads, counted from 1; the two
     contacts of each of them and the contact of the steel wall behind the chain are recorded too.
@@ -68,7 +68,7 @@ def chain_scene(
 def carrying(
     masses: Sequence[float], compression: ArrayLike, velocity: ArrayLike, **rest: Any
 ) -> Scene:
-    """A chain that starts with these compressions of its contacts and velocities of its beads.
+    """Return a chain with given initial compressions of the contacts and velocities of the beads.
 
     rest : further fields of the scene, ``k`` or ``law`` among them.
     """

@@ -22,14 +22,14 @@ class Failure(RuntimeError):
 
 
 def one_of(value: Any, choices: Collection[str], name: str) -> str:
-    """Check that a text is one of the choices."""
+    """Return a text if it is one of the choices, else raise `SceneError`."""
     if not isinstance(value, str) or value not in choices:
         raise SceneError(f"{name} is {shorten(value)}: one of {', '.join(choices)} is wanted")
     return value
 
 
 def between(value: Any, name: str, low: float, high: float, wanted: str = "") -> float:
-    """Read a finite number between two limits; ``wanted`` ends the message of a refusal."""
+    """Return a finite number between two limits; ``wanted`` ends the message of a `SceneError`."""
     number = real(value, name)
     if not low <= number <= high:
         wanted = wanted or f"it lies between {low:g} and {high:g}"
@@ -41,9 +41,9 @@ def between(value: Any, name: str, low: float, high: float, wanted: str = "") ->
 def row(
     values: Sequence[Any], read: Callable[[Any, str], float], name: Callable[[int], str]
 ) -> Any:
-    """Read a row of values; ``name(i)`` is the name of value i in messages.
+    """Return the values as ``read`` returns each; ``name(i)`` is the name of value i in messages.
 
-    `real` and `positive` check a row of numbers at once: a chain may have a million beads.
+    `real` and `positive` check a row of numbers at once, as a chain may have a million beads.
     """
     if read in (real, positive) and set(map(type, values)) <= {int, float, np.float64}:
         try:
@@ -56,12 +56,12 @@ def row(
 
 
 def each(reader: Reader) -> Reader:
-    """Reader of a list whose items are read alike, fast for numbers."""
+    """Return a reader of lists that reads every item by ``reader``."""
     return lambda value, name: row(array(value, name), reader, lambda i: f"{name} number {i + 1}")
 
 
 def items(values: Any, name: str) -> tuple[Any, ...]:
-    """The items of a sequence; `SceneError` for a text or a single value."""
+    """Return the items of a sequence as a tuple; `SceneError` for a text or a single value."""
     if isinstance(values, str | bytes) or not hasattr(values, "__iter__"):
         raise SceneError(f"{name} is {shorten(values)}: a sequence is wanted")
     return tuple(values)

@@ -17,7 +17,7 @@ _MOST_BYTES = 10**9
 
 
 def columns(path: str | Path, *wanted: str, optional: Sequence[str] = ()) -> dict[str, Array]:
-    """Columns of a CSV file with a header, each (N,), by their names without units.
+    """Read columns of a CSV file with a header; return each, (N,), by its name without unit.
 
     A header such as "force (N)" names the column "force". Raises `SceneError`, in one line, for a
     file without a wanted column, and for entries that are no finite numbers.

@@ -16,9 +16,9 @@ from validation.scenes.scene import Scene
 
 
 def _law_text(law: ContactLaw) -> str:
-    """Text of a law in a file, such as "hertz2:1,2"; `SceneError` for a law without a name.
+    """Return a law as text, such as "hertz2:1,2"; `SceneError` for a law without a name.
 
-    A named law's parameters are among the numbers in F, their negatives and their reciprocals.
+    The parameters are searched among the numbers in F, their negatives and their reciprocals.
     """
     numbers = {x for x in law.F.atoms(sp.Number) if x}
     numbers |= {1 / x for x in numbers} | {sp.S.One}
@@ -32,7 +32,8 @@ def _law_text(law: ContactLaw) -> str:
 
 
 def overlap(what: Scene) -> int:
-    """Number (from 1) of the first contact that the start compresses without static force, or 0."""
+    """Return the number (from 1) of the first contact without static force that is compressed by
+    the initial displacements; 0 without such a contact."""
     if what.gravity or what.precompression:
         return 0
     pairs = pairwise((*what.displacements, 0.0))  # beyond them, and at the wall
@@ -41,7 +42,7 @@ def overlap(what: Scene) -> int:
 
 
 def document(what: Scene) -> dict[str, Any]:
-    """The content of a scene's file, for JSON; `scene` reads an equal scene from it."""
+    """Return the content of a scene's file, for JSON; `scenefile.scene` reads an equal scene."""
     period = _period(what)
     chain: dict[str, Any] = {"cell": list(what.masses[:period])}
     chain |= {"k": what.k} if what.law is None else {"law": _law_text(what.law)}
@@ -77,7 +78,7 @@ def document(what: Scene) -> dict[str, Any]:
 
 
 def _period(what: Scene) -> int:
-    """Size of the smallest cell whose repetition is the chain."""
+    """Return the size of the smallest cell whose repetition is the chain."""
     n, rows = what.size, (what.masses, what.stiffnesses, what.spacings)
     return next(
         p

@@ -38,7 +38,7 @@ class Damping:
         return {"contact": 0.0, "kuwabara_kono": k - 1, "restitution": (k - 1) / 2}[self.kind]
 
     def coefficients(self, k: float, stiffnesses: Array, masses: Array) -> Array:
-        """Factor of δ^power dδ/dt in each contact, (contacts,); ``masses`` are reduced masses."""
+        """Return the factors of δ^power dδ/dt, (contacts,), at reduced masses ``masses``."""
         if self.kind != "restitution":
             return np.full(len(stiffnesses), self.value)
         return 2 * damping_ratio(self.value) * np.sqrt((k + 1) / 2 * masses * stiffnesses)
@@ -49,7 +49,7 @@ def _share(value: Any, name: str) -> float:
 
 
 def restitution(ratio: float) -> float:
-    """The coefficient of restitution at a damping ratio ζ.
+    """Return the coefficient of restitution at a damping ratio ζ.
 
     With s = δ^{(k+1)/2} a collision under F = A δ^k + c δ^{(k-1)/2} dδ/dt is a damped linear
     oscillator, ζ = c/√(2(k+1) m A) with the reduced mass m (Antypov and Elliott 2011, EPL 94,
@@ -65,20 +65,19 @@ def restitution(ratio: float) -> float:
 
 
 def damping_ratio(share: float) -> float:
-    """The damping ratio of a coefficient of restitution, by bisection."""
-    low, high = 0.0, 1e3
-    for _ in range(100):
-        middle = (low + high) / 2
-        low, high = (middle, high) if restitution(middle) > share else (low, middle)
-    return low
+    """The damping ratio of a coefficient of restitution."""
+    from scipy.optimize import brentq  # start-up
+
+    # all digits of a small ratio as well: near ζ = 0 the share is 1 - πζ
+    return float(brentq(lambda ratio: restitution(ratio) - share, 0, 1e3, xtol=1e-20, rtol=1e-15))
 
 
 @dataclass(frozen=True, kw_only=True)
 class Drive:
     """The given motion of bead 1 (the first one); exactly one of three kinds.
 
-    velocity : constant, of a piston. amplitude, frequency : of y = amplitude sin(2π frequency t),
-    which grows to its full size, smoothly, within the time ``ramp``. time, displacement : rows of
+    velocity : constant velocity of a piston. amplitude, frequency : y = amplitude sin(2π frequency
+    t), growing smoothly to its full size within the time ``ramp``. time, displacement : rows of
     equal length from time 0 to the duration or beyond, joined by a cubic spline.
     """
 
@@ -125,7 +124,7 @@ class Drive:
         return CubicSpline(self.time, self.displacement)
 
     def at(self, t: float) -> tuple[float, float, float]:
-        """Displacement, velocity and acceleration of the bead at a time."""
+        """Return displacement, velocity and acceleration of the bead at time t."""
         if self.velocity is not None:
             return self.velocity * t, self.velocity, 0.0
         if self.time:

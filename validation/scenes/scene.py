@@ -40,11 +40,11 @@ class Scene:
 
     Parameters
     ----------
-    masses : of the n beads.
-    stiffnesses : A_i of the n-1 contacts between beads.
+    masses : masses of the n beads.
+    stiffnesses : stiffnesses A_i of the n-1 contacts between beads.
     k : exponent of the contact law, at least 1; a number or a text such as "3/2".
-    law : any contact law of `lwa.law` without symbols, in place of k: a contact pushes with A F(δ).
-        Where F′(0) > 0 it also pulls (Toda's, for one); else it opens. Such a scene's k is 1.
+    law : any contact law of `lwa.law` without symbols, in place of k; the contact force is A F(δ).
+        A contact with F′(0) > 0 (Toda's, say) also pulls, any other opens. The scene's k is then 1.
     damping : dissipation in the contacts, a `validation.scenes.forcing.Damping`.
     drive : given motion of bead 0, a `validation.scenes.forcing.Drive`.
     duration : time to simulate.
@@ -128,7 +128,7 @@ class Scene:
             )
 
     def _read_law(self) -> None:
-        """Check the law, and let a power be its exponent."""
+        """Check the law; a power law is replaced by its exponent k."""
         law = self.law
         if law is None:
             if self.k is _MISSING:
@@ -177,7 +177,7 @@ class Scene:
 
     @classmethod
     def of_cell(cls, cell: Cell, repeats: int, k: Any, **rest: Any) -> Scene:
-        """A chain of repeated periodic cells of the theory.
+        """Return a chain of repeated periodic cells of the theory.
 
         The last contact of the last cell is left out. ``rest`` are further fields of the scene.
         Raises `SceneError` for a cell with symbols.
@@ -199,7 +199,7 @@ class Scene:
     def of_beads(
         cls, beads: Sequence[Sphere], *, wall: Material | None = None, **rest: Any
     ) -> Scene:
-        """A chain of spheres in Hertz contact, in SI units, ended by a wall of a given material.
+        """Return a chain of spheres in Hertz contact, in SI units, ended by a wall of a material.
 
         ``rest`` are further fields of the scene. Raises `SceneError` for spheres with symbols.
         """

@@ -109,7 +109,7 @@ def read_scene(path: str | Path) -> Scene:
 
 
 def scene(content: Any) -> Scene:
-    """Make the scene of a parsed file; `SceneError` for unknown keys and invalid values."""
+    """Return the scene of a parsed file; `SceneError` for unknown keys and invalid values."""
     if isinstance(content, dict) and "scene" in content:
         content = content["scene"]
     file = Table(content, "", KEYS["file"])
@@ -153,7 +153,7 @@ def scene(content: Any) -> Scene:
 
 
 def _heard(count: int) -> Reader:
-    """Reader of sensors: a list of numbers from 1 to ``count``, or "all"."""
+    """Return a reader of sensors: a list of numbers from 1 to ``count``, or "all"."""
     return lambda value, name: range(count) if value == "all" else places(count)(value, name)
 
 
@@ -181,7 +181,7 @@ def _defects(value: Any, name: str) -> list[Table]:
 def _chain(
     given: Table, beads: Mapping[str, Sphere], defects: Sequence[Table]
 ) -> tuple[list[Sphere], dict[str, Any]]:
-    """Named beads (none in a chain of masses), and the chain's fields of the `Scene`."""
+    """Return the named beads (none in a chain of masses), and the chain's fields of the `Scene`."""
     cell = given.read("cell", array)
     repeat = given.read("repeat", partial(integer, least=1), 1)
     n = len(cell) * repeat
@@ -222,7 +222,7 @@ def _chain(
 
 
 def _of_contacts(value: Any, name: str, period: int, count: int) -> list[float]:
-    """Read the numbers of all contacts from one number, those of a cell, or one for each."""
+    """Return a number for each contact, given one for all, one a contact of a cell, or one each."""
     if not isinstance(value, list):
         return [positive(value, name)] * count
     if len(value) not in (period, count):

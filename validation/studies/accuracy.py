@@ -22,6 +22,7 @@ from typing import Any, TypeVar
 
 import click
 import numpy as np
+import sympy as sp
 
 from lwa.base.progress import Progress
 from validation.lattice.run import IntegrationError, Run
@@ -35,7 +36,7 @@ from validation.report.table import Column, Table
 from validation.scenes import chains
 from validation.scenes.checks import one_of
 from validation.scenes.scene import Scene
-from validation.studies.theories import CASES, ladder, place
+from validation.studies.theories import SOLITARY, STRUCK_CHAIN, ladder, place
 from validation.waves.solver import exact_wave
 
 NUMBERS = ("arrival", "peak", "fwhm")
@@ -63,7 +64,7 @@ _ENOUGH, _REPEATS = 0.15, 7  # seconds and times after which a run is not repeat
 class Task:
     """A scene with one contact sensor, at which the highest pulse is measured.
 
-    truth : the pulse, where it is known without a simulation.
+    truth : the exact pulse, if it is known without a simulation.
     """
 
     scene: Scene
@@ -75,7 +76,7 @@ class Task:
         return self.scene.contact_sensors[0]
 
     def read(self, run: Run) -> Pulse:
-        """The pulse of the dynamic force.
+        """Return the highest pulse of the dynamic force at the sensor.
 
         Raises `validation.pulses.pulse.MeasureError` when the pulse is not wholly in the record.
         """
@@ -83,7 +84,7 @@ class Task:
         return highest_pulse(track.force)
 
     def errors(self, run: Run, truth: Pulse) -> dict[str, float]:
-        """Relative errors by `NUMBERS`; ∞ without a pulse."""
+        """Return the relative error of each of `NUMBERS`; ∞ if the run shows no pulse."""
         try:
             return relative_errors(self.read(run), truth)
         except MeasureError:
@@ -91,7 +92,7 @@ class Task:
 
 
 def relative_errors(pulse: Pulse, truth: Pulse) -> dict[str, float]:
-    """Relative differences of two pulses' `NUMBERS`, by name."""
+    """Return |pulse/truth - 1| for each of `NUMBERS`."""
     return {name: abs(getattr(pulse, name) / getattr(truth, name) - 1) for name in NUMBERS}
 
 
@@ -105,9 +106,9 @@ def struck_chain(omega: float, beads: int, contact: int, duration: float) -> Tas
 
 
 def solitary_wave(sites: int = 100) -> Task:
-    """The solitary wave of equal beads, measured ``sites`` further than its start at bead 16.
+    """The solitary wave of equal beads, measured ``sites`` beyond its initial place, bead 16.
 
-    The wave's own numbers give arrival, peak and width.
+    The true arrival, peak and width follow from the exact wave.
     """
     start, wave = 16, exact_wave([1], 1.5)
     arrival, width = (sites + 0.5) / wave.c, wave.fwhm("force") / wave.c
@@ -155,13 +156,27 @@ THEORY = "theory"
 NAMES = (*TASKS, THEORY)
 """Names of all tasks, the ladder of theories among them."""
 
+# Mass ratios of the Hertz dimer's solitary waves are from `validation.waves.resonances`.
+CASES = tuple(
+    (sp.Rational(k), sp.Rational(omega), kind)
+    for exponents, ratios, kind in (
+        (("1.1", "5/4", "3/2", "2", "3"), ("1",), SOLITARY),
+        (("3/2",), ("0.3428457811", "0.1547515139", "0.0901277691"), SOLITARY),
+        (("3/2",), ("0.01", "0.05", "0.2", "0.8", "0.9"), STRUCK_CHAIN),
+        (("5/4", "2"), ("0.05", "0.2", "0.8"), STRUCK_CHAIN),
+    )
+    for k in exponents
+    for omega in ratios
+)
+"""k, ω and the kind of truth of each place of the ladder of theories."""
+
 
 @dataclass(frozen=True)
 class Timing:
     """Error and CPU time of one run.
 
     method : name of the integrator, with "window" where the run had one. setting : tolerance.
-    errors : relative, by `NUMBERS`; infinite without a pulse.
+    errors : relative error of each of `NUMBERS`; infinite without a pulse. seconds : CPU time.
     """
 
     task: str
@@ -172,7 +187,7 @@ class Timing:
 
     @property
     def error(self) -> float:
-        """Largest of the errors."""
+        """Largest relative error of arrival, peak force and FWHM, compared with the true pulse."""
         return max(self.errors.values())
 
 
@@ -180,7 +195,7 @@ _Found = TypeVar("_Found")
 
 
 def timed(run: Callable[[], _Found]) -> tuple[_Found, float]:
-    """Result of a run and its CPU time in seconds; of a short run the median of several."""
+    """Call ``run``; return the result and the CPU time in seconds, for short runs a median."""
     taken: list[float] = []
     while True:
         start = time.process_time()
@@ -191,10 +206,10 @@ def timed(run: Callable[[], _Found]) -> tuple[_Found, float]:
 
 
 def cost(rows: Iterable[Timing], wanted: float) -> float:
-    """CPU time at which a method's peak force errs by ``wanted`` at most; ∞ if it never does.
+    """Return the least CPU time at which a method's peak force errs by ``wanted`` at most; else ∞.
 
-    Every costlier run must be as good: single runs may be good by chance, where steps meet openings
-    of contacts.
+    rows : runs of one method. All costlier runs must be as accurate: a single run may be accurate
+    by chance, when its steps happen to end where contacts open.
     """
     costly = sorted(rows, key=lambda row: -row.seconds)
     good = takewhile(lambda row: row.errors["peak"] <= wanted, costly)
@@ -202,7 +217,7 @@ def cost(rows: Iterable[Timing], wanted: float) -> float:
 
 
 def runs(name: str, task: Task, truth: Pulse) -> Iterator[Timing]:
-    """Run a task by each method at each of its tolerances."""
+    """Run a task by each method at each tolerance; yield the `Timing` of each run."""
     for method, tolerances in METHODS.items():
         windowed = method in COMPILED and task.scene.wall is None
         for window in (False, True) if windowed else (False,):
@@ -236,7 +251,7 @@ _NOTE = "CPU time without compilation, on this machine; - where no run attains i
 
 
 def _costs(task: str, rows: Sequence[Timing]) -> list[tuple[Any, ...]]:
-    """Task, method and its costs at `WANTED` (None where not attained), the best method first."""
+    """Return rows: task, method, `cost` at each of `WANTED` (None: not attained), best first."""
     found = [
         (task, name, *(cost(its, wanted) for wanted in WANTED))
         for name, its in by_method(rows).items()
@@ -246,7 +261,7 @@ def _costs(task: str, rows: Sequence[Timing]) -> list[tuple[Any, ...]]:
 
 
 def _panel(task: str, rows: Sequence[Timing]) -> Panel:
-    """CPU time over error, a curve for each method."""
+    """Return the panel of CPU time as a function of the error, a curve for each method."""
     curves = []
     for name, its in by_method(rows).items():
         seen = [row for row in its if math.isfinite(row.error)]

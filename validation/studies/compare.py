@@ -8,8 +8,7 @@ from typing import Any
 import click
 
 from lwa.base.arrays import Array
-from validation.lattice.cost import RunProgress, silent
-from validation.lattice.run import Run
+from validation.lattice.run import Run, RunProgress, silent
 from validation.pictures.panel import Curve, Panel
 from validation.pulses.pulse import Measured, Pulse, compared, dense, derived, first_pulse
 from validation.pulses.sensors import READINGS, Reading, Track, record, tracks
@@ -87,7 +86,10 @@ def compare(scene: str, measured: str, run_progress: RunProgress = silent) -> Re
 def _records(
     path: str, heard: tuple[Track, ...]
 ) -> Iterator[tuple[tuple[str, int], tuple[Array, Array]]]:
-    """Measured time and dynamic force by kind and number of the sensor."""
+    """Read the measured records; yield (kind, number) of each sensor and its record.
+
+    A record is the sample times and the dynamic forces at these times.
+    """
     names = {f"{track.kind} {track.number} ": track for track in heard}
     if len(heard) == 1:
         names[""] = heard[0]
@@ -110,7 +112,7 @@ def _numbers(samples: tuple[Array, Array]) -> dict[str, float]:
 
 
 def _rows(simulated: Reading, seen: Mapping[str, Measured], run: Run) -> Iterator[tuple[Any, ...]]:
-    """A row for each number: simulated, measured, and their difference with both errors."""
+    """Yield table rows: a simulated number, the measured one, and the difference with its error."""
     names = dict(zip(READINGS, ("arrival", "peak dynamic force", "FWHM"), strict=True))
     for name, quantity in names.items():
         one, other = simulated.numbers[name], seen[name]

@@ -1,9 +1,9 @@
 """Hard cases: the last digits at extreme k, ω and loads, contacts that open, and long runs.
 
-Each case asks a question and holds its numbers to bounds that follow from a law, a closed form or
-another method. Closed forms in float64 are compared with exact expressions that mpmath evaluates at
-`DIGITS` digits for the same float64 arguments. An ulp is the distance of neighbouring float64
-numbers at the exact value: perfect rounding loses half an ulp.
+Each case answers a question, its docstring; the numbers are held to bounds that follow from a law,
+a closed form or another method. Closed forms in float64 are compared with exact expressions that
+mpmath evaluates to `DIGITS` digits at the same float64 arguments. An ulp is the distance between
+neighbouring float64 numbers at the exact value: perfect rounding loses at most half an ulp.
 """
 
 from __future__ import annotations
@@ -59,7 +59,8 @@ FORMS: Mapping[str, tuple[Any, ...]] = {
 
 
 def form(wave: TravelingWave, name: str, *arguments: Any) -> sp.Expr:
-    """Exact value of an entry of `FORMS`; ln B at speed V is (2 ln V - ln V²(B = 1))/(k - 1)."""
+    """Return a closed form of `FORMS`, an attribute of the wave by name, as an exact expression."""
+    # V² = V²(B = 1) B^{k-1}, V²(B = 1) being the wave's speed_factor.
     if name == "log_amplitude":
         return (2 * sp.log(*arguments) - sp.log(wave.speed_factor)) / (wave.k - 1)
     found = getattr(wave, name)
@@ -91,7 +92,7 @@ def true_values(wave: TravelingWave, expression: sp.Expr, k: Array, omega: Array
 
 
 def in_ulps(value: Array, true: Any) -> Array:
-    """|value - true| in units of float64's spacing there; ∞ for no number, NaN for no wave."""
+    """Return |value - true| in ulps; ∞ if value is not finite, NaN if true is None (no wave)."""
 
     def loss(found: float, at: Any) -> float:
         if at is None or not math.isfinite(found):
@@ -103,10 +104,9 @@ def in_ulps(value: Array, true: Any) -> Array:
 
 
 def printed_beta(k: Array, omega: Array) -> Array:
-    """|β| by the formulas of Porter et al. (2008), in float64, for m1 = D = 1.
+    """Return |β| by the formulas of Porter et al. (2008), in float64, for m1 = D = 1.
 
-    The root p of (G+H+I) p² - (H+3I) p + 2I = 0 is that with the minus sign; NaN where p is complex
-    or 0/0 comes up.
+    p is the root of (G+H+I) p² - (H+3I) p + 2I = 0 with -√; NaN if p is complex or 0/0 arises.
     """
     M = 1 + omega
     G = (2 - 3 * k + k**2) / (6 * M**2)
@@ -119,7 +119,7 @@ def printed_beta(k: Array, omega: Array) -> Array:
 
 
 def losses(exponents: Array = EXPONENTS, ratios: Array = RATIOS) -> dict[tuple[str, str], Array]:
-    """Ulps that float64 loses, by form and closure, and for β as printed: (exponents, ratios)."""
+    """Return the error in ulps of each (form, closure) in float64, (exponents, ratios)."""
     k, omega = np.meshgrid(exponents, ratios, indexing="ij")
     found = {}
     for closure in CLOSURES:
@@ -137,7 +137,7 @@ def losses(exponents: Array = EXPONENTS, ratios: Array = RATIOS) -> dict[tuple[s
 
 
 def ulps() -> Report:
-    """k = 1 + 1e-6 … 20, ω = 1e-6 … 1e6: how many ulps does float64 lose against 50 digits?"""
+    """k = 1 + 1e-6 … 20, ω = 1e-6 … 1e6: how many ulps do lwa's closed forms lose in float64?"""
     found = losses()
     largest = {at: float(np.max(x, initial=0, where=np.isfinite(x))) for at, x in found.items()}
     missing = {at: int(np.count_nonzero(np.isinf(x))) for at, x in found.items()}
@@ -166,13 +166,13 @@ def ulps() -> Report:
 
 
 def width_error(wave: BackgroundWave, p0: float, quantity: str) -> float:
-    """Relative error of the FWHM in float64 of a wave on the background p0."""
+    """Return the relative error of the float64 FWHM of a wave on the background strain p0."""
     true = wave.on(sp.Rational(p0)).fwhm(sp.Rational(B), quantity, 50)
     return abs(float(sp.Float(float(wave.numeric().fwhm(p0, B, quantity)), 50) / true - 1))
 
 
 def under_load() -> Report:
-    """p0/B = 1e-12 … 1e12: does V² - c0² cancel, and how well are widths known, in float64?"""
+    """p0/B = 1e-12 … 1e12: how accurate are V² and the FWHM of a wave under load in float64?"""
     findings, curves = [], []
     for k in (sp.Rational(11, 10), sp.Rational(3, 2), sp.Integer(2), sp.Integer(3)):
         wave = background_wave(Cell((1,), spacing=1), law=Power(k))
@@ -196,7 +196,7 @@ def under_load() -> Report:
 
 
 def contact_loss() -> Report:
-    """Contacts that open and close, where F = δ^k has k derivatives: which order is left?"""
+    """Contacts open and close, where F = δ^k is not smooth: which order does the splitting keep?"""
     findings, curves = [], []
     for opens, (coarse, fine), order in ((False, (0.2, 0.1), 6.0), (True, (0.2, 0.012), 2.5)):
         steps = np.geomspace(coarse, fine, 5)
@@ -215,10 +215,11 @@ def contact_loss() -> Report:
 
 
 def splitting_errors(k: float, opens: bool, steps: Array) -> Array:
-    """Error of the splitting at each step, for six unequal beads under a load against a wall.
+    """Return the splitting's error of the displacements at t = 8 for each of the steps.
 
-    An opening costs more or less by its place within a step: the root mean square is taken over
-    six initial velocities and nine factors of the step.
+    The scene is six unequal beads under a load against a wall, the reference a run at step 5e-4. An
+    error is a root mean square over six initial states and nine steps, 0.8 to 1.25 times the given
+    step, because it depends on where in a step contacts open.
     """
     squares, factors = np.zeros(len(steps)), np.linspace(0.8, 1.25, 9)
     starts = np.random.default_rng(8).uniform(-1, 1, (6, 6))
@@ -235,7 +236,7 @@ def splitting_errors(k: float, opens: bool, steps: Array) -> Array:
 
 
 def long_run(lasting: float = 1e6, segments: int = 200) -> Report:
-    """10⁶ time units of three beads against a wall: does the energy drift?"""
+    """Three beads against a wall over 10⁶ time units, by the splitting: does the energy drift?"""
     smooth = energy_errors(False, 0.5, lasting, segments)
     walk = energy_errors(True, 0.25, lasting, segments)
     largest, tenth = float(np.abs(smooth).max()), segments // 10
@@ -270,7 +271,7 @@ def long_run(lasting: float = 1e6, segments: int = 200) -> Report:
 def pressed(
     masses: tuple[float, ...], start: Sequence[float], opens: bool, duration: float, k: float = 1.5
 ) -> Scene:
-    """Beads under a load against a wall; the lighter load lets contacts open."""
+    """Return a scene of beads under a load against a wall; contacts open if ``opens``."""
     return Scene(
         masses=masses,
         stiffnesses=(1.0, 2.0, 0.5, 1.5, 3.0)[: len(masses) - 1],
@@ -290,7 +291,7 @@ def three_beads(opens: bool, duration: float) -> Scene:
 
 
 def energy_errors(opens: bool, step: float, lasting: float, segments: int) -> Array:
-    """Relative energy error of `three_beads` at the ends of equal segments, (segments + 1,)."""
+    """Return the relative energy errors of `three_beads` at the ends of segments, and 0 before."""
     scene, energy = three_beads(opens, lasting / segments), [1.0]
     for _ in range(segments):
         run = simulate(scene, method=METHOD, step=step)
@@ -301,7 +302,7 @@ def energy_errors(opens: bool, step: float, lasting: float, segments: int) -> Ar
 
 
 def spreading(walk: Array) -> float:
-    """Exponent p of |x(t + lag) - x(t)| ~ lag^p in root mean square: 1/2 of a random walk."""
+    """Return the exponent p of √⟨(x(t + lag) - x(t))²⟩ ~ lag^p of a walk x: 1/2 if random."""
     lags = 2 ** np.arange(6)
     spread = [math.sqrt(np.mean((walk[lag:] - walk[:-lag]) ** 2)) for lag in lags]
     return float(np.polyfit(np.log(lags), np.log(spread), 1)[0])

@@ -24,8 +24,7 @@ import sympy as sp
 
 from lwa import Cell, PhysicalWave, Sphere, canonical_wave, homogenize
 from lwa.command.reading import quantities
-from validation.lattice.cost import RunProgress, silent
-from validation.lattice.run import Run
+from validation.lattice.run import Run, RunProgress, silent
 from validation.lattice.simulate import twice
 from validation.pictures.panel import Curve, Panel
 from validation.pulses.pulse import Measured, Pulse, compared

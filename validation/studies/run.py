@@ -10,8 +10,7 @@ from typing import Any
 import click
 
 import validation.scenes
-from validation.lattice.cost import RunProgress
-from validation.lattice.run import Run
+from validation.lattice.run import Run, RunProgress
 from validation.lattice.simulate import COMPILED, METHODS
 from validation.pulses.sensors import READINGS, SPEEDS, TOLERANCE, Reading, Recording, record
 from validation.report.command import option, study, whole

@@ -73,20 +73,6 @@ THEORIES = tuple(_PREDICTIONS)
 SOLITARY, STRUCK_CHAIN = "solitary wave", "struck chain"
 HERTZ = sp.Rational(3, 2)
 
-# k, ω and the kind of truth; mass ratios of the Hertz dimer's solitary waves are from
-# `validation.waves.resonances`.
-CASES = tuple(
-    (sp.Rational(k), sp.Rational(omega), kind)
-    for exponents, ratios, kind in (
-        (("1.1", "5/4", "3/2", "2", "3"), ("1",), SOLITARY),
-        (("3/2",), ("0.3428457811", "0.1547515139", "0.0901277691"), SOLITARY),
-        (("3/2",), ("0.01", "0.05", "0.2", "0.8", "0.9"), STRUCK_CHAIN),
-        (("5/4", "2"), ("0.05", "0.2", "0.8"), STRUCK_CHAIN),
-    )
-    for k in exponents
-    for omega in ratios
-)
-
 
 @dataclass(frozen=True)
 class Rung:

@@ -27,7 +27,8 @@ class LeadingPower:
     """Leading power of the theory's error, coefficient · ε^order, and bounds of a measurement.
 
     constant : |error| ≤ constant · ε^order at each k measured.
-    order_bound, coefficient_bound : relative, on the fitted order and the extrapolated coefficient.
+    order_bound, coefficient_bound : bounds of the relative errors of the fitted order and of the
+        extrapolated coefficient.
     """
 
     order: int
@@ -37,7 +38,7 @@ class LeadingPower:
     coefficient_bound: float
 
     def bound(self, k: sp.Expr) -> float:
-        """Bound of the error at k."""
+        """Return the bound of |error| at k = 1 + ε."""
         return self.constant * float(k - 1) ** self.order
 
 
@@ -48,6 +49,6 @@ LAWS = dict(zip(QUANTITIES, (_WIDTH, _WIDTH, _SUPPORT, _SPEED), strict=True))
 
 
 def theory_values(wave: TravelingWave) -> dict[str, sp.Expr]:
-    """Exact values of `QUANTITIES` for the theory's wave."""
+    """Return the exact values of `QUANTITIES` for the theory's wave."""
     values = wave.fwhm("force"), wave.fwhm("strain"), wave.width, wave.speed(1)
     return dict(zip(QUANTITIES, values, strict=True))

@@ -4,7 +4,7 @@ With the strain p = u_x and the velocity v = u_τ,
 
     p_τ = v_x,    (1 - I ∂_x²) v_τ = ∂_x F(p),
 
-for which the operator 1 - I ∂_x² is diagonal in Fourier coefficients (SciPy's FFT). Frequencies are
+where the operator 1 - I ∂_x² is diagonal in Fourier coefficients (SciPy's FFT). Frequencies are
 bounded by c0/√I, so that an explicit method (SciPy's DOP853) needs no small steps. The equation and
 its energy ∫ [½ v² + ½ I v_x² + W(p)] dx are those of `lwa.equation.evolution`. A power law has no
 tension: F(p) = 0 at p < 0.
@@ -30,9 +30,9 @@ TOLERANCE = 1e-10  # rtol by default
 
 @dataclass(frozen=True, eq=False)
 class Continuum:
-    """The equation of a chain on ``points`` equidistant points of a period ``length``.
+    """The long-wave equation of a chain on ``points`` equidistant points of a period ``length``.
 
-    Raises `SceneError` unless the equation is in numbers.
+    Raises `SceneError` for an equation with symbols.
     """
 
     equation: Evolution
@@ -48,12 +48,12 @@ class Continuum:
 
     @cached_property
     def x(self) -> Array:
-        """The points, from -length/2 on."""
+        """Grid points, from -length/2 on."""
         return np.asarray(self.length * (np.arange(self.points) / self.points - 0.5))
 
     @cached_property
     def _waves(self) -> Array:
-        """Wavenumbers of the coefficients."""
+        """Wavenumbers of the Fourier coefficients."""
         return np.asarray(2 * np.pi / self.length * np.arange(self.points // 2 + 1))
 
     @cached_property
@@ -69,7 +69,7 @@ class Continuum:
     def evolved(
         self, p: ArrayLike, v: ArrayLike, times: ArrayLike, rtol: float = TOLERANCE
     ) -> tuple[Array, Array]:
-        """Strain and velocity at the times τ, (times, points) each, from (points,) at τ = 0.
+        """Return strain and velocity at the times τ, each (times, points), from p, v at τ = 0.
 
         The times rise from 0 on. Raises `SceneError` if the integration fails.
         """
@@ -96,7 +96,7 @@ class Continuum:
         return strain, velocity
 
     def energy(self, p: Array, v: Array) -> Array:
-        """Energy of strains and velocities (…, points)."""
+        """Return the energy, (…), of strains and velocities, (…, points)."""
         slope = scipy.fft.irfft(1j * self._waves * scipy.fft.rfft(v), self.points)
         density = v**2 / 2 + float(self.equation.I) * slope**2 / 2
         density = density + self._laws[1](self._pressed(p))

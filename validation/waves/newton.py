@@ -1,4 +1,4 @@
-"""Traveling waves of the lattice in Fourier coefficients, solved by Newton's method.
+"""Traveling waves of the lattice, solved by Newton's method with Fourier coefficients.
 
 Beads of masses m1 and m2 alternate at distance 1, contacts push with F = r_+^k (A = D = 1). In a
 wave of speed c all quantities depend on ξ = x - ct alone. With a(ξ) the strain of the contacts
@@ -8,21 +8,22 @@ of motion are
     c² a'' = -Σ F_a(ξ) + F_b(ξ-1)/m1 + F_b(ξ+1)/m2,      Σ = 1/m1 + 1/m2,
 
 and the same for b with a ↔ b, m1 ↔ m2. Sought are mirror symmetric waves, b(ξ) = a(-ξ). Then
-a = e + o with e even and o odd, likewise F_a = E + O, and the Fourier coefficients (e, E of cos qξ;
-o, O of sin qξ) satisfy, with Δ = 1/m2 - 1/m1,
+a = e + o with e even and o odd, likewise F_a = E + O. With Δ = 1/m2 - 1/m1 the Fourier coefficients
+(of cos qξ for e and E, of sin qξ for o and O; q is the wavenumber) satisfy
 
     c² q² e = Σ (1 - cos q) E + Δ sin q O,      c² q² o = Δ sin q E + Σ (1 + cos q) O.     (*)
 
-Integrated twice like this the problem is a fixed point of smoothing operators, and Newton's method
-converges quadratically. Profiles are trigonometric polynomials on |ξ| ≤ L, spectrally accurate.
+(*) and F = a_+^k form a fixed-point problem with a smoothing operator, and Newton's method
+converges quadratically. Profiles are trigonometric polynomials of period 2L, |ξ| ≤ L (L is the half
+period), spectrally accurate.
 
 **The tail.** At q → 0 the second line of (*) has a pole: forces that end leave o = ±T behind, with
 
     c² T = Δ ∫_0^∞ E dξ + 2Σ ∫_0^∞ ξ O dξ.
 
 T is 0 for a solitary wave. `Problem.wave` can impose T = 0 with one more unknown: m2, or at given
-masses the size of a kick ξ e^{-2ξ²} in the odd force. The size of the kick depends smoothly on
-m2/m1 and is 0 exactly where T is 0 without a kick: its changes of sign are the special mass ratios.
+masses the size s of a kick, a term s ξ e^{-2ξ²} added to the odd force. s depends smoothly on m2/m1
+and is 0 exactly where T is 0 without a kick, so that s changes sign at the special mass ratios.
 
 **Under a load.** On a background strain p0, a and b are the additional strains, r → 0 far away, and
 F = (p0 + r)_+^k - p0^k; (*) stays.
@@ -44,28 +45,29 @@ FEWEST = 40  # points on 0 … L
 
 
 def widening(masses: tuple[float, float]) -> float:
-    """Width of the canonical wave over that of equal masses, √(12 I/D²)."""
+    """Return the canonical wave's width divided by its width at equal masses, √(12 I/D²)."""
     m1, m2 = masses
     return 2 * math.sqrt(m1 * m1 - m1 * m2 + m2 * m2) / (m1 + m2)
 
 
 def ample_half_period(masses: tuple[float, float], k: float) -> float:
-    """Half period L at which a pulse has ended: at L for equal masses, at 0.6 L in a dimer."""
-    # Near k = 1, log r = -3 (k-1) ξ²; above, r falls like exp(-k^ξ). Twice 1e-8 makes 1e-16.
+    """Return a half period L: a pulse of equal masses ends within L, a dimer's within 0.6 L."""
+    # The strain divided by its peak falls like exp(-3 (k-1) ξ²) near k = 1, like exp(-k^ξ) above.
     length = 1 + 3.7 / math.sqrt(k - 1) if k < 2 else 1 + 3.7 / math.log2(k) ** 0.5
     return length if masses[0] == masses[1] else max(8.0, 1.15 * length * widening(masses))
 
 
 def enough(masses: tuple[float, float], k: float, half_period: float) -> int:
-    """Number of points on 0 … L = ``half_period`` that resolve the wave to rounding."""
-    # Per site: the pulse's Fourier width, its steeper flanks at large k, the light beads' rattling.
+    """Return a number of points on 0 … L = ``half_period`` that resolves the wave to rounding."""
+    # Points per site, in this order: for the pulse's width as k grows, for its steeper flanks at
+    # large k, for the oscillation of light beads.
     beads = math.sqrt(sum(masses) / min(masses) - 1)
     dense = 3 + 9 * math.sqrt(k - 1) + 7 * max(k - 2, 0) + 1.5 * beads
     return max(FEWEST, math.ceil(dense * half_period))
 
 
 def rise(strain: Array, k: float, p0: float) -> Array:
-    """Force over the static one, (p0 + r)_+^k - p0^k, without cancellation at small r."""
+    """Return (p0 + r)_+^k - p0^k, r the strain: force less static force, without cancellation."""
     if not p0:
         return np.asarray(np.maximum(strain, 0) ** k)
     with np.errstate(divide="ignore"):  # an open contact
@@ -75,7 +77,7 @@ def rise(strain: Array, k: float, p0: float) -> Array:
 def respond(
     force: NDArray[np.complex128], inverse: tuple[float, float], half_period: float
 ) -> NDArray[np.complex128]:
-    """Fourier coefficients of c² a from those of F_a by (*), with mean 0.
+    """Return the Fourier coefficients of c² a from those of F_a, by (*); the mean of a is set to 0.
 
     Coefficients are those of e^{iqξ}, q = 0 … πn/L; ``inverse`` is (1/m1, 1/m2).
     """
@@ -87,7 +89,7 @@ def respond(
 
 
 def coefficients(force: Array) -> tuple[Array, Array]:
-    """Fourier coefficients of E in cos qξ and of O in sin qξ, from F_a on a `circle`."""
+    """Return the coefficients of cos qξ in E and of sin qξ in O, from F_a on a `circle`."""
     n = len(force) // 2
     found = scipy.fft.rfft(force) / n
     found[[0, n]] /= 2
@@ -95,17 +97,18 @@ def coefficients(force: Array) -> tuple[Array, Array]:
 
 
 def circle(half_period: float, n: int) -> Array:
-    """The 2n points ξ of a period: 0 … L, then from -L to 0."""
+    """Return the 2n grid points ξ of a period: 0 … L, then from -L to 0."""
     return np.asarray(half_period / n * np.append(np.arange(n + 1), np.arange(1 - n, 0)))
 
 
 class Problem:
-    """The equations F_a = rise(a[F_a]) on a `circle`, with F_a(0) = 1 - p0^k to fix c².
+    """The equations F_a = rise(a), with a from F_a by (*), on the grid points of a `circle`.
 
-    masses, k : (m1, m2) and the exponent. half_period, points : L and the number of points on
-    0 … L, by default ample. p0 : background strain.
+    F_a(0) = 1 - p0^k fixes c². The unknowns are c² and the ``count`` forces F_a at the grid points
+    (for equal masses, where o = 0, at 0 … L only).
 
-    The unknowns are the ``count`` forces (for equal masses, where o = 0, those at 0 … L) and c².
+    masses, k : (m1, m2) and the exponent. half_period, points : L, by default `ample_half_period`,
+    and the number of points on 0 … L, by default `enough`. p0 : background strain.
     """
 
     def __init__(
@@ -126,18 +129,18 @@ class Problem:
         self.inverse = 1 / masses[0], 1 / masses[1]
 
     def forces(self, z: Array) -> Array:
-        """F_a on the whole circle, (2 points,), from the forces z at the unknowns' places."""
+        """Return F_a at all grid points, (2 points,), from the unknown forces z, (count,)."""
         return np.append(z, z[self.n - 1 : 0 : -1]) if self.uniform else z
 
     def strains(self, z: Array, inverse: tuple[float, float]) -> Array:
-        """c² a at the unknowns' places, (count,), 0 at L."""
+        """Return c² a, 0 at L, at the first ``count`` grid points, from the unknown forces z."""
         force = scipy.fft.rfft(self.forces(z))
         force = np.asarray(force.real if self.uniform else force, complex)  # no rounding over q²
         a = scipy.fft.irfft(respond(force, inverse, self.L), 2 * self.n)
         return np.asarray(a - a[self.n])[: self.count]
 
     def responses(self, at: NDArray[np.int_], inverse: tuple[float, float]) -> Array:
-        """Jacobian of `strains` between the grid points ``at``, (len(at), len(at))."""
+        """Return the rows and columns ``at`` (grid points) of the Jacobian of `strains`."""
         n = self.n
         plus, minus = (respond(np.full(n + 1, f, complex), inverse, self.L) for f in (1, 1j))
         minus = 1j * minus
@@ -155,9 +158,10 @@ class Problem:
         return np.asarray((to(at) + to(-at)) * np.where(at % n == 0, 0.5, 1.0))
 
     def wave(self, z: Array, c2: float, unknown: str = "") -> tuple[Array, float, float]:
-        """Solve for the wave near the forces ``z`` and ``c2``; returns forces, c² and last unknown.
+        """Solve for the wave near the forces ``z`` and ``c2``; return forces, c² and one number.
 
-        unknown : "mass" (1/m2) or "kick" for T = 0; "" for none, and the last number is c².
+        unknown : "mass" or "kick" to impose T = 0; the number is then 1/m2 or the kick's size s.
+            By default T is free, and the number is c² again.
 
         Raises `numpy.linalg.LinAlgError` if Newton's method does not converge.
         """
@@ -168,7 +172,7 @@ class Problem:
         return x[: self.count], float(x[self.count]), float(x[-1])
 
     def _step(self, x: Array, unknown: str) -> Array:
-        """Newton step at the unknowns x: the residual, solved with its derivatives."""
+        """Return the Newton step to be subtracted from the unknowns x."""
         count, xi = self.count, self.xi
         z, c2 = x[:count], x[count]
         inverse = self.inverse[0], x[-1] if unknown == "mass" else self.inverse[1]
@@ -205,7 +209,7 @@ class Problem:
 
 @np.errstate(all="ignore")  # an overflow or c² < 0 does not converge
 def newton(change: Callable[[Array], Array], x: Array, sizes: Array) -> Array:
-    """Root near x by damped Newton steps.
+    """Return a root near x, found by damped Newton steps.
 
     change : the full Newton step at x, to be subtracted. sizes : typical sizes of the unknowns.
 

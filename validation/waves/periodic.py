@@ -76,31 +76,31 @@ class PressedChain:
 
     @cached_property
     def strains(self) -> Any:
-        """B, sparse."""
+        """The sparse matrix B, which turns displacements into further compressions."""
         contacts, beads = len(self.stiffnesses), len(self.masses)
         ones = np.ones(contacts)
         return scipy.sparse.diags_array((ones, -ones), offsets=(0, 1), shape=(contacts, beads))
 
     def forces(self, u: Array) -> Array:
-        """F - F0 of the contacts at displacements u, (N,) or (N, times), without cancellation."""
+        """Return F - F0 of the contacts at displacements u, (N,) or (N, times)."""
         share = self._shares(u)
         with np.errstate(divide="ignore"):  # an open contact
             return np.asarray(self.load * np.expm1(self.k * np.log1p(share)))
 
     def slopes(self, u: Array) -> Array:
-        """F′ of the contacts."""
+        """Return F′ of the contacts at displacements u, (N,) or (N, times)."""
         share = self.k * self.load * (1 + self._shares(u)) ** (self.k - 1)
         return np.asarray((share.T / self.rest).T)
 
     def energy(self, u: Array) -> float:
-        """Elastic energy at displacements u (N,), less the work of the loads; 0 in equilibrium."""
+        """Return the elastic energy less the work of the loads at displacements u, (N,)."""
         share, k = self._shares(u), self.k
         with np.errstate(divide="ignore"):
             stored = np.expm1((k + 1) * np.log1p(share)) / (k + 1)
         return float(self.load * self.rest @ (stored - (self.strains @ u) / self.rest))
 
     def _shares(self, u: Array) -> Array:
-        """Further compressions over the static ones, -1 in open contacts."""
+        """Return the further compressions divided by the static ones; -1 for open contacts."""
         return np.asarray(np.maximum(((self.strains @ u).T / self.rest).T, -1))
 
 
@@ -109,8 +109,8 @@ class Orbit:
     """A time-periodic motion u(t) = Σ_h a_h cos(hωt) of a chain.
 
     frequency : ω, in radians per unit of time. coefficients : a, (N, H + 1).
-    residual : largest force that the equations of motion miss, over the load, at times between
-        those of the solution.
+    residual : largest force by which the orbit violates the equations of motion, divided by F0, at
+        times between those at which the equations were solved.
     """
 
     chain: PressedChain
@@ -120,7 +120,7 @@ class Orbit:
 
     @property
     def period(self) -> float:
-        """2π/ω."""
+        """Period 2π/ω of the orbit."""
         return 2 * math.pi / self.frequency
 
     @property
@@ -134,7 +134,7 @@ class Orbit:
         return self.chain.energy(self.displacements(0.0))
 
     def displacements(self, t: ArrayLike) -> Array:
-        """Displacements of the beads at times t, (N, *shape of t)."""
+        """Return the displacements of the beads at times t, (N, *shape of t)."""
         return self.coefficients @ _cosines(self.coefficients, self.frequency * np.asarray(t))
 
     @cached_property
@@ -159,9 +159,9 @@ class Orbit:
 def orbit(
     chain: PressedChain, frequency: float, start: ArrayLike, harmonics: int = HARMONICS
 ) -> Orbit:
-    """The orbit of a frequency, by Newton's method.
+    """Return the orbit with a given frequency, found by Newton's method.
 
-    frequency : ω, in radians per unit of time. harmonics : H.
+    frequency : ω, in radians per unit of time. harmonics : H, number of harmonics.
     start : displacements at t = 0, (N,), for a start with one harmonic, or coefficients (N, H + 1).
 
     Raises `NoOrbit` if Newton's method does not converge, or converges to the state of rest.
@@ -186,10 +186,10 @@ def orbit(
 
 
 def continued(begin: Orbit, frequency: float) -> Orbit:
-    """The orbit of another frequency, followed from an orbit in steps of adapted length.
+    """Return the orbit with another frequency, continued from ``begin`` in adaptive steps.
 
-    The start of a step is extrapolated from the two orbits before. Raises `NoOrbit` if the orbit is
-    lost on the way.
+    Each step starts from an extrapolation of the two orbits before. Raises `NoOrbit` if Newton's
+    method fails at the smallest step.
     """
     frequency = positive(frequency, "frequency")
     whole, done, step = frequency - begin.frequency, 0.0, 0.25
@@ -213,12 +213,12 @@ def continued(begin: Orbit, frequency: float) -> Orbit:
 
 
 def _cosines(a: Array, phase: Array) -> Array:
-    """cos(hφ) for h = 0 … H, (H + 1, *shape of φ)."""
+    """Return cos(hφ) for h = 0 … H and phases φ, (H + 1, *shape of φ)."""
     return np.cos(np.multiply.outer(np.arange(a.shape[1]), phase))
 
 
 def _newton_step(chain: PressedChain, omega: float, a: Array) -> tuple[Array, float]:
-    """Newton's step at the coefficients a, (N, H + 1), and the largest fault of the equations."""
+    """Return Newton's step at the coefficients a, (N, H + 1), and the largest residual."""
     n, terms = a.shape
     times = 2 * terms  # of half a period: twice as many as are needed
     cosines = _cosines(a, np.pi / times * np.arange(times + 1))

@@ -37,10 +37,10 @@ _ROW = 16  # Fourier coefficients that are summed up together
 
 @dataclass(frozen=True, eq=False)
 class Profile(ArrayValue, Pictured):
-    """A pulse as a function of ξ = x - ct, mirror symmetric about a bead; A = D = 1.
+    """A wave as a function of ξ = x - ct, mirror symmetric about a bead; A = D = 1.
 
     masses : (m1, m2). k : exponent. c2 : c², the square of the speed dx/dt.
-    half_period : L, the largest |ξ| at which the pulse is known.
+    half_period : L, the largest |ξ| at which the wave is known.
     """
 
     masses: tuple[float, float]
@@ -52,7 +52,7 @@ class Profile(ArrayValue, Pictured):
     @property
     @abstractmethod
     def samples(self) -> int:
-        """Number of points on 0 … L that resolve the profile."""
+        """Number of points on 0 … L that resolve the profile; subclasses define it."""
 
     @abstractmethod
     def _front(self, xi: Array) -> Array:
@@ -127,20 +127,23 @@ class Profile(ArrayValue, Pictured):
         return math.sqrt(f @ (xi - mean) ** 2 / f.sum())
 
     def rattle(self, start: float) -> float:
-        """Amplitude of the light beads' motion, the largest |a(ξ) - a(-ξ)|/2 on start ≤ |ξ| ≤ L."""
+        """Largest odd part |a(ξ) - a(-ξ)|/2 of contact 0's strain a on start ≤ |ξ| ≤ L.
+
+        Outside the pulse (|ξ| ≥ start) it is the amplitude of the light beads' oscillation.
+        """
         outside = np.linspace(start, self.half_period, 2 * self.samples)
         return summit(lambda x: np.abs(self.strain(x) - self.strain(-x)) / 2, outside)[1]
 
     def apart(self, other: Profile) -> float:
-        """Largest difference of two waves' strains over the pulse."""
+        """Largest difference between the strains of this and another wave on |ξ| ≤ `pulse`."""
         xi = np.linspace(-self.pulse, self.pulse, 401)
         return float(np.abs(self.strain(xi) - other.strain(xi)).max())
 
     def launched(self, start: int, sites: int, **rest: Any) -> Scene:
-        """A chain, long enough for ``sites``, that carries the wave at bead ``start``, of mass m1.
+        """Return a scene of a chain that carries the wave, centered at bead ``start`` at time 0.
 
-        rest : further fields of the scene; by default the contacts halfway and at the end have
-        sensors.
+        sites : distance that the chain lets the wave travel. rest : further fields of the scene; by
+        default the contacts halfway and at the end of this distance have sensors.
         """
         bead = np.arange(2 * start + sites) - start
         at, even = bead[:-1] + 0.5, bead % 2 == 0
@@ -152,7 +155,7 @@ class Profile(ArrayValue, Pictured):
         return carrying(masses, strain, velocity, k=self.k, **options)
 
     def pictured(self) -> list[Panel]:
-        """Strain, force and velocity, each over its peak."""
+        """Panel of strain, force and velocity as functions of ξ, each divided by its peak."""
         xi, styles = np.linspace(-self.half_period, self.half_period, 2001), ("-", "--", ":")
         curves = (
             Curve.of(name, xi, self.quantity(name, xi) / self.peak(name)[1], style)
@@ -163,13 +166,14 @@ class Profile(ArrayValue, Pictured):
 
 @dataclass(frozen=True, eq=False)
 class ExactWave(Profile):
-    """A traveling wave of the lattice to rounding; A = D = 1.
+    """A traveling wave of the lattice, accurate to rounding; A = D = 1.
 
     half_period : L; profiles have the period 2L, and a solitary wave ends before L.
-    even, odd : coefficients of E in cos(πjξ/L), j = 0 … n, and of O in sin(πjξ/L).
-    tail : largest |o| outside the pulse over the peak strain.
-    residual : error in the equations of motion, integrated twice, over the peak strain, on a grid
-        twice as fine as the grid on which they were solved.
+    even, odd : coefficients of cos(πjξ/L) in E, the even part of F_a, and of sin(πjξ/L) in O, its
+        odd part, j = 0 … n.
+    tail : largest |o|, the odd part of a, outside the pulse, divided by the peak strain.
+    residual : largest error in the twice integrated equations of motion divided by the peak strain,
+        on a grid twice as fine as the solution's.
     background : p0, the strain far from the wave.
     """
 
@@ -191,14 +195,14 @@ class ExactWave(Profile):
 
     @property
     def solitary(self) -> bool:
-        """Whether the wave ends within L without a tail, as far as its residual can tell."""
+        """True if tail, residual and the strain left at L are all below `TOLERANCE`."""
         return max(self.tail, self.residual, self.rest) < TOLERANCE
 
     @cached_property
     def rest(self) -> float:
-        """Strain that a wave of equal masses still has at L, over the peak strain.
+        """Strain of a wave of equal masses at L, divided by the peak strain; 0 for a dimer.
 
-        The profile is 0 at L; the forces make ∫ (1-|s|) F(L-s) ds / c² there, (*) at q = 0.
+        The profile is shifted to be 0 at L; by (*) at q = 0 the strain is ∫ (1-|s|) F(L-s) ds / c².
         """
         if self.omega != 1:
             return 0.0
@@ -206,9 +210,9 @@ class ExactWave(Profile):
         return float(abs(self.even[0] / c2 - even[0]) / even.sum())
 
     def scaled(self, *, speed: Any = None, force: Any = None) -> ExactWave:
-        """Scale the wave to another speed dx/dt or another peak contact force.
+        """Return the wave scaled to another speed dx/dt or another peak contact force.
 
-        Raises `SceneError` unless exactly one is given, positive, and the strains are floats.
+        Raises `SceneError` unless exactly one is given, positive, and the strains fit into floats.
         """
         if (speed is None) == (force is None):
             raise SceneError("speed or force is wanted: a wave is scaled to one of the two")
@@ -225,7 +229,7 @@ class ExactWave(Profile):
         return self.times(float(now))
 
     def times(self, s: float) -> ExactWave:
-        """The wave of s times these strains and background; c² scales as s^{k-1}."""
+        """Return the wave with all strains, the background's too, multiplied by s; c² ~ s^{k-1}."""
         c2, force, p0 = float(self.c2 * s ** (self.k - 1)), s**self.k, s * self.background
         return replace(self, c2=c2, even=self.even * force, odd=self.odd * force, background=p0)
 
@@ -249,7 +253,7 @@ class ExactWave(Profile):
         return np.where(self._ended(xi), 0.0, self._velocity(xi, bead) - mean)
 
     def _velocity(self, xi: ArrayLike, bead: int) -> Array:
-        """Velocity less a constant, the integral of c v' = (force behind - force ahead)/m."""
+        """Velocity up to a constant: the integral of v' = (force ahead - force behind)/(m c)."""
         sign, q = (-1 if bead % 2 else 1), np.pi / self.half_period * np.arange(1, self.samples)
         push = -2 * np.sin(q / 2) * self.even[1:] + sign * 2 * np.cos(q / 2) * self.odd[1:]
         row = np.append(0.0, -push / q) / (self.masses[bead % 2] * self.c)
@@ -264,14 +268,14 @@ class ExactWave(Profile):
         return np.asarray(((first @ rows.T) * every).real.sum(axis=-1))
 
     def _ended(self, xi: ArrayLike) -> NDArray[np.bool_]:
-        """True beyond L for a solitary wave, which is not repeated there."""
+        """True where |ξ| > L for a solitary wave, which is 0 there instead of periodic."""
         return np.asarray((np.abs(xi) >= self.half_period) & self.solitary)
 
 
 def at_unit_force(
     masses: tuple[float, float], problem: newton.Problem, forces: Array, c2: float
 ) -> ExactWave:
-    """Scale the solution of a problem to peak force 1; measure its tail and residual."""
+    """Return the solution of a problem, scaled to peak force 1, with its tail and residual."""
     even, odd = newton.coefficients(problem.forces(forces))
     wave = ExactWave(masses, problem.k, c2, problem.L, even, odd, 0.0, 0.0, problem.p0)
     wave = wave.times(1 / (problem.p0 + wave.peak("strain")[1]))
@@ -284,7 +288,7 @@ def at_unit_force(
 
 
 def summit(f: Callable[[Any], Array], xi: Array) -> tuple[float, float]:
-    """Place (to 1e-8) and value of a smooth function's maximum, near the largest sample."""
+    """Return the place (to 1e-8) and value of f's maximum near its largest value on the grid xi."""
     value = f(xi)
     i = int(np.argmax(value))
     bounds = xi[max(i - 1, 0)], xi[min(i + 1, len(xi) - 1)]

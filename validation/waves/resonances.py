@@ -1,16 +1,16 @@
 """Mass ratios at which a dimer chain has a solitary wave.
 
-At other ratios the light beads keep oscillating behind the pulse. At these ratios the light beads
-come to rest with the heavy ones, with one more full oscillation from each ratio to the next smaller
-one (Jayaprakash, Starosvetsky & Vakakis, Phys. Rev. E 83, 036606, 2011: 0.3428, 0.1548, 0.0901, …
-at k = 3/2). The ratios are zeros of the strain T left by a wave (`validation.waves.newton`);
+At these special ratios m2/m1 the light beads come to rest together with the heavy ones, after one
+more full oscillation for each smaller ratio (Jayaprakash, Starosvetsky & Vakakis, Phys. Rev. E 83,
+036606, 2011: 0.3428, 0.1548, 0.0901, … at k = 3/2); at other ratios they keep oscillating behind
+the pulse. The ratios are zeros of the strain T left behind by a wave (`validation.waves.newton`);
 Newton's method solves T = 0 together with the equations of motion, with m2/m1 as an unknown.
 
-Newton's method alone may end at any of the ratios. The order is kept as follows. The first two
-ratios are those of k = 3/2, followed to k in small steps of √(m1/m2). Each further ratio is
-searched one step of √(m1/m2) on, as these steps are nearly equal: by Newton's method, and between
-changes of sign of the kick that keeps a wave at given masses from leaving a strain. Above k = 3/2
-all ratios are followed from k = 3/2.
+Newton's method may converge to any of the ratios, so their order is secured as follows. The first
+two ratios at k = 3/2 are continued to k in steps that change √(m1/m2) little. The difference of
+√(m1/m2) between neighbouring ratios is nearly constant; so each further ratio is searched at this
+distance from the last, first by Newton's method, then where the kick that enforces T = 0 at given
+masses changes sign. Above k = 3/2 all ratios are found at k = 3/2 and continued from there.
 """
 
 from __future__ import annotations
@@ -35,10 +35,10 @@ _FARTHEST = 0.15  # change of √(m1/m2) in one step along k; neighbours differ 
 
 
 def resonances(k: Any, count: Any) -> tuple[ExactWave, ...]:
-    """Solitary waves at the ``count`` largest special ratios ω = m2/m1 < 1, for k from 1.1 to 5.
+    """Return the solitary waves at the ``count`` largest special ratios ω = m2/m1 < 1.
 
-    The waves have m1 = 1 and stand in falling order of ω. Nearer to k = 1 the strain T is lost in
-    rounding. Raises `SceneError` for numbers out of range, and `NoWave` if fewer waves are found.
+    The waves have m1 = 1 and are sorted by falling ω. k is from 1.1 to 5; nearer to 1 the strain T
+    is lost in rounding. Raises `SceneError` for numbers out of range, `NoWave` for missing waves.
     """
     k = between(k, "k", 1.1, 5, "special mass ratios are found for k from 1.1 to 5")
     count = integer(count, "count", 1, MOST)
@@ -49,19 +49,19 @@ def resonances(k: Any, count: Any) -> tuple[ExactWave, ...]:
 
 
 def _root(wave: ExactWave) -> float:
-    """Root √(m1/m2), to which the frequency of the light beads is proportional."""
+    """Return √(m1/m2), to which the frequency of the light beads is proportional."""
     return math.sqrt(1 / wave.omega)
 
 
 def _ladder(waves: list[ExactWave], count: int) -> tuple[ExactWave, ...]:
-    """Continue a list of waves to ``count`` waves, each at the next smaller ratio."""
+    """Extend a list of waves to ``count`` waves, each at the next smaller ratio; return them."""
     while len(waves) < count:
         waves.append(_next(*waves[-2:]))
     return tuple(waves[:count])
 
 
 def _followed(wave: ExactWave, k: float) -> ExactWave:
-    """Follow a wave in k: the ratio keeps its place in the order of all ratios."""
+    """Continue a solitary wave to another k; the ratio keeps its place in the order of ratios."""
     e, end = math.log(wave.k - 1), math.log(k - 1)
     step, slope = 0.1, 0.0
     while e != end:
@@ -90,7 +90,7 @@ def _ending(root: float, k: float, start: ExactWave | None) -> ExactWave | None:
 
 
 def _next(before: ExactWave, last: ExactWave) -> ExactWave:
-    """The solitary wave at the next smaller ratio."""
+    """Return the solitary wave at the next smaller ratio than those of two neighbouring waves."""
     step = _root(last) - _root(before)
     places = (_root(last) + step * np.arange(0.6, 1.35, 0.05)).tolist()
     first, end = places[0], places[-1]
@@ -110,7 +110,7 @@ def _next(before: ExactWave, last: ExactWave) -> ExactWave:
 def _changes(
     roots: list[float], last: ExactWave
 ) -> Iterator[tuple[tuple[float, float], tuple[float, float], ExactWave]]:
-    """Pairs of neighbours (√(m1/m2), kick) with kicks of opposite signs, and a wave near them."""
+    """Yield neighbours (√(m1/m2), kick's size) with opposite signs of the kick, and a near wave."""
     before, wave = (math.nan, math.nan), last
     for root in roots:
         for start in (None, wave):
@@ -124,7 +124,7 @@ def _changes(
 
 
 def _zero(low: tuple[float, float], high: tuple[float, float], wave: ExactWave) -> ExactWave | None:
-    """The wave without a kick, by the secant method; None where the kick jumps across 0."""
+    """Return the solitary wave with kick 0 between low and high, by the secant method, or None."""
     (a, f), (b, g) = low, high
     left, right = a, b
     for _ in range(12):

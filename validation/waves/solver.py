@@ -9,16 +9,17 @@ c² κ² = 4 c0² sinh²(κ/2). Newton's method starts from the theory's wave.
 **Dimers.** A solitary wave leaves no strain T behind. This is one condition more than there are
 unknowns, as amplitude and speed are tied by scaling: a dimer has solitary waves only at isolated
 ratios m2/m1 (`validation.waves.resonances`). At any other ratio the chain has periodic waves (Betti
-& Pelinovsky, J. Nonlinear Sci. 23, 689 (2013)): on both sides of the pulse the light beads rattle
-between the heavy ones for ever. Such a wave is a nanopteron, its tail the largest |o| on
-0.6 L ≤ |ξ| ≤ L; the strains are 0 at ξ = ±L, half way between two pulses. There are several
-branches of such waves, and along each of them L and the tail change.
+& Pelinovsky, J. Nonlinear Sci. 23, 689 (2013)): on both sides of the pulse the light beads
+oscillate between the heavy ones for ever. Such a wave is a nanopteron. Its tail is the largest |o|
+on 0.6 L ≤ |ξ| ≤ L, o the odd part of the strain; the strains are 0 at ξ = ±L, half way between two
+pulses (L is the half period). There are several branches of such waves; L and the tail change along
+each of them.
 
-A struck chain makes none of them, as its light beads are at rest before the pulse; but its pulse,
-made symmetric, is near one (`validation.waves.start`). Newton's method starts from this pulse, or
-from the theory's wave if the pulse leads nowhere, at several L unless one is given. Of the waves
-found on a rough grid the solution is the one whose strain differs least from the struck chain's;
-the remaining difference is its error (`measured`).
+A struck chain carries no nanopteron, as its light beads are at rest before the pulse; but its
+pulse, made symmetric, is near a nanopteron (`validation.waves.start`). Newton's method starts from
+this pulse, or from the theory's wave if it does not converge from the pulse, at several L unless L
+is given. Of the waves found on a rough grid the solution is the wave whose strain differs least
+from the struck chain's; the remaining difference counts as the solution's error (`measured`).
 """
 
 from __future__ import annotations
@@ -72,16 +73,17 @@ def exact_wave(
     background: Any = 0,
     progress: Progress[Any] = iter,
 ) -> ExactWave:
-    """The traveling wave: solitary, or the nanopteron nearest to the pulse of a struck chain.
+    """Return the solitary wave or else the nanopteron nearest to the pulse of a struck chain.
 
     masses : m1, or m1 and m2. k : exponent of F = δ^k, from 1.01 to 8.
-    half_period : L; by default ample, for a nanopteron chosen.
-    background : for one mass, p0 in units of the peak compression of the contacts; the peak force,
-        static and dynamic, is 1.
+    half_period : L; by default long enough for the solitary wave to end within L, and for a
+        nanopteron the one of several L whose wave is nearest to the struck chain's pulse.
+    background : p0, for one mass only, in units of the peak compression of the contacts. The peak
+        force, the static force included, is 1.
     progress : shows the starts tried for unequal masses (such as `tqdm.tqdm`).
 
-    Raises `SceneError` for parameters out of range, among them a half period at which the wave of
-    equal masses has not ended; `NoWave` if Newton's method fails.
+    Raises `SceneError` for parameters out of range, and for an L at which the wave of equal masses
+    has not ended; `NoWave` if Newton's method fails.
 
     >>> wave = exact_wave([1], 1.5)
     >>> round(wave.fwhm("force"), 6), round(wave.fwhm("strain"), 6), wave.solitary
@@ -117,10 +119,10 @@ def solve(
     start: Profile | None = None,
     free: bool = False,
 ) -> ExactWave:
-    """Solve for one wave of peak force 1, on whatever branch Newton's method reaches.
+    """Return a wave of peak force 1, on whatever branch Newton's method reaches.
 
-    half_period, points : of the grid, as in `newton.Problem`. start : a near wave, by default the
-    theory's. free : solve for the m2 of a solitary wave.
+    half_period, points : the grid, see `newton.Problem`. start : a near wave, by default the
+    theory's. free : True to solve for an m2 with a solitary wave.
 
     Raises `NoWave` if the method does not converge.
     """
@@ -129,7 +131,7 @@ def solve(
 
 
 def solved(problem: newton.Problem, start: Start, unknown: str = "") -> tuple[ExactWave, float]:
-    """Solve a problem from a start; returns the wave and the last unknown, "mass" or "kick".
+    """Solve a problem from a start; return the wave and the last number of `Problem.wave`.
 
     Raises `NoWave` if Newton's method does not converge.
     """
@@ -145,11 +147,11 @@ def solved(problem: newton.Problem, start: Start, unknown: str = "") -> tuple[Ex
 
 
 def measured(wave: ExactWave) -> dict[str, Measured]:
-    """Numbers of a wave with errors: c², c, tail; amplitude, FWHM and rms width by quantity.
+    """Return c², c and tail, and by quantity amplitude, FWHM and rms width of a wave, with errors.
 
-    A nanopteron's error is the difference from a struck chain's pulse, made symmetric and (for
-    FWHM) as recorded, so that waves of all half periods agree within it. The relative error of a
-    solitary wave is the sum of residual, tail and `ROUNDING`.
+    The relative error of a solitary wave is the sum of residual, tail and `ROUNDING`. The error of
+    a nanopteron is the difference from the struck chain's symmetric pulse, for the FWHM also from
+    the recorded pulse, so that nanopterons of all half periods agree within their errors.
     """
     values = _numbers(wave)
     if wave.solitary:
@@ -166,7 +168,7 @@ def measured(wave: ExactWave) -> dict[str, Measured]:
 
 
 def _numbers(wave: ExactWave | StruckPulse, mass: float = 1.0) -> dict[str, float]:
-    """Numbers of a wave of m1 = 1 and peak force 1, rescaled to m1 = ``mass``."""
+    """Return the numbers of `measured` of a wave of m1 = 1 and peak force 1, for m1 = ``mass``."""
     root = math.sqrt(mass)
     found = {"c2": wave.c2 / mass, "c": wave.c / root, "tail": wave.tail}
     for name in QUANTITIES:
@@ -177,7 +179,7 @@ def _numbers(wave: ExactWave | StruckPulse, mass: float = 1.0) -> dict[str, floa
 
 
 def _uniform(k: float, half_period: float | None, p0: float) -> ExactWave:
-    """The solitary wave of masses 1, 1, on a background p0 or none."""
+    """Return the solitary wave of masses 1, 1, on a background strain p0, which may be 0."""
     pair = 1.0, 1.0
     ample = newton.ample_half_period(pair, k)
     if p0:
@@ -195,7 +197,7 @@ def _uniform(k: float, half_period: float | None, p0: float) -> ExactWave:
 
 
 def _pressed(k: float, half_period: float | None, p0: float) -> tuple[ExactWave, float]:
-    """The wave of equal masses on a background, and its ample half period."""
+    """Return the wave of equal masses on a background, and a half period within which it ends."""
     pair = 1.0, 1.0
     theory, load = background_wave(Cell((1,), spacing=1), law=Power(k)).numeric(), (p0, 1 - p0)
     # The end e^{-κ|ξ|}: (c/c0)² = (sinh(κ/2)/(κ/2))².
@@ -220,7 +222,7 @@ def _pressed(k: float, half_period: float | None, p0: float) -> tuple[ExactWave,
 def _dimer(
     pair: Pair, k: float, half_period: float | None, progress: Progress[Any] = iter
 ) -> ExactWave:
-    """The solitary wave reached from the theory's, or the wave nearest to a struck chain's."""
+    """Return the solitary wave near the theory's, or else the wave nearest to the struck pulse."""
     periods = [half_period] if half_period else list(newton.ample_half_period(pair, k) * PERIODS)
     waves: list[ExactWave] = []
     for wave in _search(pair, k, periods, progress):
@@ -249,9 +251,11 @@ def _dimer(
 def _search(
     pair: Pair, k: float, periods: list[float], progress: Progress[Any]
 ) -> Iterator[ExactWave]:
-    """Waves on a rough grid from the struck pulse, or if that leads to none from the theory's.
+    """Yield waves found from several starts.
 
-    The first start is the theory's wave on the full grid: it leads to solitary waves.
+    The first start is the theory's wave on the full grid, which leads to solitary waves. Then
+    follow, on a rough grid, the struck pulse at each half period and, if no wave was found from the
+    struck pulse, the theory's wave.
     """
     first, *others = ((False, L) for L in periods)
     led = False
@@ -265,12 +269,12 @@ def _search(
 
 
 def _rough(pair: Pair, k: float, half_period: float) -> int:
-    """Number of points of a rough grid, enough to tell waves apart."""
+    """Return the number of points of a rough grid, on which branches can be distinguished."""
     return max(newton.FEWEST, int(ROUGH * newton.enough(pair, k, half_period)))
 
 
 def _struck(pair: Pair, k: float) -> StruckPulse:
-    """The pulse of a struck chain; raises `NoWave` if it does not arrive."""
+    """Return the pulse of a struck chain; raises `NoWave` if the pulse does not arrive."""
     try:
         return struck_pulse(k, pair[1])
     except (InputError, IntegrationError) as error:
@@ -278,9 +282,9 @@ def _struck(pair: Pair, k: float) -> StruckPulse:
 
 
 def followed(begin: ExactWave, k: float) -> ExactWave:
-    """Follow a wave to another k at the same half period, by steps in k.
+    """Return the wave at another k on the branch of ``begin``, reached in small steps of k.
 
-    Raises `NoWave` where the steps end: the branch turns back, or is lost.
+    Masses and half period stay the same. Raises `NoWave` if the branch turns back or is lost.
     """
     masses, L = begin.masses, begin.half_period
     points = _rough(masses, max(begin.k, k), L)

@@ -2,13 +2,12 @@
 
 A start is the forces F_a on a grid and c², scaled to peak force 1 (`validation.waves.newton`).
 
-**The struck chain** (`validation.pulses.steady`, masses 1, ω). At one of its last places the
-strains a(ξ), b(ξ) of the two contacts of a cell are recorded and scaled to contact force 1. The
-pulse leaves light beads in motion behind it and meets none, so that b(ξ) is not quite a(-ξ). The
-symmetric part (a(ξ) + b(-ξ))/2 has half of the tail on either side: to first order in the tail it
-is a symmetric wave of the lattice. ξ = 0 is the mean of the two contacts' centers of
-F - F_max/4^k, restricted to positive values. As k → 1 the pulse needs ever longer to leave its
-wake; the distance between two places is `FARTHEST` at most.
+**The struck chain** (`validation.pulses.steady`, masses 1, ω). Far from the struck bead the strains
+a(ξ), b(ξ) of the two contacts of a cell are recorded and scaled to contact force 1. Light beads are
+in motion behind the pulse and at rest ahead, so that b(ξ) is not quite a(-ξ). The symmetric part
+(a(ξ) + b(-ξ))/2 has half of the tail on either side; to first order in the tail it is a symmetric
+wave of the lattice. ξ = 0 is the mean of the two contacts' centers of max(F - F_max/4^k, 0). As
+k → 1 the pulse leaves its wake ever more slowly; the distance between places is at most `FARTHEST`.
 """
 
 from __future__ import annotations
@@ -41,9 +40,9 @@ Start = tuple[Array, float]
 
 
 def initial(problem: newton.Problem, wave: Profile | None = None) -> Start:
-    """Start from a wave of near masses and near k; by default from the theory's leading order.
+    """Return a start, forces and c², from a wave of near masses and k, by default the theory's.
 
-    c² belongs to the multiple of the wave with force 1 at ξ = 0; Newton's method scales the forces.
+    c² is that of the wave scaled to force 1 at ξ = 0; `newton.Problem.wave` scales the forces.
     """
     if wave is None:
         force, c2 = _long_wave(problem)
@@ -53,9 +52,9 @@ def initial(problem: newton.Problem, wave: Profile | None = None) -> Start:
 
 
 def _long_wave(problem: newton.Problem) -> Start:
-    """The theory's wave: the force cos^{2k/(k-1)}(βξ), and c² = 4/((k+1)(m1+m2)).
+    """Return the theory's wave: the force cos^{2k/(k-1)}(βξ), and c² = 4/((k+1)(m1+m2)).
 
-    The contacts of a cell are (m2-m1)/(m1+m2) out of step, so that both beads of a cell move alike.
+    The two contacts' forces are shifted by (m2-m1)/(m1+m2), so that both beads move alike.
     """
     k, (m1, m2) = problem.k, problem.masses
     beta = (k - 1) * math.sqrt(6 / (k * (k + 1))) / newton.widening(problem.masses)
@@ -65,7 +64,7 @@ def _long_wave(problem: newton.Problem) -> Start:
 
 
 def under_load(theory: NumericBackground, problem: newton.Problem) -> Start:
-    """The theory's wave of equal masses on a background strain p0, of peak strain 1."""
+    """Return the theory's wave of equal masses on a background strain p0, with peak strain 1."""
     k, p0 = problem.k, problem.p0
     force = newton.rise(theory.profile(problem.xi, p0, 1 - p0), k, p0)
     return force, float(k * theory.speed_squared(p0, 1 - p0))
@@ -75,8 +74,8 @@ def under_load(theory: NumericBackground, problem: newton.Problem) -> Start:
 class StruckPulse(Profile):
     """Symmetric part of a struck chain's pulse, scaled to contact force 1; masses 1, ω.
 
-    half_period : the ample one of `validation.waves.newton`.
-    xi, front : a(ξ), made symmetric, on a wider grid.
+    half_period : `validation.waves.newton.ample_half_period`.
+    xi, front : ξ and the symmetric part of the strain, on a grid beyond the half period.
     widths : FWHM of force and strain at a contact, means over the two recorded contacts.
     """
 
@@ -91,7 +90,7 @@ class StruckPulse(Profile):
 
     @property
     def tail(self) -> float:
-        """Largest |o| outside the pulse, half of the motion left in the chain."""
+        """Largest |o| outside the pulse, o being the odd part of the strain."""
         return self.rattle(self.pulse)
 
     @cached_property
@@ -100,7 +99,7 @@ class StruckPulse(Profile):
 
     @cached_property
     def _impulse(self) -> tuple[Any, Any]:
-        """Integrals over ξ of the net force on m1 and on m2."""
+        """Antiderivatives, as functions of ξ, of the net force on m1 and on m2."""
         pushes = (self.force(self.xi - 0.5, 1 - i) - self.force(self.xi + 0.5, i) for i in (0, 1))
         one, two = (scipy.interpolate.CubicSpline(self.xi, push) for push in pushes)
         return one.antiderivative(), two.antiderivative()
@@ -109,7 +108,7 @@ class StruckPulse(Profile):
         return np.asarray(self._strain(np.clip(xi, self.xi[0], self.xi[-1])))
 
     def velocity(self, xi: ArrayLike, bead: int = 0) -> Array:
-        """Velocity of beads m1 or m2, by the net force ahead of ξ; 0 ahead of the pulse."""
+        """Velocity of beads m1 or m2 from the impulse of the net force; 0 ahead of the pulse."""
         impulse = self._impulse[bead % 2]
         left = impulse(self.xi[-1]) - impulse(np.asarray(xi, float))
         return np.asarray(left / (self.masses[bead % 2] * self.c))

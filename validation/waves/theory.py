@@ -1,8 +1,7 @@
 """The theory's traveling waves that the lattice is compared with.
 
-`lwa.PhysicalWave` is the wave of a given peak force. Here are its inverses, the wave of a given
-speed dx/dt or momentum, and the width of the force inside a bead, the mean of the bead's two
-contact forces.
+`lwa.PhysicalWave` is the wave with a given peak force. This module finds the wave with a given
+speed dx/dt or momentum, and the width of a bead's force, the mean of its two contact forces.
 """
 
 from __future__ import annotations
@@ -20,9 +19,9 @@ from validation.scenes.checks import SceneError, positive
 
 
 def theory_at(k: Any, omega: Any, closure: str = "linear") -> TravelingWave:
-    """The theory's wave for masses 1 and ω, equal contacts A = 1 and D = 1.
+    """Return the theory's wave for masses 1 and ω, equal contacts A = 1 and D = 1.
 
-    closure : "linear" (the paper's), "full", or "canonical" (the canonical field of the full one).
+    closure : "linear" (the paper's), "full", or "canonical" (full closure, canonical field).
 
     >>> theory_at("3/2", 1).width
     sqrt(10)*pi/2
@@ -34,7 +33,7 @@ def theory_at(k: Any, omega: Any, closure: str = "linear") -> TravelingWave:
 
 
 def of_speed(wave: TravelingWave, speed: float) -> PhysicalWave:
-    """Theory's wave of a given speed dx/dt, which scales as F^{(k-1)/(2k)}.
+    """Return the theory's wave with a given speed dx/dt, which scales as F^{(k-1)/(2k)}.
 
     Raises `SceneError` unless the speed is positive and the force is a float.
     """
@@ -43,7 +42,7 @@ def of_speed(wave: TravelingWave, speed: float) -> PhysicalWave:
 
 
 def of_momentum(wave: TravelingWave, momentum: float) -> PhysicalWave:
-    """Theory's wave of a given momentum, which scales as F^{(k+1)/(2k)}.
+    """Return the theory's wave with a given momentum, which scales as F^{(k+1)/(2k)}.
 
     Raises `SceneError` unless the momentum is positive and the force is a float.
     """
@@ -54,7 +53,7 @@ def of_momentum(wave: TravelingWave, momentum: float) -> PhysicalWave:
 def _with(
     wave: TravelingWave, name: str, amount: float, unit: sp.Expr, exponent: sp.Expr
 ) -> PhysicalWave:
-    """The wave with an amount that is ``unit`` at force 1 and scales as F^exponent."""
+    """Return the wave with a given amount, which is ``unit`` at force 1 and ~ F^exponent."""
     log = math.log(positive(amount, name) / number(unit)) / number(exponent)
     if abs(log) > 700:
         raise SceneError(f"{name} is {amount:g}: the force e^{log:.0f} is no float")
@@ -62,7 +61,7 @@ def _with(
 
 
 def bead_fwhm(wave: CompactWave) -> float:
-    """Full width at half maximum of the force inside a bead, a length; the same at every force.
+    """Return the FWHM of a bead's force, a length that does not depend on the amplitude.
 
     The force is cos^p(β(x - D/2)) + cos^p(β(x + D/2)), p = 2k/(k-1), each term on its own arch.
     """

@@ -11,7 +11,7 @@ from lwa.expansion.physical import ExpandedWave
 from lwa.law import named
 from validation.lattice.simulate import simulate
 from validation.pulses.pulse import highest_pulse
-from validation.scenes.forcing import Damping, Drive
+from validation.scenes.forcing import Damping, Drive, damping_ratio, restitution
 from validation.scenes.scene import Scene, SceneError
 from validation.waves.solver import exact_wave
 
@@ -36,6 +36,14 @@ def test_beads_part_with_a_share_of_their_speed(k, v, share):
     assert run.dissipated == pytest.approx(lost, rel=1e-8)
     assert abs(run.energy_drift) < 1e-8
     assert abs(run.momentum_drift) < 1e-12
+
+
+def test_the_damping_ratio_of_a_share():
+    """The share is 1 - πζ + O(ζ²) of a nearly elastic contact, and e^{-2} at ζ = 1."""
+    assert damping_ratio(1 - 1e-7) == pytest.approx(1e-7 / math.pi, rel=2e-7)
+    assert damping_ratio(math.exp(-2)) == pytest.approx(1, abs=1e-8)
+    for share in (0.01, 0.1, 0.5, 0.9):
+        assert restitution(damping_ratio(share)) == pytest.approx(share, rel=1e-14)
 
 
 @pytest.mark.parametrize("kind", ["contact", "kuwabara_kono"])

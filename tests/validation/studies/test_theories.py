@@ -14,7 +14,8 @@ import sympy as sp
 from lwa import Cell, Expansion, expand
 from validation.pulses.pulse import MeasureError
 from validation.pulses.steady import STRETCH, point
-from validation.studies.theories import CASES, HERTZ, NAMES, STRUCK_CHAIN, THEORIES, ladder, place
+from validation.studies.accuracy import CASES
+from validation.studies.theories import HERTZ, NAMES, STRUCK_CHAIN, THEORIES, ladder, place
 from validation.waves.solver import ExactWave, exact_wave
 
 

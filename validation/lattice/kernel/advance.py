@@ -14,15 +14,15 @@ from validation.lattice.kernel.window import follow
 
 
 def _built(sources: int) -> Any:
-    """`advance`, whose cached code is known by the sources."""
+    """Compile `advance`; its cached machine code belongs to the hash ``sources``."""
 
     @cached
     def advance(
         chain: Chain, beads: Beads, plan: Plan, knots: Knots, at: Any, tries: int
     ) -> tuple[float, int]:
-        """Integrate on to the end, by so many tries, or until the knots are full.
+        """Integrate on to the end, for at most ``tries`` tried steps, or until the knots are full.
 
-        Returns the time that is reached, and the sources.
+        Returns the time that is reached, and ``sources``.
         """
         until, pair = at.tries + tries, len(plan.scheme.nodes) > 0
         stages = max(len(plan.scheme.nodes), len(plan.scheme.drifts)) - 1

@@ -11,7 +11,7 @@ from lwa.base.arrays import Array
 
 MARGIN = 4  # still beads that are moved ahead of the front
 SHORTEST = 32  # beads below which the vector loops take no less time
-BLOCK = 8  # the number of moved beads is a multiple of it: doubles of the widest vector register
+BLOCK = 8  # doubles in the widest vector register; the number of moved beads is a multiple of BLOCK
 WIDTH = 5  # stages that are added up at a time
 
 
@@ -19,8 +19,9 @@ class Chain(NamedTuple):
     """A chain, padded by beads of infinite mass, of which the first is the wall.
 
     inverse : inverse masses. A, rest, load : stiffnesses, static compressions and static forces of
-    the contacts. k : exponent of a power law. generated : whether the law is none, but given by
-    force, slope, energy : addresses of its functions. pulls : whether contacts hold where δ < 0.
+    the contacts. k : exponent of a power law. generated : True for a contact law that is not a
+    power. force, slope, energy : addresses of the machine code of F, F′ and ∫ F dδ of such a law.
+    pulls : True if contacts hold where δ < 0.
     """
 
     inverse: Array
@@ -39,10 +40,10 @@ class Beads(NamedTuple):
     """The state of the beads, and the room for a step.
 
     y, v : displacements and velocities. next_y, next_v : those after the step that is tried.
-    left : times at which a window has left the beads behind; infinite for those it follows.
-    force : (stages, padded + 1), force on each bead from behind, less its static force, by stage.
-    sums : (4, padded + 1), sums of stages: one for all purposes, then the impulses of a step and
-        the errors of displacement and velocity that they bring.
+    left : times at which a window has left the beads behind; infinite for beads in the window.
+    force : (stages, padded + 1), force on each bead from behind, less the static force, by stage.
+    sums : (4, padded + 1), sums over stages: row 0 for intermediate results, row 1 the impulse of
+        each contact in a step, rows 2 and 3 the error estimates of its moment and its impulse.
     """
 
     y: Array
@@ -55,10 +56,10 @@ class Beads(NamedTuple):
 
 
 class Knots(NamedTuple):
-    """The motion of the watched beads at the ends of steps.
+    """The motion of W watched beads at up to C knots, the ends of steps.
 
-    time : (C,). watched : (W,), numbers of the beads, increasing. state : (C, W, 3), displacement,
-    velocity and acceleration; NaN for a bead that a window has left behind.
+    time : (C,), times of the knots. watched : (W,), numbers of the beads, increasing. state :
+    (C, W, 3), displacement, velocity and acceleration; NaN for a bead that a window has left.
     """
 
     time: Array
@@ -67,10 +68,12 @@ class Knots(NamedTuple):
 
 
 class Tableau(NamedTuple):
-    """Coefficients of a scheme.
+    """Coefficients of a scheme, either of a splitting or of an embedded pair.
 
-    kicks, drifts : of a splitting. nodes, rows, ends, lower : of a pair; `lower` is the order of
-    its second solution. points : nodes and weights of ∫ u^k q(u) du from 0 to 1.
+    kicks, drifts : coefficients of a splitting, empty for an embedded pair. nodes, rows, ends :
+    arrays of `validation.lattice.schemes.nystrom.Pair.arrays`, empty for a splitting. lower : order
+    of the embedded pair's second solution. points : (2, M), nodes and weights of ∫ u^k f(u) du from
+    0 to 1; M is 0 where kinks need no quadrature.
     """
 
     kicks: Array
@@ -83,12 +86,13 @@ class Tableau(NamedTuple):
 
 
 class Plan(NamedTuple):
-    """A scheme, its steps, and the beads that it moves.
+    """Plan of an integration: the scheme, its tolerances and steps, and the range of beads.
 
-    y, v : errors of displacement and velocity that a step may make. h : the first step. longest :
-    the longest step of a pair. end : the duration. deepest : the greatest compression. quickest :
-    greatest stiffness over least mass. size : number of beads. window : number of beads that are
-    followed behind the front; 0 for the whole chain.
+    y, v : tolerances, the errors of displacement and velocity allowed in a step. h : first step,
+    for a splitting the fixed one. longest : greatest step allowed to an embedded pair. end :
+    duration. deepest : greatest compression. quickest : greatest stiffness divided by the least
+    mass. size : number of beads. window : number of beads that are integrated behind the front; 0
+    for the whole chain.
     """
 
     scheme: Tableau
@@ -109,12 +113,13 @@ _PROGRESS = np.dtype([(name, int) for name in _COUNTS] + [(name, float) for name
 
 
 def beginning(plan: Plan, front: int) -> Any:
-    """The progress of an integration at its start: a record that `advance` changes.
+    """Return the record of an integration's progress, at time 0; `advance` updates the record.
 
-    steps, tries : their numbers. evaluations : of the forces, times the beads that each one moves.
-    front : the first bead that is still. lo : the first bead that is followed. kept : number of
-    knots. t, h : the time and the next step. lost : elastic energy of contacts that a window cut.
-    impulse : ∫ F dt of the first contact by a pair, less its static force.
+    front : number of the first bead that is still. Fields: steps, tries : numbers of steps made
+    and tried. evaluations : sum, over all evaluations of the forces, of the number of beads moved.
+    lo : first bead of the window. kept : number of knots. t, h : present time and next step. lost :
+    elastic energy of contacts that a window cut. impulse : ∫ (F - static force) dt of the first
+    contact, computed by an embedded pair only.
     """
     at = np.zeros(1, _PROGRESS)[0]
     at["front"], at["h"] = front, plan.h

@@ -1,7 +1,7 @@
 """Options of the compiler, and a cache of machine code that knows all sources of the kernel.
 
-Numba compares a cached function with its own file and with the values that it closes over, not
-with the functions that it calls. So those that are cached close over `SOURCES`.
+Numba compiles a cached function again if the function's own file changes or a value in its closure,
+not if a function that it calls changes. So every cached function has `SOURCES` in its closure.
 """
 
 from __future__ import annotations
@@ -29,9 +29,10 @@ SOURCES = int.from_bytes(
 )
 """A hash of all files of the kernel."""
 
-# Without "reassoc" rounding does not depend on the order of a sum, without "nnan" and "ninf" an
-# overflow is seen; in numba's own error model every division by zero would be an exception's way
-# out. Nothing is allocated: to count the references to arrays takes longer than the arithmetic.
+# Without "reassoc" sums keep their order, so that rounding is reproducible; without "nnan" and
+# "ninf" an overflow is detected. In numba's own error model a division by zero raises an exception,
+# a branch that keeps loops from vectorising. The code allocates nothing ("_nrt"): counting
+# references to arrays would take longer than the arithmetic.
 _OPTIONS: Any = dict(
     fastmath={"nsz", "arcp", "contract"}, error_model="numpy", nogil=True, _nrt=False
 )
@@ -40,9 +41,9 @@ compiled: Callable[[Function], Function] = njit(**_OPTIONS)
 summed: Callable[[Function], Function] = njit(
     **_OPTIONS | {"fastmath": {"nsz", "arcp", "contract", "reassoc"}}
 )
-# Written out where it is called: to pass the arrays would take as long as the rest.
+# Inlined into the caller: passing the arrays would take as long as the computation.
 part: Callable[[Function], Function] = njit(inline="always", **_OPTIONS)
-# An index without a sign is never one from the end, which would keep a loop from vectorising.
+# Unsigned indices: a signed one may count from the end, which keeps a loop from vectorising.
 index = np.uint64
 ZERO, ONE, TWO, THREE = map(index, range(4))
 
@@ -61,7 +62,7 @@ call: Any = intrinsic(_call)
 
 
 def cached(function: Function) -> Function:
-    """Compile a function, and keep its machine code on disk where a directory can be written."""
+    """Compile a function; its machine code is kept on disk if numba finds a writable directory."""
     try:
         result, kept = njit(cache=True, **_OPTIONS)(function), True
     except (RuntimeError, OSError):  # numba finds no directory for its cache
@@ -83,7 +84,7 @@ class _Announcement(Listener):
         self.function, self.kept = function, kept
 
     def on_start(self, event: Event) -> None:
-        """Called by numba before it compiles any function."""
+        """Print a line before numba compiles the announced function; numba calls this method."""
         if event.data["dispatcher"] is not self.function:
             return
         if not self.kept:
@@ -92,4 +93,4 @@ class _Announcement(Listener):
             _say("the engine is compiled for this machine, once")
 
     def on_end(self, event: Event) -> None:
-        """Called by numba afterwards."""
+        """Do nothing after a compilation; numba requires this method."""

@@ -10,11 +10,11 @@ from lwa.base.arrays import Array
 from validation.lattice.kernel.arrays import Beads, Chain
 from validation.lattice.kernel.compiled import ONE, call, index, part
 
-NOTHING = 1e-60  # of the greatest compression: open, lest the front decay into denormal numbers
+NOTHING = 1e-60  # in units of the greatest compression: less is 0, so that no denormals arise
 
 
 def _loop(value: Any) -> Any:
-    """Compile the loop over contacts of force A value(d, k), d ≥ 0 the compression."""
+    """Return a compiled loop over contacts of force A value(d, k), d ≥ 0 the compression."""
 
     @part
     def loop(
@@ -39,9 +39,11 @@ _power = _loop(part(lambda d, k: d**k))
 
 @part
 def press(chain: Chain, y: Array, force: Array, s: Any, lo: int, hi: int, nothing: float) -> None:
-    """Forces ahead of the beads lo … hi-1, less their static forces, as those of stage s.
+    """Compute the forces of the contacts ahead of beads lo … hi-1, less the static forces.
 
-    Exponents that need no general power have loops of their own.
+    The result goes to ``force``, row s (stage) and column i + 1 for the contact ahead of bead i.
+    Compressions up to ``nothing`` count as 0. Exponents that need no general power have loops of
+    their own.
     """
     if chain.generated:
         for i in range(index(lo), index(hi)):
@@ -65,15 +67,17 @@ def press(chain: Chain, y: Array, force: Array, s: Any, lo: int, hi: int, nothin
 
 @part
 def power(chain: Chain, d: float) -> float:
-    """[d]_+^k."""
+    """Return [d]_+^k."""
     d = max(d, 0.0)
     return float(d * np.sqrt(d) if chain.k == 1.5 else d**chain.k)
 
 
 @part
 def stiffness(chain: Chain, d: float, rising: bool) -> float:
-    """F′ of a contact of unit stiffness, k [d]^{k-1} of a power; at d = 0, on the closed side if d
-    is rising."""
+    """Return F′(d) of a contact of unit stiffness, k [d]_+^{k-1} for a power law.
+
+    rising : True for the one-sided limit from d > 0 at d = 0; otherwise F′ is 0 there.
+    """
     if chain.generated:
         return float(call(chain.slope, d) if chain.pulls or d > 0.0 else 0.0)
     if d > 0.0 or (d == 0.0 and rising):
@@ -83,14 +87,14 @@ def stiffness(chain: Chain, d: float, rising: bool) -> float:
 
 @part
 def relative(force: Array, inverse: Array, i: int) -> float:
-    """The acceleration of bead i less that of the next, from the forces of a stage."""
+    """Return the acceleration of bead i minus that of bead i + 1, from the forces of a stage."""
     near, far = (force[i] - force[i + 1]) * inverse[i], (force[i + 1] - force[i + 2])
     return float(near - far * inverse[i + 1])
 
 
 @part
 def elastic(chain: Chain, beads: Beads, i: int) -> float:
-    """The elastic energy of contact i of a chain without load."""
+    """Return the elastic energy of contact i in a chain without static load."""
     d = max(beads.y[i] - beads.y[i + 1], 0.0)
     if chain.generated:
         return float(chain.A[i] * call(chain.energy, beads.y[i] - beads.y[i + 1]))

@@ -1,8 +1,9 @@
-"""A contact that opens or closes within a step or near it.
+"""A contact that opens or closes within a step or near it (a kink of the force).
 
-There F = A δ^k has no derivative of order k + 1. The compression is about a quintic p(x), x = 0 … 1
-over the step, with δ, δ' and δ'' of both ends. If p has one root r, it is (x - r) q(x), and on its
-closed side ∫ |x - r|^k q^k dx is a Gauss–Jacobi sum: p_+^k is integrated without an error of order.
+F = A δ^k has no derivative of order k + 1 at a kink. Over the step, x = 0 … 1, the compression δ is
+approximated by the quintic p(x) with the values of δ, δ' and δ'' at both ends. If p has exactly one
+root r near the step, p = (x - r) q(x), and the integral of p_+^k = |x - r|^k |q|^k over the closed
+side is computed by Gauss–Jacobi quadrature, to which the kink costs no accuracy.
 """
 
 from __future__ import annotations
@@ -13,23 +14,24 @@ from validation.lattice.kernel.compiled import compiled, part, summed
 from validation.lattice.kernel.force import power
 
 Quintic = tuple[float, float, float, float, float, float]
-"""Coefficients; for a kink the root r, then those of q."""
+"""Coefficients of p; for a kink the root r, then the five coefficients of q."""
 
-NEAR = 0.5  # of a contact's greater compression at the ends of a step: a kink is near
-FAR = 1.0  # steps that a kink may be away
-_EVEN = 0.2  # of the greatest q: the least
+NEAR = 0.5  # a kink is near if δ at one end of a step is less than NEAR times δ at the other end
+FAR = 1.0  # greatest distance of a kink from the step, in steps
+_EVEN = 0.2  # least q over the step divided by the greatest
 NONE: Quintic = (float("nan"), 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 @part
 def quintic(c: Quintic, x: float) -> float:
-    """The polynomial at x."""
+    """Return the value of the polynomial at x."""
     return c[0] + x * (c[1] + x * (c[2] + x * (c[3] + x * (c[4] + x * c[5]))))
 
 
 @part
 def fitted(d: float, v: float, a: float, end: float, end_v: float, end_a: float) -> Quintic:
-    """The quintic with these values and derivatives at x = 0 and 1."""
+    """Return the quintic with value d, slope v and second derivative a at x = 0, and end, end_v and
+    end_a at x = 1."""
     c2 = a / 2
     r0 = end - d - v - c2
     r1 = end_v - v - 2 * c2
@@ -46,10 +48,10 @@ def fitted(d: float, v: float, a: float, end: float, end_v: float, end_a: float)
 
 @compiled
 def kink(c: Quintic, end: float) -> Quintic:
-    """The one root r of a quintic p, which is ``end`` at x = 1, and q in p = (x - r) q(x).
+    """Return the root r of a quintic p and the coefficients of q in p = (x - r) q(x).
 
-    `NONE` where p has no root within the step or `FAR` from it, or where q varies too much for the
-    quadrature.
+    c : coefficients of p. end : p(1). Returns `NONE` if p has no root within `FAR` steps of the
+    step, or if q varies too much for the quadrature.
     """
     rising = end > c[0]
     low, high, x = 0.0, 1.0, c[0] / (c[0] - end)
@@ -57,14 +59,14 @@ def kink(c: Quintic, end: float) -> Quintic:
         low, high = (-FAR, 0.0) if rising else (1.0, 1.0 + FAR)
         if quintic(c, low if rising else high) >= 0.0:
             return NONE
-    for _ in range(30):  # Newton's method, or else the middle
+    for _ in range(30):  # Newton's method, or bisection where it leaves the interval
         p = quintic(c, x)
         slope = c[1] + x * (2 * c[2] + x * (3 * c[3] + x * (4 * c[4] + x * 5 * c[5])))
         low, high = (low, x) if (p > 0.0) == rising else (x, high)
         guess = x - p / slope
         guess = guess if low < guess < high else (low + high) / 2
         x, moved = guess, abs(guess - x)
-        if moved < 1e-9:  # its square is left
+        if moved < 1e-9:  # the remaining error is of the order of its square
             break
     q3 = c[4] + x * c[5]
     q2 = c[3] + x * q3
@@ -80,9 +82,9 @@ def kink(c: Quintic, end: float) -> Quintic:
 
 @summed
 def ramp(chain: Chain, points: Array, p: Quintic, z: float) -> tuple[float, float]:
-    """∫∫ and ∫ of p_+^k from its root r to z, for p = (x - r) q(x).
+    """Return ∫ (z - x) p_+^k dx and ∫ p_+^k dx from the root r of p to z, for p = (x - r) q(x).
 
-    points : nodes and weights of ∫ u^k q(u) du from 0 to 1.
+    p : r and the coefficients of q. points : nodes and weights of ∫ u^k f(u) du from 0 to 1.
     """
     side = z - p[0]
     once = twice = 0.0

@@ -1,4 +1,10 @@
-"""A step of an adaptive Runge–Kutta–Nyström pair; kinks are integrated by their own quadrature."""
+"""A step of an embedded, adaptive Runge–Kutta–Nyström pair, corrected for kinks.
+
+b, b', e, e' are the pair's coefficients (`validation.lattice.schemes.nystrom`). h is the step, and
+x = 0 … 1 the time within the step. p is a quintic close to a contact's compression, p_+ = max(p, 0)
+(`validation.lattice.kernel.kinks`). The impulse of a contact in a step is ∫ F dt, its moment
+h² ∫ (1 - x) F dx: they change the velocities and the displacements of its two beads.
+"""
 
 from __future__ import annotations
 
@@ -11,8 +17,8 @@ from validation.lattice.kernel.compiled import ONE, THREE, TWO, ZERO, index, par
 from validation.lattice.kernel.force import NOTHING, power, press, relative
 from validation.lattice.kernel.kinks import NEAR, Quintic, fitted, kink, quintic, ramp
 
-_STEADY = 0.5  # of the greater closing speed at the ends of a step: the least for a kink nearby
-_SLIGHT = 10.0  # times the error that is allowed: what a contact near a kink may bring about
+_STEADY = 0.5  # for a kink outside the step: least ratio of the closing speeds at the step's ends
+_SLIGHT = 10.0  # least effect of a contact that is corrected, in units of the tolerance
 
 
 @part
@@ -27,7 +33,7 @@ def _add_up(
     lo: int,
     hi: int,
 ) -> None:
-    """sums[q] = scale Σ_j table[row, j] force[j] over the first stages."""
+    """Compute sums[q] = scale Σ_j table[row, j] force[j] for stages j = 0 … ``stages`` - 1."""
     sums[q, lo] = 0.0
     for first in range(0, stages, WIDTH):
         a, b = scale * table[row, first], scale * table[row, first + 1]
@@ -47,7 +53,7 @@ def _add_up(
 
 @summed
 def _square(sums: Array, inverse: Array, lo: int, hi: int) -> float:
-    """Sum of squares of the beads' errors, in units of the allowed errors."""
+    """Return the sum of squares of the beads' errors, in units of the tolerances."""
     total = 0.0
     for i in range(index(lo), index(hi)):
         y = (sums[TWO, i] - sums[TWO, i + ONE]) * inverse[i]
@@ -58,7 +64,7 @@ def _square(sums: Array, inverse: Array, lo: int, hi: int) -> float:
 
 @part
 def _attempt(chain: Chain, beads: Beads, plan: Plan, lo: int, h: float, hi: int) -> float:
-    """Try a step of the beads lo … hi-1; return its error in units of the error that is allowed."""
+    """Try a step of the beads lo … hi-1; return the error in units of the tolerance."""
     nothing, stages = NOTHING * plan.deepest, len(plan.scheme.nodes)
     y, v, next_y, next_v = beads.y, beads.v, beads.next_y, beads.next_v
     inverse, rest, force, sums = chain.inverse, chain.rest, beads.force, beads.sums
@@ -77,7 +83,7 @@ def _attempt(chain: Chain, beads: Beads, plan: Plan, lo: int, h: float, hi: int)
     _add_up(sums, THREE, force, ends, 2, h / plan.v, stages, lo, hi)
     for i in range(index(lo), index(hi)):
         next_v[i] = v[i] + (sums[ONE, i] - sums[ONE, i + ONE]) * inverse[i]
-    # Contacts that open or close within the step or near it, and press enough to count.
+    # Mark contacts that open or close within the step or near it, with a force that matters.
     least = (_SLIGHT * plan.v / (h * plan.quickest)) ** (1.0 / chain.k)
     near = 0
     for i in range(index(lo), index(hi)):
@@ -94,7 +100,7 @@ def _attempt(chain: Chain, beads: Beads, plan: Plan, lo: int, h: float, hi: int)
 
 @part
 def _mend(chain: Chain, beads: Beads, plan: Plan, lo: int, h: float, hi: int) -> None:
-    """Correct a step for the kinks of the marked contacts: sums[0] holds a compression."""
+    """Correct a step at the contacts that are marked by a compression above 0 in sums[0]."""
     y, v, next_y, next_v = beads.y, beads.v, beads.next_y, beads.next_v
     inverse, rest = chain.inverse, chain.rest
     for i in range(lo, hi):
@@ -110,9 +116,10 @@ def _mend(chain: Chain, beads: Beads, plan: Plan, lo: int, h: float, hi: int) ->
 
 @part
 def _correct(chain: Chain, beads: Beads, plan: Plan, h: float, i: int) -> None:
-    """Correct a step for the pair's error in the impulse of contact i, which opens or closes.
+    """Correct a step for the embedded pair's error at contact i, which opens or closes.
 
-    The pair integrates what is left of the force beside p_+^k, which is smoother.
+    The pair's own integrals of A p_+^k are replaced by accurate ones. The pair's integral of the
+    remaining force F - A p_+^k, which is smoother, is kept.
     """
     inverse, scheme = chain.inverse, plan.scheme
     p, end = _course(chain, beads, h, len(scheme.nodes) - 1, i)
@@ -142,7 +149,7 @@ def _correct(chain: Chain, beads: Beads, plan: Plan, h: float, i: int) -> None:
 
 @part
 def _course(chain: Chain, beads: Beads, h: float, last: int, i: int) -> tuple[Quintic, float]:
-    """The quintic of contact i's compression over the step, and its value at the end."""
+    """Return the quintic p of contact i over the step, and p(1); ``last`` is the last stage."""
     y, v, force, inverse = beads.y, beads.v, beads.force, chain.inverse
     d = chain.rest[i] + y[i] - y[i + 1]
     end = chain.rest[i] + beads.next_y[i] - beads.next_y[i + 1]
@@ -154,7 +161,11 @@ def _course(chain: Chain, beads: Beads, h: float, last: int, i: int) -> tuple[Qu
 
 @summed
 def _pair_sums(chain: Chain, scheme: Tableau, p: Quintic) -> tuple[float, float, float, float]:
-    """The pair's own ∫∫ and ∫ of p_+^k over a step, and its errors of both."""
+    """Return the embedded pair's values of ∫ (1 - x) p_+^k dx and ∫ p_+^k dx over a step.
+
+    These are sums with the coefficients b and b'; the third and fourth number returned, sums with e
+    and e', are the pair's error estimates of the first and the second.
+    """
     nodes, last = scheme.nodes, len(scheme.nodes) - 1
     once = twice = error = error_once = 0.0
     for s in range(last + 1):
@@ -168,7 +179,7 @@ def _pair_sums(chain: Chain, scheme: Tableau, p: Quintic) -> tuple[float, float,
 
 @part
 def accepted(chain: Chain, beads: Beads, plan: Plan, at: Any, h: float, hi: int) -> bool:
-    """Try a step, choose the next one by its error, and tell whether the step is made."""
+    """Try a step, set the next step from the error, and return True if the step is accepted."""
     error = _attempt(chain, beads, plan, at.lo, h, hi)
     if not error <= 1.0:
         shrink = 0.9 * error ** (-1.0 / (plan.scheme.lower + 1)) if error < 1e9 else 0.0

@@ -1,8 +1,11 @@
-"""The motion of watched beads between the ends of steps.
+"""The motion of watched beads between knots, the ends of steps.
 
-Displacements are the polynomials of degree 7 with y, y', y'' and y''' at both ends of a step
-(Hermite). Where a bead's own contact opens or closes, the double integral of its p_+^k
-(`validation.lattice.kernel.kinks`) is taken off first, and added again.
+Within a step a displacement is the polynomial of degree 7 with y, y', y'' and y''' at both ends
+(Hermite). If a contact of the bead opens or closes, the double integral of the contact's p_+^k
+(`validation.lattice.kernel.kinks`) is subtracted before the interpolation and added afterwards.
+
+Letters: n numbers the steps, step n leading from knot n to knot n + 1; row q of the arrays belongs
+to bead ``watched[q]``; h is the step, x = 0 … 1 the time within the step.
 """
 
 from __future__ import annotations
@@ -24,10 +27,10 @@ Four = tuple[float, float, float, float]
 
 @part
 def keep(chain: Chain, beads: Beads, plan: Plan, knots: Knots, at: Any, hi: int) -> None:
-    """Append the present state of the watched beads to the knots."""
+    """Append a knot, the present motion of the watched beads."""
     if len(knots.watched) == 0:
         return
-    if len(plan.scheme.nodes) == 0:  # a splitting does not end with the forces there
+    if len(plan.scheme.nodes) == 0:  # a splitting leaves no forces of the step's end
         press(chain, beads.y, beads.force, ZERO, at.lo, hi, NOTHING * plan.deepest)
     knots.time[at.kept] = at.t
     for q in range(len(knots.watched)):
@@ -41,13 +44,13 @@ def keep(chain: Chain, beads: Beads, plan: Plan, knots: Knots, at: Any, hi: int)
 
 @part
 def _adjacent(watched: NDArray[np.int_], q: int) -> bool:
-    """Whether the beads of rows q and q + 1 are neighbours."""
+    """Return True if the beads of rows q and q + 1 are neighbours."""
     return q >= 0 and q + 1 < len(watched) and watched[q + 1] == watched[q] + 1
 
 
 @part
 def _compression(chain: Chain, knots: Knots, n: int, q: int) -> tuple[float, float, float]:
-    """δ, δ' and δ'' of the contact between the beads of rows q and q + 1, at knot n."""
+    """Return δ, δ' and δ'' of the contact between the beads of rows q and q + 1, at knot n."""
     near, far = knots.state[n, q], knots.state[n, q + 1]
     rest = chain.rest[knots.watched[q]]
     return rest + near[0] - far[0], near[1] - far[1], near[2] - far[2]
@@ -55,7 +58,7 @@ def _compression(chain: Chain, knots: Knots, n: int, q: int) -> tuple[float, flo
 
 @part
 def course(chain: Chain, points: Array, knots: Knots, n: int, q: int) -> Quintic:
-    """The kink in step n of the contact between the beads of rows q and q + 1, or `NONE`."""
+    """Return the kink in step n of the contact between rows q and q + 1; `NONE` without a kink."""
     if points.shape[1] == 0 or not _adjacent(knots.watched, q):
         return NONE
     h = knots.time[n + 1] - knots.time[n]
@@ -69,8 +72,10 @@ def course(chain: Chain, points: Array, knots: Knots, n: int, q: int) -> Quintic
 
 @part
 def _rate(chain: Chain, knots: Knots, n: int, q: int, side: float) -> float:
-    """The rate of the force between the beads of rows q and q + 1, at knot n; on the side of later
-    times for side = 1, of earlier ones for -1."""
+    """Return dF/dt of the contact between the beads of rows q and q + 1, at knot n.
+
+    side : 1 for the limit from later times, -1 for the limit from earlier times.
+    """
     if not _adjacent(knots.watched, q):
         return 0.0
     d, v, _ = _compression(chain, knots, n, q)
@@ -79,7 +84,7 @@ def _rate(chain: Chain, knots: Knots, n: int, q: int, side: float) -> float:
 
 @part
 def _knot(chain: Chain, knots: Knots, n: int, q: int, h: float, side: float) -> Four:
-    """y, y', y'' and y''' of the bead of row q, over a step of h as the unit of time."""
+    """Return y, y', y'' and y''' of the bead of row q at knot n, in units of time h."""
     state = knots.state[n, q]
     back, ahead = _rate(chain, knots, n, q - 1, side), _rate(chain, knots, n, q, side)
     jerk = (0.0 if math.isnan(back) else back) - ahead
@@ -93,7 +98,10 @@ def _knot(chain: Chain, knots: Knots, n: int, q: int, h: float, side: float) -> 
 
 @part
 def _without(chain: Chain, points: Array, knot: Four, p: Quintic, unit: float, z: float) -> Four:
-    """Subtract the contribution of a kink p at z, times ``unit``, from a knot."""
+    """Subtract from y, y', y'' and y''' at x = z the contribution of a kink p.
+
+    The contribution is ``unit`` times p_+^k to y'', and the integrals from p's root on to y' and y.
+    """
     if math.isnan(p[0]):
         return knot
     y, v = ramp(chain, points, p, z)
@@ -111,7 +119,7 @@ def _without(chain: Chain, points: Array, knot: Four, p: Quintic, unit: float, z
 
 @part
 def _kinked(chain: Chain, points: Array, p: Quintic, unit: float, x: float) -> tuple[float, float]:
-    """Displacement and velocity contributed by a kink at x."""
+    """Return the contribution of a kink p to y and y' at x; see `_without`."""
     if math.isnan(p[0]):
         return 0.0, 0.0
     y, v = ramp(chain, points, p, x)
@@ -122,7 +130,10 @@ def _kinked(chain: Chain, points: Array, p: Quintic, unit: float, x: float) -> t
 def _polynomial(
     chain: Chain, points: Array, knots: Knots, n: int, q: int, behind: Quintic, ahead: Quintic
 ) -> tuple[Quintic, float, float]:
-    """Coefficients of y over step n, less the kinks of the bead's two contacts: six and two."""
+    """Return the coefficients c0 … c5 (a tuple), c6 and c7 of y over step n.
+
+    behind, ahead : kinks of the bead's two contacts, whose contributions are left out.
+    """
     h = knots.time[n + 1] - knots.time[n]
     push, pull = _units(chain, knots, q, h)
     a, b = _knot(chain, knots, n, q, h, 1.0), _knot(chain, knots, n + 1, q, h, -1.0)
@@ -138,14 +149,18 @@ def _polynomial(
 
 @part
 def _units(chain: Chain, knots: Knots, q: int, h: float) -> tuple[float, float]:
-    """h² A/m of the contacts behind and ahead of the bead of row q, as they accelerate it."""
+    """Return h² A/m of the contact behind the bead of row q, and -h² A/m of the contact ahead.
+
+    These factors times p_+^k are the contacts' contributions to the acceleration of the bead (mass
+    m) in units of time h.
+    """
     i = knots.watched[q]
     unit = h * h * chain.inverse[i]
     return unit * chain.A[i - 1], -unit * chain.A[i]
 
 
 def _built(sources: int) -> Any:
-    """`interpolate`, whose cached code is known by the sources."""
+    """Compile `interpolate`; its cached machine code belongs to the hash ``sources``."""
 
     @cached
     def interpolate(
@@ -158,8 +173,11 @@ def _built(sources: int) -> Any:
         y: Array,
         v: Array,
     ) -> int:
-        """Find displacements and velocities y, v (R, S) of the beads of some rows at times (S,),
-        each within the step of that number."""
+        """Compute displacements and velocities of watched beads; they go to y and v, both (R, S).
+
+        rows : (R,), rows q of the beads. time : (S,). step : (S,), number of the step that holds
+        each time. Returns ``sources``.
+        """
         for r in range(len(rows)):
             q, n = rows[r], -1
             behind = ahead = low = NONE

@@ -9,7 +9,7 @@ from validation.lattice.kernel.force import NOTHING, press
 
 @compiled
 def split(chain: Chain, beads: Beads, plan: Plan, h: float, lo: int, hi: int) -> None:
-    """Move the beads lo … hi-1 by one step."""
+    """Advance beads lo … hi-1 by one step h; y and v are updated in place."""
     nothing, kicks, drifts = NOTHING * plan.deepest, plan.scheme.kicks, plan.scheme.drifts
     y, v, force, inverse = beads.y, beads.v, beads.force, chain.inverse
     for s in range(len(drifts)):

@@ -8,12 +8,15 @@ from validation.lattice.kernel.arrays import MARGIN, Beads, Chain, Plan
 from validation.lattice.kernel.compiled import part
 from validation.lattice.kernel.force import elastic
 
-_STILL = 1e-13  # of the peak compression: beads that have moved less are still
+_STILL = 1e-13  # in units of the greatest compression: beads that have moved less are still
 
 
 @part
 def follow(chain: Chain, beads: Beads, plan: Plan, at: Any) -> None:
-    """Move the front to the first bead that is still, and the rear of a window behind it."""
+    """Move the front to the first bead that is still, and a window's rear after the front.
+
+    The energy and the time of contacts and beads that the window leaves go to ``at`` and ``beads``.
+    """
     while at.front < plan.size and abs(beads.y[at.front - MARGIN]) > _STILL * plan.deepest:
         at.front += 1
     while plan.window > 0 and at.front - at.lo > plan.window:

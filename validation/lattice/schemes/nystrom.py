@@ -24,9 +24,10 @@ Row = tuple[Fraction, ...]
 
 @dataclass(frozen=True)
 class Pair:
-    """Coefficients of a pair; b is the last row of a.
+    """Coefficients of an embedded Runge–Kutta–Nyström pair; b is the last row of a.
 
-    rows : a. speeds : b'. low, low_speeds : b and b' of the solution of lower order.
+    order, lower : orders of the two solutions. rows : a. speeds : b'. low, low_speeds : b and b' of
+    the solution of lower order.
     """
 
     order: int
@@ -47,7 +48,11 @@ class Pair:
         return tuple(float(np.sqrt(float(2 * sum(row)))) for row in self.rows)
 
     def arrays(self, width: int) -> tuple[Array, Array, Array]:
-        """Arrays c, a, and (b', e, e'), with zeros up to a multiple of ``width`` columns."""
+        """Return the coefficients as float arrays: nodes c, matrix a, and the three rows b', e, e'.
+
+        b' is `speeds`; e = b - `low` and e' = b' - `low_speeds` give the error estimates. The
+        columns of the last two arrays are filled with zeros up to a multiple of ``width``.
+        """
         b = self.rows[-1]
         e, e_speeds = (
             tuple(x - y for x, y in zip(high, low, strict=True))

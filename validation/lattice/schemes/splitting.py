@@ -17,7 +17,7 @@ from lwa.base.arrays import Array
 
 @dataclass(frozen=True, eq=False)
 class Splitting:
-    """Coefficients of a splitting; the first kick is 0."""
+    """Coefficients of a splitting: b of the kicks, a of the drifts; the first kick is 0."""
 
     order: int
     kicks: Array
@@ -30,7 +30,10 @@ class Splitting:
 
 
 def _mirrored(order: int, kicks: list[float], drifts: list[float]) -> Splitting:
-    """The palindrome with these first halves, without the last ones, which make the sums 1."""
+    """Complete palindromic coefficients from their first halves.
+
+    The coefficients in the middle, which are not given, make both sums 1.
+    """
     b = [*kicks, 0.5 - sum(kicks)]
     a = [*drifts, 1 - 2 * sum(drifts)]
     return Splitting(order, np.array([0.0, *b, *b[::-1]]), np.array([*a, *drifts[::-1]]))
