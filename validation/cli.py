@@ -21,7 +21,7 @@ _STUDIES = Path(__file__).parent / "studies"
 
 @cache
 def studies() -> dict[str, tuple[str, str]]:
-    """Module and help of each command, which has the name of its function.
+    """Return the module and the help text of each command, by the command's name.
 
     >>> studies()["limits"][0]
     'validation.studies.limits'
@@ -45,11 +45,11 @@ class Studies(click.Group):
     """A Click group that loads a command when it is called."""
 
     def list_commands(self, context: click.Context) -> list[str]:
-        """Names of all commands."""
+        """Return the names of all commands."""
         return sorted(studies())
 
     def get_command(self, context: click.Context, name: str) -> click.Command | None:
-        """The command of this name, or None."""
+        """Return the command with a given name, or None."""
         if name not in studies():
             return None
         # here, for a quick start: a study loads SciPy

@@ -156,7 +156,10 @@ class JetAlgebra:
         return f.integral(self._offset + n - 1)
 
     def terms(self, f: fmpq_mpoly) -> dict[Monomial, list[Term]]:
-        """Mapping from the jet monomials of f to the terms of their coefficients."""
+        """Split a polynomial f of jets into a mapping {jet monomial: terms of its coefficient}.
+
+        A term is a pair (exponents of the ring's generators, rational factor).
+        """
         found: dict[Monomial, list[Term]] = {}
         for exponents, coefficient in f.terms():
             jets_x = exponents[self._offset : self._velocity]

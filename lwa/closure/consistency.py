@@ -113,7 +113,7 @@ class Closure(Solution):
 
     @property
     def symbols(self) -> tuple[sp.Symbol, ...]:
-        """Symbols besides those of the cell and the exponent."""
+        """Free symbols of the results besides those of the cell and the exponent: none here."""
         return ()
 
     def at(self, **values: Any) -> Closure:

@@ -109,7 +109,10 @@ class _Slaving:
         self.E.append(E_n)
 
     def _strains(self, n: int, accelerations: list[fmpq_mpoly]) -> None:
-        """Append X_n of each contact, from Φ_i - Φ_0 and the sum of the strains of the cell."""
+        """Append X_n, the order n of each contact's strain.
+
+        Φ_i - Φ_0 gives the differences of the strains, and the cell their sum.
+        """
         P = len(self.particles)
         first = self.particles[0]
         difference = self.algebra.zero

@@ -49,7 +49,7 @@ class Python(Writer, PythonCodePrinter):  # type: ignore[misc]  # untyped in Sym
     head = ("import math",)
 
     def function(self, function: Function) -> list[str]:
-        """Source lines of a function."""
+        """Generate the source lines that define a function in this language."""
         return [
             *wrapped(f"def {function.name}({self.arguments(function)}):"),
             f'    """{function.doc}"""',
@@ -92,7 +92,7 @@ class C(Writer, C99CodePrinter):  # type: ignore[misc]  # untyped in SymPy
     settings: ClassVar[dict[str, Any]] = {"math_macros": {}}
 
     def function(self, function: Function) -> list[str]:
-        """Source lines of a function."""
+        """Generate the source lines that define a function in this language."""
         arguments = self.arguments(function, "double ") or "void"
         return [
             f"// {function.doc}",
@@ -134,7 +134,7 @@ class Fortran(Writer, FCodePrinter):  # type: ignore[misc]  # untyped in SymPy
     }
 
     def function(self, function: Function) -> list[str]:
-        """Source lines of a function."""
+        """Generate the source lines that define a function in this language."""
         kind = "elemental" if function.arguments else "pure"
         head = f"    {kind} real(dp) function {function.name}({self.arguments(function)})"
         local = ", ".join(self.names[symbol] for symbol, _ in function.local)
@@ -168,7 +168,7 @@ class Julia(Writer, JuliaCodePrinter):  # type: ignore[misc]  # untyped in SymPy
     reserved = frozenset({*_MATHEMATICS, *_JULIA})
 
     def function(self, function: Function) -> list[str]:
-        """Source lines of a function."""
+        """Generate the source lines that define a function in this language."""
         return [
             f'"{function.doc}"',
             *wrapped(f"function {function.name}({self.arguments(function)})"),
@@ -190,7 +190,7 @@ class JavaScript(Writer, JavascriptCodePrinter):  # type: ignore[misc]  # untype
     end = ";"
 
     def function(self, function: Function) -> list[str]:
-        """Source lines of a function."""
+        """Generate the source lines that define a function in this language."""
         return [
             f"// {function.doc}",
             *wrapped(f"function {function.name}({self.arguments(function)}) {{"),

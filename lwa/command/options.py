@@ -148,7 +148,7 @@ class ChainInput:
 
 
 def demand_free_names(chain: ChainInput, *values: sp.Expr | None, output: str = "") -> None:
-    """Refuse symbols of a chain, and of values, with names that the output has for something else.
+    """Refuse symbols of a chain, and of values, that are named like a quantity of the output.
 
     output: a key of `NAMES`, the command's own name when empty.
     """

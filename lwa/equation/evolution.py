@@ -2,11 +2,11 @@
 
 Let φ be the canonical field, F the contact force and I the coefficient of dispersion in the units
 of `lwa.wave.background`. In the field u = φ + (I/2) φ_xx the terms of order D^{k+3} of the wave
-equation are I ∂_x³ F(u_x), for every cell and law, and equal I ∂_x² u_ττ to this order
-(Rosenau, Phys. Lett. A 118, 222 (1986), for equal beads). The canonical equation cut at D^{k+3}
-amplifies short waves without bound; this one is well posed, and its energy
-∫ [½ u_τ² + ½ I u_xτ² + W(u_x)] dx, W′ = F, is positive. Its waves on a strain p0, u_x = p0 + v(ξ),
-ξ = x - V τ, with the rise B obey
+equation are I ∂_x³ F(u_x), for every cell of a power law or of equal contacts, and equal I ∂_x²
+u_ττ to this order (Rosenau, Phys. Lett. A 118, 222 (1986), for equal beads). The canonical equation
+cut at D^{k+3} amplifies short waves without bound; this one is well posed, and its energy ∫ [½ u_τ²
++ ½ I u_xτ² + W(u_x)] dx, W′ = F, is positive. Its waves on a strain p0, u_x = p0 + v(ξ), ξ = x - V
+τ, with the rise B obey
 
     I V² v′² = v² (V² - Q(v)),    Q(v) = 2 [W(p0+v) - W(p0) - F(p0) v]/v²,    V² = Q(B).
 """

@@ -57,7 +57,7 @@ def read_materials(file: Table) -> dict[str, Material]:
 
 
 def read_beads(file: Table, materials: Mapping[str, Material]) -> dict[str, Sphere]:
-    """The beads of a file, by name."""
+    """Read the table ``beads`` of a parsed file: a mapping from names to spheres."""
     beads: dict[str, Sphere] = file.read("beads", named(partial(_bead, materials=materials)), {})
     return beads
 

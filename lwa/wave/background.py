@@ -1,4 +1,4 @@
-"""Waves on a background: a chain under load, of any cell and any law.
+"""Waves on a background: a chain under load, of any cell and power, or any law in equal contacts.
 
 The canonical field obeys u_ττ = ∂_x [F(u_x) + I (F′ u_xxx + ½ F″ u_xx²)]: F is the force in the
 units of `lwa.equation.pde` (p^k/k for a power), W its energy, W′ = F, and I the coefficient of

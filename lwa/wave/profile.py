@@ -49,7 +49,10 @@ class Strains:
 
     @cached_property
     def _compiled(self) -> list[tuple[Function, list[sp.Rational]]]:
-        """For F, F′ and Q a function of v and of exact fractions, and the values of these."""
+        """Compile F, F′ and Q to functions f(v, *fractions); return each with its fractions.
+
+        The fractions in F, F′ and Q are arguments, so that any working precision gets them exact.
+        """
         found = []
         for value in (self.force, self.slope, self.stiffness):
             numbers = {a: sp.Dummy() for a in value.atoms(sp.Rational) if not a.is_Integer}

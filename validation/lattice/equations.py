@@ -121,7 +121,7 @@ class Motion:
 
     @property
     def driven(self) -> float:
-        """The energy that a drive can give to a bead."""
+        """Energy that a drive can give to a bead, 0 without a drive."""
         return 0.0
 
     def momentum_drift(self, end: Array) -> float | None:

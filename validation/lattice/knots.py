@@ -25,7 +25,7 @@ class KnotPath:
     """A `validation.lattice.signal.Path` through knots (`validation.lattice.kernel.samples`).
 
     points : nodes and weights of the quadrature at kinks. left : times at which a window left the
-    watched beads behind, infinite for beads inside the window. kinks : see `Path`.
+    watched beads behind, infinite for beads inside the window.
     """
 
     chain: Chain
@@ -40,7 +40,7 @@ class KnotPath:
         return self.knots.time
 
     def __call__(self, beads: Beads, time: Array) -> tuple[Array, Array]:
-        """Displacements and velocities (beads, S) at times (S,) within the run."""
+        """Return displacements and velocities (beads, S) at times (S,) within the run."""
         rows = np.searchsorted(self.knots.watched, beads)
         step = np.searchsorted(self.time[1:-1], time, side="right")
         y, v = np.empty((2, len(rows), len(time)))
@@ -73,8 +73,7 @@ class Recorder:
     def take(self, count: int) -> int:
         """Compute the samples between the first ``count`` knots, and store these knots.
 
-        The last knot becomes the first in the arrays of the engine. Returns the number of knots
-        that stay there, 1, or 0 without sensors.
+        Returns the number of knots left for the engine: 1, the last knot, or 0 without sensors.
         """
         time, watched, state = self.knots
         if not len(watched):

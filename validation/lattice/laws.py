@@ -80,10 +80,7 @@ class Contact:
         return np.array([known[F] for F in forces.tolist()])
 
     def reached_by(self, energy: float, start: float) -> float:
-        """Return a compression that a further energy beyond equilibrium at ``start`` brings about.
-
-        For a power law the result is only a scale, energy^{1/(k+1)}, whatever the ``start``.
-        """
+        """Return the compression by an energy beyond ``start``; for a power law only its scale."""
         if self.law is None:
             return float(np.float64(energy) ** (1 / (self.k + 1)))
 

@@ -53,8 +53,8 @@ class Records(ArrayValue, Pictured):
     not computed, because a window had left the sensor, are NaN.
 
     time : (S,), sample times.
-    contact_force, compression : (contacts, S), at the scene's contact sensors; a gap is a negative
-        compression.
+    contact_force, compression : (contacts, S), at the scene's contact sensors; the compression of a
+        gap is negative.
     bead_force, bead_displacement, bead_velocity : (beads, S), at the bead sensors; the force is the
         mean of the bead's two contacts, the displacement counts from the equilibrium.
     """
@@ -73,7 +73,7 @@ class Records(ArrayValue, Pictured):
         return f"{type(self).__name__}({self.scene}; {heard})"
 
     def label(self, quantity: str) -> str:
-        """Name of a quantity with its unit, as in headers and on axes.
+        """Return the name of a quantity with its unit, for headers and axes.
 
         ``quantity`` ends in one of the names of quantities with SI units.
 
@@ -101,9 +101,9 @@ class Records(ArrayValue, Pictured):
         return np.array([motion.energy(state) for state in states.T])
 
     def columns(self) -> dict[str, Array]:
-        """Time and all records, each (S,), by names such as "bead 15 force (N)".
+        """Return time and all records, each (S,), by names such as "bead 15 force (N)".
 
-        With sensors at all beads also the energy.
+        The energy is included if all beads have sensors.
         """
         scene = self.scene
         found = {"time": self.time}
@@ -118,7 +118,7 @@ class Records(ArrayValue, Pictured):
         return {self.label(name): values for name, values in found.items()}
 
     def to_pandas(self) -> Any:
-        """The `columns` as a pandas DataFrame, with the time as index.
+        """Return the `columns` as a pandas DataFrame, with the time as index.
 
         Raises `SceneError` without pandas, an optional package.
         """
@@ -129,7 +129,7 @@ class Records(ArrayValue, Pictured):
         return pandas.DataFrame(self.columns()).set_index(self.label("time"))
 
     def pictured(self) -> list[Panel]:
-        """Force over time at all sensors; an x–t map for a kind with more than ten sensors."""
+        """Panels of force against time at all sensors; an x–t map for more than ten of a kind."""
         time, force = self.label("time"), self.label("force")
         kinds = (
             ("bead", self.scene.bead_sensors, self.bead_force),
@@ -155,7 +155,7 @@ class Run(Records):
 
     All arrays are read-only; further fields are those of `Records`.
 
-    displacements, velocities : (n,), at the end.
+    displacements, velocities : (n,), of all beads at the end.
     energy_drift : change of the energy above equilibrium divided by its initial value (0 if this is
         0); beads that a window has left behind keep their energy.
     momentum_drift : change of the momentum divided by Σ m|v| at the end; None with a wall or drive.
@@ -208,7 +208,7 @@ def finished(
     window: int | None = None,
     path: Path | None = None,
 ) -> Run:
-    """Make a `Run` of its final state, records, final energy and change of momentum."""
+    """Return the `Run` with a given final state, records, final energy and change of momentum."""
     n, before = motion.size, motion.scales.energy
     arrays = records | {"displacements": end[:n].copy(), "velocities": end[n : 2 * n].copy()}
     for array in arrays.values():

@@ -1,10 +1,10 @@
 """Simulation of a scene: `simulate`, `simulate_many` on threads, `twice` at two tolerances.
 
-The compiled engine (`validation.lattice.engine`) has an adaptive pair for y'' = f(y) and a
-symplectic splitting. SciPy's methods (`validation.lattice.steppers`) are the reference, and
-integrate scenes with damping or a drive other than a piston. Tolerances are relative to the scene's
-own scales, so that a run does not depend on the units. A run keeps the motion of the beads near its
-sensors only.
+The compiled engine (`validation.lattice.engine`) has an embedded Runge–Kutta–Nyström (RKN) pair for
+y'' = f(y), with adaptive steps, and a symplectic splitting. SciPy's methods
+(`validation.lattice.steppers`) are the reference, and integrate scenes with damping or a drive
+other than a piston. Tolerances are relative to the scene's scales, so that results do not depend on
+the units. A run stores the motion of the beads near its sensors only.
 """
 
 from __future__ import annotations
@@ -51,19 +51,19 @@ def simulate(
 
     Parameters
     ----------
-    rtol, atol : error in units of the scene's own scales. For the pair, the peak force of a struck
-        chain's pulse errs by about ``rtol`` at most, and a motion with many collisions by some tens
-        of it at its end; for the splitting, ``rtol`` is the mean error of the peak. Both ignore
-        ``atol``. For SciPy's methods, the local error per step.
+    rtol, atol : error in units of the scene's own scales. With the RKN pair the peak force of a
+        struck chain's pulse errs by about ``rtol`` at most, and a motion with many collisions, at
+        its end, by some tens of ``rtol``; with the splitting ``rtol`` is the mean error of the
+        peak. Both ignore ``atol``. For SciPy's methods rtol, atol bound the local error per step.
     method : one of `COMPILED` or of `METHODS`. A scene with damping or a drive, whose forces depend
         on velocities or time, takes one of `METHODS`, by default DOP853; a drive of constant
-        velocity, a piston, takes the compiled pair as well, without a window.
+        velocity, a piston, takes the RKN pair as well, without a window.
     step : greatest step of a compiled method; by default ``rtol`` determines the steps.
-    window : number of beads that a compiled method follows behind the front of a leading pulse, or
-        True for eight supports of the long-wave pulse; the chain must end freely. A run with this
-        window and one with twice as many beads are made. The numbers of the second are returned;
-        beads further behind than the first one's window are NaN. By default the whole chain.
-    progress : opens a display, which is called with the share of the run that is done.
+    window : number of beads that a compiled method integrates behind the front of a leading pulse,
+        or True for eight supports of the long-wave pulse; the chain must have no wall. A run with
+        this window and a run with twice as many beads are made. The numbers of the second run are
+        returned, NaN for beads outside the first run's window. By default the whole chain.
+    progress : function that opens a display, which is called with the finished fraction of the run.
 
     Raises `SceneError` for invalid arguments and for more steps or memory than
     `validation.lattice.cost` allows. Raises `IntegrationError` when the integrator fails, or when
@@ -121,11 +121,10 @@ def simulate_many(
 ) -> Iterator[Run]:
     """Simulate many scenes on threads; yields the runs in the order of the scenes.
 
-    workers : number of threads, by default that of the cores. Compiled methods hold no lock and
-        keep all of them busy. Scenes are drawn as they are needed, some ahead of the run that is
-        yielded. options : those of `simulate`.
+    workers : number of threads, by default one for each core; compiled methods run in parallel.
+        ``scenes`` is iterated only as needed, some scenes ahead. options : those of `simulate`.
 
-    Raises the exceptions of `simulate` in the place of the run.
+    Raises an exception of `simulate` when the run that failed would be yielded.
 
     >>> chain = dict(masses=(1, 1), stiffnesses=(1,), k=1.5, duration=9)
     >>> [run.velocities[1].round(6) for run in
@@ -144,9 +143,10 @@ def simulate_many(
 
 
 def twice(scene: Scene, fine: float, coarse: float, **options: Any) -> tuple[Run, Run]:
-    """Simulate a scene at two tolerances, for `validation.pulses.pulse.compared`.
+    """Simulate a scene at two tolerances; return the fine and the coarse run.
 
-    With a window, the coarse run has half of it, so that the difference shows its effect as well.
+    With a window the coarse run has half as many beads, so that the difference shows the window's
+    effect as well. `validation.pulses.pulse.compared` turns the difference into errors.
     """
     run = simulate(scene, rtol=fine, atol=fine, **options)
     if run.window is not None:

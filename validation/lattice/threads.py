@@ -1,4 +1,4 @@
-"""Executors of many runs: threads, as the compiled engine holds no lock, or a Dask cluster."""
+"""Executors of many runs: threads, as compiled runs release Python's lock, or a Dask cluster."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ def cores() -> int:
 
 @contextmanager
 def threads(count: int | None = None, name: str = "workers") -> Iterator[Executor]:
-    """Executor of ``count`` threads, by default one for each core.
+    """Yield an executor of ``count`` threads, by default one for each core.
 
-    At the end, waiting tasks are dropped and running tasks are finished: nothing can stop them.
-    Raises `lwa.InputError` for a bad count, which its message calls ``name``.
+    At the end, waiting tasks are dropped, and running tasks, which cannot be stopped, finish.
+    Raises `lwa.InputError` for a bad count; the message calls it ``name``.
     """
     wanted = cores() if count is None else integer(count, name, 1, 1024)
     pool = ThreadPoolExecutor(wanted)
@@ -36,9 +36,9 @@ def threads(count: int | None = None, name: str = "workers") -> Iterator[Executo
 
 @contextmanager
 def cluster(address: str, patience: float = 5.0) -> Iterator[Executor]:
-    """Executor of a running Dask cluster, by the address of its scheduler.
+    """Yield an executor of a running Dask cluster, given the address of its scheduler.
 
-    The workers have `lwa` installed. Raises `lwa.InputError` without Dask, and where no scheduler
+    The workers must have `lwa` installed. Raises `lwa.InputError` without Dask, and if no scheduler
     with workers answers within ``patience`` seconds.
     """
     try:

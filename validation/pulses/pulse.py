@@ -90,7 +90,7 @@ def pulses(time: ArrayLike, signal: ArrayLike, least: float = 0.01) -> list[Puls
 
 
 def dense(record: Sampled, pulse: Pulse) -> Pulse:
-    """Return the pulse; raise `MeasureError` below `FEWEST` samples above half its peak."""
+    """Return the pulse if at least `FEWEST` samples exceed half its peak, else `MeasureError`."""
     inside = np.count_nonzero((record.times > pulse.rise) & (record.times < pulse.fall))
     if inside < FEWEST:
         few = f"{inside} samples lie above half the pulse's peak"
@@ -131,7 +131,10 @@ def leading_pulse(signal: Signal, k: float = 1.0, share: float = 0.5) -> Pulse:
 
 
 def leading_pulses(signal: Signal, k: float, shares: Sequence[float]) -> list[Pulse]:
-    """Measure the `leading_pulse` with rise and fall at each of several fractions of the peak."""
+    """Measure the `leading_pulse` of a signal once for each fraction of the peak in ``shares``.
+
+    The pulses of the list differ in the levels at which rise and fall are timed.
+    """
     grid, quarter = _Grid(signal), 0.25**k
     start = int(np.argmax(grid.f > quarter * grid.f.max()))
     relieved = grid.f[start:] < quarter * np.maximum.accumulate(grid.f[start:])
@@ -274,12 +277,12 @@ class Measured:
 
     @property
     def error(self) -> float:
-        """|value - check|."""
+        """Absolute error |value - check|."""
         return abs(self.value - self.check)
 
     @property
     def relative_error(self) -> float:
-        """|1 - check/value|."""
+        """Relative error |1 - check/value|."""
         return abs(1 - self.check / self.value)
 
     def __str__(self) -> str:
@@ -302,8 +305,7 @@ def derived(function: Callable[..., float], *numbers: Measured) -> Measured:
 def exponent(x: Sequence[Measured], y: Sequence[Measured]) -> Measured:
     """Return the exponent p of y ~ x^p, from a least-squares fit of the logarithms.
 
-    The errors of all numbers are added with their absolute values: errors of similar runs tend to
-    have the same sign and would cancel.
+    Absolute errors are added, as errors of similar runs have a common sign and would cancel.
     """
     logs = np.log([number.value for number in x]) - np.log([number.value for number in x]).mean()
     weights = logs / (logs @ logs)

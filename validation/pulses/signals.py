@@ -55,7 +55,7 @@ class Sampled:
 
 @dataclass(frozen=True)
 class Mapped:
-    """A function of the values of a signal, as a `Signal`."""
+    """A signal whose values are a ``function`` of another signal's values."""
 
     signal: Signal
     function: Callable[[Array], Array]

@@ -87,7 +87,7 @@ def cells_apart(k: float, stretch: int) -> int:
 
 
 def point(k: sp.Rational, omega: sp.Rational, stretch: int, farther: float = FARTHER) -> Point:
-    """Strike the chain and measure the pulse; after a failure ``missing`` of the point says why.
+    """Strike the chain and return the measured point; after a failure its ``missing`` says why.
 
     stretch : see `cells_apart`. farther : distance up to which the pulse must be the highest, in
     units of the last place's distance, 1.2 or more.

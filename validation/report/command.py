@@ -90,10 +90,7 @@ def study(*options: Any, epilog: str = "") -> Callable[[Callable[P, Report]], St
 
 
 def option(*names: str, default: Any = None, says: str = "", **more: Any) -> Any:
-    """Return a Click option with a default and the help text ``says``.
-
-    An option whose default is a number accepts a number of the same type.
-    """
+    """Return a Click option with a default and help text ``says``; numbers keep their type."""
     more.setdefault("show_default", default is not None)
     if type(default) in (int, float) and "flag_value" not in more:
         kind, reader = ("INTEGER", whole) if isinstance(default, int) else ("NUMBER", number)

@@ -13,10 +13,7 @@ from lwa.base.files import reason
 
 
 def output_file(name: str, path: str, suffixes: Sequence[str]) -> Path:
-    """Return the path of a file of one of the suffixes after checking that it can be written.
-
-    Messages call the file ``name``.
-    """
+    """Return a path, ``name`` in messages, if its suffix is allowed and a file can be written."""
     file = Path(path)
     try:
         if file.suffix.lower() not in suffixes:

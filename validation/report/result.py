@@ -83,7 +83,7 @@ class Report(Pictured):
         return found | ({"ok": self.ok} if self._all_findings() else {})
 
     def csv(self) -> str:
-        """The first table with keys as CSV, preferably one with rows.
+        """Return the first table with keys as CSV, if possible a table with rows.
 
         Raises `lwa.InputError` for a report without such a table.
         """

@@ -16,7 +16,7 @@ from validation.scenes.scene import Scene
 
 
 def struck(masses: Sequence[float], beads: int, k: float = 1.5, **rest: Any) -> Scene:
-    """Return a chain of beads with repeating masses, A = 1, and velocity 1 of the first bead.
+    """Return a chain of beads with repeating masses and A = 1; by default bead 0 has velocity 1.
 
     rest : further fields of the scene.
 

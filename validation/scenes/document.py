@@ -32,8 +32,7 @@ def _law_text(law: ContactLaw) -> str:
 
 
 def overlap(what: Scene) -> int:
-    """Return the number (from 1) of the first contact without static force that is compressed by
-    the initial displacements; 0 without such a contact."""
+    """Return the number (from 1) of the first contact pressed at the start, not at rest; or 0."""
     if what.gravity or what.precompression:
         return 0
     pairs = pairwise((*what.displacements, 0.0))  # beyond them, and at the wall

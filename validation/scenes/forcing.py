@@ -65,7 +65,7 @@ def restitution(ratio: float) -> float:
 
 
 def damping_ratio(share: float) -> float:
-    """The damping ratio of a coefficient of restitution."""
+    """Return the damping ratio of a coefficient of restitution, the inverse of `restitution`."""
     from scipy.optimize import brentq  # start-up
 
     # all digits of a small ratio as well: near ζ = 0 the share is 1 - πζ

@@ -233,7 +233,7 @@ def runs(name: str, task: Task, truth: Pulse) -> Iterator[Timing]:
 
 
 def by_method(rows: Iterable[Timing]) -> dict[str, list[Timing]]:
-    """Group runs by their method."""
+    """Return the runs of each method; runs of one method must be neighbours."""
     return {name: list(its) for name, its in groupby(rows, lambda row: row.method)}
 
 

@@ -86,10 +86,7 @@ def compare(scene: str, measured: str, run_progress: RunProgress = silent) -> Re
 def _records(
     path: str, heard: tuple[Track, ...]
 ) -> Iterator[tuple[tuple[str, int], tuple[Array, Array]]]:
-    """Read the measured records; yield (kind, number) of each sensor and its record.
-
-    A record is the sample times and the dynamic forces at these times.
-    """
+    """Yield (kind, number) of each measured sensor, and its sample times and dynamic forces."""
     names = {f"{track.kind} {track.number} ": track for track in heard}
     if len(heard) == 1:
         names[""] = heard[0]

@@ -67,7 +67,7 @@ def exact(
 
 
 def wave_report(wave: ExactWave) -> Report:
-    """Report of a wave.
+    """Return the report of a wave. Keys of the JSON document:
 
     ``k_value``, ``masses_value``, ``background_value``, ``half_period_value``, ``residual_value``,
     ``solitary``; with errors, as ``c2_error_value``: ``c2_value``, ``c_value``, ``tail_value`` and

@@ -45,7 +45,7 @@ class Speed(NamedTuple):
 
 @dataclass(frozen=True)
 class Scaling:
-    """Figure 3a for one modulus of PTFE.
+    """Figure 3a, speed as a function of peak force, for one Young's modulus of PTFE.
 
     E : the modulus, in Pa. speeds, forces : V_s and F_m = (F_15 + F_34)/2 at each drop height.
     theory : speed of the canonical wave at each F_m.
@@ -89,7 +89,7 @@ _SCALINGS_TITLE = f"drop heights {HEIGHTS[0]:g} … {HEIGHTS[-1]:g} m; the paper
 def report(
     records: Mapping[int, Run], speeds: Sequence[Speed], scalings: Sequence[Scaling]
 ) -> Report:
-    """The runs of figure 2 by N, the N:1 chains and figure 3a as tables and panels."""
+    """Return tables and panels of the runs of figure 2 (by N), the N:1 chains and figure 3a."""
     first = tuple((*s, s.theory / s.speed.value - 1) for s in speeds)
     rows = []
     for s in scalings:
@@ -145,16 +145,16 @@ def figures(progress: Progress[Any] = iter) -> Report:
 
 
 def forces(N: int) -> Run:
-    """Figure 2 for the N:1 chain: the run whose bead sensors are `RECORDED`."""
+    """Simulate the N:1 chain of figure 2; return the run, with sensors at beads `RECORDED`."""
     return chain_runs(RECORDED[N], N=N)[0]
 
 
 def chain_speed(N: int) -> Speed:
-    """Speed of the leading pulse of the N:1 chain far from the striker, beside the theory's.
+    """Measure the speed of the N:1 chain's leading pulse far from the striker.
 
-    The pulse is timed from steel bead to steel bead over three periods, or 18 beads at least, by
-    its front at a tenth of its peak: in chains of large N the pulse has several humps, and their
-    order of height changes on the way.
+    The pulse is timed between two steel beads, at least three periods and 18 beads apart, by its
+    front at a tenth of the peak: at large N the pulse has several humps, and the highest is not
+    always the same.
     """
     period = N + 1
     before, across = (max(3, math.ceil(beads / period)) for beads in (14, 18))
@@ -175,7 +175,7 @@ def chain_speed(N: int) -> Speed:
 
 
 def scaling(E: float) -> Scaling:
-    """Figure 3a for a modulus of PTFE, without gravity."""
+    """Compute figure 3a for a Young's modulus of PTFE, without gravity."""
     ptfe = replace(PTFE_BEAD, material=replace(PTFE, E=E))
     velocities = (math.sqrt(2 * paper.GRAVITY * h) for h in HEIGHTS)
     drops = [paper.recorded_chain(paper.SENSORS, v, ptfe=ptfe) for v in velocities]

@@ -68,7 +68,7 @@ def form(wave: TravelingWave, name: str, *arguments: Any) -> sp.Expr:
 
 
 def closed_wave(closure: str) -> TravelingWave:
-    """The wave of one of `CLOSURES`, D = 1, with k, m1, m2 as symbols."""
+    """Return the wave of one of `CLOSURES`, D = 1, with k, m1, m2 as symbols."""
     return homogenize(Dimer("m1", "m2", spacing=1), **CLOSURES[closure]).pde.traveling_wave()
 
 

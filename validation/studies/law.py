@@ -106,7 +106,7 @@ def law(
 
 
 def _pulses(data: str, least: int) -> tuple[Array, Array, Array | None]:
-    """Read forces, speeds and, where deviations are given, weights of at least so many pulses."""
+    """Read a file of ``least`` or more pulses; return forces, speeds and weights (None if none)."""
     read = columns(data, "force", "speed", optional=("force_error", "speed_error"))
     force, speed, *deviations = read.values()
     if len(force) < least or not (force.min() > 0 and speed.min() > 0):
@@ -123,10 +123,10 @@ def _content(content: Any) -> dict[str, Any]:
 
 
 def _modulus(content: dict[str, Any], material: str, stiffness: Measured) -> Measured:
-    """E of a material of a file of spheres, from A of their Hertz contacts."""
+    """Return E of a material in a file of spheres, from the stiffness A of their Hertz contacts."""
 
     def log_stiffness(log_E: float) -> float:
-        """ln A, by the mean compression of a cell's contacts."""
+        """Return ln A at a given ln E, from the mean compression of a cell's contacts."""
         changed = copy.deepcopy(content)
         given = changed.setdefault("materials", {}).setdefault(material, {"like": material})
         given["E"] = float(np.exp(log_E))
@@ -149,7 +149,7 @@ def _modulus(content: dict[str, Any], material: str, stiffness: Measured) -> Mea
 
 
 def _verdict(fit: PowerFit) -> str:
-    """Sentence that says whether one power is enough."""
+    """Return a sentence that says whether one power fits the data."""
     bend = f"curvature of ln V against ln F {fit.curvature.value:.2g} ± {fit.curvature.error:.1g}"
     return f"One power is {'enough' if fit.one_power else 'not enough'}: {bend}."
 

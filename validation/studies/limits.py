@@ -2,8 +2,9 @@
 
 The theory's wave is the leading order in ε = k - 1, so that its error against the lattice must
 vanish as a known power of ε (`validation.waves.asymptotics`). Each chain starts with the theory's
-own wave, which sheds its difference from the lattice's wave. The pulse is measured after four, six
-and eight times its support; the difference between the last two places is the lattice's error.
+wave, which turns into the lattice's wave and leaves the difference behind. The pulse is measured
+after four, six and eight times its support (the places); the difference between the last two places
+is the lattice's error.
 
 With m1 ≫ m2 the light beads only pass the force on: a uniform chain of spacing 2D.
 """
@@ -51,7 +52,7 @@ TOLERANCES = {1: (1e-9, 1e-9), 2: (1e-7, 1e-6)}
 
 @dataclass(frozen=True)
 class Row:
-    """Comparison of one quantity; ω = 0: the limit; k None: a result from all `EXPONENTS`."""
+    """Comparison of one quantity; omega is 0 for the limit, k None for a result from all k."""
 
     quantity: str
     k: sp.Rational | None
@@ -62,23 +63,23 @@ class Row:
 
     @property
     def theory_value(self) -> float:
-        """The theory's number."""
+        """The theory's value of the quantity, as a float."""
         return float(sp.N(self.theory, 17))
 
     @property
     def error(self) -> float:
-        """Theory over lattice, less 1."""
+        """Relative error of the theory: theory/lattice - 1."""
         return self.theory_value / self.lattice.value - 1
 
     @property
     def finding(self) -> Finding:
-        """The error against its bound, the lattice's own error added."""
+        """The error with its bound and the lattice's own error, as a finding."""
         own = self.lattice.relative_error
         return Finding(self.quantity, self.error, -self.bound, self.bound, error=own)
 
     @property
     def cells(self) -> tuple[Any, ...]:
-        """Cells of the table."""
+        """Cells of the row in the printed table."""
         numbers = self.theory, self.theory_value, self.lattice, self.error, self.bound
         return self.quantity, self.k, self.omega, *numbers, self.finding.ok
 
@@ -119,7 +120,7 @@ def limits(progress: Progress[Case] = iter) -> Report:
 
 
 def report(rows: Sequence[Row]) -> Report:
-    """The table of a comparison, its findings, and its errors over k - 1."""
+    """Return a comparison's table, findings, and panels of the errors as functions of k - 1."""
     cells = tuple(row.cells for row in rows)
     return Report(
         "The theory's limits on the lattice",
@@ -130,7 +131,7 @@ def report(rows: Sequence[Row]) -> Report:
 
 
 def _panel(rows: Sequence[Row], omega: sp.Rational) -> Panel:
-    """|error| against k - 1, with its leading power."""
+    """Return the panel of |error| as a function of k - 1, beside its leading power."""
     epsilon = np.geomspace(float(EXPONENTS[-1] - 1) / 2, float(EXPONENTS[0] - 1), 2)
     curves = []
     for i, (quantity, law) in enumerate(LAWS.items()):
@@ -149,7 +150,7 @@ def _panel(rows: Sequence[Row], omega: sp.Rational) -> Panel:
 
 
 def compare(progress: Progress[Case] = iter) -> list[Row]:
-    """Measure all waves on the lattice, and compare them with the theory."""
+    """Measure all waves on the lattice; return the rows of the comparison with the theory."""
     cases: dict[Case, None] = dict.fromkeys(
         [(k, omega, 1.0) for omega in (EQUAL, LIGHT) for k in EXPONENTS]
         + [(k, EQUAL, B) for k in EXPONENTS for B in AMPLITUDES]
@@ -174,10 +175,10 @@ def compare(progress: Progress[Case] = iter) -> list[Row]:
 
 
 def lattice_wave(wave: TravelingWave, B: float = 1.0) -> dict[str, Measured]:
-    """`QUANTITIES`, speed dx/dt and peak contact force of the pulse that the theory's wave becomes.
+    """Measure the pulse that the theory's wave becomes on the lattice.
 
-    B : peak strain of the theory's wave. Numbers are means over the two contacts of a cell, which
-    the exact wave passes as mirror images.
+    B : peak strain of the theory's wave. Returns `QUANTITIES`, peak strain, speed dx/dt and peak
+    contact force, means over the two contacts of a cell, whose exact strains are mirror images.
     """
     compact = PhysicalWave(wave, B ** float(wave.k))  # A = D = 1
     run = _run(wave, compact)
@@ -207,7 +208,7 @@ def _run(wave: TravelingWave, compact: PhysicalWave) -> Run:
 
 
 def _numbers(run: Run, wave: TravelingWave, place: int) -> dict[str, float]:
-    """Lengths among `QUANTITIES`, strain, speed and force at a place: means over a cell."""
+    """Return the lengths among `QUANTITIES`, strain, speed and force at a place, cell means."""
     support, (width, strain_width, length, _) = float(wave.width), QUANTITIES
     k, beta = float(wave.k), float(wave.beta)
     unit = support * beta / float(sp.beta(k / (k - 1) + 0.5, 0.5))  # support over ∫F dx / F_m
@@ -231,7 +232,7 @@ def _numbers(run: Run, wave: TravelingWave, place: int) -> dict[str, float]:
 def quantity_rows(
     quantity: str, omega: sp.Rational, theory: list[sp.Expr], lattice: list[Measured]
 ) -> list[Row]:
-    """Rows of one quantity at each k, and of the order of its error as ε → 0."""
+    """Return rows of a quantity at each k, and of its error's order and coefficient as ε → 0."""
     law = LAWS[quantity]
     epsilon = np.array([float(k - 1) for k in EXPONENTS])
     rows = [
@@ -259,7 +260,7 @@ def quantity_rows(
 
 
 def _limit_rows(waves: list[dict[str, Measured]]) -> Iterator[Row]:
-    """Rows of the limit ω → 0 at the first k, by linear extrapolation of the lattice in ω."""
+    """Yield rows of the limit ω → 0 at the first k; the lattice is extrapolated linearly in ω."""
     k = EXPONENTS[0]
     symbols = homogenize(Dimer("m1", "m2", spacing=1), k=k).pde.traveling_wave()
     m1, m2 = symbols.cell.masses

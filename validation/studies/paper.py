@@ -81,14 +81,14 @@ def recorded_chain(
     ptfe: Sphere = PTFE_BEAD,
     beads: int = BEADS,
 ) -> Scene:
-    """The struck N:1 chain without gravity, for the flight of the pulse to the wall and back."""
+    """Return the struck N:1 chain without gravity, until the pulse has run to the wall and back."""
     pulse = of_momentum(canonical_wave(chain_cell(N, ptfe), HERTZ), _momentum(velocity))
     duration = 1.6 * beads * DIAMETER / float(pulse.speed)
     return chain_scene(velocity, beads, sensors, 0.0, duration, N, ptfe)
 
 
 def chain_runs(sensors: Sequence[int], **options: Any) -> tuple[Run, Run]:
-    """Simulate a `recorded_chain` at both of `TOLERANCES`."""
+    """Simulate a `recorded_chain` at both of `TOLERANCES`; return the finer run first."""
     return twice(recorded_chain(sensors, **options), *TOLERANCES)
 
 
@@ -168,7 +168,7 @@ def paper(
 
 
 def _row(quantity: str, lattice: Measured, theory: Mapping[str, float]) -> tuple[Any, ...]:
-    """Cells of the table: the lattice's number, and the theory's number and error by `SOURCES`."""
+    """Return cells of the table: the lattice's number, the theory's and its error by `SOURCES`."""
     unit = "µs" if quantity.endswith("in time") else UNITS[quantity.split()[0]]
     cells: list[Any] = []
     for source, value in theory.items():
@@ -178,7 +178,7 @@ def _row(quantity: str, lattice: Measured, theory: Mapping[str, float]) -> tuple
 
 
 def theory_numbers(wave: PhysicalWave, pair: tuple[int, ...] = SENSORS) -> dict[str, float]:
-    """`numbers` of the theory's wave, as sensors around the two beads would record it."""
+    """Return the `numbers` of the theory's wave; pair : the two sensor beads."""
     V, sensors = float(wave.speed), range(pair[0] - 1, pair[1] + 1)
 
     def train(peak: Any, fwhm: float) -> Train:
@@ -191,9 +191,9 @@ def theory_numbers(wave: PhysicalWave, pair: tuple[int, ...] = SENSORS) -> dict[
 
 
 def numbers(beads: Train, contacts: Train, pair: tuple[int, ...]) -> dict[str, float]:
-    """Speeds, peak forces and FWHM at two sensor beads, in `UNITS`.
+    """Return speeds, peak forces and FWHM at the two sensor beads ``pair``, in `UNITS`.
 
-    Numbers that name no bead are means over both beads or over their four contacts.
+    Numbers whose names hold no bead are means over both beads or over their four contacts.
     """
     first, second = (beads.only([bead]) for bead in pair)
     both, around = beads.only(pair), contacts.only([b + side for b in pair for side in (-1, 0)])
@@ -215,7 +215,7 @@ def numbers(beads: Train, contacts: Train, pair: tuple[int, ...]) -> dict[str, f
 
 
 def like_pairs(pair: tuple[int, ...]) -> list[tuple[int, int]]:
-    """Pairs of beads of one kind next to two beads of different kinds.
+    """Return pairs of beads of one kind next to two sensor beads of different kinds.
 
     >>> like_pairs((15, 34)), like_pairs((15, 33))
     ([(15, 33), (16, 34)], [])
@@ -226,7 +226,7 @@ def like_pairs(pair: tuple[int, ...]) -> list[tuple[int, int]]:
 
 
 def _speeds(lattice: Mapping[str, Measured], theory: Mapping[str, float]) -> Iterator[str]:
-    """The speed V_s between unlike beads beside the speeds between beads of one kind."""
+    """Yield a sentence on V_s between unlike beads and the speeds between beads of one kind."""
     like = [number.value for name, number in lattice.items() if name.startswith("speed from")]
     if like:
         V, F = lattice["speed V_s"].value, lattice["peak bead force F_m"].value
@@ -241,7 +241,7 @@ def _speeds(lattice: Mapping[str, Measured], theory: Mapping[str, float]) -> Ite
 
 
 def _records(run: Run, pair: tuple[int, ...], theory: PhysicalWave) -> Iterator[Curve]:
-    """Dynamic forces over time, with the theory's wave shifted to the lattice's peak."""
+    """Yield curves of dynamic force against time, and the theory's shifted to the same peak."""
     pulses = Train.of(run).pulses
     forces = dict(zip(run.scene.bead_sensors, run.bead_force, strict=True))
     for i, bead in enumerate(pair):

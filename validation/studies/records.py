@@ -1,4 +1,4 @@
-"""Files of runs: the records of the sensors, the pulses read off them, and the scene.
+"""Files of runs: the records of the sensors, the pulses measured in them, and the scene.
 
 JSON: the result's document, and under ``records`` the arrays of `validation.lattice.run.Records`,
 their names ending in ``_value``. NumPy's .npz: the same arrays, the columns of the result's tables
@@ -95,14 +95,14 @@ def _archive(file: Path) -> tuple[dict[str, Any], dict[str, Any]]:
 
 
 def _null(array: Array) -> Any:
-    """Nested lists with None for NaN, as in JSON."""
+    """Return an array as nested lists with None for NaN, as in JSON."""
     found = array.astype(object)
     found[np.isnan(array)] = None
     return found.tolist()
 
 
 def _columns(rows: list[dict[str, Any]]) -> dict[str, NDArray[Any]]:
-    """Columns of a table by key; texts have "" and numbers NaN for null."""
+    """Return the columns of a table by key, with "" (texts) or NaN (numbers) for null."""
     columns = {name: [row[name] for row in rows] for name in (rows[0] if rows else ())}
     return {
         name: np.array([text or "" for text in column])

@@ -28,7 +28,7 @@ _DYNAMIC = "\nDynamic force: force less the static force at the sensor."
 
 
 def _example(name: str) -> tuple[str, str]:
-    """Title of an example, the first line of its file, and the rest of the file."""
+    """Return the title of an example, the first line of its file, and the rest of the file."""
     file = files(validation.scenes) / "examples" / f"{name}.toml"
     title, _, text = file.read_text(encoding="utf-8").partition("\n")
     return title.removeprefix("# "), text
@@ -50,9 +50,9 @@ All keys: python -m pydoc validation.scenes.scenefile"""
 
 
 def report(found: Recording, every: bool = False) -> Report:
-    """Report of a run, with all pulses at each sensor (``every``) or the first one.
+    """Return the report of a run, with all pulses at each sensor (``every``) or only the first.
 
-    ``scene`` (as in a file, see `validation.scenes.scenefile`);
+    Keys of the JSON document: ``scene`` (as in a file, see `validation.scenes.scenefile`);
     ``sensors``: ``kind``, ``number``, with ``every`` ``pulse``, counted from 1, ``arrival_value``,
     ``peak_value`` (of the dynamic force), ``fwhm_value``, ``static_force_value``, ``missing``;
     ``speeds``: ``kind``, ``from``, ``to``, ``speed_sites_value``, ``speed_value`` (null without
@@ -88,7 +88,7 @@ def report(found: Recording, every: bool = False) -> Report:
 
 
 def _sensors(run: Run, found: Sequence[Reading], every: bool) -> Table:
-    """The pulses at the sensors; ``static_force_value`` is for programs only."""
+    """Return the table of the pulses; JSON alone has the column ``static_force_value``."""
     peak = "peak dynamic force" if any(run.scene.load) else "peak force"
     labels = (run.label("arrival"), run.label(peak), run.label("FWHM"))
     columns = (
@@ -120,7 +120,7 @@ def _measured(names: Sequence[str], labels: Sequence[str]) -> list[Column]:
 
 
 def _cells(found: Reading, names: Sequence[str]) -> list[Any]:
-    """Numbers by name; where a window had left the sensor "not followed" stands for the first."""
+    """Return the numbers by name; the first is "not followed" if a window had left the sensor."""
     first, *others = names
     left = "not followed" if (found.missing or "").startswith("not followed") else None
     return [found.numbers.get(first, left), *map(found.numbers.get, others)]

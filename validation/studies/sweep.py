@@ -62,9 +62,9 @@ class SweepError(Failure):
 
 
 def report(ks: Axis, omegas: Axis, points: Sequence[Point], stretch: int = STRETCH) -> Report:
-    """The points for each k (outer) and ω (inner), both in rising order, beside the theories.
+    """Return the report of points, in rising order of k, then of ω, beside the theories.
 
-    Table ``points`` (missing values with their reason), and maps over ω and k, or curves.
+    Table ``points`` has the missing values' reasons; the panels are maps over ω and k, or curves.
     """
     shape, waves = (len(ks), len(omegas)), theory(ks, omegas)
     found = {name: [p.numbers.get(name) for p in points] for name in QUANTITIES}
@@ -152,7 +152,7 @@ def _curves(
 
 
 def theory(ks: Axis, omegas: Axis) -> dict[str, dict[str, Array]]:
-    """Widths and speed of the compact waves with contact force 1, by closure and quantity."""
+    """Return widths and speed of the compact waves at contact force 1, by closure and quantity."""
     k, omega = np.meshgrid(np.array(ks, float), np.array(omegas, float), indexing="ij")
     scale = np.sqrt(2 * k / (1 + omega))  # τ/t, for A = D = m1 = 1
     cell = Dimer("m1", "m2", spacing=1)
@@ -169,7 +169,7 @@ def theory(ks: Axis, omegas: Axis) -> dict[str, dict[str, Array]]:
 
 
 def _axis(text: str, name: str) -> Iterator[Rational]:
-    """Values and ranges start:stop:count of a text, exactly."""
+    """Yield the exact values of a text with numbers and ranges start:stop:count."""
     for part in text.split(","):
         start, *rest = part.split(":")
         if not rest:

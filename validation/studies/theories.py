@@ -1,8 +1,8 @@
 """The ladder of theories: linear, full, canonical, the series in ε, each against the true wave.
 
-At a mass ratio whose wave is solitary the true one is `validation.waves.solver.exact_wave`;
-elsewhere the pulse that a struck chain comes to carry (`validation.pulses.steady`) stands for it,
-with its own error. Compared are the widths of force and strain at a contact and the speed at peak
+The true wave (the truth) is `validation.waves.solver.exact_wave` at mass ratios with a solitary
+wave, and elsewhere the steady pulse of a struck chain (`validation.pulses.steady`), with an error.
+The theories are compared in the widths of force and strain at a contact and the speed, at peak
 contact force 1, m1 = A = D = 1. The cost is the CPU time of deriving and evaluating the theory.
 """
 
@@ -49,14 +49,14 @@ def _series(order: int, omega: sp.Rational, **k: sp.Rational) -> list[EpsilonSer
 
 
 def _approximant(n: int, k: sp.Rational, omega: sp.Rational) -> Prediction:
-    """Padé approximant [n/n] of the series for equal beads, a closed formula in k."""
+    """Return the Padé approximants [n/n] of the series for equal beads, closed formulas in k."""
     if omega != 1:
         raise NoSolitaryWave("a formula for equal beads")
     return [float(row.pade(k, n, n)) for row in _series(2 * n, omega)], None
 
 
 def _summed(n: int, k: sp.Rational, omega: sp.Rational) -> Prediction:
-    """Sum of the series in ε to order n, with its own estimate of the error."""
+    """Return the sums of the series in ε to order n, and the series' own error estimates."""
     sums = [row.at() for row in _series(n, omega, k=k)]
     return [found.value for found in sums], [abs(found.error / found.value) for found in sums]
 
@@ -78,9 +78,8 @@ HERTZ = sp.Rational(3, 2)
 class Rung:
     """Errors and cost of one theory at one k and ω.
 
-    error_value: theory over truth - 1, by `NAMES`; None without a wave, with the reason in
-        ``missing``.
-    estimate_value: the theory's own estimate of the size of its errors; None but for sums in ε.
+    error_value: theory/truth - 1, by `NAMES`; None without a wave, with the reason in ``missing``.
+    estimate_value: the theory's own estimates of |error|; only sums of the series in ε have them.
     seconds: CPU time of derivation and evaluation.
     """
 
@@ -91,13 +90,17 @@ class Rung:
     missing: str | None = None
 
     def error(self, name: str) -> float | None:
-        """Theory over truth - 1 of one of `NAMES`; None without a wave."""
+        """Return theory/truth - 1 of one of `NAMES`; None without a wave."""
         return self.error_value[name] if self.error_value else None
 
 
 @dataclass(frozen=True)
 class Place:
-    """All theories at one k and ω, with the truth by `NAMES` and its ``kind``."""
+    """Predictions of all theories at one k and ω, beside the lattice's values.
+
+    ``truth`` maps the quantities `NAMES` to values of the lattice; ``kind`` says whether they are
+    those of its exact wave or of a struck chain.
+    """
 
     k: sp.Rational
     omega: sp.Rational
@@ -106,7 +109,7 @@ class Place:
     rungs: tuple[Rung, ...]
 
     def document(self) -> dict[str, Any]:
-        """Fields for JSON."""
+        """Return the fields for JSON."""
         return {
             "k": self.k,
             "omega": self.omega,
@@ -131,7 +134,7 @@ Truth: the solitary wave or, where there is none, the pulse of a struck chain.""
 
 
 def ladder(places: Sequence[Place]) -> Report:
-    """Table of errors of theories over k and ω, and |error| of the force's width as the picture.
+    """Return the table of the theories' errors, and a picture of |error| of the force's width.
 
     JSON: ``theories``, each with ``k``, ``omega``, ``truth``, and ``rows`` of `Rung`.
     """
@@ -170,7 +173,7 @@ def _panel(axis: str, title: str, places: Sequence[tuple[sp.Rational, Place]]) -
 
 
 def place(k: sp.Rational, omega: sp.Rational, kind: str = SOLITARY) -> Place:
-    """Compare all theories with the truth at one k and ω.
+    """Return the comparison of all theories with the truth at one k and ω.
 
     Raises `MeasureError` where a struck chain's pulse is not steady.
     """

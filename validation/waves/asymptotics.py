@@ -1,9 +1,10 @@
 """Leading powers of the theory's error as k → 1.
 
-The powers and the coefficients of the error follow from log v as a series in ε at fixed X = √ε x
-(D = 1, equal masses). The lattice's exact wave has -3X² + ε (18/5 X² - 3/10 X⁴) + …, the theory's
--3X² + ε (9/2 X² - 3/2 X⁴) + …, and the log of the force is k = 1 + ε times as large. Hence, for
-theory over lattice - 1,
+The powers and the coefficients are derived, not fitted. Let v(x) be the strain of the wave with
+peak 1, ε = k - 1 and X = √ε x (D = 1, equal masses). At fixed X, the series of log v in ε is
+-3X² + ε (18/5 X² - 3/10 X⁴) + … for the exact wave of the lattice, and
+-3X² + ε (9/2 X² - 3/2 X⁴) + … for the long-wave theory. The log of the force is k log v. Hence the
+errors, theory divided by lattice less 1, are to leading order
 
     FWHM of force and strain        (3/20 - ln 2 / 15) ε
     support π/β, by the impulse     1/20 ε
@@ -27,8 +28,7 @@ class LeadingPower:
     """Leading power of the theory's error, coefficient · ε^order, and bounds of a measurement.
 
     constant : |error| ≤ constant · ε^order at each k measured.
-    order_bound, coefficient_bound : bounds of the relative errors of the fitted order and of the
-        extrapolated coefficient.
+    order_bound, coefficient_bound : relative bounds for the fitted order and coefficient.
     """
 
     order: int

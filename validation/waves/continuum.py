@@ -58,7 +58,7 @@ class Continuum:
 
     @cached_property
     def _laws(self) -> tuple[Any, Any]:
-        """F and W as functions of arrays."""
+        """The force F and its potential W as functions of arrays."""
         p = sp.Symbol("p", positive=True)
         force, energy = (sp.lambdify(p, self.equation.force(p, n), "numpy") for n in (0, -1))
         return force, energy

@@ -42,7 +42,7 @@ TOLERANCE = 1e-10  # rtol of the linearised motion
 
 
 class NoOrbit(InputError):
-    """Newton's method found no orbit; the message names the frequency."""
+    """Failure of Newton's method to find an orbit; the message names the frequency."""
 
 
 @dataclass(frozen=True, eq=False)

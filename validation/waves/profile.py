@@ -95,7 +95,7 @@ class Profile(ArrayValue, Pictured):
         return np.asarray(getattr(self, name)(xi))
 
     def peak(self, name: str) -> tuple[float, float]:
-        """Place ξ and value of the maximum of a quantity."""
+        """Return the place ξ and the value of the maximum of a quantity."""
         xi = np.linspace(-self.half_period, self.half_period, 4 * self.samples + 1)
         return summit(lambda x: self.quantity(name, x), xi)
 
@@ -127,10 +127,7 @@ class Profile(ArrayValue, Pictured):
         return math.sqrt(f @ (xi - mean) ** 2 / f.sum())
 
     def rattle(self, start: float) -> float:
-        """Largest odd part |a(ξ) - a(-ξ)|/2 of contact 0's strain a on start ≤ |ξ| ≤ L.
-
-        Outside the pulse (|ξ| ≥ start) it is the amplitude of the light beads' oscillation.
-        """
+        """Largest |o| on start ≤ |ξ| ≤ L, o(ξ) = (a(ξ) - a(-ξ))/2 the odd part of the strain a."""
         outside = np.linspace(start, self.half_period, 2 * self.samples)
         return summit(lambda x: np.abs(self.strain(x) - self.strain(-x)) / 2, outside)[1]
 

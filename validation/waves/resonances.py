@@ -81,7 +81,7 @@ def _followed(wave: ExactWave, k: float) -> ExactWave:
 
 
 def _ending(root: float, k: float, start: ExactWave | None) -> ExactWave | None:
-    """Solve for a solitary wave near the ratio root^-2; None if the solution is not solitary."""
+    """Return a solitary wave near the ratio root^-2; None if Newton's method finds none."""
     try:
         wave = solve((1.0, root**-2), k, start=start, free=True)
     except NoWave:

@@ -59,7 +59,7 @@ Pair = tuple[float, float]  # m1 and m2
 
 
 class NoWave(InputError):
-    """No wave was found; the message names its parameters."""
+    """Failure to find a wave; the message names the wave's parameters."""
 
     def __init__(self, text: str, masses: Pair, k: float, more: str = "") -> None:
         super().__init__(f"{text} at k = {k:g}, masses {masses[0]:g}, {masses[1]:g}{more}")
@@ -253,9 +253,8 @@ def _search(
 ) -> Iterator[ExactWave]:
     """Yield waves found from several starts.
 
-    The first start is the theory's wave on the full grid, which leads to solitary waves. Then
-    follow, on a rough grid, the struck pulse at each half period and, if no wave was found from the
-    struck pulse, the theory's wave.
+    First comes the theory's wave on the full grid, which leads to solitary waves; then, on a rough
+    grid, the struck pulse at each half period and, if that leads to no wave, the theory's wave.
     """
     first, *others = ((False, L) for L in periods)
     led = False
