@@ -262,8 +262,8 @@
     const [one, two] = [f.materials[a], f.materials[b]];
     const [m1, m2] = [[radiusA, one], [radiusB, two]].map(([R, solid]) => (4 / 3) * Math.PI * R ** 3 * solid.density);
     const A = f.hertz_A(one.E, one.nu, radiusA, two.E, two.nu, radiusB);
-    const [D, omega] = [radiusA + radiusB, m2 / m1];
-    const still = Math.pow(load / A, 2 / 3);
+    const [D, omega, still] = [radiusA + radiusB, m2 / m1, Math.pow(load / A, 2 / 3)];
+    if (kind === "drop") blow = Math.sqrt(2 * 9.81e-3 * blow);
     let unit = kind === "force" ? Math.pow((blow - load) / A, 2 / 3) : Math.pow((m1 * blow ** 2) / A, 0.4);
     let found = struck(omega, still / unit);
     for (let i = 0; kind === "force" && i < (load > 0 ? 6 : 2); i++) {
@@ -310,7 +310,7 @@
     const choice = (names, chosen) => element("select", {}, ...names.map(([value, text = value]) => element("option", value === chosen ? {value, selected: ""} : {value}, text)));
     const number = (value, step) => element("input", {type: "number", min: 0, value, step});
     const solids = Object.keys(f.materials).map(name => [name]);
-    const blows = [["velocity", "the striker's velocity in m/s"], ["force", "peak force in N, load included"]];
+    const blows = [["velocity", "the striker's velocity in m/s"], ["drop", "the striker's drop in mm"], ["force", "peak force in N, load included"]];
     const fields = {
       a: ["first bead (the striker)", choice(solids, "steel 316")],
       radiusA: ["its radius in mm", number(2.38, 0.01)],
@@ -334,7 +334,7 @@
       if (!(given.radiusA > 0 && given.radiusB > 0 && given.blow > 0 && given.load >= 0)) return text("refused", "Radii and the blow must be positive, the load not negative.");
       if (given.kind === "force" && given.blow <= given.load) return text("refused", "The peak force must exceed the load.");
       const {F, v, speed, width, sound, omega, A, lattice} = calculate(given);
-      text("force", `peak force of a contact: ${F.toPrecision(4)} N, after a blow with ${v.toPrecision(4)} m/s`);
+      text("force", `peak force, mean of two neighbouring contacts: ${F.toPrecision(4)} N, after a blow with ${v.toPrecision(4)} m/s`);
       text("speed", `speed: ${speed.toPrecision(5)} m/s` + (sound ? ` (sound: ${sound.toPrecision(5)} m/s)` : ""));
       text("width", `FWHM of the dynamic force in time: ${(1e6 * width).toPrecision(4)} µs`);
       text("ratio", `mass ratio ω = ${omega.toPrecision(4)}, A = ${A.toPrecision(4)} N/m^1.5`);

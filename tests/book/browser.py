@@ -119,6 +119,7 @@ window.addEventListener("load", async () => {
     report.blows = [
       {load: 0, blow: 1.37, kind: "velocity"}, {load: 2, blow: 1.37, kind: "velocity"},
       {load: 2, blow: 12, kind: "force"}, {load: 0, blow: 12, kind: "force"},
+      {load: 0, blow: 100, kind: "drop"},
     ].map(blow => [blow, lwaTurn.calculate({...beads, ...blow})]);
     report.chain = {speed: chain.speed(), force: chain.arrivals[12].force};
   }
