@@ -2,9 +2,9 @@
 
 Bead 1 of a long chain of cells (A = D = 1, static force F0 = 1 in every contact) moves as
 y = a sin(Ωt), a so small that the contacts are springs. In a band of the infinite chain the wave
-runs on; in a gap its amplitude falls by e^{-Im κ} from cell to cell, κ Bloch's wavenumber.
-Amplitudes are least squares of sin Ωt and cos Ωt over the last `PERIODS` periods, before an echo of
-the wall.
+runs on; in a gap its amplitude falls by e^{-n Im κ} from cell to cell of n beads, κ Bloch's
+wavenumber per site. Amplitudes are least squares of sin Ωt and cos Ωt over the last `PERIODS`
+periods, before an echo of the wall.
 """
 
 from __future__ import annotations
@@ -102,7 +102,7 @@ def amplitudes(run: Run, omega: float) -> list[float]:
 
 
 def attenuation(cell: Cell, k: float, omega: float) -> float:
-    """Im κ per cell of the infinite chain, from the transfer matrix of a cell."""
+    """Fall of ln(amplitude) per cell, n Im κ, from the transfer matrix of a cell."""
     springs = [float(K) for K in LoadedChain(cell, Power(str(k)), 1).spring_constants]
     matrix = np.eye(2)
     for i, m in enumerate(map(float, cell.masses)):

@@ -292,6 +292,7 @@ def envelope(
     number = BRANCHES.index(branch) if branch in BRANCHES else integer(branch, "branch", 0)
     if number >= cell.size:
         raise InputError(
-            f"branch is {shorten(branch)}: a cell of {cell.size} has {cell.size} branches"
+            f"branch is {shorten(branch)}: a cell of {cell.size} has as many branches, "
+            "counted from 0"
         )
     return Envelope(cell, law, static, kappa, number)

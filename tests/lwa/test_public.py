@@ -3,6 +3,7 @@
 import ast
 import inspect
 import re
+from collections import Counter
 
 import pytest
 
@@ -68,3 +69,7 @@ def test_each_name_is_loaded_from_where_the_types_have_it():
     assert typed == loaded | {"hertz": "lwa.spheres"}
     assert sorted({*lwa.__all__, "D", "k"}) == sorted(typed)  # short names are bound by asking
     assert set(lwa.__all__) <= set(dir(lwa))
+
+
+def test_completion_offers_each_name_once():
+    assert Counter(lwa.__dir__()).most_common(1)[0][1] == 1

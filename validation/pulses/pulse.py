@@ -270,6 +270,8 @@ class Measured:
 
     >>> Measured(2.5e300, 2.50003e300)
     2.50000e+300 ± 3e+295
+    >>> Measured(4859925635.0, 4.76e9)
+    4.86e+09 ± 1e+08
     """
 
     value: float
@@ -289,7 +291,7 @@ class Measured:
         if not self.error:
             return f"{self.value!r} ± 0"
         size, last = abs(self.value), math.floor(math.log10(self.error))
-        if size > self.error and not 1e-12 < size < 1e16:
+        if size > self.error and (last > 4 or not 1e-12 < size < 1e16):
             return f"{self.value:.{math.floor(math.log10(size)) - last}e} ± {self.error:.0e}"
         most = 16 - math.floor(math.log10(size)) if size else 12  # digits of a float
         return f"{self.value:.{min(max(0, -last), most)}f} ± {self.error:.0e}"

@@ -24,9 +24,9 @@ def columns(path: str | Path, *wanted: str, optional: Sequence[str] = ()) -> dic
     """
     try:
         text = files.content(Path(path), _MOST_BYTES).decode("utf-8-sig")
-    except (OSError, UnicodeDecodeError) as error:
+        header, *rows = csv.reader(text.splitlines()) if text.strip() else [[]]
+    except (OSError, UnicodeDecodeError, csv.Error, SceneError) as error:
         raise SceneError(f"{path}: {files.reason(error)}") from None
-    header, *rows = csv.reader(text.splitlines()) if text.strip() else [[]]
     names = [name.partition("(")[0].strip() for name in header]
     found = {}
     for name in (*wanted, *optional):

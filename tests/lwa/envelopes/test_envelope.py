@@ -296,7 +296,11 @@ def test_units_of_real_spheres():
     [
         (Cell([1, 1]), {}, "two branches touch at this wavenumber"),
         (Cell([1]), {"wavenumber": 0}, "the frequency is zero at this wavenumber: sound"),
-        (Dimer(1, 2), {"branch": 2}, "branch is 2: a cell of 2 has 2 branches"),
+        (
+            Dimer(1, 2),
+            {"branch": 2},
+            "branch is 2: a cell of 2 has as many branches, counted from 0",
+        ),
         (Dimer(1, 2), {"wavenumber": 4}, r"wavenumber is 4: 0 … pi per cell is wanted"),
         (Cell([1, 2, 3]), {"wavenumber": 1}, "no exact form at this wavenumber: numeric"),
         (Dimer(1, 2), {"precompression": 1}, "background or precompression: one of the two"),

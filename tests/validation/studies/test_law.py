@@ -172,6 +172,11 @@ def written(tmp_path, text):
     return str(file)
 
 
+def test_a_folder_in_place_of_a_file_is_named(tmp_path):
+    with pytest.raises(SceneError, match=f"^{tmp_path}: a folder, and only regular files"):
+        law(tmp_path)
+
+
 def test_the_command(capsys, tmp_path, chain):
     V = speeds(chain, 1.5, 1.0) * (1 + 1e-6 * np.random.default_rng(3).normal(size=len(FORCES)))
     rows = "\n".join(f"{F!r},{v!r}" for F, v in zip(FORCES.tolist(), V.tolist(), strict=True))
@@ -194,6 +199,7 @@ def test_the_command(capsys, tmp_path, chain):
     [
         ("", {}, "one column force is wanted"),
         ("force,time\n1,2\n", {}, "one column speed is wanted"),
+        ("force,speed\n" + "1" * 200_000 + ",1\n", {}, "data.csv: field larger than field limit"),
         ("force,speed\n1,2\n", {}, "at least 6 pulses of positive force and speed"),
         ("force,speed\n" + "1,fast\n" * 9, {}, "column speed: could not convert .*fast"),
         ("force,speed\n" + "1,nan\n" * 9, {}, "column speed: finite numbers are wanted"),
