@@ -69,24 +69,26 @@ def _edge(chain: Dispersion, r: sp.Expr, sign: int) -> Any:
     """Return f at an edge: ∫₀^f sign (dκ/df - 1)/f df = ln r, f real (sign 1) or imaginary (-1).
 
     Newton's method starts from the root for small r - 1: dκ/df - 1 is (3/2) I f² to leading order.
+    It runs in s, f = sinh s, as the integral grows like ln f: from f itself it fails where r ≫ 1.
     """
     demand_numbers(r.free_symbols, "edges of cells of several beads are numbers")
     trace, target = _trace(chain), mpmath.log(mpmath.mpf(evaluated(r, DIGITS + 10)))
 
-    def density(f: Any) -> Any:
-        return sign * (_slowness(trace, sign * f * f) - 1) / f
+    def density(s: Any) -> Any:
+        return sign * (_slowness(trace, sign * mpmath.sinh(s) ** 2) - 1) / mpmath.tanh(s)
 
-    def excess(f: Any) -> Any:
-        return mpmath.quad(density, [0, f]) - target
+    def excess(s: Any) -> Any:
+        return mpmath.quad(density, mpmath.linspace(0, s, 2 + int(s / 8))) - target
 
     start = mpmath.sqrt(4 * target / (3 * mpmath.mpf(evaluated(chain.I, DIGITS + 10))))
     if sign > 0:
         top = chain.band_edges()[0, 1] * (1 - mpmath.mpf(10) ** -9)  # dκ/df has a pole at the edge
-        if excess(top) < 0:
+        if excess(mpmath.asinh(top)) < 0:
             raise InputError(f"c₋/c₊ is {sp.N(r, 5)}: the trailing edge leaves the acoustic branch")
         start = min(start, top)
     close = mpmath.mpf(10) ** (-2 * DIGITS)
-    return mpmath.findroot(excess, start, solver="newton", df=density, tol=close)
+    start = mpmath.asinh(start)
+    return mpmath.sinh(mpmath.findroot(excess, start, solver="newton", df=density, tol=close))
 
 
 def _trace(chain: Dispersion) -> list[Any]:

@@ -188,6 +188,14 @@ def test_a_cell_of_two_equal_beads_is_the_chain_of_equal_beads():
         assert ours == pytest.approx(theirs, rel=1e-14)
 
 
+@pytest.mark.parametrize(("k", "ahead"), [("3", "1e-6"), ("6", "1e-10")])
+def test_the_leading_edge_of_a_cell_where_the_load_ahead_is_weak(k, ahead):
+    """Two equal beads have the closed form where sound ahead is 10⁵ and 10²² times slower."""
+    cells = (EQUAL, Cell([1, 1], spacing=1))
+    one, two = (shock(cell, Power(k), "1/10", ahead).leading_speed("dispersion") for cell in cells)
+    assert float(two / one) == pytest.approx(1, rel=1e-14)
+
+
 def test_edges_of_a_dimer_by_the_bands_themselves():
     """The trailing edge satisfies El's equation with f and f′ of the numerical bands."""
     cell = Dimer(1, "1/3", spacing=1)
