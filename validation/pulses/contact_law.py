@@ -151,8 +151,11 @@ def fit_power(medium: Medium, force: Array, speed: Array, weight: Array | None =
     (mean,), variance = np.polyfit(x, apart, 0, w=w, cov=True)
     hertz = medium.log_stiffness(sixth, mean)
     hertz_error = 2 * _HERTZ * interval * math.sqrt(variance[0, 0])
-    parabola, noise = np.polyfit(x - middle, y, 2, w=w, cov=True)
+    parabola, noise = np.polyfit(x - middle, y - constant, 2, w=w, cov=True)
     bound = scipy.stats.t.ppf(0.975, len(x) - 3) * math.sqrt(noise[0, 0])
+    share = np.linalg.pinv(w[:, np.newaxis] * np.vander(x - middle, 3))[0] * w  # of each ln V
+    digits = np.finfo(float).eps * (1 + np.abs(x) + np.abs(y))  # rounding of ln V and ln F
+    bound += np.abs(share) @ digits
     return PowerFit(
         Measured(value[0], value[0] + k_error),
         Measured(math.exp(value[1]), math.exp(value[1] + log_error)),

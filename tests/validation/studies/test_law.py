@@ -100,6 +100,14 @@ def test_errors_in_a_file_come_in_two_positive_columns(tmp_path, chain):
     assert law(str(file), masses=(2,), spacing=3).data["k_value"] == pytest.approx(1.5, rel=1e-9)
 
 
+@pytest.mark.parametrize("scale", [1e-8, 0.9055, 1e8])
+def test_rounding_of_the_speeds_is_no_second_power(chain, scale):
+    """Without noise the scatter of the data is that of their last digits."""
+    for count in range(6, 30):
+        force = np.geomspace(1, 128, count)
+        assert fit_power(chain, force, scale * force ** (1 / 6)).one_power
+
+
 def test_a_law_of_two_powers_is_not_one_power(chain):
     """F = δ^{3/2} + δ^{5/2}, its speeds by S = 2 W/δ² and R of the local exponent."""
     delta = np.geomspace(0.05, 2, 22)
