@@ -109,9 +109,12 @@ def _method(scene: Scene, method: str, step: float | None, window: bool | int) -
     if not (forced or piston) or method not in COMPILED:
         return method
     if method != COMPILED[0] or window or (forced and step is not None):
+        drive, takes, without = "a drive of one velocity", (COMPILED[0], *METHODS), "window"
+        if forced:
+            drive, takes, without = "damping or a drive", METHODS, "step or window"
         raise SceneError(
-            f"method is {method}: a scene with damping or a drive takes one of "
-            f"{', '.join(METHODS)}, without step or window"
+            f"method is {method}: a scene with {drive} takes one of {', '.join(takes)}, "
+            f"without {without}"
         )
     return METHODS[0] if forced else method
 
