@@ -151,6 +151,12 @@ def twice(scene: Scene, fine: float, coarse: float, **options: Any) -> tuple[Run
     effect as well. `validation.pulses.pulse.compared` turns the difference into errors.
     """
     run = simulate(scene, rtol=fine, atol=fine, **options)
-    if run.window is not None:
-        options["window"] = max(_SHORTEST, run.window // 2)
-    return run, simulate(scene, rtol=coarse, atol=coarse, **options)
+    if run.window is None:
+        return run, simulate(scene, rtol=coarse, atol=coarse, **options)
+    options["window"] = max(_SHORTEST, run.window // 2)
+    try:
+        return run, simulate(scene, rtol=coarse, atol=coarse, **options)
+    except IntegrationError as error:
+        raise IntegrationError(
+            f"window is {run.window}: for the errors half of it must do as well, and {error}"
+        ) from None

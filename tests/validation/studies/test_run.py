@@ -11,7 +11,7 @@ import pytest
 
 from lwa import InputError
 from tests.commands import ended
-from validation import cli
+from validation import IntegrationError, cli, simulate
 from validation.pulses.sensors import READINGS, record
 from validation.scenes.chains import struck
 from validation.scenes.document import document
@@ -116,6 +116,13 @@ def test_a_window_that_changes_the_leading_pulse_is_an_error(two_blows, capsys, 
     status, out, err = ended(capsys, cli.main, "run", "scene.json", "--window", "8")
     assert (status, out, err.count("\n")) == (2, "", 1)
     assert "twice as many change the leading pulse by 0.8 where rtol is 1e-10" in err
+
+
+def test_a_window_too_short_for_the_errors_is_told_from_the_one_given(two_blows):
+    """A window of 12 beads is enough for the run, half of it is not for the less accurate run."""
+    assert simulate(two_blows, window=12).window == 12
+    with pytest.raises(IntegrationError, match=r"^window is 12: .* errors .* window of 8 beads is"):
+        record(two_blows, window=12)
 
 
 def test_a_damped_run_tells_what_was_dissipated():
