@@ -36,7 +36,8 @@ def run(command: click.Command, name: str, arguments: Sequence[str] | None = Non
     """
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
-            stream.reconfigure(encoding="utf-8")
+            # a file name that is not UTF-8 stands as \udcff in a message
+            stream.reconfigure(encoding="utf-8", errors="backslashreplace")
     sys.exit(_status(lambda: command.main(arguments, prog_name=name, standalone_mode=False), name))
 
 

@@ -109,9 +109,11 @@ def _method(scene: Scene, method: str, step: float | None, window: bool | int) -
     if not (forced or piston) or method not in COMPILED:
         return method
     if method != COMPILED[0] or window or (forced and step is not None):
+        drive = "damping or a drive" if forced else "a drive of one velocity"
+        takes = ", ".join(METHODS if forced else (COMPILED[0], *METHODS))
+        without = "step or window" if forced else "window"
         raise SceneError(
-            f"method is {method}: a scene with damping or a drive takes one of "
-            f"{', '.join(METHODS)}, without step or window"
+            f"method is {method}: a scene with {drive} takes one of {takes}, without {without}"
         )
     return METHODS[0] if forced else method
 

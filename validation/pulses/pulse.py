@@ -327,6 +327,6 @@ def compared(
 
     def checked(value: float, check: float) -> Measured:
         least = rtol * abs(value)
-        return Measured(value, check if abs(check - value) >= least else value + least)
+        return Measured(value, value + least if abs(check - value) < least else check)
 
     return {name: checked(value, less[name]) for name, value in numbers(fine).items()}

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from lwa.base.arrays import Array
+from lwa.base.exact import shorten
 from validation.scenes.checks import SceneError, between, each, items, one_of, positive, real
 
 DAMPINGS = ("contact", "kuwabara_kono", "restitution")
@@ -98,6 +99,10 @@ class Drive:
             raise SceneError(
                 "drive has not one motion: velocity, amplitude and frequency, or time and "
                 "displacement are wanted"
+            )
+        if self.ramp != 0 and not harmonic:
+            raise SceneError(
+                f"drive.ramp is {shorten(self.ramp)}: it belongs to amplitude and frequency"
             )
         if self.velocity is not None:
             real(self.velocity, "drive.velocity")

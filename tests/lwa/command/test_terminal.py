@@ -26,6 +26,11 @@ def test_output_and_refusals_are_in_utf_8_whatever_the_locale(encoding):
     assert "'κ κ'" in err.decode("utf-8")
 
 
+def test_a_file_name_that_is_not_utf_8_is_one_line():
+    status, out, err = encoded(cli.main, "wave", "--spheres", "\udcff.json", encoding="utf-8")
+    assert (status, out, err) == (2, b"", b"lwa: \\udcff.json: No such file or directory\n")
+
+
 def test_an_output_that_takes_nothing_is_no_result(capsys):
     for arguments in (WAVE, ["--version"], ["-h"]):
         status, err = unwritable(capsys, cli.main, *arguments, output=full_disk())

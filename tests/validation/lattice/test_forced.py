@@ -177,10 +177,13 @@ def test_a_drive_from_rows_is_the_motion_that_they_sample():
         (lambda: Drive(), "drive has not one motion"),
         (lambda: Drive(velocity=1, amplitude=1), "drive has not one motion"),
         (lambda: Drive(amplitude=1, frequency=0), "drive.frequency is 0: it must be positive"),
+        (lambda: Drive(velocity=1, ramp="x"), "drive.ramp is 'x': it belongs to amplitude"),
         (lambda: Drive(time=(0, 1), displacement=(0, 1)), "drive has 2 times and 2 displacements"),
         (lambda: pair(1.5, drive=Drive(velocity=1)), "drive moves bead 1, which has a velocity"),
         (lambda: simulate(pair(1.5, damping=Damping("contact", 1)), method="SRKN14"),
          "method is SRKN14: a scene with damping or a drive takes one of DOP853"),
+        (lambda: simulate(replace(pair(1.5), velocities=(), drive=Drive(velocity=1)), window=True),
+         "method is RKN86: a scene with a drive of one velocity takes one of RKN86, .* window$"),
     ],
 )  # fmt: skip
 def test_what_is_no_forcing_is_refused(wrong, message):

@@ -14,6 +14,7 @@ from validation.pulses.pulse import (
     Measured,
     MeasureError,
     Pulse,
+    compared,
     derived,
     exponent,
     measure,
@@ -145,3 +146,12 @@ def test_a_long_record_is_measured_at_its_pulse():
     assert seen.arrival == pytest.approx(alone.arrival, rel=1e-15)
     assert seen.peak == pytest.approx(alone.peak, rel=1e-15)
     assert seen.fwhm == pytest.approx(alone.fwhm, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("check", "error"), [(1.0, 0.1), (1.02, 0.1), (1.5, 0.5), (math.nan, math.nan)]
+)
+def test_the_error_of_a_less_accurate_run_is_at_least_the_tolerance(check, error):
+    """A number that the less accurate run does not have leaves the error unknown."""
+    found = compared(lambda value: {"x": value}, 1.0, check, 0.1)["x"]
+    assert found.error == pytest.approx(error, nan_ok=True)
