@@ -1,7 +1,7 @@
 """Breathers of a loaded chain: time-periodic orbits beside their envelopes.
 
 A = D = 1, and every contact carries the static force F0 = 1. The envelope's equation
-(`lwa.envelope`) has a standing wave for each frequency (1 - ν) ω0, ω0 an edge of a band of the
+(`lwa.envelope`) has a standing wave for each frequency (1 - Δ) ω0, ω0 an edge of a band of the
 linear chain: bright, sech(bn), in the gap below the optical band of a dimer; dark, tanh(bn), below
 the upper edge of equal beads. On the lattice the orbit of the same frequency is found by Newton's
 method from this envelope (`validation.waves.periodic`), in a chain with free ends under the load,
@@ -9,7 +9,7 @@ mirror symmetric about its middle bead. At free ends the envelope of a dark brea
 
 The amplitude is that of the first harmonic: of the middle bead if bright, of the plateau if dark.
 The width is 1/b in cells, from the full width at half maximum (bright) or half plateau (dark).
-The theory's error falls as ν.
+The theory's error falls as Δ.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ _HALF, _DIP = (
     2 * np.arccosh(2),
     2 * np.arctanh(0.5),
 )  # full widths of sech and tanh at half, over 1/b
-_BOUND = 4.0  # error of the theory's amplitude over ν, at most
+_BOUND = 4.0  # error of the theory's amplitude over Δ, at most
 _FEWER = 0.75  # beads of the chain that gives the errors, over those of the chain that counts
 
 
@@ -56,7 +56,7 @@ _FEWER = 0.75  # beads of the chain that gives the errors, over those of the cha
         "--detunings",
         callback=quantities,
         default=DETUNINGS,
-        says="ν = 1 - frequency over that of the band's edge.",
+        says="Δ = 1 - frequency over that of the band's edge.",
     ),
     option("--beads", default=601, says="Most beads; a chain is as long as its breather needs."),
 )
@@ -191,7 +191,7 @@ class Standing:
 
 
 _COLUMNS = (
-    Column("detuning_value", "ν", format="g"),
+    Column("detuning_value", "Δ", format="g"),
     Column("frequency_value", "frequency", format=".6f"),
     Column("amplitude", "amplitude", error=True),
     Column("amplitude_theory_value", "theory", format=".5f"),
@@ -224,7 +224,7 @@ def _report(cell: Cell, k: float, found: Sequence[tuple[Standing, dict[str, Any]
 def _findings(rows: Sequence[dict[str, Any]]) -> Iterator[Finding]:
     """The theory's error is of the order of the detuning."""
     worst = max(abs(row["amplitude_off_value"]) / abs(row["detuning_value"]) for row in rows)
-    yield Finding("amplitude: |theory/lattice - 1| over ν, at most", worst, high=_BOUND)
+    yield Finding("amplitude: |theory/lattice - 1| over Δ, at most", worst, high=_BOUND)
 
 
 def _panels(wave: Standing, row: dict[str, Any]) -> Iterator[Panel]:
@@ -240,7 +240,7 @@ def _panels(wave: Standing, row: dict[str, Any]) -> Iterator[Panel]:
             Curve.of("lattice", n, size, "C0o"),
             Curve.of("envelope", cells, row["amplitude_theory_value"] * line, "C1-"),
         ),
-        title=f"ν = {row['detuning_value']:g}",
+        title=f"Δ = {row['detuning_value']:g}",
     )
     phase = np.linspace(0, 2 * np.pi, 361)
     multipliers = wave.orbit.multipliers

@@ -28,8 +28,8 @@ def envelope(
     name, symbol = ("ω/(2π)", r"\omega / 2 \pi") if units else ("ω", r"\omega")
     rows: list[Row | str] = [
         spoken,
-        "u = A(X, T) φ e^{i(κ n - ω t)} + c.c., Σ m |φ|² = 1, n and κ per cell",
-        "i A_T + ½ ω'' A_XX = χ |A|² A",
+        "u = Ψ(X, T) U e^{i(κ n - ω t)} + c.c., Σ m |U|² = 1, n and κ per cell",
+        "i Ψ_T + ½ ω'' Ψ_XX = χ |Ψ|² Ψ",
         "",
         Row("wavenumber", "κ", found.wavenumber, r"\kappa", number=None),
         Row("frequency", f"frequency {name}", found.frequency / turn, symbol),
@@ -48,10 +48,10 @@ def envelope(
         shape = "sech" if breather.kind == "bright" else "tanh"
         rows += [
             "",
-            f"{breather.kind} breather, |A| = a {shape}(b n):",
+            f"{breather.kind} breather, |Ψ| = a {shape}(b n):",
             Row("breather_frequency", f"frequency {name}", breather.frequency / turn),
-            Row("detuning", "detuning ν = 1 - f/f0", breather.detuning, r"\nu"),
-            Row("amplitude", "largest displacement by bead", breather.amplitude, r"2 a \phi"),
+            Row("detuning", "detuning Δ = 1 - f/f0", breather.detuning, r"\Delta"),
+            Row("amplitude", "largest displacement by bead", breather.amplitude, "2 a U"),
             Row("width", "width 1/b in cells", breather.width, "b^{-1}"),
         ]
         if breather.opening != sp.oo:

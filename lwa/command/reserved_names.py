@@ -18,7 +18,7 @@ NAMES = {
     "derive": EQUATION,
     "wave": "u v x z t tau τ delta δ A F G H p a mu μ eta η sigma σ s xi ξ beta β π",
     "wave under load": "u v x t tau τ delta δ A F F0 I p0 xi ξ c0 alpha α gamma γ L",
-    "envelope": "A F T X i n t u phi φ kappa κ omega ω chi χ nu ν a b delta δ",
+    "envelope": "A F T U X i n t u Psi Ψ kappa κ omega ω chi χ Delta Δ a b delta δ",
     "shock": "A F x t delta δ c s v_p",
     "dispersion": "t tau τ delta δ A kappa κ Omega Ω q",
     "expansion": "t delta δ A F c epsilon ε xi ξ",

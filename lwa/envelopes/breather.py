@@ -1,15 +1,15 @@
 """Standing envelopes at the edge of a band: bright and dark breathers of a prescribed frequency.
 
 Letters as in `lwa.envelopes.schrodinger`: a mode φ at the edge of a band has the frequency ω and
-the envelope A(X,T), i A_T + ½ω″A_XX = χ|A|²A. A breather of the frequency (1 - ν) ω, ν the
-detuning, in the cells n is A = a f(bn) e^{-iΩT}, Ω = -νω, with
+the envelope Ψ(X,T), i Ψ_T + ½ω″Ψ_XX = χ|Ψ|²Ψ. A breather of the frequency (1 - Δ) ω, Δ the
+detuning, in the cells n is Ψ = a f(bn) e^{-iΩT}, Ω = -Δω, with
 
     bright, ω″χ < 0:   f = sech,   χ a² = 2Ω,   ω″ b² = -2Ω,
     dark,   ω″χ > 0:   f = tanh,   χ a² = Ω,    ω″ b² = Ω,
 
 so that Ω has the sign of χ. A bead is displaced by 2a|φ| at most, and the compression of a contact
 differs from its static value δ0 by 2a|d|, d the contact's compression in the mode. Contacts begin
-to open at about 2a|d| = δ0, that is at a detuning ν_o, as a² ∝ ν.
+to open at about 2a|d| = δ0, that is at a detuning Δ_o, as a² ∝ Δ.
 """
 
 from __future__ import annotations
@@ -38,13 +38,13 @@ HELD = ("frequency", "amplitude")
 
 @dataclass(frozen=True)
 class Breather(Value):
-    """The standing envelope of the frequency (1 - ν) ω (see `lwa.Envelope.breather`).
+    """The standing envelope of the frequency (1 - Δ) ω (see `lwa.Envelope.breather`).
 
     edge, dispersion, nonlinearity, mode, wavenumber : ω, ω″, χ, φ and κ of the envelope's equation,
         with frequencies in radians per unit of time.
-    opening : |A|² at which contacts begin to open, to leading order; infinite where contacts pull.
+    opening : |Ψ|² at which contacts begin to open, to leading order; infinite where contacts pull.
     load, k : the static force F0, and the exponent of a power law, NaN for other laws.
-    detuning, kind : ν, and one of `KINDS`.
+    detuning, kind : Δ, and one of `KINDS`.
 
     Raises `lwa.InputError` for a detuning to the side where there is no such envelope, and for one
     at which contacts open.
@@ -80,17 +80,17 @@ class Breather(Value):
 
     def latex_rows(self) -> list[str]:
         shape = r"\operatorname{sech}" if self.kind == KINDS[0] else r"\tanh"
-        rows = [rf"|A| = a {shape}(b n)", latex.row("a^{2}", self._square)]
+        rows = [rf"|\Psi| = a {shape}(b n)", latex.row("a^{2}", self._square)]
         return [*rows, latex.row("b^{-1}", self.width)]
 
     @property
     def frequency(self) -> sp.Expr:
-        """Frequency (1 - ν) ω of the breather, in radians per unit of time."""
+        """Frequency (1 - Δ) ω of the breather, in radians per unit of time."""
         return (1 - self.detuning) * self.edge
 
     @property
     def _shift(self) -> sp.Expr:
-        """The ratio χ a²/ν: 2Ω/ν for bright, Ω/ν for dark breathers."""
+        """The ratio χ a²/Δ: 2Ω/Δ for bright, Ω/Δ for dark breathers."""
         return -(2 if self.kind == KINDS[0] else 1) * self.edge
 
     @cached_property
@@ -111,9 +111,9 @@ class Breather(Value):
 
     @cached_property
     def opening_detuning(self) -> sp.Expr:
-        """Detuning ν_o at which contacts begin to open, to leading order; ∞ if contacts pull.
+        """Detuning Δ_o at which contacts begin to open, to leading order; ∞ if contacts pull.
 
-        Under a power law ν_o is the same at every load. In the lattice contacts open earlier: for
+        Under a power law Δ_o is the same at every load. In the lattice contacts open earlier: for
         spheres of mass ratios 0.3 to 0.5 at 0.018 instead of 3/128 = 0.0234.
 
         >>> from lwa import Cell, Power, envelope
@@ -127,9 +127,9 @@ class Breather(Value):
         """The static force at which contacts begin to open, ``held`` "frequency" or "amplitude".
 
         Under F = A δ^k lengths scale as F0^{1/k} and frequencies as F0^{(k-1)/(2k)}, and contacts
-        open at the detuning ν_o whatever the load. A held amplitude keeps a² ∝ ν F0^{2/k}, and the
-        result is F0 (ν/ν_o)^{k/2}: contacts open under *smaller* loads. A held frequency keeps
-        (1 - ν) F0^{(k-1)/(2k)}, and the result is F0 ((1-ν)/(1-ν_o))^{2k/(k-1)}: contacts open
+        open at the detuning Δ_o whatever the load. A held amplitude keeps a² ∝ Δ F0^{2/k}, and the
+        result is F0 (Δ/Δ_o)^{k/2}: contacts open under *smaller* loads. A held frequency keeps
+        (1 - Δ) F0^{(k-1)/(2k)}, and the result is F0 ((1-Δ)/(1-Δ_o))^{2k/(k-1)}: contacts open
         under *greater* loads, which lift the band and so increase the detuning and the amplitude.
 
         NaN for other laws. Raises `lwa.InputError` for another word.

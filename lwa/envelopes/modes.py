@@ -13,12 +13,12 @@ and wavenumber κ per cell, u = A φ e^{i(κn - ωt)} + c.c., Σ m_i |φ_i|² = 
 by d = B(κ)φ and at second order drives (Remoissenet, *Waves Called Solitons*, 1999)
 
     the second harmonic   A² e2,    e2 = -G K3 d²,   G = B(2κ) [K(2κ) - 4ω²M]^{-1} B(2κ)†,
-    a lasting strain    |A|² e0,    K2 e0 + 2 K3 |d|² = f, the same in all contacts.
+    a lasting strain    |Ψ|² e0,    K2 e0 + 2 K3 |d|² = f, the same in all contacts.
 
 The lasting force f accelerates the cells, and their mean strain Σ e0 travels at the group velocity
 c_g, hence f = c_g² Σm Σe0. With v = c_g/c_0, c_0² = 1/(Σm Σc) the speed of sound, this gives
 f = 2 Σ c K3|d|²/Σ c · v²/(v² - 1), zero at a band's edge, where the load is held. At third order
-the frequency rises by χ|A|², with the sum of all contacts i
+the frequency rises by χ|Ψ|², with the sum of all contacts i
 
     2ω χ = Σ_i [3 K4_i |d_i|⁴ + 2 K3_i (d̄_i² e2_i + |d_i|² e0_i)].
 

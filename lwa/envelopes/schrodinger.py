@@ -1,6 +1,6 @@
-"""The nonlinear Schrödinger equation i A_T + ½ω″ A_XX = χ |A|²A of a mode of a loaded chain.
+"""The nonlinear Schrödinger equation i Ψ_T + ½ω″ Ψ_XX = χ |Ψ|²Ψ of a mode of a loaded chain.
 
-To leading order the displacements in cell n are u = A(X,T) φ e^{i(κn - ωt)} + c.c.: φ is the mode,
+To leading order the displacements in cell n are u = Ψ(X,T) U e^{i(κn - ωt)} + c.c.: U is the mode,
 Σ m_i |φ_i|² = 1 over the beads of a cell, ω its frequency, κ its wavenumber per cell, ω″ = d²ω/dκ²,
 X = n - (dω/dκ) t, T = t, and χ the nonlinear coefficient (`lwa.envelopes.modes`). The load is held,
 not the length. Equal beads under A δ^k have χ = -ω (k-1) (k - cos² κ/2)/(m δ0²), δ0 the static
@@ -56,7 +56,7 @@ class Envelope(Value):
 
     def latex_rows(self) -> list[str]:
         names = {r"\omega": self.frequency, r"\omega''": self.dispersion}
-        equation = r"i A_{T} + \tfrac{1}{2} \omega'' A_{XX} = \chi |A|^{2} A"
+        equation = r"i \Psi_{T} + \tfrac{1}{2} \omega'' \Psi_{XX} = \chi |\Psi|^{2} \Psi"
         return [equation, *latex.rows(names | {r"\chi": self.nonlinearity})]
 
     def numeric(self) -> Envelope:
@@ -105,7 +105,7 @@ class Envelope(Value):
 
     @cached_property
     def nonlinearity(self) -> sp.Expr:
-        """Nonlinear coefficient χ: the amplitude A raises the frequency by χ|A|²."""
+        """Nonlinear coefficient χ: the amplitude Ψ raises the frequency by χ|Ψ|²."""
         found = self._mode.cubic * self._rate / (2 * self.frequency)
         return self._tidy(found / (self._mass * self._length**2))
 
@@ -116,7 +116,7 @@ class Envelope(Value):
 
     @cached_property
     def mean_strain(self) -> tuple[sp.Expr, ...]:
-        """Lasting compression of each contact divided by |A|², with the mean flow's part."""
+        """Lasting compression of each contact divided by |Ψ|², with the mean flow's part."""
         return self._each(self._mode.mean, self._mass * self._length)
 
     @cached_property
@@ -141,7 +141,7 @@ class Envelope(Value):
         return KINDS[0] if negative else KINDS[1]
 
     def breather(self, frequency: Any = None, *, detuning: Any = None, kind: str = "") -> Breather:
-        """The standing envelope of a frequency, or of the detuning ν = 1 - frequency/ω.
+        """The standing envelope of a frequency, or of the detuning Δ = 1 - frequency/ω.
 
         frequency : in radians per unit of time.
         kind : "bright" or "dark", for symbols that leave the kind open.
@@ -172,7 +172,7 @@ class Envelope(Value):
 
     @property
     def _opening(self) -> sp.Expr:
-        """The |A|² at which the compression 2|A||d| of a contact reaches its static δ0."""
+        """The |Ψ|² at which the compression 2|Ψ||d| of a contact reaches its static δ0."""
         roots = (p for p in self.law.F.atoms(sp.Pow) if p.base == self.law.delta)
         if not self.law.homogeneous and all(p.exp.is_integer for p in roots):  # real at δ < 0
             return sp.oo

@@ -21,7 +21,7 @@ def test_a_gap_breather_of_a_dimer(capsys):
     assert again["width_value"] == pytest.approx(found["width_value"], rel=1e-10)
     status, out, _ = run(capsys, *options, "--detuning", "1/1000")
     assert status == 0
-    assert "bright breather, |A| = a sech(b n):" in out
+    assert "bright breather, |Ψ| = a sech(b n):" in out
 
 
 def test_equal_beads_in_symbols(capsys):
