@@ -1,7 +1,7 @@
 """The nonlinear Schrödinger equation i Ψ_T + ½ω″ Ψ_XX = χ |Ψ|²Ψ of a mode of a loaded chain.
 
 To leading order the displacements in cell n are u = Ψ(X,T) U e^{i(κn - ωt)} + c.c.: U is the mode,
-Σ m_i |φ_i|² = 1 over the beads of a cell, ω its frequency, κ its wavenumber per cell, ω″ = d²ω/dκ²,
+Σ m_i |U_i|² = 1 over the beads of a cell, ω its frequency, κ its wavenumber per cell, ω″ = d²ω/dκ²,
 X = n - (dω/dκ) t, T = t, and χ the nonlinear coefficient (`lwa.envelopes.modes`). The load is held,
 not the length. Equal beads under A δ^k have χ = -ω (k-1) (k - cos² κ/2)/(m δ0²), δ0 the static
 compression.
@@ -121,7 +121,7 @@ class Envelope(Value):
 
     @cached_property
     def mode(self) -> tuple[sp.Expr, ...]:
-        """Mode φ, one component per bead; positive for the bead with the largest displacement."""
+        """Mode U, one component per bead; positive for the bead with the largest displacement."""
         return self._each(self._mode.shape, root(self._mass))
 
     @cached_property
