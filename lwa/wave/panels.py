@@ -34,7 +34,7 @@ CONVERGED = 1e-13
 """Bound on the last two Legendre coefficients of dξ/dθ on a panel, relative to dξ/dθ."""
 
 ROUNDING = 1e-9
-"""The same bound on the finest panels: p has rounding errors next to a law's pole."""
+"""Bound in place of `CONVERGED` on the finest panels, where p has rounding errors near a pole."""
 
 
 class Grid(NamedTuple):
