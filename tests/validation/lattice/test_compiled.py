@@ -50,12 +50,9 @@ def test_an_edit_of_any_source_of_the_kernel_compiles_again(kernel):
 
 
 @pytest.mark.slow  # compiles
-def test_without_a_directory_to_write_to_the_engine_runs_and_says_so(kernel):
+def test_without_a_directory_to_write_to_the_engine_runs(kernel):
     """A file is where a folder belongs, which root cannot make either."""
     shutil.rmtree(kernel / "__pycache__")
     (kernel / "__pycache__").write_text("")
     places = dict.fromkeys(("HOME", "XDG_CACHE_HOME", "NUMBA_CACHE_DIR"), "/dev/null/home")
-    assert run(kernel, **places) == (
-        "[0.0, 1.0] 0",
-        "no directory for machine code can be written: it is compiled for this run only",
-    )
+    assert run(kernel, **places) == ("[0.0, 1.0] 0", "")

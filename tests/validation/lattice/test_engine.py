@@ -4,6 +4,7 @@ import math
 from dataclasses import replace
 from itertools import pairwise
 
+import numba
 import numpy as np
 import pytest
 import scipy
@@ -218,6 +219,12 @@ def test_chains_that_fly_apart_and_meet(seed):
         assert run.velocities == pytest.approx(exact.velocities, abs=100 * rtol), rtol
 
 
+@numba.njit
+def integrals(chain, points, p, z):
+    """The kernel's integrals from the root to z; only compiled functions call the kernel."""
+    return ramp(chain, points, p, z)
+
+
 @pytest.mark.parametrize("k", [1.5, 2.5])
 @pytest.mark.parametrize(("root", "q"), [(-0.6, 1.0), (0.3, 1.0), (0.3, -1.0), (1.7, -1.0)])
 def test_the_integrals_of_a_force_with_a_kink(k, root, q):
@@ -230,10 +237,8 @@ def test_the_integrals_of_a_force_with_a_kink(k, root, q):
     def force(u):
         return max((u - root) * np.polyval(coefficients[::-1], u), 0.0) ** k
 
-    def integrals(z):
-        return np.array(ramp(chain, points, (root, *coefficients.tolist()), z))
-
-    (far, speed), (near, start) = integrals(1.0), integrals(0.0)
+    p = (root, *coefficients.tolist())
+    (far, speed), (near, start) = (integrals(chain, points, p, z) for z in (1.0, 0.0))
     ends = sorted((0.0, min(max(root, 0.0), 1.0), 1.0))
     parts = [(a, b) for a, b in pairwise(ends) if b > a]
     once, twice = (
