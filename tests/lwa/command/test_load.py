@@ -211,7 +211,7 @@ BAD = [
     (("derive", "--law", "hertz2:delta,1"), "'delta': the name means the compression"),
     (("derive", "--law", "exponential:delta"), "'delta': the name means the compression"),
     (("derive", "--law", "polynomial:1,delta"), "'delta': the name means the compression"),
-    (("wave", "--k", "3/2", "--precompression", "2", "--force", "1"), "only B > 0"),
+    (("wave", "--k", "3/2", "--precompression", "2", "--force", "1"), "speeds grow towards B"),
     (("wave", "--k", "3/2", "--precompression", "2", "--force", "2"), "no wave"),
     (("dispersion", "--precompression", "-1"), "must be positive"),
 ]
