@@ -30,7 +30,7 @@ from lwa.base.arrays import Array
 from lwa.base.progress import Progress
 from validation.lattice.run import Run
 from validation.lattice.simulate import simulate, simulate_many
-from validation.pictures.panel import Curve, Panel
+from validation.pictures import Curve, Panel
 from validation.pulses.pulse import Measured, highest_pulse
 from validation.report.command import EXPONENT, option, study
 from validation.report.result import Report
@@ -189,8 +189,8 @@ def _report(
                 "site",
                 "ln F, less that at the first place",
                 (
-                    Curve.of("mean over chains", places, *bars),
-                    Curve.of(f"mean loss at a single bead {theory:.3g}", places, line, "C1-"),
+                    Curve("mean over chains", places, *bars),
+                    Curve(f"mean loss at a single bead {theory:.3g}", places, line, "C1-"),
                 ),
             ),
         ),

@@ -44,13 +44,12 @@ from lwa.command.reading import quantities
 from lwa.wave.background import BackgroundWave
 from validation.lattice.run import Run
 from validation.lattice.simulate import simulate, twice
-from validation.pictures.panel import Curve, Panel
+from validation.pictures import Curve, Panel
 from validation.pulses.pulse import Measured, highest_pulse, leading_pulse
 from validation.pulses.sensors import tracks
 from validation.report.command import EXPONENT, option, study
 from validation.report.result import Report
-from validation.report.table import Column, Finding, Table
-from validation.report.text import percent
+from validation.report.table import Column, Finding, Table, percent
 from validation.scenes.chains import numbered, struck
 from validation.scenes.checks import between, integer
 from validation.scenes.scene import Scene
@@ -290,16 +289,16 @@ def _report(chains: Sequence[Upright], found: Mapping[tuple[Upright, float], Any
         weak.append((names, exponent, prefactor, theory, theory / prefactor.value - 1))
         sites = np.geomspace(_TOP, chain.beads, 50)
         curves = [
-            Curve.of("weak blow", x, width, "C0o"),
-            Curve.of("front", sites, theory * np.cbrt(sites), "C0-"),
+            Curve("weak blow", x, width, "C0o"),
+            Curve("front", sites, theory * np.cbrt(sites), "C0-"),
         ]
         for blow, colour in zip(STRONG, ("C1", "C2", "C3"), strict=True):
             pulses = found[chain, blow]
             strong += [(names, blow, *p.values(), theory * math.cbrt(p["site"])) for p in pulses]
             at, width, solitary = ([p[n] for p in pulses] for n in ("site", "width", "solitary"))
             curves += [
-                Curve.of(f"blow of {blow:g}", at, width, f"{colour}s"),
-                Curve.of("solitary wave", at, solitary, f"{colour}--"),
+                Curve(f"blow of {blow:g}", at, width, f"{colour}s"),
+                Curve("solitary wave", at, solitary, f"{colour}--"),
             ]
         panels.append(Panel("site", "FWHM (sites)", tuple(curves), "xy", ", ".join(names)))
     return Report(

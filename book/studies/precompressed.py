@@ -34,13 +34,12 @@ from lwa.command.reading import quantities
 from lwa.wave.quadrature import NumericBackground
 from validation.lattice.run import Run
 from validation.lattice.simulate import twice
-from validation.pictures.panel import Curve, Panel
+from validation.pictures import Curve, Panel
 from validation.pulses.pulse import Measured, highest_pulse, leading_pulse
 from validation.pulses.sensors import tracks
 from validation.report.command import EXPONENT, option, study
 from validation.report.result import Report
-from validation.report.table import Column, Finding, Table
-from validation.report.text import percent
+from validation.report.table import Column, Finding, Table, percent
 from validation.scenes.chains import carrying, numbered
 from validation.scenes.checks import SceneError, between
 from validation.scenes.scene import Scene
@@ -320,7 +319,7 @@ def _panels(found: Sequence[tuple[Wave, dict[str, Any]]]) -> Iterator[Panel]:
     theory = [first.theory(force) for force in forces]
     for name, label, scale in (("speed", "V/c0", "x"), ("fwhm", "FWHM of force / √(12 I)", "xy")):
         values = [each[name] / first.unit(name) for each in theory]
-        curves = [Curve.of("theory, all chains", forces, values, "k-")]
+        curves = [Curve("theory, all chains", forces, values, "k-")]
         chains = groupby(found, lambda part: part[0].cell)
         for (cell, those), mark in zip(chains, cycle("osv^Dx"), strict=False):
             points = [
@@ -328,7 +327,7 @@ def _panels(found: Sequence[tuple[Wave, dict[str, Any]]]) -> Iterator[Panel]:
                 for wave, row in those
             ]
             x, y, error = zip(*points, strict=True)
-            curves.append(Curve.of(f"masses {', '.join(map(str, cell.masses))}", x, y, mark, error))
+            curves.append(Curve(f"masses {', '.join(map(str, cell.masses))}", x, y, mark, error))
         yield Panel("F/F0", label, tuple(curves), scale)
 
 
