@@ -18,7 +18,7 @@ from lwa.base.files import load
 from lwa.base.tables import entries
 from lwa.command.options import quantities, quantity
 from lwa.spheres.beads import spheres as read_spheres
-from validation.pictures.panel import Curve, Panel
+from validation.pictures import Curve, Panel
 from validation.pulses.contact_law import Medium, PowerFit, fit_power, free_law, weights
 from validation.pulses.pulse import Measured
 from validation.report.command import option, study
