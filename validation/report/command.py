@@ -17,7 +17,7 @@ from lwa.base.progress import bar, shown
 from lwa.command.reading import called, quantity
 from lwa.command.terminal import HELP
 from lwa.command.terminal import run as run_command
-from validation.pictures.figure import SUFFIXES
+from validation.pictures import SUFFIXES
 from validation.report.files import output_file
 from validation.report.result import Report
 from validation.scenes.checks import Failure, SceneError

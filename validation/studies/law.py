@@ -18,8 +18,7 @@ from lwa.base.files import load
 from lwa.base.tables import entries
 from lwa.command.reading import quantities, quantity
 from lwa.spheres.beads import spheres as read_spheres
-from validation.pictures.panel import Curve, Panel
-from validation.waves.contact_law import Medium, PowerFit, fit_power, free_law, weights
+from validation.pictures import Curve, Panel
 from validation.pulses.pulse import Measured
 from validation.report.command import option, study
 from validation.report.result import Report
@@ -27,6 +26,7 @@ from validation.report.table import Column, Table
 from validation.scenes.chains import numbered
 from validation.scenes.checks import SceneError, integer
 from validation.scenes.columns import columns
+from validation.waves.contact_law import Medium, PowerFit, fit_power, free_law, weights
 
 _ROOT = 1e-13  # error of ln E, beside rounding
 _LAW = (
