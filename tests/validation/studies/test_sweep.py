@@ -26,7 +26,7 @@ from validation import cli
 from validation.lattice.threads import cluster
 from validation.pulses.pulse import Measured
 from validation.pulses.steady import QUANTITIES, Point
-from validation.report.text import percent
+from validation.report.table import percent
 from validation.studies.sweep import SweepError, report, sweep, theory
 from validation.waves.theory import theory_at
 
@@ -404,7 +404,7 @@ def test_the_picture_has_maps_or_curves(result, points):
         some = points[: 3 * step : step]
         panels = report(*axes, some).panels
         assert [len(panel.curves) for panel in panels] == [3, 3, 3, 1]
-        assert panels[0].curves[0].y.tolist() == [p.numbers["width"].value for p in some]
+        assert list(panels[0].curves[0].y) == [p.numbers["width"].value for p in some]
 
 
 def test_the_theory_is_that_of_lwa():
