@@ -22,7 +22,7 @@ from validation.pulses.train import Train
 from validation.report.command import study
 from validation.report.result import Report
 from validation.report.table import Column, Table, percent
-from validation.scenes.materials import DIAMETER
+from validation.scenes.chains import DIAMETER
 from validation.studies import paper
 from validation.studies.paper import HERTZ, chain_cell, chain_runs
 from validation.waves.theory import bead_fwhm

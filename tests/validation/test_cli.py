@@ -22,8 +22,7 @@ from validation.report import command
 from validation.report.result import Report
 from validation.scenes.chains import chain_scene
 from validation.scenes.checks import SceneError
-from validation.scenes.document import document
-from validation.scenes.scenefile import read_scene, scene
+from validation.scenes.scenefile import document, read_scene, scene
 from validation.studies.limits import report
 from validation.studies.run import EXAMPLES
 

@@ -23,7 +23,7 @@ from validation.pulses.train import Train
 from validation.report.command import study
 from validation.report.result import Report
 from validation.report.table import Column, Table, percent
-from validation.scenes.materials import DIAMETER, PTFE, PTFE_BEAD
+from validation.scenes.chains import DIAMETER, PTFE, PTFE_BEAD
 from validation.studies import paper
 from validation.studies.paper import HERTZ, chain_cell, chain_runs
 

@@ -18,9 +18,8 @@ from validation.report.files import output_file
 from validation.report.result import Report
 from validation.report.table import Column, Table
 from validation.scenes.checks import SceneError
-from validation.scenes.document import document
 from validation.scenes.scene import Scene
-from validation.scenes.scenefile import read_scene
+from validation.scenes.scenefile import document, read_scene
 from validation.studies.records import KEPT, SUFFIXES, load, store
 
 _NOTE = "{} at each sensor, in {} units. ±: difference to a less accurate run."
