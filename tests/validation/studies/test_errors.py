@@ -1,7 +1,6 @@
 """Every number with ± against the same computation at a hundred times the cost: it is within ±.
 
-A study's cost is set by constants of its module: tolerances, distances, samples. The finer run of
-each case sets them by `monkeypatch`.
+A study's cost is set by arguments: tolerances, distances, samples.
 """
 
 import importlib
@@ -30,6 +29,9 @@ disorder, gravity, precompressed, widths = (
 )
 
 
+FINER = (1e-13, 1e-12)  # tolerances of the run that counts and of the run that gives its errors
+
+
 def held(numbers, finer):
     """Each number's difference from the finer one is within its ±."""
     assert numbers.keys() == finer.keys()
@@ -45,7 +47,7 @@ def measurements(values):
 
 
 def of_run(name):
-    found = record(scenefile.scene(tomllib.loads(runs.EXAMPLES[name][1])))
+    found = record(scenefile.scene(tomllib.loads(runs.example(name))))
     return {
         (reading.name, key): number
         for reading in (*found.sensors, *found.speeds)
@@ -74,18 +76,15 @@ def of_paper(**options):
     return {quantity: number for quantity, _, number, *_ in paper.paper(**options).tables[0].rows}
 
 
-def test_paper(monkeypatch):
-    few = {"beads": 24, "sensors": (8, 19)}
-    found = [of_paper(**options) for options in (few, {})]
-    monkeypatch.setattr(paper, "TOLERANCES", (1e-13, 1e-12))
-    for one, options in zip(found, (few, {}), strict=True):
-        held(one, of_paper(**options))
+@pytest.mark.parametrize("options", [{"beads": 24, "sensors": (8, 19)}, {}])
+def test_paper(options):
+    held(of_paper(**options), of_paper(**options, tolerances=FINER))
 
 
 def test_two_commands_print_the_same_value():
     """The paper's chain by `paper` and by `run` on its own example."""
     by_name = of_paper()
-    scene = scenefile.scene(tomllib.loads(runs.EXAMPLES["paper"][1]))
+    scene = scenefile.scene(tomllib.loads(runs.example("paper")))
     found = record(scene)
     first, second = (reading.numbers["peak"] for reading in found.sensors[:2])
     pairs = [
@@ -98,11 +97,11 @@ def test_two_commands_print_the_same_value():
         assert one.value == pytest.approx(other.value, rel=1e-9)
 
 
-def of_figures(chains, moduli):
-    speeds = {N: figures.chain_speed(N) for N in chains}
+def of_figures(chains, moduli, **options):
+    speeds = {N: figures.chain_speed(N, **options) for N in chains}
     found = {(N, name): getattr(s, name) for N, s in speeds.items() for name in ("speed", "force")}
     for E in moduli:
-        scaling = figures.scaling(E)
+        scaling = figures.scaling(E, **options)
         found |= {(E, "V", i): number for i, number in enumerate(scaling.speeds)}
         found |= {(E, "F", i): number for i, number in enumerate(scaling.forces)}
         found[E, "exponent"] = scaling.exponent
@@ -113,10 +112,8 @@ def of_figures(chains, moduli):
     ("chains", "moduli"),
     [((1, 2), ()), pytest.param((3, 5, 11, 22), figures.MODULI, marks=pytest.mark.slow)],
 )
-def test_figures(monkeypatch, chains, moduli):
-    found = of_figures(chains, moduli)
-    monkeypatch.setattr(paper, "TOLERANCES", (1e-13, 1e-12))
-    held(found, of_figures(chains, moduli))
+def test_figures(chains, moduli):
+    held(of_figures(chains, moduli), of_figures(chains, moduli, tolerances=FINER))
 
 
 @pytest.mark.parametrize("k", ["3/2", "5/4"])
@@ -216,18 +213,16 @@ def test_disorder(monkeypatch):
     held(found, again)
 
 
-def of_widths():
-    report = widths.widths()
+def of_widths(**options):
+    report = widths.widths(**options)
     beads = zip(report.data["fwhm_value"], report.data["fwhm_error_value"], strict=True)
     times = [Measured(value, value + error) for value, error in beads]
     return dict(enumerate([*times, *(average for _, _, average, *_ in report.tables[0].rows)]))
 
 
 @pytest.mark.slow
-def test_widths(monkeypatch):
-    found = of_widths()
-    monkeypatch.setattr(paper, "TOLERANCES", (1e-13, 1e-12))
-    held(found, of_widths())
+def test_widths():
+    held(of_widths(), of_widths(tolerances=FINER))
 
 
 POINTS = [("3/2", omega) for omega in ("9/20", "1/5", "1/2", "3/5", "7/10", "3/4", "1")]
