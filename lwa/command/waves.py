@@ -17,7 +17,7 @@ from lwa.command.reserved_names import demand_free
 from lwa.command.rows import Answer, Row, Values, attempt
 from lwa.theory import Theory
 from lwa.wave.background import BackgroundWave
-from lwa.wave.precompressed import PrecompressedWave
+from lwa.wave.physical import PrecompressedWave
 from lwa.wave.traveling import TravelingWave
 
 RADIATES = 0.05
