@@ -40,7 +40,7 @@ import scipy
 from lwa import Cell, Power, background_wave
 from lwa.base.arrays import Array
 from lwa.base.progress import Progress
-from lwa.command.reading import quantities
+from lwa.command.options import quantities
 from lwa.wave.background import BackgroundWave
 from validation.lattice.run import Run
 from validation.lattice.simulate import simulate, twice
@@ -62,7 +62,6 @@ FIRST = 100  # beads above the first place of the fit of a weak blow's front
 _PLACES = 24  # places of a weak blow
 _TOP, _FEW = 20, 7  # beads above the first place of a strong blow; number of its places
 _SAMPLES = 40.0  # per unit of time
-_TOLERANCES = (1e-5, 1e-4)
 
 
 @cache
@@ -91,11 +90,17 @@ def front_width(k: float) -> float:
 
 @dataclass(frozen=True)
 class Upright:
-    """A chain under its own weight, of ``beads`` beads that repeat the cell."""
+    """A chain under its own weight, of ``beads`` beads that repeat the cell.
+
+    weak: velocity of the struck bead that counts as weak.
+    tolerances: of the run that is read and of the less accurate run.
+    """
 
     cell: Cell
     k: float
     beads: int
+    weak: float = WEAK
+    tolerances: tuple[float, float] = (1e-5, 1e-4)
 
     @cached_property
     def masses(self) -> tuple[float, ...]:
@@ -150,8 +155,8 @@ class Upright:
             found = [highest_pulse(velocity).fwhm for velocity in moving]
             return np.asarray((np.reshape(found, x.shape) * self.sound(x)).mean(axis=1))
 
-        scene = self.blown(WEAK, bead_sensors=beads.ravel().tolist())
-        fine, coarse = map(widths, twice(scene, *_TOLERANCES))
+        scene = self.blown(self.weak, bead_sensors=beads.ravel().tolist())
+        fine, coarse = map(widths, twice(scene, *self.tolerances))
         return x.mean(axis=1), fine, coarse
 
     def fit(self, x: Array, width: Array, power: float) -> Array:
@@ -184,7 +189,7 @@ class Upright:
         size = len(self.masses)
         contacts = np.add.outer(self.places(_TOP, _FEW), np.arange(2 * size))
         scene = self.blown(velocity, contact_sensors=np.unique(contacts).tolist())
-        run, numeric, found = simulate(scene, rtol=_TOLERANCES[0]), self.theory.numeric(), {}
+        run, numeric, found = simulate(scene, rtol=self.tolerances[0]), self.theory.numeric(), {}
         for track in tracks(run):
             pulse = leading_pulse(track.force, self.k)
             found[track.number - 1] = pulse.arrival, pulse.peak, pulse.fwhm

@@ -85,7 +85,7 @@ _COLUMNS = (
 
 
 @study()
-def widths(tolerances: tuple[float, float] = TOLERANCES) -> Report:
+def widths() -> Report:
     """FWHM of the force down the paper's 1:1 chain, and ten definitions of its average.
 
     ``beads``, ``fwhm_value`` (s), ``fwhm_error_value``, ``lines_value`` {closure: {line: s}},
@@ -93,7 +93,7 @@ def widths(tolerances: tuple[float, float] = TOLERANCES) -> Report:
     ``average_error_value``, ``error_value`` {closure: {line: …}}, ``reproduced``.
     """
     beads = tuple(range(4, BEADS - 2))  # of PTFE and of steel in turn
-    found, waves = compared(_numbers, *twice(recorded_chain(beads), *tolerances)), _waves()
+    found, waves = compared(_numbers, *twice(recorded_chain(beads), *TOLERANCES)), _waves()
 
     def theory(quantity: str, force: Measured, in_time: bool) -> Lines:
         return {
