@@ -57,10 +57,10 @@ if TYPE_CHECKING:
     from lwa.theory import Theory as Theory
     from lwa.theory import homogenize as homogenize
     from lwa.wave.background import BackgroundWave as BackgroundWave
+    from lwa.wave.background import KdV as KdV
     from lwa.wave.background import background_wave as background_wave
     from lwa.wave.closed import CompactWave as CompactWave
     from lwa.wave.closed import Reduction as Reduction
-    from lwa.wave.kdv import KdV as KdV
     from lwa.wave.numeric import NumericWave as NumericWave
     from lwa.wave.physical import PhysicalWave as PhysicalWave
     from lwa.wave.precompressed import PrecompressedWave as PrecompressedWave
@@ -74,8 +74,7 @@ _MODULES = {
     "algebra.coefficients": "CoefficientRing",
     "algebra.jets": "Powers",
     "algebra.model": "Model",
-    "wave.background": "BackgroundWave background_wave",
-    "wave.kdv": "KdV",
+    "wave.background": "BackgroundWave KdV background_wave",
     "wave.precompressed": "PrecompressedWave",
     "wave.quadrature": "NumericBackground",
     "cell": "Cell D Dimer k",

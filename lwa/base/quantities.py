@@ -9,6 +9,9 @@ import sympy as sp
 from lwa.base.errors import NoSolitaryWave as NoSolitaryWave
 from lwa.base.exact import one_of
 
+NO_WAVE = "there is no wave unless contacts stay closed, F′ > 0, and speeds grow towards B"
+"""Reason for the refusal of a wave on a background."""
+
 RISE = sp.Symbol("B", positive=True)
 """B, the peak strain of a wave, unless the caller gives another."""
 

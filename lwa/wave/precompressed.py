@@ -22,7 +22,7 @@ from lwa.base.frozen import Value
 from lwa.base.quantities import NoSolitaryWave, known_extent
 from lwa.cell import Cell, meant
 from lwa.law import ContactLaw, for_cell, substituted
-from lwa.wave.background import DIGITS, BackgroundWave, taken_names
+from lwa.wave.background import WIDTH_DIGITS, BackgroundWave, taken_names
 
 
 @dataclass(frozen=True)
@@ -104,7 +104,7 @@ class PrecompressedWave(Value):
         return self.strain * self.speed
 
     def fwhm(
-        self, quantity: str = "force", extent: str = "length", digits: int = DIGITS
+        self, quantity: str = "force", extent: str = "length", digits: int = WIDTH_DIGITS
     ) -> sp.Expr:
         """Full width at half maximum of the rise of "strain", "force" or "velocity".
 

@@ -201,7 +201,7 @@ BAD = [
     (("wave", "--background", "1", "--law", "hertz2:1,B"), "'B': the name means the peak strain"),
     (("wave", "--background", "1", "--law", "hertz2:L,1"), "'L' has a meaning of its own"),
     (("derive", "--law", "hertz2:delta,1"), "'delta': the name means the compression"),
-    (("wave", "--k", "3/2", "--precompression", "2", "--force", "1"), "only B > 0"),
+    (("wave", "--k", "3/2", "--precompression", "2", "--force", "1"), "speeds grow towards B"),
     (("dispersion", "--precompression", "-1"), "must be positive"),
 ]
 
