@@ -100,7 +100,7 @@ def test_a_heavy_wave_has_a_width_in_floats():
     )
 
 
-@pytest.mark.parametrize("B", ["0.1", "0.666", "2/3", "0.667", "0.669", "1", "2"])
+@pytest.mark.parametrize("B", ["0.666", "2/3", "0.667", "2"])
 def test_the_limiting_amplitude_is_where_the_speed_stops_growing(B):
     """Q′(B) = 2/3 - B decides, the same for speed, width, profile and floats."""
     wave = background_wave(CHAIN, 0, law=LIMITED)
