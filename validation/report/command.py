@@ -14,7 +14,7 @@ from typing import Any, Generic, ParamSpec, TypeVar
 import click
 
 from lwa.base.progress import bar, shown
-from lwa.command.reading import called, quantity
+from lwa.command.options import called, quantity
 from lwa.command.terminal import HELP
 from lwa.command.terminal import run as run_command
 from validation.pictures import SUFFIXES

@@ -23,7 +23,7 @@ import numpy as np
 import sympy as sp
 
 from lwa import Cell, PhysicalWave, Sphere, canonical_wave, homogenize
-from lwa.command.reading import quantities
+from lwa.command.options import quantities
 from validation.lattice.run import Run, RunProgress, silent
 from validation.lattice.simulate import twice
 from validation.pictures import Curve, Panel

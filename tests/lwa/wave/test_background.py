@@ -328,7 +328,7 @@ def test_in_space_and_time():
 
 
 def test_another_law_in_units():
-    from lwa.wave.precompressed import PrecompressedWave
+    from lwa.wave.physical import PrecompressedWave
 
     law = named("hertz2", 1, "1/2")
     wave = PrecompressedWave(Cell([1], [3], 1), law, 2, 1)
