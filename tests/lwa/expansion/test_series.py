@@ -18,7 +18,6 @@ from lwa import Cell, Dimer, ExpandedWave, InputError, Power, expand, pulse_of_s
 from lwa.algebra.model import Model
 from lwa.base.exact import signed
 from lwa.base.quantities import QUANTITIES
-from lwa.command.cli import main
 from lwa.expansion.cost import affordable
 from lwa.expansion.radiation import radiation
 
@@ -293,13 +292,3 @@ def test_k_of_thousands_of_digits_is_refused() -> None:
             expand(Cell([1], [3]), 2, k=k)
         with pytest.raises(InputError, match="digits"):
             expand(Cell([1], [3]), 2).c2.at(k)
-
-
-@pytest.mark.parametrize("masses", ["a0,m2", "a_n,m2", "a1,b2"])
-def test_a_letter_prints_for_one_thing(capsys, masses: str) -> None:
-    with pytest.raises(SystemExit):
-        main(["expansion", "--masses", masses, "--order", "1"])
-    out = capsys.readouterr().out
-    letter = "c" if "b" in masses else "b"
-    assert f"Σ {letter}_n ε^n" in out
-    assert f"\n  {letter}1 = " in out
