@@ -23,9 +23,9 @@ def test_the_python_example(capsys):
 
 def test_the_commands_exist():
     from lwa.command.cli import COMMANDS
-    from validation.cli import studies
+    from validation.cli import STUDIES
 
-    known = {"lwa": COMMANDS, "lwa-validate": studies()}
+    known = {"lwa": COMMANDS, "lwa-validate": STUDIES}
     shown = re.findall(r"^\$ (lwa\S*) (\w+)", README, re.MULTILINE)
     for program, commands in known.items():
         assert {command for name, command in shown if name == program} == set(commands)
