@@ -475,7 +475,7 @@ LONG_RUNS = [
     (SCENE + "wall = {stiffness = 1e-320}", (), "scene.toml: wall.stiffness is 1e-320: floats"),
     (SCENE + "gravity = 1e10\nwall = {stiffness = 1}", (), "rtol is 1e-10: rounding of the static"),
     (SCENE + "gravity = 1e300\nwall = {stiffness = 1}", (), "the scene's .* comes out as .*:"),
-    (SCENE.replace("601", "10_000_000"), (), "scene.toml: samples is 10000000, for each of 3"),
+    (SCENE.replace("601", "10_000_000"), (), "samples is 1e.07: with 3 sensors and 20 beads"),
     (SCENE.replace("= 1}", "= 1e200}"), (), "the scene's energy comes out as inf: choose other"),
     (SCENE.replace("1.5", "1e308"), _SPLIT, "the scene's .* comes out as 0: choose"),
     (SCENE.replace("repeat = 10,", "repeat = 10_000,"), ("--method", "LSODA"), "samples .* GB"),
