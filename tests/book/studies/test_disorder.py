@@ -98,8 +98,8 @@ def test_the_command(capsys):
     [
         ("spread", 0.6, "spread is 0.6: one from 0 to 0.5 is wanted"),
         ("spread", float("nan"), "spread is nan"),
-        ("chains", 1, "chains is 1: one of 2 … 10000 is wanted"),
-        ("sites", 10, "sites is 10: one of 50 … 10000 is wanted"),
+        ("chains", 1, "chains is 1: an integer from 2 to 10000 is wanted"),
+        ("sites", 10, "sites is 10: an integer from 50 to 10000 is wanted"),
         ("seed", -1, "seed is -1"),
         ("k", 0.5, "k is 1/2: a compact wave needs k > 1"),
     ],

@@ -372,7 +372,7 @@ def test_files_of_spheres_that_are_none(capsys, tmp_path):
     os.mkfifo(tmp_path / "pipe.toml")
     for name, words in (
         ("missing.toml", "No such file"),
-        ("pipe.toml", "a pipe, and only regular files are read"),
+        ("pipe.toml", "only regular files are read"),
         ("spheres.txt", "a list of spheres is a file ending in .toml or .json"),
         ("a" * 300 + ".toml", "File name too long"),
     ):
@@ -437,12 +437,12 @@ def test_bad_input_is_one_line_and_status_two(capsys, arguments):
             "dispersion --masses 1,2 --stiffnesses 1,2 --k 1e-9",
             "stiffness 2 is 2 and k 1/10000",
         ),
-        ("derive --masses 1,1e999 --order 10", "more than 4000"),
+        ("derive --masses 1,1e300 --order 20", "more than 4000"),
         ("wave --k 29000", "up to k = 1000"),
         ("wave --k 1e7", "up to k = 1000"),
-        ("derive --k 1e400 --branch optical", "up to k = 1000"),
+        ("derive --k 1e300 --branch optical", "up to k = 1000"),
         ("expansion --k 1e7 --masses 1", "up to k = 1000"),
-        ("dispersion --k 1e400 --stiffnesses 1,3", "up to k = 1000"),
+        ("dispersion --k 1e300 --stiffnesses 1,3", "up to k = 1000"),
         ("derive --masses 1,2,3", "--closure full"),
     ],
 )
@@ -499,9 +499,9 @@ def test_powers_of_the_full_closure_are_written_once(capsys, options):
         "derive --k 1.5123456789 --masses 1,2 --stiffnesses 1/7,3 --closure full",
         "wave --k 123.456789 --masses 1,2 --stiffnesses 1/7,3 --closure full --force 1.25",
         "expansion --k 1.5123456789 --masses 1,2 --stiffnesses 1/7,3 --order 1",
-        "wave --k 3/2 --masses 1,1 --stiffnesses 1e-400,1e-400 --force 1",
+        "wave --k 3/2 --masses 1,1 --stiffnesses 1e-300,1e-300 --force 1",
         "derive --law magnetic:1e9,m",
-        "wave --k 3/2 --masses 1,2 --stiffnesses 1,1e400 --closure full --field center",
+        "wave --k 3/2 --masses 1,2 --stiffnesses 1,1e300 --closure full --field center",
     ],
 )
 def test_long_exponents_are_printed(capsys, command):

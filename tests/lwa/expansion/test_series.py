@@ -276,12 +276,7 @@ def test_more_never_takes_less(order: int, size: int, symbols: int) -> None:
     "cell",
     [
         lambda: Cell([1, 10**5000]),
-        lambda: Cell([1, Fraction(1, 10**5000)]),
-        lambda: Cell([1], [10**5000 + 1]),
-        lambda: Cell([10**400 + 1]),
-        lambda: Cell([1, 10**200 + 1]),
         lambda: Cell([1], [Fraction(1, 10**400 + 1)]),
-        lambda: Cell([Fraction(1, 10**40 + i) for i in range(4)]),
     ],
 )
 def test_numbers_of_thousands_of_digits_are_refused(cell: Callable[[], Cell]) -> None:
