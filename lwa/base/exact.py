@@ -23,9 +23,7 @@ from lwa.base.errors import InputError as InputError
 Quantity = int | float | str | Fraction | Decimal | sp.Expr
 """Accepted types of an exponent, a mass, a stiffness or a length."""
 
-_NUMBER = re.compile(
-    r"[+-]?(?:[0-9]+/[0-9]+|(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?)"
-)
+_NUMBER = re.compile(r"[+-]?(?:[0-9]+/[0-9]+|(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?)")
 _NAME = re.compile(r"[A-Za-zα-ωΑ-Ω][A-Za-zα-ωΑ-Ω0-9_]*")
 _NOT_A_NUMBER = {"nan", "inf", "infinity", "none", "null", "true", "false"}
 _LONGEST_TEXT = 200

@@ -22,14 +22,6 @@ EXTENTS = ("length", "time")
 """The kinds of a width: an extent in space, or the time of passage."""
 
 
-def strain_power(quantity: str, k: Any) -> Any:
-    """The exponent q of a quantity that scales as strain^q: k for the force, else 1.
-
-    Raises `lwa.InputError` unless the quantity is among `QUANTITIES`.
-    """
-    return k if known(quantity) == "force" else 1
-
-
 def known(quantity: str) -> str:
     """Return the quantity; raise `lwa.InputError` unless it is among `QUANTITIES`."""
     return one_of(quantity, QUANTITIES, "quantity")
@@ -38,3 +30,8 @@ def known(quantity: str) -> str:
 def known_extent(extent: str) -> None:
     """Raise `lwa.InputError` unless the extent is among `EXTENTS`."""
     one_of(extent, EXTENTS, "extent")
+
+
+def strain_power(quantity: str, k: Any) -> Any:
+    """The exponent q of a quantity that scales as strain^q: k for the force, else 1."""
+    return k if known(quantity) == "force" else 1
