@@ -43,7 +43,8 @@ def test_names_become_positive_symbols():
         "__import__('os')", "exp(1)", "I", "pi", "E", "lambda", "beta", "1_000", "0x10", "١",
         "m1 m2", "1e99999", "9" * 300, float("nan"), float("inf"), 1j,
         Decimal("sNaN"), Decimal("NaN"), Decimal("-Infinity"), "１", None, True, [1], {"a": 1},
-        b"1", 10**400, Fraction(1, 10**400), 1 + Fraction(1, 10**400), np.array([1.0, 2.0]), sp.nan, sp.oo, sp.I, object(),
+        b"1", 10**400, Fraction(1, 10**400), 1 + Fraction(1, 10**400), np.array([1.0, 2.0]),
+        sp.nan, sp.oo, sp.I, object(),
     ],
 )  # fmt: skip
 def test_what_is_no_quantity_is_refused_in_one_line(value):
