@@ -285,7 +285,7 @@ BAD = [
     ({"defects": [{"bead": 4, "mass": 1}]}, "defects number 1.bead is 4: an integer from 1"),
     ({"defects": [{"bead": 1, "mass": -1}]}, "defects number 1.mass is -1: it must be positive"),
     ({"defects": [{"bead": 1, "like": "ball"}]}, "defects number 1.like names a bead in"),
-    ({"defects": [{"contact": 3, "stiffness": 1}]}, "defects number 1.contact is 3: an integer from 1"),
+    ({"defects": [{"contact": 3, "stiffness": 1}]}, "defects number 1.contact is 3: an integer"),
     ({"defects": [{"contact": 1, "mass": 1}]}, "defects number 1.mass is unknown: one of contact"),
     ({"defects": [{"bead": 3, "mass": 1}, {"contact": 1, "stiffness": 2}, {"bead": 3, "mass": 1}]},
      "defects number 1 and defects number 3 are both of bead 3: one is wanted"),
