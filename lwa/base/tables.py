@@ -14,6 +14,7 @@ from __future__ import annotations
 import math
 import sys
 from collections.abc import Callable, Collection, Mapping, Sequence
+from contextlib import suppress
 from difflib import get_close_matches
 from typing import Any
 
@@ -28,13 +29,14 @@ LEAST = sys.float_info.min
 
 def real(value: Any, name: str) -> float:
     """Read one finite number."""
-    try:
-        number = math.nan if isinstance(value, str | bytes | bool) else float(value)
-    except (TypeError, ValueError, OverflowError):
-        number = math.nan
+    number = None
+    if not isinstance(value, str | bytes | bool):
+        with suppress(TypeError, ValueError, OverflowError):
+            number = float(value)
+    if number is None:
+        raise InputError(f"{name} is {shorten(value)}: a number is wanted")
     if not math.isfinite(number):
-        wanted = "a finite number" if isinstance(value, float) else "a number"
-        raise InputError(f"{name} is {shorten(value)}: {wanted} is wanted")
+        raise InputError(f"{name} is {number}: a finite number is wanted")
     return number
 
 

@@ -243,7 +243,7 @@ BAD = [
     ({"durations": 1}, "durations is unknown: did you mean duration"),
     ({"__import__('os')": 1}, r"\"__import__\('os'\)\" is unknown: one of duration, .* is wanted"),
     ({"samples": 1}, "samples is 1: an integer from 2 to 10000000 is wanted"),
-    ({"samples": 1.5}, "samples is 1.5: one of"),
+    ({"samples": 1.5}, "samples is 1.5: an integer"),
     ({"samples": 5_000_001}, "samples is 5000001, for each of 2 sensors: all may take 10000000"),
     ({"gravity": 9.81}, "gravity is 9.81: .* needs a wall to pull towards"),
     ({"gravity": [9.81]}, r"gravity is \[9.81\]: a number is wanted"),
