@@ -133,5 +133,5 @@ def total(terms: Iterable[tuple[sp.Expr, str]]) -> str:
         size = -coefficient if minus else coefficient
         value = rf"\left({sp.latex(size)}\right)" if size.is_Add else expression(size)
         sign = "-" if minus else "+" if i else ""
-        written.append(f"{sign} {'' if value == '1' else value} {factor}".strip())
+        written.append(f"{sign} {'' if value == '1' and factor else value} {factor}".strip())
     return " ".join(" ".join(written).split()) or "0"

@@ -202,7 +202,7 @@ def residual_order(cell: Cell, closure: str, terms: int) -> int:
 
     order = 2 * terms + 1
     theory = homogenize(cell, order + 1, closure=closure)
-    wave = expand(cell, terms + 2)._read.wave
+    wave = expand(cell, terms + 2).observables.wave
     size = order + 3
     slope = [*wave.fields.slope[0]][:size]
     log: list = []
