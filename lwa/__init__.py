@@ -57,13 +57,13 @@ if TYPE_CHECKING:
     from lwa.theory import Theory as Theory
     from lwa.theory import homogenize as homogenize
     from lwa.wave.background import BackgroundWave as BackgroundWave
+    from lwa.wave.background import KdV as KdV
     from lwa.wave.background import background_wave as background_wave
     from lwa.wave.closed import CompactWave as CompactWave
     from lwa.wave.closed import Reduction as Reduction
-    from lwa.wave.kdv import KdV as KdV
     from lwa.wave.numeric import NumericWave as NumericWave
     from lwa.wave.physical import PhysicalWave as PhysicalWave
-    from lwa.wave.precompressed import PrecompressedWave as PrecompressedWave
+    from lwa.wave.physical import PrecompressedWave as PrecompressedWave
     from lwa.wave.quadrature import NumericBackground as NumericBackground
     from lwa.wave.traveling import TravelingWave as TravelingWave
     from lwa.wave.traveling import canonical_wave as canonical_wave
@@ -74,16 +74,14 @@ _MODULES = {
     "algebra.coefficients": "CoefficientRing",
     "algebra.jets": "Powers",
     "algebra.model": "Model",
-    "wave.background": "BackgroundWave background_wave",
-    "wave.kdv": "KdV",
-    "wave.precompressed": "PrecompressedWave",
+    "wave.background": "BackgroundWave KdV background_wave",
     "wave.quadrature": "NumericBackground",
     "cell": "Cell D Dimer k",
     "closure.consistency": "Closure",
     "closure.solution": "Solution",
     "base.arrays": "Array",
     "wave.numeric": "NumericWave",
-    "wave.physical": "PhysicalWave",
+    "wave.physical": "PhysicalWave PrecompressedWave",
     "wave.closed": "CompactWave Reduction",
     "base.exact": "InputError Quantity",
     "envelopes.breather": "Breather",

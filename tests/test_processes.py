@@ -18,7 +18,7 @@ from pathlib import Path
 import pytest
 
 from lwa import __version__
-from lwa.command.interrupt import INTERRUPTED
+from lwa.__main__ import INTERRUPTED
 from lwa.command.terminal import CLOSED
 
 LWA = (sys.executable, "-m", "lwa")
@@ -132,7 +132,7 @@ def test_ctrl_c_while_a_command_is_loaded_is_one_line(tmp_path):
     """Once the command is loaded, it hears Ctrl-C itself."""
     for name, source in (("quick", QUICK), ("slow", SLOW)):
         (tmp_path / f"{name}.py").write_text(source)
-    code = "from lwa.command.interrupt import start; start('lwa', 'quick'); start('lwa', 'slow')"
+    code = "from lwa.__main__ import start; start('lwa', 'quick'); start('lwa', 'slow')"
     paths = os.pathsep.join((str(tmp_path), *filter(None, sys.path)))
     found = ended(sys.executable, "-u", "-c", code, env=os.environ | {"PYTHONPATH": paths})
     assert found == (INTERRUPTED, "default_int_handler\n", "lwa: interrupted\n")

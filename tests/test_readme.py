@@ -22,10 +22,10 @@ def test_the_python_example(capsys):
 
 
 def test_the_commands_exist():
-    from lwa.command.cli import lwa
+    from lwa.command.cli import COMMANDS
     from validation.cli import studies
 
-    known = {"lwa": lwa.commands, "lwa-validate": studies()}
+    known = {"lwa": COMMANDS, "lwa-validate": studies()}
     shown = re.findall(r"^\$ (lwa\S*) (\w+)", README, re.MULTILINE)
     for program, commands in known.items():
         assert {command for name, command in shown if name == program} == set(commands)

@@ -26,13 +26,12 @@ from scipy.interpolate import CubicSpline
 from lwa import Breather, Cell, Power, envelope
 from lwa.base.arrays import Array
 from lwa.base.progress import Progress
-from lwa.command.reading import quantities
-from validation.pictures.panel import Curve, Panel
+from lwa.command.options import quantities
+from validation.pictures import Curve, Panel
 from validation.pulses.pulse import Measured
 from validation.report.command import EXPONENT, option, study
 from validation.report.result import Report
-from validation.report.table import Column, Finding, Table
-from validation.report.text import percent
+from validation.report.table import Column, Finding, Table, percent
 from validation.scenes.chains import numbered
 from validation.scenes.checks import SceneError, between, integer
 from validation.waves.periodic import Orbit, PressedChain, orbit
@@ -237,8 +236,8 @@ def _panels(wave: Standing, row: dict[str, Any]) -> Iterator[Panel]:
         "cell",
         "amplitude of every bead that moves most",
         (
-            Curve.of("lattice", n, size, "C0o"),
-            Curve.of("envelope", cells, row["amplitude_theory_value"] * line, "C1-"),
+            Curve("lattice", n, size, "C0o"),
+            Curve("envelope", cells, row["amplitude_theory_value"] * line, "C1-"),
         ),
         title=f"Δ = {row['detuning_value']:g}",
     )
@@ -248,8 +247,8 @@ def _panels(wave: Standing, row: dict[str, Any]) -> Iterator[Panel]:
         "Re λ",
         "Im λ",
         (
-            Curve.of("unit circle", np.cos(phase), np.sin(phase), "C7-"),
-            Curve.of("multipliers", multipliers.real, multipliers.imag, "C3."),
+            Curve("unit circle", np.cos(phase), np.sin(phase), "C7-"),
+            Curve("multipliers", multipliers.real, multipliers.imag, "C3."),
         ),
     )
 

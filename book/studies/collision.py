@@ -26,15 +26,14 @@ from lwa import Cell, Power
 from lwa.base.arrays import Array
 from lwa.base.exact import exact
 from lwa.base.progress import Progress
-from lwa.command.reading import quantities
+from lwa.command.options import quantities
 from lwa.equation.evolution import Evolution
 from validation.lattice.simulate import simulate
-from validation.pictures.panel import Curve, Panel
+from validation.pictures import Curve, Panel
 from validation.pulses.pulse import Measured, measure
 from validation.report.command import option, study
 from validation.report.result import Report
-from validation.report.table import Column, Finding, Table
-from validation.report.text import percent
+from validation.report.table import Column, Finding, Table, percent
 from validation.scenes.chains import carrying
 from validation.scenes.checks import SceneError, between
 from validation.waves.continuum import Continuum
@@ -194,7 +193,7 @@ def _report(second: float, found: Mapping[sp.Expr, Sequence[Sequence[Records]]])
             )
             rows.append((k, name, one, other, one.value / other.value - 1))
         curves = [
-            Curve.of(f"{label}, x = {place}", time, strain, style)
+            Curve(f"{label}, x = {place}", time, strain, style)
             for (time, strains, _), label, line in (
                 (lattice[0], "lattice", "-"),
                 (equation[0], "equation", "--"),

@@ -30,7 +30,7 @@ from lwa.base.arrays import Array
 from lwa.base.progress import Progress
 from validation.lattice.run import Run
 from validation.lattice.simulate import simulate, simulate_many
-from validation.pictures.panel import Curve, Panel
+from validation.pictures import Curve, Panel
 from validation.pulses.pulse import Measured, highest_pulse
 from validation.report.command import EXPONENT, option, study
 from validation.report.result import Report
@@ -45,7 +45,7 @@ NODES = 5  # excesses of either sign at which the loss at a single bead is measu
 SIGMAS = 2.5  # standard errors by which the decay may differ between the halves of the chain
 _BEYOND = 20  # beads behind the last place
 _BEFORE, _BEHIND = 40, 40  # sites from the blow to the single bead and on to the last sensor
-_TOLERANCE, _FINE = 1e-6, 1e-9  # of the random chains and of the single beads
+_TOLERANCE = 1e-6  # of the random chains
 _CLOSE = 1e-4  # largest change of ln F at ten times the tolerance
 
 
@@ -106,7 +106,9 @@ def disorder(
     return _report(title, places, logs, theory, single, numerical)
 
 
-def single_losses(excesses: Sequence[float] | Array, k: float = 1.5) -> list[Measured]:
+def single_losses(
+    excesses: Sequence[float] | Array, k: float = 1.5, rtol: float = 1e-9
+) -> list[Measured]:
     """Fall of ln F at a single bead of mass 1 + e in a chain of equal beads, for each excess e.
 
     The fall without the bead is subtracted: after 20 sites the blow still sheds a millionth. Errors
@@ -117,8 +119,8 @@ def single_losses(excesses: Sequence[float] | Array, k: float = 1.5) -> list[Mea
     masses = [(1.0,) * _BEFORE + (1 + e,) + rest for e in (0.0, *excesses)]
     scenes = [_struck(row, k, sensors) for row in masses]
     fine, coarse = (
-        np.array([-np.diff(_log_forces(run))[0] for run in simulate_many(scenes, rtol=rtol)])
-        for rtol in (_FINE, 10 * _FINE)
+        np.array([-np.diff(_log_forces(run))[0] for run in simulate_many(scenes, rtol=tolerance)])
+        for tolerance in (rtol, 10 * rtol)
     )
     falls = zip(fine[1:] - fine[0], coarse[1:] - coarse[0], strict=True)
     return [Measured(float(one), float(other)) for one, other in falls]
@@ -187,8 +189,8 @@ def _report(
                 "site",
                 "ln F, less that at the first place",
                 (
-                    Curve.of("mean over chains", places, *bars),
-                    Curve.of(f"mean loss at a single bead {theory:.3g}", places, line, "C1-"),
+                    Curve("mean over chains", places, *bars),
+                    Curve(f"mean loss at a single bead {theory:.3g}", places, line, "C1-"),
                 ),
             ),
         ),

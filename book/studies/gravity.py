@@ -40,17 +40,16 @@ import scipy
 from lwa import Cell, Power, background_wave
 from lwa.base.arrays import Array
 from lwa.base.progress import Progress
-from lwa.command.reading import quantities
+from lwa.command.options import quantities
 from lwa.wave.background import BackgroundWave
 from validation.lattice.run import Run
 from validation.lattice.simulate import simulate, twice
-from validation.pictures.panel import Curve, Panel
+from validation.pictures import Curve, Panel
 from validation.pulses.pulse import Measured, highest_pulse, leading_pulse
 from validation.pulses.sensors import tracks
 from validation.report.command import EXPONENT, option, study
 from validation.report.result import Report
-from validation.report.table import Column, Finding, Table
-from validation.report.text import percent
+from validation.report.table import Column, Finding, Table, percent
 from validation.scenes.chains import numbered, struck
 from validation.scenes.checks import between, integer
 from validation.scenes.scene import Scene
@@ -63,7 +62,6 @@ FIRST = 100  # beads above the first place of the fit of a weak blow's front
 _PLACES = 24  # places of a weak blow
 _TOP, _FEW = 20, 7  # beads above the first place of a strong blow; number of its places
 _SAMPLES = 40.0  # per unit of time
-_TOLERANCES = (1e-5, 1e-4)
 
 
 @cache
@@ -92,11 +90,17 @@ def front_width(k: float) -> float:
 
 @dataclass(frozen=True)
 class Upright:
-    """A chain under its own weight, of ``beads`` beads that repeat the cell."""
+    """A chain under its own weight, of ``beads`` beads that repeat the cell.
+
+    weak: velocity of the struck bead that counts as weak.
+    tolerances: of the run that is read and of the less accurate run.
+    """
 
     cell: Cell
     k: float
     beads: int
+    weak: float = WEAK
+    tolerances: tuple[float, float] = (1e-5, 1e-4)
 
     @cached_property
     def masses(self) -> tuple[float, ...]:
@@ -151,8 +155,8 @@ class Upright:
             found = [highest_pulse(velocity).fwhm for velocity in moving]
             return np.asarray((np.reshape(found, x.shape) * self.sound(x)).mean(axis=1))
 
-        scene = self.blown(WEAK, bead_sensors=beads.ravel().tolist())
-        fine, coarse = map(widths, twice(scene, *_TOLERANCES))
+        scene = self.blown(self.weak, bead_sensors=beads.ravel().tolist())
+        fine, coarse = map(widths, twice(scene, *self.tolerances))
         return x.mean(axis=1), fine, coarse
 
     def fit(self, x: Array, width: Array, power: float) -> Array:
@@ -185,7 +189,7 @@ class Upright:
         size = len(self.masses)
         contacts = np.add.outer(self.places(_TOP, _FEW), np.arange(2 * size))
         scene = self.blown(velocity, contact_sensors=np.unique(contacts).tolist())
-        run, numeric, found = simulate(scene, rtol=_TOLERANCES[0]), self.theory.numeric(), {}
+        run, numeric, found = simulate(scene, rtol=self.tolerances[0]), self.theory.numeric(), {}
         for track in tracks(run):
             pulse = leading_pulse(track.force, self.k)
             found[track.number - 1] = pulse.arrival, pulse.peak, pulse.fwhm
@@ -285,16 +289,16 @@ def _report(chains: Sequence[Upright], found: Mapping[tuple[Upright, float], Any
         weak.append((names, exponent, prefactor, theory, theory / prefactor.value - 1))
         sites = np.geomspace(_TOP, chain.beads, 50)
         curves = [
-            Curve.of("weak blow", x, width, "C0o"),
-            Curve.of("front", sites, theory * np.cbrt(sites), "C0-"),
+            Curve("weak blow", x, width, "C0o"),
+            Curve("front", sites, theory * np.cbrt(sites), "C0-"),
         ]
         for blow, colour in zip(STRONG, ("C1", "C2", "C3"), strict=True):
             pulses = found[chain, blow]
             strong += [(names, blow, *p.values(), theory * math.cbrt(p["site"])) for p in pulses]
             at, width, solitary = ([p[n] for p in pulses] for n in ("site", "width", "solitary"))
             curves += [
-                Curve.of(f"blow of {blow:g}", at, width, f"{colour}s"),
-                Curve.of("solitary wave", at, solitary, f"{colour}--"),
+                Curve(f"blow of {blow:g}", at, width, f"{colour}s"),
+                Curve("solitary wave", at, solitary, f"{colour}--"),
             ]
         panels.append(Panel("site", "FWHM (sites)", tuple(curves), "xy", ", ".join(names)))
     return Report(

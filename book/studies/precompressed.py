@@ -29,18 +29,16 @@ import sympy as sp
 from lwa import Cell, ContactLaw, Power, background_wave
 from lwa.base.arrays import Array
 from lwa.base.progress import Progress
-from lwa.command.options import law_option
-from lwa.command.reading import quantities
+from lwa.command.options import law_option, quantities
 from lwa.wave.quadrature import NumericBackground
 from validation.lattice.run import Run
 from validation.lattice.simulate import twice
-from validation.pictures.panel import Curve, Panel
+from validation.pictures import Curve, Panel
 from validation.pulses.pulse import Measured, highest_pulse, leading_pulse
 from validation.pulses.sensors import tracks
 from validation.report.command import EXPONENT, option, study
 from validation.report.result import Report
-from validation.report.table import Column, Finding, Table
-from validation.report.text import percent
+from validation.report.table import Column, Finding, Table, percent
 from validation.scenes.chains import carrying, numbered
 from validation.scenes.checks import SceneError, between
 from validation.scenes.scene import Scene
@@ -51,7 +49,6 @@ CHAINS = ((1,), (1, "1/2"), (1, "1/4"), (1, 1, 1, "1/4"))  # masses of the cells
 RATIOS = 0.01, 0.03, 0.1, 0.3, 1, 3, 10, 30, 100  # dynamic over static force
 _SITES = 400  # run by a wave; places are half way, at three quarters and at the end
 _ENDED = 10.0  # widths from the middle of the initial wave to the end of the chain
-_TOLERANCES = (1e-7, 1e-5)
 _SAMPLES = 40.0  # per site run by sound, and per width of the wave
 _LAUNCHED = 1e-6  # relative difference of the lattice's speed from the exact wave's, at most
 _WEAKEST, _STRONGEST = 1e-3, 1e4
@@ -104,11 +101,15 @@ def precompressed(
 
 @dataclass(frozen=True)
 class Wave:
-    """A wave with dynamic force ``ratio`` F0 on F0; speeds in units of c0, lengths in sites."""
+    """A wave with dynamic force ``ratio`` F0 on F0; speeds in units of c0, lengths in sites.
+
+    tolerances: of the run that is read and of the less accurate run.
+    """
 
     cell: Cell
     law: ContactLaw
     ratio: float
+    tolerances: tuple[float, float] = (1e-7, 1e-5)
 
     @cached_property
     def load(self) -> float:
@@ -226,7 +227,7 @@ class Wave:
 
     def row(self) -> dict[str, Any]:
         """Cells of the table: measured numbers and the theory's at the measured force."""
-        fine, rough = twice(self.scene, *_TOLERANCES)
+        fine, rough = twice(self.scene, *self.tolerances)
         found, coarse, before = self.read(fine, 1), self.read(rough, 1), self.read(fine, 0)
         theory, earlier = (self.theory(read["force"]) for read in (found, before))
         exact = None if self.exact is None else self.exact.c / self.sound
@@ -317,7 +318,7 @@ def _panels(found: Sequence[tuple[Wave, dict[str, Any]]]) -> Iterator[Panel]:
     theory = [first.theory(force) for force in forces]
     for name, label, scale in (("speed", "V/c0", "x"), ("fwhm", "FWHM of force / √(12 I)", "xy")):
         values = [each[name] / first.unit(name) for each in theory]
-        curves = [Curve.of("theory, all chains", forces, values, "k-")]
+        curves = [Curve("theory, all chains", forces, values, "k-")]
         chains = groupby(found, lambda part: part[0].cell)
         for (cell, those), mark in zip(chains, cycle("osv^Dx"), strict=False):
             points = [
@@ -325,7 +326,7 @@ def _panels(found: Sequence[tuple[Wave, dict[str, Any]]]) -> Iterator[Panel]:
                 for wave, row in those
             ]
             x, y, error = zip(*points, strict=True)
-            curves.append(Curve.of(f"masses {', '.join(map(str, cell.masses))}", x, y, mark, error))
+            curves.append(Curve(f"masses {', '.join(map(str, cell.masses))}", x, y, mark, error))
         yield Panel("F/F0", label, tuple(curves), scale)
 
 

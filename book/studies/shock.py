@@ -32,12 +32,12 @@ from lwa import Power, Shock
 from lwa import shock as front
 from lwa.base.exact import InputError, exact
 from lwa.base.progress import Progress
-from lwa.command.reading import quantities, quantity
+from lwa.command.options import quantities, quantity
 from lwa.command.rows import attempt
 from lwa.law import ContactLaw, named
 from validation.lattice.run import Run
 from validation.lattice.simulate import simulate, simulate_many
-from validation.pictures.panel import Curve, Map, Panel
+from validation.pictures import Curve, Map, Panel
 from validation.pulses.pulse import Measured
 from validation.report.command import option, study
 from validation.report.result import Report
@@ -178,15 +178,15 @@ class Driven:
             "s₋": (self.trailing, "C2-."),
         }
         known = [(name, s, style) for name, (s, style) in speeds.items() if s is not None]
-        paths = [Curve.of(name, [0, s * end], [0, end], style) for name, s, style in known]
+        paths = [Curve(name, [0, s * end], [0, end], style) for name, s, style in known]
         ends = [strain[:, -1].min(), strain[:, -1].max()]
-        edges = [Curve.of(name, [s * end] * 2, ends, style) for name, s, style in known]
+        edges = [Curve(name, [s * end] * 2, ends, style) for name, s, style in known]
         title = f"{_name(chain.law)}, p₋ = {float(chain.behind):g}"
         return (
             Panel("sites from the piston", "time", tuple(paths), title=title,
                   map=Map("strain", x, run.time, strain.T)),
             Panel("sites from the piston", f"strain at time {end:g}",
-                  (Curve.of("lattice", x, strain[:, -1], "C0-"), *edges)),
+                  (Curve("lattice", x, strain[:, -1], "C0-"), *edges)),
         )  # fmt: skip
 
 

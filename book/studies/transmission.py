@@ -18,11 +18,11 @@ import numpy as np
 from lwa import Cell, Power
 from lwa.base.arrays import Array
 from lwa.base.progress import Progress
-from lwa.command.reading import quantities
+from lwa.command.options import quantities
 from lwa.linear.dispersion import LoadedChain
 from validation.lattice.run import Run
 from validation.lattice.simulate import simulate_many
-from validation.pictures.panel import Curve, Panel
+from validation.pictures import Curve, Panel
 from validation.report.command import EXPONENT, option, study
 from validation.report.result import Report
 from validation.report.table import Column, Finding, Table
@@ -128,8 +128,8 @@ def _report(cell: Cell, k: float, edges: Array, rows: list[tuple[float, ...]]) -
         Finding("frequencies on the wrong side of an edge", wrong, high=0, key="misplaced"),
     )
     low, high = passed.min(), passed.max()
-    marks = [Curve.of("", [edge, edge], [low, high], "k:") for edge in edges.ravel() if edge]
-    curve = Curve.of("amplitude in cell 3 over the drive's", omega, passed, "C0o-")
+    marks = [Curve("", [edge, edge], [low, high], "k:") for edge in edges.ravel() if edge]
+    curve = Curve("amplitude in cell 3 over the drive's", omega, passed, "C0o-")
     masses = ", ".join(map(str, cell.masses))
     return Report(
         f"A chain of masses {masses} under load, k = {k:g}, shaken at {len(rows)} frequencies",

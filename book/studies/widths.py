@@ -16,13 +16,12 @@ from typing import Any
 
 from lwa import Dimer, TravelingWave, canonical_wave, homogenize
 from validation.lattice.run import Run
-from validation.pictures.panel import Curve, Panel
+from validation.pictures import Curve, Panel
 from validation.pulses.pulse import Measured, compared, derived
 from validation.pulses.train import Train
 from validation.report.command import study
 from validation.report.result import Report
-from validation.report.table import Column, Table
-from validation.report.text import percent
+from validation.report.table import Column, Table, percent
 from validation.scenes.materials import DIAMETER
 from validation.studies import paper
 from validation.studies.paper import HERTZ, chain_cell, chain_runs
@@ -149,7 +148,7 @@ def _verdict(definitions: Sequence[Definition]) -> str:
 def _panel(beads: Sequence[int], widths: Sequence[Measured], lines: Lines) -> Panel:
     times = [1e6 * width.value for width in widths]
     curves = [
-        Curve.of(f"lattice, {ball} bead", beads[i::2], times[i::2], style)
+        Curve(f"lattice, {ball} bead", beads[i::2], times[i::2], style)
         for ball, i, style in (("steel", 1, "ko"), ("PTFE", 0, "ks"))
     ]
     ends, first = (beads[0], beads[-1]), lines["linear"]
@@ -159,9 +158,9 @@ def _panel(beads: Sequence[int], widths: Sequence[Measured], lines: Lines) -> Pa
             if its is first or not math.isclose(width, first[line], rel_tol=1e-6):
                 style = f"C{i}{'-' if its is first else '--'}"
                 label = f"{line}, {closure}" if closure != "linear" else line
-                curves.append(Curve.of(label, ends, (1e6 * width,) * 2, style))
-    labels, free = ("number of the bead", "FWHM of its force (µs)"), (0.03, 0.47)
-    return Panel(*labels, tuple(curves), title="1:1 chain", legend=free)
+                curves.append(Curve(label, ends, (1e6 * width,) * 2, style))
+    labels = "number of the bead", "FWHM of its force (µs)"
+    return Panel(*labels, tuple(curves), title="1:1 chain")
 
 
 def _numbers(run: Run) -> dict[str, float]:

@@ -9,6 +9,9 @@ import sympy as sp
 from lwa.base.errors import NoSolitaryWave as NoSolitaryWave
 from lwa.base.exact import one_of
 
+NO_WAVE = "there is no wave unless contacts stay closed, F′ > 0, and speeds grow towards B"
+"""Reason for the refusal of a wave on a background."""
+
 RISE = sp.Symbol("B", positive=True)
 """B, the peak strain of a wave, unless the caller gives another."""
 
@@ -27,11 +30,6 @@ def known(quantity: str) -> str:
     return one_of(quantity, QUANTITIES, "quantity")
 
 
-def known_extent(extent: str) -> None:
-    """Raise `lwa.InputError` unless the extent is among `EXTENTS`."""
-    one_of(extent, EXTENTS, "extent")
-
-
-def strain_power(quantity: str, k: Any) -> Any:
-    """The exponent q of a quantity that scales as strain^q: k for the force, else 1."""
-    return k if known(quantity) == "force" else 1
+def known_extent(extent: str) -> str:
+    """Return the extent; raise `lwa.InputError` unless it is among `EXTENTS`."""
+    return one_of(extent, EXTENTS, "extent")

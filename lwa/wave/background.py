@@ -15,8 +15,6 @@ singularities (`lwa.wave.profile`, `lwa.wave.quadrature`).
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Self
@@ -27,30 +25,59 @@ import sympy as sp
 from lwa.base import latex
 from lwa.base.exact import InputError, demand_numbers, exact, integer, root, shorten, signed
 from lwa.base.frozen import Value
-from lwa.base.quantities import RISE, NoSolitaryWave, known
+from lwa.base.quantities import NO_WAVE, RISE, NoSolitaryWave, known
 from lwa.cell import RESERVED, Cell, meant
 from lwa.law import ContactLaw, Power, for_cell, substituted
 from lwa.linear.dispersion import Dispersion
 from lwa.wave.closed import CompactWave
-from lwa.wave.kdv import KdV
-from lwa.wave.profile import Profile, Strains, mpmath_number
+from lwa.wave.profile import Flank, Function, compiled, mpmath_number
 
 if TYPE_CHECKING:
     from lwa.wave.quadrature import NumericBackground
 
-DIGITS = 15
+WIDTH_DIGITS = 15
 """Digits of a width or a profile, unless the caller asks for others."""
 
 MOST_DIGITS = 200
 
-_LOOKS = 64
-"""Places between 0 and B at which existence is decided for a law that is no power."""
+_PLACES = 64  # between 0 and B, at which existence is decided for a law that is no power
 
 
 def taken_names(cell: Cell, law: ContactLaw) -> dict[str, str]:
     """Names of chain, law and wave that the symbol of a load may not have, with their meanings."""
     chain = dict.fromkeys((s.name for s in cell.symbols), "a property of the cell")
     return chain | dict.fromkeys((s.name for s in law.symbols), "a symbol of the law") | RESERVED
+
+
+@dataclass(frozen=True)
+class KdV(Value):
+    """The limit of small waves, v_τ + c0 v_x + α v v_x + γ v_xxx = 0, and its sech² wave.
+
+    v is the strain above p0, c0 the speed of sound, α the nonlinearity and γ the dispersion.
+    For a power α = (k-1) c0/(2 p0), γ = I c0/2, c0 = p0^{(k-1)/2}.
+    """
+
+    sound_speed: sp.Expr
+    nonlinearity: sp.Expr
+    dispersion: sp.Expr
+
+    def latex_rows(self) -> list[str]:
+        names = {"c_{0}": self.sound_speed, r"\alpha": self.nonlinearity}
+        names[r"\gamma"] = self.dispersion
+        equation = r"v_{\tau} + c_{0} v_{x} + \alpha v v_{x} + \gamma v_{xxx} = 0"
+        return [equation, *latex.rows(names)]
+
+    def speed(self, B: Any = RISE) -> sp.Expr:
+        """Speed V = c0 + α B/3 of the wave v = B sech²(ξ/L)."""
+        return self.sound_speed + self.nonlinearity * exact(B, "B") / 3
+
+    def width(self, B: Any = RISE) -> sp.Expr:
+        """Width L = √(12 γ / (α B)) of v = B sech²(ξ/L); the FWHM is 2 arcosh(√2) L."""
+        return root(12 * sp.simplify(self.dispersion / self.nonlinearity) / exact(B, "B"))
+
+    def profile(self, xi: Any, B: Any = RISE) -> sp.Expr:
+        """Strain v = B sech²(ξ/L) above the background."""
+        return exact(B, "B") * sp.sech(signed(xi, "xi") / self.width(B)) ** 2
 
 
 @dataclass(frozen=True, repr=False)
@@ -134,7 +161,7 @@ class BackgroundWave(Value):
         >>> BackgroundWave(Cell([1]), Power(2), "p0").speed()
         sqrt(B/3 + p0)
         """
-        square = self.stiffness(self._amplitude(B))
+        square = self.stiffness(self._read_rise(B))
         if self.law.homogeneous and self.law.exponent.is_Integer:
             square = sp.expand(sp.cancel(square))
         return root(square)
@@ -146,52 +173,37 @@ class BackgroundWave(Value):
             return sp.Symbol("B", real=True)
         return sp.Symbol("B", negative=True) if (self.law.exponent - 1).is_negative else RISE
 
-    def _amplitude(self, B: Any) -> sp.Expr:
+    def _read_rise(self, B: Any) -> sp.Expr:
         if B is None:
             return self._rise
         B = exact(B, "B")
         if B.is_zero:
             raise InputError("B is 0: a wave rises or falls by B; `kdv` is the limit of small ones")
-        missing = self._missing if self.law.homogeneous else self._missing_numerically
-        if reason := missing(B):
-            raise NoSolitaryWave(f"p0 = {self.p0}, B = {shorten(B)}: {reason}")
+        if not (self._power_has if self.law.homogeneous else self._law_has)(B):
+            raise NoSolitaryWave(f"p0 = {self.p0}, B = {shorten(B)}: {NO_WAVE}")
         return B
 
-    def _missing(self, B: sp.Expr) -> str:
-        """Reason why a power law has no wave; empty if a wave exists or symbols leave it open."""
-        excess = self.law.exponent - 1
-        if excess.is_zero:
-            return "at k = 1 the chain is linear, and its waves disperse"
-        if excess.is_negative and self.p0.is_zero:
-            return "k < 1 and there is no load: the speed falls with the strain"
-        if excess.is_negative and (self.p0 + B).is_nonpositive:
-            return "the contacts would open"
-        if excess.is_positive and B.is_negative:
-            return "k > 1 stiffens, so that speeds grow with the strain and only B > 0 has a wave"
-        if excess.is_negative and B.is_positive:
-            return "k < 1 softens, so that speeds fall with the strain and only B < 0 has a wave"
-        return ""
+    def _power_has(self, B: sp.Expr) -> bool:
+        """False if a power law has no wave of the rise B; symbols may leave that open."""
+        # Speeds scale as strain^{(k-1)/2}; under k < 1 a wave falls, at most to p = 0.
+        grows = (self.law.exponent - 1) * B
+        return not (grows.is_nonpositive or (self.p0 + B).is_nonpositive)
 
-    def _missing_numerically(self, B: sp.Expr) -> str:
-        """Reason why a law that is no power has no wave; empty if a wave exists."""
+    def _law_has(self, B: sp.Expr) -> bool:
+        """False if a law that is no power has no wave of the rise B."""
         if self._free(B):
-            return ""
-        places = [sp.Rational(i, _LOOKS) for i in range(_LOOKS + 1)]
+            return True
+        flank = self._flank(B, WIDTH_DIGITS)
         with mpmath.workdps(30):
-            _, slope, _ = self._strains.functions()
-            for v in (mpmath_number(self.in_unit(B) * s) for s in places):
-                stiff = slope(v)
-                if mpmath.im(stiff) != 0 or not 0 < stiff < mpmath.inf:
-                    return f"F′ is not positive at the strain p0 + {mpmath.nstr(v, 5)}"
-        with self._solved(B, DIGITS) as wave:
-            F, Q, top = wave.force, wave.stiffness, wave.stiffness(wave.B)
-            reason = "the law does not stiffen towards it: a wave of the height "
-            if not (F(wave.B) - F(mpmath.mpf(0))) / wave.B > top:  # B Q′(B)/2 = this - Q(B)
-                return f"{reason}just below would be as fast"
-            for v in (wave.B * i / _LOOKS for i in range(1, _LOOKS)):
-                if not Q(v) < top:
-                    return f"{reason}{mpmath.nstr(v, 5)} would be as fast"
-        return ""
+            rise = mpmath_number(flank.B)
+            slopes = [flank.F1(rise * i / _PLACES) for i in range(_PLACES + 1)]
+            if not all(mpmath.im(x) == 0 and 0 < x < mpmath.inf for x in slopes):
+                return False
+        with mpmath.workdps(flank.working_digits):
+            rise = mpmath_number(flank.B)
+            Q = [flank.Q(rise * i / _PLACES) for i in range(1, _PLACES + 1)]
+            chord = (flank.F(rise) - flank.F(mpmath.mpf(0))) / rise  # B Q′(B)/2 = this - Q(B)
+            return bool(max(Q[:-1]) < Q[-1] < chord)
 
     @property
     def kdv(self) -> KdV:
@@ -208,7 +220,7 @@ class BackgroundWave(Value):
             raise NoSolitaryWave(f"F″ is 0 at p0 = {self.p0}: waves of small amplitude disperse")
         return KdV(c0, sp.powsimp(bend / (2 * c0)), self.I * c0 / 2)
 
-    def fwhm(self, B: Any, quantity: str = "strain", digits: int = DIGITS) -> sp.Expr:
+    def fwhm(self, B: Any, quantity: str = "strain", digits: int = WIDTH_DIGITS) -> sp.Expr:
         """Full width at half maximum, a length in x: of the rise of the strain, or of the force.
 
         The velocity has the width of the strain. Without load under a power law the width is the
@@ -220,12 +232,11 @@ class BackgroundWave(Value):
         >>> BackgroundWave(Cell([1]), Power("3/2"), 1).fwhm(1)
         3.15563100804513*D
         """
-        B = self._amplitude(B)
+        B = self._read_rise(B)
         if self._compact is not None:
             return self._compact.fwhm(quantity)
-        with self._solved(B, digits) as wave:
-            length = 2 * wave.place(wave.half(known(quantity)))
-        return sp.Float(length, digits) * self.unit
+        half = self._flank(B, digits).half_width(known(quantity))
+        return sp.Float(2 * half, digits) * self.unit
 
     @property
     def _compact(self) -> CompactWave | None:
@@ -233,20 +244,20 @@ class BackgroundWave(Value):
         compact = self.law.homogeneous and self.p0.is_zero
         return CompactWave.canonical(self.cell, self.law.exponent) if compact else None
 
-    def profile(self, xi: Any, B: Any, digits: int = DIGITS) -> sp.Expr:
+    def profile(self, xi: Any, B: Any, digits: int = WIDTH_DIGITS) -> sp.Expr:
         """Strain v(ξ) above p0: a closed form without load under a power, else a number.
 
         Raises the errors of `fwhm`, and `lwa.InputError` for a ξ that is no number in D.
         """
-        B, xi = self._amplitude(B), signed(xi, "xi")
+        B, xi = self._read_rise(B), signed(xi, "xi")
         if self._compact is not None:
             return self._compact.profile(xi, B)
         place = self.in_unit(xi)
         if place.free_symbols:
             raise InputError(f"xi is {shorten(xi)}: a number, in D, is wanted")
-        with self._solved(B, digits) as wave:
-            target = abs(mpmath_number(place))
-            return sp.Float(wave.strain(wave.theta(target) if target else 0), digits)
+        flank = self._flank(B, digits)
+        with mpmath.workdps(digits + 10):
+            return sp.Float(flank.strain(abs(mpmath_number(place))), digits)
 
     def numeric(self) -> NumericBackground:
         """Vectorised float64 functions of (p0, B) for this cell and law; p0 is an argument there.
@@ -302,22 +313,19 @@ class BackgroundWave(Value):
         return set().union(*(v.free_symbols for v in all_values)) - {self.unit}
 
     @cached_property
-    def _strains(self) -> Strains:
+    def _functions(self) -> tuple[Function, Function, Function]:
+        """F, F′ and Q as functions of the strain above p0."""
         v = sp.Dummy("v", real=True)
-        values = (self.force(self.p0 + v), self.force(self.p0 + v, 1), self._stiffness(v))
-        return Strains(v, *map(self.in_unit, values))
+        F, slope = (self.force(self.p0 + v, n) for n in (0, 1))
+        F, slope, Q = (compiled(v, self.in_unit(x)) for x in (F, slope, self._stiffness(v)))
+        return F, slope, Q
 
-    @contextmanager
-    def _solved(self, B: sp.Expr, digits: int) -> Iterator[Profile]:
-        """Yield the wave of the rise B, at a working precision that resolves its differences."""
+    def _flank(self, B: sp.Expr, digits: int) -> Flank:
+        """The wave of the rise B for the given digits."""
         if integer(digits, "digits", 1) > MOST_DIGITS:
             raise InputError(f"digits is {digits}: at most {MOST_DIGITS} are given")
-        why = "a width or a profile on a background is a number and wants numbers"
-        demand_numbers(self._free(B), why)
-        rise = self.in_unit(B)
-        with mpmath.workdps(self._strains.precision(rise, digits)):
-            I = mpmath_number(self.in_unit(self.I))
-            yield Profile(mpmath_number(rise), I, digits, *self._strains.functions())
+        demand_numbers(self._free(B), "a width or a profile on a background wants numbers")
+        return Flank(*self._functions, self.in_unit(B), self.in_unit(self.I), digits)
 
 
 def background_wave(cell: Cell, p0: Any = "p0", *, law: ContactLaw | None = None) -> BackgroundWave:

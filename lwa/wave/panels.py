@@ -1,10 +1,9 @@
 """Gauss panels along the flank of a wave, and the integrals of `lwa.wave.quadrature` on them.
 
-Letters as in `lwa.wave.quadrature`: a wave of the rise B has the strain p0 + sB, s = 1/cosh²θ,
-0 ≤ θ < ∞, K is the kernel of Q(B) - Q(v). Towards s = 0, where F′ of an
-unloaded contact is singular, panels in θ become longer, as the integrands decay with s; towards
-s = 1 they are halved as often as steep laws, contacts about to open and waves next to their
-limiting amplitude demand.
+A wave of the rise B has the strain p0 + sB, s = 1/cosh²θ, 0 ≤ θ < ∞; K is the kernel of
+Q(B) - Q(v). Towards s = 0, where F′ of an unloaded contact is singular, the integrands decay as a
+power of s, and panels in θ become longer. Towards s = 1 panels are halved as often as steep laws,
+contacts about to open and waves next to their limiting amplitude demand.
 """
 
 from __future__ import annotations
@@ -21,28 +20,23 @@ from lwa.base.arrays import Array, Extended
 POINTS = 20
 """Gauss points of a panel."""
 
-_HALF = float(np.arccosh(np.sqrt(2.0)))
-"""θ at v = B/2."""
-
-_TAIL = (2.5, 5.0, 9.0, 20.0)
-"""Ends of the panels below v = B/2; s is 1.7e-17 at the last."""
-
 LEVELS = ((1, 0), (2, 3), (6, 4), (24, 3), (24, 23))
 """Panels above v = B/2, and halvings of the first; 23 more reach the last digit of θ²."""
 
-CONVERGED = 1e-13
-"""Bound on the last two Legendre coefficients of dξ/dθ on a panel, relative to dξ/dθ."""
-
-ROUNDING = 1e-9
-"""Bound in place of `CONVERGED` on the finest panels, where p has rounding errors near a pole."""
+_HALF = float(np.arccosh(np.sqrt(2.0)))  # θ at v = B/2
+_NEAR = (1.8,)  # end of a further panel for widths, at v = 0.1 B
+_TAIL = (2.5, 5.0, 9.0, 20.0)  # ends of the panels behind them; v = 1.7e-17 B at the last
+# Ends of further panels for profiles. The poles of tanh θ, i π/2 away, let n Gauss points err by
+# 4.4^{-n} on a panel of length 1.5. Behind the last v is below 1e-34 B.
+_FAR = tuple(np.arange(2.0, 41.0, 1.5))
 
 
 class Grid(NamedTuple):
-    """Gauss panels in θ from 0 to ∞; the upper ones reach down to v = B/2, or 0.1 B if ``deep``.
+    """Gauss panels in θ. The upper panels, on which dξ/dθ is computed, come first.
 
-    ``s``, ``y2`` = 1 - s and ``ds``, the weights of ∫ … ds, have one entry per node. ``starts`` and
-    ``lengths`` have one per upper panel. Row j of ``kernel`` maps F″ at the nodes to ∫ K F″ ds / y²
-    at the upper node j; ``first`` and ``last`` map to θ = 0 and to the end of the upper panels.
+    ``s``, ``y2`` = 1 - s and ``ds``, the weights of ∫ … ds, have one entry per node; ``starts`` and
+    ``lengths`` have one per upper panel, of which ``half`` lie above v = B/2. Row j of ``kernel``
+    maps F″ at the nodes to ∫ K F″ ds / y² at the upper node j.
     """
 
     s: Array
@@ -50,19 +44,21 @@ class Grid(NamedTuple):
     ds: Array
     starts: Array
     lengths: Array
+    half: int
     kernel: Array
-    first: Array
-    last: Array
 
     def panels(self, values: Array) -> Array:
         """Values at the upper nodes, panel by panel."""
         return values[..., : len(self.kernel)].reshape(*values.shape[:-1], len(self.starts), POINTS)
 
-    def converged(self, rate: Array, most: float = CONVERGED) -> NDArray[np.bool_]:
-        """True for each wave whose dξ/dθ (``rate``, at the upper nodes) the panels resolve."""
+    def converged(self, rate: Array, bound: float) -> NDArray[np.bool_]:
+        """True for each wave whose last two Legendre coefficients of ``rate`` are below a bound.
+
+        rate : dξ/dθ at the upper nodes, one row per wave. The bound is relative to its maximum.
+        """
         last = np.abs(self.panels(rate) @ _fitted()[-2:].T).max(axis=(1, 2))
-        found: NDArray[np.bool_] = last <= most * np.abs(rate).max(axis=1)
-        return found
+        resolved: NDArray[np.bool_] = last <= bound * np.abs(rate).max(axis=1)
+        return resolved
 
 
 @cache
@@ -73,20 +69,17 @@ def gauss() -> tuple[Array, Array]:
 
 
 def _extended_gauss() -> tuple[Extended, Extended]:
-    """Gauss nodes and weights on [0, 1] in extended precision, w = 2/((1-x²) P_n′²).
-
-    NumPy's nodes after one step of Newton's method.
-    """
+    """Nodes and weights on [0, 1] in extended precision."""
     basis = np.eye(POINTS + 1, dtype=np.longdouble)[-1]
     slope = legendre.legder(basis)
     x = legendre.leggauss(POINTS)[0].astype(np.longdouble)
-    x = x - legendre.legval(x, basis) / legendre.legval(x, slope)
+    x = x - legendre.legval(x, basis) / legendre.legval(x, slope)  # one step of Newton's method
     return (x + 1) / 2, 1 / ((1 - x**2) * legendre.legval(x, slope) ** 2)
 
 
 @cache
 def _fitted() -> Array:
-    """The matrix from values at the Gauss points to coefficients in Legendre polynomials."""
+    """Matrix from values at the Gauss points to Legendre coefficients."""
     x, w = gauss()
     odd = 2 * np.arange(POINTS) + 1
     return (legendre.legvander(2 * x - 1, POINTS - 1) * (w[:, None] * odd)).T
@@ -94,45 +87,45 @@ def _fitted() -> Array:
 
 @cache
 def integrated() -> Array:
-    """The matrix from values on [0, 1] to Legendre coefficients of their integral from 0."""
+    """Matrix from values at the Gauss points to Legendre coefficients of the integral from 0."""
     matrix: Array = legendre.legint(np.eye(POINTS), lbnd=-1, axis=0) / 2 @ _fitted()
     return matrix
 
 
 @cache
-def grid(parts: int = 1, halvings: int = 0, deep: bool = False) -> Grid:
-    """The grid with ``parts`` panels above v = B/2, the first halved ``halvings`` times."""
+def grid(parts: int, halvings: int, far: bool = False) -> Grid:
+    """Panels for a wave: ``parts`` above v = B/2, the first of them halved ``halvings`` times.
+
+    The upper panels end at v = 0.1 B or, if ``far``, below 1e-34 B.
+    """
     x, w = gauss()
     above = [0.0, *(_HALF / parts / 2.0 ** np.arange(halvings, 0, -1))]
-    above += [_HALF * i / parts for i in range(1, parts + 1)] + [1.3, 1.8] * deep
-    edges = np.array([*above, *_TAIL])
+    above += [_HALF * i / parts for i in range(1, parts + 1)]
+    ends = [*above, *(_FAR if far else _NEAR)]
+    upper = len(ends) - 1
+    edges = np.array(ends if far else [*ends, *_TAIL])
     starts, lengths = edges[:-1], np.diff(edges)
     fine_x, fine_w = _extended_gauss()
     fine = (starts[:, None] + lengths[:, None] * fine_x).ravel()
     s, y2 = ((1 / np.cosh(fine) ** 2).astype(np.float64), (np.tanh(fine) ** 2).astype(np.float64))
     ds = (_measure(fine) * (lengths[:, None] * fine_w).ravel()).astype(np.float64)
     theta = fine.astype(np.float64)  # s, y2 and ds are rounded once: V² sums them
-    upper = len(above) - 1
 
-    def row(at: float) -> Array:
-        panel = int(np.searchsorted(edges[: upper + 1], at, side="right")) - 1
+    def row(panel: int, at: float) -> Array:
+        weights: Array = np.where(theta < at, _above(theta, at), _below(theta, at)) * ds
         own = slice(POINTS * panel, POINTS * (panel + 1))
-        found = np.zeros_like(theta)
-        found[: own.start] = (_above(theta, at) * ds)[: own.start]
-        found[own.start :] = (_below(theta, at) * ds)[own.start :]
-        if panel < upper:  # K bends at its node: F″ goes there by its values at the nodes
-            low, high = edges[panel], edges[panel + 1]
-            found[own] = 0.0
-            for start, length, kernel in ((low, at - low, _above), (at, high - at, _below)):
-                nodes = start + length * x
-                part = kernel(nodes, at) * _measure(nodes) * length * w
-                local = 2 * (nodes - low) / (high - low) - 1
-                found[own] += part @ legendre.legvander(local, POINTS - 1) @ _fitted()
-        return found
+        weights[own] = 0.0
+        low, high = edges[panel], edges[panel + 1]
+        # K has a kink at θ = at: on this panel F″ is interpolated, to either side of the kink.
+        for start, length, kernel in ((low, at - low, _above), (at, high - at, _below)):
+            nodes = start + length * x
+            part = kernel(nodes, at) * _measure(nodes) * length * w
+            local = 2 * (nodes - low) / (high - low) - 1
+            weights[own] += part @ legendre.legvander(local, POINTS - 1) @ _fitted()
+        return weights
 
-    kernel = np.array([row(at) for at in theta[: POINTS * upper]])
-    last = row(float(edges[upper]))
-    return Grid(s, y2, ds, starts[:upper], lengths[:upper], kernel, 2 * s * y2 * ds, last)
+    kernel = np.array([row(i // POINTS, at) for i, at in enumerate(theta[: POINTS * upper])])
+    return Grid(s, y2, ds, starts[:upper], lengths[:upper], len(above) - 1, kernel)
 
 
 def _measure(theta: Any) -> Any:
@@ -140,34 +133,28 @@ def _measure(theta: Any) -> Any:
     return 2 * np.tanh(theta) / np.cosh(theta) ** 2
 
 
-def _above(theta: Array, at: float) -> Array:
-    """The kernel K/y² at s > u = v/B, with y and u at θ = ``at``."""
-    found: Array = np.tanh(theta) ** 4 / np.tanh(at) ** 2
-    return found
+def _above(theta: Array, at: float) -> Any:
+    """The kernel K/y² = (1-s)²/y² at s > u = v/B, with y and u at θ = ``at``."""
+    return np.tanh(theta) ** 4 / np.tanh(at) ** 2
 
 
-def _below(theta: Array, at: float) -> Array:
-    """The kernel K/y² = s (2 - s - s/u) / u at s < u = v/B.
-
-    Here 1 - s/u = sinh(θ-θ_u) sinh(θ+θ_u) / cosh²θ, which does not cancel.
-    """
+def _below(theta: Array, at: float) -> Any:
+    """The kernel K/y² = s (2 - s - s/u) / u at s < u = v/B."""
     s, u = 1 / np.cosh(theta) ** 2, 1 / np.cosh(at) ** 2
+    # 1 - s/u = sinh(θ-θ_u) sinh(θ+θ_u) / cosh²θ does not cancel
     apart = np.sinh(theta - at) * np.sinh(theta + at) * s
-    found: Array = s / u * (np.tanh(theta) ** 2 + apart)
-    return found
+    return s / u * (np.tanh(theta) ** 2 + apart)
 
 
 def strains(g: Grid, p0: Array, B: Array) -> Array:
     """Strains p0 + sB at the nodes, computed from p0 or p0 + B, whichever is nearer."""
     near = (p0 + B)[:, None] - B[:, None] * g.y2
-    found: Array = np.where(g.y2 < 0.5, near, p0[:, None] + B[:, None] * g.s)
-    return found
+    return np.asarray(np.where(g.y2 < 0.5, near, p0[:, None] + B[:, None] * g.s))
 
 
-def value_at(coefficients: Any, x: Array) -> Array:
+def value_at(coefficients: Any, x: Array) -> Any:
     """Legendre series at x in [0, 1], one row of coefficients for each x."""
-    found: Array = legendre.legval(2 * x - 1, np.moveaxis(coefficients, -1, 0), tensor=False)
-    return found
+    return legendre.legval(2 * x - 1, np.moveaxis(coefficients, -1, 0), tensor=False)
 
 
 def inverse(coefficients: Array, target: Array) -> Array:

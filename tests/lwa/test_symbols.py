@@ -51,9 +51,8 @@ def results(m1, m2, k, D, alpha):
     for found in (theory.pde.coefficients[3], theory.defect.get(3, {})):
         yield from found.items()
     wave = theory.pde.traveling_wave()
-    yield from (("beta", wave.beta), ("speed", wave.speed(2)), ("B", wave.amplitude(2)))
-    yield from (("roots", root) for root in wave.roots)
-    for name in ("mu", "eta", "sigma", "s", "a"):
+    yield from (("beta", wave.beta), ("B", wave.amplitude(2)), ("root", wave.roots[1]))
+    for name in ("mu", "sigma", "s"):
         yield name, getattr(wave.reduction(1, V=3), name)
     yield "own speed", wave.speed().subs(sp.Symbol("B", positive=True), 2)
     yield "own amplitude", wave.amplitude().subs(sp.Symbol("V_s", positive=True), 2)
@@ -62,11 +61,9 @@ def results(m1, m2, k, D, alpha):
     physical = wave.at_force(3)
     yield from (("dx/dt", physical.speed), ("time", physical.fwhm("force", "time")))
     yield "own force", wave.at_force().speed.subs(sp.Symbol("F", positive=True), 3)
-    yield "optical", homogenize(cell, 2, k=k, branch="optical").amplitude_ratio
     full = homogenize(cell, 4, k=k, closure="full", field="center")
     yield "I", full.pde.I
-    for n, found in full.pde.energy.items():
-        yield from ((("energy", n, jet), value) for jet, value in found.items())
+    yield from full.pde.energy[2].items()
     yield from full.slaved[1][3].items()
     changed = full.pde.in_field({2: alpha})
     yield from (("G changed", changed.G), ("H changed", changed.H))
@@ -99,13 +96,10 @@ def may_be_refused(given):
     return {s.name for role, s in given.items() if own.get(role) != s.name} & {*RESERVED, "F"}
 
 
-@settings(max_examples=2, phases=(Phase.explicit, Phase.generate))  # shrinking would take minutes
+@settings(max_examples=1, phases=(Phase.explicit, Phase.generate))  # shrinking would take minutes
 @given(st.fixed_dictionaries(dict.fromkeys(ROLES, symbols)))
-@example({**NEUTRAL, "m1": sp.Symbol("lambda"), "alpha": sp.Symbol("mu0")})
-@example({**NEUTRAL, "m1": sp.Symbol("p"), "m2": sp.Symbol("I")})
-@example({**NEUTRAL, "m2": sp.Symbol("omega"), "k": sp.Symbol("kappa")})
+@example(dict(zip(ROLES, sp.symbols("p omega kappa I mu0"), strict=True)))
 @example({**NEUTRAL, "m1": sp.Symbol("k")})
-@example({**NEUTRAL, "m1": sp.Symbol("F")})
 def test_results_do_not_depend_on_names(given):
     assume(len({symbol.name for symbol in given.values()}) == len(given))
     try:
@@ -135,10 +129,9 @@ def law_results(a, b):
         yield value.subs(dict.fromkeys(rise, 2)).subs(sp.Symbol("D", positive=True), 1)
 
 
-@settings(max_examples=5, phases=(Phase.explicit, Phase.generate))
+@settings(max_examples=1, phases=(Phase.explicit, Phase.generate))
 @given(a=symbols, b=symbols)
-@example(a=sp.Symbol("a"), b=sp.Symbol("B"))
-@example(a=DELTA, b=sp.Symbol("b"))
+@example(a=sp.Symbol("tau"), b=sp.Symbol("x"))
 @example(a=sp.Symbol("delta"), b=sp.Symbol("b"))
 def test_results_do_not_depend_on_the_names_of_a_laws_parameters(a, b):
     assume(a.name != b.name)

@@ -359,7 +359,7 @@ BAD_RUNS = [
         SCENE,
         "out is result.txt: a file ending in .json, .npz, .csv is wanted",
     ),
-    (("--out", "no/such/o.json"), SCENE, "out is no/such/o.json: the folder no/such does not"),
+    (("--out", "no/such/o.json"), SCENE, "out is no/such/o.json: it cannot be written, No such"),
     (("--plot", "picture.txt"), SCENE, "plot is picture.txt: a file ending in"),
     (("--plot", "p.svg"), SCENE.replace("sensors", "#"), "plot is p.svg, but the scene names no s"),
     (("--out", "o.csv"), SCENE.replace("sensors", "#"), "out is o.csv, but the scene names no s"),

@@ -13,8 +13,7 @@ import numpy as np
 from lwa.base.arrays import Array, ArrayValue
 from validation.lattice.equations import Motion
 from validation.lattice.signal import Path, Signal, signal
-from validation.pictures.figure import Pictured
-from validation.pictures.panel import Curve, Map, Panel
+from validation.pictures import Curve, Map, Panel, Pictured
 from validation.scenes.checks import Failure, SceneError
 from validation.scenes.scene import Scene
 
@@ -146,7 +145,7 @@ class Records(ArrayValue, Pictured):
                 places = np.array(sensors, float)[x] + 1
                 shown = Map(force, places, self.time[t], forces[x, t].T)
                 maps.append(Panel(kind, time, map=shown))
-        return [Panel(time, force, tuple(curves), legend=(0.0, 1.0)), *maps] if curves else maps
+        return [Panel(time, force, tuple(curves), legend_above=True), *maps] if curves else maps
 
 
 @dataclass(frozen=True, eq=False, repr=False)

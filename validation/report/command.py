@@ -14,10 +14,10 @@ from typing import Any, Generic, ParamSpec, TypeVar
 import click
 
 from lwa.base.progress import bar, shown
-from lwa.command.reading import called, quantity
+from lwa.command.options import called, quantity
 from lwa.command.terminal import HELP
 from lwa.command.terminal import run as run_command
-from validation.pictures.figure import SUFFIXES
+from validation.pictures import SUFFIXES
 from validation.report.files import output_file
 from validation.report.result import Report
 from validation.scenes.checks import Failure, SceneError

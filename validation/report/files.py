@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import tempfile
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -21,29 +20,23 @@ def output_file(name: str, path: str, suffixes: Sequence[str]) -> Path:
         elif file.exists() and not file.is_file():
             fault = "a regular file is wanted"
         else:
-            with tempfile.TemporaryFile(dir=os.path.dirname(os.path.realpath(file))):
+            with tempfile.TemporaryFile(dir=file.resolve().parent):
                 return file
-    except (FileNotFoundError, NotADirectoryError):
-        fault = f"the folder {str(file.parent)[:120]} does not exist"
     except (OSError, ValueError) as error:  # ValueError: a name with a null byte
         fault = f"it cannot be written, {reason(error)}"
-    said = path if len(path) <= 120 else path[:117] + "..."
-    raise InputError(f"{name} is {said}: {fault}")
+    raise InputError(f"{name} is {path[:120]}: {fault}")
 
 
 @contextmanager
 def replacing(file: Path) -> Iterator[Path]:
     """Yield a temporary file that replaces ``file`` at the end, and is removed after a failure.
 
-    A replaced file keeps its mode, and a symbolic link its target. Raises `lwa.InputError`.
+    A symbolic link keeps its target. Raises `lwa.InputError` if the file cannot be written.
     """
-    target = Path(os.path.realpath(file))
+    target = file.resolve()
     try:
         with tempfile.TemporaryDirectory(prefix=".", dir=target.parent) as folder:
-            new = Path(folder, "new")
-            yield new
-            if target.exists():
-                new.chmod(target.stat().st_mode)
+            yield (new := Path(folder, "new"))
             new.replace(target)
     except OSError as error:
         raise InputError(f"{file} is not written: {reason(error)}") from None

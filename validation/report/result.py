@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from html import escape
 from pathlib import Path
+from textwrap import fill
 from typing import Any
 
 from lwa.base.exact import InputError
-from validation.pictures.figure import Pictured, svg
-from validation.pictures.panel import Panel
-from validation.report import text as texts
+from validation.pictures import Panel, Pictured, svg
 from validation.report.files import replacing
-from validation.report.table import Finding, Table, plain
+from validation.report.table import Finding, Table, findings_table, paragraphs, plain
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,7 +25,6 @@ class Report(Pictured):
     panels : panels of the picture.
     notes : explanations below the tables.
     data : entries that go to JSON unchanged.
-    parts : reports that this report consists of.
 
     >>> from validation.report.table import Column
     >>> row = Table((Column("n", "sites"), Column("c_value", "speed", format=".3f")), ((8, 1.25),))
@@ -44,12 +41,11 @@ class Report(Pictured):
     panels: tuple[Panel, ...] = ()
     notes: tuple[str, ...] = ()
     data: Mapping[str, Any] = field(default_factory=dict)
-    parts: tuple[Report, ...] = ()
 
     @property
     def ok(self) -> bool:
-        """True if every finding holds, those of the parts included."""
-        return all(found.ok for found in self._all_findings())
+        """True if every finding holds."""
+        return all(finding.ok for finding in self.findings)
 
     @property
     def verdict(self) -> str:
@@ -58,48 +54,56 @@ class Report(Pictured):
         >>> Report("", findings=(Finding("order", 2.4, 2.0, 3.0),)).verdict
         '1 check: all hold'
         """
-        count = len(found := self._all_findings())
-        failed = sum(not finding.ok for finding in found)
+        count, failed = len(self.findings), sum(not finding.ok for finding in self.findings)
         checks = f"{count} check{'s' * (count != 1)}: "
         return checks + (f"{failed} of {count} fail" if failed else "all hold") if count else ""
 
+    def _printed_tables(self) -> tuple[Table, ...]:
+        """All tables, and one of the findings: the failing ones beside other printed tables."""
+        failing_only = any(table.parts() for table in self.tables)
+        found = [finding for finding in self.findings if not (failing_only and finding.ok)]
+        return (*self.tables, findings_table(found))
+
     def text(self) -> str:
-        """The report as plain text."""
-        blocks = [block for report in self._tree() for block in report._blocks()]
-        return "\n\n".join(filter(None, (*blocks, self.verdict)))
+        """The report as plain text, titles and notes in lines of up to 100 characters."""
+        title, *notes = (
+            "\n".join(fill(line, 100, break_long_words=False) for line in text.splitlines())
+            for text in (self.title, *self.notes)
+        )
+        tables = (table.text() for table in self._printed_tables())
+        return "\n\n".join(filter(None, (title, *tables, *notes, self.verdict)))
+
+    def _repr_html_(self) -> str:
+        """The tables, the picture and the verdict, for a notebook."""
+        tables = "".join(table.html() for table in self._printed_tables())
+        above, below = paragraphs(self.title), paragraphs(*self.notes)
+        return f"{above}{tables}{below}{svg(self.panels)}{paragraphs(self.verdict)}"
 
     def document(self) -> dict[str, Any]:
         """The report for JSON: ``data``, each table under its key, and the findings.
 
-        With findings: ``ok``, ``findings``, ``statements`` (empty), and KEY_value of each finding
-        that has a key.
+        With findings: ``ok``, ``findings``, and KEY_value of each finding that has a key.
         """
-        found: dict[str, Any] = dict(plain(self.data))
-        found |= {table.key: table.document() for table in self.tables if table.key}
+        result: dict[str, Any] = dict(plain(self.data))
+        result |= {table.key: table.document() for table in self.tables if table.key}
         if self.findings:
-            found |= {f"{f.key}_value": plain(f.value) for f in self.findings if f.key}
-            found["findings"] = [f.document() for f in self.findings]
-            found["statements"] = []  # a key of the format; all findings are numbers
-        return found | ({"ok": self.ok} if self._all_findings() else {})
+            result |= {f"{f.key}_value": plain(f.value) for f in self.findings if f.key}
+            result |= {"findings": findings_table(self.findings).document(), "ok": self.ok}
+        return result
 
     def csv(self) -> str:
         """Return the first table with keys as CSV, if possible a table with rows.
 
         Raises `lwa.InputError` for a report without such a table.
         """
-        tables = [
-            table
-            for report in self._tree()
-            for table in report.tables
-            if any(column.key for column in table.columns)
-        ]
+        tables = [table for table in self.tables if any(column.key for column in table.columns)]
         if not tables:
             raise InputError("format is csv: this result has no table")
         return next((table for table in tables if table.rows), tables[0]).csv()
 
-    def pictured(self) -> list[Panel]:
-        """The panels of the report and its parts."""
-        return [panel for report in self._tree() for panel in report.panels]
+    def pictured(self) -> tuple[Panel, ...]:
+        """The panels of the picture."""
+        return self.panels
 
     def save(self, file: Path) -> None:
         """Draw the picture into a file; an old file is replaced only by a complete picture."""
@@ -107,31 +111,3 @@ class Report(Pictured):
         self.figure().savefig(drawn, dpi=150, format=file.suffix[1:].lower())
         with replacing(file) as new:
             new.write_bytes(drawn.getvalue())
-
-    def _repr_html_(self) -> str:
-        """The tables, the picture and the verdict, for a notebook."""
-        verdict = f"<p>{self.verdict}</p>" if self._all_findings() else ""
-        tables = (report._html() for report in self._tree())
-        return "".join((*tables, svg(self.pictured()), verdict))
-
-    def _tree(self) -> Iterator[Report]:
-        """Iterate over this report and all its parts, depth first."""
-        yield self
-        for part in self.parts:
-            yield from part._tree()
-
-    def _all_findings(self) -> list[Finding]:
-        return [found for report in self._tree() for found in report.findings]
-
-    def _listed(self) -> str:
-        shown = any(texts.blocks(table) for table in self.tables)
-        return texts.listed(self.findings, failing=shown)
-
-    def _blocks(self) -> list[str]:
-        title, *notes = map(texts.filled, (self.title, *self.notes))
-        return [title, *map(texts.text, self.tables), self._listed(), *notes]
-
-    def _html(self) -> str:
-        title, *notes = (f"<p>{escape(line)}</p>" for line in (self.title, *self.notes))
-        listed = f"<pre>{escape(found)}</pre>" if (found := self._listed()) else ""
-        return "".join((title, *map(texts.html, self.tables), listed, *notes))

@@ -1,17 +1,23 @@
-"""Tables of values, and findings: numbers held to bounds."""
+"""Tables of values as text, HTML, JSON and CSV, and findings: numbers held to bounds."""
 
 from __future__ import annotations
 
-import csv as comma
+import csv
 import io
 import json
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from html import escape
 from typing import Any
 
 import numpy as np
 import sympy as sp
+
+from validation.pulses.pulse import Measured
+
+Lines = Sequence[Sequence[str]]
+"""Lines of cells, the first of them the column labels."""
 
 
 @dataclass(frozen=True)
@@ -32,10 +38,27 @@ class Column:
     format: str | Callable[[Any], str] = ""
     error: bool = False
 
+    @property
+    def heading(self) -> str:
+        """The label, with the unit in parentheses."""
+        return f"{self.label} ({self.unit})" if self.unit else self.label
+
+    def text(self, cell: Any) -> str:
+        """Format one cell; ``-`` for None."""
+        if cell is None:
+            return "-"
+        if callable(self.format):
+            return self.format(cell)
+        if isinstance(cell, bool):
+            return "ok" if cell else "FAILS"
+        if isinstance(cell, Measured) and self.format:
+            return f"{cell.value:{self.format}} ± {cell.error:.0e}"
+        form = self.format or (".8g" if isinstance(cell, float) else "")
+        return format(cell, form) if form else str(cell)
+
     def values(self, cell: Any) -> Iterator[tuple[str, Any]]:
         """Yield the JSON names and values of a cell.
 
-        >>> from validation.pulses.pulse import Measured
         >>> dict(Column("speed.m1", error=True).values(Measured(2.0, 1.75)))
         {'speed_value.m1': 2.0, 'speed_error_value.m1': 0.25}
         """
@@ -88,43 +111,44 @@ class Table:
         2,,
         """
         text = io.StringIO()
-        names = [name for c in self.columns if c.key for name, _ in c.values(None)]
-        writer = comma.DictWriter(text, names, lineterminator="\n")
-        writer.writeheader()
+        writer = csv.writer(text, lineterminator="\n")
+        writer.writerow(name for c in self.columns if c.key for name, _ in c.values(None))
         for record in self.records():
-            writer.writerow(
-                {
-                    name: json.dumps(value) if isinstance(value, list | dict) else value
-                    for name, value in record.items()
-                }
-            )
+            cells = record.values()
+            writer.writerow(json.dumps(x) if isinstance(x, list | dict) else x for x in cells)
         return text.getvalue()
 
+    def parts(self) -> list[tuple[str, Lines]]:
+        """Return the printed parts: headings, and lines of cells below the column labels.
 
-def plain(value: Any) -> Any:
-    """Convert a value for JSON: exact numbers to texts that SymPy reads, NaN and ∞ to None."""
-    if isinstance(value, sp.Basic):
-        return str(value)
-    if isinstance(value, np.ndarray | np.generic):
-        return plain(value.tolist())
-    if isinstance(value, float):
-        return value if math.isfinite(value) else None
-    if isinstance(value, Mapping):
-        return {name: plain(part) for name, part in value.items()}
-    if isinstance(value, list | tuple):
-        return [plain(part) for part in value]
-    return value
+        There is one part for each value of the column ``by``, by default a single part, and none
+        without column labels or rows.
+        """
+        printed = [(i, column) for i, column in enumerate(self.columns) if column.label]
+        keys = [column.key for column in self.columns]
+        parts: dict[str, list[Sequence[str]]] = {}
+        for row in self.rows if printed else ():
+            group = str(row[keys.index(self.by)]) if self.by else ""
+            lines = parts.setdefault(group, [[column.heading for _, column in printed]])
+            lines.append([column.text(row[i]) for i, column in printed])
+        return [(self.heads.get(group, group), lines) for group, lines in parts.items()]
 
+    def text(self) -> str:
+        """The table as text; empty without column labels or rows."""
+        parts = [f"{head}\n{aligned(lines)}".lstrip("\n") for head, lines in self.parts()]
+        blocks = self.title, "\n\n".join(parts), self.note
+        return "\n".join(filter(None, blocks)) if parts else ""
 
-def _nested(record: Mapping[str, Any]) -> dict[str, Any]:
-    result: dict[str, Any] = {}
-    for name, value in record.items():
-        *path, last = name.split(".")
-        place = result
-        for part in path:
-            place = place.setdefault(part, {})
-        place[last] = value
-    return result
+    def html(self) -> str:
+        """The table as HTML; empty without column labels or rows."""
+        parts = self.parts()
+        tables = []
+        for head, (header, *lines) in parts:
+            rows = "".join(_html_row("td", line) for line in lines)
+            header_row = f"<thead>{_html_row('th', header)}</thead>"
+            tables.append(f"{paragraphs(head)}<table>{header_row}<tbody>{rows}</tbody></table>")
+        blocks = (paragraphs(self.title), *tables, paragraphs(self.note))
+        return "".join(blocks) if parts else ""
 
 
 @dataclass(frozen=True)
@@ -154,14 +178,95 @@ class Finding:
         error = self.error or 0.0
         return bool(self.low <= self.value - error and self.value + error <= self.high)
 
-    def document(self) -> dict[str, Any]:
-        """The finding for JSON, with null for a missing error or bound."""
-        found = {
-            "quantity": self.quantity,
-            "measured_value": self.value,
-            "error_value": self.error,
-            "least_value": self.low,
-            "most_value": self.high,
-            "ok": self.ok,
-        }
-        return {name: plain(part) for name, part in found.items()}
+    @property
+    def cells(self) -> tuple[Any, ...]:
+        """Cells of the finding below `FINDING_COLUMNS`."""
+        value = f"{self.value:.6g}" + ("" if self.error is None else f" ± {self.error:.0e}")
+        numbers = self.value, self.error, self.low, self.high
+        return self.quantity, value, bounds(self.low, self.high), *numbers, self.ok
+
+
+FINDING_COLUMNS = (
+    *(Column("quantity", "measured"), Column("", "value"), Column("", "expected")),
+    *map(Column, ("measured_value", "error_value", "least_value", "most_value")),
+    Column("ok", "holds"),
+)
+"""Columns of findings: value and bounds as text, the numbers in JSON."""
+
+
+def findings_table(findings: Iterable[Finding]) -> Table:
+    """Table of findings."""
+    return Table(FINDING_COLUMNS, tuple(finding.cells for finding in findings))
+
+
+def plain(value: Any) -> Any:
+    """Convert a value for JSON: exact numbers to texts that SymPy reads, NaN and ∞ to None."""
+    if isinstance(value, sp.Basic):
+        return str(value)
+    if isinstance(value, np.ndarray | np.generic):
+        return plain(value.tolist())
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    if isinstance(value, Mapping):
+        return {name: plain(part) for name, part in value.items()}
+    if isinstance(value, list | tuple):
+        return [plain(part) for part in value]
+    return value
+
+
+def _nested(record: Mapping[str, Any]) -> dict[str, Any]:
+    """Turn names with dots into entries of mappings."""
+    result: dict[str, Any] = {}
+    for name, value in record.items():
+        *path, last = name.split(".")
+        place = result
+        for part in path:
+            place = place.setdefault(part, {})
+        place[last] = value
+    return result
+
+
+def aligned(lines: Lines) -> str:
+    """Align columns of text: the first one left, the others right.
+
+    >>> print(aligned((("bead", "force"), ("first", "1.5"), ("second", "12.25"))))
+    bead    force
+    first     1.5
+    second  12.25
+    """
+    first, *others = (max(map(len, column)) for column in zip(*lines, strict=True))
+    rows = ((name.ljust(first), *map(str.rjust, cells, others)) for name, *cells in lines)
+    return "\n".join("  ".join(row).rstrip() for row in rows)
+
+
+def bounds(low: float, high: float) -> str:
+    """Format an interval; infinite ends are left out.
+
+    >>> bounds(-1.0, 1.0), bounds(2.0, 3.0), bounds(-math.inf, 3.0), bounds(-math.inf, math.inf)
+    ('± 1', '2 … 3', '≤ 3', '-')
+    """
+    if low == high:
+        return f"{low:g}"
+    if low == -high:
+        return f"± {high:g}" if math.isfinite(high) else "-"
+    if math.isinf(high):
+        return f"≥ {low:g}"
+    return f"≤ {high:g}" if math.isinf(low) else f"{low:g} … {high:g}"
+
+
+def percent(share: float) -> str:
+    """Format a fraction as a signed percentage.
+
+    >>> percent(-0.0125)
+    '-1.25 %'
+    """
+    return f"{100 * share:+.3g} %"
+
+
+def paragraphs(*texts: str) -> str:
+    """Return texts as HTML paragraphs, without the empty ones."""
+    return "".join(f"<p>{escape(text)}</p>" for text in texts if text)
+
+
+def _html_row(tag: str, cells: Iterable[str]) -> str:
+    return f"<tr>{''.join(f'<{tag}>{escape(cell)}</{tag}>' for cell in cells)}</tr>"

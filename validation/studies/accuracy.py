@@ -27,7 +27,7 @@ import sympy as sp
 from lwa.base.progress import Progress
 from validation.lattice.run import IntegrationError, Run
 from validation.lattice.simulate import COMPILED, simulate
-from validation.pictures.panel import Curve, Panel
+from validation.pictures import Curve, Panel
 from validation.pulses.pulse import MeasureError, Pulse, highest_pulse
 from validation.pulses.sensors import tracks
 from validation.report.command import option, study
@@ -265,7 +265,7 @@ def _panel(task: str, rows: Sequence[Timing]) -> Panel:
     curves = []
     for name, its in by_method(rows).items():
         seen = [row for row in its if math.isfinite(row.error)]
-        curves.append(Curve.of(name, [row.error for row in seen], [row.seconds for row in seen]))
+        curves.append(Curve(name, [row.error for row in seen], [row.seconds for row in seen]))
     label = "largest relative error of arrival, peak, FWHM"
     return Panel(label, "CPU time (s)", tuple(curves), "xy", task)
 
@@ -280,10 +280,10 @@ def accuracy(names: Collection[str] = (), progress: Progress[str] = iter) -> Rep
     wanted = {one_of(name, NAMES, "task") for name in names} or set(NAMES)
     rows: dict[str, list[Timing]] = {}
     references: list[tuple[Any, ...]] = []
-    theories: tuple[Report, ...] = ()
+    theories = Report("")
     for name in progress([name for name in NAMES if name in wanted]):
         if name == THEORY:
-            theories = (ladder([place(*case) for case in CASES]),)
+            theories = ladder([place(*case) for case in CASES])
             continue
         task = TASKS[name]()
         truth = task.truth or task.read(simulate(task.scene, rtol=FINEST))
@@ -305,8 +305,8 @@ def accuracy(names: Collection[str] = (), progress: Progress[str] = iter) -> Rep
             Table(tuple(map(Column, _RUNS)), cells, "rows"),
             Table(_COSTS, spent, "costs", note=_NOTE, by="task", heads=heads),
             Table(tuple(map(Column, ("task", *NUMBERS))), tuple(references), "references"),
+            *theories.tables,
         ),
-        panels=tuple(_panel(task, its) for task, its in rows.items()),
-        data={name: x for part in theories for name, x in part.data.items()},
-        parts=theories,
+        panels=(*(_panel(task, its) for task, its in rows.items()), *theories.panels),
+        data=theories.data,
     )

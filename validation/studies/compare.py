@@ -9,7 +9,7 @@ import click
 
 from lwa.base.arrays import Array
 from validation.lattice.run import Run, RunProgress, silent
-from validation.pictures.panel import Curve, Panel
+from validation.pictures import Curve, Panel
 from validation.pulses.pulse import Measured, Pulse, compared, dense, derived, first_pulse
 from validation.pulses.sensors import READINGS, Reading, Track, record, tracks
 from validation.pulses.signals import Sampled
@@ -77,7 +77,7 @@ def compare(scene: str, measured: str, run_progress: RunProgress = silent) -> Re
     return Report(
         str(what),
         (Table(_COLUMNS, tuple(rows), "rows"),),
-        panels=(Panel(label("time"), label("dynamic force"), tuple(curves), legend=(0.0, 1.0)),),
+        panels=(Panel(label("time"), label("dynamic force"), tuple(curves), legend_above=True),),
         notes=(_NOTE.format(unit, first),),
         data={"shift_value": shift},
     )

@@ -10,8 +10,8 @@ import sympy as sp
 from lwa.base.exact import InputError
 from lwa.base.progress import Progress
 from lwa.base.quantities import QUANTITIES
-from lwa.command.reading import quantities
-from validation.pictures.panel import Curve, Panel
+from lwa.command.options import quantities
+from validation.pictures import Curve, Panel
 from validation.pulses.steady import HUMPS
 from validation.report.command import EXPONENT, number, option, study
 from validation.report.result import Report
@@ -116,7 +116,7 @@ def resonances(k: float, count: int) -> Report:
     """
     waves, xi = special_ratios(k, count), np.linspace(-5, 5, 1001)
     rows = tuple((wave.omega, wave.c2, wave.tail, wave.residual) for wave in waves)
-    curves = (Curve.of(f"m2/m1 = {w.omega:.4f}", xi, w.force(xi), "-") for w in waves)
+    curves = (Curve(f"m2/m1 = {w.omega:.4f}", xi, w.force(xi), "-") for w in waves)
     names = ("mass_ratios", *(column.key for column in _RATIOS[1:]))
     return Report(
         f"k = {k:g}: dimers with a solitary wave",

@@ -17,13 +17,12 @@ from lwa import PhysicalWave, canonical_wave
 from lwa.base.progress import Progress
 from validation.lattice.run import Run
 from validation.lattice.simulate import simulate_many
-from validation.pictures.panel import Curve, Panel
+from validation.pictures import Curve, Panel
 from validation.pulses.pulse import Measured, compared, exponent, first_passage
 from validation.pulses.train import Train
 from validation.report.command import study
 from validation.report.result import Report
-from validation.report.table import Column, Table
-from validation.report.text import percent
+from validation.report.table import Column, Table, percent
 from validation.scenes.materials import DIAMETER, PTFE, PTFE_BEAD
 from validation.studies import paper
 from validation.studies.paper import HERTZ, chain_cell, chain_runs
@@ -120,8 +119,8 @@ def _scaling_panel(rows: Sequence[Scaling]) -> Panel:
     for i, row in enumerate(rows):
         label = f"E = {row.E / 1e9:g} GPa: exponent {row.exponent.value:.4f}"
         forces, speeds = ([m.value for m in found] for found in (row.forces, row.speeds))
-        curves.append(Curve.of(label, forces, speeds, f"C{i}{'os'[i]}"))
-        curves.append(Curve.of("theory, $F_m^{1/6}$", forces, row.theory, f"C{i}-"))
+        curves.append(Curve(label, forces, speeds, f"C{i}{'os'[i]}"))
+        curves.append(Curve("theory, $F_m^{1/6}$", forces, row.theory, f"C{i}-"))
     return Panel("peak force $F_m$ (N)", "speed $V_s$ (m/s)", tuple(curves), "xy")
 
 

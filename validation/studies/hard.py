@@ -1,9 +1,8 @@
 """Hard cases: the last digits at extreme k, ω and loads, contacts that open, and long runs.
 
-Each case answers a question, its docstring; the numbers are held to bounds that follow from a law,
-a closed form or another method. Closed forms in float64 are compared with exact expressions that
-mpmath evaluates to `DIGITS` digits at the same float64 arguments. An ulp is the distance between
-neighbouring float64 numbers at the exact value: perfect rounding loses at most half an ulp.
+Each case is a function whose docstring is a question; the answer's numbers have bounds that follow
+from a law, a closed form or another method. An ulp is the distance between neighbouring float64
+numbers at the exact value: perfect rounding loses at most half an ulp.
 """
 
 from __future__ import annotations
@@ -23,22 +22,22 @@ from lwa.base.arrays import Array
 from lwa.base.progress import Progress
 from lwa.wave.background import BackgroundWave
 from validation.lattice.simulate import simulate
-from validation.pictures.panel import Curve, Panel
+from validation.pictures import Curve, Panel
 from validation.report.command import option, study
 from validation.report.result import Report
-from validation.report.table import Column, Finding, Table
+from validation.report.table import FINDING_COLUMNS, Column, Finding, Table
 from validation.scenes.checks import one_of
 from validation.scenes.scene import Scene
 
-B = 0.7  # rise of a wave on a background; no power of 2
-DIGITS = 80  # cancellation on the grid leaves more than 50 of them
+REFERENCE_DIGITS = 80  # of mpmath; cancellation on the grid leaves more than 50 of them
 ALLOWED = 2.0  # ulps that a closed form may lose
 PRINTED, METHOD = "as printed", "SRKN14"  # the formulas of the paper; the splitting
 
 EXPONENTS = 1 + np.array([1e-6, 1e-4, 0.01, 0.1, 0.5, 1, 1 + 2**-30, 1.5, 2 - 2**-30, 2, 4, 19])
 RATIOS = np.unique([*10.0 ** np.arange(-6, 6.1, 0.5), 0.2733, 1 - 2**-40, 1 + 2**-40, 3.0, 4.0])
-LOADS = 10.0 ** np.arange(-12, 12.5, 0.5)
-"""Grid of k, of ω = m2/m1 (0.2733 is the paper's) and of p0/B."""
+"""Grid of k and of ω = m2/m1; 0.2733 is the paper's."""
+RISE = 0.7  # B of a wave on a background; no power of 2
+LOADS = 10.0 ** np.arange(-12, 12.5, 0.5)  # p0/B
 
 CLOSURES: Mapping[str, Mapping[str, Any]] = {
     "paper's closure": {},
@@ -63,8 +62,8 @@ def form(wave: TravelingWave, name: str, *arguments: Any) -> sp.Expr:
     # V² = V²(B = 1) B^{k-1}, V²(B = 1) being the wave's speed_factor.
     if name == "log_amplitude":
         return (2 * sp.log(*arguments) - sp.log(wave.speed_factor)) / (wave.k - 1)
-    found = getattr(wave, name)
-    return found(*arguments) if arguments else found
+    value = getattr(wave, name)
+    return value(*arguments) if arguments else value
 
 
 def closed_wave(closure: str) -> TravelingWave:
@@ -73,46 +72,49 @@ def closed_wave(closure: str) -> TravelingWave:
 
 
 def true_values(wave: TravelingWave, expression: sp.Expr, k: Array, omega: Array) -> Any:
-    """Evaluate an expression of a `closed_wave` by mpmath, to `DIGITS` digits.
+    """Evaluate an expression of a `closed_wave` by mpmath, to `REFERENCE_DIGITS` digits.
 
     k, omega : arrays of one shape. Returns an array of mpmath numbers, None where there is no wave.
     """
     m1, m2 = wave.cell.masses
     value, *positive = (
         sp.lambdify((wave.k, m2), each.subs(m1, 1), "mpmath")
-        for each in (expression, wave.dispersion, wave.speed_factor)
+        for each in (expression, wave.coefficient_sum, wave.speed_factor)
     )
 
     def at(*point: float) -> Any:
         numbers = tuple(map(mp.mpf, point))
         return value(*numbers) if all(each(*numbers) > 0 for each in positive) else None
 
-    with mp.workdps(DIGITS):
+    with mp.workdps(REFERENCE_DIGITS):
         return np.frompyfunc(at, 2, 1)(k, omega)
 
 
 def in_ulps(value: Array, true: Any) -> Array:
-    """Return |value - true| in ulps; ∞ if value is not finite, NaN if true is None (no wave)."""
+    """Return |value - true| in ulps; ∞ for a missing value, or a value where no wave is (None)."""
 
-    def loss(found: float, at: Any) -> float:
-        if at is None or not math.isfinite(found):
-            return math.nan if at is None else math.inf
-        return float(abs(mp.mpf(found) - at) / float(np.spacing(abs(float(at)))))
+    def loss(x: float, exact: Any) -> float:
+        if exact is None:
+            return math.inf if math.isfinite(x) else math.nan
+        if not math.isfinite(x):
+            return math.inf
+        return float(abs(mp.mpf(x) - exact) / float(np.spacing(abs(float(exact)))))
 
-    with mp.workdps(DIGITS):
+    with mp.workdps(REFERENCE_DIGITS):
         return np.asarray(np.frompyfunc(loss, 2, 1)(value, true), float)
 
 
 def printed_beta(k: Array, omega: Array) -> Array:
     """Return |β| by the formulas of Porter et al. (2008), in float64, for m1 = D = 1.
 
-    p is the root of (G+H+I) p² - (H+3I) p + 2I = 0 with -√; NaN if p is complex or 0/0 arises.
+    NaN if the root p is complex or 0/0 arises.
     """
     M = 1 + omega
     G = (2 - 3 * k + k**2) / (6 * M**2)
     H = 2 * (k - 1) * (2 + omega - omega**2) / (6 * M**2)
     I = 2 * (1 - omega + omega**2) / (6 * M**2)
     with np.errstate(all="ignore"):  # outside the formulas' domain, which NaN and ∞ show
+        # The root with -√ of (G+H+I) p² - (H+3I) p + 2I = 0.
         p = ((H + 3 * I) - np.sqrt((H + 3 * I) ** 2 - 8 * (G + H + I) * I)) / (2 * (G + H + I))
         a = 1 - k * p + 3 * (p - 1) + p * H / I
         return np.asarray(np.abs(np.sqrt(1 / (I * (k * p + a))) * (k * p - p) / 2))
@@ -121,28 +123,27 @@ def printed_beta(k: Array, omega: Array) -> Array:
 def losses(exponents: Array = EXPONENTS, ratios: Array = RATIOS) -> dict[tuple[str, str], Array]:
     """Return the error in ulps of each (form, closure) in float64, (exponents, ratios)."""
     k, omega = np.meshgrid(exponents, ratios, indexing="ij")
-    found = {}
+    result = {}
     for closure in CLOSURES:
         wave = closed_wave(closure)
         numeric = wave.numeric(missing="nan")
         for label, (name, *arguments) in FORMS.items():
             given = [x if isinstance(x, str) else float(x) for x in arguments]
-            value = getattr(numeric, name)(k, omega, *given)
-            lost = in_ulps(value, true_values(wave, form(wave, name, *arguments), k, omega))
-            lost[np.isnan(lost) & np.isfinite(value)] = np.inf  # a number without a wave
-            found[label, closure] = lost
+            true = true_values(wave, form(wave, name, *arguments), k, omega)
+            result[label, closure] = in_ulps(getattr(numeric, name)(k, omega, *given), true)
     wave = closed_wave("paper's closure")
-    found["β", PRINTED] = in_ulps(printed_beta(k, omega), true_values(wave, wave.beta, k, omega))
-    return found
+    true = true_values(wave, wave.beta, k, omega)
+    result["β", PRINTED] = in_ulps(printed_beta(k, omega), true)
+    return result
 
 
 def ulps() -> Report:
     """k = 1 + 1e-6 … 20, ω = 1e-6 … 1e6: how many ulps do lwa's closed forms lose in float64?"""
-    found = losses()
-    largest = {at: float(np.max(x, initial=0, where=np.isfinite(x))) for at, x in found.items()}
-    missing = {at: int(np.count_nonzero(np.isinf(x))) for at, x in found.items()}
-    ours, beta = [at for at in found if at[1] != PRINTED], ("β", PRINTED)
-    worst, none = max(largest[at] for at in ours), sum(missing[at] for at in ours)
+    lost = losses()
+    largest = {key: float(np.max(x, initial=0, where=np.isfinite(x))) for key, x in lost.items()}
+    missing = {key: int(np.count_nonzero(np.isinf(x))) for key, x in lost.items()}
+    ours, beta = [key for key in lost if key[1] != PRINTED], ("β", PRINTED)
+    worst, none = max(largest[key] for key in ours), sum(missing[key] for key in ours)
     findings = (
         Finding("largest loss of all in ulps", worst, 0, ALLOWED, key="loss_ulps"),
         Finding("points at which a form has no number", none, 0, 0, key="missing"),
@@ -153,9 +154,9 @@ def ulps() -> Report:
     columns = (Column(label="largest loss, ulps"), *(Column("", x, format=".2g") for x in sources))
     rows = tuple((form, *(largest.get((form, source)) for source in sources)) for form in FORMS)
     curves = []
-    for label, at in (("lwa", ("β", "paper's closure")), (PRINTED, beta)):
-        lost = np.max(found[at], axis=1, where=np.isfinite(found[at]), initial=0.0)
-        curves.append(Curve.of(label, EXPONENTS - 1, lost))
+    for label, key in (("lwa", ("β", "paper's closure")), (PRINTED, beta)):
+        worst_at_k = np.max(lost[key], axis=1, where=np.isfinite(lost[key]), initial=0.0)
+        curves.append(Curve(label, EXPONENTS - 1, worst_at_k))
     answer = (
         f"Less than {ALLOWED:g}, in every closed form and closure, and there is always a number. "
         "The paper's route through the root p loses all digits where G+H+I nearly vanishes and "
@@ -167,8 +168,8 @@ def ulps() -> Report:
 
 def width_error(wave: BackgroundWave, p0: float, quantity: str) -> float:
     """Return the relative error of the float64 FWHM of a wave on the background strain p0."""
-    true = wave.on(sp.Rational(p0)).fwhm(sp.Rational(B), quantity, 50)
-    return abs(float(sp.Float(float(wave.numeric().fwhm(p0, B, quantity)), 50) / true - 1))
+    true = wave.on(sp.Rational(p0)).fwhm(sp.Rational(RISE), quantity, 50)
+    return abs(float(sp.Float(float(wave.numeric().fwhm(p0, RISE, quantity)), 50) / true - 1))
 
 
 def under_load() -> Report:
@@ -176,17 +177,17 @@ def under_load() -> Report:
     findings, curves = [], []
     for k in (sp.Rational(11, 10), sp.Rational(3, 2), sp.Integer(2), sp.Integer(3)):
         wave = background_wave(Cell((1,), spacing=1), law=Power(k))
-        p0s = map(sp.Rational, LOADS * B)  # the floats themselves
-        with mp.workdps(DIGITS):
-            true = [mp.mpf(sp.N(wave.on(p0).stiffness(sp.Rational(B)), DIGITS)) for p0 in p0s]
-        ulps = in_ulps(wave.numeric().speed_squared(LOADS * B, B), np.array(true, object))
+        exact = (wave.on(sp.Rational(p0)).stiffness(sp.Rational(RISE)) for p0 in LOADS * RISE)
+        with mp.workdps(REFERENCE_DIGITS):
+            true = np.array([mp.mpf(sp.N(squared, REFERENCE_DIGITS)) for squared in exact], object)
+        lost = in_ulps(wave.numeric().speed_squared(LOADS * RISE, RISE), true)
         name, key = f"V² at k = {k}: largest loss in ulps", "loss_ulps" * (k == sp.Rational(3, 2))
-        findings.append(Finding(name, float(ulps.max()), 0, 4.0, key=key))
-        curves.append(Curve.of(f"k = {k}", LOADS, np.maximum(ulps, 0.01)))
+        findings.append(Finding(name, float(lost.max()), 0, 4.0, key=key))
+        curves.append(Curve(f"k = {k}", LOADS, np.maximum(lost, 0.01)))
     for chain, masses in (("equal beads", (1,)), ("masses 1, 1/4", (1, "1/4"))):
         wave = background_wave(Cell(masses, spacing=1), law=Power("3/2"))
         for quantity in ("strain", "force"):
-            worst = max(width_error(wave, p0, quantity) for p0 in LOADS[::12] * B)
+            worst = max(width_error(wave, p0, quantity) for p0 in LOADS[::12] * RISE)
             key = f"{quantity}_error" if len(masses) == 1 else ""
             name = f"FWHM of the {quantity}, {chain}: largest relative error"
             findings.append(Finding(name, worst, 0, 1e-12, key=key))
@@ -205,7 +206,7 @@ def contact_loss() -> Report:
         how, error = "opening" if opens else "closed", math.sqrt(covariance[0, 0])
         low, high, name = order - 0.35, order + 0.35, f"{METHOD}, k = 3/2, contacts {how}: order"
         findings.append(Finding(name, float(slope), low, high, error, f"order_{how}"))
-        curves.append(Curve.of(how, steps, errors))
+        curves.append(Curve(how, steps, errors))
     answer = (
         "k + 1: 2.5 of 6 at k = 3/2. A smaller step, not a higher order, is what helps the "
         "splitting, whose step follows this law; the adaptive pair treats kinks on their own."
@@ -255,9 +256,9 @@ def long_run(lasting: float = 1e6, segments: int = 200) -> Report:
         Finding("opening: power of time, 1/2 at random", power, 0.3, 0.75, key="power_of_walk"),
     )
     curves = (
-        Curve.of("contacts closed", time[1:], np.abs(smooth[1:])),
-        Curve.of("contacts opening", time[1:], np.abs(walk[1:])),
-        Curve.of("closed, DOP853 at 1e-9, extrapolated", time[1:], abs(drift) * time[1:]),
+        Curve("contacts closed", time[1:], np.abs(smooth[1:])),
+        Curve("contacts opening", time[1:], np.abs(walk[1:])),
+        Curve("closed, DOP853 at 1e-9, extrapolated", time[1:], abs(drift) * time[1:]),
     )
     answer = (
         "As long as contacts stay closed it does not, while DOP853's drifts in proportion to the "
@@ -308,8 +309,6 @@ def spreading(walk: Array) -> float:
     return float(np.polyfit(np.log(lags), np.log(spread), 1)[0])
 
 
-_FINDING = "quantity", "measured_value", "error_value", "least_value", "most_value", "ok"
-
 CASES: Mapping[str, Callable[[], Report]] = {
     "contact-loss": contact_loss,
     "long-run": long_run,
@@ -319,30 +318,32 @@ CASES: Mapping[str, Callable[[], Report]] = {
 """The cases by their names."""
 
 
-_NAMES = click.Choice(tuple(CASES))
-
-
-@study(option("--case", "names", multiple=True, type=_NAMES, says="Only this case."))
+@study(
+    option("--case", "names", multiple=True, type=click.Choice([*CASES]), says="Only this case.")
+)
 def hard(names: Collection[str] = (), progress: Progress[str] = iter) -> Report:
     """Last digits at extreme k, ω and loads, contacts that open, and long runs (half a minute).
 
     names: cases to run, by default all; raises `lwa.InputError` for a name beside `CASES`. JSON:
-    ``cases``, each with ``case``, ``question``, ``outcome``, numbers, ``findings`` and ``panel``.
+    ``cases``, each with ``case``, ``question``, ``outcome``, numbers and ``findings``.
     """
     wanted = {one_of(name, CASES, "case") for name in names} or set(CASES)
-    rows, cases, parts = [], [], []
-    for name in progress([name for name in CASES if name in wanted]):
-        outcome = CASES[name]()
-        document, (panel,), (answer,) = outcome.document(), outcome.panels, outcome.notes
-        if failed := sum(not finding.ok for finding in outcome.findings):
-            answer = f"{failed} not as expected, which was: {answer}"
-        rows += [(name, *finding.values()) for finding in document["findings"]]
-        head = {"case": name, "question": outcome.title, "outcome": answer}
-        cases.append(head | document | {"panel": panel.document()})
-        panels, title = (replace(panel, title=name),), f"{name}\n{outcome.title}"
-        parts.append(replace(outcome, title=title, notes=(answer,), panels=panels))
-    failing = sum(not part.ok for part in parts)
-    verdict = f"{failing} fail" if failing else "all hold"
-    title = f"{len(cases)} case{'s' * (len(cases) > 1)}: {verdict}"
-    table = Table(tuple(map(Column, ("case", *_FINDING))), tuple(rows))
-    return Report(title, (table,), data={"cases": cases}, parts=tuple(parts))
+    reports = {name: CASES[name]() for name in progress([name for name in CASES if name in wanted])}
+    rows, cases = [], []
+    for name, report in reports.items():
+        (answer,) = report.notes
+        outcome = answer if report.ok else f"Not as expected, which was: {answer}"
+        head = {"case": name, "question": report.title, "outcome": outcome}
+        cases.append(head | report.document())
+        rows += [(name, *finding.cells) for finding in report.findings]
+    heads = {name: f"{name}\n{report.title}" for name, report in reports.items()}
+    findings = Table((Column("case"), *FINDING_COLUMNS), tuple(rows), by="case", heads=heads)
+    return Report(
+        "Hard cases",
+        (findings, *(table for report in reports.values() for table in report.tables)),
+        # without keys: the cases' numbers of one name would replace each other
+        tuple(replace(f, key="") for report in reports.values() for f in report.findings),
+        tuple(replace(panel, title=name) for name in reports for panel in reports[name].panels),
+        tuple(f"{case['case']}: {case['outcome']}" for case in cases),
+        {"cases": cases},
+    )

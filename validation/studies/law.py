@@ -16,10 +16,9 @@ from lwa.base.arrays import Array
 from lwa.base.exact import shorten
 from lwa.base.files import load
 from lwa.base.tables import entries
-from lwa.command.reading import quantities, quantity
+from lwa.command.options import quantities, quantity
 from lwa.spheres.beads import spheres as read_spheres
-from validation.pictures.panel import Curve, Panel
-from validation.pulses.contact_law import Medium, PowerFit, fit_power, free_law, weights
+from validation.pictures import Curve, Panel
 from validation.pulses.pulse import Measured
 from validation.report.command import option, study
 from validation.report.result import Report
@@ -27,7 +26,9 @@ from validation.report.table import Column, Table
 from validation.scenes.chains import numbered
 from validation.scenes.checks import SceneError, integer
 from validation.scenes.columns import columns
+from validation.waves.contact_law import Medium, PowerFit, fit_power, free_law, weights
 
+_ROOT = 1e-13  # error of ln E, beside rounding
 _LAW = (
     Column("compression_value", "compression", format=".6g"),
     Column("force", "force", error=True),
@@ -63,8 +64,8 @@ def law(
     Peak contact forces and speeds are in the units of the masses and the spacing, by default those
     of unit mass and spacing; with spheres they are in N and m/s. ``k_value``, ``A_value`` and, of
     an unknown material, ``E_value``, with their errors; ``correlation_value`` of k and ln A;
-    ``residual_value`` of ln V; ``one_power``; ``rows`` of the free law: ``compression_value``,
-    ``force_value``, ``force_error_value``.
+    ``one_power``; ``rows`` of the free law: ``compression_value``, ``force_value``,
+    ``force_error_value``.
     """
     degree = integer(degree, "degree", 1, 6)
     force, speed, weight = _pulses(data, degree + 3)
@@ -99,7 +100,6 @@ def law(
         | {f"{name}_error_value": number.error for name, number in rows}
         | {
             "correlation_value": fit.correlation,
-            "residual_value": fit.residual,
             "one_power": fit.one_power,
         },
     )
@@ -142,10 +142,10 @@ def _modulus(content: dict[str, Any], material: str, stiffness: Measured) -> Mea
         )
 
     def modulus(A: float) -> float:
-        root = scipy.optimize.brentq(lambda x: log_stiffness(x) - np.log(A), low, high)
+        root = scipy.optimize.brentq(lambda x: log_stiffness(x) - np.log(A), low, high, xtol=_ROOT)
         return float(np.exp(root))
 
-    return Measured(modulus(stiffness.value), modulus(stiffness.check))
+    return Measured(modulus(stiffness.value), modulus(stiffness.check) * (1 + 2 * _ROOT))
 
 
 def _verdict(fit: PowerFit) -> str:

@@ -22,7 +22,7 @@ from lwa import Dimer, PhysicalWave, TravelingWave, homogenize
 from lwa.base.progress import Progress
 from validation.lattice.run import Run
 from validation.lattice.simulate import simulate
-from validation.pictures.panel import Curve, Panel
+from validation.pictures import Curve, Panel
 from validation.pulses.pulse import (
     Measured,
     compared,
@@ -34,8 +34,7 @@ from validation.pulses.pulse import (
 )
 from validation.report.command import study
 from validation.report.result import Report
-from validation.report.table import Column, Finding, Table
-from validation.report.text import percent
+from validation.report.table import Column, Finding, Table, percent
 from validation.scenes.chains import carrying
 from validation.waves.asymptotics import LAWS, QUANTITIES, theory_values
 from validation.waves.theory import theory_at
@@ -142,9 +141,9 @@ def _panel(rows: Sequence[Row], omega: sp.Rational) -> Panel:
         ]
         x, y, error = zip(*points, strict=True)
         power = abs(float(law.coefficient)) * epsilon**law.order
-        curves.append(Curve.of(quantity, x, y, f"C{i}{'osD^'[i]}", error))
+        curves.append(Curve(quantity, x, y, f"C{i}{'osD^'[i]}", error))
         # Dashes, as two quantities share their leading order.
-        curves.append(Curve.of("", epsilon, power, f"C{i}{('-', '--', '-.', ':')[i]}"))
+        curves.append(Curve("", epsilon, power, f"C{i}{('-', '--', '-.', ':')[i]}"))
     title = f"m2/m1 = {omega}; lines: leading order"
     return Panel("k - 1", "|theory/lattice - 1|", tuple(curves), "xy", title)
 

@@ -23,16 +23,15 @@ import numpy as np
 import sympy as sp
 
 from lwa import Cell, PhysicalWave, Sphere, canonical_wave, homogenize
-from lwa.command.reading import quantities
+from lwa.command.options import quantities
 from validation.lattice.run import Run, RunProgress, silent
 from validation.lattice.simulate import twice
-from validation.pictures.panel import Curve, Panel
+from validation.pictures import Curve, Panel
 from validation.pulses.pulse import Measured, Pulse, compared
 from validation.pulses.train import Train
 from validation.report.command import number, option, study
 from validation.report.result import Report
-from validation.report.table import Column, Table
-from validation.report.text import percent
+from validation.report.table import Column, Table, percent
 from validation.scenes.chains import chain_scene
 from validation.scenes.checks import SceneError, integer, items, real
 from validation.scenes.materials import DIAMETER, PTFE_BEAD, STEEL_BEAD

@@ -23,14 +23,13 @@ from lwa.base.arrays import Array
 from lwa.base.exact import InputError, exact, shorten
 from lwa.base.progress import Progress
 from validation.lattice.threads import cluster, threads
-from validation.pictures.panel import Curve, Map, Panel
+from validation.pictures import Curve, Map, Panel
 from validation.pulses.points import Key, PointFile
 from validation.pulses.steady import HUMPS, QUANTITIES, STRETCH, Point, point
 from validation.report.command import option, study, whole
 from validation.report.files import output_file
 from validation.report.result import Report
-from validation.report.table import Column, Table
-from validation.report.text import percent
+from validation.report.table import Column, Table, percent
 from validation.scenes.checks import Failure, SceneError, integer, items
 
 RANGES = {"k": (Rational(21, 20), Rational(6)), "omega": (Rational(1, 100), Rational(100))}
@@ -143,10 +142,10 @@ def _curves(
         shown, bar = value[name].ravel(), error[name].ravel()
         if log := name == "decay":  # a decay below its error is drawn as its error
             shown = np.fmax(shown, bar)
-        curves = [Curve.of("lattice", axis, shown, "ko", bar)]
+        curves = [Curve("lattice", axis, shown, "ko", bar)]
         for style, (closure, wave) in zip(("C0-", "C1--"), waves.items(), strict=True):
             if name in wave:
-                curves.append(Curve.of(CLOSURES[closure], axis, wave[name].ravel(), style))
+                curves.append(Curve(CLOSURES[closure], axis, wave[name].ravel(), style))
         panels.append(Panel(x, label, tuple(curves), "y" * log, title))
     return tuple(panels)
 

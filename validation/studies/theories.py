@@ -19,7 +19,7 @@ import sympy as sp
 
 from lwa import Cell, InputError, NoSolitaryWave, expand
 from lwa.expansion.series import EpsilonSeries
-from validation.pictures.panel import Curve, Panel
+from validation.pictures import Curve, Panel
 from validation.pulses.pulse import Measured, MeasureError
 from validation.pulses.steady import STRETCH, point
 from validation.report.result import Report
@@ -153,7 +153,7 @@ def ladder(places: Sequence[Place]) -> Report:
     note = f"{_NOTE}\nMedian cost of derivation and evaluation (ms of CPU): {costs}."
     return Report(
         "Theories against true waves",
-        (Table(_COLUMNS, rows, by="quantity", heads=_HEADS, note=note),),
+        (Table(_COLUMNS, rows, "", "Theories against true waves", note, "quantity", _HEADS),),
         panels=(
             _panel("k - 1", "theories, equal beads", equal),
             _panel("m2/m1", "theories, dimers, k = 3/2", dimers),
@@ -168,7 +168,7 @@ def _panel(axis: str, title: str, places: Sequence[tuple[sp.Rational, Place]]) -
         errors = ((float(at), place.rungs[i].error("force")) for at, place in places)
         if points := sorted((at, abs(error)) for at, error in errors if error is not None):
             x, y = zip(*points, strict=True)
-            curves.append(Curve.of(name, x, y, f"C{i}{mark}-"))
+            curves.append(Curve(name, x, y, f"C{i}{mark}-"))
     return Panel(axis, "|error| of the FWHM of the force", tuple(curves), "xy", title)
 
 

@@ -22,8 +22,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from lwa.base.arrays import Array, ArrayValue
 from lwa.base.quantities import QUANTITIES, strain_power
-from validation.pictures.figure import Pictured
-from validation.pictures.panel import Curve, Panel
+from validation.pictures import Curve, Panel, Pictured
 from validation.pulses.pulse import MeasureError
 from validation.scenes.chains import carrying
 from validation.scenes.checks import SceneError, positive
@@ -155,7 +154,7 @@ class Profile(ArrayValue, Pictured):
         """Panel of strain, force and velocity as functions of ξ, each divided by its peak."""
         xi, styles = np.linspace(-self.half_period, self.half_period, 2001), ("-", "--", ":")
         curves = (
-            Curve.of(name, xi, self.quantity(name, xi) / self.peak(name)[1], style)
+            Curve(name, xi, self.quantity(name, xi) / self.peak(name)[1], style)
             for name, style in zip(QUANTITIES, styles, strict=True)
         )
         return [Panel("ξ / D", "over its peak", tuple(curves))]

@@ -66,7 +66,7 @@ def bead_fwhm(wave: CompactWave) -> float:
     The force is cos^p(β(x - D/2)) + cos^p(β(x + D/2)), p = 2k/(k-1), each term on its own arch.
     """
     k, D = number(wave.k), number(wave.D)
-    beta = (k - 1) / (2 * D * math.sqrt(number(wave.dispersion)))
+    beta = (k - 1) / (2 * D * math.sqrt(number(wave.coefficient_sum)))
 
     def force(x: float) -> float:
         sides = (beta * (x + side) for side in (-D / 2, D / 2))

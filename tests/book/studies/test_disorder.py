@@ -1,20 +1,12 @@
 """Chains of random masses: without disorder nothing decays, with it as a power of the spread."""
 
-import csv
-import io
-import json
-
 import numpy as np
 import pytest
 
 from book.studies.disorder import disorder, single_losses
 from tests.commands import ended
 
-FEW = {"chains": 12, "sites": 60}
-
-
-def run(capsys, *arguments):
-    return ended(capsys, disorder.main, "--chains", "4", "--sites", "60", *arguments)
+FEW = {"chains": 6, "sites": 60}
 
 
 def test_equal_beads_keep_their_pulse():
@@ -38,10 +30,11 @@ def test_the_loss_at_a_single_bead_is_quadratic_with_a_correction_of_opening_con
 
 
 @pytest.mark.parametrize(
-    ("spread", "share"), [(0.1, 0.3), pytest.param(0.2, 0.15, marks=pytest.mark.slow)]
+    ("spread", "chains", "share"),
+    [(0.1, 12, 0.3), pytest.param(0.2, 24, 0.15, marks=pytest.mark.slow)],
 )
-def test_the_decay_is_the_mean_loss_at_single_beads(spread, share):
-    found = disorder(spread=spread, chains=24).document()
+def test_the_decay_is_the_mean_loss_at_single_beads(spread, chains, share):
+    found = disorder(spread=spread, chains=chains).document()
     off = found["decay_value"] - found["theory_value"]
     assert abs(off) < 2 * found["decay_error_value"] + share * found["theory_value"]
     assert found["decay_value"] > 5 * found["decay_error_value"]
@@ -50,6 +43,7 @@ def test_the_decay_is_the_mean_loss_at_single_beads(spread, share):
     assert last["theory_value"] == pytest.approx(line, rel=1e-12)
 
 
+@pytest.mark.slow
 def test_a_decay_that_changes_along_the_chain_is_told():
     """At spread 0.5 the pulse disintegrates: its force decays slower in the second half."""
     wide = disorder(spread=0.5, chains=20)
@@ -61,13 +55,12 @@ def test_a_decay_that_changes_along_the_chain_is_told():
 
 
 def test_errors_are_those_of_a_mean_over_chains():
-    """Twelve other chains are within the errors of the first twelve; the same seed, the same."""
-    one, again, other = (disorder(seed=seed, **FEW).document() for seed in (1, 1, 2))
-    assert one == again
+    """Six other chains are within the errors of the first six."""
+    one, other = (disorder(seed=seed, **FEW).document() for seed in (1, 2))
     both = np.hypot(one["decay_error_value"], other["decay_error_value"])
     assert 0 < abs(one["decay_value"] - other["decay_value"]) < 3 * both
     last = one["rows"][-1]
-    assert last["log_force_error_value"] == pytest.approx(last["scatter_value"] / np.sqrt(12))
+    assert last["log_force_error_value"] == pytest.approx(last["scatter_value"] / np.sqrt(6))
 
 
 def test_more_chains_go_on_with_the_same_ones():
@@ -80,16 +73,8 @@ def test_more_chains_go_on_with_the_same_ones():
 
 
 def test_the_command(capsys):
-    status, out, err = run(capsys, "--format", "json")
+    status, out, err = ended(capsys, disorder.main, "--chains", "4", "--sites", "60")
     assert (status, err) == (0, "")
-    found = json.loads(out)
-    assert found["ok"] is True
-    status, out, _ = run(capsys, "--format", "csv")
-    rows = list(csv.DictReader(io.StringIO(out)))
-    assert [
-        {name: float(value) if value else None for name, value in row.items()} for row in rows
-    ] == found["rows"]
-    status, out, _ = run(capsys)
     assert out.startswith("4 chains of 60 sites, masses in 1 ± 0.1, k = 1.5; decay of ")
 
 
@@ -97,10 +82,7 @@ def test_the_command(capsys):
     ("option", "value", "message"),
     [
         ("spread", 0.6, "spread is 0.6: one from 0 to 0.5 is wanted"),
-        ("spread", float("nan"), "spread is nan"),
         ("chains", 1, "chains is 1: an integer from 2 to 10000 is wanted"),
-        ("sites", 10, "sites is 10: an integer from 50 to 10000 is wanted"),
-        ("seed", -1, "seed is -1"),
         ("k", 0.5, "k is 1/2: a compact wave needs k > 1"),
     ],
 )

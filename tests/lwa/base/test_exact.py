@@ -57,7 +57,7 @@ def test_what_is_no_quantity_is_refused_in_one_line(value):
 
 
 @settings(max_examples=30)
-@given(st.text())
+@given(st.text("0189./-+eEnaimx_ ()'\"*²٣é\n\0"))  # all of Unicode would take seconds to list
 def test_text_is_read_or_refused_and_never_evaluated(text):
     try:
         result = exact(text, "x")

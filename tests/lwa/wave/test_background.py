@@ -263,21 +263,23 @@ def test_the_lattices_own_wave_of_fermi_pasta_ulam_and_tsingou(alpha, beta):
 
 def test_existence_is_decided():
     cases = [
-        (Power("3/2"), 1, "-1/2", "only B > 0"),
-        (Power("1/2"), 1, "1/2", "only B < 0"),
-        (Power("1/2"), 1, -1, "would open"),
-        (Power("1/2"), 0, -1, "no load"),
-        (Power(1), 1, 1, "linear"),
-        (named("polynomial", 1, 0), 0, "-1/10", "does not stiffen"),
-        (named("polynomial", -1, 0), 0, "7/10", "not positive|does not stiffen"),
-        (named("polynomial", -3, 1), 0, 1, "not positive|does not stiffen"),
+        (Power("3/2"), 1, "-1/2"),
+        (Power("1/2"), 1, "1/2"),
+        (Power("1/2"), 1, -1),
+        (Power("1/2"), 0, -1),
+        (Power(1), 1, 1),
+        (named("polynomial", 1, 0), 0, "-1/10"),
+        (named("polynomial", -1, 0), 0, "7/10"),
+        (named("polynomial", -3, 1), 0, 1),
     ]
-    for law, load, rise, reason in cases:
+    for law, load, rise in cases:
         wave = background_wave(CHAIN, load, law=law)
-        with pytest.raises(NoSolitaryWave, match=reason):
-            wave.speed(rise)
-        with pytest.raises(NoSolitaryWave):
-            wave.numeric().speed(float(load), float(sp.Rational(rise)))
+        for speed in (
+            lambda: wave.speed(rise),  # noqa: B023
+            lambda: wave.numeric().speed(float(load), float(sp.Rational(rise))),  # noqa: B023
+        ):
+            with pytest.raises(NoSolitaryWave, match="there is no wave unless contacts stay"):
+                speed()
     with pytest.raises(NoSolitaryWave, match="no sound"):
         _ = compression(load=0).kdv
 
@@ -327,7 +329,7 @@ def test_in_space_and_time():
 
 
 def test_another_law_in_units():
-    from lwa.wave.precompressed import PrecompressedWave
+    from lwa.wave.physical import PrecompressedWave
 
     law = named("hertz2", 1, "1/2")
     wave = PrecompressedWave(Cell([1], [3], 1), law, 2, 1)

@@ -30,31 +30,25 @@ in_every_language = pytest.mark.parametrize(
 )
 """Each generated language; some need a compiler, or Node.js."""
 
-INTERPRETED = ("python", "numpy", "julia")
-"""Languages that Python runs, Julia as `as_python` reads it."""
-
-EXPONENTS = (1.01, 1.1, 1.5, 1.999, 2.0, 3.0, 5.0, 7.875)
-RATIOS = (1e-3, 0.0977, 0.2733, 0.9, 1.0, 3.0, 99.0)
+EXPONENTS = (1.01, 1.5, 1.999, 2.0, 3.0, 7.875)
+RATIOS = (1e-3, 0.2733, 1.0, 3.0, 99.0)
 GRID = {"k": EXPONENTS, "m1": (1.0,), "m2": RATIOS, "D": (1.0,)}
-FEW = {"k": (1.01, 1.5, 2.001, 8.0), "m1": (0.3, 7.0), "m2": (2.0,), "m3": (1.1,), "D": (0.7,)}
-STIFF = {**FEW, "A1": (1.0, 50.0), "A2": (0.02, 3.0)}
+STIFF = {
+    "k": (1.01, 1.5, 8.0), "m1": (0.3, 7.0), "m3": (1.1,), "D": (0.7,), "A1": (0.02, 50.0)
+}  # fmt: skip
 
 WAVES = {
-    "paper": (lambda: homogenize(Dimer("m1", "m2")), GRID),
-    "full": (lambda: homogenize(Dimer("m1", "m2"), closure="full"), GRID),
-    "canonical": (lambda: homogenize(Dimer("m1", "m2"), closure="full", field="center"), GRID),
-    "spheres": (lambda: homogenize(Dimer("m1", "m2"), k="3/2"), GRID),
-    "one mass": (lambda: homogenize(Dimer(1, "0.2733")), GRID),
-    "stiff": (lambda: homogenize(Dimer("m1", "m2", stiffnesses=["A1", 2]), closure="full"), STIFF),
+    "paper": (lambda: homogenize(Dimer("m1", "m2")).pde.traveling_wave(), GRID),
+    "canonical": (lambda: canonical_wave(Dimer("m1", "m2")), GRID),
     "three": (lambda: canonical_wave(Cell(["m1", 2, "m3"], ["A1", 1, 8])), STIFF),
-    "numbers": (lambda: homogenize(Dimer(1, 1, spacing=1), k="3/2"), GRID),
-}  # fmt: skip
+    "numbers": (lambda: homogenize(Dimer(1, 1, spacing=1), k="3/2").pde.traveling_wave(), GRID),
+}
+"""The paper's wave, all parameters symbols; I alone; unlike contacts; no parameter at all."""
 
 
 @cache
 def wave_of(name):
-    found = WAVES[name][0]()
-    return found.pde.traveling_wave() if hasattr(found, "pde") else found
+    return WAVES[name][0]()
 
 
 @cache
@@ -157,24 +151,10 @@ def expected(name):
     return rows
 
 
+@in_every_language
 @pytest.mark.parametrize("name", WAVES)
-@pytest.mark.parametrize("language", INTERPRETED)
-def test_every_wave_is_good_to_1e14(functions_of, language, name):
-    check(functions_of(name, language), name)
-
-
-@pytest.mark.parametrize("name", ["paper", "stiff", "three", "numbers"])
-@pytest.mark.parametrize(
-    "language",
-    [pytest.param(name, marks=pytest.mark.optional(PROGRAMS[name])) for name in PROGRAMS],
-)
-def test_every_language_is_good_to_1e14(functions_of, language, name):
-    """The formulas are one for all languages: what a compiler makes of them is seen in four."""
-    check(functions_of(name, language), name)
-
-
-def check(found, name):
-    rows = expected(name)
+def test_closed_forms_are_good_to_1e14(functions_of, language, name):
+    found, rows = functions_of(name, language), expected(name)
     for values, numbers, rest in rows:
         for (function, at), value in numbers.items():
             got = float(found[function](**values, B=at, V_s=at))
@@ -185,7 +165,7 @@ def check(found, name):
 
 
 @in_every_language
-@pytest.mark.parametrize("name", ["paper", "stiff", "numbers"])
+@pytest.mark.parametrize("name", ["paper", "numbers"])
 def test_the_profile(functions_of, language, name):
     """Good to 1e-14 B where ξ is off by 1e-14 of itself, and 0 outside of the support."""
     profile, width = (functions_of(name, language)[f] for f in ("profile", "width"))
@@ -195,7 +175,7 @@ def test_the_profile(functions_of, language, name):
         return B * mpmath.cos(beta * xi) ** m if beta * xi < mpmath.pi / 2 else exact(0)
 
     with mpmath.workdps(50):
-        for values, k, S, _ in points(name)[::7]:
+        for values, k, S, _ in points(name)[::5]:
             beta, m = (k - 1) / (2 * mpmath.sqrt(S)), 2 / (k - 1)
             for fraction in (0.0, 1e-3, 0.1, 0.3, 0.6, 0.9, 0.999, 1 - 1e-9, 1 + 1e-9, 1.5, 3.7):
                 xi = fraction * width(**values) / 2
@@ -335,11 +315,11 @@ def test_any_name_at_once(language, tmp_path, request):
     assert found["profile"](*unit[n // 2]) == 2 * (n // 2 + 1)
 
 
-names = st.one_of(st.sampled_from(NAMES), st.text(max_size=6))
+names = st.one_of(st.sampled_from(NAMES), st.text("aB_7μ .'\n", max_size=6))
 
 
 @given(st.lists(names, min_size=4, max_size=4, unique=True), st.booleans())
-@settings(max_examples=6)
+@settings(max_examples=4)
 def test_a_name_changes_nothing_but_itself(drawn, assume_positive):
     symbols = [sp.Symbol(name, positive=assume_positive or None) for name in drawn]
     k, m1, m2, D = symbols
@@ -348,7 +328,7 @@ def test_a_name_changes_nothing_but_itself(drawn, assume_positive):
     except InputError:  # a name that means something else
         return
     values = (1.5, 2.0, 3.0, 0.5)
-    for language in ("python", "numpy", "julia"):
+    for language in ("python", "julia"):
         found, expected = namespace(wave, language), plain(language)
         got = found["profile"](0.1, 2.0, *values)
         # sums are in another order under other names
@@ -371,11 +351,11 @@ def plain(language):
 
 
 def test_what_was_renamed_is_said():
-    code = homogenize(Dimer("math", "μ1")).pde.traveling_wave().code("python")
+    code = canonical_wave(Dimer("math", "μ1")).code("python")
     assert "# math_ is the symbol 'math'\n# mu1 is the symbol 'μ1'\n" in code
-    code = homogenize(Dimer("M1", "m1"), k="3/2").pde.traveling_wave().code("fortran")
-    assert "! m1_ is the symbol 'm1'\n" in code
-    assert "symbol" not in homogenize(Dimer("M1", "m1"), k="3/2").pde.traveling_wave().code("c")
+    wave = canonical_wave(Dimer("M1", "m1"))
+    assert "! m1_ is the symbol 'm1'\n" in wave.code("fortran")
+    assert "symbol" not in wave.code("c")
 
 
 def test_python_is_clean(tmp_path):
@@ -441,23 +421,21 @@ def test_refusals(capsys):
         wave_of("paper").at(k=3, m1=1, m2=100).code("c")
 
 
-@pytest.mark.parametrize("language", LANGUAGES)
+@pytest.mark.parametrize("language", ["python", "c"])
 def test_the_command_prints_the_same(language, capsys):
     with pytest.raises(SystemExit) as ended:
         main(["wave", "--k", "3/2", "--masses", "1,math", "--format", language])
     assert ended.value.code == 0
     wave = homogenize(Dimer(1, "math"), k="3/2").pde.traveling_wave()
     assert capsys.readouterr().out == wave.code(language) + "\n"
-    functions = LANGUAGES[language](list(wave_functions(wave).values()), OWN).module([])
-    assert language == "python" or wave.code(language).endswith(functions[-400:])
 
 
 def test_a_theory_with_awkward_names_is_a_module(capsys):
     with pytest.raises(SystemExit):
-        main(["derive", "--masses", "math,coefficients", "--format", "python", "--order", "6"])
+        main(["derive", "--masses", "math,coefficients", "--format", "python"])
     found = {}
     exec(capsys.readouterr().out, found)
-    plain = homogenize(Dimer("m1", "m2"), 6).pde
+    plain = homogenize(Dimer("m1", "m2")).pde
     values = {"k": sp.Rational(7, 4), "m1": 2, "m2": 3, "D": sp.S.Half}
     expected = plain.H.xreplace({s: sp.sympify(values[s.name]) for s in plain.H.free_symbols})
     assert found["H"](1.75, 2, 3, 0.5) == pytest.approx(float(expected), rel=1e-14)

@@ -122,7 +122,7 @@ def test_the_scaling_panel_shows_the_theory_of_each_modulus(whole, scalings):
     symbols, lines = found[0].curves[::2], found[0].curves[1::2]
     assert len(lines) == len(figures.MODULI)
     for one, line, row in zip(symbols, lines, scalings, strict=True):
-        assert (one.x.tolist(), line.y.tolist()) == (line.x.tolist(), list(row.theory))
+        assert (list(one.x), list(line.y)) == (list(line.x), list(row.theory))
         assert line.label.startswith("theory")
 
 

@@ -11,11 +11,11 @@ from lwa import Cell
 from lwa.law import Law
 from tests.commands import ended
 from validation import Scene, cli, measure, simulate, simulate_many
-from validation.pulses.contact_law import Medium, fit_power, free_law, weights
 from validation.scenes.scene import SceneError
 from validation.studies import paper
 from validation.studies.law import law
 from validation.studies.run import EXAMPLES
+from validation.waves.contact_law import Medium, fit_power, free_law, weights
 
 FORCES = np.geomspace(0.1, 10, 12)
 

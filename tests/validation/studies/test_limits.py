@@ -17,6 +17,7 @@ from validation.studies.limits import (
     theory_at,
     theory_values,
 )
+from validation.waves.solver import exact_wave
 
 eps, s, X = sp.symbols("epsilon s X", positive=True)
 
@@ -105,6 +106,19 @@ def test_the_hertz_chain_to_all_its_digits(limits_rows):
         row = found(limits_rows, quantity, EXPONENTS[0], EQUAL)
         assert row.lattice.value == pytest.approx(width, abs=1e-6)
         assert row.lattice.error < 1e-6
+
+
+@pytest.mark.parametrize("k", EXPONENTS)
+def test_the_errors_cover_the_exact_waves_of_equal_beads(limits_rows, k):
+    wave = exact_wave([1], float(k))
+    true = {
+        "FWHM of force": wave.fwhm("force"),
+        "FWHM of strain": wave.fwhm("strain"),
+        "speed V_s at B = 1": wave.c / float(k) ** 0.5,
+    }
+    for quantity, value in true.items():
+        number = found(limits_rows, quantity, k, EQUAL).lattice
+        assert abs(number.value - value) <= number.error, quantity
 
 
 @pytest.mark.parametrize("quantity", QUANTITIES)

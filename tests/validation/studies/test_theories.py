@@ -14,7 +14,6 @@ import sympy as sp
 from lwa import Cell, Expansion, expand
 from validation.pulses.pulse import MeasureError
 from validation.pulses.steady import STRETCH, point
-from validation.studies.accuracy import CASES
 from validation.studies.theories import HERTZ, NAMES, STRUCK_CHAIN, THEORIES, ladder, place
 from validation.waves.solver import ExactWave, exact_wave
 
@@ -38,7 +37,7 @@ def values(wave: ExactWave) -> dict[str, float]:
 
 
 @pytest.mark.parametrize("omega", ["1", "1/20"])
-@pytest.mark.parametrize("order", [1, 2, 3])
+@pytest.mark.parametrize("order", [1, 3])
 def test_error_of_n_terms_falls_as_the_next_power(omega: str, order: int) -> None:
     """Fitted from k = 1.04 to 1.08, where radiation is below 1e-9; ε of the next order bends it."""
     exponents = ("26/25", "53/50", "27/25")
@@ -79,7 +78,7 @@ def test_the_profile_is_the_exact_waves() -> None:
     assert np.abs(force(xi) - dimer.force(top + xi)).max() < 0.05**5
 
 
-@pytest.mark.parametrize("k", ["11/10", "5/4", "3/2", "2", "5/2", "3"])
+@pytest.mark.parametrize("k", ["11/10", "3/2", "3"])
 def test_estimates_bound_the_errors_of_the_equal_chain(k: str) -> None:
     exact = values(true(k, "1"))
     expansion = series("1", 10)
@@ -104,7 +103,6 @@ def test_the_equal_chain_reaches_hertz() -> None:
     [
         ("21/20", "1/20"),
         pytest.param("11/10", "1/5", marks=pytest.mark.slow),
-        pytest.param("11/10", "1/20", marks=pytest.mark.slow),
     ],
 )
 def test_estimates_bound_the_errors_of_dimers(k: str, omega: str) -> None:
@@ -116,9 +114,7 @@ def test_estimates_bound_the_errors_of_dimers(k: str, omega: str) -> None:
         assert abs(found.value - value) <= found.error + 3 * wave.tail * value, name
 
 
-@pytest.mark.parametrize(
-    ("omega", "bound"), [("1/100", 1e-3), ("1/20", 1e-2), ("4/5", 1e-2), ("9/10", 1e-2)]
-)
+@pytest.mark.parametrize(("omega", "bound"), [("1/100", 1e-3), ("4/5", 1e-2)])
 def test_hertz_dimer_to_a_percent_against_struck_chains(omega: str, bound: float) -> None:
     numbers = point(HERTZ, sp.Rational(omega), STRETCH).numbers
     expansion = series(omega, 8)
@@ -194,10 +190,3 @@ def test_a_pulse_that_is_not_steady_is_no_truth() -> None:
     """ω = 0.55 at k = 3/2: a later pulse overtakes the leading one."""
     with pytest.raises(MeasureError, match=r"^not steady: "):
         place(HERTZ, sp.Rational(11, 20), STRUCK_CHAIN)
-
-
-def test_every_case_of_the_ladder_has_a_truth() -> None:
-    """Struck chains alone: the masses of solitary waves are those of `resonances`."""
-    for k, omega, kind in CASES:
-        if kind == STRUCK_CHAIN and k == HERTZ and omega < sp.Rational(1, 2):
-            assert point(k, omega, STRETCH).missing is None, (k, omega)

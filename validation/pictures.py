@@ -1,4 +1,4 @@
-"""Figures made of panels, drawn by Matplotlib without a display."""
+"""Panels of curves or colour maps, drawn by Matplotlib without a display."""
 
 from __future__ import annotations
 
@@ -6,15 +6,15 @@ import io
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
+from dataclasses import dataclass
 from html import escape
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from lwa.base.arrays import Array
 from lwa.base.exact import InputError
-from lwa.wave.plots import axes
-from validation.pictures.panel import Map, Panel
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -25,6 +25,64 @@ SUFFIXES = (".pdf", ".png", ".svg")
 _STYLES = ("o-", "s--", "^:", "D-.", "v-", "x--", "P:", "*-.")
 _FEW = 40  # points of a curve; markers at more of them would cover the curve
 _ACROSS = 5  # names in a row of a legend above the panel
+
+
+@dataclass(frozen=True, eq=False)
+class Curve:
+    """Points joined by a line.
+
+    label : name in the legend; empty for a curve that the legend leaves out.
+    x, y : coordinates, both (N,).
+    style : Matplotlib's format, such as "C0o--". By default each curve of a panel has its own
+        colour, dashes and markers; curves of many points have no markers.
+    error : half length of the error bar at each point, (N,).
+    """
+
+    label: str
+    x: ArrayLike
+    y: ArrayLike
+    style: str = ""
+    error: ArrayLike | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Map:
+    """Values over two axes, shown as colours; cells without a value (NaN) are hatched.
+
+    label : label of the colour bar.
+    x, y, values : coordinates (X,) and (Y,), and values (Y, X).
+    low, high : ends of the colour scale, by default the range of the values. Values beyond an end
+        have the colour of that end.
+    scale : "log" for logarithmic colours.
+    colours : Matplotlib's name of the colour map.
+    """
+
+    label: str
+    x: Array
+    y: Array
+    values: Array
+    low: float | None = None
+    high: float | None = None
+    scale: str = ""
+    colours: str = "viridis"
+
+
+@dataclass(frozen=True)
+class Panel:
+    """One pair of axes with curves or a map.
+
+    x, y : labels of the axes.
+    scale : logarithmic axes: "", "x", "y" or "xy".
+    legend_above : True for a legend above the panel, where it covers no curve.
+    """
+
+    x: str
+    y: str
+    curves: tuple[Curve, ...] = ()
+    scale: str = ""
+    title: str = ""
+    map: Map | None = None
+    legend_above: bool = False
 
 
 class Pictured(ABC):
@@ -44,13 +102,16 @@ class Pictured(ABC):
         Returns the axes. Raises `lwa.InputError` without panels.
         """
         first = self._panels()[0]
-        drawn: Axes = axes(ax)
-        draw(drawn, first)
-        return drawn
+        if ax is None:
+            from matplotlib import pyplot  # loaded as late as Matplotlib
+
+            ax = pyplot.figure().add_subplot()
+        draw(ax, first)
+        return ax
 
     def _panels(self) -> Sequence[Panel]:
-        if found := self.pictured():
-            return found
+        if panels := self.pictured():
+            return panels
         raise InputError("plot is asked for: this result has no picture")
 
     def _repr_html_(self) -> str:
@@ -94,30 +155,22 @@ def draw(plot: Axes, panel: Panel) -> None:
     if panel.map is not None:
         _draw_map(plot, panel.map, panel.scale)
     for i, curve in enumerate(panel.curves):
-        style = curve.style or _STYLES[i % len(_STYLES)]
-        if not curve.style and len(curve.x) > _FEW:
-            style = style[1:]
-        colour = None if any(part in style for part in "Ckr") else f"C{i}"
-        plot.errorbar(
-            curve.x,
-            curve.y,
-            curve.error,
-            fmt=style,
-            color=colour,
-            ms=4,
-            mfc="none",  # hollow marks show the curves below
-            label=curve.label or None,
-        )
+        x, y = np.asarray(curve.x, float), np.asarray(curve.y, float)
+        error = None if curve.error is None else np.asarray(curve.error, float)
+        default = _STYLES[i % len(_STYLES)]
+        style = curve.style or (default if len(x) <= _FEW else default[1:])
+        colour = None if any(letter in style for letter in "Ckr") else f"C{i}"
+        label = curve.label or None
+        # hollow marks show the curves below
+        plot.errorbar(x, y, error, fmt=style, color=colour, ms=4, mfc="none", label=label)
     for axis in panel.scale:
-        _plain(getattr(plot, f"{axis}axis"))
+        _label_plainly(getattr(plot, f"{axis}axis"))
     if any(curve.label for curve in panel.curves):
-        above = panel.legend is not None and panel.legend[1] >= 1
-        place = {"loc": "lower left", "bbox_to_anchor": panel.legend, "ncols": _ACROSS}
-        other = {"loc": panel.legend or "best"}
-        plot.legend(fontsize="small", frameon=not above, **(place if above else other))
+        above = {"loc": "lower left", "bbox_to_anchor": (0, 1), "ncols": _ACROSS, "frameon": False}
+        plot.legend(fontsize="small", **(above if panel.legend_above else {"loc": "best"}))
 
 
-def _plain(axis: Axis) -> None:
+def _label_plainly(axis: Axis) -> None:
     """Set plain tick labels, not powers of ten, on a logarithmic axis of few decades."""
     from matplotlib.ticker import LogLocator, NullFormatter  # loaded as late as Matplotlib
 
@@ -129,25 +182,25 @@ def _plain(axis: Axis) -> None:
         axis.set_minor_formatter(NullFormatter())
 
 
-def _draw_map(plot: Axes, found: Map, scale: str) -> None:
+def _draw_map(plot: Axes, colours: Map, scale: str) -> None:
+    """Draw a map into Matplotlib's axes; ``scale`` names the logarithmic axes."""
     from matplotlib.colors import LogNorm, Normalize  # loaded as late as Matplotlib
 
-    values = np.ma.masked_invalid(found.values)
-    norm = (LogNorm if found.scale else Normalize)(found.low, found.high)
-    below = found.low is not None and bool(np.any(values < found.low))
-    above = found.high is not None and bool(np.any(values > found.high))
+    values = np.ma.masked_invalid(colours.values)
+    norm = (LogNorm if colours.scale else Normalize)(colours.low, colours.high)
+    below = colours.low is not None and bool(np.any(values < colours.low))
+    above = colours.high is not None and bool(np.any(values > colours.high))
     extend = ("neither", "min", "max", "both")[below + 2 * above]
-    x, y = _borders(found.x, "x" in scale), _borders(found.y, "y" in scale)
+    x, y = _borders(colours.x, "x" in scale), _borders(colours.y, "y" in scale)
     # Pixels in a PDF, too: viewers are slow with one rectangle for each value.
-    image = plot.pcolormesh(x, y, values, norm=norm, cmap=found.colours, rasterized=True)
-    plot.figure.colorbar(image, ax=plot, label=found.label, extend=extend)
+    image = plot.pcolormesh(x, y, values, norm=norm, cmap=colours.colours, rasterized=True)
+    plot.figure.colorbar(image, ax=plot, label=colours.label, extend=extend)
     plot.patch.set(facecolor="w", edgecolor="0.4", hatch="xxx")  # unlike any colour of a map
 
 
-def _borders(places: Array, log: bool) -> Array:
-    """Return the borders of a map's cells, halfway between neighbouring places on the axis."""
-    centres = np.log(places) if log else places
-    half = np.diff(centres) / 2
-    ends = [centres[0] - half[0]], centres[:-1] + half, [centres[-1] + half[-1]]
-    borders = np.concatenate(ends)
+def _borders(centres: Array, log: bool) -> Array:
+    """Return the borders of a map's cells, halfway between neighbouring centres on the axis."""
+    x = np.log(centres) if log else centres
+    half = np.diff(x) / 2
+    borders = np.concatenate(([x[0] - half[0]], x[:-1] + half, [x[-1] + half[-1]]))
     return np.exp(borders) if log else borders

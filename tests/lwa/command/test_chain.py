@@ -3,9 +3,10 @@
 import json
 
 import pytest
+import sympy as sp
 
 from lwa import pulse_of_strike
-from lwa.command.chain_file import read_chain
+from lwa.command.chain import read_chain
 from tests.lwa.command.answers import result, run
 
 MASSES = {
@@ -60,11 +61,10 @@ def test_a_scene_of_masses_is_the_chain_of_its_options(capsys, scene):
     assert again == found
 
 
-@pytest.mark.parametrize("content", [MASSES, BEADS], ids=["masses", "beads"])
-def test_every_command_answers_in_si(capsys, scene, content):
-    loaded = result(capsys, "wave", "--spheres", scene(content), "--force", "20")
-    free = result(capsys, "wave", "--spheres", scene(without_load(content)), "--force", "20")
-    series = result(capsys, "expansion", "--spheres", scene(content), "--force", "20")
+def test_every_command_answers_in_si(capsys, scene):
+    loaded = result(capsys, "wave", "--spheres", scene(BEADS), "--force", "20")
+    free = result(capsys, "wave", "--spheres", scene(without_load(BEADS)), "--force", "20")
+    series = result(capsys, "expansion", "--spheres", scene(BEADS), "--force", "20")
     speed = series["physical"]["speed_value"]
     assert series["physical"]["units"] == {
         "force": "N",
@@ -75,10 +75,10 @@ def test_every_command_answers_in_si(capsys, scene, content):
     assert free["speed_value"] == pytest.approx(speed, rel=0.02)  # c² of the theory: -2.4 %
     assert loaded["speed_value"] > free["speed_value"]
     assert "2 N, is left out" in series["notes"][0]
-    plain = result(capsys, "expansion", "--spheres", scene(without_load(content)), "--force", "20")
+    plain = result(capsys, "expansion", "--spheres", scene(without_load(BEADS)), "--force", "20")
     assert plain.pop("notes", None) is None
     assert {k: v for k, v in series.items() if k != "notes"} == plain
-    status, out, _ = run(capsys, "expansion", "--spheres", scene(content))
+    status, out, _ = run(capsys, "expansion", "--spheres", scene(BEADS))
     assert status == 0
     assert "peak contact force 1 N:" in out
     assert " m/s (to " in out
@@ -111,7 +111,7 @@ def test_a_law_of_the_file(capsys, scene):
         ({"law": 3}, (), "chain.law is 3: a text such as"),
         ({"mass": 1}, (), "chain.mass is unknown"),
         ({}, ("--precompression", "1"), "the file has a precompression of 2"),
-        ({}, ("--force", "1"), "only B > 0"),
+        ({}, ("--force", "1"), "speeds grow towards B"),
     ],
 )
 def test_bad_files_are_one_line(capsys, scene, chain, more, words):
@@ -161,3 +161,15 @@ def test_a_strike_in_si(capsys, scene):
         status, out, err = run(capsys, "strike", "--spheres", file, *options)
         assert (status, out, err.count("\n")) == (2, "", 1)
         assert words in err
+
+
+def test_a_blow_beyond_hertzs_contact_has_a_note(capsys, scene):
+    """a/R = √(δ/2R) is 1/10 where the compression is 1/100 of the spacing."""
+    file = scene(without_load(BEADS))
+    cell = read_chain(file).cell
+    for share, noted in (("0.009", False), ("0.011", True)):
+        force = cell.stiffnesses[0] * (cell.spacing * sp.Rational(share)) ** sp.Rational(3, 2)
+        found = result(capsys, "wave", "--spheres", file, "--force", f"{float(force):.10g}")
+        assert ("notes" in found) == noted
+    fast = result(capsys, "strike", "--spheres", file, "--velocity", "1e6")
+    assert "Hertz's contact is that of elastic spheres" in fast["notes"][0]

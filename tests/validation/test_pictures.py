@@ -8,9 +8,7 @@ from matplotlib.figure import Figure
 
 from lwa import InputError
 from tests.commands import small_disk
-from validation.pictures import figure as drawing
-from validation.pictures.figure import figure
-from validation.pictures.panel import Curve, Map, Panel
+from validation.pictures import SUFFIXES, Curve, Map, Panel, figure
 from validation.report.result import Report
 from validation.studies import limits
 
@@ -20,10 +18,10 @@ X = np.array([1.0, 2.0, 3.0])
 
 @pytest.fixture
 def report():
-    return Report("one", panels=(Panel("x", "y", (Curve.of("c", X, X**2),), "xy", "squares"),))
+    return Report("one", panels=(Panel("x", "y", (Curve("c", X, X**2),), "xy", "squares"),))
 
 
-@pytest.mark.parametrize("suffix", drawing.SUFFIXES)
+@pytest.mark.parametrize("suffix", SUFFIXES)
 def test_every_format(report, tmp_path, suffix):
     file = tmp_path / f"picture{suffix}"
     report.save(file)
@@ -45,7 +43,7 @@ def test_a_panel_is_drawn_as_it_says(report):
 )
 def test_a_logarithmic_axis_of_few_decades_has_plain_numbers(most, labels):
     x = np.geomspace(1, most, 5)
-    picture = figure([Panel("x", "y", (Curve.of("c", x, 1e6 * x),), "xy")])
+    picture = figure([Panel("x", "y", (Curve("c", x, 1e6 * x),), "xy")])
     picture.canvas.draw()
     (axes,) = picture.axes
     assert {tick.get_text() for tick in axes.get_xticklabels()} >= labels
@@ -60,10 +58,10 @@ def test_marks_are_hollow_and_show_the_curves_below(report):
 
 def test_colours_marks_and_bars():
     curves = (
-        Curve.of("bars", X, X, "C3s", [0.1, 0.2, 0.3]),
-        Curve.of("", X, X, "k--"),
-        Curve.of("own", X, X),
-        Curve.of("long", np.arange(99.0), np.arange(99.0)),
+        Curve("bars", X, X, "C3s", [0.1, 0.2, 0.3]),
+        Curve("", X, X, "k--"),
+        Curve("own", X, X),
+        Curve("long", np.arange(99.0), np.arange(99.0)),
     )
     (axes,) = figure((Panel("x", "y", curves),)).axes
     first, second, third, fourth = axes.lines[:4]
@@ -116,7 +114,7 @@ def test_the_limits_picture_shows_every_quantity_at_every_k(limits_rows):
     ("largest", "power"), [(0.006, True), (0.06, False), (60_000, False), (600_000, True)]
 )
 def test_small_and_large_numbers_stand_before_a_power_of_ten(largest, power):
-    curve = Curve.of("c", [0, 1], [0, largest])
+    curve = Curve("c", [0, 1], [0, largest])
     figure = Report("one", panels=(Panel("x", "y", (curve,)),)).figure()
     figure.draw_without_rendering()
     (axes,) = figure.axes
@@ -125,11 +123,11 @@ def test_small_and_large_numbers_stand_before_a_power_of_ten(largest, power):
 
 
 def test_a_full_disk_is_one_line_and_leaves_the_old_picture(tmp_path):
-    report = Report("one", panels=(Panel("x", "y", (Curve.of("c", range(9), range(9)),)),))
-    for file in (tmp_path / f"picture{suffix}" for suffix in drawing.SUFFIXES):
+    report = Report("one", panels=(Panel("x", "y", (Curve("c", range(9), range(9)),)),))
+    for file in (tmp_path / f"picture{suffix}" for suffix in SUFFIXES):
         file.write_bytes(b"old")
         with small_disk(1000), pytest.raises(ValueError, match="is not written: ") as refused:
             report.save(file)
         assert str(refused.value) == f"{file} is not written: File too large"
         assert file.read_bytes() == b"old"
-    assert len([*tmp_path.iterdir()]) == len(drawing.SUFFIXES)
+    assert len([*tmp_path.iterdir()]) == len(SUFFIXES)

@@ -1,4 +1,4 @@
-"""The contact law of a chain, read off its pulses: from peak contact forces F and speeds V.
+"""The contact law of a chain from the peak contact forces F and the speeds V of its pulses.
 
 **One power.** For F = A δ^k, mean mass m̄ and spacing D the lattice's wave has
 
@@ -13,13 +13,10 @@ compression. Differentiation of S δ² = 2 W with respect to F gives
 
     dδ/dF = δ² S_F / (2 (F - S δ)),   k = 1/(1 - 2 d ln V/d ln F),
 
-with S_F = dS/dF and the local exponent k. The equation is integrated downwards from the strongest
-pulse, where δ = 2 F/((k+1) S), as it is unstable upwards. ln V is a polynomial of ln F, R = R(k).
+with S_F = dS/dF and the local exponent k. ln V is a polynomial of ln F, R = R(k).
 
-R comes from the series in k - 1 for equal beads, and otherwise from the steady pulses of struck
-chains (`validation.pulses.steady`). Errors are 95 % intervals, for the free law from refits with
-resampled noise. Standard deviations of the data, if known, only weight the data; the size of the
-noise is estimated from the residuals.
+Errors are 95 % intervals. The size of the noise is estimated from the residuals; standard
+deviations of the data, if known, only weight the data.
 """
 
 from __future__ import annotations
@@ -35,46 +32,32 @@ import scipy
 import sympy as sp
 from numpy.polynomial import polynomial
 
-from lwa import Cell, expand
+from lwa import Cell
 from lwa.base.arrays import Array
 from validation.pulses.pulse import Measured
 from validation.pulses.steady import STRETCH, point
 from validation.scenes.checks import SceneError
+from validation.waves.solver import ROUNDING, exact_wave
 
-_EXPONENTS = ("5/4", "3/2", "2", "5/2", "3", "4")  # at which R is known; R(1) = 1
-_ORDER = 8  # of the series of R for equal beads
-_DRAWS = 200  # of resampled noise
+_UNIFORM = np.arange(11, 41) / 10  # k of the exact waves; a spline errs by 1e-6 between them
+_DIMER = ("5/4", "3/2", "2", "5/2", "3", "4")  # k of the struck chains
+_DRAWS = 200  # of the coefficients of ln V, for the error of the free law
 _STEPS = 60  # of ln F, at which the free law is integrated
 _HERTZ = 1.5
 _NEAR = 1.2  # times 80 sites, over which the pulse must lead
 
 
-@lru_cache(maxsize=16)
-def speed_ratio(omega: sp.Rational) -> Callable[[Any], Array]:
-    """Return R(k) of a chain of masses 1, ω, 1, ω, … as a function of floats 1 ≤ k ≤ 4."""
-    nodes, found = [1.0], [1.0]
-    for k in map(sp.Rational, _EXPONENTS):
-        if omega == 1:
-            c2 = expand(Cell((1,), spacing=1), _ORDER).c2.at(k=k).value
-        else:
-            # Pulses are measured near the blow, where one that is overtaken later still leads.
-            read = point(k, omega, STRETCH, farther=_NEAR)
-            if read.missing:
-                raise SceneError(f"no speed of the lattice's pulse at k = {k}: {read.missing}")
-            c2 = read.numbers["speed"].value ** 2
-        nodes.append(float(k))
-        found.append(c2 * float((k + 1) * (1 + omega) / 4))
-    spline = scipy.interpolate.CubicSpline(nodes, found)
-    return lambda k: np.asarray(spline(np.clip(k, nodes[0], nodes[-1])))
-
-
 @dataclass(frozen=True, eq=False)
 class Medium:
-    """Chain of the measured pulses: mean mass m̄, spacing D and speed ratio R(k)."""
+    """Chain of the measured pulses: mean mass m̄, spacing D and speed ratio R(k), 1 ≤ k ≤ 4.
+
+    ratio_error : largest relative error of the values between which R is interpolated.
+    """
 
     mass: float
     spacing: float
     ratio: Callable[[Any], Array]
+    ratio_error: float
 
     @classmethod
     def of(cls, cell: Cell) -> Medium:
@@ -82,7 +65,7 @@ class Medium:
         if cell.size > 2:
             raise SceneError(f"the cell has {cell.size} beads: one or two are wanted")
         ratio = speed_ratio(sp.Rational(cell.masses[-1] / cell.masses[0]))
-        return cls(float(sum(cell.masses)) / cell.size, float(cell.spacing), ratio)
+        return cls(float(sum(cell.masses)) / cell.size, float(cell.spacing), *ratio)
 
     def log_stiffness(self, slope: float, constant: float) -> float:
         """Return ln A of the power law with ln V = slope · ln F + constant."""
@@ -91,12 +74,34 @@ class Medium:
         return 2 * k * (constant - math.log(self.spacing) - unit)
 
 
+@lru_cache(maxsize=16)
+def speed_ratio(omega: sp.Rational) -> tuple[Callable[[Any], Array], float]:
+    """Return R(k) of a chain of masses 1, ω, 1, ω, … and the largest relative error of its nodes.
+
+    Equal beads: from exact waves. Unequal beads: from steady pulses of struck chains. R(1) = 1.
+    """
+    if omega == 1:
+        exponents, error = _UNIFORM, ROUNDING
+        ratios = [exact_wave([1], k).c2 * (k + 1) / 2 for k in exponents]
+    else:
+        exponents, error, ratios = np.array([float(sp.Rational(k)) for k in _DIMER]), 0.0, []
+        for k in map(sp.Rational, _DIMER):
+            # Pulses are measured near the blow, where one that is overtaken later still leads.
+            pulse = point(k, omega, STRETCH, farther=_NEAR)
+            if pulse.missing:
+                raise SceneError(f"no speed of the lattice's pulse at k = {k}: {pulse.missing}")
+            speed = pulse.numbers["speed"]
+            ratios.append(speed.value**2 * float((k + 1) * (1 + omega) / 4))
+            error = max(error, 2 * speed.relative_error)
+    spline = scipy.interpolate.CubicSpline(np.append(1.0, exponents), np.append(1.0, ratios))
+    return lambda k: np.asarray(spline(np.clip(k, 1, exponents[-1]))), error
+
+
 @dataclass(frozen=True, eq=False)
 class PowerFit:
     """Fit of F = A δ^k: k, A, the correlation of k and ln A, and A at k = 3/2 (``hertz``).
 
     curvature : coefficient of (ln F)² in a parabola through the data ln V; 0 for one power.
-    residual : root mean square of the residuals of ln V.
     """
 
     k: Measured
@@ -104,7 +109,6 @@ class PowerFit:
     correlation: float
     hertz: Measured
     curvature: Measured
-    residual: float
 
     @property
     def one_power(self) -> bool:
@@ -128,42 +132,53 @@ def fit_power(medium: Medium, force: Array, speed: Array, weight: Array | None =
     weight : (N,), see `weights`; by default all pulses weigh the same.
     """
     x, y = np.log(force), np.log(speed)
-    w = np.ones_like(x) if weight is None else weight
-    middle = np.average(x, weights=w**2)  # slope and constant are uncorrelated about it
-    (slope, constant), covariance = np.polyfit(x - middle, y, 1, w=w, cov=True)
-    interval = scipy.stats.t.ppf(0.975, len(x) - 2)
+    line, covariance, middle = _fit(x, y, 1, weight)
 
-    def read(slope: float, constant: float) -> Array:
-        """Return k and ln A."""
-        return np.array(
-            [1 / (1 - 2 * slope), medium.log_stiffness(slope, constant - slope * middle)]
-        )
+    def law(line: Array) -> Array:
+        """Return k and ln A of ln V = slope · (ln F - middle) + constant."""
+        slope, constant = line
+        log_A = medium.log_stiffness(slope, constant - slope * middle)
+        return np.array((1 / (1 - 2 * slope), log_A))
 
-    value = read(slope, constant)
-    step = 1e-6
-    jacobian = (
-        np.array([read(slope + step, constant), read(slope, constant + step)]) - value
-    ).T / step
+    k, log_A = law(line)
+    jacobian = scipy.optimize.approx_fprime(line, law)
     spread = jacobian @ covariance @ jacobian.T
-    k_error, log_error = interval * np.sqrt(np.diag(spread))
+    k_error, log_error = _interval(len(x), 1) * np.sqrt(np.diag(spread))
     sixth = (_HERTZ - 1) / (2 * _HERTZ)
-    apart = y - sixth * x
-    (mean,), variance = np.polyfit(x, apart, 0, w=w, cov=True)
+    (mean,), variance, _ = _fit(x, y - sixth * x, 0, weight)
     hertz = medium.log_stiffness(sixth, mean)
-    hertz_error = 2 * _HERTZ * interval * math.sqrt(variance[0, 0])
-    parabola, noise = np.polyfit(x - middle, y - constant, 2, w=w, cov=True)
-    bound = scipy.stats.t.ppf(0.975, len(x) - 3) * math.sqrt(noise[0, 0])
-    share = np.linalg.pinv(w[:, np.newaxis] * np.vander(x - middle, 3))[0] * w  # of each ln V
-    digits = np.finfo(float).eps * (1 + np.abs(x) + np.abs(y))  # rounding of ln V and ln F
-    bound += np.abs(share) @ digits
-    return PowerFit(
-        Measured(value[0], value[0] + k_error),
-        Measured(math.exp(value[1]), math.exp(value[1] + log_error)),
-        float(spread[0, 1] / math.sqrt(spread[0, 0] * spread[1, 1])),
-        Measured(math.exp(hertz), math.exp(hertz + hertz_error)),
-        Measured(parabola[0], parabola[0] + bound),
-        float(np.std(y - np.polyval((slope, constant), x - middle))),
+    hertz_error = 2 * _HERTZ * _interval(len(x), 1) * math.sqrt(variance[0, 0])
+    parabola, noise, _ = _fit(x, y, 2, weight)
+    bend_error = _interval(len(x), 2) * math.sqrt(noise[0, 0])
+    # A ~ R^{-k}.
+    A, A_hertz = (
+        Measured(math.exp(log), math.exp(log + error + power * medium.ratio_error))
+        for log, error, power in ((log_A, log_error, k), (hertz, hertz_error, _HERTZ))
     )
+    return PowerFit(
+        Measured(k, k + k_error),
+        A,
+        float(spread[0, 1] / math.sqrt(spread[0, 0] * spread[1, 1])),
+        A_hertz,
+        Measured(parabola[0], parabola[0] + bend_error),
+    )
+
+
+def _interval(pulses: int, degree: int) -> float:
+    """Return half of the 95 % interval of a coefficient over its standard deviation."""
+    return float(scipy.stats.t.ppf(0.975, pulses - degree - 1))
+
+
+def _fit(x: Array, y: Array, degree: int, weight: Array | None) -> tuple[Array, Array, float]:
+    """Fit a polynomial in x - middle; return coefficients, highest first, covariance and middle."""
+    w = np.ones_like(x) if weight is None else weight
+    middle = float(np.average(x, weights=w**2))  # slope and constant are uncorrelated about it
+    found, covariance = np.polyfit(x - middle, y, degree, w=w, cov=True)
+    # On data without scatter the rounding of ln F, of ln V and of the fit is left.
+    rounding = 2 * np.finfo(float).eps * (1 + np.abs(x) + np.abs(y))
+    change = np.linalg.pinv(w[:, np.newaxis] * np.vander(x - middle, degree + 1)) * w
+    largest = np.abs(change) @ rounding
+    return found, covariance + np.outer(largest, largest), middle
 
 
 def free_law(
@@ -176,20 +191,14 @@ def free_law(
 ) -> tuple[Array, Array]:
     """Return the compression at each force, and the error of the force at this compression, (N,).
 
-    degree : degree of the polynomial ln V(ln F). seed : seed of the resampled noise.
+    degree : degree of the polynomial ln V(ln F). seed : seed of the draws of its coefficients.
     weight : (N,), see `weights`; by default all pulses weigh the same.
     """
-    x, y = np.log(force), np.log(speed)
-    w = np.ones_like(x) if weight is None else weight
-    middle = x.mean()
-    best = polynomial.polyfit(x - middle, y, degree, w=w)
-    rest = y - polynomial.polyval(x - middle, best)
-    noise = math.sqrt(np.sum((w * rest) ** 2) / (len(x) - degree - 1)) / w
-    drawn = np.random.default_rng(seed).normal(0, noise[:, None], (len(x), _DRAWS))
-    fitted = polynomial.polyfit(x - middle, (y - rest)[:, None] + drawn, degree, w=w)
-    rows = np.column_stack((best, fitted))  # (degree + 1, 1 + draws)
+    x = np.log(force)
+    best, covariance, middle = _fit(x, np.log(speed), degree, weight)
+    draws = np.random.default_rng(seed).multivariate_normal(best, covariance, _DRAWS)
     grid = np.linspace(x.max(), x.min(), _STEPS)
-    log_delta = _integrated(medium, rows, grid, middle)
+    log_delta = _integrated(medium, np.vstack((best, draws)).T[::-1], grid, middle)
     at = scipy.interpolate.CubicSpline(grid[::-1], log_delta[::-1])
     steepness = 1 / at(x, 1)[:, 0]  # d ln F/d ln δ
     spread = np.ptp(np.quantile(at(x), (0.025, 0.975), axis=1), axis=0) / 2
@@ -213,6 +222,7 @@ def _integrated(medium: Medium, rows: Array, grid: Array, middle: float) -> Arra
         share = np.minimum(np.exp(S + log_delta - x), 1 - 1e-6)  # S δ/F = 2/(k+1) of a power
         return np.asarray(change / 2 * share / (1 - share))
 
+    # Downwards from the strongest pulse, where δ = 2 F/((k+1) S): upwards is unstable.
     S, k = log_S(grid[0])
     start = math.log(2) + grid[0] - np.log(k + 1) - S
     path = scipy.integrate.solve_ivp(slope, grid[[0, -1]], start, t_eval=grid, rtol=1e-8)

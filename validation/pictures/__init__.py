@@ -1,1 +1,0 @@
-"""Pictures: curves and maps in panels, and the objects that draw themselves."""
