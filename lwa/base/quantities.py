@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import sympy as sp
 
 from lwa.base.errors import NoSolitaryWave as NoSolitaryWave
