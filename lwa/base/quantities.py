@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import sympy as sp
 
 from lwa.base.errors import NoSolitaryWave as NoSolitaryWave
@@ -21,6 +23,14 @@ QUANTITIES = ("strain", "force", "velocity")
 
 EXTENTS = ("length", "time")
 """The kinds of a width: an extent in space, or the time of passage."""
+
+
+def strain_power(quantity: str, k: Any) -> Any:
+    """The exponent q of a quantity that scales as strain^q: k for the force, else 1.
+
+    Raises `lwa.InputError` unless the quantity is among `QUANTITIES`.
+    """
+    return k if known(quantity) == "force" else 1
 
 
 def known(quantity: str) -> str:
