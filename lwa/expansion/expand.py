@@ -53,7 +53,7 @@ class Expansion(Value):
     k: sp.Expr = symbol_k
 
     @cached_property
-    def observables(self) -> Observables:
+    def _observables(self) -> Observables:
         """The quantities of the wave as polynomials; long derivations show their progress."""
         model = shares_model(self.cell, self.k)
         long = _terms(model, self.order) > LONG
@@ -69,7 +69,7 @@ class Expansion(Value):
     @property
     def I(self) -> sp.Expr:
         """Coefficient I in the linear chain's dispersion Ω² = κ² - I κ⁴ + …, in units of D²."""
-        return self.observables.I
+        return self._observables.I
 
     @cached_property
     def compliance(self) -> sp.Expr:
@@ -167,7 +167,7 @@ class Expansion(Value):
         return self.cell.size / (self.cell.mass * self.compliance)
 
     def _series(self, quantity: str, unit: sp.Expr, power: sp.Expr) -> EpsilonSeries:
-        coefficients = self.observables.coefficients(quantity)
+        coefficients = self._observables.coefficients(quantity)
         return EpsilonSeries(unit, power, coefficients, self.k, self.cell, quantity)
 
     def log_force(self, contact: Any = 0, X: Any = None) -> dict[sp.Rational, sp.Expr]:
@@ -188,7 +188,7 @@ class Expansion(Value):
             raise InputError(f"{min(shared)} names a property of the chain: give X another name")
         return {
             n: sp.Add(*(a * place**d for d, a in phi.items()))
-            for n, phi in self.observables.log_force(i).items()
+            for n, phi in self._observables.log_force(i).items()
         }
 
     def at(self, **values: Any) -> Expansion:
