@@ -234,7 +234,7 @@ _READERS: dict[str, Reader] = {
     "spacings": each(positive),
     "displacements": each(real),
     "velocities": each(real),
-    "samples": partial(integer, least=2),
+    "samples": partial(integer, low=2),
     "k": _exponent,
     "duration": positive,
     "wall": positive,

@@ -162,7 +162,7 @@ def _chain(
 ) -> tuple[list[Sphere], dict[str, Any]]:
     """Return the named beads (none in a chain of masses), and the chain's fields of the `Scene`."""
     cell = given.read("cell", array)
-    repeat = given.read("repeat", partial(integer, least=1), 1)
+    repeat = given.read("repeat", partial(integer, low=1), 1)
     n = len(cell) * repeat
     if not 1 <= n <= MOST_BEADS:
         made = f"chain.cell and repeat make {shorten(n)} beads"
