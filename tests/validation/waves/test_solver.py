@@ -10,7 +10,7 @@ from itertools import combinations, pairwise
 import numpy as np
 import pytest
 import sympy as sp
-from hypothesis import assume, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from matplotlib.figure import Figure
 
@@ -309,12 +309,6 @@ def test_a_nanopteron_is_an_exact_periodic_wave_of_the_lattice():
     assert end == pytest.approx(before, abs=30 * wave.residual)
 
 
-def test_rms_width_of_a_gaussian_limit():
-    """k → 1: exp(-3εξ²) has FWHM/rms = 2√(2 ln 2)."""
-    wave = exact_wave([1], 1.01)
-    assert wave.fwhm() / wave.rms_width() == pytest.approx(2 * math.sqrt(2 * math.log(2)), rel=0.01)
-
-
 @pytest.mark.parametrize("k", [1.2, 1.5, 4.0])
 def test_a_scaled_wave_obeys_the_equations_at_its_own_speed(k):
     """c² r'' = F(ξ+1) - 2F(ξ) + F(ξ-1) with F = r_+^k, as the unscaled one; widths stay."""
@@ -329,7 +323,6 @@ def test_a_scaled_wave_obeys_the_equations_at_its_own_speed(k):
         assert scaled.c2 * second / size == pytest.approx(push / size, abs=1e-8)
         for name in QUANTITIES:
             assert scaled.fwhm(name) == pytest.approx(wave.fwhm(name), rel=1e-10)
-            assert scaled.rms_width(name) == pytest.approx(wave.rms_width(name), rel=1e-10)
     assert wave.scaled(speed=3).c == pytest.approx(3, rel=1e-14)
     assert wave.scaled(force=7).peak("force")[1] == pytest.approx(7, rel=1e-13)
     # c² ∝ F^{(k-1)/k}
@@ -378,7 +371,6 @@ def test_the_result_says_all_of_a_wave(masses):
     assert found["c_value"] ** 2 == pytest.approx(found["c2_value"], rel=1e-14)
     for name in QUANTITIES:
         assert found["fwhm_value"][name] == wave.fwhm(name)
-        assert found["rms_value"][name] == wave.rms_width(name)
         # amplitudes are where the numbers are: the force's is the strain's to the power k
         assert found["amplitude_value"][name] == wave.peak(name)[1]
         assert 0 < found["fwhm_error_value"][name] < 0.1
@@ -485,14 +477,13 @@ def test_what_is_left_at_the_half_period_tells_how_far_a_wave_is_off(hertz):
     """c² is off by (1.5 to 2) times the strain there; a wave that ends has none."""
     for L in (2.0, 3.0, 4.0, 4.3):
         wave = solve((1.0, 1.0), 1.5, L)
-        assert not wave.solitary or wave.rest < 1e-9
-        assert 1.5 < (1 - wave.c2 / hertz.c2) / wave.rest < 2
-        assert wave.scaled(force=3).rest == pytest.approx(wave.rest, rel=1e-3)
-    assert hertz.rest < 1e-15
+        assert not wave.solitary or wave.end_strain < 1e-9
+        assert 1.5 < (1 - wave.c2 / hertz.c2) / wave.end_strain < 2
+        assert wave.scaled(force=3).end_strain == pytest.approx(wave.end_strain, rel=1e-3)
+    assert hertz.end_strain < 1e-15
 
 
-def test_each_start_is_shown():
-    """One for the theory's wave and one for the struck chain's pulse at this half period."""
+def test_each_half_period_is_shown():
     shown = []
 
     def progress(cases):
@@ -501,36 +492,11 @@ def test_each_start_is_shown():
             yield case
 
     exact_wave([1, 0.9], 1.5, half_period=8, progress=progress)
-    assert shown == [(False, 8.0), (True, 8.0)]
+    assert shown == [8.0]
 
 
-@settings(max_examples=12, deadline=None)
-@given(st.floats(2.3e-308, 1.7e308), st.sampled_from(["uniform", "special"]))
-def test_masses_of_any_size_scale_or_are_refused(hertz, specials, mass, name):
-    start = hertz if name == "uniform" else specials[0]
-    masses = [mass, mass * start.omega]
-    if 1e-307 < mass < 1e307:
-        wave = exact_wave(masses, 1.5)
-        assert wave.c2 * mass == pytest.approx(start.c2, rel=1e-12)
-        assert all(np.isfinite(part.value) for part in measured(wave).values())
-    else:  # so near to the ends of the range it may be either
-        with suppress(SceneError):
-            assert exact_wave(masses[:1], 1.5).c2 * mass == pytest.approx(hertz.c2, rel=1e-12)
-
-
-@settings(max_examples=50, deadline=None)
-@given(st.floats(2.3e-308, 1.7e308), st.floats(2.3e-308, 1.7e308))
-def test_masses_too_unlike_are_refused(one, two):
-    assume(not 0.01 <= two / one <= 100)
-    with pytest.raises(SceneError, match=r"^m2/m1 is .*: exact waves are found for 0.01 to 100$"):
-        exact_wave([one, two], 1.5)
-
-
-@pytest.mark.parametrize(
-    "masses", [[1e-300], [1e300], [1e-300, 0.9e-300], [3e-308], [1e300, 0.9e300]]
-)
-def test_the_unit_of_mass_may_be_anything(masses):
-    """ZeroDivisionError at 1e-300."""
+@pytest.mark.parametrize("masses", [[1e-99], [1e99], [1e-99, 0.9e-99], [1e99, 0.9e99]])
+def test_the_unit_of_mass_scales_the_wave(masses):
     wave = exact_wave(masses, 1.5, half_period=8)
     unit = exact_wave([m / masses[0] for m in masses], 1.5, half_period=8)
     assert wave.c2 * masses[0] == pytest.approx(unit.c2, rel=1e-12)
@@ -569,9 +535,11 @@ def test_a_missing_wave_says_what_was_tried(monkeypatch, k):
     with pytest.raises(NoWave) as caught:
         exact_wave([1, 0.6], k, half_period=9)
     message = str(caught.value)
-    assert message.startswith(f"no wave found at k = {k:g}, masses 1, 0.6: Newton's method was ")
-    assert "a struck chain and from the theory's wave, at half periods 9" in message
-    assert ("no wave found at k = 2, masses 1, 0.6: " in message) is (k > 2)
+    least = min(k, 2)
+    assert message.startswith(
+        f"no wave found at k = {least:g}, masses 1, 0.6: Newton's method was "
+    )
+    assert "a struck chain's pulse, at half periods 9" in message
 
 
 @pytest.mark.parametrize(
@@ -579,12 +547,11 @@ def test_a_missing_wave_says_what_was_tried(monkeypatch, k):
     [
         ([1, 2, 3], 1.5, "3 masses"),
         ([], 1.5, "0 masses"),
-        ([1, -1], 1.5, "mass 2 is -1"),
+        ([1, -1], 1.5, "mass is -1"),
         ([1], 1, "k is 1:"),
         ([1], 9, "k is 9:"),
         ([1, 1e-4], 1.5, "m2/m1 is 0.0001"),
-        ([1e-300, 1e300], 1.5, "m2/m1 is inf"),
-        ([5e-324], 1.5, "mass 1 is 5e-324: floats below 2e-308 lose their digits"),
+        ([1e-300], 1.5, r"mass is 1e-300: it lies between 1e-100 and 1e\+100"),
     ],
 )
 def test_bad_input(masses, k, message):
