@@ -1,6 +1,6 @@
 """The command `lwa-validate`, also as `python -m validation`."""
 
-from lwa.command.interrupt import start
+from lwa.__main__ import start
 
 
 def main() -> None:

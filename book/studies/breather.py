@@ -26,7 +26,7 @@ from scipy.interpolate import CubicSpline
 from lwa import Breather, Cell, Power, envelope
 from lwa.base.arrays import Array
 from lwa.base.progress import Progress
-from lwa.command.reading import quantities
+from lwa.command.options import quantities
 from validation.pictures import Curve, Panel
 from validation.pulses.pulse import Measured
 from validation.report.command import EXPONENT, option, study

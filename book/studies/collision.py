@@ -26,7 +26,7 @@ from lwa import Cell, Power
 from lwa.base.arrays import Array
 from lwa.base.exact import exact
 from lwa.base.progress import Progress
-from lwa.command.reading import quantities
+from lwa.command.options import quantities
 from lwa.equation.evolution import Evolution
 from validation.lattice.simulate import simulate
 from validation.pictures import Curve, Panel

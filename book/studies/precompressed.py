@@ -29,8 +29,7 @@ import sympy as sp
 from lwa import Cell, ContactLaw, Power, background_wave
 from lwa.base.arrays import Array
 from lwa.base.progress import Progress
-from lwa.command.options import law_option
-from lwa.command.reading import quantities
+from lwa.command.options import law_option, quantities
 from lwa.wave.quadrature import NumericBackground
 from validation.lattice.run import Run
 from validation.lattice.simulate import twice

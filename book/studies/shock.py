@@ -32,7 +32,7 @@ from lwa import Power, Shock
 from lwa import shock as front
 from lwa.base.exact import InputError, exact
 from lwa.base.progress import Progress
-from lwa.command.reading import quantities, quantity
+from lwa.command.options import quantities, quantity
 from lwa.command.rows import attempt
 from lwa.law import ContactLaw, named
 from validation.lattice.run import Run

@@ -18,7 +18,7 @@ import numpy as np
 from lwa import Cell, Power
 from lwa.base.arrays import Array
 from lwa.base.progress import Progress
-from lwa.command.reading import quantities
+from lwa.command.options import quantities
 from lwa.linear.dispersion import LoadedChain
 from validation.lattice.run import Run
 from validation.lattice.simulate import simulate_many

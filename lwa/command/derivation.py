@@ -1,18 +1,21 @@
-"""A derivation as rows, and as the source of a Python module: `lwa derive`."""
+"""The command `lwa derive`: ansatz, wave equation and defect, or a Python module of them."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from typing import Any
 
+import click
 import sympy as sp
 
 from lwa.base import latex
 from lwa.base.exact import InputError
 from lwa.code.languages import LANGUAGES
+from lwa.command.chain import take_chain
+from lwa.command.options import STYLES, theory_options
 from lwa.command.rows import Answer, Row, Values
 from lwa.equation.terms import Jet, Terms
-from lwa.theory import Theory
+from lwa.theory import Theory, homogenize
 from lwa.wave.functions import function_of, in_order
 
 FIELDS = {
@@ -61,15 +64,27 @@ def _phi(theory: Theory) -> dict[int, sp.Expr]:
     return {n: law.phi(n) for n in range(2, max(theory.order, 3))} if known else {}
 
 
-def derivation(theory: Theory, tex: bool = False) -> Answer:
-    """Return the rows of `lwa derive`: the ansatz, the wave equation and the defect.
+@click.command()
+@theory_options((*STYLES, "python"))
+def derive(style: str, **options: Any) -> None:
+    """Derive the long-wave equation of a chain.
 
-    In JSON ``terms`` is the right-hand side of u_ττ after its leading term. ``slaved`` (full
-    closure) has, for each particle from 1 on, the terms J_n of w_i = u + u_x Σ D^n J_n in the
-    same form.
+    Results are the ansatz, the wave equation u_ττ = u_x^(k-1) u_xx + … for the displacement u, and
+    the defect, by which the equations of motion of the beads disagree.
 
-    tex : True for LaTeX too, which for a high order takes as long as the derivation.
+    In JSON `terms` is the right-hand side of u_ττ after its leading term, and `slaved` (closure
+    full) has, for each bead from the second on, the terms J_n of its field u + u_x Σ D^n J_n.
     """
+    chain = take_chain(options)
+    theory = homogenize(chain.cell, law=chain.law, **options)
+    if style == "python":
+        click.echo(_source(theory))
+    else:
+        _answer(theory, style == "latex").print(style)
+
+
+def _answer(theory: Theory, tex: bool) -> Answer:
+    """Rows of a derivation; those of LaTeX take as long as the derivation, and only if ``tex``."""
     head: Values = {
         **chain_json(theory),
         "lambda": str(theory.amplitude_ratio),
@@ -97,8 +112,8 @@ def derivation(theory: Theory, tex: bool = False) -> Answer:
         "",
         *_consistency_text(theory),
     ]
-    own = [*theory.closure.latex_rows(), *theory.pde.latex_rows()] if tex else []
-    return Answer(head, rows, equations=[*_law_latex(theory), *own])
+    equations = [*theory.closure.latex_rows(), *theory.pde.latex_rows()] if tex else []
+    return Answer(head, rows, equations=[*_law_latex(theory), *equations])
 
 
 def _terms_json(coefficients: Mapping[int, Terms]) -> list[dict[str, Any]]:
@@ -129,24 +144,24 @@ def _ansatz(theory: Theory) -> list[Row | str]:
         rows += [
             "w = λ (u + Σ b_n D^n ∂_x^n u), the linear part of the second particle's field",
             f"  λ = {theory.amplitude_ratio}",
-            *(_exact(f"ansatz.{n}", f"b{n}", b) for n, b in theory.ansatz.items()),
+            *(Row(f"ansatz.{n}", f"b{n}", b, digits=False) for n, b in theory.ansatz.items()),
             "",
         ]
     for i, series in theory.slaved.items():
         w = i == 1  # the second particle's field, whose linear part is the ansatz
-        shown = {n: W.without(_is_linear) if w else W for n, W in series.items()}
-        if lines := _orders(shown, "D^", ""):
+        nonlinear = {n: W.without(_is_linear) if w else W for n, W in series.items()}
+        if lines := _orders(nonlinear, "D^{}"):
             name = "nonlinear terms of w" if w else f"field of particle {i + 1}, less u"
             rows += [f"{name}:", *lines, ""]
     return rows
 
 
-def _exact(key: str, label: str, value: sp.Expr) -> Row:
-    return Row(key, label, value, number=None)
-
-
 def _is_linear(jet: Jet) -> bool:
     return not jet.t and sum(e for _, e in jet.x) <= 1
+
+
+_POWER_LAW = "u_x^(k-1) u_xx", "G u_x^(k-3) u_xx^3 + H u_x^(k-2) u_xx u_xxx + I u_x^(k-1) u_4x"
+_OTHER_LAW = "F' u_xx", "G F' u_x^-2 u_xx^3 + H F' u_x^-1 u_xx u_xxx + I F' u_4x"
 
 
 def _equation(theory: Theory) -> list[Row | str]:
@@ -157,29 +172,23 @@ def _equation(theory: Theory) -> list[Row | str]:
     elif theory.order == 1:
         lines = ["the wave equation starts at D^(k+1), that is at order 2 of the ansatz"]
     else:
-        powers = ("F'", "F' u_x^-2", "F' u_x^-1", "F'")
-        if theory.law.homogeneous:
-            powers = ("u_x^(k-1)", "u_x^(k-3)", "u_x^(k-2)", "u_x^(k-1)")
-        jets = ("u_xx", "u_xx^3", "u_xx u_xxx", "u_4x")
-        parts = [f"{name}{p} {jet}" for name, p, jet in zip(_LETTERS, powers, jets, strict=True)]
-        more = theory.order > (4 if found else 2)
-        lines = ["u_ττ = " + " + ".join(parts if found else parts[:1]) + (" + …" if more else "")]
-        lines += [_exact(name, name, value) for name, value in found.items()]
-    prefix, suffix = _order_name(theory)
-    shown = {n: c for n, c in theory.pde.coefficients.items() if not (found and n == 3)}
-    lines += _orders(shown, prefix, suffix)
-    vanishing = ", ".join(f"{prefix}{n}{suffix}" for n in theory.pde.vanishing)
+        parts = list((_POWER_LAW if theory.law.homogeneous else _OTHER_LAW)[: 2 if found else 1])
+        parts += ["…"] * (theory.order > (4 if found else 2))
+        lines = [f"u_ττ = {' + '.join(parts)}"]
+        lines += [Row(name, name, value, digits=False) for name, value in found.items()]
+    form = _order_form(theory)
+    lines += _orders(
+        {n: c for n, c in theory.pde.coefficients.items() if not (found and n == 3)}, form
+    )
+    vanishing = ", ".join(map(form.format, theory.pde.vanishing))
     return [*lines, f"  vanishing identically: {vanishing}"] if vanishing else lines
 
 
-_LETTERS = ("", "G ", "H ", "I ")
-
-
-def _order_name(theory: Theory) -> tuple[str, str]:
-    """Texts before and after the number n of an order, such as "D^(k+" and ")"."""
+def _order_form(theory: Theory) -> str:
+    """Text of an order n, with {} in place of n."""
     if not theory.law.homogeneous:
-        return "order ", ""
-    return ("D^(k+", ")") if theory.closure.model.branch == "acoustic" else ("D^", "")
+        return "order {}"
+    return "D^(k+{})" if theory.closure.model.branch == "acoustic" else "D^{}"
 
 
 def _consistency_text(theory: Theory) -> list[str]:
@@ -187,7 +196,7 @@ def _consistency_text(theory: Theory) -> list[str]:
         lines = ["all equations of motion are satisfied at every order shown"]
     else:
         lines = ["defect: u_ττ by the first equation of motion minus u_ττ by the second"]
-        lines += _orders(theory.defect, *_order_name(theory))
+        lines += _orders(theory.defect, _order_form(theory))
     if theory.closure.model.branch == "acoustic" and not theory.pde.conservative:
         lines.append(
             "not in conservation form: the linear closure of unequal particles does not conserve "
@@ -198,11 +207,12 @@ def _consistency_text(theory: Theory) -> list[str]:
     return lines
 
 
-def _orders(coefficients: Mapping[int, Terms], prefix: str, suffix: str) -> list[str]:
+def _orders(coefficients: Mapping[int, Terms], form: str) -> list[str]:
+    """Lines of text with the terms of each order; the order n is written by ``form``."""
     lines = []
     for n, found in coefficients.items():
         rows = [f"    {found.text(jet)}: {found.written(jet)}" for jet in found]
-        lines += [f"  {prefix}{n}{suffix}:", *rows] if rows else []
+        lines += [f"  {form.format(n)}:", *rows] if rows else []
     return lines
 
 
@@ -218,8 +228,8 @@ def _law_latex(theory: Theory) -> list[str]:
     return rows + [latex.row(rf"\phi_{{{n}}}", value) for n, value in _phi(theory).items()]
 
 
-def source(theory: Theory) -> str:
-    """The source of a module with b1 …, G, H, I, and all coefficients by order and jet."""
+def _source(theory: Theory) -> str:
+    """Source of a module with b1 …, G, H, I, and all coefficients by order and jet."""
     if not theory.law.homogeneous:
         raise InputError("--format python is for power laws: others have text, json and latex")
     cell = theory.cell

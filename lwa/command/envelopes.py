@@ -1,41 +1,115 @@
-"""Envelopes of a mode of a loaded chain, and breathers, as rows: `lwa envelope`."""
+"""The command `lwa envelope`: envelopes of a mode of a loaded chain, and breathers."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from typing import Any
 
+import click
 import sympy as sp
 
 from lwa.base.exact import InputError
+from lwa.command.chain import ChainInput, take_chain
+from lwa.command.options import (
+    BACKGROUND,
+    PRECOMPRESSION,
+    SPHERES,
+    angle,
+    cell_options,
+    quantity,
+    setting,
+)
 from lwa.command.rows import Answer, Row
 from lwa.envelopes.breather import Breather
 from lwa.envelopes.schrodinger import Envelope
+from lwa.envelopes.schrodinger import envelope as envelope_of
+
+_EARLIER = (
+    "contacts open at these values to leading order; on the lattice they open earlier, in dimers "
+    "of spheres at about three quarters of the detuning"
+)
+_LOADS = {
+    "frequency": "at this frequency, from the load F0",
+    "amplitude": "at this amplitude, below the load F0",
+}
 
 
+@click.command()
+@cell_options()
+@SPHERES
+@BACKGROUND
+@PRECOMPRESSION
+@setting(
+    "--wavenumber",
+    "pi",
+    "Wavenumber κ per cell, 0 … pi: a number, a name, or a part of pi such as pi/3.",
+    callback=angle,
+)
+@click.option(
+    "--branch",
+    help="Branch of the mode: acoustic, optical, or its number from 0.  [default: optical; "
+    "acoustic for equal beads]",
+)
+@click.option(
+    "--frequency",
+    callback=quantity,
+    help="Frequency f of a breather: in Hz if the chain is in SI, else in radians per time.",
+)
+@click.option(
+    "--detuning",
+    callback=quantity,
+    help="Relative detuning 1 - f/f0 of a breather from the band's edge f0, in place of f.",
+)
 def envelope(
-    found: Envelope, breather: Breather | None, units: Mapping[str, str], spoken: str
-) -> Answer:
-    """The nonlinear Schrödinger equation of a mode, and the breather of a frequency.
+    style: str,
+    background: sp.Expr | None,
+    precompression: sp.Expr | None,
+    wavenumber: sp.Expr,
+    branch: str | None,
+    frequency: sp.Expr | None,
+    detuning: sp.Expr | None,
+    **options: Any,
+) -> None:
+    """Nonlinear Schrödinger equation of a mode of a loaded chain, and its breathers.
 
-    Wavenumbers and lengths are in cells, frequencies in radians per unit of time, for a chain in
-    SI in Hz. ``amplitude`` is the largest displacement of each bead, ``width`` 1/b of the envelope
-    sech(bn) or tanh(bn), ``opening_load`` the static force at which contacts begin to open if the
-    frequency, or the amplitude, is held.
+    Needs --background or --precompression. A breather stands at the edge of a band, and has the
+    --frequency or the --detuning given.
 
-    spoken : the chain in text.
+    Wavenumbers and lengths are in cells, frequencies in radians per unit of time; with --spheres
+    frequencies are in Hz, displacements in m and forces in N. In JSON `amplitude` is the largest
+    displacement of each bead, `width` is 1/b of the envelope sech(bn) or tanh(bn), and
+    `opening_load` is the static force at which contacts begin to open if the frequency, or the
+    amplitude, is held.
     """
-    turn = 2 * sp.pi if units else sp.S.One
-    name, symbol = ("ω/(2π)", r"\omega / 2 \pi") if units else ("ω", r"\omega")
+    if frequency is not None and detuning is not None:
+        raise InputError("--frequency and --detuning are both given: one says the other")
+    chain = take_chain(options)
+    cell, place = chain.cell, int(branch) if branch and branch.isdecimal() else branch
+    load = {"background": background, "precompression": chain.load(background, precompression)}
+    found = envelope_of(cell, chain.law, **load, wavenumber=wavenumber, branch=place)
+    symbols = {*cell.symbols, *found.compression.free_symbols, *wavenumber.free_symbols}
+    if not symbols - {cell.spacing} and (cell.size > 2 or not sp.cos(wavenumber).is_Rational):
+        found = found.numeric()  # exact results want a frequency that is algebraic
+    breather = None
+    if frequency is not None or detuning is not None:
+        angular = frequency and frequency * (2 * sp.pi if chain.si else 1)
+        breather = found.breather(angular, detuning=detuning)
+    _answer(chain, found, breather).print(style)
+
+
+def _answer(chain: ChainInput, found: Envelope, breather: Breather | None) -> Answer:
+    """Rows of the equation, and of the breather of a frequency."""
+    turn = 2 * sp.pi if chain.si else sp.S.One
+    name, symbol = ("ω/(2π)", r"\omega / 2 \pi") if chain.si else ("ω", r"\omega")
     rows: list[Row | str] = [
-        spoken,
+        chain.text,
         "u = Ψ(X, T) U e^{i(κ n - ω t)} + c.c., Σ m |U|² = 1, n and κ per cell",
         "i Ψ_T + ½ ω'' Ψ_XX = χ |Ψ|² Ψ",
         "",
-        Row("wavenumber", "κ", found.wavenumber, r"\kappa", number=None),
-        Row("frequency", f"frequency {name}", found.frequency / turn, symbol),
-        Row("group_velocity", "dω/dκ", found.group_velocity, r"\omega'"),
-        Row("dispersion", "ω''", found.dispersion, r"\omega''"),
-        Row("nonlinearity", "χ", found.nonlinearity, r"\chi"),
+        Row("wavenumber", "κ", found.wavenumber, r"\kappa", digits=False),
+        Row("frequency", f"frequency {name}", found.frequency / turn, symbol, "Hz"),
+        Row("group_velocity", "dω/dκ", found.group_velocity, r"\omega'", "cells/s"),
+        Row("dispersion", "ω''", found.dispersion, r"\omega''", "cells²/s"),
+        Row("nonlinearity", "χ", found.nonlinearity, r"\chi", "1/(s kg m²)"),
     ]
     head: dict[str, str | None] = {"branch": str(found.branch), "kind": None}
     try:
@@ -49,39 +123,18 @@ def envelope(
         rows += [
             "",
             f"{breather.kind} breather, |Ψ| = a {shape}(b n):",
-            Row("breather_frequency", f"frequency {name}", breather.frequency / turn),
+            Row("breather_frequency", f"frequency {name}", breather.frequency / turn, unit="Hz"),
             Row("detuning", "detuning Δ = 1 - f/f0", breather.detuning, r"\Delta"),
-            Row("amplitude", "largest displacement by bead", breather.amplitude, "2 a U"),
+            Row("amplitude", "largest displacement by bead", breather.amplitude, "2 a U", "m"),
             Row("width", "width 1/b in cells", breather.width, "b^{-1}"),
         ]
         if breather.opening != sp.oo:
-            rows.append(Row("opening_detuning", _OPENING, breather.opening_detuning))
+            label = "contacts open from the detuning"
+            rows.append(Row("opening_detuning", label, breather.opening_detuning))
             notes.append(_EARLIER)
         if breather.opening != sp.oo and breather.k is not sp.nan:
             for held, label in _LOADS.items():
-                load = breather.opening_load(held)
-                load = sp.N(load, 15) if load.is_Rational else load  # sixth powers have many digits
-                rows.append(Row(f"opening_load.{held}", label, load))
-    return Answer(head, rows, units, found.cell.spacing, notes=notes)
-
-
-_OPENING = "contacts open from the detuning"
-_EARLIER = (
-    "contacts open at these values to leading order; on the lattice they open earlier, in dimers "
-    "of spheres at about three quarters of the detuning"
-)
-_LOADS = {
-    "frequency": "at this frequency, from the load F0",
-    "amplitude": "at this amplitude, below the load F0",
-}
-
-UNITS = {
-    "frequency": "Hz",
-    "group_velocity": "cells/s",
-    "dispersion": "cells²/s",
-    "nonlinearity": "1/(s kg m²)",
-    "breather_frequency": "Hz",
-    "amplitude": "m",
-    "opening_load": "N",
-}
-"""Units of an envelope of a chain in SI."""
+                force = breather.opening_load(held)
+                force = sp.N(force, 15) if force.is_Rational else force  # sixth powers are long
+                rows.append(Row(f"opening_load.{held}", label, force, unit="N"))
+    return Answer(head, rows, chain.si, found.cell.spacing, notes=notes)

@@ -1,9 +1,9 @@
-"""The options that several commands of `lwa` have in common."""
+"""Options that several commands have in common, and their readers: callbacks of click."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from functools import reduce
 from typing import Any
 
@@ -11,15 +11,64 @@ import click
 import sympy as sp
 from click.core import ParameterSource
 
-from lwa.cell import Cell, D, k
+from lwa.base.exact import exact, integer
+from lwa.cell import D, k
 from lwa.closure.consistency import BRANCHES, CLOSURES, FIELDS
-from lwa.command.reading import contact_law, count, quantities, quantity
-from lwa.command.reserved_names import demand_free
-from lwa.law import NAMES, ContactLaw
-from lwa.spheres.hertz import EXPONENT
+from lwa.law import NAMES, ContactLaw, read_law
 
 Command = Callable[..., None]
 Option = Callable[[Command], Command]
+
+STYLES = ("text", "json", "latex")
+"""Values of ``--format`` of every command."""
+
+# --- readers ---
+
+
+def called(option: click.Parameter) -> str:
+    """Name of an option in messages, without its dashes."""
+    return option.opts[0].lstrip("-")
+
+
+def quantity(context: click.Context, option: click.Parameter, value: str | None) -> sp.Expr | None:
+    """Read an integer, a decimal, a fraction or a plain name."""
+    return None if value is None else exact(value, called(option))
+
+
+def quantities(
+    context: click.Context, option: click.Parameter, value: str | None
+) -> tuple[sp.Expr, ...]:
+    """Read quantities separated by commas; () when absent."""
+    return tuple(exact(part, called(option)) for part in value.split(",")) if value else ()
+
+
+def angle(context: click.Context, option: click.Parameter, value: str) -> sp.Expr:
+    """Read a quantity or a part of pi, such as pi, pi/3 or 2pi/3."""
+    part = re.fullmatch(r"([0-9]*)\*?pi(?:/([1-9][0-9]*))?", value.strip())
+    if part is None:
+        return exact(value, called(option))
+    return sp.Rational(int(part[1] or 1), int(part[2] or 1)) * sp.pi
+
+
+def count(context: click.Context, option: click.Parameter, value: str) -> int:
+    """Read an integer from 1 on."""
+    return integer(exact(value, called(option)), called(option), 1)
+
+
+def contact_law(
+    context: click.Context, option: click.Parameter, value: str | None
+) -> ContactLaw | None:
+    """Read NAME or NAME:PARAM,… of a law in `lwa.law.named`."""
+    return None if value is None else read_law(value, called(option))
+
+
+def given(option: str) -> bool:
+    """True if the option was given on the command line."""
+    source = click.get_current_context().get_parameter_source(option)
+    return source is ParameterSource.COMMANDLINE
+
+
+# --- options ---
 
 
 def setting(
@@ -36,23 +85,22 @@ def together(*options: Option) -> Option:
     return lambda command: reduce(lambda c, option: option(c), reversed(options), command)
 
 
-def _choice(name: str, values: Sequence[str], help_text: str) -> Option:
-    """Make an option with a few names for its values, the first by default."""
-    return setting(name, values[0], help_text, type=click.Choice(values))
+def _choice(name: str, values: Sequence[str], help_text: str, names: Sequence[str] = ()) -> Option:
+    return setting(name, values[0], help_text, names, type=click.Choice(values))
 
 
-def exponent(default: str) -> Option:
-    """The option ``--k``."""
-    return setting("--k", default, "Exponent of the contact law.", callback=quantity)
+def exponent_option(default: str) -> Option:
+    """Make the option ``--k``."""
+    return setting("--k", default, "Exponent k of the force A δ^k of a contact.", callback=quantity)
 
 
 def order_option(help_text: str) -> Option:
-    """The option ``--order``."""
+    """Make the option ``--order``."""
     return setting("--order", "4", help_text, callback=count)
 
 
 def law_option(help_text: str) -> Option:
-    """The option ``--law``."""
+    """Make the option ``--law``."""
     return click.option(
         "--law",
         metavar="NAME[:PARAM,…]",
@@ -62,103 +110,86 @@ def law_option(help_text: str) -> Option:
     )
 
 
-def style_option(formats: Sequence[str]) -> Option:
-    """The option ``--format``."""
-    choice = click.Choice(formats)
-    return setting("--format", "text", "How to print the result.", names=("style",), type=choice)
+def style_option(formats: Sequence[str] = STYLES) -> Option:
+    """Make the option ``--format``, the argument ``style`` of a command."""
+    return _choice("--format", formats, "Form of the result.", ("style",))
 
 
-MASSES = setting("--masses", "m1,m2", "Masses of the cell's particles.", callback=quantities)
+def spheres_option(**settings: Any) -> Option:
+    """Make the option ``--spheres``."""
+    text = (
+        "TOML or JSON file of the chain, in place of options on masses, contacts and spacing: "
+        "spheres in SI, or any scene of lwa-validate run."
+    )
+    return click.option("--spheres", metavar="FILE", help=text, **settings)
+
+
+MASSES = setting(
+    "--masses", "m1,m2", "Masses of the beads in one period of the chain.", callback=quantities
+)
 STIFFNESSES = click.option(
-    "--stiffnesses", callback=quantities, help="Stiffnesses of its contacts; equal by default."
+    "--stiffnesses",
+    callback=quantities,
+    help="Stiffness A of each contact in the period, the first between beads 1 and 2.  "
+    "[default: all 1]",
+)
+SPACING = setting(
+    "--spacing", D.name, "Distance D between neighbouring beads at rest.", callback=quantity
+)
+FORCE = click.option(
+    "--force",
+    callback=quantity,
+    help="Peak contact force of the wave, any static load included; in N if the chain is in SI.",
+)
+SPHERES = spheres_option()
+BACKGROUND = click.option(
+    "--background", callback=quantity, help="Static strain of the chain, compression over D."
+)
+PRECOMPRESSION = click.option(
+    "--precompression",
+    callback=quantity,
+    help="Static force on the chain; in N if the chain is in SI.",
 )
 
 
-def of_cell(formats: Sequence[str]) -> Option:
-    """The options that name a chain and its contact law."""
+def cell_options(formats: Sequence[str] = STYLES) -> Option:
+    """Make the options that describe a chain and its contact law."""
     return together(
-        exponent(k.name),
-        law_option(f"Contact law in place of the power: {', '.join(NAMES)}."),
+        exponent_option(k.name),
+        law_option(
+            "Contact force A F(δ) by the name and the parameters of F, in place of --k: "
+            f"{', '.join(NAMES)}."
+        ),
         MASSES,
         STIFFNESSES,
-        setting("--spacing", D.name, "Distance of neighbouring particles.", callback=quantity),
+        SPACING,
         style_option(formats),
     )
 
 
-def of_chain(formats: Sequence[str]) -> Option:
-    """The options that name a chain and its theory."""
+def theory_options(formats: Sequence[str]) -> Option:
+    """Make the options that describe a chain and its long-wave theory."""
     return together(
-        of_cell(formats),
-        order_option("Highest power of D in the ansatz."),
-        _choice("--closure", CLOSURES, "Consistency condition; linear is the paper's."),
-        _choice("--field", FIELDS, "Field described; center wants closure full."),
-        _choice("--branch", BRANCHES, "Branch of the motion."),
+        cell_options(formats),
+        order_option("Highest power of D in the ansatz, an integer."),
+        _choice(
+            "--closure",
+            CLOSURES,
+            "How the motion of the other beads follows from that of the first: linear, the "
+            "paper's ansatz, or full, which satisfies the equation of motion of every bead.",
+        ),
+        _choice(
+            "--field",
+            FIELDS,
+            "Unknown u of the wave equation: displacement of the first bead, or the mass-weighted "
+            "mean of all beads (center, which needs --closure full).",
+        ),
+        _choice("--branch", BRANCHES, "Neighbours move together (acoustic) or against each other."),
     )
 
 
-def of_series(k: str, order: str, formats: Sequence[str]) -> Option:
-    """The options of a command on a series: its cell, exponent and order; ``k`` by default."""
-    return together(exponent(k), MASSES, STIFFNESSES, order_option(order), style_option(formats))
-
-
-def given(option: str) -> bool:
-    """True if the option was given on the command line."""
-    source = click.get_current_context().get_parameter_source(option)
-    return source is ParameterSource.COMMANDLINE
-
-
-def si_units(k: sp.Expr) -> dict[str, str]:
-    """SI units by key for the exponent k; values under other keys have none (τ is a length)."""
-    lengths = ("spacing", "width", "fwhm", "compression", "compressions", "static_compression")
-    return {
-        "masses": "kg",
-        "stiffnesses": f"N/m^({k})",
-        "beta": "1/m",
-        **dict.fromkeys(lengths, "m"),
-        "fwhm_time": "s",
-        **dict.fromkeys(("force", "precompression"), "N"),
-        **dict.fromkeys(("speed", "bead_velocity", "sound_speed", "time_scale"), "m/s"),
-    }
-
-
-@dataclass(frozen=True)
-class ChainInput:
-    """A chain as the options of a command or a file describe it.
-
-    precompression : static force of the chain, 0 for none.
-    si : True if the numbers are in SI.
-    """
-
-    cell: Cell
-    law: ContactLaw
-    precompression: sp.Expr = sp.S.Zero
-    si: bool = False
-
-    @property
-    def units(self) -> dict[str, str]:
-        """Units of the results by key; {} for a chain that is not in SI."""
-        return si_units(self.law.exponent if self.law.homogeneous else EXPONENT) if self.si else {}
-
-    @property
-    def text(self) -> str:
-        """The chain on one line."""
-        masses = ", ".join(map(str, self.cell.masses))
-        return f"masses {masses}; contact force A F, F = {self.law.F}"
-
-
-def demand_free_names(chain: ChainInput, *values: sp.Expr | None, output: str = "") -> None:
-    """Refuse symbols of a chain, and of values, that are named like a quantity of the output.
-
-    output: a key of `NAMES`, the command's own name when empty.
-    """
-    output = output or str(click.get_current_context().info_name)
-    more = (value for value in values if value is not None)
-    cell = chain.cell
-    demand_free(output, (*cell.masses, cell.spacing, *chain.law.symbols, *more))
-    demand_free(output, cell.stiffnesses, own="A")
-
-
-SPHERES_HELP = "Chain of a file: spheres, or any scene of `lwa-validate run`; in SI where it is."
-FORCE = click.option("--force", callback=quantity, help="Peak contact force, for speed, widths, ….")
-SPHERES = click.option("--spheres", metavar="FILE", help=SPHERES_HELP)
+def series_options(exponent: str, order: str) -> Option:
+    """Make the options of a command on a series; ``exponent`` is the default of ``--k``."""
+    return together(
+        exponent_option(exponent), MASSES, STIFFNESSES, order_option(order), style_option()
+    )

@@ -1,30 +1,26 @@
 """Results of a command as rows, each of which is written as text, JSON and LaTeX.
 
-A value is an exact expression, a tuple of them (one per contact), a sum with its error, or the
-fault that keeps a sum from being formed.
+A value is an exact expression, a tuple of them (one per contact), a sum of a series with its error
+(`Resummed`), or the `InputError` that says why there is no value.
 """
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+import click
 import sympy as sp
 
 from lwa.base import latex
 from lwa.base.exact import InputError, evaluated
 from lwa.expansion.approximants import Resummed
 
-PRINTED_DIGITS = 15
-"""Significant digits of a printed number; all of them are correct."""
-
-LONG = 160
-"""Characters of an exact number beyond which text shows its digits alone."""
-
-SAME = object()
-"""Marker: the digits of a row are those of its value."""
+PRINTED_DIGITS = 15  # significant digits of a printed number, all of them correct
+LONG = 160  # characters of an exact number beyond which text has its digits alone
 
 Values = dict[str, Any]
 
@@ -36,32 +32,29 @@ class Row:
     key : name in JSON; "fwhm.force" is the entry "force" of "fwhm". Not in JSON where empty.
     label : name in text; not in text where empty.
     symbol : name in LaTeX; not in LaTeX where empty.
-    number : the expression whose digits are printed, by default the value; None for no digits.
+    unit : unit of the value for a chain in SI.
+    digits : False for a value that is printed without its digits.
     expression : True if JSON has the expression besides its digits.
-    formula : LaTeX in place of the value's own where that is wider than a line.
+    formula : LaTeX in place of the value's own.
     """
 
     key: str
     label: str
     value: Any
     symbol: str = ""
-    number: Any = SAME
+    unit: str = ""
+    digits: bool = True
     expression: bool = True
     formula: str = ""
-
-    @property
-    def digits(self) -> Any:
-        """The expression or sum whose digits are printed."""
-        return self.value if self.number is SAME else self.number
 
 
 @dataclass(frozen=True)
 class Answer:
     """The result of a command.
 
-    head : JSON of the chain and the settings; a value that only JSON needs may be a function.
+    head : JSON of the chain and the settings.
     rows : the results and the other lines of text, in their order.
-    units : unit of the values by key, for a chain in SI.
+    si : True if numbers are in SI; then all values are printed in digits, with their units.
     spacing : the symbol of the unit of length, or a number.
     equations : rows of LaTeX before the others.
     notes : sentences on the validity of the numbers.
@@ -71,12 +64,19 @@ class Answer:
 
     head: Mapping[str, Any]
     rows: Sequence[Row | str]
-    units: Mapping[str, str] = field(default_factory=dict)
+    si: bool = False
     spacing: sp.Expr = sp.S.One
     equations: Sequence[str] = ()
     notes: Sequence[str] = ()
     parts: Mapping[str, Answer] = field(default_factory=dict)
     orders: bool = True
+
+    def print(self, style: str) -> None:
+        """Print the answer as "text", "json" or "latex"."""
+        if style == "json":
+            click.echo(json.dumps(self.json(), indent=2))
+        else:
+            click.echo(self.latex() if style == "latex" else self.text())
 
     def plain(self, value: sp.Expr) -> sp.Expr:
         """The value at V_s = 1 and B = 1, and at D = 1 where the spacing is a symbol."""
@@ -84,10 +84,6 @@ class Answer:
         if self.spacing.is_Symbol:
             ones[self.spacing] = sp.S.One
         return value.xreplace(ones)
-
-    def unit(self, row: Row) -> str:
-        """The unit of a row in SI, empty where there is none."""
-        return self.units.get(row.key, self.units.get(row.key.partition(".")[0], ""))
 
     # --- JSON -------------------------------------------------------------------------------
 
@@ -97,28 +93,26 @@ class Answer:
         Names ending in ``_value`` are floats, in the unit of length where the spacing is a symbol
         and at V_s = 1 and B = 1. Symbols, complex numbers and numbers beyond a double have none.
         """
-        result = {name: x() if callable(x) else x for name, x in self.head.items()}
+        result = dict(self.head)
         rows = [row for row in self.rows if isinstance(row, Row) and row.key]
         for row in rows:
             if row.expression and isinstance(row.value, sp.Expr | tuple):
                 _put(result, row.key, "", _each(str, row.value))
         for row in rows:
-            self._put_digits(result, row)
-        if self.units:
-            result["units"] = dict(self.units)
+            if row.digits:
+                self._put_digits(result, row)
+        if self.si:
+            result["units"] = _units(rows)
         result |= {key: part.json() for key, part in self.parts.items()}
         return result | ({"notes": list(self.notes)} if self.notes else {})
 
     def _put_digits(self, result: Values, row: Row) -> None:
-        found = row.digits
-        if isinstance(found, Resummed):
-            _put(result, row.key, "_value", found.value)
-            _put(result, row.key, "_error_value", None if math.isnan(found.error) else found.error)
-        elif isinstance(found, InputError):
-            _put(result, row.key, "_value", None)
-            _put(result, row.key, "_error_value", None)
-        elif found is not None:
-            floats = _each(lambda x: as_float(self.plain(x)), found)
+        if isinstance(row.value, Resummed | InputError):
+            value, error = getattr(row.value, "value", None), getattr(row.value, "error", math.nan)
+            _put(result, row.key, "_value", value)
+            _put(result, row.key, "_error_value", None if math.isnan(error) else error)
+        else:
+            floats = _each(lambda x: as_float(self.plain(x)), row.value)
             if floats is not None:
                 _put(result, row.key, "_value", floats)
 
@@ -131,38 +125,33 @@ class Answer:
             if isinstance(row, str):
                 lines.append(row)
             elif row.label:
-                lines.append(f"  {row.label}{self._said(row)}")
+                lines.append(f"  {row.label}{self._value_text(row)}")
         lines += [part.text() for part in self.parts.values()]
         return "\n".join([*lines, *(f"\nNote: {note}" for note in self.notes)])
 
-    def _said(self, row: Row) -> str:
-        unit = f" {self.unit(row)}".rstrip()
-        if isinstance(row.digits, InputError):
-            return f": {row.digits}"
-        if isinstance(row.digits, Resummed):
-            return f" = {summed(row.digits, unit, self.orders)}"
-        parts = row.value if isinstance(row.value, tuple) else (row.value,)
-        if row.number is not SAME and row.expression is False and row.number is not None:
-            parts = (row.number,)
-        digits = row.number is not None
-        return " = " + ", ".join(self._shown(x, digits) for x in dict.fromkeys(parts)) + unit
+    def _value_text(self, row: Row) -> str:
+        unit = f" {row.unit}" if self.si and row.unit else ""
+        if isinstance(row.value, InputError):
+            return f": {row.value}"
+        if isinstance(row.value, Resummed):
+            return f" = {summed(row.value, unit, self.orders)}"
+        return " = " + ", ".join(self._number_text(x, row.digits) for x in _parts(row.value)) + unit
 
-    def _shown(self, value: sp.Expr, numeric: bool) -> str:
+    def _number_text(self, value: sp.Expr, digits: bool) -> str:
         """The value, followed by its digits where it is a number that is not rational."""
-        if self.units:
+        if self.si:
             return approximate(value)
-        if not numeric or value.free_symbols - {self.spacing}:
-            return str(value)
         plain = self.plain(value)
-        if plain.is_Rational:
+        if not digits or value.free_symbols - {self.spacing} or plain.is_Rational:
             return str(value)
-        digits = sp.sstr(evaluated(plain, PRINTED_DIGITS), full_prec=False)
-        digits, written = digits + self._length_unit(value), str(value)
-        return digits if plain.has(sp.Float) or len(written) > LONG else f"{written} ≈ {digits}"
+        number = sp.sstr(evaluated(plain, PRINTED_DIGITS), full_prec=False)
+        number, written = number + self._length_unit(value), str(value)
+        return number if plain.has(sp.Float) or len(written) > LONG else f"{written} ≈ {number}"
 
     def _length_unit(self, value: sp.Expr) -> str:
         if not self.spacing.is_Symbol or self.spacing not in value.free_symbols:
             return ""
+        # exponent of a power of D, d ln(value)/d ln D
         power = sp.nsimplify(sp.cancel(value.diff(self.spacing) * self.spacing / value))
         if not power.is_number or power.is_zero:
             return ""
@@ -177,23 +166,25 @@ class Answer:
 
     def _equations(self) -> list[str]:
         rows = [row for row in self.rows if isinstance(row, Row) and row.symbol]
-        lines = [f"{row.symbol} = {text}" for row in rows if (text := self._formula(row))]
+        lines = [
+            f"{row.symbol} = {row.formula or self._value_latex(row)}"
+            for row in rows
+            if not isinstance(row.value, InputError)
+        ]
         parts = (line for part in self.parts.values() for line in part._equations())
         return [*self.equations, *lines, *parts]
 
-    def _formula(self, row: Row) -> str:
-        found = row.digits if isinstance(row.digits, Resummed | InputError) else row.value
-        unit = rf"\ \mathrm{{{self.unit(row)}}}" if self.unit(row) else ""
-        if found is None or isinstance(found, InputError):
-            return ""
-        if isinstance(found, Resummed):
-            return found.latex() + unit
-        parts = dict.fromkeys(found if isinstance(found, tuple) else (found,))
-        if self.units:
-            return r",\ ".join(approximate(x, tex=True) for x in parts) + unit
-        if row.formula and latex.width(str(sp.latex(row.value))) > latex.WIDTH:
-            return row.formula
-        return r",\ ".join(map(latex.expression, parts)) + unit
+    def _value_latex(self, row: Row) -> str:
+        unit = rf"\ \mathrm{{{row.unit}}}" if self.si and row.unit else ""
+        if isinstance(row.value, Resummed):
+            return row.value.latex() + unit
+        write = (lambda x: approximate(x, tex=True)) if self.si else latex.expression
+        return r",\ ".join(map(write, _parts(row.value))) + unit
+
+
+def _parts(value: Any) -> list[sp.Expr]:
+    """Different expressions in a value."""
+    return list(dict.fromkeys(value if isinstance(value, tuple) else (value,)))
 
 
 def _put(result: Values, key: str, suffix: str, value: Any) -> None:
@@ -202,6 +193,19 @@ def _put(result: Values, key: str, suffix: str, value: Any) -> None:
         result.setdefault(group + suffix, {})[entry] = value
     else:
         result[group + suffix] = value
+
+
+def _units(rows: Sequence[Row]) -> dict[str, str]:
+    """Mapping from key to unit; entries of a group that have the same unit by the group's name."""
+    groups: dict[str, dict[str, str]] = {}
+    for row in rows:
+        if row.unit:
+            groups.setdefault(row.key.partition(".")[0], {})[row.key] = row.unit
+    found: dict[str, str] = {}
+    for group, units in groups.items():
+        same = {*units.values()}
+        found |= units if len(same) > 1 else {group: same.pop()}
+    return found
 
 
 def _each(read: Callable[[sp.Expr], Any], value: Any) -> Any:
@@ -234,13 +238,12 @@ def approximate(value: sp.Expr, tex: bool = False) -> str:
     """A number in digits; an expression in symbols with its numeric factor in digits."""
     if value.is_zero:
         return "0"
+    write: Callable[[sp.Expr], str] = sp.latex if tex else lambda x: sp.sstr(x, full_prec=False)
     factor, rest = value.as_independent(*value.free_symbols, as_Add=False)
-    digits = evaluated(factor, PRINTED_DIGITS)
-    number = sp.latex(digits) if tex else sp.sstr(digits, full_prec=False)
-    others = sp.latex(rest) if tex else str(rest)
+    number = write(evaluated(factor, PRINTED_DIGITS))
     if rest == 1:
-        return str(number)
-    return str(others) if factor == 1 else f"{number}{' ' if tex else '·'}{others}"
+        return number
+    return write(rest) if factor == 1 else f"{number}{' ' if tex else '·'}{write(rest)}"
 
 
 def summed(found: Resummed, unit: str, order: bool) -> str:

@@ -1,32 +1,130 @@
-"""Traveling waves as rows: the compact wave, the wave of a given force, waves under load."""
+"""The command `lwa wave`: the compact wave, the wave of a given force, waves under load."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
 from typing import Any
 
+import click
 import sympy as sp
 
+from lwa.base import latex
 from lwa.base.exact import InputError, exact
 from lwa.base.quantities import QUANTITIES, NoSolitaryWave
 from lwa.cell import Cell
+from lwa.code.languages import LANGUAGES
+from lwa.command.chain import ChainInput, take_chain
 from lwa.command.derivation import FIELDS, chain_json, chain_text, listed
-from lwa.command.options import ChainInput
-from lwa.command.reserved_names import demand_free
-from lwa.command.rows import Answer, Row, Values, attempt
-from lwa.theory import Theory
+from lwa.command.options import (
+    BACKGROUND,
+    FORCE,
+    PRECOMPRESSION,
+    SPHERES,
+    STYLES,
+    given,
+    theory_options,
+)
+from lwa.command.rows import Answer, Row, attempt
+from lwa.spheres.hertz import EXPONENT
+from lwa.theory import Theory, homogenize
 from lwa.wave.background import BackgroundWave
-from lwa.wave.precompressed import PrecompressedWave
+from lwa.wave.closed import Reduction
+from lwa.wave.physical import PrecompressedWave
 from lwa.wave.traveling import TravelingWave
 
+# Bound of `lwa.Radiation` on c² and the widths from which on a note is printed: for dimers of
+# spheres m2/m1 = 0.06 … 0.73.
 RADIATES = 0.05
-"""Bound of `lwa.Radiation` on c² and the widths from which on a note is printed: for dimers of
-spheres m2/m1 = 0.06 … 0.73."""
+
+# Compression over the spacing from which on a note is printed: the radius of contact of equal
+# spheres is then a tenth of their radius R, a/R = √(δ/2R), where Hertz (1882) wants a ≪ R.
+HERTZIAN = 0.01
+
+WIDTHS = (
+    ("fwhm", "FWHM of the {}", "length", "m"),
+    ("fwhm_time", "FWHM of the {} in time", "time", "s"),
+)
+"""Key, label, extent and unit of the widths of a wave with units."""
+
+SPEED = r"\mathrm{d}x/\mathrm{d}t"
+_SCALE = SPEED + " / V_{s}"
+
+
+@click.command()
+@theory_options((*STYLES, *LANGUAGES))
+@FORCE
+@SPHERES
+@BACKGROUND
+@PRECOMPRESSION
+def wave(
+    style: str,
+    force: sp.Expr | None,
+    background: sp.Expr | None,
+    precompression: sp.Expr | None,
+    **options: Any,
+) -> None:
+    """Compact traveling wave: β, width, FWHM, amplitude and speed.
+
+    With --force the wave of this peak contact force, in space and time; with --spheres in m, s, kg
+    and N. With --background or --precompression the wave in a chain under load, in the canonical
+    field (--closure full --field center), and its Korteweg-de Vries limit for small amplitudes.
+
+    A programming language as --format gives the source of functions that compute the wave.
+
+    In JSON floats are for B = 1 (speed) and V_s = 1 (B, mu) without --force, with D as the unit of
+    length if D is a symbol. `speed` is V_s = dx/dτ, and dx/dt with --force. `compressions` has a
+    value for each contact, `compression` their mean.
+    """
+    spheres = options["spheres"] is not None
+    chain = take_chain(options)
+    cell, law = chain.cell, chain.law
+    if background is not None and precompression is not None:
+        raise InputError("--background and --precompression are both given: one says the other")
+    precompression = chain.load(background, precompression)
+    load = precompression if background is None else background
+    # no load is a load, too, under a law that is no power: its waves are those of a background
+    loaded = load is not None and not (law.homogeneous and load.is_zero)
+    if loaded:
+        _demand_canonical(options)
+    if style in LANGUAGES and force is not None:
+        raise InputError(f"--format {style} is for any force: --force goes with text, json, latex")
+    peak = exact("F", "force") if force is None else force
+    theory = homogenize(cell, law=law, **options)
+    if not loaded:
+        found = theory.pde.traveling_wave()
+        if style in LANGUAGES:
+            click.echo(found.code(style))
+        elif force is None and not spheres:
+            _compact(theory, found, style == "latex").print(style)
+        else:
+            _at_force(chain, theory, found, peak).print(style)
+    elif precompression is not None:
+        pressed = PrecompressedWave(cell, law, peak, precompression)
+        if style in LANGUAGES:
+            click.echo(pressed.background.code(style))
+        else:
+            _precompressed(chain, theory, pressed).print(style)
+    elif force is not None:
+        raise InputError("--force goes with --precompression, a force; --background is a strain")
+    elif style in LANGUAGES:
+        click.echo(BackgroundWave(cell, law, background).code(style))
+    else:
+        _on_background(theory, BackgroundWave(cell, law, background)).print(style)
+
+
+def _demand_canonical(options: dict[str, Any]) -> None:
+    """Set the closure of waves under load; refuse any other."""
+    for name, wanted in (("closure", "full"), ("field", "center"), ("branch", "acoustic")):
+        if given(name) and options[name] != wanted:
+            raise InputError(
+                f"{name} is {options[name]!r}: under load the wave is that of the canonical field, "
+                f"{name} {wanted!r}"
+            )
+        options[name] = wanted
 
 
 def radiation_note(cell: Cell, k: sp.Expr) -> list[str]:
-    """A note on the radiation of unlike beads, if its bound exceeds `RADIATES`."""
+    """Note on the radiation of unlike beads; [] if its bound is below `RADIATES`."""
     if k.free_symbols or len({*cell.masses}) == len({*cell.stiffnesses}) == 1:
         return []
     from lwa.expansion.radiation import radiation  # here, for a quick start of the others
@@ -42,8 +140,18 @@ def radiation_note(cell: Cell, k: sp.Expr) -> list[str]:
     ]
 
 
-WIDTHS = (("fwhm", "FWHM of the {}", "length"), ("fwhm_time", "FWHM of the {} in time", "time"))
-"""Key, label and extent of the widths of a wave with units."""
+def hertz_note(chain: ChainInput, force: sp.Expr) -> list[str]:
+    """Note on a force that presses spheres too much for Hertz's contact; [] for other chains."""
+    cell = chain.cell
+    if not chain.si or chain.law.exponent != EXPONENT or force.free_symbols:
+        return []
+    strain = float(chain.law.compression(cell, force) / cell.spacing)
+    if strain < HERTZIAN:
+        return []
+    return [
+        f"contacts are compressed by {strain:.2g} of the spacing: Hertz's contact is that of "
+        f"elastic spheres up to about {HERTZIAN}, and metals yield before"
+    ]
 
 
 def _fwhm(wave: Any, *extent: str) -> dict[str, sp.Expr]:
@@ -59,17 +167,10 @@ def _fwhm_rows(key: str, label: str, widths: Mapping[str, sp.Expr], **settings: 
     ]
 
 
-def compact(theory: Theory, wave: TravelingWave) -> Answer:
-    """Return the rows of `lwa wave`: the compact wave for a general peak force.
-
-    Floats are for V_s = 1 (B, mu) and for B = 1 (speed).
-    """
+def _compact(theory: Theory, wave: TravelingWave, tex: bool) -> Answer:
+    """Rows of the compact wave of a general peak force."""
     one, other = (wave.reduction(root) for root in (0, 1))
-    names = ("p", "a", "mu", "eta", "sigma", "s")
-
-    def roots() -> list[dict[str, str]]:
-        return [{name: str(getattr(r, name)) for name in names} for r in (one, other)]
-
+    roots = [{name: str(getattr(r, name)) for name in _REDUCTION} for r in (one, other)]
     log_B = -sp.log(wave.speed_factor) / (wave.k - 1)
     rows: list[Row | str] = [
         f"masses {listed(theory.cell.masses)}; k = {wave.k}; closure {theory.closure.name}; "
@@ -82,12 +183,12 @@ def compact(theory: Theory, wave: TravelingWave) -> Answer:
         Row("B", "B", wave.amplitude(), "B"),
         Row("speed", "V_s", wave.speed(), "V_{s}"),
         f"  F_m ∝ V_s^({wave.force_exponent});  dx/dt = V_s · {wave.speed_scale}",
-        Row("speed_factor", "", wave.speed_factor, number=None),
-        Row("time_scale", "", wave.speed_scale, r"\mathrm{d}x/\mathrm{d}t / V_{s}", number=None),
+        Row("speed_factor", "", wave.speed_factor, digits=False),
+        Row("time_scale", "", wave.speed_scale, _SCALE, digits=False),
         Row("log_B", "", log_B, expression=False),
         "",
         "v = z^p, integrating factor z^a: z'' = μ z^η - σ z",
-        *_reduction_rows(theory, one),
+        *_reduction_rows(theory, one, tex),
         Row("", "the other root, p", other.p),
         Row("", "with a", other.a),
     ]
@@ -95,91 +196,89 @@ def compact(theory: Theory, wave: TravelingWave) -> Answer:
     return Answer(chain_json(theory) | {"roots": roots}, rows, spacing=wave.D, notes=notes)
 
 
-def _reduction_rows(theory: Theory, found: Any) -> list[Row]:
-    """Rows of p, a, μ, η, σ and s; long ones in LaTeX by p, a, H and I, as in the paper."""
-    formulas = {
-        "a": r"1 - k p + 3 (p - 1) + \frac{p H}{I}",
-        "mu": r"\frac{V_{s}^{2}}{I (p + a)}",
-        "eta": "1 + p - k p",
-        "sigma": r"\frac{1}{I (k p + a)}",
-        "s": r"\frac{2}{1 - \eta}",
-    }
-    rows = [
-        Row(name, name, getattr(found, name), symbol, formula=formulas.get(name, ""))
-        for name, symbol in _SYMBOLS.items()
-    ]
-    found_terms = theory.pde.third_order
-    return rows + [Row("", "", found_terms[name], name) for name in "HI"]
+# Symbols of the paper's reduction v = z^p, and formulas for values wider than a line
+_REDUCTION = {
+    "p": ("p", ""),
+    "a": ("a", r"1 - k p + 3 (p - 1) + \frac{p H}{I}"),
+    "mu": (r"\mu", r"\frac{V_{s}^{2}}{I (p + a)}"),
+    "eta": (r"\eta", "1 + p - k p"),
+    "sigma": (r"\sigma", r"\frac{1}{I (k p + a)}"),
+    "s": ("s", r"\frac{2}{1 - \eta}"),
+}
 
 
-_SYMBOLS = {"p": "p", "a": "a", "mu": r"\mu", "eta": r"\eta", "sigma": r"\sigma", "s": "s"}
+def _reduction_rows(theory: Theory, found: Reduction, tex: bool) -> Iterable[Row]:
+    """Rows of p, a, μ, η, σ and s; wide ones in LaTeX by p, a, H and I, as in the paper."""
+    wide = False
+    for name, (symbol, formula) in _REDUCTION.items():
+        value = getattr(found, name)
+        if not (tex and formula and latex.width(str(sp.latex(value))) > latex.WIDTH):
+            formula = ""
+        wide = wide or bool(formula)
+        yield Row(name, name, value, symbol, formula=formula)
+    if wide:
+        yield from (Row("", "", theory.pde.third_order[name], name) for name in "HI")
 
 
-def at_force(theory: Theory, wave: TravelingWave, F: sp.Expr, units: Mapping[str, str]) -> Answer:
-    """Return the rows of `lwa wave --force F`: the compact wave of peak contact force F.
-
-    B is the peak strain of this wave, V_s = dx/dτ and ``speed`` = dx/dt. ``compressions`` has the
-    peak compression of each contact, ``compression`` the mean. ``fwhm`` and ``fwhm_time`` are the
-    widths in space and time.
-    """
-    cell, answer = theory.cell, wave.at_force(F)
+def _at_force(chain: ChainInput, theory: Theory, wave: TravelingWave, F: sp.Expr) -> Answer:
+    """Rows of the compact wave of peak contact force F, with B its peak strain and speed dx/dt."""
+    at = wave.at_force(F)
     rows: list[Row | str] = [
         f"closure {theory.closure.name}; {FIELDS[theory.closure.field]}",
         f"contact force F = A δ^k, k = {theory.k}; an endless chain without load",
-        *_chain_rows(cell, units),
+        *_chain_rows(chain),
         "",
-        Row("force", "peak contact force F", answer.force, "F"),
-        Row("strain", "peak strain B", answer.strain),
-        Row("compression", "", answer.compression, r"\delta"),
-        Row("compressions", "peak compression", answer.compressions),
-        Row("speed", "speed dx/dt", answer.speed, r"\mathrm{d}x/\mathrm{d}t"),
-        Row("bead_velocity", "peak velocity of the beads", answer.bead_velocity, "u_{t}"),
-        *(row for key, label, e in WIDTHS for row in _fwhm_rows(key, label, _fwhm(answer, e))),
-        Row("beta", "", wave.beta, r"\beta"),
-        Row("width", "", wave.width, "L"),
+        Row("force", "peak contact force F", at.force, "F", "N"),
+        Row("strain", "peak strain B", at.strain),
+        Row("compression", "", at.compression, r"\delta", "m"),
+        Row("compressions", "peak compression", at.compressions, unit="m"),
+        Row("speed", "speed dx/dt", at.speed, SPEED, "m/s"),
+        Row("bead_velocity", "peak velocity of the beads", at.bead_velocity, "u_{t}", "m/s"),
+        *(
+            row
+            for key, label, extent, unit in WIDTHS
+            for row in _fwhm_rows(key, label, _fwhm(at, extent), unit=unit)
+        ),
+        Row("beta", "", wave.beta, r"\beta", "1/m"),
+        Row("width", "", wave.width, "L", "m"),
         Row("speed_factor", "", wave.speed_factor),
-        Row("time_scale", "", wave.speed_scale, r"\mathrm{d}x/\mathrm{d}t / V_{s}"),
-        Row("B", "", answer.strain, "B"),
-        Row("V_s", "", wave.speed(answer.strain), "V_{s}"),
+        Row("time_scale", "", wave.speed_scale, _SCALE, "m/s"),
+        Row("B", "", at.strain, "B"),
+        Row("V_s", "", wave.speed(at.strain), "V_{s}"),
     ]
-    notes = radiation_note(cell, wave.k)
-    return Answer(chain_json(theory), rows, units, wave.D, notes=notes)
+    notes = [*radiation_note(theory.cell, wave.k), *hertz_note(chain, at.force)]
+    return Answer(chain_json(theory), rows, chain.si, wave.D, notes=notes)
 
 
-def _chain_rows(cell: Cell, units: Mapping[str, str]) -> list[Row]:
-    """Rows of masses, stiffnesses and spacing; without units not in JSON, whose head has them."""
+def _chain_rows(chain: ChainInput) -> list[Row]:
+    """Rows of masses, stiffnesses and spacing; JSON has them in its head unless they are in SI."""
+    cell, k = chain.cell, chain.law.exponent if chain.law.homogeneous else EXPONENT
     named = (
-        ("masses", "masses", cell.masses, "m"),
-        ("stiffnesses", "A", cell.stiffnesses, "A"),
-        ("spacing", "spacing D", cell.spacing, "D"),
+        ("masses", "masses", cell.masses, "m", "kg"),
+        ("stiffnesses", "A", cell.stiffnesses, "A", f"N/m^({k})"),
+        ("spacing", "spacing D", cell.spacing, "D", "m"),
     )
-    if units:
+    if chain.si:
         return [Row(*parts) for parts in named]
-    return [Row("", label, value) for _, label, value, _ in named]
+    return [Row("", label, value) for _, label, value, *_ in named]
 
 
-def on_background(theory: Theory, wave: BackgroundWave) -> Answer:
-    """Return the rows of `lwa wave --background P0`: the waves on the strain p0.
-
-    In such a wave the strain rises from p0 to p0 + B at its peak and travels at V_s = dx/dτ.
-    ``speed`` is V_s as a function of p0 and B. ``kdv`` is the Korteweg–de Vries limit of small B,
-    the wave v = B sech²(ξ/L) of width L; it is null if the speed of sound is zero. Floats are for
-    B = 1, and are left out if the wave of B = 1 does not exist.
-    """
-    head: Values = chain_json(theory)
+def _on_background(theory: Theory, wave: BackgroundWave) -> Answer:
+    """Rows of the waves on the strain p0, with V_s a function of the rise B of the strain."""
+    head = chain_json(theory)
     speed, widths = _at_one(wave)
     rows: list[Row | str] = [
         chain_text(theory),
         FIELDS[theory.closure.field],
         f"u_x = p0 + v(ξ), ξ = x - V_s τ, p0 = {wave.p0}; v rises by B",
         "",
-        Row("background", "", wave.p0, "p_{0}", number=None),
-        Row("I", "", wave.I, "I", number=None),
-        Row("speed", "V_s", wave.speed(), "V_{s}", number=None),
-        Row("time_scale", "dx/dt over V_s", wave.time_scale, _SCALE, number=None),
+        Row("background", "", wave.p0, "p_{0}", digits=False),
+        Row("I", "", wave.I, "I", digits=False),
+        Row("speed", "V_s", wave.speed(), "V_{s}", digits=False),
+        Row("time_scale", "dx/dt over V_s", wave.time_scale, _SCALE, digits=False),
     ]
     if speed is not None:
-        rows.append(Row("speed", "V_s at B = 1", sp.S.Zero, number=speed, expression=False))
+        rows.append(Row("speed", "V_s at B = 1", speed, expression=False))
     rows += _fwhm_rows("fwhm", "FWHM of the {} at B = 1", widths, expression=False)
     try:
         kdv = wave.kdv
@@ -199,9 +298,6 @@ def on_background(theory: Theory, wave: BackgroundWave) -> Answer:
     return Answer(head, rows, spacing=wave.cell.spacing)
 
 
-_SCALE = r"\mathrm{d}x/\mathrm{d}t / V_{s}"
-
-
 def _at_one(wave: BackgroundWave) -> tuple[sp.Expr | None, dict[str, sp.Expr]]:
     """Speed and widths of the wave of B = 1; (None, {}) without a wave or with symbols."""
     try:
@@ -215,91 +311,31 @@ def _at_one(wave: BackgroundWave) -> tuple[sp.Expr | None, dict[str, sp.Expr]]:
         return speed, {}
 
 
-def precompressed(theory: Theory, wave: PrecompressedWave, units: Mapping[str, str]) -> Answer:
-    """Return the rows of `lwa wave --precompression F0 --force F`: the wave under a load.
-
-    ``speed`` and ``sound_speed`` are dx/dt, V_s is dx/dτ; ``background`` is the strain under the
-    load, B the rise of the strain in the wave, ``compressions`` the rises of the cell's contacts.
-    Widths are numbers, lengths and (``fwhm_time_value``) times.
-    """
+def _precompressed(chain: ChainInput, theory: Theory, wave: PrecompressedWave) -> Answer:
+    """Rows of the wave under a static force: rises of strain and compression, speeds dx/dt."""
     rows: list[Row | str] = [
-        chain_text(theory) if not units else f"contact force F = A δ^k, k = {theory.k}",
+        f"contact force F = A δ^k, k = {theory.k}" if chain.si else chain_text(theory),
         FIELDS[theory.closure.field],
-        *(_chain_rows(theory.cell, units) if units else []),
+        *(_chain_rows(chain) if chain.si else []),
         "",
-        Row("precompression", "static force F0", wave.precompression, "F_{0}"),
-        Row("force", "peak contact force F, in all", wave.force, "F"),
+        Row("precompression", "static force F0", wave.precompression, "F_{0}", "N"),
+        Row("force", "peak contact force F, in all", wave.force, "F", "N"),
         Row("background", "static strain p0", wave.background.p0, "p_{0}"),
-        Row("static_compression", "static compression", wave.static_compression, r"\delta_{0}"),
+        Row("static_compression", "static compression", wave.static_compression, _STATIC, "m"),
         Row("B", "rise of the strain B", wave.strain, "B"),
-        Row("compression", "rise of the compression", wave.compression, r"\delta - \delta_{0}"),
-        Row("compressions", "rise by contact", wave.compressions),
+        Row("compression", "rise of the compression", wave.compression, _RISE, "m"),
+        Row("compressions", "rise by contact", wave.compressions, unit="m"),
         Row("V_s", "V_s", wave.background.speed(wave.strain), "V_{s}"),
-        Row("time_scale", "dx/dt over V_s", wave.background.time_scale, _SCALE),
-        Row("speed", "speed dx/dt", wave.speed, r"\mathrm{d}x/\mathrm{d}t"),
-        Row("sound_speed", "speed of sound dx/dt", wave.sound_speed, r"c_{0}"),
-        Row("bead_velocity", "peak velocity of the beads", wave.bead_velocity, "u_{t}"),
+        Row("time_scale", "dx/dt over V_s", wave.background.time_scale, _SCALE, "m/s"),
+        Row("speed", "speed dx/dt", wave.speed, SPEED, "m/s"),
+        Row("sound_speed", "speed of sound dx/dt", wave.sound_speed, r"c_{0}", "m/s"),
+        Row("bead_velocity", "peak velocity of the beads", wave.bead_velocity, "u_{t}", "m/s"),
     ]
-    for key, label, extent in WIDTHS:
+    for key, label, extent, unit in WIDTHS:
         if not isinstance(widths := attempt(_fwhm, wave, extent), InputError):  # no symbols
-            rows += _fwhm_rows(key, label, widths, expression=False)
-    return Answer(chain_json(theory), rows, units, theory.cell.spacing)
+            rows += _fwhm_rows(key, label, widths, unit=unit, expression=False)
+    notes = hertz_note(chain, wave.force)
+    return Answer(chain_json(theory), rows, chain.si, theory.cell.spacing, notes=notes)
 
 
-@dataclass(frozen=True)
-class Load:
-    """Options that say how strongly a chain is pressed and which wave runs in it."""
-
-    force: sp.Expr | None
-    background: sp.Expr | None
-    precompression: sp.Expr | None
-
-    def under(self, other: bool) -> bool:
-        """True if the wave runs under a load; 0 is a load if the law is no power (``other``).
-
-        Raises `lwa.InputError` for two loads.
-        """
-        if self.background is not None and self.precompression is not None:
-            raise InputError("--background and --precompression are both given: one says the other")
-        load = self.precompression if self.background is None else self.background
-        return load is not None and (other or not load.is_zero)
-
-    def demand_free(self, output: str) -> None:
-        """Refuse symbols with names of the output."""
-        named = ((self.force, "F"), (self.precompression, "F0"), (self.background, "p0"))
-        for value, own in named:
-            demand_free(output, () if value is None else (value,), own)
-
-
-def peak(force: sp.Expr | None) -> sp.Expr:
-    """The force of a wave; the symbol F where none is given."""
-    return exact("F", "force") if force is None else force
-
-
-def under_load(theory: Theory, load: Load, units: dict[str, str]) -> Answer:
-    """The wave under a load as rows."""
-    if load.precompression is not None:
-        F, F0 = peak(load.force), load.precompression
-        return precompressed(theory, PrecompressedWave(theory.cell, theory.law, F, F0), units)
-    if load.force is not None:
-        raise InputError("--force goes with --precompression, a force; --background is a strain")
-    return on_background(theory, BackgroundWave(theory.cell, theory.law, load.background))
-
-
-def source(theory: Theory, load: Load | None, language: str) -> str:
-    """The wave as source text; of a chain without load where ``load`` is None."""
-    if load is None:
-        return theory.pde.traveling_wave().code(language)
-    p0 = load.background
-    if load.precompression is not None:
-        loaded = PrecompressedWave(theory.cell, theory.law, exact("F", "F"), load.precompression)
-        p0 = loaded.background.p0
-    return BackgroundWave(theory.cell, theory.law, p0).code(language)
-
-
-def left_out(chain: ChainInput) -> list[str]:
-    """A note that the load of a file does not enter."""
-    if not chain.precompression:
-        return []
-    said = f"{float(chain.precompression):g} {chain.units.get('force', '')}".rstrip()
-    return [f"the load of the file, {said}, is left out: the theory used is of a chain without"]
+_STATIC, _RISE = r"\delta_{0}", r"\delta - \delta_{0}"

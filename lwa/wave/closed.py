@@ -32,7 +32,7 @@ from lwa.base.quantities import RISE, SPEED, NoSolitaryWave, strain_power
 from lwa.cell import Cell, exponent, substitution
 from lwa.linear.dispersion import Dispersion
 
-_SHARES = sp.symbols("g h", cls=sp.Dummy)
+_RATIOS = sp.symbols("g h", cls=sp.Dummy)
 """G/I and H/I in the algebra of the strain's equation."""
 
 
@@ -137,9 +137,9 @@ class CompactWave(Value):
             raise NoSolitaryWave(
                 f"k is {self.k}: a compact wave needs k > 1 (at k = 1 the chain is linear)"
             )
-        if self.dispersion.is_number and not self.dispersion > 0:
+        if self.coefficient_sum.is_number and not self.coefficient_sum > 0:
             raise NoSolitaryWave(
-                f"(G+H+I)/D² is {self.dispersion}: there is no compact wave unless G+H+I > 0"
+                f"(G+H+I)/D² is {self.coefficient_sum}: there is no compact wave unless G+H+I > 0"
             )
         if self.speed_factor.is_number and not self.speed_factor > 0:
             raise NoSolitaryWave(
@@ -169,14 +169,14 @@ class CompactWave(Value):
         return self.cell.spacing
 
     @cached_property
-    def shares(self) -> tuple[sp.Expr, sp.Expr]:
+    def _ratios(self) -> tuple[sp.Expr, sp.Expr]:
         """The ratios G/I and H/I; in the canonical field both depend on k alone."""
         return factored(self.G / self.I), factored(self.H / self.I)
 
     @cached_property
-    def dispersion(self) -> sp.Expr:
+    def coefficient_sum(self) -> sp.Expr:
         """The sum (G + H + I) / D²."""
-        g, h = self.shares
+        g, h = self._ratios
         if (g + h).free_symbols <= self.k.free_symbols:  # then I stays the factor that it is
             return self.I / self.D**2 * factored(1 + g + h)
         return factored((self.G + self.H + self.I) / self.D**2)
@@ -189,7 +189,7 @@ class CompactWave(Value):
     @cached_property
     def beta(self) -> sp.Expr:
         """The wavenumber β = (k-1) / (2 √(G+H+I)) of the cosine."""
-        return (self.k - 1) / (2 * self.D * _root(self.dispersion))
+        return (self.k - 1) / (2 * self.D * _root(self.coefficient_sum))
 
     @cached_property
     def width(self) -> sp.Expr:
@@ -215,7 +215,7 @@ class CompactWave(Value):
     def speed_factor(self) -> sp.Expr:
         """The ratio V²/B^{k-1} = 1 - β² [(H + 3I) m - 2I]."""
         # With β² and m written out (k - 1) cancels: the result is rational in k and the masses.
-        k, (g, h) = self.k, self.shares
+        k, (g, h) = self.k, self._ratios
         return factored(1 - (k - 1) * (h + 4 - k) / (2 * (1 + g + h)))
 
     def speed(self, B: Any = RISE) -> sp.Expr:
@@ -252,7 +252,7 @@ class CompactWave(Value):
         """The two p for which v = z^p removes z_ξ³, the paper's first (2/(k+1) at equal masses)."""
         p, equation = self._equation
         quadratic = sp.Poly(sp.cancel(equation["cubic"] / p), p).all_coeffs()
-        A, B, C = (factored(self._with_shares(c)) for c in quadratic)
+        A, B, C = (factored(self._with_ratios(c)) for c in quadratic)
         root = _root(factored(B**2 - 4 * A * C)).replace(sp.Abs, lambda x: x)
         return (sp.together((-B - root) / (2 * A)), sp.together((-B + root) / (2 * A)))
 
@@ -260,10 +260,10 @@ class CompactWave(Value):
     def _equation(self) -> tuple[sp.Symbol, dict[str, sp.Expr]]:
         """The symbol p, and `strain_equation` divided by I with symbols for G/I and H/I."""
         p = sp.Dummy("p")
-        return p, strain_equation(p, _SHARES[0], _SHARES[1], sp.S.One)
+        return p, strain_equation(p, _RATIOS[0], _RATIOS[1], sp.S.One)
 
-    def _with_shares(self, value: sp.Expr) -> sp.Expr:
-        return value.xreplace(dict(zip(_SHARES, self.shares, strict=True)))
+    def _with_ratios(self, value: sp.Expr) -> sp.Expr:
+        return value.xreplace(dict(zip(_RATIOS, self._ratios, strict=True)))
 
     def reduction(self, root: int = 0, V: Any = SPEED) -> Reduction:
         """Reduction to z'' = μ z^η - σ z for one of the `roots` p (0: the paper's, 1: the other).
@@ -276,7 +276,7 @@ class CompactWave(Value):
             raise InputError(f"root is {shorten(root)}: 0 or 1 is wanted")
         p, equation = self._equation
         exponent = sp.Poly(sp.cancel(equation["product"] / equation["third"]) + 1, p)  # e
-        slope, constant = (factored(self._with_shares(exponent.nth(n))) for n in (1, 0))
+        slope, constant = (factored(self._with_ratios(exponent.nth(n))) for n in (1, 0))
         a = factored(slope - self.k) * self.roots[root] + constant
         return Reduction(k=self.k, I=self.I, p=self.roots[root], a=a, V=positive(V, "V"))
 

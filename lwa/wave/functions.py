@@ -90,7 +90,10 @@ def wave_functions(wave: CompactWave) -> dict[str, Function]:
     """
     k, f, define = wave.k, wave.speed_factor, _functions_of(wave)
     parts = {k - 2: _SHIFT}
-    S, excess = _stable(wave.dispersion, k, parts), _stable(sp.factor(sp.cancel(f - 1)), k, parts)
+    S, excess = (
+        _stable(wave.coefficient_sum, k, parts),
+        _stable(sp.factor(sp.cancel(f - 1)), k, parts),
+    )
     f = _stable(f, k, parts)
     local = tuple((symbol, value) for value, symbol in parts.items())
     beta_value = (k - 1) / (2 * wave.D * sp.sqrt(S))
@@ -165,7 +168,7 @@ def reduction_functions(wave: CompactWave, amplitude: Function) -> dict[str, Fun
 
 def _functions_of(wave: CompactWave) -> Callable[..., Function]:
     cell = wave.cell
-    parts = (wave.k, *cell.masses, *cell.stiffnesses, cell.spacing, wave.dispersion)
+    parts = (wave.k, *cell.masses, *cell.stiffnesses, cell.spacing, wave.coefficient_sum)
     return partial(function_of, in_order(*parts))
 
 

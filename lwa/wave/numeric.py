@@ -52,7 +52,7 @@ class NumericWave(Value):
     def __post_init__(self) -> None:
         one_of(self.missing, ("raise", "nan"), "missing")
         free = self._symbols
-        given = set(self.wave.dispersion.free_symbols | self.wave.speed_factor.free_symbols)
+        given = set(self.wave.coefficient_sum.free_symbols | self.wave.speed_factor.free_symbols)
         if len(set(free)) != 3 or not all(x.is_Symbol for x in free) or not given <= set(free):
             raise InputError(
                 "functions of (k, ω) need a symbol k and a cell of two masses that are symbols, "
@@ -69,7 +69,7 @@ class NumericWave(Value):
 
     @cached_property
     def _dispersion(self) -> Function:
-        return _function(self.wave.dispersion, *self._symbols)
+        return _function(self.wave.coefficient_sum, *self._symbols)
 
     @cached_property
     def _factor(self) -> Function:

@@ -10,7 +10,7 @@ import sympy as sp
 from lwa.base.exact import InputError
 from lwa.base.progress import Progress
 from lwa.base.quantities import QUANTITIES
-from lwa.command.reading import quantities
+from lwa.command.options import quantities
 from validation.pictures import Curve, Panel
 from validation.pulses.steady import HUMPS
 from validation.report.command import EXPONENT, number, option, study

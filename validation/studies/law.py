@@ -16,7 +16,7 @@ from lwa.base.arrays import Array
 from lwa.base.exact import shorten
 from lwa.base.files import load
 from lwa.base.tables import entries
-from lwa.command.reading import quantities, quantity
+from lwa.command.options import quantities, quantity
 from lwa.spheres.beads import spheres as read_spheres
 from validation.pictures import Curve, Panel
 from validation.pulses.pulse import Measured

@@ -92,7 +92,7 @@ def _with(wave: TravelingWave, name: str, amount: float, sign: int) -> PhysicalW
 def bead_fwhm(wave: CompactWave) -> float:
     """Return the FWHM of a bead's force, a length that does not depend on the amplitude."""
     k, D = number(wave.k), number(wave.D)
-    beta = (k - 1) / (2 * D * math.sqrt(number(wave.dispersion)))
+    beta = (k - 1) / (2 * D * math.sqrt(number(wave.coefficient_sum)))
 
     def force(x: float) -> float:
         """Return cos^p(β(x - D/2)) + cos^p(β(x + D/2)), p = 2k/(k-1), each on its own arch."""

@@ -31,8 +31,6 @@ def test_derive_a_named_law(capsys):
     status, out, _ = run(capsys, "derive", "--law", "exponential", "--format", "latex")
     assert status == 0
     assert r"F' u_{xx} + G F' u_{x}^{-2} u_{xx}^{3}" in out
-    one = ("expansion", "--masses", "1", "--order", "2")
-    assert result(capsys, *one, "--law", "power:3/2") == result(capsys, *one, "--k", "3/2")
     assert result(capsys, "derive", "--law", "power:3/2") == result(capsys, "derive", "--k", "3/2")
 
 
@@ -192,14 +190,12 @@ BAD = [
     (("derive", "--law", "hertz2:1+1"), "hertz2's a"),
     (("derive", "--law", "general", "--k", "2"), "one of them"),
     (("derive", "--law", "general", "--format", "python"), "power laws"),
-    (("expansion", "--law", "hertz2"), "only a power law has a k"),
     (("wave", "--law", "hertz2"), "--background"),
     (("wave", "--background", "1", "--closure", "linear"), "canonical field"),
     (("wave", "--background", "1", "--precompression", "1"), "both given"),
     (("wave", "--background", "1", "--force", "1"), "goes with --precompression"),
     (("wave", "--precompression", "1", "--force", "2", "--format", "c"), "for any force"),
     (("wave", "--background", "1", "--law", "hertz2:1,B"), "'B': the name means the peak strain"),
-    (("wave", "--background", "1", "--law", "hertz2:L,1"), "'L' has a meaning of its own"),
     (("derive", "--law", "hertz2:delta,1"), "'delta': the name means the compression"),
     (("wave", "--k", "3/2", "--precompression", "2", "--force", "1"), "speeds grow towards B"),
     (("dispersion", "--precompression", "-1"), "must be positive"),

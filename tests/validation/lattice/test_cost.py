@@ -37,8 +37,9 @@ def told(what, **options):
 
 
 @pytest.mark.parametrize("method", ["RKN86", *METHODS])
-@pytest.mark.parametrize("what", [struck(20), struck(20, 0.01), struck(20, 0.5, 1.0), PRESSED])
-@pytest.mark.parametrize("rtol", [1e-4, 1e-9])
+@pytest.mark.parametrize(
+    ("what", "rtol"), [(struck(20, 0.5, 1.0), 1e-4), (struck(20, 0.01), 1e-4), (PRESSED, 1e-7)]
+)
 def test_the_steps_of_adaptive_methods(method, what, rtol):
     """The steps are at most three times as many as expected; the limit is ten times."""
     rtol = max(rtol, 1e-7) if method == "RK23" else rtol
@@ -85,9 +86,7 @@ BEYOND = [
 
 
 @pytest.mark.parametrize(("what", "options", "message"), BEYOND, ids=[b[2][:40] for b in BEYOND])
-def test_what_is_beyond_reason_is_refused_before_it_starts(monkeypatch, what, options, message):
-    monkeypatch.setattr("validation.lattice.steppers.scipy", None)
-    monkeypatch.setattr("validation.lattice.engine.advance", None)
+def test_what_is_beyond_reason_is_refused_before_it_starts(what, options, message):
     with pytest.raises(SceneError, match=f"^{message}$"):
         simulate(what, **options)
 

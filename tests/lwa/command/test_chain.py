@@ -3,9 +3,10 @@
 import json
 
 import pytest
+import sympy as sp
 
 from lwa import pulse_of_strike
-from lwa.command.chain_file import read_chain
+from lwa.command.chain import read_chain
 from tests.lwa.command.answers import result, run
 
 MASSES = {
@@ -160,3 +161,15 @@ def test_a_strike_in_si(capsys, scene):
         status, out, err = run(capsys, "strike", "--spheres", file, *options)
         assert (status, out, err.count("\n")) == (2, "", 1)
         assert words in err
+
+
+def test_a_blow_beyond_hertzs_contact_has_a_note(capsys, scene):
+    """a/R = √(δ/2R) is 1/10 where the compression is 1/100 of the spacing."""
+    file = scene(without_load(BEADS))
+    cell = read_chain(file).cell
+    for share, noted in (("0.009", False), ("0.011", True)):
+        force = cell.stiffnesses[0] * (cell.spacing * sp.Rational(share)) ** sp.Rational(3, 2)
+        found = result(capsys, "wave", "--spheres", file, "--force", f"{float(force):.10g}")
+        assert ("notes" in found) == noted
+    fast = result(capsys, "strike", "--spheres", file, "--velocity", "1e6")
+    assert "Hertz's contact is that of elastic spheres" in fast["notes"][0]
