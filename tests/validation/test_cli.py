@@ -538,8 +538,8 @@ def test_exact_scaled_to_a_speed_or_a_force(capsys):
     assert shown["--speed",]["c_value"] == pytest.approx(2, rel=1e-14)
     assert shown["--force",]["amplitude_value"]["force"] == pytest.approx(3, rel=1e-13)
     for found in shown.values():
-        for name, width in shown[()]["rms_value"].items():
-            assert found["rms_value"][name] == pytest.approx(width, rel=1e-10)
+        for name, width in shown[()]["fwhm_value"].items():
+            assert found["fwhm_value"][name] == pytest.approx(width, rel=1e-10)
     status, out, err = run(capsys, "exact", "--speed", "2", "--force", "3")
     assert (status, out) == (2, "")
     assert "scaled to one of the two" in err
