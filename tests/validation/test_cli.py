@@ -479,7 +479,6 @@ LONG_RUNS = [
     (SCENE.replace("= 1}", "= 1e200}"), (), "the scene's energy comes out as inf: choose other"),
     (SCENE.replace("1.5", "1e308"), _SPLIT, "the scene's .* comes out as 0: choose"),
     (SCENE.replace("repeat = 10,", "repeat = 10_000,"), ("--method", "LSODA"), "samples .* GB"),
-    (SCENE + "defects = [{bead = 3, mass = 2}, {bead = 3, mass = 4}]", (), "scene.toml: defects"),
 ]  # fmt: skip
 
 
