@@ -1,7 +1,6 @@
 """Every number with ± against the same computation at a hundred times the cost: it is within ±.
 
-The cost of a study of `validation` is set by constants of its module, tolerances and distances,
-which the finer run changes by `monkeypatch`.
+A study's cost is set by arguments: tolerances, distances, samples.
 """
 
 import importlib
@@ -30,6 +29,9 @@ disorder, gravity, precompressed = (
 )
 
 
+FINER = (1e-13, 1e-12)  # tolerances of the run that counts and of the run that gives its errors
+
+
 def held(numbers, finer):
     """Each number's difference from the finer one is within its ±."""
     assert numbers.keys() == finer.keys()
@@ -45,7 +47,7 @@ def measurements(values):
 
 
 def of_run(name):
-    found = record(scenefile.scene(tomllib.loads(runs.EXAMPLES[name][1])))
+    found = record(scenefile.scene(tomllib.loads(runs.example(name))))
     return {
         (reading.name, key): number
         for reading in (*found.sensors, *found.speeds)
@@ -70,16 +72,14 @@ def of_paper(**options):
     return {quantity: number for quantity, _, number, *_ in paper.paper(**options).tables[0].rows}
 
 
-def test_paper(monkeypatch):
-    found = of_paper()
-    monkeypatch.setattr(paper, "TOLERANCES", (1e-13, 1e-12))
-    held(found, of_paper())
+def test_paper():
+    held(of_paper(), of_paper(tolerances=FINER))
 
 
 def test_two_commands_print_the_same_value():
     """The paper's chain by `paper` and by `run` on its own example."""
     by_name = of_paper()
-    scene = scenefile.scene(tomllib.loads(runs.EXAMPLES["paper"][1]))
+    scene = scenefile.scene(tomllib.loads(runs.example("paper")))
     found = record(scene)
     first, second = (reading.numbers["peak"] for reading in found.sensors[:2])
     pairs = [
@@ -92,11 +92,11 @@ def test_two_commands_print_the_same_value():
         assert one.value == pytest.approx(other.value, rel=1e-9)
 
 
-def of_figures(chains, moduli):
-    speeds = {N: figures.chain_speed(N) for N in chains}
+def of_figures(chains, moduli, **options):
+    speeds = {N: figures.chain_speed(N, **options) for N in chains}
     found = {(N, name): getattr(s, name) for N, s in speeds.items() for name in ("speed", "force")}
     for E in moduli:
-        scaling = figures.scaling(E)
+        scaling = figures.scaling(E, **options)
         found |= {(E, "V", i): number for i, number in enumerate(scaling.speeds)}
         found |= {(E, "F", i): number for i, number in enumerate(scaling.forces)}
         found[E, "exponent"] = scaling.exponent
@@ -107,10 +107,8 @@ def of_figures(chains, moduli):
     ("chains", "moduli"),
     [((1, 2), ()), pytest.param((5,), figures.MODULI[:1], marks=pytest.mark.slow)],
 )
-def test_figures(monkeypatch, chains, moduli):
-    found = of_figures(chains, moduli)
-    monkeypatch.setattr(paper, "TOLERANCES", (1e-13, 1e-12))
-    held(found, of_figures(chains, moduli))
+def test_figures(chains, moduli):
+    held(of_figures(chains, moduli), of_figures(chains, moduli, tolerances=FINER))
 
 
 @pytest.mark.parametrize("k", ["3/2"])
