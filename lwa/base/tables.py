@@ -52,7 +52,7 @@ def positive(value: Any, name: str) -> float:
 
 def integer(value: Any, name: str, least: int, most: int | None = None) -> int:
     """Read an integer from ``least`` to ``most``."""
-    wanted = f"an integer from {least} on" if most is None else f"one of {least} … {most}"
+    wanted = f"an integer from {least} on" if most is None else f"an integer from {least} to {most}"
     try:
         number = operator.index(value)
     except TypeError:
