@@ -39,7 +39,7 @@ def test_the_demonstrations_are_listed():
     assert sorted(shown) == sorted(there)
 
 
-def test_the_picture_shows_what_its_script_computes():
+def test_the_picture_shows_what_its_script_computes(engine):
     """What was drawn stands in the file: it is what the lattice and the theory say today."""
     (file,) = re.findall(r"^!\[[^]]+\]\((.*)\)$", README, re.MULTILINE)
     with Image.open(ROOT / file) as image:

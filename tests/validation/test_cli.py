@@ -524,11 +524,10 @@ def test_warnings_of_numpy_do_not_reach_the_user(capsys):
 def test_only_regular_files_are_read(capsys, tmp_path):
     os.mkfifo(tmp_path / "pipe.toml")
     (tmp_path / "folder.json").mkdir()
-    (tmp_path / "device.toml").symlink_to("/dev/zero")
-    for name, kind in (("pipe.toml", "a pipe"), ("folder.json", "a f"), ("device.toml", "a dev")):
+    for name in ("pipe.toml", "folder.json"):
         status, out, err = run(capsys, "run", str(tmp_path / name))
         assert (status, out, err.count("\n")) == (2, "", 1)
-        assert err.startswith(f"lwa-validate: {tmp_path / name}: {kind}")
+        assert err == f"lwa-validate: {tmp_path / name}: only regular files are read\n"
 
 
 def test_exact_scaled_to_a_speed_or_a_force(capsys):
@@ -540,8 +539,8 @@ def test_exact_scaled_to_a_speed_or_a_force(capsys):
     assert shown["--speed",]["c_value"] == pytest.approx(2, rel=1e-14)
     assert shown["--force",]["amplitude_value"]["force"] == pytest.approx(3, rel=1e-13)
     for found in shown.values():
-        for name, width in shown[()]["rms_value"].items():
-            assert found["rms_value"][name] == pytest.approx(width, rel=1e-10)
+        for name, width in shown[()]["fwhm_value"].items():
+            assert found["fwhm_value"][name] == pytest.approx(width, rel=1e-10)
     status, out, err = run(capsys, "exact", "--speed", "2", "--force", "3")
     assert (status, out) == (2, "")
     assert "scaled to one of the two" in err

@@ -243,7 +243,7 @@ _READERS: dict[str, Reader] = {
     "spacings": _all(positive),
     "displacements": _all(real),
     "velocities": _all(real),
-    "samples": partial(integer, least=2),
+    "samples": partial(integer, low=2),
     "k": _exponent,
     "duration": positive,
     "wall": positive,

@@ -132,7 +132,7 @@ def scene(content: Any) -> Scene:
         wall=wall,
         duration=file.read("duration", positive),
         units=file.read("units", among({"SI": "SI"}), "SI" if row else ""),
-        samples=file.read("samples", partial(integer, least=2, most=MOST_SAMPLES), 1001),
+        samples=file.read("samples", partial(integer, low=2, high=MOST_SAMPLES), 1001),
         gravity=file.read("gravity", real, 0.0),
         precompression=file.read("precompression", real, 0.0),
         displacements=start.read("displacements", each(real), ()),
@@ -183,7 +183,7 @@ def _chain(
 ) -> tuple[list[Sphere], dict[str, Any]]:
     """Return the named beads (none in a chain of masses), and the chain's fields of the `Scene`."""
     cell = given.read("cell", array)
-    repeat = given.read("repeat", partial(integer, least=1), 1)
+    repeat = given.read("repeat", partial(integer, low=1), 1)
     n = len(cell) * repeat
     if not 1 <= n <= MOST_BEADS:
         made = f"chain.cell and repeat make {shorten(n)} beads"

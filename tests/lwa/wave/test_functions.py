@@ -401,7 +401,7 @@ def test_numbers():
     exec(wave.code("python"), found)
     assert found["beta"](1.5, 1) == pytest.approx(float(wave.at(k=1.5, D=1).beta), rel=1e-14)
     for number in (10**400, sp.Rational(1, 10**400)):
-        with pytest.raises(InputError, match="beyond the numbers of a program"):
+        with pytest.raises(InputError, match="beyond"):
             canonical_wave(Dimer("m1", "m2", spacing=number)).code("c")
     thirds = {"c": "2.0/3.0", "fortran": "1.5d0", "julia": "1.5", "python": "1.5"}
     values = {"c": sp.Rational(2, 3)}

@@ -181,7 +181,7 @@ def written(tmp_path, text):
 
 
 def test_a_folder_in_place_of_a_file_is_named(tmp_path):
-    with pytest.raises(SceneError, match=f"^{tmp_path}: a folder, and only regular files"):
+    with pytest.raises(SceneError, match=f"^{tmp_path}: only regular files"):
         law(tmp_path)
 
 
