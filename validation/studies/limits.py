@@ -1,7 +1,7 @@
 """Limits of the theory on the lattice: equal masses, m1 ≫ m2, and k → 1.
 
 The theory's wave is the leading order in ε = k - 1, so that its error against the lattice must
-vanish as a known power of ε (`validation.waves.asymptotics`). Each chain starts with the theory's
+vanish as a known power of ε (`validation.waves.theory`). Each chain starts with the theory's
 wave, which turns into the lattice's wave and leaves the difference behind. The pulse is measured
 after four, six and eight times its support (the places); the difference between the last two places
 is the lattice's error.
@@ -36,8 +36,7 @@ from validation.report.command import study
 from validation.report.result import Report
 from validation.report.table import Column, Finding, Table, percent
 from validation.scenes.chains import carrying
-from validation.waves.asymptotics import LAWS, QUANTITIES, theory_values
-from validation.waves.theory import theory_at
+from validation.waves.theory import LEADING_POWERS, QUANTITIES, theory_at, theory_values
 
 EXPONENTS = (sp.Rational(3, 2), sp.Rational(5, 4), sp.Rational(11, 10))
 EQUAL, LIGHT = sp.Integer(1), sp.Rational(1, 1000)  # ω = m2/m1; effects of LIGHT² do not show
@@ -133,7 +132,7 @@ def _panel(rows: Sequence[Row], omega: sp.Rational) -> Panel:
     """Return the panel of |error| as a function of k - 1, beside its leading power."""
     epsilon = np.geomspace(float(EXPONENTS[-1] - 1) / 2, float(EXPONENTS[0] - 1), 2)
     curves = []
-    for i, (quantity, law) in enumerate(LAWS.items()):
+    for i, (quantity, law) in enumerate(LEADING_POWERS.items()):
         points = [
             (row.k - 1, abs(row.error), row.lattice.relative_error)
             for row in rows
@@ -232,7 +231,7 @@ def quantity_rows(
     quantity: str, omega: sp.Rational, theory: list[sp.Expr], lattice: list[Measured]
 ) -> list[Row]:
     """Return rows of a quantity at each k, and of its error's order and coefficient as ε → 0."""
-    law = LAWS[quantity]
+    law = LEADING_POWERS[quantity]
     epsilon = np.array([float(k - 1) for k in EXPONENTS])
     rows = [
         Row(quantity, k, omega, t, f, law.bound(k))
@@ -267,4 +266,4 @@ def _limit_rows(waves: list[dict[str, Measured]]) -> Iterator[Row]:
         coarse, middle, fine = (wave[quantity].value for wave in waves)
         limit = Measured((4 * fine - middle) / 3, (4 * middle - coarse) / 3)
         there = sp.simplify(theory.subs({m1: 1, m2: 0}))
-        yield Row(quantity, k, sp.Integer(0), there, limit, LAWS[quantity].bound(k))
+        yield Row(quantity, k, sp.Integer(0), there, limit, LEADING_POWERS[quantity].bound(k))

@@ -131,9 +131,7 @@ files = st.fixed_dictionaries(
         "gravity": reals,
         "precompression": reals,
         "wall": table(stiffness=sizes),
-        "start": table(
-            velocities=row(reals, 4), displacements=row(reals, 4), overlap=st.just(True)
-        ),
+        "start": table(velocities=row(reals, 4), displacements=row(reals, 4)),
         "defects": st.lists(
             st.fixed_dictionaries({"bead": st.integers(1, 4), "mass": sizes})
             | st.fixed_dictionaries({"contact": st.integers(1, 4), "stiffness": sizes}),
