@@ -12,7 +12,9 @@ import sympy as sp
 
 from lwa import Cell, Dimer, InputError, homogenize
 from lwa.base.quantities import QUANTITIES
+from lwa.cell import k as symbol_k
 from lwa.expansion.expand import Expansion, expand
+from lwa.expansion.observables import Observables, shares_model
 from lwa.law import DELTA, Law, Power, general, named
 
 HALF = sp.Rational(1, 2)
@@ -200,7 +202,7 @@ def residual_order(cell: Cell, closure: str, terms: int) -> int:
 
     order = 2 * terms + 1
     theory = homogenize(cell, order + 1, closure=closure)
-    wave = expand(cell, terms + 2)._read.wave
+    wave = Observables(shares_model(cell, symbol_k), terms + 2).wave
     size = order + 3
     slope = [*wave.fields.slope[0]][:size]
     log: list = []

@@ -10,8 +10,7 @@ import pytest
 from lwa import InputError, homogenize
 from validation.cli import main
 from validation.lattice.simulate import simulate
-from validation.scenes.chains import chain_scene
-from validation.scenes.materials import DIAMETER, PTFE_BEAD, STEEL_BEAD
+from validation.scenes.chains import DIAMETER, PTFE_BEAD, STEEL_BEAD, chain_scene
 from validation.studies.paper import SOURCES, chain_cell, paper
 
 
@@ -170,12 +169,12 @@ def test_the_help_is_one_paragraph(capsys):
         (dict(velocity=0), r"velocity is 0: it lies between 1e-06 and 1000"),
         (dict(velocity=float("nan")), r"velocity is nan"),
         (dict(velocity="fast"), r"velocity is 'fast': a number is wanted"),
-        (dict(beads=7), r"beads is 7: one of 8 … 2000 is wanted"),
+        (dict(beads=7), r"beads is 7: an integer from 8 to 2000 is wanted"),
         (dict(beads=38.0), r"beads is 38.0"),
         (dict(sensors=(34, 15)), r"sensors are 34, 15: two beads are wanted"),
         (dict(sensors=(15,)), r"sensors are 15: two beads are wanted"),
-        (dict(sensors=(1, 15)), r"sensor is 1: one of 2 … 37 is wanted"),
-        (dict(sensors=(15, 38)), r"sensor is 38: one of 2 … 37 is wanted"),
+        (dict(sensors=(1, 15)), r"sensor is 1: an integer from 2 to 37 is wanted"),
+        (dict(sensors=(15, 38)), r"sensor is 38: an integer from 2 to 37 is wanted"),
         (dict(sensors=15), r"sensors is 15: a sequence is wanted"),
         (dict(sensors=(30, 37)), r"bead 37, before the wave reaches the wall: the pulse is not"),
     ],
