@@ -24,15 +24,14 @@ import sympy as sp
 from lwa.base.exact import one_of
 from lwa.base.quantities import QUANTITIES, strain_power
 from lwa.cell import Cell
-from lwa.code.languages import LANGUAGES
-from lwa.code.writer import Function, Local
+from lwa.code import LANGUAGES, Function, Local
 from lwa.law import ContactLaw, Power
 from lwa.wave.closed import CompactWave
 
 _XI = sp.Dummy("xi", real=True)
 _B, _V, _F = (sp.Dummy(name, positive=True) for name in ("B", "V_s", "F"))
 OWN = (_XI, _B, _V, _F)
-_SHIFT, _INSIDE = (sp.Dummy(name, real=True) for name in ("k_2", "inside"))
+_SHIFT, _INSIDE = (sp.Dummy(name, real=True) for name in ("k_2", "h"))
 _LONGEST_SUM = 64
 
 _TITLE = (
