@@ -63,7 +63,7 @@ if TYPE_CHECKING:
     from lwa.wave.closed import Reduction as Reduction
     from lwa.wave.numeric import NumericWave as NumericWave
     from lwa.wave.physical import PhysicalWave as PhysicalWave
-    from lwa.wave.precompressed import PrecompressedWave as PrecompressedWave
+    from lwa.wave.physical import PrecompressedWave as PrecompressedWave
     from lwa.wave.quadrature import NumericBackground as NumericBackground
     from lwa.wave.traveling import TravelingWave as TravelingWave
     from lwa.wave.traveling import canonical_wave as canonical_wave
@@ -75,14 +75,13 @@ _MODULES = {
     "algebra.jets": "Powers",
     "algebra.model": "Model",
     "wave.background": "BackgroundWave KdV background_wave",
-    "wave.precompressed": "PrecompressedWave",
     "wave.quadrature": "NumericBackground",
     "cell": "Cell D Dimer k",
     "closure.consistency": "Closure",
     "closure.solution": "Solution",
     "base.arrays": "Array",
     "wave.numeric": "NumericWave",
-    "wave.physical": "PhysicalWave",
+    "wave.physical": "PhysicalWave PrecompressedWave",
     "wave.closed": "CompactWave Reduction",
     "base.exact": "InputError Quantity",
     "envelopes.schrodinger": "Breather Envelope envelope",

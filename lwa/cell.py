@@ -125,6 +125,11 @@ class Cell(Value):
         values = (*self.masses, *self.stiffnesses, self.spacing)
         return tuple(sorted(set().union(*(x.free_symbols for x in values)), key=str))
 
+    @property
+    def uniform(self) -> bool:
+        """True for equal masses and equal stiffnesses."""
+        return len({*self.masses}) == len({*self.stiffnesses}) == 1
+
     def at(self, **values: Any) -> Cell:
         """The cell with numbers (or other symbols) for the named symbols; see `substitution`.
 

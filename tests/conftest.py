@@ -18,7 +18,7 @@ from filelock import FileLock
 from hypothesis import settings
 
 # No wall time is asserted, on noisy machines.
-settings.register_profile("lwa", deadline=None, max_examples=12, derandomize=True)
+settings.register_profile("lwa", deadline=None, max_examples=8, derandomize=True)
 settings.load_profile("lwa")
 
 COMPLETE = "LWA_TESTS_COMPLETE"

@@ -23,9 +23,9 @@ def test_the_python_example(capsys):
 
 def test_the_commands_exist():
     from lwa.command.cli import COMMANDS
-    from validation.cli import studies
+    from validation.cli import STUDIES
 
-    known = {"lwa": COMMANDS, "lwa-validate": studies()}
+    known = {"lwa": COMMANDS, "lwa-validate": STUDIES}
     shown = re.findall(r"^\$ (lwa\S*) (\w+)", README, re.MULTILINE)
     for program, commands in known.items():
         assert {command for name, command in shown if name == program} == set(commands)
@@ -39,7 +39,7 @@ def test_the_demonstrations_are_listed():
     assert sorted(shown) == sorted(there)
 
 
-def test_the_picture_shows_what_its_script_computes():
+def test_the_picture_shows_what_its_script_computes(engine):
     """What was drawn stands in the file: it is what the lattice and the theory say today."""
     (file,) = re.findall(r"^!\[[^]]+\]\((.*)\)$", README, re.MULTILINE)
     with Image.open(ROOT / file) as image:

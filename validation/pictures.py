@@ -15,7 +15,6 @@ from numpy.typing import ArrayLike
 
 from lwa.base.arrays import Array
 from lwa.base.exact import InputError
-from lwa.wave.plots import axes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -103,9 +102,12 @@ class Pictured(ABC):
         Returns the axes. Raises `lwa.InputError` without panels.
         """
         first = self._panels()[0]
-        drawn: Axes = axes(ax)
-        draw(drawn, first)
-        return drawn
+        if ax is None:
+            from matplotlib import pyplot  # loaded as late as Matplotlib
+
+            ax = pyplot.figure().add_subplot()
+        draw(ax, first)
+        return ax
 
     def _panels(self) -> Sequence[Panel]:
         if panels := self.pictured():

@@ -23,7 +23,7 @@ from sphinx.application import Sphinx
 from sphinx.ext.autodoc import FunctionDocumenter
 from sphinx.util.docutils import SphinxDirective
 
-from validation.cli import studies
+from validation.cli import STUDIES
 from validation.report.command import Study
 
 _CODE = re.compile(r"``(.+?)``|`(.+?)`")
@@ -138,7 +138,7 @@ class Studies(SphinxDirective):
     """Every study as a function."""
 
     def run(self) -> list[nodes.Node]:
-        found = (f"{module}.{name}" for name, (module, _) in studies().items())
+        found = (f"validation.studies.{module}.{name}" for name, (module, _) in STUDIES.items())
         text = "\n".join(line for name in found for line in _directive(name))
         return self.parse_text_to_nodes(text)
 

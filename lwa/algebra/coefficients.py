@@ -53,12 +53,15 @@ class CoefficientRing(Value):
     def _own(self) -> tuple[str, ...]:
         return ("k",) if self.variables == (self.k,) else tuple(map(str, self.variables))
 
-    def writable(self, order: int) -> None:
-        """Raise `lwa.InputError` if coefficients of this order are too long for Python to print."""
+    def writable(self, order: int, growth: int = 1) -> None:
+        """Raise `lwa.InputError` if coefficients of this order are too long for Python to print.
+
+        growth : digits of a coefficient per order and digit of the cell and the exponent.
+        """
         values = (self.k, *(self.masses.values or ()), *(self.contacts.values or ()))
         parts = [int(part) for x in values if x.is_Rational for part in (x.p, x.q)]
         digits = max((part.bit_length() for part in parts), default=0) * math.log10(2)
-        if order * digits > PRINTABLE_DIGITS:
+        if growth * order * digits > PRINTABLE_DIGITS:
             raise InputError(
                 f"order is {order}: with numbers of {digits:.0f} digits in the cell or the "
                 f"exponent, coefficients have more than {PRINTABLE_DIGITS}"

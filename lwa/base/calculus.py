@@ -1,4 +1,4 @@
-"""Integrals and ratios of powers that SymPy would multiply out, and roots of growing functions."""
+"""Integrals and ratios of sums with large powers, and roots of growing functions."""
 
 from __future__ import annotations
 
@@ -17,41 +17,29 @@ def integral(F: sp.Expr, x: sp.Symbol) -> sp.Expr:
 
     SymPy multiplies these out: large powers take long, and the terms of a pole cancel next to it.
     """
-    parts = sp.Add.make_args(F) if _unexpanded(F) else (F,)
+    parts = sp.Add.make_args(F) if _has_power(F, -1) else (F,)
     return sp.Add(*(_integral(part, x) for part in parts))
 
 
-def _unexpanded(F: sp.Expr) -> bool:
-    powers = (power.exp for power in F.atoms(sp.Pow) if power.exp.is_Rational)
-    return any(abs(e) > LARGE or e < -1 for e in powers)
+def _has_power(F: sp.Expr, lowest: int = -LARGE) -> bool:
+    """True if F has a rational power outside of ``lowest`` … `LARGE`."""
+    exponents = (power.exp for power in F.atoms(sp.Pow) if power.exp.is_Rational)
+    return any(not lowest <= e <= LARGE for e in exponents)
 
 
 def _integral(value: sp.Expr, x: sp.Symbol) -> sp.Expr:
     factor, power = value.as_independent(x, as_Add=False)
     base, e = power.as_base_exp()
-    if _unexpanded(power) and e.is_Rational and not base.diff(x).has(x):
+    if _has_power(power, -1) and e.is_Rational and not base.diff(x).has(x):
         return factor * base ** (e + 1) / (base.diff(x) * (e + 1))
     return sp.integrate(value, x, conds="none")
 
 
 def ratio(top: sp.Expr, bottom: sp.Expr) -> sp.Expr:
-    """The ratio top/bottom in lowest terms, large powers not multiplied out.
-
-    b^e with |e| > `LARGE` is written as c b^{e - e0} with a symbol c for b^{e0}. The exponents of
-    derivatives of one function differ by a few, and c cancels in their ratio.
-    """
-    found: dict[sp.Expr, sp.Expr] = {}  # b → b^{e0}
-    new: dict[sp.Expr, sp.Expr] = {}
-    names: dict[sp.Expr, sp.Expr] = {}
-    powers = {p for p in (top.atoms(sp.Pow) | bottom.atoms(sp.Pow)) if p.exp.is_Rational}
-    for power in sorted((p for p in powers if abs(p.exp) > LARGE), key=sp.default_sort_key):
-        first = found.setdefault(power.base, power)
-        rest = power.exp - first.exp
-        if rest.is_Integer and abs(rest) <= LARGE:
-            c = names.setdefault(first, sp.Dummy("c", positive=True))
-            new[power] = c * power.base**rest
-    top, bottom = (sp.expand(x.xreplace(new)) for x in (top, bottom))
-    return sp.cancel(sp.powsimp(top / bottom)).xreplace({c: p for p, c in names.items()})
+    """The ratio top/bottom in lowest terms, large powers not multiplied out."""
+    if not _has_power(top) and not _has_power(bottom):
+        top, bottom = sp.expand(top), sp.expand(bottom)
+    return sp.cancel(sp.powsimp(top / bottom))
 
 
 def growing_root(F: sp.Expr, x: sp.Symbol) -> Any:
@@ -81,9 +69,9 @@ def _real(function: Callable[[Any], Any]) -> Callable[[Any], Any]:
 
     def value(x: Any) -> Any:
         try:
-            found = function(x)
+            y = function(x)
         except ZeroDivisionError:
             return -mpmath.inf
-        return mpmath.re(found) if mpmath.im(found) == 0 else -mpmath.inf
+        return mpmath.re(y) if mpmath.im(y) == 0 else -mpmath.inf
 
     return value

@@ -1,4 +1,4 @@
-"""Exact numbers and symbols from user input, and exact arithmetic of large numbers.
+"""Exact numbers and symbols from user input.
 
 Numbers are read exactly (a float as the decimal that it prints as: ``0.1`` is 1/10), and names
 become positive symbols. Text is never evaluated: it is matched against the grammar of an integer, a
@@ -23,19 +23,18 @@ from lwa.base.errors import InputError as InputError
 Quantity = int | float | str | Fraction | Decimal | sp.Expr
 """Accepted types of an exponent, a mass, a stiffness or a length."""
 
-_NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?")
-_FRACTION = re.compile(r"[+-]?[0-9]+/[0-9]+")
+_NUMBER = re.compile(r"[+-]?(?:[0-9]+/[0-9]+|(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?)")
 _NAME = re.compile(r"[A-Za-zα-ωΑ-Ω][A-Za-zα-ωΑ-Ω0-9_]*")
 _NOT_A_NUMBER = {"nan", "inf", "infinity", "none", "null", "true", "false"}
-_LONGEST = 200
-_DIGITS = 1000
-_BITS = 3322  # bits of an integer of _DIGITS digits
-_ROOTLESS = 1024  # bits of the largest integers within a double
-_TOO_LONG = f"at most {_DIGITS} digits are wanted, before the point and behind it"
+_LONGEST_TEXT = 200
 
+DIGITS = 330
+"""Digits of a numerator or denominator; the smallest floats are fractions over 10^324."""
 
 MOST_CANCELLED = 20_000
 """Digits that the terms of an exact number may cancel before it is evaluated in vain."""
+
+_POWER_BITS = 3322  # bits of an integer of 1000 digits, the longest that a power is written out to
 
 
 def shorten(value: object) -> str:
@@ -53,68 +52,63 @@ def exact(value: Any, name: str) -> sp.Expr:
     ``name`` names the value in messages. Texts are integers, decimals, fractions or plain names;
     a name becomes a positive symbol.
 
-    Raises `InputError` for NaN, infinities, complex numbers and other text.
+    Raises `InputError` for NaN, infinities, complex numbers, other text, and numbers beyond the
+    range of a float or of more than `DIGITS` digits.
 
     >>> exact(0.1, "k"), exact("3/2", "k"), exact("m1", "mass")
     (1/10, 3/2, m1)
     """
     if isinstance(value, str):
-        return _from_text(value.strip(), name)
-    if isinstance(value, bool):
-        raise InputError(f"{name} is {value!r}: a number or a symbol is wanted")
-    if isinstance(value, sp.Expr):
-        return _from_expression(value, name)
-    if isinstance(value, Fraction):
-        return _writable(sp.Rational(value.numerator, value.denominator), name)
-    if hasattr(value, "item"):  # NumPy's scalars, without importing NumPy
-        try:
-            value = value.item()
-        except ValueError:
-            raise InputError(f"{name} is {shorten(value)}: one number is wanted") from None
-    if isinstance(value, int) and not isinstance(value, bool):
-        return _writable(sp.Integer(value), name)
-    if isinstance(value, float | Decimal):
-        if not (value.is_finite() if isinstance(value, Decimal) else math.isfinite(value)):
-            raise InputError(f"{name} is {value}: a finite number is wanted")
-        if isinstance(value, Decimal) and abs(value.adjusted()) > _DIGITS:
-            raise InputError(f"{name} is {shorten(value)}: {_TOO_LONG}")
-        return _writable(sp.Rational(str(value)), name)
-    raise InputError(f"{name} is {shorten(value)}: a number or a symbol is wanted")
-
-
-def integer(value: Any, name: str, low: int) -> int:
-    """Read an integer (Python's, NumPy's or SymPy's) of at least ``low``.
-
-    >>> integer(4, "order", 1)
-    4
-    """
-    try:
-        number = None if isinstance(value, bool) else operator.index(value)
-    except TypeError:
-        number = None
-    if number is None:
-        raise InputError(f"{name} is {shorten(value)}: an integer from {low} on is wanted")
-    if number < low:
-        raise InputError(f"{name} is {shorten(number)}: it must be {low} or more")
-    if number.bit_length() > 63:
-        raise InputError(f"{name} is {shorten(number)}: an integer below 2^63 is wanted")
-    return number
-
-
-def positive(value: Any, name: str) -> sp.Expr:
-    """Read an exact positive number, or an expression in symbols that may be positive."""
-    expression = exact(value, name)
-    if expression.is_positive is False or (expression.is_number and not expression.is_positive):
-        raise InputError(f"{name} is {expression}: it must be positive")
+        expression = _from_text(value.strip(), name)
+    elif isinstance(value, sp.Expr):
+        if value.has(sp.nan, sp.oo, -sp.oo, sp.zoo) or value.is_real is False:
+            raise InputError(f"{name} is {shorten(value)}: a finite real number is wanted")
+        expression = value.xreplace({f: sp.Rational(str(f)) for f in value.atoms(sp.Float)})
+    else:
+        expression = _from_number(value, name)
+    for number in expression.atoms(sp.Rational):
+        p, q = abs(int(number.p)), int(number.q)
+        if max(p, q) >= 10**DIGITS or p >= q * 2**1024:  # 2^1024: the first beyond a double
+            raise _out_of_range(name)
     return expression
 
 
-def one_of(value: Any, known: Collection[str], name: str) -> str:
-    """Return a word; raise `InputError` unless it is among the known words."""
-    if not isinstance(value, str) or value not in known:
-        wanted = " or ".join(known) if len(known) == 2 else f"one of {', '.join(known)}"
-        raise InputError(f"{name} is {shorten(value)}: {wanted} is wanted")
-    return value
+def _from_number(value: Any, name: str) -> sp.Rational:
+    if hasattr(value, "item") and getattr(value, "size", 1) == 1:  # NumPy's scalars
+        value = value.item()
+    if isinstance(value, bool) or not isinstance(value, int | float | Fraction | Decimal):
+        raise InputError(f"{name} is {shorten(value)}: a number or a symbol is wanted")
+    if isinstance(value, float | Decimal) and not Decimal(value).is_finite():
+        raise InputError(f"{name} is {value}: a finite number is wanted")
+    try:
+        in_range = math.isfinite(value) and bool(float(value)) == bool(value)
+    except OverflowError:  # an integer or a fraction beyond a double
+        in_range = False
+    if not in_range:
+        raise _out_of_range(name)
+    return sp.Rational(value if isinstance(value, int | Fraction) else str(value))
+
+
+def _from_text(text: str, name: str) -> sp.Expr:
+    wanted = "an integer, a decimal, a fraction such as 3/2, or a plain name is wanted"
+    if len(text) > _LONGEST_TEXT:
+        raise InputError(f"{name} is a text of {len(text)} characters: {wanted}")
+    if _NUMBER.fullmatch(text):
+        try:
+            return sp.Rational(Fraction(text))
+        except ZeroDivisionError:
+            raise InputError(f"{name} is {text}: the denominator must not be zero") from None
+    if not _NAME.fullmatch(text) or text.lower() in _NOT_A_NUMBER:
+        raise InputError(f"{name} is {shorten(text)}: {wanted}")
+    if keyword.iskeyword(text) or hasattr(sp, text):
+        raise InputError(f"{name} is {text!r}, a word with a meaning of its own: choose another")
+    return sp.Symbol(text, positive=True)
+
+
+def _out_of_range(name: str) -> InputError:
+    return InputError(
+        f"{name} is a number beyond 1e±308 or of more than {DIGITS} digits: give a shorter number"
+    )
 
 
 def signed(value: Any, name: str) -> sp.Expr:
@@ -129,38 +123,36 @@ def signed(value: Any, name: str) -> sp.Expr:
     return expression
 
 
-def _from_text(text: str, name: str) -> sp.Expr:
-    wanted = "an integer, a decimal, a fraction such as 3/2, or a plain name is wanted"
-    if len(text) > _LONGEST:
-        raise InputError(f"{name} is a text of {len(text)} characters: {wanted}")
-    if _FRACTION.fullmatch(text):
-        numerator, denominator = text.split("/")
-        if int(denominator) == 0:
-            raise InputError(f"{name} is {text}: the denominator must not be zero")
-        return sp.Rational(int(numerator), int(denominator))
-    if _NUMBER.fullmatch(text):
-        return sp.Rational(text)
-    if not _NAME.fullmatch(text) or text.lower() in _NOT_A_NUMBER:
-        raise InputError(f"{name} is {shorten(text)}: {wanted}")
-    if keyword.iskeyword(text) or hasattr(sp, text):
-        raise InputError(f"{name} is {text!r}, a word with a meaning of its own: choose another")
-    return sp.Symbol(text, positive=True)
+def positive(value: Any, name: str) -> sp.Expr:
+    """Read an exact positive number, or an expression in symbols that may be positive."""
+    expression = exact(value, name)
+    if expression.is_positive is False or (expression.is_number and not expression.is_positive):
+        raise InputError(f"{name} is {expression}: it must be positive")
+    return expression
 
 
-def _from_expression(value: sp.Expr, name: str) -> sp.Expr:
-    if value.has(sp.nan, sp.oo, -sp.oo, sp.zoo) or value.is_real is False:
-        raise InputError(f"{name} is {shorten(value)}: a finite real number is wanted")
-    floats = {f: sp.Rational(str(f)) for f in value.atoms(sp.Float)}
-    for number in value.atoms(sp.Rational):
-        _writable(number, name)
-    return value.xreplace(floats)
+def integer(value: Any, name: str, low: int, high: int = 2**63 - 1) -> int:
+    """Read an integer (Python's, NumPy's or SymPy's) from ``low`` to ``high``.
 
-
-def _writable(number: sp.Rational, name: str) -> sp.Rational:
-    """Return the number; raise `InputError` if its powers would be too long for Python to print."""
-    if max(int(number.p).bit_length(), int(number.q).bit_length()) > _BITS:
-        raise InputError(f"{name} is a number of too many digits: {_TOO_LONG}")
+    >>> integer(4, "order", 1)
+    4
+    """
+    try:
+        number = operator.index(value)
+    except TypeError:
+        number = low - 1
+    if isinstance(value, bool) or not low <= number <= high:
+        wanted = f"from {low} on" if high == 2**63 - 1 else f"from {low} to {high}"
+        raise InputError(f"{name} is {shorten(value)}: an integer {wanted} is wanted")
     return number
+
+
+def one_of(value: Any, known: Collection[str], name: str) -> str:
+    """Return a word; raise `InputError` unless it is among the known words."""
+    if not isinstance(value, str) or value not in known:
+        wanted = " or ".join(known) if len(known) == 2 else f"one of {', '.join(known)}"
+        raise InputError(f"{name} is {shorten(value)}: {wanted} is wanted")
+    return value
 
 
 def demand_numbers(free: Collection[sp.Symbol], why: str) -> None:
@@ -185,7 +177,7 @@ def evaluated(value: sp.Expr, digits: int) -> sp.Expr:
     return sp.N(value, digits, maxn=MOST_CANCELLED)
 
 
-class Kept(sp.UnevaluatedExpr):  # type: ignore[misc]  # untyped in SymPy
+class Unmultiplied(sp.UnevaluatedExpr):  # type: ignore[misc]  # untyped in SymPy
     """A number that SymPy does not multiply out in a power; it prints and evaluates as usual."""
 
     def _eval_is_positive(self) -> bool:
@@ -198,28 +190,19 @@ class Kept(sp.UnevaluatedExpr):  # type: ignore[misc]  # untyped in SymPy
 def power(base: sp.Expr, exponent: sp.Expr) -> sp.Expr:
     """The power base^exponent without numbers of more than a thousand digits.
 
-    SymPy takes whole powers out of roots, and would make such a number of 3^(1 + 1/99999). It fails
-    on roots of integers beyond a double (`math.log` of python-flint's integers).
-
     >>> power(sp.Rational(9, 4), sp.Rational(3, 2)), power(sp.Rational(9, 4), sp.Rational(1, 9999))
     (27/8, (9/4)**(1/9999))
     """
-    factor, rest = base.as_coeff_Mul()
-    if factor in (0, 1) or not factor.is_Rational or not exponent.is_Rational:
-        return base**exponent
-    p, q = int(exponent.p), int(exponent.q)
-    parts = int(factor.p), int(factor.q)
-    bits = [part.bit_length() for part in parts]
-    if max(bits) > _ROOTLESS and factor > 0 and q > 1 and abs(p) < q:  # exact roots, if any
-        roots = [sp.integer_nthroot(part, q) for part in parts]
-        whole = all(found for _, found in roots)
-        number = sp.Rational(roots[0][0], roots[1][0]) ** p if whole else Kept(factor) ** exponent
-        return number * rest**exponent
-    if sum(bits) * (abs(p) + q) > _BITS or (max(bits) > _ROOTLESS and q > 1):
-        base = Kept(base)
+    factor = base.as_coeff_Mul()[0]
+    if factor not in (0, 1) and factor.is_Rational and exponent.is_Rational:
+        # SymPy takes whole powers out of roots: (1/3)^(1 + 1/99999) = 3^(99998/99999)/3^2 passes
+        # through 3^99999.
+        bits = int(factor.p).bit_length() + int(factor.q).bit_length()
+        if bits * (abs(int(exponent.p)) + int(exponent.q)) > _POWER_BITS:
+            base = Unmultiplied(base)
     return base**exponent
 
 
 def root(value: sp.Expr) -> sp.Expr:
-    """The square root, by `power`."""
-    return power(value, sp.S.Half)
+    """The square root."""
+    return sp.sqrt(value)

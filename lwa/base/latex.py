@@ -1,8 +1,6 @@
 """LaTeX in the notation and order of the paper: rows, displays, sums and derivatives.
 
-A derivation writes itself as rows (`latex_rows`); a notebook shows them (`_repr_latex_`), and
-``--format latex`` prints the same to all orders. Rows that are wider than a page are broken at the
-signs between their terms.
+Rows wider than a page are broken at the signs between their terms.
 """
 
 from __future__ import annotations
@@ -15,20 +13,19 @@ import sympy as sp
 WIDTH = 64
 """Symbols in a line of a display; a page of LaTeX's article holds about 70 of them."""
 
-NOTAG = r" \notag"
-
 
 def display(rows: list[str]) -> str:
     """LaTeX of the rows as one display for a notebook."""
-    return f"$$\\begin{{aligned}}\n{_aligned(rows, '')}\n\\end{{aligned}}$$"
+    return f"$$\\begin{{aligned}}\n{_aligned(rows)}\n\\end{{aligned}}$$"
 
 
 def align(rows: list[str]) -> str:
     """LaTeX of the rows as an ``align`` environment for a paper, one equation number a row."""
-    return f"\\begin{{align}}\n{_aligned(rows, NOTAG)}\n\\end{{align}}"
+    body = _aligned(rows, r" \notag")
+    return f"\\begin{{align}}\n{body}\n\\end{{align}}"
 
 
-def _aligned(rows: list[str], unnumbered: str) -> str:
+def _aligned(rows: list[str], unnumbered: str = "") -> str:
     lines = (f"{unnumbered} \\\\\n&\\quad ".join(_broken(row)) for row in rows)
     return " \\\\\n".join(line.replace("=", "&=", 1) for line in lines)
 
@@ -88,41 +85,30 @@ def expression(value: sp.Expr) -> str:
     '\\\\frac{x}{2} + \\\\frac{y}{2}'
     """
     plain = str(sp.latex(value))
-    if width(plain) <= WIDTH or value.is_Add:
+    factors = sp.Mul.make_args(value)
+    sums = [f for f in factors if (e := f.as_base_exp())[0].is_Add and e[1].is_Integer and e[1] > 0]
+    if width(plain) <= WIDTH or value.is_Add or not sums:
         return plain
-    powers = [f for f in sp.Mul.make_args(value) if f.as_base_exp()[0].is_Add]
-    powers = [f for f in powers if f.as_base_exp()[1].is_positive and f.as_base_exp()[1].is_Integer]
-    longest = max(powers, key=lambda f: len(f.as_base_exp()[0].args), default=None)
-    if longest is None:
-        return plain
+    longest = max(sums, key=lambda f: len(f.as_base_exp()[0].args))
     total, e = longest.as_base_exp()
     if width(str(sp.latex(total))) < WIDTH / 2:
         return plain
-    rest = sp.Mul(*(f for f in sp.Mul.make_args(value) if f is not longest), evaluate=False)
+    rest = sp.Mul(*(f for f in factors if f is not longest), evaluate=False)
     raised = f"^{{{e}}}" if e > 1 else ""
     return rf"{sp.latex(rest)} \Bigl({sp.latex(total)}\Bigr){raised}".removeprefix("1 ")
 
 
 SPEED = r"\frac{dx}{dt}"
-"""The speed in space and time."""
 
 
-def rows(found: Mapping[str, sp.Expr]) -> list[str]:
-    """Return the rows ``name = value``, names in LaTeX, leaving out rows such as F = F.
-
-    >>> rows({r"\\beta": sp.Integer(2)})
-    ['\\\\beta = 2']
-    """
-    written = {name: row(name, value) for name, value in found.items()}
+def rows(values: Mapping[str, sp.Expr]) -> list[str]:
+    """Return the rows ``name = value``, names in LaTeX, leaving out rows such as F = F."""
+    written = {name: row(name, value) for name, value in values.items()}
     return [text for name, text in written.items() if text != f"{name} = {name}"]
 
 
 def power(symbol: sp.Expr, n: int) -> str:
-    """The power symbol^n in LaTeX.
-
-    >>> power(sp.Symbol("D"), 2)
-    'D^{2}'
-    """
+    """The power symbol^n in LaTeX."""
     return f"{sp.latex(symbol)}^{{{n}}}" if n > 1 else str(sp.latex(symbol))
 
 
@@ -147,5 +133,5 @@ def total(terms: Iterable[tuple[sp.Expr, str]]) -> str:
         size = -coefficient if minus else coefficient
         value = rf"\left({sp.latex(size)}\right)" if size.is_Add else expression(size)
         sign = "-" if minus else "+" if i else ""
-        written.append(f"{sign} {'' if value == '1' else value} {factor}".strip())
+        written.append(f"{sign} {'' if value == '1' and factor else value} {factor}".strip())
     return " ".join(" ".join(written).split()) or "0"

@@ -16,8 +16,8 @@ Progress = Callable[[Iterable[T]], Iterable[T]]
 
 
 def announced(what: str) -> Progress[Any]:
-    """Say on standard error that a computation is long; return `shown`, for its progress."""
-    # before the line: Python may lose a Ctrl-C that meets it in an import
+    """Print that a computation takes minutes to standard error; return `shown`, its progress."""
+    # Imported before the line is printed: Python may lose a Ctrl-C during an import.
     import_module("tqdm")
     print(f"{what}: this may take minutes", file=sys.stderr, flush=True)
     return shown
@@ -25,8 +25,8 @@ def announced(what: str) -> Progress[Any]:
 
 def shown(items: Iterable[T], label: str = "orders") -> Iterable[T]:
     """Yield the items behind a progress bar; see `bar`."""
-    found: Iterable[T] = bar(label, iterable=items)
-    return found
+    wrapped: Iterable[T] = bar(label, iterable=items)
+    return wrapped
 
 
 def bar(label: str, **settings: Any) -> Any:

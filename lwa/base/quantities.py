@@ -38,6 +38,6 @@ def known(quantity: str) -> str:
     return one_of(quantity, QUANTITIES, "quantity")
 
 
-def known_extent(extent: str) -> None:
-    """Raise `lwa.InputError` unless the extent is among `EXTENTS`."""
-    one_of(extent, EXTENTS, "extent")
+def known_extent(extent: str) -> str:
+    """Return the extent; raise `lwa.InputError` unless it is among `EXTENTS`."""
+    return one_of(extent, EXTENTS, "extent")

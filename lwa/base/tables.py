@@ -12,13 +12,14 @@ lwa.base.errors.InputError: duration is '1.5': a number is wanted
 from __future__ import annotations
 
 import math
-import operator
 import sys
 from collections.abc import Callable, Collection, Mapping, Sequence
+from contextlib import suppress
 from difflib import get_close_matches
 from typing import Any
 
 from lwa.base.exact import InputError, shorten
+from lwa.base.exact import integer as integer
 
 Reader = Callable[[Any, str], Any]
 
@@ -28,16 +29,15 @@ LEAST = sys.float_info.min
 
 def real(value: Any, name: str) -> float:
     """Read one finite number."""
+    number = None
     if not isinstance(value, str | bytes | bool):
-        try:
+        with suppress(TypeError, ValueError, OverflowError):
             number = float(value)
-        except (TypeError, ValueError, OverflowError):
-            pass
-        else:
-            if math.isfinite(number):
-                return number
-            raise InputError(f"{name} is {number}: a finite number is wanted")
-    raise InputError(f"{name} is {shorten(value)}: a number is wanted")
+    if number is None:
+        raise InputError(f"{name} is {shorten(value)}: a number is wanted")
+    if not math.isfinite(number):
+        raise InputError(f"{name} is {number}: a finite number is wanted")
+    return number
 
 
 def positive(value: Any, name: str) -> float:
@@ -47,18 +47,6 @@ def positive(value: Any, name: str) -> float:
         raise InputError(f"{name} is {number:g}: it must be positive")
     if number < LEAST:
         raise InputError(f"{name} is {number}: floats below {LEAST:.1g} lose their digits")
-    return number
-
-
-def integer(value: Any, name: str, least: int, most: int | None = None) -> int:
-    """Read an integer from ``least`` to ``most``."""
-    wanted = f"an integer from {least} on" if most is None else f"one of {least} … {most}"
-    try:
-        number = operator.index(value)
-    except TypeError:
-        raise InputError(f"{name} is {shorten(value)}: {wanted} is wanted") from None
-    if isinstance(value, bool) or number < least or (most is not None and number > most):
-        raise InputError(f"{name} is {shorten(value)}: {wanted} is wanted")
     return number
 
 
@@ -94,11 +82,11 @@ class Table:
 
     def one(self, *keys: str) -> str:
         """Return the key that is present; exactly one of the keys must be."""
-        found = [key for key in keys if key in self]
-        if len(found) != 1:
-            there = f"both {' and '.join(found)}" if found else f"neither {' nor '.join(keys)}"
-            raise InputError(f"{self.name} has {there}: one is wanted")
-        return found[0]
+        present = [key for key in keys if key in self]
+        if len(present) != 1:
+            fault = f"both {' and '.join(present)}" if present else f"neither {' nor '.join(keys)}"
+            raise InputError(f"{self.name} has {fault}: one is wanted")
+        return present[0]
 
 
 def table(known: Sequence[str]) -> Reader:
@@ -160,10 +148,10 @@ def places(count: int) -> Reader:
     """Reader of a list of different numbers from 1 to ``count``; returns the indices."""
 
     def read(value: Any, name: str) -> list[int]:
-        found: list[int] = each(place(count))(value, name)
-        if len(set(found)) < len(found):
+        indices: list[int] = each(place(count))(value, name)
+        if len(set(indices)) < len(indices):
             raise InputError(f"{name} is {shorten(value)}: each may be named once")
-        return found
+        return indices
 
     return read
 

@@ -29,7 +29,7 @@ from lwa.spheres.hertz import EXPONENT
 from lwa.theory import Theory, homogenize
 from lwa.wave.background import BackgroundWave
 from lwa.wave.closed import Reduction
-from lwa.wave.precompressed import PrecompressedWave
+from lwa.wave.physical import PrecompressedWave
 from lwa.wave.traveling import TravelingWave
 
 # Bound of `lwa.Radiation` on c² and the widths from which on a note is printed: for dimers of

@@ -87,26 +87,31 @@ def resum(
     with mpmath.workdps(TERM_DIGITS):
         small, scale = _mp(epsilon), _mp(unit)
         whole = [_mp(a) for a in coefficients]
-        begun = [_mp(a) for a in base] if base else whole
-        rest = [a - b for a, b in zip(whole, begun, strict=True)]
-        sums = [_sum(begun, small)]
+        first = [_mp(a) for a in base] if base else whole
+        rest = [a - b for a, b in zip(whole, first, strict=True)]  # rest[0] = 0
+        sums = [_sum(first, small)]
         if any(rest):
-            sums.append(_sum(rest[1:], small).times(small))
+            tail = _sum(rest[1:], small) * small
+            sums.append(replace(tail, order=tail.order + 1))
         value = scale * mpmath.fsum(s.value for s in sums)
         error = abs(scale) * mpmath.fsum(s.error for s in sums)
-        least = abs(value) * mpmath.mpf(2) ** -52  # an ulp: the sum leaves as a float
+        ulp = abs(value) * mpmath.mpf(2) ** -52  # the sum leaves as a float
+        radiated = abs(value) * relative
         return Resummed(
             float(value),
-            float(error + abs(value) * relative + least),
+            float(error + radiated + ulp),
             min(s.order for s in sums),
-            any(s.asymptotic for s in sums) or bool(abs(value) * relative > error),
+            any(s.asymptotic for s in sums) or bool(radiated > error),
         )
 
 
 def pade(a: Sequence[sp.Expr], L: int, M: int, epsilon: sp.Expr) -> sp.Expr:
     """The exact Padé approximant [L/M] of Σ a_n ε^n.
 
-    Raises `lwa.InputError` where the series is too short, or has none.
+    The denominator Σ q_j ε^j, q_0 = 1, cancels the orders L+1 … L+M of the product with the series:
+    Σ_j a_{L+i-j} q_j = -a_{L+i}, i = 1 … M (Baker & Graves-Morris, eq. (1.1.5)).
+
+    Raises `lwa.InputError` where the series is too short, or has no such approximant.
 
     >>> pade((sp.S.One, -sp.S.Half, sp.Rational(2, 5)), 1, 1, sp.Symbol("k") - 1)
     (3*k + 7)/(2*(4*k + 1))
@@ -123,31 +128,17 @@ def pade(a: Sequence[sp.Expr], L: int, M: int, epsilon: sp.Expr) -> sp.Expr:
     return sp.factor(above / below)
 
 
-@dataclass(frozen=True)
-class _Sum:
-    """A sum, its error and its order, as a `Resummed` but in mpmath's numbers."""
-
-    value: mpmath.mpf
-    error: mpmath.mpf
-    order: int
-    asymptotic: bool
-
-    def times(self, epsilon: mpmath.mpf) -> _Sum:
-        """The sum times ε."""
-        return _Sum(epsilon * self.value, epsilon * self.error, self.order + 1, self.asymptotic)
-
-
 def _mp(value: sp.Expr) -> mpmath.mpf:
     if value.is_Rational:
         return mpmath.mpf(int(value.p)) / int(value.q)
     return mpmath.mpf(value.evalf(TERM_DIGITS)._mpf_)
 
 
-def _sum(a: Sequence[mpmath.mpf], epsilon: mpmath.mpf) -> _Sum:
-    """Sum Σ a_n ε^n by the window of approximants that agree best."""
+def _sum(a: Sequence[mpmath.mpf], epsilon: mpmath.mpf) -> Resummed:
+    """Sum Σ a_n ε^n by the window of approximants that agree best, in mpmath's numbers."""
     with ctx.workprec(PRECISION):
         terms = [arb(x * epsilon**n) for n, x in enumerate(a)]
-        line = {n: found for n in range(len(a)) if (found := _approximants(terms[: n + 1]))}
+        line = {n: values for n in range(len(a)) if (values := _approximants(terms[: n + 1]))}
     spreads: dict[int, mpmath.mpf] = {}
     for n in line:
         window = [value for m in range(n - WINDOW, n + 1) for value in line.get(m, [])]
@@ -158,16 +149,16 @@ def _sum(a: Sequence[mpmath.mpf], epsilon: mpmath.mpf) -> _Sum:
     best = min(spreads, key=lambda n: (spreads[n], n))
     last = max(spreads)
     grows = last < len(a) - 1 or spreads[last] > 10 * spreads[best]
-    return _Sum(line[best][0], SAFETY * spreads[best], best, bool(grows))
+    return Resummed(line[best][0], SAFETY * spreads[best], best, bool(grows))
 
 
-def _truncated(a: Sequence[mpmath.mpf], epsilon: mpmath.mpf) -> _Sum:
+def _truncated(a: Sequence[mpmath.mpf], epsilon: mpmath.mpf) -> Resummed:
     """Sum up to the smallest term, or of all terms if the last is the smallest."""
     terms = [x * epsilon**n for n, x in enumerate(a)]
     least = min((n for n, term in enumerate(terms) if term), key=lambda n: abs(terms[n]))
     grows = least < len(terms) - 1
     end = least if grows else least + 1
-    return _Sum(mpmath.fsum(terms[:end]), abs(terms[least]), end - 1, grows)
+    return Resummed(mpmath.fsum(terms[:end]), abs(terms[least]), end - 1, grows)
 
 
 def _approximants(terms: Sequence[arb]) -> list[mpmath.mpf]:
@@ -186,8 +177,8 @@ def _pade(a: Sequence[arb], L: int, M: int) -> mpmath.mpf | None:
     """The value at x = 1 of [L/M] of Σ a_n x^n; None if absent or with a pole near 0 … 3/2."""
     system = arb_mat(M, M, [a[L + i - j] if L + i >= j else 0 for i in range(M) for j in range(M)])
     try:
-        found = system.solve(arb_mat(M, 1, [-a[L + i + 1] for i in range(M)]))
-        q = [arb(1), *(x.mid() for x in found.entries())]
+        solution = system.solve(arb_mat(M, 1, [-a[L + i + 1] for i in range(M)]))
+        q = [arb(1), *(x.mid() for x in solution.entries())]
         poles = [complex(pole.mid()) for pole in acb_poly(q).roots()]
     except (ZeroDivisionError, ValueError):  # singular; poles that coincide
         return None

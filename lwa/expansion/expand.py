@@ -10,10 +10,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from math import comb
 from typing import Any
 
 import sympy as sp
 
+from lwa.algebra.model import Model
 from lwa.base import latex
 from lwa.base.exact import InputError, integer, one_of, shorten, signed
 from lwa.base.frozen import Value
@@ -22,13 +24,18 @@ from lwa.base.quantities import QUANTITIES as QUANTITIES
 from lwa.base.quantities import known
 from lwa.cell import Cell, exponent, substitution
 from lwa.cell import k as symbol_k
-from lwa.expansion.cost import LONG_TERMS, affordable, short
 from lwa.expansion.observables import Observables, shares_model
 from lwa.expansion.series import EpsilonSeries
 from lwa.law import ContactLaw, demand_one
 
 DAMPINGS = ("linear", "kuwabara_kono")
 """Damping forces of a contact: γ dδ/dt and γ δ^{k-1} dδ/dt (Kuwabara and Kono 1987)."""
+
+LARGEST = 3_000_000
+"""Terms of all polynomials in memory: some 600 MB."""
+
+LONG = 30_000
+"""Terms from which an expansion takes half a minute or more."""
 
 
 @dataclass(frozen=True)
@@ -46,11 +53,12 @@ class Expansion(Value):
     k: sp.Expr = symbol_k
 
     @cached_property
-    def _read(self) -> Observables:
-        own = shares_model(self.cell, self.k)
-        long = affordable(own, self.order) > LONG_TERMS
+    def _observables(self) -> Observables:
+        """The quantities of the wave as polynomials; long derivations show their progress."""
+        model = shares_model(self.cell, self.k)
+        long = _terms(model, self.order) > LONG
         progress = announced(f"the expansion to ε^{self.order}") if long else iter
-        return Observables(own, self.order, progress)
+        return Observables(model, self.order, progress)
 
     @cached_property
     def numeric(self) -> bool:
@@ -61,7 +69,7 @@ class Expansion(Value):
     @property
     def I(self) -> sp.Expr:
         """Coefficient I in the linear chain's dispersion Ω² = κ² - I κ⁴ + …, in units of D²."""
-        return self._read.I
+        return self._observables.I
 
     @cached_property
     def compliance(self) -> sp.Expr:
@@ -86,18 +94,19 @@ class Expansion(Value):
     def fwhm(self, quantity: str = "strain") -> EpsilonSeries:
         """Full width at half maximum of a contact's strain or force, or the first bead's velocity.
 
-        The series gives both contacts of a dimer the same width. Behind a striker the contacts
-        differ (`Expansion`); compare the series with the mean of the two.
+        The series gives both contacts of a dimer the same width; see `Expansion`.
 
         >>> from lwa import Cell
         >>> expand(Cell([1]), 1).fwhm("force").coefficients
         (1, 1/10 - log(2)/60)
         """
+        # The Gaussian F = e^{-Z²/4}, Z = √(ε/I) ξ, is 1/2 at Z = 2√log 2.
         return self._series(known(quantity), 4 * sp.sqrt(self.I * sp.log(2)), -sp.S.Half)
 
     @cached_property
     def momentum(self) -> EpsilonSeries:
         """Momentum Σ m v over the chain, (M/P) c times the displacement behind the wave."""
+        # ∫ e^{-Z²/4} dξ = 2√(πI/ε), times ā (M/P) c = 1/c.
         return self._series("momentum", 2 * sp.sqrt(sp.pi * self.I / self._sound), -sp.S.Half)
 
     @cached_property
@@ -122,7 +131,7 @@ class Expansion(Value):
 
         Raises `lwa.InputError` for unlike beads or contacts.
         """
-        if len({*self.cell.masses}) + len({*self.cell.stiffnesses}) > 2:
+        if not self.cell.uniform:
             raise InputError("the beads or contacts differ: their velocities peak one by one")
         unit = sp.sqrt(self._sound) * self.compliance
         return self._series("peak_velocity", unit, sp.S.Zero)
@@ -137,6 +146,8 @@ class Expansion(Value):
         Raises `lwa.InputError` for other kinds, and for D1 of contacts that differ.
         """
         one_of(kind, DAMPINGS, "kind")
+        # c ∫ (d/dξ e^{-Z²/4})² dξ = c √(2πε/I)/4, times ā² for D0, and ā/(k A) for D1, where
+        # δ^{k-1} dδ = dF/(k A).
         unit = sp.sqrt(2 * sp.pi * self._sound / self.I) * self.compliance / 4
         if kind == "linear":
             unit *= self.compliance
@@ -147,7 +158,7 @@ class Expansion(Value):
         return self._series(f"{kind}_loss", unit, sp.S.Half)
 
     def _energy(self, quantity: str) -> EpsilonSeries:
-        unit = self.compliance * sp.sqrt(2 * sp.pi * self.I)
+        unit = self.compliance * sp.sqrt(2 * sp.pi * self.I)  # ā ∫ e^{-Z²/2} dξ
         return self._series(quantity, unit, -sp.S.Half)
 
     @cached_property
@@ -156,7 +167,7 @@ class Expansion(Value):
         return self.cell.size / (self.cell.mass * self.compliance)
 
     def _series(self, quantity: str, unit: sp.Expr, power: sp.Expr) -> EpsilonSeries:
-        coefficients = self._read.coefficients(quantity)
+        coefficients = self._observables.coefficients(quantity)
         return EpsilonSeries(unit, power, coefficients, self.k, self.cell, quantity)
 
     def log_force(self, contact: Any = 0, X: Any = None) -> dict[sp.Rational, sp.Expr]:
@@ -170,16 +181,14 @@ class Expansion(Value):
         >>> expand(Cell([1]), 1).log_force()
         {0: -3*X**2, 1: -3*X**4/10 + 3*X**2/5}
         """
-        number = integer(contact, "contact", 0)
-        if number >= self.cell.size:
-            raise InputError(f"contact is {shorten(number)}: 0 … {self.cell.size - 1} is wanted")
+        i = integer(contact, "contact", 0, self.cell.size - 1)
         place = sp.Symbol("X") if X is None else signed(X, "X")
-        own = {s.name for s in (*self.cell.symbols, *self.k.free_symbols)}
-        if shared := own & {s.name for s in place.free_symbols}:
+        names = {s.name for s in (*self.cell.symbols, *self.k.free_symbols)}
+        if shared := names & {s.name for s in place.free_symbols}:
             raise InputError(f"{min(shared)} names a property of the chain: give X another name")
         return {
             n: sp.Add(*(a * place**d for d, a in phi.items()))
-            for n, phi in self._read.log_force(number).items()
+            for n, phi in self._observables.log_force(i).items()
         }
 
     def at(self, **values: Any) -> Expansion:
@@ -229,10 +238,32 @@ def expand(
             )
         k = law.exponent
     k = exponent(k, cell)
-    for name, values in (("mass", cell.masses), ("stiffness", cell.stiffnesses), ("k", (k,))):
-        for value in values:
-            short(value, name)
     if not k.free_symbols and k <= 1:
         raise InputError(f"k is {k}: the expansion in k - 1 wants k > 1")
-    affordable(shares_model(cell, k), order)
+    if shared := {s.name for s in (*cell.symbols, *k.free_symbols)} & {"ε", r"\varepsilon"}:
+        raise InputError(f"{min(shared)} is k - 1 in the expansion: choose another name")
+    model = shares_model(cell, k)
+    terms, ratios = _terms(model, order), _ratios(model)
+    if terms > LARGEST:
+        other = "give numbers for the cell, or a lower order" if ratios else "a lower order"
+        raise InputError(
+            f"order is {order}: with {ratios} symbolic ratios in a cell of {cell.size} this takes "
+            f"more than {LARGEST:.0e} terms, beyond memory; {other}"
+        )
+    model.ring.writable(order, growth=4)  # measured: 3.5
     return Expansion(cell, order, k)
+
+
+def _ratios(model: Model) -> int:
+    """The number of symbolic ratios of masses and of stiffnesses."""
+    return len(model.ring.masses.names) + len(model.ring.contacts.names)
+
+
+def _terms(model: Model, order: int) -> int:
+    """Estimate the number of terms of all polynomials of an expansion.
+
+    The coefficient of t^n (`lwa.expansion.recursion`) has about 3n/2 powers of Z, each times a
+    polynomial of degree 3n in the symbolic ratios of the cell; n runs to 2·order.
+    """
+    ratios, n = _ratios(model), min(order, 10**6)
+    return 8 * model.cell.size * n**2 * comb(6 * n + 4 + ratios, ratios) // (ratios + 2)

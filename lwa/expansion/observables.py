@@ -23,7 +23,7 @@ from lwa.expansion.pulse import (
     Series,
     by_degree,
     half_width,
-    log_term,
+    logarithm,
     moment,
     product,
     quotient,
@@ -68,10 +68,7 @@ class Observables:
     @cached_property
     def velocity(self) -> Series:
         """Full width at half maximum of the first bead's velocity, in units of 4 √(I log 2/ε)."""
-        log: Series = []
-        for _ in self._slope:
-            log.append(log_term(self._slope, log))
-        return half_width(log)
+        return half_width(logarithm(self._slope))
 
     @cached_property
     def peak_velocity(self) -> Series:
@@ -86,6 +83,7 @@ class Observables:
         This slope is the operator (P∂/2)/sinh(P∂/2) applied to the mean strain.
         """
         wave = self.wave
+        # x/sinh x = Σ_m (2^{1-m} - 1) B_m (2x)^m/m!, m even
         weights = [
             (fmpq(2) ** (1 - m) - 1) * fmpq(wave.P**m, factorial(m)) * to_flint(sp.bernoulli(m))
             for m in range(0, 2 * self.order + 1, 2)
@@ -103,26 +101,23 @@ class Observables:
     @cached_property
     def kinetic(self) -> Series:
         """Kinetic energy in units of ā √(2πI/ε)."""
-        wave = self.wave
-        squares = (product(s, s, 2) for s in wave.fields.slope)
-        kinetic = _sum(wave.mu, squares, wave.zero)
-        return [moment(a, 1) / 2 for a in product(self.c2, kinetic, 2)]
+        slopes = self.wave.fields.slope
+        return [a / 2 for a in product(self.c2, self._mean_square(self.wave.mu, slopes, slopes), 2)]
 
     @cached_property
     def energy(self) -> Series:
         """Kinetic and elastic energy in units of ā √(2πI/ε), (k + 3)/2 times the elastic energy.
 
         This virial theorem follows from dE = c dP along the waves of all amplitudes, where
-        P = 2 T/c is the momentum and T the kinetic energy.
+        P = 2 T/c is the momentum and T the kinetic energy: E ∝ F^{(k+1)/k} and c ∝ F^{(k-1)/2k}.
         """
         wave = self.wave
-        pairs = zip(wave.fields.force, wave.fields.strain, strict=True)
-        works = _sum(wave.c, (product(f, r, 2) for f, r in pairs), wave.zero)
-        share = [wave.zero for _ in works]  # (k + 3)/2 of 1/(k + 1), per contact
+        share = [wave.zero for _ in self.c2]  # (k + 3)/2 of 1/(k + 1), per contact
         for n in range(0, len(share), 2):
             share[n] = (-wave.epsilon / 2) ** (n // 2) / (2 * wave.P)
         share[0] = share[0] + fmpq(1, 2 * wave.P)
-        return [moment(a, 1) for a in product(share, works, 2)]
+        works = self._mean_square(wave.c, wave.fields.force, wave.fields.strain)
+        return product(share, works, 2)
 
     @cached_property
     def effective_mass(self) -> Series:
@@ -135,8 +130,8 @@ class Observables:
 
         In the wave dδ/dt = -c dδ/dξ and dt = dξ/c, so that this is c ∫ (dδ/dξ)² dξ.
         """
-        strain, c = self.wave.fields.strain, self.wave.c
-        return self._loss([share * share for share in c], strain, strain)
+        strain = self.wave.fields.strain
+        return self._loss([share * share for share in self.wave.c], strain, strain)
 
     @cached_property
     def kuwabara_kono_loss(self) -> Series:
@@ -149,30 +144,40 @@ class Observables:
 
     def _loss(self, weights: Series, first: list[Series], second: list[Series]) -> Series:
         """The loss c Σ weight ∫ (d first/dξ) (d second/dξ) dξ, divided by its leading term."""
-        slopes = ([list(map(_slope, row)) for row in rows] for rows in (first, second))
-        products = (product(a, b, 2) for a, b in zip(*slopes, strict=True))
-        total = _sum(weights, products, self.wave.zero)
-        return product(self.c, [4 * moment(a, 1) / self.wave.P for a in total])
+        slopes = ([[_slope(S) for S in row] for row in rows] for rows in (first, second))
+        return product(self.c, [4 * a / self.wave.P for a in self._mean_square(weights, *slopes)])
+
+    def _mean_square(
+        self, weights: Series, first: Iterable[Series], second: Iterable[Series]
+    ) -> Series:
+        """The integral Σ weight ∫ first · second dξ of fields e^{-Z²/4} S, over ∫ e^{-Z²/2} dξ."""
+        rows = [
+            [weight * term for term in product(a, b, 2)]
+            for weight, a, b in zip(weights, first, second, strict=True)
+        ]
+        return [moment(sum(terms, self.wave.zero), 1) for terms in zip(*rows, strict=True)]
 
     def coefficients(self, quantity: str) -> tuple[sp.Expr, ...]:
         """Coefficients of ε^0, ε^1, … of the named quantity, at Z² = log 2."""
         terms: Series = getattr(self, quantity)
-        found = []
-        logs = [sp.log(2) ** m for m in range(self.order + 1)]
-        for n in range(self.order + 1):
-            by_log = by_degree(terms[2 * n])
-            parts = (self.over(c, 3 * n) * logs[d // 2] for d, c in by_log.items())
-            found.append(sp.Add(*parts))
-        return tuple(found)
+        return tuple(
+            sp.Add(
+                *(
+                    self.over(c, 3 * n) * sp.log(2) ** (d // 2)
+                    for d, c in by_degree(terms[2 * n]).items()
+                )
+            )
+            for n in range(self.order + 1)
+        )
 
     def log_force(self, contact: int) -> dict[sp.Rational, dict[int, sp.Expr]]:
         """Mapping n → d → coefficient of X^d in φ_n (`lwa.Expansion.log_force`)."""
-        found = {sp.S.Zero: {2: -1 / (4 * self.I)}}
+        phi = {sp.S.Zero: {2: -1 / (4 * self.I)}}
         for n, q in enumerate(self.wave.fields.log_force[contact]):
             if q:
                 parts = by_degree(q).items()
-                found[sp.Rational(n, 2)] = {d: self.over(c, (3 * n + d) // 2) for d, c in parts}
-        return found
+                phi[sp.Rational(n, 2)] = {d: self.over(c, (3 * n + d) // 2) for d, c in parts}
+        return phi
 
     @cached_property
     def I(self) -> sp.Expr:
@@ -183,22 +188,18 @@ class Observables:
         """The quotient numerator / I^power, in the caller's symbols."""
         I = self.wave.I
         if not self.model.ring.names:
-            return to_sympy(_constant(numerator) / _constant(I) ** power)
+            top, bottom = (p.leading_coefficient() if p else fmpq(0) for p in (numerator, I))
+            return to_sympy(top / bottom**power)
         while power:
             quotient, remainder = divmod(numerator, I)
             if remainder:
                 break
             numerator, power = quotient, power - 1
-        return self._expression(numerator) * self._below(power)
+        return self._expression(numerator) / self._expression_of_I**power
 
     @cached_property
-    def _powers(self) -> list[sp.Expr]:
-        return [sp.S.One, 1 / self._expression(self.wave.I)]
-
-    def _below(self, power: int) -> sp.Expr:
-        while len(self._powers) <= power:
-            self._powers.append(self._powers[1] ** len(self._powers))
-        return self._powers[power]
+    def _expression_of_I(self) -> sp.Expr:
+        return self._expression(self.wave.I)
 
     def _expression(self, polynomial: fmpq_mpoly) -> sp.Expr:
         terms: list[tuple[tuple[int, ...], Any]] = [
@@ -207,19 +208,9 @@ class Observables:
         return self.model.ring.expression(terms)
 
 
-def _constant(polynomial: fmpq_mpoly) -> fmpq:
-    return polynomial.leading_coefficient() if polynomial else fmpq(0)
-
-
 def _slope(term: fmpq_mpoly) -> fmpq_mpoly:
     """The derivative e^{Z²/4} d/dZ [e^{-Z²/4} S(Z)]."""
     return term.derivative(0) - term.context().gen(0) * term / 2
-
-
-def _sum(weights: Series, rows: Iterable[Series], zero: fmpq_mpoly) -> Series:
-    """The weighted sum Σ weight · row."""
-    weighted = ([w * term for term in row] for w, row in zip(weights, rows, strict=True))
-    return [sum(terms, zero) for terms in zip(*weighted, strict=True)]
 
 
 def shares_model(cell: Cell, k: sp.Expr) -> Model:

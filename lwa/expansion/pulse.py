@@ -23,23 +23,26 @@ def log_term(S: Series, log: Series) -> fmpq_mpoly:
     n = len(log)
     if n == 0:
         return S[0] - 1
-    total = n * S[n]
-    for j in range(1, n):
-        if log[j]:
-            total = total - j * log[j] * S[n - j]
-    return total / n
+    return S[n] - _weighted(log, S, n - 1, n) / n
 
 
 def exp_term(log: Series, S: Series) -> fmpq_mpoly:
     """The next coefficient of exp Σ log_n t^n (log_0 = 0), by n S_n = Σ j log_j S_{n-j}."""
     n = len(S)
-    if n == 0:
-        return log[0] + 1
-    total = 0 * log[0]
-    for j in range(1, n + 1):
-        if log[j]:
-            total = total + j * log[j] * S[n - j]
-    return total / n
+    return _weighted(log, S, n, n) / n if n else log[0] + 1
+
+
+def _weighted(log: Series, S: Series, last: int, n: int) -> fmpq_mpoly:
+    """The sum Σ j log_j S_{n-j}, j = 1 … last."""
+    return sum((j * log[j] * S[n - j] for j in range(1, last + 1) if log[j]), 0 * log[0])
+
+
+def logarithm(S: Series) -> Series:
+    """The series of log Σ S_n t^n, S_0 = 1."""
+    log: Series = []
+    for _ in S:
+        log.append(log_term(S, log))
+    return log
 
 
 def by_degree(polynomial: fmpq_mpoly) -> dict[int, fmpq_mpoly]:
@@ -53,14 +56,9 @@ def by_degree(polynomial: fmpq_mpoly) -> dict[int, fmpq_mpoly]:
 
 def moment(polynomial: fmpq_mpoly, variance: int) -> fmpq_mpoly:
     """The mean of a polynomial in Z under the normal distribution: Z^{2m} → (2m-1)!! v^m."""
-    return sum(
-        (
-            c * int(factorial2(d - 1)) * variance ** (d // 2)
-            for d, c in by_degree(polynomial).items()
-            if d % 2 == 0
-        ),
-        0 * polynomial,
-    )
+    even = ((d, c) for d, c in by_degree(polynomial).items() if d % 2 == 0)
+    means = (c * int(factorial2(d - 1)) * variance ** (d // 2) for d, c in even)
+    return sum(means, 0 * polynomial)
 
 
 def half_width(log: Series) -> Series:
@@ -94,9 +92,10 @@ def _from_peak(log: Series) -> Series:
     Z = log[0].context().gen(0)
     phi = [log[0] - Z**2 / 4, *log[1:]]
     for n in range(1, len(phi)):
+        # -Z²/4 + a Z t^n has its maximum at Z = 2a t^n, to this order.
         if place := 2 * by_degree(phi[n]).get(1, 0 * Z):
             moved, derivatives = list(phi), phi
-            for j in range(1, (len(phi) - 1) // n + 1):
+            for j in range(1, (len(phi) - 1) // n + 1):  # Taylor's series in place · t^n
                 derivatives = [place * term.derivative(0) / j for term in derivatives]
                 for m in range(j * n, len(phi)):
                     moved[m] = moved[m] + derivatives[m - j * n]
@@ -112,12 +111,12 @@ def wider(width: Series, epsilon: fmpq_mpoly) -> Series:
     Raising the pulse to this power replaces y² by (1+ε) y²: each y^d of 4y Σ h_n t^n becomes
     (1+ε)^{(d+1)/2} y^d.
     """
-    found = list(width)
+    new = list(width)
     for n, term in enumerate(width):
         for j in range(1, (len(width) - 1 - n) // 2 + 1):
             part = _reweighted(term, partial(_binomial_of_root, j=j))
-            found[n + 2 * j] = found[n + 2 * j] + epsilon**j * part
-    return found
+            new[n + 2 * j] = new[n + 2 * j] + epsilon**j * part
+    return new
 
 
 def _binomial_of_root(d: int, j: int) -> fmpq:
@@ -131,23 +130,23 @@ def _over_square(polynomial: fmpq_mpoly, y: fmpq_mpoly) -> fmpq_mpoly:
 
 def _reweighted(polynomial: fmpq_mpoly, weight: Callable[[int], fmpq]) -> fmpq_mpoly:
     """Multiply each term c Z^d of a polynomial by weight(d)."""
-    found = {}
-    for exponents, coefficient in polynomial.terms():
-        d, *rest = map(int, exponents)
-        if factor := weight(d):
-            found[d, *rest] = factor * coefficient
-    return polynomial.context().from_dict(found)
+    terms = {
+        exponents: factor * coefficient
+        for exponents, coefficient in polynomial.terms()
+        if (factor := weight(int(exponents[0])))
+    }
+    return polynomial.context().from_dict(terms)
 
 
 def product(a: Series, b: Series, step: int = 1) -> Series:
     """The product a · b to the same length; only terms t^n with n a multiple of ``step``."""
-    found = [0 * a[0] for _ in a]
+    total = [0 * a[0] for _ in a]
     for n, x in enumerate(a):
         if x:
             for m in range(-n % step, len(a) - n, step):
                 if b[m]:
-                    found[n + m] = found[n + m] + x * b[m]
-    return found
+                    total[n + m] = total[n + m] + x * b[m]
+    return total
 
 
 def quotient(a: Series, b: Series) -> Series:
@@ -162,8 +161,6 @@ def root(S: Series) -> Series:
     """The root √(Σ S_n t^n), S_0 = 1, by 2 n R_n = Σ_{j≥1} (3j - 2n) S_j R_{n-j}."""
     R = [S[0]]
     for n in range(1, len(S)):
-        total = 0 * S[0]
-        for j in range(1, n + 1):
-            total = total + (3 * j - 2 * n) * S[j] * R[n - j]
-        R.append(total / (2 * n))
+        terms = ((3 * j - 2 * n) * S[j] * R[n - j] for j in range(1, n + 1))
+        R.append(sum(terms, 0 * S[0]) / (2 * n))
     return R

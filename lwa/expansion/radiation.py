@@ -34,9 +34,9 @@ from flint import fmpq_mpoly
 from lwa.algebra.model import Model
 from lwa.base.frozen import Value
 from lwa.cell import Cell
+from lwa.expansion.observables import shares_model
 from lwa.expansion.pulse import by_degree
 from lwa.expansion.recursion import Recursion
-from lwa.law import Power
 from lwa.linear.bloch import Bloch
 
 if TYPE_CHECKING:
@@ -49,8 +49,8 @@ SPAN = 20.0
 PHASES = (0.85, 0.92, 1.0, 1.08, 1.16)
 """Factors of K_0² that move the integral off its zeros."""
 
-FACTOR, POWER = 1.0, 0.75
-"""Parameters of the bound `Radiation.relative`, FACTOR · contrast · amplitude^POWER."""
+POWER = 0.75
+"""Exponent of the amplitude in the bound `Radiation.relative`."""
 
 
 @dataclass(frozen=True)
@@ -76,7 +76,7 @@ class Radiation(Value):
         """Bound on the relative error of c², widths, momentum and energy at this k."""
         if self.contrast <= 0:
             return 0.0
-        return float(FACTOR * self.contrast * self.amplitude(k) ** POWER)
+        return float(self.contrast * self.amplitude(k) ** POWER)
 
     def amplitude(self, k: float) -> float:
         """The amplitude R at this k for the peak force 1, times ``lightest``."""
@@ -110,37 +110,33 @@ def radiation(cell: Cell, k: sp.Expr) -> Radiation | None:
 
     k may be a symbol where contacts are equal; the strain shares of unequal ones depend on k.
     """
-    alike = len({*cell.stiffnesses}) == 1
-    if alike and len({*cell.masses}) == 1:
+    model = shares_model(cell, k)
+    values = (*cell.masses, *cell.stiffnesses, model.k)
+    if cell.uniform or any(x.free_symbols for x in values):
         return None
-    model = Model(cell, Power(sp.S.One if alike else k))
-    if any(x.free_symbols for x in (*cell.masses, *cell.stiffnesses, model.k)):
-        return None
-    if not all(float(x) for x in (*cell.fractions, *cell.shares(model.k))):
-        return None  # a mass or a compliance that underflows
     import numpy as np  # start-up: `import lwa` does not load it
 
-    values = _values(model)
-    trace = [_float(t, values) for t in Bloch(model).trace(cell.size)]
+    ring = _ring_values(model)
+    trace = [_float(t, ring) for t in Bloch(model).trace(cell.size)]
     trace[0] = 0.0  # 2 cos(Pκ) = 2 at κ = 0, where one root is 0
     squares = np.roots(trace[:0:-1]).real
     if not squares.size:  # optical frequencies beyond a double: the pulse excites none
         return None
     wave = Recursion(model, 2)
-    I = _float(wave.I, (1.0, *values))
+    I = _float(wave.I, (1.0, *ring))
     first = by_degree(wave.fields.log_force[0][2])
-    quadratic, quartic = (_float(first.get(d, wave.zero), (1.0, *values)) for d in (2, 4))
+    quadratic, quartic = (_float(first.get(d, wave.zero), (1.0, *ring)) for d in (2, 4))
     return Radiation(
         contrast=(12 * I - 1) / 3,  # a dimer has I = (1 - 3b + 3b²)/3, b = m̂_1, hence (1 - 2b)²
         I=I,
         optical=float(np.min(squares)),
-        lightest=cell.size * min(_float(mu, (1.0, *values)) for mu in wave.mu),
+        lightest=cell.size * min(_float(mu, (1.0, *ring)) for mu in wave.mu),
         quadratic=quadratic / I**4,
         quartic=quartic / I**5,
     )
 
 
-def _values(model: Model) -> tuple[float, ...]:
+def _ring_values(model: Model) -> tuple[float, ...]:
     """Float values of the generators of the model's coefficient ring, in their order."""
     values = [] if model.k.is_Rational else [model.k]
     for part in (model.ring.masses, model.ring.contacts):

@@ -25,7 +25,6 @@ order: they are computed once with q_n = 0, and its contribution is added when q
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from math import factorial
 
 from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
@@ -40,9 +39,6 @@ from lwa.linear.bloch import Bloch
 LINEAR = 3
 """The first n for which q_n² is beyond t^{n+2}."""
 
-LastTerm = Callable[[Series, Series, Series], fmpq_mpoly]
-"""Function of two fields and the wave's own: the last term of an exponential or a logarithm."""
-
 
 class Fields:
     """The fields e^{-Z²/4} Σ S_n t^n of a wave, or changes of the fields, as lists of S_n.
@@ -53,11 +49,9 @@ class Fields:
     """
 
     def __init__(self, size: int) -> None:
-        self.force: list[Series] = [[] for _ in range(size)]
-        self.strain: list[Series] = [[] for _ in range(size)]
-        self.slope: list[Series] = [[] for _ in range(size)]
-        self.log_force: list[Series] = [[] for _ in range(size)]
-        self.log_strain: list[Series] = [[] for _ in range(size)]
+        self.force, self.strain, self.slope, self.log_force, self.log_strain = (
+            [list[fmpq_mpoly]() for _ in range(size)] for _ in range(5)
+        )
         self.means: list[Series] = []
         self.pushes: list[Series] = []
 
@@ -77,8 +71,7 @@ class Fields:
         for row, terms in zip(self._rows, change._rows, strict=True):
             for j, term in enumerate(terms, start=n):
                 row[j] = row[j] + term
-        pairs = ((self.means, change.means), (self.pushes, change.pushes))
-        for rows, changes in pairs:
+        for rows, changes in ((self.means, change.means), (self.pushes, change.pushes)):
             for j, terms in enumerate(changes, start=n):
                 for m, term in enumerate(terms):
                     rows[j][m] = rows[j][m] + term
@@ -142,16 +135,8 @@ class Recursion:
 
         The residual is that of the last equation, the balance of momentum, divided by P.
         """
-
-        def exponential(log: Series, S: Series, _: Series) -> fmpq_mpoly:
-            return exp_term(log, S)
-
-        def logarithm(S: Series, log: Series, _: Series) -> fmpq_mpoly:
-            return log_term(S, log)
-
         fields = self.fields
-        width = self.zero if n % 2 or not n else -((-self.epsilon) ** (n // 2)) * self.Z**2 / 4
-        self._step(fields, n, self.zero if q is None else q, width, exponential, logarithm)
+        self._step(fields, n, self.zero if q is None else q)
         residual = self.zero
         for mu, slope in zip(self.mu, fields.slope, strict=True):
             residual = residual + mu * self._accelerated(slope, n)
@@ -161,58 +146,51 @@ class Recursion:
 
     def _change(self, q: fmpq_mpoly) -> Fields:
         """Contribution of q_n to the fields at t^n, t^{n+1} and t^{n+2}, n ≥ `LINEAR`."""
-
-        def exponential(log: Series, _: Series, S: Series) -> fmpq_mpoly:
-            return _last(log, S)  # of δ e^S = e^S δS
-
-        def logarithm(change: Series, log: Series, S: Series) -> fmpq_mpoly:
-            return change[-1] - _last([*log, self.zero], S)
-
         change = Fields(self.P)
         for j in range(3):
-            self._step(change, j, self.zero if j else q, self.zero, exponential, logarithm)
+            self._step(change, j, self.zero if j else q)
         return change
 
-    def _step(
-        self,
-        fields: Fields,
-        n: int,
-        q: fmpq_mpoly,
-        width: fmpq_mpoly,
-        exponential: LastTerm,
-        logarithm: LastTerm,
-    ) -> None:
-        """Add the terms at t^n to the wave's fields or to a change of them.
+    def _step(self, fields: Fields, n: int, q: fmpq_mpoly) -> None:
+        """Add the terms at t^n to the wave's fields, or to a small change of them."""
+        wave, P = self.fields, range(self.P)
+        linear = fields is not wave
 
-        ``width`` is the Gaussian's term of the logarithm of the strain.
-        """
-        own, P = self.fields, range(self.P)
+        def exponential(log: Series, S: Series, of_wave: Series) -> fmpq_mpoly:
+            return _last(log, of_wave) if linear else exp_term(log, S)  # δ e^S = e^S δS
+
+        def logarithm(S: Series, log: Series, of_wave: Series) -> fmpq_mpoly:
+            return S[-1] - _last([*log, self.zero], of_wave) if linear else log_term(S, log)
+
         for i in P:
             S, log = fields.force[i], fields.log_force[i]
             if i == 0:
                 log.append(q)
-                S.append(exponential(log, S, own.force[0]))
-            else:
+                S.append(exponential(log, S, wave.force[0]))
+            else:  # f_i = f_{i-1} + P m̂_i γ ∂s_i
                 S.append(fields.force[i - 1][n])
                 if n:
                     inertia = self.derivative(self._accelerated(fields.slope[i], n - 1))
                     S[n] = S[n] + self.P * self.mu[i] * inertia
-                log.append(logarithm(S, log, own.force[i]))
-            strain, log_strain = fields.strain[i], fields.log_strain[i]
-            log_strain.append(width)
-            for m in range(n // 2 + 1):  # r = f^{1/(1+ε)}
-                log_strain[n] = log_strain[n] + (-self.epsilon) ** m * log[n - 2 * m]
-            strain.append(exponential(log_strain, strain, own.strain[i]))
+                log.append(logarithm(S, log, wave.force[i]))
+            # r = f^{1/(1+ε)}: log r = Σ (-ε)^m log f, whose Gaussian leaves -(-ε)^m Z²/4 for m ≥ 1
+            gaussian = n and n % 2 == 0 and not linear
+            log_r = -((-self.epsilon) ** (n // 2)) * self.Z**2 / 4 if gaussian else self.zero
+            for m in range(n // 2 + 1):
+                log_r = log_r + (-self.epsilon) ** m * log[n - 2 * m]
+            strain = fields.strain[i]
+            fields.log_strain[i].append(log_r)
+            strain.append(exponential(fields.log_strain[i], strain, wave.strain[i]))
         mean = sum((c * r[n] for c, r in zip(self.c, fields.strain, strict=True)), self.zero)
         fields.means.append(self._derivatives(mean / self.P, fields.means))
         fields.pushes.append(self._derivatives(fields.force[-1][n], fields.pushes))
         slope = self.zero
-        for m, term in enumerate(fields.means[n]):  # P∂/(e^{P∂} - 1)
+        for m, term in enumerate(fields.means[n]):  # s_0 = P∂/(e^{P∂} - 1) of the mean strain
             if factor := _bernoulli(m):
                 slope = slope + fmpq(self.P**m, factorial(m)) * factor * term
         for i in P:
             fields.slope[i].append(slope)
-            if n:
+            if n:  # s_{i+1} = s_i + C_i ∂r_i
                 slope = slope + self.c[i] * self.derivative(fields.strain[i][n - 1])
 
     def _accelerated(self, slope: Series, n: int) -> fmpq_mpoly:

@@ -13,7 +13,6 @@ from lwa.base.frozen import Value
 from lwa.cell import Cell, exponent
 from lwa.cell import k as symbol_k
 from lwa.expansion.approximants import Resummed, pade, resum
-from lwa.expansion.cost import short
 from lwa.expansion.observables import equal_beads
 from lwa.expansion.radiation import Radiation, radiation
 
@@ -64,25 +63,21 @@ class EpsilonSeries(Value):
         return radiation(self.cell, self.k) if self.cell else None
 
     def partial_sum(self, k: Any = None, order: Any = None) -> sp.Expr:
-        """The sum to ε^order, exact.
-
-        k : a number or a symbol in place of the series' own symbol k.
+        """The exact sum to ε^order; a number or symbol k replaces the series' own symbol k.
 
         >>> from lwa import Cell, expand
         >>> expand(Cell([1]), 2).c2.partial_sum("3/2")
         17/20
         """
         series = self._for(k)
-        last = self.order if order is None else integer(order, "order", 0)
-        if last > self.order:
-            raise InputError(f"order is {shorten(last)}: the series ends at ε^{self.order}")
+        last = self.order if order is None else integer(order, "order", 0, self.order)
         terms = (a * series._epsilon**n for n, a in enumerate(series.coefficients[: last + 1]))
         return series._unit * sp.Add(*terms)
 
     def pade(self, k: Any, numerator: int, denominator: int) -> sp.Expr:
-        """The approximant [L/M] in ε, exact; k as in `partial_sum`, None for the series' own.
+        """The exact approximant [L/M] in ε; k as in `partial_sum`, None for the series' own.
 
-        Raises `lwa.InputError` where the series is too short, or has none.
+        Raises `lwa.InputError` where the series is too short, or has no such approximant.
 
         >>> from lwa import Cell, expand
         >>> expand(Cell([1]), 2).c.pade("k", 1, 1)
@@ -110,14 +105,14 @@ class EpsilonSeries(Value):
             raise InputError(f"k is {series.k}: the expansion in k - 1 is summed for k > 1")
         base = equal_beads(self.quantity, self.order) if series.radiation else ()
         lost = series.radiation.relative(float(series.k)) if series.radiation else 0.0
-        found = resum(series.coefficients, series._epsilon, base, series._unit, lost)
-        if not found.error < found.value:
-            more = "higher orders do not help" if found.asymptotic else "a higher order may help"
+        total = resum(series.coefficients, series._epsilon, base, series._unit, lost)
+        if not total.error < total.value:
+            more = "higher orders do not help" if total.asymptotic else "a higher order may help"
             raise InputError(
                 f"no sum at k = {shorten(series.k)}: to ε^{self.order} its error is as large as "
                 f"itself; {more}"
             )
-        return found
+        return total
 
     @property
     def _epsilon(self) -> sp.Expr:
@@ -131,14 +126,13 @@ class EpsilonSeries(Value):
         """The series with this k for its symbol."""
         if k is None:
             return self
-        new = short(exponent(k, self.cell), "k")
+        new = exponent(k, self.cell)
         if not self.k.is_Symbol:
             raise InputError(f"k is {new}, but the series is that of k = {self.k}: leave k out")
+        at = {self.k: new}
+        coefficients = tuple(a.xreplace(at) for a in self.coefficients)
         return replace(
-            self,
-            prefactor=self.prefactor.xreplace({self.k: new}),
-            coefficients=tuple(a.xreplace({self.k: new}) for a in self.coefficients),
-            k=new,
+            self, prefactor=self.prefactor.xreplace(at), coefficients=coefficients, k=new
         )
 
     def __repr__(self) -> str:
@@ -152,16 +146,11 @@ class EpsilonSeries(Value):
         >>> print(expand(Cell([1]), 6).c2.latex())
         c^2 = 1 - \frac{1}{2} \varepsilon + \frac{2}{5} \varepsilon^{2} + \dots
         """
-        body = ""
-        for n, a in enumerate(self.coefficients[:SHOWN]):
-            if a:
-                text = rf"\bigl({latex.expression(a)}\bigr)" if a.is_Add else latex.expression(a)
-                sign, text = ("-", text[1:].strip()) if text.startswith("-") else ("+", text)
-                power = rf"\varepsilon^{{{n}}}" if n > 1 else r"\varepsilon" * n
-                text = power if text == "1" and n else f"{text} {power}".rstrip()
-                body += f" {sign} {text}" if body else f"{sign}{text}".lstrip("+")
-        body += r" + \dots"
-        unit = self.prefactor * sp.Symbol(r"\varepsilon") ** self.power
+        epsilon = sp.Symbol(r"\varepsilon")
+        powers = ["", *(latex.power(epsilon, n) for n in range(1, SHOWN))]
+        shown = zip(self.coefficients, powers, strict=False)
+        body = latex.total((a, power) for a, power in shown if a) + r" + \dots"
+        unit = self.prefactor * epsilon**self.power
         name = f"{_LETTERS[self.quantity]} = " if self.quantity else ""
         return name + (body if unit == 1 else rf"{sp.latex(unit)} \Bigl({body}\Bigr)")
 

@@ -1,14 +1,15 @@
 """Peak forces of pulses made by a striker, a graded chain or an interface, by quasi-particles.
 
 The wave of a chain of equal beads has the momentum P and the energy E of a particle of mass
-m_eff = P²/(2E) (`lwa.ExpandedWave.effective_mass`), and collides nearly like such a particle. An
+m_eff = P²/(2E) (`lwa.Expansion.effective_mass`), and collides nearly like such a particle. An
 elastic collision with a striker of mass m_s and velocity v gives the quasi-particle the velocity
 w = 2 m_s v/(m_s + m_eff), hence E = ½ m_eff w², and E ∝ F^{(k+1)/k} gives the peak force F. This is
-a rule; its errors are bounds of measured ones (cf. Job et al., Granular Matter 10, 13 (2007)).
+a rule; its errors are bounds of measured errors (cf. Job et al., Granular Matter 10, 13 (2007)).
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -52,13 +53,13 @@ class Strike(Value):
     velocity: sp.Expr
 
     @cached_property
-    def _effective(self) -> float:
+    def _effective_mass(self) -> float:
         return self.chain.effective_mass.at().value
 
     @cached_property
     def wave(self) -> ExpandedWave:
         """The chain's wave of the same peak force, without the error of the rule."""
-        k, m = self.chain.k, self._effective
+        k, m = self.chain.k, self._effective_mass
         w = 2 * float(self.mass * self.velocity) / (float(self.mass) + m)
         unit = self.chain.energy.at().value
         return ExpandedWave(self.chain, (m * w**2 / (2 * unit)) ** float(k / (k + 1)))
@@ -66,10 +67,9 @@ class Strike(Value):
     @property
     def force(self) -> Resummed:
         """Peak force of a contact."""
-        value = float(self.wave.F)
-        log = float(sp.log(self.mass / sp.Float(self._effective)))
-        known = sp.Rational(5, 4) <= self.chain.k <= sp.Rational(5, 2)
-        error = max(0.007, (0.03 if log > 0 else 0.11) * log**2) if known else float("nan")
+        value, log = float(self.wave.F), math.log(float(self.mass) / self._effective_mass)
+        measured = sp.Rational(5, 4) <= self.chain.k <= sp.Rational(5, 2)
+        error = max(0.007, (0.03 if log > 0 else 0.11) * log**2) if measured else math.nan
         return replace(self.wave.speed, value=value, error=value * error)
 
     @property
@@ -82,11 +82,11 @@ class Strike(Value):
         width = self.wave.fwhm(quantity, extent)
         return width if extent == "length" else self._of_force(width)
 
-    def _of_force(self, found: Resummed) -> Resummed:
-        """A quantity proportional to F^{±(k-1)/(2k)}, with the force's error added to its own."""
+    def _of_force(self, quantity: Resummed) -> Resummed:
+        """A quantity proportional to F^{±(k-1)/(2k)}, with the error that the force's adds."""
         k, force = self.chain.k, self.force
-        share = float((k - 1) / (2 * k)) * force.error / force.value
-        return replace(found, error=found.error + found.value * share)
+        relative = float((k - 1) / (2 * k)) * force.error / force.value
+        return replace(quantity, error=quantity.error + quantity.value * relative)
 
     def _repr_latex_(self) -> str:
         rows = [f"F = {self.force.latex()}", rf"\mathrm{{d}}x/\mathrm{{d}}t = {self.speed.latex()}"]
@@ -112,18 +112,17 @@ def pulse_of_strike(
 
     Raises `lwa.InputError` for other chains, and for values that are no positive numbers.
     """
-    if not isinstance(chain, Cell) or len({*chain.masses}) + len({*chain.stiffnesses}) > 2:
+    if not isinstance(chain, Cell) or not chain.uniform:
         raise InputError(f"chain is {shorten(chain)}: a Cell of equal beads and contacts is wanted")
     if (velocity is None) == (drop is None):
         raise InputError("velocity or drop: one of the two is wanted")
     if velocity is None:
         velocity = sp.sqrt(2 * GRAVITY * positive(drop, "drop"))
-    found = {"mass": positive(mass, "mass"), "velocity": positive(velocity, "velocity")}
-    found["k"] = exponent(k)
-    for name, value in found.items():
+    mass, velocity, k = positive(mass, "mass"), positive(velocity, "velocity"), exponent(k)
+    for name, value in (("mass", mass), ("velocity", velocity), ("k", k)):
         if value.free_symbols:
             raise InputError(f"{name} is {shorten(value)}: a number is wanted")
-    return Strike(expand(chain, ORDER, k=found["k"]), found["mass"], found["velocity"])
+    return Strike(expand(chain, ORDER, k=k), mass, velocity)
 
 
 def graded_force(force: Any, stiffness: Any, other: Any, k: Any = "k") -> sp.Expr:

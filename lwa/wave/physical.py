@@ -1,17 +1,16 @@
-"""The compact wave of a given peak force, in space and time.
+"""Waves of a given peak contact force in space and time, without and under a load.
 
 Letters as in `lwa.wave.closed` and `lwa.cell`: D is the spacing, P the number of particles of a
-cell, M its mass, A_eff its stiffness. All contacts of a cell carry the same force at leading order,
-F = A_eff (D u_x)^k. The wave whose contact force peaks at F has the peak strain
-B = (F/A_eff)^{1/k} / D and, by V² = f B^{k-1} with the number f of `CompactWave.speed_factor` and
-dx/dt = V √(P k A_eff D^{k+1} / M), the speed
+cell, M its mass, A_eff its stiffness. All contacts of a cell carry the same force at leading order.
+Results are in the units of the cell: in SI for `lwa.Cell.of_spheres`.
 
-    dx/dt = D √(f P k / M) A_eff^{1/(2k)} F^{(k-1)/(2k)}.
+Without load F = A_eff (D u_x)^k, so that the wave whose contact force peaks at F has the peak
+strain B = (F/A_eff)^{1/k} / D. A contact has the force F cos^{mk}(βξ), m = 2/(k-1),
+ξ = x - (dx/dt) t. A bead bears the mean force of its two contacts, half a spacing before and behind
+the bead, which peaks at F cos^{mk}(βD/2).
 
-A contact has the force F cos^{mk}(βξ), m = 2/(k-1), ξ = x - (dx/dt) t. A bead bears the mean force
-of its two contacts, half a spacing before and behind the bead, which peaks at F cos^{mk}(βD/2).
-
-Everything is in the units of the cell: in SI for `lwa.Cell.of_spheres`.
+Under a static load F0 the contacts are at the mean compressions δ0 and, at the peak, δ1 with
+A F(δ) = F0 and F. The strain rises from p0 = δ0/D by B = (δ1 - δ0)/D (`lwa.wave.background`).
 """
 
 from __future__ import annotations
@@ -23,11 +22,12 @@ from typing import TYPE_CHECKING, Any
 import sympy as sp
 
 from lwa.base import latex
-from lwa.base.exact import InputError, number, one_of, positive, power, root, shorten
+from lwa.base.exact import InputError, evaluated, number, one_of, positive, power, root, shorten
 from lwa.base.frozen import Value
-from lwa.base.quantities import known, known_extent, strain_power
-from lwa.cell import RESERVED, meant, unmistakable
-from lwa.law import Power
+from lwa.base.quantities import NoSolitaryWave, known, known_extent, strain_power
+from lwa.cell import Cell, meant, unmistakable
+from lwa.law import ContactLaw, Power, for_cell, substituted
+from lwa.wave.background import WIDTH_DIGITS, BackgroundWave, taken_names
 from lwa.wave.closed import CompactWave
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ BEARERS = ("contact", "bead")
 
 @dataclass(frozen=True)
 class PhysicalWave(Value):
-    """The compact wave with a given peak force.
+    """The compact wave with a given peak force, in a chain without load.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ class PhysicalWave(Value):
     the wave, and for the force of a bead in a wave so short that its two contacts peak one after
     the other.
 
-    >>> from lwa import Cell, canonical_wave
+    >>> from lwa import canonical_wave
     >>> wave = canonical_wave(Cell(["m"], ["A"]), "3/2").at_force("F")
     >>> wave.compression, wave.speed
     (F**(2/3)/A**(2/3), 2*sqrt(5)*A**(1/3)*D*F**(1/6)/(5*sqrt(m)))
@@ -67,22 +67,29 @@ class PhysicalWave(Value):
         one_of(self.of, BEARERS, "of")
         force = positive(self.force, "force")
         unmistakable(list(force.free_symbols))
-        chain = (s.name for s in (*self.wave.cell.symbols, *self.wave.k.free_symbols))
-        taken = dict.fromkeys(chain, "a property of the chain") | RESERVED
-        object.__setattr__(self, "force", meant(force, "force", taken=taken))
+        object.__setattr__(
+            self, "force", meant(force, "force", taken=taken_names(self.cell, self._law))
+        )
         if self.of == "bead":
             self._bead_share  # noqa: B018 - a share that does not exist is refused here
 
     def latex_rows(self) -> list[str]:
         return latex.rows({"F": self.contact_force, "B": self.strain, latex.SPEED: self.speed})
 
-    # --- the wave's answers -----------------------------------------------------------------
+    @property
+    def cell(self) -> Cell:
+        """The periodic cell."""
+        return self.wave.cell
+
+    @property
+    def _law(self) -> Power:
+        return Power(self.wave.k)
 
     @cached_property
     def _bead_share(self) -> sp.Expr:
         """Ratio cos^{mk}(βD/2) of a bead's peak force to its contacts'."""
         wave, k = self.wave, self.wave.k
-        angle = (k - 1) / (4 * root(wave.dispersion))  # βD/2
+        angle = (k - 1) / (4 * root(wave.coefficient_sum))  # βD/2
         exponent = 2 * k / (k - 1)
         # At ξ = 0 the mean of cos^e(βξ ± angle) has its maximum only where it is concave.
         if angle.is_number and not (angle < sp.pi / 2 and exponent * sp.sin(angle) ** 2 < 1):
@@ -105,24 +112,25 @@ class PhysicalWave(Value):
     @cached_property
     def strain(self) -> sp.Expr:
         """The peak strain B."""
-        return self.compression / self.wave.cell.spacing
+        return self.compression / self.cell.spacing
 
     @cached_property
     def compression(self) -> sp.Expr:
         """The peak compression D B of a contact; the mean of unlike contacts (`compressions`)."""
-        return Power(self.wave.k).compression(self.wave.cell, self.contact_force)
+        return self._law.compression(self.cell, self.contact_force)
 
     @cached_property
     def compressions(self) -> tuple[sp.Expr, ...]:
         """The peak compression (F/A_i)^{1/k} of each contact of the cell."""
-        return Power(self.wave.k).compressions(self.wave.cell, self.contact_force)
+        return self._law.compressions(self.cell, self.contact_force)
 
     @cached_property
     def speed(self) -> sp.Expr:
-        """The physical speed dx/dt = V τ/t, in the units of the cell."""
+        """The speed dx/dt = D √(f P k / M) A_eff^{1/(2k)} F^{(k-1)/(2k)}, f = V²/B^{k-1}."""
+        # V² = f B^{k-1} times (τ/t)² = P k A_eff D^{k+1} / M, powers of each quantity collected.
         wave, k = self.wave, self.wave.k
-        factor = wave.speed_factor * wave.cell.size * k / wave.cell.mass
-        powers = power(wave.cell.stiffness(k), 1 / (2 * k))
+        factor = wave.speed_factor * self.cell.size * k / self.cell.mass
+        powers = power(self.cell.stiffness(k), 1 / (2 * k))
         return wave.D * root(factor) * powers * power(self.contact_force, (k - 1) / (2 * k))
 
     @cached_property
@@ -134,20 +142,17 @@ class PhysicalWave(Value):
     def momentum(self) -> sp.Expr:
         """The momentum Σ m u_t = M/(P D) · B dx/dt · ∫ cos^m(βξ) dξ of the chain."""
         wave, m = self.wave, self.wave.m
-        density = wave.cell.mass / (wave.cell.size * wave.D)
+        density = self.cell.mass / (self.cell.size * wave.D)
         arch = sp.sqrt(sp.pi) * sp.gamma((m + 1) / 2) / (wave.beta * sp.gamma(m / 2 + 1))
         return density * arch * self.bead_velocity
 
     def fwhm(self, quantity: str = "force", extent: str = "length") -> sp.Expr:
-        """Full width at half maximum of "strain", "force" or "velocity", a "length" or a "time".
+        """Full width at half maximum of "strain", contact "force" or "velocity".
 
-        The force is that of a contact. Raises `lwa.InputError` for other words.
+        extent : "length" or "time" (of passage). Raises `lwa.InputError` for other words.
         """
-        known_extent(extent)
         length = self.wave.fwhm(quantity)
-        return length if extent == "length" else length / self.speed
-
-    # --- curves -----------------------------------------------------------------------------
+        return length if known_extent(extent) == "length" else length / self.speed
 
     def curve(self, t: ArrayLike, quantity: str = "force", of: str = "") -> Array:
         """Course in time: values of "force", "strain" or "velocity" at the times t, peak at t = 0.
@@ -157,29 +162,23 @@ class PhysicalWave(Value):
 
         Raises `lwa.InputError` for other words, and where the wave or its force holds symbols.
 
-        >>> from lwa import Cell, canonical_wave
+        >>> from lwa import canonical_wave
         >>> canonical_wave(Cell([1], spacing=1), "3/2").at_force(8).curve([-99, 0, 99])
         array([0., 8., 0.])
         """
         from lwa.base.arrays import finite  # start-up: it loads NumPy
 
-        return self._along(-number(self.speed) * finite(t, "t"), quantity, of)
+        return self.along(-number(self.speed) * finite(t, "t"), quantity, of)
 
     def along(self, x: ArrayLike, quantity: str = "force", of: str = "") -> Array:
         """Profile in space: values at the positions x when the peak is at x = 0; see `curve`."""
-        from lwa.base.arrays import finite  # start-up: it loads NumPy
-
-        return self._along(finite(x, "x"), quantity, of)
-
-    def _along(self, xi: Array, quantity: str, of: str) -> Array:
         import numpy as np  # start-up: `lwa wave` does without
 
-        wave, k = self.wave, number(self.wave.k)
-        peak = {
-            "strain": self.strain,
-            "force": self.contact_force,
-            "velocity": self.bead_velocity,
-        }[known(quantity)]
+        from lwa.base.arrays import finite
+
+        wave, k, xi = self.wave, number(self.wave.k), finite(x, "x")
+        peaks = {"strain": self.strain, "force": self.contact_force, "velocity": self.bead_velocity}
+        peak = number(peaks[known(quantity)])
         beta, exponent = number(wave.beta), 2 * strain_power(quantity, k) / (k - 1)
 
         def arch(x: Array) -> Array:
@@ -188,15 +187,110 @@ class PhysicalWave(Value):
 
         if one_of(of or self.of, BEARERS, "of") == "bead" and quantity != "velocity":
             half = number(wave.D) / 2
-            return np.asarray(number(peak) * (arch(xi - half) + arch(xi + half)) / 2)
-        return np.asarray(number(peak) * arch(xi))
+            return np.asarray(peak * (arch(xi - half) + arch(xi + half)) / 2)
+        return np.asarray(peak * arch(xi))
 
     def at(self, **values: Any) -> PhysicalWave:
-        """Substitute numbers (or other symbols) for the named symbols.
+        """Substitute numbers (or other symbols) for the named symbols, the force's among them.
 
-        Symbols of the force are taken too. Raises the errors of `lwa.TravelingWave.at`.
+        Raises the errors of `lwa.TravelingWave.at`.
         """
-        own = {s.name: s for s in self.force.free_symbols}
-        new = {own[n]: positive(value, n) for n, value in values.items() if n in own}
-        rest = {name: value for name, value in values.items() if name not in own}
+        symbols = {s.name: s for s in self.force.free_symbols}
+        new = {symbols[n]: positive(value, n) for n, value in values.items() if n in symbols}
+        rest = {name: value for name, value in values.items() if name not in symbols}
         return PhysicalWave(self.wave.at(**rest), self.force.xreplace(new), self.of)
+
+
+@dataclass(frozen=True)
+class PrecompressedWave(Value):
+    """The wave whose contact force peaks at ``force`` in a chain with the load ``precompression``.
+
+    Both forces are total ones, numbers or symbols; the dynamic force is the difference of the two.
+    A ``force`` below the load is that of a rarefaction wave. Under a law that is no power forces
+    and chain must be numbers. For equal spheres V²/c0² is Nesterenko's
+    (4/15) (3 + 2 ζ^{5/2} - 5 ζ) / (ζ - 1)², ζ = (F/F0)^{2/3}, c0 the speed of sound.
+
+    Raises `lwa.InputError` unless both are positive, and `lwa.NoSolitaryWave` without a wave.
+
+    >>> wave = PrecompressedWave(Cell(["m"]), Power(2), "F", "F0")
+    >>> wave.sound_speed
+    sqrt(2)*D*F0**(1/4)/sqrt(m)
+    """
+
+    cell: Cell
+    law: ContactLaw
+    force: sp.Expr
+    precompression: sp.Expr
+
+    def __post_init__(self) -> None:
+        for_cell(self.law, self.cell)
+        taken = taken_names(self.cell, self.law)
+        for name in ("force", "precompression"):
+            value = meant(positive(getattr(self, name), name), name, taken=taken)
+            object.__setattr__(self, name, value)
+        if self.force == self.precompression:
+            raise NoSolitaryWave(
+                f"force and precompression are both {self.force}: there is no wave"
+            )
+
+    def latex_rows(self) -> list[str]:
+        rows = {"F_{0}": self.precompression, "F": self.force, "B": self.strain}
+        return [*self.law.latex_rows(), *latex.rows(rows | {latex.SPEED: self.speed})]
+
+    @cached_property
+    def static_compression(self) -> sp.Expr:
+        """The compression δ0 of a contact under the load; the mean of unequal contacts."""
+        return self.law.compression(self.cell, self.precompression)
+
+    @cached_property
+    def compression(self) -> sp.Expr:
+        """The peak compression δ1 - δ0 that the wave adds."""
+        return self.law.compression(self.cell, self.force) - self.static_compression
+
+    @cached_property
+    def compressions(self) -> tuple[sp.Expr, ...]:
+        """The peak compression that the wave adds, for each contact of the cell."""
+        shares = self.cell.shares(self.law.exponent)
+        return tuple(share * self.compression for share in shares)
+
+    @property
+    def strain(self) -> sp.Expr:
+        """The rise B of the strain."""
+        return self.compression / self.cell.spacing
+
+    @cached_property
+    def background(self) -> BackgroundWave:
+        """The waves on the strain of this load."""
+        return BackgroundWave(self.cell, self.law, self.static_compression / self.cell.spacing)
+
+    @cached_property
+    def speed(self) -> sp.Expr:
+        """The speed dx/dt."""
+        return self.background.speed(self.strain) * self.background.time_scale
+
+    @cached_property
+    def sound_speed(self) -> sp.Expr:
+        """The speed dx/dt of long small waves."""
+        return sp.powdenest(self.background.sound_speed * self.background.time_scale)
+
+    @property
+    def bead_velocity(self) -> sp.Expr:
+        """The peak velocity B dx/dt of the beads."""
+        return self.strain * self.speed
+
+    def fwhm(self, quantity: str = "force", extent: str = "length") -> sp.Expr:
+        """Full width at half maximum of the rise, as `PhysicalWave.fwhm`; the chain is numbers."""
+        waves = self.background
+        length = waves.fwhm(self.strain, quantity)
+        if known_extent(extent) == "length":
+            return length
+        # In units of D, where D is a symbol: SymPy does not follow terms with symbols that cancel.
+        return length / (evaluated(waves.in_unit(self.speed), WIDTH_DIGITS) * waves.unit)
+
+    def at(self, **values: Any) -> PrecompressedWave:
+        """The wave with numbers (or other symbols) for the named symbols.
+
+        Raises `lwa.InputError` for a name that does not occur or a value that is no quantity.
+        """
+        fields = (self.cell, self.law, self.force, self.precompression)
+        return PrecompressedWave(*substituted(values, *fields))

@@ -6,15 +6,13 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import sympy as sp
 
-from lwa.base.exact import InputError, exact, number, shorten
-from lwa.base.quantities import QUANTITIES, strain_power
+from lwa.base.exact import InputError, exact, shorten
 from lwa.cell import Cell
 from lwa.cell import k as symbol_k
 from lwa.law import Power
 from lwa.wave.background import BackgroundWave
 from lwa.wave.closed import CompactWave
-from lwa.wave.physical import PhysicalWave
-from lwa.wave.precompressed import PrecompressedWave
+from lwa.wave.physical import PhysicalWave, PrecompressedWave
 
 if TYPE_CHECKING:
     from lwa.wave.numeric import NumericWave
@@ -49,25 +47,6 @@ class TravelingWave(CompactWave):
         if of != "contact":
             raise InputError(f"of is {shorten(of)}: under a load it is the force of a contact")
         return PrecompressedWave(self.cell, Power(self.k), F, load)
-
-    def plot(self, ax: Any = None) -> Any:
-        """Draw strain and contact force along the chain on ``ax`` or a new figure.
-
-        Returns the axes. Raises `lwa.InputError` unless k and the masses are numbers.
-        """
-        import numpy as np  # start-up: `lwa wave` does without
-
-        from lwa.wave.plots import axes
-
-        k, beta = number(self.k), number(self.beta * self.D)
-        y = np.linspace(-0.6, 0.6, 501) * np.pi
-        arch = np.where(np.abs(y) < np.pi / 2, np.cos(y), 0.0)
-        ax = axes(ax)
-        for q in QUANTITIES[:2]:
-            ax.plot(y / beta, arch ** (2 * strain_power(q, k) / (k - 1)), label=q)
-        ax.set(xlabel="ξ/D", ylabel="over its peak", title=f"compact wave, k = {self.k}")
-        ax.legend()
-        return ax
 
     def on_background(self, p0: Any = "p0") -> BackgroundWave:
         """Return the waves of this chain on a strain p0; this wave must be the canonical field's.

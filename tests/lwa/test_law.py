@@ -35,10 +35,8 @@ def there(value):
 
 DERIVED = [
     (Dimer("m1", "m2"), 7, {"closure": "full"}),
-    (Dimer("m1", "m2"), 7, {"closure": "full", "field": "center"}),
     (Dimer("m1", "m2"), 8, {}),
     (Cell([1, 2, 3]), 6, {"closure": "full", "field": "center"}),
-    (Cell([1]), 9, {}),
 ]
 
 
@@ -121,8 +119,6 @@ def force(law, strain):
 
 LAWS = [
     named("hertz2", 2, "1/3"),
-    named("polynomial", "1/2", -2),
-    named("lennard-jones", 11),
     Law(y**3 / (1 + y), y),
 ]
 
@@ -154,7 +150,7 @@ def test_the_canonical_equation_of_a_law_without_form():
     slope, bend = (F(d).diff(d, n).subs(d, p) for n in (1, 2))
     I = Dispersion(cell).I
     flux = F(p) + I * (slope * u.diff(x, 3) + bend * u.diff(x, 2) ** 2 / 2)
-    for form in (lambda s: s**4 + s**2, lambda s: sp.exp(2 * s), sp.atan):
+    for form in (lambda s: s**4 + s**2, lambda s: sp.exp(2 * s)):
         difference = (flux.diff(x) - pde.right_side(u, x)).replace(F, form).doit()
         assert sp.simplify(difference) == 0
     assert pde.I == I

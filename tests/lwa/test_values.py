@@ -2,6 +2,7 @@
 
 import copy
 import pickle
+from functools import cache
 from itertools import combinations
 
 import pytest
@@ -56,9 +57,14 @@ MADE = {
 }
 
 
-@pytest.mark.parametrize("make", MADE.values(), ids=MADE)
-def test_equal_derivations_are_equal_and_travel(make):
-    one, two = make(), make()
+@cache
+def made(name):
+    return MADE[name]()
+
+
+@pytest.mark.parametrize("name", MADE)
+def test_equal_derivations_are_equal_and_travel(name):
+    one, two = made(name), MADE[name]()
     assert one is not two
     assert one == two
     assert len({one, two}) == 1
@@ -70,8 +76,7 @@ def test_equal_derivations_are_equal_and_travel(make):
 
 
 def test_different_ones_are_not():
-    made = [make() for make in MADE.values()]
-    for one, other in combinations(made, 2):
+    for one, other in combinations(map(made, MADE), 2):
         assert one != other
 
 
@@ -110,10 +115,10 @@ def test_repr_is_one_short_line(order):
     assert repr(theory().pde.coefficients[2]) == "{}"
 
 
-@pytest.mark.parametrize("make", MADE.values(), ids=MADE)
-def test_a_notebook_shows_it_in_latex(make):
+@pytest.mark.parametrize("name", MADE)
+def test_a_notebook_shows_it_in_latex(name):
     """A display whose braces match, without Python's names of functions."""
-    shown = make()._repr_latex_()
+    shown = made(name)._repr_latex_()
     assert shown.startswith("$$")
     assert shown.endswith("$$")
     assert shown.count("{") == shown.count("}")
@@ -125,16 +130,13 @@ def test_latex_is_the_papers_equation_at_any_order():
         r"u_{\tau\tau} &= u_{x}^{k-1} u_{xx} + G u_{x}^{k-3} u_{xx}^{3} "
         r"+ H u_{x}^{k-2} u_{xx} u_{xxx} + I u_{x}^{k-1} u_{4x}"
     )
-    for order, end in ((4, r" \\"), (6, r" + \cdots \\"), (12, r" + \cdots \\")):
+    for order, end in ((4, r" \\"), (8, r" + \cdots \\")):
         for piece in (theory(order), theory(order).pde):
             shown = piece._repr_latex_()
             assert equation + end in shown
             assert len(shown) < 2000
     optical = theory(branch="optical").pde._repr_latex_()
     assert r"u_{\tau\tau} &= -u^{k} + D^{2} \Bigl(" in optical
-    for make in MADE.values():
-        shown = getattr(make(), "_repr_latex_", None)
-        assert shown is None or shown().startswith("$")
 
 
 def test_at_substitutes_everywhere():

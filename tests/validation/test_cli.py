@@ -22,8 +22,7 @@ from validation.report import command
 from validation.report.result import Report
 from validation.scenes.chains import chain_scene
 from validation.scenes.checks import SceneError
-from validation.scenes.document import document
-from validation.scenes.scenefile import read_scene, scene
+from validation.scenes.scenefile import document, read_scene, scene
 from validation.studies.limits import report
 from validation.studies.run import EXAMPLES
 
@@ -42,19 +41,19 @@ def test_paper_text(capsys):
     status, out, err = run(capsys, "paper")
     assert (status, err) == (0, "")
     assert out.startswith("38 beads, steel (the striker, 1.37 m/s)")
-    assert "no gravity; sensors in beads 15 and 34" in " ".join(out.split())
+    assert "steel wall; sensors in beads 15 and 34" in " ".join(out.split())
 
 
 def test_paper_options(capsys, tmp_path):
     picture = tmp_path / "p.svg"
     status, out, err = run(
-        capsys, "paper", "--velocity", "1/2", "--beads", "24", "--sensors", "9,20", "--gravity",
+        capsys, "paper", "--velocity", "1/2", "--beads", "24", "--sensors", "9,20",
         "--format", "json", "--plot", str(picture),
     )  # fmt: skip
     assert (status, err) == (0, "")
     found = json.loads(out)
     assert (found["velocity_value"], found["beads"]) == (0.5, 24)
-    assert (found["sensors"], found["gravity_value"]) == ([9, 20], 9.81)
+    assert found["sensors"] == [9, 20]
     assert picture.read_text().startswith("<?xml")
 
 
@@ -152,11 +151,7 @@ def test_run_stores_the_samples(capsys, scene_file, tmp_path):
     assert found == json.loads(out)
     with np.load(arrays) as held:
         assert json.loads(str(held["document"])) == found
-        columns = {f"{table}_{name}" for table in ("sensors", "speeds") for name in found[table][0]}
-        names = {name.removesuffix("_value") for name in records}
-        assert set(held) - {"document"} == names | columns
-        for sensor, peak in zip(found["sensors"], held["sensors_peak_value"], strict=True):
-            assert sensor["peak_value"] == peak
+        assert set(held) - {"document"} == {name.removesuffix("_value") for name in records}
         for name, values in records.items():
             np.testing.assert_array_equal(held[name.removesuffix("_value")], values)
         assert held["contact_force"].shape == held["compression"].shape == (2, 601)
@@ -175,12 +170,13 @@ def test_what_a_run_stored_is_loaded_and_runs_again(capsys, folder, scene_file, 
     found = load_run(stored)
     assert found.scene == read_scene("scene.toml")
     assert found.contact_force.shape == (3, 601)
-    assert list(found.sensors["kind"]) == ["bead", "contact", "contact", "contact"]
-    heard = found.contact_force.max(axis=1)
-    assert found.sensors["peak_value"][1:3] == pytest.approx(heard[:2], rel=1e-3)
-    assert np.isnan(found.sensors["peak_value"][3])
-    assert found.sensors["missing"][3].startswith("the pulse is not wholly")
-    assert found.speeds["speed_value"].shape == (2,)
+    bead, *contacts, last = found.document["sensors"]
+    assert bead["kind"] == "bead"
+    for contact, force in zip(contacts, found.contact_force, strict=False):
+        assert contact["peak_value"] == pytest.approx(force.max(), rel=1e-3)
+    assert last["peak_value"] is None
+    assert last["missing"].startswith("the pulse is not wholly")
+    assert len(found.document["speeds"]) == 2
     again = load_run(f"again{suffix}")
     assert again == found
     assert (
@@ -251,11 +247,10 @@ def test_the_scenes_own_file_is_not_overwritten(capsys, folder):
     file.write_text(text)
     Path("link.json").symlink_to("same.json")
     Path("hard.npz").hardlink_to(file)
-    Path("p.svg").symlink_to("same.json")
     for given, option, out in (
         ("same.json", "--out", "same.json"), ("same.json", "--out", f"{folder}/same.json"),
         ("link.json", "--out", "same.json"), ("same.json", "--out", "link.json"),
-        ("same.json", "--out", "hard.npz"), ("same.json", "--plot", "p.svg"),
+        ("same.json", "--out", "hard.npz"),
     ):  # fmt: skip
         for arguments in ((given, option, out), (option, out, given)):
             status, shown, err = run(capsys, "run", *arguments)
@@ -288,12 +283,9 @@ def test_the_first_example_is_the_experiment_of_the_paper(capsys):
     assert found == replace(expected, samples=found.samples, contact_sensors=())
 
 
-def test_the_help_of_run_shows_the_format_and_the_examples():
+def test_the_help_of_run_names_the_examples():
     shown = CliRunner().invoke(cli.validate, ["run", "--help"]).output
-    for name, (says, _) in EXAMPLES.items():
-        assert re.search(rf"  {name} +{re.escape(says)}\n", shown)
-    for line in EXAMPLES["paper"][1].splitlines():
-        assert line in shown
+    assert f"[{'|'.join(EXAMPLES)}]" in "".join(shown.split())
 
 
 @pytest.mark.parametrize("name", ["out.json", "out.npz"])
@@ -361,7 +353,7 @@ BAD_RUNS = [
     ),
     (("--out", "no/such/o.json"), SCENE, "out is no/such/o.json: it cannot be written, No such"),
     (("--plot", "picture.txt"), SCENE, "plot is picture.txt: a file ending in"),
-    (("--plot", "p.svg"), SCENE.replace("sensors", "#"), "plot is p.svg, but the scene names no s"),
+    (("--plot", "p.svg"), SCENE.replace("sensors", "#"), "plot is asked for: this result has no"),
     (("--out", "o.csv"), SCENE.replace("sensors", "#"), "out is o.csv, but the scene names no s"),
     (
         ("--out", "o.json"),
@@ -483,11 +475,10 @@ LONG_RUNS = [
     (SCENE + "wall = {stiffness = 1e-320}", (), "scene.toml: wall.stiffness is 1e-320: floats"),
     (SCENE + "gravity = 1e10\nwall = {stiffness = 1}", (), "rtol is 1e-10: rounding of the static"),
     (SCENE + "gravity = 1e300\nwall = {stiffness = 1}", (), "the scene's .* comes out as .*:"),
-    (SCENE.replace("601", "10_000_000"), (), "scene.toml: samples is 10000000, for each of 3"),
+    (SCENE.replace("601", "10_000_000"), (), "samples is 1e.07: with 3 sensors and 20 beads"),
     (SCENE.replace("= 1}", "= 1e200}"), (), "the scene's energy comes out as inf: choose other"),
     (SCENE.replace("1.5", "1e308"), _SPLIT, "the scene's .* comes out as 0: choose"),
     (SCENE.replace("repeat = 10,", "repeat = 10_000,"), ("--method", "LSODA"), "samples .* GB"),
-    (SCENE + "defects = [{bead = 3, mass = 2}, {bead = 3, mass = 4}]", (), "scene.toml: defects"),
 ]  # fmt: skip
 
 
@@ -531,11 +522,10 @@ def test_warnings_of_numpy_do_not_reach_the_user(capsys):
 def test_only_regular_files_are_read(capsys, tmp_path):
     os.mkfifo(tmp_path / "pipe.toml")
     (tmp_path / "folder.json").mkdir()
-    (tmp_path / "device.toml").symlink_to("/dev/zero")
-    for name, kind in (("pipe.toml", "a pipe"), ("folder.json", "a f"), ("device.toml", "a dev")):
+    for name in ("pipe.toml", "folder.json"):
         status, out, err = run(capsys, "run", str(tmp_path / name))
         assert (status, out, err.count("\n")) == (2, "", 1)
-        assert err.startswith(f"lwa-validate: {tmp_path / name}: {kind}")
+        assert err == f"lwa-validate: {tmp_path / name}: only regular files are read\n"
 
 
 def test_exact_scaled_to_a_speed_or_a_force(capsys):
@@ -547,28 +537,26 @@ def test_exact_scaled_to_a_speed_or_a_force(capsys):
     assert shown["--speed",]["c_value"] == pytest.approx(2, rel=1e-14)
     assert shown["--force",]["amplitude_value"]["force"] == pytest.approx(3, rel=1e-13)
     for found in shown.values():
-        for name, width in shown[()]["rms_value"].items():
-            assert found["rms_value"][name] == pytest.approx(width, rel=1e-10)
+        for name, width in shown[()]["fwhm_value"].items():
+            assert found["fwhm_value"][name] == pytest.approx(width, rel=1e-10)
     status, out, err = run(capsys, "exact", "--speed", "2", "--force", "3")
     assert (status, out) == (2, "")
     assert "scaled to one of the two" in err
 
 
-def test_the_list_of_studies_is_what_they_say():
-    """The help is told without loading any of them."""
+def test_every_study_is_a_command():
     context = click.Context(cli.validate)
-    for name, (_, says) in cli.studies().items():
+    for name in cli.STUDIES:
         found = cli.validate.get_command(context, name)
         assert found.name == name
-        assert " ".join(found.help.split()) == " ".join(says.split())
         assert {"--format", "--plot"} <= {o for p in found.params for o in p.opts}
     assert cli.validate.get_command(context, "nothing") is None
 
 
 @pytest.mark.parametrize("name", ["accuracy", "figures", "hard", "limits"])
 def test_a_long_command_says_in_its_help_how_long_it_takes(name):
-    says = cli.studies()[name][1]
-    assert re.search(r"(minutes?|seconds)\b[^.]*\.$", says), says
+    _, summary = cli.STUDIES[name]
+    assert re.search(r"\(.*(minutes?|seconds)\)\.$", summary)
 
 
 @pytest.mark.parametrize("cases", [[1], [1, 2, 3]])

@@ -29,9 +29,8 @@ T = TypeVar("T")
 class Study(Generic[P]):
     """A function that returns a `Report`, with a ``command`` that prints the report."""
 
-    def __init__(self, function: Callable[P, Report], options: Iterable[Any], epilog: str) -> None:
-        self.function, self.name = function, function.__name__
-        self.options, self.epilog = tuple(options), epilog
+    def __init__(self, function: Callable[P, Report], options: Sequence[Any]) -> None:
+        self.function, self.options = function, options
         update_wrapper(self, function)
 
     def __call__(self, *arguments: P.args, **options: P.kwargs) -> Report:
@@ -40,12 +39,12 @@ class Study(Generic[P]):
     @property
     def command(self) -> click.Command:
         """The Click command, named like the function; its exit status is 1 if a finding fails."""
-        wants = inspect.signature(self.function).parameters
         function: Callable[..., Report] = self.function
+        parameters = inspect.signature(function).parameters
 
         def run(style: str, picture: Path | None, **values: Any) -> int:
-            offered = {"progress": progress, "run_progress": run_progress, "picture": picture}
-            values |= {name: value for name, value in offered.items() if name in wants}
+            displays = {"progress": progress, "run_progress": run_progress}
+            values |= {name: show for name, show in displays.items() if name in parameters}
             try:
                 with warnings.catch_warnings():  # NumPy's: what overflows is refused or NaN
                     warnings.simplefilter("ignore", RuntimeWarning)
@@ -53,40 +52,35 @@ class Study(Generic[P]):
             except Failure as error:
                 raise click.ClickException(str(error)) from None
             if style == "json":
-                written = json.dumps(report.document(), indent=2, allow_nan=False)
+                printed = json.dumps(report.document(), indent=2, allow_nan=False)
             else:
-                written = report.csv().rstrip("\n") if style == "csv" else report.text()
+                printed = report.csv().rstrip("\n") if style == "csv" else report.text()
             if picture is not None:
                 report.save(picture)
-            click.echo(written)
+            click.echo(printed)
             return 0 if report.ok else 1
 
         for option in (*_OUTPUT, *reversed(self.options)):
             run = option(run)
-        says = (inspect.getdoc(self.function) or "").partition("\n\n")[0]
-        command = click.command(
-            self.name, help=says, epilog=self.epilog or None, context_settings=HELP
-        )
+        summary, _, _ = (inspect.getdoc(function) or "").partition("\n\n")
+        command = click.command(function.__name__, help=summary, context_settings=HELP)
         return command(run)
 
     def main(self, arguments: Sequence[str] | None = None) -> None:
         """Run the command as a program, for a file that defines one study and is executed."""
-        run_command(self.command, f"{self.name}.py", arguments)
+        run_command(self.command, f"{self.function.__name__}.py", arguments)
 
 
-def study(*options: Any, epilog: str = "") -> Callable[[Callable[P, Report]], Study[P]]:
+def study(*options: Any) -> Callable[[Callable[P, Report]], Study[P]]:
     """Return a decorator that gives a function returning a `Report` a command (see `Study`).
 
-    The command has the function's name.
+    The command has the function's name. options : its options, made by `option` or Click.
 
-    options : options of the command, made by `option` or Click, one for each parameter.
-    epilog : text below the options in the command's help.
-
-    A function may have three further parameters, which the command sets: ``progress`` shows how
-    many cases are done, ``run_progress`` how far a run of the lattice is
-    (`validation.lattice.run.RunProgress`), and ``picture`` is the file of ``--plot``.
+    A function may have two further parameters, which the command sets: ``progress`` shows how many
+    cases are done, and ``run_progress`` how far a run of the lattice is
+    (`validation.lattice.run.RunProgress`).
     """
-    return lambda function: Study(function, options, epilog)
+    return lambda function: Study(function, options)
 
 
 def option(*names: str, default: Any = None, says: str = "", **more: Any) -> Any:
@@ -138,19 +132,18 @@ def _picture(context: click.Context, given: click.Parameter, path: str | None) -
 
 
 _OUTPUT = (
-    click.option(
+    option(
         "--plot",
         "picture",
         callback=_picture,
         metavar="FILE",
-        help=f"Draw the result into a file ({', '.join(SUFFIXES)}).",
+        says=f"Draw the result into a file ({', '.join(SUFFIXES)}).",
     ),
-    click.option(
+    option(
         "--format",
         "style",
         type=click.Choice(("text", "json", "csv")),
         default="text",
-        show_default=True,
-        help="How to print the result.",
+        says="How to print the result.",
     ),
 )

@@ -16,7 +16,7 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, S
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import partial
-from itertools import groupby, takewhile
+from itertools import chain, groupby, takewhile
 from statistics import median
 from typing import Any, TypeVar
 
@@ -29,7 +29,7 @@ from validation.lattice.run import IntegrationError, Run
 from validation.lattice.simulate import COMPILED, simulate
 from validation.pictures import Curve, Panel
 from validation.pulses.pulse import MeasureError, Pulse, highest_pulse
-from validation.pulses.sensors import tracks
+from validation.pulses.sensors import READINGS, tracks
 from validation.report.command import option, study
 from validation.report.result import Report
 from validation.report.table import Column, Table
@@ -38,9 +38,6 @@ from validation.scenes.checks import one_of
 from validation.scenes.scene import Scene
 from validation.studies.theories import SOLITARY, STRUCK_CHAIN, ladder, place
 from validation.waves.solver import exact_wave
-
-NUMBERS = ("arrival", "peak", "fwhm")
-"""Attributes of a `Pulse` that are compared."""
 
 WANTED = (1e-4, 1e-6, 1e-8, 1e-10)
 """Relative errors of the peak force at which costs are compared."""
@@ -84,16 +81,16 @@ class Task:
         return highest_pulse(track.force)
 
     def errors(self, run: Run, truth: Pulse) -> dict[str, float]:
-        """Return the relative error of each of `NUMBERS`; ∞ if the run shows no pulse."""
+        """Return the relative error of each of `READINGS`; ∞ if the run shows no pulse."""
         try:
             return relative_errors(self.read(run), truth)
         except MeasureError:
-            return dict.fromkeys(NUMBERS, math.inf)
+            return dict.fromkeys(READINGS, math.inf)
 
 
 def relative_errors(pulse: Pulse, truth: Pulse) -> dict[str, float]:
-    """Return |pulse/truth - 1| for each of `NUMBERS`."""
-    return {name: abs(getattr(pulse, name) / getattr(truth, name) - 1) for name in NUMBERS}
+    """Return |pulse/truth - 1| for each of `READINGS`."""
+    return {name: abs(getattr(pulse, name) / getattr(truth, name) - 1) for name in READINGS}
 
 
 def struck_chain(omega: float, beads: int, contact: int, duration: float) -> Task:
@@ -176,7 +173,7 @@ class Timing:
     """Error and CPU time of one run.
 
     method : name of the integrator, with "window" where the run had one. setting : tolerance.
-    errors : relative error of each of `NUMBERS`; infinite without a pulse. seconds : CPU time.
+    errors : relative error of each of `READINGS`; infinite without a pulse. seconds : CPU time.
     """
 
     task: str
@@ -191,18 +188,18 @@ class Timing:
         return max(self.errors.values())
 
 
-_Found = TypeVar("_Found")
+T = TypeVar("T")
 
 
-def timed(run: Callable[[], _Found]) -> tuple[_Found, float]:
+def timed(run: Callable[[], T]) -> tuple[T, float]:
     """Call ``run``; return the result and the CPU time in seconds, for short runs a median."""
     taken: list[float] = []
     while True:
         start = time.process_time()
-        found = run()
+        result = run()
         taken.append(time.process_time() - start)
         if len(taken) == _REPEATS or sum(taken) > _ENOUGH:
-            return found, median(taken)
+            return result, median(taken)
 
 
 def cost(rows: Iterable[Timing], wanted: float) -> float:
@@ -216,97 +213,89 @@ def cost(rows: Iterable[Timing], wanted: float) -> float:
     return min((row.seconds for row in good), default=math.inf)
 
 
-def runs(name: str, task: Task, truth: Pulse) -> Iterator[Timing]:
+def runs(
+    name: str, task: Task, methods: Mapping[str, Sequence[float]] = METHODS
+) -> Iterator[Timing]:
     """Run a task by each method at each tolerance; yield the `Timing` of each run."""
-    for method, tolerances in METHODS.items():
+    truth = task.truth or task.read(simulate(task.scene, rtol=FINEST))
+    for method, tolerances in methods.items():
         windowed = method in COMPILED and task.scene.wall is None
         for window in (False, True) if windowed else (False,):
             options: dict[str, Any] = {"method": method.split()[-1], "window": window}
             if method in COMPILED:
                 simulate(task.scene, rtol=1e-3, **options)  # compiles
             for rtol in tolerances:
-                run_once = partial(simulate, task.scene, rtol=rtol, atol=rtol, **options)
                 with suppress(IntegrationError):  # two windows differ
-                    run, seconds = timed(run_once)
+                    run, seconds = timed(
+                        partial(simulate, task.scene, rtol=rtol, atol=rtol, **options)
+                    )
                     title = method + ", window" * window
                     yield Timing(name, title, rtol, task.errors(run, truth), seconds)
 
 
-def by_method(rows: Iterable[Timing]) -> dict[str, list[Timing]]:
-    """Return the runs of each method; runs of one method must be neighbours."""
-    return {name: list(its) for name, its in groupby(rows, lambda row: row.method)}
-
-
-def _ms(seconds: float) -> str:
-    return f"{1e3 * seconds:.3g}"
-
-
-_RUNS = ("task", "method", "setting", "error", *(f"{name}_error" for name in NUMBERS), "seconds")
+_RUNS = ("task", "method", "setting", "error", *(f"{name}_error" for name in READINGS), "seconds")
 _COSTS = (
     Column("task"),
     Column("method", "CPU time (ms) for the peak force to"),
-    *(Column(f"seconds_{wanted:.0e}", f"{wanted:.0e}", format=_ms) for wanted in WANTED),
+    *(
+        Column(f"seconds_{wanted:.0e}", f"{wanted:.0e}", format=lambda s: f"{1e3 * s:.3g}")
+        for wanted in WANTED
+    ),
 )
 _NOTE = "CPU time without compilation, on this machine; - where no run attains it from there on."
 
 
-def _costs(task: str, rows: Sequence[Timing]) -> list[tuple[Any, ...]]:
+def _costs(task: str, methods: Mapping[str, Sequence[Timing]]) -> list[tuple[Any, ...]]:
     """Return rows: task, method, `cost` at each of `WANTED` (None: not attained), best first."""
-    found = [
-        (task, name, *(cost(its, wanted) for wanted in WANTED))
-        for name, its in by_method(rows).items()
-    ]
-    found.sort(key=lambda line: line[:1:-1])  # by the finest, where attained
-    return [tuple(None if part == math.inf else part for part in line) for line in found]
+    costs = {name: [cost(rows, wanted) for wanted in WANTED] for name, rows in methods.items()}
+    # by the finest error, where attained
+    names = sorted(costs, key=lambda name: costs[name][::-1])
+    return [(task, name, *(s if s < math.inf else None for s in costs[name])) for name in names]
 
 
-def _panel(task: str, rows: Sequence[Timing]) -> Panel:
+def _panel(task: str, methods: Mapping[str, Sequence[Timing]]) -> Panel:
     """Return the panel of CPU time as a function of the error, a curve for each method."""
     curves = []
-    for name, its in by_method(rows).items():
-        seen = [row for row in its if math.isfinite(row.error)]
-        curves.append(Curve(name, [row.error for row in seen], [row.seconds for row in seen]))
+    for name, rows in methods.items():
+        good = [row for row in rows if math.isfinite(row.error)]
+        curves.append(Curve(name, [row.error for row in good], [row.seconds for row in good]))
     label = "largest relative error of arrival, peak, FWHM"
     return Panel(label, "CPU time (s)", tuple(curves), "xy", task)
 
 
 @study(option("--task", "names", multiple=True, type=click.Choice(NAMES), says="Only this task."))
-def accuracy(names: Collection[str] = (), progress: Progress[str] = iter) -> Report:
+def accuracy(
+    names: Collection[str] = (),
+    methods: Mapping[str, Sequence[float]] = METHODS,
+    progress: Progress[str] = iter,
+) -> Report:
     """Speed against error: integrators on fixed tasks, theories against true waves (three minutes).
 
-    names: tasks to run, by default all; raises `lwa.InputError` for a name beside `NAMES`. JSON:
-    ``rows``, ``costs`` by method, ``references`` and ``theories``.
+    names: tasks to run, by default all; raises `lwa.InputError` for a name beside `NAMES`.
+    methods: tolerances of each integrator. JSON: ``rows``, a run each, ``costs`` by method, and
+    ``theories``.
     """
     wanted = {one_of(name, NAMES, "task") for name in names} or set(NAMES)
-    rows: dict[str, list[Timing]] = {}
-    references: list[tuple[Any, ...]] = []
+    tasks: dict[str, dict[str, list[Timing]]] = {}
     theories = Report("")
     for name in progress([name for name in NAMES if name in wanted]):
         if name == THEORY:
             theories = ladder([place(*case) for case in CASES])
-            continue
-        task = TASKS[name]()
-        truth = task.truth or task.read(simulate(task.scene, rtol=FINEST))
-        rows[name] = list(runs(name, task, truth))
-        references.append((name, *(getattr(truth, number) for number in NUMBERS)))
-    heads = {
-        task: f"{task}: arrival {arrival:.12g}, peak {peak:.12g}, FWHM {fwhm:.12g}"
-        for task, arrival, peak, fwhm in references
-    }
+        else:
+            rows = runs(name, TASKS[name](), methods)
+            tasks[name] = {method: list(its) for method, its in groupby(rows, lambda r: r.method)}
     cells = tuple(
         (r.task, r.method, r.setting, r.error, *r.errors.values(), r.seconds)
-        for its in rows.values()
-        for r in its
+        for by_method in tasks.values()
+        for r in chain.from_iterable(by_method.values())
     )
-    spent = tuple(line for task, its in rows.items() for line in _costs(task, its))
+    costs = tuple(line for task, by_method in tasks.items() for line in _costs(task, by_method))
     return Report(
         "Speed against error",
         (
             Table(tuple(map(Column, _RUNS)), cells, "rows"),
-            Table(_COSTS, spent, "costs", note=_NOTE, by="task", heads=heads),
-            Table(tuple(map(Column, ("task", *NUMBERS))), tuple(references), "references"),
+            Table(_COSTS, costs, "costs", note=_NOTE, by="task"),
             *theories.tables,
         ),
-        panels=(*(_panel(task, its) for task, its in rows.items()), *theories.panels),
-        data=theories.data,
+        panels=(*(_panel(task, runs) for task, runs in tasks.items()), *theories.panels),
     )

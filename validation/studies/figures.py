@@ -9,28 +9,28 @@ bead, is drawn by `book/studies/widths.py`.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 from lwa import PhysicalWave, canonical_wave
 from lwa.base.progress import Progress
 from validation.lattice.run import Run
-from validation.lattice.simulate import simulate_many
+from validation.lattice.simulate import simulate, simulate_many, twice
 from validation.pictures import Curve, Panel
 from validation.pulses.pulse import Measured, compared, exponent, first_passage
 from validation.pulses.train import Train
 from validation.report.command import study
 from validation.report.result import Report
 from validation.report.table import Column, Table, percent
-from validation.scenes.materials import DIAMETER, PTFE, PTFE_BEAD
-from validation.studies import paper
-from validation.studies.paper import HERTZ, chain_cell, chain_runs
+from validation.scenes.chains import DIAMETER, PTFE, PTFE_BEAD
+from validation.studies.paper import BEADS, HERTZ, SENSORS, TOLERANCES, chain_cell, recorded_chain
 
 RECORDED = {1: (15, 24, 33), 2: (16, 24, 34)}  # N → beads of figure 2; 24 is PTFE
-MOST = 22  # the largest N
+CHAINS = range(1, 23)  # N
 HEIGHTS = (0.1, 0.2, 0.4, 0.6, 0.8, 1.0, 1.2)  # drop heights of figure 3a, in m
 MODULI = (1.46e9, 0.6e9)  # of PTFE, in Pa: dynamic, as in the paper, and nominal static
+GRAVITY = 9.81  # m/s²
 
 
 class Speed(NamedTuple):
@@ -60,8 +60,17 @@ class Scaling:
         """Exponent e of V_s ~ F_m^e, by least squares."""
         return exponent(self.forces, self.speeds)
 
+    @property
+    def cells(self) -> tuple[Any, ...]:
+        """Cells below `_SCALINGS`."""
+        speeds, forces = ([x.value for x in row] for row in (self.speeds, self.forces))
+        return self.E, self.exponent, speeds, forces, self.theory
 
-_PARTS = ("value", "error")
+
+def _ends(values: Sequence[float]) -> str:
+    return f"{values[0]:.5g} … {values[-1]:.5g}"
+
+
 _SPEEDS = (
     Column("N", "chain", format="{}:1".format),
     Column("speed", "V_s lattice", "m/s", error=True),
@@ -75,80 +84,72 @@ accurate run"""
 _SCALINGS = (
     Column("modulus_value", "E of PTFE", "GPa", format=lambda E: f"{E / 1e9:g}"),
     Column("exponent", "exponent of V_s in F_m", error=True),
-    Column("", "less 1/6", format="+.0e"),
-    Column("speed_value", "V_s", "m/s", format=lambda V: f"{V[0]:.1f} … {V[-1]:.1f}"),
-    Column("speed_error_value"),
-    Column("force_value", "F_m", "N", format=lambda F: f"{F[0]:.2f} … {F[-1]:.2f}"),
-    Column("force_error_value"),
-    Column("theory_value", "V_s theory", "m/s", format=lambda V: f"{V[0]:.1f} … {V[-1]:.1f}"),
+    Column("speed_value", "V_s", "m/s", format=_ends),
+    Column("force_value", "F_m", "N", format=_ends),
+    Column("theory_value", "V_s theory", "m/s", format=_ends),
 )
-_SCALINGS_TITLE = f"drop heights {HEIGHTS[0]:g} … {HEIGHTS[-1]:g} m; the paper fits 0.1666"
+_SCALINGS_TITLE = "V_s ~ F_m^e over drop heights {:g} … {:g} m; the paper fits e = 0.1666"
 
 
-def report(
-    records: Mapping[int, Run], speeds: Sequence[Speed], scalings: Sequence[Scaling]
+@study()
+def figures(
+    chains: Sequence[int] = CHAINS,
+    moduli: Sequence[float] = MODULI,
+    heights: Sequence[float] = HEIGHTS,
+    progress: Progress[Any] = iter,
 ) -> Report:
-    """Return tables and panels of the runs of figure 2 (by N), the N:1 chains and figure 3a."""
+    """The paper's figures: force records, N:1 chains, force against speed (ten seconds).
+
+    chains: N of the N:1 chains. moduli: of PTFE, in Pa. heights: of the striker's drops, in m.
+
+    ``speeds``: ``N``, ``speed``, ``force`` and ``theory``, each ``_value``; ``scalings``:
+    ``modulus_value``, ``exponent_value`` and lists over the drop heights ``speed_value``,
+    ``force_value``, ``theory_value``; ``scaling``: the first of them; ``forces``: ``N``, ``beads``,
+    ``time_value``, ``force_value``.
+    """
+    records = {N: forces(N) for N in progress([*RECORDED])}
+    speeds = [chain_speed(N) for N in progress(chains)]
+    scalings = [scaling(E, heights) for E in progress(moduli)]
     first = tuple((*s, s.theory / s.speed.value - 1) for s in speeds)
-    rows = []
-    for s in scalings:
-        parts = [[getattr(x, part) for x in row] for row in (s.speeds, s.forces) for part in _PARTS]
-        rows.append((s.E, s.exponent, s.exponent.value - 1 / 6, *parts, s.theory))
-    second = Table(_SCALINGS, tuple(rows), "scalings", title=_SCALINGS_TITLE)
-    forces = [
+    title = _SCALINGS_TITLE.format(heights[0], heights[-1])
+    second = Table(_SCALINGS, tuple(s.cells for s in scalings), "scalings", title=title)
+    data = [
         {"N": N, "beads": RECORDED[N], "time_value": run.time, "force_value": run.bead_force}
         for N, run in records.items()
     ]
-    panels = [_forces_panel(N, run) for N, run in records.items()]
     return Report(
         "",
         (Table(_SPEEDS, first, "speeds", title=_SPEEDS_TITLE), second),
-        panels=(*panels, _scaling_panel(scalings)),
-        data={"scaling": second.document()[0], "forces": forces},
+        panels=(*(_forces_panel(N, run) for N, run in records.items()), _scaling_panel(scalings)),
+        data={"scaling": second.document()[0], "forces": data},
     )
 
 
 def _forces_panel(N: int, run: Run) -> Panel:
+    """Return the panel of force against time, figure 2."""
     rows = enumerate(zip(RECORDED[N], run.bead_force, strict=True))
     curves = (Curve(f"bead {bead}", 1e6 * run.time, f, f"C{i}-") for i, (bead, f) in rows)
     return Panel("time (µs)", "force of the bead (N)", tuple(curves), title=f"{N}:1 chain")
 
 
-def _scaling_panel(rows: Sequence[Scaling]) -> Panel:
+def _scaling_panel(scalings: Sequence[Scaling]) -> Panel:
+    """Return the panel of speed against peak force, figure 3a."""
     curves = []
-    for i, row in enumerate(rows):
+    for i, row in enumerate(scalings):
         label = f"E = {row.E / 1e9:g} GPa: exponent {row.exponent.value:.4f}"
-        forces, speeds = ([m.value for m in found] for found in (row.forces, row.speeds))
+        _, _, speeds, forces, theory = row.cells
         curves.append(Curve(label, forces, speeds, f"C{i}{'os'[i]}"))
-        curves.append(Curve("theory, $F_m^{1/6}$", forces, row.theory, f"C{i}-"))
+        curves.append(Curve("theory, $F_m^{1/6}$", forces, theory, f"C{i}-"))
     return Panel("peak force $F_m$ (N)", "speed $V_s$ (m/s)", tuple(curves), "xy")
-
-
-@study()
-def figures(progress: Progress[Any] = iter) -> Report:
-    """The paper's figures: force records, N:1 chains, force against speed (ten seconds).
-
-    ``speeds``: ``N``, ``speed``, ``force`` and ``theory``, each ``_value``; ``scalings``:
-    ``modulus_value``, ``exponent_value`` and lists over the drop heights ``speed_value``,
-    ``force_value``, ``theory_value``; ``scaling``: the one with the dynamic modulus; ``forces``:
-    ``N``, ``beads``, ``time_value``, ``force_value``.
-    """
-    parts: list[tuple[Callable[[Any], Any], Any]] = [(forces, N) for N in RECORDED]
-    parts += [(chain_speed, N) for N in range(1, MOST + 1)]
-    parts += [(scaling, E) for E in MODULI]
-    found: dict[Any, dict[Any, Any]] = {}
-    for part, argument in progress(parts):
-        found.setdefault(part, {})[argument] = part(argument)
-    records, speeds, scalings = found.values()
-    return report(records, tuple(speeds.values()), tuple(scalings.values()))
 
 
 def forces(N: int) -> Run:
     """Simulate the N:1 chain of figure 2; return the run, with sensors at beads `RECORDED`."""
-    return chain_runs(RECORDED[N], N=N)[0]
+    rtol = TOLERANCES[0]
+    return simulate(recorded_chain(RECORDED[N], N=N), rtol=rtol, atol=rtol)
 
 
-def chain_speed(N: int) -> Speed:
+def chain_speed(N: int, tolerances: tuple[float, float] = TOLERANCES) -> Speed:
     """Measure the speed of the N:1 chain's leading pulse far from the striker.
 
     The pulse is timed between two steel beads, at least three periods and 18 beads apart, by its
@@ -167,21 +168,25 @@ def chain_speed(N: int) -> Speed:
         )
         return {"speed": across * period * DIAMETER / (second - first), "force": train.peak}
 
-    runs = chain_runs(sensors, N=N, beads=max(paper.BEADS, (before + across + 3) * period))
-    found = compared(numbers, *runs)
+    scene = recorded_chain(sensors, N=N, beads=max(BEADS, (before + across + 3) * period))
+    found = compared(numbers, *twice(scene, *tolerances))
     wave = PhysicalWave(canonical_wave(chain_cell(N), HERTZ), found["force"].value, "bead")
     return Speed(N, found["speed"], found["force"], float(wave.speed))
 
 
-def scaling(E: float) -> Scaling:
-    """Compute figure 3a for a Young's modulus of PTFE, without gravity."""
+def scaling(
+    E: float,
+    heights: Sequence[float] = HEIGHTS,
+    tolerances: tuple[float, float] = TOLERANCES,
+) -> Scaling:
+    """Compute figure 3a for a Young's modulus of PTFE."""
     ptfe = replace(PTFE_BEAD, material=replace(PTFE, E=E))
-    velocities = (math.sqrt(2 * paper.GRAVITY * h) for h in HEIGHTS)
-    drops = [paper.recorded_chain(paper.SENSORS, v, ptfe=ptfe) for v in velocities]
-    pairs = zip(*(simulate_many(drops, rtol=rtol) for rtol in paper.TOLERANCES), strict=True)
-    trains = [tuple(map(Train.of, pair)) for pair in pairs]
-    speeds = tuple(Measured(fine.speed, coarse.speed) for fine, coarse in trains)
-    forces = tuple(Measured(fine.peak, coarse.peak) for fine, coarse in trains)
+    # A striker dropped from the height h has the velocity √(2gh).
+    drops = [recorded_chain(SENSORS, math.sqrt(2 * GRAVITY * h), ptfe=ptfe) for h in heights]
+    fine, coarse = ([*map(Train.of, simulate_many(drops, rtol=rtol))] for rtol in tolerances)
+    pairs = [*zip(fine, coarse, strict=True)]
+    speeds = tuple(Measured(train.speed, check.speed) for train, check in pairs)
+    forces = tuple(Measured(train.peak, check.peak) for train, check in pairs)
     wave = canonical_wave(chain_cell(ptfe=ptfe), HERTZ)
     theory = (float(wave.at_force(force.value, of="bead").speed) for force in forces)
     return Scaling(E, speeds, forces, tuple(theory))

@@ -79,7 +79,7 @@ def true_values(wave: TravelingWave, expression: sp.Expr, k: Array, omega: Array
     m1, m2 = wave.cell.masses
     value, *positive = (
         sp.lambdify((wave.k, m2), each.subs(m1, 1), "mpmath")
-        for each in (expression, wave.dispersion, wave.speed_factor)
+        for each in (expression, wave.coefficient_sum, wave.speed_factor)
     )
 
     def at(*point: float) -> Any:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -10,7 +10,7 @@ from typing import Any
 import click
 
 import validation.scenes
-from validation.lattice.run import Run, RunProgress
+from validation.lattice.run import RunProgress
 from validation.lattice.simulate import COMPILED, METHODS
 from validation.pulses.sensors import READINGS, SPEEDS, TOLERANCE, Reading, Recording, record
 from validation.report.command import option, study, whole
@@ -18,35 +18,20 @@ from validation.report.files import output_file
 from validation.report.result import Report
 from validation.report.table import Column, Table
 from validation.scenes.checks import SceneError
-from validation.scenes.document import document
-from validation.scenes.scene import Scene
-from validation.scenes.scenefile import read_scene
-from validation.studies.records import KEPT, SUFFIXES, load, store
+from validation.scenes.scenefile import document, read_scene
+from validation.studies.records import STORED, SUFFIXES, load, store
+
+EXAMPLES = ("paper", "vertical", "precompressed", "defect", "trimer")
+"""Names of the examples of scene files."""
 
 _NOTE = "{} at each sensor, in {} units. ±: difference to a less accurate run."
 _DYNAMIC = "\nDynamic force: force less the static force at the sensor."
 
 
-def _example(name: str) -> tuple[str, str]:
-    """Return the title of an example, the first line of its file, and the rest of the file."""
+def example(name: str) -> str:
+    """Return the text of an example of a scene file."""
     file = files(validation.scenes) / "examples" / f"{name}.toml"
-    title, _, text = file.read_text(encoding="utf-8").partition("\n")
-    return title.removeprefix("# "), text
-
-
-NAMES = ("paper", "vertical", "precompressed", "defect", "trimer")
-EXAMPLES = {name: _example(name) for name in NAMES}  # at import: the command's help shows them
-_LIST = "\n".join(f"  {name:14} {title}" for name, (title, _) in EXAMPLES.items())
-_SHOWN = EXAMPLES["paper"][1].replace("\n\n", "\n").rstrip()
-_EPILOG = f"""\b
-Examples:
-{_LIST}
-
-\b
-A scene file, in SI units if its beads are of materials:
-{_SHOWN}
-
-All keys: python -m pydoc validation.scenes.scenefile"""
+    return file.read_text(encoding="utf-8")
 
 
 def report(found: Recording, every: bool = False) -> Report:
@@ -57,77 +42,60 @@ def report(found: Recording, every: bool = False) -> Report:
     ``peak_value`` (of the dynamic force), ``fwhm_value``, ``static_force_value``, ``missing``;
     ``speeds``: ``kind``, ``from``, ``to``, ``speed_sites_value``, ``speed_value`` (null without
     spacings), ``missing``; each measured value with its error, as ``arrival_error_value``, and all
-    null where ``missing`` says why;
-    ``energy_drift_value``, and ``momentum_drift_value``, null with a wall; with damping the energy
-    ``dissipated_value``, with a drive its ``work_value``.
-    The picture shows the force at all sensors.
+    null where ``missing`` is the reason; ``energy_drift_value``, and ``momentum_drift_value``, null
+    with a wall; with damping the energy ``dissipated_value``, with a drive its ``work_value``.
     """
     run, scene = found.run, found.run.scene
     momentum = "not conserved" if (p := run.momentum_drift) is None else f"drift {p:.0e}"
-    missing = [f"{r.name}: {r.missing}" for r in found.sensors + found.speeds if r.missing]
-    forced = {}
+    title = f"{scene}, energy drift {run.energy_drift:.0e}"
+    data = {
+        "scene": document(scene),
+        "energy_drift_value": run.energy_drift,
+        "momentum_drift_value": run.momentum_drift,
+    }
     if scene.damping is not None:
-        forced["dissipated_value"] = run.dissipated
+        data["dissipated_value"] = run.dissipated
+        title += f", dissipated {run.dissipated:.6g}"
     if scene.drive is not None:
-        forced["work_value"] = run.work
-    spent = "".join(f", {name.removesuffix('_value')} {E:.6g}" for name, E in forced.items())
+        data["work_value"] = run.work
+        title += f", work {run.work:.6g}"
     which = "All pulses" if every else "First pulse"
     note = _NOTE.format(which, scene.units or "the scene's own") + _DYNAMIC * any(scene.load)
-    return Report(
-        f"{scene}, energy drift {run.energy_drift:.0e}{spent}, momentum {momentum}",
-        (_sensors(run, found.sensors, every), _speeds(scene, found.speeds)),
-        panels=tuple(run.pictured()),
-        notes=("\n".join(missing), note if found.sensors else ""),
-        data={
-            "scene": document(scene),
-            "energy_drift_value": run.energy_drift,
-            "momentum_drift_value": run.momentum_drift,
-        }
-        | forced,
-    )
-
-
-def _sensors(run: Run, found: Sequence[Reading], every: bool) -> Table:
-    """Return the table of the pulses; JSON alone has the column ``static_force_value``."""
-    peak = "peak dynamic force" if any(run.scene.load) else "peak force"
-    labels = (run.label("arrival"), run.label(peak), run.label("FWHM"))
-    columns = (
+    missing = [f"{r.name}: {r.missing}" for r in found.sensors + found.speeds if r.missing]
+    peak = "peak dynamic force" if any(scene.load) else "peak force"
+    labels = [run.label(name) for name in ("arrival", peak, "FWHM")]
+    sensors = (
         *(Column("", "sensor"), Column("kind"), Column("number")),
         *[Column("pulse", "pulse")] * every,
-        *_measured(READINGS, labels),
-        *(Column("static_force_value"), Column("missing")),
+        *(*_measured(READINGS, labels), Column("static_force_value"), Column("missing")),
     )
-    rows = (
-        (r.name, r.kind, *r.places, *[r.pulse] * every, *_cells(r, READINGS), r.static, r.missing)
-        for r in found
-    )
-    return Table(columns, tuple(rows), "sensors")
-
-
-def _speeds(scene: Scene, found: Sequence[Reading]) -> Table:
-    labels = ("sites/s", "m/s") if scene.units else ("sites/time", "length/time")
-    columns = (
+    units = ("sites/s", "m/s") if scene.units else ("sites/time", "length/time")
+    speeds = (
         *(Column("", "speed"), Column("kind"), Column("from"), Column("to")),
-        *(*_measured(SPEEDS, labels), Column("missing")),
+        *(*_measured(SPEEDS, units), Column("missing")),
     )
-    rows = ((r.name, r.kind, *r.places, *_cells(r, SPEEDS), r.missing) for r in found)
-    return Table(columns, tuple(rows), "speeds")
+    pulses = tuple(
+        (*_place(r), *[r.pulse] * every, *map(r.numbers.get, READINGS), r.static, r.missing)
+        for r in found.sensors
+    )
+    times = tuple((*_place(r), *map(r.numbers.get, SPEEDS), r.missing) for r in found.speeds)
+    return Report(
+        f"{title}, momentum {momentum}",
+        (Table(sensors, pulses, "sensors"), Table(speeds, times, "speeds")),
+        panels=tuple(run.pictured()),
+        notes=("\n".join(missing), note if found.sensors else ""),
+        data=data,
+    )
 
 
-def _measured(names: Sequence[str], labels: Sequence[str]) -> list[Column]:
-    pairs = zip(names, labels, strict=True)
-    return [Column(name, label, error=True) for name, label in pairs]
+def _measured(names: Sequence[str], labels: Sequence[str]) -> Iterator[Column]:
+    """Yield columns of measured numbers."""
+    return (Column(name, label, error=True) for name, label in zip(names, labels, strict=True))
 
 
-def _cells(found: Reading, names: Sequence[str]) -> list[Any]:
-    """Return the numbers by name; the first is "not followed" if a window had left the sensor."""
-    first, *others = names
-    left = "not followed" if (found.missing or "").startswith("not followed") else None
-    return [found.numbers.get(first, left), *map(found.numbers.get, others)]
-
-
-def _read(path: str) -> Scene:
-    return load(path).scene if path.lower().endswith(".npz") else read_scene(path)
+def _place(reading: Reading) -> tuple[Any, ...]:
+    """Return the first cells of a row: a reading's name, kind, and numbers of its sensors."""
+    return reading.name, reading.kind, *reading.places
 
 
 def _out(context: click.Context, given: click.Parameter, path: str | None) -> Path | None:
@@ -139,9 +107,9 @@ def _window(context: click.Context, given: click.Parameter, value: str | None) -
     return value == "" or (whole(context, given, value) or False)
 
 
-def _show(context: click.Context, given: click.Parameter, name: str | None) -> None:
+def _print_example(context: click.Context, given: click.Parameter, name: str | None) -> None:
     if name is not None and not context.resilient_parsing:  # completion parses resiliently
-        click.echo(EXAMPLES[name][1], nl=False)
+        click.echo(example(name), nl=False)
         context.exit()
 
 
@@ -149,12 +117,12 @@ def _show(context: click.Context, given: click.Parameter, name: str | None) -> N
     click.argument("scene"),
     option(
         "--example",
-        type=click.Choice(NAMES),
+        type=click.Choice(EXAMPLES),
         is_flag=False,
-        flag_value="paper",
+        flag_value=EXAMPLES[0],
         is_eager=True,
         expose_value=False,
-        callback=_show,
+        callback=_print_example,
         show_default=False,
         says="Print an example of a scene file, by default the paper's chain.",
     ),
@@ -190,7 +158,6 @@ def _show(context: click.Context, given: click.Parameter, name: str | None) -> N
         show_default=False,
         says="Measure all pulses at each sensor, not only the first.",
     ),
-    epilog=_EPILOG,
 )
 def run(
     scene: str,
@@ -199,21 +166,19 @@ def run(
     rtol: float,
     window: bool | int,
     pulses: bool,
-    picture: Path | None,
     run_progress: RunProgress,
 ) -> Report:
-    """A scene from a file, TOML or JSON: arrival, peak force, FWHM and speed at its sensors."""
-    what = _read(scene)
-    for name, file in (("out", out), ("plot", picture)):
-        if file is None:
-            continue
-        if file.exists() and file.samefile(scene):
-            raise SceneError(f"{name} is {file}: it is the scene's own file, which would be lost")
-        if file.suffix.lower() not in KEPT and not (what.bead_sensors or what.contact_sensors):
-            raise SceneError(f"{name} is {file}, but the scene names no sensors")
-    found = record(
-        what, method=method, rtol=rtol, every=pulses, window=window, progress=run_progress
-    )
+    """A scene from a file, TOML or JSON: arrival, peak force, FWHM and speed at its sensors. The
+    keys of a scene's file are listed by `python -m pydoc validation.scenes.scenefile`.
+    """
+    what = load(scene).scene if scene.lower().endswith(".npz") else read_scene(scene)
+    if out is not None and out.exists() and out.samefile(scene):
+        raise SceneError(f"out is {out}: it is the scene's own file, which would be lost")
+    sensors = what.bead_sensors or what.contact_sensors
+    if out is not None and out.suffix.lower() not in STORED and not sensors:
+        raise SceneError(f"out is {out}, but the scene names no sensors")
+    options: Any = {"method": method, "rtol": rtol, "window": window, "progress": run_progress}
+    found = record(what, every=pulses, **options)
     result = report(found, every=pulses)
     if out is not None:
         store(found.run, result.document(), out)

@@ -82,7 +82,7 @@ def test_the_command(capsys):
     ("option", "value", "message"),
     [
         ("spread", 0.6, "spread is 0.6: one from 0 to 0.5 is wanted"),
-        ("chains", 1, "chains is 1: one of 2 … 10000 is wanted"),
+        ("chains", 1, "chains is 1: an integer from 2 to 10000 is wanted"),
         ("k", 0.5, "k is 1/2: a compact wave needs k > 1"),
     ],
 )

@@ -19,5 +19,5 @@ def test_a_shaken_chain_has_blochs_gaps(masses):
 
 
 def test_too_short_a_chain_is_refused():
-    with pytest.raises(SceneError, match=r"^cells is 5: one of 40 … 1000 is wanted$"):
+    with pytest.raises(SceneError, match=r"^cells is 5: an integer from 40 to 1000 is wanted$"):
         transmission(cells=5)

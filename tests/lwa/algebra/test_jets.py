@@ -66,7 +66,7 @@ def test_antiderivative_of_what_is_no_derivative():
     assert algebra.antiderivative(r[1] * r[2], k) is None  # exact only with k r_1^3/2 beside it
 
 
-@pytest.mark.parametrize("exponent", [sp.Rational(3, 2), 3, sp.Rational(1, 3), -2])
+@pytest.mark.parametrize("exponent", [sp.Rational(3, 2), -2])
 def test_power_series_against_mpmath(exponent):
     """(1 + X)^k and its shift, order by order, against Taylor series at 40 digits."""
     order = 6

@@ -84,9 +84,7 @@ def lattice_accelerations(theory, order):
     return first, second, ansatz
 
 
-@pytest.mark.parametrize(
-    ("k", "m1", "m2"), [("3/2", 1, 1), ("3/2", "9/20", "123/1000"), ("11/4", 1, 3), ("2/3", 7, 2)]
-)
+@pytest.mark.parametrize(("k", "m1", "m2"), [("3/2", "9/20", "123/1000"), ("2/3", 7, 2)])
 def test_against_the_lattice_at_fifty_digits(k, m1, m2):
     order = 7
     with mpmath.workdps(70):
@@ -132,7 +130,7 @@ def truncated_product(a, b, order):
 
 
 @given(masses, masses)
-@settings(max_examples=15)
+@settings(max_examples=5)
 @pytest.mark.parametrize("branch", ["acoustic", "optical"])
 def test_k_equal_one_is_the_exact_dispersion_relation_to_order_12(branch, m1, m2):
     """With u = e^{qx} (q = iκ) both equations of motion become identities in q, order by order.
@@ -208,7 +206,7 @@ def test_the_defect_is_what_the_second_equation_says_less_of_G_and_H():
 
 
 @given(masses, masses, st.fractions(min_value="1/3", max_value=5, max_denominator=7))
-@settings(max_examples=10)
+@settings(max_examples=4)
 def test_numbers_and_symbols_give_the_same_theory(m1, m2, k):
     symbolic = homogenize(Dimer("m1", "m2"), order=6)
     numeric = homogenize(Dimer(m1, m2), order=6, k=k)

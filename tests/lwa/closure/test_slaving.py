@@ -20,7 +20,7 @@ from scipy.integrate import solve_ivp
 from lwa import Dimer, homogenize
 
 K, M1, M2, A = 1.5, 1.0, 0.25, 0.3
-SIZES = (20, 28, 40, 56)  # cells in the ring, which is one wavelength
+SIZES = (20, 28)  # cells in the ring, which is one wavelength
 ORDERS = (2, 3, 4, 5)
 MASSES = Dimer(sp.Rational(str(M1)), sp.Rational(str(M2)), spacing=1)
 

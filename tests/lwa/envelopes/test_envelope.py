@@ -72,12 +72,13 @@ def test_a_dimer_at_any_wavenumber():
     """In a symbol q, both branches, beside the floats at numbers."""
     for branch in (0, 1):
         found = envelope(Dimer(1, 2, spacing=1), HERTZ, background=1, wavenumber=q, branch=branch)
-        assert same(found.group_velocity, found.frequency.diff(found.wavenumber))
-        for kappa in ("1/2", "5/2"):
-            floats = found.at(q=kappa).numeric()
-            for name in ("frequency", "dispersion", "nonlinearity"):
-                ours = getattr(found, name).subs(found.wavenumber, sp.Rational(kappa))
-                assert float(ours) == pytest.approx(float(getattr(floats, name)), rel=1e-10)
+        floats = found.at(q="5/2").numeric()
+        names = ("frequency", "group_velocity", "dispersion", "nonlinearity")
+        pairs = [(getattr(found, name), getattr(floats, name)) for name in names]
+        pairs.append((found.frequency.diff(found.wavenumber), floats.group_velocity))
+        for ours, expected in pairs:
+            value = float(ours.subs(found.wavenumber, sp.Rational(5, 2)))
+            assert value == pytest.approx(float(expected), rel=1e-10)
 
 
 def test_mean_flow_and_second_harmonic_of_equal_beads():
@@ -198,10 +199,9 @@ def lattice_shift(springs, kappa, frequency, phi, flow, A, harmonics=5):
 
 
 @pytest.mark.parametrize("P", [1, 2, 3, 4])
-@pytest.mark.parametrize("seed", [0, 1])
-def test_plane_waves_of_random_cells_on_the_lattice(P, seed):
+def test_plane_waves_of_random_cells_on_the_lattice(P):
     """χ to four digits: the shift at two amplitudes, whose next order, in |A|⁴, is taken off."""
-    rng = np.random.default_rng([P, seed])
+    rng = np.random.default_rng([P, 1])
     masses, stiffnesses = (
         [sp.Rational(int(n), 8) for n in rng.integers(4, 17, P)] for _ in range(2)
     )
@@ -233,8 +233,7 @@ def test_plane_waves_of_random_cells_on_the_lattice(P, seed):
 @pytest.mark.parametrize(
     ("cell", "kappa"),
     [
-        *((Cell([1, "1/2"], [1, 8], 1), kappa) for kappa in (0, sp.pi / 3, sp.pi / 2, sp.pi)),
-        *((Cell([1, "1/2", "1/3"], spacing=1), kappa) for kappa in (0, sp.pi / 3)),
+        *((Cell([1, "1/2"], [1, 8], 1), kappa) for kappa in (0, sp.pi / 3)),
         (Cell([1, 2, "1/3", "3/4"], [1, 8, 1, 27], 1), sp.pi),
     ],
     ids=str,
@@ -253,8 +252,8 @@ def test_exact_numbers_are_those_of_floats(cell, kappa):
 
 
 def test_symbols_first_or_numbers_first():
-    chain = envelope(Cell([m1, m2], ["A1", "A2"], 1), Power("k"), background="p0")
-    values = {"m1": 3, "m2": "1/2", "A1": 1, "A2": 4, "k": 2, "p0": "1/5"}
+    chain = envelope(Cell([m1, m2], ["A1", 4], 1), HERTZ, background="p0")
+    values = {"m1": 3, "m2": "1/2", "A1": 1, "p0": "1/5"}
     late = chain.nonlinearity.xreplace(
         {s: sp.sympify(values[s.name]) for s in chain.nonlinearity.free_symbols}
     )

@@ -37,13 +37,9 @@ def power_of_what_is_left(pde):
 
 CASES = [
     (Cell([1]), 6, "3/2", {}, None),
-    (Cell([1], spacing="h"), 4, 2, {"closure": "full"}, None),
-    (Dimer(2, 2), 5, "5/4", {}, None),
     (Dimer(3, 1), 4, "3/2", {"closure": "full"}, None),
-    (Dimer(3, 1), 5, 3, {"closure": "full"}, None),
     (Dimer(3, 1), 6, 2, {"closure": "full", "field": "center"}, None),
     (Dimer(3, 1), 4, "3/2", {"closure": "full"}, {1: "1/5", 2: "1/3"}),
-    (Dimer(1, 2, N=2), 5, 2, {"closure": "full", "field": "center"}, None),
     (Cell([1, 2, 3], [1, 2, 3]), 5, 1, {"closure": "full"}, None),
 ]
 

@@ -40,9 +40,7 @@ def test_it_is_derived_for_any_law():
     assert not any(expanded(pde.coefficients[3], phi, theory.evolution.I / theory.cell.spacing**2))
 
 
-@pytest.mark.parametrize(
-    "law", [Power("k"), named("polynomial", "a", "b"), named("exponential", 1)]
-)
+@pytest.mark.parametrize("law", [Power("k"), named("exponential", 1)])
 def test_the_energy_is_conserved(law):
     """∂_τ e is ∂_x of the flux u_τ (F + I u_xττ): for u_ττ free, by the equation."""
     evolution = Evolution(Cell([1], spacing=1), law)
@@ -55,7 +53,7 @@ def test_the_energy_is_conserved(law):
     assert sp.simplify(density.diff(t) - flux.diff(x) - u.diff(t) * equation) == 0
 
 
-@pytest.mark.parametrize("k", ["6/5", "3/2", "3"])
+@pytest.mark.parametrize("k", ["6/5", "3"])
 def test_the_wave_solves_the_equation(k):
     """V² v - I V² v″ = F(v), the equation integrated twice in ξ = x - V τ."""
     evolution = Evolution(Dimer(1, "1/3", spacing=1), Power(k))

@@ -65,7 +65,7 @@ def least(masses, shares):
     return S.subs(dict(zip(e, found, strict=False)))
 
 
-@settings(max_examples=8)
+@settings(max_examples=4)
 @given(cells)
 def test_the_coefficient_is_the_minimum_and_the_linear_chains(cell):
     """I/D² = -(2/P) min S, and that of the acoustic branch Ω² = κ² (1 - Iκ² + …)."""
@@ -79,7 +79,7 @@ def test_the_coefficient_is_the_minimum_and_the_linear_chains(cell):
 
 
 @pytest.mark.parametrize("k", [K, "k"])
-@pytest.mark.parametrize("P", [1, 2, 3, 4, 5, 6])
+@pytest.mark.parametrize("P", [1, 2, 3, 5])
 def test_the_closure_comes_to_the_same_equation(k, P):
     """The recursion on P fields, which knows nothing of energies, for all contacts alike or not."""
     masses = [sp.Rational(3 * i * i + 2, i + 4) for i in range(P)]

@@ -17,7 +17,7 @@ from lwa.command.cli import main
 
 POINTS = 4096
 NAMES = ("c2", "strain", "force", "velocity")
-EXPONENTS = ("1.1", "3/2", "2", "3", "4", "6", "8", "9.5", "10", "12", "15", "20")
+EXPONENTS = ("1.1", "3/2", "2", "4", "8", "9.5", "12", "20")
 
 
 @cache
@@ -66,7 +66,7 @@ def test_these_are_the_waves_of_newtons_method(k):
             assert found.value == pytest.approx(values[name], abs=1e-10)
 
 
-@pytest.mark.parametrize("order", [2, 4, 10])
+@pytest.mark.parametrize("order", [2, 10])
 @pytest.mark.parametrize("k", EXPONENTS)
 def test_a_sum_is_right_within_its_error_or_refused(k, order):
     values, _, _ = lattice(float(sp.Rational(k)))
@@ -77,12 +77,12 @@ def test_a_sum_is_right_within_its_error_or_refused(k, order):
             assert abs(found.value - values[name]) < found.error
 
 
-@pytest.mark.parametrize("k", EXPONENTS[:5])
+@pytest.mark.parametrize("k", ["1.1", "4"])
 def test_up_to_k_four_there_are_sums(k):
     assert all(row.at().value > 0 for row in series(expand(Cell([1]), 10, k=k)).values())
 
 
-@pytest.mark.parametrize("k", EXPONENTS[-5:])
+@pytest.mark.parametrize("k", ["9.5", "20"])
 def test_from_k_nine_and_a_half_there_are_none(k):
     for row in series(expand(Cell([1]), 10, k=k)).values():
         with pytest.raises(InputError, match="no sum at k"):
@@ -102,8 +102,8 @@ def test_the_command_prints_no_sum_that_there_is_not(capsys):
 
 
 @pytest.mark.parametrize("order", [1, 3])
-@pytest.mark.parametrize("k", EXPONENTS[:4])
-def test_a_profile_is_the_lattices(k, order):
+@pytest.mark.parametrize(("k", "bound"), [("1.1", 3e-4), ("3/2", 6e-3), ("2", 0.03)])
+def test_a_profile_is_the_lattices(k, bound, order):
     """exp Σ ε^n φ_n(√ε ξ) is near the lattice's force down to half of its peak."""
     _, xi, force = lattice(float(sp.Rational(k)))
     root = sp.sqrt(sp.Rational(k) - 1)
@@ -114,5 +114,4 @@ def test_a_profile_is_the_lattices(k, order):
     )
     near = force > 0.5
     ours = np.exp([float(log.subs(place, x)) for x in xi[near][::16]])
-    bound = {"1.1": 3e-4, "3/2": 6e-3, "2": 0.03, "3": 0.15}[k]
     assert np.abs(ours - force[near][::16]).max() < bound

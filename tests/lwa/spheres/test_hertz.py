@@ -35,9 +35,9 @@ def test_a_wall_is_a_sphere_of_infinite_radius():
 def test_numbers_and_symbols_agree(a, b):
     given = {E1: a.material.E, n1: a.material.nu, R1: a.radius}
     given |= {E2: b.material.E, n2: b.material.nu, R2: b.radius}
-    assert sp.simplify(stiffness(FIRST, SECOND).subs(given) - stiffness(a, b)) == 0
-    wall = stiffness(FIRST, SECOND.material).subs(given)
-    assert sp.simplify(wall - stiffness(a, b.material)) == 0
+    for other, sphere in ((SECOND, b), (SECOND.material, b.material)):
+        ratio = stiffness(FIRST, other).subs(given) / stiffness(a, sphere)
+        assert abs(ratio.n(40) - 1) < 1e-35
 
 
 def test_floats_are_the_decimals_they_print_as():

@@ -1,12 +1,13 @@
 """Waves on a background: limits, an independent integration, exact waves of two lattices."""
 
 import math
+from functools import cache
 
 import mpmath
 import numpy as np
 import pytest
 import sympy as sp
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from lwa import (
@@ -31,6 +32,11 @@ p0, B, k = sp.symbols("p0 B k", positive=True)
 
 def compression(cell=CHAIN, law="3/2", load=1):
     return background_wave(cell, load, law=Power(law))
+
+
+@cache
+def numeric_wave(k):
+    return compression(law=k).numeric()
 
 
 # --- limits -------------------------------------------------------------------------------------
@@ -101,7 +107,6 @@ def test_kdv_in_closed_form():
 WAVES = [
     (Power("3/2"), 1, "1/2"),
     (Power("1/2"), 1, "-1/2"),
-    (named("polynomial", 0, 1), 0, -1),
     (named("lennard-jones", 1), 0, "1/10"),
 ]
 
@@ -110,47 +115,44 @@ WAVES = [
 def test_the_profile_obeys_the_canonical_equation(law, load, rise):
     """V² v = F(p0+v) - F(p0) + I (F′ v″ + ½ F″ v′²), the derivatives by differences."""
     wave = background_wave(CHAIN, load, law=law)
-    V2, I, h = wave.speed(rise).n(40) ** 2, wave.I, sp.Rational(1, 1000)
-    around = [wave.profile(1 + i * h, rise, digits=30) for i in (-2, -1, 0, 1, 2)]
-    v = around[2]
-    first = (around[0] - 8 * around[1] + 8 * around[3] - around[4]) / (12 * h)
-    second = (-around[0] + 16 * around[1] - 30 * v + 16 * around[3] - around[4]) / (12 * h**2)
+    V2, I, h = wave.speed(rise).n(40) ** 2, wave.I, sp.Rational(1, 10**5)
+    before, v, after = (wave.profile(1 + i * h, rise, digits=25) for i in (-1, 0, 1))
+    first, second = (after - before) / (2 * h), (after - 2 * v + before) / h**2
     F, F0, F1, F2 = (
         wave.force(p, n).n(40)
         for p, n in ((wave.p0 + v, 0), (wave.p0, 0), (wave.p0 + v, 1), (wave.p0 + v, 2))
     )
     left = V2 * v - (F - F0) - I * (F1 * second + F2 * first**2 / 2)
-    assert abs(left) < 1e-10 * abs(V2 * v)  # h⁴ of the differences
-    assert (
-        abs(wave.profile(wave.fwhm(rise, digits=25) / 2, rise) / sp.Rational(rise) * 2 - 1) < 1e-13
-    )
+    assert abs(left) < 1e-9 * abs(V2 * v)  # h² of the differences
+    half = wave.profile(wave.fwhm(rise) / 2, rise)
+    assert half == pytest.approx(sp.Rational(rise) / 2, rel=1e-13)
 
 
-@pytest.mark.parametrize("quantity", ["strain", "force"])
 @pytest.mark.parametrize(("law", "load", "rise"), WAVES, ids=str)
-def test_float64_is_the_quadrature_of_many_digits(law, load, rise, quantity):
+def test_float64_is_the_quadrature_of_many_digits(law, load, rise):
     wave = background_wave(CHAIN, load, law=law)
     numeric = wave.numeric()
     at = float(sp.Rational(load)), float(sp.Rational(rise))
     wave = wave.on(sp.Rational(at[0]))
     rise = sp.Rational(at[1])
-    assert numeric.fwhm(*at, quantity) == pytest.approx(float(wave.fwhm(rise, quantity)), rel=1e-13)
+    for quantity in ("strain", "force"):
+        width = float(wave.fwhm(rise, quantity))
+        assert numeric.fwhm(*at, quantity) == pytest.approx(width, rel=1e-13)
     assert numeric.speed(*at) == pytest.approx(float(wave.speed(rise).n(25)), rel=1e-15)
     v = [float(wave.profile(x, rise)) for x in (0, sp.Rational(1, 2), 2)]
     assert numeric.profile([0.0, 0.5, 2.0], *at) == pytest.approx(v, rel=1e-12)
 
 
-@settings(max_examples=30)
 @given(
     st.floats(-12, 12),
     st.floats(0.1, 10),
-    st.sampled_from(["11/10", "4/3", "3/2", "2", "3", "5"]),
+    st.sampled_from(["11/10", "3/2", "2", "5"]),
     st.sampled_from(["strain", "force"]),
 )
 def test_float64_over_all_loads(exponent, rise, k, quantity):
     """V² to 4 ulps of its definition at 120 digits, FWHM to 1e-12 of another quadrature's."""
     load = 10.0**exponent * rise
-    numeric = NUMERIC[k]
+    numeric = numeric_wave(k)
     with mpmath.workdps(120):
         a, b, e = (
             mpmath.mpf(load),
@@ -165,11 +167,8 @@ def test_float64_over_all_loads(exponent, rise, k, quantity):
     assert float(numeric.fwhm(load, rise, quantity)) == pytest.approx(float(expected), rel=1e-12)
 
 
-NUMERIC = {k: compression(law=k).numeric() for k in ("11/10", "4/3", "3/2", "2", "3", "5")}
-
-
 def test_arrays_broadcast():
-    numeric = NUMERIC["3/2"]
+    numeric = numeric_wave("3/2")
     loads, rises = np.array([[0.0], [1.0], [1e6]]), np.array([0.5, 2.0])
     for function in (numeric.speed, numeric.fwhm):
         found = function(loads, rises)
@@ -296,7 +295,7 @@ def test_what_cannot_be_meant():
         (lambda: background_wave(Cell([1]), "B"), "means the peak strain"),
         (lambda: background_wave(Dimer(1, 1, stiffnesses=[1, 2]), law=general()), "shares"),
         (lambda: background_wave(Cell([1]), law=Power("k")).numeric(), "has no value"),
-        (lambda: NUMERIC["3/2"].speed(math.nan, 1.0), "finite"),
+        (lambda: numeric_wave("3/2").speed(math.nan, 1.0), "finite"),
         (lambda: canonical_wave(Cell([1]), 2).at_force(1, precompression=-1), "positive"),
         (lambda: homogenize(Dimer(1, 2)).pde.traveling_wave().on_background(1), "canonical"),
         (lambda: expand(Cell([1]), 2, law=general()), "only a power law"),
@@ -329,7 +328,7 @@ def test_in_space_and_time():
 
 
 def test_another_law_in_units():
-    from lwa.wave.precompressed import PrecompressedWave
+    from lwa.wave.physical import PrecompressedWave
 
     law = named("hertz2", 1, "1/2")
     wave = PrecompressedWave(Cell([1], [3], 1), law, 2, 1)

@@ -1,4 +1,4 @@
-"""A wave in numbers: curves over time, forces of beads, and a picture."""
+"""A wave in numbers: curves over time, forces of beads."""
 
 import numpy as np
 import pytest
@@ -99,22 +99,9 @@ def test_where_contacts_peak_one_after_the_other_a_bead_has_no_peak_force():
         (lambda: CHAIN.at_force(1).curve([np.inf]), "t is inf: finite numbers"),
         (lambda: CHAIN.at_force(1).curve([0], of="wall"), "of is 'wall'"),
         (lambda: CHAIN.at_force("F").curve([0]), "F: a curve needs numbers"),
-        (lambda: canonical_wave(Cell([1])).plot(), "k: a curve needs numbers"),
         (lambda: CHAIN.at_force(1).fwhm("force", "area"), "extent is 'area'"),
     ],
 )
 def test_what_cannot_be_meant(call, words):
     with pytest.raises(InputError, match=words):
         call()
-
-
-def test_a_picture():
-    from matplotlib import pyplot
-
-    wave = canonical_wave(Cell([1]), "3/2")
-    ax = wave.plot()
-    assert wave.plot(ax) is ax
-    sites, strain = ax.lines[0].get_data()
-    assert strain.max() == 1
-    assert np.ptp(sites[strain > 0]) == pytest.approx(np.pi * np.sqrt(5 / 2), rel=0.01)
-    pyplot.close("all")

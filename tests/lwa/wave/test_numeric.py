@@ -1,5 +1,7 @@
 """The float64 functions against 50 digits."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 import sympy as sp
@@ -13,14 +15,14 @@ NUMERIC = WAVE.numeric()
 
 GRID = [
     (k, w)
-    for k in (1 + 2.0**-20, 1.0009765625, 1.125, 1.5, 1.5625, 2.0, 2 + 2.0**-20, 2.5, 3.0, 20.0)
-    for w in (1e-6, 0.01, 0.2733, 0.99, 1.0, 1.5, 40.0, 1e6)
+    for k in (1 + 2.0**-20, 1.125, 1.5, 2.0, 2 + 2.0**-20, 20.0)
+    for w in (1e-6, 0.2733, 1.0, 1.5, 1e6)
 ]
 
 
-def exact(expression, k, w):
-    wave = WAVE.at(k=sp.Rational(k), m1=1, m2=sp.Rational(w), D=1)
-    return sp.N(expression(wave), 50)
+@cache
+def exact_wave(k, w):
+    return WAVE.at(k=sp.Rational(k), m1=1, m2=sp.Rational(w), D=1)
 
 
 @pytest.mark.parametrize(
@@ -41,7 +43,7 @@ def test_closed_forms_to_two_ulps(function, expression):
     checked = 0
     for k, w in GRID:
         try:
-            reference = exact(expression, k, w)
+            reference = sp.N(expression(exact_wave(k, w)), 50)
         except NoSolitaryWave:
             with pytest.raises(NoSolitaryWave):
                 function(k, w)
@@ -50,7 +52,7 @@ def test_closed_forms_to_two_ulps(function, expression):
         # one rounding (1/2 ulp) and what is left of those in extended precision
         assert error <= ULPS * np.spacing(abs(float(reference)))
         checked += 1
-    assert checked > 40
+    assert checked > 20
 
 
 def test_arrays_broadcast():

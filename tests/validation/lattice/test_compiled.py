@@ -25,7 +25,7 @@ class Compilation(Listener):
     def on_start(self, event):
         if event.data["dispatcher"] is advance:
             print("compiled", flush=True)
-            os._exit(0)  # it takes half a minute
+            os._exit(0)  # it takes ten seconds
     def on_end(self, event):
         pass
 
@@ -72,15 +72,12 @@ def test_an_edit_of_any_source_of_the_kernel_compiles_again(kernel):
 
 
 @pytest.mark.slow
-def test_without_a_directory_to_write_to_a_function_runs_and_says_so(kernel):
+def test_without_a_directory_to_write_to_a_function_runs(kernel):
     """A file is where a folder belongs, which root cannot make either."""
     program = kernel / "program.py"
     program.write_text(SMALL)
     shutil.rmtree(kernel / "__pycache__")
     (kernel / "__pycache__").write_text("")
     places = dict.fromkeys(("HOME", "XDG_CACHE_HOME", "NUMBA_CACHE_DIR"), "/dev/null/home")
-    assert ended(kernel, f"exec(compile(open('program.py').read(), {str(program)!r}, 'exec'))",
-                 **places) == (
-        "6",
-        "no directory for machine code can be written: it is compiled for this run only",
-    )  # fmt: skip
+    command = f"exec(compile(open('program.py').read(), {str(program)!r}, 'exec'))"
+    assert ended(kernel, command, **places) == ("6", "")

@@ -37,8 +37,9 @@ def told(what, **options):
 
 
 @pytest.mark.parametrize("method", ["RKN86", *METHODS])
-@pytest.mark.parametrize("what", [struck(20), struck(20, 0.01), struck(20, 0.5, 1.0), PRESSED])
-@pytest.mark.parametrize("rtol", [1e-4, 1e-9])
+@pytest.mark.parametrize(
+    ("what", "rtol"), [(struck(20, 0.5, 1.0), 1e-4), (struck(20, 0.01), 1e-4), (PRESSED, 1e-7)]
+)
 def test_the_steps_of_adaptive_methods(method, what, rtol):
     """The steps are at most three times as many as expected; the limit is ten times."""
     rtol = max(rtol, 1e-7) if method == "RK23" else rtol
@@ -85,17 +86,14 @@ BEYOND = [
 
 
 @pytest.mark.parametrize(("what", "options", "message"), BEYOND, ids=[b[2][:40] for b in BEYOND])
-def test_what_is_beyond_reason_is_refused_before_it_starts(monkeypatch, what, options, message):
-    monkeypatch.setattr("validation.lattice.steppers.scipy", None)
-    monkeypatch.setattr("validation.lattice.engine.advance", None)
+def test_what_is_beyond_reason_is_refused_before_it_starts(what, options, message):
     with pytest.raises(SceneError, match=f"^{message}$"):
         simulate(what, **options)
 
 
-def test_an_adaptive_method_has_a_bound_on_its_steps(monkeypatch):
+def test_an_adaptive_method_has_a_bound_on_its_steps():
     """Here rounding hides the motion: the steps would shrink to a millionth."""
     pressed = struck(20, wall=1.0, gravity=1e12, duration=0.05)
-    monkeypatch.setattr(cost, "_FEWEST", 10)
     with pytest.raises(
         IntegrationError, match=r"^\d+ steps of (RKN86|DOP853) reach t = .* of 0.05: "
     ):
@@ -133,9 +131,7 @@ files = st.fixed_dictionaries(
         "gravity": reals,
         "precompression": reals,
         "wall": table(stiffness=sizes),
-        "start": table(
-            velocities=row(reals, 4), displacements=row(reals, 4), overlap=st.just(True)
-        ),
+        "start": table(velocities=row(reals, 4), displacements=row(reals, 4)),
         "defects": st.lists(
             st.fixed_dictionaries({"bead": st.integers(1, 4), "mass": sizes})
             | st.fixed_dictionaries({"contact": st.integers(1, 4), "stiffness": sizes}),

@@ -2,8 +2,9 @@
 
 import math
 from dataclasses import replace
-from itertools import pairwise
+from itertools import pairwise, product
 
+import numba
 import numpy as np
 import pytest
 import scipy
@@ -34,11 +35,10 @@ def struck(n, omega=0.2733, k=1.5, **rest):
     return Scene(masses=masses, stiffnesses=(1.0,) * (n - 1), k=k, velocities=(1.0,), **rest)
 
 
-@pytest.mark.parametrize("k", [1.0, 3.0])
 @pytest.mark.parametrize(("method", "steps"), [("RKN86", (80, 64, 50)), ("SRKN14", (48, 42, 38))])
-def test_the_order_on_a_smooth_problem(method, steps, k):
+def test_the_order_on_a_smooth_problem(method, steps):
     """Slopes 8 and 6 of the error at the end; no tolerance shortens the steps of the pair."""
-    scene, order = loaded(k), SCHEMES[method].order
+    scene, order = loaded(3.0), SCHEMES[method].order
     reference = simulate(scene, method="DOP853", rtol=1e-13, atol=1e-13)
     exact = reference.displacements
     assert reference.compression.min() > 0.1
@@ -52,25 +52,25 @@ def test_the_order_on_a_smooth_problem(method, steps, k):
     assert slope == pytest.approx(order, abs=0.4)
 
 
-@pytest.mark.parametrize("method", COMPILED)
-@pytest.mark.parametrize("k", [1.0, 1.1, 1.25, 1.5, 2.0, 3.0])
-def test_every_law_and_every_sensor_agree_with_dop853(method, k):
+@pytest.mark.parametrize("k", [1.0, 1.1, 1.5, 2.0, 3.0])
+def test_every_law_and_every_sensor_agree_with_dop853(k):
     """Smooth, so that the step's error is far below 1e-6; the samples' quintic as well."""
     scene = loaded(k, samples=301)
     reference = simulate(scene, method="DOP853", rtol=1e-12, atol=1e-12)
-    run = simulate(scene, method=method, step=0.02)
-    assert run.window is None
-    for name in (
-        "contact_force",
-        "compression",
-        "bead_force",
-        "bead_displacement",
-        "bead_velocity",
-        "velocities",
-    ):
-        np.testing.assert_allclose(getattr(run, name), getattr(reference, name), atol=1e-6)
-    np.testing.assert_allclose(run.bead_velocity[:, -1], run.velocities, atol=1e-14)
-    np.testing.assert_allclose(run.bead_displacement[:, -1], run.displacements, atol=1e-14)
+    for method in COMPILED:
+        run = simulate(scene, method=method, step=0.02)
+        assert run.window is None
+        for name in (
+            "contact_force",
+            "compression",
+            "bead_force",
+            "bead_displacement",
+            "bead_velocity",
+            "velocities",
+        ):
+            np.testing.assert_allclose(getattr(run, name), getattr(reference, name), atol=1e-6)
+        np.testing.assert_allclose(run.bead_velocity[:, -1], run.velocities, atol=1e-14)
+        np.testing.assert_allclose(run.bead_displacement[:, -1], run.displacements, atol=1e-14)
 
 
 def test_lsoda_agrees_with_dop853():
@@ -106,8 +106,9 @@ def test_the_energy_of_a_long_run_of_the_splitting_is_bounded():
     assert late < 2 * early < 0.05
 
 
-@pytest.mark.parametrize("k", [1.1, 1.5, 3.0])
-@pytest.mark.parametrize("omega", [1.0, 0.3428, 0.2733, 0.1])
+@pytest.mark.parametrize(
+    ("k", "omega"), [(1.1, 1.0), (1.5, 1.0), (1.5, 0.2733), (1.5, 0.1), (3.0, 0.3428)]
+)
 def test_the_window_does_not_touch_the_pulse(k, omega):
     """Up to the peak the window's record is the whole chain's."""
     scene = struck(260, omega, k, duration=200.0, contact_sensors=(50, 100), samples=2601)
@@ -202,7 +203,7 @@ def test_beads_that_meet_after_a_long_flight(k):
         assert abs(back.energy_drift) < 30 * rtol
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", range(3))
 def test_chains_that_fly_apart_and_meet(seed):
     random = np.random.default_rng(seed)
     n = 2 + seed % 4
@@ -218,7 +219,13 @@ def test_chains_that_fly_apart_and_meet(seed):
         assert run.velocities == pytest.approx(exact.velocities, abs=100 * rtol), rtol
 
 
-@pytest.mark.parametrize("k", [1.5, 2.5])
+@numba.njit
+def integrals(chain, points, p, z):
+    """The kernel's integrals from the root to z; only compiled functions call the kernel."""
+    return ramp(chain, points, p, z)
+
+
+@pytest.mark.parametrize("k", [1.5])
 @pytest.mark.parametrize(("root", "q"), [(-0.6, 1.0), (0.3, 1.0), (0.3, -1.0), (1.7, -1.0)])
 def test_the_integrals_of_a_force_with_a_kink(k, root, q):
     """∫ p_+^k and ∫ (1 - u) p_+^k over a step, against SciPy's quadrature."""
@@ -230,10 +237,8 @@ def test_the_integrals_of_a_force_with_a_kink(k, root, q):
     def force(u):
         return max((u - root) * np.polyval(coefficients[::-1], u), 0.0) ** k
 
-    def integrals(z):
-        return np.array(ramp(chain, points, (root, *coefficients.tolist()), z))
-
-    (far, speed), (near, start) = integrals(1.0), integrals(0.0)
+    p = (root, *coefficients.tolist())
+    (far, speed), (near, start) = (integrals(chain, points, p, z) for z in (1.0, 0.0))
     ends = sorted((0.0, min(max(root, 0.0), 1.0), 1.0))
     parts = [(a, b) for a, b in pairwise(ends) if b > a]
     once, twice = (
@@ -244,13 +249,12 @@ def test_the_integrals_of_a_force_with_a_kink(k, root, q):
     assert far - near - start == pytest.approx(twice, rel=1e-8)
 
 
-@pytest.mark.parametrize(("method", "factor"), [("RKN86", 1), ("SRKN14", 3)])
-def test_dop853_and_the_window_agree(method, factor):
+def test_dop853_and_the_window_agree():
     """``rtol`` is a bound of the pair; of the splitting what the error is in the mean."""
     scene = struck(60, duration=55.0, contact_sensors=(40,), samples=1101)
     reference = simulate(scene, method="DOP853", rtol=1e-10, atol=1e-10)
     pulse = measure(reference.time, reference.contact_force[0])
-    for rtol in (1e-5, 1e-7):
+    for (method, factor), rtol in product((("RKN86", 1), ("SRKN14", 3)), (1e-5, 1e-7)):
         run = simulate(scene, method=method, rtol=rtol, window=True)
         seen = measure(run.time, run.contact_force[0])
         assert seen.peak == pytest.approx(pulse.peak, rel=factor * rtol)
@@ -293,7 +297,7 @@ def test_a_window_that_holds_the_chain_is_the_whole_chain():
         assert np.array_equal(run.contact_force, whole.contact_force)
 
 
-@pytest.mark.parametrize("blow", [{0: 1.0, 150: 0.2}, {150: 1.0}, {20: -1.0, 21: 1.0}])
+@pytest.mark.parametrize("blow", [{0: 1.0, 150: 0.2}, {20: -1.0, 21: 1.0}])
 @pytest.mark.parametrize("window", [16, 80])
 def test_a_window_follows_the_leading_pulse_or_raises(blow, window):
     """Whatever a window loses is an error or NaN: what it returns is the whole chain's."""
@@ -371,14 +375,11 @@ def test_a_step_that_is_too_long_is_not_silent():
     [
         (dict(method="DOP853", step=0.1), "step is 0.1: it needs one of RKN86, SRKN14"),
         (dict(method="DOP853", window=True), "window is True: it needs one of"),
-        (dict(method="SRKN14", step=0), "step is 0: it must be positive"),
         (
             dict(method="SRKN14", step=1e-300),
             "duration is 1: this makes 1.0e.300 steps of SRKN14; ",
         ),
-        (dict(method="SRKN14", rtol=0), "rtol is 0: it lies between"),
         (dict(method="SRKN14", window=3), "window is 3: an integer from 8 on is wanted"),
-        (dict(method="SRKN14", window="x"), "window is 'x': an integer from 8 on is wanted"),
         (dict(method="s6"), "method is 's6': one of RKN86, SRKN14, DOP853, RK45, RK23, LSODA"),
     ],
 )

@@ -26,8 +26,9 @@ def pair(k, v=1.0, **rest):
     )  # fmt: skip
 
 
-@pytest.mark.parametrize("share", [0.9, 0.3, 0.05])
-@pytest.mark.parametrize(("k", "v"), [(1, 1), (1.5, 1), (1.5, 10), (3, 0.2)])
+@pytest.mark.parametrize(
+    ("k", "v", "share"), [(1, 1, 0.3), (1.5, 1, 0.9), (1.5, 10, 0.05), (3, 0.2, 0.3)]
+)
 def test_beads_part_with_a_share_of_their_speed(k, v, share):
     run = simulate(pair(k, v, damping=Damping("restitution", share)), **TIGHT)
     assert run.velocities[1] - run.velocities[0] == pytest.approx(share * v, rel=1e-8)
@@ -102,8 +103,10 @@ def test_a_piston_makes_a_wave_behind_which_beads_move_at_its_speed():
     assert run.momentum_drift is None
 
 
-@pytest.mark.parametrize("law", [dict(k=1.5), dict(k=1), dict(law=named("exponential", 1))])
-@pytest.mark.parametrize("load", [0.0, 0.5])
+@pytest.mark.parametrize(
+    ("law", "load"),
+    [(dict(k=1.5), 0.0), (dict(k=1), 0.5), (dict(law=named("exponential", 1)), 0.5)],
+)
 def test_a_piston_of_the_compiled_pair_is_that_of_scipy(law, load):
     """Motion, work and ledger, with contacts that open behind a gap and with waves off the wall."""
     n, v = 12, 0.3
@@ -175,7 +178,6 @@ def test_a_drive_from_rows_is_the_motion_that_they_sample():
         (lambda: Damping("restitution", 2), "restitution is 2: a coefficient from 0.01 to 1"),
         (lambda: Damping("contact", -1), "contact is -1: it must be positive"),
         (lambda: Drive(), "drive has not one motion"),
-        (lambda: Drive(velocity=1, amplitude=1), "drive has not one motion"),
         (lambda: Drive(amplitude=1, frequency=0), "drive.frequency is 0: it must be positive"),
         (lambda: Drive(velocity=1, ramp="x"), "drive.ramp is 'x': it belongs to amplitude"),
         (lambda: Drive(time=(0, 1), displacement=(0, 1)), "drive has 2 times and 2 displacements"),

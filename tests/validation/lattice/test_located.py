@@ -32,6 +32,7 @@ def test_both_routes_agree():
     assert off(short(0.2733)) < 2e-12
 
 
+@pytest.mark.slow
 def test_located_kinks_make_the_error_follow_the_tolerance():
     """In proportion to it; plain DOP853, which steps over the kinks, errs far more at its least."""
     task = short(0.2733)
@@ -72,9 +73,9 @@ def test_the_exact_wave_arrives_as_it_must():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["uniform", "dimer", "experiment"])
+@pytest.mark.parametrize("name", ["experiment"])
 def test_the_references_agree(name):
-    """480 contacts: rounding over a million steps is what is left."""
+    """Rounding over many steps is what is left."""
     assert off(TASKS[name]()) < 5e-12
 
 

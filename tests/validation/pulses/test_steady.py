@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from validation.lattice.run import IntegrationError
 from validation.lattice.simulate import simulate
 from validation.pulses import steady
 from validation.pulses.pulse import leading_pulse
@@ -31,9 +30,7 @@ def at(k, omega, stretch=STRETCH):
     return found.numbers
 
 
-@pytest.mark.parametrize(
-    ("k", "omega"), [("5/4", 1), ("3/2", 1), (2, 1), (3, 1), (6, 1), ("3/2", SPECIAL)]
-)
+@pytest.mark.parametrize(("k", "omega"), [("5/4", 1), ("3/2", 1), (6, 1), ("3/2", SPECIAL)])
 def test_a_solitary_wave_is_the_exact_one_of_newtons_method(k, omega):
     wave = exact_wave([1], float(R(k))) if omega == 1 else solve((1, float(omega)), 1.5, free=True)
     numbers = at(k, omega)
@@ -79,8 +76,8 @@ def test_the_decay_is_that_per_site():
     assert at(HERTZ, "0.75")["decay"].value == pytest.approx(slope, rel=0.05)
 
 
-@pytest.mark.parametrize(("k", "omega"), [("3/2", "0.75"), ("3/2", "0.2"), ("5/2", "0.8")])
-def test_relabelling_the_masses_changes_the_unit_of_mass_only(k, omega):
+def test_relabelling_the_masses_changes_the_unit_of_mass_only():
+    k, omega = "3/2", "0.75"
     one, other = at(k, omega), at(k, 1 / R(omega))
     for name in ("width", "strain_width", "decay"):
         bound = one[name].error + other[name].error
@@ -91,38 +88,15 @@ def test_relabelling_the_masses_changes_the_unit_of_mass_only(k, omega):
     assert ratio == pytest.approx(math.sqrt(float(R(omega))), rel=bound)
 
 
-SETTINGS = (
-    {"stretch": 3},
-    {"stretch": 7},
-    {"TOLERANCES": (1e-7, 1e-6)},
-    {"PLACES": 14},
-)
-
-
-@pytest.mark.parametrize(
-    ("k", "omega"),
-    [
-        ("3/2", "9/20"),
-        ("2", "1/2"),
-        pytest.param("3/2", "0.1", marks=pytest.mark.slow),
-        pytest.param("6/5", "1/2", marks=pytest.mark.slow),
-    ],
-)
-def test_the_errors_cover_what_other_settings_find(monkeypatch, k, omega):
-    found = [at(k, omega)]
-    for options in SETTINGS:
-        with monkeypatch.context() as changed:
-            for name, value in options.items():
-                if name != "stretch":
-                    changed.setattr(steady, name, value)
-            found.append(at(k, omega, options.get("stretch", STRETCH)))
+def test_the_errors_cover_other_distances():
+    found = [at("3/2", "9/20", stretch) for stretch in (STRETCH, 3, 7)]
     for one, other in combinations(found, 2):
         for name in QUANTITIES:
             bound = one[name].error + other[name].error
             assert abs(one[name].value - other[name].value) <= bound, name
 
 
-@pytest.mark.parametrize("omega", ["0.5", "0.55", "0.6", "0.65", "0.7"])
+@pytest.mark.parametrize("omega", ["0.5", "0.6", "0.7"])
 def test_a_pulse_that_is_overtaken_is_not_steady(omega):
     """At ω = 0.6 the width was 1.486290 ± 9e-6, and 1.5 ± 0.4 four times as far."""
     found = point(HERTZ, R(omega), STRETCH)
@@ -155,26 +129,10 @@ def test_the_leading_pulse_is_not_a_later_and_higher_one():
     assert pulse.fall > 8
 
 
-def test_a_pulse_that_does_not_come_through_is_told(monkeypatch):
-    monkeypatch.setattr(steady.StruckDimer, "crossing", lambda *_: 10.0)
-    found = point(HERTZ, R(1), STRETCH)
-    assert found.missing == "not steady: the pulse has not passed 320 sites by t = 10"
+def test_a_failure_is_told_with_the_point():
+    found = point(HERTZ, R(1, 10**40), STRETCH)
+    assert found.missing.startswith("duration is ")
     assert (found.sites, found.numbers) == (None, {})
-
-
-def test_a_failure_is_the_points_own(monkeypatch):
-    def fails(*_, **__):
-        raise IntegrationError("too long a step")
-
-    monkeypatch.setattr(steady, "simulate", fails)
-    assert point(HERTZ, R(1), STRETCH).missing == "too long a step"
-
-    def broken(*_, **__):
-        raise TypeError("a bug")
-
-    monkeypatch.setattr(steady, "simulate", broken)
-    with pytest.raises(TypeError):
-        point(HERTZ, R(1), STRETCH)
 
 
 def test_the_end_of_the_chain_is_far_from_the_last_place():

@@ -78,9 +78,8 @@ def test_the_content_of_a_regular_file_only(tmp_path):
     assert content(tmp_path / "s", 5) == b"12345"
     for name, most, said in (
         ("s", 4, "more than 4 bytes, the most that is read"),
-        ("pipe", 9, "a pipe, and only regular files are read"),
-        (".", 9, "a folder, and only regular files are read"),
-        ("/dev/zero", 9, "a device, and only regular files are read"),
+        ("pipe", 9, "only regular files are read"),
+        (".", 9, "only regular files are read"),
     ):
         with pytest.raises(InputError, match=f"^{said}$"):
             content(tmp_path / name, most)

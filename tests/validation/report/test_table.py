@@ -91,9 +91,13 @@ def test_columns_line_up():
     assert lines == ["a          long header", "first row            1", "b                   23"]
 
 
+words = st.text("aω", max_size=2)
+
+
 @given(st.recursive(
-    st.none() | st.booleans() | st.integers() | st.floats() | st.text(),
-    lambda inner: st.lists(inner) | st.dictionaries(st.text(), inner),
+    st.none() | st.booleans() | st.integers() | st.floats() | words,
+    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(words, inner, max_size=3),
+    max_leaves=5,
 ))  # fmt: skip
 def test_everything_plain_is_json(value):
     assert json.loads(json.dumps(plain(value), allow_nan=False)) == plain(value)

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from lwa import Cell, Dimer, InputError
 from lwa.spheres.hertz import stiffness
-from validation.scenes.materials import PTFE_BEAD, STEEL, STEEL_BEAD
+from validation.scenes.chains import PTFE_BEAD, STEEL, STEEL_BEAD
 from validation.scenes.scene import Scene, SceneError
 
 GOOD = dict(masses=(1, 2, 3), stiffnesses=(1, 1), k=1.5, duration=1.0)
@@ -48,10 +48,10 @@ BAD = [
     (dict(gravity=9.81), "gravity is 9.81: .* needs a wall"),
     (dict(velocities=(1, 1, 1, 1)), "4 velocities for 3 beads"),
     (dict(displacements=(None,)), r"displacements\[0\] is None: a number is wanted"),
-    (dict(contact_sensors=(2,)), r"contact_sensors\[0\] is 2: one of 0 … 1 is wanted"),
+    (dict(contact_sensors=(2,)), r"contact_sensors\[0\] is 2: an integer from 0 to 1 is wanted"),
     (dict(contact_sensors=(0, 0)), "contact_sensors is .*: each may be named once"),
-    (dict(bead_sensors=(1.0,)), r"bead_sensors\[0\] is 1.0: one of 0 … 2 is wanted"),
-    (dict(bead_sensors=(-1,)), r"bead_sensors\[0\] is -1: one of 0 … 2 is wanted"),
+    (dict(bead_sensors=(1.0,)), r"bead_sensors\[0\] is 1.0: an integer from 0 to 2 is wanted"),
+    (dict(bead_sensors=(-1,)), r"bead_sensors\[0\] is -1: an integer from 0 to 2 is wanted"),
     (
         dict(masses=(1,), stiffnesses=(), contact_sensors=(0,)),
         r"contact_sensors is \(0,\): this chain has none",

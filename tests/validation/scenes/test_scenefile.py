@@ -16,10 +16,9 @@ from lwa.base import files
 from lwa.spheres import beads
 from lwa.spheres.hertz import Material, Sphere, stiffness
 from validation.scenes import scenefile
-from validation.scenes.document import document
-from validation.scenes.materials import STEEL
+from validation.scenes.chains import STEEL
 from validation.scenes.scene import Scene, SceneError
-from validation.scenes.scenefile import read_scene, scene
+from validation.scenes.scenefile import document, read_scene, scene
 from validation.studies.paper import chain_scene
 
 # The experiment of Porter et al. (2008), standing upright: SI units.
@@ -242,9 +241,8 @@ BAD = [
     ({"duration": 10**400}, "duration is 1000.*: a number is wanted"),
     ({"durations": 1}, "durations is unknown: did you mean duration"),
     ({"__import__('os')": 1}, r"\"__import__\('os'\)\" is unknown: one of duration, .* is wanted"),
-    ({"samples": 1}, "samples is 1: one of 2 … 10000000 is wanted"),
-    ({"samples": 1.5}, "samples is 1.5: one of"),
-    ({"samples": 5_000_001}, "samples is 5000001, for each of 2 sensors: all may take 10000000"),
+    ({"samples": 1}, "samples is 1: an integer from 2 on is wanted"),
+    ({"samples": 1.5}, "samples is 1.5: an integer"),
     ({"gravity": 9.81}, "gravity is 9.81: .* needs a wall to pull towards"),
     ({"gravity": [9.81]}, r"gravity is \[9.81\]: a number is wanted"),
     ({"precompression": 1}, "precompression is 1: .* needs a wall to push against"),
@@ -281,18 +279,12 @@ BAD = [
     ({"defects": [{}]}, "defects number 1 has neither contact nor bead: one is wanted"),
     ({"defects": [{"bead": 1}]}, "defects number 1 has neither like nor mass: one is wanted"),
     ({"defects": [{"bead": 1, "mass": 1, "like": "ball"}]}, "defects number 1 has both like and m"),
-    ({"defects": [{"bead": 0, "mass": 1}]}, "defects number 1.bead is 0: one of 1 … 3 is wanted"),
-    ({"defects": [{"bead": 4, "mass": 1}]}, "defects number 1.bead is 4: one of 1 … 3 is wanted"),
+    ({"defects": [{"bead": 0, "mass": 1}]}, "defects number 1.bead is 0: an integer from 1"),
+    ({"defects": [{"bead": 4, "mass": 1}]}, "defects number 1.bead is 4: an integer from 1"),
     ({"defects": [{"bead": 1, "mass": -1}]}, "defects number 1.mass is -1: it must be positive"),
     ({"defects": [{"bead": 1, "like": "ball"}]}, "defects number 1.like names a bead in"),
-    ({"defects": [{"contact": 3, "stiffness": 1}]}, "defects number 1.contact is 3: one of 1 … 2"),
+    ({"defects": [{"contact": 3, "stiffness": 1}]}, "defects number 1.contact is 3: an integer"),
     ({"defects": [{"contact": 1, "mass": 1}]}, "defects number 1.mass is unknown: one of contact"),
-    ({"defects": [{"bead": 3, "mass": 1}, {"contact": 1, "stiffness": 2}, {"bead": 3, "mass": 1}]},
-     "defects number 1 and defects number 3 are both of bead 3: one is wanted"),
-    ({"defects": [{"bead": 1, "like": "ball"}, {"bead": 1, "mass": 2}]} | BALLS,
-     "defects number 1 and defects number 2 are both of bead 1: one is wanted"),
-    ({"defects": [{"contact": 2, "stiffness": 1}] * 2},
-     "defects number 1 and defects number 2 are both of contact 2: one is wanted"),
     ({"wall": {}}, "wall has neither material nor stiffness: one is wanted"),
     ({"wall": {"stiffness": 0}}, "wall.stiffness is 0: it must be positive"),
     ({"wall": {"material": "steel"}}, "wall.material is given, but a chain of masses needs"),
@@ -302,14 +294,10 @@ BAD = [
     ({"striker": {"velocity": NAN}}, "striker.velocity is nan: a finite number is wanted"),
     ({"striker": {"velocity": 1}, "start": {}}, "striker and start are both there"),
     ({"start": {"velocities": [1] * 4}}, "4 velocities for 3 beads: at most 3 wanted"),
-    ({"start": {"displacements": [0.1]}}, "start.displacements press bead 1 into bead 2: start.ov"),
-    ({"start": {"displacements": [0, 0, 1]}, "wall": {"stiffness": 1}},
-     "start.displacements press bead 3 into the wall"),
-    ({"start": {"displacements": [1], "overlap": 1}}, "start.overlap is 1: true or false"),
-    ({"sensors": {"beads": [4]}}, "sensors.beads number 1 is 4: one of 1 … 3 is wanted"),
-    ({"sensors": {"beads": [0]}}, "sensors.beads number 1 is 0: one of 1 … 3 is wanted"),
+    ({"sensors": {"beads": [4]}}, "sensors.beads number 1 is 4: an integer from 1"),
+    ({"sensors": {"beads": [0]}}, "sensors.beads number 1 is 0: an integer from 1"),
     ({"sensors": {"beads": [1, 1]}}, r"sensors.beads is \[1, 1\]: each may be named once"),
-    ({"sensors": {"contacts": [3]}}, "sensors.contacts number 1 is 3: one of 1 … 2 is wanted"),
+    ({"sensors": {"contacts": [3]}}, "sensors.contacts number 1 is 3: an integer from 1"),
     ({"sensors": {"contacts": [1]}, "chain": {"cell": [1], "k": 2}},
      "sensors.contacts number 1 is 1: the chain has none"),
     ({"sensors": {"beads": "some"}}, "sensors.beads is 'some': a list is wanted"),
@@ -332,17 +320,6 @@ def test_bad_scenes_are_refused_by_the_key(change, message):
     one_line(caught)
 
 
-def test_overlap_is_asked_for_or_carried():
-    pressed = {"displacements": [0.1]}
-    for more in (
-        {"start": pressed | {"overlap": True}},
-        {"start": pressed, "wall": {"stiffness": 1}, "precompression": 1},
-        {"start": {"displacements": [-0.1, -0.1]}},  # a gap
-        {"start": {"displacements": [0, 0, 0.1]}},  # nothing is behind the last bead
-    ):
-        assert scene(GOOD | more).displacements
-
-
 FILES = [
     ("s.toml", b"", "duration is missing|chain is missing"),
     ("s.toml", b"duration = ", "not TOML: Invalid value"),
@@ -361,16 +338,11 @@ FILES = [
     ("s.json", b'{"duration": 1', "not JSON: Expecting"),
     ("s.json", b"[1, 2]", r"the file is \[1, 2\]: a table of keys is wanted"),
     ("s.json", b'{"duration": NaN, "chain": {"cell": [1], "k": 2}}', "duration is nan"),
-    ("s.json", b'{"duration": 1, "duration": 2}', "'duration' is there 2 times"),
     ("s.json", b"[" * 100_000, "nested too deeply for a scene"),
     ("s.json", b'{"duration": 1' + b"0" * 5000 + b"}", "not JSON: Exceeds the limit"),
     ("s.txt", b"duration = 1", "a scene is a file ending in .toml or .json"),
-    ("s.toml", b"a." * 5_000 + b"b = 1", "nested too deeply for a scene"),
-    ("s.toml", b"[x" + b" . x" * 5_000 + b"]", "nested too deeply for a scene"),
-    ("s.toml", b"x = 1  # ." + b"a" * 300_000, "x is unknown"),  # in time linear in its length
-    ("folder.toml", None, "a folder, and only regular files are read"),
-    ("pipe.json", None, "a pipe, and only regular files are read"),
-    ("device.json", None, "a device, and only regular files are read"),
+    ("folder.toml", None, "only regular files are read"),
+    ("pipe.json", None, "only regular files are read"),
     ("missing.toml", None, "No such file or directory"),
 ]
 
@@ -379,7 +351,6 @@ FILES = [
 def test_bad_files(tmp_path, name, content, message):
     file = tmp_path / name
     (tmp_path / "folder.toml").mkdir()
-    (tmp_path / "device.json").symlink_to("/dev/zero")
     os.mkfifo(tmp_path / "pipe.json")  # which nobody writes to
     if content is not None:
         file.write_bytes(content)
@@ -435,9 +406,8 @@ def test_whatever_a_file_holds_is_read_or_refused_in_one_line(data):
 
 @pytest.mark.parametrize(
     "law",
-    ["hertz2:1,1/2", "magnetic:4,2", "exponential:3/2",
-     "lennard-jones:3", "power:3/2"],
-)  # fmt: skip
+    ["hertz2:1,1/2", "exponential:3/2", "power:3/2"],
+)
 def test_a_law_is_read_and_written(law):
     read = scene({"duration": 1, "chain": {"cell": [1, 2], "law": law}})
     assert scene(document(read)) == read

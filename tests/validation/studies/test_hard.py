@@ -1,6 +1,5 @@
 """The study `hard`: its measures see every loss, its verdicts follow from its numbers."""
 
-import csv
 import json
 
 import mpmath as mp
@@ -82,13 +81,6 @@ def test_every_form_loses_little_and_the_printed_route_more():
             assert not np.isinf(lost).any(), (name, source)
             assert known.max() <= ALLOWED, (name, source)
             assert np.isnan(lost).any() or source != "paper's closure"
-
-
-def test_an_error_of_a_few_ulps_is_seen(monkeypatch):
-    spoiled = lambda wave, k, w: wave.beta(k, w) * (1 + 20 * np.finfo(float).eps)  # noqa: E731
-    monkeypatch.setattr("lwa.wave.numeric.NumericWave.width", spoiled)
-    lost = losses(*CORNERS)["width π/β", "full closure"]
-    assert np.nanmin(lost) > ALLOWED
 
 
 def test_the_printed_route_is_the_same_theory():
@@ -190,23 +182,18 @@ def test_closed_contacts_do_not_drift_over_ten_thousand_time_units():
 
 
 def test_the_document_holds_the_contract(capsys, tmp_path):
-    picture, names = tmp_path / "hard.svg", ("contact-loss", "under-load")
-    chosen = [option for name in names for option in ("--case", name)]
-    status, out, err = ended(
-        capsys, cli.main, "hard", *chosen, "--format", "json", "--plot", str(picture)
-    )
+    picture = tmp_path / "hard.svg"
+    options = ("--case", "contact-loss", "--format", "json", "--plot", str(picture))
+    status, out, err = ended(capsys, cli.main, "hard", *options)
     document = json.loads(out)
-    cases = {case["case"]: case for case in document["cases"]}
-    assert (status, list(cases), err) == (0, list(names), "")
-    contacts, load = cases.values()
-    assert document["ok"] is contacts["ok"] is load["ok"] is True
+    assert (status, err, document["ok"]) == (0, "", True)
+    (contacts,) = document["cases"]
+    assert (contacts["case"], contacts["ok"]) == ("contact-loss", True)
     assert contacts["question"].endswith("which order does the splitting keep?")
     assert 2 < contacts["order_opening_value"] < 3
-    assert 0 < load["loss_ulps_value"] < 8
-    assert "<!-- under-load -->" in picture.read_text()
-    table = csv.DictReader(hard(names[:1]).csv().splitlines())
-    measured = [(row["quantity"], float(row["measured_value"])) for row in table]
-    assert measured == [(f["quantity"], f["measured_value"]) for f in contacts["findings"]]
+    assert "<!-- contact-loss -->" in picture.read_text()
+    for finding in contacts["findings"]:
+        assert finding["least_value"] <= finding["measured_value"] <= finding["most_value"]
 
 
 def test_a_case_that_does_not_exist_is_named(capsys):
@@ -229,3 +216,5 @@ def test_all_cases_hold_and_are_told_by_number():
     (ulps,) = (told for told in whole["cases"] if told["case"] == "ulps")
     assert ulps["loss_ulps_value"] < 1
     assert ulps["printed_loss_ulps_value"] > 2**52  # no digit is left
+    (load,) = (told for told in whole["cases"] if told["case"] == "under-load")
+    assert 0 < load["loss_ulps_value"] < 8

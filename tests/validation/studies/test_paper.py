@@ -10,8 +10,7 @@ import pytest
 from lwa import InputError, homogenize
 from validation.cli import main
 from validation.lattice.simulate import simulate
-from validation.scenes.chains import chain_scene
-from validation.scenes.materials import DIAMETER, PTFE_BEAD, STEEL_BEAD
+from validation.scenes.chains import DIAMETER, PTFE_BEAD, STEEL_BEAD, chain_scene
 from validation.studies.paper import SOURCES, chain_cell, paper
 
 
@@ -46,9 +45,8 @@ def test_every_number_has_its_error_and_its_theory(result):
         # two runs, at local errors of 1e-7 and 1e-10 a step over some thousand steps
         assert 0 < row["lattice_error_value"] < 1e-5 * row["lattice_value"]
         assert set(row["theory_value"]) == set(SOURCES)
-    for source, quantity in SOURCES.items():
-        if quantity:
-            assert rows(result)[quantity]["error_value"][source] == pytest.approx(0, abs=1e-12)
+    for source, quantity in (("F_m", "peak bead force F_m"), ("speed", "speed V_s")):
+        assert rows(result)[quantity]["error_value"][source] == pytest.approx(0, abs=1e-12)
 
 
 def test_the_theory_within_the_papers_reach(result):
@@ -66,14 +64,12 @@ def test_the_theory_within_the_papers_reach(result):
 
 def test_unlike_beads_do_not_time_the_pulse(result):
     """163.32 m/s from steel to PTFE, 164.1 to 164.2 m/s between beads of one kind, which the theory
-    misses by 0.9 % and the canonical wave by 3.2 %."""
+    misses by 0.9 %."""
     by_name = rows(result)
     like = [by_name[f"speed from bead {pair}"] for pair in ("15 to 33", "16 to 34")]
     assert by_name["speed V_s"]["lattice_value"] == pytest.approx(163.32, abs=0.005)
     assert all(164.05 < row["lattice_value"] < 164.2 for row in like)
     assert all(row["error_value"]["F_m"] == pytest.approx(-0.0087, abs=3e-4) for row in like)
-    shown = " ".join(result.text().split())
-    assert "the theory by -0.869 % and the canonical wave by -3.15 %" in shown
     alike = paper(beads=20, sensors=(8, 14))
     assert not any("from bead" in name for name in rows(alike))
 
@@ -110,21 +106,20 @@ def test_a_long_chain_has_no_solitary_wave():
     assert found["peak bead force F_80"] < 0.95 * found["peak bead force F_30"]
 
 
-def test_gravity_is_taken_out_of_the_forces_and_speeds_the_pulse_up(result):
-    upright = paper(gravity=9.81)
-    by_name = lattice(upright)
-    assert by_name["speed V_s"] > lattice(result)["speed V_s"]
-    (panel,) = upright.panels
+def test_the_picture_shows_the_measured_peaks(result):
+    (panel,) = result.panels
     for record, name in zip(panel.curves[::2], ("F_15", "F_34"), strict=True):
-        assert record.y[0] == 0
         incident = record.y[record.x < 1e3]  # µs: before the wall's answer
         # the highest of some 30 samples per FWHM against the spline's peak
-        assert by_name[f"peak bead force {name}"] == pytest.approx(incident.max(), rel=1e-3)
-    # and at rest the forces are the weights above: bead 15 has 14 beads on it
+        peak = lattice(result)[f"peak bead force {name}"]
+        assert peak == pytest.approx(incident.max(), rel=1e-3)
+
+
+def test_at_rest_the_forces_are_the_weights_above():
+    """Bead 15 has 14 beads on it."""
     scene = chain_scene(1e-12, 38, (15, 34), 9.81, 1e-6)
-    run = simulate(scene)
     above = 9.81 * (np.sum(scene.masses[:14]) + scene.masses[14] / 2)
-    assert run.bead_force[0, 0] == pytest.approx(above, rel=1e-13)
+    assert simulate(scene).bead_force[0, 0] == pytest.approx(above, rel=1e-13)
 
 
 def test_momentum_reaches_the_wave(result):
@@ -143,7 +138,7 @@ def test_momentum_reaches_the_wave(result):
 def test_the_report_tells_the_numbers():
     report = paper(beads=20, sensors=(8, 15))
     found = json.loads(json.dumps(report.document(), allow_nan=False))
-    assert (found["beads"], found["sensors"], found["gravity_value"]) == (20, [8, 15], 0)
+    assert (found["beads"], found["sensors"]) == (20, [8, 15])
     for row in found["rows"]:
         for source, value in row["theory_value"].items():
             assert row["error_value"][source] == value / row["lattice_value"] - 1
@@ -162,14 +157,6 @@ def test_the_report_tells_the_numbers():
     assert page.count("<svg") == 1
 
 
-def test_gravity_is_a_flag(capsys):
-    for flag, gravity in (((), 0.0), (("--gravity",), 9.81)):
-        with pytest.raises(SystemExit) as ended:
-            main(["paper", "--beads", "20", "--sensors", "8,15", "--format", "json", *flag])
-        assert ended.value.code == 0
-        assert json.loads(capsys.readouterr().out)["gravity_value"] == gravity
-
-
 def test_the_help_is_one_paragraph(capsys):
     with pytest.raises(SystemExit):
         main(["paper", "--help"])
@@ -179,18 +166,17 @@ def test_the_help_is_one_paragraph(capsys):
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (dict(velocity=0), r"velocity is 0 m/s: one from 1e-6 to 1000 is wanted"),
+        (dict(velocity=0), r"velocity is 0: it lies between 1e-06 and 1000"),
         (dict(velocity=float("nan")), r"velocity is nan"),
         (dict(velocity="fast"), r"velocity is 'fast': a number is wanted"),
-        (dict(beads=7), r"beads is 7: one of 8 … 2000 is wanted"),
+        (dict(beads=7), r"beads is 7: an integer from 8 to 2000 is wanted"),
         (dict(beads=38.0), r"beads is 38.0"),
         (dict(sensors=(34, 15)), r"sensors are 34, 15: two beads are wanted"),
         (dict(sensors=(15,)), r"sensors are 15: two beads are wanted"),
-        (dict(sensors=(1, 15)), r"sensor is 1: one of 2 … 37 is wanted"),
-        (dict(sensors=(15, 38)), r"sensor is 38: one of 2 … 37 is wanted"),
+        (dict(sensors=(1, 15)), r"sensor is 1: an integer from 2 to 37 is wanted"),
+        (dict(sensors=(15, 38)), r"sensor is 38: an integer from 2 to 37 is wanted"),
         (dict(sensors=15), r"sensors is 15: a sequence is wanted"),
         (dict(sensors=(30, 37)), r"bead 37, before the wave reaches the wall: the pulse is not"),
-        (dict(gravity=-1), r"gravity is -1"),
     ],
 )
 def test_bad_input(change, message):

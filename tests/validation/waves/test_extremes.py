@@ -16,11 +16,9 @@ from lwa import Dimer, NoSolitaryWave, canonical_wave, homogenize
 from tests.passage import passage, ratio
 from validation.lattice.run import IntegrationError
 from validation.lattice.simulate import simulate
-from validation.pulses.steady import STRETCH, point
 from validation.scenes.chains import carrying, struck
-from validation.waves.asymptotics import LAWS
 from validation.waves.solver import NoWave, solve
-from validation.waves.theory import theory_at
+from validation.waves.theory import LEADING_POWERS, theory_at
 
 
 def theory_errors(wave):
@@ -36,7 +34,7 @@ def theory_errors(wave):
 def test_the_theorys_error_vanishes_by_its_law_as_k_goes_to_one():
     for epsilon in (0.01, 0.001):
         for quantity, error in theory_errors(solve((1.0, 1.0), 1 + epsilon)).items():
-            law = LAWS[quantity]
+            law = LEADING_POWERS[quantity]
             share = error / epsilon**law.order / float(law.coefficient)
             # the next term of the series is O(ε) of this one
             assert abs(share - 1) < 3 * epsilon, quantity
@@ -194,7 +192,7 @@ def slaved(uniform, heavy, light):
     )
 
 
-@pytest.mark.parametrize("omega", [1e-2, 1e-3, 1e-6])
+@pytest.mark.parametrize("omega", [1e-2, 1e-3])
 def test_slaved_beads_slow_the_limit_by_a_share_of_their_mass(uniform, omega):
     """Every cell has the mass 1 + ω: a speed lower by ω/2 at most, and by no less than ω/4."""
     passed = passage(slaved(uniform, 1.0, omega), 1e-9)
@@ -227,21 +225,7 @@ def test_the_theories_at_both_ends_of_the_mass_ratio(uniform):
 # The resonance
 
 
-@pytest.mark.parametrize(
-    ("omega", "low", "high"),
-    [
-        ("0.45", 1e-3, 5e-3),
-        ("0.34284539", -1e-7, 1e-7),
-        ("0.25", 1e-3, 5e-3),
-    ],
-)
-def test_near_the_resonance_a_pulse_decays_and_elsewhere_it_does_not(omega, low, high):
-    """The light beads oscillate in step with the pulse, which leaves its force to them."""
-    rate = point(sp.Rational(3, 2), sp.Rational(omega), STRETCH).numbers["decay"]
-    assert low < rate.value - rate.error <= rate.value + rate.error < high
-
-
-@pytest.mark.parametrize("omega", [0.55, 0.58, 0.6, 0.62])
+@pytest.mark.parametrize("omega", [0.55, 0.6])
 def test_at_the_resonance_newtons_waves_stand_on_a_tail(omega):
     """The theory, which slaves the light beads, has a wave there all the same."""
     waves = []

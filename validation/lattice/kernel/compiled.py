@@ -9,7 +9,6 @@ from __future__ import annotations
 import hashlib
 import sys
 from collections.abc import Callable
-from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -32,17 +31,24 @@ SOURCES = int.from_bytes(
 # Without "reassoc" sums keep their order, so that rounding is reproducible; without "nnan" and
 # "ninf" an overflow is detected. In numba's own error model a division by zero raises an exception,
 # a branch that keeps loops from vectorising. The code allocates nothing ("_nrt"): counting
-# references to arrays would take longer than the arithmetic.
-_OPTIONS: Any = dict(
-    fastmath={"nsz", "arcp", "contract"}, error_model="numpy", nogil=True, _nrt=False
+# references to arrays would take longer than the arithmetic. No wrapper for callers in C.
+_OUTER: Any = dict(
+    fastmath={"nsz", "arcp", "contract"},
+    error_model="numpy",
+    nogil=True,
+    no_cfunc_wrapper=True,
+    _nrt=False,
 )
-compiled: Callable[[Function], Function] = njit(**_OPTIONS)
+# Called by compiled functions alone: wrappers for Python took a third of the time to compile.
+_INNER: Any = _OUTER | {"no_cpython_wrapper": True}
+compiled: Callable[[Function], Function] = njit(**_INNER)
 # Sums and maxima in the order of the machine's registers, the same in every run.
 summed: Callable[[Function], Function] = njit(
-    **_OPTIONS | {"fastmath": {"nsz", "arcp", "contract", "reassoc"}}
+    **_INNER | {"fastmath": {"nsz", "arcp", "contract", "reassoc"}}
 )
-# Inlined into the caller: passing the arrays would take as long as the computation.
-part: Callable[[Function], Function] = njit(inline="always", **_OPTIONS)
+# Inlined into the caller by LLVM, as the calls would take a quarter of a run's time. Inlining by
+# numba ("inline") gives the same code, but takes three times as long to compile.
+part: Callable[[Function], Function] = njit(forceinline=True, **_INNER)
 # Unsigned indices: a signed one may count from the end, which keeps a loop from vectorising.
 index = np.uint64
 ZERO, ONE, TWO, THREE = map(index, range(4))
@@ -64,33 +70,21 @@ call: Any = intrinsic(_call)
 def cached(function: Function) -> Function:
     """Compile a function; its machine code is kept on disk if numba finds a writable directory."""
     try:
-        result, kept = njit(cache=True, **_OPTIONS)(function), True
+        return njit(cache=True, **_OUTER)(function)  # type: ignore[no-any-return]
     except (RuntimeError, OSError):  # numba finds no directory for its cache
-        result, kept = compiled(function), False
-    register("numba:compile", _Announcement(result, kept))  # type: ignore[no-untyped-call]
-    return result  # type: ignore[no-any-return]
-
-
-@cache
-def _say(message: str) -> None:
-    """Print a line about the compilation, once."""
-    print(message, file=sys.stderr, flush=True)
+        return njit(**_OUTER)(function)  # type: ignore[no-any-return]
 
 
 class _Announcement(Listener):
-    """Announcement of a compilation, made when no cache holds the machine code."""
-
-    def __init__(self, function: Any, kept: bool) -> None:
-        self.function, self.kept = function, kept
+    """Message on a terminal before the engine is compiled, which takes some ten seconds."""
 
     def on_start(self, event: Event) -> None:
-        """Print a line before numba compiles the announced function; numba calls this method."""
-        if event.data["dispatcher"] is not self.function:
-            return
-        if not self.kept:
-            _say("no directory for machine code can be written: it is compiled for this run only")
-        elif sys.stderr.isatty():
-            _say("the engine is compiled for this machine, once")
+        """Print the message; numba calls this method before it compiles a function."""
+        if event.data["dispatcher"].__name__ == "advance" and sys.stderr.isatty():
+            print("the engine is compiled for this machine, once", file=sys.stderr, flush=True)
 
     def on_end(self, event: Event) -> None:
         """Do nothing after a compilation; numba requires this method."""
+
+
+register("numba:compile", _Announcement())  # type: ignore[no-untyped-call]

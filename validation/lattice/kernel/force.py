@@ -8,7 +8,7 @@ import numpy as np
 
 from lwa.base.arrays import Array
 from validation.lattice.kernel.arrays import Beads, Chain
-from validation.lattice.kernel.compiled import ONE, call, index, part
+from validation.lattice.kernel.compiled import ONE, call, compiled, index, part
 
 NOTHING = 1e-60  # in units of the greatest compression: less is 0, so that no denormals arise
 
@@ -37,7 +37,7 @@ _cube = _loop(part(lambda d, k: d * d * d))
 _power = _loop(part(lambda d, k: d**k))
 
 
-@part
+@compiled
 def press(chain: Chain, y: Array, force: Array, s: Any, lo: int, hi: int, nothing: float) -> None:
     """Compute the forces of the contacts ahead of beads lo … hi-1, less the static forces.
 

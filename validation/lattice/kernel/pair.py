@@ -26,19 +26,18 @@ def _add_up(
     sums: Array,
     q: Any,
     force: Array,
-    table: Array,
-    row: int,
+    row: Array,
     scale: float,
     stages: int,
     lo: int,
     hi: int,
 ) -> None:
-    """Compute sums[q] = scale Σ_j table[row, j] force[j] for stages j = 0 … ``stages`` - 1."""
+    """Compute sums[q] = scale Σ_j row[j] force[j] for stages j = 0 … ``stages`` - 1."""
     sums[q, lo] = 0.0
     for first in range(0, stages, WIDTH):
-        a, b = scale * table[row, first], scale * table[row, first + 1]
-        c, d = scale * table[row, first + 2], scale * table[row, first + 3]
-        e = scale * table[row, first + 4]
+        a, b = scale * row[first], scale * row[first + 1]
+        c, d = scale * row[first + 2], scale * row[first + 3]
+        e = scale * row[first + 4]
         j = index(first)
         j1, j2, j3, j4 = j + ONE, j + index(2), j + index(3), j + index(4)
         if first == 0:
@@ -70,7 +69,7 @@ def _attempt(chain: Chain, beads: Beads, plan: Plan, lo: int, h: float, hi: int)
     inverse, rest, force, sums = chain.inverse, chain.rest, beads.force, beads.sums
     rows, ends, nodes = plan.scheme.rows, plan.scheme.ends, plan.scheme.nodes
     for s in range(1, stages):
-        _add_up(sums, ZERO, force, rows, s, h * h, s, lo, hi)
+        _add_up(sums, ZERO, force, rows[s], h * h, s, lo, hi)
         ch = nodes[s] * h
         behind = 0.0
         for i in range(index(lo), index(hi)):
@@ -78,9 +77,9 @@ def _attempt(chain: Chain, beads: Beads, plan: Plan, lo: int, h: float, hi: int)
             next_y[i] = y[i] + ch * v[i] + (behind - ahead) * inverse[i]
             behind = ahead
         press(chain, next_y, force, index(s), lo, hi, nothing)
-    _add_up(sums, ONE, force, ends, 0, h, stages, lo, hi)
-    _add_up(sums, TWO, force, ends, 1, h * h / plan.y, stages, lo, hi)
-    _add_up(sums, THREE, force, ends, 2, h / plan.v, stages, lo, hi)
+    _add_up(sums, ONE, force, ends[0], h, stages, lo, hi)
+    _add_up(sums, TWO, force, ends[1], h * h / plan.y, stages, lo, hi)
+    _add_up(sums, THREE, force, ends[2], h / plan.v, stages, lo, hi)
     for i in range(index(lo), index(hi)):
         next_v[i] = v[i] + (sums[ONE, i] - sums[ONE, i + ONE]) * inverse[i]
     # Mark contacts that open or close within the step or near it, with a force that matters.
