@@ -34,8 +34,18 @@ from lwa.base.exact import InputError
 from lwa.base.tables import Table, among, array, each, named, positive, real, table
 from lwa.spheres.hertz import MATERIALS, Material, Sphere
 
-SCENE = tuple(
-    "duration samples units gravity defects wall striker start sensors damping drive".split()
+SCENE = (
+    "duration",
+    "samples",
+    "units",
+    "gravity",
+    "defects",
+    "wall",
+    "striker",
+    "start",
+    "sensors",
+    "damping",
+    "drive",
 )
 """Keys of a scene that do not concern its cell."""
 
@@ -43,7 +53,7 @@ SCENE = tuple(
 def read_materials(file: Table) -> dict[str, Material]:
     """The materials of a file, by name, and those of `lwa.spheres.hertz` under other names."""
     materials: dict[str, Material] = file.read("materials", named(_material), {})
-    return MATERIALS | materials
+    return materials | MATERIALS | materials  # the names of the file come first
 
 
 def read_beads(file: Table, materials: Mapping[str, Material]) -> dict[str, Sphere]:

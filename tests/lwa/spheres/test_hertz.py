@@ -84,7 +84,6 @@ def test_what_must_be_positive(bad):
         ("E", lambda: Material(bad, 0)),
         ("mass", lambda: Sphere(bad, 1, steel)),
         ("radius", lambda: Sphere(1, bad, steel)),
-        ("density", lambda: Sphere.solid(1, steel, bad)),
         ("radius", lambda: Sphere.solid(bad, steel, 1)),
     ):
         with pytest.raises(InputError, match=f"^{name} is "):
