@@ -3,7 +3,7 @@
 import pytest
 
 from validation.pulses.pulse import Measured
-from validation.studies.limits import EQUAL, EXPONENTS, LIGHT, Row
+from validation.studies.limits import EQUAL, EXPONENTS, LIGHT, Comparison
 from validation.waves.theory import LEADING_POWERS, theory_at, theory_values
 
 
@@ -23,5 +23,5 @@ def limits_rows():
                 error = 0.9 * float(law.coefficient * (k - 1) ** law.order)
                 lattice = float(theory[quantity]) / (1 + error)
                 found = Measured(lattice, lattice * (1 + 1e-7))
-                rows.append(Row(quantity, k, omega, theory[quantity], found, law.bound(k)))
+                rows.append(Comparison(quantity, k, omega, theory[quantity], found, law.bound(k)))
     return rows
