@@ -10,8 +10,8 @@ import click
 from lwa.base.arrays import Array
 from validation.lattice.run import Run, RunProgress, silent
 from validation.pictures import Curve, Panel
-from validation.pulses.pulse import Measured, Pulse, compared, dense, derived, first_pulse
-from validation.pulses.sensors import READINGS, Reading, Track, record, tracks
+from validation.pulses.pulse import Measured, compared, dense, derived, first_pulse
+from validation.pulses.sensors import READINGS, Reading, Track, readings, record, tracks
 from validation.pulses.signals import Sampled
 from validation.report.command import study
 from validation.report.result import Report
@@ -103,8 +103,7 @@ def _records(
 
 def _numbers(samples: tuple[Array, Array]) -> dict[str, float]:
     sampled = Sampled(*samples)
-    pulse: Pulse = dense(sampled, first_pulse(sampled))
-    return {name: getattr(pulse, name) for name in READINGS}
+    return readings(dense(sampled, first_pulse(sampled)))
 
 
 def _rows(simulated: Reading, seen: Mapping[str, Measured], run: Run) -> Iterator[tuple[Any, ...]]:
