@@ -23,7 +23,7 @@ from validation.pulses.train import Train
 from validation.report.command import study
 from validation.report.result import Report
 from validation.report.table import Column, Table, percent
-from validation.scenes.materials import DIAMETER
+from validation.scenes.chains import DIAMETER
 from validation.studies.paper import BEADS, HERTZ, SENSORS, TOLERANCES, chain_cell, recorded_chain
 from validation.waves.theory import bead_fwhm
 

@@ -7,6 +7,8 @@ a_i √(P m̂_i) and f_i √C_i are related by a matrix B(κ), whose singular va
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -15,60 +17,65 @@ from lwa.base.arrays import Array, finite
 Complex = NDArray[np.complex128]
 
 
-def branches(fractions: Array, shares: Array, kappa: ArrayLike) -> Array:
-    """Frequencies Ω_j(κ), ascending along a last axis of length P, to 1e-15 of the largest.
+class Bands(NamedTuple):
+    """The bands of a chain of mass fractions m̂_i and strain shares C_i, shape (P,) each.
 
-    fractions, shares : mass fractions m̂_i and strain shares C_i.
-
-    Raises `lwa.InputError` for a κ that is no finite number.
+    rate, length : units of frequencies, and of the lengths in wavenumbers and group velocities.
     """
-    B, _ = _strains(fractions, shares, kappa)
-    return np.linalg.svd(B, compute_uv=False)[..., ::-1].astype(float)
 
+    fractions: Array
+    shares: Array
+    rate: float = 1.0
+    length: float = 1.0
 
-def group_velocity(fractions: Array, shares: Array, kappa: ArrayLike) -> Array:
-    """Slopes dΩ_j/dκ in the order of `branches`, by dΩ = Re (left vector)ᴴ dB (right vector).
+    def branches(self, q: ArrayLike) -> Array:
+        """Frequencies, ascending along a last axis of length P."""
+        B, _ = self._strains(q)
+        return np.linalg.svd(B, compute_uv=False)[..., ::-1].astype(float) * self.rate
 
-    A branch has a kink where it touches another branch or zero; the slope there is the one towards
-    larger κ.
-    """
-    B, dB = _strains(fractions, shares, kappa)
-    left, omega, right = np.linalg.svd(B)
-    # dB has one entry, from the first particle to the last contact
-    S = left[..., -1, :, None].conj() * dB[..., None, None] * right[..., None, :, 0].conj()
-    slopes = np.diagonal(S, axis1=-2, axis2=-1)
-    equal = 64 * np.finfo(float).eps * omega[..., :1]
-    velocity = np.where(omega <= equal, np.abs(slopes), slopes.real).astype(float)
-    for i in range(len(fractions) - 1):  # no more than two branches meet in a point
-        j = i + 1
-        mean = (slopes[..., i] + slopes[..., j]).real / 2
-        half = (slopes[..., i] - slopes[..., j]).real / 2
-        split = np.hypot(half, np.abs(S[..., i, j] + S[..., j, i].conj()) / 2)
-        touch = omega[..., i] - omega[..., j] <= equal[..., 0]
-        velocity[..., i] = np.where(touch, mean + split, velocity[..., i])
-        velocity[..., j] = np.where(touch, mean - split, velocity[..., j])
-    return velocity[..., ::-1]
+    def group_velocity(self, q: ArrayLike) -> Array:
+        """Slopes of the `branches`; where branches touch each other or zero, towards larger q."""
+        B, dB = self._strains(q)
+        left, omega, right = np.linalg.svd(B)
+        # dΩ = Re (left vector)ᴴ dB (right vector), where dB has one entry, from the first particle
+        # to the last contact.
+        S = left[..., -1, :, None].conj() * dB[..., None, None] * right[..., None, :, 0].conj()
+        slopes = np.diagonal(S, axis1=-2, axis2=-1)
+        equal = 64 * np.finfo(float).eps * omega[..., :1]
+        velocity = np.where(omega <= equal, np.abs(slopes), slopes.real).astype(float)
+        # No more than two branches meet in a point: the slopes are eigenvalues of a 2 × 2 matrix.
+        for i in range(len(self.fractions) - 1):
+            j = i + 1
+            mean = (slopes[..., i] + slopes[..., j]).real / 2
+            half = (slopes[..., i] - slopes[..., j]).real / 2
+            split = np.hypot(half, np.abs(S[..., i, j] + S[..., j, i].conj()) / 2)
+            touch = omega[..., i] - omega[..., j] <= equal[..., 0]
+            velocity[..., i] = np.where(touch, mean + split, velocity[..., i])
+            velocity[..., j] = np.where(touch, mean - split, velocity[..., j])
+        return velocity[..., ::-1] * (self.rate * self.length)
 
+    def edges(self) -> Array:
+        """Band edges (min, max) of each branch, shape (P, 2), at κ = 0 and π/P."""
+        ends = self.branches([0.0, np.pi / len(self.fractions) / self.length])
+        return np.asarray(np.sort(ends, axis=0).T)
 
-def edges(fractions: Array, shares: Array) -> Array:
-    """Band edges (min, max) of each branch Ω_j, shape (P, 2), at κ = 0 and π/P."""
-    ends = branches(fractions, shares, [0.0, np.pi / len(fractions)])
-    result: Array = np.sort(ends, axis=0).T
-    return result
+    def gaps(self) -> Array:
+        """Edges (from, to) of the P - 1 gaps between the bands; closed gaps have length 0."""
+        edges = self.edges()
+        return np.stack([edges[:-1, 1], edges[1:, 0]], axis=-1)
 
-
-def _strains(fractions: Array, shares: Array, kappa: ArrayLike) -> tuple[Complex, Complex]:
-    """Return the matrix B(κ) and the only nonzero entry of dB/dκ, which is in its last row."""
-    wave = finite(kappa, "kappa")
-    # reduce κ to [-π, π]; e^{iκ} drops whole turns exactly
-    wave = np.where(np.abs(wave) <= np.pi, wave, np.angle(np.exp(1j * wave)))
-    P = len(fractions)
-    mass, share = np.sqrt(P * fractions), np.sqrt(shares)
-    B = np.zeros((*wave.shape, P, P), complex)
-    for i in range(P):
-        B[..., i, i] = -1 / (share[i] * mass[i])
-        if i < P - 1:
-            B[..., i, i + 1] = 1 / (share[i] * mass[i + 1])
-    end = np.exp(1j * P * wave) / (share[-1] * mass[0])
-    B[..., -1, 0] += end
-    return B, 1j * P * end
+    def _strains(self, q: ArrayLike) -> tuple[Complex, Complex]:
+        """Return the matrix B(κ) and the only nonzero entry of dB/dκ, which is in its last row."""
+        kappa = finite(q, "wavenumber") * self.length
+        # reduce κ to [-π, π]; e^{iκ} drops whole turns exactly
+        kappa = np.where(np.abs(kappa) <= np.pi, kappa, np.angle(np.exp(1j * kappa)))
+        P = len(self.fractions)
+        mass, share = np.sqrt(P * self.fractions), np.sqrt(self.shares)
+        B = np.zeros((*kappa.shape, P, P), complex)
+        for i in range(P):
+            B[..., i, i] = -1 / (share[i] * mass[i])
+            if i < P - 1:
+                B[..., i, i + 1] = 1 / (share[i] * mass[i + 1])
+        end = np.exp(1j * P * kappa) / (share[-1] * mass[0])
+        B[..., -1, 0] += end
+        return B, 1j * P * end

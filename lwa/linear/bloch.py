@@ -57,7 +57,7 @@ class Bloch:
         return a, f
 
     @property
-    def nu(self) -> fmpq_mpoly:
+    def Pi(self) -> fmpq_mpoly:
         """Coefficient Π = m̂_0 m̂_1 C_0 C_1 in a dimer's dispersion relation sin²κ = Ω² - Π Ω⁴."""
         return self.mu[0] * self.mu[1] * self.c[0] * self.c[1]
 

@@ -12,7 +12,7 @@ relation and series, `lwa.linear.bands` computes frequencies and group velocitie
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from abc import abstractmethod
 from dataclasses import dataclass
 from functools import cached_property
 from math import comb
@@ -33,13 +33,45 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from lwa.base.arrays import Array
+    from lwa.linear.bands import Bands
 
 MOST_TERMS = 200_000
 """Terms of the longest series (estimate of `Dispersion._length`); it takes about half a minute."""
 
 
+class _Banded(Value):
+    """Base of chains with bands in floats; masses, stiffnesses and the exponent must be numbers."""
+
+    @property
+    @abstractmethod
+    def _bands(self) -> Bands:
+        """The bands in the units of the chain."""
+
+    def branches(self, wavenumber: ArrayLike) -> Array:
+        """Frequencies, ascending along a last axis of length P, to 1e-15 of the largest.
+
+        Raises `lwa.InputError` for a wavenumber that is no finite number, and for symbols.
+
+        >>> Dispersion(Cell([1])).branches(3.141592653589793)
+        array([2.])
+        """
+        return self._bands.branches(wavenumber)
+
+    def group_velocity(self, wavenumber: ArrayLike) -> Array:
+        """Slopes in the order of `branches`; where branches touch, towards larger wavenumbers."""
+        return self._bands.group_velocity(wavenumber)
+
+    def band_edges(self) -> Array:
+        """Band edges (min, max) of each branch, shape (P, 2)."""
+        return self._bands.edges()
+
+    def gaps(self) -> Array:
+        """Edges (from, to) of the P - 1 gaps between the bands; closed gaps have length 0."""
+        return self._bands.gaps()
+
+
 @dataclass(frozen=True)
-class Dispersion(Value):
+class Dispersion(_Banded):
     """The dispersion relation Ω(κ) of the linear chain with a cell's masses and strain shares.
 
     Ω is the frequency in τ times D and κ the wavenumber times D. In time t the frequency is
@@ -77,8 +109,6 @@ class Dispersion(Value):
     def latex_rows(self) -> list[str]:
         return [rf"\Omega^{{2}} = \kappa^{{2}} - {sp.latex(self.I)} \, \kappa^{{4}} + \cdots"]
 
-    # --- exact ------------------------------------------------------------------------------
-
     @cached_property
     def trace(self) -> dict[int, sp.Expr]:
         """Mapping m → t_m, m = 0 … P, in the dispersion relation 2 cos(Pκ) = Σ t_m Ω^{2m}.
@@ -100,7 +130,7 @@ class Dispersion(Value):
         """
         self._demand_dimer("the optical series")
         acoustic = self.acoustic(order)
-        return {0: 1 / self._expression(self._bloch.nu)} | {n: -c for n, c in acoustic.items()}
+        return {0: 1 / self._expression(self._bloch.Pi)} | {n: -c for n, c in acoustic.items()}
 
     def amplitude_ratio(self, order: int = 4, branch: str = "acoustic") -> dict[int, sp.Expr]:
         """Mapping from n ≤ ``order`` to the coefficient of (iκ)^n in a dimer's a_1/a_0 = w/u.
@@ -160,70 +190,25 @@ class Dispersion(Value):
         return n
 
     def _demand_dimer(self, what: str) -> None:
-        if self.cell.size == 1:
-            raise InputError(f"{what} needs a cell of 2 masses: 1 mass has no optical branch")
-        if self.cell.size > 2:
-            raise InputError(
-                f"{what} needs a cell of 2 masses, not {self.cell.size}: there its roots are not "
-                "rational; use the numerical branches"
-            )
+        if self.cell.size != 2:  # the roots of other cells are not rational
+            raise InputError(f"{what} needs a cell of 2 masses, not {self.cell.size}")
 
-    # --- numbers ----------------------------------------------------------------------------
-
-    def branches(self, kappa: ArrayLike) -> Array:
-        """Frequencies Ω_j(κ), ascending along a last axis of length P, to 1e-15 of the largest.
-
-        Raises `lwa.InputError` for a κ that is no finite number, and where masses, stiffnesses or
-        k are symbols.
-
-        >>> Dispersion(Cell([1])).branches(3.141592653589793)
-        array([2.])
-        """
-        from lwa.linear import bands  # start-up: it loads NumPy
-
-        return bands.branches(*self._weights, kappa)
-
-    def group_velocity(self, kappa: ArrayLike) -> Array:
-        """Slopes dΩ_j/dκ in the order of `branches`; if branches touch, those towards larger κ."""
-        from lwa.linear import bands  # start-up: it loads NumPy
-
-        return bands.group_velocity(*self._weights, kappa)
-
-    def band_edges(self) -> Array:
-        """Band edges (min, max) of each branch Ω_j, shape (P, 2), at κ = 0 and π/P."""
-        from lwa.linear import bands  # start-up: it loads NumPy
-
-        return bands.edges(*self._weights)
-
-    def gaps(self) -> Array:
-        """Edges (from, to) of the P - 1 gaps of Ω between the bands; closed gaps have length 0."""
+    @cached_property
+    def _bands(self) -> Bands:
         import numpy as np  # start-up: `import lwa` does not load it
 
-        edges = self.band_edges()
-        return np.stack([edges[:-1, 1], edges[1:, 0]], axis=-1)
+        from lwa.linear.bands import Bands
 
-    @property
-    def _weights(self) -> tuple[Array, Array]:
-        """The m̂_i and C_i as floats."""
-        return self._floats(self.cell.fractions), self._floats(self.cell.shares(self.k))
-
-    def _floats(self, values: Iterable[sp.Expr]) -> Array:
-        import numpy as np  # start-up: `import lwa` does not load it
-
-        values = tuple(values)
-        demand_numbers(
-            set().union(*(v.free_symbols for v in values)),
-            "the numerical branches need numbers for the masses, the stiffnesses and, with unequal "
-            "contacts, k",
-        )
-        numbers = np.array([float(v) for v in values])
-        if not np.all(numbers > 0):
+        weights = (*self.cell.fractions, *self.cell.shares(self.k))
+        demand_numbers(set().union(*(w.free_symbols for w in weights)), "bands want numbers")
+        fractions, shares = np.array([float(w) for w in weights]).reshape(2, -1)
+        if not (np.all(fractions > 0) and np.all(shares > 0)):
             raise InputError("masses or compliances differ by more than the range of a float")
-        return numbers
+        return Bands(fractions, shares)
 
 
 @dataclass(frozen=True)
-class LoadedChain(Value):
+class LoadedChain(_Banded):
     """The linear chain about the static load ``precompression``, the same in all contacts.
 
     Frequencies and speeds are in the units of the cell, s⁻¹ and m/s in SI. About the load F0
@@ -254,14 +239,10 @@ class LoadedChain(Value):
         return latex.rows({"F_{0}": self.precompression} | constants | {"c_{0}": self.sound_speed})
 
     @cached_property
-    def static_compressions(self) -> tuple[sp.Expr, ...]:
-        """The compression δ_i of each contact under the load."""
-        return self.law.compressions(self.cell, self.precompression)
-
-    @cached_property
     def spring_constants(self) -> tuple[sp.Expr, ...]:
         """The spring constants A_i F′(δ_i)."""
-        pairs = zip(self.cell.stiffnesses, self.static_compressions, strict=True)
+        compressions = self.law.compressions(self.cell, self.precompression)
+        pairs = zip(self.cell.stiffnesses, compressions, strict=True)
         return tuple(sp.powsimp(A * self.law.at(delta, 1)) for A, delta in pairs)
 
     @cached_property
@@ -273,47 +254,19 @@ class LoadedChain(Value):
         return Dispersion(Cell(self.cell.masses, tuple(constants), self.cell.spacing))
 
     @cached_property
-    def rate(self) -> sp.Expr:
+    def sound_speed(self) -> sp.Expr:
+        """The speed dω/dq of long waves."""
+        return self.cell.spacing * self._rate
+
+    @property
+    def _rate(self) -> sp.Expr:
         """The ratio ω/Ω, in s⁻¹ for a cell in SI."""
         springs = self.springs.cell
         return springs.time_scale(1) / springs.spacing
 
     @cached_property
-    def sound_speed(self) -> sp.Expr:
-        """The speed dω/dq of long waves."""
-        return self.cell.spacing * self.rate
-
-    def branches(self, q: ArrayLike) -> Array:
-        """Frequencies ω_j(q), ascending along a last axis of length P; κ = qD."""
-        import numpy as np  # start-up: `import lwa` does not load it
-
-        return self.springs.branches(np.asarray(q) * self._length) * self._rate
-
-    def group_velocity(self, q: ArrayLike) -> Array:
-        """Group velocities dω_j/dq in the order of `branches`."""
-        import numpy as np  # start-up: `import lwa` does not load it
-
-        slopes = self.springs.group_velocity(np.asarray(q) * self._length)
-        return slopes * (self._rate * self._length)
-
-    def band_edges(self) -> Array:
-        """Band edges (min, max) of each branch ω_j, shape (P, 2)."""
-        return self.springs.band_edges() * self._rate
-
-    def gaps(self) -> Array:
-        """Edges (from, to) of the gaps of ω between the bands."""
-        return self.springs.gaps() * self._rate
-
-    @property
-    def _rate(self) -> float:
-        return self._float(self.rate)
-
-    @property
-    def _length(self) -> float:
-        """The spacing as a float, 1 for a symbol."""
+    def _bands(self) -> Bands:
         D = self.cell.spacing
-        return 1.0 if D.is_Symbol else self._float(D)
-
-    def _float(self, value: sp.Expr) -> float:
-        demand_numbers(value.free_symbols, "bands under a load are numbers")
-        return float(value)
+        length = sp.S.One if D.is_Symbol else D
+        demand_numbers(self._rate.free_symbols | length.free_symbols, "bands want numbers")
+        return self.springs._bands._replace(rate=float(self._rate), length=float(length))

@@ -23,8 +23,7 @@ from typing import Any, Self
 
 import sympy as sp
 
-from lwa.algebra.jets import JetAlgebra, Monomial
-from lwa.algebra.rational import factored, to_sympy
+from lwa.algebra.rational import factored
 from lwa.base import latex
 from lwa.base.exact import InputError, positive, power, root, shorten, signed
 from lwa.base.frozen import Value
@@ -33,34 +32,24 @@ from lwa.cell import Cell, exponent, substitution
 from lwa.linear.dispersion import Dispersion
 
 _RATIOS = sp.symbols("g h", cls=sp.Dummy)
-"""G/I and H/I in the algebra of the strain's equation."""
+"""Symbols of G/I and H/I."""
 
 
 def strain_equation(p: sp.Expr, G: sp.Expr, H: sp.Expr, I: sp.Expr) -> dict[str, sp.Expr]:
     """Coefficients in the equation of z, v = z^p, named as below; r_n = ∂^n z / z.
 
-    V² z^p p r_1 = z^{kp} (linear · r_1 + cubic · r_1³ + product · r_1 r_2 + third · r_3),
-    derived in the algebra of the jets of z.
+    V² z^p p r_1 = z^{kp} (linear · r_1 + cubic · r_1³ + product · r_1 r_2 + third · r_3).
     """
-    given = (p, G, H, I)
-    jets = JetAlgebra(("p", "G", "H", "I"), weight=3)
-    p_, G_, H_, I_ = jets.context.gens()[:4]
-    v = [jets.one]
-    for _ in range(3):
-        v.append(jets.dx(v[-1], p_))  # v_n = ∂^n (z^p) / z^p
-    found = jets.terms(v[1] + G_ * v[1] ** 3 + H_ * v[1] * v[2] + I_ * v[3])
-    monomials = {
-        "linear": ((1, 1),),
-        "cubic": ((1, 3),),
-        "product": ((1, 1), (2, 1)),
-        "third": ((3, 1),),
-    }
-    return {
-        name: sp.Add(
-            *(to_sympy(c) * sp.Mul(*map(sp.Pow, given, e)) for e, c in found[Monomial(monomial)])
-        )
-        for name, monomial in monomials.items()
-    }
+    r1, r2, r3 = r = sp.symbols("r1:4", cls=sp.Dummy)
+
+    def derivative(X: sp.Expr) -> sp.Expr:  # ∂(z^p X) / z^p, since ∂r_n = r_{n+1} - r_1 r_n
+        return p * r1 * X + X.diff(r1) * (r2 - r1**2) + X.diff(r2) * (r3 - r1 * r2)
+
+    v1 = p * r1
+    v2 = derivative(v1)
+    found = sp.Poly(v1 + G * v1**3 + H * v1 * v2 + I * derivative(v2), *r)
+    monomials = {"linear": r1, "cubic": r1**3, "product": r1 * r2, "third": r3}
+    return {name: found.coeff_monomial(monomial) for name, monomial in monomials.items()}
 
 
 @dataclass(frozen=True)
@@ -100,12 +89,12 @@ class Reduction(Value):
 
     @property
     def beta(self) -> sp.Expr:
-        """Wavenumber β = √σ (1 - η) / 2 of the cosine, as `TravelingWave.beta` for either root."""
+        """The wavenumber β = √σ (1 - η) / 2 of the cosine, `CompactWave.beta` for either root."""
         return sp.sqrt(self.sigma) * (1 - self.eta) / 2
 
     @property
     def B(self) -> sp.Expr:
-        """Amplitude of the wave, B = (μ/(β² s (s-1)))^{1/(k-1)}, as `TravelingWave.amplitude`."""
+        """The amplitude B = (μ/(β² s (s-1)))^{1/(k-1)}, `CompactWave.amplitude` for either root."""
         ratio = self.mu / (self.beta**2 * self.s * (self.s - 1))
         return ratio ** (1 / (self.k - 1))
 
@@ -251,8 +240,7 @@ class CompactWave(Value):
     def roots(self) -> tuple[sp.Expr, sp.Expr]:
         """The two p for which v = z^p removes z_ξ³, the paper's first (2/(k+1) at equal masses)."""
         p, equation = self._equation
-        quadratic = sp.Poly(sp.cancel(equation["cubic"] / p), p).all_coeffs()
-        A, B, C = (factored(self._with_ratios(c)) for c in quadratic)
+        A, B, C = self._coefficients(equation["cubic"] / p, p)
         root = _root(factored(B**2 - 4 * A * C)).replace(sp.Abs, lambda x: x)
         return (sp.together((-B - root) / (2 * A)), sp.together((-B + root) / (2 * A)))
 
@@ -262,8 +250,11 @@ class CompactWave(Value):
         p = sp.Dummy("p")
         return p, strain_equation(p, _RATIOS[0], _RATIOS[1], sp.S.One)
 
-    def _with_ratios(self, value: sp.Expr) -> sp.Expr:
-        return value.xreplace(dict(zip(_RATIOS, self._ratios, strict=True)))
+    def _coefficients(self, value: sp.Expr, p: sp.Symbol) -> list[sp.Expr]:
+        """Coefficients of a polynomial in p, highest power first, with the wave's G/I and H/I."""
+        ratios = dict(zip(_RATIOS, self._ratios, strict=True))
+        polynomial = sp.Poly(sp.cancel(value), p)
+        return [factored(c.xreplace(ratios)) for c in polynomial.all_coeffs()]
 
     def reduction(self, root: int = 0, V: Any = SPEED) -> Reduction:
         """Reduction to z'' = μ z^η - σ z for one of the `roots` p (0: the paper's, 1: the other).
@@ -275,8 +266,7 @@ class CompactWave(Value):
         if root not in (0, 1):
             raise InputError(f"root is {shorten(root)}: 0 or 1 is wanted")
         p, equation = self._equation
-        exponent = sp.Poly(sp.cancel(equation["product"] / equation["third"]) + 1, p)  # e
-        slope, constant = (factored(self._with_ratios(exponent.nth(n))) for n in (1, 0))
+        slope, constant = self._coefficients(equation["product"] / equation["third"] + 1, p)  # of e
         a = factored(slope - self.k) * self.roots[root] + constant
         return Reduction(k=self.k, I=self.I, p=self.roots[root], a=a, V=positive(V, "V"))
 

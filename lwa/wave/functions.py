@@ -15,8 +15,7 @@ end of the support the last digit of ξ does: the profile is right to 1e-14 B at
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import replace
+from collections.abc import Mapping
 from functools import partial
 
 import sympy as sp
@@ -32,8 +31,9 @@ from lwa.wave.closed import CompactWave
 _XI = sp.Dummy("xi", real=True)
 _B, _V, _F = (sp.Dummy(name, positive=True) for name in ("B", "V_s", "F"))
 OWN = (_XI, _B, _V, _F)
+"""Arguments that are no symbols of the chain, in their order."""
+
 _SHIFT, _INSIDE = (sp.Dummy(name, real=True) for name in ("k_2", "inside"))
-_LONGEST_SUM = 64
 
 _TITLE = (
     "The compact traveling wave v = u_x = B cos^m(beta xi), m = 2/(k - 1),",
@@ -44,12 +44,11 @@ _LOADED_TITLE = (
     "Waves u_x = p0 + v(xi), xi = x - V_s tau, whose strain rises from p0 by B,",
     "written by lwa. They exist where V_s^2 > 0 grows with B, which is not checked.",
 )
-_STRAIN_DOC = "B of the wave whose contact force peaks at F"
-_FORCE_DOC = "dx/dt, in m/s for a chain in SI, of the wave whose force peaks at F"
-_SCALE_DOC = "tau/t: dx/dt = V_s tau/t"
-_LOADED_DOCS = {
+_DOCS = {
+    "strain": "B of the wave whose contact force peaks at F",
+    "speed_at_force": "dx/dt, in m/s for a chain in SI, of the wave whose force peaks at F",
+    "time_scale": "tau/t: dx/dt = V_s tau/t",
     "speed": "V_s = dx/dtau; loses digits as B/p0 falls: kdv_speed is for small B",
-    "time_scale": _SCALE_DOC,
     "sound_speed": "V_s of long small waves",
     "kdv_speed": "V_s of a small wave",
     "kdv_width": "L of a small wave v = B sech^2(xi/L)",
@@ -59,27 +58,38 @@ _LOADED_DOCS = {
 def wave_code(wave: CompactWave, language: str) -> str:
     """The source text of `wave_functions` in one of the `LANGUAGES`.
 
-    In Python the functions of the paper's reduction, `reduction_functions`, are added.
-
     Raises `lwa.InputError` for another language.
     """
-    one_of(language, LANGUAGES, "language")
-    functions = wave_functions(wave)
-    if language == "python":
-        functions |= reduction_functions(wave, functions["amplitude"])
-    return LANGUAGES[language](list(functions.values()), OWN).module(_TITLE)
+    return _module(wave_functions(wave), language, _TITLE)
 
 
 def loaded_code(
     cell: Cell, law: ContactLaw, p0: sp.Expr, forms: Mapping[str, sp.Expr], language: str
 ) -> str:
-    """The source text of `loaded_functions` in one of the `LANGUAGES`.
+    """The source text of a wave under load: closed forms, and under a power its speed at a force.
+
+    forms : expressions by their names in `_DOCS`; B is the rise of the strain.
+
+    Arguments stand in this order, each where it is used: B; F; p0; the symbols of the law, of the
+    masses, of the stiffnesses and of the spacing.
 
     Raises `lwa.InputError` for another language.
     """
-    one_of(language, LANGUAGES, "language")
-    functions = loaded_functions(cell, law, p0, forms)
-    return LANGUAGES[language](list(functions.values()), OWN).module(_LOADED_TITLE)
+    parts = (p0, *law.symbols, *cell.masses, *cell.stiffnesses, cell.spacing)
+    order = in_order(*parts)
+    define, functions = partial(function_of, order), {}
+    for name, value in forms.items():
+        rise = {s: _B for s in value.free_symbols if s.name == "B"}
+        functions[name] = define(name, _DOCS[name], value.xreplace(rise))
+    if law.homogeneous:
+        values = _at_force(order, cell, law.exponent, functions, p0)
+        functions |= {name: define(name, _DOCS[name], value) for name, value in values.items()}
+    return _module(functions, language, _LOADED_TITLE)
+
+
+def _module(functions: Mapping[str, Function], language: str, title: tuple[str, ...]) -> str:
+    writer = LANGUAGES[one_of(language, LANGUAGES, "language")]
+    return writer(list(functions.values()), OWN).module(title)
 
 
 def wave_functions(wave: CompactWave) -> dict[str, Function]:
@@ -88,88 +98,55 @@ def wave_functions(wave: CompactWave) -> dict[str, Function]:
     Arguments stand in this order, each where it is used: xi; B or V_s; the symbols of k, of the
     masses, of the stiffnesses and of the spacing.
     """
-    k, f, define = wave.k, wave.speed_factor, _functions_of(wave)
-    parts = {k - 2: _SHIFT}
-    S, excess = (
-        _stable(wave.coefficient_sum, k, parts),
-        _stable(sp.factor(sp.cancel(f - 1)), k, parts),
+    k, cell, factor = wave.k, wave.cell, wave.speed_factor
+    order = in_order(k, *cell.masses, *cell.stiffnesses, wave.D, wave.coefficient_sum)
+    local = {k - 2: _SHIFT}  # value → variable
+    S, excess, f = (
+        _stable(value, k, local)
+        for value in (wave.coefficient_sum, sp.factor(sp.cancel(factor - 1)), factor)
     )
-    f = _stable(f, k, parts)
-    local = tuple((symbol, value) for value, symbol in parts.items())
-    beta_value = (k - 1) / (2 * wave.D * sp.sqrt(S))
-    beta = define("beta", "beta = (k - 1)/(2 sqrt(G + H + I))", beta_value, local)
-    functions = [beta, define("width", "Length of the support, pi/beta", sp.pi / beta.call)]
+    variables = tuple((symbol, value) for value, symbol in local.items())
+    functions: dict[str, Function] = {}
+
+    def define(name: str, doc: str, value: sp.Expr, local: Local = ()) -> sp.Expr:
+        functions[name] = function_of(order, name, doc, value, local)
+        return functions[name].call
+
+    value = (k - 1) / (2 * wave.D * sp.sqrt(S))
+    beta = define("beta", "beta = (k - 1)/(2 sqrt(G + H + I))", value, variables)
+    define("width", "Length of the support, pi/beta", sp.pi / beta)
     for quantity in QUANTITIES:
-        doc = f"Full width at half maximum of the {quantity}"
-        angle = _half_angle((k - 1) / (2 * strain_power(quantity, k)))
-        functions.append(define(f"fwhm_{quantity}", doc, 2 * angle / beta.call))
-    speed = sp.sqrt(f) * _B ** ((k - 1) / 2)
-    amplitude = _V ** (2 / (k - 1)) * sp.exp(-2 * sp.asinh(excess / (2 * sp.sqrt(f))) / (k - 1))
-    profile = _B * sp.sin((_INSIDE + sp.Abs(_INSIDE)) / 2) ** (2 / (k - 1))
-    inside = sp.pi / 2 - sp.Abs(beta.call * _XI)
-    functions += [
-        define("speed", "V_s = dx/dtau of the wave whose strain peaks at B", speed, local),
-        define("amplitude", "B, the peak strain of the wave of speed V_s", amplitude, local),
-        define("profile", "v at xi, 0 outside of the support", profile, ((_INSIDE, inside),)),
-    ]
-    strain = define("strain", _STRAIN_DOC, _strain(wave.cell, k))
-    scale = define("time_scale", _SCALE_DOC, wave.cell.time_scale(k))
-    in_time = functions[5].call.subs(_B, strain.call) * scale.call
-    functions += [scale, strain, define("speed_at_force", _FORCE_DOC, in_time)]
-    return {function.name: function for function in functions}
-
-
-def loaded_functions(
-    cell: Cell, law: ContactLaw, p0: sp.Expr, forms: Mapping[str, sp.Expr]
-) -> dict[str, Function]:
-    """The closed forms of a wave under load, and under a power law its speed at a force, by name.
-
-    forms : expressions by their names in `_LOADED_DOCS`; B is the rise of the strain.
-
-    Arguments stand in this order, each where it is used: B; F; p0; the symbols of the law, of the
-    masses, of the stiffnesses and of the spacing.
-    """
-    parts = (p0, *law.symbols, *cell.masses, *cell.stiffnesses, cell.spacing)
-    define = partial(function_of, in_order(*parts))
-    functions = {
-        name: define(
-            name,
-            _LOADED_DOCS[name],
-            value.xreplace({s: _B for s in value.free_symbols if s.name == "B"}),
+        # arccos(2^-x) in a form that keeps its digits as x → 0
+        x = (k - 1) / (2 * strain_power(quantity, k))
+        angle = sp.atan(sp.sqrt(2 ** (x + 1) * sp.sinh(x * sp.log(2))))
+        define(
+            f"fwhm_{quantity}", f"Full width at half maximum of the {quantity}", 2 * angle / beta
         )
-        for name, value in forms.items()
-    }
-    if law.homogeneous:
-        strain = define("strain", _STRAIN_DOC, _strain(cell, law.exponent) - p0)
-        in_time = functions["speed"].call.subs(_B, strain.call) * functions["time_scale"].call
-        functions |= {
-            "strain": strain,
-            "speed_at_force": define("speed_at_force", _FORCE_DOC, in_time),
-        }
+    value = sp.sqrt(f) * _B ** ((k - 1) / 2)
+    define("speed", "V_s = dx/dtau of the wave whose strain peaks at B", value, variables)
+    value = _V ** (2 / (k - 1)) * sp.exp(-2 * sp.asinh(excess / (2 * sp.sqrt(f))) / (k - 1))
+    define("amplitude", "B, the peak strain of the wave of speed V_s", value, variables)
+    value = _B * sp.sin((_INSIDE + sp.Abs(_INSIDE)) / 2) ** (2 / (k - 1))
+    inside = ((_INSIDE, sp.pi / 2 - sp.Abs(beta * _XI)),)
+    define("profile", "v at xi, 0 outside of the support", value, inside)
+    define("time_scale", _DOCS["time_scale"], cell.time_scale(k))
+    for name, value in _at_force(order, cell, k, functions).items():
+        define(name, _DOCS[name], value)
     return functions
 
 
-def _strain(cell: Cell, k: sp.Expr) -> sp.Expr:
-    """The strain at which the contacts of a cell push with F."""
-    return Power(k).compression(cell, _F) / cell.spacing
-
-
-def reduction_functions(wave: CompactWave, amplitude: Function) -> dict[str, Function]:
-    """The p, a, μ, η, σ, s of the paper's `Reduction` and its amplitude B, by name."""
-    found, define = wave.reduction(V=_V), _functions_of(wave)
-    doc = "{} of the reduction v = z^p, z'' = mu z^eta - sigma z"
-    p = define("p", doc.format("p"), found.p)
-    a = define("a", doc.format("a"), found.a.subs(found.p, p.call))
-    found = replace(found, p=p.call, a=a.call)
-    rest = [define(n, doc.format(n), getattr(found, n)) for n in ("mu", "eta", "sigma", "s")]
-    functions = (p, a, *rest, define("B", amplitude.doc, amplitude.call))
-    return {function.name: function for function in functions}
-
-
-def _functions_of(wave: CompactWave) -> Callable[..., Function]:
-    cell = wave.cell
-    parts = (wave.k, *cell.masses, *cell.stiffnesses, cell.spacing, wave.coefficient_sum)
-    return partial(function_of, in_order(*parts))
+def _at_force(
+    order: tuple[sp.Symbol, ...],
+    cell: Cell,
+    k: sp.Expr,
+    functions: Mapping[str, Function],
+    p0: sp.Expr = sp.S.Zero,
+) -> dict[str, sp.Expr]:
+    """The rise of the strain, and dx/dt, of the wave whose contact force peaks at F."""
+    strain = Power(k).compression(cell, _F) / cell.spacing - p0
+    rise = function_of(order, "strain", "", strain).call
+    speed = functions["speed"].call.subs(_B, rise) * functions["time_scale"].call
+    return {"strain": strain, "speed_at_force": speed}
 
 
 def in_order(*parts: sp.Expr) -> tuple[sp.Symbol, ...]:
@@ -188,35 +165,22 @@ def function_of(
     return Function(name, doc, arguments, value, tuple(row for row in local if row[0] in used))
 
 
-def _half_angle(x: sp.Expr) -> sp.Expr:
-    """The angle arccos(2^{-x}), in a form that keeps its digits as x → 0."""
-    return sp.atan(sp.sqrt(2 ** (x + 1) * sp.sinh(x * sp.log(2))))
-
-
-def _stable(ratio: sp.Expr, k: sp.Expr, parts: dict[sp.Expr, sp.Symbol]) -> sp.Expr:
+def _stable(ratio: sp.Expr, k: sp.Expr, local: dict[sp.Expr, sp.Symbol]) -> sp.Expr:
     """Rewrite the sums of a rational expression in powers of k - 2.
 
-    New local variables are added to ``parts``: A^{1/k}, and pieces of a sum too long for one
-    statement (Fortran takes 256 lines).
+    New variables for powers A^{1/k} are added to ``local``.
     """
-
-    def part(value: sp.Expr, name: str) -> sp.Symbol:
-        symbol = sp.Dummy(f"{name}_{len(parts)}", positive=name == "r" or None)
-        return parts.setdefault(value, symbol)
 
     def root(power: sp.Pow) -> sp.Expr:
         n, _ = (power.exp * k).as_coeff_Mul()
-        return part(power.base ** (power.exp / n), "r") ** n
+        symbol = sp.Dummy(f"r_{len(local)}", positive=True)
+        return local.setdefault(power.base ** (power.exp / n), symbol) ** n
 
     def about_two(total: sp.Expr) -> sp.Expr:
         terms = sp.Poly(total.subs(k, _SHIFT + 2), _SHIFT).terms()
         return sp.Add(*(sp.factor(c) * _SHIFT**n for (n,), c in terms))
 
-    def pieces(total: sp.Expr) -> sp.Expr:
-        n = range(0, len(total.args), _LONGEST_SUM)
-        return sp.Add(*(part(sp.Add(*total.args[i : i + _LONGEST_SUM]), "sum") for i in n))
-
     if k.is_Symbol:
         ratio = ratio.replace(lambda e: e.is_Pow and e.exp.has(k), root)
         ratio = ratio.replace(lambda e: e.is_Add and e.has(k) and not (e - k).is_number, about_two)
-    return ratio.replace(lambda e: e.is_Add and len(e.args) > _LONGEST_SUM, pieces)
+    return ratio

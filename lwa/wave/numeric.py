@@ -27,6 +27,9 @@ from lwa.wave.closed import CompactWave
 
 Function = Callable[[Extended, Extended], Extended]
 
+_PI = np.longdouble("3.14159265358979323846264338327950288")
+_LOG4 = np.longdouble("1.38629436111989061883446424291635313")
+
 
 @dataclass(frozen=True)
 class NumericWave(Value):
@@ -68,7 +71,7 @@ class NumericWave(Value):
         return (self.wave.k, *dict.fromkeys(self.wave.cell.masses))
 
     @cached_property
-    def _dispersion(self) -> Function:
+    def _sum(self) -> Function:
         return _function(self.wave.coefficient_sum, *self._symbols)
 
     @cached_property
@@ -82,11 +85,11 @@ class NumericWave(Value):
 
     def beta(self, k: ArrayLike, omega: ArrayLike) -> Array:
         """The wavenumber β D = (k-1) / (2 √((G+H+I)/D²))."""
-        return _rounded(self._beta(k, omega))
+        return self._beta(k, omega).astype(np.float64)
 
     def width(self, k: ArrayLike, omega: ArrayLike) -> Array:
         """The number π/(βD) of sites under the wave."""
-        return _rounded(_PI / self._beta(k, omega))
+        return (_PI / self._beta(k, omega)).astype(np.float64)
 
     def fwhm(self, k: ArrayLike, omega: ArrayLike, quantity: str = "strain") -> Array:
         """FWHM of strain, contact force or velocity in units of D (`lwa.TravelingWave.fwhm`)."""
@@ -94,12 +97,13 @@ class NumericWave(Value):
         k = np.asarray(k, np.longdouble)
         # arccos(2^-x) = arctan √(4^x - 1), which keeps its digits as x → 0
         x = (k - 1) / (2 * strain_power(quantity, k))
-        return _rounded(2 * np.arctan(np.sqrt(np.expm1(x * _LOG4))) / beta)
+        return np.asarray(2 * np.arctan(np.sqrt(np.expm1(x * _LOG4))) / beta).astype(np.float64)
 
     def speed(self, k: ArrayLike, omega: ArrayLike, B: ArrayLike = 1.0) -> Array:
         """Speed V = dx/dτ of the wave whose strain peaks at B."""
         k, omega, _ = self._wave(k, omega)
-        return _rounded(np.sqrt(self._factor(k, omega)) * _positive(B, "B") ** ((k - 1) / 2))
+        root = np.sqrt(self._factor(k, omega)) * _positive(B, "B") ** ((k - 1) / 2)
+        return np.asarray(root).astype(np.float64)
 
     def log_amplitude(self, k: ArrayLike, omega: ArrayLike, V: ArrayLike = 1.0) -> Array:
         """Logarithm of the peak strain B of the wave of speed V, finite where B is out of range."""
@@ -107,43 +111,31 @@ class NumericWave(Value):
         less_one = (k - 1) * self._excess(k, omega)  # V²/B^{k-1} - 1
         near = np.abs(less_one) < 0.5  # log1p keeps the digits that V²/B^{k-1} loses at k → 1
         log_factor = np.where(near, np.log1p(less_one), np.log(self._factor(k, omega)))
-        return _rounded((2 * np.log(_positive(V, "V")) - log_factor) / (k - 1))
+        log_B = (2 * np.log(_positive(V, "V")) - log_factor) / (k - 1)
+        return np.asarray(log_B).astype(np.float64)
 
     def _beta(self, k: ArrayLike, omega: ArrayLike) -> Extended:
-        k, _, dispersion = self._wave(k, omega)
-        beta: Extended = (k - 1) / (2 * np.sqrt(dispersion))
-        return beta
+        k, _, coefficient_sum = self._wave(k, omega)
+        return np.asarray((k - 1) / (2 * np.sqrt(coefficient_sum)))
 
     def _wave(self, k: ArrayLike, omega: ArrayLike) -> tuple[Extended, Extended, Extended]:
         """Return k, ω and (G+H+I)/D², broadcast; G, H, I are the wave equation's coefficients.
 
         At points without a wave all three are NaN, or `lwa.NoSolitaryWave` is raised (``missing``).
         """
-        given = (finite(x, name).astype(np.longdouble) for x, name in ((k, "k"), (omega, "ω")))
-        k, omega = np.broadcast_arrays(*given)
-        if not np.all(omega > 0):
-            raise InputError(f"ω = m2/m1 is {omega.min()}: it must be positive")
+        k = finite(k, "k").astype(np.longdouble)
+        k, omega = np.broadcast_arrays(k, _positive(omega, "ω = m2/m1"))
         with np.errstate(all="ignore"):  # outside the domain of waves, see below
-            dispersion = self._dispersion(k, omega)
-            exists = (k > 1) & (dispersion > 0) & (self._factor(k, omega) > 0)
-        if np.all(exists):
-            return k, omega, dispersion
-        if self.missing == "raise":
+            coefficient_sum = self._sum(k, omega)
+            exists = (k > 1) & (coefficient_sum > 0) & (self._factor(k, omega) > 0)
+        if self.missing == "raise" and not np.all(exists):
             first = np.argmin(exists)
             raise NoSolitaryWave(
                 f"no compact wave at k = {float(k.flat[first])}, ω = {float(omega.flat[first])}: "
                 "it needs k > 1, G+H+I > 0 and V² > 0"
             )
         nan = np.where(exists, 0.0, np.nan)
-        return k + nan, omega + nan, dispersion + nan
-
-
-_PI = np.longdouble("3.14159265358979323846264338327950288")
-_LOG4 = np.longdouble("1.38629436111989061883446424291635313")
-
-
-def _rounded(value: Extended) -> Array:
-    return np.asarray(value).astype(np.float64)
+        return k + nan, omega + nan, coefficient_sum + nan
 
 
 def _positive(value: ArrayLike, name: str) -> Extended:
@@ -165,10 +157,5 @@ def _function(ratio: sp.Expr, k: sp.Symbol, m1: sp.Symbol, m2: sp.Symbol) -> Fun
         for part in sp.fraction(sp.cancel(ratio))
     )
     compiled = sp.lambdify((shifted, omega), numerator / denominator, "numpy", cse=True)
-
-    def function(k: Extended, omega: Extended) -> Extended:
-        # a theory without ω, or without k, gives a constant: broadcast it
-        result: Extended = compiled(k - 2, omega) + 0 * k
-        return result
-
-    return function
+    # A theory without ω, or without k, gives a constant, which is broadcast.
+    return lambda k, omega: np.asarray(compiled(k - 2, omega) + 0 * k)

@@ -41,7 +41,7 @@ def test_no_cell_needs_the_book_or_myst(of, page):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("page", ["equal", "closure", "cells"])
+@pytest.mark.parametrize("page", ["cells"])
 def test_a_notebook_runs_in_an_empty_folder(of, page, tmp_path):
     from nbclient import NotebookClient
 

@@ -3,9 +3,8 @@
 import pytest
 
 from validation.pulses.pulse import Measured
-from validation.studies.limits import EQUAL, EXPONENTS, LIGHT, Row
-from validation.waves.asymptotics import LAWS, theory_values
-from validation.waves.theory import theory_at
+from validation.studies.limits import EQUAL, EXPONENTS, LIGHT, Comparison
+from validation.waves.theory import LEADING_POWERS, theory_at, theory_values
 
 
 @pytest.fixture(scope="session", autouse=True)
@@ -20,9 +19,9 @@ def limits_rows():
     for omega in (EQUAL, LIGHT):
         for k in EXPONENTS:
             theory = theory_values(theory_at(k, omega))
-            for quantity, law in LAWS.items():
+            for quantity, law in LEADING_POWERS.items():
                 error = 0.9 * float(law.coefficient * (k - 1) ** law.order)
                 lattice = float(theory[quantity]) / (1 + error)
                 found = Measured(lattice, lattice * (1 + 1e-7))
-                rows.append(Row(quantity, k, omega, theory[quantity], found, law.bound(k)))
+                rows.append(Comparison(quantity, k, omega, theory[quantity], found, law.bound(k)))
     return rows

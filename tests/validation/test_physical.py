@@ -8,7 +8,7 @@ import sympy as sp
 from lwa import Cell, Sphere, canonical_wave, homogenize
 from validation import Scene, exact_wave, measure, simulate
 from validation.pulses.pulse import speed
-from validation.scenes.materials import PTFE_BEAD, STEEL_BEAD
+from validation.scenes.chains import PTFE_BEAD, STEEL_BEAD
 
 FROM, TO = 50, 60
 """Contacts between which the pulse is timed; at 50 sites it is the lattice's own wave to 1e-8."""

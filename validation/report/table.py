@@ -44,8 +44,8 @@ class Column:
         return f"{self.label} ({self.unit})" if self.unit else self.label
 
     def text(self, cell: Any) -> str:
-        """Format one cell; ``-`` for None."""
-        if cell is None:
+        """Format one cell; ``-`` for None and NaN."""
+        if cell is None or (isinstance(cell, float) and math.isnan(cell)):
             return "-"
         if callable(self.format):
             return self.format(cell)

@@ -1,4 +1,7 @@
-"""Scenes of chains that are struck or carry a wave, with A = 1, and the paper's chain in SI."""
+"""Scenes of chains that are struck or carry a wave, with A = 1, and the paper's chain in SI.
+
+The beads of Porter et al. (2008) are `STEEL_BEAD`, also their striker, and `PTFE_BEAD`.
+"""
 
 from __future__ import annotations
 
@@ -9,10 +12,15 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lwa import Cell
-from lwa.spheres.hertz import Sphere
+from lwa.spheres.hertz import Material, Sphere
 from validation.scenes.checks import SceneError
-from validation.scenes.materials import PTFE_BEAD, STEEL, STEEL_BEAD
 from validation.scenes.scene import Scene
+
+STEEL = Material("193e9", "0.3")  # stainless steel, type 316
+PTFE = Material("1.46e9", "0.46")  # with the dynamic modulus that the paper uses
+DIAMETER = 4.76e-3  # of all beads, in m
+STEEL_BEAD = Sphere("0.45e-3", DIAMETER / 2, STEEL)
+PTFE_BEAD = Sphere("0.123e-3", DIAMETER / 2, PTFE)
 
 
 def struck(masses: Sequence[float], beads: int, k: float = 1.5, **rest: Any) -> Scene:

@@ -1,15 +1,18 @@
-"""Checked input of scenes: finite floats, or one line that names the value and the remedy."""
+"""Checked input of scenes: numbers, sequences and CSV columns; a fault is one line with a name."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Sequence
+import csv
+from collections.abc import Collection, Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from lwa.base import tables
+from lwa.base.arrays import Array
 from lwa.base.exact import InputError, shorten
-from lwa.base.tables import LEAST, Reader, array
+from lwa.base.tables import Reader
 
 SceneError = InputError
 """Invalid input of a scene, under the name that `validation` exports."""
@@ -38,30 +41,41 @@ def between(value: Any, name: str, low: float, high: float, wanted: str = "") ->
     return number
 
 
-def row(
-    values: Sequence[Any], read: Callable[[Any, str], float], name: Callable[[int], str]
-) -> Any:
-    """Return the values as ``read`` returns each; ``name(i)`` is the name of value i in messages.
-
-    `real` and `positive` check a row of numbers at once, as a chain may have a million beads.
-    """
-    if read in (real, positive) and set(map(type, values)) <= {int, float, np.float64}:
-        try:
-            numbers = np.array(values, float)
-        except OverflowError:  # of an integer
-            numbers = np.array([np.nan])
-        if np.isfinite(numbers).all() and (read is real or np.all(numbers >= LEAST)):
-            return numbers.tolist()
-    return [read(value, name(i)) for i, value in enumerate(values)]
-
-
-def each(reader: Reader) -> Reader:
-    """Return a reader of lists that reads every item by ``reader``."""
-    return lambda value, name: row(array(value, name), reader, lambda i: f"{name} number {i + 1}")
-
-
 def items(values: Any, name: str) -> tuple[Any, ...]:
     """Return the items of a sequence as a tuple; `SceneError` for a text or a single value."""
     if isinstance(values, str | bytes) or not hasattr(values, "__iter__"):
         raise SceneError(f"{name} is {shorten(values)}: a sequence is wanted")
     return tuple(values)
+
+
+def each(reader: Reader) -> Reader:
+    """Return a reader of sequences that reads every item by ``reader``, as ``name[0]`` …"""
+    return lambda values, name: tuple(
+        reader(value, f"{name}[{i}]") for i, value in enumerate(items(values, name))
+    )
+
+
+def columns(path: str | Path, *wanted: str, optional: Sequence[str] = ()) -> dict[str, Array]:
+    """Read columns of a CSV file with a header; return each, (N,), by its name without unit.
+
+    A header such as "force (N)" names the column "force". Raises `SceneError`, in one line, for a
+    file without a wanted column, and for entries that are no finite numbers.
+    """
+    try:
+        with open(path, encoding="utf-8-sig", newline="") as file:
+            header, *rows = [row for row in csv.reader(file) if row] or [[]]
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        raise SceneError(f"{path}: {getattr(error, 'strerror', None) or error}") from None
+    names = [name.partition("(")[0].strip() for name in header]
+    values: dict[str, Array] = {}
+    for name in (*wanted, *(name for name in optional if name in names)):
+        if names.count(name) != 1:
+            header_text = shorten(names)
+            raise SceneError(f"{path}: one column {name} is wanted, the header has {header_text}")
+        try:
+            values[name] = np.array([row[names.index(name)] for row in rows], float)
+        except (ValueError, IndexError):
+            values[name] = np.array([np.nan])
+        if not np.isfinite(values[name]).all():
+            raise SceneError(f"{path}: column {name}: finite numbers are wanted")
+    return values

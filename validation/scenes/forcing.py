@@ -11,7 +11,7 @@ import numpy as np
 
 from lwa.base.arrays import Array
 from lwa.base.exact import shorten
-from validation.scenes.checks import SceneError, between, each, items, one_of, positive, real
+from validation.scenes.checks import SceneError, between, each, one_of, positive, real
 
 DAMPINGS = ("contact", "kuwabara_kono", "restitution")
 
@@ -31,8 +31,10 @@ class Damping:
 
     def __post_init__(self) -> None:
         one_of(self.kind, DAMPINGS, "damping")
-        read = _share if self.kind == "restitution" else positive
-        object.__setattr__(self, "value", read(self.value, self.kind))
+        value = positive(self.value, self.kind)
+        if self.kind == "restitution":
+            between(value, self.kind, 0.01, 1, "a coefficient from 0.01 to 1 is wanted")
+        object.__setattr__(self, "value", value)
 
     def power(self, k: float) -> float:
         """Exponent of δ in front of the rate dδ/dt."""
@@ -42,11 +44,8 @@ class Damping:
         """Return the factors of δ^power dδ/dt, (contacts,), at reduced masses ``masses``."""
         if self.kind != "restitution":
             return np.full(len(stiffnesses), self.value)
+        # c of the damping ratio ζ = c/√(2(k+1) m A), see `restitution`
         return 2 * damping_ratio(self.value) * np.sqrt((k + 1) / 2 * masses * stiffnesses)
-
-
-def _share(value: Any, name: str) -> float:
-    return between(value, name, 0.01, 1, "a coefficient from 0.01 to 1 is wanted")
 
 
 def restitution(ratio: float) -> float:
@@ -91,8 +90,7 @@ class Drive:
 
     def __post_init__(self) -> None:
         for name in ("time", "displacement"):
-            key = f"drive.{name}"
-            row = tuple(each(real)(list(items(getattr(self, name), key)), key))
+            row = each(real)(getattr(self, name), f"drive.{name}")
             object.__setattr__(self, name, row)
         harmonic = self.amplitude is not None or self.frequency is not None
         if (self.velocity is not None) + harmonic + bool(self.time or self.displacement) != 1:

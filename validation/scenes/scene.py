@@ -13,7 +13,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import partial
+from functools import cache, partial
 from itertools import accumulate, pairwise
 from typing import Any
 
@@ -25,8 +25,7 @@ from lwa.base.tables import Reader
 from lwa.cell import exponent
 from lwa.law import ContactLaw
 from lwa.spheres.hertz import Material, Sphere, stiffness
-from validation.scenes import checks
-from validation.scenes.checks import SceneError, integer, items, positive, real
+from validation.scenes.checks import SceneError, each, integer, items, one_of, positive, real
 from validation.scenes.forcing import Damping, Drive
 
 __all__ = ["Scene", "SceneError"]
@@ -107,7 +106,6 @@ class Scene:
                 raise SceneError(f"{name} is {value:g}: {wanted}")
         for name, count in (("contact_sensors", self.contact_count), ("bead_sensors", n)):
             object.__setattr__(self, name, _sensors(getattr(self, name), name, count))
-
         self._check_forcing()
 
     def _check_forcing(self) -> None:
@@ -204,31 +202,24 @@ class Scene:
         ``rest`` are further fields of the scene. Raises `SceneError` for spheres with symbols.
         """
         given = items(beads, "beads")
-        for i, bead in enumerate(given):
-            if not isinstance(bead, Sphere):
-                raise SceneError(f"bead {i} is {shorten(bead)}: a Sphere is wanted")
-        if not given:
-            raise SceneError("beads is empty: a chain has at least one bead")
-        pairs = [(id(a), id(b)) for a, b in pairwise(given)]
-        distinct = dict(zip(pairs, pairwise(given), strict=True))
-        A = {key: _number(stiffness(*pair), "stiffness") for key, pair in distinct.items()}
-        distance = {key: float(a.radius + b.radius) for key, (a, b) in distinct.items()}
-        mass = {key: _number(bead.mass, "mass") for key, bead in {id(b): b for b in given}.items()}
+        if not given or not all(isinstance(bead, Sphere) for bead in given):
+            raise SceneError(f"beads is {shorten(given)}: a sequence of spheres is wanted")
+
+        @cache  # exact numbers take their time, and a chain has few kinds of contacts
+        def contact(a: Sphere, b: Sphere) -> tuple[float, float]:
+            return _number(stiffness(a, b), "stiffness"), float(a.radius + b.radius)
+
+        mass = cache(lambda bead: _number(bead.mass, "mass"))
+        contacts = [contact(a, b) for a, b in pairwise(given)]
         return cls(
-            masses=tuple(mass[id(bead)] for bead in given),
-            stiffnesses=tuple(A[key] for key in pairs),
+            masses=tuple(map(mass, given)),
+            stiffnesses=tuple(A for A, _ in contacts),
             k=1.5,
             wall=None if wall is None else float(stiffness(given[-1], wall)),
-            spacings=tuple(distance[key] for key in pairs),
+            spacings=tuple(distance for _, distance in contacts),
             units="SI",
             **rest,
         )
-
-
-def _all(read: Reader) -> Reader:
-    return lambda values, name: tuple(
-        checks.row(items(values, name), read, lambda i: f"{name}[{i}]")
-    )
 
 
 def _exponent(value: Any, name: str) -> float:
@@ -238,18 +229,18 @@ def _exponent(value: Any, name: str) -> float:
 
 
 _READERS: dict[str, Reader] = {
-    "masses": _all(positive),
-    "stiffnesses": _all(positive),
-    "spacings": _all(positive),
-    "displacements": _all(real),
-    "velocities": _all(real),
+    "masses": each(positive),
+    "stiffnesses": each(positive),
+    "spacings": each(positive),
+    "displacements": each(real),
+    "velocities": each(real),
     "samples": partial(integer, low=2),
     "k": _exponent,
     "duration": positive,
     "wall": positive,
     "gravity": real,
     "precompression": real,
-    "units": lambda value, name: checks.one_of(value, ("", "SI"), name),
+    "units": lambda value, name: one_of(value, ("", "SI"), name),
 }
 
 

@@ -1,4 +1,4 @@
-"""Files of scenes, TOML or JSON.
+"""Files of scenes, TOML or JSON: `read_scene` reads a file, `document` returns its content.
 
 All keys but ``duration`` and ``chain.cell`` are optional::
 
@@ -47,7 +47,6 @@ All keys but ``duration`` and ``chain.cell`` are optional::
     [start]                       # instead of a striker; from bead 1 on, the others at 0
     velocities = [1.0, 1.0]
     displacements = [0.1, 0.1]    # from the equilibrium
-    overlap = true                # they press beads into each other that carry nothing at rest
     [sensors]
     beads = [15, 34]
     contacts = [15]               # contact 15 joins beads 15 and 16, the last one bead and wall;
@@ -60,44 +59,45 @@ masses and stiffnesses any that agree. A file with a key ``scene``, such as `lwa
 writes, holds the scene under that key.
 
 Unknown keys are refused, and every fault is one line that names the key. A written file holds
-masses and stiffnesses, not the materials that they came from; the scene read from it is equal to
-the last bit.
+masses and stiffnesses, not the materials that they came from; the scene read from it is equal.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from dataclasses import asdict
 from functools import partial
+from itertools import product
 from pathlib import Path
 from typing import Any
 
-from lwa.base.arrays import Array
-from lwa.base.exact import shorten
+import sympy as sp
+
+from lwa.base.exact import InputError, shorten
 from lwa.base.files import load
-from lwa.base.tables import Reader, Table, among, array, entries, flag, place, places, table
-from lwa.law import read_law
+from lwa.base.tables import Reader, Table, among, array, each, entries, place, places, table
+from lwa.law import NAMES, ContactLaw, named, read_law
 from lwa.spheres.beads import read_beads, read_materials
 from lwa.spheres.hertz import Material, Sphere, stiffness
-from validation.scenes.checks import SceneError, each, integer, positive, real
-from validation.scenes.columns import columns
-from validation.scenes.document import overlap
+from validation.scenes.checks import SceneError, columns, integer, positive, real
 from validation.scenes.forcing import DAMPINGS, Damping, Drive
 from validation.scenes.scene import Scene
 
 MOST_BEADS = 1_000_000
-MOST_SAMPLES = 10_000_000  # of all sensors together
 _CHAIN = ("cell", "k", "law", "stiffnesses", "spacings", "repeat")
 _TABLES = {  # that a file may leave out
     "wall": ("material", "stiffness"),
     "damping": DAMPINGS,
     "drive": ("velocity", "amplitude", "frequency", "ramp", "file", "time", "displacement"),
     "striker": ("velocity",),
-    "start": ("velocities", "displacements", "overlap"),
+    "start": ("velocities", "displacements"),
     "sensors": ("beads", "contacts"),
 }
-_NUMBERS = ("duration", "samples", "units", "gravity", "precompression")
-_FILE = (*_NUMBERS, "materials", "beads", "chain", "defects", *_TABLES)
+_NUMBERS = ("samples", "gravity", "precompression")
+_FILE = ("duration", "units", *_NUMBERS, "materials", "beads", "chain", "defects", *_TABLES)
 KEYS: Mapping[str, Sequence[str]] = {"file": _FILE, "chain": _CHAIN, **_TABLES}
+"""Keys of a file, and of each of its tables."""
 
 
 def read_scene(path: str | Path) -> Scene:
@@ -118,7 +118,7 @@ def scene(content: Any) -> Scene:
     }
     materials = read_materials(file)
     beads = read_beads(file, materials)
-    defects = file.read("defects", _defects, ())
+    defects = file.read("defects", each(_defect), ())
     row, chain = _chain(file.read("chain", table(KEYS["chain"])), beads, defects)
     n, start, sensors = len(chain["masses"]), tables["start"], tables["sensors"]
     wall = _wall(tables["wall"], row, materials) if "wall" in file else None
@@ -127,55 +127,34 @@ def scene(content: Any) -> Scene:
         if "start" in file:
             raise SceneError("striker and start are both there: one says how the beads start")
         velocities = (tables["striker"].read("velocity", real),)
-    result = Scene(
+    return Scene(
         **chain,
+        **{key: file.entries[key] for key in _NUMBERS if key in file},
         wall=wall,
         duration=file.read("duration", positive),
         units=file.read("units", among({"SI": "SI"}), "SI" if row else ""),
-        samples=file.read("samples", partial(integer, low=2, high=MOST_SAMPLES), 1001),
-        gravity=file.read("gravity", real, 0.0),
-        precompression=file.read("precompression", real, 0.0),
         displacements=start.read("displacements", each(real), ()),
         velocities=velocities,
         damping=_damping(tables["damping"]) if "damping" in file else None,
         drive=_drive(tables["drive"]) if "drive" in file else None,
-        bead_sensors=sensors.read("beads", _heard(n), ()),
-        contact_sensors=sensors.read("contacts", _heard(n - (wall is None)), ()),
+        bead_sensors=sensors.read("beads", _sensors(n), ()),
+        contact_sensors=sensors.read("contacts", _sensors(n - (wall is None)), ()),
     )
-    listening = len(result.bead_sensors) + len(result.contact_sensors)
-    if result.samples * listening > MOST_SAMPLES:
-        each_of = f"samples is {result.samples}, for each of {listening} sensors"
-        raise SceneError(f"{each_of}: all may take {MOST_SAMPLES} together")
-    if (pressed := overlap(result)) and not start.read("overlap", flag, False):
-        into = f"bead {pressed} into {'the wall' if pressed == n else f'bead {pressed + 1}'}"
-        raise SceneError(f"start.displacements press {into}: start.overlap = true allows it")
-    return result
 
 
-def _heard(count: int) -> Reader:
+def _sensors(count: int) -> Reader:
     """Return a reader of sensors: a list of numbers from 1 to ``count``, or "all"."""
     return lambda value, name: range(count) if value == "all" else places(count)(value, name)
 
 
 def _defect(value: Any, name: str) -> Table:
+    """Read one table of ``defects``."""
     of_contact = "contact" in entries(value, name)
     given = Table(value, name, ("contact", "stiffness") if of_contact else ("bead", "like", "mass"))
     given.one("contact", "bead")
     if not of_contact:
         given.one("like", "mass")
     return given
-
-
-def _defects(value: Any, name: str) -> list[Table]:
-    found: list[Table] = each(_defect)(value, name)
-    first: dict[tuple[str, int], Table] = {}
-    for defect in found:
-        what = "contact" if "contact" in defect else "bead"
-        at = defect.entries[what]  # checked when it is known how many there are
-        if isinstance(at, int) and (other := first.setdefault((what, at), defect)) is not defect:
-            both = f"{other.name} and {defect.name} are both of {what} {at}"
-            raise SceneError(f"{both}: one is wanted")
-    return found
 
 
 def _chain(
@@ -203,11 +182,8 @@ def _chain(
     else:
         masses = each(positive)(cell, "chain.cell") * repeat
         of_contacts = partial(_of_contacts, period=len(cell), count=n - 1)
-        law = {
-            given.one("k", "law"): given.read("k", real)
-            if "k" in given
-            else given.read("law", read_law)
-        }
+        key = given.one("k", "law")
+        law = {key: given.read(key, real if key == "k" else read_law)}
         stiffnesses = given.read("stiffnesses", of_contacts, [1.0] * (n - 1))
         spacings = given.read("spacings", of_contacts, ())
     for defect in defects:
@@ -242,17 +218,78 @@ def _wall(given: Table, row: Sequence[Sphere], materials: Mapping[str, Material]
 
 def _damping(given: Table) -> Damping:
     kind = given.one(*DAMPINGS)
-    return Damping(kind, given.read(kind, real))
+    return Damping(kind, given.entries[kind])
 
 
-def _motion(value: Any, name: str) -> dict[str, Array]:
-    """Read the columns time and displacement of a CSV file."""
+def _drive(given: Table) -> Drive:
+    """Read the motion of bead 1; the key ``file`` names a CSV file of its time and displacement."""
+    numbers = {key: value for key, value in given.entries.items() if key != "file"}
+    return Drive(**numbers | given.read("file", _motion, {}))
+
+
+def _motion(value: Any, name: str) -> dict[str, Any]:
     if not isinstance(value, str):
         raise SceneError(f"{name} is {shorten(value)}: the name of a CSV file is wanted")
     return columns(value, "time", "displacement")
 
 
-def _drive(given: Table) -> Drive:
-    """Read the motion of bead 1, by numbers or from a file."""
-    motion = given.read("file", _motion, {})
-    return Drive(**{name: x for name, x in given.entries.items() if name != "file"} | motion)
+def document(source: Scene) -> dict[str, Any]:
+    """Return the content of a scene's file, for JSON; `scene` reads an equal scene."""
+    period = _period(source)
+    chain: dict[str, Any] = {"cell": list(source.masses[:period])}
+    chain |= {"k": source.k} if source.law is None else {"law": _law_text(source.law)}
+    if period < source.size:
+        chain["repeat"] = source.size // period
+    for name in ("stiffnesses", "spacings"):
+        if values := getattr(source, name):
+            chain[name] = values[0] if len(set(values)) == 1 else list(values[:period])
+    result: dict[str, Any] = {"duration": source.duration, "samples": source.samples}
+    for name in ("units", "gravity", "precompression"):
+        if value := getattr(source, name):
+            result[name] = value
+    result["chain"] = chain
+    if source.wall is not None:
+        result["wall"] = {"stiffness": source.wall}
+    if source.damping is not None:
+        result["damping"] = {source.damping.kind: source.damping.value}
+    if source.drive is not None:
+        result["drive"] = {
+            name: list(value) if isinstance(value, tuple) else value
+            for name, value in asdict(source.drive).items()
+            if value or (value == 0 and name != "ramp")
+        }
+    if len(source.velocities) == 1 and not source.displacements:
+        result["striker"] = {"velocity": source.velocities[0]}
+    elif source.velocities or source.displacements:
+        start = {"velocities": source.velocities, "displacements": source.displacements}
+        result["start"] = {name: list(values) for name, values in start.items() if values}
+    sensors = {"beads": source.bead_sensors, "contacts": source.contact_sensors}
+    if any(sensors.values()):
+        result["sensors"] = {name: [i + 1 for i in row] for name, row in sensors.items() if row}
+    return result
+
+
+def _period(source: Scene) -> int:
+    """Return the size of the smallest cell whose repetition is the chain."""
+    n, rows = source.size, (source.masses, source.stiffnesses, source.spacings)
+    return next(
+        p
+        for p in range(1, n + 1)
+        if n % p == 0 and all(row[p:] == row[: max(len(row) - p, 0)] for row in rows)
+    )
+
+
+def _law_text(law: ContactLaw) -> str:
+    """Return a law as text, such as "hertz2:1,2"; `SceneError` for a law without a name.
+
+    The parameters are searched among the numbers in F, their negatives and their reciprocals.
+    """
+    numbers = {x for x in law.F.atoms(sp.Number) if x}
+    numbers |= {1 / x for x in numbers} | {sp.S.One}
+    numbers |= {-x for x in numbers} | {sp.S.Zero}
+    for title in NAMES:
+        for values in product(sorted(numbers), repeat=len(named(title).symbols)):
+            with suppress(InputError):
+                if named(title, *values) == law:
+                    return f"{title}:{','.join(map(str, values))}"
+    raise SceneError(f"law is {law.F}: a file holds the laws {', '.join(NAMES)}")

@@ -16,8 +16,7 @@ from validation.pulses.signals import Sampled
 from validation.report.command import study
 from validation.report.result import Report
 from validation.report.table import Column, Table
-from validation.scenes.checks import SceneError
-from validation.scenes.columns import columns
+from validation.scenes.checks import SceneError, columns
 from validation.scenes.scenefile import read_scene
 
 _COLUMNS = (

@@ -23,7 +23,7 @@ from validation.pulses.train import Train
 from validation.report.command import study
 from validation.report.result import Report
 from validation.report.table import Column, Table, percent
-from validation.scenes.materials import DIAMETER, PTFE, PTFE_BEAD
+from validation.scenes.chains import DIAMETER, PTFE, PTFE_BEAD
 from validation.studies.paper import BEADS, HERTZ, SENSORS, TOLERANCES, chain_cell, recorded_chain
 
 RECORDED = {1: (15, 24, 33), 2: (16, 24, 34)}  # N → beads of figure 2; 24 is PTFE

@@ -24,8 +24,7 @@ from validation.report.command import option, study
 from validation.report.result import Report
 from validation.report.table import Column, Table
 from validation.scenes.chains import numbered
-from validation.scenes.checks import SceneError, integer
-from validation.scenes.columns import columns
+from validation.scenes.checks import SceneError, columns, integer
 from validation.waves.contact_law import Medium, PowerFit, fit_power, free_law, weights
 
 _ROOT = 1e-13  # error of ln E, beside rounding

@@ -1,7 +1,7 @@
 """Limits of the theory on the lattice: equal masses, m1 ≫ m2, and k → 1.
 
 The theory's wave is the leading order in ε = k - 1, so that its error against the lattice must
-vanish as a known power of ε (`validation.waves.asymptotics`). Each chain starts with the theory's
+vanish as a known power of ε (`validation.waves.theory`). Each chain starts with the theory's
 wave, which turns into the lattice's wave and leaves the difference behind. The pulse is measured
 after four, six and eight times its support (the places); the difference between the last two places
 is the lattice's error.
@@ -13,7 +13,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import sympy as sp
@@ -23,26 +22,16 @@ from lwa.base.progress import Progress
 from validation.lattice.run import Run
 from validation.lattice.simulate import simulate
 from validation.pictures import Curve, Panel
-from validation.pulses.pulse import (
-    Measured,
-    compared,
-    derived,
-    exponent,
-    highest_pulse,
-    integral,
-    speed,
-)
+from validation.pulses.pulse import Measured, compared, derived, highest_pulse, integral, speed
 from validation.report.command import study
 from validation.report.result import Report
 from validation.report.table import Column, Finding, Table, percent
 from validation.scenes.chains import carrying
-from validation.waves.asymptotics import LAWS, QUANTITIES, theory_values
-from validation.waves.theory import theory_at
+from validation.waves.theory import LEADING_POWERS, QUANTITIES, theory_at, theory_values
 
 EXPONENTS = (sp.Rational(3, 2), sp.Rational(5, 4), sp.Rational(11, 10))
 EQUAL, LIGHT = sp.Integer(1), sp.Rational(1, 1000)  # ω = m2/m1; effects of LIGHT² do not show
 LIMIT = (4 * LIGHT, LIGHT, LIGHT / 4)  # ω from which the lattice at k = 3/2 is extrapolated to 0
-AMPLITUDES = (0.01, 1.0, 100.0)  # peak strains B, for the exponent of F_m in V_s
 PLACES = (4, 6, 8)  # supports run
 # rtol and atol of chains with one mass and with two. Light beads set the step, far below the needs
 # of the pulse at the same tolerance.
@@ -50,8 +39,11 @@ TOLERANCES = {1: (1e-9, 1e-9), 2: (1e-7, 1e-6)}
 
 
 @dataclass(frozen=True)
-class Row:
-    """Comparison of one quantity; omega is 0 for the limit, k None for a result from all k."""
+class Comparison:
+    """Theory and lattice in one quantity; omega is 0 for the limit, k None for a result of all k.
+
+    bound : largest expected |theory/lattice - 1|.
+    """
 
     quantity: str
     k: sp.Rational | None
@@ -73,14 +65,8 @@ class Row:
     @property
     def finding(self) -> Finding:
         """The error with its bound and the lattice's own error, as a finding."""
-        own = self.lattice.relative_error
-        return Finding(self.quantity, self.error, -self.bound, self.bound, error=own)
-
-    @property
-    def cells(self) -> tuple[Any, ...]:
-        """Cells of the row in the printed table."""
-        numbers = self.theory, self.theory_value, self.lattice, self.error, self.bound
-        return self.quantity, self.k, self.omega, *numbers, self.finding.ok
+        error = self.lattice.relative_error
+        return Finding(self.quantity, self.error, -self.bound, self.bound, error)
 
 
 _COLUMNS = (
@@ -103,8 +89,7 @@ _NOTE = """\
 Lengths in D, m1 = A = D = 1; force and strain of a contact; error: theory/lattice - 1.
 ±: change of the lattice's number over the last stretch. No k: from all k, as k → 1."""
 
-
-Case = tuple[sp.Rational, sp.Rational, float]  # k, ω and B of one run
+Case = tuple[sp.Rational, sp.Rational]  # k and ω of one run
 
 
 @study()
@@ -118,22 +103,26 @@ def limits(progress: Progress[Case] = iter) -> Report:
     return report(compare(progress))
 
 
-def report(rows: Sequence[Row]) -> Report:
+def report(rows: Sequence[Comparison]) -> Report:
     """Return a comparison's table, findings, and panels of the errors as functions of k - 1."""
-    cells = tuple(row.cells for row in rows)
+    findings = tuple(row.finding for row in rows)
+    cells = tuple(
+        (r.quantity, r.k, r.omega, r.theory, r.theory_value, r.lattice, r.error, r.bound, f.ok)
+        for r, f in zip(rows, findings, strict=True)
+    )
     return Report(
         "The theory's limits on the lattice",
         (Table(_COLUMNS, cells, "rows", by="omega", heads=_CHAINS, note=_NOTE),),
-        tuple(row.finding for row in rows),
+        findings,
         tuple(_panel(rows, omega) for omega in (EQUAL, LIGHT)),
     )
 
 
-def _panel(rows: Sequence[Row], omega: sp.Rational) -> Panel:
+def _panel(rows: Sequence[Comparison], omega: sp.Rational) -> Panel:
     """Return the panel of |error| as a function of k - 1, beside its leading power."""
     epsilon = np.geomspace(float(EXPONENTS[-1] - 1) / 2, float(EXPONENTS[0] - 1), 2)
     curves = []
-    for i, (quantity, law) in enumerate(LAWS.items()):
+    for i, (quantity, law) in enumerate(LEADING_POWERS.items()):
         points = [
             (row.k - 1, abs(row.error), row.lattice.relative_error)
             for row in rows
@@ -148,50 +137,37 @@ def _panel(rows: Sequence[Row], omega: sp.Rational) -> Panel:
     return Panel("k - 1", "|theory/lattice - 1|", tuple(curves), "xy", title)
 
 
-def compare(progress: Progress[Case] = iter) -> list[Row]:
-    """Measure all waves on the lattice; return the rows of the comparison with the theory."""
-    cases: dict[Case, None] = dict.fromkeys(
-        [(k, omega, 1.0) for omega in (EQUAL, LIGHT) for k in EXPONENTS]
-        + [(k, EQUAL, B) for k in EXPONENTS for B in AMPLITUDES]
-        + [(EXPONENTS[0], omega, 1.0) for omega in LIMIT]
-    )
-    waves = {(k, omega): theory_at(k, omega) for k, omega, _ in cases}
-    lattice = {case: lattice_wave(waves[case[:2]], case[2]) for case in progress(list(cases))}
-    rows: list[Row] = []
+def compare(progress: Progress[Case] = iter) -> list[Comparison]:
+    """Measure all waves on the lattice and compare them with the theory."""
+    cases = [(k, omega) for omega in (EQUAL, LIGHT) for k in EXPONENTS]
+    cases += [(EXPONENTS[0], omega) for omega in LIMIT if omega != LIGHT]
+    waves = {case: theory_at(*case) for case in cases}
+    lattice = {case: lattice_wave(waves[case]) for case in progress(cases)}
+    rows: list[Comparison] = []
     for omega in (EQUAL, LIGHT):
         theory = [theory_values(waves[k, omega]) for k in EXPONENTS]
         for quantity in QUANTITIES:
-            found = [lattice[k, omega, 1.0][quantity] for k in EXPONENTS]
-            rows += quantity_rows(quantity, omega, [t[quantity] for t in theory], found)
-    rows += _limit_rows([lattice[EXPONENTS[0], omega, 1.0] for omega in LIMIT])
-    for k in EXPONENTS:
-        # The lattice scales exactly; the ± is that of speeds and forces that still settle.
-        pulses = [lattice[k, EQUAL, B] for B in AMPLITUDES]
-        power = exponent([p["speed"] for p in pulses], [p["force"] for p in pulses])
-        force_exponent = waves[k, EQUAL].force_exponent
-        rows.append(Row("exponent of F_m in V_s", k, EQUAL, force_exponent, power, 1e-5))
-    return rows
+            measured = [lattice[k, omega][quantity] for k in EXPONENTS]
+            rows += quantity_rows(quantity, omega, [t[quantity] for t in theory], measured)
+    return [*rows, *_limit_rows([lattice[EXPONENTS[0], omega] for omega in LIMIT])]
 
 
-def lattice_wave(wave: TravelingWave, B: float = 1.0) -> dict[str, Measured]:
-    """Measure the pulse that the theory's wave becomes on the lattice.
+def lattice_wave(wave: TravelingWave, places: Sequence[float] = PLACES) -> dict[str, Measured]:
+    """Measure `QUANTITIES` of the pulse that the theory's wave, with peak strain 1, turns into.
 
-    B : peak strain of the theory's wave. Returns `QUANTITIES`, peak strain, speed dx/dt and peak
-    contact force, means over the two contacts of a cell, whose exact strains are mirror images.
+    places : distances, in supports, at which the pulse is measured: the last one gives the numbers,
+    the last but one their errors.
     """
-    compact = PhysicalWave(wave, B ** float(wave.k))  # A = D = 1
-    run = _run(wave, compact)
-    numbers = compared(lambda place: _numbers(run, wave, place), 2, 1)
-    scale, power = float(wave.speed_scale), float(wave.k - 1) / 2
-    at_one = derived(lambda V, u: V / scale / u**power, numbers["speed"], numbers["strain"])
-    return numbers | {QUANTITIES[-1]: at_one}
+    run = _run(wave, places)
+    return compared(lambda place: _numbers(run, wave, place), len(places) - 1, len(places) - 2)
 
 
-def _run(wave: TravelingWave, compact: PhysicalWave) -> Run:
+def _run(wave: TravelingWave, supports: Sequence[float]) -> Run:
     """Simulate a chain that starts with the theory's wave, up to the last place."""
+    compact = PhysicalWave(wave, 1.0)  # A = D = 1
     support, V = float(wave.width), float(compact.speed)
     start = int(support / 2) + 1
-    places = [2 * round((start + s * support) / 2) for s in PLACES]
+    places = [2 * round((start + s * support) / 2) for s in supports]
     cells = (places[-1] + int(support)) // 2 + 2
     bead = np.arange(2 * cells) - start
     scene = carrying(
@@ -207,10 +183,13 @@ def _run(wave: TravelingWave, compact: PhysicalWave) -> Run:
 
 
 def _numbers(run: Run, wave: TravelingWave, place: int) -> dict[str, float]:
-    """Return the lengths among `QUANTITIES`, strain, speed and force at a place, cell means."""
-    support, (width, strain_width, length, _) = float(wave.width), QUANTITIES
-    k, beta = float(wave.k), float(wave.beta)
-    unit = support * beta / float(sp.beta(k / (k - 1) + 0.5, 0.5))  # support over ∫F dx / F_m
+    """Return `QUANTITIES` at a place, from means over the two contacts of a cell.
+
+    The exact strains of the two contacts are mirror images.
+    """
+    k, beta, support = float(wave.k), float(wave.beta), float(wave.width)
+    # The support over ∫F dx / F_m, as ∫ cos^{2k/(k-1)}(βx) dx is Euler's beta function over β.
+    unit = support * beta / float(sp.beta(k / (k - 1) + 0.5, 0.5))
     sides = []
     contacts = run.scene.contact_sensors
     for row in (2 * place, 2 * place + 1):  # rows of a cell's contacts; the last cell's are row-2
@@ -221,50 +200,56 @@ def _numbers(run: Run, wave: TravelingWave, place: int) -> dict[str, float]:
         V = speed(before, pulse, here - last)
         reach = 0.6 * support / V
         push = integral(force, pulse.arrival - reach, pulse.arrival + reach)
-        lengths = {width: pulse.fwhm * V, strain_width: strain.fwhm * V}
-        lengths[length] = unit * push * V / pulse.peak
-        sides.append(lengths | {"strain": strain.peak, "speed": V, "force": pulse.peak})
-    first, second = sides
-    return {name: (value + second[name]) / 2 for name, value in first.items()}
+        lengths = pulse.fwhm * V, strain.fwhm * V, unit * push * V / pulse.peak
+        sides.append((*lengths, strain.peak, V))
+    *lengths, B, V = np.mean(sides, axis=0).tolist()
+    # V_s of the theory's units; speeds scale as B^{(k-1)/2}.
+    at_one = V / float(wave.speed_scale) / B ** (float(wave.k - 1) / 2)
+    return dict(zip(QUANTITIES, (*lengths, at_one), strict=True))
 
 
 def quantity_rows(
     quantity: str, omega: sp.Rational, theory: list[sp.Expr], lattice: list[Measured]
-) -> list[Row]:
-    """Return rows of a quantity at each k, and of its error's order and coefficient as ε → 0."""
-    law = LAWS[quantity]
+) -> list[Comparison]:
+    """Compare a quantity at each k, and the order and coefficient of its error as ε → 0."""
+    law = LEADING_POWERS[quantity]
     epsilon = np.array([float(k - 1) for k in EXPONENTS])
     rows = [
-        Row(quantity, k, omega, t, f, law.bound(k))
-        for k, t, f in zip(EXPONENTS, theory, lattice, strict=True)
+        Comparison(quantity, k, omega, t, value, law.bound(k))
+        for k, t, value in zip(EXPONENTS, theory, lattice, strict=True)
     ]
     # The coefficient holds at ω = 1 and ω → 0; between them it depends on ω.
     slack = 0.0 if omega == 1 else 20 * float(omega)
     numbers = np.array([row.theory_value for row in rows])
 
-    def order(*found: float) -> float:
-        return float(np.polyfit(np.log(epsilon), np.log(np.abs(numbers / found - 1)), 1)[0])
+    def order(*values: float) -> float:
+        return float(np.polyfit(np.log(epsilon), np.log(np.abs(numbers / values - 1)), 1)[0])
 
-    def coefficient(*found: float) -> float:
-        return float(np.polyfit(epsilon, (numbers / found - 1) / epsilon**law.order, 2)[-1])
+    def coefficient(*values: float) -> float:
+        return float(np.polyfit(epsilon, (numbers / values - 1) / epsilon**law.order, 2)[-1])
 
-    name, bound = f"{quantity}: order of its error", law.order_bound
-    limit, limit_bound = f"{quantity}: error/(k-1)^{law.order} at k → 1", law.coefficient_bound
-    fitted, coefficients = derived(order, *lattice), derived(coefficient, *lattice)
+    power, limit = (
+        f"{quantity}: order of its error",
+        f"{quantity}: error/(k-1)^{law.order} at k → 1",
+    )
+    orders, coefficients = derived(order, *lattice), derived(coefficient, *lattice)
+    bound = law.coefficient_bound + slack
     return [
         *rows,
-        Row(name, None, omega, sp.Integer(law.order), fitted, bound),
-        Row(limit, None, omega, law.coefficient, coefficients, limit_bound + slack),
+        Comparison(power, None, omega, sp.Integer(law.order), orders, law.order_bound),
+        Comparison(limit, None, omega, law.coefficient, coefficients, bound),
     ]
 
 
-def _limit_rows(waves: list[dict[str, Measured]]) -> Iterator[Row]:
-    """Yield rows of the limit ω → 0 at the first k; the lattice is extrapolated linearly in ω."""
+def _limit_rows(waves: list[dict[str, Measured]]) -> Iterator[Comparison]:
+    """Compare the limit ω → 0 at the first k; the lattice is extrapolated linearly in ω."""
     k = EXPONENTS[0]
     symbols = homogenize(Dimer("m1", "m2", spacing=1), k=k).pde.traveling_wave()
     m1, m2 = symbols.cell.masses
     for quantity, theory in theory_values(symbols).items():
         coarse, middle, fine = (wave[quantity].value for wave in waves)
         limit = Measured((4 * fine - middle) / 3, (4 * middle - coarse) / 3)
-        there = sp.simplify(theory.subs({m1: 1, m2: 0}))
-        yield Row(quantity, k, sp.Integer(0), there, limit, LAWS[quantity].bound(k))
+        at_zero = sp.simplify(theory.subs({m1: 1, m2: 0}))
+        yield Comparison(
+            quantity, k, sp.Integer(0), at_zero, limit, LEADING_POWERS[quantity].bound(k)
+        )

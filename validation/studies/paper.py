@@ -29,9 +29,8 @@ from validation.pulses.train import Train
 from validation.report.command import number, option, study
 from validation.report.result import Report
 from validation.report.table import Column, Table, percent
-from validation.scenes.chains import chain_scene
+from validation.scenes.chains import DIAMETER, PTFE_BEAD, STEEL_BEAD, chain_scene
 from validation.scenes.checks import SceneError, between, integer, items
-from validation.scenes.materials import DIAMETER, PTFE_BEAD, STEEL_BEAD
 from validation.scenes.scene import Scene
 from validation.waves.theory import bead_fwhm, of_momentum, of_speed
 

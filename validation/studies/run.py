@@ -18,8 +18,7 @@ from validation.report.files import output_file
 from validation.report.result import Report
 from validation.report.table import Column, Table
 from validation.scenes.checks import SceneError
-from validation.scenes.document import document
-from validation.scenes.scenefile import read_scene
+from validation.scenes.scenefile import document, read_scene
 from validation.studies.records import STORED, SUFFIXES, load, store
 
 EXAMPLES = ("paper", "vertical", "precompressed", "defect", "trimer")

@@ -32,32 +32,36 @@ F = (p0 + r)_+^k - p0^k; (*) stays.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from typing import TypeVar
 
 import numpy as np
 import scipy
 from numpy.typing import NDArray
 
 from lwa.base.arrays import Array
+from lwa.base.exact import InputError
 
 MOST_STEPS = 25  # of Newton's method
 FEWEST = 40  # points on 0 … L
+Pair = tuple[float, float]  # m1 and m2, or their inverses
+Solution = TypeVar("Solution")
 
 
-def widening(masses: tuple[float, float]) -> float:
+def widening(masses: Pair) -> float:
     """Return the canonical wave's width divided by its width at equal masses, √(12 I/D²)."""
     m1, m2 = masses
     return 2 * math.sqrt(m1 * m1 - m1 * m2 + m2 * m2) / (m1 + m2)
 
 
-def ample_half_period(masses: tuple[float, float], k: float) -> float:
+def ample_half_period(masses: Pair, k: float) -> float:
     """Return a half period L: a pulse of equal masses ends within L, a dimer's within 0.6 L."""
     # The strain divided by its peak falls like exp(-3 (k-1) ξ²) near k = 1, like exp(-k^ξ) above.
-    length = 1 + 3.7 / math.sqrt(k - 1) if k < 2 else 1 + 3.7 / math.log2(k) ** 0.5
+    length = 1 + 3.7 / math.sqrt(k - 1 if k < 2 else math.log2(k))
     return length if masses[0] == masses[1] else max(8.0, 1.15 * length * widening(masses))
 
 
-def enough(masses: tuple[float, float], k: float, half_period: float) -> int:
+def enough(masses: Pair, k: float, half_period: float) -> int:
     """Return a number of points on 0 … L = ``half_period`` that resolves the wave to rounding."""
     # Points per site, in this order: for the pulse's width as k grows, for its steeper flanks at
     # large k, for the oscillation of light beads.
@@ -75,7 +79,7 @@ def rise(strain: Array, k: float, p0: float) -> Array:
 
 
 def respond(
-    force: NDArray[np.complex128], inverse: tuple[float, float], half_period: float
+    force: NDArray[np.complex128], inverse: Pair, half_period: float
 ) -> NDArray[np.complex128]:
     """Return the Fourier coefficients of c² a from those of F_a, by (*); the mean of a is set to 0.
 
@@ -113,7 +117,7 @@ class Problem:
 
     def __init__(
         self,
-        masses: tuple[float, float],
+        masses: Pair,
         k: float,
         half_period: float | None = None,
         points: int | None = None,
@@ -132,14 +136,14 @@ class Problem:
         """Return F_a at all grid points, (2 points,), from the unknown forces z, (count,)."""
         return np.append(z, z[self.n - 1 : 0 : -1]) if self.uniform else z
 
-    def strains(self, z: Array, inverse: tuple[float, float]) -> Array:
+    def strains(self, z: Array, inverse: Pair) -> Array:
         """Return c² a, 0 at L, at the first ``count`` grid points, from the unknown forces z."""
         force = scipy.fft.rfft(self.forces(z))
         force = np.asarray(force.real if self.uniform else force, complex)  # no rounding over q²
         a = scipy.fft.irfft(respond(force, inverse, self.L), 2 * self.n)
         return np.asarray(a - a[self.n])[: self.count]
 
-    def responses(self, at: NDArray[np.int_], inverse: tuple[float, float]) -> Array:
+    def responses(self, at: NDArray[np.int_], inverse: Pair) -> Array:
         """Return the rows and columns ``at`` (grid points) of the Jacobian of `strains`."""
         n = self.n
         plus, minus = (respond(np.full(n + 1, f, complex), inverse, self.L) for f in (1, 1j))
@@ -199,12 +203,12 @@ class Problem:
         at = np.flatnonzero(on)
         matrix = np.eye(len(at)) - slope[at][:, None] * self.responses(at, inverse)
         border = np.array(rows)
-        found = np.linalg.solve(
+        solved = np.linalg.solve(
             np.block([[matrix, np.array(columns).T[on]], [border[:, on], corner]]),
             np.append(right, rest - border @ known),
         )
-        known[on] = found[: len(at)]
-        return np.append(known, found[len(at) :])
+        known[on] = solved[: len(at)]
+        return np.append(known, solved[len(at) :])
 
 
 @np.errstate(all="ignore")  # an overflow or c² < 0 does not converge
@@ -227,3 +231,33 @@ def newton(change: Callable[[Array], Array], x: Array, sizes: Array) -> Array:
             return x
         before = size
     raise np.linalg.LinAlgError("no convergence")
+
+
+def continued(
+    solution: Solution,
+    begin: float,
+    end: float,
+    step: float,
+    solve: Callable[[float, Sequence[tuple[float, Solution]]], Solution],
+) -> Solution:
+    """Continue a solution from one value of a parameter to another, in adaptive steps.
+
+    begin, end : the parameter's values. step : length of the first step.
+    solve : returns the solution at a value; its second argument are the last one or two values
+        with their solutions, the latest last. `lwa.InputError` makes the step shorter.
+
+    Raises the `lwa.InputError` of a step that is a hundred times shorter than the first.
+    """
+    path, size = [(begin, solution)], step
+    while path[-1][0] != end:
+        left = end - path[-1][0]
+        value = end if abs(left) <= size else path[-1][0] + math.copysign(size, left)
+        try:
+            path.append((value, solve(value, path[-2:])))
+        except InputError:
+            size /= 2
+            if size < step / 100:
+                raise
+        else:
+            size *= 1.5
+    return path[-1][1]

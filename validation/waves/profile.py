@@ -1,4 +1,4 @@
-"""Profiles of traveling waves and the numbers read off them: peaks, widths, tails.
+"""Profiles of traveling waves of the lattice: strains, forces, velocities, peaks, widths, tails.
 
 A = D = 1. A contact's strain is a(ξ) or b(ξ) = a(-ξ), ξ = x - ct (`validation.waves.newton`). The
 contact law r_+^k has no scale of its own, so that multiples of a wave are waves: r → s r with
@@ -35,14 +35,14 @@ _ROW = 16  # Fourier coefficients that are summed up together
 
 
 @dataclass(frozen=True, eq=False)
-class Profile(ArrayValue, Pictured):
+class LatticeWave(ArrayValue, Pictured):
     """A wave as a function of ξ = x - ct, mirror symmetric about a bead; A = D = 1.
 
     masses : (m1, m2). k : exponent. c2 : c², the square of the speed dx/dt.
     half_period : L, the largest |ξ| at which the wave is known.
     """
 
-    masses: tuple[float, float]
+    masses: newton.Pair
     k: float
     c2: float
     half_period: float
@@ -51,11 +51,11 @@ class Profile(ArrayValue, Pictured):
     @property
     @abstractmethod
     def samples(self) -> int:
-        """Number of points on 0 … L that resolve the profile; subclasses define it."""
+        """Number of points on 0 … L that resolve the profile."""
 
     @abstractmethod
-    def _front(self, xi: Array) -> Array:
-        """Strain a(ξ), in the shape of ξ."""
+    def _behind(self, xi: Array) -> Array:
+        """Strain a(ξ) of the contacts behind beads m1."""
 
     @abstractmethod
     def velocity(self, xi: ArrayLike, bead: int = 0) -> Array:
@@ -64,7 +64,7 @@ class Profile(ArrayValue, Pictured):
     def strain(self, xi: ArrayLike, contact: int = 0) -> Array:
         """Strain a(ξ) of the contacts behind beads m1 (contact 0), or b(ξ) of the others (1)."""
         at = np.asarray(xi, float)
-        return self._front(-at if contact % 2 else at)
+        return self._behind(-at if contact % 2 else at)
 
     def force(self, xi: ArrayLike, contact: int = 0) -> Array:
         """Force F_a(ξ) or F_b(ξ) of a contact, above the static force."""
@@ -80,33 +80,23 @@ class Profile(ArrayValue, Pictured):
         """Mass ratio ω = m2/m1."""
         return self.masses[1] / self.masses[0]
 
-    @property
-    def pulse(self) -> float:
-        """Largest |ξ| of the pulse itself, without a dimer's tail."""
-        if self.background:
-            return self.half_period
-        ample = newton.ample_half_period((1.0, self.omega), self.k)
-        return min(self.half_period, ample if self.omega == 1 else OUTSIDE * ample)
-
-    def quantity(self, name: str, xi: ArrayLike) -> Array:
-        """The "strain" or "force" of contact 0 or the "velocity" of bead 0."""
-        strain_power(name, self.k)  # refuses other names
-        return np.asarray(getattr(self, name)(xi))
-
     def peak(self, name: str) -> tuple[float, float]:
-        """Return the place ξ and the value of the maximum of a quantity."""
+        """Return the place ξ and the value of the maximum of a quantity.
+
+        name : "strain" or "force" of contact 0, or "velocity" of bead 0.
+        """
         xi = np.linspace(-self.half_period, self.half_period, 4 * self.samples + 1)
-        return summit(lambda x: self.quantity(name, x), xi)
+        return summit(self._quantity(name), xi)
 
     def fwhm(self, name: str = "strain") -> float:
-        """Full width at half maximum of a quantity's highest hump, a length.
+        """Full width at half maximum of a quantity's highest hump, a length; name as in `peak`.
 
         Raises `MeasureError` if the quantity does not fall to half its peak.
         """
-        top, peak = self.peak(name)
+        quantity, (top, peak) = self._quantity(name), self.peak(name)
 
         def above(r: Any, side: int) -> Array:
-            return self.quantity(name, top + side * r) - peak / 2
+            return quantity(top + side * r) - peak / 2
 
         distance, width = np.linspace(0, self.half_period, 4 * self.samples), 0.0
         for side in (-1, 1):
@@ -117,22 +107,19 @@ class Profile(ArrayValue, Pictured):
             width += scipy.optimize.brentq(above, *ends, (side,), xtol=1e-14, rtol=1e-14)
         return float(width)
 
-    def rms_width(self, name: str = "strain") -> float:
-        """Root mean square width √(∫ (ξ - mean)² f / ∫ f) of the positive part f of a quantity."""
-        n = 8 * self.samples
-        xi = self.pulse * np.arange(-n, n) / n  # trapezia: exact for a pulse that has ended
-        f = np.maximum(self.quantity(name, xi), 0.0)
-        mean = (f @ xi) / f.sum()
-        return math.sqrt(f @ (xi - mean) ** 2 / f.sum())
+    def _quantity(self, name: str) -> Callable[[ArrayLike], Array]:
+        strain_power(name, self.k)  # refuses other names
+        quantity: Callable[[ArrayLike], Array] = getattr(self, name)
+        return quantity
 
-    def rattle(self, start: float) -> float:
+    def odd_strain(self, start: float) -> float:
         """Largest |o| on start ≤ |ξ| ≤ L, o(ξ) = (a(ξ) - a(-ξ))/2 the odd part of the strain a."""
         outside = np.linspace(start, self.half_period, 2 * self.samples)
         return summit(lambda x: np.abs(self.strain(x) - self.strain(-x)) / 2, outside)[1]
 
-    def apart(self, other: Profile) -> float:
-        """Largest difference between the strains of this and another wave on |ξ| ≤ `pulse`."""
-        xi = np.linspace(-self.pulse, self.pulse, 401)
+    def difference(self, other: LatticeWave) -> float:
+        """Largest difference between the strains of this and another wave, tails aside."""
+        xi = OUTSIDE * self.half_period * np.linspace(-1, 1, 401)
         return float(np.abs(self.strain(xi) - other.strain(xi)).max())
 
     def launched(self, start: int, sites: int, **rest: Any) -> Scene:
@@ -154,14 +141,14 @@ class Profile(ArrayValue, Pictured):
         """Panel of strain, force and velocity as functions of ξ, each divided by its peak."""
         xi, styles = np.linspace(-self.half_period, self.half_period, 2001), ("-", "--", ":")
         curves = (
-            Curve(name, xi, self.quantity(name, xi) / self.peak(name)[1], style)
+            Curve(name, xi, self._quantity(name)(xi) / self.peak(name)[1], style)
             for name, style in zip(QUANTITIES, styles, strict=True)
         )
         return [Panel("ξ / D", "over its peak", tuple(curves))]
 
 
 @dataclass(frozen=True, eq=False)
-class ExactWave(Profile):
+class ExactWave(LatticeWave):
     """A traveling wave of the lattice, accurate to rounding; A = D = 1.
 
     half_period : L; profiles have the period 2L, and a solitary wave ends before L.
@@ -192,18 +179,16 @@ class ExactWave(Profile):
     @property
     def solitary(self) -> bool:
         """True if tail, residual and the strain left at L are all below `TOLERANCE`."""
-        return max(self.tail, self.residual, self.rest) < TOLERANCE
+        return max(self.tail, self.residual, self.end_strain) < TOLERANCE
 
     @cached_property
-    def rest(self) -> float:
-        """Strain of a wave of equal masses at L, divided by the peak strain; 0 for a dimer.
-
-        The profile is shifted to be 0 at L; by (*) at q = 0 the strain is ∫ (1-|s|) F(L-s) ds / c².
-        """
+    def end_strain(self) -> float:
+        """Strain of a wave of equal masses at L, divided by the peak strain; 0 for a dimer."""
         if self.omega != 1:
             return 0.0
-        even, c2 = self._strains[0], self.c2 * self.masses[0]
-        return float(abs(self.even[0] / c2 - even[0]) / even.sum())
+        # The profile is shifted to be 0 at L; by (*) at q = 0 the strain is ∫ (1-|s|) F(L-s) ds/c².
+        even = self._strains[0]
+        return float(abs(self.even[0] / (self.c2 * self.masses[0]) - even[0]) / even.sum())
 
     def scaled(self, *, speed: Any = None, force: Any = None) -> ExactWave:
         """Return the wave scaled to another speed dx/dt or another peak contact force.
@@ -212,17 +197,15 @@ class ExactWave(Profile):
         """
         if (speed is None) == (force is None):
             raise SceneError("speed or force is wanted: a wave is scaled to one of the two")
-        with np.errstate(over="ignore", under="ignore"):
-            if speed is not None:
-                what, now = f"speed is {speed}", np.float64(positive(speed, "speed") / self.c)
-                now **= 2 / (self.k - 1)
-            else:
-                what, now = f"force is {force}", np.float64(positive(force, "force"))
-                now = now ** (1 / self.k) / (self.background + self.peak("strain")[1])
-            scale = float(now ** max(self.k, 2.0))
-        if not 1e-200 < scale < 1e200:
-            raise SceneError(f"{what}: {now:.1e} times the strain here is out of range")
-        return self.times(float(now))
+        if speed is not None:
+            log = 2 / (self.k - 1) * math.log(positive(speed, "speed") / self.c)
+        else:
+            log = math.log(positive(force, "force")) / self.k
+            log -= math.log(self.background + self.peak("strain")[1])
+        if abs(log) * max(self.k, 2) > 460:  # e^460 = 1e200
+            amount = f"speed is {speed}" if force is None else f"force is {force}"
+            raise SceneError(f"{amount}: e^{log:.0f} times the strain here is out of range")
+        return self.times(math.exp(log))
 
     def times(self, s: float) -> ExactWave:
         """Return the wave with all strains, the background's too, multiplied by s; c² ~ s^{k-1}."""
@@ -232,15 +215,15 @@ class ExactWave(Profile):
     @cached_property
     def _strains(self) -> tuple[Array, Array]:
         """Fourier coefficients of e and o."""
-        light, c2 = 1 / self.omega, self.c2 * self.masses[0]  # 1/m1 itself may be out of range
-        odd = self.odd if light != 1 else 0 * self.odd  # rounding, divided by q²
-        found = newton.respond(self.even - 1j * odd, (1, light), self.half_period) / c2
-        e, o = found.real, -found.imag
+        m1, m2 = self.masses
+        odd = self.odd if m1 != m2 else 0 * self.odd  # rounding, divided by q²
+        strain = newton.respond(self.even - 1j * odd, (1 / m1, 1 / m2), self.half_period) / self.c2
+        e, o = strain.real, -strain.imag
         e[0] = e[1::2].sum() - e[2::2].sum()  # the strain is 0 at L
         o[-1] = 0
         return e, o
 
-    def _front(self, xi: Array) -> Array:
+    def _behind(self, xi: Array) -> Array:
         return np.where(self._ended(xi), 0.0, self._sum(xi, *self._strains))
 
     def velocity(self, xi: ArrayLike, bead: int = 0) -> Array:
@@ -259,7 +242,7 @@ class ExactWave(Profile):
         """Fourier sum Σ even_j cos(q_j ξ) + odd_j sin(q_j ξ)."""
         rows = np.append(even - 1j * odd, np.zeros(-self.samples % _ROW)).reshape(-1, _ROW)
         q = np.pi / self.half_period * np.arange(rows.size)
-        # e^{iqξ} of every q as a product of two of q's first 16 and of every 16th q.
+        # e^{iqξ} of every q as a product of two: of the first 16 q and of every 16th q.
         first, every = (np.exp(1j * np.multiply.outer(xi, part)) for part in (q[:_ROW], q[::_ROW]))
         return np.asarray(((first @ rows.T) * every).real.sum(axis=-1))
 
@@ -269,13 +252,13 @@ class ExactWave(Profile):
 
 
 def at_unit_force(
-    masses: tuple[float, float], problem: newton.Problem, forces: Array, c2: float
+    masses: newton.Pair, problem: newton.Problem, forces: Array, c2: float
 ) -> ExactWave:
     """Return the solution of a problem, scaled to peak force 1, with its tail and residual."""
     even, odd = newton.coefficients(problem.forces(forces))
     wave = ExactWave(masses, problem.k, c2, problem.L, even, odd, 0.0, 0.0, problem.p0)
     wave = wave.times(1 / (problem.p0 + wave.peak("strain")[1]))
-    tail = 0.0 if problem.uniform else wave.rattle(OUTSIDE * problem.L)
+    tail = 0.0 if problem.uniform else wave.odd_strain(OUTSIDE * problem.L)
     xi = newton.circle(wave.half_period, 2 * problem.n)
     even, odd = newton.coefficients(wave.force(xi))
     again = replace(wave, even=even, odd=odd)

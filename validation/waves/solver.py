@@ -3,8 +3,7 @@
 Waves are mirror symmetric about a bead of a dimer chain (`validation.waves.newton`).
 
 **Equal masses.** A solitary wave exists for every k (Friesecke & Wattis 1994; English & Pego 2005),
-on a background strain p0 (a chain under load) too. There the wave decays as e^{-κ|ξ|},
-c² κ² = 4 c0² sinh²(κ/2). Newton's method starts from the theory's wave.
+on a background strain p0 (a chain under load) too. Newton's method starts from the theory's wave.
 
 **Dimers.** A solitary wave leaves no strain T behind. This is one condition more than there are
 unknowns, as amplitude and speed are tied by scaling: a dimer has solitary waves only at isolated
@@ -25,8 +24,7 @@ from the struck chain's; the remaining difference counts as the solution's error
 from __future__ import annotations
 
 import math
-import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
 from typing import Any
@@ -42,20 +40,20 @@ from validation.lattice.run import IntegrationError
 from validation.pulses.pulse import Measured
 from validation.scenes.checks import SceneError, between, items, positive
 from validation.waves import newton
-from validation.waves.profile import ExactWave, Profile, at_unit_force
+from validation.waves.newton import Pair
+from validation.waves.profile import ExactWave, LatticeWave, at_unit_force
 from validation.waves.start import Start, StruckPulse, initial, struck_pulse, under_load
 
 FALLEN = 38.0  # e-foldings of a wave on a background from its flanks to L
 SHALLOWEST = 1e-4  # rise of a wave on a background over the peak strain, at least
 LESS = 0.125  # step of the background from wave to wave, at k > 3 on small backgrounds
-FIRST, SHORTEST = 0.1, 1e-3  # steps along a branch, in k
+FIRST = 0.1  # first step along a branch, in k
 HOP = 0.15  # change of the strain, over its peak, that leads to another branch
 STEEP = 2.0  # k from which branches are followed if Newton's method finds no wave
 PERIODS = np.arange(1.0, 1.8, 0.05)  # half periods of the search, over the ample one
 ROUGH = 0.35  # points of the search over those that resolve a wave
 ENDED = 3e-15  # strain at the half period over the peak strain, for equal masses
 ROUNDING = 1e-12  # relative error of a solitary wave's numbers: a strain's, over its slope
-Pair = tuple[float, float]  # m1 and m2
 
 
 class NoWave(InputError):
@@ -80,7 +78,7 @@ def exact_wave(
         nanopteron the one of several L whose wave is nearest to the struck chain's pulse.
     background : p0, for one mass only, in units of the peak compression of the contacts. The peak
         force, the static force included, is 1.
-    progress : shows the starts tried for unequal masses (such as `tqdm.tqdm`).
+    progress : shows the half periods tried for unequal masses (such as `tqdm.tqdm`).
 
     Raises `SceneError` for parameters out of range, and for an L at which the wave of equal masses
     has not ended; `NoWave` if Newton's method fails.
@@ -88,27 +86,20 @@ def exact_wave(
     >>> wave = exact_wave([1], 1.5)
     >>> round(wave.fwhm("force"), 6), round(wave.fwhm("strain"), 6), wave.solitary
     (1.411928, 1.725713, True)
-    >>> round(exact_wave([1], 1.5, background=0.5).c2, 6)
-    1.222413
     """
-    given = [positive(m, f"mass {i}") for i, m in enumerate(items(masses, "masses"), start=1)]
+    given = [between(m, "mass", 1e-100, 1e100) for m in items(masses, "masses")]
     if len(given) not in (1, 2):
         raise SceneError(f"{len(given)} masses: exact waves are found for a cell of 1 or 2 beads")
     k = between(k, "k", 1.01, 8, "exact waves are found for k from 1.01 to 8")
-    ratio = given[-1] / given[0]
-    if not 0.01 <= ratio <= 100:
-        raise SceneError(f"m2/m1 is {ratio:g}: exact waves are found for 0.01 to 100")
+    wanted = "exact waves are found for 0.01 to 100"
+    ratio = between(given[-1] / given[0], "m2/m1", 0.01, 100, wanted)
     wanted = f"one from 0 to 1 - {SHALLOWEST:g} of the peak compression is wanted"
     p0 = between(background, "background", 0, 1 - SHALLOWEST, wanted)
     if p0 and ratio != 1:
-        found_for = "under a load exact waves are found for equal masses"
-        raise SceneError(f"background is {p0:g}: {found_for}")
+        raise SceneError(f"background is {p0:g}: under a load exact waves are for equal masses")
     L = None if half_period is None else positive(half_period, "half_period")
-    found = _uniform(k, L, p0) if ratio == 1 else _dimer((1.0, ratio), k, L, progress)
-    c2 = found.c2 / given[0]
-    if not sys.float_info.min <= c2 <= sys.float_info.max:
-        raise SceneError(f"mass 1 is {given[0]:g}: c² leaves the range of floats")
-    return replace(found, masses=(given[0], given[-1]), c2=c2)
+    wave = _uniform(k, L, p0) if ratio == 1 else _dimer((1.0, ratio), k, L, progress)
+    return replace(wave, masses=(given[0], given[-1]), c2=wave.c2 / given[0])
 
 
 def solve(
@@ -116,7 +107,7 @@ def solve(
     k: float,
     half_period: float | None = None,
     points: int | None = None,
-    start: Profile | None = None,
+    start: LatticeWave | None = None,
     free: bool = False,
 ) -> ExactWave:
     """Return a wave of peak force 1, on whatever branch Newton's method reaches.
@@ -147,7 +138,7 @@ def solved(problem: newton.Problem, start: Start, unknown: str = "") -> tuple[Ex
 
 
 def measured(wave: ExactWave) -> dict[str, Measured]:
-    """Return c², c and tail, and by quantity amplitude, FWHM and rms width of a wave, with errors.
+    """Return c², c and tail, and by quantity the amplitude and FWHM of a wave, with errors.
 
     The relative error of a solitary wave is the sum of residual, tail and `ROUNDING`. The error of
     a nanopteron is the difference from the struck chain's symmetric pulse, for the FWHM also from
@@ -170,12 +161,11 @@ def measured(wave: ExactWave) -> dict[str, Measured]:
 def _numbers(wave: ExactWave | StruckPulse, mass: float = 1.0) -> dict[str, float]:
     """Return the numbers of `measured` of a wave of m1 = 1 and peak force 1, for m1 = ``mass``."""
     root = math.sqrt(mass)
-    found = {"c2": wave.c2 / mass, "c": wave.c / root, "tail": wave.tail}
+    numbers = {"c2": wave.c2 / mass, "c": wave.c / root, "tail": wave.tail}
     for name in QUANTITIES:
-        found[f"amplitude {name}"] = wave.peak(name)[1] / (root if name == "velocity" else 1.0)
-        found[f"fwhm {name}"] = wave.fwhm(name)
-        found[f"rms {name}"] = wave.rms_width(name)
-    return found
+        numbers[f"amplitude {name}"] = wave.peak(name)[1] / (root if name == "velocity" else 1.0)
+        numbers[f"fwhm {name}"] = wave.fwhm(name)
+    return numbers
 
 
 def _uniform(k: float, half_period: float | None, p0: float) -> ExactWave:
@@ -183,24 +173,24 @@ def _uniform(k: float, half_period: float | None, p0: float) -> ExactWave:
     pair = 1.0, 1.0
     ample = newton.ample_half_period(pair, k)
     if p0:
-        found, ample = _pressed(k, half_period, p0)
+        wave, ample = _pressed(k, half_period, p0)
     elif k <= 3:
-        found = solve(pair, k, half_period)
+        wave = solve(pair, k, half_period)
     else:  # the theory's wave is too wide to start from
-        found = followed(solve(pair, 3.0, half_period or ample), k)
-    if found.rest > ENDED / (1 - p0):  # strains are rounded beside p0
+        wave = followed(solve(pair, 3.0, half_period or ample), k)
+    if wave.end_strain > ENDED / (1 - p0):  # strains are rounded beside p0
         raise SceneError(
-            f"half_period is {found.half_period:g}: the solitary wave at k = {k:g} has not ended "
-            f"there, with {found.rest:.0e} of its peak strain; {ample:.3g} is ample"
+            f"half_period is {wave.half_period:g}: the solitary wave at k = {k:g} has not ended "
+            f"there, with {wave.end_strain:.0e} of its peak strain; {ample:.3g} is ample"
         )
-    return found
+    return wave
 
 
 def _pressed(k: float, half_period: float | None, p0: float) -> tuple[ExactWave, float]:
     """Return the wave of equal masses on a background, and a half period within which it ends."""
     pair = 1.0, 1.0
     theory, load = background_wave(Cell((1,), spacing=1), law=Power(k)).numeric(), (p0, 1 - p0)
-    # The end e^{-κ|ξ|}: (c/c0)² = (sinh(κ/2)/(κ/2))².
+    # The wave ends as e^{-κ|ξ|} with (c/c0)² = (sinh(κ/2)/(κ/2))².
     fast = math.sqrt(theory.speed_squared(*load) / p0 ** (k - 1))
     half_kappa = scipy.optimize.brentq(
         lambda x: math.log(math.sinh(x) / x / fast), 1e-5, 300, xtol=1e-12
@@ -219,52 +209,33 @@ def _pressed(k: float, half_period: float | None, p0: float) -> tuple[ExactWave,
     return solved(problem, start)[0], ample
 
 
-def _dimer(
-    pair: Pair, k: float, half_period: float | None, progress: Progress[Any] = iter
-) -> ExactWave:
+def _dimer(pair: Pair, k: float, half_period: float | None, progress: Progress[Any]) -> ExactWave:
     """Return the solitary wave near the theory's, or else the wave nearest to the struck pulse."""
     periods = [half_period] if half_period else list(newton.ample_half_period(pair, k) * PERIODS)
     waves: list[ExactWave] = []
-    for wave in _search(pair, k, periods, progress):
+    with suppress(NoWave):
+        wave = solve(pair, k, periods[0])
         if wave.solitary:
-            return solve(pair, k, wave.half_period, start=wave)
+            return wave
         waves.append(wave)
-    if waves:
-        pulse = _struck(pair, k)
-        for wave in sorted(waves, key=pulse.apart):
+    pulse = _struck(pair, k)
+
+    def found(start: LatticeWave | None) -> list[ExactWave]:
+        """Return the waves that a start leads to at the half periods, on rough grids."""
+        here = []
+        for L in progress(periods):
             with suppress(NoWave):
-                return solve(pair, k, wave.half_period, start=wave)
-    lengths = f"{periods[0]:.4g}" + f" to {periods[-1]:.4g}" * (len(periods) > 1)
-    more = (
-        ": Newton's method was begun from the pulse of a struck chain and from the theory's wave, "
-        f"at half periods {lengths}"
-    )
-    if k > STEEP:
-        try:
-            begin = _dimer(pair, STEEP, half_period, progress)
-            return next(followed(begin, end) for end in progress([k]))
-        except NoWave as other:
-            more += f"; {other}"
-    raise NoWave("no wave found", pair, k, more) from None
+                here.append(solve(pair, k, L, _rough(pair, k, L), start))
+        return here
 
-
-def _search(
-    pair: Pair, k: float, periods: list[float], progress: Progress[Any]
-) -> Iterator[ExactWave]:
-    """Yield waves found from several starts.
-
-    First comes the theory's wave on the full grid, which leads to solitary waves; then, on a rough
-    grid, the struck pulse at each half period and, if that leads to no wave, the theory's wave.
-    """
-    first, *others = ((False, L) for L in periods)
-    led = False
-    for i, (from_pulse, L) in enumerate(progress([first, *((True, L) for L in periods), *others])):
-        if led and not from_pulse:
-            return
+    waves += found(pulse) or found(None)
+    for wave in sorted(waves, key=pulse.difference):
         with suppress(NoWave):
-            points = _rough(pair, k, L) if i else None
-            yield solve(pair, k, L, points, _struck(pair, k) if from_pulse else None)
-            led |= from_pulse
+            return solve(pair, k, wave.half_period, start=wave)
+    if k > STEEP:
+        return followed(_dimer(pair, STEEP, half_period, progress), k)
+    tried = f"from a struck chain's pulse, at half periods {periods[0]:.4g} … {periods[-1]:.4g}"
+    raise NoWave("no wave found", pair, k, f": Newton's method was begun {tried}")
 
 
 def _rough(pair: Pair, k: float, half_period: float) -> int:
@@ -287,15 +258,16 @@ def followed(begin: ExactWave, k: float) -> ExactWave:
     """
     masses, L = begin.masses, begin.half_period
     points = _rough(masses, max(begin.k, k), L)
-    wave, step = solve(masses, begin.k, L, points, begin), math.copysign(FIRST, k - begin.k)
-    while wave.k != k:
-        to = k if abs(k - wave.k) <= abs(step) else wave.k + step
-        with suppress(NoWave):
-            found = solve(masses, to, L, points, wave)
-            if found.apart(wave) < HOP:
-                wave, step = found, 1.5 * step
-                continue
-        step /= 2
-        if abs(step) < SHORTEST:
-            raise NoWave("the branch of waves ends, or is lost, on the way", masses, k)
+
+    def at(k: float, path: Sequence[tuple[float, ExactWave]]) -> ExactWave:
+        last = path[-1][1]
+        wave = solve(masses, k, L, points, last)
+        if wave.difference(last) < HOP:
+            return wave
+        raise NoWave("another branch", masses, k)
+
+    try:
+        wave = newton.continued(solve(masses, begin.k, L, points, begin), begin.k, k, FIRST, at)
+    except NoWave:
+        raise NoWave("the branch of waves ends, or is lost, on the way", masses, k) from None
     return solve(masses, k, L, start=wave)

@@ -1,13 +1,10 @@
 """Starts of Newton's method: the theory's wave, a near wave, and the pulse of a struck chain.
 
-A start is the forces F_a on a grid and c², scaled to peak force 1 (`validation.waves.newton`).
-
 **The struck chain** (`validation.pulses.steady`, masses 1, ω). Far from the struck bead the strains
 a(ξ), b(ξ) of the two contacts of a cell are recorded and scaled to contact force 1. Light beads are
 in motion behind the pulse and at rest ahead, so that b(ξ) is not quite a(-ξ). The symmetric part
 (a(ξ) + b(-ξ))/2 has half of the tail on either side; to first order in the tail it is a symmetric
-wave of the lattice. ξ = 0 is the mean of the two contacts' centers of max(F - F_max/4^k, 0). As
-k → 1 the pulse leaves its wake ever more slowly; the distance between places is at most `FARTHEST`.
+wave of the lattice.
 """
 
 from __future__ import annotations
@@ -26,38 +23,33 @@ from lwa.wave.quadrature import NumericBackground
 from validation.pulses.pulse import leading_pulse
 from validation.pulses.steady import PLACES, STRETCH, StruckDimer, cells_apart
 from validation.waves import newton
-from validation.waves.profile import Profile
+from validation.waves.profile import OUTSIDE, LatticeWave
 
-FARTHEST = 60  # cells from one place to the next
-_CENTER = 2001  # times between which the center of a pulse is summed
+FARTHEST = 60  # cells from one place to the next; as k → 1 a pulse leaves its wake ever more slowly
 TOLERANCE = 1e-7  # rtol of the struck chain
+_CENTER = 2001  # times between which the center of a pulse is summed
 _STEP = 0.01  # grid of the struck chain's profile, in ξ
 _LONG = 2.0  # ample half periods on which the profile is kept
-
 
 Start = tuple[Array, float]
 """Forces F_a on the circle of a `validation.waves.newton.Problem`, and c²."""
 
 
-def initial(problem: newton.Problem, wave: Profile | None = None) -> Start:
-    """Return a start, forces and c², from a wave of near masses and k, by default the theory's.
-
-    c² is that of the wave scaled to force 1 at ξ = 0; `newton.Problem.wave` scales the forces.
-    """
+def initial(problem: newton.Problem, wave: LatticeWave | None = None) -> Start:
+    """Return a start from a wave of near masses and k, by default the theory's."""
     if wave is None:
         force, c2 = _long_wave(problem)
     else:
         force, c2 = wave.force(problem.xi), wave.c2 * sum(wave.masses) / sum(problem.masses)
+    # c² of the wave scaled to force 1 at ξ = 0; `newton.Problem.wave` scales the forces.
     return force, c2 * float(force[0]) ** ((1 - problem.k) / problem.k)
 
 
 def _long_wave(problem: newton.Problem) -> Start:
-    """Return the theory's wave: the force cos^{2k/(k-1)}(βξ), and c² = 4/((k+1)(m1+m2)).
-
-    The two contacts' forces are shifted by (m2-m1)/(m1+m2), so that both beads move alike.
-    """
+    """Return the theory's wave: the force cos^{2k/(k-1)}(βξ), and c² = 4/((k+1)(m1+m2))."""
     k, (m1, m2) = problem.k, problem.masses
     beta = (k - 1) * math.sqrt(6 / (k * (k + 1))) / newton.widening(problem.masses)
+    # The two contacts' forces are shifted by (m2-m1)/(m1+m2), so that both beads move alike.
     phase = beta * (problem.xi - (m2 - m1) / (m1 + m2) / 2)
     force = np.cos(np.clip(phase, -np.pi / 2, np.pi / 2)) ** (2 * k / (k - 1))
     return force, 4 / ((k + 1) * (m1 + m2))
@@ -71,16 +63,16 @@ def under_load(theory: NumericBackground, problem: newton.Problem) -> Start:
 
 
 @dataclass(frozen=True, eq=False)
-class StruckPulse(Profile):
+class StruckPulse(LatticeWave):
     """Symmetric part of a struck chain's pulse, scaled to contact force 1; masses 1, ω.
 
     half_period : `validation.waves.newton.ample_half_period`.
-    xi, front : ξ and the symmetric part of the strain, on a grid beyond the half period.
+    xi, strains : ξ and the symmetric part of the strain, on a grid beyond the half period.
     widths : FWHM of force and strain at a contact, means over the two recorded contacts.
     """
 
     xi: Array
-    front: Array
+    strains: Array
     widths: tuple[float, float]
 
     @property
@@ -91,11 +83,11 @@ class StruckPulse(Profile):
     @property
     def tail(self) -> float:
         """Largest |o| outside the pulse, o being the odd part of the strain."""
-        return self.rattle(self.pulse)
+        return self.odd_strain(OUTSIDE * self.half_period)
 
     @cached_property
-    def _strain(self) -> Any:
-        return scipy.interpolate.CubicSpline(self.xi, self.front)
+    def _spline(self) -> Any:
+        return scipy.interpolate.CubicSpline(self.xi, self.strains)
 
     @cached_property
     def _impulse(self) -> tuple[Any, Any]:
@@ -104,8 +96,8 @@ class StruckPulse(Profile):
         one, two = (scipy.interpolate.CubicSpline(self.xi, push) for push in pushes)
         return one.antiderivative(), two.antiderivative()
 
-    def _front(self, xi: Array) -> Array:
-        return np.asarray(self._strain(np.clip(xi, self.xi[0], self.xi[-1])))
+    def _behind(self, xi: Array) -> Array:
+        return np.asarray(self._spline(np.clip(xi, self.xi[0], self.xi[-1])))
 
     def velocity(self, xi: ArrayLike, bead: int = 0) -> Array:
         """Velocity of beads m1 or m2 from the impulse of the net force; 0 ahead of the pulse."""
@@ -122,8 +114,8 @@ def struck_pulse(k: float, omega: float) -> StruckPulse:
     """
     if omega > 1:  # the mirror image, in units of the light bead's mass
         other = struck_pulse(k, 1 / omega)
-        front = other.front[::-1].copy()
-        return replace(other, masses=(1.0, omega), c2=other.c2 / omega, front=front)
+        strains = other.strains[::-1].copy()
+        return replace(other, masses=(1.0, omega), c2=other.c2 / omega, strains=strains)
     chain = StruckDimer(k, omega, 2 * min(cells_apart(k, STRETCH), FARTHEST))
     places = [n * chain.sites for n in range(1, PLACES + 1)]
     run, quarter = chain.run(places, chain.crossing(places[-1]), TOLERANCE), 0.25**k
@@ -134,6 +126,7 @@ def struck_pulse(k: float, omega: float) -> StruckPulse:
         force = run.signal("contact", contact)
         # A leading pulse ends at a quarter of its peak strain: the same cut on both sides.
         cut = leading_pulse(force, k, share=quarter)
+        # ξ = 0 is the mean of the two contacts' centers of max(F - F_max/4^k, 0).
         time = np.linspace(cut.rise, cut.fall, _CENTER)
         centers.append(np.average(time, weights=force(time) - quarter * cut.peak))
         peaks.append(cut.peak)
@@ -149,5 +142,5 @@ def struck_pulse(k: float, omega: float) -> StruckPulse:
         )
         for contact, site in zip(cell, (-0.5, 0.5), strict=True)
     )
-    front = (a + b[::-1]) / 2 / peak ** (1 / k)
-    return StruckPulse((1.0, omega), k, c * c, ample, xi, front, (width, strain_width))
+    strains = (a + b[::-1]) / 2 / peak ** (1 / k)
+    return StruckPulse((1.0, omega), k, c * c, ample, xi, strains, (width, strain_width))

@@ -9,7 +9,7 @@ import pytest
 
 from book.studies.widths import FIRST_BEAD, STATED, widths
 from tests.commands import ended
-from validation.scenes.materials import DIAMETER
+from validation.scenes.chains import DIAMETER
 from validation.studies.paper import paper
 
 

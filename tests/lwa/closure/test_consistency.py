@@ -235,23 +235,6 @@ def test_unequal_contacts_satisfy_both_equations_in_the_linear_limit():
     assert theory.pde.vanishing == (2, 4)
 
 
-@pytest.mark.parametrize("branch", ["acoustic", "optical"])
-def test_unequal_springs_have_their_dispersion_relation(branch):
-    """m1 m2 s² + (A1 + A2)(m1 + m2) s + A1 A2 (2 - e^{2q} - e^{-2q}) = 0, s = u_tt/u, to q^6."""
-    q = sp.Symbol("q")
-    cell = Dimer(2, 3, stiffnesses=(1, 5), spacing=1)
-    theory = homogenize(cell, order=7, k=1, branch=branch)
-    m1, m2 = cell.masses
-    A1, A2 = cell.stiffnesses
-    s = q**2 if branch == "acoustic" else sp.Integer(-1)
-    for terms in theory.pde.coefficients.values():
-        s += sum(coefficient * q ** jet.x[0][0] for jet, coefficient in terms.items())
-    s *= sp.simplify(theory.pde.time_scale**2)
-    relation = m1 * m2 * s**2 + (A1 + A2) * (m1 + m2) * s
-    relation += A1 * A2 * (2 - sp.exp(2 * q) - sp.exp(-2 * q)).series(q, 0, 7).removeO()
-    assert sp.series(sp.expand(relation), q, 0, 7).removeO() == 0
-
-
 def test_amplitude_ratios_are_all_the_uniform_motions():
     """m1 ü = 2s and m2 λ ü = -2s, s the force of a contact: m2 λ s + m1 s = 0 for the ratios only.
 

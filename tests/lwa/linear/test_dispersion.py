@@ -424,13 +424,13 @@ def test_dimer_gap():
 @pytest.mark.parametrize(
     ("kappa", "message"),
     [
-        (float("nan"), "kappa is nan"),
-        ([0.1, float("inf")], "kappa is inf"),
-        ("0.1", "kappa is '0.1'"),
-        (1j, "kappa is 1j"),
-        (None, "kappa is None|kappa is nan"),
-        ([[1], [2, 3]], "kappa is"),
-        (sp.Symbol("q"), "kappa is q"),
+        (float("nan"), "wavenumber is nan"),
+        ([0.1, float("inf")], "wavenumber is inf"),
+        ("0.1", "wavenumber is '0.1'"),
+        (1j, "wavenumber is 1j"),
+        (None, "wavenumber is None|wavenumber is nan"),
+        ([[1], [2, 3]], "wavenumber is"),
+        (sp.Symbol("q"), "wavenumber is q"),
     ],
 )
 def test_bad_wavenumbers(kappa, message):
@@ -456,10 +456,9 @@ def test_orders_beyond_reach(cell):
 
 def test_cells_without_these_series():
     for function in ("optical", "amplitude_ratio"):
-        with pytest.raises(InputError, match="1 mass has no optical branch"):
-            getattr(Dispersion(Cell([1])), function)(4)
-        with pytest.raises(InputError, match=r"not 3.*numerical branches"):
-            getattr(Dispersion(Cell([1, 2, 3])), function)(4)
+        for P in (1, 3):
+            with pytest.raises(InputError, match=f"needs a cell of 2 masses, not {P}"):
+                getattr(Dispersion(Cell(range(1, P + 1))), function)(4)
     with pytest.raises(InputError, match="branch is 'up'"):
         Dispersion(Cell([1, 2])).amplitude_ratio(4, "up")
 

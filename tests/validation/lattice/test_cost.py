@@ -91,10 +91,9 @@ def test_what_is_beyond_reason_is_refused_before_it_starts(what, options, messag
         simulate(what, **options)
 
 
-def test_an_adaptive_method_has_a_bound_on_its_steps(monkeypatch):
+def test_an_adaptive_method_has_a_bound_on_its_steps():
     """Here rounding hides the motion: the steps would shrink to a millionth."""
     pressed = struck(20, wall=1.0, gravity=1e12, duration=0.05)
-    monkeypatch.setattr(cost, "_FEWEST", 10)
     with pytest.raises(
         IntegrationError, match=r"^\d+ steps of (RKN86|DOP853) reach t = .* of 0.05: "
     ):
@@ -132,9 +131,7 @@ files = st.fixed_dictionaries(
         "gravity": reals,
         "precompression": reals,
         "wall": table(stiffness=sizes),
-        "start": table(
-            velocities=row(reals, 4), displacements=row(reals, 4), overlap=st.just(True)
-        ),
+        "start": table(velocities=row(reals, 4), displacements=row(reals, 4)),
         "defects": st.lists(
             st.fixed_dictionaries({"bead": st.integers(1, 4), "mass": sizes})
             | st.fixed_dictionaries({"contact": st.integers(1, 4), "stiffness": sizes}),

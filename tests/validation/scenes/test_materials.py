@@ -5,7 +5,7 @@ import math
 import pytest
 
 from lwa.spheres.hertz import stiffness
-from validation.scenes.materials import (
+from validation.scenes.chains import (
     DIAMETER,
     PTFE,
     PTFE_BEAD,

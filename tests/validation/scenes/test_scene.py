@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from lwa import Cell, Dimer, InputError
 from lwa.spheres.hertz import stiffness
-from validation.scenes.materials import PTFE_BEAD, STEEL, STEEL_BEAD
+from validation.scenes.chains import PTFE_BEAD, STEEL, STEEL_BEAD
 from validation.scenes.scene import Scene, SceneError
 
 GOOD = dict(masses=(1, 2, 3), stiffnesses=(1, 1), k=1.5, duration=1.0)

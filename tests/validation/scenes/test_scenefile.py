@@ -16,10 +16,9 @@ from lwa.base import files
 from lwa.spheres import beads
 from lwa.spheres.hertz import Material, Sphere, stiffness
 from validation.scenes import scenefile
-from validation.scenes.document import document
-from validation.scenes.materials import STEEL
+from validation.scenes.chains import STEEL
 from validation.scenes.scene import Scene, SceneError
-from validation.scenes.scenefile import read_scene, scene
+from validation.scenes.scenefile import document, read_scene, scene
 from validation.studies.paper import chain_scene
 
 # The experiment of Porter et al. (2008), standing upright: SI units.
@@ -242,9 +241,8 @@ BAD = [
     ({"duration": 10**400}, "duration is 1000.*: a number is wanted"),
     ({"durations": 1}, "durations is unknown: did you mean duration"),
     ({"__import__('os')": 1}, r"\"__import__\('os'\)\" is unknown: one of duration, .* is wanted"),
-    ({"samples": 1}, "samples is 1: an integer from 2 to 10000000 is wanted"),
+    ({"samples": 1}, "samples is 1: an integer from 2 on is wanted"),
     ({"samples": 1.5}, "samples is 1.5: an integer"),
-    ({"samples": 5_000_001}, "samples is 5000001, for each of 2 sensors: all may take 10000000"),
     ({"gravity": 9.81}, "gravity is 9.81: .* needs a wall to pull towards"),
     ({"gravity": [9.81]}, r"gravity is \[9.81\]: a number is wanted"),
     ({"precompression": 1}, "precompression is 1: .* needs a wall to push against"),
@@ -287,12 +285,6 @@ BAD = [
     ({"defects": [{"bead": 1, "like": "ball"}]}, "defects number 1.like names a bead in"),
     ({"defects": [{"contact": 3, "stiffness": 1}]}, "defects number 1.contact is 3: an integer"),
     ({"defects": [{"contact": 1, "mass": 1}]}, "defects number 1.mass is unknown: one of contact"),
-    ({"defects": [{"bead": 3, "mass": 1}, {"contact": 1, "stiffness": 2}, {"bead": 3, "mass": 1}]},
-     "defects number 1 and defects number 3 are both of bead 3: one is wanted"),
-    ({"defects": [{"bead": 1, "like": "ball"}, {"bead": 1, "mass": 2}]} | BALLS,
-     "defects number 1 and defects number 2 are both of bead 1: one is wanted"),
-    ({"defects": [{"contact": 2, "stiffness": 1}] * 2},
-     "defects number 1 and defects number 2 are both of contact 2: one is wanted"),
     ({"wall": {}}, "wall has neither material nor stiffness: one is wanted"),
     ({"wall": {"stiffness": 0}}, "wall.stiffness is 0: it must be positive"),
     ({"wall": {"material": "steel"}}, "wall.material is given, but a chain of masses needs"),
@@ -302,10 +294,6 @@ BAD = [
     ({"striker": {"velocity": NAN}}, "striker.velocity is nan: a finite number is wanted"),
     ({"striker": {"velocity": 1}, "start": {}}, "striker and start are both there"),
     ({"start": {"velocities": [1] * 4}}, "4 velocities for 3 beads: at most 3 wanted"),
-    ({"start": {"displacements": [0.1]}}, "start.displacements press bead 1 into bead 2: start.ov"),
-    ({"start": {"displacements": [0, 0, 1]}, "wall": {"stiffness": 1}},
-     "start.displacements press bead 3 into the wall"),
-    ({"start": {"displacements": [1], "overlap": 1}}, "start.overlap is 1: true or false"),
     ({"sensors": {"beads": [4]}}, "sensors.beads number 1 is 4: an integer from 1"),
     ({"sensors": {"beads": [0]}}, "sensors.beads number 1 is 0: an integer from 1"),
     ({"sensors": {"beads": [1, 1]}}, r"sensors.beads is \[1, 1\]: each may be named once"),
@@ -330,17 +318,6 @@ def test_bad_scenes_are_refused_by_the_key(change, message):
     with pytest.raises(SceneError, match=rf"^{message}") as caught:
         scene(GOOD | change)
     one_line(caught)
-
-
-def test_overlap_is_asked_for_or_carried():
-    pressed = {"displacements": [0.1]}
-    for more in (
-        {"start": pressed | {"overlap": True}},
-        {"start": pressed, "wall": {"stiffness": 1}, "precompression": 1},
-        {"start": {"displacements": [-0.1, -0.1]}},  # a gap
-        {"start": {"displacements": [0, 0, 0.1]}},  # nothing is behind the last bead
-    ):
-        assert scene(GOOD | more).displacements
 
 
 FILES = [

@@ -11,7 +11,7 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from lwa import canonical_wave
-from validation.scenes.materials import PTFE_BEAD
+from validation.scenes.chains import PTFE_BEAD
 from validation.studies import figures
 from validation.studies.figures import chain_speed, forces, scaling
 from validation.studies.paper import HERTZ, chain_cell

@@ -181,7 +181,7 @@ def written(tmp_path, text):
 
 
 def test_a_folder_in_place_of_a_file_is_named(tmp_path):
-    with pytest.raises(SceneError, match=f"^{tmp_path}: only regular files"):
+    with pytest.raises(SceneError, match=f"^{tmp_path}: Is a directory"):
         law(tmp_path)
 
 
@@ -209,7 +209,7 @@ def test_the_command(capsys, tmp_path, chain):
         ("force,time\n1,2\n", {}, "one column speed is wanted"),
         ("force,speed\n" + "1" * 200_000 + ",1\n", {}, "data.csv: field larger than field limit"),
         ("force,speed\n1,2\n", {}, "at least 6 pulses of positive force and speed"),
-        ("force,speed\n" + "1,fast\n" * 9, {}, "column speed: could not convert .*fast"),
+        ("force,speed\n" + "1,fast\n" * 9, {}, "column speed: finite numbers are wanted"),
         ("force,speed\n" + "1,nan\n" * 9, {}, "column speed: finite numbers are wanted"),
         ("force,speed\n" + "-1,2\n" * 9, {}, "positive force and speed"),
         ("force,speed\n" + "1,2\n" * 9, {"masses": (1, 2, 3)}, "the cell has 3 beads"),

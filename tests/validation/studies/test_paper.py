@@ -10,8 +10,7 @@ import pytest
 from lwa import InputError, homogenize
 from validation.cli import main
 from validation.lattice.simulate import simulate
-from validation.scenes.chains import chain_scene
-from validation.scenes.materials import DIAMETER, PTFE_BEAD, STEEL_BEAD
+from validation.scenes.chains import DIAMETER, PTFE_BEAD, STEEL_BEAD, chain_scene
 from validation.studies.paper import SOURCES, chain_cell, paper
 
 

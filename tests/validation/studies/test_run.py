@@ -14,9 +14,9 @@ from tests.commands import ended
 from validation import IntegrationError, cli, simulate
 from validation.pulses.sensors import READINGS, record
 from validation.scenes.chains import struck
-from validation.scenes.document import document
 from validation.scenes.forcing import Damping
 from validation.scenes.scene import Scene
+from validation.scenes.scenefile import document
 from validation.studies.run import report
 
 

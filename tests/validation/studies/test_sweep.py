@@ -185,7 +185,8 @@ def test_a_full_disk_leaves_what_is_finished(content, tmp_path):
 @pytest.mark.parametrize("blow", [signal.SIGINT, signal.SIGKILL])
 def test_a_process_that_is_stopped_goes_on(tmp_path, blow):
     file = tmp_path / "s.jsonl"
-    command = [COMMAND, "sweep", "--k", "3/2", "--omega", "1/2:1:30", "--jobs", "2", "--file", file]
+    grid = ["--k", "3/2", "--omega", "1/2:1:12", "--stretch", "2"]
+    command = [COMMAND, "sweep", *grid, "--jobs", "2", "--file", file]
     with subprocess.Popen(
         command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     ) as stopped:
@@ -203,10 +204,10 @@ def test_a_process_that_is_stopped_goes_on(tmp_path, blow):
     again = subprocess.run(
         [*command, "--format", "json"], capture_output=True, text=True, check=True, timeout=120
     )
-    assert len(json.loads(again.stdout)["points"]) == 30
+    assert len(json.loads(again.stdout)["points"]) == 12
     content = file.read_bytes()
     assert content.startswith(before)
-    assert content.count(b"\n") == 31
+    assert content.count(b"\n") == 13
 
 
 # A cluster
@@ -368,11 +369,6 @@ def test_the_text_has_a_table_for_each_k_and_the_reasons(result):
     assert "nan" not in shown
 
 
-def test_the_text_says_where_a_width_is_no_measure_of_the_theory(result, points):
-    assert "is no measure of its error" in result.text()
-    assert "is no measure of its error" not in report(AXES[0], [R(1)], points[1::3]).text()
-
-
 def test_the_document_is_json_and_complete(result, points):
     found = json.loads(json.dumps(result.document(), allow_nan=False))
     assert (found["stretch"], found["missing"]) == (4, 1)
@@ -457,9 +453,10 @@ def test_the_command(capsys, tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (("--k", "1"), "k is 1: one from 21/20 to 6 is wanted"),
-        (("--k", "m"), "k is m: one from 21/20 to 6 is wanted"),
+        (("--k", "1"), "k is 1: a number from 21/20 to 6 is wanted"),
+        (("--k", "m"), "k is m: a number from 21/20 to 6 is wanted"),
         (("--k", "1:2"), "k is '1:2': a range is start:stop:count"),
+        (("--k", "1:2:1000000000"), "the count of k is 1000000000: an integer from 2 to 300"),
         (("--k", "1:2:301"), "the count of k is 301: an integer from 2 to 300 is wanted"),
         (("--omega", "__import__('os')"), "omega is "),
         (("--stretch", "0"), "stretch is 0: an integer from 2 to 100 is wanted"),

@@ -92,7 +92,7 @@ def test_multiples_are_on_multiples_of_the_background():
         ([1], {"background": -0.1}, "background is -0.1: one from 0"),
         ([1], {"background": 1}, "background is 1: one from 0"),
         ([1], {"background": "1/2"}, "a number is wanted"),
-        ([1, 0.5], {"background": 0.1}, "found for equal masses"),
+        ([1, 0.5], {"background": 0.1}, "exact waves are for equal masses"),
         ([1], {"background": 0.5, "half_period": 5}, "has not ended there"),
     ],
 )

@@ -17,9 +17,8 @@ from tests.passage import passage, ratio
 from validation.lattice.run import IntegrationError
 from validation.lattice.simulate import simulate
 from validation.scenes.chains import carrying, struck
-from validation.waves.asymptotics import LAWS
 from validation.waves.solver import NoWave, solve
-from validation.waves.theory import theory_at
+from validation.waves.theory import LEADING_POWERS, theory_at
 
 
 def theory_errors(wave):
@@ -35,7 +34,7 @@ def theory_errors(wave):
 def test_the_theorys_error_vanishes_by_its_law_as_k_goes_to_one():
     for epsilon in (0.01, 0.001):
         for quantity, error in theory_errors(solve((1.0, 1.0), 1 + epsilon)).items():
-            law = LAWS[quantity]
+            law = LEADING_POWERS[quantity]
             share = error / epsilon**law.order / float(law.coefficient)
             # the next term of the series is O(ε) of this one
             assert abs(share - 1) < 3 * epsilon, quantity

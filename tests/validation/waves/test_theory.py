@@ -50,8 +50,3 @@ def test_the_width_inside_a_bead_is_where_its_force_is_half(wave):
 def test_bad_amounts(way, amount):
     with pytest.raises(SceneError, match=rf"^{WAY[way]} is [^\n]*$"):
         way(WAVES["3/2"], amount)
-
-
-def test_an_amount_whose_force_is_no_float():
-    with pytest.raises(SceneError, match=r"^speed is 1e\+300: the force e\^\d+ is no float$"):
-        of_speed(WAVES["11/10"], 1e300)
