@@ -9,7 +9,7 @@ place of k.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property, cmp_to_key
 from typing import Any
@@ -112,7 +112,7 @@ class CoefficientRing(Value):
         return _as_polynomial(sp.cancel(constant.xreplace(images)), symbols)
 
     @cached_property
-    def expression(self) -> SymPyConverter:
+    def expression(self) -> Callable[[Sequence[tuple[tuple[int, ...], fmpq]]], sp.Expr]:
         """The conversion of polynomials to factored SymPy expressions in the caller's symbols.
 
         A polynomial is given by its terms (exponents in the order of `names`, coefficient).
