@@ -175,7 +175,7 @@ def test_the_energy_of_a_law_without_form_is_conserved(cell, field):
         (e, old, density),
     ):
         for term in terms:
-            row.append(algebra.taken(term, source))
+            row.append(algebra.embed(term, source))
     for n in range(1, order - 1):
         change = algebra.dt(e, E, n) + algebra.s[0] * E[n]  # of u_τ²/2 too
         if n == 1:  # W(u_x): F u_xτ is by parts -F′ u_xx u_τ

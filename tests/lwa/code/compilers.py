@@ -5,7 +5,7 @@ import json
 import subprocess
 from functools import partial
 
-from lwa.code.writer import Function
+from lwa.code import Function
 
 STRICT = ("-O2", "-Wall", "-Wextra", "-pedantic", "-Werror", "-shared", "-fPIC")
 COMMANDS = {
