@@ -12,7 +12,7 @@ from lwa.base import latex
 from lwa.base.exact import InputError, exact
 from lwa.base.quantities import QUANTITIES, NoSolitaryWave
 from lwa.cell import Cell
-from lwa.code.languages import LANGUAGES
+from lwa.code import LANGUAGES
 from lwa.command.chain import ChainInput, take_chain
 from lwa.command.derivation import FIELDS, chain_json, chain_text, listed
 from lwa.command.options import (

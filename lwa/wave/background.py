@@ -26,7 +26,7 @@ from lwa.base import latex
 from lwa.base.exact import InputError, demand_numbers, exact, integer, root, shorten, signed
 from lwa.base.frozen import Value
 from lwa.base.quantities import NO_WAVE, RISE, NoSolitaryWave, known
-from lwa.cell import RESERVED, Cell, meant
+from lwa.cell import RESERVED, Cell, check_names
 from lwa.law import ContactLaw, Power, for_cell, substituted
 from lwa.linear.dispersion import Dispersion
 from lwa.wave.closed import CompactWave
@@ -103,7 +103,7 @@ class BackgroundWave(Value):
             raise InputError(f"p0 is {p0}: under a power law it must not be negative")
         chain = {*self.cell.symbols, *self.law.symbols}  # the p0 of a load holds these
         free = p0 if p0.is_Symbol else sp.Add(*(p0.free_symbols - chain))
-        meant(free, "p0", taken=taken_names(self.cell, self.law))
+        check_names(free, "p0", taken=taken_names(self.cell, self.law))
         object.__setattr__(self, "p0", p0)
 
     def __repr__(self) -> str:

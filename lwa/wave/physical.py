@@ -25,7 +25,7 @@ from lwa.base import latex
 from lwa.base.exact import InputError, evaluated, number, one_of, positive, power, root, shorten
 from lwa.base.frozen import Value
 from lwa.base.quantities import NoSolitaryWave, known, known_extent, strain_power
-from lwa.cell import Cell, meant, unmistakable
+from lwa.cell import Cell, check_distinct, check_names
 from lwa.law import ContactLaw, Power, for_cell, substituted
 from lwa.wave.background import WIDTH_DIGITS, BackgroundWave, taken_names
 from lwa.wave.closed import CompactWave
@@ -66,9 +66,9 @@ class PhysicalWave(Value):
     def __post_init__(self) -> None:
         one_of(self.of, BEARERS, "of")
         force = positive(self.force, "force")
-        unmistakable(list(force.free_symbols))
+        check_distinct(list(force.free_symbols))
         object.__setattr__(
-            self, "force", meant(force, "force", taken=taken_names(self.cell, self._law))
+            self, "force", check_names(force, "force", taken=taken_names(self.cell, self._law))
         )
         if self.of == "bead":
             self._bead_share  # noqa: B018 - a share that does not exist is refused here
@@ -226,7 +226,7 @@ class PrecompressedWave(Value):
         for_cell(self.law, self.cell)
         taken = taken_names(self.cell, self.law)
         for name in ("force", "precompression"):
-            value = meant(positive(getattr(self, name), name), name, taken=taken)
+            value = check_names(positive(getattr(self, name), name), name, taken=taken)
             object.__setattr__(self, name, value)
         if self.force == self.precompression:
             raise NoSolitaryWave(

@@ -3,14 +3,14 @@
 Numba compiles the loops once and keeps them on disk. A run is the same to the last bit every time.
 
 Pair: two embedded solutions of y'' = f(y), with adaptive steps h
-(`validation.lattice.schemes.nystrom`). The error of a step is the root of the sum over all beads of
+(`validation.lattice.schemes`). The error of a step is the root of the sum over all beads of
 the squared errors, in the scene's scales of displacement and velocity; ``rtol`` bounds this error
 and so sets the steps. F = A δ^k with k = 3/2 has no second derivative at a kink, the time at which
 a contact opens or closes, and a step across a kink would err by O(h^{k+1}). So A p_+^k, with a
 polynomial p close to the contact's compression δ and p_+ = max(p, 0), is integrated by a quadrature
 of its own (`validation.lattice.kernel.kinks`).
 
-Splitting: symplectic, with a fixed step (`validation.lattice.schemes.splitting`). Every kink leaves
+Splitting: symplectic, with a fixed step (`validation.lattice.schemes`). Every kink leaves
 an error of O(h^{k+1}), which sets the step.
 
 Samples and signals: `validation.lattice.kernel.samples`.
@@ -35,7 +35,6 @@ import numpy as np
 import scipy
 
 from lwa.base.arrays import Array
-from validation.lattice.cost import beyond, mean_step, most_steps
 from validation.lattice.equations import Motion
 from validation.lattice.kernel.advance import advance
 from validation.lattice.kernel.arrays import (
@@ -50,9 +49,16 @@ from validation.lattice.kernel.arrays import (
     beginning,
 )
 from validation.lattice.knots import Recorder
-from validation.lattice.run import IntegrationError, Run, RunProgress, finished
-from validation.lattice.schemes import SCHEMES
-from validation.lattice.schemes.nystrom import Pair
+from validation.lattice.run import (
+    IntegrationError,
+    Run,
+    RunProgress,
+    beyond,
+    finished,
+    mean_step,
+    most_steps,
+)
+from validation.lattice.schemes import SCHEMES, Pair
 from validation.lattice.signal import recorded, sampled
 from validation.scenes.checks import SceneError, integer, positive
 

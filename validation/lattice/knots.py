@@ -6,7 +6,7 @@ at one of the scene's sample times, interpolated between knots.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,7 +32,6 @@ class KnotPath:
     points: Array
     knots: Knots
     left: Array
-    kinks: dict[int, Array] = field(default_factory=dict)
 
     @property
     def time(self) -> Array:

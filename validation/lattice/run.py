@@ -1,12 +1,10 @@
-"""Records of a scene's sensors, and the run that made them, whichever method integrated it."""
+"""Records of a scene's sensors, the run that made them, and limits on the cost of a run."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, field
-from importlib import import_module
-from typing import Any
 
 import numpy as np
 
@@ -25,10 +23,17 @@ _SI = {
     "compression": "m",
     "displacement": "m",
     "velocity": "m/s",
-    "energy": "J",
 }
 _MOST = 10  # sensors of one kind that are drawn as curves; more are drawn as a map
 _FINEST = 1000  # places, and times, of a map
+MOST_STEPS = 1e9
+MOST_BYTES = 4e9
+EXCESS = 10  # times as many steps as are expected, at which an adaptive method is stopped
+
+# (a, q): about a rtol^{-1/q} steps in a scene's shortest time √(m/spring), counted on uniform
+# chains, dimers and pressed beads, k = 1 … 3; at most 3 times as many.
+_STEPS = dict(RKN86=(0.25, 7), DOP853=(0.3, 8), RK45=(0.2, 5), RK23=(0.2, 3), LSODA=(1.5, 8))
+_FEWEST = 100  # steps that an adaptive method takes to find its step, however slow the motion
 
 
 class IntegrationError(Failure):
@@ -68,8 +73,8 @@ class Records(ArrayValue, Pictured):
 
     def __repr__(self) -> str:
         sensors = len(self.scene.bead_sensors) + len(self.scene.contact_sensors)
-        heard = f"{sensors} sensor{'s' * (sensors != 1)}, {len(self.time)} samples"
-        return f"{type(self).__name__}({self.scene}; {heard})"
+        recorded = f"{sensors} sensor{'s' * (sensors != 1)}, {len(self.time)} samples"
+        return f"{type(self).__name__}({self.scene}; {recorded})"
 
     def label(self, quantity: str) -> str:
         """Return the name of a quantity with its unit, for headers and axes.
@@ -83,49 +88,17 @@ class Records(ArrayValue, Pictured):
         """
         return f"{quantity} ({_SI[quantity.split()[-1]]})" if self.scene.units else quantity
 
-    @property
-    def energy(self) -> Array:
-        """Kinetic and elastic energy above equilibrium at the sample times, (S,).
-
-        Raises `SceneError` unless the scene has sensors at all beads.
-        """
-        sensors, size = self.scene.bead_sensors, self.scene.size
-        if len(sensors) < size:
-            raise SceneError(
-                f"energy needs sensors at all {size} beads: the scene has {len(sensors)}"
-            )
-        order = np.argsort(sensors)
-        states = np.concatenate((self.bead_displacement[order], self.bead_velocity[order]))
-        motion = Motion(self.scene)
-        return np.array([motion.energy(state) for state in states.T])
-
     def columns(self) -> dict[str, Array]:
-        """Return time and all records, each (S,), by names such as "bead 15 force (N)".
-
-        The energy is included if all beads have sensors.
-        """
+        """Return time and all records, each (S,), by names such as "bead 15 force (N)"."""
         scene = self.scene
-        found = {"time": self.time}
+        values = {"time": self.time}
         for row, i in enumerate(scene.bead_sensors):
             for quantity in ("force", "displacement", "velocity"):
-                found[f"bead {i + 1} {quantity}"] = getattr(self, f"bead_{quantity}")[row]
+                values[f"bead {i + 1} {quantity}"] = getattr(self, f"bead_{quantity}")[row]
         for row, i in enumerate(scene.contact_sensors):
-            found[f"contact {i + 1} force"] = self.contact_force[row]
-            found[f"contact {i + 1} compression"] = self.compression[row]
-        if len(scene.bead_sensors) == scene.size:
-            found["energy"] = self.energy
-        return {self.label(name): values for name, values in found.items()}
-
-    def to_pandas(self) -> Any:
-        """Return the `columns` as a pandas DataFrame, with the time as index.
-
-        Raises `SceneError` without pandas, an optional package.
-        """
-        try:
-            pandas = import_module("pandas")
-        except ImportError:
-            raise SceneError("to_pandas needs pandas: pip install pandas") from None
-        return pandas.DataFrame(self.columns()).set_index(self.label("time"))
+            values[f"contact {i + 1} force"] = self.contact_force[row]
+            values[f"contact {i + 1} compression"] = self.compression[row]
+        return {self.label(name): row for name, row in values.items()}
 
     def pictured(self) -> list[Panel]:
         """Panels of force against time at all sensors; an x–t map for more than ten of a kind."""
@@ -225,4 +198,39 @@ def finished(
         dissipated=dissipated,
         work=work,
         **arrays,
+    )
+
+
+def mean_step(method: str, rtol: float) -> float:
+    """Return the expected mean step of an adaptive method, in units of a scene's shortest time."""
+    a, order = _STEPS[method]
+    return float(rtol ** (1 / order)) / a
+
+
+def most_steps(scene: Scene, method: str, steps: float, rows: int, memory: int = 0) -> int:
+    """Return the number of steps at which a run is stopped.
+
+    steps : expected number of steps. rows : numbers stored for each sensor and sample. memory :
+    further bytes. Raises `SceneError` for more than `MOST_STEPS` steps or `MOST_BYTES` bytes.
+    """
+    sensors = len(scene.contact_sensors) + len(scene.bead_sensors)
+    memory += 8 * (80 * scene.size + scene.samples * (rows * sensors + 20))
+    if memory > MOST_BYTES:
+        raise SceneError(
+            f"samples is {scene.samples:g}: with {sensors} sensors and {scene.size} beads {method} "
+            f"takes {memory / 1e9:.2g} GB; {MOST_BYTES / 1e9:g} GB are the most"
+        )
+    if steps > MOST_STEPS:
+        raise SceneError(
+            f"duration is {scene.duration:g}: this makes {steps:.1e} steps of {method}; "
+            f"{MOST_STEPS:g} are the most"
+        )
+    return EXCESS * (_FEWEST + int(steps))
+
+
+def beyond(method: str, steps: int, t: float, duration: float) -> str:
+    """Return the message of the error for too many steps."""
+    return (
+        f"{steps} steps of {method} reach t = {t:g} of {duration:g}: rounding hides the motion, "
+        "or rtol is too small for it"
     )

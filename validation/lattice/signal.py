@@ -16,7 +16,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from lwa.base.arrays import Array
 from validation.lattice.equations import Motion
-from validation.lattice.laws import Contact
 from validation.scenes.checks import SceneError
 
 _REGULA_FALSI = 9  # steps, that leave less than 1e-12 of a step of the integrator
@@ -40,59 +39,44 @@ class Path(Protocol):
         """The ends of the steps, from 0 to the duration."""
         ...
 
-    @property
-    def kinks(self) -> dict[int, Array]:
-        """Times within steps at which each contact opens or closes: a cache for `_kinks`."""
-        ...
-
     def __call__(self, beads: Beads, time: Array) -> tuple[Array, Array]: ...
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Sensor:
-    """A "contact" or "bead" sensor of a scene, with the contacts on which its records depend.
+    """A sensor at a "contact" or "bead" of a scene, whose ``number`` counts from 0."""
 
-    number : number of the contact or bead, from 0. first : number of the first contact. rest,
-    stiffnesses, damping : static compressions, stiffnesses and damping coefficients of these
-    contacts. contact : law of the contacts.
-    """
-
+    motion: Motion
     kind: str
     number: int
-    first: int
-    rest: tuple[float, ...]
-    stiffnesses: tuple[float, ...]
-    damping: tuple[float, ...]
-    contact: Contact
 
-    @classmethod
-    def of(cls, motion: Motion, kind: str, number: int) -> Sensor:
-        """Return the sensor at a contact or bead of a scene."""
-        first = number if kind == "contact" else max(number - 1, 0)
-        contacts = slice(first, number + 1)
-        rows = motion.rest, motion.stiffnesses, motion.damping
-        rest, A, damping = (tuple(row[contacts]) for row in rows)
-        return cls(kind, number, first, rest, A, damping, motion.contact)
+    @property
+    def contacts(self) -> slice:
+        """Numbers of the contacts on which the records depend."""
+        first = self.number if self.kind == "contact" else max(self.number - 1, 0)
+        return slice(first, self.number + 1)
 
     @property
     def beads(self) -> range:
         """Numbers of the beads whose motion the sensor needs; bead n is the wall."""
-        return range(self.first, self.first + len(self.rest) + 1)
+        first = self.contacts.start
+        return range(first, first + len(self.motion.rest[self.contacts]) + 1)
 
     def compressions(self, y: Array) -> Array:
         """Return compressions (contacts, S) from displacements (beads, S) of the sensor's beads."""
-        return np.asarray(y[:-1] - y[1:] + np.array(self.rest)[:, None])
+        return np.asarray(y[:-1] - y[1:] + self.motion.rest[self.contacts, None])
 
     def values(self, y: Array, v: Array) -> dict[str, Array]:
         """Return each quantity, (S,), from the motion y, v, (beads, S), of the sensor's beads."""
         compressions = self.compressions(y)
-        elastic = np.array(self.stiffnesses)[:, None] * self.contact.force(compressions)
-        damping = np.array(self.damping)
-        forces = self.contact.damped(elastic, damping, compressions, v[:-1] - v[1:])
+        contact, damping = self.motion.contact, self.motion.damping[self.contacts]
+        elastic = self.motion.stiffnesses[self.contacts, None] * contact.force(compressions)
+        forces = contact.damped(elastic, damping, compressions, v[:-1] - v[1:])
         if self.kind == "contact":
             return {"force": forces[0], "compression": compressions[0]}
-        own = self.number - self.first  # an end without a contact counts as 0
-        return {"force": forces.sum(axis=0) / 2, "displacement": y[own], "velocity": v[own]}
+        bead = self.number - self.beads[0]
+        # an end without a contact counts as 0
+        return {"force": forces.sum(axis=0) / 2, "displacement": y[bead], "velocity": v[bead]}
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,9 +105,9 @@ class Signal:
 def sensors(motion: Motion) -> Iterator[Sensor]:
     """Yield the sensors of a scene, first at contacts, then at beads."""
     for i in motion.scene.contact_sensors:
-        yield Sensor.of(motion, "contact", i)
+        yield Sensor(motion, "contact", i)
     for j in motion.scene.bead_sensors:
-        yield Sensor.of(motion, "bead", j)
+        yield Sensor(motion, "bead", j)
 
 
 def signal(motion: Motion, path: Path, kind: str, number: int, quantity: str) -> Signal:
@@ -140,28 +124,26 @@ def signal(motion: Motion, path: Path, kind: str, number: int, quantity: str) ->
     contacts = [number] if kind == "contact" else [number - 1, number]
     kinks = [_kinks(motion, path, i) for i in contacts if 0 <= i < scene.contact_count]
     times = np.unique(np.concatenate((path.time, *kinks)))
-    return Signal(times, Sensor.of(motion, kind, number), quantity, path)
+    return Signal(times, Sensor(motion, kind, number), quantity, path)
 
 
 def _kinks(motion: Motion, path: Path, contact: int) -> Array:
-    """Return times within steps at which a contact opens or closes; cached in ``path.kinks``."""
-    if contact not in path.kinks:
-        sensor, time = Sensor.of(motion, "contact", contact), path.time
+    """Return the times within steps at which a contact opens or closes."""
+    sensor, time = Sensor(motion, "contact", contact), path.time
 
-        def compression(t: Array) -> Array:
-            return np.asarray(sensor.compressions(path(sensor.beads, t)[0])[0])
+    def compression(t: Array) -> Array:
+        return np.asarray(sensor.compressions(path(sensor.beads, t)[0])[0])
 
-        d = compression(time)
-        step = np.flatnonzero(d[1:] * d[:-1] < 0)
-        a, b, f, g = time[step], time[step + 1], d[step], d[step + 1]
-        for _ in range(_REGULA_FALSI if len(step) else 0):  # the Illinois variant
-            c = b - g * (b - a) / np.where(g == f, 1.0, g - f)
-            h = compression(c)
-            beyond = h * g < 0
-            a, f = np.where(beyond, b, a), np.where(beyond, g, f / 2)
-            b, g = c, h
-        path.kinks[contact] = b[(b > time[step]) & (b < time[step + 1])]
-    return path.kinks[contact]
+    d = compression(time)
+    step = np.flatnonzero(d[1:] * d[:-1] < 0)
+    a, b, f, g = time[step], time[step + 1], d[step], d[step + 1]
+    for _ in range(_REGULA_FALSI if len(step) else 0):  # the Illinois variant
+        c = b - g * (b - a) / np.where(g == f, 1.0, g - f)
+        h = compression(c)
+        beyond = h * g < 0
+        a, f = np.where(beyond, b, a), np.where(beyond, g, f / 2)
+        b, g = c, h
+    return np.asarray(b[(b > time[step]) & (b < time[step + 1])])
 
 
 def recorded(motion: Motion, beads: NDArray[np.int_], y: Array, v: Array) -> dict[str, Array]:

@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 
 from lwa.base.exact import shorten
-from validation.lattice.forced import motion_of
+from validation.lattice.equations import motion_of
 from validation.lattice.run import IntegrationError, Run, RunProgress, silent
 from validation.lattice.schemes import SCHEMES
 from validation.lattice.signal import RECORDS
@@ -65,9 +65,9 @@ def simulate(
         returned, NaN for beads outside the first run's window. By default the whole chain.
     progress : function that opens a display, which is called with the finished fraction of the run.
 
-    Raises `SceneError` for invalid arguments and for more steps or memory than
-    `validation.lattice.cost` allows. Raises `IntegrationError` when the integrator fails, or when
-    the longer window changes the leading pulse by more than ten times ``rtol``.
+    Raises `SceneError` for invalid arguments and for too many steps or too much memory
+    (`validation.lattice.run.most_steps`). Raises `IntegrationError` when the integrator fails, or
+    when the longer window changes the leading pulse by more than ten times ``rtol``.
 
     >>> scene = Scene(masses=(1, 1), stiffnesses=(1,), k=1.5, duration=9, velocities=(1,))
     >>> simulate(scene).velocities.round(6) + 0.0  # equal masses exchange their velocities

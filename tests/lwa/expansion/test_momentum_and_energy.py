@@ -85,17 +85,6 @@ def test_hertz_s_numbers():
     assert one.expansion.effective_mass.at().value == pytest.approx(1.3040, abs=1e-4)
 
 
-def test_kinetic_over_potential_energy_is_half_of_k_plus_one():
-    """The virial theorem, 2 T = (k+1) U, at every order in k - 1 and for a dimer too."""
-    for cell in (Cell([1]), Dimer(1, "1/3")):
-        expansion = expand(cell, 4)
-        T, E = expansion.kinetic.coefficients, expansion.energy.coefficients
-        assert expansion.kinetic.prefactor == expansion.energy.prefactor
-        U = [e - t for e, t in zip(E, T, strict=True)]
-        rest = [2 * t - 2 * u - below for t, u, below in zip(T, U, [0, *U], strict=False)]
-        assert not any(rest)
-
-
 def test_units_and_forces_enter_as_dimensions_demand():
     """E ~ F δ, P ~ m δ/t, D0 ~ δ²/t, D1 ~ δ^{k+1}/t with δ = (F/A)^{1/k}, t = √(m δ/F)."""
     k, m, A, F = 1.5, 4.0, 8.0, 27.0
@@ -209,6 +198,6 @@ def test_beyond_the_measured_exponents_a_strike_has_no_error():
         ({"mass": "m"}, "mass is m: a number is wanted"),
     ],
 )
-def test_what_is_no_strike_is_refused(arguments, message):
+def test_impossible_strikes_are_refused(arguments, message):
     with pytest.raises(InputError, match=message):
         pulse_of_strike(**({"chain": EQUAL, "mass": 1, "velocity": 1} | arguments))

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from validation.lattice import cost
+from validation.lattice import run as limits
 from validation.lattice.equations import Motion
 from validation.lattice.run import IntegrationError
 from validation.lattice.simulate import METHODS, simulate
@@ -44,7 +44,7 @@ def test_the_steps_of_adaptive_methods(method, what, rtol):
     """The steps are at most three times as many as expected; the limit is ten times."""
     rtol = max(rtol, 1e-7) if method == "RK23" else rtol
     run, shares = told(what, method=method, rtol=rtol, atol=rtol)
-    expected = what.duration / Motion(what).scales.time / cost.mean_step(method, rtol)
+    expected = what.duration / Motion(what).scales.time / limits.mean_step(method, rtol)
     assert what.duration / run.step < 3 * expected + 100
     assert shares == sorted(shares)
     assert shares[-1] == (1 if method in METHODS else 0)  # compiled runs are over before a glance
@@ -160,7 +160,7 @@ def spoiled(draw):
 @settings(max_examples=50)
 def test_a_file_makes_finite_numbers_or_one_line(content, method):
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(cost, "MOST_STEPS", 1e4)
+        patch.setattr(limits, "MOST_STEPS", 1e4)
         try:
             what = scene(content)
             made = record(what, method=method, rtol=1e-6)

@@ -8,7 +8,7 @@ from math import isqrt
 
 import pytest
 
-from validation.lattice.schemes.nystrom import RKN86
+from validation.lattice.schemes import RKN86
 
 
 @cache

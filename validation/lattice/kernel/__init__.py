@@ -3,7 +3,7 @@
 Letters and words. y, v: displacements and velocities of the beads. δ: compression of a contact.
 p(x), x = 0 … 1: polynomial close to δ over one step; p_+ = max(p, 0). Kink: time at which a contact
 opens or closes. Knot: end of a step, at which the motion of the watched beads is stored. Embedded
-pair: the Runge–Kutta–Nyström pair of `validation.lattice.schemes.nystrom`.
+pair: the Runge–Kutta–Nyström pair of `validation.lattice.schemes`.
 
 Loops over all beads hold no branch and read contiguous arrays, so that they vectorise. Only
 `advance` and `interpolate` are called from outside; their cached machine code is tied to the text

@@ -71,7 +71,7 @@ class Tableau(NamedTuple):
     """Coefficients of a scheme, either of a splitting or of an embedded pair.
 
     kicks, drifts : coefficients of a splitting, empty for an embedded pair. nodes, rows, ends :
-    arrays of `validation.lattice.schemes.nystrom.Pair.arrays`, empty for a splitting. lower : order
+    arrays of `validation.lattice.schemes.Pair.arrays`, empty for a splitting. lower : order
     of the embedded pair's second solution. points : (2, M), nodes and weights of ∫ u^k f(u) du from
     0 to 1; M is 0 where kinks need no quadrature.
     """

@@ -1,6 +1,6 @@
 """A step of an embedded, adaptive Runge–Kutta–Nyström pair, corrected for kinks.
 
-b, b', e, e' are the pair's coefficients (`validation.lattice.schemes.nystrom`). h is the step, and
+b, b', e, e' are the pair's coefficients (`validation.lattice.schemes`). h is the step, and
 x = 0 … 1 the time within the step. p is a quintic close to a contact's compression, p_+ = max(p, 0)
 (`validation.lattice.kernel.kinks`). The impulse of a contact in a step is ∫ F dt, its moment
 h² ∫ (1 - x) F dx: they change the velocities and the displacements of its two beads.

@@ -1,5 +1,6 @@
-"""Embedded Runge–Kutta–Nyström pairs for y'' = f(y), with exact coefficients.
+"""Coefficients of the compiled integrators.
 
+`RKN86` is the default, an embedded Runge–Kutta–Nyström pair for y'' = f(y) with adaptive steps.
 Stage s evaluates f at y + c_s h v + h² Σ a_sj f_j, with Σ_j a_sj = c_s²/2. A step ends at
 
     y + h v + h² Σ b_j f_j,    v + h Σ b'_j f_j,
@@ -7,7 +8,12 @@ Stage s evaluates f at y + c_s h v + h² Σ a_sj f_j, with Σ_j a_sj = c_s²/2. 
 and differs from a solution of lower order by h² Σ e_j f_j and h Σ e'_j f_j, its error. The last
 stage is at the step's end, and is the first of the next step: its row of a is b.
 
-Source: Dormand, El-Mikkawy and Prince 1987, IMA J. Numer. Anal. 7, 423: RKN8(6)9FM.
+`SRKN14` is a symmetric splitting of y'' = F(y)/m, for runs of very many collisions. A step of h
+applies kick 0, drift 0, kick 1, drift 1, …: a kick adds b h F(y)/m to v, a drift adds a h v to y.
+It is symplectic and time-reversible, and keeps the momentum to rounding.
+
+Sources: Dormand, El-Mikkawy and Prince 1987, IMA J. Numer. Anal. 7, 423: RKN8(6)9FM. Blanes and
+Moan 2002, J. Comput. Appl. Math. 142, 313: SRKN_14^a, as printed, to all digits.
 """
 
 from __future__ import annotations
@@ -95,3 +101,38 @@ RKN86 = _pair(
     "7987313/109941300 0 1610737/40207104 10023263/23454144 -497221/6204800 10023263/23454144"
     " 1610737/40207104 -4251941/54970650 3/20",
 )  # fmt: skip
+
+
+@dataclass(frozen=True, eq=False)
+class Splitting:
+    """Coefficients of a splitting: b of the kicks, a of the drifts; the first kick is 0."""
+
+    order: int
+    kicks: Array
+    drifts: Array
+
+    @property
+    def stages(self) -> int:
+        """Number of evaluations of the forces per step."""
+        return len(self.kicks) - 1
+
+
+def _mirrored(order: int, kicks: list[float], drifts: list[float]) -> Splitting:
+    """Complete palindromic coefficients from their first halves.
+
+    The coefficients in the middle, which are not given, make both sums 1.
+    """
+    b = [*kicks, 0.5 - sum(kicks)]
+    a = [*drifts, 1 - 2 * sum(drifts)]
+    return Splitting(order, np.array([0.0, *b, *b[::-1]]), np.array([*a, *drifts[::-1]]))
+
+
+# fmt: off
+SRKN14 = _mirrored(6,
+    [0.09171915262446165, 0.183983170005006, -0.05653436583288827, 0.004914688774712854,
+     0.143761127168358, 0.328567693746804],
+    [0.0378593198406116, 0.102635633102435, -0.0258678882665587, 0.314241403071447,
+     -0.130144459517415, 0.106417700369543, -0.00879424312851058])
+# fmt: on
+
+SCHEMES: dict[str, Pair | Splitting] = {"RKN86": RKN86, "SRKN14": SRKN14}
