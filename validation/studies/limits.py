@@ -22,7 +22,8 @@ from lwa.base.progress import Progress
 from validation.lattice.run import Run
 from validation.lattice.simulate import simulate
 from validation.pictures import Curve, Panel
-from validation.pulses.pulse import Measured, compared, derived, highest_pulse, integral, speed
+from validation.pulses.pulse import Measured, compared, derived, highest_pulse, speed
+from validation.pulses.signals import integral
 from validation.report.command import study
 from validation.report.result import Report
 from validation.report.table import Column, Finding, Table, percent

@@ -43,7 +43,7 @@ def numeric_wave(k):
 
 
 @pytest.mark.parametrize("cell", [CHAIN, Dimer("m1", "m2"), Dimer(3, 1, N=2, spacing=2)])
-def test_without_load_it_is_the_compact_wave(cell):
+def test_without_load_the_wave_is_the_compact_wave(cell):
     compact = canonical_wave(cell, "3/2")
     wave = compact.on_background(0)
     assert sp.simplify(wave.speed(7) - compact.speed(7)) == 0
@@ -263,7 +263,7 @@ def test_the_lattices_own_wave_of_fermi_pasta_ulam_and_tsingou(alpha, beta):
 # --- rarefaction, existence, units --------------------------------------------------------------
 
 
-def test_existence_is_decided():
+def test_waves_exist_on_the_stiffening_side_only():
     cases = [
         (Power("3/2"), 1, "-1/2"),
         (Power("1/2"), 1, "1/2"),
@@ -286,7 +286,7 @@ def test_existence_is_decided():
         _ = compression(load=0).kdv
 
 
-def test_what_cannot_be_meant():
+def test_bad_arguments_are_refused():
     wave = background_wave(Cell(["m"]), law=Power("3/2"))
     for call, reason in (
         (lambda: compression(load=-1), "must not be negative"),
@@ -342,7 +342,7 @@ def test_another_law_in_units():
         PrecompressedWave(Cell([1], spacing=1), named("polynomial", -1, 0), 2, 1).speed  # noqa: B018
 
 
-def test_far_from_its_wave_a_profile_is_nothing():
+def test_far_from_its_peak_a_profile_falls_to_zero():
     """Under next to no load θ runs through hundreds within a site; cosh² θ would overflow."""
     far = background_wave(CHAIN, law=Power("3/2")).numeric().profile([50.0], 1e-12, 1.0)
     assert 0 <= far[0] < 1e-300
