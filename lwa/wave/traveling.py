@@ -80,7 +80,7 @@ class TravelingWave(CompactWave):
     def code(self, language: str) -> str:
         """Source text of a program: β, widths, speed, amplitude and profile as functions.
 
-        ``language`` is one of `lwa.code.languages.LANGUAGES`, "python" (plain `math`) or "c" among
+        ``language`` is one of `lwa.code.LANGUAGES`, "python" (plain `math`) or "c" among
         them. `lwa.wave.functions` states arguments and accuracy.
 
         Raises `lwa.InputError` for another language, and for numbers beyond a double.

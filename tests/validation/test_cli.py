@@ -528,22 +528,6 @@ def test_only_regular_files_are_read(capsys, tmp_path):
         assert err == f"lwa-validate: {tmp_path / name}: only regular files are read\n"
 
 
-def test_exact_scaled_to_a_speed_or_a_force(capsys):
-    shown = {}
-    for options in ((), ("--speed", "2"), ("--force", "3")):
-        status, out, _ = run(capsys, "exact", *options, "--format", "json")
-        assert status == 0
-        shown[options[:1]] = json.loads(out)
-    assert shown["--speed",]["c_value"] == pytest.approx(2, rel=1e-14)
-    assert shown["--force",]["amplitude_value"]["force"] == pytest.approx(3, rel=1e-13)
-    for found in shown.values():
-        for name, width in shown[()]["fwhm_value"].items():
-            assert found["fwhm_value"][name] == pytest.approx(width, rel=1e-10)
-    status, out, err = run(capsys, "exact", "--speed", "2", "--force", "3")
-    assert (status, out) == (2, "")
-    assert "scaled to one of the two" in err
-
-
 def test_every_study_is_a_command():
     context = click.Context(cli.validate)
     for name in cli.STUDIES:

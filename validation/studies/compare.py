@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 import click
 
 from lwa.base.arrays import Array
-from validation.lattice.run import Run, RunProgress, silent
+from validation.lattice.run import RunProgress, silent
 from validation.pictures import Curve, Panel
-from validation.pulses.pulse import Measured, Pulse, compared, dense, derived, first_pulse
-from validation.pulses.sensors import READINGS, Reading, Track, record, tracks
+from validation.pulses.pulse import Measured, compared, dense, derived, first_pulse
+from validation.pulses.sensors import READINGS, Track, readings, record, tracks
 from validation.pulses.signals import Sampled
 from validation.report.command import study
 from validation.report.result import Report
@@ -22,10 +22,9 @@ from validation.scenes.scenefile import read_scene
 _COLUMNS = (
     *(Column("", "sensor"), Column("kind"), Column("number")),
     *(Column("", "first pulse"), Column("quantity")),
-    Column("simulated", "simulated", error=True),
-    Column("measured", "measured", error=True),
-    Column("difference", "difference", error=True),
+    *(Column(name, name, error=True) for name in ("simulated", "measured", "difference")),
 )
+_LABELS = dict(zip(READINGS, ("arrival", "peak dynamic force", "FWHM"), strict=True))
 _NOTE = (
     "First pulses of dynamic forces. Measured times are shifted by {}, so that the pulses arrive "
     "together at {}. ±: of the simulation, difference to a less accurate run; of the measurement, "
@@ -38,40 +37,43 @@ def compare(scene: str, measured: str, run_progress: RunProgress = silent) -> Re
     """Measured forces at the sensors of a scene beside the simulated ones: arrival, peak, FWHM.
 
     The file of measurements, CSV, has the columns time and, for each sensor such as bead 15,
-    "bead 15 force" (static force included) or "bead 15 dynamic force"; with one sensor in the
-    scene also plain "force" or "dynamic force". ``rows``: ``kind``, ``number``, ``quantity``
-    ("arrival", "peak" or "fwhm"), ``simulated_value``, ``measured_value`` and
-    ``difference_value``, measured less simulated, with errors; ``shift_value``.
+    "bead 15 force" (static force included) or "bead 15 dynamic force". ``rows``: ``kind``,
+    ``number``, ``quantity`` ("arrival", "peak" or "fwhm"), ``simulated_value``, ``measured_value``
+    and ``difference_value``, measured less simulated, with errors; ``shift_value``.
     """
     what = read_scene(scene)
     if not (what.bead_sensors or what.contact_sensors):
         raise SceneError(f"{scene}: the scene names no sensors")
-    found = record(what, progress=run_progress)
-    heard = tracks(found.run)
-    records = dict(_records(measured, heard))
-    pairs = [
-        (reading, track)
-        for reading, track in zip(found.sensors, heard, strict=True)
-        if (track.kind, track.number) in records
-    ]
-    for reading, _ in pairs:
+    simulation = record(what, progress=run_progress)
+    run, label, t = simulation.run, simulation.run.label, simulation.run.time
+    names = [f"{reading.name} force" for reading in simulation.sensors]
+    optional = [*names, *(f"{reading.name} dynamic force" for reading in simulation.sensors)]
+    samples = columns(measured, "time", optional=optional)
+    time, shift, first = samples["time"], 0.0, ""
+    rows: list[tuple[Any, ...]] = []
+    curves: list[Curve] = []
+    for i, (reading, track) in enumerate(zip(simulation.sensors, tracks(run), strict=True)):
+        force = _dynamic_force(samples, reading.name, track)
+        if force is None:
+            continue
         if reading.missing:
             raise SceneError(f"{reading.name}: {reading.missing}")
-    rows: list[tuple[Any, ...]] = []
-    curves, shift = [], 0.0
-    for i, (reading, track) in enumerate(pairs):
-        time, force = records[track.kind, track.number]
-        seen = compared(_numbers, (time, force), (time[::2], force[::2]))
-        if i == 0:
-            shift = reading.numbers["arrival"].value - seen["arrival"].value
-        seen["arrival"] = derived(lambda t, by=shift: t + by, seen["arrival"])
-        rows += _rows(reading, seen, found.run)
-        t = found.run.time
+        pulse = compared(_numbers, (time, force), (time[::2], force[::2]))
+        if not first:
+            first = reading.name
+            shift = reading.numbers["arrival"].value - pulse["arrival"].value
+        pulse["arrival"] = derived(lambda t, by=shift: t + by, pulse["arrival"])
+        for name, quantity in _LABELS.items():
+            ours, theirs = reading.numbers[name], pulse[name]
+            less = theirs.value - ours.value
+            numbers = ours, theirs, Measured(less, less + ours.error + theirs.error)
+            rows.append((reading.name, track.kind, track.number, label(quantity), name, *numbers))
         curves += [
             Curve(f"{reading.name}, simulated", t, track.force(t), f"C{i}-"),
             Curve("measured", time + shift, force, f"C{i}."),
         ]
-    label, first = found.run.label, pairs[0][0].name
+    if not first:
+        raise SceneError(f"{measured}: no column is {' or '.join(names)}")
     unit = f"{shift:.6g} s" if what.units else f"{shift:.6g}"
     return Report(
         str(what),
@@ -82,37 +84,14 @@ def compare(scene: str, measured: str, run_progress: RunProgress = silent) -> Re
     )
 
 
-def _records(
-    path: str, heard: tuple[Track, ...]
-) -> Iterator[tuple[tuple[str, int], tuple[Array, Array]]]:
-    """Yield (kind, number) of each measured sensor, and its sample times and dynamic forces."""
-    names = {f"{track.kind} {track.number} ": track for track in heard}
-    if len(heard) == 1:
-        names[""] = heard[0]
-    kinds = ("force", "dynamic force")
-    found = columns(path, "time", optional=[name + kind for name in names for kind in kinds])
-    if len(found) == 1:
-        wanted = " or ".join(f"{name}force" for name in names)
-        raise SceneError(f"{path}: no column is {wanted}")
-    for name, track in names.items():
-        for kind in kinds:
-            if name + kind in found:
-                static = 0.0 if kind == "dynamic force" else track.static
-                yield (track.kind, track.number), (found["time"], found[name + kind] - static)
+def _dynamic_force(samples: Mapping[str, Array], name: str, track: Track) -> Array | None:
+    """Return the measured dynamic force at a sensor; None without a column of it."""
+    if (total := samples.get(f"{name} force")) is not None:
+        return total - track.static
+    return samples.get(f"{name} dynamic force")
 
 
 def _numbers(samples: tuple[Array, Array]) -> dict[str, float]:
+    """Return `READINGS` of the first pulse in a record, sample times and forces."""
     sampled = Sampled(*samples)
-    pulse: Pulse = dense(sampled, first_pulse(sampled))
-    return {name: getattr(pulse, name) for name in READINGS}
-
-
-def _rows(simulated: Reading, seen: Mapping[str, Measured], run: Run) -> Iterator[tuple[Any, ...]]:
-    """Yield table rows: a simulated number, the measured one, and the difference with its error."""
-    names = dict(zip(READINGS, ("arrival", "peak dynamic force", "FWHM"), strict=True))
-    for name, quantity in names.items():
-        one, other = simulated.numbers[name], seen[name]
-        less = other.value - one.value
-        difference = Measured(less, less + one.error + other.error)
-        place = (simulated.name, simulated.kind, simulated.places[0])
-        yield (*place, run.label(quantity), name, one, other, difference)
+    return readings(dense(sampled, first_pulse(sampled)))

@@ -7,12 +7,10 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
-from lwa.base.exact import InputError
 from lwa.base.progress import Progress
 from lwa.base.quantities import QUANTITIES
 from lwa.command.options import quantities
 from validation.pictures import Curve, Panel
-from validation.pulses.steady import HUMPS
 from validation.report.command import EXPONENT, number, option, study
 from validation.report.result import Report
 from validation.report.table import Column, Table
@@ -25,7 +23,8 @@ _SOLITARY = "solitary: nothing is left behind", "Errors: residual, tail and roun
 _NANOPTERON = (
     "a nanopteron, not solitary:\nthe light beads rattle on both sides, with this tail",
     "Half period {:g}, one of a family. Errors: differences from the pulse of a struck chain.\n"
-    f"{HUMPS}.",
+    "A contact's force may have several humps: a width is that of the highest hump, and jumps\n"
+    "where the dip before another hump passes half of the peak.",
 )
 _COLUMNS = (
     Column("of", "of"),
@@ -33,36 +32,27 @@ _COLUMNS = (
     Column("fwhm", "FWHM", "D", error=True),
 )
 _SCALING = """\
-Strain and force of a contact, velocity of a bead m1. Strains scale with the peak force F as
-F^(1/k), velocities as F^((k+1)/2k), c as F^((k-1)/2k); widths do not depend on F."""
+Peak force 1; strain and force of a contact, velocity of a bead m1. Strains scale with the peak
+force F as F^(1/k), velocities as F^((k+1)/2k), c as F^((k-1)/2k); widths do not depend on F."""
 
 
 @study(
     EXPONENT,
     option("--masses", callback=quantities, default="1", says="One mass, or the two of a dimer."),
-    option("--speed", callback=number, says="Scale the wave to this speed, at D = 1."),
-    option("--force", callback=number, says="Scale the wave to this peak force, at A = 1.  [1]"),
     option("--background", callback=number, default="0", says="Static over peak compression."),
 )
 def exact(
     k: float,
     masses: tuple[sp.Expr, ...],
-    speed: float | None,
-    force: float | None,
     background: float = 0.0,
     progress: Progress[Any] = iter,
 ) -> Report:
-    """Exact traveling wave of the lattice: speed, widths and tail.
+    """Exact traveling wave of the lattice with peak force 1: speed, widths and tail.
 
     Takes a second or two, for unequal masses from k = 4 on up to half a minute.
     """
-    if speed is not None and force is not None:
-        raise InputError("speed and force: a wave is scaled to one of the two")
     values = [float(mass) for mass in numbered(masses).masses]
-    wave = exact_wave(values, k, background=background, progress=progress)
-    if speed is not None or force is not None:
-        wave = wave.scaled(speed=speed, force=force)
-    return wave_report(wave)
+    return wave_report(exact_wave(values, k, background=background, progress=progress))
 
 
 def wave_report(wave: ExactWave) -> Report:
@@ -72,17 +62,17 @@ def wave_report(wave: ExactWave) -> Report:
     ``solitary``; with errors, as ``c2_error_value``: ``c2_value``, ``c_value``, ``tail_value`` and
     by quantity ``amplitude_value`` and ``fwhm_value``.
     """
-    found = measured(wave)
+    numbers = measured(wave)
     kind, errors = _SOLITARY if wave.solitary else _NANOPTERON
-    tail = f"{wave.tail:.2e}" if wave.solitary else found["tail"]
-    rows = tuple((q, *(found[f"{c.key} {q}"] for c in _COLUMNS[1:])) for q in QUANTITIES)
-    names = ("c2", "c", "tail", *(f"{c.key}.{q}" for c in _COLUMNS[1:] for q in QUANTITIES))
-    values = tuple(found[name.replace(".", " ")] for name in names)
-    numbers = Table(tuple(Column(name, error=True) for name in names), (values,)).document()[0]
+    tail = f"{wave.tail:.2e}" if wave.solitary else numbers["tail"]
+    rows = tuple((q, numbers[f"amplitude {q}"], numbers[f"fwhm {q}"]) for q in QUANTITIES)
+    # One row of all numbers; "fwhm force" becomes an entry of fwhm_value.
+    columns = tuple(Column(name.replace(" ", "."), error=True) for name in numbers)
+    (values,) = Table(columns, (tuple(numbers.values()),)).document()
     load = f"; background strain {wave.background:g}: strains and forces are above it"
     return Report(
         f"masses {wave.masses[0]:g}, {wave.masses[1]:g}; k = {wave.k:g}; A = D = 1"
-        f"{load if wave.background else ''}\nc² = {found['c2']}, c = {found['c']}\n"
+        f"{load if wave.background else ''}\nc² = {numbers['c2']}, c = {numbers['c']}\n"
         f"tail {tail} of the peak strain, residual {wave.residual:.1e}: {kind}",
         (Table(_COLUMNS, rows, note=f"{_SCALING}\n{errors.format(wave.half_period)}"),),
         panels=tuple(wave.pictured()),
@@ -93,7 +83,7 @@ def wave_report(wave: ExactWave) -> Report:
             "half_period_value": wave.half_period,
             "residual_value": wave.residual,
             "solitary": wave.solitary,
-            **numbers,
+            **values,
         },
     )
 
@@ -116,7 +106,7 @@ def resonances(k: float, count: int) -> Report:
     waves, xi = special_ratios(k, count), np.linspace(-5, 5, 1001)
     rows = tuple((wave.omega, wave.c2, wave.tail, wave.residual) for wave in waves)
     curves = (Curve(f"m2/m1 = {w.omega:.4f}", xi, w.force(xi), "-") for w in waves)
-    names = ("mass_ratios", *(column.key for column in _RATIOS[1:]))
+    names = "mass_ratios", "c2_value", "tail_value", "residual_value"
     return Report(
         f"k = {k:g}: dimers with a solitary wave",
         (Table(_RATIOS, rows),),

@@ -20,7 +20,6 @@ import sympy as sp
 from lwa import Cell, Dimer, Power, TravelingWave, background_wave, homogenize
 from lwa.base.arrays import Array
 from lwa.base.progress import Progress
-from lwa.wave.background import BackgroundWave
 from validation.lattice.simulate import simulate
 from validation.pictures import Curve, Panel
 from validation.report.command import option, study
@@ -57,6 +56,11 @@ FORMS: Mapping[str, tuple[Any, ...]] = {
 """Closed forms: names of a wave's attribute, and its arguments."""
 
 
+def closed_wave(closure: str) -> TravelingWave:
+    """Return the wave of one of `CLOSURES`, D = 1, with k, m1, m2 as symbols."""
+    return homogenize(Dimer("m1", "m2", spacing=1), **CLOSURES[closure]).pde.traveling_wave()
+
+
 def form(wave: TravelingWave, name: str, *arguments: Any) -> sp.Expr:
     """Return a closed form of `FORMS`, an attribute of the wave by name, as an exact expression."""
     # V² = V²(B = 1) B^{k-1}, V²(B = 1) being the wave's speed_factor.
@@ -64,11 +68,6 @@ def form(wave: TravelingWave, name: str, *arguments: Any) -> sp.Expr:
         return (2 * sp.log(*arguments) - sp.log(wave.speed_factor)) / (wave.k - 1)
     value = getattr(wave, name)
     return value(*arguments) if arguments else value
-
-
-def closed_wave(closure: str) -> TravelingWave:
-    """Return the wave of one of `CLOSURES`, D = 1, with k, m1, m2 as symbols."""
-    return homogenize(Dimer("m1", "m2", spacing=1), **CLOSURES[closure]).pde.traveling_wave()
 
 
 def true_values(wave: TravelingWave, expression: sp.Expr, k: Array, omega: Array) -> Any:
@@ -166,14 +165,8 @@ def ulps() -> Report:
     return Report(ulps.__doc__ or "", (Table(columns, rows),), findings, (panel,), (answer,))
 
 
-def width_error(wave: BackgroundWave, p0: float, quantity: str) -> float:
-    """Return the relative error of the float64 FWHM of a wave on the background strain p0."""
-    true = wave.on(sp.Rational(p0)).fwhm(sp.Rational(RISE), quantity, 50)
-    return abs(float(sp.Float(float(wave.numeric().fwhm(p0, RISE, quantity)), 50) / true - 1))
-
-
 def under_load() -> Report:
-    """p0/B = 1e-12 … 1e12: how accurate are V² and the FWHM of a wave under load in float64?"""
+    """p0/B = 1e-12 … 1e12: how many ulps does V² of a wave under load lose in float64?"""
     findings, curves = [], []
     for k in (sp.Rational(11, 10), sp.Rational(3, 2), sp.Integer(2), sp.Integer(3)):
         wave = background_wave(Cell((1,), spacing=1), law=Power(k))
@@ -184,14 +177,7 @@ def under_load() -> Report:
         name, key = f"V² at k = {k}: largest loss in ulps", "loss_ulps" * (k == sp.Rational(3, 2))
         findings.append(Finding(name, float(lost.max()), 0, 4.0, key=key))
         curves.append(Curve(f"k = {k}", LOADS, np.maximum(lost, 0.01)))
-    for chain, masses in (("equal beads", (1,)), ("masses 1, 1/4", (1, "1/4"))):
-        wave = background_wave(Cell(masses, spacing=1), law=Power("3/2"))
-        for quantity in ("strain", "force"):
-            worst = max(width_error(wave, p0, quantity) for p0 in LOADS[::12] * RISE)
-            key = f"{quantity}_error" if len(masses) == 1 else ""
-            name = f"FWHM of the {quantity}, {chain}: largest relative error"
-            findings.append(Finding(name, worst, 0, 1e-12, key=key))
-    answer = "V² to less than 4 ulps and widths to 1e-12 at any load: differences are integrals."
+    answer = "Less than 4 at any load: differences are integrals."
     panel = Panel("p0 / B", "loss of V², in ulps", tuple(curves), "xy")
     return Report(under_load.__doc__ or "", (), tuple(findings), (panel,), (answer,))
 
@@ -199,13 +185,13 @@ def under_load() -> Report:
 def contact_loss() -> Report:
     """Contacts open and close, where F = δ^k is not smooth: which order does the splitting keep?"""
     findings, curves = [], []
-    for opens, (coarse, fine), order in ((False, (0.2, 0.1), 6.0), (True, (0.2, 0.012), 2.5)):
+    for how, coarse, fine, order in (("closed", 0.2, 0.1, 6.0), ("opening", 0.2, 0.012, 2.5)):
         steps = np.geomspace(coarse, fine, 5)
-        errors = splitting_errors(1.5, opens, steps)
+        errors = splitting_errors(1.5, how == "opening", steps)
         (slope, _), covariance = np.polyfit(np.log(steps), np.log(errors), 1, cov=True)
-        how, error = "opening" if opens else "closed", math.sqrt(covariance[0, 0])
-        low, high, name = order - 0.35, order + 0.35, f"{METHOD}, k = 3/2, contacts {how}: order"
-        findings.append(Finding(name, float(slope), low, high, error, f"order_{how}"))
+        name, error = f"{METHOD}, k = 3/2, contacts {how}: order", math.sqrt(covariance[0, 0])
+        bounds = order - 0.35, order + 0.35
+        findings.append(Finding(name, float(slope), *bounds, error, f"order_{how}"))
         curves.append(Curve(how, steps, errors))
     answer = (
         "k + 1: 2.5 of 6 at k = 3/2. A smaller step, not a higher order, is what helps the "
@@ -222,12 +208,10 @@ def splitting_errors(k: float, opens: bool, steps: Array) -> Array:
     error is a root mean square over six initial states and nine steps, 0.8 to 1.25 times the given
     step, because it depends on where in a step contacts open.
     """
-    squares, factors = np.zeros(len(steps)), np.linspace(0.8, 1.25, 9)
-    starts = np.random.default_rng(8).uniform(-1, 1, (6, 6))
+    masses, factors = (1.0, 0.3, 2.0, 0.7, 1.1, 0.5), np.linspace(0.8, 1.25, 9)
+    squares, starts = np.zeros(len(steps)), np.random.default_rng(8).uniform(-1, 1, (6, 6))
     for start in starts:
-        scene = pressed(
-            (1.0, 0.3, 2.0, 0.7, 1.1, 0.5), start if opens else start / 10, opens, 8.0, k
-        )
+        scene = pressed(masses, start if opens else start / 10, opens, 8.0, k)
         reference = simulate(scene, method=METHOD, step=5e-4).displacements
         for i, step in enumerate(steps):
             for factor in factors:
@@ -240,16 +224,15 @@ def long_run(lasting: float = 1e6, segments: int = 200) -> Report:
     """Three beads against a wall over 10⁶ time units, by the splitting: does the energy drift?"""
     smooth = energy_errors(False, 0.5, lasting, segments)
     walk = energy_errors(True, 0.25, lasting, segments)
-    largest, tenth = float(np.abs(smooth).max()), segments // 10
-    early, late = (float(np.abs(part).max()) for part in (smooth[:tenth], smooth[-tenth:]))
+    largest, opening, tenth = np.abs(smooth).max(), np.abs(walk).max(), segments // 10
+    growth = np.abs(smooth[-tenth:]).max() / np.abs(smooth[:tenth]).max()
     time = lasting / segments * np.arange(segments + 1)
-    drift = simulate(three_beads(False, 2e2), method="DOP853").energy_drift / 2e2
-    trend = float(np.polyfit(time, smooth, 1)[0]) * lasting / largest
-    power, opening = spreading(walk), float(np.abs(walk).max())
-    closed = f"closed contacts, {METHOD} at step 0.5"
+    trend = np.polyfit(time, smooth, 1)[0] * lasting / largest
+    drift = abs(simulate(three_beads(False, 2e2), method="DOP853").energy_drift / 2e2)
+    power, closed = spreading(walk), f"closed contacts, {METHOD} at step 0.5"
     findings = (
         Finding(f"{closed}: largest energy error", largest, 0.0, 5e-5, key="energy_error"),
-        Finding(f"{closed}: last tenth over first", late / early, 0.5, 1.5, key="last_over_first"),
+        Finding(f"{closed}: last tenth over first", growth, 0.5, 1.5, key="last_over_first"),
         Finding(f"{closed}: trend over largest error", trend, -0.2, 0.2, key="trend"),
         Finding("closed contacts, DOP853 at 1e-9: drift, extrapolated", drift * lasting),
         Finding("opening, step 0.25: energy error", opening, 0.0, 0.3, key="energy_error_opening"),
@@ -258,7 +241,7 @@ def long_run(lasting: float = 1e6, segments: int = 200) -> Report:
     curves = (
         Curve("contacts closed", time[1:], np.abs(smooth[1:])),
         Curve("contacts opening", time[1:], np.abs(walk[1:])),
-        Curve("closed, DOP853 at 1e-9, extrapolated", time[1:], abs(drift) * time[1:]),
+        Curve("closed, DOP853 at 1e-9, extrapolated", time[1:], drift * time[1:]),
     )
     answer = (
         "As long as contacts stay closed it does not, while DOP853's drifts in proportion to the "
@@ -270,16 +253,16 @@ def long_run(lasting: float = 1e6, segments: int = 200) -> Report:
 
 
 def pressed(
-    masses: tuple[float, ...], start: Sequence[float], opens: bool, duration: float, k: float = 1.5
+    masses: Sequence[float], velocities: Sequence[float], opens: bool, duration: float, k: float
 ) -> Scene:
     """Return a scene of beads under a load against a wall; contacts open if ``opens``."""
     return Scene(
-        masses=masses,
+        masses=tuple(masses),
         stiffnesses=(1.0, 2.0, 0.5, 1.5, 3.0)[: len(masses) - 1],
         wall=1.0,
         k=k,
         precompression=0.2 if opens else 1.0,
-        velocities=tuple(start),
+        velocities=tuple(velocities),
         duration=duration,
         samples=2,
     )
@@ -287,8 +270,8 @@ def pressed(
 
 def three_beads(opens: bool, duration: float) -> Scene:
     """Three unequal beads under a load against a wall, the scene of `long_run`."""
-    start = (0.0, 0.8, -0.6) if opens else (0.0, 0.1, -0.05)
-    return pressed((1.0, 0.3, 2.0), start, opens, duration)
+    velocities = (0.0, 0.8, -0.6) if opens else (0.0, 0.1, -0.05)
+    return pressed((1.0, 0.3, 2.0), velocities, opens, duration, 1.5)
 
 
 def energy_errors(opens: bool, step: float, lasting: float, segments: int) -> Array:

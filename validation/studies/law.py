@@ -25,10 +25,11 @@ from validation.report.result import Report
 from validation.report.table import Column, Table
 from validation.scenes.chains import numbered
 from validation.scenes.checks import SceneError, columns, integer
-from validation.waves.contact_law import Medium, PowerFit, fit_power, free_law, weights
+from validation.waves.contact_law import Medium, fit_power, free_law, weights
 
 _ROOT = 1e-13  # error of ln E, beside rounding
-_LAW = (
+_POWER = (Column("", "F = A δ^k"), Column("", "value", error=True))
+_FREE = (
     Column("compression_value", "compression", format=".6g"),
     Column("force", "force", error=True),
     Column("", "of the power law", format=".6g"),
@@ -68,57 +69,60 @@ def law(
     """
     degree = integer(degree, "degree", 1, 6)
     force, speed, weight = _pulses(data, degree + 3)
-    content = None if spheres is None else load(spheres, "a list of spheres", _content)
-    if content is None:
-        cell = numbered(masses or (1,))
-        cell = Cell(cell.masses, spacing=1 if spacing is None else spacing)
+    content: dict[str, Any] = {}
+    if spheres is None:
+        cell = Cell(numbered(masses or (1,)).masses, spacing=1 if spacing is None else spacing)
     else:
+        content = load(spheres, "a list of spheres", lambda x: entries(x, "the file"))
         cell = Cell.of_spheres(read_spheres(content))
     medium = Medium.of(cell)
     fit = fit_power(medium, force, speed, weight)
-    rows: list[tuple[str, Measured]] = [("k", fit.k), ("A", fit.A)]
+    numbers = {"k": fit.k, "A": fit.A}
     if material is not None:
-        if content is None:
+        if spheres is None:
             raise SceneError("material is given: its E needs --spheres")
-        rows.append(("E", _modulus(content, material, fit.hertz)))
+        numbers["E"] = _modulus(content, material, fit.hertz)
     compression, error = free_law(medium, force, speed, degree, weight=weight)
-    order = np.argsort(force)
-    free = tuple(
-        (d, Measured(F, F + e), fit.A.value * d**fit.k.value)
-        for d, F, e in zip(compression[order], force[order], error[order], strict=True)
+    power_law = fit.A.value * compression**fit.k.value
+    forces = map(Measured, force.tolist(), (force + error).tolist())
+    rows = tuple(zip(compression.tolist(), forces, power_law.tolist(), strict=True))
+    # ln V is linear in ln F for one power
+    line = np.exp(np.polyval(np.polyfit(np.log(force), np.log(speed), 1), np.log(force)))
+    speeds = (Curve("measured", force, speed, "C0o"), Curve("one power", force, line, "C1-"))
+    laws = (
+        Curve("free law", compression, force, "C0o", error),
+        Curve("one power", compression, power_law, "C1-"),
     )
+    bend = f"curvature of ln V against ln F {fit.curvature.value:.2g} ± {fit.curvature.error:.1g}"
     return Report(
-        f"{len(force)} pulses, forces {force.min():.4g} … {force.max():.4g}",
+        f"{len(force)} pulses, forces {force[0]:.4g} … {force[-1]:.4g}",
         (
-            Table((Column("", "F = A δ^k"), Column("", "value", error=True)), tuple(rows)),
-            Table(_LAW, free, "rows", "free law F(δ)"),
+            Table(_POWER, tuple(numbers.items())),
+            Table(_FREE, rows, "rows", "free law F(δ)"),
         ),
-        panels=_panels(force, speed, compression, error, fit),
-        notes=(_verdict(fit), _NOTE),
-        data={f"{name}_value": number.value for name, number in rows}
-        | {f"{name}_error_value": number.error for name, number in rows}
-        | {
-            "correlation_value": fit.correlation,
-            "one_power": fit.one_power,
-        },
+        panels=(
+            Panel("peak contact force", "speed", speeds, "xy"),
+            Panel("compression", "contact force", laws, "xy"),
+        ),
+        notes=(f"One power is {'enough' if fit.one_power else 'not enough'}: {bend}.", _NOTE),
+        data={f"{name}_value": number.value for name, number in numbers.items()}
+        | {f"{name}_error_value": number.error for name, number in numbers.items()}
+        | {"correlation_value": fit.correlation, "one_power": fit.one_power},
     )
 
 
 def _pulses(data: str, least: int) -> tuple[Array, Array, Array | None]:
-    """Read a file of ``least`` or more pulses; return forces, speeds and weights (None if none)."""
+    """Read ``least`` or more pulses; return rising forces, speeds and weights (None if none)."""
     read = columns(data, "force", "speed", optional=("force_error", "speed_error"))
-    force, speed, *deviations = read.values()
-    if len(force) < least or not (force.min() > 0 and speed.min() > 0):
+    order = np.argsort(read["force"])
+    force, speed, *deviations = (values[order] for values in read.values())
+    if len(force) < least or not (force[0] > 0 and speed.min() > 0):
         raise SceneError(f"{data}: at least {least} pulses of positive force and speed are wanted")
     if not deviations:
         return force, speed, None
     if len(deviations) != 2 or not min(map(np.min, deviations)) > 0:
         raise SceneError(f"{data}: force_error and speed_error are wanted together, and positive")
     return force, speed, weights(force, speed, *deviations)
-
-
-def _content(content: Any) -> dict[str, Any]:
-    return entries(content, "the file")
 
 
 def _modulus(content: dict[str, Any], material: str, stiffness: Measured) -> Measured:
@@ -145,26 +149,3 @@ def _modulus(content: dict[str, Any], material: str, stiffness: Measured) -> Mea
         return float(np.exp(root))
 
     return Measured(modulus(stiffness.value), modulus(stiffness.check) * (1 + 2 * _ROOT))
-
-
-def _verdict(fit: PowerFit) -> str:
-    """Return a sentence that says whether one power fits the data."""
-    bend = f"curvature of ln V against ln F {fit.curvature.value:.2g} ± {fit.curvature.error:.1g}"
-    return f"One power is {'enough' if fit.one_power else 'not enough'}: {bend}."
-
-
-def _panels(
-    force: Array, speed: Array, compression: Array, error: Array, fit: PowerFit
-) -> tuple[Panel, Panel]:
-    order = np.argsort(force)
-    F, V, d = force[order], speed[order], compression[order]
-    power = np.exp(np.polyval(np.polyfit(np.log(F), np.log(V), 1), np.log(F)))
-    speeds = (Curve("measured", F, V, "C0o"), Curve("one power", F, power, "C1-"))
-    laws = (
-        Curve("free law", d, F, "C0o", error[order]),
-        Curve("one power", d, fit.A.value * d**fit.k.value, "C1-"),
-    )
-    return (
-        Panel("peak contact force", "speed", speeds, "xy"),
-        Panel("compression", "contact force", laws, "xy"),
-    )

@@ -5,7 +5,7 @@ import pytest
 import sympy as sp
 
 from lwa import Cell, Dimer, InputError, Power, envelope
-from lwa.envelopes.breather import HELD
+from lwa.envelopes.schrodinger import HELD
 from lwa.law import named
 
 m1, m2, F0, nu, X = sp.symbols("m1 m2 F0 nu X", positive=True)
@@ -112,7 +112,7 @@ def test_opening_loads_in_symbols():
 def test_contacts_that_pull_do_not_open():
     """An exponential is a force at negative compressions, too; δ^{3/2} + δ^{5/2} is not."""
     chain = envelope(Cell([1], spacing=1), named("exponential", 1), background=0)
-    assert chain.breather(detuning="1/2").opening == sp.oo
+    assert chain.breather(detuning="1/2").opening_detuning == sp.oo
     with pytest.raises(InputError, match="a frequency is positive, and the detuning below 1"):
         chain.breather(detuning="3/2")
     pushes = envelope(Cell([1], spacing=1), named("hertz2", 1, 1), background="1/2")
@@ -128,7 +128,7 @@ def test_contacts_that_pull_do_not_open():
         ({}, "frequency or detuning: one of the two is wanted"),
     ],
 )
-def test_what_is_no_breather_is_refused(options, message):
+def test_impossible_breathers_are_refused(options, message):
     with pytest.raises(InputError, match=message):
         envelope(Dimer(1, "1/2"), HERTZ, precompression=1).breather(**options)
     with pytest.raises(InputError, match=r"a breather stands where dω/dκ = 0"):

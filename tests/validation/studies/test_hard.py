@@ -30,7 +30,6 @@ from validation.studies.hard import (
     spreading,
     three_beads,
     true_values,
-    width_error,
 )
 
 # The last digits
@@ -124,15 +123,6 @@ def test_nesterenkos_relation_as_printed_loses_two_digits_a_decade():
     lost = in_ulps(relation * np.sqrt(np.array(loads) * B), np.array(squared, object))
     assert np.log10(lost[1] / lost[0]) == pytest.approx(4, abs=1.5)
     assert lost[2] > 2**50
-
-
-def test_a_width_that_is_off_on_a_background_is_seen(monkeypatch):
-    from lwa.wave.quadrature import NumericBackground
-
-    true = NumericBackground.fwhm
-    monkeypatch.setattr(NumericBackground, "fwhm", lambda *a: true(*a) * (1 + 1e-11))
-    wave = background_wave(Cell([1], spacing=1), law=Power("3/2"))
-    assert width_error(wave, 1.0, "strain") == pytest.approx(1e-11, rel=1e-3)
 
 
 # Motion
