@@ -117,7 +117,7 @@ def test_numpy_integers_are_integers():
             homogenize(Dimer(1, 2), wrong)
 
 
-def test_a_cell_of_three_is_told_of_the_full_closure():
+def test_the_refusal_of_three_masses_names_the_full_closure():
     with pytest.raises(InputError, match='closure="full"'):
         homogenize(Cell([1, 2, 3]))
 

@@ -21,7 +21,7 @@ def through(ring, polynomial):
     return ring.expression([(tuple(e[:count]), c) for e, c in polynomial.terms()])
 
 
-def test_every_element_comes_back_as_what_it_stands_for():
+def test_ring_elements_convert_back_to_their_expressions():
     for cell in (
         Cell([m1, m2]),
         Cell([m1, m2], stiffnesses=[A1, A2]),

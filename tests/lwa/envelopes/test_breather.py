@@ -128,7 +128,7 @@ def test_contacts_that_pull_do_not_open():
         ({}, "frequency or detuning: one of the two is wanted"),
     ],
 )
-def test_what_is_no_breather_is_refused(options, message):
+def test_impossible_breathers_are_refused(options, message):
     with pytest.raises(InputError, match=message):
         envelope(Dimer(1, "1/2"), HERTZ, precompression=1).breather(**options)
     with pytest.raises(InputError, match=r"a breather stands where dω/dκ = 0"):

@@ -1,4 +1,4 @@
-"""The envelope's equation: closed forms, KdV, Toda, the lattice, exact numbers beside floats."""
+"""The envelope's equation against closed forms, KdV, Toda's lattice and plane waves of chains."""
 
 from types import SimpleNamespace
 
@@ -305,7 +305,7 @@ def test_units_of_real_spheres():
         (Dimer(1, 2), {"precompression": 1}, "background or precompression: one of the two"),
     ],
 )
-def test_what_has_no_envelope_is_refused(cell, options, message):
+def test_impossible_envelopes_are_refused(cell, options, message):
     with pytest.raises(InputError, match=message):
         envelope(cell, HERTZ, **({"background": 1} | options)).frequency  # noqa: B018
 

@@ -22,7 +22,7 @@ def expanded(coefficients, phi, I):
 
 
 @pytest.mark.parametrize("name", CELLS)
-def test_it_is_the_canonical_equation_in_its_field(name):
+def test_the_equation_is_the_canonical_one_in_another_field(name):
     cell = CELLS[name]
     k = sp.Integer(3) if name == "contacts" else sp.Symbol("k", positive=True)
     theory = homogenize(cell, k=k, closure="full", field="center")
@@ -33,7 +33,7 @@ def test_it_is_the_canonical_equation_in_its_field(name):
     assert not any(expanded(pde.coefficients[3], phi, evolution.I / cell.spacing**2))
 
 
-def test_it_is_derived_for_any_law():
+def test_the_equation_is_derived_for_any_law():
     theory = homogenize(Dimer("m1", "m2"), law=general(), closure="full", field="center")
     pde = theory.pde.in_field(theory.evolution.field)
     phi = {n: sp.Symbol(f"phi{n}", real=True) for n in (2, 3)}
@@ -91,7 +91,7 @@ def test_short_waves_keep_a_bounded_frequency():
     )
 
 
-def test_what_has_no_such_equation_or_profile_is_refused():
+def test_the_optical_branch_and_profiles_of_other_laws_are_refused():
     with pytest.raises(InputError, match="belongs to the acoustic branch"):
         homogenize(Dimer(1, 2), branch="optical").evolution  # noqa: B018
     with pytest.raises(InputError, match="under a power law only"):

@@ -19,7 +19,7 @@ def same(first, second, order):
 
 
 @pytest.mark.parametrize("closure", ["linear", "full"])
-def test_what_a_shift_does_to_G_H_I(closure):
+def test_a_shift_changes_G_and_H_but_not_I(closure):
     pde = homogenize(Dimer(m1, m2), closure=closure).pde
     changed = pde.in_field({2: alpha})
     k, D = pde.k, pde.cell.spacing
@@ -45,7 +45,7 @@ def test_a_shift_in_the_masses_at_a_number_k(k):
     assert pde.in_field({2: shift}).at(**at).H == numbers.H
 
 
-def test_there_and_back_with_velocities():
+def test_a_shift_and_its_inverse_cancel():
     # (1 + αD²∂² )^{-1} = 1 - αD²∂² + α²D⁴∂⁴ - α³D⁶∂⁶ + …
     pde = homogenize(Dimer(2, 1), 8, closure="full").pde
     there = pde.in_field({2: alpha})

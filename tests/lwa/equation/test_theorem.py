@@ -81,7 +81,7 @@ def test_the_coefficient_is_the_minimum_and_the_linear_chains(cell):
 @pytest.mark.parametrize("k", [K, "k"])
 @pytest.mark.parametrize("P", [1, 2, 3, 5])
 def test_the_closure_comes_to_the_same_equation(k, P):
-    """The recursion on P fields, which knows nothing of energies, for all contacts alike or not."""
+    """The recursion on P fields, which uses no energy, for equal and for unlike contacts."""
     masses = [sp.Rational(3 * i * i + 2, i + 4) for i in range(P)]
     shares = [sp.Rational(i + 1, 2 + i % 3) for i in range(P)] if k == K else [1] * P
     shares = [P * sp.sympify(c) / sum(shares) for c in shares]

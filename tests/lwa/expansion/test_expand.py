@@ -105,8 +105,8 @@ def test_virial_theorem(name: str) -> None:
         assert sp.simplify(left - right) == 0
 
 
-def test_momentum_is_mass_times_speed_times_what_the_wave_leaves_behind() -> None:
-    """Of the chain of equal beads, by quadrature of the strain at k = 1.01."""
+def test_momentum_is_mass_times_speed_times_the_displacement_left_behind() -> None:
+    """Equal beads, by quadrature of the strain at k = 1.01."""
     k, expansion = 1.01, wave("equal")
     strain = contact(CELLS["equal"], expansion, 0, 4, mpmath.mpf(k))
     xi = np.linspace(-60, 60, 601)
@@ -197,7 +197,7 @@ def power_of_slope(wave, log: list, share: sp.Rational) -> list:
 
 
 def residual_order(cell: Cell, closure: str, terms: int) -> int:
-    """The power of t at which the expansion stops to solve the PDE cut after D^{k+2 terms+1}."""
+    """The first power of t that the expansion leaves of the PDE cut after D^{k+2 terms+1}."""
     from lwa.expansion.pulse import log_term
 
     order = 2 * terms + 1

@@ -78,7 +78,7 @@ NOT_POSITIVE = [0, -1, float("nan"), float("inf"), None, True, "x y", "1/0", 1j]
 
 
 @pytest.mark.parametrize("bad", NOT_POSITIVE)
-def test_what_must_be_positive(bad):
+def test_sizes_must_be_positive(bad):
     steel = Material(1, 0)
     for name, make in (
         ("E", lambda: Material(bad, 0)),
@@ -96,7 +96,7 @@ def test_poissons_ratio(bad):
         Material(1, bad)
 
 
-def test_what_is_no_sphere():
+def test_arguments_that_are_no_spheres_are_refused():
     ball, steel = Sphere(1, 1, Material(1, 0)), Material(1, 0)
     for call, words in (
         (lambda: Sphere(1, 1, "steel"), "material is 'steel': a Material"),

@@ -100,12 +100,12 @@ def test_a_cell_of_named_materials_is_hertzs():
         ),
     ],
 )
-def test_what_a_file_cannot_mean(tables, words):
+def test_bad_tables_of_a_file_are_refused(tables, words):
     with pytest.raises(InputError, match=words):
         spheres(chain(**tables))
 
 
-def test_names_that_are_none():
+def test_unknown_materials_are_refused():
     for call, words in (
         (lambda: Material.named("wood"), "'wood': one of steel 316, steel 440C"),
         (lambda: Material.named(1), "material is 1: one of"),

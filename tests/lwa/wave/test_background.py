@@ -42,15 +42,17 @@ def numeric_wave(k):
 # --- limits -------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("cell", [Cell([1]), Dimer("m1", "m2"), Dimer(3, 1, N=2)])
-def test_without_load_it_is_the_compact_wave_exactly(cell):
+@pytest.mark.parametrize("cell", [CHAIN, Dimer("m1", "m2"), Dimer(3, 1, N=2, spacing=2)])
+def test_without_load_the_wave_is_the_compact_wave(cell):
     compact = canonical_wave(cell, "3/2")
     wave = compact.on_background(0)
     assert sp.simplify(wave.speed(7) - compact.speed(7)) == 0
-    for quantity in ("strain", "force", "velocity"):
-        assert sp.simplify(wave.fwhm(2, quantity) / compact.fwhm(quantity)) == 1
-    one, two = (w.profile("xi", B=3) for w in (wave, compact))
-    assert sp.simplify(one.args[0][0] / two.args[0][0]) == 1
+    if not any(mass.free_symbols for mass in cell.masses):
+        for quantity in ("strain", "force", "velocity"):
+            ratio = wave.fwhm(2, quantity, 30) / compact.fwhm(quantity)
+            assert abs(sp.N(ratio, 30) - 1) < 1e-28
+        one, two = (w.profile(cell.spacing, 3) for w in (wave, compact))
+        assert float(one) == pytest.approx(float(two), rel=1e-14)
 
 
 def test_a_light_load_changes_it_little():
@@ -71,11 +73,12 @@ def test_a_weak_wave_is_that_of_kdv():
         wave = compression(cell, "3/2", 2)
         kdv = wave.kdv
         width = 2 * sp.acosh(sp.sqrt(2)) * kdv.width(size)
+        soliton = sp.Rational(size) * sp.sech(10 / kdv.width(size)) ** 2
         errors.append(
             (
                 abs(wave.speed(size).n(30) - kdv.speed(size).n(30)),
                 abs(wave.fwhm(size, digits=20) / width.n(30) - 1),
-                abs(wave.profile(10, size) / kdv.profile(10, size).n(30) - 1),
+                abs(wave.profile(10, size) / soliton.n(30) - 1),
             )
         )
     speed, width, profile = (float(sp.log(a / b, 10)) for a, b in zip(*errors, strict=True))
@@ -260,7 +263,7 @@ def test_the_lattices_own_wave_of_fermi_pasta_ulam_and_tsingou(alpha, beta):
 # --- rarefaction, existence, units --------------------------------------------------------------
 
 
-def test_existence_is_decided():
+def test_waves_exist_on_the_stiffening_side_only():
     cases = [
         (Power("3/2"), 1, "-1/2"),
         (Power("1/2"), 1, "1/2"),
@@ -283,14 +286,14 @@ def test_existence_is_decided():
         _ = compression(load=0).kdv
 
 
-def test_what_cannot_be_meant():
+def test_bad_arguments_are_refused():
     wave = background_wave(Cell(["m"]), law=Power("3/2"))
     for call, reason in (
         (lambda: compression(load=-1), "must not be negative"),
         (lambda: wave.speed(0), "B is 0"),
         (lambda: wave.fwhm(1), "has no value"),
         (lambda: compression().fwhm(1, "colour"), "quantity"),
-        (lambda: compression().fwhm(1, digits=1000), "at most"),
+        (lambda: compression().fwhm(1, digits=1000), "from 1 to 200"),
         (lambda: compression().profile("x", 1), "a number"),
         (lambda: background_wave(Cell([1]), "B"), "means the peak strain"),
         (lambda: background_wave(Dimer(1, 1, stiffnesses=[1, 2]), law=general()), "shares"),
@@ -339,7 +342,7 @@ def test_another_law_in_units():
         PrecompressedWave(Cell([1], spacing=1), named("polynomial", -1, 0), 2, 1).speed  # noqa: B018
 
 
-def test_far_from_its_wave_a_profile_is_nothing():
+def test_far_from_its_peak_a_profile_falls_to_zero():
     """Under next to no load θ runs through hundreds within a site; cosh² θ would overflow."""
     far = background_wave(CHAIN, law=Power("3/2")).numeric().profile([50.0], 1e-12, 1.0)
     assert 0 <= far[0] < 1e-300

@@ -47,7 +47,7 @@ def test_a_curve_is_the_profile_as_it_passes(wave):
 
 @pytest.mark.parametrize("wave", THEORIES)
 @pytest.mark.parametrize("of", ["contact", "bead"])
-def test_a_curve_peaks_at_the_force_that_is_given_and_is_as_wide_as_is_told(wave, of):
+def test_a_curve_has_the_given_peak_and_the_fwhm(wave, of):
     answer = wave.at_force(12, of)
     width = float(answer.fwhm("force", "time"))
     t = np.linspace(-2 * width, 2 * width, 4001)
@@ -102,6 +102,6 @@ def test_where_contacts_peak_one_after_the_other_a_bead_has_no_peak_force():
         (lambda: CHAIN.at_force(1).fwhm("force", "area"), "extent is 'area'"),
     ],
 )
-def test_what_cannot_be_meant(call, words):
+def test_bad_arguments_are_refused(call, words):
     with pytest.raises(InputError, match=words):
         call()

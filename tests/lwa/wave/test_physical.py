@@ -21,7 +21,7 @@ def symbols(letter, P):
 
 @cache
 def functions(P):
-    """What the wave of a cell of P in symbols says, by name: functions at mpmath's precision."""
+    """Names and mpmath functions of all results of the wave in a cell of P symbols."""
     wave = canonical_wave(Cell(symbols("m", P), symbols("A", P)), k)
     answer = wave.at_force()
     expressions = {
@@ -30,7 +30,7 @@ def functions(P):
         **{f"delta{i}": delta for i, delta in enumerate(answer.compressions)},
         "c": answer.speed,
         "v": answer.bead_velocity,
-        "scaled": wave.speed(answer.strain) * wave.speed_scale,
+        "scaled": wave.speed(answer.strain) * wave.time_scale,
         "peak": wave.profile(0, answer.strain),
         **{f"{q} of the wave": wave.fwhm(q) for q in QUANTITIES},
         **{f"{q} length": answer.fwhm(q) for q in QUANTITIES},
@@ -71,7 +71,7 @@ def test_every_contact_carries_the_force_and_the_strain_is_their_mean(cell, D, k
 
 
 @given(cells, reals, exponents, reals)
-def test_it_is_the_same_wave_in_space_and_time(cell, D, k, F):
+def test_widths_in_time_are_widths_in_space_over_the_speed(cell, D, k, F):
     with mpmath.workdps(40):
         found = values(*cell, D, k, F)
         assert same(found["c"], found["scaled"])
