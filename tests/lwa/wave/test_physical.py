@@ -31,7 +31,7 @@ def functions(P):
         **{f"delta{i}": delta for i, delta in enumerate(answer.compressions)},
         "c": answer.speed,
         "v": answer.bead_velocity,
-        "scaled": wave.speed(answer.strain) * wave.speed_scale,
+        "scaled": wave.speed(answer.strain) * wave.time_scale,
         "peak": wave.profile(0, answer.strain),
         **{f"{q} of the wave": wave.fwhm(q) for q in QUANTITIES},
         **{f"{q} length": answer.fwhm(q) for q in QUANTITIES},
