@@ -313,7 +313,7 @@ def test_a_window_follows_the_leading_pulse_or_raises(blow, window):
     assert run.velocities[leading:] == pytest.approx(whole.velocities[leading:], abs=1e-6)
 
 
-def test_many_scenes_run_as_one_does_and_are_taken_as_they_are_needed():
+def test_many_scenes_run_as_single_ones_and_are_taken_lazily():
     scenes = [struck(40, 1.0, duration=d, contact_sensors=(20,)) for d in np.linspace(10, 40, 30)]
     taken = []
 

@@ -1,4 +1,4 @@
-"""A scene holds what it names, checked; it comes from the theory's cell or from beads."""
+"""Scenes: checked values, from numbers, from the theory's cell or from beads."""
 
 import dataclasses
 
@@ -23,7 +23,7 @@ def test_a_scene_is_a_value():
         scene.k = 2.0
 
 
-def test_what_is_not_named_is_not_there():
+def test_a_scene_has_no_wall_weight_or_sensor_by_default():
     scene = Scene(**GOOD)
     assert (scene.size, scene.contact_count) == (3, 2)
     assert scene.wall is None
@@ -65,7 +65,7 @@ BAD = [
 
 
 @pytest.mark.parametrize(("change", "message"), BAD, ids=[str(b[0])[:40] for b in BAD])
-def test_bad_input_is_one_line_that_names_it(change, message):
+def test_bad_input_is_named_in_one_line(change, message):
     with pytest.raises(SceneError, match=rf"^{message}") as caught:
         Scene(**{**GOOD, **change})
     assert isinstance(caught.value, InputError)
@@ -80,7 +80,7 @@ anything = st.one_of(
 
 
 @given(st.sampled_from([f.name for f in dataclasses.fields(Scene)]), anything)
-def test_whatever_is_given_is_either_read_or_refused(field, value):
+def test_any_value_is_stored_or_refused(field, value):
     try:
         scene = Scene(**{**GOOD, field: value})
     except SceneError:

@@ -1,4 +1,4 @@
-"""A scene's file: what it means, that it is read back equal, and that nothing else is read."""
+"""Files of scenes: meaning of each key, reading back what was written, and bad files."""
 
 import copy
 import json
@@ -114,12 +114,12 @@ def test_the_modules_own_example_holds_every_key():
     assert scene(content).spacings == (1.0,) * 37
 
 
-def test_what_is_not_named_is_not_there():
+def test_a_scene_has_no_wall_weight_or_sensor_by_default():
     bare = scene({"duration": 1, "chain": {"cell": [1, 2], "k": 2}})
     assert bare == Scene(masses=(1, 2), stiffnesses=(1,), k=2, duration=1)
 
 
-def test_all_beads_and_contacts_are_heard():
+def test_sensors_at_all_beads_and_contacts():
     sensors = {"sensors": {"beads": "all", "contacts": "all"}}
     assert scene(GOOD | sensors).bead_sensors == (0, 1, 2)
     assert scene(GOOD | sensors).contact_sensors == (0, 1)
@@ -132,7 +132,7 @@ def test_beads_of_materials_are_in_si():
     assert toml_file('units = "SI"\n' + TRIMER).units == "SI"
 
 
-def test_what_a_run_wrote_holds_the_scene():
+def test_the_file_of_a_run_holds_the_scene():
     assert scene({"scene": GOOD, "sensors": [], "records": {}}) == scene(GOOD)
     with pytest.raises(SceneError, match=r"^the file is 3: a table of keys is wanted"):
         scene({"scene": 3})
@@ -211,7 +211,7 @@ def test_a_scene_written_is_read_back_equal(what):
 
 
 @pytest.mark.parametrize("text", [PAPER, TRIMER])
-def test_files_there_and_back(tmp_path, text):
+def test_a_written_scene_is_read_back_equal(tmp_path, text):
     file, first = tmp_path / "scene.json", tmp_path / "first.toml"
     first.write_text(text)
     file.write_text(json.dumps(document(read_scene(first))))
@@ -385,7 +385,7 @@ FULL = tomllib.loads(PAPER) | {"defects": [{"bead": 1, "mass": 1.0}], "precompre
 
 
 @given(st.data())
-def test_whatever_a_file_holds_is_read_or_refused_in_one_line(data):
+def test_any_file_is_read_or_refused_in_one_line(data):
     content = copy.deepcopy(FULL)
     at = content
     while True:

@@ -135,7 +135,7 @@ def test_momentum_reaches_the_wave(result):
     assert momentum == pytest.approx(float(STEEL_BEAD.mass) * 1.37, rel=1e-12)
 
 
-def test_the_report_tells_the_numbers():
+def test_text_csv_page_and_json_hold_the_same_numbers():
     report = paper(beads=20, sensors=(8, 15))
     found = json.loads(json.dumps(report.document(), allow_nan=False))
     assert (found["beads"], found["sensors"]) == (20, [8, 15])
