@@ -167,15 +167,10 @@ def test_the_help_is_one_paragraph(capsys):
     ("change", "message"),
     [
         (dict(velocity=0), r"velocity is 0: it lies between 1e-06 and 1000"),
-        (dict(velocity=float("nan")), r"velocity is nan"),
         (dict(velocity="fast"), r"velocity is 'fast': a number is wanted"),
         (dict(beads=7), r"beads is 7: an integer from 8 to 2000 is wanted"),
-        (dict(beads=38.0), r"beads is 38.0"),
         (dict(sensors=(34, 15)), r"sensors are 34, 15: two beads are wanted"),
-        (dict(sensors=(15,)), r"sensors are 15: two beads are wanted"),
         (dict(sensors=(1, 15)), r"sensor is 1: an integer from 2 to 37 is wanted"),
-        (dict(sensors=(15, 38)), r"sensor is 38: an integer from 2 to 37 is wanted"),
-        (dict(sensors=15), r"sensors is 15: a sequence is wanted"),
         (dict(sensors=(30, 37)), r"bead 37, before the wave reaches the wall: the pulse is not"),
     ],
 )
