@@ -52,7 +52,7 @@ def test_the_order_on_a_smooth_problem(method, steps):
     assert slope == pytest.approx(order, abs=0.4)
 
 
-@pytest.mark.parametrize("k", [1.0, 1.1, 1.5, 2.0, 3.0])
+@pytest.mark.parametrize("k", [1.0, 1.1, 1.25, 1.5, 2.0, 3.0])
 def test_every_law_and_every_sensor_agree_with_dop853(k):
     """Smooth, so that the step's error is far below 1e-6; the samples' quintic as well."""
     scene = loaded(k, samples=301)
