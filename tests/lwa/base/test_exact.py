@@ -1,4 +1,4 @@
-"""What enters from outside: read exactly, or refused in one line."""
+"""Input from outside is read exactly, or refused in one line."""
 
 from decimal import Decimal
 from fractions import Fraction
@@ -47,7 +47,7 @@ def test_names_become_positive_symbols():
         sp.nan, sp.oo, sp.I, object(),
     ],
 )  # fmt: skip
-def test_what_is_no_quantity_is_refused_in_one_line(value):
+def test_other_values_are_refused_in_one_line(value):
     with pytest.raises(InputError) as caught:
         exact(value, "mass 1")
     message = str(caught.value)

@@ -13,7 +13,7 @@ COMMANDS = {
     "fortran": ("gfortran", "-std=f2008", *STRICT),
 }
 PROGRAMS = {language: command[0] for language, command in COMMANDS.items()} | {"javascript": "node"}
-"""What runs or compiles a generated language."""
+"""Programs that run or compile the generated languages."""
 
 SUFFIX = {"c": "c", "fortran": "f90"}
 

@@ -1,4 +1,4 @@
-"""The envelope's equation: closed forms, KdV, Toda, the lattice, exact numbers beside floats."""
+"""The envelope's equation against closed forms, KdV, Toda's lattice and plane waves of chains."""
 
 from types import SimpleNamespace
 
@@ -25,14 +25,11 @@ from lwa import (
 )
 from lwa.law import DELTA, named
 from lwa.linear.bands import Bands
+from tests.identity import same
 
 K2, K3, K4 = sp.symbols("K2 K3 K4", positive=True)
 k, m1, m2, q, p0 = sp.symbols("k m1 m2 q p0", positive=True)
 HERTZ = Power("3/2")
-
-
-def same(left, right):
-    return sp.simplify(left - right) == 0
 
 
 # --- closed forms (theory notes, section 13) ---
@@ -305,7 +302,7 @@ def test_units_of_real_spheres():
         (Dimer(1, 2), {"precompression": 1}, "background or precompression: one of the two"),
     ],
 )
-def test_what_has_no_envelope_is_refused(cell, options, message):
+def test_impossible_envelopes_are_refused(cell, options, message):
     with pytest.raises(InputError, match=message):
         envelope(cell, HERTZ, **({"background": 1} | options)).frequency  # noqa: B018
 

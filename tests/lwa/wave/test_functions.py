@@ -116,7 +116,7 @@ def by_name(call, function):
 
 
 def as_python(source):
-    """Julia as far as it is used here, there being no Julia: functions, ^ and the mathematics."""
+    """Python for the part of Julia that the code uses: functions, ^ and the mathematics."""
     lines, in_head = ["from math import asinh, atan, exp, log, pi, sin, sinh, sqrt"], False
     words = "|".join({*keyword.kwlist} - {"return"})
     for line in re.sub(rf"\b({words})\b", r"\1_here", source.replace("^", "**")).splitlines():
@@ -131,7 +131,7 @@ def as_python(source):
 
 @cache
 def expected(name):
-    """(name → number, (function, B or V_s) → value, what the value's double leaves), all points."""
+    """For all points: name → number, (function, B or V_s) → value, and its rounding error."""
     rows = []
     with mpmath.workdps(50):
         for values, k, S, factor in points(name):
@@ -272,7 +272,7 @@ NAMES = [
 
 @in_every_language
 def test_any_name_at_once(language, tmp_path, request):
-    """One function of all of them: Σ n s_n tells each from every other."""
+    """One function of all names: Σ n s_n distinguishes each from every other."""
     symbols = [sp.Symbol(name) for name in dict.fromkeys(NAMES)]
     n = len(symbols)
     total = sp.Add(*((i + 1) * symbol for i, symbol in enumerate(symbols)))
@@ -318,7 +318,7 @@ def test_a_name_changes_nothing_but_itself(drawn, assume_positive):
 
 
 def namespace(wave, language):
-    """What the wave's code defines, run by Python."""
+    """The names that the wave's code defines, run by Python."""
     source, found = wave.code(language), {}
     exec(as_python(source) if language == "julia" else source, found)
     return found
@@ -329,7 +329,7 @@ def plain(language):
     return namespace(canonical_wave(Dimer("m1", "m2")), language)
 
 
-def test_what_was_renamed_is_said():
+def test_renamed_symbols_are_listed_in_comments():
     code = canonical_wave(Dimer("math", "μ1")).code("python")
     assert "# math_ is the symbol 'math'\n# mu1 is the symbol 'μ1'\n" in code
     wave = canonical_wave(Dimer("M1", "m1"))

@@ -373,8 +373,8 @@ def test_a_step_that_is_too_long_is_not_silent():
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        (dict(method="DOP853", step=0.1), "step is 0.1: it needs one of RKN86, SRKN14"),
-        (dict(method="DOP853", window=True), "window is True: it needs one of"),
+        (dict(method="DOP853", step=0.1), "step is 0.1: DOP853 takes none"),
+        (dict(method="DOP853", window=True), "window is True: DOP853 takes none"),
         (
             dict(method="SRKN14", step=1e-300),
             "duration is 1: this makes 1.0e.300 steps of SRKN14; ",

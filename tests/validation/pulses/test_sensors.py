@@ -11,7 +11,7 @@ from scipy.special import erf
 from lwa import Dimer
 from lwa.linear.dispersion import Dispersion
 from validation.lattice.simulate import simulate
-from validation.pulses.pulse import MeasureError, all_pulses, derived, first_pulse
+from validation.pulses.pulse import MeasureError, derived, first_pulse, pulses
 from validation.pulses.sensors import record, tracks
 from validation.pulses.signals import Sampled
 from validation.scenes.chains import struck
@@ -121,7 +121,7 @@ def test_the_first_pulse_is_not_the_highest_one():
     assert found.fwhm == pytest.approx(math.sqrt(math.log(2)), rel=1e-6)
     with pytest.raises(MeasureError, match="nowhere positive"):
         first_pulse(Sampled(t, -first))
-    every = all_pulses(Sampled(t, small + first + echo))
+    every = pulses(Sampled(t, small + first + echo))
     assert [p.peak for p in every] == pytest.approx([0.4, 1.0, 1.5], rel=1e-6)
 
 
