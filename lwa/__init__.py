@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from lwa.cell import k as k
     from lwa.closure.consistency import Closure as Closure
     from lwa.closure.solution import Solution as Solution
-    from lwa.envelopes.breather import Breather as Breather
+    from lwa.envelopes.schrodinger import Breather as Breather
     from lwa.envelopes.schrodinger import Envelope as Envelope
     from lwa.envelopes.schrodinger import envelope as envelope
     from lwa.equation.evolution import Evolution as Evolution
@@ -84,8 +84,7 @@ _MODULES = {
     "wave.physical": "PhysicalWave PrecompressedWave",
     "wave.closed": "CompactWave Reduction",
     "base.exact": "InputError Quantity",
-    "envelopes.breather": "Breather",
-    "envelopes.schrodinger": "Envelope envelope",
+    "envelopes.schrodinger": "Breather Envelope envelope",
     "expansion.approximants": "Resummed",
     "expansion.expand": "Expansion expand",
     "expansion.physical": "ExpandedWave",

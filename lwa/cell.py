@@ -11,8 +11,7 @@ a cell with P equal contacts of stiffness A_eff, A_eff^{-1/k} = (1/P) Σ A_i^{-1
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping, Sequence, Set
+from collections.abc import Iterable, Mapping, Sequence, Set
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -20,7 +19,7 @@ from typing import Any
 import sympy as sp
 
 from lwa.base import latex
-from lwa.base.exact import InputError, exact, integer, positive, power, root, shorten
+from lwa.base.exact import InputError, exact, integer, positive, power, shorten
 from lwa.base.frozen import Value
 from lwa.spheres.hertz import Sphere, stiffness
 
@@ -39,15 +38,11 @@ RESERVED = {
 }
 """Names that results use, and their meaning there; user symbols may not have them."""
 
-
-MOST_BITS = 4096
-"""Bits by which the shares of contacts may differ; floats end at 1024."""
-
-MOST_EXPONENT = 1000
-"""Largest exponent; beyond it exact numbers such as 2^k have more digits than anyone reads."""
+EXPONENTS = sp.Rational(1, 100), 1000
+"""Least and largest k; beyond them exact numbers such as A^{1/k} have too many digits to read."""
 
 MOST_PARTICLES = 1000
-"""Most particles of a cell; beyond them even the simplest theory takes minutes."""
+"""Most particles of a dimer's cell; beyond them even the simplest theory takes minutes."""
 
 
 @dataclass(frozen=True)
@@ -71,23 +66,20 @@ class Cell(Value):
     spacing: sp.Expr = D
 
     def __post_init__(self) -> None:
-        masses = _sequence(self.masses, "masses")
-        stiffnesses = _sequence(self.stiffnesses, "stiffnesses") or (1,) * len(masses)
+        masses = _quantities(self.masses, "masses", "mass")
+        stiffnesses = _quantities(self.stiffnesses, "stiffnesses", "stiffness")
         if not masses:
             raise InputError("a cell needs at least one mass")
-        if len(stiffnesses) != len(masses):
+        if len(stiffnesses) not in (0, len(masses)):
             raise InputError(
                 f"{len(stiffnesses)} stiffnesses for {len(masses)} masses: a periodic cell has as "
                 "many contacts as particles"
             )
-        for field, given in (("mass", masses), ("stiffness", stiffnesses)):
-            values = tuple(positive(x, f"{field} {i}") for i, x in enumerate(given, start=1))
-            for value in values:
-                meant(value, field)
-            object.__setattr__(self, "masses" if field == "mass" else "stiffnesses", values)
+        object.__setattr__(self, "masses", masses)
+        object.__setattr__(self, "stiffnesses", stiffnesses or (sp.S.One,) * len(masses))
         spacing = positive(self.spacing, "spacing")
-        object.__setattr__(self, "spacing", meant(spacing, "spacing", D.name))
-        unmistakable(self.symbols)
+        object.__setattr__(self, "spacing", check_names(spacing, "spacing", D.name))
+        check_distinct(self.symbols)
 
     def latex_rows(self) -> list[str]:
         m, A = sp.Tuple(*self.masses), sp.Tuple(*self.stiffnesses)
@@ -108,16 +100,9 @@ class Cell(Value):
         2*R
         """
         row = _sequence(spheres, "spheres")
-        for i, sphere in enumerate(row, start=1):
-            if not isinstance(sphere, Sphere):
-                raise InputError(f"sphere {i} is {shorten(sphere)}: a Sphere is wanted")
-        if not row:
-            raise InputError("a cell needs at least one sphere")
-        return cls(
-            masses=tuple(sphere.mass for sphere in row),
-            stiffnesses=tuple(stiffness(a, b) for a, b in zip(row, row[1:] + row[:1], strict=True)),
-            spacing=2 * sp.Add(*(sphere.radius for sphere in row)) / len(row),
-        )
+        contacts = tuple(stiffness(a, b) for a, b in zip(row, row[1:] + row[:1], strict=True))
+        spacing = sp.Add(*(2 * sphere.radius for sphere in row)) / len(row) if row else D
+        return cls(tuple(sphere.mass for sphere in row), contacts, spacing)
 
     @cached_property
     def symbols(self) -> tuple[sp.Symbol, ...]:
@@ -163,12 +148,9 @@ class Cell(Value):
         return tuple(sp.cancel(m / self.mass) for m in self.masses)
 
     def compliances(self, k: Any = k) -> tuple[sp.Expr, ...]:
-        """The A_i^{-1/k}, the strains of the contacts up to a common factor.
-
-        Raises `lwa.InputError` for numbers of more than `MOST_BITS`.
-        """
+        """The A_i^{-1/k}, the strains of the contacts up to a common factor."""
         k = exponent(k)
-        return tuple(_root(A, k, f"stiffness {i}") for i, A in enumerate(self.stiffnesses, 1))
+        return tuple(power(A, -1 / k) for A in self.stiffnesses)
 
     def shares(self, k: Any = k) -> tuple[sp.Expr, ...]:
         """The shares C_i = P A_i^{-1/k} / Σ A_j^{-1/k}, strain of contact i divided by the mean."""
@@ -190,7 +172,7 @@ class Cell(Value):
         For the paper's dimer it is √(2 k D^{k+1} / (m1 + m2)).
         """
         k = exponent(k)
-        return root(self.size * k * self.stiffness(k) * power(self.spacing, k + 1) / self.mass)
+        return sp.sqrt(self.size * k * self.stiffness(k) * power(self.spacing, k + 1) / self.mass)
 
 
 def Dimer(
@@ -204,27 +186,23 @@ def Dimer(
     >>> Dimer(m1, m2, N=2).masses
     (m1, m1, m2)
     """
-    N = integer(N, "N", 1)
-    if N > MOST_PARTICLES:
-        raise InputError(f"N is {shorten(N)}: a cell has at most {MOST_PARTICLES} particles")
-    return Cell((m1,) * N + (m2,), stiffnesses=tuple(stiffnesses), spacing=spacing)
+    masses = (m1,) * integer(N, "N", 1, MOST_PARTICLES) + (m2,)
+    return Cell(masses, stiffnesses=tuple(stiffnesses), spacing=spacing)
 
 
 def exponent(value: Any, cell: Cell | None = None) -> sp.Expr:
     """Read the exponent k of F = A δ^k exactly, for the chain of a cell.
 
-    Raises `lwa.InputError` unless 0 < k ≤ `MOST_EXPONENT`, and for a name that means something
+    Raises `lwa.InputError` for numbers outside of `EXPONENTS`, and for a name that means something
     else.
 
     >>> exponent(1.5)
     3/2
     """
-    result = exact(value, "k")
-    if result.is_number and not result.is_positive:
-        raise InputError(f"k is {result}: the contact force A δ^k needs an exponent k > 0")
-    if result.is_number and result > MOST_EXPONENT:
-        raise InputError(f"k is {shorten(result)}: exponents up to k = {MOST_EXPONENT} are taken")
-    meant(result, "k", k.name)
+    least, largest = EXPONENTS
+    result = check_names(exact(value, "k"), "k", k.name)
+    if result.is_number and not least <= result <= largest:
+        raise InputError(f"k is {shorten(result)}: exponents from {least} to {largest} are taken")
     if cell is not None:
         shared = {s.name for s in result.free_symbols} & {s.name for s in cell.symbols}
         if shared:
@@ -254,36 +232,19 @@ def substitution(
         known[name]: (exact if known[name] in more else positive)(value, name)
         for name, value in given.items()
     }
-    return new if omega is None else new | _from_ratio(positive(omega, "omega"), cell, new)
-
-
-def _from_ratio(
-    omega: sp.Expr, cell: Cell, new: Mapping[sp.Symbol, sp.Expr]
-) -> dict[sp.Symbol, sp.Expr]:
+    if omega is None:
+        return new
     masses = tuple(dict.fromkeys(cell.masses))
     if len(masses) != 2:
         raise InputError(f"omega is m2/m1 of a cell with two masses; this one has {len(masses)}")
-    first, second = masses
-    if second.is_Symbol and second not in new and second not in first.free_symbols:
-        return {second: omega * first.xreplace(new)}
-    if first.is_Symbol and first not in new and first not in second.free_symbols:
-        return {first: second.xreplace(new) / omega}
+    ratio = positive(omega, "omega")
+    for mass, other, factor in ((masses[1], masses[0], ratio), (*masses, 1 / ratio)):
+        if mass.is_Symbol and mass not in new and mass not in other.free_symbols:
+            return new | {mass: factor * other.xreplace(new)}
     raise InputError("omega is m2/m1: one of the masses must be a symbol without another value")
 
 
-def _root(A: sp.Expr, k: sp.Expr, name: str) -> sp.Expr:
-    """The power A^{-1/k}; a number of more than `MOST_BITS` is refused."""
-    if A.is_Rational and k.is_Rational:
-        bits = abs(math.log2(A.p) - math.log2(A.q)) * float(1 / k)
-        if bits > MOST_BITS:
-            raise InputError(
-                f"{name} is {shorten(A)} and k {shorten(k)}: the share of this contact, by A^(-1/k)"
-                f", is beyond 2^±{MOST_BITS}"
-            )
-    return power(A, -1 / k)
-
-
-def unmistakable(symbols: Sequence[sp.Symbol]) -> None:
+def check_distinct(symbols: Sequence[sp.Symbol]) -> None:
     """Raise `lwa.InputError` for two symbols of one name with different assumptions."""
     names = [s.name for s in symbols]
     twice = {name for name in names if names.count(name) > 1}
@@ -291,7 +252,7 @@ def unmistakable(symbols: Sequence[sp.Symbol]) -> None:
         raise InputError(f"{min(twice)!r} names two symbols, with different assumptions: use one")
 
 
-def meant(
+def check_names(
     value: sp.Expr, field: str, own: str = "", taken: Mapping[str, str] = RESERVED
 ) -> sp.Expr:
     """Return the value; raise `lwa.InputError` if a symbol in it has a name of another meaning.
@@ -306,9 +267,14 @@ def meant(
 
 
 def _sequence(values: Any, name: str) -> tuple[Any, ...]:
-    no_row = isinstance(values, str | bytes | bytearray | Mapping | Set)
-    if no_row or not hasattr(values, "__iter__"):
+    if isinstance(values, str | bytes | Mapping | Set) or not isinstance(values, Iterable):
         raise InputError(
             f"{name}: a sequence of numbers or symbols is wanted, not {shorten(values)}"
         )
     return tuple(values)
+
+
+def _quantities(values: Any, name: str, singular: str) -> tuple[sp.Expr, ...]:
+    """Read a sequence of positive numbers or symbols."""
+    numbered = enumerate(_sequence(values, name), start=1)
+    return tuple(check_names(positive(x, f"{singular} {i}"), singular) for i, x in numbered)

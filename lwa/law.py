@@ -10,7 +10,8 @@ the cell. The shares of unlike contacts in the strain are the same at every stra
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+import re
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, ClassVar, Self
@@ -21,14 +22,25 @@ from sympy.core.function import AppliedUndef
 
 from lwa.base import latex
 from lwa.base.calculus import growing_root, integral, ratio
-from lwa.base.exact import InputError, demand_numbers, exact, positive, power, shorten, signed
+from lwa.base.exact import (
+    InputError,
+    demand_numbers,
+    exact,
+    one_of,
+    positive,
+    power,
+    shorten,
+    signed,
+)
 from lwa.base.frozen import Value
-from lwa.cell import RESERVED, Cell, exponent, meant, substitution, unmistakable
+from lwa.cell import RESERVED, Cell, check_distinct, check_names, exponent, substitution
 from lwa.cell import k as symbol_k
 
 DELTA = sp.Symbol("delta", positive=True)
 """δ, the compression of a contact, unless the caller names another symbol."""
 
+
+_PHI = re.compile("phi[0-9]+")  # the name of a `phi_symbol`
 
 TAKEN = {**RESERVED, "A": "the stiffness of a contact", "p0": "the strain ahead of a wave"}
 """Names that results use beside a law, and their meaning there."""
@@ -79,17 +91,15 @@ class ContactLaw(Value):
 
     def at(self, delta: sp.Expr, n: int = 0) -> sp.Expr:
         """The n-th derivative F^{(n)} at a compression."""
-        return self.slope(n).subs(self.delta, delta) if n else self.F.subs(self.delta, delta)
+        return self.slope(n).subs(self.delta, delta)
 
     def evaluated(self, value: sp.Expr, delta: sp.Expr) -> sp.Expr:
         """The value of an expression in φ_2, φ_3, … at a compression."""
-        return value.xreplace({s: self._phi_at(s, delta) for s in value.free_symbols})
-
-    def _phi_at(self, symbol: sp.Symbol, delta: sp.Expr) -> sp.Expr:
-        n = symbol.name[3:]
-        if not n.isdecimal() or symbol != phi_symbol(int(n)):
-            return symbol
-        return delta ** (int(n) - 1) * self.at(delta, int(n)) / self.at(delta, 1)
+        slope = self.at(delta, 1)
+        orders = {s: int(s.name[3:]) for s in value.free_symbols if _PHI.fullmatch(s.name)}
+        return value.xreplace(
+            {s: delta ** (n - 1) * self.at(delta, n) / slope for s, n in orders.items()}
+        )
 
     @property
     def formless(self) -> bool:
@@ -109,7 +119,7 @@ class ContactLaw(Value):
         """The factor p^a (p F′)^b of a jet at the strain p; p^{a + bk} under a power."""
         return self.at(D * p, 1) ** b * p ** (a + b)
 
-    def checked(self, cell: Cell) -> None:
+    def check_contacts(self, cell: Cell) -> None:
         """Raise `lwa.InputError` unless the contacts of the cell can share the law.
 
         The shares of unlike contacts would depend on the strain under a law that is no power.
@@ -119,13 +129,13 @@ class ContactLaw(Value):
                 "the contacts differ in stiffness, and their shares of the strain would then "
                 "depend on the strain: only a power law allows that"
             )
-        own = {s.name for s in cell.symbols}
-        for symbol in (self.delta, *self.symbols):
-            if symbol.name in own:
-                raise InputError(f"{symbol.name} names both the law's and a property of the cell")
-        for name in sorted(own | {s.name for s in self.symbols}):
-            if name[:3] == "phi" and name[3:].isdecimal():
-                raise InputError(f"{name!r} means φ_{name[3:]} of the law here: use another name")
+        cell_names, names = (
+            {s.name for s in symbols} for symbols in (cell.symbols, (self.delta, *self.symbols))
+        )
+        for name in sorted(cell_names & names):
+            raise InputError(f"{name} names both the law's and a property of the cell")
+        for name in sorted(filter(_PHI.fullmatch, cell_names | names)):
+            raise InputError(f"{name!r} means φ_{name[3:]} of the law here: use another name")
 
     def compressions(self, cell: Cell, force: sp.Expr) -> tuple[sp.Expr, ...]:
         """The compression of each contact of a cell that pushes with this force."""
@@ -189,7 +199,7 @@ class Power(ContactLaw):
     def evaluated(self, value: sp.Expr, delta: sp.Expr) -> sp.Expr:
         return value
 
-    def checked(self, cell: Cell) -> None:
+    def check_contacts(self, cell: Cell) -> None:
         exponent(self.k, cell)
 
     def compressions(self, cell: Cell, force: sp.Expr) -> tuple[sp.Expr, ...]:
@@ -223,14 +233,14 @@ class Law(ContactLaw):
             raise InputError(
                 f"F is {shorten(self.F)}: a SymPy expression in {self.delta} is wanted"
             )
-        object.__setattr__(self, "F", meant(exact(self.F, "F"), "law", taken=TAKEN))
-        unmistakable((self.delta, *self.symbols))
+        object.__setattr__(self, "F", check_names(exact(self.F, "F"), "law", taken=TAKEN))
+        check_distinct((self.delta, *self.symbols))
         if self.slope().is_zero:
             raise InputError(f"F is {shorten(self.F)}: a force that depends on δ is wanted")
 
     def replaced(self, new: Mapping[sp.Symbol, sp.Expr]) -> Law:
         for symbol in self.symbols:
-            _uncaptured(new.get(symbol, symbol), str(symbol), self.delta)
+            _check_parameter(new.get(symbol, symbol), str(symbol), self.delta)
         return Law(self.F.xreplace(dict(new)), self.delta)
 
 
@@ -248,25 +258,25 @@ def phi_symbol(n: int) -> sp.Symbol:
     return sp.Symbol(f"phi{n}", real=True)
 
 
-Builder = Callable[..., sp.Expr]
-
-_HERTZ = sp.Rational(3, 2)
-_NAMED: Mapping[str, tuple[tuple[str, ...], Builder]] = {
-    "hertz2": (("a", "b"), lambda a, b: a * DELTA**_HERTZ + b * DELTA ** (_HERTZ + 1)),
-    "exponential": (("a",), lambda a: (sp.exp(a * DELTA) - 1) / a),
-    "magnetic": (("n", "d"), lambda n, d: (1 - DELTA / d) ** (-n) - 1),
-    "polynomial": (("a", "b"), lambda a, b: DELTA + a * DELTA**2 + b * DELTA**3),
-    "lennard-jones": (("d",), lambda d: (1 - DELTA / d) ** -13 - (1 - DELTA / d) ** -7),
-}
-_OF_EITHER_SIGN = ("polynomial",)
-NAMES = ("power", *_NAMED, "general")
-"""The names of laws."""
-
-
-def demand_one(k: Any, law: ContactLaw) -> None:
+def refuse_two_laws(k: Any, law: ContactLaw) -> None:
     """Raise `lwa.InputError` for an exponent beside a law, which already determines the force."""
     if k != symbol_k:
         raise InputError(f"k is {shorten(k)} and law {shorten(law)}: one of them is wanted")
+
+
+_HERTZ = sp.Rational(3, 2)
+_NAMED: Mapping[str, tuple[str, Callable[..., Any]]] = {
+    "power": ("k", Power),
+    "hertz2": ("a b", lambda a, b: a * DELTA**_HERTZ + b * DELTA ** (_HERTZ + 1)),
+    "exponential": ("a", lambda a: (sp.exp(a * DELTA) - 1) / a),
+    "magnetic": ("n d", lambda n, d: (1 - DELTA / d) ** (-n) - 1),
+    "polynomial": ("a b", lambda a, b: DELTA + a * DELTA**2 + b * DELTA**3),
+    "lennard-jones": ("d", lambda d: (1 - DELTA / d) ** -13 - (1 - DELTA / d) ** -7),
+    "general": ("", general),
+}
+_OF_EITHER_SIGN = ("polynomial",)
+NAMES = tuple(_NAMED)
+"""The names of laws."""
 
 
 def named(name: str, *parameters: Any) -> ContactLaw:
@@ -286,22 +296,18 @@ def named(name: str, *parameters: Any) -> ContactLaw:
     >>> named("hertz2", 1, "1/10").F
     delta**(5/2)/10 + delta**(3/2)
     """
-    if name == "general":
-        _at_most(name, parameters, ())
-        return general()
-    if name == "power":
-        _at_most(name, parameters, ("k",))
-        return Power(*(parameters or ("k",)))
-    if name not in _NAMED:
-        raise InputError(f"law is {shorten(name)}: one of {', '.join(NAMES)} is wanted")
-    letters, build = _NAMED[name]
-    _at_most(name, parameters, letters)
+    text, build = _NAMED[one_of(name, NAMES, "law")]
+    letters = text.split()
+    if len(parameters) > len(letters):
+        wanted = f"at most {len(letters)} ({', '.join(letters)})" if letters else "none"
+        raise InputError(f"law {name} has {len(parameters)} parameters: {wanted} are wanted")
     read = signed if name in _OF_EITHER_SIGN else positive
     given = [*parameters, *letters[len(parameters) :]]
     values = [read(v, f"{name}'s {letter}") for v, letter in zip(given, letters, strict=True)]
     for value, letter in zip(values, letters, strict=True):
-        _uncaptured(value, f"{name}'s {letter}", DELTA)
-    return Law(build(*values), DELTA)
+        _check_parameter(value, f"{name}'s {letter}", DELTA)
+    law = build(*values)
+    return law if isinstance(law, ContactLaw) else Law(law)
 
 
 def read_law(value: Any, name: str) -> ContactLaw:
@@ -312,15 +318,9 @@ def read_law(value: Any, name: str) -> ContactLaw:
     return named(title.strip(), *(parameters.split(",") if colon else ()))
 
 
-def _uncaptured(value: sp.Expr, name: str, delta: sp.Symbol) -> None:
+def _check_parameter(value: sp.Expr, name: str, delta: sp.Symbol) -> None:
     """Raise `lwa.InputError` if a law's parameter holds the symbol of the compression."""
-    meant(value, name, taken={delta.name: "the compression of a contact"})
-
-
-def _at_most(name: str, parameters: Sequence[Any], letters: tuple[str, ...]) -> None:
-    if len(parameters) > len(letters):
-        wanted = f"at most {len(letters)} ({', '.join(letters)})" if letters else "none"
-        raise InputError(f"law {name} has {len(parameters)} parameters: {wanted} are wanted")
+    check_names(value, name, taken={delta.name: "the compression of a contact"})
 
 
 def substituted(
@@ -342,5 +342,5 @@ def for_cell(law: Any, cell: Cell) -> ContactLaw:
     """
     if not isinstance(law, ContactLaw):
         raise InputError(f"law is {shorten(law)}: Power(k), Law(F, delta) or general() is wanted")
-    law.checked(cell)
+    law.check_contacts(cell)
     return law

@@ -18,7 +18,7 @@ from lwa.closure.consistency import BRANCHES, CLOSURES, FIELDS, OfClosure, solve
 from lwa.equation.evolution import Evolution
 from lwa.equation.pde import PDE
 from lwa.equation.terms import STRAIN, Terms, terms
-from lwa.law import ContactLaw, Power, demand_one, for_cell
+from lwa.law import ContactLaw, Power, for_cell, refuse_two_laws
 
 SLOW_ORDER = 12
 """The order from which a derivation shows its progress."""
@@ -156,7 +156,7 @@ def homogenize(
 def _model(cell: Cell, k: Any, law: ContactLaw | None, branch: str, order: int) -> Model:
     if law is None:
         return Model(cell, Power(exponent(k, cell)), branch)
-    demand_one(k, law)
+    refuse_two_laws(k, law)
     law = for_cell(law, cell)
     if not law.homogeneous and branch != "acoustic":
         raise InputError(

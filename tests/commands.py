@@ -1,4 +1,4 @@
-"""A command as its user meets it."""
+"""Calls of a command in the tests' own process, and outputs that fail."""
 
 import fcntl
 import io

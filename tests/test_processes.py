@@ -70,8 +70,8 @@ def test_a_package_is_loaded_where_it_is_used(loaded, statement):
     assert not {*STEPS[statement].split()} & {*loaded[statement].split()}
 
 
-def test_what_is_used_is_loaded(loaded):
-    """That the statements load little is no accident: the last one computes with SciPy."""
+def test_the_last_statement_loads_scipy(loaded):
+    """The names of `STEPS` are spelled as `sys.modules` spells them."""
     assert "scipy.optimize" in loaded[list(STEPS)[-1]].split()
 
 

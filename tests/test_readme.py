@@ -1,4 +1,4 @@
-"""The README says what is true: its Python example prints what the comments beside it say."""
+"""The README's example, commands, demonstrations, picture and version."""
 
 import json
 import re
@@ -40,7 +40,7 @@ def test_the_demonstrations_are_listed():
 
 
 def test_the_picture_shows_what_its_script_computes(engine):
-    """What was drawn stands in the file: it is what the lattice and the theory say today."""
+    """The numbers drawn stand in the file; lattice and theory give the same numbers today."""
     (file,) = re.findall(r"^!\[[^]]+\]\((.*)\)$", README, re.MULTILINE)
     with Image.open(ROOT / file) as image:
         drawn = json.loads(image.text["Comment"])

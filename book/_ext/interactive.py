@@ -14,8 +14,7 @@ import sympy as sp
 from sphinx.application import Sphinx
 
 from lwa import Cell, Material, Sphere, canonical_wave, hertz
-from lwa.code.languages import LANGUAGES
-from lwa.code.writer import Function
+from lwa.code import LANGUAGES, Function
 
 
 @cache

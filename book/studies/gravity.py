@@ -45,7 +45,7 @@ from lwa.wave.background import BackgroundWave
 from validation.lattice.run import Run
 from validation.lattice.simulate import simulate, twice
 from validation.pictures import Curve, Panel
-from validation.pulses.pulse import Measured, highest_pulse, leading_pulse
+from validation.pulses.pulse import Measured, highest_pulse, leading_pulses
 from validation.pulses.sensors import tracks
 from validation.report.command import EXPONENT, option, study
 from validation.report.result import Report
@@ -191,7 +191,7 @@ class Upright:
         scene = self.blown(velocity, contact_sensors=np.unique(contacts).tolist())
         run, numeric, found = simulate(scene, rtol=self.tolerances[0]), self.theory.numeric(), {}
         for track in tracks(run):
-            pulse = leading_pulse(track.force, self.k)
+            (pulse,) = leading_pulses(track.force, self.k)
             found[track.number - 1] = pulse.arrival, pulse.peak, pulse.fwhm
         rows = []
         for cell in contacts:

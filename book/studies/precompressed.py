@@ -34,7 +34,7 @@ from lwa.wave.quadrature import NumericBackground
 from validation.lattice.run import Run
 from validation.lattice.simulate import twice
 from validation.pictures import Curve, Panel
-from validation.pulses.pulse import Measured, highest_pulse, leading_pulse
+from validation.pulses.pulse import Measured, highest_pulse, leading_pulses
 from validation.pulses.sensors import tracks
 from validation.report.command import EXPONENT, option, study
 from validation.report.result import Report
@@ -209,7 +209,7 @@ class Wave:
         heard = tracks(run)
         beads, contacts = heard[: len(heard) // 2], heard[len(heard) // 2 :]
         for bead, contact in zip(beads, contacts, strict=True):
-            pulse = leading_pulse(contact.force, self.stiffness / self.load)
+            (pulse,) = leading_pulses(contact.force, self.stiffness / self.load)
             velocity = run.signal("bead", bead.number - 1, "velocity")
             fastest = highest_pulse(velocity, pulse.fall + pulse.fwhm).peak
             rows.append((pulse.arrival, pulse.peak / self.load, pulse.fwhm, fastest))

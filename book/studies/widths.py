@@ -19,7 +19,7 @@ from validation.lattice.run import Run
 from validation.lattice.simulate import twice
 from validation.pictures import Curve, Panel
 from validation.pulses.pulse import Measured, compared, derived
-from validation.pulses.train import Train
+from validation.pulses.sensors import Train
 from validation.report.command import study
 from validation.report.result import Report
 from validation.report.table import Column, Table, percent

@@ -2,25 +2,23 @@
 
 Everything the theory derives is a polynomial in the jets of the field whose coefficients are
 polynomials in the exponent k, the mass fractions m̂_i = m_i/M and the strain shares C_i of the
-P contacts. Rational values enter as numbers; each other distinct value but the last becomes a
-generator of a python-flint polynomial ring (since Σ m̂_i = 1 and Σ C_i = P). Under a law other than
-a power the parameters φ_2, φ_3, … of `lwa.law` stand in the place of k. Polynomials are returned
-as factored SymPy expressions in the caller's own symbols.
+P contacts. Under a law other than a power the parameters φ_2, φ_3, … of `lwa.law` stand in the
+place of k.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property, cmp_to_key
 from typing import Any
 
 import sympy as sp
-from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
+from flint import fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
 from lwa.algebra.partition import Partition
-from lwa.algebra.rational import to_flint, to_sympy
+from lwa.algebra.rational import context, to_flint, to_sympy
 from lwa.base.exact import InputError
 from lwa.base.frozen import Value
 
@@ -35,7 +33,7 @@ class CoefficientRing(Value):
     k : the exponent, a number, a variable, or 1 + φ_2.
     variables : k unless it is rational, or the symbols of φ_2, φ_3, ….
     masses, contacts : the mass fractions m̂_i and the shares C_i of the contacts.
-    constants : further expressions.
+    constants : further expressions, such as the α_n of `lwa.equation.fields`.
     """
 
     k: sp.Expr
@@ -47,10 +45,11 @@ class CoefficientRing(Value):
     @property
     def names(self) -> tuple[str, ...]:
         """Names of the ring's generators."""
-        return (*self._own, *self.masses.names, *self.contacts.names, *self._opaque)
+        opaque = (f"a{i}" for i, known in enumerate(self._constants) if known is None)
+        return (*self._parameters, *self.masses.names, *self.contacts.names, *opaque)
 
     @property
-    def _own(self) -> tuple[str, ...]:
+    def _parameters(self) -> tuple[str, ...]:
         return ("k",) if self.variables == (self.k,) else tuple(map(str, self.variables))
 
     def writable(self, order: int, growth: int = 1) -> None:
@@ -71,7 +70,7 @@ class CoefficientRing(Value):
         """The exponent k as an element of a ring that has `names` among its generators."""
         if self.k.is_Rational:
             return context.constant(to_flint(self.k))
-        generator = context.gen(context.variable_to_index(self._own[0]))
+        generator = context.gen(context.variable_to_index(self._parameters[0]))
         return generator if self.variables == (self.k,) else 1 + generator
 
     def constant(self, i: int, context: fmpq_mpoly_ctx) -> fmpq_mpoly:
@@ -79,19 +78,15 @@ class CoefficientRing(Value):
         polynomial = self._constants[i]
         if polynomial is None:
             return context.gen(context.variable_to_index(f"a{i}"))
-        names = ("k", *self.masses.names)[: len(polynomial.gens)]
+        names = (*self._parameters, *self.masses.names)
+        generators = [context.gen(context.variable_to_index(name)) for name in names]
         total = context.constant(0)
         for exponents, coefficient in polynomial.terms():
             term = context.constant(to_flint(coefficient))
-            for name, e in zip(names, exponents, strict=True):
-                if e:
-                    term = term * context.gen(context.variable_to_index(name)) ** e
+            for generator, e in zip(generators, exponents, strict=False):
+                term = term * generator**e
             total = total + term
         return total
-
-    @property
-    def _opaque(self) -> list[str]:
-        return [f"a{i}" for i, known in enumerate(self._constants) if known is None]
 
     @cached_property
     def _constants(self) -> tuple[sp.Poly | None, ...]:
@@ -106,16 +101,21 @@ class CoefficientRing(Value):
         scaled = constant.xreplace({w: scale * w for w in weights})
         if sp.cancel(scaled - constant) != 0:
             return None
-        k, *free = sp.symbols(f"k:{len(self.masses.names) + 1}", cls=sp.Dummy)
-        counts = [self.masses.weights.count(w) for w in weights]
-        rest = (1 - sum(n * f for n, f in zip(counts, free, strict=False))) / (counts or [1])[-1]
-        images = dict(zip(weights, (*free, rest), strict=False)) | {self.k: k}
-        return _as_polynomial(sp.cancel(constant.xreplace(images)), [k, *free])
+        variables = [sp.Dummy() for _ in self.variables]
+        fractions = [sp.Dummy() for _ in self.masses.names]
+        images = dict(zip(self.variables, variables, strict=True))
+        if weights:
+            *counts, last = map(self.masses.weights.count, weights)
+            rest = 1 - sum(n * f for n, f in zip(counts, fractions, strict=True))
+            images |= dict(zip(weights, (*fractions, rest / last), strict=True))
+        symbols = [*variables, *fractions] or [sp.Dummy()]
+        return _as_polynomial(sp.cancel(constant.xreplace(images)), symbols)
 
-    def expression(self, terms: Sequence[tuple[tuple[int, ...], fmpq]]) -> sp.Expr:
-        """The factored SymPy expression of a polynomial, in the caller's symbols.
+    @cached_property
+    def expression(self) -> Callable[[Sequence[tuple[tuple[int, ...], fmpq]]], sp.Expr]:
+        """The conversion of polynomials to factored SymPy expressions in the caller's symbols.
 
-        terms : (exponents in the order of `names`, coefficient) of each of its terms.
+        A polynomial is given by its terms (exponents in the order of `names`, coefficient).
 
         >>> m1, m2, k = sp.symbols("m1 m2 k")
         >>> contacts = Partition((sp.S.One,), 1, "c")
@@ -123,10 +123,6 @@ class CoefficientRing(Value):
         >>> ring.expression([((1, 1), fmpq(1)), ((1, 2), fmpq(-1))])
         k*m1*m2/(m1 + m2)**2
         """
-        return self._converter(terms)
-
-    @cached_property
-    def _converter(self) -> SymPyConverter:
         return SymPyConverter(self)
 
 
@@ -147,25 +143,24 @@ class SymPyConverter:
         opaque = [v for v in dict.fromkeys(values) if polynomial[v] is None and not v.is_Rational]
         self._generators: list[sp.Expr] = [*symbols, *opaque]
         self._irrational = any(v.is_number for v in opaque)  # their powers may coincide
-        context = fmpq_mpoly_ctx.get([f"x{i}" for i in range(len(self._generators))], Ordering.lex)
-        self._context = context
+        self._context = ring_context = context(len(self._generators))
         self._monomials: dict[tuple[int, ...], tuple[sp.Expr, ...]] = {}
 
         def element(value: sp.Expr) -> fmpq_mpoly:
             if value.is_Rational:
-                return context.constant(to_flint(value))
+                return ring_context.constant(to_flint(value))
             poly = polynomial[value]
             if poly is None:
-                return context.gen(self._generators.index(value))
+                return ring_context.gen(self._generators.index(value))
             padding = (0,) * len(opaque)
-            return context.from_dict({(*e, *padding): to_flint(c) for e, c in poly.terms()})
+            return ring_context.from_dict({(*e, *padding): to_flint(c) for e, c in poly.terms()})
 
         self._images = [element(value) for value in ring.variables]
         self._denominators: list[tuple[slice, fmpq_mpoly]] = []
         for part in partitions:
             start = len(self._images)
             self._images += [part.total * element(w) for w in part.distinct[:-1]]
-            total = sum((element(w) for w in part.weights), context.constant(0))
+            total = sum((element(w) for w in part.weights), ring_context.constant(0))
             self._denominators.append((slice(start, len(self._images)), total))
         self._images += [element(c) for c in opaque_constants]
 
@@ -219,6 +214,7 @@ def _canonical(term: sp.Expr) -> tuple[bool, Any]:
 
 
 def _as_polynomial(value: sp.Expr, symbols: list[sp.Symbol]) -> sp.Poly | None:
+    """The polynomial over Q in these symbols; None for another expression."""
     if not symbols:  # SymPy would take an irrational number for the generator
         return None
     try:

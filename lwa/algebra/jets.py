@@ -19,7 +19,7 @@ on p: p dφ_n/dp = φ_{n+1} + (n-1) φ_n - φ_n φ_2. For δ^k they are (k-1) �
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from math import factorial
 from typing import NamedTuple
 
@@ -59,33 +59,30 @@ class JetAlgebra:
         rest: bool = False,
         smooth: int = 0,
     ) -> None:
-        self.parameters = parameters
-        self.weight = weight
+        self.parameters, self.weight = parameters, weight
         jets = range(1, weight + 1)
         self._lowest = 0 if rest else 1
         velocities = range(self._lowest, weight + 1) if exponent else range(0)
         names = [*parameters, *(f"r{n}" for n in jets), *(f"s{n}" for n in velocities)]
         self.context = fmpq_mpoly_ctx.get(names, Ordering.lex)
-        self.one = self.context.constant(1)
-        self.zero = self.context.constant(0)
+        self.one, self.zero = self.context.constant(1), self.context.constant(0)
         generators = self.context.gens()
+        # Indices of the first strain jet and of the first velocity jet among the generators.
         self._offset = len(parameters)
         self._velocity = self._offset + weight
-        self.r = [self.one, *generators[self._offset : self._offset + weight]]
-        r1 = self.r[1]
+        self.r = [self.one, *generators[self._offset : self._velocity]]
         # generator → its derivative ∂_x; likewise ∂_τ without E, over p^{(k-1)/2}
-        self._dx = {self._offset + n - 1: self.r[n + 1] - r1 * self.r[n] for n in jets[:-1]}
+        self._dx = {self._offset + n - 1: self.r[n + 1] - self.r[1] * self.r[n] for n in jets[:-1]}
         self._dt: dict[int, fmpq_mpoly] = {}
         self.s: list[fmpq_mpoly] = []
         if exponent:
             self.half = (exponent(self.context) + 1) / 2
             self.s = [*([] if rest else [self.zero]), *generators[self._velocity :]]
-            self._dt = {
-                self._offset + n - 1: self.s[n + 1] - self.s[1] * self.r[n] for n in jets[:-1]
-            }
+            for n in jets[:-1]:
+                self._dt[self._offset + n - 1] = self.s[n + 1] - self.s[1] * self.r[n]
             for index, n in enumerate(velocities, start=self._velocity):
                 if n < weight:
-                    self._dx[index] = self.s[n + 1] - self.half * r1 * self.s[n]
+                    self._dx[index] = self.s[n + 1] - self.half * self.r[1] * self.s[n]
                 self._dt[index] = -self.half * self.s[1] * self.s[n]
         self.phi = [self.zero, self.one, *generators[: smooth - 1]] if smooth else []
         for n in range(2, smooth):
@@ -99,12 +96,10 @@ class JetAlgebra:
         phi = self.phi
         return phi[n + 1] + (n - 1) * phi[n] - phi[n] * phi[2]
 
-    def scaled(self, f: fmpq_mpoly, exponent: fmpq_mpoly | int) -> fmpq_mpoly:
+    def dp(self, f: fmpq_mpoly, exponent: fmpq_mpoly | int) -> fmpq_mpoly:
         """The derivative p^{1-e} ∂_p (p^e f) with respect to p at fixed jets, e the exponent."""
-        result = exponent * f
-        for n in range(2, len(self.phi) - 1):
-            result = result + f.derivative(n - 2) * self._theta(n)
-        return result
+        slopes = (f.derivative(n - 2) * self._theta(n) for n in range(2, len(self.phi) - 1))
+        return sum(slopes, exponent * f)
 
     def dx(self, f: fmpq_mpoly, exponent: fmpq_mpoly | int) -> fmpq_mpoly:
         """The derivative p^{-e} ∂_x (p^e f) in x, e the exponent."""
@@ -121,7 +116,7 @@ class JetAlgebra:
         result = last = f[n - 1]
         if not last.is_zero():
             result = self._derivation(f.exponent * self.s[1] * last, last, self._dt)
-        for m in range(1, n):
+        for m in range(1, n):  # ∂_τ s_i holds ∂_x^i u_ττ
             for i, slope in f.velocity_slopes(m):
                 result = result + slope * E.dx(n - m, i)
         return result
@@ -156,26 +151,21 @@ class JetAlgebra:
         return f.integral(self._offset + n - 1)
 
     def terms(self, f: fmpq_mpoly) -> dict[Monomial, list[Term]]:
-        """Split a polynomial f of jets into a mapping {jet monomial: terms of its coefficient}.
-
-        A term is a pair (exponents of the ring's generators, rational factor).
-        """
-        found: dict[Monomial, list[Term]] = {}
+        """Split a polynomial f of jets into a mapping {jet monomial: terms of its coefficient}."""
+        split: dict[Monomial, list[Term]] = {}
         for exponents, coefficient in f.terms():
             jets_x = exponents[self._offset : self._velocity]
             jets_t = exponents[self._velocity :]
             monomial = Monomial(_powers(jets_x, 1), _powers(jets_t, self._lowest))
-            own = tuple(map(int, exponents[: self._offset]))
-            found.setdefault(monomial, []).append((own, coefficient))
-        return found
+            parameters = tuple(map(int, exponents[: self._offset]))
+            split.setdefault(monomial, []).append((parameters, coefficient))
+        return split
 
     def antiderivative(self, f: fmpq_mpoly, exponent: fmpq_mpoly) -> fmpq_mpoly | None:
-        """Antiderivative g with ∂_x (p^e g) = p^e f, f of weight 2 or more; None if f has none.
-
-        A total derivative is linear in its highest jet, with the coefficient ∂g/∂(the jet below).
-        Subtracting the derivative of this part of g lowers the highest jet, first among those of
-        the velocity, then among those of the strain.
-        """
+        """Antiderivative g with ∂_x (p^e g) = p^e f, f of weight 2 or more; None if f has none."""
+        # A total derivative is linear in its highest jet, with the coefficient ∂g/∂(the jet below).
+        # Subtracting the derivative of this part of g lowers the highest jet, first among those of
+        # the velocity, then among those of the strain.
         total = self.zero
         for index in reversed(range(self._offset, self.context.nvars())):
             slope = f.derivative(index)
@@ -195,33 +185,26 @@ class JetAlgebra:
         in terms without s_i, an r_n beside lower r_i; r_1 alone is the derivative of p^e / e.
         """
         names = self.context.names()
-        last = self.context.nvars() - 1
-        for index in range(last, self._velocity, -1):
-            f = self._less(f, index, exponent, names[index:])
-        for index in range(self._velocity - 1, self._offset, -1):
-            f = self._less(f, index, exponent, names[index:])
-        return f - self._alone(f, self._offset, names[self._offset :]) * self.r[1]
+        indices = (*range(self._velocity + 1, len(names)), *range(self._offset + 1, self._velocity))
+        for index in sorted(indices, reverse=True):
+            part = self._linear_part(f, index, names[index:]).integral(index - 1)
+            f = f - self.dx(part, exponent)
+        return f - self._linear_part(f, self._offset, names[self._offset :]) * self.r[1]
 
-    def _less(
-        self, f: fmpq_mpoly, index: int, exponent: fmpq_mpoly, higher: Sequence[str]
-    ) -> fmpq_mpoly:
-        return f - self.dx(self._alone(f, index, higher).integral(index - 1), exponent)
-
-    def _alone(self, f: fmpq_mpoly, index: int, others: Sequence[str]) -> fmpq_mpoly:
+    def _linear_part(self, f: fmpq_mpoly, index: int, others: Sequence[str]) -> fmpq_mpoly:
         """Coefficient of the jet ``index`` in the terms of f without the other jets."""
         return f.derivative(index).subs(dict.fromkeys(others, 0))
 
-    def taken(self, f: fmpq_mpoly, other: JetAlgebra) -> fmpq_mpoly:
-        """Convert f from ``other``, an algebra with the same parameters and some of these jets."""
-        more_t = (0,) * (other._lowest - self._lowest)
-        found = {}
+    def embed(self, f: fmpq_mpoly, smaller: JetAlgebra) -> fmpq_mpoly:
+        """Convert f from an algebra with the same parameters and some of these jets."""
+        more_x = (0,) * (self._velocity - smaller._velocity)
+        more_t = (0,) * (smaller._lowest - self._lowest)
+        terms = {}
         for exponents, coefficient in f.terms():
-            x, t = exponents[: other._velocity], exponents[other._velocity :]
-            x = (*x, *(0,) * (self._velocity - other._velocity))
-            t = (*more_t, *t)
-            rest = (0,) * (self.context.nvars() - len(x) - len(t))
-            found[*x, *t, *rest] = coefficient
-        return self.context.from_dict(found)
+            x, t = exponents[: smaller._velocity], exponents[smaller._velocity :]
+            jets = (*x, *more_x, *more_t, *t)
+            terms[*jets, *(0,) * (self.context.nvars() - len(jets))] = coefficient
+        return self.context.from_dict(terms)
 
 
 def exact_quotient(numerator: fmpq_mpoly, divisor: fmpq_mpoly) -> fmpq_mpoly:
@@ -239,10 +222,11 @@ def _powers(exponents: Sequence[int], lowest: int) -> Powers:
 class Ladder:
     """A graded series p^e Σ_n D^n f_n with its derivatives, each of which is computed once."""
 
-    def __init__(self, algebra: JetAlgebra, exponent: fmpq_mpoly) -> None:
-        self.algebra = algebra
-        self.exponent = exponent
-        self._rungs: list[list[fmpq_mpoly]] = []
+    def __init__(
+        self, algebra: JetAlgebra, exponent: fmpq_mpoly, terms: Sequence[fmpq_mpoly] = ()
+    ) -> None:
+        self.algebra, self.exponent = algebra, exponent
+        self._rungs = [[f_n] for f_n in terms]
         self._velocity_slopes: dict[int, list[tuple[int, fmpq_mpoly]]] = {}
 
     def __len__(self) -> int:
@@ -251,18 +235,18 @@ class Ladder:
     def __getitem__(self, n: int) -> fmpq_mpoly:
         return self._rungs[n][0]
 
+    def __iter__(self) -> Iterator[fmpq_mpoly]:
+        return (rungs[0] for rungs in self._rungs)
+
     def append(self, f_n: fmpq_mpoly) -> None:
         """Append the next term of the series."""
         self._rungs.append([f_n])
 
-    def carried(self, h: fmpq_mpoly | int, n: int) -> fmpq_mpoly:
+    def increment(self, h: fmpq_mpoly | int, n: int) -> fmpq_mpoly:
         """Coefficient Σ_{0<j≤n} h^j/j! ∂_x^j f_{n-j} of D^n in the increment under x → x + hD."""
-        total = self.algebra.zero
-        for j in range(1, n + 1):
-            part = self.dx(n - j, j)
-            if not part.is_zero():
-                total = total + part * (h**j * fmpq(1, factorial(j)))
-        return total
+        derivatives = ((j, self.dx(n - j, j)) for j in range(1, n + 1))
+        parts = (f * (h**j * fmpq(1, factorial(j))) for j, f in derivatives if not f.is_zero())
+        return sum(parts, self.algebra.zero)
 
     def dx(self, n: int, j: int) -> fmpq_mpoly:
         """The j-th derivative p^{-e} ∂_x^j (p^e f_n)."""

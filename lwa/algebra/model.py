@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import Any
 
 import sympy as sp
+from flint import fmpq_mpoly
 
 from lwa.algebra.coefficients import CoefficientRing
 from lwa.algebra.jets import JetAlgebra
@@ -65,6 +66,14 @@ class Model(Value):
         """The algebra of the jets over the ring; with ``velocity`` also the jets of u_τ."""
         exponent = self.ring.exponent if velocity else None
         return JetAlgebra(self.ring.names, weight, exponent, rest, smooth=self.highest)
+
+    def elements(
+        self, algebra: JetAlgebra
+    ) -> tuple[fmpq_mpoly, list[fmpq_mpoly], list[fmpq_mpoly]]:
+        """The exponent k, the mass fractions m̂_i and the shares C_i in an algebra of the model."""
+        masses, contacts = self.ring.masses, self.ring.contacts
+        context = algebra.context
+        return self.ring.exponent(context), masses.elements(context), contacts.elements(context)
 
     def substitution(
         self, values: Mapping[str, Any], more: Sequence[sp.Symbol]

@@ -1,8 +1,4 @@
-"""Mass fractions and shares of the strain: positive numbers with a given sum.
-
-Rational fractions are numbers; each other distinct value becomes one generator of a python-flint
-ring, less one, since the fractions sum to the whole.
-"""
+"""Mass fractions and shares of the strain: positive numbers with a given sum."""
 
 from __future__ import annotations
 
@@ -21,7 +17,8 @@ class Partition(Value):
     """Positive weights w_i that enter by their fractions f_i = total · w_i / Σ_j w_j only.
 
     The masses of a cell are such weights (total 1), and so are the compliances of its contacts
-    (total P).
+    (total P). Rational fractions are numbers; else each distinct fraction but the last is a
+    generator of a python-flint ring.
     """
 
     weights: tuple[sp.Expr, ...]
@@ -56,16 +53,12 @@ class Partition(Value):
     def elements(self, context: fmpq_mpoly_ctx) -> list[fmpq_mpoly]:
         """The fractions f_0, f_1, … in a ring that has `names` among its generators."""
         if self.values:
-            of = {
-                w: context.constant(to_flint(f))
-                for w, f in zip(self.distinct, self.values, strict=True)
-            }
+            fractions = [context.constant(to_flint(f)) for f in self.values]
         else:
-            free = [context.gen(context.variable_to_index(name)) for name in self.names]
-            of = dict(zip(self.distinct, free, strict=False))
+            fractions = [context.gen(context.variable_to_index(name)) for name in self.names]
             rest = context.constant(self.total)
-            for weight, f in of.items():
+            for weight, f in zip(self.distinct, fractions, strict=False):
                 rest = rest - self.weights.count(weight) * f
-            last = self.distinct[-1]
-            of[last] = rest / self.weights.count(last)
-        return [of[w] for w in self.weights]
+            fractions.append(rest / self.weights.count(self.distinct[-1]))
+        by_weight = dict(zip(self.distinct, fractions, strict=True))
+        return [by_weight[w] for w in self.weights]

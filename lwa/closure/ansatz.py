@@ -9,12 +9,13 @@ is the defect.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import factorial
 
 from flint import fmpq, fmpq_mpoly
 
-from lwa.algebra.contact import contact
-from lwa.algebra.jets import JetAlgebra, Ladder, exact_quotient
+from lwa.algebra.contact import Force
+from lwa.algebra.jets import Ladder, exact_quotient
 from lwa.algebra.model import Model
 from lwa.base.exact import InputError
 from lwa.base.progress import Progress
@@ -45,19 +46,17 @@ def _applied(b: list[fmpq_mpoly], f: Ladder, n: int) -> fmpq_mpoly:
 
 def _acoustic(model: Model, order: int, progress: Progress[int]) -> Solution:
     algebra = model.algebra(max(order - 1, 1))
-    k = model.ring.exponent(algebra.context)
-    mu = model.ring.masses.elements(algebra.context)
-    c = model.ring.contacts.elements(algebra.context)
-    right, left = contact(algebra, k), contact(algebra, k)  # in the cell and to the next one
-    first, second = Ladder(algebra, k), Ladder(algebra, k)  # E by equation 1 and by equation 2
-    first.append(algebra.zero)
-    second.append(algebra.zero)
+    k, mu, c = model.elements(algebra)
+    right, left = Force(algebra, k), Force(algebra, k)  # in the cell and to the next one
+    # E by equation 1 and by equation 2
+    first, second = (Ladder(algebra, k, [algebra.zero]) for _ in range(2))
     b = [algebra.one, c[0]]  # order D^k: equal forces, so the first contact takes its share
     for n in progress(range(1, order)):
         # The strains of both contacts sum to u(x + 2D) - u(x). Let the two differ by ξ r_n at D^n;
         # both equations are evaluated without ξ r_n, which enters with the factors ±1.
-        known = right.known - left.known
-        one, two = known - left.carried(-2, n), -known
+        known = right.nonlinear - left.nonlinear
+        one, two = known - left.increment(-2, n), -known
+        # u_ττ of both is the same at r_n: m̂_1 (one + ξ r_n) = m̂_0 (two - ξ r_n - 2 m̂_1 applied).
         condition = mu[1] * one - mu[0] * two + 2 * mu[0] * mu[1] * _applied(b, first, n)
         xi = -algebra.slope(condition, n)
         r_n = algebra.r[n]
@@ -67,56 +66,48 @@ def _acoustic(model: Model, order: int, progress: Progress[int]) -> Solution:
         first.append(exact_quotient(one + xi * r_n, 2 * mu[0]))
         second.append(exact_quotient(two - xi * r_n, 2 * mu[1]) - _applied(b, second, n))
         b.append(c[0] * (mean + c[1] * xi / 2))
-    return _solution(model, algebra, b[: order + 1], first, second)
+    return _solution(b[: order + 1], first, second)
 
 
 def _optical(model: Model, order: int, progress: Progress[int]) -> Solution:
     # Contacts here also pull: the branch belongs to the odd extension of δ^k (or to odd k).
     # w - u = -(u/m̂_1)(1 + Y) and u(x + 2D) - w = (u/m̂_1)(1 + Z); E = 1 + kε.
     algebra = model.algebra(max(order, 1))
-    k = model.ring.exponent(algebra.context)
-    mu = model.ring.masses.elements(algebra.context)
-    stiffness = model.ring.contacts.elements(algebra.context)
-    right, left = contact(algebra, k), contact(algebra, k)  # 1 + Y and 1 + Z
-    first, second, leading = Ladder(algebra, k), Ladder(algebra, k), Ladder(algebra, k)
-    first.append(algebra.zero)
-    second.append(algebra.zero)
-    leading.append(algebra.r[1])
+    k, mu, stiffness = model.elements(algebra)
+    right, left = Force(algebra, k), Force(algebra, k)  # 1 + Y and 1 + Z
+    first, second = (Ladder(algebra, k, [algebra.zero]) for _ in range(2))
+    leading = Ladder(algebra, k, [algebra.r[1]])
     b = [algebra.one]
     for n in progress(range(1, order + 1)):
         r_n = algebra.r[n]
-        carried = stiffness[1] * left.carried(-2, n)
-        b.append(-algebra.slope(carried + _applied(b, first, n), n))
+        shifted = stiffness[1] * left.increment(-2, n)
+        b.append(-algebra.slope(shifted + _applied(b, first, n), n))
         right.append(mu[0] * b[n] * r_n)
         left.append((mu[0] * b[n] + mu[1] * fmpq(2**n, factorial(n))) * r_n)
         force = stiffness[0] * right.Phi[n] + stiffness[1] * left.Phi[n]
-        first.append(force + carried)
+        first.append(force + shifted)
         second.append(force - b[n] * leading.dx(0, n - 1) - _applied(b, second, n))
-    return _solution(model, algebra, b, first, second)
+    solution = _solution(b, first, second)
+    E = (algebra.one, *(k * e for e in solution.acceleration[1:]))
+    return replace(solution, acceleration=E)
 
 
 def _uniform(model: Model, order: int, progress: Progress[int]) -> Solution:
     # One particle per cell: nothing is slaved, and the one equation is the wave equation.
     algebra = model.algebra(max(order - 1, 1))
     k = model.ring.exponent(algebra.context)
-    force, E = contact(algebra, k), Ladder(algebra, k)
-    E.append(algebra.zero)
+    force, E = Force(algebra, k), Ladder(algebra, k, [algebra.zero])
     for n in progress(range(1, order)):
-        force.append(algebra.r[n] * fmpq(1, factorial(n + 1)))
-        E.append(-force.carried(-1, n))
-    return _solution(model, algebra, [], E, E)
+        force.append(algebra.r[n] * fmpq(1, factorial(n + 1)))  # (u(x + D) - u(x))/D
+        E.append(-force.increment(-1, n))
+    return _solution([], E, E)
 
 
-def _solution(
-    model: Model, algebra: JetAlgebra, b: list[fmpq_mpoly], first: Ladder, second: Ladder
-) -> Solution:
-    acceleration = [first[n] for n in range(len(first))]
-    if model.branch == "optical":
-        k = model.ring.exponent(algebra.context)
-        acceleration = [algebra.one, *(k * e for e in acceleration[1:])]
+def _solution(b: list[fmpq_mpoly], first: Ladder, second: Ladder) -> Solution:
+    """The ansatz b_n, the first equation's E_n and what they differ by from the second's."""
     return Solution(
-        algebra=algebra,
-        acceleration=tuple(acceleration),
+        algebra=first.algebra,
+        acceleration=tuple(first),
         ansatz=tuple(b),
-        defect=tuple(first[n] - second[n] for n in range(len(first))),
+        defect=tuple(one - two for one, two in zip(first, second, strict=True)),
     )

@@ -12,12 +12,13 @@ can then be satisfied, order by order and without a system to solve:
 
 from __future__ import annotations
 
+from itertools import accumulate
 from math import factorial
 
 from flint import fmpq, fmpq_mpoly
 
-from lwa.algebra.contact import contact
-from lwa.algebra.jets import JetAlgebra, Ladder
+from lwa.algebra.contact import Force
+from lwa.algebra.jets import Ladder
 from lwa.algebra.model import Model
 from lwa.base.progress import Progress
 from lwa.closure.solution import Solution
@@ -34,117 +35,82 @@ def full(
     chain = _Slaving(model, order, field)
     for n in progress(range(1, order)):
         chain.extend(n)
-    S = [particle.S for particle in chain.particles]
-    b = [_linear_part(chain.algebra, S[1], n) for n in range(order)] if len(S) > 1 else []
+    algebra, fields = chain.algebra, tuple(tuple(S)[:order] for S in chain.S)
+    ansatz: tuple[fmpq_mpoly, ...] = ()
+    if len(fields) > 1:
+        slopes = (algebra.slope(S_n, n) for n, S_n in enumerate(fields[1]) if n)
+        ansatz = (algebra.one, fields[1][0], *slopes)
     return Solution(
-        algebra=chain.algebra,
-        acceleration=tuple(chain.E[n] for n in range(order)),
-        ansatz=(chain.algebra.one, *b) if b else (),
-        slaved=tuple(tuple(ladder[n] for n in range(order)) for ladder in S),
+        algebra=algebra, acceleration=tuple(chain.E)[:order], ansatz=ansatz, slaved=fields
     )
 
 
-class _Particle:
-    """A particle of the cell, with the field w = φ + D φ_x S, and its contact to the next one.
-
-    mu, c : mass fraction m̂_i of the particle, strain share C_i of the contact.
-    x : place x_i = C_0 + … + C_{i-1} of the particle at rest.
-    weight : weight g_i of the particle in the mean φ(x) = Σ g_i w_i(x - x_i D).
-    S : the series S.
-    rate : the series ∂_τ (D φ_x S).
-    force : the force of the contact.
-    """
-
-    def __init__(
-        self, algebra: JetAlgebra, k: fmpq_mpoly, mu: fmpq_mpoly, c: fmpq_mpoly, x: fmpq_mpoly
-    ) -> None:
-        self.mu, self.c, self.x = mu, c, x
-        self.weight = algebra.zero
-        self.S = Ladder(algebra, algebra.one)
-        self.S.append(x)
-        self.rate = Ladder(algebra, algebra.half)
-        self.rate.append(algebra.zero)
-        self.force = contact(algebra, k)
-
-
 class _Slaving:
-    """The recursion of the full closure, one order of D at a time."""
+    """The recursion of the full closure, one order of D at a time.
+
+    mu, c : mass fractions m̂_i of the particles, strain shares C_i of the contacts behind them.
+    x : places x_i = C_0 + … + C_{i-1} of the particles at rest.
+    weights : the g_i of the mean φ(x) = Σ g_i w_i(x - x_i D).
+    E : the terms of the wave equation.
+    S, rates : the series S and ∂_τ (D φ_x S) of each field w = φ + D φ_x S.
+    forces : the forces of the contacts.
+    """
 
     def __init__(self, model: Model, order: int, field: str) -> None:
         self.algebra = algebra = model.algebra(max(order - 1, 1), velocity=True)
         self.order = order
-        k = model.ring.exponent(algebra.context)
-        self.E = Ladder(algebra, k)
-        self.E.append(algebra.zero)
-        self.particles: list[_Particle] = []
-        x = algebra.zero
-        for mu, c in zip(
-            model.ring.masses.elements(algebra.context),
-            model.ring.contacts.elements(algebra.context),
-            strict=True,
-        ):
-            self.particles.append(_Particle(algebra, k, mu, c, x))
-            x = x + c
-        self.particles[0].weight = algebra.one
-        if field == "center":
-            for particle in self.particles:
-                particle.weight = particle.mu
+        k, self.mu, self.c = model.elements(algebra)
+        self.x = list(accumulate(self.c[:-1], initial=algebra.zero))
+        self.weights = self.mu if field == "center" else [algebra.one]
+        self.E = Ladder(algebra, k, [algebra.zero])
+        self.S = [Ladder(algebra, algebra.one, [x]) for x in self.x]
+        self.rates = [Ladder(algebra, algebra.half, [algebra.zero]) for _ in self.x]
+        self.forces = [Force(algebra, k) for _ in self.x]
 
     def extend(self, n: int) -> None:
         """Append the terms of order D^n to all series: E_n, X_n, Φ_n and S_n."""
-        accelerations = [self.algebra.dt(particle.rate, self.E, n) for particle in self.particles]
+        accelerations = [self.algebra.dt(rate, self.E, n) for rate in self.rates]
         if n + 1 < self.order:
-            for particle in self.particles:
-                particle.rate.append(self.algebra.dt(particle.S, self.E, n))
-        self._momentum(n, accelerations)
+            for rate, S in zip(self.rates, self.S, strict=True):
+                rate.append(self.algebra.dt(S, self.E, n))
+        # Momentum: in the sum of the equations of motion only the end forces remain.
+        P = len(self.x)
+        inertia = (mu * a for mu, a in zip(self.mu, accelerations, strict=True))
+        self.E.append(-self.forces[-1].increment(-P, n) / P - sum(inertia, self.algebra.zero))
         self._strains(n, accelerations)
         self._origin(n)
-
-    def _momentum(self, n: int, accelerations: list[fmpq_mpoly]) -> None:
-        """Append E_n, from the sum of the equations of motion: only the end forces remain in it."""
-        P = len(self.particles)
-        E_n = -self.particles[-1].force.carried(-P, n) / P
-        for particle, acceleration in zip(self.particles, accelerations, strict=True):
-            E_n = E_n - particle.mu * acceleration
-        self.E.append(E_n)
 
     def _strains(self, n: int, accelerations: list[fmpq_mpoly]) -> None:
         """Append X_n, the order n of each contact's strain.
 
         Φ_i - Φ_0 gives the differences of the strains, and the cell their sum.
         """
-        P = len(self.particles)
-        first = self.particles[0]
-        difference = self.algebra.zero
-        differs = []
-        for particle, acceleration in zip(self.particles, accelerations, strict=True):
-            if particle is not first:
-                difference = difference + P * particle.mu * (self.E[n] + acceleration)
-            differs.append(difference + first.force.known - particle.force.known)
-        X = self._shift(n) * P ** (n + 1) + first.S.carried(P, n)
-        for particle, d in zip(self.particles, differs, strict=True):
-            X = X - particle.c * d
-        for particle, d in zip(self.particles, differs, strict=True):
-            particle.force.append(X / P + d)
+        P, first = len(self.x), self.forces[0]
+        steps = (
+            P * mu * (self.E[n] + a) for mu, a in zip(self.mu[1:], accelerations[1:], strict=True)
+        )
+        differences = [
+            difference + first.nonlinear - force.nonlinear
+            for difference, force in zip(
+                accumulate(steps, initial=self.algebra.zero), self.forces, strict=True
+            )
+        ]
+        X = self._shift(n) * P ** (n + 1) + self.S[0].increment(P, n)
+        X = X - sum((c * d for c, d in zip(self.c, differences, strict=True)), self.algebra.zero)
+        for force, difference in zip(self.forces, differences, strict=True):
+            force.append(X / P + difference)
 
     def _origin(self, n: int) -> None:
         """Append S_n of each particle, by the definition φ(x) = Σ g_i w_i(x - x_i D)."""
-        relative = [self.algebra.zero]
-        for particle in self.particles[:-1]:
-            relative.append(relative[-1] + particle.c * particle.force.X[n])
+        strains = (c * force.X[n] for c, force in zip(self.c[:-1], self.forces, strict=False))
+        relative = list(accumulate(strains, initial=self.algebra.zero))
         origin = self.algebra.zero
-        for particle, own in zip(self.particles, relative, strict=True):
-            if not particle.weight.is_zero():
-                x = particle.x
-                moved = (-x) ** (n + 1) * self._shift(n) + particle.S.carried(-x, n)
-                origin = origin - particle.weight * (own + moved)
-        for particle, own in zip(self.particles, relative, strict=True):
-            particle.S.append(origin + own)
+        for g, x, S, d in zip(self.weights, self.x, self.S, relative, strict=False):
+            moved = (-x) ** (n + 1) * self._shift(n) + S.increment(-x, n)
+            origin = origin - g * (d + moved)
+        for S, d in zip(self.S, relative, strict=True):
+            S.append(origin + d)
 
     def _shift(self, n: int) -> fmpq_mpoly:
         """Coefficient of D^{n+1} in (φ(x + D) - φ(x)) / φ_x."""
         return self.algebra.r[n] * fmpq(1, factorial(n + 1))
-
-
-def _linear_part(algebra: JetAlgebra, S: Ladder, n: int) -> fmpq_mpoly:
-    return algebra.slope(S[n], n) if n else S[0]

@@ -19,7 +19,7 @@ from lwa.base.files import load
 from lwa.base.tables import Table, among, array, each, positive, real, table
 from lwa.cell import Cell, D
 from lwa.command.options import given
-from lwa.law import ContactLaw, Power, demand_one, read_law
+from lwa.law import ContactLaw, Power, read_law, refuse_two_laws
 from lwa.spheres.beads import SCENE, spheres
 from lwa.spheres.hertz import EXPONENT
 
@@ -71,7 +71,7 @@ def take_chain(options: dict[str, Any]) -> ChainInput:
         return read_chain(file)
     law = chosen.get("law")
     if law is not None:
-        demand_one(chosen["k"], law)
+        refuse_two_laws(chosen["k"], law)
     cell = Cell(chosen["masses"], chosen["stiffnesses"], chosen.get("spacing", D))
     return ChainInput(cell, law or Power(chosen["k"]))
 

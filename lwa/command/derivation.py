@@ -10,7 +10,7 @@ import sympy as sp
 
 from lwa.base import latex
 from lwa.base.exact import InputError
-from lwa.code.languages import LANGUAGES
+from lwa.code import LANGUAGES
 from lwa.command.chain import take_chain
 from lwa.command.options import STYLES, theory_options
 from lwa.command.rows import Answer, Row, Values

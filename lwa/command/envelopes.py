@@ -19,9 +19,8 @@ from lwa.command.options import (
     setting,
 )
 from lwa.command.rows import Answer, Row
-from lwa.envelopes.breather import Breather
-from lwa.envelopes.schrodinger import Envelope
-from lwa.envelopes.schrodinger import envelope as envelope_of
+from lwa.envelopes import schrodinger
+from lwa.envelopes.schrodinger import Breather, Envelope
 
 _EARLIER = (
     "contacts open at these values to leading order; on the lattice they open earlier, in dimers "
@@ -85,7 +84,7 @@ def envelope(
     chain = take_chain(options)
     cell, place = chain.cell, int(branch) if branch and branch.isdecimal() else branch
     load = {"background": background, "precompression": chain.load(background, precompression)}
-    found = envelope_of(cell, chain.law, **load, wavenumber=wavenumber, branch=place)
+    found = schrodinger.envelope(cell, chain.law, **load, wavenumber=wavenumber, branch=place)
     symbols = {*cell.symbols, *found.compression.free_symbols, *wavenumber.free_symbols}
     if not symbols - {cell.spacing} and (cell.size > 2 or not sp.cos(wavenumber).is_Rational):
         found = found.numeric()  # exact results want a frequency that is algebraic
@@ -128,11 +127,11 @@ def _answer(chain: ChainInput, found: Envelope, breather: Breather | None) -> An
             Row("amplitude", "largest displacement by bead", breather.amplitude, "2 a U", "m"),
             Row("width", "width 1/b in cells", breather.width, "b^{-1}"),
         ]
-        if breather.opening != sp.oo:
+        if found.opening != sp.oo:
             label = "contacts open from the detuning"
             rows.append(Row("opening_detuning", label, breather.opening_detuning))
             notes.append(_EARLIER)
-        if breather.opening != sp.oo and breather.k is not sp.nan:
+        if chain.law.homogeneous:
             for held, label in _LOADS.items():
                 force = breather.opening_load(held)
                 force = sp.N(force, 15) if force.is_Rational else force  # sixth powers are long

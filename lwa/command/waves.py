@@ -12,7 +12,7 @@ from lwa.base import latex
 from lwa.base.exact import InputError, exact
 from lwa.base.quantities import QUANTITIES, NoSolitaryWave
 from lwa.cell import Cell
-from lwa.code.languages import LANGUAGES
+from lwa.code import LANGUAGES
 from lwa.command.chain import ChainInput, take_chain
 from lwa.command.derivation import FIELDS, chain_json, chain_text, listed
 from lwa.command.options import (
@@ -182,9 +182,9 @@ def _compact(theory: Theory, wave: TravelingWave, tex: bool) -> Answer:
         *_fwhm_rows("fwhm", "FWHM of the {}", _fwhm(wave)),
         Row("B", "B", wave.amplitude(), "B"),
         Row("speed", "V_s", wave.speed(), "V_{s}"),
-        f"  F_m ∝ V_s^({wave.force_exponent});  dx/dt = V_s · {wave.speed_scale}",
+        f"  F_m ∝ V_s^({wave.force_exponent});  dx/dt = V_s · {wave.time_scale}",
         Row("speed_factor", "", wave.speed_factor, digits=False),
-        Row("time_scale", "", wave.speed_scale, _SCALE, digits=False),
+        Row("time_scale", "", wave.time_scale, _SCALE, digits=False),
         Row("log_B", "", log_B, expression=False),
         "",
         "v = z^p, integrating factor z^a: z'' = μ z^η - σ z",
@@ -242,7 +242,7 @@ def _at_force(chain: ChainInput, theory: Theory, wave: TravelingWave, F: sp.Expr
         Row("beta", "", wave.beta, r"\beta", "1/m"),
         Row("width", "", wave.width, "L", "m"),
         Row("speed_factor", "", wave.speed_factor),
-        Row("time_scale", "", wave.speed_scale, _SCALE, "m/s"),
+        Row("time_scale", "", wave.time_scale, _SCALE, "m/s"),
         Row("B", "", at.strain, "B"),
         Row("V_s", "", wave.speed(at.strain), "V_{s}"),
     ]

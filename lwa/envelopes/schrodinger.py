@@ -2,35 +2,45 @@
 
 To leading order the displacements in cell n are u = Ψ(X,T) U e^{i(κn - ωt)} + c.c.: U is the mode,
 Σ m_i |U_i|² = 1 over the beads of a cell, ω its frequency, κ its wavenumber per cell, ω″ = d²ω/dκ²,
-X = n - (dω/dκ) t, T = t, and χ the nonlinear coefficient (`lwa.envelopes.modes`). The load is held,
-not the length. Equal beads under A δ^k have χ = -ω (k-1) (k - cos² κ/2)/(m δ0²), δ0 the static
-compression.
+X = n - (dω/dκ) t, T = t, and χ the nonlinear coefficient (`lwa.envelopes.response`). The load is
+held, not the length. Equal beads under A δ^k have χ = -ω (k-1) (k - cos² κ/2)/(m δ0²), δ0 the
+static compression.
+
+At the edge of a band, dω/dκ = 0, envelopes stand. Such a breather of the frequency (1 - Δ) ω, Δ the
+detuning, is Ψ = a f(bn) e^{-iΩT}, Ω = -Δω, with
+
+    bright, ω″χ < 0:   f = sech,   χ a² = 2Ω,   ω″ b² = -2Ω,
+    dark,   ω″χ > 0:   f = tanh,   χ a² = Ω,    ω″ b² = Ω,
+
+so that Ω has the sign of χ. A bead is displaced by 2a|U| at most, and the compression of a contact
+differs from its static value δ0 by 2a|d|, d the contact's compression in the mode. Contacts begin
+to open at about 2a|d| = δ0, that is at a detuning Δ_o, as a² ∝ Δ.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, NoReturn
 
 import numpy as np
 import sympy as sp
+from numpy.typing import ArrayLike
 
 from lwa.base import latex
-from lwa.base.exact import InputError, demand_numbers, integer, positive, root, shorten, signed
+from lwa.base.arrays import Array
+from lwa.base.exact import InputError, integer, one_of, positive, power, root, shorten, signed
 from lwa.base.frozen import Value
 from lwa.cell import Cell
-from lwa.envelopes.breather import KINDS, Breather
-from lwa.envelopes.exact import exact_mode
-from lwa.envelopes.modes import Contacts, Mode, numeric_mode
+from lwa.envelopes.bloch import cell_mode
+from lwa.envelopes.response import Mode
 from lwa.law import ContactLaw, for_cell, substituted
 from lwa.linear.bloch import BRANCHES
 
-K2_ANY, K3_ANY, K4_ANY = sp.symbols("K2 K3 K4", positive=True)
-"""Coefficients of the force K2 δ + K3 δ² + K4 δ³ on top of the load, under `lwa.general()`."""
+LONG = 400  # operations in a result from which on it is not factored: that would take minutes
 
-LONG = 400
-"""Operations in a result from which on it is not factored: that would take minutes."""
+KINDS = ("bright", "dark")  # localised, ω″χ < 0, or a dip in a wave train
+HELD = ("frequency", "amplitude")  # quantities of a breather that are held while the load changes
 
 
 @dataclass(frozen=True, repr=False)
@@ -77,13 +87,8 @@ class Envelope(Value):
 
     @cached_property
     def frequency(self) -> sp.Expr:
-        """Frequency ω of the mode, in radians per unit of time.
-
-        >>> from lwa import Power
-        >>> envelope(Cell(["m1", "m2"]), Power("3/2"), precompression=1).frequency
-        sqrt(3)/sqrt(m2)
-        """
-        square = self._tidy(sp.sympify(self._mode.square) * self._rate)
+        """Frequency ω of the mode, in radians per unit of time."""
+        square = self._tidy(self._mode.square)
         return self._tidy(root(square).replace(sp.Abs, lambda x: x))  # sin κ/2 ≥ 0
 
     @cached_property
@@ -91,7 +96,7 @@ class Envelope(Value):
         """Group velocity dω/dκ, in cells per unit of time."""
         if sp.sin(self.wavenumber).is_zero:  # the edge of a band, in floats as well
             return sp.S.Zero
-        return self._tidy(self._mode.slope * self._rate / (2 * self.frequency))
+        return self._tidy(self._mode.slope / (2 * self.frequency))
 
     @cached_property
     def dispersion(self) -> sp.Expr:
@@ -101,33 +106,32 @@ class Envelope(Value):
         >>> envelope(Cell(["m"], ["K"]), Power(1), background="p0", wavenumber="q").dispersion
         -sqrt(K)*sin(q/2)/(2*sqrt(m))
         """
-        return self._tidy(self._mode.curvature * self._rate / self.frequency)
+        return self._tidy(self._mode.curvature / self.frequency)
 
     @cached_property
     def nonlinearity(self) -> sp.Expr:
         """Nonlinear coefficient χ: the amplitude Ψ raises the frequency by χ|Ψ|²."""
-        found = self._mode.cubic * self._rate / (2 * self.frequency)
-        return self._tidy(found / (self._mass * self._length**2))
+        return self._tidy(self._mode.cubic / (2 * self.frequency))
 
     @cached_property
     def second_harmonic(self) -> tuple[sp.Expr, ...]:
         """Factor e2 for each contact: its second harmonic is A² e2 e^{2i(κn - ωt)} + c.c."""
-        return self._each(self._mode.second, self._mass * self._length)
+        return self._each(self._mode.second)
 
     @cached_property
     def mean_strain(self) -> tuple[sp.Expr, ...]:
         """Lasting compression of each contact divided by |Ψ|², with the mean flow's part."""
-        return self._each(self._mode.mean, self._mass * self._length)
+        return self._each(self._mode.mean)
 
     @cached_property
     def mode(self) -> tuple[sp.Expr, ...]:
         """Mode U, one component per bead; positive for the bead with the largest displacement."""
-        return self._each(self._mode.shape, root(self._mass))
+        return self._each(self._mode.shape)
 
     @cached_property
     def strains(self) -> tuple[sp.Expr, ...]:
         """Square |d|² for each contact, whose compression is A d e^{i(κn - ωt)} + c.c. + …."""
-        return self._each(self._mode.size, self._mass)
+        return self._each(self._mode.size)
 
     @property
     def kind(self) -> str:
@@ -154,11 +158,7 @@ class Envelope(Value):
             detuning = 1 - positive(frequency, "frequency") / self.frequency
         if self.group_velocity.is_zero is not True:
             raise InputError(f"wavenumber is {self.wavenumber}: a breather stands where dω/dκ = 0")
-        return Breather(
-            self.frequency, self.dispersion, self.nonlinearity, self.mode, self.wavenumber,
-            self._opening, self.load, self.law.exponent if self.law.homogeneous else sp.nan,
-            signed(detuning, "detuning"), kind or self.kind,
-        )  # fmt: skip
+        return Breather(self, signed(detuning, "detuning"), kind or self.kind)
 
     @property
     def load(self) -> sp.Expr:
@@ -171,8 +171,8 @@ class Envelope(Value):
         return tuple(c * self.compression for c in self.cell.shares(self.law.exponent))
 
     @property
-    def _opening(self) -> sp.Expr:
-        """The |Ψ|² at which the compression 2|Ψ||d| of a contact reaches its static δ0."""
+    def opening(self) -> sp.Expr:
+        """The |Ψ|² at which a contact's compression 2|Ψ||d| reaches δ0; ∞ if contacts pull."""
         roots = (p for p in self.law.F.atoms(sp.Pow) if p.base == self.law.delta)
         if not self.law.homogeneous and all(p.exp.is_integer for p in roots):  # real at δ < 0
             return sp.oo
@@ -180,67 +180,15 @@ class Envelope(Value):
         found = sp.Min(*(delta**2 / (4 * d) for delta, d in pairs if d))
         return sp.N(found) if self.floats else found
 
-    # --- the mode, in units of the cell's first bead and contact ---
-
-    @property
-    def _mass(self) -> sp.Expr:
-        return self.cell.masses[0]
-
-    @property
-    def _length(self) -> sp.Expr:
-        """The first contact's static compression; 1 without load and for any law."""
-        delta = self.static_compressions[0]
-        return sp.S.One if self.law.formless or delta.is_zero else delta
-
-    @cached_property
-    def _rate(self) -> sp.Expr:
-        """Unit of ω²: the first contact's linear stiffness divided by the first bead's mass."""
-        K2 = K2_ANY if self.law.formless else self.law.at(self.static_compressions[0], 1)
-        return sp.powsimp(self.cell.stiffnesses[0] * K2 / self._mass)
-
-    @cached_property
-    def _contacts(self) -> Contacts:
-        """Exact masses, compressions and nonlinear coefficients, in the units of the first bead."""
-        cell, law, delta = self.cell, self.law, self.static_compressions[0]
-        if law.formless:
-            s, t = K3_ANY / K2_ANY, K4_ANY / K2_ANY
-        elif delta.is_zero:
-            s, t = (law.at(delta, n) / law.at(delta, 1) / sp.factorial(n) for n in (2, 3))
-        else:
-            s, t = (law.phi(n).subs(law.delta, delta) / sp.factorial(n) for n in (2, 3))
-        compliances = cell.compliances(law.exponent)
-        c = [sp.powsimp(part / compliances[0]) for part in compliances]
-        return Contacts(np.array([m / self._mass for m in cell.masses]), np.array(c), s, t)
-
-    def _sampled(self, value: sp.Expr) -> float:
-        """Float of the value at sample numbers for its symbols, by which branches are ordered.
-
-        Samples are 1, 1/2, … along the cell, so that the first mass is the heaviest, and 1.5 for
-        symbols of neither masses nor stiffnesses.
-        """
-        symbols = dict.fromkeys(value.free_symbols, 1.5)
-        for values in (self.cell.stiffnesses, self.cell.masses):
-            for i, part in reversed([*enumerate(values)]):
-                symbols |= dict.fromkeys(part.free_symbols, 1 / (1 + i))
-        return float(value.xreplace(symbols))
-
     @cached_property
     def _mode(self) -> Mode:
         """The mode, exact or in floats."""
-        contacts, kappa = self._contacts, self.wavenumber
-        numbers = (*contacts.masses, *contacts.c, contacts.s, contacts.t, kappa)
-        if self.floats:
-            demand_numbers(set().union(*(x.free_symbols for x in numbers)), "floats need numbers")
-        *rows, s, t, number = map(self._sampled, numbers)
-        masses, c = np.array(rows).reshape(2, -1)
-        sample = Contacts(masses, c, s, t)
-        found, bead = numeric_mode(sample, number, self.branch, self.floats)
-        if self.floats:
-            return found
-        return exact_mode(contacts, kappa, self.branch, bead, self._sampled)
+        return cell_mode(
+            self.cell, self.law, self.compression, self.wavenumber, self.branch, self.floats
+        )
 
-    def _each(self, values: Any, unit: sp.Expr) -> tuple[sp.Expr, ...]:
-        return tuple(self._tidy(sp.sympify(value) / unit) for value in values)
+    def _each(self, values: Any) -> tuple[sp.Expr, ...]:
+        return tuple(self._tidy(value) for value in values)
 
     def _tidy(self, value: sp.Expr) -> sp.Expr:
         if self.floats:
@@ -248,10 +196,114 @@ class Envelope(Value):
         return sp.powsimp(sp.factor(value)) if sp.count_ops(value) < LONG else value
 
 
+@dataclass(frozen=True)
+class Breather(Value):
+    """The standing envelope of the frequency (1 - Δ) ω (see `lwa.Envelope.breather`).
+
+    envelope : the equation, of frequency ω. detuning, kind : Δ, and one of `KINDS`.
+
+    Raises `lwa.InputError` for a detuning to the side where there is no such envelope, and for one
+    at which contacts open.
+    """
+
+    envelope: Envelope
+    detuning: sp.Expr
+    kind: str
+
+    def __post_init__(self) -> None:
+        one_of(self.kind, KINDS, "kind")
+        if self.detuning.is_number and self.detuning >= 1:
+            self._refuse("a frequency is positive, and the detuning below 1")
+        if self._square.is_number and not self._square > 0:
+            side, sign = ("below", "> 0") if self.envelope.nonlinearity < 0 else ("above", "< 0")
+            self._refuse(f"{self.kind} breathers lie {side} f0, at values {sign}")
+        part = self.detuning / self.opening_detuning
+        if part.is_number and part > 1:
+            why = f"contacts open from {float(self.opening_detuning):.5g} on"
+            load = self.opening_load("frequency")
+            if load.is_finite:
+                why += f" at every load; this frequency wants a load of at most {float(load):.5g}"
+            self._refuse(why)
+
+    def _refuse(self, why: str) -> NoReturn:
+        raise InputError(f"detuning 1 - f/f0 is {float(self.detuning):.5g}: {why}")
+
+    def latex_rows(self) -> list[str]:
+        shape = r"\operatorname{sech}" if self.kind == KINDS[0] else r"\tanh"
+        rows = [rf"|\Psi| = a {shape}(b n)", latex.row("a^{2}", self._square)]
+        return [*rows, latex.row("b^{-1}", self.width)]
+
+    @property
+    def frequency(self) -> sp.Expr:
+        """Frequency (1 - Δ) ω of the breather, in radians per unit of time."""
+        return (1 - self.detuning) * self.envelope.frequency
+
+    @property
+    def _shift(self) -> sp.Expr:
+        """The ratio χ a²/Δ: 2Ω/Δ for bright, Ω/Δ for dark breathers."""
+        return -(2 if self.kind == KINDS[0] else 1) * self.envelope.frequency
+
+    @cached_property
+    def _square(self) -> sp.Expr:
+        """Square a² of the envelope's amplitude."""
+        return sp.powsimp(sp.factor(self._shift * self.detuning / self.envelope.nonlinearity))
+
+    @cached_property
+    def amplitude(self) -> tuple[sp.Expr, ...]:
+        """Largest displacement 2aU of each bead, in the cell's units, with the sign of the mode."""
+        return tuple(2 * root(self._square) * U for U in self.envelope.mode)
+
+    @cached_property
+    def width(self) -> sp.Expr:
+        """Width 1/b, in cells, of the envelope sech(bn) or tanh(bn)."""
+        ratio = self.envelope.dispersion / (self._shift * self.detuning)
+        return root(sp.factor(-ratio if self.kind == KINDS[0] else ratio))
+
+    @cached_property
+    def opening_detuning(self) -> sp.Expr:
+        """Detuning Δ_o at which contacts begin to open, to leading order; ∞ if contacts pull.
+
+        Under a power law Δ_o is the same at every load. In the lattice contacts open earlier: for
+        spheres of mass ratios 0.3 to 0.5 at 0.018 instead of 3/128 = 0.0234.
+        """
+        return sp.simplify(self.envelope.opening * self.envelope.nonlinearity / self._shift)
+
+    def opening_load(self, held: str) -> sp.Expr:
+        """The static force at which contacts begin to open, ``held`` "frequency" or "amplitude".
+
+        With the amplitude held contacts open under *smaller* loads; with the frequency held under
+        *greater* ones, which lift the band and so increase the detuning and the amplitude.
+
+        NaN unless the law is a power. Raises `lwa.InputError` for another word.
+        """
+        one_of(held, HELD, "held")
+        nu, limit, law = self.detuning, self.opening_detuning, self.envelope.law
+        if not law.homogeneous:
+            return sp.nan
+        # lengths scale as F0^{1/k} and frequencies as F0^{(k-1)/(2k)}; Δ_o is that of every load
+        k, load = law.exponent, self.envelope.load
+        if held == "amplitude":  # a² ∝ Δ F0^{2/k}
+            return load * power(nu / limit, k / 2)
+        return load * power((1 - nu) / (1 - limit), 2 * k / (k - 1))  # (1 - Δ) F0^{(k-1)/(2k)}
+
+    def displacements(self, cells: ArrayLike) -> Array:
+        """Displacements of the beads at t = 0 to leading order, a row for each cell; in floats."""
+        n = np.asarray(cells, float)
+        shape = n / float(self.width)
+        profile = 1 / np.cosh(shape) if self.kind == KINDS[0] else np.tanh(shape)
+        phase = np.cos(float(self.envelope.wavenumber) * n)
+        return np.asarray(np.multiply.outer(profile * phase, np.array(self.amplitude, float)))
+
+
 def envelope(
-    cell: Cell, law: ContactLaw, *, background: Any = None, precompression: Any = None,
-    wavenumber: Any = sp.pi, branch: Any = None,
-) -> Envelope:  # fmt: skip
+    cell: Cell,
+    law: ContactLaw,
+    *,
+    background: Any = None,
+    precompression: Any = None,
+    wavenumber: Any = sp.pi,
+    branch: Any = None,
+) -> Envelope:
     """The nonlinear Schrödinger equation of a mode of a chain under load.
 
     Parameters
@@ -268,9 +320,8 @@ def envelope(
     Results are exact for cells of one or two beads, in symbols and at any wavenumber, and for cells
     of numbers where cos κ is rational; they are floats through `numeric` for any cell of numbers.
 
-    Raises `lwa.InputError` for other arguments, where branches touch, at zero frequency, where the
-    second harmonic is itself a mode, and at the resonance of a mode that moves with sound,
-    c_g = c_0.
+    Raises `lwa.InputError` for other arguments. Results raise it where branches touch, at zero
+    frequency, where the second harmonic is itself a mode, and where the mode moves with sound.
 
     >>> from lwa import Power
     >>> envelope(Cell(["m"], spacing=1), Power(2), background="p0").nonlinearity

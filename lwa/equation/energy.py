@@ -47,12 +47,13 @@ W(φ_x) in place of the power the theorem holds for every law with equal contact
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from itertools import pairwise
 from math import factorial
 
 from flint import fmpq, fmpq_mpoly
 
-from lwa.algebra.contact import contact
+from lwa.algebra.contact import Force
 from lwa.algebra.jets import JetAlgebra, Ladder, exact_quotient
 from lwa.base.exact import InputError
 from lwa.closure.consistency import Closure
@@ -65,25 +66,6 @@ def flux(closure: Closure, n: int) -> fmpq_mpoly | None:
     return algebra.antiderivative(closure.acceleration[n], k)
 
 
-def variational_derivative(
-    algebra: JetAlgebra, k: fmpq_mpoly, density: fmpq_mpoly, n: int
-) -> fmpq_mpoly:
-    """The variational derivative p^{-k} δ/δu of ∫ p^{k+1} f dx, f of weight n without the velocity.
-
-    The variational derivative is Σ_j (-∂_x)^j ∂V/∂(∂_x^j u), of weight n + 1.
-    """
-    slopes = [algebra.slope(density, j) for j in range(1, n + 1)]
-    first = (k + 1) * density
-    for j, slope in enumerate(slopes, start=1):
-        first = first - algebra.r[j] * slope
-    total = algebra.zero
-    for j, part in enumerate([first, *slopes], start=1):
-        for _ in range(j):
-            part = -algebra.dx(part, k)
-        total = total + part
-    return total
-
-
 def variational(closure: Closure, n: int, density: fmpq_mpoly | None) -> bool:
     """True if order n is minus a variational derivative; ``density`` is its flux F_n.
 
@@ -94,7 +76,23 @@ def variational(closure: Closure, n: int, density: fmpq_mpoly | None) -> bool:
     E = closure.acceleration[n]
     if density is None or algebra.velocity_slopes(E):
         return False
-    return bool(variational_derivative(algebra, k, density, n - 1) == -(k + 1) * E)
+    return bool(_variational_derivative(algebra, k, density, n - 1) == -(k + 1) * E)
+
+
+def _variational_derivative(
+    algebra: JetAlgebra, k: fmpq_mpoly, density: fmpq_mpoly, n: int
+) -> fmpq_mpoly:
+    """The derivative p^{-k} Σ_j (-∂_x)^j ∂V/∂(∂_x^j u) of V = p^{k+1} f, f of weight n."""
+    slopes = [algebra.slope(density, j) for j in range(1, n + 1)]
+    first = (k + 1) * density
+    for j, slope in enumerate(slopes, start=1):
+        first = first - algebra.r[j] * slope
+    total = algebra.zero
+    for j, part in enumerate([first, *slopes], start=1):
+        for _ in range(j):
+            part = -algebra.dx(part, k)
+        total = total + part
+    return total
 
 
 def energy(closure: Closure) -> tuple[JetAlgebra, list[fmpq_mpoly]]:
@@ -110,9 +108,8 @@ def energy(closure: Closure) -> tuple[JetAlgebra, list[fmpq_mpoly]]:
             'that no energy is conserved: closure="full" has one'
         )
     fields = _Fields(closure)
-    orders = range(max(closure.order - 1, 0))
-    found = (fields.kinetic(n) + fields.elastic(n) for n in orders)
-    return fields.algebra, [fields.algebra.by_parts(e, fields.k + 1) for e in found]
+    sums = (fields.kinetic(n) + fields.elastic(n) for n in range(closure.order - 1))
+    return fields.algebra, [fields.algebra.by_parts(e, fields.k + 1) for e in sums]
 
 
 class _Fields:
@@ -121,27 +118,29 @@ class _Fields:
     def __init__(self, closure: Closure) -> None:
         model, old = closure.model, closure.algebra
         self.algebra = algebra = model.algebra(old.weight, velocity=True, rest=True)
-        self.k = model.ring.exponent(algebra.context)
-        self.mu = model.ring.masses.elements(algebra.context)
-        self.c = model.ring.contacts.elements(algebra.context)
-        E = self._series(closure.acceleration, old, self.k)
-        self.S = S = [self._series(row, old, algebra.one) for row in closure.fields]
-        size = max(closure.order - 1, 0)
+        self.k, self.mu, self.c = model.elements(algebra)
+
+        def series(terms: Iterable[fmpq_mpoly], exponent: fmpq_mpoly) -> Ladder:
+            return Ladder(algebra, exponent, [algebra.embed(term, old) for term in terms])
+
+        E = series(closure.acceleration, self.k)
+        self.S = [series(row, algebra.one) for row in closure.fields]
+        orders = range(1, closure.order - 1)
+        # ∂_τ w_i = φ_τ + D ∂_τ (φ_x S_i)
         self.velocities = [
-            [algebra.s[0], *(algebra.dt(row, E, n) for n in range(1, size))] for row in S
+            [algebra.s[0], *(algebra.dt(row, E, n) for n in orders)] for row in self.S
         ]
-        self.forces = [contact(algebra, self.k) for _ in S]
-        for n in range(1, size):
-            for force, share, strain in zip(self.forces, self.c, _strains(S, n), strict=True):
+        self.forces = [Force(algebra, self.k) for _ in self.S]
+        for n in orders:
+            for force, share, strain in zip(self.forces, self.c, self._strains(n), strict=True):
                 force.append(exact_quotient(strain, share))
 
-    def _series(
-        self, terms: tuple[fmpq_mpoly, ...], old: JetAlgebra, exponent: fmpq_mpoly
-    ) -> Ladder:
-        ladder = Ladder(self.algebra, exponent)
-        for term in terms:
-            ladder.append(self.algebra.taken(term, old))
-        return ladder
+    def _strains(self, n: int) -> list[fmpq_mpoly]:
+        """Coefficients of D^n in (w_{i+1} - w_i)/(D p), i < P; w_P is w_0 of the next cell."""
+        S, P = self.S, len(self.S)
+        jet = self.algebra.r[n] * fmpq(P ** (n + 1), factorial(n + 1))
+        last = jet + S[0].increment(P, n) + S[0][n] - S[-1][n]
+        return [*(after[n] - before[n] for before, after in pairwise(S)), last]
 
     def kinetic(self, n: int) -> fmpq_mpoly:
         """Coefficient of D^n in the kinetic energy ½ Σ m̂_i (∂_τ w_i)², divided by p² F′."""
@@ -152,25 +151,16 @@ class _Fields:
         return total
 
     def elastic(self, n: int) -> fmpq_mpoly:
-        """Coefficient of D^n in Σ C_i W(p (1 + X_i)) / P, divided by p² F′; 0 for n = 0.
-
-        Σ C_i p X_i / P = ∂_x Y with Y = Σ_j (PD∂_x)^j/(j+1)! w_0 - φ.
-        """
+        """Coefficient of D^n in Σ C_i W(p (1 + X_i)) / P, divided by p² F′; 0 for n = 0."""
         if n == 0:
             return self.algebra.zero
         total = self.algebra.zero
         for c, force in zip(self.c, self.forces, strict=True):
             total = total + c * force.work(n)
+        # The rest of `work` is F(p) Σ C_i p X_i / P = F(p) ∂_x Y, by parts -p F′ r_1 Y, with
+        # Y = Σ_j (PD∂_x)^j/(j+1)! w_0 - φ.
         P, r = len(self.c), self.algebra.r
         Y = r[n - 1] * fmpq(P**n, factorial(n + 1))
         for j in range(n):
             Y = Y + self.S[0].dx(n - 1 - j, j) * fmpq(P**j, factorial(j + 1))
         return total / P - r[1] * Y
-
-
-def _strains(S: list[Ladder], n: int) -> list[fmpq_mpoly]:
-    """Coefficients of D^n in the (w_{i+1} - w_i)/(D p), i < P; w_P is w_0 of the next cell."""
-    P = len(S)
-    inner = [after[n] - before[n] for before, after in pairwise(S)]
-    jet = S[0].algebra.r[n] * fmpq(P ** (n + 1), factorial(n + 1))
-    return [*inner, jet + S[0].carried(P, n) + S[0][n] - S[-1][n]]

@@ -16,7 +16,7 @@ from typing import Any
 import sympy as sp
 from flint import fmpq_mpoly
 
-from lwa.algebra.contact import Binomial, SeriesPowers
+from lwa.algebra.contact import Force, SeriesPowers
 from lwa.algebra.jets import Ladder, Monomial
 from lwa.base.exact import InputError
 from lwa.closure.consistency import Closure
@@ -80,21 +80,24 @@ def change_field(closure: Closure, alphas: Mapping[int, sp.Expr]) -> ChangedClos
 
 
 class _Change:
+    """The change from the field u of a closure to φ.
+
+    alpha, inverse : the α_n and the ℓ_n of u = φ + Σ ℓ_n D^n ∂_x^n φ; both start with 1.
+    """
+
     def __init__(self, closure: Closure, alphas: Mapping[int, sp.Expr]) -> None:
-        self.closure, self.alphas = closure, alphas
-        old = closure.algebra
-        self.model = replace(closure.model, constants=(*closure.model.constants, *alphas.values()))
+        self.closure, self.alphas, self.size = closure, alphas, closure.order
+        old, constants = closure.algebra, closure.model.constants
+        self.model = replace(closure.model, constants=(*constants, *alphas.values()))
         self.algebra = self.model.algebra(old.weight, velocity=bool(old.s))
         self.k = self.model.ring.exponent(self.algebra.context)
-        first = len(closure.model.constants)
-        self.size = closure.order
         zero, one = self.algebra.zero, self.algebra.one
         self.alpha = [one] + [zero] * self.size
-        for i, n in enumerate(alphas):
+        for i, n in enumerate(alphas, start=len(constants)):
             if n <= self.size:
-                self.alpha[n] = self.model.ring.constant(first + i, self.algebra.context)
+                self.alpha[n] = self.model.ring.constant(i, self.algebra.context)
         self.inverse = [one]
-        for n in range(1, self.size + 1):
+        for n in range(1, self.size + 1):  # (Σ α_n D^n ∂_x^n)(Σ ℓ_n D^n ∂_x^n) = 1
             terms = (self.alpha[j] * self.inverse[n - j] for j in range(1, n + 1))
             self.inverse.append(-sum(terms, zero))
 
@@ -113,13 +116,9 @@ class _Change:
 
     def _acceleration(self) -> tuple[fmpq_mpoly, ...]:
         """The terms of φ_ττ = (1 + Σ α_n D^n ∂_x^n) u_ττ."""
-        acceleration = Ladder(self.algebra, self.k)
-        for term in self._replaced(self.closure.acceleration, self.k):
-            acceleration.append(term)
+        E = Ladder(self.algebra, self.k, self._replaced(self.closure.acceleration, self.k))
         return tuple(
-            sum(
-                (self.alpha[j] * acceleration.dx(n - j, j) for j in range(n + 1)), self.algebra.zero
-            )
+            sum((self.alpha[j] * E.dx(n - j, j) for j in range(n + 1)), self.algebra.zero)
             for n in range(self.size)
         )
 
@@ -130,21 +129,16 @@ class _Change:
 
     def _replaced(self, terms: Sequence[fmpq_mpoly], exponent: fmpq_mpoly) -> Series:
         """The series u_x^e Σ D^m f_m in the jets of φ."""
+        old, context = self.closure.algebra, self.algebra.context
+        padding = (0,) * (context.nvars() - len(old.parameters))
         total = [self.algebra.zero] * self.size
         for m, f in enumerate(terms):
-            for monomial, coefficient in self._monomials(f):
+            for monomial, parameters in old.terms(f).items():
+                coefficient = context.from_dict({(*e, *padding): c for e, c in parameters})
                 parts = self._monomial(monomial, coefficient, exponent, self.size - m)
                 for j, part in enumerate(parts):
                     total[m + j] = total[m + j] + part
         return total
-
-    def _monomials(self, f: fmpq_mpoly) -> list[tuple[Monomial, fmpq_mpoly]]:
-        old = self.closure.algebra
-        padding = (0,) * (self.algebra.context.nvars() - len(old.parameters))
-        return [
-            (monomial, self.algebra.context.from_dict({(*e, *padding): c for e, c in terms}))
-            for monomial, terms in old.terms(f).items()
-        ]
 
     def _monomial(
         self, monomial: Monomial, coefficient: fmpq_mpoly, exponent: fmpq_mpoly, size: int
@@ -161,20 +155,17 @@ class _Change:
         return series
 
     def _of_strain(self, coefficient: fmpq_mpoly, degree: fmpq_mpoly, size: int) -> Series:
-        """The series of coefficient · (1 + X)^degree, where 1 + X = u_x/φ_x.
-
-        Under a law that is no power the coefficient depends on p too.
-        """
+        """The series of coefficient · (1 + X)^degree, where 1 + X = u_x/φ_x."""
         X = [self.inverse[n] * self.algebra.r[n] for n in range(1, size)]
-        if not self.algebra.phi:
-            strain = Binomial(self.algebra, degree)
+        if not self.algebra.phi:  # (1 + X)^e = 1 + e Φ
+            strain = Force(self.algebra, degree)
             for X_n in X:
                 strain.append(X_n)
-            rest = (coefficient * degree * strain.Phi[n] for n in range(1, size))
-            return [coefficient, *rest]
-        slopes = [coefficient]  # p^m ∂_p^m coefficient
+            return [coefficient, *(coefficient * degree * Phi_n for Phi_n in tuple(strain.Phi)[1:])]
+        # The coefficient depends on p too: Taylor's series in p X, with p^m ∂_p^m coefficient.
+        slopes = [coefficient]
         for m in range(size - 1):
-            slopes.append(self.algebra.scaled(slopes[-1], degree - m))
+            slopes.append(self.algebra.dp(slopes[-1], degree - m))
         powers = SeriesPowers([self.algebra.zero, *X])
         rest = (slopes[1] * X[n - 1] + powers.sum(slopes, n) for n in range(1, size))
         return [coefficient, *rest]

@@ -26,7 +26,7 @@ from lwa.cell import Cell, exponent, substitution
 from lwa.cell import k as symbol_k
 from lwa.expansion.observables import Observables, shares_model
 from lwa.expansion.series import EpsilonSeries
-from lwa.law import ContactLaw, demand_one
+from lwa.law import ContactLaw, refuse_two_laws
 
 DAMPINGS = ("linear", "kuwabara_kono")
 """Damping forces of a contact: γ dδ/dt and γ δ^{k-1} dδ/dt (Kuwabara and Kono 1987)."""
@@ -230,7 +230,7 @@ def expand(
         raise InputError(f"cell is {shorten(cell)}: a Cell such as Cell([1, 2]) is wanted")
     order = integer(order, "order", 1)
     if law is not None:
-        demand_one(k, law)
+        refuse_two_laws(k, law)
         if not law.homogeneous:
             raise InputError(
                 f"law is {shorten(law)}: the expansion is one in ε = k - 1 about the linear chain, "

@@ -7,12 +7,12 @@ A file of spheres holds, in units that agree (SI if A is to be in N/m^{3/2})::
     nu = 0.4                      # Poisson's ratio
     density = 1200                # for beads without a mass
     [materials.soft]
-    like = "PTFE"                 # a material of `lwa.spheres.materials` …
+    like = "PTFE"                 # a material of `lwa.spheres.hertz` …
     E = 0.6e9                     # … but for this
     [beads.ball]                  # any name
     radius = 2.38e-3
     mass = 0.45e-3                # or density, or that of the material
-    material = "steel 316"        # of the file or, in SI, of `lwa.spheres.materials`
+    material = "steel 316"        # of the file or, in SI, of `lwa.spheres.hertz`
     [beads.light]
     radius = 2.38e-3
     material = "soft"
@@ -26,13 +26,13 @@ the load and the other entries of the scene are ignored.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
 from lwa.base.exact import InputError
 from lwa.base.tables import Table, among, array, each, named, positive, real, table
-from lwa.spheres.hertz import Material, Sphere
-from lwa.spheres.materials import MATERIALS
+from lwa.spheres.hertz import MATERIALS, Material, Sphere
 
 SCENE = (
     "duration",
@@ -51,9 +51,9 @@ SCENE = (
 
 
 def read_materials(file: Table) -> dict[str, Material]:
-    """The materials of a file, by name, and those of `lwa.spheres.materials` under other names."""
+    """The materials of a file, by name, and those of `lwa.spheres.hertz` under other names."""
     materials: dict[str, Material] = file.read("materials", named(_material), {})
-    return materials | {name: Material.named(name) for name in MATERIALS if name not in materials}
+    return materials | MATERIALS | materials  # the names of the file come first
 
 
 def read_beads(file: Table, materials: Mapping[str, Material]) -> dict[str, Sphere]:
@@ -75,24 +75,20 @@ def spheres(content: Any) -> list[Sphere]:
     cell = file.read("chain", table(("cell", "repeat"))).read("cell", array)
     if not cell:
         raise InputError("chain.cell is empty: the names of one bead or more are wanted")
-    found: list[Sphere] = each(among(beads))(cell, "chain.cell")
-    return found
+    row: list[Sphere] = each(among(beads))(cell, "chain.cell")
+    return row
 
 
 def _material(value: Any, name: str) -> Material:
     given = Table(value, name, ("like", "E", "nu", "density"))
+    like = given.read("like", among(MATERIALS)) if "like" in given else None
     readers = {"E": positive, "nu": real, "density": positive}
-    values = {key: given.read(key, reader) for key, reader in readers.items() if key in given}
+    keys = [key for key in readers if key in given or (like is None and key != "density")]
+    values = {key: given.read(key, readers[key]) for key in keys}
     try:
-        if "like" in given:
-            like = given.read("like", among({known: known for known in MATERIALS}))
-            return Material.named(like, **values)
-        for key in ("E", "nu"):
-            given.read(key, real)
-        return Material(**values)
-    except InputError as error:
-        fault = str(error)
-        raise InputError(fault if fault.startswith(f"{name}.") else f"{name}.{fault}") from None
+        return replace(like, **values) if like else Material(**values)
+    except InputError as fault:
+        raise InputError(f"{name}.{fault}") from None
 
 
 def _bead(value: Any, name: str, materials: Mapping[str, Material]) -> Sphere:
@@ -105,5 +101,4 @@ def _bead(value: Any, name: str, materials: Mapping[str, Material]) -> Sphere:
         return Sphere(given.read("mass", positive), radius, material)
     if "density" not in given and material.density is None:
         raise InputError(f"{name}.mass is missing: it, or a density here or of the material")
-    density = given.read("density", positive, material.density)
-    return Sphere.of_density(density, radius, material)
+    return Sphere.solid(radius, material, given.read("density", positive, material.density))

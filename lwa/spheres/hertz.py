@@ -1,4 +1,4 @@
-"""Hertz's contact between elastic spheres: A of F = A δ^{3/2} from elasticity and shape.
+"""Hertz's contact between elastic spheres: A of F = A δ^{3/2} from elasticity and shape, materials.
 
 Two spheres pressed together by δ repel each other with F = A δ^{3/2},
 
@@ -10,8 +10,7 @@ Two spheres pressed together by δ repel each other with F = A δ^{3/2},
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import sympy as sp
@@ -19,7 +18,6 @@ import sympy as sp
 from lwa.base import latex
 from lwa.base.exact import InputError, exact, one_of, positive, shorten
 from lwa.base.frozen import Value
-from lwa.spheres.materials import MATERIALS
 
 EXPONENT = sp.Rational(3, 2)
 """k of Hertz's contact."""
@@ -51,20 +49,36 @@ class Material(Value):
         return latex.rows({"E": self.E, r"\nu": self.nu} | density)
 
     @classmethod
-    def named(cls, name: str, *, E: Any = None, nu: Any = None, density: Any = None) -> Material:
-        """A material of `lwa.spheres.materials`, in SI, with some of its values replaced.
+    def named(cls, name: str, **changed: Any) -> Material:
+        """A material of `MATERIALS`, in SI, with some of its values changed.
 
         Raises `lwa.InputError`, with the known names, for another name.
 
         >>> Material.named("PTFE", E="0.6e9")
         Material(E=600000000, nu=23/50, density=2178)
         """
-        table = MATERIALS[one_of(name, MATERIALS, "material")]
-        return cls(
-            table.E if E is None else E,
-            table.nu if nu is None else nu,
-            table.density if density is None else density,
-        )
+        return replace(MATERIALS[one_of(name, MATERIALS, "material")], **changed)
+
+
+MATERIALS = {
+    # E, density: ASM/MatWeb, AISI Type 316, annealed bar; ν: Porter et al. 2008
+    "steel 316": Material("193e9", "0.30", "8000"),
+    "steel 440C": Material("200e9", "0.28", "7700"),  # makeitfrom.com, AISI 440C, annealed
+    "aluminium": Material("68.9e9", "0.33", "2700"),  # ASM/MatWeb, aluminium 6061-T6
+    # Gere & Goodno, Mechanics of Materials, appendix: 96-110 GPa, 8400-8600 kg/m³
+    "brass": Material("103e9", "0.34", "8500"),
+    # soda-lime-magnesia-silicate: Sci. Rep., doi 10.1038/s41598-021-04045-6, table 1
+    "glass": Material("72.8e9", "0.222", "2563"),
+    # E, ν: Porter et al. 2008; density: its beads of 0.123 g and 4.76 mm
+    "PTFE": Material("1.46e9", "0.46", "2178"),
+    # acetal homopolymer: DuPont, Delrin Design Guide, Module III, Delrin 500
+    "delrin": Material("3.1e9", "0.35", "1420"),
+}
+"""Materials of beads by name, in SI: typical values at room temperature.
+
+A batch of beads differs from them by some per cent; polymers, which are stiffer the faster they are
+compressed, differ by much more.
+"""
 
 
 @dataclass(frozen=True)
@@ -92,22 +106,18 @@ class Sphere(Value):
         return [*latex.rows({"m": self.mass, "R": self.radius}), *self.material.latex_rows()]
 
     @classmethod
-    def solid(cls, radius: Any, material: Material) -> Sphere:
-        """The solid sphere of a material, whose density gives the mass.
+    def solid(cls, radius: Any, material: Material, density: Any = None) -> Sphere:
+        """The solid sphere of mass (4π/3) ρ R³, of the material's density unless one is given.
 
         >>> Sphere.solid("R", Material.named("steel 316")).mass
         32000*pi*R**3/3
         """
-        density = material.density if isinstance(material, Material) else None
+        if density is None:
+            density = getattr(material, "density", None)
         if density is None:
             raise InputError(
                 f"material is {shorten(material)}: a Material with a density is wanted"
             )
-        return cls.of_density(density, radius, material)
-
-    @classmethod
-    def of_density(cls, density: Any, radius: Any, material: Material) -> Sphere:
-        """The solid sphere of this density, of mass (4π/3) ρ R³."""
         volume = 4 * sp.pi / 3 * positive(radius, "radius") ** 3
         return cls(positive(density, "density") * volume, radius, material)
 
@@ -124,13 +134,10 @@ def stiffness(sphere: Sphere, other: Sphere | Material) -> sp.Expr:
         raise InputError(f"sphere is {shorten(sphere)}: a Sphere is wanted")
     if not isinstance(other, Sphere | Material):
         raise InputError(f"other is {shorten(other)}: a Sphere, or a wall's Material, is wanted")
-    return contact(sphere, other, sp.sqrt)
-
-
-def contact(sphere: Any, other: Any, sqrt: Callable[[Any], Any]) -> Any:
-    """The `stiffness` in the arithmetic of ``sqrt``; `math.sqrt` computes in floats."""
-    first, second = sphere.material, getattr(other, "material", other)
-    wall = second is other
-    R = sphere.radius if wall else sphere.radius * other.radius / (sphere.radius + other.radius)
+    first, R = sphere.material, sphere.radius
+    if isinstance(other, Sphere):
+        second, R = other.material, R * other.radius / (R + other.radius)
+    else:
+        second = other
     compliance = (1 - first.nu**2) / first.E + (1 - second.nu**2) / second.E
-    return 4 * sqrt(R) / (3 * compliance)
+    return 4 * sp.sqrt(R) / (3 * compliance)

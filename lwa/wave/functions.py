@@ -23,8 +23,7 @@ import sympy as sp
 from lwa.base.exact import one_of
 from lwa.base.quantities import QUANTITIES, strain_power
 from lwa.cell import Cell
-from lwa.code.languages import LANGUAGES
-from lwa.code.writer import Function, Local
+from lwa.code import LANGUAGES, Function, Local
 from lwa.law import ContactLaw, Power
 from lwa.wave.closed import CompactWave
 
@@ -33,7 +32,7 @@ _B, _V, _F = (sp.Dummy(name, positive=True) for name in ("B", "V_s", "F"))
 OWN = (_XI, _B, _V, _F)
 """Arguments that are no symbols of the chain, in their order."""
 
-_SHIFT, _INSIDE = (sp.Dummy(name, real=True) for name in ("k_2", "inside"))
+_SHIFT, _INSIDE = (sp.Dummy(name, real=True) for name in ("k_2", "h"))
 
 _TITLE = (
     "The compact traveling wave v = u_x = B cos^m(beta xi), m = 2/(k - 1),",

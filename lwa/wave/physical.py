@@ -22,10 +22,10 @@ from typing import TYPE_CHECKING, Any
 import sympy as sp
 
 from lwa.base import latex
-from lwa.base.exact import InputError, evaluated, number, one_of, positive, power, root, shorten
+from lwa.base.exact import InputError, evaluated, number, one_of, positive, power, shorten
 from lwa.base.frozen import Value
 from lwa.base.quantities import NoSolitaryWave, known, known_extent, strain_power
-from lwa.cell import Cell, meant, unmistakable
+from lwa.cell import Cell, check_distinct, check_names
 from lwa.law import ContactLaw, Power, for_cell, substituted
 from lwa.wave.background import WIDTH_DIGITS, BackgroundWave, taken_names
 from lwa.wave.closed import CompactWave
@@ -66,9 +66,9 @@ class PhysicalWave(Value):
     def __post_init__(self) -> None:
         one_of(self.of, BEARERS, "of")
         force = positive(self.force, "force")
-        unmistakable(list(force.free_symbols))
+        check_distinct(list(force.free_symbols))
         object.__setattr__(
-            self, "force", meant(force, "force", taken=taken_names(self.cell, self._law))
+            self, "force", check_names(force, "force", taken=taken_names(self.cell, self._law))
         )
         if self.of == "bead":
             self._bead_share  # noqa: B018 - a share that does not exist is refused here
@@ -89,7 +89,7 @@ class PhysicalWave(Value):
     def _bead_share(self) -> sp.Expr:
         """Ratio cos^{mk}(βD/2) of a bead's peak force to its contacts'."""
         wave, k = self.wave, self.wave.k
-        angle = (k - 1) / (4 * root(wave.coefficient_sum))  # βD/2
+        angle = (k - 1) / (4 * sp.sqrt(wave.coefficient_sum))  # βD/2
         exponent = 2 * k / (k - 1)
         # At ξ = 0 the mean of cos^e(βξ ± angle) has its maximum only where it is concave.
         if angle.is_number and not (angle < sp.pi / 2 and exponent * sp.sin(angle) ** 2 < 1):
@@ -131,7 +131,7 @@ class PhysicalWave(Value):
         wave, k = self.wave, self.wave.k
         factor = wave.speed_factor * self.cell.size * k / self.cell.mass
         powers = power(self.cell.stiffness(k), 1 / (2 * k))
-        return wave.D * root(factor) * powers * power(self.contact_force, (k - 1) / (2 * k))
+        return wave.D * sp.sqrt(factor) * powers * power(self.contact_force, (k - 1) / (2 * k))
 
     @cached_property
     def bead_velocity(self) -> sp.Expr:
@@ -226,7 +226,7 @@ class PrecompressedWave(Value):
         for_cell(self.law, self.cell)
         taken = taken_names(self.cell, self.law)
         for name in ("force", "precompression"):
-            value = meant(positive(getattr(self, name), name), name, taken=taken)
+            value = check_names(positive(getattr(self, name), name), name, taken=taken)
             object.__setattr__(self, name, value)
         if self.force == self.precompression:
             raise NoSolitaryWave(

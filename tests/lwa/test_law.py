@@ -1,5 +1,5 @@
-"""Any contact law: the power's results come back, the linear part is Bloch's, and the rest is held
-against the difference equation of the chain, expanded by code of its own."""
+"""Any contact law: a power law gives the power's results, the linear part is Bloch's, and the
+nonlinear part is compared with the chain's difference equation, expanded independently."""
 
 from fractions import Fraction
 
@@ -20,7 +20,7 @@ def phi(n):
 
 
 PLACE = {"k": "10007/9973", "m1": "7919/7907", "m2": "6007/5003", "D": "41/97", "alpha": "89/83"}
-"""Where rational functions are compared: one that is zero there and nowhere else is not met."""
+"""Point of comparison of rational functions: large primes are no roots by chance."""
 
 
 def there(value):
@@ -74,7 +74,7 @@ def test_in_another_field_too():
 
 @pytest.mark.parametrize("cell", [Cell([1]), Dimer("m1", "m2"), Cell(["m1", 2, 3])])
 def test_about_a_uniform_strain_it_is_blochs_chain(cell):
-    """What is linear in the jets has no φ_n in it, and is the series of Ω²."""
+    """The terms linear in the jets hold no φ_n, and are the series of Ω²."""
     pde = homogenize(cell, 7, law=general(), closure="full", field="center").pde
     series = Dispersion(cell).acoustic(6)
     for n, found in pde.coefficients.items():
@@ -162,7 +162,7 @@ def test_the_canonical_equation_of_a_law_without_form():
 @pytest.mark.parametrize("field", ["first", "center"])
 @pytest.mark.parametrize("cell", [Dimer(3, 1), Cell([1, 2, 3])])
 def test_the_energy_of_a_law_without_form_is_conserved(cell, field):
-    """∂_τ e is ∂_x of something at every order, in the algebra of the jets."""
+    """∂_τ e is a derivative ∂_x at every order, in the algebra of the jets."""
     order = 7
     closure = homogenize(cell, order, law=general(), closure="full", field=field).closure
     _, density = energy(closure)
@@ -175,7 +175,7 @@ def test_the_energy_of_a_law_without_form_is_conserved(cell, field):
         (e, old, density),
     ):
         for term in terms:
-            row.append(algebra.taken(term, source))
+            row.append(algebra.embed(term, source))
     for n in range(1, order - 1):
         change = algebra.dt(e, E, n) + algebra.s[0] * E[n]  # of u_τ²/2 too
         if n == 1:  # W(u_x): F u_xτ is by parts -F′ u_xx u_τ
@@ -221,7 +221,7 @@ BAD = [
 
 
 @pytest.mark.parametrize(("given", "reason"), BAD)
-def test_what_cannot_be_is_refused(given, reason):
+def test_bad_combinations_are_refused(given, reason):
     with pytest.raises(InputError, match=reason):
         homogenize(**given)
 

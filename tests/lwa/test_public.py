@@ -52,7 +52,7 @@ def test_every_name_in_a_public_signature_is_importable(name):
     assert not missing
 
 
-def test_all_is_there_sorted_and_described():
+def test_all_names_exist_and_are_sorted():
     assert sorted(lwa.__all__) == sorted(set(lwa.__all__))
     for name in lwa.__all__:
         assert getattr(lwa, name) is not None

@@ -63,7 +63,7 @@ def made(name):
 
 
 @pytest.mark.parametrize("name", MADE)
-def test_equal_derivations_are_equal_and_travel(name):
+def test_equal_derivations_are_equal_and_pickle(name):
     one, two = made(name), MADE[name]()
     assert one is not two
     assert one == two
@@ -75,12 +75,12 @@ def test_equal_derivations_are_equal_and_travel(name):
         assert hash(other) == hash(one)
 
 
-def test_different_ones_are_not():
+def test_different_objects_are_not_equal():
     for one, other in combinations(map(made, MADE), 2):
         assert one != other
 
 
-def test_what_is_derived_differently_differs():
+def test_other_derivations_differ():
     found = [
         theory(),
         theory(5),

@@ -42,56 +42,58 @@ class PointFile:
     @property
     def header(self) -> bytes:
         """The file's first line, with the format and the settings."""
-        return json.dumps(_FORMAT | {"settings": {"stretch": self.stretch}}).encode() + b"\n"
+        return _line(_FORMAT | {"settings": {"stretch": self.stretch}})
 
     @contextmanager
     def locked(self) -> Iterator[None]:
         """Keep other processes away from the file; raises `lwa.InputError` if one has it."""
         lock = FileLock(f"{self.path}.lock", blocking=False)
         try:
-            with lock:
-                try:
-                    yield
-                finally:
-                    Path(lock.lock_file).unlink()
+            lock.acquire()
         except Timeout:
             raise InputError(f"file is {self.path}: another sweep writes it") from None
+        with lock:
+            try:
+                yield
+            finally:
+                Path(lock.lock_file).unlink()
 
     def read(self) -> dict[Key, Point]:
         """Read all points. A torn last line is dropped.
 
         Raises `lwa.InputError` for another sweep's file, or one that is damaged.
         """
-        found = content(self.path, _MOST_BYTES) if self.path.exists() else b""
-        if not self.header.startswith(found) and not found.startswith(self.header):
+        text = content(self.path, _MOST_BYTES) if self.path.exists() else b""
+        if not self.header.startswith(text) and not text.startswith(self.header):
             wanted = self.header.decode().strip()
             raise InputError(f"{self.path} does not begin with {wanted}: choose another name")
-        end, points = found.rfind(b"\n") + 1, dict[Key, Point]()
-        for number, line in enumerate(found[:end].splitlines()[1:], start=2):
+        end, points = text.rfind(b"\n") + 1, dict[Key, Point]()
+        for number, line in enumerate(text[:end].splitlines()[1:], start=2):
             try:
-                point = _read(**json.loads(line))
+                point = _point(**json.loads(line))
             except (ValueError, TypeError, KeyError, RecursionError):
                 raise InputError(f"{self.path} is damaged in line {number}") from None
             points[point.k, point.omega] = point
-        if end < len(found):
+        if end < len(text):
             os.truncate(self.path, end)
         return points
 
     def append(self, point: Point) -> None:
         """Append a point, and return when the point is on the disk."""
-        entry: dict[str, Any] = {"k": str(point.k), "omega": str(point.omega)}
-        if point.missing:
-            entry["missing"] = point.missing
-        else:
-            entry["sites"] = point.sites
-            entry["numbers"] = {name: [n.value, n.check] for name, n in point.numbers.items()}
-        line = json.dumps(entry, ensure_ascii=False, allow_nan=False).encode() + b"\n"
+        numbers = {name: [n.value, n.check] for name, n in point.numbers.items()}
+        measured = {"sites": point.sites, "numbers": numbers}
+        rest = {"missing": point.missing} if point.missing else measured
+        line = _line({"k": str(point.k), "omega": str(point.omega)} | rest)
         with self.path.open("ab") as stream:
             stream.write(line if stream.tell() else self.header + line)
             stream.flush()
             os.fsync(stream.fileno())
 
 
-def _read(k: str, omega: str, sites: Any = None, numbers: Any = (), missing: Any = None) -> Point:
+def _line(entry: dict[str, Any]) -> bytes:
+    return json.dumps(entry, ensure_ascii=False, allow_nan=False).encode() + b"\n"
+
+
+def _point(k: str, omega: str, sites: Any = None, numbers: Any = (), missing: Any = None) -> Point:
     pairs = {name: Measured(*map(float, numbers[name])) for name in QUANTITIES if numbers}
     return Point(exact(k, "k"), exact(omega, "omega"), sites and (*sites,), pairs, missing)

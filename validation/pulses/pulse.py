@@ -9,9 +9,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any, TypeVar, cast
+from typing import TypeVar, cast
 
 import numpy as np
 import scipy
@@ -65,34 +66,49 @@ def measure(time: ArrayLike | Signal, values: ArrayLike | None = None) -> Pulse:
     >>> round(pulse.peak, 6), round(pulse.fwhm, 6)
     (1.0, 1.0)
     """
-    if values is None:
-        if not callable(time):
-            raise MeasureError("values are missing: they are wanted beside the sample times")
-        return highest_pulse(time)
-    sampled = Sampled(cast(ArrayLike, time), values)
-    return dense(sampled, highest_pulse(sampled))
+    signal = _signal(time, values)
+    return dense(signal, highest_pulse(signal))
 
 
-def pulses(time: ArrayLike, signal: ArrayLike, least: float = 0.01) -> list[Pulse]:
-    """Measure all pulses of a sampled record, both (S,), in the order of their arrivals.
+def pulses(
+    time: ArrayLike | Signal, values: ArrayLike | None = None, least: float = 0.01
+) -> list[Pulse]:
+    """Measure all pulses of a signal, or of samples, in the order of their arrivals.
 
+    time, values : as in `measure`.
     least : smallest prominence of a pulse (height above its surroundings) over the highest peak.
 
     A pulse with a flank that does not fall to half the peak, as when two overlap, is left out.
     Raises `MeasureError` for a record without any pulse.
-
-    >>> t = np.linspace(0, 4 * np.pi, 1001)
-    >>> [round(pulse.peak, 3) for pulse in pulses(t, np.sin(t) * np.exp(-t / 10))]
-    [0.859, 0.458]
     """
-    sampled = Sampled(time, signal)
-    return [dense(sampled, pulse) for pulse in all_pulses(sampled, least)]
+    signal = _signal(time, values)
+    grid, whole = _Grid(signal), []
+    tops, _ = scipy.signal.find_peaks(grid.f, height=0.0, prominence=least * grid.f.max())
+    for top in tops.tolist():
+        higher = np.flatnonzero(grid.f > grid.f[top])
+        place = int(np.searchsorted(higher, top))
+        start = int(higher[place - 1]) + 1 if place else 0
+        stop = int(higher[place]) if place < len(higher) else len(grid.f)
+        with suppress(MeasureError):
+            whole += grid.pulses(start, stop)
+    if not whole:
+        raise MeasureError("no pulse is in the record")
+    return [dense(signal, pulse) for pulse in whole]
 
 
-def dense(record: Sampled, pulse: Pulse) -> Pulse:
-    """Return the pulse if at least `FEWEST` samples exceed half its peak, else `MeasureError`."""
-    inside = np.count_nonzero((record.times > pulse.rise) & (record.times < pulse.fall))
-    if inside < FEWEST:
+def _signal(time: ArrayLike | Signal, values: ArrayLike | None) -> Signal:
+    """Return a signal as it is, or the spline through samples."""
+    if values is not None:
+        return Sampled(cast(ArrayLike, time), values)
+    if callable(time):
+        return time
+    raise MeasureError("values are missing: they are wanted beside the sample times")
+
+
+def dense(signal: Signal, pulse: Pulse) -> Pulse:
+    """Return a pulse; `MeasureError` if fewer than `FEWEST` samples exceed half of its peak."""
+    inside = np.count_nonzero((signal.times > pulse.rise) & (signal.times < pulse.fall))
+    if isinstance(signal, Sampled) and inside < FEWEST:
         few = f"{inside} samples lie above half the pulse's peak"
         raise MeasureError(f"{few}: at least {FEWEST} are wanted")
     return pulse
@@ -100,8 +116,8 @@ def dense(record: Sampled, pulse: Pulse) -> Pulse:
 
 def highest_pulse(signal: Signal, end: float = math.inf) -> Pulse:
     """Measure the highest pulse of a signal up to the time ``end``."""
-    grid = _Grid(signal, end)
-    return grid.pulse(0, len(grid.f))
+    (pulse,) = _Grid(signal, end).pulses()
+    return pulse
 
 
 def first_pulse(signal: Signal) -> Pulse:
@@ -116,30 +132,24 @@ def first_pulse(signal: Signal) -> Pulse:
     stop = start + int(np.argmin(np.append(above[start:], False)))
     # Beyond, the record counts up to where it is as high again.
     again = np.append(f[stop:] >= f[start:stop].max(initial=0.0), True)
-    return grid.pulse(0, stop + int(np.argmax(again)))
+    (pulse,) = grid.pulses(stop=stop + int(np.argmax(again)))
+    return pulse
 
 
-def leading_pulse(signal: Signal, k: float = 1.0, share: float = 0.5) -> Pulse:
-    """Measure the leading pulse of a contact's compression δ, or of its force F = A δ^k.
+def leading_pulses(signal: Signal, k: float, shares: Sequence[float] = (0.5,)) -> list[Pulse]:
+    """Measure the leading pulse of a contact's force F = A δ^k, or (k = 1) of its compression δ.
 
     The pulse ends where the compression first falls to a quarter of its highest value so far.
 
-    k : exponent of the signal as a power of the compression. share : fraction of the peak at which
-        the rise and fall of the pulse are measured.
-    """
-    return leading_pulses(signal, k, (share,))[0]
-
-
-def leading_pulses(signal: Signal, k: float, shares: Sequence[float]) -> list[Pulse]:
-    """Measure the `leading_pulse` of a signal once for each fraction of the peak in ``shares``.
-
-    The pulses of the list differ in the levels at which rise and fall are timed.
+    k : exponent of the signal as a power of the compression.
+    shares : fractions of the peak. The pulses returned differ in rise and fall, the times at which
+        the signal passes each fraction.
     """
     grid, quarter = _Grid(signal), 0.25**k
     start = int(np.argmax(grid.f > quarter * grid.f.max()))
     relieved = grid.f[start:] < quarter * np.maximum.accumulate(grid.f[start:])
     stop = start + int(np.argmax(relieved)) + 1 if relieved.any() else len(grid.f)
-    return grid.pulses(0, stop, shares)
+    return grid.pulses(stop=stop, shares=shares)
 
 
 def first_passage(signal: Signal, level: float) -> float:
@@ -149,34 +159,6 @@ def first_passage(signal: Signal, level: float) -> float:
     if not above:
         raise MeasureError(f"the signal does not rise above {level:g} within the record")
     return grid.crossing(above - 1, level)
-
-
-def integral(signal: Signal, low: float, high: float) -> float:
-    """Return the integral of a signal from time low to high, by Gauss quadrature."""
-    inside = signal.times[(signal.times > low) & (signal.times < high)]
-    edges = np.concatenate(([low], inside, [high]))
-    nodes, weights = np.polynomial.legendre.leggauss(_DEGREE)
-    half = np.diff(edges) / 2
-    return float(half @ (weights @ signal(edges[:-1] + half * (nodes[:, None] + 1))))
-
-
-def all_pulses(signal: Signal, least: float = 0.01) -> list[Pulse]:
-    """Measure all pulses of a signal, see `pulses`."""
-    grid = _Grid(signal)
-    tops, _ = scipy.signal.find_peaks(grid.f, height=0.0, prominence=least * grid.f.max())
-    found = []
-    for top in tops.tolist():
-        higher = np.flatnonzero(grid.f > grid.f[top])
-        place = int(np.searchsorted(higher, top))
-        start = int(higher[place - 1]) + 1 if place else 0
-        stop = int(higher[place]) if place < len(higher) else len(grid.f)
-        try:
-            found.append(grid.pulse(start, stop))
-        except MeasureError:
-            continue
-    if not found:
-        raise MeasureError("no pulse is in the record")
-    return found
 
 
 class _Grid:
@@ -195,12 +177,10 @@ class _Grid:
                 else "no pulse is in the record: its signal is nowhere positive"
             )
 
-    def pulse(self, start: int, stop: int) -> Pulse:
-        """Measure the highest pulse among the grid points from ``start`` on and before ``stop``."""
-        return self.pulses(start, stop, (0.5,))[0]
-
-    def pulses(self, start: int, stop: int, shares: Sequence[float]) -> list[Pulse]:
-        """Measure the same pulse with rise and fall at each of several fractions of the peak."""
+    def pulses(
+        self, start: int = 0, stop: int | None = None, shares: Sequence[float] = (0.5,)
+    ) -> list[Pulse]:
+        """Measure the highest pulse between two grid points, once for each fraction of its peak."""
         t, f = self.t, self.f[:stop]
         top = start + int(np.argmax(f[start:]))
         if top in (0, len(self.f) - 1):
@@ -214,9 +194,9 @@ class _Grid:
         """Return the times next to grid point ``top`` at which the signal passes a level."""
         below = np.flatnonzero(f <= level)
         place = int(np.searchsorted(below, top))
-        for side, there in (("front", place > 0), ("back", place < len(below))):
-            if not there:
-                raise MeasureError(f"{_PARTLY} its {side} does not pass half its peak")
+        if place in (0, len(below)):
+            side = "back" if place else "front"
+            raise MeasureError(f"{_PARTLY} its {side} does not pass half its peak")
         before, after = int(below[place - 1]), int(below[place])
         if np.isinf(f[[before, after]]).any():
             raise MeasureError("not followed: a window had left the sensor before the pulse passed")
@@ -234,20 +214,14 @@ class _Grid:
     def _crest(self, low: float, high: float) -> tuple[float, float]:
         """Return the time and value of the signal's maximum between two times."""
         inside = self.signal.times[(self.signal.times > low) & (self.signal.times < high)]
-        found = []
+        tops = []
         for a, b in pairwise((low, *inside.tolist(), high)):
-
-            def scaled(x: Any, middle: float = (a + b) / 2, half: float = (b - a) / 2) -> Any:
-                return self.signal(middle + half * x)
-
-            series = chebyshev.chebinterpolate(scaled, _DEGREE)
-            roots = chebyshev.chebroots(chebyshev.chebder(series))
-            real = roots.real[np.abs(roots.imag) < 1e-6].clip(-1, 1)
-            x = np.append(real, (-1.0, 1.0))
-            values = chebyshev.chebval(x, series)
-            best = int(np.argmax(values))
-            found.append((float(values[best]), float((a + b) / 2 + (b - a) / 2 * x[best])))
-        peak, arrival = max(found)
+            series = chebyshev.Chebyshev.interpolate(self.signal, _DEGREE, (a, b))
+            roots = series.deriv().roots()
+            real = roots.real[np.abs(roots.imag) < 1e-6 * (b - a)].clip(a, b)
+            times = np.append(real, (a, b))
+            tops.append(max(zip(series(times).tolist(), times.tolist(), strict=True)))
+        peak, arrival = max(tops)
         return arrival, peak
 
 
@@ -259,9 +233,7 @@ def speed(first: Pulse, second: Pulse, distance: float) -> float:
     if not second.arrival > first.arrival:
         arrivals = f"the pulse arrives at {first.arrival:g} and then at {second.arrival:g}"
         raise MeasureError(f"{arrivals}: a speed needs a later second arrival")
-    if not math.isfinite(found := float(distance) / (second.arrival - first.arrival)):
-        raise MeasureError(f"the speed comes out as {found}: choose other units")
-    return found
+    return float(distance) / (second.arrival - first.arrival)
 
 
 @dataclass(frozen=True)

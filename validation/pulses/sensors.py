@@ -1,15 +1,15 @@
 """Pulses at the sensors of a scene: arrival, peak force, FWHM, and the speed between sensors.
 
-The first pulse at a sensor is the first time interval in which the force exceeds half its maximum,
-so that an echo from the wall does not count. Forces are dynamic: the static force of gravity and
-precompression is subtracted. Every number is measured in two runs, the second with a tolerance
-`LESS` times as large; the error is the difference, and at least the tolerance of the first run.
+Forces are dynamic: the static force of gravity and precompression is subtracted. Every number of a
+recording is measured in two runs, the second with a tolerance `LESS` times as large; the error is
+the difference, and at least the tolerance of the first run.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Container, Iterator, Mapping
+from contextlib import suppress
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from itertools import pairwise
 from typing import Any
@@ -24,9 +24,10 @@ from validation.pulses.pulse import (
     Measured,
     MeasureError,
     Pulse,
-    all_pulses,
     compared,
     first_pulse,
+    highest_pulse,
+    pulses,
     speed,
 )
 from validation.pulses.signals import Mapped, Sampled, Signal
@@ -87,14 +88,19 @@ class Track:
     static: float
 
     @cached_property
-    def pulse(self) -> Pulse:
-        """Measure the first pulse; raises `MeasureError` without a pulse."""
+    def first(self) -> Pulse:
+        """The first pulse; an echo from the wall does not count. Raises `MeasureError`."""
         return first_pulse(self.force)
 
-    @cached_property
-    def train(self) -> list[Pulse]:
-        """Measure all pulses; raises `MeasureError` without a pulse."""
-        return all_pulses(self.force)
+    def pulses(self, every: bool) -> list[Pulse]:
+        """Return every pulse, or the first one if the record has no whole pulse or not ``every``.
+
+        Raises `MeasureError` without a pulse.
+        """
+        with suppress(MeasureError):
+            if every:
+                return pulses(self.force)
+        return [self.first]
 
 
 def record(
@@ -122,11 +128,10 @@ def record(
     options = {"method": method, "window": window, "progress": progress}
     run, check = twice(scene, rtol, LESS * rtol, **options)
     pairs = tuple(zip(tracks(run), tracks(check, every=2), strict=True))
-    sensors = (_train(*pair, rtol) if every else [_reading(*pair, rtol)] for pair in pairs)
     neighbours = (two for two in pairwise(pairs) if two[0][0].kind == two[1][0].kind)
     return Recording(
         run,
-        tuple(reading for train in sensors for reading in train),
+        tuple(reading for pair in pairs for reading in _readings(*pair, every, rtol)),
         tuple(_speed(*two, rtol) for two in neighbours),
     )
 
@@ -162,49 +167,92 @@ def tracks(run: Run, every: int = 1) -> tuple[Track, ...]:
     )
 
 
-def _reading(fine: Track, coarse: Track, rtol: float, number: int | None = None) -> Reading:
-    """Measure the first pulse at a sensor, or pulse ``number`` of its train."""
-
-    def numbers(track: Track) -> dict[str, float]:
-        pulse = track.pulse if number is None else track.train[number]
-        return {name: getattr(pulse, name) for name in READINGS}
-
-    place = (fine.number,)
+def _readings(fine: Track, coarse: Track, every: bool, rtol: float) -> Iterator[Reading]:
+    """Measure the first pulse at a sensor, or every pulse that both runs have."""
+    reading = partial(Reading, fine.kind, (fine.number,), static=fine.static)
     try:
-        found, missing = compared(numbers, fine, coarse, rtol), None
+        pairs = list(zip(fine.pulses(every), coarse.pulses(every), strict=False))
     except MeasureError as error:
-        found, missing = {}, str(error)
-    return Reading(fine.kind, place, found, fine.static, missing, 1 + (number or 0))
+        yield reading({}, missing=str(error))
+        return
+    for number, pair in enumerate(pairs, start=1):
+        yield reading(compared(readings, *pair, rtol), pulse=number)
 
 
-def _train(fine: Track, coarse: Track, rtol: float) -> list[Reading]:
-    """Measure all pulses at one sensor that both runs show."""
-    try:
-        count = min(len(track.train) for track in (fine, coarse))
-    except MeasureError:
-        return [_reading(fine, coarse, rtol)]
-    return [_reading(fine, coarse, rtol, number) for number in range(count)]
+def readings(pulse: Pulse) -> dict[str, float]:
+    """Return the numbers of a pulse by the names `READINGS`."""
+    return {name: getattr(pulse, name) for name in READINGS}
 
 
 def _speed(start: tuple[Track, Track], end: tuple[Track, Track], rtol: float) -> Reading:
     """Measure the speed of the first pulse between two sensors.
 
-    start, end : a sensor's track in the accurate and in the other run. The errors of both arrivals
-    are added, as they may cancel in the less accurate speed.
+    start, end : a sensor's track in the accurate and in the other run.
     """
     (first, _), (second, _) = start, end
-    read = partial(Reading, first.kind, (first.number, second.number), static=first.static)
+    reading = partial(Reading, first.kind, (first.number, second.number), static=first.static)
     try:
-        arrivals = [[track.pulse.arrival for track in pair] for pair in (start, end)]
-        late = sum(max(abs(fine - coarse), rtol * fine) for fine, coarse in arrivals)
+        arrivals = [[track.first.arrival for track in pair] for pair in (start, end)]
     except MeasureError:
-        return read({}, missing="one of the two has no pulse")
-    found = {}
+        return reading({}, missing="one of the two has no pulse")
+    # The errors of both arrivals are added: in the less accurate speed they may cancel.
+    late = sum(max(abs(fine - coarse), rtol * fine) for fine, coarse in arrivals)
+    numbers = {}
     try:
         for unit, at in first.place.items():
-            V = speed(first.pulse, second.pulse, abs(second.place[unit] - at))
-            apart = second.pulse.arrival - first.pulse.arrival
-            found[unit] = Measured(V, V * (1 + late / apart))
-    except MeasureError as error:
-        return read({}, missing=str(error))
-    return read(found)
+            V = speed(first.first, second.first, abs(second.place[unit] - at))
+            apart = second.first.arrival - first.first.arrival
+            numbers[unit] = Measured(V, V * (1 + late / apart))
+    except MeasureError as reason:
+        return reading({}, missing=str(reason))
+    return reading(numbers)
+
+
+@dataclass(frozen=True)
+class Train:
+    """A pulse at several beads or contacts: ``pulses`` of dynamic force by number, from 1.
+
+    spacing : distance of neighbours.
+    """
+
+    pulses: Mapping[int, Pulse]
+    spacing: float
+
+    @classmethod
+    def of(cls, run: Run, kind: str = "bead") -> Train:
+        """Measure the pulses at the "bead" or "contact" sensors of a run, before the wall's echo.
+
+        The last contact sensor must be the wall's, and all spacings equal. Raises `MeasureError` if
+        a pulse is not wholly in the record.
+        """
+        end = float(run.time[np.argmax(run.contact_force[-1])])
+        pulses = {}
+        for track in tracks(run)[:-1]:
+            if track.kind == kind:
+                try:
+                    pulses[track.number] = highest_pulse(track.force, end)
+                except MeasureError as error:
+                    place = f"{kind} {track.number}, before the wave reaches the wall"
+                    raise MeasureError(f"{place}: {error}") from None
+        return cls(pulses, run.scene.spacings[0])
+
+    def only(self, wanted: Container[int]) -> Train:
+        """Return the train of the pulses with the wanted numbers."""
+        chosen = {number: pulse for number, pulse in self.pulses.items() if number in wanted}
+        return replace(self, pulses=chosen)
+
+    @property
+    def speed(self) -> float:
+        """Speed of the pulse from the first sensor to the last, a length per time."""
+        first, last = min(self.pulses), max(self.pulses)
+        return speed(self.pulses[first], self.pulses[last], (last - first) * self.spacing)
+
+    @property
+    def peak(self) -> float:
+        """Mean peak force."""
+        return float(np.mean([pulse.peak for pulse in self.pulses.values()]))
+
+    @property
+    def fwhm(self) -> float:
+        """Mean FWHM, a time."""
+        return float(np.mean([pulse.fwhm for pulse in self.pulses.values()]))

@@ -6,7 +6,6 @@ spline through samples.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
@@ -17,6 +16,8 @@ from numpy.typing import ArrayLike
 
 from lwa.base.arrays import Array
 from lwa.base.exact import InputError
+
+_NODES = 10  # of the Gauss quadrature in each smooth interval
 
 
 class MeasureError(InputError):
@@ -35,22 +36,23 @@ class Signal(Protocol):
 
 
 class Sampled:
-    """The cubic spline through samples, as a `Signal`.
-
-    Raises `MeasureError` unless time and values are finite, at least four, and time increases.
-    """
+    """The cubic spline through samples, as a `Signal`."""
 
     def __init__(self, time: ArrayLike, values: ArrayLike) -> None:
-        self.times, f = _record(time, values)
-        # Scaled by powers of two, which cost no digit: slopes may overflow where values do not.
-        scales = (self.times[-1] - self.times[0], np.abs(f).max())
-        self._pace, self._height = (2.0 ** (math.frexp(x)[1] - 1) for x in scales)
-        self._spline = scipy.interpolate.CubicSpline(self.times / self._pace, f / self._height)
+        try:
+            self.times, f = np.array((time, values), float).reshape(2, -1)
+            if len(f) < 4 or np.shape(time) != f.shape:
+                raise ValueError(f"the shapes are {np.shape(time)} and {np.shape(values)}")
+        except (TypeError, ValueError) as reason:
+            wanted = "time and signal must be equally long rows of at least 4 numbers"
+            raise MeasureError(f"{wanted}: {reason}") from None
+        if not np.isfinite((self.times, f)).all() or np.any(np.diff(self.times) <= 0):
+            raise MeasureError("time and signal must be finite, and time must increase")
+        self._spline = scipy.interpolate.CubicSpline(self.times, f)
 
     def __call__(self, time: ArrayLike, /) -> Array:
         """Return the spline's values at any times within the record."""
-        scaled = np.asarray(time, float) / self._pace
-        return np.asarray(self._spline(scaled) * self._height)
+        return np.asarray(self._spline(time))
 
 
 @dataclass(frozen=True)
@@ -70,14 +72,10 @@ class Mapped:
         return self.function(self.signal(time))
 
 
-def _record(time: ArrayLike, signal: ArrayLike) -> tuple[Array, Array]:
-    try:
-        t, f = np.asarray(time, float), np.asarray(signal, float)
-    except (TypeError, ValueError) as reason:
-        raise MeasureError(f"time and signal must be rows of numbers: {reason}") from None
-    if t.ndim != 1 or t.shape != f.shape or len(t) < 4:
-        shapes = f"time and signal have the shapes {t.shape} and {f.shape}"
-        raise MeasureError(f"{shapes}: two equally long rows of at least 4 samples are wanted")
-    if not (np.all(np.isfinite(t)) and np.all(np.isfinite(f)) and np.all(np.diff(t) > 0)):
-        raise MeasureError("time and signal must be finite, and time must increase")
-    return t, f
+def integral(signal: Signal, low: float, high: float) -> float:
+    """Return the integral of a signal from time low to high, by Gauss quadrature."""
+    inside = signal.times[(signal.times > low) & (signal.times < high)]
+    edges = np.concatenate(([low], inside, [high]))
+    nodes, weights = np.polynomial.legendre.leggauss(_NODES)
+    half = np.diff(edges) / 2
+    return float(half @ (weights @ signal(edges[:-1] + half * (nodes[:, None] + 1))))

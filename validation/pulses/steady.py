@@ -1,31 +1,24 @@
 """The steady pulse of a struck dimer chain: its width, speed and decay at one k and one ω.
 
-Bead 0 of a chain of masses 1, ω, 1, … at rest is struck (A = D = 1), and the pulse is recorded at
-`PLACES` cells at equal distances (the places). F = A δ^k has no scale of its own. So a pulse that
-leaves energy behind in every cell comes to lose the same fraction of its peak force F in each cell,
-F ~ e^{-d n} after n sites; the speed then scales as F^{(k-1)/(2k)}, and the width, in sites, stays
-constant. Between two places, N sites apart (a stretch), with peak forces F_1 and F_2,
+Bead 0 of a chain of masses 1, ω, 1, … at rest is struck (A = D = 1), and the leading pulse is
+recorded at `PLACES` cells at equal distances (the places). F = A δ^k has no scale of its own. So a
+pulse that leaves energy behind in every cell comes to lose the same fraction of its peak force F in
+each cell, F ~ e^{-d n} after n sites; the speed then scales as F^{(k-1)/(2k)}, and the width, in
+sites, stays constant. Between two places, N sites apart (a stretch), with peak forces F_1 and F_2,
 
     decay  d = ln(F_1/F_2) / N,
     speed  c = N (e^z - 1) / (z T F_1^q),   q = (k-1)/(2k),  z = q d N,
 
 T being the time between the peaks: the speed at peak force F is c F^q, so that c is the speed at
 contact force 1. A width is a duration at a contact times the speed there. All numbers are means
-over the two contacts of a cell, from the stretch where their errors are least.
-
-Each number is compared with the stretch before, with a less accurate run, and with a stretch that
-is `FARTHER` times as far as the last place. The error is the largest of the first two differences
-and twice the third: a number that approaches its limit like n^{-1/2} has come half way there, as
-4^{-1/2} = 1/2.
+over the two contacts of a cell, from the stretch where their errors are least. Each number is
+compared with the stretch before, with a less accurate run, and with a stretch that is `FARTHER`
+times as far as the last place.
 
 A pulse that decays is overtaken in the end by a higher one from behind, as higher pulses are
 faster. So at the far stretch the highest pulse must have the force predicted from the decay, within
 `STEADY`. Otherwise the pulse is not steady and the point has no numbers (k = 3/2: ω from 0.49 to
 0.7). A longer run finds the same numbers within their errors, or that the pulse is overtaken.
-
-The leading pulse at a contact ends where the compression first falls to a quarter of its highest
-value so far. Between special mass ratios the force has several humps, as the light bead moves to
-and fro; the width is that of the highest hump, and jumps where a dip between humps passes half.
 """
 
 from __future__ import annotations
@@ -58,7 +51,7 @@ PLACES = 10  # cells at which the pulse is recorded
 STRETCH = 4  # default number of cells from one place to the next, for k ≥ 3/2
 TOLERANCES = (1e-6, 1e-5)  # of the accurate run and of the one that gives its error
 FARTHER = 4  # times as far as the last place: where the pulse must still be the highest
-STEADY = 0.1  # of the force that the decay foretells there: largest difference
+STEADY = 0.1  # largest difference from the force that the decay predicts there, over this force
 _WEAKEST = 1 / 50  # peak force of the slowest pulse that is awaited
 
 
@@ -109,17 +102,18 @@ def _point(k: sp.Rational, omega: sp.Rational, stretch: int, farther: float) -> 
     until = (1 + 1 / PLACES) * float(rough[:PLACES, :, 4].max())
     fine = chain.passages(chain.run(near, until, rtol))
     numbers, others = chain.numbers(fine), chain.numbers(rough)
-    found, here, there = numbers[:, 1:], others[:, 1 : PLACES - 1], others[:, -1:]
-    steps = found - numbers[:, :-1], found - here, 2 * (found - there)
+    values, less_accurate, far_away = numbers[:, 1:], others[:, 1 : PLACES - 1], others[:, -1:]
+    # A number that approaches its limit like n^{-1/2} has come half way to it at 4 n: twice.
+    steps = values - numbers[:, :-1], values - less_accurate, 2 * (values - far_away)
     errors = np.abs(steps).max(axis=0)
     # Relative errors; for the decay, the error of the force after a stretch.
-    worst = np.vstack((errors[:3] / found[:3], chain.sites * errors[3])).max(axis=0)
+    worst = np.vstack((errors[:3] / values[:3], chain.sites * errors[3])).max(axis=0)
     if np.isnan(worst).all():
         raise MeasureError("not steady: the pulse does not arrive later at each place")
     best = int(np.nanargmin(worst))
-    place, values = near[best + 1], found[:, best]
-    foretold = fine[-1, :, 1] * math.exp(values[3] * (near[-1] - far))
-    higher = float(np.mean(rough[-1, :, 5] / foretold))
+    place, values = near[best + 1], values[:, best]
+    predicted = fine[-1, :, 1] * math.exp(values[3] * (near[-1] - far))
+    higher = float(np.mean(rough[-1, :, 5] / predicted))
     if not abs(higher - 1) <= STEADY:
         raise MeasureError(
             f"not steady: at {far} sites the highest pulse has {higher:.3g} times the force that "
@@ -163,18 +157,19 @@ class StruckDimer:
         pulse: (places, 2, 6). Raises `MeasureError` if a pulse does not pass all places in time.
         """
         shares = (0.5, 0.5**self.k)  # half of the force, and half of the compression
-        found, sensors = [], run.scene.contact_sensors
+        passages, sensors = [], run.scene.contact_sensors
         for i in sensors:
             force = run.signal("contact", i)
             try:
-                one, two = leading_pulses(force, self.k, shares)
+                force_pulse, strain_pulse = leading_pulses(force, self.k, shares)
             except MeasureError:
                 sites, end = sensors[-2], run.scene.duration
                 missing = f"not steady: the pulse has not passed {sites} sites by t = {end:.3g}"
                 raise MeasureError(missing) from None
-            highest = max(one.peak, float(force(force.times).max()))
-            found.append((one.arrival, one.peak, one.fwhm, two.fwhm, one.fall, highest))
-        return np.array(found).reshape(-1, 2, 6)
+            first, highest = force_pulse, max(force_pulse.peak, float(force(force.times).max()))
+            row = first.arrival, first.peak, first.fwhm, strain_pulse.fwhm, first.fall, highest
+            passages.append(row)
+        return np.array(passages).reshape(-1, 2, 6)
 
     def numbers(self, passages: Array) -> Array:
         """Return `QUANTITIES` (rows) of each stretch; NaN where the pulse does not arrive later.

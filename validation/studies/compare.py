@@ -11,7 +11,7 @@ from lwa.base.arrays import Array
 from validation.lattice.run import RunProgress, silent
 from validation.pictures import Curve, Panel
 from validation.pulses.pulse import Measured, compared, dense, derived, first_pulse
-from validation.pulses.sensors import READINGS, Track, record, tracks
+from validation.pulses.sensors import READINGS, Track, readings, record, tracks
 from validation.pulses.signals import Sampled
 from validation.report.command import study
 from validation.report.result import Report
@@ -94,5 +94,4 @@ def _dynamic_force(samples: Mapping[str, Array], name: str, track: Track) -> Arr
 def _numbers(samples: tuple[Array, Array]) -> dict[str, float]:
     """Return `READINGS` of the first pulse in a record, sample times and forces."""
     sampled = Sampled(*samples)
-    pulse = dense(sampled, first_pulse(sampled))
-    return {name: getattr(pulse, name) for name in READINGS}
+    return readings(dense(sampled, first_pulse(sampled)))

@@ -22,15 +22,8 @@ from lwa.base.progress import Progress
 from validation.lattice.run import Run
 from validation.lattice.simulate import simulate
 from validation.pictures import Curve, Panel
-from validation.pulses.pulse import (
-    Measured,
-    compared,
-    derived,
-    exponent,
-    highest_pulse,
-    integral,
-    speed,
-)
+from validation.pulses.pulse import Measured, compared, derived, exponent, highest_pulse, speed
+from validation.pulses.signals import integral
 from validation.report.command import study
 from validation.report.result import Report
 from validation.report.table import Column, Finding, Table, percent
@@ -224,7 +217,7 @@ def _numbers(run: Run, wave: TravelingWave, place: int) -> dict[str, float]:
         sides.append((*lengths, strain.peak, V, pulse.peak))
     *lengths, B, V, F = np.mean(sides, axis=0).tolist()
     # V_s of the theory's units; speeds scale as B^{(k-1)/2}.
-    at_one = V / float(wave.speed_scale) / B ** (float(wave.k - 1) / 2)
+    at_one = V / float(wave.time_scale) / B ** (float(wave.k - 1) / 2)
     return dict(zip(QUANTITIES, (*lengths, at_one), strict=True)) | {"speed": V, "force": F}
 
 

@@ -25,7 +25,7 @@ from validation.lattice.run import Run, RunProgress, silent
 from validation.lattice.simulate import twice
 from validation.pictures import Curve, Panel
 from validation.pulses.pulse import Pulse, compared
-from validation.pulses.train import Train
+from validation.pulses.sensors import Train
 from validation.report.command import option, study
 from validation.report.result import Report
 from validation.report.table import Column, Table, percent

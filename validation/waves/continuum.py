@@ -52,19 +52,17 @@ class Continuum:
         return np.asarray(self.length * (np.arange(self.points) / self.points - 0.5))
 
     @cached_property
-    def _waves(self) -> Array:
-        """Wavenumbers of the Fourier coefficients."""
+    def _wavenumbers(self) -> Array:
         return np.asarray(2 * np.pi / self.length * np.arange(self.points // 2 + 1))
 
-    @cached_property
-    def _laws(self) -> tuple[Any, Any]:
-        """The force F and its potential W as functions of arrays."""
-        p = sp.Symbol("p", positive=True)
-        force, energy = (sp.lambdify(p, self.equation.force(p, n), "numpy") for n in (0, -1))
-        return force, energy
+    def _of_strain(self, p: Array, n: int) -> Array:
+        """The force F(p) for n = 0, its potential W(p) for n = -1."""
+        return np.asarray(self._laws[n](np.maximum(p, 0) if self.equation.law.homogeneous else p))
 
-    def _pressed(self, p: Array) -> Array:
-        return np.maximum(p, 0) if self.equation.law.homogeneous else p
+    @cached_property
+    def _laws(self) -> dict[int, Any]:
+        p = sp.Symbol("p", positive=True)
+        return {n: sp.lambdify(p, self.equation.force(p, n), "numpy") for n in (0, -1)}
 
     def evolved(
         self, p: ArrayLike, v: ArrayLike, times: ArrayLike, rtol: float = TOLERANCE
@@ -73,31 +71,27 @@ class Continuum:
 
         The times rise from 0 on. Raises `SceneError` if the integration fails.
         """
-        n, inertia = self.points, 1 + float(self.equation.I) * self._waves**2
-        force, slope = self._laws[0], 1j * self._waves
+        n, inertia = self.points, 1 + float(self.equation.I) * self._wavenumbers**2
+        slope = 1j * self._wavenumbers
         if n % 2 == 0:
-            slope[-1] = 0  # the sawtooth has no slope at the points
+            slope[-1] = 0  # the shortest wave, ±1 in turn, has no slope at the points
 
         def rate(tau: float, state: Array) -> Array:
             strain, velocity = state.reshape(2, n)
-            pushed = scipy.fft.rfft(force(self._pressed(strain))) * slope / inertia
-            moved = scipy.fft.rfft(velocity) * slope
-            return np.concatenate((scipy.fft.irfft(moved, n), scipy.fft.irfft(pushed, n)))
+            acceleration = scipy.fft.rfft(self._of_strain(strain, 0)) * slope / inertia
+            stretching = scipy.fft.rfft(velocity) * slope
+            return np.ravel(scipy.fft.irfft((stretching, acceleration), n))
 
-        at = np.asarray(times, float)
-        start = np.concatenate((np.asarray(p, float), np.asarray(v, float)))
-        size = np.abs(start).max()
-        found = scipy.integrate.solve_ivp(
-            rate, (0.0, float(at[-1])), start, "DOP853", at, rtol=rtol, atol=rtol * size
-        )
-        if not found.success:
-            raise SceneError(f"the integration ends at τ = {found.t[-1]:.6g}: {found.message}")
-        strain, velocity = found.y.T.reshape(len(at), 2, n).swapaxes(0, 1)
+        at, start = np.asarray(times, float), np.concatenate((p, v), dtype=float)
+        tolerances = {"rtol": rtol, "atol": rtol * np.abs(start).max()}
+        path = scipy.integrate.solve_ivp(rate, (0.0, at[-1]), start, "DOP853", at, **tolerances)
+        if not path.success:
+            raise SceneError(f"the integration ends at τ = {path.t[-1]:.6g}: {path.message}")
+        strain, velocity = path.y.T.reshape(len(at), 2, n).swapaxes(0, 1)
         return strain, velocity
 
     def energy(self, p: Array, v: Array) -> Array:
         """Return the energy, (…), of strains and velocities, (…, points)."""
-        slope = scipy.fft.irfft(1j * self._waves * scipy.fft.rfft(v), self.points)
-        density = v**2 / 2 + float(self.equation.I) * slope**2 / 2
-        density = density + self._laws[1](self._pressed(p))
+        slope = scipy.fft.irfft(1j * self._wavenumbers * scipy.fft.rfft(v), self.points)
+        density = (v**2 + float(self.equation.I) * slope**2) / 2 + self._of_strain(p, -1)
         return np.asarray(density.sum(axis=-1) * self.length / self.points)

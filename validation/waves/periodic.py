@@ -9,8 +9,7 @@ and B u the further compressions of the contacts, (B u)_i = u_i - u_{i+1},
 **Orbits.** u(t) = Σ_h a_h cos(hωt), h = 0 … H, for orbits that are at rest at t = 0. The equations
 are projected on the same cosines by the trapezoidal rule, which is spectrally accurate, and solved
 by Newton's method with a sparse Jacobian (SciPy). Without a wall the mean displacement is held at
-0. Newton's method starts from a near motion, such as an envelope (`lwa.envelope`), and `continued`
-follows an orbit in frequency.
+0. Newton's method starts from a near motion, such as an envelope (`lwa.envelope`).
 
 **Stability.** The Floquet multipliers are the eigenvalues of the linearised motion over a period
 (SciPy's DOP853). They come in pairs λ, 1/λ; an orbit is linearly stable if all |λ| = 1. The phase
@@ -21,6 +20,7 @@ the integration's error ε splits by √ε. (Flach & Gorbach, Phys. Rep. 467, 1,
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -32,12 +32,12 @@ from numpy.typing import ArrayLike, NDArray
 from lwa.base.arrays import Array
 from lwa.base.exact import InputError
 from validation.scenes.checks import SceneError, integer, positive
+from validation.waves import newton
 
 HARMONICS = 5  # H
 MOST_STEPS = 30  # of Newton's method
 CLOSE = 1e-10  # largest force that a solution misses, over the load
 SMALL, LARGE = 1e-2, 1e3  # least motion over the start's, and largest over the static compression
-SMALLEST = 1e-3  # of the way in frequency, the shortest step of a continuation
 TOLERANCE = 1e-10  # rtol of the linearised motion
 
 
@@ -67,7 +67,7 @@ class PressedChain:
                 f"stiffnesses are {len(self.stiffnesses)} of {len(self.masses)} beads: one between "
                 "two beads, and one more for a wall, are wanted"
             )
-        object.__setattr__(self, "load", positive(self.load, "load"))
+        positive(self.load, "load")
 
     @cached_property
     def rest(self) -> Array:
@@ -83,25 +83,27 @@ class PressedChain:
 
     def forces(self, u: Array) -> Array:
         """Return F - F0 of the contacts at displacements u, (N,) or (N, times)."""
-        share = self._shares(u)
-        with np.errstate(divide="ignore"):  # an open contact
-            return np.asarray(self.load * np.expm1(self.k * np.log1p(share)))
+        return self.load * _power_less_one(self._shares(u), self.k)
 
     def slopes(self, u: Array) -> Array:
         """Return F′ of the contacts at displacements u, (N,) or (N, times)."""
-        share = self.k * self.load * (1 + self._shares(u)) ** (self.k - 1)
-        return np.asarray((share.T / self.rest).T)
+        slope = self.k * self.load * (1 + self._shares(u)) ** (self.k - 1)
+        return np.asarray((slope.T / self.rest).T)
 
     def energy(self, u: Array) -> float:
         """Return the elastic energy less the work of the loads at displacements u, (N,)."""
-        share, k = self._shares(u), self.k
-        with np.errstate(divide="ignore"):
-            stored = np.expm1((k + 1) * np.log1p(share)) / (k + 1)
-        return float(self.load * self.rest @ (stored - (self.strains @ u) / self.rest))
+        stored = _power_less_one(self._shares(u), self.k + 1) / (self.k + 1)
+        return float(self.load * (self.rest @ stored - np.sum(self.strains @ u)))
 
     def _shares(self, u: Array) -> Array:
         """Return the further compressions divided by the static ones; -1 for open contacts."""
         return np.asarray(np.maximum(((self.strains @ u).T / self.rest).T, -1))
+
+
+@np.errstate(divide="ignore")  # an open contact
+def _power_less_one(share: Array, exponent: float) -> Array:
+    """Return (1 + share)^exponent - 1 without cancellation."""
+    return np.asarray(np.expm1(exponent * np.log1p(share)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,14 +111,11 @@ class Orbit:
     """A time-periodic motion u(t) = Σ_h a_h cos(hωt) of a chain.
 
     frequency : ω, in radians per unit of time. coefficients : a, (N, H + 1).
-    residual : largest force by which the orbit violates the equations of motion, divided by F0, at
-        times between those at which the equations were solved.
     """
 
     chain: PressedChain
     frequency: float
     coefficients: Array
-    residual: float
 
     @property
     def period(self) -> float:
@@ -132,6 +131,16 @@ class Orbit:
     def energy(self) -> float:
         """Energy above the state of rest."""
         return self.chain.energy(self.displacements(0.0))
+
+    @property
+    def residual(self) -> float:
+        """Largest force by which the orbit violates the equations of motion, divided by F0.
+
+        The times are between those at which the equations were solved.
+        """
+        phase = np.linspace(0, np.pi, 8 * self.coefficients.shape[1] + 3)
+        fault = _fault(self.chain, self.frequency, self.coefficients, phase)
+        return float(np.abs(fault).max()) / self.chain.load
 
     def displacements(self, t: ArrayLike) -> Array:
         """Return the displacements of the beads at times t, (N, *shape of t)."""
@@ -152,8 +161,8 @@ class Orbit:
         unit = np.append(np.ones(n), np.full(n, self.frequency))
         start, tolerance = np.diag(unit).ravel(), dict(rtol=TOLERANCE, atol=TOLERANCE)
         end = scipy.integrate.solve_ivp(rate, (0, self.period), start, "DOP853", **tolerance)
-        found = np.linalg.eigvals(end.y[:, -1].reshape(2 * n, 2 * n) / unit[:, None])
-        return np.asarray(found[np.argsort(-np.abs(found))])
+        multipliers = np.linalg.eigvals(end.y[:, -1].reshape(2 * n, 2 * n) / unit[:, None])
+        return np.asarray(multipliers[np.argsort(-np.abs(multipliers))])
 
 
 def orbit(
@@ -178,7 +187,7 @@ def orbit(
         step, fault = _newton_step(chain, omega, a)
         # Rounding stops the fall. Steps say less: a wide orbit is easily shifted along the chain.
         if fault < CLOSE * chain.load and fault > before / 4:
-            return Orbit(chain, omega, a, _residual(chain, omega, a))
+            return Orbit(chain, omega, a)
         a, before = a - step, fault
         if not least < np.abs(a).max() < LARGE * chain.rest.max():
             break
@@ -191,25 +200,17 @@ def continued(begin: Orbit, frequency: float) -> Orbit:
     Each step starts from an extrapolation of the two orbits before. Raises `NoOrbit` if Newton's
     method fails at the smallest step.
     """
-    frequency = positive(frequency, "frequency")
-    whole, done, step = frequency - begin.frequency, 0.0, 0.25
-    here, before = begin, begin
-    while done < 1:
-        step = min(step, 1 - done)
-        omega = frequency if done + step == 1 else begin.frequency + (done + step) * whole
-        ahead = here.coefficients
-        if before.frequency != here.frequency:
-            share = (omega - here.frequency) / (here.frequency - before.frequency)
-            ahead = ahead + share * (ahead - before.coefficients)
-        try:
-            found = orbit(here.chain, omega, ahead, ahead.shape[1] - 1)
-        except NoOrbit:
-            step /= 2
-            if step < SMALLEST:
-                raise
-            continue
-        before, here, done, step = here, found, done + step, 1.5 * step
-    return here
+
+    def at(omega: float, path: Sequence[tuple[float, Orbit]]) -> Orbit:
+        here, last = path[-1]
+        ahead = last.coefficients
+        if len(path) > 1:
+            before, older = path[0]
+            ahead = ahead + (omega - here) / (here - before) * (ahead - older.coefficients)
+        return orbit(begin.chain, omega, ahead, ahead.shape[1] - 1)
+
+    end = positive(frequency, "frequency")
+    return newton.continued(begin, begin.frequency, end, abs(end - begin.frequency) / 4, at)
 
 
 def _cosines(a: Array, phase: Array) -> Array:
@@ -217,20 +218,26 @@ def _cosines(a: Array, phase: Array) -> Array:
     return np.cos(np.multiply.outer(np.arange(a.shape[1]), phase))
 
 
+def _fault(chain: PressedChain, omega: float, a: Array, phase: Array) -> Array:
+    """Return M ü + Bᵀ [F - F0] at phases φ = ωt, (N, phases)."""
+    cosines = _cosines(a, phase)
+    acceleration = -(a * (omega * np.arange(a.shape[1])) ** 2) @ cosines
+    forces = chain.strains.T @ chain.forces(a @ cosines)
+    return np.asarray(chain.masses[:, None] * acceleration + forces)
+
+
 def _newton_step(chain: PressedChain, omega: float, a: Array) -> tuple[Array, float]:
     """Return Newton's step at the coefficients a, (N, H + 1), and the largest residual."""
     n, terms = a.shape
     times = 2 * terms  # of half a period: twice as many as are needed
-    cosines = _cosines(a, np.pi / times * np.arange(times + 1))
+    phase = np.pi / times * np.arange(times + 1)
+    cosines = _cosines(a, phase)
     project = cosines * (2 / times)
     project[0] /= 2
     project[:, [0, -1]] /= 2  # the trapezoidal rule
-    u, B = a @ cosines, chain.strains
-    fault = omega**2 * chain.masses[:, None] * np.arange(terms) ** 2 * a
-    fault -= B.T @ (chain.forces(u) @ project.T)
-    blocks = np.einsum("ht,ct,gt->chg", project, chain.slopes(u), cosines)
-    each = scipy.sparse.eye_array(terms)
-    wide = scipy.sparse.kron(B, each)
+    fault = -_fault(chain, omega, a, phase) @ project.T
+    blocks = np.einsum("ht,ct,gt->chg", project, chain.slopes(a @ cosines), cosines)
+    wide = scipy.sparse.kron(chain.strains, scipy.sparse.eye_array(terms))
     inertia = omega**2 * np.outer(chain.masses, np.arange(terms) ** 2).ravel()
     matrix = scipy.sparse.diags_array(inertia) - wide.T @ scipy.sparse.block_diag(blocks) @ wide
     right = fault.ravel()
@@ -240,11 +247,3 @@ def _newton_step(chain: PressedChain, omega: float, a: Array) -> tuple[Array, fl
         right = np.append(right, mean @ a.ravel())
     solved = scipy.sparse.linalg.spsolve(scipy.sparse.csc_array(matrix), right)
     return solved[: n * terms].reshape(n, terms), float(np.abs(fault).max())
-
-
-def _residual(chain: PressedChain, omega: float, a: Array) -> float:
-    phase = np.linspace(0, np.pi, 8 * a.shape[1] + 3)
-    cosines = _cosines(a, phase)
-    speed_up = -(a * (omega * np.arange(a.shape[1])) ** 2) @ cosines
-    push = chain.masses[:, None] * speed_up + chain.strains.T @ chain.forces(a @ cosines)
-    return float(np.abs(push).max()) / chain.load

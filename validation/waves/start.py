@@ -20,7 +20,7 @@ from numpy.typing import ArrayLike
 
 from lwa.base.arrays import Array
 from lwa.wave.quadrature import NumericBackground
-from validation.pulses.pulse import leading_pulse
+from validation.pulses.pulse import leading_pulses
 from validation.pulses.steady import PLACES, STRETCH, StruckDimer, cells_apart
 from validation.waves import newton
 from validation.waves.profile import OUTSIDE, LatticeWave
@@ -125,7 +125,7 @@ def struck_pulse(k: float, omega: float) -> StruckPulse:
     for contact in cell:
         force = run.signal("contact", contact)
         # A leading pulse ends at a quarter of its peak strain: the same cut on both sides.
-        cut = leading_pulse(force, k, share=quarter)
+        (cut,) = leading_pulses(force, k, (quarter,))
         # ξ = 0 is the mean of the two contacts' centers of max(F - F_max/4^k, 0).
         time = np.linspace(cut.rise, cut.fall, _CENTER)
         centers.append(np.average(time, weights=force(time) - quarter * cut.peak))

@@ -22,7 +22,7 @@ expressions = st.recursive(
 @given(expressions)
 @example(x + x**-y)
 @example((x**y + x**-y) * x**y)
-def test_it_is_the_same_in_lowest_terms(value):
+def test_factored_expressions_are_equal_and_in_lowest_terms(value):
     assume(not value.has(sp.zoo, sp.nan))
     # x^{-y} is a symbol of its own there, and 1/p here
     assume(not any((power.exp / y).is_negative for power in value.atoms(sp.Pow)))
@@ -37,7 +37,7 @@ def test_it_is_the_same_in_lowest_terms(value):
         assert sp.Poly(one, *gens).total_degree() == sp.Poly(two, *gens).total_degree()
 
 
-def test_what_cancels_is_gone():
+def test_common_factors_cancel():
     assert factored((x**2 - y**2) / (x - y)) == x + y
     assert factored(x / (x + y) + y / (x + y)) == 1
     assert factored(x - x) == 0

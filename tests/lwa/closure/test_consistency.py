@@ -31,7 +31,7 @@ FIELD = (
 
 
 def number(value):
-    """A rational at the digits at work."""
+    """A rational in mpmath's working digits."""
     return mpmath.mpf(int(value.p)) / int(value.q)
 
 
@@ -193,7 +193,7 @@ def test_the_defect_vanishes_at_equal_masses_only():
             assert sp.cancel(coefficient.subs(m1, m2)) == 0
 
 
-def test_the_defect_is_what_the_second_equation_says_less_of_G_and_H():
+def test_the_defect_is_the_difference_between_both_equations():
     theory = homogenize(Dimer("m1", "m2"), order=4)
     m1, m2 = theory.cell.masses
     k, b = theory.k, m1 / (m1 + m2)

@@ -133,7 +133,7 @@ def acceleration(theory, k, field, velocity):
 
 
 def residuals(theory):
-    """What the equations of motion leave at D^{k+1} … D^{k+order-1} and x = 0, per particle."""
+    """Residuals of the equations of motion at D^{k+1} … D^{k+order-1} and x = 0, by particle."""
     cell, order, k = theory.cell, theory.order, int(theory.k)
     P = cell.size
     degree = order + 6

@@ -5,7 +5,7 @@ import json
 import subprocess
 from functools import partial
 
-from lwa.code.writer import Function
+from lwa.code import Function
 
 STRICT = ("-O2", "-Wall", "-Wextra", "-pedantic", "-Werror", "-shared", "-fPIC")
 COMMANDS = {
@@ -13,7 +13,7 @@ COMMANDS = {
     "fortran": ("gfortran", "-std=f2008", *STRICT),
 }
 PROGRAMS = {language: command[0] for language, command in COMMANDS.items()} | {"javascript": "node"}
-"""What runs or compiles a generated language."""
+"""Programs that run or compile the generated languages."""
 
 SUFFIX = {"c": "c", "fortran": "f90"}
 

@@ -332,7 +332,7 @@ def test_bad_spheres_are_one_line_and_status_two(capsys, spheres, old, new, more
     assert words in err
 
 
-def test_files_of_spheres_that_are_none(capsys, tmp_path):
+def test_unreadable_files_are_refused(capsys, tmp_path):
     os.mkfifo(tmp_path / "pipe.toml")
     for name, words in (
         ("missing.toml", "No such file"),
@@ -376,7 +376,7 @@ def test_bad_input_is_one_line_and_status_two(capsys, arguments):
     ("command", "says"),
     [
         ("wave --k V_s", "'V_s': the name means the speed"),
-        ("wave --k 29000", "up to k = 1000"),
+        ("wave --k 29000", "exponents from 1/100 to 1000 are taken"),
         ("derive --masses 1,2,3", "--closure full"),
     ],
 )
@@ -387,14 +387,14 @@ def test_a_name_with_another_meaning_or_a_huge_number_is_refused(capsys, command
     assert err.count("\n") == 1
 
 
-def test_conservative_is_told_at_any_order(capsys):
+def test_conservative_is_decided_at_any_order(capsys):
     for order in "1234":
         status, out, _ = run(capsys, "derive", "--order", order, "--format", "json")
         assert status == 0
         assert json.loads(out)["conservative"] is False
 
 
-def test_units_are_told_near_k_one(capsys):
+def test_units_are_printed_near_k_one(capsys):
     status, out, _ = run(capsys, "wave", "--k", "1.000000001", "--masses", "1,2")
     assert status == 0
     assert "k = 1000000001/1000000000" in out

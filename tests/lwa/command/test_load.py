@@ -139,7 +139,7 @@ def test_waves_in_latex(capsys, options, parts):
     assert all(part in out for part in parts)
 
 
-def test_unlike_beads_without_a_solitary_wave_are_told(capsys):
+def test_unlike_beads_without_a_solitary_wave_get_a_note(capsys):
     """ω = 0.55 has no solitary wave, ω = 0.02 radiates next to nothing."""
     for omega, told in (("0.55", True), ("0.02", False)):
         for command in (("wave", "--closure", "full", "--field", "center"), ("expansion",)):
@@ -203,7 +203,7 @@ BAD = [
 
 
 @pytest.mark.parametrize(("arguments", "reason"), BAD)
-def test_what_cannot_be_meant_is_one_line(capsys, arguments, reason):
+def test_bad_input_is_one_line(capsys, arguments, reason):
     status, out, err = run(capsys, *arguments)
     assert (status, out) == (2, "")
     assert err.count("\n") == 1

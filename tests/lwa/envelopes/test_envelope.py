@@ -1,4 +1,4 @@
-"""The envelope's equation: closed forms, KdV, Toda, the lattice, exact numbers beside floats."""
+"""The envelope's equation against closed forms, KdV, Toda's lattice and plane waves of chains."""
 
 from types import SimpleNamespace
 
@@ -24,15 +24,12 @@ from lwa import (
     general,
 )
 from lwa.law import DELTA, named
-from lwa.linear import bands
+from lwa.linear.bands import Bands
+from tests.identity import same
 
 K2, K3, K4 = sp.symbols("K2 K3 K4", positive=True)
 k, m1, m2, q, p0 = sp.symbols("k m1 m2 q p0", positive=True)
 HERTZ = Power("3/2")
-
-
-def same(left, right):
-    return sp.simplify(left - right) == 0
 
 
 # --- closed forms (theory notes, section 13) ---
@@ -305,7 +302,7 @@ def test_units_of_real_spheres():
         (Dimer(1, 2), {"precompression": 1}, "background or precompression: one of the two"),
     ],
 )
-def test_what_has_no_envelope_is_refused(cell, options, message):
+def test_impossible_envelopes_are_refused(cell, options, message):
     with pytest.raises(InputError, match=message):
         envelope(cell, HERTZ, **({"background": 1} | options)).frequency  # noqa: B018
 
@@ -341,7 +338,7 @@ def test_resonances_are_refused_by_name():
 def test_no_mode_is_faster_than_sound(weights, springs, kappa):
     """c_g < c_0 in every chain of springs, so that no other mode resonates with the mean flow."""
     mu, c = np.array(weights) / sum(weights), np.array(springs[: len(weights)])
-    velocity = bands.group_velocity(mu, c * len(c) / c.sum(), kappa / len(c))
+    velocity = Bands(mu, c * len(c) / c.sum()).group_velocity(kappa / len(c))
     assert np.abs(velocity).max() < 1
 
 

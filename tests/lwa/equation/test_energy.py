@@ -18,8 +18,8 @@ FIELD = x + sp.sin(x) / 5 + sp.cos(2 * x) / 17
 VELOCITY = sp.cos(x) / 3 + sp.sin(2 * x) / 4
 
 
-def power_of_what_is_left(pde):
-    """n of d/dτ ∫ e dx ∝ D^n, from two small D; infinite where nothing is left."""
+def order_of_the_drift(pde):
+    """n of d/dτ ∫ e dx ∝ D^n, from two small D; infinite where the energy is constant."""
     spacing = pde.cell.spacing
     force = pde.right_side(FIELD, x, VELOCITY)
     density = pde.energy_density(FIELD + s * VELOCITY, x, VELOCITY + s * force)
@@ -45,15 +45,15 @@ CASES = [
 
 
 @pytest.mark.parametrize(("cell", "order", "k", "kind", "alphas"), CASES)
-def test_it_is_conserved_at_the_rate_of_its_closure(cell, order, k, kind, alphas):
+def test_the_energy_is_conserved_to_the_order_of_its_closure(cell, order, k, kind, alphas):
     pde = homogenize(cell, order, k=k, **kind).pde
     pde = pde.in_field(alphas) if alphas else pde
     assert set(pde.energy) == set(range(order - 1))
     # at least: the next order may vanish
-    assert power_of_what_is_left(pde) > order - 1 - 1e-2  # of the slope between two D
+    assert order_of_the_drift(pde) > order - 1 - 1e-2  # of the slope between two D
 
 
-def test_a_wrong_coefficient_is_seen():
+def test_the_energy_of_another_field_is_not_conserved():
     """Momentum alone, or the canonical field's energy in another field, is not conserved."""
     first = homogenize(Dimer(3, 1), 4, k="3/2", closure="full").pde
     center = homogenize(Dimer(3, 1), 4, k="3/2", closure="full", field="center").pde
@@ -62,7 +62,7 @@ def test_a_wrong_coefficient_is_seen():
         cell, right_side = first.cell, staticmethod(first.right_side)
         energy_density = staticmethod(center.energy_density)
 
-    assert power_of_what_is_left(Mixed) == pytest.approx(2, abs=1e-2)
+    assert order_of_the_drift(Mixed) == pytest.approx(2, abs=1e-2)
 
 
 def test_the_velocity_leaves_the_energy_where_the_equation_is_variational():
@@ -75,7 +75,7 @@ def test_the_velocity_leaves_the_energy_where_the_equation_is_variational():
     assert ((2, 2),) in {jet.t for jet in center.energy[4]}
 
 
-def test_none_where_an_equation_of_motion_is_left_unsatisfied():
+def test_only_the_full_closure_has_an_energy():
     for pde in (homogenize(Dimer(3, 1)).pde, homogenize(Dimer(3, 1), branch="optical").pde):
         with pytest.raises(InputError, match=r'closure="full"|acoustic'):
             pde.energy_density(x, x)

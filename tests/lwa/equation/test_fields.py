@@ -19,7 +19,7 @@ def same(first, second, order):
 
 
 @pytest.mark.parametrize("closure", ["linear", "full"])
-def test_what_a_shift_does_to_G_H_I(closure):
+def test_a_shift_changes_G_and_H_but_not_I(closure):
     pde = homogenize(Dimer(m1, m2), closure=closure).pde
     changed = pde.in_field({2: alpha})
     k, D = pde.k, pde.cell.spacing
@@ -35,7 +35,17 @@ def test_from_the_first_to_the_canonical_field_at_third_order():
     same(first.in_field({2: (1 - b) * (b - sp.Rational(1, 2))}), center, 4)
 
 
-def test_there_and_back_with_velocities():
+@pytest.mark.parametrize("k", [2, 3])
+def test_a_shift_in_the_masses_at_a_number_k(k):
+    """Numbers of the shift that equal k are numbers still."""
+    shift, at = k * b**3, {"m1": 3, "m2": 1}
+    pde = homogenize(Dimer(m1, m2), k=k, closure="full").pde
+    numbers = homogenize(Dimer(3, 1), k=k, closure="full").pde.in_field({2: k * sp.S("27/64")})
+    assert pde.in_field({2: shift}).H.subs({m1: 3, m2: 1}) == numbers.H
+    assert pde.in_field({2: shift}).at(**at).H == numbers.H
+
+
+def test_a_shift_and_its_inverse_cancel():
     # (1 + αD²∂² )^{-1} = 1 - αD²∂² + α²D⁴∂⁴ - α³D⁶∂⁶ + …
     pde = homogenize(Dimer(2, 1), 8, closure="full").pde
     there = pde.in_field({2: alpha})

@@ -78,18 +78,18 @@ def test_a_sum_is_right_within_its_error_or_refused(k, order):
 
 
 @pytest.mark.parametrize("k", ["1.1", "4"])
-def test_up_to_k_four_there_are_sums(k):
+def test_up_to_k_four_no_sum_is_refused(k):
     assert all(row.at().value > 0 for row in series(expand(Cell([1]), 10, k=k)).values())
 
 
 @pytest.mark.parametrize("k", ["9.5", "20"])
-def test_from_k_nine_and_a_half_there_are_none(k):
+def test_from_k_nine_and_a_half_every_sum_is_refused(k):
     for row in series(expand(Cell([1]), 10, k=k)).values():
         with pytest.raises(InputError, match="no sum at k"):
             row.at()
 
 
-def test_the_command_prints_no_sum_that_there_is_not(capsys):
+def test_the_command_prints_no_refused_sum(capsys):
     arguments = ["expansion", "--k", "10", "--masses", "1", "--order", "10"]
     for style, words in (("text", "velocity: no sum at k = 10"), ("json", '"velocity": null')):
         with pytest.raises(SystemExit) as ended:

@@ -198,6 +198,6 @@ def test_beyond_the_measured_exponents_a_strike_has_no_error():
         ({"mass": "m"}, "mass is m: a number is wanted"),
     ],
 )
-def test_what_is_no_strike_is_refused(arguments, message):
+def test_impossible_strikes_are_refused(arguments, message):
     with pytest.raises(InputError, match=message):
         pulse_of_strike(**({"chain": EQUAL, "mass": 1, "velocity": 1} | arguments))

@@ -86,7 +86,7 @@ def test_what_the_command_refuses(capsys, options, message):
 
 
 @pytest.mark.parametrize("F", [0, -1, "F", float("nan")])
-def test_what_is_no_force_is_refused(F):
+def test_only_positive_forces_are_accepted(F):
     with pytest.raises(InputError, match=r"^force is "):
         wave(F, spacing=1)
     with pytest.raises(InputError, match="spacing is D: a number is wanted"):

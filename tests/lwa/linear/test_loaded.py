@@ -60,7 +60,7 @@ def test_another_law():
     assert chain.band_edges()[0, 1] == pytest.approx(2 * np.sqrt(15), rel=1e-13)
 
 
-def test_what_cannot_be_meant():
+def test_bad_arguments_are_refused():
     for make, reason in (
         (lambda: LoadedChain(Cell([1]), Power("3/2"), 0), "positive"),
         (lambda: LoadedChain(Cell(["m"]), Power("3/2"), 1).band_edges(), "has no value"),

@@ -7,8 +7,7 @@ import sympy as sp
 
 from lwa import Cell, InputError, Material, Sphere
 from lwa.spheres.beads import spheres
-from lwa.spheres.hertz import stiffness
-from lwa.spheres.materials import MATERIALS
+from lwa.spheres.hertz import MATERIALS, stiffness
 
 RANGES = {  # E in GPa and density in Mg/m³ of Gere & Goodno, Mechanics of Materials, appendix
     "steel 316": (190, 210, 7.7, 8.1),
@@ -22,13 +21,12 @@ RANGES = {  # E in GPa and density in Mg/m³ of Gere & Goodno, Mechanics of Mate
 
 
 @pytest.mark.parametrize("name", MATERIALS)
-def test_a_material_is_one_of_its_kind_and_has_a_source(name):
+def test_a_material_is_one_of_its_kind(name):
     low, high, light, heavy = RANGES[name]
     material = Material.named(name)
     assert low <= material.E / 10**9 <= high
     assert light <= material.density / 1000 <= heavy
     assert sp.Rational(1, 5) < material.nu < sp.S.Half
-    assert MATERIALS[name].source
 
 
 @pytest.mark.parametrize(("name", "mass"), [("steel 316", 0.45e-3), ("PTFE", 0.123e-3)])
@@ -84,36 +82,24 @@ def test_a_cell_of_named_materials_is_hertzs():
     ("tables", "words"),
     [
         (dict(beads=ball(material="aluminum")), r"'aluminum': did you mean aluminium\?"),
-        (dict(beads=ball(material="wood")), r"steel 316, steel 440C, .*delrin is wanted"),
         (dict(beads=ball(mass=1.0, density=1.0)), "beads.ball has both mass and density"),
-        (dict(beads=ball(density=0)), "beads.ball.density is 0: it must be positive"),
         (
             dict(beads=ball(material="x"), materials={"x": {"E": 1.0, "nu": 0.3}}),
             "beads.ball.mass is missing: it, or a density here or of the material",
         ),
         (dict(beads=ball(), materials={"x": {"E": 1.0}}), "materials.x.nu is missing"),
-        (
-            dict(beads=ball(), materials={"x": {"like": "wood"}}),
-            "materials.x.like is 'wood': one of steel 316",
-        ),
-        (
-            dict(beads=ball(), materials={"x": {"like": "PTFE", "nu": 0.6}}),
-            "materials.x.nu is 0.6: Poisson's ratio",
-        ),
     ],
 )
-def test_what_a_file_cannot_mean(tables, words):
+def test_bad_tables_of_a_file_are_refused(tables, words):
     with pytest.raises(InputError, match=words):
         spheres(chain(**tables))
 
 
-def test_names_that_are_none():
+def test_unknown_materials_are_refused():
     for call, words in (
         (lambda: Material.named("wood"), "'wood': one of steel 316, steel 440C"),
-        (lambda: Material.named(1), "material is 1: one of"),
         (lambda: Material.named([]), r"material is \[\]: one of"),
         (lambda: Sphere.solid(1, Material(1, 0)), "a Material with a density"),
-        (lambda: Sphere.solid(1, "PTFE"), "'PTFE': a Material with a density"),
         (lambda: Material(1, 0, -1), "density is -1"),
     ):
         with pytest.raises(InputError, match=words):

@@ -1,4 +1,4 @@
-"""Waves on a background where floats are in danger: poles, open contacts, steep laws, limits."""
+"""Waves on a background where floats lose digits: poles, open contacts, steep laws, limits."""
 
 import mpmath
 import numpy as np
@@ -155,7 +155,7 @@ def test_a_force_next_to_the_load(excess):
         assert float(found.subs(D, 1)) == pytest.approx(expected, rel=float(excess) + 1e-13)
 
 
-def test_arrays_that_hold_no_numbers():
+def test_arrays_without_numbers_are_refused():
     background = background_wave(CHAIN, law=Power("3/2")).numeric()
     wave = homogenize(Cell(["m1", "m2"])).pde.traveling_wave().numeric()
     for bad in ("x", 10**400, [1.0, None], float("inf")):

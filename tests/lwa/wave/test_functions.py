@@ -15,8 +15,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lwa import Cell, Dimer, InputError, NoSolitaryWave, canonical_wave, homogenize
-from lwa.code.languages import LANGUAGES
-from lwa.code.writer import Function, wrapped
+from lwa.code import LANGUAGES, Function
 from lwa.command.cli import main
 from lwa.wave.functions import OWN, in_order, wave_functions
 from tests.lwa.code.compilers import PROGRAMS, compiled, in_node
@@ -117,7 +116,7 @@ def by_name(call, function):
 
 
 def as_python(source):
-    """Julia as far as it is used here, there being no Julia: functions, ^ and the mathematics."""
+    """Python for the part of Julia that the code uses: functions, ^ and the mathematics."""
     lines, in_head = ["from math import asinh, atan, exp, log, pi, sin, sinh, sqrt"], False
     words = "|".join({*keyword.kwlist} - {"return"})
     for line in re.sub(rf"\b({words})\b", r"\1_here", source.replace("^", "**")).splitlines():
@@ -132,7 +131,7 @@ def as_python(source):
 
 @cache
 def expected(name):
-    """(name → number, (function, B or V_s) → value, what the value's double leaves), all points."""
+    """For all points: name → number, (function, B or V_s) → value, and its rounding error."""
     rows = []
     with mpmath.workdps(50):
         for values, k, S, factor in points(name):
@@ -259,20 +258,21 @@ def test_arguments_have_one_order_in_all_languages():
 
 # Words of every language, the module's own, letters beyond ASCII, and text that is no name at all.
 NAMES = [
-    *keyword.kwlist, *(word for language in LANGUAGES.values() for word in language.reserved),
+    *keyword.kwlist, "double", "fabs", "linux", "integer", "end", "baremodule", "var",
+    "Math", "arguments", "dp", "lwa_wave",
     "beta", "width", "speed", "amplitude", "profile", "fwhm_strain", "p", "a", "mu", "eta", "sigma",
     "s", "xi", "Xi", "XI", "b", "v_s", "inside", "k_2", "k_2_", "r_1", "sum_1", "dp", "DP", "np",
     "numpy", "self", "main", "beta_", "math_", "μ1", "μ", "λ", "lambda", "Λ", "ς", "σ", "M1", "m1",
     "é", "_", "_x", "__init__", "1x", "", "x y", "x-y", "a'b", 'a"b', "x\ny", "x\\", "*/", "// ??/",
     "!x", "#", "x;return 0", "M_PI", "M_LN2", "HUGE_VAL", "NAN", "INFINITY", "y0", "j1", "gamma",
     "exp", "Sin", "SQRT", "print", "float", "map", "real", "Real", "result", "module", "call", "I",
-    "l", "O", "E", "pi", "size", "i386", "unix", "x" * 100, "x" * 31 + "y", "x" * 31 + "z", "日本",
+    "l", "O", "E", "pi", "size", "unix", "x" * 100, "x" * 31 + "y", "x" * 31 + "z", "日本",
 ]  # fmt: skip
 
 
 @in_every_language
 def test_any_name_at_once(language, tmp_path, request):
-    """One function of all of them: Σ n s_n tells each from every other."""
+    """One function of all names: Σ n s_n distinguishes each from every other."""
     symbols = [sp.Symbol(name) for name in dict.fromkeys(NAMES)]
     n = len(symbols)
     total = sp.Add(*((i + 1) * symbol for i, symbol in enumerate(symbols)))
@@ -318,7 +318,7 @@ def test_a_name_changes_nothing_but_itself(drawn, assume_positive):
 
 
 def namespace(wave, language):
-    """What the wave's code defines, run by Python."""
+    """The names that the wave's code defines, run by Python."""
     source, found = wave.code(language), {}
     exec(as_python(source) if language == "julia" else source, found)
     return found
@@ -329,7 +329,7 @@ def plain(language):
     return namespace(canonical_wave(Dimer("m1", "m2")), language)
 
 
-def test_what_was_renamed_is_said():
+def test_renamed_symbols_are_listed_in_comments():
     code = canonical_wave(Dimer("math", "μ1")).code("python")
     assert "# math_ is the symbol 'math'\n# mu1 is the symbol 'μ1'\n" in code
     wave = canonical_wave(Dimer("M1", "m1"))
@@ -358,7 +358,7 @@ def test_lines_are_short_and_brackets_close(language):
 @given(st.lists(st.sampled_from(["a*b", "m1**2", "(", ")", "x/y", "f(x, y)", "c"]), max_size=60))
 def test_wrapping_changes_nothing_but_spaces(parts):
     line = "    return (" + " + ".join(parts) + ")"
-    lines = wrapped(line, " &")
+    lines = LANGUAGES["fortran"].wrapped(line)
     assert all(row.endswith(" &") for row in lines[:-1])
     assert all(len(row) < 80 for row in lines)
     joined = "".join(row.removesuffix(" &").strip() for row in lines)

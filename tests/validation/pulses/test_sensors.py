@@ -1,4 +1,4 @@
-"""What sensors tell, held to the paper's experiment and to the linear chain's exact waves."""
+"""Readings of sensors against the paper's experiment and the linear chain's exact waves."""
 
 import math
 import tomllib
@@ -11,7 +11,7 @@ from scipy.special import erf
 from lwa import Dimer
 from lwa.linear.dispersion import Dispersion
 from validation.lattice.simulate import simulate
-from validation.pulses.pulse import MeasureError, all_pulses, derived, first_pulse
+from validation.pulses.pulse import MeasureError, derived, first_pulse, pulses
 from validation.pulses.sensors import record, tracks
 from validation.pulses.signals import Sampled
 from validation.scenes.chains import struck
@@ -121,7 +121,7 @@ def test_the_first_pulse_is_not_the_highest_one():
     assert found.fwhm == pytest.approx(math.sqrt(math.log(2)), rel=1e-6)
     with pytest.raises(MeasureError, match="nowhere positive"):
         first_pulse(Sampled(t, -first))
-    every = all_pulses(Sampled(t, small + first + echo))
+    every = pulses(Sampled(t, small + first + echo))
     assert [p.peak for p in every] == pytest.approx([0.4, 1.0, 1.5], rel=1e-6)
 
 
@@ -139,7 +139,7 @@ F0 = 2.0
         (dict(spacings=(1, 0)), r"spacings\[1\] is 0: it must be positive"),
     ],
 )
-def test_what_a_chain_cannot_have(change, message):
+def test_a_load_without_a_wall_and_bad_spacings_are_refused(change, message):
     with pytest.raises(SceneError, match=f"^{message}"):
         Scene(masses=(1,) * 3, stiffnesses=(1, 1), k=1.5, duration=1, **change)
 
@@ -244,7 +244,7 @@ def test_engines_agree_within_the_errors_they_state():
         ({"rtol": 0.0}, "rtol is 0"),
     ],
 )
-def test_an_engine_that_is_not_there(options, message):
+def test_unknown_methods_and_tolerances_are_refused(options, message):
     scene = Scene(masses=(1, 1), stiffnesses=(1,), k=1.5, duration=1, velocities=(1,))
     with pytest.raises(SceneError, match=message):
         record(scene, **options)

@@ -10,7 +10,7 @@ import sympy as sp
 
 from validation.lattice.simulate import simulate
 from validation.pulses import steady
-from validation.pulses.pulse import leading_pulse
+from validation.pulses.pulse import leading_pulses
 from validation.pulses.signals import Sampled
 from validation.pulses.steady import QUANTITIES, STRETCH, point
 from validation.scenes.chains import struck
@@ -31,7 +31,7 @@ def at(k, omega, stretch=STRETCH):
 
 
 @pytest.mark.parametrize(("k", "omega"), [("5/4", 1), ("3/2", 1), (6, 1), ("3/2", SPECIAL)])
-def test_a_solitary_wave_is_the_exact_one_of_newtons_method(k, omega):
+def test_a_solitary_wave_agrees_with_newtons_method(k, omega):
     wave = exact_wave([1], float(R(k))) if omega == 1 else solve((1, float(omega)), 1.5, free=True)
     numbers = at(k, omega)
     exact = {
@@ -63,7 +63,7 @@ def test_a_pulse_decays_but_for_the_special_ratio():
     assert above / half == pytest.approx(4, rel=0.25)
 
 
-def test_the_decay_is_that_per_site():
+def test_the_decay_is_per_site():
     """Against the slope of the log of peak forces over the site, from one run read by hand."""
     sites = tuple(range(30, 62, 2))
     scene = Scene(
@@ -122,14 +122,15 @@ def test_the_pulse_that_overtakes_is_another_one():
 def test_the_leading_pulse_is_not_a_later_and_higher_one():
     time = np.linspace(0, 20, 2001)
     first, second = np.exp(-((time - 5) ** 2)), 2 * np.exp(-((time - 12) ** 2))
-    pulse = leading_pulse(Sampled(time, first + second), 1.5)
+    (pulse,) = leading_pulses(Sampled(time, first + second), 1.5)
     assert pulse.arrival == pytest.approx(5, abs=1e-6)
     # two humps are one pulse while the compression between them stays above a quarter
-    pulse = leading_pulse(Sampled(time, first + np.exp(-((time - 7) ** 2))), 1.5, share=0.25)
+    two_humps = Sampled(time, first + np.exp(-((time - 7) ** 2)))
+    (pulse,) = leading_pulses(two_humps, 1.5, (0.25,))
     assert pulse.fall > 8
 
 
-def test_a_failure_is_told_with_the_point():
+def test_a_failed_point_states_the_reason():
     found = point(HERTZ, R(1, 10**40), STRETCH)
     assert found.missing.startswith("duration is ")
     assert (found.sites, found.numbers) == (None, {})

@@ -1,1 +1,0 @@
-"""Source text of functions of real numbers in several programming languages."""

@@ -1,0 +1,229 @@
+"""Bloch modes of a loaded cell, in floats or in exact numbers, in the units of the cell."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import sympy as sp
+from sympy.polys.fields import sfield
+from sympy.polys.matrices import DomainMatrix
+
+from lwa.base.exact import InputError, demand_numbers, root
+from lwa.cell import Cell
+from lwa.envelopes.response import Arithmetic, Contacts, Matrix, Mode
+from lwa.law import ContactLaw
+
+CLOSE = 1e-11  # relative difference of squared frequencies that counts as none
+SOUND = 1e-5  # 1 - (c_g/c_0)² from which on floats give the mean flow to six digits (1e-11/SOUND)
+
+K2, K3, K4 = sp.symbols("K2 K3 K4", positive=True)
+"""Coefficients of the force K2 δ + K3 δ² + K4 δ³ on top of the load, under `lwa.general()`."""
+
+X, Z = sp.symbols("x z", cls=sp.Dummy)
+
+
+def cell_mode(
+    cell: Cell,
+    law: ContactLaw,
+    compression: sp.Expr,
+    wavenumber: sp.Expr,
+    branch: int,
+    floats: bool,
+) -> Mode:
+    """Return the mode of a branch of a cell whose contacts are at a mean static compression."""
+    delta = compression * cell.shares(law.exponent)[0]
+    mass, unit = cell.masses[0], sp.S.One if law.formless or delta.is_zero else delta
+    if law.formless:
+        first, s, t = K2, K3 / K2, K4 / K2
+    else:
+        first = law.at(delta, 1)
+        if delta.is_zero:
+            s, t = (law.at(delta, n) / first / sp.factorial(n) for n in (2, 3))
+        else:
+            s, t = (law.phi(n).subs(law.delta, delta) / sp.factorial(n) for n in (2, 3))
+    compliances = cell.compliances(law.exponent)
+    masses = [m / mass for m in cell.masses]
+    c = [sp.powsimp(part / compliances[0]) for part in compliances]
+    numbers = (*masses, *c, s, t, wavenumber)
+    if floats:
+        demand_numbers(set().union(*(x.free_symbols for x in numbers)), "floats need numbers")
+    samples = [_sampled(cell, x) for x in numbers]
+    m_float, c_float = np.array(samples[:-3]).reshape(2, -1)
+    sample = Contacts(m_float, c_float, *samples[-3:-1])
+    found, bead = numeric_mode(sample, samples[-1], branch, floats)
+    if not floats:
+        contacts = Contacts(np.array(masses), np.array(c), s, t)
+        found = exact_mode(contacts, wavenumber, branch, bead, lambda x: _sampled(cell, x))
+    rate = sp.powsimp(cell.stiffnesses[0] * first / mass)  # unit of ω²
+    return Mode(
+        sp.sympify(found.square) * rate,
+        found.slope * rate,
+        found.curvature * rate,
+        found.cubic * rate / (mass * unit**2),
+        [sp.sympify(x) / (mass * unit) for x in found.second],
+        [sp.sympify(x) / (mass * unit) for x in found.mean],
+        [sp.sympify(x) / mass for x in found.size],
+        [sp.sympify(x) / root(mass) for x in found.shape],
+    )
+
+
+def _sampled(cell: Cell, value: sp.Expr) -> float:
+    """Float of the value at sample numbers for its symbols, by which branches are ordered.
+
+    Samples are 1, 1/2, … along the cell, so that the first mass is the heaviest, and 1.5 for
+    symbols of neither masses nor stiffnesses.
+    """
+    symbols = dict.fromkeys(value.free_symbols, 1.5)
+    for values in (cell.stiffnesses, cell.masses):
+        for i, part in reversed([*enumerate(values)]):
+            symbols |= dict.fromkeys(part.free_symbols, 1 / (1 + i))
+    return float(value.xreplace(symbols))
+
+
+def numeric_mode(contacts: Contacts, kappa: float, branch: int, resolved: bool) -> tuple[Mode, int]:
+    """Return the mode of a branch (0 the lowest) in floats, and the index of its largest φ_i.
+
+    Raises `lwa.InputError` where the envelope's equation fails: where branches touch, at the
+    resonance with the second harmonic, and for sound, of zero frequency; with ``resolved`` also
+    where c_g is too close to the speed of sound for floats.
+    """
+    z, root_m = complex(np.exp(1j * kappa)), np.sqrt(contacts.masses)
+    if abs(z.imag) < CLOSE:  # real modes at the edges
+        z = round(z.real)
+    units = np.outer(root_m, root_m)
+    squares, vectors = np.linalg.eigh(contacts.secular(z, 0) / units)
+    x, others = float(squares[branch]), np.delete(squares, branch)
+    close = CLOSE / (contacts.c.min() * contacts.masses.min())
+    if np.min(np.abs(others - x), initial=np.inf) < close:
+        raise InputError("two branches touch at this wavenumber: an envelope has one mode")
+    if x < close / 1000:
+        raise InputError(
+            "the frequency is zero at this wavenumber: sound, c_g = c_0, has no envelope; its mean "
+            "flow runs along with it"
+        )
+    # T(x) - 2 cos κ = Π m Π c Π_j (x_j - x) over the modes j, differentiated at a root
+    gaps = others - x
+    first = -np.prod(contacts.masses * contacts.c * np.append(gaps, 1))
+    slopes = first, -2 * first * (1 / gaps).sum()
+    speed = contacts.masses.sum() * contacts.c.sum() * (z.imag / first) ** 2 / x  # (c_g/c_0)²
+    if resolved and 1 - speed < SOUND:
+        raise InputError(
+            "the mode's group velocity is too close to that of sound, c_g = c_0, for floats: its "
+            "mean flow runs along with it; exact results stand"
+        )
+    doubled = np.linalg.eigvalsh(contacts.secular(z * z, 0) / units)
+    if np.min(np.abs(doubled - 4 * x)) < close / 100:  # long waves come close, as κ⁴
+        raise InputError("the second harmonic is a mode too: the envelope's equation fails")
+    phi = vectors[:, branch] / root_m
+    bead = int(np.argmax(np.abs(phi)))
+    floats = Arithmetic(np.linalg.inv, np.real, lambda e: e)
+    projector = np.outer(phi, phi.conj())
+    return contacts.mode(z, x, slopes, projector, bead, z.imag, floats), bead
+
+
+# --- exact ---
+
+
+@dataclass(frozen=True, eq=False)
+class Root:
+    """Squared frequency x = ω² of a mode at a wavenumber, a root of an irreducible polynomial.
+
+    Powers of x in a result are reduced to the lowest ones by division with remainder.
+
+    cosine, phase : cos κ and e^{iκ}. values : mapping from the field's generators to values.
+    """
+
+    value: sp.Expr
+    polynomial: sp.Poly
+    cosine: sp.Expr
+    phase: sp.Expr
+    values: dict[sp.Symbol, sp.Expr]
+
+    def real(self, element: Any) -> sp.Expr:
+        """Value of an element of the field that does not change with the sign of κ."""
+        top, below = (
+            sp.Poly(_in_cosine(part.as_expr(), self.cosine), X, field=True).rem(self.polynomial)
+            for part in (element.numer, element.denom)
+        )
+        found = (top * below.invert(self.polynomial)).rem(self.polynomial)
+        reduced = sp.Add(*(sp.factor(c) * self.value**n for (n,), c in found.terms()))
+        return reduced.xreplace(self.values)
+
+    def complex(self, element: Any) -> sp.Expr:
+        """Value of any element of the field."""
+        if self.phase.is_Integer:
+            return self.real(element)
+        return element.as_expr().xreplace({X: self.value, Z: self.phase}).xreplace(self.values)
+
+
+def _in_cosine(polynomial: sp.Expr, cosine: sp.Expr) -> sp.Expr:
+    """Write z^{-h} Σ_{n≤2h} a_n z^n, a_n = a_{2h-n}, in cos κ by Chebyshev's T_n(cos κ)."""
+    a = sp.Poly(polynomial, Z).all_coeffs()
+    while len(a) > 1 and not a[-1]:
+        a.pop()
+    h = len(a) // 2
+    return a[h] + sp.Add(*(2 * a[h - n] * sp.chebyshevt(n, cosine) for n in range(1, h + 1)))
+
+
+def _roots(relation: Any, cosine: sp.Expr) -> list[tuple[sp.Expr, sp.Poly]]:
+    """Roots x of T(x) = 2 cos κ with their irreducible polynomials."""
+    found: list[tuple[sp.Expr, sp.Poly]] = []
+    for factor, count in sp.factor_list(_in_cosine(relation.numer.as_expr(), cosine))[1]:
+        if X in factor.free_symbols:
+            polynomial = sp.Poly(factor, X, field=True)
+            try:
+                roots = sp.roots(polynomial) if polynomial.degree() < 3 else polynomial.real_roots()
+            except (NotImplementedError, sp.PolynomialError):
+                raise InputError(
+                    "the frequency has no exact form at this wavenumber: numeric() gives floats"
+                ) from None
+            found += count * [(x, polynomial) for x in roots]
+    return found
+
+
+def exact_mode(
+    contacts: Contacts,
+    wavenumber: sp.Expr,
+    branch: int,
+    bead: int,
+    sampled: Callable[[sp.Expr], float],
+) -> Mode:
+    """The mode of a branch in exact numbers, in sin κ/2 and cos κ/2 unless cos κ is rational.
+
+    bead : index of the bead whose φ is positive. sampled : function that gives a float of an
+    expression, its symbols replaced by sample numbers; the roots are ordered by these floats.
+
+    Raises `lwa.InputError` where the frequency has no exact form.
+    """
+    P, cosine, phase = len(contacts.masses), sp.cos(wavenumber), sp.exp(sp.I * wavenumber)
+    sine = root(1 - cosine**2)
+    if not cosine.is_Rational:
+        half = wavenumber / 2
+        sine, cosine = 2 * sp.sin(half) * sp.cos(half), 1 - 2 * sp.sin(half) ** 2
+    numbers = (*contacts.masses, *contacts.c, contacts.s, contacts.t)
+    letters = {a: a if a.is_Rational else sp.Dummy(positive=True) for a in numbers}
+    field, (x, z, *elements) = sfield([X, Z, *(letters[a] for a in numbers)])
+    inner = Contacts(*np.array(elements[:-2], object).reshape(2, P), *elements[-2:])
+    z = field.one * int(phase) if phase.is_Integer else z
+
+    def matrix(entries: Matrix) -> DomainMatrix:
+        rows = [[field.one * a for a in row] for row in entries]
+        return DomainMatrix(rows, (P, P), field.to_domain())
+
+    secular = matrix(inner.secular(z, x))
+    relation = secular.det() * np.prod(inner.c)  # T(x) - 2 cos κ
+    values = {letter: a for a, letter in letters.items()}
+    roots = sorted(_roots(relation, cosine), key=lambda pair: sampled(pair[0].xreplace(values)))
+    found = Root(*roots[branch], cosine, phase, values)
+    slopes = relation.diff(x), relation.diff(x).diff(x)
+    adjugate = np.array(secular.adjugate().to_list(), object)
+    projector = adjugate / (np.diagonal(adjugate) * inner.masses).sum()
+    if P == 1:  # a rational function of z
+        x = (2 - z - 1 / z) / (inner.masses[0] * inner.c[0])
+    exact = Arithmetic(
+        lambda entries: np.array(matrix(entries).inv().to_list(), object), found.real, found.complex
+    )
+    return inner.mode(z, x, slopes, projector, bead, sine, exact)
