@@ -81,18 +81,15 @@ class LatticeWave(ArrayValue, Pictured):
         return self.masses[1] / self.masses[0]
 
     def peak(self, name: str) -> tuple[float, float]:
-        """Return the place ξ and the value of the maximum of a quantity.
+        """Return place ξ and value of the maximum of "strain", "force" or "velocity".
 
-        name : "strain" or "force" of contact 0, or "velocity" of bead 0.
+        Strain and force are those of contact 0, the velocity is that of bead 0.
         """
         xi = np.linspace(-self.half_period, self.half_period, 4 * self.samples + 1)
         return summit(self._quantity(name), xi)
 
     def fwhm(self, name: str = "strain") -> float:
-        """Full width at half maximum of a quantity's highest hump, a length; name as in `peak`.
-
-        Raises `MeasureError` if the quantity does not fall to half its peak.
-        """
+        """Full width at half maximum of a quantity's highest hump, a length; name as in `peak`."""
         quantity, (top, peak) = self._quantity(name), self.peak(name)
 
         def above(r: Any, side: int) -> Array:
@@ -125,8 +122,8 @@ class LatticeWave(ArrayValue, Pictured):
     def launched(self, start: int, sites: int, **rest: Any) -> Scene:
         """Return a scene of a chain that carries the wave, centered at bead ``start`` at time 0.
 
-        sites : distance that the chain lets the wave travel. rest : further fields of the scene; by
-        default the contacts halfway and at the end of this distance have sensors.
+        sites : distance to travel, with contact sensors halfway and at the end unless ``rest``,
+        further fields of the scene, has others.
         """
         bead = np.arange(2 * start + sites) - start
         at, even = bead[:-1] + 0.5, bead % 2 == 0

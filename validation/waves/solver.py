@@ -16,9 +16,9 @@ each of them.
 
 A struck chain carries no nanopteron, as its light beads are at rest before the pulse; but its
 pulse, made symmetric, is near a nanopteron (`validation.waves.start`). Newton's method starts from
-this pulse, or from the theory's wave if it does not converge from the pulse, at several L unless L
-is given. Of the waves found on a rough grid the solution is the wave whose strain differs least
-from the struck chain's; the remaining difference counts as the solution's error (`measured`).
+this pulse, or else from the theory's wave, at several L unless L is given. Of the waves found on a
+rough grid the solution is the wave whose strain differs least from the struck chain's; the
+remaining difference counts as the solution's error (`measured`).
 """
 
 from __future__ import annotations
@@ -122,10 +122,7 @@ def solve(
 
 
 def solved(problem: newton.Problem, start: Start, unknown: str = "") -> tuple[ExactWave, float]:
-    """Solve a problem from a start; return the wave and the last number of `Problem.wave`.
-
-    Raises `NoWave` if Newton's method does not converge.
-    """
+    """Solve a problem from a start; return the wave and the last number of `Problem.wave`."""
     masses = problem.masses
     try:
         forces, c2, last = problem.wave(*start, unknown)
@@ -138,17 +135,14 @@ def solved(problem: newton.Problem, start: Start, unknown: str = "") -> tuple[Ex
 
 
 def measured(wave: ExactWave) -> dict[str, Measured]:
-    """Return c², c and tail, and by quantity the amplitude and FWHM of a wave, with errors.
-
-    The relative error of a solitary wave is the sum of residual, tail and `ROUNDING`. The error of
-    a nanopteron is the difference from the struck chain's symmetric pulse, for the FWHM also from
-    the recorded pulse, so that nanopterons of all half periods agree within their errors.
-    """
+    """Return c², c and tail, and by quantity the amplitude and FWHM of a wave, with errors."""
     values = _numbers(wave)
     if wave.solitary:
         least = ROUNDING / (1 - wave.background) + wave.residual + wave.tail
         errors = {name: least * value for name, value in values.items()} | {"tail": least}
         return {name: Measured(value, value + errors[name]) for name, value in values.items()}
+    # The error of a nanopteron is the difference from the struck chain's symmetric pulse, for the
+    # FWHM also from the recorded pulse: so nanopterons of all half periods agree within it.
     here, pulse = _numbers(wave.scaled(force=1)), struck_pulse(wave.k, wave.omega)
     there = _numbers(pulse, wave.masses[0])
     off = {name: abs(there[name] / here[name] - 1) for name in here}
@@ -252,9 +246,9 @@ def _struck(pair: Pair, k: float) -> StruckPulse:
 
 
 def followed(begin: ExactWave, k: float) -> ExactWave:
-    """Return the wave at another k on the branch of ``begin``, reached in small steps of k.
+    """Continue a wave to another k at the same masses and half period.
 
-    Masses and half period stay the same. Raises `NoWave` if the branch turns back or is lost.
+    Raises `NoWave` if the branch of waves turns back or is lost.
     """
     masses, L = begin.masses, begin.half_period
     points = _rough(masses, max(begin.k, k), L)

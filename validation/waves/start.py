@@ -66,7 +66,6 @@ def under_load(theory: NumericBackground, problem: newton.Problem) -> Start:
 class StruckPulse(LatticeWave):
     """Symmetric part of a struck chain's pulse, scaled to contact force 1; masses 1, ω.
 
-    half_period : `validation.waves.newton.ample_half_period`.
     xi, strains : ξ and the symmetric part of the strain, on a grid beyond the half period.
     widths : FWHM of force and strain at a contact, means over the two recorded contacts.
     """
