@@ -212,7 +212,10 @@ def _dimer(pair: Pair, k: float, half_period: float | None, progress: Progress[A
         if wave.solitary:
             return wave
         waves.append(wave)
-    pulse = _struck(pair, k)
+    try:
+        pulse = struck_pulse(k, pair[1])
+    except (InputError, IntegrationError) as error:
+        raise NoWave("no pulse of a struck chain", pair, k, f": {error}") from None
 
     def found(start: LatticeWave | None) -> list[ExactWave]:
         """Return the waves that a start leads to at the half periods, on rough grids."""
@@ -235,14 +238,6 @@ def _dimer(pair: Pair, k: float, half_period: float | None, progress: Progress[A
 def _rough(pair: Pair, k: float, half_period: float) -> int:
     """Return the number of points of a rough grid, on which branches can be distinguished."""
     return max(newton.FEWEST, int(ROUGH * newton.enough(pair, k, half_period)))
-
-
-def _struck(pair: Pair, k: float) -> StruckPulse:
-    """Return the pulse of a struck chain; raises `NoWave` if the pulse does not arrive."""
-    try:
-        return struck_pulse(k, pair[1])
-    except (InputError, IntegrationError) as error:
-        raise NoWave("no pulse of a struck chain", pair, k, f": {error}") from None
 
 
 def followed(begin: ExactWave, k: float) -> ExactWave:
