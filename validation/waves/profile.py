@@ -31,7 +31,6 @@ from validation.waves import newton
 
 TOLERANCE = 1e-9  # tail and residual of a solitary wave over its peak strain, at most
 OUTSIDE = 0.6  # share of the half period at which a dimer's pulse has ended and its tail begins
-_ROW = 16  # Fourier coefficients that are summed up together
 
 
 @dataclass(frozen=True, eq=False)
@@ -237,11 +236,8 @@ class ExactWave(LatticeWave):
 
     def _sum(self, xi: ArrayLike, even: Array, odd: Array) -> Array:
         """Fourier sum Σ even_j cos(q_j ξ) + odd_j sin(q_j ξ)."""
-        rows = np.append(even - 1j * odd, np.zeros(-self.samples % _ROW)).reshape(-1, _ROW)
-        q = np.pi / self.half_period * np.arange(rows.size)
-        # e^{iqξ} of every q as a product of two: of the first 16 q and of every 16th q.
-        first, every = (np.exp(1j * np.multiply.outer(xi, part)) for part in (q[:_ROW], q[::_ROW]))
-        return np.asarray(((first @ rows.T) * every).real.sum(axis=-1))
+        phase = np.multiply.outer(xi, np.pi / self.half_period * np.arange(self.samples))
+        return np.asarray(np.cos(phase) @ even + np.sin(phase) @ odd)
 
     def _ended(self, xi: ArrayLike) -> NDArray[np.bool_]:
         """True where |ξ| > L for a solitary wave, which is 0 there instead of periodic."""

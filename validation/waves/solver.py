@@ -42,7 +42,7 @@ from validation.scenes.checks import SceneError, between, items, positive
 from validation.waves import newton
 from validation.waves.newton import Pair
 from validation.waves.profile import ExactWave, LatticeWave, at_unit_force
-from validation.waves.start import Start, StruckPulse, initial, struck_pulse, under_load
+from validation.waves.start import Start, StruckPulse, initial, struck_pulse
 
 FALLEN = 38.0  # e-foldings of a wave on a background from its flanks to L
 SHALLOWEST = 1e-4  # rise of a wave on a background over the peak strain, at least
@@ -138,9 +138,9 @@ def measured(wave: ExactWave) -> dict[str, Measured]:
     """Return c², c and tail, and by quantity the amplitude and FWHM of a wave, with errors."""
     values = _numbers(wave)
     if wave.solitary:
-        least = ROUNDING / (1 - wave.background) + wave.residual + wave.tail
-        errors = {name: least * value for name, value in values.items()} | {"tail": least}
-        return {name: Measured(value, value + errors[name]) for name, value in values.items()}
+        error = ROUNDING / (1 - wave.background) + wave.residual + wave.tail
+        checks = {name: value * (1 + error) for name, value in values.items()} | {"tail": wave.tail + error}
+        return {name: Measured(value, checks[name]) for name, value in values.items()}
     # The error of a nanopteron is the difference from the struck chain's symmetric pulse, for the
     # FWHM also from the recorded pulse: so nanopterons of all half periods agree within it.
     here, pulse = _numbers(wave.scaled(force=1)), struck_pulse(wave.k, wave.omega)
@@ -185,7 +185,8 @@ def _pressed(k: float, half_period: float | None, p0: float) -> tuple[ExactWave,
     pair = 1.0, 1.0
     theory, load = background_wave(Cell((1,), spacing=1), law=Power(k)).numeric(), (p0, 1 - p0)
     # The wave ends as e^{-κ|ξ|} with (c/c0)² = (sinh(κ/2)/(κ/2))².
-    fast = math.sqrt(theory.speed_squared(*load) / p0 ** (k - 1))
+    speed_squared = float(theory.speed_squared(*load))
+    fast = math.sqrt(speed_squared / p0 ** (k - 1))
     half_kappa = scipy.optimize.brentq(
         lambda x: math.log(math.sinh(x) / x / fast), 1e-5, 300, xtol=1e-12
     )
@@ -199,7 +200,7 @@ def _pressed(k: float, half_period: float | None, p0: float) -> tuple[ExactWave,
         lower = _uniform(k, None, max(0.0, p0 - LESS))
         start = lower.force(problem.xi), lower.c2
     else:
-        start = under_load(theory, problem)
+        start = newton.rise(theory.profile(problem.xi, *load), k, p0), k * speed_squared
     return solved(problem, start)[0], ample
 
 
