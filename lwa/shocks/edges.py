@@ -19,15 +19,15 @@ from typing import Any
 import mpmath
 import sympy as sp
 
-from lwa.base.exact import InputError, demand_numbers, evaluated, root
+from lwa.base.exact import InputError, demand_numbers, evaluated
 from lwa.linear.dispersion import Dispersion
 
-DIGITS = 20
-"""Digits of results that are not in closed form."""
+SHOCK_DIGITS = 20
+"""Digits of speeds and strains that are not in closed form."""
 
+# r up to which the trailing edge is given; against the lattice it is 3 % too slow for Hertz
+# contacts at p₋/p₊ = 2, r = 1.19, and 9 % at p₋/p₊ = 3, r = 1.32
 STEEPEST = sp.Rational(13, 10)
-"""r up to which the trailing edge is given; for Hertz contacts it is 3 % too slow at p₋/p₊ = 2,
-r = 1.19, and 9 % at p₋/p₊ = 3, r = 1.32."""
 
 
 def trailing(chain: Dispersion, r: sp.Expr) -> sp.Expr:
@@ -41,8 +41,8 @@ def trailing(chain: Dispersion, r: sp.Expr) -> sp.Expr:
         raise InputError(f"c₋/c₊ is {sp.N(r, 5)}: the trailing edge holds up to 1.3")
     if chain.cell.size == 1:
         return 2 / r - 1
-    with mpmath.workdps(DIGITS + 10):
-        return sp.Float(1 / _slowness(_trace(chain), _edge(chain, r, 1) ** 2), DIGITS)
+    with mpmath.workdps(SHOCK_DIGITS + 10):
+        return sp.Float(1 / _slowness(_trace(chain), _edge(chain, r, 1) ** 2), SHOCK_DIGITS)
 
 
 def leading(chain: Dispersion, r: sp.Expr) -> sp.Expr:
@@ -53,11 +53,11 @@ def leading(chain: Dispersion, r: sp.Expr) -> sp.Expr:
     """
     _demand_sound(r)
     if chain.cell.size == 1:
-        return root(r * (r - 1)) / sp.acosh(root(r))
-    with mpmath.workdps(DIGITS + 10):
+        return sp.sqrt(r * (r - 1)) / sp.acosh(sp.sqrt(r))
+    with mpmath.workdps(SHOCK_DIGITS + 10):
         f = _edge(chain, r, -1)
         q = mpmath.acosh(mpmath.polyval(_trace(chain), -(f**2)) / 2) / chain.cell.size
-        return sp.Float(f / q, DIGITS)
+        return sp.Float(f / q, SHOCK_DIGITS)
 
 
 def _demand_sound(r: sp.Expr) -> None:
@@ -72,7 +72,7 @@ def _edge(chain: Dispersion, r: sp.Expr, sign: int) -> Any:
     It runs in s, f = sinh s, as the integral grows like ln f: from f itself it fails where r ≫ 1.
     """
     demand_numbers(r.free_symbols, "edges of cells of several beads are numbers")
-    trace, target = _trace(chain), mpmath.log(mpmath.mpf(evaluated(r, DIGITS + 10)))
+    trace, target = _trace(chain), mpmath.log(_number(r))
 
     def density(s: Any) -> Any:
         return sign * (_slowness(trace, sign * mpmath.sinh(s) ** 2) - 1) / mpmath.tanh(s)
@@ -80,20 +80,25 @@ def _edge(chain: Dispersion, r: sp.Expr, sign: int) -> Any:
     def excess(s: Any) -> Any:
         return mpmath.quad(density, mpmath.linspace(0, s, 2 + int(s / 8))) - target
 
-    start = mpmath.sqrt(4 * target / (3 * mpmath.mpf(evaluated(chain.I, DIGITS + 10))))
+    start = mpmath.sqrt(4 * target / (3 * _number(chain.I)))
     if sign > 0:
         top = chain.band_edges()[0, 1] * (1 - mpmath.mpf(10) ** -9)  # dκ/df has a pole at the edge
         if excess(mpmath.asinh(top)) < 0:
             raise InputError(f"c₋/c₊ is {sp.N(r, 5)}: the trailing edge leaves the acoustic branch")
         start = min(start, top)
-    close = mpmath.mpf(10) ** (-2 * DIGITS)
+    close = mpmath.mpf(10) ** (-2 * SHOCK_DIGITS)
     start = mpmath.asinh(start)
     return mpmath.sinh(mpmath.findroot(excess, start, solver="newton", df=density, tol=close))
 
 
 def _trace(chain: Dispersion) -> list[Any]:
     """Coefficients of the polynomial T(y), y = f², the highest first."""
-    return [mpmath.mpf(evaluated(chain.trace[m], DIGITS + 10)) for m in sorted(chain.trace)[::-1]]
+    return [_number(chain.trace[m]) for m in sorted(chain.trace, reverse=True)]
+
+
+def _number(value: sp.Expr) -> Any:
+    """An exact number in mpmath, with ten digits to spare."""
+    return mpmath.mpf(evaluated(value, SHOCK_DIGITS + 10))
 
 
 def _slowness(trace: list[Any], y: Any) -> Any:

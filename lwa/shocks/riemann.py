@@ -7,7 +7,7 @@ rarefaction c(p) = x/t joins c₋ and c₊.
 
 Doubling rule: the leading pulse is the solitary wave on p₊ whose beads move at 2 v_p at most; exact
 for Toda's law, small jumps (KdV) and hard spheres. For k = 3/2 … 3 the lattice's own such wave has
-the measured speed within 0.2 % and strain within 0.5 %; `lwa.shocks.pulse` has the closed forms.
+the measured speed within 0.2 % and strain within 0.5 %; `lwa.shocks.waves` has the closed forms.
 """
 
 from __future__ import annotations
@@ -25,9 +25,8 @@ from lwa.cell import Cell
 from lwa.expansion.expand import expand
 from lwa.expansion.physical import ExpandedWave, wave_of_velocity
 from lwa.expansion.strike import ORDER
-from lwa.law import ContactLaw, for_cell, substituted
-from lwa.shocks import edges, simple
-from lwa.shocks.pulse import Pulse
+from lwa.law import ContactLaw, for_cell
+from lwa.shocks import edges, waves
 from lwa.wave.background import BackgroundWave
 
 RULES = ("dispersion", "doubling")  # El's leading edge; the solitary wave with beads at 2 v_p
@@ -72,7 +71,7 @@ class Shock(Value):
         >>> shock(Cell([1], spacing=1), Power("3/2"), "p", 0).plateau
         2*sqrt(6)*p**(5/4)/5
         """
-        return sp.powsimp(self._gained * self._field.time_scale)
+        return _tidy(self._gained * self._field.time_scale)
 
     @cached_property
     def trailing_speed(self) -> sp.Expr:
@@ -86,7 +85,8 @@ class Shock(Value):
         """
         if self._gain.is_negative:
             return self.sound(self.behind)
-        return sp.expand(self.sound(self.behind) * edges.trailing(self._field.linear, self.ratio))
+        edge = edges.trailing(self._field.linear, self.ratio)
+        return _tidy(sp.expand(self.sound(self.behind) * edge))
 
     def leading_speed(self, rule: str = "doubling") -> sp.Expr:
         """Speed s₊ of the leading pulse by "doubling", or of the leading edge by El's "dispersion".
@@ -102,30 +102,31 @@ class Shock(Value):
         if self._gain.is_negative:
             return self.sound(self.ahead)
         if rule == "doubling":
-            return self._pulse.speed * self._field.time_scale
-        return self.sound(self.ahead) * edges.leading(self._field.linear, self.ratio)
+            return _tidy(self._pulse.speed * self._field.time_scale)
+        return _tidy(self.sound(self.ahead) * edges.leading(self._field.linear, self.ratio))
 
     @cached_property
-    def _pulse(self) -> Pulse:
+    def _pulse(self) -> waves.Pulse:
         """The leading pulse by doubling; `lwa.InputError` for rarefactions and unequal beads."""
         if self._gain.is_negative:
             raise InputError("sound is slower behind the front: a rarefaction has no pulse")
-        return Pulse(self._field, 2 * self._gained)
+        return waves.Pulse(self._field, 2 * self._gained)
 
     @property
     def rise(self) -> sp.Expr:
         """Rise B = 2 v_p/s₊ of u_x in the leading pulse, by doubling."""
-        return self._pulse.rise
+        return _tidy(self._pulse.rise)
 
     @property
     def peak(self) -> sp.Expr:
         """Strain of a contact at the peak of the leading pulse by doubling."""
-        return self.ahead + self._pulse.contact_rise
+        return _tidy(self.ahead + self._pulse.contact_rise)
 
     @property
     def peak_force(self) -> sp.Expr:
         """Contact force A F at `peak`, in the units of the cell."""
-        return self.cell.stiffness(self.law.exponent) * self.law.at(self.cell.spacing * self.peak)
+        stiffness = self.cell.stiffness(self.law.exponent)
+        return _tidy(stiffness * self.law.at(self.cell.spacing * self.peak))
 
     @cached_property
     def wave(self) -> ExpandedWave:
@@ -138,16 +139,6 @@ class Shock(Value):
         velocity, k = self._pulse.velocity * self._field.time_scale, self.law.exponent
         return wave_of_velocity(expand(self.cell, ORDER, k=k), velocity)
 
-    def fan(self, speed: Any) -> sp.Expr:
-        """The strain at x/t = speed in a rarefaction under a power law, c(p) = x/t."""
-        if self.kind == "shock" or not self.law.homogeneous:
-            raise InputError("the fan c(p) = x/t is that of a rarefaction under a power law")
-        return (positive(speed, "speed") / self._field.time_scale) ** (2 / (self.law.exponent - 1))
-
-    def at(self, **values: Any) -> Shock:
-        """The front for these values of the named symbols."""
-        return Shock(*substituted(values, self.cell, self.law, self.behind, self.ahead))
-
     @cached_property
     def _field(self) -> BackgroundWave:
         """The waves of the chain on the strain ahead."""
@@ -156,13 +147,21 @@ class Shock(Value):
     @cached_property
     def _gained(self) -> sp.Expr:
         """Velocity v_p as du/dτ, in the units of the wave equation."""
-        return simple.velocity(self._field, self.behind)
+        return waves.velocity(self._field, self.behind)
 
     @cached_property
     def _gain(self) -> sp.Expr:
         """Difference c₋ - c₊, negative for a rarefaction; symbols are taken to mean a shock."""
         # simplified: only then is its sign known beside symbols such as D
         return sp.simplify(self.sound(self.behind) - self.sound(self.ahead))
+
+
+def _tidy(value: sp.Expr) -> sp.Expr:
+    """Combine powers, and evaluate the numeric factor of a result that is not in closed form."""
+    if not value.has(sp.Float):
+        return sp.powsimp(value)
+    factor, rest = value.as_independent(*value.free_symbols, as_Add=False)
+    return factor.n(edges.SHOCK_DIGITS) * rest
 
 
 def shock(cell: Cell, law: ContactLaw, behind: Any, ahead: Any) -> Shock:
@@ -201,4 +200,4 @@ def piston(cell: Cell, law: ContactLaw, velocity: Any, ahead: Any = 0) -> Shock:
     """
     field = BackgroundWave(cell, for_cell(law, cell), exact(ahead, "ahead"))
     gained = positive(velocity, "velocity") / field.time_scale
-    return shock(cell, law, simple.strain(field, gained), field.p0)
+    return shock(cell, law, waves.strain(field, gained), field.p0)

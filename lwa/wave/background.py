@@ -15,6 +15,7 @@ singularities (`lwa.wave.profile`, `lwa.wave.quadrature`).
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Self
@@ -23,7 +24,7 @@ import mpmath
 import sympy as sp
 
 from lwa.base import latex
-from lwa.base.exact import InputError, demand_numbers, exact, integer, root, shorten, signed
+from lwa.base.exact import InputError, demand_numbers, exact, integer, shorten, signed
 from lwa.base.frozen import Value
 from lwa.base.quantities import NO_WAVE, RISE, NoSolitaryWave, known
 from lwa.cell import RESERVED, Cell, check_names
@@ -38,8 +39,7 @@ if TYPE_CHECKING:
 WIDTH_DIGITS = 15
 """Digits of a width or a profile, unless the caller asks for others."""
 
-MOST_DIGITS = 200
-
+_MOST_DIGITS = 200
 _PLACES = 64  # between 0 and B, at which existence is decided for a law that is no power
 
 
@@ -73,7 +73,7 @@ class KdV(Value):
 
     def width(self, B: Any = RISE) -> sp.Expr:
         """Width L = √(12 γ / (α B)) of v = B sech²(ξ/L); the FWHM is 2 arcosh(√2) L."""
-        return root(12 * sp.simplify(self.dispersion / self.nonlinearity) / exact(B, "B"))
+        return sp.sqrt(12 * sp.simplify(self.dispersion / self.nonlinearity) / exact(B, "B"))
 
     def profile(self, xi: Any, B: Any = RISE) -> sp.Expr:
         """Strain v = B sech²(ξ/L) above the background."""
@@ -82,7 +82,7 @@ class KdV(Value):
 
 @dataclass(frozen=True, repr=False)
 class BackgroundWave(Value):
-    """The waves of a chain's canonical field on the strain p0 (see the module).
+    """The waves of a chain's canonical field on the strain p0.
 
     p0 : a number or a symbol; not negative under a power law, whose contacts only push.
 
@@ -141,7 +141,7 @@ class BackgroundWave(Value):
     @cached_property
     def sound_speed(self) -> sp.Expr:
         """The speed c0 = √F′(p0) of long small waves."""
-        return root(self.force(self.p0, 1))
+        return sp.sqrt(self.force(self.p0, 1))
 
     def stiffness(self, v: sp.Expr) -> sp.Expr:
         """The square Q(v) of the speed of the wave that rises by v."""
@@ -150,8 +150,6 @@ class BackgroundWave(Value):
     def _stiffness(self, v: sp.Expr) -> sp.Expr:
         rest = self.force(self.p0, -1) + self.force(self.p0) * v
         return 2 * (self.force(sp.expand(self.p0 + v), -1) - rest) / v**2
-
-    # --- the wave ---------------------------------------------------------------------------
 
     def speed(self, B: Any = None) -> sp.Expr:
         """Speed V = dx/dτ of the wave whose strain rises from p0 to p0 + B (default: a symbol B).
@@ -164,7 +162,7 @@ class BackgroundWave(Value):
         square = self.stiffness(self._read_rise(B))
         if self.law.homogeneous and self.law.exponent.is_Integer:
             square = sp.expand(sp.cancel(square))
-        return root(square)
+        return sp.sqrt(square)
 
     @property
     def _rise(self) -> sp.Symbol:
@@ -174,6 +172,7 @@ class BackgroundWave(Value):
         return sp.Symbol("B", negative=True) if (self.law.exponent - 1).is_negative else RISE
 
     def _read_rise(self, B: Any) -> sp.Expr:
+        """Read the rise of a wave that exists."""
         if B is None:
             return self._rise
         B = exact(B, "B")
@@ -221,11 +220,10 @@ class BackgroundWave(Value):
         return KdV(c0, sp.powsimp(bend / (2 * c0)), self.I * c0 / 2)
 
     def fwhm(self, B: Any, quantity: str = "strain", digits: int = WIDTH_DIGITS) -> sp.Expr:
-        """Full width at half maximum, a length in x: of the rise of the strain, or of the force.
+        """Full width at half maximum of the rise of strain, force or velocity, a length in x.
 
-        The velocity has the width of the strain. Without load under a power law the width is the
-        compact wave's closed form, else a number of so many digits, times D for a spacing that is a
-        symbol.
+        Without load under a power law the width is the compact wave's closed form, else a number of
+        so many digits, times D for a spacing that is a symbol.
 
         Raises `lwa.InputError` for other symbols, `lwa.NoSolitaryWave` without a wave.
 
@@ -233,16 +231,14 @@ class BackgroundWave(Value):
         3.15563100804513*D
         """
         B = self._read_rise(B)
-        if self._compact is not None:
-            return self._compact.fwhm(quantity)
-        half = self._flank(B, digits).half_width(known(quantity))
-        return sp.Float(2 * half, digits) * self.unit
+        if self._unloaded:
+            return CompactWave.canonical(self.cell, self.law.exponent).fwhm(quantity)
+        width = self._flank(B, digits).fwhm(known(quantity))
+        return sp.Float(width, digits) * self.unit
 
     @property
-    def _compact(self) -> CompactWave | None:
-        """The wave without load under a power law, else None."""
-        compact = self.law.homogeneous and self.p0.is_zero
-        return CompactWave.canonical(self.cell, self.law.exponent) if compact else None
+    def _unloaded(self) -> bool:
+        return self.law.homogeneous and bool(self.p0.is_zero)
 
     def profile(self, xi: Any, B: Any, digits: int = WIDTH_DIGITS) -> sp.Expr:
         """Strain v(ξ) above p0: a closed form without load under a power, else a number.
@@ -250,8 +246,8 @@ class BackgroundWave(Value):
         Raises the errors of `fwhm`, and `lwa.InputError` for a ξ that is no number in D.
         """
         B, xi = self._read_rise(B), signed(xi, "xi")
-        if self._compact is not None:
-            return self._compact.profile(xi, B)
+        if self._unloaded:
+            return CompactWave.canonical(self.cell, self.law.exponent).profile(xi, B)
         place = self.in_unit(xi)
         if place.free_symbols:
             raise InputError(f"xi is {shorten(xi)}: a number, in D, is wanted")
@@ -276,11 +272,8 @@ class BackgroundWave(Value):
         from lwa.wave.functions import loaded_code  # here, for a quick start of the others
 
         forms = {"speed": self.speed(), "time_scale": self.time_scale}
-        try:
+        with suppress(NoSolitaryWave):
             kdv = self.kdv
-        except NoSolitaryWave:
-            kdv = None
-        if kdv:
             forms |= {"sound_speed": kdv.sound_speed, "kdv_speed": kdv.speed()}
             forms["kdv_width"] = kdv.width()
         return loaded_code(self.cell, self.law, self.p0, forms, language)
@@ -290,13 +283,11 @@ class BackgroundWave(Value):
         return replace(self, p0=p0)
 
     def at(self, **values: Any) -> BackgroundWave:
-        """The waves for numbers (or other symbols) in place of symbols, and ω = m2/m1 (``omega``).
+        """Substitute numbers (or other symbols) for the named symbols, and for ω = m2/m1.
 
         Raises `lwa.InputError` for a name that does not occur or a value that is no quantity.
         """
         return BackgroundWave(*substituted(values, self.cell, self.law, self.p0))
-
-    # --- numbers of many digits -------------------------------------------------------------
 
     @property
     def unit(self) -> sp.Expr:
@@ -309,6 +300,7 @@ class BackgroundWave(Value):
         return value.subs(self.unit, 1) if self.unit.is_Symbol else value
 
     def _free(self, *values: sp.Expr) -> set[sp.Symbol]:
+        """The symbols of the values and of the chain, but for the `unit`."""
         all_values = (*values, self.p0, self.I, self.force(self.p0 + sp.S.One, 1))
         return set().union(*(v.free_symbols for v in all_values)) - {self.unit}
 
@@ -322,8 +314,7 @@ class BackgroundWave(Value):
 
     def _flank(self, B: sp.Expr, digits: int) -> Flank:
         """The wave of the rise B for the given digits."""
-        if integer(digits, "digits", 1) > MOST_DIGITS:
-            raise InputError(f"digits is {digits}: at most {MOST_DIGITS} are given")
+        integer(digits, "digits", 1, _MOST_DIGITS)
         demand_numbers(self._free(B), "a width or a profile on a background wants numbers")
         return Flank(*self._functions, self.in_unit(B), self.in_unit(self.I), digits)
 

@@ -25,7 +25,7 @@ import sympy as sp
 
 from lwa.algebra.rational import factored
 from lwa.base import latex
-from lwa.base.exact import InputError, positive, power, root, shorten, signed
+from lwa.base.exact import InputError, positive, power, shorten, signed
 from lwa.base.frozen import Value
 from lwa.base.quantities import RISE, SPEED, NoSolitaryWave, strain_power
 from lwa.cell import Cell, exponent, substitution
@@ -109,7 +109,7 @@ class CompactWave(Value):
     G, H, I : coefficients of the wave equation, D² included.
 
     Results are exact SymPy expressions. Lengths are in units of the spacing D; B is the peak of the
-    strain u_x, and the speed V = dx/dτ becomes dx/dt by `speed_scale`.
+    strain u_x, and the speed V = dx/dτ becomes dx/dt by `time_scale`.
 
     Raises `NoSolitaryWave` when the parameters are numbers without a wave (k ≤ 1, G + H + I ≤ 0,
     or V² ≤ 0).
@@ -166,7 +166,7 @@ class CompactWave(Value):
     def coefficient_sum(self) -> sp.Expr:
         """The sum (G + H + I) / D²."""
         g, h = self._ratios
-        if (g + h).free_symbols <= self.k.free_symbols:  # then I stays the factor that it is
+        if (g + h).free_symbols <= self.k.free_symbols:  # I stays a factor
             return self.I / self.D**2 * factored(1 + g + h)
         return factored((self.G + self.H + self.I) / self.D**2)
 
@@ -221,7 +221,7 @@ class CompactWave(Value):
         return 2 * self.k / (self.k - 1)
 
     @property
-    def speed_scale(self) -> sp.Expr:
+    def time_scale(self) -> sp.Expr:
         """The ratio τ/t, by which dx/dt = V τ/t."""
         return self.cell.time_scale(self.k)
 
@@ -291,4 +291,4 @@ def _root(value: sp.Expr) -> sp.Expr:
     """Square root of a rational expression in positive quantities, squares taken out."""
     plain, back = sp.posify(value)
     numerator, denominator = sp.fraction(plain)
-    return (root(numerator) / root(denominator)).xreplace(back)
+    return (sp.sqrt(numerator) / sp.sqrt(denominator)).xreplace(back)

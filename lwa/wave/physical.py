@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Any
 import sympy as sp
 
 from lwa.base import latex
-from lwa.base.exact import InputError, evaluated, number, one_of, positive, power, root, shorten
+from lwa.base.exact import InputError, evaluated, number, one_of, positive, power, shorten
 from lwa.base.frozen import Value
 from lwa.base.quantities import NoSolitaryWave, known, known_extent, strain_power
 from lwa.cell import Cell, check_distinct, check_names
@@ -89,7 +89,7 @@ class PhysicalWave(Value):
     def _bead_share(self) -> sp.Expr:
         """Ratio cos^{mk}(βD/2) of a bead's peak force to its contacts'."""
         wave, k = self.wave, self.wave.k
-        angle = (k - 1) / (4 * root(wave.coefficient_sum))  # βD/2
+        angle = (k - 1) / (4 * sp.sqrt(wave.coefficient_sum))  # βD/2
         exponent = 2 * k / (k - 1)
         # At ξ = 0 the mean of cos^e(βξ ± angle) has its maximum only where it is concave.
         if angle.is_number and not (angle < sp.pi / 2 and exponent * sp.sin(angle) ** 2 < 1):
@@ -131,7 +131,7 @@ class PhysicalWave(Value):
         wave, k = self.wave, self.wave.k
         factor = wave.speed_factor * self.cell.size * k / self.cell.mass
         powers = power(self.cell.stiffness(k), 1 / (2 * k))
-        return wave.D * root(factor) * powers * power(self.contact_force, (k - 1) / (2 * k))
+        return wave.D * sp.sqrt(factor) * powers * power(self.contact_force, (k - 1) / (2 * k))
 
     @cached_property
     def bead_velocity(self) -> sp.Expr:

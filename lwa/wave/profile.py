@@ -90,26 +90,31 @@ class Flank:
             v = B / mpmath.cosh(theta) ** 2
             return 2 * mpmath.tanh(theta) * mpmath.sqrt(I * self.F1(v) / (top - self.Q(v)))
 
-    def half_width(self, quantity: str) -> Any:
-        """The place ξ at which the strain, or the force, has half of its rise."""
+    def fwhm(self, quantity: str) -> Any:
+        """Full width at half maximum of the rise of the strain, or of the force."""
         with mpmath.workdps(self.digits + 10):
             half = mpmath.mpf(0.5) if quantity != "force" else self._half_force()
-            return self._integral(mpmath.mpf(0), mpmath.acosh(1 / mpmath.sqrt(half)))
+            return 2 * self._integral(mpmath.mpf(0), mpmath.acosh(1 / mpmath.sqrt(half)))
 
     def _half_force(self) -> Any:
         """The share v/B of the strain at which the force has half of its rise."""
-        B, zero = self._numbers[0], mpmath.mpf(0)
+        B, zero, one = self._numbers[0], mpmath.mpf(0), mpmath.mpf(1)
         with mpmath.workdps(self.working_digits):
-            rise = self.F(B) - self.F(zero)
+            start, end = self.F(zero), self.F(B)
+            tol = mpmath.mpf(10) ** (-self.digits - 5)
+
+            def above_half(share: Any) -> Any:
+                return (self.F(share * B) - start) / (end - start) - one / 2
+
             return mpmath.findroot(
-                lambda share: (self.F(share * B) - self.F(zero)) / rise - mpmath.mpf(0.5),
-                (zero, mpmath.mpf(1)), solver="anderson", tol=mpmath.mpf(10) ** (-self.digits - 5),
-                verify=False,
-            )  # fmt: skip
+                above_half, (zero, one), solver="anderson", tol=tol, verify=False
+            )
 
     def strain(self, place: Any) -> Any:
         """The strain v at a place ξ ≥ 0, by Newton's method in θ."""
         with mpmath.workdps(self.digits + 10):
+            if not place:
+                return self._numbers[0]
             theta = step = mpmath.mpf(1)
             here = self._integral(mpmath.mpf(0), theta)
             while abs(step) > mpmath.mpf(10) ** (-self.digits - 5) and theta < 3 * mpmath.mp.dps:
@@ -124,13 +129,17 @@ class Flank:
 
         Steep laws, and waves next to their limiting amplitude, vary fast at θ = 0.
         """
-        pieces = max(1, int(mpmath.ceil(abs(end - start))))
-        points = mpmath.linspace(start, end, pieces + 1)
+        count = max(1, int(mpmath.ceil(abs(end - start))))
+        points = mpmath.linspace(start, end, count + 1)
+        scale = self.rate((start + end) / 2)  # the error of mpmath.quad is an absolute one
+
+        def integrand(theta: Any) -> Any:
+            return self.rate(theta) / scale
+
         for halvings in _HALVINGS:
             graded = [points[1] / 2**i for i in range(halvings, 0, -1)] if not start else []
-            total, error = mpmath.quad(
-                self.rate, [start, *graded, *points[1:]], method="gauss-legendre", error=True
-            )
+            pieces = [start, *graded, *points[1:]]
+            total, error = mpmath.quad(integrand, pieces, method="gauss-legendre", error=True)
             if error <= abs(total) * mpmath.mpf(10) ** (-self.digits - 3):
                 break
-        return total
+        return scale * total

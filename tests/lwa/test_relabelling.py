@@ -37,7 +37,7 @@ def test_beta_speed_and_I_do_not_depend_on_the_labels(pairs, n):
     wave = canonical(cell).traveling_wave()
     for other in (rotated(cell, n % cell.size), reflected(cell)):
         again = canonical(other).traveling_wave()
-        for name in ("I", "beta", "speed_factor", "speed_scale"):
+        for name in ("I", "beta", "speed_factor", "time_scale"):
             difference = sp.N(getattr(wave, name) - getattr(again, name), 30).subs(cell.spacing, 1)
             assert abs(sp.N(difference, 30)) < 1e-25  # shares are irrational: 30 digits less some
 

@@ -57,7 +57,7 @@ def results(m1, m2, k, D, alpha):
     yield "own speed", wave.speed().subs(sp.Symbol("B", positive=True), 2)
     yield "own amplitude", wave.amplitude().subs(sp.Symbol("V_s", positive=True), 2)
     yield "profile", wave.profile(sp.Rational(1, 5), 2)
-    yield "scale", wave.speed_scale
+    yield "scale", wave.time_scale
     physical = wave.at_force(3)
     yield from (("dx/dt", physical.speed), ("time", physical.fwhm("force", "time")))
     yield "own force", wave.at_force().speed.subs(sp.Symbol("F", positive=True), 3)

@@ -205,7 +205,7 @@ def _numbers(run: Run, wave: TravelingWave, place: int) -> dict[str, float]:
         sides.append((*lengths, strain.peak, V))
     *lengths, B, V = np.mean(sides, axis=0).tolist()
     # V_s of the theory's units; speeds scale as B^{(k-1)/2}.
-    at_one = V / float(wave.speed_scale) / B ** (float(wave.k - 1) / 2)
+    at_one = V / float(wave.time_scale) / B ** (float(wave.k - 1) / 2)
     return dict(zip(QUANTITIES, (*lengths, at_one), strict=True))
 
 

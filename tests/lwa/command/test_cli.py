@@ -376,7 +376,7 @@ def test_bad_input_is_one_line_and_status_two(capsys, arguments):
     ("command", "says"),
     [
         ("wave --k V_s", "'V_s': the name means the speed"),
-        ("wave --k 29000", "up to k = 1000"),
+        ("wave --k 29000", "exponents from 1/100 to 1000 are taken"),
         ("derive --masses 1,2,3", "--closure full"),
     ],
 )

@@ -10,7 +10,6 @@ from lwa import (
     Dispersion,
     InputError,
     Power,
-    Shock,
     background_wave,
     expand,
     piston,
@@ -18,7 +17,8 @@ from lwa import (
 )
 from lwa.law import named
 from lwa.shocks import edges
-from lwa.shocks.pulse import Pulse
+from lwa.shocks.waves import Pulse
+from tests.identity import same
 from tests.lwa.expansion.test_exact_waves import lattice
 
 EQUAL = Cell([1], spacing=1)
@@ -62,12 +62,12 @@ def test_a_toda_soliton_on_els_edge_moves_its_beads_at_twice_the_wall():
     assert abs(rest.subs(place).n(30)) < 1e-25
     kappa = 2 * sp.acosh(sp.sqrt(r))
     edge = sp.sqrt(r * (r - 1)) / sp.acosh(sp.sqrt(r))
-    assert sp.simplify(sp.expand_trig(sp.sinh(kappa)) / kappa - edge) == 0
-    assert sp.simplify(sp.expand_trig(2 * (sp.cosh(kappa) - 1)) - 2 * 2 * (r - 1)) == 0
+    assert same(sp.sinh(kappa) / kappa, edge)
+    assert same(2 * (sp.cosh(kappa) - 1), 4 * (r - 1))
     for D in (1, sp.Rational(1, 2)):
         found = shock(Cell([1], spacing=D), TODA, sp.log(sp.Rational(25, 16)) / D, 0)
-        assert sp.simplify(found.ratio - sp.Rational(5, 4)) == 0
-        assert sp.simplify(found.plateau - sp.S.Half) == 0
+        assert same(found.ratio, sp.Rational(5, 4))
+        assert same(found.plateau, sp.S.Half)
         for rule in ("dispersion", "doubling"):
             gap = found.leading_speed(rule) - D * edge.subs(r, sp.Rational(5, 4))
             assert abs(gap.n(30)) < 1e-25
@@ -227,7 +227,6 @@ def test_the_opposite_jump_is_a_rarefaction():
     assert found.kind == "rarefaction"
     assert found.trailing_speed == found.sound(found.behind)
     assert found.leading_speed() == found.leading_speed("dispersion") == found.sound(found.ahead)
-    assert float(found.fan(found.sound(sp.Rational(3, 2)))) == pytest.approx(1.5)
     assert found.plateau < 0
 
 
@@ -273,12 +272,6 @@ def test_si_units():
 def test_limits_are_refused(make, message):
     with pytest.raises(InputError, match=message):
         make()
-
-
-def test_symbols_first_or_numbers_first():
-    late = shock(EQUAL, Power("k"), "p", "q").at(k=3, p=2, q="9/5")
-    assert late == shock(EQUAL, Power(3), 2, "9/5")
-    assert isinstance(late, Shock)
 
 
 def test_a_rarefaction_is_one_where_masses_and_spacing_are_symbols() -> None:
