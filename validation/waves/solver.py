@@ -139,7 +139,8 @@ def measured(wave: ExactWave) -> dict[str, Measured]:
     values = _numbers(wave)
     if wave.solitary:
         error = ROUNDING / (1 - wave.background) + wave.residual + wave.tail
-        checks = {name: value * (1 + error) for name, value in values.items()} | {"tail": wave.tail + error}
+        checks = {name: value * (1 + error) for name, value in values.items()}
+        checks["tail"] = wave.tail + error
         return {name: Measured(value, checks[name]) for name, value in values.items()}
     # The error of a nanopteron is the difference from the struck chain's symmetric pulse, for the
     # FWHM also from the recorded pulse: so nanopterons of all half periods agree within it.
