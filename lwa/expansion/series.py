@@ -75,10 +75,6 @@ class EpsilonSeries(Value):
         """The exact approximant [L/M] in ε; k as in `partial_sum`, None for the series' own.
 
         Raises `lwa.InputError` where the series is too short, or has no such approximant.
-
-        >>> from lwa import Cell, expand
-        >>> expand(Cell([1]), 2).c.pade("k", 1, 1)
-        (17*k + 23)/(27*k + 13)
         """
         series = self._for(k)
         degrees = integer(numerator, "numerator", 0), integer(denominator, "denominator", 0)
@@ -87,12 +83,11 @@ class EpsilonSeries(Value):
     def at(self, k: Any = None) -> Resummed:
         """The sum and an estimate of its error, at a number k > 1 for a series in a symbol k.
 
+        The series of equal beads and the difference to it are summed apart; the error by radiation
+        is added.
+
         Raises `lwa.InputError` when k or the cell holds symbols, for k ≤ 1, for a k besides that of
         the series, and where the error is as large as the sum of these positive quantities.
-
-        >>> from lwa import Cell, expand
-        >>> expand(Cell([1]), 10, k="3/2").fwhm("force").at().value.__round__(6)
-        1.411928
         """
         series = self._for(k)
         values = (series.k, series.prefactor, *series.coefficients)
