@@ -20,7 +20,6 @@ from lwa import (
     Sphere,
     background_wave,
     canonical_wave,
-    expand,
     general,
     homogenize,
 )
@@ -305,11 +304,9 @@ def test_bad_arguments_are_refused():
         (lambda: numeric_wave("3/2").speed(math.nan, 1.0), "finite"),
         (lambda: canonical_wave(Cell([1]), 2).at_force(1, precompression=-1), "positive"),
         (lambda: homogenize(Dimer(1, 2)).pde.traveling_wave().on_background(1), "canonical"),
-        (lambda: expand(Cell([1]), 2, law=general()), "only a power law"),
     ):
         with pytest.raises(InputError, match=reason):
             call()
-    assert expand(Cell([1]), 2, law=Power(2)) == expand(Cell([1]), 2, k=2)
 
 
 def test_in_space_and_time():
