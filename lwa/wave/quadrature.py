@@ -33,7 +33,18 @@ from lwa.base.quantities import NO_WAVE, NoSolitaryWave, known
 from lwa.cell import Cell
 from lwa.law import ContactLaw
 from lwa.linear.dispersion import Dispersion
-from lwa.wave.panels import LEVELS, Grid, gauss, grid, integrated, inverse, strains, value_at
+from lwa.wave.panels import (
+    FAR,
+    LEVELS,
+    NEAR,
+    Grid,
+    gauss,
+    grid,
+    integrated,
+    inverse,
+    strains,
+    value_at,
+)
 
 _BLOCK = 256  # waves computed at once; their samples stay in the processor's cache
 _CONVERGED = 1e-13  # bound on the last Legendre coefficients of dξ/dθ
@@ -96,7 +107,7 @@ class NumericBackground(Value):
         base, rise, unit = self._waves(p0, B)
         if base.ndim:
             raise InputError("p0 or B is an array: a profile is that of one wave")
-        *_, (_, g, _, _, rate) = self._resolved(base[None], rise[None], far=True)
+        *_, (_, g, _, _, rate) = self._resolved(base[None], rise[None], FAR)
         series = g.panels(rate)[0] @ integrated().T * g.lengths[:, None]  # ξ along each panel
         ends = np.cumsum(series.sum(axis=1))  # P_n(1) = 1
         panel = np.minimum(np.searchsorted(ends, places, side="right"), len(ends) - 1)
@@ -128,7 +139,7 @@ class NumericBackground(Value):
     def _force_half_width(self, p0: Array, B: Array) -> Array:
         """The place ξ at which the force has half of its rise."""
         half, w = np.empty_like(p0), gauss()[1]
-        for rows, g, p, _, rate in self._resolved(p0, B):
+        for rows, g, p, _, rate in self._resolved(p0, B, NEAR):
             fall = self._slope(p) * g.ds  # of the force from one node to the next, over B
             falls = g.panels(fall)
             sums = np.cumsum(falls.sum(axis=2), axis=1)
@@ -145,7 +156,7 @@ class NumericBackground(Value):
         return half
 
     def _resolved(
-        self, p0: Array, B: Array, far: bool = False, rough: bool = False
+        self, p0: Array, B: Array, further: tuple[float, ...] = (), rough: bool = False
     ) -> Iterator[tuple[NDArray[np.intp], Grid, Array, Array, Array]]:
         """Yield (indices of waves, a grid that resolves them, p and F″ at its nodes, dξ/dθ).
 
@@ -153,7 +164,7 @@ class NumericBackground(Value):
         """
         rows = np.arange(len(p0))
         for level in LEVELS:
-            g, last = grid(*level, far), level == LEVELS[-1]
+            g, last = grid(*level, further), level == LEVELS[-1]
             p, bend, gap = self._sampled(g, p0[rows], B[rows])
             with np.errstate(all="ignore"):
                 # Roots first: their quotient neither over- nor underflows.
@@ -223,7 +234,7 @@ class NumericBackground(Value):
 
     def _exists(self, p0: Array, B: Array) -> Array:
         """True for each wave with 0 < F′ < ∞, B Q′(B) > 0 and Q(v) < Q(B) below B."""
-        g = grid(*LEVELS[1], far=True)
+        g = grid(*LEVELS[1], FAR)
         p, bend, gap = self._sampled(g, p0, B)
         with np.errstate(all="ignore"):
             top = self._slope(p0 + B)

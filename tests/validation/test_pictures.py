@@ -1,4 +1,4 @@
-"""Pictures: every format, complete files or none, and what the panels say."""
+"""Pictures: every format, complete files or none, and the contents of panels."""
 
 import numpy as np
 import pytest
@@ -29,7 +29,7 @@ def test_every_format(report, tmp_path, suffix):
     assert list(tmp_path.iterdir()) == [file]
 
 
-def test_a_panel_is_drawn_as_it_says(report):
+def test_a_panel_is_drawn_with_its_labels_and_scales(report):
     (axes,) = report.figure().axes
     assert (axes.get_xlabel(), axes.get_ylabel(), axes.get_title()) == ("x", "y", "squares")
     assert (axes.get_xscale(), axes.get_yscale()) == ("log", "log")

@@ -53,7 +53,7 @@ from validation.lattice.run import (
     IntegrationError,
     Run,
     RunProgress,
-    beyond,
+    check_steps,
     finished,
     mean_step,
     most_steps,
@@ -86,21 +86,26 @@ class Settings:
     step: float
     longest: float
 
+    @classmethod
+    def of(cls, motion: Motion, method: str, rtol: float, step: float | None) -> Settings:
+        """Return the settings from arguments of `simulate`."""
+        natural = _step(method, rtol) * min(motion.scales.time, motion.scene.duration)
+        if step is None:
+            return cls(method, rtol, natural, math.inf)
+        longest = positive(step, "step")
+        adaptive = isinstance(SCHEMES[method], Pair)
+        return cls(method, rtol, min(natural, longest) if adaptive else longest, longest)
+
 
 def follow(
     motion: Motion, method: str, rtol: float, step: float | None, window: Any, progress: RunProgress
 ) -> Run:
     """Integrate a scene by a method of `SCHEMES`; the arguments are those of `simulate`."""
-    beads = _window(motion, window)
-    end = motion.scene.duration
-    natural = _step(method, rtol) * min(motion.scales.time, end)
-    longest = math.inf if step is None else positive(step, "step")
-    shorter = step is None or (natural < longest and isinstance(SCHEMES[method], Pair))
-    given = Settings(method, rtol, natural if shorter else longest, longest)
+    settings, beads = Settings.of(motion, method, rtol, step), _window(motion, window)
     if beads is None:
-        return _integrated(motion, given, None, progress)[0]
-    short, left = _integrated(motion, given, beads, progress)
-    long, _ = _integrated(motion, given, 2 * beads, progress, left)
+        return _integrated(motion, settings, None, progress)[0]
+    short, left = _integrated(motion, settings, beads, progress)
+    long, _ = _integrated(motion, settings, 2 * beads, progress, left)
     _compare(motion, rtol, short, long)
     return replace(long, window=beads)
 
@@ -136,9 +141,9 @@ def _compare(motion: Motion, rtol: float, short: Run, long: Run) -> None:
     The velocities of both runs at the end are compared, from the fastest bead to the front.
     """
     followed = np.isfinite(short.velocities)
-    one, other = short.velocities[followed], long.velocities[followed]
-    leading = slice(int(np.argmax(np.abs(other))), None)
-    change = np.abs(one - other)[leading].max() / motion.scales.velocity
+    v, longer_v = short.velocities[followed], long.velocities[followed]
+    leading = slice(int(np.argmax(np.abs(longer_v))), None)
+    change = np.abs(v - longer_v)[leading].max() / motion.scales.velocity
     if change > _CHANGE * rtol:
         raise IntegrationError(
             f"a window of {short.window} beads is too short: twice as many change the leading "
@@ -148,7 +153,7 @@ def _compare(motion: Motion, rtol: float, short: Run, long: Run) -> None:
 
 def _integrated(
     motion: Motion,
-    given: Settings,
+    settings: Settings,
     window: int | None,
     progress: RunProgress,
     followed: Array | None = None,
@@ -160,41 +165,47 @@ def _integrated(
 
     Returns the run and these times, ``followed`` or the window's own.
     """
-    n, end = motion.size, motion.scene.duration
+    n, end, method = motion.size, motion.scene.duration, settings.method
+    scheme = SCHEMES[method]
     window = None if window is None or window >= n else window
-    steps = end / given.step
-    most = most_steps(motion.scene, given.method, steps, 16)
-    few = _CAREFUL if isinstance(SCHEMES[given.method], Pair) else 0
+    steps = end / settings.step
+    most = most_steps(motion.scene, method, steps, 16)
     chain = _chain(motion)
     beads = _start(motion, len(chain.A))
-    plan = _plan(motion, given, chain, window, end / math.ceil(steps + few))
+    few = _CAREFUL if isinstance(scheme, Pair) else 0
+    plan = _plan(motion, settings, chain, window, end / math.ceil(steps + few))
     time, needed = sampled(motion)
     recorder = Recorder(chain, plan.scheme.points, needed, time)
     at = beginning(plan, _front(motion))
-    glance = 1 + int(_GLANCE / (SCHEMES[given.method].stages * max(n, SHORTEST)))
+    glance = 1 + int(_GLANCE / (scheme.stages * max(n, SHORTEST)))
     t = 0.0
-    with progress() as tell:
+    with progress() as display:
         while t < end:
-            tell(t / end)
+            display(t / end)
             t, _ = advance(chain, beads, plan, recorder.knots, at, glance)
-            if t < end and at["tries"] > most:
-                raise IntegrationError(beyond(given.method, int(at["tries"]), t, end))
+            if t < end:
+                check_steps(method, int(at["tries"]), most, t, end)
             if t == end or at["kept"] == len(recorder.knots.time):
                 at["kept"] = recorder.take(int(at["kept"]))
-    rear, made, tries, moves = (int(at[name]) for name in ("lo", "steps", "tries", "evaluations"))
     drive = motion.scene.drive
     paid = () if drive is None else (0.0, beads.v[0] * float(at["impulse"]))
     state = np.concatenate((beads.y[:n], beads.v[:n], paid))
     if not np.isfinite(state).all():
         raise IntegrationError(f"the motion overflows: a step of {plan.h:g} is too long")
-    energy = motion.balance(state) if rear == 0 else motion.energy(state, rear) + float(at["lost"])
-    momentum = motion.momentum_drift(state)
     left = beads.left if followed is None else followed
     path = recorder.path(left)
-    records = {"time": time} | recorded(motion, needed, recorder.y, recorder.v)
-    evaluations = tries * SCHEMES[given.method].stages
-    state[: 2 * n].reshape(2, n)[:, np.isfinite(left[:n])] = np.nan
-    run = finished(motion, state, records, energy, momentum, made, evaluations, moves, window, path)
+    run = finished(
+        motion,
+        state,
+        {"time": time} | recorded(motion, needed, recorder.y, recorder.v),
+        motion.balance(state, int(at["lo"])) + float(at["lost"]),
+        steps=int(at["steps"]),
+        behind=np.isfinite(left[:n]),
+        evaluations=int(at["tries"]) * scheme.stages,
+        bead_evaluations=int(at["evaluations"]),
+        window=window,
+        path=path,
+    )
     return run, left
 
 
@@ -212,15 +223,17 @@ def _tableau(method: str, k: float) -> Tableau:
     return Tableau(nothing, nothing, *scheme.arrays(WIDTH), scheme.lower, points)
 
 
-def _plan(motion: Motion, given: Settings, chain: Chain, window: int | None, step: float) -> Plan:
+def _plan(
+    motion: Motion, settings: Settings, chain: Chain, window: int | None, step: float
+) -> Plan:
     """Build the integration plan of a run."""
     scales, chosen = motion.scales, motion.k if motion.contact.law is None else math.inf
     return Plan(
-        scheme=_tableau(given.method, chosen),
-        y=given.rtol * scales.displacement,
-        v=given.rtol * scales.velocity,
+        scheme=_tableau(settings.method, chosen),
+        y=settings.rtol * scales.displacement,
+        v=settings.rtol * scales.velocity,
         h=step,
-        longest=given.longest,
+        longest=settings.longest,
         end=motion.scene.duration,
         deepest=scales.compression,
         quickest=chain.A.max() * chain.inverse.max(),

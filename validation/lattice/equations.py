@@ -116,9 +116,9 @@ class Motion:
             stored -= self.load * (compression - self.rest)
         return float(self.masses @ v**2 / 2 + stored[first:].sum())
 
-    def balance(self, state: Array) -> float:
-        """Return energy plus dissipated energy less the drive's work; exact motion conserves it."""
-        return self.energy(state)
+    def balance(self, state: Array, first: int = 0) -> float:
+        """Return `energy` plus dissipated energy less a drive's work, conserved in exact motion."""
+        return self.energy(state, first)
 
     @property
     def driven(self) -> float:
@@ -203,8 +203,8 @@ class ForcedMotion(Motion):
             work = v[0] * (self.masses[0] * acceleration[0] - push[0])
         return np.concatenate((v, acceleration, (((force - elastic) * rate).sum(), work)))
 
-    def balance(self, state: Array) -> float:
-        gained = self.energy(state) - self.energy(self.start)
+    def balance(self, state: Array, first: int = 0) -> float:
+        gained = self.energy(state, first) - self.energy(self.start)
         dissipated, work = state[2 * self.size :]
         return float(self.scales.energy + gained + dissipated - work)
 

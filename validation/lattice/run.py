@@ -1,10 +1,11 @@
-"""Records of a scene's sensors, the run that made them, and limits on the cost of a run."""
+"""The result of an integration: records of the sensors, the final state, and limits on the cost."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -29,11 +30,10 @@ _FINEST = 1000  # places, and times, of a map
 MOST_STEPS = 1e9
 MOST_BYTES = 4e9
 EXCESS = 10  # times as many steps as are expected, at which an adaptive method is stopped
-
+_FEWEST = 100  # steps that an adaptive method takes to find its step, however slow the motion
 # (a, q): about a rtol^{-1/q} steps in a scene's shortest time √(m/spring), counted on uniform
 # chains, dimers and pressed beads, k = 1 … 3; at most 3 times as many.
 _STEPS = dict(RKN86=(0.25, 7), DOP853=(0.3, 8), RK45=(0.2, 5), RK23=(0.2, 3), LSODA=(1.5, 8))
-_FEWEST = 100  # steps that an adaptive method takes to find its step, however slow the motion
 
 
 class IntegrationError(Failure):
@@ -77,15 +77,7 @@ class Records(ArrayValue, Pictured):
         return f"{type(self).__name__}({self.scene}; {recorded})"
 
     def label(self, quantity: str) -> str:
-        """Return the name of a quantity with its unit, for headers and axes.
-
-        ``quantity`` ends in one of the names of quantities with SI units.
-
-        >>> rest = [np.zeros((0, 2))] * 5
-        >>> Records(Scene(masses=(1,), stiffnesses=(), k=1, duration=1, units="SI"), np.arange(2.0),
-        ...         *rest).label("bead 1 velocity")
-        'bead 1 velocity (m/s)'
-        """
+        """Return the name of a quantity, such as "bead 1 velocity", with its unit in a SI scene."""
         return f"{quantity} ({_SI[quantity.split()[-1]]})" if self.scene.units else quantity
 
     def columns(self) -> dict[str, Array]:
@@ -103,12 +95,9 @@ class Records(ArrayValue, Pictured):
     def pictured(self) -> list[Panel]:
         """Panels of force against time at all sensors; an x–t map for more than ten of a kind."""
         time, force = self.label("time"), self.label("force")
-        kinds = (
-            ("bead", self.scene.bead_sensors, self.bead_force),
-            ("contact", self.scene.contact_sensors, self.contact_force),
-        )
         curves, maps = [], []
-        for kind, sensors, forces in kinds:
+        for kind in ("bead", "contact"):
+            sensors, forces = getattr(self.scene, f"{kind}_sensors"), getattr(self, f"{kind}_force")
             if len(sensors) <= _MOST:
                 rows = zip(sensors, forces, strict=True)
                 curves += [Curve(f"{kind} {i + 1}", self.time, row) for i, row in rows]
@@ -116,8 +105,8 @@ class Records(ArrayValue, Pictured):
                 x = np.argsort(sensors)[:: -(-len(sensors) // _FINEST)]
                 t = slice(None, None, -(-len(self.time) // _FINEST))
                 places = np.array(sensors, float)[x] + 1
-                shown = Map(force, places, self.time[t], forces[x, t].T)
-                maps.append(Panel(kind, time, map=shown))
+                forces_map = Map(force, places, self.time[t], forces[x, t].T)
+                maps.append(Panel(kind, time, map=forces_map))
         return [Panel(time, force, tuple(curves), legend_above=True), *maps] if curves else maps
 
 
@@ -173,31 +162,32 @@ def finished(
     end: Array,
     records: dict[str, Array],
     energy: float,
-    momentum: float | None,
+    *,
     steps: int,
-    evaluations: int,
-    bead_evaluations: int,
-    window: int | None = None,
-    path: Path | None = None,
+    behind: slice | Array = np.s_[:0],
+    **fields: Any,
 ) -> Run:
-    """Return the `Run` with a given final state, records, final energy and change of momentum."""
+    """Return the `Run` of a motion with the final state ``end`` and the final ``energy``.
+
+    behind : beads that a window left behind, whose final state is NaN. fields : further fields of
+    the `Run`.
+    """
     n, before = motion.size, motion.scales.energy
-    arrays = records | {"displacements": end[:n].copy(), "velocities": end[n : 2 * n].copy()}
+    displacements, velocities = end[:n].copy(), end[n : 2 * n].copy()
+    displacements[behind] = velocities[behind] = np.nan
+    arrays: dict[str, Any] = records | {"displacements": displacements, "velocities": velocities}
     for array in arrays.values():
         array.setflags(write=False)
     dissipated, work = map(float, end[2 * n :] if len(end) > 2 * n else (0, 0))
     return Run(
         scene=motion.scene,
         energy_drift=(energy - before) / before if before else 0.0,
-        momentum_drift=momentum,
-        evaluations=evaluations,
-        bead_evaluations=bead_evaluations,
+        momentum_drift=motion.momentum_drift(end),
         step=motion.scene.duration / steps,
-        window=window,
-        path=path,
         dissipated=dissipated,
         work=work,
         **arrays,
+        **fields,
     )
 
 
@@ -228,9 +218,10 @@ def most_steps(scene: Scene, method: str, steps: float, rows: int, memory: int =
     return EXCESS * (_FEWEST + int(steps))
 
 
-def beyond(method: str, steps: int, t: float, duration: float) -> str:
-    """Return the message of the error for too many steps."""
-    return (
-        f"{steps} steps of {method} reach t = {t:g} of {duration:g}: rounding hides the motion, "
-        "or rtol is too small for it"
-    )
+def check_steps(method: str, steps: int, most: int, t: float, duration: float) -> None:
+    """Raise `IntegrationError` for more than ``most`` steps up to time t."""
+    if steps > most:
+        raise IntegrationError(
+            f"{steps} steps of {method} reach t = {t:g} of {duration:g}: rounding hides the "
+            "motion, or rtol is too small for it"
+        )

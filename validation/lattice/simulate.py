@@ -96,26 +96,23 @@ def simulate(
 
 
 def _method(scene: Scene, method: str, step: float | None, window: bool | int) -> str:
-    """The method that integrates a scene: the first of `METHODS` for forces of velocity or time.
+    """Return the method that integrates a scene, in place of the RKN pair DOP853 if need be.
 
-    Raises `SceneError` for a scene, step or window that the chosen method does not take.
+    Raises `SceneError` for a scene, step or window that the method does not take.
     """
-    for name, value in (("step", step), ("window", window or None)):
-        if method not in COMPILED and value is not None:
-            needs = f"it needs one of {', '.join(COMPILED)}"
-            raise SceneError(f"{name} is {shorten(value)}: {needs}")
-    piston = scene.damping is None and scene.drive is not None and scene.drive.velocity is not None
-    forced = scene.damping is not None or (scene.drive is not None and not piston)
-    if not (forced or piston) or method not in COMPILED:
-        return method
-    if method != COMPILED[0] or window or (forced and step is not None):
-        drive = "damping or a drive" if forced else "a drive of one velocity"
-        takes = ", ".join(METHODS if forced else (COMPILED[0], *METHODS))
-        without = "step or window" if forced else "window"
+    forced, drive = scene.damping is not None or scene.drive is not None, scene.drive
+    piston = scene.damping is None and drive is not None and drive.velocity is not None
+    if forced and not piston and method == COMPILED[0]:
+        method = METHODS[0]
+    takes = METHODS if forced and not piston else (COMPILED[0], *METHODS)
+    if forced and method not in takes:
         raise SceneError(
-            f"method is {method}: a scene with {drive} takes one of {takes}, without {without}"
+            f"method is {method}: a scene with damping or a drive takes one of {', '.join(takes)}"
         )
-    return METHODS[0] if forced else method
+    for name, value in (("step", step), ("window", window or None)):
+        if value is not None and (method in METHODS or (piston and name == "window")):
+            raise SceneError(f"{name} is {shorten(value)}: {method} takes none in this scene")
+    return method
 
 
 def simulate_many(

@@ -16,7 +16,7 @@ from validation.lattice.run import (
     IntegrationError,
     Run,
     RunProgress,
-    beyond,
+    check_steps,
     finished,
     mean_step,
     most_steps,
@@ -80,10 +80,9 @@ def integrate(motion: Motion, method: str, rtol: float, atol: float, progress: R
     nodes = (1 + chebyshev.chebpts2(_COEFFICIENTS[method])) / 2
     moving = beads[beads < n]
     ends, states = [0.0], []
-    with progress() as tell:
+    with progress() as display:
         while stepper.status == "running":
-            if len(ends) > most:
-                raise IntegrationError(beyond(method, len(ends), stepper.t, end))
+            check_steps(method, len(ends), most, stepper.t, end)
             message = stepper.step()
             if stepper.status == "failed":
                 raise IntegrationError(f"integration stopped at t = {stepper.t:g}: {message}")
@@ -92,13 +91,17 @@ def integrate(motion: Motion, method: str, rtol: float, atol: float, progress: R
                 states.append(np.zeros((len(nodes), 2, len(beads))))
                 states[-1][..., : len(moving)] = state.T[:, : 2 * n].reshape(-1, 2, n)[..., moving]
             ends.append(stepper.t)
-            tell(stepper.t / end)
+            display(stepper.t / end)
     nothing = np.zeros((len(ends) - 1, len(nodes), 2, 0))
     path = NodePath(np.array(ends), beads, np.array(states) if states else nothing)
     records = {"time": time} | recorded(motion, beads, *path(beads, time))
-    evaluations = int(stepper.nfev)
-    energy, momentum = motion.balance(stepper.y), motion.momentum_drift(stepper.y)
-    moves, made = evaluations * n, len(ends) - 1
     return finished(
-        motion, stepper.y, records, energy, momentum, made, evaluations, moves, None, path
+        motion,
+        stepper.y,
+        records,
+        motion.balance(stepper.y),
+        steps=len(ends) - 1,
+        evaluations=stepper.nfev,
+        bead_evaluations=stepper.nfev * n,
+        path=path,
     )

@@ -1,4 +1,4 @@
-"""Files: every fault of the system is one line, and nothing is left half-written."""
+"""Files: a fault of the system becomes one line, and no file is left half-written."""
 
 import errno
 import os
@@ -56,7 +56,7 @@ def test_a_folder_that_takes_no_file(tmp_path, monkeypatch, number):
     "fault", [OSError(errno.ENOSPC, "full"), KeyboardInterrupt(), ValueError()]
 )
 @pytest.mark.parametrize("name", ["p.svg", "a" * 251 + ".svg"])
-def test_what_fails_on_the_way_leaves_the_old_file(tmp_path, fault, name):
+def test_a_failure_while_writing_leaves_the_old_file(tmp_path, fault, name):
     file = tmp_path / name
     file.write_text("old")
     wanted = InputError if isinstance(fault, OSError) else type(fault)

@@ -1,4 +1,4 @@
-"""The report of any scene: its table for programs, and what a notebook shows."""
+"""The report of any scene: its table for programs, and its view in a notebook."""
 
 import csv
 import io
@@ -118,14 +118,14 @@ def test_a_window_that_changes_the_leading_pulse_is_an_error(two_blows, capsys, 
     assert "twice as many change the leading pulse by 0.8 where rtol is 1e-10" in err
 
 
-def test_a_window_too_short_for_the_errors_is_told_from_the_one_given(two_blows):
+def test_a_window_is_refused_if_half_of_it_is_too_short(two_blows):
     """A window of 12 beads is enough for the run, half of it is not for the less accurate run."""
     assert simulate(two_blows, window=12).window == 12
     with pytest.raises(IntegrationError, match=r"^window is 12: .* errors .* window of 8 beads is"):
         record(two_blows, window=12)
 
 
-def test_a_damped_run_tells_what_was_dissipated():
+def test_a_damped_run_states_the_dissipated_energy():
     scene = struck((1,), 12, duration=12, contact_sensors=(5,), damping=Damping("contact", 0.05))
     found = record(scene, rtol=1e-8)
     shown = report(found)

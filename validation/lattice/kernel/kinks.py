@@ -84,16 +84,18 @@ def kink(c: Quintic, end: float) -> Quintic:
 def ramp(chain: Chain, points: Array, p: Quintic, z: float) -> tuple[float, float]:
     """Return ∫ (z - x) p_+^k dx and ∫ p_+^k dx from the root r of p to z, for p = (x - r) q(x).
 
-    p : r and the coefficients of q. points : nodes and weights of ∫ u^k f(u) du from 0 to 1.
+    p : r and the coefficients of q; both integrals of `NONE` are 0. points : nodes and weights of
+    ∫ u^k f(u) du from 0 to 1. With x = r + (z - r) u, p_+^k is u^k times a smooth function.
     """
     side = z - p[0]
+    if not side * p[1] > 0.0:  # open from r to z, or `NONE`
+        return 0.0, 0.0
     once = twice = 0.0
-    if side * p[1] > 0.0:
-        for m in range(points.shape[1]):
-            u = points[0, m]
-            x = p[0] + side * u
-            q = p[1] + x * (p[2] + x * (p[3] + x * (p[4] + x * p[5])))
-            f = points[1, m] * power(chain, side * q)
-            once += f
-            twice += f * (1.0 - u)
+    for m in range(points.shape[1]):
+        u = points[0, m]
+        x = p[0] + side * u
+        q = p[1] + x * (p[2] + x * (p[3] + x * (p[4] + x * p[5])))
+        f = points[1, m] * power(chain, side * q)
+        once += f
+        twice += f * (1.0 - u)
     return side * side * twice, side * once

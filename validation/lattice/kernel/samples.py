@@ -118,15 +118,6 @@ def _without(chain: Chain, points: Array, knot: Four, p: Quintic, unit: float, z
 
 
 @part
-def _kinked(chain: Chain, points: Array, p: Quintic, unit: float, x: float) -> tuple[float, float]:
-    """Return the contribution of a kink p to y and y' at x; see `_without`."""
-    if math.isnan(p[0]):
-        return 0.0, 0.0
-    y, v = ramp(chain, points, p, x)
-    return unit * y, unit * v
-
-
-@part
 def _polynomial(
     chain: Chain, points: Array, knots: Knots, n: int, q: int, behind: Quintic, ahead: Quintic
 ) -> tuple[Quintic, float, float]:
@@ -191,12 +182,13 @@ def _built(sources: int) -> Any:
                     ahead = course(chain, points, knots, n, q)
                     low, c6, c7 = _polynomial(chain, points, knots, n, q, behind, ahead)
                 x = (time[s] - start) / h
-                more_y, more_v = _kinked(chain, points, ahead, pull, x)
-                back_y, back_v = _kinked(chain, points, behind, push, x)
-                y[r, s] = quintic(low, x) + x * x * x * x * x * x * (c6 + x * c7) + back_y + more_y
+                pull_y, pull_v = ramp(chain, points, ahead, x)
+                push_y, push_v = ramp(chain, points, behind, x)
+                smooth = quintic(low, x) + x * x * x * x * x * x * (c6 + x * c7)
+                y[r, s] = smooth + push * push_y + pull * pull_y
                 slope = 4 * low[4] + x * (5 * low[5] + x * (6 * c6 + x * 7 * c7))
                 slope = low[1] + x * (2 * low[2] + x * (3 * low[3] + x * slope))
-                v[r, s] = (slope + back_v + more_v) / h
+                v[r, s] = (slope + push * push_v + pull * pull_v) / h
         return sources
 
     return interpolate
