@@ -12,7 +12,7 @@ from lwa.command.chain import ChainInput, take_chain
 from lwa.command.options import SPHERES, cell_options, quantity, spheres_option, style_option
 from lwa.command.rows import Answer, Row, attempt
 from lwa.command.waves import SPEED, hertz_note
-from lwa.expansion.strike import pulse_of_strike
+from lwa.expansion.physical import pulse_of_strike
 from lwa.shocks import riemann
 
 
