@@ -25,9 +25,8 @@ from lwa.base.exact import InputError, exact, shorten
 from lwa.base.progress import Progress
 from validation.lattice.threads import cluster, threads
 from validation.pictures import Curve, Map, Panel
-from validation.pulses.points import Key, PointFile
-from validation.pulses.steady import QUANTITIES, STRETCH, Point, point
-from validation.report.command import option, study, whole
+from validation.pulses.steady import QUANTITIES, STRETCH, Key, Point, PointFile, point
+from validation.report.command import option, study
 from validation.report.files import output_file
 from validation.report.result import Report
 from validation.report.table import Column, Table, percent
@@ -227,7 +226,7 @@ _RANGES = "values and ranges start:stop:count, separated by commas."
     option("--omega", "omegas", default="1/20:1:20", says=f"Mass ratios m2/m1: {_RANGES}"),
     option("--stretch", default=STRETCH, says="Cells from place to place; more at k < 3/2."),
     option("--file", metavar="FILE", says="Keep finished points (.jsonl), and continue from them."),
-    option("--jobs", callback=whole, says="Threads; by default one for each processor."),
+    option("--jobs", type=int, says="Threads; by default one for each processor."),
     option("--cluster", "address", metavar="ADDRESS", says="Dask scheduler to compute on."),
 )
 def sweep(

@@ -103,7 +103,7 @@ def test_the_table_of_a_window_has_numbers_of_the_leading_pulse_only(two_blows):
     behind, ahead = report(found).document()["sensors"]
     assert behind["missing"].startswith("not followed: a window had left the sensor")
     assert [behind[f"{name}_value"] for name in READINGS] == [None, None, None]
-    assert re.search(r"contact 41 +- +- +-\n", report(found).text())
+    assert re.search(r"contact 41 +not followed +- +-\n", report(found).text())
     assert np.isnan(found.run.contact_force[0]).any()
     assert report(found).document()["speeds"][0]["speed_value"] is None
     for other in (record(two_blows), record(two_blows, window=48)):
