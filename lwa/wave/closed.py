@@ -103,13 +103,10 @@ class Reduction(Value):
 class CompactWave(Value):
     """Closed forms of the compact wave v = u_x = B cos^m(βξ), ξ = x - V τ.
 
-    Parameters
-    ----------
     cell, k : the chain and the exponent of its contact law.
     G, H, I : coefficients of the wave equation, D² included.
 
-    Results are exact SymPy expressions. Lengths are in units of the spacing D; B is the peak of the
-    strain u_x, and the speed V = dx/dτ becomes dx/dt by `time_scale`.
+    Results are exact SymPy expressions; the speed V = dx/dτ becomes dx/dt by `time_scale`.
 
     Raises `NoSolitaryWave` when the parameters are numbers without a wave (k ≤ 1, G + H + I ≤ 0,
     or V² ≤ 0).
@@ -193,10 +190,8 @@ class CompactWave(Value):
     def fwhm(self, quantity: str = "strain") -> sp.Expr:
         """Full width at half maximum, a length in x.
 
-        ``quantity`` is "strain" (u_x), "force" (of a contact, A (D u_x)^k) or "velocity"
-        (u_τ = -V u_x, so that its width is the strain's).
-
-        Raises `lwa.InputError` for any other quantity.
+        quantity : "strain" (u_x), "force" (of a contact, A (D u_x)^k) or "velocity" (u_τ = -V u_x);
+            raises `lwa.InputError` for others.
         """
         return 2 * sp.acos(2 ** (-1 / (strain_power(quantity, self.k) * self.m))) / self.beta
 
@@ -228,8 +223,7 @@ class CompactWave(Value):
     def profile(self, xi: Any, B: Any = RISE) -> sp.Expr:
         """Strain v(ξ) = B cos^m(βξ) on |ξ| ≤ π/(2β) and 0 outside, as a SymPy Piecewise.
 
-        >>> from lwa import Cell, canonical_wave
-        >>> canonical_wave(Cell((1,)), 3).profile("xi", B=1)
+        >>> CompactWave.canonical(Cell([1]), 3).profile("xi", B=1)
         Piecewise((cos(sqrt(2)*xi/D), Abs(xi) <= sqrt(2)*pi*D/4), (0, True))
         """
         xi = signed(xi, "xi")
@@ -238,7 +232,7 @@ class CompactWave(Value):
 
     @cached_property
     def roots(self) -> tuple[sp.Expr, sp.Expr]:
-        """The two p for which v = z^p removes z_ξ³, the paper's first (2/(k+1) at equal masses)."""
+        """The two p for which v = z^p removes z_ξ³; the paper's is the first."""
         p, equation = self._equation
         A, B, C = self._coefficients(equation["cubic"] / p, p)
         root = _root(factored(B**2 - 4 * A * C)).replace(sp.Abs, lambda x: x)
@@ -276,9 +270,7 @@ class CompactWave(Value):
         Raises `lwa.InputError` for a name that the wave does not contain or a value that is not
         positive, and `NoSolitaryWave` for values without a wave.
 
-        >>> from lwa import Dimer, homogenize
-        >>> wave = homogenize(Dimer("m1", "m2")).pde.traveling_wave()
-        >>> wave.at(k=sp.Rational(3, 2), m1=1, m2=1).beta
+        >>> CompactWave.canonical(Cell(["m1", "m2"]), "k").at(k="3/2", omega=1).beta
         sqrt(10)/(5*D)
         """
         new = substitution(values, self.cell, self.k)
