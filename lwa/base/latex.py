@@ -85,9 +85,11 @@ def expression(value: sp.Expr) -> str:
     '\\\\frac{x}{2} + \\\\frac{y}{2}'
     """
     plain = str(sp.latex(value))
+    if width(plain) <= WIDTH or not (value.is_Mul or value.is_Pow):
+        return plain
     factors = sp.Mul.make_args(value)
     sums = [f for f in factors if (e := f.as_base_exp())[0].is_Add and e[1].is_Integer and e[1] > 0]
-    if width(plain) <= WIDTH or value.is_Add or not sums:
+    if not sums:
         return plain
     longest = max(sums, key=lambda f: len(f.as_base_exp()[0].args))
     total, e = longest.as_base_exp()
@@ -112,13 +114,13 @@ def power(symbol: sp.Expr, n: int) -> str:
     return f"{sp.latex(symbol)}^{{{n}}}" if n > 1 else str(sp.latex(symbol))
 
 
-def derivative(n: int) -> str:
-    """The derivative ∂_x^n u in LaTeX.
+def derivative(n: int, mark: str = "") -> str:
+    """The derivative ∂_x^n u in LaTeX, with further subscripts ``mark``.
 
     >>> derivative(2), derivative(4)
     ('u_{xx}', 'u_{4x}')
     """
-    return f"u_{{{'x' * n if n < 4 else f'{n}x'}}}"
+    return f"u_{{{'x' * n if n < 4 else f'{n}x'}{mark}}}"
 
 
 def total(terms: Iterable[tuple[sp.Expr, str]]) -> str:

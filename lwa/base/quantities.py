@@ -9,7 +9,10 @@ import sympy as sp
 from lwa.base.errors import NoSolitaryWave as NoSolitaryWave
 from lwa.base.exact import one_of
 
-NO_WAVE = "there is no wave unless contacts stay closed, F′ > 0, and speeds grow towards B"
+NO_WAVE = (
+    "there is no wave unless contacts stay closed, F′ > 0, and speeds grow towards B (under δ^k: "
+    "p0 + B > 0 and (k-1) B > 0)"
+)
 """Reason for the refusal of a wave on a background."""
 
 RISE = sp.Symbol("B", positive=True)

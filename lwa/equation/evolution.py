@@ -19,7 +19,7 @@ from typing import Any
 import sympy as sp
 
 from lwa.base import latex
-from lwa.base.exact import InputError, exact, power, root, signed
+from lwa.base.exact import InputError, exact, power, signed
 from lwa.base.frozen import Value
 from lwa.cell import Cell, substitution
 from lwa.law import ContactLaw, for_cell
@@ -28,7 +28,7 @@ from lwa.linear.dispersion import Dispersion
 
 @dataclass(frozen=True)
 class Evolution(Value):
-    """The equation (1 - I ∂_x²) u_ττ = ∂_x F(u_x) of a cell and a law, exact.
+    """The equation (1 - I ∂_x²) u_ττ = ∂_x F(u_x) of a cell and a law.
 
     Pulses of Hertz contacts are too narrow by 19 % in this equation (FWHM of the strain), which is
     meant for the evolution of long waves, not for the widths of short ones.
@@ -71,13 +71,13 @@ class Evolution(Value):
     def frequency(self, q: Any, p0: Any) -> sp.Expr:
         """Frequency Ω = c0 q/√(1 + I q²) in τ of small waves of wavenumber q, c0 = √F′(p0)."""
         q = signed(q, "q")
-        return root(self.force(p0, 1)) * q / root(1 + self.I * q**2)
+        return sp.sqrt(self.force(p0, 1)) * q / sp.sqrt(1 + self.I * q**2)
 
     def speed(self, B: Any, p0: Any = 0) -> sp.Expr:
         """Speed V = dx/dτ of the wave whose strain rises from p0 to p0 + B."""
         B, p0 = exact(B, "B"), exact(p0, "p0")
         W, W0 = (self.force(p, -1) for p in (p0 + B, p0))
-        return root(sp.powsimp(sp.factor(2 * (W - W0 - self.force(p0) * B) / B**2)))
+        return sp.sqrt(sp.powsimp(sp.factor(2 * (W - W0 - self.force(p0) * B) / B**2)))
 
     def profile(self, xi: Any, B: Any) -> sp.Expr:
         """Strain v = B sech^{2/(k-1)}((k-1) ξ/(2√I)) of the wave without load, for a power law.
@@ -87,7 +87,7 @@ class Evolution(Value):
         if not self.law.homogeneous:
             raise InputError("the profile has a closed form under a power law only")
         k = self.law.exponent
-        shape = sp.sech((k - 1) * signed(xi, "xi") / (2 * root(self.I)))
+        shape = sp.sech((k - 1) * signed(xi, "xi") / (2 * sp.sqrt(self.I)))
         return exact(B, "B") * power(shape, 2 / (k - 1))
 
     def at(self, **values: Any) -> Evolution:

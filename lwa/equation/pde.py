@@ -10,8 +10,6 @@ of motion; G, H and I are the coefficients of n = 3. Under a law F(δ) that is n
 replaces u_x^{k-1}, and coefficients hold φ_2, φ_3, … (`lwa.law`). Optical branch, in its time unit:
 
     u_ττ = -u^k + u^k Σ_{n≥1} D^n Σ_jets coefficient · Π_i (∂_x^i u / u)^{e_i}.
-
-Coefficients are converted to SymPy one by one, when they are looked up.
 """
 
 from __future__ import annotations
@@ -25,17 +23,21 @@ import sympy as sp
 from flint import fmpq_mpoly
 
 from lwa.base import latex
-from lwa.base.exact import InputError, exact, integer, power, root
+from lwa.base.exact import InputError, exact, integer, power
 from lwa.closure.consistency import OfClosure
 from lwa.equation.energy import energy, flux, variational
-from lwa.equation.fields import change_field
 from lwa.equation.terms import ENERGY, Jet, Terms, base_order, terms
 from lwa.wave.traveling import TravelingWave
 
 
 @dataclass(frozen=True)
 class PDE(OfClosure):
-    """The wave equation of a closure, in the form that the docstring of the module states."""
+    """The wave equation of a closure (`lwa.equation.pde` states its form)."""
+
+    @property
+    def acoustic(self) -> bool:
+        """True for the equation of the acoustic branch."""
+        return self.closure.model.branch == "acoustic"
 
     @cached_property
     def time_scale(self) -> sp.Expr:
@@ -45,7 +47,7 @@ class PDE(OfClosure):
         # w = λu strains each contact by (λ - 1)u, and 1 - λ = M/m2.
         m1, m2 = self.cell.masses
         stretch = power(self.cell.mass / m2, self.k)
-        return root(sp.Add(*self.cell.stiffnesses) * stretch / m1)
+        return sp.sqrt(sp.Add(*self.cell.stiffnesses) * stretch / m1)
 
     @cached_property
     def coefficients(self) -> Mapping[int, Terms]:
@@ -66,42 +68,16 @@ class PDE(OfClosure):
     """The paper's letters for the coefficients at D^{k+3}, and their jets."""
 
     @property
-    def acoustic(self) -> bool:
-        """True for the equation of the acoustic branch."""
-        return self.closure.model.branch == "acoustic"
-
-    @property
     def third_order(self) -> dict[str, sp.Expr]:
         """Mapping from "G", "H", "I" to their values; {} below order 4 or on the optical branch."""
         known = self.acoustic and self.closure.order >= 4
-        return {"G": self.G, "H": self.H, "I": self.I} if known else {}
-
-    def latex_rows(self, most: int | None = None) -> list[str]:
-        """LaTeX of the equation to D^{k+most} (all orders if None), and of G, H, I."""
-        letters = self.third_order
-        leading = "u_{x}^{k-1}" if self.law.homogeneous else "F'"
-        parts = [f"{leading} u_{{xx}}" if self.acoustic else "-u^{k}"]
-        for n, found in self.coefficients.items():
-            if n == 3 and letters:
-                parts += [f"{letter} {found.latex(jet)}" for letter, jet in self.LETTERS.items()]
-            elif found and most is not None and n > most:
-                parts.append(r"\cdots")
-                break
-            elif found:
-                D = latex.power(self.cell.spacing, n - base_order(self.closure.model))
-                parts.append(rf"{D} \Bigl({found.latex_total()}\Bigr)")
-        rows = [latex.row(letter, value) for letter, value in letters.items()]
-        return [rf"u_{{\tau\tau}} = {' + '.join(parts)}", *rows]
-
-    def _repr_latex_(self) -> str:
-        return latex.display(self.latex_rows(3))
+        return {letter: self._at_third_order(letter) for letter in self.LETTERS} if known else {}
 
     def _at_third_order(self, letter: str) -> sp.Expr:
-        if not self.acoustic:
-            raise InputError("G, H and I belong to the acoustic branch")
-        if self.closure.order < 4:
+        if not self.acoustic or self.closure.order < 4:
             raise InputError(
-                f"order is {self.closure.order}: G, H and I stand at D^(k+3), from order 4 on"
+                f"order is {self.closure.order}: G, H and I stand at D^(k+3), from order 4 on, on "
+                "the acoustic branch"
             )
         return self.coefficients[3].get(self.LETTERS[letter], sp.Integer(0)) * self.cell.spacing**2
 
@@ -120,27 +96,45 @@ class PDE(OfClosure):
         """The coefficient of u_x^{k-1} u_xxxx, D² included."""
         return self._at_third_order("I")
 
+    def latex_rows(self, most: int | None = None) -> list[str]:
+        """LaTeX of the equation to D^{k+most} (all orders if None), and of G, H, I."""
+        letters = self.third_order
+        leading = "u_{x}^{k-1}" if self.law.homogeneous else "F'"
+        parts = [f"{leading} u_{{xx}}" if self.acoustic else "-u^{k}"]
+        for n, of_order in self.coefficients.items():
+            if n == 3 and letters:
+                parts += [f"{name} {of_order.latex(jet)}" for name, jet in self.LETTERS.items()]
+            elif of_order and most is not None and n > most:
+                parts.append(r"\cdots")
+                break
+            elif of_order:
+                D = latex.power(self.cell.spacing, n - base_order(self.closure.model))
+                parts.append(rf"{D} \Bigl({of_order.latex_total()}\Bigr)")
+        rows = [latex.row(letter, value) for letter, value in letters.items()]
+        return [rf"u_{{\tau\tau}} = {' + '.join(parts)}", *rows]
+
+    def _repr_latex_(self) -> str:
+        return latex.display(self.latex_rows(3))
+
     @property
     def vanishing(self) -> tuple[int, ...]:
         """The n whose order D^{k+n} (optical: D^n) vanishes identically."""
-        return tuple(n for n, found in self.coefficients.items() if not found)
-
-    @cached_property
-    def conservative(self) -> bool:
-        """True if every order is ∂_x of a flux, so that the momentum ∫ u_τ dx is conserved.
-
-        The order D^{k+3}, the first that may lack a flux, is derived and examined in any case.
-        """
-        return self.acoustic and None not in self._at_least_to_third_order._fluxes.values()
+        return tuple(n for n, of_order in self.coefficients.items() if not of_order)
 
     @property
     def _at_least_to_third_order(self) -> PDE:
+        """The equation to D^{k+3}, the first order that may lack a flux or a potential."""
         return self if self.closure.order >= 4 else PDE(self.closure.anew(order=4))
 
     @cached_property
     def _fluxes(self) -> dict[int, fmpq_mpoly | None]:
         """Mapping from n ≥ 2 to the flux F_n, u_x^k E_n = ∂_x (u_x^k F_n), or None without one."""
-        return {n: flux(self.closure, n) for n in self._orders}
+        return {n: flux(self.closure, n) for n in self.coefficients} if self.acoustic else {}
+
+    @cached_property
+    def conservative(self) -> bool:
+        """True if every order (D^{k+3} in any case) is ∂_x of a flux: ∫ u_τ dx is conserved."""
+        return self.acoustic and None not in self._at_least_to_third_order._fluxes.values()
 
     @cached_property
     def variational(self) -> bool:
@@ -159,10 +153,6 @@ class PDE(OfClosure):
         fluxes = pde._fluxes.items()
         return bool(fluxes) and all(variational(pde.closure, n, F) for n, F in fluxes)
 
-    @property
-    def _orders(self) -> tuple[int, ...]:
-        return tuple(self.coefficients) if self.acoustic else ()
-
     @cached_property
     def energy(self) -> Mapping[int, Terms]:
         """Mapping from n ≤ order - 2 to the terms e_n / u_x^{k+1} of the energy density Σ D^n e_n.
@@ -173,49 +163,21 @@ class PDE(OfClosure):
 
         Raises `lwa.InputError` on the optical branch, and for a closure that leaves a defect.
         """
-        algebra, found = energy(self.closure)
-        rows = {n: terms(self.closure, e, ENERGY, algebra=algebra) for n, e in enumerate(found)}
-        if found and self.law.homogeneous:
+        algebra, densities = energy(self.closure)
+        rows = {n: terms(self.closure, e, ENERGY, algebra=algebra) for n, e in enumerate(densities)}
+        if densities and self.law.homogeneous:
             k = self.closure.model.ring.exponent(algebra.context)
-            divided = k * (k + 1) * found[0] + 1
-            rows[0] = terms(self.closure, divided, ENERGY, self.k * (self.k + 1), algebra)
+            first = k * (k + 1) * densities[0] + 1
+            rows[0] = terms(self.closure, first, ENERGY, self.k * (self.k + 1), algebra)
         return rows
 
     def energy_density(self, u: sp.Expr, x: sp.Symbol, velocity: sp.Expr = sp.S.Zero) -> sp.Expr:
-        """The density of the conserved `energy` for fields u(x) and u_τ(x).
-
-        Raises `lwa.InputError` as `energy` does.
-
-        >>> from lwa import Cell, homogenize
-        >>> x = sp.Symbol("x")
-        >>> homogenize(Cell([1]), k=3).pde.energy_density(x**2, x)
-        -2*D**2*x**2/3 + 4*x**4/3
-        """
+        """The density of the conserved `energy` for fields u(x) and u_τ(x)."""
         D, law = self.cell.spacing, self.law
         parts = [D**n * e.of_fields(u, velocity, x) for n, e in self.energy.items()]
         if parts and not law.homogeneous:  # e_0 of a power holds W
             parts.append(law.of_strain(u.diff(x), D, -1))
         return sp.Add(*parts)
-
-    def in_field(self, alphas: Mapping[int, Any]) -> PDE:
-        """The wave equation of the field φ = u + Σ α_n D^n ∂_x^n u, for {n: α_n}.
-
-        Raises `lwa.InputError` on the optical branch, for n < 1 or α_n that are no quantities.
-
-        >>> from lwa import Dimer, homogenize
-        >>> pde = homogenize(Dimer(1, 1)).pde
-        >>> pde.H, pde.in_field({2: "alpha"}).H
-        (D**2*(k/6 - 1/6), D**2*(12*alpha + 1)*(k - 1)/6)
-        """
-        given = ((integer(n, "n", 1), a) for n, a in alphas.items())
-        return PDE(change_field(self.closure, {n: exact(a, f"alpha_{n}") for n, a in given}))
-
-    def at(self, **values: Any) -> PDE:
-        """The equation for these values of the named symbols, and of ω = m2/m1 by ``omega``.
-
-        Raises `lwa.InputError` for a name that does not occur or a value that is no quantity.
-        """
-        return PDE(self.closure.at(**values))
 
     def right_side(self, u: sp.Expr, x: sp.Symbol, velocity: sp.Expr = sp.S.Zero) -> sp.Expr:
         """The right-hand side of u_ττ for fields u(x) and u_τ(x), as a SymPy expression.
@@ -229,10 +191,30 @@ class PDE(OfClosure):
         D, law = self.cell.spacing, self.law
         leading = law.of_strain(u.diff(x), D, 1) * u.diff(x, 2) if base else -(u**law.exponent)
         rest = (
-            D ** (n - base) * found.of_fields(u, velocity, x)
-            for n, found in self.coefficients.items()
+            D ** (n - base) * of_order.of_fields(u, velocity, x)
+            for n, of_order in self.coefficients.items()
         )
         return sp.Add(leading, *rest)
+
+    def in_field(self, alphas: Mapping[int, Any]) -> PDE:
+        """The wave equation of the field φ = u + Σ α_n D^n ∂_x^n u, for {n: α_n}.
+
+        Raises `lwa.InputError` on the optical branch, for n < 1 or α_n that are no quantities.
+
+        >>> from lwa import Dimer, homogenize
+        >>> pde = homogenize(Dimer(1, 1)).pde
+        >>> pde.H, pde.in_field({2: "alpha"}).H
+        (D**2*(k/6 - 1/6), D**2*(12*alpha + 1)*(k - 1)/6)
+        """
+        shifts = {integer(n, "n", 1): exact(a, f"alpha_{n}") for n, a in alphas.items()}
+        return PDE(self.closure.in_field(shifts))
+
+    def at(self, **values: Any) -> PDE:
+        """The equation for these values of the named symbols, and of ω = m2/m1 by ``omega``.
+
+        Raises `lwa.InputError` for a name that does not occur or a value that is no quantity.
+        """
+        return PDE(self.closure.at(**values))
 
     def traveling_wave(self) -> TravelingWave:
         """The compact wave of the equation truncated at D^{k+3}, in closed form.

@@ -22,8 +22,7 @@ from lwa.closure.consistency import Closure
 FORCE, STRAIN, ENERGY = (0, 1), (1, 0), (1, 1)
 """Powers (a, b) of the base, base^{a + bk}, of a force, a strain and an energy."""
 
-_SHOWN = 3
-"""Terms that `Terms.__repr__` prints in full."""
+_SHOWN = 3  # terms that `Terms.__repr__` prints in full
 
 
 class Jet(NamedTuple):
@@ -57,9 +56,7 @@ class Terms(Mapping[Jet, sp.Expr]):
         divisor: sp.Expr = sp.S.One,
     ) -> None:
         self.power = power
-        self._model = model
-        self._raw = raw
-        self._divisor = divisor
+        self._model, self._raw, self._divisor = model, raw, divisor
         self._converted: dict[Jet, sp.Expr] = {}
         self._written: dict[Jet, str] = {}
 
@@ -75,20 +72,19 @@ class Terms(Mapping[Jet, sp.Expr]):
     def __len__(self) -> int:
         return len(self._raw)
 
+    def _fields(self) -> tuple[Any, ...]:
+        return (self._model, self._raw, self.power, self._divisor)
+
     def __eq__(self, other: object) -> bool:
-        if isinstance(other, Terms) and self.__getstate__() == other.__getstate__():
+        if isinstance(other, Terms) and self._fields() == other._fields():
             return True
         return Mapping.__eq__(self, other)
 
     def __hash__(self) -> int:
         return hash(frozenset(self._raw))
 
-    def __getstate__(self) -> tuple[Any, ...]:
-        return (self._model, self._raw, self.power, self._divisor)
-
-    def __setstate__(self, state: tuple[Any, ...]) -> None:
-        self._model, self._raw, self.power, self._divisor = state
-        self._converted, self._written = {}, {}
+    def __reduce__(self) -> tuple[type[Terms], tuple[Any, ...]]:
+        return Terms, self._fields()
 
     def __repr__(self) -> str:
         """The first terms as text; a long coefficient is represented by its number of terms."""
@@ -106,29 +102,41 @@ class Terms(Mapping[Jet, sp.Expr]):
 
     def text(self, jet: Jet) -> str:
         """The jet as text with its power of the base, such as u_x^(k-3) u_2x^3."""
-        factors = self._before(jet, "u_x" if self.base else "u", "({})")
-        for mark, powers in (("", jet.x), ("τ", jet.t)):
-            for i, e in powers:
-                place = f"{i if i > 1 else ''}x" if i else ""
-                factors.append(_raised(f"u_{place}{mark}", str(e), "{}"))
-        return " ".join(factors) or "1"
+
+        def derivative(i: int, tau: bool) -> str:
+            place = "" if i == 0 else "x" if i == 1 else f"{i}x"
+            return f"u_{place}{'τ' if tau else ''}"
+
+        return self._product(jet, derivative, ("({})", "{}"))
 
     def latex(self, jet: Jet) -> str:
         """The jet in the paper's notation, such as u_x^{k-3} u_{xx}^{3}."""
-        factors = self._before(jet, "u_{x}" if self.base else "u", "{{{}}}")
-        for mark, powers in (("", jet.x), (r"\tau", jet.t)):
-            for i, e in powers:
-                place = "x" * i if i < 4 else f"{i}x"
-                factors.append(_raised(f"u_{{{place}{mark}}}", str(e), "{{{}}}"))
-        return " ".join(factors) or "1"
 
-    def _before(self, jet: Jet, base: str, style: str) -> list[str]:
-        """The powers of the base before the jet, and of F′ for a law that is no power."""
+        def derivative(i: int, tau: bool) -> str:
+            return latex.derivative(i, r"\tau" if tau else "")
+
+        return self._product(jet, derivative, ("{{{}}}", "{{{}}}"))
+
+    def _product(
+        self, jet: Jet, derivative: Callable[[int, bool], str], styles: tuple[str, str]
+    ) -> str:
+        """The product of the powers of the base (of F′ too if the law is no power) and the jet.
+
+        styles : formats of the exponents of the base and of the derivatives.
+        """
         a, b = jet.over(self.power)
-        if self._model.law.homogeneous:
-            return [_raised(base, _exponent(a, b), style)] if a or b else []
-        powers = (("F'", b), (base, a + b))
-        return [_raised(name, str(e), style) for name, e in powers if e]
+        base = derivative(1, False) if self.base else "u"
+        powers = [(base, _exponent(a, b), styles[0])]
+        if not self._model.law.homogeneous:
+            powers = [("F'", str(b), styles[0]), (base, str(a + b), styles[0])]
+        for row, tau in ((jet.x, False), (jet.t, True)):
+            powers += [(derivative(i, tau), str(e), styles[1]) for i, e in row]
+        factors = (
+            name if e == "1" else f"{name}^{style.format(e)}"
+            for name, e, style in powers
+            if e != "0"
+        )
+        return " ".join(factors) or "1"
 
     def latex_total(self) -> str:
         """LaTeX of the sum of the terms."""
@@ -155,18 +163,12 @@ class Terms(Mapping[Jet, sp.Expr]):
         D = self._model.cell.spacing
         total = sp.S.Zero
         for jet, coefficient in self.items():
-            a, b = (
-                sp.Rational(power.numerator, power.denominator) for power in jet.over(self.power)
-            )
+            a, b = (sp.Rational(power) for power in jet.over(self.power))
             factors = [u.diff(x, i) ** e for i, e in jet.x]
             factors += [velocity.diff(x, i) ** e for i, e in jet.t]
             factors.append(law.weight(base, D, a, b))
             total += law.evaluated(coefficient, D * base) * sp.Mul(*factors)
         return total
-
-
-def _raised(name: str, power: str, style: str) -> str:
-    return name if power == "1" else f"{name}^{style.format(power)}"
 
 
 def _exponent(a: Fraction, b: Fraction) -> str:
@@ -186,10 +188,9 @@ def terms(
 ) -> Terms:
     """Convert a polynomial of the closure's algebra (or another one) into jets of the field."""
     base = base_order(closure.model)
-    found = (algebra or closure.algebra).terms(polynomial)
     raw = {
         Jet(tuple((n + base, e) for n, e in monomial.x), monomial.t): coefficient
-        for monomial, coefficient in found.items()
+        for monomial, coefficient in (algebra or closure.algebra).terms(polynomial).items()
     }
     ordered = dict(sorted(raw.items(), key=lambda item: _complexity(item[0])))
     return Terms(closure.model, ordered, power, divisor)

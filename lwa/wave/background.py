@@ -30,6 +30,7 @@ from lwa.base.quantities import NO_WAVE, RISE, NoSolitaryWave, known
 from lwa.cell import RESERVED, Cell, check_names
 from lwa.law import ContactLaw, Power, for_cell, substituted
 from lwa.linear.dispersion import Dispersion
+from lwa.wave.closed import CompactWave
 from lwa.wave.profile import Flank, Function, compiled, mpmath_number
 
 if TYPE_CHECKING:
@@ -73,6 +74,10 @@ class KdV(Value):
     def width(self, B: Any = RISE) -> sp.Expr:
         """Width L = √(12 γ / (α B)) of v = B sech²(ξ/L); the FWHM is 2 arcosh(√2) L."""
         return sp.sqrt(12 * sp.simplify(self.dispersion / self.nonlinearity) / exact(B, "B"))
+
+    def profile(self, xi: Any, B: Any = RISE) -> sp.Expr:
+        """Strain v = B sech²(ξ/L) above the background."""
+        return exact(B, "B") * sp.sech(signed(xi, "xi") / self.width(B)) ** 2
 
 
 @dataclass(frozen=True, repr=False)
@@ -155,7 +160,7 @@ class BackgroundWave(Value):
         sqrt(B/3 + p0)
         """
         square = self.stiffness(self._read_rise(B))
-        if self.law.homogeneous and self.law.exponent.is_Integer:
+        if self.law.homogeneous and self.law.exponent.is_Integer:  # a polynomial in p0 and B
             square = sp.expand(sp.cancel(square))
         return sp.sqrt(square)
 
@@ -209,6 +214,7 @@ class BackgroundWave(Value):
         if self.sound_speed.is_zero or self.sound_speed.is_finite is False:
             raise NoSolitaryWave(f"p0 is {self.p0}: no sound runs there, so that no wave is small")
         c0 = self.sound_speed
+        # V² = Q(B) = c0² + F″ B/3 + …, hence V = c0 + α B/3; Ω² = κ² - I κ⁴ gives γ = I c0/2.
         bend = self.force(self.p0, 2)
         if bend.is_zero:
             raise NoSolitaryWave(f"F″ is 0 at p0 = {self.p0}: waves of small amplitude disperse")
@@ -217,22 +223,32 @@ class BackgroundWave(Value):
     def fwhm(self, B: Any, quantity: str = "strain", digits: int = WIDTH_DIGITS) -> sp.Expr:
         """Full width at half maximum of the rise of strain, force or velocity, a length in x.
 
-        The width is a number of so many digits, times D for a spacing that is a symbol.
+        Without load under a power law the width is the compact wave's closed form, else a number of
+        so many digits, times D for a spacing that is a symbol.
 
         Raises `lwa.InputError` for other symbols, `lwa.NoSolitaryWave` without a wave.
 
         >>> BackgroundWave(Cell([1]), Power("3/2"), 1).fwhm(1)
         3.15563100804513*D
         """
-        width = self._flank(self._read_rise(B), digits).fwhm(known(quantity))
+        B = self._read_rise(B)
+        if self._unloaded:
+            return CompactWave.canonical(self.cell, self.law.exponent).fwhm(quantity)
+        width = self._flank(B, digits).fwhm(known(quantity))
         return sp.Float(width, digits) * self.unit
 
+    @property
+    def _unloaded(self) -> bool:
+        return self.law.homogeneous and bool(self.p0.is_zero)
+
     def profile(self, xi: Any, B: Any, digits: int = WIDTH_DIGITS) -> sp.Expr:
-        """Strain v(ξ) above p0, a number of so many digits.
+        """Strain v(ξ) above p0: a closed form without load under a power, else a number.
 
         Raises the errors of `fwhm`, and `lwa.InputError` for a ξ that is no number in D.
         """
         B, xi = self._read_rise(B), signed(xi, "xi")
+        if self._unloaded:
+            return CompactWave.canonical(self.cell, self.law.exponent).profile(xi, B)
         place = self.in_unit(xi)
         if place.free_symbols:
             raise InputError(f"xi is {shorten(xi)}: a number, in D, is wanted")

@@ -23,12 +23,15 @@ POINTS = 20
 LEVELS = ((1, 0), (2, 3), (6, 4), (24, 3), (24, 23))
 """Panels above v = B/2, and halvings of the first; 23 more reach the last digit of θ²."""
 
+NEAR = (1.8,)
+"""End of the upper panels for widths of the force, at v = 0.1 B."""
+
+# The poles of tanh θ, i π/2 away, let n Gauss points err by 4.4^{-n} on a panel of length 1.5.
+FAR = tuple(np.arange(2.0, 41.0, 1.5))
+"""Ends of the upper panels for profiles; v is below 1e-34 B at the last."""
+
 _HALF = float(np.arccosh(np.sqrt(2.0)))  # θ at v = B/2
-_NEAR = (1.8,)  # end of a further panel for widths, at v = 0.1 B
-_TAIL = (2.5, 5.0, 9.0, 20.0)  # ends of the panels behind them; v = 1.7e-17 B at the last
-# Ends of further panels for profiles. The poles of tanh θ, i π/2 away, let n Gauss points err by
-# 4.4^{-n} on a panel of length 1.5. Behind the last v is below 1e-34 B.
-_FAR = tuple(np.arange(2.0, 41.0, 1.5))
+_TAIL = (2.5, 5.0, 9.0, 20.0)  # ends of the panels behind; v = 1.7e-17 B at the last
 
 
 class Grid(NamedTuple):
@@ -93,17 +96,17 @@ def integrated() -> Array:
 
 
 @cache
-def grid(parts: int, halvings: int, far: bool = False) -> Grid:
+def grid(parts: int, halvings: int, further: tuple[float, ...] = ()) -> Grid:
     """Panels for a wave: ``parts`` above v = B/2, the first of them halved ``halvings`` times.
 
-    The upper panels end at v = 0.1 B or, if ``far``, below 1e-34 B.
+    further : ends of further upper panels.
     """
     x, w = gauss()
     above = [0.0, *(_HALF / parts / 2.0 ** np.arange(halvings, 0, -1))]
     above += [_HALF * i / parts for i in range(1, parts + 1)]
-    ends = [*above, *(_FAR if far else _NEAR)]
+    ends = [*above, *further]
     upper = len(ends) - 1
-    edges = np.array(ends if far else [*ends, *_TAIL])
+    edges = np.array([*ends, *(end for end in _TAIL if end > ends[-1])])
     starts, lengths = edges[:-1], np.diff(edges)
     fine_x, fine_w = _extended_gauss()
     fine = (starts[:, None] + lengths[:, None] * fine_x).ravel()

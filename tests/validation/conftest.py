@@ -1,4 +1,4 @@
-"""The engine, compiled once, and rows of `limits`: how they are shown takes no lattice."""
+"""The engine, compiled once, and rows of the study `limits` without a lattice run."""
 
 import pytest
 

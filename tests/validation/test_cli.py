@@ -24,7 +24,7 @@ from validation.scenes.chains import chain_scene
 from validation.scenes.checks import SceneError
 from validation.scenes.scenefile import document, read_scene, scene
 from validation.studies.limits import report
-from validation.studies.run import EXAMPLES
+from validation.studies.run import EXAMPLES, example
 
 COMMAND = Path(sys.executable).with_name("lwa-validate")
 
@@ -108,7 +108,7 @@ def test_run_text(capsys, scene_file):
     assert speeds.splitlines()[1].startswith("contact 4 → 12  ")
 
 
-def test_run_says_what_is_missing(capsys, scene_file):
+def test_missing_pulses_are_named(capsys, scene_file):
     scene_file.write_text(SCENE.replace("30", "8"))
     status, out, err = run(capsys, "run", str(scene_file))
     assert (status, err) == (0, "")
@@ -116,7 +116,7 @@ def test_run_says_what_is_missing(capsys, scene_file):
     assert "contact 4 → 12: one of the two has no pulse" in out
 
 
-def test_run_json_is_what_the_text_says_and_can_be_run_again(capsys, scene_file, tmp_path):
+def test_the_json_of_a_run_agrees_with_its_text_and_runs_again(capsys, scene_file, tmp_path):
     status, out, err = run(capsys, "run", str(scene_file), "--format", "json")
     assert (status, err) == (0, "")
     found = json.loads(out)
@@ -151,7 +151,9 @@ def test_run_stores_the_samples(capsys, scene_file, tmp_path):
     assert found == json.loads(out)
     with np.load(arrays) as held:
         assert json.loads(str(held["document"])) == found
-        assert set(held) - {"document"} == {name.removesuffix("_value") for name in records}
+        assert set(held) > {name.removesuffix("_value") for name in records}
+        for sensor, peak in zip(found["sensors"], held["sensors_peak_value"], strict=True):
+            assert sensor["peak_value"] == peak
         for name, values in records.items():
             np.testing.assert_array_equal(held[name.removesuffix("_value")], values)
         assert held["contact_force"].shape == held["compression"].shape == (2, 601)
@@ -161,7 +163,7 @@ def test_run_stores_the_samples(capsys, scene_file, tmp_path):
 
 
 @pytest.mark.parametrize("suffix", [".json", ".npz"])
-def test_what_a_run_stored_is_loaded_and_runs_again(capsys, folder, scene_file, suffix):
+def test_a_stored_run_is_loaded_and_runs_again(capsys, folder, scene_file, suffix):
     stored = f"o{suffix}"
     scene_file.write_text(SCENE.replace("12]", "12, 19]").replace("= 30", "= 20"))
     first = run(capsys, "run", "scene.toml", "--out", stored)
@@ -261,7 +263,7 @@ def test_the_scenes_own_file_is_not_overwritten(capsys, folder):
 
 
 @pytest.mark.parametrize("name", EXAMPLES)
-def test_every_example_runs_and_tells_its_units(capsys, folder, name):
+def test_every_example_runs_and_names_its_units(capsys, folder, name):
     status, text, err = run(capsys, "run", "--example", name)
     assert (status, err, text.isascii()) == (0, "", True)  # whatever a shell writes it in
     assert max(map(len, text.splitlines())) < 80
@@ -283,9 +285,11 @@ def test_the_first_example_is_the_experiment_of_the_paper(capsys):
     assert found == replace(expected, samples=found.samples, contact_sensors=())
 
 
-def test_the_help_of_run_names_the_examples():
+def test_the_help_of_run_shows_the_format_and_names_the_examples():
     shown = CliRunner().invoke(cli.validate, ["run", "--help"]).output
     assert f"[{'|'.join(EXAMPLES)}]" in "".join(shown.split())
+    for line in example("paper").splitlines():
+        assert line in shown
 
 
 @pytest.mark.parametrize("name", ["out.json", "out.npz"])
@@ -336,7 +340,7 @@ def test_an_output_that_takes_nothing_is_no_result(capsys, scene_file):
         assert (status, err) == (2, "lwa-validate: the output: No space left on device\n")
 
 
-def test_an_integrator_that_fails_is_one_line(capsys, scene_file):
+def test_a_failing_integrator_prints_one_line(capsys, scene_file):
     text = SCENE.replace("k = 1.5", "k = 40").replace("0.5", "0.6").replace("10,", "100,")
     scene_file.write_text(text.replace("= 30", "= 60"))
     options = ("--method", "SRKN14", "--rtol", "1e-5")
@@ -368,7 +372,7 @@ BAD_RUNS = [
 
 
 @pytest.mark.parametrize(("options", "content", "message"), BAD_RUNS)
-def test_bad_runs_are_one_line_and_leave_nothing(capsys, folder, options, content, message):
+def test_refused_runs_print_one_line_and_leave_no_file(capsys, folder, options, content, message):
     Path("scene.toml").write_text(content)
     status, out, err = run(capsys, "run", "scene.toml", *options)
     assert (status, out) == (2, "")
@@ -380,17 +384,12 @@ def test_bad_runs_are_one_line_and_leave_nothing(capsys, folder, options, conten
 BAD = [
     ("run",),
     ("run", "missing.toml"),
-    ("paper", "--velocity", "-1"),
-    ("paper", "--velocity", "1e400"),
     ("paper", "--velocity", "__import__('os')"),
     ("paper", "--beads", "3"),
-    ("paper", "--beads", "２０"),
     ("paper", "--sensors", "34,15"),
-    ("paper", "--sensors", ""),
     ("paper", "--format", "xml"),
     ("limits", "extra"),
     ("exact", "--masses", "1,2,3"),
-    ("exact", "--masses", "m1,m2"),
     ("resonances", "--count", "0"),
     ("nothing",),
     ("--nothing",),
@@ -398,7 +397,7 @@ BAD = [
 
 
 @pytest.mark.parametrize("arguments", BAD, ids=" ".join)
-def test_bad_input_is_one_line_and_status_2(capsys, arguments):
+def test_bad_input_prints_one_line_with_status_2(capsys, arguments):
     status, out, err = run(capsys, *arguments)
     assert (status, out) == (2, "")
     assert err.startswith("lwa-validate: ")
@@ -412,8 +411,7 @@ def test_no_arguments_show_the_help(capsys):
     assert "Commands:" in err
 
 
-@pytest.mark.parametrize("flag", ["-h", "--help"])
-@pytest.mark.parametrize("study", [[], ["paper"], ["limits"]])
+@pytest.mark.parametrize(("study", "flag"), [([], "-h"), (["paper"], "--help")])
 def test_help(study, flag):
     shown = CliRunner().invoke(cli.validate, [*study, flag], prog_name="lwa-validate")
     assert shown.exit_code == 0
@@ -485,7 +483,7 @@ LONG_RUNS = [
 @pytest.mark.parametrize(
     ("content", "options", "message"), LONG_RUNS, ids=[r[2] for r in LONG_RUNS]
 )
-def test_runs_beyond_reason_are_one_line(capsys, folder, scene_file, content, options, message):
+def test_too_long_runs_print_one_line(capsys, folder, scene_file, content, options, message):
     scene_file.write_text(content)
     status, out, err = run(capsys, "run", "scene.toml", "--out", "o.json", *options)
     assert (status, out, err.count("\n")) == (2, "", 1)
@@ -528,6 +526,22 @@ def test_only_regular_files_are_read(capsys, tmp_path):
         assert err == f"lwa-validate: {tmp_path / name}: only regular files are read\n"
 
 
+def test_exact_scaled_to_a_speed_or_a_force(capsys):
+    shown = {}
+    for options in ((), ("--speed", "2"), ("--force", "3")):
+        status, out, _ = run(capsys, "exact", *options, "--format", "json")
+        assert status == 0
+        shown[options[:1]] = json.loads(out)
+    assert shown["--speed",]["c_value"] == pytest.approx(2, rel=1e-14)
+    assert shown["--force",]["amplitude_value"]["force"] == pytest.approx(3, rel=1e-13)
+    for found in shown.values():
+        for name, width in shown[()]["fwhm_value"].items():
+            assert found["fwhm_value"][name] == pytest.approx(width, rel=1e-10)
+    status, out, err = run(capsys, "exact", "--speed", "2", "--force", "3")
+    assert (status, out) == (2, "")
+    assert "scaled to one of the two" in err
+
+
 def test_every_study_is_a_command():
     context = click.Context(cli.validate)
     for name in cli.STUDIES:
@@ -538,13 +552,13 @@ def test_every_study_is_a_command():
 
 
 @pytest.mark.parametrize("name", ["accuracy", "figures", "hard", "limits"])
-def test_a_long_command_says_in_its_help_how_long_it_takes(name):
+def test_the_help_of_a_long_command_states_its_duration(name):
     _, summary = cli.STUDIES[name]
     assert re.search(r"\(.*(minutes?|seconds)\)\.$", summary)
 
 
 @pytest.mark.parametrize("cases", [[1], [1, 2, 3]])
-def test_the_bar_is_there_before_the_first_case_is_finished(cases):
+def test_the_progress_bar_appears_before_the_first_case_ends(cases):
     """On a terminal, and before the second case is begun."""
     with terminal() as shown:
         each = iter(command.progress(cases))

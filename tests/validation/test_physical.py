@@ -53,7 +53,7 @@ def test_the_lattice_is_the_exact_wave_in_si(chain):
         assert found[name] == pytest.approx(value, rel=2e-8), name  # the integrator's error
 
 
-def test_the_theory_is_off_the_lattice_in_si_by_what_it_is_off_without_units(chain):
+def test_the_theorys_error_is_the_same_in_si_and_without_units(chain):
     """c² by 4/5 : 0.8199588213, the force's width by 1.49094 : 1.411928; no error in δ(F)."""
     found = chain[1]
     for wave in (
@@ -71,7 +71,7 @@ def test_the_theory_is_off_the_lattice_in_si_by_what_it_is_off_without_units(cha
         assert float(answer.bead_velocity) == pytest.approx(found["bead_velocity"], rel=0.1)
 
 
-def test_the_spacing_of_unequal_spheres_counts_a_cell_as_long_as_it_is():
+def test_a_cell_of_unequal_spheres_is_as_long_as_their_diameters():
     big = Sphere(mass=5e-3, radius=5e-3, material=PTFE_BEAD.material)
     row = [STEEL_BEAD, big, PTFE_BEAD]
     cell = Cell.of_spheres(row)

@@ -96,6 +96,6 @@ def test_the_command_for_dark_breathers(capsys):
         ({"detunings": (-0.001,)}, "bright breathers lie below"),
     ],
 )
-def test_what_cannot_be_meant_is_refused(options, message):
+def test_bad_options_are_refused(options, message):
     with pytest.raises(ValueError, match=message):
         breather(**options)

@@ -1,4 +1,4 @@
-"""Colliding pulses: the equation against the lattice, and what must hold of both."""
+"""Colliding pulses: the equation against the lattice, and symmetries of both."""
 
 import json
 

@@ -44,7 +44,7 @@ def test_the_decay_is_the_mean_loss_at_single_beads(spread, chains, share):
 
 
 @pytest.mark.slow
-def test_a_decay_that_changes_along_the_chain_is_told():
+def test_a_decay_that_changes_along_the_chain_fails():
     """At spread 0.5 the pulse disintegrates: its force decays slower in the second half."""
     wide = disorder(spread=0.5, chains=20)
     assert not wide.ok
@@ -86,6 +86,6 @@ def test_the_command(capsys):
         ("k", 0.5, "k is 1/2: a compact wave needs k > 1"),
     ],
 )
-def test_what_cannot_be_meant_is_refused(option, value, message):
+def test_bad_options_are_refused(option, value, message):
     with pytest.raises(ValueError, match=message):
         disorder(**{option: value})

@@ -1,4 +1,4 @@
-"""A chain under its own weight: the front's shape and width, and what takes over from it."""
+"""A chain under its own weight: shape and width of a weak blow's front, and strong blows."""
 
 import json
 import math
@@ -119,6 +119,6 @@ def test_the_command(capsys):
         ({"masses": ("7/5", 1e9)}, "the largest mass over the least is 7142"),
     ],
 )
-def test_what_cannot_be_meant_is_refused(options, message):
+def test_bad_options_are_refused(options, message):
     with pytest.raises(ValueError, match=message):
         gravity(**options)

@@ -144,6 +144,6 @@ def test_the_command(capsys):
         ({"k": 1}, "k is 1: it lies between"),
     ],
 )
-def test_what_cannot_be_meant_is_refused(options, message):
+def test_bad_options_are_refused(options, message):
     with pytest.raises(ValueError, match=message):
         precompressed(**options)

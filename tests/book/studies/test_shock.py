@@ -146,7 +146,7 @@ def test_a_wall_at_one_metre_a_second():
     assert float(theory.F) == pytest.approx(run.contact_force[1, peaks[1]], rel=0.01)
 
 
-def test_what_is_no_shock_is_refused(capsys):
+def test_bad_jumps_and_durations_are_refused(capsys):
     status, out, err = ended(capsys, shock.main, "--k", "3/2", "--jumps", "1")
     assert (status, out, err.count("\n")) == (2, "", 1)
     assert "there is no shock" in err

@@ -1,4 +1,4 @@
-"""A shaken chain under load lets through what Bloch's bands let through."""
+"""A shaken chain under load transmits in Bloch's bands and nowhere else."""
 
 import pytest
 

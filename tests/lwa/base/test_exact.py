@@ -39,12 +39,9 @@ def test_names_become_positive_symbols():
 @pytest.mark.parametrize(
     "value",
     [
-        "nan", "NaN", "inf", "-inf", "oo", "", " ", "1/0", "1//2", "3/2/1", "1.2/3", "2*m", "m-1",
-        "__import__('os')", "exp(1)", "I", "pi", "E", "lambda", "beta", "1_000", "0x10", "١",
-        "m1 m2", "1e99999", "9" * 300, float("nan"), float("inf"), 1j,
-        Decimal("sNaN"), Decimal("NaN"), Decimal("-Infinity"), "１", None, True, [1], {"a": 1},
-        b"1", 10**400, Fraction(1, 10**400), 1 + Fraction(1, 10**400), np.array([1.0, 2.0]),
-        sp.nan, sp.oo, sp.I, object(),
+        "nan", "oo", "", "1/0", "3/2/1", "1.2/3", "2*m", "__import__('os')", "I", "pi", "lambda",
+        "1_000", "0x10", "١", "m1 m2", "1e99999", float("nan"), float("inf"), 1j, Decimal("NaN"),
+        None, True, [1], 10**400, 1 + Fraction(1, 10**400), np.array([1.0, 2.0]), sp.oo, sp.I,
     ],
 )  # fmt: skip
 def test_other_values_are_refused_in_one_line(value):

@@ -25,14 +25,11 @@ from lwa import (
 )
 from lwa.law import DELTA, named
 from lwa.linear.bands import Bands
+from tests.identity import same
 
 K2, K3, K4 = sp.symbols("K2 K3 K4", positive=True)
 k, m1, m2, q, p0 = sp.symbols("k m1 m2 q p0", positive=True)
 HERTZ = Power("3/2")
-
-
-def same(left, right):
-    return sp.simplify(left - right) == 0
 
 
 # --- closed forms (theory notes, section 13) ---

@@ -4,6 +4,7 @@ import pytest
 import sympy as sp
 
 from lwa import Cell, Dimer, InputError, Jet, homogenize
+from tests.identity import same
 
 x = sp.Symbol("x")
 m1, m2 = sp.symbols("m1 m2", positive=True)
@@ -70,8 +71,8 @@ def test_the_canonical_field_is_variational_at_third_order_for_every_cell(cell):
     pde = homogenize(cell, 4, closure="full", field="center").pde
     k = pde.k
     assert pde.variational
-    assert sp.simplify(pde.G - pde.I * (k - 1) * (k - 2) / 2) == 0
-    assert sp.simplify(pde.H - 2 * pde.I * (k - 1)) == 0
+    assert same(pde.G, pde.I * (k - 1) * (k - 2) / 2)
+    assert same(pde.H, 2 * pde.I * (k - 1))
 
 
 def test_the_linear_closure_is_not_variational():

@@ -18,6 +18,7 @@ from lwa import (
 from lwa.law import named
 from lwa.shocks import edges
 from lwa.shocks.waves import Pulse
+from tests.identity import same
 from tests.lwa.expansion.test_exact_waves import lattice
 
 EQUAL = Cell([1], spacing=1)
@@ -61,12 +62,12 @@ def test_a_toda_soliton_on_els_edge_moves_its_beads_at_twice_the_wall():
     assert abs(rest.subs(place).n(30)) < 1e-25
     kappa = 2 * sp.acosh(sp.sqrt(r))
     edge = sp.sqrt(r * (r - 1)) / sp.acosh(sp.sqrt(r))
-    assert sp.simplify(sp.expand_trig(sp.sinh(kappa)) / kappa - edge) == 0
-    assert sp.simplify(sp.expand_trig(2 * (sp.cosh(kappa) - 1)) - 2 * 2 * (r - 1)) == 0
+    assert same(sp.sinh(kappa) / kappa, edge)
+    assert same(2 * (sp.cosh(kappa) - 1), 4 * (r - 1))
     for D in (1, sp.Rational(1, 2)):
         found = shock(Cell([1], spacing=D), TODA, sp.log(sp.Rational(25, 16)) / D, 0)
-        assert sp.simplify(found.ratio - sp.Rational(5, 4)) == 0
-        assert sp.simplify(found.plateau - sp.S.Half) == 0
+        assert same(found.ratio, sp.Rational(5, 4))
+        assert same(found.plateau, sp.S.Half)
         for rule in ("dispersion", "doubling"):
             gap = found.leading_speed(rule) - D * edge.subs(r, sp.Rational(5, 4))
             assert abs(gap.n(30)) < 1e-25

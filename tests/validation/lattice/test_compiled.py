@@ -1,4 +1,4 @@
-"""The cache of machine code: it knows all sources of the kernel, and runs do without it."""
+"""The cache of machine code depends on all sources of the kernel, and is optional."""
 
 import os
 import shutil

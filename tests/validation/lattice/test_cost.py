@@ -1,4 +1,4 @@
-"""Limits are known before a run starts, and no scene makes it run on or return no number."""
+"""Limits of steps and memory are checked before a run; every run ends, with finite numbers."""
 
 import math
 from contextlib import nullcontext
@@ -86,7 +86,7 @@ BEYOND = [
 
 
 @pytest.mark.parametrize(("what", "options", "message"), BEYOND, ids=[b[2][:40] for b in BEYOND])
-def test_what_is_beyond_reason_is_refused_before_it_starts(what, options, message):
+def test_too_many_steps_or_bytes_are_refused_before_the_run(what, options, message):
     with pytest.raises(SceneError, match=f"^{message}$"):
         simulate(what, **options)
 
@@ -158,7 +158,7 @@ def spoiled(draw):
 
 @given(spoiled(), st.sampled_from(["RKN86", "DOP853", "LSODA", "SRKN14"]))
 @settings(max_examples=50)
-def test_a_file_makes_finite_numbers_or_one_line(content, method):
+def test_any_file_gives_finite_numbers_or_one_line(content, method):
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(limits, "MOST_STEPS", 1e4)
         try:

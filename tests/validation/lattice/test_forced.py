@@ -48,7 +48,7 @@ def test_the_damping_ratio_of_a_share():
 
 
 @pytest.mark.parametrize("kind", ["contact", "kuwabara_kono"])
-def test_what_is_lost_is_what_was_dissipated(kind):
+def test_the_energy_lost_is_the_energy_dissipated(kind):
     scene = Scene(
         masses=(1, 0.4, 2, 1, 1), stiffnesses=(1, 2, 1, 1), wall=1, k=1.5, gravity=0.1,
         velocities=(1, 0, -0.5), duration=20, damping=Damping(kind, 0.05), contact_sensors=(0, 4),
@@ -107,7 +107,7 @@ def test_a_piston_makes_a_wave_behind_which_beads_move_at_its_speed():
     ("law", "load"),
     [(dict(k=1.5), 0.0), (dict(k=1), 0.5), (dict(law=named("exponential", 1)), 0.5)],
 )
-def test_a_piston_of_the_compiled_pair_is_that_of_scipy(law, load):
+def test_the_compiled_piston_agrees_with_scipy(law, load):
     """Motion, work and ledger, with contacts that open behind a gap and with waves off the wall."""
     n, v = 12, 0.3
     scene = Scene(
@@ -123,7 +123,7 @@ def test_a_piston_of_the_compiled_pair_is_that_of_scipy(law, load):
 
 
 @pytest.mark.parametrize("law", [dict(k="3/2"), dict(law=named("exponential", 1))])
-def test_a_piston_is_a_wall_that_a_chain_is_thrown_at(law):
+def test_a_piston_is_a_wall_in_a_moving_frame(law):
     """Galilei: the same contacts, until a wave comes back from the far end."""
     n, v, end = 60, 0.5, 15.0
     chain = dict(stiffnesses=(1.0,) * (n - 1), wall=1.0, precompression=1.0, duration=end, **law)
@@ -146,7 +146,7 @@ def test_a_driven_toda_chain_keeps_its_ledger():
     assert abs(run.energy_drift) < 1e-7
 
 
-def test_a_linear_chain_under_load_answers_in_its_own_frequency():
+def test_a_shaken_linear_bead_oscillates_with_the_exact_amplitude():
     """One free bead between the driven bead and a wall, k = 1: y = a κ/(2κ - w²) sin(wt), in steady
     motion, with a resonant part that a long ramp does not excite."""
     w, a = 0.5, 0.01
@@ -188,6 +188,6 @@ def test_a_drive_from_rows_is_the_motion_that_they_sample():
          "window is True: RKN86 takes none in this scene"),
     ],
 )  # fmt: skip
-def test_what_is_no_forcing_is_refused(wrong, message):
+def test_bad_damping_and_drives_are_refused(wrong, message):
     with pytest.raises(SceneError, match=f"^{message}"):
         wrong()

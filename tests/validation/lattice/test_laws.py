@@ -1,4 +1,4 @@
-"""Contact laws that are no powers: Toda's exact soliton, SciPy, and what is refused."""
+"""Contact laws other than powers: Toda's exact soliton, SciPy, and bad laws."""
 
 from dataclasses import replace
 
@@ -84,7 +84,7 @@ def test_a_law_that_is_a_power_is_the_power():
         ({"law": named("exponential", 1), "k": 2}, "k is 2 and law .*: one of them is wanted"),
     ],
 )
-def test_what_is_no_law_is_refused(given, message):
+def test_bad_laws_are_refused(given, message):
     with pytest.raises(SceneError, match=f"^{message}$"):
         Scene(masses=(1, 1), stiffnesses=(1,), duration=1, **given)
 

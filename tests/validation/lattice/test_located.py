@@ -48,7 +48,7 @@ def test_located_kinks_make_the_error_follow_the_tolerance():
     assert error(scipy.DOP853, 1e-13) > 10 * found[-1]
 
 
-def test_the_end_of_a_collision_is_found_where_it_is():
+def test_the_end_of_a_collision_is_located():
     """Two beads are in contact for (2 δ/v) √π Γ(1+s)/Γ(1/2+s), s = 1/(k+1), δ the deepest."""
     k, reduced = 1.5, 1 / (1 + 1 / 0.3)
     scene = Scene(masses=(1, 0.3), stiffnesses=(1,), k=k, velocities=(1,), duration=9)
@@ -65,7 +65,7 @@ def test_the_end_of_a_collision_is_found_where_it_is():
     assert stepper.y[3] - stepper.y[2] == pytest.approx(1.0, rel=1e-12)  # elastic
 
 
-def test_the_exact_wave_arrives_as_it_must():
+def test_the_exact_wave_arrives_on_time():
     """Within the residual of the wave itself, which is 1e-12 of its speed at most."""
     task = solitary_wave(20)
     for pulse in (located(task, task.truth), compiled(task)):

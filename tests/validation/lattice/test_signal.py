@@ -88,7 +88,7 @@ def test_behind_a_window_a_signal_is_not_a_number():
     assert np.array_equal(np.isnan(force(run.time)), np.isnan(run.contact_force[0]))
 
 
-def test_what_is_no_sensor_is_refused():
+def test_a_missing_sensor_or_quantity_is_refused():
     run = simulate(LINEAR)
     for arguments, message in (
         (("contact", 1), "number is 1: the scene has no sensor at this contact"),

@@ -399,6 +399,6 @@ def test_a_run_equals_its_pickle_and_no_other_run():
     assert run != simulate(replace(scene, contact_sensors=(0,), duration=2.9))
 
 
-def test_what_is_no_scene_is_refused():
+def test_only_a_scene_is_simulated():
     with pytest.raises(SceneError, match=r"^scene is 'x': a Scene is wanted$"):
         simulate("x")

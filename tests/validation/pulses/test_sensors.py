@@ -1,4 +1,4 @@
-"""What sensors tell, held to the paper's experiment and to the linear chain's exact waves."""
+"""Readings of sensors against the paper's experiment and the linear chain's exact waves."""
 
 import math
 import tomllib
@@ -139,7 +139,7 @@ F0 = 2.0
         (dict(spacings=(1, 0)), r"spacings\[1\] is 0: it must be positive"),
     ],
 )
-def test_what_a_chain_cannot_have(change, message):
+def test_a_load_without_a_wall_and_bad_spacings_are_refused(change, message):
     with pytest.raises(SceneError, match=f"^{message}"):
         Scene(masses=(1,) * 3, stiffnesses=(1, 1), k=1.5, duration=1, **change)
 
@@ -244,7 +244,7 @@ def test_engines_agree_within_the_errors_they_state():
         ({"rtol": 0.0}, "rtol is 0"),
     ],
 )
-def test_an_engine_that_is_not_there(options, message):
+def test_unknown_methods_and_tolerances_are_refused(options, message):
     scene = Scene(masses=(1, 1), stiffnesses=(1,), k=1.5, duration=1, velocities=(1,))
     with pytest.raises(SceneError, match=message):
         record(scene, **options)

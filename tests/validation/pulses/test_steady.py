@@ -31,7 +31,7 @@ def at(k, omega, stretch=STRETCH):
 
 
 @pytest.mark.parametrize(("k", "omega"), [("5/4", 1), ("3/2", 1), (6, 1), ("3/2", SPECIAL)])
-def test_a_solitary_wave_is_the_exact_one_of_newtons_method(k, omega):
+def test_a_solitary_wave_agrees_with_newtons_method(k, omega):
     wave = exact_wave([1], float(R(k))) if omega == 1 else solve((1, float(omega)), 1.5, free=True)
     numbers = at(k, omega)
     exact = {
@@ -63,7 +63,7 @@ def test_a_pulse_decays_but_for_the_special_ratio():
     assert above / half == pytest.approx(4, rel=0.25)
 
 
-def test_the_decay_is_that_per_site():
+def test_the_decay_is_per_site():
     """Against the slope of the log of peak forces over the site, from one run read by hand."""
     sites = tuple(range(30, 62, 2))
     scene = Scene(
@@ -130,7 +130,7 @@ def test_the_leading_pulse_is_not_a_later_and_higher_one():
     assert pulse.fall > 8
 
 
-def test_a_failure_is_told_with_the_point():
+def test_a_failed_point_states_the_reason():
     found = point(HERTZ, R(1, 10**40), STRETCH)
     assert found.missing.startswith("duration is ")
     assert (found.sites, found.numbers) == (None, {})

@@ -1,4 +1,4 @@
-"""Files: every fault of the system is one line, and nothing is left half-written."""
+"""Files: a fault of the system becomes one line, and no file is left half-written."""
 
 import errno
 import os
@@ -56,7 +56,7 @@ def test_a_folder_that_takes_no_file(tmp_path, monkeypatch, number):
     "fault", [OSError(errno.ENOSPC, "full"), KeyboardInterrupt(), ValueError()]
 )
 @pytest.mark.parametrize("name", ["p.svg", "a" * 251 + ".svg"])
-def test_what_fails_on_the_way_leaves_the_old_file(tmp_path, fault, name):
+def test_a_failure_while_writing_leaves_the_old_file(tmp_path, fault, name):
     file = tmp_path / name
     file.write_text("old")
     wanted = InputError if isinstance(fault, OSError) else type(fault)
@@ -85,10 +85,11 @@ def test_the_content_of_a_regular_file_only(tmp_path):
             content(tmp_path / name, most)
 
 
-def test_a_link_keeps_its_target(tmp_path):
+def test_a_link_keeps_its_target_and_a_file_its_mode(tmp_path):
     (tmp_path / "far").mkdir()
     target, link, dangling = (tmp_path / n for n in ("far/t.svg", "l.svg", "d.svg"))
     target.write_text("old")
+    target.chmod(0o640)
     link.symlink_to("far/t.svg")
     dangling.symlink_to("far/new.svg")
     for file in (link, dangling):
@@ -97,6 +98,7 @@ def test_a_link_keeps_its_target(tmp_path):
     assert link.is_symlink()
     assert dangling.is_symlink()
     assert (target.read_text(), dangling.read_text()) == ("whole", "whole")
+    assert target.stat().st_mode & 0o777 == 0o640
     assert len(list((tmp_path / "far").iterdir())) == 2
 
 

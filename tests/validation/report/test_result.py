@@ -59,7 +59,7 @@ def test_a_notebook_shows_tables_and_picture():
     assert "<svg" not in Report("none")._repr_html_()
 
 
-def test_what_is_not_there_is_told():
+def test_a_missing_table_or_picture_is_refused():
     empty = Report("nothing")
     assert (empty.ok, empty.document(), empty.text()) == (True, {}, "nothing")
     with pytest.raises(InputError, match="format is csv: this result has no table"):

@@ -70,7 +70,7 @@ def test_text_falls_into_parts():
     ]
 
 
-def test_a_page_shows_what_the_text_shows_and_no_code_of_it():
+def test_a_page_shows_the_text_with_escaped_marks():
     shown = TABLE.html()
     assert shown.count("<table>") == 2
     assert shown.count("<tr>") == 5
@@ -103,7 +103,7 @@ def test_everything_plain_is_json(value):
     assert json.loads(json.dumps(plain(value), allow_nan=False)) == plain(value)
 
 
-def test_what_numpy_and_sympy_hold_is_plain():
+def test_numbers_of_numpy_and_sympy_become_plain():
     held = {"a": np.arange(3), "b": np.float64(0.5), "c": (sp.sqrt(2), np.inf), "d": np.bool_(True)}
     assert plain(held) == {"a": [0, 1, 2], "b": 0.5, "c": ["sqrt(2)", None], "d": True}
 
@@ -140,5 +140,5 @@ def test_findings_in_lines_and_in_a_document():
     assert told["findings"][1]["least_value"] is None
 
 
-def test_bounds_are_told_shortly():
+def test_bounds_are_written_shortly():
     assert [bounds(*b) for b in ((0, 0), (1, math.inf), (-math.inf, 1))] == ["0", "≥ 1", "≤ 1"]

@@ -33,7 +33,7 @@ def test_a_tolerance_of_any_kind_is_a_float(call, method):
 
 
 @pytest.mark.parametrize("name", ["masses", "k", "duration", "velocities", "gravity", "samples"])
-def test_a_signalling_nan_is_no_number_of_a_scene(name):
+def test_a_signalling_nan_is_refused(name):
     bad = Decimal("sNaN")
     given = {"masses": (1,), "stiffnesses": (), "k": 1.5, "duration": 1, "wall": 1}
     many = name in ("masses", "velocities")

@@ -1,4 +1,4 @@
-"""A scene holds what it names, checked; it comes from the theory's cell or from beads."""
+"""Scenes: checked values, from numbers, from the theory's cell or from beads."""
 
 import dataclasses
 
@@ -23,7 +23,7 @@ def test_a_scene_is_a_value():
         scene.k = 2.0
 
 
-def test_what_is_not_named_is_not_there():
+def test_a_scene_has_no_wall_weight_or_sensor_by_default():
     scene = Scene(**GOOD)
     assert (scene.size, scene.contact_count) == (3, 2)
     assert scene.wall is None
@@ -34,38 +34,30 @@ def test_what_is_not_named_is_not_there():
 
 BAD = [
     (dict(masses=()), "masses is empty"),
-    (dict(masses=(1, 0, 1)), r"masses\[1\] is 0: it must be positive"),
     (dict(masses=(1, 1, float("nan"))), r"masses\[2\] is nan: a finite number is wanted"),
     (dict(masses=5), "masses is 5: a sequence is wanted"),
-    (dict(masses="123"), "masses is '123': a sequence is wanted"),
     (dict(stiffnesses=(1,)), "1 stiffnesses for 3 beads: 2 are wanted"),
     (dict(stiffnesses=(1, -1)), r"stiffnesses\[1\] is -1: it must be positive"),
     (dict(k=0.5), "k is 0.5: the contact law .* k ≥ 1"),
     (dict(k=sp.Symbol("k")), "k is k: the lattice needs numbers"),
-    (dict(duration=0), "duration is 0: it must be positive"),
-    (dict(wall=0), "wall is 0: it must be positive"),
-    (dict(gravity=-1, wall=1), "gravity is -1: it must be positive"),
     (dict(gravity=9.81), "gravity is 9.81: .* needs a wall"),
     (dict(velocities=(1, 1, 1, 1)), "4 velocities for 3 beads"),
     (dict(displacements=(None,)), r"displacements\[0\] is None: a number is wanted"),
     (dict(contact_sensors=(2,)), r"contact_sensors\[0\] is 2: an integer from 0 to 1 is wanted"),
     (dict(contact_sensors=(0, 0)), "contact_sensors is .*: each may be named once"),
     (dict(bead_sensors=(1.0,)), r"bead_sensors\[0\] is 1.0: an integer from 0 to 2 is wanted"),
-    (dict(bead_sensors=(-1,)), r"bead_sensors\[0\] is -1: an integer from 0 to 2 is wanted"),
     (
         dict(masses=(1,), stiffnesses=(), contact_sensors=(0,)),
         r"contact_sensors is \(0,\): this chain has none",
     ),
     (dict(masses=(1, 1e-320, 1)), r"masses\[1\] is 1e-320: floats below 2e-308 lose their digits"),
-    (dict(masses=(1, 10**400, 1)), r"masses\[1\] is 1000.*: a number is wanted"),
     (dict(spacings=(1e308, 1e308)), "the chain's length comes out as inf: choose other units"),
     (dict(samples=1), "samples is 1: an integer from 2 on is wanted"),
-    (dict(samples=True), "samples is True: an integer from 2 on is wanted"),
 ]
 
 
 @pytest.mark.parametrize(("change", "message"), BAD, ids=[str(b[0])[:40] for b in BAD])
-def test_bad_input_is_one_line_that_names_it(change, message):
+def test_bad_input_is_named_in_one_line(change, message):
     with pytest.raises(SceneError, match=rf"^{message}") as caught:
         Scene(**{**GOOD, **change})
     assert isinstance(caught.value, InputError)
@@ -80,7 +72,7 @@ anything = st.one_of(
 
 
 @given(st.sampled_from([f.name for f in dataclasses.fields(Scene)]), anything)
-def test_whatever_is_given_is_either_read_or_refused(field, value):
+def test_any_value_is_stored_or_refused(field, value):
     try:
         scene = Scene(**{**GOOD, field: value})
     except SceneError:

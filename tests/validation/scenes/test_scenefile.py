@@ -1,4 +1,4 @@
-"""A scene's file: what it means, that it is read back equal, and that nothing else is read."""
+"""Files of scenes: meaning of each key, reading back what was written, and bad files."""
 
 import copy
 import json
@@ -114,12 +114,12 @@ def test_the_modules_own_example_holds_every_key():
     assert scene(content).spacings == (1.0,) * 37
 
 
-def test_what_is_not_named_is_not_there():
+def test_a_scene_has_no_wall_weight_or_sensor_by_default():
     bare = scene({"duration": 1, "chain": {"cell": [1, 2], "k": 2}})
     assert bare == Scene(masses=(1, 2), stiffnesses=(1,), k=2, duration=1)
 
 
-def test_all_beads_and_contacts_are_heard():
+def test_sensors_at_all_beads_and_contacts():
     sensors = {"sensors": {"beads": "all", "contacts": "all"}}
     assert scene(GOOD | sensors).bead_sensors == (0, 1, 2)
     assert scene(GOOD | sensors).contact_sensors == (0, 1)
@@ -132,7 +132,7 @@ def test_beads_of_materials_are_in_si():
     assert toml_file('units = "SI"\n' + TRIMER).units == "SI"
 
 
-def test_what_a_run_wrote_holds_the_scene():
+def test_the_file_of_a_run_holds_the_scene():
     assert scene({"scene": GOOD, "sensors": [], "records": {}}) == scene(GOOD)
     with pytest.raises(SceneError, match=r"^the file is 3: a table of keys is wanted"):
         scene({"scene": 3})
@@ -211,7 +211,7 @@ def test_a_scene_written_is_read_back_equal(what):
 
 
 @pytest.mark.parametrize("text", [PAPER, TRIMER])
-def test_files_there_and_back(tmp_path, text):
+def test_a_written_scene_is_read_back_equal(tmp_path, text):
     file, first = tmp_path / "scene.json", tmp_path / "first.toml"
     first.write_text(text)
     file.write_text(json.dumps(document(read_scene(first))))
@@ -230,33 +230,23 @@ GOOD = {
     "sensors": {"beads": [2], "contacts": [1]},
 }
 BALLS = {"chain": {"cell": ["ball", "ball"]}}
-NAN, INF = float("nan"), float("inf")
+NAN = float("nan")
 
 BAD = [
     ({"duration": 0}, "duration is 0: it must be positive"),
-    ({"duration": -1}, "duration is -1: it must be positive"),
     ({"duration": NAN}, "duration is nan: a finite number is wanted"),
     ({"duration": "1"}, "duration is '1': a number is wanted"),
     ({"duration": True}, "duration is True: a number is wanted"),
-    ({"duration": 10**400}, "duration is 1000.*: a number is wanted"),
     ({"durations": 1}, "durations is unknown: did you mean duration"),
     ({"__import__('os')": 1}, r"\"__import__\('os'\)\" is unknown: one of duration, .* is wanted"),
     ({"samples": 1}, "samples is 1: an integer from 2 on is wanted"),
-    ({"samples": 1.5}, "samples is 1.5: an integer"),
     ({"gravity": 9.81}, "gravity is 9.81: .* needs a wall to pull towards"),
-    ({"gravity": [9.81]}, r"gravity is \[9.81\]: a number is wanted"),
     ({"precompression": 1}, "precompression is 1: .* needs a wall to push against"),
-    ({"precompression": -1, "wall": {"stiffness": 1}}, "precompression is -1: it must be positive"),
     ({"chain": 3}, "chain is 3: a table of keys is wanted"),
-    ({"chain": {}}, "chain.cell is missing"),
     ({"chain": {"cell": []}}, "chain.cell and repeat make 0 beads: 1 … 1000000 are wanted"),
     ({"chain": {"cell": [1], "repeat": 10**6 + 1}}, "chain.cell and repeat make 1000001 beads"),
-    ({"chain": {"cell": [1], "repeat": 0}}, "chain.repeat is 0: an integer from 1 on is wanted"),
     ({"chain": {"cell": "ball"}}, "chain.cell is 'ball': a list is wanted"),
-    ({"chain": {"cell": [1, -2]}}, "chain.cell number 2 is -2: it must be positive"),
     ({"chain": {"cell": [1, NAN]}}, "chain.cell number 2 is nan: a finite number is wanted"),
-    ({"chain": {"cell": [1, INF]}}, "chain.cell number 2 is inf: a finite number is wanted"),
-    ({"chain": {"cell": [1, "ball"]}}, "chain.cell number 2 is 'ball': a number is wanted"),
     ({"chain": {"cell": ["ball", 1]}}, "chain.cell number 2 is 1: one of ball is wanted"),
     ({"chain": {"cell": ["bal"]}}, "chain.cell number 1 is 'bal': did you mean ball"),
     ({"chain": {"cell": ["ball"]}, "beads": {}}, "chain.cell number 1 is 'ball': none is defined"),
@@ -264,45 +254,28 @@ BAD = [
     ({"chain": {"cell": [1, 2], "k": 0.5}}, "k is 0.5: the contact law .* k ≥ 1"),
     ({"chain": {"cell": ["ball"], "k": 1.5}}, "chain.k is given, but named beads are in Hertz"),
     ({"chain": {"cell": [1, 2, 3], "k": 2, "stiffnesses": [1]}}, "chain.stiffnesses holds 1: 2 or"),
-    ({"chain": {"cell": [1, 2], "k": 2, "stiffnesses": [0]}}, "chain.stiffnesses number 1 is 0"),
-    ({"chain": {"cell": [1, 2], "k": 2, "spacings": -1}}, "chain.spacings is -1: it must be pos"),
-    ({"chain": {"cell": [1], "masses": [1]}}, "chain.masses is unknown: one of cell, k"),
     ({"materials": {"x": {"E": 1}}}, "materials.x.nu is missing"),
     ({"materials": {"x": {"E": 1, "nu": 0.6}}}, "materials.x.nu is 0.6: Poisson's ratio lies"),
-    ({"materials": {"x y": {"e": 1, "nu": 0.6}}}, "materials.'x y'.e is unknown"),
-    ({"beads": {"b": {"mass": -1, "radius": 1, "material": "brass"}}},
-     "beads.b.mass is -1: it must"),
     ({"beads": {"b": {"mass": 1, "radius": 1, "material": "stel"}}},
      "beads.b.material is 'stel': did you mean steel"),
-    ({"beads": [1]}, r"beads is \[1\]: a table of keys is wanted"),
     ({"defects": {"bead": 1}}, "defects is {'bead': 1}: a list is wanted"),
     ({"defects": [{}]}, "defects number 1 has neither contact nor bead: one is wanted"),
     ({"defects": [{"bead": 1}]}, "defects number 1 has neither like nor mass: one is wanted"),
     ({"defects": [{"bead": 1, "mass": 1, "like": "ball"}]}, "defects number 1 has both like and m"),
-    ({"defects": [{"bead": 0, "mass": 1}]}, "defects number 1.bead is 0: an integer from 1"),
     ({"defects": [{"bead": 4, "mass": 1}]}, "defects number 1.bead is 4: an integer from 1"),
-    ({"defects": [{"bead": 1, "mass": -1}]}, "defects number 1.mass is -1: it must be positive"),
     ({"defects": [{"bead": 1, "like": "ball"}]}, "defects number 1.like names a bead in"),
     ({"defects": [{"contact": 3, "stiffness": 1}]}, "defects number 1.contact is 3: an integer"),
-    ({"defects": [{"contact": 1, "mass": 1}]}, "defects number 1.mass is unknown: one of contact"),
     ({"wall": {}}, "wall has neither material nor stiffness: one is wanted"),
-    ({"wall": {"stiffness": 0}}, "wall.stiffness is 0: it must be positive"),
     ({"wall": {"material": "steel"}}, "wall.material is given, but a chain of masses needs"),
     ({"wall": {"material": "wood"}} | BALLS, "wall.material is 'wood': one of steel, steel 316, "),
-    ({"striker": {"speed": 1}}, "striker.speed is unknown: one of velocity is wanted"),
-    ({"striker": {}}, "striker.velocity is missing"),
-    ({"striker": {"velocity": NAN}}, "striker.velocity is nan: a finite number is wanted"),
     ({"striker": {"velocity": 1}, "start": {}}, "striker and start are both there"),
     ({"start": {"velocities": [1] * 4}}, "4 velocities for 3 beads: at most 3 wanted"),
     ({"sensors": {"beads": [4]}}, "sensors.beads number 1 is 4: an integer from 1"),
-    ({"sensors": {"beads": [0]}}, "sensors.beads number 1 is 0: an integer from 1"),
     ({"sensors": {"beads": [1, 1]}}, r"sensors.beads is \[1, 1\]: each may be named once"),
-    ({"sensors": {"contacts": [3]}}, "sensors.contacts number 1 is 3: an integer from 1"),
     ({"sensors": {"contacts": [1]}, "chain": {"cell": [1], "k": 2}},
      "sensors.contacts number 1 is 1: the chain has none"),
     ({"sensors": {"beads": "some"}}, "sensors.beads is 'some': a list is wanted"),
     ({"units": "cgs"}, "units is 'cgs': one of SI is wanted"),
-    ({"sensors": {"bead": [1]}}, "sensors.bead is unknown: did you mean beads"),
 ]  # fmt: skip
 
 
@@ -323,21 +296,16 @@ def test_bad_scenes_are_refused_by_the_key(change, message):
 FILES = [
     ("s.toml", b"", "duration is missing|chain is missing"),
     ("s.toml", b"duration = ", "not TOML: Invalid value"),
-    ("s.toml", b"duration = 1\nduration = 2", "not TOML: Cannot overwrite a value"),
     (
         "s.toml",
         b"duration = 0x" + b"f" * 5000 + b"\nchain = {cell = [1], k = 2}",
         "duration is a number of thousands of digits",
     ),
     ("s.toml", b"duration = nan\nchain = {cell = [1], k = 2}", "duration is nan: a finite"),
-    ("s.toml", b"duration = 1979-05-27\nchain = {cell = [1], k = 2}", "duration is datetime"),
     ("s.toml", b"x = " + b"[" * 100_000, "nested too deeply for a scene"),
-    ("s.toml", b"\x89PNG\r\n\x1a\n\x00\x00", "not a text in UTF-8"),
     ("s.toml", "# Länge\nduration = 1".encode("latin-1"), "not a text in UTF-8"),
-    ("s.json", b"", "not JSON: Expecting value"),
     ("s.json", b'{"duration": 1', "not JSON: Expecting"),
     ("s.json", b"[1, 2]", r"the file is \[1, 2\]: a table of keys is wanted"),
-    ("s.json", b'{"duration": NaN, "chain": {"cell": [1], "k": 2}}', "duration is nan"),
     ("s.json", b"[" * 100_000, "nested too deeply for a scene"),
     ("s.json", b'{"duration": 1' + b"0" * 5000 + b"}", "not JSON: Exceeds the limit"),
     ("s.txt", b"duration = 1", "a scene is a file ending in .toml or .json"),
@@ -385,7 +353,7 @@ FULL = tomllib.loads(PAPER) | {"defects": [{"bead": 1, "mass": 1.0}], "precompre
 
 
 @given(st.data())
-def test_whatever_a_file_holds_is_read_or_refused_in_one_line(data):
+def test_any_file_is_read_or_refused_in_one_line(data):
     content = copy.deepcopy(FULL)
     at = content
     while True:

@@ -34,7 +34,7 @@ def test_a_record_without_a_pulse_is_infinitely_wrong():
 
 
 @pytest.mark.parametrize("name", TASKS)
-def test_tasks_are_what_they_say(name):
+def test_every_task_has_its_pulse_at_its_contact(name):
     task = TASKS[name]()
     assert isinstance(task, Task)
     assert task.read(simulate(task.scene, rtol=1e-6)).fall < task.scene.duration
@@ -79,7 +79,7 @@ def row(seconds, peak):
     return Timing("dimer", "a", 1e-8, {"arrival": 1e-9, "peak": peak, "fwhm": 1e-8}, seconds)
 
 
-def test_a_cost_holds_from_there_on():
+def test_a_cost_counts_only_if_all_longer_runs_are_as_accurate():
     """The lucky run at 1 s does not count, as the one at 2 s is worse; that at 3 s does."""
     rows = [row(1, 1e-7), row(4, 1e-9), row(2, 2e-6), row(3, 9e-7)]
     assert cost(rows, 1e-6) == 3
@@ -117,7 +117,7 @@ def test_the_document_holds_the_contract(report):
     assert {cost["task"] for cost in result["costs"]} == {"exact", "experiment"}
 
 
-def test_text_csv_and_notebook_tell_what_json_does(report):
+def test_text_csv_and_notebook_agree_with_the_json(report):
     printed = report.text()
     assert printed.startswith("Speed against error\n\nexact\n")
     assert "\nCPU time (ms) for the peak force to  1e-04  1e-06  1e-08  1e-10\n" in printed

@@ -54,7 +54,7 @@ def test_a_shift_and_a_scale_come_back(capsys, files, tmp_path):
     assert "contact 4, simulated" in picture.read_text()
 
 
-def test_what_was_not_measured_is_told(files, tmp_path):
+def test_a_missing_measurement_is_named(files, tmp_path):
     other = tmp_path / "other.csv"
     other.write_text("time,bead 4 force\n" + "".join(f"{i},{i}\n" for i in range(9)))
     with pytest.raises(SceneError, match=r"no column is contact 4 force or contact 8 force$"):

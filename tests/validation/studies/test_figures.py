@@ -36,7 +36,7 @@ def test_a_softer_bead_slows_the_pulse(scalings):
     assert all(s.value < f.value for s, f in zip(soft.speeds, stiff.speeds, strict=True))
 
 
-def test_the_theorys_line_has_its_slope_and_its_own_prefactor(scalings):
+def test_the_theorys_line_is_parallel_to_the_lattices(scalings):
     """Speeds of `lwa`'s wave at a bead's peak force; below the lattice's, by one share of them."""
     for found in scalings:
         ptfe = replace(PTFE_BEAD, material=replace(PTFE_BEAD.material, E=found.E))

@@ -45,7 +45,7 @@ def test_neighbours_are_one_ulp_apart_and_rounding_costs_half():
     assert 0 < in_ulps(np.array([1 / 3]), third)[0] <= 0.5
 
 
-def test_no_number_is_infinitely_wrong_and_no_wave_is_not_counted():
+def test_an_error_of_nan_is_infinite_where_a_wave_exists():
     true = np.array([mp.mpf(1), mp.mpf(1), mp.mpf(1), None], object)
     found = in_ulps(np.array([np.nan, np.inf, 1.0, np.nan]), true)
     assert found[:3].tolist() == [np.inf, np.inf, 0.0]
@@ -143,7 +143,7 @@ def test_a_contact_that_opens_leaves_k_plus_one_orders(k, opens, steps, order):
     assert abs(slope - order) < 0.35  # the scatter of an opening's place within its step
 
 
-def test_spreading_tells_a_walk_from_a_drift_and_from_a_swing():
+def test_the_exponent_of_spreading_of_a_walk_a_drift_and_a_swing():
     """Exponent 1/2 of independent steps, 1 of equal ones, 0 of what stays where it is."""
     noise = np.random.default_rng(1).normal(size=4000)
     assert spreading(np.cumsum(noise)) == pytest.approx(0.5, abs=0.05)
@@ -195,7 +195,7 @@ def test_a_case_that_does_not_exist_is_named(capsys):
 
 
 @pytest.mark.slow
-def test_all_cases_hold_and_are_told_by_number():
+def test_all_cases_hold_and_state_a_number():
     whole = hard().document()
     assert whole["ok"]
     assert [told["case"] for told in whole["cases"]] == list(CASES)

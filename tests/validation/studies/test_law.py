@@ -38,7 +38,7 @@ def test_the_speed_ratio_is_that_of_the_exact_wave(chain):
 
 
 @pytest.mark.parametrize(("k", "A"), [(1.5, 0.7), (2.0, 3.0)])
-def test_one_power_comes_back_from_its_own_speeds(chain, k, A):
+def test_a_power_law_is_recovered_from_its_speeds(chain, k, A):
     noise = 1 + 1e-9 * np.random.default_rng(1).normal(size=len(FORCES))
     fit = fit_power(chain, FORCES, speeds(chain, k, A) * noise)
     assert abs(fit.k.value - k) <= fit.k.error < 1e-7
@@ -216,7 +216,7 @@ def test_the_command(capsys, tmp_path, chain):
         ("force,speed\n" + "1,2\n" * 9, {"masses": (sp.Symbol("m"),)}, "mass is m: a number"),
     ],
 )
-def test_bad_files_are_one_line(tmp_path, text, options, message):
+def test_bad_files_are_refused_in_one_line(tmp_path, text, options, message):
     with pytest.raises(SceneError, match=message) as refused:
         law(written(tmp_path, text), **options)
     assert "\n" not in str(refused.value)

@@ -1,4 +1,4 @@
-"""Sweeps: nothing computed twice, nothing finished lost, the theory beside, maps and tables."""
+"""Sweeps: no point is computed twice or lost; the theory beside, maps and tables."""
 
 import csv
 import io
@@ -27,7 +27,8 @@ from validation.lattice.threads import cluster
 from validation.pulses.pulse import Measured
 from validation.pulses.steady import QUANTITIES, Point
 from validation.report.table import percent
-from validation.studies.sweep import SweepError, report, sweep, theory
+from validation.scenes.checks import Failure
+from validation.studies.sweep import report, sweep, theory
 from validation.waves.theory import theory_at
 
 R = sp.Rational
@@ -71,7 +72,7 @@ def watched(computed):
 # The file
 
 
-def test_an_interrupted_sweep_goes_on_where_it_was(reference, tmp_path):
+def test_an_interrupted_sweep_resumes(reference, tmp_path):
     file, computed = tmp_path / "s.jsonl", []
     with pytest.raises(KeyboardInterrupt):
         sweep(KS, OMEGAS, file=file, progress=stopping(3), **QUICK)
@@ -153,7 +154,7 @@ def test_another_sweeps_file_is_refused_and_left_alone(content, tmp_path):
         '{"k": 2, "omega": 1, "sites": [1, 2], "numbers": {"width": [1]}}',
     ],
 )
-def test_damage_is_told_by_its_line(content, tmp_path, line):
+def test_a_damaged_line_is_named_by_its_number(content, tmp_path, line):
     file = tmp_path / "s.jsonl"
     lines = content.splitlines()
     lines[2] = line.encode()
@@ -169,7 +170,7 @@ def test_two_sweeps_do_not_write_one_file(tmp_path):
     assert not file.exists()
 
 
-def test_a_full_disk_leaves_what_is_finished(content, tmp_path):
+def test_a_full_disk_keeps_finished_points(content, tmp_path):
     file = tmp_path / "s.jsonl"
     finished = content[: content.rfind(b"{")]
     file.write_bytes(finished)
@@ -247,7 +248,7 @@ def test_a_cluster_that_loses_a_worker_loses_no_point(reference, tmp_path):
 
 @pytest.mark.slow
 @with_dask
-def test_a_scheduler_that_is_killed_is_one_line(tmp_path):
+def test_a_killed_scheduler_ends_the_sweep_with_one_line(tmp_path):
     file = tmp_path / "s.jsonl"
     code = """if True:
         from distributed import LocalCluster
@@ -299,7 +300,7 @@ def test_a_cluster_without_workers_is_refused():
 
 @with_dask
 @pytest.mark.parametrize("answer", [b"", b"HTTP/1.0 400 Bad Request\r\n\r\n" * 9])
-def test_what_is_no_scheduler_is_refused(answer):
+def test_a_silent_server_is_no_scheduler(answer):
     """A silent server was waited for without end."""
     with socket.create_server(("127.0.0.1", 0)) as server, ThreadPoolExecutor(1) as threads:
         server.settimeout(10)
@@ -466,7 +467,7 @@ def test_the_command(capsys, tmp_path):
     ],
     ids=str,
 )
-def test_bad_input_is_one_line_and_leaves_nothing(capsys, folder, arguments, message):
+def test_bad_input_prints_one_line_and_leaves_no_file(capsys, folder, arguments, message):
     status, out, err = ended(capsys, cli.main, "sweep", *arguments)
     assert (status, out, err.count("\n")) == (2, "", 1)
     assert err.startswith(f"lwa-validate: {message}")
@@ -488,6 +489,6 @@ def test_a_range_is_exact_and_equidistant():
     assert {b - a for a, b in pairwise(seen[:-1])} <= {step}
 
 
-def test_workers_that_are_gone_are_told():
-    with pytest.raises(SweepError, match=r"^the workers are gone before"):
+def test_lost_workers_are_reported():
+    with pytest.raises(Failure, match=r"^the workers are gone before"):
         sweep(KS, OMEGAS, progress=stopping(1, BrokenExecutor("killed")), **QUICK)

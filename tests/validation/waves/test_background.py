@@ -25,7 +25,7 @@ def off(p0: float) -> tuple[float, float]:
     ("ratio", "c2", "fwhm"),
     [(1e-9, -0.024, 0.048), (0.1, -0.014, 0.040), (1.0, -0.002, 0.017), (10.0, 0.0, 0.003)],
 )
-def test_what_the_theory_is_worth(ratio, c2, fwhm):
+def test_the_errors_of_the_theory_on_a_background(ratio, c2, fwhm):
     """Errors at p0/B as the notes on the theory have them."""
     found = off(ratio / (1 + ratio))
     assert found == pytest.approx((c2, fwhm), abs=5.1e-4)
@@ -96,7 +96,7 @@ def test_multiples_are_on_multiples_of_the_background():
         ([1], {"background": 0.5, "half_period": 5}, "has not ended there"),
     ],
 )
-def test_what_cannot_be_meant_is_refused(masses, options, message):
+def test_bad_options_are_refused(masses, options, message):
     with pytest.raises(SceneError, match=message):
         exact_wave(masses, 1.5, **options)
 

@@ -49,7 +49,7 @@ def test_a_law_with_tension_is_not_cut():
     assert p[-1].min() < -0.01
 
 
-def test_what_is_refused():
+def test_bad_input_is_refused():
     with pytest.raises(SceneError, match="'m1' has no value"):
         Continuum(Evolution(Dimer("m1", "m2", spacing=1), Power("3/2")), 10, 64)
     with pytest.raises(SceneError, match="length is 0"):

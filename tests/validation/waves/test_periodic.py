@@ -162,7 +162,7 @@ def test_a_breather_is_stable_or_hardly_unstable_and_its_multipliers_come_in_pai
     assert np.count_nonzero(np.abs(multipliers - 1) < 1e-3) >= 4
 
 
-def test_what_is_refused():
+def test_bad_input_is_refused():
     chain, middle = dimer(21)
     with pytest.raises(SceneError, match="stiffnesses are 3 of 2 beads"):
         PressedChain([1, 1], [1, 1, 1], HERTZ, 1)

@@ -92,7 +92,7 @@ def test_near_k_1_the_expansion_is_met_order_by_order():
     assert np.diff(np.log(off)) / np.diff(np.log(epsilon)) == pytest.approx([1, 1], abs=0.1)
 
 
-def test_a_wave_far_along_k_is_that_which_steps_lead_to(hertz):
+def test_a_wave_at_large_k_is_the_end_of_a_continuation(hertz):
     wave = hertz
     for k in np.arange(2.0, 5.01, 0.5):
         wave, before = solve((1.0, 1.0), k, start=wave), wave
@@ -168,7 +168,7 @@ def test_the_wave_put_into_the_lattice_comes_back_to_itself(hertz):
     assert pulse.peak == pytest.approx(1, abs=1e-8)
 
 
-def test_at_a_special_ratio_a_dimers_wave_comes_back_and_elsewhere_it_does_not(specials):
+def test_a_dimers_wave_keeps_its_shape_only_at_a_special_ratio(specials):
     """At the first ratio as in the uniform chain; 2 % off it light beads stay behind in motion."""
     change, _ = came_back(specials[0])
     assert change < 1e-11
@@ -356,13 +356,13 @@ def test_a_scaled_dimer_keeps_its_tail_over_the_peak():
         ({"speed": 1e80}, "out of range"),
     ],
 )
-def test_what_a_wave_cannot_be_scaled_to(hertz, options, message):
+def test_bad_scalings_are_refused(hertz, options, message):
     with pytest.raises(SceneError, match=message):
         hertz.scaled(**options)
 
 
 @pytest.mark.parametrize("masses", [[1], [1, 0.9]])
-def test_the_result_says_all_of_a_wave(masses):
+def test_the_report_holds_every_number_of_a_wave(masses):
     wave = exact_wave(masses, 1.5, half_period=None if len(masses) == 1 else 8)
     found = json.loads(json.dumps(wave_report(wave).document(), allow_nan=False))
     assert found["c_value"] ** 2 == pytest.approx(found["c2_value"], rel=1e-14)
@@ -468,7 +468,7 @@ def test_a_half_period_that_is_too_short_is_refused():
             assert abs(found[name].value - number.value) <= found[name].error + number.error, name
 
 
-def test_what_is_left_at_the_half_period_tells_how_far_a_wave_is_off(hertz):
+def test_the_strain_at_the_half_period_bounds_the_error_of_c2(hertz):
     """c² is off by (1.5 to 2) times the strain there; a wave that ends has none."""
     for L in (2.0, 3.0, 4.0, 4.3):
         wave = solve((1.0, 1.0), 1.5, L)
@@ -529,7 +529,7 @@ def test_a_branch_that_turns_back_does_not_reach_its_end():
 
 
 @pytest.mark.parametrize("k", [1.5, 3])
-def test_a_missing_wave_says_what_was_tried(monkeypatch, k):
+def test_a_missing_wave_lists_the_attempts(monkeypatch, k):
     def fails(masses, k, *_, **__):
         raise NoWave("no convergence", masses, k)
 
