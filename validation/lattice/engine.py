@@ -250,9 +250,9 @@ def _chain(motion: Motion) -> Chain:
         row[: len(values)] = values
     if motion.scene.drive is not None:
         inverse[0] = 0.0
-    contact = motion.contact
-    generated = contact.law is not None
-    return Chain(inverse, A, rest, load, motion.k, generated, *contact.addresses, contact.pulls)
+    law = motion.contact
+    kind: dict[str, Any] = dict(generated=law.law is not None, pulls=law.pulls, **law.addresses)
+    return Chain(inverse, A, rest, load, motion.k, **kind)
 
 
 def _front(motion: Motion) -> int:
