@@ -157,24 +157,21 @@ class StruckDimer:
         """
         shares = (0.5, 0.5**self.k)  # half of the force, and half of the compression
         passages, sensors = [], run.scene.contact_sensors
-        for i in sensors:
-            force = run.signal("contact", i)
+        for force in (run.signal("contact", i) for i in sensors):
             try:
-                force_pulse, strain_pulse = leading_pulses(force, self.k, shares)
+                pulse, strain = leading_pulses(force, self.k, shares)
             except MeasureError:
                 sites, end = sensors[-2], run.scene.duration
                 missing = f"not steady: the pulse has not passed {sites} sites by t = {end:.3g}"
                 raise MeasureError(missing) from None
-            first, highest = force_pulse, max(force_pulse.peak, float(force(force.times).max()))
-            row = first.arrival, first.peak, first.fwhm, strain_pulse.fwhm, first.fall, highest
-            passages.append(row)
+            highest = max(pulse.peak, float(force(force.times).max()))
+            passages.append(
+                (pulse.arrival, pulse.peak, pulse.fwhm, strain.fwhm, pulse.fall, highest)
+            )
         return np.array(passages).reshape(-1, 2, 6)
 
     def numbers(self, passages: Array) -> Array:
-        """Return `QUANTITIES` (rows) of each stretch; NaN where the pulse does not arrive later.
-
-        A column is meaningful only if its two places are `sites` sites apart.
-        """
+        """Return `QUANTITIES` (rows) of each stretch; NaN where the pulse does not arrive later."""
         arrival, peak, width, strain_width, *_ = np.moveaxis(passages, 2, 0)  # (places, contacts)
         elapsed, fall = np.diff(arrival, axis=0), -np.diff(np.log(peak), axis=0)
         elapsed[elapsed <= 0] = np.nan
@@ -213,14 +210,13 @@ class PointFile:
         """Keep other processes away from the file; raises `lwa.InputError` if one has it."""
         lock = FileLock(f"{self.path}.lock", blocking=False)
         try:
-            lock.acquire()
+            with lock:
+                try:
+                    yield
+                finally:
+                    Path(lock.lock_file).unlink()
         except Timeout:
             raise InputError(f"file is {self.path}: another sweep writes it") from None
-        with lock:
-            try:
-                yield
-            finally:
-                Path(lock.lock_file).unlink()
 
     def read(self) -> dict[Key, Point]:
         """Read all points. A torn last line is dropped.
