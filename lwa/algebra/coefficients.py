@@ -84,7 +84,7 @@ class CoefficientRing(Value):
     k : the exponent, a number, a variable, or 1 + φ_2.
     variables : k unless it is rational, or the symbols of φ_2, φ_3, ….
     masses, contacts : the mass fractions m̂_i and the shares C_i of the contacts.
-    constants : further expressions, such as the α_n of `lwa.equation.fields`.
+    constants : further expressions, such as the α_n of `lwa.closure.fields`.
     """
 
     k: sp.Expr

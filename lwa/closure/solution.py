@@ -25,7 +25,7 @@ class Solution:
         Optical: u_ττ = -u^k Σ_{n≥0} D^n E_n, E_0 = 1, in its own time unit.
     ansatz : b_n, n = 0 … order: the second particle's field is λ Σ b_n D^n ∂_x^n φ in the linear
         closure, and has this linear part in the full one (polynomials in the parameters).
-    slaved : S_0 … S_{order-1} of each field w_i = φ + D φ_x Σ D^n S_n (full closure only).
+    slaved : `fields` of the full closure, and in a changed field; else ().
     defect : E_n from the first equation of motion minus E_n from the second, for the same ansatz.
     """
 
@@ -34,3 +34,12 @@ class Solution:
     ansatz: tuple[fmpq_mpoly, ...] = ()
     slaved: tuple[tuple[fmpq_mpoly, ...], ...] = ()
     defect: tuple[fmpq_mpoly, ...] = ()
+
+    @property
+    def fields(self) -> tuple[tuple[fmpq_mpoly, ...], ...]:
+        """Polynomials S_0, S_1, … of each field w_i = φ + D φ_x Σ D^n S_n (acoustic branch)."""
+        if self.slaved:
+            return self.slaved
+        first = tuple(self.algebra.zero for _ in self.acceleration)
+        second = tuple(b * r for b, r in zip(self.ansatz[1:], self.algebra.r, strict=False))
+        return (first, second) if self.ansatz else (first,)

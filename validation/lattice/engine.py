@@ -50,6 +50,7 @@ from validation.lattice.kernel.arrays import (
 )
 from validation.lattice.knots import Recorder
 from validation.lattice.run import (
+    WINDOW_CHANGE,
     IntegrationError,
     Run,
     RunProgress,
@@ -63,7 +64,6 @@ from validation.lattice.signal import recorded, sampled
 from validation.scenes.checks import SceneError, integer, positive
 
 _SUPPORTS = 8  # supports of the long-wave pulse in a window of the engine's choice
-_CHANGE = 10.0  # in units of rtol: greatest change of the leading pulse by a longer window
 _POINTS = 8  # nodes of the quadrature at a kink
 _NOISE = sys.float_info.epsilon  # in units of the greatest value: a bead that moves less is still
 _GLANCE = 5e7  # bead evaluations between two reports of progress: some tenths of a second
@@ -144,7 +144,7 @@ def _compare(motion: Motion, rtol: float, short: Run, long: Run) -> None:
     v, longer_v = short.velocities[followed], long.velocities[followed]
     leading = slice(int(np.argmax(np.abs(longer_v))), None)
     change = np.abs(v - longer_v)[leading].max() / motion.scales.velocity
-    if change > _CHANGE * rtol:
+    if change > WINDOW_CHANGE * rtol:
         raise IntegrationError(
             f"a window of {short.window} beads is too short: twice as many change the leading "
             f"pulse by {change:.1g} where rtol is {rtol:g}; more or the whole chain is wanted"
