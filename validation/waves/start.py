@@ -15,7 +15,7 @@ from lwa.base.arrays import Array
 from validation.pulses.pulse import leading_pulses
 from validation.pulses.steady import PLACES, STRETCH, StruckDimer, cells_apart
 from validation.waves import newton
-from validation.waves.profile import OUTSIDE, LatticeWave
+from validation.waves.profile import LatticeWave
 
 FARTHEST = 60  # cells from one place to the next; as k → 1 a pulse leaves its wake ever more slowly
 TOLERANCE = 1e-7  # rtol of the struck chain
@@ -67,7 +67,7 @@ class StruckPulse(LatticeWave):
     @property
     def tail(self) -> float:
         """Largest |o| outside the pulse, o being the odd part of the strain."""
-        return self.odd_strain(OUTSIDE * self.half_period)
+        return self.odd_strain(self.pulse)
 
     @cached_property
     def _spline(self) -> Any:
