@@ -9,7 +9,7 @@ import sympy as sp
 
 from lwa.base.errors import InputError
 from lwa.command.chain import ChainInput, take_chain
-from lwa.command.options import SPHERES, cell_options, quantity, spheres_option, style_option
+from lwa.command.options import SPHERES, cell_options, spheres_option, style_option, value
 from lwa.command.rows import Answer, Row, attempt
 from lwa.command.waves import SPEED, hertz_note
 from lwa.expansion.physical import pulse_of_strike
@@ -18,13 +18,9 @@ from lwa.shocks import riemann
 
 @click.command()
 @spheres_option(required=True)
-@click.option("--velocity", callback=quantity, help="Velocity of the striker, in m/s.")
-@click.option(
-    "--drop", callback=quantity, help="Height from which the striker falls, in m; or --velocity."
-)
-@click.option(
-    "--mass", callback=quantity, help="Mass of the striker, in kg; that of a bead by default."
-)
+@value("--velocity", "Velocity of the striker, in m/s.")
+@value("--drop", "Height from which the striker falls, in m, in place of --velocity.")
+@value("--mass", "Mass of the striker, in kg.  [default: that of a bead]")
 @style_option()
 def strike(
     spheres: str,
@@ -66,17 +62,9 @@ _WIDTH = r"\mathrm{FWHM}_{\mathrm{force}}"
 @click.command()
 @cell_options()
 @SPHERES
-@click.option("--behind", callback=quantity, help="Strain behind the front, compression over D.")
-@click.option(
-    "--piston",
-    callback=quantity,
-    help="Velocity of the wall, in m/s if the chain is in SI, in place of --behind.",
-)
-@click.option(
-    "--ahead",
-    callback=quantity,
-    help="Strain ahead of the front.  [default: 0, or that of the load in a file]",
-)
+@value("--behind", "Strain behind the front, compression over D.")
+@value("--piston", "Velocity of the wall, in m/s if the chain is in SI, in place of --behind.")
+@value("--ahead", "Strain ahead of the front.  [default: 0, or that of the load in a file]")
 def shock(
     style: str,
     behind: sp.Expr | None,

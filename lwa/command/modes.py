@@ -19,9 +19,8 @@ from lwa.command.options import (
     angle,
     cell_options,
     given,
-    quantity,
     series_options,
-    setting,
+    value,
 )
 from lwa.command.rows import PRINTED_DIGITS, Answer, Row, Values
 from lwa.envelopes import schrodinger
@@ -141,26 +140,25 @@ _LOADS = {
 @SPHERES
 @BACKGROUND
 @PRECOMPRESSION
-@setting(
+@value(
     "--wavenumber",
-    "pi",
     "Wavenumber κ per cell, 0 … pi: a number, a name, or a part of pi such as pi/3.",
-    callback=angle,
+    "pi",
+    angle,
 )
 @click.option(
     "--branch",
+    metavar="NAME|N",
     help="Branch of the mode: acoustic, optical, or its number from 0.  [default: optical; "
     "acoustic for equal beads]",
 )
-@click.option(
+@value(
     "--frequency",
-    callback=quantity,
-    help="Frequency f of a breather: in Hz if the chain is in SI, else in radians per time.",
+    "Frequency f of a breather: in Hz if the chain is in SI, else in radians per time.",
 )
-@click.option(
+@value(
     "--detuning",
-    callback=quantity,
-    help="Relative detuning 1 - f/f0 of a breather from the band's edge f0, in place of f.",
+    "Relative detuning 1 - f/f0 of a breather from the band's edge f0, in place of --frequency.",
 )
 def envelope(
     style: str,

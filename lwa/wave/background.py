@@ -160,7 +160,7 @@ class BackgroundWave(Value):
         sqrt(B/3 + p0)
         """
         square = self.stiffness(self._read_rise(B))
-        if self.law.homogeneous and self.law.exponent.is_Integer:
+        if self.law.homogeneous and self.law.exponent.is_Integer:  # a polynomial in p0 and B
             square = sp.expand(sp.cancel(square))
         return sp.sqrt(square)
 
@@ -214,6 +214,7 @@ class BackgroundWave(Value):
         if self.sound_speed.is_zero or self.sound_speed.is_finite is False:
             raise NoSolitaryWave(f"p0 is {self.p0}: no sound runs there, so that no wave is small")
         c0 = self.sound_speed
+        # V² = Q(B) = c0² + F″ B/3 + …, hence V = c0 + α B/3; Ω² = κ² - I κ⁴ gives γ = I c0/2.
         bend = self.force(self.p0, 2)
         if bend.is_zero:
             raise NoSolitaryWave(f"F″ is 0 at p0 = {self.p0}: waves of small amplitude disperse")

@@ -107,12 +107,10 @@ def output_option(name: str, suffixes: Sequence[str], says: str) -> Any:
 
 def number(context: click.Context, given: click.Parameter, value: str | None) -> float | None:
     """Read an option that is an integer, a decimal or a fraction."""
-    found = quantity(context, given, value)
-    if found is None:
-        return None
-    if not found.is_number:
-        raise SceneError(f"{called(given)} is {found}: a number is wanted")
-    return float(found)
+    exact = quantity(context, given, value)
+    if exact is not None and not exact.is_number:
+        raise SceneError(f"{called(given)} is {exact}: a number is wanted")
+    return None if exact is None else float(exact)
 
 
 EXPONENT = option("--k", callback=number, default="3/2", says="Exponent of F = δ^k.")

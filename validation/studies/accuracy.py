@@ -266,10 +266,10 @@ def accuracy(
         curves, spent = [], []
         timings = runs(name, TASKS[name](), methods)
         for method, group in groupby(timings, lambda timing: timing.method):
-            its = list(group)
-            rows += [(name, method, t.setting, t.error, *t.errors.values(), t.seconds) for t in its]
-            spent.append((name, method, *(cost(its, error) for error in WANTED)))
-            good = [t for t in its if math.isfinite(t.error)]
+            ts = list(group)
+            rows += [(name, method, t.setting, t.error, *t.errors.values(), t.seconds) for t in ts]
+            spent.append((name, method, *(cost(ts, error) for error in WANTED)))
+            good = [t for t in ts if math.isfinite(t.error)]
             curves.append(Curve(method, [t.error for t in good], [t.seconds for t in good]))
         # the cheapest at the smallest error first; methods that do not attain it last
         costs += sorted(spent, key=lambda line: line[:1:-1])

@@ -163,9 +163,9 @@ def chain_speed(N: int, tolerances: tuple[float, float] = TOLERANCES) -> Speed:
         return {"speed": across * period * DIAMETER / (second - first), "force": train.peak}
 
     scene = recorded_chain(sensors, N=N, beads=max(BEADS, (before + across + 3) * period))
-    found = compared(numbers, *twice(scene, *tolerances), tolerances[0])
-    wave = PhysicalWave(canonical_wave(chain_cell(N), HERTZ), found["force"].value, "bead")
-    return Speed(N, found["speed"], found["force"], float(wave.speed))
+    speed, force = compared(numbers, *twice(scene, *tolerances), tolerances[0]).values()
+    wave = PhysicalWave(canonical_wave(chain_cell(N), HERTZ), force.value, "bead")
+    return Speed(N, speed, force, float(wave.speed))
 
 
 def scaling(

@@ -33,7 +33,7 @@ def example(name: str) -> str:
     return file.read_text(encoding="utf-8")
 
 
-def report(found: Recording, every: bool = False) -> Report:
+def report(recording: Recording, every: bool = False) -> Report:
     """Return the report of a run, with all pulses at each sensor (``every``) or only the first.
 
     Keys of the JSON document: ``scene`` (as in a file, see `validation.scenes.scenefile`);
@@ -44,7 +44,7 @@ def report(found: Recording, every: bool = False) -> Report:
     null where ``missing`` is the reason; ``energy_drift_value``, and ``momentum_drift_value``, null
     with a wall; with damping the energy ``dissipated_value``, with a drive its ``work_value``.
     """
-    run, scene = found.run, found.run.scene
+    run, scene = recording.run, recording.run.scene
     momentum = "not conserved" if (p := run.momentum_drift) is None else f"drift {p:.0e}"
     title = f"{scene}, energy drift {run.energy_drift:.0e}"
     data = {
@@ -60,7 +60,7 @@ def report(found: Recording, every: bool = False) -> Report:
         title += f", work {run.work:.6g}"
     which = "All pulses" if every else "First pulse"
     note = _NOTE.format(which, scene.units or "the scene's own") + _DYNAMIC * any(scene.load)
-    missing = [f"{r.name}: {r.missing}" for r in found.sensors + found.speeds if r.missing]
+    missing = [f"{r.name}: {r.missing}" for r in recording.sensors + recording.speeds if r.missing]
     peak = "peak dynamic force" if any(scene.load) else "peak force"
     labels = [run.label(name) for name in ("arrival", peak, "FWHM")]
     sensors = (
@@ -75,14 +75,14 @@ def report(found: Recording, every: bool = False) -> Report:
     )
     pulses = tuple(
         (*_place(r), *[r.pulse] * every, *_numbers(r, READINGS), r.static, r.missing)
-        for r in found.sensors
+        for r in recording.sensors
     )
-    times = tuple((*_place(r), *_numbers(r, SPEEDS), r.missing) for r in found.speeds)
+    times = tuple((*_place(r), *_numbers(r, SPEEDS), r.missing) for r in recording.speeds)
     return Report(
         f"{title}, momentum {momentum}",
         (Table(sensors, pulses, "sensors"), Table(speeds, times, "speeds")),
         panels=tuple(run.pictured()),
-        notes=("\n".join(missing), note if found.sensors else ""),
+        notes=("\n".join(missing), note if recording.sensors else ""),
         data=data,
     )
 
@@ -162,17 +162,17 @@ def run(
     run_progress: RunProgress,
 ) -> Report:
     """A scene from a file, TOML or JSON: arrival, peak force, FWHM and speed at its sensors."""
-    what = load(scene).scene if scene.lower().endswith(".npz") else read_scene(scene)
+    chain = load(scene).scene if scene.lower().endswith(".npz") else read_scene(scene)
     if out is not None and out.exists() and out.samefile(scene):
         raise SceneError(f"out is {out}: it is the scene's own file, which would be lost")
-    sensors = what.bead_sensors or what.contact_sensors
+    sensors = chain.bead_sensors or chain.contact_sensors
     if out is not None and out.suffix.lower() not in STORED and not sensors:
         raise SceneError(f"out is {out}, but the scene names no sensors")
     options: Any = {"method": method, "rtol": rtol, "progress": run_progress}
     if window is not None:
         options["window"] = window or True
-    found = record(what, every=pulses, **options)
-    result = report(found, every=pulses)
+    recording = record(chain, every=pulses, **options)
+    result = report(recording, every=pulses)
     if out is not None:
-        store(found.run, result.document(), out)
+        store(recording.run, result.document(), out)
     return result
