@@ -71,7 +71,7 @@ def wave_report(wave: ExactWave) -> Report:
     numbers = measured(wave)
     kind, errors = _SOLITARY if wave.solitary else _NANOPTERON
     tail = f"{wave.tail:.2e}" if wave.solitary else numbers["tail"]
-    rows = tuple((q, numbers[f"amplitude {q}"], numbers[f"fwhm {q}"]) for q in QUANTITIES)
+    rows = tuple((q, *(numbers[f"{c.key} {q}"] for c in _COLUMNS[1:])) for q in QUANTITIES)
     # One row of all numbers; "fwhm force" becomes an entry of fwhm_value.
     columns = tuple(Column(name.replace(" ", "."), error=True) for name in numbers)
     (values,) = Table(columns, (tuple(numbers.values()),)).document()
