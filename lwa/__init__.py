@@ -36,12 +36,12 @@ if TYPE_CHECKING:
     from lwa.expansion.expand import Expansion as Expansion
     from lwa.expansion.expand import expand as expand
     from lwa.expansion.physical import ExpandedWave as ExpandedWave
+    from lwa.expansion.physical import Strike as Strike
+    from lwa.expansion.physical import graded_force as graded_force
+    from lwa.expansion.physical import pulse_of_strike as pulse_of_strike
+    from lwa.expansion.physical import transmitted_force as transmitted_force
     from lwa.expansion.radiation import Radiation as Radiation
     from lwa.expansion.series import EpsilonSeries as EpsilonSeries
-    from lwa.expansion.strike import Strike as Strike
-    from lwa.expansion.strike import graded_force as graded_force
-    from lwa.expansion.strike import pulse_of_strike as pulse_of_strike
-    from lwa.expansion.strike import transmitted_force as transmitted_force
     from lwa.law import ContactLaw as ContactLaw
     from lwa.law import Law as Law
     from lwa.law import Power as Power
@@ -87,10 +87,9 @@ _MODULES = {
     "envelopes.schrodinger": "Breather Envelope envelope",
     "expansion.approximants": "Resummed",
     "expansion.expand": "Expansion expand",
-    "expansion.physical": "ExpandedWave",
+    "expansion.physical": "ExpandedWave Strike graded_force pulse_of_strike transmitted_force",
     "expansion.radiation": "Radiation",
     "expansion.series": "EpsilonSeries",
-    "expansion.strike": "Strike graded_force pulse_of_strike transmitted_force",
     "law": "ContactLaw Law Power general",
     "linear.dispersion": "Dispersion LoadedChain",
     "equation.evolution": "Evolution",

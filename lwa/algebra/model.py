@@ -10,9 +10,8 @@ from typing import Any
 import sympy as sp
 from flint import fmpq_mpoly
 
-from lwa.algebra.coefficients import CoefficientRing
+from lwa.algebra.coefficients import CoefficientRing, Partition
 from lwa.algebra.jets import JetAlgebra
-from lwa.algebra.partition import Partition
 from lwa.base.frozen import Value
 from lwa.cell import Cell, substitution
 from lwa.law import ContactLaw, for_cell, phi_symbol

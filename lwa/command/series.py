@@ -26,9 +26,8 @@ from lwa.command.rows import Answer, Row, Values, attempt
 from lwa.command.waves import SPEED, WIDTHS, hertz_note, radiation_note
 from lwa.expansion.approximants import Resummed
 from lwa.expansion.expand import DAMPINGS, Expansion, expand
-from lwa.expansion.physical import ExpandedWave
+from lwa.expansion.physical import ExpandedWave, pulse_of_strike
 from lwa.expansion.series import EpsilonSeries
-from lwa.expansion.strike import pulse_of_strike
 
 
 @click.command()

@@ -42,10 +42,9 @@ LONG = 30_000
 class Expansion(Value):
     """The traveling wave of a chain as a series in ε = k - 1 (see `expand`).
 
-    The first contact has the peak force 1; at a peak force F, c² is F^{(k-1)/k} times as large and
-    the widths are the same. Lengths are in D (sites), masses and A in the cell's units. Behind a
-    striker the two contacts of a dimer differ (their peaks by 0.5 % at m2/m1 = 0.99, by 5 % at
-    0.9): widths and estimates of errors hold for the mean of the two.
+    The first contact has the peak force 1; lengths are in D (sites), masses and A in the cell's
+    units. Behind a striker the two contacts of a dimer differ (their peaks by 0.5 % at
+    m2/m1 = 0.99, by 5 % at 0.9): widths and their errors hold for the mean of the two.
     """
 
     cell: Cell
@@ -78,12 +77,7 @@ class Expansion(Value):
 
     @cached_property
     def c2(self) -> EpsilonSeries:
-        """The square c² of the speed in sites per unit of time.
-
-        >>> from lwa import Cell
-        >>> expand(Cell([1]), 2).c2.coefficients
-        (1, -1/2, 2/5)
-        """
+        """The square c² of the speed in sites per unit of time."""
         return self._series("c2", self._sound, sp.S.Zero)
 
     @cached_property
@@ -95,10 +89,6 @@ class Expansion(Value):
         """Full width at half maximum of a contact's strain or force, or the first bead's velocity.
 
         The series gives both contacts of a dimer the same width; see `Expansion`.
-
-        >>> from lwa import Cell
-        >>> expand(Cell([1]), 1).fwhm("force").coefficients
-        (1, 1/10 - log(2)/60)
         """
         # The Gaussian F = e^{-Z²/4}, Z = √(ε/I) ξ, is 1/2 at Z = 2√log 2.
         return self._series(known(quantity), 4 * sp.sqrt(self.I * sp.log(2)), -sp.S.Half)
@@ -176,10 +166,6 @@ class Expansion(Value):
         F is the force of the contact, ξ the distance in sites from the peak of the first contact,
         in the frame of the cell: contact i is i sites behind the first one. X is a symbol of this
         name unless given. A truncated sum holds near the peak; far out its last term may rise.
-
-        >>> from lwa import Cell
-        >>> expand(Cell([1]), 1).log_force()
-        {0: -3*X**2, 1: -3*X**4/10 + 3*X**2/5}
         """
         i = integer(contact, "contact", 0, self.cell.size - 1)
         place = sp.Symbol("X") if X is None else signed(X, "X")
@@ -195,9 +181,6 @@ class Expansion(Value):
         """The expansion for these values of the named symbols, and of ω = m2/m1 by ``omega``.
 
         Raises `lwa.InputError` for a name that does not occur or a value that is not positive.
-
-        >>> expand(Cell(["m1", "m2"]), 1).at(m1=2, omega=1).c2.prefactor
-        1/2
         """
         new = substitution(values, self.cell, self.k)
         return expand(self.cell.replaced(new), self.order, k=self.k.xreplace(new))
@@ -223,6 +206,8 @@ def expand(
 
     >>> from lwa import Cell
     >>> wave = expand(Cell([1]), 10)
+    >>> wave.c2.coefficients[:3]
+    (1, -1/2, 2/5)
     >>> wave.fwhm("force").at(1.5).value.__round__(6)  # the uniform Hertz chain, in D
     1.411928
     """

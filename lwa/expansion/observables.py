@@ -226,9 +226,5 @@ def _equal_beads(order: int) -> Observables:
 
 @lru_cache(maxsize=32)
 def equal_beads(quantity: str, order: int) -> tuple[sp.Expr, ...]:
-    """Coefficients of the chain of equal beads; cached, as the sums of other chains need them.
-
-    >>> equal_beads("c2", 2)
-    (1, -1/2, 2/5)
-    """
+    """Coefficients of the chain of equal beads; cached, as the sums of other chains need them."""
     return _equal_beads(order).coefficients(quantity)

@@ -11,7 +11,6 @@ from lwa.base import latex
 from lwa.base.exact import InputError, demand_numbers, integer, shorten
 from lwa.base.frozen import Value
 from lwa.cell import Cell, exponent
-from lwa.cell import k as symbol_k
 from lwa.expansion.approximants import Resummed, pade, resum
 from lwa.expansion.observables import equal_beads
 from lwa.expansion.radiation import Radiation, radiation
@@ -41,16 +40,15 @@ class EpsilonSeries(Value):
 
     k : the exponent. The series is summed at a number; a symbol may be replaced by a number or
         another symbol, also in the prefactor and the shares of unlike contacts.
-    cell, quantity : the chain and the name of the quantity. With them `at` sums the series of
-        equal beads and the difference to it apart, and adds the error by radiation.
+    cell, quantity : the chain and the name of the quantity.
     """
 
     prefactor: sp.Expr
     power: sp.Expr
     coefficients: tuple[sp.Expr, ...]
-    k: sp.Expr = symbol_k
-    cell: Cell | None = None
-    quantity: str = ""
+    k: sp.Expr
+    cell: Cell
+    quantity: str
 
     @property
     def order(self) -> int:
@@ -60,28 +58,23 @@ class EpsilonSeries(Value):
     @property
     def radiation(self) -> Radiation | None:
         """Radiation, which `at` adds to the error; None for symbols and for equal beads."""
-        return radiation(self.cell, self.k) if self.cell else None
+        return radiation(self.cell, self.k)
 
-    def partial_sum(self, k: Any = None, order: Any = None) -> sp.Expr:
-        """The exact sum to ε^order; a number or symbol k replaces the series' own symbol k.
+    def partial_sum(self, k: Any = None) -> sp.Expr:
+        """The exact sum of all terms; a number or symbol k replaces the series' own symbol k.
 
         >>> from lwa import Cell, expand
         >>> expand(Cell([1]), 2).c2.partial_sum("3/2")
         17/20
         """
         series = self._for(k)
-        last = self.order if order is None else integer(order, "order", 0, self.order)
-        terms = (a * series._epsilon**n for n, a in enumerate(series.coefficients[: last + 1]))
+        terms = (a * series._epsilon**n for n, a in enumerate(series.coefficients))
         return series._unit * sp.Add(*terms)
 
     def pade(self, k: Any, numerator: int, denominator: int) -> sp.Expr:
         """The exact approximant [L/M] in ε; k as in `partial_sum`, None for the series' own.
 
         Raises `lwa.InputError` where the series is too short, or has no such approximant.
-
-        >>> from lwa import Cell, expand
-        >>> expand(Cell([1]), 2).c.pade("k", 1, 1)
-        (17*k + 23)/(27*k + 13)
         """
         series = self._for(k)
         degrees = integer(numerator, "numerator", 0), integer(denominator, "denominator", 0)
@@ -90,12 +83,11 @@ class EpsilonSeries(Value):
     def at(self, k: Any = None) -> Resummed:
         """The sum and an estimate of its error, at a number k > 1 for a series in a symbol k.
 
+        The series of equal beads and the difference to it are summed apart; the error by radiation
+        is added.
+
         Raises `lwa.InputError` when k or the cell holds symbols, for k ≤ 1, for a k besides that of
         the series, and where the error is as large as the sum of these positive quantities.
-
-        >>> from lwa import Cell, expand
-        >>> expand(Cell([1]), 10, k="3/2").fwhm("force").at().value.__round__(6)
-        1.411928
         """
         series = self._for(k)
         values = (series.k, series.prefactor, *series.coefficients)
@@ -136,8 +128,7 @@ class EpsilonSeries(Value):
         )
 
     def __repr__(self) -> str:
-        name = self.quantity or "series"
-        return f"EpsilonSeries({name} to ε^{self.order}, k={self.k}, {self.cell!r})"
+        return f"EpsilonSeries({self.quantity} to ε^{self.order}, k={self.k}, {self.cell!r})"
 
     def latex(self) -> str:
         r"""The series as a paper prints it: its name, its first `SHOWN` terms and dots.
@@ -151,8 +142,8 @@ class EpsilonSeries(Value):
         shown = zip(self.coefficients, powers, strict=False)
         body = latex.total((a, power) for a, power in shown if a) + r" + \dots"
         unit = self.prefactor * epsilon**self.power
-        name = f"{_LETTERS[self.quantity]} = " if self.quantity else ""
-        return name + (body if unit == 1 else rf"{sp.latex(unit)} \Bigl({body}\Bigr)")
+        value = body if unit == 1 else rf"{sp.latex(unit)} \Bigl({body}\Bigr)"
+        return f"{_LETTERS[self.quantity]} = {value}"
 
     def _repr_latex_(self) -> str:
         return latex.display([self.latex()])

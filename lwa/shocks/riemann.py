@@ -23,8 +23,7 @@ from lwa.base.exact import InputError, exact, one_of, positive, shorten
 from lwa.base.frozen import Value
 from lwa.cell import Cell
 from lwa.expansion.expand import expand
-from lwa.expansion.physical import ExpandedWave, wave_of_velocity
-from lwa.expansion.strike import ORDER
+from lwa.expansion.physical import ORDER, ExpandedWave, wave_of_velocity
 from lwa.law import ContactLaw, for_cell
 from lwa.shocks import edges, waves
 from lwa.wave.background import BackgroundWave

@@ -55,11 +55,10 @@ def measure(time: ArrayLike | Signal, values: ArrayLike | None = None) -> Pulse:
     """Measure the highest pulse of a signal, or of samples.
 
     time : a signal such as `Run.signal(...)`, or increasing sample times (S,).
-    values : (S,), sample values.
+    values : sample values (S,); they are measured on the cubic spline through them.
 
-    A signal is measured as accurately as it is known, samples as accurately as the cubic spline
-    through them. Raises `MeasureError` for a record without a pulse, for a pulse that is not wholly
-    in the record, and for fewer than `FEWEST` samples above half its peak.
+    Raises `MeasureError` for a record without a pulse, for a pulse that is not wholly in the
+    record, and for fewer than `FEWEST` samples above half its peak.
 
     >>> t = np.linspace(-1, 1, 201)
     >>> pulse = measure(t, np.cos(np.pi * t / 2) ** 2)
@@ -121,16 +120,13 @@ def highest_pulse(signal: Signal, end: float = math.inf) -> Pulse:
 
 
 def first_pulse(signal: Signal) -> Pulse:
-    """Measure the pulse in the first time interval in which a signal exceeds half its maximum.
-
-    Later pulses, such as the echo from a wall, may be higher than the first one.
-    """
+    """Measure the pulse in the first time interval in which a signal exceeds half its maximum."""
     grid = _Grid(signal)
     f = grid.f
     above = f > f.max() / 2
     start = int(np.argmax(above))
     stop = start + int(np.argmin(np.append(above[start:], False)))
-    # Beyond, the record counts up to where it is as high again.
+    # The pulse may end later, but before the signal is as high again: an echo may be higher.
     again = np.append(f[stop:] >= f[start:stop].max(initial=0.0), True)
     (pulse,) = grid.pulses(stop=stop + int(np.argmax(again)))
     return pulse
@@ -240,8 +236,6 @@ def speed(first: Pulse, second: Pulse, distance: float) -> float:
 class Measured:
     """Number with an error: the difference between ``value`` and a less accurate ``check``.
 
-    >>> Measured(2.5e300, 2.50003e300)
-    2.50000e+300 ± 3e+295
     >>> Measured(4859925635.0, 4.76e9)
     4.86e+09 ± 1e+08
     """
@@ -277,13 +271,12 @@ def derived(function: Callable[..., float], *numbers: Measured) -> Measured:
 
 
 def exponent(x: Sequence[Measured], y: Sequence[Measured]) -> Measured:
-    """Return the exponent p of y ~ x^p, from a least-squares fit of the logarithms.
-
-    Absolute errors are added, as errors of similar runs have a common sign and would cancel.
-    """
-    logs = np.log([number.value for number in x]) - np.log([number.value for number in x]).mean()
-    weights = logs / (logs @ logs)
-    p = float(weights @ np.log([number.value for number in y]))
+    """Return the exponent p of y ~ x^p, from a least-squares fit of the logarithms."""
+    log_x, log_y = (np.log([number.value for number in row]) for row in (x, y))
+    log_x -= log_x.mean()
+    weights = log_x / (log_x @ log_x)
+    p = float(weights @ log_y)
+    # Absolute errors are added: those of similar runs have a common sign and would cancel.
     off = [b.relative_error + abs(p) * a.relative_error for a, b in zip(x, y, strict=True)]
     return Measured(p, p + float(np.abs(weights) @ off))
 
@@ -295,10 +288,9 @@ def compared(
 
     rtol : least relative error, the tolerance of ``fine``, as two runs may agree by chance.
     """
-    less = numbers(coarse)
-
-    def checked(value: float, check: float) -> Measured:
-        least = rtol * abs(value)
-        return Measured(value, value + least if abs(check - value) < least else check)
-
-    return {name: checked(value, less[name]) for name, value in numbers(fine).items()}
+    measured, checks = {}, numbers(coarse)
+    for name, value in numbers(fine).items():
+        least, check = rtol * abs(value), checks[name]
+        check = value + least if abs(check - value) < least else check
+        measured[name] = Measured(value, check)
+    return measured

@@ -8,7 +8,6 @@ the difference, and at least the tolerance of the first run.
 from __future__ import annotations
 
 from collections.abc import Container, Iterator, Mapping
-from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from itertools import pairwise
@@ -92,16 +91,6 @@ class Track:
         """The first pulse; an echo from the wall does not count. Raises `MeasureError`."""
         return first_pulse(self.force)
 
-    def pulses(self, every: bool) -> list[Pulse]:
-        """Return every pulse, or the first one if the record has no whole pulse or not ``every``.
-
-        Raises `MeasureError` without a pulse.
-        """
-        with suppress(MeasureError):
-            if every:
-                return pulses(self.force)
-        return [self.first]
-
 
 def record(
     scene: Scene,
@@ -114,8 +103,8 @@ def record(
 ) -> Recording:
     """Simulate a scene and measure the pulses at its sensors.
 
-    rtol : relative tolerance, from 1e-13 to 1e-5. every : all pulses at each sensor, not only the
-    first. Other options are those of `validation.simulate`, which also says what is raised.
+    rtol : relative tolerance, from 1e-13 to 1e-5. every : True for all pulses at each sensor
+    instead of the first. Other options, and errors raised, are those of `validation.simulate`.
     Raises `SceneError` where rounding hides the motion at this tolerance.
     """
     rtol = between(rtol, "rtol", 1e-13, 1e-2 / LESS)
@@ -131,7 +120,7 @@ def record(
     neighbours = (two for two in pairwise(pairs) if two[0][0].kind == two[1][0].kind)
     return Recording(
         run,
-        tuple(reading for pair in pairs for reading in _readings(*pair, every, rtol)),
+        tuple(reading for pair in pairs for reading in _readings(pair, every, rtol)),
         tuple(_speed(*two, rtol) for two in neighbours),
     )
 
@@ -139,13 +128,13 @@ def record(
 def tracks(run: Run, every: int = 1) -> tuple[Track, ...]:
     """Return the dynamic forces at the sensors of a run, beads first.
 
-    A contact's place is midway between its beads, the wall's contact half a spacing behind the last
-    bead. If the motion of a run takes too much memory, the forces are splines through the samples,
-    or through every other sample (``every=2``).
+    If the motion of a run takes too much memory, the forces are splines through the samples, or
+    through every other sample (``every=2``).
     """
     scene = run.scene
     load = np.zeros(scene.size + 1)  # of the contacts on the left and right of the beads
     load[1 : scene.contact_count + 1] = scene.load
+    # A contact is midway between its beads, the wall's half a spacing behind the last bead.
     x = np.cumsum((0.0, *scene.spacings, *scene.spacings[-1:]))
 
     def track(kind: str, i: int, site: float, samples: Array, static: float) -> Track:
@@ -167,16 +156,17 @@ def tracks(run: Run, every: int = 1) -> tuple[Track, ...]:
     )
 
 
-def _readings(fine: Track, coarse: Track, every: bool, rtol: float) -> Iterator[Reading]:
-    """Measure the first pulse at a sensor, or every pulse that both runs have."""
+def _readings(pair: tuple[Track, Track], every: bool, rtol: float) -> Iterator[Reading]:
+    """Measure the first pulse at a sensor, or every pulse that is in both runs."""
+    fine, _ = pair
     reading = partial(Reading, fine.kind, (fine.number,), static=fine.static)
     try:
-        pairs = list(zip(fine.pulses(every), coarse.pulses(every), strict=False))
+        here, check = (pulses(track.force) if every else [track.first] for track in pair)
     except MeasureError as error:
         yield reading({}, missing=str(error))
         return
-    for number, pair in enumerate(pairs, start=1):
-        yield reading(compared(readings, *pair, rtol), pulse=number)
+    for place, both in enumerate(zip(here, check, strict=False), start=1):
+        yield reading(compared(readings, *both, rtol), pulse=place)
 
 
 def readings(pulse: Pulse) -> dict[str, float]:
@@ -185,10 +175,7 @@ def readings(pulse: Pulse) -> dict[str, float]:
 
 
 def _speed(start: tuple[Track, Track], end: tuple[Track, Track], rtol: float) -> Reading:
-    """Measure the speed of the first pulse between two sensors.
-
-    start, end : a sensor's track in the accurate and in the other run.
-    """
+    """Measure the speed of the first pulse between two sensors, each with a track in both runs."""
     (first, _), (second, _) = start, end
     reading = partial(Reading, first.kind, (first.number, second.number), static=first.static)
     try:
@@ -210,20 +197,16 @@ def _speed(start: tuple[Track, Track], end: tuple[Track, Track], rtol: float) ->
 
 @dataclass(frozen=True)
 class Train:
-    """A pulse at several beads or contacts: ``pulses`` of dynamic force by number, from 1.
-
-    spacing : distance of neighbours.
-    """
+    """A pulse at several beads or contacts: ``pulses`` of dynamic force by number, from 1."""
 
     pulses: Mapping[int, Pulse]
-    spacing: float
+    spacing: float  # of neighbours
 
     @classmethod
     def of(cls, run: Run, kind: str = "bead") -> Train:
         """Measure the pulses at the "bead" or "contact" sensors of a run, before the wall's echo.
 
-        The last contact sensor must be the wall's, and all spacings equal. Raises `MeasureError` if
-        a pulse is not wholly in the record.
+        The last contact sensor must be the wall's, and all spacings equal. Raises `MeasureError`.
         """
         end = float(run.time[np.argmax(run.contact_force[-1])])
         pulses = {}

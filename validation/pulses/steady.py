@@ -23,16 +23,23 @@ faster. So at the far stretch the highest pulse must have the force predicted fr
 
 from __future__ import annotations
 
+import json
 import math
-from collections.abc import Mapping, Sequence
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import scipy
 import sympy as sp
+from filelock import FileLock, Timeout
 
 from lwa.base.arrays import Array
-from lwa.base.exact import InputError
+from lwa.base.exact import InputError, exact
+from lwa.base.files import content
 from validation.lattice.run import IntegrationError, Run
 from validation.lattice.simulate import simulate
 from validation.pulses.pulse import Measured, MeasureError, leading_pulses
@@ -53,6 +60,10 @@ TOLERANCES = (1e-6, 1e-5)  # of the accurate run and of the one that gives its e
 FARTHER = 4  # times as far as the last place: where the pulse must still be the highest
 STEADY = 0.1  # largest difference from the force that the decay predicts there, over this force
 _WEAKEST = 1 / 50  # peak force of the slowest pulse that is awaited
+_MOST_BYTES = 10**9
+_FORMAT = {"format": "lwa sweep", "version": 3}  # changes with the definition of a quantity
+
+Key = tuple[sp.Rational, sp.Rational]  # k and ω of a point
 
 
 @dataclass(frozen=True)
@@ -82,16 +93,16 @@ def cells_apart(k: float, stretch: int) -> int:
 def point(k: sp.Rational, omega: sp.Rational, stretch: int, farther: float = FARTHER) -> Point:
     """Strike the chain and return the measured point; after a failure its ``missing`` says why.
 
-    stretch : see `cells_apart`. farther : distance up to which the pulse must be the highest, in
-    units of the last place's distance, 1.2 or more.
+    stretch : see `cells_apart`. farther : distance over which the pulse must lead, 1.2 or more, in
+    units of the last place's distance.
     """
     try:
-        return _point(k, omega, stretch, farther)
+        return _measured(k, omega, stretch, farther)
     except (InputError, IntegrationError, ArithmeticError) as error:
         return Point(k, omega, None, {}, str(error) or type(error).__name__)
 
 
-def _point(k: sp.Rational, omega: sp.Rational, stretch: int, farther: float) -> Point:
+def _measured(k: sp.Rational, omega: sp.Rational, stretch: int, farther: float) -> Point:
     chain = StruckDimer(float(k), float(omega), 2 * cells_apart(float(k), stretch))
     near = [n * chain.sites for n in range(1, PLACES + 1)]
     far = int(farther * near[-1])
@@ -126,20 +137,15 @@ def _point(k: sp.Rational, omega: sp.Rational, stretch: int, farther: float) -> 
 
 @dataclass(frozen=True)
 class StruckDimer:
-    """A dimer chain of masses 1, ω whose first bead is struck.
-
-    sites : number of sites from one place of measurement to the next.
-    """
+    """A dimer chain of masses 1, ω whose first bead is struck."""
 
     k: float
     omega: float
-    sites: int
+    sites: int  # from one place of measurement to the next
 
     def crossing(self, sites: int) -> float:
-        """Return the time in which the long-wave theory's pulse of force `_WEAKEST` passes sites.
-
-        The pulse's speed is 2 F^q/√((k+1)(1+ω)), F the peak contact force.
-        """
+        """Return the time in which the theory's pulse of force `_WEAKEST` passes sites."""
+        # The speed is 2 F^q/√((k+1)(1+ω)), F the peak contact force.
         weak = math.pow(_WEAKEST, (self.k - 1) / (2 * self.k))
         return sites * math.sqrt((self.k + 1) * (1 + self.omega)) / (2 * weak)
 
@@ -151,10 +157,10 @@ class StruckDimer:
         return simulate(struck((1.0, self.omega), beads, self.k, **options), rtol=rtol)
 
     def passages(self, run: Run) -> Array:
-        """Measure the leading pulse at the two contacts of each place of a `run`.
+        """Measure the leading pulse at the two contacts of each place of a `run`: (places, 2, 6).
 
-        Returns arrival, peak, FWHM of force and of compression, end, and the peak of the highest
-        pulse: (places, 2, 6). Raises `MeasureError` if a pulse does not pass all places in time.
+        Returns arrival, peak, FWHM of force and of compression, end, and the highest pulse's peak.
+        Raises `MeasureError` if a pulse does not pass all places in time.
         """
         shares = (0.5, 0.5**self.k)  # half of the force, and half of the compression
         passages, sensors = [], run.scene.contact_sensors
@@ -184,3 +190,78 @@ class StruckDimer:
         here = speed * peak[1:] ** q
         numbers = (width[1:] * here, strain_width[1:] * here, speed, fall / self.sites)
         return np.asarray(np.mean(numbers, axis=2))
+
+
+@dataclass(frozen=True)
+class PointFile:
+    """A file of points measured with the same ``stretch``; each finished point appends a line.
+
+    The first line holds the format and the settings, every other line a point:
+
+        {"k": "3/2", "omega": "1", "sites": [56, 64], "numbers": {"width": [1.4119284, 1.4119], …}}
+        {"k": "3/2", "omega": "1/9", "missing": "not steady: the pulse has not passed 320 sites …"}
+
+    A number is followed by the less accurate number that gives its error.
+    """
+
+    path: Path
+    stretch: int
+
+    @property
+    def header(self) -> bytes:
+        """The file's first line, with the format and the settings."""
+        return _line(_FORMAT | {"settings": {"stretch": self.stretch}})
+
+    @contextmanager
+    def locked(self) -> Iterator[None]:
+        """Keep other processes away from the file; raises `lwa.InputError` if one has it."""
+        lock = FileLock(f"{self.path}.lock", blocking=False)
+        try:
+            lock.acquire()
+        except Timeout:
+            raise InputError(f"file is {self.path}: another sweep writes it") from None
+        with lock:
+            try:
+                yield
+            finally:
+                Path(lock.lock_file).unlink()
+
+    def read(self) -> dict[Key, Point]:
+        """Read all points. A torn last line is dropped.
+
+        Raises `lwa.InputError` for another sweep's file, or one that is damaged.
+        """
+        text = content(self.path, _MOST_BYTES) if self.path.exists() else b""
+        if not self.header.startswith(text) and not text.startswith(self.header):
+            wanted = self.header.decode().strip()
+            raise InputError(f"{self.path} does not begin with {wanted}: choose another name")
+        end, points = text.rfind(b"\n") + 1, dict[Key, Point]()
+        for number, line in enumerate(text[:end].splitlines()[1:], start=2):
+            try:
+                point = _point(**json.loads(line))
+            except (ValueError, TypeError, KeyError, RecursionError):
+                raise InputError(f"{self.path} is damaged in line {number}") from None
+            points[point.k, point.omega] = point
+        if end < len(text):
+            os.truncate(self.path, end)
+        return points
+
+    def append(self, point: Point) -> None:
+        """Append a point, and return when the point is on the disk."""
+        numbers = {name: [n.value, n.check] for name, n in point.numbers.items()}
+        measured = {"sites": point.sites, "numbers": numbers}
+        rest = {"missing": point.missing} if point.missing else measured
+        line = _line({"k": str(point.k), "omega": str(point.omega)} | rest)
+        with self.path.open("ab") as stream:
+            stream.write(line if stream.tell() else self.header + line)
+            stream.flush()
+            os.fsync(stream.fileno())
+
+
+def _line(entry: dict[str, Any]) -> bytes:
+    return json.dumps(entry, ensure_ascii=False, allow_nan=False).encode() + b"\n"
+
+
+def _point(k: str, omega: str, sites: Any = None, numbers: Any = (), missing: Any = None) -> Point:
+    pairs = {name: Measured(*map(float, numbers[name])) for name in QUANTITIES if numbers}
+    return Point(exact(k, "k"), exact(omega, "omega"), sites and (*sites,), pairs, missing)

@@ -25,8 +25,7 @@ from lwa.base.exact import InputError, exact, shorten
 from lwa.base.progress import Progress
 from validation.lattice.threads import cluster, threads
 from validation.pictures import Curve, Map, Panel
-from validation.pulses.points import Key, PointFile
-from validation.pulses.steady import QUANTITIES, STRETCH, Point, point
+from validation.pulses.steady import QUANTITIES, STRETCH, Key, Point, PointFile, point
 from validation.report.command import option, study, whole
 from validation.report.files import output_file
 from validation.report.result import Report

@@ -41,7 +41,7 @@ from validation.waves.solver import ROUNDING, exact_wave
 
 _UNIFORM = np.arange(11, 41) / 10  # k of the exact waves; a spline errs by 1e-6 between them
 _DIMER = ("5/4", "3/2", "2", "5/2", "3", "4")  # k of the struck chains
-_DRAWS = 200  # of the coefficients of ln V, for the error of the free law
+_DRAWS = 1000  # of the coefficients of ln V, for the errors
 _STEPS = 60  # of ln F, at which the free law is integrated
 _HERTZ = 1.5
 _NEAR = 1.2  # times 80 sites, over which the pulse must lead
@@ -67,11 +67,16 @@ class Medium:
         ratio = speed_ratio(sp.Rational(cell.masses[-1] / cell.masses[0]))
         return cls(float(sum(cell.masses)) / cell.size, float(cell.spacing), *ratio)
 
-    def log_stiffness(self, slope: float, constant: float) -> float:
+    def log_stiffness(self, slope: Any, constant: Any) -> Array:
         """Return ln A of the power law with ln V = slope · ln F + constant."""
-        k = 1 / (1 - 2 * slope)
-        unit = math.log(2 * float(self.ratio(k)) / ((k + 1) * self.mass)) / 2
-        return 2 * k * (constant - math.log(self.spacing) - unit)
+        k = _exponent(slope)
+        unit = np.log(2 * self.ratio(k) / ((k + 1) * self.mass)) / 2
+        return np.asarray(2 * k * (constant - math.log(self.spacing) - unit))
+
+
+def _exponent(slope: Any) -> Any:
+    """Return k = 1/(1 - 2 d ln V/d ln F), at most 50."""
+    return 1 / (1 - 2 * np.minimum(slope, 0.49))
 
 
 @lru_cache(maxsize=16)
@@ -132,73 +137,57 @@ def fit_power(medium: Medium, force: Array, speed: Array, weight: Array | None =
     weight : (N,), see `weights`; by default all pulses weigh the same.
     """
     x, y = np.log(force), np.log(speed)
-    line, covariance, middle = _fit(x, y, 1, weight)
-
-    def law(line: Array) -> Array:
-        """Return k and ln A of ln V = slope · (ln F - middle) + constant."""
-        slope, constant = line
-        log_A = medium.log_stiffness(slope, constant - slope * middle)
-        return np.array((1 / (1 - 2 * slope), log_A))
-
-    k, log_A = law(line)
-    jacobian = scipy.optimize.approx_fprime(line, law)
-    spread = jacobian @ covariance @ jacobian.T
-    k_error, log_error = _interval(len(x), 1) * np.sqrt(np.diag(spread))
+    (slope, constant), middle = _fit(x, y, 1, weight)
+    k, log_A = _exponent(slope), medium.log_stiffness(slope, constant - slope * middle)
     sixth = (_HERTZ - 1) / (2 * _HERTZ)
-    (mean,), variance, _ = _fit(x, y - sixth * x, 0, weight)
-    hertz = medium.log_stiffness(sixth, mean)
-    hertz_error = 2 * _HERTZ * _interval(len(x), 1) * math.sqrt(variance[0, 0])
-    parabola, noise, _ = _fit(x, y, 2, weight)
-    bend_error = _interval(len(x), 2) * math.sqrt(noise[0, 0])
-    # A ~ R^{-k}.
+    ((hertz,), _), ((curvature, *_), _) = _fit(x, y - sixth * x, 0, weight), _fit(x, y, 2, weight)
     A, A_hertz = (
-        Measured(math.exp(log), math.exp(log + error + power * medium.ratio_error))
-        for log, error, power in ((log_A, log_error, k), (hertz, hertz_error, _HERTZ))
+        Measured(math.exp(log.value), math.exp(log.value + log.error + power * medium.ratio_error))
+        for log, power in (  # A ~ R^{-k}
+            (_interval(log_A), float(k[0])),
+            (_interval(medium.log_stiffness(sixth, hertz)), _HERTZ),
+        )
     )
-    return PowerFit(
-        Measured(k, k + k_error),
-        A,
-        float(spread[0, 1] / math.sqrt(spread[0, 0] * spread[1, 1])),
-        A_hertz,
-        Measured(parabola[0], parabola[0] + bend_error),
-    )
+    correlation = float(np.corrcoef(k, log_A)[0, 1])
+    return PowerFit(_interval(k), A, correlation, A_hertz, _interval(curvature))
 
 
-def _interval(pulses: int, degree: int) -> float:
-    """Return half of the 95 % interval of a coefficient over its standard deviation."""
-    return float(scipy.stats.t.ppf(0.975, pulses - degree - 1))
+def _fit(x: Array, y: Array, degree: int, weight: Array | None) -> tuple[Array, float]:
+    """Fit a polynomial in x - middle; return coefficients, highest first, and middle.
 
-
-def _fit(x: Array, y: Array, degree: int, weight: Array | None) -> tuple[Array, Array, float]:
-    """Fit a polynomial in x - middle; return coefficients, highest first, covariance and middle."""
+    The first column of the coefficients is the best fit, the others are draws from their
+    distribution, Student's t with the scatter of the residuals: (degree + 1, 1 + draws).
+    """
     w = np.ones_like(x) if weight is None else weight
     middle = float(np.average(x, weights=w**2))  # slope and constant are uncorrelated about it
-    found, covariance = np.polyfit(x - middle, y, degree, w=w, cov=True)
+    best, covariance = np.polyfit(x - middle, y, degree, w=w, cov=True)
     # On data without scatter the rounding of ln F, of ln V and of the fit is left.
     rounding = 2 * np.finfo(float).eps * (1 + np.abs(x) + np.abs(y))
     change = np.linalg.pinv(w[:, np.newaxis] * np.vander(x - middle, degree + 1)) * w
     largest = np.abs(change) @ rounding
-    return found, covariance + np.outer(largest, largest), middle
+    shape, freedom = covariance + np.outer(largest, largest), len(x) - degree - 1
+    noise = scipy.stats.multivariate_t(None, shape, freedom, allow_singular=True)
+    draws = noise.rvs(_DRAWS, random_state=0).reshape(_DRAWS, degree + 1)
+    return np.vstack((best, best + draws)).T, middle
+
+
+def _interval(values: Array) -> Measured:
+    """Return the first value with half of the 95 % interval of the others."""
+    error = np.ptp(np.quantile(values[1:], (0.025, 0.975))) / 2
+    return Measured(float(values[0]), float(values[0] + error))
 
 
 def free_law(
-    medium: Medium,
-    force: Array,
-    speed: Array,
-    degree: int = 3,
-    seed: int = 0,
-    weight: Array | None = None,
+    medium: Medium, force: Array, speed: Array, degree: int = 3, weight: Array | None = None
 ) -> tuple[Array, Array]:
     """Return the compression at each force, and the error of the force at this compression, (N,).
 
-    degree : degree of the polynomial ln V(ln F). seed : seed of the draws of its coefficients.
-    weight : (N,), see `weights`; by default all pulses weigh the same.
+    degree : degree of the polynomial ln V(ln F). weight : as in `fit_power`.
     """
     x = np.log(force)
-    best, covariance, middle = _fit(x, np.log(speed), degree, weight)
-    draws = np.random.default_rng(seed).multivariate_normal(best, covariance, _DRAWS)
+    rows, middle = _fit(x, np.log(speed), degree, weight)
     grid = np.linspace(x.max(), x.min(), _STEPS)
-    log_delta = _integrated(medium, np.vstack((best, draws)).T[::-1], grid, middle)
+    log_delta = _integrated(medium, rows[::-1], grid, middle)
     at = scipy.interpolate.CubicSpline(grid[::-1], log_delta[::-1])
     steepness = 1 / at(x, 1)[:, 0]  # d ln F/d ln δ
     spread = np.ptp(np.quantile(at(x), (0.025, 0.975), axis=1), axis=0) / 2
@@ -211,7 +200,7 @@ def _integrated(medium: Medium, rows: Array, grid: Array, middle: float) -> Arra
     def log_S(x: float) -> tuple[Array, Array]:
         """Return ln S and the local exponent k."""
         slope = polynomial.polyval(x - middle, polynomial.polyder(rows))
-        k = 1 / (1 - 2 * np.minimum(slope, 0.49))
+        k = _exponent(slope)
         log_V = polynomial.polyval(x - middle, rows)
         return 2 * (log_V - math.log(medium.spacing)) + np.log(medium.mass / medium.ratio(k)), k
 

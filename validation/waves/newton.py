@@ -13,9 +13,8 @@ a = e + o with e even and o odd, likewise F_a = E + O. With Δ = 1/m2 - 1/m1 the
 
     c² q² e = Σ (1 - cos q) E + Δ sin q O,      c² q² o = Δ sin q E + Σ (1 + cos q) O.     (*)
 
-(*) and F = a_+^k form a fixed-point problem with a smoothing operator, and Newton's method
-converges quadratically. Profiles are trigonometric polynomials of period 2L, |ξ| ≤ L (L is the half
-period), spectrally accurate.
+Profiles are trigonometric polynomials of period 2L, |ξ| ≤ L (L is the half period), spectrally
+accurate.
 
 **The tail.** At q → 0 the second line of (*) has a pole: forces that end leave o = ±T behind, with
 
@@ -81,9 +80,9 @@ def rise(strain: Array, k: float, p0: float) -> Array:
 def respond(
     force: NDArray[np.complex128], inverse: Pair, half_period: float
 ) -> NDArray[np.complex128]:
-    """Return the Fourier coefficients of c² a from those of F_a, by (*); the mean of a is set to 0.
+    """Return the coefficients of e^{iqξ}, q = 0 … πn/L, in c² a from those in F_a, by (*).
 
-    Coefficients are those of e^{iqξ}, q = 0 … πn/L; ``inverse`` is (1/m1, 1/m2).
+    inverse : (1/m1, 1/m2). The mean of a is set to 0.
     """
     q = np.pi * np.arange(len(force)) / half_period
     mirrored = inverse[0] * np.expm1(-1j * q) + inverse[1] * np.expm1(1j * q)
@@ -108,12 +107,12 @@ def circle(half_period: float, n: int) -> Array:
 class Problem:
     """The equations F_a = rise(a), with a from F_a by (*), on the grid points of a `circle`.
 
-    F_a(0) = 1 - p0^k fixes c². The unknowns are c² and the ``count`` forces F_a at the grid points
-    (for equal masses, where o = 0, at 0 … L only).
-
     masses, k : (m1, m2) and the exponent. half_period, points : L, by default `ample_half_period`,
     and the number of points on 0 … L, by default `enough`. p0 : background strain.
     """
+
+    # F_a(0) = 1 - p0^k fixes c². The unknowns are c² and the forces F_a at ``count`` grid points:
+    # at all of them, or for equal masses, where o = 0, at 0 … L.
 
     def __init__(
         self,
@@ -165,8 +164,6 @@ class Problem:
         """Solve for the wave near the forces ``z`` and ``c2``; return forces, c² and one number.
 
         unknown : "mass" or "kick" to impose T = 0; the number is then 1/m2 or the kick's size s.
-            By default T is free, and the number is c² again.
-
         Raises `numpy.linalg.LinAlgError` if Newton's method does not converge.
         """
         last = {"": (), "mass": (self.inverse[1],), "kick": (0.0,)}[unknown]
@@ -213,11 +210,9 @@ class Problem:
 
 @np.errstate(all="ignore")  # an overflow or c² < 0 does not converge
 def newton(change: Callable[[Array], Array], x: Array, sizes: Array) -> Array:
-    """Return a root near x, found by damped Newton steps.
+    """Return a root near x, found by damped Newton steps; `LinAlgError` without convergence.
 
     change : the full Newton step at x, to be subtracted. sizes : typical sizes of the unknowns.
-
-    Raises `numpy.linalg.LinAlgError` if the iteration does not converge.
     """
     before = math.inf
     for _ in range(MOST_STEPS):
@@ -243,10 +238,8 @@ def continued(
     """Continue a solution from one value of a parameter to another, in adaptive steps.
 
     begin, end : the parameter's values. step : length of the first step.
-    solve : returns the solution at a value; its second argument are the last one or two values
-        with their solutions, the latest last. `lwa.InputError` makes the step shorter.
-
-    Raises the `lwa.InputError` of a step that is a hundred times shorter than the first.
+    solve : returns the solution at a value, given the last one or two values with their solutions;
+        its `lwa.InputError` halves the step, and is raised at a hundredth of the first step.
     """
     path, size = [(begin, solution)], step
     while path[-1][0] != end:

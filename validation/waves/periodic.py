@@ -134,10 +134,8 @@ class Orbit:
 
     @property
     def residual(self) -> float:
-        """Largest force by which the orbit violates the equations of motion, divided by F0.
-
-        The times are between those at which the equations were solved.
-        """
+        """Largest force by which the orbit violates the equations of motion, divided by F0."""
+        # Between the times at which the equations were solved.
         phase = np.linspace(0, np.pi, 8 * self.coefficients.shape[1] + 3)
         fault = _fault(self.chain, self.frequency, self.coefficients, phase)
         return float(np.abs(fault).max()) / self.chain.load
@@ -195,15 +193,11 @@ def orbit(
 
 
 def continued(begin: Orbit, frequency: float) -> Orbit:
-    """Return the orbit with another frequency, continued from ``begin`` in adaptive steps.
-
-    Each step starts from an extrapolation of the two orbits before. Raises `NoOrbit` if Newton's
-    method fails at the smallest step.
-    """
+    """Continue an orbit to another frequency; raises `NoOrbit` if Newton's method fails."""
 
     def at(omega: float, path: Sequence[tuple[float, Orbit]]) -> Orbit:
         here, last = path[-1]
-        ahead = last.coefficients
+        ahead = last.coefficients  # extrapolated from the two orbits before
         if len(path) > 1:
             before, older = path[0]
             ahead = ahead + (omega - here) / (here - before) * (ahead - older.coefficients)

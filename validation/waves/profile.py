@@ -31,7 +31,6 @@ from validation.waves import newton
 
 TOLERANCE = 1e-9  # tail and residual of a solitary wave over its peak strain, at most
 OUTSIDE = 0.6  # share of the half period at which a dimer's pulse has ended and its tail begins
-_ROW = 16  # Fourier coefficients that are summed up together
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,18 +80,15 @@ class LatticeWave(ArrayValue, Pictured):
         return self.masses[1] / self.masses[0]
 
     def peak(self, name: str) -> tuple[float, float]:
-        """Return the place ξ and the value of the maximum of a quantity.
+        """Return place ξ and value of the maximum of "strain", "force" or "velocity".
 
-        name : "strain" or "force" of contact 0, or "velocity" of bead 0.
+        Strain and force are those of contact 0, the velocity is that of bead 0.
         """
         xi = np.linspace(-self.half_period, self.half_period, 4 * self.samples + 1)
         return summit(self._quantity(name), xi)
 
     def fwhm(self, name: str = "strain") -> float:
-        """Full width at half maximum of a quantity's highest hump, a length; name as in `peak`.
-
-        Raises `MeasureError` if the quantity does not fall to half its peak.
-        """
+        """Full width at half maximum of a quantity's highest hump, a length; name as in `peak`."""
         quantity, (top, peak) = self._quantity(name), self.peak(name)
 
         def above(r: Any, side: int) -> Array:
@@ -125,8 +121,8 @@ class LatticeWave(ArrayValue, Pictured):
     def launched(self, start: int, sites: int, **rest: Any) -> Scene:
         """Return a scene of a chain that carries the wave, centered at bead ``start`` at time 0.
 
-        sites : distance that the chain lets the wave travel. rest : further fields of the scene; by
-        default the contacts halfway and at the end of this distance have sensors.
+        sites : distance to travel, with contact sensors halfway and at the end unless ``rest``,
+        further fields of the scene, has others.
         """
         bead = np.arange(2 * start + sites) - start
         at, even = bead[:-1] + 0.5, bead % 2 == 0
@@ -240,11 +236,8 @@ class ExactWave(LatticeWave):
 
     def _sum(self, xi: ArrayLike, even: Array, odd: Array) -> Array:
         """Fourier sum Σ even_j cos(q_j ξ) + odd_j sin(q_j ξ)."""
-        rows = np.append(even - 1j * odd, np.zeros(-self.samples % _ROW)).reshape(-1, _ROW)
-        q = np.pi / self.half_period * np.arange(rows.size)
-        # e^{iqξ} of every q as a product of two: of the first 16 q and of every 16th q.
-        first, every = (np.exp(1j * np.multiply.outer(xi, part)) for part in (q[:_ROW], q[::_ROW]))
-        return np.asarray(((first @ rows.T) * every).real.sum(axis=-1))
+        phase = np.multiply.outer(xi, np.pi / self.half_period * np.arange(self.samples))
+        return np.asarray(np.cos(phase) @ even + np.sin(phase) @ odd)
 
     def _ended(self, xi: ArrayLike) -> NDArray[np.bool_]:
         """True where |ξ| > L for a solitary wave, which is 0 there instead of periodic."""

@@ -16,9 +16,9 @@ each of them.
 
 A struck chain carries no nanopteron, as its light beads are at rest before the pulse; but its
 pulse, made symmetric, is near a nanopteron (`validation.waves.start`). Newton's method starts from
-this pulse, or from the theory's wave if it does not converge from the pulse, at several L unless L
-is given. Of the waves found on a rough grid the solution is the wave whose strain differs least
-from the struck chain's; the remaining difference counts as the solution's error (`measured`).
+this pulse, or else from the theory's wave, at several L unless L is given. Of the waves found on a
+rough grid the solution is the wave whose strain differs least from the struck chain's; the
+remaining difference counts as the solution's error (`measured`).
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ from validation.scenes.checks import SceneError, between, items, positive
 from validation.waves import newton
 from validation.waves.newton import Pair
 from validation.waves.profile import ExactWave, LatticeWave, at_unit_force
-from validation.waves.start import Start, StruckPulse, initial, struck_pulse, under_load
+from validation.waves.start import Start, StruckPulse, initial, struck_pulse
 
 FALLEN = 38.0  # e-foldings of a wave on a background from its flanks to L
 SHALLOWEST = 1e-4  # rise of a wave on a background over the peak strain, at least
@@ -122,10 +122,7 @@ def solve(
 
 
 def solved(problem: newton.Problem, start: Start, unknown: str = "") -> tuple[ExactWave, float]:
-    """Solve a problem from a start; return the wave and the last number of `Problem.wave`.
-
-    Raises `NoWave` if Newton's method does not converge.
-    """
+    """Solve a problem from a start; return the wave and the last number of `Problem.wave`."""
     masses = problem.masses
     try:
         forces, c2, last = problem.wave(*start, unknown)
@@ -138,17 +135,15 @@ def solved(problem: newton.Problem, start: Start, unknown: str = "") -> tuple[Ex
 
 
 def measured(wave: ExactWave) -> dict[str, Measured]:
-    """Return c², c and tail, and by quantity the amplitude and FWHM of a wave, with errors.
-
-    The relative error of a solitary wave is the sum of residual, tail and `ROUNDING`. The error of
-    a nanopteron is the difference from the struck chain's symmetric pulse, for the FWHM also from
-    the recorded pulse, so that nanopterons of all half periods agree within their errors.
-    """
+    """Return c², c and tail, and by quantity the amplitude and FWHM of a wave, with errors."""
     values = _numbers(wave)
     if wave.solitary:
-        least = ROUNDING / (1 - wave.background) + wave.residual + wave.tail
-        errors = {name: least * value for name, value in values.items()} | {"tail": least}
-        return {name: Measured(value, value + errors[name]) for name, value in values.items()}
+        error = ROUNDING / (1 - wave.background) + wave.residual + wave.tail
+        checks = {name: value * (1 + error) for name, value in values.items()}
+        checks["tail"] = wave.tail + error
+        return {name: Measured(value, checks[name]) for name, value in values.items()}
+    # The error of a nanopteron is the difference from the struck chain's symmetric pulse, for the
+    # FWHM also from the recorded pulse: so nanopterons of all half periods agree within it.
     here, pulse = _numbers(wave.scaled(force=1)), struck_pulse(wave.k, wave.omega)
     there = _numbers(pulse, wave.masses[0])
     off = {name: abs(there[name] / here[name] - 1) for name in here}
@@ -191,7 +186,8 @@ def _pressed(k: float, half_period: float | None, p0: float) -> tuple[ExactWave,
     pair = 1.0, 1.0
     theory, load = background_wave(Cell((1,), spacing=1), law=Power(k)).numeric(), (p0, 1 - p0)
     # The wave ends as e^{-κ|ξ|} with (c/c0)² = (sinh(κ/2)/(κ/2))².
-    fast = math.sqrt(theory.speed_squared(*load) / p0 ** (k - 1))
+    speed_squared = float(theory.speed_squared(*load))
+    fast = math.sqrt(speed_squared / p0 ** (k - 1))
     half_kappa = scipy.optimize.brentq(
         lambda x: math.log(math.sinh(x) / x / fast), 1e-5, 300, xtol=1e-12
     )
@@ -205,7 +201,7 @@ def _pressed(k: float, half_period: float | None, p0: float) -> tuple[ExactWave,
         lower = _uniform(k, None, max(0.0, p0 - LESS))
         start = lower.force(problem.xi), lower.c2
     else:
-        start = under_load(theory, problem)
+        start = newton.rise(theory.profile(problem.xi, *load), k, p0), k * speed_squared
     return solved(problem, start)[0], ample
 
 
@@ -218,7 +214,10 @@ def _dimer(pair: Pair, k: float, half_period: float | None, progress: Progress[A
         if wave.solitary:
             return wave
         waves.append(wave)
-    pulse = _struck(pair, k)
+    try:
+        pulse = struck_pulse(k, pair[1])
+    except (InputError, IntegrationError) as error:
+        raise NoWave("no pulse of a struck chain", pair, k, f": {error}") from None
 
     def found(start: LatticeWave | None) -> list[ExactWave]:
         """Return the waves that a start leads to at the half periods, on rough grids."""
@@ -243,18 +242,10 @@ def _rough(pair: Pair, k: float, half_period: float) -> int:
     return max(newton.FEWEST, int(ROUGH * newton.enough(pair, k, half_period)))
 
 
-def _struck(pair: Pair, k: float) -> StruckPulse:
-    """Return the pulse of a struck chain; raises `NoWave` if the pulse does not arrive."""
-    try:
-        return struck_pulse(k, pair[1])
-    except (InputError, IntegrationError) as error:
-        raise NoWave("no pulse of a struck chain", pair, k, f": {error}") from None
-
-
 def followed(begin: ExactWave, k: float) -> ExactWave:
-    """Return the wave at another k on the branch of ``begin``, reached in small steps of k.
+    """Continue a wave to another k at the same masses and half period.
 
-    Masses and half period stay the same. Raises `NoWave` if the branch turns back or is lost.
+    Raises `NoWave` if the branch of waves turns back or is lost.
     """
     masses, L = begin.masses, begin.half_period
     points = _rough(masses, max(begin.k, k), L)

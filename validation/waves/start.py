@@ -19,7 +19,6 @@ import scipy
 from numpy.typing import ArrayLike
 
 from lwa.base.arrays import Array
-from lwa.wave.quadrature import NumericBackground
 from validation.pulses.pulse import leading_pulses
 from validation.pulses.steady import PLACES, STRETCH, StruckDimer, cells_apart
 from validation.waves import newton
@@ -55,18 +54,10 @@ def _long_wave(problem: newton.Problem) -> Start:
     return force, 4 / ((k + 1) * (m1 + m2))
 
 
-def under_load(theory: NumericBackground, problem: newton.Problem) -> Start:
-    """Return the theory's wave of equal masses on a background strain p0, with peak strain 1."""
-    k, p0 = problem.k, problem.p0
-    force = newton.rise(theory.profile(problem.xi, p0, 1 - p0), k, p0)
-    return force, float(k * theory.speed_squared(p0, 1 - p0))
-
-
 @dataclass(frozen=True, eq=False)
 class StruckPulse(LatticeWave):
     """Symmetric part of a struck chain's pulse, scaled to contact force 1; masses 1, ω.
 
-    half_period : `validation.waves.newton.ample_half_period`.
     xi, strains : ξ and the symmetric part of the strain, on a grid beyond the half period.
     widths : FWHM of force and strain at a contact, means over the two recorded contacts.
     """
