@@ -49,8 +49,6 @@ MOST_PARTICLES = 1000
 class Cell(Value):
     """A periodic cell of P particles.
 
-    Parameters
-    ----------
     masses : P numbers or symbols, positive.
     stiffnesses : P numbers or symbols, the A_i of F = A_i δ^k; all 1 when not given.
     spacing : distance D of neighbouring particles at rest (the same for all contacts).
@@ -89,10 +87,8 @@ class Cell(Value):
     def of_spheres(cls, spheres: Sequence[Sphere]) -> Cell:
         """The cell of spheres in Hertz contact (k = 3/2), in the units of the spheres, such as SI.
 
-        The spacing of unequal spheres is the mean distance of neighbours' centers, Σ 2 R_i / P.
-        The theory's x is the number of sites times D. With this D the cell is as long as its
-        spheres, so that widths and speeds are those in space, and D u_x is the mean compression of
-        the contacts.
+        The spacing is the mean distance of neighbours' centers, Σ 2 R_i / P. Then widths and speeds
+        are those in space, and D u_x is the mean compression of the contacts.
 
         >>> from lwa.spheres.hertz import Material
         >>> ball = Sphere("m", "R", Material(E="193e9", nu="0.3"))
@@ -118,8 +114,7 @@ class Cell(Value):
     def at(self, **values: Any) -> Cell:
         """The cell with numbers (or other symbols) for the named symbols; see `substitution`.
 
-        >>> m1, m2 = sp.symbols("m1 m2", positive=True)
-        >>> Cell([m1, m1, m2]).at(omega="1/3").masses
+        >>> Cell(["m1", "m1", "m2"]).at(omega="1/3").masses
         (m1, m1, m1/3)
         """
         return self.replaced(substitution(values, self))
@@ -149,7 +144,7 @@ class Cell(Value):
 
     def compliances(self, k: Any = k) -> tuple[sp.Expr, ...]:
         """The A_i^{-1/k}, the strains of the contacts up to a common factor."""
-        k = exponent(k)
+        k = exponent(k)  # one force A_i δ_i^k for all contacts
         return tuple(power(A, -1 / k) for A in self.stiffnesses)
 
     def shares(self, k: Any = k) -> tuple[sp.Expr, ...]:
@@ -164,13 +159,12 @@ class Cell(Value):
         """The stiffness A_eff of P equal contacts with the same response as the cell."""
         if len(set(self.stiffnesses)) == 1:
             return self.stiffnesses[0]
+        # A_eff^{-1/k} is the mean of the A_i^{-1/k}: compressions add.
         return power(sp.Add(*self.compliances(k)) / self.size, -exponent(k))
 
     def time_scale(self, k: Any = k) -> sp.Expr:
-        """The ratio τ/t = √(P k A_eff D^{k+1} / M) of the time in u_ττ = u_x^{k-1} u_xx + ….
-
-        For the paper's dimer it is √(2 k D^{k+1} / (m1 + m2)).
-        """
+        """The ratio τ/t = √(P k A_eff D^{k+1} / M) of the time in u_ττ = u_x^{k-1} u_xx + …."""
+        # Force A_eff (D u_x)^k on the density M/(P D): M/(P D) u_tt = k A_eff D^k u_x^{k-1} u_xx
         k = exponent(k)
         return sp.sqrt(self.size * k * self.stiffness(k) * power(self.spacing, k + 1) / self.mass)
 
@@ -180,10 +174,7 @@ def Dimer(
 ) -> Cell:
     """The paper's N:1 dimer: N particles m1 (u is the field of the first) and one m2.
 
-    >>> m1, m2 = sp.symbols("m1 m2", positive=True)
-    >>> Dimer(m1, m2).fractions
-    (m1/(m1 + m2), m2/(m1 + m2))
-    >>> Dimer(m1, m2, N=2).masses
+    >>> Dimer("m1", "m2", N=2).masses
     (m1, m1, m2)
     """
     masses = (m1,) * integer(N, "N", 1, MOST_PARTICLES) + (m2,)
@@ -193,11 +184,7 @@ def Dimer(
 def exponent(value: Any, cell: Cell | None = None) -> sp.Expr:
     """Read the exponent k of F = A δ^k exactly, for the chain of a cell.
 
-    Raises `lwa.InputError` for numbers outside of `EXPONENTS`, and for a name that means something
-    else.
-
-    >>> exponent(1.5)
-    3/2
+    Raises `lwa.InputError` for numbers outside of `EXPONENTS`, and for a name with another meaning.
     """
     least, largest = EXPONENTS
     result = check_names(exact(value, "k"), "k", k.name)
@@ -215,8 +202,7 @@ def substitution(
 ) -> dict[sp.Symbol, sp.Expr]:
     """Map symbols of a cell, of its exponent and more to the values given for their names.
 
-    Unless a symbol has this name, ``omega`` is the ratio m2/m1 of the cell's second mass to its
-    first: m2 becomes ω m1, or m1 becomes m2/ω if a value is given for m2.
+    Unless a symbol has this name, ``omega`` is the ratio m2/m1 of the cell's two masses.
 
     Raises `lwa.InputError` for a name that does not occur, and a value of the cell or the exponent
     that is not positive.
@@ -238,6 +224,7 @@ def substitution(
     if len(masses) != 2:
         raise InputError(f"omega is m2/m1 of a cell with two masses; this one has {len(masses)}")
     ratio = positive(omega, "omega")
+    # m2 becomes ω m1 or, where m2 is no free symbol, m1 becomes m2/ω.
     for mass, other, factor in ((masses[1], masses[0], ratio), (*masses, 1 / ratio)):
         if mass.is_Symbol and mass not in new and mass not in other.free_symbols:
             return new | {mass: factor * other.xreplace(new)}
@@ -247,21 +234,20 @@ def substitution(
 def check_distinct(symbols: Sequence[sp.Symbol]) -> None:
     """Raise `lwa.InputError` for two symbols of one name with different assumptions."""
     names = [s.name for s in symbols]
-    twice = {name for name in names if names.count(name) > 1}
-    if twice:
+    if twice := {name for name in names if names.count(name) > 1}:
         raise InputError(f"{min(twice)!r} names two symbols, with different assumptions: use one")
 
 
 def check_names(
-    value: sp.Expr, field: str, own: str = "", taken: Mapping[str, str] = RESERVED
+    value: sp.Expr, field: str, allowed: str = "", taken: Mapping[str, str] = RESERVED
 ) -> sp.Expr:
     """Return the value; raise `lwa.InputError` if a symbol in it has a name of another meaning.
 
-    field : name of the value in messages. own : name that a symbol in the value may have.
+    field : name of the value in messages. allowed : reserved name that a symbol may have.
     taken : mapping from each reserved name to its meaning.
     """
     for name in sorted(s.name for s in value.free_symbols):
-        if name in taken and name != own:
+        if name in taken and name != allowed:
             raise InputError(f"{field} {name!r}: the name means {taken[name]} here")
     return value
 

@@ -150,7 +150,9 @@ def homogenize(
     parameters = len(ring.names) - max(len(ring.variables) - 1, 0)  # the φ_n grow as powers of k
     _affordable(order, parameters, closure)
     ring.writable(order)
-    return Theory(solve(model, order, closure, field, iter if order < SLOW_ORDER else shown))
+    return Theory(
+        solve(model, order, closure, field, progress=iter if order < SLOW_ORDER else shown)
+    )
 
 
 def _model(cell: Cell, k: Any, law: ContactLaw | None, branch: str, order: int) -> Model:

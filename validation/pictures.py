@@ -18,7 +18,6 @@ from lwa.base.exact import InputError
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.axis import Axis
     from matplotlib.figure import Figure
 
 SUFFIXES = (".pdf", ".png", ".svg")
@@ -146,53 +145,33 @@ def figure(panels: Sequence[Panel]) -> Figure:
 
 def draw(plot: Axes, panel: Panel) -> None:
     """Draw one panel into Matplotlib's axes."""
-    plot.set(xlabel=panel.x, ylabel=panel.y, title=panel.title)
-    for axis in ("x", "y"):
-        if axis in panel.scale:
-            plot.set(**{f"{axis}scale": "log"})
-        else:  # 1, 2, … times a power of ten
-            getattr(plot, f"{axis}axis").get_major_formatter().set_powerlimits((-3, 5))
+    scales = {f"{axis}scale": "log" for axis in panel.scale}
+    plot.set(xlabel=panel.x, ylabel=panel.y, title=panel.title, **scales)
     if panel.map is not None:
         _draw_map(plot, panel.map, panel.scale)
     for i, curve in enumerate(panel.curves):
         x, y = np.asarray(curve.x, float), np.asarray(curve.y, float)
         error = None if curve.error is None else np.asarray(curve.error, float)
         default = _STYLES[i % len(_STYLES)]
-        style = curve.style or (default if len(x) <= _FEW else default[1:])
-        colour = None if any(letter in style for letter in "Ckr") else f"C{i}"
-        label = curve.label or None
+        style = curve.style or f"C{i}{default if len(x) <= _FEW else default[1:]}"
         # hollow marks show the curves below
-        plot.errorbar(x, y, error, fmt=style, color=colour, ms=4, mfc="none", label=label)
-    for axis in panel.scale:
-        _label_plainly(getattr(plot, f"{axis}axis"))
+        plot.errorbar(x, y, error, fmt=style, ms=4, mfc="none", label=curve.label or None)
     if any(curve.label for curve in panel.curves):
         above = {"loc": "lower left", "bbox_to_anchor": (0, 1), "ncols": _ACROSS, "frameon": False}
         plot.legend(fontsize="small", **(above if panel.legend_above else {"loc": "best"}))
-
-
-def _label_plainly(axis: Axis) -> None:
-    """Set plain tick labels, not powers of ten, on a logarithmic axis of few decades."""
-    from matplotlib.ticker import LogLocator, NullFormatter  # loaded as late as Matplotlib
-
-    low, high = sorted(axis.get_view_interval())
-    if low >= 1e-3 and high <= 1e5 and high < 1e3 * low:
-        subs = (1, 1.5, 2, 3, 4, 6, 8) if high < 10 * low else (1, 2, 5)
-        axis.set_major_locator(LogLocator(subs=subs))
-        axis.set_major_formatter("{x:g}")
-        axis.set_minor_formatter(NullFormatter())
 
 
 def _draw_map(plot: Axes, colours: Map, scale: str) -> None:
     """Draw a map into Matplotlib's axes; ``scale`` names the logarithmic axes."""
     from matplotlib.colors import LogNorm, Normalize  # loaded as late as Matplotlib
 
-    values = np.ma.masked_invalid(colours.values)
     norm = (LogNorm if colours.scale else Normalize)(colours.low, colours.high)
-    below = colours.low is not None and bool(np.any(values < colours.low))
-    above = colours.high is not None and bool(np.any(values > colours.high))
+    below = colours.low is not None and bool(np.nanmin(colours.values) < colours.low)
+    above = colours.high is not None and bool(np.nanmax(colours.values) > colours.high)
     extend = ("neither", "min", "max", "both")[below + 2 * above]
     x, y = _borders(colours.x, "x" in scale), _borders(colours.y, "y" in scale)
     # Pixels in a PDF, too: viewers are slow with one rectangle for each value.
+    values = np.ma.masked_invalid(colours.values)
     image = plot.pcolormesh(x, y, values, norm=norm, cmap=colours.colours, rasterized=True)
     plot.figure.colorbar(image, ax=plot, label=colours.label, extend=extend)
     plot.patch.set(facecolor="w", edgecolor="0.4", hatch="xxx")  # unlike any colour of a map

@@ -44,11 +44,6 @@ class Partition(Value):
         return tuple(dict.fromkeys(self.weights))
 
     @cached_property
-    def sum(self) -> sp.Expr:
-        """The sum Σ w_i of the weights."""
-        return sp.Add(*self.weights)
-
-    @cached_property
     def values(self) -> tuple[sp.Expr, ...] | None:
         """The fraction f_i of each distinct weight if all are rational, else None."""
         first = self.distinct[0]
@@ -84,7 +79,7 @@ class CoefficientRing(Value):
     k : the exponent, a number, a variable, or 1 + φ_2.
     variables : k unless it is rational, or the symbols of φ_2, φ_3, ….
     masses, contacts : the mass fractions m̂_i and the shares C_i of the contacts.
-    constants : further expressions, such as the α_n of `lwa.equation.fields`.
+    constants : further expressions, such as the α_n of `lwa.closure.fields`.
     """
 
     k: sp.Expr

@@ -7,13 +7,12 @@ equations of motion (`lwa.closure.slaving`). Both solve `lwa.closure.solution` i
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
 import sympy as sp
-from flint import fmpq_mpoly
 
 from lwa.algebra.jets import Monomial
 from lwa.algebra.model import Model
@@ -23,6 +22,7 @@ from lwa.base.frozen import Value
 from lwa.base.progress import Progress
 from lwa.cell import Cell
 from lwa.closure.ansatz import linear
+from lwa.closure.fields import in_field
 from lwa.closure.slaving import full
 from lwa.closure.solution import Solution
 from lwa.law import ContactLaw
@@ -32,9 +32,11 @@ CLOSURES = ("linear", "full")
 FIELDS = ("first", "center")
 
 
-@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+@dataclass(frozen=True, repr=False, kw_only=True)
 class Closure(Solution):
     """The solved consistency condition of a model, as polynomials.
+
+    changes : the (n, α_n) of each change of the field; see `in_field`.
 
     Equality, hash and pickle go by model, order, closure and field; a copy is derived again.
     """
@@ -43,37 +45,27 @@ class Closure(Solution):
     order: int
     name: str
     field: str
+    changes: tuple[tuple[tuple[int, sp.Expr], ...], ...] = ()
 
     @property
     def ratio(self) -> sp.Expr:
-        """λ = w/u at order D^0: 1 on the acoustic branch, -m1/m2 on the optical one.
-
-        With s the force that w = λu puts on a contact, the equations of motion are m1 ü = 2s and
-        m2 λ ü = -2s. They agree where s = 0, that is w = u, or where m2 λ + m1 = 0.
-        """
+        """λ = w/u at order D^0: 1 on the acoustic branch, -m1/m2 on the optical one."""
+        # With s the force that w = λu puts on a contact, the equations of motion are m1 ü = 2s and
+        # m2 λ ü = -2s. They agree where s = 0, that is w = u, or where m2 λ + m1 = 0.
         if self.model.branch == "acoustic":
             return sp.S.One
         m1, m2 = self.model.cell.masses
         return -sp.cancel(m1 / m2)
 
-    @property
-    def key(self) -> tuple[Any, ...]:
-        """The arguments of `solve`, by which closures are compared."""
-        return (self.model, self.order, self.name, self.field)
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, Closure) and self.key == other.key
-
-    def __hash__(self) -> int:
-        return hash(self.key)
-
     def __reduce__(self) -> tuple[Callable[..., Closure], tuple[Any, ...]]:
-        return solve, self.key
+        model = replace(self.model, constants=())
+        return solve, (model, self.order, self.name, self.field, self.changes)
 
     def __repr__(self) -> str:
+        changes = f", changes={self.changes}" if self.changes else ""
         return (
             f"Closure({self.model.cell!r}, order={self.order}, k={self.model.k}, "
-            f"closure={self.name!r}, branch={self.model.branch!r}, field={self.field!r})"
+            f"closure={self.name!r}, branch={self.model.branch!r}, field={self.field!r}{changes})"
         )
 
     def latex_rows(self, most: int | None = None) -> list[str]:
@@ -102,19 +94,18 @@ class Closure(Solution):
         }
 
     @property
-    def fields(self) -> tuple[tuple[fmpq_mpoly, ...], ...]:
-        """Polynomials S_0, S_1, … of each field w_i = φ + D φ_x Σ D^n S_n (acoustic branch)."""
-        if self.slaved:
-            return self.slaved
-        r, zero = self.algebra.r, self.algebra.zero
-        first = tuple(zero for _ in range(self.order))
-        second = tuple(b * r[n] for n, b in enumerate(self.ansatz[1:]))
-        return (first, second) if self.ansatz else (first,)
-
-    @property
     def symbols(self) -> tuple[sp.Symbol, ...]:
-        """Free symbols of the results besides those of the cell and the exponent: none here."""
-        return ()
+        """Symbols of the α_n that are not those of the cell or the law."""
+        values = (alpha for alphas in self.changes for _, alpha in alphas)
+        symbols = set().union(*(alpha.free_symbols for alpha in values))
+        return tuple(sorted(symbols - {*self.model.cell.symbols, *self.model.law.symbols}, key=str))
+
+    def in_field(self, alphas: Mapping[int, sp.Expr]) -> Closure:
+        """The closure for the field φ = u + Σ α_n D^n ∂_x^n u, without ansatz."""
+        model, solution = in_field(self, self.model, self.order, alphas)
+        return replace(
+            self, **vars(solution), model=model, changes=(*self.changes, tuple(alphas.items()))
+        )
 
     def at(self, **values: Any) -> Closure:
         """The closure for these values of the named symbols; see `lwa.cell.substitution`."""
@@ -124,8 +115,10 @@ class Closure(Solution):
         self, new: Mapping[sp.Symbol, sp.Expr] | None = None, order: int | None = None
     ) -> Closure:
         """Derive again with these values of the symbols, or to this order."""
-        order = order or self.order
-        return solve(self.model.replaced(new or {}, order), order, self.name, self.field)
+        new, order = new or {}, order or self.order
+        model = replace(self.model, constants=()).replaced(new, order)
+        changes = [[(n, alpha.xreplace(new)) for n, alpha in alphas] for alphas in self.changes]
+        return solve(model, order, self.name, self.field, changes)
 
 
 @dataclass(frozen=True)
@@ -151,14 +144,24 @@ class OfClosure(Value):
 
 
 def solve(
-    model: Model, order: int, closure: str, field: str, progress: Progress[int] = iter
+    model: Model,
+    order: int,
+    closure: str,
+    field: str,
+    changes: Iterable[Iterable[tuple[int, sp.Expr]]] = (),
+    progress: Progress[int] = iter,
 ) -> Closure:
     """Solve the consistency condition by the named closure, for the named field.
+
+    changes : the (n, α_n) of changes of the field, applied in turn.
 
     Raises `lwa.InputError` for the combinations that have no solution.
     """
     solution = _solution(model, order, closure, field, progress)
-    return Closure(**vars(solution), model=model, order=order, name=closure, field=field)
+    solved = Closure(**vars(solution), model=model, order=order, name=closure, field=field)
+    for alphas in changes:
+        solved = solved.in_field(dict(alphas))
+    return solved
 
 
 def _solution(

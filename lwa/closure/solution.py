@@ -10,14 +10,14 @@ force of contact i divided by A_eff D^k. The equations of motion of the P partic
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from flint import fmpq_mpoly
 
 from lwa.algebra.jets import JetAlgebra
 
 
-@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+@dataclass(frozen=True, repr=False, kw_only=True)
 class Solution:
     """The result of a closure, as polynomials.
 
@@ -25,12 +25,21 @@ class Solution:
         Optical: u_ττ = -u^k Σ_{n≥0} D^n E_n, E_0 = 1, in its own time unit.
     ansatz : b_n, n = 0 … order: the second particle's field is λ Σ b_n D^n ∂_x^n φ in the linear
         closure, and has this linear part in the full one (polynomials in the parameters).
-    slaved : S_0 … S_{order-1} of each field w_i = φ + D φ_x Σ D^n S_n (full closure only).
+    slaved : `fields` of the full closure, and in a changed field; else ().
     defect : E_n from the first equation of motion minus E_n from the second, for the same ansatz.
     """
 
-    algebra: JetAlgebra
-    acceleration: tuple[fmpq_mpoly, ...]
-    ansatz: tuple[fmpq_mpoly, ...] = ()
-    slaved: tuple[tuple[fmpq_mpoly, ...], ...] = ()
-    defect: tuple[fmpq_mpoly, ...] = ()
+    algebra: JetAlgebra = field(compare=False)
+    acceleration: tuple[fmpq_mpoly, ...] = field(compare=False)
+    ansatz: tuple[fmpq_mpoly, ...] = field(compare=False, default=())
+    slaved: tuple[tuple[fmpq_mpoly, ...], ...] = field(compare=False, default=())
+    defect: tuple[fmpq_mpoly, ...] = field(compare=False, default=())
+
+    @property
+    def fields(self) -> tuple[tuple[fmpq_mpoly, ...], ...]:
+        """Polynomials S_0, S_1, … of each field w_i = φ + D φ_x Σ D^n S_n (acoustic branch)."""
+        if self.slaved:
+            return self.slaved
+        first = tuple(self.algebra.zero for _ in self.acceleration)
+        second = tuple(b * r for b, r in zip(self.ansatz[1:], self.algebra.r, strict=False))
+        return (first, second) if self.ansatz else (first,)

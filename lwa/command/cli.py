@@ -12,11 +12,11 @@ from lwa.command.terminal import HELP, run, version
 COMMANDS = {
     "derive": "derivation",
     "wave": "waves",
-    "dispersion": "bands",
+    "dispersion": "modes",
     "expansion": "series",
-    "strike": "series",
-    "envelope": "envelopes",
-    "shock": "shocks",
+    "strike": "driven",
+    "envelope": "modes",
+    "shock": "driven",
 }
 """Module of each command in `lwa.command`."""
 

@@ -10,13 +10,12 @@ import sympy as sp
 
 from lwa.base import latex
 from lwa.base.exact import InputError
-from lwa.code import LANGUAGES
 from lwa.command.chain import take_chain
 from lwa.command.options import STYLES, theory_options
 from lwa.command.rows import Answer, Row, Values
 from lwa.equation.terms import Jet, Terms
 from lwa.theory import Theory, homogenize
-from lwa.wave.functions import function_of, in_order
+from lwa.wave.functions import Functions
 
 FIELDS = {
     "first": "u is the displacement of the cell's first particle",
@@ -233,14 +232,11 @@ def _source(theory: Theory) -> str:
     if not theory.law.homogeneous:
         raise InputError("--format python is for power laws: others have text, json and latex")
     cell = theory.cell
-    order = in_order(theory.k, *cell.masses, *cell.stiffnesses, cell.spacing)
-    table = {n: {jet: found[jet] for jet in found} for n, found in theory.pde.coefficients.items()}
+    functions = Functions(theory.k, *cell.masses, *cell.stiffnesses, cell.spacing)
     values = {f"b{n}": b for n, b in theory.ansatz.items()} | theory.pde.third_order
-    functions = [
-        function_of(order, name, f"The coefficient {name}", v) for name, v in values.items()
-    ]
+    for name, value in values.items():
+        functions.define(name, f"The coefficient {name}", value)
+    table = {n: {jet: found[jet] for jet in found} for n, found in theory.pde.coefficients.items()}
     doc = "{n: {(jet, jet_t): c}}, orders D^(k+n), without the power of D"
-    functions.append(function_of(order, "coefficients", doc, sp.Dict(table)))
-    return LANGUAGES["python"](functions).module(
-        ["The ansatz and the wave equation. Written by lwa."]
-    )
+    functions.define("coefficients", doc, sp.Dict(table))
+    return functions.source("python", ["The ansatz and the wave equation. Written by lwa."])

@@ -1,4 +1,4 @@
-"""The commands `lwa expansion` and `lwa strike`: the series in k - 1, and the pulse of a blow."""
+"""The command `lwa expansion`: the lattice's own wave as a series in k - 1."""
 
 from __future__ import annotations
 
@@ -17,16 +17,13 @@ from lwa.command.derivation import listed
 from lwa.command.options import (
     FORCE,
     SPHERES,
-    quantity,
     series_options,
-    spheres_option,
-    style_option,
 )
 from lwa.command.rows import Answer, Row, Values, attempt
-from lwa.command.waves import SPEED, WIDTHS, hertz_note, radiation_note
+from lwa.command.waves import SPEED, WIDTHS, radiation_note
 from lwa.expansion.approximants import Resummed
 from lwa.expansion.expand import DAMPINGS, Expansion, expand
-from lwa.expansion.physical import ExpandedWave, pulse_of_strike
+from lwa.expansion.physical import ExpandedWave
 from lwa.expansion.series import EpsilonSeries
 
 
@@ -155,50 +152,3 @@ def _series_text(name: str, series: EpsilonSeries) -> list[str]:
     factors += [f"ε^({series.power})"] if series.power else []
     lines = [f"{name} = {' '.join([*factors, 'Σ a_n ε^n'])}"]
     return lines + [f"  a{n} = {value}" for n, value in enumerate(series.coefficients)]
-
-
-@click.command()
-@spheres_option(required=True)
-@click.option("--velocity", callback=quantity, help="Velocity of the striker, in m/s.")
-@click.option(
-    "--drop", callback=quantity, help="Height from which the striker falls, in m; or --velocity."
-)
-@click.option(
-    "--mass", callback=quantity, help="Mass of the striker, in kg; that of a bead by default."
-)
-@style_option()
-def strike(
-    spheres: str,
-    velocity: sp.Expr | None,
-    drop: sp.Expr | None,
-    mass: sp.Expr | None,
-    style: str,
-) -> None:
-    """Leading pulse of a chain of equal beads that a mass strikes: force, speed and width.
-
-    Needs --spheres, and --velocity or --drop. Units are those of the file, mostly SI; the width is
-    that of a contact's force.
-    """
-    chain = take_chain({"spheres": spheres})
-    cell, law = chain.cell, chain.law
-    mass = cell.masses[0] if mass is None else mass
-    pulse = pulse_of_strike(cell, mass, velocity, drop=drop, k=law.exponent)
-    rows: list[Row | str] = [
-        f"chain of equal beads; F = A δ^k, k = {law.exponent}",
-        Row("", "mass of the beads", cell.masses[0], unit="kg"),
-        Row("mass", "mass of the striker", pulse.mass, "m_{s}", "kg", expression=False),
-        Row("velocity", "velocity of the striker", pulse.velocity, "v", "m/s", expression=False),
-        "",
-        "leading pulse:",
-        Row("force", "peak contact force", pulse.force, "F", "N"),
-        Row("speed", "speed dx/dt", pulse.speed, SPEED, "m/s"),
-        Row("fwhm.length", "FWHM of the force", pulse.fwhm("force", "length"), _WIDTH, "m"),
-        Row("fwhm.time", "FWHM of the force in time", pulse.fwhm(), _WIDTH + "/c", "s"),
-    ]
-    notes = [*chain.without_load(), *hertz_note(chain, pulse.wave.F)]
-    if pulse.train:
-        notes.append("a striker heavier than two beads sends further pulses behind this one")
-    Answer({}, rows, chain.si, notes=notes, orders=False).print(style)
-
-
-_WIDTH = r"\mathrm{FWHM}_{\mathrm{force}}"

@@ -11,7 +11,7 @@ import sympy as sp
 from sympy.polys.fields import sfield
 from sympy.polys.matrices import DomainMatrix
 
-from lwa.base.exact import InputError, demand_numbers, root
+from lwa.base.exact import InputError, demand_numbers
 from lwa.cell import Cell
 from lwa.envelopes.response import Arithmetic, Contacts, Matrix, Mode
 from lwa.law import ContactLaw
@@ -66,7 +66,7 @@ def cell_mode(
         [sp.sympify(x) / (mass * unit) for x in found.second],
         [sp.sympify(x) / (mass * unit) for x in found.mean],
         [sp.sympify(x) / mass for x in found.size],
-        [sp.sympify(x) / root(mass) for x in found.shape],
+        [sp.sympify(x) / sp.sqrt(mass) for x in found.shape],
     )
 
 
@@ -199,7 +199,7 @@ def exact_mode(
     Raises `lwa.InputError` where the frequency has no exact form.
     """
     P, cosine, phase = len(contacts.masses), sp.cos(wavenumber), sp.exp(sp.I * wavenumber)
-    sine = root(1 - cosine**2)
+    sine = sp.sqrt(1 - cosine**2)
     if not cosine.is_Rational:
         half = wavenumber / 2
         sine, cosine = 2 * sp.sin(half) * sp.cos(half), 1 - 2 * sp.sin(half) ** 2

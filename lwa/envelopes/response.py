@@ -37,8 +37,6 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
-from lwa.base.exact import root
-
 Matrix = NDArray[Any]
 
 
@@ -129,7 +127,7 @@ class Contacts:
         force = (c * K3 * size).sum() * 2 / c.sum() * (speed / (speed - 1))
         mean = c * (-2 * K3 * size + force)
         cubic = (3 * K4 * size**2 + 2 * K3 * size * mean).sum() - 2 * K3 @ (G * products.T**2) @ K3
-        real, unit = numbers.real, root(sp.sympify(numbers.real(projector[bead, bead])))
+        real, unit = numbers.real, sp.sqrt(sp.sympify(numbers.real(projector[bead, bead])))
         return Mode(
             real(x),
             -2 * sine * real(1 / first),

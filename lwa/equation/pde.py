@@ -26,7 +26,6 @@ from lwa.base import latex
 from lwa.base.exact import InputError, exact, integer, power
 from lwa.closure.consistency import OfClosure
 from lwa.equation.energy import energy, flux, variational
-from lwa.equation.fields import change_field
 from lwa.equation.terms import ENERGY, Jet, Terms, base_order, terms
 from lwa.wave.traveling import TravelingWave
 
@@ -208,7 +207,7 @@ class PDE(OfClosure):
         (D**2*(k/6 - 1/6), D**2*(12*alpha + 1)*(k - 1)/6)
         """
         shifts = {integer(n, "n", 1): exact(a, f"alpha_{n}") for n, a in alphas.items()}
-        return PDE(change_field(self.closure, shifts))
+        return PDE(self.closure.in_field(shifts))
 
     def at(self, **values: Any) -> PDE:
         """The equation for these values of the named symbols, and of ω = m2/m1 by ``omega``.

@@ -1,22 +1,15 @@
 """Source text of programs: a wave's β, widths, speed, amplitude and profile as plain functions.
 
-The formulas are written in forms that keep their digits in floating point:
-
-- sums that hold k are polynomials in k - 2, an exact number, in which less cancels than in k;
-- arccos(2^{-x}) = arctan √(2^{x+1} sinh(x ln 2)), good as x → 0;
-- ln f = 2 arsinh((f-1)/(2√f)), f = V²/B^{k-1}, good as f → 1, that is as k → 1;
-- cos(βξ) on the support and 0 outside of it is sin((h + |h|)/2), h = π/2 - |βξ|.
-
-The functions have relative errors of 1e-14, with three exceptions, which are ill-conditioned. The
-amplitude's exponent 2/(k-1) makes each rounding |ln B| times larger. Near the edge of the domain of
-waves (G + H + I → 0, V² → 0) the last digit of k or of a mass changes the result by more. Near the
-end of the support the last digit of ξ does: the profile is right to 1e-14 B at a ξ off by 1e-14 ξ.
+The formulas are written in forms that keep their digits in floating point: relative errors are
+1e-14, with three ill-conditioned exceptions. The amplitude's exponent 2/(k-1) makes each rounding
+|ln B| times larger. Near the edge of the domain of waves (G + H + I → 0, V² → 0) the last digit of
+k or of a mass changes the result by more. Near the end of the support the last digit of ξ does: the
+profile is right to 1e-14 B at a ξ off by 1e-14 ξ.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from functools import partial
+from collections.abc import Mapping, Sequence
 
 import sympy as sp
 
@@ -29,8 +22,7 @@ from lwa.wave.closed import CompactWave
 
 _XI = sp.Dummy("xi", real=True)
 _B, _V, _F = (sp.Dummy(name, positive=True) for name in ("B", "V_s", "F"))
-OWN = (_XI, _B, _V, _F)
-"""Arguments that are no symbols of the chain, in their order."""
+_ARGUMENTS = (_XI, _B, _V, _F)  # that are no symbols of the chain
 
 _SHIFT, _INSIDE = (sp.Dummy(name, real=True) for name in ("k_2", "h"))
 
@@ -54,98 +46,38 @@ _DOCS = {
 }
 
 
-def wave_code(wave: CompactWave, language: str) -> str:
-    """The source text of `wave_functions` in one of the `LANGUAGES`.
+class Functions(dict[str, Function]):
+    """Functions by name, whose arguments are ξ, B, V_s, F and the symbols of the given parts.
 
-    Raises `lwa.InputError` for another language.
+    Arguments stand in this order, those of a part by name, each where it is used.
     """
-    return _module(wave_functions(wave), language, _TITLE)
 
+    def __init__(self, *parts: sp.Expr) -> None:
+        super().__init__()
+        self.symbols = in_order(*parts)
 
-def loaded_code(
-    cell: Cell, law: ContactLaw, p0: sp.Expr, forms: Mapping[str, sp.Expr], language: str
-) -> str:
-    """The source text of a wave under load: closed forms, and under a power its speed at a force.
+    def define(self, name: str, doc: str, value: sp.Basic, local: Local = ()) -> sp.Expr:
+        """Add a function and return a call of it; ``local`` has variables that it may use."""
+        used = value.free_symbols
+        for symbol, part in reversed(local):
+            used |= part.free_symbols if symbol in used else set()
+        arguments = tuple(s for s in (*_ARGUMENTS, *self.symbols) if s in used)
+        local = tuple(row for row in local if row[0] in used)
+        self[name] = Function(name, doc, arguments, value, local)
+        return self[name].call
 
-    forms : expressions by their names in `_DOCS`; B is the rise of the strain.
+    def define_at_force(self, cell: Cell, k: sp.Expr, p0: sp.Expr = sp.S.Zero) -> None:
+        """Add the rise of the strain, and dx/dt, of the wave whose contact force peaks at F."""
+        strain = Power(k).compression(cell, _F) / cell.spacing - p0
+        rise = self.define("strain", _DOCS["strain"], strain)
+        speed = self["speed"].call.subs(_B, rise) * self["time_scale"].call
+        self.define("speed_at_force", _DOCS["speed_at_force"], speed)
 
-    Arguments stand in this order, each where it is used: B; F; p0; the symbols of the law, of the
-    masses, of the stiffnesses and of the spacing.
-
-    Raises `lwa.InputError` for another language.
-    """
-    parts = (p0, *law.symbols, *cell.masses, *cell.stiffnesses, cell.spacing)
-    order = in_order(*parts)
-    define, functions = partial(function_of, order), {}
-    for name, value in forms.items():
-        rise = {s: _B for s in value.free_symbols if s.name == "B"}
-        functions[name] = define(name, _DOCS[name], value.xreplace(rise))
-    if law.homogeneous:
-        values = _at_force(order, cell, law.exponent, functions, p0)
-        functions |= {name: define(name, _DOCS[name], value) for name, value in values.items()}
-    return _module(functions, language, _LOADED_TITLE)
-
-
-def _module(functions: Mapping[str, Function], language: str, title: tuple[str, ...]) -> str:
-    writer = LANGUAGES[one_of(language, LANGUAGES, "language")]
-    return writer(list(functions.values()), OWN).module(title)
-
-
-def wave_functions(wave: CompactWave) -> dict[str, Function]:
-    """Functions for β, width, FWHM, speed, amplitude and profile, by name.
-
-    Arguments stand in this order, each where it is used: xi; B or V_s; the symbols of k, of the
-    masses, of the stiffnesses and of the spacing.
-    """
-    k, cell, factor = wave.k, wave.cell, wave.speed_factor
-    order = in_order(k, *cell.masses, *cell.stiffnesses, wave.D, wave.coefficient_sum)
-    local = {k - 2: _SHIFT}  # value → variable
-    S, excess, f = (
-        _stable(value, k, local)
-        for value in (wave.coefficient_sum, sp.factor(sp.cancel(factor - 1)), factor)
-    )
-    variables = tuple((symbol, value) for value, symbol in local.items())
-    functions: dict[str, Function] = {}
-
-    def define(name: str, doc: str, value: sp.Expr, local: Local = ()) -> sp.Expr:
-        functions[name] = function_of(order, name, doc, value, local)
-        return functions[name].call
-
-    value = (k - 1) / (2 * wave.D * sp.sqrt(S))
-    beta = define("beta", "beta = (k - 1)/(2 sqrt(G + H + I))", value, variables)
-    define("width", "Length of the support, pi/beta", sp.pi / beta)
-    for quantity in QUANTITIES:
-        # arccos(2^-x) in a form that keeps its digits as x → 0
-        x = (k - 1) / (2 * strain_power(quantity, k))
-        angle = sp.atan(sp.sqrt(2 ** (x + 1) * sp.sinh(x * sp.log(2))))
-        define(
-            f"fwhm_{quantity}", f"Full width at half maximum of the {quantity}", 2 * angle / beta
-        )
-    value = sp.sqrt(f) * _B ** ((k - 1) / 2)
-    define("speed", "V_s = dx/dtau of the wave whose strain peaks at B", value, variables)
-    value = _V ** (2 / (k - 1)) * sp.exp(-2 * sp.asinh(excess / (2 * sp.sqrt(f))) / (k - 1))
-    define("amplitude", "B, the peak strain of the wave of speed V_s", value, variables)
-    value = _B * sp.sin((_INSIDE + sp.Abs(_INSIDE)) / 2) ** (2 / (k - 1))
-    inside = ((_INSIDE, sp.pi / 2 - sp.Abs(beta * _XI)),)
-    define("profile", "v at xi, 0 outside of the support", value, inside)
-    define("time_scale", _DOCS["time_scale"], cell.time_scale(k))
-    for name, value in _at_force(order, cell, k, functions).items():
-        define(name, _DOCS[name], value)
-    return functions
-
-
-def _at_force(
-    order: tuple[sp.Symbol, ...],
-    cell: Cell,
-    k: sp.Expr,
-    functions: Mapping[str, Function],
-    p0: sp.Expr = sp.S.Zero,
-) -> dict[str, sp.Expr]:
-    """The rise of the strain, and dx/dt, of the wave whose contact force peaks at F."""
-    strain = Power(k).compression(cell, _F) / cell.spacing - p0
-    rise = function_of(order, "strain", "", strain).call
-    speed = functions["speed"].call.subs(_B, rise) * functions["time_scale"].call
-    return {"strain": strain, "speed_at_force": speed}
+    def source(self, language: str, title: Sequence[str]) -> str:
+        """The source text in one of the `LANGUAGES`; raises `lwa.InputError` for others."""
+        writer = LANGUAGES[one_of(language, LANGUAGES, "language")]
+        used = set().union(*(function.arguments for function in self.values()))
+        return writer(list(self.values()), [s for s in _ARGUMENTS if s in used]).module(title)
 
 
 def in_order(*parts: sp.Expr) -> tuple[sp.Symbol, ...]:
@@ -153,19 +85,66 @@ def in_order(*parts: sp.Expr) -> tuple[sp.Symbol, ...]:
     return tuple(dict.fromkeys(s for part in parts for s in sorted(part.free_symbols, key=str)))
 
 
-def function_of(
-    order: tuple[sp.Symbol, ...], name: str, doc: str, value: sp.Basic, local: Local = ()
-) -> Function:
-    """A function with the arguments and local variables that its value depends on."""
-    used = value.free_symbols
-    for symbol, part in reversed(local):
-        used |= part.free_symbols if symbol in used else set()
-    arguments = tuple(s for s in (*OWN, *order) if s in used)
-    return Function(name, doc, arguments, value, tuple(row for row in local if row[0] in used))
+def wave_code(wave: CompactWave, language: str) -> str:
+    """The source text of `wave_functions`."""
+    return wave_functions(wave).source(language, _TITLE)
+
+
+def loaded_code(
+    cell: Cell, law: ContactLaw, p0: sp.Expr, forms: Mapping[str, sp.Expr], language: str
+) -> str:
+    """The source text of a wave under load: closed forms, and under a power its speed at a force.
+
+    forms : expressions by their names in `_DOCS`; B is the rise of the strain. Arguments: B, F,
+    the symbols of p0, the law, the masses, the stiffnesses and the spacing.
+    """
+    functions = Functions(p0, *law.symbols, *cell.masses, *cell.stiffnesses, cell.spacing)
+    for name, value in forms.items():
+        rise = {s: _B for s in value.free_symbols if s.name == "B"}
+        functions.define(name, _DOCS[name], value.xreplace(rise))
+    if law.homogeneous:
+        functions.define_at_force(cell, law.exponent, p0)
+    return functions.source(language, _LOADED_TITLE)
+
+
+def wave_functions(wave: CompactWave) -> Functions:
+    """Functions for β, width, FWHM, speed, amplitude and profile.
+
+    Arguments: ξ, B, V_s, F, the symbols of k, of the masses, of the stiffnesses and of the spacing.
+    """
+    k, cell, factor = wave.k, wave.cell, wave.speed_factor
+    functions = Functions(k, *cell.masses, *cell.stiffnesses, wave.D, wave.coefficient_sum)
+    define = functions.define
+    local = {k - 2: _SHIFT}  # value → variable
+    S, excess, f = (
+        _stable(value, k, local)
+        for value in (wave.coefficient_sum, sp.factor(sp.cancel(factor - 1)), factor)
+    )
+    variables = tuple((symbol, value) for value, symbol in local.items())
+    value = (k - 1) / (2 * wave.D * sp.sqrt(S))
+    beta = define("beta", "beta = (k - 1)/(2 sqrt(G + H + I))", value, variables)
+    define("width", "Length of the support, pi/beta", sp.pi / beta)
+    for quantity in QUANTITIES:
+        # arccos(2^-x) = arctan √(4^x - 1), in a form that keeps its digits as x → 0
+        x = (k - 1) / (2 * strain_power(quantity, k))
+        width = 2 * sp.atan(sp.sqrt(2 ** (x + 1) * sp.sinh(x * sp.log(2)))) / beta
+        define(f"fwhm_{quantity}", f"Full width at half maximum of the {quantity}", width)
+    value = sp.sqrt(f) * _B ** ((k - 1) / 2)
+    define("speed", "V_s = dx/dtau of the wave whose strain peaks at B", value, variables)
+    # ln f = 2 arsinh((f-1)/(2√f)) keeps its digits as f → 1, that is as k → 1
+    value = _V ** (2 / (k - 1)) * sp.exp(-2 * sp.asinh(excess / (2 * sp.sqrt(f))) / (k - 1))
+    define("amplitude", "B, the peak strain of the wave of speed V_s", value, variables)
+    # cos(βξ) on the support and 0 outside of it is sin((h + |h|)/2), h = π/2 - |βξ|
+    value = _B * sp.sin((_INSIDE + sp.Abs(_INSIDE)) / 2) ** (2 / (k - 1))
+    inside = ((_INSIDE, sp.pi / 2 - sp.Abs(beta * _XI)),)
+    define("profile", "v at xi, 0 outside of the support", value, inside)
+    define("time_scale", _DOCS["time_scale"], cell.time_scale(k))
+    functions.define_at_force(cell, k)
+    return functions
 
 
 def _stable(ratio: sp.Expr, k: sp.Expr, local: dict[sp.Expr, sp.Symbol]) -> sp.Expr:
-    """Rewrite the sums of a rational expression in powers of k - 2.
+    """Rewrite the sums of a rational expression in powers of k - 2, in which less cancels.
 
     New variables for powers A^{1/k} are added to ``local``.
     """

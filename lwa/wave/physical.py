@@ -1,8 +1,7 @@
 """Waves of a given peak contact force in space and time, without and under a load.
 
-Letters as in `lwa.wave.closed` and `lwa.cell`: D is the spacing, P the number of particles of a
-cell, M its mass, A_eff its stiffness. All contacts of a cell carry the same force at leading order.
-Results are in the units of the cell: in SI for `lwa.Cell.of_spheres`.
+All contacts of a cell carry the same force at leading order. Results are in the units of the cell:
+in SI for `lwa.Cell.of_spheres`. Letters as in `lwa.wave.closed` and `lwa.cell`.
 
 Without load F = A_eff (D u_x)^k, so that the wave whose contact force peaks at F has the peak
 strain B = (F/A_eff)^{1/k} / D. A contact has the force F cos^{mk}(βξ), m = 2/(k-1),
@@ -36,22 +35,19 @@ if TYPE_CHECKING:
     from lwa.base.arrays import Array
 
 BEARERS = ("contact", "bead")
-"""Bearers of the prescribed peak force."""
+"""Bearers of a peak force."""
 
 
 @dataclass(frozen=True)
 class PhysicalWave(Value):
-    """The compact wave with a given peak force, in a chain without load.
+    """The compact wave of a given peak force in a chain without load.
 
-    Parameters
-    ----------
     wave : closed forms of the wave.
     force : peak force, a number or a symbol.
     of : "contact" or "bead", whose force peaks at ``force``.
 
     Raises `lwa.InputError` unless the force is positive, for a name that already has a meaning in
-    the wave, and for the force of a bead in a wave so short that its two contacts peak one after
-    the other.
+    the wave, and for the force of a bead whose two contacts peak one after the other.
 
     >>> from lwa import canonical_wave
     >>> wave = canonical_wave(Cell(["m"], ["A"]), "3/2").at_force("F")
@@ -64,13 +60,11 @@ class PhysicalWave(Value):
     of: str = "contact"
 
     def __post_init__(self) -> None:
-        one_of(self.of, BEARERS, "of")
-        force = positive(self.force, "force")
+        taken = taken_names(self.cell, self._law)
+        force = check_names(positive(self.force, "force"), "force", taken=taken)
         check_distinct(list(force.free_symbols))
-        object.__setattr__(
-            self, "force", check_names(force, "force", taken=taken_names(self.cell, self._law))
-        )
-        if self.of == "bead":
+        object.__setattr__(self, "force", force)
+        if one_of(self.of, BEARERS, "of") == "bead":
             self._bead_share  # noqa: B018 - a share that does not exist is refused here
 
     def latex_rows(self) -> list[str]:
@@ -106,7 +100,7 @@ class PhysicalWave(Value):
 
     @cached_property
     def bead_force(self) -> sp.Expr:
-        """The peak force of a bead, the mean of its two contacts."""
+        """The peak force of a bead, the mean force of its two contacts."""
         return self.force if self.of == "bead" else self.force * self._bead_share
 
     @cached_property
@@ -143,6 +137,7 @@ class PhysicalWave(Value):
         """The momentum Σ m u_t = M/(P D) · B dx/dt · ∫ cos^m(βξ) dξ of the chain."""
         wave, m = self.wave, self.wave.m
         density = self.cell.mass / (self.cell.size * wave.D)
+        # ∫ cos^m y dy over |y| < π/2 = √π Γ((m+1)/2) / Γ(m/2 + 1)
         arch = sp.sqrt(sp.pi) * sp.gamma((m + 1) / 2) / (wave.beta * sp.gamma(m / 2 + 1))
         return density * arch * self.bead_velocity
 
@@ -157,8 +152,8 @@ class PhysicalWave(Value):
     def curve(self, t: ArrayLike, quantity: str = "force", of: str = "") -> Array:
         """Course in time: values of "force", "strain" or "velocity" at the times t, peak at t = 0.
 
-        ``of`` is "contact" or "bead", by default the one whose force the wave prescribes. A bead's
-        force and strain are the means over its two contacts; a velocity is always a bead's.
+        of : "contact" or "bead", by default the bearer of the prescribed force. A bead's force and
+            strain are the means over its two contacts; a velocity is always a bead's.
 
         Raises `lwa.InputError` for other words, and where the wave or its force holds symbols.
 
@@ -179,6 +174,7 @@ class PhysicalWave(Value):
         wave, k, xi = self.wave, number(self.wave.k), finite(x, "x")
         peaks = {"strain": self.strain, "force": self.contact_force, "velocity": self.bead_velocity}
         peak = number(peaks[known(quantity)])
+        # The strain is B cos^m(βξ), m = 2/(k-1); the force scales as strain^k.
         beta, exponent = number(wave.beta), 2 * strain_power(quantity, k) / (k - 1)
 
         def arch(x: Array) -> Array:
@@ -191,10 +187,7 @@ class PhysicalWave(Value):
         return np.asarray(peak * arch(xi))
 
     def at(self, **values: Any) -> PhysicalWave:
-        """Substitute numbers (or other symbols) for the named symbols, the force's among them.
-
-        Raises the errors of `lwa.TravelingWave.at`.
-        """
+        """Substitute values for symbols of the wave and the force, as `lwa.TravelingWave.at`."""
         symbols = {s.name: s for s in self.force.free_symbols}
         new = {symbols[n]: positive(value, n) for n, value in values.items() if n in symbols}
         rest = {name: value for name, value in values.items() if name not in symbols}
@@ -203,12 +196,13 @@ class PhysicalWave(Value):
 
 @dataclass(frozen=True)
 class PrecompressedWave(Value):
-    """The wave whose contact force peaks at ``force`` in a chain with the load ``precompression``.
+    """The wave of a given peak contact force in a chain under load.
 
-    Both forces are total ones, numbers or symbols; the dynamic force is the difference of the two.
-    A ``force`` below the load is that of a rarefaction wave. Under a law that is no power forces
-    and chain must be numbers. For equal spheres V²/c0² is Nesterenko's
-    (4/15) (3 + 2 ζ^{5/2} - 5 ζ) / (ζ - 1)², ζ = (F/F0)^{2/3}, c0 the speed of sound.
+    force, precompression : the total force at the peak and the static force, numbers or symbols,
+        under a law that is no power numbers. A ``force`` below the load is a rarefaction wave's.
+
+    For equal spheres V²/c0² is Nesterenko's (4/15) (3 + 2 ζ^{5/2} - 5 ζ) / (ζ - 1)²,
+    ζ = (F/F0)^{2/3}, c0 the speed of sound.
 
     Raises `lwa.InputError` unless both are positive, and `lwa.NoSolitaryWave` without a wave.
 
@@ -229,9 +223,7 @@ class PrecompressedWave(Value):
             value = check_names(positive(getattr(self, name), name), name, taken=taken)
             object.__setattr__(self, name, value)
         if self.force == self.precompression:
-            raise NoSolitaryWave(
-                f"force and precompression are both {self.force}: there is no wave"
-            )
+            raise NoSolitaryWave(f"force and precompression are both {self.force}: no wave")
 
     def latex_rows(self) -> list[str]:
         rows = {"F_{0}": self.precompression, "F": self.force, "B": self.strain}
@@ -288,9 +280,6 @@ class PrecompressedWave(Value):
         return length / (evaluated(waves.in_unit(self.speed), WIDTH_DIGITS) * waves.unit)
 
     def at(self, **values: Any) -> PrecompressedWave:
-        """The wave with numbers (or other symbols) for the named symbols.
-
-        Raises `lwa.InputError` for a name that does not occur or a value that is no quantity.
-        """
+        """Substitute values for symbols, as `lwa.TravelingWave.at`."""
         fields = (self.cell, self.law, self.force, self.precompression)
         return PrecompressedWave(*substituted(values, *fields))

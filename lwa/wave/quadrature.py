@@ -78,9 +78,6 @@ class NumericBackground(Value):
             (self._I.free_symbols | slope.free_symbols) - {_STRAIN}, "numbers are wanted"
         )
 
-    def latex_rows(self) -> list[str]:
-        return self.law.latex_rows()
-
     def speed_squared(self, p0: ArrayLike, B: ArrayLike) -> Array:
         """Square V² = Q(B) of the speed; for power laws to k = 5 good to 4 ulps at any p0/B."""
         p0, B, unit = self._waves(p0, B)
@@ -114,8 +111,6 @@ class NumericBackground(Value):
         ahead = places - (ends - series.sum(axis=1))[panel]
         theta = g.starts[panel] + g.lengths[panel] * inverse(series[panel], ahead)
         return np.where(places < ends[-1], unit * rise / np.cosh(theta) ** 2, 0.0)
-
-    # --- a block of waves -------------------------------------------------------------------
 
     def _squares(self, p0: Array, B: Array) -> Array:
         """V² = F′(p0) + B ∫(1-s)² F″ ds for small waves, 2 ∫(1-s) F′ ds for others."""
@@ -189,8 +184,6 @@ class NumericBackground(Value):
             bend = self._bend(p)
             return p, bend, bend @ g.kernel.T
 
-    # --- the law ----------------------------------------------------------------------------
-
     @property
     def _D(self) -> sp.Expr:
         """The spacing, or 1 for a symbol under a power law, which has no length of its own."""
@@ -212,8 +205,6 @@ class NumericBackground(Value):
     @cached_property
     def _bend(self) -> Callable[[Array], Array]:
         return _compiled(self.law.of_strain(_STRAIN, self._D, 2))
-
-    # --- existence --------------------------------------------------------------------------
 
     def _waves(self, p0: ArrayLike, B: ArrayLike) -> tuple[Array, Array, Array]:
         """Return p0/unit, B/unit and unit, broadcast; unit is 1, or a power of two for δ^k."""

@@ -27,8 +27,6 @@ class TravelingWave(CompactWave):
     ) -> PhysicalWave | PrecompressedWave:
         """The wave of a given peak force, in space and time.
 
-        Parameters
-        ----------
         F : the peak force, a number or a name.
         of : "contact" or "bead", whose force peaks at F.
         precompression : static load. F then is the total force of a contact, static and dynamic,
@@ -102,10 +100,10 @@ class TravelingWave(CompactWave):
     def code(self, language: str) -> str:
         """Source text of a program: β, widths, speed, amplitude and profile as functions.
 
-        ``language`` is one of `lwa.code.LANGUAGES`, "python" (plain `math`) or "c" among
-        them. `lwa.wave.functions` states arguments and accuracy.
+        language : a key of `lwa.code.LANGUAGES`, such as "c" or "python" (plain `math`).
 
-        Raises `lwa.InputError` for another language, and for numbers beyond a double.
+        Arguments and accuracy are those of `lwa.wave.functions`. Raises `lwa.InputError` for
+        another language, and for numbers beyond a double.
         """
         from lwa.wave.functions import wave_code  # start-up
 

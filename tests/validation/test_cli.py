@@ -24,7 +24,7 @@ from validation.scenes.chains import chain_scene
 from validation.scenes.checks import SceneError
 from validation.scenes.scenefile import document, read_scene, scene
 from validation.studies.limits import report
-from validation.studies.run import EXAMPLES
+from validation.studies.run import EXAMPLES, example
 
 COMMAND = Path(sys.executable).with_name("lwa-validate")
 
@@ -151,7 +151,9 @@ def test_run_stores_the_samples(capsys, scene_file, tmp_path):
     assert found == json.loads(out)
     with np.load(arrays) as held:
         assert json.loads(str(held["document"])) == found
-        assert set(held) - {"document"} == {name.removesuffix("_value") for name in records}
+        assert set(held) > {name.removesuffix("_value") for name in records}
+        for sensor, peak in zip(found["sensors"], held["sensors_peak_value"], strict=True):
+            assert sensor["peak_value"] == peak
         for name, values in records.items():
             np.testing.assert_array_equal(held[name.removesuffix("_value")], values)
         assert held["contact_force"].shape == held["compression"].shape == (2, 601)
@@ -283,9 +285,11 @@ def test_the_first_example_is_the_experiment_of_the_paper(capsys):
     assert found == replace(expected, samples=found.samples, contact_sensors=())
 
 
-def test_the_help_of_run_names_the_examples():
+def test_the_help_of_run_shows_the_format_and_names_the_examples():
     shown = CliRunner().invoke(cli.validate, ["run", "--help"]).output
     assert f"[{'|'.join(EXAMPLES)}]" in "".join(shown.split())
+    for line in example("paper").splitlines():
+        assert line in shown
 
 
 @pytest.mark.parametrize("name", ["out.json", "out.npz"])
@@ -382,7 +386,6 @@ BAD = [
     ("run", "missing.toml"),
     ("paper", "--velocity", "__import__('os')"),
     ("paper", "--beads", "3"),
-    ("paper", "--beads", "２０"),
     ("paper", "--sensors", "34,15"),
     ("paper", "--format", "xml"),
     ("limits", "extra"),
@@ -521,6 +524,22 @@ def test_only_regular_files_are_read(capsys, tmp_path):
         status, out, err = run(capsys, "run", str(tmp_path / name))
         assert (status, out, err.count("\n")) == (2, "", 1)
         assert err == f"lwa-validate: {tmp_path / name}: only regular files are read\n"
+
+
+def test_exact_scaled_to_a_speed_or_a_force(capsys):
+    shown = {}
+    for options in ((), ("--speed", "2"), ("--force", "3")):
+        status, out, _ = run(capsys, "exact", *options, "--format", "json")
+        assert status == 0
+        shown[options[:1]] = json.loads(out)
+    assert shown["--speed",]["c_value"] == pytest.approx(2, rel=1e-14)
+    assert shown["--force",]["amplitude_value"]["force"] == pytest.approx(3, rel=1e-13)
+    for found in shown.values():
+        for name, width in shown[()]["fwhm_value"].items():
+            assert found["fwhm_value"][name] == pytest.approx(width, rel=1e-10)
+    status, out, err = run(capsys, "exact", "--speed", "2", "--force", "3")
+    assert (status, out) == (2, "")
+    assert "scaled to one of the two" in err
 
 
 def test_every_study_is_a_command():

@@ -37,20 +37,6 @@ def test_a_panel_is_drawn_with_its_labels_and_scales(report):
     np.testing.assert_array_equal(line.get_xydata(), np.column_stack((X, X**2)))
 
 
-@pytest.mark.parametrize(
-    ("most", "labels"),
-    [(8.0, {"1", "1.5", "2", "3", "4", "6", "8"}), (200.0, {"1", "2", "5", "10", "50", "200"})],
-)
-def test_a_logarithmic_axis_of_few_decades_has_plain_numbers(most, labels):
-    x = np.geomspace(1, most, 5)
-    picture = figure([Panel("x", "y", (Curve("c", x, 1e6 * x),), "xy")])
-    picture.canvas.draw()
-    (axes,) = picture.axes
-    assert {tick.get_text() for tick in axes.get_xticklabels()} >= labels
-    assert not any(tick.get_text() for tick in axes.get_xticklabels(minor=True))
-    assert any("10^" in tick.get_text() for tick in axes.get_yticklabels())  # too large for that
-
-
 def test_marks_are_hollow_and_show_the_curves_below(report):
     (line,) = report.figure().axes[0].lines
     assert line.get_markerfacecolor() == "none"
@@ -108,18 +94,6 @@ def test_the_limits_picture_shows_every_quantity_at_every_k(limits_rows):
         bars = [c for c in axes.containers if c.has_yerr]
         assert len(bars) == 4
         assert all(len(c.lines[0].get_xdata()) == 3 for c in bars)
-
-
-@pytest.mark.parametrize(
-    ("largest", "power"), [(0.006, True), (0.06, False), (60_000, False), (600_000, True)]
-)
-def test_small_and_large_numbers_stand_before_a_power_of_ten(largest, power):
-    curve = Curve("c", [0, 1], [0, largest])
-    figure = Report("one", panels=(Panel("x", "y", (curve,)),)).figure()
-    figure.draw_without_rendering()
-    (axes,) = figure.axes
-    assert bool(axes.yaxis.get_offset_text().get_text()) is power
-    assert axes.xaxis.get_offset_text().get_text() == ""
 
 
 def test_a_full_disk_is_one_line_and_leaves_the_old_picture(tmp_path):

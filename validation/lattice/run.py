@@ -29,6 +29,7 @@ _MOST = 10  # sensors of one kind that are drawn as curves; more are drawn as a 
 _FINEST = 1000  # places, and times, of a map
 MOST_STEPS = 1e9
 MOST_BYTES = 4e9
+WINDOW_CHANGE = 10.0  # in units of rtol: greatest change of the leading pulse by a longer window
 EXCESS = 10  # times as many steps as are expected, at which an adaptive method is stopped
 _FEWEST = 100  # steps that an adaptive method takes to find its step, however slow the motion
 # (a, q): about a rtol^{-1/q} steps in a scene's shortest time √(m/spring), counted on uniform

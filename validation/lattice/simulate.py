@@ -33,7 +33,6 @@ __all__ = ["COMPILED", "METHODS", "simulate", "simulate_many", "twice"]
 COMPILED = tuple(SCHEMES)
 """The engine's: an adaptive Runge–Kutta–Nyström pair, the default, and a symplectic splitting."""
 
-_SHORTEST = 8  # beads of a window
 _FINITE = (*RECORDS, "displacements", "velocities")
 
 
@@ -144,16 +143,7 @@ def simulate_many(
 def twice(scene: Scene, fine: float, coarse: float, **options: Any) -> tuple[Run, Run]:
     """Simulate a scene at two tolerances; return the fine and the coarse run.
 
-    With a window the coarse run has half as many beads, so that the difference shows the window's
-    effect as well. `validation.pulses.pulse.compared` turns the difference into errors.
+    `validation.pulses.pulse.compared` turns the difference into errors.
     """
-    run = simulate(scene, rtol=fine, atol=fine, **options)
-    if run.window is None:
-        return run, simulate(scene, rtol=coarse, atol=coarse, **options)
-    options["window"] = max(_SHORTEST, run.window // 2)
-    try:
-        return run, simulate(scene, rtol=coarse, atol=coarse, **options)
-    except IntegrationError as error:
-        raise IntegrationError(
-            f"window is {run.window}: for the errors half of it must do as well, and {error}"
-        ) from None
+    run, check = (simulate(scene, rtol=rtol, atol=rtol, **options) for rtol in (fine, coarse))
+    return run, check

@@ -29,8 +29,8 @@ T = TypeVar("T")
 class Study(Generic[P]):
     """A function that returns a `Report`, with a ``command`` that prints the report."""
 
-    def __init__(self, function: Callable[P, Report], options: Sequence[Any]) -> None:
-        self.function, self.options = function, options
+    def __init__(self, function: Callable[P, Report], options: Sequence[Any], epilog: str) -> None:
+        self.function, self.options, self.epilog = function, options, epilog
         update_wrapper(self, function)
 
     def __call__(self, *arguments: P.args, **options: P.kwargs) -> Report:
@@ -42,7 +42,7 @@ class Study(Generic[P]):
         function: Callable[..., Report] = self.function
         parameters = inspect.signature(function).parameters
 
-        def run(style: str, picture: Path | None, **values: Any) -> int:
+        def run(style: str, plot: Path | None, **values: Any) -> int:
             displays = {"progress": progress, "run_progress": run_progress}
             values |= {name: show for name, show in displays.items() if name in parameters}
             try:
@@ -55,15 +55,17 @@ class Study(Generic[P]):
                 printed = json.dumps(report.document(), indent=2, allow_nan=False)
             else:
                 printed = report.csv().rstrip("\n") if style == "csv" else report.text()
-            if picture is not None:
-                report.save(picture)
+            if plot is not None:
+                report.save(plot)
             click.echo(printed)
             return 0 if report.ok else 1
 
         for option in (*_OUTPUT, *reversed(self.options)):
             run = option(run)
         summary, _, _ = (inspect.getdoc(function) or "").partition("\n\n")
-        command = click.command(function.__name__, help=summary, context_settings=HELP)
+        command = click.command(
+            function.__name__, help=summary, epilog=self.epilog, context_settings=HELP
+        )
         return command(run)
 
     def main(self, arguments: Sequence[str] | None = None) -> None:
@@ -71,44 +73,44 @@ class Study(Generic[P]):
         run_command(self.command, f"{self.function.__name__}.py", arguments)
 
 
-def study(*options: Any) -> Callable[[Callable[P, Report]], Study[P]]:
+def study(*options: Any, epilog: str = "") -> Callable[[Callable[P, Report]], Study[P]]:
     """Return a decorator that gives a function returning a `Report` a command (see `Study`).
 
-    The command has the function's name. options : its options, made by `option` or Click.
+    The command has the function's name.
+
+    options : options of the command, made by `option` or Click, one for each parameter.
+    epilog : text below the options in the command's help.
 
     A function may have two further parameters, which the command sets: ``progress`` shows how many
     cases are done, and ``run_progress`` how far a run of the lattice is
     (`validation.lattice.run.RunProgress`).
     """
-    return lambda function: Study(function, options)
+    return lambda function: Study(function, options, epilog)
 
 
 def option(*names: str, default: Any = None, says: str = "", **more: Any) -> Any:
-    """Return a Click option with a default and help text ``says``; numbers keep their type."""
-    more.setdefault("show_default", default is not None)
-    if type(default) in (int, float) and "flag_value" not in more:
-        kind, reader = ("INTEGER", whole) if isinstance(default, int) else ("NUMBER", number)
-        more = {"callback": reader, "metavar": kind} | more
-        default = str(default)
+    """Return a Click option with a default and help text ``says``; `number` reads decimals."""
+    more.setdefault("show_default", default not in (None, False))
+    if isinstance(default, float):
+        more, default = {"callback": number, "metavar": "NUMBER"} | more, str(default)
     return click.option(*names, default=default, help=says, **more)
 
 
-def whole(context: click.Context, given: click.Parameter, value: str | None) -> int | None:
-    """Read an option that is an integer."""
-    found = quantity(context, given, value)
-    if found is not None and not found.is_Integer:
-        raise SceneError(f"{called(given)} is {found}: an integer is wanted")
-    return None if found is None else int(found)
+def output_option(name: str, suffixes: Sequence[str], says: str) -> Any:
+    """Return an option of an output file, which is checked before the work (`output_file`)."""
+
+    def read(context: click.Context, given: click.Parameter, path: str | None) -> Path | None:
+        return None if path is None else output_file(called(given), path, suffixes)
+
+    return option(name, callback=read, metavar="FILE", says=says)
 
 
 def number(context: click.Context, given: click.Parameter, value: str | None) -> float | None:
     """Read an option that is an integer, a decimal or a fraction."""
-    found = quantity(context, given, value)
-    if found is None:
-        return None
-    if not found.is_number:
-        raise SceneError(f"{called(given)} is {found}: a number is wanted")
-    return float(found)
+    exact = quantity(context, given, value)
+    if exact is not None and not exact.is_number:
+        raise SceneError(f"{called(given)} is {exact}: a number is wanted")
+    return None if exact is None else float(exact)
 
 
 EXPONENT = option("--k", callback=number, default="3/2", says="Exponent of F = δ^k.")
@@ -127,23 +129,8 @@ def run_progress() -> Iterator[Callable[[float], None]]:
         yield lambda share: shares.update(share - shares.n)
 
 
-def _picture(context: click.Context, given: click.Parameter, path: str | None) -> Path | None:
-    return None if path is None else output_file("plot", path, SUFFIXES)
-
-
+_FORMATS = click.Choice(("text", "json", "csv"))
 _OUTPUT = (
-    option(
-        "--plot",
-        "picture",
-        callback=_picture,
-        metavar="FILE",
-        says=f"Draw the result into a file ({', '.join(SUFFIXES)}).",
-    ),
-    option(
-        "--format",
-        "style",
-        type=click.Choice(("text", "json", "csv")),
-        default="text",
-        says="How to print the result.",
-    ),
+    output_option("--plot", SUFFIXES, f"Draw the result into a file ({', '.join(SUFFIXES)})."),
+    option("--format", "style", type=_FORMATS, default="text", says="How to print the result."),
 )

@@ -31,12 +31,15 @@ def output_file(name: str, path: str, suffixes: Sequence[str]) -> Path:
 def replacing(file: Path) -> Iterator[Path]:
     """Yield a temporary file that replaces ``file`` at the end, and is removed after a failure.
 
-    A symbolic link keeps its target. Raises `lwa.InputError` if the file cannot be written.
+    A symbolic link keeps its target, and a file its mode. Raises `lwa.InputError` if the file
+    cannot be written.
     """
     target = file.resolve()
     try:
         with tempfile.TemporaryDirectory(prefix=".", dir=target.parent) as folder:
             yield (new := Path(folder, "new"))
+            if target.exists():
+                new.chmod(target.stat().st_mode)
             new.replace(target)
     except OSError as error:
         raise InputError(f"{file} is not written: {reason(error)}") from None

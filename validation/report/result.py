@@ -61,8 +61,8 @@ class Report(Pictured):
     def _printed_tables(self) -> tuple[Table, ...]:
         """All tables, and one of the findings: the failing ones beside other printed tables."""
         failing_only = any(table.parts() for table in self.tables)
-        found = [finding for finding in self.findings if not (failing_only and finding.ok)]
-        return (*self.tables, findings_table(found))
+        printed = [finding for finding in self.findings if not (failing_only and finding.ok)]
+        return (*self.tables, findings_table(printed))
 
     def text(self) -> str:
         """The report as plain text, titles and notes in lines of up to 100 characters."""

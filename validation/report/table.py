@@ -38,14 +38,9 @@ class Column:
     format: str | Callable[[Any], str] = ""
     error: bool = False
 
-    @property
-    def heading(self) -> str:
-        """The label, with the unit in parentheses."""
-        return f"{self.label} ({self.unit})" if self.unit else self.label
-
     def text(self, cell: Any) -> str:
-        """Format one cell; ``-`` for None and NaN."""
-        if cell is None or (isinstance(cell, float) and math.isnan(cell)):
+        """Format one cell; ``-`` for None, NaN and ∞, as JSON has null."""
+        if plain(cell) is None:
             return "-"
         if callable(self.format):
             return self.format(cell)
@@ -125,11 +120,12 @@ class Table:
         without column labels or rows.
         """
         printed = [(i, column) for i, column in enumerate(self.columns) if column.label]
+        header = [f"{c.label} ({c.unit})" if c.unit else c.label for _, c in printed]
         keys = [column.key for column in self.columns]
         parts: dict[str, list[Sequence[str]]] = {}
         for row in self.rows if printed else ():
             group = str(row[keys.index(self.by)]) if self.by else ""
-            lines = parts.setdefault(group, [[column.heading for _, column in printed]])
+            lines = parts.setdefault(group, [header])
             lines.append([column.text(row[i]) for i, column in printed])
         return [(self.heads.get(group, group), lines) for group, lines in parts.items()]
 

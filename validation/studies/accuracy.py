@@ -16,7 +16,7 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, S
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import partial
-from itertools import chain, groupby, takewhile
+from itertools import groupby, takewhile
 from statistics import median
 from typing import Any, TypeVar
 
@@ -122,18 +122,17 @@ def experiment() -> Task:
     """
     si = chains.chain_scene(1.37, 38, (16, 34), 0.0, 1e-3, N=2)
     m, A = si.masses[0], si.stiffnesses[0]
-    return Task(
-        Scene(
-            masses=tuple(mass / m for mass in si.masses),
-            stiffnesses=tuple(stiffness / A for stiffness in si.stiffnesses),
-            wall=(si.wall or 0.0) / A,
-            k=si.k,
-            velocities=(1.0,),
-            contact_sensors=(32,),
-            duration=172.0,
-            samples=2,
-        )
+    scene = Scene(
+        masses=tuple(mass / m for mass in si.masses),
+        stiffnesses=tuple(stiffness / A for stiffness in si.stiffnesses),
+        wall=(si.wall or 0.0) / A,
+        k=si.k,
+        velocities=(1.0,),
+        contact_sensors=(32,),
+        duration=172.0,
+        samples=2,
     )
+    return Task(scene)
 
 
 def precompressed() -> Task:
@@ -213,9 +212,7 @@ def cost(rows: Iterable[Timing], wanted: float) -> float:
     return min((row.seconds for row in good), default=math.inf)
 
 
-def runs(
-    name: str, task: Task, methods: Mapping[str, Sequence[float]] = METHODS
-) -> Iterator[Timing]:
+def runs(name: str, task: Task, methods: Mapping[str, Sequence[float]]) -> Iterator[Timing]:
     """Run a task by each method at each tolerance; yield the `Timing` of each run."""
     truth = task.truth or task.read(simulate(task.scene, rtol=FINEST))
     for method, tolerances in methods.items():
@@ -225,10 +222,9 @@ def runs(
             if method in COMPILED:
                 simulate(task.scene, rtol=1e-3, **options)  # compiles
             for rtol in tolerances:
+                once = partial(simulate, task.scene, rtol=rtol, atol=rtol, **options)
                 with suppress(IntegrationError):  # two windows differ
-                    run, seconds = timed(
-                        partial(simulate, task.scene, rtol=rtol, atol=rtol, **options)
-                    )
+                    run, seconds = timed(once)
                     title = method + ", window" * window
                     yield Timing(name, title, rtol, task.errors(run, truth), seconds)
 
@@ -238,29 +234,12 @@ _COSTS = (
     Column("task"),
     Column("method", "CPU time (ms) for the peak force to"),
     *(
-        Column(f"seconds_{wanted:.0e}", f"{wanted:.0e}", format=lambda s: f"{1e3 * s:.3g}")
-        for wanted in WANTED
+        Column(f"seconds_{error:.0e}", f"{error:.0e}", format=lambda s: f"{1e3 * s:.3g}")
+        for error in WANTED
     ),
 )
 _NOTE = "CPU time without compilation, on this machine; - where no run attains it from there on."
-
-
-def _costs(task: str, methods: Mapping[str, Sequence[Timing]]) -> list[tuple[Any, ...]]:
-    """Return rows: task, method, `cost` at each of `WANTED` (None: not attained), best first."""
-    costs = {name: [cost(rows, wanted) for wanted in WANTED] for name, rows in methods.items()}
-    # by the finest error, where attained
-    names = sorted(costs, key=lambda name: costs[name][::-1])
-    return [(task, name, *(s if s < math.inf else None for s in costs[name])) for name in names]
-
-
-def _panel(task: str, methods: Mapping[str, Sequence[Timing]]) -> Panel:
-    """Return the panel of CPU time as a function of the error, a curve for each method."""
-    curves = []
-    for name, rows in methods.items():
-        good = [row for row in rows if math.isfinite(row.error)]
-        curves.append(Curve(name, [row.error for row in good], [row.seconds for row in good]))
-    label = "largest relative error of arrival, peak, FWHM"
-    return Panel(label, "CPU time (s)", tuple(curves), "xy", task)
+_AXES = "largest relative error of arrival, peak, FWHM", "CPU time (s)"
 
 
 @study(option("--task", "names", multiple=True, type=click.Choice(NAMES), says="Only this task."))
@@ -276,26 +255,31 @@ def accuracy(
     ``theories``.
     """
     wanted = {one_of(name, NAMES, "task") for name in names} or set(NAMES)
-    tasks: dict[str, dict[str, list[Timing]]] = {}
     theories = Report("")
+    rows: list[tuple[Any, ...]] = []
+    costs: list[tuple[Any, ...]] = []
+    panels: list[Panel] = []
     for name in progress([name for name in NAMES if name in wanted]):
         if name == THEORY:
             theories = ladder([place(*case) for case in CASES])
-        else:
-            rows = runs(name, TASKS[name](), methods)
-            tasks[name] = {method: list(its) for method, its in groupby(rows, lambda r: r.method)}
-    cells = tuple(
-        (r.task, r.method, r.setting, r.error, *r.errors.values(), r.seconds)
-        for by_method in tasks.values()
-        for r in chain.from_iterable(by_method.values())
-    )
-    costs = tuple(line for task, by_method in tasks.items() for line in _costs(task, by_method))
+            continue
+        curves, spent = [], []
+        timings = runs(name, TASKS[name](), methods)
+        for method, group in groupby(timings, lambda timing: timing.method):
+            ts = list(group)
+            rows += [(name, method, t.setting, t.error, *t.errors.values(), t.seconds) for t in ts]
+            spent.append((name, method, *(cost(ts, error) for error in WANTED)))
+            good = [t for t in ts if math.isfinite(t.error)]
+            curves.append(Curve(method, [t.error for t in good], [t.seconds for t in good]))
+        # the cheapest at the smallest error first; methods that do not attain it last
+        costs += sorted(spent, key=lambda line: line[:1:-1])
+        panels.append(Panel(*_AXES, tuple(curves), "xy", name))
     return Report(
         "Speed against error",
         (
-            Table(tuple(map(Column, _RUNS)), cells, "rows"),
-            Table(_COSTS, costs, "costs", note=_NOTE, by="task"),
+            Table(tuple(map(Column, _RUNS)), tuple(rows), "rows"),
+            Table(_COSTS, tuple(costs), "costs", note=_NOTE, by="task"),
             *theories.tables,
         ),
-        panels=(*(_panel(task, runs) for task, runs in tasks.items()), *theories.panels),
+        panels=(*panels, *theories.panels),
     )

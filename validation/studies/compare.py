@@ -41,10 +41,10 @@ def compare(scene: str, measured: str, run_progress: RunProgress = silent) -> Re
     ``number``, ``quantity`` ("arrival", "peak" or "fwhm"), ``simulated_value``, ``measured_value``
     and ``difference_value``, measured less simulated, with errors; ``shift_value``.
     """
-    what = read_scene(scene)
-    if not (what.bead_sensors or what.contact_sensors):
+    chain = read_scene(scene)
+    if not (chain.bead_sensors or chain.contact_sensors):
         raise SceneError(f"{scene}: the scene names no sensors")
-    simulation = record(what, progress=run_progress)
+    simulation = record(chain, progress=run_progress)
     run, label, t = simulation.run, simulation.run.label, simulation.run.time
     names = [f"{reading.name} force" for reading in simulation.sensors]
     optional = [*names, *(f"{reading.name} dynamic force" for reading in simulation.sensors)]
@@ -74,9 +74,9 @@ def compare(scene: str, measured: str, run_progress: RunProgress = silent) -> Re
         ]
     if not first:
         raise SceneError(f"{measured}: no column is {' or '.join(names)}")
-    unit = f"{shift:.6g} s" if what.units else f"{shift:.6g}"
+    unit = f"{shift:.6g} s" if chain.units else f"{shift:.6g}"
     return Report(
-        str(what),
+        str(chain),
         (Table(_COLUMNS, tuple(rows), "rows"),),
         panels=(Panel(label("time"), label("dynamic force"), tuple(curves), legend_above=True),),
         notes=(_NOTE.format(unit, first),),

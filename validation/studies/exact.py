@@ -32,27 +32,32 @@ _COLUMNS = (
     Column("fwhm", "FWHM", "D", error=True),
 )
 _SCALING = """\
-Peak force 1; strain and force of a contact, velocity of a bead m1. Strains scale with the peak
-force F as F^(1/k), velocities as F^((k+1)/2k), c as F^((k-1)/2k); widths do not depend on F."""
+Strain and force of a contact, velocity of a bead m1. Strains scale with the peak force F as
+F^(1/k), velocities as F^((k+1)/2k), c as F^((k-1)/2k); widths do not depend on F."""
 
 
 @study(
     EXPONENT,
     option("--masses", callback=quantities, default="1", says="One mass, or the two of a dimer."),
-    option("--background", callback=number, default="0", says="Static over peak compression."),
+    option("--speed", callback=number, says="Scale the wave to this speed, at A = D = 1."),
+    option("--force", callback=number, says="Scale the wave to this peak force, at A = 1.  [1]"),
+    option("--background", default=0.0, says="Static over peak compression of a contact."),
 )
 def exact(
     k: float,
     masses: tuple[sp.Expr, ...],
+    speed: float | None = None,
+    force: float | None = None,
     background: float = 0.0,
     progress: Progress[Any] = iter,
 ) -> Report:
-    """Exact traveling wave of the lattice with peak force 1: speed, widths and tail.
+    """Exact traveling wave of the lattice: speed, widths and tail.
 
     Takes a second or two, for unequal masses from k = 4 on up to half a minute.
     """
     values = [float(mass) for mass in numbered(masses).masses]
-    return wave_report(exact_wave(values, k, background=background, progress=progress))
+    wave = exact_wave(values, k, background=background, progress=progress)
+    return wave_report(wave if speed is force is None else wave.scaled(speed=speed, force=force))
 
 
 def wave_report(wave: ExactWave) -> Report:

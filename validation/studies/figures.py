@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 from lwa import PhysicalWave, canonical_wave
@@ -42,29 +42,22 @@ class Speed(NamedTuple):
     theory: float
 
 
-@dataclass(frozen=True)
-class Scaling:
+class Scaling(NamedTuple):
     """Figure 3a, speed as a function of peak force, for one Young's modulus of PTFE.
 
-    E : the modulus, in Pa. speeds, forces : V_s and F_m = (F_15 + F_34)/2 at each drop height.
-    theory : speed of the canonical wave at each F_m.
+    E : the modulus, in Pa. exponent : e of V_s ~ F_m^e, by least squares. speeds, forces : V_s and
+    F_m = (F_15 + F_34)/2 at each drop height. theory : speed of the canonical wave at each F_m.
     """
 
     E: float
-    speeds: tuple[Measured, ...]
-    forces: tuple[Measured, ...]
-    theory: tuple[float, ...]
+    exponent: Measured
+    speeds: Sequence[Measured]
+    forces: Sequence[Measured]
+    theory: Sequence[float]
 
-    @property
-    def exponent(self) -> Measured:
-        """Exponent e of V_s ~ F_m^e, by least squares."""
-        return exponent(self.forces, self.speeds)
 
-    @property
-    def cells(self) -> tuple[Any, ...]:
-        """Cells below `_SCALINGS`."""
-        speeds, forces = ([x.value for x in row] for row in (self.speeds, self.forces))
-        return self.E, self.exponent, speeds, forces, self.theory
+def _values(numbers: Sequence[Measured]) -> list[float]:
+    return [number.value for number in numbers]
 
 
 def _ends(values: Sequence[float]) -> str:
@@ -111,17 +104,18 @@ def figures(
     speeds = [chain_speed(N) for N in progress(chains)]
     scalings = [scaling(E, heights) for E in progress(moduli)]
     first = tuple((*s, s.theory / s.speed.value - 1) for s in speeds)
+    second = tuple((*s[:2], _values(s.speeds), _values(s.forces), s.theory) for s in scalings)
     title = _SCALINGS_TITLE.format(heights[0], heights[-1])
-    second = Table(_SCALINGS, tuple(s.cells for s in scalings), "scalings", title=title)
+    table = Table(_SCALINGS, second, "scalings", title=title)
     data = [
         {"N": N, "beads": RECORDED[N], "time_value": run.time, "force_value": run.bead_force}
         for N, run in records.items()
     ]
     return Report(
         "",
-        (Table(_SPEEDS, first, "speeds", title=_SPEEDS_TITLE), second),
+        (Table(_SPEEDS, first, "speeds", title=_SPEEDS_TITLE), table),
         panels=(*(_forces_panel(N, run) for N, run in records.items()), _scaling_panel(scalings)),
-        data={"scaling": second.document()[0], "forces": data},
+        data={"scaling": table.document()[0], "forces": data},
     )
 
 
@@ -137,9 +131,9 @@ def _scaling_panel(scalings: Sequence[Scaling]) -> Panel:
     curves = []
     for i, row in enumerate(scalings):
         label = f"E = {row.E / 1e9:g} GPa: exponent {row.exponent.value:.4f}"
-        _, _, speeds, forces, theory = row.cells
-        curves.append(Curve(label, forces, speeds, f"C{i}{'os'[i]}"))
-        curves.append(Curve("theory, $F_m^{1/6}$", forces, theory, f"C{i}-"))
+        forces = _values(row.forces)
+        curves.append(Curve(label, forces, _values(row.speeds), f"C{i}{'os'[i]}"))
+        curves.append(Curve("theory, $F_m^{1/6}$", forces, row.theory, f"C{i}-"))
     return Panel("peak force $F_m$ (N)", "speed $V_s$ (m/s)", tuple(curves), "xy")
 
 
@@ -169,9 +163,9 @@ def chain_speed(N: int, tolerances: tuple[float, float] = TOLERANCES) -> Speed:
         return {"speed": across * period * DIAMETER / (second - first), "force": train.peak}
 
     scene = recorded_chain(sensors, N=N, beads=max(BEADS, (before + across + 3) * period))
-    found = compared(numbers, *twice(scene, *tolerances))
-    wave = PhysicalWave(canonical_wave(chain_cell(N), HERTZ), found["force"].value, "bead")
-    return Speed(N, found["speed"], found["force"], float(wave.speed))
+    speed, force = compared(numbers, *twice(scene, *tolerances), tolerances[0]).values()
+    wave = PhysicalWave(canonical_wave(chain_cell(N), HERTZ), force.value, "bead")
+    return Speed(N, speed, force, float(wave.speed))
 
 
 def scaling(
@@ -185,8 +179,8 @@ def scaling(
     drops = [recorded_chain(SENSORS, math.sqrt(2 * GRAVITY * h), ptfe=ptfe) for h in heights]
     fine, coarse = ([*map(Train.of, simulate_many(drops, rtol=rtol))] for rtol in tolerances)
     pairs = [*zip(fine, coarse, strict=True)]
-    speeds = tuple(Measured(train.speed, check.speed) for train, check in pairs)
-    forces = tuple(Measured(train.peak, check.peak) for train, check in pairs)
+    speeds = [Measured(train.speed, check.speed) for train, check in pairs]
+    forces = [Measured(train.peak, check.peak) for train, check in pairs]
     wave = canonical_wave(chain_cell(ptfe=ptfe), HERTZ)
-    theory = (float(wave.at_force(force.value, of="bead").speed) for force in forces)
-    return Scaling(E, speeds, forces, tuple(theory))
+    theory = [float(wave.at_force(force.value, of="bead").speed) for force in forces]
+    return Scaling(E, exponent(forces, speeds), speeds, forces, theory)

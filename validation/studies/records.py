@@ -1,9 +1,11 @@
 """Files of runs: the records of the sensors, the pulses measured in them, and the scene.
 
 JSON: the result's document, and under ``records`` the arrays of `validation.lattice.run.Records`,
-their names ending in ``_value``. NumPy's .npz: the same arrays, and the text ``document``, the
-result in JSON. CSV, for spreadsheets: time and records by sensor, with units in the header, but
-neither result nor scene. Forces are total: static forces are included.
+their names ending in ``_value``. NumPy's .npz: the same arrays, the numbers of the result's tables
+as ``sensors_arrival_value`` and so on (NaN without a pulse), and ``document``, a JSON text.
+
+CSV, for spreadsheets: time and records by sensor, with units in the header, but neither result nor
+scene. Forces are total: static forces are included.
 """
 
 from __future__ import annotations
@@ -43,6 +45,11 @@ def store(run: Run, document: Mapping[str, Any], file: Path) -> None:
     suffix = file.suffix.lower()
     with replacing(file) as new, new.open("wb") as stream:
         if suffix == ".npz":
+            for table in ("sensors", "speeds"):
+                for name in document[table][0] if document[table] else ():
+                    if name not in ("kind", "missing"):  # texts
+                        column = np.array([row[name] for row in document[table]], float)
+                        arrays[f"{table}_{name}"] = column
             np.savez_compressed(stream, document=json.dumps(document), **arrays)
         elif suffix == ".csv":
             columns = run.columns()

@@ -13,8 +13,7 @@ import validation.scenes
 from validation.lattice.run import RunProgress
 from validation.lattice.simulate import COMPILED, METHODS
 from validation.pulses.sensors import READINGS, SPEEDS, TOLERANCE, Reading, Recording, record
-from validation.report.command import option, study, whole
-from validation.report.files import output_file
+from validation.report.command import option, output_option, study
 from validation.report.result import Report
 from validation.report.table import Column, Table
 from validation.scenes.checks import SceneError
@@ -34,7 +33,7 @@ def example(name: str) -> str:
     return file.read_text(encoding="utf-8")
 
 
-def report(found: Recording, every: bool = False) -> Report:
+def report(recording: Recording, every: bool = False) -> Report:
     """Return the report of a run, with all pulses at each sensor (``every``) or only the first.
 
     Keys of the JSON document: ``scene`` (as in a file, see `validation.scenes.scenefile`);
@@ -45,7 +44,7 @@ def report(found: Recording, every: bool = False) -> Report:
     null where ``missing`` is the reason; ``energy_drift_value``, and ``momentum_drift_value``, null
     with a wall; with damping the energy ``dissipated_value``, with a drive its ``work_value``.
     """
-    run, scene = found.run, found.run.scene
+    run, scene = recording.run, recording.run.scene
     momentum = "not conserved" if (p := run.momentum_drift) is None else f"drift {p:.0e}"
     title = f"{scene}, energy drift {run.energy_drift:.0e}"
     data = {
@@ -61,7 +60,7 @@ def report(found: Recording, every: bool = False) -> Report:
         title += f", work {run.work:.6g}"
     which = "All pulses" if every else "First pulse"
     note = _NOTE.format(which, scene.units or "the scene's own") + _DYNAMIC * any(scene.load)
-    missing = [f"{r.name}: {r.missing}" for r in found.sensors + found.speeds if r.missing]
+    missing = [f"{r.name}: {r.missing}" for r in recording.sensors + recording.speeds if r.missing]
     peak = "peak dynamic force" if any(scene.load) else "peak force"
     labels = [run.label(name) for name in ("arrival", peak, "FWHM")]
     sensors = (
@@ -75,15 +74,15 @@ def report(found: Recording, every: bool = False) -> Report:
         *(*_measured(SPEEDS, units), Column("missing")),
     )
     pulses = tuple(
-        (*_place(r), *[r.pulse] * every, *map(r.numbers.get, READINGS), r.static, r.missing)
-        for r in found.sensors
+        (*_place(r), *[r.pulse] * every, *_numbers(r, READINGS), r.static, r.missing)
+        for r in recording.sensors
     )
-    times = tuple((*_place(r), *map(r.numbers.get, SPEEDS), r.missing) for r in found.speeds)
+    times = tuple((*_place(r), *_numbers(r, SPEEDS), r.missing) for r in recording.speeds)
     return Report(
         f"{title}, momentum {momentum}",
         (Table(sensors, pulses, "sensors"), Table(speeds, times, "speeds")),
         panels=tuple(run.pictured()),
-        notes=("\n".join(missing), note if found.sensors else ""),
+        notes=("\n".join(missing), note if recording.sensors else ""),
         data=data,
     )
 
@@ -98,19 +97,24 @@ def _place(reading: Reading) -> tuple[Any, ...]:
     return reading.name, reading.kind, *reading.places
 
 
-def _out(context: click.Context, given: click.Parameter, path: str | None) -> Path | None:
-    return None if path is None else output_file("out", path, SUFFIXES)
-
-
-def _window(context: click.Context, given: click.Parameter, value: str | None) -> bool | int:
-    """Read ``--window``: the number of beads, True without a value, False without the option."""
-    return value == "" or (whole(context, given, value) or False)
+def _numbers(reading: Reading, names: Sequence[str]) -> list[Any]:
+    """Return the cells of a reading; "not followed" where a window had left the sensor."""
+    numbers = [reading.numbers.get(name) for name in names]
+    left = (reading.missing or "").startswith("not followed")
+    return ["not followed", *numbers[1:]] if left else numbers
 
 
 def _print_example(context: click.Context, given: click.Parameter, name: str | None) -> None:
     if name is not None and not context.resilient_parsing:  # completion parses resiliently
         click.echo(example(name), nl=False)
         context.exit()
+
+
+_METHODS = click.Choice((*COMPILED, *METHODS))
+_INTEGRATOR = f"Integrator: {' and '.join(COMPILED)} are compiled, the others SciPy's."
+_SHOWN = example(EXAMPLES[0]).replace("\n\n", "\n")
+_EPILOG = f"\b\nA scene file, in SI units if its beads are of materials:\n{_SHOWN}"
+_RTOL = "Relative tolerance. Errors are differences to a run with 1000 times as much."
 
 
 @study(
@@ -123,31 +127,20 @@ def _print_example(context: click.Context, given: click.Parameter, name: str | N
         is_eager=True,
         expose_value=False,
         callback=_print_example,
-        show_default=False,
         says="Print an example of a scene file, by default the paper's chain.",
     ),
-    option(
+    output_option(
         "--out",
-        callback=_out,
-        metavar="FILE",
-        says="Store the records in a file: .csv, or, with the result and the scene, .json or .npz.",
+        SUFFIXES,
+        "Store the records in a file: .csv, or, with the result and the scene, .json or .npz.",
     ),
-    option(
-        "--method",
-        default=COMPILED[0],
-        type=click.Choice((*COMPILED, *METHODS)),
-        says=f"Integrator: {' and '.join(COMPILED)} are compiled, the others SciPy's.",
-    ),
-    option(
-        "--rtol",
-        default=TOLERANCE,
-        says="Relative tolerance. Errors are differences to a run with 1000 times as much.",
-    ),
+    option("--method", default=COMPILED[0], type=_METHODS, says=_INTEGRATOR),
+    option("--rtol", default=TOLERANCE, says=_RTOL),
     option(
         "--window",
-        callback=_window,
+        type=int,
         is_flag=False,
-        flag_value="",
+        flag_value=0,
         metavar="[BEADS]",
         says="Follow the leading pulse only, with at least so many beads behind its front.",
     ),
@@ -155,31 +148,31 @@ def _print_example(context: click.Context, given: click.Parameter, name: str | N
         "--pulses",
         is_flag=True,
         default=False,
-        show_default=False,
         says="Measure all pulses at each sensor, not only the first.",
     ),
+    epilog=_EPILOG,
 )
 def run(
     scene: str,
     out: Path | None,
     method: str,
     rtol: float,
-    window: bool | int,
+    window: int | None,
     pulses: bool,
     run_progress: RunProgress,
 ) -> Report:
-    """A scene from a file, TOML or JSON: arrival, peak force, FWHM and speed at its sensors. The
-    keys of a scene's file are listed by `python -m pydoc validation.scenes.scenefile`.
-    """
-    what = load(scene).scene if scene.lower().endswith(".npz") else read_scene(scene)
+    """A scene from a file, TOML or JSON: arrival, peak force, FWHM and speed at its sensors."""
+    chain = load(scene).scene if scene.lower().endswith(".npz") else read_scene(scene)
     if out is not None and out.exists() and out.samefile(scene):
         raise SceneError(f"out is {out}: it is the scene's own file, which would be lost")
-    sensors = what.bead_sensors or what.contact_sensors
+    sensors = chain.bead_sensors or chain.contact_sensors
     if out is not None and out.suffix.lower() not in STORED and not sensors:
         raise SceneError(f"out is {out}, but the scene names no sensors")
-    options: Any = {"method": method, "rtol": rtol, "window": window, "progress": run_progress}
-    found = record(what, every=pulses, **options)
-    result = report(found, every=pulses)
+    options: Any = {"method": method, "rtol": rtol, "progress": run_progress}
+    if window is not None:
+        options["window"] = window or True
+    recording = record(chain, every=pulses, **options)
+    result = report(recording, every=pulses)
     if out is not None:
-        store(found.run, result.document(), out)
+        store(recording.run, result.document(), out)
     return result

@@ -26,7 +26,7 @@ from lwa.base.progress import Progress
 from validation.lattice.threads import cluster, threads
 from validation.pictures import Curve, Map, Panel
 from validation.pulses.steady import QUANTITIES, STRETCH, Key, Point, PointFile, point
-from validation.report.command import option, study, whole
+from validation.report.command import option, study
 from validation.report.files import output_file
 from validation.report.result import Report
 from validation.report.table import Column, Table, percent
@@ -53,20 +53,15 @@ contact's force may have several humps, that of the theory has one: the width, o
 is no measure of the theory's error."""
 
 
-class SweepError(Failure):
-    """Failure of a worker; finished points are kept."""
-
-
 def report(ks: Axis, omegas: Axis, points: Sequence[Point], stretch: int = STRETCH) -> Report:
     """Return the report of points, in rising order of k, then of ω, beside the theories.
 
     Table ``points`` has the missing values' reasons; the panels are maps over ω and k, or curves.
     """
-    shape, waves = (len(ks), len(omegas)), theory(ks, omegas)
-    numbers = {name: [p.numbers.get(name) for p in points] for name in QUANTITIES}
+    waves, numbers = theory(ks, omegas), {q: [p.numbers.get(q) for p in points] for q in QUANTITIES}
     value, error = (
         {
-            name: np.reshape([getattr(x, part, np.nan) for x in row], shape)
+            name: np.reshape([getattr(x, part, np.nan) for x in row], (len(ks), len(omegas)))
             for name, row in numbers.items()
         }
         for part in ("value", "error")
@@ -87,14 +82,15 @@ def report(ks: Axis, omegas: Axis, points: Sequence[Point], stretch: int = STRET
         (Column("missing"), [p.missing for p in points]),
     ]
     for closure, wave in waves.items():
-        cells += [(Column(f"theory.{closure}.{n}_value"), x.ravel()) for n, x in wave.items()]
+        cells += [(Column(f"theory.{closure}.{q}_value"), x.ravel()) for q, x in wave.items()]
     columns, values = zip(*cells, strict=True)
     heads = {str(k): f"k = {k}" for k in ks}
     missing = [f"k = {p.k}, ω = {p.omega}: {p.missing}" for p in points if p.missing is not None]
+    panels = _maps if len(ks) > 1 < len(omegas) else _curves
     return Report(
         "The steady pulse of a struck dimer chain",
         (Table(columns, tuple(zip(*values, strict=True)), "points", by="k", heads=heads),),
-        panels=(_maps if min(shape) > 1 else _curves)(ks, omegas, value, error, waves),
+        panels=tuple(panels(ks, omegas, value, error, waves)),
         notes=("\n".join(missing), _NOTE),
         data={"stretch": stretch, "missing": len(missing)},
     )
@@ -102,7 +98,8 @@ def report(ks: Axis, omegas: Axis, points: Sequence[Point], stretch: int = STRET
 
 def _maps(
     ks: Axis, omegas: Axis, value: Grids, error: Grids, waves: Mapping[str, Grids]
-) -> tuple[Panel, ...]:
+) -> Iterator[Panel]:
+    """Yield maps of width, speed, decay, and of the error of the paper's closure."""
     x, y = (np.array(axis, float) for axis in (omegas, ks))
     theory = 100 * (waves["linear"]["width"] / value["width"] - 1)
     # ends of the colours
@@ -112,34 +109,30 @@ def _maps(
     i, j = np.nonzero(error["width"] > 0.01 * value["width"])
     unsure = (Curve("", x[j], y[i], "rx"),)
     title = "hatched: no value; red ×: width known to less than 1 %"
-    scale = "x" if x[-1] > 50 * x[0] else ""
-    return tuple(
-        Panel(_OMEGA, "k", unsure, scale, title, found)
-        for found in (
-            Map(QUANTITIES["width"], x, y, value["width"]),
-            Map(QUANTITIES["speed"], x, y, value["speed"]),
-            Map(QUANTITIES["decay"], x, y, decay, least, scale="log", colours="cividis"),
-            Map(percents, x, y, theory, -largest, largest, colours="PuOr"),
-        )
-    )
+    for colours in (
+        Map(QUANTITIES["width"], x, y, value["width"]),
+        Map(QUANTITIES["speed"], x, y, value["speed"]),
+        Map(QUANTITIES["decay"], x, y, decay, least, scale="log", colours="cividis"),
+        Map(percents, x, y, theory, -largest, largest, colours="PuOr"),
+    ):
+        yield Panel(_OMEGA, "k", unsure, "x" if x[-1] > 50 * x[0] else "", title, colours)
 
 
 def _curves(
     ks: Axis, omegas: Axis, value: Grids, error: Grids, waves: Mapping[str, Grids]
-) -> tuple[Panel, ...]:
+) -> Iterator[Panel]:
+    """Yield curves of each quantity along the axis with more than one value."""
     along_k = ks, "k", f"ω = {omegas[0]}"
     axis, x, title = along_k if len(ks) > 1 else (omegas, _OMEGA, f"k = {ks[0]}")
-    panels = []
     for name, label in QUANTITIES.items():
-        shown, bar = value[name].ravel(), error[name].ravel()
+        y, bar = value[name].ravel(), error[name].ravel()
         if log := name == "decay":  # a decay below its error is drawn as its error
-            shown = np.fmax(shown, bar)
-        curves = [Curve("lattice", axis, shown, "ko", bar)]
+            y = np.fmax(y, bar)
+        curves = [Curve("lattice", axis, y, "ko", bar)]
         for style, (closure, wave) in zip(("C0-", "C1--"), waves.items(), strict=True):
             if name in wave:
                 curves.append(Curve(CLOSURES[closure], axis, wave[name].ravel(), style))
-        panels.append(Panel(x, label, tuple(curves), "y" * log, title))
-    return tuple(panels)
+        yield Panel(x, label, tuple(curves), "y" * log, title)
 
 
 def theory(ks: Axis, omegas: Axis) -> dict[str, dict[str, Array]]:
@@ -147,15 +140,15 @@ def theory(ks: Axis, omegas: Axis) -> dict[str, dict[str, Array]]:
     k, omega = np.meshgrid(np.array(ks, float), np.array(omegas, float), indexing="ij")
     scale = np.sqrt(2 * k / (1 + omega))  # τ/t, for A = D = m1 = 1
     cell = Dimer("m1", "m2", spacing=1)
-    found = {"linear": homogenize(cell).pde.traveling_wave(), "canonical": canonical_wave(cell)}
-    waves = {closure: wave.numeric(missing="nan") for closure, wave in found.items()}
+    waves = {"linear": homogenize(cell).pde.traveling_wave(), "canonical": canonical_wave(cell)}
+    functions = {closure: wave.numeric(missing="nan") for closure, wave in waves.items()}
     return {
         closure: {
             "width": wave.fwhm(k, omega, "force"),
             "strain_width": wave.fwhm(k, omega, "strain"),
             "speed": wave.speed(k, omega) * scale,
         }
-        for closure, wave in waves.items()
+        for closure, wave in functions.items()
     }
 
 
@@ -174,8 +167,8 @@ def _axis(text: str, name: str) -> Iterator[sp.Expr]:
 
 def _values(given: str | Iterable[Any], name: str) -> tuple[Rational, ...]:
     """Read the exact values of an axis, in rising order."""
-    listed = _axis(given, name) if isinstance(given, str) else items(given, name)
-    values = {exact(value, name) for value in listed}
+    given = _axis(given, name) if isinstance(given, str) else items(given, name)
+    values = {exact(value, name) for value in given}
     least, most = RANGES[name]
     for value in values:
         if not (value.is_Rational and least <= value <= most):
@@ -200,20 +193,20 @@ def measured(
     """
     with file.locked() if file else nullcontext():
         points = file.read() if file else {}
-        todo = [key for key in product(ks, omegas) if key not in points]
+        missing = [key for key in product(ks, omegas) if key not in points]
         with workers or threads() as executor:
-            underway = [executor.submit(point, *key, stretch) for key in todo]
+            futures = [executor.submit(point, *key, stretch) for key in missing]
             try:
-                for _, future in zip(progress(todo), as_completed(underway), strict=True):
-                    found = future.result()
-                    points[found.k, found.omega] = found
+                for _, future in zip(progress(missing), as_completed(futures), strict=True):
+                    new = future.result()
+                    points[new.k, new.omega] = new
                     if file:
-                        file.append(found)
+                        file.append(new)
             except (BrokenExecutor, CancelledError) as error:
                 gone = "the workers are gone before the sweep is done: killed, or out of memory?"
-                raise SweepError(gone) from error
+                raise Failure(gone) from error
             finally:
-                for future in underway:
+                for future in futures:
                     future.cancel()
     return [points[key] for key in product(ks, omegas)]
 
@@ -226,7 +219,7 @@ _RANGES = "values and ranges start:stop:count, separated by commas."
     option("--omega", "omegas", default="1/20:1:20", says=f"Mass ratios m2/m1: {_RANGES}"),
     option("--stretch", default=STRETCH, says="Cells from place to place; more at k < 3/2."),
     option("--file", metavar="FILE", says="Keep finished points (.jsonl), and continue from them."),
-    option("--jobs", callback=whole, says="Threads; by default one for each processor."),
+    option("--jobs", type=int, says="Threads; by default one for each processor."),
     option("--cluster", "address", metavar="ADDRESS", says="Dask scheduler to compute on."),
 )
 def sweep(
@@ -243,12 +236,11 @@ def sweep(
 
     ks, omegas: texts such as "5/4:3:8, 4", or exact numbers; floats count as their decimals.
     stretch: cells between places of measurement at k ≥ 3/2, see `validation.pulses.steady`.
-    file: keeps finished points, ends in .jsonl; points in the file are not computed again.
+    file: file of finished points (.jsonl), which are not computed again.
     jobs, address: number of threads, by default one a core; scheduler of a Dask cluster instead.
-    progress: shows the points to be computed, such as `tqdm.tqdm`.
 
-    Raises `lwa.InputError` for numbers outside `RANGES` or an unfit file, `SweepError` when a
-    worker fails; finished points are kept.
+    Raises `lwa.InputError` for numbers outside `RANGES` or an unfit file, and `Failure` when a
+    worker fails; the file keeps finished points.
 
     >>> round(sweep(["3/2"], [1]).document()["points"][0]["width_value"], 4)
     1.4119
@@ -258,6 +250,6 @@ def sweep(
     if address is not None and jobs is not None:
         raise InputError(f"jobs is {jobs}: a cluster has workers of its own")
     path = None if file is None else output_file("file", str(file), (".jsonl",))
-    kept = None if path is None else PointFile(path, stretch)
+    points = None if path is None else PointFile(path, stretch)
     workers = threads(jobs, "jobs") if address is None else cluster(address)
-    return report(*grid, measured(*grid, stretch, kept, workers, progress), stretch)
+    return report(*grid, measured(*grid, stretch, points, workers, progress), stretch)

@@ -109,7 +109,7 @@ Truth: the solitary wave or, where there is none, the pulse of a struck chain.""
 def ladder(places: Sequence[Place]) -> Report:
     """Return the table of the theories' errors, and a picture of |error| of the force's width."""
     seconds = {name: [p.seconds[name] for p in places if name in p.seconds] for name in THEORIES}
-    costs = ", ".join(f"{name} {1e3 * median(its):.3g}" for name, its in seconds.items() if its)
+    costs = ", ".join(f"{name} {1e3 * median(s):.3g}" for name, s in seconds.items() if s)
     rows = tuple(place.row(name) for name in NAMES for place in places)
     note = f"{_NOTE}\nMedian cost of derivation and evaluation (ms of CPU): {costs}."
     title = "Theories against true waves"

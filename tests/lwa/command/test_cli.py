@@ -376,15 +376,27 @@ def test_bad_input_is_one_line_and_status_two(capsys, arguments):
     ("command", "says"),
     [
         ("wave --k V_s", "'V_s': the name means the speed"),
-        ("wave --k 29000", "exponents from 1/100 to 1000 are taken"),
+        ("wave --masses m1,ξ", "'ξ' has a meaning of its own in the output of `lwa wave`"),
+        ("derive --masses m1,b12", "'b12' has a meaning"),
+        ("dispersion --masses kappa,1", "'kappa' has a meaning"),
+        ("envelope --wavenumber chi", "'chi' has a meaning"),
+        ("wave --background 1 --law hertz2:L,1", "'L' has a meaning"),
+        ("wave --k 29000", "exponents from 1/100 to 1000"),
         ("derive --masses 1,2,3", "--closure full"),
     ],
 )
-def test_a_name_with_another_meaning_or_a_huge_number_is_refused(capsys, command, says):
+def test_what_would_print_one_letter_for_two_things_is_refused(capsys, command, says):
     status, out, err = run(capsys, *command.split())
     assert (status, out) == (2, "")
     assert says in err
     assert err.count("\n") == 1
+
+
+def test_letters_of_other_commands_are_free(capsys):
+    for command in ("derive --masses p,q --k n", "wave --masses b1,c --stiffnesses A,1"):
+        status, out, _ = run(capsys, *command.split(), "--closure", "full")
+        assert status == 0
+        assert command.split()[2].split(",")[1] in out
 
 
 def test_conservative_is_decided_at_any_order(capsys):

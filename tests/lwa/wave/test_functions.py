@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 from lwa import Cell, Dimer, InputError, NoSolitaryWave, canonical_wave, homogenize
 from lwa.code import LANGUAGES, Function
 from lwa.command.cli import main
-from lwa.wave.functions import OWN, in_order, wave_functions
+from lwa.wave.functions import in_order, wave_functions
 from tests.lwa.code.compilers import PROGRAMS, compiled, in_node
 
 in_every_language = pytest.mark.parametrize(
@@ -51,14 +51,18 @@ def wave_of(name):
 
 
 @cache
+def wave_functions_of(name):
+    return wave_functions(wave_of(name))
+
+
 def functions_in(name):
-    return list(wave_functions(wave_of(name)).values())
+    return list(wave_functions_of(name).values())
 
 
 @cache
 def code_of(name, language):
     """As `TravelingWave.code` writes it, but derived once for all languages."""
-    return LANGUAGES[language](functions_in(name), OWN).module([name])
+    return wave_functions_of(name).source(language, [name])
 
 
 def exact(value):

@@ -85,10 +85,11 @@ def test_the_content_of_a_regular_file_only(tmp_path):
             content(tmp_path / name, most)
 
 
-def test_a_link_keeps_its_target(tmp_path):
+def test_a_link_keeps_its_target_and_a_file_its_mode(tmp_path):
     (tmp_path / "far").mkdir()
     target, link, dangling = (tmp_path / n for n in ("far/t.svg", "l.svg", "d.svg"))
     target.write_text("old")
+    target.chmod(0o640)
     link.symlink_to("far/t.svg")
     dangling.symlink_to("far/new.svg")
     for file in (link, dangling):
@@ -97,6 +98,7 @@ def test_a_link_keeps_its_target(tmp_path):
     assert link.is_symlink()
     assert dangling.is_symlink()
     assert (target.read_text(), dangling.read_text()) == ("whole", "whole")
+    assert target.stat().st_mode & 0o777 == 0o640
     assert len(list((tmp_path / "far").iterdir())) == 2
 
 

@@ -92,7 +92,7 @@ def test_the_limits_of_the_paper():
 
 def test_all_hold(limits_rows):
     assert report(limits_rows).ok
-    assert len(limits_rows) == 44
+    assert len(limits_rows) == 47
 
 
 def found(limits_rows, quantity, k, omega):

@@ -27,7 +27,8 @@ from validation.lattice.threads import cluster
 from validation.pulses.pulse import Measured
 from validation.pulses.steady import QUANTITIES, Point
 from validation.report.table import percent
-from validation.studies.sweep import SweepError, report, sweep, theory
+from validation.scenes.checks import Failure
+from validation.studies.sweep import report, sweep, theory
 from validation.waves.theory import theory_at
 
 R = sp.Rational
@@ -489,5 +490,5 @@ def test_a_range_is_exact_and_equidistant():
 
 
 def test_lost_workers_are_reported():
-    with pytest.raises(SweepError, match=r"^the workers are gone before"):
+    with pytest.raises(Failure, match=r"^the workers are gone before"):
         sweep(KS, OMEGAS, progress=stopping(1, BrokenExecutor("killed")), **QUICK)

@@ -8,128 +8,85 @@ of p, the φ_n in the coefficients among them, are expanded about φ_x.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
-from functools import cached_property
-from typing import Any
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import sympy as sp
 from flint import fmpq_mpoly
 
 from lwa.algebra.contact import Force, SeriesPowers
 from lwa.algebra.jets import Ladder, Monomial
+from lwa.algebra.model import Model
 from lwa.base.exact import InputError
-from lwa.closure.consistency import Closure
+from lwa.closure.solution import Solution
 
 Series = list[fmpq_mpoly]
 
 
-@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
-class ChangedClosure(Closure):
-    """A closure written for φ = u + Σ α_n D^n ∂_x^n u, without ansatz and defect.
-
-    alphas : the (n, α_n), n ≥ 1; ``origin`` is the closure of u.
-    """
-
-    origin: Closure
-    alphas: tuple[tuple[int, sp.Expr], ...]
-
-    @property
-    def key(self) -> tuple[Any, ...]:
-        """The arguments of `change_field`, by which closures are compared."""
-        return (self.origin, self.alphas)
-
-    def __reduce__(self) -> tuple[Callable[..., Closure], tuple[Any, ...]]:
-        return change_field, (self.origin, dict(self.alphas))
-
-    def __repr__(self) -> str:
-        shifts = ", ".join(f"{n}: {alpha}" for n, alpha in self.alphas)
-        return f"{self.origin!r} in the field {{{shifts}}}"
-
-    @cached_property
-    def fields(self) -> tuple[tuple[fmpq_mpoly, ...], ...]:
-        """The S_i of w_i = φ + D φ_x S_i in the new jets."""
-        change = _Change(self.origin, dict(self.alphas))
-        return tuple(map(change.slaved, self.origin.fields))
-
-    @property
-    def symbols(self) -> tuple[sp.Symbol, ...]:
-        """Symbols of the original closure and of the α_n."""
-        own = set().union(*(alpha.free_symbols for _, alpha in self.alphas))
-        own -= {*self.model.cell.symbols, *self.model.law.symbols, *self.origin.symbols}
-        return (*self.origin.symbols, *sorted(own, key=str))
-
-    def anew(
-        self, new: Mapping[sp.Symbol, sp.Expr] | None = None, order: int | None = None
-    ) -> Closure:
-        """Derive again with these values of the symbols, or to this order."""
-        alphas = {n: alpha.xreplace(new or {}) for n, alpha in self.alphas}
-        return change_field(self.origin.anew(new, order), alphas)
-
-
-def change_field(closure: Closure, alphas: Mapping[int, sp.Expr]) -> ChangedClosure:
-    """The closure for φ = u + Σ α_n D^n ∂_x^n u, n ≥ 1.
+def in_field(
+    solution: Solution, model: Model, order: int, alphas: Mapping[int, sp.Expr]
+) -> tuple[Model, Solution]:
+    """A solution written for φ = u + Σ α_n D^n ∂_x^n u, n ≥ 1, and its model with the α_n.
 
     Raises `lwa.InputError` on the optical branch and for n < 1.
     """
-    if closure.model.branch != "acoustic":
+    if model.branch != "acoustic":
         raise InputError("the change of field is for the acoustic branch")
     if any(n < 1 for n in alphas):
         raise InputError(f"n is {min(alphas)}: α_n D^n ∂_x^n changes the field for n from 1 on")
-    return _Change(closure, alphas).result()
+    change = _Change(solution, model, order, alphas)
+    return change.model, change.result()
 
 
 class _Change:
-    """The change from the field u of a closure to φ.
+    """The change from the field u of a solution to φ.
 
     alpha, inverse : the α_n and the ℓ_n of u = φ + Σ ℓ_n D^n ∂_x^n φ; both start with 1.
     """
 
-    def __init__(self, closure: Closure, alphas: Mapping[int, sp.Expr]) -> None:
-        self.closure, self.alphas, self.size = closure, alphas, closure.order
-        old, constants = closure.algebra, closure.model.constants
-        self.model = replace(closure.model, constants=(*constants, *alphas.values()))
+    def __init__(
+        self, solution: Solution, model: Model, order: int, alphas: Mapping[int, sp.Expr]
+    ) -> None:
+        self.solution, self.size = solution, order
+        self.model = replace(model, constants=(*model.constants, *alphas.values()))
+        old = solution.algebra
         self.algebra = self.model.algebra(old.weight, velocity=bool(old.s))
         self.k = self.model.ring.exponent(self.algebra.context)
         zero, one = self.algebra.zero, self.algebra.one
-        self.alpha = [one] + [zero] * self.size
-        for i, n in enumerate(alphas, start=len(constants)):
-            if n <= self.size:
+        self.alpha = [one] + [zero] * order
+        for i, n in enumerate(alphas, start=len(model.constants)):
+            if n <= order:
                 self.alpha[n] = self.model.ring.constant(i, self.algebra.context)
         self.inverse = [one]
-        for n in range(1, self.size + 1):  # (Σ α_n D^n ∂_x^n)(Σ ℓ_n D^n ∂_x^n) = 1
+        for n in range(1, order + 1):  # (Σ α_n D^n ∂_x^n)(Σ ℓ_n D^n ∂_x^n) = 1
             terms = (self.alpha[j] * self.inverse[n - j] for j in range(1, n + 1))
             self.inverse.append(-sum(terms, zero))
 
-    def result(self) -> ChangedClosure:
-        closure = self.closure
-        return ChangedClosure(
+    def result(self) -> Solution:
+        old = self.solution
+        return Solution(
             algebra=self.algebra,
-            acceleration=self._acceleration(),
-            model=self.model,
-            order=closure.order,
-            name=closure.name,
-            field="changed",
-            origin=closure,
-            alphas=tuple(self.alphas.items()),
+            acceleration=self._applied(old.acceleration),
+            slaved=tuple(map(self._slaved, old.fields)),
+            defect=self._applied(old.defect),
         )
 
-    def _acceleration(self) -> tuple[fmpq_mpoly, ...]:
-        """The terms of φ_ττ = (1 + Σ α_n D^n ∂_x^n) u_ττ."""
-        E = Ladder(self.algebra, self.k, self._replaced(self.closure.acceleration, self.k))
+    def _applied(self, terms: Sequence[fmpq_mpoly]) -> tuple[fmpq_mpoly, ...]:
+        """The terms of (1 + Σ α_n D^n ∂_x^n) (u_x^k Σ D^n E_n) in the jets of φ."""
+        E = Ladder(self.algebra, self.k, self._replaced(terms, self.k)[: len(terms)])
         return tuple(
             sum((self.alpha[j] * E.dx(n - j, j) for j in range(n + 1)), self.algebra.zero)
-            for n in range(self.size)
+            for n in range(len(terms))
         )
 
-    def slaved(self, S: Sequence[fmpq_mpoly]) -> tuple[fmpq_mpoly, ...]:
+    def _slaved(self, S: Sequence[fmpq_mpoly]) -> tuple[fmpq_mpoly, ...]:
         """The terms of [(u - φ) + D u_x S] / (D φ_x) in the jets of φ; the numerator is w - φ."""
         moved = self._replaced(S, self.algebra.one)
         return tuple(self.inverse[n + 1] * self.algebra.r[n] + moved[n] for n in range(self.size))
 
     def _replaced(self, terms: Sequence[fmpq_mpoly], exponent: fmpq_mpoly) -> Series:
         """The series u_x^e Σ D^m f_m in the jets of φ."""
-        old, context = self.closure.algebra, self.algebra.context
+        old, context = self.solution.algebra, self.algebra.context
         padding = (0,) * (context.nvars() - len(old.parameters))
         total = [self.algebra.zero] * self.size
         for m, f in enumerate(terms):

@@ -1,4 +1,4 @@
-"""The command `lwa shock`: shocks and rarefactions of a chain that a wall drives."""
+"""The commands `lwa strike` and `lwa shock`: chains driven by a striker or by a wall."""
 
 from __future__ import annotations
 
@@ -9,26 +9,62 @@ import sympy as sp
 
 from lwa.base.errors import InputError
 from lwa.command.chain import ChainInput, take_chain
-from lwa.command.options import SPHERES, cell_options, quantity
+from lwa.command.options import SPHERES, cell_options, spheres_option, style_option, value
 from lwa.command.rows import Answer, Row, attempt
+from lwa.command.waves import SPEED, hertz_note
+from lwa.expansion.physical import pulse_of_strike
 from lwa.shocks import riemann
-from lwa.shocks.riemann import RULES, Shock
+
+
+@click.command()
+@spheres_option(required=True)
+@value("--velocity", "Velocity of the striker, in m/s.")
+@value("--drop", "Height from which the striker falls, in m, in place of --velocity.")
+@value("--mass", "Mass of the striker, in kg.  [default: that of a bead]")
+@style_option()
+def strike(
+    spheres: str,
+    velocity: sp.Expr | None,
+    drop: sp.Expr | None,
+    mass: sp.Expr | None,
+    style: str,
+) -> None:
+    """Leading pulse of a chain of equal beads that a mass strikes: force, speed and width.
+
+    Needs --spheres, and --velocity or --drop. Units are those of the file, mostly SI; the width is
+    that of a contact's force.
+    """
+    chain = take_chain({"spheres": spheres})
+    cell, law = chain.cell, chain.law
+    mass = cell.masses[0] if mass is None else mass
+    pulse = pulse_of_strike(cell, mass, velocity, drop=drop, k=law.exponent)
+    rows: list[Row | str] = [
+        f"chain of equal beads; F = A δ^k, k = {law.exponent}",
+        Row("", "mass of the beads", cell.masses[0], unit="kg"),
+        Row("mass", "mass of the striker", pulse.mass, "m_{s}", "kg", expression=False),
+        Row("velocity", "velocity of the striker", pulse.velocity, "v", "m/s", expression=False),
+        "",
+        "leading pulse:",
+        Row("force", "peak contact force", pulse.force, "F", "N"),
+        Row("speed", "speed dx/dt", pulse.speed, SPEED, "m/s"),
+        Row("fwhm.length", "FWHM of the force", pulse.fwhm("force", "length"), _WIDTH, "m"),
+        Row("fwhm.time", "FWHM of the force in time", pulse.fwhm(), _WIDTH + "/c", "s"),
+    ]
+    notes = [*chain.without_load(), *hertz_note(chain, pulse.wave.F)]
+    if pulse.train:
+        notes.append("a striker heavier than two beads sends further pulses behind this one")
+    Answer({}, rows, chain.si, notes=notes, orders=False).print(style)
+
+
+_WIDTH = r"\mathrm{FWHM}_{\mathrm{force}}"
 
 
 @click.command()
 @cell_options()
 @SPHERES
-@click.option("--behind", callback=quantity, help="Strain behind the front, compression over D.")
-@click.option(
-    "--piston",
-    callback=quantity,
-    help="Velocity of the wall, in m/s if the chain is in SI, in place of --behind.",
-)
-@click.option(
-    "--ahead",
-    callback=quantity,
-    help="Strain ahead of the front.  [default: 0, or that of the load in a file]",
-)
+@value("--behind", "Strain behind the front, compression over D.")
+@value("--piston", "Velocity of the wall, in m/s if the chain is in SI, in place of --behind.")
+@value("--ahead", "Strain ahead of the front.  [default: 0, or that of the load in a file]")
 def shock(
     style: str,
     behind: sp.Expr | None,
@@ -54,10 +90,10 @@ def shock(
         found = riemann.piston(cell, law, piston, ahead)
     else:
         found = riemann.shock(cell, law, behind, ahead)
-    _answer(chain, found).print(style)
+    _front(chain, found).print(style)
 
 
-def _answer(chain: ChainInput, found: Shock) -> Answer:
+def _front(chain: ChainInput, found: riemann.Shock) -> Answer:
     """Rows of the front between two strains."""
 
     def row(key: str, label: str, value: Any, symbol: str = "", unit: str = "m/s") -> Row:
@@ -75,7 +111,7 @@ def _answer(chain: ChainInput, found: Shock) -> Answer:
         row("plateau", "velocity of the wall and the plateau", found.plateau, "v_{p}"),
         row("trailing_speed", "trailing edge", attempt(lambda: found.trailing_speed), "s_{-}"),
     ]
-    for rule in RULES:
+    for rule in riemann.RULES:
         key, label = f"leading_speed.{rule}", f"leading edge, {rule}"
         rows.append(row(key, label, attempt(found.leading_speed, rule), "s_{+}"))
     if kind != "rarefaction":

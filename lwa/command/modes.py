@@ -1,0 +1,241 @@
+"""The commands `lwa dispersion` and `lwa envelope`: linear waves, and envelopes of their modes."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import click
+import sympy as sp
+
+from lwa.base import latex
+from lwa.base.exact import InputError
+from lwa.command.chain import ChainInput, take_chain
+from lwa.command.derivation import listed
+from lwa.command.options import (
+    BACKGROUND,
+    PRECOMPRESSION,
+    SPACING,
+    SPHERES,
+    angle,
+    cell_options,
+    given,
+    series_options,
+    value,
+)
+from lwa.command.rows import PRINTED_DIGITS, Answer, Row, Values
+from lwa.envelopes import schrodinger
+from lwa.envelopes.schrodinger import Breather, Envelope
+from lwa.law import Power
+from lwa.linear.dispersion import Dispersion, LoadedChain
+from lwa.spheres.hertz import EXPONENT
+
+PLACES = 8  # intervals of the wavenumbers, 0 to π/(PD), at which bands are printed
+
+
+@click.command()
+@series_options("1", "Highest power of κ in Ω², an integer.")
+@PRECOMPRESSION
+@SPACING
+def dispersion(order: int, style: str, precompression: sp.Expr | None, **options: Any) -> None:
+    """Expand the squared frequency Ω² of linear waves in the wavenumber κ.
+
+    Ω is the frequency in the time τ of `lwa derive`, and κ the wavenumber, both times D. The
+    exponent k matters for unequal contacts only, which share the strain by it.
+
+    With --precompression also the bands and group velocities of the chain about this load, with k =
+    3/2 unless --k is given: in rad/s and m/s for masses, stiffnesses and spacing in SI. In JSON
+    `band_edges_value` has the frequencies (from, to) of each band, `gaps_value` those of each gap,
+    and `branches_value` frequencies and group velocities by wavenumber (lengths in D where D is a
+    symbol).
+    """
+    chain = take_chain(options)
+    law, loaded = chain.law, None
+    if precompression is not None:
+        law = law if given("k") else Power(EXPONENT)
+        loaded = LoadedChain(chain.cell, law, precompression)
+    _linear(Dispersion(chain.cell, law.exponent), order, loaded).print(style)
+
+
+def _linear(chain: Dispersion, order: int, loaded: LoadedChain | None) -> Answer:
+    """Rows of both branches; ``optical`` is null unless the cell has two particles."""
+    cell = chain.cell
+    branches = {"acoustic": chain.acoustic(order)}
+    if cell.size == 2:
+        branches["optical"] = chain.optical(order)
+    rows: list[Row | str] = [
+        f"masses {listed(cell.masses)}, A = {listed(cell.stiffnesses)}; Ω²(κ), κ = qD and Ω/D the "
+        "frequency in τ",
+        "",
+    ]
+    head: Values = {"acoustic": None, "optical": None}
+    equations = []
+    for name, series in branches.items():
+        head[name] = {str(n): str(c) for n, c in series.items()}
+        rows += [f"{name}:", *(f"  {f'κ^{n}' if n else '1'}: {c}" for n, c in series.items())]
+        powers = ((c, latex.power(sp.Symbol("kappa"), n) if n else "") for n, c in series.items())
+        letter = rf"\Omega_{{\mathrm{{{name}}}}}^{{2}}"
+        equations.append(rf"{letter} = {latex.total(powers)} + \cdots")
+    if loaded is None:
+        return Answer(head, rows, equations=equations)
+    bands = _bands(loaded)
+    rows += [
+        "",
+        f"about the load {loaded.precompression}, law {loaded.law.F}:",
+        Row("precompression", "", loaded.precompression, "F_{0}", digits=False),
+        Row("spring_constants", "spring constants", loaded.spring_constants, "K"),
+        Row("sound_speed", "sound speed dx/dt", loaded.sound_speed, "c_{0}"),
+        *_bands_text(bands),
+    ]
+    return Answer(head | bands, rows, spacing=cell.spacing, equations=equations)
+
+
+def _bands(loaded: LoadedChain) -> Values:
+    """Bands, gaps and branches in floats; {} if a mass or a spring constant is a symbol."""
+    if any(x.free_symbols for x in (*loaded.cell.masses, *loaded.spring_constants)):
+        return {}
+    D = 1.0 if loaded.cell.spacing.is_Symbol else float(loaded.cell.spacing)
+    places = [float(sp.pi) * i / (PLACES * loaded.cell.size * D) for i in range(PLACES + 1)]
+    return {
+        "band_edges_value": loaded.band_edges().tolist(),
+        "gaps_value": loaded.gaps().tolist(),
+        "branches_value": [
+            {
+                "wavenumber": q,
+                "frequencies": loaded.branches(q).tolist(),
+                "group_velocities": loaded.group_velocity(q).tolist(),
+            }
+            for q in places
+        ],
+    }
+
+
+def _bands_text(bands: Values) -> list[str]:
+    if not bands:
+        return []
+    lines = []
+    for name, key in (("band", "band_edges_value"), ("gap", "gaps_value")):
+        for i, (low, high) in enumerate(bands[key], start=1):
+            edges = f"{low:.{PRINTED_DIGITS}g} … {high:.{PRINTED_DIGITS}g}"
+            lines.append(f"  {name} {i}: {edges}, in rad per unit of time")
+    lines += ["", "  wavenumber: frequencies; group velocities"]
+    for place in bands["branches_value"]:
+        columns = (place["frequencies"], place["group_velocities"])
+        numbers = (", ".join(f"{x:.6g}" for x in column) for column in columns)
+        lines.append(f"  {place['wavenumber']:.6g}: {'; '.join(numbers)}")
+    return lines
+
+
+_EARLIER = (
+    "contacts open at these values to leading order; on the lattice they open earlier, in dimers "
+    "of spheres at about three quarters of the detuning"
+)
+_LOADS = {
+    "frequency": "at this frequency, from the load F0",
+    "amplitude": "at this amplitude, below the load F0",
+}
+
+
+@click.command()
+@cell_options()
+@SPHERES
+@BACKGROUND
+@PRECOMPRESSION
+@value(
+    "--wavenumber",
+    "Wavenumber κ per cell, 0 … pi: a number, a name, or a part of pi such as pi/3.",
+    "pi",
+    angle,
+)
+@click.option(
+    "--branch",
+    metavar="NAME|N",
+    help="Branch of the mode: acoustic, optical, or its number from 0.  [default: optical; "
+    "acoustic for equal beads]",
+)
+@value(
+    "--frequency",
+    "Frequency f of a breather: in Hz if the chain is in SI, else in radians per time.",
+)
+@value(
+    "--detuning",
+    "Relative detuning 1 - f/f0 of a breather from the band's edge f0, in place of --frequency.",
+)
+def envelope(
+    style: str,
+    background: sp.Expr | None,
+    precompression: sp.Expr | None,
+    wavenumber: sp.Expr,
+    branch: str | None,
+    frequency: sp.Expr | None,
+    detuning: sp.Expr | None,
+    **options: Any,
+) -> None:
+    """Nonlinear Schrödinger equation of a mode of a loaded chain, and its breathers.
+
+    Needs --background or --precompression. A breather stands at the edge of a band, and has the
+    --frequency or the --detuning given.
+
+    Wavenumbers and lengths are in cells, frequencies in radians per unit of time; with --spheres
+    frequencies are in Hz, displacements in m and forces in N. In JSON `amplitude` is the largest
+    displacement of each bead, `width` is 1/b of the envelope sech(bn) or tanh(bn), and
+    `opening_load` is the static force at which contacts begin to open if the frequency, or the
+    amplitude, is held.
+    """
+    if frequency is not None and detuning is not None:
+        raise InputError("--frequency and --detuning are both given: one says the other")
+    chain = take_chain(options)
+    cell, place = chain.cell, int(branch) if branch and branch.isdecimal() else branch
+    load = {"background": background, "precompression": chain.load(background, precompression)}
+    found = schrodinger.envelope(cell, chain.law, **load, wavenumber=wavenumber, branch=place)
+    symbols = {*cell.symbols, *found.compression.free_symbols, *wavenumber.free_symbols}
+    if not symbols - {cell.spacing} and (cell.size > 2 or not sp.cos(wavenumber).is_Rational):
+        found = found.numeric()  # exact results want a frequency that is algebraic
+    breather = None
+    if frequency is not None or detuning is not None:
+        angular = frequency and frequency * (2 * sp.pi if chain.si else 1)
+        breather = found.breather(angular, detuning=detuning)
+    _envelope(chain, found, breather).print(style)
+
+
+def _envelope(chain: ChainInput, found: Envelope, breather: Breather | None) -> Answer:
+    """Rows of the equation, and of the breather of a frequency."""
+    turn = 2 * sp.pi if chain.si else sp.S.One
+    name, symbol = ("ω/(2π)", r"\omega / 2 \pi") if chain.si else ("ω", r"\omega")
+    rows: list[Row | str] = [
+        chain.text,
+        "u = Ψ(X, T) U e^{i(κ n - ω t)} + c.c., Σ m |U|² = 1, n and κ per cell",
+        "i Ψ_T + ½ ω'' Ψ_XX = χ |Ψ|² Ψ",
+        "",
+        Row("wavenumber", "κ", found.wavenumber, r"\kappa", digits=False),
+        Row("frequency", f"frequency {name}", found.frequency / turn, symbol, "Hz"),
+        Row("group_velocity", "dω/dκ", found.group_velocity, r"\omega'", "cells/s"),
+        Row("dispersion", "ω''", found.dispersion, r"\omega''", "cells²/s"),
+        Row("nonlinearity", "χ", found.nonlinearity, r"\chi", "1/(s kg m²)"),
+    ]
+    head: dict[str, str | None] = {"branch": str(found.branch), "kind": None}
+    try:
+        head["kind"] = found.kind
+        rows.append(f"  {found.kind} envelopes")
+    except InputError as fault:
+        rows.append(f"  bright or dark: {fault}")
+    notes: list[str] = []
+    if breather is not None:
+        shape = "sech" if breather.kind == "bright" else "tanh"
+        rows += [
+            "",
+            f"{breather.kind} breather, |Ψ| = a {shape}(b n):",
+            Row("breather_frequency", f"frequency {name}", breather.frequency / turn, unit="Hz"),
+            Row("detuning", "detuning Δ = 1 - f/f0", breather.detuning, r"\Delta"),
+            Row("amplitude", "largest displacement by bead", breather.amplitude, "2 a U", "m"),
+            Row("width", "width 1/b in cells", breather.width, "b^{-1}"),
+        ]
+        if found.opening != sp.oo:
+            label = "contacts open from the detuning"
+            rows.append(Row("opening_detuning", label, breather.opening_detuning))
+            notes.append(_EARLIER)
+        if chain.law.homogeneous:
+            for held, label in _LOADS.items():
+                force = breather.opening_load(held)
+                force = sp.N(force, 15) if force.is_Rational else force  # sixth powers are long
+                rows.append(Row(f"opening_load.{held}", label, force, unit="N"))
+    return Answer(head, rows, chain.si, found.cell.spacing, notes=notes)
