@@ -203,14 +203,6 @@ class JetAlgebra:
         return self.context.from_dict(terms)
 
 
-def exact_quotient(numerator: fmpq_mpoly, divisor: fmpq_mpoly) -> fmpq_mpoly:
-    """The quotient of two polynomials that divide without a remainder."""
-    quotient, remainder = divmod(numerator, divisor)
-    if not remainder.is_zero():
-        raise AssertionError(f"{divisor} does not divide the polynomial")
-    return quotient
-
-
 def _powers(exponents: Sequence[int], lowest: int) -> Powers:
     return tuple((n, int(e)) for n, e in enumerate(exponents, start=lowest) if e)
 

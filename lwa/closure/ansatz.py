@@ -15,7 +15,7 @@ from math import factorial
 from flint import fmpq, fmpq_mpoly
 
 from lwa.algebra.contact import Force
-from lwa.algebra.jets import GradedSeries, exact_quotient
+from lwa.algebra.jets import GradedSeries
 from lwa.algebra.model import Model
 from lwa.base.exact import InputError
 from lwa.base.progress import Progress
@@ -63,8 +63,8 @@ def _acoustic(model: Model, order: int, progress: Progress[int]) -> Solution:
         mean = algebra.one * fmpq(2**n, factorial(n + 1))
         right.append((mean + c[1] * xi / 2) * r_n)
         left.append((mean - c[0] * xi / 2) * r_n)
-        first.append(exact_quotient(one + xi * r_n, 2 * mu[0]))
-        second.append(exact_quotient(two - xi * r_n, 2 * mu[1]) - _applied(b, second, n))
+        first.append((one + xi * r_n) / (2 * mu[0]))  # without a remainder, as all quotients here
+        second.append((two - xi * r_n) / (2 * mu[1]) - _applied(b, second, n))
         b.append(c[0] * (mean + c[1] * xi / 2))
     return _solution(b[: order + 1], first, second)
 
