@@ -144,7 +144,7 @@ class Cell(Value):
 
     def compliances(self, k: Any = k) -> tuple[sp.Expr, ...]:
         """The A_i^{-1/k}, the strains of the contacts up to a common factor."""
-        k = exponent(k)
+        k = exponent(k)  # one force A_i δ_i^k for all contacts
         return tuple(power(A, -1 / k) for A in self.stiffnesses)
 
     def shares(self, k: Any = k) -> tuple[sp.Expr, ...]:
@@ -159,10 +159,12 @@ class Cell(Value):
         """The stiffness A_eff of P equal contacts with the same response as the cell."""
         if len(set(self.stiffnesses)) == 1:
             return self.stiffnesses[0]
+        # A_eff^{-1/k} is the mean of the A_i^{-1/k}: compressions add.
         return power(sp.Add(*self.compliances(k)) / self.size, -exponent(k))
 
     def time_scale(self, k: Any = k) -> sp.Expr:
         """The ratio τ/t = √(P k A_eff D^{k+1} / M) of the time in u_ττ = u_x^{k-1} u_xx + …."""
+        # Force A_eff (D u_x)^k on the density M/(P D): M/(P D) u_tt = k A_eff D^k u_x^{k-1} u_xx
         k = exponent(k)
         return sp.sqrt(self.size * k * self.stiffness(k) * power(self.spacing, k + 1) / self.mass)
 
@@ -200,8 +202,7 @@ def substitution(
 ) -> dict[sp.Symbol, sp.Expr]:
     """Map symbols of a cell, of its exponent and more to the values given for their names.
 
-    Unless a symbol has this name, ``omega`` is the ratio m2/m1 of the cell's second mass to its
-    first: m2 becomes ω m1, or m1 becomes m2/ω if a value is given for m2.
+    Unless a symbol has this name, ``omega`` is the ratio m2/m1 of the cell's two masses.
 
     Raises `lwa.InputError` for a name that does not occur, and a value of the cell or the exponent
     that is not positive.
@@ -223,6 +224,7 @@ def substitution(
     if len(masses) != 2:
         raise InputError(f"omega is m2/m1 of a cell with two masses; this one has {len(masses)}")
     ratio = positive(omega, "omega")
+    # m2 becomes ω m1 or, where m2 is no free symbol, m1 becomes m2/ω.
     for mass, other, factor in ((masses[1], masses[0], ratio), (*masses, 1 / ratio)):
         if mass.is_Symbol and mass not in new and mass not in other.free_symbols:
             return new | {mass: factor * other.xreplace(new)}
@@ -237,15 +239,15 @@ def check_distinct(symbols: Sequence[sp.Symbol]) -> None:
 
 
 def check_names(
-    value: sp.Expr, field: str, own: str = "", taken: Mapping[str, str] = RESERVED
+    value: sp.Expr, field: str, allowed: str = "", taken: Mapping[str, str] = RESERVED
 ) -> sp.Expr:
     """Return the value; raise `lwa.InputError` if a symbol in it has a name of another meaning.
 
-    field : name of the value in messages. own : name that a symbol in the value may have.
+    field : name of the value in messages. allowed : reserved name that a symbol may have.
     taken : mapping from each reserved name to its meaning.
     """
     for name in sorted(s.name for s in value.free_symbols):
-        if name in taken and name != own:
+        if name in taken and name != allowed:
             raise InputError(f"{field} {name!r}: the name means {taken[name]} here")
     return value
 

@@ -47,10 +47,7 @@ TAKEN = {**RESERVED, "A": "the stiffness of a contact", "p0": "the strain ahead 
 
 
 class ContactLaw(Value):
-    """A contact force F(δ): its derivatives, its energy, and how the contacts of a cell share it.
-
-    `Power` and `Law` are its two kinds. ``homogeneous`` laws obey F(sδ) = s^k F(δ).
-    """
+    """A contact force F(δ): base of `Power` and `Law`; ``homogeneous`` if F(sδ) = s^k F(δ)."""
 
     F: sp.Expr
     delta: sp.Symbol
@@ -76,7 +73,7 @@ class ContactLaw(Value):
     @cached_property
     def energy(self) -> sp.Expr:
         """The energy W(δ) of a contact, W′ = F."""
-        if self.F.atoms(AppliedUndef):
+        if self.formless:
             s = sp.Dummy("s", positive=True)
             return sp.Integral(self.F.subs(self.delta, s), (s, 0, self.delta))
         return integral(self.F, self.delta)
@@ -111,19 +108,17 @@ class ContactLaw(Value):
 
         For n = 0 this is F(Dp)/D (p^k/k for a power), for n = -1 the energy W.
         """
+        # Each derivative by p instead of δ = D p brings a factor D, each integral 1/D.
         if n < 0:
             return self.energy.subs(self.delta, D * p) / D**2
         return self.at(D * p, n) * D ** (n - 1)
 
     def weight(self, p: sp.Expr, D: sp.Expr, a: sp.Expr, b: sp.Expr) -> sp.Expr:
-        """The factor p^a (p F′)^b of a jet at the strain p; p^{a + bk} under a power."""
+        """The factor p^a (p F′)^b of a jet at the strain p."""
         return self.at(D * p, 1) ** b * p ** (a + b)
 
     def check_contacts(self, cell: Cell) -> None:
-        """Raise `lwa.InputError` unless the contacts of the cell can share the law.
-
-        The shares of unlike contacts would depend on the strain under a law that is no power.
-        """
+        """Raise `lwa.InputError` unless the contacts of the cell can share the law."""
         if len(set(cell.stiffnesses)) > 1:
             raise InputError(
                 "the contacts differ in stiffness, and their shares of the strain would then "
@@ -150,10 +145,11 @@ class ContactLaw(Value):
         free = share.free_symbols | self.F.free_symbols - {self.delta}
         demand_numbers(free, f"the load under {self.F} needs numbers")
         with mpmath.workdps(50):
-            found = growing_root(self.F - share, self.delta)
-            if found is None:
+            root = growing_root(self.F - share, self.delta)
+            if root is None:
                 raise InputError(f"force is {shorten(force)}: the law does not reach it")
-            return sp.Float(found, 35)
+            # 35 digits leave 15 of the rise of a wave that is 1e-20 of the load.
+            return sp.Float(root, 35)
 
     def replaced(self, new: Mapping[sp.Symbol, sp.Expr]) -> Self:
         """The law with the values that `lwa.cell.substitution` gives for its symbols."""
@@ -190,11 +186,12 @@ class Power(ContactLaw):
         return sp.Mul(*(self.k - j for j in range(1, n)))
 
     def of_strain(self, p: sp.Expr, D: sp.Expr, n: int = 0) -> sp.Expr:
+        # p^k/k derived n times: (k-1) … (k-n+1) p^{k-n}; n = -1: p^{k+1}/(k (k+1))
         up, down = (sp.Mul(*(self.k - j for j in r)) for r in (range(1, n), range(n, 1)))
         return up / down * p ** (self.k - n)
 
     def weight(self, p: sp.Expr, D: sp.Expr, a: sp.Expr, b: sp.Expr) -> sp.Expr:
-        return p ** (a + b * self.k)
+        return p ** (a + b * self.k)  # p F′ = p^k
 
     def evaluated(self, value: sp.Expr, delta: sp.Expr) -> sp.Expr:
         return value
@@ -265,6 +262,7 @@ def refuse_two_laws(k: Any, law: ContactLaw) -> None:
 
 
 _HERTZ = sp.Rational(3, 2)
+# Names → letters of the parameters, and the force (or the law itself) as a function of them.
 _NAMED: Mapping[str, tuple[str, Callable[..., Any]]] = {
     "power": ("k", Power),
     "hertz2": ("a b", lambda a, b: a * DELTA**_HERTZ + b * DELTA ** (_HERTZ + 1)),
@@ -285,8 +283,7 @@ def named(name: str, *parameters: Any) -> ContactLaw:
     - power: δ^k.
     - hertz2: a δ^{3/2} + b δ^{5/2}, Hertz and its next order.
     - exponential: (e^{aδ} - 1)/a, Toda's.
-    - magnetic: (1 - δ/d)^{-n} - 1, a force r^{-n} of poles at the distance r = d - δ, divided
-      by its value at δ = 0, minus 1.
+    - magnetic: (1 - δ/d)^{-n} - 1, poles at the distance d - δ that repel with its power -n.
     - polynomial: δ + a δ² + b δ³, of Fermi, Pasta, Ulam and Tsingou; a and b of either sign.
     - lennard-jones: (1 - δ/d)^{-13} - (1 - δ/d)^{-7}, d the distance of rest.
     - general: a law without an expression (`general`).
@@ -303,11 +300,13 @@ def named(name: str, *parameters: Any) -> ContactLaw:
         raise InputError(f"law {name} has {len(parameters)} parameters: {wanted} are wanted")
     read = signed if name in _OF_EITHER_SIGN else positive
     given = [*parameters, *letters[len(parameters) :]]
-    values = [read(v, f"{name}'s {letter}") for v, letter in zip(given, letters, strict=True)]
-    for value, letter in zip(values, letters, strict=True):
-        _check_parameter(value, f"{name}'s {letter}", DELTA)
-    law = build(*values)
-    return law if isinstance(law, ContactLaw) else Law(law)
+    places = [f"{name}'s {letter}" for letter in letters]
+    values = [
+        _check_parameter(read(value, place), place, DELTA)
+        for value, place in zip(given, places, strict=True)
+    ]
+    force = build(*values)
+    return force if isinstance(force, ContactLaw) else Law(force)
 
 
 def read_law(value: Any, name: str) -> ContactLaw:
@@ -318,28 +317,22 @@ def read_law(value: Any, name: str) -> ContactLaw:
     return named(title.strip(), *(parameters.split(",") if colon else ()))
 
 
-def _check_parameter(value: sp.Expr, name: str, delta: sp.Symbol) -> None:
-    """Raise `lwa.InputError` if a law's parameter holds the symbol of the compression."""
-    check_names(value, name, taken={delta.name: "the compression of a contact"})
+def _check_parameter(value: sp.Expr, name: str, delta: sp.Symbol) -> sp.Expr:
+    """Return a law's parameter; raise `lwa.InputError` if it holds the compression's symbol."""
+    return check_names(value, name, taken={delta.name: "the compression of a contact"})
 
 
 def substituted(
     values: Mapping[str, Any], cell: Cell, law: ContactLaw, *expressions: sp.Expr
 ) -> tuple[Any, ...]:
-    """Substitute values for the named symbols, and for ω, in a cell, a law and expressions.
-
-    Raises the errors of `lwa.cell.substitution`.
-    """
-    own = set().union(*(x.free_symbols for x in expressions)) - {*cell.symbols, *law.symbols}
-    new = substitution(values, cell, more=(*law.symbols, *sorted(own, key=str)))
+    """Substitute values in a cell, a law and expressions, as `lwa.cell.substitution`."""
+    others = set().union(*(x.free_symbols for x in expressions)) - {*cell.symbols, *law.symbols}
+    new = substitution(values, cell, more=(*law.symbols, *sorted(others, key=str)))
     return cell.replaced(new), law.replaced(new), *(x.xreplace(new) for x in expressions)
 
 
 def for_cell(law: Any, cell: Cell) -> ContactLaw:
-    """Return the law; refuse other objects, and a law that the contacts of the cell cannot share.
-
-    Raises `lwa.InputError` for anything else.
-    """
+    """Return the law; raise `lwa.InputError` unless it is one for the contacts of the cell."""
     if not isinstance(law, ContactLaw):
         raise InputError(f"law is {shorten(law)}: Power(k), Law(F, delta) or general() is wanted")
     law.check_contacts(cell)

@@ -146,10 +146,6 @@ class JetAlgebra:
         """The slope ∂f/∂r_n; for f of weight n the coefficient of the lone r_n."""
         return f.derivative(self._offset + n - 1)
 
-    def integral(self, f: fmpq_mpoly, n: int) -> fmpq_mpoly:
-        """The integral ∫ f dr_n."""
-        return f.integral(self._offset + n - 1)
-
     def terms(self, f: fmpq_mpoly) -> dict[Monomial, list[Term]]:
         """Split a polynomial f of jets into a mapping {jet monomial: terms of its coefficient}."""
         split: dict[Monomial, list[Term]] = {}

@@ -58,43 +58,43 @@ def _demand_free(symbols: Iterable[sp.Symbol], command: str, option: click.Param
 
 
 def _read(context: click.Context, option: click.Parameter, text: str) -> sp.Expr:
-    value = exact(text, called(option))
-    _demand_free(value.free_symbols, str(context.info_name), option)
-    return value
+    expression = exact(text, called(option))
+    _demand_free(expression.free_symbols, str(context.info_name), option)
+    return expression
 
 
-def quantity(context: click.Context, option: click.Parameter, value: str | None) -> sp.Expr | None:
+def quantity(context: click.Context, option: click.Parameter, text: str | None) -> sp.Expr | None:
     """Read an integer, a decimal, a fraction or a plain name."""
-    return None if value is None else _read(context, option, value)
+    return None if text is None else _read(context, option, text)
 
 
 def quantities(
-    context: click.Context, option: click.Parameter, value: str | None
+    context: click.Context, option: click.Parameter, text: str | None
 ) -> tuple[sp.Expr, ...]:
     """Read quantities separated by commas; () when absent."""
-    return tuple(_read(context, option, part) for part in value.split(",")) if value else ()
+    return tuple(_read(context, option, part) for part in text.split(",")) if text else ()
 
 
-def angle(context: click.Context, option: click.Parameter, value: str) -> sp.Expr:
+def angle(context: click.Context, option: click.Parameter, text: str) -> sp.Expr:
     """Read a quantity or a part of pi, such as pi, pi/3 or 2pi/3."""
-    part = re.fullmatch(r"([0-9]*)\*?pi(?:/([1-9][0-9]*))?", value.strip())
+    part = re.fullmatch(r"([0-9]*)\*?pi(?:/([1-9][0-9]*))?", text.strip())
     if part is None:
-        return _read(context, option, value)
+        return _read(context, option, text)
     return sp.Rational(int(part[1] or 1), int(part[2] or 1)) * sp.pi
 
 
-def count(context: click.Context, option: click.Parameter, value: str) -> int:
+def count(context: click.Context, option: click.Parameter, text: str) -> int:
     """Read an integer from 1 on."""
-    return integer(exact(value, called(option)), called(option), 1)
+    return integer(exact(text, called(option)), called(option), 1)
 
 
 def contact_law(
-    context: click.Context, option: click.Parameter, value: str | None
+    context: click.Context, option: click.Parameter, text: str | None
 ) -> ContactLaw | None:
     """Read NAME or NAME:PARAM,… of a law in `lwa.law.named`."""
-    if value is None:
+    if text is None:
         return None
-    law, command = read_law(value, called(option)), str(context.info_name)
+    law, command = read_law(text, called(option)), str(context.info_name)
     _demand_free(law.symbols, f"{command} --law" if command == "wave" else command, option)
     return law
 
@@ -108,13 +108,17 @@ def given(option: str) -> bool:
 # --- options ---
 
 
-def setting(
-    name: str, default: Any, help_text: str, names: Sequence[str] = (), **settings: Any
+def value(
+    name: str,
+    says: str,
+    default: str | None = None,
+    read: Any = quantity,
+    metavar: str = "VALUE",
+    **settings: Any,
 ) -> Option:
-    """Make an option whose default value is shown in the help."""
-    return click.option(
-        name, *names, default=default, show_default=True, help=help_text, **settings
-    )
+    """Make an option that a callback of click reads; a default is shown in the help."""
+    settings |= {"default": default, "show_default": default is not None, "callback": read}
+    return click.option(name, metavar=metavar, help=says, **settings)
 
 
 def together(*options: Option) -> Option:
@@ -122,81 +126,71 @@ def together(*options: Option) -> Option:
     return lambda command: reduce(lambda c, option: option(c), reversed(options), command)
 
 
-def _choice(name: str, values: Sequence[str], help_text: str, names: Sequence[str] = ()) -> Option:
-    return setting(name, values[0], help_text, names, type=click.Choice(values))
+def _choice(name: str, values: Sequence[str], says: str, *names: str) -> Option:
+    kind = click.Choice(values)
+    return click.option(name, *names, default=values[0], show_default=True, type=kind, help=says)
 
 
 def exponent_option(default: str) -> Option:
     """Make the option ``--k``."""
-    return setting("--k", default, "Exponent k of the force A δ^k of a contact.", callback=quantity)
+    return value("--k", "Exponent k of the force A δ^k of a contact.", default)
 
 
-def order_option(help_text: str) -> Option:
+def order_option(says: str) -> Option:
     """Make the option ``--order``."""
-    return setting("--order", "4", help_text, callback=count)
+    return value("--order", says, "4", count, "N")
 
 
-def law_option(help_text: str) -> Option:
+def law_option(says: str) -> Option:
     """Make the option ``--law``."""
-    return click.option(
-        "--law",
-        metavar="NAME[:PARAM,…]",
-        callback=contact_law,
-        help=help_text,
-        shell_complete=lambda _, __, start: [name for name in NAMES if name.startswith(start)],
-    )
+
+    def complete(context: click.Context, option: click.Parameter, start: str) -> list[str]:
+        return [name for name in NAMES if name.startswith(start)]
+
+    metavar = "NAME[:PARAM,…]"
+    return value("--law", says, None, contact_law, metavar, shell_complete=complete)
 
 
 def style_option(formats: Sequence[str] = STYLES) -> Option:
     """Make the option ``--format``, the argument ``style`` of a command."""
-    return _choice("--format", formats, "Form of the result.", ("style",))
+    return _choice("--format", formats, "Form of the result.", "style")
 
 
 def spheres_option(**settings: Any) -> Option:
     """Make the option ``--spheres``."""
-    text = (
+    says = (
         "TOML or JSON file of the chain, in place of options on masses, contacts and spacing: "
         "spheres in SI, or any scene of lwa-validate run."
     )
-    return click.option("--spheres", metavar="FILE", help=text, **settings)
+    return value("--spheres", says, None, None, "FILE", **settings)
 
 
-MASSES = setting(
-    "--masses", "m1,m2", "Masses of the beads in one period of the chain.", callback=quantities
+MASSES = value(
+    "--masses", "Masses of the beads in one period of the chain.", "m1,m2", quantities, "M1,M2,…"
 )
-STIFFNESSES = click.option(
+STIFFNESSES = value(
     "--stiffnesses",
-    callback=quantities,
-    help="Stiffness A of each contact in the period, the first between beads 1 and 2.  "
-    "[default: all 1]",
+    "Stiffness A of each contact in the period, the first between beads 1 and 2.  [default: all 1]",
+    None,
+    quantities,
+    "A1,A2,…",
 )
-SPACING = setting(
-    "--spacing", D.name, "Distance D between neighbouring beads at rest.", callback=quantity
-)
-FORCE = click.option(
+SPACING = value("--spacing", "Distance D between neighbouring beads at rest.", D.name)
+FORCE = value(
     "--force",
-    callback=quantity,
-    help="Peak contact force of the wave, any static load included; in N if the chain is in SI.",
+    "Peak contact force of the wave, any static load included; in N if the chain is in SI.",
 )
 SPHERES = spheres_option()
-BACKGROUND = click.option(
-    "--background", callback=quantity, help="Static strain of the chain, compression over D."
-)
-PRECOMPRESSION = click.option(
-    "--precompression",
-    callback=quantity,
-    help="Static force on the chain; in N if the chain is in SI.",
-)
+BACKGROUND = value("--background", "Static strain of the chain, compression over D.")
+PRECOMPRESSION = value("--precompression", "Static force on the chain; in N if the chain is in SI.")
 
 
 def cell_options(formats: Sequence[str] = STYLES) -> Option:
     """Make the options that describe a chain and its contact law."""
+    law = "Contact force A F(δ) by the name and the parameters of F, in place of --k: "
     return together(
         exponent_option(k.name),
-        law_option(
-            "Contact force A F(δ) by the name and the parameters of F, in place of --k: "
-            f"{', '.join(NAMES)}."
-        ),
+        law_option(f"{law}{', '.join(NAMES)}."),
         MASSES,
         STIFFNESSES,
         SPACING,

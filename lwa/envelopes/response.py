@@ -37,8 +37,6 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
-from lwa.base.exact import root
-
 Matrix = NDArray[Any]
 
 
@@ -88,10 +86,10 @@ class Contacts:
 
     def strains(self, z: Any) -> Matrix:
         """The matrix B(κ), shape (contacts, beads), z = e^{iκ}; B(κ)† is the transpose for 1/z."""
-        one = np.diag(self.masses * 0 * z + 1)
-        after = np.roll(one, 1, axis=1)
+        identity = np.diag(self.masses * 0 * z + 1)
+        after = np.roll(identity, 1, axis=1)
         after[-1] = after[-1] * z
-        return np.asarray(one - after)
+        return np.asarray(identity - after)
 
     def secular(self, z: Any, x: Any) -> Matrix:
         """The matrix K(κ) - xM, shape (beads, beads), z = e^{iκ}."""
@@ -129,7 +127,7 @@ class Contacts:
         force = (c * K3 * size).sum() * 2 / c.sum() * (speed / (speed - 1))
         mean = c * (-2 * K3 * size + force)
         cubic = (3 * K4 * size**2 + 2 * K3 * size * mean).sum() - 2 * K3 @ (G * products.T**2) @ K3
-        real, unit = numbers.real, root(sp.sympify(numbers.real(projector[bead, bead])))
+        real, unit = numbers.real, sp.sqrt(sp.sympify(numbers.real(projector[bead, bead])))
         return Mode(
             real(x),
             -2 * sine * real(1 / first),

@@ -29,7 +29,7 @@ from numpy.typing import ArrayLike
 
 from lwa.base import latex
 from lwa.base.arrays import Array
-from lwa.base.exact import InputError, integer, one_of, positive, power, root, shorten, signed
+from lwa.base.exact import InputError, integer, one_of, positive, power, shorten, signed
 from lwa.base.frozen import Value
 from lwa.cell import Cell
 from lwa.envelopes.bloch import cell_mode
@@ -89,7 +89,7 @@ class Envelope(Value):
     def frequency(self) -> sp.Expr:
         """Frequency ω of the mode, in radians per unit of time."""
         square = self._tidy(self._mode.square)
-        return self._tidy(root(square).replace(sp.Abs, lambda x: x))  # sin κ/2 ≥ 0
+        return self._tidy(sp.sqrt(square).replace(sp.Abs, lambda x: x))  # sin κ/2 ≥ 0
 
     @cached_property
     def group_velocity(self) -> sp.Expr:
@@ -177,8 +177,8 @@ class Envelope(Value):
         if not self.law.homogeneous and all(p.exp.is_integer for p in roots):  # real at δ < 0
             return sp.oo
         pairs = zip(self.static_compressions, self.strains, strict=True)
-        found = sp.Min(*(delta**2 / (4 * d) for delta, d in pairs if d))
-        return sp.N(found) if self.floats else found
+        smallest = sp.Min(*(delta**2 / (4 * d) for delta, d in pairs if d))
+        return sp.N(smallest) if self.floats else smallest
 
     @cached_property
     def _mode(self) -> Mode:
@@ -251,13 +251,13 @@ class Breather(Value):
     @cached_property
     def amplitude(self) -> tuple[sp.Expr, ...]:
         """Largest displacement 2aU of each bead, in the cell's units, with the sign of the mode."""
-        return tuple(2 * root(self._square) * U for U in self.envelope.mode)
+        return tuple(2 * sp.sqrt(self._square) * U for U in self.envelope.mode)
 
     @cached_property
     def width(self) -> sp.Expr:
         """Width 1/b, in cells, of the envelope sech(bn) or tanh(bn)."""
         ratio = self.envelope.dispersion / (self._shift * self.detuning)
-        return root(sp.factor(-ratio if self.kind == KINDS[0] else ratio))
+        return sp.sqrt(sp.factor(-ratio if self.kind == KINDS[0] else ratio))
 
     @cached_property
     def opening_detuning(self) -> sp.Expr:

@@ -195,10 +195,10 @@ class Observables:
             if remainder:
                 break
             numerator, power = quotient, power - 1
-        return self._expression(numerator) / self._expression_of_I**power
+        return self._expression(numerator) / self._I**power
 
     @cached_property
-    def _expression_of_I(self) -> sp.Expr:
+    def _I(self) -> sp.Expr:
         return self._expression(self.wave.I)
 
     def _expression(self, polynomial: fmpq_mpoly) -> sp.Expr:

@@ -72,6 +72,7 @@ class Bloch:
         omega2 = [self.zero]
         powers = [[], omega2, *([self.zero] for _ in trace[2:])]  # powers[m] is that of Ω^{2m}
         for n in range(1, order + 1):
+            # (2 - 2 cos Pκ)/P² = Σ -2 (-1)^n P^{2n-2} κ^{2n}/(2n)!
             following = self.one * fmpq(-2 * (-1) ** n * P ** (2 * n - 2), factorial(2 * n))
             for m in range(2, len(trace)):
                 power = self.zero
@@ -99,7 +100,7 @@ class Bloch:
             following = self.one if n == 0 else self.zero
             if n % 2 == 0:
                 following = following - weight * omega2[n // 2] * (-1) ** (n // 2)
-            for j in range(1, n + 1):
+            for j in range(1, n + 1):  # C_0 (e^{-2q} - 1)/2 = C_0 Σ (-2q)^j/(2 j!)
                 following = following - self.c[0] * b[n - j] * fmpq((-2) ** j, 2 * factorial(j))
             b.append(following)
         return b

@@ -139,5 +139,6 @@ def stiffness(sphere: Sphere, other: Sphere | Material) -> sp.Expr:
         second, R = other.material, R * other.radius / (R + other.radius)
     else:
         second = other
+    # 1/A = 3 (compliance)/(4 √R), R the reduced radius; a wall's radius is infinite.
     compliance = (1 - first.nu**2) / first.E + (1 - second.nu**2) / second.E
     return 4 * sp.sqrt(R) / (3 * compliance)

@@ -148,8 +148,8 @@ class BackgroundWave(Value):
         return sp.powsimp(self._stiffness(v))
 
     def _stiffness(self, v: sp.Expr) -> sp.Expr:
-        rest = self.force(self.p0, -1) + self.force(self.p0) * v
-        return 2 * (self.force(sp.expand(self.p0 + v), -1) - rest) / v**2
+        linear_part = self.force(self.p0, -1) + self.force(self.p0) * v
+        return 2 * (self.force(sp.expand(self.p0 + v), -1) - linear_part) / v**2
 
     def speed(self, B: Any = None) -> sp.Expr:
         """Speed V = dx/dτ of the wave whose strain rises from p0 to p0 + B (default: a symbol B).
@@ -160,7 +160,7 @@ class BackgroundWave(Value):
         sqrt(B/3 + p0)
         """
         square = self.stiffness(self._read_rise(B))
-        if self.law.homogeneous and self.law.exponent.is_Integer:
+        if self.law.homogeneous and self.law.exponent.is_Integer:  # a polynomial in p0 and B
             square = sp.expand(sp.cancel(square))
         return sp.sqrt(square)
 
@@ -209,11 +209,12 @@ class BackgroundWave(Value):
         """The equation of Korteweg and de Vries of the limit B → 0.
 
         Raises `lwa.NoSolitaryWave` where no sound runs (p0 = 0 under most laws), and at k = 1,
-        where waves have no amplitude of their own.
+        where waves of any amplitude run at one speed.
         """
         if self.sound_speed.is_zero or self.sound_speed.is_finite is False:
             raise NoSolitaryWave(f"p0 is {self.p0}: no sound runs there, so that no wave is small")
         c0 = self.sound_speed
+        # V² = Q(B) = c0² + F″ B/3 + …, hence V = c0 + α B/3; Ω² = κ² - I κ⁴ gives γ = I c0/2.
         bend = self.force(self.p0, 2)
         if bend.is_zero:
             raise NoSolitaryWave(f"F″ is 0 at p0 = {self.p0}: waves of small amplitude disperse")

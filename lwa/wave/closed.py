@@ -31,6 +31,9 @@ from lwa.base.quantities import RISE, SPEED, NoSolitaryWave, strain_power
 from lwa.cell import Cell, exponent, substitution
 from lwa.linear.dispersion import Dispersion
 
+COMPACT = "a compact wave needs k > 1, G+H+I > 0 and V² > 0"
+"""Reason for the refusal of a wave."""
+
 _RATIOS = sp.symbols("g h", cls=sp.Dummy)
 """Symbols of G/I and H/I."""
 
@@ -47,56 +50,35 @@ def strain_equation(p: sp.Expr, G: sp.Expr, H: sp.Expr, I: sp.Expr) -> dict[str,
 
     v1 = p * r1
     v2 = derivative(v1)
-    found = sp.Poly(v1 + G * v1**3 + H * v1 * v2 + I * derivative(v2), *r)
+    equation = sp.Poly(v1 + G * v1**3 + H * v1 * v2 + I * derivative(v2), *r)
     monomials = {"linear": r1, "cubic": r1**3, "product": r1 * r2, "third": r3}
-    return {name: found.coeff_monomial(monomial) for name, monomial in monomials.items()}
+    return {name: equation.coeff_monomial(monomial) for name, monomial in monomials.items()}
 
 
 @dataclass(frozen=True)
 class Reduction(Value):
-    """The reduction of the strain's equation to z'' = μ z^η - σ z for one root p (speed V)."""
+    """The reduction of the strain's equation to z'' = μ z^η - σ z, v = z^p, for one root p.
 
-    k: sp.Expr
-    I: sp.Expr
+    p, a : powers of the substitution and of the integrating factor z^a.
+    mu, eta, sigma : μ = V² / (I (p + a)), η = 1 + p - kp, σ = 1 / (I (kp + a)).
+    s : power 2 / (1 - η) of the cosine in z.
+    beta, B : wavenumber √σ (1 - η) / 2 of the cosine and amplitude (μ/(β² s (s-1)))^{1/(k-1)} of
+        the strain, which are those of `CompactWave` for either root.
+    """
+
     p: sp.Expr
     a: sp.Expr
-    V: sp.Expr
+    mu: sp.Expr
+    eta: sp.Expr
+    sigma: sp.Expr
+    s: sp.Expr
+    beta: sp.Expr
+    B: sp.Expr
 
     def latex_rows(self) -> list[str]:
         names = {"p": self.p, "a": self.a, r"\mu": self.mu, r"\eta": self.eta}
         names[r"\sigma"] = self.sigma
         return [r"z'' = \mu z^{\eta} - \sigma z, \quad v = z^{p}", *latex.rows(names)]
-
-    @property
-    def mu(self) -> sp.Expr:
-        """The coefficient μ = V² / (I (p + a))."""
-        return self.V**2 / (self.I * (self.p + self.a))
-
-    @property
-    def eta(self) -> sp.Expr:
-        """The power η = 1 + p - kp."""
-        return 1 + self.p - self.k * self.p
-
-    @property
-    def sigma(self) -> sp.Expr:
-        """The coefficient σ = 1 / (I (kp + a))."""
-        return 1 / (self.I * (self.k * self.p + self.a))
-
-    @property
-    def s(self) -> sp.Expr:
-        """The power s = 2 / (1 - η) of the cosine in z."""
-        return 2 / (1 - self.eta)
-
-    @property
-    def beta(self) -> sp.Expr:
-        """The wavenumber β = √σ (1 - η) / 2 of the cosine, `CompactWave.beta` for either root."""
-        return sp.sqrt(self.sigma) * (1 - self.eta) / 2
-
-    @property
-    def B(self) -> sp.Expr:
-        """The amplitude B = (μ/(β² s (s-1)))^{1/(k-1)}, `CompactWave.amplitude` for either root."""
-        ratio = self.mu / (self.beta**2 * self.s * (self.s - 1))
-        return ratio ** (1 / (self.k - 1))
 
 
 @dataclass(frozen=True, repr=False)
@@ -120,23 +102,20 @@ class CompactWave(Value):
 
     def __post_init__(self) -> None:
         if self.k.is_number and not self.k > 1:
-            raise NoSolitaryWave(
-                f"k is {self.k}: a compact wave needs k > 1 (at k = 1 the chain is linear)"
-            )
-        if self.coefficient_sum.is_number and not self.coefficient_sum > 0:
-            raise NoSolitaryWave(
-                f"(G+H+I)/D² is {self.coefficient_sum}: there is no compact wave unless G+H+I > 0"
-            )
-        if self.speed_factor.is_number and not self.speed_factor > 0:
-            raise NoSolitaryWave(
-                f"V²/B^(k-1) is {self.speed_factor}: there is no wave with a real speed"
-            )
+            raise NoSolitaryWave(f"k is {self.k}: {COMPACT}")
+        for name, value in (
+            ("(G+H+I)/D²", self.coefficient_sum),
+            ("V²/B^(k-1)", self.speed_factor),
+        ):
+            if value.is_number and not value > 0:
+                raise NoSolitaryWave(f"{name} is {value}: {COMPACT}")
 
     @classmethod
     def canonical(cls, cell: Cell, k: Any) -> Self:
         """The wave of the canonical field of a cell; see `lwa.canonical_wave`."""
         k = exponent(k, cell)
         I = Dispersion(cell, k).I * cell.spacing**2
+        # G and H follow from I for every cell (theorem, see `lwa.equation.energy`).
         return cls(cell=cell, k=k, G=I * (k - 1) * (k - 2) / 2, H=2 * I * (k - 1), I=I)
 
     def __repr__(self) -> str:
@@ -193,12 +172,13 @@ class CompactWave(Value):
         quantity : "strain" (u_x), "force" (of a contact, A (D u_x)^k) or "velocity" (u_τ = -V u_x);
             raises `lwa.InputError` for others.
         """
+        # cos^{mq}(βξ) = 1/2, where the quantity scales as strain^q
         return 2 * sp.acos(2 ** (-1 / (strain_power(quantity, self.k) * self.m))) / self.beta
 
     @cached_property
     def speed_factor(self) -> sp.Expr:
         """The ratio V²/B^{k-1} = 1 - β² [(H + 3I) m - 2I]."""
-        # With β² and m written out (k - 1) cancels: the result is rational in k and the masses.
+        # With β² = (k-1)²/(4 I (1+g+h)) and m = 2/(k-1) written out (k - 1) cancels.
         k, (g, h) = self.k, self._ratios
         return factored(1 - (k - 1) * (h + 4 - k) / (2 * (1 + g + h)))
 
@@ -259,10 +239,16 @@ class CompactWave(Value):
         """
         if root not in (0, 1):
             raise InputError(f"root is {shorten(root)}: 0 or 1 is wanted")
-        p, equation = self._equation
-        slope, constant = self._coefficients(equation["product"] / equation["third"] + 1, p)  # of e
-        a = factored(slope - self.k) * self.roots[root] + constant
-        return Reduction(k=self.k, I=self.I, p=self.roots[root], a=a, V=positive(V, "V"))
+        symbol, equation = self._equation
+        e = equation["product"] / equation["third"] + 1
+        slope, constant = self._coefficients(e, symbol)
+        k, I, p = self.k, self.I, self.roots[root]
+        a = factored(slope - k) * p + constant
+        mu, eta = positive(V, "V") ** 2 / (I * (p + a)), 1 + p - k * p
+        sigma, s = 1 / (I * (k * p + a)), 2 / (1 - eta)
+        beta = sp.sqrt(sigma) * (1 - eta) / 2
+        B = (mu / (beta**2 * s * (s - 1))) ** (1 / (k - 1))
+        return Reduction(p, a, mu, eta, sigma, s, beta, B)
 
     def at(self, **values: Any) -> Self:
         """Substitute numbers (or other symbols) for the named symbols, and for ω = m2/m1.

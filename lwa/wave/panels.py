@@ -116,15 +116,15 @@ def grid(parts: int, halvings: int, further: tuple[float, ...] = ()) -> Grid:
 
     def row(panel: int, at: float) -> Array:
         weights: Array = np.where(theta < at, _above(theta, at), _below(theta, at)) * ds
-        own = slice(POINTS * panel, POINTS * (panel + 1))
-        weights[own] = 0.0
+        block = slice(POINTS * panel, POINTS * (panel + 1))
+        weights[block] = 0.0
         low, high = edges[panel], edges[panel + 1]
         # K has a kink at θ = at: on this panel F″ is interpolated, to either side of the kink.
         for start, length, kernel in ((low, at - low, _above), (at, high - at, _below)):
             nodes = start + length * x
             part = kernel(nodes, at) * _measure(nodes) * length * w
             local = 2 * (nodes - low) / (high - low) - 1
-            weights[own] += part @ legendre.legvander(local, POINTS - 1) @ _fitted()
+            weights[block] += part @ legendre.legvander(local, POINTS - 1) @ _fitted()
         return weights
 
     kernel = np.array([row(i // POINTS, at) for i, at in enumerate(theta[: POINTS * upper])])

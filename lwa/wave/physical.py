@@ -137,6 +137,7 @@ class PhysicalWave(Value):
         """The momentum Σ m u_t = M/(P D) · B dx/dt · ∫ cos^m(βξ) dξ of the chain."""
         wave, m = self.wave, self.wave.m
         density = self.cell.mass / (self.cell.size * wave.D)
+        # ∫ cos^m y dy over |y| < π/2 = √π Γ((m+1)/2) / Γ(m/2 + 1)
         arch = sp.sqrt(sp.pi) * sp.gamma((m + 1) / 2) / (wave.beta * sp.gamma(m / 2 + 1))
         return density * arch * self.bead_velocity
 
@@ -173,6 +174,7 @@ class PhysicalWave(Value):
         wave, k, xi = self.wave, number(self.wave.k), finite(x, "x")
         peaks = {"strain": self.strain, "force": self.contact_force, "velocity": self.bead_velocity}
         peak = number(peaks[known(quantity)])
+        # The strain is B cos^m(βξ), m = 2/(k-1); the force scales as strain^k.
         beta, exponent = number(wave.beta), 2 * strain_power(quantity, k) / (k - 1)
 
         def arch(x: Array) -> Array:

@@ -176,19 +176,19 @@ def _integrated(
     plan = _plan(motion, settings, chain, window, end / math.ceil(steps + few))
     time, needed = sampled(motion)
     recorder = Recorder(chain, plan.scheme.points, needed, time)
-    at = beginning(plan, _front(motion))
+    now = beginning(plan, _front(motion))
     glance = 1 + int(_GLANCE / (scheme.stages * max(n, SHORTEST)))
     t = 0.0
     with progress() as display:
         while t < end:
             display(t / end)
-            t, _ = advance(chain, beads, plan, recorder.knots, at, glance)
+            t, _ = advance(chain, beads, plan, recorder.knots, now, glance)
             if t < end:
-                check_steps(method, int(at["tries"]), most, t, end)
-            if t == end or at["kept"] == len(recorder.knots.time):
-                at["kept"] = recorder.take(int(at["kept"]))
+                check_steps(method, int(now["tries"]), most, t, end)
+            if t == end or now["stored"] == len(recorder.knots.time):
+                now["stored"] = recorder.take(int(now["stored"]))
     drive = motion.scene.drive
-    paid = () if drive is None else (0.0, beads.v[0] * float(at["impulse"]))
+    paid = () if drive is None else (0.0, beads.v[0] * float(now["impulse"]))
     state = np.concatenate((beads.y[:n], beads.v[:n], paid))
     if not np.isfinite(state).all():
         raise IntegrationError(f"the motion overflows: a step of {plan.h:g} is too long")
@@ -198,11 +198,11 @@ def _integrated(
         motion,
         state,
         {"time": time} | recorded(motion, needed, recorder.y, recorder.v),
-        motion.balance(state, int(at["lo"])) + float(at["lost"]),
-        steps=int(at["steps"]),
+        motion.balance(state, int(now["lo"])) + float(now["lost"]),
+        steps=int(now["steps"]),
         behind=np.isfinite(left[:n]),
-        evaluations=int(at["tries"]) * scheme.stages,
-        bead_evaluations=int(at["evaluations"]),
+        evaluations=int(now["tries"]) * scheme.stages,
+        bead_evaluations=int(now["evaluations"]),
         window=window,
         path=path,
     )

@@ -5,7 +5,7 @@ p(x), x = 0 … 1: polynomial close to δ over one step; p_+ = max(p, 0). Kink: 
 opens or closes. Knot: end of a step, at which the motion of the watched beads is stored. Embedded
 pair: the Runge–Kutta–Nyström pair of `validation.lattice.schemes`.
 
-Loops over all beads hold no branch and read contiguous arrays, so that they vectorise. Only
-`advance` and `interpolate` are called from outside; their cached machine code is tied to the text
-of every file of this folder (`compiled.SOURCES`).
+Loops over all beads hold no branch and read contiguous arrays, so that they vectorise. Python calls
+`advance` and `interpolate` only; their cached machine code is tied to the text of every file of
+this folder (`compiled.SOURCES`).
 """

@@ -19,9 +19,9 @@ class Chain(NamedTuple):
     """A chain, padded by beads of infinite mass, of which the first is the wall.
 
     inverse : inverse masses. A, rest, load : stiffnesses, static compressions and static forces of
-    the contacts. k : exponent of a power law. generated : True for a contact law that is not a
-    power. force, slope, energy : addresses of the machine code of F, F′ and ∫ F dδ of such a law.
-    pulls : True if contacts hold where δ < 0.
+    the contacts. k : exponent of a power law. generated : True for any other contact law. force,
+    slope, energy : addresses of the machine code of F, F′ and ∫ F dδ of another law. pulls : True
+    if contacts hold where δ < 0.
     """
 
     inverse: Array
@@ -37,13 +37,13 @@ class Chain(NamedTuple):
 
 
 class Beads(NamedTuple):
-    """The state of the beads, and the room for a step.
+    """The state of the beads, and the memory of a step.
 
     y, v : displacements and velocities. next_y, next_v : those after the step that is tried.
     left : times at which a window has left the beads behind; infinite for beads in the window.
     force : (stages, padded + 1), force on each bead from behind, less the static force, by stage.
-    sums : (4, padded + 1), sums over stages: row 0 for intermediate results, row 1 the impulse of
-        each contact in a step, rows 2 and 3 the error estimates of its moment and its impulse.
+    sums : (4, padded + 1), sums over stages. Row 0: intermediate results. Row 1: impulse of each
+        contact in a step. Rows 2 and 3: error estimates of each contact's moment and impulse.
     """
 
     y: Array
@@ -58,7 +58,7 @@ class Beads(NamedTuple):
 class Knots(NamedTuple):
     """The motion of W watched beads at up to C knots, the ends of steps.
 
-    time : (C,), times of the knots. watched : (W,), numbers of the beads, increasing. state :
+    time : (C,), times of the knots. watched : (W,), increasing numbers of the beads. state :
     (C, W, 3), displacement, velocity and acceleration; NaN for a bead that a window has left.
     """
 
@@ -88,8 +88,8 @@ class Tableau(NamedTuple):
 class Plan(NamedTuple):
     """Plan of an integration: the scheme, its tolerances and steps, and the range of beads.
 
-    y, v : tolerances, the errors of displacement and velocity allowed in a step. h : first step,
-    for a splitting the fixed one. longest : greatest step allowed to an embedded pair. end :
+    y, v : tolerances, the errors of displacement and velocity allowed in a step. h : first step of
+    an embedded pair, fixed step of a splitting. longest : greatest step of an embedded pair. end :
     duration. deepest : greatest compression. quickest : greatest stiffness divided by the least
     mass. size : number of beads. window : number of beads that are integrated behind the front; 0
     for the whole chain.
@@ -107,20 +107,20 @@ class Plan(NamedTuple):
     window: int
 
 
-_COUNTS = ("steps", "tries", "evaluations", "front", "lo", "kept")
+_COUNTS = ("steps", "tries", "evaluations", "front", "lo", "stored")
 _REALS = ("t", "h", "lost", "impulse")
 _PROGRESS = np.dtype([(name, int) for name in _COUNTS] + [(name, float) for name in _REALS])
 
 
 def beginning(plan: Plan, front: int) -> Any:
-    """Return the record of an integration's progress, at time 0; `advance` updates the record.
+    """Return the record of an integration at time 0, which `advance` updates.
 
-    front : number of the first bead that is still. Fields: steps, tries : numbers of steps made
-    and tried. evaluations : sum, over all evaluations of the forces, of the number of beads moved.
-    lo : first bead of the window. kept : number of knots. t, h : present time and next step. lost :
-    elastic energy of contacts that a window cut. impulse : ∫ (F - static force) dt of the first
-    contact, computed by an embedded pair only.
+    front : number of the first bead that is still. Fields: t, h : time, next step. steps, tries :
+    numbers of steps made and tried. evaluations : sum, over all evaluations of the forces, of the
+    number of beads moved. front, lo : first bead ahead of the motion, and first bead of the window.
+    stored : number of stored knots. lost : elastic energy of contacts that a window cut. impulse :
+    ∫ (F - static force) dt of the first contact, computed by an embedded pair only.
     """
-    at = np.zeros(1, _PROGRESS)[0]
-    at["front"], at["h"] = front, plan.h
-    return at
+    now = np.zeros(1, _PROGRESS)[0]
+    now["front"], now["h"] = front, plan.h
+    return now

@@ -41,14 +41,13 @@ _OUTER: Any = dict(
 )
 # Called by compiled functions alone: wrappers for Python took a third of the time to compile.
 _INNER: Any = _OUTER | {"no_cpython_wrapper": True}
-compiled: Callable[[Function], Function] = njit(**_INNER)
+# Inlined into the caller by LLVM, as the calls would take a quarter of a run's time. Inlining by
+# numba ("inline") gives the same code, but takes three times as long to compile.
+part: Callable[[Function], Function] = njit(forceinline=True, **_INNER)
 # Sums and maxima in the order of the machine's registers, the same in every run.
 summed: Callable[[Function], Function] = njit(
     **_INNER | {"fastmath": {"nsz", "arcp", "contract", "reassoc"}}
 )
-# Inlined into the caller by LLVM, as the calls would take a quarter of a run's time. Inlining by
-# numba ("inline") gives the same code, but takes three times as long to compile.
-part: Callable[[Function], Function] = njit(forceinline=True, **_INNER)
 # Unsigned indices: a signed one may count from the end, which keeps a loop from vectorising.
 index = np.uint64
 ZERO, ONE, TWO, THREE = map(index, range(4))

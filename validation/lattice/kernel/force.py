@@ -7,28 +7,27 @@ from typing import Any
 import numpy as np
 
 from lwa.base.arrays import Array
-from validation.lattice.kernel.arrays import Beads, Chain
-from validation.lattice.kernel.compiled import ONE, call, compiled, index, part
+from validation.lattice.kernel.arrays import Beads, Chain, Plan
+from validation.lattice.kernel.compiled import ONE, call, index, part
 
-NOTHING = 1e-60  # in units of the greatest compression: less is 0, so that no denormals arise
+_NOTHING = 1e-60  # in units of the greatest compression: less is 0, so that no denormals arise
 
 
 def _loop(value: Any) -> Any:
     """Return a compiled loop over contacts of force A value(d, k), d ≥ 0 the compression."""
 
     @part
-    def loop(
-        chain: Chain, y: Array, force: Array, s: Any, lo: int, hi: int, nothing: float
-    ) -> None:
+    def loop(chain: Chain, y: Array, f: Array, lo: int, hi: int, nothing: float) -> None:
         A, rest, load, k = chain.A, chain.rest, chain.load, chain.k
         for i in range(index(lo), index(hi)):
             d = rest[i] + y[i] - y[i + ONE]
             d = d if d > nothing else 0.0
-            force[s, i + ONE] = A[i] * value(d, k) - load[i]
+            f[i + ONE] = A[i] * value(d, k) - load[i]
 
     return loop
 
 
+# d^k takes ten times as long as the products and roots of the usual exponents.
 _linear = _loop(part(lambda d, k: d))
 _five_quarters = _loop(part(lambda d, k: d * np.sqrt(np.sqrt(d))))
 _hertz = _loop(part(lambda d, k: d * np.sqrt(d)))
@@ -37,32 +36,33 @@ _cube = _loop(part(lambda d, k: d * d * d))
 _power = _loop(part(lambda d, k: d**k))
 
 
-@compiled
-def press(chain: Chain, y: Array, force: Array, s: Any, lo: int, hi: int, nothing: float) -> None:
+@part
+def contact_forces(
+    chain: Chain, beads: Beads, plan: Plan, y: Array, s: Any, lo: int, hi: int
+) -> None:
     """Compute the forces of the contacts ahead of beads lo … hi-1, less the static forces.
 
-    The result goes to ``force``, row s (stage) and column i + 1 for the contact ahead of bead i.
-    Compressions up to ``nothing`` count as 0. Exponents that need no general power have loops of
-    their own.
+    y : displacements. The result goes to row s (stage) of ``beads.force``, in column i + 1 for the
+    contact ahead of bead i.
     """
+    f, nothing = beads.force[s], _NOTHING * plan.deepest
     if chain.generated:
         for i in range(index(lo), index(hi)):
             d = chain.rest[i] + y[i] - y[i + ONE]
             closed = chain.A[i] > 0.0 and (chain.pulls or d > 0.0)
-            f = chain.A[i] * call(chain.force, d) if closed else 0.0
-            force[s, i + ONE] = f - chain.load[i]
+            f[i + ONE] = (chain.A[i] * call(chain.force, d) if closed else 0.0) - chain.load[i]
     elif chain.k == 1.5:
-        _hertz(chain, y, force, s, lo, hi, nothing)
+        _hertz(chain, y, f, lo, hi, nothing)
     elif chain.k == 1.0:
-        _linear(chain, y, force, s, lo, hi, nothing)
+        _linear(chain, y, f, lo, hi, nothing)
     elif chain.k == 1.25:
-        _five_quarters(chain, y, force, s, lo, hi, nothing)
+        _five_quarters(chain, y, f, lo, hi, nothing)
     elif chain.k == 2.0:
-        _square(chain, y, force, s, lo, hi, nothing)
+        _square(chain, y, f, lo, hi, nothing)
     elif chain.k == 3.0:
-        _cube(chain, y, force, s, lo, hi, nothing)
+        _cube(chain, y, f, lo, hi, nothing)
     else:
-        _power(chain, y, force, s, lo, hi, nothing)
+        _power(chain, y, f, lo, hi, nothing)
 
 
 @part
@@ -88,8 +88,8 @@ def stiffness(chain: Chain, d: float, rising: bool) -> float:
 @part
 def relative(force: Array, inverse: Array, i: int) -> float:
     """Return the acceleration of bead i minus that of bead i + 1, from the forces of a stage."""
-    near, far = (force[i] - force[i + 1]) * inverse[i], (force[i + 1] - force[i + 2])
-    return float(near - far * inverse[i + 1])
+    behind, ahead = force[i] - force[i + 1], force[i + 1] - force[i + 2]
+    return float(behind * inverse[i] - ahead * inverse[i + 1])
 
 
 @part

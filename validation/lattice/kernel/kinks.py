@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from lwa.base.arrays import Array
 from validation.lattice.kernel.arrays import Chain
-from validation.lattice.kernel.compiled import compiled, part, summed
+from validation.lattice.kernel.compiled import part, summed
 from validation.lattice.kernel.force import power
 
 Quintic = tuple[float, float, float, float, float, float]
@@ -46,7 +46,7 @@ def fitted(d: float, v: float, a: float, end: float, end_v: float, end_a: float)
     )
 
 
-@compiled
+@part
 def kink(c: Quintic, end: float) -> Quintic:
     """Return the root r of a quintic p and the coefficients of q in p = (x - r) q(x).
 

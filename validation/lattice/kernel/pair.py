@@ -14,7 +14,7 @@ from typing import Any
 from lwa.base.arrays import Array
 from validation.lattice.kernel.arrays import WIDTH, Beads, Chain, Plan, Tableau
 from validation.lattice.kernel.compiled import ONE, THREE, TWO, ZERO, index, part, summed
-from validation.lattice.kernel.force import NOTHING, power, press, relative
+from validation.lattice.kernel.force import contact_forces, power, relative
 from validation.lattice.kernel.kinks import NEAR, Quintic, fitted, kink, quintic, ramp
 
 _STEADY = 0.5  # for a kink outside the step: least ratio of the closing speeds at the step's ends
@@ -23,31 +23,19 @@ _SLIGHT = 10.0  # least effect of a contact that is corrected, in units of the t
 
 @part
 def _add_up(
-    sums: Array,
-    q: Any,
-    force: Array,
-    row: Array,
-    scale: float,
-    stages: int,
-    lo: int,
-    hi: int,
+    sums: Array, q: Any, force: Array, row: Array, scale: float, stages: int, lo: int, hi: int
 ) -> None:
     """Compute sums[q] = scale Σ_j row[j] force[j] for stages j = 0 … ``stages`` - 1."""
     sums[q, lo] = 0.0
     for first in range(0, stages, WIDTH):
-        a, b = scale * row[first], scale * row[first + 1]
-        c, d = scale * row[first + 2], scale * row[first + 3]
-        e = scale * row[first + 4]
+        a, b, c = scale * row[first], scale * row[first + 1], scale * row[first + 2]
+        d, e = scale * row[first + 3], scale * row[first + 4]
         j = index(first)
         j1, j2, j3, j4 = j + ONE, j + index(2), j + index(3), j + index(4)
-        if first == 0:
-            for i in range(index(lo) + ONE, index(hi) + ONE):
-                four = a * force[j, i] + b * force[j1, i] + c * force[j2, i] + d * force[j3, i]
-                sums[q, i] = four + e * force[j4, i]
-        else:
-            for i in range(index(lo) + ONE, index(hi) + ONE):
-                four = a * force[j, i] + b * force[j1, i] + c * force[j2, i] + d * force[j3, i]
-                sums[q, i] += four + e * force[j4, i]
+        for i in range(index(lo) + ONE, index(hi) + ONE):
+            four = a * force[j, i] + b * force[j1, i] + c * force[j2, i] + d * force[j3, i]
+            five = four + e * force[j4, i]
+            sums[q, i] = five if first == 0 else sums[q, i] + five
 
 
 @summed
@@ -64,7 +52,7 @@ def _square(sums: Array, inverse: Array, lo: int, hi: int) -> float:
 @part
 def _attempt(chain: Chain, beads: Beads, plan: Plan, lo: int, h: float, hi: int) -> float:
     """Try a step of the beads lo … hi-1; return the error in units of the tolerance."""
-    nothing, stages = NOTHING * plan.deepest, len(plan.scheme.nodes)
+    stages = len(plan.scheme.nodes)
     y, v, next_y, next_v = beads.y, beads.v, beads.next_y, beads.next_v
     inverse, rest, force, sums = chain.inverse, chain.rest, beads.force, beads.sums
     rows, ends, nodes = plan.scheme.rows, plan.scheme.ends, plan.scheme.nodes
@@ -76,7 +64,7 @@ def _attempt(chain: Chain, beads: Beads, plan: Plan, lo: int, h: float, hi: int)
             ahead = sums[ZERO, i + ONE]
             next_y[i] = y[i] + ch * v[i] + (behind - ahead) * inverse[i]
             behind = ahead
-        press(chain, next_y, force, index(s), lo, hi, nothing)
+        contact_forces(chain, beads, plan, next_y, index(s), lo, hi)
     _add_up(sums, ONE, force, ends[0], h, stages, lo, hi)
     _add_up(sums, TWO, force, ends[1], h * h / plan.y, stages, lo, hi)
     _add_up(sums, THREE, force, ends[2], h / plan.v, stages, lo, hi)
@@ -93,12 +81,12 @@ def _attempt(chain: Chain, beads: Beads, plan: Plan, lo: int, h: float, hi: int)
         sums[ZERO, i + ONE] = most if kinked else 0.0
         near += 1 if kinked else 0
     if near > 0 and plan.scheme.points.shape[1] > 0:
-        _mend(chain, beads, plan, lo, h, hi)
+        _correct_kinks(chain, beads, plan, lo, h, hi)
     return math.sqrt(_square(sums, inverse, lo, hi))
 
 
 @part
-def _mend(chain: Chain, beads: Beads, plan: Plan, lo: int, h: float, hi: int) -> None:
+def _correct_kinks(chain: Chain, beads: Beads, plan: Plan, lo: int, h: float, hi: int) -> None:
     """Correct a step at the contacts that are marked by a compression above 0 in sums[0]."""
     y, v, next_y, next_v = beads.y, beads.v, beads.next_y, beads.next_v
     inverse, rest = chain.inverse, chain.rest
@@ -110,23 +98,24 @@ def _mend(chain: Chain, beads: Beads, plan: Plan, lo: int, h: float, hi: int) ->
             steady = min(speed / later, later / speed) > _STEADY
             kick = h * chain.A[i] * power(chain, most) * max(inverse[i], inverse[i + 1])
             if kick > _SLIGHT * plan.v and (within or steady):
-                _correct(chain, beads, plan, h, i)
+                _correct_contact(chain, beads, plan, h, i)
 
 
 @part
-def _correct(chain: Chain, beads: Beads, plan: Plan, h: float, i: int) -> None:
+def _correct_contact(chain: Chain, beads: Beads, plan: Plan, h: float, i: int) -> None:
     """Correct a step for the embedded pair's error at contact i, which opens or closes.
 
-    The pair's own integrals of A p_+^k are replaced by accurate ones. The pair's integral of the
-    remaining force F - A p_+^k, which is smoother, is kept.
+    Replaces the pair's integrals of A p_+^k by accurate ones; the pair's integral of the remaining
+    force F - A p_+^k, which is smoother, remains.
     """
     inverse, scheme = chain.inverse, plan.scheme
-    p, end = _course(chain, beads, h, len(scheme.nodes) - 1, i)
-    found = kink(p, end)
-    if math.isnan(found[0]):
+    p, end = _fitted_compression(chain, beads, h, len(scheme.nodes) - 1, i)
+    factored = kink(p, end)
+    if math.isnan(factored[0]):
         return
-    twice, once = ramp(chain, scheme.points, found, 1.0)
-    start_twice, start_once = ramp(chain, scheme.points, found, 0.0)
+    # From the root to the step's end less from the root to its start; ∫ (1 - x) = ∫ (0 - x) + ∫ 1.
+    twice, once = ramp(chain, scheme.points, factored, 1.0)
+    start_twice, start_once = ramp(chain, scheme.points, factored, 0.0)
     pair_twice, pair_once, error, error_once = _pair_sums(chain, scheme, p)
     impulse = chain.A[i] * h * (once - start_once - pair_once)
     moment = chain.A[i] * h * h * (twice - start_twice - start_once - pair_twice)
@@ -147,7 +136,9 @@ def _correct(chain: Chain, beads: Beads, plan: Plan, h: float, i: int) -> None:
 
 
 @part
-def _course(chain: Chain, beads: Beads, h: float, last: int, i: int) -> tuple[Quintic, float]:
+def _fitted_compression(
+    chain: Chain, beads: Beads, h: float, last: int, i: int
+) -> tuple[Quintic, float]:
     """Return the quintic p of contact i over the step, and p(1); ``last`` is the last stage."""
     y, v, force, inverse = beads.y, beads.v, beads.force, chain.inverse
     d = chain.rest[i] + y[i] - y[i + 1]
@@ -160,10 +151,9 @@ def _course(chain: Chain, beads: Beads, h: float, last: int, i: int) -> tuple[Qu
 
 @summed
 def _pair_sums(chain: Chain, scheme: Tableau, p: Quintic) -> tuple[float, float, float, float]:
-    """Return the embedded pair's values of ∫ (1 - x) p_+^k dx and ∫ p_+^k dx over a step.
+    """Return the embedded pair's ∫ (1 - x) p_+^k dx and ∫ p_+^k dx over a step, and both errors.
 
-    These are sums with the coefficients b and b'; the third and fourth number returned, sums with e
-    and e', are the pair's error estimates of the first and the second.
+    The four numbers are sums over the stages with the coefficients b, b', e and e'.
     """
     nodes, last = scheme.nodes, len(scheme.nodes) - 1
     once = twice = error = error_once = 0.0
@@ -177,19 +167,21 @@ def _pair_sums(chain: Chain, scheme: Tableau, p: Quintic) -> tuple[float, float,
 
 
 @part
-def accepted(chain: Chain, beads: Beads, plan: Plan, at: Any, h: float, hi: int) -> bool:
+def accepted(chain: Chain, beads: Beads, plan: Plan, now: Any, h: float, hi: int) -> bool:
     """Try a step, set the next step from the error, and return True if the step is accepted."""
-    error = _attempt(chain, beads, plan, at.lo, h, hi)
+    error = _attempt(chain, beads, plan, now.lo, h, hi)
+    # The error scales as h^{lower + 1}; safety factor 0.9 and growth by at most 5: Hairer, Nørsett
+    # and Wanner, Solving Ordinary Differential Equations I, II.4.
     if not error <= 1.0:
         shrink = 0.9 * error ** (-1.0 / (plan.scheme.lower + 1)) if error < 1e9 else 0.0
-        at.h = h * max(0.1, shrink)
+        now.h = h * max(0.1, shrink)
         if not error < 1e9:
             beads.force[1:] = 0.0  # overflows must not last
         return False
-    for i in range(index(at.lo), index(hi)):
+    for i in range(index(now.lo), index(hi)):
         beads.y[i], beads.v[i] = beads.next_y[i], beads.next_v[i]
-    press(chain, beads.y, beads.force, ZERO, at.lo, hi, NOTHING * plan.deepest)
-    at.impulse += beads.sums[ONE, ONE] if at.lo == 0 else 0.0
+    contact_forces(chain, beads, plan, beads.y, ZERO, now.lo, hi)
+    now.impulse += beads.sums[ONE, ONE] if now.lo == 0 else 0.0
     grow = 0.9 * max(error, 1e-9) ** (-1.0 / (plan.scheme.lower + 1))
-    at.h = min(plan.longest, h * min(5.0, grow))
+    now.h = min(plan.longest, h * min(5.0, grow))
     return True

@@ -19,27 +19,27 @@ from numpy.typing import NDArray
 from lwa.base.arrays import Array
 from validation.lattice.kernel.arrays import Beads, Chain, Knots, Plan
 from validation.lattice.kernel.compiled import SOURCES, ZERO, cached, part
-from validation.lattice.kernel.force import NOTHING, power, press, stiffness
+from validation.lattice.kernel.force import contact_forces, power, stiffness
 from validation.lattice.kernel.kinks import NEAR, NONE, Quintic, fitted, kink, quintic, ramp
 
 Four = tuple[float, float, float, float]
 
 
 @part
-def keep(chain: Chain, beads: Beads, plan: Plan, knots: Knots, at: Any, hi: int) -> None:
+def store_knot(chain: Chain, beads: Beads, plan: Plan, knots: Knots, now: Any, hi: int) -> None:
     """Append a knot, the present motion of the watched beads."""
     if len(knots.watched) == 0:
         return
     if len(plan.scheme.nodes) == 0:  # a splitting leaves no forces of the step's end
-        press(chain, beads.y, beads.force, ZERO, at.lo, hi, NOTHING * plan.deepest)
-    knots.time[at.kept] = at.t
+        contact_forces(chain, beads, plan, beads.y, ZERO, now.lo, hi)
+    knots.time[now.stored] = now.t
     for q in range(len(knots.watched)):
-        j, state = knots.watched[q], knots.state[at.kept, q]
-        state[0] = beads.y[j] if j >= at.lo else np.nan
-        state[1] = beads.v[j] if j >= at.lo else np.nan
+        j, state = knots.watched[q], knots.state[now.stored, q]
+        state[0] = beads.y[j] if j >= now.lo else np.nan
+        state[1] = beads.v[j] if j >= now.lo else np.nan
         force = beads.force[0, j] - beads.force[0, j + 1]
-        state[2] = force * chain.inverse[j] if j >= at.lo else np.nan
-    at.kept += 1
+        state[2] = force * chain.inverse[j] if j >= now.lo else np.nan
+    now.stored += 1
 
 
 @part
@@ -57,7 +57,7 @@ def _compression(chain: Chain, knots: Knots, n: int, q: int) -> tuple[float, flo
 
 
 @part
-def course(chain: Chain, points: Array, knots: Knots, n: int, q: int) -> Quintic:
+def _kink(chain: Chain, points: Array, knots: Knots, n: int, q: int) -> Quintic:
     """Return the kink in step n of the contact between rows q and q + 1; `NONE` without a kink."""
     if points.shape[1] == 0 or not _adjacent(knots.watched, q):
         return NONE
@@ -178,8 +178,8 @@ def _built(sources: int) -> Any:
                     n = step[s]
                     start, h = knots.time[n], knots.time[n + 1] - knots.time[n]
                     push, pull = _units(chain, knots, q, h)
-                    behind = course(chain, points, knots, n, q - 1)
-                    ahead = course(chain, points, knots, n, q)
+                    behind = _kink(chain, points, knots, n, q - 1)
+                    ahead = _kink(chain, points, knots, n, q)
                     low, c6, c7 = _polynomial(chain, points, knots, n, q, behind, ahead)
                 x = (time[s] - start) / h
                 pull_y, pull_v = ramp(chain, points, ahead, x)
