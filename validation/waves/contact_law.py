@@ -9,11 +9,7 @@ is linear in ln F; least squares give k and A, and with k = 3/2 (Hertz) the unkn
 E of one material.
 
 **Any law** F(δ) = W'(δ). In the long-wave theory S = m̄ V²/(R D²) is 2 W/δ², δ the peak
-compression. Differentiation of S δ² = 2 W with respect to F gives
-
-    dδ/dF = δ² S_F / (2 (F - S δ)),   k = 1/(1 - 2 d ln V/d ln F),
-
-with S_F = dS/dF and the local exponent k. ln V is a polynomial of ln F, R = R(k).
+compression. ln V is a polynomial of ln F, and R = R(k) with the local exponent k.
 
 Errors are 95 % intervals. The size of the noise is estimated from the residuals; standard
 deviations of the data, if known, only weight the data.
@@ -204,6 +200,7 @@ def _integrated(medium: Medium, rows: Array, grid: Array, middle: float) -> Arra
         log_V = polynomial.polyval(x - middle, rows)
         return 2 * (log_V - math.log(medium.spacing)) + np.log(medium.mass / medium.ratio(k)), k
 
+    # Differentiation of S δ² = 2 W with respect to F gives dδ/dF = δ² S'(F)/(2 (F - S δ)).
     def slope(x: float, log_delta: Array) -> Array:
         """Return d ln δ/d ln F."""
         S, step = log_S(x)[0], 1e-4
