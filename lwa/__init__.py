@@ -115,8 +115,8 @@ def __getattr__(name: str) -> Any:
         return import_module("lwa.spheres.hertz")
     if name not in _HOMES:
         raise AttributeError(f"module 'lwa' has no attribute {name!r}")
-    found = globals()[name] = getattr(import_module(f"lwa.{_HOMES[name]}"), name)
-    return found
+    value = globals()[name] = getattr(import_module(f"lwa.{_HOMES[name]}"), name)
+    return value
 
 
 def __dir__() -> list[str]:

@@ -239,15 +239,15 @@ def check_distinct(symbols: Sequence[sp.Symbol]) -> None:
 
 
 def check_names(
-    value: sp.Expr, field: str, own: str = "", taken: Mapping[str, str] = RESERVED
+    value: sp.Expr, field: str, allowed: str = "", taken: Mapping[str, str] = RESERVED
 ) -> sp.Expr:
     """Return the value; raise `lwa.InputError` if a symbol in it has a name of another meaning.
 
-    field : name of the value in messages. own : name that a symbol in the value may have.
+    field : name of the value in messages. allowed : reserved name that a symbol may have.
     taken : mapping from each reserved name to its meaning.
     """
     for name in sorted(s.name for s in value.free_symbols):
-        if name in taken and name != own:
+        if name in taken and name != allowed:
             raise InputError(f"{field} {name!r}: the name means {taken[name]} here")
     return value
 

@@ -79,14 +79,14 @@ class Writer:
     ignores_case: ClassVar[bool] = False
     settings: ClassVar[dict[str, Any]] = {}  # of SymPy's printer
 
-    def __init__(self, functions: Sequence[Function], own: Sequence[sp.Symbol] = ()) -> None:
-        """Choose names for all symbols; the symbols ``own`` keep theirs before others."""
+    def __init__(self, functions: Sequence[Function], first: Sequence[sp.Symbol] = ()) -> None:
+        """Choose names for all symbols; the symbols ``first`` before others."""
         super().__init__(dict(self.settings))  # type: ignore[call-arg]  # SymPy's
         self.functions = functions
-        self.names: dict[sp.Symbol, str] = {symbol: symbol.name for symbol in own}
+        self.names: dict[sp.Symbol, str] = {symbol: symbol.name for symbol in first}
         self.renamed: dict[str, str] = {}
         taken = {self._folded(n) for n in (*self.names.values(), *(f.name for f in functions))}
-        for symbol in dict.fromkeys(s for f in functions for s in f.arguments if s not in own):
+        for symbol in dict.fromkeys(s for f in functions for s in f.arguments if s not in first):
             name = self.names[symbol] = self._free(symbol.name, taken)
             if name != symbol.name:
                 self.renamed[name] = symbol.name
@@ -174,8 +174,8 @@ class Writer:
 
     def parenthesize(self, item: sp.Basic, level: int, strict: bool = False) -> str:
         """Parenthesize as SymPy does, except fractions that are one literal."""
-        one = item.is_Rational and item.p > 0 and "/" not in self.text(item)
-        return str(super().parenthesize(item, 0 if one else level, strict))  # type: ignore[misc]  # SymPy's
+        literal = item.is_Rational and item.p > 0 and "/" not in self.text(item)
+        return str(super().parenthesize(item, 0 if literal else level, strict))  # type: ignore[misc]  # SymPy's
 
     def _print_AppliedUndef(self, call: sp.Expr) -> str:
         return f"{call.func.__name__}({', '.join(map(self._print, call.args))})"  # type: ignore[attr-defined]  # SymPy's

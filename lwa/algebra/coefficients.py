@@ -44,11 +44,6 @@ class Partition(Value):
         return tuple(dict.fromkeys(self.weights))
 
     @cached_property
-    def sum(self) -> sp.Expr:
-        """The sum Σ w_i of the weights."""
-        return sp.Add(*self.weights)
-
-    @cached_property
     def values(self) -> tuple[sp.Expr, ...] | None:
         """The fraction f_i of each distinct weight if all are rational, else None."""
         first = self.distinct[0]

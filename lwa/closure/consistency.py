@@ -32,11 +32,11 @@ CLOSURES = ("linear", "full")
 FIELDS = ("first", "center")
 
 
-@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+@dataclass(frozen=True, repr=False, kw_only=True)
 class Closure(Solution):
     """The solved consistency condition of a model, as polynomials.
 
-    changes : the {n: α_n} of each change of the field; see `in_field`.
+    changes : the (n, α_n) of each change of the field; see `in_field`.
 
     Equality, hash and pickle go by model, order, closure and field; a copy is derived again.
     """
@@ -45,7 +45,7 @@ class Closure(Solution):
     order: int
     name: str
     field: str
-    changes: tuple[dict[int, sp.Expr], ...] = ()
+    changes: tuple[tuple[tuple[int, sp.Expr], ...], ...] = ()
 
     @property
     def ratio(self) -> sp.Expr:
@@ -57,21 +57,9 @@ class Closure(Solution):
         m1, m2 = self.model.cell.masses
         return -sp.cancel(m1 / m2)
 
-    @property
-    def key(self) -> tuple[Any, ...]:
-        """The arguments of `solve`, by which closures are compared."""
-        model = replace(self.model, constants=())
-        changes = tuple(tuple(alphas.items()) for alphas in self.changes)
-        return (model, self.order, self.name, self.field, changes)
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, Closure) and self.key == other.key
-
-    def __hash__(self) -> int:
-        return hash(self.key)
-
     def __reduce__(self) -> tuple[Callable[..., Closure], tuple[Any, ...]]:
-        return solve, self.key
+        model = replace(self.model, constants=())
+        return solve, (model, self.order, self.name, self.field, self.changes)
 
     def __repr__(self) -> str:
         changes = f", changes={self.changes}" if self.changes else ""
@@ -108,14 +96,16 @@ class Closure(Solution):
     @property
     def symbols(self) -> tuple[sp.Symbol, ...]:
         """Symbols of the α_n that are not those of the cell or the law."""
-        values = (alpha for alphas in self.changes for alpha in alphas.values())
+        values = (alpha for alphas in self.changes for _, alpha in alphas)
         symbols = set().union(*(alpha.free_symbols for alpha in values))
         return tuple(sorted(symbols - {*self.model.cell.symbols, *self.model.law.symbols}, key=str))
 
     def in_field(self, alphas: Mapping[int, sp.Expr]) -> Closure:
         """The closure for the field φ = u + Σ α_n D^n ∂_x^n u, without ansatz."""
         model, solution = in_field(self, self.model, self.order, alphas)
-        return replace(self, **vars(solution), model=model, changes=(*self.changes, dict(alphas)))
+        return replace(
+            self, **vars(solution), model=model, changes=(*self.changes, tuple(alphas.items()))
+        )
 
     def at(self, **values: Any) -> Closure:
         """The closure for these values of the named symbols; see `lwa.cell.substitution`."""
@@ -127,7 +117,7 @@ class Closure(Solution):
         """Derive again with these values of the symbols, or to this order."""
         new, order = new or {}, order or self.order
         model = replace(self.model, constants=()).replaced(new, order)
-        changes = [[(n, a.xreplace(new)) for n, a in row.items()] for row in self.changes]
+        changes = [[(n, alpha.xreplace(new)) for n, alpha in alphas] for alphas in self.changes]
         return solve(model, order, self.name, self.field, changes)
 
 

@@ -10,14 +10,14 @@ force of contact i divided by A_eff D^k. The equations of motion of the P partic
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from flint import fmpq_mpoly
 
 from lwa.algebra.jets import JetAlgebra
 
 
-@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+@dataclass(frozen=True, repr=False, kw_only=True)
 class Solution:
     """The result of a closure, as polynomials.
 
@@ -29,11 +29,11 @@ class Solution:
     defect : E_n from the first equation of motion minus E_n from the second, for the same ansatz.
     """
 
-    algebra: JetAlgebra
-    acceleration: tuple[fmpq_mpoly, ...]
-    ansatz: tuple[fmpq_mpoly, ...] = ()
-    slaved: tuple[tuple[fmpq_mpoly, ...], ...] = ()
-    defect: tuple[fmpq_mpoly, ...] = ()
+    algebra: JetAlgebra = field(compare=False)
+    acceleration: tuple[fmpq_mpoly, ...] = field(compare=False)
+    ansatz: tuple[fmpq_mpoly, ...] = field(compare=False, default=())
+    slaved: tuple[tuple[fmpq_mpoly, ...], ...] = field(compare=False, default=())
+    defect: tuple[fmpq_mpoly, ...] = field(compare=False, default=())
 
     @property
     def fields(self) -> tuple[tuple[fmpq_mpoly, ...], ...]:

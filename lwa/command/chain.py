@@ -56,8 +56,8 @@ class ChainInput:
         if not self.precompression:
             return []
         force = f"{float(self.precompression):g}{' N' * self.si}"
-        said = f"the load of the file, {force}, is left out"
-        return [f"{said}: the theory used is of a chain without"]
+        without = "is left out: the theory used is of a chain without"
+        return [f"the load of the file, {force}, {without}"]
 
 
 def take_chain(options: dict[str, Any]) -> ChainInput:

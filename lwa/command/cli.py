@@ -32,8 +32,8 @@ class Commands(click.Group):
         """Return the command with a given name, or None."""
         if name not in COMMANDS:
             return None
-        found: click.Command = getattr(import_module(f"lwa.command.{COMMANDS[name]}"), name)
-        return found
+        command: click.Command = getattr(import_module(f"lwa.command.{COMMANDS[name]}"), name)
+        return command
 
 
 @click.group(cls=Commands, context_settings=HELP)

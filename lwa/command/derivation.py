@@ -121,10 +121,10 @@ def _terms_json(coefficients: Mapping[int, Terms]) -> list[dict[str, Any]]:
             "order": n,
             "jet": [list(power) for power in jet.x],
             "jet_t": [list(power) for power in jet.t],
-            "coefficient": found.written(jet),
+            "coefficient": terms.written(jet),
         }
-        for n, found in coefficients.items()
-        for jet in found
+        for n, terms in coefficients.items()
+        for jet in terms
     ]
 
 
@@ -164,20 +164,20 @@ _OTHER_LAW = "F' u_xx", "G F' u_x^-2 u_xx^3 + H F' u_x^-1 u_xx u_xxx + I F' u_4x
 
 
 def _equation(theory: Theory) -> list[Row | str]:
-    found = theory.pde.third_order
+    third = theory.pde.third_order
     lines: list[Row | str]
     if theory.closure.model.branch == "optical":
         lines = ["u_ττ = -u^k + …   (contacts that also pull: the odd law |δ|^(k-1) δ)"]
     elif theory.order == 1:
         lines = ["the wave equation starts at D^(k+1), that is at order 2 of the ansatz"]
     else:
-        parts = list((_POWER_LAW if theory.law.homogeneous else _OTHER_LAW)[: 2 if found else 1])
-        parts += ["…"] * (theory.order > (4 if found else 2))
+        parts = list((_POWER_LAW if theory.law.homogeneous else _OTHER_LAW)[: 2 if third else 1])
+        parts += ["…"] * (theory.order > (4 if third else 2))
         lines = [f"u_ττ = {' + '.join(parts)}"]
-        lines += [Row(name, name, value, digits=False) for name, value in found.items()]
+        lines += [Row(name, name, value, digits=False) for name, value in third.items()]
     form = _order_form(theory)
     lines += _orders(
-        {n: c for n, c in theory.pde.coefficients.items() if not (found and n == 3)}, form
+        {n: c for n, c in theory.pde.coefficients.items() if not (third and n == 3)}, form
     )
     vanishing = ", ".join(map(form.format, theory.pde.vanishing))
     return [*lines, f"  vanishing identically: {vanishing}"] if vanishing else lines
@@ -209,8 +209,8 @@ def _consistency_text(theory: Theory) -> list[str]:
 def _orders(coefficients: Mapping[int, Terms], form: str) -> list[str]:
     """Lines of text with the terms of each order; the order n is written by ``form``."""
     lines = []
-    for n, found in coefficients.items():
-        rows = [f"    {found.text(jet)}: {found.written(jet)}" for jet in found]
+    for n, terms in coefficients.items():
+        rows = [f"    {terms.text(jet)}: {terms.written(jet)}" for jet in terms]
         lines += [f"  {form.format(n)}:", *rows] if rows else []
     return lines
 
@@ -236,7 +236,7 @@ def _source(theory: Theory) -> str:
     values = {f"b{n}": b for n, b in theory.ansatz.items()} | theory.pde.third_order
     for name, value in values.items():
         functions.define(name, f"The coefficient {name}", value)
-    table = {n: {jet: found[jet] for jet in found} for n, found in theory.pde.coefficients.items()}
+    table = {n: {jet: terms[jet] for jet in terms} for n, terms in theory.pde.coefficients.items()}
     doc = "{n: {(jet, jet_t): c}}, orders D^(k+n), without the power of D"
     functions.define("coefficients", doc, sp.Dict(table))
     return functions.source("python", ["The ansatz and the wave equation. Written by lwa."])

@@ -87,42 +87,42 @@ def shock(
     if ahead is None:
         ahead = law.compression(cell, static) / cell.spacing if static else sp.S.Zero
     if behind is None:
-        found = riemann.piston(cell, law, piston, ahead)
+        front = riemann.piston(cell, law, piston, ahead)
     else:
-        found = riemann.shock(cell, law, behind, ahead)
-    _front(chain, found).print(style)
+        front = riemann.shock(cell, law, behind, ahead)
+    _front(chain, front).print(style)
 
 
-def _front(chain: ChainInput, found: riemann.Shock) -> Answer:
+def _front(chain: ChainInput, front: riemann.Shock) -> Answer:
     """Rows of the front between two strains."""
 
     def row(key: str, label: str, value: Any, symbol: str = "", unit: str = "m/s") -> Row:
         closed = isinstance(value, sp.Expr) and not value.has(sp.Float)
         return Row(key, label, value, symbol, unit, expression=closed)
 
-    kind = attempt(lambda: found.kind)
+    kind = attempt(lambda: front.kind)
     head = {"kind": None if isinstance(kind, InputError) else kind}
     rows: list[Row | str] = [
         chain.text,
-        Row("behind", "strain behind", found.behind, "p_{-}"),
-        Row("ahead", "strain ahead", found.ahead, "p_{+}"),
+        Row("behind", "strain behind", front.behind, "p_{-}"),
+        Row("ahead", "strain ahead", front.ahead, "p_{+}"),
         "",
         f"{head['kind'] or 'front'}, speeds dx/dt:",
-        row("plateau", "velocity of the wall and the plateau", found.plateau, "v_{p}"),
-        row("trailing_speed", "trailing edge", attempt(lambda: found.trailing_speed), "s_{-}"),
+        row("plateau", "velocity of the wall and the plateau", front.plateau, "v_{p}"),
+        row("trailing_speed", "trailing edge", attempt(lambda: front.trailing_speed), "s_{-}"),
     ]
     for rule in riemann.RULES:
         key, label = f"leading_speed.{rule}", f"leading edge, {rule}"
-        rows.append(row(key, label, attempt(found.leading_speed, rule), "s_{+}"))
+        rows.append(row(key, label, attempt(front.leading_speed, rule), "s_{+}"))
     if kind != "rarefaction":
-        peak, force = attempt(lambda: found.peak), attempt(lambda: found.peak_force)
+        peak, force = attempt(lambda: front.peak), attempt(lambda: front.peak_force)
         rows.append(row("peak", "peak strain, doubling", peak, r"p_{\max}", ""))
         rows.append(row("peak_force", "peak force, doubling", force, r"F_{\max}", "N"))
-        if found.law.homogeneous and found.ahead.is_zero and not found.behind.free_symbols:
-            speed, force = attempt(lambda: found.wave.speed), attempt(lambda: found.wave.F)
+        if front.law.homogeneous and front.ahead.is_zero and not front.behind.free_symbols:
+            speed, force = attempt(lambda: front.wave.speed), attempt(lambda: front.wave.F)
             rows.append(Row("series.speed", "leading pulse, series", speed, unit="m/s"))
             label = "peak force, series"
             rows.append(Row("series.force", label, force, unit="N", expression=False))
     faults = (row.value for row in rows if isinstance(row, Row))
     notes = dict.fromkeys(str(fault) for fault in faults if isinstance(fault, InputError))
-    return Answer(head, rows, chain.si, found.cell.spacing, notes=tuple(notes), orders=False)
+    return Answer(head, rows, chain.si, front.cell.spacing, notes=tuple(notes), orders=False)

@@ -186,18 +186,18 @@ def envelope(
     chain = take_chain(options)
     cell, place = chain.cell, int(branch) if branch and branch.isdecimal() else branch
     load = {"background": background, "precompression": chain.load(background, precompression)}
-    found = schrodinger.envelope(cell, chain.law, **load, wavenumber=wavenumber, branch=place)
-    symbols = {*cell.symbols, *found.compression.free_symbols, *wavenumber.free_symbols}
+    equation = schrodinger.envelope(cell, chain.law, **load, wavenumber=wavenumber, branch=place)
+    symbols = {*cell.symbols, *equation.compression.free_symbols, *wavenumber.free_symbols}
     if not symbols - {cell.spacing} and (cell.size > 2 or not sp.cos(wavenumber).is_Rational):
-        found = found.numeric()  # exact results want a frequency that is algebraic
+        equation = equation.numeric()  # exact results want a frequency that is algebraic
     breather = None
     if frequency is not None or detuning is not None:
         angular = frequency and frequency * (2 * sp.pi if chain.si else 1)
-        breather = found.breather(angular, detuning=detuning)
-    _envelope(chain, found, breather).print(style)
+        breather = equation.breather(angular, detuning=detuning)
+    _envelope(chain, equation, breather).print(style)
 
 
-def _envelope(chain: ChainInput, found: Envelope, breather: Breather | None) -> Answer:
+def _envelope(chain: ChainInput, equation: Envelope, breather: Breather | None) -> Answer:
     """Rows of the equation, and of the breather of a frequency."""
     turn = 2 * sp.pi if chain.si else sp.S.One
     name, symbol = ("ω/(2π)", r"\omega / 2 \pi") if chain.si else ("ω", r"\omega")
@@ -206,16 +206,16 @@ def _envelope(chain: ChainInput, found: Envelope, breather: Breather | None) -> 
         "u = Ψ(X, T) U e^{i(κ n - ω t)} + c.c., Σ m |U|² = 1, n and κ per cell",
         "i Ψ_T + ½ ω'' Ψ_XX = χ |Ψ|² Ψ",
         "",
-        Row("wavenumber", "κ", found.wavenumber, r"\kappa", digits=False),
-        Row("frequency", f"frequency {name}", found.frequency / turn, symbol, "Hz"),
-        Row("group_velocity", "dω/dκ", found.group_velocity, r"\omega'", "cells/s"),
-        Row("dispersion", "ω''", found.dispersion, r"\omega''", "cells²/s"),
-        Row("nonlinearity", "χ", found.nonlinearity, r"\chi", "1/(s kg m²)"),
+        Row("wavenumber", "κ", equation.wavenumber, r"\kappa", digits=False),
+        Row("frequency", f"frequency {name}", equation.frequency / turn, symbol, "Hz"),
+        Row("group_velocity", "dω/dκ", equation.group_velocity, r"\omega'", "cells/s"),
+        Row("dispersion", "ω''", equation.dispersion, r"\omega''", "cells²/s"),
+        Row("nonlinearity", "χ", equation.nonlinearity, r"\chi", "1/(s kg m²)"),
     ]
-    head: dict[str, str | None] = {"branch": str(found.branch), "kind": None}
+    head: dict[str, str | None] = {"branch": str(equation.branch), "kind": None}
     try:
-        head["kind"] = found.kind
-        rows.append(f"  {found.kind} envelopes")
+        head["kind"] = equation.kind
+        rows.append(f"  {equation.kind} envelopes")
     except InputError as fault:
         rows.append(f"  bright or dark: {fault}")
     notes: list[str] = []
@@ -229,7 +229,7 @@ def _envelope(chain: ChainInput, found: Envelope, breather: Breather | None) -> 
             Row("amplitude", "largest displacement by bead", breather.amplitude, "2 a U", "m"),
             Row("width", "width 1/b in cells", breather.width, "b^{-1}"),
         ]
-        if found.opening != sp.oo:
+        if equation.opening != sp.oo:
             label = "contacts open from the detuning"
             rows.append(Row("opening_detuning", label, breather.opening_detuning))
             notes.append(_EARLIER)
@@ -238,4 +238,4 @@ def _envelope(chain: ChainInput, found: Envelope, breather: Breather | None) -> 
                 force = breather.opening_load(held)
                 force = sp.N(force, 15) if force.is_Rational else force  # sixth powers are long
                 rows.append(Row(f"opening_load.{held}", label, force, unit="N"))
-    return Answer(head, rows, chain.si, found.cell.spacing, notes=notes)
+    return Answer(head, rows, chain.si, equation.cell.spacing, notes=notes)

@@ -201,19 +201,19 @@ def _units(rows: Sequence[Row]) -> dict[str, str]:
     for row in rows:
         if row.unit:
             groups.setdefault(row.key.partition(".")[0], {})[row.key] = row.unit
-    found: dict[str, str] = {}
+    result: dict[str, str] = {}
     for group, units in groups.items():
         same = {*units.values()}
-        found |= units if len(same) > 1 else {group: same.pop()}
-    return found
+        result |= units if len(same) > 1 else {group: same.pop()}
+    return result
 
 
 def _each(read: Callable[[sp.Expr], Any], value: Any) -> Any:
     """Apply ``read`` to an expression or to each of a collection; None if any result is None."""
     if isinstance(value, sp.Expr):
         return read(value)
-    found = [read(x) for x in value]
-    return None if None in found else found
+    results = [read(x) for x in value]
+    return None if None in results else results
 
 
 def as_float(value: sp.Expr) -> float | None:
@@ -246,11 +246,11 @@ def approximate(value: sp.Expr, tex: bool = False) -> str:
     return write(rest) if factor == 1 else f"{number}{' ' if tex else '·'}{write(rest)}"
 
 
-def summed(found: Resummed, unit: str, order: bool) -> str:
+def summed(total: Resummed, unit: str, order: bool) -> str:
     """A sum in text: one digit more than its error leaves, the error, and the order."""
-    if math.isnan(found.error):
-        return f"{found.value:.4g}{unit}, error unknown"
-    digits = min(16, 2 - math.floor(math.log10(found.error / found.value)))
-    note = "; higher orders do not help" if found.asymptotic else ""
-    value = f"{found.value:.{digits}g} ± {found.error:.1e}{unit}"
-    return f"{value} (to ε^{found.order}{note})" if order else value
+    if math.isnan(total.error):
+        return f"{total.value:.4g}{unit}, error unknown"
+    digits = min(16, 2 - math.floor(math.log10(total.error / total.value)))
+    note = "; higher orders do not help" if total.asymptotic else ""
+    value = f"{total.value:.{digits}g} ± {total.error:.1e}{unit}"
+    return f"{value} (to ε^{total.order}{note})" if order else value

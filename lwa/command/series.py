@@ -47,10 +47,10 @@ def expansion(order: int, style: str, force: sp.Expr | None, **options: Any) -> 
     if force is not None and not spheres:
         raise InputError("--force goes with --spheres: other chains have no units")
     chain = take_chain(options)
-    found = expand(chain.cell, order, law=chain.law)
-    answer = _answer(found, chain.without_load())
+    expanded = expand(chain.cell, order, law=chain.law)
+    answer = _answer(expanded, chain.without_load())
     if spheres and chain.cell.spacing.is_number:
-        wave = ExpandedWave(found, sp.S.One if force is None else force)
+        wave = ExpandedWave(expanded, sp.S.One if force is None else force)
         answer = replace(answer, parts={"physical": _at_force(wave, chain.si)})
     answer.print(style)
 
@@ -66,62 +66,62 @@ _LABELS = {
 }
 
 
-def _answer(found: Expansion, notes: list[str]) -> Answer:
+def _answer(expanded: Expansion, notes: list[str]) -> Answer:
     """Rows of the coefficients, and of the sums where k and the cell are numbers."""
-    cell = found.cell
-    widths = {q: found.fwhm(q) for q in QUANTITIES}
-    series = {"c2": found.c2} | {f"fwhm.{q}": width for q, width in widths.items()}
-    series |= {"momentum": found.momentum, "energy": found.energy}
+    cell = expanded.cell
+    widths = {q: expanded.fwhm(q) for q in QUANTITIES}
+    series = {"c2": expanded.c2} | {f"fwhm.{q}": width for q, width in widths.items()}
+    series |= {"momentum": expanded.momentum, "energy": expanded.energy}
     head: Values = {
-        "k": str(found.k),
+        "k": str(expanded.k),
         "masses": [str(m) for m in cell.masses],
         "stiffnesses": [str(A) for A in cell.stiffnesses],
-        "order": found.order,
-        "I": str(found.I),
-        "c2": [str(found.c2.prefactor * a) for a in found.c2.coefficients],
+        "order": expanded.order,
+        "I": str(expanded.I),
+        "c2": [str(expanded.c2.prefactor * a) for a in expanded.c2.coefficients],
         "fwhm": {q: _series_json(width) for q, width in widths.items()},
-        "momentum": _series_json(found.momentum),
-        "energy": _series_json(found.energy),
+        "momentum": _series_json(expanded.momentum),
+        "energy": _series_json(expanded.energy),
     }
     rows: list[Row | str] = [
         f"masses {listed(cell.masses)}; F = A δ^k, A = {listed(cell.stiffnesses)}; ε = k - 1; peak "
         "force 1 on the first contact, lengths in D",
         "",
     ]
-    for key, one in series.items():
-        rows += _series_text(_LABELS[key], one)
-    if found.numeric:
-        sums = _sums(found, series)
+    for key, part in series.items():
+        rows += _series_text(_LABELS[key], part)
+    if expanded.numeric:
+        sums = _sums(expanded, series)
         head |= _validity(sums)
-        rows += ["", f"at k = {found.k}, with estimates of the error:"]
+        rows += ["", f"at k = {expanded.k}, with estimates of the error:"]
         rows += [Row(key, _LABELS[key], value) for key, value in sums.items()]
         if cell.size == 2:
             rows.append("  (of the mean of a dimer's two contacts, which differ behind a striker)")
-        notes = [*notes, *radiation_note(cell, found.k)]
-    return Answer(head, rows, equations=[one.latex() for one in series.values()], notes=notes)
+        notes = [*notes, *radiation_note(cell, expanded.k)]
+    return Answer(head, rows, equations=[part.latex() for part in series.values()], notes=notes)
 
 
-def _sums(found: Expansion, series: Mapping[str, EpsilonSeries]) -> dict[str, Any]:
+def _sums(expanded: Expansion, series: Mapping[str, EpsilonSeries]) -> dict[str, Any]:
     """Mapping from key to sum, with effective mass and, for equal beads, dissipation."""
-    sums = {key: attempt(one.at) for key, one in series.items()}
-    sums["effective_mass"] = attempt(found.effective_mass.at)
-    if len({*found.cell.masses}) == len({*found.cell.stiffnesses}) == 1:
+    sums = {key: attempt(part.at) for key, part in series.items()}
+    sums["effective_mass"] = attempt(expanded.effective_mass.at)
+    if expanded.cell.uniform:
         for kind in DAMPINGS:
-            sums[f"dissipation.{kind}"] = attempt(found.dissipation(kind).at)
+            sums[f"dissipation.{kind}"] = attempt(expanded.dissipation(kind).at)
     return sums
 
 
 def _validity(sums: Mapping[str, Any]) -> Values:
     """JSON of the largest error of c² and the widths, and of the reasons for missing sums."""
     known = [s for key, s in sums.items() if key.startswith(("c2", "fwhm"))]
-    summed = [one for one in known if isinstance(one, Resummed)]
+    summed = [part for part in known if isinstance(part, Resummed)]
     return {
-        "error_estimate": max((one.error for one in summed), default=None),
-        "asymptotic": any(one.asymptotic for one in summed) or not summed,
+        "error_estimate": max((part.error for part in summed), default=None),
+        "asymptotic": any(part.asymptotic for part in summed) or not summed,
         "unsummed": {
-            key.removeprefix("fwhm."): str(one)
-            for key, one in sums.items()
-            if isinstance(one, InputError)
+            key.removeprefix("fwhm."): str(part)
+            for key, part in sums.items()
+            if isinstance(part, InputError)
         },
     }
 

@@ -91,13 +91,13 @@ def wave(
     peak = exact("F", "force") if force is None else force
     theory = homogenize(cell, law=law, **options)
     if not loaded:
-        found = theory.pde.traveling_wave()
+        compact = theory.pde.traveling_wave()
         if style in LANGUAGES:
-            click.echo(found.code(style))
+            click.echo(compact.code(style))
         elif force is None and not spheres:
-            _compact(theory, found, style == "latex").print(style)
+            _compact(theory, compact, style == "latex").print(style)
         else:
-            _at_force(chain, theory, found, peak).print(style)
+            _at_force(chain, theory, compact, peak).print(style)
     elif precompression is not None:
         pressed = PrecompressedWave(cell, law, peak, precompression)
         if style in LANGUAGES:
@@ -125,12 +125,12 @@ def _demand_canonical(options: dict[str, Any]) -> None:
 
 def radiation_note(cell: Cell, k: sp.Expr) -> list[str]:
     """Note on the radiation of unlike beads; [] if its bound is below `RADIATES`."""
-    if k.free_symbols or len({*cell.masses}) == len({*cell.stiffnesses}) == 1:
+    if k.free_symbols or cell.uniform:
         return []
     from lwa.expansion.radiation import radiation  # here, for a quick start of the others
 
-    found = radiation(cell, k)
-    lost = found.relative(float(k)) if found else 0.0
+    bound = radiation(cell, k)
+    lost = bound.relative(float(k)) if bound else 0.0
     if lost < RADIATES:
         return []
     return [
@@ -169,8 +169,8 @@ def _fwhm_rows(key: str, label: str, widths: Mapping[str, sp.Expr], **settings: 
 
 def _compact(theory: Theory, wave: TravelingWave, tex: bool) -> Answer:
     """Rows of the compact wave of a general peak force."""
-    one, other = (wave.reduction(root) for root in (0, 1))
-    roots = [{name: str(getattr(r, name)) for name in _REDUCTION} for r in (one, other)]
+    first, second = (wave.reduction(root) for root in (0, 1))
+    roots = [{name: str(getattr(r, name)) for name in _REDUCTION} for r in (first, second)]
     log_B = -sp.log(wave.speed_factor) / (wave.k - 1)
     rows: list[Row | str] = [
         f"masses {listed(theory.cell.masses)}; k = {wave.k}; closure {theory.closure.name}; "
@@ -188,9 +188,9 @@ def _compact(theory: Theory, wave: TravelingWave, tex: bool) -> Answer:
         Row("log_B", "", log_B, expression=False),
         "",
         "v = z^p, integrating factor z^a: z'' = μ z^η - σ z",
-        *_reduction_rows(theory, one, tex),
-        Row("", "the other root, p", other.p),
-        Row("", "with a", other.a),
+        *_reduction_rows(theory, first, tex),
+        Row("", "the other root, p", second.p),
+        Row("", "with a", second.a),
     ]
     notes = radiation_note(theory.cell, wave.k)
     return Answer(chain_json(theory) | {"roots": roots}, rows, spacing=wave.D, notes=notes)
@@ -207,11 +207,11 @@ _REDUCTION = {
 }
 
 
-def _reduction_rows(theory: Theory, found: Reduction, tex: bool) -> Iterable[Row]:
+def _reduction_rows(theory: Theory, reduction: Reduction, tex: bool) -> Iterable[Row]:
     """Rows of p, a, μ, η, σ and s; wide ones in LaTeX by p, a, H and I, as in the paper."""
     wide = False
     for name, (symbol, formula) in _REDUCTION.items():
-        value = getattr(found, name)
+        value = getattr(reduction, name)
         if not (tex and formula and latex.width(str(sp.latex(value))) > latex.WIDTH):
             formula = ""
         wide = wide or bool(formula)

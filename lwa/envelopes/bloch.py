@@ -53,20 +53,20 @@ def cell_mode(
     samples = [_sampled(cell, x) for x in numbers]
     m_float, c_float = np.array(samples[:-3]).reshape(2, -1)
     sample = Contacts(m_float, c_float, *samples[-3:-1])
-    found, bead = numeric_mode(sample, samples[-1], branch, floats)
+    mode, bead = numeric_mode(sample, samples[-1], branch, floats)
     if not floats:
         contacts = Contacts(np.array(masses), np.array(c), s, t)
-        found = exact_mode(contacts, wavenumber, branch, bead, lambda x: _sampled(cell, x))
+        mode = exact_mode(contacts, wavenumber, branch, bead, lambda x: _sampled(cell, x))
     rate = sp.powsimp(cell.stiffnesses[0] * first / mass)  # unit of ω²
     return Mode(
-        sp.sympify(found.square) * rate,
-        found.slope * rate,
-        found.curvature * rate,
-        found.cubic * rate / (mass * unit**2),
-        [sp.sympify(x) / (mass * unit) for x in found.second],
-        [sp.sympify(x) / (mass * unit) for x in found.mean],
-        [sp.sympify(x) / mass for x in found.size],
-        [sp.sympify(x) / sp.sqrt(mass) for x in found.shape],
+        sp.sympify(mode.square) * rate,
+        mode.slope * rate,
+        mode.curvature * rate,
+        mode.cubic * rate / (mass * unit**2),
+        [sp.sympify(x) / (mass * unit) for x in mode.second],
+        [sp.sympify(x) / (mass * unit) for x in mode.mean],
+        [sp.sympify(x) / mass for x in mode.size],
+        [sp.sympify(x) / sp.sqrt(mass) for x in mode.shape],
     )
 
 
@@ -148,8 +148,8 @@ class Root:
             sp.Poly(_in_cosine(part.as_expr(), self.cosine), X, field=True).rem(self.polynomial)
             for part in (element.numer, element.denom)
         )
-        found = (top * below.invert(self.polynomial)).rem(self.polynomial)
-        reduced = sp.Add(*(sp.factor(c) * self.value**n for (n,), c in found.terms()))
+        quotient = (top * below.invert(self.polynomial)).rem(self.polynomial)
+        reduced = sp.Add(*(sp.factor(c) * self.value**n for (n,), c in quotient.terms()))
         return reduced.xreplace(self.values)
 
     def complex(self, element: Any) -> sp.Expr:
@@ -170,7 +170,7 @@ def _in_cosine(polynomial: sp.Expr, cosine: sp.Expr) -> sp.Expr:
 
 def _roots(relation: Any, cosine: sp.Expr) -> list[tuple[sp.Expr, sp.Poly]]:
     """Roots x of T(x) = 2 cos κ with their irreducible polynomials."""
-    found: list[tuple[sp.Expr, sp.Poly]] = []
+    pairs: list[tuple[sp.Expr, sp.Poly]] = []
     for factor, count in sp.factor_list(_in_cosine(relation.numer.as_expr(), cosine))[1]:
         if X in factor.free_symbols:
             polynomial = sp.Poly(factor, X, field=True)
@@ -180,8 +180,8 @@ def _roots(relation: Any, cosine: sp.Expr) -> list[tuple[sp.Expr, sp.Poly]]:
                 raise InputError(
                     "the frequency has no exact form at this wavenumber: numeric() gives floats"
                 ) from None
-            found += count * [(x, polynomial) for x in roots]
-    return found
+            pairs += count * [(x, polynomial) for x in roots]
+    return pairs
 
 
 def exact_mode(
@@ -213,17 +213,18 @@ def exact_mode(
         rows = [[field.one * a for a in row] for row in entries]
         return DomainMatrix(rows, (P, P), field.to_domain())
 
+    def inverse(entries: Matrix) -> Matrix:
+        return np.array(matrix(entries).inv().to_list(), object)
+
     secular = matrix(inner.secular(z, x))
     relation = secular.det() * np.prod(inner.c)  # T(x) - 2 cos κ
     values = {letter: a for a, letter in letters.items()}
     roots = sorted(_roots(relation, cosine), key=lambda pair: sampled(pair[0].xreplace(values)))
-    found = Root(*roots[branch], cosine, phase, values)
+    square = Root(*roots[branch], cosine, phase, values)
     slopes = relation.diff(x), relation.diff(x).diff(x)
     adjugate = np.array(secular.adjugate().to_list(), object)
     projector = adjugate / (np.diagonal(adjugate) * inner.masses).sum()
     if P == 1:  # a rational function of z
         x = (2 - z - 1 / z) / (inner.masses[0] * inner.c[0])
-    exact = Arithmetic(
-        lambda entries: np.array(matrix(entries).inv().to_list(), object), found.real, found.complex
-    )
+    exact = Arithmetic(inverse, square.real, square.complex)
     return inner.mode(z, x, slopes, projector, bead, sine, exact)

@@ -86,10 +86,10 @@ class Contacts:
 
     def strains(self, z: Any) -> Matrix:
         """The matrix B(κ), shape (contacts, beads), z = e^{iκ}; B(κ)† is the transpose for 1/z."""
-        one = np.diag(self.masses * 0 * z + 1)
-        after = np.roll(one, 1, axis=1)
+        identity = np.diag(self.masses * 0 * z + 1)
+        after = np.roll(identity, 1, axis=1)
         after[-1] = after[-1] * z
-        return np.asarray(one - after)
+        return np.asarray(identity - after)
 
     def secular(self, z: Any, x: Any) -> Matrix:
         """The matrix K(κ) - xM, shape (beads, beads), z = e^{iκ}."""

@@ -177,8 +177,8 @@ class Envelope(Value):
         if not self.law.homogeneous and all(p.exp.is_integer for p in roots):  # real at δ < 0
             return sp.oo
         pairs = zip(self.static_compressions, self.strains, strict=True)
-        found = sp.Min(*(delta**2 / (4 * d) for delta, d in pairs if d))
-        return sp.N(found) if self.floats else found
+        smallest = sp.Min(*(delta**2 / (4 * d) for delta, d in pairs if d))
+        return sp.N(smallest) if self.floats else smallest
 
     @cached_property
     def _mode(self) -> Mode:

@@ -23,21 +23,16 @@ of dimers with tails from 1e-9 to 0.1 and to pulses of struck chains. It is meas
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import sympy as sp
-from flint import fmpq_mpoly
 
-from lwa.algebra.model import Model
 from lwa.base.frozen import Value
 from lwa.cell import Cell
-from lwa.expansion.observables import shares_model
-from lwa.expansion.pulse import by_degree
-from lwa.expansion.recursion import Recursion
-from lwa.linear.bloch import Bloch
+from lwa.expansion.observables import Observables, shares_model
+from lwa.linear.dispersion import Dispersion
 
 if TYPE_CHECKING:
     from lwa.base.arrays import Array
@@ -91,12 +86,12 @@ class Radiation(Value):
         F, slope = np.exp(log), np.gradient(log, step)
         wavenumbers = (math.sqrt(factor * max(self.optical - 1, 0.0)) for factor in PHASES)
         return self.lightest * max(
-            _rattle(K_0 * np.exp(log * epsilon / (2 * k)), F * slope, float(step))
+            _tail_integral(K_0 * np.exp(log * epsilon / (2 * k)), F * slope, float(step))
             for K_0 in wavenumbers
         )
 
 
-def _rattle(K: Array, slope: Array, step: float) -> float:
+def _tail_integral(K: Array, slope: Array, step: float) -> float:
     """|∫ K^{3/2} F' e^{i∫K} dξ| by the trapezoidal rule; the ends, where F' ≈ 0, are left out."""
     import numpy as np  # start-up: `import lwa` does not load it
 
@@ -116,37 +111,18 @@ def radiation(cell: Cell, k: sp.Expr) -> Radiation | None:
         return None
     import numpy as np  # start-up: `import lwa` does not load it
 
-    ring = _ring_values(model)
-    trace = [_float(t, ring) for t in Bloch(model).trace(cell.size)]
+    wave = Observables(model, 1)
+    trace = [float(t) for t in Dispersion(cell, model.k).trace.values()]
     trace[0] = 0.0  # 2 cos(Pκ) = 2 at κ = 0, where one root is 0
     squares = np.roots(trace[:0:-1]).real
     if not squares.size:  # optical frequencies beyond a double: the pulse excites none
         return None
-    wave = Recursion(model, 2)
-    I = _float(wave.I, (1.0, *ring))
-    first = by_degree(wave.fields.log_force[0][2])
-    quadratic, quartic = (_float(first.get(d, wave.zero), (1.0, *ring)) for d in (2, 4))
+    phi_1, I = wave.log_force(0)[sp.S.One], float(wave.I)
     return Radiation(
         contrast=(12 * I - 1) / 3,  # a dimer has I = (1 - 3b + 3b²)/3, b = m̂_1, hence (1 - 2b)²
         I=I,
         optical=float(np.min(squares)),
-        lightest=cell.size * min(_float(mu, (1.0, *ring)) for mu in wave.mu),
-        quadratic=quadratic / I**4,
-        quartic=quartic / I**5,
-    )
-
-
-def _ring_values(model: Model) -> tuple[float, ...]:
-    """Float values of the generators of the model's coefficient ring, in their order."""
-    values = [] if model.k.is_Rational else [model.k]
-    for part in (model.ring.masses, model.ring.contacts):
-        if part.names:
-            values += [part.total * w / part.sum for w in part.distinct[:-1]]
-    return tuple(float(sp.N(value)) for value in values)
-
-
-def _float(polynomial: fmpq_mpoly, values: Sequence[float]) -> float:
-    return math.fsum(
-        float(c) * math.prod(v ** int(e) for v, e in zip(values, exponents, strict=True))
-        for exponents, c in polynomial.terms()
+        lightest=cell.size * float(min(cell.fractions)),
+        quadratic=float(phi_1.get(2, 0)),
+        quartic=float(phi_1.get(4, 0)),
     )

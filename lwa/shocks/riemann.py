@@ -171,8 +171,8 @@ def shock(cell: Cell, law: ContactLaw, behind: Any, ahead: Any) -> Shock:
     Raises `lwa.InputError` for other strains, and where sound is equally fast on both.
 
     >>> from lwa import Cell, Power
-    >>> found = shock(Cell([1], spacing=1), Power("3/2"), 1, 0)
-    >>> round(found.leading_speed() / found.sound(1), 4), round(found.peak.n(), 4)
+    >>> front = shock(Cell([1], spacing=1), Power("3/2"), 1, 0)
+    >>> round(front.leading_speed() / front.sound(1), 4), round(front.peak.n(), 4)
     (0.8543, 1.7480)
     """
     law = for_cell(law, cell)
@@ -182,10 +182,10 @@ def shock(cell: Cell, law: ContactLaw, behind: Any, ahead: Any) -> Shock:
             raise InputError(f"{name} is {shorten(p)}: contacts of a power law only push")
         if law.homogeneous and p.is_zero and (law.exponent - 1).is_nonpositive:
             raise InputError(f"{name} is 0 and k {law.exponent}: a front without load wants k > 1")
-    found = Shock(cell, law, **strains)
-    if found._gain.is_zero:
+    front = Shock(cell, law, **strains)
+    if front._gain.is_zero:
         raise InputError("sound is as fast behind as ahead: there is no shock and no rarefaction")
-    return found
+    return front
 
 
 def piston(cell: Cell, law: ContactLaw, velocity: Any, ahead: Any = 0) -> Shock:

@@ -48,10 +48,10 @@ def velocity(field: BackgroundWave, p: sp.Expr) -> sp.Expr:
         power = (law.exponent + 1) / 2
         return 2 * (p**power - field.p0**power) / (law.exponent + 1)
     c = sp.powdenest(sp.sqrt(field.force(x, 1)), force=True)
-    found = sp.Integral(c, (x, field.p0, p))
+    gained = sp.Integral(c, (x, field.p0, p))
     if isinstance(c, sp.exp) or not c.has(x):
-        return found.doit()
-    return found if found.free_symbols else found.evalf(SHOCK_DIGITS)
+        return gained.doit()
+    return gained if gained.free_symbols else gained.evalf(SHOCK_DIGITS)
 
 
 def strain(field: BackgroundWave, gained: sp.Expr) -> sp.Expr:
@@ -70,10 +70,10 @@ def _rising_root(rising: sp.Expr, x: sp.Symbol) -> sp.Expr:
     """The root of an expression that rises with x from a negative value at 0."""
     demand_numbers(rising.free_symbols - {x}, "numbers are wanted")
     with mpmath.workdps(SHOCK_DIGITS + 5):
-        found = growing_root(rising, x)
-    if found is None:
+        root = growing_root(rising, x)
+    if root is None:
         raise InputError("the law does not reach the strain that belongs to this velocity")
-    return sp.Float(found, SHOCK_DIGITS)
+    return sp.Float(root, SHOCK_DIGITS)
 
 
 @dataclass(frozen=True)

@@ -80,11 +80,11 @@ def spheres(content: Any) -> list[Sphere]:
 
 
 def _material(value: Any, name: str) -> Material:
-    given = Table(value, name, ("like", "E", "nu", "density"))
-    like = given.read("like", among(MATERIALS)) if "like" in given else None
+    entries = Table(value, name, ("like", "E", "nu", "density"))
+    like = entries.read("like", among(MATERIALS)) if "like" in entries else None
     readers = {"E": positive, "nu": real, "density": positive}
-    keys = [key for key in readers if key in given or (like is None and key != "density")]
-    values = {key: given.read(key, readers[key]) for key in keys}
+    keys = [key for key in readers if key in entries or (like is None and key != "density")]
+    values = {key: entries.read(key, readers[key]) for key in keys}
     try:
         return replace(like, **values) if like else Material(**values)
     except InputError as fault:
@@ -92,13 +92,13 @@ def _material(value: Any, name: str) -> Material:
 
 
 def _bead(value: Any, name: str, materials: Mapping[str, Material]) -> Sphere:
-    given = Table(value, name, ("mass", "density", "radius", "material"))
-    radius = given.read("radius", positive)
-    material = given.read("material", among(materials))
-    if "mass" in given and "density" in given:
+    entries = Table(value, name, ("mass", "density", "radius", "material"))
+    radius = entries.read("radius", positive)
+    material = entries.read("material", among(materials))
+    if "mass" in entries and "density" in entries:
         raise InputError(f"{name} has both mass and density: one is wanted")
-    if "mass" in given:
-        return Sphere(given.read("mass", positive), radius, material)
-    if "density" not in given and material.density is None:
+    if "mass" in entries:
+        return Sphere(entries.read("mass", positive), radius, material)
+    if "density" not in entries and material.density is None:
         raise InputError(f"{name}.mass is missing: it, or a density here or of the material")
-    return Sphere.solid(radius, material, given.read("density", positive, material.density))
+    return Sphere.solid(radius, material, entries.read("density", positive, material.density))

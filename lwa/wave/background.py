@@ -148,8 +148,8 @@ class BackgroundWave(Value):
         return sp.powsimp(self._stiffness(v))
 
     def _stiffness(self, v: sp.Expr) -> sp.Expr:
-        rest = self.force(self.p0, -1) + self.force(self.p0) * v
-        return 2 * (self.force(sp.expand(self.p0 + v), -1) - rest) / v**2
+        linear_part = self.force(self.p0, -1) + self.force(self.p0) * v
+        return 2 * (self.force(sp.expand(self.p0 + v), -1) - linear_part) / v**2
 
     def speed(self, B: Any = None) -> sp.Expr:
         """Speed V = dx/dτ of the wave whose strain rises from p0 to p0 + B (default: a symbol B).
@@ -209,7 +209,7 @@ class BackgroundWave(Value):
         """The equation of Korteweg and de Vries of the limit B → 0.
 
         Raises `lwa.NoSolitaryWave` where no sound runs (p0 = 0 under most laws), and at k = 1,
-        where waves have no amplitude of their own.
+        where waves of any amplitude run at one speed.
         """
         if self.sound_speed.is_zero or self.sound_speed.is_finite is False:
             raise NoSolitaryWave(f"p0 is {self.p0}: no sound runs there, so that no wave is small")

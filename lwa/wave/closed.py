@@ -31,6 +31,9 @@ from lwa.base.quantities import RISE, SPEED, NoSolitaryWave, strain_power
 from lwa.cell import Cell, exponent, substitution
 from lwa.linear.dispersion import Dispersion
 
+COMPACT = "a compact wave needs k > 1, G+H+I > 0 and V² > 0"
+"""Reason for the refusal of a wave."""
+
 _RATIOS = sp.symbols("g h", cls=sp.Dummy)
 """Symbols of G/I and H/I."""
 
@@ -47,9 +50,9 @@ def strain_equation(p: sp.Expr, G: sp.Expr, H: sp.Expr, I: sp.Expr) -> dict[str,
 
     v1 = p * r1
     v2 = derivative(v1)
-    found = sp.Poly(v1 + G * v1**3 + H * v1 * v2 + I * derivative(v2), *r)
+    equation = sp.Poly(v1 + G * v1**3 + H * v1 * v2 + I * derivative(v2), *r)
     monomials = {"linear": r1, "cubic": r1**3, "product": r1 * r2, "third": r3}
-    return {name: found.coeff_monomial(monomial) for name, monomial in monomials.items()}
+    return {name: equation.coeff_monomial(monomial) for name, monomial in monomials.items()}
 
 
 @dataclass(frozen=True)
@@ -99,17 +102,13 @@ class CompactWave(Value):
 
     def __post_init__(self) -> None:
         if self.k.is_number and not self.k > 1:
-            raise NoSolitaryWave(
-                f"k is {self.k}: a compact wave needs k > 1 (at k = 1 the chain is linear)"
-            )
-        if self.coefficient_sum.is_number and not self.coefficient_sum > 0:
-            raise NoSolitaryWave(
-                f"(G+H+I)/D² is {self.coefficient_sum}: there is no compact wave unless G+H+I > 0"
-            )
-        if self.speed_factor.is_number and not self.speed_factor > 0:
-            raise NoSolitaryWave(
-                f"V²/B^(k-1) is {self.speed_factor}: there is no wave with a real speed"
-            )
+            raise NoSolitaryWave(f"k is {self.k}: {COMPACT}")
+        for name, value in (
+            ("(G+H+I)/D²", self.coefficient_sum),
+            ("V²/B^(k-1)", self.speed_factor),
+        ):
+            if value.is_number and not value > 0:
+                raise NoSolitaryWave(f"{name} is {value}: {COMPACT}")
 
     @classmethod
     def canonical(cls, cell: Cell, k: Any) -> Self:

@@ -23,7 +23,7 @@ from lwa.base.arrays import Array, Extended, finite
 from lwa.base.exact import InputError, one_of
 from lwa.base.frozen import Value
 from lwa.base.quantities import NoSolitaryWave, strain_power
-from lwa.wave.closed import CompactWave
+from lwa.wave.closed import COMPACT, CompactWave
 
 Function = Callable[[Extended, Extended], Extended]
 
@@ -131,8 +131,7 @@ class NumericWave(Value):
         if self.missing == "raise" and not np.all(exists):
             first = np.argmin(exists)
             raise NoSolitaryWave(
-                f"no compact wave at k = {float(k.flat[first])}, ω = {float(omega.flat[first])}: "
-                "it needs k > 1, G+H+I > 0 and V² > 0"
+                f"k = {float(k.flat[first])}, ω = {float(omega.flat[first])}: {COMPACT}"
             )
         nan = np.where(exists, 0.0, np.nan)
         return k + nan, omega + nan, coefficient_sum + nan

@@ -4,21 +4,14 @@ Bead 0 of a chain of masses 1, ω, 1, … at rest is struck (A = D = 1), and the
 recorded at `PLACES` cells at equal distances (the places). F = A δ^k has no scale of its own. So a
 pulse that leaves energy behind in every cell comes to lose the same fraction of its peak force F in
 each cell, F ~ e^{-d n} after n sites; the speed then scales as F^{(k-1)/(2k)}, and the width, in
-sites, stays constant. Between two places, N sites apart (a stretch), with peak forces F_1 and F_2,
-
-    decay  d = ln(F_1/F_2) / N,
-    speed  c = N (e^z - 1) / (z T F_1^q),   q = (k-1)/(2k),  z = q d N,
-
-T being the time between the peaks: the speed at peak force F is c F^q, so that c is the speed at
-contact force 1. A width is a duration at a contact times the speed there. All numbers are means
-over the two contacts of a cell, from the stretch where their errors are least. Each number is
-compared with the stretch before, with a less accurate run, and with a stretch that is `FARTHER`
-times as far as the last place.
+sites, stays constant. All numbers are means over the two contacts of a cell, from the stretch (two
+neighbouring places) where their errors are least. Each number is compared with the stretch before,
+with a less accurate run, and with a stretch that is `FARTHER` times as far as the last place.
 
 A pulse that decays is overtaken in the end by a higher one from behind, as higher pulses are
 faster. So at the far stretch the highest pulse must have the force predicted from the decay, within
 `STEADY`. Otherwise the pulse is not steady and the point has no numbers (k = 3/2: ω from 0.49 to
-0.7). A longer run finds the same numbers within their errors, or that the pulse is overtaken.
+0.7).
 """
 
 from __future__ import annotations
@@ -164,30 +157,30 @@ class StruckDimer:
         """
         shares = (0.5, 0.5**self.k)  # half of the force, and half of the compression
         passages, sensors = [], run.scene.contact_sensors
-        for i in sensors:
-            force = run.signal("contact", i)
+        for force in (run.signal("contact", i) for i in sensors):
             try:
-                force_pulse, strain_pulse = leading_pulses(force, self.k, shares)
+                pulse, strain = leading_pulses(force, self.k, shares)
             except MeasureError:
                 sites, end = sensors[-2], run.scene.duration
                 missing = f"not steady: the pulse has not passed {sites} sites by t = {end:.3g}"
                 raise MeasureError(missing) from None
-            first, highest = force_pulse, max(force_pulse.peak, float(force(force.times).max()))
-            row = first.arrival, first.peak, first.fwhm, strain_pulse.fwhm, first.fall, highest
-            passages.append(row)
+            highest = max(pulse.peak, float(force(force.times).max()))
+            passages.append(
+                (pulse.arrival, pulse.peak, pulse.fwhm, strain.fwhm, pulse.fall, highest)
+            )
         return np.array(passages).reshape(-1, 2, 6)
 
     def numbers(self, passages: Array) -> Array:
-        """Return `QUANTITIES` (rows) of each stretch; NaN where the pulse does not arrive later.
-
-        A column is meaningful only if its two places are `sites` sites apart.
-        """
+        """Return `QUANTITIES` (rows) of each stretch; NaN where the pulse does not arrive later."""
         arrival, peak, width, strain_width, *_ = np.moveaxis(passages, 2, 0)  # (places, contacts)
         elapsed, fall = np.diff(arrival, axis=0), -np.diff(np.log(peak), axis=0)
         elapsed[elapsed <= 0] = np.nan
+        # Over N sites and the time T the peak force falls from F_1 to F_2, the decay is
+        # d = ln(F_1/F_2)/N and the speed at contact force 1 is c = N (e^z - 1)/(z T F_1^q), with
+        # q = (k-1)/(2k) and z = q d N: the integral of dn/(c F^q) with F = F_1 e^{-d n} is T.
         q = (self.k - 1) / (2 * self.k)
         speed = self.sites * scipy.special.exprel(q * fall) / (elapsed * peak[:-1] ** q)
-        here = speed * peak[1:] ** q
+        here = speed * peak[1:] ** q  # a width is a duration at a contact times the speed there
         numbers = (width[1:] * here, strain_width[1:] * here, speed, fall / self.sites)
         return np.asarray(np.mean(numbers, axis=2))
 
@@ -217,14 +210,13 @@ class PointFile:
         """Keep other processes away from the file; raises `lwa.InputError` if one has it."""
         lock = FileLock(f"{self.path}.lock", blocking=False)
         try:
-            lock.acquire()
+            with lock:
+                try:
+                    yield
+                finally:
+                    Path(lock.lock_file).unlink()
         except Timeout:
             raise InputError(f"file is {self.path}: another sweep writes it") from None
-        with lock:
-            try:
-                yield
-            finally:
-                Path(lock.lock_file).unlink()
 
     def read(self) -> dict[Key, Point]:
         """Read all points. A torn last line is dropped.

@@ -30,6 +30,7 @@ _COLUMNS = (
     Column("of", "of"),
     Column("amplitude", "amplitude", error=True),
     Column("fwhm", "FWHM", "D", error=True),
+    Column("rms", "rms width", "D", error=True),
 )
 _SCALING = """\
 Strain and force of a contact, velocity of a bead m1. Strains scale with the peak force F as
@@ -65,12 +66,12 @@ def wave_report(wave: ExactWave) -> Report:
 
     ``k_value``, ``masses_value``, ``background_value``, ``half_period_value``, ``residual_value``,
     ``solitary``; with errors, as ``c2_error_value``: ``c2_value``, ``c_value``, ``tail_value`` and
-    by quantity ``amplitude_value`` and ``fwhm_value``.
+    by quantity ``amplitude_value``, ``fwhm_value``, ``rms_value``.
     """
     numbers = measured(wave)
     kind, errors = _SOLITARY if wave.solitary else _NANOPTERON
     tail = f"{wave.tail:.2e}" if wave.solitary else numbers["tail"]
-    rows = tuple((q, numbers[f"amplitude {q}"], numbers[f"fwhm {q}"]) for q in QUANTITIES)
+    rows = tuple((q, *(numbers[f"{c.key} {q}"] for c in _COLUMNS[1:])) for q in QUANTITIES)
     # One row of all numbers; "fwhm force" becomes an entry of fwhm_value.
     columns = tuple(Column(name.replace(" ", "."), error=True) for name in numbers)
     (values,) = Table(columns, (tuple(numbers.values()),)).document()

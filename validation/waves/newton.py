@@ -16,13 +16,9 @@ a = e + o with e even and o odd, likewise F_a = E + O. With Δ = 1/m2 - 1/m1 the
 Profiles are trigonometric polynomials of period 2L, |ξ| ≤ L (L is the half period), spectrally
 accurate.
 
-**The tail.** At q → 0 the second line of (*) has a pole: forces that end leave o = ±T behind, with
-
-    c² T = Δ ∫_0^∞ E dξ + 2Σ ∫_0^∞ ξ O dξ.
-
-T is 0 for a solitary wave. `Problem.wave` can impose T = 0 with one more unknown: m2, or at given
-masses the size s of a kick, a term s ξ e^{-2ξ²} added to the odd force. s depends smoothly on m2/m1
-and is 0 exactly where T is 0 without a kick, so that s changes sign at the special mass ratios.
+**The tail.** At q → 0 the second line of (*) has a pole: forces that end leave strains o = ±T
+behind. T is 0 for a solitary wave. `Problem.wave` can impose T = 0 with one more unknown: m2, or at
+given masses the size s of a kick, a term s ξ e^{-2ξ²} added to the odd force.
 
 **Under a load.** On a background strain p0, a and b are the additional strains, r → 0 far away, and
 F = (p0 + r)_+^k - p0^k; (*) stays.
@@ -182,8 +178,11 @@ class Problem:
         fault = z - rise(a, self.k, self.p0)
         columns, rows, rest = [slope * a], [np.eye(1, count)[0]], [z[0] - self.height]
         corner = np.zeros((1 + bool(unknown),) * 2)
+        # The kick's size depends smoothly on m2/m1 and is 0 exactly where T is 0 without a kick.
         kick = xi * np.exp(-2 * xi**2) if unknown == "kick" else 0 * xi
-        if unknown:  # c² T over Δξ, and its derivative by 1/m2
+        if unknown:
+            # c² T = Δ ∫_0^∞ E dξ + 2Σ ∫_0^∞ ξ O dξ = ∫ [(ξ - 1/2)/m1 + (ξ + 1/2)/m2] F_a dξ, and
+            # its derivative by 1/m2.
             one, two = (self.L / self.n * (xi * (xi < self.L) + s / 2) for s in (-1, 1))
             tail = inverse[0] * one + inverse[1] * two
             rows, rest = [*rows, tail], [*rest, tail @ z]

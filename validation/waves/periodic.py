@@ -12,9 +12,8 @@ by Newton's method with a sparse Jacobian (SciPy). Without a wall the mean displ
 0. Newton's method starts from a near motion, such as an envelope (`lwa.envelope`).
 
 **Stability.** The Floquet multipliers are the eigenvalues of the linearised motion over a period
-(SciPy's DOP853). They come in pairs λ, 1/λ; an orbit is linearly stable if all |λ| = 1. The phase
-of the orbit and, without a wall, the motion of the whole chain give double multipliers 1, which
-the integration's error ε splits by √ε. (Flach & Gorbach, Phys. Rep. 467, 1, 2008.)
+(SciPy's DOP853). They come in pairs λ, 1/λ; an orbit is linearly stable if all |λ| = 1. (Flach &
+Gorbach, Phys. Rep. 467, 1, 2008.)
 """
 
 from __future__ import annotations
@@ -62,11 +61,10 @@ class PressedChain:
         for name in ("masses", "stiffnesses"):
             values = [positive(x, name) for x in getattr(self, name)]
             object.__setattr__(self, name, np.array(values))
-        if len(self.masses) - len(self.stiffnesses) not in (0, 1):
-            raise SceneError(
-                f"stiffnesses are {len(self.stiffnesses)} of {len(self.masses)} beads: one between "
-                "two beads, and one more for a wall, are wanted"
-            )
+        beads, contacts = len(self.masses), len(self.stiffnesses)
+        if beads - contacts not in (0, 1):
+            wanted = "one between two beads, and one more for a wall, are wanted"
+            raise SceneError(f"stiffnesses are {contacts} of {beads} beads: {wanted}")
         positive(self.load, "load")
 
     @cached_property
@@ -159,6 +157,8 @@ class Orbit:
         unit = np.append(np.ones(n), np.full(n, self.frequency))
         start, tolerance = np.diag(unit).ravel(), dict(rtol=TOLERANCE, atol=TOLERANCE)
         end = scipy.integrate.solve_ivp(rate, (0, self.period), start, "DOP853", **tolerance)
+        # The phase of the orbit and, without a wall, the motion of the whole chain give double
+        # multipliers 1, which the integration's error ε splits by √ε.
         multipliers = np.linalg.eigvals(end.y[:, -1].reshape(2 * n, 2 * n) / unit[:, None])
         return np.asarray(multipliers[np.argsort(-np.abs(multipliers))])
 

@@ -79,6 +79,12 @@ class LatticeWave(ArrayValue, Pictured):
         """Mass ratio ω = m2/m1."""
         return self.masses[1] / self.masses[0]
 
+    @property
+    def pulse(self) -> float:
+        """Largest |ξ| of the pulse itself, without a dimer's tail."""
+        ends = OUTSIDE * newton.ample_half_period((1.0, self.omega), self.k)
+        return self.half_period if self.omega == 1 else min(self.half_period, ends)
+
     def peak(self, name: str) -> tuple[float, float]:
         """Return place ξ and value of the maximum of "strain", "force" or "velocity".
 
@@ -103,6 +109,14 @@ class LatticeWave(ArrayValue, Pictured):
             width += scipy.optimize.brentq(above, *ends, (side,), xtol=1e-14, rtol=1e-14)
         return float(width)
 
+    def rms_width(self, name: str = "strain") -> float:
+        """Root mean square width √(∫ (ξ - mean)² f / ∫ f) of the positive part f of a quantity."""
+        n = 8 * self.samples
+        xi = self.pulse * np.arange(-n, n) / n  # trapezia: exact for a pulse that has ended
+        f = np.maximum(self._quantity(name)(xi), 0.0)
+        mean = (f @ xi) / f.sum()
+        return math.sqrt(f @ (xi - mean) ** 2 / f.sum())
+
     def _quantity(self, name: str) -> Callable[[ArrayLike], Array]:
         strain_power(name, self.k)  # refuses other names
         quantity: Callable[[ArrayLike], Array] = getattr(self, name)
@@ -115,7 +129,7 @@ class LatticeWave(ArrayValue, Pictured):
 
     def difference(self, other: LatticeWave) -> float:
         """Largest difference between the strains of this and another wave, tails aside."""
-        xi = OUTSIDE * self.half_period * np.linspace(-1, 1, 401)
+        xi = np.linspace(-self.pulse, self.pulse, 401)
         return float(np.abs(self.strain(xi) - other.strain(xi)).max())
 
     def launched(self, start: int, sites: int, **rest: Any) -> Scene:

@@ -135,7 +135,7 @@ def solved(problem: newton.Problem, start: Start, unknown: str = "") -> tuple[Ex
 
 
 def measured(wave: ExactWave) -> dict[str, Measured]:
-    """Return c², c and tail, and by quantity the amplitude and FWHM of a wave, with errors."""
+    """Return c², c and tail, and by quantity amplitude, FWHM and rms width, with errors."""
     values = _numbers(wave)
     if wave.solitary:
         error = ROUNDING / (1 - wave.background) + wave.residual + wave.tail
@@ -160,6 +160,7 @@ def _numbers(wave: ExactWave | StruckPulse, mass: float = 1.0) -> dict[str, floa
     for name in QUANTITIES:
         numbers[f"amplitude {name}"] = wave.peak(name)[1] / (root if name == "velocity" else 1.0)
         numbers[f"fwhm {name}"] = wave.fwhm(name)
+        numbers[f"rms {name}"] = wave.rms_width(name)
     return numbers
 
 

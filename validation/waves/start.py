@@ -1,11 +1,4 @@
-"""Starts of Newton's method: the theory's wave, a near wave, and the pulse of a struck chain.
-
-**The struck chain** (`validation.pulses.steady`, masses 1, ω). Far from the struck bead the strains
-a(ξ), b(ξ) of the two contacts of a cell are recorded and scaled to contact force 1. Light beads are
-in motion behind the pulse and at rest ahead, so that b(ξ) is not quite a(-ξ). The symmetric part
-(a(ξ) + b(-ξ))/2 has half of the tail on either side; to first order in the tail it is a symmetric
-wave of the lattice.
-"""
+"""Starts of Newton's method: the theory's wave, a near wave, and the pulse of a struck chain."""
 
 from __future__ import annotations
 
@@ -22,7 +15,7 @@ from lwa.base.arrays import Array
 from validation.pulses.pulse import leading_pulses
 from validation.pulses.steady import PLACES, STRETCH, StruckDimer, cells_apart
 from validation.waves import newton
-from validation.waves.profile import OUTSIDE, LatticeWave
+from validation.waves.profile import LatticeWave
 
 FARTHEST = 60  # cells from one place to the next; as k → 1 a pulse leaves its wake ever more slowly
 TOLERANCE = 1e-7  # rtol of the struck chain
@@ -74,7 +67,7 @@ class StruckPulse(LatticeWave):
     @property
     def tail(self) -> float:
         """Largest |o| outside the pulse, o being the odd part of the strain."""
-        return self.odd_strain(OUTSIDE * self.half_period)
+        return self.odd_strain(self.pulse)
 
     @cached_property
     def _spline(self) -> Any:
@@ -133,5 +126,8 @@ def struck_pulse(k: float, omega: float) -> StruckPulse:
         )
         for contact, site in zip(cell, (-0.5, 0.5), strict=True)
     )
+    # Light beads are in motion behind the pulse and at rest ahead, so that b(ξ) is not quite a(-ξ).
+    # The symmetric part (a(ξ) + b(-ξ))/2 has half of the tail on either side; to first order in the
+    # tail it is a symmetric wave of the lattice.
     strains = (a + b[::-1]) / 2 / peak ** (1 / k)
     return StruckPulse((1.0, omega), k, c * c, ample, xi, strains, (width, strain_width))

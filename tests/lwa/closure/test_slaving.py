@@ -71,9 +71,9 @@ def fast_amplitudes(cells):
         forces = (right - np.roll(left, 1, axis=1)) / M1, (left - right) / M2
         return np.concatenate((du, dw, *forces), axis=None)
 
-    shape, time = w.shape, np.linspace(0, 60, 1201)
+    shape, time = w.shape, np.linspace(0, 40, 801)
     start = np.concatenate((u, w, 0 * u, 0 * w), axis=None)
-    run = solve_ivp(equations, (0, 60), start, "DOP853", time, rtol=1e-12, atol=1e-13)
+    run = solve_ivp(equations, (0, 40), start, "DOP853", time, rtol=1e-12, atol=1e-13)
     assert run.success
     u, w, *_ = run.y.reshape(4, *shape, len(time))
     signal = (w - (u + beads_ahead(u)) / 2) * np.kaiser(len(time), 30)
@@ -93,7 +93,7 @@ def slope(closure, order):
 
 @pytest.mark.parametrize("order", ORDERS)
 def test_the_full_closure_leaves_D_to_the_n_plus_1(order):
-    # a finite range of q bends the line by its next power; measured: 3.00, 4.00, 5.01, 6.03
+    # a finite range of q bends the line by its next power; measured: 2.98, 4.00, 5.05, 6.02
     assert slope("full", order) == pytest.approx(order + 1, abs=0.1)
 
 

@@ -338,7 +338,7 @@ def test_a_file_without_end_is_refused(tmp_path):
 
 
 leaves = st.one_of(
-    st.none(), st.booleans(), st.integers(-3, 50), st.floats(), st.text(max_size=4),
+    st.none(), st.booleans(), st.integers(-3, 50), st.floats(), st.text("a1é ", max_size=4),
     st.sampled_from(["ball", "steel"]), st.just(10**400),
 )  # fmt: skip
 anything = st.recursive(

@@ -309,6 +309,12 @@ def test_a_nanopteron_is_an_exact_periodic_wave_of_the_lattice():
     assert end == pytest.approx(before, abs=30 * wave.residual)
 
 
+def test_rms_width_of_a_gaussian_limit():
+    """k → 1: exp(-3εξ²) has FWHM/rms = 2√(2 ln 2)."""
+    wave = exact_wave([1], 1.01)
+    assert wave.fwhm() / wave.rms_width() == pytest.approx(2 * math.sqrt(2 * math.log(2)), rel=0.01)
+
+
 @pytest.mark.parametrize("k", [1.2, 4.0])
 def test_a_scaled_wave_obeys_the_equations_at_its_own_speed(k):
     """c² r'' = F(ξ+1) - 2F(ξ) + F(ξ-1) with F = r_+^k, as the unscaled one; widths stay."""
@@ -323,6 +329,7 @@ def test_a_scaled_wave_obeys_the_equations_at_its_own_speed(k):
         assert scaled.c2 * second / size == pytest.approx(push / size, abs=1e-8)
         for name in QUANTITIES:
             assert scaled.fwhm(name) == pytest.approx(wave.fwhm(name), rel=1e-10)
+            assert scaled.rms_width(name) == pytest.approx(wave.rms_width(name), rel=1e-10)
     assert wave.scaled(speed=3).c == pytest.approx(3, rel=1e-14)
     assert wave.scaled(force=7).peak("force")[1] == pytest.approx(7, rel=1e-13)
     # c² ∝ F^{(k-1)/k}
@@ -368,6 +375,7 @@ def test_the_report_holds_every_number_of_a_wave(masses):
     assert found["c_value"] ** 2 == pytest.approx(found["c2_value"], rel=1e-14)
     for name in QUANTITIES:
         assert found["fwhm_value"][name] == wave.fwhm(name)
+        assert found["rms_value"][name] == wave.rms_width(name)
         # amplitudes are where the numbers are: the force's is the strain's to the power k
         assert found["amplitude_value"][name] == wave.peak(name)[1]
         assert 0 < found["fwhm_error_value"][name] < 0.1
