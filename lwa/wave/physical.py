@@ -205,10 +205,6 @@ class PrecompressedWave(Value):
     ζ = (F/F0)^{2/3}, c0 the speed of sound.
 
     Raises `lwa.InputError` unless both are positive, and `lwa.NoSolitaryWave` without a wave.
-
-    >>> wave = PrecompressedWave(Cell(["m"]), Power(2), "F", "F0")
-    >>> wave.sound_speed
-    sqrt(2)*D*F0**(1/4)/sqrt(m)
     """
 
     cell: Cell
