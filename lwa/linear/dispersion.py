@@ -161,10 +161,7 @@ class Dispersion(_Banded):
         for part in (self._model.ring.masses, self._model.ring.contacts):
             terms *= comb(2 * max(n, 1) - 2 + len(part.names), len(part.names))
         if terms > MOST_TERMS:
-            raise InputError(
-                f"order is {shorten(order)}: about {min(terms, 10**30):.0e} terms, too many; give "
-                "numbers for the cell, or a lower order"
-            )
+            raise InputError(f"order is {highest}: give numbers for the cell, or a lower order")
         self._model.ring.writable(highest)
         return n
 

@@ -78,7 +78,7 @@ def prepared(task: Task, method: str) -> Solve:
         chain = Motion(task.scene)
         force = chain.force(chain.compression(np.array(solution.y[: task.scene.size])))
         solution.free()
-        return np.asarray(force[task.contact])
+        return np.asarray(force[task.scene.contact_sensors[0]])
 
     solve(1e-3, task, np.array([0.5, 1.0]) * task.scene.duration)  # compiles what calls it
     return solve

@@ -98,7 +98,7 @@ def integrate(
         until = int(np.searchsorted(times, stepper.t, side="right"))
         if until > done:
             y = stepper.dense_output()(times[done:until])[: motion.size]
-            force[done:until] = motion.force(motion.compression(y))[task.contact]
+            force[done:until] = motion.force(motion.compression(y))[task.scene.contact_sensors[0]]
             done = until
     return force
 
@@ -122,7 +122,7 @@ class Septic:
 
 def read(task: Task, times: Array, force: Array) -> Pulse:
     """The pulse of the dynamic force, from samples of the contact's force."""
-    return highest_pulse(Septic(times, force - task.scene.load[task.contact]))
+    return highest_pulse(Septic(times, force - task.scene.load[task.scene.contact_sensors[0]]))
 
 
 def located(task: Task, truth: Pulse) -> Pulse:

@@ -31,8 +31,7 @@ def output_file(name: str, path: str, suffixes: Sequence[str]) -> Path:
 def replacing(file: Path) -> Iterator[Path]:
     """Yield a temporary file that replaces ``file`` at the end, and is removed after a failure.
 
-    A symbolic link keeps its target, and a file its mode. Raises `lwa.InputError` if the file
-    cannot be written.
+    A symbolic link keeps its target, and a file its mode. Raises `lwa.InputError`.
     """
     target = file.resolve()
     try:

@@ -67,11 +67,6 @@ class Task:
     scene: Scene
     truth: Pulse | None = None
 
-    @property
-    def contact(self) -> int:
-        """Index of the contact that is measured, from 0."""
-        return self.scene.contact_sensors[0]
-
     def read(self, run: Run) -> Pulse:
         """Return the highest pulse of the dynamic force at the sensor.
 

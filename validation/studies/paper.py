@@ -41,22 +41,22 @@ SOURCES = ("F_m", "speed", "striker")
 """Names of the quantities that set the theory's amplitude."""
 
 _UNITS = {"speed": "m/s", "peak": "N", "FWHM": "sites"}  # by the first word; µs "in time"
+
+
+def _error(error: float) -> str:
+    """Format an error; up to rounding, the theory has the quantity that sets its amplitude."""
+    return percent(error) if abs(error) > 1e-12 else "set"
+
+
 _COLUMNS = (
-    Column("quantity", "quantity"),
-    Column("unit", "unit"),
+    *(Column("quantity", "quantity"), Column("unit", "unit")),
     Column("lattice", "lattice", error=True),
-    *(
-        column
-        for source in SOURCES
-        for column in (
+    *chain.from_iterable(
+        (
             Column(f"theory_value.{source}", f"by {source}", format=".5g"),
-            # up to rounding, the theory has the quantity that sets its amplitude
-            Column(
-                f"error_value.{source}",
-                "error",
-                format=lambda error: percent(error) if abs(error) > 1e-12 else "set",
-            ),
+            Column(f"error_value.{source}", "error", format=_error),
         )
+        for source in SOURCES
     ),
 )
 _NOTE = """\

@@ -1,24 +1,36 @@
-"""Any scene: arrival, peak force, FWHM and speed of the pulse at its sensors."""
+"""Any scene: pulses at its sensors, and files of the records.
+
+A stored run holds the records of the sensors, the pulses measured in them, and the scene. JSON: the
+result's document, and under ``records`` the arrays of `validation.lattice.run.Records`, their names
+ending in ``_value``. NumPy's .npz: the same arrays, the numbers of the result's tables as
+``sensors_arrival_value`` and so on (NaN without a pulse), and ``document``, a JSON text. CSV, for
+spreadsheets: time and records by sensor, with units in the header, but neither result nor scene.
+Forces are total: static forces are included.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from importlib.resources import files
+import io
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from importlib import resources
 from pathlib import Path
 from typing import Any
 
 import click
+import numpy as np
 
-import validation.scenes
-from validation.lattice.run import RunProgress
+from lwa.base import files
+from validation.lattice.run import Records, Run, RunProgress
 from validation.lattice.simulate import COMPILED, METHODS
 from validation.pulses.sensors import READINGS, SPEEDS, TOLERANCE, Reading, Recording, record
 from validation.report.command import option, output_option, study
+from validation.report.files import replacing
 from validation.report.result import Report
-from validation.report.table import Column, Table
+from validation.report.table import Column, Table, plain
+from validation.scenes import scenefile
 from validation.scenes.checks import SceneError
-from validation.scenes.scenefile import document, read_scene
-from validation.studies.records import STORED, SUFFIXES, load, store
 
 EXAMPLES = ("paper", "vertical", "precompressed", "defect", "trimer")
 """Names of the examples of scene files."""
@@ -29,7 +41,7 @@ _DYNAMIC = "\nDynamic force: force less the static force at the sensor."
 
 def example(name: str) -> str:
     """Return the text of an example of a scene file."""
-    file = files(validation.scenes) / "examples" / f"{name}.toml"
+    file = resources.files("validation.scenes") / "examples" / f"{name}.toml"
     return file.read_text(encoding="utf-8")
 
 
@@ -48,7 +60,7 @@ def report(recording: Recording, every: bool = False) -> Report:
     momentum = "not conserved" if (p := run.momentum_drift) is None else f"drift {p:.0e}"
     title = f"{scene}, energy drift {run.energy_drift:.0e}"
     data = {
-        "scene": document(scene),
+        "scene": scenefile.document(scene),
         "energy_drift_value": run.energy_drift,
         "momentum_drift_value": run.momentum_drift,
     }
@@ -110,6 +122,66 @@ def _print_example(context: click.Context, given: click.Parameter, name: str | N
         context.exit()
 
 
+STORED = (".json", ".npz")  # suffixes of files with the scene and the result
+SUFFIXES = (*STORED, ".csv")
+RECORDS = tuple(name for name in Records.__dataclass_fields__ if name != "scene")
+_MOST_BYTES = 10**9
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Stored(Records):
+    """Records of a run as read from a file, with the JSON ``document`` of its result."""
+
+    document: Mapping[str, Any]
+
+
+def store(run: Run, document: Mapping[str, Any], file: Path) -> None:
+    """Write a run and the document of its result; only a complete file replaces an old one."""
+    arrays = {name: getattr(run, name) for name in RECORDS}
+    suffix = file.suffix.lower()
+    with replacing(file) as new, new.open("wb") as stream:
+        if suffix == ".npz":
+            for table in ("sensors", "speeds"):
+                for name in document[table][0] if document[table] else ():
+                    if name not in ("kind", "missing"):  # texts
+                        column = np.array([row[name] for row in document[table]], float)
+                        arrays[f"{table}_{name}"] = column
+            np.savez_compressed(stream, document=json.dumps(document), **arrays)
+        elif suffix == ".csv":
+            columns = run.columns()
+            rows = np.column_stack(list(columns.values()))
+            np.savetxt(stream, rows, "%s", ",", header=",".join(columns), comments="")
+        else:
+            records = {f"{name}_value": plain(array) for name, array in arrays.items()}
+            stream.write(json.dumps({**document, "records": records}).encode())
+
+
+def load(path: str | Path) -> Stored:
+    """Read a .json or .npz file written by `lwa-validate run --out`.
+
+    Raises `SceneError`, in one line, for a file that cannot be read or was written otherwise.
+    """
+    file = Path(path)
+    if (suffix := file.suffix.lower()) not in STORED:
+        raise SceneError(f"{path}: a stored run is a file ending in {' or '.join(STORED)}")
+    try:
+        if suffix == ".npz":
+            with np.load(io.BytesIO(files.content(file, _MOST_BYTES))) as archive:
+                document = json.loads(str(archive["document"]))
+                arrays = {name: archive[name] for name in RECORDS}
+        else:
+            document = files.load(file, "a stored run", dict)
+            records = document.pop("records")
+            arrays = {name: np.array(records[f"{name}_value"], float) for name in RECORDS}
+        return Stored(scenefile.scene(document["scene"]), document=document, **arrays)
+    except SceneError:
+        raise
+    except OSError as error:
+        raise SceneError(f"{path}: {files.reason(error)}") from None
+    except Exception:  # NumPy's errors of damaged files are of many kinds
+        raise SceneError(f"{path}: not what `lwa-validate run --out` writes") from None
+
+
 _METHODS = click.Choice((*COMPILED, *METHODS))
 _INTEGRATOR = f"Integrator: {' and '.join(COMPILED)} are compiled, the others SciPy's."
 _SHOWN = example(EXAMPLES[0]).replace("\n\n", "\n")
@@ -162,7 +234,7 @@ def run(
     run_progress: RunProgress,
 ) -> Report:
     """A scene from a file, TOML or JSON: arrival, peak force, FWHM and speed at its sensors."""
-    chain = load(scene).scene if scene.lower().endswith(".npz") else read_scene(scene)
+    chain = load(scene).scene if scene.lower().endswith(".npz") else scenefile.read_scene(scene)
     if out is not None and out.exists() and out.samefile(scene):
         raise SceneError(f"out is {out}: it is the scene's own file, which would be lost")
     sensors = chain.bead_sensors or chain.contact_sensors
