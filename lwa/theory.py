@@ -8,7 +8,7 @@ from typing import Any
 
 import sympy as sp
 
-from lwa.algebra.model import Model, model_of
+from lwa.algebra.model import Model
 from lwa.base import latex
 from lwa.base.exact import InputError, integer, one_of, shorten
 from lwa.base.progress import shown
@@ -165,7 +165,7 @@ def _model(cell: Cell, k: Any, law: ContactLaw | None, branch: str, order: int) 
             f"branch is {branch!r}: its contacts also pull, and its unit of time is that of a "
             "power law; a law given for compression has the acoustic branch"
         )
-    return model_of(cell, law, branch, order)
+    return Model(cell, law, branch).replaced({}, order)
 
 
 def _affordable(order: int, parameters: int, closure: str) -> None:

@@ -16,7 +16,7 @@ from math import factorial
 
 from flint import fmpq, fmpq_mpoly
 
-from lwa.algebra.jets import JetAlgebra, Ladder
+from lwa.algebra.jets import GradedSeries, JetAlgebra
 
 
 class Force:
@@ -28,8 +28,8 @@ class Force:
     def __init__(self, algebra: JetAlgebra, k: fmpq_mpoly) -> None:
         self.k, self.phi = k, algebra.phi
         self.X: list[fmpq_mpoly] = [algebra.zero]
-        self.Phi = Ladder(algebra, k, [algebra.zero])
-        self._slope = Ladder(algebra, k, [algebra.r[1]])
+        self.Phi = GradedSeries(algebra, k, [algebra.zero])
+        self._slope = GradedSeries(algebra, k, [algebra.r[1]])
         self._powers = SeriesPowers(self.X)
         self._nonlinear: fmpq_mpoly | None = None
 

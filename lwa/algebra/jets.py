@@ -107,7 +107,7 @@ class JetAlgebra:
             return f
         return self._derivation(exponent * self.r[1] * f, f, self._dx)
 
-    def dt(self, f: Ladder, E: Ladder, n: int) -> fmpq_mpoly:
+    def dt(self, f: GradedSeries, E: GradedSeries, n: int) -> fmpq_mpoly:
         """Coefficient of D^{n-1} in ∂_τ (p^e Σ_m D^m f_m), divided by p^{e + (k-1)/2}.
 
         f : the series, whose terms f_m, m < n, are known.
@@ -203,40 +203,32 @@ class JetAlgebra:
         return self.context.from_dict(terms)
 
 
-def exact_quotient(numerator: fmpq_mpoly, divisor: fmpq_mpoly) -> fmpq_mpoly:
-    """The quotient of two polynomials that divide without a remainder."""
-    quotient, remainder = divmod(numerator, divisor)
-    if not remainder.is_zero():
-        raise AssertionError(f"{divisor} does not divide the polynomial")
-    return quotient
-
-
 def _powers(exponents: Sequence[int], lowest: int) -> Powers:
     return tuple((n, int(e)) for n, e in enumerate(exponents, start=lowest) if e)
 
 
-class Ladder:
+class GradedSeries:
     """A graded series p^e Σ_n D^n f_n with its derivatives, each of which is computed once."""
 
     def __init__(
         self, algebra: JetAlgebra, exponent: fmpq_mpoly, terms: Sequence[fmpq_mpoly] = ()
     ) -> None:
         self.algebra, self.exponent = algebra, exponent
-        self._rungs = [[f_n] for f_n in terms]
+        self._derivatives = [[f_n] for f_n in terms]
         self._velocity_slopes: dict[int, list[tuple[int, fmpq_mpoly]]] = {}
 
     def __len__(self) -> int:
-        return len(self._rungs)
+        return len(self._derivatives)
 
     def __getitem__(self, n: int) -> fmpq_mpoly:
-        return self._rungs[n][0]
+        return self._derivatives[n][0]
 
     def __iter__(self) -> Iterator[fmpq_mpoly]:
-        return (rungs[0] for rungs in self._rungs)
+        return (derivatives[0] for derivatives in self._derivatives)
 
     def append(self, f_n: fmpq_mpoly) -> None:
         """Append the next term of the series."""
-        self._rungs.append([f_n])
+        self._derivatives.append([f_n])
 
     def increment(self, h: fmpq_mpoly | int, n: int) -> fmpq_mpoly:
         """Coefficient Σ_{0<j≤n} h^j/j! ∂_x^j f_{n-j} of D^n in the increment under x → x + hD."""
@@ -246,10 +238,10 @@ class Ladder:
 
     def dx(self, n: int, j: int) -> fmpq_mpoly:
         """The j-th derivative p^{-e} ∂_x^j (p^e f_n)."""
-        rungs = self._rungs[n]
-        while len(rungs) <= j:
-            rungs.append(self.algebra.dx(rungs[-1], self.exponent))
-        return rungs[j]
+        derivatives = self._derivatives[n]
+        while len(derivatives) <= j:
+            derivatives.append(self.algebra.dx(derivatives[-1], self.exponent))
+        return derivatives[j]
 
     def velocity_slopes(self, n: int) -> list[tuple[int, fmpq_mpoly]]:
         """The `JetAlgebra.velocity_slopes` of f_n, computed once."""

@@ -86,14 +86,6 @@ class Model(Value):
         """The model with values in place of its symbols, for a derivation to this order."""
         cell = self.cell.replaced(new)
         law = for_cell(self.law.replaced(new), cell)
-        return replace(self, cell=cell, law=law, highest=_highest(law, order))
-
-
-def model_of(cell: Cell, law: ContactLaw, branch: str, order: int) -> Model:
-    """The model of a derivation to this order."""
-    return Model(cell, law, branch, _highest(law, order))
-
-
-def _highest(law: ContactLaw, order: int) -> int:
-    """Index n of the highest φ_n needed at D^{order-1}; at least 2, as k = 1 + φ_2."""
-    return 0 if law.homogeneous else max(order - 1, 2)
+        # D^{order-1} needs φ_{order-1}, and k = 1 + φ_2 needs φ_2.
+        highest = 0 if law.homogeneous else max(order - 1, 2)
+        return replace(self, cell=cell, law=law, highest=highest)

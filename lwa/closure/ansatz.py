@@ -15,7 +15,7 @@ from math import factorial
 from flint import fmpq, fmpq_mpoly
 
 from lwa.algebra.contact import Force
-from lwa.algebra.jets import Ladder, exact_quotient
+from lwa.algebra.jets import GradedSeries
 from lwa.algebra.model import Model
 from lwa.base.exact import InputError
 from lwa.base.progress import Progress
@@ -39,7 +39,7 @@ def linear(model: Model, order: int, progress: Progress[int] = iter) -> Solution
     return branch(model, order, progress)
 
 
-def _applied(b: list[fmpq_mpoly], f: Ladder, n: int) -> fmpq_mpoly:
+def _applied(b: list[fmpq_mpoly], f: GradedSeries, n: int) -> fmpq_mpoly:
     """Term n of the ansatz applied to a series f, Σ_{0<j<n} b_j ∂_x^j f_{n-j}, without b_n."""
     return sum((b[j] * f.dx(n - j, j) for j in range(1, min(n, len(f)))), f.algebra.zero)
 
@@ -49,7 +49,7 @@ def _acoustic(model: Model, order: int, progress: Progress[int]) -> Solution:
     k, mu, c = model.elements(algebra)
     right, left = Force(algebra, k), Force(algebra, k)  # in the cell and to the next one
     # E by equation 1 and by equation 2
-    first, second = (Ladder(algebra, k, [algebra.zero]) for _ in range(2))
+    first, second = (GradedSeries(algebra, k, [algebra.zero]) for _ in range(2))
     b = [algebra.one, c[0]]  # order D^k: equal forces, so the first contact takes its share
     for n in progress(range(1, order)):
         # The strains of both contacts sum to u(x + 2D) - u(x). Let the two differ by ξ r_n at D^n;
@@ -63,8 +63,8 @@ def _acoustic(model: Model, order: int, progress: Progress[int]) -> Solution:
         mean = algebra.one * fmpq(2**n, factorial(n + 1))
         right.append((mean + c[1] * xi / 2) * r_n)
         left.append((mean - c[0] * xi / 2) * r_n)
-        first.append(exact_quotient(one + xi * r_n, 2 * mu[0]))
-        second.append(exact_quotient(two - xi * r_n, 2 * mu[1]) - _applied(b, second, n))
+        first.append((one + xi * r_n) / (2 * mu[0]))  # without a remainder, as all quotients here
+        second.append((two - xi * r_n) / (2 * mu[1]) - _applied(b, second, n))
         b.append(c[0] * (mean + c[1] * xi / 2))
     return _solution(b[: order + 1], first, second)
 
@@ -75,8 +75,8 @@ def _optical(model: Model, order: int, progress: Progress[int]) -> Solution:
     algebra = model.algebra(max(order, 1))
     k, mu, stiffness = model.elements(algebra)
     right, left = Force(algebra, k), Force(algebra, k)  # 1 + Y and 1 + Z
-    first, second = (Ladder(algebra, k, [algebra.zero]) for _ in range(2))
-    leading = Ladder(algebra, k, [algebra.r[1]])
+    first, second = (GradedSeries(algebra, k, [algebra.zero]) for _ in range(2))
+    leading = GradedSeries(algebra, k, [algebra.r[1]])
     b = [algebra.one]
     for n in progress(range(1, order + 1)):
         r_n = algebra.r[n]
@@ -96,14 +96,14 @@ def _uniform(model: Model, order: int, progress: Progress[int]) -> Solution:
     # One particle per cell: nothing is slaved, and the one equation is the wave equation.
     algebra = model.algebra(max(order - 1, 1))
     k = model.ring.exponent(algebra.context)
-    force, E = Force(algebra, k), Ladder(algebra, k, [algebra.zero])
+    force, E = Force(algebra, k), GradedSeries(algebra, k, [algebra.zero])
     for n in progress(range(1, order)):
         force.append(algebra.r[n] * fmpq(1, factorial(n + 1)))  # (u(x + D) - u(x))/D
         E.append(-force.increment(-1, n))
     return _solution([], E, E)
 
 
-def _solution(b: list[fmpq_mpoly], first: Ladder, second: Ladder) -> Solution:
+def _solution(b: list[fmpq_mpoly], first: GradedSeries, second: GradedSeries) -> Solution:
     """The ansatz b_n, the first equation's E_n and what they differ by from the second's."""
     return Solution(
         algebra=first.algebra,

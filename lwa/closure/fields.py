@@ -15,7 +15,7 @@ import sympy as sp
 from flint import fmpq_mpoly
 
 from lwa.algebra.contact import Force, SeriesPowers
-from lwa.algebra.jets import Ladder, Monomial
+from lwa.algebra.jets import GradedSeries, Monomial
 from lwa.algebra.model import Model
 from lwa.base.exact import InputError
 from lwa.closure.solution import Solution
@@ -73,7 +73,7 @@ class _Change:
 
     def _applied(self, terms: Sequence[fmpq_mpoly]) -> tuple[fmpq_mpoly, ...]:
         """The terms of (1 + Σ α_n D^n ∂_x^n) (u_x^k Σ D^n E_n) in the jets of φ."""
-        E = Ladder(self.algebra, self.k, self._replaced(terms, self.k)[: len(terms)])
+        E = GradedSeries(self.algebra, self.k, self._replaced(terms, self.k)[: len(terms)])
         return tuple(
             sum((self.alpha[j] * E.dx(n - j, j) for j in range(n + 1)), self.algebra.zero)
             for n in range(len(terms))

@@ -18,7 +18,7 @@ from math import factorial
 from flint import fmpq, fmpq_mpoly
 
 from lwa.algebra.contact import Force
-from lwa.algebra.jets import Ladder
+from lwa.algebra.jets import GradedSeries
 from lwa.algebra.model import Model
 from lwa.base.progress import Progress
 from lwa.closure.solution import Solution
@@ -62,9 +62,9 @@ class _Slaving:
         k, self.mu, self.c = model.elements(algebra)
         self.x = list(accumulate(self.c[:-1], initial=algebra.zero))
         self.weights = self.mu if field == "center" else [algebra.one]
-        self.E = Ladder(algebra, k, [algebra.zero])
-        self.S = [Ladder(algebra, algebra.one, [x]) for x in self.x]
-        self.rates = [Ladder(algebra, algebra.half, [algebra.zero]) for _ in self.x]
+        self.E = GradedSeries(algebra, k, [algebra.zero])
+        self.S = [GradedSeries(algebra, algebra.one, [x]) for x in self.x]
+        self.rates = [GradedSeries(algebra, algebra.half, [algebra.zero]) for _ in self.x]
         self.forces = [Force(algebra, k) for _ in self.x]
 
     def extend(self, n: int) -> None:

@@ -54,7 +54,7 @@ from math import factorial
 from flint import fmpq, fmpq_mpoly
 
 from lwa.algebra.contact import Force
-from lwa.algebra.jets import JetAlgebra, Ladder, exact_quotient
+from lwa.algebra.jets import GradedSeries, JetAlgebra
 from lwa.base.exact import InputError
 from lwa.closure.consistency import Closure
 
@@ -120,8 +120,8 @@ class _Fields:
         self.algebra = algebra = model.algebra(old.weight, velocity=True, rest=True)
         self.k, self.mu, self.c = model.elements(algebra)
 
-        def series(terms: Iterable[fmpq_mpoly], exponent: fmpq_mpoly) -> Ladder:
-            return Ladder(algebra, exponent, [algebra.embed(term, old) for term in terms])
+        def series(terms: Iterable[fmpq_mpoly], exponent: fmpq_mpoly) -> GradedSeries:
+            return GradedSeries(algebra, exponent, [algebra.embed(term, old) for term in terms])
 
         E = series(closure.acceleration, self.k)
         self.S = [series(row, algebra.one) for row in closure.fields]
@@ -133,7 +133,7 @@ class _Fields:
         self.forces = [Force(algebra, self.k) for _ in self.S]
         for n in orders:
             for force, share, strain in zip(self.forces, self.c, self._strains(n), strict=True):
-                force.append(exact_quotient(strain, share))
+                force.append(strain / share)  # without a remainder
 
     def _strains(self, n: int) -> list[fmpq_mpoly]:
         """Coefficients of D^n in (w_{i+1} - w_i)/(D p), i < P; w_P is w_0 of the next cell."""

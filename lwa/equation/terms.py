@@ -35,7 +35,7 @@ class Jet(NamedTuple):
     x: Powers
     t: Powers = ()
 
-    def over(self, power: tuple[int, int]) -> tuple[Fraction, Fraction]:
+    def base_power(self, power: tuple[int, int]) -> tuple[Fraction, Fraction]:
         """Power (a, b) of the base, base^{a + bk}, that is left beside the bare derivatives."""
         halves = Fraction(sum(e for _, e in self.t), 2)
         return power[0] - sum(e for _, e in self.x) - halves, power[1] - halves
@@ -124,7 +124,7 @@ class Terms(Mapping[Jet, sp.Expr]):
 
         styles : formats of the exponents of the base and of the derivatives.
         """
-        a, b = jet.over(self.power)
+        a, b = jet.base_power(self.power)
         base = derivative(1, False) if self.base else "u"
         powers = [(base, _exponent(a, b), styles[0])]
         if not self._model.law.homogeneous:
@@ -163,7 +163,7 @@ class Terms(Mapping[Jet, sp.Expr]):
         D = self._model.cell.spacing
         total = sp.S.Zero
         for jet, coefficient in self.items():
-            a, b = (sp.Rational(power) for power in jet.over(self.power))
+            a, b = (sp.Rational(power) for power in jet.base_power(self.power))
             factors = [u.diff(x, i) ** e for i, e in jet.x]
             factors += [velocity.diff(x, i) ** e for i, e in jet.t]
             factors.append(law.weight(base, D, a, b))

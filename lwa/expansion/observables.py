@@ -28,7 +28,7 @@ from lwa.expansion.pulse import (
     product,
     quotient,
     root,
-    wider,
+    width_of_power,
 )
 from lwa.expansion.recursion import Recursion
 from lwa.law import Power
@@ -63,7 +63,7 @@ class Observables:
     @cached_property
     def strain(self) -> Series:
         """Full width at half maximum of the strain F^{1/k}, in units of 4 √(I log 2/ε)."""
-        return wider(self.force, self.wave.epsilon)
+        return width_of_power(self.force, self.wave.epsilon)
 
     @cached_property
     def velocity(self) -> Series:
@@ -163,7 +163,7 @@ class Observables:
         return tuple(
             sp.Add(
                 *(
-                    self.over(c, 3 * n) * sp.log(2) ** (d // 2)
+                    self._over_I(c, 3 * n) * sp.log(2) ** (d // 2)
                     for d, c in by_degree(terms[2 * n]).items()
                 )
             )
@@ -176,15 +176,15 @@ class Observables:
         for n, q in enumerate(self.wave.fields.log_force[contact]):
             if q:
                 parts = by_degree(q).items()
-                phi[sp.Rational(n, 2)] = {d: self.over(c, (3 * n + d) // 2) for d, c in parts}
+                phi[sp.Rational(n, 2)] = {d: self._over_I(c, (3 * n + d) // 2) for d, c in parts}
         return phi
 
     @cached_property
     def I(self) -> sp.Expr:
         """Coefficient I in the linear chain's dispersion Ω² = κ² - I κ⁴ + …, in units of D²."""
-        return self.over(self.wave.I, 0)
+        return self._over_I(self.wave.I, 0)
 
-    def over(self, numerator: fmpq_mpoly, power: int) -> sp.Expr:
+    def _over_I(self, numerator: fmpq_mpoly, power: int) -> sp.Expr:
         """The quotient numerator / I^power, in the caller's symbols."""
         I = self.wave.I
         if not self.model.ring.names:

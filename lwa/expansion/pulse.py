@@ -105,7 +105,7 @@ def _from_peak(log: Series) -> Series:
     return [0 * Z, *(_reweighted(term, lambda d: fmpq(min(d, 1))) for term in phi[1:])]
 
 
-def wider(width: Series, epsilon: fmpq_mpoly) -> Series:
+def width_of_power(width: Series, epsilon: fmpq_mpoly) -> Series:
     """Width series h_n of the pulse raised to the power 1/(1+ε), at the same height; ε = O(t²).
 
     Raising the pulse to this power replaces y² by (1+ε) y²: each y^d of 4y Σ h_n t^n becomes

@@ -86,12 +86,12 @@ class Radiation(Value):
         F, slope = np.exp(log), np.gradient(log, step)
         wavenumbers = (math.sqrt(factor * max(self.optical - 1, 0.0)) for factor in PHASES)
         return self.lightest * max(
-            _rattle(K_0 * np.exp(log * epsilon / (2 * k)), F * slope, float(step))
+            _tail_integral(K_0 * np.exp(log * epsilon / (2 * k)), F * slope, float(step))
             for K_0 in wavenumbers
         )
 
 
-def _rattle(K: Array, slope: Array, step: float) -> float:
+def _tail_integral(K: Array, slope: Array, step: float) -> float:
     """|∫ K^{3/2} F' e^{i∫K} dξ| by the trapezoidal rule; the ends, where F' ≈ 0, are left out."""
     import numpy as np  # start-up: `import lwa` does not load it
 

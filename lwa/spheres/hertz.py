@@ -15,7 +15,6 @@ from typing import Any
 
 import sympy as sp
 
-from lwa.base import latex
 from lwa.base.exact import InputError, exact, one_of, positive, shorten
 from lwa.base.frozen import Value
 
@@ -43,10 +42,6 @@ class Material(Value):
             raise InputError(f"nu is {shorten(given)}: Poisson's ratio lies between -1 and 1/2")
         if self.density is not None:
             object.__setattr__(self, "density", positive(self.density, "density"))
-
-    def latex_rows(self) -> list[str]:
-        density = {} if self.density is None else {r"\rho": self.density}
-        return latex.rows({"E": self.E, r"\nu": self.nu} | density)
 
     @classmethod
     def named(cls, name: str, **changed: Any) -> Material:
@@ -86,10 +81,6 @@ class Sphere(Value):
     """A sphere: mass, radius and material, numbers or symbols.
 
     Raises `lwa.InputError` unless mass and radius are positive.
-
-    >>> steel = Material(E="193e9", nu="0.3")
-    >>> stiffness(Sphere("m", "R", steel), steel)
-    38600000000000*sqrt(R)/273
     """
 
     mass: sp.Expr
@@ -101,9 +92,6 @@ class Sphere(Value):
             object.__setattr__(self, name, positive(getattr(self, name), name))
         if not isinstance(self.material, Material):
             raise InputError(f"material is {shorten(self.material)}: a Material is wanted")
-
-    def latex_rows(self) -> list[str]:
-        return [*latex.rows({"m": self.mass, "R": self.radius}), *self.material.latex_rows()]
 
     @classmethod
     def solid(cls, radius: Any, material: Material, density: Any = None) -> Sphere:
@@ -123,13 +111,7 @@ class Sphere(Value):
 
 
 def stiffness(sphere: Sphere, other: Sphere | Material) -> sp.Expr:
-    """Stiffness A of F = A δ^{3/2} between two spheres, or a sphere and a flat wall.
-
-    >>> R, E, nu = sp.symbols("R E nu", positive=True)
-    >>> ball = Sphere("m", R, Material(E, nu))
-    >>> sp.simplify(stiffness(ball, ball) - E * sp.sqrt(2 * R) / (3 * (1 - nu**2)))
-    0
-    """
+    """Stiffness A of F = A δ^{3/2} between two spheres, or a sphere and a flat wall."""
     if not isinstance(sphere, Sphere):
         raise InputError(f"sphere is {shorten(sphere)}: a Sphere is wanted")
     if not isinstance(other, Sphere | Material):

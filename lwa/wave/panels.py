@@ -15,7 +15,7 @@ import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
-from lwa.base.arrays import Array, Extended
+from lwa.base.arrays import Array
 
 POINTS = 20
 """Gauss points of a panel."""
@@ -65,19 +65,14 @@ class Grid(NamedTuple):
 
 
 @cache
-def gauss() -> tuple[Array, Array]:
-    """Nodes and weights on [0, 1]."""
-    x, w = _extended_gauss()
-    return x.astype(np.float64), w.astype(np.float64)
-
-
-def _extended_gauss() -> tuple[Extended, Extended]:
-    """Nodes and weights on [0, 1] in extended precision."""
+def gauss(kind: type[np.floating[Any]] = np.float64) -> tuple[Any, Any]:
+    """Nodes and weights on [0, 1], computed in extended precision."""
     basis = np.eye(POINTS + 1, dtype=np.longdouble)[-1]
     slope = legendre.legder(basis)
     x = legendre.leggauss(POINTS)[0].astype(np.longdouble)
     x = x - legendre.legval(x, basis) / legendre.legval(x, slope)  # one step of Newton's method
-    return (x + 1) / 2, 1 / ((1 - x**2) * legendre.legval(x, slope) ** 2)
+    w = 1 / ((1 - x**2) * legendre.legval(x, slope) ** 2)
+    return ((x + 1) / 2).astype(kind), w.astype(kind)
 
 
 @cache
@@ -85,7 +80,7 @@ def _fitted() -> Array:
     """Matrix from values at the Gauss points to Legendre coefficients."""
     x, w = gauss()
     odd = 2 * np.arange(POINTS) + 1
-    return (legendre.legvander(2 * x - 1, POINTS - 1) * (w[:, None] * odd)).T
+    return np.asarray((legendre.legvander(2 * x - 1, POINTS - 1) * (w[:, None] * odd)).T)
 
 
 @cache
@@ -108,7 +103,7 @@ def grid(parts: int, halvings: int, further: tuple[float, ...] = ()) -> Grid:
     upper = len(ends) - 1
     edges = np.array([*ends, *(end for end in _TAIL if end > ends[-1])])
     starts, lengths = edges[:-1], np.diff(edges)
-    fine_x, fine_w = _extended_gauss()
+    fine_x, fine_w = gauss(np.longdouble)
     fine = (starts[:, None] + lengths[:, None] * fine_x).ravel()
     s, y2 = ((1 / np.cosh(fine) ** 2).astype(np.float64), (np.tanh(fine) ** 2).astype(np.float64))
     ds = (_measure(fine) * (lengths[:, None] * fine_w).ravel()).astype(np.float64)
@@ -147,12 +142,6 @@ def _below(theta: Array, at: float) -> Any:
     # 1 - s/u = sinh(θ-θ_u) sinh(θ+θ_u) / cosh²θ does not cancel
     apart = np.sinh(theta - at) * np.sinh(theta + at) * s
     return s / u * (np.tanh(theta) ** 2 + apart)
-
-
-def strains(g: Grid, p0: Array, B: Array) -> Array:
-    """Strains p0 + sB at the nodes, computed from p0 or p0 + B, whichever is nearer."""
-    near = (p0 + B)[:, None] - B[:, None] * g.y2
-    return np.asarray(np.where(g.y2 < 0.5, near, p0[:, None] + B[:, None] * g.s))
 
 
 def value_at(coefficients: Any, x: Array) -> Any:

@@ -42,7 +42,6 @@ from lwa.wave.panels import (
     grid,
     integrated,
     inverse,
-    strains,
     value_at,
 )
 
@@ -179,7 +178,9 @@ class NumericBackground(Value):
 
     def _sampled(self, g: Grid, p0: Array, B: Array) -> tuple[Array, Array, Array]:
         """Compute p and F″ at the nodes, and (Q(B) - Q(v)) / (B y²) at the upper nodes."""
-        p = strains(g, p0, B)
+        # From p0 or p0 + B, whichever is nearer: p has its digits next to a pole at either.
+        near = (p0 + B)[:, None] - B[:, None] * g.y2
+        p = np.where(g.y2 < 0.5, near, p0[:, None] + B[:, None] * g.s)
         with np.errstate(all="ignore"):
             bend = self._bend(p)
             return p, bend, bend @ g.kernel.T
@@ -214,8 +215,9 @@ class NumericBackground(Value):
         unit = np.ones_like(base)
         if self.law.homogeneous:
             excess = float(self.law.exponent - 1)
-            exists = (base >= 0) & (excess * rise > 0) & (base + rise > 0)
-            unit = np.ldexp(0.5, np.frexp(np.maximum(base, base + rise))[1])  # rounds nothing
+            with np.errstate(over="ignore"):
+                exists = (base >= 0) & (excess * rise > 0) & (base + rise > 0)
+                unit = np.ldexp(0.5, np.frexp(np.maximum(base, base + rise))[1])  # rounds nothing
         else:
             exists = _by_block(self._exists, base, rise)
         if not np.all(exists):
@@ -245,6 +247,7 @@ def _by_block(function: Callable[[Array, Array], Array], p0: Array, B: Array) ->
 
 def _compiled(value: sp.Expr) -> Callable[[Array], Array]:
     """Compile an expression in the strain to a function of arrays."""
+    # NumPy has no integers of more than 63 bits.
     long = {x: sp.Float(x, 17) for x in value.atoms(sp.Rational) if x.p.bit_length() > 53}
     function = sp.lambdify(_STRAIN, value.xreplace(long), "numpy")
 

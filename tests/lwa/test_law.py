@@ -7,7 +7,7 @@ import pytest
 import sympy as sp
 
 from lwa import Cell, Dimer, Dispersion, InputError, Law, Power, general, homogenize
-from lwa.algebra.jets import Ladder
+from lwa.algebra.jets import GradedSeries
 from lwa.equation.energy import energy
 from lwa.law import NAMES, named
 
@@ -168,7 +168,7 @@ def test_the_energy_of_a_law_without_form_is_conserved(cell, field):
     _, density = energy(closure)
     algebra = closure.model.algebra(order, velocity=True, rest=True)
     k = closure.model.ring.exponent(algebra.context)
-    E, e = Ladder(algebra, k), Ladder(algebra, k + 1)
+    E, e = GradedSeries(algebra, k), GradedSeries(algebra, k + 1)
     old = closure.model.algebra(closure.algebra.weight, velocity=True, rest=True)
     for row, source, terms in (
         (E, closure.algebra, closure.acceleration),
