@@ -8,8 +8,9 @@
 D**2*(m1**2 - m1*m2 + m2**2)/(3*(m1 + m2)**2)
 """
 
-from importlib import import_module
 from typing import TYPE_CHECKING, Any
+
+from lwa.base.lazy import public
 
 if TYPE_CHECKING:
     from lwa.algebra.coefficients import CoefficientRing as CoefficientRing
@@ -70,39 +71,8 @@ if TYPE_CHECKING:
 
     __version__: str
 
-_MODULES = {
-    "algebra.coefficients": "CoefficientRing",
-    "algebra.jets": "Powers",
-    "algebra.model": "Model",
-    "wave.background": "BackgroundWave KdV background_wave",
-    "wave.quadrature": "NumericBackground",
-    "cell": "Cell D Dimer k",
-    "closure.consistency": "Closure",
-    "closure.solution": "Solution",
-    "base.arrays": "Array",
-    "wave.numeric": "NumericWave",
-    "wave.physical": "PhysicalWave PrecompressedWave",
-    "wave.closed": "CompactWave Reduction",
-    "base.exact": "InputError Quantity",
-    "envelopes.schrodinger": "Breather Envelope envelope",
-    "expansion.approximants": "Resummed",
-    "expansion.expand": "Expansion expand",
-    "expansion.physical": "ExpandedWave Strike graded_force pulse_of_strike transmitted_force",
-    "expansion.radiation": "Radiation",
-    "expansion.series": "EpsilonSeries",
-    "law": "ContactLaw Law Power general",
-    "linear.dispersion": "Dispersion LoadedChain",
-    "equation.evolution": "Evolution",
-    "equation.pde": "PDE",
-    "base.quantities": "NoSolitaryWave",
-    "shocks.riemann": "Shock piston shock",
-    "spheres.hertz": "Material Sphere",
-    "equation.terms": "Jet Terms",
-    "theory": "Theory homogenize",
-    "wave.traveling": "TravelingWave canonical_wave",
-}
-_HOMES = {name: module for module, names in _MODULES.items() for name in names.split()}
-__all__ = sorted(["hertz", *(name for name in _HOMES if name not in ("D", "k"))])
+_load, _names = public(__name__, __file__)
+__all__ = [name for name in _names if name not in ("D", "k")]  # bound by name only
 
 
 def __getattr__(name: str) -> Any:
@@ -111,12 +81,7 @@ def __getattr__(name: str) -> Any:
         from importlib.metadata import version  # here: it takes as long as all the rest
 
         return version("lwa")
-    if name == "hertz":
-        return import_module("lwa.spheres.hertz")
-    if name not in _HOMES:
-        raise AttributeError(f"module 'lwa' has no attribute {name!r}")
-    value = globals()[name] = getattr(import_module(f"lwa.{_HOMES[name]}"), name)
-    return value
+    return _load(name)
 
 
 def __dir__() -> list[str]:

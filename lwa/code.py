@@ -66,8 +66,7 @@ class Writer:
     comment: ClassVar[str] = "#"
     head: ClassVar[tuple[str, ...]] = ()  # lines of a module before its functions
     tail: ClassVar[tuple[str, ...]] = ()
-    # lines of a function before and after its statements
-    opening: ClassVar[tuple[str, ...]] = ()
+    opening: ClassVar[tuple[str, ...]] = ()  # lines of a function before its statements
     closing: ClassVar[tuple[str, ...]] = ()
     gap: ClassVar[int] = 1  # empty lines between functions
     indent: ClassVar[str] = "    "
@@ -95,7 +94,7 @@ class Writer:
             self.names |= {symbol: self._free(symbol.name, used) for symbol, _ in function.local}
 
     def module(self, title: Sequence[str]) -> str:
-        """The source text, without a newline at its end."""
+        """Source text with comments ``title``, without a newline at its end."""
         notes = [f"{name} is the symbol {shorten(given)}" for name, given in self.renamed.items()]
         lines = [f"{self.comment} {line}" for line in (*title, *notes)]
         lines += ["", *self.head] if self.head else []
@@ -114,7 +113,7 @@ class Writer:
         return [*lines, *(line.format(**words) for line in self.closing)]
 
     def words(self, function: Function) -> dict[str, str]:
-        """Further words in the lines of a function."""
+        """Words by their names in ``opening`` and ``closing``, besides name and doc."""
         return {"arguments": self.arguments(function)}
 
     def arguments(self, function: Function, kind: str = "") -> str:
@@ -122,7 +121,7 @@ class Writer:
         return ", ".join(kind + self.names[s] for s in function.arguments)
 
     def entry(self, function: Function) -> list[str]:
-        """Statements before the others."""
+        """Statements before those for the local variables and the value."""
         return []
 
     def result(self, function: Function) -> str:
@@ -195,7 +194,7 @@ class Writer:
 
 
 class _Wrapper(textwrap.TextWrapper):
-    """Breaks lines after commas and operators, but not after a power's sign."""
+    """Line breaker that works after commas and operators, but not within or after **."""
 
     wordsep_re = re.compile(r"((?<=[,+-])\s+|(?<=[^*/][*/])(?![*/]))")
 
@@ -241,7 +240,6 @@ class NumPy(Python, NumPyPrinter):  # type: ignore[misc]  # untyped in SymPy
         return self.wrapped(line if len(line) <= WIDTH else line.replace(names, f"({names})", 1))
 
     def text(self, value: sp.Basic) -> str:
-        """The text of a value, on one line."""
         return super().text(value).replace("numpy.", "np.")
 
 
@@ -256,7 +254,6 @@ class C(Writer, C99CodePrinter):  # type: ignore[misc]  # untyped in SymPy
     settings: ClassVar[dict[str, Any]] = {"math_macros": {}}
 
     def words(self, function: Function) -> dict[str, str]:
-        """Further words in the lines of a function."""
         return {"arguments": self.arguments(function, "double ") or "void"}
 
     def _print_Pi(self, number: sp.Expr) -> str:
@@ -285,7 +282,6 @@ class Fortran(Writer, FCodePrinter):  # type: ignore[misc]  # untyped in SymPy
     }
 
     def words(self, function: Function) -> dict[str, str]:
-        """Further words in the lines of a function."""
         kind = "elemental" if function.arguments else "pure"
         return {"arguments": self.arguments(function), "kind": kind}
 
@@ -297,7 +293,6 @@ class Fortran(Writer, FCodePrinter):  # type: ignore[misc]  # untyped in SymPy
         return [line for d in declared for line in self.wrapped(self.indent + d)]
 
     def result(self, function: Function) -> str:
-        """Text before the value of a function."""
         return f"{function.name} ="
 
     def _print_Pi(self, number: sp.Expr) -> str:
@@ -321,7 +316,7 @@ class Julia(Writer, JuliaCodePrinter):  # type: ignore[misc]  # untyped in SymPy
     closing = ("end",)
 
     def text(self, value: sp.Basic) -> str:
-        """The text of a value on one line, with the operators of numbers."""
+        # the operators of numbers: x*y in place of x .* y
         return re.sub(r" \.?([*/^]) ", r"\1", super().text(value))
 
 

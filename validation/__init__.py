@@ -9,8 +9,9 @@
 1.4119
 """
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from lwa.base.lazy import public
 
 if TYPE_CHECKING:
     from validation.lattice.run import IntegrationError as IntegrationError
@@ -29,23 +30,4 @@ if TYPE_CHECKING:
     from validation.waves.profile import ExactWave as ExactWave
     from validation.waves.solver import exact_wave as exact_wave
 
-_MODULES = {
-    "lattice.run": "IntegrationError Run",
-    "lattice.simulate": "simulate simulate_many",
-    "pulses.pulse": "MeasureError Pulse measure",
-    "scenes.forcing": "Damping Drive",
-    "scenes.scene": "Scene SceneError",
-    "scenes.scenefile": "read_scene",
-    "studies.run": "load",
-    "waves.profile": "ExactWave",
-    "waves.solver": "exact_wave",
-}
-_HOMES = {name: module for module, names in _MODULES.items() for name in names.split()}
-__all__ = sorted(_HOMES)
-
-
-def __getattr__(name: str) -> Any:
-    """Load a public name on its first use: `--help` does not load SciPy."""
-    if name not in _HOMES:
-        raise AttributeError(f"module 'validation' has no attribute {name!r}")
-    return getattr(import_module(f"validation.{_HOMES[name]}"), name)
+__getattr__, __all__ = public(__name__, __file__)

@@ -138,7 +138,7 @@ class Answer:
         return " = " + ", ".join(self._number_text(x, row.digits) for x in _parts(row.value)) + unit
 
     def _number_text(self, value: sp.Expr, digits: bool) -> str:
-        """The value, followed by its digits where it is a number that is not rational."""
+        """The value, followed by its digits unless it is rational or has symbols."""
         if self.si:
             return approximate(value)
         plain = self.plain(value)
@@ -196,7 +196,7 @@ def _put(result: Values, key: str, suffix: str, value: Any) -> None:
 
 
 def _units(rows: Sequence[Row]) -> dict[str, str]:
-    """Mapping from key to unit; entries of a group that have the same unit by the group's name."""
+    """Mapping from key to unit; a group stands for its entries if they have the same unit."""
     groups: dict[str, dict[str, str]] = {}
     for row in rows:
         if row.unit:

@@ -1,4 +1,4 @@
-"""The end of every command of this project: output, exit status, one clear line for a fault."""
+"""Run a command as a program: UTF-8 output, exit status, one clear line for a fault."""
 
 from __future__ import annotations
 

@@ -1,33 +1,31 @@
-"""Compiled engine: an embedded Runge–Kutta–Nyström pair and a symplectic splitting.
+"""The compiled engine: an embedded Runge–Kutta–Nyström pair and a symplectic splitting.
 
 Numba compiles the loops once and keeps them on disk. A run is the same to the last bit every time.
 
-Pair: two embedded solutions of y'' = f(y), with adaptive steps h
-(`validation.lattice.schemes`). The error of a step is the root of the sum over all beads of
-the squared errors, in the scene's scales of displacement and velocity; ``rtol`` bounds this error
-and so sets the steps. F = A δ^k with k = 3/2 has no second derivative at a kink, the time at which
-a contact opens or closes, and a step across a kink would err by O(h^{k+1}). So A p_+^k, with a
-polynomial p close to the contact's compression δ and p_+ = max(p, 0), is integrated by a quadrature
-of its own (`validation.lattice.kernel.kinks`).
+Pair: two solutions of y'' = f(y) with adaptive steps h (`validation.lattice.schemes`). The error of
+a step is the root of the sum over all beads of the squared errors, in the scene's scales of
+displacement and velocity; ``rtol`` bounds this error. F = A δ^k with k = 3/2 has no second
+derivative at a kink, the time at which a contact opens or closes, and a step across a kink would
+err by O(h^{k+1}). So A p_+^k, with a polynomial p close to the contact's compression δ and
+p_+ = max(p, 0), is integrated by a quadrature that knows the kink
+(`validation.lattice.kernel.kinks`).
 
-Splitting: symplectic, with a fixed step (`validation.lattice.schemes`). Every kink leaves
-an error of O(h^{k+1}), which sets the step.
-
-Samples and signals: `validation.lattice.kernel.samples`.
+Splitting: symplectic, with a fixed step. Every kink leaves an error of O(h^{k+1}), which sets the
+step.
 
 Piston: a first bead of infinite mass. Its work is its velocity times the impulse of its contact.
 
 Window: beads ahead of the front have not moved yet and are always left out. A window of N beads
 also leaves out the beads more than N behind the front: their energy is still counted, their motion
 is NaN. A second run, with a window of 2N beads, shows how much the leading pulse depends on N. The
-numbers of the second run are returned, for the beads inside the first run's window.
+second run is returned, with NaN for the beads outside the first run's window.
 """
 
 from __future__ import annotations
 
 import math
 import sys
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import lru_cache
 from typing import Any
 
@@ -73,49 +71,23 @@ _KINKS, _COARSEST = 0.01, 0.2
 _CAREFUL = 100  # added to the expected number of steps for an embedded pair's (shorter) first step
 
 
-@dataclass(frozen=True)
-class Settings:
-    """A method of `SCHEMES` with its tolerance and steps.
-
-    step : fixed step of a splitting; expected mean step of an embedded pair. longest : greatest
-    step.
-    """
-
-    method: str
-    rtol: float
-    step: float
-    longest: float
-
-    @classmethod
-    def of(cls, motion: Motion, method: str, rtol: float, step: float | None) -> Settings:
-        """Return the settings from arguments of `simulate`."""
-        natural = _step(method, rtol) * min(motion.scales.time, motion.scene.duration)
-        if step is None:
-            return cls(method, rtol, natural, math.inf)
-        longest = positive(step, "step")
-        adaptive = isinstance(SCHEMES[method], Pair)
-        return cls(method, rtol, min(natural, longest) if adaptive else longest, longest)
-
-
 def follow(
     motion: Motion, method: str, rtol: float, step: float | None, window: Any, progress: RunProgress
 ) -> Run:
     """Integrate a scene by a method of `SCHEMES`; the arguments are those of `simulate`."""
-    settings, beads = Settings.of(motion, method, rtol, step), _window(motion, window)
+    beads = _window(motion, window)
+    plan, most = _plan(motion, method, rtol, step)
+
+    def integrated(window: int, followed: Array | None = None) -> tuple[Run, Array]:
+        plan_of_window = plan._replace(window=window if window < motion.size else 0)
+        return _integrated(motion, method, plan_of_window, most, progress, followed)
+
     if beads is None:
-        return _integrated(motion, settings, None, progress)[0]
-    short, left = _integrated(motion, settings, beads, progress)
-    long, _ = _integrated(motion, settings, 2 * beads, progress, left)
+        return integrated(0)[0]
+    short, left = integrated(beads)
+    long, _ = integrated(2 * beads, left)
     _compare(motion, rtol, short, long)
     return replace(long, window=beads)
-
-
-def _step(method: str, rtol: float) -> float:
-    """Return a splitting's step or an embedded pair's mean step, in units of `Scales.time`."""
-    scheme = SCHEMES[method]
-    if isinstance(scheme, Pair):
-        return mean_step(method, rtol)
-    return float(min((rtol / _KINKS) ** 0.4, _COARSEST)) * scheme.stages
 
 
 def _window(motion: Motion, window: Any) -> int | None:
@@ -153,31 +125,26 @@ def _compare(motion: Motion, rtol: float, short: Run, long: Run) -> None:
 
 def _integrated(
     motion: Motion,
-    settings: Settings,
-    window: int | None,
+    method: str,
+    plan: Plan,
+    most: int,
     progress: RunProgress,
-    followed: Array | None = None,
+    followed: Array | None,
 ) -> tuple[Run, Array]:
-    """Integrate the whole chain, or the beads of a window.
+    """Integrate a scene in at most ``most`` steps.
 
     followed : for each bead the time after which the results are NaN (infinite: none); by default
-        the time at which the window leaves the bead.
+        the time at which the plan's window leaves the bead.
 
     Returns the run and these times, ``followed`` or the window's own.
     """
-    n, end, method = motion.size, motion.scene.duration, settings.method
-    scheme = SCHEMES[method]
-    window = None if window is None or window >= n else window
-    steps = end / settings.step
-    most = most_steps(motion.scene, method, steps, 16)
+    n, end, stages = motion.size, motion.scene.duration, SCHEMES[method].stages
     chain = _chain(motion)
     beads = _start(motion, len(chain.A))
-    few = _CAREFUL if isinstance(scheme, Pair) else 0
-    plan = _plan(motion, settings, chain, window, end / math.ceil(steps + few))
     time, needed = sampled(motion)
     recorder = Recorder(chain, plan.scheme.points, needed, time)
     now = beginning(plan, _front(motion))
-    glance = 1 + int(_GLANCE / (scheme.stages * max(n, SHORTEST)))
+    glance = 1 + int(_GLANCE / (stages * max(n, SHORTEST)))
     t = 0.0
     with progress() as display:
         while t < end:
@@ -201,9 +168,9 @@ def _integrated(
         motion.balance(state, int(now["lo"])) + float(now["lost"]),
         steps=int(now["steps"]),
         behind=np.isfinite(left[:n]),
-        evaluations=int(now["tries"]) * scheme.stages,
+        evaluations=int(now["tries"]) * stages,
         bead_evaluations=int(now["evaluations"]),
-        window=window,
+        window=plan.window or None,
         path=path,
     )
     return run, left
@@ -223,23 +190,31 @@ def _tableau(method: str, k: float) -> Tableau:
     return Tableau(nothing, nothing, *scheme.arrays(WIDTH), scheme.lower, points)
 
 
-def _plan(
-    motion: Motion, settings: Settings, chain: Chain, window: int | None, step: float
-) -> Plan:
-    """Build the integration plan of a run."""
-    scales, chosen = motion.scales, motion.k if motion.contact.law is None else math.inf
-    return Plan(
-        scheme=_tableau(settings.method, chosen),
-        y=settings.rtol * scales.displacement,
-        v=settings.rtol * scales.velocity,
-        h=step,
-        longest=settings.longest,
-        end=motion.scene.duration,
+def _plan(motion: Motion, method: str, rtol: float, step: float | None) -> tuple[Plan, int]:
+    """Return the integration plan for the whole chain, and the greatest number of steps."""
+    scheme, scales, end = SCHEMES[method], motion.scales, motion.scene.duration
+    longest = math.inf if step is None else positive(step, "step")
+    if isinstance(scheme, Pair):
+        mean = min(mean_step(method, rtol) * min(scales.time, end), longest)
+        careful = _CAREFUL
+    else:
+        natural = min((rtol / _KINKS) ** 0.4, _COARSEST) * scheme.stages
+        mean = natural * min(scales.time, end) if step is None else longest
+        careful = 0
+    most = most_steps(motion.scene, method, end / mean, 16)
+    plan = Plan(
+        scheme=_tableau(method, motion.k if motion.contact.law is None else math.inf),
+        y=rtol * scales.displacement,
+        v=rtol * scales.velocity,
+        h=end / math.ceil(end / mean + careful),
+        longest=longest,
+        end=end,
         deepest=scales.compression,
-        quickest=chain.A.max() * chain.inverse.max(),
+        quickest=motion.stiffnesses.max(initial=0.0) / motion.masses.min(),
         size=motion.size,
-        window=window or 0,
+        window=0,
     )
+    return plan, most
 
 
 def _chain(motion: Motion) -> Chain:
@@ -250,9 +225,9 @@ def _chain(motion: Motion) -> Chain:
         row[: len(values)] = values
     if motion.scene.drive is not None:
         inverse[0] = 0.0
-    contact = motion.contact
-    generated = contact.law is not None
-    return Chain(inverse, A, rest, load, motion.k, generated, *contact.addresses, contact.pulls)
+    law = motion.contact
+    kind: dict[str, Any] = dict(generated=law.law is not None, pulls=law.pulls, **law.addresses)
+    return Chain(inverse, A, rest, load, motion.k, **kind)
 
 
 def _front(motion: Motion) -> int:

@@ -27,13 +27,12 @@ from validation.scenes.scene import Scene
 class Scales:
     """Characteristic scales of a scene.
 
-    energy : initial energy above equilibrium.
-    compression : greatest compression that the energy or the static forces can bring about.
-    displacement, velocity : displacement and velocity of a bead with this energy; in equilibrium
-        the static compression, and this compression divided by ``time``; 1 without compression.
-    time : shortest √(m/spring) of a bead between its contacts at the greatest compression; infinite
-        without compression.
-    rounding : rounding error of the static compressions divided by the displacement.
+    energy : initial energy above equilibrium. compression : greatest compression by the energy or
+    the static forces. displacement, velocity : displacement and velocity of a bead with this
+    energy; in equilibrium the static compression, and this compression divided by ``time``; 1
+    without compression. time : shortest √(m/spring) of a bead between its contacts at the greatest
+    compression; infinite without compression. rounding : rounding error of the static compressions
+    divided by the displacement.
     """
 
     energy: float
@@ -52,31 +51,29 @@ class Motion:
     """
 
     def __init__(self, scene: Scene) -> None:
+        n, damping = scene.size, scene.damping
         wall = () if scene.wall is None else (scene.wall,)
-        self.scene, self.size = scene, scene.size
-        self.masses = np.array(scene.masses)
-        self.stiffnesses = np.array(scene.stiffnesses + wall)
-        damping = scene.damping
+        self.scene, self.size, self.k = scene, n, scene.k
+        self.masses, self.stiffnesses = np.array(scene.masses), np.array(scene.stiffnesses + wall)
+        contacts = len(self.stiffnesses)
         braked = None if damping is None else damping.power(scene.k)
-        self.k, self.contact = scene.k, Contact(scene.k, scene.law, braked)
-        self.damping = np.zeros(len(self.stiffnesses))
+        self.contact = Contact(scene.k, scene.law, braked)
+        self.damping = self.rest = self.load = np.zeros(contacts)
         if damping is not None:
-            heavier = np.append(self.masses[1:], math.inf)[: len(self.stiffnesses)]
-            reduced = 1 / (1 / self.masses[: len(self.stiffnesses)] + 1 / heavier)
+            ahead = np.append(self.masses[1:], math.inf)[:contacts]  # a wall has infinite mass
+            reduced = 1 / (1 / self.masses[:contacts] + 1 / ahead)
             self.damping = damping.coefficients(self.k, self.stiffnesses, reduced)
-        with np.errstate(over="ignore", invalid="ignore"):
-            self.rest = self.load = np.zeros(len(self.stiffnesses))
-            self.loaded = bool(scene.gravity or scene.precompression)
-            if self.loaded:
+        self.loaded = bool(scene.gravity or scene.precompression)
+        if self.loaded:
+            with np.errstate(over="ignore", invalid="ignore"):
                 self.rest = self.contact.compressed_by(np.array(scene.load) / self.stiffnesses)
                 # The load from the rest compressions, so that equilibrium is an exact zero.
                 self.load = self.force(self.rest)
-        self.start = np.zeros(2 * scene.size)
-        self.start[: len(scene.displacements)] = scene.displacements
-        self.start[scene.size : scene.size + len(scene.velocities)] = scene.velocities
-        if self.loaded:
             for name, values in (("compression", self.rest), ("force", self.load)):
-                _held(f"static {name}", values.min(), values.max())
+                _check_range(f"static {name}", values.min(), values.max())
+        self.start = np.zeros(2 * n)
+        self.start[: len(scene.displacements)] = scene.displacements
+        self.start[n : n + len(scene.velocities)] = scene.velocities
 
     def compression(self, y: Array) -> Array:
         """Return the compressions δ_i at displacements of shape (n,) or (n, S)."""
@@ -134,11 +131,6 @@ class Motion:
         total = self.masses @ np.abs(after)
         return float(self.masses @ (after - before) / total) if total else 0.0
 
-    def _stirred(self, rest: float) -> bool:
-        """Return True if initially a bead moves or a contact is compressed more than ``rest``."""
-        pressed = self.compression(self.start[: self.size]).max(initial=0.0) > rest
-        return bool(pressed or np.any(self.start[self.size : 2 * self.size]))
-
     @cached_property
     @np.errstate(all="ignore")
     def scales(self) -> Scales:
@@ -146,8 +138,9 @@ class Motion:
         energy, n, A = self.energy(self.start) + self.driven, self.size, self.stiffnesses
         deepest = at_rest = self.rest.max(initial=0.0) if self.loaded else 0.0
         stiffest = A.max(initial=0.0)
-        if not math.isfinite(energy) or (energy == 0 and self._stirred(deepest)):
-            _held("energy", energy)
+        pressed = self.compression(self.start[:n]).max(initial=0.0) > deepest
+        if not math.isfinite(energy) or (energy == 0 and (pressed or self.start[n : 2 * n].any())):
+            _check_range("energy", energy)
         if energy > 0 and len(A):
             deepest = max(deepest, self.contact.reached_by(energy / stiffest, deepest))
         if not deepest:
@@ -159,14 +152,14 @@ class Motion:
         springs[: len(A)] = A
         springs[1:] += A[: n - 1]
         time = 1 / np.sqrt((springs / self.masses).max() * self.k * stiffening)
-        _held("stiffest spring", stiffest * stiffening)
-        _held("shortest time", time)
+        _check_range("stiffest spring", stiffest * stiffening)
+        _check_range("shortest time", time)
         y, v, rounding = deepest, deepest / time, 0.0
         if energy > 0:
             y = np.sqrt(energy / (stiffest * stiffening))
             v = np.sqrt(energy / (self.masses.sum() / n))
-            _held("displacement", y)
-            _held("velocity", v)
+            _check_range("displacement", y)
+            _check_range("velocity", v)
             rounding = np.finfo(float).eps * at_rest / y
         return Scales(energy, float(deepest), float(y), float(v), float(time), float(rounding))
 
@@ -215,7 +208,7 @@ def motion_of(scene: Scene) -> Motion:
     return ForcedMotion(scene) if forced else Motion(scene)
 
 
-def _held(name: str, *values: float) -> None:
+def _check_range(name: str, *values: float) -> None:
     """Raise `SceneError` for values that overflow or are too small for a float's full accuracy."""
     for value in values:
         if not LEAST <= value < math.inf:

@@ -16,7 +16,7 @@ from validation.lattice.kernel.arrays import Chain, Knots
 from validation.lattice.kernel.samples import interpolate
 from validation.lattice.signal import Beads
 
-_PART = 2**18  # numbers that the loops write before they hand them over
+_PART = 2**18  # numbers of the knots that the engine stores between two calls of `take`
 _KEPT = 2**28  # bytes of knots that a run keeps
 
 
@@ -44,9 +44,8 @@ class KnotPath:
         step = np.searchsorted(self.time[1:-1], time, side="right")
         y, v = np.empty((2, len(rows), len(time)))
         interpolate(self.chain, self.points, self.knots, rows, time, step, y, v)
-        if np.isfinite(self.left).any():
-            late = time > self.left[rows, None]
-            y[late] = v[late] = np.nan
+        late = time > self.left[rows, None]
+        y[late] = v[late] = np.nan
         return y, v
 
 

@@ -40,20 +40,20 @@ class Contact:
     def force(self, compression: Array) -> Array:
         """Return F; [δ]_+^k for a power law."""
         if self.law is not None:
-            return self._held(0, compression)
+            return self._evaluated(0, compression)
         pressed = np.maximum(compression, 0.0)
         return np.asarray(pressed * np.sqrt(pressed) if self.k == 1.5 else pressed**self.k)
 
     def stiffness(self, compression: Array) -> Array:
         """Return F′."""
         if self.law is not None:
-            return self._held(1, compression)
+            return self._evaluated(1, compression)
         return np.asarray(self.k * np.maximum(compression, 0.0) ** (self.k - 1))
 
     def energy(self, compression: Array) -> Array:
         """Return the elastic energy ∫ F dδ, from 0 to the compression."""
         if self.law is not None:
-            return self._held(2, compression)
+            return self._evaluated(2, compression)
         return np.asarray(self.force(compression) * compression / (self.k + 1))
 
     def damped(self, elastic: Array, damping: Array, compression: Array, rate: Array) -> Array:
@@ -64,7 +64,7 @@ class Contact:
         total = elastic + (damping * (closed**self.braked * rate).T).T
         return total if self.pulls else np.where(compression > 0, np.maximum(total, 0.0), 0.0)
 
-    def _held(self, order: int, compression: Array) -> Array:
+    def _evaluated(self, order: int, compression: Array) -> Array:
         function = _functions(self.law)[order]
         closed = compression if self.pulls else np.maximum(compression, 0.0)
         with np.errstate(all="ignore"):  # beyond a singular law's reach: inf or NaN
@@ -75,9 +75,9 @@ class Contact:
         """Return static compressions at given forces; `lwa.InputError` for unattainable forces."""
         if self.law is None:
             return np.asarray(forces ** (1 / self.k))
+        different, place = np.unique(forces, return_inverse=True)
         law, cell = self.law, Cell((1,))
-        known = {F: float(law.compression(cell, sp.Float(F, 40))) for F in set(forces.tolist())}
-        return np.array([known[F] for F in forces.tolist()])
+        return np.array([float(law.compression(cell, sp.Float(F, 40))) for F in different])[place]
 
     def reached_by(self, energy: float, start: float) -> float:
         """Return the compression by an energy beyond ``start``; for a power law only its scale."""
@@ -98,12 +98,10 @@ class Contact:
         return low
 
     @property
-    def addresses(self) -> tuple[int, int, int]:
-        """Addresses of the machine code of F, F′ and the energy; (0, 0, 0) for a power."""
-        if self.law is None:
-            return 0, 0, 0
-        force, slope, energy = _machine_code(self.law)
-        return force.address, slope.address, energy.address
+    def addresses(self) -> dict[str, int]:
+        """Addresses of the machine code of F, F′ and the energy by name; 0 for a power."""
+        code = [0, 0, 0] if self.law is None else [f.address for f in _machine_code(self.law)]
+        return dict(zip(("force", "slope", "energy"), code, strict=True))
 
 
 def _expressions(law: ContactLaw) -> tuple[sp.Expr, ...]:

@@ -59,28 +59,21 @@ class Pair:
         b' is `speeds`; e = b - `low` and e' = b' - `low_speeds` give the error estimates. The
         columns of the last two arrays are filled with zeros up to a multiple of ``width``.
         """
-        b = self.rows[-1]
-        e, e_speeds = (
-            tuple(x - y for x, y in zip(high, low, strict=True))
-            for high, low in ((b, self.low), (self.speeds, self.low_speeds))
+        b, b_speeds, low, low_speeds = map(
+            np.array, (self.rows[-1], self.speeds, self.low, self.low_speeds)
         )
-        padded = -(-len(b) // width) * width
-        a, ends = np.zeros((len(b), padded)), np.zeros((3, padded))
-        for table, rows in ((a, self.rows), (ends, (self.speeds, e, e_speeds))):
-            for row, values in zip(table, rows, strict=True):
-                row[: len(values)] = [float(value) for value in values]
-        return np.array(self.nodes), a, ends
+        a, ends = np.array(self.rows), np.array([b_speeds, b - low, b_speeds - low_speeds])
+        zeros = ((0, 0), (0, -len(b) % width))
+        nodes, a, ends = np.array(self.nodes), a.astype(float), ends.astype(float)
+        return nodes, np.pad(a, zeros), np.pad(ends, zeros)
 
 
-def _pair(order: int, lower: int, rows: str, speeds: str, low: str, low_speeds: str) -> Pair:
-    table = [tuple(map(Fraction, row.split())) for row in ("", *rows.strip().splitlines())]
-    size = len(table)
-
-    def full(row: tuple[Fraction, ...]) -> Row:
-        return row + (Fraction(0),) * (size - len(row))
-
-    ends = (full(tuple(map(Fraction, row.split()))) for row in (speeds, low, low_speeds))
-    return Pair(order, lower, tuple(map(full, table)), *ends)
+def _pair(order: int, lower: int, rows: str, *ends: str) -> Pair:
+    """Read the rows of a, and b', b and b' of lower order, one a line, without trailing zeros."""
+    table = [tuple(map(Fraction, row.split())) for row in ("", *rows.strip().splitlines(), *ends)]
+    size = len(table) - len(ends)
+    full = [row + (Fraction(0),) * (size - len(row)) for row in table]
+    return Pair(order, lower, tuple(full[:size]), *full[size:])
 
 
 RKN86 = _pair(
@@ -118,13 +111,10 @@ class Splitting:
 
 
 def _mirrored(order: int, kicks: list[float], drifts: list[float]) -> Splitting:
-    """Complete palindromic coefficients from their first halves.
-
-    The coefficients in the middle, which are not given, make both sums 1.
-    """
+    """Complete palindromic coefficients from their first halves, so that both sums are 1."""
     b = [*kicks, 0.5 - sum(kicks)]
-    a = [*drifts, 1 - 2 * sum(drifts)]
-    return Splitting(order, np.array([0.0, *b, *b[::-1]]), np.array([*a, *drifts[::-1]]))
+    a = [*drifts, 1 - 2 * sum(drifts), *drifts[::-1]]
+    return Splitting(order, np.array([0.0, *b, *b[::-1]]), np.array(a))
 
 
 # fmt: off

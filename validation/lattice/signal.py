@@ -7,7 +7,7 @@ accurate as the run itself. The samples of a record are values of the same funct
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -21,7 +21,6 @@ from validation.scenes.checks import SceneError
 _REGULA_FALSI = 9  # steps, that leave less than 1e-12 of a step of the integrator
 
 _QUANTITIES = {"contact": ("force", "compression"), "bead": ("force", "displacement", "velocity")}
-
 
 Beads = Sequence[int] | NDArray[np.int_]
 """Numbers of beads."""
@@ -102,12 +101,11 @@ class Signal:
         return values
 
 
-def sensors(motion: Motion) -> Iterator[Sensor]:
-    """Yield the sensors of a scene, first at contacts, then at beads."""
-    for i in motion.scene.contact_sensors:
-        yield Sensor(motion, "contact", i)
-    for j in motion.scene.bead_sensors:
-        yield Sensor(motion, "bead", j)
+def sensors(motion: Motion) -> list[Sensor]:
+    """Return the sensors of a scene, first at contacts, then at beads."""
+    contacts, beads = motion.scene.contact_sensors, motion.scene.bead_sensors
+    at_contacts = [Sensor(motion, "contact", i) for i in contacts]
+    return at_contacts + [Sensor(motion, "bead", j) for j in beads]
 
 
 def signal(motion: Motion, path: Path, kind: str, number: int, quantity: str) -> Signal:

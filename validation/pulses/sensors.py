@@ -163,12 +163,12 @@ def _readings(pair: tuple[Track, Track], every: bool, rtol: float) -> Iterator[R
     fine, _ = pair
     reading = partial(Reading, fine.kind, (fine.number,), static=fine.static)
     try:
-        here, check = (pulses(track.force) if every else [track.first] for track in pair)
+        fine_pulses, coarse = (pulses(t.force) if every else [t.first] for t in pair)
     except MeasureError as error:
         yield reading({}, missing=str(error))
         return
-    for place, both in enumerate(zip(here, check, strict=False), start=1):
-        yield reading(compared(readings, *both, rtol), pulse=place)
+    for number, both in enumerate(zip(fine_pulses, coarse, strict=False), start=1):
+        yield reading(compared(readings, *both, rtol), pulse=number)
 
 
 def readings(pulse: Pulse) -> dict[str, float]:

@@ -52,7 +52,7 @@ STRETCH = 4  # default number of cells from one place to the next, for k ≥ 3/2
 TOLERANCES = (1e-6, 1e-5)  # of the accurate run and of the one that gives its error
 FARTHER = 4  # times as far as the last place: where the pulse must still be the highest
 STEADY = 0.1  # largest difference from the force that the decay predicts there, over this force
-_WEAKEST = 1 / 50  # peak force of the slowest pulse that is awaited
+_WEAKEST = 1 / 50  # peak force of the slowest pulse for which a run is long enough
 _MOST_BYTES = 10**9
 _FORMAT = {"format": "lwa sweep", "version": 3}  # changes with the definition of a quantity
 
@@ -121,7 +121,7 @@ def _measured(k: sp.Rational, omega: sp.Rational, stretch: int, farther: float) 
     if not abs(higher - 1) <= STEADY:
         raise MeasureError(
             f"not steady: at {far} sites the highest pulse has {higher:.3g} times the force that "
-            f"the leading pulse's decay at {place} sites foretells"
+            f"the leading pulse's decay at {place} sites predicts"
         )
     measured = map(Measured, values.tolist(), (values + errors[:, best]).tolist())
     sites = place, place + chain.sites
@@ -180,8 +180,8 @@ class StruckDimer:
         # q = (k-1)/(2k) and z = q d N: the integral of dn/(c F^q) with F = F_1 e^{-d n} is T.
         q = (self.k - 1) / (2 * self.k)
         speed = self.sites * scipy.special.exprel(q * fall) / (elapsed * peak[:-1] ** q)
-        here = speed * peak[1:] ** q  # a width is a duration at a contact times the speed there
-        numbers = (width[1:] * here, strain_width[1:] * here, speed, fall / self.sites)
+        at_end = speed * peak[1:] ** q  # a width is a duration at a contact times the speed there
+        numbers = (width[1:] * at_end, strain_width[1:] * at_end, speed, fall / self.sites)
         return np.asarray(np.mean(numbers, axis=2))
 
 
@@ -242,8 +242,8 @@ class PointFile:
         """Append a point, and return when the point is on the disk."""
         numbers = {name: [n.value, n.check] for name, n in point.numbers.items()}
         measured = {"sites": point.sites, "numbers": numbers}
-        rest = {"missing": point.missing} if point.missing else measured
-        line = _line({"k": str(point.k), "omega": str(point.omega)} | rest)
+        result = {"missing": point.missing} if point.missing else measured
+        line = _line({"k": str(point.k), "omega": str(point.omega)} | result)
         with self.path.open("ab") as stream:
             stream.write(line if stream.tell() else self.header + line)
             stream.flush()

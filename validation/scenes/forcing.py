@@ -74,7 +74,7 @@ def damping_ratio(share: float) -> float:
 
 @dataclass(frozen=True, kw_only=True)
 class Drive:
-    """The given motion of bead 1 (the first one); exactly one of three kinds.
+    """The given motion of the first bead; exactly one of three kinds.
 
     velocity : constant velocity of a piston. amplitude, frequency : y = amplitude sin(2π frequency
     t), growing smoothly to its full size within the time ``ramp``. time, displacement : rows of
@@ -93,38 +93,45 @@ class Drive:
             row = each(real)(getattr(self, name), f"drive.{name}")
             object.__setattr__(self, name, row)
         harmonic = self.amplitude is not None or self.frequency is not None
-        if (self.velocity is not None) + harmonic + bool(self.time or self.displacement) != 1:
-            raise SceneError(
-                "drive has not one motion: velocity, amplitude and frequency, or time and "
-                "displacement are wanted"
-            )
-        if self.ramp != 0 and not harmonic:
-            raise SceneError(
-                f"drive.ramp is {shorten(self.ramp)}: it belongs to amplitude and frequency"
-            )
+        motions = (self.velocity is not None) + harmonic + bool(self.time or self.displacement)
+        times, places = len(self.time), len(self.displacement)
+        increasing = self.time[:1] in ((), (0,)) and (np.diff(self.time) > 0).all()
+        for wrong, message in (
+            (
+                motions != 1,
+                "drive has not one motion: velocity, amplitude and frequency, or time "
+                "and displacement are wanted",
+            ),
+            (
+                self.ramp != 0 and not harmonic,
+                f"drive.ramp is {shorten(self.ramp)}: it belongs to amplitude and frequency",
+            ),
+            (
+                times != places or 0 < times < 4,
+                f"drive has {times} times and {places} "
+                "displacements: equally many, four or more, are wanted",
+            ),
+            (not increasing, "drive.time must begin with 0 and increase"),
+        ):
+            if wrong:
+                raise SceneError(message)
         if self.velocity is not None:
             real(self.velocity, "drive.velocity")
         elif harmonic:
             real(self.amplitude, "drive.amplitude")
             positive(self.frequency, "drive.frequency")
             between(self.ramp, "drive.ramp", 0, math.inf, "it must not be negative")
-        else:
-            self._check_rows()
-
-    def _check_rows(self) -> None:
-        if len(self.time) != len(self.displacement) or len(self.time) < 4:
-            raise SceneError(
-                f"drive has {len(self.time)} times and {len(self.displacement)} displacements: "
-                "equally many, four or more, are wanted"
-            )
-        if self.time[0] != 0 or not (np.diff(self.time) > 0).all():
-            raise SceneError("drive.time must begin with 0 and increase")
 
     @cached_property
     def _spline(self) -> Any:
         from scipy.interpolate import CubicSpline  # start-up
 
         return CubicSpline(self.time, self.displacement)
+
+    @property
+    def _harmonic(self) -> tuple[float, float]:
+        """Amplitude and angular frequency."""
+        return self.amplitude or 0.0, 2 * math.pi * (self.frequency or 0.0)
 
     def at(self, t: float) -> tuple[float, float, float]:
         """Return displacement, velocity and acceleration of the bead at time t."""
@@ -133,9 +140,7 @@ class Drive:
         if self.time:
             y, v, a = (float(self._spline(t, order)) for order in range(3))
             return y, v, a
-        assert self.amplitude is not None
-        assert self.frequency is not None
-        w = 2 * math.pi * self.frequency
+        amplitude, w = self._harmonic
         s = min(t / self.ramp, 1.0) if self.ramp else 1.0
         pace = 1 / self.ramp if s < 1 else 0.0
         # s³ (10 - 15 s + 6 s²) has two derivatives that vanish at both ends
@@ -144,7 +149,7 @@ class Drive:
         sin, cos = math.sin(w * t), math.cos(w * t)
         y, v = r * sin, dr * sin + r * w * cos
         a = ddr * sin + 2 * dr * w * cos - r * w * w * sin
-        return self.amplitude * y, self.amplitude * v, self.amplitude * a
+        return amplitude * y, amplitude * v, amplitude * a
 
     @property
     def fastest(self) -> float:
@@ -153,9 +158,8 @@ class Drive:
             return abs(self.velocity)
         if self.time:
             return float(np.abs(self._spline(self.time, 1)).max())
-        assert self.amplitude is not None
-        assert self.frequency is not None
-        return abs(self.amplitude) * 2 * math.pi * self.frequency
+        amplitude, w = self._harmonic
+        return abs(amplitude) * w
 
     @property
     def longest_step(self) -> float:

@@ -33,10 +33,10 @@ from lwa.base.arrays import Array
 from validation.pulses.pulse import Measured
 from validation.pulses.steady import STRETCH, point
 from validation.scenes.checks import SceneError
-from validation.waves.solver import ROUNDING, exact_wave
+from validation.waves.solver import exact_wave
 
-_UNIFORM = np.arange(11, 41) / 10  # k of the exact waves; a spline errs by 1e-6 between them
-_DIMER = ("5/4", "3/2", "2", "5/2", "3", "4")  # k of the struck chains
+_UNIFORM, _ERROR = 20, 1e-10  # degree of R(k) of equal beads, and its measured relative error
+_EXPONENTS = ("5/4", "3/2", "2", "5/2", "3", "4")  # at which R of unequal beads is measured
 _DRAWS = 1000  # of the coefficients of ln V, for the errors
 _STEPS = 60  # of ln F, at which the free law is integrated
 _HERTZ = 1.5
@@ -47,7 +47,7 @@ _NEAR = 1.2  # times 80 sites, over which the pulse must lead
 class Medium:
     """Chain of the measured pulses: mean mass m̄, spacing D and speed ratio R(k), 1 ≤ k ≤ 4.
 
-    ratio_error : largest relative error of the values between which R is interpolated.
+    ratio_error : relative error of R, for unequal beads at the exponents where it is measured.
     """
 
     mass: float
@@ -77,25 +77,25 @@ def _exponent(slope: Any) -> Any:
 
 @lru_cache(maxsize=16)
 def speed_ratio(omega: sp.Rational) -> tuple[Callable[[Any], Array], float]:
-    """Return R(k) of a chain of masses 1, ω, 1, ω, … and the largest relative error of its nodes.
-
-    Equal beads: from exact waves. Unequal beads: from steady pulses of struck chains. R(1) = 1.
-    """
+    """Return R(k) of a chain of masses 1, ω, 1, ω, … and its relative error (`Medium`)."""
+    ratio: Callable[[Any], Any]
     if omega == 1:
-        exponents, error = _UNIFORM, ROUNDING
-        ratios = [exact_wave([1], k).c2 * (k + 1) / 2 for k in exponents]
+        exact = np.vectorize(lambda k: exact_wave([1], k).c2 * (k + 1) / 2)
+        ratio = np.polynomial.Chebyshev.interpolate(exact, _UNIFORM, (1.008, 4))  # R(1) = 1
+        error = _ERROR
     else:
-        exponents, error, ratios = np.array([float(sp.Rational(k)) for k in _DIMER]), 0.0, []
-        for k in map(sp.Rational, _DIMER):
+        exponents, ratios, error = [1.0], [1.0], 0.0
+        for k in map(sp.Rational, _EXPONENTS):
             # Pulses are measured near the blow, where one that is overtaken later still leads.
             pulse = point(k, omega, STRETCH, farther=_NEAR)
             if pulse.missing:
                 raise SceneError(f"no speed of the lattice's pulse at k = {k}: {pulse.missing}")
             speed = pulse.numbers["speed"]
+            exponents.append(float(k))
             ratios.append(speed.value**2 * float((k + 1) * (1 + omega) / 4))
             error = max(error, 2 * speed.relative_error)
-    spline = scipy.interpolate.CubicSpline(np.append(1.0, exponents), np.append(1.0, ratios))
-    return lambda k: np.asarray(spline(np.clip(k, 1, exponents[-1]))), error
+        ratio = scipy.interpolate.CubicSpline(exponents, ratios)
+    return lambda k: np.asarray(ratio(np.clip(k, 1, 4))), error
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,16 +136,21 @@ def fit_power(medium: Medium, force: Array, speed: Array, weight: Array | None =
     (slope, constant), middle = _fit(x, y, 1, weight)
     k, log_A = _exponent(slope), medium.log_stiffness(slope, constant - slope * middle)
     sixth = (_HERTZ - 1) / (2 * _HERTZ)
-    ((hertz,), _), ((curvature, *_), _) = _fit(x, y - sixth * x, 0, weight), _fit(x, y, 2, weight)
-    A, A_hertz = (
-        Measured(math.exp(log.value), math.exp(log.value + log.error + power * medium.ratio_error))
-        for log, power in (  # A ~ R^{-k}
-            (_interval(log_A), float(k[0])),
-            (_interval(medium.log_stiffness(sixth, hertz)), _HERTZ),
-        )
+    (hertz,), _ = _fit(x, y - sixth * x, 0, weight)
+    (curvature, *_), _ = _fit(x, y, 2, weight)
+
+    def stiffness(log_A: Array, k: float) -> Measured:
+        log = _interval(log_A)
+        error = log.error + k * medium.ratio_error  # A ~ R^{-k}
+        return Measured(math.exp(log.value), math.exp(log.value + error))
+
+    return PowerFit(
+        _interval(k),
+        stiffness(log_A, float(k[0])),
+        float(np.corrcoef(k, log_A)[0, 1]),
+        stiffness(medium.log_stiffness(sixth, hertz), _HERTZ),
+        _interval(curvature),
     )
-    correlation = float(np.corrcoef(k, log_A)[0, 1])
-    return PowerFit(_interval(k), A, correlation, A_hertz, _interval(curvature))
 
 
 def _fit(x: Array, y: Array, degree: int, weight: Array | None) -> tuple[Array, float]:

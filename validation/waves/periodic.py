@@ -196,12 +196,12 @@ def continued(begin: Orbit, frequency: float) -> Orbit:
     """Continue an orbit to another frequency; raises `NoOrbit` if Newton's method fails."""
 
     def at(omega: float, path: Sequence[tuple[float, Orbit]]) -> Orbit:
-        here, last = path[-1]
-        ahead = last.coefficients  # extrapolated from the two orbits before
+        (omega1, older), (omega2, last) = path[0], path[-1]
+        start = last.coefficients  # extrapolated from the two orbits before
         if len(path) > 1:
-            before, older = path[0]
-            ahead = ahead + (omega - here) / (here - before) * (ahead - older.coefficients)
-        return orbit(begin.chain, omega, ahead, ahead.shape[1] - 1)
+            share = (omega - omega2) / (omega2 - omega1)
+            start = start + share * (start - older.coefficients)
+        return orbit(begin.chain, omega, start, start.shape[1] - 1)
 
     end = positive(frequency, "frequency")
     return newton.continued(begin, begin.frequency, end, abs(end - begin.frequency) / 4, at)

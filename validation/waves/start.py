@@ -116,13 +116,13 @@ def struck_pulse(k: float, omega: float) -> StruckPulse:
         peaks.append(cut.peak)
     middle, peak = float(np.mean(centers)), math.sqrt(math.prod(peaks))
     width, strain_width, c, _ = chain.numbers(chain.passages(run))[:, place - 1].tolist()
-    here = c * peak ** ((k - 1) / (2 * k))
+    speed = c * peak ** ((k - 1) / (2 * k))
     ample = newton.ample_half_period((1.0, omega), k)
     half = np.arange(0, _LONG * ample, _STEP)
     xi = np.append(-half[:0:-1], half)
     a, b = (
         run.signal("contact", contact, "compression")(
-            np.clip(middle + (site - xi) / here, 0, run.scene.duration)
+            np.clip(middle + (site - xi) / speed, 0, run.scene.duration)
         )
         for contact, site in zip(cell, (-0.5, 0.5), strict=True)
     )

@@ -15,6 +15,7 @@ from lwa.base.quantities import QUANTITIES
 from lwa.cell import k as symbol_k
 from lwa.expansion.expand import Expansion, expand
 from lwa.expansion.observables import Observables, shares_model
+from lwa.expansion.pulse import log_term
 from lwa.law import DELTA, Law, Power, general, named
 from tests.identity import same
 
@@ -199,8 +200,6 @@ def power_of_slope(wave, log: list, share: sp.Rational) -> list:
 
 def residual_order(cell: Cell, closure: str, terms: int) -> int:
     """The first power of t that the expansion leaves of the PDE cut after D^{k+2 terms+1}."""
-    from lwa.expansion.pulse import log_term
-
     order = 2 * terms + 1
     theory = homogenize(cell, order + 1, closure=closure)
     wave = Observables(shares_model(cell, symbol_k), terms + 2).wave
