@@ -2,8 +2,8 @@
 
 The server adds a script to each page. It waits until the page and its mathematics are there, sends
 back what it sees, and goes on to the next page. No other name than 127.0.0.1 resolves, and
-Chromium's own log of the network lists the addresses that the pages requested. At the width of a phone
-the pages are opened in a frame, as a window cannot be that narrow.
+Chromium's own log of the network lists the addresses that the pages requested. At the width of a
+phone the pages are opened in a frame, as a window cannot be that narrow.
 """
 
 from __future__ import annotations
