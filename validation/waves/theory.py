@@ -44,17 +44,13 @@ def theory_values(wave: TravelingWave) -> dict[str, sp.Expr]:
 
 @dataclass(frozen=True)
 class LeadingPower:
-    """Leading power of the theory's error, coefficient · ε^order, and bounds of a measurement.
-
-    constant : |error| ≤ constant · ε^order at each k measured.
-    order_bound, coefficient_bound : relative bounds for the fitted order and coefficient.
-    """
+    """Leading power of the theory's error, coefficient · ε^order, and bounds of a measurement."""
 
     order: int
     coefficient: sp.Expr
-    constant: float
-    order_bound: float
-    coefficient_bound: float
+    constant: float  # |error| ≤ constant · ε^order at each k measured
+    order_bound: float  # relative, for the fitted order
+    coefficient_bound: float  # relative, for the fitted coefficient
 
     def bound(self, k: sp.Expr) -> float:
         """Return the bound of |error| at k = 1 + ε."""
