@@ -14,7 +14,7 @@ import sympy as sp
 from lwa import Cell, Expansion, expand
 from validation.pulses.pulse import MeasureError
 from validation.pulses.steady import STRETCH, point
-from validation.studies.theories import HERTZ, NAMES, STRUCK_CHAIN, THEORIES, ladder, place
+from validation.studies.theories import HERTZ, NAMES, STRUCK_CHAIN, THEORIES, Place, ladder, place
 from validation.waves.solver import ExactWave, exact_wave
 
 
@@ -132,8 +132,14 @@ def test_between_resonances_the_series_claims_no_digit() -> None:
     assert found.error > 0.2 * found.value
 
 
+@cache
+def equal() -> Place:
+    """Equal beads at k = 1.1."""
+    return place(sp.Rational(11, 10), sp.S.One)
+
+
 def test_ladder_in_all_forms() -> None:
-    at = place(sp.Rational(11, 10), sp.S.One)
+    at = equal()
     errors = {theory: abs(row["force"]) for theory, row in at.errors.items()}
     # For equal beads all closures are one theory; each order of the series is better.
     assert errors["linear closure"] == pytest.approx(errors["full closure"], rel=1e-9)
@@ -168,12 +174,12 @@ def test_theories_without_a_wave_are_left_out() -> None:
     at = place(HERTZ, sp.Rational("0.0901277691"))
     assert "[1/1]" not in at.errors
     assert "[1/1] " not in ladder([at]).text().splitlines()[-1]
-    report = ladder([at, place(HERTZ, sp.S.One)])
+    report = ladder([at, equal()])
     assert report.document()["theories"][0]["error_value"]["[1/1]"] is None
-    equal, dimers = report.panels
-    assert {curve.label for curve in equal.curves} == set(THEORIES)
+    beads, dimers = report.panels
+    assert {curve.label for curve in beads.curves} == set(THEORIES)
     assert {c.label: c.style for c in dimers.curves}.items() <= {
-        c.label: c.style for c in equal.curves
+        c.label: c.style for c in beads.curves
     }.items()
     assert "[1/1]" not in {curve.label for curve in dimers.curves}
 
