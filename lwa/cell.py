@@ -54,9 +54,6 @@ class Cell(Value):
     spacing : distance D of neighbouring particles at rest (the same for all contacts).
 
     Raises `lwa.InputError` when a value is not positive and finite, or the counts differ.
-
-    >>> Cell([1, 2]).fractions
-    (1/3, 2/3)
     """
 
     masses: tuple[sp.Expr, ...]
@@ -89,11 +86,6 @@ class Cell(Value):
 
         The spacing is the mean distance of neighbours' centers, Σ 2 R_i / P. Then widths and speeds
         are those in space, and D u_x is the mean compression of the contacts.
-
-        >>> from lwa.spheres.hertz import Material
-        >>> ball = Sphere("m", "R", Material(E="193e9", nu="0.3"))
-        >>> Cell.of_spheres([ball]).spacing
-        2*R
         """
         row = _sequence(spheres, "spheres")
         contacts = tuple(stiffness(a, b) for a, b in zip(row, row[1:] + row[:1], strict=True))

@@ -79,11 +79,7 @@ class ContactLaw(Value):
         return integral(self.F, self.delta)
 
     def phi(self, n: int) -> sp.Expr:
-        """The parameter φ_n = δ^{n-1} F^{(n)}/F′ as an expression in δ.
-
-        >>> named("exponential", 1).phi(3)
-        delta**2
-        """
+        """The parameter φ_n = δ^{n-1} F^{(n)}/F′ as an expression in δ."""
         return ratio(self.delta ** (n - 1) * self.slope(n), self.slope())
 
     def at(self, delta: sp.Expr, n: int = 0) -> sp.Expr:
@@ -158,11 +154,7 @@ class ContactLaw(Value):
 
 @dataclass(frozen=True)
 class Power(ContactLaw):
-    """The power law F = δ^k, k > 0 a number or a symbol.
-
-    >>> Power("3/2").phi(3)
-    -1/4
-    """
+    """The power law F = δ^k, k > 0 a number or a symbol."""
 
     k: sp.Expr
     F: sp.Expr = field(init=False, repr=False)

@@ -63,6 +63,11 @@ class Evolution(Value):
         """The n-th derivative F^{(n)}(p) in the units of the equation; the energy W for n = -1."""
         return self.law.of_strain(signed(p, "p"), self.cell.spacing, n)
 
+    def energy_density(self, strain: sp.Expr, velocity: sp.Expr, x: sp.Symbol) -> sp.Expr:
+        """Energy density ½ u_τ² + ½ I u_xτ² + W(u_x) for u_x and u_τ as functions of x."""
+        kinetic = velocity**2 + self.I * velocity.diff(x) ** 2
+        return kinetic / 2 + self.law.of_strain(strain, self.cell.spacing, -1)
+
     def frequency(self, q: Any, p0: Any) -> sp.Expr:
         """Frequency Ω = c0 q/√(1 + I q²) in τ of small waves of wavenumber q, c0 = √F′(p0)."""
         q = signed(q, "q")

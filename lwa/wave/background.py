@@ -87,9 +87,6 @@ class BackgroundWave(Value):
     p0 : a number or a symbol; not negative under a power law, whose contacts only push.
 
     Raises `lwa.InputError` for anything else, and for unlike contacts under a law that is no power.
-
-    >>> BackgroundWave(Cell([1]), Power("3/2"), "p0").kdv.nonlinearity
-    1/(4*p0**(3/4))
     """
 
     cell: Cell
@@ -155,9 +152,6 @@ class BackgroundWave(Value):
         """Speed V = dx/dτ of the wave whose strain rises from p0 to p0 + B (default: a symbol B).
 
         Raises `lwa.NoSolitaryWave` for numbers without a wave.
-
-        >>> BackgroundWave(Cell([1]), Power(2), "p0").speed()
-        sqrt(B/3 + p0)
         """
         square = self.stiffness(self._read_rise(B))
         if self.law.homogeneous and self.law.exponent.is_Integer:  # a polynomial in p0 and B

@@ -72,9 +72,6 @@ class TravelingWave(CompactWave):
         """Return the waves of this chain on a strain p0; this wave must be the canonical field's.
 
         Raises `lwa.InputError` for the wave of another field, whose equation has no energy.
-
-        >>> canonical_wave(Cell((1,)), 2).on_background("p0").speed()
-        sqrt(B/3 + p0)
         """
         self._demand_canonical()
         return BackgroundWave(self.cell, Power(self.k), p0)

@@ -217,10 +217,10 @@ _RANGES = "values and ranges start:stop:count, separated by commas."
 @study(
     option("--k", "ks", default="5/4:3:8", says=f"Exponents of F = δ^k: {_RANGES}"),
     option("--omega", "omegas", default="1/20:1:20", says=f"Mass ratios m2/m1: {_RANGES}"),
-    option("--stretch", default=STRETCH, says="Cells from place to place; more at k < 3/2."),
-    option("--file", metavar="FILE", says="Keep finished points (.jsonl), and continue from them."),
-    option("--jobs", type=int, says="Threads; by default one for each processor."),
-    option("--cluster", "address", metavar="ADDRESS", says="Dask scheduler to compute on."),
+    option("--stretch", default=STRETCH, says="Cells between two measurements; more at k < 3/2."),
+    option("--file", metavar="FILE", says="File of finished points (.jsonl), to be continued."),
+    option("--jobs", type=int, says="Number of threads; by default one a processor."),
+    option("--cluster", "address", metavar="ADDRESS", says="Dask scheduler, in place of threads."),
 )
 def sweep(
     ks: str | Iterable[Any],
