@@ -5,7 +5,7 @@ lattice the lattice's own waves (`validation.waves.solver`), and in the equation
 
     (1 - I ∂_x²) u_ττ = ∂_x F(u_x)
 
-its own waves (`lwa.equation.evolution`, integrated by `validation.waves.continuum`). They meet at
+its own waves (`lwa.equation.evolution`, integrated by `validation.waves.theory`). They meet at
 x = 0. The strain is recorded there and at x = d, where the pulse of strain 1 arrives after the
 collision; it started at x = -d. Its shift is its distance ahead of a pulse that ran alone.
 
@@ -36,8 +36,8 @@ from validation.report.result import Report
 from validation.report.table import Column, Finding, Table, percent
 from validation.scenes.chains import carrying
 from validation.scenes.checks import SceneError, between
-from validation.waves.continuum import Continuum
 from validation.waves.solver import exact_wave
+from validation.waves.theory import Continuum
 
 APART = 5.0  # widths of the first pulse between its start and x = 0, at least
 _WIDE = 1.5  # half the interval over the distance of the farther pulse from x = 0, plus a run

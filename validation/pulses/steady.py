@@ -61,17 +61,13 @@ Key = tuple[sp.Rational, sp.Rational]  # k and ω of a point
 
 @dataclass(frozen=True)
 class Point:
-    """Measured numbers at one k and ω, or the reason why there are none.
-
-    sites : number of beads from the struck bead to both ends of the stretch of measurement.
-    numbers : numbers by the names `QUANTITIES`. missing : reason without numbers.
-    """
+    """Measured numbers at one k and ω, or the reason why there are none."""
 
     k: sp.Rational
     omega: sp.Rational
-    sites: tuple[int, int] | None
-    numbers: Mapping[str, Measured]
-    missing: str | None = None
+    sites: tuple[int, int] | None  # from the struck bead to both ends of the measured stretch
+    numbers: Mapping[str, Measured]  # by the names `QUANTITIES`
+    missing: str | None = None  # reason without numbers
 
 
 def cells_apart(k: float, stretch: int) -> int:
