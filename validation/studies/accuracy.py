@@ -237,7 +237,10 @@ _NOTE = "CPU time without compilation, on this machine; - where no run attains i
 _AXES = "largest relative error of arrival, peak, FWHM", "CPU time (s)"
 
 
-@study(option("--task", "names", multiple=True, type=click.Choice(NAMES), says="Only this task."))
+_TASKS = click.Choice(NAMES)
+
+
+@study(option("--task", "names", multiple=True, type=_TASKS, says="Run this task; repeatable."))
 def accuracy(
     names: Collection[str] = (),
     methods: Mapping[str, Sequence[float]] = METHODS,

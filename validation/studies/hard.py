@@ -303,7 +303,7 @@ CASES: Mapping[str, Callable[[], Report]] = {
 _NAMES = click.Choice([*CASES])
 
 
-@study(option("--case", "names", multiple=True, type=_NAMES, says="Only this case."))
+@study(option("--case", "names", multiple=True, type=_NAMES, says="Run this case; repeatable."))
 def hard(names: Collection[str] = (), progress: Progress[str] = iter) -> Report:
     """Last digits at extreme k, ω and loads, contacts that open, and long runs (half a minute).
 

@@ -42,11 +42,11 @@ _NOTE = (
 
 @study(
     click.argument("data"),
-    option("--masses", callback=quantities, says="Masses of the chain, one or two in turn."),
-    option("--spacing", callback=quantity, says="Distance of neighbours, with --masses."),
-    option("--spheres", metavar="FILE", says="File of the chain's spheres, in place of --masses."),
-    option("--material", metavar="NAME", says="Material of the file whose E is unknown."),
-    option("--degree", default=3, says="Degree of the polynomial ln V(ln F) of the free law."),
+    option("--masses", callback=quantities, says="Mass of all beads, or two in turn; else 1."),
+    option("--spacing", callback=quantity, says="Distance between neighbours; by default 1."),
+    option("--spheres", metavar="FILE", says="File of a cell of spheres, in place of --masses."),
+    option("--material", metavar="NAME", says="Material in this file whose modulus E is wanted."),
+    option("--degree", default=3, says="Degree of the free law's polynomial ln V(ln F)."),
 )
 def law(
     data: str,
@@ -56,10 +56,9 @@ def law(
     material: str | None = None,
     degree: int = 3,
 ) -> Report:
-    """Contact law from a CSV file of pulses with columns force and speed.
-
-    Columns force_error and speed_error, if both are there, are standard deviations that weight the
-    pulses.
+    """Contact law from pulses. DATA, a CSV file, has the columns force (peak contact force) and
+    speed. Columns force_error and speed_error, if both are there, are standard deviations that
+    weight the pulses.
 
     Peak contact forces and speeds are in the units of the masses and the spacing, by default those
     of unit mass and spacing; with spheres they are in N and m/s. ``k_value``, ``A_value`` and, of
