@@ -68,9 +68,7 @@ _BETWEEN_REPORTS = 5e7  # bead evaluations between two reports of progress: some
 # The splitting's step per stage is (rtol/0.01)^0.4 in units of the scene's shortest time, measured
 # on a Hertz dimer of 560 beads; at 0.2 it is still stable.
 _KINKS, _COARSEST = 0.01, 0.2
-_EXTRA_STEPS = (
-    100  # added to the expected number of steps for an embedded pair's (shorter) first step
-)
+_EXTRA_STEPS = 100  # added to the expected number of steps: a first step of a pair is shorter
 
 
 def follow(
