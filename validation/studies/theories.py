@@ -51,6 +51,7 @@ def _approximant(n: int, k: sp.Rational, omega: sp.Rational) -> Sequence[float]:
     """Return the Padé approximants [n/n] of the series for equal beads, closed formulas in k."""
     if omega != 1:
         raise NoSolitaryWave("a formula for equal beads")
+    # [n/n] has 2n + 1 coefficients, as many as a series to order 2n
     return [float(row.pade(k, n, n)) for row in _series(2 * n, omega)]
 
 
