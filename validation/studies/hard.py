@@ -63,7 +63,7 @@ def closed_wave(closure: str) -> TravelingWave:
 
 
 def form(wave: TravelingWave, name: str, *arguments: Any) -> sp.Expr:
-    """Return a closed form of `FORMS`, an attribute of the wave by name, as an exact expression."""
+    """Return the exact expression of one of `FORMS`: a wave's attribute and its arguments."""
     # V² = V²(B = 1) B^{k-1}, V²(B = 1) being the wave's speed_factor.
     if name == "log_amplitude":
         return (2 * sp.log(*arguments) - sp.log(wave.speed_factor)) / (wave.k - 1)
