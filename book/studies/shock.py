@@ -30,7 +30,7 @@ import scipy
 
 from lwa import Power, Shock
 from lwa import shock as front
-from lwa.base.exact import InputError, exact
+from lwa.base.exact import InputError, read_exact
 from lwa.base.progress import Progress
 from lwa.command.options import quantities, quantity
 from lwa.command.rows import attempt
@@ -91,9 +91,9 @@ def shock(
     Raises `lwa.InputError` for parameters out of range.
     """
     end = between(duration, "duration", SHORTEST, math.inf, f"at least {SHORTEST:g} is wanted")
-    start, cell = exact(ahead, "ahead"), numbered(masses)
+    start, cell = read_exact(ahead, "ahead"), numbered(masses)
     laws = LAWS if k is None else (Power(k),)
-    steps = [exact(jump, "jump") for jump in jumps]
+    steps = [read_exact(jump, "jump") for jump in jumps]
     behind = [step * start if start else step for step in steps]
     fronts = [front(cell, law, p, start) for law in laws for p in behind]
     for found in fronts:

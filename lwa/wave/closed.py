@@ -43,16 +43,19 @@ def strain_equation(p: sp.Expr, G: sp.Expr, H: sp.Expr, I: sp.Expr) -> dict[str,
 
     V² z^p p r_1 = z^{kp} (linear · r_1 + cubic · r_1³ + product · r_1 r_2 + third · r_3).
     """
-    r1, r2, r3 = r = sp.symbols("r1:4", cls=sp.Dummy)
+    given = (p, G, H, I)
+    domain = sp.QQ[tuple(set().union(*(x.free_symbols for x in given)))]
+    p, G, H, I = map(domain.from_sympy, given)
+    _, r1, r2, r3 = sp.ring("r1:4", domain)
 
-    def derivative(X: sp.Expr) -> sp.Expr:  # ∂(z^p X) / z^p, since ∂r_n = r_{n+1} - r_1 r_n
+    def derivative(X: Any) -> Any:  # ∂(z^p X) / z^p, since ∂r_n = r_{n+1} - r_1 r_n
         return p * r1 * X + X.diff(r1) * (r2 - r1**2) + X.diff(r2) * (r3 - r1 * r2)
 
     v1 = p * r1
     v2 = derivative(v1)
-    equation = sp.Poly(v1 + G * v1**3 + H * v1 * v2 + I * derivative(v2), *r)
+    equation = v1 + G * v1**3 + H * v1 * v2 + I * derivative(v2)
     monomials = {"linear": r1, "cubic": r1**3, "product": r1 * r2, "third": r3}
-    return {name: equation.coeff_monomial(monomial) for name, monomial in monomials.items()}
+    return {name: domain.to_sympy(equation.coeff(x)) for name, x in monomials.items()}
 
 
 @dataclass(frozen=True)

@@ -43,20 +43,14 @@ SPEEDS = ("speed_sites", "speed")  # in sites per time, and in length per time
 
 @dataclass(frozen=True)
 class Reading:
-    """Measured numbers of a pulse at a sensor, or its speeds between two sensors.
+    """Measured numbers of a pulse at a sensor, or its speeds between two sensors."""
 
-    kind : "bead" or "contact". places : number of the sensor, or of both, counted from 1.
-    numbers : `READINGS`, or `SPEEDS` (the second one if the scene has spacings).
-    static : static force at the (first) sensor. missing : reason why there are no numbers.
-    pulse : number of the pulse at the sensor, counted from 1.
-    """
-
-    kind: str
-    places: tuple[int, ...]
-    numbers: Mapping[str, Measured]
-    static: float
-    missing: str | None = None
-    pulse: int = 1
+    kind: str  # "bead" or "contact"
+    places: tuple[int, ...]  # number of the sensor, or of both, counted from 1
+    numbers: Mapping[str, Measured]  # `READINGS`, or `SPEEDS` (the second if there are spacings)
+    static: float  # static force at the (first) sensor
+    missing: str | None = None  # reason why there are no numbers
+    pulse: int = 1  # number of the pulse at the sensor, counted from 1
 
     @property
     def name(self) -> str:
@@ -75,17 +69,13 @@ class Recording:
 
 @dataclass(frozen=True, eq=False)
 class Track:
-    """The dynamic force at one sensor as a function of time.
+    """The dynamic force at one sensor as a function of time."""
 
-    number : number of the bead or contact, counted from 1. place : position along the chain in
-    sites and in lengths, by the names `SPEEDS`. static : static force at the sensor.
-    """
-
-    kind: str
-    number: int
+    kind: str  # "bead" or "contact"
+    number: int  # of the bead or contact, counted from 1
     force: Signal
-    place: Mapping[str, float]
-    static: float
+    place: Mapping[str, float]  # along the chain in sites and in lengths, by the names `SPEEDS`
+    static: float  # static force
 
     @cached_property
     def first(self) -> Pulse:

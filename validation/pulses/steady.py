@@ -31,7 +31,7 @@ import sympy as sp
 from filelock import FileLock, Timeout
 
 from lwa.base.arrays import Array
-from lwa.base.exact import InputError, exact
+from lwa.base.exact import InputError, read_exact
 from lwa.base.files import content
 from validation.lattice.run import IntegrationError, Run
 from validation.lattice.simulate import simulate
@@ -61,17 +61,13 @@ Key = tuple[sp.Rational, sp.Rational]  # k and ω of a point
 
 @dataclass(frozen=True)
 class Point:
-    """Measured numbers at one k and ω, or the reason why there are none.
-
-    sites : number of beads from the struck bead to both ends of the stretch of measurement.
-    numbers : numbers by the names `QUANTITIES`. missing : reason without numbers.
-    """
+    """Measured numbers at one k and ω, or the reason why there are none."""
 
     k: sp.Rational
     omega: sp.Rational
-    sites: tuple[int, int] | None
-    numbers: Mapping[str, Measured]
-    missing: str | None = None
+    sites: tuple[int, int] | None  # from the struck bead to both ends of the measured stretch
+    numbers: Mapping[str, Measured]  # by the names `QUANTITIES`
+    missing: str | None = None  # reason without numbers
 
 
 def cells_apart(k: float, stretch: int) -> int:
@@ -256,4 +252,6 @@ def _line(entry: dict[str, Any]) -> bytes:
 
 def _point(k: str, omega: str, sites: Any = None, numbers: Any = (), missing: Any = None) -> Point:
     pairs = {name: Measured(*map(float, numbers[name])) for name in QUANTITIES if numbers}
-    return Point(exact(k, "k"), exact(omega, "omega"), sites and (*sites,), pairs, missing)
+    return Point(
+        read_exact(k, "k"), read_exact(omega, "omega"), sites and (*sites,), pairs, missing
+    )

@@ -45,15 +45,12 @@ _NEAR = 1.2  # times 80 sites, over which the pulse must lead
 
 @dataclass(frozen=True, eq=False)
 class Medium:
-    """Chain of the measured pulses: mean mass m̄, spacing D and speed ratio R(k), 1 ≤ k ≤ 4.
+    """Chain of the measured pulses."""
 
-    ratio_error : relative error of R, for unequal beads at the exponents where it is measured.
-    """
-
-    mass: float
-    spacing: float
-    ratio: Callable[[Any], Array]
-    ratio_error: float
+    mass: float  # mean mass m̄
+    spacing: float  # D
+    ratio: Callable[[Any], Array]  # R(k), 1 ≤ k ≤ 4
+    ratio_error: float  # relative error of R, for unequal beads at the k where it is measured
 
     @classmethod
     def of(cls, cell: Cell) -> Medium:
@@ -100,16 +97,13 @@ def speed_ratio(omega: sp.Rational) -> tuple[Callable[[Any], Array], float]:
 
 @dataclass(frozen=True, eq=False)
 class PowerFit:
-    """Fit of F = A δ^k: k, A, the correlation of k and ln A, and A at k = 3/2 (``hertz``).
-
-    curvature : coefficient of (ln F)² in a parabola through the data ln V; 0 for one power.
-    """
+    """Fit of F = A δ^k."""
 
     k: Measured
     A: Measured
-    correlation: float
-    hertz: Measured
-    curvature: Measured
+    correlation: float  # of k and ln A
+    hertz: Measured  # A at k = 3/2
+    curvature: Measured  # coefficient of (ln F)² in a parabola for ln V; 0 for one power
 
     @property
     def one_power(self) -> bool:

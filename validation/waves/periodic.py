@@ -106,14 +106,11 @@ def _power_less_one(share: Array, exponent: float) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Orbit:
-    """A time-periodic motion u(t) = Σ_h a_h cos(hωt) of a chain.
-
-    frequency : ω, in radians per unit of time. coefficients : a, (N, H + 1).
-    """
+    """A time-periodic motion u(t) = Σ_h a_h cos(hωt) of a chain."""
 
     chain: PressedChain
-    frequency: float
-    coefficients: Array
+    frequency: float  # ω, in radians per unit of time
+    coefficients: Array  # a, (N, H + 1)
 
     @property
     def period(self) -> float:

@@ -144,8 +144,9 @@ def measured(wave: ExactWave) -> dict[str, Measured]:
         return {name: Measured(value, checks[name]) for name, value in values.items()}
     # The error of a nanopteron is the difference from the struck chain's symmetric pulse, for the
     # FWHM also from the recorded pulse: so nanopterons of all half periods agree within it.
-    unit, pulse = _numbers(wave.scaled(force=1)), struck_pulse(wave.k, wave.omega)
-    struck = _numbers(pulse, wave.masses[0])
+    pulse = struck_pulse(wave.k, wave.omega)
+    struck = _numbers(replace(pulse, masses=wave.masses, c2=pulse.c2 / wave.masses[0]))
+    unit = _numbers(wave.scaled(force=1))
     errors = {name: abs(struck[name] / unit[name] - 1) for name in unit}
     for name, width in zip(("fwhm force", "fwhm strain"), pulse.widths, strict=True):
         errors[name] = max(errors[name], abs(width / unit[name] - 1))
@@ -153,12 +154,11 @@ def measured(wave: ExactWave) -> dict[str, Measured]:
     return {name: Measured(value, value * far[name]) for name, value in values.items()}
 
 
-def _numbers(wave: ExactWave | StruckPulse, mass: float = 1.0) -> dict[str, float]:
-    """Return the numbers of `measured` of a wave of m1 = 1 and peak force 1, for m1 = ``mass``."""
-    root = math.sqrt(mass)
-    numbers = {"c2": wave.c2 / mass, "c": wave.c / root, "tail": wave.tail}
+def _numbers(wave: ExactWave | StruckPulse) -> dict[str, float]:
+    """Return the numbers of `measured`."""
+    numbers = {"c2": wave.c2, "c": wave.c, "tail": wave.tail}
     for name in QUANTITIES:
-        numbers[f"amplitude {name}"] = wave.peak(name)[1] / (root if name == "velocity" else 1.0)
+        numbers[f"amplitude {name}"] = wave.peak(name)[1]
         numbers[f"fwhm {name}"] = wave.fwhm(name)
         numbers[f"rms {name}"] = wave.rms_width(name)
     return numbers

@@ -49,15 +49,11 @@ def _long_wave(problem: newton.Problem) -> Start:
 
 @dataclass(frozen=True, eq=False)
 class StruckPulse(LatticeWave):
-    """Symmetric part of a struck chain's pulse, scaled to contact force 1; masses 1, ω.
+    """Symmetric part of a struck chain's pulse, scaled to contact force 1; masses 1, ω."""
 
-    xi, strains : ξ and the symmetric part of the strain, on a grid beyond the half period.
-    widths : FWHM of force and strain at a contact, means over the two recorded contacts.
-    """
-
-    xi: Array
-    strains: Array
-    widths: tuple[float, float]
+    xi: Array  # a grid beyond the half period
+    strains: Array  # symmetric part of the strain on the grid
+    widths: tuple[float, float]  # FWHM of force and strain, means over the two recorded contacts
 
     @property
     def samples(self) -> int:

@@ -191,7 +191,7 @@ def test_sampled_forces_are_as_good_as_the_steps(rtol, opens):
 
 @pytest.mark.parametrize("k", [1.2, 1.5, 2.0, 3.0])
 def test_beads_that_meet_after_a_long_flight(k):
-    """A first step through the flight ends in the contact, of which no stage but the last tells."""
+    """A first step through the flight ends in the contact, which only its last stage meets."""
     masses = np.array([2.0, 1.5])
     scene = dict(masses=masses, stiffnesses=(5.0,), k=k, duration=6.0)
     away = simulate(Scene(**scene, velocities=(1.0, 0.0)), rtol=1e-13)

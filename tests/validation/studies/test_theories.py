@@ -75,7 +75,7 @@ def profile(cell: Cell, order: int, k: sp.Rational):
 
 
 def test_the_profile_is_the_exact_waves() -> None:
-    """At k = 1.05, to ε^4 in the logarithm: what is cut off is some ε^5."""
+    """The error at k = 1.05 of a logarithm to ε^4 is of the order of ε^5."""
     k, wave = sp.Rational(21, 20), true("21/20", "1")
     force = profile(Cell([1]), 4, k)
     xi = np.linspace(-6, 6, 25)
@@ -173,7 +173,7 @@ def test_ladder_in_all_forms() -> None:
 
 
 def test_a_sum_that_is_refused_is_missing() -> None:
-    """One order tells nothing at k = 3, and a ladder that ends there is no ladder."""
+    """One order has no sum at k = 3; the other theories are still compared."""
     assert "ε^1" not in place(sp.S(3), sp.S.One).errors
 
 
