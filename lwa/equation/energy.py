@@ -28,7 +28,7 @@ the derivative of the flux of energy. This holds for any wave equation that the 
 satisfy, in every field, whether or not the equation derives from a potential. The density is given
 up to derivatives, so that no highest jet stands in it linearly.
 
-**Theorem** (proof in the book's chapter on cells). At D^{k+3} the equation of the canonical field φ,
+**Theorem** (proof: the book on cells). At D^{k+3} the equation of the canonical field φ,
 the mean Σ m̂_i w_i of the fields shifted to one point, derives from a potential for every cell:
 G = I(k-1)(k-2)/2, H = 2I(k-1), and I is the coefficient in the linear chain's dispersion
 Ω² = κ² (1 - Iκ² + …). With W(φ_x) in place of the power it holds for every law with equal contacts.
