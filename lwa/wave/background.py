@@ -172,17 +172,17 @@ class BackgroundWave(Value):
         B = read_exact(B, "B")
         if B.is_zero:
             raise InputError("B is 0: a wave rises or falls by B; `kdv` is the limit of small ones")
-        if not (self._power_has if self.law.homogeneous else self._law_has)(B):
+        if not (self._exists_under_power if self.law.homogeneous else self._exists_under_law)(B):
             raise NoSolitaryWave(f"p0 = {self.p0}, B = {shorten(B)}: {NO_WAVE}")
         return B
 
-    def _power_has(self, B: sp.Expr) -> bool:
+    def _exists_under_power(self, B: sp.Expr) -> bool:
         """False if a power law has no wave of the rise B; symbols may leave that open."""
         # Speeds scale as strain^{(k-1)/2}; under k < 1 a wave falls, at most to p = 0.
         grows = (self.law.exponent - 1) * B
         return not (grows.is_nonpositive or (self.p0 + B).is_nonpositive)
 
-    def _law_has(self, B: sp.Expr) -> bool:
+    def _exists_under_law(self, B: sp.Expr) -> bool:
         """False if a law that is no power has no wave of the rise B."""
         if self._free(B):
             return True
