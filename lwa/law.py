@@ -25,10 +25,10 @@ from lwa.base.calculus import growing_root, integral, ratio
 from lwa.base.exact import (
     InputError,
     demand_numbers,
-    exact,
     one_of,
     positive,
     power,
+    read_exact,
     shorten,
     signed,
 )
@@ -222,7 +222,7 @@ class Law(ContactLaw):
             raise InputError(
                 f"F is {shorten(self.F)}: a SymPy expression in {self.delta} is wanted"
             )
-        object.__setattr__(self, "F", check_names(exact(self.F, "F"), "law", taken=TAKEN))
+        object.__setattr__(self, "F", check_names(read_exact(self.F, "F"), "law", taken=TAKEN))
         check_distinct((self.delta, *self.symbols))
         if self.slope().is_zero:
             raise InputError(f"F is {shorten(self.F)}: a force that depends on δ is wanted")

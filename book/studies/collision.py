@@ -24,7 +24,7 @@ import sympy as sp
 
 from lwa import Cell, Power
 from lwa.base.arrays import Array
-from lwa.base.exact import exact
+from lwa.base.exact import read_exact
 from lwa.base.progress import Progress
 from lwa.command.options import quantities
 from lwa.equation.evolution import Evolution
@@ -79,7 +79,7 @@ def collision(
     """
     if not exponents:
         raise SceneError("k is empty: at least one exponent is wanted")
-    ks = [exact(k, "k") for k in exponents]
+    ks = [read_exact(k, "k") for k in exponents]
     for k in ks:
         between(k, "k", 1.05, 3)
     between(second, "second", 0.1, 1)

@@ -15,7 +15,7 @@ from typing import Any
 
 import sympy as sp
 
-from lwa.base.exact import InputError, exact, one_of, positive, shorten
+from lwa.base.exact import InputError, one_of, positive, read_exact, shorten
 from lwa.base.frozen import Value
 
 EXPONENT = sp.Rational(3, 2)
@@ -37,7 +37,7 @@ class Material(Value):
     def __post_init__(self) -> None:
         given = self.nu
         object.__setattr__(self, "E", positive(self.E, "E"))
-        object.__setattr__(self, "nu", exact(self.nu, "nu"))
+        object.__setattr__(self, "nu", read_exact(self.nu, "nu"))
         if self.nu.is_number and not -1 < self.nu <= sp.S.Half:
             raise InputError(f"nu is {shorten(given)}: Poisson's ratio lies between -1 and 1/2")
         if self.density is not None:

@@ -23,7 +23,7 @@ import sympy as sp
 from lwa.base import latex
 from lwa.base.exact import InputError, evaluated, number, one_of, positive, power, shorten
 from lwa.base.frozen import Value
-from lwa.base.quantities import NoSolitaryWave, known, known_extent, strain_power
+from lwa.base.quantities import NoSolitaryWave, known_extent, known_quantity, strain_power
 from lwa.cell import Cell, check_names
 from lwa.law import ContactLaw, Power, for_cell, substituted
 from lwa.wave.background import WIDTH_DIGITS, BackgroundWave, taken_names
@@ -172,7 +172,7 @@ class PhysicalWave(Value):
 
         wave, k, xi = self.wave, number(self.wave.k), finite(x, "x")
         peaks = {"strain": self.strain, "force": self.contact_force, "velocity": self.bead_velocity}
-        peak = number(peaks[known(quantity)])
+        peak = number(peaks[known_quantity(quantity)])
         # The strain is B cos^m(βξ), m = 2/(k-1); the force scales as strain^k.
         beta, exponent = number(wave.beta), 2 * strain_power(quantity, k) / (k - 1)
 

@@ -31,7 +31,7 @@ import sympy as sp
 from filelock import FileLock, Timeout
 
 from lwa.base.arrays import Array
-from lwa.base.exact import InputError, exact
+from lwa.base.exact import InputError, read_exact
 from lwa.base.files import content
 from validation.lattice.run import IntegrationError, Run
 from validation.lattice.simulate import simulate
@@ -252,4 +252,6 @@ def _line(entry: dict[str, Any]) -> bytes:
 
 def _point(k: str, omega: str, sites: Any = None, numbers: Any = (), missing: Any = None) -> Point:
     pairs = {name: Measured(*map(float, numbers[name])) for name in QUANTITIES if numbers}
-    return Point(exact(k, "k"), exact(omega, "omega"), sites and (*sites,), pairs, missing)
+    return Point(
+        read_exact(k, "k"), read_exact(omega, "omega"), sites and (*sites,), pairs, missing
+    )

@@ -47,7 +47,7 @@ def test_nearer_to_k_1_the_equation_is_better(hertz):
 
 @pytest.mark.parametrize("run", [in_equation, on_lattice])
 def test_equal_pulses_meet_as_one_at_a_wall(run):
-    """By symmetry the beads at x = 0 keep at rest in the mean: strains of both sides agree."""
+    """The beads at x = 0 rest in the mean, by symmetry: strains of both sides agree."""
     _, strains, numbers = run(sp.Rational(3, 2), 1.0, 1e-8, 601)
     assert abs(numbers["drift"]) < 1e-6
     assert numbers["meeting"] > 1
