@@ -62,11 +62,9 @@ def strain_equation(p: sp.Expr, G: sp.Expr, H: sp.Expr, I: sp.Expr) -> dict[str,
 class Reduction(Value):
     """The reduction of the strain's equation to z'' = μ z^η - σ z, v = z^p, for one root p.
 
-    k : exponent of the contact law.
     p, a : powers of the substitution and of the integrating factor z^a.
     mu, eta, sigma : μ = V² / (I (p + a)), η = 1 + p - kp, σ = 1 / (I (kp + a)).
     s : power 2 / (1 - η) of the cosine in z.
-    beta : wavenumber √σ (1 - η) / 2 of the cosine, that of `CompactWave` for either root.
     """
 
     k: sp.Expr
@@ -76,11 +74,15 @@ class Reduction(Value):
     eta: sp.Expr
     sigma: sp.Expr
     s: sp.Expr
-    beta: sp.Expr
 
-    @cached_property  # a power of nested roots may take SymPy minutes
+    @property
+    def beta(self) -> sp.Expr:
+        """The wavenumber √σ (1 - η) / 2 of the cosine, `CompactWave.beta` for either root."""
+        return sp.sqrt(self.sigma) * (1 - self.eta) / 2
+
+    @property
     def B(self) -> sp.Expr:
-        """Amplitude (μ/(β² s (s-1)))^{1/(k-1)} of the strain, `CompactWave.amplitude`."""
+        """The amplitude (μ/(β² s (s-1)))^{1/(k-1)}, `CompactWave.amplitude` for either root."""
         return (self.mu / (self.beta**2 * self.s * (self.s - 1))) ** (1 / (self.k - 1))
 
     def latex_rows(self) -> list[str]:
@@ -254,8 +256,7 @@ class CompactWave(Value):
         a = factored(slope - k) * p + constant
         mu, eta = positive(V, "V") ** 2 / (I * (p + a)), 1 + p - k * p
         sigma, s = 1 / (I * (k * p + a)), 2 / (1 - eta)
-        beta = sp.sqrt(sigma) * (1 - eta) / 2
-        return Reduction(k, p, a, mu, eta, sigma, s, beta)
+        return Reduction(k, p, a, mu, eta, sigma, s)
 
     def at(self, **values: Any) -> Self:
         """Substitute numbers (or other symbols) for the named symbols, and for ω = m2/m1.

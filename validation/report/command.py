@@ -60,7 +60,7 @@ class Study(Generic[P]):
             click.echo(printed)
             return 0 if report.ok else 1
 
-        for option in (*_OUTPUT, *reversed(self.options)):
+        for option in (*_OUTPUT, *reversed(self.options)):  # help shows the last decoration first
             run = option(run)
         summary, _, _ = (inspect.getdoc(function) or "").partition("\n\n")
         command = click.command(

@@ -14,7 +14,15 @@ import sympy as sp
 from lwa import Cell, Expansion, expand
 from validation.pulses.pulse import MeasureError
 from validation.pulses.steady import STRETCH, point
-from validation.studies.theories import HERTZ, NAMES, STRUCK_CHAIN, THEORIES, Place, ladder, place
+from validation.studies.theories import (
+    HERTZ,
+    QUANTITIES,
+    STRUCK_CHAIN,
+    THEORIES,
+    Place,
+    ladder,
+    place,
+)
 from validation.waves.solver import ExactWave, exact_wave
 
 
@@ -150,17 +158,17 @@ def test_ladder_in_all_forms() -> None:
     report = ladder([at])
     printed = report.text()
     assert "linear closure" in printed
-    assert printed.count("theory over truth - 1") == len(NAMES)
+    assert printed.count("theory over truth - 1") == len(QUANTITIES)
     assert "(ms of CPU): linear closure " in printed
     rows = report.document()["theories"]
     lines = list(csv.DictReader(io.StringIO(report.csv())))
-    for line, row, name in zip(lines, rows, NAMES, strict=True):
+    for line, row, name in zip(lines, rows, QUANTITIES, strict=True):
         assert line["quantity"] == row["quantity"] == name
         assert float(line["truth_value"]) == row["truth_value"] == at.truth[name].value
         for theory in THEORIES:
             assert float(line[f"error_value.{theory}"]) == row["error_value"][theory]
     page = report._repr_html_()
-    assert page.count("<tr>") == 2 * len(NAMES)
+    assert page.count("<tr>") == 2 * len(QUANTITIES)
     assert "<svg" in page
 
 
