@@ -19,7 +19,7 @@ from typing import Any
 import sympy as sp
 
 from lwa.base import latex
-from lwa.base.exact import InputError, exact, integer, positive, power, shorten
+from lwa.base.exact import InputError, integer, positive, power, read_exact, shorten
 from lwa.base.frozen import Value
 from lwa.spheres.hertz import Sphere, stiffness
 
@@ -54,9 +54,6 @@ class Cell(Value):
     spacing : distance D of neighbouring particles at rest (the same for all contacts).
 
     Raises `lwa.InputError` when a value is not positive and finite, or the counts differ.
-
-    >>> Cell([1, 2]).fractions
-    (1/3, 2/3)
     """
 
     masses: tuple[sp.Expr, ...]
@@ -89,11 +86,6 @@ class Cell(Value):
 
         The spacing is the mean distance of neighbours' centers, Σ 2 R_i / P. Then widths and speeds
         are those in space, and D u_x is the mean compression of the contacts.
-
-        >>> from lwa.spheres.hertz import Material
-        >>> ball = Sphere("m", "R", Material(E="193e9", nu="0.3"))
-        >>> Cell.of_spheres([ball]).spacing
-        2*R
         """
         row = _sequence(spheres, "spheres")
         contacts = tuple(stiffness(a, b) for a, b in zip(row, row[1:] + row[:1], strict=True))
@@ -187,7 +179,7 @@ def exponent(value: Any, cell: Cell | None = None) -> sp.Expr:
     Raises `lwa.InputError` for numbers outside of `EXPONENTS`, and for a name with another meaning.
     """
     least, largest = EXPONENTS
-    result = check_names(exact(value, "k"), "k", k.name)
+    result = check_names(read_exact(value, "k"), "k", k.name)
     if result.is_number and not least <= result <= largest:
         raise InputError(f"k is {shorten(result)}: exponents from {least} to {largest} are taken")
     if cell is not None:
@@ -215,7 +207,7 @@ def substitution(
             names = ", ".join(known) or "there are none"
             raise InputError(f"{shorten(name)} is not among the symbols: {names}")
     new = {
-        known[name]: (exact if known[name] in more else positive)(value, name)
+        known[name]: (read_exact if known[name] in more else positive)(value, name)
         for name, value in given.items()
     }
     if omega is None:

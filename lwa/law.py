@@ -25,10 +25,10 @@ from lwa.base.calculus import growing_root, integral, ratio
 from lwa.base.exact import (
     InputError,
     demand_numbers,
-    exact,
     one_of,
     positive,
     power,
+    read_exact,
     shorten,
     signed,
 )
@@ -79,11 +79,7 @@ class ContactLaw(Value):
         return integral(self.F, self.delta)
 
     def phi(self, n: int) -> sp.Expr:
-        """The parameter φ_n = δ^{n-1} F^{(n)}/F′ as an expression in δ.
-
-        >>> named("exponential", 1).phi(3)
-        delta**2
-        """
+        """The parameter φ_n = δ^{n-1} F^{(n)}/F′ as an expression in δ."""
         return ratio(self.delta ** (n - 1) * self.slope(n), self.slope())
 
     def at(self, delta: sp.Expr, n: int = 0) -> sp.Expr:
@@ -158,11 +154,7 @@ class ContactLaw(Value):
 
 @dataclass(frozen=True)
 class Power(ContactLaw):
-    """The power law F = δ^k, k > 0 a number or a symbol.
-
-    >>> Power("3/2").phi(3)
-    -1/4
-    """
+    """The power law F = δ^k, k > 0 a number or a symbol."""
 
     k: sp.Expr
     F: sp.Expr = field(init=False, repr=False)
@@ -230,7 +222,7 @@ class Law(ContactLaw):
             raise InputError(
                 f"F is {shorten(self.F)}: a SymPy expression in {self.delta} is wanted"
             )
-        object.__setattr__(self, "F", check_names(exact(self.F, "F"), "law", taken=TAKEN))
+        object.__setattr__(self, "F", check_names(read_exact(self.F, "F"), "law", taken=TAKEN))
         check_distinct((self.delta, *self.symbols))
         if self.slope().is_zero:
             raise InputError(f"F is {shorten(self.F)}: a force that depends on δ is wanted")

@@ -18,12 +18,13 @@ from lwa.base.exact import InputError
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.axis import Axis
     from matplotlib.figure import Figure
 
 SUFFIXES = (".pdf", ".png", ".svg")
 _STYLES = ("o-", "s--", "^:", "D-.", "v-", "x--", "P:", "*-.")
 _FEW = 40  # points of a curve; markers at more of them would cover the curve
-_ACROSS = 5  # names in a row of a legend above the panel
+_ACROSS = 3  # names in a row of a legend above the panel
 
 
 @dataclass(frozen=True, eq=False)
@@ -156,9 +157,23 @@ def draw(plot: Axes, panel: Panel) -> None:
         style = curve.style or f"C{i}{default if len(x) <= _FEW else default[1:]}"
         # hollow marks show the curves below
         plot.errorbar(x, y, error, fmt=style, ms=4, mfc="none", label=curve.label or None)
+    for axis in panel.scale:
+        _label_plainly(getattr(plot, f"{axis}axis"))
     if any(curve.label for curve in panel.curves):
         above = {"loc": "lower left", "bbox_to_anchor": (0, 1), "ncols": _ACROSS, "frameon": False}
         plot.legend(fontsize="small", **(above if panel.legend_above else {"loc": "best"}))
+
+
+def _label_plainly(axis: Axis) -> None:
+    """Set plain tick labels on a logarithmic axis of few decades, where powers of ten overlap."""
+    from matplotlib.ticker import LogLocator, NullFormatter  # loaded as late as Matplotlib
+
+    low, high = sorted(axis.get_view_interval())
+    if low >= 1e-3 and high <= 1e5 and high < 1e3 * low:
+        subs = (1, 1.5, 2, 3, 4, 6, 8) if high < 10 * low else (1, 2, 5)
+        axis.set_major_locator(LogLocator(subs=subs))
+        axis.set_major_formatter("{x:g}")
+        axis.set_minor_formatter(NullFormatter())
 
 
 def _draw_map(plot: Axes, colours: Map, scale: str) -> None:

@@ -5,7 +5,7 @@ lattice the lattice's own waves (`validation.waves.solver`), and in the equation
 
     (1 - I ∂_x²) u_ττ = ∂_x F(u_x)
 
-its own waves (`lwa.equation.evolution`, integrated by `validation.waves.continuum`). They meet at
+its own waves (`lwa.equation.evolution`, integrated by `validation.waves.theory`). They meet at
 x = 0. The strain is recorded there and at x = d, where the pulse of strain 1 arrives after the
 collision; it started at x = -d. Its shift is its distance ahead of a pulse that ran alone.
 
@@ -24,7 +24,7 @@ import sympy as sp
 
 from lwa import Cell, Power
 from lwa.base.arrays import Array
-from lwa.base.exact import exact
+from lwa.base.exact import read_exact
 from lwa.base.progress import Progress
 from lwa.command.options import quantities
 from lwa.equation.evolution import Evolution
@@ -36,8 +36,8 @@ from validation.report.result import Report
 from validation.report.table import Column, Finding, Table, percent
 from validation.scenes.chains import carrying
 from validation.scenes.checks import SceneError, between
-from validation.waves.continuum import Continuum
 from validation.waves.solver import exact_wave
+from validation.waves.theory import Continuum
 
 APART = 5.0  # widths of the first pulse between its start and x = 0, at least
 _WIDE = 1.5  # half the interval over the distance of the farther pulse from x = 0, plus a run
@@ -79,7 +79,7 @@ def collision(
     """
     if not exponents:
         raise SceneError("k is empty: at least one exponent is wanted")
-    ks = [exact(k, "k") for k in exponents]
+    ks = [read_exact(k, "k") for k in exponents]
     for k in ks:
         between(k, "k", 1.05, 3)
     between(second, "second", 0.1, 1)

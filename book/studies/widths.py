@@ -160,7 +160,7 @@ def _panel(beads: Sequence[int], widths: Sequence[Measured], lines: Lines) -> Pa
                 label = f"{line}, {closure}" if closure != "linear" else line
                 curves.append(Curve(label, ends, (1e6 * width,) * 2, style))
     labels = "number of the bead", "FWHM of its force (µs)"
-    return Panel(*labels, tuple(curves), title="1:1 chain")
+    return Panel(*labels, tuple(curves), legend_above=True)
 
 
 def _numbers(run: Run) -> dict[str, float]:

@@ -46,7 +46,7 @@ def shorten(value: object) -> str:
     return text if len(text) <= 60 else text[:57] + "..."
 
 
-def exact(value: Any, name: str) -> sp.Expr:
+def read_exact(value: Any, name: str) -> sp.Expr:
     """Read ``value`` (see `Quantity`) as an exact SymPy expression.
 
     ``name`` names the value in messages. Texts are integers, decimals, fractions or plain names;
@@ -55,7 +55,7 @@ def exact(value: Any, name: str) -> sp.Expr:
     Raises `InputError` for NaN, infinities, complex numbers, other text, and numbers beyond the
     range of a float or of more than `DIGITS` digits.
 
-    >>> exact(0.1, "k"), exact("3/2", "k"), exact("m1", "mass")
+    >>> read_exact(0.1, "k"), read_exact("3/2", "k"), read_exact("m1", "mass")
     (1/10, 3/2, m1)
     """
     if isinstance(value, str):
@@ -112,12 +112,8 @@ def _out_of_range(name: str) -> InputError:
 
 
 def signed(value: Any, name: str) -> sp.Expr:
-    """Read an exact real number; a plain name becomes a real symbol of either sign, such as ξ.
-
-    >>> signed("xi", "xi").is_positive is None
-    True
-    """
-    expression = exact(value, name)
+    """Read an exact real number; a plain name becomes a real symbol of either sign, such as ξ."""
+    expression = read_exact(value, name)
     if isinstance(value, str) and expression.is_Symbol:
         return sp.Symbol(expression.name, real=True)
     return expression
@@ -125,18 +121,14 @@ def signed(value: Any, name: str) -> sp.Expr:
 
 def positive(value: Any, name: str) -> sp.Expr:
     """Read an exact positive number, or an expression in symbols that may be positive."""
-    expression = exact(value, name)
+    expression = read_exact(value, name)
     if expression.is_positive is False or (expression.is_number and not expression.is_positive):
         raise InputError(f"{name} is {expression}: it must be positive")
     return expression
 
 
 def integer(value: Any, name: str, low: int, high: int = 2**63 - 1) -> int:
-    """Read an integer (Python's, NumPy's or SymPy's) from ``low`` to ``high``.
-
-    >>> integer(4, "order", 1)
-    4
-    """
+    """Read an integer (Python's, NumPy's or SymPy's) from ``low`` to ``high``."""
     try:
         number = operator.index(value)
     except TypeError:
@@ -166,9 +158,7 @@ def number(value: sp.Expr) -> float:
 
     Raises `lwa.InputError` for an expression with symbols.
     """
-    if value.free_symbols:
-        names = ", ".join(sorted(map(str, value.free_symbols)))
-        raise InputError(f"{names}: a curve needs numbers for all symbols; give them by at(…)")
+    demand_numbers(value.free_symbols, "a curve needs numbers for all symbols; give them by at(…)")
     return float(evaluated(value, 20))
 
 
@@ -201,8 +191,3 @@ def power(base: sp.Expr, exponent: sp.Expr) -> sp.Expr:
         if bits * (abs(int(exponent.p)) + int(exponent.q)) > _POWER_BITS:
             base = Unmultiplied(base)
     return base**exponent
-
-
-def root(value: sp.Expr) -> sp.Expr:
-    """The square root."""
-    return sp.sqrt(value)

@@ -33,10 +33,10 @@ def strain_power(quantity: str, k: Any) -> Any:
 
     Raises `lwa.InputError` unless the quantity is among `QUANTITIES`.
     """
-    return k if known(quantity) == "force" else 1
+    return k if known_quantity(quantity) == "force" else 1
 
 
-def known(quantity: str) -> str:
+def known_quantity(quantity: str) -> str:
     """Return the quantity; raise `lwa.InputError` unless it is among `QUANTITIES`."""
     return one_of(quantity, QUANTITIES, "quantity")
 

@@ -2,11 +2,6 @@
 
 A reader takes a value and its name in messages, and returns the checked value or raises
 `lwa.InputError`. Numbers of a file are floats.
-
->>> real("1.5", "duration")
-Traceback (most recent call last):
-    ...
-lwa.base.errors.InputError: duration is '1.5': a number is wanted
 """
 
 from __future__ import annotations
@@ -27,7 +22,7 @@ LEAST = sys.float_info.min
 """The least positive number with all digits of a float."""
 
 
-def real(value: Any, name: str) -> float:
+def finite(value: Any, name: str) -> float:
     """Read one finite number."""
     number = None
     if not isinstance(value, str | bytes | bool):
@@ -42,7 +37,7 @@ def real(value: Any, name: str) -> float:
 
 def positive(value: Any, name: str) -> float:
     """Read one positive number that has all digits of a float."""
-    number = real(value, name)
+    number = finite(value, name)
     if not number > 0:
         raise InputError(f"{name} is {number:g}: it must be positive")
     if number < LEAST:

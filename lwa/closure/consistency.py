@@ -1,8 +1,7 @@
-"""The consistency condition: slaved fields that satisfy the equations of motion order by order.
+"""The consistency condition, solved by the paper's closure or by that of all equations of motion.
 
-``linear`` is the closure of the paper (`lwa.closure.ansatz`), ``full`` the closure of all
-equations of motion (`lwa.closure.slaving`). Both solve `lwa.closure.solution` in one algebra,
-`lwa.algebra.jets`.
+Both closures, `lwa.closure.ansatz` ("linear") and `lwa.closure.slaving` ("full"), solve the
+equations of `lwa.closure.solution` in one algebra, `lwa.algebra.jets`.
 """
 
 from __future__ import annotations
@@ -157,27 +156,20 @@ def solve(
 
     Raises `lwa.InputError` for the combinations that have no solution.
     """
-    solution = _solution(model, order, closure, field, progress)
-    solved = Closure(**vars(solution), model=model, order=order, name=closure, field=field)
-    for alphas in changes:
-        solved = solved.in_field(dict(alphas))
-    return solved
-
-
-def _solution(
-    model: Model, order: int, closure: str, field: str, progress: Progress[int]
-) -> Solution:
     if closure == "linear" and field != "first":
         raise InputError(
             f"field is {field!r}: with the linear closure it is 'first', as in the paper"
         )
-    if closure == "linear":
-        return linear(model, order, progress)
-    if model.branch == "acoustic":
-        return full(model, order, field, progress)
-    if model.k == 1 and field == "first":
-        return linear(model, order, progress)  # the linear chain has a linear closure
-    raise InputError(
-        "the optical branch oscillates at order D^0 and slaves no field algebraically unless "
-        "k = 1: use the linear closure, or k = 1 with the field 'first'"
-    )
+    if closure == "full" and model.branch == "acoustic":
+        solution = full(model, order, field, progress)
+    elif closure == "linear" or (model.k == 1 and field == "first"):
+        solution = linear(model, order, progress)  # at k = 1 it leaves no defect
+    else:
+        raise InputError(
+            "the optical branch oscillates at order D^0 and slaves no field algebraically unless "
+            "k = 1: use the linear closure, or k = 1 with the field 'first'"
+        )
+    solved = Closure(**vars(solution), model=model, order=order, name=closure, field=field)
+    for alphas in changes:
+        solved = solved.in_field(dict(alphas))
+    return solved

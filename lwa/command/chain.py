@@ -16,7 +16,7 @@ import sympy as sp
 
 from lwa.base.exact import InputError
 from lwa.base.files import load
-from lwa.base.tables import Table, among, array, each, positive, real, table
+from lwa.base.tables import Table, among, array, each, finite, positive, table
 from lwa.cell import Cell, D
 from lwa.command.options import given
 from lwa.law import ContactLaw, Power, read_law, refuse_two_laws
@@ -92,7 +92,7 @@ def _chain(content: Any) -> ChainInput:
     row = chain.read("cell", array)
     if not row:
         raise InputError("chain.cell is empty: the names of one bead or more are wanted")
-    force = sp.Rational(str(file.read("precompression", real, 0.0)))
+    force = sp.Rational(str(file.read("precompression", finite, 0.0)))
     if force < 0:
         raise InputError(f"precompression is {force}: it must not be negative")
     if isinstance(row[0], int | float):
@@ -111,7 +111,7 @@ def _of_masses(chain: Table) -> tuple[Cell, ContactLaw]:
     stiffnesses = [stiffnesses[i % len(stiffnesses)] for i in range(P)]
     spacing = sp.Rational(str(sum(spacings) / len(spacings))) if spacings else D
     cell = Cell(tuple(masses[:P]), tuple(stiffnesses), spacing)
-    return cell, chain.read("law", read_law) if "law" in chain else Power(chain.read("k", real))
+    return cell, chain.read("law", read_law) if "law" in chain else Power(chain.read("k", finite))
 
 
 def _contacts(value: Any, name: str, period: int, beads: int) -> list[float]:

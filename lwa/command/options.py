@@ -11,7 +11,7 @@ import click
 import sympy as sp
 from click.core import ParameterSource
 
-from lwa.base.exact import InputError, exact, integer
+from lwa.base.exact import InputError, integer, read_exact
 from lwa.cell import D, k
 from lwa.closure.consistency import BRANCHES, CLOSURES, FIELDS
 from lwa.law import NAMES, ContactLaw, read_law
@@ -58,7 +58,7 @@ def _demand_free(symbols: Iterable[sp.Symbol], command: str, option: click.Param
 
 
 def _read(context: click.Context, option: click.Parameter, text: str) -> sp.Expr:
-    expression = exact(text, called(option))
+    expression = read_exact(text, called(option))
     _demand_free(expression.free_symbols, str(context.info_name), option)
     return expression
 
@@ -85,7 +85,7 @@ def angle(context: click.Context, option: click.Parameter, text: str) -> sp.Expr
 
 def count(context: click.Context, option: click.Parameter, text: str) -> int:
     """Read an integer from 1 on."""
-    return integer(exact(text, called(option)), called(option), 1)
+    return integer(read_exact(text, called(option)), called(option), 1)
 
 
 def contact_law(

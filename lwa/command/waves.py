@@ -9,7 +9,7 @@ import click
 import sympy as sp
 
 from lwa.base import latex
-from lwa.base.exact import InputError, exact
+from lwa.base.exact import InputError, read_exact
 from lwa.base.quantities import QUANTITIES, NoSolitaryWave
 from lwa.cell import Cell
 from lwa.code import LANGUAGES
@@ -88,7 +88,7 @@ def wave(
         _demand_canonical(options)
     if style in LANGUAGES and force is not None:
         raise InputError(f"--format {style} is for any force: --force goes with text, json, latex")
-    peak = exact("F", "force") if force is None else force
+    peak = read_exact("F", "force") if force is None else force
     theory = homogenize(cell, law=law, **options)
     if not loaded:
         compact = theory.pde.traveling_wave()

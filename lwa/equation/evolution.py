@@ -19,7 +19,7 @@ from typing import Any
 import sympy as sp
 
 from lwa.base import latex
-from lwa.base.exact import InputError, exact, power, signed
+from lwa.base.exact import InputError, power, read_exact, signed
 from lwa.base.frozen import Value
 from lwa.cell import Cell, substitution
 from lwa.law import ContactLaw, for_cell
@@ -63,6 +63,11 @@ class Evolution(Value):
         """The n-th derivative F^{(n)}(p) in the units of the equation; the energy W for n = -1."""
         return self.law.of_strain(signed(p, "p"), self.cell.spacing, n)
 
+    def energy_density(self, strain: sp.Expr, velocity: sp.Expr, x: sp.Symbol) -> sp.Expr:
+        """Energy density ½ u_τ² + ½ I u_xτ² + W(u_x) for u_x and u_τ as functions of x."""
+        kinetic = velocity**2 + self.I * velocity.diff(x) ** 2
+        return kinetic / 2 + self.law.of_strain(strain, self.cell.spacing, -1)
+
     def frequency(self, q: Any, p0: Any) -> sp.Expr:
         """Frequency Ω = c0 q/√(1 + I q²) in τ of small waves of wavenumber q, c0 = √F′(p0)."""
         q = signed(q, "q")
@@ -70,7 +75,7 @@ class Evolution(Value):
 
     def speed(self, B: Any, p0: Any = 0) -> sp.Expr:
         """Speed V = dx/dτ of the wave whose strain rises from p0 to p0 + B."""
-        B, p0 = exact(B, "B"), exact(p0, "p0")
+        B, p0 = read_exact(B, "B"), read_exact(p0, "p0")
         W, W0 = (self.force(p, -1) for p in (p0 + B, p0))
         return sp.sqrt(sp.powsimp(sp.factor(2 * (W - W0 - self.force(p0) * B) / B**2)))
 
@@ -83,7 +88,7 @@ class Evolution(Value):
             raise InputError("the profile has a closed form under a power law only")
         k = self.law.exponent
         shape = sp.sech((k - 1) * signed(xi, "xi") / (2 * sp.sqrt(self.I)))
-        return exact(B, "B") * power(shape, 2 / (k - 1))
+        return read_exact(B, "B") * power(shape, 2 / (k - 1))
 
     def at(self, **values: Any) -> Evolution:
         """The equation for these values of the named symbols, and of ω = m2/m1 by ``omega``."""

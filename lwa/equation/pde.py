@@ -23,7 +23,7 @@ import sympy as sp
 from flint import fmpq_mpoly
 
 from lwa.base import latex
-from lwa.base.exact import InputError, exact, integer, power
+from lwa.base.exact import InputError, integer, power, read_exact
 from lwa.closure.consistency import OfClosure
 from lwa.equation.energy import energy, flux, variational
 from lwa.equation.terms import ENERGY, Jet, Terms, base_order, terms
@@ -180,13 +180,7 @@ class PDE(OfClosure):
         return sp.Add(*parts)
 
     def right_side(self, u: sp.Expr, x: sp.Symbol, velocity: sp.Expr = sp.S.Zero) -> sp.Expr:
-        """The right-hand side of u_ττ for fields u(x) and u_τ(x), as a SymPy expression.
-
-        >>> from lwa import homogenize, Cell
-        >>> x = sp.Symbol("x")
-        >>> homogenize(Cell([1]), k=1, order=4).pde.right_side(sp.exp(x), x)
-        D**2*exp(x)/12 + exp(x)
-        """
+        """The right-hand side of u_ττ for fields u(x) and u_τ(x), as a SymPy expression."""
         base = base_order(self.closure.model)
         D, law = self.cell.spacing, self.law
         leading = law.of_strain(u.diff(x), D, 1) * u.diff(x, 2) if base else -(u**law.exponent)
@@ -206,7 +200,7 @@ class PDE(OfClosure):
         >>> pde.H, pde.in_field({2: "alpha"}).H
         (D**2*(k/6 - 1/6), D**2*(12*alpha + 1)*(k - 1)/6)
         """
-        shifts = {integer(n, "n", 1): exact(a, f"alpha_{n}") for n, a in alphas.items()}
+        shifts = {integer(n, "n", 1): read_exact(a, f"alpha_{n}") for n, a in alphas.items()}
         return PDE(self.closure.in_field(shifts))
 
     def at(self, **values: Any) -> PDE:

@@ -21,7 +21,7 @@ from lwa.base.exact import InputError, integer, one_of, shorten, signed
 from lwa.base.frozen import Value
 from lwa.base.progress import announced
 from lwa.base.quantities import QUANTITIES as QUANTITIES
-from lwa.base.quantities import known
+from lwa.base.quantities import known_quantity
 from lwa.cell import Cell, exponent, substitution
 from lwa.cell import k as symbol_k
 from lwa.expansion.observables import Observables, shares_model
@@ -91,7 +91,7 @@ class Expansion(Value):
         The series gives both contacts of a dimer the same width; see `Expansion`.
         """
         # The Gaussian F = e^{-Z²/4}, Z = √(ε/I) ξ, is 1/2 at Z = 2√log 2.
-        return self._series(known(quantity), 4 * sp.sqrt(self.I * sp.log(2)), -sp.S.Half)
+        return self._series(known_quantity(quantity), 4 * sp.sqrt(self.I * sp.log(2)), -sp.S.Half)
 
     @cached_property
     def momentum(self) -> EpsilonSeries:

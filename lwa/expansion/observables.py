@@ -25,9 +25,8 @@ from lwa.expansion.pulse import (
     half_width,
     logarithm,
     moment,
+    power,
     product,
-    quotient,
-    root,
     width_of_power,
 )
 from lwa.expansion.recursion import Recursion
@@ -53,7 +52,7 @@ class Observables:
     @cached_property
     def c(self) -> Series:
         """The speed c, divided by its leading term."""
-        return root(self.c2)
+        return power(self.c2, fmpq(1, 2))
 
     @cached_property
     def force(self) -> Series:
@@ -122,7 +121,7 @@ class Observables:
     @cached_property
     def effective_mass(self) -> Series:
         """Effective mass P²/(2E), P the momentum and E the energy, divided by its leading term."""
-        return quotient(product(self.momentum, self.momentum), self.energy)
+        return product(product(self.momentum, self.momentum), power(self.energy, fmpq(-1)))
 
     @cached_property
     def linear_loss(self) -> Series:
@@ -184,18 +183,18 @@ class Observables:
         """Coefficient I in the linear chain's dispersion Ω² = κ² - I κ⁴ + …, in units of D²."""
         return self._over_I(self.wave.I, 0)
 
-    def _over_I(self, numerator: fmpq_mpoly, power: int) -> sp.Expr:
-        """The quotient numerator / I^power, in the caller's symbols."""
+    def _over_I(self, numerator: fmpq_mpoly, e: int) -> sp.Expr:
+        """The quotient numerator / I^e, in the caller's symbols."""
         I = self.wave.I
         if not self.model.ring.names:
             top, bottom = (p.leading_coefficient() if p else fmpq(0) for p in (numerator, I))
-            return to_sympy(top / bottom**power)
-        while power:
+            return to_sympy(top / bottom**e)
+        while e:
             quotient, remainder = divmod(numerator, I)
             if remainder:
                 break
-            numerator, power = quotient, power - 1
-        return self._expression(numerator) / self._I**power
+            numerator, e = quotient, e - 1
+        return self._expression(numerator) / self._I**e
 
     @cached_property
     def _I(self) -> sp.Expr:

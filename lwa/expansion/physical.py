@@ -19,6 +19,7 @@ from typing import Any
 
 import sympy as sp
 
+from lwa.base import latex
 from lwa.base.exact import InputError, demand_numbers, positive, shorten
 from lwa.base.frozen import Value
 from lwa.base.quantities import known_extent
@@ -78,6 +79,11 @@ class ExpandedWave(Value):
         """Kinetic and elastic energy."""
         return self._at_force(self.expansion.energy, self.expansion.k + 1)
 
+    @property
+    def effective_mass(self) -> Resummed:
+        """Effective mass P²/(2E) of momentum P and energy E, independent of the force."""
+        return self.expansion.effective_mass.at()
+
     def dissipation(self, kind: str) -> Resummed:
         """Energy lost per contact, divided by the damping constant; see `Expansion.dissipation`."""
         k = self.expansion.k
@@ -96,9 +102,22 @@ class ExpandedWave(Value):
         rate = loss / (E / V) if kind == "linear" else loss / E / V
         return rate * float((k - 1) / (2 * (k + 1)))
 
+    def latex_rows(self) -> list[str]:
+        """LaTeX of peak force, speed and width of the force, without units."""
+        return _rows(latex.expression(self.F), self)
+
     def _at_force(self, series: EpsilonSeries, power: sp.Expr) -> Resummed:
         """Sum a quantity that scales as the compression to this power, at the peak force F."""
         return series.at() * float(self.F ** (power / self.expansion.k))
+
+
+def _rows(force: str, wave: ExpandedWave | Strike) -> list[str]:
+    try:
+        speed, width = wave.speed.latex(), wave.fwhm("force", "length").latex()
+    except InputError:
+        speed = width = r"\text{no sum}"
+    names = ("F", latex.SPEED, r"\mathrm{FWHM}_{\mathrm{force}}")
+    return [f"{name} = {x}" for name, x in zip(names, (force, speed, width), strict=True)]
 
 
 def wave_of_velocity(expansion: Expansion, velocity: sp.Expr) -> ExpandedWave:
@@ -163,6 +182,10 @@ class Strike(Value):
         """Full width at half maximum; arguments as in `lwa.ExpandedWave.fwhm`."""
         width = self.wave.fwhm(quantity, extent)
         return width if extent == "length" else self._of_force(width)
+
+    def latex_rows(self) -> list[str]:
+        """LaTeX of peak force, speed and width of the force, without units."""
+        return _rows(self.force.latex(), self)
 
     def _of_force(self, quantity: Resummed) -> Resummed:
         """A quantity proportional to F^{±(k-1)/(2k)}, with the error that the force's adds."""

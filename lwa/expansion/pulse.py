@@ -149,18 +149,10 @@ def product(a: Series, b: Series, step: int = 1) -> Series:
     return total
 
 
-def quotient(a: Series, b: Series) -> Series:
-    """The quotient a / b, b_0 = 1, by Q_n = a_n - Σ_{j≥1} b_j Q_{n-j}."""
-    Q: Series = []
-    for n, term in enumerate(a):
-        Q.append(sum((-b[j] * Q[n - j] for j in range(1, n + 1)), term))
-    return Q
-
-
-def root(S: Series) -> Series:
-    """The root √(Σ S_n t^n), S_0 = 1, by 2 n R_n = Σ_{j≥1} (3j - 2n) S_j R_{n-j}."""
+def power(S: Series, a: fmpq) -> Series:
+    """The power (Σ S_n t^n)^a, S_0 = 1, by n R_n = Σ_{j≥1} (a j - (n - j)) S_j R_{n-j}."""
     R = [S[0]]
-    for n in range(1, len(S)):
-        terms = ((3 * j - 2 * n) * S[j] * R[n - j] for j in range(1, n + 1))
-        R.append(sum(terms, 0 * S[0]) / (2 * n))
+    for n in range(1, len(S)):  # from S R' = a S' R
+        terms = ((a * j - (n - j)) * S[j] * R[n - j] for j in range(1, n + 1))
+        R.append(sum(terms, 0 * S[0]) / n)
     return R

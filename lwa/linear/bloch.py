@@ -75,11 +75,9 @@ class Bloch:
             # (2 - 2 cos Pκ)/P² = Σ -2 (-1)^n P^{2n-2} κ^{2n}/(2n)!
             following = self.one * fmpq(-2 * (-1) ** n * P ** (2 * n - 2), factorial(2 * n))
             for m in range(2, len(trace)):
-                power = self.zero
-                for j in range(1, n):
-                    power = power + omega2[j] * powers[m - 1][n - j]
-                powers[m].append(power)
-                following = following + trace[m] * power / P**2
+                products = (omega2[j] * powers[m - 1][n - j] for j in range(1, n))
+                powers[m].append(sum(products, self.zero))
+                following = following + trace[m] * powers[m][n] / P**2
             omega2.append(following)
         return omega2
 
@@ -95,12 +93,10 @@ class Bloch:
         """
         weight = self.mu[BRANCHES.index(branch)] * self.c[0] * self.c[1]
         omega2 = self.acoustic(order // 2)
-        b: list[fmpq_mpoly] = []
-        for n in range(order + 1):
-            following = self.one if n == 0 else self.zero
-            if n % 2 == 0:
-                following = following - weight * omega2[n // 2] * (-1) ** (n // 2)
-            for j in range(1, n + 1):  # C_0 (e^{-2q} - 1)/2 = C_0 Σ (-2q)^j/(2 j!)
-                following = following - self.c[0] * b[n - j] * fmpq((-2) ** j, 2 * factorial(j))
-            b.append(following)
+        b = [self.one]
+        for n in range(1, order + 1):
+            right = weight * omega2[n // 2] * -((-1) ** (n // 2)) if n % 2 == 0 else self.zero
+            # C_0 (e^{-2q} - 1)/2 = C_0 Σ (-2q)^j/(2 j!)
+            products = (b[n - j] * fmpq((-2) ** j, 2 * factorial(j)) for j in range(1, n + 1))
+            b.append(right - self.c[0] * sum(products, self.zero))
         return b

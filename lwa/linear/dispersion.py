@@ -51,9 +51,6 @@ class _Banded(Value):
         """Frequencies, ascending along a last axis of length P, to 1e-15 of the largest.
 
         Raises `lwa.InputError` for a wavenumber that is no finite number, and for symbols.
-
-        >>> Dispersion(Cell([1])).branches(3.141592653589793)
-        array([2.])
         """
         return self._bands.branches(wavenumber)
 
@@ -193,9 +190,6 @@ class LoadedChain(_Banded):
 
     Raises `lwa.InputError` unless the load is positive, and for unlike contacts under a law that
     is no power.
-
-    >>> LoadedChain(Cell(["m"], ["A"]), Power("3/2"), "F0").spring_constants
-    (3*A**(2/3)*F0**(1/3)/2,)
     """
 
     cell: Cell

@@ -19,7 +19,7 @@ from typing import Any
 import sympy as sp
 
 from lwa.base import latex
-from lwa.base.exact import InputError, exact, one_of, positive, shorten
+from lwa.base.exact import InputError, one_of, positive, read_exact, shorten
 from lwa.base.frozen import Value
 from lwa.cell import Cell
 from lwa.expansion.expand import expand
@@ -52,7 +52,7 @@ class Shock(Value):
 
     def sound(self, p: Any) -> sp.Expr:
         """Speed of sound dx/dt on the strain p; 0 without load under a power law."""
-        field = self._field.on(exact(p, "p"))
+        field = self._field.on(read_exact(p, "p"))
         bare = self.law.homogeneous and field.p0.is_zero
         return sp.S.Zero if bare else field.sound_speed * field.time_scale
 
@@ -176,7 +176,7 @@ def shock(cell: Cell, law: ContactLaw, behind: Any, ahead: Any) -> Shock:
     (0.8543, 1.7480)
     """
     law = for_cell(law, cell)
-    strains = {name: exact(p, name) for name, p in (("behind", behind), ("ahead", ahead))}
+    strains = {name: read_exact(p, name) for name, p in (("behind", behind), ("ahead", ahead))}
     for name, p in strains.items():
         if law.homogeneous and p.is_negative:
             raise InputError(f"{name} is {shorten(p)}: contacts of a power law only push")
@@ -197,6 +197,6 @@ def piston(cell: Cell, law: ContactLaw, velocity: Any, ahead: Any = 0) -> Shock:
     >>> piston(Cell([1], spacing=1), Power(3), "v").behind
     sqrt(2)*3**(3/4)*sqrt(v)/3
     """
-    field = BackgroundWave(cell, for_cell(law, cell), exact(ahead, "ahead"))
+    field = BackgroundWave(cell, for_cell(law, cell), read_exact(ahead, "ahead"))
     gained = positive(velocity, "velocity") / field.time_scale
     return shock(cell, law, waves.strain(field, gained), field.p0)

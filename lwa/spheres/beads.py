@@ -31,7 +31,7 @@ from functools import partial
 from typing import Any
 
 from lwa.base.exact import InputError
-from lwa.base.tables import Table, among, array, each, named, positive, real, table
+from lwa.base.tables import Table, among, array, each, finite, named, positive, table
 from lwa.spheres.hertz import MATERIALS, Material, Sphere
 
 SCENE = (
@@ -82,7 +82,7 @@ def spheres(content: Any) -> list[Sphere]:
 def _material(value: Any, name: str) -> Material:
     entries = Table(value, name, ("like", "E", "nu", "density"))
     like = entries.read("like", among(MATERIALS)) if "like" in entries else None
-    readers = {"E": positive, "nu": real, "density": positive}
+    readers = {"E": positive, "nu": finite, "density": positive}
     keys = [key for key in readers if key in entries or (like is None and key != "density")]
     values = {key: entries.read(key, readers[key]) for key in keys}
     try:

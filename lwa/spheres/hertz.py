@@ -15,7 +15,7 @@ from typing import Any
 
 import sympy as sp
 
-from lwa.base.exact import InputError, exact, one_of, positive, shorten
+from lwa.base.exact import InputError, one_of, positive, read_exact, shorten
 from lwa.base.frozen import Value
 
 EXPONENT = sp.Rational(3, 2)
@@ -37,7 +37,7 @@ class Material(Value):
     def __post_init__(self) -> None:
         given = self.nu
         object.__setattr__(self, "E", positive(self.E, "E"))
-        object.__setattr__(self, "nu", exact(self.nu, "nu"))
+        object.__setattr__(self, "nu", read_exact(self.nu, "nu"))
         if self.nu.is_number and not -1 < self.nu <= sp.S.Half:
             raise InputError(f"nu is {shorten(given)}: Poisson's ratio lies between -1 and 1/2")
         if self.density is not None:
@@ -81,10 +81,6 @@ class Sphere(Value):
     """A sphere: mass, radius and material, numbers or symbols.
 
     Raises `lwa.InputError` unless mass and radius are positive.
-
-    >>> steel = Material(E="193e9", nu="0.3")
-    >>> stiffness(Sphere("m", "R", steel), steel)
-    38600000000000*sqrt(R)/273
     """
 
     mass: sp.Expr
@@ -115,13 +111,7 @@ class Sphere(Value):
 
 
 def stiffness(sphere: Sphere, other: Sphere | Material) -> sp.Expr:
-    """Stiffness A of F = A δ^{3/2} between two spheres, or a sphere and a flat wall.
-
-    >>> R, E, nu = sp.symbols("R E nu", positive=True)
-    >>> ball = Sphere("m", R, Material(E, nu))
-    >>> sp.simplify(stiffness(ball, ball) - E * sp.sqrt(2 * R) / (3 * (1 - nu**2)))
-    0
-    """
+    """Stiffness A of F = A δ^{3/2} between two spheres, or a sphere and a flat wall."""
     if not isinstance(sphere, Sphere):
         raise InputError(f"sphere is {shorten(sphere)}: a Sphere is wanted")
     if not isinstance(other, Sphere | Material):

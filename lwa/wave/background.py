@@ -24,9 +24,9 @@ import mpmath
 import sympy as sp
 
 from lwa.base import latex
-from lwa.base.exact import InputError, demand_numbers, exact, integer, shorten, signed
+from lwa.base.exact import InputError, demand_numbers, integer, read_exact, shorten, signed
 from lwa.base.frozen import Value
-from lwa.base.quantities import NO_WAVE, RISE, NoSolitaryWave, known
+from lwa.base.quantities import NO_WAVE, RISE, NoSolitaryWave, known_quantity
 from lwa.cell import RESERVED, Cell, check_names
 from lwa.law import ContactLaw, Power, for_cell, substituted
 from lwa.linear.dispersion import Dispersion
@@ -69,15 +69,15 @@ class KdV(Value):
 
     def speed(self, B: Any = RISE) -> sp.Expr:
         """Speed V = c0 + α B/3 of the wave v = B sech²(ξ/L)."""
-        return self.sound_speed + self.nonlinearity * exact(B, "B") / 3
+        return self.sound_speed + self.nonlinearity * read_exact(B, "B") / 3
 
     def width(self, B: Any = RISE) -> sp.Expr:
         """Width L = √(12 γ / (α B)) of v = B sech²(ξ/L); the FWHM is 2 arcosh(√2) L."""
-        return sp.sqrt(12 * sp.simplify(self.dispersion / self.nonlinearity) / exact(B, "B"))
+        return sp.sqrt(12 * sp.simplify(self.dispersion / self.nonlinearity) / read_exact(B, "B"))
 
     def profile(self, xi: Any, B: Any = RISE) -> sp.Expr:
         """Strain v = B sech²(ξ/L) above the background."""
-        return exact(B, "B") * sp.sech(signed(xi, "xi") / self.width(B)) ** 2
+        return read_exact(B, "B") * sp.sech(signed(xi, "xi") / self.width(B)) ** 2
 
 
 @dataclass(frozen=True, repr=False)
@@ -87,9 +87,6 @@ class BackgroundWave(Value):
     p0 : a number or a symbol; not negative under a power law, whose contacts only push.
 
     Raises `lwa.InputError` for anything else, and for unlike contacts under a law that is no power.
-
-    >>> BackgroundWave(Cell([1]), Power("3/2"), "p0").kdv.nonlinearity
-    1/(4*p0**(3/4))
     """
 
     cell: Cell
@@ -98,7 +95,7 @@ class BackgroundWave(Value):
 
     def __post_init__(self) -> None:
         for_cell(self.law, self.cell)
-        p0 = exact(self.p0, "p0")
+        p0 = read_exact(self.p0, "p0")
         if self.law.homogeneous and p0.is_negative:
             raise InputError(f"p0 is {p0}: under a power law it must not be negative")
         chain = {*self.cell.symbols, *self.law.symbols}  # the p0 of a load holds these
@@ -155,9 +152,6 @@ class BackgroundWave(Value):
         """Speed V = dx/dτ of the wave whose strain rises from p0 to p0 + B (default: a symbol B).
 
         Raises `lwa.NoSolitaryWave` for numbers without a wave.
-
-        >>> BackgroundWave(Cell([1]), Power(2), "p0").speed()
-        sqrt(B/3 + p0)
         """
         square = self.stiffness(self._read_rise(B))
         if self.law.homogeneous and self.law.exponent.is_Integer:  # a polynomial in p0 and B
@@ -175,20 +169,20 @@ class BackgroundWave(Value):
         """Read the rise of a wave that exists."""
         if B is None:
             return self._rise
-        B = exact(B, "B")
+        B = read_exact(B, "B")
         if B.is_zero:
             raise InputError("B is 0: a wave rises or falls by B; `kdv` is the limit of small ones")
-        if not (self._power_has if self.law.homogeneous else self._law_has)(B):
+        if not (self._exists_under_power if self.law.homogeneous else self._exists_under_law)(B):
             raise NoSolitaryWave(f"p0 = {self.p0}, B = {shorten(B)}: {NO_WAVE}")
         return B
 
-    def _power_has(self, B: sp.Expr) -> bool:
+    def _exists_under_power(self, B: sp.Expr) -> bool:
         """False if a power law has no wave of the rise B; symbols may leave that open."""
         # Speeds scale as strain^{(k-1)/2}; under k < 1 a wave falls, at most to p = 0.
         grows = (self.law.exponent - 1) * B
         return not (grows.is_nonpositive or (self.p0 + B).is_nonpositive)
 
-    def _law_has(self, B: sp.Expr) -> bool:
+    def _exists_under_law(self, B: sp.Expr) -> bool:
         """False if a law that is no power has no wave of the rise B."""
         if self._free(B):
             return True
@@ -234,7 +228,7 @@ class BackgroundWave(Value):
         B = self._read_rise(B)
         if self._unloaded:
             return CompactWave.canonical(self.cell, self.law.exponent).fwhm(quantity)
-        width = self._flank(B, digits).fwhm(known(quantity))
+        width = self._flank(B, digits).fwhm(known_quantity(quantity))
         return sp.Float(width, digits) * self.unit
 
     @property

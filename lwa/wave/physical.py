@@ -23,8 +23,8 @@ import sympy as sp
 from lwa.base import latex
 from lwa.base.exact import InputError, evaluated, number, one_of, positive, power, shorten
 from lwa.base.frozen import Value
-from lwa.base.quantities import NoSolitaryWave, known, known_extent, strain_power
-from lwa.cell import Cell, check_distinct, check_names
+from lwa.base.quantities import NoSolitaryWave, known_extent, known_quantity, strain_power
+from lwa.cell import Cell, check_names
 from lwa.law import ContactLaw, Power, for_cell, substituted
 from lwa.wave.background import WIDTH_DIGITS, BackgroundWave, taken_names
 from lwa.wave.closed import CompactWave
@@ -62,7 +62,6 @@ class PhysicalWave(Value):
     def __post_init__(self) -> None:
         taken = taken_names(self.cell, self._law)
         force = check_names(positive(self.force, "force"), "force", taken=taken)
-        check_distinct(list(force.free_symbols))
         object.__setattr__(self, "force", force)
         if one_of(self.of, BEARERS, "of") == "bead":
             self._bead_share  # noqa: B018 - a share that does not exist is refused here
@@ -173,7 +172,7 @@ class PhysicalWave(Value):
 
         wave, k, xi = self.wave, number(self.wave.k), finite(x, "x")
         peaks = {"strain": self.strain, "force": self.contact_force, "velocity": self.bead_velocity}
-        peak = number(peaks[known(quantity)])
+        peak = number(peaks[known_quantity(quantity)])
         # The strain is B cos^m(βξ), m = 2/(k-1); the force scales as strain^k.
         beta, exponent = number(wave.beta), 2 * strain_power(quantity, k) / (k - 1)
 
@@ -205,10 +204,6 @@ class PrecompressedWave(Value):
     ζ = (F/F0)^{2/3}, c0 the speed of sound.
 
     Raises `lwa.InputError` unless both are positive, and `lwa.NoSolitaryWave` without a wave.
-
-    >>> wave = PrecompressedWave(Cell(["m"]), Power(2), "F", "F0")
-    >>> wave.sound_speed
-    sqrt(2)*D*F0**(1/4)/sqrt(m)
     """
 
     cell: Cell

@@ -29,7 +29,7 @@ from numpy.typing import ArrayLike, NDArray
 from lwa.base.arrays import Array, finite
 from lwa.base.exact import InputError, demand_numbers, number
 from lwa.base.frozen import Value
-from lwa.base.quantities import NO_WAVE, NoSolitaryWave, known
+from lwa.base.quantities import NO_WAVE, NoSolitaryWave, known_quantity
 from lwa.cell import Cell
 from lwa.law import ContactLaw
 from lwa.linear.dispersion import Dispersion
@@ -93,7 +93,9 @@ class NumericBackground(Value):
 
     def fwhm(self, p0: ArrayLike, B: ArrayLike, quantity: str = "strain") -> Array:
         """Full width at half maximum of the rise of "strain", "force" or "velocity"."""
-        half_width = self._force_half_width if known(quantity) == "force" else self._half_width
+        half_width = (
+            self._force_half_width if known_quantity(quantity) == "force" else self._half_width
+        )
         p0, B, _ = self._waves(p0, B)
         return 2 * _by_block(half_width, p0, B)[()]
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import sympy as sp
 
-from lwa.base.exact import InputError, exact, number, shorten
+from lwa.base.exact import InputError, number, read_exact, shorten
 from lwa.base.quantities import strain_power
 from lwa.cell import Cell
 from lwa.cell import k as symbol_k
@@ -39,7 +39,7 @@ class TravelingWave(CompactWave):
         >>> sp.lambdify("F", speed)(np.array([1.0, 64.0])).round(8)
         array([0.89442719, 1.78885438])
         """
-        load = exact(precompression, "precompression")
+        load = read_exact(precompression, "precompression")
         if load.is_zero:
             return PhysicalWave(self, F, of)
         self._demand_canonical()
@@ -72,9 +72,6 @@ class TravelingWave(CompactWave):
         """Return the waves of this chain on a strain p0; this wave must be the canonical field's.
 
         Raises `lwa.InputError` for the wave of another field, whose equation has no energy.
-
-        >>> canonical_wave(Cell((1,)), 2).on_background("p0").speed()
-        sqrt(B/3 + p0)
         """
         self._demand_canonical()
         return BackgroundWave(self.cell, Power(self.k), p0)

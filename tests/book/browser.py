@@ -2,8 +2,8 @@
 
 The server adds a script to each page. It waits until the page and its mathematics are there, sends
 back what it sees, and goes on to the next page. No other name than 127.0.0.1 resolves, and
-Chromium's own log of the network tells which addresses the pages asked for. At the width of a phone
-the pages are opened in a frame, as a window cannot be that narrow.
+Chromium's own log of the network lists the addresses that the pages requested. At the width of a
+phone the pages are opened in a frame, as a window cannot be that narrow.
 """
 
 from __future__ import annotations
@@ -133,7 +133,7 @@ window.addEventListener("load", async () => {
 
 @dataclass
 class Visit:
-    """What the pages reported, by their paths, and what was asked of the network.
+    """Reports of the pages, by their paths, and requests to the network.
 
     missing : paths that the server does not have.
     foreign : addresses outside this machine that a page tried to reach.
@@ -245,7 +245,7 @@ def visited(
 
 
 def _asked(log: str, origin: str) -> set[str]:
-    """Addresses that the server's pages asked for and that are not its own, by Chromium's log.
+    """Addresses outside the server that its pages requested, by Chromium's log.
 
     The log has one event a line. Requests of the browser's own (its updates) have another initiator
     than the page.

@@ -91,7 +91,7 @@ def test_every_public_name_is_documented_and_no_private_one():
 
 
 def test_the_interface_is_documented_without_generic_text():
-    """No type of what shows progress, nothing that Python says of a type, no mark left as it is."""
+    """No type of a progress function, no text of Python about a type, no mark left unrendered."""
     for page in PAGES:
         if page.startswith("api_"):
             text = re.sub(r"<[^>]*>", "", (HTML / page).read_text())
@@ -229,7 +229,7 @@ def test_faint_text_is_found(tmp_path, color):
 
 @pytest.mark.parametrize("wrap", ["anywhere", "normal"])
 def test_a_word_of_one_letter_a_line_is_found(tmp_path, wrap):
-    """Which nothing else does: it is neither cut nor wider than the page."""
+    """Such a word is neither cut nor wider than the page: no other check finds it."""
     cell = f'<td><span class="pre" style="overflow-wrap: {wrap}">crumbs</span></td>'
     row = f"<table style='width: 80px'><tr>{cell}<td>{'long' * 20}</td></tr></table>"
     (tmp_path / "page.html").write_text(SMALLEST % f'<div style="overflow: auto">{row}</div>')

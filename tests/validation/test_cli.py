@@ -244,7 +244,7 @@ def test_a_file_that_no_run_wrote_is_refused(tmp_path, name, content, message):
 
 
 def test_the_scenes_own_file_is_not_overwritten(capsys, folder):
-    """In any spelling: this was done, and said nothing."""
+    """The file was lost without a message: by any spelling of its name, and by links."""
     file, text = Path("same.json"), json.dumps(document(toml(SCENE)))
     file.write_text(text)
     Path("link.json").symlink_to("same.json")
@@ -257,8 +257,8 @@ def test_the_scenes_own_file_is_not_overwritten(capsys, folder):
         for arguments in ((given, option, out), (option, out, given)):
             status, shown, err = run(capsys, "run", *arguments)
             assert (status, shown) == (2, "")
-            said = f"{option[2:]} is {out}: it is the scene's own file, which would be lost"
-            assert err == f"lwa-validate: {said}\n"
+            message = f"{option[2:]} is {out}: it is the scene's own file, which would be lost"
+            assert err == f"lwa-validate: {message}\n"
     assert file.read_text() == text
 
 
@@ -559,7 +559,7 @@ def test_the_help_of_a_long_command_states_its_duration(name):
 
 @pytest.mark.parametrize("cases", [[1], [1, 2, 3]])
 def test_the_progress_bar_appears_before_the_first_case_ends(cases):
-    """On a terminal, and before the second case is begun."""
+    """The bar stands on a terminal before the second case begins."""
     with terminal() as shown:
         each = iter(command.progress(cases))
         assert next(each) == 1

@@ -37,6 +37,20 @@ def test_a_panel_is_drawn_with_its_labels_and_scales(report):
     np.testing.assert_array_equal(line.get_xydata(), np.column_stack((X, X**2)))
 
 
+@pytest.mark.parametrize(
+    ("most", "labels"),
+    [(8.0, {"1", "1.5", "2", "3", "4", "6", "8"}), (200.0, {"1", "2", "5", "10", "50", "200"})],
+)
+def test_a_logarithmic_axis_of_few_decades_has_plain_numbers(most, labels):
+    x = np.geomspace(1, most, 5)
+    picture = figure([Panel("x", "y", (Curve("c", x, 1e6 * x),), "xy")])
+    picture.canvas.draw()
+    (axes,) = picture.axes
+    assert {tick.get_text() for tick in axes.get_xticklabels()} >= labels
+    assert not any(tick.get_text() for tick in axes.get_xticklabels(minor=True))
+    assert any("10^" in tick.get_text() for tick in axes.get_yticklabels())  # too large for that
+
+
 def test_marks_are_hollow_and_show_the_curves_below(report):
     (line,) = report.figure().axes[0].lines
     assert line.get_markerfacecolor() == "none"

@@ -30,7 +30,7 @@ from validation.pulses.pulse import (
     pulses,
     speed,
 )
-from validation.pulses.signals import Mapped, Sampled, Signal
+from validation.pulses.signals import Piecewise, Sampled, Signal
 from validation.scenes.checks import SceneError, between
 from validation.scenes.scene import Scene
 
@@ -43,20 +43,14 @@ SPEEDS = ("speed_sites", "speed")  # in sites per time, and in length per time
 
 @dataclass(frozen=True)
 class Reading:
-    """Measured numbers of a pulse at a sensor, or its speeds between two sensors.
+    """Measured numbers of a pulse at a sensor, or its speeds between two sensors."""
 
-    kind : "bead" or "contact". places : number of the sensor, or of both, counted from 1.
-    numbers : `READINGS`, or `SPEEDS` (the second one if the scene has spacings).
-    static : static force at the (first) sensor. missing : reason why there are no numbers.
-    pulse : number of the pulse at the sensor, counted from 1.
-    """
-
-    kind: str
-    places: tuple[int, ...]
-    numbers: Mapping[str, Measured]
-    static: float
-    missing: str | None = None
-    pulse: int = 1
+    kind: str  # "bead" or "contact"
+    places: tuple[int, ...]  # number of the sensor, or of both, counted from 1
+    numbers: Mapping[str, Measured]  # `READINGS`, or `SPEEDS` (the second if there are spacings)
+    static: float  # static force at the (first) sensor
+    missing: str | None = None  # reason why there are no numbers
+    pulse: int = 1  # number of the pulse at the sensor, counted from 1
 
     @property
     def name(self) -> str:
@@ -75,17 +69,13 @@ class Recording:
 
 @dataclass(frozen=True, eq=False)
 class Track:
-    """The dynamic force at one sensor as a function of time.
+    """The dynamic force at one sensor as a function of time."""
 
-    number : number of the bead or contact, counted from 1. place : position along the chain in
-    sites and in lengths, by the names `SPEEDS`. static : static force at the sensor.
-    """
-
-    kind: str
-    number: int
+    kind: str  # "bead" or "contact"
+    number: int  # of the bead or contact, counted from 1
     force: Signal
-    place: Mapping[str, float]
-    static: float
+    place: Mapping[str, float]  # along the chain in sites and in lengths, by the names `SPEEDS`
+    static: float  # static force
 
     @cached_property
     def first(self) -> Pulse:
@@ -147,7 +137,7 @@ def tracks(run: Run, every: int = 1) -> tuple[Track, ...]:
             if run.path is None
             else run.signal(kind, i)
         )
-        dynamic = Mapped(force, lambda f: f - static) if static else force
+        dynamic = Piecewise(force.times, lambda t: force(t) - static) if static else force
         return Track(kind, i + 1, dynamic, place, float(static))
 
     beads = zip(scene.bead_sensors, run.bead_force, strict=True)
@@ -163,12 +153,12 @@ def _readings(pair: tuple[Track, Track], every: bool, rtol: float) -> Iterator[R
     fine, _ = pair
     reading = partial(Reading, fine.kind, (fine.number,), static=fine.static)
     try:
-        here, check = (pulses(track.force) if every else [track.first] for track in pair)
+        fine_pulses, coarse = (pulses(t.force) if every else [t.first] for t in pair)
     except MeasureError as error:
         yield reading({}, missing=str(error))
         return
-    for place, both in enumerate(zip(here, check, strict=False), start=1):
-        yield reading(compared(readings, *both, rtol), pulse=place)
+    for number, both in enumerate(zip(fine_pulses, coarse, strict=False), start=1):
+        yield reading(compared(readings, *both, rtol), pulse=number)
 
 
 def readings(pulse: Pulse) -> dict[str, float]:

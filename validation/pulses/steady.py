@@ -31,7 +31,7 @@ import sympy as sp
 from filelock import FileLock, Timeout
 
 from lwa.base.arrays import Array
-from lwa.base.exact import InputError, exact
+from lwa.base.exact import InputError, read_exact
 from lwa.base.files import content
 from validation.lattice.run import IntegrationError, Run
 from validation.lattice.simulate import simulate
@@ -52,7 +52,7 @@ STRETCH = 4  # default number of cells from one place to the next, for k ≥ 3/2
 TOLERANCES = (1e-6, 1e-5)  # of the accurate run and of the one that gives its error
 FARTHER = 4  # times as far as the last place: where the pulse must still be the highest
 STEADY = 0.1  # largest difference from the force that the decay predicts there, over this force
-_WEAKEST = 1 / 50  # peak force of the slowest pulse that is awaited
+_WEAKEST = 1 / 50  # peak force of the slowest pulse for which a run is long enough
 _MOST_BYTES = 10**9
 _FORMAT = {"format": "lwa sweep", "version": 3}  # changes with the definition of a quantity
 
@@ -61,17 +61,13 @@ Key = tuple[sp.Rational, sp.Rational]  # k and ω of a point
 
 @dataclass(frozen=True)
 class Point:
-    """Measured numbers at one k and ω, or the reason why there are none.
-
-    sites : number of beads from the struck bead to both ends of the stretch of measurement.
-    numbers : numbers by the names `QUANTITIES`. missing : reason without numbers.
-    """
+    """Measured numbers at one k and ω, or the reason why there are none."""
 
     k: sp.Rational
     omega: sp.Rational
-    sites: tuple[int, int] | None
-    numbers: Mapping[str, Measured]
-    missing: str | None = None
+    sites: tuple[int, int] | None  # from the struck bead to both ends of the measured stretch
+    numbers: Mapping[str, Measured]  # by the names `QUANTITIES`
+    missing: str | None = None  # reason without numbers
 
 
 def cells_apart(k: float, stretch: int) -> int:
@@ -121,7 +117,7 @@ def _measured(k: sp.Rational, omega: sp.Rational, stretch: int, farther: float) 
     if not abs(higher - 1) <= STEADY:
         raise MeasureError(
             f"not steady: at {far} sites the highest pulse has {higher:.3g} times the force that "
-            f"the leading pulse's decay at {place} sites foretells"
+            f"the leading pulse's decay at {place} sites predicts"
         )
     measured = map(Measured, values.tolist(), (values + errors[:, best]).tolist())
     sites = place, place + chain.sites
@@ -180,8 +176,8 @@ class StruckDimer:
         # q = (k-1)/(2k) and z = q d N: the integral of dn/(c F^q) with F = F_1 e^{-d n} is T.
         q = (self.k - 1) / (2 * self.k)
         speed = self.sites * scipy.special.exprel(q * fall) / (elapsed * peak[:-1] ** q)
-        here = speed * peak[1:] ** q  # a width is a duration at a contact times the speed there
-        numbers = (width[1:] * here, strain_width[1:] * here, speed, fall / self.sites)
+        at_end = speed * peak[1:] ** q  # a width is a duration at a contact times the speed there
+        numbers = (width[1:] * at_end, strain_width[1:] * at_end, speed, fall / self.sites)
         return np.asarray(np.mean(numbers, axis=2))
 
 
@@ -242,8 +238,8 @@ class PointFile:
         """Append a point, and return when the point is on the disk."""
         numbers = {name: [n.value, n.check] for name, n in point.numbers.items()}
         measured = {"sites": point.sites, "numbers": numbers}
-        rest = {"missing": point.missing} if point.missing else measured
-        line = _line({"k": str(point.k), "omega": str(point.omega)} | rest)
+        result = {"missing": point.missing} if point.missing else measured
+        line = _line({"k": str(point.k), "omega": str(point.omega)} | result)
         with self.path.open("ab") as stream:
             stream.write(line if stream.tell() else self.header + line)
             stream.flush()
@@ -256,4 +252,6 @@ def _line(entry: dict[str, Any]) -> bytes:
 
 def _point(k: str, omega: str, sites: Any = None, numbers: Any = (), missing: Any = None) -> Point:
     pairs = {name: Measured(*map(float, numbers[name])) for name in QUANTITIES if numbers}
-    return Point(exact(k, "k"), exact(omega, "omega"), sites and (*sites,), pairs, missing)
+    return Point(
+        read_exact(k, "k"), read_exact(omega, "omega"), sites and (*sites,), pairs, missing
+    )

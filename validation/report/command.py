@@ -14,7 +14,7 @@ from typing import Any, Generic, ParamSpec, TypeVar
 import click
 
 from lwa.base.progress import bar, shown
-from lwa.command.options import called, quantity
+from lwa.command.options import called, quantities, quantity
 from lwa.command.terminal import HELP
 from lwa.command.terminal import run as run_command
 from validation.pictures import SUFFIXES
@@ -60,7 +60,7 @@ class Study(Generic[P]):
             click.echo(printed)
             return 0 if report.ok else 1
 
-        for option in (*_OUTPUT, *reversed(self.options)):
+        for option in (*_OUTPUT, *reversed(self.options)):  # help shows the last decoration first
             run = option(run)
         summary, _, _ = (inspect.getdoc(function) or "").partition("\n\n")
         command = click.command(
@@ -90,9 +90,10 @@ def study(*options: Any, epilog: str = "") -> Callable[[Callable[P, Report]], St
 
 def option(*names: str, default: Any = None, says: str = "", **more: Any) -> Any:
     """Return a Click option with a default and help text ``says``; `number` reads decimals."""
-    more.setdefault("show_default", default not in (None, False))
+    more.setdefault("show_default", default is not None and default is not False)
     if isinstance(default, float):
-        more, default = {"callback": number, "metavar": "NUMBER"} | more, str(default)
+        more, default = {"callback": number} | more, str(default)
+    more.setdefault("metavar", _METAVARS.get(more.get("callback")))
     return click.option(*names, default=default, help=says, **more)
 
 
@@ -113,7 +114,8 @@ def number(context: click.Context, given: click.Parameter, value: str | None) ->
     return None if exact is None else float(exact)
 
 
-EXPONENT = option("--k", callback=number, default="3/2", says="Exponent of F = δ^k.")
+_METAVARS: dict[Any, str] = {number: "NUMBER", quantity: "NUMBER", quantities: "NUMBERS"}
+EXPONENT = option("--k", callback=number, default="3/2", says="Exponent k of the force F = A δ^k.")
 
 
 def progress(cases: Iterable[T]) -> Iterable[T]:

@@ -149,7 +149,7 @@ class Table:
 
 @dataclass(frozen=True)
 class Finding:
-    """A number with bounds, within which it is expected.
+    """A number and the bounds within which it is expected.
 
     low, high : bounds of the value, its error included; by default every number holds.
     error : error of the value; None if the value is exact, or itself an error.

@@ -17,7 +17,7 @@ from lwa.base.tables import Reader
 SceneError = InputError
 """Invalid input of a scene, under the name that `validation` exports."""
 
-integer, positive, real = tables.integer, tables.positive, tables.real
+finite, integer, positive = tables.finite, tables.integer, tables.positive
 
 
 class Failure(RuntimeError):
@@ -33,7 +33,7 @@ def one_of(value: Any, choices: Collection[str], name: str) -> str:
 
 def between(value: Any, name: str, low: float, high: float, wanted: str = "") -> float:
     """Return a finite number between two limits; ``wanted`` ends the message of a `SceneError`."""
-    number = real(value, name)
+    number = finite(value, name)
     if not low <= number <= high:
         wanted = wanted or f"it lies between {low:g} and {high:g}"
         digits = repr(number).removesuffix(".0")  # all of them: 1.0000001 is not 1

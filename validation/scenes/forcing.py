@@ -11,7 +11,7 @@ import numpy as np
 
 from lwa.base.arrays import Array
 from lwa.base.exact import shorten
-from validation.scenes.checks import SceneError, between, each, one_of, positive, real
+from validation.scenes.checks import SceneError, between, each, finite, one_of, positive
 
 DAMPINGS = ("contact", "kuwabara_kono", "restitution")
 
@@ -90,7 +90,7 @@ class Drive:
 
     def __post_init__(self) -> None:
         for name in ("time", "displacement"):
-            row = each(real)(getattr(self, name), f"drive.{name}")
+            row = each(finite)(getattr(self, name), f"drive.{name}")
             object.__setattr__(self, name, row)
         harmonic = self.amplitude is not None or self.frequency is not None
         motions = (self.velocity is not None) + harmonic + bool(self.time or self.displacement)
@@ -116,9 +116,9 @@ class Drive:
             if wrong:
                 raise SceneError(message)
         if self.velocity is not None:
-            real(self.velocity, "drive.velocity")
+            finite(self.velocity, "drive.velocity")
         elif harmonic:
-            real(self.amplitude, "drive.amplitude")
+            finite(self.amplitude, "drive.amplitude")
             positive(self.frequency, "drive.frequency")
             between(self.ramp, "drive.ramp", 0, math.inf, "it must not be negative")
 

@@ -25,7 +25,7 @@ from lwa.base.tables import Reader
 from lwa.cell import exponent
 from lwa.law import ContactLaw
 from lwa.spheres.hertz import Material, Sphere, stiffness
-from validation.scenes.checks import SceneError, each, integer, items, one_of, positive, real
+from validation.scenes.checks import SceneError, each, finite, integer, items, one_of, positive
 from validation.scenes.forcing import Damping, Drive
 
 __all__ = ["Scene", "SceneError"]
@@ -225,21 +225,21 @@ class Scene:
 def _exponent(value: Any, name: str) -> float:
     if isinstance(value, str | sp.Expr):
         return _number(exponent(value), name)
-    return real(value, name)
+    return finite(value, name)
 
 
 _READERS: dict[str, Reader] = {
     "masses": each(positive),
     "stiffnesses": each(positive),
     "spacings": each(positive),
-    "displacements": each(real),
-    "velocities": each(real),
+    "displacements": each(finite),
+    "velocities": each(finite),
     "samples": partial(integer, low=2),
     "k": _exponent,
     "duration": positive,
     "wall": positive,
-    "gravity": real,
-    "precompression": real,
+    "gravity": finite,
+    "precompression": finite,
     "units": lambda value, name: one_of(value, ("", "SI"), name),
 }
 

@@ -80,7 +80,7 @@ from lwa.base.tables import Reader, Table, among, array, each, entries, place, p
 from lwa.law import NAMES, ContactLaw, named, read_law
 from lwa.spheres.beads import read_beads, read_materials
 from lwa.spheres.hertz import Material, Sphere, stiffness
-from validation.scenes.checks import SceneError, columns, integer, positive, real
+from validation.scenes.checks import SceneError, columns, finite, integer, positive
 from validation.scenes.forcing import DAMPINGS, Damping, Drive
 from validation.scenes.scene import Scene
 
@@ -122,18 +122,18 @@ def scene(content: Any) -> Scene:
     row, chain = _chain(file.read("chain", table(KEYS["chain"])), beads, defects)
     n, start, sensors = len(chain["masses"]), tables["start"], tables["sensors"]
     wall = _wall(tables["wall"], row, materials) if "wall" in file else None
-    velocities = start.read("velocities", each(real), ())
+    velocities = start.read("velocities", each(finite), ())
     if "striker" in file:
         if "start" in file:
             raise SceneError("striker and start are both there: one says how the beads start")
-        velocities = (tables["striker"].read("velocity", real),)
+        velocities = (tables["striker"].read("velocity", finite),)
     return Scene(
         **chain,
         **{key: file.entries[key] for key in _NUMBERS if key in file},
         wall=wall,
         duration=file.read("duration", positive),
         units=file.read("units", among({"SI": "SI"}), "SI" if row else ""),
-        displacements=start.read("displacements", each(real), ()),
+        displacements=start.read("displacements", each(finite), ()),
         velocities=velocities,
         damping=_damping(tables["damping"]) if "damping" in file else None,
         drive=_drive(tables["drive"]) if "drive" in file else None,
@@ -183,7 +183,7 @@ def _chain(
         masses = each(positive)(cell, "chain.cell") * repeat
         of_contacts = partial(_of_contacts, period=len(cell), count=n - 1)
         key = given.one("k", "law")
-        law = {key: given.read(key, real if key == "k" else read_law)}
+        law = {key: given.read(key, finite if key == "k" else read_law)}
         stiffnesses = given.read("stiffnesses", of_contacts, [1.0] * (n - 1))
         spacings = given.read("spacings", of_contacts, ())
     for defect in defects:

@@ -46,6 +46,7 @@ FINEST = 1e-13
 """The smallest tolerance that `validation.simulate` takes."""
 
 METHODS: Mapping[str, Sequence[float]] = {
+    # down to rounding; SciPy's methods at few tolerances, as their runs are long
     COMPILED[0]: tuple(10.0 ** -np.arange(3, 12.5, 0.5)),
     COMPILED[1]: tuple(10.0 ** -np.arange(3, 10.5, 0.5)),
     "SciPy DOP853": (1e-6, 1e-8, 1e-9, 1e-10),
@@ -103,6 +104,7 @@ def solitary_wave(sites: int = 100) -> Task:
     The true arrival, peak and width follow from the exact wave.
     """
     start, wave = 16, exact_wave([1], 1.5)
+    # a contact lies half a site behind its bead
     arrival, width = (sites + 0.5) / wave.c, wave.fwhm("force") / wave.c
     recorded = {"contact_sensors": (start + sites,), "duration": arrival + 10, "samples": 2}
     truth = Pulse(arrival, 1.0, arrival - width / 2, arrival + width / 2)
@@ -237,7 +239,10 @@ _NOTE = "CPU time without compilation, on this machine; - where no run attains i
 _AXES = "largest relative error of arrival, peak, FWHM", "CPU time (s)"
 
 
-@study(option("--task", "names", multiple=True, type=click.Choice(NAMES), says="Only this task."))
+_TASKS = click.Choice(NAMES)
+
+
+@study(option("--task", "names", multiple=True, type=_TASKS, says="Run this task; repeatable."))
 def accuracy(
     names: Collection[str] = (),
     methods: Mapping[str, Sequence[float]] = METHODS,

@@ -35,11 +35,12 @@ _NOTE = (
 @study(click.argument("scene"), click.argument("measured"))
 def compare(scene: str, measured: str, run_progress: RunProgress = silent) -> Report:
     """Measured forces at the sensors of a scene beside the simulated ones: arrival, peak, FWHM.
+    SCENE is a scene file, as of `lwa-validate run`. MEASURED, a CSV file, has the columns time and,
+    for each sensor, such as "bead 15 force" (static force included) or "bead 15 dynamic force".
 
-    The file of measurements, CSV, has the columns time and, for each sensor such as bead 15,
-    "bead 15 force" (static force included) or "bead 15 dynamic force". ``rows``: ``kind``,
-    ``number``, ``quantity`` ("arrival", "peak" or "fwhm"), ``simulated_value``, ``measured_value``
-    and ``difference_value``, measured less simulated, with errors; ``shift_value``.
+    ``rows``: ``kind``, ``number``, ``quantity`` ("arrival", "peak" or "fwhm"), ``simulated_value``,
+    ``measured_value`` and ``difference_value``, measured less simulated, with errors;
+    ``shift_value``.
     """
     chain = read_scene(scene)
     if not (chain.bead_sensors or chain.contact_sensors):

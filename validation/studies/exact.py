@@ -14,7 +14,7 @@ from validation.pictures import Curve, Panel
 from validation.report.command import EXPONENT, number, option, study
 from validation.report.result import Report
 from validation.report.table import Column, Table
-from validation.scenes.chains import numbered
+from validation.scenes.chains import numeric_cell
 from validation.waves.profile import ExactWave
 from validation.waves.resonances import resonances as special_ratios
 from validation.waves.solver import exact_wave, measured
@@ -39,10 +39,10 @@ F^(1/k), velocities as F^((k+1)/2k), c as F^((k-1)/2k); widths do not depend on 
 
 @study(
     EXPONENT,
-    option("--masses", callback=quantities, default="1", says="One mass, or the two of a dimer."),
-    option("--speed", callback=number, says="Scale the wave to this speed, at A = D = 1."),
-    option("--force", callback=number, says="Scale the wave to this peak force, at A = 1.  [1]"),
-    option("--background", default=0.0, says="Static over peak compression of a contact."),
+    option("--masses", callback=quantities, default="1", says="Mass of all beads, or two in turn."),
+    option("--speed", callback=number, says="Speed dx/dt of the wave, at A = D = 1."),
+    option("--force", callback=number, says="Peak contact force, at A = 1; by default 1."),
+    option("--background", default=0.0, says="Static over peak compression; 0: no load."),
 )
 def exact(
     k: float,
@@ -56,7 +56,7 @@ def exact(
 
     Takes a second or two, for unequal masses from k = 4 on up to half a minute.
     """
-    values = [float(mass) for mass in numbered(masses).masses]
+    values = [float(mass) for mass in numeric_cell(masses).masses]
     wave = exact_wave(values, k, background=background, progress=progress)
     return wave_report(wave if speed is force is None else wave.scaled(speed=speed, force=force))
 
@@ -102,7 +102,7 @@ _RATIOS = (
 )
 
 
-@study(EXPONENT, option("--count", default=3, says="Number of ratios, from the largest down."))
+@study(EXPONENT, option("--count", default=3, says="Number of mass ratios, from the largest down."))
 def resonances(k: float, count: int) -> Report:
     """Mass ratios m2/m1 < 1 of the dimers with a solitary wave.
 

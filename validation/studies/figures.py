@@ -151,6 +151,7 @@ def chain_speed(N: int, tolerances: tuple[float, float] = TOLERANCES) -> Speed:
     always the same.
     """
     period = N + 1
+    # three periods from the striker its pulse is the chain's own; 14 and 18 beads for small N
     before, across = (max(3, math.ceil(beads / period)) for beads in (14, 18))
     sensors = (before * period + 1, (before + across) * period + 1)
 

@@ -63,7 +63,7 @@ def closed_wave(closure: str) -> TravelingWave:
 
 
 def form(wave: TravelingWave, name: str, *arguments: Any) -> sp.Expr:
-    """Return a closed form of `FORMS`, an attribute of the wave by name, as an exact expression."""
+    """Return the exact expression of one of `FORMS`: a wave's attribute and its arguments."""
     # V² = V²(B = 1) B^{k-1}, V²(B = 1) being the wave's speed_factor.
     if name == "log_amplitude":
         return (2 * sp.log(*arguments) - sp.log(wave.speed_factor)) / (wave.k - 1)
@@ -193,6 +193,8 @@ def under_load() -> Report:
 def contact_loss() -> Report:
     """Contacts open and close, where F = δ^k is not smooth: which order does the splitting keep?"""
     findings, curves = [], []
+    # F = δ^{3/2} has no second derivative where a contact opens: k + 1 of the 6 orders remain. The
+    # bounds ± 0.35 are the scatter of the openings' places within a step.
     for how, coarse, fine, order in (("closed", 0.2, 0.1, 6.0), ("opening", 0.2, 0.012, 2.5)):
         steps = np.geomspace(coarse, fine, 5)
         errors = splitting_errors(1.5, how == "opening", steps)
@@ -234,6 +236,8 @@ def long_run(lasting: float = 1e6, segments: int = 200) -> Report:
     trend = np.polyfit(time, smooth, 1)[0] * lasting / largest
     drift = abs(simulate(three_beads(False, 2e2), method="DOP853").energy_drift / 2e2)
     power, closed = spreading(walk), f"closed contacts, {METHOD} at step 0.5"
+    # The energy error of a symplectic method swings in a band, without growth or trend. An opening
+    # within a step adds an error of random sign: a walk whose spread grows as √t.
     findings = (
         Finding(f"{closed}: largest energy error", largest, 0.0, 5e-5, key="energy_error"),
         Finding(f"{closed}: last tenth over first", growth, 0.5, 1.5, key="last_over_first"),
@@ -303,7 +307,7 @@ CASES: Mapping[str, Callable[[], Report]] = {
 _NAMES = click.Choice([*CASES])
 
 
-@study(option("--case", "names", multiple=True, type=_NAMES, says="Only this case."))
+@study(option("--case", "names", multiple=True, type=_NAMES, says="Run this case; repeatable."))
 def hard(names: Collection[str] = (), progress: Progress[str] = iter) -> Report:
     """Last digits at extreme k, ω and loads, contacts that open, and long runs (half a minute).
 

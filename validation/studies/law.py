@@ -23,7 +23,7 @@ from validation.pulses.pulse import Measured
 from validation.report.command import option, study
 from validation.report.result import Report
 from validation.report.table import Column, Table
-from validation.scenes.chains import numbered
+from validation.scenes.chains import numeric_cell
 from validation.scenes.checks import SceneError, columns, integer
 from validation.waves.contact_law import Medium, fit_power, free_law, weights
 
@@ -42,11 +42,11 @@ _NOTE = (
 
 @study(
     click.argument("data"),
-    option("--masses", callback=quantities, says="Masses of the chain, one or two in turn."),
-    option("--spacing", callback=quantity, says="Distance of neighbours, with --masses."),
-    option("--spheres", metavar="FILE", says="File of the chain's spheres, in place of --masses."),
-    option("--material", metavar="NAME", says="Material of the file whose E is unknown."),
-    option("--degree", default=3, says="Degree of the polynomial ln V(ln F) of the free law."),
+    option("--masses", callback=quantities, says="Mass of all beads, or two in turn; else 1."),
+    option("--spacing", callback=quantity, says="Distance between neighbours; by default 1."),
+    option("--spheres", metavar="FILE", says="File of a cell of spheres, in place of --masses."),
+    option("--material", metavar="NAME", says="Material in this file whose modulus E is wanted."),
+    option("--degree", default=3, says="Degree of the free law's polynomial ln V(ln F)."),
 )
 def law(
     data: str,
@@ -56,10 +56,9 @@ def law(
     material: str | None = None,
     degree: int = 3,
 ) -> Report:
-    """Contact law from a CSV file of pulses with columns force and speed.
-
-    Columns force_error and speed_error, if both are there, are standard deviations that weight the
-    pulses.
+    """Contact law from pulses. DATA, a CSV file, has the columns force (peak contact force) and
+    speed. Columns force_error and speed_error, if both are there, are standard deviations that
+    weight the pulses.
 
     Peak contact forces and speeds are in the units of the masses and the spacing, by default those
     of unit mass and spacing; with spheres they are in N and m/s. ``k_value``, ``A_value`` and, of
@@ -71,7 +70,7 @@ def law(
     force, speed, weight = _pulses(data, degree + 3)
     content: dict[str, Any] = {}
     if spheres is None:
-        cell = Cell(numbered(masses or (1,)).masses, spacing=1 if spacing is None else spacing)
+        cell = Cell(numeric_cell(masses or (1,)).masses, spacing=1 if spacing is None else spacing)
     else:
         content = load(spheres, "a list of spheres", lambda x: entries(x, "the file"))
         cell = Cell.of_spheres(read_spheres(content))

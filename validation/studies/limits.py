@@ -42,8 +42,9 @@ TOLERANCES = {1: (1e-9, 1e-9), 2: (1e-7, 1e-6)}
 
 @dataclass(frozen=True)
 class Comparison:
-    """Theory and lattice in one quantity; omega is 0 for the limit, k None for a result of all k.
+    """Theory and lattice in one quantity.
 
+    k : None for a result of all exponents. omega : 0 for the limit ω → 0.
     bound : largest expected |theory/lattice - 1|.
     """
 

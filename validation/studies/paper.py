@@ -89,7 +89,7 @@ def recorded_chain(
 @study(
     option("--velocity", default=VELOCITY, says="Velocity of the striker in m/s."),
     option("--beads", default=BEADS, says="Number of beads, the striker included."),
-    option("--sensors", callback=quantities, default="15,34", says="Two beads; the striker is 1."),
+    option("--sensors", callback=quantities, default="15,34", says="Two beads; 1 is the striker."),
 )
 def paper(
     velocity: float = VELOCITY,
@@ -98,7 +98,8 @@ def paper(
     tolerances: tuple[float, float] = TOLERANCES,
     run_progress: RunProgress = silent,
 ) -> Report:
-    """The steel:PTFE chain of the paper: speed, peak force and FWHM.
+    """The experiment of Porter et al. (2008): a chain of steel and PTFE beads in turn is struck at
+    one end. Speed, peak force and FWHM on the lattice, and by the theory.
 
     tolerances: of the run and of the less accurate run that gives its errors. Raises `SceneError`
     for values out of range, and `MeasureError` if the pulse is not whole at a sensor before the

@@ -21,7 +21,7 @@ from sympy import Rational
 
 from lwa import Dimer, canonical_wave, homogenize
 from lwa.base.arrays import Array
-from lwa.base.exact import InputError, exact, shorten
+from lwa.base.exact import InputError, read_exact, shorten
 from lwa.base.progress import Progress
 from validation.lattice.threads import cluster, threads
 from validation.pictures import Curve, Map, Panel
@@ -155,7 +155,7 @@ def theory(ks: Axis, omegas: Axis) -> dict[str, dict[str, Array]]:
 def _axis(text: str, name: str) -> Iterator[sp.Expr]:
     """Yield the exact values of a text with numbers and ranges start:stop:count."""
     for part in text.split(","):
-        numbers = [exact(number, name) for number in part.split(":")]
+        numbers = [read_exact(number, name) for number in part.split(":")]
         if len(numbers) not in (1, 3):
             raise SceneError(f"{name} is {shorten(part)}: a range is start:stop:count")
         first, *others = numbers
@@ -168,7 +168,7 @@ def _axis(text: str, name: str) -> Iterator[sp.Expr]:
 def _values(given: str | Iterable[Any], name: str) -> tuple[Rational, ...]:
     """Read the exact values of an axis, in rising order."""
     given = _axis(given, name) if isinstance(given, str) else items(given, name)
-    values = {exact(value, name) for value in given}
+    values = {read_exact(value, name) for value in given}
     least, most = RANGES[name]
     for value in values:
         if not (value.is_Rational and least <= value <= most):
@@ -217,10 +217,10 @@ _RANGES = "values and ranges start:stop:count, separated by commas."
 @study(
     option("--k", "ks", default="5/4:3:8", says=f"Exponents of F = δ^k: {_RANGES}"),
     option("--omega", "omegas", default="1/20:1:20", says=f"Mass ratios m2/m1: {_RANGES}"),
-    option("--stretch", default=STRETCH, says="Cells from place to place; more at k < 3/2."),
-    option("--file", metavar="FILE", says="Keep finished points (.jsonl), and continue from them."),
-    option("--jobs", type=int, says="Threads; by default one for each processor."),
-    option("--cluster", "address", metavar="ADDRESS", says="Dask scheduler to compute on."),
+    option("--stretch", default=STRETCH, says="Cells between two measurements; more at k < 3/2."),
+    option("--file", metavar="FILE", says="File of finished points (.jsonl), to be continued."),
+    option("--jobs", type=int, says="Number of threads; by default one a processor."),
+    option("--cluster", "address", metavar="ADDRESS", says="Dask scheduler, in place of threads."),
 )
 def sweep(
     ks: str | Iterable[Any],

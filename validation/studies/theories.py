@@ -32,17 +32,17 @@ _HEADS = {
     "strain": "FWHM of a contact's strain: theory over truth - 1",
     "speed": "speed at peak contact force 1: theory over truth - 1",
 }
-NAMES = tuple(_HEADS)
+QUANTITIES = tuple(_HEADS)
 
 
 def _closed(closure: str, k: sp.Rational, omega: sp.Rational) -> Sequence[float]:
-    """Return `NAMES` of the closed form of a closure."""
+    """Return `QUANTITIES` by the closed form of a closure."""
     wave = theory_at(k, omega, closure).at_force(1)
     return [float(x) for x in (wave.fwhm("force"), wave.fwhm("strain"), wave.speed)]
 
 
 def _series(order: int, omega: sp.Rational, **k: sp.Rational) -> list[EpsilonSeries]:
-    """Return the series in ε = k - 1 of `NAMES`."""
+    """Return the series in ε = k - 1 of `QUANTITIES`."""
     expansion = expand(Cell((1,) if omega == 1 else (1, omega)), order, **k)
     return [expansion.fwhm("force"), expansion.fwhm("strain"), expansion.c]
 
@@ -51,6 +51,7 @@ def _approximant(n: int, k: sp.Rational, omega: sp.Rational) -> Sequence[float]:
     """Return the Padé approximants [n/n] of the series for equal beads, closed formulas in k."""
     if omega != 1:
         raise NoSolitaryWave("a formula for equal beads")
+    # [n/n] has 2n + 1 coefficients, as many as a series to order 2n
     return [float(row.pade(k, n, n)) for row in _series(2 * n, omega)]
 
 
@@ -75,8 +76,8 @@ HERTZ = sp.Rational(3, 2)
 class Place:
     """Predictions of all theories at one k and ω, beside the lattice's values.
 
-    kind : `SOLITARY` or `STRUCK_CHAIN`, the origin of ``truth``, the lattice's values by `NAMES`.
-    errors : theory/truth - 1 by theory and by `NAMES`; no entry for a theory without a wave.
+    kind : `SOLITARY` or `STRUCK_CHAIN`, the origin of ``truth``, the lattice's `QUANTITIES`.
+    errors : theory/truth - 1 by theory and by `QUANTITIES`; no entry for a theory without a wave.
     seconds : CPU time of deriving and evaluating these theories.
     """
 
@@ -88,7 +89,7 @@ class Place:
     seconds: Mapping[str, float]
 
     def row(self, name: str) -> tuple[object, ...]:
-        """Return the cells of one of `NAMES`; None for a theory without a wave."""
+        """Return the table row of one of `QUANTITIES`; None for a theory without a wave."""
         errors = (self.errors.get(theory, {}).get(name) for theory in THEORIES)
         return name, self.k, self.omega, self.truth[name], self.kind, *errors
 
@@ -110,7 +111,7 @@ def ladder(places: Sequence[Place]) -> Report:
     """Return the table of the theories' errors, and a picture of |error| of the force's width."""
     seconds = {name: [p.seconds[name] for p in places if name in p.seconds] for name in THEORIES}
     costs = ", ".join(f"{name} {1e3 * median(s):.3g}" for name, s in seconds.items() if s)
-    rows = tuple(place.row(name) for name in NAMES for place in places)
+    rows = tuple(place.row(name) for name in QUANTITIES for place in places)
     note = f"{_NOTE}\nMedian cost of derivation and evaluation (ms of CPU): {costs}."
     title = "Theories against true waves"
     equal = [(p.k - 1, p) for p in places if p.omega == 1]
@@ -149,12 +150,12 @@ def place(k: sp.Rational, omega: sp.Rational, kind: str = SOLITARY) -> Place:
         if pulse.missing:
             raise MeasureError(pulse.missing)
         values = [pulse.numbers[name] for name in ("width", "strain_width", "speed")]
-    truth = dict(zip(NAMES, values, strict=True))
+    truth = dict(zip(QUANTITIES, values, strict=True))
     errors, seconds = {}, {}
     for theory, predict in THEORIES.items():
         start = time.process_time()
         with suppress(InputError, NoSolitaryWave):
             off = (x / true.value - 1 for x, true in zip(predict(k, omega), values, strict=True))
-            errors[theory] = dict(zip(NAMES, off, strict=True))
+            errors[theory] = dict(zip(QUANTITIES, off, strict=True))
             seconds[theory] = time.process_time() - start
     return Place(k, omega, kind, truth, errors, seconds)

@@ -45,15 +45,12 @@ _NEAR = 1.2  # times 80 sites, over which the pulse must lead
 
 @dataclass(frozen=True, eq=False)
 class Medium:
-    """Chain of the measured pulses: mean mass m̄, spacing D and speed ratio R(k), 1 ≤ k ≤ 4.
+    """Chain of the measured pulses."""
 
-    ratio_error : relative error of R, for unequal beads at the exponents where it is measured.
-    """
-
-    mass: float
-    spacing: float
-    ratio: Callable[[Any], Array]
-    ratio_error: float
+    mass: float  # mean mass m̄
+    spacing: float  # D
+    ratio: Callable[[Any], Array]  # R(k), 1 ≤ k ≤ 4
+    ratio_error: float  # relative error of R, for unequal beads at the k where it is measured
 
     @classmethod
     def of(cls, cell: Cell) -> Medium:
@@ -100,16 +97,13 @@ def speed_ratio(omega: sp.Rational) -> tuple[Callable[[Any], Array], float]:
 
 @dataclass(frozen=True, eq=False)
 class PowerFit:
-    """Fit of F = A δ^k: k, A, the correlation of k and ln A, and A at k = 3/2 (``hertz``).
-
-    curvature : coefficient of (ln F)² in a parabola through the data ln V; 0 for one power.
-    """
+    """Fit of F = A δ^k."""
 
     k: Measured
     A: Measured
-    correlation: float
-    hertz: Measured
-    curvature: Measured
+    correlation: float  # of k and ln A
+    hertz: Measured  # A at k = 3/2
+    curvature: Measured  # coefficient of (ln F)² in a parabola for ln V; 0 for one power
 
     @property
     def one_power(self) -> bool:
@@ -154,11 +148,7 @@ def fit_power(medium: Medium, force: Array, speed: Array, weight: Array | None =
 
 
 def _fit(x: Array, y: Array, degree: int, weight: Array | None) -> tuple[Array, float]:
-    """Fit a polynomial in x - middle; return coefficients, highest first, and middle.
-
-    The first column of the coefficients is the best fit, the others are draws from their
-    distribution, Student's t with the scatter of the residuals: (degree + 1, 1 + draws).
-    """
+    """Fit a polynomial in x - middle; return coefficients (degree + 1, 1 + draws) and middle."""
     w = np.ones_like(x) if weight is None else weight
     middle = float(np.average(x, weights=w**2))  # slope and constant are uncorrelated about it
     best, covariance = np.polyfit(x - middle, y, degree, w=w, cov=True)
@@ -166,6 +156,8 @@ def _fit(x: Array, y: Array, degree: int, weight: Array | None) -> tuple[Array, 
     rounding = 2 * np.finfo(float).eps * (1 + np.abs(x) + np.abs(y))
     change = np.linalg.pinv(w[:, np.newaxis] * np.vander(x - middle, degree + 1)) * w
     largest = np.abs(change) @ rounding
+    # Coefficients, highest first, of the best fit, then draws from their distribution: Student's t
+    # with the scatter of the residuals.
     shape, freedom = covariance + np.outer(largest, largest), len(x) - degree - 1
     noise = scipy.stats.multivariate_t(None, shape, freedom, allow_singular=True)
     draws = noise.rvs(_DRAWS, random_state=0).reshape(_DRAWS, degree + 1)

@@ -90,9 +90,9 @@ def respond(
 def coefficients(force: Array) -> tuple[Array, Array]:
     """Return the coefficients of cos qξ in E and of sin qξ in O, from F_a on a `circle`."""
     n = len(force) // 2
-    found = scipy.fft.rfft(force) / n
-    found[[0, n]] /= 2
-    return found.real, -found.imag
+    series = scipy.fft.rfft(force) / n
+    series[[0, n]] /= 2
+    return series.real, -series.imag
 
 
 def circle(half_period: float, n: int) -> Array:
@@ -176,7 +176,7 @@ class Problem:
         a = self.strains(z, inverse) / c2
         slope = self.k * np.maximum(self.p0 + a, 0) ** (self.k - 1) / c2
         fault = z - rise(a, self.k, self.p0)
-        columns, rows, rest = [slope * a], [np.eye(1, count)[0]], [z[0] - self.height]
+        columns, rows, faults = [slope * a], [np.eye(1, count)[0]], [z[0] - self.height]
         corner = np.zeros((1 + bool(unknown),) * 2)
         # The kick's size depends smoothly on m2/m1 and is 0 exactly where T is 0 without a kick.
         kick = xi * np.exp(-2 * xi**2) if unknown == "kick" else 0 * xi
@@ -185,7 +185,7 @@ class Problem:
             # its derivative by 1/m2.
             one, two = (self.L / self.n * (xi * (xi < self.L) + s / 2) for s in (-1, 1))
             tail = inverse[0] * one + inverse[1] * two
-            rows, rest = [*rows, tail], [*rest, tail @ z]
+            rows, faults = [*rows, tail], [*faults, tail @ z]
             if unknown == "mass":
                 columns.append(-slope * self.strains(z, (0, 1)))
                 corner[1, 1] = two @ z
@@ -201,7 +201,7 @@ class Problem:
         border = np.array(rows)
         solved = np.linalg.solve(
             np.block([[matrix, np.array(columns).T[on]], [border[:, on], corner]]),
-            np.append(right, rest - border @ known),
+            np.append(right, faults - border @ known),
         )
         known[on] = solved[: len(at)]
         return np.append(known, solved[len(at) :])

@@ -9,7 +9,7 @@ and B u the further compressions of the contacts, (B u)_i = u_i - u_{i+1},
 **Orbits.** u(t) = Σ_h a_h cos(hωt), h = 0 … H, for orbits that are at rest at t = 0. The equations
 are projected on the same cosines by the trapezoidal rule, which is spectrally accurate, and solved
 by Newton's method with a sparse Jacobian (SciPy). Without a wall the mean displacement is held at
-0. Newton's method starts from a near motion, such as an envelope (`lwa.envelope`).
+0. Newton's method starts from a near motion, such as an envelope (`lwa.envelopes`).
 
 **Stability.** The Floquet multipliers are the eigenvalues of the linearised motion over a period
 (SciPy's DOP853). They come in pairs λ, 1/λ; an orbit is linearly stable if all |λ| = 1. (Flach &
@@ -106,14 +106,11 @@ def _power_less_one(share: Array, exponent: float) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Orbit:
-    """A time-periodic motion u(t) = Σ_h a_h cos(hωt) of a chain.
-
-    frequency : ω, in radians per unit of time. coefficients : a, (N, H + 1).
-    """
+    """A time-periodic motion u(t) = Σ_h a_h cos(hωt) of a chain."""
 
     chain: PressedChain
-    frequency: float
-    coefficients: Array
+    frequency: float  # ω, in radians per unit of time
+    coefficients: Array  # a, (N, H + 1)
 
     @property
     def period(self) -> float:
@@ -196,12 +193,12 @@ def continued(begin: Orbit, frequency: float) -> Orbit:
     """Continue an orbit to another frequency; raises `NoOrbit` if Newton's method fails."""
 
     def at(omega: float, path: Sequence[tuple[float, Orbit]]) -> Orbit:
-        here, last = path[-1]
-        ahead = last.coefficients  # extrapolated from the two orbits before
+        (omega1, older), (omega2, last) = path[0], path[-1]
+        start = last.coefficients  # extrapolated from the two orbits before
         if len(path) > 1:
-            before, older = path[0]
-            ahead = ahead + (omega - here) / (here - before) * (ahead - older.coefficients)
-        return orbit(begin.chain, omega, ahead, ahead.shape[1] - 1)
+            share = (omega - omega2) / (omega2 - omega1)
+            start = start + share * (start - older.coefficients)
+        return orbit(begin.chain, omega, start, start.shape[1] - 1)
 
     end = positive(frequency, "frequency")
     return newton.continued(begin, begin.frequency, end, abs(end - begin.frequency) / 4, at)

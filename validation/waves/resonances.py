@@ -35,10 +35,9 @@ _FARTHEST = 0.15  # change of √(m1/m2) in one step along k; neighbours differ 
 
 
 def resonances(k: Any, count: Any) -> tuple[ExactWave, ...]:
-    """Return the solitary waves at the ``count`` largest special ratios ω = m2/m1 < 1.
+    """Return the solitary waves, m1 = 1, at the ``count`` largest special ratios ω = m2/m1 < 1.
 
-    The waves have m1 = 1 and are sorted by falling ω. Raises `SceneError` for numbers out of range,
-    `NoWave` for missing waves.
+    Raises `SceneError` for numbers out of range, `NoWave` for missing waves.
     """
     # Nearer to k = 1 the strain T is lost in rounding.
     k = between(k, "k", 1.1, 5, "special mass ratios are found for k from 1.1 to 5")
@@ -62,17 +61,16 @@ def _followed(wave: ExactWave, k: float) -> ExactWave:
 
     def at(e: float, path: Sequence[tuple[float, ExactWave]]) -> ExactWave:
         """Return the wave at ln(k - 1) = e if √(m1/m2) changes as extrapolated from the path."""
-        here, last = path[-1]
+        (e1, older), (e2, last) = path[0], path[-1]
         expected, bound = 0.0, _FARTHEST
         if len(path) > 1:
-            before, older = path[0]
-            expected = (_root(last) - _root(older)) / (here - before) * (e - here)
+            expected = (_root(last) - _root(older)) / (e2 - e1) * (e - e2)
             bound = 0.02 + 0.2 * abs(expected)
         ratio, exponent = (_root(last) + expected) ** -2, k if e == end else 1 + math.exp(e)
-        found = solve((1.0, ratio), exponent, start=last, free=True)
-        change = _root(found) - _root(last)
-        if found.solitary and abs(change) < _FARTHEST and abs(change - expected) < bound:
-            return found
+        following = solve((1.0, ratio), exponent, start=last, free=True)
+        change = _root(following) - _root(last)
+        if following.solitary and abs(change) < _FARTHEST and abs(change - expected) < bound:
+            return following
         raise NoWave(f"on the way to k = {k:g} the special ratio is lost", last.masses, last.k)
 
     return continued(wave, math.log(wave.k - 1), end, 0.1, at)
@@ -87,18 +85,15 @@ def _next(before: ExactWave, last: ExactWave) -> ExactWave:
     starts = chain(((root, None) for root in middle_first), _without_kick(places, last))
     for root, start in starts:
         with suppress(NoWave):
-            found = solve((1.0, root**-2), last.k, start=start, free=True)
-            if found.solitary and first < _root(found) < end:
-                return found
+            following = solve((1.0, root**-2), last.k, start=start, free=True)
+            if following.solitary and first < _root(following) < end:
+                return following
     limits = f"from {first**-2:.4g} down to {end**-2:.4g}"
     raise NoWave(f"{limits} the next special mass ratio is not found", last.masses, last.k)
 
 
 def _without_kick(places: list[float], near: ExactWave) -> Iterator[tuple[float, ExactWave]]:
-    """Yield values of √(m1/m2) at which T = 0 needs no kick, each with a near wave.
-
-    The kick that enforces T = 0 changes its sign there, between two of the ``places``.
-    """
+    """Yield values of √(m1/m2) at which T = 0 needs no kick, each with a near wave."""
 
     def kick(root: float) -> float:
         """Return the kick's size; NaN without a wave."""
@@ -112,7 +107,7 @@ def _without_kick(places: list[float], near: ExactWave) -> Iterator[tuple[float,
 
     place, size = math.nan, math.nan
     for following in places:
-        before, size = size, kick(following)
+        before, size = size, kick(following)  # it changes its sign where T is 0 without it
         if before * size < 0:
             with suppress(ValueError):  # of a kick that is NaN
                 yield scipy.optimize.brentq(kick, place, following, xtol=1e-6), near

@@ -144,21 +144,21 @@ def measured(wave: ExactWave) -> dict[str, Measured]:
         return {name: Measured(value, checks[name]) for name, value in values.items()}
     # The error of a nanopteron is the difference from the struck chain's symmetric pulse, for the
     # FWHM also from the recorded pulse: so nanopterons of all half periods agree within it.
-    here, pulse = _numbers(wave.scaled(force=1)), struck_pulse(wave.k, wave.omega)
-    there = _numbers(pulse, wave.masses[0])
-    off = {name: abs(there[name] / here[name] - 1) for name in here}
+    pulse = struck_pulse(wave.k, wave.omega)
+    struck = _numbers(replace(pulse, masses=wave.masses, c2=pulse.c2 / wave.masses[0]))
+    unit = _numbers(wave.scaled(force=1))
+    errors = {name: abs(struck[name] / unit[name] - 1) for name in unit}
     for name, width in zip(("fwhm force", "fwhm strain"), pulse.widths, strict=True):
-        off[name] = max(off[name], abs(width / here[name] - 1))
-    far = {name: 1 + off[name] + wave.residual for name in off}
+        errors[name] = max(errors[name], abs(width / unit[name] - 1))
+    far = {name: 1 + error + wave.residual for name, error in errors.items()}
     return {name: Measured(value, value * far[name]) for name, value in values.items()}
 
 
-def _numbers(wave: ExactWave | StruckPulse, mass: float = 1.0) -> dict[str, float]:
-    """Return the numbers of `measured` of a wave of m1 = 1 and peak force 1, for m1 = ``mass``."""
-    root = math.sqrt(mass)
-    numbers = {"c2": wave.c2 / mass, "c": wave.c / root, "tail": wave.tail}
+def _numbers(wave: ExactWave | StruckPulse) -> dict[str, float]:
+    """Return the numbers of `measured`."""
+    numbers = {"c2": wave.c2, "c": wave.c, "tail": wave.tail}
     for name in QUANTITIES:
-        numbers[f"amplitude {name}"] = wave.peak(name)[1] / (root if name == "velocity" else 1.0)
+        numbers[f"amplitude {name}"] = wave.peak(name)[1]
         numbers[f"fwhm {name}"] = wave.fwhm(name)
         numbers[f"rms {name}"] = wave.rms_width(name)
     return numbers
@@ -220,15 +220,15 @@ def _dimer(pair: Pair, k: float, half_period: float | None, progress: Progress[A
     except (InputError, IntegrationError) as error:
         raise NoWave("no pulse of a struck chain", pair, k, f": {error}") from None
 
-    def found(start: LatticeWave | None) -> list[ExactWave]:
+    def rough_waves(start: LatticeWave | None) -> list[ExactWave]:
         """Return the waves that a start leads to at the half periods, on rough grids."""
-        here = []
+        rough = []
         for L in progress(periods):
             with suppress(NoWave):
-                here.append(solve(pair, k, L, _rough(pair, k, L), start))
-        return here
+                rough.append(solve(pair, k, L, _rough(pair, k, L), start))
+        return rough
 
-    waves += found(pulse) or found(None)
+    waves += rough_waves(pulse) or rough_waves(None)
     for wave in sorted(waves, key=pulse.difference):
         with suppress(NoWave):
             return solve(pair, k, wave.half_period, start=wave)

@@ -49,15 +49,11 @@ def _long_wave(problem: newton.Problem) -> Start:
 
 @dataclass(frozen=True, eq=False)
 class StruckPulse(LatticeWave):
-    """Symmetric part of a struck chain's pulse, scaled to contact force 1; masses 1, ω.
+    """Symmetric part of a struck chain's pulse, scaled to contact force 1; masses 1, ω."""
 
-    xi, strains : ξ and the symmetric part of the strain, on a grid beyond the half period.
-    widths : FWHM of force and strain at a contact, means over the two recorded contacts.
-    """
-
-    xi: Array
-    strains: Array
-    widths: tuple[float, float]
+    xi: Array  # a grid beyond the half period
+    strains: Array  # symmetric part of the strain on the grid
+    widths: tuple[float, float]  # FWHM of force and strain, means over the two recorded contacts
 
     @property
     def samples(self) -> int:
@@ -116,13 +112,13 @@ def struck_pulse(k: float, omega: float) -> StruckPulse:
         peaks.append(cut.peak)
     middle, peak = float(np.mean(centers)), math.sqrt(math.prod(peaks))
     width, strain_width, c, _ = chain.numbers(chain.passages(run))[:, place - 1].tolist()
-    here = c * peak ** ((k - 1) / (2 * k))
+    speed = c * peak ** ((k - 1) / (2 * k))
     ample = newton.ample_half_period((1.0, omega), k)
     half = np.arange(0, _LONG * ample, _STEP)
     xi = np.append(-half[:0:-1], half)
     a, b = (
         run.signal("contact", contact, "compression")(
-            np.clip(middle + (site - xi) / here, 0, run.scene.duration)
+            np.clip(middle + (site - xi) / speed, 0, run.scene.duration)
         )
         for contact, site in zip(cell, (-0.5, 0.5), strict=True)
     )

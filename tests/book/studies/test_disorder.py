@@ -45,7 +45,7 @@ def test_the_decay_is_the_mean_loss_at_single_beads(spread, chains, share):
 
 @pytest.mark.slow
 def test_a_decay_that_changes_along_the_chain_fails():
-    """At spread 0.5 the pulse disintegrates: its force decays slower in the second half."""
+    """The pulse disintegrates at spread 0.5: its force decays slower in the second half."""
     wide = disorder(spread=0.5, chains=20)
     assert not wide.ok
     assert wide.document()["decay_change_value"] < -2e-3

@@ -12,7 +12,7 @@ from lwa import Cell, Power
 from lwa.linear.dispersion import LoadedChain
 from tests.commands import ended
 from validation.lattice.simulate import simulate
-from validation.scenes.chains import numbered
+from validation.scenes.chains import numeric_cell
 from validation.scenes.checks import SceneError
 
 
@@ -26,7 +26,7 @@ def equal():
 
 
 def test_equal_beads(equal):
-    """The exact wave keeps its shape on the lattice; the theory is as near as it is said to be."""
+    """The exact wave keeps its shape on the lattice; the theory's error is within its bounds."""
     assert equal["ok"]
     assert equal["lattice_over_exact_value"] < 1e-7
     for row in equal["rows"]:
@@ -47,7 +47,7 @@ def test_the_theory_is_nesterenkos_relation(equal):
 
 
 def test_a_bead_velocity_is_strain_times_speed(equal):
-    """Where the wave is weak: v = B V, and the theory's off falls with the ratio."""
+    """v = B V for weak waves; the theory's error falls with the ratio."""
     weak, even, _ = (abs(row["peak_off_value"]) for row in equal["rows"])
     assert weak < 0.01
     assert 2 < even / weak < 3.34
@@ -68,13 +68,12 @@ def test_masses_matter_to_widths_only():
 @pytest.fixture(scope="module")
 def radiating():
     """A wave of a dimer as strong as the load, run."""
-    wave = Wave(numbered((1, "1/2")), Power("3/2"), 1.0)
+    wave = Wave(numeric_cell((1, "1/2")), Power("3/2"), 1.0)
     return wave, simulate(wave.scene, method="SRKN14", rtol=1e-7)
 
 
 def test_why_dimers_are_worse(radiating):
-    """What the wave leaves behind has the frequency at which its speed is the phase speed of the
-    optical branch, so that it decays."""
+    """The tail has the frequency at which the wave's speed is the optical branch's phase speed."""
     wave, run = radiating
     found = wave.read(run, 1)
     assert found["decay"] > 1e-5
@@ -104,7 +103,7 @@ def test_the_chain_is_followed_as_a_whole(radiating):
 
 
 def test_another_exponent():
-    """At k = 2 the theory is within the 6.8 % of c² that it is off without a load."""
+    """The error at k = 2 is below the 6.8 % of c² that the theory has without a load."""
     found = precompressed(k=2, masses=(1,), ratios=(3, 100))
     assert found.ok
     offs = [row["error_value"] for row in found.document()["rows"]]

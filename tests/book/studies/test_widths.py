@@ -1,6 +1,5 @@
 """FWHM down the paper's chain: identities, published errors, and no definition that meets all."""
 
-import json
 import math
 from itertools import combinations
 
@@ -8,7 +7,6 @@ import numpy as np
 import pytest
 
 from book.studies.widths import FIRST_BEAD, STATED, widths
-from tests.commands import ended
 from validation.scenes.chains import DIAMETER
 from validation.studies.paper import paper
 
@@ -42,6 +40,7 @@ def test_the_ptfe_beads_reproduce_two_of_the_stated_errors_and_nothing_all_three
     found = {(row["quantity"], row["unit"]): row["reproduced"] for row in rows}
     assert found["PTFE beads' force, contact's theory", "s"] == ["m1 ≫ m2", "m1 = m2"]
     assert all(len(lines) < len(STATED) for lines in found.values())
+    assert "No definition meets all three stated errors" in computed.text()
 
 
 def test_the_width_agrees_with_the_experiment_of_the_paper_command(computed):
@@ -57,10 +56,3 @@ def test_no_line_lies_on_another(computed):
     for one, other in combinations(panel.curves, 2):
         same = np.array_equal(one.x, other.x)
         assert not (same and np.allclose(one.y, other.y, rtol=1e-6)), one.label
-
-
-def test_the_command(capsys, computed):
-    status, out, err = ended(capsys, widths.main, "--format", "json")
-    assert (status, err) == (0, "")
-    assert json.loads(out) == json.loads(json.dumps(computed.document()))
-    assert "No definition meets all three stated errors" in computed.text()

@@ -80,7 +80,7 @@ def test_the_coefficient_is_the_minimum_and_the_linear_chains(cell):
 
 
 @pytest.mark.parametrize("k", [K, "k"])
-@pytest.mark.parametrize("P", [1, 2, 3, 5])
+@pytest.mark.parametrize("P", [1, 2, 3, 4, 5, 6])
 def test_the_closure_comes_to_the_same_equation(k, P):
     """The recursion on P fields, which uses no energy, for equal and for unlike contacts."""
     masses = [sp.Rational(3 * i * i + 2, i + 4) for i in range(P)]

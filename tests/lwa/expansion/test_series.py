@@ -13,7 +13,7 @@ import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lwa import Cell, Dimer, InputError, expand
+from lwa import Cell, Dimer, ExpandedWave, InputError, expand, pulse_of_strike
 from lwa.base.exact import signed
 from lwa.base.quantities import QUANTITIES
 from lwa.expansion.radiation import radiation
@@ -146,6 +146,11 @@ def test_a_series_and_its_sum_show_in_a_notebook() -> None:
     chain = expand(Cell([1], spacing=1), 8, k="3/2")
     assert r"c^2 &= 1 - \frac{1}{2} \varepsilon" in chain._repr_latex_()
     assert chain.c2.at()._repr_latex_().startswith(r"$0.81995")
+    wave = ExpandedWave(chain, 64)._repr_latex_()
+    assert r"\frac{dx}{dt} &= 1.811" in wave
+    strike = pulse_of_strike(Cell([1], spacing=1), 1, 1)._repr_latex_()
+    assert r"F &= 0.63526" in strike
+    assert r"\mathrm{FWHM}_{\mathrm{force}} &= 1.411928" in strike
 
 
 def test_at_gives_symbols_their_values() -> None:

@@ -209,6 +209,10 @@ def test_nesterenkos_relation_for_equal_spheres():
     assert same(V2, relation)
 
 
+def test_the_squared_speed_at_an_integer_exponent_is_a_polynomial():
+    assert background_wave(Cell([1]), law=Power(2)).speed() == sp.sqrt(B / 3 + p0)
+
+
 def test_todas_soliton():
     """c² = sinh²κ/κ² at the peak 2 ln cosh κ; the theory errs by κ⁴/60, the width to the -4."""
     wave = background_wave(CHAIN, 0, law=named("exponential", 1))

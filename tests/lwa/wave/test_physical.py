@@ -142,7 +142,6 @@ def test_names_and_numbers_for_the_symbols():
         ("m1", "force 'm1': the name means a property of the cell"),
         ("q", "force 'q': the name means a symbol of the law"),
         ("k", "force 'k': the name means the exponent"),
-        (sp.Symbol("f") + sp.Symbol("f", positive=True), "'f' names two symbols"),
     ],
 )
 def test_refused_forces(F, words):

@@ -30,8 +30,8 @@ PRESSED = Scene(
 )  # fmt: skip
 
 
-def told(what, **options):
-    """A run, and the shares that it tells."""
+def watched(what, **options):
+    """A run, and the shares of its duration reported on the way."""
     shares = []
     return simulate(what, progress=lambda: nullcontext(shares.append), **options), shares
 
@@ -43,7 +43,7 @@ def told(what, **options):
 def test_the_steps_of_adaptive_methods(method, what, rtol):
     """The steps are at most three times as many as expected; the limit is ten times."""
     rtol = max(rtol, 1e-7) if method == "RK23" else rtol
-    run, shares = told(what, method=method, rtol=rtol, atol=rtol)
+    run, shares = watched(what, method=method, rtol=rtol, atol=rtol)
     expected = what.duration / Motion(what).scales.time / limits.mean_step(method, rtol)
     assert what.duration / run.step < 3 * expected + 100
     assert shares == sorted(shares)
@@ -53,9 +53,9 @@ def test_the_steps_of_adaptive_methods(method, what, rtol):
 def test_a_compiled_run_looks_up_on_the_way(monkeypatch):
     """A run in parts gives the same bits as a run in one go."""
     scene = struck(200, 0.3, duration=190.0, contact_sensors=(50,))
-    whole = told(scene, method="SRKN14")
-    monkeypatch.setattr("validation.lattice.engine._GLANCE", 1e4)
-    parts = told(scene, method="SRKN14")
+    whole = watched(scene, method="SRKN14")
+    monkeypatch.setattr("validation.lattice.engine._BETWEEN_REPORTS", 1e4)
+    parts = watched(scene, method="SRKN14")
     assert len(whole[1]) <= 5
     assert len(parts[1]) > 20
     assert parts[1] == sorted(parts[1])

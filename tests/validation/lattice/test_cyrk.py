@@ -31,7 +31,7 @@ def loaded():
 @pytest.mark.parametrize("method", cyrk.METHODS)
 @pytest.mark.filterwarnings("default::DeprecationWarning")
 def test_a_peer_agrees_with_scipy(method):
-    """To 1e-6, what kinks leave of tolerances of 1e-10."""
+    """Kinks leave an error of 1e-6 at tolerances of 1e-10."""
     for task in (struck_chain(0.2733, 16, 10, 17.0), loaded()):
         times = np.linspace(1.0, task.scene.duration, 141)
         found = cyrk.prepared(task, method)(1e-10, task, times)

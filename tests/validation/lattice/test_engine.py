@@ -10,7 +10,7 @@ import pytest
 import scipy
 
 from validation.lattice.kernel.arrays import Chain
-from validation.lattice.kernel.kinks import ramp
+from validation.lattice.kernel.kinks import kink_integrals
 from validation.lattice.run import IntegrationError
 from validation.lattice.schemes import SCHEMES
 from validation.lattice.simulate import COMPILED, simulate, simulate_many
@@ -191,7 +191,7 @@ def test_sampled_forces_are_as_good_as_the_steps(rtol, opens):
 
 @pytest.mark.parametrize("k", [1.2, 1.5, 2.0, 3.0])
 def test_beads_that_meet_after_a_long_flight(k):
-    """A first step through the flight ends in the contact, of which no stage but the last tells."""
+    """A first step through the flight ends in the contact, which only its last stage meets."""
     masses = np.array([2.0, 1.5])
     scene = dict(masses=masses, stiffnesses=(5.0,), k=k, duration=6.0)
     away = simulate(Scene(**scene, velocities=(1.0, 0.0)), rtol=1e-13)
@@ -222,7 +222,7 @@ def test_chains_that_fly_apart_and_meet(seed):
 @numba.njit
 def integrals(chain, points, p, z):
     """The kernel's integrals from the root to z; only compiled functions call the kernel."""
-    return ramp(chain, points, p, z)
+    return kink_integrals(chain, points, p, z)
 
 
 @pytest.mark.parametrize("k", [1.5])

@@ -1,4 +1,4 @@
-"""A bead of 1/1000 between heavy ones rattles: the engine resolves it, or says that it cannot."""
+"""A bead of mass 1/1000 rattles between heavy ones: the engine resolves or refuses the motion."""
 
 import numpy as np
 import pytest

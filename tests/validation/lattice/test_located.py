@@ -28,13 +28,13 @@ def short(omega):
 
 
 def test_both_routes_agree():
-    """Both are good to a few 1e-13: rounding in a thousand steps and more."""
+    """Each route has an error of a few 1e-13, the rounding of some thousand steps."""
     assert off(short(0.2733)) < 2e-12
 
 
 @pytest.mark.slow
 def test_located_kinks_make_the_error_follow_the_tolerance():
-    """In proportion to it; plain DOP853, which steps over the kinks, errs far more at its least."""
+    """Errors are proportional to the tolerance; plain DOP853 steps over the kinks and errs more."""
     task = short(0.2733)
     truth = compiled(task)
 

@@ -361,8 +361,8 @@ def test_a_failing_integrator_is_not_silent(monkeypatch):
 
 def test_a_run_is_drawn_into_given_axes():
     scene = Scene(masses=(1, 1, 1), stiffnesses=(1, 1), k=1.5, duration=3, velocities=(1, 0, 0))
-    heard = replace(scene, contact_sensors=(1,), bead_sensors=(0, 2))
-    run, ax = simulate(heard), Figure().add_subplot()
+    watched = replace(scene, contact_sensors=(1,), bead_sensors=(0, 2))
+    run, ax = simulate(watched), Figure().add_subplot()
     assert run.plot(ax) is ax
     assert [text.get_text() for text in ax.get_legend().get_texts()] == [
         "bead 1", "bead 3", "contact 2",

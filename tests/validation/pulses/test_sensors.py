@@ -26,7 +26,7 @@ def numbers(found):
 
 
 def test_the_experiment_of_the_paper():
-    """The same numbers as `paper`'s, though here the wall's echo is in the record."""
+    """The numbers of the study `paper`, from a record that holds the wall's echo too."""
     rows = {name: number for name, _, number, *_ in paper().tables[0].rows}
     found = record(chain_scene(1.37, 38, (15, 34), 0.0, 2e-3))
     here, speed = numbers(found), found.speeds[0]

@@ -98,13 +98,13 @@ def test_the_errors_cover_other_distances():
 
 @pytest.mark.parametrize("omega", ["0.5", "0.6", "0.7"])
 def test_a_pulse_that_is_overtaken_is_not_steady(omega):
-    """At ω = 0.6 the width was 1.486290 ± 9e-6, and 1.5 ± 0.4 four times as far."""
+    """Mended: at ω = 0.6 the width was 1.486290 ± 9e-6, but 1.5 ± 0.4 four times as far."""
     found = point(HERTZ, R(omega), STRETCH)
     assert (found.sites, found.numbers) == (None, {})
-    told = (
+    message = (
         r"not steady: at 320 sites the highest pulse has [\d.]+ times the force that the leading "
     )
-    assert re.match(told, found.missing)
+    assert re.match(message, found.missing)
 
 
 def test_the_pulse_that_overtakes_is_another_one():
@@ -137,7 +137,7 @@ def test_a_failed_point_states_the_reason():
 
 
 def test_the_end_of_the_chain_is_far_from_the_last_place():
-    """At k = 21/20 and ω = 1/100 the FWHM is 8.5 sites, and 12 beads beyond the place too few."""
+    """Mended: twelve beads beyond the place are too few for a FWHM of 8.5 sites."""
     chain = steady.StruckDimer(1.05, 0.01, 40)
     one, other = (
         chain.passages(chain.run(places, chain.crossing(160), 1e-6))[1]

@@ -13,7 +13,7 @@ from validation.report.files import output_file, replacing
 
 
 def refusal(tmp_path, name):
-    """What is said of an output file of that name; nothing may be left."""
+    """Message of the refusal of an output file of that name; no file may be left."""
     before = sorted(tmp_path.iterdir())
     with pytest.raises(InputError) as caught:
         output_file("plot", str(tmp_path / name), (".svg",))
@@ -29,7 +29,7 @@ def test_places_that_cannot_take_a_file(tmp_path):
     (tmp_path / "folder.svg").mkdir()
     (tmp_path / "file").write_text("")
     os.mkfifo(tmp_path / "pipe.svg")
-    for name, said in {
+    for name, message in {
         "a" * 300 + ".svg": "it cannot be written, File name too long",
         "a" * 300 + "/p.svg": "it cannot be written, File name too long",
         "a/" * 3000 + "p.svg": "it cannot be written, File name too long",
@@ -40,7 +40,7 @@ def test_places_that_cannot_take_a_file(tmp_path):
         "p.txt": "a file ending in .svg is wanted",
         "p\0.svg": "it cannot be written, embedded null byte",
     }.items():
-        assert re.fullmatch(said, refusal(tmp_path, name)), name
+        assert re.fullmatch(message, refusal(tmp_path, name)), name
 
 
 @pytest.mark.parametrize("number", [errno.EACCES, errno.ENOSPC, errno.EROFS, errno.EDQUOT])
@@ -76,12 +76,12 @@ def test_the_content_of_a_regular_file_only(tmp_path):
     (tmp_path / "s").write_bytes(b"12345")
     os.mkfifo(tmp_path / "pipe")
     assert content(tmp_path / "s", 5) == b"12345"
-    for name, most, said in (
+    for name, most, message in (
         ("s", 4, "more than 4 bytes, the most that is read"),
         ("pipe", 9, "only regular files are read"),
         (".", 9, "only regular files are read"),
     ):
-        with pytest.raises(InputError, match=f"^{said}$"):
+        with pytest.raises(InputError, match=f"^{message}$"):
             content(tmp_path / name, most)
 
 

@@ -1,4 +1,4 @@
-"""A report says the same as text, JSON, CSV, picture and page."""
+"""Reports hold the same numbers as text, JSON, CSV, picture and page."""
 
 import dataclasses
 import json
@@ -23,12 +23,12 @@ def test_limits(limits_rows):
     found = json.loads(json.dumps(report(limits_rows).document(), allow_nan=False))
     assert found["ok"] is True
     assert len(found["rows"]) == len(limits_rows)
-    for row, told in zip(limits_rows, found["rows"], strict=True):
-        assert told["lattice_value"] == row.lattice.value
-        assert told["lattice_error_value"] == row.lattice.error
-        error = told["theory_value"] / told["lattice_value"] - 1
-        assert told["error_value"] == pytest.approx(error, rel=1e-12)
-        assert abs(told["error_value"]) <= told["bound_value"]
+    for row, written in zip(limits_rows, found["rows"], strict=True):
+        assert written["lattice_value"] == row.lattice.value
+        assert written["lattice_error_value"] == row.lattice.error
+        error = written["theory_value"] / written["lattice_value"] - 1
+        assert written["error_value"] == pytest.approx(error, rel=1e-12)
+        assert abs(written["error_value"]) <= written["bound_value"]
     shown = report(limits_rows).text()
     assert shown.count("  ok") == len(limits_rows)
     assert shown.endswith("24 checks: all hold")

@@ -1,4 +1,4 @@
-"""A table says the same to people, programs and spreadsheets; a finding holds or does not."""
+"""Tables hold the same numbers as text, JSON, CSV and HTML; findings hold or fail."""
 
 import csv
 import io
@@ -48,11 +48,11 @@ def test_the_rows_of_a_document():
 def test_csv_holds_the_same_numbers():
     rows = list(csv.DictReader(io.StringIO(TABLE.csv())))
     assert list(rows[0]) == ["k", "chain", "speed_value", "speed_error_value", "error_value.F_m"]
-    for row, told in zip(rows, TABLE.document(), strict=True):
+    for row, written in zip(rows, TABLE.document(), strict=True):
         for name in ("speed_value", "speed_error_value"):
-            assert (float(row[name]) if row[name] else None) == told[name]
+            assert (float(row[name]) if row[name] else None) == written[name]
         share = row["error_value.F_m"]
-        assert (float(share) if share else None) == told["error_value"]["F_m"]
+        assert (float(share) if share else None) == written["error_value"]["F_m"]
 
 
 def test_text_falls_into_parts():
@@ -134,10 +134,10 @@ def test_findings_in_lines_and_in_a_document():
     lines = findings_table(found).text()
     assert [line.split()[-1] for line in lines.splitlines()] == ["holds", "ok", "FAILS"]
     assert "5 ± 5e-01" in lines
-    told = json.loads(json.dumps(Report("", findings=found).document(), allow_nan=False))
-    assert told["drift_value"] == 1e-12
-    assert [f["ok"] for f in told["findings"]] == [True, False]
-    assert told["findings"][1]["least_value"] is None
+    written = json.loads(json.dumps(Report("", findings=found).document(), allow_nan=False))
+    assert written["drift_value"] == 1e-12
+    assert [f["ok"] for f in written["findings"]] == [True, False]
+    assert written["findings"][1]["least_value"] is None
 
 
 def test_bounds_are_written_shortly():

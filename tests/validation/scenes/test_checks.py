@@ -16,7 +16,7 @@ CHAIN = struck((1,), 4, duration=3)
 @pytest.mark.parametrize("method", ["DOP853", "SRKN14"])
 @pytest.mark.parametrize("call", [simulate, record])
 def test_a_tolerance_of_any_kind_is_a_float(call, method):
-    for value, said in (
+    for value, message in (
         (Fraction(1, 2), "rtol is 0.5: it lies between 1e-13 and "),
         (Decimal(1), "rtol is 1: it lies"),
         (0.1000000001, "rtol is 0.1000000001: it lies"),
@@ -24,7 +24,7 @@ def test_a_tolerance_of_any_kind_is_a_float(call, method):
         (Decimal("NaN"), "rtol is nan: a finite number"),
         ([1e-9], r"rtol is \[1e-09\]: a number is wanted"),
     ):
-        with pytest.raises(SceneError, match=f"^{said}"):
+        with pytest.raises(SceneError, match=f"^{message}"):
             call(CHAIN, rtol=value, method=method)
     for value in (Fraction(1, 10**6), Decimal("1e-6")):
         found, plain = (call(CHAIN, rtol=rtol, method=method) for rtol in (value, 1e-6))

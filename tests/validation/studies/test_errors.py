@@ -115,7 +115,7 @@ def test_limits_of_one_wave():
      pytest.param([1], 5, marks=pytest.mark.slow)],
 )  # fmt: skip
 def test_exact(masses, k):
-    """On a grid almost three times as fine: Newton's method costs the third power of its size."""
+    """A grid 2.7 times as fine costs twenty times as much: Newton's cost is of third order."""
     wave = exact_wave(masses, k)
     finer = solve(wave.masses, k, wave.half_period, int(2.7 * len(wave.even)), wave)
     held(measured(wave), measured(finer))
@@ -160,7 +160,7 @@ POINTS += [("2", "1/4"), ("6", "3/10")]
 def test_sweep(k, omega):
     """Ten times as far, where the pulse is not yet overtaken.
 
-    A point without numbers says why.
+    A point without numbers states the reason.
     """
     point = sp.Rational(k), sp.Rational(omega)
     found = steady.point(*point, steady.STRETCH)

@@ -83,7 +83,7 @@ def test_every_form_loses_little_and_the_printed_route_more():
 
 
 def test_the_printed_route_is_the_same_theory():
-    """Both give the same β where nothing cancels, to 1e-13 as some ten operations may."""
+    """The same β to 1e-13, the rounding of ten operations, where no terms cancel."""
     k, omega = np.meshgrid([1.5, 2.0, 2.5], [0.1, 0.2733, 1.0])
     wave = closed_wave("paper's closure").numeric()
     np.testing.assert_allclose(printed_beta(k, omega), wave.beta(k, omega), rtol=1e-13)
@@ -198,13 +198,13 @@ def test_a_case_that_does_not_exist_is_named(capsys):
 def test_all_cases_hold_and_state_a_number():
     whole = hard().document()
     assert whole["ok"]
-    assert [told["case"] for told in whole["cases"]] == list(CASES)
-    for told in whole["cases"]:
-        assert told["ok"]
-        assert any(key.endswith("_value") for key in told), told["case"]
+    assert [case["case"] for case in whole["cases"]] == list(CASES)
+    for case in whole["cases"]:
+        assert case["ok"]
+        assert any(key.endswith("_value") for key in case), case["case"]
     json.dumps(whole, allow_nan=False)
-    (ulps,) = (told for told in whole["cases"] if told["case"] == "ulps")
+    (ulps,) = (case for case in whole["cases"] if case["case"] == "ulps")
     assert ulps["loss_ulps_value"] < 1
     assert ulps["printed_loss_ulps_value"] > 2**52  # no digit is left
-    (load,) = (told for told in whole["cases"] if told["case"] == "under-load")
+    (load,) = (case for case in whole["cases"] if case["case"] == "under-load")
     assert 0 < load["loss_ulps_value"] < 8

@@ -147,10 +147,10 @@ def test_text_csv_page_and_json_hold_the_same_numbers():
     assert shown.count("  set") == 2  # what fixes the amplitude agrees by construction
     assert "F_15" in shown
     lines = list(csv.DictReader(io.StringIO(report.csv())))
-    for row, told in zip(lines, found["rows"], strict=True):
-        assert row["quantity"] == told["quantity"]
-        assert float(row["lattice_value"]) == told["lattice_value"]
-        for source, error in told["error_value"].items():
+    for row, written in zip(lines, found["rows"], strict=True):
+        assert row["quantity"] == written["quantity"]
+        assert float(row["lattice_value"]) == written["lattice_value"]
+        for source, error in written["error_value"].items():
             assert float(row[f"error_value.{source}"]) == error
     page = report._repr_html_()
     assert page.count("<tr>") == 1 + len(lines)

@@ -21,13 +21,13 @@ from validation.studies.run import report
 
 
 @pytest.fixture(scope="module")
-def told():
+def report_of_run():
     return report(record(struck((1, 0.5), 20, duration=20, contact_sensors=(4, 8, 18))))
 
 
-def test_the_table_of_numbers_is_that_of_the_document(told):
-    rows = list(csv.DictReader(io.StringIO(told.csv())))
-    sensors = told.document()["sensors"]
+def test_the_table_of_numbers_is_that_of_the_document(report_of_run):
+    rows = list(csv.DictReader(io.StringIO(report_of_run.csv())))
+    sensors = report_of_run.document()["sensors"]
     assert [row["missing"] for row in rows] == [s["missing"] or "" for s in sensors]
     assert sensors[2]["missing"].startswith("the pulse is not wholly in")
     for row, sensor in zip(rows, sensors, strict=True):
@@ -36,19 +36,19 @@ def test_the_table_of_numbers_is_that_of_the_document(told):
             assert row[name] == ("" if sensor[name] is None else str(sensor[name]))
 
 
-def test_a_notebook_shows_the_tables_and_the_forces(told):
-    shown = told._repr_html_()
+def test_a_notebook_shows_the_tables_and_the_forces(report_of_run):
+    shown = report_of_run._repr_html_()
     assert shown.count("<table>") == 2
     assert "<td>contact 5 → 9</td>" in shown
     assert "<svg" in shown
-    (panel,) = told.panels
+    (panel,) = report_of_run.panels
     assert [curve.label for curve in panel.curves] == ["contact 5", "contact 9", "contact 19"]
 
 
 def test_many_sensors_are_drawn_as_a_map():
-    """As curves their names alone would fill the picture."""
-    heard = {"contact_sensors": (18, *range(18)), "bead_sensors": (4, 9)}
-    found = record(struck((1, 0.5), 20, duration=20, samples=3001, **heard))
+    """A legend of so many curves would fill the picture."""
+    sensors = {"contact_sensors": (18, *range(18)), "bead_sensors": (4, 9)}
+    found = record(struck((1, 0.5), 20, duration=20, samples=3001, **sensors))
     few, many = report(found).panels
     assert [curve.label for curve in few.curves] == ["bead 5", "bead 10"]
     assert (many.x, many.y, many.map.label) == ("contact", "time", "force")

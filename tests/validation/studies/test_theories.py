@@ -14,7 +14,15 @@ import sympy as sp
 from lwa import Cell, Expansion, expand
 from validation.pulses.pulse import MeasureError
 from validation.pulses.steady import STRETCH, point
-from validation.studies.theories import HERTZ, NAMES, STRUCK_CHAIN, THEORIES, ladder, place
+from validation.studies.theories import (
+    HERTZ,
+    QUANTITIES,
+    STRUCK_CHAIN,
+    THEORIES,
+    Place,
+    ladder,
+    place,
+)
 from validation.waves.solver import ExactWave, exact_wave
 
 
@@ -67,7 +75,7 @@ def profile(cell: Cell, order: int, k: sp.Rational):
 
 
 def test_the_profile_is_the_exact_waves() -> None:
-    """At k = 1.05, to ε^4 in the logarithm: what is cut off is some ε^5."""
+    """The error at k = 1.05 of a logarithm to ε^4 is of the order of ε^5."""
     k, wave = sp.Rational(21, 20), true("21/20", "1")
     force = profile(Cell([1]), 4, k)
     xi = np.linspace(-6, 6, 25)
@@ -132,8 +140,14 @@ def test_between_resonances_the_series_claims_no_digit() -> None:
     assert found.error > 0.2 * found.value
 
 
+@cache
+def equal() -> Place:
+    """Equal beads at k = 1.1."""
+    return place(sp.Rational(11, 10), sp.S.One)
+
+
 def test_ladder_in_all_forms() -> None:
-    at = place(sp.Rational(11, 10), sp.S.One)
+    at = equal()
     errors = {theory: abs(row["force"]) for theory, row in at.errors.items()}
     # For equal beads all closures are one theory; each order of the series is better.
     assert errors["linear closure"] == pytest.approx(errors["full closure"], rel=1e-9)
@@ -144,22 +158,22 @@ def test_ladder_in_all_forms() -> None:
     report = ladder([at])
     printed = report.text()
     assert "linear closure" in printed
-    assert printed.count("theory over truth - 1") == len(NAMES)
+    assert printed.count("theory over truth - 1") == len(QUANTITIES)
     assert "(ms of CPU): linear closure " in printed
     rows = report.document()["theories"]
     lines = list(csv.DictReader(io.StringIO(report.csv())))
-    for line, row, name in zip(lines, rows, NAMES, strict=True):
+    for line, row, name in zip(lines, rows, QUANTITIES, strict=True):
         assert line["quantity"] == row["quantity"] == name
         assert float(line["truth_value"]) == row["truth_value"] == at.truth[name].value
         for theory in THEORIES:
             assert float(line[f"error_value.{theory}"]) == row["error_value"][theory]
     page = report._repr_html_()
-    assert page.count("<tr>") == 2 * len(NAMES)
+    assert page.count("<tr>") == 2 * len(QUANTITIES)
     assert "<svg" in page
 
 
 def test_a_sum_that_is_refused_is_missing() -> None:
-    """One order tells nothing at k = 3, and a ladder that ends there is no ladder."""
+    """One order has no sum at k = 3; the other theories are still compared."""
     assert "ε^1" not in place(sp.S(3), sp.S.One).errors
 
 
@@ -168,12 +182,12 @@ def test_theories_without_a_wave_are_left_out() -> None:
     at = place(HERTZ, sp.Rational("0.0901277691"))
     assert "[1/1]" not in at.errors
     assert "[1/1] " not in ladder([at]).text().splitlines()[-1]
-    report = ladder([at, place(HERTZ, sp.S.One)])
+    report = ladder([at, equal()])
     assert report.document()["theories"][0]["error_value"]["[1/1]"] is None
-    equal, dimers = report.panels
-    assert {curve.label for curve in equal.curves} == set(THEORIES)
+    beads, dimers = report.panels
+    assert {curve.label for curve in beads.curves} == set(THEORIES)
     assert {c.label: c.style for c in dimers.curves}.items() <= {
-        c.label: c.style for c in equal.curves
+        c.label: c.style for c in beads.curves
     }.items()
     assert "[1/1]" not in {curve.label for curve in dimers.curves}
 

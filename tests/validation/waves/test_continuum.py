@@ -8,7 +8,7 @@ from lwa import Cell, Dimer, Power
 from lwa.equation.evolution import Evolution
 from lwa.law import named
 from validation.scenes.checks import SceneError
-from validation.waves.continuum import Continuum
+from validation.waves.theory import Continuum
 
 
 @pytest.mark.parametrize(

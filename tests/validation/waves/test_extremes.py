@@ -250,7 +250,7 @@ def refusal(k, omega):
 
 
 @pytest.mark.parametrize(
-    ("k", "omega", "says"),
+    ("k", "omega", "begins"),
     [
         ("3", "2.999", "has a wave"),
         ("3", "3", "(G+H+I)/D² is 0"),
@@ -260,12 +260,12 @@ def refusal(k, omega):
         ("8/5", "7", "V²/B^(k-1) is -"),
     ],
 )
-def test_the_closure_is_refused_where_one_of_its_numbers_is_not_positive(k, omega, says):
+def test_the_closure_is_refused_where_one_of_its_numbers_is_not_positive(k, omega, begins):
     """6 (1+ω)² (G+H+I)/D² as the paper has it; at k = 3 it is 2 (3 - ω)(2 + ω)."""
     k, omega = sp.Rational(k), sp.Rational(omega)
-    assert refusal(k, omega).startswith(says)
+    assert refusal(k, omega).startswith(begins)
     terms = (k - 2) * (k - 1), 2 * (k - 1) * (2 - omega) * (1 + omega), 2 * (1 - omega + omega**2)
-    assert (sum(terms) <= 0) == says.startswith("(G")
+    assert (sum(terms) <= 0) == begins.startswith("(G")
 
 
 @pytest.mark.parametrize(

@@ -38,7 +38,7 @@ def specials():
 
 
 def test_the_widths_of_the_hertz_chain(hertz):
-    """Those of the direct simulation of a struck chain, and further digits by convergence."""
+    """The widths of a simulated struck chain, and further digits by convergence."""
     assert hertz.fwhm("force") == pytest.approx(1.411928, abs=5e-7)
     assert hertz.fwhm("strain") == pytest.approx(1.725713, abs=5e-7)
     finer = solve((1.0, 1.0), 1.5, 9, 200)
@@ -102,7 +102,7 @@ def test_a_wave_at_large_k_is_the_end_of_a_continuation(hertz):
 
 
 def test_along_the_mass_ratio_the_tail_grows_from_none(hertz):
-    """By steps that stay on the branch from ω = 1, and lead back."""
+    """Small steps in ω stay on the branch that begins at ω = 1, and lead back."""
     ratios = (1.0, 0.98, 0.96, 0.94, 0.92, 0.9)
     waves = [solve((1.0, 1.0), 1.5, 5)]
     for omega in ratios[1:]:
@@ -169,7 +169,7 @@ def test_the_wave_put_into_the_lattice_comes_back_to_itself(hertz):
 
 
 def test_a_dimers_wave_keeps_its_shape_only_at_a_special_ratio(specials):
-    """At the first ratio as in the uniform chain; 2 % off it light beads stay behind in motion."""
+    """The wave returns at the first ratio; at a ratio 2 % off the light beads keep moving."""
     change, _ = came_back(specials[0])
     assert change < 1e-11
     L = specials[0].half_period
@@ -416,7 +416,7 @@ FAST = (("3/2", "0.45"),)
     ],
 )  # fmt: skip
 def test_the_wave_is_that_of_a_struck_chain(k, omega, share):
-    """At ω = 0.02 it was one of another branch, with c² 1.637; at k = 6/5 SciPy warned."""
+    """Mended: at ω = 0.02 a wave of another branch was found, with c² = 1.637."""
     pulse = point(sp.Rational(k), sp.Rational(omega), STRETCH).numbers
     wave = exact_wave([1, float(sp.Rational(omega))], float(sp.Rational(k)))
     found = measured(wave)
@@ -457,7 +457,7 @@ def test_the_errors_of_solitary_waves_cover_other_half_periods_and_grids(special
 
 
 def test_a_half_period_that_is_too_short_is_refused():
-    """At L = 3 the wave was called solitary, with c² off by 2e-4; accepted ones agree."""
+    """Mended: at L = 3 a wave with an error of 2e-4 in c² was called solitary."""
     k = 1.5
     ample = exact_wave([1], k)
     accepted, refused = {}, {}
@@ -528,7 +528,7 @@ def test_following_stays_on_its_branch_and_leads_back(k):
 
 @pytest.mark.slow
 def test_a_branch_that_turns_back_does_not_reach_its_end():
-    """At ω = 0.7 a branch from k = 2 turns back at k = 1.85."""
+    """A branch from k = 2 at ω = 0.7 turns back at k = 1.85."""
     masses = (1.0, 0.7)
     begin = solve(masses, 2, ample_half_period(masses, 2), start=struck_pulse(2.0, 0.7))
     assert followed(begin, 1.9).residual < 1e-5  # the contacts open at kinks

@@ -29,21 +29,13 @@ def quintic(c: Quintic, x: float) -> float:
 
 
 @part
-def fitted(d: float, v: float, a: float, end: float, end_v: float, end_a: float) -> Quintic:
+def fitted_quintic(d: float, v: float, a: float, end: float, end_v: float, end_a: float) -> Quintic:
     """Return the quintic with value d, slope v and second derivative a at x = 0, and end, end_v and
     end_a at x = 1."""
     c2 = a / 2
-    r0 = end - d - v - c2
-    r1 = end_v - v - 2 * c2
-    r2 = end_a - 2 * c2
-    return (
-        d,
-        v,
-        c2,
-        10 * r0 - 4 * r1 + r2 / 2,
-        -15 * r0 + 7 * r1 - r2,
-        6 * r0 - 3 * r1 + r2 / 2,
-    )
+    # c3, c4 and c5 solve the conditions at x = 1, of which d, v and c2 leave r0, r1 and r2.
+    r0, r1, r2 = end - d - v - c2, end_v - v - 2 * c2, end_a - 2 * c2
+    return (d, v, c2, 10 * r0 - 4 * r1 + r2 / 2, -15 * r0 + 7 * r1 - r2, 6 * r0 - 3 * r1 + r2 / 2)
 
 
 @part
@@ -68,6 +60,7 @@ def kink(c: Quintic, end: float) -> Quintic:
         x, moved = guess, abs(guess - x)
         if moved < 1e-9:  # the remaining error is of the order of its square
             break
+    # Horner's scheme gives the quotient q of p and x - r.
     q3 = c[4] + x * c[5]
     q2 = c[3] + x * q3
     q1 = c[2] + x * q2
@@ -81,7 +74,7 @@ def kink(c: Quintic, end: float) -> Quintic:
 
 
 @summed
-def ramp(chain: Chain, points: Array, p: Quintic, z: float) -> tuple[float, float]:
+def kink_integrals(chain: Chain, points: Array, p: Quintic, z: float) -> tuple[float, float]:
     """Return ∫ (z - x) p_+^k dx and ∫ p_+^k dx from the root r of p to z, for p = (x - r) q(x).
 
     p : r and the coefficients of q; both integrals of `NONE` are 0. points : nodes and weights of

@@ -5,7 +5,7 @@ Within a step a displacement is the polynomial of degree 7 with y, y', y'' and y
 (`validation.lattice.kernel.kinks`) is subtracted before the interpolation and added afterwards.
 
 Letters: n numbers the steps, step n leading from knot n to knot n + 1; row q of the arrays belongs
-to bead ``watched[q]``; h is the step, x = 0 … 1 the time within the step.
+to bead ``watched[q]``, row q + 1 to the next bead; h is the step, x = 0 … 1 the time within it.
 """
 
 from __future__ import annotations
@@ -20,7 +20,15 @@ from lwa.base.arrays import Array
 from validation.lattice.kernel.arrays import Beads, Chain, Knots, Plan
 from validation.lattice.kernel.compiled import SOURCES, ZERO, cached, part
 from validation.lattice.kernel.force import contact_forces, power, stiffness
-from validation.lattice.kernel.kinks import NEAR, NONE, Quintic, fitted, kink, quintic, ramp
+from validation.lattice.kernel.kinks import (
+    NEAR,
+    NONE,
+    Quintic,
+    fitted_quintic,
+    kink,
+    kink_integrals,
+    quintic,
+)
 
 Four = tuple[float, float, float, float]
 
@@ -43,12 +51,6 @@ def store_knot(chain: Chain, beads: Beads, plan: Plan, knots: Knots, now: Any, h
 
 
 @part
-def _adjacent(watched: NDArray[np.int_], q: int) -> bool:
-    """Return True if the beads of rows q and q + 1 are neighbours."""
-    return q >= 0 and q + 1 < len(watched) and watched[q + 1] == watched[q] + 1
-
-
-@part
 def _compression(chain: Chain, knots: Knots, n: int, q: int) -> tuple[float, float, float]:
     """Return δ, δ' and δ'' of the contact between the beads of rows q and q + 1, at knot n."""
     near, far = knots.state[n, q], knots.state[n, q + 1]
@@ -58,8 +60,8 @@ def _compression(chain: Chain, knots: Knots, n: int, q: int) -> tuple[float, flo
 
 @part
 def _kink(chain: Chain, points: Array, knots: Knots, n: int, q: int) -> Quintic:
-    """Return the kink in step n of the contact between rows q and q + 1; `NONE` without a kink."""
-    if points.shape[1] == 0 or not _adjacent(knots.watched, q):
+    """Return the kink in step n of the contact ahead of row q; `NONE` without kink or contact."""
+    if points.shape[1] == 0 or q < 0:
         return NONE
     h = knots.time[n + 1] - knots.time[n]
     d, v, a = _compression(chain, knots, n, q)
@@ -67,16 +69,16 @@ def _kink(chain: Chain, points: Array, knots: Knots, n: int, q: int) -> Quintic:
     most = max(d, end)
     if not (most > 0.0 and min(d, end) < NEAR * most):
         return NONE
-    return kink(fitted(d, h * v, h * h * a, end, h * end_v, h * h * end_a), end)
+    return kink(fitted_quintic(d, h * v, h * h * a, end, h * end_v, h * h * end_a), end)
 
 
 @part
 def _rate(chain: Chain, knots: Knots, n: int, q: int, side: float) -> float:
-    """Return dF/dt of the contact between the beads of rows q and q + 1, at knot n.
+    """Return dF/dt of the contact ahead of the bead of row q, at knot n; 0 without a contact.
 
     side : 1 for the limit from later times, -1 for the limit from earlier times.
     """
-    if not _adjacent(knots.watched, q):
+    if q < 0:
         return 0.0
     d, v, _ = _compression(chain, knots, n, q)
     return float(chain.A[knots.watched[q]] * stiffness(chain, d, side * v > 0.0) * v)
@@ -97,14 +99,16 @@ def _knot(chain: Chain, knots: Knots, n: int, q: int, h: float, side: float) -> 
 
 
 @part
-def _without(chain: Chain, points: Array, knot: Four, p: Quintic, unit: float, z: float) -> Four:
+def _without_kink(
+    chain: Chain, points: Array, knot: Four, p: Quintic, unit: float, z: float
+) -> Four:
     """Subtract from y, y', y'' and y''' at x = z the contribution of a kink p.
 
     The contribution is ``unit`` times p_+^k to y'', and the integrals from p's root on to y' and y.
     """
     if math.isnan(p[0]):
         return knot
-    y, v = ramp(chain, points, p, z)
+    y, v = kink_integrals(chain, points, p, z)
     q = p[1] + z * (p[2] + z * (p[3] + z * (p[4] + z * p[5])))
     rise = p[2] + z * (2 * p[3] + z * (3 * p[4] + z * 4 * p[5]))
     d, slope = (z - p[0]) * q, q + (z - p[0]) * rise
@@ -128,9 +132,11 @@ def _polynomial(
     h = knots.time[n + 1] - knots.time[n]
     push, pull = _units(chain, knots, q, h)
     a, b = _knot(chain, knots, n, q, h, 1.0), _knot(chain, knots, n + 1, q, h, -1.0)
-    a = _without(chain, points, _without(chain, points, a, behind, push, 0.0), ahead, pull, 0.0)
-    b = _without(chain, points, _without(chain, points, b, behind, push, 1.0), ahead, pull, 1.0)
+    for p, unit in ((behind, push), (ahead, pull)):
+        a = _without_kink(chain, points, a, p, unit, 0.0)
+        b = _without_kink(chain, points, b, p, unit, 1.0)
     c2, c3 = a[2] / 2, a[3] / 6
+    # c4 … c7 solve the four conditions at x = 1, of which c0 … c3 leave the remainders r0 … r3.
     r0, r1 = b[0] - a[0] - a[1] - c2 - c3, b[1] - a[1] - 2 * c2 - 3 * c3
     r2, r3 = b[2] - 2 * c2 - 6 * c3, b[3] - 6 * c3
     c4, c5 = 35 * r0 - 15 * r1 + 2.5 * r2 - r3 / 6, -84 * r0 + 39 * r1 - 7 * r2 + r3 / 2
@@ -182,8 +188,8 @@ def _built(sources: int) -> Any:
                     ahead = _kink(chain, points, knots, n, q)
                     low, c6, c7 = _polynomial(chain, points, knots, n, q, behind, ahead)
                 x = (time[s] - start) / h
-                pull_y, pull_v = ramp(chain, points, ahead, x)
-                push_y, push_v = ramp(chain, points, behind, x)
+                pull_y, pull_v = kink_integrals(chain, points, ahead, x)
+                push_y, push_v = kink_integrals(chain, points, behind, x)
                 smooth = quintic(low, x) + x * x * x * x * x * x * (c6 + x * c7)
                 y[r, s] = smooth + push * push_y + pull * pull_y
                 slope = 4 * low[4] + x * (5 * low[5] + x * (6 * c6 + x * 7 * c7))
