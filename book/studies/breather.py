@@ -32,7 +32,7 @@ from validation.pulses.pulse import Measured
 from validation.report.command import EXPONENT, option, study
 from validation.report.result import Report
 from validation.report.table import Column, Finding, Table, percent
-from validation.scenes.chains import numbered
+from validation.scenes.chains import numeric_cell
 from validation.scenes.checks import SceneError, between, integer
 from validation.waves.periodic import Orbit, PressedChain, orbit
 
@@ -75,7 +75,7 @@ def breather(
     Raises `lwa.InputError` for parameters out of range, among them detunings at which contacts open
     or which want more beads.
     """
-    cell, beads = numbered(masses), integer(beads, "beads", 21, 2001)
+    cell, beads = numeric_cell(masses), integer(beads, "beads", 21, 2001)
     if cell.size > 2:
         raise SceneError(f"masses are {cell.size}: breathers are found in cells of one or two")
     between(k, "k", 1.1, 5)

@@ -50,7 +50,7 @@ from validation.pulses.sensors import tracks
 from validation.report.command import EXPONENT, option, study
 from validation.report.result import Report
 from validation.report.table import Column, Finding, Table, percent
-from validation.scenes.chains import numbered, struck
+from validation.scenes.chains import numeric_cell, struck
 from validation.scenes.checks import between, integer
 from validation.scenes.scene import Scene
 from validation.waves.profile import summit
@@ -242,7 +242,7 @@ def gravity(
         "as the depth's third root, the more beads it takes to see it",
     )
     beads = integer(beads, "beads", 10 * FIRST, 20_000)
-    cells = [numbered(row) for row in ([masses] if masses else CHAINS)]
+    cells = [numeric_cell(row) for row in ([masses] if masses else CHAINS)]
     for cell in cells:
         ratio = float(max(cell.masses) / min(cell.masses))
         between(ratio, "the largest mass over the least", 1, _UNLIKE)

@@ -39,7 +39,7 @@ from validation.pulses.sensors import tracks
 from validation.report.command import EXPONENT, option, study
 from validation.report.result import Report
 from validation.report.table import Column, Finding, Table, percent
-from validation.scenes.chains import carrying, numbered
+from validation.scenes.chains import carrying, numeric_cell
 from validation.scenes.checks import SceneError, between
 from validation.scenes.scene import Scene
 from validation.waves.profile import ExactWave
@@ -89,7 +89,7 @@ def precompressed(
 
     Raises `SceneError` for parameters out of range and `MeasureError` if a pulse does not arrive.
     """
-    cells = [numbered(row) for row in ([masses] if masses else CHAINS)]
+    cells = [numeric_cell(row) for row in ([masses] if masses else CHAINS)]
     between(k, "k", 1.01, 8)
     wanted = [between(ratio, "ratio", _WEAKEST, _STRONGEST) for ratio in ratios]
     if not wanted:

@@ -42,7 +42,7 @@ from validation.pulses.pulse import Measured
 from validation.report.command import option, study
 from validation.report.result import Report
 from validation.report.table import Column, Finding, Table
-from validation.scenes.chains import numbered
+from validation.scenes.chains import numeric_cell
 from validation.scenes.checks import between
 from validation.scenes.forcing import Drive
 from validation.scenes.scene import Scene
@@ -91,7 +91,7 @@ def shock(
     Raises `lwa.InputError` for parameters out of range.
     """
     end = between(duration, "duration", SHORTEST, math.inf, f"at least {SHORTEST:g} is wanted")
-    start, cell = read_exact(ahead, "ahead"), numbered(masses)
+    start, cell = read_exact(ahead, "ahead"), numeric_cell(masses)
     laws = LAWS if k is None else (Power(k),)
     steps = [read_exact(jump, "jump") for jump in jumps]
     behind = [step * start if start else step for step in steps]

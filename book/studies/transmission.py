@@ -26,7 +26,7 @@ from validation.pictures import Curve, Panel
 from validation.report.command import EXPONENT, option, study
 from validation.report.result import Report
 from validation.report.table import Column, Finding, Table
-from validation.scenes.chains import numbered
+from validation.scenes.chains import numeric_cell
 from validation.scenes.checks import integer
 from validation.scenes.forcing import Drive
 from validation.scenes.scene import Scene
@@ -62,7 +62,7 @@ def transmission(
 
     Raises `lwa.InputError` for parameters out of range.
     """
-    cell, frequencies = numbered(masses), integer(frequencies, "frequencies", 4, 1000)
+    cell, frequencies = numeric_cell(masses), integer(frequencies, "frequencies", 4, 1000)
     cells = integer(cells, "cells", 40, 1000)
     edges = LoadedChain(cell, Power(str(k)), 1).band_edges()
     omegas = np.linspace(_LOWEST, 1.2, frequencies) * edges.max()

@@ -2,11 +2,6 @@
 
 A reader takes a value and its name in messages, and returns the checked value or raises
 `lwa.InputError`. Numbers of a file are floats.
-
->>> finite("1.5", "duration")
-Traceback (most recent call last):
-    ...
-lwa.base.errors.InputError: duration is '1.5': a number is wanted
 """
 
 from __future__ import annotations

@@ -65,18 +65,25 @@ class Reduction(Value):
     p, a : powers of the substitution and of the integrating factor z^a.
     mu, eta, sigma : μ = V² / (I (p + a)), η = 1 + p - kp, σ = 1 / (I (kp + a)).
     s : power 2 / (1 - η) of the cosine in z.
-    beta, B : wavenumber √σ (1 - η) / 2 of the cosine and amplitude (μ/(β² s (s-1)))^{1/(k-1)} of
-        the strain, which are those of `CompactWave` for either root.
     """
 
+    k: sp.Expr
     p: sp.Expr
     a: sp.Expr
     mu: sp.Expr
     eta: sp.Expr
     sigma: sp.Expr
     s: sp.Expr
-    beta: sp.Expr
-    B: sp.Expr
+
+    @property
+    def beta(self) -> sp.Expr:
+        """The wavenumber √σ (1 - η) / 2 of the cosine, `CompactWave.beta` for either root."""
+        return sp.sqrt(self.sigma) * (1 - self.eta) / 2
+
+    @property
+    def B(self) -> sp.Expr:
+        """The amplitude (μ/(β² s (s-1)))^{1/(k-1)}, `CompactWave.amplitude` for either root."""
+        return (self.mu / (self.beta**2 * self.s * (self.s - 1))) ** (1 / (self.k - 1))
 
     def latex_rows(self) -> list[str]:
         names = {"p": self.p, "a": self.a, r"\mu": self.mu, r"\eta": self.eta}
@@ -249,9 +256,7 @@ class CompactWave(Value):
         a = factored(slope - k) * p + constant
         mu, eta = positive(V, "V") ** 2 / (I * (p + a)), 1 + p - k * p
         sigma, s = 1 / (I * (k * p + a)), 2 / (1 - eta)
-        beta = sp.sqrt(sigma) * (1 - eta) / 2
-        B = (mu / (beta**2 * s * (s - 1))) ** (1 / (k - 1))
-        return Reduction(p, a, mu, eta, sigma, s, beta, B)
+        return Reduction(k, p, a, mu, eta, sigma, s)
 
     def at(self, **values: Any) -> Self:
         """Substitute numbers (or other symbols) for the named symbols, and for ω = m2/m1.

@@ -44,7 +44,7 @@ from validation.lattice.kernel.arrays import (
     Chain,
     Plan,
     Tableau,
-    beginning,
+    initial_progress,
 )
 from validation.lattice.knots import Recorder
 from validation.lattice.run import (
@@ -64,11 +64,11 @@ from validation.scenes.checks import SceneError, integer, positive
 _SUPPORTS = 8  # supports of the long-wave pulse in a window of the engine's choice
 _POINTS = 8  # nodes of the quadrature at a kink
 _NOISE = sys.float_info.epsilon  # in units of the greatest value: a bead that moves less is still
-_GLANCE = 5e7  # bead evaluations between two reports of progress: some tenths of a second
+_BETWEEN_REPORTS = 5e7  # bead evaluations between two reports of progress: some tenths of a second
 # The splitting's step per stage is (rtol/0.01)^0.4 in units of the scene's shortest time, measured
 # on a Hertz dimer of 560 beads; at 0.2 it is still stable.
 _KINKS, _COARSEST = 0.01, 0.2
-_CAREFUL = 100  # added to the expected number of steps for an embedded pair's (shorter) first step
+_EXTRA_STEPS = 100  # added to the expected number of steps: a first step of a pair is shorter
 
 
 def follow(
@@ -143,8 +143,8 @@ def _integrated(
     beads = _start(motion, len(chain.A))
     time, needed = sampled(motion)
     recorder = Recorder(chain, plan.scheme.points, needed, time)
-    now = beginning(plan, _front(motion))
-    glance = 1 + int(_GLANCE / (stages * max(n, SHORTEST)))
+    now = initial_progress(plan, _front(motion))
+    glance = 1 + int(_BETWEEN_REPORTS / (stages * max(n, SHORTEST)))
     t = 0.0
     with progress() as display:
         while t < end:
@@ -196,7 +196,7 @@ def _plan(motion: Motion, method: str, rtol: float, step: float | None) -> tuple
     longest = math.inf if step is None else positive(step, "step")
     if isinstance(scheme, Pair):
         mean = min(mean_step(method, rtol) * min(scales.time, end), longest)
-        careful = _CAREFUL
+        careful = _EXTRA_STEPS
     else:
         natural = min((rtol / _KINKS) ** 0.4, _COARSEST) * scheme.stages
         mean = natural * min(scales.time, end) if step is None else longest

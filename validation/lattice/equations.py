@@ -56,8 +56,8 @@ class Motion:
         self.scene, self.size, self.k = scene, n, scene.k
         self.masses, self.stiffnesses = np.array(scene.masses), np.array(scene.stiffnesses + wall)
         contacts = len(self.stiffnesses)
-        braked = None if damping is None else damping.power(scene.k)
-        self.contact = Contact(scene.k, scene.law, braked)
+        damping_power = None if damping is None else damping.power(scene.k)
+        self.contact = Contact(scene.k, scene.law, damping_power)
         self.damping = self.rest = self.load = np.zeros(contacts)
         if damping is not None:
             ahead = np.append(self.masses[1:], math.inf)[:contacts]  # a wall has infinite mass
@@ -118,7 +118,7 @@ class Motion:
         return self.energy(state, first)
 
     @property
-    def driven(self) -> float:
+    def drive_energy(self) -> float:
         """Energy that a drive can give to a bead, 0 without a drive."""
         return 0.0
 
@@ -135,7 +135,7 @@ class Motion:
     @np.errstate(all="ignore")
     def scales(self) -> Scales:
         """Characteristic scales; raises `SceneError` if a scale over- or underflows."""
-        energy, n, A = self.energy(self.start) + self.driven, self.size, self.stiffnesses
+        energy, n, A = self.energy(self.start) + self.drive_energy, self.size, self.stiffnesses
         deepest = at_rest = self.rest.max(initial=0.0) if self.loaded else 0.0
         stiffest = A.max(initial=0.0)
         pressed = self.compression(self.start[:n]).max(initial=0.0) > deepest
@@ -174,7 +174,7 @@ class ForcedMotion(Motion):
             self.start[0], self.start[self.size], _ = scene.drive.at(0.0)
 
     @property
-    def driven(self) -> float:
+    def drive_energy(self) -> float:
         drive = self.scene.drive
         return 0.0 if drive is None else float(self.masses.mean() * drive.fastest**2)
 

@@ -16,8 +16,8 @@ from validation.lattice.kernel.arrays import Chain, Knots
 from validation.lattice.kernel.samples import interpolate
 from validation.lattice.signal import Beads
 
-_PART = 2**18  # numbers of the knots that the engine stores between two calls of `take`
-_KEPT = 2**28  # bytes of knots that a run keeps
+_BUFFER = 2**18  # numbers of the knots that the engine stores between two calls of `take`
+_MOST_BYTES = 2**28  # bytes of knots that a run keeps
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +61,7 @@ class Recorder:
         # A bead's acceleration changes with its neighbours' displacements.
         near = {j + m for j in needed.tolist() for m in (-1, 0, 1)}
         watched = np.array(sorted(near - {-1}), int)
-        most = 2 + _PART // (3 * len(watched) + 1)
+        most = 2 + _BUFFER // (3 * len(watched) + 1)
         self.knots = Knots(np.empty(most), watched, np.empty((most, len(watched), 3)))
         self.y, self.v = np.empty((2, len(needed), len(time)))
         self.left = np.full(len(watched), np.inf)
@@ -82,7 +82,7 @@ class Recorder:
         now = slice(self.done, due)
         self.y[:, now], self.v[:, now] = path(self.needed, self.time[now])
         self.done, self.size = due, self.size + part[1].nbytes
-        if self.size <= _KEPT:
+        if self.size <= _MOST_BYTES:
             self.parts.append(part)
         else:
             self.parts.clear()
@@ -90,7 +90,7 @@ class Recorder:
         return 1
 
     def path(self, left: Array) -> KnotPath | None:
-        """Return the motion of the whole run; None if the knots take more than `_KEPT` bytes.
+        """Return the motion of the whole run; None if the knots take more than `_MOST_BYTES` bytes.
 
         left : time at which a window left each bead of the chain; later samples become NaN.
         """

@@ -25,12 +25,12 @@ from lwa.law import ContactLaw
 class Contact:
     """The force F(δ) of a contact of unit stiffness, for a `ContactLaw` or for the power δ^k.
 
-    braked : exponent p of the damping force ~ δ^p dδ/dt; None without damping.
+    damping_power : exponent p of the damping force ~ δ^p dδ/dt; None without damping.
     """
 
     k: float
     law: ContactLaw | None = None
-    braked: float | None = None
+    damping_power: float | None = None
 
     @cached_property
     def pulls(self) -> bool:
@@ -58,10 +58,10 @@ class Contact:
 
     def damped(self, elastic: Array, damping: Array, compression: Array, rate: Array) -> Array:
         """Return the total forces (contacts, …); damping : coefficients, rate : dδ/dt."""
-        if self.braked is None:
+        if self.damping_power is None:
             return elastic
         closed = compression if self.pulls else np.maximum(compression, 0.0)
-        total = elastic + (damping * (closed**self.braked * rate).T).T
+        total = elastic + (damping * (closed**self.damping_power * rate).T).T
         return total if self.pulls else np.where(compression > 0, np.maximum(total, 0.0), 0.0)
 
     def _evaluated(self, order: int, compression: Array) -> Array:

@@ -34,16 +34,12 @@ _PARTLY = "the pulse is not wholly in the record:"
 
 @dataclass(frozen=True)
 class Pulse:
-    """A pulse in the units of its record.
+    """A pulse in the units of its record."""
 
-    arrival : time of the peak. peak : value of the signal at the peak. rise, fall : times before
-    and after the arrival at which the signal passes half its peak.
-    """
-
-    arrival: float
-    peak: float
-    rise: float
-    fall: float
+    arrival: float  # time of the peak
+    peak: float  # value of the signal at the peak
+    rise: float  # time before the arrival at which the signal passes half its peak
+    fall: float  # time after the arrival at which the signal passes half its peak
 
     @property
     def fwhm(self) -> float:
@@ -77,7 +73,7 @@ def pulses(
     time, values : as in `measure`.
     least : smallest prominence of a pulse (height above its surroundings) over the highest peak.
 
-    A pulse with a flank that does not fall to half the peak, as when two overlap, is left out.
+    A pulse with a flank that does not fall to half its peak, as when two overlap, is left out.
     Raises `MeasureError` for a record without any pulse.
     """
     signal = _signal(time, values)
@@ -137,9 +133,8 @@ def leading_pulses(signal: Signal, k: float, shares: Sequence[float] = (0.5,)) -
 
     The pulse ends where the compression first falls to a quarter of its highest value so far.
 
-    k : exponent of the signal as a power of the compression.
-    shares : fractions of the peak. The pulses returned differ in rise and fall, the times at which
-        the signal passes each fraction.
+    shares : fractions of the peak; the pulses returned differ in the times at which the signal
+        rises and falls through each fraction.
     """
     grid, quarter = _Grid(signal), 0.25**k
     start = int(np.argmax(grid.f > quarter * grid.f.max()))

@@ -30,7 +30,7 @@ from validation.pulses.pulse import (
     pulses,
     speed,
 )
-from validation.pulses.signals import Mapped, Sampled, Signal
+from validation.pulses.signals import Piecewise, Sampled, Signal
 from validation.scenes.checks import SceneError, between
 from validation.scenes.scene import Scene
 
@@ -137,7 +137,7 @@ def tracks(run: Run, every: int = 1) -> tuple[Track, ...]:
             if run.path is None
             else run.signal(kind, i)
         )
-        dynamic = Mapped(force, lambda f: f - static) if static else force
+        dynamic = Piecewise(force.times, lambda t: force(t) - static) if static else force
         return Track(kind, i + 1, dynamic, place, float(static))
 
     beads = zip(scene.bead_sensors, run.bead_force, strict=True)

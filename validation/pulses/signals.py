@@ -56,20 +56,15 @@ class Sampled:
 
 
 @dataclass(frozen=True)
-class Mapped:
-    """A signal whose values are a ``function`` of another signal's values."""
+class Piecewise:
+    """A function that is smooth between increasing ``times``, as a `Signal`."""
 
-    signal: Signal
-    function: Callable[[Array], Array]
-
-    @property
-    def times(self) -> Array:
-        """Times of the underlying signal."""
-        return self.signal.times
+    times: Array
+    function: Callable[[ArrayLike], Array]
 
     def __call__(self, time: ArrayLike, /) -> Array:
-        """Return ``function`` of the signal's values at these times."""
-        return self.function(self.signal(time))
+        """Return the function's values."""
+        return self.function(time)
 
 
 def integral(signal: Signal, low: float, high: float) -> float:

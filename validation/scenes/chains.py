@@ -36,7 +36,7 @@ def struck(masses: Sequence[float], beads: int, k: float = 1.5, **rest: Any) -> 
     return Scene(masses=row, stiffnesses=(1.0,) * (beads - 1), k=k, **blow)
 
 
-def numbered(masses: Sequence[Any]) -> Cell:
+def numeric_cell(masses: Sequence[Any]) -> Cell:
     """Return the unit cell of masses that are numbers, with spacing 1; `SceneError` for symbols."""
     cell = Cell(tuple(masses), spacing=1)
     for mass in cell.masses:

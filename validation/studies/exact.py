@@ -14,7 +14,7 @@ from validation.pictures import Curve, Panel
 from validation.report.command import EXPONENT, number, option, study
 from validation.report.result import Report
 from validation.report.table import Column, Table
-from validation.scenes.chains import numbered
+from validation.scenes.chains import numeric_cell
 from validation.waves.profile import ExactWave
 from validation.waves.resonances import resonances as special_ratios
 from validation.waves.solver import exact_wave, measured
@@ -56,7 +56,7 @@ def exact(
 
     Takes a second or two, for unequal masses from k = 4 on up to half a minute.
     """
-    values = [float(mass) for mass in numbered(masses).masses]
+    values = [float(mass) for mass in numeric_cell(masses).masses]
     wave = exact_wave(values, k, background=background, progress=progress)
     return wave_report(wave if speed is force is None else wave.scaled(speed=speed, force=force))
 

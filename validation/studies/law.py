@@ -23,7 +23,7 @@ from validation.pulses.pulse import Measured
 from validation.report.command import option, study
 from validation.report.result import Report
 from validation.report.table import Column, Table
-from validation.scenes.chains import numbered
+from validation.scenes.chains import numeric_cell
 from validation.scenes.checks import SceneError, columns, integer
 from validation.waves.contact_law import Medium, fit_power, free_law, weights
 
@@ -70,7 +70,7 @@ def law(
     force, speed, weight = _pulses(data, degree + 3)
     content: dict[str, Any] = {}
     if spheres is None:
-        cell = Cell(numbered(masses or (1,)).masses, spacing=1 if spacing is None else spacing)
+        cell = Cell(numeric_cell(masses or (1,)).masses, spacing=1 if spacing is None else spacing)
     else:
         content = load(spheres, "a list of spheres", lambda x: entries(x, "the file"))
         cell = Cell.of_spheres(read_spheres(content))

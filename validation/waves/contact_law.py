@@ -148,11 +148,7 @@ def fit_power(medium: Medium, force: Array, speed: Array, weight: Array | None =
 
 
 def _fit(x: Array, y: Array, degree: int, weight: Array | None) -> tuple[Array, float]:
-    """Fit a polynomial in x - middle; return coefficients, highest first, and middle.
-
-    The first column of the coefficients is the best fit, the others are draws from their
-    distribution, Student's t with the scatter of the residuals: (degree + 1, 1 + draws).
-    """
+    """Fit a polynomial in x - middle; return coefficients (degree + 1, 1 + draws) and middle."""
     w = np.ones_like(x) if weight is None else weight
     middle = float(np.average(x, weights=w**2))  # slope and constant are uncorrelated about it
     best, covariance = np.polyfit(x - middle, y, degree, w=w, cov=True)
@@ -160,6 +156,8 @@ def _fit(x: Array, y: Array, degree: int, weight: Array | None) -> tuple[Array, 
     rounding = 2 * np.finfo(float).eps * (1 + np.abs(x) + np.abs(y))
     change = np.linalg.pinv(w[:, np.newaxis] * np.vander(x - middle, degree + 1)) * w
     largest = np.abs(change) @ rounding
+    # Coefficients, highest first, of the best fit, then draws from their distribution: Student's t
+    # with the scatter of the residuals.
     shape, freedom = covariance + np.outer(largest, largest), len(x) - degree - 1
     noise = scipy.stats.multivariate_t(None, shape, freedom, allow_singular=True)
     draws = noise.rvs(_DRAWS, random_state=0).reshape(_DRAWS, degree + 1)

@@ -9,7 +9,7 @@ and B u the further compressions of the contacts, (B u)_i = u_i - u_{i+1},
 **Orbits.** u(t) = Σ_h a_h cos(hωt), h = 0 … H, for orbits that are at rest at t = 0. The equations
 are projected on the same cosines by the trapezoidal rule, which is spectrally accurate, and solved
 by Newton's method with a sparse Jacobian (SciPy). Without a wall the mean displacement is held at
-0. Newton's method starts from a near motion, such as an envelope (`lwa.envelope`).
+0. Newton's method starts from a near motion, such as an envelope (`lwa.envelopes`).
 
 **Stability.** The Floquet multipliers are the eigenvalues of the linearised motion over a period
 (SciPy's DOP853). They come in pairs λ, 1/λ; an orbit is linearly stable if all |λ| = 1. (Flach &

@@ -23,7 +23,8 @@ from numpy.typing import ArrayLike, NDArray
 from lwa.base.arrays import Array, ArrayValue
 from lwa.base.quantities import QUANTITIES, strain_power
 from validation.pictures import Curve, Panel, Pictured
-from validation.pulses.pulse import MeasureError
+from validation.pulses.pulse import highest_pulse
+from validation.pulses.signals import Piecewise
 from validation.scenes.chains import carrying
 from validation.scenes.checks import SceneError, positive
 from validation.scenes.scene import Scene
@@ -94,20 +95,12 @@ class LatticeWave(ArrayValue, Pictured):
         return summit(self._quantity(name), xi)
 
     def fwhm(self, name: str = "strain") -> float:
-        """Full width at half maximum of a quantity's highest hump, a length; name as in `peak`."""
-        quantity, (top, peak) = self._quantity(name), self.peak(name)
+        """Full width at half maximum of a quantity's highest hump, a length; name as in `peak`.
 
-        def above(r: Any, side: int) -> Array:
-            return quantity(top + side * r) - peak / 2
-
-        distance, width = np.linspace(0, self.half_period, 4 * self.samples), 0.0
-        for side in (-1, 1):
-            below = int(np.argmax(above(distance, side) < 0))
-            if not below:
-                raise MeasureError(f"the {name} has no FWHM: its tail is above half its peak")
-            ends = distance[below - 1 : below + 1]
-            width += scipy.optimize.brentq(above, *ends, (side,), xtol=1e-14, rtol=1e-14)
-        return float(width)
+        Raises `MeasureError` for a hump that does not fall to half its peak.
+        """
+        xi = np.linspace(-self.half_period, self.half_period, self.samples + 1)
+        return highest_pulse(Piecewise(xi, self._quantity(name))).fwhm
 
     def rms_width(self, name: str = "strain") -> float:
         """Root mean square width √(∫ (ξ - mean)² f / ∫ f) of the positive part f of a quantity."""

@@ -26,7 +26,7 @@ import scipy
 from validation.scenes.checks import between, integer
 from validation.waves.newton import Problem, continued
 from validation.waves.profile import ExactWave
-from validation.waves.solver import NoWave, solve, solved
+from validation.waves.solver import NoWave, converged, solve
 from validation.waves.start import initial
 
 MOST = 6  # ratios at one k
@@ -35,10 +35,9 @@ _FARTHEST = 0.15  # change of √(m1/m2) in one step along k; neighbours differ 
 
 
 def resonances(k: Any, count: Any) -> tuple[ExactWave, ...]:
-    """Return the solitary waves at the ``count`` largest special ratios ω = m2/m1 < 1.
+    """Return the solitary waves, m1 = 1, at the ``count`` largest special ratios ω = m2/m1 < 1.
 
-    The waves have m1 = 1 and are sorted by falling ω. Raises `SceneError` for numbers out of range,
-    `NoWave` for missing waves.
+    Raises `SceneError` for numbers out of range, `NoWave` for missing waves.
     """
     # Nearer to k = 1 the strain T is lost in rounding.
     k = between(k, "k", 1.1, 5, "special mass ratios are found for k from 1.1 to 5")
@@ -94,10 +93,7 @@ def _next(before: ExactWave, last: ExactWave) -> ExactWave:
 
 
 def _without_kick(places: list[float], near: ExactWave) -> Iterator[tuple[float, ExactWave]]:
-    """Yield values of √(m1/m2) at which T = 0 needs no kick, each with a near wave.
-
-    The kick that enforces T = 0 changes its sign between two of the ``places``.
-    """
+    """Yield values of √(m1/m2) at which T = 0 needs no kick, each with a near wave."""
 
     def kick(root: float) -> float:
         """Return the kick's size; NaN without a wave."""
@@ -105,13 +101,13 @@ def _without_kick(places: list[float], near: ExactWave) -> Iterator[tuple[float,
         problem = Problem((1.0, root**-2), near.k)
         for start in (None, near):
             with suppress(NoWave):
-                near, size = solved(problem, initial(problem, start), "kick")
+                near, size = converged(problem, initial(problem, start), "kick")
                 return size
         return math.nan
 
     place, size = math.nan, math.nan
     for following in places:
-        before, size = size, kick(following)
+        before, size = size, kick(following)  # it changes its sign where T is 0 without it
         if before * size < 0:
             with suppress(ValueError):  # of a kick that is NaN
                 yield scipy.optimize.brentq(kick, place, following, xtol=1e-6), near

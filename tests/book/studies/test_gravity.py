@@ -8,7 +8,7 @@ import scipy
 from click.testing import CliRunner
 
 from book.studies.gravity import FIRST, Upright, front_width, gravity
-from validation.scenes.chains import numbered
+from validation.scenes.chains import numeric_cell
 
 
 def test_without_a_top_the_front_is_airys():
@@ -64,15 +64,15 @@ def test_a_weak_blow(found):
 
 
 def test_a_front_depends_neither_on_the_unit_of_mass_nor_on_a_weak_blows_strength():
-    one = Upright(numbered((1,)), 1.5, 1000).fronts()[1]
-    assert Upright(numbered(("1e-9",)), 1.5, 1000).fronts()[1] == pytest.approx(one, rel=1e-12)
-    harder = Upright(numbered((1,)), 1.5, 1000, weak=1e-2)
+    one = Upright(numeric_cell((1,)), 1.5, 1000).fronts()[1]
+    assert Upright(numeric_cell(("1e-9",)), 1.5, 1000).fronts()[1] == pytest.approx(one, rel=1e-12)
+    harder = Upright(numeric_cell((1,)), 1.5, 1000, weak=1e-2)
     assert harder.fronts()[1] == pytest.approx(one, rel=5e-4)
 
 
 def test_the_dimension_of_a_cell_enters_by_I():
     """I is 1/9 for masses 1, 1/2, and 1/12 for equal beads."""
-    one, two = (Upright(numbered(m), 1.5, 1000).prefactor for m in ((1,), (1, "1/2")))
+    one, two = (Upright(numeric_cell(m), 1.5, 1000).prefactor for m in ((1,), (1, "1/2")))
     assert two / one == pytest.approx((12 / 9) ** (1 / 3), rel=1e-12)
 
 
@@ -93,7 +93,7 @@ def test_a_strong_blow_is_the_solitary_wave_of_its_depth(found):
 
 def test_the_wave_widens_with_the_load():
     """The compact wave's width is the first one; a strong wave nearly keeps its force."""
-    rows = Upright(numbered((1,)), 1.5, 1000).pulses(1e4)
+    rows = Upright(numeric_cell((1,)), 1.5, 1000).pulses(1e4)
     widths = [row["width"] for row in rows]
     assert widths == sorted(widths)
     assert widths[0] == pytest.approx(1.4119, rel=0.02)

@@ -12,7 +12,7 @@ from lwa import Cell, Power
 from lwa.linear.dispersion import LoadedChain
 from tests.commands import ended
 from validation.lattice.simulate import simulate
-from validation.scenes.chains import numbered
+from validation.scenes.chains import numeric_cell
 from validation.scenes.checks import SceneError
 
 
@@ -68,7 +68,7 @@ def test_masses_matter_to_widths_only():
 @pytest.fixture(scope="module")
 def radiating():
     """A wave of a dimer as strong as the load, run."""
-    wave = Wave(numbered((1, "1/2")), Power("3/2"), 1.0)
+    wave = Wave(numeric_cell((1, "1/2")), Power("3/2"), 1.0)
     return wave, simulate(wave.scene, method="SRKN14", rtol=1e-7)
 
 

@@ -10,7 +10,7 @@ import pytest
 import scipy
 
 from validation.lattice.kernel.arrays import Chain
-from validation.lattice.kernel.kinks import ramp
+from validation.lattice.kernel.kinks import kink_integrals
 from validation.lattice.run import IntegrationError
 from validation.lattice.schemes import SCHEMES
 from validation.lattice.simulate import COMPILED, simulate, simulate_many
@@ -222,7 +222,7 @@ def test_chains_that_fly_apart_and_meet(seed):
 @numba.njit
 def integrals(chain, points, p, z):
     """The kernel's integrals from the root to z; only compiled functions call the kernel."""
-    return ramp(chain, points, p, z)
+    return kink_integrals(chain, points, p, z)
 
 
 @pytest.mark.parametrize("k", [1.5])

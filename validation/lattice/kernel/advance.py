@@ -6,7 +6,7 @@ from typing import Any
 
 from validation.lattice.kernel.arrays import BLOCK, MARGIN, SHORTEST, Beads, Chain, Knots, Plan
 from validation.lattice.kernel.compiled import ONE, SOURCES, ZERO, cached, index, part
-from validation.lattice.kernel.force import contact_forces, elastic
+from validation.lattice.kernel.force import contact_forces, elastic_energy
 from validation.lattice.kernel.pair import accepted
 from validation.lattice.kernel.samples import store_knot
 
@@ -38,7 +38,7 @@ def _follow(chain: Chain, beads: Beads, plan: Plan, now: Any) -> None:
         now.front += 1
     while plan.window > 0 and now.front - now.lo > plan.window:
         lo = now.lo
-        now.lost += elastic(chain, beads, lo)
+        now.lost += elastic_energy(chain, beads, lo)
         beads.left[lo] = now.t
         beads.force[:, lo + 1] = 0.0
         now.lo = lo + 1

@@ -112,7 +112,7 @@ _REALS = ("t", "h", "lost", "impulse")
 _PROGRESS = np.dtype([(name, int) for name in _COUNTS] + [(name, float) for name in _REALS])
 
 
-def beginning(plan: Plan, front: int) -> Any:
+def initial_progress(plan: Plan, front: int) -> Any:
     """Return the record of an integration at time 0, which `advance` updates.
 
     front : number of the first bead that is still. Fields: t, h : time, next step. steps, tries :

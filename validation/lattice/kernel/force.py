@@ -10,18 +10,18 @@ from lwa.base.arrays import Array
 from validation.lattice.kernel.arrays import Beads, Chain, Plan
 from validation.lattice.kernel.compiled import ONE, call, index, part
 
-_NOTHING = 1e-60  # in units of the greatest compression: less is 0, so that no denormals arise
+_NEGLIGIBLE = 1e-60  # in units of the greatest compression: less is 0, so that no denormals arise
 
 
 def _loop(value: Any) -> Any:
     """Return a compiled loop over contacts of force A value(d, k), d ≥ 0 the compression."""
 
     @part
-    def loop(chain: Chain, y: Array, f: Array, lo: int, hi: int, nothing: float) -> None:
+    def loop(chain: Chain, y: Array, f: Array, lo: int, hi: int, least: float) -> None:
         A, rest, load, k = chain.A, chain.rest, chain.load, chain.k
         for i in range(index(lo), index(hi)):
             d = rest[i] + y[i] - y[i + ONE]
-            d = d if d > nothing else 0.0
+            d = d if d > least else 0.0
             f[i + ONE] = A[i] * value(d, k) - load[i]
 
     return loop
@@ -45,24 +45,24 @@ def contact_forces(
     y : displacements. The result goes to row s (stage) of ``beads.force``, in column i + 1 for the
     contact ahead of bead i.
     """
-    f, nothing = beads.force[s], _NOTHING * plan.deepest
+    f, least = beads.force[s], _NEGLIGIBLE * plan.deepest
     if chain.generated:
         for i in range(index(lo), index(hi)):
             d = chain.rest[i] + y[i] - y[i + ONE]
             closed = chain.A[i] > 0.0 and (chain.pulls or d > 0.0)
             f[i + ONE] = (chain.A[i] * call(chain.force, d) if closed else 0.0) - chain.load[i]
     elif chain.k == 1.5:
-        _hertz(chain, y, f, lo, hi, nothing)
+        _hertz(chain, y, f, lo, hi, least)
     elif chain.k == 1.0:
-        _linear(chain, y, f, lo, hi, nothing)
+        _linear(chain, y, f, lo, hi, least)
     elif chain.k == 1.25:
-        _five_quarters(chain, y, f, lo, hi, nothing)
+        _five_quarters(chain, y, f, lo, hi, least)
     elif chain.k == 2.0:
-        _square(chain, y, f, lo, hi, nothing)
+        _square(chain, y, f, lo, hi, least)
     elif chain.k == 3.0:
-        _cube(chain, y, f, lo, hi, nothing)
+        _cube(chain, y, f, lo, hi, least)
     else:
-        _power(chain, y, f, lo, hi, nothing)
+        _power(chain, y, f, lo, hi, least)
 
 
 @part
@@ -86,14 +86,14 @@ def stiffness(chain: Chain, d: float, rising: bool) -> float:
 
 
 @part
-def relative(force: Array, inverse: Array, i: int) -> float:
+def relative_acceleration(force: Array, inverse: Array, i: int) -> float:
     """Return the acceleration of bead i minus that of bead i + 1, from the forces of a stage."""
     behind, ahead = force[i] - force[i + 1], force[i + 1] - force[i + 2]
     return float(behind * inverse[i] - ahead * inverse[i + 1])
 
 
 @part
-def elastic(chain: Chain, beads: Beads, i: int) -> float:
+def elastic_energy(chain: Chain, beads: Beads, i: int) -> float:
     """Return the elastic energy of contact i in a chain without static load."""
     d = max(beads.y[i] - beads.y[i + 1], 0.0)
     if chain.generated:

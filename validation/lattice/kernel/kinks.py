@@ -29,7 +29,7 @@ def quintic(c: Quintic, x: float) -> float:
 
 
 @part
-def fitted(d: float, v: float, a: float, end: float, end_v: float, end_a: float) -> Quintic:
+def fitted_quintic(d: float, v: float, a: float, end: float, end_v: float, end_a: float) -> Quintic:
     """Return the quintic with value d, slope v and second derivative a at x = 0, and end, end_v and
     end_a at x = 1."""
     c2 = a / 2
@@ -74,7 +74,7 @@ def kink(c: Quintic, end: float) -> Quintic:
 
 
 @summed
-def ramp(chain: Chain, points: Array, p: Quintic, z: float) -> tuple[float, float]:
+def kink_integrals(chain: Chain, points: Array, p: Quintic, z: float) -> tuple[float, float]:
     """Return ∫ (z - x) p_+^k dx and ∫ p_+^k dx from the root r of p to z, for p = (x - r) q(x).
 
     p : r and the coefficients of q; both integrals of `NONE` are 0. points : nodes and weights of

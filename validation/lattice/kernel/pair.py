@@ -14,8 +14,15 @@ from typing import Any
 from lwa.base.arrays import Array
 from validation.lattice.kernel.arrays import WIDTH, Beads, Chain, Plan, Tableau
 from validation.lattice.kernel.compiled import ONE, THREE, TWO, ZERO, index, part, summed
-from validation.lattice.kernel.force import contact_forces, power, relative
-from validation.lattice.kernel.kinks import NEAR, Quintic, fitted, kink, quintic, ramp
+from validation.lattice.kernel.force import contact_forces, power, relative_acceleration
+from validation.lattice.kernel.kinks import (
+    NEAR,
+    Quintic,
+    fitted_quintic,
+    kink,
+    kink_integrals,
+    quintic,
+)
 
 _STEADY = 0.5  # for a kink outside the step: least ratio of the closing speeds at the step's ends
 _SLIGHT = 10.0  # least effect of a contact that is corrected, in units of the tolerance
@@ -39,7 +46,7 @@ def _add_up(
 
 
 @summed
-def _square(sums: Array, inverse: Array, lo: int, hi: int) -> float:
+def _squared_error(sums: Array, inverse: Array, lo: int, hi: int) -> float:
     """Return the sum of squares of the beads' errors, in units of the tolerances."""
     total = 0.0
     for i in range(index(lo), index(hi)):
@@ -82,7 +89,7 @@ def _attempt(chain: Chain, beads: Beads, plan: Plan, lo: int, h: float, hi: int)
         near += 1 if kinked else 0
     if near > 0 and plan.scheme.points.shape[1] > 0:
         _correct_kinks(chain, beads, plan, lo, h, hi)
-    return math.sqrt(_square(sums, inverse, lo, hi))
+    return math.sqrt(_squared_error(sums, inverse, lo, hi))
 
 
 @part
@@ -114,8 +121,8 @@ def _correct_contact(chain: Chain, beads: Beads, plan: Plan, h: float, i: int) -
     if math.isnan(factored[0]):
         return
     # From the root to the step's end less from the root to its start; ∫ (1 - x) = ∫ (0 - x) + ∫ 1.
-    twice, once = ramp(chain, scheme.points, factored, 1.0)
-    start_twice, start_once = ramp(chain, scheme.points, factored, 0.0)
+    twice, once = kink_integrals(chain, scheme.points, factored, 1.0)
+    start_twice, start_once = kink_integrals(chain, scheme.points, factored, 0.0)
     pair_twice, pair_once, error, error_once = _pair_sums(chain, scheme, p)
     impulse = chain.A[i] * h * (once - start_once - pair_once)
     moment = chain.A[i] * h * h * (twice - start_twice - start_once - pair_twice)
@@ -144,9 +151,9 @@ def _fitted_compression(
     d = chain.rest[i] + y[i] - y[i + 1]
     end = chain.rest[i] + beads.next_y[i] - beads.next_y[i + 1]
     speed, later = h * (v[i] - v[i + 1]), h * (beads.next_v[i] - beads.next_v[i + 1])
-    a = h * h * relative(force[0], inverse, i)
-    end_a = h * h * relative(force[last], inverse, i)
-    return fitted(d, speed, a, end, later, end_a), end
+    a = h * h * relative_acceleration(force[0], inverse, i)
+    end_a = h * h * relative_acceleration(force[last], inverse, i)
+    return fitted_quintic(d, speed, a, end, later, end_a), end
 
 
 @summed

@@ -20,7 +20,15 @@ from lwa.base.arrays import Array
 from validation.lattice.kernel.arrays import Beads, Chain, Knots, Plan
 from validation.lattice.kernel.compiled import SOURCES, ZERO, cached, part
 from validation.lattice.kernel.force import contact_forces, power, stiffness
-from validation.lattice.kernel.kinks import NEAR, NONE, Quintic, fitted, kink, quintic, ramp
+from validation.lattice.kernel.kinks import (
+    NEAR,
+    NONE,
+    Quintic,
+    fitted_quintic,
+    kink,
+    kink_integrals,
+    quintic,
+)
 
 Four = tuple[float, float, float, float]
 
@@ -61,7 +69,7 @@ def _kink(chain: Chain, points: Array, knots: Knots, n: int, q: int) -> Quintic:
     most = max(d, end)
     if not (most > 0.0 and min(d, end) < NEAR * most):
         return NONE
-    return kink(fitted(d, h * v, h * h * a, end, h * end_v, h * h * end_a), end)
+    return kink(fitted_quintic(d, h * v, h * h * a, end, h * end_v, h * h * end_a), end)
 
 
 @part
@@ -91,14 +99,16 @@ def _knot(chain: Chain, knots: Knots, n: int, q: int, h: float, side: float) -> 
 
 
 @part
-def _without(chain: Chain, points: Array, knot: Four, p: Quintic, unit: float, z: float) -> Four:
+def _without_kink(
+    chain: Chain, points: Array, knot: Four, p: Quintic, unit: float, z: float
+) -> Four:
     """Subtract from y, y', y'' and y''' at x = z the contribution of a kink p.
 
     The contribution is ``unit`` times p_+^k to y'', and the integrals from p's root on to y' and y.
     """
     if math.isnan(p[0]):
         return knot
-    y, v = ramp(chain, points, p, z)
+    y, v = kink_integrals(chain, points, p, z)
     q = p[1] + z * (p[2] + z * (p[3] + z * (p[4] + z * p[5])))
     rise = p[2] + z * (2 * p[3] + z * (3 * p[4] + z * 4 * p[5]))
     d, slope = (z - p[0]) * q, q + (z - p[0]) * rise
@@ -122,8 +132,9 @@ def _polynomial(
     h = knots.time[n + 1] - knots.time[n]
     push, pull = _units(chain, knots, q, h)
     a, b = _knot(chain, knots, n, q, h, 1.0), _knot(chain, knots, n + 1, q, h, -1.0)
-    a = _without(chain, points, _without(chain, points, a, behind, push, 0.0), ahead, pull, 0.0)
-    b = _without(chain, points, _without(chain, points, b, behind, push, 1.0), ahead, pull, 1.0)
+    for p, unit in ((behind, push), (ahead, pull)):
+        a = _without_kink(chain, points, a, p, unit, 0.0)
+        b = _without_kink(chain, points, b, p, unit, 1.0)
     c2, c3 = a[2] / 2, a[3] / 6
     # c4 … c7 solve the four conditions at x = 1, of which c0 … c3 leave the remainders r0 … r3.
     r0, r1 = b[0] - a[0] - a[1] - c2 - c3, b[1] - a[1] - 2 * c2 - 3 * c3
@@ -177,8 +188,8 @@ def _built(sources: int) -> Any:
                     ahead = _kink(chain, points, knots, n, q)
                     low, c6, c7 = _polynomial(chain, points, knots, n, q, behind, ahead)
                 x = (time[s] - start) / h
-                pull_y, pull_v = ramp(chain, points, ahead, x)
-                push_y, push_v = ramp(chain, points, behind, x)
+                pull_y, pull_v = kink_integrals(chain, points, ahead, x)
+                push_y, push_v = kink_integrals(chain, points, behind, x)
                 smooth = quintic(low, x) + x * x * x * x * x * x * (c6 + x * c7)
                 y[r, s] = smooth + push * push_y + pull * pull_y
                 slope = 4 * low[4] + x * (5 * low[5] + x * (6 * c6 + x * 7 * c7))
