@@ -112,11 +112,7 @@ def _out_of_range(name: str) -> InputError:
 
 
 def signed(value: Any, name: str) -> sp.Expr:
-    """Read an exact real number; a plain name becomes a real symbol of either sign, such as ξ.
-
-    >>> signed("xi", "xi").is_positive is None
-    True
-    """
+    """Read an exact real number; a plain name becomes a real symbol of either sign, such as ξ."""
     expression = read_exact(value, name)
     if isinstance(value, str) and expression.is_Symbol:
         return sp.Symbol(expression.name, real=True)
@@ -132,11 +128,7 @@ def positive(value: Any, name: str) -> sp.Expr:
 
 
 def integer(value: Any, name: str, low: int, high: int = 2**63 - 1) -> int:
-    """Read an integer (Python's, NumPy's or SymPy's) from ``low`` to ``high``.
-
-    >>> integer(4, "order", 1)
-    4
-    """
+    """Read an integer (Python's, NumPy's or SymPy's) from ``low`` to ``high``."""
     try:
         number = operator.index(value)
     except TypeError:
@@ -166,9 +158,7 @@ def number(value: sp.Expr) -> float:
 
     Raises `lwa.InputError` for an expression with symbols.
     """
-    if value.free_symbols:
-        names = ", ".join(sorted(map(str, value.free_symbols)))
-        raise InputError(f"{names}: a curve needs numbers for all symbols; give them by at(…)")
+    demand_numbers(value.free_symbols, "a curve needs numbers for all symbols; give them by at(…)")
     return float(evaluated(value, 20))
 
 

@@ -115,11 +115,7 @@ def power(symbol: sp.Expr, n: int) -> str:
 
 
 def derivative(n: int, mark: str = "") -> str:
-    """The derivative ∂_x^n u in LaTeX, with further subscripts ``mark``.
-
-    >>> derivative(2), derivative(4)
-    ('u_{xx}', 'u_{4x}')
-    """
+    """The derivative ∂_x^n u in LaTeX, such as u_{xx} and u_{4x}, with a further subscript."""
     return f"u_{{{'x' * n if n < 4 else f'{n}x'}{mark}}}"
 
 

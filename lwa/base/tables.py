@@ -2,11 +2,6 @@
 
 A reader takes a value and its name in messages, and returns the checked value or raises
 `lwa.InputError`. Numbers of a file are floats.
-
->>> finite("1.5", "duration")
-Traceback (most recent call last):
-    ...
-lwa.base.errors.InputError: duration is '1.5': a number is wanted
 """
 
 from __future__ import annotations
@@ -154,13 +149,6 @@ def places(count: int) -> Reader:
         return indices
 
     return read
-
-
-def flag(value: Any, name: str) -> bool:
-    """Read true or false."""
-    if not isinstance(value, bool):
-        raise InputError(f"{name} is {shorten(value)}: true or false is wanted")
-    return value
 
 
 def _plain(key: str) -> str:

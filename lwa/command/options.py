@@ -117,8 +117,9 @@ def value(
     **settings: Any,
 ) -> Option:
     """Make an option that a callback of click reads; a default is shown in the help."""
-    settings |= {"default": default, "show_default": default is not None, "callback": read}
-    return click.option(name, metavar=metavar, help=says, **settings)
+    if default is not None:  # None itself would be a default, and no required option missing
+        settings |= {"default": default, "show_default": True}
+    return click.option(name, callback=read, metavar=metavar, help=says, **settings)
 
 
 def together(*options: Option) -> Option:

@@ -28,21 +28,10 @@ the derivative of the flux of energy. This holds for any wave equation that the 
 satisfy, in every field, whether or not the equation derives from a potential. The density is given
 up to derivatives, so that no highest jet stands in it linearly.
 
-**Theorem.** At D^{k+3} the equation of the canonical field φ, the mean Σ m̂_i w_i of the fields
-shifted to one point, derives from a potential for every cell: G = I(k-1)(k-2)/2, H = 2I(k-1), and
-I is the coefficient in the linear chain's dispersion Ω² = κ² (1 - Iκ² + …).
-
-*Proof.* The fields are w_i = e^{x_i D∂} (φ + D² e_i φ_xx + …), x_i = C_0 + … + C_{i-1}, with
-numbers e_i; the definition of φ demands Σ m̂_i e_i = 0. The kinetic energy is φ_τ²/2 up to D⁴. The
-strain of contact i at its middle is
-C_i φ_x + D (e_{i+1} - e_i) φ_xx + D² (C_i³/24 + C_i (e_i + e_{i+1})/2) φ_xxx. As A = A_i C_i^k is
-the same for all contacts, the term with φ_xx sums to zero round the cell, and by parts the elastic
-energy at D² reduces to one monomial, k A φ_x^{k-1} φ_xx² S(e),
-
-    S = Σ [-C_i³/24 - C_i (e_i + e_{i+1})/2 + (e_{i+1} - e_i)²/(2 C_i)],    I = -(2/P) D² min S.
-
-The e_i that minimise S do not depend on k for given C_i, hence I is the same as at k = 1. With
-W(φ_x) in place of the power the theorem holds for every law with equal contacts.
+**Theorem** (proof: the book on cells). At D^{k+3} the equation of the canonical field φ,
+the mean Σ m̂_i w_i of the fields shifted to one point, derives from a potential for every cell:
+G = I(k-1)(k-2)/2, H = 2I(k-1), and I is the coefficient in the linear chain's dispersion
+Ω² = κ² (1 - Iκ² + …). With W(φ_x) in place of the power it holds for every law with equal contacts.
 """
 
 from __future__ import annotations

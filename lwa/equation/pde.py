@@ -180,13 +180,7 @@ class PDE(OfClosure):
         return sp.Add(*parts)
 
     def right_side(self, u: sp.Expr, x: sp.Symbol, velocity: sp.Expr = sp.S.Zero) -> sp.Expr:
-        """The right-hand side of u_ττ for fields u(x) and u_τ(x), as a SymPy expression.
-
-        >>> from lwa import homogenize, Cell
-        >>> x = sp.Symbol("x")
-        >>> homogenize(Cell([1]), k=1, order=4).pde.right_side(sp.exp(x), x)
-        D**2*exp(x)/12 + exp(x)
-        """
+        """The right-hand side of u_ττ for fields u(x) and u_τ(x), as a SymPy expression."""
         base = base_order(self.closure.model)
         D, law = self.cell.spacing, self.law
         leading = law.of_strain(u.diff(x), D, 1) * u.diff(x, 2) if base else -(u**law.exponent)

@@ -72,7 +72,7 @@ class EpsilonSeries(Value):
         return series._unit * sp.Add(*terms)
 
     def pade(self, k: Any, numerator: int, denominator: int) -> sp.Expr:
-        """The exact approximant [L/M] in ε; k as in `partial_sum`, None for the series' own.
+        """The exact approximant [L/M] in ε; k as in `partial_sum`, None for that of the series.
 
         Raises `lwa.InputError` where the series is too short, or has no such approximant.
         """
@@ -131,12 +131,7 @@ class EpsilonSeries(Value):
         return f"EpsilonSeries({self.quantity} to ε^{self.order}, k={self.k}, {self.cell!r})"
 
     def latex(self) -> str:
-        r"""The series as a paper prints it: its name, its first `SHOWN` terms and dots.
-
-        >>> from lwa import Cell, expand
-        >>> print(expand(Cell([1]), 6).c2.latex())
-        c^2 = 1 - \frac{1}{2} \varepsilon + \frac{2}{5} \varepsilon^{2} + \dots
-        """
+        """The series as a paper prints it: its name, its first `SHOWN` terms and dots."""
         epsilon = sp.Symbol(r"\varepsilon")
         powers = ["", *(latex.power(epsilon, n) for n in range(1, SHOWN))]
         shown = zip(self.coefficients, powers, strict=False)

@@ -1,4 +1,4 @@
-"""Hertz's contact between elastic spheres: A of F = A δ^{3/2} from elasticity and shape, materials.
+"""Hertz's contact between elastic spheres, F = A δ^{3/2}, and a table of materials.
 
 Two spheres pressed together by δ repel each other with F = A δ^{3/2},
 

@@ -35,18 +35,15 @@ _LOG4 = np.longdouble("1.38629436111989061883446424291635313")
 class NumericWave(Value):
     """β, width, FWHM, speed and amplitude of an N:1 dimer's wave, for arrays of k and ω.
 
-    ``wave`` has the symbol k for its exponent and two symbols m1, m2 for its masses; k and ω
-    broadcast against each other. For points without a wave (k ≤ 1, G + H + I ≤ 0, V² ≤ 0) the
-    functions raise `lwa.NoSolitaryWave` and name the first such point, or, with
-    ``missing="nan"``, return NaN there.
+    wave : a wave with the symbol k for its exponent and two symbols m1, m2 for its masses.
+    missing : "raise" `lwa.NoSolitaryWave`, with the first such point, where there is no wave
+        (k ≤ 1, G + H + I ≤ 0, V² ≤ 0), or return "nan" at these points.
 
-    Raises `lwa.InputError` for any other wave.
+    k and ω broadcast against each other. Raises `lwa.InputError` for any other wave.
 
-    >>> import numpy as np
     >>> from lwa import Dimer, homogenize
-    >>> wave = homogenize(Dimer("m1", "m2")).pde.traveling_wave().numeric()
-    >>> np.round(wave.beta(1.5, [1.0, 1e-12]) * np.sqrt(10), 9)
-    array([2., 1.])
+    >>> homogenize(Dimer("m1", "m2")).pde.traveling_wave().numeric().width(1.5, [1.0, 0.2733])
+    array([4.96729413, 7.59281573])
     """
 
     wave: CompactWave

@@ -26,7 +26,7 @@ import scipy
 from validation.scenes.checks import between, integer
 from validation.waves.newton import Problem, continued
 from validation.waves.profile import ExactWave
-from validation.waves.solver import NoWave, solve, solved
+from validation.waves.solver import NoWave, converged, solve
 from validation.waves.start import initial
 
 MOST = 6  # ratios at one k
@@ -101,7 +101,7 @@ def _without_kick(places: list[float], near: ExactWave) -> Iterator[tuple[float,
         problem = Problem((1.0, root**-2), near.k)
         for start in (None, near):
             with suppress(NoWave):
-                near, size = solved(problem, initial(problem, start), "kick")
+                near, size = converged(problem, initial(problem, start), "kick")
                 return size
         return math.nan
 

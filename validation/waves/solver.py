@@ -118,11 +118,11 @@ def solve(
     Raises `NoWave` if the method does not converge.
     """
     problem = newton.Problem(masses, k, half_period, points)
-    return solved(problem, initial(problem, start), "mass" if free else "")[0]
+    return converged(problem, initial(problem, start), "mass" if free else "")[0]
 
 
-def solved(problem: newton.Problem, start: Start, unknown: str = "") -> tuple[ExactWave, float]:
-    """Solve a problem from a start; return the wave and the last number of `Problem.wave`."""
+def converged(problem: newton.Problem, start: Start, unknown: str = "") -> tuple[ExactWave, float]:
+    """Return the wave that a start converges to, and the last number of `Problem.wave`."""
     masses = problem.masses
     try:
         forces, c2, last = problem.wave(*start, unknown)
@@ -203,7 +203,7 @@ def _pressed(k: float, half_period: float | None, p0: float) -> tuple[ExactWave,
         start = lower.force(problem.xi), lower.c2
     else:
         start = newton.rise(theory.profile(problem.xi, *load), k, p0), k * speed_squared
-    return solved(problem, start)[0], ample
+    return converged(problem, start)[0], ample
 
 
 def _dimer(pair: Pair, k: float, half_period: float | None, progress: Progress[Any]) -> ExactWave:

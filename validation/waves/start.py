@@ -29,22 +29,18 @@ Start = tuple[Array, float]
 
 def initial(problem: newton.Problem, wave: LatticeWave | None = None) -> Start:
     """Return a start from a wave of near masses and k, by default the theory's."""
-    if wave is None:
-        force, c2 = _long_wave(problem)
-    else:
-        force, c2 = wave.force(problem.xi), wave.c2 * sum(wave.masses) / sum(problem.masses)
-    # c² of the wave scaled to force 1 at ξ = 0; `newton.Problem.wave` scales the forces.
-    return force, c2 * float(force[0]) ** ((1 - problem.k) / problem.k)
-
-
-def _long_wave(problem: newton.Problem) -> Start:
-    """Return the theory's wave: the force cos^{2k/(k-1)}(βξ), and c² = 4/((k+1)(m1+m2))."""
     k, (m1, m2) = problem.k, problem.masses
-    beta = (k - 1) * math.sqrt(6 / (k * (k + 1))) / newton.widening(problem.masses)
-    # The two contacts' forces are shifted by (m2-m1)/(m1+m2), so that both beads move alike.
-    phase = beta * (problem.xi - (m2 - m1) / (m1 + m2) / 2)
-    force = np.cos(np.clip(phase, -np.pi / 2, np.pi / 2)) ** (2 * k / (k - 1))
-    return force, 4 / ((k + 1) * (m1 + m2))
+    if wave is not None:
+        force, c2 = wave.force(problem.xi), wave.c2 * sum(wave.masses) / (m1 + m2)
+    else:
+        # The force cos^{2k/(k-1)}(βξ), and c² = 4/((k+1)(m1+m2)). The two contacts' forces are
+        # shifted by (m2-m1)/(m1+m2), so that both beads move alike.
+        beta = (k - 1) * math.sqrt(6 / (k * (k + 1))) / newton.widening(problem.masses)
+        phase = beta * (problem.xi - (m2 - m1) / (m1 + m2) / 2)
+        force = np.cos(np.clip(phase, -np.pi / 2, np.pi / 2)) ** (2 * k / (k - 1))
+        c2 = 4 / ((k + 1) * (m1 + m2))
+    # c² of the wave scaled to force 1 at ξ = 0; `newton.Problem.wave` scales the forces.
+    return force, c2 * float(force[0]) ** ((1 - k) / k)
 
 
 @dataclass(frozen=True, eq=False)

@@ -361,6 +361,7 @@ BAD = [
     ("expansion", "--k", "1"),
     ("expansion", "--order", "100"),
     ("explain",),
+    ("strike", "--velocity", "1"),
 ]
 
 

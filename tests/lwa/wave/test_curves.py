@@ -100,7 +100,7 @@ def test_where_contacts_peak_one_after_the_other_a_bead_has_no_peak_force():
         (lambda: CHAIN.at_force(1).curve("now"), "t is 'now': real numbers"),
         (lambda: CHAIN.at_force(1).curve([np.inf]), "t is inf: finite numbers"),
         (lambda: CHAIN.at_force(1).curve([0], of="wall"), "of is 'wall'"),
-        (lambda: CHAIN.at_force("F").curve([0]), "F: a curve needs numbers"),
+        (lambda: CHAIN.at_force("F").curve([0]), "'F' has no value: a curve needs numbers"),
         (lambda: CHAIN.at_force(1).fwhm("force", "area"), "extent is 'area'"),
     ],
 )

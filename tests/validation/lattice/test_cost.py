@@ -54,7 +54,7 @@ def test_a_compiled_run_looks_up_on_the_way(monkeypatch):
     """A run in parts gives the same bits as a run in one go."""
     scene = struck(200, 0.3, duration=190.0, contact_sensors=(50,))
     whole = watched(scene, method="SRKN14")
-    monkeypatch.setattr("validation.lattice.engine._GLANCE", 1e4)
+    monkeypatch.setattr("validation.lattice.engine._BETWEEN_REPORTS", 1e4)
     parts = watched(scene, method="SRKN14")
     assert len(whole[1]) <= 5
     assert len(parts[1]) > 20
