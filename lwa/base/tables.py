@@ -151,13 +151,6 @@ def places(count: int) -> Reader:
     return read
 
 
-def flag(value: Any, name: str) -> bool:
-    """Read true or false."""
-    if not isinstance(value, bool):
-        raise InputError(f"{name} is {shorten(value)}: true or false is wanted")
-    return value
-
-
 def _plain(key: str) -> str:
     return key if key.isidentifier() and len(key) < 60 else shorten(key)
 

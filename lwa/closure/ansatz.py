@@ -54,17 +54,18 @@ def _acoustic(model: Model, order: int, progress: Progress[int]) -> Solution:
     for n in progress(range(1, order)):
         # The strains of both contacts sum to u(x + 2D) - u(x). Let the two differ by ξ r_n at D^n;
         # both equations are evaluated without ξ r_n, which enters with the factors ±1.
-        known = right.nonlinear - left.nonlinear
-        one, two = known - left.increment(-2, n), -known
-        # u_ττ of both is the same at r_n: m̂_1 (one + ξ r_n) = m̂_0 (two - ξ r_n - 2 m̂_1 applied).
-        condition = mu[1] * one - mu[0] * two + 2 * mu[0] * mu[1] * _applied(b, first, n)
+        difference = right.nonlinear - left.nonlinear
+        force_1, force_2 = difference - left.increment(-2, n), -difference
+        # u_ττ is the same at r_n, m̂_0 + m̂_1 = 1, and b_n cancels:
+        # m̂_1 (force_1 + ξ r_n) = m̂_0 (force_2 - ξ r_n - 2 m̂_1 applied).
+        condition = mu[1] * force_1 - mu[0] * force_2 + 2 * mu[0] * mu[1] * _applied(b, first, n)
         xi = -algebra.slope(condition, n)
         r_n = algebra.r[n]
         mean = algebra.one * fmpq(2**n, factorial(n + 1))
         right.append((mean + c[1] * xi / 2) * r_n)
         left.append((mean - c[0] * xi / 2) * r_n)
-        first.append((one + xi * r_n) / (2 * mu[0]))  # without a remainder, as all quotients here
-        second.append((two - xi * r_n) / (2 * mu[1]) - _applied(b, second, n))
+        first.append((force_1 + xi * r_n) / (2 * mu[0]))  # without a remainder
+        second.append((force_2 - xi * r_n) / (2 * mu[1]) - _applied(b, second, n))
         b.append(c[0] * (mean + c[1] * xi / 2))
     return _solution(b[: order + 1], first, second)
 
@@ -104,10 +105,10 @@ def _uniform(model: Model, order: int, progress: Progress[int]) -> Solution:
 
 
 def _solution(b: list[fmpq_mpoly], first: GradedSeries, second: GradedSeries) -> Solution:
-    """The ansatz b_n, the first equation's E_n and what they differ by from the second's."""
+    """The solution with the first equation's E_n, and their difference to the second's."""
     return Solution(
         algebra=first.algebra,
         acceleration=tuple(first),
         ansatz=tuple(b),
-        defect=tuple(one - two for one, two in zip(first, second, strict=True)),
+        defect=tuple(E_n - other for E_n, other in zip(first, second, strict=True)),
     )

@@ -165,12 +165,12 @@ def _approximants(terms: Sequence[arb]) -> list[mpmath.mpf]:
     """The diagonal approximant, then its neighbours; for one or two terms also the partial sum."""
     n = len(terms) - 1
     half = n // 2
-    found = [
+    values = [
         value
         for M in dict.fromkeys((half, n - half, half + (n % 2 == 0 and n > 2)))
         if M and (value := _pade(terms, n - M, M)) is not None
     ]
-    return ([mpmath.mpf(sum(terms, arb(0))._mpf_)] if n < 2 else []) + found
+    return ([mpmath.mpf(sum(terms, arb(0))._mpf_)] if n < 2 else []) + values
 
 
 def _pade(a: Sequence[arb], L: int, M: int) -> mpmath.mpf | None:

@@ -69,7 +69,7 @@ def half_width(log: Series) -> Series:
 
         Z/2 = y + Σ_{m≥1} 1/m! (d/dy²)^{m-1} p(2y)^m/(2y),
 
-    whose odd part in y is a quarter of the width. The terms of the sum are kept times y.
+    whose odd part in y is a quarter of the width. Below, the terms of the sum are multiplied by y.
     """
     p = [_reweighted(term, lambda d: fmpq(2) ** d) for term in _from_peak(log)]
     y = p[0].context().gen(0)

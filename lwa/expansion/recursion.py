@@ -103,7 +103,10 @@ class Recursion:
         fields = self.fields
         for n in range(3):
             residual = self._extend(n)
-        self.gamma += [self.zero, -residual]
+        self.gamma += [
+            self.zero,
+            -residual,
+        ]  # γ_1 = 0: c² is even, (Z, t) and (-Z, -t) are one wave
         for n in progress(range(1, order + 1)):
             if n <= LINEAR:
                 fields.truncate(n)
@@ -120,6 +123,7 @@ class Recursion:
 
     def _invert(self, residual: fmpq_mpoly) -> tuple[fmpq_mpoly, fmpq_mpoly]:
         """Solve I³ (q'' - Z q' + q) = residual + γ, q(0) = q'(0) = 0, for q and γ."""
+        # At Z^d the left side is I³ [(1 - d) q_d + (d + 2)(d + 1) q_{d+2}]: solved from the top.
         left = by_degree(residual)
         q = self.zero
         for d in range(max(left, default=0), 1, -1):

@@ -72,7 +72,7 @@ class EpsilonSeries(Value):
         return series._unit * sp.Add(*terms)
 
     def pade(self, k: Any, numerator: int, denominator: int) -> sp.Expr:
-        """The exact approximant [L/M] in ε; k as in `partial_sum`, None for the series' own.
+        """The exact approximant [L/M] in ε; k as in `partial_sum`, None for that of the series.
 
         Raises `lwa.InputError` where the series is too short, or has no such approximant.
         """

@@ -145,10 +145,10 @@ class Motion:
             deepest = max(deepest, self.contact.reached_by(energy / stiffest, deepest))
         if not deepest:
             return Scales(energy, 0.0, 1.0, 1.0, math.inf)
-        stiffening = deepest ** (self.k - 1)
+        stiffening = deepest ** (self.k - 1)  # F′ = k A δ^{k-1}; the factor k follows in ``time``
         if self.contact.law is not None:  # k is 1
             stiffening = self.contact.stiffness(np.array([at_rest, deepest])).max()
-        springs = np.zeros(n)
+        springs = np.zeros(n)  # of the two contacts of each bead
         springs[: len(A)] = A
         springs[1:] += A[: n - 1]
         time = 1 / np.sqrt((springs / self.masses).max() * self.k * stiffening)
@@ -156,6 +156,7 @@ class Motion:
         _check_range("shortest time", time)
         y, v, rounding = deepest, deepest / time, 0.0
         if energy > 0:
+            # energy = F′ y² and m v², up to factors of order 1, with the mean mass
             y = np.sqrt(energy / (stiffest * stiffening))
             v = np.sqrt(energy / (self.masses.sum() / n))
             _check_range("displacement", y)

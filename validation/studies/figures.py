@@ -179,9 +179,11 @@ def scaling(
     # A striker dropped from the height h has the velocity √(2gh).
     drops = [recorded_chain(SENSORS, math.sqrt(2 * GRAVITY * h), ptfe=ptfe) for h in heights]
     fine, coarse = ([*map(Train.of, simulate_many(drops, rtol=rtol))] for rtol in tolerances)
-    pairs = [*zip(fine, coarse, strict=True)]
-    speeds = [Measured(train.speed, check.speed) for train, check in pairs]
-    forces = [Measured(train.peak, check.peak) for train, check in pairs]
+    pairs = [
+        compared(lambda train: {"V_s": train.speed, "F_m": train.peak}, *pair, tolerances[0])
+        for pair in zip(fine, coarse, strict=True)
+    ]
+    speeds, forces = ([pair[name] for pair in pairs] for name in ("V_s", "F_m"))
     wave = canonical_wave(chain_cell(ptfe=ptfe), HERTZ)
     theory = [float(wave.at_force(force.value, of="bead").speed) for force in forces]
     return Scaling(E, exponent(forces, speeds), speeds, forces, theory)
