@@ -95,7 +95,7 @@ def wave(
         if style in LANGUAGES:
             click.echo(compact.code(style))
         elif force is None and not spheres:
-            _compact(theory, compact, style == "latex").print(style)
+            _compact(theory, compact, style).print(style)
         else:
             _at_force(chain, theory, compact, peak).print(style)
     elif precompression is not None:
@@ -167,10 +167,13 @@ def _fwhm_rows(key: str, label: str, widths: Mapping[str, sp.Expr], **settings: 
     ]
 
 
-def _compact(theory: Theory, wave: TravelingWave, tex: bool) -> Answer:
+def _compact(theory: Theory, wave: TravelingWave, style: str) -> Answer:
     """Rows of the compact wave of a general peak force."""
     first, second = (wave.reduction(root) for root in (0, 1))
-    roots = [{name: str(getattr(r, name)) for name in _REDUCTION} for r in (first, second)]
+    head = chain_json(theory)
+    if style == "json":  # long expressions take a while
+        pair = (first, second)
+        head["roots"] = [{name: str(getattr(r, name)) for name in _REDUCTION} for r in pair]
     log_B = -sp.log(wave.speed_factor) / (wave.k - 1)
     rows: list[Row | str] = [
         f"masses {listed(theory.cell.masses)}; k = {wave.k}; closure {theory.closure.name}; "
@@ -188,12 +191,12 @@ def _compact(theory: Theory, wave: TravelingWave, tex: bool) -> Answer:
         Row("log_B", "", log_B, expression=False),
         "",
         "v = z^p, integrating factor z^a: z'' = μ z^η - σ z",
-        *_reduction_rows(theory, first, tex),
+        *_reduction_rows(theory, first, style == "latex"),
         Row("", "the other root, p", second.p),
         Row("", "with a", second.a),
     ]
     notes = radiation_note(theory.cell, wave.k)
-    return Answer(chain_json(theory) | {"roots": roots}, rows, spacing=wave.D, notes=notes)
+    return Answer(head, rows, spacing=wave.D, notes=notes)
 
 
 # Symbols of the paper's reduction v = z^p, and formulas for values wider than a line

@@ -60,7 +60,7 @@ class PhysicalWave(Value):
     of: str = "contact"
 
     def __post_init__(self) -> None:
-        taken = taken_names(self.cell, self._law)
+        taken = taken_names(self.wave.cell, self._law)
         force = check_names(positive(self.force, "force"), "force", taken=taken)
         object.__setattr__(self, "force", force)
         if one_of(self.of, BEARERS, "of") == "bead":
@@ -68,11 +68,6 @@ class PhysicalWave(Value):
 
     def latex_rows(self) -> list[str]:
         return latex.rows({"F": self.contact_force, "B": self.strain, latex.SPEED: self.speed})
-
-    @property
-    def cell(self) -> Cell:
-        """The periodic cell."""
-        return self.wave.cell
 
     @property
     def _law(self) -> Power:
@@ -105,25 +100,25 @@ class PhysicalWave(Value):
     @cached_property
     def strain(self) -> sp.Expr:
         """The peak strain B."""
-        return self.compression / self.cell.spacing
+        return self.compression / self.wave.cell.spacing
 
     @cached_property
     def compression(self) -> sp.Expr:
         """The peak compression D B of a contact; the mean of unlike contacts (`compressions`)."""
-        return self._law.compression(self.cell, self.contact_force)
+        return self._law.compression(self.wave.cell, self.contact_force)
 
     @cached_property
     def compressions(self) -> tuple[sp.Expr, ...]:
         """The peak compression (F/A_i)^{1/k} of each contact of the cell."""
-        return self._law.compressions(self.cell, self.contact_force)
+        return self._law.compressions(self.wave.cell, self.contact_force)
 
     @cached_property
     def speed(self) -> sp.Expr:
         """The speed dx/dt = D √(f P k / M) A_eff^{1/(2k)} F^{(k-1)/(2k)}, f = V²/B^{k-1}."""
         # V² = f B^{k-1} times (τ/t)² = P k A_eff D^{k+1} / M, powers of each quantity collected.
         wave, k = self.wave, self.wave.k
-        factor = wave.speed_factor * self.cell.size * k / self.cell.mass
-        powers = power(self.cell.stiffness(k), 1 / (2 * k))
+        factor = wave.speed_factor * self.wave.cell.size * k / self.wave.cell.mass
+        powers = power(self.wave.cell.stiffness(k), 1 / (2 * k))
         return wave.D * sp.sqrt(factor) * powers * power(self.contact_force, (k - 1) / (2 * k))
 
     @cached_property
@@ -135,7 +130,7 @@ class PhysicalWave(Value):
     def momentum(self) -> sp.Expr:
         """The momentum Σ m u_t = M/(P D) · B dx/dt · ∫ cos^m(βξ) dξ of the chain."""
         wave, m = self.wave, self.wave.m
-        density = self.cell.mass / (self.cell.size * wave.D)
+        density = self.wave.cell.mass / (self.wave.cell.size * wave.D)
         # ∫ cos^m y dy over |y| < π/2 = √π Γ((m+1)/2) / Γ(m/2 + 1)
         arch = sp.sqrt(sp.pi) * sp.gamma((m + 1) / 2) / (wave.beta * sp.gamma(m / 2 + 1))
         return density * arch * self.bead_velocity

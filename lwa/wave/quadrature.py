@@ -45,6 +45,8 @@ from lwa.wave.panels import (
     value_at,
 )
 
+Function = Callable[[Array], Array]
+
 _BLOCK = 256  # waves computed at once; their samples stay in the processor's cache
 _CONVERGED = 1e-13  # bound on the last Legendre coefficients of dξ/dθ
 _ROUNDING = 1e-9  # the bound on the finest panels, where p has rounding errors near a pole
@@ -72,10 +74,7 @@ class NumericBackground(Value):
     law: ContactLaw
 
     def __post_init__(self) -> None:
-        slope = self.law.of_strain(_STRAIN, self._D, 1)
-        demand_numbers(
-            (self._I.free_symbols | slope.free_symbols) - {_STRAIN}, "numbers are wanted"
-        )
+        self._functions  # noqa: B018 - symbols are refused here
 
     def speed_squared(self, p0: ArrayLike, B: ArrayLike) -> Array:
         """Square V² = Q(B) of the speed; for power laws to k = 5 good to 4 ulps at any p0/B."""
@@ -115,13 +114,13 @@ class NumericBackground(Value):
 
     def _squares(self, p0: Array, B: Array) -> Array:
         """V² = F′(p0) + B ∫(1-s)² F″ ds for small waves, 2 ∫(1-s) F′ ds for others."""
-        square = np.empty_like(p0)
+        square, slope = np.empty_like(p0), self._functions[1]
         for rows, g, p, bend, _ in self._resolved(p0, B, rough=True):
             first, second = g.ds * g.y2, g.ds * g.y2**2  # weights of 1/2 and 1/3, but for rounding
-            start = self._slope(p0[rows])
+            start = slope(p0[rows])
             change = B[rows] / 3 * (bend @ (second / second.sum()))
             small = np.abs(change) < start / 4
-            direct = self._slope(p) @ (first / first.sum())
+            direct = slope(p) @ (first / first.sum())
             square[rows] = np.where(small, start + change, direct)
         return square
 
@@ -136,7 +135,7 @@ class NumericBackground(Value):
         """The place ξ at which the force has half of its rise."""
         half, w = np.empty_like(p0), gauss()[1]
         for rows, g, p, _, rate in self._resolved(p0, B, NEAR):
-            fall = self._slope(p) * g.ds  # of the force from one node to the next, over B
+            fall = self._functions[1](p) * g.ds  # of the force from one node to the next, over B
             falls = g.panels(fall)
             sums = np.cumsum(falls.sum(axis=2), axis=1)
             middle = fall.sum(axis=1) / 2
@@ -158,15 +157,15 @@ class NumericBackground(Value):
 
         Waves that no grid resolves raise `lwa.InputError` or, if ``rough``, get the finest grid.
         """
-        rows = np.arange(len(p0))
+        rows, (root_I, slope, _) = np.arange(len(p0)), self._functions
         for level in LEVELS:
             g, last = grid(*level, further), level == LEVELS[-1]
             p, bend, gap = self._sampled(g, p0[rows], B[rows])
             with np.errstate(all="ignore"):
                 # Roots first: their quotient neither over- nor underflows.
                 size, sign = np.sqrt(np.abs(B[rows]))[:, None], np.sign(B[rows])[:, None]
-                root = np.sqrt(self._slope(p[:, : len(g.kernel)])) / np.sqrt(sign * gap)
-                rate = 2 * self._root_I / size * root
+                root = np.sqrt(slope(p[:, : len(g.kernel)])) / np.sqrt(sign * gap)
+                rate = 2 * root_I / size * root
             good = g.converged(rate, _ROUNDING if last else _CONVERGED) | (last and rough)
             yield rows[good], g, p[good], bend[good], rate[good]
             rows = rows[~good]
@@ -184,30 +183,19 @@ class NumericBackground(Value):
         near = (p0 + B)[:, None] - B[:, None] * g.y2
         p = np.where(g.y2 < 0.5, near, p0[:, None] + B[:, None] * g.s)
         with np.errstate(all="ignore"):
-            bend = self._bend(p)
+            bend = self._functions[2](p)
             return p, bend, bend @ g.kernel.T
 
-    @property
-    def _D(self) -> sp.Expr:
-        """The spacing, or 1 for a symbol under a power law, which has no length of its own."""
+    @cached_property
+    def _functions(self) -> tuple[float, Function, Function]:
+        """√I, and F′ and F″ as functions of the strain."""
         D = self.cell.spacing
-        return sp.S.One if D.is_Symbol and self.law.homogeneous else D
-
-    @cached_property
-    def _I(self) -> sp.Expr:
-        return Dispersion(self.cell, self.law.exponent).I * self._D**2
-
-    @cached_property
-    def _root_I(self) -> float:
-        return number(sp.sqrt(self._I))
-
-    @cached_property
-    def _slope(self) -> Callable[[Array], Array]:
-        return _compiled(self.law.of_strain(_STRAIN, self._D, 1))
-
-    @cached_property
-    def _bend(self) -> Callable[[Array], Array]:
-        return _compiled(self.law.of_strain(_STRAIN, self._D, 2))
+        if D.is_Symbol and self.law.homogeneous:  # a power law has no length of its own
+            D = sp.S.One
+        I = Dispersion(self.cell, self.law.exponent).I * D**2
+        slope, bend = (self.law.of_strain(_STRAIN, D, n) for n in (1, 2))
+        demand_numbers((I.free_symbols | slope.free_symbols) - {_STRAIN}, "numbers are wanted")
+        return number(sp.sqrt(I)), _compiled(slope), _compiled(bend)
 
     def _waves(self, p0: ArrayLike, B: ArrayLike) -> tuple[Array, Array, Array]:
         """Return p0/unit, B/unit and unit, broadcast; unit is 1, or a power of two for δ^k."""
@@ -229,11 +217,11 @@ class NumericBackground(Value):
 
     def _exists(self, p0: Array, B: Array) -> Array:
         """True for each wave with 0 < F′ < ∞, B Q′(B) > 0 and Q(v) < Q(B) below B."""
-        g = grid(*LEVELS[1], FAR)
+        g, slope = grid(*LEVELS[1], FAR), self._functions[1]
         p, bend, gap = self._sampled(g, p0, B)
         with np.errstate(all="ignore"):
-            top = self._slope(p0 + B)
-            slopes = np.column_stack([self._slope(p), top])
+            top = slope(p0 + B)
+            slopes = np.column_stack([slope(p), top])
             rises = np.column_stack([gap, bend @ (2 * g.s * g.y2 * g.ds)])  # the last is Q′(B)
         good = (slopes > 0).all(axis=1) & (B[:, None] * rises > 0).all(axis=1)
         return np.asarray(good & np.isfinite(top))
@@ -247,7 +235,7 @@ def _by_block(function: Callable[[Array, Array], Array], p0: Array, B: Array) ->
     return np.concatenate(parts).reshape(p0.shape)
 
 
-def _compiled(value: sp.Expr) -> Callable[[Array], Array]:
+def _compiled(value: sp.Expr) -> Function:
     """Compile an expression in the strain to a function of arrays."""
     # NumPy has no integers of more than 63 bits.
     long = {x: sp.Float(x, 17) for x in value.atoms(sp.Rational) if x.p.bit_length() > 53}

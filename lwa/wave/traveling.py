@@ -42,10 +42,10 @@ class TravelingWave(CompactWave):
         load = read_exact(precompression, "precompression")
         if load.is_zero:
             return PhysicalWave(self, F, of)
-        self._demand_canonical()
+        waves = self.on_background(0)
         if of != "contact":
             raise InputError(f"of is {shorten(of)}: under a load it is the force of a contact")
-        return PrecompressedWave(self.cell, Power(self.k), F, load)
+        return PrecompressedWave(waves.cell, waves.law, F, load)
 
     def plot(self, ax: Any = None) -> Any:
         """Draw strain and contact force along the chain on Matplotlib's axes, by default new ones.
@@ -73,10 +73,6 @@ class TravelingWave(CompactWave):
 
         Raises `lwa.InputError` for the wave of another field, whose equation has no energy.
         """
-        self._demand_canonical()
-        return BackgroundWave(self.cell, Power(self.k), p0)
-
-    def _demand_canonical(self) -> None:
         canonical = CompactWave.canonical(self.cell, self.k)
         if any(sp.cancel(getattr(self, x) - getattr(canonical, x)) != 0 for x in "GHI"):
             raise InputError(
@@ -84,6 +80,7 @@ class TravelingWave(CompactWave):
                 'and energy: closure="full" with field="center" (--closure full --field center), '
                 "or canonical_wave(cell, k)"
             )
+        return BackgroundWave(self.cell, Power(self.k), p0)
 
     def numeric(self, missing: Literal["raise", "nan"] = "raise") -> NumericWave:
         """Vectorised float64 functions of (k, ω), ω = m2/m1; see `lwa.NumericWave`.

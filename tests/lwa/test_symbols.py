@@ -44,7 +44,7 @@ symbols = st.builds(
 
 
 def results(m1, m2, k, D, alpha):
-    """By name, what the public functions make of the symbols (α only where it may stand)."""
+    """Names and values of the public results of the symbols (α only where it may stand)."""
     cell = Dimer(m1, m2, spacing=D)
     theory = homogenize(cell, 4, k=k)
     yield from theory.ansatz.items()

@@ -35,7 +35,7 @@ def truth(law, p0, B):
 
     I F′ v′² = v² (Q(B) - Q(v)), so that ξ = ∫ √(I F′/(Q(B) - Q(v))) dv/v down from the peak.
     """
-    with mpmath.workdps(40 + 3 * max(0, int(-np.log10(abs(B))))):  # Q cancels at small B
+    with mpmath.workdps(30 + 3 * max(0, int(-np.log10(abs(B))))):  # Q cancels at small B
         W, F, slope = (
             sp.lambdify(DELTA, x, "mpmath") for x in (law.energy, law.F, law.F.diff(DELTA))
         )

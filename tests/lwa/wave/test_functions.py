@@ -32,9 +32,7 @@ in_every_language = pytest.mark.parametrize(
 EXPONENTS = (1.01, 1.5, 1.999, 2.0, 3.0, 7.875)
 RATIOS = (1e-3, 0.2733, 1.0, 3.0, 99.0)
 GRID = {"k": EXPONENTS, "m1": (1.0,), "m2": RATIOS, "D": (1.0,)}
-STIFF = {
-    "k": (1.01, 1.5, 8.0), "m1": (0.3, 7.0), "m3": (1.1,), "D": (0.7,), "A1": (0.02, 50.0)
-}  # fmt: skip
+STIFF = {"k": (1.01, 1.5, 8.0), "m1": (0.3, 7.0), "m3": (1.1,), "D": (0.7,), "A1": (0.02, 50.0)}
 
 WAVES = {
     "paper": (lambda: homogenize(Dimer("m1", "m2")).pde.traveling_wave(), GRID),
