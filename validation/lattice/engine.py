@@ -100,6 +100,7 @@ def _window(motion: Motion, window: Any) -> int | None:
             "the whole chain is wanted"
         )
     if window is True:
+        # π/β with β = (k-1) √(6/(k(k+1))) of equal beads and D = 1, √10/5 at k = 3/2
         support = math.pi / (motion.k - 1) * math.sqrt(motion.k * (motion.k + 1) / 6)
         beads = math.ceil(min(_SUPPORTS * support, motion.size)) + MARGIN
     else:
@@ -183,7 +184,7 @@ def _tableau(method: str, k: float) -> Tableau:
     nothing, table = np.zeros(0), np.zeros((0, 0))
     points = table
     if k < scheme.order:  # else the scheme sees no kink
-        u, w = scipy.special.roots_jacobi(_POINTS, 0.0, k)
+        u, w = scipy.special.roots_jacobi(_POINTS, 0.0, k)  # of ∫ (1 + u)^k f(u) du from -1 to 1
         points = np.stack(((1 + u) / 2, w / 2 ** (k + 1)))
     if not isinstance(scheme, Pair):
         return Tableau(scheme.kicks, scheme.drifts, nothing, table, table, 0, points)

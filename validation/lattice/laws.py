@@ -82,14 +82,14 @@ class Contact:
     def reached_by(self, energy: float, start: float) -> float:
         """Return the compression by an energy beyond ``start``; for a power law only its scale."""
         if self.law is None:
-            return float(np.float64(energy) ** (1 / (self.k + 1)))
+            return float(np.float64(energy) ** (1 / (self.k + 1)))  # of δ^{k+1}/(k+1) = energy
 
         def excess(end: float) -> float:
             d = np.array([start, end])
             stored = np.diff(self.energy(d)) - self.force(d)[0] * np.diff(d)
             return float(stored[0]) - energy
 
-        low, step = start, 1e-3
+        low, step = start, 1e-3  # first a bracket, in growing steps
         while step > 1e-12 * max(low, 1e-3):  # towards a pole in ever smaller steps
             above = excess(low + step)
             if above > 0:

@@ -18,7 +18,7 @@ from lwa.base.arrays import Array
 from validation.lattice.equations import Motion
 from validation.scenes.checks import SceneError
 
-_REGULA_FALSI = 9  # steps, that leave less than 1e-12 of a step of the integrator
+_REGULA_FALSI = 9  # iterations, which leave less than 1e-12 of a step of the integrator
 
 _QUANTITIES = {"contact": ("force", "compression"), "bead": ("force", "displacement", "velocity")}
 

@@ -64,7 +64,7 @@ def integrate(motion: Motion, method: str, rtol: float, atol: float, progress: R
     y, v, drive = scales.displacement, scales.velocity, motion.scene.drive
     longest = math.inf if drive is None else drive.longest_step
     steps = max(end / scales.time / mean_step(method, rtol), end / longest)
-    jacobian = (2 * n) ** 2 * 8 if method == "LSODA" else 0
+    jacobian = (2 * n) ** 2 * 8 if method == "LSODA" else 0  # bytes; the others need none
     most = most_steps(motion.scene, method, steps, 4, jacobian)
     stepper = getattr(scipy.integrate, method)(
         motion,

@@ -56,6 +56,8 @@ def restitution(ratio: float) -> float:
     50004, for k = 3/2). As contacts do not pull, it ends where the force is zero (Schwager and
     Pöschel 2007, Granular Matter 9, 465).
     """
+    # s = e^{-ζτ} sin(√(1-ζ²) τ)/√(1-ζ²) in units of time of the undamped oscillator; its second
+    # derivative, proportional to the force, vanishes at the phase below.
     if ratio < 1:
         turn = math.sqrt(1 - ratio * ratio)
         phase = math.pi - math.atan2(2 * ratio * turn, 1 - 2 * ratio * ratio)

@@ -219,7 +219,7 @@ class ExactWave(LatticeWave):
     def _strains(self) -> tuple[Array, Array]:
         """Fourier coefficients of e and o."""
         m1, m2 = self.masses
-        odd = self.odd if m1 != m2 else 0 * self.odd  # rounding, divided by q²
+        odd = self.odd if m1 != m2 else 0 * self.odd  # it is rounding, which 1/q² would enlarge
         strain = newton.respond(self.even - 1j * odd, (1 / m1, 1 / m2), self.half_period) / self.c2
         e, o = strain.real, -strain.imag
         e[0] = e[1::2].sum() - e[2::2].sum()  # the strain is 0 at L

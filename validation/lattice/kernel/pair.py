@@ -78,6 +78,7 @@ def _attempt(chain: Chain, beads: Beads, plan: Plan, lo: int, h: float, hi: int)
     for i in range(index(lo), index(hi)):
         next_v[i] = v[i] + (sums[ONE, i] - sums[ONE, i + ONE]) * inverse[i]
     # Mark contacts that open or close within the step or near it, with a force that matters.
+    # A compression δ changes a velocity by at most h A δ^k/m in a step.
     least = (_SLIGHT * plan.v / (h * plan.quickest)) ** (1.0 / chain.k)
     near = 0
     for i in range(index(lo), index(hi)):
@@ -102,6 +103,7 @@ def _correct_kinks(chain: Chain, beads: Beads, plan: Plan, lo: int, h: float, hi
         if most > 0.0:
             within = (rest[i] + y[i] - y[i + 1]) * (rest[i] + next_y[i] - next_y[i + 1]) < 0.0
             speed, later = v[i] - v[i + 1], next_v[i] - next_v[i + 1]
+            # A kink outside the step counts if the quintic may be trusted there.
             steady = min(speed / later, later / speed) > _STEADY
             kick = h * chain.A[i] * power(chain, most) * max(inverse[i], inverse[i + 1])
             if kick > _SLIGHT * plan.v and (within or steady):

@@ -109,6 +109,7 @@ def _without_kink(
     if math.isnan(p[0]):
         return knot
     y, v = kink_integrals(chain, points, p, z)
+    # p = (x - r) q, p' = q + (x - r) q', and (p_+^k)' = k p_+^{k-1} p'
     q = p[1] + z * (p[2] + z * (p[3] + z * (p[4] + z * p[5])))
     rise = p[2] + z * (2 * p[3] + z * (3 * p[4] + z * 4 * p[5]))
     d, slope = (z - p[0]) * q, q + (z - p[0]) * rise
