@@ -4,7 +4,7 @@ All keys but ``duration`` and ``chain.cell`` are optional::
 
     duration = 1e-3               # of the simulation
     samples = 2001                # of the sensors, from 0 to the duration; 1001 if not given
-    units = "SI"                  # what results say; of named beads they are SI in any case
+    units = "SI"                  # labels of results; results of named beads are in SI anyway
     gravity = 9.81                # towards the wall; the chain is in equilibrium under its weight
     precompression = 2.0          # constant force on bead 1, towards the wall: in equilibrium every
                                   #   contact carries it, besides the beads above
@@ -22,7 +22,7 @@ All keys but ``duration`` and ``chain.cell`` are optional::
     stiffnesses = [1.0, 2.0]      #   A of each contact or one for all (1 if not given),
     spacings = 1.0                #   likewise the neighbours' distance (speeds are in sites if not)
     repeat = 19                   # of the cell, 1 if not given
-    [[defects]]                   # one table for each
+    [[defects]]                   # one table for each; the later one counts at the same place
     bead = 10
     like = "ball"                 # another bead in its place; or mass = 2.0
     [[defects]]
