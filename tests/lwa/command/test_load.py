@@ -197,7 +197,7 @@ BAD = [
     (("wave", "--precompression", "1", "--force", "2", "--format", "c"), "for any force"),
     (("wave", "--background", "1", "--law", "hertz2:1,B"), "'B': the name means the peak strain"),
     (("derive", "--law", "hertz2:delta,1"), "'delta': the name means the compression"),
-    (("wave", "--k", "3/2", "--precompression", "2", "--force", "1"), "speeds grow towards B"),
+    (("wave", "--k", "3/2", "--precompression", "2", "--force", "1"), "only B > 0"),
     (("dispersion", "--precompression", "-1"), "must be positive"),
 ]
 
