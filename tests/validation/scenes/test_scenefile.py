@@ -330,6 +330,13 @@ def test_bad_files(tmp_path, name, content, message):
     one_line(caught)
 
 
+def test_a_repeated_key_is_refused_in_json_too(tmp_path):
+    file = tmp_path / "scene.json"
+    file.write_text('{"duration": 1, "duration": 2}')
+    with pytest.raises(SceneError, match="'duration' is there more than once"):
+        read_scene(file)
+
+
 def test_a_file_without_end_is_refused(tmp_path):
     most = files.MOST_BYTES[".toml"]
     (tmp_path / "s.toml").write_text("duration = 1 # " + "x" * most)
