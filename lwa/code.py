@@ -113,7 +113,7 @@ class Writer:
         return [*lines, *(line.format(**words) for line in self.closing)]
 
     def words(self, function: Function) -> dict[str, str]:
-        """Words by their names in ``opening`` and ``closing``, besides name and doc."""
+        """Texts for the placeholders of ``opening`` and ``closing``, except {name} and {doc}."""
         return {"arguments": self.arguments(function)}
 
     def arguments(self, function: Function, kind: str = "") -> str:

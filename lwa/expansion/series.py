@@ -115,7 +115,7 @@ class EpsilonSeries(Value):
         return self.prefactor * self._epsilon**self.power
 
     def _for(self, k: Any = None) -> EpsilonSeries:
-        """The series with this k for its symbol."""
+        """The series with a number or another symbol in place of its symbol k."""
         if k is None:
             return self
         new = exponent(k, self.cell)

@@ -229,7 +229,7 @@ class NumericBackground(Value):
         return base / unit, rise / unit, unit
 
     def _checks(self, p0: Array, B: Array) -> Array:
-        """Two rows: 0 < F′ < ∞ over the wave; B Q′(B) > 0 and Q(v) < Q(B) below B."""
+        """Conditions for a wave, two rows: 0 < F′ < ∞; B Q′(B) > 0 and Q(v) < Q(B) below B."""
         g, slope = grid(*LEVELS[1], FAR), self._functions[1]
         p, bend, gap = self._sampled(g, p0, B)
         with np.errstate(all="ignore"):

@@ -122,7 +122,7 @@ def solve(
 
 
 def converged(problem: newton.Problem, start: Start, unknown: str = "") -> tuple[ExactWave, float]:
-    """Return the wave that a start converges to, and the last number of `Problem.wave`."""
+    """Return the wave that a start converges to, and the last unknown of `Problem.wave`."""
     masses = problem.masses
     try:
         forces, c2, last = problem.wave(*start, unknown)
