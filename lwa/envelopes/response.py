@@ -77,7 +77,7 @@ class Arithmetic:
 
 @dataclass(frozen=True, eq=False)
 class Contacts:
-    """Masses m_i, static compressions c_i, and the nonlinear coefficients s and t of a cell."""
+    """Masses m_i, static compressions c_i, and coefficients s of δ² and t of δ³ in the force."""
 
     masses: NDArray[Any]
     c: NDArray[Any]

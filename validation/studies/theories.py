@@ -36,7 +36,7 @@ QUANTITIES = tuple(_HEADS)
 
 
 def _closed(closure: str, k: sp.Rational, omega: sp.Rational) -> Sequence[float]:
-    """Return `QUANTITIES` by the closed form of a closure."""
+    """Return widths of force and strain, and the speed, by the closed forms of a closure."""
     wave = theory_at(k, omega, closure).at_force(1)
     return [float(x) for x in (wave.fwhm("force"), wave.fwhm("strain"), wave.speed)]
 

@@ -54,7 +54,7 @@ class Medium:
 
     @classmethod
     def of(cls, cell: Cell) -> Medium:
-        """Make the medium of a cell of one or two masses, in numbers."""
+        """Make the medium of a chain whose cell has one or two beads, all numbers."""
         if cell.size > 2:
             raise SceneError(f"the cell has {cell.size} beads: one or two are wanted")
         ratio = speed_ratio(sp.Rational(cell.masses[-1] / cell.masses[0]))

@@ -96,7 +96,7 @@ def _without_kick(places: list[float], near: ExactWave) -> Iterator[tuple[float,
     """Yield values of √(m1/m2) at which T = 0 needs no kick, each with a near wave."""
 
     def kick(root: float) -> float:
-        """Return the kick's size; NaN without a wave."""
+        """Return the size of the kick (`validation.waves.newton`) for T = 0; NaN if no wave."""
         nonlocal near
         problem = Problem((1.0, root**-2), near.k)
         for start in (None, near):
