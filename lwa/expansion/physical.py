@@ -242,8 +242,8 @@ def graded_force(force: Any, stiffness: Any, other: Any, k: Any = "k") -> sp.Exp
 def transmitted_force(force: Any, cell: Cell, other: Cell, k: Any = "k") -> sp.Expr:
     """Peak force of the leading pulse that enters the chain ``other`` from ``cell``, equal beads.
 
-    ``force`` is the peak force of the incident pulse. For Hertz contacts the rule is below the measured force, by up to 7.5 % at mass ratios of ¼ to
-    4, by 10 % at 8 and by 14 % at ⅛.
+    ``force`` is the peak force of the incident pulse. For Hertz contacts the rule is below the
+    measured force, by up to 7.5 % at mass ratios of ¼ to 4, by 10 % at 8 and by 14 % at ⅛.
     """
     # Two quasi-particles collide: 4 m m′/(m + m′)² of the energy e A^{-1/k} F^{(k+1)/k} passes.
     k = exponent(k)
