@@ -15,10 +15,16 @@ os.environ.setdefault("SYMPY_CACHE_SIZE", "20000")
 
 import pytest
 from filelock import FileLock
-from hypothesis import settings
+from hypothesis import Phase, settings
 
-# No wall time is asserted, on noisy machines.
-settings.register_profile("lwa", deadline=None, max_examples=8, derandomize=True)
+settings.register_profile(
+    "lwa",
+    deadline=None,  # no wall time is asserted, on noisy machines
+    max_examples=8,
+    derandomize=True,
+    # To shrink an example of a wrong formula takes minutes, and the limit of a test would end it.
+    phases=(Phase.explicit, Phase.generate),
+)
 settings.load_profile("lwa")
 
 COMPLETE = "LWA_TESTS_COMPLETE"

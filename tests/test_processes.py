@@ -22,7 +22,7 @@ from lwa.__main__ import INTERRUPTED
 from lwa.command.terminal import CLOSED
 
 LWA = (sys.executable, "-m", "lwa")
-WAVE = (*LWA, "wave", "--k", "3/2", "--masses", "1,1")
+VERSION = (*LWA, "--version")  # takes a tenth of a second, as it does not load SymPy
 
 
 def ended(*command, **options):
@@ -90,12 +90,25 @@ def test_a_program_says_its_name_and_version(program):
     assert ended(*program, "--version") == (0, f"{name} {__version__}\n", "")
 
 
+def test_a_refusal_is_in_utf_8_whatever_the_locale():
+    environment = os.environ | {"PYTHONIOENCODING": "cp1252"}
+    status, out, err = ended(*LWA, "--κ", env=environment, encoding="utf-8")
+    assert (status, out, err.count("\n")) == (2, "", 1)
+    assert "--κ" in err
+
+
+def test_a_full_disk_is_one_line():
+    with open("/dev/full", "w") as full:
+        status, _, err = ended(*VERSION, capture_output=False, stdout=full, stderr=subprocess.PIPE)
+    assert (status, err) == (2, "lwa: the output: No space left on device\n")
+
+
 def test_without_any_output_the_status_is_left():
-    assert ended(f"{' '.join(WAVE)} >&- 2>&-", shell=True) == (2, "", "")
+    assert ended(f"{' '.join(VERSION)} >&- 2>&-", shell=True) == (2, "", "")
 
 
 def test_a_reader_that_stops_early_is_no_failed_comparison():
-    with subprocess.Popen(WAVE, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+    with subprocess.Popen(VERSION, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
         process.stdout.close()
         assert process.stderr.read() == b""
         assert process.wait(120) == CLOSED
@@ -116,7 +129,7 @@ SLOW = """if True:
 
 
 def test_ctrl_c_while_a_command_is_loaded_is_one_line(tmp_path):
-    """Once the command is loaded, it hears Ctrl-C itself."""
+    """Until the command is loaded, `start` answers Ctrl-C; then the command does."""
     for name, source in (("quick", QUICK), ("slow", SLOW)):
         (tmp_path / f"{name}.py").write_text(source)
     code = "from lwa.__main__ import start; start('lwa', 'quick'); start('lwa', 'slow')"

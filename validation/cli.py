@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from importlib import import_module
 
 import click
 
-from lwa.command.terminal import HELP, run, version
+from lwa.command.terminal import HELP, Commands, run, version
 
 STUDIES = {
     "accuracy": ("accuracy", "Speed against error of integrators and theories (three minutes)."),
@@ -25,28 +24,7 @@ STUDIES = {
 """Module and summary of each study, by the name of its function and command."""
 
 
-class Studies(click.Group):
-    """A Click group that loads a study when it is called: `--help` does not load SciPy."""
-
-    def list_commands(self, context: click.Context) -> list[str]:
-        """Return the names of all commands."""
-        return [*STUDIES]
-
-    def get_command(self, context: click.Context, name: str) -> click.Command | None:
-        """Return the command with a given name, or None."""
-        if name not in STUDIES:
-            return None
-        module = import_module(f"validation.studies.{STUDIES[name][0]}")
-        command: click.Command = getattr(module, name).command
-        return command
-
-    def format_commands(self, context: click.Context, formatter: click.HelpFormatter) -> None:
-        """Write the list of commands without loading them."""
-        with formatter.section("Commands"):
-            formatter.write_dl([(name, summary) for name, (_, summary) in STUDIES.items()])
-
-
-@click.group(cls=Studies, context_settings=HELP)
+@click.group(cls=Commands, package="validation.studies", table=STUDIES, context_settings=HELP)
 @version
 def validate() -> None:
     """Simulate chains with contacts F = A δ^k and compare them with the long-wave theory.

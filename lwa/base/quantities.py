@@ -9,12 +9,6 @@ import sympy as sp
 from lwa.base.errors import NoSolitaryWave as NoSolitaryWave
 from lwa.base.exact import one_of
 
-NO_WAVE = (
-    "there is no wave unless contacts stay closed, F′ > 0, and speeds grow towards B (under δ^k: "
-    "p0 + B > 0 and (k-1) B > 0)"
-)
-"""Reason for the refusal of a wave on a background."""
-
 RISE = sp.Symbol("B", positive=True)
 """B, the peak strain of a wave, unless the caller gives another."""
 
@@ -44,3 +38,23 @@ def known_quantity(quantity: str) -> str:
 def known_extent(extent: str) -> str:
     """Return the extent; raise `lwa.InputError` unless it is among `EXTENTS`."""
     return one_of(extent, EXTENTS, "extent")
+
+
+NOT_RISING = "F′ is not positive and finite from p0 to p0 + B"
+NOT_STIFFENING = "the law does not stiffen towards p0 + B: a smaller wave would be as fast"
+
+
+def refusal_under_power(excess: sp.Expr, p0: sp.Expr, B: sp.Expr) -> str:
+    """Reason why δ^k has no wave of the rise B on the strain p0; empty if there may be a wave.
+
+    excess : k - 1. Speeds scale as strain^{(k-1)/2}.
+    """
+    stiffens, softens = excess.is_positive, excess.is_negative
+    cases = {
+        "at k = 1 the chain is linear, and its waves disperse": excess.is_zero,
+        "k < 1 and there is no load: the speed falls with the strain": softens and p0.is_zero,
+        "k > 1: speeds grow with the strain, and only B > 0 has a wave": stiffens and B.is_negative,
+        "k < 1: speeds fall with the strain, and only B < 0 has a wave": softens and B.is_positive,
+        "the contacts would open": p0.is_negative or (p0 + B).is_nonpositive,
+    }
+    return next((reason for reason, holds in cases.items() if holds), "")

@@ -3,40 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from importlib import import_module
 
 import click
 
-from lwa.command.terminal import HELP, run, version
+from lwa.command.terminal import HELP, Commands, run, version
 
 COMMANDS = {
-    "derive": "derivation",
-    "wave": "waves",
-    "dispersion": "modes",
-    "expansion": "series",
-    "strike": "driven",
-    "envelope": "modes",
-    "shock": "driven",
+    "derive": ("derivation", "Derive the long-wave equation of a chain."),
+    "dispersion": ("modes", "Series of Ω²(κ), and the bands of a loaded chain."),
+    "envelope": ("modes", "Nonlinear Schrödinger equation of a mode, and breathers."),
+    "expansion": ("series", "Series in k - 1 of the lattice's own wave, summed."),
+    "shock": ("driven", "Shock, or rarefaction, of a chain that a wall drives."),
+    "strike": ("driven", "Leading pulse of equal beads that a mass strikes."),
+    "wave": ("waves", "Compact traveling wave: β, width, FWHM, amplitude and speed."),
 }
-"""Module of each command in `lwa.command`."""
+"""Module in `lwa.command`, and summary, of each command by its name."""
 
 
-class Commands(click.Group):
-    """A Click group that loads a command's module when it is used, for a quick start."""
-
-    def list_commands(self, context: click.Context) -> list[str]:
-        """Return the names of all commands."""
-        return sorted(COMMANDS)
-
-    def get_command(self, context: click.Context, name: str) -> click.Command | None:
-        """Return the command with a given name, or None."""
-        if name not in COMMANDS:
-            return None
-        command: click.Command = getattr(import_module(f"lwa.command.{COMMANDS[name]}"), name)
-        return command
-
-
-@click.group(cls=Commands, context_settings=HELP)
+@click.group(cls=Commands, package="lwa.command", table=COMMANDS, context_settings=HELP)
 @version
 def lwa() -> None:
     """Long-wave theory of granular chains with contact force F = A δ^k.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 import sympy as sp
@@ -23,11 +23,12 @@ from lwa.command.options import (
     value,
 )
 from lwa.command.rows import PRINTED_DIGITS, Answer, Row, Values
-from lwa.envelopes import schrodinger
-from lwa.envelopes.schrodinger import Breather, Envelope
 from lwa.law import Power
 from lwa.linear.dispersion import Dispersion, LoadedChain
 from lwa.spheres.hertz import EXPONENT
+
+if TYPE_CHECKING:
+    from lwa.envelopes.schrodinger import Breather, Envelope
 
 PLACES = 8  # intervals of the wavenumbers, 0 to π/(PD), at which bands are printed
 
@@ -181,6 +182,8 @@ def envelope(
     `opening_load` is the static force at which contacts begin to open if the frequency, or the
     amplitude, is held.
     """
+    from lwa.envelopes import schrodinger  # here: it loads NumPy, which `lwa dispersion` may spare
+
     if frequency is not None and detuning is not None:
         raise InputError("--frequency and --detuning are both given: one says the other")
     chain = take_chain(options)

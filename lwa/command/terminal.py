@@ -7,7 +7,9 @@ import io
 import os
 import signal
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from importlib import import_module
+from typing import Any
 
 import click
 
@@ -21,6 +23,35 @@ CLOSED, INTERRUPTED = 128 + 13, 128 + signal.SIGINT
 
 version = click.version_option(package_name="lwa", message="%(prog)s %(version)s")
 """The option ``--version`` of a command."""
+
+
+class Commands(click.Group):
+    """A Click group that loads a command when it is called: `--help` loads none, for a quick start.
+
+    table : module in ``package``, and summary, of each command by its name. The module has a Click
+        command of that name, or an object whose ``command`` is one.
+    """
+
+    def __init__(self, package: str, table: Mapping[str, tuple[str, str]], **settings: Any) -> None:
+        super().__init__(**settings)
+        self.package, self.table = package, table
+
+    def list_commands(self, context: click.Context) -> list[str]:
+        """Return the names of all commands."""
+        return [*self.table]
+
+    def get_command(self, context: click.Context, name: str) -> click.Command | None:
+        """Return the command with a given name, or None."""
+        if name not in self.table:
+            return None
+        loaded = getattr(import_module(f"{self.package}.{self.table[name][0]}"), name)
+        command: click.Command = getattr(loaded, "command", loaded)
+        return command
+
+    def format_commands(self, context: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the list of commands without loading them."""
+        with formatter.section("Commands"):
+            formatter.write_dl([(name, summary) for name, (_, summary) in self.table.items()])
 
 
 def run(command: click.Command, name: str, arguments: Sequence[str] | None = None) -> None:

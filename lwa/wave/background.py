@@ -26,7 +26,14 @@ import sympy as sp
 from lwa.base import latex
 from lwa.base.exact import InputError, demand_numbers, integer, read_exact, shorten, signed
 from lwa.base.frozen import Value
-from lwa.base.quantities import NO_WAVE, RISE, NoSolitaryWave, known_quantity
+from lwa.base.quantities import (
+    NOT_RISING,
+    NOT_STIFFENING,
+    RISE,
+    NoSolitaryWave,
+    known_quantity,
+    refusal_under_power,
+)
 from lwa.cell import RESERVED, Cell, check_names
 from lwa.law import ContactLaw, Power, for_cell, substituted
 from lwa.linear.dispersion import Dispersion
@@ -172,31 +179,29 @@ class BackgroundWave(Value):
         B = read_exact(B, "B")
         if B.is_zero:
             raise InputError("B is 0: a wave rises or falls by B; `kdv` is the limit of small ones")
-        if not (self._exists_under_power if self.law.homogeneous else self._exists_under_law)(B):
-            raise NoSolitaryWave(f"p0 = {self.p0}, B = {shorten(B)}: {NO_WAVE}")
+        if self.law.homogeneous:
+            reason = refusal_under_power(self.law.exponent - 1, self.p0, B)
+        else:
+            reason = self._refusal_under_law(B)
+        if reason:
+            raise NoSolitaryWave(f"p0 = {self.p0}, B = {shorten(B)}: {reason}")
         return B
 
-    def _exists_under_power(self, B: sp.Expr) -> bool:
-        """False if a power law has no wave of the rise B; symbols may leave that open."""
-        # Speeds scale as strain^{(k-1)/2}; under k < 1 a wave falls, at most to p = 0.
-        grows = (self.law.exponent - 1) * B
-        return not (grows.is_nonpositive or (self.p0 + B).is_nonpositive)
-
-    def _exists_under_law(self, B: sp.Expr) -> bool:
-        """False if a law that is no power has no wave of the rise B."""
+    def _refusal_under_law(self, B: sp.Expr) -> str:
+        """Reason why a law that is no power has no wave of the rise B; empty if there is one."""
         if self._free(B):
-            return True
+            return ""
         flank = self._flank(B, WIDTH_DIGITS)
         with mpmath.workdps(30):
             rise = mpmath_number(flank.B)
             slopes = [flank.F1(rise * i / _PLACES) for i in range(_PLACES + 1)]
             if not all(mpmath.im(x) == 0 and 0 < x < mpmath.inf for x in slopes):
-                return False
+                return NOT_RISING
         with mpmath.workdps(flank.working_digits):
             rise = mpmath_number(flank.B)
             Q = [flank.Q(rise * i / _PLACES) for i in range(1, _PLACES + 1)]
             chord = (flank.F(rise) - flank.F(mpmath.mpf(0))) / rise  # B Q′(B)/2 = this - Q(B)
-            return bool(max(Q[:-1]) < Q[-1] < chord)
+            return "" if max(Q[:-1]) < Q[-1] < chord else NOT_STIFFENING
 
     @property
     def kdv(self) -> KdV:

@@ -75,6 +75,12 @@ class Reduction(Value):
     sigma: sp.Expr
     s: sp.Expr
 
+    @classmethod
+    def of_powers(cls, k: sp.Expr, I: sp.Expr, p: sp.Expr, a: sp.Expr, V: sp.Expr) -> Self:
+        """The reduction of a wave of speed V by the powers p and a."""
+        mu, eta = V**2 / (I * (p + a)), 1 + p - k * p
+        return cls(k, p, a, mu, eta, 1 / (I * (k * p + a)), 2 / (1 - eta))
+
     @property
     def beta(self) -> sp.Expr:
         """The wavenumber √σ (1 - η) / 2 of the cosine, `CompactWave.beta` for either root."""
@@ -252,11 +258,9 @@ class CompactWave(Value):
         symbol, equation = self._equation
         e = equation["product"] / equation["third"] + 1
         slope, constant = self._coefficients(e, symbol)
-        k, I, p = self.k, self.I, self.roots[root]
-        a = factored(slope - k) * p + constant
-        mu, eta = positive(V, "V") ** 2 / (I * (p + a)), 1 + p - k * p
-        sigma, s = 1 / (I * (k * p + a)), 2 / (1 - eta)
-        return Reduction(k, p, a, mu, eta, sigma, s)
+        p = self.roots[root]
+        a = factored(slope - self.k) * p + constant
+        return Reduction.of_powers(self.k, self.I, p, a, positive(V, "V"))
 
     def at(self, **values: Any) -> Self:
         """Substitute numbers (or other symbols) for the named symbols, and for ω = m2/m1.

@@ -29,7 +29,13 @@ from numpy.typing import ArrayLike, NDArray
 from lwa.base.arrays import Array, finite
 from lwa.base.exact import InputError, demand_numbers, number
 from lwa.base.frozen import Value
-from lwa.base.quantities import NO_WAVE, NoSolitaryWave, known_quantity
+from lwa.base.quantities import (
+    NOT_RISING,
+    NOT_STIFFENING,
+    NoSolitaryWave,
+    known_quantity,
+    refusal_under_power,
+)
 from lwa.cell import Cell
 from lwa.law import ContactLaw
 from lwa.linear.dispersion import Dispersion
@@ -204,35 +210,42 @@ class NumericBackground(Value):
             raise InputError("B is 0: a wave rises or falls by B")
         unit = np.ones_like(base)
         if self.law.homogeneous:
-            excess = float(self.law.exponent - 1)
+            sign = float(sp.sign(self.law.exponent - 1))
             with np.errstate(over="ignore"):
-                exists = (base >= 0) & (excess * rise > 0) & (base + rise > 0)
+                exists = (base >= 0) & (sign * rise > 0) & (base + rise > 0)
                 unit = np.ldexp(0.5, np.frexp(np.maximum(base, base + rise))[1])  # rounds nothing
         else:
-            exists = _by_block(self._exists, base, rise)
+            rises, stiffens = _by_block(self._checks, base, rise)
+            exists = rises & stiffens
         if not np.all(exists):
             i = int(np.argmin(exists))
-            raise NoSolitaryWave(f"p0 = {base.flat[i]}, B = {rise.flat[i]}: {NO_WAVE}")
+            start, height = base.flat[i], rise.flat[i]
+            if self.law.homogeneous:
+                excess = self.law.exponent - 1
+                reason = refusal_under_power(excess, sp.Float(start), sp.Float(height))
+            else:
+                reason = NOT_STIFFENING if rises.flat[i] else NOT_RISING
+            raise NoSolitaryWave(f"p0 = {start}, B = {height}: {reason}")
         return base / unit, rise / unit, unit
 
-    def _exists(self, p0: Array, B: Array) -> Array:
-        """True for each wave with 0 < F′ < ∞, B Q′(B) > 0 and Q(v) < Q(B) below B."""
+    def _checks(self, p0: Array, B: Array) -> Array:
+        """Two rows: 0 < F′ < ∞ over the wave; B Q′(B) > 0 and Q(v) < Q(B) below B."""
         g, slope = grid(*LEVELS[1], FAR), self._functions[1]
         p, bend, gap = self._sampled(g, p0, B)
         with np.errstate(all="ignore"):
             top = slope(p0 + B)
             slopes = np.column_stack([slope(p), top])
             rises = np.column_stack([gap, bend @ (2 * g.s * g.y2 * g.ds)])  # the last is Q′(B)
-        good = (slopes > 0).all(axis=1) & (B[:, None] * rises > 0).all(axis=1)
-        return np.asarray(good & np.isfinite(top))
+        good = (slopes > 0).all(axis=1) & np.isfinite(top)
+        return np.stack([good, (B[:, None] * rises > 0).all(axis=1)])
 
 
 def _by_block(function: Callable[[Array, Array], Array], p0: Array, B: Array) -> Array:
-    """Apply a function of two flat arrays to blocks of broadcast ones."""
+    """Apply a function of two flat arrays to blocks of broadcast ones; results may have rows."""
     base, rise = p0.ravel(), B.ravel()
     starts = range(0, max(len(base), 1), _BLOCK)
     parts = [function(base[i : i + _BLOCK], rise[i : i + _BLOCK]) for i in starts]
-    return np.concatenate(parts).reshape(p0.shape)
+    return np.concatenate(parts, axis=-1).reshape((*parts[0].shape[:-1], *p0.shape))
 
 
 def _compiled(value: sp.Expr) -> Function:

@@ -5,7 +5,7 @@ from functools import cache
 import numpy as np
 import pytest
 import sympy as sp
-from hypothesis import Phase, assume, example, given, settings
+from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
 from lwa import (
@@ -97,7 +97,7 @@ def may_be_refused(given):
     return {s.name for role, s in given.items() if own.get(role) != s.name} & {*RESERVED, "F"}
 
 
-@settings(max_examples=1, phases=(Phase.explicit, Phase.generate))  # shrinking would take minutes
+@settings(max_examples=1)
 @given(st.fixed_dictionaries(dict.fromkeys(ROLES, symbols)))
 @example(dict(zip(ROLES, sp.symbols("p lambda kappa I mu0"), strict=True)))
 @example({**NEUTRAL, "m1": sp.Symbol("k")})
@@ -130,7 +130,7 @@ def law_results(a, b):
         yield value.subs(dict.fromkeys(rise, 2)).subs(sp.Symbol("D", positive=True), 1)
 
 
-@settings(max_examples=1, phases=(Phase.explicit, Phase.generate))
+@settings(max_examples=1)
 @given(a=symbols, b=symbols)
 @example(a=sp.Symbol("tau"), b=sp.Symbol("x"))
 @example(a=sp.Symbol("delta"), b=sp.Symbol("b"))

@@ -75,16 +75,16 @@ class Motion:
         self.start[: len(scene.displacements)] = scene.displacements
         self.start[n : n + len(scene.velocities)] = scene.velocities
 
+    def rate(self, v: Array) -> Array:
+        """Return the rates dδ_i/dt of the compressions at velocities of shape (n,) or (n, S)."""
+        wall = np.zeros_like(v[:1])
+        row = np.concatenate((v, wall)) if len(self.rest) == len(v) else v
+        return np.asarray(row[:-1] - row[1:])
+
     def compression(self, y: Array) -> Array:
         """Return the compressions δ_i at displacements of shape (n,) or (n, S)."""
-        row = np.concatenate((y, np.zeros_like(y[:1]))) if len(self.rest) == len(y) else y
-        dynamic = row[:-1] - row[1:]
+        dynamic = self.rate(y)
         return np.asarray((self.rest + dynamic.T).T) if self.loaded else dynamic
-
-    def rate(self, v: Array) -> Array:
-        """Return the rates dδ_i/dt of the compressions at velocities of shape (n,)."""
-        row = np.append(v, 0.0) if len(self.rest) == len(v) else v
-        return np.asarray(row[:-1] - row[1:])
 
     def force(self, compression: Array) -> Array:
         """Return the elastic forces A_i F(δ_i); A_i [δ_i]_+^k for a power law."""
@@ -104,13 +104,8 @@ class Motion:
         The elastic energy of contacts with numbers below ``first`` is left out.
         """
         compression, v = self.compression(state[: self.size]), state[self.size : 2 * self.size]
-        if self.contact.law is None:
-            stored = (self.force(compression) * compression - self.load * self.rest) / (self.k + 1)
-        else:
-            energies = self.contact.energy(compression) - self.contact.energy(self.rest)
-            stored = self.stiffnesses * energies
-        if self.loaded:
-            stored -= self.load * (compression - self.rest)
+        energies = self.contact.energy(compression) - self.contact.energy(self.rest)
+        stored = self.stiffnesses * energies - self.load * (compression - self.rest)
         return float(self.masses @ v**2 / 2 + stored[first:].sum())
 
     def balance(self, state: Array, first: int = 0) -> float:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, field
+from importlib import import_module
 from typing import Any
 
 import numpy as np
@@ -20,6 +21,7 @@ _SI = {
     "time": "s",
     "arrival": "s",
     "FWHM": "s",
+    "energy": "J",
     "force": "N",
     "compression": "m",
     "displacement": "m",
@@ -81,8 +83,25 @@ class Records(ArrayValue, Pictured):
         """Return the name of a quantity, such as "bead 1 velocity", with its unit in a SI scene."""
         return f"{quantity} ({_SI[quantity.split()[-1]]})" if self.scene.units else quantity
 
+    @property
+    def energy(self) -> Array:
+        """Kinetic and elastic energy above equilibrium at the sample times, (S,).
+
+        Raises `SceneError` unless the scene has sensors at all beads.
+        """
+        sensors, size = self.scene.bead_sensors, self.scene.size
+        if len(sensors) < size:
+            text = f"energy needs sensors at all {size} beads: the scene has {len(sensors)}"
+            raise SceneError(text)
+        order, motion = np.argsort(sensors), Motion(self.scene)
+        states = np.concatenate((self.bead_displacement[order], self.bead_velocity[order]))
+        return np.array([motion.energy(state) for state in states.T])
+
     def columns(self) -> dict[str, Array]:
-        """Return time and all records, each (S,), by names such as "bead 15 force (N)"."""
+        """Return time and all records, each (S,), by names such as "bead 15 force (N)".
+
+        The energy is included if all beads have sensors.
+        """
         scene = self.scene
         values = {"time": self.time}
         for row, i in enumerate(scene.bead_sensors):
@@ -91,7 +110,20 @@ class Records(ArrayValue, Pictured):
         for row, i in enumerate(scene.contact_sensors):
             values[f"contact {i + 1} force"] = self.contact_force[row]
             values[f"contact {i + 1} compression"] = self.compression[row]
+        if len(scene.bead_sensors) == scene.size:
+            values["energy"] = self.energy
         return {self.label(name): row for name, row in values.items()}
+
+    def to_pandas(self) -> Any:
+        """Return the `columns` as a pandas DataFrame, with the time as index.
+
+        Raises `SceneError` without pandas, an optional package.
+        """
+        try:
+            pandas = import_module("pandas")
+        except ImportError:
+            raise SceneError("to_pandas needs pandas: pip install pandas") from None
+        return pandas.DataFrame(self.columns()).set_index(self.label("time"))
 
     def pictured(self) -> list[Panel]:
         """Panels of force against time at all sensors; an x–t map for more than ten of a kind."""

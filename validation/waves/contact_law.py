@@ -78,7 +78,8 @@ def speed_ratio(omega: sp.Rational) -> tuple[Callable[[Any], Array], float]:
     ratio: Callable[[Any], Any]
     if omega == 1:
         exact = np.vectorize(lambda k: exact_wave([1], k).c2 * (k + 1) / 2)
-        ratio = np.polynomial.Chebyshev.interpolate(exact, _UNIFORM, (1.008, 4))  # R(1) = 1
+        # The lowest node is at k = 1.012: there are no exact waves below 1.01.
+        ratio = np.polynomial.Chebyshev.interpolate(exact, _UNIFORM, (1.008, 4))
         error = _ERROR
     else:
         exponents, ratios, error = [1.0], [1.0], 0.0

@@ -134,7 +134,8 @@ class Problem:
     def strains(self, z: Array, inverse: Pair) -> Array:
         """Return c² a, 0 at L, at the first ``count`` grid points, from the unknown forces z."""
         force = scipy.fft.rfft(self.forces(z))
-        force = np.asarray(force.real if self.uniform else force, complex)  # no rounding over q²
+        # Of equal masses the imaginary part is rounding, which 1/q² would enlarge.
+        force = np.asarray(force.real if self.uniform else force, complex)
         a = scipy.fft.irfft(respond(force, inverse, self.L), 2 * self.n)
         return np.asarray(a - a[self.n])[: self.count]
 

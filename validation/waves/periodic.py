@@ -180,7 +180,8 @@ def orbit(
     least, before = SMALL * np.abs(a).max(), math.inf
     for _ in range(MOST_STEPS):
         step, fault = _newton_step(chain, omega, a)
-        # Rounding stops the fall. Steps say less: a wide orbit is easily shifted along the chain.
+        # Rounding stops the fall. The step does not measure convergence, as a wide orbit is
+        # easily shifted along the chain.
         if fault < CLOSE * chain.load and fault > before / 4:
             return Orbit(chain, omega, a)
         a, before = a - step, fault

@@ -31,6 +31,7 @@ from validation.scenes.scene import Scene
 from validation.waves import newton
 
 TOLERANCE = 1e-9  # tail and residual of a solitary wave over its peak strain, at most
+_ROW = 16  # Fourier coefficients that are summed up together
 OUTSIDE = 0.6  # share of the half period at which a dimer's pulse has ended and its tail begins
 
 
@@ -219,7 +220,7 @@ class ExactWave(LatticeWave):
     def _strains(self) -> tuple[Array, Array]:
         """Fourier coefficients of e and o."""
         m1, m2 = self.masses
-        odd = self.odd if m1 != m2 else 0 * self.odd  # rounding, divided by q²
+        odd = self.odd if m1 != m2 else 0 * self.odd  # it is rounding, which 1/q² would enlarge
         strain = newton.respond(self.even - 1j * odd, (1 / m1, 1 / m2), self.half_period) / self.c2
         e, o = strain.real, -strain.imag
         e[0] = e[1::2].sum() - e[2::2].sum()  # the strain is 0 at L
@@ -243,8 +244,12 @@ class ExactWave(LatticeWave):
 
     def _sum(self, xi: ArrayLike, even: Array, odd: Array) -> Array:
         """Fourier sum Σ even_j cos(q_j ξ) + odd_j sin(q_j ξ)."""
-        phase = np.multiply.outer(xi, np.pi / self.half_period * np.arange(self.samples))
-        return np.asarray(np.cos(phase) @ even + np.sin(phase) @ odd)
+        rows = np.append(even - 1j * odd, np.zeros(-self.samples % _ROW)).reshape(-1, _ROW)
+        q = np.pi / self.half_period * np.arange(rows.size)
+        # e^{iqξ} of every q as a product of two, of the first 16 q and of every 16th q: special
+        # ratios are found in a tenth less time than with a sine and a cosine for every q.
+        first, every = (np.exp(1j * np.multiply.outer(xi, part)) for part in (q[:_ROW], q[::_ROW]))
+        return np.asarray(((first @ rows.T) * every).real.sum(axis=-1))
 
     def _ended(self, xi: ArrayLike) -> NDArray[np.bool_]:
         """True where |ξ| > L for a solitary wave, which is 0 there instead of periodic."""

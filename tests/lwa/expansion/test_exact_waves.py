@@ -97,8 +97,8 @@ def test_the_command_prints_no_refused_sum(capsys):
         said = capsys.readouterr().out
         assert ended.value.code == 0
         assert words in said
-        told = [line for line in said.splitlines() if "FWHM" in line or "c²" in line]
-        assert not any("±" in line for line in told)
+        rows = [line for line in said.splitlines() if "FWHM" in line or "c²" in line]
+        assert not any("±" in line for line in rows)
 
 
 @pytest.mark.parametrize("order", [1, 3])

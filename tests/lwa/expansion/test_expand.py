@@ -329,6 +329,8 @@ def test_radiation_falls_exponentially_and_vanishes_for_equal_beads() -> None:
     """log R is about linear in 1/ε while R is small: e^{-S/ε}."""
     assert wave("equal").c2.radiation is None
     radiation = expand(Dimer(1, sp.Rational(1, 20)), 1).c2.radiation
+    assert radiation.contrast == pytest.approx((19 / 21) ** 2, rel=1e-14)
+    assert radiation.optical == pytest.approx(21**2 / 20, rel=1e-14)  # 1/Π
     assert radiation is not None
     at = 1 / np.array([8.0, 7.0, 6.0, 5.0])
     logs = np.log([radiation.amplitude(1 + e) for e in at])

@@ -249,6 +249,25 @@ def test_numpy_broadcasts_and_takes_integers(functions_of):
     assert large == pytest.approx(found["beta"](k=2, m1=1, m2=np.array([1, 10]), D=3), rel=1e-15)
 
 
+def test_python_has_the_reduction_too():
+    found = {}
+    wave = wave_of("paper")
+    exec(wave.code("python"), found)
+    names = (*wave_functions(wave), "p", "a", "mu", "eta", "sigma", "s", "B")
+    assert set(names) <= set(found)
+    k, m1, m2, D, V = 1.5, 2.0, 3.0, 0.5, 1.25
+    exact_wave = wave.at(k=k, m1=m1, m2=m2, D=D)
+    reduction = exact_wave.reduction(V=V)
+    for name in ("p", "a", "mu", "eta", "sigma", "s"):
+        first, last = (V,) * (name == "mu"), (D,) * (name in ("mu", "sigma"))
+        got = found[name](*first, k, m1, m2, *last)
+        assert got == pytest.approx(float(getattr(reduction, name)), rel=1e-13)
+    assert found["B"](V, k, m1, m2) == found["amplitude"](V, k, m1, m2)
+    complex_root = {}
+    exec(wave.at(k=3, m1=1, m2=2).code("python"), complex_root)
+    assert complex_root["p"]() == pytest.approx(complex(wave.at(k=3, m1=1, m2=2).roots[0]))
+
+
 def test_arguments_have_one_order_in_all_languages():
     functions = wave_functions(canonical_wave(Cell(["z", "a"], ["y", "b"], "L"), "q"))
     names = {name: [s.name for s in f.arguments] for name, f in functions.items()}
