@@ -196,7 +196,7 @@ def written(tmp_path, text):
 
 
 def test_a_folder_in_place_of_a_file_is_named(tmp_path):
-    with pytest.raises(SceneError, match=f"^{tmp_path}: Is a directory"):
+    with pytest.raises(SceneError, match=f"^{tmp_path}: only regular files are read"):
         law(tmp_path)
 
 
