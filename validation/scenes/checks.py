@@ -1,4 +1,4 @@
-"""Checked input of scenes: numbers, sequences and CSV columns; a fault is one line with a name."""
+"""Checked input of scenes: numbers, sequences and CSV columns; messages name the faulty value."""
 
 from __future__ import annotations
 
