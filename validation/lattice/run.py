@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, field
+from importlib import import_module
 from typing import Any
 
 import numpy as np
@@ -24,6 +25,7 @@ _SI = {
     "compression": "m",
     "displacement": "m",
     "velocity": "m/s",
+    "energy": "J",
 }
 _MOST = 10  # sensors of one kind that are drawn as curves; more are drawn as a map
 _FINEST = 1000  # places, and times, of a map
@@ -81,8 +83,29 @@ class Records(ArrayValue, Pictured):
         """Return the name of a quantity, such as "bead 1 velocity", with its unit in a SI scene."""
         return f"{quantity} ({_SI[quantity.split()[-1]]})" if self.scene.units else quantity
 
+    @property
+    def energy(self) -> Array:
+        """Kinetic and elastic energy above equilibrium at the sample times, (S,).
+
+        Raises `SceneError` unless the scene has sensors at all beads.
+        """
+        sensors, size = self.scene.bead_sensors, self.scene.size
+        if len(sensors) < size:
+            wanted = f"energy needs sensors at all {size} beads"
+            raise SceneError(f"{wanted}: the scene has {len(sensors)}")
+        order, motion = np.argsort(sensors), Motion(self.scene)
+        states = np.concatenate((self.bead_displacement[order], self.bead_velocity[order]))
+        return np.array([motion.energy(state) for state in states.T])
+
+    def to_pandas(self) -> Any:
+        """Return the `columns` as a pandas DataFrame, indexed by time; pandas must be installed."""
+        return import_module("pandas").DataFrame(self.columns()).set_index(self.label("time"))
+
     def columns(self) -> dict[str, Array]:
-        """Return time and all records, each (S,), by names such as "bead 15 force (N)"."""
+        """Return time and all records, each (S,), by names such as "bead 15 force (N)".
+
+        The energy is included if all beads have sensors.
+        """
         scene = self.scene
         values = {"time": self.time}
         for row, i in enumerate(scene.bead_sensors):
@@ -91,6 +114,8 @@ class Records(ArrayValue, Pictured):
         for row, i in enumerate(scene.contact_sensors):
             values[f"contact {i + 1} force"] = self.contact_force[row]
             values[f"contact {i + 1} compression"] = self.compression[row]
+        if len(scene.bead_sensors) == scene.size:
+            values["energy"] = self.energy
         return {self.label(name): row for name, row in values.items()}
 
     def pictured(self) -> list[Panel]:
