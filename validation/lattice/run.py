@@ -21,11 +21,11 @@ _SI = {
     "time": "s",
     "arrival": "s",
     "FWHM": "s",
+    "energy": "J",
     "force": "N",
     "compression": "m",
     "displacement": "m",
     "velocity": "m/s",
-    "energy": "J",
 }
 _MOST = 10  # sensors of one kind that are drawn as curves; more are drawn as a map
 _FINEST = 1000  # places, and times, of a map
@@ -91,15 +91,11 @@ class Records(ArrayValue, Pictured):
         """
         sensors, size = self.scene.bead_sensors, self.scene.size
         if len(sensors) < size:
-            wanted = f"energy needs sensors at all {size} beads"
-            raise SceneError(f"{wanted}: the scene has {len(sensors)}")
+            text = f"energy needs sensors at all {size} beads: the scene has {len(sensors)}"
+            raise SceneError(text)
         order, motion = np.argsort(sensors), Motion(self.scene)
         states = np.concatenate((self.bead_displacement[order], self.bead_velocity[order]))
         return np.array([motion.energy(state) for state in states.T])
-
-    def to_pandas(self) -> Any:
-        """Return the `columns` as a pandas DataFrame, indexed by time; pandas must be installed."""
-        return import_module("pandas").DataFrame(self.columns()).set_index(self.label("time"))
 
     def columns(self) -> dict[str, Array]:
         """Return time and all records, each (S,), by names such as "bead 15 force (N)".
@@ -117,6 +113,17 @@ class Records(ArrayValue, Pictured):
         if len(scene.bead_sensors) == scene.size:
             values["energy"] = self.energy
         return {self.label(name): row for name, row in values.items()}
+
+    def to_pandas(self) -> Any:
+        """Return the `columns` as a pandas DataFrame, with the time as index.
+
+        Raises `SceneError` without pandas, an optional package.
+        """
+        try:
+            pandas = import_module("pandas")
+        except ImportError:
+            raise SceneError("to_pandas needs pandas: pip install pandas") from None
+        return pandas.DataFrame(self.columns()).set_index(self.label("time"))
 
     def pictured(self) -> list[Panel]:
         """Panels of force against time at all sensors; an x–t map for more than ten of a kind."""

@@ -2,6 +2,7 @@
 
 import math
 import pickle
+import sys
 from dataclasses import replace
 
 import numpy as np
@@ -388,10 +389,6 @@ def test_a_notebook_shows_a_run_and_a_program_its_columns():
         "time", "bead 1 force", "bead 1 displacement", "bead 1 velocity", "contact 2 force",
         "contact 2 compression",
     ]  # fmt: skip
-    pytest.importorskip("pandas")
-    table = run.to_pandas()
-    assert table.index.name == "time"
-    np.testing.assert_array_equal(table["contact 2 force"], run.contact_force[0])
 
 
 def test_a_run_equals_its_pickle_and_no_other_run():
@@ -403,19 +400,31 @@ def test_a_run_equals_its_pickle_and_no_other_run():
     assert run != simulate(replace(scene, contact_sensors=(0,), duration=2.9))
 
 
-def test_only_a_scene_is_simulated():
-    with pytest.raises(SceneError, match=r"^scene is 'x': a Scene is wanted$"):
-        simulate("x")
+def test_pandas_is_optional(monkeypatch):
+    scene = Scene(masses=(1, 1), stiffnesses=(1,), k=1.5, duration=1, contact_sensors=(0,))
+    run = simulate(scene)
+    with monkeypatch.context() as absent:
+        absent.setitem(sys.modules, "pandas", None)
+        with pytest.raises(SceneError, match=r"^to_pandas needs pandas: pip install pandas$"):
+            run.to_pandas()
+    pytest.importorskip("pandas")
+    table = run.to_pandas()
+    assert table.index.name == "time"
+    np.testing.assert_array_equal(table["contact 1 force"], run.contact_force[0])
 
 
 def test_energy_over_time_is_a_record_with_sensors_at_all_beads():
-    """Without damping the energy of a loaded chain is constant."""
     scene = Scene(
         masses=(1.0, 0.5) * 5, stiffnesses=(1.0,) * 9, wall=1.0, precompression=0.5, k=1.5,
         duration=9, velocities=(1,), bead_sensors=(3, *range(3), *range(4, 10)), samples=31,
     )  # fmt: skip
     run = simulate(scene, rtol=1e-9)
-    assert run.energy == pytest.approx(0.5, rel=1e-7)
+    assert run.energy == pytest.approx(0.5, rel=1e-7)  # of the blow, conserved
     np.testing.assert_array_equal(run.columns()["energy"], run.energy)
     with pytest.raises(SceneError, match=r"^energy needs sensors at all 10 beads: .* has 2$"):
         simulate(replace(scene, bead_sensors=(0, 1))).energy  # noqa: B018
+
+
+def test_only_a_scene_is_simulated():
+    with pytest.raises(SceneError, match=r"^scene is 'x': a Scene is wanted$"):
+        simulate("x")
