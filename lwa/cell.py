@@ -112,7 +112,7 @@ class Cell(Value):
         return self.replaced(substitution(values, self))
 
     def replaced(self, new: Mapping[sp.Symbol, sp.Expr]) -> Cell:
-        """The cell with the values that `substitution` gives for some of its symbols."""
+        """The cell with expressions in place of some of its symbols."""
         return Cell(
             masses=tuple(x.xreplace(new) for x in self.masses),
             stiffnesses=tuple(x.xreplace(new) for x in self.stiffnesses),

@@ -324,7 +324,7 @@ def substituted(
 
 
 def for_cell(law: Any, cell: Cell) -> ContactLaw:
-    """Return the law; raise `lwa.InputError` unless it is one for the contacts of the cell."""
+    """Return a law; raise `lwa.InputError` unless it is a law that fits the cell's contacts."""
     if not isinstance(law, ContactLaw):
         raise InputError(f"law is {shorten(law)}: Power(k), Law(F, delta) or general() is wanted")
     law.check_contacts(cell)

@@ -52,7 +52,7 @@ class Theory(OfClosure):
 
     @cached_property
     def slaved(self) -> dict[int, dict[int, Terms]]:
-        """Mapping i → n → terms J_n of particle i, w_i = u + u_x Σ D^n J_n (full closure)."""
+        """Terms J_n of the particles' fields w_i = u + u_x Σ D^n J_n, by i and n (full closure)."""
         return {
             i: {n: terms(self.closure, S, STRAIN) for n, S in enumerate(series, start=1)}
             for i, series in enumerate(self.closure.slaved)

@@ -55,9 +55,9 @@ _FEWER = 0.75  # beads of the chain that gives the errors, over those of the cha
         "--detunings",
         callback=quantities,
         default=DETUNINGS,
-        says="Δ = 1 - frequency over that of the band's edge.",
+        says="Detunings 1 - f/f0, f0 the frequency of the band's edge.",
     ),
-    option("--beads", default=601, says="Most beads; a chain is as long as its breather needs."),
+    option("--beads", default=601, says="Largest number of beads; short breathers take fewer."),
 )
 def breather(
     masses: Sequence[Any] = (1, "1/2"),
@@ -66,7 +66,7 @@ def breather(
     beads: int = 601,
     progress: Progress[Any] = iter,
 ) -> Report:
-    """Breathers of a loaded chain, their envelopes and their stability. Twenty seconds.
+    """Breathers of a loaded chain, their envelopes and their stability (twenty seconds).
 
     ``rows``: ``detuning_value``, ``frequency_value``, ``amplitude_value`` with its error,
     ``amplitude_theory_value``, ``amplitude_off_value`` (theory/lattice - 1), the same of ``width``,
@@ -110,17 +110,17 @@ class Standing:
 
     @property
     def bright(self) -> bool:
-        """Whether the envelope is a sech, else a tanh."""
+        """True if the envelope is a sech; a dark breather's is a tanh."""
         return self.theory.kind == "bright"
 
     @property
     def place(self) -> int:
-        """Place in the cell of the beads with the largest amplitude."""
+        """Position within the cell of the beads with the largest amplitude."""
         return int(np.argmax(np.abs(np.array(self.theory.amplitude, float))))
 
     @cached_property
     def beads(self) -> tuple[Array, Array]:
-        """Cell and place in the cell of each bead."""
+        """Number of the cell, and position within the cell, of each bead."""
         return np.divmod(np.arange(-self.half, self.half + 1) + self.place, self.cell.size)
 
     @cached_property
@@ -136,25 +136,25 @@ class Standing:
     def start(self) -> Array:
         """Displacements of the envelope at t = 0, falling to 0 at the free ends if dark."""
         (n, place), width = self.beads, float(self.theory.width)
-        found = self.theory.displacements(np.arange(n[0], n[-1] + 1))[n - n[0], place]
+        envelope = self.theory.displacements(np.arange(n[0], n[-1] + 1))[n - n[0], place]
         if self.bright:
-            return np.asarray(found)
+            return np.asarray(envelope)
         ends = (self.half + 0.5 - np.abs(np.arange(-self.half, self.half + 1))) / self.cell.size
-        return np.asarray(found * np.tanh(ends / width))
+        return np.asarray(envelope * np.tanh(ends / width))
 
     @cached_property
     def orbit(self) -> Orbit:
-        """The orbit of the envelope's frequency."""
+        """The chain's exact periodic orbit with the envelope's frequency."""
         return orbit(self.chain, float(self.theory.frequency), self.start, self.harmonics)
 
     @cached_property
     def profile(self) -> tuple[Array, Array]:
-        """Cells and amplitudes, positive, of the beads that move most."""
-        own = self.beads[1] == self.place
-        return self.beads[0][own], np.abs(self.orbit.amplitude[own])
+        """Cell numbers and |amplitude| of the beads with the largest amplitude in their cell."""
+        largest = self.beads[1] == self.place
+        return self.beads[0][largest], np.abs(self.orbit.amplitude[largest])
 
     def numbers(self) -> dict[str, float]:
-        """Amplitude, and width 1/b in cells."""
+        """Measured amplitude, and width 1/b in cells, of the orbit."""
         n, size = self.profile
         peak = float(size.max())
         if self.bright:
@@ -169,7 +169,7 @@ class Standing:
         return {"amplitude": peak, "width": (ends[1] - ends[0]) / _DIP}
 
     def row(self) -> dict[str, Any]:
-        """Cells of the table."""
+        """Table row of orbit and envelope; errors from a shorter chain and fewer harmonics."""
         theory = {
             "amplitude": abs(float(self.theory.amplitude[self.place])),
             "width": float(self.theory.width),

@@ -63,14 +63,14 @@ Records = tuple[Array, Array, dict[str, float]]  # times, strains at x = 0 and x
         default="11/10,3/2",
         says="Exponents of F = δ^k.",
     ),
-    option("--second", default=0.5, says="B: strain of the second pulse."),
+    option("--second", default=0.5, says="Peak strain of the second pulse; the first has 1."),
 )
 def collision(
     exponents: Sequence[Any] = (sp.Rational(11, 10), sp.Rational(3, 2)),
     second: float = 0.5,
     progress: Progress[Any] = iter,
 ) -> Report:
-    """Head-on collision of two pulses, long-wave equation and lattice. Ten seconds.
+    """Head-on collision of two pulses, long-wave equation and lattice (ten seconds).
 
     ``rows``: ``k``, ``quantity``, ``equation_value`` and ``lattice_value`` with their errors,
     ``error_value`` (equation/lattice - 1).
@@ -156,14 +156,14 @@ def in_equation(k: sp.Expr, second: float, rtol: float, samples: int) -> Records
 
 
 def _places(width: float, speed: float, other: float) -> tuple[int, float, int]:
-    """d, the start of the second pulse, and half the length of the chain, in sites."""
+    """Distances of the pulses' starts from x = 0, and half the chain's length, in sites."""
     d = math.ceil(APART * width)
     away = d * other / speed
     return d, away, math.ceil(_WIDE * (d + away))
 
 
 def _numbers(time: Array, strains: Array, speed: float, d: int) -> dict[str, float]:
-    """Strain at the collision, and strain and shift of the first pulse after it."""
+    """Peak strain at the collision; peak strain and shift (sites) of the first pulse after it."""
     late = time > 1.5 * d / speed
     after = measure(time[late], strains[1][late])
     middle = measure(time, strains[0])

@@ -51,7 +51,7 @@ _CLOSE = 1e-4  # largest change of ln F at ten times the tolerance
 
 @study(
     EXPONENT,
-    option("--spread", default=0.1, says="s: masses lie in 1 - s … 1 + s."),
+    option("--spread", default=0.1, says="Masses lie between 1 - spread and 1 + spread."),
     option("--chains", default=20, says="Number of random chains."),
     option("--sites", default=200, says="Sites from the struck bead to the last place."),
     option("--seed", default=1, says="Seed of the random numbers."),
@@ -81,7 +81,7 @@ def disorder(
     places = np.linspace(sites / PLACES, sites, PLACES).astype(int)
 
     def scene(number: int) -> Scene:
-        """Chain ``number``, the same for any number of chains."""
+        """Scene of the random chain ``number``, which does not depend on the number of chains."""
         random = np.random.default_rng((seed, number))
         masses = (1.0, *random.uniform(1 - spread, 1 + spread, sites + _BEYOND))
         return _struck(masses, k, places.tolist())
@@ -109,7 +109,7 @@ def disorder(
 def single_losses(
     excesses: Sequence[float] | Array, k: float = 1.5, rtol: float = 1e-9
 ) -> list[Measured]:
-    """Fall of ln F at a single bead of mass 1 + e in a chain of equal beads, for each excess e.
+    """Loss in ln F of a pulse that passes a bead of mass 1 + e among equal beads, for each e.
 
     The fall without the bead is subtracted: after 20 sites the blow still sheds a millionth. Errors
     are the changes at ten times the tolerance.
@@ -127,7 +127,7 @@ def single_losses(
 
 
 def _struck(masses: Sequence[float], k: float, sensors: Sequence[int]) -> Scene:
-    """A struck chain, run for twice the flight of a pulse with all of the blow's momentum."""
+    """Scene of a struck chain, for twice the flight of a pulse with all of the blow's momentum."""
     duration = 2 * len(masses) / float(of_momentum(theory_at(str(k), 1), 1.0).speed)
     samples = math.ceil(30 * duration * max(1.0, k / 1.5))
     return struck(
@@ -157,7 +157,7 @@ def _report(
     single: Sequence[tuple[float, Measured]],
     numerical: Finding,
 ) -> Report:
-    """The report, from ln F by chain and place and the losses at single beads."""
+    """Build the report from ln F (chains, places) and the losses at single beads."""
     falls, half = logs - logs[:, :1], len(places) // 2
     decay = _slopes(places, logs)
     change = _mean(_slopes(places[half:], logs[:, half:]) - _slopes(places[:half], logs[:, :half]))
@@ -200,12 +200,12 @@ def _report(
 
 
 def _slopes(places: Array, logs: Array) -> Array:
-    """-d ln F/dn of each chain by least squares."""
+    """Decay rate -d ln F/dn of each chain, by least squares."""
     return np.asarray(-np.polynomial.polynomial.polyfit(places, logs.T, 1)[1])
 
 
 def _log_forces(run: Run) -> Array:
-    """ln F at the sensors."""
+    """Logarithm of the peak force at each sensor."""
     signals = (run.signal("contact", i) for i in run.scene.contact_sensors)
     return np.log([highest_pulse(force).peak for force in signals])
 

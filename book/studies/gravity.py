@@ -66,7 +66,7 @@ _SAMPLES = 40.0  # per unit of time
 
 @cache
 def front_width(k: float) -> float:
-    """FWHM w in z of the first lobe of a weak blow's front.
+    """FWHM, in the scaled coordinate z, of the first lobe of a weak blow's front.
 
     >>> round(front_width(1.0), 9), round(front_width(1.5), 9)  # Airy's function, Hertz contacts
     (2.278027519, 2.235263174)
@@ -109,7 +109,7 @@ class Upright:
 
     @cached_property
     def theory(self) -> BackgroundWave:
-        """The theory's waves of the chain under load."""
+        """Waves of the long-wave theory on the chain under load."""
         return background_wave(self.cell, law=Power(self.k))
 
     def sound(self, x: Any) -> Any:
@@ -123,12 +123,12 @@ class Upright:
         return front_width(self.k) * math.pow(spread, 1 / 3)
 
     def places(self, first: int, count: int) -> Array:
-        """Sites run at the first beads of some cells, equally spaced in ln x."""
+        """Depths in sites, at the first beads of some cells, equally spaced in ln x."""
         size = len(self.masses)
         return np.unique(np.geomspace(first, 0.9 * self.beads, count).astype(int) // size * size)
 
     def blown(self, velocity: float, **sensors: Any) -> Scene:
-        """The chain, struck at the top, until sound is near the end."""
+        """Scene of the chain struck at the top, until the sound wave is near the end."""
         flight = 2 * self.k / (self.k + 1) * self.beads / float(self.sound(self.beads))
         return struck(
             self.masses,
@@ -152,15 +152,15 @@ class Upright:
 
         def widths(run: Run) -> Array:
             moving = (run.signal("bead", i, "velocity") for i in run.scene.bead_sensors)
-            found = [highest_pulse(velocity).fwhm for velocity in moving]
-            return np.asarray((np.reshape(found, x.shape) * self.sound(x)).mean(axis=1))
+            times = [highest_pulse(velocity).fwhm for velocity in moving]
+            return np.asarray((np.reshape(times, x.shape) * self.sound(x)).mean(axis=1))
 
         scene = self.blown(self.weak, bead_sensors=beads.ravel().tolist())
         fine, coarse = map(widths, twice(scene, *self.tolerances))
         return x.mean(axis=1), fine, coarse
 
     def fit(self, x: Array, width: Array, power: float) -> Array:
-        """Exponent, and prefactor at exponent 1/3, with corrections x^-power and x^{-2/3}."""
+        """Exponent of the width, and prefactor of x^{1/3}; corrections x^-power and x^{-2/3}."""
         rows = np.stack((np.log(x), np.ones_like(x), x**-power, x ** (-2 / 3)), axis=1)
         free, held = (
             np.linalg.lstsq(matrix, values)[0]
@@ -223,7 +223,7 @@ class Upright:
 def gravity(
     k: float = 1.5, masses: Sequence[Any] = (), beads: int = 3000, progress: Progress[Any] = iter
 ) -> Report:
-    """Width of a pulse down a chain under its own weight, weak and strong. Five seconds.
+    """Width of a pulse down a chain under its own weight, weak and strong (five seconds).
 
     ``rows`` for weak blows: ``masses``, ``exponent_value`` and ``prefactor_value`` of the front's
     width in sites with their errors, ``prefactor_theory_value`` and ``error_value``

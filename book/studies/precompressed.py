@@ -1,4 +1,4 @@
-"""Waves in a chain under load against the theory, from weak to strong.
+"""Waves in a chain under load, weak to strong, compared with the theory.
 
 A = D = 1, and all contacts carry the static force F0 = F(1), held by a wall at the far end. F is
 δ^k or any contact law; speeds are in units of c0, the speed of sound, c0² = F′(1)/(mean mass). Each
@@ -66,7 +66,7 @@ _WEAKEST, _STRONGEST = 1e-3, 1e4
         "--ratios",
         callback=quantities,
         default=",".join(map(str, RATIOS)),
-        says="Dynamic forces over the static force.",
+        says="Dynamic forces divided by the static force.",
     ),
 )
 def precompressed(
@@ -76,7 +76,7 @@ def precompressed(
     law: ContactLaw | None = None,
     progress: Progress[Any] = iter,
 ) -> Report:
-    """Waves in chains under load: speed, width and bead velocity. Fifteen seconds.
+    """Waves in chains under load: speed, width and bead velocity (fifteen seconds).
 
     law: contact law of `lwa.law`, in place of k; Newton's waves are those of powers only.
 
@@ -101,7 +101,7 @@ def precompressed(
 
 @dataclass(frozen=True)
 class Wave:
-    """A wave with dynamic force ``ratio`` F0 on F0; speeds in units of c0, lengths in sites.
+    """A wave of dynamic force ``ratio`` F0 in a chain under the load F0; speeds over c0, in sites.
 
     tolerances: of the run that is read and of the less accurate run.
     """
@@ -113,12 +113,12 @@ class Wave:
 
     @cached_property
     def load(self) -> float:
-        """F0 = F(1)."""
+        """Static force F0 = F(1)."""
         return float(self.law.at(sp.S.One))
 
     @cached_property
     def stiffness(self) -> float:
-        """F′(1)."""
+        """Stiffness F′(1) of a contact under the load."""
         return float(self.law.at(sp.S.One, 1))
 
     @cached_property
@@ -128,7 +128,7 @@ class Wave:
 
     @cached_property
     def sound(self) -> float:
-        """c0, in sites per unit of time."""
+        """Speed of sound c0, in sites per unit of time."""
         return math.sqrt(self.stiffness / self.masses.mean())
 
     def unit(self, name: str) -> float:
@@ -204,10 +204,10 @@ class Wave:
         )
 
     def read(self, run: Run, stretch: int) -> dict[str, float]:
-        """Numbers of one of the two stretches between places, means over its ends and a cell."""
+        """Measure force, decay, speed, FWHM and velocity on stretch 0 or 1, means over a cell."""
         rows = []
-        heard = tracks(run)
-        beads, contacts = heard[: len(heard) // 2], heard[len(heard) // 2 :]
+        records = tracks(run)
+        beads, contacts = records[: len(records) // 2], records[len(records) // 2 :]
         for bead, contact in zip(beads, contacts, strict=True):
             (pulse,) = leading_pulses(contact.force, self.stiffness / self.load)
             velocity = run.signal("bead", bead.number - 1, "velocity")
@@ -226,7 +226,7 @@ class Wave:
         }
 
     def row(self) -> dict[str, Any]:
-        """Cells of the table: measured numbers and the theory's at the measured force."""
+        """Table row: measured numbers, and the theory's at the measured force."""
         fine, rough = twice(self.scene, *self.tolerances)
         found, coarse, before = self.read(fine, 1), self.read(rough, 1), self.read(fine, 0)
         theory, earlier = (self.theory(read["force"]) for read in (found, before))
@@ -284,7 +284,7 @@ def _report(law: ContactLaw, found: Sequence[tuple[Wave, dict[str, Any]]]) -> Re
 
 
 def _findings(law: ContactLaw, rows: Sequence[dict[str, Any]]) -> Iterator[Finding]:
-    """Bounds for equal beads, and for weak waves in all chains."""
+    """Findings: errors of the theory for equal beads, and for weak waves in all chains."""
     equal = [row for row in rows if len(row["masses"]) == 1]
     if equal and law.homogeneous:
         off = max(abs(row["speed"].value / row["exact"] - 1) for row in equal)
@@ -312,7 +312,7 @@ def _findings(law: ContactLaw, rows: Sequence[dict[str, Any]]) -> Iterator[Findi
 
 
 def _panels(found: Sequence[tuple[Wave, dict[str, Any]]]) -> Iterator[Panel]:
-    """V/c0 and FWHM over √(12 I), one curve of the theory for all chains."""
+    """Panels of V/c0 and FWHM/√(12 I), in which the theory is one curve for all chains."""
     ratios = [wave.ratio for wave, _ in found]
     first, forces = found[0][0], np.geomspace(min(ratios), max(ratios), 100)
     theory = [first.theory(force) for force in forces]

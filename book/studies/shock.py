@@ -66,9 +66,9 @@ Pair = tuple[float | None, float | None]  # speed and peak strain of the leading
         "--jumps",
         callback=quantities,
         default=",".join(map(str, JUMPS)),
-        says="Strains behind the front over those ahead of it.",
+        says="Strains behind the front over that ahead; if that is 0, strains behind.",
     ),
-    option("--ahead", callback=quantity, default="1", says="Strain ahead; 0: jumps are strains."),
+    option("--ahead", callback=quantity, default="1", says="Strain ahead of the front."),
     option("--duration", default=2500.0, says="Time for which the piston moves."),
 )
 def shock(
@@ -79,7 +79,7 @@ def shock(
     duration: float = 2500.0,
     progress: Progress[Any] = iter,
 ) -> Report:
-    """Shocks of chains that a piston drives: plateau, leading speed and peak. Half a minute.
+    """Shocks of chains that a piston drives: plateau, leading speed and peak (half a minute).
 
     ``rows``: ``law``, ``behind_value``, ``ahead_value`` (strains), ``ratio_value`` (c₋/c₊),
     ``plateau_value`` (measured strain) with ``plateau_error_value`` (over p₋, less 1),
@@ -113,14 +113,14 @@ class Driven:
     duration: float
 
     def scene(self) -> Scene:
-        """Build the chain, with sensors near the piston and on the way of the leading pulse."""
+        """Build the scene, with sensors near the piston and along the leading pulse's path."""
         cell, reach = self.theory.cell.size, self._fastest * self.duration
         places = np.linspace(*SPAN, CONTACTS) * reach
         distances = {cell * round(place / cell) for place in places} - {NEAR}
         return self._scene(self.duration, (NEAR, *sorted(distances)), SAMPLES)
 
     def _scene(self, duration: float, contacts: tuple[int, ...], samples: float) -> Scene:
-        """Build the chain for a time, with sensors at contacts counted from the piston's."""
+        """Build a scene of a given duration, with sensors at contacts counted from the piston."""
         chain = self.theory
         cells = math.ceil((self._fastest * duration + 20) / chain.cell.size)
         masses = tuple(float(m) for m in chain.cell.masses) * cells
@@ -140,7 +140,7 @@ class Driven:
 
     @cached_property
     def theories(self) -> dict[str, Pair]:
-        """Speed and peak of the leading pulse by name; None where a theory does not reach."""
+        """Speed and peak strain of the leading pulse by theory; None where a theory gives none."""
         chain = self.theory
         edge, speed = (attempt(chain.leading_speed, rule) for rule in ("dispersion", "doubling"))
         closed = _number(speed), _number(attempt(lambda: chain.peak))
@@ -150,11 +150,11 @@ class Driven:
 
     @property
     def trailing(self) -> float | None:
-        """s₋; None where the theory does not reach."""
+        """Speed s₋ of the trailing edge; None where the theory gives none."""
         return _number(attempt(lambda: self.theory.trailing_speed))
 
     def row(self, run: Run) -> tuple[Any, ...]:
-        """Cells of the table."""
+        """Table row: plateau, speed and peak on the lattice, with the theories' errors."""
         chain, strain = self.theory, float(self.theory.behind)
         plateau = float(run.compression[0][-len(run.time) // 10 :].mean())
         speed, peak = _leading(run)
@@ -191,7 +191,7 @@ class Driven:
 
 
 def own_wave(chain: Shock) -> Pair:
-    """Speed and peak strain of the lattice's own wave whose beads move at 2 v_p; for powers.
+    """Speed and peak strain of the exact solitary wave with bead velocity 2 v_p, for power laws.
 
     Raises `lwa.InputError` where there is none, and for unequal beads.
     """
@@ -201,7 +201,7 @@ def own_wave(chain: Shock) -> Pair:
     k, ahead, fastest = float(chain.law.exponent), float(chain.ahead), 2 * float(chain.plateau)
 
     def scaled(share: float) -> tuple[float, float, float]:
-        """Speed, strain and bead velocity of the wave on this share of its peak strain."""
+        """Speed, peak strain and bead velocity of the wave with background strain share · peak."""
         wave, factor = exact_wave([1], k, background=share), ahead / share
         pace = factor ** ((k - 1) / 2)
         strain, velocity = (wave.peak(name)[1] * factor for name in ("strain", "velocity"))

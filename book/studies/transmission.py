@@ -54,7 +54,7 @@ def transmission(
     cells: int = 80,
     progress: Progress[Any] = iter,
 ) -> Report:
-    """Transmission and attenuation of a shaken chain under load. A minute.
+    """Transmission and attenuation of a shaken chain under load. Takes a minute.
 
     ``rows``: ``frequency_value`` (Ω), ``transmission_value`` (amplitude in cell 3 over that of the
     drive), ``attenuation_value`` (per cell, -ln of the ratio of amplitudes) and
@@ -78,7 +78,7 @@ def transmission(
 
 
 def shaken(cell: Cell, k: float, cells: int, omega: float) -> Scene:
-    """A chain of so many cells that is driven at an angular frequency."""
+    """Scene of a loaded chain whose first bead is driven at the angular frequency omega."""
     n, size = cells * cell.size, cell.size
     return Scene(
         masses=tuple(map(float, cell.masses)) * cells,
@@ -102,7 +102,7 @@ def amplitudes(run: Run, omega: float) -> list[float]:
 
 
 def attenuation(cell: Cell, k: float, omega: float) -> float:
-    """Fall of ln(amplitude) per cell, n Im κ, from the transfer matrix of a cell."""
+    """Attenuation: fall of ln(amplitude) per cell, n Im κ, from the transfer matrix of a cell."""
     springs = [float(K) for K in LoadedChain(cell, Power(str(k)), 1).spring_constants]
     matrix = np.eye(2)
     for i, m in enumerate(map(float, cell.masses)):

@@ -45,7 +45,7 @@ Lines = Mapping[str, Mapping[str, float]]
 
 @dataclass(frozen=True)
 class Definition:
-    """A reading of "the FWHM": its average on the lattice, and the errors of the three lines.
+    """One definition of "the FWHM": its average on the lattice, and errors of the paper's lines.
 
     quantity : the force that is measured. time : whether the width is a time, else in sites.
     average : in s or sites. errors : closure → line → theory/average - 1.
@@ -58,13 +58,13 @@ class Definition:
 
     @property
     def reproduced(self) -> tuple[str, ...]:
-        """Lines whose stated error is met within half a percent by the paper's closure."""
+        """Lines of the paper's figure whose stated error the paper's closure meets within 0.5 %."""
         found = self.errors["linear"]
         return tuple(line for line, e in STATED.items() if abs(abs(found[line]) - e) < 0.005)
 
     @property
     def cells(self) -> tuple[Any, ...]:
-        """Cells of the table."""
+        """Table row: quantity, unit, average, errors, and the stated lines reproduced."""
         unit, its = "s" if self.time else "sites", self.errors.values()
         shown = (errors[line] for errors in its for line in STATED)
         return self.quantity, unit, self.average, self.errors, *shown, self.reproduced

@@ -40,7 +40,7 @@ class Partition(Value):
 
     @cached_property
     def distinct(self) -> tuple[sp.Expr, ...]:
-        """The distinct weights, in the order of their first appearance."""
+        """The weights without repetition, in the order of their first appearance."""
         return tuple(dict.fromkeys(self.weights))
 
     @cached_property

@@ -122,7 +122,7 @@ class JetAlgebra:
         return result
 
     def velocity_slopes(self, f: fmpq_mpoly) -> list[tuple[int, fmpq_mpoly]]:
-        """Pairs (i, ∂f/∂s_i) for each velocity jet s_i on which f depends."""
+        """Derivatives by velocity jets: pairs (i, ∂f/∂s_i) for each s_i on which f depends."""
         start = self._velocity
         return [(i - start + self._lowest, f.derivative(i)) for i in self._present(f) if i >= start]
 
@@ -244,7 +244,7 @@ class GradedSeries:
         return derivatives[j]
 
     def velocity_slopes(self, n: int) -> list[tuple[int, fmpq_mpoly]]:
-        """The `JetAlgebra.velocity_slopes` of f_n, computed once."""
+        """Derivatives of the coefficient f_n by velocity jets, computed once."""
         if n not in self._velocity_slopes:
             self._velocity_slopes[n] = self.algebra.velocity_slopes(self[n])
         return self._velocity_slopes[n]

@@ -19,7 +19,7 @@ from lwa.algebra.jets import JetAlgebra
 
 @dataclass(frozen=True, repr=False, kw_only=True)
 class Solution:
-    """The result of a closure, as polynomials.
+    """Equation of motion and ansatz that a closure finds, order by order, as polynomials.
 
     acceleration : E_n. Acoustic: φ_ττ = φ_x^k Σ_{n≥1} D^{n-1} E_n, E_1 = r_1 = φ_xx/φ_x.
         Optical: u_ττ = -u^k Σ_{n≥0} D^n E_n, E_0 = 1, in its own time unit.

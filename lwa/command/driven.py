@@ -94,7 +94,7 @@ def shock(
 
 
 def _front(chain: ChainInput, front: riemann.Shock) -> Answer:
-    """Rows of the front between two strains."""
+    """Printed rows for the shock or rarefaction between two strains: speeds, plateau, peak."""
 
     def row(key: str, label: str, value: Any, symbol: str = "", unit: str = "m/s") -> Row:
         closed = isinstance(value, sp.Expr) and not value.has(sp.Float)

@@ -58,7 +58,7 @@ def dispersion(order: int, style: str, precompression: sp.Expr | None, **options
 
 
 def _linear(chain: Dispersion, order: int, loaded: LoadedChain | None) -> Answer:
-    """Rows of both branches; ``optical`` is null unless the cell has two particles."""
+    """Answer with the series Ω²(κ) of the acoustic and, for two particles, the optical branch."""
     cell = chain.cell
     branches = {"acoustic": chain.acoustic(order)}
     if cell.size == 2:

@@ -77,7 +77,7 @@ class Arithmetic:
 
 @dataclass(frozen=True, eq=False)
 class Contacts:
-    """Masses m_i, static compressions c_i, and the nonlinear coefficients s and t of a cell."""
+    """A cell under load: masses m_i, static compressions c_i, contact nonlinearities s and t."""
 
     masses: NDArray[Any]
     c: NDArray[Any]

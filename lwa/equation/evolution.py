@@ -56,7 +56,7 @@ class Evolution(Value):
 
     @property
     def time_scale(self) -> sp.Expr:
-        """The ratio τ/t of the times."""
+        """The ratio τ/t of the equation's time to the chain's."""
         return self.cell.time_scale(self.law.exponent)
 
     def force(self, p: Any, n: int = 0) -> sp.Expr:

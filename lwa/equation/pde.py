@@ -138,9 +138,9 @@ class PDE(OfClosure):
 
     @cached_property
     def variational(self) -> bool:
-        """True if every order (D^{k+3} in any case) is minus a variational derivative.
+        """True if the equation has a potential: u_ττ = -δV/δu, up to order D^{k+3} at least.
 
-        Then u_ττ = -δV/δu, and u_τ²/2 + V is the density of the conserved `energy`.
+        Then u_τ²/2 + V is the density of the conserved `energy`.
 
         Raises `lwa.InputError` for laws that are no power.
         """

@@ -33,7 +33,7 @@ def exp_term(log: Series, S: Series) -> fmpq_mpoly:
 
 
 def _weighted(log: Series, S: Series, last: int, n: int) -> fmpq_mpoly:
-    """The sum Σ j log_j S_{n-j}, j = 1 … last."""
+    """The sum Σ j log_j S_{n-j}, j = 1 … last, of the coefficients of ln S and of S."""
     return sum((j * log[j] * S[n - j] for j in range(1, last + 1) if log[j]), 0 * log[0])
 
 

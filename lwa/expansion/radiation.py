@@ -101,7 +101,7 @@ def _tail_integral(K: Array, slope: Array, step: float) -> float:
 
 @lru_cache(maxsize=64)
 def radiation(cell: Cell, k: sp.Expr) -> Radiation | None:
-    """The `Radiation` of a chain in numbers; None for equal beads and contacts, and for symbols.
+    """The `Radiation` behind a pulse; None for equal beads and contacts, and for symbols.
 
     k may be a symbol where contacts are equal; the strain shares of unequal ones depend on k.
     """

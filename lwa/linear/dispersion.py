@@ -55,7 +55,7 @@ class _Banded(Value):
         return self._bands.branches(wavenumber)
 
     def group_velocity(self, wavenumber: ArrayLike) -> Array:
-        """Slopes in the order of `branches`; where branches touch, towards larger wavenumbers."""
+        """Slopes of the frequency by branch; where branches touch, towards larger wavenumbers."""
         return self._bands.group_velocity(wavenumber)
 
     def band_edges(self) -> Array:

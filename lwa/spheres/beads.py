@@ -51,7 +51,7 @@ SCENE = (
 
 
 def read_materials(file: Table) -> dict[str, Material]:
-    """The materials of a file, by name, and those of `lwa.spheres.hertz` under other names."""
+    """Materials by name: the built-in `MATERIALS`, and those of a file, which come first."""
     materials: dict[str, Material] = file.read("materials", named(_material), {})
     return materials | MATERIALS | materials  # the names of the file come first
 

@@ -55,7 +55,7 @@ class Grid(NamedTuple):
         return values[..., : len(self.kernel)].reshape(*values.shape[:-1], len(self.starts), POINTS)
 
     def converged(self, rate: Array, bound: float) -> NDArray[np.bool_]:
-        """True for each wave whose last two Legendre coefficients of ``rate`` are below a bound.
+        """True for each wave that the panels resolve: last two Legendre coefficients below a bound.
 
         rate : dξ/dθ at the upper nodes, one row per wave. The bound is relative to its maximum.
         """
@@ -137,7 +137,7 @@ def _above(theta: Array, at: float) -> Any:
 
 
 def _below(theta: Array, at: float) -> Any:
-    """The kernel K/y² = s (2 - s - s/u) / u at s < u = v/B."""
+    """The integral equation's kernel, K/y² = s (2 - s - s/u) / u at s < u = v/B, s = 1/cosh²θ."""
     s, u = 1 / np.cosh(theta) ** 2, 1 / np.cosh(at) ** 2
     # 1 - s/u = sinh(θ-θ_u) sinh(θ+θ_u) / cosh²θ does not cancel
     apart = np.sinh(theta - at) * np.sinh(theta + at) * s

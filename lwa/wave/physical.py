@@ -114,7 +114,10 @@ class PhysicalWave(Value):
 
     @cached_property
     def speed(self) -> sp.Expr:
-        """The speed dx/dt = D √(f P k / M) A_eff^{1/(2k)} F^{(k-1)/(2k)}, f = V²/B^{k-1}."""
+        """The speed dx/dt = D √(f P k / M) A_eff^{1/(2k)} F^{(k-1)/(2k)}, f = V²/B^{k-1}.
+
+        The cell has P beads, the mass M and the mean stiffness A_eff; F is the peak contact force.
+        """
         # V² = f B^{k-1} times (τ/t)² = P k A_eff D^{k+1} / M, powers of each quantity collected.
         wave, k = self.wave, self.wave.k
         factor = wave.speed_factor * self.wave.cell.size * k / self.wave.cell.mass

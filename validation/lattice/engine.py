@@ -109,7 +109,7 @@ def _window(motion: Motion, window: Any) -> int | None:
 
 
 def _compare(motion: Motion, rtol: float, short: Run, long: Run) -> None:
-    """Raise `IntegrationError` if the longer window changes the leading pulse.
+    """Raise `IntegrationError` if a longer window of beads changes the leading pulse.
 
     The velocities of both runs at the end are compared, from the fastest bead to the front.
     """
@@ -134,10 +134,10 @@ def _integrated(
 ) -> tuple[Run, Array]:
     """Integrate a scene in at most ``most`` steps.
 
-    followed : for each bead the time after which the results are NaN (infinite: none); by default
-        the time at which the plan's window leaves the bead.
+    followed : for each bead the time after which its records are NaN, or infinity; by default the
+        time at which the moving window of integrated beads leaves the bead.
 
-    Returns the run and these times, ``followed`` or the window's own.
+    Returns the run and these times.
     """
     n, end, stages = motion.size, motion.scene.duration, SCHEMES[method].stages
     chain = _chain(motion)
@@ -232,7 +232,7 @@ def _chain(motion: Motion) -> Chain:
 
 
 def _front(motion: Motion) -> int:
-    """Return the number of the first bead that is still, plus a margin."""
+    """Return the number of the first bead at rest, plus a margin."""
     y, v = np.abs(motion.start[: 2 * motion.size].reshape(2, motion.size))
     moving = np.flatnonzero((y > _NOISE * y.max()) | (v > _NOISE * v.max()))
     return min(motion.size, MARGIN + (int(moving[-1]) + 1 if len(moving) else 0))

@@ -38,14 +38,14 @@ class Contact:
         return self.law is not None and bool(self.law.at(sp.S.Zero, 1).is_positive)
 
     def force(self, compression: Array) -> Array:
-        """Return F; [δ]_+^k for a power law."""
+        """Return the force F at a compression δ, of any shape; [δ]_+^k for a power law."""
         if self.law is not None:
             return self._evaluated(0, compression)
         pressed = np.maximum(compression, 0.0)
         return np.asarray(pressed * np.sqrt(pressed) if self.k == 1.5 else pressed**self.k)
 
     def stiffness(self, compression: Array) -> Array:
-        """Return F′."""
+        """Return the stiffness F′ = dF/dδ at a compression δ, of any shape."""
         if self.law is not None:
             return self._evaluated(1, compression)
         return np.asarray(self.k * np.maximum(compression, 0.0) ** (self.k - 1))
@@ -80,7 +80,7 @@ class Contact:
         return np.array([float(law.compression(cell, sp.Float(F, 40))) for F in different])[place]
 
     def reached_by(self, energy: float, start: float) -> float:
-        """Return the compression by an energy beyond ``start``; for a power law only its scale."""
+        """Return the compression that an energy reaches from ``start``; only a scale for powers."""
         if self.law is None:
             return float(np.float64(energy) ** (1 / (self.k + 1)))  # of δ^{k+1}/(k+1) = energy
 

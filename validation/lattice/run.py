@@ -48,7 +48,7 @@ RunProgress = Callable[[], AbstractContextManager[Callable[[float], object]]]
 
 
 def silent() -> AbstractContextManager[Callable[[float], object]]:
-    """Return the `RunProgress` that shows nothing."""
+    """Return a `RunProgress` without a display."""
     return nullcontext(lambda share: None)
 
 

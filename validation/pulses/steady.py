@@ -71,7 +71,7 @@ class Point:
 
 
 def cells_apart(k: float, stretch: int) -> int:
-    """Return the number of cells between two places; as k → 1 a pulse leaves its wake more slowly.
+    """Return the number of cells between two measurements; more as k → 1, where wakes are long.
 
     >>> [cells_apart(k, 4) for k in (3, 1.5, 1.1)]
     [4, 4, 30]
@@ -167,7 +167,7 @@ class StruckDimer:
         return np.array(passages).reshape(-1, 2, 6)
 
     def numbers(self, passages: Array) -> Array:
-        """Return `QUANTITIES` (rows) of each stretch; NaN where the pulse does not arrive later."""
+        """Return `QUANTITIES` (rows) on each stretch; NaN where a pulse does not arrive later."""
         arrival, peak, width, strain_width, *_ = np.moveaxis(passages, 2, 0)  # (places, contacts)
         elapsed, fall = np.diff(arrival, axis=0), -np.diff(np.log(peak), axis=0)
         elapsed[elapsed <= 0] = np.nan

@@ -92,9 +92,9 @@ class Report(Pictured):
         return result
 
     def csv(self) -> str:
-        """Return the first table with keys as CSV, if possible a table with rows.
+        """Return the first table with keys as CSV; tables without rows come last.
 
-        Raises `lwa.InputError` for a report without such a table.
+        Raises `lwa.InputError` if no table has keys.
         """
         tables = [table for table in self.tables if any(column.key for column in table.columns)]
         if not tables:

@@ -1,4 +1,4 @@
-"""Checked input of scenes: numbers, sequences and CSV columns; a fault is one line with a name."""
+"""Checked input of scenes: numbers, sequences and CSV columns; messages name the faulty value."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from lwa.base import tables
+from lwa.base import files, tables
 from lwa.base.arrays import Array
 from lwa.base.exact import InputError, shorten
 from lwa.base.tables import Reader
@@ -55,6 +55,9 @@ def each(reader: Reader) -> Reader:
     )
 
 
+_MOST_BYTES = 10**9
+
+
 def columns(path: str | Path, *wanted: str, optional: Sequence[str] = ()) -> dict[str, Array]:
     """Read columns of a CSV file with a header; return each, (N,), by its name without unit.
 
@@ -62,10 +65,10 @@ def columns(path: str | Path, *wanted: str, optional: Sequence[str] = ()) -> dic
     file without a wanted column, and for entries that are no finite numbers.
     """
     try:
-        with open(path, encoding="utf-8-sig", newline="") as file:
-            header, *rows = [row for row in csv.reader(file) if row] or [[]]
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
-        raise SceneError(f"{path}: {getattr(error, 'strerror', None) or error}") from None
+        text = files.content(Path(path), _MOST_BYTES).decode("utf-8-sig")
+        header, *rows = [row for row in csv.reader(text.splitlines()) if row] or [[]]
+    except (OSError, UnicodeDecodeError, csv.Error, SceneError) as error:
+        raise SceneError(f"{path}: {files.reason(error)}") from None
     names = [name.partition("(")[0].strip() for name in header]
     values: dict[str, Array] = {}
     for name in (*wanted, *(name for name in optional if name in names)):

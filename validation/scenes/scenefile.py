@@ -47,6 +47,7 @@ All keys but ``duration`` and ``chain.cell`` are optional::
     [start]                       # instead of a striker; from bead 1 on, the others at 0
     velocities = [1.0, 1.0]
     displacements = [0.1, 0.1]    # from the equilibrium
+    overlap = true                # they press beads into each other that carry nothing at rest
     [sensors]
     beads = [15, 34]
     contacts = [15]               # contact 15 joins beads 15 and 16, the last one bead and wall;
@@ -68,7 +69,7 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import asdict
 from functools import partial
-from itertools import product
+from itertools import pairwise, product
 from pathlib import Path
 from typing import Any
 
@@ -91,7 +92,7 @@ _TABLES = {  # that a file may leave out
     "damping": DAMPINGS,
     "drive": ("velocity", "amplitude", "frequency", "ramp", "file", "time", "displacement"),
     "striker": ("velocity",),
-    "start": ("velocities", "displacements"),
+    "start": ("velocities", "displacements", "overlap"),
     "sensors": ("beads", "contacts"),
 }
 _NUMBERS = ("samples", "gravity", "precompression")
@@ -127,7 +128,7 @@ def scene(content: Any) -> Scene:
         if "start" in file:
             raise SceneError("striker and start are both there: one says how the beads start")
         velocities = (tables["striker"].read("velocity", finite),)
-    return Scene(
+    result = Scene(
         **chain,
         **{key: file.entries[key] for key in _NUMBERS if key in file},
         wall=wall,
@@ -140,6 +141,19 @@ def scene(content: Any) -> Scene:
         bead_sensors=sensors.read("beads", _sensors(n), ()),
         contact_sensors=sensors.read("contacts", _sensors(n - (wall is None)), ()),
     )
+    if (i := _overlap(result)) and start.entries.get("overlap") is not True:
+        into = f"bead {i} into {'the wall' if i == n else f'bead {i + 1}'}"
+        raise SceneError(f"start.displacements press {into}: start.overlap = true allows it")
+    return result
+
+
+def _overlap(source: Scene) -> int:
+    """Return the number (from 1) of the first contact pressed at the start, not at rest; or 0."""
+    if source.gravity or source.precompression:
+        return 0
+    pairs = pairwise((*source.displacements, 0.0))  # beyond them, and at the wall
+    deeper = (i for i, (y, after) in enumerate(pairs, start=1) if y > after)
+    return next((i for i in deeper if i <= source.contact_count), 0)
 
 
 def _sensors(count: int) -> Reader:
@@ -263,6 +277,8 @@ def document(source: Scene) -> dict[str, Any]:
     elif source.velocities or source.displacements:
         start = {"velocities": source.velocities, "displacements": source.displacements}
         result["start"] = {name: list(values) for name, values in start.items() if values}
+        if _overlap(source):
+            result["start"]["overlap"] = True
     sensors = {"beads": source.bead_sensors, "contacts": source.contact_sensors}
     if any(sensors.values()):
         result["sensors"] = {name: [i + 1 for i in row] for name, row in sensors.items() if row}

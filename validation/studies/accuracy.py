@@ -242,7 +242,7 @@ _AXES = "largest relative error of arrival, peak, FWHM", "CPU time (s)"
 _TASKS = click.Choice(NAMES)
 
 
-@study(option("--task", "names", multiple=True, type=_TASKS, says="Run this task; repeatable."))
+@study(option("--task", "names", multiple=True, type=_TASKS, says="Only this task; repeatable."))
 def accuracy(
     names: Collection[str] = (),
     methods: Mapping[str, Sequence[float]] = METHODS,

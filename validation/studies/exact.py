@@ -42,7 +42,7 @@ F^(1/k), velocities as F^((k+1)/2k), c as F^((k-1)/2k); widths do not depend on 
     option("--masses", callback=quantities, default="1", says="Mass of all beads, or two in turn."),
     option("--speed", callback=number, says="Speed dx/dt of the wave, at A = D = 1."),
     option("--force", callback=number, says="Peak contact force, at A = 1; by default 1."),
-    option("--background", default=0.0, says="Static over peak compression; 0: no load."),
+    option("--background", default=0.0, says="Static compression divided by the peak; 0: no load."),
 )
 def exact(
     k: float,

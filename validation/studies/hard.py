@@ -119,7 +119,7 @@ def printed_beta(k: Array, omega: Array) -> Array:
 
 
 def losses(exponents: Array = EXPONENTS, ratios: Array = RATIOS) -> dict[tuple[str, str], Array]:
-    """Return the error in ulps of each (form, closure) in float64, (exponents, ratios)."""
+    """Return the float64 error in ulps of each formula, (exponents, ratios), by (form, closure)."""
     k, omega = np.meshgrid(exponents, ratios, indexing="ij")
     result = {}
     for closure in CLOSURES:
@@ -307,7 +307,7 @@ CASES: Mapping[str, Callable[[], Report]] = {
 _NAMES = click.Choice([*CASES])
 
 
-@study(option("--case", "names", multiple=True, type=_NAMES, says="Run this case; repeatable."))
+@study(option("--case", "names", multiple=True, type=_NAMES, says="Only this case; repeatable."))
 def hard(names: Collection[str] = (), progress: Progress[str] = iter) -> Report:
     """Last digits at extreme k, ω and loads, contacts that open, and long runs (half a minute).
 

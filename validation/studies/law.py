@@ -42,8 +42,8 @@ _NOTE = (
 
 @study(
     click.argument("data"),
-    option("--masses", callback=quantities, says="Mass of all beads, or two in turn; else 1."),
-    option("--spacing", callback=quantity, says="Distance between neighbours; by default 1."),
+    option("--masses", callback=quantities, says="Mass of all beads (default 1), or two in turn."),
+    option("--spacing", callback=quantity, says="Distance between bead centers; by default 1."),
     option("--spheres", metavar="FILE", says="File of a cell of spheres, in place of --masses."),
     option("--material", metavar="NAME", says="Material in this file whose modulus E is wanted."),
     option("--degree", default=3, says="Degree of the free law's polynomial ln V(ln F)."),

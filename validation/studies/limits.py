@@ -97,7 +97,7 @@ Case = tuple[sp.Rational, sp.Rational, float]  # k, ω and B of one run
 
 @study()
 def limits(progress: Progress[Case] = iter) -> Report:
-    """Limits of the theory: equal masses, m1 ≫ m2 and k → 1. A few seconds.
+    """Limits of the theory: equal masses, m1 ≫ m2 and k → 1 (a few seconds).
 
     ``rows``: ``quantity``, ``k`` and ``omega`` (exact; ``k`` null for results from all k, ``omega``
     0 for the limit), ``theory`` (exact), ``theory_value``, ``lattice_value``,
@@ -256,7 +256,7 @@ def quantity_rows(
 
 
 def _limit_rows(waves: list[dict[str, Measured]]) -> Iterator[Comparison]:
-    """Compare the limit ω → 0 at the first k; the lattice is extrapolated linearly in ω."""
+    """Compare theory and lattice in the limit ω → 0 at the first k, linearly extrapolated in ω."""
     k = EXPONENTS[0]
     symbols = homogenize(Dimer("m1", "m2", spacing=1), k=k).pde.traveling_wave()
     m1, m2 = symbols.cell.masses

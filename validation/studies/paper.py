@@ -44,7 +44,7 @@ _UNITS = {"speed": "m/s", "peak": "N", "FWHM": "sites"}  # by the first word; µ
 
 
 def _error(error: float) -> str:
-    """Format an error; up to rounding, the theory has the quantity that sets its amplitude."""
+    """Format an error; "set" for the quantity from which the theory takes its amplitude."""
     return percent(error) if abs(error) > 1e-12 else "set"
 
 
@@ -193,7 +193,7 @@ def like_pairs(pair: tuple[int, ...]) -> list[tuple[int, int]]:
 
 
 def _panel(run: Run, pair: tuple[int, ...], theory: PhysicalWave) -> Panel:
-    """Return the forces at the two beads, and the theory's wave shifted to the same peaks."""
+    """Return a panel of the lattice's forces at two beads, and the theory's wave with each peak."""
     curves = []
     for i, (bead, pulse) in enumerate(Train.of(run).only(pair).pulses.items()):
         (force,) = run.bead_force[[j == bead - 1 for j in run.scene.bead_sensors]]

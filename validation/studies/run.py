@@ -1,4 +1,4 @@
-"""Any scene: pulses at its sensors, and files of the records.
+"""Simulation of a scene: pulses at its sensors, and files of the records.
 
 A stored run holds the records of the sensors, the pulses measured in them, and the scene. JSON: the
 result's document, and under ``records`` the arrays of `validation.lattice.run.Records`, their names
@@ -40,7 +40,7 @@ _DYNAMIC = "\nDynamic force: force less the static force at the sensor."
 
 
 def example(name: str) -> str:
-    """Return the text of an example of a scene file."""
+    """Return the text of an example scene file."""
     file = resources.files("validation.scenes") / "examples" / f"{name}.toml"
     return file.read_text(encoding="utf-8")
 
@@ -186,7 +186,7 @@ _METHODS = click.Choice((*COMPILED, *METHODS))
 _INTEGRATOR = f"Integrator: {' and '.join(COMPILED)} are compiled, the others SciPy's."
 _SHOWN = example(EXAMPLES[0]).replace("\n\n", "\n")
 _EPILOG = f"\b\nA scene file, in SI units if its beads are of materials:\n{_SHOWN}"
-_RTOL = "Relative tolerance. Errors are differences to a run with 1000 times as much."
+_RTOL = "Relative tolerance. Errors are differences to a run with 1000 times this tolerance."
 
 
 @study(

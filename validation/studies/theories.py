@@ -42,7 +42,7 @@ def _closed(closure: str, k: sp.Rational, omega: sp.Rational) -> Sequence[float]
 
 
 def _series(order: int, omega: sp.Rational, **k: sp.Rational) -> list[EpsilonSeries]:
-    """Return the series in ε = k - 1 of `QUANTITIES`."""
+    """Return force and strain FWHM and speed (`QUANTITIES`) as series in ε = k - 1."""
     expansion = expand(Cell((1,) if omega == 1 else (1, omega)), order, **k)
     return [expansion.fwhm("force"), expansion.fwhm("strain"), expansion.c]
 
@@ -138,9 +138,9 @@ def _panel(axis: str, title: str, places: Sequence[tuple[sp.Rational, Place]]) -
 
 
 def place(k: sp.Rational, omega: sp.Rational, kind: str = SOLITARY) -> Place:
-    """Return the comparison of all theories with the truth at one k and ω.
+    """Compare all theories with the lattice's solitary wave or struck pulse at one k and ω.
 
-    Raises `MeasureError` where a struck chain's pulse is not steady.
+    Raises `MeasureError` where the struck chain's pulse is not steady.
     """
     if kind == SOLITARY:
         wave = measured(exact_wave((1.0,) if omega == 1 else (1.0, float(omega)), float(k)))

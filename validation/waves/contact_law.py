@@ -45,7 +45,7 @@ _NEAR = 1.2  # times 80 sites, over which the pulse must lead
 
 @dataclass(frozen=True, eq=False)
 class Medium:
-    """Chain of the measured pulses."""
+    """Mass, spacing and speed ratio R(k) of the chain in which pulses were measured."""
 
     mass: float  # mean mass m̄
     spacing: float  # D
@@ -74,7 +74,10 @@ def _exponent(slope: Any) -> Any:
 
 @lru_cache(maxsize=16)
 def speed_ratio(omega: sp.Rational) -> tuple[Callable[[Any], Array], float]:
-    """Return R(k) of a chain of masses 1, ω, 1, ω, … and its relative error (`Medium`)."""
+    """Return R(k), squared speed of the lattice's pulse over the theory's, and its relative error.
+
+    The chain has masses 1, ω, 1, ω, …; unequal beads are struck, and the leading pulse is timed.
+    """
     ratio: Callable[[Any], Any]
     if omega == 1:
         exact = np.vectorize(lambda k: exact_wave([1], k).c2 * (k + 1) / 2)
@@ -166,7 +169,7 @@ def _fit(x: Array, y: Array, degree: int, weight: Array | None) -> tuple[Array, 
 
 
 def _interval(values: Array) -> Measured:
-    """Return the first value with half of the 95 % interval of the others."""
+    """Return the best fit's value, the first, with half the 95 % interval of the draws' values."""
     error = np.ptp(np.quantile(values[1:], (0.025, 0.975))) / 2
     return Measured(float(values[0]), float(values[0] + error))
 
@@ -192,7 +195,7 @@ def _integrated(medium: Medium, rows: Array, grid: Array, middle: float) -> Arra
     """Return ln δ on a falling grid of ln F, for each column of coefficients of ln V."""
 
     def log_S(x: float) -> tuple[Array, Array]:
-        """Return ln S and the local exponent k."""
+        """Return ln S, S = m̄ V²/(R D²), and the local exponent k at x = ln F."""
         slope = polynomial.polyval(x - middle, polynomial.polyder(rows))
         k = _exponent(slope)
         log_V = polynomial.polyval(x - middle, rows)

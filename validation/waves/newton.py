@@ -158,9 +158,10 @@ class Problem:
         return np.asarray((to(at) + to(-at)) * np.where(at % n == 0, 0.5, 1.0))
 
     def wave(self, z: Array, c2: float, unknown: str = "") -> tuple[Array, float, float]:
-        """Solve for the wave near the forces ``z`` and ``c2``; return forces, c² and one number.
+        """Solve for the wave near the forces ``z`` and squared speed ``c2``.
 
-        unknown : "mass" or "kick" to impose T = 0; the number is then 1/m2 or the kick's size s.
+        unknown : "mass" or "kick" to impose T = 0 with one more unknown.
+        Returns the forces, c², and the last unknown: c², or 1/m2, or the kick's size s.
         Raises `numpy.linalg.LinAlgError` if Newton's method does not converge.
         """
         last = {"": (), "mass": (self.inverse[1],), "kick": (0.0,)}[unknown]

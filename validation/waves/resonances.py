@@ -56,11 +56,11 @@ def _root(wave: ExactWave) -> float:
 
 
 def _followed(wave: ExactWave, k: float) -> ExactWave:
-    """Continue a solitary wave to another k; the ratio keeps its place in the order of ratios."""
+    """Continue a solitary wave and its special mass ratio to another exponent k."""
     end = math.log(k - 1)
 
     def at(e: float, path: Sequence[tuple[float, ExactWave]]) -> ExactWave:
-        """Return the wave at ln(k - 1) = e if √(m1/m2) changes as extrapolated from the path."""
+        """Return the wave at ln(k - 1) = e; raise `NoWave` if √(m1/m2) is far from extrapolated."""
         (e1, older), (e2, last) = path[0], path[-1]
         expected, bound = 0.0, _FARTHEST
         if len(path) > 1:
@@ -96,7 +96,7 @@ def _without_kick(places: list[float], near: ExactWave) -> Iterator[tuple[float,
     """Yield values of √(m1/m2) at which T = 0 needs no kick, each with a near wave."""
 
     def kick(root: float) -> float:
-        """Return the kick's size; NaN without a wave."""
+        """Return the size of the kick with which T = 0 at √(m1/m2) = root; NaN without a wave."""
         nonlocal near
         problem = Problem((1.0, root**-2), near.k)
         for start in (None, near):

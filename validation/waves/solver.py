@@ -155,7 +155,7 @@ def measured(wave: ExactWave) -> dict[str, Measured]:
 
 
 def _numbers(wave: ExactWave | StruckPulse) -> dict[str, float]:
-    """Return the numbers of `measured`."""
+    """Return c², c and tail, and amplitude, FWHM and rms width of each of `QUANTITIES`."""
     numbers = {"c2": wave.c2, "c": wave.c, "tail": wave.tail}
     for name in QUANTITIES:
         numbers[f"amplitude {name}"] = wave.peak(name)[1]

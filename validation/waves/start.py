@@ -28,7 +28,7 @@ Start = tuple[Array, float]
 
 
 def initial(problem: newton.Problem, wave: LatticeWave | None = None) -> Start:
-    """Return a start from a wave of near masses and k, by default the theory's."""
+    """Return forces and c² to start from: those of a wave of near masses and k, or the theory's."""
     k, (m1, m2) = problem.k, problem.masses
     if wave is not None:
         force, c2 = wave.force(problem.xi), wave.c2 * sum(wave.masses) / (m1 + m2)

@@ -86,7 +86,7 @@ def of_momentum(wave: TravelingWave, momentum: float) -> PhysicalWave:
 
 
 def _with(wave: TravelingWave, name: str, amount: float, sign: int) -> PhysicalWave:
-    """Return the wave with a given amount of a quantity that scales as F^{(k + sign)/(2k)}."""
+    """Return the wave at which a quantity, ∝ F^{(k + sign)/(2k)}, has the given amount."""
     unit, exponent = PhysicalWave(wave, sp.S.One), (wave.k + sign) / (2 * wave.k)
     ratio = positive(amount, name) / number(getattr(unit, name))
     return PhysicalWave(wave, math.exp(math.log(ratio) / number(exponent)))

@@ -111,7 +111,7 @@ def test_a_law_of_the_file(capsys, scene):
         ({"law": 3}, (), "chain.law is 3: a text such as"),
         ({"mass": 1}, (), "chain.mass is unknown"),
         ({}, ("--precompression", "1"), "the file has a precompression of 2"),
-        ({}, ("--force", "1"), "speeds grow towards B"),
+        ({}, ("--force", "1"), "only B > 0 has a wave"),
     ],
 )
 def test_bad_files_are_one_line(capsys, scene, chain, more, words):

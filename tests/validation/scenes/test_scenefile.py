@@ -305,6 +305,7 @@ FILES = [
     ("s.toml", b"x = " + b"[" * 100_000, "nested too deeply for a scene"),
     ("s.toml", "# Länge\nduration = 1".encode("latin-1"), "not a text in UTF-8"),
     ("s.json", b'{"duration": 1', "not JSON: Expecting"),
+    ("s.json", b'{"duration": 1, "duration": 2}', "'duration' is there more than once"),
     ("s.json", b"[1, 2]", r"the file is \[1, 2\]: a table of keys is wanted"),
     ("s.json", b"[" * 100_000, "nested too deeply for a scene"),
     ("s.json", b'{"duration": 1' + b"0" * 5000 + b"}", "not JSON: Exceeds the limit"),
@@ -330,11 +331,23 @@ def test_bad_files(tmp_path, name, content, message):
     one_line(caught)
 
 
-def test_a_repeated_key_is_refused_in_json_too(tmp_path):
-    file = tmp_path / "scene.json"
-    file.write_text('{"duration": 1, "duration": 2}')
-    with pytest.raises(SceneError, match="'duration' is there more than once"):
-        read_scene(file)
+def test_overlap_is_wanted_or_carried():
+    pressed = {"displacements": [0.1]}
+    for allowed in (
+        {"start": pressed | {"overlap": True}},
+        {"start": pressed, "wall": {"stiffness": 1}, "precompression": 1},
+        {"start": {"displacements": [-0.1, -0.1]}},  # a gap
+        {"start": {"displacements": [0, 0, 0.1]}},  # nothing is behind the last bead
+    ):
+        read = scene(GOOD | allowed)
+        assert read.displacements
+        assert scene(document(read)) == read
+    for refused, into in (
+        ({"start": pressed}, "bead 1 into bead 2"),
+        ({"start": {"displacements": [0, 0, 1]}, "wall": {"stiffness": 1}}, "bead 3 into the wall"),
+    ):
+        with pytest.raises(SceneError, match=f"^start.displacements press {into}: start.overlap"):
+            scene(GOOD | refused)
 
 
 def test_a_file_without_end_is_refused(tmp_path):

@@ -24,7 +24,7 @@ NONE: Quintic = (float("nan"), 0.0, 0.0, 0.0, 0.0, 0.0)
 
 @part
 def quintic(c: Quintic, x: float) -> float:
-    """Return the value of the polynomial at x."""
+    """Return the value at x of the quintic with coefficients c."""
     return c[0] + x * (c[1] + x * (c[2] + x * (c[3] + x * (c[4] + x * c[5]))))
 
 
