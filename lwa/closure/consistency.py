@@ -68,7 +68,7 @@ class Closure(Solution):
         )
 
     def latex_rows(self, most: int | None = None) -> list[str]:
-        """LaTeX of w = λ (u + b_1 D u_x + …), λ and the b_n, to D^most (all orders if None)."""
+        """LaTeX of the ansatz w = λ (u + b_1 D u_x + …), λ and the b_n, to D^most (None: all)."""
         if not self.ansatz:
             return []
         last = min(len(self.ansatz) - 1, most or len(self.ansatz))

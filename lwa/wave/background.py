@@ -91,7 +91,7 @@ class KdV(Value):
 class BackgroundWave(Value):
     """The waves of a chain's canonical field on the strain p0.
 
-    p0 : a number or a symbol; not negative under a power law, whose contacts only push.
+    p0 : static strain, a number or symbol; not negative under a power law: its contacts only push.
 
     Raises `lwa.InputError` for anything else, and for unlike contacts under a law that is no power.
     """
@@ -291,7 +291,7 @@ class BackgroundWave(Value):
 
     @property
     def unit(self) -> sp.Expr:
-        """The spacing if it is a symbol and the law has no length; lengths are numbers in it."""
+        """Unit of length: D if the spacing is a symbol and the law a power, else 1."""
         D = self.cell.spacing
         return D if D.is_Symbol and self.law.homogeneous else sp.S.One
 
@@ -313,7 +313,7 @@ class BackgroundWave(Value):
         return F, slope, Q
 
     def _flank(self, B: sp.Expr, digits: int) -> Flank:
-        """The wave of the rise B for the given digits."""
+        """One side of the wave that rises by B, to this number of digits."""
         integer(digits, "digits", 1, _MOST_DIGITS)
         demand_numbers(self._free(B), "a width or a profile on a background wants numbers")
         return Flank(*self._functions, self.in_unit(B), self.in_unit(self.I), digits)

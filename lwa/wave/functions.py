@@ -24,6 +24,7 @@ _XI = sp.Dummy("xi", real=True)
 _B, _V, _F = (sp.Dummy(name, positive=True) for name in ("B", "V_s", "F"))
 _ARGUMENTS = (_XI, _B, _V, _F)  # that are no symbols of the chain
 
+_LONGEST_SUM = 64  # terms of a sum in one statement; Fortran takes 256 lines
 _SHIFT, _INSIDE = (sp.Dummy(name, real=True) for name in ("k_2", "h"))
 
 _TITLE = (
@@ -162,19 +163,27 @@ def _define_reduction(functions: Functions, wave: CompactWave) -> None:
 def _stable(ratio: sp.Expr, k: sp.Expr, local: dict[sp.Expr, sp.Symbol]) -> sp.Expr:
     """Rewrite the sums of a rational expression in powers of k - 2, in which less cancels.
 
-    New variables for powers A^{1/k} are added to ``local``.
+    New variables for powers A^{1/k} and for pieces of long sums are added to ``local``.
     """
+
+    def variable(value: sp.Expr, name: str) -> sp.Symbol:
+        symbol = sp.Dummy(f"{name}_{len(local)}", positive=name == "r" or None)
+        return local.setdefault(value, symbol)
 
     def root(power: sp.Pow) -> sp.Expr:
         n, _ = (power.exp * k).as_coeff_Mul()
-        symbol = sp.Dummy(f"r_{len(local)}", positive=True)
-        return local.setdefault(power.base ** (power.exp / n), symbol) ** n
+        return variable(power.base ** (power.exp / n), "r") ** n
 
     def about_two(total: sp.Expr) -> sp.Expr:
         terms = sp.Poly(total.subs(k, _SHIFT + 2), _SHIFT).terms()
         return sp.Add(*(sp.factor(c) * _SHIFT**n for (n,), c in terms))
 
+    def in_pieces(total: sp.Expr) -> sp.Expr:
+        starts = range(0, len(total.args), _LONGEST_SUM)
+        pieces = (sp.Add(*total.args[i : i + _LONGEST_SUM]) for i in starts)
+        return sp.Add(*(variable(piece, "sum") for piece in pieces))
+
     if k.is_Symbol:
         ratio = ratio.replace(lambda e: e.is_Pow and e.exp.has(k), root)
         ratio = ratio.replace(lambda e: e.is_Add and e.has(k) and not (e - k).is_number, about_two)
-    return ratio
+    return ratio.replace(lambda e: e.is_Add and len(e.args) > _LONGEST_SUM, in_pieces)

@@ -268,6 +268,14 @@ def test_python_has_the_reduction_too():
     assert complex_root["p"]() == pytest.approx(complex(wave.at(k=3, m1=1, m2=2).roots[0]))
 
 
+def test_statements_have_as_many_lines_as_fortran_takes():
+    """Standard Fortran has at most 255 continuation lines; six unlike contacts take more."""
+    cell = Cell([f"m{i}" for i in range(6)], [f"A{i}" for i in range(6)])
+    source = canonical_wave(cell, 3).code("fortran")
+    statements = re.findall(r"(?:.*&\n)*.*\n", source)
+    assert max(statement.count("\n") for statement in statements) <= 256
+
+
 def test_arguments_have_one_order_in_all_languages():
     functions = wave_functions(canonical_wave(Cell(["z", "a"], ["y", "b"], "L"), "q"))
     names = {name: [s.name for s in f.arguments] for name, f in functions.items()}
