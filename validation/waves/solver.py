@@ -207,7 +207,7 @@ def _pressed(k: float, half_period: float | None, p0: float) -> tuple[ExactWave,
 
 
 def _dimer(pair: Pair, k: float, half_period: float | None, progress: Progress[Any]) -> ExactWave:
-    """Return the solitary wave near the theory's, or else the wave nearest to the struck pulse."""
+    """Return a dimer's solitary wave near the theory's, else the wave nearest a struck pulse."""
     periods = [half_period] if half_period else list(newton.ample_half_period(pair, k) * PERIODS)
     waves: list[ExactWave] = []
     with suppress(NoWave):
