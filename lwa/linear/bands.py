@@ -29,7 +29,7 @@ class Bands(NamedTuple):
     length: float = 1.0
 
     def branches(self, q: ArrayLike) -> Array:
-        """Frequencies, ascending along a last axis of length P."""
+        """Frequencies at wavenumbers of any shape, ascending along a new last axis of length P."""
         B, _ = self._strains(q)
         return np.linalg.svd(B, compute_uv=False)[..., ::-1].astype(float) * self.rate
 

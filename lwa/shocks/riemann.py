@@ -33,7 +33,11 @@ RULES = ("dispersion", "doubling")  # El's leading edge; the solitary wave with 
 
 @dataclass(frozen=True)
 class Shock(Value):
-    """The front between the strains ``behind`` and ``ahead``; speeds are dx/dt (see `shock`)."""
+    """The front between the strains ``behind`` and ``ahead`` (see `shock`).
+
+    Speeds are dx/dt in the units of the cell. `rise`, `peak`, `peak_force` and `wave` are those of
+    the leading pulse; they raise `lwa.InputError` for rarefactions and for unequal beads.
+    """
 
     cell: Cell
     law: ContactLaw

@@ -139,7 +139,7 @@ class BackgroundWave(Value):
         return self.cell.time_scale(self.law.exponent)
 
     def force(self, p: sp.Expr, n: int = 0) -> sp.Expr:
-        """The n-th derivative F^{(n)} at a strain; the energy W for n = -1."""
+        """The n-th derivative of F at a strain, in u_ττ = F′(u_x) u_xx; the energy W for n = -1."""
         return self.law.of_strain(p, self.cell.spacing, n)
 
     @cached_property
@@ -223,7 +223,7 @@ class BackgroundWave(Value):
         """Full width at half maximum of the rise of strain, force or velocity, a length in x.
 
         Without load under a power law the width is the compact wave's closed form, else a number of
-        so many digits, times D for a spacing that is a symbol.
+        ``digits`` digits, times D for a spacing that is a symbol.
 
         Raises `lwa.InputError` for other symbols, `lwa.NoSolitaryWave` without a wave.
 
@@ -279,7 +279,7 @@ class BackgroundWave(Value):
         return loaded_code(self.cell, self.law, self.p0, forms, language)
 
     def on(self, p0: Any) -> Self:
-        """The waves of the same chain on another strain."""
+        """The waves of the same chain on another static strain p0."""
         return replace(self, p0=p0)
 
     def at(self, **values: Any) -> BackgroundWave:
