@@ -245,7 +245,7 @@ class PrecompressedWave(Value):
 
     @cached_property
     def background(self) -> BackgroundWave:
-        """The waves on the strain of this load."""
+        """All waves on the static strain of this load (`BackgroundWave`)."""
         return BackgroundWave(self.cell, self.law, self.static_compression / self.cell.spacing)
 
     @cached_property

@@ -132,7 +132,7 @@ class Drive:
 
     @property
     def _harmonic(self) -> tuple[float, float]:
-        """Amplitude and angular frequency."""
+        """Amplitude and angular frequency 2π · frequency of a harmonic drive."""
         return self.amplitude or 0.0, 2 * math.pi * (self.frequency or 0.0)
 
     def at(self, t: float) -> tuple[float, float, float]:

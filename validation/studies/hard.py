@@ -119,7 +119,7 @@ def printed_beta(k: Array, omega: Array) -> Array:
 
 
 def losses(exponents: Array = EXPONENTS, ratios: Array = RATIOS) -> dict[tuple[str, str], Array]:
-    """Return the float64 error in ulps of each formula, (exponents, ratios), by (form, closure)."""
+    """Return the float64 errors in ulps, arrays (exponents, ratios), by (formula, closure)."""
     k, omega = np.meshgrid(exponents, ratios, indexing="ij")
     result = {}
     for closure in CLOSURES:

@@ -101,7 +101,7 @@ def speed_ratio(omega: sp.Rational) -> tuple[Callable[[Any], Array], float]:
 
 @dataclass(frozen=True, eq=False)
 class PowerFit:
-    """Fit of F = A δ^k."""
+    """Fit of F = A δ^k, with 95 % errors."""
 
     k: Measured
     A: Measured
