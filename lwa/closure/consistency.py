@@ -113,7 +113,7 @@ class Closure(Solution):
     def anew(
         self, new: Mapping[sp.Symbol, sp.Expr] | None = None, order: int | None = None
     ) -> Closure:
-        """Derive again with these values of the symbols, or to this order."""
+        """Derive the closure again, with values of its symbols or to another order."""
         new, order = new or {}, order or self.order
         model = replace(self.model, constants=()).replaced(new, order)
         changes = [[(n, alpha.xreplace(new)) for n, alpha in alphas] for alphas in self.changes]

@@ -182,7 +182,7 @@ class Envelope(Value):
 
     @cached_property
     def _mode(self) -> Mode:
-        """The mode, exact or in floats."""
+        """The Bloch mode and its nonlinear response, exact or in floats."""
         return cell_mode(
             self.cell, self.law, self.compression, self.wavenumber, self.branch, self.floats
         )

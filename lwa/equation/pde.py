@@ -41,7 +41,7 @@ class PDE(OfClosure):
 
     @cached_property
     def time_scale(self) -> sp.Expr:
-        """The ratio τ/t of the times."""
+        """The ratio τ/t of the equation's time to the chain's."""
         if self.acoustic:
             return self.closure.model.time_scale
         # w = λu strains each contact by (λ - 1)u, and 1 - λ = M/m2.

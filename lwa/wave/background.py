@@ -300,7 +300,7 @@ class BackgroundWave(Value):
         return value.subs(self.unit, 1) if self.unit.is_Symbol else value
 
     def _free(self, *values: sp.Expr) -> set[sp.Symbol]:
-        """The symbols of the values and of the chain, but for the `unit`."""
+        """The symbols in the values and in the chain, except the `unit`."""
         all_values = (*values, self.p0, self.I, self.force(self.p0 + sp.S.One, 1))
         return set().union(*(v.free_symbols for v in all_values)) - {self.unit}
 

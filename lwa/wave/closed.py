@@ -151,7 +151,7 @@ class CompactWave(Value):
 
     @cached_property
     def _ratios(self) -> tuple[sp.Expr, sp.Expr]:
-        """The ratios G/I and H/I; in the canonical field both depend on k alone."""
+        """The ratios G/I and H/I, which in the canonical field depend on k alone."""
         return factored(self.G / self.I), factored(self.H / self.I)
 
     @cached_property

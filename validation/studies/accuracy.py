@@ -85,7 +85,7 @@ class Task:
 
 
 def relative_errors(pulse: Pulse, truth: Pulse) -> dict[str, float]:
-    """Return |pulse/truth - 1| for each of `READINGS`."""
+    """Return relative errors |pulse/truth - 1| of arrival, peak force and FWHM (`READINGS`)."""
     return {name: abs(getattr(pulse, name) / getattr(truth, name) - 1) for name in READINGS}
 
 

@@ -103,7 +103,7 @@ def in_ulps(value: Array, true: Any) -> Array:
 
 
 def printed_beta(k: Array, omega: Array) -> Array:
-    """Return |β| by the formulas of Porter et al. (2008), in float64, for m1 = D = 1.
+    """Return |β| by the printed formulas of Porter et al. (2008), in float64, for m1 = D = 1.
 
     NaN if the root p is complex or 0/0 arises.
     """

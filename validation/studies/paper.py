@@ -200,7 +200,7 @@ def numbers(beads: Train, contacts: Train, pair: tuple[int, ...]) -> dict[str, f
 
 
 def like_pairs(pair: tuple[int, ...]) -> list[tuple[int, int]]:
-    """Return pairs of beads of one kind next to two sensor beads of different kinds.
+    """Return pairs of like beads (both steel, both PTFE), each next to one of two sensor beads.
 
     >>> like_pairs((15, 34)), like_pairs((15, 33))
     ([(15, 33), (16, 34)], [])

@@ -112,7 +112,7 @@ class PowerFit:
 
     @property
     def one_power(self) -> bool:
-        """True if the curvature is 0 within its error."""
+        """True if one power fits: the curvature of ln V(ln F) is 0 within its error."""
         return abs(self.curvature.value) <= self.curvature.error
 
 

@@ -252,7 +252,7 @@ class ExactWave(LatticeWave):
         return np.asarray(((first @ rows.T) * every).real.sum(axis=-1))
 
     def _ended(self, xi: ArrayLike) -> NDArray[np.bool_]:
-        """True where |ξ| > L for a solitary wave, which is 0 there instead of periodic."""
+        """True where |ξ| > L for a solitary wave: there the wave is 0, the Fourier sum periodic."""
         return np.asarray((np.abs(xi) >= self.half_period) & self.solitary)
 
 
