@@ -228,7 +228,7 @@ def _law_latex(theory: Theory) -> list[str]:
 
 
 def _source(theory: Theory) -> str:
-    """Source of a module with b1 …, G, H, I, and all coefficients by order and jet."""
+    """Python source of a module with b1 …, G, H, I, and all coefficients by order and jet."""
     if not theory.law.homogeneous:
         raise InputError("--format python is for power laws: others have text, json and latex")
     cell = theory.cell

@@ -65,7 +65,7 @@ class Bands(NamedTuple):
         return np.stack([edges[:-1, 1], edges[1:, 0]], axis=-1)
 
     def _strains(self, q: ArrayLike) -> tuple[Complex, Complex]:
-        """Return the matrix B(κ) from displacements to strains, and the nonzero entry of dB/dκ."""
+        """Return the module's matrix B(κ), and the only nonzero entry of dB/dκ, in its last row."""
         kappa = finite(q, "wavenumber") * self.length
         # reduce κ to [-π, π]; e^{iκ} drops whole turns exactly
         kappa = np.where(np.abs(kappa) <= np.pi, kappa, np.angle(np.exp(1j * kappa)))

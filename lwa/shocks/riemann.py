@@ -133,7 +133,7 @@ class Shock(Value):
 
     @cached_property
     def wave(self) -> ExpandedWave:
-        """The lattice's own wave with the peak velocity 2 v_p, from the series in k - 1.
+        """The lattice's own wave whose beads peak at the velocity 2 v_p, by the series in k - 1.
 
         Raises `lwa.InputError` unless the chain ahead is without load and the law is a power.
         """

@@ -66,7 +66,7 @@ class Grid(NamedTuple):
 
 @cache
 def gauss(kind: type[np.floating[Any]] = np.float64) -> tuple[Any, Any]:
-    """Nodes and weights on [0, 1], computed in extended precision."""
+    """Gauss–Legendre nodes and weights on [0, 1], computed in extended precision."""
     basis = np.eye(POINTS + 1, dtype=np.longdouble)[-1]
     slope = legendre.legder(basis)
     x = legendre.leggauss(POINTS)[0].astype(np.longdouble)
