@@ -113,7 +113,7 @@ class Writer:
         return [*lines, *(line.format(**words) for line in self.closing)]
 
     def words(self, function: Function) -> dict[str, str]:
-        """Words by their names in ``opening`` and ``closing``, besides name and doc."""
+        """Values of the fields in the lines ``opening`` and ``closing``, besides name and doc."""
         return {"arguments": self.arguments(function)}
 
     def arguments(self, function: Function, kind: str = "") -> str:
@@ -172,7 +172,7 @@ class Writer:
     _print_Dummy = _print_Symbol
 
     def parenthesize(self, item: sp.Basic, level: int, strict: bool = False) -> str:
-        """Parenthesize as SymPy does, except fractions that are one literal."""
+        """Parenthesize as SymPy does, but no positive number that is one literal, such as 0.5."""
         literal = item.is_Rational and item.p > 0 and "/" not in self.text(item)
         return str(super().parenthesize(item, 0 if literal else level, strict))  # type: ignore[misc]  # SymPy's
 

@@ -203,15 +203,15 @@ _COLUMNS = (
 )
 
 
-def _report(cell: Cell, k: float, found: Sequence[tuple[Standing, dict[str, Any]]]) -> Report:
-    rows = [row for _, row in found]
-    kind = found[0][0].theory.kind
+def _report(cell: Cell, k: float, breathers: Sequence[tuple[Standing, dict[str, Any]]]) -> Report:
+    rows = [row for _, row in breathers]
+    kind = breathers[0][0].theory.kind
     return Report(
         f"{kind.capitalize()} breathers: masses {', '.join(map(str, cell.masses))}, k = {k:g}, "
         "F0 = A = D = 1",
         (Table(_COLUMNS, tuple(tuple(row[c.key] for c in _COLUMNS) for row in rows), "rows"),),
         tuple(_findings(rows)),
-        tuple(_panels(*found[-1])),
+        tuple(_panels(*breathers[-1])),
         (
             "off: theory/lattice - 1. ±: change with fewer beads and harmonics. Double multipliers "
             "1 of the phase and of the whole chain's motion are split by the integration's error.",

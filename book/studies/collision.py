@@ -83,13 +83,13 @@ def collision(
     for k in ks:
         between(k, "k", 1.05, 3)
     between(second, "second", 0.1, 1)
-    found = {}
+    records = {}
     for k in progress(ks):
-        found[k] = tuple(
+        records[k] = tuple(
             [run(k, second, rtol, samples) for rtol, samples in _RUNS]
             for run in (in_equation, on_lattice)
         )
-    return _report(second, found)
+    return _report(second, records)
 
 
 def on_lattice(k: sp.Expr, second: float, rtol: float, samples: int) -> Records:
@@ -183,9 +183,9 @@ _COLUMNS = (
 )
 
 
-def _report(second: float, found: Mapping[sp.Expr, Sequence[Sequence[Records]]]) -> Report:
+def _report(second: float, records: Mapping[sp.Expr, Sequence[Sequence[Records]]]) -> Report:
     rows, panels = [], []
-    for k, (equation, lattice) in found.items():
+    for k, (equation, lattice) in records.items():
         for key, name in _NAMES.items():
             one, other = (
                 Measured(fine[2][key], rough[2][key] * (1 + _ROUNDING))
@@ -204,7 +204,7 @@ def _report(second: float, found: Mapping[sp.Expr, Sequence[Sequence[Records]]])
     return Report(
         f"Two pulses of strains 1 and {second:g} meet at x = 0; m = A = D = 1",
         (Table(_COLUMNS, tuple(rows), "rows"),),
-        tuple(_findings(found)),
+        tuple(_findings(records)),
         tuple(panels),
         (
             "Shift: distance of the pulse of strain 1 ahead of a pulse that ran alone. ±: change "
@@ -214,8 +214,8 @@ def _report(second: float, found: Mapping[sp.Expr, Sequence[Sequence[Records]]])
     )
 
 
-def _findings(found: Mapping[sp.Expr, Sequence[Sequence[Records]]]) -> Iterator[Finding]:
-    for k, sides in found.items():
+def _findings(records: Mapping[sp.Expr, Sequence[Sequence[Records]]]) -> Iterator[Finding]:
+    for k, sides in records.items():
         for name, runs in zip(("equation", "lattice"), sides, strict=True):
             drift = abs(runs[0][2]["drift"])
             yield Finding(f"k = {k}, {name}: change of the energy", drift, high=_CONSERVED)

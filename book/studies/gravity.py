@@ -189,13 +189,17 @@ class Upright:
         size = len(self.masses)
         contacts = np.add.outer(self.places(_TOP, _FEW), np.arange(2 * size))
         scene = self.blown(velocity, contact_sensors=np.unique(contacts).tolist())
-        run, numeric, found = simulate(scene, rtol=self.tolerances[0]), self.theory.numeric(), {}
+        run, numeric, by_contact = (
+            simulate(scene, rtol=self.tolerances[0]),
+            self.theory.numeric(),
+            {},
+        )
         for track in tracks(run):
             (pulse,) = leading_pulses(track.force, self.k)
-            found[track.number - 1] = pulse.arrival, pulse.peak, pulse.fwhm
+            by_contact[track.number - 1] = pulse.arrival, pulse.peak, pulse.fwhm
         rows = []
         for cell in contacts:
-            arrival, peak, fwhm = np.array([found[contact] for contact in cell]).T
+            arrival, peak, fwhm = np.array([by_contact[contact] for contact in cell]).T
             load, force = float(cell[0] + (size + 1) / 2), peak[:size].mean()
             width = fwhm[:size].mean() * np.mean(size / (arrival[size:] - arrival[:size]))
             p0, p1 = (f ** (1 / self.k) for f in (load, load + force))
@@ -248,11 +252,11 @@ def gravity(
         between(ratio, "the largest mass over the least", 1, _UNLIKE)
     chains = [Upright(cell, k, beads) for cell in cells]
     jobs = [(chain, blow) for chain in chains for blow in (WEAK, *STRONG)]
-    found = {
+    measured = {
         (chain, blow): chain.fronts() if blow == WEAK else chain.pulses(blow)
         for chain, blow in progress(jobs)
     }
-    return _report(chains, found)
+    return _report(chains, measured)
 
 
 _WEAK = (
@@ -279,11 +283,11 @@ Strong blows: width of the dynamic contact force F on the load F0, of the solita
 the same F on F0, and of a weak blow's front."""
 
 
-def _report(chains: Sequence[Upright], found: Mapping[tuple[Upright, float], Any]) -> Report:
+def _report(chains: Sequence[Upright], measured: Mapping[tuple[Upright, float], Any]) -> Report:
     weak, strong, panels = [], [], []
     for chain in chains:
         names = [str(mass) for mass in chain.cell.masses]
-        x, width, coarse = found[chain, WEAK]
+        x, width, coarse = measured[chain, WEAK]
         exponent, prefactor = chain.fitted(x, width, coarse)
         theory = chain.prefactor
         weak.append((names, exponent, prefactor, theory, theory / prefactor.value - 1))
@@ -293,7 +297,7 @@ def _report(chains: Sequence[Upright], found: Mapping[tuple[Upright, float], Any
             Curve("front", sites, theory * np.cbrt(sites), "C0-"),
         ]
         for blow, colour in zip(STRONG, ("C1", "C2", "C3"), strict=True):
-            pulses = found[chain, blow]
+            pulses = measured[chain, blow]
             strong += [(names, blow, *p.values(), theory * math.cbrt(p["site"])) for p in pulses]
             at, width, solitary = ([p[n] for p in pulses] for n in ("site", "width", "solitary"))
             curves += [

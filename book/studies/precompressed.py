@@ -141,8 +141,8 @@ class Wave:
         if len(self.masses) > 1 or not self.law.homogeneous:
             return None
         k = float(self.law.exponent)
-        found = exact_wave(self.masses.tolist(), k, background=math.pow(1 + self.ratio, -1 / k))
-        return found.scaled(force=1 + self.ratio)
+        wave = exact_wave(self.masses.tolist(), k, background=math.pow(1 + self.ratio, -1 / k))
+        return wave.scaled(force=1 + self.ratio)
 
     @cached_property
     def _theory(self) -> NumericBackground:
@@ -177,16 +177,18 @@ class Wave:
     def scene(self) -> Scene:
         """The chain with its wave, too long for an echo from the wall."""
         start, *places = self.places
-        size, found = len(self.masses), self.theory(self.ratio)
+        size, predicted = len(self.masses), self.theory(self.ratio)
         sites = _SITES + start / 2  # run by sound
-        beads = math.ceil((places[-1] + start + found["speed"] * (sites + start)) / 2 / size) * size
+        beads = (
+            math.ceil((places[-1] + start + predicted["speed"] * (sites + start)) / 2 / size) * size
+        )
         bead = np.arange(beads, dtype=float) - start
         if self.exact is None:
             strain, motion = (
                 self._theory.profile(x, 1.0, self.strain(self.ratio))
                 for x in (bead[:-1] + 0.5, bead)
             )
-            velocity = motion * found["speed"] * self.sound
+            velocity = motion * predicted["speed"] * self.sound
         else:
             strain, velocity = self.exact.strain(bead[:-1] + 0.5), self.exact.velocity(bead)
         sensors = tuple(place + i for place in places for i in range(size))
@@ -200,7 +202,7 @@ class Wave:
             contact_sensors=sensors,
             bead_sensors=sensors,
             duration=sites / self.sound,
-            samples=math.ceil(_SAMPLES * sites * max(1.0, found["speed"] / found["fwhm"])),
+            samples=math.ceil(_SAMPLES * sites * max(1.0, predicted["speed"] / predicted["fwhm"])),
         )
 
     def read(self, run: Run, stretch: int) -> dict[str, float]:
@@ -228,18 +230,18 @@ class Wave:
     def row(self) -> dict[str, Any]:
         """Table row: measured numbers, and the theory's at the measured force."""
         fine, rough = twice(self.scene, *self.tolerances)
-        found, coarse, before = self.read(fine, 1), self.read(rough, 1), self.read(fine, 0)
-        theory, earlier = (self.theory(read["force"]) for read in (found, before))
+        measured, coarse, before = self.read(fine, 1), self.read(rough, 1), self.read(fine, 0)
+        theory, earlier = (self.theory(read["force"]) for read in (measured, before))
         exact = None if self.exact is None else self.exact.c / self.sound
         cells: dict[str, Any] = {"masses": [str(m) for m in self.cell.masses], "exact": exact}
-        cells |= {name: found[name] for name in ("force", "decay")}
+        cells |= {name: measured[name] for name in ("force", "decay")}
         for name, value in theory.items():
-            settled = abs(found[name] / value - before[name] / earlier[name]) * value
-            change = max(abs(found[name] - coarse[name]), settled)
+            settled = abs(measured[name] / value - before[name] / earlier[name]) * value
+            change = max(abs(measured[name] - coarse[name]), settled)
             cells |= {
-                name: Measured(found[name], found[name] + change),
+                name: Measured(measured[name], measured[name] + change),
                 f"{name} theory": value,
-                f"{name} off": value / found[name] - 1,
+                f"{name} off": value / measured[name] - 1,
             }
         return cells
 
@@ -261,10 +263,10 @@ _COLUMNS = {
 }
 
 
-def _report(law: ContactLaw, found: Sequence[tuple[Wave, dict[str, Any]]]) -> Report:
-    rows = [cells for _, cells in found]
+def _report(law: ContactLaw, waves: Sequence[tuple[Wave, dict[str, Any]]]) -> Report:
+    rows = [cells for _, cells in waves]
     return Report(
-        f"Waves on a static force F0 = {found[0][0].load:g}: F = {law.F}, A = D = 1",
+        f"Waves on a static force F0 = {waves[0][0].load:g}: F = {law.F}, A = D = 1",
         (
             Table(
                 tuple(_COLUMNS.values()),
@@ -273,7 +275,7 @@ def _report(law: ContactLaw, found: Sequence[tuple[Wave, dict[str, Any]]]) -> Re
             ),
         ),
         tuple(_findings(law, rows)),
-        tuple(_panels(found)),
+        tuple(_panels(waves)),
         (
             "F: dynamic contact force, V: speed, c0: speed of sound. off: theory/lattice - 1. "
             "FWHM: of the contact force; bead velocity: peak, mean over a cell by mass.",
@@ -311,15 +313,15 @@ def _findings(law: ContactLaw, rows: Sequence[dict[str, Any]]) -> Iterator[Findi
             )
 
 
-def _panels(found: Sequence[tuple[Wave, dict[str, Any]]]) -> Iterator[Panel]:
+def _panels(waves: Sequence[tuple[Wave, dict[str, Any]]]) -> Iterator[Panel]:
     """Panels of V/c0 and FWHM/√(12 I), in which the theory is one curve for all chains."""
-    ratios = [wave.ratio for wave, _ in found]
-    first, forces = found[0][0], np.geomspace(min(ratios), max(ratios), 100)
+    ratios = [wave.ratio for wave, _ in waves]
+    first, forces = waves[0][0], np.geomspace(min(ratios), max(ratios), 100)
     theory = [first.theory(force) for force in forces]
     for name, label, scale in (("speed", "V/c0", "x"), ("fwhm", "FWHM of force / √(12 I)", "xy")):
         values = [each[name] / first.unit(name) for each in theory]
         curves = [Curve("theory, all chains", forces, values, "k-")]
-        chains = groupby(found, lambda part: part[0].cell)
+        chains = groupby(waves, lambda part: part[0].cell)
         for (cell, those), mark in zip(chains, cycle("osv^Dx"), strict=False):
             points = [
                 (row["force"], row[name].value / wave.unit(name), row[name].error / wave.unit(name))

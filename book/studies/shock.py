@@ -96,10 +96,12 @@ def shock(
     steps = [read_exact(jump, "jump") for jump in jumps]
     behind = [step * start if start else step for step in steps]
     fronts = [front(cell, law, p, start) for law in laws for p in behind]
-    for found in fronts:
-        if found.kind != "shock":
-            raise InputError(f"behind is {found.behind}: a strain above the one ahead is wanted")
-    driven = [Driven(found, end) for found in fronts]
+    for candidate in fronts:
+        if candidate.kind != "shock":
+            raise InputError(
+                f"behind is {candidate.behind}: a strain above the one ahead is wanted"
+            )
+    driven = [Driven(candidate, end) for candidate in fronts]
     runs = simulate_many((chain.scene() for chain in driven), rtol=TOLERANCE)
     rows = [chain.row(run) for chain, run in zip(progress(driven), runs, strict=True)]
     return _report(driven, rows)
@@ -235,11 +237,11 @@ def _first_peak(run: Run, i: int) -> tuple[float, float]:
     rise = values - values[0]
     start = int(np.argmax(rise > rise.max() / 2))
     top = start + int(np.argmax(np.diff(values[start:]) < 0))
-    found = scipy.optimize.minimize_scalar(
+    maximum = scipy.optimize.minimize_scalar(
         lambda t: -float(signal(t)), bounds=(time[top - 1], time[top + 1]), method="bounded",
         options={"xatol": 1e-8},
     )  # fmt: skip
-    return float(found.x), -float(found.fun)
+    return float(maximum.x), -float(maximum.fun)
 
 
 def _number(value: Any) -> float | None:

@@ -97,8 +97,8 @@ def amplitudes(run: Run, omega: float) -> list[float]:
     """Amplitudes of the driven frequency at the sensors, over the last periods."""
     late = run.time > run.time[-1] - PERIODS * 2 * math.pi / omega
     waves = np.array([np.sin(omega * run.time[late]), np.cos(omega * run.time[late])]).T
-    found = np.linalg.lstsq(waves, run.bead_displacement[:, late].T, rcond=None)[0]
-    return [float(x) for x in np.hypot(*found)]
+    coefficients = np.linalg.lstsq(waves, run.bead_displacement[:, late].T, rcond=None)[0]
+    return [float(x) for x in np.hypot(*coefficients)]
 
 
 def attenuation(cell: Cell, k: float, omega: float) -> float:
@@ -113,7 +113,7 @@ def attenuation(cell: Cell, k: float, omega: float) -> float:
 
 
 def _report(cell: Cell, k: float, edges: Array, rows: list[tuple[float, ...]]) -> Report:
-    omega, passed, found, theory = np.array(rows).T
+    omega, passed, measured, theory = np.array(rows).T
     gap = theory > 0.05
     columns = (
         Column("frequency_value", "Ω"),
@@ -122,7 +122,7 @@ def _report(cell: Cell, k: float, edges: Array, rows: list[tuple[float, ...]]) -
         Column("attenuation_theory_value", "theory", format=".5f"),
     )
     wrong = float(((passed > _PASSES) == gap).sum())
-    worst = float(np.abs(theory / found - 1)[gap].max(initial=0.0))
+    worst = float(np.abs(theory / measured - 1)[gap].max(initial=0.0))
     findings = (
         Finding("theory/lattice - 1 in gaps", worst, high=_BOUND, key="attenuation_error"),
         Finding("frequencies on the wrong side of an edge", wrong, high=0, key="misplaced"),

@@ -59,8 +59,8 @@ class Definition:
     @property
     def reproduced(self) -> tuple[str, ...]:
         """Lines of the paper's figure whose stated error the paper's closure meets within 0.5 %."""
-        found = self.errors["linear"]
-        return tuple(line for line, e in STATED.items() if abs(abs(found[line]) - e) < 0.005)
+        errors = self.errors["linear"]
+        return tuple(line for line, e in STATED.items() if abs(abs(errors[line]) - e) < 0.005)
 
     @property
     def cells(self) -> tuple[Any, ...]:
@@ -93,7 +93,7 @@ def widths() -> Report:
     ``average_error_value``, ``error_value`` {closure: {line: …}}, ``reproduced``.
     """
     beads = tuple(range(4, BEADS - 2))  # of PTFE and of steel in turn
-    found, waves = compared(_numbers, *twice(recorded_chain(beads), *TOLERANCES)), _waves()
+    numbers, waves = compared(_numbers, *twice(recorded_chain(beads), *TOLERANCES)), _waves()
 
     def theory(quantity: str, force: Measured, in_time: bool) -> Lines:
         return {
@@ -106,15 +106,18 @@ def widths() -> Report:
 
     definitions = []
     for reading, (pulses, quantity) in READINGS.items():
-        force = found["contacts' force" if pulses == "contacts" else "F_m"]
-        sites = derived(lambda width, V: width * V / DIAMETER, found[pulses], found["speed"])
-        for average, in_time in ((found[pulses], True), (sites, False)):
+        force = numbers["contacts' force" if pulses == "contacts" else "F_m"]
+        sites = derived(lambda width, V: width * V / DIAMETER, numbers[pulses], numbers["speed"])
+        for average, in_time in ((numbers[pulses], True), (sites, False)):
             errors = {
                 closure: {line: width / average.value - 1 for line, width in lines.items()}
                 for closure, lines in theory(quantity, force, in_time).items()
             }
             definitions.append(Definition(reading, in_time, average, errors))
-    times, lines = [found[f"bead {bead}"] for bead in beads], theory("force", found["F_m"], True)
+    times, lines = (
+        [numbers[f"bead {bead}"] for bead in beads],
+        theory("force", numbers["F_m"], True),
+    )
     stated = ", ".join(f"{100 * e:.1f} % ({line})" for line, e in STATED.items())
     title = (
         f"theory over the average from bead {FIRST_BEAD} on, less 1, for equal contacts and "
@@ -187,8 +190,8 @@ def _waves() -> dict[str, list[TravelingWave]]:
     masses = (heavy / 10**12, light, heavy)  # the first for m2 → 0, exact to 12 digits
     cells = [Dimer(heavy, m2, stiffnesses=cell.stiffnesses, spacing=cell.spacing) for m2 in masses]
     return {
-        "linear": [homogenize(own, k=HERTZ).pde.traveling_wave() for own in cells],
-        "canonical": [canonical_wave(own, HERTZ) for own in cells],
+        "linear": [homogenize(dimer, k=HERTZ).pde.traveling_wave() for dimer in cells],
+        "canonical": [canonical_wave(dimer, HERTZ) for dimer in cells],
     }
 
 

@@ -27,7 +27,7 @@ PRINTABLE_DIGITS = 4000
 
 @dataclass(frozen=True)
 class Partition(Value):
-    """Positive weights w_i that enter by their fractions f_i = total · w_i / Σ_j w_j only.
+    """Positive weights w_i, and their fractions f_i = total · w_i / Σ_j w_j in a coefficient ring.
 
     The masses of a cell are such weights (total 1), and so are the compliances of its contacts
     (total P). Rational fractions are numbers; else each distinct fraction but the last is a

@@ -33,14 +33,14 @@ Term = tuple[tuple[int, ...], fmpq]
 
 
 class Monomial(NamedTuple):
-    """The product of the r_n^e, (n, e) in ``x``, and the s_n^e, (n, e) in ``t``."""
+    """A product of jets: r_n^e for (n, e) in ``x``, s_n^e for (n, e) in ``t``."""
 
     x: Powers
     t: Powers = ()
 
 
 class JetAlgebra:
-    """Polynomials in r_1 … r_weight over Q[parameters], with ∂_x.
+    """The algebra of the polynomials in the jets r_1 … r_weight over Q[parameters], with ∂_x.
 
     With ``exponent``, a function that gives k as an element of the ring, the algebra has the jets
     s_1 … s_weight of the velocity and ∂_τ too; with ``rest`` also s_0 = u_τ / p^{(k+1)/2} itself.

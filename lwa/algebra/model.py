@@ -38,7 +38,7 @@ class Model(Value):
 
     @property
     def time_scale(self) -> sp.Expr:
-        """The ratio τ/t of the acoustic branch."""
+        """The ratio τ/t of the equation's time to the chain's, on the acoustic branch."""
         return self.cell.time_scale(self.law.exponent)
 
     @cached_property

@@ -24,7 +24,7 @@ def to_sympy(value: fmpq) -> sp.Rational:
 
 
 def context(count: int) -> fmpq_mpoly_ctx:
-    """The ring Q[x_0, …] of so many generators."""
+    """The ring Q[x_0, …] with ``count`` generators."""
     return fmpq_mpoly_ctx.get([f"x{i}" for i in range(count)], Ordering.lex)
 
 

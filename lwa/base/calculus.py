@@ -43,7 +43,7 @@ def ratio(top: sp.Expr, bottom: sp.Expr) -> sp.Expr:
 
 
 def growing_root(F: sp.Expr, x: sp.Symbol) -> Any:
-    """The first root x > 0 of a function that grows up to there, by mpmath; None without a root.
+    """The first root x > 0 of a function that grows up to the root, by mpmath; None without a root.
 
     Steps that leave the interval on which F is real and grows (its pole, its maximum) are halved.
     """

@@ -1,4 +1,4 @@
-"""Readers of TOML and JSON files: regular files of limited size, faults in one line."""
+"""Readers of TOML and JSON files, of limited size; a fault is reported in one line."""
 
 from __future__ import annotations
 

@@ -9,10 +9,9 @@ from lwa.base import latex
 
 
 class Value:
-    """Base of frozen dataclasses that are known by their fields.
+    """Base of frozen dataclasses: equality, hash and pickle go by the fields alone.
 
-    Two values with equal fields are equal and hash alike. Cached properties take no part in that,
-    and do not travel with a pickle or a copy. A notebook shows the rows of `latex_rows`.
+    Pickles and copies leave out cached properties. A notebook shows the rows of `latex_rows`.
     """
 
     __dataclass_fields__: ClassVar[dict[str, Field[Any]]]
@@ -21,7 +20,7 @@ class Value:
         return {field.name: getattr(self, field.name) for field in fields(self)}
 
     def latex_rows(self) -> list[str]:
-        """Rows of the value as a paper would print it, such as ``I = …``; empty for its repr."""
+        """LaTeX of the value in rows such as ``I = …``; if empty, a notebook shows the repr."""
         return []
 
     def _repr_latex_(self) -> str | None:

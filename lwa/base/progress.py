@@ -16,7 +16,7 @@ Progress = Callable[[Iterable[T]], Iterable[T]]
 
 
 def announced(what: str) -> Progress[Any]:
-    """Print that a computation takes minutes to standard error; return `shown`, its progress."""
+    """Print to standard error that a computation takes minutes; return `shown`, its progress."""
     # Imported before the line is printed: Python may lose a Ctrl-C during an import.
     import_module("tqdm")
     print(f"{what}: this may take minutes", file=sys.stderr, flush=True)

@@ -36,7 +36,7 @@ def finite(value: Any, name: str) -> float:
 
 
 def positive(value: Any, name: str) -> float:
-    """Read one positive number that has all digits of a float."""
+    """Read one positive number, not below the range where floats have all their digits."""
     number = finite(value, name)
     if not number > 0:
         raise InputError(f"{name} is {number:g}: it must be positive")

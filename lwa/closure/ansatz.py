@@ -105,7 +105,7 @@ def _uniform(model: Model, order: int, progress: Progress[int]) -> Solution:
 
 
 def _solution(b: list[fmpq_mpoly], first: GradedSeries, second: GradedSeries) -> Solution:
-    """The solution with the first equation's E_n, and their difference to the second's."""
+    """The solution with E_n of the first equation of motion and the defect first - second."""
     return Solution(
         algebra=first.algebra,
         acceleration=tuple(first),

@@ -68,7 +68,7 @@ class Closure(Solution):
         )
 
     def latex_rows(self, most: int | None = None) -> list[str]:
-        """LaTeX of w = λ (u + b_1 D u_x + …), λ and the b_n, to D^most (all orders if None)."""
+        """LaTeX of the ansatz w = λ (u + b_1 D u_x + …), λ and the b_n, to D^most (None: all)."""
         if not self.ansatz:
             return []
         last = min(len(self.ansatz) - 1, most or len(self.ansatz))
@@ -113,7 +113,7 @@ class Closure(Solution):
     def anew(
         self, new: Mapping[sp.Symbol, sp.Expr] | None = None, order: int | None = None
     ) -> Closure:
-        """Derive again with these values of the symbols, or to this order."""
+        """Derive the closure again, with values of its symbols or to another order."""
         new, order = new or {}, order or self.order
         model = replace(self.model, constants=()).replaced(new, order)
         changes = [[(n, alpha.xreplace(new)) for n, alpha in alphas] for alphas in self.changes]

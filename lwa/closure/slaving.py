@@ -68,7 +68,7 @@ class _Slaving:
         self.forces = [Force(algebra, k) for _ in self.x]
 
     def extend(self, n: int) -> None:
-        """Append the terms of order D^n to all series: E_n, X_n, Φ_n and S_n."""
+        """Append the terms in D^n of wave equation E, strains X, forces Φ and fields S."""
         accelerations = [self.algebra.dt(rate, self.E, n) for rate in self.rates]
         if n + 1 < self.order:
             for rate, S in zip(self.rates, self.S, strict=True):

@@ -40,7 +40,7 @@ class ChainInput:
 
     @property
     def text(self) -> str:
-        """The chain on one line."""
+        """One line of text with the masses and the contact law of the chain."""
         masses = ", ".join(map(str, self.cell.masses))
         return f"masses {masses}; contact force A F, F = {self.law.F}"
 

@@ -69,7 +69,7 @@ def derive(style: str, **options: Any) -> None:
     """Derive the long-wave equation of a chain.
 
     Results are the ansatz, the wave equation u_ττ = u_x^(k-1) u_xx + … for the displacement u, and
-    the defect, by which the equations of motion of the beads disagree.
+    the defect: u_ττ by the first bead's equation of motion minus u_ττ by the second bead's.
 
     In JSON `terms` is the right-hand side of u_ττ after its leading term, and `slaved` (closure
     full) has, for each bead from the second on, the terms J_n of its field u + u_x Σ D^n J_n.
@@ -83,7 +83,7 @@ def derive(style: str, **options: Any) -> None:
 
 
 def _answer(theory: Theory, tex: bool) -> Answer:
-    """Rows of a derivation; those of LaTeX take as long as the derivation, and only if ``tex``."""
+    """Rows of a derivation; the rows of LaTeX, slow at high orders, only if ``tex``."""
     head: Values = {
         **chain_json(theory),
         "lambda": str(theory.amplitude_ratio),
@@ -129,7 +129,7 @@ def _terms_json(coefficients: Mapping[int, Terms]) -> list[dict[str, Any]]:
 
 
 def _law_text(theory: Theory) -> list[str]:
-    """Lines of text on the φ_n of a law other than a power."""
+    """Lines of text with definition and values of the φ_n; [] for a power law."""
     law = theory.law
     if law.homogeneous:
         return []
@@ -184,7 +184,7 @@ def _equation(theory: Theory) -> list[Row | str]:
 
 
 def _order_form(theory: Theory) -> str:
-    """Text of an order n, with {} in place of n."""
+    """Format string for the heading of an order n, such as D^(k+{})."""
     if not theory.law.homogeneous:
         return "order {}"
     return "D^(k+{})" if theory.closure.model.branch == "acoustic" else "D^{}"
@@ -207,7 +207,7 @@ def _consistency_text(theory: Theory) -> list[str]:
 
 
 def _orders(coefficients: Mapping[int, Terms], form: str) -> list[str]:
-    """Lines of text with the terms of each order; the order n is written by ``form``."""
+    """Lines of text with the terms of each order n, under the heading ``form.format(n)``."""
     lines = []
     for n, terms in coefficients.items():
         rows = [f"    {terms.text(jet)}: {terms.written(jet)}" for jet in terms]
@@ -228,7 +228,7 @@ def _law_latex(theory: Theory) -> list[str]:
 
 
 def _source(theory: Theory) -> str:
-    """Source of a module with b1 …, G, H, I, and all coefficients by order and jet."""
+    """Python source of a module with b1 …, G, H, I, and all coefficients by order and jet."""
     if not theory.law.homogeneous:
         raise InputError("--format python is for power laws: others have text, json and latex")
     cell = theory.cell

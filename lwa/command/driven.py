@@ -18,9 +18,9 @@ from lwa.shocks import riemann
 
 @click.command()
 @spheres_option(required=True)
-@value("--velocity", "Velocity of the striker, in m/s.")
+@value("--velocity", "Velocity of the striker; in m/s if the chain is in SI.")
 @value("--drop", "Height from which the striker falls, in m, in place of --velocity.")
-@value("--mass", "Mass of the striker, in kg.  [default: that of a bead]")
+@value("--mass", "Mass of the striker; in kg if the chain is in SI.  [default: that of a bead]")
 @style_option()
 def strike(
     spheres: str,
@@ -31,8 +31,8 @@ def strike(
 ) -> None:
     """Leading pulse of a chain of equal beads that a mass strikes: force, speed and width.
 
-    Needs --spheres, and --velocity or --drop. Units are those of the file, mostly SI; the width is
-    that of a contact's force.
+    Needs --spheres, and --velocity or --drop. Units are those of the file; the width is that of a
+    contact's force.
     """
     chain = take_chain({"spheres": spheres})
     cell, law = chain.cell, chain.law
@@ -78,7 +78,7 @@ def shock(
 
     In JSON `plateau` is the velocity of the wall, `peak` the strain of the leading pulse by the
     doubling rule, and `series`, for a power law without load, the pulse's speed and force from the
-    series in k - 1. Values beyond the reach of a theory are null, for the reason in `notes`.
+    series in k - 1. Values that no theory here gives are null; `notes` has the reason.
     """
     if (behind is None) == (piston is None):
         raise InputError("--behind or --piston: one of the two is wanted")

@@ -41,10 +41,10 @@ def dispersion(order: int, style: str, precompression: sp.Expr | None, **options
     """Expand the squared frequency Ω² of linear waves in the wavenumber κ.
 
     Ω is the frequency in the time τ of `lwa derive`, and κ the wavenumber, both times D. The
-    exponent k matters for unequal contacts only, which share the strain by it.
+    exponent k matters for unequal contacts only, whose shares of the strain depend on k.
 
-    With --precompression also the bands and group velocities of the chain about this load, with k =
-    3/2 unless --k is given: in rad/s and m/s for masses, stiffnesses and spacing in SI. In JSON
+    With --precompression also the bands and group velocities about this load (k = 3/2 unless --k is
+    given), in rad/s and m/s for masses, stiffnesses and spacing in SI. In JSON
     `band_edges_value` has the frequencies (from, to) of each band, `gaps_value` those of each gap,
     and `branches_value` frequencies and group velocities by wavenumber (lengths in D where D is a
     symbol).
@@ -173,14 +173,14 @@ def envelope(
 ) -> None:
     """Nonlinear Schrödinger equation of a mode of a loaded chain, and its breathers.
 
-    Needs --background or --precompression. A breather stands at the edge of a band, and has the
-    --frequency or the --detuning given.
+    Needs --background or --precompression. With --frequency or --detuning also the breather of
+    this frequency, a standing envelope whose mode is at the edge of a band.
 
     Wavenumbers and lengths are in cells, frequencies in radians per unit of time; with --spheres
     frequencies are in Hz, displacements in m and forces in N. In JSON `amplitude` is the largest
     displacement of each bead, `width` is 1/b of the envelope sech(bn) or tanh(bn), and
-    `opening_load` is the static force at which contacts begin to open if the frequency, or the
-    amplitude, is held.
+    `opening_load` is the static force at which contacts begin to open at a fixed frequency, or
+    at a fixed amplitude.
     """
     from lwa.envelopes import schrodinger  # here: it loads NumPy, which `lwa dispersion` may spare
 

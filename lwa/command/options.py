@@ -47,7 +47,7 @@ def called(option: click.Parameter) -> str:
 
 
 def _demand_free(symbols: Iterable[sp.Symbol], command: str, option: click.Parameter) -> None:
-    """Refuse symbols with a name that the command prints for another quantity."""
+    """Refuse symbols named like another quantity of the output."""
     patterns = "|".join(PRINTED.get(command, "").split())
     for name in sorted({s.name for s in symbols} - {_OWN_NAMES.get(called(option), "")}):
         if re.fullmatch(patterns, name):

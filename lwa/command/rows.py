@@ -247,7 +247,7 @@ def approximate(value: sp.Expr, tex: bool = False) -> str:
 
 
 def summed(total: Resummed, unit: str, order: bool) -> str:
-    """A sum in text: one digit more than its error leaves, the error, and the order."""
+    """A sum as text: the value to one digit beyond its error, the error, and the order."""
     if math.isnan(total.error):
         return f"{total.value:.4g}{unit}, error unknown"
     digits = min(16, 2 - math.floor(math.log10(total.error / total.value)))

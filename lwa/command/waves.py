@@ -71,9 +71,9 @@ def wave(
 
     A programming language as --format gives the source of functions that compute the wave.
 
-    In JSON floats are for B = 1 (speed) and V_s = 1 (B, mu) without --force, with D as the unit of
-    length if D is a symbol. `speed` is V_s = dx/dτ, and dx/dt with --force. `compressions` has a
-    value for each contact, `compression` their mean.
+    Without --force the floats in JSON are those at B = 1 (speed) and at V_s = 1 (B, mu), with D as
+    the unit of length if D is a symbol. `speed` is V_s = dx/dτ, and dx/dt with --force.
+    `compressions` has a value for each contact, `compression` their mean.
     """
     spheres = options["spheres"] is not None
     chain = take_chain(options)
@@ -168,7 +168,7 @@ def _fwhm_rows(key: str, label: str, widths: Mapping[str, sp.Expr], **settings: 
 
 
 def _compact(theory: Theory, wave: TravelingWave, style: str) -> Answer:
-    """Rows of the compact wave of a general peak force."""
+    """Rows of the compact wave of any amplitude: speed V_s by peak strain B, and B by V_s."""
     first, second = (wave.reduction(root) for root in (0, 1))
     head = chain_json(theory)
     if style == "json":  # long expressions take a while
@@ -211,7 +211,7 @@ _REDUCTION = {
 
 
 def _reduction_rows(theory: Theory, reduction: Reduction, tex: bool) -> Iterable[Row]:
-    """Rows of p, a, μ, η, σ and s; wide ones in LaTeX by p, a, H and I, as in the paper."""
+    """Rows of p, a, μ, η, σ and s; in LaTeX long values as formulas in p, a, H and I."""
     wide = False
     for name, (symbol, formula) in _REDUCTION.items():
         value = getattr(reduction, name)
@@ -254,7 +254,7 @@ def _at_force(chain: ChainInput, theory: Theory, wave: TravelingWave, F: sp.Expr
 
 
 def _chain_rows(chain: ChainInput) -> list[Row]:
-    """Rows of masses, stiffnesses and spacing; JSON has them in its head unless they are in SI."""
+    """Rows of masses, stiffnesses and spacing; only text if not in SI, as JSON's head has them."""
     cell, k = chain.cell, chain.law.exponent if chain.law.homogeneous else EXPONENT
     named = (
         ("masses", "masses", cell.masses, "m", "kg"),

@@ -71,7 +71,7 @@ def cell_mode(
 
 
 def _sampled(cell: Cell, value: sp.Expr) -> float:
-    """Float of the value at sample numbers for its symbols, by which branches are ordered.
+    """Float of an expression at sample values of its symbols, to order the branches.
 
     Samples are 1, 1/2, … along the cell, so that the first mass is the heaviest, and 1.5 for
     symbols of neither masses nor stiffnesses.

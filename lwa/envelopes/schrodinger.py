@@ -182,7 +182,7 @@ class Envelope(Value):
 
     @cached_property
     def _mode(self) -> Mode:
-        """The mode, exact or in floats."""
+        """The Bloch mode and its nonlinear response, exact or in floats."""
         return cell_mode(
             self.cell, self.law, self.compression, self.wavenumber, self.branch, self.floats
         )
@@ -269,7 +269,7 @@ class Breather(Value):
         return sp.simplify(self.envelope.opening * self.envelope.nonlinearity / self._shift)
 
     def opening_load(self, held: str) -> sp.Expr:
-        """The static force at which contacts begin to open, ``held`` "frequency" or "amplitude".
+        """Static force at which contacts begin to open; ``held``: "frequency" or "amplitude".
 
         With the amplitude held contacts open under *smaller* loads; with the frequency held under
         *greater* ones, which lift the band and so increase the detuning and the amplitude.

@@ -41,7 +41,7 @@ class PDE(OfClosure):
 
     @cached_property
     def time_scale(self) -> sp.Expr:
-        """The ratio τ/t of the times."""
+        """The ratio τ/t of the equation's time to the chain's."""
         if self.acoustic:
             return self.closure.model.time_scale
         # w = λu strains each contact by (λ - 1)u, and 1 - λ = M/m2.
@@ -128,12 +128,12 @@ class PDE(OfClosure):
 
     @cached_property
     def _fluxes(self) -> dict[int, fmpq_mpoly | None]:
-        """Mapping from n ≥ 2 to the flux F_n, u_x^k E_n = ∂_x (u_x^k F_n), or None without one."""
+        """Mapping from n ≥ 2 to the flux F_n, u_x^k E_n = ∂_x (u_x^k F_n), or to None."""
         return {n: flux(self.closure, n) for n in self.coefficients} if self.acoustic else {}
 
     @cached_property
     def conservative(self) -> bool:
-        """True if every order (D^{k+3} in any case) is ∂_x of a flux: ∫ u_τ dx is conserved."""
+        """True if all orders, D^{k+3} at least, are ∂_x of a flux: ∫ u_τ dx is conserved."""
         return self.acoustic and None not in self._at_least_to_third_order._fluxes.values()
 
     @cached_property

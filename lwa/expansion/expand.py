@@ -95,7 +95,7 @@ class Expansion(Value):
 
     @cached_property
     def momentum(self) -> EpsilonSeries:
-        """Momentum Σ m v over the chain, (M/P) c times the displacement behind the wave."""
+        """Momentum Σ m v of the chain: mean mass times c times the displacement behind the wave."""
         # ∫ e^{-Z²/4} dξ = 2√(πI/ε), times ā (M/P) c = 1/c.
         return self._series("momentum", 2 * sp.sqrt(sp.pi * self.I / self._sound), -sp.S.Half)
 
@@ -199,7 +199,7 @@ def expand(
     ----------
     cell : the periodic cell; numbers give rational coefficients, symbols rational functions.
     order : highest power of ε relative to the leading term.
-    k : exponent, a number or a symbol. Unlike contacts share the strain by it.
+    k : exponent, a number or a symbol. Shares of strain of unlike contacts depend on it.
     law : a power law in place of k; other laws have no ε = k - 1.
 
     Raises `lwa.InputError` for anything else, and for orders whose terms outgrow memory.

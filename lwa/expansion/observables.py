@@ -94,7 +94,7 @@ class Observables:
 
     @cached_property
     def momentum(self) -> Series:
-        """Momentum, M/P · c · the displacement behind the wave, divided by its leading term."""
+        """Momentum, mean mass · c · displacement behind the wave, divided by its leading term."""
         return product(self.c, [moment(terms[0], 2) for terms in self.wave.fields.means])
 
     @cached_property

@@ -1,4 +1,4 @@
-"""The lattice's waves in the cell's units: of a given force, of a striker, into another chain.
+"""Waves of the lattice in the cell's units: at a given force, from a striker, into another chain.
 
 A power law has no scale of its own: the speed scales as F^{(k-1)/(2k)} with the peak force F of the
 first contact, and widths in sites do not depend on F.
@@ -37,7 +37,7 @@ ORDER = 10
 
 @dataclass(frozen=True)
 class ExpandedWave(Value):
-    """The wave of an expansion whose force on the first contact peaks at F.
+    """The wave of an expansion whose first contact has the peak force F, in the cell's units.
 
     Raises `lwa.InputError` unless k, the cell with its spacing, and F > 0 are numbers, and where a
     series has no sum.
@@ -121,7 +121,7 @@ def _rows(force: str, wave: ExpandedWave | Strike) -> list[str]:
 
 
 def wave_of_velocity(expansion: Expansion, velocity: sp.Expr) -> ExpandedWave:
-    """The wave of equal beads that move at this velocity at most, proportional to F^{(k+1)/(2k)}.
+    """The wave of equal beads with this peak velocity, proportional to F^{(k+1)/(2k)}.
 
     Raises `lwa.InputError` unless the chain and the velocity are numbers.
     """
@@ -133,7 +133,7 @@ def wave_of_velocity(expansion: Expansion, velocity: sp.Expr) -> ExpandedWave:
 
 @dataclass(frozen=True)
 class Strike(Value):
-    """The leading pulse of a chain of equal beads struck by a mass.
+    """The leading pulse of a chain of equal beads struck by a mass, in the units of the cell.
 
     chain : the expansion of the chain's wave, all numbers.
     mass, velocity : mass and velocity of the striker; its contact is like those of the chain.
@@ -157,7 +157,7 @@ class Strike(Value):
 
     @cached_property
     def wave(self) -> ExpandedWave:
-        """The chain's wave of the same peak force, without the error of the rule."""
+        """The chain's wave of the same peak force; its errors leave out that of the rule."""
         k, m = self.chain.k, self._effective_mass
         w = 2 * float(self.mass * self.velocity) / (float(self.mass) + m)
         unit = self.chain.energy.at().value
@@ -188,7 +188,7 @@ class Strike(Value):
         return _rows(self.force.latex(), self)
 
     def _of_force(self, quantity: Resummed) -> Resummed:
-        """A quantity proportional to F^{±(k-1)/(2k)}, with the error that the force's adds."""
+        """A quantity proportional to F^{±(k-1)/(2k)}, its error enlarged by that of the force."""
         k, force = self.chain.k, self.force
         relative = float((k - 1) / (2 * k)) * force.error / force.value
         return replace(quantity, error=quantity.error + quantity.value * relative)
@@ -229,7 +229,8 @@ def pulse_of_strike(
 def graded_force(force: Any, stiffness: Any, other: Any, k: Any = "k") -> sp.Expr:
     """Peak force of a pulse where a slowly graded chain's stiffness A has become A′.
 
-    The pulse keeps its energy e A^{-1/k} F^{(k+1)/k}: F ∝ A^{1/(k+1)}, whatever the masses.
+    ``force`` is the peak force at ``stiffness`` A, ``other`` is A′. The pulse keeps its energy
+    e A^{-1/k} F^{(k+1)/k}: F ∝ A^{1/(k+1)}, whatever the masses.
 
     >>> graded_force("F", 1, 32, "3/2")
     4*F
@@ -239,10 +240,10 @@ def graded_force(force: Any, stiffness: Any, other: Any, k: Any = "k") -> sp.Exp
 
 
 def transmitted_force(force: Any, cell: Cell, other: Cell, k: Any = "k") -> sp.Expr:
-    """Peak force of the leading pulse that passes from a chain of equal beads into another chain.
+    """Peak force of the leading pulse that enters the chain ``other`` from ``cell``, equal beads.
 
-    For Hertz contacts the rule is below the measured force, by up to 7.5 % at mass ratios of ¼ to
-    4, by 10 % at 8 and by 14 % at ⅛.
+    ``force`` is the peak force of the incident pulse. For Hertz contacts the rule is below the
+    measured force, by up to 7.5 % at mass ratios of ¼ to 4, by 10 % at 8 and by 14 % at ⅛.
     """
     # Two quasi-particles collide: 4 m m′/(m + m′)² of the energy e A^{-1/k} F^{(k+1)/k} passes.
     k = exponent(k)

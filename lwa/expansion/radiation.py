@@ -50,9 +50,9 @@ POWER = 0.75
 
 @dataclass(frozen=True)
 class Radiation(Value):
-    """Parameters of a chain that determine the radiation by its wave; letters as in the module.
+    """Parameters of a chain that determine how its wave radiates; letters as in the module.
 
-    contrast : how far the chain is from equal beads and contacts, 4I - 1/3: 0 for these,
+    contrast : the difference 4I - 1/3 to a chain of equal beads and contacts,
         (m1 - m2)²/(m1 + m2)² for a dimer of equal contacts.
     I : coefficient I in the linear chain's dispersion Ω² = κ² - I κ⁴ + …
     optical : lowest optical Ω² at κ = 0, the Ω_o² of the module.
@@ -74,7 +74,7 @@ class Radiation(Value):
         return float(self.contrast * self.amplitude(k) ** POWER)
 
     def amplitude(self, k: float) -> float:
-        """The amplitude R at this k for the peak force 1, times ``lightest``."""
+        """Amplitude R of the tail at this k for the peak force 1, times ``lightest``."""
         import numpy as np  # start-up: `import lwa` does not load it
 
         epsilon = k - 1

@@ -78,7 +78,7 @@ class Fields:
 
 
 class Recursion:
-    """The `fields` of a wave, order by order in t, with coefficients in the ring Q[Z, m̂, C]."""
+    """The recursion's solution: the wave's `fields` as power series in t over Q[Z, m̂, C]."""
 
     def __init__(self, model: Model, order: int, progress: Progress[int] = iter) -> None:
         self.context = fmpq_mpoly_ctx.get(("Z", *model.ring.names), Ordering.lex)
@@ -95,7 +95,7 @@ class Recursion:
         self._solve(order, progress)
 
     def derivative(self, S: fmpq_mpoly) -> fmpq_mpoly:
-        """Coefficient of t^{n+1} in ∂ (e^{-Z²/4} S t^n), divided by e^{-Z²/4}."""
+        """The polynomial R of the derivative ∂ (e^{-Z²/4} S t^n) = e^{-Z²/4} R t^{n+1}."""
         return self.I * (S.derivative(0) - self._half * S) if S else S
 
     def _solve(self, order: int, progress: Progress[int]) -> None:
@@ -149,7 +149,7 @@ class Recursion:
         return residual
 
     def _change(self, q: fmpq_mpoly) -> Fields:
-        """Contribution of q_n to the fields at t^n, t^{n+1} and t^{n+2}, n ≥ `LINEAR`."""
+        """Contribution of the term q_n of log f_0 to the fields at t^n … t^{n+2}, n ≥ `LINEAR`."""
         change = Fields(self.P)
         for j in range(3):
             self._step(change, j, self.zero if j else q)
@@ -198,7 +198,7 @@ class Recursion:
                 slope = slope + self.c[i] * self.derivative(fields.strain[i][n - 1])
 
     def _accelerated(self, slope: Series, n: int) -> fmpq_mpoly:
-        """Coefficient of t^n in γ s_i."""
+        """Coefficient of t^n in γ s_i, s_i the slope of a bead's displacement."""
         total = self.zero
         for a, factor in enumerate(self.gamma[: n + 1]):
             if factor and slope[n - a]:

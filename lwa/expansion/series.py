@@ -72,7 +72,7 @@ class EpsilonSeries(Value):
         return series._unit * sp.Add(*terms)
 
     def pade(self, k: Any, numerator: int, denominator: int) -> sp.Expr:
-        """The exact approximant [L/M] in ε; k as in `partial_sum`, None for that of the series.
+        """The exact Padé approximant [numerator/denominator] in ε; k as in `partial_sum`, or None.
 
         Raises `lwa.InputError` where the series is too short, or has no such approximant.
         """
@@ -115,7 +115,7 @@ class EpsilonSeries(Value):
         return self.prefactor * self._epsilon**self.power
 
     def _for(self, k: Any = None) -> EpsilonSeries:
-        """The series with this k for its symbol."""
+        """The series with a number or symbol k in place of its symbol k."""
         if k is None:
             return self
         new = exponent(k, self.cell)

@@ -29,7 +29,7 @@ class Bands(NamedTuple):
     length: float = 1.0
 
     def branches(self, q: ArrayLike) -> Array:
-        """Frequencies, ascending along a last axis of length P."""
+        """Frequencies at wavenumbers of any shape, ascending along a new last axis of length P."""
         B, _ = self._strains(q)
         return np.linalg.svd(B, compute_uv=False)[..., ::-1].astype(float) * self.rate
 
@@ -65,7 +65,7 @@ class Bands(NamedTuple):
         return np.stack([edges[:-1, 1], edges[1:, 0]], axis=-1)
 
     def _strains(self, q: ArrayLike) -> tuple[Complex, Complex]:
-        """Return the matrix B(κ) and the only nonzero entry of dB/dκ, which is in its last row."""
+        """Return the module's matrix B(κ), and the only nonzero entry of dB/dκ, in its last row."""
         kappa = finite(q, "wavenumber") * self.length
         # reduce κ to [-π, π]; e^{iκ} drops whole turns exactly
         kappa = np.where(np.abs(kappa) <= np.pi, kappa, np.angle(np.exp(1j * kappa)))

@@ -49,7 +49,7 @@ class Bloch:
         return [a_m + f_m for a_m, f_m in zip(a, f, strict=True)]
 
     def _carried(self, a: Polynomial, f: Polynomial) -> tuple[Polynomial, Polynomial]:
-        """Displacement and force (a, f) of the next cell, from those of this cell."""
+        """Displacement and force (a, f) in the next cell, by the transfer matrix of a cell."""
         for mu, c in zip(self.mu, self.c, strict=True):
             inertia = [self.zero, *(self.P * mu * a_m for a_m in a[:-1])]
             f = [f_m - i_m for f_m, i_m in zip(f, inertia, strict=True)]

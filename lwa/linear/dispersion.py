@@ -48,9 +48,10 @@ class _Banded(Value):
         """The bands in the units of the chain."""
 
     def branches(self, wavenumber: ArrayLike) -> Array:
-        """Frequencies, ascending along a last axis of length P, to 1e-15 of the largest.
+        """Frequencies at wavenumbers of any shape, ascending along a new last axis of length P.
 
-        Raises `lwa.InputError` for a wavenumber that is no finite number, and for symbols.
+        Their errors are 1e-15 of the largest. Raises `lwa.InputError` for wavenumbers that are not
+        finite, and for symbols.
         """
         return self._bands.branches(wavenumber)
 
@@ -63,7 +64,7 @@ class _Banded(Value):
         return self._bands.edges()
 
     def gaps(self) -> Array:
-        """Edges (from, to) of the P - 1 gaps between the bands; closed gaps have length 0."""
+        """Edges (from, to) of the gaps between bands, shape (P - 1, 2); equal for closed gaps."""
         return self._bands.gaps()
 
 

@@ -6,7 +6,7 @@ the front is a dispersive shock, a wave train between two edges (`lwa.shocks.edg
 rarefaction c(p) = x/t joins c₋ and c₊.
 
 Doubling rule: the leading pulse is the solitary wave on p₊ whose beads move at 2 v_p at most; exact
-for Toda's law, small jumps (KdV) and hard spheres. For k = 3/2 … 3 the lattice's own such wave has
+for Toda's law, small jumps (KdV) and hard spheres. For k = 3/2 … 3 the lattice's own wave has
 the measured speed within 0.2 % and strain within 0.5 %; `lwa.shocks.waves` has the closed forms.
 """
 
@@ -33,7 +33,11 @@ RULES = ("dispersion", "doubling")  # El's leading edge; the solitary wave with 
 
 @dataclass(frozen=True)
 class Shock(Value):
-    """The front between the strains ``behind`` and ``ahead``; speeds are dx/dt (see `shock`)."""
+    """The front between the strains ``behind`` and ``ahead`` (see `shock`).
+
+    Speeds are dx/dt in the units of the cell. `rise`, `peak`, `peak_force` and `wave` are those of
+    the leading pulse; they raise `lwa.InputError` for rarefactions and for unequal beads.
+    """
 
     cell: Cell
     law: ContactLaw
@@ -106,30 +110,30 @@ class Shock(Value):
 
     @cached_property
     def _pulse(self) -> waves.Pulse:
-        """The leading pulse by doubling; `lwa.InputError` for rarefactions and unequal beads."""
+        """The leading pulse by the doubling rule; an error for rarefactions and unequal beads."""
         if self._gain.is_negative:
             raise InputError("sound is slower behind the front: a rarefaction has no pulse")
         return waves.Pulse(self._field, 2 * self._gained)
 
     @property
     def rise(self) -> sp.Expr:
-        """Rise B = 2 v_p/s₊ of u_x in the leading pulse, by doubling."""
+        """Rise B = 2 v_p/s₊ of u_x in the leading pulse, by the doubling rule."""
         return _tidy(self._pulse.rise)
 
     @property
     def peak(self) -> sp.Expr:
-        """Strain of a contact at the peak of the leading pulse by doubling."""
+        """Strain of a contact at the peak of the leading pulse, by the doubling rule."""
         return _tidy(self.ahead + self._pulse.contact_rise)
 
     @property
     def peak_force(self) -> sp.Expr:
-        """Contact force A F at `peak`, in the units of the cell."""
+        """Contact force A F at the peak of the leading pulse, in the units of the cell."""
         stiffness = self.cell.stiffness(self.law.exponent)
         return _tidy(stiffness * self.law.at(self.cell.spacing * self.peak))
 
     @cached_property
     def wave(self) -> ExpandedWave:
-        """The leading pulse by doubling as the lattice's own wave, from the series in k - 1.
+        """The lattice's own wave whose beads peak at the velocity 2 v_p, by the series in k - 1.
 
         Raises `lwa.InputError` unless the chain ahead is without load and the law is a power.
         """
@@ -191,7 +195,8 @@ def shock(cell: Cell, law: ContactLaw, behind: Any, ahead: Any) -> Shock:
 def piston(cell: Cell, law: ContactLaw, velocity: Any, ahead: Any = 0) -> Shock:
     """The front that a wall moving at this velocity drives into a chain of strain ``ahead``.
 
-    In SI units where the cell is (`lwa.Cell.of_spheres`): velocity in m/s, forces in N.
+    The velocity dx/dt, positive, is in the units of the cell: m/s for `lwa.Cell.of_spheres`.
+    Raises `lwa.InputError` as `shock`, and for a velocity that the law does not reach.
 
     >>> from lwa import Cell, Power
     >>> piston(Cell([1], spacing=1), Power(3), "v").behind

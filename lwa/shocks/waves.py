@@ -35,7 +35,7 @@ from lwa.wave.background import BackgroundWave
 
 
 def velocity(field: BackgroundWave, p: sp.Expr) -> sp.Expr:
-    """Velocity that the beads gain while the strain rises from p0 to p, ∫ √F′ dp.
+    """Velocity du/dτ that the beads gain while the strain rises from p0 to p, ∫ √F′ dp.
 
     In closed form for powers and where √F′ is an exponential, else an integral or its value.
 
@@ -55,7 +55,7 @@ def velocity(field: BackgroundWave, p: sp.Expr) -> sp.Expr:
 
 
 def strain(field: BackgroundWave, gained: sp.Expr) -> sp.Expr:
-    """The strain p at which the beads have gained a positive velocity.
+    """The strain p at which the beads have gained the velocity ``gained`` > 0, du/dτ.
 
     Raises `lwa.InputError` for a law that does not reach it, and for symbols unless in a power law.
     """
@@ -78,7 +78,7 @@ def _rising_root(rising: sp.Expr, x: sp.Symbol) -> sp.Expr:
 
 @dataclass(frozen=True)
 class Pulse(Value):
-    """Solitary wave whose beads move at most with a given velocity.
+    """Solitary wave with a given peak velocity of its beads.
 
     field : the background. velocity : largest du/dτ of a bead, a number or an expression.
 

@@ -26,8 +26,8 @@ EXPONENT = sp.Rational(3, 2)
 class Material(Value):
     """An isotropic elastic solid: Young's modulus E, Poisson's ratio ν and perhaps its density.
 
-    The values are numbers or symbols. Raises `lwa.InputError` unless E > 0, -1 < ν ≤ 1/2, and the
-    density, where it is given, is positive.
+    The values are numbers, in any consistent units, or symbols. Raises `lwa.InputError` unless
+    E > 0, -1 < ν ≤ 1/2, and the density, where it is given, is positive.
     """
 
     E: sp.Expr
@@ -111,7 +111,7 @@ class Sphere(Value):
 
 
 def stiffness(sphere: Sphere, other: Sphere | Material) -> sp.Expr:
-    """Stiffness A of F = A δ^{3/2} between two spheres, or a sphere and a flat wall."""
+    """Stiffness A of F = A δ^{3/2} between two spheres or sphere and flat wall; SI: N/m^{3/2}."""
     if not isinstance(sphere, Sphere):
         raise InputError(f"sphere is {shorten(sphere)}: a Sphere is wanted")
     if not isinstance(other, Sphere | Material):

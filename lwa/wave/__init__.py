@@ -1,1 +1,1 @@
-"""Traveling waves: closed forms below, floats, units, backgrounds and plots above them."""
+"""Traveling waves: closed forms, NumPy functions, waves in physical units and under load, plots."""

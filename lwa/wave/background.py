@@ -91,7 +91,7 @@ class KdV(Value):
 class BackgroundWave(Value):
     """The waves of a chain's canonical field on the strain p0.
 
-    p0 : a number or a symbol; not negative under a power law, whose contacts only push.
+    p0 : static strain, a number or symbol; not negative under a power law: its contacts only push.
 
     Raises `lwa.InputError` for anything else, and for unlike contacts under a law that is no power.
     """
@@ -139,7 +139,7 @@ class BackgroundWave(Value):
         return self.cell.time_scale(self.law.exponent)
 
     def force(self, p: sp.Expr, n: int = 0) -> sp.Expr:
-        """The n-th derivative F^{(n)} at a strain; the energy W for n = -1."""
+        """The n-th derivative of F at a strain, in u_ττ = F′(u_x) u_xx; the energy W for n = -1."""
         return self.law.of_strain(p, self.cell.spacing, n)
 
     @cached_property
@@ -223,7 +223,7 @@ class BackgroundWave(Value):
         """Full width at half maximum of the rise of strain, force or velocity, a length in x.
 
         Without load under a power law the width is the compact wave's closed form, else a number of
-        so many digits, times D for a spacing that is a symbol.
+        ``digits`` digits, times D for a spacing that is a symbol.
 
         Raises `lwa.InputError` for other symbols, `lwa.NoSolitaryWave` without a wave.
 
@@ -279,7 +279,7 @@ class BackgroundWave(Value):
         return loaded_code(self.cell, self.law, self.p0, forms, language)
 
     def on(self, p0: Any) -> Self:
-        """The waves of the same chain on another strain."""
+        """The waves of the same chain on another static strain p0."""
         return replace(self, p0=p0)
 
     def at(self, **values: Any) -> BackgroundWave:
@@ -291,7 +291,7 @@ class BackgroundWave(Value):
 
     @property
     def unit(self) -> sp.Expr:
-        """The spacing if it is a symbol and the law has no length; lengths are numbers in it."""
+        """Unit of length: D if the spacing is a symbol and the law a power, else 1."""
         D = self.cell.spacing
         return D if D.is_Symbol and self.law.homogeneous else sp.S.One
 
@@ -300,7 +300,7 @@ class BackgroundWave(Value):
         return value.subs(self.unit, 1) if self.unit.is_Symbol else value
 
     def _free(self, *values: sp.Expr) -> set[sp.Symbol]:
-        """The symbols of the values and of the chain, but for the `unit`."""
+        """The symbols in the values and in the chain, except the `unit`."""
         all_values = (*values, self.p0, self.I, self.force(self.p0 + sp.S.One, 1))
         return set().union(*(v.free_symbols for v in all_values)) - {self.unit}
 
@@ -313,7 +313,7 @@ class BackgroundWave(Value):
         return F, slope, Q
 
     def _flank(self, B: sp.Expr, digits: int) -> Flank:
-        """The wave of the rise B for the given digits."""
+        """One side of the wave that rises by B, to this number of digits."""
         integer(digits, "digits", 1, _MOST_DIGITS)
         demand_numbers(self._free(B), "a width or a profile on a background wants numbers")
         return Flank(*self._functions, self.in_unit(B), self.in_unit(self.I), digits)

@@ -39,7 +39,7 @@ _RATIOS = sp.symbols("g h", cls=sp.Dummy)
 
 
 def strain_equation(p: sp.Expr, G: sp.Expr, H: sp.Expr, I: sp.Expr) -> dict[str, sp.Expr]:
-    """Coefficients in the equation of z, v = z^p, named as below; r_n = ∂^n z / z.
+    """Coefficients by name in the wave's equation for z, v = z^p, with r_n = ∂^n z / z:
 
     V² z^p p r_1 = z^{kp} (linear · r_1 + cubic · r_1³ + product · r_1 r_2 + third · r_3).
     """
@@ -151,7 +151,7 @@ class CompactWave(Value):
 
     @cached_property
     def _ratios(self) -> tuple[sp.Expr, sp.Expr]:
-        """The ratios G/I and H/I; in the canonical field both depend on k alone."""
+        """The ratios G/I and H/I, which in the canonical field depend on k alone."""
         return factored(self.G / self.I), factored(self.H / self.I)
 
     @cached_property

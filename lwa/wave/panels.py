@@ -66,7 +66,7 @@ class Grid(NamedTuple):
 
 @cache
 def gauss(kind: type[np.floating[Any]] = np.float64) -> tuple[Any, Any]:
-    """Nodes and weights on [0, 1], computed in extended precision."""
+    """Gauss–Legendre nodes and weights on [0, 1], computed in extended precision."""
     basis = np.eye(POINTS + 1, dtype=np.longdouble)[-1]
     slope = legendre.legder(basis)
     x = legendre.leggauss(POINTS)[0].astype(np.longdouble)
@@ -127,12 +127,12 @@ def grid(parts: int, halvings: int, further: tuple[float, ...] = ()) -> Grid:
 
 
 def _measure(theta: Any) -> Any:
-    """The weight |ds/dθ|."""
+    """The weight |ds/dθ| of integrals over θ in place of s = 1/cosh²θ."""
     return 2 * np.tanh(theta) / np.cosh(theta) ** 2
 
 
 def _above(theta: Array, at: float) -> Any:
-    """The kernel K/y² = (1-s)²/y² at s > u = v/B, with y and u at θ = ``at``."""
+    """The integral equation's kernel, K/y² = (1-s)²/y² at s > u = v/B; y and u at θ = ``at``."""
     return np.tanh(theta) ** 4 / np.tanh(at) ** 2
 
 

@@ -40,7 +40,7 @@ BEARERS = ("contact", "bead")
 
 @dataclass(frozen=True)
 class PhysicalWave(Value):
-    """The compact wave of a given peak force in a chain without load.
+    """The compact wave of a given peak force in a chain without load, in the units of the cell.
 
     wave : closed forms of the wave.
     force : peak force, a number or a symbol.
@@ -193,7 +193,7 @@ class PhysicalWave(Value):
 
 @dataclass(frozen=True)
 class PrecompressedWave(Value):
-    """The wave of a given peak contact force in a chain under load.
+    """The wave of a given peak contact force in a chain under load, in the units of the cell.
 
     force, precompression : the total force at the peak and the static force, numbers or symbols,
         under a law that is no power numbers. A ``force`` below the load is a rarefaction wave's.
@@ -245,7 +245,7 @@ class PrecompressedWave(Value):
 
     @cached_property
     def background(self) -> BackgroundWave:
-        """The waves on the strain of this load."""
+        """All waves on the static strain of this load (`BackgroundWave`)."""
         return BackgroundWave(self.cell, self.law, self.static_compression / self.cell.spacing)
 
     @cached_property

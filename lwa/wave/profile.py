@@ -78,7 +78,7 @@ class Flank:
 
     @cached_property
     def _numbers(self) -> tuple[Any, Any, Any]:
-        """B, I and Q(B) in the working digits."""
+        """The numbers B, I and Q(B), evaluated to the working digits."""
         with mpmath.workdps(self.working_digits):
             B = mpmath_number(self.B)
             return B, mpmath_number(self.I), self.Q(B)

@@ -119,7 +119,7 @@ class NumericBackground(Value):
         return np.where(places < ends[-1], unit * rise / np.cosh(theta) ** 2, 0.0)
 
     def _squares(self, p0: Array, B: Array) -> Array:
-        """V² = F′(p0) + B ∫(1-s)² F″ ds for small waves, 2 ∫(1-s) F′ ds for others."""
+        """The square V² = F′(p0) + B ∫(1-s)² F″ ds for small waves, 2 ∫(1-s) F′ ds for others."""
         square, slope = np.empty_like(p0), self._functions[1]
         for rows, g, p, bend, _ in self._resolved(p0, B, rough=True):
             first, second = g.ds * g.y2, g.ds * g.y2**2  # weights of 1/2 and 1/3, but for rounding
@@ -229,7 +229,7 @@ class NumericBackground(Value):
         return base / unit, rise / unit, unit
 
     def _checks(self, p0: Array, B: Array) -> Array:
-        """Two rows: 0 < F′ < ∞ over the wave; B Q′(B) > 0 and Q(v) < Q(B) below B."""
+        """Test two conditions, a row each: 0 < F′ < ∞; B Q′(B) > 0 and Q(v) < Q(B) below B."""
         g, slope = grid(*LEVELS[1], FAR), self._functions[1]
         p, bend, gap = self._sampled(g, p0, B)
         with np.errstate(all="ignore"):

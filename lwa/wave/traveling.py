@@ -25,7 +25,7 @@ class TravelingWave(CompactWave):
     def at_force(
         self, F: Any = "F", of: str = "contact", *, precompression: Any = 0
     ) -> PhysicalWave | PrecompressedWave:
-        """The wave of a given peak force, in space and time.
+        """The `lwa.PhysicalWave`, or under load `lwa.PrecompressedWave`, of a given peak force.
 
         F : the peak force, a number or a name.
         of : "contact" or "bead", whose force peaks at F.

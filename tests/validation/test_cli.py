@@ -41,7 +41,7 @@ def test_paper_text(capsys):
     status, out, err = run(capsys, "paper")
     assert (status, err) == (0, "")
     assert out.startswith("38 beads, steel (the striker, 1.37 m/s)")
-    assert "steel wall; sensors in beads 15 and 34" in " ".join(out.split())
+    assert "steel wall, no gravity; sensors in beads 15 and 34" in " ".join(out.split())
 
 
 def test_paper_options(capsys, tmp_path):

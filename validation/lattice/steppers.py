@@ -50,6 +50,7 @@ class NodePath:
         # Interpolation by way of the Chebyshev coefficients, whose matrix is well conditioned.
         at_points = chebyshev.chebvander(chebyshev.chebpts2(degree + 1), degree)
         weights = chebyshev.chebvander(x, degree) @ np.linalg.inv(at_points)
+        weights[x == -1] = np.eye(degree + 1)[0]  # free of rounding: touching beads press nothing
         state = self.state[..., np.searchsorted(self.beads, beads)]
         y, v = sum(
             (weights[:, p] * state[step, p].T.swapaxes(0, 1) for p in range(degree + 1)),

@@ -101,7 +101,7 @@ def _signal(time: ArrayLike | Signal, values: ArrayLike | None) -> Signal:
 
 
 def dense(signal: Signal, pulse: Pulse) -> Pulse:
-    """Return a pulse; `MeasureError` if fewer than `FEWEST` samples exceed half of its peak."""
+    """Return a pulse; raise `MeasureError` if fewer than `FEWEST` samples exceed half its peak."""
     inside = np.count_nonzero((signal.times > pulse.rise) & (signal.times < pulse.fall))
     if isinstance(signal, Sampled) and inside < FEWEST:
         few = f"{inside} samples lie above half the pulse's peak"

@@ -67,7 +67,7 @@ class Column:
 
 @dataclass(frozen=True, eq=False)
 class Table:
-    """Rows of cells, one cell for each column.
+    """Table of a report: rows of cells, one cell for each column.
 
     key : JSON name of the table; the first table with keys is the CSV of a report.
     title, note : printed above and below the table.

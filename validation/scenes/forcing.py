@@ -76,7 +76,7 @@ def damping_ratio(share: float) -> float:
 
 @dataclass(frozen=True, kw_only=True)
 class Drive:
-    """The given motion of the first bead; exactly one of three kinds.
+    """Prescribed motion of the first bead, of exactly one of three kinds.
 
     velocity : constant velocity of a piston. amplitude, frequency : y = amplitude sin(2π frequency
     t), growing smoothly to its full size within the time ``ramp``. time, displacement : rows of
@@ -132,7 +132,7 @@ class Drive:
 
     @property
     def _harmonic(self) -> tuple[float, float]:
-        """Amplitude and angular frequency."""
+        """Amplitude and angular frequency 2π · frequency of a harmonic drive."""
         return self.amplitude or 0.0, 2 * math.pi * (self.frequency or 0.0)
 
     def at(self, t: float) -> tuple[float, float, float]:

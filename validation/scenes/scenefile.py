@@ -22,7 +22,7 @@ All keys but ``duration`` and ``chain.cell`` are optional::
     stiffnesses = [1.0, 2.0]      #   A of each contact or one for all (1 if not given),
     spacings = 1.0                #   likewise the neighbours' distance (speeds are in sites if not)
     repeat = 19                   # of the cell, 1 if not given
-    [[defects]]                   # one table for each; the later one counts at the same place
+    [[defects]]                   # one table for each, at most one at a place
     bead = 10
     like = "ball"                 # another bead in its place; or mass = 2.0
     [[defects]]
@@ -65,6 +65,7 @@ masses and stiffnesses, not the materials that they came from; the scene read fr
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import asdict
@@ -119,7 +120,7 @@ def scene(content: Any) -> Scene:
     }
     materials = read_materials(file)
     beads = read_beads(file, materials)
-    defects = file.read("defects", each(_defect), ())
+    defects = file.read("defects", _defects, ())
     row, chain = _chain(file.read("chain", table(KEYS["chain"])), beads, defects)
     n, start, sensors = len(chain["masses"]), tables["start"], tables["sensors"]
     wall = _wall(tables["wall"], row, materials) if "wall" in file else None
@@ -159,6 +160,17 @@ def _overlap(source: Scene) -> int:
 def _sensors(count: int) -> Reader:
     """Return a reader of sensors: a list of numbers from 1 to ``count``, or "all"."""
     return lambda value, name: range(count) if value == "all" else places(count)(value, name)
+
+
+def _defects(value: Any, name: str) -> list[Table]:
+    """Read the tables of ``defects``, at most one of each bead and contact."""
+    defects: list[Table] = each(_defect)(value, name)
+    kinds = [defect.one("contact", "bead") for defect in defects]
+    rows = zip(kinds, defects, strict=True)
+    for at, tables in Counter(f"{kind} {shorten(row.entries[kind])}" for kind, row in rows).items():
+        if tables > 1:
+            raise SceneError(f"{name} has {tables} tables of {at}: one is wanted")
+    return defects
 
 
 def _defect(value: Any, name: str) -> Table:

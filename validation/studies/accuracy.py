@@ -29,7 +29,7 @@ from validation.lattice.run import IntegrationError, Run
 from validation.lattice.simulate import COMPILED, simulate
 from validation.pictures import Curve, Panel
 from validation.pulses.pulse import MeasureError, Pulse, highest_pulse
-from validation.pulses.sensors import READINGS, tracks
+from validation.pulses.sensors import READINGS, readings, tracks
 from validation.report.command import option, study
 from validation.report.result import Report
 from validation.report.table import Column, Table
@@ -85,7 +85,7 @@ class Task:
 
 
 def relative_errors(pulse: Pulse, truth: Pulse) -> dict[str, float]:
-    """Return |pulse/truth - 1| for each of `READINGS`."""
+    """Return relative errors |pulse/truth - 1| of arrival, peak force and FWHM (`READINGS`)."""
     return {name: abs(getattr(pulse, name) / getattr(truth, name) - 1) for name in READINGS}
 
 
@@ -209,9 +209,10 @@ def cost(rows: Iterable[Timing], wanted: float) -> float:
     return min((row.seconds for row in good), default=math.inf)
 
 
-def runs(name: str, task: Task, methods: Mapping[str, Sequence[float]]) -> Iterator[Timing]:
+def runs(
+    name: str, task: Task, truth: Pulse, methods: Mapping[str, Sequence[float]]
+) -> Iterator[Timing]:
     """Run a task by each method at each tolerance; yield the `Timing` of each run."""
-    truth = task.truth or task.read(simulate(task.scene, rtol=FINEST))
     for method, tolerances in methods.items():
         windowed = method in COMPILED and task.scene.wall is None
         for window in (False, True) if windowed else (False,):
@@ -251,20 +252,24 @@ def accuracy(
     """Speed against error: integrators on fixed tasks, theories against true waves (three minutes).
 
     names: tasks to run, by default all; raises `lwa.InputError` for a name beside `NAMES`.
-    methods: tolerances of each integrator. JSON: ``rows``, a run each, ``costs`` by method, and
-    ``theories``.
+    methods: tolerances of each integrator. JSON: ``rows``, a run each, ``costs`` by method,
+    ``references``, the true arrival, peak and fwhm, and ``theories``.
     """
     wanted = {one_of(name, NAMES, "task") for name in names} or set(NAMES)
     theories = Report("")
     rows: list[tuple[Any, ...]] = []
     costs: list[tuple[Any, ...]] = []
+    references: list[tuple[Any, ...]] = []
     panels: list[Panel] = []
     for name in progress([name for name in NAMES if name in wanted]):
         if name == THEORY:
             theories = ladder([place(*case) for case in CASES])
             continue
         curves, spent = [], []
-        timings = runs(name, TASKS[name](), methods)
+        task = TASKS[name]()
+        truth = task.truth or task.read(simulate(task.scene, rtol=FINEST))
+        references.append((name, *readings(truth).values()))
+        timings = runs(name, task, truth, methods)
         for method, group in groupby(timings, lambda timing: timing.method):
             ts = list(group)
             rows += [(name, method, t.setting, t.error, *t.errors.values(), t.seconds) for t in ts]
@@ -280,6 +285,8 @@ def accuracy(
             Table(tuple(map(Column, _RUNS)), tuple(rows), "rows"),
             Table(_COSTS, tuple(costs), "costs", note=_NOTE, by="task"),
             *theories.tables,
+            Table(tuple(map(Column, ("task", *READINGS))), tuple(references), "references"),
         ),
         panels=(*panels, *theories.panels),
+        data=theories.data,
     )

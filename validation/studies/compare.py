@@ -36,7 +36,8 @@ _NOTE = (
 def compare(scene: str, measured: str, run_progress: RunProgress = silent) -> Report:
     """Measured forces at the sensors of a scene beside the simulated ones: arrival, peak, FWHM.
     SCENE is a scene file, as of `lwa-validate run`. MEASURED, a CSV file, has the columns time and,
-    for each sensor, such as "bead 15 force" (static force included) or "bead 15 dynamic force".
+    for each sensor, such as "bead 15 force" (static force included) or "bead 15 dynamic force"; for
+    a single sensor also "force" or "dynamic force".
 
     ``rows``: ``kind``, ``number``, ``quantity`` ("arrival", "peak" or "fwhm"), ``simulated_value``,
     ``measured_value`` and ``difference_value``, measured less simulated, with errors;
@@ -47,8 +48,9 @@ def compare(scene: str, measured: str, run_progress: RunProgress = silent) -> Re
         raise SceneError(f"{scene}: the scene names no sensors")
     simulation = record(chain, progress=run_progress)
     run, label, t = simulation.run, simulation.run.label, simulation.run.time
-    names = [f"{reading.name} force" for reading in simulation.sensors]
-    optional = [*names, *(f"{reading.name} dynamic force" for reading in simulation.sensors)]
+    names = [f"{reading.name} " for reading in simulation.sensors]
+    names += [""] * (len(names) == 1)
+    optional = [name + force for name in names for force in ("force", "dynamic force")]
     samples = columns(measured, "time", optional=optional)
     time, shift, first = samples["time"], 0.0, ""
     rows: list[tuple[Any, ...]] = []
@@ -74,7 +76,9 @@ def compare(scene: str, measured: str, run_progress: RunProgress = silent) -> Re
             Curve("measured", time + shift, force, f"C{i}."),
         ]
     if not first:
-        raise SceneError(f"{measured}: no column is {' or '.join(names)}")
+        raise SceneError(
+            f"{measured}: no column is {' or '.join(f'{name}force' for name in names)}"
+        )
     unit = f"{shift:.6g} s" if chain.units else f"{shift:.6g}"
     return Report(
         str(chain),
@@ -87,9 +91,12 @@ def compare(scene: str, measured: str, run_progress: RunProgress = silent) -> Re
 
 def _dynamic_force(samples: Mapping[str, Array], name: str, track: Track) -> Array | None:
     """Return the measured dynamic force at a sensor; None without a column of it."""
-    if (total := samples.get(f"{name} force")) is not None:
-        return total - track.static
-    return samples.get(f"{name} dynamic force")
+    for prefix in (f"{name} ", ""):
+        if (total := samples.get(f"{prefix}force")) is not None:
+            return total - track.static
+        if (dynamic := samples.get(f"{prefix}dynamic force")) is not None:
+            return dynamic
+    return None
 
 
 def _numbers(samples: tuple[Array, Array]) -> dict[str, float]:

@@ -23,14 +23,13 @@ from validation.pulses.sensors import Train
 from validation.report.command import study
 from validation.report.result import Report
 from validation.report.table import Column, Table, percent
-from validation.scenes.chains import DIAMETER, PTFE, PTFE_BEAD
+from validation.scenes.chains import DIAMETER, GRAVITY, PTFE, PTFE_BEAD
 from validation.studies.paper import BEADS, HERTZ, SENSORS, TOLERANCES, chain_cell, recorded_chain
 
 RECORDED = {1: (15, 24, 33), 2: (16, 24, 34)}  # N → beads of figure 2; 24 is PTFE
 CHAINS = range(1, 23)  # N
 HEIGHTS = (0.1, 0.2, 0.4, 0.6, 0.8, 1.0, 1.2)  # drop heights of figure 3a, in m
 MODULI = (1.46e9, 0.6e9)  # of PTFE, in Pa: dynamic, as in the paper, and nominal static
-GRAVITY = 9.81  # m/s²
 
 
 class Speed(NamedTuple):
@@ -56,8 +55,8 @@ class Scaling(NamedTuple):
     theory: Sequence[float]
 
 
-def _values(numbers: Sequence[Measured]) -> list[float]:
-    return [number.value for number in numbers]
+def _values(numbers: Sequence[Measured], part: str = "value") -> list[float]:
+    return [getattr(number, part) for number in numbers]
 
 
 def _ends(values: Sequence[float]) -> str:
@@ -78,7 +77,9 @@ _SCALINGS = (
     Column("modulus_value", "E of PTFE", "GPa", format=lambda E: f"{E / 1e9:g}"),
     Column("exponent", "exponent of V_s in F_m", error=True),
     Column("speed_value", "V_s", "m/s", format=_ends),
+    Column("speed_error_value"),
     Column("force_value", "F_m", "N", format=_ends),
+    Column("force_error_value"),
     Column("theory_value", "V_s theory", "m/s", format=_ends),
 )
 _SCALINGS_TITLE = "V_s ~ F_m^e over drop heights {:g} … {:g} m; the paper fits e = 0.1666"
@@ -97,16 +98,19 @@ def figures(
 
     ``speeds``: ``N``, ``speed``, ``force`` and ``theory``, each ``_value``; ``scalings``:
     ``modulus_value``, ``exponent_value`` and lists over the drop heights ``speed_value``,
-    ``force_value``, ``theory_value``; ``scaling``: the first of them; ``forces``: ``N``, ``beads``,
-    ``time_value``, ``force_value``.
+    ``force_value``, each with its error, and ``theory_value``; ``scaling``: the first of them;
+    ``forces``: ``N``, ``beads``, ``time_value``, ``force_value``.
     """
     records = {N: forces(N) for N in progress([*RECORDED])}
     speeds = [chain_speed(N) for N in progress(chains)]
     scalings = [scaling(E, heights) for E in progress(moduli)]
     first = tuple((*s, s.theory / s.speed.value - 1) for s in speeds)
-    second = tuple((*s[:2], _values(s.speeds), _values(s.forces), s.theory) for s in scalings)
+    second = []
+    for s in scalings:
+        parts = [_values(row, part) for row in (s.speeds, s.forces) for part in ("value", "error")]
+        second.append((*s[:2], *parts, s.theory))
     title = _SCALINGS_TITLE.format(heights[0], heights[-1])
-    table = Table(_SCALINGS, second, "scalings", title=title)
+    table = Table(_SCALINGS, tuple(second), "scalings", title=title)
     data = [
         {"N": N, "beads": RECORDED[N], "time_value": run.time, "force_value": run.bead_force}
         for N, run in records.items()

@@ -25,7 +25,7 @@ from validation.lattice.simulate import simulate
 from validation.pictures import Curve, Panel
 from validation.report.command import option, study
 from validation.report.result import Report
-from validation.report.table import FINDING_COLUMNS, Column, Finding, Table
+from validation.report.table import FINDING_COLUMNS, Column, Finding, Table, plain
 from validation.scenes.checks import one_of
 from validation.scenes.scene import Scene
 
@@ -103,7 +103,7 @@ def in_ulps(value: Array, true: Any) -> Array:
 
 
 def printed_beta(k: Array, omega: Array) -> Array:
-    """Return |β| by the formulas of Porter et al. (2008), in float64, for m1 = D = 1.
+    """Return |β| by the printed formulas of Porter et al. (2008), in float64, for m1 = D = 1.
 
     NaN if the root p is complex or 0/0 arises.
     """
@@ -119,7 +119,7 @@ def printed_beta(k: Array, omega: Array) -> Array:
 
 
 def losses(exponents: Array = EXPONENTS, ratios: Array = RATIOS) -> dict[tuple[str, str], Array]:
-    """Return the float64 error in ulps of each formula, (exponents, ratios), by (form, closure)."""
+    """Return the float64 errors in ulps, arrays (exponents, ratios), by (formula, closure)."""
     k, omega = np.meshgrid(exponents, ratios, indexing="ij")
     result = {}
     for closure in CLOSURES:
@@ -234,7 +234,7 @@ def long_run(lasting: float = 1e6, segments: int = 200) -> Report:
     growth = np.abs(smooth[-tenth:]).max() / np.abs(smooth[:tenth]).max()
     time = lasting / segments * np.arange(segments + 1)
     trend = np.polyfit(time, smooth, 1)[0] * lasting / largest
-    drift = abs(simulate(three_beads(False, 2e2), method="DOP853").energy_drift / 2e2)
+    drift = simulate(three_beads(False, 2e2), method="DOP853").energy_drift / 2e2
     power, closed = spreading(walk), f"closed contacts, {METHOD} at step 0.5"
     # The energy error of a symplectic method swings in a band, without growth or trend. An opening
     # within a step adds an error of random sign: a walk whose spread grows as √t.
@@ -249,7 +249,7 @@ def long_run(lasting: float = 1e6, segments: int = 200) -> Report:
     curves = (
         Curve("contacts closed", time[1:], np.abs(smooth[1:])),
         Curve("contacts opening", time[1:], np.abs(walk[1:])),
-        Curve("closed, DOP853 at 1e-9, extrapolated", time[1:], drift * time[1:]),
+        Curve("closed, DOP853 at 1e-9, extrapolated", time[1:], abs(drift) * time[1:]),
     )
     panel = Panel("time", "|energy error|, relative", curves, "xy")
     return Report(long_run.__doc__ or "", (), findings, (panel,))
@@ -304,6 +304,12 @@ CASES: Mapping[str, Callable[[], Report]] = {
 """The cases by their names."""
 
 
+def _curves(panel: Panel) -> dict[str, Any]:
+    """Return the curves of a panel for JSON."""
+    curves = [{"label": c.label, "x_value": c.x, "y_value": c.y} for c in panel.curves]
+    return {"x": panel.x, "y": panel.y, "scale": panel.scale, "curves": plain(curves)}
+
+
 _NAMES = click.Choice([*CASES])
 
 
@@ -312,7 +318,7 @@ def hard(names: Collection[str] = (), progress: Progress[str] = iter) -> Report:
     """Last digits at extreme k, ω and loads, contacts that open, and long runs (half a minute).
 
     names: cases to run, by default all; raises `lwa.InputError` for a name beside `CASES`. JSON:
-    ``cases``, each with ``case``, ``question``, numbers and ``findings``.
+    ``cases``, each with ``case``, ``question``, numbers, ``findings`` and the curves of ``panel``.
     """
     wanted = {one_of(name, CASES, "case") for name in names} or set(CASES)
     cases = {name: CASES[name]() for name in progress([name for name in CASES if name in wanted])}
@@ -327,7 +333,9 @@ def hard(names: Collection[str] = (), progress: Progress[str] = iter) -> Report:
         tuple(replace(panel, title=name) for name in cases for panel in cases[name].panels),
         data={
             "cases": [
-                {"case": name, "question": report.title} | report.document()
+                {"case": name, "question": report.title}
+                | report.document()
+                | {"panel": _curves(*report.panels)}
                 for name, report in cases.items()
             ]
         },

@@ -63,8 +63,8 @@ def law(
     Peak contact forces and speeds are in the units of the masses and the spacing, by default those
     of unit mass and spacing; with spheres they are in N and m/s. ``k_value``, ``A_value`` and, of
     an unknown material, ``E_value``, with their errors; ``correlation_value`` of k and ln A;
-    ``one_power``; ``rows`` of the free law: ``compression_value``, ``force_value``,
-    ``force_error_value``.
+    ``residual_value`` of ln V; ``one_power``; ``rows`` of the free law: ``compression_value``,
+    ``force_value``, ``force_error_value``.
     """
     degree = integer(degree, "degree", 1, 6)
     force, speed, weight = _pulses(data, degree + 3)
@@ -106,7 +106,11 @@ def law(
         notes=(f"One power is {'enough' if fit.one_power else 'not enough'}: {bend}.", _NOTE),
         data={f"{name}_value": number.value for name, number in numbers.items()}
         | {f"{name}_error_value": number.error for name, number in numbers.items()}
-        | {"correlation_value": fit.correlation, "one_power": fit.one_power},
+        | {
+            "correlation_value": fit.correlation,
+            "residual_value": fit.residual,
+            "one_power": fit.one_power,
+        },
     )
 
 

@@ -3,7 +3,8 @@
 A steel bead strikes a chain in which PTFE and steel beads alternate. The chain has 38 beads,
 numbered from 1 (the striker), and ends in a steel wall. As in the paper, sensors sit in beads 15
 and 34, the peak force is F_m = (F_15 + F_34)/2, and the speed V_s is the distance of the two beads
-over the time between their peaks. The force of a bead is the mean of its two contacts' forces.
+over the time between their peaks. The force of a bead is the mean of its two contacts' forces; the
+static forces of gravity are subtracted.
 
 Bead 15 is steel and bead 34 PTFE: the shapes of their pulses differ, so that V_s is not the speed
 of the pulse. The speed between beads of one kind stands beside it.
@@ -29,7 +30,7 @@ from validation.pulses.sensors import Train
 from validation.report.command import option, study
 from validation.report.result import Report
 from validation.report.table import Column, Table, percent
-from validation.scenes.chains import DIAMETER, PTFE_BEAD, STEEL_BEAD, chain_scene
+from validation.scenes.chains import DIAMETER, GRAVITY, PTFE_BEAD, STEEL_BEAD, chain_scene
 from validation.scenes.checks import SceneError, between, integer, items
 from validation.scenes.scene import Scene
 from validation.waves.theory import bead_fwhm, of_momentum, of_speed
@@ -63,6 +64,7 @@ _NOTE = """\
 The force of a bead is the mean of its two contacts'; numbers that name no bead are means over both
 sensor beads (odd ones are steel, even ones PTFE) or over their four contacts. The theory's
 amplitude is set by F_m, by V_s, or by all of the striker's momentum; error: theory/lattice - 1.
+Between steel and PTFE, V_s compares peaks of different shape, and is not the pulse's speed.
 ±: error of the integration."""
 
 
@@ -77,37 +79,47 @@ def recorded_chain(
     N: int = 1,
     ptfe: Sphere = PTFE_BEAD,
     beads: int = BEADS,
+    gravity: float = 0.0,
 ) -> Scene:
     """Return the struck N:1 chain, until the pulse has run to the wall and back."""
     momentum = float(STEEL_BEAD.mass) * velocity
     pulse = of_momentum(canonical_wave(chain_cell(N, ptfe), HERTZ), momentum)
     # A pulse with all of the striker's momentum needs two thirds of this time to the wall.
     duration = 1.6 * beads * DIAMETER / float(pulse.speed)
-    return chain_scene(velocity, beads, sensors, 0.0, duration, N, ptfe)
+    return chain_scene(velocity, beads, sensors, gravity, duration, N, ptfe)
 
 
 @study(
     option("--velocity", default=VELOCITY, says="Velocity of the striker in m/s."),
     option("--beads", default=BEADS, says="Number of beads, the striker included."),
     option("--sensors", callback=quantities, default="15,34", says="Two beads; 1 is the striker."),
+    option(
+        "--gravity",
+        flag_value=str(GRAVITY),
+        default=0.0,
+        show_default=False,
+        says="Let the chain stand upright, under its own weight.",
+    ),
 )
 def paper(
     velocity: float = VELOCITY,
     beads: int = BEADS,
     sensors: tuple[int, int] = SENSORS,
+    gravity: float = 0.0,
     tolerances: tuple[float, float] = TOLERANCES,
     run_progress: RunProgress = silent,
 ) -> Report:
     """The experiment of Porter et al. (2008): a chain of steel and PTFE beads in turn is struck at
     one end. Speed, peak force and FWHM on the lattice, and by the theory.
 
-    tolerances: of the run and of the less accurate run that gives its errors. Raises `SceneError`
-    for values out of range, and `MeasureError` if the pulse is not whole at a sensor before the
-    wall reflects it.
+    gravity: in m/s², towards the wall. tolerances: of the run and of the less accurate run that
+    gives its errors. Raises `SceneError` for values out of range, and `MeasureError` if the pulse
+    is not whole at a sensor before the wall reflects it.
 
-    ``velocity_value``, ``beads``, ``sensors``, ``rows``: ``quantity``, ``unit``, ``lattice_value``,
-    ``lattice_error_value``, and by the quantity that sets the theory's amplitude (``F_m``,
-    ``speed``, ``striker``) ``theory_value`` {…} and ``error_value`` {…}, theory over lattice - 1.
+    ``velocity_value``, ``beads``, ``sensors``, ``gravity_value``, ``rows``: ``quantity``, ``unit``,
+    ``lattice_value``, ``lattice_error_value``, and by the quantity that sets the theory's amplitude
+    (``F_m``, ``speed``, ``striker``) ``theory_value`` {…} and ``error_value`` {…}, theory over
+    lattice - 1.
     """
     velocity = between(velocity, "velocity", 1e-6, 1000)
     beads = integer(beads, "beads", 8, 2000)
@@ -116,7 +128,7 @@ def paper(
         wanted = "two beads are wanted, the one nearer to the striker first"
         raise SceneError(f"sensors are {', '.join(map(str, pair))}: {wanted}")
     recorded = sorted({*pair, *chain.from_iterable(like_pairs(pair))})
-    scene = recorded_chain(recorded, velocity, beads=beads)
+    scene = recorded_chain(recorded, velocity, beads=beads, gravity=gravity)
     run, check = twice(scene, *tolerances, progress=run_progress)
 
     def measured(run: Run) -> dict[str, float]:
@@ -136,11 +148,17 @@ def paper(
         pairs = [(theory[name], theory[name] / value.value - 1) for theory in theories]
         rows.append((name, unit, value, *chain.from_iterable(pairs)))
     return Report(
-        f"{beads} beads, steel (the striker, {velocity:g} m/s) and PTFE in turn, steel wall; "
+        f"{beads} beads, steel (the striker, {velocity:g} m/s) and PTFE in turn, steel wall, "
+        f"{f'gravity {gravity:g} m/s²' if gravity else 'no gravity'}; "
         f"sensors in beads {pair[0]} and {pair[1]}",
         (Table(_COLUMNS, tuple(rows), "rows", note=_NOTE),),
         panels=(_panel(run, pair, waves[0]),),
-        data={"velocity_value": velocity, "beads": beads, "sensors": pair},
+        data={
+            "velocity_value": velocity,
+            "beads": beads,
+            "sensors": pair,
+            "gravity_value": gravity,
+        },
     )
 
 
@@ -182,7 +200,7 @@ def numbers(beads: Train, contacts: Train, pair: tuple[int, ...]) -> dict[str, f
 
 
 def like_pairs(pair: tuple[int, ...]) -> list[tuple[int, int]]:
-    """Return pairs of beads of one kind next to two sensor beads of different kinds.
+    """Return pairs of like beads (both steel, both PTFE), each next to one of two sensor beads.
 
     >>> like_pairs((15, 34)), like_pairs((15, 33))
     ([(15, 33), (16, 34)], [])
@@ -193,11 +211,11 @@ def like_pairs(pair: tuple[int, ...]) -> list[tuple[int, int]]:
 
 
 def _panel(run: Run, pair: tuple[int, ...], theory: PhysicalWave) -> Panel:
-    """Return a panel of the lattice's forces at two beads, and the theory's wave with each peak."""
+    """Return a panel of dynamic forces at two beads, and the theory's wave with each peak."""
     curves = []
     for i, (bead, pulse) in enumerate(Train.of(run).only(pair).pulses.items()):
         (force,) = run.bead_force[[j == bead - 1 for j in run.scene.bead_sensors]]
         wave = theory.curve(run.time - pulse.arrival)
-        curves.append(Curve(f"bead {bead}, lattice", 1e6 * run.time, force, f"C{i}-"))
+        curves.append(Curve(f"bead {bead}, lattice", 1e6 * run.time, force - force[0], f"C{i}-"))
         curves.append(Curve(f"bead {bead}, theory by F_m", 1e6 * run.time, wave, f"C{i}--"))
-    return Panel("time (µs)", "force, mean of the bead's contacts (N)", tuple(curves))
+    return Panel("time (µs)", "dynamic force, mean of the bead's contacts (N)", tuple(curves))

@@ -10,10 +10,10 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
 from statistics import median
+from typing import Any
 
 import sympy as sp
 
@@ -34,11 +34,14 @@ _HEADS = {
 }
 QUANTITIES = tuple(_HEADS)
 
+Prediction = tuple[Sequence[float], Sequence[float] | None]
+"""Values of `QUANTITIES`, and the theory's own estimates of their relative errors."""
 
-def _closed(closure: str, k: sp.Rational, omega: sp.Rational) -> Sequence[float]:
+
+def _closed(closure: str, k: sp.Rational, omega: sp.Rational) -> Prediction:
     """Return `QUANTITIES` by the closed form of a closure."""
     wave = theory_at(k, omega, closure).at_force(1)
-    return [float(x) for x in (wave.fwhm("force"), wave.fwhm("strain"), wave.speed)]
+    return [float(x) for x in (wave.fwhm("force"), wave.fwhm("strain"), wave.speed)], None
 
 
 def _series(order: int, omega: sp.Rational, **k: sp.Rational) -> list[EpsilonSeries]:
@@ -47,20 +50,21 @@ def _series(order: int, omega: sp.Rational, **k: sp.Rational) -> list[EpsilonSer
     return [expansion.fwhm("force"), expansion.fwhm("strain"), expansion.c]
 
 
-def _approximant(n: int, k: sp.Rational, omega: sp.Rational) -> Sequence[float]:
+def _approximant(n: int, k: sp.Rational, omega: sp.Rational) -> Prediction:
     """Return the Padé approximants [n/n] of the series for equal beads, closed formulas in k."""
     if omega != 1:
         raise NoSolitaryWave("a formula for equal beads")
     # [n/n] has 2n + 1 coefficients, as many as a series to order 2n
-    return [float(row.pade(k, n, n)) for row in _series(2 * n, omega)]
+    return [float(row.pade(k, n, n)) for row in _series(2 * n, omega)], None
 
 
-def _summed(n: int, k: sp.Rational, omega: sp.Rational) -> Sequence[float]:
-    """Return the sums of the series in ε to order n."""
-    return [row.at().value for row in _series(n, omega, k=k)]
+def _summed(n: int, k: sp.Rational, omega: sp.Rational) -> Prediction:
+    """Return the sums of the series in ε to order n, and their estimated errors."""
+    sums = [row.at() for row in _series(n, omega, k=k)]
+    return [x.value for x in sums], [abs(x.error / x.value) for x in sums]
 
 
-THEORIES: Mapping[str, Callable[[sp.Rational, sp.Rational], Sequence[float]]] = {
+THEORIES: Mapping[str, Callable[[sp.Rational, sp.Rational], Prediction]] = {
     **{f"{closure} closure": partial(_closed, closure) for closure in ("linear", "full")},
     "canonical field": partial(_closed, "canonical"),
     **{f"[{n}/{n}]": partial(_approximant, n) for n in (1, 2)},
@@ -78,7 +82,8 @@ class Place:
 
     kind : `SOLITARY` or `STRUCK_CHAIN`, the origin of ``truth``, the lattice's `QUANTITIES`.
     errors : theory/truth - 1 by theory and by `QUANTITIES`; no entry for a theory without a wave.
-    seconds : CPU time of deriving and evaluating these theories.
+    estimates : of |error| by the theory itself, where it has them. missing : reasons, in place of
+    errors. seconds : CPU time of derivation and evaluation, by theory.
     """
 
     k: sp.Rational
@@ -86,12 +91,35 @@ class Place:
     kind: str
     truth: Mapping[str, Measured]
     errors: Mapping[str, Mapping[str, float]]
+    estimates: Mapping[str, Mapping[str, float]]
+    missing: Mapping[str, str]
     seconds: Mapping[str, float]
 
     def row(self, name: str) -> tuple[object, ...]:
         """Return the table row of one of `QUANTITIES`; None for a theory without a wave."""
         errors = (self.errors.get(theory, {}).get(name) for theory in THEORIES)
         return name, self.k, self.omega, self.truth[name], self.kind, *errors
+
+    def document(self) -> dict[str, Any]:
+        """Return the values of the lattice and a row for each theory, for JSON."""
+        rows = [
+            {
+                "theory": theory,
+                "error_value": self.errors.get(theory),
+                "estimate_value": self.estimates.get(theory),
+                "seconds": seconds,
+                "missing": self.missing.get(theory),
+            }
+            for theory, seconds in self.seconds.items()
+        ]
+        return {
+            "k": self.k,
+            "omega": self.omega,
+            "truth": self.kind,
+            "truth_value": {name: number.value for name, number in self.truth.items()},
+            "truth_error_value": {name: number.error for name, number in self.truth.items()},
+            "rows": rows,
+        }
 
 
 _COLUMNS = (
@@ -108,8 +136,11 @@ Truth: the solitary wave or, where there is none, the pulse of a struck chain.""
 
 
 def ladder(places: Sequence[Place]) -> Report:
-    """Return the table of the theories' errors, and a picture of |error| of the force's width."""
-    seconds = {name: [p.seconds[name] for p in places if name in p.seconds] for name in THEORIES}
+    """Return the table of the theories' errors, and a picture of |error| of the force's width.
+
+    JSON: ``theories``, each with ``k``, ``omega``, ``truth``, and ``rows`` of the theories.
+    """
+    seconds = {name: [p.seconds[name] for p in places if name in p.errors] for name in THEORIES}
     costs = ", ".join(f"{name} {1e3 * median(s):.3g}" for name, s in seconds.items() if s)
     rows = tuple(place.row(name) for name in QUANTITIES for place in places)
     note = f"{_NOTE}\nMedian cost of derivation and evaluation (ms of CPU): {costs}."
@@ -118,11 +149,12 @@ def ladder(places: Sequence[Place]) -> Report:
     dimers = [(p.omega, p) for p in places if p.omega != 1 and p.k == HERTZ]
     return Report(
         "",
-        (Table(_COLUMNS, rows, "theories", title, note, by="quantity", heads=_HEADS),),
+        (Table(_COLUMNS, rows, "", title, note, by="quantity", heads=_HEADS),),
         panels=(
             _panel("k - 1", "theories, equal beads", equal),
             _panel("m2/m1", "theories, dimers, k = 3/2", dimers),
         ),
+        data={"theories": [p.document() for p in places]},
     )
 
 
@@ -151,11 +183,16 @@ def place(k: sp.Rational, omega: sp.Rational, kind: str = SOLITARY) -> Place:
             raise MeasureError(pulse.missing)
         values = [pulse.numbers[name] for name in ("width", "strain_width", "speed")]
     truth = dict(zip(QUANTITIES, values, strict=True))
-    errors, seconds = {}, {}
+    errors, estimates, missing, seconds = {}, {}, {}, {}
     for theory, predict in THEORIES.items():
         start = time.process_time()
-        with suppress(InputError, NoSolitaryWave):
-            off = (x / true.value - 1 for x, true in zip(predict(k, omega), values, strict=True))
+        try:
+            numbers, shares = predict(k, omega)
+            off = (x / true.value - 1 for x, true in zip(numbers, values, strict=True))
             errors[theory] = dict(zip(QUANTITIES, off, strict=True))
-            seconds[theory] = time.process_time() - start
-    return Place(k, omega, kind, truth, errors, seconds)
+            if shares:
+                estimates[theory] = dict(zip(QUANTITIES, shares, strict=True))
+        except (InputError, NoSolitaryWave) as reason:
+            missing[theory] = str(reason)
+        seconds[theory] = time.process_time() - start
+    return Place(k, omega, kind, truth, errors, estimates, missing, seconds)

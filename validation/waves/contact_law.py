@@ -54,7 +54,7 @@ class Medium:
 
     @classmethod
     def of(cls, cell: Cell) -> Medium:
-        """Make the medium of a cell of one or two masses, in numbers."""
+        """Make the medium of a chain whose cell has one or two beads, all numbers."""
         if cell.size > 2:
             raise SceneError(f"the cell has {cell.size} beads: one or two are wanted")
         ratio = speed_ratio(sp.Rational(cell.masses[-1] / cell.masses[0]))
@@ -101,17 +101,18 @@ def speed_ratio(omega: sp.Rational) -> tuple[Callable[[Any], Array], float]:
 
 @dataclass(frozen=True, eq=False)
 class PowerFit:
-    """Fit of F = A δ^k."""
+    """Fit of F = A δ^k, with 95 % errors."""
 
     k: Measured
     A: Measured
     correlation: float  # of k and ln A
     hertz: Measured  # A at k = 3/2
     curvature: Measured  # coefficient of (ln F)² in a parabola for ln V; 0 for one power
+    residual: float  # standard deviation of ln V from the fit
 
     @property
     def one_power(self) -> bool:
-        """True if the curvature is 0 within its error."""
+        """True if one power fits: the curvature of ln V(ln F) is 0 within its error."""
         return abs(self.curvature.value) <= self.curvature.error
 
 
@@ -148,6 +149,7 @@ def fit_power(medium: Medium, force: Array, speed: Array, weight: Array | None =
         float(np.corrcoef(k, log_A)[0, 1]),
         stiffness(medium.log_stiffness(sixth, hertz), _HERTZ),
         _interval(curvature),
+        float(np.std(y - np.polyval((slope[0], constant[0]), x - middle))),
     )
 
 

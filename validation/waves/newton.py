@@ -101,7 +101,7 @@ def circle(half_period: float, n: int) -> Array:
 
 
 class Problem:
-    """The equations F_a = rise(a), with a from F_a by (*), on the grid points of a `circle`.
+    """Discrete wave equations: F_a = rise(a), with a from F_a by (*), on the points of a `circle`.
 
     masses, k : (m1, m2) and the exponent. half_period, points : L, by default `ample_half_period`,
     and the number of points on 0 … L, by default `enough`. p0 : background strain.

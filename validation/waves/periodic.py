@@ -211,7 +211,7 @@ def _cosines(a: Array, phase: Array) -> Array:
 
 
 def _fault(chain: PressedChain, omega: float, a: Array, phase: Array) -> Array:
-    """Return M ü + Bᵀ [F - F0] at phases φ = ωt, (N, phases)."""
+    """Return the force M ü + Bᵀ [F - F0] by which the equations of motion fail, (N, phases)."""
     cosines = _cosines(a, phase)
     acceleration = -(a * (omega * np.arange(a.shape[1])) ** 2) @ cosines
     forces = chain.strains.T @ chain.forces(a @ cosines)

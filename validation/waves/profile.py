@@ -243,7 +243,7 @@ class ExactWave(LatticeWave):
         return self._sum(xi, row, 0 * row)
 
     def _sum(self, xi: ArrayLike, even: Array, odd: Array) -> Array:
-        """Fourier sum Σ even_j cos(q_j ξ) + odd_j sin(q_j ξ)."""
+        """Evaluate the Fourier sum Σ even_j cos(q_j ξ) + odd_j sin(q_j ξ) at any ξ."""
         rows = np.append(even - 1j * odd, np.zeros(-self.samples % _ROW)).reshape(-1, _ROW)
         q = np.pi / self.half_period * np.arange(rows.size)
         # e^{iqξ} of every q as a product of two, of the first 16 q and of every 16th q: special
@@ -252,7 +252,7 @@ class ExactWave(LatticeWave):
         return np.asarray(((first @ rows.T) * every).real.sum(axis=-1))
 
     def _ended(self, xi: ArrayLike) -> NDArray[np.bool_]:
-        """True where |ξ| > L for a solitary wave, which is 0 there instead of periodic."""
+        """True where |ξ| > L for a solitary wave: there the wave is 0, the Fourier sum periodic."""
         return np.asarray((np.abs(xi) >= self.half_period) & self.solitary)
 
 

@@ -122,7 +122,7 @@ def solve(
 
 
 def converged(problem: newton.Problem, start: Start, unknown: str = "") -> tuple[ExactWave, float]:
-    """Return the wave that a start converges to, and the last number of `Problem.wave`."""
+    """Return the wave that a start converges to, and the last unknown of `Problem.wave`."""
     masses = problem.masses
     try:
         forces, c2, last = problem.wave(*start, unknown)
@@ -207,7 +207,7 @@ def _pressed(k: float, half_period: float | None, p0: float) -> tuple[ExactWave,
 
 
 def _dimer(pair: Pair, k: float, half_period: float | None, progress: Progress[Any]) -> ExactWave:
-    """Return the solitary wave near the theory's, or else the wave nearest to the struck pulse."""
+    """Return a dimer's solitary wave near the theory's, else the wave nearest a struck pulse."""
     periods = [half_period] if half_period else list(newton.ample_half_period(pair, k) * PERIODS)
     waves: list[ExactWave] = []
     with suppress(NoWave):

@@ -98,7 +98,7 @@ def bead_fwhm(wave: CompactWave) -> float:
     beta = (k - 1) / (2 * D * math.sqrt(number(wave.coefficient_sum)))
 
     def force(x: float) -> float:
-        """Return cos^p(β(x - D/2)) + cos^p(β(x + D/2)), p = 2k/(k-1), each on its own arch."""
+        """Return a bead's force: cos^p(β(x ± D/2)) summed, p = 2k/(k-1), each 0 off its arch."""
         sides = (beta * (x + side) for side in (-D / 2, D / 2))
         return math.fsum(math.cos(y) ** (2 * k / (k - 1)) for y in sides if abs(y) < math.pi / 2)
 

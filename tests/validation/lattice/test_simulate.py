@@ -16,6 +16,7 @@ from lwa import InputError
 from validation.lattice.run import IntegrationError
 from validation.lattice.simulate import METHODS, simulate
 from validation.pulses.pulse import measure, speed
+from validation.scenes.forcing import Damping
 from validation.scenes.scene import Scene, SceneError
 
 TIGHT = dict(rtol=1e-11, atol=1e-11)
@@ -428,3 +429,14 @@ def test_energy_over_time_is_a_record_with_sensors_at_all_beads():
 def test_only_a_scene_is_simulated():
     with pytest.raises(SceneError, match=r"^scene is 'x': a Scene is wanted$"):
         simulate("x")
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_the_first_sample_is_the_initial_state(method):
+    """Beads that touch at the start press nothing: rounding would turn on a contact's damping."""
+    scene = Scene(
+        masses=(1, 1), stiffnesses=(1,), k=1.5, duration=3, velocities=(1,), samples=2,
+        contact_sensors=(0,), damping=Damping("contact", 1.0),
+    )  # fmt: skip
+    run = simulate(scene, method=method)
+    assert run.contact_force[0, 0] == run.compression[0, 0] == 0.0

@@ -265,6 +265,8 @@ BAD = [
     ({"defects": [{"bead": 4, "mass": 1}]}, "defects number 1.bead is 4: an integer from 1"),
     ({"defects": [{"bead": 1, "like": "ball"}]}, "defects number 1.like names a bead in"),
     ({"defects": [{"contact": 3, "stiffness": 1}]}, "defects number 1.contact is 3: an integer"),
+    ({"defects": [{"bead": 3, "mass": 1}, {"contact": 1, "stiffness": 2}, {"bead": 3, "mass": 2}]},
+     "defects has 2 tables of bead 3: one is wanted"),
     ({"wall": {}}, "wall has neither material nor stiffness: one is wanted"),
     ({"wall": {"material": "steel"}}, "wall.material is given, but a chain of masses needs"),
     ({"wall": {"material": "wood"}} | BALLS, "wall.material is 'wood': one of steel, steel 316, "),

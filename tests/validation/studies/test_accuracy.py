@@ -115,6 +115,8 @@ def test_the_document_holds_the_contract(report):
         ("experiment", OURS), ("experiment", THEIRS),
     }  # fmt: skip
     assert {cost["task"] for cost in result["costs"]} == {"exact", "experiment"}
+    exact, experiment = result["references"]
+    assert (exact["task"], exact["peak"], experiment["task"]) == ("exact", 1.0, "experiment")
 
 
 def test_text_csv_and_notebook_agree_with_the_json(report):

@@ -1,6 +1,7 @@
 """Measured records against their scene: shifts, scales and pulses that are known."""
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -52,6 +53,18 @@ def test_a_shift_and_a_scale_come_back(capsys, files, tmp_path):
         bound = row["difference_error_value"] + 1e-12
         assert abs(row["measured_value"] - scale * row["simulated_value"]) <= bound < 1e-3
     assert "contact 4, simulated" in picture.read_text()
+
+
+def test_a_single_sensor_needs_no_name(files, tmp_path):
+    scene, measured = tmp_path / "one.toml", tmp_path / "plain.csv"
+    scene.write_text(SCENE.replace("[4, 8]", "[4]"))
+    lines = [line.split(",")[:2] for line in Path(files[1]).read_text().splitlines()[1:]]
+    measured.write_text("\n".join(map(",".join, [["time", "force (N)"], *lines])))
+    named = compare(str(scene), files[1]).document()
+    assert compare(str(scene), str(measured)).document() == named
+    assert named["shift_value"] == pytest.approx(LATE, abs=1e-6)
+    with pytest.raises(SceneError, match=r"no column is contact 4 force or contact 8 force$"):
+        compare(files[0], str(measured))
 
 
 def test_a_missing_measurement_is_named(files, tmp_path):

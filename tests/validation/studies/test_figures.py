@@ -31,6 +31,17 @@ def test_the_fitted_exponent_is_the_published_one(scalings, i):
     assert f"{exponent.value:.5f}"[:6] == "0.1666"
 
 
+def test_each_point_is_on_the_power_law_within_its_error(whole):
+    """V_s F_m^{-1/6} is the same at all drop heights, as the chain scales exactly."""
+    for row in whole.document()["scalings"]:
+        columns = ("speed_value", "speed_error_value", "force_value", "force_error_value")
+        V, V_error, F, F_error = (np.array(row[name]) for name in columns)
+        share = V_error / V + F_error / F / 6
+        off = np.log(V / V[0]) - np.log(F / F[0]) / 6
+        assert np.all(np.abs(off) <= share + share[0])
+        assert np.all((share > 0) & (share < 1e-6))
+
+
 def test_a_softer_bead_slows_the_pulse(scalings):
     stiff, soft = scalings
     assert all(s.value < f.value for s, f in zip(soft.speeds, stiff.speeds, strict=True))

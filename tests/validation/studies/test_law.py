@@ -196,7 +196,7 @@ def written(tmp_path, text):
 
 
 def test_a_folder_in_place_of_a_file_is_named(tmp_path):
-    with pytest.raises(SceneError, match=f"^{tmp_path}: Is a directory"):
+    with pytest.raises(SceneError, match=f"^{tmp_path}: only regular files are read"):
         law(tmp_path)
 
 
@@ -213,6 +213,9 @@ def test_the_command(capsys, tmp_path, chain):
     assert found["k_value"] == pytest.approx(1.5, abs=found["k_error_value"])
     assert {"compression_value", "force_value", "force_error_value"} <= set(found["rows"][0])
     assert found["one_power"] is True
+    slope = (found["k_value"] - 1) / (2 * found["k_value"])  # V ~ F^((k-1)/(2k))
+    spread = np.std(np.log(V) - slope * np.log(FORCES))
+    assert found["residual_value"] == pytest.approx(spread, rel=1e-6)
     assert picture.exists()
     assert "One power is enough" in ended(capsys, cli.main, "law", data, *options)[1]
 

@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 
 from lwa import InputError, homogenize
+from tests.commands import ended
 from validation.cli import main
 from validation.lattice.simulate import simulate
 from validation.scenes.chains import DIAMETER, PTFE_BEAD, STEEL_BEAD, chain_scene
-from validation.studies.paper import SOURCES, chain_cell, paper
+from validation.studies.paper import SOURCES, chain_cell, paper, recorded_chain
 
 
 @pytest.fixture(scope="module")
@@ -120,6 +121,18 @@ def test_at_rest_the_forces_are_the_weights_above():
     scene = chain_scene(1e-12, 38, (15, 34), 9.81, 1e-6)
     above = 9.81 * (np.sum(scene.masses[:14]) + scene.masses[14] / 2)
     assert simulate(scene).bead_force[0, 0] == pytest.approx(above, rel=1e-13)
+
+
+def test_the_weight_is_no_part_of_the_pulse(capsys):
+    """The static forces, 0.3 and 0.6 % of the peaks, are subtracted."""
+    options = ("--gravity", "--beads", "20", "--sensors", "8,14", "--format", "json")
+    status, out, _ = ended(capsys, main, "paper", *options)
+    found = json.loads(out)
+    assert (status, found["gravity_value"]) == (0, 9.81)
+    run = simulate(recorded_chain((8, 14), beads=20, gravity=9.81))
+    before_echo = run.bead_force[:, run.time < 5.5e-4]
+    peaks = [row["lattice_value"] for row in found["rows"] if "bead force F_" in row["quantity"]]
+    assert peaks[:2] == pytest.approx(before_echo.max(1) - before_echo[:, 0], rel=1e-3)
 
 
 def test_momentum_reaches_the_wave(result):

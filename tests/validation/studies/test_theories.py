@@ -160,13 +160,19 @@ def test_ladder_in_all_forms() -> None:
     assert "linear closure" in printed
     assert printed.count("theory over truth - 1") == len(QUANTITIES)
     assert "(ms of CPU): linear closure " in printed
-    rows = report.document()["theories"]
+    (document,) = report.document()["theories"]
+    assert (document["k"], document["omega"], document["truth"]) == ("11/10", "1", at.kind)
+    assert [row["theory"] for row in document["rows"]] == list(THEORIES)
     lines = list(csv.DictReader(io.StringIO(report.csv())))
-    for line, row, name in zip(lines, rows, QUANTITIES, strict=True):
-        assert line["quantity"] == row["quantity"] == name
-        assert float(line["truth_value"]) == row["truth_value"] == at.truth[name].value
-        for theory in THEORIES:
-            assert float(line[f"error_value.{theory}"]) == row["error_value"][theory]
+    for line, name in zip(lines, QUANTITIES, strict=True):
+        assert line["quantity"] == name
+        assert float(line["truth_value"]) == document["truth_value"][name] == at.truth[name].value
+        assert document["truth_error_value"][name] == at.truth[name].error
+        for row in document["rows"]:
+            assert float(line[f"error_value.{row['theory']}"]) == row["error_value"][name]
+            assert row["theory"].startswith("ε") is (row["estimate_value"] is not None)
+            if row["estimate_value"]:  # an estimate bounds the error
+                assert abs(row["error_value"][name]) <= row["estimate_value"][name] + 1e-13
     page = report._repr_html_()
     assert page.count("<tr>") == 2 * len(QUANTITIES)
     assert "<svg" in page
@@ -174,7 +180,9 @@ def test_ladder_in_all_forms() -> None:
 
 def test_a_sum_that_is_refused_is_missing() -> None:
     """One order has no sum at k = 3; the other theories are still compared."""
-    assert "ε^1" not in place(sp.S(3), sp.S.One).errors
+    at = place(sp.S(3), sp.S.One)
+    assert "ε^1" not in at.errors
+    assert at.missing["ε^1"].startswith("no sum at k = 3: to ε^1")
 
 
 def test_theories_without_a_wave_are_left_out() -> None:
@@ -183,7 +191,8 @@ def test_theories_without_a_wave_are_left_out() -> None:
     assert "[1/1]" not in at.errors
     assert "[1/1] " not in ladder([at]).text().splitlines()[-1]
     report = ladder([at, equal()])
-    assert report.document()["theories"][0]["error_value"]["[1/1]"] is None
+    (row,) = [row for row in report.document()["theories"][0]["rows"] if row["theory"] == "[1/1]"]
+    assert (row["error_value"], row["missing"]) == (None, "a formula for equal beads")
     beads, dimers = report.panels
     assert {curve.label for curve in beads.curves} == set(THEORIES)
     assert {c.label: c.style for c in dimers.curves}.items() <= {

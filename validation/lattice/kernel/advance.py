@@ -45,7 +45,7 @@ def _follow(chain: Chain, beads: Beads, plan: Plan, now: Any) -> None:
 
 
 def _built(sources: int) -> Any:
-    """Compile `advance`; its cached machine code belongs to the hash ``sources``."""
+    """Compile `advance`; ``sources`` is the hash of the source code that its cache is for."""
 
     @cached
     def advance(

@@ -14,7 +14,7 @@ _NEGLIGIBLE = 1e-60  # in units of the greatest compression: less is 0, so that 
 
 
 def _loop(value: Any) -> Any:
-    """Return a compiled loop over contacts of force A value(d, k), d ≥ 0 the compression."""
+    """Return a compiled loop for the contact forces A value(d, k), d ≥ 0 the compression."""
 
     @part
     def loop(chain: Chain, y: Array, f: Array, lo: int, hi: int, least: float) -> None:

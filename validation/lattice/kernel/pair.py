@@ -148,7 +148,7 @@ def _correct_contact(chain: Chain, beads: Beads, plan: Plan, h: float, i: int) -
 def _fitted_compression(
     chain: Chain, beads: Beads, h: float, last: int, i: int
 ) -> tuple[Quintic, float]:
-    """Return the quintic p of contact i over the step, and p(1); ``last`` is the last stage."""
+    """Return the quintic fit p of a contact's compression over the step, and p(1)."""
     y, v, force, inverse = beads.y, beads.v, beads.force, chain.inverse
     d = chain.rest[i] + y[i] - y[i + 1]
     end = chain.rest[i] + beads.next_y[i] - beads.next_y[i + 1]

@@ -147,7 +147,7 @@ def _polynomial(
 
 @part
 def _units(chain: Chain, knots: Knots, q: int, h: float) -> tuple[float, float]:
-    """Return h² A/m of the contact behind the bead of row q, and -h² A/m of the contact ahead.
+    """Return two factors for the bead of row q: h² A/m of the contact behind, -h² A/m ahead.
 
     These factors times p_+^k are the contacts' contributions to the acceleration of the bead (mass
     m) in units of time h.
@@ -158,7 +158,7 @@ def _units(chain: Chain, knots: Knots, q: int, h: float) -> tuple[float, float]:
 
 
 def _built(sources: int) -> Any:
-    """Compile `interpolate`; its cached machine code belongs to the hash ``sources``."""
+    """Compile `interpolate`; ``sources`` is the hash of the source code that its cache is for."""
 
     @cached
     def interpolate(
