@@ -158,7 +158,8 @@ class Cell(Value):
         """The ratio τ/t = √(P k A_eff D^{k+1} / M) of the time in u_ττ = u_x^{k-1} u_xx + …."""
         # Force A_eff (D u_x)^k on the density M/(P D): M/(P D) u_tt = k A_eff D^k u_x^{k-1} u_xx
         k = exponent(k)
-        return sp.sqrt(self.size * k * self.stiffness(k) * power(self.spacing, k + 1) / self.mass)
+        square = self.size * k * self.stiffness(k) * power(self.spacing, k + 1) / self.mass
+        return power(square, sp.S.Half)
 
 
 def Dimer(

@@ -34,7 +34,9 @@ DIGITS = 330
 MOST_CANCELLED = 20_000
 """Digits that the terms of an exact number may cancel before it is evaluated in vain."""
 
-_POWER_BITS = 3322  # bits of an integer of 1000 digits, the longest that a power is written out to
+# Bits that a power is written out to: about 1000 digits. A square root, of bits (1 + 2), is of less
+# than 1024 bits then, beyond which SymPy's search for factors fails with an OverflowError.
+_POWER_BITS = 3000
 
 
 def shorten(value: object) -> str:

@@ -24,7 +24,7 @@ import mpmath
 import sympy as sp
 
 from lwa.base import latex
-from lwa.base.exact import InputError, demand_numbers, integer, read_exact, shorten, signed
+from lwa.base.exact import InputError, demand_numbers, integer, power, read_exact, shorten, signed
 from lwa.base.frozen import Value
 from lwa.base.quantities import (
     NOT_RISING,
@@ -145,7 +145,7 @@ class BackgroundWave(Value):
     @cached_property
     def sound_speed(self) -> sp.Expr:
         """The speed c0 = √F′(p0) of long small waves."""
-        return sp.sqrt(self.force(self.p0, 1))
+        return power(self.force(self.p0, 1), sp.S.Half)
 
     def stiffness(self, v: sp.Expr) -> sp.Expr:
         """The square Q(v) of the speed of the wave that rises by v."""
@@ -163,7 +163,7 @@ class BackgroundWave(Value):
         square = self.stiffness(self._read_rise(B))
         if self.law.homogeneous and self.law.exponent.is_Integer:  # a polynomial in p0 and B
             square = sp.expand(sp.cancel(square))
-        return sp.sqrt(square)
+        return power(square, sp.S.Half)
 
     @property
     def _rise(self) -> sp.Symbol:

@@ -281,4 +281,4 @@ def _root(value: sp.Expr) -> sp.Expr:
     """Square root of a rational expression in positive quantities, squares taken out."""
     plain, back = sp.posify(value)
     numerator, denominator = sp.fraction(plain)
-    return (sp.sqrt(numerator) / sp.sqrt(denominator)).xreplace(back)
+    return (power(numerator, sp.S.Half) / power(denominator, sp.S.Half)).xreplace(back)

@@ -89,7 +89,7 @@ def in_order(*parts: sp.Expr) -> tuple[sp.Symbol, ...]:
 def wave_code(wave: CompactWave, language: str) -> str:
     """The source text of `wave_functions`; Python gets those of the paper's `Reduction` too."""
     functions = wave_functions(wave)
-    if language == "python":
+    if one_of(language, LANGUAGES, "language") == "python":
         _define_reduction(functions, wave)
     return functions.source(language, _TITLE)
 

@@ -121,8 +121,8 @@ class PhysicalWave(Value):
         # V² = f B^{k-1} times (τ/t)² = P k A_eff D^{k+1} / M, powers of each quantity collected.
         wave, k = self.wave, self.wave.k
         factor = wave.speed_factor * self.wave.cell.size * k / self.wave.cell.mass
-        powers = power(self.wave.cell.stiffness(k), 1 / (2 * k))
-        return wave.D * sp.sqrt(factor) * powers * power(self.contact_force, (k - 1) / (2 * k))
+        unit = wave.D * power(factor, sp.S.Half) * power(self.wave.cell.stiffness(k), 1 / (2 * k))
+        return unit * power(self.contact_force, (k - 1) / (2 * k))
 
     @cached_property
     def bead_velocity(self) -> sp.Expr:

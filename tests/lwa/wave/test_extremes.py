@@ -1,5 +1,7 @@
 """Waves on a background where floats lose digits: poles, open contacts, steep laws, limits."""
 
+import math
+
 import mpmath
 import numpy as np
 import pytest
@@ -7,6 +9,7 @@ import sympy as sp
 
 from lwa import (
     Cell,
+    Dimer,
     InputError,
     Law,
     NoSolitaryWave,
@@ -181,3 +184,16 @@ def test_linear_waves_are_no_waves_of_kdv():
     for law, p0 in ((Power(1), 1), (named("polynomial", 0, 1), 0)):
         with pytest.raises(NoSolitaryWave, match="F″ is 0"):
             _ = background_wave(CHAIN, p0, law=law).kdv
+
+
+def test_masses_over_the_whole_range_of_floats():
+    """Square roots of integers beyond 2^1024, whose factors SymPy fails to search."""
+    cell = Cell(["1e-300", "1e300"], spacing=1)
+    wave = canonical_wave(cell, "3/2")
+    V = math.sqrt(8 / 15)  # V² = 2/(k(k+1)) at B = 1
+    assert float(wave.speed(1)) == pytest.approx(V, rel=1e-14)
+    ratio = float(wave.at_force(1).speed) / float(cell.time_scale("3/2"))
+    assert ratio == pytest.approx(V, rel=1e-14)
+    assert float(background_wave(cell, 1, law=Power("3/2")).speed(1)) > 1
+    paper = homogenize(Dimer("1e-300", "1e300"), k="3/2").pde.traveling_wave()
+    assert paper.speed(1).is_positive
