@@ -71,7 +71,7 @@ if TYPE_CHECKING:
 
     __version__: str
 
-_load, _names = public(__name__, __file__)
+_load, _names = public(__name__)
 __all__ = [name for name in _names if name not in ("D", "k")]  # bound by name only
 
 

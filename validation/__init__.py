@@ -30,4 +30,4 @@ if TYPE_CHECKING:
     from validation.waves.profile import ExactWave as ExactWave
     from validation.waves.solver import exact_wave as exact_wave
 
-__getattr__, __all__ = public(__name__, __file__)
+__getattr__, __all__ = public(__name__)

@@ -4,20 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from importlib import import_module
+from pkgutil import get_data
 from typing import Any
 
 
-def public(package: str, file: str) -> tuple[Callable[[str], Any], list[str]]:
+def public(package: str) -> tuple[Callable[[str], Any], list[str]]:
     """Return the function ``__getattr__`` of a package and its public names, sorted.
 
-    file : source of the package. Public are the names that it imports for type checkers, by lines
+    Public are the names that the package's source imports for type checkers, by lines
     ``from MODULE import NAME as NAME``. A name may be a module, too.
     """
     modules = {}
-    with open(file, encoding="utf-8") as source:
-        for words in map(str.split, source):
-            if words[:1] == ["from"] and words[-2:-1] == ["as"]:
-                modules[words[-1]] = words[1]
+    source = (get_data(package, "__init__.py") or b"").decode()  # of an installed file or a zip
+    for words in map(str.split, source.splitlines()):
+        if words[:1] == ["from"] and words[-2:-1] == ["as"]:
+            modules[words[-1]] = words[1]
 
     def load(name: str) -> Any:
         if name not in modules:

@@ -2,7 +2,11 @@
 
 import inspect
 import re
+import subprocess
+import sys
+import zipfile
 from collections import Counter
+from pathlib import Path
 
 import pytest
 
@@ -67,3 +71,17 @@ def test_short_names_are_bound_by_name_only():
 
 def test_completion_offers_each_name_once():
     assert Counter(lwa.__dir__()).most_common(1)[0][1] == 1
+
+
+def test_the_package_is_imported_from_a_zip(tmp_path):
+    """Public names are read from the package's source, which need not be a file of its own."""
+    package = Path(lwa.__file__).parent
+    with zipfile.ZipFile(tmp_path / "app.zip", "w") as app:
+        for name in ("__init__.py", "base/__init__.py", "base/lazy.py"):
+            app.write(package / name, f"lwa/{name}")
+    code = "import sys; sys.path[:0] = ['app.zip']; import lwa; print(lwa.__file__, *lwa.__all__)"
+    call = [sys.executable, "-c", code]
+    run = subprocess.run(call, cwd=tmp_path, capture_output=True, text=True, timeout=60)
+    file, *names = run.stdout.split()
+    assert "app.zip" in file
+    assert names == lwa.__all__

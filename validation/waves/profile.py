@@ -200,7 +200,8 @@ class ExactWave(LatticeWave):
         Raises `SceneError` unless exactly one is given, positive, and the strains fit into floats.
         """
         if (speed is None) == (force is None):
-            raise SceneError("speed or force is wanted: a wave is scaled to one of the two")
+            given = "neither" if speed is None else "both"
+            raise SceneError(f"speed and force: {given} given; a wave is scaled to one of the two")
         if speed is not None:
             log = 2 / (self.k - 1) * math.log(positive(speed, "speed") / self.c)
         else:

@@ -54,7 +54,7 @@ def of_run(name, **options):
     }
 
 
-@pytest.mark.parametrize("name", ["paper", "trimer"])
+@pytest.mark.parametrize("name", runs.EXAMPLES)
 def test_run(name):
     held(of_run(name), of_run(name, rtol=1e-13))
 
