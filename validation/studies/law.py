@@ -85,9 +85,6 @@ def law(
     power_law = fit.A.value * compression**fit.k.value
     forces = map(Measured, force.tolist(), (force + error).tolist())
     rows = tuple(zip(compression.tolist(), forces, power_law.tolist(), strict=True))
-    # ln V is linear in ln F for one power
-    line = np.exp(np.polyval(np.polyfit(np.log(force), np.log(speed), 1), np.log(force)))
-    speeds = (Curve("measured", force, speed, "C0o"), Curve("one power", force, line, "C1-"))
     laws = (
         Curve("free law", compression, force, "C0o", error),
         Curve("one power", compression, power_law, "C1-"),
@@ -99,10 +96,7 @@ def law(
             Table(_POWER, tuple(numbers.items())),
             Table(_FREE, rows, "rows", "free law F(δ)"),
         ),
-        panels=(
-            Panel("peak contact force", "speed", speeds, "xy"),
-            Panel("compression", "contact force", laws, "xy"),
-        ),
+        panels=(_speeds(force, speed), Panel("compression", "contact force", laws, "xy")),
         notes=(f"One power is {'enough' if fit.one_power else 'not enough'}: {bend}.", _NOTE),
         data={f"{name}_value": number.value for name, number in numbers.items()}
         | {f"{name}_error_value": number.error for name, number in numbers.items()}
@@ -112,6 +106,13 @@ def law(
             "one_power": fit.one_power,
         },
     )
+
+
+def _speeds(force: Array, speed: Array) -> Panel:
+    """Return the panel of measured speeds beside one power, for which ln V is linear in ln F."""
+    line = np.exp(np.polyval(np.polyfit(np.log(force), np.log(speed), 1), np.log(force)))
+    curves = (Curve("measured", force, speed, "C0o"), Curve("one power", force, line, "C1-"))
+    return Panel("peak contact force", "speed", curves, "xy")
 
 
 def _pulses(data: str, least: int) -> tuple[Array, Array, Array | None]:
