@@ -1,4 +1,4 @@
-"""The full closure: slaved fields that satisfy every equation of motion, at every order.
+"""The full closure: all fields follow from one, φ, and satisfy every equation of motion.
 
 Letters and equations of motion as in `lwa.closure.solution`: w_i = φ + D φ_x Σ_n D^n S_n is the
 field of particle i, each S_n a polynomial in the jets of φ and of φ_τ. All P equations of motion
@@ -81,7 +81,7 @@ class _Slaving:
         self._origin(n)
 
     def _strains(self, n: int, accelerations: list[fmpq_mpoly]) -> None:
-        """Append X_n, the order n of each contact's strain.
+        """Append the term X_n of each contact's strain.
 
         Φ_i - Φ_0 gives the differences of the strains, and the cell their sum.
         """
