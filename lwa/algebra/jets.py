@@ -43,8 +43,8 @@ class JetAlgebra:
     """Polynomials in the normalised derivatives r_n = ∂_x^n p / p of a field p, with ∂_x and ∂_τ.
 
     The jets are r_1 … r_weight, the coefficients in Q[parameters]. Given ``exponent``, which gives
-    k in the ring, there are ∂_τ and the jets s_1 … s_weight of the velocity; with ``rest`` also s_0
-    = u_τ / p^{(k+1)/2}. The first parameters are φ_2 … φ_smooth of a law that is no power.
+    k in the ring, there are ∂_τ and the jets s_1 … s_weight of the velocity; with ``rest`` also
+    s_0 = u_τ / p^{(k+1)/2}. The first parameters are φ_2 … φ_smooth of a law that is no power.
 
     >>> jets = JetAlgebra((), weight=2)
     >>> jets.dx(jets.r[1], 0)

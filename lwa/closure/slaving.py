@@ -27,7 +27,7 @@ from lwa.closure.solution import Solution
 def full(
     model: Model, order: int, field: str = "first", progress: Progress[int] = iter
 ) -> Solution:
-    """The closure that satisfies all equations of motion, to D^order in the slaved fields.
+    """Find the closure that satisfies all equations of motion, to D^order in all fields.
 
     field : the φ of the theory, "first", the displacement of the first particle, or "center", the
         mean Σ m̂_i w_i(x - x_i D) of all fields at one point, x_i = C_0 + … + C_{i-1}.
@@ -46,7 +46,7 @@ def full(
 
 
 class _Slaving:
-    """The recursion of the full closure, one order of D at a time.
+    """Solver of the full closure, one order of D at a time.
 
     mu, c : mass fractions m̂_i of the particles, strain shares C_i of the contacts behind them.
     x : places x_i = C_0 + … + C_{i-1} of the particles at rest.

@@ -209,7 +209,7 @@ class Recursion:
 
 
 def _last(a: Series, b: Series) -> fmpq_mpoly:
-    """Coefficient of t^n in a · b, n the last order of a."""
+    """Coefficient of t^n in the product a · b of two series, n the last order of a."""
     n = len(a) - 1
     return sum((x * b[n - j] for j, x in enumerate(a) if x), 0 * b[0])
 

@@ -86,14 +86,14 @@ def _fitted() -> Array:
 
 @cache
 def integrated() -> Array:
-    """Matrix from values at the Gauss points to Legendre coefficients of the integral from 0."""
+    """Matrix from values at the Gauss points to Legendre coefficients of their integral from 0."""
     matrix: Array = legendre.legint(np.eye(POINTS), lbnd=-1, axis=0) / 2 @ _fitted()
     return matrix
 
 
 @cache
 def grid(parts: int, halvings: int, further: tuple[float, ...] = ()) -> Grid:
-    """Panels for a wave: ``parts`` above v = B/2, the first of them halved ``halvings`` times.
+    """Build the panels for a wave: ``parts`` above v = B/2, the first of them halved ``halvings`` times.
 
     further : ends of further upper panels.
     """

@@ -60,7 +60,7 @@ def _compression(chain: Chain, knots: Knots, n: int, q: int) -> tuple[float, flo
 
 @part
 def _kink(chain: Chain, points: Array, knots: Knots, n: int, q: int) -> Quintic:
-    """Return the opening or closing (`kink`) in step n of the contact ahead of row q, or `NONE`."""
+    """Return the `kink` in step n of the contact ahead of the bead of row q, or `NONE`."""
     if points.shape[1] == 0 or q < 0:
         return NONE
     h = knots.time[n + 1] - knots.time[n]
