@@ -33,12 +33,9 @@ class Commands(click.Group):
     """
 
     def __init__(self, package: str, table: Mapping[str, tuple[str, str]], **settings: Any) -> None:
-        super().__init__(**settings)
+        # placeholders: Click lists their names, and suggests one for a mistyped name
+        super().__init__(commands={name: click.Command(name) for name in table}, **settings)
         self.package, self.table = package, table
-
-    def list_commands(self, context: click.Context) -> list[str]:
-        """Return the names of all commands."""
-        return [*self.table]
 
     def get_command(self, context: click.Context, name: str) -> click.Command | None:
         """Return the command with a given name, or None."""

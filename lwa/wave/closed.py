@@ -31,9 +31,6 @@ from lwa.base.quantities import RISE, SPEED, NoSolitaryWave, strain_power
 from lwa.cell import Cell, exponent, substitution
 from lwa.linear.dispersion import Dispersion
 
-COMPACT = "a compact wave needs k > 1, G+H+I > 0 and V² > 0"
-"""Reason for the refusal of a wave."""
-
 _RATIOS = sp.symbols("g h", cls=sp.Dummy)
 """Symbols of G/I and H/I."""
 
@@ -118,13 +115,13 @@ class CompactWave(Value):
 
     def __post_init__(self) -> None:
         if self.k.is_number and not self.k > 1:
-            raise NoSolitaryWave(f"k is {self.k}: {COMPACT}")
-        for name, value in (
-            ("(G+H+I)/D²", self.coefficient_sum),
-            ("V²/B^(k-1)", self.speed_factor),
-        ):
-            if value.is_number and not value > 0:
-                raise NoSolitaryWave(f"{name} is {value}: {COMPACT}")
+            raise NoSolitaryWave(f"k is {self.k}: a compact wave needs k > 1")
+        if self.coefficient_sum.is_number and not self.coefficient_sum > 0:
+            raise NoSolitaryWave(
+                f"(G+H+I)/D² is {self.coefficient_sum}: a compact wave needs G+H+I > 0"
+            )
+        if self.speed_factor.is_number and not self.speed_factor > 0:
+            raise NoSolitaryWave(f"V²/B^(k-1) is {self.speed_factor}: a compact wave needs V² > 0")
 
     @classmethod
     def canonical(cls, cell: Cell, k: Any) -> Self:

@@ -23,7 +23,7 @@ from lwa.base.arrays import Array, Extended, finite
 from lwa.base.exact import InputError, one_of
 from lwa.base.frozen import Value
 from lwa.base.quantities import NoSolitaryWave, strain_power
-from lwa.wave.closed import COMPACT, CompactWave
+from lwa.wave.closed import CompactWave
 
 Function = Callable[[Extended, Extended], Extended]
 
@@ -124,12 +124,14 @@ class NumericWave(Value):
         k, omega = np.broadcast_arrays(k, _positive(omega, "ω = m2/m1"))
         with np.errstate(all="ignore"):  # outside the domain of waves, see below
             coefficient_sum = self._sum(k, omega)
-            exists = (k > 1) & (coefficient_sum > 0) & (self._factor(k, omega) > 0)
+            conditions = {"k > 1": k > 1, "G+H+I > 0": coefficient_sum > 0}
+            conditions["V² > 0"] = self._factor(k, omega) > 0
+            exists = np.logical_and.reduce(list(conditions.values()))
         if self.missing == "raise" and not np.all(exists):
             first = np.argmin(exists)
-            raise NoSolitaryWave(
-                f"k = {float(k.flat[first])}, ω = {float(omega.flat[first])}: {COMPACT}"
-            )
+            missed = next(name for name, holds in conditions.items() if not holds.flat[first])
+            at = f"k = {float(k.flat[first])}, ω = {float(omega.flat[first])}"
+            raise NoSolitaryWave(f"{at}: a compact wave needs {missed}")
         nan = np.where(exists, 0.0, np.nan)
         return k + nan, omega + nan, coefficient_sum + nan
 

@@ -12,7 +12,9 @@ from lwa import (
     Cell,
     Dimer,
     Dispersion,
+    Material,
     Power,
+    Sphere,
     background_wave,
     canonical_wave,
     envelope,
@@ -53,6 +55,7 @@ MADE = {
     "envelope": lambda: envelope(Dimer(m1, m2), Power("k"), background="p0"),
     "breather": lambda: envelope(Dimer(2, 1), Power(2), background=1).breather(detuning="1/100"),
     "shock": lambda: shock(Dimer(2, 1), Power(2), 2, 1),
+    "sphere": lambda: Sphere.solid("R", Material.named("PTFE")),
     "loaded": lambda: LoadedChain(Dimer(m1, m2), Power("3/2"), "F0"),
 }
 

@@ -40,9 +40,9 @@ class Sampled:
 
     def __init__(self, time: ArrayLike, values: ArrayLike) -> None:
         try:
-            self.times, f = np.array((time, values), float).reshape(2, -1)
-            if len(f) < 4 or np.shape(time) != f.shape:
-                raise ValueError(f"the shapes are {np.shape(time)} and {np.shape(values)}")
+            self.times, f = np.array(time, float), np.array(values, float)
+            if f.size < 4 or not f.shape == self.times.shape == (f.size,):
+                raise ValueError(f"the shapes are {self.times.shape} and {f.shape}")
         except (TypeError, ValueError) as reason:
             wanted = "time and signal must be equally long rows of at least 4 numbers"
             raise MeasureError(f"{wanted}: {reason}") from None

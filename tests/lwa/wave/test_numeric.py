@@ -63,8 +63,13 @@ def test_arrays_broadcast():
 
 
 def test_missing_waves_raise_or_are_nan_on_request():
-    with pytest.raises(NoSolitaryWave, match=r"k = 3.0, ω = 100.0"):
-        NUMERIC.width([1.5, 3.0], [1.0, 100.0])
+    for k, omega, words in (
+        (3.0, 100.0, r"G\+H\+I > 0$"),
+        (1.6, 1e3, "V² > 0$"),
+        (1.0, 1.0, "k > 1$"),
+    ):
+        with pytest.raises(NoSolitaryWave, match=f"k = {k}, ω = {omega}: .*{words}"):
+            NUMERIC.width([1.5, k], [1.0, omega])
     found = WAVE.numeric(missing="nan").width([1.5, 3.0, 1.0], [1.0, 100.0, 1.0])
     assert np.isnan(found).tolist() == [False, True, True]
 

@@ -82,7 +82,7 @@ T = np.linspace(-2, 2, 401)
         (T, T * np.nan, r"time and signal must be finite"),
         (-T, arch(T), r"time and signal must be finite, and time must increase"),
         (T[::40], arch(T[::40]), rf"\d samples lie above half .*: at least {FEWEST}"),
-        (T, arch(T)[:-1], r"time and signal must be equally long rows of at least 4 numbers"),
+        (T, arch(T)[:-1], r"time and signal must be .*: the shapes are \(401,\) and \(400,\)$"),
         (T[:3], arch(T[:3]), r"time and signal must be equally long rows of at least 4 numbers"),
         ([T], [arch(T)], r"time and signal must be .*: the shapes are \(1, 401\)"),
         (T, ["tea"] * 401, r"time and signal must be equally long rows .*: .*'tea'"),

@@ -358,7 +358,7 @@ def test_a_scaled_dimer_keeps_its_tail_over_the_peak():
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({}, "speed or force is wanted"),
+        ({}, "speed and force: neither given"),
         ({"force": 0}, "force is 0"),
         ({"speed": 1e80}, "out of range"),
     ],
