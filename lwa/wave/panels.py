@@ -93,7 +93,7 @@ def integrated() -> Array:
 
 @cache
 def grid(parts: int, halvings: int, further: tuple[float, ...] = ()) -> Grid:
-    """Build the panels for a wave: ``parts`` above v = B/2, the first of them halved ``halvings`` times.
+    """Build panels for a wave: ``parts`` above v = B/2, the first one halved ``halvings`` times.
 
     further : ends of further upper panels.
     """
