@@ -1,7 +1,7 @@
 """Gauss quadrature, panel by panel along the flank of a wave, for `lwa.wave.quadrature`.
 
 A wave of the rise B has the strain p0 + sB, s = 1/cosh²θ, 0 ≤ θ < ∞; K is the kernel of the
-integral equation Q(B) - Q(v) = B ∫ K F″ ds with v = uB and y² = 1 - u. Towards s = 0, where F′ of an
+integral equation Q(B) - Q(v) = B ∫ K F″ ds, v = uB, and y² = 1 - u. Towards s = 0, where F′ of an
 unloaded contact is singular, the integrands decay as a power of s, and panels in θ become longer.
 Towards s = 1 panels are halved as often as steep laws, contacts about to open and waves next to
 their limiting amplitude demand.
