@@ -56,12 +56,12 @@ class Function:
 
     @property
     def call(self) -> sp.Expr:
-        """A call with the function's own arguments, for the value of another function."""
+        """Symbolic call of this function, name(arguments), for use in another function's value."""
         return sp.Function(self.name)(*self.arguments)
 
 
 class Writer:
-    """Base of the languages, each of which also derives from one of SymPy's printers."""
+    """Base class of the writers of source text; those also derive from SymPy's printers."""
 
     comment: ClassVar[str] = "#"
     head: ClassVar[tuple[str, ...]] = ()  # lines of a module before its functions

@@ -1,4 +1,4 @@
-"""The graded differential algebra of the strain: jets, derivatives in x and t, shifts and powers.
+"""Graded differential algebra of the strain: polynomials in its derivatives (jets), ∂_x, ∂_τ.
 
 A field u enters the long-wave equations through a base p (the strain p = u_x; for the optical
 branch p = u itself) and the normalised jets r_n = ∂_x^n p / p, to which the weight n is given. A
@@ -40,11 +40,11 @@ class Monomial(NamedTuple):
 
 
 class JetAlgebra:
-    """The algebra of the polynomials in the jets r_1 … r_weight over Q[parameters], with ∂_x.
+    """Polynomials in the normalised derivatives r_n = ∂_x^n p / p of a field p, with ∂_x and ∂_τ.
 
-    With ``exponent``, a function that gives k as an element of the ring, the algebra has the jets
-    s_1 … s_weight of the velocity and ∂_τ too; with ``rest`` also s_0 = u_τ / p^{(k+1)/2} itself.
-    The first parameters are φ_2 … φ_smooth of a law that is no power.
+    The jets are r_1 … r_weight, the coefficients in Q[parameters]. Given ``exponent``, which gives
+    k in the ring, there are ∂_τ and the jets s_1 … s_weight of the velocity; with ``rest`` also
+    s_0 = u_τ / p^{(k+1)/2}. The first parameters are φ_2 … φ_smooth of a law that is no power.
 
     >>> jets = JetAlgebra((), weight=2)
     >>> jets.dx(jets.r[1], 0)
@@ -92,7 +92,7 @@ class JetAlgebra:
         self._moving = [*range(max(smooth - 1, 0)), *range(self._offset, self.context.nvars())]
 
     def _theta(self, n: int) -> fmpq_mpoly:
-        """The derivative p dφ_n/dp of a parameter of the law."""
+        """Logarithmic derivative p dφ_n/dp of the law's parameter φ_n."""
         phi = self.phi
         return phi[n + 1] + (n - 1) * phi[n] - phi[n] * phi[2]
 
@@ -134,7 +134,7 @@ class JetAlgebra:
     def _derivation(
         self, result: fmpq_mpoly, f: fmpq_mpoly, images: dict[int, fmpq_mpoly]
     ) -> fmpq_mpoly:
-        """Add the derivation Σ ∂f/∂g · image(g) over the jets g to ``result``."""
+        """Add a derivative of f by the chain rule, Σ ∂f/∂g · image(g) over the jets g."""
         for index in self._present(f):
             if index not in images:
                 name = self.context.name(index)
@@ -143,7 +143,7 @@ class JetAlgebra:
         return result
 
     def slope(self, f: fmpq_mpoly, n: int) -> fmpq_mpoly:
-        """The slope ∂f/∂r_n; for f of weight n the coefficient of the lone r_n."""
+        """The slope ∂f/∂r_n; the coefficient of the term r_n if f has weight n."""
         return f.derivative(self._offset + n - 1)
 
     def terms(self, f: fmpq_mpoly) -> dict[Monomial, list[Term]]:
@@ -175,7 +175,7 @@ class JetAlgebra:
         return total if f.is_zero() else None
 
     def by_parts(self, f: fmpq_mpoly, exponent: fmpq_mpoly) -> fmpq_mpoly:
-        """Subtract a derivative p^{-e} ∂_x (p^e g) from f so that no highest jet remains linear.
+        """Reduce f by a total derivative, p^{-e} ∂_x (p^e g), until no highest jet is linear.
 
         All terms of f have one weight. A highest jet is an s_n linear beside lower jets s_i, or,
         in terms without s_i, an r_n beside lower r_i; r_1 alone is the derivative of p^e / e.
@@ -192,7 +192,7 @@ class JetAlgebra:
         return f.derivative(index).subs(dict.fromkeys(others, 0))
 
     def embed(self, f: fmpq_mpoly, smaller: JetAlgebra) -> fmpq_mpoly:
-        """Convert f from an algebra with the same parameters and some of these jets."""
+        """Convert f from a smaller algebra, of the same parameters and fewer jets."""
         more_x = (0,) * (self._velocity - smaller._velocity)
         more_t = (0,) * (smaller._lowest - self._lowest)
         terms = {}
@@ -208,7 +208,7 @@ def _powers(exponents: Sequence[int], lowest: int) -> Powers:
 
 
 class GradedSeries:
-    """A graded series p^e Σ_n D^n f_n with its derivatives, each of which is computed once."""
+    """A series p^e Σ_n D^n f_n, f_n polynomials of weight n, with derivatives computed once."""
 
     def __init__(
         self, algebra: JetAlgebra, exponent: fmpq_mpoly, terms: Sequence[fmpq_mpoly] = ()
@@ -231,7 +231,7 @@ class GradedSeries:
         self._derivatives.append([f_n])
 
     def increment(self, h: fmpq_mpoly | int, n: int) -> fmpq_mpoly:
-        """Coefficient Σ_{0<j≤n} h^j/j! ∂_x^j f_{n-j} of D^n in the increment under x → x + hD."""
+        """Coefficient of D^n in f(x + hD) - f(x), which is Σ_{0<j≤n} h^j/j! ∂_x^j f_{n-j}."""
         derivatives = ((j, self.dx(n - j, j)) for j in range(1, n + 1))
         parts = (f * (h**j * fmpq(1, factorial(j))) for j, f in derivatives if not f.is_zero())
         return sum(parts, self.algebra.zero)

@@ -80,8 +80,8 @@ class _Change:
         )
 
     def _slaved(self, S: Sequence[fmpq_mpoly]) -> tuple[fmpq_mpoly, ...]:
-        """The terms of [(u - φ) + D u_x S] / (D φ_x) in the jets of φ; the numerator is w - φ."""
-        moved = self._replaced(S, self.algebra.one)
+        """Convert S of a field w = u + D u_x S to the S of w = φ + D φ_x S, in the jets of φ."""
+        moved = self._replaced(S, self.algebra.one)  # w - φ = (u - φ) + D u_x S
         return tuple(self.inverse[n + 1] * self.algebra.r[n] + moved[n] for n in range(self.size))
 
     def _replaced(self, terms: Sequence[fmpq_mpoly], exponent: fmpq_mpoly) -> Series:

@@ -1,4 +1,4 @@
-"""The full closure: slaved fields that satisfy every equation of motion, at every order.
+"""The full closure: all fields follow from one, φ, and satisfy every equation of motion.
 
 Letters and equations of motion as in `lwa.closure.solution`: w_i = φ + D φ_x Σ_n D^n S_n is the
 field of particle i, each S_n a polynomial in the jets of φ and of φ_τ. All P equations of motion
@@ -27,7 +27,7 @@ from lwa.closure.solution import Solution
 def full(
     model: Model, order: int, field: str = "first", progress: Progress[int] = iter
 ) -> Solution:
-    """The closure that satisfies all equations of motion, to D^order in the slaved fields.
+    """Find the closure that satisfies all equations of motion, to D^order in all fields.
 
     field : the φ of the theory, "first", the displacement of the first particle, or "center", the
         mean Σ m̂_i w_i(x - x_i D) of all fields at one point, x_i = C_0 + … + C_{i-1}.
@@ -46,7 +46,7 @@ def full(
 
 
 class _Slaving:
-    """The recursion of the full closure, one order of D at a time.
+    """Solver of the full closure, one order of D at a time.
 
     mu, c : mass fractions m̂_i of the particles, strain shares C_i of the contacts behind them.
     x : places x_i = C_0 + … + C_{i-1} of the particles at rest.
@@ -81,7 +81,7 @@ class _Slaving:
         self._origin(n)
 
     def _strains(self, n: int, accelerations: list[fmpq_mpoly]) -> None:
-        """Append X_n, the order n of each contact's strain.
+        """Append the term X_n of each contact's strain.
 
         Φ_i - Φ_0 gives the differences of the strains, and the cell their sum.
         """

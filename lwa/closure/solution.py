@@ -19,13 +19,13 @@ from lwa.algebra.jets import JetAlgebra
 
 @dataclass(frozen=True, repr=False, kw_only=True)
 class Solution:
-    """Equation of motion and ansatz that a closure finds, order by order, as polynomials.
+    """Result of a closure: wave equation and displacement fields, as polynomials by order in D.
 
     acceleration : E_n. Acoustic: φ_ττ = φ_x^k Σ_{n≥1} D^{n-1} E_n, E_1 = r_1 = φ_xx/φ_x.
         Optical: u_ττ = -u^k Σ_{n≥0} D^n E_n, E_0 = 1, in its own time unit.
     ansatz : b_n, n = 0 … order: the second particle's field is λ Σ b_n D^n ∂_x^n φ in the linear
         closure, and has this linear part in the full one (polynomials in the parameters).
-    slaved : `fields` of the full closure, and in a changed field; else ().
+    slaved : `fields`, from the full closure or a change of the field φ; else ().
     defect : E_n from the first equation of motion minus E_n from the second, for the same ansatz.
     """
 

@@ -34,7 +34,7 @@ from lwa.law import Power
 
 
 class Observables:
-    """The quantities of one wave as series in t, each computed on first use.
+    """Speed, widths, momentum, energy and profile of a wave: series in t ∝ √ε, computed on demand.
 
     model : the cell at its exponent.
     order : highest power of ε.

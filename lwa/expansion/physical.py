@@ -195,7 +195,7 @@ class Strike(Value):
 
     @property
     def train(self) -> bool:
-        """True if further pulses follow with more than a few per cent of the energy: m_s > 2 m."""
+        """True if m_s > 2 m: over a few per cent of the energy go into further pulses."""
         return bool(self.mass > 2 * self.chain.cell.masses[0])
 
 

@@ -41,7 +41,7 @@ LINEAR = 3
 
 
 class Fields:
-    """The fields e^{-Z²/4} Σ S_n t^n of a wave, or changes of the fields, as lists of S_n.
+    """Forces, strains and slopes of a wave, or changes of these: the S_n of e^{-Z²/4} Σ S_n t^n.
 
     `force` and `strain` (with their logarithms) have one field per contact, `slope` one per bead.
     `means` and `pushes` map n to the coefficients of t^n in the mean strain Σ C_i r_i / P or the
@@ -67,7 +67,7 @@ class Fields:
         del self.means[n:], self.pushes[n:]
 
     def add(self, change: Fields, n: int) -> None:
-        """Add a change that starts at t^n."""
+        """Add small changes of the fields, whose first terms are at t^n."""
         for row, terms in zip(self._rows, change._rows, strict=True):
             for j, term in enumerate(terms, start=n):
                 row[j] = row[j] + term
@@ -78,7 +78,7 @@ class Fields:
 
 
 class Recursion:
-    """The recursion's solution: the wave's `fields` as power series in t over Q[Z, m̂, C]."""
+    """Solver of the recursion: a wave's `fields` as power series in t over Q[Z, m̂, C]."""
 
     def __init__(self, model: Model, order: int, progress: Progress[int] = iter) -> None:
         self.context = fmpq_mpoly_ctx.get(("Z", *model.ring.names), Ordering.lex)
@@ -103,10 +103,8 @@ class Recursion:
         fields = self.fields
         for n in range(3):
             residual = self._extend(n)
-        self.gamma += [
-            self.zero,
-            -residual,
-        ]  # γ_1 = 0: c² is even, (Z, t) and (-Z, -t) are one wave
+        # γ_1 = 0: c² is even, (Z, t) and (-Z, -t) are one wave
+        self.gamma += [self.zero, -residual]
         for n in progress(range(1, order + 1)):
             if n <= LINEAR:
                 fields.truncate(n)
@@ -135,7 +133,7 @@ class Recursion:
         return q, -left.get(0, self.zero)
 
     def _extend(self, n: int, q: fmpq_mpoly | None = None) -> fmpq_mpoly:
-        """Add the terms at t^n, with q_n = 0 unless it is known; return the residual there.
+        """Append the wave's terms at t^n, with q for q_n, by default 0; return the residual.
 
         The residual is that of the last equation, the balance of momentum, divided by P.
         """
@@ -156,7 +154,7 @@ class Recursion:
         return change
 
     def _step(self, fields: Fields, n: int, q: fmpq_mpoly) -> None:
-        """Add the terms at t^n to the wave's fields, or to a small change of them."""
+        """Append the terms at t^n to a wave's forces, strains and slopes or to changes of them."""
         wave, P = self.fields, range(self.P)
         linear = fields is not wave
 
@@ -211,7 +209,7 @@ class Recursion:
 
 
 def _last(a: Series, b: Series) -> fmpq_mpoly:
-    """Coefficient of t^n in a · b, n the last order of a."""
+    """Coefficient of t^n in the product a · b of two series, n the last order of a."""
     n = len(a) - 1
     return sum((x * b[n - j] for j, x in enumerate(a) if x), 0 * b[0])
 

@@ -66,10 +66,11 @@ def _demand_sound(r: sp.Expr) -> None:
 
 
 def _edge(chain: Dispersion, r: sp.Expr, sign: int) -> Any:
-    """Return f at an edge: ∫₀^f sign (dκ/df - 1)/f df = ln r, f real (sign 1) or imaginary (-1).
+    """Return the frequency f at the trailing edge (sign 1) or leading edge (sign -1, f imaginary).
 
-    Newton's method starts from the root for small r - 1: dκ/df - 1 is (3/2) I f² to leading order.
-    It runs in s, f = sinh s, as the integral grows like ln f: from f itself it fails where r ≫ 1.
+    El's condition ∫₀^f sign (dκ/df - 1)/f df = ln r is solved by Newton's method from the root for
+    small r - 1, where dκ/df - 1 ≈ (3/2) I f². The method runs in s, f = sinh s, as the integral
+    grows like ln f: in f itself it fails where r ≫ 1.
     """
     demand_numbers(r.free_symbols, "edges of cells of several beads are numbers")
     trace, target = _trace(chain), mpmath.log(_number(r))

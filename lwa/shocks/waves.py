@@ -121,7 +121,7 @@ class Pulse(Value):
 
     @cached_property
     def contact_rise(self) -> sp.Expr:
-        """Strain of a contact at the peak of the wave, less p0."""
+        """Rise of a contact's strain above the background p0 at the peak of the wave."""
         if self._toda:
             return 2 * sp.log(self._cosh) / self._toda
         field, B, k = self.field, self.rise, self.field.law.exponent

@@ -139,7 +139,7 @@ class BackgroundWave(Value):
         return self.cell.time_scale(self.law.exponent)
 
     def force(self, p: sp.Expr, n: int = 0) -> sp.Expr:
-        """The n-th derivative of F at a strain, in u_ττ = F′(u_x) u_xx; the energy W for n = -1."""
+        """Force F(p) in the wave equation's units, its n-th derivative, or energy W(p): n = -1."""
         return self.law.of_strain(p, self.cell.spacing, n)
 
     @cached_property

@@ -68,7 +68,7 @@ class Functions(dict[str, Function]):
         return self[name].call
 
     def define_at_force(self, cell: Cell, k: sp.Expr, p0: sp.Expr = sp.S.Zero) -> None:
-        """Add the rise of the strain, and dx/dt, of the wave whose contact force peaks at F."""
+        """Define functions of the peak contact force F: the strain's rise B and the speed dx/dt."""
         strain = Power(k).compression(cell, _F) / cell.spacing - p0
         rise = self.define("strain", _DOCS["strain"], strain)
         speed = self["speed"].call.subs(_B, rise) * self["time_scale"].call

@@ -1,9 +1,10 @@
-"""Gauss panels along the flank of a wave, and the integrals of `lwa.wave.quadrature` on them.
+"""Gauss quadrature, panel by panel along the flank of a wave, for `lwa.wave.quadrature`.
 
-A wave of the rise B has the strain p0 + sB, s = 1/cosh²θ, 0 ≤ θ < ∞; K is the kernel of
-Q(B) - Q(v). Towards s = 0, where F′ of an unloaded contact is singular, the integrands decay as a
-power of s, and panels in θ become longer. Towards s = 1 panels are halved as often as steep laws,
-contacts about to open and waves next to their limiting amplitude demand.
+A wave of the rise B has the strain p0 + sB, s = 1/cosh²θ, 0 ≤ θ < ∞; K is the kernel of the
+integral equation Q(B) - Q(v) = B ∫ K F″ ds, v = uB, and y² = 1 - u. Towards s = 0, where F′ of an
+unloaded contact is singular, the integrands decay as a power of s, and panels in θ become longer.
+Towards s = 1 panels are halved as often as steep laws, contacts about to open and waves next to
+their limiting amplitude demand.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ POINTS = 20
 """Gauss points of a panel."""
 
 LEVELS = ((1, 0), (2, 3), (6, 4), (24, 3), (24, 23))
-"""Panels above v = B/2, and halvings of the first; 23 more reach the last digit of θ²."""
+"""Grids, coarse to fine: panels above v = B/2, halvings of the first (23: last digit of θ²)."""
 
 NEAR = (1.8,)
 """End of the upper panels for widths of the force, at v = 0.1 B."""
@@ -35,7 +36,7 @@ _TAIL = (2.5, 5.0, 9.0, 20.0)  # ends of the panels behind; v = 1.7e-17 B at the
 
 
 class Grid(NamedTuple):
-    """Gauss panels in θ. The upper panels, on which dξ/dθ is computed, come first.
+    """Gauss nodes and weights on panels in θ; upper panels, on which dξ/dθ is computed, come first.
 
     ``s``, ``y2`` = 1 - s and ``ds``, the weights of ∫ … ds, have one entry per node; ``starts`` and
     ``lengths`` have one per upper panel, of which ``half`` lie above v = B/2. Row j of ``kernel``
@@ -51,7 +52,7 @@ class Grid(NamedTuple):
     kernel: Array
 
     def panels(self, values: Array) -> Array:
-        """Values at the upper nodes, panel by panel."""
+        """Select the values at the upper nodes, shape (…, upper panels, `POINTS`)."""
         return values[..., : len(self.kernel)].reshape(*values.shape[:-1], len(self.starts), POINTS)
 
     def converged(self, rate: Array, bound: float) -> NDArray[np.bool_]:
@@ -85,14 +86,14 @@ def _fitted() -> Array:
 
 @cache
 def integrated() -> Array:
-    """Matrix from values at the Gauss points to Legendre coefficients of the integral from 0."""
+    """Matrix from values at the Gauss points to Legendre coefficients of their integral from 0."""
     matrix: Array = legendre.legint(np.eye(POINTS), lbnd=-1, axis=0) / 2 @ _fitted()
     return matrix
 
 
 @cache
 def grid(parts: int, halvings: int, further: tuple[float, ...] = ()) -> Grid:
-    """Panels for a wave: ``parts`` above v = B/2, the first of them halved ``halvings`` times.
+    """Build panels for a wave: ``parts`` above v = B/2, the first one halved ``halvings`` times.
 
     further : ends of further upper panels.
     """

@@ -1,6 +1,6 @@
 """The profile of a wave on a background to many digits: one quadrature, by mpmath.
 
-With v = B / cosh²θ the equation of `lwa.wave.background` is
+With v = B / cosh²θ the equation of `lwa.wave.background`, which defines the letters, is
 
     dξ/dθ = 2 √(I F′(p0+v) tanh²θ / (Q(B) - Q(v))),
 
@@ -26,7 +26,7 @@ _HALVINGS = (0, 8, 20, 40, 80)  # of the piece next to θ = 0, until its integra
 
 
 def mpmath_number(value: sp.Expr) -> Any:
-    """An exact number in mpmath's working precision."""
+    """Evaluate an exact number in mpmath's working precision."""
     return mpmath.mpf(evaluated(value, mpmath.mp.dps + 5))
 
 
@@ -45,9 +45,9 @@ def compiled(v: sp.Symbol, value: sp.Expr) -> Function:
 
 @dataclass(frozen=True)
 class Flank:
-    """One side of a wave that rises by B, to the given digits.
+    """The half of a symmetric wave from its peak, v = B, to the background, v = 0, to many digits.
 
-    F, F1, Q : the force, its slope F′ and Q as functions of v, the strain above the background.
+    F, F1, Q : force, slope F′ and Q as functions of v, the strain above p0. digits : of results.
     """
 
     F: Function
@@ -84,7 +84,7 @@ class Flank:
             return B, mpmath_number(self.I), self.Q(B)
 
     def rate(self, theta: Any) -> Any:
-        """The rate dξ/dθ, θ > 0."""
+        """Derivative dξ/dθ of the distance ξ from the peak, θ > 0."""
         B, I, top = self._numbers
         with mpmath.workdps(self.working_digits):
             v = B / mpmath.cosh(theta) ** 2
@@ -97,7 +97,7 @@ class Flank:
             return 2 * self._integral(mpmath.mpf(0), mpmath.acosh(1 / mpmath.sqrt(half)))
 
     def _half_force(self) -> Any:
-        """The share v/B of the strain at which the force has half of its rise."""
+        """The ratio v/B at the place where the force has half of its rise."""
         B, zero, one = self._numbers[0], mpmath.mpf(0), mpmath.mpf(1)
         with mpmath.workdps(self.working_digits):
             start, end = self.F(zero), self.F(B)
@@ -111,7 +111,7 @@ class Flank:
             )
 
     def strain(self, place: Any) -> Any:
-        """The strain v at a place ξ ≥ 0, by Newton's method in θ."""
+        """The strain v at the distance ξ ≥ 0 from the peak, by Newton's method in θ."""
         with mpmath.workdps(self.digits + 10):
             if not place:
                 return self._numbers[0]
@@ -125,7 +125,7 @@ class Flank:
             return self._numbers[0] / mpmath.cosh(theta) ** 2
 
     def _integral(self, start: Any, end: Any) -> Any:
-        """The integral ∫ dξ by Gauss's rule on pieces of length 1 or less.
+        """The length ∫ (dξ/dθ) dθ by Gauss's rule on pieces of length 1 or less.
 
         Steep laws, and waves next to their limiting amplitude, vary fast at θ = 0.
         """

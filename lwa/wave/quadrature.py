@@ -194,7 +194,7 @@ class NumericBackground(Value):
 
     @cached_property
     def _functions(self) -> tuple[float, Function, Function]:
-        """√I, and F′ and F″ as functions of the strain."""
+        """The number √I, and the law's F′ and F″ compiled as functions of the strain."""
         D = self.cell.spacing
         if D.is_Symbol and self.law.homogeneous:  # a power law has no length of its own
             D = sp.S.One

@@ -146,7 +146,7 @@ class StruckDimer:
         return simulate(struck((1.0, self.omega), beads, self.k, **options), rtol=rtol)
 
     def passages(self, run: Run) -> Array:
-        """Measure the leading pulse at the two contacts of each place of a `run`: (places, 2, 6).
+        """Six numbers of the leading pulse at both contacts of each place: (places, 2, 6).
 
         Returns arrival, peak, FWHM of force and of compression, end, and the highest pulse's peak.
         Raises `MeasureError` if a pulse does not pass all places in time.

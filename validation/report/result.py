@@ -104,7 +104,7 @@ class Report(Pictured):
         return next((table for table in tables if table.rows), tables[0]).csv()
 
     def pictured(self) -> tuple[Panel, ...]:
-        """The panels of the picture."""
+        """The panels, curves and maps, of which a picture of the result is made."""
         return self.panels
 
     def save(self, file: Path) -> None:

@@ -119,7 +119,7 @@ def printed_beta(k: Array, omega: Array) -> Array:
 
 
 def losses(exponents: Array = EXPONENTS, ratios: Array = RATIOS) -> dict[tuple[str, str], Array]:
-    """Return the float64 errors in ulps, arrays (exponents, ratios), by (formula, closure)."""
+    """Float64 errors of the closed forms in ulps: {(formula, closure): array over (k, ω)}."""
     k, omega = np.meshgrid(exponents, ratios, indexing="ij")
     result = {}
     for closure in CLOSURES:

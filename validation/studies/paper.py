@@ -45,7 +45,7 @@ _UNITS = {"speed": "m/s", "peak": "N", "FWHM": "sites"}  # by the first word; µ
 
 
 def _error(error: float) -> str:
-    """Format an error; "set" for the quantity from which the theory takes its amplitude."""
+    """Format an error in per cent; "set" for the theory's input, exact within rounding."""
     return percent(error) if abs(error) > 1e-12 else "set"
 
 

@@ -56,7 +56,7 @@ def ample_half_period(masses: Pair, k: float) -> float:
     return length if masses[0] == masses[1] else max(8.0, 1.15 * length * widening(masses))
 
 
-def enough(masses: Pair, k: float, half_period: float) -> int:
+def points_needed(masses: Pair, k: float, half_period: float) -> int:
     """Return a number of points on 0 … L = ``half_period`` that resolves the wave to rounding."""
     # Points per site, in this order: for the pulse's width as k grows, for its steeper flanks at
     # large k, for the oscillation of light beads.
@@ -76,7 +76,7 @@ def rise(strain: Array, k: float, p0: float) -> Array:
 def respond(
     force: NDArray[np.complex128], inverse: Pair, half_period: float
 ) -> NDArray[np.complex128]:
-    """Return the coefficients of e^{iqξ}, q = 0 … πn/L, in c² a from those in F_a, by (*).
+    """Return the Fourier coefficients of c² a from those of F_a by (*); e^{iqξ}, q = 0 … πn/L.
 
     inverse : (1/m1, 1/m2). The mean of a is set to 0.
     """
@@ -88,23 +88,23 @@ def respond(
 
 
 def coefficients(force: Array) -> tuple[Array, Array]:
-    """Return the coefficients of cos qξ in E and of sin qξ in O, from F_a on a `circle`."""
+    """Return the coefficients of cos qξ in E and of sin qξ in O, from F_a on a `periodic_grid`."""
     n = len(force) // 2
     series = scipy.fft.rfft(force) / n
     series[[0, n]] /= 2
     return series.real, -series.imag
 
 
-def circle(half_period: float, n: int) -> Array:
+def periodic_grid(half_period: float, n: int) -> Array:
     """Return the 2n grid points ξ of a period: 0 … L, then from -L to 0."""
     return np.asarray(half_period / n * np.append(np.arange(n + 1), np.arange(1 - n, 0)))
 
 
 class Problem:
-    """Discrete wave equations: F_a = rise(a), with a from F_a by (*), on the points of a `circle`.
+    """The wave equations on a periodic grid: F_a = `rise` of the strain a, and a from F_a by (*).
 
     masses, k : (m1, m2) and the exponent. half_period, points : L, by default `ample_half_period`,
-    and the number of points on 0 … L, by default `enough`. p0 : background strain.
+    and the number of points on 0 … L, by default `points_needed`. p0 : background strain.
     """
 
     # F_a(0) = 1 - p0^k fixes c². The unknowns are c² and the forces F_a at ``count`` grid points:
@@ -120,11 +120,11 @@ class Problem:
     ) -> None:
         self.masses, self.k, self.p0 = masses, k, p0
         self.L = half_period or ample_half_period(masses, k)
-        self.n = points or enough(masses, k, self.L)
+        self.n = points or points_needed(masses, k, self.L)
         self.height = -math.expm1(k * math.log(p0)) if p0 else 1.0
         self.uniform = masses[0] == masses[1]
         self.count = self.n + 1 if self.uniform else 2 * self.n
-        self.xi = circle(self.L, self.n)[: self.count]
+        self.xi = periodic_grid(self.L, self.n)[: self.count]
         self.inverse = 1 / masses[0], 1 / masses[1]
 
     def forces(self, z: Array) -> Array:
@@ -132,7 +132,7 @@ class Problem:
         return np.append(z, z[self.n - 1 : 0 : -1]) if self.uniform else z
 
     def strains(self, z: Array, inverse: Pair) -> Array:
-        """Return c² a, 0 at L, at the first ``count`` grid points, from the unknown forces z."""
+        """Return c² a, shifted to 0 at L, at the first ``count`` grid points, from the forces z."""
         force = scipy.fft.rfft(self.forces(z))
         # Of equal masses the imaginary part is rounding, which 1/q² would enlarge.
         force = np.asarray(force.real if self.uniform else force, complex)

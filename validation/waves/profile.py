@@ -265,7 +265,7 @@ def at_unit_force(
     wave = ExactWave(masses, problem.k, c2, problem.L, even, odd, 0.0, 0.0, problem.p0)
     wave = wave.times(1 / (problem.p0 + wave.peak("strain")[1]))
     tail = 0.0 if problem.uniform else wave.odd_strain(OUTSIDE * problem.L)
-    xi = newton.circle(wave.half_period, 2 * problem.n)
+    xi = newton.periodic_grid(wave.half_period, 2 * problem.n)
     even, odd = newton.coefficients(wave.force(xi))
     again = replace(wave, even=even, odd=odd)
     off = float(np.abs(again.strain(xi) - wave.strain(xi)).max())

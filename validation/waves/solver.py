@@ -196,7 +196,7 @@ def _pressed(k: float, half_period: float | None, p0: float) -> tuple[ExactWave,
     ample = max(core, core / 2 + FALLEN / (2 * half_kappa))
     L = half_period or ample
     narrower = float(theory.fwhm(0.0, 1.0) / theory.fwhm(*load))
-    n = max(80, math.ceil(newton.enough(pair, k, L) * min(1, 1.3 * narrower)))
+    n = max(80, math.ceil(newton.points_needed(pair, k, L) * min(1, 1.3 * narrower)))
     problem = newton.Problem(pair, k, L, n, p0)
     if k > 3 and p0 < 0.5:  # the theory's wave is too wide: from the wave on a lower background
         lower = _uniform(k, None, max(0.0, p0 - LESS))
@@ -240,7 +240,7 @@ def _dimer(pair: Pair, k: float, half_period: float | None, progress: Progress[A
 
 def _rough(pair: Pair, k: float, half_period: float) -> int:
     """Return the number of points of a rough grid, on which branches can be distinguished."""
-    return max(newton.FEWEST, int(ROUGH * newton.enough(pair, k, half_period)))
+    return max(newton.FEWEST, int(ROUGH * newton.points_needed(pair, k, half_period)))
 
 
 def followed(begin: ExactWave, k: float) -> ExactWave:

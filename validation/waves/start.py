@@ -24,7 +24,7 @@ _STEP = 0.01  # grid of the struck chain's profile, in ξ
 _LONG = 2.0  # ample half periods on which the profile is kept
 
 Start = tuple[Array, float]
-"""Forces F_a on the circle of a `validation.waves.newton.Problem`, and c²."""
+"""Forces F_a on the grid of a `validation.waves.newton.Problem`, and c²."""
 
 
 def initial(problem: newton.Problem, wave: LatticeWave | None = None) -> Start:

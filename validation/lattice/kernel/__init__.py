@@ -1,4 +1,4 @@
-"""The compiled loops of the engine; `validation.lattice.engine` explains the method.
+"""The compiled loops that integrate a chain; `validation.lattice.engine` explains the method.
 
 Letters and words. y, v: displacements and velocities of the beads. δ: compression of a contact.
 p(x), x = 0 … 1: polynomial close to δ over one step; p_+ = max(p, 0). Kink: time at which a contact

@@ -15,7 +15,7 @@ _STILL = 1e-13  # in units of the greatest compression: beads that have moved le
 
 @part
 def _split(chain: Chain, beads: Beads, plan: Plan, h: float, lo: int, hi: int) -> None:
-    """Make a splitting step h of the beads lo … hi-1; y and v are updated in place."""
+    """Advance beads lo … hi-1 by a step h of a splitting scheme; y and v are updated in place."""
     kicks, drifts = plan.scheme.kicks, plan.scheme.drifts
     y, v, force, inverse = beads.y, beads.v, beads.force, chain.inverse
     for s in range(len(drifts)):
@@ -45,13 +45,13 @@ def _follow(chain: Chain, beads: Beads, plan: Plan, now: Any) -> None:
 
 
 def _built(sources: int) -> Any:
-    """Compile `advance`; ``sources`` is the hash of the source code that its cache is for."""
+    """Compile `advance`; its cache is for source code with the hash ``sources``."""
 
     @cached
     def advance(
         chain: Chain, beads: Beads, plan: Plan, knots: Knots, now: Any, tries: int
     ) -> tuple[float, int]:
-        """Integrate on to the end, for at most ``tries`` tried steps, or until the knots are full.
+        """Integrate to the end, or for at most ``tries`` tried steps, or until the knots are full.
 
         Returns the time that is reached, and ``sources``.
         """

@@ -1,4 +1,4 @@
-"""Arrays and numbers of the compiled loops."""
+"""Records that the compiled loops share: chain, beads, knots, tableau, plan and progress."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class Chain(NamedTuple):
 
 
 class Beads(NamedTuple):
-    """The state of the beads, and the memory of a step.
+    """The state of the beads, and the working memory of a step.
 
     y, v : displacements and velocities. next_y, next_v : those after the step that is tried.
     left : times at which a window has left the beads behind; infinite for beads in the window.

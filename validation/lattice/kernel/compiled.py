@@ -1,4 +1,4 @@
-"""Options of the compiler, and a cache of machine code that knows all sources of the kernel.
+"""Numba's options for the kernel, and a cache of machine code that is tied to all its files.
 
 Numba compiles a cached function again if the function's own file changes or a value in its closure,
 not if a function that it calls changes. So every cached function has `SOURCES` in its closure.

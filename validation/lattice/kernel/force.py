@@ -14,7 +14,7 @@ _NEGLIGIBLE = 1e-60  # in units of the greatest compression: less is 0, so that 
 
 
 def _loop(value: Any) -> Any:
-    """Return a compiled loop for the contact forces A value(d, k), d ≥ 0 the compression."""
+    """Compile a loop over contacts with the force A value(d, k), d ≥ 0 the compression."""
 
     @part
     def loop(chain: Chain, y: Array, f: Array, lo: int, hi: int, least: float) -> None:
@@ -67,7 +67,7 @@ def contact_forces(
 
 @part
 def power(chain: Chain, d: float) -> float:
-    """Return [d]_+^k."""
+    """Return the power [d]_+^k of a compression d, 0 for an open contact, d < 0."""
     d = max(d, 0.0)
     return float(d * np.sqrt(d) if chain.k == 1.5 else d**chain.k)
 

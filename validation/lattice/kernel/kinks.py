@@ -1,4 +1,4 @@
-"""A contact that opens or closes within a step or near it (a kink of the force).
+"""Kinks of the force, where a contact opens or closes in a step or near it, and their integrals.
 
 F = A δ^k has no derivative of order k + 1 at a kink. Over the step, x = 0 … 1, the compression δ is
 approximated by the quintic p(x) with the values of δ, δ' and δ'' at both ends. If p has exactly one
@@ -30,8 +30,7 @@ def quintic(c: Quintic, x: float) -> float:
 
 @part
 def fitted_quintic(d: float, v: float, a: float, end: float, end_v: float, end_a: float) -> Quintic:
-    """Return the quintic with value d, slope v and second derivative a at x = 0, and end, end_v and
-    end_a at x = 1."""
+    """Return the quintic of value d, slope v, second derivative a at 0; end, end_v, end_a at 1."""
     c2 = a / 2
     # c3, c4 and c5 solve the conditions at x = 1, of which d, v and c2 leave r0, r1 and r2.
     r0, r1, r2 = end - d - v - c2, end_v - v - 2 * c2, end_a - 2 * c2

@@ -32,7 +32,7 @@ _SLIGHT = 10.0  # least effect of a contact that is corrected, in units of the t
 def _add_up(
     sums: Array, q: Any, force: Array, row: Array, scale: float, stages: int, lo: int, hi: int
 ) -> None:
-    """Compute sums[q] = scale Σ_j row[j] force[j] for stages j = 0 … ``stages`` - 1."""
+    """Compute a weighted sum of forces, sums[q] = scale Σ_j row[j] force[j], 0 ≤ j < ``stages``."""
     sums[q, lo] = 0.0
     for first in range(0, stages, WIDTH):
         a, b, c = scale * row[first], scale * row[first + 1], scale * row[first + 2]

@@ -1,4 +1,4 @@
-"""The motion of watched beads between knots, the ends of steps.
+"""Interpolated motion of the watched beads within steps, between knots (the ends of steps).
 
 Within a step a displacement is the polynomial of degree 7 with y, y', y'' and y''' at both ends
 (Hermite). If a contact of the bead opens or closes, the double integral of the contact's p_+^k
@@ -35,7 +35,7 @@ Four = tuple[float, float, float, float]
 
 @part
 def store_knot(chain: Chain, beads: Beads, plan: Plan, knots: Knots, now: Any, hi: int) -> None:
-    """Append a knot, the present motion of the watched beads."""
+    """Store the present motion of the watched beads as the next knot."""
     if len(knots.watched) == 0:
         return
     if len(plan.scheme.nodes) == 0:  # a splitting leaves no forces of the step's end
@@ -60,7 +60,7 @@ def _compression(chain: Chain, knots: Knots, n: int, q: int) -> tuple[float, flo
 
 @part
 def _kink(chain: Chain, points: Array, knots: Knots, n: int, q: int) -> Quintic:
-    """Return the opening or closing (`kink`) in step n of the contact ahead of row q, or `NONE`."""
+    """Return the `kink` in step n of the contact ahead of the bead of row q, or `NONE`."""
     if points.shape[1] == 0 or q < 0:
         return NONE
     h = knots.time[n + 1] - knots.time[n]
@@ -158,7 +158,7 @@ def _units(chain: Chain, knots: Knots, q: int, h: float) -> tuple[float, float]:
 
 
 def _built(sources: int) -> Any:
-    """Compile `interpolate`; ``sources`` is the hash of the source code that its cache is for."""
+    """Compile `interpolate`; its cache is for source code with the hash ``sources``."""
 
     @cached
     def interpolate(
