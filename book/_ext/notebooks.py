@@ -12,6 +12,7 @@ import os
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from importlib import import_module
 from pathlib import Path
 
 import nbformat
@@ -174,5 +175,7 @@ def setup(app: Sphinx) -> dict[str, bool]:
     """Sphinx's hook."""
     # for the kernels: their matrices are small, and threads that wait for each other burn time
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    # Matplotlib lists the fonts of a new machine, and says so on stderr, before a cell would
+    import_module("matplotlib.font_manager")
     app.connect("html-page-context", offer, priority=100)  # before the theme's buttons
     return {"parallel_read_safe": True, "parallel_write_safe": True}
