@@ -18,10 +18,10 @@ STATES = ("displacements", "velocities")
 
 
 def drawn(seed):
-    """1 to 120 beads; k from 1 to 4; gaps, walls, gravity, load; several strikers or none; mass
+    """1 to 260 beads; k from 1 to 4; gaps, walls, gravity, load; several strikers or none; mass
     ratios to 1e4, stiffness ratios to 1e3."""
     random = np.random.default_rng((22, seed))
-    n = int(np.exp(random.uniform(0, np.log(121))))
+    n = int(np.exp(random.uniform(0, np.log(261))))
     k = random.choice([1, 1.1, 1.25, 1.5, 2, 3, 4, random.uniform(1, 1.6), random.uniform(1, 4)])
     period = n if random.random() < 0.5 else random.integers(1, 4)
     spread, stiffer = random.choice([0, 1, 4]), random.choice([0, 1, 3])
@@ -54,7 +54,7 @@ def drawn(seed):
         samples=301, **rest,
     )  # fmt: skip
     time = Motion(Scene(**scene, duration=1)).scales.time
-    cycles = 10 ** random.uniform(0.5, 2.3 if n < 12 else 1.6)
+    cycles = 10 ** random.uniform(0.5, 2.1 if n < 12 else 1.5)
     reached = min(n, int(3 + cycles))
     contacts = min(reached, n - 1 + ("wall" in rest))
     return Scene(
@@ -104,13 +104,13 @@ def check(seed):
         assert error < 10 * rtol * amplification, (seed, rtol)
 
 
-@pytest.mark.parametrize("seed", [300, 301, 302, 304])
+@pytest.mark.parametrize("seed", range(900, 908))
 def test_a_few_random_scenes(seed):
     check(seed)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("batch", range(20))
+@pytest.mark.parametrize("batch", range(30))
 def test_many_random_scenes(batch):
-    for seed in range(batch, 300, 20):
+    for seed in range(batch, 900, 30):
         check(seed)
