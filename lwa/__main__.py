@@ -7,8 +7,7 @@ import signal
 from importlib import import_module
 from types import FrameType
 
-INTERRUPTED = 128 + signal.SIGINT
-"""Exit status after Ctrl-C, as in shells."""
+from lwa.base.errors import INTERRUPTED
 
 
 def start(name: str, module: str) -> None:

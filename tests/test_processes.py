@@ -18,7 +18,7 @@ from pathlib import Path
 import pytest
 
 from lwa import __version__
-from lwa.__main__ import INTERRUPTED
+from lwa.base.errors import INTERRUPTED
 from lwa.command.terminal import CLOSED
 
 LWA = (sys.executable, "-m", "lwa")

@@ -55,8 +55,8 @@ def _read_json(text: str) -> Any:
     return json.loads(text, object_pairs_hook=_refuse_repeated)
 
 
-def content(file: Path, most: int) -> bytes:
-    """Read a regular file of at most ``most`` bytes.
+def content(file: Path, most: int = 10**9) -> bytes:
+    """Read a regular file of at most ``most`` bytes, by default a gigabyte.
 
     Raises `OSError` if it cannot be read, and `lwa.InputError` for a folder, a pipe or a device
     (nothing is read then) and for a larger file.

@@ -5,7 +5,6 @@ from __future__ import annotations
 import errno
 import io
 import os
-import signal
 import sys
 from collections.abc import Mapping, Sequence
 from importlib import import_module
@@ -13,13 +12,12 @@ from typing import Any
 
 import click
 
-from lwa.base.errors import InputError, NoSolitaryWave
+from lwa.base.errors import INTERRUPTED, InputError, NoSolitaryWave
 
 HELP = {"help_option_names": ["-h", "--help"]}
 """Settings of a command: both ways to ask for help."""
 
-# Exit statuses as in shells: 128 and the number of the signal, SIGPIPE's 13 and SIGINT's 2
-CLOSED, INTERRUPTED = 128 + 13, 128 + signal.SIGINT
+CLOSED = 128 + 13  # exit status as in shells: 128 and SIGPIPE's number, which Windows lacks
 
 version = click.version_option(package_name="lwa", message="%(prog)s %(version)s")
 """The option ``--version`` of a command."""

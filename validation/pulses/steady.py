@@ -53,7 +53,6 @@ TOLERANCES = (1e-6, 1e-5)  # of the accurate run and of the one that gives its e
 FARTHER = 4  # times as far as the last place: where the pulse must still be the highest
 STEADY = 0.1  # largest difference from the force that the decay predicts there, over this force
 _WEAKEST = 1 / 50  # peak force of the slowest pulse for which a run is long enough
-_MOST_BYTES = 10**9
 _FORMAT = {"format": "lwa sweep", "version": 3}  # changes with the definition of a quantity
 
 Key = tuple[sp.Rational, sp.Rational]  # k and ω of a point
@@ -219,7 +218,7 @@ class PointFile:
 
         Raises `lwa.InputError` for another sweep's file, or one that is damaged.
         """
-        text = content(self.path, _MOST_BYTES) if self.path.exists() else b""
+        text = content(self.path) if self.path.exists() else b""
         if not self.header.startswith(text) and not text.startswith(self.header):
             wanted = self.header.decode().strip()
             raise InputError(f"{self.path} does not begin with {wanted}: choose another name")

@@ -55,9 +55,6 @@ def each(reader: Reader) -> Reader:
     )
 
 
-_MOST_BYTES = 10**9
-
-
 def columns(path: str | Path, *wanted: str, optional: Sequence[str] = ()) -> dict[str, Array]:
     """Read columns of a CSV file with a header; return each, (N,), by its name without unit.
 
@@ -65,7 +62,7 @@ def columns(path: str | Path, *wanted: str, optional: Sequence[str] = ()) -> dic
     file without a wanted column, and for entries that are no finite numbers.
     """
     try:
-        text = files.content(Path(path), _MOST_BYTES).decode("utf-8-sig")
+        text = files.content(Path(path)).decode("utf-8-sig")
         header, *rows = [row for row in csv.reader(text.splitlines()) if row] or [[]]
     except (OSError, UnicodeDecodeError, csv.Error, SceneError) as error:
         raise SceneError(f"{path}: {files.reason(error)}") from None

@@ -125,7 +125,6 @@ def _print_example(context: click.Context, given: click.Parameter, name: str | N
 STORED = (".json", ".npz")  # suffixes of files with the scene and the result
 SUFFIXES = (*STORED, ".csv")
 RECORDS = tuple(name for name in Records.__dataclass_fields__ if name != "scene")
-_MOST_BYTES = 10**9
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -166,7 +165,7 @@ def load(path: str | Path) -> Stored:
         raise SceneError(f"{path}: a stored run is a file ending in {' or '.join(STORED)}")
     try:
         if suffix == ".npz":
-            with np.load(io.BytesIO(files.content(file, _MOST_BYTES))) as archive:
+            with np.load(io.BytesIO(files.content(file))) as archive:
                 document = json.loads(str(archive["document"]))
                 arrays = {name: archive[name] for name in RECORDS}
         else:
