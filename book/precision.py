@@ -36,7 +36,6 @@ SCENES = {
 }
 METHODS: dict[str, tuple[dict[str, Any], Sequence[int]]] = {
     "RKN86": ({}, range(4, 12)),
-    "RKN86, window": ({"window": True}, range(4, 11)),
     "SRKN14": ({"method": "SRKN14"}, range(4, 10)),
     "SciPy DOP853": ({"method": "DOP853"}, (5, 7)),
 }
@@ -61,8 +60,6 @@ def work_precision() -> dict[tuple[str, str], list[tuple[float, float]]]:
     for name, scene in SCENES.items():
         truth = _peak(simulate(scene, rtol=1e-13))
         for label, (options, tolerances) in METHODS.items():
-            if "window" in label and "closed" in name:
-                continue
             simulate(scene, rtol=1e-4, **options)  # compiles
             for n in tolerances:
                 start = time.process_time()

@@ -34,7 +34,7 @@ def passage(scene: Scene, rtol: float = 1e-6) -> Passage:
         V = speed(first, second, b - a)
         return {"speed": V, "fwhm": second.fwhm * V, "force": second.peak, "strain": deepest}
 
-    run, check = twice(scene, rtol, 10 * rtol, window=False)
+    run, check = twice(scene, rtol, 10 * rtol)
     return Passage(
         **compared(numbers, run, check),
         energy_drift=run.energy_drift,

@@ -15,28 +15,22 @@ step.
 
 Piston: a first bead of infinite mass. Its work is its velocity times the impulse of its contact.
 
-Window: beads ahead of the front have not moved yet and are always left out. A window of N beads
-also leaves out the beads more than N behind the front: their energy is still counted, their motion
-is NaN. A second run, with a window of 2N beads, shows how much the leading pulse depends on N. The
-second run is returned, with NaN for the beads outside the first run's window.
+Front: beads ahead of the front have not moved yet and are left out.
 """
 
 from __future__ import annotations
 
 import math
 import sys
-from dataclasses import replace
 from functools import lru_cache
 from typing import Any
 
 import numpy as np
 import scipy
 
-from lwa.base.arrays import Array
 from validation.lattice.equations import Motion
 from validation.lattice.kernel.advance import advance
 from validation.lattice.kernel.arrays import (
-    BLOCK,
     MARGIN,
     SHORTEST,
     WIDTH,
@@ -48,7 +42,6 @@ from validation.lattice.kernel.arrays import (
 )
 from validation.lattice.knots import Recorder
 from validation.lattice.run import (
-    WINDOW_CHANGE,
     IntegrationError,
     Run,
     RunProgress,
@@ -59,9 +52,8 @@ from validation.lattice.run import (
 )
 from validation.lattice.schemes import SCHEMES, Pair
 from validation.lattice.signal import recorded, sampled
-from validation.scenes.checks import SceneError, integer, positive
+from validation.scenes.checks import positive
 
-_SUPPORTS = 8  # supports of the long-wave pulse in a window of the engine's choice
 _POINTS = 8  # nodes of the quadrature at a kink
 _NOISE = sys.float_info.epsilon  # in units of the greatest value: a bead that moves less is still
 _BETWEEN_REPORTS = 5e7  # bead evaluations between two reports of progress: some tenths of a second
@@ -72,73 +64,10 @@ _EXTRA_STEPS = 100  # added to the expected number of steps: a first step of a p
 
 
 def follow(
-    motion: Motion, method: str, rtol: float, step: float | None, window: Any, progress: RunProgress
+    motion: Motion, method: str, rtol: float, step: float | None, progress: RunProgress
 ) -> Run:
     """Integrate a scene by a method of `SCHEMES`; the arguments are those of `simulate`."""
-    beads = _window(motion, window)
     plan, most = _plan(motion, method, rtol, step)
-
-    def integrated(window: int, followed: Array | None = None) -> tuple[Run, Array]:
-        plan_of_window = plan._replace(window=window if window < motion.size else 0)
-        return _integrated(motion, method, plan_of_window, most, progress, followed)
-
-    if beads is None:
-        return integrated(0)[0]
-    short, left = integrated(beads)
-    long, _ = integrated(2 * beads, left)
-    _compare(motion, rtol, short, long)
-    return replace(long, window=beads)
-
-
-def _window(motion: Motion, window: Any) -> int | None:
-    """Return the number of beads to integrate behind the front; None for the whole chain."""
-    if window is False:
-        return None
-    if motion.scene.wall is not None or (motion.k == 1 and window is True):
-        raise SceneError(
-            f"window is {window}: behind a wall, and at k = 1, waves come back; "
-            "the whole chain is wanted"
-        )
-    if window is True:
-        # π/β with β = (k-1) √(6/(k(k+1))) of equal beads and D = 1, √10/5 at k = 3/2
-        support = math.pi / (motion.k - 1) * math.sqrt(motion.k * (motion.k + 1) / 6)
-        beads = math.ceil(min(_SUPPORTS * support, motion.size)) + MARGIN
-    else:
-        beads = integer(window, "window", BLOCK)
-    return beads if beads < motion.size else None
-
-
-def _compare(motion: Motion, rtol: float, short: Run, long: Run) -> None:
-    """Raise `IntegrationError` if a longer window of beads changes the leading pulse.
-
-    The velocities of both runs at the end are compared, from the fastest bead to the front.
-    """
-    followed = np.isfinite(short.velocities)
-    v, longer_v = short.velocities[followed], long.velocities[followed]
-    leading = slice(int(np.argmax(np.abs(longer_v))), None)
-    change = np.abs(v - longer_v)[leading].max() / motion.scales.velocity
-    if change > WINDOW_CHANGE * rtol:
-        raise IntegrationError(
-            f"a window of {short.window} beads is too short: twice as many change the leading "
-            f"pulse by {change:.1g} where rtol is {rtol:g}; more or the whole chain is wanted"
-        )
-
-
-def _integrated(
-    motion: Motion,
-    method: str,
-    plan: Plan,
-    most: int,
-    progress: RunProgress,
-    followed: Array | None,
-) -> tuple[Run, Array]:
-    """Integrate a scene in at most ``most`` steps.
-
-    followed : for each bead the time after which its records are NaN, or infinity; by default the
-        time at which the moving window of integrated beads leaves the bead.
-
-    Returns the run and these times.
-    """
     n, end, stages = motion.size, motion.scene.duration, SCHEMES[method].stages
     chain = _chain(motion)
     beads = _start(motion, len(chain.A))
@@ -160,21 +89,16 @@ def _integrated(
     state = np.concatenate((beads.y[:n], beads.v[:n], paid))
     if not np.isfinite(state).all():
         raise IntegrationError(f"the motion overflows: a step of {plan.h:g} is too long")
-    left = beads.left if followed is None else followed
-    path = recorder.path(left)
-    run = finished(
+    return finished(
         motion,
         state,
         {"time": time} | recorded(motion, needed, recorder.y, recorder.v),
-        motion.balance(state, int(now["lo"])) + float(now["lost"]),
+        motion.balance(state),
         steps=int(now["steps"]),
-        behind=np.isfinite(left[:n]),
         evaluations=int(now["tries"]) * stages,
         bead_evaluations=int(now["evaluations"]),
-        window=plan.window or None,
-        path=path,
+        path=recorder.path(),
     )
-    return run, left
 
 
 @lru_cache
@@ -192,7 +116,7 @@ def _tableau(method: str, k: float) -> Tableau:
 
 
 def _plan(motion: Motion, method: str, rtol: float, step: float | None) -> tuple[Plan, int]:
-    """Return the integration plan for the whole chain, and the greatest number of steps."""
+    """Return the integration plan, and the greatest number of steps."""
     scheme, scales, end = SCHEMES[method], motion.scales, motion.scene.duration
     longest = math.inf if step is None else positive(step, "step")
     if isinstance(scheme, Pair):
@@ -213,7 +137,6 @@ def _plan(motion: Motion, method: str, rtol: float, step: float | None) -> tuple
         deepest=scales.compression,
         quickest=motion.stiffnesses.max(initial=0.0) / motion.masses.min(),
         size=motion.size,
-        window=0,
     )
     return plan, most
 
@@ -241,7 +164,7 @@ def _front(motion: Motion) -> int:
 def _start(motion: Motion, padded: int) -> Beads:
     """Build the kernel's initial state, arrays with room for ``padded`` + 1 beads."""
     n = motion.size
-    y, v, next_y, next_v, left = np.zeros((5, padded + 1))
-    y[:n], v[:n], left[:] = motion.start[:n], motion.start[n : 2 * n], np.inf
+    y, v, next_y, next_v = np.zeros((4, padded + 1))
+    y[:n], v[:n] = motion.start[:n], motion.start[n : 2 * n]
     sums, force = np.zeros((4, padded + 1)), np.zeros((2 * WIDTH, padded + 1))
-    return Beads(y, v, next_y, next_v, left, force, sums)
+    return Beads(y, v, next_y, next_v, force, sums)

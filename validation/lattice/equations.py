@@ -98,19 +98,16 @@ class Motion:
         push[1:] += excess[: self.size - 1]
         return np.concatenate((v, push / self.masses))
 
-    def energy(self, state: Array, first: int = 0) -> float:
-        """Return kinetic plus elastic energy less the work of the static forces; 0 in equilibrium.
-
-        The elastic energy of contacts with numbers below ``first`` is left out.
-        """
+    def energy(self, state: Array) -> float:
+        """Return kinetic and elastic energy less the static forces' work; 0 in equilibrium."""
         compression, v = self.compression(state[: self.size]), state[self.size : 2 * self.size]
         energies = self.contact.energy(compression) - self.contact.energy(self.rest)
         stored = self.stiffnesses * energies - self.load * (compression - self.rest)
-        return float(self.masses @ v**2 / 2 + stored[first:].sum())
+        return float(self.masses @ v**2 / 2 + stored.sum())
 
-    def balance(self, state: Array, first: int = 0) -> float:
+    def balance(self, state: Array) -> float:
         """Return `energy` plus dissipated energy less a drive's work, conserved in exact motion."""
-        return self.energy(state, first)
+        return self.energy(state)
 
     @property
     def drive_energy(self) -> float:
@@ -192,8 +189,8 @@ class ForcedMotion(Motion):
             work = v[0] * (self.masses[0] * acceleration[0] - push[0])
         return np.concatenate((v, acceleration, (((force - elastic) * rate).sum(), work)))
 
-    def balance(self, state: Array, first: int = 0) -> float:
-        gained = self.energy(state, first) - self.energy(self.start)
+    def balance(self, state: Array) -> float:
+        gained = self.energy(state) - self.energy(self.start)
         dissipated, work = state[2 * self.size :]
         return float(self.scales.energy + gained + dissipated - work)
 

@@ -24,14 +24,12 @@ _MOST_BYTES = 2**28  # bytes of knots that a run keeps
 class KnotPath:
     """A `validation.lattice.signal.Path` through knots (`validation.lattice.kernel.samples`).
 
-    points : nodes and weights of the quadrature at kinks. left : times at which a window left the
-    watched beads behind, infinite for beads inside the window.
+    points : nodes and weights of the quadrature at kinks.
     """
 
     chain: Chain
     points: Array
     knots: Knots
-    left: Array
 
     @property
     def time(self) -> Array:
@@ -44,8 +42,6 @@ class KnotPath:
         step = np.searchsorted(self.time[1:-1], time, side="right")
         y, v = np.empty((2, len(rows), len(time)))
         interpolate(self.chain, self.points, self.knots, rows, time, step, y, v)
-        late = time > self.left[rows, None]
-        y[late] = v[late] = np.nan
         return y, v
 
 
@@ -64,7 +60,6 @@ class Recorder:
         most = 2 + _BUFFER // (3 * len(watched) + 1)
         self.knots = Knots(np.empty(most), watched, np.empty((most, len(watched), 3)))
         self.y, self.v = np.empty((2, len(needed), len(time)))
-        self.left = np.full(len(watched), np.inf)
         self.parts: list[tuple[Array, Array]] = []
         self.done = self.size = 0
 
@@ -77,7 +72,7 @@ class Recorder:
         if not len(watched):
             return 0
         part = time[:count].copy(), state[:count].copy()
-        path = KnotPath(self.chain, self.points, Knots(part[0], watched, part[1]), self.left)
+        path = KnotPath(self.chain, self.points, Knots(part[0], watched, part[1]))
         due = int(np.searchsorted(self.time, part[0][-1], side="right"))
         now = slice(self.done, due)
         self.y[:, now], self.v[:, now] = path(self.needed, self.time[now])
@@ -89,13 +84,8 @@ class Recorder:
         time[0], state[0] = time[count - 1], state[count - 1]
         return 1
 
-    def path(self, left: Array) -> KnotPath | None:
-        """Return the motion of the whole run; None if the knots take more than `_MOST_BYTES` bytes.
-
-        left : time at which a window left each bead of the chain; later samples become NaN.
-        """
-        late = self.time > left[self.needed, None]
-        self.y[late] = self.v[late] = np.nan
+    def path(self) -> KnotPath | None:
+        """Return the motion of the whole run; None if it takes more than `_MOST_BYTES` bytes."""
         if not self.parts:
             return None
         # Each part begins with the last knot of the part before.
@@ -103,5 +93,4 @@ class Recorder:
             np.concatenate((arrays[0], *(array[1:] for array in arrays[1:])))
             for arrays in zip(*self.parts, strict=True)
         )
-        watched = self.knots.watched
-        return KnotPath(self.chain, self.points, Knots(time, watched, state), left[watched])
+        return KnotPath(self.chain, self.points, Knots(time, self.knots.watched, state))

@@ -31,7 +31,6 @@ _MOST = 10  # sensors of one kind that are drawn as curves; more are drawn as a 
 _FINEST = 1000  # places, and times, of a map
 MOST_STEPS = 1e9
 MOST_BYTES = 4e9
-WINDOW_CHANGE = 10.0  # in units of rtol: greatest change of the leading pulse by a longer window
 EXCESS = 10  # times as many steps as are expected, at which an adaptive method is stopped
 _FEWEST = 100  # steps that an adaptive method takes to find its step, however slow the motion
 # (a, q): about a rtol^{-1/q} steps in a scene's shortest time √(m/spring), counted on uniform
@@ -56,8 +55,7 @@ def silent() -> AbstractContextManager[Callable[[float], object]]:
 class Records(ArrayValue, Pictured):
     """Records of the sensors of a scene; S is the number of samples.
 
-    Forces are total: the static force of gravity and precompression is included. Entries that were
-    not computed, because a window had left the sensor, are NaN.
+    Forces are total: the static force of gravity and precompression is included.
 
     time : (S,), sample times.
     contact_force, compression : (contacts, S), at the scene's contact sensors; the compression of a
@@ -151,13 +149,11 @@ class Run(Records):
 
     displacements, velocities : (n,), of all beads at the end.
     energy_drift : change of the energy above equilibrium divided by its initial value (0 if this is
-        0); beads that a window has left behind keep their energy.
+        0).
     momentum_drift : change of the momentum divided by Σ m|v| at the end; None with a wall or drive.
     evaluations : number of evaluations of the equations of motion.
     bead_evaluations : sum over these evaluations of the number of beads that moved.
     step : mean step.
-    window : number of beads integrated behind the front; values of beads further behind are NaN.
-        None for the whole chain.
     path : motion of the beads near sensors throughout the run, for `signal`.
     dissipated, work : energy that damped contacts have turned into heat, and work of the drive.
     """
@@ -169,7 +165,6 @@ class Run(Records):
     evaluations: int
     bead_evaluations: int
     step: float
-    window: int | None = None
     path: Path | None = field(default=None, compare=False)
     dissipated: float = 0.0
     work: float = 0.0
@@ -197,17 +192,14 @@ def finished(
     energy: float,
     *,
     steps: int,
-    behind: slice | Array = np.s_[:0],
     **fields: Any,
 ) -> Run:
     """Return the `Run` of a motion with the final state ``end`` and the final ``energy``.
 
-    behind : beads that a window left behind, whose final state is NaN. fields : further fields of
-    the `Run`.
+    fields : further fields of the `Run`.
     """
     n, before = motion.size, motion.scales.energy
     displacements, velocities = end[:n].copy(), end[n : 2 * n].copy()
-    displacements[behind] = velocities[behind] = np.nan
     arrays: dict[str, Any] = records | {"displacements": displacements, "velocities": velocities}
     for array in arrays.values():
         array.setflags(write=False)

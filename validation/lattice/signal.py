@@ -30,7 +30,7 @@ class Path(Protocol):
     """The motion of some beads as a function of time, throughout a run.
 
     Called with the numbers of neighbouring beads and with times (S,) within the run, a path returns
-    displacements and velocities (beads, S); NaN from the time at which a window left the bead.
+    displacements and velocities (beads, S).
     """
 
     @property
@@ -85,7 +85,7 @@ class Signal:
     times : increasing times from 0 to the duration, the ends of steps and the openings and closings
         of the sensor's contacts. The signal is smooth between neighbouring times.
 
-    Values are NaN outside the run, and after a window has left the sensor.
+    Values are NaN outside the run.
     """
 
     times: Array

@@ -43,7 +43,6 @@ def simulate(
     atol: float = 1e-9,
     method: str = COMPILED[0],
     step: float | None = None,
-    window: bool | int = False,
     progress: RunProgress = silent,
 ) -> Run:
     """Integrate a scene and return the records of its sensors.
@@ -56,17 +55,12 @@ def simulate(
         peak. Both ignore ``atol``. For SciPy's methods rtol, atol bound the local error per step.
     method : one of `COMPILED` or of `METHODS`. A scene with damping or a drive, whose forces depend
         on velocities or time, takes one of `METHODS`, by default DOP853; a drive of constant
-        velocity, a piston, takes the RKN pair as well, without a window.
+        velocity, a piston, takes the RKN pair as well.
     step : greatest step of a compiled method; by default ``rtol`` determines the steps.
-    window : number of beads that a compiled method integrates behind the front of a leading pulse,
-        or True for eight supports of the long-wave pulse; the chain must have no wall. A run with
-        this window and a run with twice as many beads are made. The numbers of the second run are
-        returned, NaN for beads outside the first run's window. By default the whole chain.
     progress : function that opens a display, which is called with the finished fraction of the run.
 
     Raises `SceneError` for invalid arguments and for too many steps or too much memory
-    (`validation.lattice.run.most_steps`). Raises `IntegrationError` when the integrator fails, or
-    when the longer window changes the leading pulse by more than ten times ``rtol``.
+    (`validation.lattice.run.most_steps`). Raises `IntegrationError` when the integrator fails.
 
     >>> scene = Scene(masses=(1, 1), stiffnesses=(1,), k=1.5, duration=9, velocities=(1,))
     >>> simulate(scene).velocities.round(6) + 0.0  # equal masses exchange their velocities
@@ -76,28 +70,26 @@ def simulate(
     """
     if not isinstance(scene, Scene):
         raise SceneError(f"scene is {shorten(scene)}: a Scene is wanted")
-    method = _method(scene, one_of(method, COMPILED + METHODS, "method"), step, window)
+    method = _method(scene, one_of(method, COMPILED + METHODS, "method"), step)
     rtol, atol = between(rtol, "rtol", 1e-13, 1e-2), between(atol, "atol", 1e-13, 1e-2)
     with np.errstate(over="ignore", invalid="ignore"):  # the result is checked
         motion = motion_of(scene)
         if method in COMPILED:
             from validation.lattice.engine import follow  # start-up: numba takes its time
 
-            run = follow(motion, method, rtol, step, window, progress)
+            run = follow(motion, method, rtol, step, progress)
         else:
             run = integrate(motion, method, rtol, atol, progress)
-        # NaN is legitimate behind a window; there the engine itself raises for an overflow
-        add = np.nansum if run.window else np.sum
-        sums = [float(add(getattr(run, name))) for name in _FINITE]
+        sums = [float(np.sum(getattr(run, name))) for name in _FINITE]
     if not all(map(math.isfinite, (run.energy_drift, *sums))):
         raise IntegrationError("the motion overflows: choose other units")
     return run
 
 
-def _method(scene: Scene, method: str, step: float | None, window: bool | int) -> str:
+def _method(scene: Scene, method: str, step: float | None) -> str:
     """Return the method that integrates a scene, in place of the RKN pair DOP853 if need be.
 
-    Raises `SceneError` for a scene, step or window that the method does not take.
+    Raises `SceneError` for a scene or step that the method does not take.
     """
     forced, drive = scene.damping is not None or scene.drive is not None, scene.drive
     piston = scene.damping is None and drive is not None and drive.velocity is not None
@@ -108,9 +100,8 @@ def _method(scene: Scene, method: str, step: float | None, window: bool | int) -
         raise SceneError(
             f"method is {method}: a scene with damping or a drive takes one of {', '.join(takes)}"
         )
-    for name, value in (("step", step), ("window", window or None)):
-        if value is not None and (method in METHODS or (piston and name == "window")):
-            raise SceneError(f"{name} is {shorten(value)}: {method} takes none in this scene")
+    if step is not None and method in METHODS:
+        raise SceneError(f"step is {shorten(step)}: {method} takes none in this scene")
     return method
 
 

@@ -153,20 +153,15 @@ def first_passage(signal: Signal, level: float) -> float:
 
 
 class _Grid:
-    """Values of a signal at `_POINTS` points in each smooth interval; -∞ where it is not known."""
+    """Values of a signal at `_POINTS` points in each smooth interval."""
 
     def __init__(self, signal: Signal, end: float = math.inf) -> None:
         times = signal.times[: np.searchsorted(signal.times, end, side="right")]
         between = times[:-1, None] + np.diff(times)[:, None] * (np.arange(_POINTS) / _POINTS)
         self.signal, self.t = signal, np.append(between.ravel(), times[-1])
-        f = signal(self.t)
-        self.f = np.where(np.isnan(f), -np.inf, f)
-        if not self.f.max() > _NOISE * np.nanmax(np.abs(f), initial=0.0):
-            raise MeasureError(
-                "not followed: a window had left the sensor"
-                if np.isnan(f).any()
-                else "no pulse is in the record: its signal is nowhere positive"
-            )
+        self.f = signal(self.t)
+        if not self.f.max() > _NOISE * np.abs(self.f).max():
+            raise MeasureError("no pulse is in the record: its signal is nowhere positive")
 
     def pulses(
         self, start: int = 0, stop: int | None = None, shares: Sequence[float] = (0.5,)
@@ -189,8 +184,6 @@ class _Grid:
             side = "back" if place else "front"
             raise MeasureError(f"{_PARTLY} its {side} does not pass half its peak")
         before, after = int(below[place - 1]), int(below[place])
-        if np.isinf(f[[before, after]]).any():
-            raise MeasureError("not followed: a window had left the sensor before the pulse passed")
         return self.crossing(before, level), self.crossing(after - 1, level)
 
     def crossing(self, i: int, level: float) -> float:

@@ -2,8 +2,7 @@
 
 Forces are dynamic: the static force of gravity and precompression is subtracted. Every number of a
 recording is measured in two runs, the second with a tolerance `LESS` times as large; the error is
-the difference, and at least the tolerance of the first run (`WINDOW_CHANGE` times as much with a
-window, as a longer window may change the pulse by this).
+the difference, and at least the tolerance of the first run.
 """
 
 from __future__ import annotations
@@ -18,7 +17,7 @@ import numpy as np
 
 from lwa.base.arrays import Array
 from validation.lattice.equations import Motion
-from validation.lattice.run import WINDOW_CHANGE, Run, RunProgress, silent
+from validation.lattice.run import Run, RunProgress, silent
 from validation.lattice.simulate import COMPILED, twice
 from validation.pulses.pulse import (
     Measured,
@@ -89,7 +88,6 @@ def record(
     method: str = COMPILED[0],
     rtol: Any = TOLERANCE,
     every: bool = False,
-    window: bool | int = False,
     progress: RunProgress = silent,
 ) -> Recording:
     """Simulate a scene and measure the pulses at its sensors.
@@ -105,15 +103,13 @@ def record(
             f"rtol is {rtol:g}: rounding of the static compression, {motion.rest.max():.1g}, takes "
             f"{lost:.1g} of the motion; {lost / _ROUNDING:.1g} or more is wanted"
         )
-    options = {"method": method, "window": window, "progress": progress}
-    run, check = twice(scene, rtol, LESS * rtol, **options)
-    least = rtol if run.window is None else WINDOW_CHANGE * rtol
+    run, check = twice(scene, rtol, LESS * rtol, method=method, progress=progress)
     pairs = tuple(zip(tracks(run), tracks(check, every=2), strict=True))
     neighbours = (two for two in pairwise(pairs) if two[0][0].kind == two[1][0].kind)
     return Recording(
         run,
-        tuple(reading for pair in pairs for reading in _readings(pair, every, least)),
-        tuple(_speed(*two, least) for two in neighbours),
+        tuple(reading for pair in pairs for reading in _readings(pair, every, rtol)),
+        tuple(_speed(*two, rtol) for two in neighbours),
     )
 
 

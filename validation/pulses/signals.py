@@ -25,7 +25,7 @@ class MeasureError(InputError):
 
 
 class Signal(Protocol):
-    """A function of time, called with times of any shape; NaN where it is not known."""
+    """A function of time, called with times of any shape."""
 
     @property
     def times(self) -> Array:

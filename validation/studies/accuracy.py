@@ -1,8 +1,7 @@
 """Speed against error: CPU time and error of integrators on fixed tasks.
 
-A task is a pulse that is measured at one contact far away. The engine's methods run on the whole
-chain and, where no wave comes back, on a window that moves with the pulse; SciPy's methods run on
-the whole chain, each at several tolerances. The error is the largest relative one of arrival time,
+A task is a pulse that is measured at one contact far away. The engine's methods and SciPy's run at
+several tolerances each. The error is the largest relative one of arrival time,
 peak force and FWHM, against the exact wave or the engine at its finest tolerance. The cost is CPU
 time without compilation. `tests/benchmarks` measures other packages and checks the references by an
 integrator of its own.
@@ -13,7 +12,6 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import groupby, takewhile
@@ -25,7 +23,7 @@ import numpy as np
 import sympy as sp
 
 from lwa.base.progress import Progress
-from validation.lattice.run import IntegrationError, Run
+from validation.lattice.run import Run
 from validation.lattice.simulate import COMPILED, simulate
 from validation.pictures import Curve, Panel
 from validation.pulses.pulse import MeasureError, Pulse, highest_pulse
@@ -168,8 +166,8 @@ CASES = tuple(
 class Timing:
     """Error and CPU time of one run.
 
-    method : name of the integrator, with "window" where the run had one. setting : tolerance.
-    errors : relative error of each of `READINGS`; infinite without a pulse. seconds : CPU time.
+    method : name of the integrator. setting : tolerance. errors : relative error of each of
+    `READINGS`; infinite without a pulse. seconds : CPU time.
     """
 
     task: str
@@ -214,17 +212,13 @@ def runs(
 ) -> Iterator[Timing]:
     """Run a task by each method at each tolerance; yield the `Timing` of each run."""
     for method, tolerances in methods.items():
-        windowed = method in COMPILED and task.scene.wall is None
-        for window in (False, True) if windowed else (False,):
-            options: dict[str, Any] = {"method": method.split()[-1], "window": window}
-            if method in COMPILED:
-                simulate(task.scene, rtol=1e-3, **options)  # compiles
-            for rtol in tolerances:
-                once = partial(simulate, task.scene, rtol=rtol, atol=rtol, **options)
-                with suppress(IntegrationError):  # two windows differ
-                    run, seconds = timed(once)
-                    title = method + ", window" * window
-                    yield Timing(name, title, rtol, task.errors(run, truth), seconds)
+        integrator = method.split()[-1]
+        if method in COMPILED:
+            simulate(task.scene, rtol=1e-3, method=integrator)  # compiles
+        for rtol in tolerances:
+            once = partial(simulate, task.scene, rtol=rtol, atol=rtol, method=integrator)
+            run, seconds = timed(once)
+            yield Timing(name, method, rtol, task.errors(run, truth), seconds)
 
 
 _RUNS = ("task", "method", "setting", "error", *(f"{name}_error" for name in READINGS), "seconds")

@@ -110,10 +110,8 @@ def _place(reading: Reading) -> tuple[Any, ...]:
 
 
 def _numbers(reading: Reading, names: Sequence[str]) -> list[Any]:
-    """Return the cells of a reading; "not followed" where a window had left the sensor."""
-    numbers = [reading.numbers.get(name) for name in names]
-    left = (reading.missing or "").startswith("not followed")
-    return ["not followed", *numbers[1:]] if left else numbers
+    """Return the cells of a reading."""
+    return [reading.numbers.get(name) for name in names]
 
 
 def _print_example(context: click.Context, given: click.Parameter, name: str | None) -> None:
@@ -208,14 +206,6 @@ _RTOL = "Relative tolerance. Errors are differences to a run with 1000 times thi
     option("--method", default=COMPILED[0], type=_METHODS, says=_INTEGRATOR),
     option("--rtol", default=TOLERANCE, says=_RTOL),
     option(
-        "--window",
-        type=int,
-        is_flag=False,
-        flag_value=0,
-        metavar="[BEADS]",
-        says="Follow the leading pulse only, with at least so many beads behind its front.",
-    ),
-    option(
         "--pulses",
         is_flag=True,
         default=False,
@@ -228,7 +218,6 @@ def run(
     out: Path | None,
     method: str,
     rtol: float,
-    window: int | None,
     pulses: bool,
     run_progress: RunProgress,
 ) -> Report:
@@ -239,10 +228,7 @@ def run(
     sensors = chain.bead_sensors or chain.contact_sensors
     if out is not None and out.suffix.lower() not in STORED and not sensors:
         raise SceneError(f"out is {out}, but the scene names no sensors")
-    options: Any = {"method": method, "rtol": rtol, "progress": run_progress}
-    if window is not None:
-        options["window"] = window or True
-    recording = record(chain, every=pulses, **options)
+    recording = record(chain, method=method, rtol=rtol, every=pulses, progress=run_progress)
     result = report(recording, every=pulses)
     if out is not None:
         store(recording.run, result.document(), out)

@@ -78,16 +78,6 @@ def test_a_signal_survives_a_pickle(method):
     assert np.array_equal(again.signal("contact", 0)(t), run.signal("contact", 0)(t))
 
 
-def test_behind_a_window_a_signal_is_not_a_number():
-    scene = Scene(
-        masses=(1,) * 160, stiffnesses=(1,) * 159, k=1.5, velocities=(1,), duration=130,
-        contact_sensors=(20,), samples=4001,
-    )  # fmt: skip
-    run = simulate(scene, rtol=1e-6, window=24)
-    force = run.signal("contact", 20)
-    assert np.array_equal(np.isnan(force(run.time)), np.isnan(run.contact_force[0]))
-
-
 def test_a_missing_sensor_or_quantity_is_refused():
     run = simulate(LINEAR)
     for arguments, message in (

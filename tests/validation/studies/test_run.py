@@ -2,21 +2,15 @@
 
 import csv
 import io
-import json
-import re
-from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from lwa import InputError
-from tests.commands import ended
-from validation import cli
-from validation.pulses.sensors import READINGS, record
+from validation.pulses.sensors import record
 from validation.scenes.chains import struck
 from validation.scenes.forcing import Damping
 from validation.scenes.scene import Scene
-from validation.scenes.scenefile import document
 from validation.studies.run import report
 
 
@@ -86,37 +80,6 @@ def test_every_pulse_of_a_train_is_listed():
     (first,) = record(scene).sensors
     assert first.numbers == found.sensors[0].numbers
     assert "pulse" not in report(record(scene)).document()["sensors"][0]
-
-
-@pytest.fixture(scope="module")
-def two_blows():
-    """The leading pulse starts within the chain: a window never sees the one from bead 0."""
-    velocities = [{0: 0.3, 150: 1.0}.get(i, 0.0) for i in range(300)]
-    return replace(
-        struck((1,), 300, duration=100, contact_sensors=(40, 200)), velocities=velocities
-    )
-
-
-@pytest.mark.parametrize("window", [12, 24])
-def test_the_table_of_a_window_has_numbers_of_the_leading_pulse_only(two_blows, window):
-    """Beside the whole chain, and beside a longer window: the difference is in the errors."""
-    found = record(two_blows, window=window)
-    behind, ahead = report(found).document()["sensors"]
-    assert behind["missing"].startswith("not followed: a window had left the sensor")
-    assert [behind[f"{name}_value"] for name in READINGS] == [None, None, None]
-    assert re.search(r"contact 41 +not followed +- +-\n", report(found).text())
-    assert np.isnan(found.run.contact_force[0]).any()
-    assert report(found).document()["speeds"][0]["speed_value"] is None
-    for other in (record(two_blows), record(two_blows, window=48)):
-        for name, number in other.sensors[1].numbers.items():
-            assert abs(ahead[f"{name}_value"] - number.value) <= ahead[f"{name}_error_value"]
-
-
-def test_a_window_that_changes_the_leading_pulse_is_an_error(two_blows, capsys, folder):
-    (folder / "scene.json").write_text(json.dumps(document(two_blows)))
-    status, out, err = ended(capsys, cli.main, "run", "scene.json", "--window", "8")
-    assert (status, out, err.count("\n")) == (2, "", 1)
-    assert "twice as many change the leading pulse by 0.8 where rtol is 1e-10" in err
 
 
 def test_a_damped_run_states_the_dissipated_energy():

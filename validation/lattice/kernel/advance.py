@@ -1,4 +1,4 @@
-"""The loop over the steps of an integration, the range of moving beads, and splitting steps."""
+"""The loop over the steps of an integration, the front of the motion, and splitting steps."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import Any
 
 from validation.lattice.kernel.arrays import BLOCK, MARGIN, SHORTEST, Beads, Chain, Knots, Plan
 from validation.lattice.kernel.compiled import ONE, SOURCES, ZERO, cached, index, part
-from validation.lattice.kernel.force import contact_forces, elastic_energy
+from validation.lattice.kernel.force import contact_forces
 from validation.lattice.kernel.pair import accepted
 from validation.lattice.kernel.samples import store_knot
 
@@ -14,34 +14,25 @@ _STILL = 1e-13  # in units of the greatest compression: beads that have moved le
 
 
 @part
-def _split(chain: Chain, beads: Beads, plan: Plan, h: float, lo: int, hi: int) -> None:
-    """Advance beads lo … hi-1 by a step h of a splitting scheme; y and v are updated in place."""
+def _split(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) -> None:
+    """Advance beads 0 … hi-1 by a step h of a splitting scheme; y and v are updated in place."""
     kicks, drifts = plan.scheme.kicks, plan.scheme.drifts
     y, v, force, inverse = beads.y, beads.v, beads.force, chain.inverse
     for s in range(len(drifts)):
         if s > 0:  # the first kick is 0
-            contact_forces(chain, beads, plan, y, ZERO, lo, hi)
+            contact_forces(chain, beads, plan, y, ZERO, hi)
         b, a = h * kicks[s], h * drifts[s]
-        for i in range(index(lo), index(hi)):
+        for i in range(index(hi)):
             u = v[i] + b * (force[ZERO, i] - force[ZERO, i + ONE]) * inverse[i]
             v[i] = u
             y[i] = y[i] + a * u
 
 
 @part
-def _follow(chain: Chain, beads: Beads, plan: Plan, now: Any) -> None:
-    """Move the front to the first bead that is still, and a window's rear after the front.
-
-    ``now`` adds up the energy of contacts, ``beads`` stores the time of beads that a window leaves.
-    """
+def _follow(beads: Beads, plan: Plan, now: Any) -> None:
+    """Move the front to the first bead that is still."""
     while now.front < plan.size and abs(beads.y[now.front - MARGIN]) > _STILL * plan.deepest:
         now.front += 1
-    while plan.window > 0 and now.front - now.lo > plan.window:
-        lo = now.lo
-        now.lost += elastic_energy(chain, beads, lo)
-        beads.left[lo] = now.t
-        beads.force[:, lo + 1] = 0.0
-        now.lo = lo + 1
 
 
 def _built(sources: int) -> Any:
@@ -58,24 +49,24 @@ def _built(sources: int) -> Any:
         until, pair = now.tries + tries, len(plan.scheme.nodes) > 0
         stages = max(len(plan.scheme.nodes), len(plan.scheme.drifts)) - 1
         if now.tries == 0:
-            contact_forces(chain, beads, plan, beads.y, ZERO, now.lo, plan.size)
+            contact_forces(chain, beads, plan, beads.y, ZERO, plan.size)
         if now.stored == 0:
             store_knot(chain, beads, plan, knots, now, plan.size)
         while now.t < plan.end and now.tries < until and now.stored < len(knots.time):
-            hi = now.lo + max(SHORTEST, -(-(now.front - now.lo) // BLOCK) * BLOCK)
+            hi = max(SHORTEST, -(-now.front // BLOCK) * BLOCK)
             now.tries += 1
-            now.evaluations += stages * (hi - now.lo)
+            now.evaluations += stages * hi
             h = now.h
             later = now.t + h if pair else (now.steps + 1) * h
             if later > plan.end - 1e-9 * h:
                 later, h = plan.end, plan.end - now.t
             if not pair:
-                _split(chain, beads, plan, h, now.lo, hi)
+                _split(chain, beads, plan, h, hi)
             elif not accepted(chain, beads, plan, now, h, hi):
                 continue
             now.steps += 1
             now.t = later
-            _follow(chain, beads, plan, now)
+            _follow(beads, plan, now)
             store_knot(chain, beads, plan, knots, now, hi)
         return now.t, sources
 

@@ -40,7 +40,6 @@ class Beads(NamedTuple):
     """The state of the beads, and the working memory of a step.
 
     y, v : displacements and velocities. next_y, next_v : those after the step that is tried.
-    left : times at which a window has left the beads behind; infinite for beads in the window.
     force : (stages, padded + 1), force on each bead from behind, less the static force, by stage.
     sums : (4, padded + 1), sums over stages. Row 0: intermediate results. Row 1: impulse of each
         contact in a step. Rows 2 and 3: error estimates of each contact's moment and impulse.
@@ -50,7 +49,6 @@ class Beads(NamedTuple):
     v: Array
     next_y: Array
     next_v: Array
-    left: Array
     force: Array
     sums: Array
 
@@ -59,7 +57,7 @@ class Knots(NamedTuple):
     """The motion of W watched beads at up to C knots, the ends of steps.
 
     time : (C,), times of the knots. watched : (W,), increasing numbers of the beads. state :
-    (C, W, 3), displacement, velocity and acceleration; NaN for a bead that a window has left.
+    (C, W, 3), displacement, velocity and acceleration.
     """
 
     time: Array
@@ -86,13 +84,12 @@ class Tableau(NamedTuple):
 
 
 class Plan(NamedTuple):
-    """Plan of an integration: the scheme, its tolerances and steps, and the range of beads.
+    """Plan of an integration: the scheme, its tolerances and steps, and the number of beads.
 
     y, v : tolerances, the errors of displacement and velocity allowed in a step. h : first step of
     an embedded pair, fixed step of a splitting. longest : greatest step of an embedded pair. end :
     duration. deepest : greatest compression. quickest : greatest stiffness divided by the least
-    mass. size : number of beads. window : number of beads that are integrated behind the front; 0
-    for the whole chain.
+    mass. size : number of beads.
     """
 
     scheme: Tableau
@@ -104,11 +101,10 @@ class Plan(NamedTuple):
     deepest: float
     quickest: float
     size: int
-    window: int
 
 
-_COUNTS = ("steps", "tries", "evaluations", "front", "lo", "stored")
-_REALS = ("t", "h", "lost", "impulse")
+_COUNTS = ("steps", "tries", "evaluations", "front", "stored")
+_REALS = ("t", "h", "impulse")
 _PROGRESS = np.dtype([(name, int) for name in _COUNTS] + [(name, float) for name in _REALS])
 
 
@@ -117,9 +113,8 @@ def initial_progress(plan: Plan, front: int) -> Any:
 
     front : number of the first bead that is still. Fields: t, h : time, next step. steps, tries :
     numbers of steps made and tried. evaluations : sum, over all evaluations of the forces, of the
-    number of beads moved. front, lo : first bead ahead of the motion, and first bead of the window.
-    stored : number of stored knots. lost : elastic energy of contacts that a window cut. impulse :
-    ∫ (F - static force) dt of the first contact, computed by an embedded pair only.
+    number of beads moved. front : first bead ahead of the motion. stored : number of stored knots.
+    impulse : ∫ (F - static force) dt of the first contact, computed by an embedded pair only.
     """
     now = np.zeros(1, _PROGRESS)[0]
     now["front"], now["h"] = front, plan.h

@@ -17,9 +17,9 @@ def _loop(value: Any) -> Any:
     """Compile a loop over contacts with the force A value(d, k), d ≥ 0 the compression."""
 
     @part
-    def loop(chain: Chain, y: Array, f: Array, lo: int, hi: int, least: float) -> None:
+    def loop(chain: Chain, y: Array, f: Array, hi: int, least: float) -> None:
         A, rest, load, k = chain.A, chain.rest, chain.load, chain.k
-        for i in range(index(lo), index(hi)):
+        for i in range(index(hi)):
             d = rest[i] + y[i] - y[i + ONE]
             d = d if d > least else 0.0
             f[i + ONE] = A[i] * value(d, k) - load[i]
@@ -37,32 +37,30 @@ _power = _loop(part(lambda d, k: d**k))
 
 
 @part
-def contact_forces(
-    chain: Chain, beads: Beads, plan: Plan, y: Array, s: Any, lo: int, hi: int
-) -> None:
-    """Compute the forces of the contacts ahead of beads lo … hi-1, less the static forces.
+def contact_forces(chain: Chain, beads: Beads, plan: Plan, y: Array, s: Any, hi: int) -> None:
+    """Compute the forces of the contacts ahead of beads 0 … hi-1, less the static forces.
 
     y : displacements. The result goes to row s (stage) of ``beads.force``, in column i + 1 for the
     contact ahead of bead i.
     """
     f, least = beads.force[s], _NEGLIGIBLE * plan.deepest
     if chain.generated:
-        for i in range(index(lo), index(hi)):
+        for i in range(index(hi)):
             d = chain.rest[i] + y[i] - y[i + ONE]
             closed = chain.A[i] > 0.0 and (chain.pulls or d > 0.0)
             f[i + ONE] = (chain.A[i] * call(chain.force, d) if closed else 0.0) - chain.load[i]
     elif chain.k == 1.5:
-        _hertz(chain, y, f, lo, hi, least)
+        _hertz(chain, y, f, hi, least)
     elif chain.k == 1.0:
-        _linear(chain, y, f, lo, hi, least)
+        _linear(chain, y, f, hi, least)
     elif chain.k == 1.25:
-        _five_quarters(chain, y, f, lo, hi, least)
+        _five_quarters(chain, y, f, hi, least)
     elif chain.k == 2.0:
-        _square(chain, y, f, lo, hi, least)
+        _square(chain, y, f, hi, least)
     elif chain.k == 3.0:
-        _cube(chain, y, f, lo, hi, least)
+        _cube(chain, y, f, hi, least)
     else:
-        _power(chain, y, f, lo, hi, least)
+        _power(chain, y, f, hi, least)
 
 
 @part
@@ -90,12 +88,3 @@ def relative_acceleration(force: Array, inverse: Array, i: int) -> float:
     """Return the acceleration of bead i minus that of bead i + 1, from the forces of a stage."""
     behind, ahead = force[i] - force[i + 1], force[i + 1] - force[i + 2]
     return float(behind * inverse[i] - ahead * inverse[i + 1])
-
-
-@part
-def elastic_energy(chain: Chain, beads: Beads, i: int) -> float:
-    """Return the elastic energy of contact i in a chain without static load."""
-    d = max(beads.y[i] - beads.y[i + 1], 0.0)
-    if chain.generated:
-        return float(chain.A[i] * call(chain.energy, beads.y[i] - beads.y[i + 1]))
-    return float(chain.A[i] * power(chain, d) * d / (chain.k + 1.0))

@@ -30,26 +30,26 @@ _SLIGHT = 10.0  # least effect of a contact that is corrected, in units of the t
 
 @part
 def _add_up(
-    sums: Array, q: Any, force: Array, row: Array, scale: float, stages: int, lo: int, hi: int
+    sums: Array, q: Any, force: Array, row: Array, scale: float, stages: int, hi: int
 ) -> None:
     """Compute a weighted sum of forces, sums[q] = scale Σ_j row[j] force[j], 0 ≤ j < ``stages``."""
-    sums[q, lo] = 0.0
+    sums[q, ZERO] = 0.0
     for first in range(0, stages, WIDTH):
         a, b, c = scale * row[first], scale * row[first + 1], scale * row[first + 2]
         d, e = scale * row[first + 3], scale * row[first + 4]
         j = index(first)
         j1, j2, j3, j4 = j + ONE, j + index(2), j + index(3), j + index(4)
-        for i in range(index(lo) + ONE, index(hi) + ONE):
+        for i in range(ONE, index(hi) + ONE):
             four = a * force[j, i] + b * force[j1, i] + c * force[j2, i] + d * force[j3, i]
             five = four + e * force[j4, i]
             sums[q, i] = five if first == 0 else sums[q, i] + five
 
 
 @summed
-def _squared_error(sums: Array, inverse: Array, lo: int, hi: int) -> float:
+def _squared_error(sums: Array, inverse: Array, hi: int) -> float:
     """Return the sum of squares of the beads' errors, in units of the tolerances."""
     total = 0.0
-    for i in range(index(lo), index(hi)):
+    for i in range(index(hi)):
         y = (sums[TWO, i] - sums[TWO, i + ONE]) * inverse[i]
         v = (sums[THREE, i] - sums[THREE, i + ONE]) * inverse[i]
         total += y * y + v * v
@@ -57,31 +57,31 @@ def _squared_error(sums: Array, inverse: Array, lo: int, hi: int) -> float:
 
 
 @part
-def _attempt(chain: Chain, beads: Beads, plan: Plan, lo: int, h: float, hi: int) -> float:
-    """Try a step of the beads lo … hi-1; return the error in units of the tolerance."""
+def _attempt(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) -> float:
+    """Try a step of the beads 0 … hi-1; return the error in units of the tolerance."""
     stages = len(plan.scheme.nodes)
     y, v, next_y, next_v = beads.y, beads.v, beads.next_y, beads.next_v
     inverse, rest, force, sums = chain.inverse, chain.rest, beads.force, beads.sums
     rows, ends, nodes = plan.scheme.rows, plan.scheme.ends, plan.scheme.nodes
     for s in range(1, stages):
-        _add_up(sums, ZERO, force, rows[s], h * h, s, lo, hi)
+        _add_up(sums, ZERO, force, rows[s], h * h, s, hi)
         ch = nodes[s] * h
         behind = 0.0
-        for i in range(index(lo), index(hi)):
+        for i in range(index(hi)):
             ahead = sums[ZERO, i + ONE]
             next_y[i] = y[i] + ch * v[i] + (behind - ahead) * inverse[i]
             behind = ahead
-        contact_forces(chain, beads, plan, next_y, index(s), lo, hi)
-    _add_up(sums, ONE, force, ends[0], h, stages, lo, hi)
-    _add_up(sums, TWO, force, ends[1], h * h / plan.y, stages, lo, hi)
-    _add_up(sums, THREE, force, ends[2], h / plan.v, stages, lo, hi)
-    for i in range(index(lo), index(hi)):
+        contact_forces(chain, beads, plan, next_y, index(s), hi)
+    _add_up(sums, ONE, force, ends[0], h, stages, hi)
+    _add_up(sums, TWO, force, ends[1], h * h / plan.y, stages, hi)
+    _add_up(sums, THREE, force, ends[2], h / plan.v, stages, hi)
+    for i in range(index(hi)):
         next_v[i] = v[i] + (sums[ONE, i] - sums[ONE, i + ONE]) * inverse[i]
     # Mark contacts that open or close within the step or near it, with a force that matters.
     # A compression δ changes a velocity by at most h A δ^k/m in a step.
     least = (_SLIGHT * plan.v / (h * plan.quickest)) ** (1.0 / chain.k)
     near = 0
-    for i in range(index(lo), index(hi)):
+    for i in range(index(hi)):
         before = rest[i] + y[i] - y[i + ONE]
         after = rest[i] + next_y[i] - next_y[i + ONE]
         most = max(before, after)
@@ -89,16 +89,16 @@ def _attempt(chain: Chain, beads: Beads, plan: Plan, lo: int, h: float, hi: int)
         sums[ZERO, i + ONE] = most if kinked else 0.0
         near += 1 if kinked else 0
     if near > 0 and plan.scheme.points.shape[1] > 0:
-        _correct_kinks(chain, beads, plan, lo, h, hi)
-    return math.sqrt(_squared_error(sums, inverse, lo, hi))
+        _correct_kinks(chain, beads, plan, h, hi)
+    return math.sqrt(_squared_error(sums, inverse, hi))
 
 
 @part
-def _correct_kinks(chain: Chain, beads: Beads, plan: Plan, lo: int, h: float, hi: int) -> None:
+def _correct_kinks(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) -> None:
     """Correct a step at the contacts that are marked by a compression above 0 in sums[0]."""
     y, v, next_y, next_v = beads.y, beads.v, beads.next_y, beads.next_v
     inverse, rest = chain.inverse, chain.rest
-    for i in range(lo, hi):
+    for i in range(hi):
         most = beads.sums[0, i + 1]
         if most > 0.0:
             within = (rest[i] + y[i] - y[i + 1]) * (rest[i] + next_y[i] - next_y[i + 1]) < 0.0
@@ -178,7 +178,7 @@ def _pair_sums(chain: Chain, scheme: Tableau, p: Quintic) -> tuple[float, float,
 @part
 def accepted(chain: Chain, beads: Beads, plan: Plan, now: Any, h: float, hi: int) -> bool:
     """Try a step, set the next step from the error, and return True if the step is accepted."""
-    error = _attempt(chain, beads, plan, now.lo, h, hi)
+    error = _attempt(chain, beads, plan, h, hi)
     # The error scales as h^{lower + 1}; safety factor 0.9 and growth by at most 5: Hairer, Nørsett
     # and Wanner, Solving Ordinary Differential Equations I, II.4.
     if not error <= 1.0:
@@ -187,10 +187,10 @@ def accepted(chain: Chain, beads: Beads, plan: Plan, now: Any, h: float, hi: int
         if not error < 1e9:
             beads.force[1:] = 0.0  # overflows must not last
         return False
-    for i in range(index(now.lo), index(hi)):
+    for i in range(index(hi)):
         beads.y[i], beads.v[i] = beads.next_y[i], beads.next_v[i]
-    contact_forces(chain, beads, plan, beads.y, ZERO, now.lo, hi)
-    now.impulse += beads.sums[ONE, ONE] if now.lo == 0 else 0.0
+    contact_forces(chain, beads, plan, beads.y, ZERO, hi)
+    now.impulse += beads.sums[ONE, ONE]
     grow = 0.9 * max(error, 1e-9) ** (-1.0 / (plan.scheme.lower + 1))
     now.h = min(plan.longest, h * min(5.0, grow))
     return True

@@ -39,14 +39,12 @@ def store_knot(chain: Chain, beads: Beads, plan: Plan, knots: Knots, now: Any, h
     if len(knots.watched) == 0:
         return
     if len(plan.scheme.nodes) == 0:  # a splitting leaves no forces of the step's end
-        contact_forces(chain, beads, plan, beads.y, ZERO, now.lo, hi)
+        contact_forces(chain, beads, plan, beads.y, ZERO, hi)
     knots.time[now.stored] = now.t
     for q in range(len(knots.watched)):
         j, state = knots.watched[q], knots.state[now.stored, q]
-        state[0] = beads.y[j] if j >= now.lo else np.nan
-        state[1] = beads.v[j] if j >= now.lo else np.nan
         force = beads.force[0, j] - beads.force[0, j + 1]
-        state[2] = force * chain.inverse[j] if j >= now.lo else np.nan
+        state[0], state[1], state[2] = beads.y[j], beads.v[j], force * chain.inverse[j]
     now.stored += 1
 
 
@@ -88,8 +86,7 @@ def _rate(chain: Chain, knots: Knots, n: int, q: int, side: float) -> float:
 def _knot(chain: Chain, knots: Knots, n: int, q: int, h: float, side: float) -> Four:
     """Return y, y', y'' and y''' of the bead of row q at knot n, in units of time h."""
     state = knots.state[n, q]
-    back, ahead = _rate(chain, knots, n, q - 1, side), _rate(chain, knots, n, q, side)
-    jerk = (0.0 if math.isnan(back) else back) - ahead
+    jerk = _rate(chain, knots, n, q - 1, side) - _rate(chain, knots, n, q, side)
     return (
         state[0],
         h * state[1],
