@@ -14,7 +14,7 @@ import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar
 
 import mpmath
 import sympy as sp
@@ -47,11 +47,23 @@ TAKEN = {**RESERVED, "A": "the stiffness of a contact", "p0": "the strain ahead 
 
 
 class ContactLaw(Value):
-    """A contact force F(δ): base of `Power` and `Law`; ``homogeneous`` if F(sδ) = s^k F(δ)."""
+    """A contact force F(δ): base of `Power` and `Law`; ``homogeneous`` if F(sδ) = s^k F(δ).
+
+    name, parameters : those of `named`; "" and () for a law without a name.
+    """
 
     F: sp.Expr
     delta: sp.Symbol
+    name: str
+    parameters: tuple[sp.Expr, ...]
     homogeneous: ClassVar[bool] = False
+
+    @property
+    def text(self) -> str:
+        """Name and parameters as `read_law` reads them, such as "hertz2:1,2"; F without a name."""
+        if not self.name:
+            return str(self.F)
+        return ":".join(filter(None, (self.name, ",".join(map(str, self.parameters)))))
 
     def latex_rows(self) -> list[str]:
         return latex.rows({f"F({sp.latex(self.delta)})": self.F})
@@ -139,7 +151,7 @@ class ContactLaw(Value):
         """
         share = force / cell.stiffnesses[0]
         free = share.free_symbols | self.F.free_symbols - {self.delta}
-        demand_numbers(free, f"the load under {self.F} needs numbers")
+        demand_numbers(free, f"the load under the law {self.text} needs numbers")
         with mpmath.workdps(50):
             root = growing_root(self.F - share, self.delta)
             if root is None:
@@ -147,7 +159,7 @@ class ContactLaw(Value):
             # 35 digits leave 15 of the rise of a wave that is 1e-20 of the load.
             return sp.Float(root, 35)
 
-    def replaced(self, new: Mapping[sp.Symbol, sp.Expr]) -> Self:
+    def replaced(self, new: Mapping[sp.Symbol, sp.Expr]) -> ContactLaw:
         """The law with the values that `lwa.cell.substitution` gives for its symbols."""
         raise NotImplementedError
 
@@ -158,12 +170,14 @@ class Power(ContactLaw):
 
     k: sp.Expr
     F: sp.Expr = field(init=False, repr=False)
-    delta: sp.Symbol = field(init=False, repr=False)
+    delta: sp.Symbol = field(init=False, repr=False, default=DELTA)
+    name: str = field(init=False, repr=False, default="power")
+    parameters: tuple[sp.Expr, ...] = field(init=False, repr=False)
     homogeneous: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         k = exponent(self.k)
-        for name, value in (("k", k), ("F", DELTA**k), ("delta", DELTA)):
+        for name, value in (("k", k), ("F", DELTA**k), ("parameters", (k,))):
             object.__setattr__(self, name, value)
 
     @property
@@ -201,11 +215,12 @@ class Power(ContactLaw):
         return Power(self.k.xreplace(new))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Law(ContactLaw):
     """A law F(δ) given by a SymPy expression and its symbol ``delta`` of the compression.
 
-    Raises `lwa.InputError` if F′ = 0, and for text, which is not evaluated.
+    Laws of one F are equal, whether `named` made them or not. Raises `lwa.InputError` if F′ = 0,
+    and for text, which is not evaluated.
 
     >>> x = sp.Symbol("x", positive=True)
     >>> Law(x + x**2, x).phi(2)
@@ -214,6 +229,13 @@ class Law(ContactLaw):
 
     F: sp.Expr
     delta: sp.Symbol = DELTA
+    name: str = field(init=False, default="", compare=False)
+    parameters: tuple[sp.Expr, ...] = field(init=False, default=(), compare=False)
+
+    def __repr__(self) -> str:
+        if self.name:
+            return f"named({', '.join(map(repr, (self.name, *self.parameters)))})"
+        return f"Law(F={self.F}, delta={self.delta})"
 
     def __post_init__(self) -> None:
         if not isinstance(self.delta, sp.Symbol):
@@ -227,7 +249,9 @@ class Law(ContactLaw):
         if self.slope().is_zero:
             raise InputError(f"F is {shorten(self.F)}: a force that depends on δ is wanted")
 
-    def replaced(self, new: Mapping[sp.Symbol, sp.Expr]) -> Law:
+    def replaced(self, new: Mapping[sp.Symbol, sp.Expr]) -> ContactLaw:
+        if self.name:
+            return named(self.name, *(x.xreplace(dict(new)) for x in self.parameters))
         for symbol in self.symbols:
             _check_parameter(new.get(symbol, symbol), str(symbol), self.delta)
         return Law(self.F.xreplace(dict(new)), self.delta)
@@ -239,7 +263,7 @@ def general() -> Law:
     >>> general().F
     F(delta)
     """
-    return Law(sp.Function("F")(DELTA), DELTA)
+    return _remembered(Law(sp.Function("F")(DELTA)), "general")
 
 
 def phi_symbol(n: int) -> sp.Symbol:
@@ -250,7 +274,7 @@ def phi_symbol(n: int) -> sp.Symbol:
 def refuse_two_laws(k: Any, law: ContactLaw) -> None:
     """Raise `lwa.InputError` for an exponent beside a law, which already determines the force."""
     if k != symbol_k:
-        raise InputError(f"k is {shorten(k)} and law {shorten(law)}: one of them is wanted")
+        raise InputError(f"k is {shorten(k)} and law {law.text}: one of them is wanted")
 
 
 _HERTZ = sp.Rational(3, 2)
@@ -298,7 +322,14 @@ def named(name: str, *parameters: Any) -> ContactLaw:
         for value, place in zip(given, places, strict=True)
     ]
     force = build(*values)
-    return force if isinstance(force, ContactLaw) else Law(force)
+    return force if isinstance(force, ContactLaw) else _remembered(Law(force), name, *values)
+
+
+def _remembered(law: Law, name: str, *parameters: sp.Expr) -> Law:
+    """Give a new law its name and parameters."""
+    object.__setattr__(law, "name", name)
+    object.__setattr__(law, "parameters", parameters)
+    return law
 
 
 def read_law(value: Any, name: str) -> ContactLaw:

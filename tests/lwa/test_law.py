@@ -1,6 +1,7 @@
 """Any contact law: a power law gives the power's results, the linear part is Bloch's, and the
 nonlinear part is compared with the chain's difference equation, expanded independently."""
 
+import pickle
 from fractions import Fraction
 
 import pytest
@@ -9,7 +10,7 @@ import sympy as sp
 from lwa import Cell, Dimer, Dispersion, InputError, Law, Power, general, homogenize
 from lwa.algebra.jets import GradedSeries
 from lwa.equation.energy import energy
-from lwa.law import NAMES, named
+from lwa.law import NAMES, named, read_law
 
 x = sp.Symbol("x")
 y = sp.Symbol("y", positive=True)
@@ -198,12 +199,17 @@ def test_a_law_is_a_value():
     assert homogenize(Dimer("m1", "m2"), law=Power("k")) == homogenize(Dimer("m1", "m2"))
     assert homogenize(Cell([1]), law=Power("3/2")) == homogenize(Cell([1]), k="3/2")
     assert theory.pde.in_field({2: "alpha"}).at(a=1).law == named("exponential", 1)
+    kept = pickle.loads(pickle.dumps(theory.at(a="1/2").law))
+    assert (kept.text, repr(kept)) == ("exponential:1/2", "named('exponential', 1/2)")
+    assert kept == Law(kept.F)
+    assert not Law(kept.F).name
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_every_name_has_its_derivatives_and_energy(name):
     law = named(name)
     assert law.phi(2) != 0
+    assert read_law(law.text, "law") == law
     if name != "general":
         at = {symbol: sp.Rational(i, 5) + 2 for i, symbol in enumerate(law.symbols)}
         values = (law.energy.diff(law.delta), law.F)

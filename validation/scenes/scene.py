@@ -135,9 +135,9 @@ class Scene:
         if not isinstance(law, ContactLaw):
             raise SceneError(f"law is {shorten(law)}: a law of lwa.law is wanted")
         if self.k is not _MISSING and self.k != 1:
-            raise SceneError(f"k is {shorten(self.k)} and law {law.F}: one of them is wanted")
+            raise SceneError(f"k is {shorten(self.k)} and law {law.text}: one of them is wanted")
         if law.symbols or law.formless:
-            raise SceneError(f"law is {law.F}: the lattice needs numbers in place of symbols")
+            raise SceneError(f"law is {law.text}: the lattice needs numbers in place of symbols")
         if law.homogeneous:
             object.__setattr__(self, "law", None)
         object.__setattr__(self, "k", float(law.exponent))

@@ -67,19 +67,16 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from contextlib import suppress
 from dataclasses import asdict
 from functools import partial
-from itertools import pairwise, product
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
-import sympy as sp
-
-from lwa.base.exact import InputError, shorten
+from lwa.base.exact import shorten
 from lwa.base.files import load
 from lwa.base.tables import Reader, Table, among, array, each, entries, place, places, table
-from lwa.law import NAMES, ContactLaw, named, read_law
+from lwa.law import NAMES, ContactLaw, read_law
 from lwa.spheres.beads import read_beads, read_materials
 from lwa.spheres.hertz import Material, Sphere, stiffness
 from validation.scenes.checks import SceneError, columns, finite, integer, positive
@@ -308,16 +305,7 @@ def _period(source: Scene) -> int:
 
 
 def _law_text(law: ContactLaw) -> str:
-    """Return a law as text, such as "hertz2:1,2"; `SceneError` for a law without a name.
-
-    The parameters are searched among the numbers in F, their negatives and their reciprocals.
-    """
-    numbers = {x for x in law.F.atoms(sp.Number) if x}
-    numbers |= {1 / x for x in numbers} | {sp.S.One}
-    numbers |= {-x for x in numbers} | {sp.S.Zero}
-    for title in NAMES:
-        for values in product(sorted(numbers), repeat=len(named(title).symbols)):
-            with suppress(InputError):
-                if named(title, *values) == law:
-                    return f"{title}:{','.join(map(str, values))}"
-    raise SceneError(f"law is {law.F}: a file holds the laws {', '.join(NAMES)}")
+    """Return a law as text, such as "hertz2:1,2"; `SceneError` for a law that no text names."""
+    if not (law.name and all(x.is_Rational for x in law.parameters)):
+        raise SceneError(f"law is {law.text}: a file holds the laws {', '.join(NAMES)}")
+    return law.text

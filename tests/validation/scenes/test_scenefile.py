@@ -401,6 +401,7 @@ def test_any_file_is_read_or_refused_in_one_line(data):
 def test_a_law_is_read_and_written(law):
     read = scene({"duration": 1, "chain": {"cell": [1, 2], "law": law}})
     assert scene(document(read)) == read
+    assert document(read)["chain"].get("law", law) == law
     assert (read.law is None) == law.startswith("power")
 
 
