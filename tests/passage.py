@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from validation.lattice.run import Run
+from validation.lattice.result import Run
 from validation.lattice.simulate import twice
 from validation.pulses.pulse import Measured, compared, derived, highest_pulse, speed
 from validation.scenes.scene import Scene

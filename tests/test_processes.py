@@ -169,7 +169,7 @@ def test_a_long_run_shows_its_progress_on_a_terminal_and_stops_at_ctrl_c(engine,
     mine, theirs = pty.openpty()
     termios.tcsetwinsize(theirs, (24, 80))
     with subprocess.Popen(
-        [*command, "--plot", "p.svg", "--out", "o.npz"],
+        [*command, "--plot", "p.svg", "--out", "o.json"],
         stdout=subprocess.PIPE, stderr=theirs, text=True, cwd=tmp_path,
     ) as running:  # fmt: skip
         os.close(theirs)

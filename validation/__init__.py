@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING
 from lwa.base.lazy import public
 
 if TYPE_CHECKING:
-    from validation.lattice.run import IntegrationError as IntegrationError
-    from validation.lattice.run import Run as Run
+    from validation.lattice.cost import IntegrationError as IntegrationError
+    from validation.lattice.result import Run as Run
     from validation.lattice.simulate import simulate as simulate
     from validation.lattice.simulate import simulate_many as simulate_many
     from validation.pulses.pulse import MeasureError as MeasureError

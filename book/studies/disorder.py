@@ -28,7 +28,7 @@ import numpy as np
 
 from lwa.base.arrays import Array
 from lwa.base.progress import Progress
-from validation.lattice.run import Run
+from validation.lattice.result import Run
 from validation.lattice.simulate import simulate, simulate_many
 from validation.pictures import Curve, Panel
 from validation.pulses.pulse import Measured, highest_pulse

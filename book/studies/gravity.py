@@ -42,7 +42,7 @@ from lwa.base.arrays import Array
 from lwa.base.progress import Progress
 from lwa.command.options import quantities
 from lwa.wave.background import BackgroundWave
-from validation.lattice.run import Run
+from validation.lattice.result import Run
 from validation.lattice.simulate import simulate, twice
 from validation.pictures import Curve, Panel
 from validation.pulses.pulse import Measured, highest_pulse, leading_pulses

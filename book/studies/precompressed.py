@@ -31,7 +31,7 @@ from lwa.base.arrays import Array
 from lwa.base.progress import Progress
 from lwa.command.options import law_option, quantities
 from lwa.wave.quadrature import NumericBackground
-from validation.lattice.run import Run
+from validation.lattice.result import Run
 from validation.lattice.simulate import twice
 from validation.pictures import Curve, Panel
 from validation.pulses.pulse import Measured, highest_pulse, leading_pulses

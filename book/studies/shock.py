@@ -35,7 +35,7 @@ from lwa.base.progress import Progress
 from lwa.command.options import quantities, quantity
 from lwa.command.rows import attempt
 from lwa.law import ContactLaw, named
-from validation.lattice.run import Run
+from validation.lattice.result import Run
 from validation.lattice.simulate import simulate, simulate_many
 from validation.pictures import Curve, Map, Panel
 from validation.pulses.pulse import Measured

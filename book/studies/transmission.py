@@ -20,7 +20,7 @@ from lwa.base.arrays import Array
 from lwa.base.progress import Progress
 from lwa.command.options import quantities
 from lwa.linear.dispersion import LoadedChain
-from validation.lattice.run import Run
+from validation.lattice.result import Run
 from validation.lattice.simulate import simulate_many
 from validation.pictures import Curve, Panel
 from validation.report.command import EXPONENT, option, study

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from lwa import Dimer, TravelingWave, canonical_wave, homogenize
-from validation.lattice.run import Run
+from validation.lattice.result import Run
 from validation.lattice.simulate import twice
 from validation.pictures import Curve, Panel
 from validation.pulses.pulse import Measured, compared, derived

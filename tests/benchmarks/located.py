@@ -15,8 +15,8 @@ import scipy
 from scipy.optimize import brentq
 
 from lwa.base.arrays import Array
+from validation.lattice.cost import IntegrationError
 from validation.lattice.equations import Motion
-from validation.lattice.run import IntegrationError
 from validation.pulses.pulse import Pulse, highest_pulse
 from validation.studies.accuracy import Task
 

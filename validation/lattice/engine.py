@@ -28,6 +28,13 @@ from typing import Any
 import numpy as np
 import scipy
 
+from validation.lattice.cost import (
+    IntegrationError,
+    RunProgress,
+    check_memory,
+    check_steps,
+    step_limit,
+)
 from validation.lattice.equations import Motion
 from validation.lattice.kernel.advance import advance
 from validation.lattice.kernel.arrays import (
@@ -41,15 +48,7 @@ from validation.lattice.kernel.arrays import (
     initial_progress,
 )
 from validation.lattice.knots import Recorder
-from validation.lattice.run import (
-    IntegrationError,
-    Run,
-    RunProgress,
-    check_steps,
-    finished,
-    mean_step,
-    most_steps,
-)
+from validation.lattice.result import Run, finished
 from validation.lattice.schemes import SCHEMES, Pair
 from validation.lattice.signal import recorded, sampled
 from validation.scenes.checks import positive
@@ -60,7 +59,7 @@ _BETWEEN_REPORTS = 5e7  # bead evaluations between two reports of progress: some
 # The splitting's step per stage is (rtol/0.01)^0.4 in units of the scene's shortest time, measured
 # on a Hertz dimer of 560 beads; at 0.2 it is still stable.
 _KINKS, _COARSEST = 0.01, 0.2
-_EXTRA_STEPS = 100  # added to the expected number of steps: a first step of a pair is shorter
+_FIRST = 4.0  # first step of a pair over rtol^(1/7), in units of the scene's shortest time
 
 
 def follow(
@@ -120,18 +119,19 @@ def _plan(motion: Motion, method: str, rtol: float, step: float | None) -> tuple
     scheme, scales, end = SCHEMES[method], motion.scales, motion.scene.duration
     longest = math.inf if step is None else positive(step, "step")
     if isinstance(scheme, Pair):
-        mean = min(mean_step(method, rtol) * min(scales.time, end), longest)
-        careful = _EXTRA_STEPS
+        most = step_limit(motion.scene, method, end / min(scales.time, longest))
+        h = min(_FIRST * rtol ** (1 / 7) * scales.time, longest, end / 100)
     else:
         natural = min((rtol / _KINKS) ** 0.4, _COARSEST) * scheme.stages
         mean = natural * min(scales.time, end) if step is None else longest
-        careful = 0
-    most = most_steps(motion.scene, method, end / mean, 16)
+        most = step_limit(motion.scene, method, end / mean)
+        h = end / math.ceil(end / mean)
+    check_memory(motion.scene, method, 16)
     plan = Plan(
         scheme=_tableau(method, motion.k if motion.contact.law is None else math.inf),
         y=rtol * scales.displacement,
         v=rtol * scales.velocity,
-        h=end / math.ceil(end / mean + careful),
+        h=h,
         longest=longest,
         end=end,
         deepest=scales.compression,

@@ -79,7 +79,7 @@ class Sensor:
 
 
 @dataclass(frozen=True, eq=False)
-class Signal:
+class SensorSignal:
     """A quantity at a sensor of a run, as a function of times of any shape.
 
     times : increasing times from 0 to the duration, the ends of steps and the openings and closings
@@ -108,7 +108,7 @@ def sensors(motion: Motion) -> list[Sensor]:
     return at_contacts + [Sensor(motion, "bead", j) for j in beads]
 
 
-def signal(motion: Motion, path: Path, kind: str, number: int, quantity: str) -> Signal:
+def signal(motion: Motion, path: Path, kind: str, number: int, quantity: str) -> SensorSignal:
     """Return the signal of a quantity at a sensor of a run.
 
     Raises `SceneError` where the scene has no such sensor, or the sensor no such quantity.
@@ -122,7 +122,7 @@ def signal(motion: Motion, path: Path, kind: str, number: int, quantity: str) ->
     contacts = [number] if kind == "contact" else [number - 1, number]
     kinks = [_kinks(motion, path, i) for i in contacts if 0 <= i < scene.contact_count]
     times = np.unique(np.concatenate((path.time, *kinks)))
-    return Signal(times, Sensor(motion, kind, number), quantity, path)
+    return SensorSignal(times, Sensor(motion, kind, number), quantity, path)
 
 
 def _kinks(motion: Motion, path: Path, contact: int) -> Array:

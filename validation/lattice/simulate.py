@@ -19,8 +19,9 @@ from typing import Any
 import numpy as np
 
 from lwa.base.exact import shorten
+from validation.lattice.cost import IntegrationError, RunProgress, silent
 from validation.lattice.equations import motion_of
-from validation.lattice.run import IntegrationError, Run, RunProgress, silent
+from validation.lattice.result import Run
 from validation.lattice.schemes import SCHEMES
 from validation.lattice.signal import RECORDS
 from validation.lattice.steppers import METHODS, integrate
@@ -60,7 +61,7 @@ def simulate(
     progress : function that opens a display, which is called with the finished fraction of the run.
 
     Raises `SceneError` for invalid arguments and for too many steps or too much memory
-    (`validation.lattice.run.most_steps`). Raises `IntegrationError` when the integrator fails.
+    (`validation.lattice.cost`). Raises `IntegrationError` when the integrator fails.
 
     >>> scene = Scene(masses=(1, 1), stiffnesses=(1,), k=1.5, duration=9, velocities=(1,))
     >>> simulate(scene).velocities.round(6) + 0.0  # equal masses exchange their velocities

@@ -11,16 +11,15 @@ from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
 from lwa.base.arrays import Array
-from validation.lattice.equations import Motion
-from validation.lattice.run import (
+from validation.lattice.cost import (
     IntegrationError,
-    Run,
     RunProgress,
+    check_memory,
     check_steps,
-    finished,
-    mean_step,
-    most_steps,
+    step_limit,
 )
+from validation.lattice.equations import Motion
+from validation.lattice.result import Run, finished
 from validation.lattice.signal import Beads, recorded, sampled
 
 METHODS = ("DOP853", "RK45", "RK23", "LSODA")
@@ -64,9 +63,9 @@ def integrate(motion: Motion, method: str, rtol: float, atol: float, progress: R
     scales, end, n = motion.scales, motion.scene.duration, motion.size
     y, v, drive = scales.displacement, scales.velocity, motion.scene.drive
     longest = math.inf if drive is None else drive.longest_step
-    steps = max(end / scales.time / mean_step(method, rtol), end / longest)
+    most = step_limit(motion.scene, method, end / min(scales.time, longest))
     jacobian = (2 * n) ** 2 * 8 if method == "LSODA" else 0  # bytes; the others need none
-    most = most_steps(motion.scene, method, steps, 4, jacobian)
+    check_memory(motion.scene, method, 4, jacobian)
     stepper = getattr(scipy.integrate, method)(
         motion,
         0.0,

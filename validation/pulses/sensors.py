@@ -16,8 +16,9 @@ from typing import Any
 import numpy as np
 
 from lwa.base.arrays import Array
+from validation.lattice.cost import RunProgress, silent
 from validation.lattice.equations import Motion
-from validation.lattice.run import Run, RunProgress, silent
+from validation.lattice.result import Run
 from validation.lattice.simulate import COMPILED, twice
 from validation.pulses.pulse import (
     Measured,

@@ -1,6 +1,6 @@
 """Signals: functions of time that are smooth on each interval between given times.
 
-The dense output of a run (`validation.lattice.run.Run.signal`) is a signal, and so is the cubic
+The dense output of a run (`validation.lattice.result.Run.signal`) is a signal, and so is the cubic
 spline through samples.
 """
 

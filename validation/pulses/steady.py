@@ -33,7 +33,8 @@ from filelock import FileLock, Timeout
 from lwa.base.arrays import Array
 from lwa.base.exact import InputError, read_exact
 from lwa.base.files import content
-from validation.lattice.run import IntegrationError, Run
+from validation.lattice.cost import IntegrationError
+from validation.lattice.result import Run
 from validation.lattice.simulate import simulate
 from validation.pulses.pulse import Measured, MeasureError, leading_pulses
 from validation.scenes.chains import struck

@@ -83,7 +83,7 @@ def study(*options: Any, epilog: str = "") -> Callable[[Callable[P, Report]], St
 
     A function may have two further parameters, which the command sets: ``progress`` shows how many
     cases are done, and ``run_progress`` how far a run of the lattice is
-    (`validation.lattice.run.RunProgress`).
+    (`validation.lattice.cost.RunProgress`).
     """
     return lambda function: Study(function, options, epilog)
 

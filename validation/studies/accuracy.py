@@ -23,7 +23,7 @@ import numpy as np
 import sympy as sp
 
 from lwa.base.progress import Progress
-from validation.lattice.run import Run
+from validation.lattice.result import Run
 from validation.lattice.simulate import COMPILED, simulate
 from validation.pictures import Curve, Panel
 from validation.pulses.pulse import MeasureError, Pulse, highest_pulse

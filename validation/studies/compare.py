@@ -8,7 +8,7 @@ from typing import Any
 import click
 
 from lwa.base.arrays import Array
-from validation.lattice.run import RunProgress, silent
+from validation.lattice.cost import RunProgress, silent
 from validation.pictures import Curve, Panel
 from validation.pulses.pulse import Measured, compared, dense, derived, first_pulse
 from validation.pulses.sensors import READINGS, Track, readings, record, tracks

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 from lwa import PhysicalWave, canonical_wave
 from lwa.base.progress import Progress
-from validation.lattice.run import Run
+from validation.lattice.result import Run
 from validation.lattice.simulate import simulate, simulate_many, twice
 from validation.pictures import Curve, Panel
 from validation.pulses.pulse import Measured, compared, exponent, first_passage

@@ -19,7 +19,7 @@ import sympy as sp
 
 from lwa import Dimer, PhysicalWave, TravelingWave, homogenize
 from lwa.base.progress import Progress
-from validation.lattice.run import Run
+from validation.lattice.result import Run
 from validation.lattice.simulate import simulate
 from validation.pictures import Curve, Panel
 from validation.pulses.pulse import Measured, compared, derived, exponent, highest_pulse, speed

@@ -22,7 +22,8 @@ import sympy as sp
 
 from lwa import Cell, PhysicalWave, Sphere, canonical_wave, homogenize
 from lwa.command.options import quantities
-from validation.lattice.run import Run, RunProgress, silent
+from validation.lattice.cost import RunProgress, silent
+from validation.lattice.result import Run
 from validation.lattice.simulate import twice
 from validation.pictures import Curve, Panel
 from validation.pulses.pulse import Pulse, compared

@@ -1,16 +1,13 @@
 """Simulation of a scene: pulses at its sensors, and files of the records.
 
 A stored run holds the records of the sensors, the pulses measured in them, and the scene. JSON: the
-result's document, and under ``records`` the arrays of `validation.lattice.run.Records`, their names
-ending in ``_value``. NumPy's .npz: the same arrays, the numbers of the result's tables as
-``sensors_arrival_value`` and so on (NaN without a pulse), and ``document``, a JSON text. CSV, for
-spreadsheets: time and records by sensor, with units in the header, but neither result nor scene.
-Forces are total: static forces are included.
+result's document, and under ``records`` the arrays of `validation.lattice.result.Records`, their
+names ending in ``_value``. CSV, for spreadsheets: time and records by sensor, with units in the
+header, but neither result nor scene. Forces are total: static forces are included.
 """
 
 from __future__ import annotations
 
-import io
 import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -22,7 +19,8 @@ import click
 import numpy as np
 
 from lwa.base import files
-from validation.lattice.run import Records, Run, RunProgress
+from validation.lattice.cost import RunProgress
+from validation.lattice.result import Records, Run
 from validation.lattice.simulate import COMPILED, METHODS
 from validation.pulses.sensors import READINGS, SPEEDS, TOLERANCE, Reading, Recording, record
 from validation.report.command import option, output_option, study
@@ -120,8 +118,7 @@ def _print_example(context: click.Context, given: click.Parameter, name: str | N
         context.exit()
 
 
-STORED = (".json", ".npz")  # suffixes of files with the scene and the result
-SUFFIXES = (*STORED, ".csv")
+SUFFIXES = (".json", ".csv")
 RECORDS = tuple(name for name in Records.__dataclass_fields__ if name != "scene")
 
 
@@ -134,48 +131,27 @@ class Stored(Records):
 
 def store(run: Run, document: Mapping[str, Any], file: Path) -> None:
     """Write a run and the document of its result; only a complete file replaces an old one."""
-    arrays = {name: getattr(run, name) for name in RECORDS}
-    suffix = file.suffix.lower()
     with replacing(file) as new, new.open("wb") as stream:
-        if suffix == ".npz":
-            for table in ("sensors", "speeds"):
-                for name in document[table][0] if document[table] else ():
-                    if name not in ("kind", "missing"):  # texts
-                        column = np.array([row[name] for row in document[table]], float)
-                        arrays[f"{table}_{name}"] = column
-            np.savez_compressed(stream, document=json.dumps(document), **arrays)
-        elif suffix == ".csv":
+        if file.suffix.lower() == ".csv":
             columns = run.columns()
             rows = np.column_stack(list(columns.values()))
             np.savetxt(stream, rows, "%s", ",", header=",".join(columns), comments="")
         else:
-            records = {f"{name}_value": plain(array) for name, array in arrays.items()}
+            records = {f"{name}_value": plain(getattr(run, name)) for name in RECORDS}
             stream.write(json.dumps({**document, "records": records}).encode())
 
 
 def load(path: str | Path) -> Stored:
-    """Read a .json or .npz file written by `lwa-validate run --out`.
+    """Read a .json file written by `lwa-validate run --out`.
 
     Raises `SceneError`, in one line, for a file that cannot be read or was written otherwise.
     """
-    file = Path(path)
-    if (suffix := file.suffix.lower()) not in STORED:
-        raise SceneError(f"{path}: a stored run is a file ending in {' or '.join(STORED)}")
+    document = files.load(path, "a stored run", dict)
     try:
-        if suffix == ".npz":
-            with np.load(io.BytesIO(files.content(file))) as archive:
-                document = json.loads(str(archive["document"]))
-                arrays = {name: archive[name] for name in RECORDS}
-        else:
-            document = files.load(file, "a stored run", dict)
-            records = document.pop("records")
-            arrays = {name: np.array(records[f"{name}_value"], float) for name in RECORDS}
+        records = document.pop("records")
+        arrays = {name: np.array(records[f"{name}_value"], float) for name in RECORDS}
         return Stored(scenefile.scene(document["scene"]), document=document, **arrays)
-    except SceneError:
-        raise
-    except OSError as error:
-        raise SceneError(f"{path}: {files.reason(error)}") from None
-    except Exception:  # NumPy's errors of damaged files are of many kinds
+    except (KeyError, TypeError, ValueError):
         raise SceneError(f"{path}: not what `lwa-validate run --out` writes") from None
 
 
@@ -201,7 +177,7 @@ _RTOL = "Relative tolerance. Errors are differences to a run with 1000 times thi
     output_option(
         "--out",
         SUFFIXES,
-        "Store the records in a file: .csv, or, with the result and the scene, .json or .npz.",
+        "Store the records in a file: .csv or, with the result and the scene, .json.",
     ),
     option("--method", default=COMPILED[0], type=_METHODS, says=_INTEGRATOR),
     option("--rtol", default=TOLERANCE, says=_RTOL),
@@ -222,11 +198,11 @@ def run(
     run_progress: RunProgress,
 ) -> Report:
     """A scene from a file, TOML or JSON: arrival, peak force, FWHM and speed at its sensors."""
-    chain = load(scene).scene if scene.lower().endswith(".npz") else scenefile.read_scene(scene)
+    chain = scenefile.read_scene(scene)
     if out is not None and out.exists() and out.samefile(scene):
         raise SceneError(f"out is {out}: it is the scene's own file, which would be lost")
     sensors = chain.bead_sensors or chain.contact_sensors
-    if out is not None and out.suffix.lower() not in STORED and not sensors:
+    if out is not None and out.suffix.lower() == ".csv" and not sensors:
         raise SceneError(f"out is {out}, but the scene names no sensors")
     recording = record(chain, method=method, rtol=rtol, every=pulses, progress=run_progress)
     result = report(recording, every=pulses)

@@ -36,7 +36,7 @@ from lwa import Cell, Power, background_wave
 from lwa.base.exact import InputError
 from lwa.base.progress import Progress
 from lwa.base.quantities import QUANTITIES
-from validation.lattice.run import IntegrationError
+from validation.lattice.cost import IntegrationError
 from validation.pulses.pulse import Measured
 from validation.scenes.checks import SceneError, between, items, positive
 from validation.waves import newton

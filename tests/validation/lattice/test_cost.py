@@ -8,9 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from validation.lattice import run as limits
-from validation.lattice.equations import Motion
-from validation.lattice.run import IntegrationError
+from validation.lattice import cost
 from validation.lattice.simulate import METHODS, simulate
 from validation.pulses.sensors import record
 from validation.scenes.scene import Scene, SceneError
@@ -36,16 +34,12 @@ def watched(what, **options):
     return simulate(what, progress=lambda: nullcontext(shares.append), **options), shares
 
 
-@pytest.mark.parametrize("method", ["RKN86", *METHODS])
-@pytest.mark.parametrize(
-    ("what", "rtol"), [(struck(20, 0.5, 1.0), 1e-4), (struck(20, 0.01), 1e-4), (PRESSED, 1e-7)]
-)
-def test_the_steps_of_adaptive_methods(method, what, rtol):
-    """The steps are at most three times as many as expected; the limit is ten times."""
-    rtol = max(rtol, 1e-7) if method == "RK23" else rtol
-    run, shares = watched(what, method=method, rtol=rtol, atol=rtol)
-    expected = what.duration / Motion(what).scales.time / limits.mean_step(method, rtol)
-    assert what.duration / run.step < 3 * expected + 100
+@pytest.mark.parametrize(("method", "rtol"), [("RKN86", 1e-13), *((m, 1e-7) for m in METHODS)])
+@pytest.mark.parametrize("what", [struck(20, 0.5, 1.0), struck(20, 0.01), PRESSED])
+def test_adaptive_methods_stay_far_below_the_limit_of_their_steps(method, what, rtol, monkeypatch):
+    """A limit of a fifth is kept as well."""
+    monkeypatch.setattr(cost, "_DENSEST", cost._DENSEST // 5)
+    _, shares = watched(what, method=method, rtol=rtol, atol=rtol)
     assert shares == sorted(shares)
     assert shares[-1] == (1 if method in METHODS else 0)  # compiled runs are over before a glance
 
@@ -74,31 +68,28 @@ def test_a_run_can_be_interrupted(method):
 
 
 BEYOND = [
-    (struck(20, 1e-32), {"method": "DOP853"}, "duration is 25: this makes .* steps of DOP853; 1e.0"
-                                              "9 are the most"),
-    (struck(20, 1e-300), {}, "duration is 25: this makes .* steps of RKN86; .*"),
-    (struck(20, duration=1e300), {}, "duration is 1e.300: .*"),
-    (struck(20), {"method": "SRKN14", "step": 1e-12}, "duration is 25: this makes 2.5e.13 steps.*"),
-    (struck(20, bead_sensors=(1,), samples=10**9), {}, "samples is 1e.09: with 1 sensors and 20 be"
-                                                       "ads RKN86 takes .* GB; 4 GB are the most"),
-    (struck(20_000), {"method": "LSODA"}, "samples is 1001: .*20000 beads LSODA takes 13 GB; .*"),
+    (struck(20, 1e-32), {"method": "DOP853"}, "duration is 25:"),
+    (struck(20, 1e-300), {}, "duration is 25:"),
+    (struck(20, duration=1e300), {}, "duration is 1e.300:"),
+    (struck(20), {"step": 1e-12}, "duration is 25: .* 2e.13 steps"),
+    (struck(20), {"method": "SRKN14", "step": 1e-12}, "duration is 25: .* 2e.13 steps"),
+    (struck(20, bead_sensors=(1,), samples=10**9), {}, "samples is 1e.09:"),
+    (struck(20_000), {"method": "LSODA"}, "samples is 1001: .* 13 GB"),
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize(("what", "options", "message"), BEYOND, ids=[b[2][:40] for b in BEYOND])
+@pytest.mark.parametrize(("what", "options", "message"), BEYOND)
 def test_too_many_steps_or_bytes_are_refused_before_the_run(what, options, message):
-    with pytest.raises(SceneError, match=f"^{message}$"):
+    with pytest.raises(SceneError, match=f"^{message}"):
         simulate(what, **options)
 
 
 def test_an_adaptive_method_has_a_bound_on_its_steps():
     """Here rounding hides the motion: the steps would shrink to a millionth."""
     pressed = struck(20, wall=1.0, gravity=1e12, duration=0.05)
-    with pytest.raises(
-        IntegrationError, match=r"^\d+ steps of (RKN86|DOP853) reach t = .* of 0.05: "
-    ):
-        simulate(pressed, rtol=1e-12, atol=1e-12)
-    with pytest.raises(SceneError, match=r"^rtol is 1e-10: rounding of the static compression, "):
+    with pytest.raises(cost.IntegrationError, match=r"^\d+ steps of RKN86"):
+        simulate(pressed, rtol=1e-12)
+    with pytest.raises(SceneError, match=r"^rtol is 1e-10:"):
         record(pressed)
 
 
@@ -160,11 +151,11 @@ def spoiled(draw):
 @settings(max_examples=50)
 def test_any_file_gives_finite_numbers_or_one_line(content, method):
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(limits, "MOST_STEPS", 1e4)
+        patch.setattr(cost, "MOST_STEPS", 1e4)
         try:
             what = scene(content)
             made = record(what, method=method, rtol=1e-6)
-        except (SceneError, IntegrationError) as error:
+        except (SceneError, cost.IntegrationError) as error:
             message = str(error)
             assert message
             assert "\n" not in message

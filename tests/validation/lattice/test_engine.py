@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 import scipy
 
+from validation.lattice.cost import IntegrationError
 from validation.lattice.kernel.arrays import Chain
 from validation.lattice.kernel.kinks import kink_integrals
-from validation.lattice.run import IntegrationError
 from validation.lattice.schemes import SCHEMES
 from validation.lattice.simulate import COMPILED, simulate, simulate_many
 from validation.pulses.pulse import measure
@@ -306,7 +306,7 @@ def test_a_step_that_is_too_long_is_not_silent():
         (dict(method="DOP853", step=0.1), "step is 0.1: DOP853 takes none"),
         (
             dict(method="SRKN14", step=1e-300),
-            "duration is 1: this makes 1.0e.300 steps of SRKN14; ",
+            "duration is 1:",
         ),
         (dict(method="s6"), "method is 's6': one of RKN86, SRKN14, DOP853, RK45, RK23, LSODA"),
     ],

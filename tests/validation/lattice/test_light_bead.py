@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from validation.lattice.run import IntegrationError
+from validation.lattice.cost import IntegrationError
 from validation.lattice.simulate import simulate
 from validation.pulses.pulse import measure
 from validation.scenes.scene import Scene

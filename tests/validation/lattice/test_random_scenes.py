@@ -8,8 +8,8 @@ is within 10 rtol times that.
 import numpy as np
 import pytest
 
+from validation.lattice.cost import IntegrationError
 from validation.lattice.equations import Motion
-from validation.lattice.run import IntegrationError
 from validation.lattice.simulate import simulate
 from validation.scenes.scene import Scene
 

@@ -2,7 +2,6 @@
 
 import math
 import pickle
-import sys
 from dataclasses import replace
 
 import numpy as np
@@ -13,7 +12,7 @@ from matplotlib.figure import Figure
 from scipy.interpolate import CubicSpline
 
 from lwa import InputError
-from validation.lattice.run import IntegrationError
+from validation.lattice.cost import IntegrationError
 from validation.lattice.simulate import METHODS, simulate
 from validation.pulses.pulse import measure, speed
 from validation.scenes.forcing import Damping
@@ -399,19 +398,6 @@ def test_a_run_equals_its_pickle_and_no_other_run():
     assert copy == run
     assert hash(copy) == hash(run)
     assert run != simulate(replace(scene, contact_sensors=(0,), duration=2.9))
-
-
-def test_pandas_is_optional(monkeypatch):
-    scene = Scene(masses=(1, 1), stiffnesses=(1,), k=1.5, duration=1, contact_sensors=(0,))
-    run = simulate(scene)
-    with monkeypatch.context() as absent:
-        absent.setitem(sys.modules, "pandas", None)
-        with pytest.raises(SceneError, match=r"^to_pandas needs pandas: pip install pandas$"):
-            run.to_pandas()
-    pytest.importorskip("pandas")
-    table = run.to_pandas()
-    assert table.index.name == "time"
-    np.testing.assert_array_equal(table["contact 1 force"], run.contact_force[0])
 
 
 def test_energy_over_time_is_a_record_with_sensors_at_all_beads():

@@ -14,7 +14,7 @@ import sympy as sp
 
 from lwa import Dimer, NoSolitaryWave, canonical_wave, homogenize
 from tests.passage import passage, ratio
-from validation.lattice.run import IntegrationError
+from validation.lattice.cost import IntegrationError
 from validation.lattice.simulate import simulate
 from validation.scenes.chains import carrying, struck
 from validation.waves.solver import NoWave, solve

@@ -1,20 +1,18 @@
-"""The result of an integration: records of the sensors, the final state, and limits on the cost."""
+"""The result of an integration: records of the sensors and the final state."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, field
-from importlib import import_module
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from lwa.base.arrays import Array, ArrayValue
 from validation.lattice.equations import Motion
-from validation.lattice.signal import Path, Signal, signal
+from validation.lattice.signal import Path, SensorSignal, signal
 from validation.pictures import Curve, Map, Panel, Pictured
-from validation.scenes.checks import Failure, SceneError
+from validation.scenes.checks import SceneError
 from validation.scenes.scene import Scene
 
 _SI = {
@@ -29,26 +27,6 @@ _SI = {
 }
 _MOST = 10  # sensors of one kind that are drawn as curves; more are drawn as a map
 _FINEST = 1000  # places, and times, of a map
-MOST_STEPS = 1e9
-MOST_BYTES = 4e9
-EXCESS = 10  # times as many steps as are expected, at which an adaptive method is stopped
-_FEWEST = 100  # steps that an adaptive method takes to find its step, however slow the motion
-# (a, q): about a rtol^{-1/q} steps in a scene's shortest time √(m/spring), counted on uniform
-# chains, dimers and pressed beads, k = 1 … 3; at most 3 times as many.
-_STEPS = dict(RKN86=(0.25, 7), DOP853=(0.3, 8), RK45=(0.2, 5), RK23=(0.2, 3), LSODA=(1.5, 8))
-
-
-class IntegrationError(Failure):
-    """Failure of an integrator; the message says where and why."""
-
-
-RunProgress = Callable[[], AbstractContextManager[Callable[[float], object]]]
-"""Opens a display of a run's progress, which is called with the share that is done."""
-
-
-def silent() -> AbstractContextManager[Callable[[float], object]]:
-    """Return a `RunProgress` without a display."""
-    return nullcontext(lambda share: None)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -81,6 +59,11 @@ class Records(ArrayValue, Pictured):
         """Return the name of a quantity, such as "bead 1 velocity", with its unit in a SI scene."""
         return f"{quantity} ({_SI[quantity.split()[-1]]})" if self.scene.units else quantity
 
+    @cached_property
+    def _motion(self) -> Motion:
+        """The scene's equations of motion."""
+        return Motion(self.scene)
+
     @property
     def energy(self) -> Array:
         """Kinetic and elastic energy above equilibrium at the sample times, (S,).
@@ -91,9 +74,9 @@ class Records(ArrayValue, Pictured):
         if len(sensors) < size:
             text = f"energy needs sensors at all {size} beads: the scene has {len(sensors)}"
             raise SceneError(text)
-        order, motion = np.argsort(sensors), Motion(self.scene)
+        order = np.argsort(sensors)
         states = np.concatenate((self.bead_displacement[order], self.bead_velocity[order]))
-        return np.array([motion.energy(state) for state in states.T])
+        return np.array([self._motion.energy(state) for state in states.T])
 
     def columns(self) -> dict[str, Array]:
         """Return time and all records, each (S,), by names such as "bead 15 force (N)".
@@ -111,17 +94,6 @@ class Records(ArrayValue, Pictured):
         if len(scene.bead_sensors) == scene.size:
             values["energy"] = self.energy
         return {self.label(name): row for name, row in values.items()}
-
-    def to_pandas(self) -> Any:
-        """Return the `columns` as a pandas DataFrame, with the time as index.
-
-        Raises `SceneError` without pandas, an optional package.
-        """
-        try:
-            pandas = import_module("pandas")
-        except ImportError:
-            raise SceneError("to_pandas needs pandas: pip install pandas") from None
-        return pandas.DataFrame(self.columns()).set_index(self.label("time"))
 
     def pictured(self) -> list[Panel]:
         """Panels of force against time at all sensors; an x–t map for more than ten of a kind."""
@@ -169,7 +141,7 @@ class Run(Records):
     dissipated: float = 0.0
     work: float = 0.0
 
-    def signal(self, kind: str, number: int, quantity: str = "force") -> Signal:
+    def signal(self, kind: str, number: int, quantity: str = "force") -> SensorSignal:
         """Return a quantity at a sensor as a function of time; the records are its samples.
 
         Parameters
@@ -182,7 +154,7 @@ class Run(Records):
         """
         if self.path is None:
             raise SceneError("the run has too many steps to keep the motion: read its samples")
-        return signal(Motion(self.scene), self.path, kind, number, quantity)
+        return signal(self._motion, self.path, kind, number, quantity)
 
 
 def finished(
@@ -214,39 +186,3 @@ def finished(
         **arrays,
         **fields,
     )
-
-
-def mean_step(method: str, rtol: float) -> float:
-    """Return the expected mean step of an adaptive method, in units of a scene's shortest time."""
-    a, order = _STEPS[method]
-    return float(rtol ** (1 / order)) / a
-
-
-def most_steps(scene: Scene, method: str, steps: float, rows: int, memory: int = 0) -> int:
-    """Return the number of steps at which a run is stopped.
-
-    steps : expected number of steps. rows : numbers stored for each sensor and sample. memory :
-    further bytes. Raises `SceneError` for more than `MOST_STEPS` steps or `MOST_BYTES` bytes.
-    """
-    sensors = len(scene.contact_sensors) + len(scene.bead_sensors)
-    memory += 8 * (80 * scene.size + scene.samples * (rows * sensors + 20))
-    if memory > MOST_BYTES:
-        raise SceneError(
-            f"samples is {scene.samples:g}: with {sensors} sensors and {scene.size} beads {method} "
-            f"takes {memory / 1e9:.2g} GB; {MOST_BYTES / 1e9:g} GB are the most"
-        )
-    if steps > MOST_STEPS:
-        raise SceneError(
-            f"duration is {scene.duration:g}: this makes {steps:.1e} steps of {method}; "
-            f"{MOST_STEPS:g} are the most"
-        )
-    return EXCESS * (_FEWEST + int(steps))
-
-
-def check_steps(method: str, steps: int, most: int, t: float, duration: float) -> None:
-    """Raise `IntegrationError` for more than ``most`` steps up to time t."""
-    if steps > most:
-        raise IntegrationError(
-            f"{steps} steps of {method} reach t = {t:g} of {duration:g}: rounding hides the "
-            "motion, or rtol is too small for it"
-        )

@@ -1,0 +1,66 @@
+"""Limits on the steps and the memory of an integration, and the display of its progress."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import AbstractContextManager, nullcontext
+
+from validation.scenes.checks import Failure, SceneError
+from validation.scenes.scene import Scene
+
+MOST_STEPS = 1e9
+MOST_BYTES = 4e9
+# Most steps of an adaptive method in the scene's shortest time √(m/spring). RKN86 takes about
+# rtol^(-1/7)/4, which is 18 at the smallest tolerance; RK23, of the lowest order, 200 at 1e-9.
+_DENSEST = 1000
+
+
+class IntegrationError(Failure):
+    """Failure of an integrator; the message says where and why."""
+
+
+RunProgress = Callable[[], AbstractContextManager[Callable[[float], object]]]
+"""Opens a display of a run's progress, which is called with the share that is done."""
+
+
+def silent() -> AbstractContextManager[Callable[[float], object]]:
+    """Return a `RunProgress` without a display."""
+    return nullcontext(lambda share: None)
+
+
+def step_limit(scene: Scene, method: str, steps: float) -> int:
+    """Return the number of steps at which a run is stopped.
+
+    steps : number of steps of a splitting; for an adaptive method the duration divided by the
+    scene's shortest time, or by the greatest step if this is shorter. Raises `SceneError` for more
+    than `MOST_STEPS`.
+    """
+    if steps > MOST_STEPS:
+        raise SceneError(
+            f"duration is {scene.duration:g}: this makes some {steps:.0e} steps of {method}; "
+            f"{MOST_STEPS:g} are the most"
+        )
+    return _DENSEST * (1 + int(steps))
+
+
+def check_steps(method: str, steps: int, most: int, t: float, duration: float) -> None:
+    """Raise `IntegrationError` for more than ``most`` steps up to time t."""
+    if steps > most:
+        raise IntegrationError(
+            f"{steps} steps of {method} reach t = {t:g} of {duration:g}: rounding hides the "
+            "motion, or rtol is too small for it"
+        )
+
+
+def check_memory(scene: Scene, method: str, rows: int, more: float = 0) -> None:
+    """Raise `SceneError` for a run that needs more than `MOST_BYTES` bytes.
+
+    rows : numbers stored for each sensor and sample. more : further bytes.
+    """
+    sensors = len(scene.contact_sensors) + len(scene.bead_sensors)
+    memory = more + 8 * (80 * scene.size + scene.samples * (rows * sensors + 20))
+    if memory > MOST_BYTES:
+        raise SceneError(
+            f"samples is {scene.samples:g}: with {sensors} sensors and {scene.size} beads {method} "
+            f"takes {memory / 1e9:.2g} GB; {MOST_BYTES / 1e9:g} GB are the most"
+        )
