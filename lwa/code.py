@@ -26,18 +26,16 @@ from sympy.printing.c import C99CodePrinter
 from sympy.printing.codeprinter import CodePrinter
 from sympy.printing.fortran import FCodePrinter
 from sympy.printing.jscode import JavascriptCodePrinter
-from sympy.printing.julia import JuliaCodePrinter
 from sympy.printing.numpy import NumPyPrinter
 from sympy.printing.precedence import PRECEDENCE
-from sympy.printing.pycode import PythonCodePrinter
 
 from lwa.base.exact import InputError, shorten
 
 WIDTH = 79
 
-# No word of a language has this form but for lambda, Julia's pi, and macros of C such as M_PI
+# No word of a language has this form but for lambda, and macros of C such as M_PI
 _FREE_NAME = re.compile(
-    rf"(?!M_[A-Z]|(pi|lambda)$)([A-Z]|{'|'.join(greeks)})([0-9_]\w*)?", re.IGNORECASE
+    rf"(?!M_[A-Z]|lambda$)([A-Z]|{'|'.join(greeks)})([0-9_]\w*)?", re.IGNORECASE
 )
 
 Local = tuple[tuple[sp.Symbol, sp.Expr], ...]
@@ -143,7 +141,7 @@ class Writer:
     def wrapped(cls, line: str) -> list[str]:
         """Break a line into lines of at most 79 characters; all but the last end in ``more``.
 
-        >>> Python.wrapped("def beta(" + "k, " * 25 + "m):")[1]
+        >>> NumPy.wrapped("def beta(" + "k, " * 25 + "m):")[1]
         '        k, k, m):'
         """
         start = line[: len(line) - len(line.lstrip())]
@@ -218,18 +216,12 @@ def _nearest(p: int, q: int) -> float:
     return value
 
 
-class Python(Writer, PythonCodePrinter):  # type: ignore[misc]  # untyped in SymPy
-    """Writer of Python functions of numbers, by the module `math`."""
+class NumPy(Writer, NumPyPrinter):  # type: ignore[misc]  # untyped in SymPy
+    """Writer of Python functions of numbers, or of arrays that broadcast, by NumPy."""
 
     gap = 2
-    head = ("import math",)
-    opening = ("def {name}({arguments}):", '    """{doc}"""')
-
-
-class NumPy(Python, NumPyPrinter):  # type: ignore[misc]  # untyped in SymPy
-    """Writer of Python functions of arrays that broadcast, by NumPy."""
-
     head = ("import numpy as np",)
+    opening = ("def {name}({arguments}):", '    """{doc}"""')
 
     def entry(self, function: Function) -> list[str]:
         """Convert the arguments to floats, as powers of NumPy's integers overflow."""
@@ -309,17 +301,6 @@ class Fortran(Writer, FCodePrinter):  # type: ignore[misc]  # untyped in SymPy
     _print_Function = CodePrinter._print_Function  # SymPy's own rounds constant arguments
 
 
-class Julia(Writer, JuliaCodePrinter):  # type: ignore[misc]  # untyped in SymPy
-    """Writer of Julia functions of numbers; f.(x, …) broadcasts them."""
-
-    opening = ('"{doc}"', "function {name}({arguments})")
-    closing = ("end",)
-
-    def text(self, value: sp.Basic) -> str:
-        # the operators of numbers: x*y in place of x .* y
-        return re.sub(r" \.?([*/^]) ", r"\1", super().text(value))
-
-
 class JavaScript(Writer, JavascriptCodePrinter):  # type: ignore[misc]  # untyped in SymPy
     """Writer of JavaScript functions of numbers, by `Math`, for pages and modules."""
 
@@ -335,11 +316,9 @@ class JavaScript(Writer, JavascriptCodePrinter):  # type: ignore[misc]  # untype
 
 
 LANGUAGES: dict[str, type[Writer]] = {
-    "python": Python,
     "numpy": NumPy,
     "c": C,
     "fortran": Fortran,
-    "julia": Julia,
     "javascript": JavaScript,
 }
 """Language by the name that `lwa.TravelingWave.code` takes."""

@@ -1,4 +1,4 @@
-"""The command `lwa derive`: ansatz, wave equation and defect, or a Python module of them."""
+"""The command `lwa derive`: ansatz, wave equation and defect, or a module of NumPy functions."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def _phi(theory: Theory) -> dict[int, sp.Expr]:
 
 
 @click.command()
-@theory_options((*STYLES, "python"))
+@theory_options((*STYLES, "numpy"))
 def derive(style: str, **options: Any) -> None:
     """Derive the long-wave equation of a chain.
 
@@ -76,7 +76,7 @@ def derive(style: str, **options: Any) -> None:
     """
     chain = take_chain(options)
     theory = homogenize(chain.cell, law=chain.law, **options)
-    if style == "python":
+    if style == "numpy":
         click.echo(_source(theory))
     else:
         _answer(theory, style == "latex").print(style)
@@ -228,9 +228,9 @@ def _law_latex(theory: Theory) -> list[str]:
 
 
 def _source(theory: Theory) -> str:
-    """Python source of a module with b1 …, G, H, I, and all coefficients by order and jet."""
+    """NumPy source of a module with b1 …, G, H, I, and all coefficients by order and jet."""
     if not theory.law.homogeneous:
-        raise InputError("--format python is for power laws: others have text, json and latex")
+        raise InputError("--format numpy is for power laws: others have text, json and latex")
     cell = theory.cell
     functions = Functions(theory.k, *cell.masses, *cell.stiffnesses, cell.spacing)
     values = {f"b{n}": b for n, b in theory.ansatz.items()} | theory.pde.third_order
@@ -239,4 +239,4 @@ def _source(theory: Theory) -> str:
     table = {n: {jet: terms[jet] for jet in terms} for n, terms in theory.pde.coefficients.items()}
     doc = "{n: {(jet, jet_t): c}}, orders D^(k+n), without the power of D"
     functions.define("coefficients", doc, sp.Dict(table))
-    return functions.source("python", ["The ansatz and the wave equation. Written by lwa."])
+    return functions.source("numpy", ["The ansatz and the wave equation. Written by lwa."])

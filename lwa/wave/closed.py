@@ -72,12 +72,6 @@ class Reduction(Value):
     sigma: sp.Expr
     s: sp.Expr
 
-    @classmethod
-    def of_powers(cls, k: sp.Expr, I: sp.Expr, p: sp.Expr, a: sp.Expr, V: sp.Expr) -> Self:
-        """The reduction of a wave of speed V by the powers p and a."""
-        mu, eta = V**2 / (I * (p + a)), 1 + p - k * p
-        return cls(k, p, a, mu, eta, 1 / (I * (k * p + a)), 2 / (1 - eta))
-
     @property
     def beta(self) -> sp.Expr:
         """The wavenumber √σ (1 - η) / 2 of the cosine, `CompactWave.beta` for either root."""
@@ -257,7 +251,9 @@ class CompactWave(Value):
         slope, constant = self._coefficients(e, symbol)
         p = self.roots[root]
         a = factored(slope - self.k) * p + constant
-        return Reduction.of_powers(self.k, self.I, p, a, positive(V, "V"))
+        mu, eta = positive(V, "V") ** 2 / (self.I * (p + a)), 1 + p - self.k * p
+        sigma = 1 / (self.I * (self.k * p + a))
+        return Reduction(self.k, p, a, mu, eta, sigma, 2 / (1 - eta))
 
     def at(self, **values: Any) -> Self:
         """Substitute numbers (or other symbols) for the named symbols, and for ω = m2/m1.

@@ -18,7 +18,7 @@ from lwa.base.quantities import QUANTITIES, strain_power
 from lwa.cell import Cell
 from lwa.code import LANGUAGES, Function, Local
 from lwa.law import ContactLaw, Power
-from lwa.wave.closed import CompactWave, Reduction
+from lwa.wave.closed import CompactWave
 
 _XI = sp.Dummy("xi", real=True)
 _B, _V, _F = (sp.Dummy(name, positive=True) for name in ("B", "V_s", "F"))
@@ -87,11 +87,8 @@ def in_order(*parts: sp.Expr) -> tuple[sp.Symbol, ...]:
 
 
 def wave_code(wave: CompactWave, language: str) -> str:
-    """The source text of `wave_functions`; Python gets those of the paper's `Reduction` too."""
-    functions = wave_functions(wave)
-    if one_of(language, LANGUAGES, "language") == "python":
-        _define_reduction(functions, wave)
-    return functions.source(language, _TITLE)
+    """The source text of `wave_functions`."""
+    return wave_functions(wave).source(language, _TITLE)
 
 
 def loaded_code(
@@ -145,19 +142,6 @@ def wave_functions(wave: CompactWave) -> Functions:
     define("time_scale", _DOCS["time_scale"], cell.time_scale(k))
     functions.define_at_force(cell, k)
     return functions
-
-
-def _define_reduction(functions: Functions, wave: CompactWave) -> None:
-    """Add p, a, μ, η, σ, s and B of the reduction of the wave of speed V_s."""
-    doc = "{} of the reduction v = z^p, z'' = mu z^eta - sigma z"
-    reduction = wave.reduction(V=_V)
-    p = functions.define("p", doc.format("p"), reduction.p)
-    a = functions.define("a", doc.format("a"), reduction.a.subs(reduction.p, p))
-    reduction = Reduction.of_powers(wave.k, wave.I, p, a, _V)
-    for name in ("mu", "eta", "sigma", "s"):
-        functions.define(name, doc.format(name), getattr(reduction, name))
-    amplitude = functions["amplitude"]
-    functions.define("B", amplitude.doc, amplitude.call)
 
 
 def _stable(ratio: sp.Expr, k: sp.Expr, local: dict[sp.Expr, sp.Symbol]) -> sp.Expr:

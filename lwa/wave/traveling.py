@@ -94,7 +94,7 @@ class TravelingWave(CompactWave):
     def code(self, language: str) -> str:
         """Source text of a program: β, widths, speed, amplitude and profile as functions.
 
-        language : a key of `lwa.code.LANGUAGES`, such as "c" or "python" (plain `math`).
+        language : a key of `lwa.code.LANGUAGES`, such as "c" or "numpy".
 
         Arguments and accuracy are those of `lwa.wave.functions`. Raises `lwa.InputError` for
         another language, and for numbers beyond a double.

@@ -296,8 +296,8 @@ def test_spheres_in_a_program_are_a_wave_as_any_other(capsys, spheres):
         Sphere(1, "2.38e-3", Material("1.46e9", "0.46")),
     )
     stiffnesses = ("--stiffnesses", f"{A.p}/{A.q},{A.p}/{A.q}") if A.is_Rational else ()
-    wanted = run(capsys, "wave", *given, *stiffnesses, "--format", "python")
-    found = run(capsys, "wave", "--spheres", spheres(), "--format", "python")
+    wanted = run(capsys, "wave", *given, *stiffnesses, "--format", "numpy")
+    found = run(capsys, "wave", "--spheres", spheres(), "--format", "numpy")
     assert found[0] == wanted[0] == 0
     modules = [{}, {}]
     for module, (_, out, _) in zip(modules, (found, wanted), strict=True):

@@ -94,7 +94,7 @@ def test_wave_in_forces(capsys):
 def test_a_wave_under_load_in_a_program(capsys, load, law):
     """Functions of B and F against the closed forms in 30 digits."""
     chain = ("--masses", "1,3", "--spacing", "1", *law)
-    status, out, err = run(capsys, "wave", *chain, *load, "--format", "python")
+    status, out, err = run(capsys, "wave", *chain, *load, "--format", "numpy")
     assert (status, err) == (0, "")
     module = {}
     exec(out, module)  # our own output, which is what is on trial
@@ -189,7 +189,7 @@ BAD = [
     (("derive", "--law", "toda"), "one of power"),
     (("derive", "--law", "hertz2:1+1"), "hertz2's a"),
     (("derive", "--law", "general", "--k", "2"), "one of them"),
-    (("derive", "--law", "general", "--format", "python"), "power laws"),
+    (("derive", "--law", "general", "--format", "numpy"), "power laws"),
     (("wave", "--law", "hertz2"), "--background"),
     (("wave", "--background", "1", "--closure", "linear"), "canonical field"),
     (("wave", "--background", "1", "--precompression", "1"), "both given"),
