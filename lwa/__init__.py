@@ -13,25 +13,18 @@ from typing import TYPE_CHECKING, Any
 from lwa.base.lazy import public
 
 if TYPE_CHECKING:
-    from lwa.algebra.coefficients import CoefficientRing as CoefficientRing
-    from lwa.algebra.jets import Powers as Powers
-    from lwa.algebra.model import Model as Model
-    from lwa.base.arrays import Array as Array
     from lwa.base.exact import InputError as InputError
-    from lwa.base.exact import Quantity as Quantity
     from lwa.base.quantities import NoSolitaryWave as NoSolitaryWave
     from lwa.cell import Cell as Cell
     from lwa.cell import D as D
     from lwa.cell import Dimer as Dimer
     from lwa.cell import k as k
     from lwa.closure.consistency import Closure as Closure
-    from lwa.closure.solution import Solution as Solution
     from lwa.envelopes.schrodinger import Breather as Breather
     from lwa.envelopes.schrodinger import Envelope as Envelope
     from lwa.envelopes.schrodinger import envelope as envelope
     from lwa.equation.evolution import Evolution as Evolution
     from lwa.equation.pde import PDE as PDE
-    from lwa.equation.terms import Jet as Jet
     from lwa.equation.terms import Terms as Terms
     from lwa.expansion.approximants import Resummed as Resummed
     from lwa.expansion.expand import Expansion as Expansion
@@ -65,7 +58,6 @@ if TYPE_CHECKING:
     from lwa.wave.numeric import NumericWave as NumericWave
     from lwa.wave.physical import PhysicalWave as PhysicalWave
     from lwa.wave.physical import PrecompressedWave as PrecompressedWave
-    from lwa.wave.quadrature import NumericBackground as NumericBackground
     from lwa.wave.traveling import TravelingWave as TravelingWave
     from lwa.wave.traveling import canonical_wave as canonical_wave
 

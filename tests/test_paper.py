@@ -9,8 +9,9 @@ import mpmath
 import pytest
 import sympy as sp
 
-from lwa import D, Dimer, Jet, homogenize, k
+from lwa import D, Dimer, homogenize, k
 from lwa.base.quantities import SPEED as V
+from lwa.equation.terms import Jet
 from tests.identity import same
 
 m1, m2 = sp.symbols("m1 m2", positive=True)

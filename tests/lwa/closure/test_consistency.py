@@ -13,7 +13,8 @@ import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lwa import Cell, Dimer, InputError, Jet, homogenize
+from lwa import Cell, Dimer, InputError, homogenize
+from lwa.equation.terms import Jet
 from tests.lwa.series import exponential, fraction, taylor
 
 masses = st.fractions(min_value="1/20", max_value=20, max_denominator=20)

@@ -3,7 +3,8 @@
 import pytest
 import sympy as sp
 
-from lwa import Cell, Dimer, InputError, Jet, homogenize
+from lwa import Cell, Dimer, InputError, homogenize
+from lwa.equation.terms import Jet
 from tests.identity import same
 
 x = sp.Symbol("x")
