@@ -60,36 +60,44 @@ class JetAlgebra:
         smooth: int = 0,
     ) -> None:
         self.parameters, self.weight = parameters, weight
-        jets = range(1, weight + 1)
         self._lowest = 0 if rest else 1
         velocities = range(self._lowest, weight + 1) if exponent else range(0)
-        names = [*parameters, *(f"r{n}" for n in jets), *(f"s{n}" for n in velocities)]
-        self.context = fmpq_mpoly_ctx.get(names, Ordering.lex)
+        jets = (*(f"r{n}" for n in range(1, weight + 1)), *(f"s{n}" for n in velocities))
+        self.context = fmpq_mpoly_ctx.get([*parameters, *jets], Ordering.lex)
         self.one, self.zero = self.context.constant(1), self.context.constant(0)
         generators = self.context.gens()
         # Indices of the first strain jet and of the first velocity jet among the generators.
         self._offset = len(parameters)
         self._velocity = self._offset + weight
         self.r = [self.one, *generators[self._offset : self._velocity]]
-        # generator → its derivative ∂_x; likewise ∂_τ without E, over p^{(k-1)/2}
-        self._dx = {self._offset + n - 1: self.r[n + 1] - self.r[1] * self.r[n] for n in jets[:-1]}
-        self._dt: dict[int, fmpq_mpoly] = {}
-        self.s: list[fmpq_mpoly] = []
-        if exponent:
-            self.half = (exponent(self.context) + 1) / 2
-            self.s = [*([] if rest else [self.zero]), *generators[self._velocity :]]
-            for n in jets[:-1]:
-                self._dt[self._offset + n - 1] = self.s[n + 1] - self.s[1] * self.r[n]
-            for index, n in enumerate(velocities, start=self._velocity):
-                if n < weight:
-                    self._dx[index] = self.s[n + 1] - self.half * self.r[1] * self.s[n]
-                self._dt[index] = -self.half * self.s[1] * self.s[n]
+        self.s = [self.zero] * self._lowest + list(generators[self._velocity :]) if exponent else []
+        self.half = (exponent(self.context) + 1) / 2 if exponent else self.zero
         self.phi = [self.zero, self.one, *generators[: smooth - 1]] if smooth else []
-        for n in range(2, smooth):
-            self._dx[n - 2] = self.r[1] * self._theta(n)
-            if exponent:
-                self._dt[n - 2] = self.s[1] * self._theta(n)
         self._moving = [*range(max(smooth - 1, 0)), *range(self._offset, self.context.nvars())]
+        self._dx = self._derivatives_in_space()
+        self._dt = self._derivatives_in_time() if exponent else {}
+
+    def _derivatives_in_space(self) -> dict[int, fmpq_mpoly]:
+        """Mapping from the index of a generator g to its derivative ∂_x g."""
+        r, s, half = self.r, self.s, self.half
+        strain = {self._offset + n - 1: r[n + 1] - r[1] * r[n] for n in range(1, self.weight)}
+        moving = range(self._lowest, self.weight if s else 0)
+        velocity = {self._index_of_s(n): s[n + 1] - half * r[1] * s[n] for n in moving}
+        law = {n - 2: r[1] * self._theta(n) for n in range(2, len(self.phi) - 1)}
+        return strain | velocity | law
+
+    def _derivatives_in_time(self) -> dict[int, fmpq_mpoly]:
+        """Mapping from the index of a generator g to ∂_τ g over p^{(k-1)/2}, without u_ττ in it."""
+        r, s, half = self.r, self.s, self.half
+        strain = {self._offset + n - 1: s[n + 1] - s[1] * r[n] for n in range(1, self.weight)}
+        moving = range(self._lowest, self.weight + 1)
+        velocity = {self._index_of_s(n): -half * s[1] * s[n] for n in moving}
+        law = {n - 2: s[1] * self._theta(n) for n in range(2, len(self.phi) - 1)}
+        return strain | velocity | law
+
+    def _index_of_s(self, n: int) -> int:
+        """Index of the velocity jet s_n among the generators."""
+        return self._velocity + n - self._lowest
 
     def _theta(self, n: int) -> fmpq_mpoly:
         """Logarithmic derivative p dφ_n/dp of the law's parameter φ_n."""
@@ -193,14 +201,9 @@ class JetAlgebra:
 
     def embed(self, f: fmpq_mpoly, smaller: JetAlgebra) -> fmpq_mpoly:
         """Convert f from a smaller algebra, of the same parameters and fewer jets."""
-        more_x = (0,) * (self._velocity - smaller._velocity)
-        more_t = (0,) * (smaller._lowest - self._lowest)
-        terms = {}
-        for exponents, coefficient in f.terms():
-            x, t = exponents[: smaller._velocity], exponents[smaller._velocity :]
-            jets = (*x, *more_x, *more_t, *t)
-            terms[*jets, *(0,) * (self.context.nvars() - len(jets))] = coefficient
-        return self.context.from_dict(terms)
+        context = self.context
+        places = map(context.variable_to_index, smaller.context.names())
+        return f.compose(*map(context.gen, places), ctx=context)
 
 
 def _powers(exponents: Sequence[int], lowest: int) -> Powers:

@@ -86,19 +86,16 @@ class _Slaving:
         Φ_i - Φ_0 gives the differences of the strains, and the cell their sum.
         """
         P, first = len(self.x), self.forces[0]
-        steps = (
-            P * mu * (self.E[n] + a) for mu, a in zip(self.mu[1:], accelerations[1:], strict=True)
-        )
-        differences = [
-            difference + first.nonlinear - force.nonlinear
-            for difference, force in zip(
-                accumulate(steps, initial=self.algebra.zero), self.forces, strict=True
-            )
-        ]
-        X = self._shift(n) * P ** (n + 1) + self.S[0].increment(P, n)
-        X = X - sum((c * d for c, d in zip(self.c, differences, strict=True)), self.algebra.zero)
+        total = self._shift(n) * P ** (n + 1) + self.S[0].increment(P, n)
+        push, differences = self.algebra.zero, []  # Φ_i - Φ_0, and X_i - X_0 of the strains
+        for i, force in enumerate(self.forces):
+            if i:
+                push = push + P * self.mu[i] * (self.E[n] + accelerations[i])
+            difference = push + first.nonlinear - force.nonlinear
+            differences.append(difference)
+            total = total - self.c[i] * difference
         for force, difference in zip(self.forces, differences, strict=True):
-            force.append(X / P + difference)
+            force.append(total / P + difference)
 
     def _origin(self, n: int) -> None:
         """Append S_n of each particle, by the definition φ(x) = Σ g_i w_i(x - x_i D)."""
