@@ -1,6 +1,8 @@
 """The pulse of a struck dimer chain of masses 1 and ω, as several pages measure it.
 
-Units: the heavy bead's mass, A and D are 1. Bead 0 is struck with velocity 1.
+Units: the heavy bead's mass, A and D are 1. Bead 0 is struck with velocity 1. The pulse is read by
+`validation.pulses.steady`: the speed belongs to the force at the place of the width, although both
+fall along the chain.
 """
 
 from __future__ import annotations
@@ -11,18 +13,17 @@ from typing import Any
 
 import numpy as np
 
-from lwa import Dimer
-from validation import Scene, measure, simulate
+from validation.pulses.steady import StruckDimer
 
 
 @dataclass(frozen=True)
 class StruckPulse:
-    """The leading pulse between two cells of a struck chain.
+    """The leading pulse at the far end of a stretch of a struck chain.
 
-    speed : between like contacts, in sites per unit of time.
-    force : peak force of a contact at the far cell, the mean of the cell's two contacts.
+    speed : at the far end, in sites per unit of time.
+    force : peak force of a contact at the far end, the mean of the cell's two contacts.
     width : FWHM of the contact force in sites, the mean of the cell's two contacts.
-    decay : loss of ln F per site between the two cells.
+    decay : loss of ln F per site along the stretch.
     """
 
     speed: float
@@ -32,38 +33,10 @@ class StruckPulse:
 
 
 def struck_pulse(k: float, omega: Any, near: int = 40, far: int = 80) -> StruckPulse:
-    """Strike a chain and measure its leading pulse at the contacts ``near`` and ``far``."""
-    contacts = (near, near + 1, far, far + 1)
-    heavy = max(
-        float(Fraction(str(omega))), 1.0
-    )  # a light bead strikes heavy ones: a slow, weak pulse
-    scene = Scene.of_cell(
-        Dimer(1, omega, spacing=1),
-        far // 2 + 20,
-        k,
-        velocities=(1.0,),
-        contact_sensors=contacts,
-        duration=(1.45 * far + 30) * heavy**0.7,
-        samples=40 * far,
-    )
-    run = simulate(scene, rtol=1e-8)
-    pulses = [_leading(run.time, force) for force in run.contact_force]
-    times = [late.arrival - early.arrival for early, late in zip(pulses, pulses[2:], strict=False)]
-    peaks = [np.mean([p.peak for p in pair]) for pair in (pulses[:2], pulses[2:])]
-    speed = (far - near) / float(np.mean(times))
-    return StruckPulse(
-        speed,
-        float(peaks[1]),
-        speed * float(np.mean([p.fwhm for p in pulses[2:]])),
-        float(np.log(peaks[0] / peaks[1])) / (far - near),
-    )
-
-
-def _leading(time: Any, force: Any) -> Any:
-    """The first pulse of a record: before the force falls below 40 % of its maximum so far."""
-    highest = np.maximum.accumulate(force)
-    fallen = (force < 0.4 * highest) & (highest > 0.25 * force.max())
-    end = int(np.argmax(fallen)) if fallen.any() else len(force) - 1
-    while end + 1 < len(force) and force[end + 1] < force[end]:
-        end += 1  # to the bottom of the gap behind the pulse
-    return measure(time[: end + 1], force[: end + 1])
+    """Strike a chain and measure its leading pulse between the contacts ``near`` and ``far``."""
+    chain = StruckDimer(float(k), float(Fraction(str(omega))), far - near)
+    passages = chain.passages(chain.run((near, far), chain.crossing(far), 1e-8))
+    width, _, unit_speed, decay = chain.numbers(passages)[:, 0]
+    q = (chain.k - 1) / (2 * chain.k)  # the speed is proportional to F^q
+    speed = float(np.mean(unit_speed * passages[1, :, 1] ** q))
+    return StruckPulse(speed, float(np.mean(passages[1, :, 1])), float(width), float(decay))

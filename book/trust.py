@@ -1,6 +1,6 @@
 """Width of the contact force by each theory, and the lattice's, over the mass ratio.
 
-The strip of page one, the calculator and the maps of the chapter on the series show these widths.
+The strip of the chapter on theories, the calculator and the maps of the chapter on the series show these widths.
 Units: the heavy bead's mass, A and D are 1, so that widths are in sites.
 """
 
@@ -27,7 +27,7 @@ class Trust:
 
     pulse : the lattice's pulse between the contacts 40 and 80.
     errors : FWHM of the contact force, theory over lattice less one, in the order of `THEORIES`;
-        NaN where the series gives no number or one that is less sure than asked for.
+        NaN where the series refuses a number.
     estimate : error that the series expects of itself, over the lattice's width; NaN likewise.
     """
 
@@ -36,19 +36,15 @@ class Trust:
     estimate: float
 
 
-def trust(k: Any, omega: Any, unsure: float = 0.3) -> Trust:
-    """Compare the theories with a struck chain of masses 1 and omega.
-
-    unsure : relative estimate of its own error from which on the series counts as refused.
-    """
+def trust(k: Any, omega: Any) -> Trust:
+    """Compare the theories with a struck chain of masses 1 and omega."""
     k, omega = sp.Rational(str(k)), sp.Rational(str(omega))
     pulse = struck_pulse(k, omega)
     widths = [float(wave.fwhm(float(k), float(omega), "force")) for wave in _compact()]
     summed = estimate = math.nan
     try:
         total = _series(omega).at(k)
-        if total.error < unsure * total.value:
-            summed, estimate = float(total.value), float(total.error)
+        summed, estimate = float(total.value), float(total.error)
     except InputError:
         pass
     paper, canonical, series = (width / pulse.width - 1 for width in (*widths, summed))

@@ -122,7 +122,7 @@ def paper_spheres():
 
 def test_the_calculator_shows_the_numbers_of_python(visit):
     """Force, speed and duration of the default chain, as printed."""
-    told = dict(visit.pages["experiment.html"]["calculator"])
+    told = dict(visit.pages["calculator.html"]["calculator"])
     F, speed, width = (
         float(re.search(r": ([\d.e+]+) ", told[name])[1]) for name in ("force", "speed", "width")
     )
@@ -134,7 +134,7 @@ def test_the_calculator_shows_the_numbers_of_python(visit):
 @pytest.mark.parametrize("n", range(5))
 def test_the_calculator_with_and_without_load(visit, n):
     """Theory by the same closed forms, the beads of the page against the validated lattice."""
-    blow, found = visit.pages["experiment.html"]["blows"][n]
+    blow, found = visit.pages["calculator.html"]["blows"][n]
     load, cell = blow["load"], Cell.of_spheres(paper_spheres())
     loads = {"precompression": sp.Rational(load)} if load else {}
     pulse = canonical_wave(cell, "3/2").at_force(sp.Float(found["F"], 17), **loads)
@@ -169,7 +169,7 @@ def test_the_chain_on_the_page_is_the_chain_of_python(visit):
 
 def test_controls_have_names(visit):
     """Canvases and sliders are named for screen readers."""
-    for page in ("intro.html", "play.html", "experiment.html"):
+    for page in ("intro.html", "play.html", "calculator.html"):
         assert not visit.pages[page]["unnamed"]
     assert visit.pages["play.html"]["sliders"] == 4
     script = HTML / "_static" / "chain.js"
