@@ -86,8 +86,32 @@ class Theory(OfClosure):
             n: terms(self.closure, d) for n, d in enumerate(self.closure.defect) if not d.is_zero()
         }
 
+    def __str__(self) -> str:
+        return str(self.pde)
+
+    @property
+    def phi(self) -> dict[int, sp.Expr]:
+        """Mapping from n to φ_n in the compression; {} for powers and laws without expression."""
+        law = self.law
+        known = not (law.homogeneous or law.formless)
+        return {n: law.phi(n) for n in range(2, max(self.order, 3))} if known else {}
+
+    def latex_rows(self, most: int | None = None) -> list[str]:
+        """LaTeX of ansatz and equation to D^{k+most} (None: all), and of a law that is no power."""
+        rows = [*self.closure.latex_rows(most and most + 1), *self.pde.latex_rows(most)]
+        if self.law.homogeneous:
+            return rows
+        delta = sp.latex(self.law.delta)
+        definition = rf"\frac{{{delta}^{{n-1}} F^{{(n)}}({delta})}}{{F'({delta})}}"
+        place = rf"{delta} = {sp.latex(self.cell.spacing)} u_{{x}}"
+        law = [] if self.law.formless else self.law.latex_rows()
+        law.append(
+            rf"\phi_{{n}} = {definition} \quad \text{{and}}\ F'({delta})\ \text{{at}}\ {place}"
+        )
+        return [*law, *latex.rows({rf"\phi_{{{n}}}": x for n, x in self.phi.items()}), *rows]
+
     def _repr_latex_(self) -> str:
-        return latex.display([*self.closure.latex_rows(4), *self.pde.latex_rows(3)])
+        return latex.display(self.latex_rows(3))
 
     def at(self, **values: Any) -> Theory:
         """The theory for these values of the named symbols, and of ω = m2/m1 by ``omega``.

@@ -10,6 +10,9 @@ from collections.abc import Iterable, Iterator, Mapping
 
 import sympy as sp
 
+from lwa.base.exact import evaluated
+
+NUMBER = 24  # symbols of an exact number beyond which its digits stand in its place
 WIDTH = 64
 """Symbols in a line of a display; a page of LaTeX's article holds about 70 of them."""
 
@@ -85,6 +88,8 @@ def expression(value: sp.Expr) -> str:
     '\\\\frac{x}{2} + \\\\frac{y}{2}'
     """
     plain = str(sp.latex(value))
+    if not value.free_symbols and width(plain) > NUMBER:
+        return str(sp.latex(evaluated(value, 15)))
     if width(plain) <= WIDTH or not (value.is_Mul or value.is_Pow):
         return plain
     factors = sp.Mul.make_args(value)

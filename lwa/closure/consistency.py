@@ -17,7 +17,7 @@ from lwa.algebra.jets import Monomial
 from lwa.algebra.model import Model
 from lwa.base import latex
 from lwa.base.exact import InputError
-from lwa.base.frozen import Value
+from lwa.base.frozen import Shown, Value
 from lwa.base.progress import Progress
 from lwa.cell import Cell
 from lwa.closure.ansatz import linear
@@ -32,7 +32,7 @@ FIELDS = ("first", "center")
 
 
 @dataclass(frozen=True, repr=False, kw_only=True)
-class Closure(Solution):
+class Closure(Shown, Solution):
     """The solved consistency condition of a model, as polynomials.
 
     changes : the (n, α_n) of each change of the field; see `in_field`.

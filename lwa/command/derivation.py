@@ -8,12 +8,11 @@ from typing import Any
 import click
 import sympy as sp
 
-from lwa.base import latex
 from lwa.base.exact import InputError
 from lwa.command.chain import take_chain
 from lwa.command.options import STYLES, theory_options
 from lwa.command.rows import Answer, Row, Values
-from lwa.equation.terms import Jet, Terms
+from lwa.equation.terms import Jet, Terms, by_order
 from lwa.theory import Theory, homogenize
 from lwa.wave.functions import Functions
 
@@ -27,7 +26,7 @@ def chain_json(theory: Theory) -> dict[str, Any]:
     """JSON of the chain, its law and the settings; the φ_n are functions of the compression."""
     law = {}
     if not theory.law.homogeneous:
-        law = {"law": str(theory.law.F), "phi": {str(n): str(x) for n, x in _phi(theory).items()}}
+        law = {"law": str(theory.law.F), "phi": {str(n): str(x) for n, x in theory.phi.items()}}
     return {
         "k": str(theory.k),
         **law,
@@ -56,13 +55,6 @@ def listed(values: tuple[sp.Expr, ...]) -> str:
     return ", ".join(map(str, values))
 
 
-def _phi(theory: Theory) -> dict[int, sp.Expr]:
-    """Mapping from n to φ_n in the compression, for a law with an expression."""
-    law = theory.law
-    known = not (law.homogeneous or law.formless)
-    return {n: law.phi(n) for n in range(2, max(theory.order, 3))} if known else {}
-
-
 @click.command()
 @theory_options((*STYLES, "numpy"))
 def derive(style: str, **options: Any) -> None:
@@ -79,16 +71,17 @@ def derive(style: str, **options: Any) -> None:
     if style == "numpy":
         click.echo(_source(theory))
     else:
-        _answer(theory, style == "latex").print(style)
+        _answer(theory).print(style)
 
 
-def _answer(theory: Theory, tex: bool) -> Answer:
-    """Rows of a derivation; the rows of LaTeX, slow at high orders, only if ``tex``."""
+def _answer(theory: Theory) -> Answer:
+    """Rows of a derivation."""
     head: Values = {
         **chain_json(theory),
         "lambda": str(theory.amplitude_ratio),
         "ansatz": {},
         **dict.fromkeys("GHI"),
+        **{letter: str(value) for letter, value in theory.pde.third_order.items()},
         "terms": _terms_json(theory.pde.coefficients),
         "vanishing": list(theory.pde.vanishing),
         "slaved": [
@@ -107,12 +100,11 @@ def _answer(theory: Theory, tex: bool) -> Answer:
         *_law_text(theory),
         "",
         *_ansatz(theory),
-        *_equation(theory),
+        str(theory.pde),
         "",
         *_consistency_text(theory),
     ]
-    equations = [*theory.closure.latex_rows(), *theory.pde.latex_rows()] if tex else []
-    return Answer(head, rows, equations=[*_law_latex(theory), *equations])
+    return Answer(head, rows, shown=[theory])
 
 
 def _terms_json(coefficients: Mapping[int, Terms]) -> list[dict[str, Any]]:
@@ -134,7 +126,7 @@ def _law_text(theory: Theory) -> list[str]:
     if law.homogeneous:
         return []
     lines = [f"phi_n = {law.delta}^(n-1) F^(n)/F', at {law.delta} = D u_x; F' is taken there"]
-    return lines + [f"  phi{n} = {value}" for n, value in _phi(theory).items()]
+    return lines + [f"  phi{n} = {value}" for n, value in theory.phi.items()]
 
 
 def _ansatz(theory: Theory) -> list[Row | str]:
@@ -149,7 +141,7 @@ def _ansatz(theory: Theory) -> list[Row | str]:
     for i, series in theory.slaved.items():
         w = i == 1  # the second particle's field, whose linear part is the ansatz
         nonlinear = {n: W.without(_is_linear) if w else W for n, W in series.items()}
-        if lines := _orders(nonlinear, "D^{}"):
+        if lines := by_order(nonlinear, "D^{}"):
             name = "nonlinear terms of w" if w else f"field of particle {i + 1}, less u"
             rows += [f"{name}:", *lines, ""]
     return rows
@@ -159,43 +151,12 @@ def _is_linear(jet: Jet) -> bool:
     return not jet.t and sum(e for _, e in jet.x) <= 1
 
 
-_POWER_LAW = "u_x^(k-1) u_xx", "G u_x^(k-3) u_xx^3 + H u_x^(k-2) u_xx u_xxx + I u_x^(k-1) u_4x"
-_OTHER_LAW = "F' u_xx", "G F' u_x^-2 u_xx^3 + H F' u_x^-1 u_xx u_xxx + I F' u_4x"
-
-
-def _equation(theory: Theory) -> list[Row | str]:
-    third = theory.pde.third_order
-    lines: list[Row | str]
-    if theory.closure.model.branch == "optical":
-        lines = ["u_ττ = -u^k + …   (contacts that also pull: the odd law |δ|^(k-1) δ)"]
-    elif theory.order == 1:
-        lines = ["the wave equation starts at D^(k+1), that is at order 2 of the ansatz"]
-    else:
-        parts = list((_POWER_LAW if theory.law.homogeneous else _OTHER_LAW)[: 2 if third else 1])
-        parts += ["…"] * (theory.order > (4 if third else 2))
-        lines = [f"u_ττ = {' + '.join(parts)}"]
-        lines += [Row(name, name, value, digits=False) for name, value in third.items()]
-    form = _order_form(theory)
-    lines += _orders(
-        {n: c for n, c in theory.pde.coefficients.items() if not (third and n == 3)}, form
-    )
-    vanishing = ", ".join(map(form.format, theory.pde.vanishing))
-    return [*lines, f"  vanishing identically: {vanishing}"] if vanishing else lines
-
-
-def _order_form(theory: Theory) -> str:
-    """Format string for the heading of an order n, such as D^(k+{})."""
-    if not theory.law.homogeneous:
-        return "order {}"
-    return "D^(k+{})" if theory.closure.model.branch == "acoustic" else "D^{}"
-
-
 def _consistency_text(theory: Theory) -> list[str]:
     if not theory.defect:
         lines = ["all equations of motion are satisfied at every order shown"]
     else:
         lines = ["defect: u_ττ by the first equation of motion minus u_ττ by the second"]
-        lines += _orders(theory.defect, _order_form(theory))
+        lines += by_order(theory.defect, theory.pde.heading)
     if theory.closure.model.branch == "acoustic" and not theory.pde.conservative:
         lines.append(
             "not in conservation form: the linear closure of unequal particles does not conserve "
@@ -204,27 +165,6 @@ def _consistency_text(theory: Theory) -> list[str]:
             else "not in conservation form in this field; see --field center"
         )
     return lines
-
-
-def _orders(coefficients: Mapping[int, Terms], form: str) -> list[str]:
-    """Lines of text with the terms of each order n, under the heading ``form.format(n)``."""
-    lines = []
-    for n, terms in coefficients.items():
-        rows = [f"    {terms.text(jet)}: {terms.written(jet)}" for jet in terms]
-        lines += [f"  {form.format(n)}:", *rows] if rows else []
-    return lines
-
-
-def _law_latex(theory: Theory) -> list[str]:
-    law = theory.law
-    if law.homogeneous:
-        return []
-    delta = sp.latex(law.delta)
-    rows = [] if law.formless else [latex.row(rf"F({delta})", law.F)]
-    definition = rf"\frac{{{delta}^{{n-1}} F^{{(n)}}({delta})}}{{F'({delta})}}"
-    place = rf"{delta} = {sp.latex(theory.cell.spacing)} u_{{x}}"
-    rows.append(rf"\phi_{{n}} = {definition} \quad \text{{and}}\ F'({delta})\ \text{{at}}\ {place}")
-    return rows + [latex.row(rf"\phi_{{{n}}}", value) for n, value in _phi(theory).items()]
 
 
 def _source(theory: Theory) -> str:

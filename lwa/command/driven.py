@@ -11,7 +11,7 @@ from lwa.base.errors import InputError
 from lwa.command.chain import ChainInput, take_chain
 from lwa.command.options import SPHERES, cell_options, spheres_option, style_option, value
 from lwa.command.rows import Answer, Row, attempt
-from lwa.command.waves import SPEED, hertz_note
+from lwa.command.waves import hertz_note
 from lwa.expansion.physical import pulse_of_strike
 from lwa.shocks import riemann
 
@@ -41,22 +41,19 @@ def strike(
     rows: list[Row | str] = [
         f"chain of equal beads; F = A δ^k, k = {law.exponent}",
         Row("", "mass of the beads", cell.masses[0], unit="kg"),
-        Row("mass", "mass of the striker", pulse.mass, "m_{s}", "kg", expression=False),
-        Row("velocity", "velocity of the striker", pulse.velocity, "v", "m/s", expression=False),
+        Row("mass", "mass of the striker", pulse.mass, "kg", expression=False),
+        Row("velocity", "velocity of the striker", pulse.velocity, "m/s", expression=False),
         "",
         "leading pulse:",
-        Row("force", "peak contact force", pulse.force, "F", "N"),
-        Row("speed", "speed dx/dt", pulse.speed, SPEED, "m/s"),
-        Row("fwhm.length", "FWHM of the force", pulse.fwhm("force", "length"), _WIDTH, "m"),
-        Row("fwhm.time", "FWHM of the force in time", pulse.fwhm(), _WIDTH + "/c", "s"),
+        Row("force", "peak contact force", pulse.force, "N"),
+        Row("speed", "speed dx/dt", pulse.speed, "m/s"),
+        Row("fwhm.length", "FWHM of the force", pulse.fwhm("force", "length"), "m"),
+        Row("fwhm.time", "FWHM of the force in time", pulse.fwhm(), "s"),
     ]
     notes = [*chain.without_load(), *hertz_note(chain, pulse.wave.F)]
     if pulse.train:
         notes.append("a striker heavier than two beads sends further pulses behind this one")
-    Answer({}, rows, chain.si, notes=notes, orders=False).print(style)
-
-
-_WIDTH = r"\mathrm{FWHM}_{\mathrm{force}}"
+    Answer({}, rows, chain.si, shown=[pulse], notes=notes, orders=False).print(style)
 
 
 @click.command()
@@ -96,28 +93,28 @@ def shock(
 def _front(chain: ChainInput, front: riemann.Shock) -> Answer:
     """Printed rows for the shock or rarefaction between two strains: speeds, plateau, peak."""
 
-    def row(key: str, label: str, value: Any, symbol: str = "", unit: str = "m/s") -> Row:
+    def row(key: str, label: str, value: Any, unit: str = "m/s") -> Row:
         closed = isinstance(value, sp.Expr) and not value.has(sp.Float)
-        return Row(key, label, value, symbol, unit, expression=closed)
+        return Row(key, label, value, unit, expression=closed)
 
     kind = attempt(lambda: front.kind)
     head = {"kind": None if isinstance(kind, InputError) else kind}
     rows: list[Row | str] = [
         chain.text,
-        Row("behind", "strain behind", front.behind, "p_{-}"),
-        Row("ahead", "strain ahead", front.ahead, "p_{+}"),
+        Row("behind", "strain behind", front.behind),
+        Row("ahead", "strain ahead", front.ahead),
         "",
         f"{head['kind'] or 'front'}, speeds dx/dt:",
-        row("plateau", "velocity of the wall and the plateau", front.plateau, "v_{p}"),
-        row("trailing_speed", "trailing edge", attempt(lambda: front.trailing_speed), "s_{-}"),
+        row("plateau", "velocity of the wall and the plateau", front.plateau),
+        row("trailing_speed", "trailing edge", attempt(lambda: front.trailing_speed)),
     ]
     for rule in riemann.RULES:
         key, label = f"leading_speed.{rule}", f"leading edge, {rule}"
-        rows.append(row(key, label, attempt(front.leading_speed, rule), "s_{+}"))
+        rows.append(row(key, label, attempt(front.leading_speed, rule)))
     if kind != "rarefaction":
         peak, force = attempt(lambda: front.peak), attempt(lambda: front.peak_force)
-        rows.append(row("peak", "peak strain, doubling", peak, r"p_{\max}", ""))
-        rows.append(row("peak_force", "peak force, doubling", force, r"F_{\max}", "N"))
+        rows.append(row("peak", "peak strain, doubling", peak, ""))
+        rows.append(row("peak_force", "peak force, doubling", force, "N"))
         if front.law.homogeneous and front.ahead.is_zero and not front.behind.free_symbols:
             speed, force = attempt(lambda: front.wave.speed), attempt(lambda: front.wave.F)
             rows.append(Row("series.speed", "leading pulse, series", speed, unit="m/s"))
@@ -125,4 +122,5 @@ def _front(chain: ChainInput, front: riemann.Shock) -> Answer:
             rows.append(Row("series.force", label, force, unit="N", expression=False))
     faults = (row.value for row in rows if isinstance(row, Row))
     notes = dict.fromkeys(str(fault) for fault in faults if isinstance(fault, InputError))
-    return Answer(head, rows, chain.si, front.cell.spacing, notes=tuple(notes), orders=False)
+    spacing = front.cell.spacing
+    return Answer(head, rows, chain.si, spacing, [front], notes=tuple(notes), orders=False)

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 import click
 import sympy as sp
 
-from lwa.base import latex
 from lwa.base.exact import InputError
 from lwa.command.chain import ChainInput, take_chain
 from lwa.command.derivation import listed
@@ -60,34 +59,27 @@ def dispersion(order: int, style: str, precompression: sp.Expr | None, **options
 def _linear(chain: Dispersion, order: int, loaded: LoadedChain | None) -> Answer:
     """Answer with the series Ω²(κ) of the acoustic and, for two particles, the optical branch."""
     cell = chain.cell
-    branches = {"acoustic": chain.acoustic(order)}
-    if cell.size == 2:
-        branches["optical"] = chain.optical(order)
     rows: list[Row | str] = [
         f"masses {listed(cell.masses)}, A = {listed(cell.stiffnesses)}; Ω²(κ), κ = qD and Ω/D the "
         "frequency in τ",
         "",
     ]
     head: Values = {"acoustic": None, "optical": None}
-    equations = []
-    for name, series in branches.items():
+    for name, series in chain.series(order).items():
         head[name] = {str(n): str(c) for n, c in series.items()}
         rows += [f"{name}:", *(f"  {f'κ^{n}' if n else '1'}: {c}" for n, c in series.items())]
-        powers = ((c, latex.power(sp.Symbol("kappa"), n) if n else "") for n, c in series.items())
-        letter = rf"\Omega_{{\mathrm{{{name}}}}}^{{2}}"
-        equations.append(rf"{letter} = {latex.total(powers)} + \cdots")
     if loaded is None:
-        return Answer(head, rows, equations=equations)
+        return Answer(head, rows, shown=[chain])
     bands = _bands(loaded)
     rows += [
         "",
         f"about the load {loaded.precompression}, law {loaded.law.F}:",
-        Row("precompression", "", loaded.precompression, "F_{0}", digits=False),
-        Row("spring_constants", "spring constants", loaded.spring_constants, "K"),
-        Row("sound_speed", "sound speed dx/dt", loaded.sound_speed, "c_{0}"),
+        Row("precompression", "", loaded.precompression, digits=False),
+        Row("spring_constants", "spring constants", loaded.spring_constants),
+        Row("sound_speed", "sound speed dx/dt", loaded.sound_speed),
         *_bands_text(bands),
     ]
-    return Answer(head | bands, rows, spacing=cell.spacing, equations=equations)
+    return Answer(head | bands, rows, spacing=cell.spacing, shown=[chain, loaded])
 
 
 def _bands(loaded: LoadedChain) -> Values:
@@ -203,17 +195,17 @@ def envelope(
 def _envelope(chain: ChainInput, equation: Envelope, breather: Breather | None) -> Answer:
     """Rows of the equation, and of the breather of a frequency."""
     turn = 2 * sp.pi if chain.si else sp.S.One
-    name, symbol = ("ω/(2π)", r"\omega / 2 \pi") if chain.si else ("ω", r"\omega")
+    name = "ω/(2π)" if chain.si else "ω"
     rows: list[Row | str] = [
         chain.text,
         "u = Ψ(X, T) U e^{i(κ n - ω t)} + c.c., Σ m |U|² = 1, n and κ per cell",
         "i Ψ_T + ½ ω'' Ψ_XX = χ |Ψ|² Ψ",
         "",
-        Row("wavenumber", "κ", equation.wavenumber, r"\kappa", digits=False),
-        Row("frequency", f"frequency {name}", equation.frequency / turn, symbol, "Hz"),
-        Row("group_velocity", "dω/dκ", equation.group_velocity, r"\omega'", "cells/s"),
-        Row("dispersion", "ω''", equation.dispersion, r"\omega''", "cells²/s"),
-        Row("nonlinearity", "χ", equation.nonlinearity, r"\chi", "1/(s kg m²)"),
+        Row("wavenumber", "κ", equation.wavenumber, digits=False),
+        Row("frequency", f"frequency {name}", equation.frequency / turn, "Hz"),
+        Row("group_velocity", "dω/dκ", equation.group_velocity, "cells/s"),
+        Row("dispersion", "ω''", equation.dispersion, "cells²/s"),
+        Row("nonlinearity", "χ", equation.nonlinearity, "1/(s kg m²)"),
     ]
     head: dict[str, str | None] = {"branch": str(equation.branch), "kind": None}
     try:
@@ -228,9 +220,9 @@ def _envelope(chain: ChainInput, equation: Envelope, breather: Breather | None) 
             "",
             f"{breather.kind} breather, |Ψ| = a {shape}(b n):",
             Row("breather_frequency", f"frequency {name}", breather.frequency / turn, unit="Hz"),
-            Row("detuning", "detuning Δ = 1 - f/f0", breather.detuning, r"\Delta"),
-            Row("amplitude", "largest displacement by bead", breather.amplitude, "2 a U", "m"),
-            Row("width", "width 1/b in cells", breather.width, "b^{-1}"),
+            Row("detuning", "detuning Δ = 1 - f/f0", breather.detuning),
+            Row("amplitude", "largest displacement by bead", breather.amplitude, "m"),
+            Row("width", "width 1/b in cells", breather.width),
         ]
         if equation.opening != sp.oo:
             label = "contacts open from the detuning"
@@ -241,4 +233,5 @@ def _envelope(chain: ChainInput, equation: Envelope, breather: Breather | None) 
                 force = breather.opening_load(held)
                 force = sp.N(force, 15) if force.is_Rational else force  # sixth powers are long
                 rows.append(Row(f"opening_load.{held}", label, force, unit="N"))
-    return Answer(head, rows, chain.si, equation.cell.spacing, notes=notes)
+    shown = [equation, breather] if breather else [equation]
+    return Answer(head, rows, chain.si, equation.cell.spacing, shown, notes)

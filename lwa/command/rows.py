@@ -17,6 +17,7 @@ import sympy as sp
 
 from lwa.base import latex
 from lwa.base.exact import InputError, evaluated
+from lwa.base.frozen import Shown
 from lwa.expansion.approximants import Resummed
 
 PRINTED_DIGITS = 15  # significant digits of a printed number, all of them correct
@@ -31,21 +32,17 @@ class Row:
 
     key : name in JSON; "fwhm.force" is the entry "force" of "fwhm". Not in JSON where empty.
     label : name in text; not in text where empty.
-    symbol : name in LaTeX; not in LaTeX where empty.
     unit : unit of the value for a chain in SI.
     digits : False for a value that is printed without its digits.
     expression : True if JSON has the expression besides its digits.
-    formula : LaTeX in place of the value's own.
     """
 
     key: str
     label: str
     value: Any
-    symbol: str = ""
     unit: str = ""
     digits: bool = True
     expression: bool = True
-    formula: str = ""
 
 
 @dataclass(frozen=True)
@@ -56,7 +53,7 @@ class Answer:
     rows : the results and the other lines of text, in their order.
     si : True if numbers are in SI; then all values are printed in digits, with their units.
     spacing : the symbol of the unit of length, or a number.
-    equations : rows of LaTeX before the others.
+    shown : results whose rows make the LaTeX.
     notes : sentences on the validity of the numbers.
     parts : further answers by their key in JSON.
     orders : True if text states the highest power of k - 1 in a sum.
@@ -66,7 +63,7 @@ class Answer:
     rows: Sequence[Row | str]
     si: bool = False
     spacing: sp.Expr = sp.S.One
-    equations: Sequence[str] = ()
+    shown: Sequence[Shown] = ()
     notes: Sequence[str] = ()
     parts: Mapping[str, Answer] = field(default_factory=dict)
     orders: bool = True
@@ -160,26 +157,13 @@ class Answer:
     # --- LaTeX ------------------------------------------------------------------------------
 
     def latex(self) -> str:
-        """The display that ``--format latex`` prints, notes as comments behind it."""
-        display = latex.align(self._equations())
-        return "\n".join([display, *(f"% {note}" for note in self.notes)])
+        """The display that ``--format latex`` prints, units and notes as comments behind it."""
+        notes = [*["numbers are in SI: m, s, kg, N, rad"] * self.si, *self.notes]
+        return "\n".join([latex.align(self._equations()), *(f"% {note}" for note in notes)])
 
     def _equations(self) -> list[str]:
-        rows = [row for row in self.rows if isinstance(row, Row) and row.symbol]
-        lines = [
-            f"{row.symbol} = {row.formula or self._value_latex(row)}"
-            for row in rows
-            if not isinstance(row.value, InputError)
-        ]
-        parts = (line for part in self.parts.values() for line in part._equations())
-        return [*self.equations, *lines, *parts]
-
-    def _value_latex(self, row: Row) -> str:
-        unit = rf"\ \mathrm{{{row.unit}}}" if self.si and row.unit else ""
-        if isinstance(row.value, Resummed):
-            return row.value.latex() + unit
-        write = (lambda x: approximate(x, tex=True)) if self.si else latex.expression
-        return r",\ ".join(map(write, _parts(row.value))) + unit
+        rows = [row for result in self.shown for row in result.latex_rows()]
+        return [*rows, *(row for part in self.parts.values() for row in part._equations())]
 
 
 def _parts(value: Any) -> list[sp.Expr]:
@@ -234,16 +218,15 @@ def attempt(read: Callable[..., Any], *arguments: Any) -> Any:
         return fault
 
 
-def approximate(value: sp.Expr, tex: bool = False) -> str:
+def approximate(value: sp.Expr) -> str:
     """A number in digits; an expression in symbols with its numeric factor in digits."""
     if value.is_zero:
         return "0"
-    write: Callable[[sp.Expr], str] = sp.latex if tex else lambda x: sp.sstr(x, full_prec=False)
     factor, rest = value.as_independent(*value.free_symbols, as_Add=False)
-    number = write(evaluated(factor, PRINTED_DIGITS))
+    number = str(sp.sstr(evaluated(factor, PRINTED_DIGITS), full_prec=False))
     if rest == 1:
         return number
-    return write(rest) if factor == 1 else f"{number}{' ' if tex else '·'}{write(rest)}"
+    return str(rest) if factor == 1 else f"{number}·{rest}"
 
 
 def summed(total: Resummed, unit: str, order: bool) -> str:

@@ -20,7 +20,7 @@ from lwa.command.options import (
     series_options,
 )
 from lwa.command.rows import Answer, Row, Values, attempt
-from lwa.command.waves import SPEED, WIDTHS, radiation_note
+from lwa.command.waves import WIDTHS, radiation_note
 from lwa.expansion.approximants import Resummed
 from lwa.expansion.expand import DAMPINGS, Expansion, expand
 from lwa.expansion.physical import ExpandedWave
@@ -98,7 +98,7 @@ def _answer(expanded: Expansion, notes: list[str]) -> Answer:
         if cell.size == 2:
             rows.append("  (of the mean of a dimer's two contacts, which differ behind a striker)")
         notes = [*notes, *radiation_note(cell, expanded.k)]
-    return Answer(head, rows, equations=[part.latex() for part in series.values()], notes=notes)
+    return Answer(head, rows, shown=[expanded], notes=notes)
 
 
 def _sums(expanded: Expansion, series: Mapping[str, EpsilonSeries]) -> dict[str, Any]:
@@ -131,12 +131,12 @@ def _at_force(wave: ExpandedWave, si: bool) -> Answer:
     force = f"{float(wave.F):g}{' N' * si}"
     rows: list[Row | str] = ["", f"peak contact force {force}:"]
     rows.append(Row("force", "", wave.F, unit="N", expression=False))
-    rows.append(Row("speed", "speed dx/dt", attempt(lambda: wave.speed), SPEED, "m/s"))
+    rows.append(Row("speed", "speed dx/dt", attempt(lambda: wave.speed), "m/s"))
     for key, label, extent, unit in WIDTHS:
         for q in QUANTITIES:
             width = attempt(wave.fwhm, q, extent)
             rows.append(Row(f"{key}.{q}", label.format(q), width, unit=unit))
-    return Answer({}, rows, si)
+    return Answer({}, rows, si, shown=[wave])
 
 
 def _series_json(series: EpsilonSeries) -> Values:

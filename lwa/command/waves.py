@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 import click
 import sympy as sp
 
-from lwa.base import latex
 from lwa.base.exact import InputError, read_exact
+from lwa.base.frozen import Shown
 from lwa.base.quantities import QUANTITIES, NoSolitaryWave
 from lwa.cell import Cell
 from lwa.code import LANGUAGES
@@ -28,7 +28,6 @@ from lwa.command.rows import Answer, Row, attempt
 from lwa.spheres.hertz import EXPONENT
 from lwa.theory import Theory, homogenize
 from lwa.wave.background import BackgroundWave
-from lwa.wave.closed import Reduction
 from lwa.wave.physical import PrecompressedWave
 from lwa.wave.traveling import TravelingWave
 
@@ -45,9 +44,6 @@ WIDTHS = (
     ("fwhm_time", "FWHM of the {} in time", "time", "s"),
 )
 """Key, label, extent and unit of the widths of a wave with units."""
-
-SPEED = r"\mathrm{d}x/\mathrm{d}t"
-_SCALE = SPEED + " / V_{s}"
 
 
 @click.command()
@@ -159,12 +155,7 @@ def _fwhm(wave: Any, *extent: str) -> dict[str, sp.Expr]:
 
 
 def _fwhm_rows(key: str, label: str, widths: Mapping[str, sp.Expr], **settings: Any) -> list[Row]:
-    symbol = r"\mathrm{{FWHM}}_{{\mathrm{{{}}}{}}}"
-    of_time = r",\,\tau" if "time" in key else ""
-    return [
-        Row(f"{key}.{q}", label.format(q), width, symbol.format(q, of_time), **settings)
-        for q, width in widths.items()
-    ]
+    return [Row(f"{key}.{q}", label.format(q), x, **settings) for q, x in widths.items()]
 
 
 def _compact(theory: Theory, wave: TravelingWave, style: str) -> Answer:
@@ -180,47 +171,26 @@ def _compact(theory: Theory, wave: TravelingWave, style: str) -> Answer:
         + FIELDS[theory.closure.field],
         "v = u_x = B cos^(2/(k-1))(β ξ), ξ = x - V_s τ, on |ξ| ≤ π/(2β)",
         "",
-        Row("beta", "β", wave.beta, r"\beta"),
-        Row("width", "width π/β", wave.width, "L"),
+        Row("beta", "β", wave.beta),
+        Row("width", "width π/β", wave.width),
         *_fwhm_rows("fwhm", "FWHM of the {}", _fwhm(wave)),
-        Row("B", "B", wave.amplitude(), "B"),
-        Row("speed", "V_s", wave.speed(), "V_{s}"),
+        Row("B", "B", wave.amplitude()),
+        Row("speed", "V_s", wave.speed()),
         f"  F_m ∝ V_s^({wave.force_exponent});  dx/dt = V_s · {wave.time_scale}",
         Row("speed_factor", "", wave.speed_factor, digits=False),
-        Row("time_scale", "", wave.time_scale, _SCALE, digits=False),
+        Row("time_scale", "", wave.time_scale, digits=False),
         Row("log_B", "", log_B, expression=False),
         "",
         "v = z^p, integrating factor z^a: z'' = μ z^η - σ z",
-        *_reduction_rows(theory, first, style == "latex"),
+        *(Row(name, name, getattr(first, name)) for name in _REDUCTION),
         Row("", "the other root, p", second.p),
         Row("", "with a", second.a),
     ]
     notes = radiation_note(theory.cell, wave.k)
-    return Answer(head, rows, spacing=wave.D, notes=notes)
+    return Answer(head, rows, spacing=wave.D, shown=[theory.pde, wave, first], notes=notes)
 
 
-# Symbols of the paper's reduction v = z^p, and formulas for values wider than a line
-_REDUCTION = {
-    "p": ("p", ""),
-    "a": ("a", r"1 - k p + 3 (p - 1) + \frac{p H}{I}"),
-    "mu": (r"\mu", r"\frac{V_{s}^{2}}{I (p + a)}"),
-    "eta": (r"\eta", "1 + p - k p"),
-    "sigma": (r"\sigma", r"\frac{1}{I (k p + a)}"),
-    "s": ("s", r"\frac{2}{1 - \eta}"),
-}
-
-
-def _reduction_rows(theory: Theory, reduction: Reduction, tex: bool) -> Iterable[Row]:
-    """Rows of p, a, μ, η, σ and s; in LaTeX long values as formulas in p, a, H and I."""
-    wide = False
-    for name, (symbol, formula) in _REDUCTION.items():
-        value = getattr(reduction, name)
-        if not (tex and formula and latex.width(str(sp.latex(value))) > latex.WIDTH):
-            formula = ""
-        wide = wide or bool(formula)
-        yield Row(name, name, value, symbol, formula=formula)
-    if wide:
-        yield from (Row("", "", theory.pde.third_order[name], name) for name in "HI")
+_REDUCTION = ("p", "a", "mu", "eta", "sigma", "s")  # of the paper's v = z^p
 
 
 def _at_force(chain: ChainInput, theory: Theory, wave: TravelingWave, F: sp.Expr) -> Answer:
@@ -231,39 +201,39 @@ def _at_force(chain: ChainInput, theory: Theory, wave: TravelingWave, F: sp.Expr
         f"contact force F = A δ^k, k = {theory.k}; an endless chain without load",
         *_chain_rows(chain),
         "",
-        Row("force", "peak contact force F", at.force, "F", "N"),
+        Row("force", "peak contact force F", at.force, "N"),
         Row("strain", "peak strain B", at.strain),
-        Row("compression", "", at.compression, r"\delta", "m"),
+        Row("compression", "", at.compression, "m"),
         Row("compressions", "peak compression", at.compressions, unit="m"),
-        Row("speed", "speed dx/dt", at.speed, SPEED, "m/s"),
-        Row("bead_velocity", "peak velocity of the beads", at.bead_velocity, "u_{t}", "m/s"),
+        Row("speed", "speed dx/dt", at.speed, "m/s"),
+        Row("bead_velocity", "peak velocity of the beads", at.bead_velocity, "m/s"),
         *(
             row
             for key, label, extent, unit in WIDTHS
             for row in _fwhm_rows(key, label, _fwhm(at, extent), unit=unit)
         ),
-        Row("beta", "", wave.beta, r"\beta", "1/m"),
-        Row("width", "", wave.width, "L", "m"),
+        Row("beta", "", wave.beta, "1/m"),
+        Row("width", "", wave.width, "m"),
         Row("speed_factor", "", wave.speed_factor),
-        Row("time_scale", "", wave.time_scale, _SCALE, "m/s"),
-        Row("B", "", at.strain, "B"),
-        Row("V_s", "", wave.speed(at.strain), "V_{s}"),
+        Row("time_scale", "", wave.time_scale, "m/s"),
+        Row("B", "", at.strain),
+        Row("V_s", "", wave.speed(at.strain)),
     ]
     notes = [*radiation_note(theory.cell, wave.k), *hertz_note(chain, at.force)]
-    return Answer(chain_json(theory), rows, chain.si, wave.D, notes=notes)
+    return Answer(chain_json(theory), rows, chain.si, wave.D, [wave, at], notes)
 
 
 def _chain_rows(chain: ChainInput) -> list[Row]:
     """Rows of masses, stiffnesses and spacing; only text if not in SI, as JSON's head has them."""
     cell, k = chain.cell, chain.law.exponent if chain.law.homogeneous else EXPONENT
     named = (
-        ("masses", "masses", cell.masses, "m", "kg"),
-        ("stiffnesses", "A", cell.stiffnesses, "A", f"N/m^({k})"),
-        ("spacing", "spacing D", cell.spacing, "D", "m"),
+        ("masses", "masses", cell.masses, "kg"),
+        ("stiffnesses", "A", cell.stiffnesses, f"N/m^({k})"),
+        ("spacing", "spacing D", cell.spacing, "m"),
     )
     if chain.si:
         return [Row(*parts) for parts in named]
-    return [Row("", label, value) for _, label, value, *_ in named]
+    return [Row("", label, value) for _, label, value, _ in named]
 
 
 def _on_background(theory: Theory, wave: BackgroundWave) -> Answer:
@@ -275,30 +245,32 @@ def _on_background(theory: Theory, wave: BackgroundWave) -> Answer:
         FIELDS[theory.closure.field],
         f"u_x = p0 + v(ξ), ξ = x - V_s τ, p0 = {wave.p0}; v rises by B",
         "",
-        Row("background", "", wave.p0, "p_{0}", digits=False),
-        Row("I", "", wave.I, "I", digits=False),
-        Row("speed", "V_s", wave.speed(), "V_{s}", digits=False),
-        Row("time_scale", "dx/dt over V_s", wave.time_scale, _SCALE, digits=False),
+        Row("background", "", wave.p0, digits=False),
+        Row("I", "", wave.I, digits=False),
+        Row("speed", "V_s", wave.speed(), digits=False),
+        Row("time_scale", "dx/dt over V_s", wave.time_scale, digits=False),
     ]
     if speed is not None:
         rows.append(Row("speed", "V_s at B = 1", speed, expression=False))
     rows += _fwhm_rows("fwhm", "FWHM of the {} at B = 1", widths, expression=False)
+    shown: list[Shown] = [wave]
     try:
         kdv = wave.kdv
     except NoSolitaryWave as reason:
         head["kdv"] = None
         rows += ["", str(reason)]
     else:
+        shown.append(kdv)
         rows += [
             "",
             "small waves: v_τ + c0 v_x + α v v_x + γ v_xxx = 0, v = B sech²(ξ/L)",
-            Row("kdv.sound_speed", "c0", kdv.sound_speed, "c_{0}"),
-            Row("kdv.nonlinearity", "α", kdv.nonlinearity, r"\alpha"),
-            Row("kdv.dispersion", "γ", kdv.dispersion, r"\gamma"),
-            Row("kdv.speed", "V_s of a small wave", kdv.speed(), r"V_{s} (B \to 0)"),
-            Row("kdv.width", "L", kdv.width(), "L"),
+            Row("kdv.sound_speed", "c0", kdv.sound_speed),
+            Row("kdv.nonlinearity", "α", kdv.nonlinearity),
+            Row("kdv.dispersion", "γ", kdv.dispersion),
+            Row("kdv.speed", "V_s of a small wave", kdv.speed()),
+            Row("kdv.width", "L", kdv.width()),
         ]
-    return Answer(head, rows, spacing=wave.cell.spacing)
+    return Answer(head, rows, spacing=wave.cell.spacing, shown=shown)
 
 
 def _at_one(wave: BackgroundWave) -> tuple[sp.Expr | None, dict[str, sp.Expr]]:
@@ -321,24 +293,21 @@ def _precompressed(chain: ChainInput, theory: Theory, wave: PrecompressedWave) -
         FIELDS[theory.closure.field],
         *(_chain_rows(chain) if chain.si else []),
         "",
-        Row("precompression", "static force F0", wave.precompression, "F_{0}", "N"),
-        Row("force", "peak contact force F, in all", wave.force, "F", "N"),
-        Row("background", "static strain p0", wave.background.p0, "p_{0}"),
-        Row("static_compression", "static compression", wave.static_compression, _STATIC, "m"),
-        Row("B", "rise of the strain B", wave.strain, "B"),
-        Row("compression", "rise of the compression", wave.compression, _RISE, "m"),
+        Row("precompression", "static force F0", wave.precompression, "N"),
+        Row("force", "peak contact force F, in all", wave.force, "N"),
+        Row("background", "static strain p0", wave.background.p0),
+        Row("static_compression", "static compression", wave.static_compression, "m"),
+        Row("B", "rise of the strain B", wave.strain),
+        Row("compression", "rise of the compression", wave.compression, "m"),
         Row("compressions", "rise by contact", wave.compressions, unit="m"),
-        Row("V_s", "V_s", wave.background.speed(wave.strain), "V_{s}"),
-        Row("time_scale", "dx/dt over V_s", wave.background.time_scale, _SCALE, "m/s"),
-        Row("speed", "speed dx/dt", wave.speed, SPEED, "m/s"),
-        Row("sound_speed", "speed of sound dx/dt", wave.sound_speed, r"c_{0}", "m/s"),
-        Row("bead_velocity", "peak velocity of the beads", wave.bead_velocity, "u_{t}", "m/s"),
+        Row("V_s", "V_s", wave.background.speed(wave.strain)),
+        Row("time_scale", "dx/dt over V_s", wave.background.time_scale, "m/s"),
+        Row("speed", "speed dx/dt", wave.speed, "m/s"),
+        Row("sound_speed", "speed of sound dx/dt", wave.sound_speed, "m/s"),
+        Row("bead_velocity", "peak velocity of the beads", wave.bead_velocity, "m/s"),
     ]
     for key, label, extent, unit in WIDTHS:
         if not isinstance(widths := attempt(_fwhm, wave, extent), InputError):  # no symbols
             rows += _fwhm_rows(key, label, widths, unit=unit, expression=False)
     notes = hertz_note(chain, wave.force)
-    return Answer(chain_json(theory), rows, chain.si, theory.cell.spacing, notes=notes)
-
-
-_STATIC, _RISE = r"\delta_{0}", r"\delta - \delta_{0}"
+    return Answer(chain_json(theory), rows, chain.si, theory.cell.spacing, [wave], notes)

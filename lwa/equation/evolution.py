@@ -95,6 +95,6 @@ class Evolution(Value):
         new = substitution(values, self.cell, more=self.law.symbols)
         return Evolution(self.cell.replaced(new), self.law.replaced(new))
 
-    def _repr_latex_(self) -> str:
+    def latex_rows(self) -> list[str]:
         equation = r"(1 - I \partial_x^2) u_{\tau\tau} = \partial_x F(u_{x})"
-        return latex.display([equation, latex.row("F(p)", self.force("p")), latex.row("I", self.I)])
+        return [equation, latex.row("F(p)", self.force("p")), latex.row("I", self.I)]

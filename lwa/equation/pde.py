@@ -26,8 +26,11 @@ from lwa.base import latex
 from lwa.base.exact import InputError, integer, power, read_exact
 from lwa.closure.consistency import OfClosure
 from lwa.equation.energy import energy, flux, variational
-from lwa.equation.terms import ENERGY, Jet, Terms, base_order, terms
+from lwa.equation.terms import ENERGY, Jet, Terms, base_order, by_order, terms
 from lwa.wave.traveling import TravelingWave
+
+_POWER_LAW = "u_x^(k-1) u_xx", "G u_x^(k-3) u_xx^3 + H u_x^(k-2) u_xx u_xxx + I u_x^(k-1) u_4x"
+_OTHER_LAW = "F' u_xx", "G F' u_x^-2 u_xx^3 + H F' u_x^-1 u_xx u_xxx + I F' u_4x"
 
 
 @dataclass(frozen=True)
@@ -109,12 +112,37 @@ class PDE(OfClosure):
                 break
             elif of_order:
                 D = latex.power(self.cell.spacing, n - base_order(self.closure.model))
-                parts.append(rf"{D} \Bigl({of_order.latex_total()}\Bigr)")
+                parts.append(rf"{D} \Bigl({of_order.latex_rows()[0]}\Bigr)")
         rows = [latex.row(letter, value) for letter, value in letters.items()]
         return [rf"u_{{\tau\tau}} = {' + '.join(parts)}", *rows]
 
     def _repr_latex_(self) -> str:
         return latex.display(self.latex_rows(3))
+
+    @property
+    def heading(self) -> str:
+        """Format string for the heading of an order n, such as D^(k+{})."""
+        if not self.law.homogeneous:
+            return "order {}"
+        return "D^(k+{})" if self.acoustic else "D^{}"
+
+    def __str__(self) -> str:
+        """The equation as text, with G, H, I and the terms of the other orders below it."""
+        third, order = self.third_order, self.closure.order
+        if not self.acoustic:
+            lines = ["u_ττ = -u^k + …   (contacts that also pull: the odd law |δ|^(k-1) δ)"]
+        elif order == 1:
+            lines = ["the wave equation starts at D^(k+1), that is at order 2 of the ansatz"]
+        else:
+            parts = list((_POWER_LAW if self.law.homogeneous else _OTHER_LAW)[: 2 if third else 1])
+            parts += ["…"] * (order > (4 if third else 2))
+            lines = [f"u_ττ = {' + '.join(parts)}"]
+            lines += [f"  {letter} = {value}" for letter, value in third.items()]
+        lines += by_order(
+            {n: c for n, c in self.coefficients.items() if not (third and n == 3)}, self.heading
+        )
+        vanishing = ", ".join(map(self.heading.format, self.vanishing))
+        return "\n".join([*lines, *[f"  vanishing identically: {vanishing}"] * bool(vanishing)])
 
     @property
     def vanishing(self) -> tuple[int, ...]:

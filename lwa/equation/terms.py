@@ -17,6 +17,7 @@ from flint import fmpq_mpoly
 from lwa.algebra.jets import JetAlgebra, Powers, Term
 from lwa.algebra.model import Model
 from lwa.base import latex
+from lwa.base.frozen import Shown
 from lwa.closure.consistency import Closure
 
 FORCE, STRAIN, ENERGY = (0, 1), (1, 0), (1, 1)
@@ -41,7 +42,7 @@ class Jet(NamedTuple):
         return power[0] - sum(e for _, e in self.x) - halves, power[1] - halves
 
 
-class Terms(Mapping[Jet, sp.Expr]):
+class Terms(Shown, Mapping[Jet, sp.Expr]):
     """Mapping from jets to coefficients at one order; a coefficient becomes SymPy on lookup.
 
     A jet without u_τ may also be given by its plain tuple, as in ``terms[(2, 1), (3, 1)]``.
@@ -138,12 +139,9 @@ class Terms(Mapping[Jet, sp.Expr]):
         )
         return " ".join(factors) or "1"
 
-    def latex_total(self) -> str:
-        """LaTeX of the sum of the terms."""
-        return latex.total((self[jet], self.latex(jet)) for jet in self)
-
-    def _repr_latex_(self) -> str:
-        return latex.display([self.latex_total()])
+    def latex_rows(self) -> list[str]:
+        """LaTeX of the sum of the terms, in one row."""
+        return [latex.total((self[jet], self.latex(jet)) for jet in self)]
 
     def without(self, left_out: Callable[[Jet], bool]) -> Terms:
         """The terms except those of the jets for which ``left_out`` is true."""
@@ -194,6 +192,15 @@ def terms(
     }
     ordered = dict(sorted(raw.items(), key=lambda item: _complexity(item[0])))
     return Terms(closure.model, ordered, power, divisor)
+
+
+def by_order(coefficients: Mapping[int, Terms], form: str) -> list[str]:
+    """Lines of text with the terms of each order n, under the heading ``form.format(n)``."""
+    lines = []
+    for n, found in coefficients.items():
+        rows = [f"    {found.text(jet)}: {found.written(jet)}" for jet in found]
+        lines += [f"  {form.format(n)}:", *rows] if rows else []
+    return lines
 
 
 def base_order(model: Model) -> int:

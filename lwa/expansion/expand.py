@@ -16,7 +16,6 @@ from typing import Any
 import sympy as sp
 
 from lwa.algebra.model import Model
-from lwa.base import latex
 from lwa.base.exact import InputError, integer, one_of, shorten, signed
 from lwa.base.frozen import Value
 from lwa.base.progress import announced
@@ -185,9 +184,10 @@ class Expansion(Value):
         new = substitution(values, self.cell, self.k)
         return expand(self.cell.replaced(new), self.order, k=self.k.xreplace(new))
 
-    def _repr_latex_(self) -> str:
-        shown = (self.c2, self.fwhm("force"), self.momentum, self.energy)
-        return latex.display([series.latex() for series in shown])
+    def latex_rows(self) -> list[str]:
+        """LaTeX of the series of c², the widths, momentum and energy."""
+        shown = (self.c2, *map(self.fwhm, QUANTITIES), self.momentum, self.energy)
+        return [row for series in shown for row in series.latex_rows()]
 
 
 def expand(

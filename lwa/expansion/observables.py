@@ -171,7 +171,7 @@ class Observables:
 
     def log_force(self, contact: int) -> dict[sp.Rational, dict[int, sp.Expr]]:
         """Mapping n → d → coefficient of X^d in φ_n (`lwa.Expansion.log_force`)."""
-        # With t = ε^{1/2} I^{-3/2} and Z = X I^{-1/2} a term c Z^d t^n is c I^{-(3n+d)/2} X^d ε^{n/2}.
+        # t = ε^{1/2} I^{-3/2} and Z = X I^{-1/2}: a term c Z^d t^n is c I^{-(3n+d)/2} X^d ε^{n/2}.
         phi = {sp.S.Zero: {2: -1 / (4 * self.I)}}
         for n, q in enumerate(self.wave.fields.log_force[contact]):
             if q:

@@ -130,7 +130,7 @@ class EpsilonSeries(Value):
     def __repr__(self) -> str:
         return f"EpsilonSeries({self.quantity} to ε^{self.order}, k={self.k}, {self.cell!r})"
 
-    def latex(self) -> str:
+    def latex_rows(self) -> list[str]:
         """The series as a paper prints it: its name, its first `SHOWN` terms and dots."""
         epsilon = sp.Symbol(r"\varepsilon")
         powers = ["", *(latex.power(epsilon, n) for n in range(1, SHOWN))]
@@ -138,7 +138,4 @@ class EpsilonSeries(Value):
         body = latex.total((a, power) for a, power in shown if a) + r" + \dots"
         unit = self.prefactor * epsilon**self.power
         value = body if unit == 1 else rf"{sp.latex(unit)} \Bigl({body}\Bigr)"
-        return f"{_LETTERS[self.quantity]} = {value}"
-
-    def _repr_latex_(self) -> str:
-        return latex.display([self.latex()])
+        return [f"{_LETTERS[self.quantity]} = {value}"]

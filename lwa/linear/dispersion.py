@@ -35,6 +35,8 @@ if TYPE_CHECKING:
     from lwa.base.arrays import Array
     from lwa.linear.bands import Bands
 
+_KAPPA = sp.Symbol("kappa")
+
 MOST_TERMS = 200_000
 """Terms of the longest series (estimate of `Dispersion._length`); it takes about half a minute."""
 
@@ -96,8 +98,19 @@ class Dispersion(_Banded):
         new = substitution(values, self.cell, self.k)
         return Dispersion(self.cell.replaced(new), self.k.xreplace(new))
 
-    def latex_rows(self) -> list[str]:
-        return [rf"\Omega^{{2}} = \kappa^{{2}} - {sp.latex(self.I)} \, \kappa^{{4}} + \cdots"]
+    def latex_rows(self, order: int = 4) -> list[str]:
+        """LaTeX of Ω²(κ) to κ^order, of the acoustic and of a dimer's optical branch."""
+        rows = []
+        for branch, series in self.series(order).items():
+            terms = ((c, latex.power(_KAPPA, n) if n else "") for n, c in series.items())
+            letter = rf"\Omega_{{\mathrm{{{branch}}}}}^{{2}}"
+            rows.append(rf"{letter} = {latex.total(terms)} + \cdots")
+        return rows
+
+    def series(self, order: int = 4) -> dict[str, dict[int, sp.Expr]]:
+        """Mapping from "acoustic", and for dimers "optical", to the coefficients of Ω²(κ)."""
+        series = {"acoustic": self.acoustic(order)}
+        return series | ({"optical": self.optical(order)} if self.cell.size == 2 else {})
 
     @cached_property
     def trace(self) -> dict[int, sp.Expr]:

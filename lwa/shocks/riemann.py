@@ -12,6 +12,7 @@ the measured speed within 0.2 % and strain within 0.5 %; `lwa.shocks.waves` has 
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -45,7 +46,12 @@ class Shock(Value):
     ahead: sp.Expr
 
     def latex_rows(self) -> list[str]:
-        return latex.rows({"v_{p}": self.plateau, "c_{-}/c_{+}": self.ratio})
+        names = {"p_{-}": self.behind, "p_{+}": self.ahead, "v_{p}": self.plateau}
+        with suppress(InputError):
+            names["s_{-}"] = self.trailing_speed
+        with suppress(InputError):
+            names |= {"s_{+}": self.leading_speed(), r"p_{\max}": self.peak}
+        return latex.rows(names)
 
     @property
     def kind(self) -> str:

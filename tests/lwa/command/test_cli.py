@@ -10,6 +10,7 @@ import pytest
 import sympy as sp
 
 from lwa import Dimer, Material, Sphere, homogenize
+from lwa.base import latex
 from lwa.spheres import hertz
 from tests.lwa.command.answers import result, run
 
@@ -96,13 +97,15 @@ def test_amplitudes_out_of_range_have_no_value_but_a_logarithm(capsys):
     assert "Infinity" not in json.dumps(found)
 
 
-@pytest.mark.parametrize("command", ["derive", "wave"])
-def test_latex_is_one_balanced_display(capsys, command):
-    status, out, _ = run(capsys, command, "--format", "latex")
-    assert status == 0
-    assert out.startswith("\\begin{align}")
-    assert out.rstrip().endswith("\\end{align}")
-    assert out.count("{") == out.count("}")
+def test_latex_is_that_of_the_results(capsys):
+    """Rows of the objects; a formula in p, H and I stands only beside H and I."""
+    for masses, wide in (("m1,m2", True), ("1,1", False)):
+        _, out, _ = run(capsys, "derive", "--masses", masses, "--format", "latex")
+        theory = homogenize(Dimer(*masses.split(",")))
+        assert out == latex.align(theory.latex_rows()) + "\n"
+        _, out, _ = run(capsys, "wave", "--masses", masses, "--format", "latex")
+        assert (r"\frac{p H}{I}" in out) == wide
+        assert "H &=" in out
 
 
 def test_text_of_the_paper(capsys):
@@ -441,10 +444,3 @@ def test_long_exponents_are_printed(capsys, command):
     status, out, err = run(capsys, *command.split())
     assert (status, err) == (0, "")
     assert max(map(len, out.splitlines())) < 6000
-
-
-@pytest.mark.parametrize(("masses", "shown"), [("m1,m2", True), ("1,1", False)])
-def test_latex_has_h_and_i_where_its_formulas_do(capsys, masses, shown):
-    status, out, _ = run(capsys, "wave", "--masses", masses, "--format", "latex")
-    assert status == 0
-    assert (r"\frac{p H}{I}" in out) == ("H &=" in out) == ("I &=" in out) == shown

@@ -128,8 +128,11 @@ def test_a_wave_under_load_in_another_language(capsys):
     ("options", "parts"),
     [
         (("--background", "p0"), (r"V_{s} &= ", r"c_{0} &= ", "p_{0} &= p_{0}")),
-        (("--precompression", "1", "--force", "2", "--k", "3/2"), ("F_{0} &= 1", "u_{t} &= ")),
-        (("--force", "f"), (r"\mathrm{d}x/\mathrm{d}t &= ", "F &= f")),
+        (
+            ("--precompression", "1", "--force", "2", "--k", "3/2"),
+            ("F_{0} &= 1", r"\frac{dx}{dt} &= "),
+        ),
+        (("--force", "f"), ("{dt} &= ", "F &= f")),
     ],
 )
 def test_waves_in_latex(capsys, options, parts):
