@@ -1,6 +1,6 @@
 """Width of the contact force by each theory, and the lattice's, over the mass ratio.
 
-The strip of the chapter on theories, the calculator and the maps of the chapter on the series show these widths.
+The map of the theories, the calculator and the chapter on the series show these widths.
 Units: the heavy bead's mass, A and D are 1, so that widths are in sites.
 """
 

@@ -10,7 +10,9 @@ import pytest
 from PIL import Image
 
 ROOT = Path(__file__).parent.parent
-README, CHANGELOG = ((ROOT / name).read_text() for name in ("README.md", "CHANGELOG.md"))
+README, CHANGELOG, CATALOGUE = (
+    (ROOT / name).read_text() for name in ("README.md", "CHANGELOG.md", "book/commands.md")
+)
 
 
 def test_the_python_example(capsys):
@@ -26,7 +28,7 @@ def test_the_commands_exist():
     from validation.cli import STUDIES
 
     known = {"lwa": COMMANDS, "lwa-validate": STUDIES}
-    shown = re.findall(r"^\$ (lwa\S*) (\w+)", README, re.MULTILINE)
+    shown = re.findall(r"^\$ (lwa\S*) (\w+)", CATALOGUE, re.MULTILINE)
     for program, commands in known.items():
         assert {command for name, command in shown if name == program} == set(commands)
     for program, command in re.findall(r"`(lwa|lwa-validate) (\w+)", CHANGELOG):
@@ -34,7 +36,7 @@ def test_the_commands_exist():
 
 
 def test_the_demonstrations_are_listed():
-    shown = re.findall(r"^\$ python book/studies/(\w+)\.py", README, re.MULTILINE)
+    shown = re.findall(r"^\$ python book/studies/(\w+)\.py", CATALOGUE, re.MULTILINE)
     there = {file.stem for file in (ROOT / "book" / "studies").glob("*.py")} - {"__init__"}
     assert sorted(shown) == sorted(there)
 

@@ -13,7 +13,7 @@ PARTS = [
     for part in (BOOK / "_toc.yml").read_text().split("caption:")[1:]
 ]
 CHAPTERS = [page for part in PARTS[:3] for page in part if page != "map"]
-LABORATORY = [page for page in PARTS[3] if page != "recipes"]
+LABORATORY = [page for page in PARTS[3] if page not in ("recipes", "commands")]
 PAGES = ["intro", "map", "open", *CHAPTERS, *LABORATORY]
 FRAME = ("Exercises",)
 """Sections without results: the frame of a chapter."""
