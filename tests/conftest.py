@@ -6,6 +6,7 @@ import shutil
 import signal
 from contextlib import chdir
 from importlib.util import find_spec
+from pathlib import Path
 
 # The tests' linear systems are small: on a busy machine a second thread only waits for the first.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
@@ -16,6 +17,10 @@ os.environ.setdefault("SYMPY_CACHE_SIZE", "20000")
 import pytest
 from filelock import FileLock
 from hypothesis import Phase, settings
+
+# The processes that a test starts run this tree, whose engine is compiled already.
+TREE = str(Path(__file__).parents[1])
+os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, (TREE, os.environ.get("PYTHONPATH"))))
 
 settings.register_profile(
     "lwa",

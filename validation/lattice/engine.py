@@ -71,7 +71,7 @@ def follow(
     chain = _chain(motion)
     beads = _start(motion, len(chain.A))
     time, needed = sampled(motion)
-    recorder = Recorder(chain, plan.scheme.points, needed, time)
+    recorder = Recorder(motion.contact, chain, plan.scheme.points, needed, time)
     now = initial_progress(plan, _front(motion))
     glance = 1 + int(_BETWEEN_REPORTS / (stages * max(n, SHORTEST)))
     t = 0.0

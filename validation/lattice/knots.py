@@ -7,6 +7,8 @@ at one of the scene's sample times, interpolated between knots.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +16,7 @@ from numpy.typing import NDArray
 from lwa.base.arrays import Array
 from validation.lattice.kernel.arrays import Chain, Knots
 from validation.lattice.kernel.samples import interpolate
+from validation.lattice.laws import Contact
 from validation.lattice.signal import Beads
 
 _BUFFER = 2**18  # numbers of the knots that the engine stores between two calls of `take`
@@ -24,9 +27,10 @@ _MOST_BYTES = 2**28  # bytes of knots that a run keeps
 class KnotPath:
     """A `validation.lattice.signal.Path` through knots (`validation.lattice.kernel.samples`).
 
-    points : nodes and weights of the quadrature at kinks.
+    contact : law of the contacts. points : nodes and weights of the quadrature at kinks.
     """
 
+    contact: Contact
     chain: Chain
     points: Array
     knots: Knots
@@ -35,6 +39,11 @@ class KnotPath:
     def time(self) -> Array:
         """The ends of the steps."""
         return self.knots.time
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        """Restore a pickled path: a law's machine code has another address in each process."""
+        chain = state["chain"]._replace(**state["contact"].addresses)
+        self.__dict__.update(state | {"chain": chain})
 
     def __call__(self, beads: Beads, time: Array) -> tuple[Array, Array]:
         """Return displacements and velocities (beads, S) at times (S,) within the run."""
@@ -52,8 +61,11 @@ class Recorder:
     samples of displacements and velocities.
     """
 
-    def __init__(self, chain: Chain, points: Array, needed: NDArray[np.int_], time: Array) -> None:
-        self.chain, self.points, self.needed, self.time = chain, points, needed, time
+    def __init__(
+        self, contact: Contact, chain: Chain, points: Array, needed: NDArray[np.int_], time: Array
+    ) -> None:
+        self._path = partial(KnotPath, contact, chain, points)
+        self.needed, self.time = needed, time
         # A bead's acceleration changes with its neighbours' displacements.
         near = {j + m for j in needed.tolist() for m in (-1, 0, 1)}
         watched = np.array(sorted(near - {-1}), int)
@@ -72,7 +84,7 @@ class Recorder:
         if not len(watched):
             return 0
         part = time[:count].copy(), state[:count].copy()
-        path = KnotPath(self.chain, self.points, Knots(part[0], watched, part[1]))
+        path = self._path(Knots(part[0], watched, part[1]))
         due = int(np.searchsorted(self.time, part[0][-1], side="right"))
         now = slice(self.done, due)
         self.y[:, now], self.v[:, now] = path(self.needed, self.time[now])
@@ -93,4 +105,4 @@ class Recorder:
             np.concatenate((arrays[0], *(array[1:] for array in arrays[1:])))
             for arrays in zip(*self.parts, strict=True)
         )
-        return KnotPath(self.chain, self.points, Knots(time, self.knots.watched, state))
+        return self._path(Knots(time, self.knots.watched, state))

@@ -1,10 +1,14 @@
 """Signals: the motion at a sensor at any time, against exact motions and the run's own samples."""
 
 import pickle
+import subprocess
+import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from lwa.law import named
 from validation.lattice.simulate import simulate
 from validation.scenes.scene import Scene, SceneError
 
@@ -76,6 +80,19 @@ def test_a_signal_survives_a_pickle(method):
     again = pickle.loads(pickle.dumps(run))
     t = np.linspace(0, 17, 100)
     assert np.array_equal(again.signal("contact", 0)(t), run.signal("contact", 0)(t))
+
+
+def test_the_law_of_a_pickled_run_finds_its_machine_code_in_another_process(tmp_path):
+    """A law's machine code lies elsewhere there: a call of the old address ended the process."""
+    law = named("exponential", 1)
+    run = simulate(replace(LINEAR, k=1, law=law))
+    (tmp_path / "run").write_bytes(pickle.dumps(run))
+    program = "import pickle; run = pickle.load(open('run', 'rb'))"
+    other = subprocess.run(
+        [sys.executable, "-c", f"{program}; print(run.signal('contact', 0)(0.5))"],
+        cwd=tmp_path, timeout=120, text=True, capture_output=True, check=True,
+    )  # fmt: skip
+    assert float(other.stdout) == run.signal("contact", 0)(0.5) > 0
 
 
 def test_a_missing_sensor_or_quantity_is_refused():
