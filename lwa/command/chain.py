@@ -6,9 +6,7 @@ length, striker, wall, defects and sensors do not enter the theory.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -16,14 +14,12 @@ import sympy as sp
 
 from lwa.base.exact import InputError
 from lwa.base.files import load
-from lwa.base.tables import Table, among, array, each, finite, positive, table
+from lwa.base.tables import among, finite
 from lwa.cell import Cell, D
 from lwa.command.options import given
 from lwa.law import ContactLaw, Power, read_law, refuse_two_laws
-from lwa.spheres.beads import SCENE, spheres
+from lwa.spheres.beads import Row, opened, period, read_beads, read_materials, read_row
 from lwa.spheres.hertz import EXPONENT
-
-_KEYS = ("cell", "repeat", "k", "law", "stiffnesses", "spacings")
 
 
 @dataclass(frozen=True)
@@ -85,51 +81,24 @@ def read_chain(path: str | Path) -> ChainInput:
 
 
 def _chain(content: Any) -> ChainInput:
-    if isinstance(content, dict) and "scene" in content:  # as `lwa-validate run --out` writes
-        content = content["scene"]
-    file = Table(content, "", ("materials", "beads", "chain", "precompression", *SCENE))
-    chain = file.read("chain", table(_KEYS))
-    row = chain.read("cell", array)
-    if not row:
-        raise InputError("chain.cell is empty: the names of one bead or more are wanted")
+    file = opened(content)
+    row = read_row(file, read_beads(file, read_materials(file)))
     force = sp.Rational(str(file.read("precompression", finite, 0.0)))
     if force < 0:
         raise InputError(f"precompression is {force}: it must not be negative")
-    if isinstance(row[0], int | float):
-        return ChainInput(*_of_masses(chain), force, file.read("units", among({"SI": True}), False))
-    return ChainInput(Cell.of_spheres(spheres(content)), Power(EXPONENT), force, True)
+    if row.spheres:
+        return ChainInput(Cell.of_spheres(row.spheres), Power(EXPONENT), force, True)
+    return ChainInput(*_of_masses(row), force, file.read("units", among({"SI": True}), False))
 
 
-def _of_masses(chain: Table) -> tuple[Cell, ContactLaw]:
-    """Read masses and contacts as the smallest periodic cell, and the contact law."""
-    repeat = int(chain.read("repeat", positive, 1))
-    masses = chain.read("cell", each(positive))
-    contacts = partial(_contacts, period=len(masses), beads=len(masses) * repeat)
-    stiffnesses = chain.read("stiffnesses", contacts, [1.0])
-    spacings = chain.read("spacings", contacts, [])
-    P = _period(masses * min(repeat, 2), stiffnesses)
+def _of_masses(row: Row) -> tuple[Cell, ContactLaw]:
+    """Smallest periodic cell of a chain of masses, and its contact law."""
+    masses, stiffnesses = row.masses * min(row.repeat, 2), row.stiffnesses or [1.0]
+    P = period(masses, stiffnesses, whole=False)
     stiffnesses = [stiffnesses[i % len(stiffnesses)] for i in range(P)]
+    spacings = row.spacings
     spacing = sp.Rational(str(sum(spacings) / len(spacings))) if spacings else D
     cell = Cell(tuple(masses[:P]), tuple(stiffnesses), spacing)
-    return cell, chain.read("law", read_law) if "law" in chain else Power(chain.read("k", finite))
-
-
-def _contacts(value: Any, name: str, period: int, beads: int) -> list[float]:
-    """Read one value for all contacts, one for each of a cell, or one for each of the chain."""
-    if not isinstance(value, list):
-        return [positive(value, name)]
-    values: list[float] = each(positive)(value, name)
-    if len(values) not in (period, beads - 1, beads):
-        raise InputError(f"{name} holds {len(values)}: {period} or {beads - 1} are wanted")
-    return values
-
-
-def _period(masses: Sequence[float], stiffnesses: Sequence[float]) -> int:
-    """Number of beads in the smallest cell of a chain."""
-
-    def repeats(values: Sequence[float], P: int) -> bool:
-        return all(a == b for a, b in zip(values, values[P:], strict=False))
-
-    return next(
-        P for P in range(1, len(masses) + 1) if repeats(masses, P) and repeats(stiffnesses, P)
-    )
+    if row.given.one("k", "law") == "law":
+        return cell, row.given.read("law", read_law)
+    return cell, Power(row.given.read("k", finite))

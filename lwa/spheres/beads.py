@@ -1,4 +1,4 @@
-"""Beads and their materials in files: scenes of the lattice, or the spheres of a cell.
+"""Files of beads: materials, beads and the table of the chain, in scenes and lists of spheres.
 
 A file of spheres holds, in units that agree (SI if A is to be in N/m^{3/2})::
 
@@ -19,35 +19,37 @@ A file of spheres holds, in units that agree (SI if A is to be in N/m^{3/2})::
     [chain]
     cell = ["ball", "light"]      # names of beads, in their order
 
-These are tables of a scene (`validation.scenes.scenefile`), and any scene of beads is such a file;
-the load and the other entries of the scene are ignored.
+These are tables of a scene (`validation.scenes.scenefile`), and any scene is such a file: the other
+entries of the scene are ignored. A chain of masses has numbers in ``cell`` and its contacts beside
+them. A file with a key ``scene``, such as `lwa-validate run --out` writes, holds the scene there.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
 from lwa.base.exact import InputError
-from lwa.base.tables import Table, among, array, each, finite, named, positive, table
+from lwa.base.tables import Table, among, array, each, finite, integer, named, positive, table
 from lwa.spheres.hertz import MATERIALS, Material, Sphere
 
-SCENE = (
-    "duration",
-    "samples",
-    "units",
-    "gravity",
-    "defects",
-    "wall",
-    "striker",
-    "start",
-    "sensors",
-    "damping",
-    "drive",
+FILE = (
+    *("duration", "units", "samples", "gravity", "precompression", "materials", "beads", "chain"),
+    *("defects", "wall", "damping", "drive", "striker", "start", "sensors"),
 )
-"""Keys of a scene that do not concern its cell."""
+"""Keys of a file."""
+
+CHAIN = ("cell", "k", "law", "stiffnesses", "spacings", "repeat")
+"""Keys of the table ``chain``; beads with names have ``cell`` and ``repeat`` alone."""
+
+
+def opened(content: Any) -> Table:
+    """Return the table of a parsed file; `lwa.InputError` for unknown keys."""
+    if isinstance(content, dict) and "scene" in content:
+        content = content["scene"]
+    return Table(content, "", FILE)
 
 
 def read_materials(file: Table) -> dict[str, Material]:
@@ -62,6 +64,74 @@ def read_beads(file: Table, materials: Mapping[str, Material]) -> dict[str, Sphe
     return beads
 
 
+@dataclass(frozen=True)
+class Row:
+    """The table ``chain`` of a file.
+
+    given : the table itself, for ``k`` and ``law``.
+    spheres, masses : the beads in one cell, one of the two; the other is empty.
+    repeat : number of cells.
+    stiffnesses, spacings : by contact, of one cell or of the whole chain; empty where not given.
+    """
+
+    given: Table
+    spheres: list[Sphere]
+    masses: list[float]
+    repeat: int
+    stiffnesses: list[float]
+    spacings: list[float]
+
+    @property
+    def size(self) -> int:
+        """The number of beads in the chain."""
+        return self.repeat * len(self.spheres or self.masses)
+
+    def by_contact(self, values: list[float]) -> list[float]:
+        """Return one value for each contact between two beads of the chain; [] if none is given."""
+        whole = values if len(values) == self.size - 1 else values * self.repeat
+        return whole[: self.size - 1]
+
+
+def read_row(file: Table, beads: Mapping[str, Sphere]) -> Row:
+    """Read the table ``chain``, whose cell holds names of these beads or masses."""
+    given = file.read("chain", table(CHAIN))
+    cell = given.read("cell", array)
+    if not cell:
+        raise InputError("chain.cell is empty: names, or masses, of one bead or more are wanted")
+    repeat = given.read("repeat", partial(integer, low=1), 1)
+    names = isinstance(cell[0], str)
+    for key in ("k", "law", "stiffnesses", "spacings"):
+        if names and key in given:
+            raise InputError(f"chain.{key} is given, but named beads are in Hertz contact")
+    contacts = partial(_by_contact, period=len(cell), beads=len(cell) * repeat)
+    return Row(
+        given,
+        each(among(beads))(cell, "chain.cell") if names else [],
+        [] if names else each(positive)(cell, "chain.cell"),
+        repeat,
+        given.read("stiffnesses", contacts, []),
+        given.read("spacings", contacts, []),
+    )
+
+
+def _by_contact(value: Any, name: str, period: int, beads: int) -> list[float]:
+    """Read one number for all contacts, one for each of a cell, or one for each of the chain."""
+    numbers: list[float] = each(positive)(value if isinstance(value, list) else [value], name)
+    if not isinstance(value, list):
+        return numbers * period
+    if len(numbers) not in (period, beads - 1):
+        wanted = " or ".join(map(str, sorted({period, beads - 1})))
+        raise InputError(f"{name} holds {len(numbers)}: {wanted} are wanted, or one number")
+    return numbers
+
+
+def period(*rows: Sequence[Any], whole: bool) -> int:
+    """Size of the smallest cell whose repetition gives all rows; the last one ``whole`` or cut."""
+    n = len(rows[0])
+    sizes = (P for P in range(1, n + 1) if not (whole and n % P))
+    return next(P for P in sizes if all(row[P:] == row[: max(len(row) - P, 0)] for row in rows))
+
+
 def spheres(content: Any) -> list[Sphere]:
     """Read the spheres of the cell of a parsed file (see the module), in their order.
 
@@ -70,13 +140,11 @@ def spheres(content: Any) -> list[Sphere]:
     >>> [sphere.mass for sphere in spheres(content | {"chain": {"cell": ["ball", "ball"]}})]
     [1, 1]
     """
-    file = Table(content, "", ("materials", "beads", "chain", "precompression", *SCENE))
-    beads = read_beads(file, read_materials(file))
-    cell = file.read("chain", table(("cell", "repeat"))).read("cell", array)
-    if not cell:
-        raise InputError("chain.cell is empty: the names of one bead or more are wanted")
-    row: list[Sphere] = each(among(beads))(cell, "chain.cell")
-    return row
+    file = opened(content)
+    row = read_row(file, read_beads(file, read_materials(file)))
+    if not row.spheres:
+        raise InputError("chain.cell holds masses: the names of beads are wanted")
+    return row.spheres
 
 
 def _material(value: Any, name: str) -> Material:

@@ -68,23 +68,30 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
-from functools import partial
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 from lwa.base.exact import shorten
 from lwa.base.files import load
-from lwa.base.tables import Reader, Table, among, array, each, entries, place, places, table
+from lwa.base.tables import Reader, Table, among, each, entries, place, places, table
 from lwa.law import NAMES, ContactLaw, read_law
-from lwa.spheres.beads import read_beads, read_materials
+from lwa.spheres.beads import (
+    CHAIN,
+    FILE,
+    Row,
+    opened,
+    period,
+    read_beads,
+    read_materials,
+    read_row,
+)
 from lwa.spheres.hertz import Material, Sphere, stiffness
-from validation.scenes.checks import SceneError, columns, finite, integer, positive
+from validation.scenes.checks import SceneError, columns, finite, positive
 from validation.scenes.forcing import DAMPINGS, Damping, Drive
 from validation.scenes.scene import Scene
 
 MOST_BEADS = 1_000_000
-_CHAIN = ("cell", "k", "law", "stiffnesses", "spacings", "repeat")
 _TABLES = {  # that a file may leave out
     "wall": ("material", "stiffness"),
     "damping": DAMPINGS,
@@ -94,8 +101,7 @@ _TABLES = {  # that a file may leave out
     "sensors": ("beads", "contacts"),
 }
 _NUMBERS = ("samples", "gravity", "precompression")
-_FILE = ("duration", "units", *_NUMBERS, "materials", "beads", "chain", "defects", *_TABLES)
-KEYS: Mapping[str, Sequence[str]] = {"file": _FILE, "chain": _CHAIN, **_TABLES}
+KEYS: Mapping[str, Sequence[str]] = {"file": FILE, "chain": CHAIN, **_TABLES}
 """Keys of a file, and of each of its tables."""
 
 
@@ -109,16 +115,14 @@ def read_scene(path: str | Path) -> Scene:
 
 def scene(content: Any) -> Scene:
     """Return the scene of a parsed file; `SceneError` for unknown keys and invalid values."""
-    if isinstance(content, dict) and "scene" in content:
-        content = content["scene"]
-    file = Table(content, "", KEYS["file"])
+    file = opened(content)
     tables = {
         name: file.read(name, table(keys), Table({}, name, keys)) for name, keys in _TABLES.items()
     }
     materials = read_materials(file)
     beads = read_beads(file, materials)
     defects = file.read("defects", _defects, ())
-    row, chain = _chain(file.read("chain", table(KEYS["chain"])), beads, defects)
+    row, chain = _chain(read_row(file, beads), beads, defects)
     n, start, sensors = len(chain["masses"]), tables["start"], tables["sensors"]
     wall = _wall(tables["wall"], row, materials) if "wall" in file else None
     velocities = start.read("velocities", each(finite), ())
@@ -181,21 +185,15 @@ def _defect(value: Any, name: str) -> Table:
 
 
 def _chain(
-    given: Table, beads: Mapping[str, Sphere], defects: Sequence[Table]
+    found: Row, beads: Mapping[str, Sphere], defects: Sequence[Table]
 ) -> tuple[list[Sphere], dict[str, Any]]:
     """Return the named beads (none in a chain of masses), and the chain's fields of the `Scene`."""
-    cell = given.read("cell", array)
-    repeat = given.read("repeat", partial(integer, low=1), 1)
-    n = len(cell) * repeat
-    if not 1 <= n <= MOST_BEADS:
+    n = found.size
+    if n > MOST_BEADS:
         made = f"chain.cell and repeat make {shorten(n)} beads"
-        raise SceneError(f"{made}: 1 … {MOST_BEADS} are wanted")
-    row: list[Sphere] = []
-    if isinstance(cell[0], str):
-        for key in ("k", "law", "stiffnesses", "spacings"):
-            if key in given:
-                raise SceneError(f"chain.{key} is given, but named beads are in Hertz contact")
-        row = each(among(beads))(cell, "chain.cell") * repeat
+        raise SceneError(f"{made}: at most {MOST_BEADS} are wanted")
+    row = found.spheres * found.repeat
+    if row:
         for defect in defects:
             if "like" in defect:
                 row[defect.read("bead", place(n))] = defect.read("like", among(beads))
@@ -203,12 +201,11 @@ def _chain(
         masses, stiffnesses = list(plain.masses), list(plain.stiffnesses)
         law, spacings = {"k": plain.k}, plain.spacings
     else:
-        masses = each(positive)(cell, "chain.cell") * repeat
-        of_contacts = partial(_of_contacts, period=len(cell), count=n - 1)
-        key = given.one("k", "law")
-        law = {key: given.read(key, finite if key == "k" else read_law)}
-        stiffnesses = given.read("stiffnesses", of_contacts, [1.0] * (n - 1))
-        spacings = given.read("spacings", of_contacts, ())
+        masses = found.masses * found.repeat
+        key = found.given.one("k", "law")
+        law = {key: found.given.read(key, finite if key == "k" else read_law)}
+        stiffnesses = found.by_contact(found.stiffnesses) or [1.0] * (n - 1)
+        spacings = tuple(found.by_contact(found.spacings))
     for defect in defects:
         if "contact" in defect:
             at = defect.read("contact", place(n - 1))
@@ -218,17 +215,6 @@ def _chain(
         elif not row:
             raise SceneError(f"{defect.path('like')} names a bead in a chain of masses")
     return row, {"masses": masses, "stiffnesses": stiffnesses, "spacings": spacings} | law
-
-
-def _of_contacts(value: Any, name: str, period: int, count: int) -> list[float]:
-    """Return a number for each contact, given one for all, one a contact of a cell, or one each."""
-    if not isinstance(value, list):
-        return [positive(value, name)] * count
-    if len(value) not in (period, count):
-        wanted = " or ".join(map(str, sorted({period, count})))
-        raise SceneError(f"{name} holds {len(value)}: {wanted} are wanted, or one number")
-    numbers: list[float] = each(positive)(value, name)
-    return numbers if len(value) == count else (numbers * (count // period + 1))[:count]
 
 
 def _wall(given: Table, row: Sequence[Sphere], materials: Mapping[str, Material]) -> float:
@@ -258,14 +244,14 @@ def _motion(value: Any, name: str) -> dict[str, Any]:
 
 def document(source: Scene) -> dict[str, Any]:
     """Return the content of a scene's file, for JSON; `scene` reads an equal scene."""
-    period = _period(source)
-    chain: dict[str, Any] = {"cell": list(source.masses[:period])}
+    P = period(source.masses, source.stiffnesses, source.spacings, whole=True)
+    chain: dict[str, Any] = {"cell": list(source.masses[:P])}
     chain |= {"k": source.k} if source.law is None else {"law": _law_text(source.law)}
-    if period < source.size:
-        chain["repeat"] = source.size // period
+    if source.size > P:
+        chain["repeat"] = source.size // P
     for name in ("stiffnesses", "spacings"):
         if values := getattr(source, name):
-            chain[name] = values[0] if len(set(values)) == 1 else list(values[:period])
+            chain[name] = values[0] if len(set(values)) == 1 else list(values[:P])
     result: dict[str, Any] = {"duration": source.duration, "samples": source.samples}
     for name in ("units", "gravity", "precompression"):
         if value := getattr(source, name):
@@ -292,16 +278,6 @@ def document(source: Scene) -> dict[str, Any]:
     if any(sensors.values()):
         result["sensors"] = {name: [i + 1 for i in row] for name, row in sensors.items() if row}
     return result
-
-
-def _period(source: Scene) -> int:
-    """Return the size of the smallest cell whose repetition is the chain."""
-    n, rows = source.size, (source.masses, source.stiffnesses, source.spacings)
-    return next(
-        p
-        for p in range(1, n + 1)
-        if n % p == 0 and all(row[p:] == row[: max(len(row) - p, 0)] for row in rows)
-    )
 
 
 def _law_text(law: ContactLaw) -> str:

@@ -108,7 +108,7 @@ def test_a_law_of_the_file(capsys, scene):
         ({"cell": []}, (), "chain.cell is empty"),
         ({"cell": [1, -1]}, (), "chain.cell number 2 is -1"),
         ({"stiffnesses": [1, 2, 3]}, (), "chain.stiffnesses holds 3"),
-        ({"law": 3}, (), "chain.law is 3: a text such as"),
+        ({"law": "hertz2"}, (), "chain has both k and law"),
         ({"mass": 1}, (), "chain.mass is unknown"),
         ({}, ("--precompression", "1"), "the file has a precompression of 2"),
         ({}, ("--force", "1"), "only B > 0 has a wave"),

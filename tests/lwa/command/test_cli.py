@@ -320,7 +320,7 @@ def test_spheres_in_a_program_are_a_wave_as_any_other(capsys, spheres):
         ('"light"]', '"light", "heavy"]', (), "the cell has 3 masses"),
         ('"light"]', '"ligth"]', (), "chain.cell number 2 is 'ligth': did you mean light"),
         ("[chain]", "[chains]", (), "spheres.toml: chains is unknown: did you mean chain"),
-        ("", "k = 1.5", (), "chain.k is unknown: one of cell, repeat"),
+        ("", "k = 1.5", (), "chain.k is given, but named beads are in Hertz contact"),
         ("0.3", "0.6", (), "materials.steel.nu is 0.6: Poisson's ratio lies between -1 and 1/2"),
         ("193e9", "nan", (), "materials.steel.E is nan: a finite number is wanted"),
         ("[chain]", "precompression = 1\n[chain]", (), "beads.precompression is 1: a table"),

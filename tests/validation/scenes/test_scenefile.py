@@ -166,8 +166,6 @@ def test_the_cell_of_a_scene_is_read_by_the_theory():
     assert chain.masses[:2] == tuple(map(float, cell.masses))
     assert chain.stiffnesses[:2] == pytest.approx([float(A) for A in cell.stiffnesses], rel=1e-15)
     assert chain.spacings[:2] == (float(cell.spacing),) * 2
-    known = {"materials", "beads", "chain", "precompression", *beads.SCENE}
-    assert known >= set(scenefile.KEYS["file"])
 
 
 # --- there and back -------------------------------------------------------------------------
@@ -243,7 +241,7 @@ BAD = [
     ({"gravity": 9.81}, "gravity is 9.81: .* needs a wall to pull towards"),
     ({"precompression": 1}, "precompression is 1: .* needs a wall to push against"),
     ({"chain": 3}, "chain is 3: a table of keys is wanted"),
-    ({"chain": {"cell": []}}, "chain.cell and repeat make 0 beads: 1 … 1000000 are wanted"),
+    ({"chain": {"cell": []}}, "chain.cell is empty"),
     ({"chain": {"cell": [1], "repeat": 10**6 + 1}}, "chain.cell and repeat make 1000001 beads"),
     ({"chain": {"cell": "ball"}}, "chain.cell is 'ball': a list is wanted"),
     ({"chain": {"cell": [1, NAN]}}, "chain.cell number 2 is nan: a finite number is wanted"),
