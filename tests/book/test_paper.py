@@ -1,0 +1,41 @@
+"""Numbers and statements of the paper about the software, `book/paper/paper.md`."""
+
+import re
+from pathlib import Path
+
+import sympy as sp
+
+from lwa import Cell, Dimer, canonical_wave, homogenize
+from validation import exact_wave
+
+BOOK = Path(__file__).parents[2] / "book"
+TEXT = (BOOK / "paper" / "paper.md").read_text(encoding="utf-8")
+m1, m2, D = sp.symbols("m1 m2 D", positive=True)
+
+
+def test_the_sources_are_listed():
+    listed = set(re.findall(r"^@\w+\{(\w+),", (BOOK / "references.bib").read_text(), re.MULTILINE))
+    assert set(re.findall(r"@(\w+)", TEXT.partition("# Summary")[2])) <= listed
+
+
+def test_the_widths():
+    lattice, theory = map(float, re.findall(r"\$(1\.\d+)\\,D\$", TEXT))
+    assert lattice == round(exact_wave([1], 1.5).fwhm("force"), 4)
+    assert theory == round(float(canonical_wave(Cell([1], spacing=1), "3/2").fwhm("force")), 4)
+
+
+def test_the_inverse_width_of_equal_spheres():
+    assert r"$\sqrt{10}/(5D)$" in TEXT
+    assert canonical_wave(Cell([1]), "3/2").beta == sp.sqrt(10) / (5 * D)
+
+
+def test_the_defect_of_the_linear_ansatz():
+    theory = homogenize(Dimer(m1, m2), order=4)
+    assert list(theory.defect) == [3]
+    assert all(sp.simplify(term.subs(m2, m1)) == 0 for term in dict(theory.defect[3]).values())
+    assert homogenize(Dimer(m1, m2), order=4, closure="full").defect == {}
+
+
+def test_the_paper_has_two_pages():
+    """At about 500 words a page, as the Journal of Open Source Software prints them."""
+    assert 400 < len(TEXT.split()) < 1000
