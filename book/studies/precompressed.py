@@ -30,7 +30,7 @@ from lwa import Cell, ContactLaw, Power, background_wave
 from lwa.base.arrays import Array
 from lwa.base.progress import Progress
 from lwa.command.options import law_option, quantities
-from lwa.wave.quadrature import NumericBackground
+from lwa.wave.loaded import NumericBackground
 from validation.lattice.result import Run
 from validation.lattice.simulate import twice
 from validation.pictures import Curve, Panel

@@ -14,9 +14,6 @@ from lwa.base.exact import InputError, shorten
 Array = NDArray[np.float64]
 """An array of float64."""
 
-Extended = NDArray[np.longdouble]
-"""An array of extended precision."""
-
 
 def finite(values: ArrayLike, name: str) -> Array:
     """Read an array of finite real numbers.

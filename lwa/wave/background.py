@@ -41,7 +41,7 @@ from lwa.wave.closed import CompactWave
 from lwa.wave.profile import Flank, Function, compiled, mpmath_number
 
 if TYPE_CHECKING:
-    from lwa.wave.quadrature import NumericBackground
+    from lwa.wave.loaded import NumericBackground
 
 WIDTH_DIGITS = 15
 """Digits of a width or a profile, unless the caller asks for others."""
@@ -260,7 +260,7 @@ class BackgroundWave(Value):
 
         Raises `lwa.InputError` unless masses, stiffnesses and the law's parameters are numbers.
         """
-        from lwa.wave.quadrature import NumericBackground  # start-up: it loads NumPy
+        from lwa.wave.loaded import NumericBackground  # start-up: it loads NumPy
 
         return NumericBackground(self.cell, self.law)
 

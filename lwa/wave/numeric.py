@@ -1,11 +1,11 @@
 """The compact wave's closed forms in float64: NumPy functions of arrays of k and ω = m2/m1.
 
-Letters as in `lwa.wave.closed`; lengths are in units of D. The sum G + H + I loses digits where
-k > 2 and ω ≫ 1. The exact coefficients are therefore evaluated in extended precision
-(`numpy.longdouble`, 64 bits of significand on x86) as polynomials in k - 2, a difference without
-rounding error near k = 2. The ratio V²/B^{k-1} approaches 1 as k → 1: its logarithm is the log1p of
-V²/B^{k-1} - 1, which is computed as (k - 1) times a rational function. Results are rounded to
-float64 once, at the end, and are good to 2 ulps where the extended precision is available.
+Letters as in `lwa.wave.closed`; lengths are in units of D. The exact coefficients are polynomials
+in k - 2, a difference without rounding error near k = 2. Where the terms of a polynomial cancel, as
+those of G + H + I do next to the edge of the domain of waves, the polynomial is evaluated in
+fractions. The ratio V²/B^{k-1} approaches 1 as k → 1: its logarithm is the log1p of
+V²/B^{k-1} - 1, which is computed as (k - 1) times a rational function. Results are good to 8 ulps;
+ln B near B = 1 is good to 8 ulps of the two logarithms of which it is the difference.
 """
 
 from __future__ import annotations
@@ -17,18 +17,18 @@ from typing import Literal
 
 import numpy as np
 import sympy as sp
+from flint import fmpq
 from numpy.typing import ArrayLike
 
-from lwa.base.arrays import Array, Extended, finite
+from lwa.base.arrays import Array, finite
 from lwa.base.exact import InputError, one_of
 from lwa.base.frozen import Value
 from lwa.base.quantities import NoSolitaryWave, strain_power
 from lwa.wave.closed import CompactWave
 
-Function = Callable[[Extended, Extended], Extended]
+Function = Callable[[Array, Array], Array]
 
-_PI = np.longdouble("3.14159265358979323846264338327950288")
-_LOG4 = np.longdouble("1.38629436111989061883446424291635313")
+_CANCELLED = 4  # largest sum of the sizes of the terms over the size of their sum
 
 
 @dataclass(frozen=True)
@@ -82,25 +82,25 @@ class NumericWave(Value):
 
     def beta(self, k: ArrayLike, omega: ArrayLike) -> Array:
         """The wavenumber β D = (k-1) / (2 √((G+H+I)/D²))."""
-        return self._beta(k, omega).astype(np.float64)
+        return self._beta(k, omega)
 
     def width(self, k: ArrayLike, omega: ArrayLike) -> Array:
         """The number π/(βD) of sites under the wave."""
-        return (_PI / self._beta(k, omega)).astype(np.float64)
+        return np.pi / self._beta(k, omega)
 
     def fwhm(self, k: ArrayLike, omega: ArrayLike, quantity: str = "strain") -> Array:
         """FWHM of strain, contact force or velocity in units of D (`lwa.TravelingWave.fwhm`)."""
         beta = self._beta(k, omega)
-        k = np.asarray(k, np.longdouble)
+        k = np.asarray(k, np.float64)
         # arccos(2^-x) = arctan √(4^x - 1), which keeps its digits as x → 0
         x = (k - 1) / (2 * strain_power(quantity, k))
-        return np.asarray(2 * np.arctan(np.sqrt(np.expm1(x * _LOG4))) / beta).astype(np.float64)
+        return np.asarray(2 * np.arctan(np.sqrt(np.expm1(x * np.log(4.0)))) / beta)
 
     def speed(self, k: ArrayLike, omega: ArrayLike, B: ArrayLike = 1.0) -> Array:
         """Speed V = dx/dτ of the wave whose strain peaks at B."""
         k, omega, _ = self._wave(k, omega)
-        root = np.sqrt(self._factor(k, omega)) * _positive(B, "B") ** ((k - 1) / 2)
-        return np.asarray(root).astype(np.float64)
+        root = np.sqrt(self._factor(k, omega))
+        return np.asarray(root * _positive(B, "B") ** ((k - 1) / 2))
 
     def log_amplitude(self, k: ArrayLike, omega: ArrayLike, V: ArrayLike = 1.0) -> Array:
         """Logarithm of the peak strain B of the wave of speed V, finite where B is out of range."""
@@ -109,18 +109,18 @@ class NumericWave(Value):
         near = np.abs(less_one) < 0.5  # log1p keeps the digits that V²/B^{k-1} loses at k → 1
         log_factor = np.where(near, np.log1p(less_one), np.log(self._factor(k, omega)))
         log_B = (2 * np.log(_positive(V, "V")) - log_factor) / (k - 1)
-        return np.asarray(log_B).astype(np.float64)
+        return np.asarray(log_B)
 
-    def _beta(self, k: ArrayLike, omega: ArrayLike) -> Extended:
+    def _beta(self, k: ArrayLike, omega: ArrayLike) -> Array:
         k, _, coefficient_sum = self._wave(k, omega)
         return np.asarray((k - 1) / (2 * np.sqrt(coefficient_sum)))
 
-    def _wave(self, k: ArrayLike, omega: ArrayLike) -> tuple[Extended, Extended, Extended]:
+    def _wave(self, k: ArrayLike, omega: ArrayLike) -> tuple[Array, Array, Array]:
         """Return k, ω and (G+H+I)/D², broadcast; G, H, I are the wave equation's coefficients.
 
         At points without a wave all three are NaN, or `lwa.NoSolitaryWave` is raised (``missing``).
         """
-        k = finite(k, "k").astype(np.longdouble)
+        k = finite(k, "k")
         k, omega = np.broadcast_arrays(k, _positive(omega, "ω = m2/m1"))
         with np.errstate(all="ignore"):  # outside the domain of waves, see below
             coefficient_sum = self._sum(k, omega)
@@ -136,24 +136,42 @@ class NumericWave(Value):
         return k + nan, omega + nan, coefficient_sum + nan
 
 
-def _positive(value: ArrayLike, name: str) -> Extended:
+def _positive(value: ArrayLike, name: str) -> Array:
     array = finite(value, name)
     if not np.all(array > 0):
         raise InputError(f"{name} is {array.min()}: it must be positive")
-    return array.astype(np.longdouble)
+    return array
 
 
 def _function(ratio: sp.Expr, k: sp.Symbol, m1: sp.Symbol, m2: sp.Symbol) -> Function:
     """Compile a rational expression homogeneous in the masses to a function of (k, ω)."""
-    shifted, omega = sp.symbols("kappa omega", cls=sp.Dummy)
-    ratio = ratio.subs({m1: 1, m2: omega, k: shifted + 2}, simultaneous=True)
-    numerator, denominator = (
-        sum(
-            sp.factor(coefficient) * shifted**power
-            for (power,), coefficient in sp.Poly(part, shifted).terms()
-        )
-        for part in sp.fraction(sp.cancel(ratio))
-    )
-    compiled = sp.lambdify((shifted, omega), numerator / denominator, "numpy", cse=True)
-    # A theory without ω, or without k, gives a constant, which is broadcast.
-    return lambda k, omega: np.asarray(compiled(k - 2, omega) + 0 * k)
+    shifted = sp.Dummy("kappa")
+    parts = sp.fraction(sp.cancel(ratio.subs(k, shifted + 2)))
+    top, bottom = (_polynomial(sp.Poly(part, shifted), m1, m2) for part in parts)
+    return lambda k, omega: np.asarray(top(k - 2, omega) / bottom(k - 2, omega))
+
+
+def _polynomial(polynomial: sp.Poly, m1: sp.Symbol, m2: sp.Symbol) -> Function:
+    """Compile a polynomial with integer coefficients in κ = k - 2 and masses to one of (κ, ω).
+
+    The larger mass is 1, so that no power overflows. Floats lose digits in proportion to
+    Σ|terms|/|Σ terms|; beyond `_CANCELLED` the terms are fractions, in which nothing is rounded.
+    """
+    arguments = polynomial.gen, m1, m2
+    terms = [sp.factor(c) * polynomial.gen**n for (n,), c in polynomial.terms()]
+    sizes = sp.lambdify(arguments, sp.Add(*map(sp.Abs, terms)), "numpy", cse=True)
+    total = sp.lambdify(arguments, sp.Add(*terms), "numpy", cse=True)
+
+    def function(kappa: Array, omega: Array) -> Array:
+        masses = np.minimum(1, 1 / omega), np.minimum(1, omega)
+        value = np.array(total(kappa, *masses) + 0 * kappa)  # a constant is broadcast
+        rows = np.abs(value) * _CANCELLED < sizes(kappa, *masses)
+        kappa, omega = (_fractions(x[rows]) for x in (kappa, omega))
+        value[rows] = _floats(total(kappa, np.minimum(1, 1 / omega), np.minimum(1, omega)))
+        return value
+
+    return function
+
+
+_fractions = np.frompyfunc(lambda x: fmpq(*x.as_integer_ratio()), 1, 1)
+_floats = np.frompyfunc(lambda x: int(fmpq(x).p) / int(fmpq(x).q), 1, 1)

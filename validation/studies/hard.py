@@ -30,7 +30,7 @@ from validation.scenes.checks import one_of
 from validation.scenes.scene import Scene
 
 REFERENCE_DIGITS = 80  # of mpmath; cancellation on the grid leaves more than 50 of them
-ALLOWED = 2.0  # ulps that a closed form may lose
+ALLOWED = 8.0  # ulps that a closed form may lose
 PRINTED, METHOD = "as printed", "SRKN14"  # the formulas of the paper; the splitting
 
 EXPONENTS = 1 + np.array([1e-6, 1e-4, 0.01, 0.1, 0.5, 1, 1 + 2**-30, 1.5, 2 - 2**-30, 2, 4, 19])

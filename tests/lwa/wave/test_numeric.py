@@ -8,7 +8,7 @@ import sympy as sp
 
 from lwa import Cell, Dimer, InputError, NoSolitaryWave, canonical_wave, homogenize
 
-ULPS = 2 if np.finfo(np.longdouble).nmant > 52 else 256
+ULPS = 8  # one bound on every machine: no extended precision
 
 WAVE = homogenize(Dimer("m1", "m2")).pde.traveling_wave()
 NUMERIC = WAVE.numeric()
@@ -39,7 +39,7 @@ def exact_wave(k, w):
         ),
     ],
 )
-def test_closed_forms_to_two_ulps(function, expression):
+def test_closed_forms_to_eight_ulps(function, expression):
     checked = 0
     for k, w in GRID:
         try:
@@ -49,7 +49,7 @@ def test_closed_forms_to_two_ulps(function, expression):
                 function(k, w)
             continue
         error = abs(sp.Rational(float(function(k, w))) - reference)
-        # one rounding (1/2 ulp) and what is left of those in extended precision
+        # some ten operations of half an ulp each
         assert error <= ULPS * np.spacing(abs(float(reference)))
         checked += 1
     assert checked > 20

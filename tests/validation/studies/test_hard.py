@@ -208,7 +208,7 @@ def test_all_cases_hold_and_state_a_number():
         assert any(key.endswith("_value") for key in case), case["case"]
     json.dumps(whole, allow_nan=False)
     (ulps,) = (case for case in whole["cases"] if case["case"] == "ulps")
-    assert ulps["loss_ulps_value"] < 1
+    assert ulps["loss_ulps_value"] < 8
     assert ulps["printed_loss_ulps_value"] > 2**52  # no digit is left
     (load,) = (case for case in whole["cases"] if case["case"] == "under-load")
     assert 0 < load["loss_ulps_value"] < 8
