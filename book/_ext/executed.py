@@ -1,0 +1,35 @@
+"""Execute the book's pages before Sphinx reads them, as many at a time as there are processors.
+
+MyST-NB executes a page when Sphinx reads the page, one after another. It first looks for the page
+in the cache of Jupyter Cache. This extension empties the cache, so that every build executes every
+page, and fills it by Jupyter Cache's own executor. A page that fails is not in the cache: MyST-NB
+executes the page once more, and reports the error.
+"""
+
+from __future__ import annotations
+
+import logging
+from pathlib import Path
+
+from jupyter_cache import get_cache
+from jupyter_cache.executors import load_executor
+from sphinx.application import Sphinx
+
+
+def execute(app: Sphinx) -> None:
+    """Fill the cache with the pages of the table of contents that have code."""
+    config = app.env.mystnb_config
+    cache = get_cache(config.execution_cache_path)
+    cache.clear_cache()
+    for page in Path(app.srcdir).glob("*.md"):
+        excluded = page.name in app.config.exclude_patterns  # all that no table of contents has
+        if not excluded and "{code-cell}" in page.read_text(encoding="utf-8"):
+            cache.add_nb_to_project(str(page), read_data={"name": "myst_nb_md", "type": "plugin"})
+    executor = load_executor("local-parallel", cache=cache, logger=logging.getLogger("book"))
+    executor.run_and_cache(timeout=config.execution_timeout)
+
+
+def setup(app: Sphinx) -> dict[str, bool]:
+    """Sphinx's hook."""
+    app.connect("builder-inited", execute, priority=900)  # after the table of contents is read
+    return {"parallel_read_safe": True, "parallel_write_safe": True}
