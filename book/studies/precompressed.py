@@ -142,7 +142,7 @@ class Wave:
             return None
         k = float(self.law.exponent)
         wave = exact_wave(self.masses.tolist(), k, background=math.pow(1 + self.ratio, -1 / k))
-        return wave.scaled(force=1 + self.ratio)
+        return wave.times(math.pow(1 + self.ratio, 1 / k))
 
     @cached_property
     def _theory(self) -> NumericBackground:

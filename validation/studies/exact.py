@@ -1,17 +1,14 @@
-"""Exact traveling waves of the lattice and the mass ratios of solitary waves, as reports."""
+"""Exact solitary waves of the lattice and the mass ratios of dimers with one, as reports."""
 
 from __future__ import annotations
-
-from typing import Any
 
 import numpy as np
 import sympy as sp
 
-from lwa.base.progress import Progress
 from lwa.base.quantities import QUANTITIES
 from lwa.command.options import quantities
 from validation.pictures import Curve, Panel
-from validation.report.command import EXPONENT, number, option, study
+from validation.report.command import EXPONENT, option, study
 from validation.report.result import Report
 from validation.report.table import Column, Table
 from validation.scenes.chains import numeric_cell
@@ -19,68 +16,48 @@ from validation.waves.profile import ExactWave
 from validation.waves.resonances import resonances as special_ratios
 from validation.waves.solver import exact_wave, measured
 
-_SOLITARY = "solitary: nothing is left behind", "Errors: residual, tail and rounding."
-_NANOPTERON = (
-    "a nanopteron, not solitary:\nthe light beads rattle on both sides, with this tail",
-    "Half period {:g}, one of a family. Errors: differences from the pulse of a struck chain.\n"
-    "A contact's force may have several humps: a width is that of the highest hump, and jumps\n"
-    "where the dip before another hump passes half of the peak.",
-)
 _COLUMNS = (
     Column("of", "of"),
     Column("amplitude", "amplitude", error=True),
     Column("fwhm", "FWHM", "D", error=True),
-    Column("rms", "rms width", "D", error=True),
 )
-_SCALING = """\
+_NOTE = """\
 Strain and force of a contact, velocity of a bead m1. Strains scale with the peak force F as
-F^(1/k), velocities as F^((k+1)/2k), c as F^((k-1)/2k); widths do not depend on F."""
+F^(1/k), velocities as F^((k+1)/2k), c as F^((k-1)/2k); widths do not depend on F.
+Errors: residual, tail and rounding."""
 
 
 @study(
     EXPONENT,
     option("--masses", callback=quantities, default="1", says="Mass of all beads, or two in turn."),
-    option("--speed", callback=number, says="Speed dx/dt of the wave, at A = D = 1."),
-    option("--force", callback=number, says="Peak contact force, at A = 1; by default 1."),
     option("--background", default=0.0, says="Static compression divided by the peak; 0: no load."),
 )
-def exact(
-    k: float,
-    masses: tuple[sp.Expr, ...],
-    speed: float | None = None,
-    force: float | None = None,
-    background: float = 0.0,
-    progress: Progress[Any] = iter,
-) -> Report:
-    """Exact traveling wave of the lattice: speed, widths and tail.
+def exact(k: float, masses: tuple[sp.Expr, ...], background: float = 0.0) -> Report:
+    """Exact solitary wave of the lattice: speed, widths and amplitudes at peak contact force 1.
 
-    Takes a second or two, for unequal masses from k = 4 on up to half a minute.
-    """
-    values = [float(mass) for mass in numeric_cell(masses).masses]
-    wave = exact_wave(values, k, background=background, progress=progress)
-    return wave_report(wave if speed is force is None else wave.scaled(speed=speed, force=force))
-
-
-def wave_report(wave: ExactWave) -> Report:
-    """Return the report of a wave. Keys of the JSON document:
+    Takes a second. Two masses have a solitary wave at special ratios only (`resonances`).
 
     ``k_value``, ``masses_value``, ``background_value``, ``half_period_value``, ``residual_value``,
     ``solitary``; with errors, as ``c2_error_value``: ``c2_value``, ``c_value``, ``tail_value`` and
-    by quantity ``amplitude_value``, ``fwhm_value``, ``rms_value``.
+    by quantity ``amplitude_value``, ``fwhm_value``.
     """
+    given = [float(mass) for mass in numeric_cell(masses).masses]
+    return wave_report(exact_wave(given, k, background=background))
+
+
+def wave_report(wave: ExactWave) -> Report:
+    """Return the report of a solitary wave."""
     numbers = measured(wave)
-    kind, errors = _SOLITARY if wave.solitary else _NANOPTERON
-    tail = f"{wave.tail:.2e}" if wave.solitary else numbers["tail"]
-    rows = tuple((q, *(numbers[f"{c.key} {q}"] for c in _COLUMNS[1:])) for q in QUANTITIES)
+    rows = tuple((q, numbers[f"amplitude {q}"], numbers[f"fwhm {q}"]) for q in QUANTITIES)
     # One row of all numbers; "fwhm force" becomes an entry of fwhm_value.
     columns = tuple(Column(name.replace(" ", "."), error=True) for name in numbers)
     (values,) = Table(columns, (tuple(numbers.values()),)).document()
     load = f"; background strain {wave.background:g}: strains and forces are above it"
     return Report(
-        f"masses {wave.masses[0]:g}, {wave.masses[1]:g}; k = {wave.k:g}; A = D = 1"
+        f"masses {wave.masses[0]:.10g}, {wave.masses[1]:.10g}; k = {wave.k:g}; A = D = 1"
         f"{load if wave.background else ''}\nc² = {numbers['c2']}, c = {numbers['c']}\n"
-        f"tail {tail} of the peak strain, residual {wave.residual:.1e}: {kind}",
-        (Table(_COLUMNS, rows, note=f"{_SCALING}\n{errors.format(wave.half_period)}"),),
+        f"solitary: tail {wave.tail:.0e} of the peak strain, residual {wave.residual:.0e}",
+        (Table(_COLUMNS, rows, note=_NOTE),),
         panels=tuple(wave.pictured()),
         data={
             "k_value": wave.k,

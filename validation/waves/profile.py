@@ -2,7 +2,7 @@
 
 A = D = 1. A contact's strain is a(ξ) or b(ξ) = a(-ξ), ξ = x - ct (`validation.waves.newton`). The
 contact law r_+^k has no scale of its own, so that multiples of a wave are waves: r → s r with
-c² → s^{k-1} c². Waves are found at peak contact force 1; `ExactWave.scaled` gives the others. On a
+c² → s^{k-1} c². Waves are found at peak contact force 1; `ExactWave.times` gives the others. On a
 background p0, which is multiplied by s too, strains and forces are those added to p0 and p0^k, and
 the force of peak 1 is the sum.
 """
@@ -10,7 +10,6 @@ the force of peak 1 is the sum.
 from __future__ import annotations
 
 import math
-from abc import abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -26,7 +25,6 @@ from validation.pictures import Curve, Panel, Pictured
 from validation.pulses.pulse import highest_pulse
 from validation.pulses.signals import Piecewise
 from validation.scenes.chains import carrying
-from validation.scenes.checks import SceneError, positive
 from validation.scenes.scene import Scene
 from validation.waves import newton
 
@@ -36,40 +34,33 @@ OUTSIDE = 0.6  # share of the half period at which a dimer's pulse has ended and
 
 
 @dataclass(frozen=True, eq=False)
-class LatticeWave(ArrayValue, Pictured):
-    """A wave as a function of ξ = x - ct, mirror symmetric about a bead; A = D = 1.
+class ExactWave(ArrayValue, Pictured):
+    """A traveling wave of the lattice as a function of ξ = x - ct, accurate to rounding; A = D = 1.
 
     masses : (m1, m2). k : exponent. c2 : c², the square of the speed dx/dt.
-    half_period : L, the largest |ξ| at which the wave is known.
+    half_period : L; profiles have the period 2L, and a solitary wave ends before L.
+    even, odd : coefficients of cos(πjξ/L) in E, the even part of F_a, and of sin(πjξ/L) in O, its
+        odd part, j = 0 … n.
+    tail : largest |o|, the odd part of a, outside the pulse, divided by the peak strain.
+    residual : largest error in the twice integrated equations of motion divided by the peak strain,
+        on a grid twice as fine as the solution's.
+    background : p0, the strain far from the wave.
     """
 
     masses: newton.Pair
     k: float
     c2: float
     half_period: float
-    background = 0.0
+    even: Array
+    odd: Array
+    tail: float
+    residual: float
+    background: float = 0.0
 
-    @property
-    @abstractmethod
-    def samples(self) -> int:
-        """Number of points on 0 … L that resolve the profile."""
-
-    @abstractmethod
-    def _behind(self, xi: Array) -> Array:
-        """Strain a(ξ) of the contacts behind beads m1."""
-
-    @abstractmethod
-    def velocity(self, xi: ArrayLike, bead: int = 0) -> Array:
-        """Velocity of beads m1 (bead 0) or m2 (bead 1) at ξ; a cell far away has no momentum."""
-
-    def strain(self, xi: ArrayLike, contact: int = 0) -> Array:
-        """Strain a(ξ) of the contacts behind beads m1 (contact 0), or b(ξ) of the others (1)."""
-        at = np.asarray(xi, float)
-        return self._behind(-at if contact % 2 else at)
-
-    def force(self, xi: ArrayLike, contact: int = 0) -> Array:
-        """Force F_a(ξ) or F_b(ξ) of a contact, above the static force."""
-        return newton.rise(self.strain(xi, contact), self.k, self.background)
+    def __repr__(self) -> str:
+        kind = "solitary" if self.solitary else f"tail {self.tail:.2g}"
+        m1, m2 = self.masses
+        return f"ExactWave(masses=({m1:g}, {m2:g}), k={self.k:g}, c={self.c:.12g}, {kind})"
 
     @property
     def c(self) -> float:
@@ -82,10 +73,43 @@ class LatticeWave(ArrayValue, Pictured):
         return self.masses[1] / self.masses[0]
 
     @property
-    def pulse(self) -> float:
-        """Largest |ξ| of the pulse itself, without a dimer's tail."""
-        ends = OUTSIDE * newton.ample_half_period((1.0, self.omega), self.k)
-        return self.half_period if self.omega == 1 else min(self.half_period, ends)
+    def samples(self) -> int:
+        """Number of Fourier coefficients."""
+        return len(self.even)
+
+    @property
+    def solitary(self) -> bool:
+        """True if tail, residual and the strain left at L are all below `TOLERANCE`."""
+        return max(self.tail, self.residual, self.end_strain) < TOLERANCE
+
+    @cached_property
+    def end_strain(self) -> float:
+        """Strain of a wave of equal masses at L, divided by the peak strain; 0 for a dimer."""
+        if self.omega != 1:
+            return 0.0
+        # The profile is shifted to be 0 at L; by (*) at q = 0 the strain is ∫ (1-|s|) F(L-s) ds/c².
+        even = self._strains[0]
+        return float(abs(self.even[0] / (self.c2 * self.masses[0]) - even[0]) / even.sum())
+
+    def times(self, s: float) -> ExactWave:
+        """Return the wave with all strains, the background's too, multiplied by s; c² ~ s^{k-1}."""
+        c2, force, p0 = float(self.c2 * s ** (self.k - 1)), s**self.k, s * self.background
+        return replace(self, c2=c2, even=self.even * force, odd=self.odd * force, background=p0)
+
+    def strain(self, xi: ArrayLike, contact: int = 0) -> Array:
+        """Strain a(ξ) of the contacts behind beads m1 (contact 0), or b(ξ) of the others (1)."""
+        at = np.asarray(xi, float)
+        return self._behind(-at if contact % 2 else at)
+
+    def force(self, xi: ArrayLike, contact: int = 0) -> Array:
+        """Force F_a(ξ) or F_b(ξ) of a contact, above the static force."""
+        return newton.rise(self.strain(xi, contact), self.k, self.background)
+
+    def velocity(self, xi: ArrayLike, bead: int = 0) -> Array:
+        """Velocity of beads m1 (bead 0) or m2 (bead 1) at ξ; a cell far away has no momentum."""
+        one, two = (float(self._velocity(np.array(self.half_period), i)) for i in (0, 1))
+        mean = (one + self.omega * two) / (1 + self.omega)
+        return np.where(self._ended(xi), 0.0, self._velocity(xi, bead) - mean)
 
     def peak(self, name: str) -> tuple[float, float]:
         """Return place ξ and value of the maximum of "strain", "force" or "velocity".
@@ -102,29 +126,6 @@ class LatticeWave(ArrayValue, Pictured):
         """
         xi = np.linspace(-self.half_period, self.half_period, self.samples + 1)
         return highest_pulse(Piecewise(xi, self._quantity(name))).fwhm
-
-    def rms_width(self, name: str = "strain") -> float:
-        """Root mean square width √(∫ (ξ - mean)² f / ∫ f) of the positive part f of a quantity."""
-        n = 8 * self.samples
-        xi = self.pulse * np.arange(-n, n) / n  # trapezia: exact for a pulse that has ended
-        f = np.maximum(self._quantity(name)(xi), 0.0)
-        mean = (f @ xi) / f.sum()
-        return math.sqrt(f @ (xi - mean) ** 2 / f.sum())
-
-    def _quantity(self, name: str) -> Callable[[ArrayLike], Array]:
-        strain_power(name, self.k)  # refuses other names
-        quantity: Callable[[ArrayLike], Array] = getattr(self, name)
-        return quantity
-
-    def odd_strain(self, start: float) -> float:
-        """Largest |o| on start ≤ |ξ| ≤ L, o(ξ) = (a(ξ) - a(-ξ))/2 the odd part of the strain a."""
-        outside = np.linspace(start, self.half_period, 2 * self.samples)
-        return summit(lambda x: np.abs(self.strain(x) - self.strain(-x)) / 2, outside)[1]
-
-    def difference(self, other: LatticeWave) -> float:
-        """Largest difference between the strains of this and another wave, tails aside."""
-        xi = np.linspace(-self.pulse, self.pulse, 401)
-        return float(np.abs(self.strain(xi) - other.strain(xi)).max())
 
     def launched(self, start: int, sites: int, **rest: Any) -> Scene:
         """Return a scene of a chain that carries the wave, centered at bead ``start`` at time 0.
@@ -150,72 +151,15 @@ class LatticeWave(ArrayValue, Pictured):
         )
         return [Panel("ξ / D", "over its peak", tuple(curves))]
 
+    def _quantity(self, name: str) -> Callable[[ArrayLike], Array]:
+        strain_power(name, self.k)  # refuses other names
+        quantity: Callable[[ArrayLike], Array] = getattr(self, name)
+        return quantity
 
-@dataclass(frozen=True, eq=False)
-class ExactWave(LatticeWave):
-    """A traveling wave of the lattice, accurate to rounding; A = D = 1.
-
-    half_period : L; profiles have the period 2L, and a solitary wave ends before L.
-    even, odd : coefficients of cos(πjξ/L) in E, the even part of F_a, and of sin(πjξ/L) in O, its
-        odd part, j = 0 … n.
-    tail : largest |o|, the odd part of a, outside the pulse, divided by the peak strain.
-    residual : largest error in the twice integrated equations of motion divided by the peak strain,
-        on a grid twice as fine as the solution's.
-    background : p0, the strain far from the wave.
-    """
-
-    even: Array
-    odd: Array
-    tail: float
-    residual: float
-    background: float = 0.0
-
-    def __repr__(self) -> str:
-        kind = "solitary" if self.solitary else f"tail {self.tail:.2g}"
-        m1, m2 = self.masses
-        return f"ExactWave(masses=({m1:g}, {m2:g}), k={self.k:g}, c={self.c:.12g}, {kind})"
-
-    @property
-    def samples(self) -> int:
-        """Number of Fourier coefficients."""
-        return len(self.even)
-
-    @property
-    def solitary(self) -> bool:
-        """True if tail, residual and the strain left at L are all below `TOLERANCE`."""
-        return max(self.tail, self.residual, self.end_strain) < TOLERANCE
-
-    @cached_property
-    def end_strain(self) -> float:
-        """Strain of a wave of equal masses at L, divided by the peak strain; 0 for a dimer."""
-        if self.omega != 1:
-            return 0.0
-        # The profile is shifted to be 0 at L; by (*) at q = 0 the strain is ∫ (1-|s|) F(L-s) ds/c².
-        even = self._strains[0]
-        return float(abs(self.even[0] / (self.c2 * self.masses[0]) - even[0]) / even.sum())
-
-    def scaled(self, *, speed: Any = None, force: Any = None) -> ExactWave:
-        """Return the wave scaled to another speed dx/dt or another peak contact force.
-
-        Raises `SceneError` unless exactly one is given, positive, and the strains fit into floats.
-        """
-        if (speed is None) == (force is None):
-            given = "neither" if speed is None else "both"
-            raise SceneError(f"speed and force: {given} given; a wave is scaled to one of the two")
-        if speed is not None:
-            log = 2 / (self.k - 1) * math.log(positive(speed, "speed") / self.c)
-        else:
-            log = math.log(positive(force, "force")) / self.k
-            log -= math.log(self.background + self.peak("strain")[1])
-        if abs(log) * max(self.k, 2) > 460:  # e^460 = 1e200
-            amount = f"speed is {speed}" if force is None else f"force is {force}"
-            raise SceneError(f"{amount}: e^{log:.0f} times the strain here is out of range")
-        return self.times(math.exp(log))
-
-    def times(self, s: float) -> ExactWave:
-        """Return the wave with all strains, the background's too, multiplied by s; c² ~ s^{k-1}."""
-        c2, force, p0 = float(self.c2 * s ** (self.k - 1)), s**self.k, s * self.background
-        return replace(self, c2=c2, even=self.even * force, odd=self.odd * force, background=p0)
+    def odd_strain(self, start: float) -> float:
+        """Largest |o| on start ≤ |ξ| ≤ L, o(ξ) = (a(ξ) - a(-ξ))/2 the odd part of the strain a."""
+        outside = np.linspace(start, self.half_period, 2 * self.samples)
+        return summit(lambda x: np.abs(self.strain(x) - self.strain(-x)) / 2, outside)[1]
 
     @cached_property
     def _strains(self) -> tuple[Array, Array]:
@@ -230,11 +174,6 @@ class ExactWave(LatticeWave):
 
     def _behind(self, xi: Array) -> Array:
         return np.where(self._ended(xi), 0.0, self._sum(xi, *self._strains))
-
-    def velocity(self, xi: ArrayLike, bead: int = 0) -> Array:
-        one, two = (float(self._velocity(np.array(self.half_period), i)) for i in (0, 1))
-        mean = (one + self.omega * two) / (1 + self.omega)
-        return np.where(self._ended(xi), 0.0, self._velocity(xi, bead) - mean)
 
     def _velocity(self, xi: ArrayLike, bead: int) -> Array:
         """Velocity up to a constant: the integral of v' = (force ahead - force behind)/(m c)."""

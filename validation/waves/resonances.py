@@ -17,7 +17,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
-from itertools import chain
+from itertools import chain, islice
 from typing import Any
 
 import numpy as np
@@ -26,8 +26,7 @@ import scipy
 from validation.scenes.checks import between, integer
 from validation.waves.newton import Problem, continued
 from validation.waves.profile import ExactWave
-from validation.waves.solver import NoWave, converged, solve
-from validation.waves.start import initial
+from validation.waves.solution import NoWave, converged, initial, solve
 
 MOST = 6  # ratios at one k
 HERTZ, PUBLISHED = 1.5, (0.3428, 0.1548)  # the first ratios at k = 3/2, as published
@@ -39,15 +38,23 @@ def resonances(k: Any, count: Any) -> tuple[ExactWave, ...]:
 
     Raises `SceneError` for numbers out of range, `NoWave` for missing waves.
     """
+    return tuple(islice(special_waves(k), integer(count, "count", 1, MOST)))
+
+
+def special_waves(k: Any) -> Iterator[ExactWave]:
+    """Yield the solitary waves, m1 = 1, at the `MOST` largest special ratios, the largest first.
+
+    Raises `SceneError` for k out of range, `NoWave` for a missing wave.
+    """
     # Nearer to k = 1 the strain T is lost in rounding.
     k = between(k, "k", 1.1, 5, "special mass ratios are found for k from 1.1 to 5")
-    count = integer(count, "count", 1, MOST)
     waves = [solve((1.0, ratio), HERTZ, free=True) for ratio in PUBLISHED]
     if k < HERTZ:
         waves = [_followed(wave, k) for wave in waves]
-    while len(waves) < count:
-        waves.append(_next(*waves[-2:]))
-    return tuple(wave if wave.k == k else _followed(wave, k) for wave in waves[:count])
+    for i in range(MOST):
+        if i == len(waves):
+            waves.append(_next(*waves[-2:]))
+        yield waves[i] if waves[i].k == k else _followed(waves[i], k)
 
 
 def _root(wave: ExactWave) -> float:

@@ -15,7 +15,8 @@ from validation.pulses.signals import Sampled
 from validation.pulses.steady import QUANTITIES, STRETCH, point
 from validation.scenes.chains import struck
 from validation.scenes.scene import Scene
-from validation.waves.solver import exact_wave, solve
+from validation.waves.solution import solve
+from validation.waves.solver import exact_wave
 
 R = sp.Rational
 HERTZ = R(3, 2)

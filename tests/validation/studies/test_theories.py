@@ -23,13 +23,16 @@ from validation.studies.theories import (
     ladder,
     place,
 )
-from validation.waves.solver import ExactWave, exact_wave
+from validation.waves.profile import ExactWave
+from validation.waves.solution import solve
+from validation.waves.solver import exact_wave
 
 
 @cache
 def true(k: str, omega: str) -> ExactWave:
-    masses = (1.0,) if omega == "1" else (1.0, float(sp.Rational(omega)))
-    return exact_wave(masses, float(sp.Rational(k)))
+    if omega == "1":
+        return exact_wave([1], float(sp.Rational(k)))
+    return solve((1.0, float(sp.Rational(omega))), float(sp.Rational(k)))
 
 
 @cache

@@ -8,7 +8,6 @@ import pytest
 from lwa import Cell, Power, background_wave
 from tests.commands import ended
 from validation import cli
-from validation.scenes.checks import SceneError
 from validation.waves.solver import exact_wave
 
 THEORY = background_wave(Cell([1], spacing=1), law=Power("3/2"))
@@ -75,30 +74,6 @@ def test_the_equation_of_motion_holds(k, p0):
     forces = [(p0 + wave.strain(xi + s)) ** k for s in (-1, 0, 1)]
     push = forces[0] - 2 * forces[1] + forces[2]
     assert wave.c2 * curved / scale**2 == pytest.approx(push, abs=2e-5 * np.abs(push).max())
-
-
-def test_multiples_are_on_multiples_of_the_background():
-    wave = exact_wave([2], 1.5, background=0.3)
-    more = wave.scaled(force=8)
-    assert more.background == pytest.approx(0.3 * 4, rel=1e-13)
-    assert more.c2 / wave.c2 == pytest.approx(2, rel=1e-13)
-    assert more.background**1.5 + more.peak("force")[1] == pytest.approx(8, rel=1e-12)
-    assert wave.scaled(speed=2 * wave.c).background == pytest.approx(0.3 * 16, rel=1e-13)
-
-
-@pytest.mark.parametrize(
-    ("masses", "options", "message"),
-    [
-        ([1], {"background": -0.1}, "background is -0.1: one from 0"),
-        ([1], {"background": 1}, "background is 1: one from 0"),
-        ([1], {"background": "1/2"}, "a number is wanted"),
-        ([1, 0.5], {"background": 0.1}, "exact waves are for equal masses"),
-        ([1], {"background": 0.5, "half_period": 5}, "has not ended there"),
-    ],
-)
-def test_bad_options_are_refused(masses, options, message):
-    with pytest.raises(SceneError, match=message):
-        exact_wave(masses, 1.5, **options)
 
 
 def test_the_command(capsys):

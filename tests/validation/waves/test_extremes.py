@@ -17,7 +17,7 @@ from tests.passage import passage, ratio
 from validation.lattice.cost import IntegrationError
 from validation.lattice.simulate import simulate
 from validation.scenes.chains import carrying, struck
-from validation.waves.solver import NoWave, solve
+from validation.waves.solution import NoWave, solve
 from validation.waves.theory import LEADING_POWERS, theory_at
 
 
