@@ -7,7 +7,7 @@ the difference, and at least the tolerance of the first run.
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterator, Mapping
+from collections.abc import Callable, Container, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from itertools import pairwise
@@ -33,6 +33,9 @@ from validation.pulses.pulse import (
 from validation.pulses.signals import Piecewise, Sampled, Signal
 from validation.scenes.checks import SceneError, between
 from validation.scenes.scene import Scene
+
+Instrument = Callable[[Signal], Signal]
+"""A function from a force to the reading of the force by an instrument."""
 
 TOLERANCE = 1e-10  # default tolerance of the accurate run
 LESS = 1e3  # tolerance of the less accurate run over that of the accurate one
@@ -89,12 +92,14 @@ def record(
     method: str = COMPILED[0],
     rtol: Any = TOLERANCE,
     every: bool = False,
+    through: Instrument | None = None,
     progress: RunProgress = silent,
 ) -> Recording:
     """Simulate a scene and measure the pulses at its sensors.
 
     rtol : relative tolerance, from 1e-13 to 1e-5. every : True for all pulses at each sensor
-    instead of the first. Other options, and errors raised, are those of `validation.simulate`.
+    instead of the first. through : instrument that the dynamic forces pass. Other
+    options, and errors raised, are those of `validation.simulate`.
     Raises `SceneError` where rounding hides the motion at this tolerance.
     """
     rtol = between(rtol, "rtol", 1e-13, 1e-2 / LESS)
@@ -105,7 +110,7 @@ def record(
             f"{lost:.1g} of the motion; {lost / _ROUNDING:.1g} or more is wanted"
         )
     run, check = twice(scene, rtol, LESS * rtol, method=method, progress=progress)
-    pairs = tuple(zip(tracks(run), tracks(check, every=2), strict=True))
+    pairs = tuple(zip(tracks(run, 1, through), tracks(check, 2, through), strict=True))
     neighbours = (two for two in pairwise(pairs) if two[0][0].kind == two[1][0].kind)
     return Recording(
         run,
@@ -114,19 +119,18 @@ def record(
     )
 
 
-def tracks(run: Run, every: int = 1) -> tuple[Track, ...]:
-    """Return the dynamic forces at the sensors of a run, beads first.
+def tracks(run: Run, every: int = 1, through: Instrument | None = None) -> tuple[Track, ...]:
+    """Return the dynamic forces at the sensors of a run, as an instrument shows them; beads first.
 
     If the motion of a run takes too much memory, the forces are splines through the samples, or
     through every other sample (``every=2``).
     """
-    scene = run.scene
-    load = np.zeros(scene.size + 1)  # of the contacts on the left and right of the beads
-    load[1 : scene.contact_count + 1] = scene.load
+    scene, at_rest = run.scene, static_forces(run.scene)
     # A contact is midway between its beads, the wall's half a spacing behind the last bead.
     x = np.cumsum((0.0, *scene.spacings, *scene.spacings[-1:]))
 
-    def track(kind: str, i: int, site: float, samples: Array, static: float) -> Track:
+    def track(kind: str, i: int, site: float, samples: Array) -> Track:
+        static = at_rest[f"{kind} {i + 1}"]
         length = [float(np.interp(site, range(len(x)), x))] if scene.spacings else []
         place = dict(zip(SPEEDS, (site, *length), strict=False))
         force: Signal = (
@@ -134,15 +138,24 @@ def tracks(run: Run, every: int = 1) -> tuple[Track, ...]:
             if run.path is None
             else run.signal(kind, i)
         )
-        dynamic = Piecewise(force.times, lambda t: force(t) - static) if static else force
-        return Track(kind, i + 1, dynamic, place, float(static))
+        dynamic: Signal = Piecewise(force.times, lambda t: force(t) - static) if static else force
+        dynamic = dynamic if through is None else through(dynamic)
+        return Track(kind, i + 1, dynamic, place, static)
 
     beads = zip(scene.bead_sensors, run.bead_force, strict=True)
     contacts = zip(scene.contact_sensors, run.contact_force, strict=True)
     return (
-        *(track("bead", i, i, force, (load[i] + load[i + 1]) / 2) for i, force in beads),
-        *(track("contact", i, i + 0.5, force, load[i + 1]) for i, force in contacts),
+        *(track("bead", i, i, force) for i, force in beads),
+        *(track("contact", i, i + 0.5, force) for i, force in contacts),
     )
+
+
+def static_forces(scene: Scene) -> dict[str, float]:
+    """Return the static forces at the sensors of a scene, by names such as "bead 15"."""
+    load = np.zeros(scene.size + 1)  # of the contacts on the left and right of the beads
+    load[1 : scene.contact_count + 1] = scene.load
+    beads = {f"bead {i + 1}": float(load[i] + load[i + 1]) / 2 for i in scene.bead_sensors}
+    return beads | {f"contact {i + 1}": float(load[i + 1]) for i in scene.contact_sensors}
 
 
 def _readings(pair: tuple[Track, Track], every: bool, rtol: float) -> Iterator[Reading]:

@@ -13,6 +13,7 @@ from typing import Any, Generic, ParamSpec, TypeVar
 
 import click
 
+from lwa.base.exact import shorten
 from lwa.base.progress import bar, shown
 from lwa.command.options import called, quantities, quantity
 from lwa.command.terminal import HELP
@@ -104,6 +105,24 @@ def output_option(name: str, suffixes: Sequence[str], says: str) -> Any:
         return None if path is None else output_file(called(given), path, suffixes)
 
     return option(name, callback=read, metavar="FILE", says=says)
+
+
+def column_option() -> Any:
+    """Return the option --column of a study that reads a measured file: new names of columns."""
+
+    def read(context: click.Context, given: click.Parameter, pairs: Sequence[str]) -> Any:
+        renamed = {}
+        for pair in pairs:
+            name, equals, header = (part.strip() for part in pair.partition("="))
+            if not (name and equals and header) or name in renamed:
+                raise SceneError(f"column is {shorten(pair)}: NAME=HEADER is wanted, once a name")
+            renamed[name] = header
+        return renamed
+
+    says = "Header that stands for a column in the file, as in --column time='CH1 t'; repeatable."
+    return option(
+        "--column", "renamed", callback=read, multiple=True, metavar="NAME=HEADER", says=says
+    )
 
 
 def number(context: click.Context, given: click.Parameter, value: str | None) -> float | None:

@@ -1,16 +1,11 @@
-"""Checked input of scenes: numbers, sequences and CSV columns; messages name the faulty value."""
+"""Checked input of scenes: numbers and sequences; messages name the faulty value."""
 
 from __future__ import annotations
 
-import csv
-from collections.abc import Collection, Sequence
-from pathlib import Path
+from collections.abc import Collection
 from typing import Any
 
-import numpy as np
-
-from lwa.base import files, tables
-from lwa.base.arrays import Array
+from lwa.base import tables
 from lwa.base.exact import InputError, shorten
 from lwa.base.tables import Reader
 
@@ -53,29 +48,3 @@ def each(reader: Reader) -> Reader:
     return lambda values, name: tuple(
         reader(value, f"{name}[{i}]") for i, value in enumerate(items(values, name))
     )
-
-
-def columns(path: str | Path, *wanted: str, optional: Sequence[str] = ()) -> dict[str, Array]:
-    """Read columns of a CSV file with a header; return each, (N,), by its name without unit.
-
-    A header such as "force (N)" names the column "force". Raises `SceneError`, in one line, for a
-    file without a wanted column, and for entries that are no finite numbers.
-    """
-    try:
-        text = files.content(Path(path)).decode("utf-8-sig")
-        header, *rows = [row for row in csv.reader(text.splitlines()) if row] or [[]]
-    except (OSError, UnicodeDecodeError, csv.Error, SceneError) as error:
-        raise SceneError(f"{path}: {files.reason(error)}") from None
-    names = [name.partition("(")[0].strip() for name in header]
-    values: dict[str, Array] = {}
-    for name in (*wanted, *(name for name in optional if name in names)):
-        if names.count(name) != 1:
-            header_text = shorten(names)
-            raise SceneError(f"{path}: one column {name} is wanted, the header has {header_text}")
-        try:
-            values[name] = np.array([row[names.index(name)] for row in rows], float)
-        except (ValueError, IndexError):
-            values[name] = np.array([np.nan])
-        if not np.isfinite(values[name]).all():
-            raise SceneError(f"{path}: column {name}: finite numbers are wanted")
-    return values

@@ -68,6 +68,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
+from functools import partial
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -87,7 +88,8 @@ from lwa.spheres.beads import (
     read_row,
 )
 from lwa.spheres.hertz import Material, Sphere, stiffness
-from validation.scenes.checks import SceneError, columns, finite, positive
+from validation.scenes.checks import SceneError, finite, positive
+from validation.scenes.columns import check_span, columns
 from validation.scenes.forcing import DAMPINGS, Damping, Drive
 from validation.scenes.scene import Scene
 
@@ -130,16 +132,17 @@ def scene(content: Any) -> Scene:
         if "start" in file:
             raise SceneError("striker and start are both there: one says how the beads start")
         velocities = (tables["striker"].read("velocity", finite),)
+    duration = file.read("duration", positive)
     result = Scene(
         **chain,
         **{key: file.entries[key] for key in _NUMBERS if key in file},
         wall=wall,
-        duration=file.read("duration", positive),
+        duration=duration,
         units=file.read("units", among({"SI": "SI"}), "SI" if row else ""),
         displacements=start.read("displacements", each(finite), ()),
         velocities=velocities,
         damping=_damping(tables["damping"]) if "damping" in file else None,
-        drive=_drive(tables["drive"]) if "drive" in file else None,
+        drive=_drive(tables["drive"], duration) if "drive" in file else None,
         bead_sensors=sensors.read("beads", _sensors(n), ()),
         contact_sensors=sensors.read("contacts", _sensors(n - (wall is None)), ()),
     )
@@ -230,16 +233,18 @@ def _damping(given: Table) -> Damping:
     return Damping(kind, given.entries[kind])
 
 
-def _drive(given: Table) -> Drive:
+def _drive(given: Table, duration: float) -> Drive:
     """Read the motion of bead 1; the key ``file`` names a CSV file of its time and displacement."""
     numbers = {key: value for key, value in given.entries.items() if key != "file"}
-    return Drive(**numbers | given.read("file", _motion, {}))
+    return Drive(**numbers | given.read("file", partial(_motion, duration=duration), {}))
 
 
-def _motion(value: Any, name: str) -> dict[str, Any]:
+def _motion(value: Any, name: str, duration: float) -> dict[str, Any]:
     if not isinstance(value, str):
         raise SceneError(f"{name} is {shorten(value)}: the name of a CSV file is wanted")
-    return columns(value, "time", "displacement")
+    motion = columns(value, "time", "displacement")
+    check_span(value, motion["time"], duration)
+    return motion
 
 
 def document(source: Scene) -> dict[str, Any]:

@@ -2,21 +2,31 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import partial
+from itertools import product
 from typing import Any
 
 import click
+import numpy as np
+import scipy
 
 from lwa.base.arrays import Array
 from validation.lattice.cost import RunProgress, silent
+from validation.lattice.simulate import simulate
 from validation.pictures import Curve, Panel
-from validation.pulses.pulse import Measured, compared, dense, derived, first_pulse
-from validation.pulses.sensors import READINGS, Track, readings, record, tracks
-from validation.pulses.signals import Sampled
-from validation.report.command import study
+from validation.pulses.noisy import noisy_pulse
+from validation.pulses.pulse import Measured, MeasureError, derived
+from validation.pulses.sensors import READINGS, Instrument, record, static_forces, tracks
+from validation.pulses.signals import high_passed
+from validation.report.command import column_option, option, study
 from validation.report.result import Report
 from validation.report.table import Column, Table
-from validation.scenes.checks import SceneError, columns
+from validation.scenes.checks import SceneError
+from validation.scenes.columns import TIME, amount, check_span, columns
+from validation.scenes.scene import Scene
 from validation.scenes.scenefile import read_scene
 
 _COLUMNS = (
@@ -28,40 +38,66 @@ _LABELS = dict(zip(READINGS, ("arrival", "peak dynamic force", "FWHM"), strict=T
 _NOTE = (
     "First pulses of dynamic forces. Measured times are shifted by {}, so that the pulses arrive "
     "together at {}. ±: of the simulation, difference to a less accurate run; of the measurement, "
-    "to every other sample."
+    "one standard deviation, from the noise before the pulse."
 )
+_FITTED = "Damping {} fitted to the peak forces: {}, one standard deviation."
+_FIT_TOLERANCE = 1e-8  # of the runs from which the damping is fitted
+_RUN_ERROR = 1e-6  # bound on the relative error of their peaks
+_SHORTEST = 1e-5  # time constant over the duration of a scene
+_PART = 1e-3  # change of the damping, as a part of it, that gives the derivatives of the peaks
 
 
-@study(click.argument("scene"), click.argument("measured"))
-def compare(scene: str, measured: str, run_progress: RunProgress = silent) -> Report:
+@study(
+    click.argument("scene"),
+    click.argument("measured"),
+    option(
+        "--time-constant",
+        metavar="TIME",
+        says="Time constant of the amplifier, a high-pass, as in '1 ms': the simulation passes it.",
+    ),
+    option("--damping", is_flag=True, default=False, says="Fit the value of the scene's damping."),
+    column_option(),
+)
+def compare(
+    scene: str,
+    measured: str,
+    time_constant: str | None = None,
+    damping: bool = False,
+    renamed: Mapping[str, str] | None = None,
+    run_progress: RunProgress = silent,
+) -> Report:
     """Measured forces at the sensors of a scene beside the simulated ones: arrival, peak, FWHM.
     SCENE is a scene file, as of `lwa-validate run`. MEASURED, a CSV file, has the columns time and,
     for each sensor, such as "bead 15 force" (static force included) or "bead 15 dynamic force"; for
-    a single sensor also "force" or "dynamic force".
+    a single sensor also "force" or "dynamic force". Units in the header are read.
 
     ``rows``: ``kind``, ``number``, ``quantity`` ("arrival", "peak" or "fwhm"), ``simulated_value``,
     ``measured_value`` and ``difference_value``, measured less simulated, with errors;
-    ``shift_value``.
+    ``shift_value``; with ``damping`` the fitted ``damping_value`` and its error.
     """
     chain = read_scene(scene)
-    if not (chain.bead_sensors or chain.contact_sensors):
-        raise SceneError(f"{scene}: the scene names no sensors")
-    simulation = record(chain, progress=run_progress)
+    through = None
+    if time_constant is not None:
+        T = amount(str(time_constant), "time_constant", TIME)
+        if (least := _SHORTEST * chain.duration) > T:
+            raise SceneError(f"time_constant is {T:g}: at least {least:g} is wanted")
+        through = partial(high_passed, time_constant=T)
+    records = _Records.read(measured, chain, renamed)
+    fitted = None
+    if damping:
+        chain, fitted = _damped(chain, records, through)
+    simulation = record(chain, through=through, progress=run_progress)
     run, label, t = simulation.run, simulation.run.label, simulation.run.time
-    names = [f"{reading.name} " for reading in simulation.sensors]
-    names += [""] * (len(names) == 1)
-    optional = [name + force for name in names for force in ("force", "dynamic force")]
-    samples = columns(measured, "time", optional=optional)
-    time, shift, first = samples["time"], 0.0, ""
     rows: list[tuple[Any, ...]] = []
     curves: list[Curve] = []
-    for i, (reading, track) in enumerate(zip(simulation.sensors, tracks(run), strict=True)):
-        force = _dynamic_force(samples, reading.name, track)
-        if force is None:
+    shift, first = 0.0, ""
+    seen = zip(simulation.sensors, tracks(run, 1, through), strict=True)
+    for i, (reading, track) in enumerate(seen):
+        if (force := records.forces.get(reading.name)) is None:
             continue
         if reading.missing:
             raise SceneError(f"{reading.name}: {reading.missing}")
-        pulse = compared(_numbers, (time, force), (time[::2], force[::2]))
+        pulse = dict(records.pulses[reading.name])
         if not first:
             first = reading.name
             shift = reading.numbers["arrival"].value - pulse["arrival"].value
@@ -73,33 +109,85 @@ def compare(scene: str, measured: str, run_progress: RunProgress = silent) -> Re
             rows.append((reading.name, track.kind, track.number, label(quantity), name, *numbers))
         curves += [
             Curve(f"{reading.name}, simulated", t, track.force(t), f"C{i}-"),
-            Curve("measured", time + shift, force, f"C{i}."),
+            Curve("measured", records.time + shift, force, f"C{i}."),
         ]
-    if not first:
-        raise SceneError(
-            f"{measured}: no column is {' or '.join(f'{name}force' for name in names)}"
-        )
     unit = f"{shift:.6g} s" if chain.units else f"{shift:.6g}"
+    data, notes = {"shift_value": shift}, [_NOTE.format(unit, first)]
+    if fitted is not None and chain.damping is not None:
+        data |= {"damping_value": fitted.value, "damping_error_value": fitted.error}
+        notes.insert(0, _FITTED.format(chain.damping.kind, fitted))
     return Report(
         str(chain),
         (Table(_COLUMNS, tuple(rows), "rows"),),
         panels=(Panel(label("time"), label("dynamic force"), tuple(curves), legend_above=True),),
-        notes=(_NOTE.format(unit, first),),
-        data={"shift_value": shift},
+        notes=tuple(notes),
+        data=data,
     )
 
 
-def _dynamic_force(samples: Mapping[str, Array], name: str, track: Track) -> Array | None:
-    """Return the measured dynamic force at a sensor; None without a column of it."""
-    for prefix in (f"{name} ", ""):
-        if (total := samples.get(f"{prefix}force")) is not None:
-            return total - track.static
-        if (dynamic := samples.get(f"{prefix}dynamic force")) is not None:
-            return dynamic
-    return None
+@dataclass(frozen=True, eq=False)
+class _Records:
+    """Measured dynamic forces and the numbers of their first pulses, by the sensors' names."""
+
+    time: Array
+    forces: Mapping[str, Array]
+    pulses: Mapping[str, Mapping[str, Measured]]
+
+    @classmethod
+    def read(cls, file: str, chain: Scene, renamed: Mapping[str, str] | None) -> _Records:
+        """Read the columns of the sensors of a scene, at least one of them."""
+        static = static_forces(chain)
+        if not static:
+            raise SceneError("the scene names no sensors")
+        prefixes = {f"{name} ": name for name in static}
+        if len(static) == 1:
+            prefixes |= {"": next(iter(static))}
+        kinds = ("force", "dynamic force")
+        optional = [prefix + kind for prefix in prefixes for kind in kinds]
+        samples = columns(file, "time", optional=optional, renamed=renamed)
+        time, forces = samples["time"], dict[str, Array]()
+        check_span(file, time, chain.duration)
+        for (prefix, name), kind in product(prefixes.items(), kinds):
+            if name not in forces and (force := samples.get(prefix + kind)) is not None:
+                forces[name] = force - (static[name] if kind == "force" else 0)
+        if not forces:
+            names = " or ".join(f"{prefix}force" for prefix in prefixes)
+            raise SceneError(f"{file}: no column is {names}")
+        try:
+            pulses = {name: noisy_pulse(time, f, 0.0).numbers for name, f in forces.items()}
+        except MeasureError as error:
+            raise MeasureError(f"{file}: {error}") from None
+        return cls(time, forces, pulses)
 
 
-def _numbers(samples: tuple[Array, Array]) -> dict[str, float]:
-    """Return `READINGS` of the first pulse in a record, sample times and forces."""
-    sampled = Sampled(*samples)
-    return readings(dense(sampled, first_pulse(sampled)))
+def _damped(chain: Scene, records: _Records, through: Instrument | None) -> tuple[Scene, Measured]:
+    """Fit the value of a scene's damping to measured peaks; return the scene with it, and it.
+
+    The error is the standard deviation by the peaks' errors, or by their scatter if this is larger.
+    """
+    if (damping := chain.damping) is None:
+        raise SceneError("damping is to be fitted, but the scene has no table damping")
+
+    def scene(value: float) -> Scene:
+        return replace(chain, damping=replace(damping, value=value))
+
+    def residuals(value: Array) -> Array:
+        run = simulate(scene(float(value[0])), rtol=_FIT_TOLERANCE)
+        peaks = {f"{t.kind} {t.number}": t.first.peak for t in tracks(run, 1, through)}
+        pairs = ((peaks[name], pulse["peak"]) for name, pulse in records.pulses.items())
+        return np.array(
+            [
+                math.log(ours / p.value) / math.hypot(p.relative_error, _RUN_ERROR)
+                for ours, p in pairs
+            ]
+        )
+
+    most = 1.0 if damping.kind == "restitution" else math.inf
+    least = 0.01 if damping.kind == "restitution" else 0.0
+    found = scipy.optimize.least_squares(
+        residuals, damping.value, bounds=(least, most), x_scale=damping.value, diff_step=_PART
+    )
+    value, freedom = float(found.x[0]), max(len(found.fun) - 1, 1)
+    scatter = max(1.0, math.sqrt(2 * found.cost / freedom)) if len(found.fun) > 1 else 1.0
+    error = scatter / float(np.linalg.norm(found.jac))
+    return scene(value), Measured(value, value + error)

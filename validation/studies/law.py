@@ -24,7 +24,8 @@ from validation.report.command import option, study
 from validation.report.result import Report
 from validation.report.table import Column, Table
 from validation.scenes.chains import numeric_cell
-from validation.scenes.checks import SceneError, columns, integer
+from validation.scenes.checks import SceneError, integer
+from validation.scenes.columns import columns
 from validation.waves.contact_law import Medium, fit_power, free_law, weights
 
 _ROOT = 1e-13  # error of ln E, beside rounding

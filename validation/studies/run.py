@@ -9,7 +9,7 @@ header, but neither result nor scene. Forces are total: static forces are includ
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib import resources
 from pathlib import Path
@@ -22,11 +22,12 @@ from lwa.base import files
 from validation.lattice.cost import RunProgress
 from validation.lattice.result import Records, Run
 from validation.lattice.simulate import COMPILED, METHODS
-from validation.pulses.sensors import READINGS, SPEEDS, TOLERANCE, Reading, Recording, record
+from validation.pulses.sensors import TOLERANCE, Recording, record
 from validation.report.command import option, output_option, study
 from validation.report.files import replacing
+from validation.report.readings import reading_tables
 from validation.report.result import Report
-from validation.report.table import Column, Table, plain
+from validation.report.table import plain
 from validation.scenes import scenefile
 from validation.scenes.checks import SceneError
 
@@ -70,46 +71,18 @@ def report(recording: Recording, every: bool = False) -> Report:
         title += f", work {run.work:.6g}"
     which = "All pulses" if every else "First pulse"
     note = _NOTE.format(which, scene.units or "the scene's own") + _DYNAMIC * any(scene.load)
-    missing = [f"{r.name}: {r.missing}" for r in recording.sensors + recording.speeds if r.missing]
     peak = "peak dynamic force" if any(scene.load) else "peak force"
     labels = [run.label(name) for name in ("arrival", peak, "FWHM")]
-    sensors = (
-        *(Column("", "sensor"), Column("kind"), Column("number")),
-        *[Column("pulse", "pulse")] * every,
-        *(*_measured(READINGS, labels), Column("static_force_value"), Column("missing")),
+    tables, missing = reading_tables(
+        recording.sensors, recording.speeds, labels, bool(scene.units), every
     )
-    units = ("sites/s", "m/s") if scene.units else ("sites/time", "length/time")
-    speeds = (
-        *(Column("", "speed"), Column("kind"), Column("from"), Column("to")),
-        *(*_measured(SPEEDS, units), Column("missing")),
-    )
-    pulses = tuple(
-        (*_place(r), *[r.pulse] * every, *_numbers(r, READINGS), r.static, r.missing)
-        for r in recording.sensors
-    )
-    times = tuple((*_place(r), *_numbers(r, SPEEDS), r.missing) for r in recording.speeds)
     return Report(
         f"{title}, momentum {momentum}",
-        (Table(sensors, pulses, "sensors"), Table(speeds, times, "speeds")),
+        tables,
         panels=tuple(run.pictured()),
-        notes=("\n".join(missing), note if recording.sensors else ""),
+        notes=(missing, note if recording.sensors else ""),
         data=data,
     )
-
-
-def _measured(names: Sequence[str], labels: Sequence[str]) -> Iterator[Column]:
-    """Yield columns of measured numbers."""
-    return (Column(name, label, error=True) for name, label in zip(names, labels, strict=True))
-
-
-def _place(reading: Reading) -> tuple[Any, ...]:
-    """Return the first cells of a row: a reading's name, kind, and numbers of its sensors."""
-    return reading.name, reading.kind, *reading.places
-
-
-def _numbers(reading: Reading, names: Sequence[str]) -> list[Any]:
-    """Return the cells of a reading."""
-    return [reading.numbers.get(name) for name in names]
 
 
 def _print_example(context: click.Context, given: click.Parameter, name: str | None) -> None:

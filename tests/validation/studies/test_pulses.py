@@ -1,0 +1,144 @@
+"""Pulses of measured records: against the run that made the records, and against known pulses."""
+
+import json
+
+import numpy as np
+import pytest
+
+from tests.commands import ended
+from validation import cli
+from validation.scenes.scene import SceneError
+from validation.studies.pulses import pulses
+
+SCENE = """
+duration = 60
+samples = 4001
+precompression = 0.05
+wall = {stiffness = 1}
+chain = {cell = [1], repeat = 40, k = 1.5, spacings = 2}
+striker = {velocity = 1}
+sensors = {beads = [10, 20], contacts = [10, 20]}
+"""
+
+
+@pytest.fixture
+def files(tmp_path):
+    scene, records = tmp_path / "scene.toml", tmp_path / "records.csv"
+    scene.write_text(SCENE)
+    return str(scene), str(records)
+
+
+def test_the_records_of_a_run_have_the_pulses_of_the_run(capsys, files):
+    scene, records = files
+    options = ("--format", "json")
+    status, out, _ = ended(capsys, cli.main, "run", scene, "--out", records, *options)
+    wanted = json.loads(out)
+    assert status == 0
+    status, out, err = ended(capsys, cli.main, "pulses", records, "--distance", "2", *options)
+    assert (status, err) == (0, "")
+    found = json.loads(out)
+    for table, names in (
+        ("sensors", ("arrival_value", "peak_value", "fwhm_value", "static_force_value")),
+        ("speeds", ("speed_sites_value", "speed_value")),
+    ):
+        assert len(found[table]) == len(wanted[table]) > 0
+        for ours, theirs in zip(found[table], wanted[table], strict=True):
+            assert list(ours) == list(theirs)
+            assert all(ours[n] == theirs[n] for n in ("kind", "number", "from", "to") if n in ours)
+            # the static force is the mean of what comes before: waves of 1e-6 run ahead
+            assert [ours[n] for n in names] == pytest.approx([theirs[n] for n in names], rel=1e-5)
+
+
+def noisy(tmp_path, header, scale=1.0, separator=","):
+    """Two Gaussian pulses, 50 µs apart, of 12 and 10 N and FWHM 40 µs; times from -200 µs on."""
+    t = np.arange(-200.0, 400.0)
+    rng, width = np.random.default_rng(5), 40 / np.sqrt(4 * np.log(2))
+    forces = [F * np.exp(-(((t - at) / width) ** 2)) for F, at in ((12, 0), (10, 50))]
+    forces = [scale * (3 + f + 0.05 * rng.normal(size=len(t))) for f in forces]
+    file = tmp_path / "records.csv"
+    rows = [separator.join(map(repr, map(float, row))) for row in zip(t, *forces, strict=True)]
+    if separator == ";":
+        rows = [row.replace(".", ",") for row in rows]
+    file.write_text("\n".join(["# made by a test", header, *rows]), encoding="utf-8")
+    return str(file)
+
+
+@pytest.mark.parametrize(
+    ("header", "scale", "separator", "options"),
+    [
+        ("time (µs),contact 4 force (N),contact 7 force (N)", 1.0, ",", {}),
+        ("time (us);4 force [mN];7 force [mN]", 1e3, ";", {"of": "contact"}),
+        (
+            "t (µs),CH1 (N),CH2 (N)",
+            1.0,
+            ",",
+            {"renamed": {"time": "t", "contact 4 force": "CH1 (N)", "7 force": "CH2"}},
+        ),
+    ],
+)
+def test_numbers_are_in_SI_and_within_their_errors(tmp_path, header, scale, separator, options):
+    file = noisy(tmp_path, header, scale, separator)
+    found = pulses(file, distance="5 mm", **options).document()
+    for row, F, at in zip(found["sensors"], (12, 10), (0, 50e-6), strict=True):
+        assert row["kind"] == "contact"
+        for name, value in (("arrival", at), ("peak", F), ("fwhm", 40e-6)):
+            error = row[f"{name}_error_value"]
+            assert 0 < error < 0.01 * (value or 40e-6)
+            assert abs(row[f"{name}_value"] - value) < 3 * error
+        assert row["static_force_value"] == pytest.approx(3, abs=0.05)
+    (speed,) = found["speeds"]
+    assert (speed["from"], speed["to"]) == (4, 7)
+    assert abs(speed["speed_value"] - 3 * 5e-3 / 50e-6) < 3 * speed["speed_error_value"] < 20
+
+
+def test_the_error_of_a_speed_is_that_of_both_arrivals(tmp_path):
+    first, second = (row := pulses(noisy(tmp_path, "time,1 force,2 force")).document())["sensors"]
+    (speed,) = row["speeds"]
+    late = np.hypot(first["arrival_error_value"], second["arrival_error_value"])
+    assert speed["speed_sites_error_value"] * 50 == pytest.approx(
+        speed["speed_sites_value"] * late, rel=0.02
+    )
+    assert speed["speed_value"] is None
+
+
+def test_sensors_sit_in_beads_if_the_command_says_so(capsys, tmp_path):
+    file = noisy(tmp_path, "time,2 force,9 force")
+    out = ended(capsys, cli.main, "pulses", file, "--of", "bead", "--format", "csv")[1]
+    assert [line.split(",")[0] for line in out.splitlines()] == ["kind", "bead", "bead"]
+
+
+def test_a_record_that_begins_with_its_pulse_has_no_numbers(tmp_path):
+    file = tmp_path / "records.csv"
+    t = np.arange(100.0)
+    rows = zip(t, np.exp(-(((t - 30) / 15) ** 2)), strict=True)
+    file.write_text("\n".join(["time,force", *(f"{a},{b}" for a, b in rows)]))
+    (row,) = pulses(str(file)).document()["sensors"]
+    assert row["peak_value"] is None
+    assert "noise" in row["missing"]
+
+
+@pytest.mark.parametrize(
+    ("header", "options", "named"),
+    [
+        ("time,contact 1 strain,bead 2 force x", {}, "no column is the force of a sensor"),
+        ("time,force,2 force", {}, "'force' has no number"),
+        ("time,bead 2 force,bead 2 dynamic force", {}, "two columns of"),
+        ("t,1 force,2 force", {}, "one column time is wanted"),
+        ("time (h),1 force,2 force", {}, "column time is in 'h'"),
+        ("time,1 force,2 force", {"distance": "2 ft"}, "distance is '2 ft'"),
+        ("time,1 force,2 force", {"of": "wall"}, "of is 'wall'"),
+        ("time,1 force,x", {"renamed": {"3 speed": "x"}}, "column is '3 speed'"),
+    ],
+)
+def test_bad_records_are_refused(tmp_path, header, options, named):
+    with pytest.raises(SceneError) as refused:
+        pulses(noisy(tmp_path, header), **options)
+    assert named in str(refused.value)
+    assert "\n" not in str(refused.value)
+
+
+def test_the_command_refuses_a_new_name_without_a_header(capsys, tmp_path):
+    file = noisy(tmp_path, "time,1 force,2 force")
+    status, out, err = ended(capsys, cli.main, "pulses", file, "--column", "time")
+    assert (status, out, err.count("\n")) == (2, "", 1)
+    assert "column is 'time'" in err
