@@ -140,6 +140,26 @@ class ContactLaw(Value):
         for name in sorted(filter(_PHI.fullmatch, cell_names | names)):
             raise InputError(f"{name!r} means φ_{name[3:]} of the law here: use another name")
 
+    def check_strain(self, p: sp.Expr, cell: Cell) -> None:
+        """Raise `lwa.InputError` unless F is real up to the strain p and grows there, F′ > 0.
+
+        Nothing is refused while symbols are left, except a spacing, which is taken to be 1, nor at
+        p = 0, where F′ may vanish.
+        """
+        D = cell.spacing
+        delta = (D * p).xreplace({D: sp.S.One} if D.is_Symbol else {})
+        if self.homogeneous or self.formless or delta.is_zero:
+            return
+        for power_ in self.F.atoms(sp.Pow):
+            start, end = (power_.base.subs(self.delta, x) for x in (0, delta))
+            if power_.exp.is_negative and (start * end).is_nonpositive:
+                raise InputError(f"the strain is {shorten(p)}: the law has a pole before it")
+        slope = self.at(delta, 1)
+        if not slope.free_symbols and not slope.is_positive:
+            raise InputError(
+                f"the strain is {shorten(p)}: F′ is {sp.N(slope, 4)} there, and sound needs F′ > 0"
+            )
+
     def compressions(self, cell: Cell, force: sp.Expr) -> tuple[sp.Expr, ...]:
         """The compression of each contact of a cell that pushes with this force."""
         return (self.compression(cell, force),) * cell.size

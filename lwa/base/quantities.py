@@ -12,6 +12,9 @@ from lwa.base.exact import one_of
 RISE = sp.Symbol("B", positive=True)
 """B, the peak strain of a wave, unless the caller gives another."""
 
+FALL = sp.Symbol("B", negative=True)
+"""B of a wave of lower strain, in a chain that softens."""
+
 SPEED = sp.Symbol("V_s", positive=True)
 """V_s = dx/dτ, the speed of a wave, unless the caller gives another."""
 

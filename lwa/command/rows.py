@@ -76,8 +76,9 @@ class Answer:
             click.echo(self.latex() if style == "latex" else self.text())
 
     def plain(self, value: sp.Expr) -> sp.Expr:
-        """The value at V_s = 1 and B = 1, and at D = 1 where the spacing is a symbol."""
-        ones = {s: sp.S.One for s in value.free_symbols if s.name in ("V_s", "B")}
+        """The value at V_s = 1, |B| = 1, and at D = 1 where the spacing is a symbol."""
+        letters = (s for s in value.free_symbols if s.name in ("V_s", "B"))
+        ones = {s: sp.Integer(-1 if s.is_negative else 1) for s in letters}
         if self.spacing.is_Symbol:
             ones[self.spacing] = sp.S.One
         return value.xreplace(ones)
@@ -87,8 +88,9 @@ class Answer:
     def json(self) -> Values:
         """The object that ``--format json`` prints.
 
-        Names ending in ``_value`` are floats, in the unit of length where the spacing is a symbol
-        and at V_s = 1 and B = 1. Symbols, complex numbers and numbers beyond a double have none.
+        Names ending in ``_value`` are floats, in the unit of length where the spacing is a symbol,
+        at V_s = 1 and B = 1, or -1 where B < 0. Symbols, complex numbers and numbers beyond a
+        double have none.
         """
         result = dict(self.head)
         rows = [row for row in self.rows if isinstance(row, Row) and row.key]

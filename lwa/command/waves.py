@@ -263,7 +263,8 @@ def _on_background(theory: Theory, wave: BackgroundWave) -> Answer:
         shown.append(kdv)
         rows += [
             "",
-            "small waves: v_τ + c0 v_x + α v v_x + γ v_xxx = 0, v = B sech²(ξ/L)",
+            "small waves: v_τ + c0 v_x + α v v_x + γ v_xxx = 0, v = B sech²(ξ/L)"
+            + ", B < 0" * bool(kdv.rise.is_negative),
             Row("kdv.sound_speed", "c0", kdv.sound_speed),
             Row("kdv.nonlinearity", "α", kdv.nonlinearity),
             Row("kdv.dispersion", "γ", kdv.dispersion),
@@ -274,7 +275,13 @@ def _on_background(theory: Theory, wave: BackgroundWave) -> Answer:
 
 
 def _at_one(wave: BackgroundWave) -> tuple[sp.Expr | None, dict[str, sp.Expr]]:
-    """Speed and widths of the wave of B = 1; (None, {}) without a wave or with symbols."""
+    """Speed and widths of the wave of B = 1; (None, {}) without a wave or with symbols.
+
+    A spacing that is a symbol is the unit of length; beside a law that is no power it is 1.
+    """
+    D = wave.cell.spacing
+    if D.is_Symbol and not wave.law.homogeneous:
+        wave = wave.at(**{D.name: 1})
     try:
         speed = wave.speed(1)
         if speed.free_symbols - {wave.cell.spacing}:

@@ -8,15 +8,16 @@ from typing import Any
 
 import numpy as np
 import sympy as sp
+from numpy.typing import NDArray
 from sympy.polys.fields import sfield
 from sympy.polys.matrices import DomainMatrix
 
 from lwa.base.exact import InputError, demand_numbers
 from lwa.cell import Cell
-from lwa.envelopes.response import Arithmetic, Contacts, Matrix, Mode
+from lwa.envelopes.response import CLOSE, Arithmetic, Contacts, Matrix, Mode
 from lwa.law import ContactLaw
 
-CLOSE = 1e-11  # relative difference of squared frequencies that counts as none
+ROUNDING = 1e-7  # a force on a mode, relative to the largest, that counts as none
 SOUND = 1e-5  # 1 - (c_g/c_0)² from which on floats give the mean flow to six digits (1e-11/SOUND)
 
 K2, K3, K4 = sp.symbols("K2 K3 K4", positive=True)
@@ -52,11 +53,12 @@ def cell_mode(
         demand_numbers(set().union(*(x.free_symbols for x in numbers)), "floats need numbers")
     samples = [_sampled(cell, x) for x in numbers]
     m_float, c_float = np.array(samples[:-3]).reshape(2, -1)
-    sample = Contacts(m_float, c_float, *samples[-3:-1])
-    mode, bead = numeric_mode(sample, samples[-1], branch, floats)
-    if not floats:
+    sample = Sampled.of(Contacts(m_float, c_float, *samples[-3:-1]), samples[-1], branch)
+    if floats:
+        mode = sample.mode()
+    else:
         contacts = Contacts(np.array(masses), np.array(c), s, t)
-        mode = exact_mode(contacts, wavenumber, branch, bead, lambda x: _sampled(cell, x))
+        mode = exact_mode(contacts, wavenumber, branch, sample.bead, lambda x: _sampled(cell, x))
     rate = sp.powsimp(cell.stiffnesses[0] * first / mass)  # unit of ω²
     return Mode(
         sp.sympify(mode.square) * rate,
@@ -73,55 +75,94 @@ def cell_mode(
 def _sampled(cell: Cell, value: sp.Expr) -> float:
     """Float of an expression at sample values of its symbols, to order the branches.
 
-    Samples are 1, 1/2, … along the cell, so that the first mass is the heaviest, and 1.5 for
-    symbols of neither masses nor stiffnesses.
+    Samples are π/3, π/6, … along the cell, so that the first mass is the heaviest and no sample is
+    one of the numbers in the cell, and 1.5 for symbols of neither masses nor stiffnesses.
     """
     symbols = dict.fromkeys(value.free_symbols, 1.5)
     for values in (cell.stiffnesses, cell.masses):
         for i, part in reversed([*enumerate(values)]):
-            symbols |= dict.fromkeys(part.free_symbols, 1 / (1 + i))
+            symbols |= dict.fromkeys(part.free_symbols, np.pi / (3 + 3 * i))
     return float(value.xreplace(symbols))
 
 
-def numeric_mode(contacts: Contacts, kappa: float, branch: int, resolved: bool) -> tuple[Mode, int]:
-    """Return the mode of a branch (0 the lowest) in floats, and the index of its largest φ_i.
+@dataclass(frozen=True, eq=False)
+class Sampled:
+    """Modes of a cell in floats, the branch and the bead with the mode's largest displacement.
 
-    Raises `lwa.InputError` where the envelope's equation fails: where branches touch, at the
-    resonance with the second harmonic, and for sound, of zero frequency; with ``resolved`` also
-    where c_g is too close to the speed of sound for floats.
+    z : e^{iκ}, real at the edges. squares, vectors : squared frequencies, and √m times the modes.
     """
-    z, root_m = complex(np.exp(1j * kappa)), np.sqrt(contacts.masses)
-    if abs(z.imag) < CLOSE:  # real modes at the edges
-        z = round(z.real)
-    units = np.outer(root_m, root_m)
-    squares, vectors = np.linalg.eigh(contacts.secular(z, 0) / units)
-    x, others = float(squares[branch]), np.delete(squares, branch)
-    close = CLOSE / (contacts.c.min() * contacts.masses.min())
-    if np.min(np.abs(others - x), initial=np.inf) < close:
-        raise InputError("two branches touch at this wavenumber: an envelope has one mode")
-    if x < close / 1000:
-        raise InputError(
-            "the frequency is zero at this wavenumber: sound, c_g = c_0, has no envelope; its mean "
-            "flow runs along with it"
-        )
-    # T(x) - 2 cos κ = Π m Π c Π_j (x_j - x) over the modes j, differentiated at a root
-    gaps = others - x
-    first = -np.prod(contacts.masses * contacts.c * np.append(gaps, 1))
-    slopes = first, -2 * first * (1 / gaps).sum()
-    speed = contacts.masses.sum() * contacts.c.sum() * (z.imag / first) ** 2 / x  # (c_g/c_0)²
-    if resolved and 1 - speed < SOUND:
-        raise InputError(
-            "the mode's group velocity is too close to that of sound, c_g = c_0, for floats: its "
-            "mean flow runs along with it; exact results stand"
-        )
-    doubled = np.linalg.eigvalsh(contacts.secular(z * z, 0) / units)
-    if np.min(np.abs(doubled - 4 * x)) < close / 100:  # long waves come close, as κ⁴
-        raise InputError("the second harmonic is a mode too: the envelope's equation fails")
-    phi = vectors[:, branch] / root_m
-    bead = int(np.argmax(np.abs(phi)))
-    floats = Arithmetic(np.linalg.inv, np.real, lambda e: e)
-    projector = np.outer(phi, phi.conj())
-    return contacts.mode(z, x, slopes, projector, bead, z.imag, floats), bead
+
+    contacts: Contacts
+    z: complex | int
+    squares: NDArray[Any]
+    vectors: NDArray[Any]
+    branch: int
+
+    @classmethod
+    def of(cls, contacts: Contacts, kappa: float, branch: int) -> Sampled:
+        """Modes at a wavenumber; raises `lwa.InputError` where branches touch, and for sound."""
+        z = complex(np.exp(1j * kappa))
+        z = round(z.real) if abs(z.imag) < CLOSE else z
+        squares, vectors = np.linalg.eigh(contacts.secular(z, 0) / contacts.units)
+        found = cls(contacts, z, squares, vectors, branch)
+        if np.min(np.abs(found.gaps), initial=np.inf) < contacts.close:
+            raise InputError("two branches touch at this wavenumber: an envelope has one mode")
+        if kappa == 0 == branch:
+            raise InputError(
+                "the frequency is zero at this wavenumber: sound, c_g = c_0, has no envelope; its "
+                "mean flow runs along with it"
+            )
+        return found
+
+    @property
+    def gaps(self) -> NDArray[Any]:
+        """Differences x_j - x of the squared frequencies of the other branches."""
+        return np.asarray(np.delete(self.squares, self.branch) - self.squares[self.branch])
+
+    @property
+    def shape(self) -> NDArray[Any]:
+        """Mode φ of the branch."""
+        return np.asarray(self.vectors[:, self.branch] / np.sqrt(self.contacts.masses))
+
+    @property
+    def bead(self) -> int:
+        """Index of the bead with the largest displacement."""
+        return int(np.argmax(np.abs(self.shape)))
+
+    def mode(self) -> Mode:
+        """The mode and its response; `lwa.InputError` where floats cannot resolve the response."""
+        contacts, z, x = self.contacts, self.z, float(self.squares[self.branch])
+        # T(x) - 2 cos κ = Π m Π c Π_j (x_j - x) over the modes j, differentiated at a root
+        first = -np.prod(contacts.masses * contacts.c * np.append(self.gaps, 1))
+        slopes = first, -2 * first * (1 / self.gaps).sum()
+        speed = contacts.masses.sum() * contacts.c.sum() * (z.imag / first) ** 2 / x  # (c_g/c_0)²
+        if x < contacts.close or 1 - speed < SOUND:
+            raise InputError(
+                "the mode's group velocity is too close to that of sound, c_g = c_0, for floats: "
+                "its mean flow runs along with it"
+                + "; exact results stand"
+                * (len(contacts.masses) < 3)
+            )
+        projector = np.outer(self.shape, self.shape.conj())
+        resolvent = self._resolvent(4 * x)
+        floats = Arithmetic(lambda _: resolvent, np.real, lambda e: e)
+        return contacts.mode(z, x, slopes, projector, self.bead, z.imag, floats)
+
+    def _resolvent(self, square: float) -> Matrix:
+        """Inverse of K(2κ) - 4ω²M; a mode of the frequency 2ω that is not driven is left out."""
+        contacts, z = self.contacts, self.z
+        squares, vectors = np.linalg.eigh(contacts.secular(z * z, 0) / contacts.units)
+        vectors = vectors / np.sqrt(contacts.masses)[:, None]
+        d = contacts.strains(z) @ self.shape
+        drive = contacts.strains(1 / (z * z)).T @ (d * d / contacts.c**2)
+        near = np.abs(squares - square) < contacts.close
+        if np.any(np.abs(vectors.conj().T @ drive)[near] > ROUNDING * np.abs(drive).max()):
+            raise InputError(
+                "the second harmonic is a mode too, or too near one for floats: the envelope's "
+                "equation fails"
+            )
+        rates = np.where(near, 0, 1 / np.where(near, 1, squares - square))
+        return np.asarray((vectors * rates) @ vectors.conj().T)
 
 
 # --- exact ---
@@ -190,13 +231,17 @@ def exact_mode(
     branch: int,
     bead: int,
     sampled: Callable[[sp.Expr], float],
+    generic: bool = False,
 ) -> Mode:
     """The mode of a branch in exact numbers, in sin κ/2 and cos κ/2 unless cos κ is rational.
 
     bead : index of the bead whose φ is positive. sampled : function that gives a float of an
     expression, its symbols replaced by sample numbers; the roots are ordered by these floats.
+    generic : True to derive the mode with symbols for all numbers, which are put in at the end:
+    a pole at the frequency 2ω that no force drives cancels then.
 
-    Raises `lwa.InputError` where the frequency has no exact form.
+    Raises `lwa.InputError` where the frequency has no exact form, and where the second harmonic is
+    a mode that the mode drives.
     """
     P, cosine, phase = len(contacts.masses), sp.cos(wavenumber), sp.exp(sp.I * wavenumber)
     sine = sp.sqrt(1 - cosine**2)
@@ -204,7 +249,7 @@ def exact_mode(
         half = wavenumber / 2
         sine, cosine = 2 * sp.sin(half) * sp.cos(half), 1 - 2 * sp.sin(half) ** 2
     numbers = (*contacts.masses, *contacts.c, contacts.s, contacts.t)
-    letters = {a: a if a.is_Rational else sp.Dummy(positive=True) for a in numbers}
+    letters = {a: a if a.is_Rational and not generic else sp.Dummy(positive=True) for a in numbers}
     field, (x, z, *elements) = sfield([X, Z, *(letters[a] for a in numbers)])
     inner = Contacts(*np.array(elements[:-2], object).reshape(2, P), *elements[-2:])
     z = field.one * int(phase) if phase.is_Integer else z
@@ -221,10 +266,15 @@ def exact_mode(
     values = {letter: a for a, letter in letters.items()}
     roots = sorted(_roots(relation, cosine), key=lambda pair: sampled(pair[0].xreplace(values)))
     square = Root(*roots[branch], cosine, phase, values)
+    if not generic and P > 1 and square.real(matrix(inner.secular(z * z, 4 * x)).det()).is_zero:
+        return exact_mode(contacts, wavenumber, branch, bead, sampled, generic=True)
     slopes = relation.diff(x), relation.diff(x).diff(x)
     adjugate = np.array(secular.adjugate().to_list(), object)
     projector = adjugate / (np.diagonal(adjugate) * inner.masses).sum()
     if P == 1:  # a rational function of z
         x = (2 - z - 1 / z) / (inner.masses[0] * inner.c[0])
     exact = Arithmetic(inverse, square.real, square.complex)
-    return inner.mode(z, x, slopes, projector, bead, sine, exact)
+    mode = inner.mode(z, x, slopes, projector, bead, sine, exact)
+    if mode.cubic.has(sp.zoo, sp.nan):
+        raise InputError("the second harmonic is a mode too: the envelope's equation fails")
+    return mode

@@ -39,6 +39,8 @@ from numpy.typing import NDArray
 
 Matrix = NDArray[Any]
 
+CLOSE = 1e-11  # relative difference of squared frequencies that counts as none
+
 
 @dataclass(frozen=True, eq=False)
 class Mode:
@@ -83,6 +85,16 @@ class Contacts:
     c: NDArray[Any]
     s: Any
     t: Any
+
+    @property
+    def units(self) -> Matrix:
+        """Matrix √(m_i m_j), by which K divided is the matrix of the squared frequencies."""
+        return np.sqrt(np.outer(self.masses, self.masses))
+
+    @property
+    def close(self) -> float:
+        """Difference of squared frequencies that counts as none in floats."""
+        return CLOSE / float(self.c.min() * self.masses.min())
 
     def strains(self, z: Any) -> Matrix:
         """The matrix B(κ), shape (contacts, beads), z = e^{iκ}; B(κ)† is the transpose for 1/z."""

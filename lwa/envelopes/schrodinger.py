@@ -29,9 +29,9 @@ from numpy.typing import ArrayLike
 
 from lwa.base import latex
 from lwa.base.arrays import Array
-from lwa.base.exact import InputError, integer, one_of, positive, power, shorten, signed
+from lwa.base.exact import InputError, integer, one_of, positive, power, read_exact, shorten, signed
 from lwa.base.frozen import Value
-from lwa.cell import Cell
+from lwa.cell import Cell, check_names
 from lwa.envelopes.bloch import cell_mode
 from lwa.envelopes.response import Mode
 from lwa.law import ContactLaw, for_cell, substituted
@@ -320,8 +320,9 @@ def envelope(
     Results are exact for cells of one or two beads, in symbols and at any wavenumber, and for cells
     of numbers where cos κ is rational; they are floats through `numeric` for any cell of numbers.
 
-    Raises `lwa.InputError` for other arguments. Results raise it where branches touch, at zero
-    frequency, where the second harmonic is itself a mode, and where the mode moves with sound.
+    Raises `lwa.InputError` for other arguments, and unless F′ > 0 at the strain. Results raise it
+    where branches touch, at zero frequency, where the mode drives a mode of twice its frequency,
+    and, in floats, where the mode moves nearly with sound.
 
     >>> from lwa import Power
     >>> envelope(Cell(["m"], spacing=1), Power(2), background="p0").nonlinearity
@@ -335,7 +336,12 @@ def envelope(
     else:
         read = positive if law.homogeneous else signed  # powers only push
         static = cell.spacing * read(background, "background")
+        law.check_strain(static / cell.spacing, cell)
     kappa = signed(wavenumber, "wavenumber")
+    own = dict.fromkeys((s.name for s in (*cell.symbols, *law.symbols)), "a property of the chain")
+    check_names(kappa, "wavenumber", taken=own)
+    if background is not None:
+        check_names(read_exact(background, "background"), "background", taken=own)
     if kappa.is_number and not 0 <= kappa <= sp.pi:
         raise InputError(f"wavenumber is {shorten(kappa)}: 0 … pi per cell is wanted")
     if branch is None:

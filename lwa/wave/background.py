@@ -27,6 +27,7 @@ from lwa.base import latex
 from lwa.base.exact import InputError, demand_numbers, integer, power, read_exact, shorten, signed
 from lwa.base.frozen import Value
 from lwa.base.quantities import (
+    FALL,
     NOT_RISING,
     NOT_STIFFENING,
     RISE,
@@ -74,17 +75,29 @@ class KdV(Value):
         equation = r"v_{\tau} + c_{0} v_{x} + \alpha v v_{x} + \gamma v_{xxx} = 0"
         return [equation, *latex.rows(names)]
 
-    def speed(self, B: Any = RISE) -> sp.Expr:
-        """Speed V = c0 + α B/3 of the wave v = B sech²(ξ/L)."""
-        return self.sound_speed + self.nonlinearity * read_exact(B, "B") / 3
+    @property
+    def rise(self) -> sp.Symbol:
+        """The symbol B: positive, or negative where α < 0, as waves have the sign of α."""
+        return FALL if (self.nonlinearity * self.sound_speed).is_negative else RISE
 
-    def width(self, B: Any = RISE) -> sp.Expr:
+    def _rise(self, B: Any) -> sp.Expr:
+        """Read the rise of a wave, of the sign of α."""
+        B = self.rise if B is None else read_exact(B, "B")
+        if (B * self.nonlinearity).is_nonpositive:
+            raise NoSolitaryWave(f"B is {shorten(B)}: a small wave has the sign of α")
+        return B
+
+    def speed(self, B: Any = None) -> sp.Expr:
+        """Speed V = c0 + α B/3 of the wave v = B sech²(ξ/L); B is a symbol unless given."""
+        return self.sound_speed + self.nonlinearity * self._rise(B) / 3
+
+    def width(self, B: Any = None) -> sp.Expr:
         """Width L = √(12 γ / (α B)) of v = B sech²(ξ/L); the FWHM is 2 arcosh(√2) L."""
-        return sp.sqrt(12 * sp.simplify(self.dispersion / self.nonlinearity) / read_exact(B, "B"))
+        return sp.sqrt(12 * sp.simplify(self.dispersion / self.nonlinearity) / self._rise(B))
 
-    def profile(self, xi: Any, B: Any = RISE) -> sp.Expr:
+    def profile(self, xi: Any, B: Any = None) -> sp.Expr:
         """Strain v = B sech²(ξ/L) above the background."""
-        return read_exact(B, "B") * sp.sech(signed(xi, "xi") / self.width(B)) ** 2
+        return self._rise(B) * sp.sech(signed(xi, "xi") / self.width(B)) ** 2
 
 
 @dataclass(frozen=True, repr=False)
@@ -93,7 +106,8 @@ class BackgroundWave(Value):
 
     p0 : static strain, a number or symbol; not negative under a power law: its contacts only push.
 
-    Raises `lwa.InputError` for anything else, and for unlike contacts under a law that is no power.
+    Raises `lwa.InputError` for anything else, for unlike contacts under a law that is no power, and
+    unless F′ > 0 at a strain other than 0.
     """
 
     cell: Cell
@@ -109,6 +123,7 @@ class BackgroundWave(Value):
         free = p0 if p0.is_Symbol else sp.Add(*(p0.free_symbols - chain))
         check_names(free, "p0", taken=taken_names(self.cell, self.law))
         object.__setattr__(self, "p0", p0)
+        self.law.check_strain(p0, self.cell)
 
     def __repr__(self) -> str:
         return f"BackgroundWave({self.cell!r}, {self.law!r}, p0={self.p0})"
@@ -170,7 +185,7 @@ class BackgroundWave(Value):
         """The symbol B: positive, negative under a power with k < 1, real under other laws."""
         if not self.law.homogeneous:
             return sp.Symbol("B", real=True)
-        return sp.Symbol("B", negative=True) if (self.law.exponent - 1).is_negative else RISE
+        return FALL if (self.law.exponent - 1).is_negative else RISE
 
     def _read_rise(self, B: Any) -> sp.Expr:
         """Read the rise of a wave that exists."""

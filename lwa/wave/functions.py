@@ -22,7 +22,8 @@ from lwa.wave.closed import CompactWave
 
 _XI = sp.Dummy("xi", real=True)
 _B, _V, _F = (sp.Dummy(name, positive=True) for name in ("B", "V_s", "F"))
-_ARGUMENTS = (_XI, _B, _V, _F)  # that are no symbols of the chain
+_FALL = sp.Dummy("B", negative=True)
+_ARGUMENTS = (_XI, _B, _FALL, _V, _F)  # that are no symbols of the chain
 
 _LONGEST_SUM = 64  # terms of a sum in one statement; Fortran takes 256 lines
 _SHIFT, _INSIDE = (sp.Dummy(name, real=True) for name in ("k_2", "h"))
@@ -71,7 +72,7 @@ class Functions(dict[str, Function]):
         """Define functions of the peak contact force F: the strain's rise B and the speed dx/dt."""
         strain = Power(k).compression(cell, _F) / cell.spacing - p0
         rise = self.define("strain", _DOCS["strain"], strain)
-        speed = self["speed"].call.subs(_B, rise) * self["time_scale"].call
+        speed = self["speed"].call.subs({_B: rise, _FALL: rise}) * self["time_scale"].call
         self.define("speed_at_force", _DOCS["speed_at_force"], speed)
 
     def source(self, language: str, title: Sequence[str]) -> str:
@@ -101,7 +102,7 @@ def loaded_code(
     """
     functions = Functions(p0, *law.symbols, *cell.masses, *cell.stiffnesses, cell.spacing)
     for name, value in forms.items():
-        rise = {s: _B for s in value.free_symbols if s.name == "B"}
+        rise = {s: _FALL if s.is_negative else _B for s in value.free_symbols if s.name == "B"}
         functions.define(name, _DOCS[name], value.xreplace(rise))
     if law.homogeneous:
         functions.define_at_force(cell, law.exponent, p0)

@@ -66,6 +66,13 @@ def test_softening_has_no_wave_of_that_height_and_no_value(capsys):
     found = result(capsys, "wave", "--k", "1/2", "--masses", "1", "--background", "1")
     assert "speed_value" not in found
     assert sp.sympify(found["speed"]).subs("B", -0.5) > 0
+    assert found["kdv"]["width"] == "sqrt(2)*D*sqrt(-1/B)"
+    assert found["kdv_value"]["width"] == pytest.approx(2**0.5)  # at B = -1
+    _, out, _ = run(capsys, "wave", "--k", "1/2", "--masses", "1", "--background", "1")
+    assert "B < 0" in out
+    assert "*I" not in out
+    soft = ("wave", "--law", "polynomial:-1/2,0", "--masses", "1", "--background", "0")
+    assert "speed_value" not in result(capsys, *soft)
     compact = result(capsys, "wave", "--law", "hertz2:1,1", "--masses", "1", "--background", "0")
     assert compact["kdv"] is None
 

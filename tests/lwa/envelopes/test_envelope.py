@@ -22,6 +22,7 @@ from lwa import (
     background_wave,
     envelope,
     general,
+    shock,
 )
 from lwa.law import DELTA, named
 from lwa.linear.bands import Bands
@@ -300,6 +301,16 @@ def test_units_of_real_spheres():
         (Dimer(1, 2), {"wavenumber": 4}, r"wavenumber is 4: 0 … pi per cell is wanted"),
         (Cell([1, 2, 3]), {"wavenumber": 1}, "no exact form at this wavenumber: numeric"),
         (Dimer(1, 2), {"precompression": 1}, "background or precompression: one of the two"),
+        (
+            Cell(["q"]),
+            {"wavenumber": "q"},
+            "wavenumber 'q': the name means a property",
+        ),
+        (
+            Cell(["q"]),
+            {"background": "q"},
+            "background 'q': the name means a property",
+        ),
     ],
 )
 def test_impossible_envelopes_are_refused(cell, options, message):
@@ -328,6 +339,42 @@ def test_resonances_are_refused_by_name():
     ringing = envelope(Dimer(1, "1/2", spacing=1), HERTZ, **options)
     with pytest.raises(InputError, match="the second harmonic is a mode too"):
         ringing.numeric().nonlinearity  # noqa: B018
+    driven = envelope(Cell([1, 1], [1, 9], 1), Power(2), background=1, branch=0)
+    for found in (driven, driven.numeric()):
+        with pytest.raises(InputError, match="the second harmonic is a mode too"):
+            found.nonlinearity  # noqa: B018
+
+
+def test_a_harmonic_that_no_force_drives_is_left_out():
+    """Masses 3 and 1 at κ = π: 4ω² = 8/3 is the optical mode, but both contacts push alike."""
+    near = envelope(Cell(["m", 1], spacing=1), HERTZ, background=1, branch=0).nonlinearity
+    limit = sp.limit(near, sp.Symbol("m", positive=True), 3)
+    found = envelope(Cell([3, 1], spacing=1), HERTZ, background=1, branch=0)
+    assert found.nonlinearity == limit == -sp.Rational(1, 16)
+    assert float(found.numeric().nonlinearity) == pytest.approx(-0.0625, rel=1e-12)
+    assert found.second_harmonic == (0, 0)
+
+
+@pytest.mark.parametrize(
+    ("law", "strain", "words"),
+    [
+        (named("polynomial", "1/2", "-1/4"), 3, r"F′ is -2.75"),
+        (named("polynomial", "-1/2", 0), 1, r"F′ is 0"),
+        (named("magnetic", 4, 1), 2, "has a pole before it"),
+        (named("lennard-jones", 1), 1, "has a pole before it"),
+        (named("hertz2", 1, 1), -1, "F′ is -1.0"),
+    ],
+)
+def test_strains_at_which_a_law_does_not_grow_are_refused(law, strain, words):
+    """Envelopes, waves on a background and shocks, with a spacing in numbers and without."""
+    for cell in (Cell([1], spacing=1), Cell([1])):
+        for call in (
+            lambda cell=cell: envelope(cell, law, background=strain),
+            lambda cell=cell: background_wave(cell, strain, law=law),
+            lambda cell=cell: shock(cell, law, strain, 0),
+        ):
+            with pytest.raises(InputError, match=words):
+                call()
 
 
 @given(
