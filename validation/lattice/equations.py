@@ -169,7 +169,7 @@ class ForcedMotion(Motion):
     @property
     def drive_energy(self) -> float:
         drive = self.scene.drive
-        return 0.0 if drive is None else float(self.masses.mean() * drive.fastest**2)
+        return 0.0 if drive is None else float(self.masses.mean() * drive.fastest * drive.fastest)
 
     def __call__(self, time: float, state: Array) -> Array:
         n, drive, work = self.size, self.scene.drive, 0.0

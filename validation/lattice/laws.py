@@ -6,7 +6,8 @@ opens where δ < 0, as a power does.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import Any
@@ -18,7 +19,9 @@ from sympy.codegen.rewriting import expm1_opt, optimize
 
 from lwa import Cell
 from lwa.base.arrays import Array
+from lwa.base.exact import shorten
 from lwa.law import ContactLaw
+from validation.scenes.checks import SceneError
 
 
 @dataclass(frozen=True)
@@ -115,7 +118,11 @@ def _expressions(law: ContactLaw) -> tuple[sp.Expr, ...]:
 def _functions(law: ContactLaw | None) -> tuple[Callable[[Array], Any], ...]:
     """Return F, F′ and the energy of a law as functions of arrays."""
     assert law is not None
-    return tuple(sp.lambdify(law.delta, row, "numpy") for row in _expressions(law))
+    with _evaluated(law):
+        functions = tuple(sp.lambdify(law.delta, row, "numpy") for row in _expressions(law))
+        for function in functions:
+            function(np.ones(2))
+        return functions
 
 
 @lru_cache
@@ -123,7 +130,21 @@ def _machine_code(law: ContactLaw) -> tuple[Any, ...]:
     """Return compiled F, F′ and energy of a law as functions of one float."""
     from numba import cfunc  # start-up
 
-    return tuple(
-        cfunc("f8(f8)", error_model="numpy")(sp.lambdify(law.delta, row, "math"))
-        for row in _expressions(law)
-    )
+    with _evaluated(law):
+        return tuple(
+            cfunc("f8(f8)", error_model="numpy")(sp.lambdify(law.delta, row, "math"))
+            for row in _expressions(law)
+        )
+
+
+@contextmanager
+def _evaluated(law: ContactLaw) -> Iterator[None]:
+    """Raise `SceneError` in place of the many errors of SymPy and Numba."""
+    try:
+        with np.errstate(all="ignore"):
+            yield
+    except SceneError:
+        raise
+    except Exception:
+        text = "a force with an energy in elementary functions is wanted"
+        raise SceneError(f"law is {shorten(law.text)}: {text}") from None

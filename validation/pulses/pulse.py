@@ -193,6 +193,8 @@ class _Grid:
         def above(part: float) -> float:
             return float(self.signal(low + part * step)) / level - 1
 
+        if above(0.0) * above(1.0) > 0:  # the signal jumps there: a damped contact opens
+            return float(self.t[i + 1])
         return float(low + scipy.optimize.brentq(above, 0.0, 1.0, xtol=1e-12) * step)
 
     def _crest(self, low: float, high: float) -> tuple[float, float]:

@@ -123,6 +123,21 @@ class Drive:
             finite(self.amplitude, "drive.amplitude")
             positive(self.frequency, "drive.frequency")
             between(self.ramp, "drive.ramp", 0, math.inf, "it must not be negative")
+        self._check_size()
+
+    def _check_size(self) -> None:
+        """Raise `SceneError` if the acceleration overflows."""
+        amplitude, w = self._harmonic
+        pace = 1 / self.ramp if self.ramp else 0.0
+        largest = abs(amplitude) * (w * w + 60 * pace * pace)
+        if self.time:
+            try:
+                with np.errstate(all="ignore"):
+                    largest = float(np.abs(self._spline.c).max())
+            except ValueError:  # SciPy's, of slopes that overflow
+                largest = math.inf
+        if not math.isfinite(largest):
+            raise SceneError("the drive's acceleration comes out as inf: choose other units")
 
     @cached_property
     def _spline(self) -> Any:

@@ -31,6 +31,9 @@ from validation.scenes.forcing import Damping, Drive
 __all__ = ["Scene", "SceneError"]
 
 _MISSING = math.nan
+# SymPy integrates F for δ > 0. Where a contact that pulls has δ < 0, a Piecewise goes on with its
+# first case, as the energy does, and these functions do not.
+_OTHER_CASES = sp.Max, sp.Min, sp.Abs, sp.sign, sp.Heaviside, sp.floor, sp.ceiling
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
@@ -62,6 +65,18 @@ class Scene:
     units : "SI", or "" for any other consistent units; labels of results depend on it.
 
     Raises `SceneError` for invalid values.
+
+    A scene in four steps: the chain, the wall and the load, the striker, the sensors.
+
+    >>> from dataclasses import replace
+    >>> chain = Scene(masses=(1, 0.5) * 10, stiffnesses=(1,) * 19, k="3/2", duration=25)
+    >>> loaded = replace(chain, wall=1, precompression=0.1)
+    >>> struck = replace(loaded, velocities=(1,))
+    >>> scene = replace(struck, contact_sensors=(5, 15))
+    >>> print(scene)
+    20 beads, 20 contacts, the last one the wall's, k = 1.5; duration 25
+    >>> scene.load[:2]  # static forces of the first two contacts
+    (0.1, 0.1)
     """
 
     masses: tuple[float, ...]
@@ -138,6 +153,10 @@ class Scene:
             raise SceneError(f"k is {shorten(self.k)} and law {law.text}: one of them is wanted")
         if law.symbols or law.formless:
             raise SceneError(f"law is {law.text}: the lattice needs numbers in place of symbols")
+        open_ends = (cases for cases in law.F.atoms(sp.Piecewise) if cases.args[-1][1] != sp.true)
+        if law.F.has(*_OTHER_CASES) or any(open_ends):
+            cases = "a force by cases is a Piecewise whose last condition is True"
+            raise SceneError(f"law is {shorten(law.text)}: {cases}")
         if law.homogeneous:
             object.__setattr__(self, "law", None)
         object.__setattr__(self, "k", float(law.exponent))

