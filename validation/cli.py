@@ -11,9 +11,8 @@ from lwa.command.terminal import HELP, Commands, run, version
 STUDIES = {
     "accuracy": ("accuracy", "Speed against error of integrators and theories (three minutes)."),
     "compare": ("compare", "Measured forces beside the simulation of their scene."),
-    "exact": ("exact", "Exact traveling wave of the lattice: speed, widths and tail."),
+    "exact": ("exact", "Exact solitary wave of the lattice: speed, widths and amplitudes."),
     "figures": ("figures", "The figures of Porter et al. (2008), computed (ten seconds)."),
-    "hard": ("hard", "Extreme k, ω and loads, lost contacts, long runs (half a minute)."),
     "law": ("law", "Contact law from measured forces and speeds of pulses."),
     "limits": ("limits", "The theory's limits: equal masses, m1 ≫ m2, k → 1 (a few seconds)."),
     "paper": ("paper", "The steel:PTFE chain of the paper: speed, peak force and FWHM."),

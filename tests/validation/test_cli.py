@@ -524,7 +524,7 @@ def test_every_study_is_a_command():
     assert cli.validate.get_command(context, "nothing") is None
 
 
-@pytest.mark.parametrize("name", ["accuracy", "figures", "hard", "limits"])
+@pytest.mark.parametrize("name", ["accuracy", "figures", "limits"])
 def test_the_help_of_a_long_command_states_its_duration(name):
     _, summary = cli.STUDIES[name]
     assert re.search(r"\(.*(minutes?|seconds)\)\.$", summary)

@@ -33,9 +33,9 @@ Errors: residual, tail and rounding."""
     option("--background", default=0.0, says="Static compression divided by the peak; 0: no load."),
 )
 def exact(k: float, masses: tuple[sp.Expr, ...], background: float = 0.0) -> Report:
-    """Exact solitary wave of the lattice: speed, widths and amplitudes at peak contact force 1.
+    """Exact solitary wave of the lattice: speed, widths and amplitudes.
 
-    Takes a second. Two masses have a solitary wave at special ratios only (`resonances`).
+    The peak contact force is 1; takes a second. Two masses have a solitary wave at special ratios only (`resonances`).
 
     ``k_value``, ``masses_value``, ``background_value``, ``half_period_value``, ``residual_value``,
     ``solitary``; with errors, as ``c2_error_value``: ``c2_value``, ``c_value``, ``tail_value`` and

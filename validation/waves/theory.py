@@ -1,4 +1,4 @@
-"""The theory that the lattice is compared with: traveling waves, and the integrated equation.
+"""The theory's traveling waves that the lattice is compared with.
 
 `lwa.PhysicalWave` is the wave with a given peak force. This module finds the wave with a given
 speed dx/dt or momentum, the width of a bead's force, the mean of its two contact forces, and the
@@ -9,22 +9,16 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any
 
-import numpy as np
 import scipy
 import sympy as sp
-from numpy.typing import ArrayLike
 
 from lwa import Dimer, PhysicalWave, TravelingWave, canonical_wave, homogenize
-from lwa.base.arrays import Array
 from lwa.base.exact import number
-from lwa.equation.evolution import Evolution
 from lwa.wave.closed import CompactWave
-from validation.scenes.checks import SceneError, integer, positive
+from validation.scenes.checks import positive
 
-TOLERANCE = 1e-10  # rtol of the integrated equation by default
 QUANTITIES = ("FWHM of force", "FWHM of strain", "support π/β", "speed V_s at B = 1")
 """Lengths in D; force and strain are a contact's; the support is by the impulse ∫F dx / F_m."""
 
@@ -104,76 +98,3 @@ def bead_fwhm(wave: CompactWave) -> float:
 
     half, end = force(0.0) / 2, (math.pi / beta + D) / 2
     return 2 * float(scipy.optimize.brentq(lambda x: force(x) - half, 0, end, xtol=1e-14 * end))
-
-
-@dataclass(frozen=True, eq=False)
-class Continuum:
-    """The long-wave equation (1 - I ∂_x²) u_ττ = ∂_x F(u_x) of a chain on a periodic interval.
-
-    It is p_τ = v_x, (1 - I ∂_x²) v_τ = ∂_x F(p) in the strain p = u_x and the velocity v = u_τ, and
-    its energy ∫ [½ v² + ½ I v_x² + W(p)] dx (`lwa.equation.evolution`). A power law has no tension:
-    F(p) = 0 at p < 0. Raises `SceneError` for an equation with symbols.
-    """
-
-    equation: Evolution
-    length: float  # the period
-    points: int  # equidistant
-
-    def __post_init__(self) -> None:
-        positive(self.length, "length")
-        integer(self.points, "points", 16, 2**20)
-        cell, law = self.equation.cell, self.equation.law
-        if names := sorted(map(str, {*cell.symbols, *law.symbols})):
-            raise SceneError(f"{names[0]!r} has no value: numbers are wanted")
-
-    @cached_property
-    def x(self) -> Array:
-        """Grid points, from -length/2 on."""
-        return np.asarray(self.length * (np.arange(self.points) / self.points - 0.5))
-
-    @cached_property
-    def _wavenumbers(self) -> Array:
-        return np.asarray(2 * np.pi / self.length * np.arange(self.points // 2 + 1))
-
-    def _of_strain(self, p: Array, n: int) -> Array:
-        """The force F(p) for n = 0, its potential W(p) for n = -1."""
-        return np.asarray(self._laws[n](np.maximum(p, 0) if self.equation.law.homogeneous else p))
-
-    @cached_property
-    def _laws(self) -> dict[int, Any]:
-        p = sp.Symbol("p", positive=True)
-        return {n: sp.lambdify(p, self.equation.force(p, n), "numpy") for n in (0, -1)}
-
-    def evolved(
-        self, p: ArrayLike, v: ArrayLike, times: ArrayLike, rtol: float = TOLERANCE
-    ) -> tuple[Array, Array]:
-        """Return strain and velocity at the times τ, each (times, points), from p, v at τ = 0.
-
-        The times rise from 0 on. Raises `SceneError` if the integration fails.
-        """
-        # The operator 1 - I ∂_x² is diagonal in Fourier coefficients. Frequencies are bounded by
-        # c0/√I, so that an explicit method needs no small steps.
-        n, inertia = self.points, 1 + float(self.equation.I) * self._wavenumbers**2
-        slope = 1j * self._wavenumbers
-        if n % 2 == 0:
-            slope[-1] = 0  # the shortest wave, ±1 in turn, has no slope at the points
-
-        def rate(tau: float, state: Array) -> Array:
-            strain, velocity = state.reshape(2, n)
-            acceleration = scipy.fft.rfft(self._of_strain(strain, 0)) * slope / inertia
-            stretching = scipy.fft.rfft(velocity) * slope
-            return np.ravel(scipy.fft.irfft((stretching, acceleration), n))
-
-        at, start = np.asarray(times, float), np.concatenate((p, v), dtype=float)
-        tolerances = {"rtol": rtol, "atol": rtol * np.abs(start).max()}
-        path = scipy.integrate.solve_ivp(rate, (0.0, at[-1]), start, "DOP853", at, **tolerances)
-        if not path.success:
-            raise SceneError(f"the integration ends at τ = {path.t[-1]:.6g}: {path.message}")
-        strain, velocity = path.y.T.reshape(len(at), 2, n).swapaxes(0, 1)
-        return strain, velocity
-
-    def energy(self, p: Array, v: Array) -> Array:
-        """Return the energy, (…), of strains and velocities, (…, points)."""
-        slope = scipy.fft.irfft(1j * self._wavenumbers * scipy.fft.rfft(v), self.points)
-        density = (v**2 + float(self.equation.I) * slope**2) / 2 + self._of_strain(p, -1)
-        return np.asarray(density.sum(axis=-1) * self.length / self.points)

@@ -2,12 +2,19 @@
 
 import json
 
+import numpy as np
 import pytest
 import sympy as sp
 from click.testing import CliRunner
 
-from book.studies.collision import collision, in_equation, on_lattice
+from book.studies.collision import Continuum, collision, in_equation, on_lattice
+from lwa import Cell, Dimer, Power
+from lwa.equation.evolution import Evolution
+from lwa.law import named as law
 from tests.commands import ended
+from validation.scenes.checks import SceneError
+
+ONE = Cell((1,), spacing=1)
 
 
 def rows(document):
@@ -58,3 +65,55 @@ def test_equal_pulses_meet_as_one_at_a_wall(run):
 def test_a_bad_exponent_is_refused_in_one_line(capsys):
     status, _, err = ended(capsys, collision.main, "--second", "2")
     assert (status, err.count("\n")) == (2, 1)
+
+
+# The equation by itself
+
+
+@pytest.mark.parametrize(("cell", "k"), [(ONE, "3/2"), (Dimer(1, "1/4", spacing=1), "2")])
+def test_a_solitary_wave_goes_round_and_comes_back(cell, k):
+    equation = Evolution(cell, Power(k))
+    interval = Continuum(equation, 24.0, 256)
+    xi = sp.Symbol("xi")
+    pulse = sp.lambdify(xi, equation.profile(xi, 1), "numpy")(interval.x)
+    V = float(equation.speed(1))
+    p, v = interval.evolved(pulse, -V * pulse, [0, 24 / V])
+    assert p[-1] == pytest.approx(pulse, abs=1e-7)
+    energy = interval.energy(p, v)
+    assert energy[1] == pytest.approx(energy[0], rel=1e-7)
+
+
+@pytest.mark.parametrize("n", [1, 5, 60])
+def test_small_waves_have_the_frequency_of_the_equation_down_to_the_grid(n):
+    """cos(Ωτ) on a strain 1; short waves do not grow."""
+    equation = Evolution(ONE, Power("3/2"))
+    interval = Continuum(equation, 20.0, 128)
+    q = 2 * np.pi * n / 20.0
+    wave = 1e-6 * np.cos(q * interval.x)
+    tau = 7.0
+    p, _ = interval.evolved(1 + wave, 0 * wave, [0, tau], rtol=1e-12)
+    omega = float(equation.frequency(sp.Float(q, 30), 1))
+    assert (p[-1] - 1) == pytest.approx(wave * np.cos(omega * tau), abs=1e-10)
+
+
+def test_a_law_with_tension_is_not_cut():
+    """Toda's contacts pull: a wave of both signs keeps its energy."""
+    interval = Continuum(Evolution(ONE, law("exponential", 1)), 20.0, 128)
+    wave = 0.1 * np.sin(2 * np.pi * interval.x / 20)
+    p, v = interval.evolved(wave, 0 * wave, [0, 30])
+    energy = interval.energy(p, v)
+    assert energy[1] == pytest.approx(energy[0], rel=1e-8)
+    assert p[-1].min() < -0.01
+
+
+@pytest.mark.parametrize(
+    ("cell", "length", "points", "named"),
+    [
+        (Dimer("m1", "m2", spacing=1), 10, 64, "'m1'"),
+        (ONE, 0, 64, "length is 0"),
+        (ONE, 10, 4, "points is 4"),
+    ],
+)
+def test_equations_and_grids_without_numbers_are_refused(cell, length, points, named):
+    with pytest.raises(SceneError, match=f"^{named}"):
+        Continuum(Evolution(cell, Power("3/2")), length, points)

@@ -7,9 +7,9 @@ import pytest
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
+from book.studies.breather import NoOrbit, PressedChain, continued, orbit
 from validation import Scene, simulate
 from validation.scenes.checks import SceneError
-from validation.waves.periodic import NoOrbit, PressedChain, continued, orbit
 
 HERTZ = 1.5
 
@@ -83,17 +83,6 @@ def test_a_small_orbit_is_a_linear_mode_with_its_multipliers():
     assert np.abs(found.multipliers) == pytest.approx(1, abs=1e-3)
 
 
-@pytest.mark.parametrize("light", [0.5, 0.2])
-def test_a_gap_breather_is_its_envelope_up_to_the_detuning(light):
-    """Within 0.2, 0.4 and 0.8 % at ν = 0.0005, 0.001, 0.002, and the error falls linearly."""
-    errors = []
-    for nu, beads in ((0.002, 201), (0.001, 281), (0.0005, 401)):
-        found, U, middle = gap_breather(nu, beads, light=light)
-        errors.append(1 - found.amplitude[middle] / U)
-        assert 0 < errors[-1] < 4 * nu
-    assert np.array(errors[:-1]) / errors[1:] == pytest.approx([2, 2], rel=0.05)
-
-
 def followed(found):
     """Displacements after a hundred periods, by the engine; its scenes under load have a wall."""
     chain = found.chain
@@ -129,14 +118,6 @@ def test_the_engine_returns_to_the_orbit():
     rough = orbit(pinned, found.frequency, found.coefficients, harmonics=5)
     assert rough.amplitude[middle] == pytest.approx(found.amplitude[middle], rel=1e-5)
     assert rough.residual > 1e3 * found.residual
-
-
-def test_a_continued_orbit_is_the_one_found_directly():
-    begin, _, _ = gap_breather(0.002, 121)
-    direct, _, _ = gap_breather(0.004, 121)
-    found = continued(begin, direct.frequency)
-    assert found.amplitude == pytest.approx(direct.amplitude, abs=1e-9)
-    assert continued(found, begin.frequency).amplitude == pytest.approx(begin.amplitude, abs=1e-9)
 
 
 @pytest.mark.parametrize("light", [0.5, 0.3])

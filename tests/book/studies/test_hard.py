@@ -7,30 +7,24 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from lwa import Cell, Dimer, InputError, Power, background_wave, homogenize
-from tests.commands import ended
-from validation import cli
-from validation.lattice.simulate import simulate
-from validation.studies import hard as module
-from validation.studies.hard import (
+from book.studies.hard import (
     ALLOWED,
     CASES,
     CLOSURES,
     FORMS,
     PRINTED,
-    REFERENCE_DIGITS,
     closed_wave,
     energy_errors,
     form,
     hard,
     in_ulps,
     losses,
-    printed_beta,
     splitting_errors,
     spreading,
-    three_beads,
     true_values,
 )
+from lwa import Dimer, homogenize
+from tests.commands import ended
 
 # The last digits
 
@@ -43,13 +37,6 @@ def test_neighbours_are_one_ulp_apart_and_rounding_costs_half():
     with mp.workdps(50):
         third = np.array([mp.mpf(1) / 3], object)
     assert 0 < in_ulps(np.array([1 / 3]), third)[0] <= 0.5
-
-
-def test_an_error_of_nan_is_infinite_where_a_wave_exists():
-    true = np.array([mp.mpf(1), mp.mpf(1), mp.mpf(1), None], object)
-    found = in_ulps(np.array([np.nan, np.inf, 1.0, np.nan]), true)
-    assert found[:3].tolist() == [np.inf, np.inf, 0.0]
-    assert np.isnan(found[3])
 
 
 @pytest.mark.parametrize("closure", CLOSURES)
@@ -82,49 +69,6 @@ def test_every_form_loses_little_and_the_printed_route_more():
             assert np.isnan(lost).any() or source != "paper's closure"
 
 
-def test_the_printed_route_is_the_same_theory():
-    """The same β to 1e-13, the rounding of ten operations, where no terms cancel."""
-    k, omega = np.meshgrid([1.5, 2.0, 2.5], [0.1, 0.2733, 1.0])
-    wave = closed_wave("paper's closure").numeric()
-    np.testing.assert_allclose(printed_beta(k, omega), wave.beta(k, omega), rtol=1e-13)
-
-
-def printed_hertz_beta(w):
-    """β D at k = 3/2 as the expression in ω of Porter et al. (2008), in float64."""
-    root = np.sqrt(4 - 4 * w + 13 * w**2 - 18 * w**3 + 9 * w**4)
-    quotient = ((1 + w) ** 2 * (15 - 4 * w + 4 * w**2)) / (
-        34 - 42 * w + 59 * w**2 - 34 * w**3 + 17 * w**4 + (-8 + 5 * w - 5 * w**2) * root
-    )
-    arch = np.sqrt(3) * (8 - 5 * w + 5 * w**2 - root) * np.sqrt(quotient)
-    return arch / (30 - 8 * w + 8 * w**2)
-
-
-def test_the_expression_of_beta_at_three_halves_is_sound_as_printed():
-    wave = closed_wave("paper's closure")
-    ratios = module.RATIOS
-    true = true_values(wave, wave.beta, np.full(len(ratios), 1.5), ratios)
-    assert in_ulps(printed_hertz_beta(ratios), true).max() < 8
-
-
-def test_nesterenkos_relation_as_printed_loses_two_digits_a_decade():
-    """V²/c0² = (4/15) (3 + 2 ζ^{5/2} - 5 ζ)/(ζ - 1)², ζ = 1 + B/p0, cancels at large loads."""
-    wave, B, loads = background_wave(Cell([1], spacing=1), law=Power("3/2")), 0.7, [1e2, 1e4, 1e8]
-    zeta = 1 + 1 / np.array(loads)
-    relation = 4 * (3 + 2 * zeta**2.5 - 5 * zeta) / (15 * (zeta - 1) ** 2)
-    with mp.workdps(REFERENCE_DIGITS):
-        squared = [
-            mp.mpf(sp.N(wave.on(sp.Rational(p0 * B)).stiffness(sp.Rational(B)), REFERENCE_DIGITS))
-            for p0 in loads
-        ]
-        for p0, found in zip(loads, squared, strict=True):
-            nodes = [0, 1e-12, 1e-9, 1e-6, 1e-3, 1]
-            integral = mp.quad(lambda s, p=p0: 2 * (1 - s) * mp.sqrt(B * (mp.mpf(p) + s)), nodes)
-            assert abs(found / integral - 1) < 1e-14  # p0 B is rounded
-    lost = in_ulps(relation * np.sqrt(np.array(loads) * B), np.array(squared, object))
-    assert np.log10(lost[1] / lost[0]) == pytest.approx(4, abs=1.5)
-    assert lost[2] > 2**50
-
-
 # Motion
 
 
@@ -151,14 +95,6 @@ def test_the_exponent_of_spreading_of_a_walk_a_drift_and_a_swing():
     assert spreading(noise) == pytest.approx(0.0, abs=0.05)
 
 
-def test_segments_hand_on_their_state():
-    """Two halves are one run: the energy's error at the end is the same."""
-    halves = energy_errors(False, 0.5, 100.0, 2)
-    whole = simulate(three_beads(False, 100.0), method="SRKN14", step=0.5).energy_drift
-    # the energies of the middle are rounded once more
-    assert halves[-1] == pytest.approx(whole, abs=1e-14)
-
-
 def test_closed_contacts_do_not_drift_over_ten_thousand_time_units():
     energy = energy_errors(False, 0.5, 1e4, 20)
     early, late = np.abs(energy[1:11]).max(), np.abs(energy[11:]).max()
@@ -174,7 +110,7 @@ def test_closed_contacts_do_not_drift_over_ten_thousand_time_units():
 def test_the_document_holds_the_contract(capsys, tmp_path):
     picture = tmp_path / "hard.svg"
     options = ("--case", "contact-loss", "--format", "json", "--plot", str(picture))
-    status, out, err = ended(capsys, cli.main, "hard", *options)
+    status, out, err = ended(capsys, hard.main, *options)
     document = json.loads(out)
     assert (status, err, document["ok"]) == (0, "", True)
     (contacts,) = document["cases"]
@@ -188,14 +124,6 @@ def test_the_document_holds_the_contract(capsys, tmp_path):
     assert "<!-- contact-loss -->" in picture.read_text()
     for finding in contacts["findings"]:
         assert finding["least_value"] <= finding["measured_value"] <= finding["most_value"]
-
-
-def test_a_case_that_does_not_exist_is_named(capsys):
-    status, out, err = ended(capsys, cli.main, "hard", "--case", "tea")
-    assert (status, out, err.count("\n")) == (2, "", 1)
-    assert "'tea'" in err
-    with pytest.raises(InputError, match=r"^case is 'tea'"):
-        hard(["tea"])
 
 
 @pytest.mark.slow

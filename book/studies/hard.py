@@ -340,3 +340,7 @@ def hard(names: Collection[str] = (), progress: Progress[str] = iter) -> Report:
             ]
         },
     )
+
+
+if __name__ == "__main__":
+    hard.main()
