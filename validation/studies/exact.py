@@ -35,7 +35,8 @@ Errors: residual, tail and rounding."""
 def exact(k: float, masses: tuple[sp.Expr, ...], background: float = 0.0) -> Report:
     """Exact solitary wave of the lattice: speed, widths and amplitudes.
 
-    The peak contact force is 1; takes a second. Two masses have a solitary wave at special ratios only (`resonances`).
+    The peak contact force is 1. Two masses have a solitary wave at special ratios only
+    (`resonances`).
 
     ``k_value``, ``masses_value``, ``background_value``, ``half_period_value``, ``residual_value``,
     ``solitary``; with errors, as ``c2_error_value``: ``c2_value``, ``c_value``, ``tail_value`` and
