@@ -23,7 +23,7 @@ from lwa.base.quantities import (
 from lwa.cell import Cell
 from lwa.law import ContactLaw
 from lwa.linear.dispersion import Dispersion
-from lwa.wave.quadrature import Function, Quadrature
+from lwa.wave.quadrature import Quadrature
 
 _BLOCK = 256  # waves computed at once; their samples stay in the processor's cache
 _STRAIN = sp.Symbol("p", positive=True)
@@ -66,9 +66,9 @@ class NumericBackground(Value):
 
     def fwhm(self, p0: ArrayLike, B: ArrayLike, quantity: str = "strain") -> Array:
         """Full width at half maximum of the rise of "strain", "force" or "velocity"."""
-        known_quantity(quantity)
+        force = known_quantity(quantity) == "force"
         p0, B, _ = self._waves(p0, B)
-        half_widths = partial(self._rule.half_widths, quantity=quantity)
+        half_widths = partial(self._rule.half_widths, rate=_slope if force else None)
         return 2 * _by_block(half_widths, p0, B)[()]
 
     def profile(self, xi: ArrayLike, p0: float, B: float) -> Array:
@@ -89,8 +89,8 @@ class NumericBackground(Value):
         I = Dispersion(self.cell, self.law.exponent).I * D**2
         slope, bend = (self.law.of_strain(_STRAIN, D, n) for n in (1, 2))
         demand_numbers((I.free_symbols | slope.free_symbols) - {_STRAIN}, "numbers are wanted")
-        value = number(I)
-        return Quadrature(_compiled(slope), _compiled(bend), lambda p: np.full(p.shape, value))
+        value, F1, F2 = number(I), _compiled(slope), _compiled(bend)
+        return Quadrature(lambda p: (F1(p), F2(p), np.full(p.shape, value)))
 
     def _waves(self, p0: ArrayLike, B: ArrayLike) -> tuple[Array, Array, Array]:
         """Return p0/unit, B/unit and unit, broadcast; unit is 1, or a power of two for δ^k."""
@@ -136,7 +136,12 @@ def _by_block(function: Callable[[Array, Array], Array], p0: Array, B: Array) ->
     return np.concatenate(parts, axis=-1).reshape((*parts[0].shape[:-1], *p0.shape))
 
 
-def _compiled(value: sp.Expr) -> Function:
+def _slope(p: Array, F1: Array) -> Array:
+    """The slope F′, derivative of the force by the strain."""
+    return F1
+
+
+def _compiled(value: sp.Expr) -> Callable[[Array], Array]:
     """Compile an expression in the strain to a function of arrays."""
     # NumPy has no integers of more than 63 bits.
     long = {x: sp.Float(x, 17) for x in value.atoms(sp.Rational) if x.p.bit_length() > 53}

@@ -28,15 +28,16 @@ import numpy as np
 from lwa.base.arrays import Array
 from lwa.base.exact import InputError
 
-Function = Callable[[Array], Array]
+Rate = Callable[[Array, Array], Array]
 
-_STEPS = (20, 40, 80)  # nodes per unit of t, tried one after the other
+_STEPS = (20, 28, 56, 112)  # nodes per unit of t, tried one after the other; 20 for no force
 _END = 4.0  # the largest |t|: s or 1 - s is 6e-38 there
 _WINDOW = 20  # places of an end correction
 _NEAR, _FAR = -1.7, -_END  # first t of widths, where v = 2e-4 B, and of profiles
 _STEEPEST = 1.0  # largest d ln s between the nodes of an end correction at the foot
 _CONVERGED = 1e-8  # difference to half as many nodes; twice as many err 2^20 times less
-_PLACES = 12  # nodes through which results are interpolated
+_LEAST = 1e-3  # size below which profiles are right to the absolute error of this size
+_PLACES = 16  # nodes through which results are interpolated
 
 
 class Grid(NamedTuple):
@@ -117,97 +118,93 @@ def _interpolated(x: Array, y: Array, at: Array) -> Array:
 class Quadrature:
     """Speeds, half widths and profiles of the waves J v′² = v² (Q(B) - Q(v)), for flat arrays.
 
-    slope, bend : F′ and F″ as functions of the strain. dispersion : J/F′ likewise.
+    samples : function of an array of strains; returns F′, F″ and J/F′, arrays of its shape.
 
     Methods take arrays of p0 and B of one shape, and raise `lwa.InputError` for a wave that the
     finest grid does not resolve.
     """
 
-    slope: Function
-    bend: Function
-    dispersion: Function
+    samples: Callable[[Array], tuple[Array, Array, Array]]
 
     def squares(self, p0: Array, B: Array) -> Array:
         """The squares V² = Q(B): 2 ∫(1-s) F′ ds, or F′(p0) + B ∫(1-s)² F″ ds for small waves."""
 
-        def compute(g: Grid, p0: Array, B: Array, F1: Array, F2: Array, _: Array) -> Array:
+        def compute(g: Grid, B: Array, F1: Array, F2: Array, _: Array) -> Array:
             first, second = g.ds * g.y2, g.ds * g.y2**2  # weights of 1/2 and 1/3, but for rounding
-            start, change = self.slope(p0), B / 3 * (F2 @ (second / second.sum()))
+            start, change = F1[:, 0], B / 3 * (F2 @ (second / second.sum()))
             direct = F1 @ (first / first.sum())
             square = np.where(np.abs(change) < start / 4, start + change, direct)
             return np.asarray(square[:, None])
 
         return self._converged(compute, p0, B)[:, 0]
 
-    def half_widths(self, p0: Array, B: Array, quantity: str) -> Array:
-        """The distances from the peak at which strain or force has half of its rise."""
+    def half_widths(self, p0: Array, B: Array, rate: Rate | None = None) -> Array:
+        """The distances from the peak at which a quantity has half of its rise.
 
-        def compute(g: Grid, p0: Array, B: Array, F1: Array, F2: Array, J: Array) -> Array:
-            dxi, ahead = self._lengths(g, B, F2, J), g.above[:, g.rows]
-            if quantity != "force":
+        rate : the quantity's derivative by the strain, as a function of the strain and F′; None
+            for the strain itself. NaN for a quantity that is below half where v < B/1000.
+        """
+
+        def compute(g: Grid, B: Array, _: Array, F2: Array, J: Array, *rates: Array) -> Array:
+            dxi, ahead = _lengths(g, B, F2, J), g.above[:, g.rows]
+            if not rates:
                 return np.asarray(dxi @ ahead[[len(g.s) // 2 - len(g.s)]].T)
             back = slice(None, _WINDOW // 2 - 1, -1)  # from the peak; the last rows have no window
-            fall = (F1 * g.ds) @ g.above[back].T  # of the force from the peak, over B
-            half = (F1 @ g.ds)[:, None] / 2
-            found = _interpolated(fall, dxi @ ahead[back].T, half)
+            (change,) = rates
+            fall = ((change * g.ds) @ g.above.T)[:, back] / (change @ g.ds)[:, None]
+            half = np.full((len(B), 1), 0.5)
+            found = _interpolated(fall, (dxi @ ahead.T)[:, back], half)
             return np.asarray(np.where(fall[:, -1:] > half, found, np.nan))
 
-        return self._converged(compute, p0, B)[:, 0]
+        return self._converged(compute, p0, B, rate)[:, 0]
 
     def profile(self, p0: Array, B: Array, places: Array) -> Array:
         """The ratio v/B at distances from the peak, one row per wave."""
 
-        def compute(g: Grid, p0: Array, B: Array, F1: Array, F2: Array, J: Array) -> Array:
+        def compute(g: Grid, B: Array, _: Array, F2: Array, J: Array) -> Array:
             back = slice(None, _WINDOW // 2 - 1, -1)
-            dxi = self._lengths(g, B, F2, J)
-            xi = dxi @ g.above[back, g.rows].T
+            dxi = _lengths(g, B, F2, J)
+            xi = (dxi @ g.above[:, g.rows].T)[:, back]
             logs = np.where(g.y2 < 0.5, np.log1p(-g.y2), np.log(g.s))[g.rows][back]
-            at = np.broadcast_to(places, (len(p0), places.size))
+            at = np.broadcast_to(places, (len(B), places.size))
             inside = _interpolated(xi, np.broadcast_to(logs, xi.shape), np.minimum(at, xi[:, -1:]))
             # v decays exponentially behind the last node under a load, and ends there without
             slope = (g.ds / g.s)[g.rows][back][-1] / dxi[:, back][:, -1:]
             beyond = slope * np.maximum(at - xi[:, -1:], 0)
             return np.asarray(np.exp(inside - beyond))
 
-        return self._converged(compute, p0, B, _FAR)
+        return self._converged(compute, p0, B, start=_FAR)
 
     def conditions(self, p0: Array, B: Array) -> Array:
         """Test two conditions, a row each: 0 < F′ < ∞; B Q′(B) > 0 and Q(v) < Q(B) below B."""
         g = grid(_STEPS[0], _FAR)
-        p = g.strains(p0, B)
         with np.errstate(all="ignore"):
-            slopes = np.column_stack([self.slope(p), self.slope(p0 + B)])
-            F2 = self.bend(p)
+            F1, F2, _ = self.samples(g.strains(p0, B))
             ends = [F2 @ (2 * g.s * g.y2 * g.ds), F2 @ (g.y2**2 * g.ds)]  # Q′(B), (Q(B) - Q(0))/B
             rises = B[:, None] * np.column_stack([F2 @ g.kernel.T, *ends])
-        good = (slopes > 0).all(axis=1) & np.isfinite(slopes[:, -1])
-        return np.stack([good, (rises > 0).all(axis=1)])
-
-    def _lengths(self, g: Grid, B: Array, F2: Array, J: Array) -> Array:
-        """The distances dξ between the nodes of the rows."""
-        # Roots first: their quotient neither over- nor underflows.
-        gap = np.sqrt(np.sign(B)[:, None] * (F2 @ g.kernel.T)) * np.sqrt(np.abs(B))[:, None]
-        return np.asarray(g.length * np.sqrt(J[:, g.rows]) / gap)
+        slopes = (F1 > 0).all(axis=1) & np.isfinite(F1[:, -1])
+        return np.stack([slopes, (rises > 0).all(axis=1)])
 
     def _converged(
-        self, compute: Callable[..., Array], p0: Array, B: Array, start: float = _NEAR
+        self,
+        compute: Callable[..., Array],
+        p0: Array,
+        B: Array,
+        rate: Rate | None = None,
+        start: float = _NEAR,
     ) -> Array:
-        """Refine the grid until a result is that of half as many nodes."""
+        """Refine the grid until a result is the result of half as many nodes."""
         left, result = np.arange(len(p0)), np.empty(0)
-        for steps in _STEPS:
-            p = grid(steps, start).strains(p0[left], B[left])
+        for steps in _STEPS[rate is not None :]:
+            rise = B[left]
             with np.errstate(all="ignore"):
-                F1, F2 = self.slope(p), self.bend(p)
-                samples = F1, F2, F1 * self.dispersion(p)
-                found, rough = (
-                    compute(
-                        grid(steps // n, start), p0[left], B[left], *(x[:, ::n] for x in samples)
-                    )
-                    for n in (1, 2)
-                )
-                good = (np.abs(found - rough) <= _CONVERGED * np.maximum(np.abs(found), 1e-3)).all(
-                    axis=1
-                )
+                p = grid(steps, start).strains(p0[left], rise)
+                F1, F2, I = self.samples(p)
+                nodes = (F1, F2, F1 * I) if rate is None else (F1, F2, F1 * I, rate(p, F1))
+                found = compute(grid(steps, start), rise, *nodes)
+                rough = compute(grid(steps // 2, start), rise, *(x[:, ::2] for x in nodes))
+                size = np.maximum(np.abs(found), _LEAST)
+                good = (np.abs(found - rough) <= _CONVERGED * size).all(axis=1)
             result = result if result.size else np.empty((len(p0), *found.shape[1:]))
             result[left[good]] = found[good]
             left = left[~good]
@@ -217,3 +214,10 @@ class Quadrature:
             f"p0 = {p0[left[0]]:.6g}, B = {B[left[0]]:.6g}: the law changes too much over the wave "
             "for float64; `lwa.BackgroundWave` computes with more digits"
         )
+
+
+def _lengths(g: Grid, B: Array, F2: Array, J: Array) -> Array:
+    """The distances dξ between the nodes of the rows."""
+    # Roots first: their quotient neither over- nor underflows.
+    gap = np.sqrt(np.sign(B)[:, None] * (F2 @ g.kernel.T)) * np.sqrt(np.abs(B))[:, None]
+    return np.asarray(g.length * np.sqrt(J[:, g.rows]) / gap)
