@@ -13,7 +13,6 @@ from lwa.linear.dispersion import LoadedChain
 from tests.commands import ended
 from validation.lattice.simulate import simulate
 from validation.scenes.chains import numeric_cell
-from validation.scenes.checks import SceneError
 
 
 def rows(**options):
@@ -92,14 +91,6 @@ def test_why_dimers_are_worse(radiating):
     frequency = 2 * np.pi * np.argmax(spectrum) / (2**17 * step)
     assert frequency == pytest.approx(speed * q, rel=1e-3)
     assert frequency > 1.003 * chain.band_edges()[1, 0]  # not where the branch is flat
-
-
-def test_the_chain_is_followed_as_a_whole(radiating):
-    """Behind the wave contacts carry a load: a window that cuts them is refused."""
-    wave, run = radiating
-    assert run.window is None
-    with pytest.raises(SceneError, match="the whole chain is wanted"):
-        simulate(wave.scene, method="SRKN14", window=True)
 
 
 def test_another_exponent():
