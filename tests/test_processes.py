@@ -20,6 +20,7 @@ import pytest
 from lwa import __version__
 from lwa.base.errors import INTERRUPTED
 from lwa.command.terminal import CLOSED
+from tests.commands import started
 
 LWA = (sys.executable, "-m", "lwa")
 VERSION = (*LWA, "--version")  # takes a tenth of a second, as it does not load SymPy
@@ -108,10 +109,10 @@ def test_without_any_output_the_status_is_left():
 
 
 def test_a_reader_that_stops_early_is_no_failed_comparison():
-    with subprocess.Popen(VERSION, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+    with started(*VERSION) as process:
         process.stdout.close()
-        assert process.stderr.read() == b""
-        assert process.wait(120) == CLOSED
+        assert process.stderr.read() == ""
+        assert process.wait() == CLOSED
 
 
 # Ctrl-C
@@ -140,15 +141,10 @@ def test_ctrl_c_while_a_command_is_loaded_is_one_line(tmp_path):
 
 def test_a_long_expansion_says_so_and_stops_at_ctrl_c():
     command = (*LWA, "expansion", "--masses", "1,1/50", "--order", "100")
-    with subprocess.Popen(
-        command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
-    ) as running:
+    with started(*command, stdout=subprocess.DEVNULL) as running:
         first = running.stderr.readline()
         running.send_signal(signal.SIGINT)
-        try:
-            _, rest = running.communicate(timeout=60)  # of the minutes that it would take
-        finally:
-            running.kill()
+        _, rest = running.communicate()
     assert re.fullmatch(r"the expansion to ε\^100: this may take minutes\n", first)
     assert rest.strip() == "lwa: interrupted"
     assert running.returncode == INTERRUPTED
@@ -168,17 +164,15 @@ def test_a_long_run_shows_its_progress_on_a_terminal_and_stops_at_ctrl_c(engine,
     command = (sys.executable, "-m", "validation", "run", "scene.toml")
     mine, theirs = pty.openpty()
     termios.tcsetwinsize(theirs, (24, 80))
-    with subprocess.Popen(
-        [*command, "--plot", "p.svg", "--out", "o.json"],
-        stdout=subprocess.PIPE, stderr=theirs, text=True, cwd=tmp_path,
-    ) as running:  # fmt: skip
+    outputs = ("--plot", "p.svg", "--out", "o.json")
+    with started(*command, *outputs, stderr=theirs, cwd=tmp_path) as running:
         os.close(theirs)
         shown = b""
         while b"lattice run:" not in shown:
             assert select.select([mine], [], [], 120)[0], "no progress"
             shown += os.read(mine, 1000)
         running.send_signal(signal.SIGINT)
-        out, _ = running.communicate(timeout=60)
+        out, _ = running.communicate()
     rest = b""
     with contextlib.suppress(OSError):  # the other end is closed
         while some := os.read(mine, 1000):

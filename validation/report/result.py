@@ -82,15 +82,13 @@ class Report(Pictured):
     def document(self) -> dict[str, Any]:
         """The report for JSON: ``data``, each table under its key, and the findings.
 
-        With findings: ``ok``, ``findings``, ``statements`` (empty), and KEY_value of each finding
-        that has a key.
+        With findings: ``ok``, ``findings``, and KEY_value of each finding that has a key.
         """
         result: dict[str, Any] = dict(plain(self.data))
         result |= {table.key: table.document() for table in self.tables if table.key}
         if self.findings:
             result |= {f"{f.key}_value": plain(f.value) for f in self.findings if f.key}
             result |= {"findings": findings_table(self.findings).document(), "ok": self.ok}
-            result["statements"] = []  # a key of the format: all findings are numbers
         return result
 
     def csv(self) -> str:

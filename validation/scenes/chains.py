@@ -16,8 +16,7 @@ from lwa.spheres.hertz import Material, Sphere
 from validation.scenes.checks import SceneError
 from validation.scenes.scene import Scene
 
-STEEL = Material("193e9", "0.3")  # stainless steel, type 316
-PTFE = Material("1.46e9", "0.46")  # with the dynamic modulus that the paper uses
+STEEL, PTFE = Material.named("steel 316"), Material.named("PTFE")
 DIAMETER = 4.76e-3  # of all beads, in m
 GRAVITY = 9.81  # in m/s²
 STEEL_BEAD = Sphere("0.45e-3", DIAMETER / 2, STEEL)
