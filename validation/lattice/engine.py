@@ -13,7 +13,11 @@ p_+ = max(p, 0), is integrated by a quadrature that knows the kink
 Splitting: symplectic, with a fixed step. Every kink leaves an error of O(h^{k+1}), which sets the
 step.
 
-Piston: a first bead of infinite mass. Its work is its velocity times the impulse of its contact.
+Drive: a first bead of infinite mass with a given motion. Steps end at the end of a ramp and at the
+knots of a file.
+
+Damping: forces depend on velocities, and a Runge–Kutta pair takes the steps
+(`validation.lattice.kernel.damped`).
 
 Front: beads ahead of the front have not moved yet and are left out.
 """
@@ -35,7 +39,8 @@ from validation.lattice.cost import (
     check_steps,
     step_limit,
 )
-from validation.lattice.equations import Motion
+from validation.lattice.damped import COLUMNS, scheme_of, step_recorder
+from validation.lattice.equations import ForcedMotion, Motion
 from validation.lattice.kernel.advance import advance
 from validation.lattice.kernel.arrays import (
     MARGIN,
@@ -43,16 +48,19 @@ from validation.lattice.kernel.arrays import (
     WIDTH,
     Beads,
     Chain,
+    Drive,
     Plan,
     Tableau,
     initial_progress,
 )
-from validation.lattice.knots import Recorder
+from validation.lattice.kernel.damped import STEP, Scheme, advance_damped
+from validation.lattice.knots import knot_recorder
 from validation.lattice.result import Run, finished
 from validation.lattice.schemes import SCHEMES, Pair
 from validation.lattice.signal import recorded, sampled
 from validation.scenes.checks import positive
 
+_WEAK = 0.01  # least energy of the response in units of the energy that sets the tolerance
 _POINTS = 8  # nodes of the quadrature at a kink
 _NOISE = sys.float_info.epsilon  # in units of the greatest value: a bead that moves less is still
 _BETWEEN_REPORTS = 5e7  # bead evaluations between two reports of progress: some tenths of a second
@@ -65,30 +73,50 @@ _FIRST = 4.0  # first step of a pair over rtol^(1/7), in units of the scene's sh
 def follow(
     motion: Motion, method: str, rtol: float, step: float | None, progress: RunProgress
 ) -> Run:
-    """Integrate a scene by a method of `SCHEMES`; the arguments are those of `simulate`."""
+    """Integrate a scene by a method of `SCHEMES`; the arguments are those of `simulate`.
+
+    A run whose tolerance is set by a drive, and whose response turns out far weaker, is made again.
+    """
+    while True:
+        run, response = _integrated(motion, method, rtol, step, progress)
+        if not 0 < response < _WEAK * motion.scales.energy:
+            return run
+        motion = ForcedMotion(motion.scene, response)
+
+
+def _integrated(
+    motion: Motion, method: str, rtol: float, step: float | None, progress: RunProgress
+) -> tuple[Run, float]:
+    """Return a run, and the greatest energy of its contacts and free beads."""
     plan, most = _plan(motion, method, rtol, step)
-    n, end, stages = motion.size, motion.scene.duration, SCHEMES[method].stages
+    n, end, damped = motion.size, motion.scene.duration, motion.scene.damping is not None
     chain = _chain(motion)
-    beads = _start(motion, len(chain.A))
+    stages, rows = (STEP, COLUMNS) if damped else (SCHEMES[method].stages, 2 * WIDTH)
+    beads = _start(motion, len(chain.A), rows)
     time, needed = sampled(motion)
-    recorder = Recorder(motion.contact, chain, plan.scheme.points, needed, time)
-    now = initial_progress(plan, _front(motion))
+    recorder = (step_recorder if damped else knot_recorder)(
+        motion, chain, plan.scheme, needed, time
+    )
+    now = initial_progress(plan, _front(motion), motion.free_energy)
     glance = 1 + int(_BETWEEN_REPORTS / (stages * max(n, SHORTEST)))
-    t = 0.0
+    go, t = advance_damped if damped else advance, 0.0
     with progress() as display:
         while t < end:
             display(t / end)
-            t, _ = advance(chain, beads, plan, recorder.knots, now, glance)
+            t, _ = go(chain, beads, plan, recorder.store, now, glance)
             if t < end:
                 check_steps(method, int(now["tries"]), most, t, end)
-            if t == end or now["stored"] == len(recorder.knots.time):
+            if t == end or now["stored"] == len(recorder.store[0]):
                 now["stored"] = recorder.take(int(now["stored"]))
-    drive = motion.scene.drive
-    paid = () if drive is None else (0.0, beads.v[0] * float(now["impulse"]))
+    paid: tuple[float, ...] = ()
+    if len(motion.start) > 2 * n:
+        accelerating = motion.masses[0] * (beads.v[0] ** 2 - motion.start[n] ** 2) / 2
+        work = float(now["work"] + accelerating) if motion.scene.drive else 0.0
+        paid = float(now["lost"]), work
     state = np.concatenate((beads.y[:n], beads.v[:n], paid))
     if not np.isfinite(state).all():
         raise IntegrationError(f"the motion overflows: a step of {plan.h:g} is too long")
-    return finished(
+    run = finished(
         motion,
         state,
         {"time": time} | recorded(motion, needed, recorder.y, recorder.v),
@@ -98,6 +126,14 @@ def follow(
         bead_evaluations=int(now["evaluations"]),
         path=recorder.path(),
     )
+    return run, float(now["response"])
+
+
+def _scheme(motion: Motion, method: str) -> Tableau | Scheme:
+    """Return the coefficients of a method for the contacts of a scene."""
+    if motion.scene.damping is not None:
+        return scheme_of(motion.contact)
+    return _tableau(method, motion.k if motion.contact.law is None else math.inf)
 
 
 @lru_cache
@@ -117,7 +153,14 @@ def _tableau(method: str, k: float) -> Tableau:
 def _plan(motion: Motion, method: str, rtol: float, step: float | None) -> tuple[Plan, int]:
     """Return the integration plan, and the greatest number of steps."""
     scheme, scales, end = SCHEMES[method], motion.scales, motion.scene.duration
-    longest = math.inf if step is None else positive(step, "step")
+    longest, drive, stops = (
+        math.inf if step is None else positive(step, "step"),
+        motion.scene.drive,
+        [end],
+    )
+    if drive is not None:
+        longest = min(longest, drive.longest_step)
+        stops += [t for t in (drive.ramp, *drive.time) if 0 < t < end]
     if isinstance(scheme, Pair):
         most = step_limit(motion.scene, method, end / min(scales.time, longest))
         h = min(_FIRST * rtol ** (1 / 7) * scales.time, longest, end / 100)
@@ -128,43 +171,50 @@ def _plan(motion: Motion, method: str, rtol: float, step: float | None) -> tuple
         h = end / math.ceil(end / mean)
     check_memory(motion.scene, method, 16)
     plan = Plan(
-        scheme=_tableau(method, motion.k if motion.contact.law is None else math.inf),
+        scheme=_scheme(motion, method),
         y=rtol * scales.displacement,
         v=rtol * scales.velocity,
+        energy=rtol * (scales.energy or 1.0),
         h=h,
         longest=longest,
         end=end,
         deepest=scales.compression,
         quickest=motion.stiffnesses.max(initial=0.0) / motion.masses.min(),
         size=motion.size,
+        stops=np.unique(stops),
     )
     return plan, most
 
 
 def _chain(motion: Motion) -> Chain:
     """Build the kernel's chain, padded by beads of infinite mass; the first of them is the wall."""
-    inverse, A, rest, load = rows = np.zeros((4, motion.size + 2 * SHORTEST))
-    given = 1 / motion.masses, motion.stiffnesses, motion.rest, motion.load
+    inverse, A, c, rest, load = rows = np.zeros((5, motion.size + 2 * SHORTEST))
+    given = 1 / motion.masses, motion.stiffnesses, motion.damping, motion.rest, motion.load
     for row, values in zip(rows, given, strict=True):
         row[: len(values)] = values
-    if motion.scene.drive is not None:
+    drive, law = motion.scene.drive, motion.contact
+    driven = Drive(np.zeros(1), np.zeros((1, 4)), 0.0, 0.0, 0.0, False)
+    if drive is not None:
         inverse[0] = 0.0
-    law = motion.contact
+        driven = Drive(*drive.cubics, *drive.oscillation, float(drive.ramp), True)
     kind: dict[str, Any] = dict(generated=law.law is not None, pulls=law.pulls, **law.addresses)
-    return Chain(inverse, A, rest, load, motion.k, **kind)
+    power = law.damping_power or 0.0
+    return Chain(inverse, A, c, rest, load, motion.k, **kind, p=power, drive=driven)
 
 
 def _front(motion: Motion) -> int:
     """Return the number of the first bead at rest, plus a margin."""
     y, v = np.abs(motion.start[: 2 * motion.size].reshape(2, motion.size))
     moving = np.flatnonzero((y > _NOISE * y.max()) | (v > _NOISE * v.max()))
-    return min(motion.size, MARGIN + (int(moving[-1]) + 1 if len(moving) else 0))
+    first = max([-1, *moving[-1:]] if motion.scene.drive is None else [0, *moving[-1:]]) + 1
+    return min(motion.size, MARGIN + int(first))
 
 
-def _start(motion: Motion, padded: int) -> Beads:
+def _start(motion: Motion, padded: int, stages: int) -> Beads:
     """Build the kernel's initial state, arrays with room for ``padded`` + 1 beads."""
     n = motion.size
     y, v, next_y, next_v = np.zeros((4, padded + 1))
     y[:n], v[:n] = motion.start[:n], motion.start[n : 2 * n]
-    sums, force = np.zeros((4, padded + 1)), np.zeros((2 * WIDTH, padded + 1))
-    return Beads(y, v, next_y, next_v, force, sums)
+    sums, contacts = np.zeros((2, 4, padded + 1))
+    force, power = np.zeros((stages, padded + 1)), np.zeros((2, stages))
+    return Beads(y, v, next_y, next_v, force, sums, contacts, power, np.zeros(4))

@@ -110,6 +110,13 @@ class Motion:
         return self.energy(state)
 
     @property
+    def free_energy(self) -> float:
+        """Initial energy of the contacts and of the beads that are not driven."""
+        driven = self.scene.drive is not None
+        given = self.masses[0] * self.start[self.size] ** 2 / 2 if driven else 0.0
+        return float(self.energy(self.start) - given)
+
+    @property
     def drive_energy(self) -> float:
         """Energy that a drive can give to a bead, 0 without a drive."""
         return 0.0
@@ -160,8 +167,9 @@ class Motion:
 class ForcedMotion(Motion):
     """The time derivative of (y, v, dissipated energy, drive's work), for damping or a drive."""
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: Scene, response: float | None = None) -> None:
         super().__init__(scene)
+        self.response = response
         self.start = np.append(self.start, (0.0, 0.0))
         if scene.drive is not None:
             self.start[0], self.start[self.size], _ = scene.drive.at(0.0)
@@ -169,6 +177,8 @@ class ForcedMotion(Motion):
     @property
     def drive_energy(self) -> float:
         drive = self.scene.drive
+        if self.response is not None:
+            return self.response - self.energy(self.start)
         return 0.0 if drive is None else float(self.masses.mean() * drive.fastest * drive.fastest)
 
     def __call__(self, time: float, state: Array) -> Array:

@@ -7,20 +7,21 @@ at one of the scene's sample times, interpolated between knots.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import partial
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lwa.base.arrays import Array
+from validation.lattice.equations import Motion
 from validation.lattice.kernel.arrays import Chain, Knots
 from validation.lattice.kernel.samples import interpolate
 from validation.lattice.laws import Contact
 from validation.lattice.signal import Beads
+from validation.scenes.forcing import Drive
 
-_BUFFER = 2**18  # numbers of the knots that the engine stores between two calls of `take`
-_MOST_BYTES = 2**28  # bytes of knots that a run keeps
+BUFFER = 2**18  # numbers that the engine stores between two calls of `take`
+_MOST_BYTES = 2**28  # bytes of the motion that a run keeps
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,12 +29,14 @@ class KnotPath:
     """A `validation.lattice.signal.Path` through knots (`validation.lattice.kernel.samples`).
 
     contact : law of the contacts. points : nodes and weights of the quadrature at kinks.
+    drive : motion of bead 0.
     """
 
     contact: Contact
     chain: Chain
     points: Array
     knots: Knots
+    drive: Drive | None
 
     @property
     def time(self) -> Array:
@@ -51,58 +54,71 @@ class KnotPath:
         step = np.searchsorted(self.time[1:-1], time, side="right")
         y, v = np.empty((2, len(rows), len(time)))
         interpolate(self.chain, self.points, self.knots, rows, time, step, y, v)
+        if self.drive is not None and 0 in beads:
+            y[0], v[0], _ = self.drive.at(time)
         return y, v
 
 
 class Recorder:
-    """Collector of a run's knots, which computes the samples and stores the knots for signals.
+    """Collector of a run's steps, which computes the samples and keeps the motion for signals.
 
-    needed : numbers of the B beads that the sensors need. time : (S,), sample times. y, v : (B, S),
-    samples of displacements and velocities.
+    store : arrays that the engine fills, by steps, and last the watched beads. path : makes a
+    `validation.lattice.signal.Path` of these arrays. shared : rows that two parts share. needed :
+    numbers of the B beads that the sensors need. time : (S,), sample times. y, v : (B, S), samples
+    of displacements and velocities.
     """
 
     def __init__(
-        self, contact: Contact, chain: Chain, points: Array, needed: NDArray[np.int_], time: Array
+        self, store: Any, path: Any, shared: int, needed: NDArray[np.int_], time: Array
     ) -> None:
-        self._path = partial(KnotPath, contact, chain, points)
+        self.store, self._path, self.shared = store, path, shared
         self.needed, self.time = needed, time
-        # A bead's acceleration changes with its neighbours' displacements.
-        near = {j + m for j in needed.tolist() for m in (-1, 0, 1)}
-        watched = np.array(sorted(near - {-1}), int)
-        most = 2 + _BUFFER // (3 * len(watched) + 1)
-        self.knots = Knots(np.empty(most), watched, np.empty((most, len(watched), 3)))
         self.y, self.v = np.empty((2, len(needed), len(time)))
-        self.parts: list[tuple[Array, Array]] = []
+        self.parts: list[tuple[Array, ...]] = []
         self.done = self.size = 0
 
     def take(self, count: int) -> int:
-        """Compute the samples between the first ``count`` knots, and store these knots.
+        """Compute the samples in the first ``count`` rows of the store, and keep these rows.
 
-        Returns the number of knots left for the engine: 1, the last knot, or 0 without sensors.
+        Returns the number of rows left for the engine.
         """
-        time, watched, state = self.knots
+        *arrays, watched = self.store
         if not len(watched):
             return 0
-        part = time[:count].copy(), state[:count].copy()
-        path = self._path(Knots(part[0], watched, part[1]))
-        due = int(np.searchsorted(self.time, part[0][-1], side="right"))
+        part = tuple(array[:count].copy() for array in arrays)
+        path = self._path(*part, watched)
+        due = int(np.searchsorted(self.time, path.time[-1], side="right"))
         now = slice(self.done, due)
         self.y[:, now], self.v[:, now] = path(self.needed, self.time[now])
-        self.done, self.size = due, self.size + part[1].nbytes
+        self.done, self.size = due, self.size + part[-1].nbytes
         if self.size <= _MOST_BYTES:
             self.parts.append(part)
         else:
             self.parts.clear()
-        time[0], state[0] = time[count - 1], state[count - 1]
-        return 1
+        for array in arrays:
+            array[: self.shared] = array[count - self.shared : count]
+        return self.shared
 
-    def path(self) -> KnotPath | None:
+    def path(self) -> Any:
         """Return the motion of the whole run; None if it takes more than `_MOST_BYTES` bytes."""
         if not self.parts:
             return None
-        # Each part begins with the last knot of the part before.
-        time, state = (
-            np.concatenate((arrays[0], *(array[1:] for array in arrays[1:])))
-            for arrays in zip(*self.parts, strict=True)
-        )
-        return self._path(Knots(time, self.knots.watched, state))
+        rows = zip(*self.parts, strict=True)
+        kept = ((first, *(array[self.shared :] for array in more)) for first, *more in rows)
+        return self._path(*map(np.concatenate, kept), self.store[-1])
+
+
+def knot_recorder(
+    motion: Motion, chain: Chain, scheme: Any, needed: NDArray[np.int_], time: Array
+) -> Recorder:
+    """Return the recorder of the knots of a pair or a splitting."""
+    # A bead's acceleration changes with its neighbours' displacements.
+    near = {j + m for j in needed.tolist() for m in (-1, 0, 1)}
+    watched = np.array(sorted(near - {-1}), int)
+    most = 2 + BUFFER // (3 * len(watched) + 1)
+    knots = Knots(np.empty(most), np.empty((most, len(watched), 3)), watched)
+
+    def path(*arrays: Any) -> KnotPath:
+        return KnotPath(motion.contact, chain, scheme.points, Knots(*arrays), motion.scene.drive)
+
+    return Recorder(knots, path, 1, needed, time)

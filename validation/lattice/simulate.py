@@ -1,10 +1,10 @@
 """Simulation of a scene: `simulate`, `simulate_many` on threads, `twice` at two tolerances.
 
 The compiled engine (`validation.lattice.engine`) has an embedded Runge–Kutta–Nyström (RKN) pair for
-y'' = f(y), with adaptive steps, and a symplectic splitting. SciPy's methods
-(`validation.lattice.steppers`) are the reference, and integrate scenes with damping or a drive
-other than a piston. Tolerances are relative to the scene's scales, so that results do not depend on
-the units. A run stores the motion of the beads near its sensors only.
+y'' = f(t, y), with adaptive steps, a Runge–Kutta pair for damped contacts, and a symplectic
+splitting. SciPy's methods (`validation.lattice.steppers`) are the reference. Tolerances are
+relative to the scene's scales, so that results do not depend on the units. A run stores the motion
+of the beads near its sensors only.
 """
 
 from __future__ import annotations
@@ -54,9 +54,9 @@ def simulate(
         struck chain's pulse errs by about ``rtol`` at most, and a motion with many collisions, at
         its end, by some tens of ``rtol``; with the splitting ``rtol`` is the mean error of the
         peak. Both ignore ``atol``. For SciPy's methods rtol, atol bound the local error per step.
-    method : one of `COMPILED` or of `METHODS`. A scene with damping or a drive, whose forces depend
-        on velocities or time, takes one of `METHODS`, by default DOP853; a drive of constant
-        velocity, a piston, takes the RKN pair as well.
+    method : one of `COMPILED` or of `METHODS`. A scene with damping or a drive takes all but the
+        splitting; with damping, where forces depend on velocities, the default is a compiled
+        Runge–Kutta pair in place of the RKN pair.
     step : greatest step of a compiled method; by default ``rtol`` determines the steps.
     progress : function that opens a display, which is called with the finished fraction of the run.
 
@@ -71,7 +71,7 @@ def simulate(
     """
     if not isinstance(scene, Scene):
         raise SceneError(f"scene is {shorten(scene)}: a Scene is wanted")
-    method = _method(scene, one_of(method, COMPILED + METHODS, "method"), step)
+    _check(scene, one_of(method, COMPILED + METHODS, "method"), step)
     rtol, atol = between(rtol, "rtol", 1e-13, 1e-2), between(atol, "atol", 1e-13, 1e-2)
     with np.errstate(over="ignore", invalid="ignore"):  # the result is checked
         motion = motion_of(scene)
@@ -87,23 +87,15 @@ def simulate(
     return run
 
 
-def _method(scene: Scene, method: str, step: float | None) -> str:
-    """Return the method that integrates a scene, in place of the RKN pair DOP853 if need be.
-
-    Raises `SceneError` for a scene or step that the method does not take.
-    """
-    forced, drive = scene.damping is not None or scene.drive is not None, scene.drive
-    piston = scene.damping is None and drive is not None and drive.velocity is not None
-    if forced and not piston and method == COMPILED[0]:
-        method = METHODS[0]
-    takes = METHODS if forced and not piston else (COMPILED[0], *METHODS)
-    if forced and method not in takes:
+def _check(scene: Scene, method: str, step: float | None) -> None:
+    """Raise `SceneError` for a scene or step that the method does not take."""
+    takes = (COMPILED[0], *METHODS)
+    if (scene.damping or scene.drive) and method not in takes:
         raise SceneError(
             f"method is {method}: a scene with damping or a drive takes one of {', '.join(takes)}"
         )
     if step is not None and method in METHODS:
         raise SceneError(f"step is {shorten(step)}: {method} takes none in this scene")
-    return method
 
 
 @overload

@@ -62,6 +62,7 @@ def integrate(motion: Motion, method: str, rtol: float, atol: float, progress: R
     """Integrate a scene with one of `METHODS`; the arguments are those of `simulate`."""
     scales, end, n = motion.scales, motion.scene.duration, motion.size
     y, v, drive = scales.displacement, scales.velocity, motion.scene.drive
+    energies = [scales.energy or 1.0] * (len(motion.start) - 2 * n)  # dissipated, and work
     longest = math.inf if drive is None else drive.longest_step
     most = step_limit(motion.scene, method, end / min(scales.time, longest))
     jacobian = (2 * n) ** 2 * 8 if method == "LSODA" else 0  # bytes; the others need none
@@ -72,7 +73,7 @@ def integrate(motion: Motion, method: str, rtol: float, atol: float, progress: R
         motion.start,
         end,
         rtol=rtol,
-        atol=atol * np.append(np.repeat([y, v], n), [scales.energy] * (len(motion.start) - 2 * n)),
+        atol=atol * np.append(np.repeat([y, v], n), energies),
         max_step=longest,
         first_step=min(1e-3 * y / v, end),  # SciPy's own guess depends on the units
     )

@@ -150,23 +150,37 @@ class Drive:
         """Amplitude and angular frequency 2π · frequency of a harmonic drive."""
         return self.amplitude or 0.0, 2 * math.pi * (self.frequency or 0.0)
 
-    def at(self, t: float) -> tuple[float, float, float]:
-        """Return displacement, velocity and acceleration of the bead at time t."""
+    def at(self, t: Any) -> tuple[Any, Any, Any]:
+        """Return displacement, velocity and acceleration of the bead at times t of any shape."""
         if self.velocity is not None:
-            return self.velocity * t, self.velocity, 0.0
+            return self.velocity * t, self.velocity + 0 * t, 0 * t
         if self.time:
-            y, v, a = (float(self._spline(t, order)) for order in range(3))
-            return y, v, a
+            return tuple(self._spline(t, order) for order in range(3))
         amplitude, w = self._harmonic
-        s = min(t / self.ramp, 1.0) if self.ramp else 1.0
-        pace = 1 / self.ramp if s < 1 else 0.0
+        s = np.minimum(t / self.ramp, 1.0) if self.ramp else 1.0
+        pace = np.where(s < 1, 1 / self.ramp, 0.0) if self.ramp else 0.0
         # s³ (10 - 15 s + 6 s²) has two derivatives that vanish at both ends
         r, dr = s**3 * (10 - 15 * s + 6 * s * s), 30 * s * s * (1 - s) ** 2 * pace
         ddr = 60 * s * (1 - s) * (1 - 2 * s) * pace * pace
-        sin, cos = math.sin(w * t), math.cos(w * t)
+        sin, cos = np.sin(w * t), np.cos(w * t)
         y, v = r * sin, dr * sin + r * w * cos
         a = ddr * sin + 2 * dr * w * cos - r * w * w * sin
         return amplitude * y, amplitude * v, amplitude * a
+
+    @property
+    def cubics(self) -> tuple[Array, Array]:
+        """Beginnings of the intervals, and coefficients (intervals, 4) of cubics in each of them.
+
+        The cubics are the motion except the oscillation.
+        """
+        if self.time:
+            return self._spline.x[:-1], np.ascontiguousarray(self._spline.c[::-1].T)
+        return np.zeros(1), np.array([[0.0, self.velocity or 0.0, 0.0, 0.0]])
+
+    @property
+    def oscillation(self) -> tuple[float, float]:
+        """Amplitude and angular frequency 2π · frequency of a harmonic drive; 0 without."""
+        return self._harmonic
 
     @property
     def fastest(self) -> float:

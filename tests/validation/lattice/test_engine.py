@@ -187,7 +187,7 @@ def integrals(chain, points, p, z):
 @pytest.mark.parametrize(("root", "q"), [(-0.6, 1.0), (0.3, 1.0), (0.3, -1.0), (1.7, -1.0)])
 def test_the_integrals_of_a_force_with_a_kink(k, root, q):
     """∫ p_+^k and ∫ (1 - u) p_+^k over a step, against SciPy's quadrature."""
-    chain = Chain(*np.zeros((4, 1)), k, False, 0, 0, 0, False)
+    chain = Chain(*np.zeros((5, 1)), k, False, 0, 0, 0, False, 0.0, None)
     coefficients = q * np.array([1.0, 0.2, -0.1, 0.05, 0.02])
     u, w = scipy.special.roots_jacobi(8, 0.0, k)
     points = np.stack(((1 + u) / 2, w / 2 ** (k + 1)))

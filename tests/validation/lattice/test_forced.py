@@ -183,7 +183,7 @@ def test_a_drive_from_rows_is_the_motion_that_they_sample():
         (lambda: Drive(time=(0, 1), displacement=(0, 1)), "drive has 2 times and 2 displacements"),
         (lambda: pair(1.5, drive=Drive(velocity=1)), "drive moves bead 1, which has a velocity"),
         (lambda: simulate(pair(1.5, damping=Damping("contact", 1)), method="SRKN14"),
-         "method is SRKN14: a scene with damping or a drive takes one of DOP853"),
+         "method is SRKN14: a scene with damping or a drive takes one of RKN86"),
     ],
 )  # fmt: skip
 def test_bad_damping_and_drives_are_refused(wrong, message):

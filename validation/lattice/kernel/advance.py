@@ -29,7 +29,23 @@ def _split(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) -> None:
 
 
 @part
-def _follow(beads: Beads, plan: Plan, now: Any) -> None:
+def moving(now: Any) -> int:
+    """Return the number of beads to be moved, a multiple of `BLOCK`."""
+    return int(max(SHORTEST, -(-now.front // BLOCK) * BLOCK))
+
+
+@part
+def cut(plan: Plan, now: Any) -> tuple[float, float]:
+    """Return the length of the next step and its end, which is the next stop if that is as near."""
+    h, stop = now.h, plan.stops[now.stop]
+    if now.t + h > stop - 1e-9 * h:
+        now.planned = max(now.planned, h)
+        return stop - now.t, stop
+    return h, now.t + h
+
+
+@part
+def follow(beads: Beads, plan: Plan, now: Any) -> None:
     """Move the front to the first bead that is still."""
     while now.front < plan.size and abs(beads.y[now.front - MARGIN]) > _STILL * plan.deepest:
         now.front += 1
@@ -53,20 +69,20 @@ def _built(sources: int) -> Any:
         if now.stored == 0:
             store_knot(chain, beads, plan, knots, now, plan.size)
         while now.t < plan.end and now.tries < until and now.stored < len(knots.time):
-            hi = max(SHORTEST, -(-now.front // BLOCK) * BLOCK)
+            hi = moving(now)
             now.tries += 1
             now.evaluations += stages * hi
-            h = now.h
-            later = now.t + h if pair else (now.steps + 1) * h
-            if later > plan.end - 1e-9 * h:
-                later, h = plan.end, plan.end - now.t
+            h, later = cut(plan, now)
+            if not pair and later < plan.end:
+                later = (now.steps + 1) * h
             if not pair:
                 _split(chain, beads, plan, h, hi)
             elif not accepted(chain, beads, plan, now, h, hi):
                 continue
             now.steps += 1
             now.t = later
-            _follow(beads, plan, now)
+            now.stop += 1 if later == plan.stops[now.stop] else 0
+            follow(beads, plan, now)
             store_knot(chain, beads, plan, knots, now, hi)
         return now.t, sources
 

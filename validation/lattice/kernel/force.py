@@ -10,7 +10,7 @@ from lwa.base.arrays import Array
 from validation.lattice.kernel.arrays import Beads, Chain, Plan
 from validation.lattice.kernel.compiled import ONE, call, index, part
 
-_NEGLIGIBLE = 1e-60  # in units of the greatest compression: less is 0, so that no denormals arise
+NEGLIGIBLE = 1e-60  # in units of the greatest compression: less is 0, so that no denormals arise
 
 
 def _loop(value: Any) -> Any:
@@ -43,7 +43,7 @@ def contact_forces(chain: Chain, beads: Beads, plan: Plan, y: Array, s: Any, hi:
     y : displacements. The result goes to row s (stage) of ``beads.force``, in column i + 1 for the
     contact ahead of bead i.
     """
-    f, least = beads.force[s], _NEGLIGIBLE * plan.deepest
+    f, least = beads.force[s], NEGLIGIBLE * plan.deepest
     if chain.generated:
         for i in range(index(hi)):
             d = chain.rest[i] + y[i] - y[i + ONE]

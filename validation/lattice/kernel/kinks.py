@@ -9,9 +9,9 @@ side is computed by Gauss–Jacobi quadrature, to which the kink costs no accura
 from __future__ import annotations
 
 from lwa.base.arrays import Array
-from validation.lattice.kernel.arrays import Chain
+from validation.lattice.kernel.arrays import Beads, Chain
 from validation.lattice.kernel.compiled import part, summed
-from validation.lattice.kernel.force import power
+from validation.lattice.kernel.force import power, relative_acceleration
 
 Quintic = tuple[float, float, float, float, float, float]
 """Coefficients of p; for a kink the root r, then the five coefficients of q."""
@@ -35,6 +35,25 @@ def fitted_quintic(d: float, v: float, a: float, end: float, end_v: float, end_a
     # c3, c4 and c5 solve the conditions at x = 1, of which d, v and c2 leave r0, r1 and r2.
     r0, r1, r2 = end - d - v - c2, end_v - v - 2 * c2, end_a - 2 * c2
     return (d, v, c2, 10 * r0 - 4 * r1 + r2 / 2, -15 * r0 + 7 * r1 - r2, 6 * r0 - 3 * r1 + r2 / 2)
+
+
+@part
+def fitted_compression(
+    chain: Chain, beads: Beads, h: float, last: int, i: int
+) -> tuple[Quintic, float]:
+    """Return the quintic fit p of contact i's compression over a step, and p(1).
+
+    last : the stage at the step's end.
+    """
+    y, v, force, inverse = beads.y, beads.v, beads.force, chain.inverse
+    d = chain.rest[i] + y[i] - y[i + 1]
+    end = chain.rest[i] + beads.next_y[i] - beads.next_y[i + 1]
+    speed, later = h * (v[i] - v[i + 1]), h * (beads.next_v[i] - beads.next_v[i + 1])
+    a = h * h * relative_acceleration(force[0], inverse, i)
+    end_a = h * h * relative_acceleration(force[last], inverse, i)
+    if i == 0:
+        a, end_a = a + h * h * beads.given[0], end_a + h * h * beads.given[1]
+    return fitted_quintic(d, speed, a, end, later, end_a), end
 
 
 @part

@@ -14,11 +14,12 @@ from typing import Any
 from lwa.base.arrays import Array
 from validation.lattice.kernel.arrays import WIDTH, Beads, Chain, Plan, Tableau
 from validation.lattice.kernel.compiled import ONE, THREE, TWO, ZERO, index, part, summed
-from validation.lattice.kernel.force import contact_forces, power, relative_acceleration
+from validation.lattice.kernel.drive import drive_motion, interval
+from validation.lattice.kernel.force import contact_forces, power
 from validation.lattice.kernel.kinks import (
     NEAR,
     Quintic,
-    fitted_quintic,
+    fitted_compression,
     kink,
     kink_integrals,
     quintic,
@@ -65,12 +66,13 @@ def _squared_error(sums: Array, inverse: Array, hi: int) -> float:
 
 
 @part
-def _attempt(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) -> float:
-    """Try a step of the beads 0 … hi-1; return the error in units of the tolerance."""
+def _attempt(chain: Chain, beads: Beads, plan: Plan, t: float, h: float, hi: int) -> float:
+    """Try a step of the beads 0 … hi-1 at time t; return the error in units of the tolerance."""
     stages = len(plan.scheme.nodes)
     y, v, next_y, next_v = beads.y, beads.v, beads.next_y, beads.next_v
     inverse, rest, force, sums = chain.inverse, chain.rest, beads.force, beads.sums
     rows, ends, nodes = plan.scheme.rows, plan.scheme.ends, plan.scheme.nodes
+    drive, n, speed = chain.drive, interval(chain.drive, t + h / 2), 0.0
     for s in range(1, stages):
         _add_up(sums, ZERO, force, rows[s], h * h, s, hi)
         ch = nodes[s] * h
@@ -79,12 +81,19 @@ def _attempt(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) -> float
             ahead = sums[ZERO, i + ONE]
             next_y[i] = y[i] + ch * v[i] + (behind - ahead) * inverse[i]
             behind = ahead
+        if drive.driven:
+            next_y[0], speed, beads.given[1] = drive_motion(drive, n, t + ch)
         contact_forces(chain, beads, plan, next_y, index(s), hi)
+        beads.power[1, s] = speed * force[s, 1]
     _add_up(sums, ONE, force, ends[0], h, stages, hi)
     _add_up(sums, TWO, force, ends[1], h * h / plan.y, stages, hi)
     _add_up(sums, THREE, force, ends[2], h / plan.v, stages, hi)
     for i in range(index(hi)):
         next_v[i] = v[i] + (sums[ONE, i] - sums[ONE, i + ONE]) * inverse[i]
+    if drive.driven:
+        next_v[0] = speed
+        _, _, beads.given[0] = drive_motion(drive, n, t)
+    beads.given[2] = beads.given[3] = 0.0
     # Mark contacts that open or close within the step or near it, with a force that matters.
     # A compression δ changes a velocity by at most h A δ^k/m in a step.
     least = (_SLIGHT * plan.v / (h * plan.quickest)) ** (1.0 / chain.k)
@@ -98,7 +107,17 @@ def _attempt(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) -> float
         near += 1 if kinked else 0
     if near > 0 and plan.scheme.points.shape[1] > 0:
         _correct_kinks(chain, beads, plan, h, hi)
-    return math.sqrt(_squared_error(sums, inverse, hi))
+    missed = (h * _integral(ends[2], beads.power[1]) - beads.given[3]) / plan.energy
+    return math.sqrt(_squared_error(sums, inverse, hi) + missed * missed)
+
+
+@summed
+def _integral(row: Array, power: Array) -> float:
+    """Return Σ row[s] power[s] over the stages s."""
+    total = 0.0
+    for s in range(len(row)):
+        total += row[s] * power[s]
+    return total
 
 
 @part
@@ -126,7 +145,7 @@ def _correct_contact(chain: Chain, beads: Beads, plan: Plan, h: float, i: int) -
     force F - A p_+^k, which is smoother, remains.
     """
     inverse, scheme = chain.inverse, plan.scheme
-    p, end = _fitted_compression(chain, beads, h, len(scheme.nodes) - 1, i)
+    p, end = fitted_compression(chain, beads, h, len(scheme.nodes) - 1, i)
     factored = kink(p, end)
     if math.isnan(factored[0]):
         return
@@ -147,23 +166,11 @@ def _correct_contact(chain: Chain, beads: Beads, plan: Plan, h: float, i: int) -
     beads.next_v[i + 1] += impulse * inverse[i + 1]
     beads.next_y[i] -= moment * inverse[i]
     beads.next_y[i + 1] += moment * inverse[i + 1]
-    beads.sums[1, i + 1] += impulse
+    if i == 0:  # ∫ ΔF v dt with v = next_v - (1 - x) h a
+        beads.given[2] = impulse * beads.next_v[0] - moment * beads.given[1]
+        beads.given[3] = chain.A[0] * h * error_once * beads.next_v[0]
     beads.sums[2, i + 1] -= chain.A[i] * h * h * error / plan.y
     beads.sums[3, i + 1] -= chain.A[i] * h * error_once / plan.v
-
-
-@part
-def _fitted_compression(
-    chain: Chain, beads: Beads, h: float, last: int, i: int
-) -> tuple[Quintic, float]:
-    """Return the quintic fit p of a contact's compression over the step, and p(1)."""
-    y, v, force, inverse = beads.y, beads.v, beads.force, chain.inverse
-    d = chain.rest[i] + y[i] - y[i + 1]
-    end = chain.rest[i] + beads.next_y[i] - beads.next_y[i + 1]
-    speed, later = h * (v[i] - v[i + 1]), h * (beads.next_v[i] - beads.next_v[i + 1])
-    a = h * h * relative_acceleration(force[0], inverse, i)
-    end_a = h * h * relative_acceleration(force[last], inverse, i)
-    return fitted_quintic(d, speed, a, end, later, end_a), end
 
 
 @summed
@@ -186,17 +193,21 @@ def _pair_sums(chain: Chain, scheme: Tableau, p: Quintic) -> tuple[float, float,
 @part
 def accepted(chain: Chain, beads: Beads, plan: Plan, now: Any, h: float, hi: int) -> bool:
     """Try a step, set the next step from the error, and return True if the step is accepted."""
-    error = _attempt(chain, beads, plan, h, hi)
+    error = _attempt(chain, beads, plan, now.t, h, hi)
     root = -1.0 / (plan.scheme.lower + 1)
     if not error <= 1.0:  # NaN included
         hopeless = not error < _HOPELESS
         now.h = h * (_SHRINKAGE if hopeless else max(_SHRINKAGE, _SAFETY * error**root))
+        now.planned = 0.0
         if hopeless:
             beads.force[1:] = 0.0  # overflows must not last
         return False
     for i in range(index(hi)):
         beads.y[i], beads.v[i] = beads.next_y[i], beads.next_v[i]
+    now.work += h * _integral(plan.scheme.ends[0], beads.power[1]) + beads.given[2]
+    now.response = max(now.response, now.energy + now.work)
     contact_forces(chain, beads, plan, beads.y, ZERO, hi)
-    now.impulse += beads.sums[ONE, ONE]
-    now.h = min(plan.longest, h * min(_GROWTH, _SAFETY * max(error, 1e-9) ** root))
+    beads.power[1, 0] = beads.v[0] * beads.force[0, 1] if chain.drive.driven else 0.0
+    grow = h * min(_GROWTH, _SAFETY * max(error, 1e-9) ** root)
+    now.h, now.planned = min(plan.longest, max(grow, now.planned)), 0.0
     return True

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from lwa.base.arrays import Array
 from validation.lattice.kernel.arrays import Beads, Chain, Knots, Plan
 from validation.lattice.kernel.compiled import SOURCES, ZERO, cached, part
+from validation.lattice.kernel.drive import drive_motion, interval
 from validation.lattice.kernel.force import contact_forces, power, stiffness
 from validation.lattice.kernel.kinks import (
     NEAR,
@@ -45,6 +46,8 @@ def store_knot(chain: Chain, beads: Beads, plan: Plan, knots: Knots, now: Any, h
         j, state = knots.watched[q], knots.state[now.stored, q]
         force = beads.force[0, j] - beads.force[0, j + 1]
         state[0], state[1], state[2] = beads.y[j], beads.v[j], force * chain.inverse[j]
+        if j == 0 and chain.drive.driven:
+            _, _, state[2] = drive_motion(chain.drive, interval(chain.drive, now.t), now.t)
     now.stored += 1
 
 
