@@ -174,6 +174,13 @@ def Dimer(
     return Cell(masses, stiffnesses=tuple(stiffnesses), spacing=spacing)
 
 
+def read_cell(value: Any, name: str = "cell") -> Cell:
+    """Return a cell; raise `lwa.InputError` for anything else."""
+    if not isinstance(value, Cell):
+        raise InputError(f"{name} is {shorten(value)}: a Cell such as Dimer(m1, m2) is wanted")
+    return value
+
+
 def exponent(value: Any, cell: Cell | None = None) -> sp.Expr:
     """Read the exponent k of F = A δ^k exactly, for the chain of a cell.
 

@@ -33,7 +33,7 @@ from lwa.base.exact import (
     signed,
 )
 from lwa.base.frozen import Value
-from lwa.cell import RESERVED, Cell, check_distinct, check_names, exponent, substitution
+from lwa.cell import RESERVED, Cell, check_distinct, check_names, exponent, read_cell, substitution
 from lwa.cell import k as symbol_k
 
 DELTA = sp.Symbol("delta", positive=True)
@@ -378,5 +378,5 @@ def for_cell(law: Any, cell: Cell) -> ContactLaw:
     """Return a law; raise `lwa.InputError` unless it is a law that fits the cell's contacts."""
     if not isinstance(law, ContactLaw):
         raise InputError(f"law is {shorten(law)}: Power(k), Law(F, delta) or general() is wanted")
-    law.check_contacts(cell)
+    law.check_contacts(read_cell(cell))
     return law

@@ -10,9 +10,9 @@ import sympy as sp
 
 from lwa.algebra.model import Model
 from lwa.base import latex
-from lwa.base.exact import InputError, integer, one_of, shorten
+from lwa.base.exact import InputError, integer, one_of
 from lwa.base.progress import shown
-from lwa.cell import Cell, exponent
+from lwa.cell import Cell, exponent, read_cell
 from lwa.cell import k as symbol_k
 from lwa.closure.consistency import BRANCHES, CLOSURES, FIELDS, OfClosure, solve
 from lwa.equation.evolution import Evolution
@@ -160,8 +160,7 @@ def homogenize(
     >>> theory.pde.H
     D**2*(k - 1)*(2*m1 - m2)/(3*(m1 + m2))
     """
-    if not isinstance(cell, Cell):
-        raise InputError(f"cell is {shorten(cell)}: a Cell such as Dimer(m1, m2) is wanted")
+    read_cell(cell)
     order = integer(order, "order", 1)
     for word, known, name in (
         (closure, CLOSURES, "closure"),

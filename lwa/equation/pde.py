@@ -23,7 +23,7 @@ import sympy as sp
 from flint import fmpq_mpoly
 
 from lwa.base import latex
-from lwa.base.exact import InputError, integer, power, read_exact
+from lwa.base.exact import InputError, integer, power, read_exact, shorten
 from lwa.closure.consistency import OfClosure
 from lwa.equation.energy import energy, flux, variational
 from lwa.equation.terms import ENERGY, Jet, Terms, base_order, by_order, terms
@@ -228,6 +228,8 @@ class PDE(OfClosure):
         >>> pde.H, pde.in_field({2: "alpha"}).H
         (D**2*(k/6 - 1/6), D**2*(12*alpha + 1)*(k - 1)/6)
         """
+        if not isinstance(alphas, Mapping):
+            raise InputError(f"alphas is {shorten(alphas)}: a mapping {{n: alpha_n}} is wanted")
         shifts = {integer(n, "n", 1): read_exact(a, f"alpha_{n}") for n, a in alphas.items()}
         return PDE(self.closure.in_field(shifts))
 

@@ -21,7 +21,7 @@ from lwa.base.frozen import Value
 from lwa.base.progress import announced
 from lwa.base.quantities import QUANTITIES as QUANTITIES
 from lwa.base.quantities import known_quantity
-from lwa.cell import Cell, exponent, substitution
+from lwa.cell import Cell, exponent, read_cell, substitution
 from lwa.cell import k as symbol_k
 from lwa.expansion.observables import Observables, shares_model
 from lwa.expansion.series import EpsilonSeries
@@ -211,8 +211,7 @@ def expand(
     >>> wave.fwhm("force").at(1.5).value.__round__(6)  # the uniform Hertz chain, in D
     1.411928
     """
-    if not isinstance(cell, Cell):
-        raise InputError(f"cell is {shorten(cell)}: a Cell such as Cell([1, 2]) is wanted")
+    read_cell(cell)
     order = integer(order, "order", 1)
     if law is not None:
         refuse_two_laws(k, law)

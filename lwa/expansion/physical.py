@@ -28,8 +28,8 @@ from lwa.expansion.approximants import Resummed
 from lwa.expansion.expand import Expansion, expand
 from lwa.expansion.series import EpsilonSeries
 
-GRAVITY = sp.Rational("9.80665")
-"""Standard gravity in m/s², of strikers that drop."""
+GRAVITY = sp.Rational("9.81")
+"""Gravity in m/s², of strikers that drop and of the scenes."""
 
 ORDER = 10
 """Order in k - 1 of the sums for strikes and shocks."""

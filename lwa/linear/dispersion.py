@@ -23,9 +23,9 @@ from flint import fmpq_mpoly
 
 from lwa.algebra.model import Model
 from lwa.base import latex
-from lwa.base.exact import InputError, demand_numbers, integer, one_of, positive, shorten
+from lwa.base.exact import InputError, demand_numbers, integer, one_of, positive
 from lwa.base.frozen import Value
-from lwa.cell import Cell, exponent, substitution
+from lwa.cell import Cell, exponent, read_cell, substitution
 from lwa.law import ContactLaw, Power, for_cell
 from lwa.linear.bloch import BRANCHES, Bloch
 
@@ -89,8 +89,7 @@ class Dispersion(_Banded):
     k: sp.Expr = sp.S.One
 
     def __post_init__(self) -> None:
-        if not isinstance(self.cell, Cell):
-            raise InputError(f"cell is {shorten(self.cell)}: a Cell is wanted")
+        read_cell(self.cell)
         object.__setattr__(self, "k", exponent(self.k, self.cell))
 
     def at(self, **values: Any) -> Dispersion:

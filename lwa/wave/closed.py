@@ -28,7 +28,7 @@ from lwa.base import latex
 from lwa.base.exact import InputError, positive, power, shorten, signed
 from lwa.base.frozen import Value
 from lwa.base.quantities import RISE, SPEED, NoSolitaryWave, strain_power
-from lwa.cell import Cell, exponent, substitution
+from lwa.cell import Cell, exponent, read_cell, substitution
 from lwa.linear.dispersion import Dispersion
 
 _RATIOS = sp.symbols("g h", cls=sp.Dummy)
@@ -132,7 +132,7 @@ class CompactWave(Value):
     @classmethod
     def canonical(cls, cell: Cell, k: Any) -> Self:
         """The wave of the canonical field of a cell; see `lwa.canonical_wave`."""
-        k = exponent(k, cell)
+        k = exponent(k, read_cell(cell))
         I = Dispersion(cell, k).I * cell.spacing**2
         # G and H follow from I for every cell (theorem, see `lwa.equation.energy`).
         return cls(cell=cell, k=k, G=I * (k - 1) * (k - 2) / 2, H=2 * I * (k - 1), I=I)

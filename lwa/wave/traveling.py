@@ -10,7 +10,7 @@ from lwa.base.exact import InputError, number, read_exact, shorten
 from lwa.base.quantities import strain_power
 from lwa.cell import Cell
 from lwa.cell import k as symbol_k
-from lwa.law import Power
+from lwa.law import ContactLaw, Power, for_cell, refuse_two_laws
 from lwa.wave.background import BackgroundWave
 from lwa.wave.closed import CompactWave
 from lwa.wave.physical import PhysicalWave, PrecompressedWave
@@ -58,6 +58,8 @@ class TravelingWave(CompactWave):
             from matplotlib import pyplot  # start-up: only a figure needs it
 
             ax = pyplot.figure().add_subplot()
+        elif not hasattr(ax, "plot"):
+            raise InputError(f"ax is {shorten(ax)}: Matplotlib's axes are wanted")
         k, beta = number(self.k), number(self.beta * self.D)
         phase = np.linspace(-0.6, 0.6, 501) * np.pi
         arch = np.where(np.abs(phase) < np.pi / 2, np.cos(phase), 0.0)
@@ -104,7 +106,9 @@ class TravelingWave(CompactWave):
         return wave_code(self, language)
 
 
-def canonical_wave(cell: Cell, k: Any = symbol_k) -> TravelingWave:
+def canonical_wave(
+    cell: Cell, k: Any = symbol_k, *, law: ContactLaw | None = None
+) -> TravelingWave:
     """The wave of the canonical field of any cell, from the linear chain's dispersion alone.
 
     With Ω² = κ² (1 - I κ² + …) the equation of the canonical field has G = I (k-1)(k-2)/2 and
@@ -112,7 +116,17 @@ def canonical_wave(cell: Cell, k: Any = symbol_k) -> TravelingWave:
     β = (k-1)/√(2I k(k+1)) and V² = 2 B^{k-1}/(k(k+1)). It is the wave of
     ``homogenize(cell, closure="full", field="center").pde.traveling_wave()``.
 
+    law : a `lwa.Power` in place of k; raises `lwa.InputError` for other laws.
+
     >>> canonical_wave(Cell((1, 1)), "3/2").beta
     sqrt(10)/(5*D)
     """
+    if law is not None:
+        refuse_two_laws(k, for_cell(law, cell))
+        if not law.homogeneous:
+            raise InputError(
+                f"law is {law.text}: the compact wave is that of a power law; waves of any law are "
+                "those of `lwa.background_wave`"
+            )
+        k = law.exponent
     return TravelingWave.canonical(cell, k)

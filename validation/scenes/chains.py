@@ -12,13 +12,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lwa import Cell
+from lwa.expansion import physical
 from lwa.spheres.hertz import Material, Sphere
 from validation.scenes.checks import SceneError
 from validation.scenes.scene import Scene
 
 STEEL, PTFE = Material.named("steel 316"), Material.named("PTFE")
 DIAMETER = 4.76e-3  # of all beads, in m
-GRAVITY = 9.81  # in m/s²
+GRAVITY = float(physical.GRAVITY)  # in m/s²
 STEEL_BEAD = Sphere("0.45e-3", DIAMETER / 2, STEEL)
 PTFE_BEAD = Sphere("0.123e-3", DIAMETER / 2, PTFE)
 

@@ -180,7 +180,7 @@ def test_a_strike_in_si_units_and_by_its_drop():
         assert found.value == sum_.value
         assert found.error == pytest.approx(sum_.error + share * found.value)
     dropped = pulse_of_strike(other.chain.cell, "1/2000", drop=0.5)
-    same = pulse_of_strike(other.chain.cell, "1/2000", (2 * 9.80665 * 0.5) ** 0.5)
+    same = pulse_of_strike(other.chain.cell, "1/2000", (2 * 9.81 * 0.5) ** 0.5)
     assert dropped.force.value == pytest.approx(same.force.value, rel=1e-12)
 
 
