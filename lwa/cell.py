@@ -19,7 +19,7 @@ from typing import Any
 import sympy as sp
 
 from lwa.base import latex
-from lwa.base.exact import InputError, integer, positive, power, read_exact, shorten
+from lwa.base.exact import InputError, Quantity, integer, positive, power, read_exact, shorten
 from lwa.base.frozen import Value
 from lwa.spheres.hertz import Sphere, stiffness
 
@@ -45,7 +45,7 @@ MOST_PARTICLES = 1000
 """Most particles of a dimer's cell; beyond them even the simplest theory takes minutes."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, init=False)
 class Cell(Value):
     """A periodic cell of P particles.
 
@@ -57,12 +57,17 @@ class Cell(Value):
     """
 
     masses: tuple[sp.Expr, ...]
-    stiffnesses: tuple[sp.Expr, ...] = ()
-    spacing: sp.Expr = D
+    stiffnesses: tuple[sp.Expr, ...]
+    spacing: sp.Expr
 
-    def __post_init__(self) -> None:
-        masses = _quantities(self.masses, "masses", "mass")
-        stiffnesses = _quantities(self.stiffnesses, "stiffnesses", "stiffness")
+    def __init__(
+        self,
+        masses: Iterable[Quantity],
+        stiffnesses: Iterable[Quantity] = (),
+        spacing: Quantity = D,
+    ) -> None:
+        masses = _quantities(masses, "masses", "mass")
+        stiffnesses = _quantities(stiffnesses, "stiffnesses", "stiffness")
         if not masses:
             raise InputError("a cell needs at least one mass")
         if len(stiffnesses) not in (0, len(masses)):
@@ -72,8 +77,8 @@ class Cell(Value):
             )
         object.__setattr__(self, "masses", masses)
         object.__setattr__(self, "stiffnesses", stiffnesses or (sp.S.One,) * len(masses))
-        spacing = positive(self.spacing, "spacing")
-        object.__setattr__(self, "spacing", check_names(spacing, "spacing", D.name))
+        read = check_names(positive(spacing, "spacing"), "spacing", D.name)
+        object.__setattr__(self, "spacing", read)
         check_distinct(self.symbols)
 
     def latex_rows(self) -> list[str]:

@@ -14,7 +14,6 @@ from __future__ import annotations
 import math
 import re
 import sys
-import textwrap
 import unicodedata
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -30,6 +29,7 @@ from sympy.printing.numpy import NumPyPrinter
 from sympy.printing.precedence import PRECEDENCE
 
 from lwa.base.exact import InputError, shorten
+from lwa.base.lines import wrapped
 
 WIDTH = 79
 
@@ -144,12 +144,7 @@ class Writer:
         >>> NumPy.wrapped("def beta(" + "k, " * 25 + "m):")[1]
         '        k, k, m):'
         """
-        start = line[: len(line) - len(line.lstrip())]
-        wrapper = _Wrapper(
-            WIDTH - len(cls.more), subsequent_indent=f"{start}        ", break_long_words=False
-        )
-        *lines, last = wrapper.wrap(line)
-        return [*(part + cls.more for part in lines), last]
+        return wrapped(line, WIDTH, cls.more)
 
     def _folded(self, name: str) -> str:
         return name.lower() if self.ignores_case else name
@@ -189,12 +184,6 @@ class Writer:
 
     def _format_code(self, lines: list[str]) -> list[str]:
         return lines
-
-
-class _Wrapper(textwrap.TextWrapper):
-    """Line breaker that works after commas and operators, but not within or after **."""
-
-    wordsep_re = re.compile(r"((?<=[,+-])\s+|(?<=[^*/][*/])(?![*/]))")
 
 
 def _letter(c: str) -> str:

@@ -1,13 +1,21 @@
 """The README's example, commands, demonstrations, picture and version."""
 
 import json
+import os
 import re
 import runpy
+import shlex
+import subprocess
+import sys
 import tomllib
 from pathlib import Path
 
 import pytest
 from PIL import Image
+
+from lwa.command.cli import main as lwa_main
+from tests.commands import ended, started
+from validation.cli import main as validate_main
 
 ROOT = Path(__file__).parent.parent
 README, CHANGELOG, CATALOGUE = (
@@ -21,6 +29,56 @@ def test_the_python_example(capsys):
     expected = re.findall(r"^print\(.*\)\s+# ([^:\n]*)", example, re.MULTILINE)
     assert capsys.readouterr().out.splitlines() == expected
     assert len(expected) == example.count("print(")
+
+
+def test_the_python_example_passes_a_users_type_checker(tmp_path):
+    """mypy --strict, but for SymPy itself, which has no types."""
+    (example,) = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
+    (tmp_path / "program.py").write_text(example)
+    strict = (
+        "--strict",
+        "--disable-error-code=import-untyped",
+        f"--cache-dir={tmp_path / 'cache'}",
+    )
+    call = [sys.executable, "-m", "mypy", *strict, "program.py"]
+    environment = os.environ | {"PYTHONPATH": str(ROOT)}
+    found = subprocess.run(
+        call, cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=120
+    )
+    assert found.returncode == 0, found.stdout
+
+
+BLOCK = re.findall(r"^\$ (.*?)(?:\s{2,}#.*)?$", CATALOGUE.split("```")[1], re.MULTILINE)
+
+
+def test_the_commands_run_one_after_the_other(capsys, monkeypatch, tmp_path, engine):
+    """Those of `lwa` and those of files, in this process; text stays within 100 columns."""
+    monkeypatch.chdir(tmp_path)
+    mains = {"lwa": lwa_main, "lwa-validate": validate_main}
+    files = ("lwa ", "lwa-validate run", "lwa-validate pulses", "lwa-validate compare")
+    for line in filter(lambda x: x.startswith(files), BLOCK):
+        command, _, file = line.partition(" > ")
+        name, *arguments = shlex.split(command)
+        status, out, err = ended(capsys, mains[name], *arguments)
+        assert status == 0, (line, err)
+        if file:
+            Path(file).write_text(out)
+        elif name == "lwa" and "json" not in command:
+            assert max(map(len, out.splitlines())) <= 100, line
+
+
+@pytest.mark.slow
+def test_all_commands_run_one_after_the_other(tmp_path):
+    """Pasted in a shell that stops at the first error."""
+    programs = "".join(
+        f'{name}() {{ "{sys.executable}" -m {module} "$@"; }}\n'
+        for name, module in (("lwa", "lwa"), ("lwa-validate", "validation"))
+    )
+    environment = os.environ | {"PYTHONPATH": str(ROOT)}
+    script = ("bash", "-euc", programs + "\n".join(BLOCK))
+    with started(*script, limit=1200, cwd=tmp_path, env=environment) as shell:
+        _, err = shell.communicate()
+    assert shell.returncode == 0, err
 
 
 def test_the_commands_exist():

@@ -18,9 +18,11 @@ import sympy as sp
 from lwa.base import latex
 from lwa.base.exact import InputError, evaluated
 from lwa.base.frozen import Shown
+from lwa.base.lines import wrapped
 from lwa.expansion.approximants import Resummed
 
 PRINTED_DIGITS = 15  # significant digits of a printed number, all of them correct
+WIDTH = 100  # columns of text
 LONG = 160  # characters of an exact number beyond which text has its digits alone
 
 Values = dict[str, Any]
@@ -126,7 +128,9 @@ class Answer:
             elif row.label:
                 lines.append(f"  {row.label}{self._value_text(row)}")
         lines += [part.text() for part in self.parts.values()]
-        return "\n".join([*lines, *(f"\nNote: {note}" for note in self.notes)])
+        lines += [f"\nNote: {note}" for note in self.notes]
+        rows = (line for part in lines for line in part.split("\n"))
+        return "\n".join(line for row in rows for line in wrapped(row, WIDTH, words=True))
 
     def _value_text(self, row: Row) -> str:
         unit = f" {row.unit}" if self.si and row.unit else ""

@@ -120,7 +120,7 @@ def test_text_of_the_paper(capsys):
         "  vanishing identically: D^(k+2)",
     ):
         assert line in out.splitlines()
-    assert "does not conserve momentum; see --closure full" in out
+    assert "does not conserve momentum; see --closure full" in " ".join(out.split())
 
 
 def test_full_closure(capsys):
@@ -414,7 +414,14 @@ def test_units_are_printed_near_k_one(capsys):
     status, out, _ = run(capsys, "wave", "--k", "1.000000001", "--masses", "1,2")
     assert status == 0
     assert "k = 1000000001/1000000000" in out
-    assert re.findall(r"≈ \S+ (D\S*)", out) == ["D^-1", "D", "D", "D", "D", "D^-2"]
+    assert re.findall(r"≈ \S+ (D\S*)", " ".join(out.split())) == [
+        "D^-1",
+        "D",
+        "D",
+        "D",
+        "D",
+        "D^-2",
+    ]
 
 
 @pytest.mark.parametrize(
@@ -443,4 +450,4 @@ def test_powers_of_the_full_closure_are_written_once(capsys, options):
 def test_long_exponents_are_printed(capsys, command):
     status, out, err = run(capsys, *command.split())
     assert (status, err) == (0, "")
-    assert max(map(len, out.splitlines())) < 6000
+    assert max(map(len, out.splitlines())) <= 100
