@@ -67,32 +67,6 @@ def test_a_run_can_be_interrupted(method):
         simulate(struck(20), method=method, progress=lambda: nullcontext(interrupt))
 
 
-BEYOND = [
-    (struck(20, 1e-32), {"method": "DOP853"}, "duration is 25:"),
-    (struck(20, 1e-300), {}, "duration is 25:"),
-    (struck(20, duration=1e300), {}, "duration is 1e.300:"),
-    (struck(20), {"step": 1e-12}, "duration is 25: .* 2e.13 steps"),
-    (struck(20), {"method": "SRKN14", "step": 1e-12}, "duration is 25: .* 2e.13 steps"),
-    (struck(20, bead_sensors=(1,), samples=10**9), {}, "samples is 1e.09:"),
-    (struck(20_000), {"method": "LSODA"}, "samples is 1001: .* 13 GB"),
-]  # fmt: skip
-
-
-@pytest.mark.parametrize(("what", "options", "message"), BEYOND)
-def test_too_many_steps_or_bytes_are_refused_before_the_run(what, options, message):
-    with pytest.raises(SceneError, match=f"^{message}"):
-        simulate(what, **options)
-
-
-def test_an_adaptive_method_has_a_bound_on_its_steps():
-    """Here rounding hides the motion: the steps would shrink to a millionth."""
-    pressed = struck(20, wall=1.0, gravity=1e12, duration=0.05)
-    with pytest.raises(cost.IntegrationError, match=r"^\d+ steps of RKN86"):
-        simulate(pressed, rtol=1e-12)
-    with pytest.raises(SceneError, match=r"^rtol is 1e-10:"):
-        record(pressed)
-
-
 # --- whatever a file holds ------------------------------------------------------------------
 
 powers = st.builds(lambda m, e: m * 10.0**e, st.floats(1, 9.99), st.integers(-320, 307))

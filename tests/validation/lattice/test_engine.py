@@ -9,13 +9,12 @@ import numpy as np
 import pytest
 import scipy
 
-from validation.lattice.cost import IntegrationError
 from validation.lattice.kernel.arrays import Chain
 from validation.lattice.kernel.kinks import kink_integrals
 from validation.lattice.schemes import SCHEMES
 from validation.lattice.simulate import COMPILED, simulate, simulate_many
 from validation.pulses.pulse import measure
-from validation.scenes.scene import Scene, SceneError
+from validation.scenes.scene import Scene
 
 
 def loaded(k, duration=8.0, **rest):
@@ -261,42 +260,6 @@ def test_many_scenes_run_as_single_ones_and_are_taken_lazily():
         assert run.scene is scene
         assert np.array_equal(run.contact_force, alone.contact_force)
         assert np.array_equal(run.displacements, alone.displacements)
-    with pytest.raises(SceneError, match=r"^rtol is 0"):
-        list(simulate_many(scenes, rtol=0))
-
-
-def test_a_scene_that_fails_among_many_is_returned_or_raised_in_its_place():
-    good = struck(4, 1.0, duration=1.0)
-    scenes = good, replace(good, velocities=(1e200,)), good
-    first, failure, last = simulate_many(scenes, errors="return", workers=2)
-    assert isinstance(failure, SceneError)
-    assert (first.scene, last.scene) == (good, good)
-    runs = simulate_many(scenes, workers=2)
-    assert next(runs) == first
-    with pytest.raises(SceneError, match="energy"):
-        next(runs)
-    with pytest.raises(SceneError, match=r"^errors is 'x'"):
-        next(simulate_many(scenes, errors="x"))
-
-
-def test_a_chain_without_motion():
-    scene = Scene(masses=(1, 1), stiffnesses=(1,), k=1.5, duration=1, bead_sensors=(0, 1))
-    run = simulate(scene, method="SRKN14")
-    assert not run.displacements.any()
-    assert run.energy_drift == run.momentum_drift == 0
-
-
-@pytest.mark.parametrize("method", COMPILED)
-def test_a_single_bead_flies(method):
-    scene = Scene(masses=(1,), stiffnesses=(), k=1.5, duration=20, velocities=(1,))
-    run = simulate(scene, method=method)
-    assert run.displacements == pytest.approx([20])
-
-
-@pytest.mark.parametrize("method", COMPILED)
-def test_a_bead_bounces_off_a_wall(method):
-    scene = Scene(masses=(1,), stiffnesses=(), k=1.5, wall=1.0, duration=20, velocities=(1,))
-    assert simulate(scene, method=method).velocities == pytest.approx([-1], abs=1e-6)
 
 
 def test_beads_that_fly_apart_feel_nothing():
@@ -306,28 +269,6 @@ def test_beads_that_fly_apart_feel_nothing():
     assert not run.contact_force.any()
     np.testing.assert_allclose(run.velocities, scene.velocities, atol=1e-15)
     assert run.energy_drift == pytest.approx(0, abs=1e-14)
-
-
-def test_a_step_that_is_too_long_is_not_silent():
-    scene = loaded(3.0, duration=1000.0)
-    with pytest.raises(IntegrationError, match=r"^the motion overflows: a step of 20 is too long"):
-        simulate(scene, method="SRKN14", step=20.0)
-
-
-@pytest.mark.parametrize(
-    ("options", "message"),
-    [
-        (dict(method="DOP853", step=0.1), "step is 0.1: DOP853 takes none"),
-        (
-            dict(method="SRKN14", step=1e-300),
-            "duration is 1:",
-        ),
-        (dict(method="s6"), "method is 's6': one of RKN86, SRKN14, DOP853, RK45, RK23, LSODA"),
-    ],
-)
-def test_bad_options(options, message):
-    with pytest.raises(SceneError, match=f"^{message}"):
-        simulate(struck(4, duration=1.0), **options)
 
 
 def test_rounding_noise_in_a_start_is_no_front():

@@ -12,7 +12,7 @@ from lwa.law import named
 from validation.lattice.simulate import simulate
 from validation.pulses.pulse import highest_pulse
 from validation.scenes.forcing import Damping, Drive, damping_ratio, restitution
-from validation.scenes.scene import Scene, SceneError
+from validation.scenes.scene import Scene
 from validation.waves.solver import exact_wave
 
 TIGHT = dict(rtol=1e-12, atol=1e-12)
@@ -169,23 +169,3 @@ def test_a_drive_from_rows_is_the_motion_that_they_sample():
                   bead_sensors=(0,))  # fmt: skip
     run = simulate(scene)
     assert run.bead_displacement[0] == pytest.approx(0.1 * run.time**3 / 400, abs=1e-7)
-
-
-@pytest.mark.parametrize(
-    ("wrong", "message"),
-    [
-        (lambda: Damping("x", 1), "damping is 'x': one of contact, kuwabara_kono, restitution"),
-        (lambda: Damping("restitution", 2), "restitution is 2: a coefficient from 0.01 to 1"),
-        (lambda: Damping("contact", -1), "contact is -1: it must be positive"),
-        (lambda: Drive(), "drive has not one motion"),
-        (lambda: Drive(amplitude=1, frequency=0), "drive.frequency is 0: it must be positive"),
-        (lambda: Drive(velocity=1, ramp="x"), "drive.ramp is 'x': it belongs to amplitude"),
-        (lambda: Drive(time=(0, 1), displacement=(0, 1)), "drive has 2 times and 2 displacements"),
-        (lambda: pair(1.5, drive=Drive(velocity=1)), "drive moves bead 1, which has a velocity"),
-        (lambda: simulate(pair(1.5, damping=Damping("contact", 1)), method="SRKN14"),
-         "method is SRKN14: a scene with damping or a drive takes one of RKN86"),
-    ],
-)  # fmt: skip
-def test_bad_damping_and_drives_are_refused(wrong, message):
-    with pytest.raises(SceneError, match=f"^{message}"):
-        wrong()

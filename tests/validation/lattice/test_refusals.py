@@ -1,0 +1,108 @@
+"""What `simulate` and `record` refuse: one line that begins with the name of the value."""
+
+from dataclasses import replace
+from decimal import Decimal
+from fractions import Fraction
+
+import pytest
+import sympy as sp
+
+from lwa.law import Law, named
+from validation.lattice import cost
+from validation.lattice.simulate import simulate, simulate_many
+from validation.pulses.sensors import record
+from validation.scenes.chains import struck
+from validation.scenes.forcing import Damping, Drive
+from validation.scenes.scene import Scene, SceneError
+
+CHAIN = struck((1,), 20, duration=25)
+FREE = replace(CHAIN, velocities=())
+X = sp.Symbol("x", positive=True)
+
+
+def tiny(mass):
+    return struck((1, mass), 20, duration=25)
+
+
+def pressed(law):
+    return Scene(masses=(1,), stiffnesses=(), wall=1, law=law, precompression=2, duration=1)
+
+
+REFUSED = [
+    ("x", {}, "scene is 'x'"),
+    (CHAIN, {"method": "Radau"}, "method is 'Radau': one of RKN86, SRKN14, DOP853, RK45"),
+    (replace(CHAIN, damping=Damping("contact", 1)), {"method": "SRKN14"}, "method is SRKN14"),
+    (CHAIN, {"method": "DOP853", "step": 0.1}, "step is 0.1"),
+    (CHAIN, {"rtol": 0}, "rtol is 0: it lies between 1e-13"),
+    (CHAIN, {"rtol": Fraction(1, 2)}, "rtol is 0.5"),
+    (CHAIN, {"rtol": 0.1000000001}, "rtol is 0.1000000001"),
+    (CHAIN, {"rtol": Decimal("sNaN")}, r"rtol is Decimal\('sNaN'\)"),
+    (CHAIN, {"rtol": float("nan")}, "rtol is nan"),
+    (CHAIN, {"rtol": [1e-9]}, r"rtol is \[1e-09\]"),
+    (CHAIN, {"atol": 1}, "atol is 1"),
+    (CHAIN, {"atol": "x"}, "atol is 'x'"),
+    # values beyond floats
+    (replace(CHAIN, velocities=(1e200,)), {}, "the scene's energy comes out as inf"),
+    (replace(CHAIN, velocities=(1e-200,)), {}, "the scene's energy comes out as 0"),
+    (replace(FREE, drive=Drive(velocity=1e300)), {}, "the scene's energy comes out as inf"),
+    (replace(FREE, drive=Drive(amplitude=1e300, frequency=1)), {}, "the scene's energy comes out"),
+    # laws that have no number in floats, or none at the load
+    (pressed(named("polynomial", 0, -1)), {}, "force is 2.0"),
+    (pressed(Law(sp.besseli(1, X), X)), {}, r"law is 'besseli\(1, x\)'"),
+    # more steps or memory than a run may take
+    (tiny(1e-32), {"method": "DOP853"}, "duration is 25: .* steps of DOP853; 1e.09 are"),
+    (tiny(1e-300), {}, "duration is 25"),
+    (replace(CHAIN, duration=1e300), {}, r"duration is 1e\+300"),
+    (CHAIN, {"step": 1e-12}, "duration is 25: .* 2e.13 steps"),
+    (CHAIN, {"method": "SRKN14", "step": 1e-12}, "duration is 25: .* 2e.13 steps"),
+    (replace(CHAIN, bead_sensors=(1,), samples=10**9), {}, r"samples is 1e\+09"),
+    (struck((1,), 20_000, duration=25), {"method": "LSODA"}, "samples is 1001: .* 13 GB"),
+]
+
+
+@pytest.mark.parametrize(("scene", "options", "named"), REFUSED)
+def test_a_scene_or_an_option_is_refused_by_name(scene, options, named):
+    with pytest.raises(SceneError, match=f"^{named}") as caught:
+        simulate(scene, **options)
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("rtol", [0, 1e-3, 1.0000001e-5, "x"])
+def test_a_recording_refuses_a_tolerance_of_no_error(rtol):
+    with pytest.raises(SceneError, match=f"^rtol is {rtol!r}"):
+        record(CHAIN, rtol=rtol)
+
+
+@pytest.mark.parametrize("method", ["RKN86", "DOP853"])
+def test_a_tolerance_is_any_kind_of_number(method):
+    plain = simulate(CHAIN, rtol=1e-6, method=method)
+    for rtol in (Fraction(1, 10**6), Decimal("1e-6")):
+        assert simulate(CHAIN, rtol=rtol, method=method) == plain
+
+
+def test_rounding_that_hides_the_motion_ends_a_run():
+    """The steps would shrink to a millionth; `record` sees it before the run."""
+    heavy = replace(CHAIN, wall=1.0, gravity=1e12, duration=0.05)
+    with pytest.raises(cost.IntegrationError, match=r"^\d+ steps of RKN86"):
+        simulate(heavy, rtol=1e-12)
+    with pytest.raises(SceneError, match=r"^rtol is 1e-10"):
+        record(heavy)
+
+
+def test_a_step_that_is_too_long_is_not_silent():
+    scene = replace(CHAIN, wall=1.0, precompression=1.0, k=3.0, duration=1000.0)
+    with pytest.raises(cost.IntegrationError, match=r"overflows: a step of 20 "):
+        simulate(scene, method="SRKN14", step=20.0)
+
+
+def test_a_scene_that_fails_among_many_is_returned_or_raised_in_its_place():
+    scenes = CHAIN, replace(CHAIN, velocities=(1e200,)), CHAIN
+    first, failure, last = simulate_many(scenes, errors="return", workers=2)
+    assert isinstance(failure, SceneError)
+    assert first == last == simulate(CHAIN)
+    runs = simulate_many(scenes, workers=2)
+    assert next(runs) == first
+    with pytest.raises(SceneError, match="energy"):
+        next(runs)
+    with pytest.raises(SceneError, match=r"^errors is 'x'"):
+        next(simulate_many(scenes, errors="x"))
