@@ -94,10 +94,7 @@ def test_the_trees():
 @pytest.mark.parametrize("pair", [RKN86])
 def test_the_order_of_both_solutions(pair):
     """The order of y and v, and no more; the last stage is the first one of the next step."""
-    rows = (
-        (pair.rows[-1], pair.speeds, pair.order),
-        (pair.low, pair.low_speeds, pair.lower),
-    )
+    rows = ((pair.rows[-1], pair.speeds, pair.order), (pair.low, pair.low_speeds, pair.lower))
     for displacements, speeds, most in rows:
         assert not misses(pair, displacements, most, 2)
         assert not misses(pair, speeds, most, 1)

@@ -66,7 +66,7 @@ def test_a_signal_is_as_good_as_the_run_between_any_samples():
     run = simulate(
         Scene(
             masses=(1, 1), stiffnesses=(1,), k=k, velocities=(1,), duration=6, samples=2,
-            contact_sensors=(0,),
+            contact_sensors=(0,)
         ),
         rtol=1e-10,
     )  # fmt: skip

@@ -1,22 +1,20 @@
 """The equations of motion against what is known exactly: no stored outputs."""
 
 import math
-import pickle
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from matplotlib.figure import Figure
 from scipy.interpolate import CubicSpline
 
-from lwa import InputError
 from validation.lattice.cost import IntegrationError
 from validation.lattice.simulate import METHODS, simulate
-from validation.pulses.pulse import measure, speed
+from validation.pulses.pulse import measure
+from validation.scenes.chains import struck
 from validation.scenes.forcing import Damping
-from validation.scenes.scene import Scene, SceneError
+from validation.scenes.scene import Scene
 
 TIGHT = dict(rtol=1e-11, atol=1e-11)
 
@@ -36,18 +34,8 @@ def test_two_beads_collide(k, m1, m2, A, v):
     deepest = ((k + 1) * mu * v**2 / (2 * A)) ** (1 / (k + 1))
     q = 1 / (k + 1)
     lasting = 2 * deepest / v * math.sqrt(math.pi) * math.gamma(1 + q) / math.gamma(0.5 + q)
-    run = simulate(
-        Scene(
-            masses=(m1, m2),
-            stiffnesses=(A,),
-            k=k,
-            duration=1.2 * lasting,
-            velocities=(v,),
-            contact_sensors=(0,),
-            samples=2001,
-        ),
-        **TIGHT,
-    )
+    pair = struck((m1, m2), 2, k, duration=1.2 * lasting, contact_sensors=(0,), samples=2001)
+    run = simulate(replace(pair, stiffnesses=(A,), velocities=(v,)), **TIGHT)
     common = m1 * v / (m1 + m2)
     # The step in which the contact opens holds a kink that the error estimate can miss.
     assert run.velocities == pytest.approx([2 * common - v, 2 * common], abs=2e-7 * v)
@@ -210,16 +198,10 @@ def scaled(chain, length, mass, **options):
     """The final velocities and the evaluations of a chain in other units of length and mass,
     where a unit of time is √(mass length^{1-k}) so that the stiffnesses keep their numbers."""
     time = math.sqrt(mass * length ** (1 - chain["k"]))
-    run = simulate(
-        Scene(
-            masses=[mass * m for m in chain["masses"]],
-            stiffnesses=chain["stiffnesses"],
-            k=chain["k"],
-            velocities=[v * length / time for v in chain["velocities"]],
-            duration=chain["duration"] * time,
-        ),
-        **options,
-    )
+    other = chain | {"masses": [mass * m for m in chain["masses"]]}
+    other |= {"velocities": [v * length / time for v in chain["velocities"]]}
+    other |= {"duration": chain["duration"] * time}
+    run = simulate(Scene(**other), **options)
     return run.velocities * time / length, run.evaluations
 
 
@@ -243,10 +225,10 @@ def test_units_of_length_do_not_matter(chain, length):
 
 @pytest.mark.parametrize("method", ["RKN86", "SRKN14", "DOP853"])
 def test_sensors_change_nothing_and_cost_nothing(method):
-    chain = dict(masses=(1, 0.5) * 6, stiffnesses=(1,) * 11, k=1.5, duration=9, velocities=(1,))
-    plain = simulate(Scene(**chain), method=method)
+    chain = struck((1, 0.5), 12, duration=9)
+    plain = simulate(chain, method=method)
     sensors = dict(contact_sensors=(7, 2, 3), bead_sensors=(0, 3, 11))
-    seen = simulate(Scene(**chain, **sensors), method=method)
+    seen = simulate(replace(chain, **sensors), method=method)
     assert np.array_equal(seen.displacements, plain.displacements)
     assert plain.contact_force.shape == plain.bead_velocity.shape == (0, 1001)
     # only the three evaluations a step of SciPy's interpolant come on top
@@ -266,36 +248,10 @@ def test_sensors_change_nothing_and_cost_nothing(method):
 
 def test_no_tension():
     """Beads that fly apart feel nothing, and a gap shows as a negative compression."""
-    run = simulate(
-        Scene(masses=(1, 1), stiffnesses=(1,), k=1.5, duration=2, velocities=(-1, 1),
-              contact_sensors=(0,))
-    )  # fmt: skip
+    run = simulate(struck((1,), 2, duration=2, velocities=(-1, 1), contact_sensors=(0,)))
     assert run.velocities.tolist() == [-1, 1]
     assert not run.contact_force.any()
     np.testing.assert_allclose(run.compression[0], -2 * run.time, atol=1e-12)
-
-
-def test_a_striker_makes_the_exact_wave_of_the_hertz_chain():
-    """FWHM of contact force and strain, 1.411928 D and 1.725713 D: Newton's method on the
-    lattice's own traveling-wave equation gave these digits."""
-    run = simulate(
-        Scene(
-            masses=(1,) * 150,
-            stiffnesses=(1,) * 149,
-            k=1.5,
-            duration=160,
-            velocities=(1,),
-            contact_sensors=(80, 130),
-            samples=8001,
-        ),
-        rtol=1e-10,
-        atol=1e-10,
-    )
-    first, second = (measure(run.time, force) for force in run.contact_force)
-    V = speed(first, second, 50)
-    assert second.fwhm * V == pytest.approx(1.411928, abs=1e-6)
-    strain = measure(run.time, run.compression[1])
-    assert strain.fwhm * V == pytest.approx(1.725713, abs=1e-6)
 
 
 def test_a_failing_integrator_is_not_silent(monkeypatch):
@@ -307,72 +263,14 @@ def test_a_failing_integrator_is_not_silent(monkeypatch):
 
     monkeypatch.setattr(integrate, "DOP853", Failing)
     with pytest.raises(IntegrationError, match=r"^integration stopped at t = 0: step too small$"):
-        simulate(
-            Scene(masses=(1, 1), stiffnesses=(1,), k=1.5, duration=1, velocities=(1,)),
-            method="DOP853",
-        )
-
-
-def test_a_run_is_drawn_into_given_axes():
-    scene = Scene(masses=(1, 1, 1), stiffnesses=(1, 1), k=1.5, duration=3, velocities=(1, 0, 0))
-    watched = replace(scene, contact_sensors=(1,), bead_sensors=(0, 2))
-    run, ax = simulate(watched), Figure().add_subplot()
-    assert run.plot(ax) is ax
-    assert [text.get_text() for text in ax.get_legend().get_texts()] == [
-        "bead 1", "bead 3", "contact 2",
-    ]  # fmt: skip
-    for line, force in zip(ax.lines, (*run.bead_force, *run.contact_force), strict=True):
-        assert np.array_equal(line.get_xdata(), run.time)
-        assert np.array_equal(line.get_ydata(), force)
-    ax.figure.draw_without_rendering()
-    assert ax.get_legend().get_window_extent().y0 >= ax.bbox.y1  # on no curve
-    with pytest.raises(InputError, match=r"^plot is asked for: this result has no picture$"):
-        simulate(scene).plot()
-
-
-def test_a_notebook_shows_a_run_and_a_program_its_columns():
-    scene = Scene(masses=(1, 1, 1), stiffnesses=(1, 1), k=1.5, duration=3, velocities=(1,))
-    run = simulate(replace(scene, contact_sensors=(1,), bead_sensors=(0,), samples=11))
-    assert repr(run) == "Run(3 beads, 2 contacts, k = 1.5; duration 3; 2 sensors, 11 samples)"
-    page = run._repr_html_()
-    assert "3 beads" in page
-    assert "<svg" in page
-    assert "<svg" not in simulate(scene)._repr_html_()
-    assert list(run.columns()) == [
-        "time", "bead 1 force", "bead 1 displacement", "bead 1 velocity", "contact 2 force",
-        "contact 2 compression",
-    ]  # fmt: skip
-
-
-def test_a_run_equals_its_pickle_and_no_other_run():
-    scene = Scene(masses=(1, 1), stiffnesses=(1,), k=1.5, duration=3, velocities=(1,))
-    run = simulate(replace(scene, contact_sensors=(0,)))
-    copy = pickle.loads(pickle.dumps(run))
-    assert copy == run
-    assert hash(copy) == hash(run)
-    assert run != simulate(replace(scene, contact_sensors=(0,), duration=2.9))
-
-
-def test_energy_over_time_is_a_record_with_sensors_at_all_beads():
-    scene = Scene(
-        masses=(1.0, 0.5) * 5, stiffnesses=(1.0,) * 9, wall=1.0, precompression=0.5, k=1.5,
-        duration=9, velocities=(1,), bead_sensors=(3, *range(3), *range(4, 10)), samples=31,
-    )  # fmt: skip
-    run = simulate(scene, rtol=1e-9)
-    assert run.energy == pytest.approx(0.5, rel=1e-7)  # of the blow, conserved
-    np.testing.assert_array_equal(run.columns()["energy"], run.energy)
-    with pytest.raises(SceneError, match=r"^energy needs sensors at all 10 beads: .* has 2$"):
-        simulate(replace(scene, bead_sensors=(0, 1))).energy  # noqa: B018
+        simulate(struck((1,), 2, duration=1), method="DOP853")
 
 
 @pytest.mark.parametrize("method", METHODS)
 def test_the_first_sample_is_the_initial_state(method):
     """Beads that touch at the start press nothing: rounding would turn on a contact's damping."""
-    scene = Scene(
-        masses=(1, 1), stiffnesses=(1,), k=1.5, duration=3, velocities=(1,), samples=2,
-        contact_sensors=(0,), damping=Damping("contact", 1.0),
-    )  # fmt: skip
-    run = simulate(scene, method=method)
+    damped = struck((1,), 2, duration=3, contact_sensors=(0,), damping=Damping("contact", 1.0))
+    run = simulate(damped, method=method)
     assert run.contact_force[0, 0] == run.compression[0, 0] == 0.0
 
 

@@ -5,13 +5,7 @@ import math
 import pytest
 
 from lwa.spheres.hertz import stiffness
-from validation.scenes.chains import (
-    DIAMETER,
-    PTFE,
-    PTFE_BEAD,
-    STEEL,
-    STEEL_BEAD,
-)
+from validation.scenes.chains import DIAMETER, PTFE, PTFE_BEAD, STEEL, STEEL_BEAD
 
 ROUNDING = 1e-15  # half an ulp of the stiffness, and what the formula's own floats lose
 

@@ -392,10 +392,7 @@ def test_any_file_is_read_or_refused_in_one_line(data):
     assert "\n" not in message
 
 
-@pytest.mark.parametrize(
-    "law",
-    ["hertz2:1,1/2", "exponential:3/2", "power:3/2"],
-)
+@pytest.mark.parametrize("law", ["hertz2:1,1/2", "exponential:3/2", "power:3/2"])
 def test_a_law_is_read_and_written(law):
     read = scene({"duration": 1, "chain": {"cell": [1, 2], "law": law}})
     assert scene(document(read)) == read

@@ -1,0 +1,63 @@
+"""The result of a run: its pictures, columns and energy, and its pickle."""
+
+import pickle
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+from lwa import InputError
+from validation.lattice.simulate import simulate
+from validation.scenes.chains import struck
+from validation.scenes.scene import SceneError
+
+THREE = struck((1,), 3, duration=3)
+
+
+def test_a_run_is_drawn_into_given_axes():
+    watched = replace(THREE, contact_sensors=(1,), bead_sensors=(0, 2))
+    run, ax = simulate(watched), Figure().add_subplot()
+    assert run.plot(ax) is ax
+    assert [text.get_text() for text in ax.get_legend().get_texts()] == [
+        "bead 1", "bead 3", "contact 2",
+    ]  # fmt: skip
+    for line, force in zip(ax.lines, (*run.bead_force, *run.contact_force), strict=True):
+        assert np.array_equal(line.get_xdata(), run.time)
+        assert np.array_equal(line.get_ydata(), force)
+    ax.figure.draw_without_rendering()
+    assert ax.get_legend().get_window_extent().y0 >= ax.bbox.y1  # on no curve
+    with pytest.raises(InputError, match="no picture"):
+        simulate(THREE).plot()
+
+
+def test_a_notebook_shows_a_run_and_a_program_its_columns():
+    run = simulate(replace(THREE, contact_sensors=(1,), bead_sensors=(0,), samples=11))
+    assert repr(run) == "Run(3 beads, 2 contacts, k = 1.5; duration 3; 2 sensors, 11 samples)"
+    page = run._repr_html_()
+    assert "3 beads" in page
+    assert "<svg" in page
+    assert "<svg" not in simulate(THREE)._repr_html_()
+    assert list(run.columns()) == [
+        "time", "bead 1 force", "bead 1 displacement", "bead 1 velocity", "contact 2 force",
+        "contact 2 compression",
+    ]  # fmt: skip
+
+
+def test_a_run_equals_its_pickle_and_no_other_run():
+    watched = replace(THREE, contact_sensors=(0,))
+    run = simulate(watched)
+    copy = pickle.loads(pickle.dumps(run))
+    assert copy == run
+    assert hash(copy) == hash(run)
+    assert run != simulate(replace(watched, duration=2.9))
+
+
+def test_energy_over_time_is_a_record_with_sensors_at_all_beads():
+    sensors = (3, *range(3), *range(4, 10))
+    scene = struck((1, 0.5), 10, wall=1, precompression=0.5, duration=9, bead_sensors=sensors)
+    run = simulate(scene)
+    assert run.energy == pytest.approx(0.5, rel=1e-7)  # of the blow, conserved
+    np.testing.assert_array_equal(run.columns()["energy"], run.energy)
+    with pytest.raises(SceneError, match="sensors at all 10 beads"):
+        simulate(replace(scene, bead_sensors=(0, 1))).energy  # noqa: B018
