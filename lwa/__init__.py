@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from lwa.base.lazy import public
 
 if TYPE_CHECKING:
+    from lwa.base.estimate import Estimate as Estimate
     from lwa.base.exact import InputError as InputError
     from lwa.base.quantities import NoSolitaryWave as NoSolitaryWave
     from lwa.cell import Cell as Cell

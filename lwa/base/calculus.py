@@ -47,7 +47,7 @@ def growing_root(F: sp.Expr, x: sp.Symbol) -> Any:
 
     Steps that leave the interval on which F is real and grows (its pole, its maximum) are halved.
     """
-    value, slope = (_real(sp.lambdify(x, f, "mpmath")) for f in (F, F.diff(x)))
+    value, slope = (real_function(sp.lambdify(x, f, "mpmath")) for f in (F, F.diff(x)))
     # Steps from 2^-20 on, each a fifth longer; a root below the first is found by the bisection.
     low, step, least = mpmath.mpf(0), mpmath.mpf(2) ** -20, mpmath.mpf(2) ** -150
     while (above := value(low + step)) < 0 or not slope(low + step) > 0:
@@ -64,7 +64,7 @@ def growing_root(F: sp.Expr, x: sp.Symbol) -> Any:
     return high
 
 
-def _real(function: Callable[[Any], Any]) -> Callable[[Any], Any]:
+def real_function(function: Callable[[Any], Any]) -> Callable[[Any], Any]:
     """The function with the value -∞ at its poles and where it is not real."""
 
     def value(x: Any) -> Any:

@@ -1,7 +1,7 @@
 """Results of a command as rows, each of which is written as text, JSON and LaTeX.
 
-A value is an exact expression, a tuple of them (one per contact), a sum of a series with its error
-(`Resummed`), or the `InputError` that says why there is no value.
+A value is an exact expression, a tuple of them (one per contact), a number with its error
+(`Estimate`), or the `InputError` that says why there is no value.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ import click
 import sympy as sp
 
 from lwa.base import latex
+from lwa.base.estimate import Estimate
 from lwa.base.exact import InputError, evaluated
 from lwa.base.frozen import Shown
 from lwa.base.lines import wrapped
@@ -37,6 +38,7 @@ class Row:
     unit : unit of the value for a chain in SI.
     digits : False for a value that is printed without its digits.
     expression : True if JSON has the expression besides its digits.
+    error : bound of the error of an expression, relative; NaN for none that is stated.
     """
 
     key: str
@@ -45,6 +47,7 @@ class Row:
     unit: str = ""
     digits: bool = True
     expression: bool = True
+    error: float = math.nan
 
 
 @dataclass(frozen=True)
@@ -108,7 +111,7 @@ class Answer:
         return result | ({"notes": list(self.notes)} if self.notes else {})
 
     def _put_digits(self, result: Values, row: Row) -> None:
-        if isinstance(row.value, Resummed | InputError):
+        if isinstance(row.value, Estimate | InputError):
             value, error = getattr(row.value, "value", None), getattr(row.value, "error", math.nan)
             _put(result, row.key, "_value", value)
             _put(result, row.key, "_error_value", None if math.isnan(error) else error)
@@ -116,6 +119,8 @@ class Answer:
             floats = _each(lambda x: as_float(self.plain(x)), row.value)
             if floats is not None:
                 _put(result, row.key, "_value", floats)
+                if not math.isnan(row.error):
+                    _put(result, row.key, "_error_value", abs(floats) * row.error)
 
     # --- text -------------------------------------------------------------------------------
 
@@ -136,18 +141,22 @@ class Answer:
         unit = f" {row.unit}" if self.si and row.unit else ""
         if isinstance(row.value, InputError):
             return f": {row.value}"
-        if isinstance(row.value, Resummed):
+        if isinstance(row.value, Estimate):
             return f" = {summed(row.value, unit, self.orders)}"
-        return " = " + ", ".join(self._number_text(x, row.digits) for x in _parts(row.value)) + unit
+        digits = significant(row.error) if row.error > 0 else PRINTED_DIGITS
+        text = ", ".join(self._number_text(x, row.digits, digits) for x in _parts(row.value))
+        if row.error > 0 and (number := as_float(self.plain(row.value))):
+            text += f" ± {abs(number) * row.error:.1e}{self._length_unit(row.value)}"
+        return f" = {text}{unit}"
 
-    def _number_text(self, value: sp.Expr, digits: bool) -> str:
-        """The value, followed by its digits unless it is rational or has symbols."""
+    def _number_text(self, value: sp.Expr, both: bool, digits: int) -> str:
+        """The value, followed by its digits, if ``both``, unless it is rational or has symbols."""
         if self.si:
-            return approximate(value)
+            return approximate(value, digits)
         plain = self.plain(value)
-        if not digits or value.free_symbols - {self.spacing} or plain.is_Rational:
+        if not both or value.free_symbols - {self.spacing} or plain.is_Rational:
             return str(value)
-        number = sp.sstr(evaluated(plain, PRINTED_DIGITS), full_prec=False)
+        number = sp.sstr(evaluated(plain, digits), full_prec=False)
         number, written = number + self._length_unit(value), str(value)
         return number if plain.has(sp.Float) or len(written) > LONG else f"{written} ≈ {number}"
 
@@ -224,22 +233,31 @@ def attempt(read: Callable[..., Any], *arguments: Any) -> Any:
         return fault
 
 
-def approximate(value: sp.Expr) -> str:
+def approximate(value: sp.Expr, digits: int = PRINTED_DIGITS) -> str:
     """A number in digits; an expression in symbols with its numeric factor in digits."""
     if value.is_zero:
         return "0"
     factor, rest = value.as_independent(*value.free_symbols, as_Add=False)
-    number = str(sp.sstr(evaluated(factor, PRINTED_DIGITS), full_prec=False))
+    number = str(sp.sstr(evaluated(factor, digits), full_prec=False))
     if rest == 1:
         return number
     return str(rest) if factor == 1 else f"{number}·{rest}"
 
 
-def summed(total: Resummed, unit: str, order: bool) -> str:
-    """A sum as text: the value to one digit beyond its error, the error, and the order."""
+def significant(relative: float) -> int:
+    """The digits of a number that reach one beyond its relative error."""
+    return min(16, max(1, 2 - math.floor(math.log10(relative))))
+
+
+def summed(total: Estimate, unit: str, order: bool) -> str:
+    """A number as text: the value to one digit beyond its error, the error, the order of a sum."""
     if math.isnan(total.error):
         return f"{total.value:.4g}{unit}, error unknown"
-    digits = min(16, 2 - math.floor(math.log10(total.error / total.value)))
-    note = "; higher orders do not help" if total.asymptotic else ""
+    if not total.error:
+        return f"{total.value:.{PRINTED_DIGITS}g}{unit}"
+    digits = significant(total.error / abs(total.value))
     value = f"{total.value:.{digits}g} ± {total.error:.1e}{unit}"
-    return f"{value} (to ε^{total.order}{note})" if order else value
+    if not (order and isinstance(total, Resummed)):
+        return value
+    note = "; higher orders do not help" if total.asymptotic else ""
+    return f"{value} (to ε^{total.order}{note})"

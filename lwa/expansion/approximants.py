@@ -15,7 +15,6 @@ whose later windows spread more is called asymptotic too. The error by radiation
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -23,14 +22,19 @@ import mpmath
 import sympy as sp
 from flint import acb_poly, arb, arb_mat, ctx
 
+from lwa.base.estimate import Estimate
 from lwa.base.exact import InputError
-from lwa.base.frozen import Value
 
 WINDOW = 3
 """Number of orders in a window before its last order."""
 
-SAFETY = 2
-"""Ratio of the error estimate to the spread of a window."""
+SAFETY = 3.5
+"""Ratio of the error estimate to the spread of a window.
+
+Measured on 3,564 sums of equal beads, k = 1.05 … 3.5, orders 6 … 16, against the lattice's waves:
+at 2 the error misses 116 sums (the speed at k = 2.05 … 2.75 by up to 1.7), at 3 it misses 49, at
+3.5 none; the median of error over deviation is 20.
+"""
 
 TERM_DIGITS = 60
 """Decimal digits of the terms of a sum."""
@@ -40,36 +44,15 @@ PRECISION = 300
 
 
 @dataclass(frozen=True)
-class Resummed(Value):
-    """A series summed at one k.
+class Resummed(Estimate):
+    """A series summed at one k, with an estimate of the absolute error.
 
-    value, error : the sum, and the estimate of its absolute error.
     order : the highest power of ε that was used.
     asymptotic : True if higher orders do not improve the sum: terms grow, or radiation is larger.
     """
 
-    value: float
-    error: float
     order: int
     asymptotic: bool
-
-    def __mul__(self, factor: float) -> Resummed:
-        return replace(self, value=factor * self.value, error=factor * self.error)
-
-    def __truediv__(self, other: Resummed) -> Resummed:
-        """The quotient, with the sum of the relative errors and the numerator's order."""
-        value = self.value / other.value
-        error = value * (self.error / self.value + other.error / other.value)
-        return replace(self, value=value, error=error)
-
-    def latex(self) -> str:
-        """The sum and its error, if known, such as 1.411928 ± 3.0 · 10^{-6}."""
-        parts = ((self.value, 10), (self.error, 2))
-        known = ((x, digits) for x, digits in parts if not math.isnan(x))
-        return r" \pm ".join(str(sp.latex(sp.Float(x, digits))) for x, digits in known)
-
-    def _repr_latex_(self) -> str:
-        return f"${self.latex()}$"
 
 
 def resum(

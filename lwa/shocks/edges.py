@@ -9,7 +9,8 @@ f̃(q) = -i f(iq). El's conditions (Chaos 15, 037103 (2005)) are
 
 For equal beads f = 2 sin κ/2 makes the integrals -2 ln cos κ/4 and 2 ln cosh q/4, so that the
 speeds are 2/r - 1 and √(r(r-1))/arcosh √r. For other cells the dispersion relation 2 cos Pκ = T(f²)
-gives dκ/df, and the integrals over f are computed by quadrature.
+gives dκ/df, and the integral of the leading edge is computed by quadrature. The trailing edge of
+unequal beads is not that of the lattice.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ import mpmath
 import sympy as sp
 
 from lwa.base.exact import InputError, demand_numbers, evaluated
+from lwa.cell import Cell
 from lwa.linear.dispersion import Dispersion
 
 SHOCK_DIGITS = 20
@@ -30,32 +32,32 @@ SHOCK_DIGITS = 20
 STEEPEST = sp.Rational(13, 10)
 
 
-def trailing(chain: Dispersion, r: sp.Expr) -> sp.Expr:
-    """Speed of the trailing edge divided by the speed of sound behind the front.
+def trailing(cell: Cell, r: sp.Expr) -> sp.Expr:
+    """Speed of the trailing edge divided by the speed of sound behind the front, for equal beads.
 
-    Raises `lwa.InputError` for numbers beyond r = 1.3, where the edge fails, or beyond the branch,
-    without sound ahead, r = ∞, and for cells of several beads where r is a symbol.
+    Raises `lwa.InputError` for unequal beads, where the edge fails (by a quarter at m2/m1 = ½),
+    without sound ahead, r = ∞, and for numbers beyond r = 1.3.
     """
     _demand_sound(r)
+    if not cell.uniform:
+        raise InputError("the beads or contacts differ: the trailing edge is known for equal beads")
     if r.is_number and r > STEEPEST:
         raise InputError(f"c₋/c₊ is {sp.N(r, 5)}: the trailing edge holds up to 1.3")
-    if chain.cell.size == 1:
-        return 2 / r - 1
-    with mpmath.workdps(SHOCK_DIGITS + 10):
-        return sp.Float(1 / _slowness(_trace(chain), _edge(chain, r, 1) ** 2), SHOCK_DIGITS)
+    return 2 / r - 1
 
 
 def leading(chain: Dispersion, r: sp.Expr) -> sp.Expr:
     """Speed of the leading edge divided by the speed of sound ahead of the front.
 
-    Raises `lwa.InputError` without sound ahead, r = ∞, and for cells of several beads where r is a
-    symbol.
+    Raises `lwa.InputError` without sound ahead, r = ∞, and for symbols in unequal beads.
     """
     _demand_sound(r)
-    if chain.cell.size == 1:
+    if chain.cell.uniform:
         return sp.sqrt(r * (r - 1)) / sp.acosh(sp.sqrt(r))
+    demand_numbers(r.free_symbols, "the edge of unequal beads wants numbers")
+    demand_numbers(chain.I.free_symbols, "the edge of unequal beads wants numbers")
     with mpmath.workdps(SHOCK_DIGITS + 10):
-        f = _edge(chain, r, -1)
+        f = _edge(chain, r)
         q = mpmath.acosh(mpmath.polyval(_trace(chain), -(f**2)) / 2) / chain.cell.size
         return sp.Float(f / q, SHOCK_DIGITS)
 
@@ -65,30 +67,23 @@ def _demand_sound(r: sp.Expr) -> None:
         raise InputError("ahead is 0: no sound runs there, and dispersion gives no edge")
 
 
-def _edge(chain: Dispersion, r: sp.Expr, sign: int) -> Any:
-    """Return the frequency f at the trailing edge (sign 1) or leading edge (sign -1, f imaginary).
+def _edge(chain: Dispersion, r: sp.Expr) -> Any:
+    """Return the imaginary frequency f at the leading edge.
 
-    El's condition ∫₀^f sign (dκ/df - 1)/f df = ln r is solved by Newton's method from the root for
-    small r - 1, where dκ/df - 1 ≈ (3/2) I f². The method runs in s, f = sinh s, as the integral
-    grows like ln f: in f itself it fails where r ≫ 1.
+    El's condition ∫₀^f (1 - dκ/df)/f df = ln r is solved by Newton's method from the root for small
+    r - 1, where dκ/df - 1 ≈ -(3/2) I f². The method runs in s, f = sinh s, as the integral grows
+    like ln f: in f itself it fails where r ≫ 1.
     """
-    demand_numbers(r.free_symbols, "edges of cells of several beads are numbers")
     trace, target = _trace(chain), mpmath.log(_number(r))
 
     def density(s: Any) -> Any:
-        return sign * (_slowness(trace, sign * mpmath.sinh(s) ** 2) - 1) / mpmath.tanh(s)
+        return (1 - _slowness(trace, -(mpmath.sinh(s) ** 2))) / mpmath.tanh(s)
 
     def excess(s: Any) -> Any:
         return mpmath.quad(density, mpmath.linspace(0, s, 2 + int(s / 8))) - target
 
-    start = mpmath.sqrt(4 * target / (3 * _number(chain.I)))
-    if sign > 0:
-        top = chain.band_edges()[0, 1] * (1 - mpmath.mpf(10) ** -9)  # dκ/df has a pole at the edge
-        if excess(mpmath.asinh(top)) < 0:
-            raise InputError(f"c₋/c₊ is {sp.N(r, 5)}: the trailing edge leaves the acoustic branch")
-        start = min(start, top)
+    start = mpmath.asinh(mpmath.sqrt(4 * target / (3 * _number(chain.I))))
     close = mpmath.mpf(10) ** (-2 * SHOCK_DIGITS)
-    start = mpmath.asinh(start)
     return mpmath.sinh(mpmath.findroot(excess, start, solver="newton", df=density, tol=close))
 
 

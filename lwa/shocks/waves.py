@@ -28,7 +28,7 @@ import mpmath
 import sympy as sp
 
 from lwa.base.calculus import growing_root
-from lwa.base.exact import InputError, demand_numbers
+from lwa.base.exact import InputError, demand_numbers, evaluated
 from lwa.base.frozen import Value
 from lwa.shocks.edges import SHOCK_DIGITS
 from lwa.wave.background import BackgroundWave
@@ -48,9 +48,10 @@ def velocity(field: BackgroundWave, p: sp.Expr) -> sp.Expr:
         power = (law.exponent + 1) / 2
         return 2 * (p**power - field.p0**power) / (law.exponent + 1)
     c = sp.powdenest(sp.sqrt(field.force(x, 1)), force=True)
-    gained = sp.Integral(c, (x, field.p0, p))
     if isinstance(c, sp.exp) or not c.has(x):
-        return gained.doit()
+        return sp.integrate(c, (x, field.p0, p))
+    # from 0 to p - p0, where no digits cancel
+    gained = sp.Integral(c.subs(x, field.p0 + x), (x, 0, p - field.p0))
     return gained if gained.free_symbols else gained.evalf(SHOCK_DIGITS)
 
 
@@ -66,14 +67,17 @@ def strain(field: BackgroundWave, gained: sp.Expr) -> sp.Expr:
     return field.p0 + _rising_root(velocity(field, field.p0 + x) - gained, x)
 
 
-def _rising_root(rising: sp.Expr, x: sp.Symbol) -> sp.Expr:
-    """The root of an expression that rises with x from a negative value at 0."""
+def _rising_root(rising: sp.Expr, x: sp.Symbol, lost: int = 0) -> sp.Expr:
+    """The root of an expression that rises with x from a negative value at 0.
+
+    lost : digits that cancel in the expression near the root; the root has as many to spare.
+    """
     demand_numbers(rising.free_symbols - {x}, "numbers are wanted")
-    with mpmath.workdps(SHOCK_DIGITS + 5):
+    with mpmath.workdps(SHOCK_DIGITS + 2 * lost + 5):
         root = growing_root(rising, x)
     if root is None:
         raise InputError("the law does not reach the strain that belongs to this velocity")
-    return sp.Float(root, SHOCK_DIGITS)
+    return sp.Float(root, SHOCK_DIGITS + lost)
 
 
 @dataclass(frozen=True)
@@ -103,7 +107,7 @@ class Pulse(Value):
     def rise(self) -> sp.Expr:
         """Rise B = w/V of the slope u_x."""
         field, w = self.field, self.velocity
-        if self._toda:
+        if self.toda:
             C = self._cosh
             return w * sp.acosh(C) / (field.sound_speed * sp.sqrt(C**2 - 1))
         if self._bare:  # W = B^{k+1}/(k(k+1))
@@ -111,19 +115,33 @@ class Pulse(Value):
             parts = sp.expand_power_base((k * (k + 1) * w**2 / 2) ** (1 / (k + 1)), force=True)
             return sp.powsimp(sp.powdenest(parts, force=True), force=True)
         x, side, p0 = sp.Dummy("x", positive=True), sp.sign(w), field.p0
+        demand_numbers(w.free_symbols | field.force(p0).free_symbols, "numbers are wanted")
+        # The work W(p0+B) - W(p0) - F(p0) B = w²/2 of a small jump is a small difference.
+        ratio = sp.N(1 + 2 * abs(field.force(p0, -1)) / sp.N(w, SHOCK_DIGITS) ** 2, 5)
+        lost = int(sp.log(ratio, 10).n(5)) + 1
+        w = evaluated(w, SHOCK_DIGITS + 2 * lost)
         work = field.force(p0 + side * x, -1) - field.force(p0, -1) - field.force(p0) * side * x
-        return side * _rising_root(work - w**2 / 2, x)
+        return side * _rising_root(work - w**2 / 2, x, lost)
 
     @property
     def speed(self) -> sp.Expr:
         """Speed V = dx/dτ of the wave."""
         return self.velocity / self.rise
 
+    @property
+    def stiffening(self) -> float:
+        """The measure ρ = 1 - V²/F′(p0+B) of how much the law stiffens along the wave; for numbers.
+
+        It is 0 for Toda's law, for which the wave is exact.
+        """
+        stiffness = self.field.force(self.field.p0 + self.rise, 1)
+        return 0.0 if self.toda else float(1 - self.speed**2 / stiffness)
+
     @cached_property
     def contact_rise(self) -> sp.Expr:
         """Rise of a contact's strain above the background p0 at the peak of the wave."""
-        if self._toda:
-            return 2 * sp.log(self._cosh) / self._toda
+        if self.toda:
+            return 2 * sp.log(self._cosh) / self.toda
         field, B, k = self.field, self.rise, self.field.law.exponent
         if self._bare:  # F = B^k/k, V² = 2 B^{k-1}/(k(k+1))
             return B * (1 - (k - 1) / (2 * k * (k + 1)))
@@ -136,7 +154,7 @@ class Pulse(Value):
         return self.field.law.homogeneous and bool(self.field.p0.is_zero)
 
     @cached_property
-    def _toda(self) -> sp.Expr:
+    def toda(self) -> sp.Expr:
         """Number a D of Toda's law (e^{aδ} - 1)/a, for which F″/F′ = a; 0 for other laws."""
         law = self.field.law
         a = sp.simplify(law.slope(2) / law.slope(1))
@@ -144,4 +162,4 @@ class Pulse(Value):
 
     @property
     def _cosh(self) -> sp.Expr:
-        return 1 + self._toda * self.velocity / (2 * self.field.sound_speed)
+        return 1 + self.toda * self.velocity / (2 * self.field.sound_speed)

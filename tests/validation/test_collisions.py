@@ -1,9 +1,12 @@
 """Closed forms and rules of collisions beside the lattice: strikes, graded chains, interfaces."""
 
+from fractions import Fraction
+
 import numpy as np
 import pytest
+import sympy as sp
 
-from lwa import Cell, graded_force, pulse_of_strike, transmitted_force
+from lwa import Cell, InputError, graded_force, pulse_of_strike, transmitted_force
 from validation import Scene, simulate
 
 
@@ -41,9 +44,41 @@ def test_force_in_a_graded_chain(what):
     assert half == pytest.approx(float(graded_force(first, 1, stiffness[300], "3/2")), rel=0.005)
 
 
-@pytest.mark.parametrize(("ratio", "most"), [(0.25, 0.075), (0.5, 0.025), (2, 0.025), (8, 0.1)])
-def test_force_behind_an_interface(ratio, most):
-    """The rule is a little too small, and the better the more alike the beads are."""
-    before, behind = peaks(60 * [1] + 50 * [ratio], 109 * [1], 1.5, (40, 90), 260)
-    rule = float(transmitted_force(before, Cell([1]), Cell([ratio]), "3/2"))
-    assert -most < rule / behind - 1 < 0
+@pytest.mark.parametrize(
+    ("k", "mass", "stiffness", "between"),
+    [
+        ("3/2", 1 / 8, 1 / 3, 1 / 3),
+        ("3/2", 1 / 4, 1, 1),
+        ("3/2", 8, 1, 1),
+        ("3/2", 1, 3, 1),
+        ("3/2", 1, 3, 3),
+        ("5/4", 1 / 8, 1 / 3, 1 / 3),
+        ("5/4", 1 / 2, 3, 3),
+        ("5/4", 8, 3, 1),
+        ("5/2", 4, 3, 3),
+        ("5/2", 1 / 4, 1, 1),
+    ],
+)
+def test_force_behind_an_interface_is_right_within_its_error(k, mass, stiffness, between):
+    """On both ends of the range, and with a contact between the chains like those of either."""
+    masses, contacts = 60 * [1] + 50 * [mass], 59 * [1] + [between] + 49 * [stiffness]
+    duration = 80 + 75 * (mass / stiffness) ** 0.5
+    before, behind = peaks(masses, contacts, float(sp.Rational(k)), (40, 90), duration)
+    cells = Cell([1]), Cell([Fraction(mass)], [Fraction(stiffness).limit_denominator(9)])
+    found = transmitted_force(before, *cells, k)
+    assert abs(found.value - behind) < found.error < 30 * abs(found.value - behind)
+
+
+@pytest.mark.parametrize(
+    ("cell", "k", "message"),
+    [
+        (Cell([1], [114]), "3/2", "ratio of stiffnesses is 114"),
+        (Cell([9]), "3/2", "ratio of masses is 9"),
+        (Cell([1]), 3, "k is 3"),
+        (Cell(["m"]), "3/2", "'m' has no value"),
+        (Cell([1, 2]), "3/2", "other is Cell"),
+    ],
+)
+def test_interfaces_beyond_the_measured_range_are_refused(cell, k, message):
+    with pytest.raises(InputError, match=message):
+        transmitted_force(1, Cell([1]), cell, k)

@@ -58,7 +58,7 @@ def test_momentum_energy_and_losses_are_those_of_the_lattice_s_wave(k):
         *((found.dissipation(kind), true[kind]) for kind in ("linear", "kuwabara_kono")),
     ]
     for sum_, exact in pairs:
-        assert abs(sum_.value - exact) < sum_.error < 5e-4
+        assert abs(sum_.value - exact) < sum_.error < 7e-4  # the largest is D0's at k = 2
     assert true["kinetic"] / true["elastic"] == pytest.approx((float(found.expansion.k) + 1) / 2)
 
 

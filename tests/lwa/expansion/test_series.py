@@ -96,7 +96,7 @@ def test_irrational_shares_leave_no_terms_alike() -> None:
 
 def test_an_unlike_contacts_radiation_counts_in_the_error() -> None:
     """Between rational shares the error is what its neighbours' are."""
-    errors = [expand(Cell([1, 2], [1, A]), 2, k="3/2").c2.at().error for A in ("2.99", 3, "3.01")]
+    errors = [expand(Cell([1, 2], [1, A]), 2, k="6/5").c2.at().error for A in ("2.99", 3, "3.01")]
     assert errors[1] == pytest.approx((errors[0] + errors[2]) / 2, rel=1e-3)
 
 
@@ -104,7 +104,7 @@ def test_an_unlike_contacts_radiation_counts_in_the_error() -> None:
 
 CHAINS = {
     "equal": (lambda: expand(Cell([1]), 3)),
-    "dimer": (lambda: expand(Cell([1, "1/3"]), 2, k="3/2")),
+    "dimer": (lambda: expand(Cell([1, "1/3"]), 2, k="6/5")),
     "symbols": (lambda: expand(Dimer("m1", "m2"), 2)),
     "contacts": (lambda: expand(Cell([1, 2], ["A", 3]), 1)),
 }
