@@ -6,7 +6,7 @@ from scipy import integrate as scipy
 
 from tests.benchmarks import cyrk
 from tests.benchmarks.located import integrate
-from validation.scenes.scene import Scene, SceneError
+from validation.scenes.scene import Scene
 from validation.studies.accuracy import Task, struck_chain
 
 
@@ -37,11 +37,3 @@ def test_a_peer_agrees_with_scipy(method):
         found = cyrk.prepared(task, method)(1e-10, task, times)
         expected = integrate(task, times, scipy.DOP853, 1e-11)
         np.testing.assert_allclose(found, expected, atol=3e-6 * expected.max())
-
-
-def test_other_exponents_are_refused():
-    scene = Scene(
-        masses=(1, 1), stiffnesses=(1,), k=2, duration=1, velocities=(1,), contact_sensors=(0,)
-    )
-    with pytest.raises(SceneError, match=r"^k is 2: "):
-        cyrk.constants(Task(scene))

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from scipy.interpolate import CubicSpline
 
 from validation.lattice.cost import IntegrationError
-from validation.lattice.simulate import METHODS, simulate
+from validation.lattice.simulate import COMPILED, METHODS, simulate
 from validation.pulses.pulse import measure
 from validation.scenes.chains import struck
 from validation.scenes.forcing import Damping
@@ -97,22 +97,23 @@ def test_the_error_follows_the_tolerance(method):
     assert slope == pytest.approx(1, abs=0.2)
 
 
-@given(exponents, st.lists(positive, min_size=1, max_size=6), positive)
+@given(exponents, st.lists(positive, min_size=1, max_size=6), positive, st.sampled_from((0.0, 2.0)))
 @settings(max_examples=20)
-def test_equilibrium_under_gravity_stays_and_carries_the_weight(k, masses, A):
+def test_equilibrium_stays_and_carries_the_weight_and_the_load(k, masses, A, load):
     n = len(masses)
-    scene = hanging(
-        k, masses, [A] * n, duration=10, contact_sensors=range(n), bead_sensors=range(n), samples=3
-    )
+    sensors = dict(contact_sensors=range(n), bead_sensors=range(n), samples=3)
+    scene = hanging(k, masses, [A] * n, duration=10, precompression=load, **sensors)
     run = simulate(scene, method="DOP853")
     assert not run.displacements.any()  # exactly: the load is computed as the force is
     assert not run.velocities.any()
     # a fused product keeps the rounding of the load, and no step is too long for so little
-    assert np.abs(simulate(scene).displacements).max() < 1e-9 * sum(masses)
-    weight = np.cumsum(masses)
+    for method in COMPILED:
+        moved = simulate(scene, method=method).displacements
+        assert np.abs(moved).max() < 1e-9 * (load + sum(masses))
+    weight = load + np.cumsum(masses)
     # A ((F/A)^{1/k})^k = F up to some ulp, k ≤ 3
     np.testing.assert_allclose(run.contact_force, np.outer(weight, [1, 1, 1]), rtol=1e-14)
-    above = np.concatenate(([0.0], weight[:-1]))
+    above = np.concatenate(([0.0], weight[:-1]))  # bead 1 has no contact behind it
     np.testing.assert_allclose(run.bead_force[:, 0], (above + weight) / 2, rtol=1e-14)
     assert run.energy_drift == 0
 

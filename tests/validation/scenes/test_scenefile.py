@@ -114,11 +114,6 @@ def test_the_modules_own_example_holds_every_key():
     assert scene(content).spacings == (1.0,) * 37
 
 
-def test_a_scene_has_no_wall_weight_or_sensor_by_default():
-    bare = scene({"duration": 1, "chain": {"cell": [1, 2], "k": 2}})
-    assert bare == Scene(masses=(1, 2), stiffnesses=(1,), k=2, duration=1)
-
-
 def test_sensors_at_all_beads_and_contacts():
     sensors = {"sensors": {"beads": "all", "contacts": "all"}}
     assert scene(GOOD | sensors).bead_sensors == (0, 1, 2)
@@ -227,56 +222,56 @@ GOOD = {
     "chain": {"cell": [1, 2, 3], "k": 1.5},
     "sensors": {"beads": [2], "contacts": [1]},
 }
-BALLS = {"chain": {"cell": ["ball", "ball"]}}
+BALLS, WALL = {"chain": {"cell": ["ball", "ball"]}}, {"wall": {"stiffness": 1}}
+BALL = GOOD["beads"]["ball"]
 NAN = float("nan")
 
-BAD = [
-    ({"duration": 0}, "duration is 0: it must be positive"),
-    ({"duration": NAN}, "duration is nan: a finite number is wanted"),
-    ({"duration": "1"}, "duration is '1': a number is wanted"),
-    ({"duration": True}, "duration is True: a number is wanted"),
+REFUSED = [
+    ({"duration": 0}, "duration is 0"),
+    ({"duration": NAN}, "duration is nan"),
+    ({"duration": "1"}, "duration is '1'"),
+    ({"duration": True}, "duration is True"),
     ({"durations": 1}, "durations is unknown: did you mean duration"),
-    ({"__import__('os')": 1}, r"\"__import__\('os'\)\" is unknown: one of duration, .* is wanted"),
-    ({"samples": 1}, "samples is 1: an integer from 2 on is wanted"),
-    ({"gravity": 9.81}, "gravity is 9.81: .* needs a wall to pull towards"),
-    ({"precompression": 1}, "precompression is 1: .* needs a wall to push against"),
-    ({"chain": 3}, "chain is 3: a table of keys is wanted"),
+    ({"__import__('os')": 1}, r"\"__import__\('os'\)\" is unknown"),
+    ({"samples": 1}, "samples is 1"),
+    ({"gravity": 9.81}, "gravity is 9.81"),
+    ({"precompression": 1}, "precompression is 1"),
+    ({"chain": 3}, "chain is 3"),
     ({"chain": {"cell": []}}, "chain.cell is empty"),
     ({"chain": {"cell": [1], "repeat": 10**6 + 1}}, "chain.cell and repeat make 1000001 beads"),
-    ({"chain": {"cell": "ball"}}, "chain.cell is 'ball': a list is wanted"),
-    ({"chain": {"cell": [1, NAN]}}, "chain.cell number 2 is nan: a finite number is wanted"),
-    ({"chain": {"cell": ["ball", 1]}}, "chain.cell number 2 is 1: one of ball is wanted"),
+    ({"chain": {"cell": "ball"}}, "chain.cell is 'ball'"),
+    ({"chain": {"cell": [1, NAN]}}, "chain.cell number 2 is nan"),
+    ({"chain": {"cell": ["ball", 1]}}, "chain.cell number 2 is 1"),
     ({"chain": {"cell": ["bal"]}}, "chain.cell number 1 is 'bal': did you mean ball"),
-    ({"chain": {"cell": ["ball"]}, "beads": {}}, "chain.cell number 1 is 'ball': none is defined"),
-    ({"chain": {"cell": [1]}}, "chain has neither k nor law: one is wanted"),
-    ({"chain": {"cell": [1, 2], "k": 0.5}}, "k is 0.5: the contact law .* k ≥ 1"),
-    ({"chain": {"cell": ["ball"], "k": 1.5}}, "chain.k is given, but named beads are in Hertz"),
-    ({"chain": {"cell": [1, 2, 3], "k": 2, "stiffnesses": [1]}}, "chain.stiffnesses holds 1: 2 or"),
+    ({"chain": {"cell": ["ball"]}, "beads": {}}, "chain.cell number 1 is 'ball'"),
+    ({"chain": {"cell": [1]}}, "chain has neither k nor law"),
+    ({"chain": {"cell": [1, 2], "k": 0.5}}, "k is 0.5"),
+    ({"chain": {"cell": ["ball"], "k": 1.5}}, "chain.k is given"),
+    ({"chain": {"cell": [1, 2, 3], "k": 2, "stiffnesses": [1]}}, "chain.stiffnesses holds 1"),
     ({"materials": {"x": {"E": 1}}}, "materials.x.nu is missing"),
-    ({"materials": {"x": {"E": 1, "nu": 0.6}}}, "materials.x.nu is 0.6: Poisson's ratio lies"),
-    ({"beads": {"b": {"mass": 1, "radius": 1, "material": "stel"}}},
-     "beads.b.material is 'stel': did you mean steel"),
-    ({"defects": {"bead": 1}}, "defects is {'bead': 1}: a list is wanted"),
-    ({"defects": [{}]}, "defects number 1 has neither contact nor bead: one is wanted"),
-    ({"defects": [{"bead": 1}]}, "defects number 1 has neither like nor mass: one is wanted"),
+    ({"materials": {"x": {"E": 1, "nu": 0.6}}}, "materials.x.nu is 0.6"),
+    ({"beads": {"b": BALL | {"material": "stel"}}}, "beads.b.material is 'stel': did you mean"),
+    ({"defects": {"bead": 1}}, "defects is {'bead': 1}"),
+    ({"defects": [{}]}, "defects number 1 has neither contact nor bead"),
+    ({"defects": [{"bead": 1}]}, "defects number 1 has neither like nor mass"),
     ({"defects": [{"bead": 1, "mass": 1, "like": "ball"}]}, "defects number 1 has both like and m"),
-    ({"defects": [{"bead": 4, "mass": 1}]}, "defects number 1.bead is 4: an integer from 1"),
-    ({"defects": [{"bead": 1, "like": "ball"}]}, "defects number 1.like names a bead in"),
-    ({"defects": [{"contact": 3, "stiffness": 1}]}, "defects number 1.contact is 3: an integer"),
-    ({"defects": [{"bead": 3, "mass": 1}, {"contact": 1, "stiffness": 2}, {"bead": 3, "mass": 2}]},
-     "defects has 2 tables of bead 3: one is wanted"),
-    ({"wall": {}}, "wall has neither material nor stiffness: one is wanted"),
-    ({"wall": {"material": "steel"}}, "wall.material is given, but a chain of masses needs"),
+    ({"defects": [{"bead": 4, "mass": 1}]}, "defects number 1.bead is 4"),
+    ({"defects": [{"bead": 1, "like": "ball"}]}, "defects number 1.like names a bead"),
+    ({"defects": [{"contact": 3, "stiffness": 1}]}, "defects number 1.contact is 3"),
+    ({"defects": [{"bead": 3, "mass": m} for m in (1, 2)]}, "defects has 2 tables of bead 3"),
+    ({"wall": {}}, "wall has neither material nor stiffness"),
+    ({"wall": {"material": "steel"}}, "wall.material is given"),
     ({"wall": {"material": "wood"}} | BALLS, "wall.material is 'wood': one of steel, steel 316, "),
     ({"striker": {"velocity": 1}, "start": {}}, "striker and start are both there"),
-    ({"start": {"velocities": [1] * 4}}, "4 velocities for 3 beads: at most 3 wanted"),
-    ({"sensors": {"beads": [4]}}, "sensors.beads number 1 is 4: an integer from 1"),
-    ({"sensors": {"beads": [1, 1]}}, r"sensors.beads is \[1, 1\]: each may be named once"),
-    ({"sensors": {"contacts": [1]}, "chain": {"cell": [1], "k": 2}},
-     "sensors.contacts number 1 is 1: the chain has none"),
-    ({"sensors": {"beads": "some"}}, "sensors.beads is 'some': a list is wanted"),
-    ({"units": "cgs"}, "units is 'cgs': one of SI is wanted"),
-]  # fmt: skip
+    ({"start": {"velocities": [1] * 4}}, "4 velocities for 3 beads"),
+    ({"start": {"displacements": [0.1]}}, "start.displacements press bead 1 into bead 2"),
+    ({"start": {"displacements": [0, 0, 1]}} | WALL, "start.displacements press bead 3 into the w"),
+    ({"sensors": {"beads": [4]}}, "sensors.beads number 1 is 4"),
+    ({"sensors": {"beads": [1, 1]}}, r"sensors.beads is \[1, 1\]"),
+    ({"chain": {"cell": [1], "k": 2}}, "sensors.beads number 1 is 2"),
+    ({"sensors": {"beads": "some"}}, "sensors.beads is 'some'"),
+    ({"units": "cgs"}, "units is 'cgs'"),
+]
 
 
 def one_line(caught):
@@ -285,39 +280,41 @@ def one_line(caught):
     assert len(re.sub(r"^/\S+/", "", message)) < 200
 
 
-@pytest.mark.parametrize(("change", "message"), BAD, ids=[str(b[0])[:50] for b in BAD])
-def test_bad_scenes_are_refused_by_the_key(change, message):
+@pytest.mark.parametrize(("change", "named"), REFUSED)
+def test_a_bad_scene_is_refused_by_the_key(change, named):
     scene(GOOD)
-    with pytest.raises(SceneError, match=rf"^{message}") as caught:
+    with pytest.raises(SceneError, match=rf"^{named}") as caught:
         scene(GOOD | change)
     one_line(caught)
 
 
+HUGE, DEEP = b"f" * 5000, b"[" * 100_000
 FILES = [
     ("s.toml", b"", "duration is missing|chain is missing"),
-    ("s.toml", b"duration = ", "not TOML: Invalid value"),
+    ("s.toml", b"duration = ", "not TOML"),
     (
         "s.toml",
-        b"duration = 0x" + b"f" * 5000 + b"\nchain = {cell = [1], k = 2}",
-        "duration is a number of thousands of digits",
+        b"duration = 0x" + HUGE + b"\nchain = {cell = [1], k = 2}",
+        "duration is a number of",
     ),
-    ("s.toml", b"duration = nan\nchain = {cell = [1], k = 2}", "duration is nan: a finite"),
-    ("s.toml", b"x = " + b"[" * 100_000, "nested too deeply for a scene"),
+    ("s.toml", b"duration = nan\nchain = {cell = [1], k = 2}", "duration is nan"),
+    ("s.toml", b"x = " + DEEP, "nested too deeply"),
     ("s.toml", "# Länge\nduration = 1".encode("latin-1"), "not a text in UTF-8"),
-    ("s.json", b'{"duration": 1', "not JSON: Expecting"),
+    ("s.toml", b"#" * (files.MOST_BYTES[".toml"] + 1), "more than [0-9]+ bytes"),
+    ("s.json", b'{"duration": 1', "not JSON"),
     ("s.json", b'{"duration": 1, "duration": 2}', "'duration' is there more than once"),
-    ("s.json", b"[1, 2]", r"the file is \[1, 2\]: a table of keys is wanted"),
-    ("s.json", b"[" * 100_000, "nested too deeply for a scene"),
-    ("s.json", b'{"duration": 1' + b"0" * 5000 + b"}", "not JSON: Exceeds the limit"),
+    ("s.json", b"[1, 2]", r"the file is \[1, 2\]"),
+    ("s.json", DEEP, "nested too deeply"),
+    ("s.json", b'{"duration": 1' + b"0" * 5000 + b"}", "not JSON"),
     ("s.txt", b"duration = 1", "a scene is a file ending in .toml or .json"),
-    ("folder.toml", None, "only regular files are read"),
-    ("pipe.json", None, "only regular files are read"),
-    ("missing.toml", None, "No such file or directory"),
+    ("folder.toml", None, "only regular files"),
+    ("pipe.json", None, "only regular files"),
+    ("missing.toml", None, "No such file"),
 ]
 
 
-@pytest.mark.parametrize(("name", "content", "message"), FILES, ids=range(len(FILES)))
-def test_bad_files(tmp_path, name, content, message):
+@pytest.mark.parametrize(("name", "content", "named"), FILES, ids=range(len(FILES)))
+def test_a_bad_file_is_refused_by_its_name(tmp_path, name, content, named):
     file = tmp_path / name
     (tmp_path / "folder.toml").mkdir()
     os.mkfifo(tmp_path / "pipe.json")  # which nobody writes to
@@ -327,7 +324,7 @@ def test_bad_files(tmp_path, name, content, message):
         read_scene(file)
     found = str(caught.value)
     assert found.startswith(f"{file}: ")
-    assert re.match(message, found.removeprefix(f"{file}: "))
+    assert re.match(named, found.removeprefix(f"{file}: "))
     one_line(caught)
 
 
@@ -342,19 +339,6 @@ def test_overlap_is_wanted_or_carried():
         read = scene(GOOD | allowed)
         assert read.displacements
         assert scene(document(read)) == read
-    for refused, into in (
-        ({"start": pressed}, "bead 1 into bead 2"),
-        ({"start": {"displacements": [0, 0, 1]}, "wall": {"stiffness": 1}}, "bead 3 into the wall"),
-    ):
-        with pytest.raises(SceneError, match=f"^start.displacements press {into}: start.overlap"):
-            scene(GOOD | refused)
-
-
-def test_a_file_without_end_is_refused(tmp_path):
-    most = files.MOST_BYTES[".toml"]
-    (tmp_path / "s.toml").write_text("duration = 1 # " + "x" * most)
-    with pytest.raises(SceneError, match=rf": more than {most} bytes, the most that is read$"):
-        read_scene(tmp_path / "s.toml")
 
 
 leaves = st.one_of(
