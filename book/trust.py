@@ -41,14 +41,18 @@ def trust(k: Any, omega: Any) -> Trust:
     k, omega = sp.Rational(str(k)), sp.Rational(str(omega))
     pulse = struck_pulse(k, omega)
     widths = [float(wave.fwhm(float(k), float(omega), "force")) for wave in _compact()]
-    summed = estimate = math.nan
-    try:
-        total = _series(omega).at(k)
-        summed, estimate = float(total.value), float(total.error)
-    except InputError:
-        pass
+    summed, estimate = series_width(k, omega)
     paper, canonical, series = (width / pulse.width - 1 for width in (*widths, summed))
     return Trust(pulse, (paper, canonical, series), estimate / pulse.width)
+
+
+def series_width(k: Any, omega: Any) -> tuple[float, float]:
+    """Return the FWHM of the force by the series and its estimate of its error; NaN if refused."""
+    try:
+        total = _series(sp.Rational(str(omega))).at(sp.Rational(str(k)))
+        return float(total.value), float(total.error)
+    except InputError:
+        return math.nan, math.nan
 
 
 @cache

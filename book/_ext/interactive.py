@@ -1,19 +1,23 @@
 """Give the pages that can be turned their script and its formulas.
 
-A page with an element of class ``lwa-chain`` or ``lwa-calculator`` gets `chain.js` and before it,
-inline, the functions that `chain.js` calls: the JavaScript that `lwa` writes of its own closed
-forms, and its table of materials.
+A page with an element of class ``lwa-chain``, ``lwa-shock``, ``lwa-breather``, ``lwa-arch`` or
+``lwa-calculator`` gets `turn.js` and before it, inline, the functions that `turn.js` calls: the
+JavaScript that `lwa` writes of its own closed forms, and its table of materials. The script lies
+outside ``_static``, whose scripts Jupyter Book loads on every page.
 """
 
 from __future__ import annotations
 
 import json
+import re
+import shutil
 from functools import cache
+from pathlib import Path
 
 import sympy as sp
 from sphinx.application import Sphinx
 
-from lwa import Cell, Material, Sphere, canonical_wave, hertz
+from lwa import Cell, Material, Sphere, canonical_wave, hertz, homogenize
 from lwa.code import LANGUAGES, Function
 
 
@@ -25,6 +29,8 @@ def formulas() -> str:
     wave = canonical_wave(Cell([m1, m2]), k)
     chain = canonical_wave(Cell([m1, m2], stiffnesses=[A, A], spacing=D), k)
     pulse, loaded = chain.at_force(F), chain.at_force(F, precompression=F_0)
+    paper = homogenize(Cell([m1, m2], stiffnesses=[A, A], spacing=D), k=k).pde.traveling_wave()
+    theirs = paper.at_force(F)
     strain = canonical_wave(Cell([1]), k).on_background(p_0)
     gap = strain.stiffness(B) - strain.stiffness(v)
     gradient = v * sp.sqrt(gap / (wave.I / wave.D**2 * strain.force(p_0 + v, 1)))
@@ -35,6 +41,8 @@ def formulas() -> str:
         Function("hertz_A", "A of two spheres", solids, hertz.stiffness(one, two)),
         Function("pulse_speed", "dx/dt at the peak force F", (F, *values), pulse.speed),
         Function("pulse_time", "FWHM of F in time", (F, *values), pulse.fwhm("force", "time")),
+        Function("paper_speed", "dx/dt by the paper's closure", (F, *values), theirs.speed),
+        Function("paper_time", "FWHM of F in time", (F, *values), theirs.fwhm("force", "time")),
         Function("sound_speed", "dx/dt of small waves", (F_0, *values), loaded.sound_speed),
         Function("loaded_speed", "dx/dt at the peak force F", (F, F_0, *values), loaded.speed),
         Function("gradient", "|dv/dxi| where it has risen by v", (v, B, p_0, k, m1, m2), gradient),
@@ -62,12 +70,19 @@ def formulas() -> str:
 def turn(app: Sphinx, page: str, template: str, context: dict, doctree: object) -> None:
     """Append the scripts to a page that has something to turn."""
     body = context.get("body", "")
-    if 'class="lwa-' in body:
-        root = context["pathto"]("_static/chain.js", resource=True)
+    if re.search('class="lwa-(chain|shock|breather|arch|calculator)"', body):
+        root = context["pathto"]("_static/turn.js", resource=True)
         context["body"] = f'{body}<script>{formulas()}</script><script src="{root}"></script>'
+
+
+def publish(app: Sphinx, fault: Exception | None) -> None:
+    """Copy the script, which no other page loads, beside the built pages."""
+    if fault is None:
+        shutil.copy(Path(__file__).with_name("turn.js"), Path(app.outdir, "_static"))
 
 
 def setup(app: Sphinx) -> dict[str, bool]:
     """Sphinx's hook."""
     app.connect("html-page-context", turn)
+    app.connect("build-finished", publish)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -42,7 +42,7 @@ FLAGS = (
 
 PROBE = r"""<script>
 window.addEventListener("load", async () => {
-  const errors = [];
+  const errors = [...window.faults];
   const typeset = window.MathJax && MathJax.startup ? MathJax.startup.promise : null;
   if (typeset) await typeset.catch(error => errors.push(String(error)));
   for (const image of document.images) image.loading = "eager";
@@ -115,13 +115,39 @@ window.addEventListener("load", async () => {
   if (window.lwaTurn) {
     const chain = new lwaTurn.Chain();
     while (chain.arrivals.length < 35) chain.advance(1);
+    report.chain = {speed: chain.speed(), force: chain.arrivals[12].force};
+    const home = document.querySelector(".lwa-chain, .lwa-shock, .lwa-breather, .lwa-arch");
+    if (home) for (let i = 0; i < 1500 && home.next(); i++);
+    const blow = document.querySelector("[data-slider=v]");
+    if (home?.scene.pace && blow) {
+      const {scale, pace} = home.scene;
+      blow.value = 2;
+      blow.dispatchEvent(new Event("input"));
+      for (let i = 0; i < 150; i++) home.next();
+      const {chain: now, ghost, scale: wide, pace: clock} = home.scene;
+      const [passed, forces] = [c => c.arrivals.length, c => c.arrivals[10].force];
+      report.harder = {scales: [scale, wide], paces: [pace, clock],
+        passed: [ghost, now].map(passed), forces: [ghost, now].map(forces)};
+    }
+    report.presets = [...document.querySelectorAll("[data-omega]")].map(e => e.scene.chain.omega);
+    const {edge, fastest, chain: driven, turns, nu} = home ? home.scene : {};
+    if (edge) report.shock = {v: driven.v, p0: driven.p0, edge, fastest};
+    const mean = turns && (turns.at(-1) - turns[0]) / (turns.length - 1);
+    if (turns) report.breather = {nu, rate: 2 * Math.PI / mean};
+  }
+  const rows = document.getElementById("lwa-series");
+  if (rows) {
     const beads = {a: "steel 316", b: "PTFE", radiusA: 2.38e-3, radiusB: 2.38e-3};
     report.blows = [
       {load: 0, blow: 1.37, kind: "velocity"}, {load: 2, blow: 1.37, kind: "velocity"},
       {load: 2, blow: 12, kind: "force"}, {load: 0, blow: 12, kind: "force"},
-      {load: 0, blow: 100, kind: "drop"},
-    ].map(blow => [blow, lwaTurn.calculate({...beads, ...blow})]);
-    report.chain = {speed: chain.speed(), force: chain.arrivals[12].force};
+      {load: 0, blow: 100, kind: "drop"}, {load: 0, blow: 1, kind: "velocity", b: "steel 316"},
+      {load: 200, blow: 0.01, kind: "velocity"},
+      {load: 0, blow: 1, kind: "velocity", radiusB: 3e-4},
+      {load: 0, blow: -1, kind: "velocity"},
+      {load: 0, blow: 1, kind: "velocity", radiusB: 7.5e-3},
+      {load: 0, blow: 1, kind: "velocity", b: "steel 316", radiusB: 2.2e-3},
+    ].map(blow => [blow, lwaTurn.calculate({...beads, ...blow}, JSON.parse(rows.textContent))]);
   }
   const answer = await fetch("/probe", {method: "POST", body: JSON.stringify(report)});
   const next = await answer.text();
@@ -169,7 +195,10 @@ class _Handler(SimpleHTTPRequestHandler):
             return self._send(f'<iframe src="/{page}" width="{width}" height="900"></iframe>')
         if path.suffix != ".html" or not path.is_file():
             return super().do_GET()
-        mode = "".join(f'localStorage.{name} = "{self.server.mode}";' for name in ("mode", "theme"))
+        faults = "window.faults = []; addEventListener('error', e => faults.push(e.message));"
+        mode = faults + "".join(
+            f'localStorage.{name} = "{self.server.mode}";' for name in ("mode", "theme")
+        )
         text = path.read_text().replace("<head>", f"<head><script>{mode}</script>", 1)
         self._send(text.replace("</body>", PROBE + "</body>"))
 
