@@ -317,7 +317,7 @@
     const bottom = Math.sqrt((2 * K) / omega);
     moving(home, "Displacement of each bead of a loaded chain over its place, and the envelope of the theory", [["nu", "detuning 1 - f/f₀", 0.001, 0.015, 0.0005, same, 0.004]], {
       begin({nu}) {
-        const [U, b] = [Math.sqrt((32 * nu) / (k * (k - 1))), Math.sqrt((8 * nu * (1 - omega)) / (2 * omega))];
+        const [U, b] = [Math.sqrt((32 * nu) / (k * (k - 1))), Math.sqrt((8 * nu * (1 - omega)) / omega)];
         const cell = i => (i - 61) / 2; // bead 61 is the light bead in the middle
         const start = i => (i % 2 ? (Math.abs(cell(i)) % 2 ? -U : U) / Math.cosh(b * cell(i)) : 0);
         return {chain: new Chain({omega, k, p0: 1, v: 0, n, start}), U, b, nu, turns: [], last: U, cell};

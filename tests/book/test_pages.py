@@ -140,8 +140,9 @@ def numbers(text):
 def lattice_of(blow, found):
     """Pulse of a hundred beads at contact 80 by the engine: peak, width, speed, forces of beads."""
     load, cell = blow["load"], Cell.of_spheres(paper_spheres())
+    before_the_echo = 92 * 4.76e-3 / found["lattice"]["speed"]
     scene = Scene.of_cell(
-        cell, 50, "3/2", velocities=(found["v"],), duration=92 * 4.76e-3 / found["lattice"]["speed"], samples=20001,
+        cell, 50, "3/2", velocities=(found["v"],), duration=before_the_echo, samples=20001,
         contact_sensors=(40, 41, 80, 81), bead_sensors=(80, 81), precompression=float(load),
         wall=float(cell.stiffnesses[0]) if load else None,
     )  # fmt: skip
