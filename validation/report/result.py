@@ -12,7 +12,7 @@ from typing import Any
 from lwa.base.exact import InputError
 from validation.pictures import Panel, Pictured, svg
 from validation.report.files import replacing
-from validation.report.table import Finding, Table, findings_table, paragraphs, plain
+from validation.report.table import WIDTH, Finding, Table, findings_table, paragraphs, plain
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,6 +25,7 @@ class Report(Pictured):
     panels : panels of the picture.
     notes : explanations below the tables.
     data : entries that go to JSON unchanged.
+    width : characters of a line of text, at most.
 
     >>> from validation.report.table import Column
     >>> row = Table((Column("n", "sites"), Column("c_value", "speed", format=".3f")), ((8, 1.25),))
@@ -41,6 +42,7 @@ class Report(Pictured):
     panels: tuple[Panel, ...] = ()
     notes: tuple[str, ...] = ()
     data: Mapping[str, Any] = field(default_factory=dict)
+    width: int = WIDTH
 
     @property
     def ok(self) -> bool:
@@ -65,12 +67,12 @@ class Report(Pictured):
         return (*self.tables, findings_table(printed))
 
     def text(self) -> str:
-        """The report as plain text, titles and notes in lines of up to 100 characters."""
+        """The report as plain text."""
         title, *notes = (
-            "\n".join(fill(line, 100, break_long_words=False) for line in text.splitlines())
+            "\n".join(fill(line, self.width, break_long_words=False) for line in text.splitlines())
             for text in (self.title, *self.notes)
         )
-        tables = (table.text() for table in self._printed_tables())
+        tables = (table.text(self.width) for table in self._printed_tables())
         return "\n\n".join(filter(None, (title, *tables, *notes, self.verdict)))
 
     def _repr_html_(self) -> str:

@@ -16,6 +16,9 @@ import sympy as sp
 
 from validation.pulses.pulse import Measured
 
+WIDTH = 100
+"""Characters of a printed line, at most."""
+
 Lines = Sequence[Sequence[str]]
 """Lines of cells, the first of them the column labels."""
 
@@ -129,9 +132,9 @@ class Table:
             lines.append([column.text(row[i]) for i, column in printed])
         return [(self.heads.get(group, group), lines) for group, lines in parts.items()]
 
-    def text(self) -> str:
-        """The table as text; empty without column labels or rows."""
-        parts = [f"{head}\n{aligned(lines)}".lstrip("\n") for head, lines in self.parts()]
+    def text(self, width: int = WIDTH) -> str:
+        """The table as text in lines of a width; empty without column labels or rows."""
+        parts = [f"{head}\n{aligned(lines, width)}".lstrip("\n") for head, lines in self.parts()]
         blocks = self.title, "\n\n".join(parts), self.note
         return "\n".join(filter(None, blocks)) if parts else ""
 
@@ -222,17 +225,45 @@ def _nested(record: Mapping[str, Any]) -> dict[str, Any]:
     return result
 
 
-def aligned(lines: Lines) -> str:
+def aligned(lines: Lines, width: float = math.inf) -> str:
     """Align columns of text: the first one left, the others right.
+
+    Columns beyond the width of a line follow in a block of their own, after the first column.
 
     >>> print(aligned((("bead", "force"), ("first", "1.5"), ("second", "12.25"))))
     bead    force
     first     1.5
     second  12.25
     """
-    first, *others = (max(map(len, column)) for column in zip(*lines, strict=True))
-    rows = ((name.ljust(first), *map(str.rjust, cells, others)) for name, *cells in lines)
-    return "\n".join("  ".join(row).rstrip() for row in rows)
+    widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
+    blocks, used = [[0]], widths[0]
+    for i, own in enumerate(widths[1:], start=1):
+        if used + 2 + own > width and len(blocks[-1]) > 1:
+            blocks.append([0])
+            used = widths[0]
+        blocks[-1].append(i)
+        used += 2 + own
+    texts = []
+    for first, *others in blocks:
+        cells = (
+            (line[first].ljust(widths[first]), *(line[i].rjust(widths[i]) for i in others))
+            for line in lines
+        )
+        texts.append("\n".join("  ".join(row).rstrip() for row in cells))
+    return "\n\n".join(texts)
+
+
+def brief(number: Measured, digits: int = 7) -> str:
+    """Format a number in few digits; its ± covers the digits that are left out.
+
+    digits : digits before and behind the point.
+
+    >>> brief(Measured(1.4119283485, 1.4119283475)), brief(Measured(17.185442, 17.185))
+    ('1.411928 ± 1e-06', '17.1854 ± 4e-04')
+    """
+    decimals = max(0, digits - len(f"{abs(number.value):.0f}"))
+    last = 10.0**-decimals  # rounding takes half of it
+    return f"{number.value:.{decimals}f} ± {last:.0e}" if number.error < last / 2 else str(number)
 
 
 def bounds(low: float, high: float) -> str:

@@ -30,8 +30,7 @@ from validation.scenes.scene import Scene
 from validation.scenes.scenefile import read_scene
 
 _COLUMNS = (
-    *(Column("", "sensor"), Column("kind"), Column("number")),
-    *(Column("", "first pulse"), Column("quantity")),
+    *(Column("", "first pulse"), Column("kind"), Column("number"), Column("quantity")),
     *(Column(name, name, error=True) for name in ("simulated", "measured", "difference")),
 )
 _LABELS = dict(zip(READINGS, ("arrival", "peak dynamic force", "FWHM"), strict=True))
@@ -106,7 +105,8 @@ def compare(
             ours, theirs = reading.numbers[name], pulse[name]
             less = theirs.value - ours.value
             numbers = ours, theirs, Measured(less, less + ours.error + theirs.error)
-            rows.append((reading.name, track.kind, track.number, label(quantity), name, *numbers))
+            printed = f"{reading.name}: {label(quantity)}"
+            rows.append((printed, track.kind, track.number, name, *numbers))
         curves += [
             Curve(f"{reading.name}, simulated", t, track.force(t), f"C{i}-"),
             Curve("measured", records.time + shift, force, f"C{i}."),

@@ -26,7 +26,7 @@ from validation.pulses.pulse import Measured, compared, derived, exponent, highe
 from validation.pulses.signals import integral
 from validation.report.command import study
 from validation.report.result import Report
-from validation.report.table import Column, Finding, Table, percent
+from validation.report.table import Column, Finding, Table, brief, percent
 from validation.scenes.chains import carrying
 from validation.waves.theory import LEADING_POWERS, QUANTITIES, theory_at, theory_values
 
@@ -66,6 +66,19 @@ class Comparison:
         return self.theory_value / self.lattice.value - 1
 
     @property
+    def printed(self) -> tuple[str, str]:
+        """The quantity in short, and k, or the name of a result of all exponents."""
+        quantity, _, result = self.quantity.partition(": ")
+        kind = "order" if result.startswith("order") else "→ 1"
+        name = "n, F_m ∝ V_s^n" if quantity == _EXPONENT else quantity
+        return name, kind if self.k is None else str(self.k)
+
+    @property
+    def compared(self) -> tuple[Measured, float, float, bool]:
+        """The lattice's number, the theory's error, its bound, and if the error is within it."""
+        return self.lattice, self.error, self.bound, self.finding.ok
+
+    @property
     def finding(self) -> Finding:
         """The error with its bound and the lattice's own error, as a finding."""
         error = self.lattice.relative_error
@@ -73,24 +86,29 @@ class Comparison:
 
 
 _COLUMNS = (
-    Column("quantity", "quantity"),
-    Column("k", "k", format=str),
+    Column("quantity"),
+    Column("", "quantity"),
+    Column("", "k"),
+    Column("k"),
     Column("omega"),
     Column("theory"),
-    Column("theory_value", "theory"),
-    Column("lattice", "lattice", error=True),
-    Column("error_value", "error", format=percent),
+    Column("theory_value", "theory", format=".5g"),
+    Column("lattice", "lattice", error=True, format=brief),
+    Column("error_value", "error", format=lambda error: percent(error if abs(error) > 1e-9 else 0)),
     Column("bound_value", "bound", format=lambda bound: percent(bound).lstrip("+")),
     Column("ok", "holds"),
 )
+_EXPONENT = "exponent of F_m in V_s"
 _CHAINS = {
     "0": "ω = m2/m1 → 0, extrapolated from runs at small ω",
     "1": "m1 = m2, ω = 1",
     str(LIGHT): f"m1 ≫ m2, ω = {LIGHT}",
 }
 _NOTE = """\
-Lengths in D, m1 = A = D = 1; force and strain of a contact; error: theory/lattice - 1.
-±: change of the lattice's number over the last stretch. No k: from all k, as k → 1."""
+Lengths in D, m1 = A = D = 1; force and strain of a contact; error:
+theory/lattice - 1. From all k: the order n of the error in k - 1, and the limit
+of error/(k-1)^n as k → 1. ±: change of the lattice's number over the last
+stretch, and the rounding of its seven digits, which JSON does not have."""
 
 Case = tuple[sp.Rational, sp.Rational, float]  # k, ω and B of one run
 
@@ -110,14 +128,14 @@ def report(rows: Sequence[Comparison]) -> Report:
     """Return a comparison's table, findings, and panels of the errors as functions of k - 1."""
     findings = tuple(row.finding for row in rows)
     cells = tuple(
-        (r.quantity, r.k, r.omega, r.theory, r.theory_value, r.lattice, r.error, r.bound, f.ok)
-        for r, f in zip(rows, findings, strict=True)
+        (r.quantity, *r.printed, r.k, r.omega, r.theory, r.theory_value, *r.compared) for r in rows
     )
     return Report(
         "The theory's limits on the lattice",
         (Table(_COLUMNS, cells, "rows", by="omega", heads=_CHAINS, note=_NOTE),),
         findings,
         tuple(_panel(rows, omega) for omega in (EQUAL, LIGHT)),
+        width=80,
     )
 
 
@@ -159,7 +177,7 @@ def compare(progress: Progress[Case] = iter) -> list[Comparison]:
         pulses = [lattice[k, EQUAL, B] for B in AMPLITUDES]
         power = exponent([p["speed"] for p in pulses], [p["force"] for p in pulses])
         theory_power = waves[k, EQUAL].force_exponent
-        rows.append(Comparison("exponent of F_m in V_s", k, EQUAL, theory_power, power, 1e-5))
+        rows.append(Comparison(_EXPONENT, k, EQUAL, theory_power, power, 1e-5))
     return rows
 
 

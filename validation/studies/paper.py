@@ -62,10 +62,11 @@ _COLUMNS = (
     ),
 )
 _NOTE = """\
-The force of a bead is the mean of its two contacts'; numbers that name no bead are means over both
-sensor beads (odd ones are steel, even ones PTFE) or over their four contacts. The theory's
-amplitude is set by F_m, by V_s, or by all of the striker's momentum; error: theory/lattice - 1.
-Between steel and PTFE, V_s compares peaks of different shape, and is not the pulse's speed.
+The force of a bead is the mean of its two contacts'; numbers that name no bead
+are means over both sensor beads (odd ones are steel, even ones PTFE) or over
+their four contacts. The theory's amplitude is set by F_m, by V_s, or by all of
+the striker's momentum; error: theory/lattice - 1. Between steel and PTFE, V_s
+compares peaks of different shape, and is not the pulse's speed.
 ±: error of the integration."""
 
 
@@ -160,6 +161,7 @@ def paper(
             "sensors": pair,
             "gravity_value": gravity,
         },
+        width=80,
     )
 
 

@@ -13,7 +13,16 @@ from hypothesis import strategies as st
 
 from validation.pulses.pulse import Measured
 from validation.report.result import Report
-from validation.report.table import Column, Finding, Table, aligned, bounds, findings_table, plain
+from validation.report.table import (
+    Column,
+    Finding,
+    Table,
+    aligned,
+    bounds,
+    brief,
+    findings_table,
+    plain,
+)
 
 TABLE = Table(
     (
@@ -89,6 +98,32 @@ def test_a_table_without_labels_is_for_programs():
 def test_columns_line_up():
     lines = aligned((("a", "long header"), ("first row", "1"), ("b", "23"))).splitlines()
     assert lines == ["a          long header", "first row            1", "b                   23"]
+
+
+CELLS = st.lists(
+    st.lists(st.text("aω±", min_size=1, max_size=9), min_size=4, max_size=4), min_size=1
+)
+
+
+@given(CELLS, st.integers(20, 60))
+def test_columns_beyond_a_line_follow_in_blocks(lines, width):
+    """No line is too long, no cell is lost, and each block begins with the first column."""
+    shown = [
+        [line.split() for line in block.splitlines()]
+        for block in aligned(lines, width).split("\n\n")
+    ]
+    assert max(map(len, aligned(lines, width).splitlines())) <= width
+    for i, line in enumerate(lines):
+        assert all(block[i][0] == line[0] for block in shown)
+        assert [cell for block in shown for cell in block[i][1:]] == line[1:]
+
+
+@given(st.floats(-1e5, 1e5), st.floats(1e-15, 10))
+def test_a_brief_number_covers_what_it_leaves_out(value, error):
+    number = Measured(value, value + error)
+    shown, about = map(float, brief(number).split(" ± "))
+    assert abs(shown - value) + number.error <= 2 * about
+    assert len(brief(number)) <= len(str(number))
 
 
 words = st.text("aω", max_size=2)
