@@ -24,6 +24,7 @@ from lwa.expansion.approximants import Resummed
 
 PRINTED_DIGITS = 15  # significant digits of a printed number, all of them correct
 WIDTH = 100  # columns of text
+FRACTION = 24  # characters of a fraction beyond which text has its digits alone
 LONG = 160  # characters of an exact number beyond which text has its digits alone
 
 Values = dict[str, Any]
@@ -150,15 +151,16 @@ class Answer:
         return f" = {text}{unit}"
 
     def _number_text(self, value: sp.Expr, both: bool, digits: int) -> str:
-        """The value, followed by its digits, if ``both``, unless it is rational or has symbols."""
+        """The value and, if ``both``, its digits; a short fraction, or symbols, without digits."""
         if self.si:
             return approximate(value, digits)
-        plain = self.plain(value)
-        if not both or value.free_symbols - {self.spacing} or plain.is_Rational:
-            return str(value)
-        number = sp.sstr(evaluated(plain, digits), full_prec=False)
-        number, written = number + self._length_unit(value), str(value)
-        return number if plain.has(sp.Float) or len(written) > LONG else f"{written} ≈ {number}"
+        plain, written = self.plain(value), str(value)
+        short = plain.is_Rational and len(written) <= FRACTION
+        if not both or short or value.free_symbols - {self.spacing}:
+            return written
+        number = sp.sstr(evaluated(plain, digits), full_prec=False) + self._length_unit(value)
+        long = plain.has(sp.Float) or plain.is_Rational or len(written) > LONG
+        return number if long else f"{written} ≈ {number}"
 
     def _length_unit(self, value: sp.Expr) -> str:
         if not self.spacing.is_Symbol or self.spacing not in value.free_symbols:

@@ -139,7 +139,8 @@ class Envelope(Value):
         sign = self.dispersion * self.nonlinearity
         if sign.is_zero:
             raise InputError("the dispersion or the nonlinearity vanishes: no envelope has a shape")
-        negative = sp.simplify(sign).is_negative
+        short = sp.count_ops(sign) < LONG  # a longer one takes minutes to simplify
+        negative = (sp.simplify(sign) if short else sign).is_negative
         if negative is None:
             raise InputError("kind depends on symbols: give numbers")
         return KINDS[0] if negative else KINDS[1]
