@@ -11,9 +11,10 @@ the cell. The shares of unlike contacts in the strain are the same at every stra
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import pairwise
 from typing import Any, ClassVar
 
 import mpmath
@@ -33,6 +34,8 @@ from lwa.base.exact import (
     signed,
 )
 from lwa.base.frozen import Value
+from lwa.base.tables import finite
+from lwa.base.tabulated import Tabulated
 from lwa.cell import RESERVED, Cell, check_distinct, check_names, exponent, read_cell, substitution
 from lwa.cell import k as symbol_k
 
@@ -88,6 +91,8 @@ class ContactLaw(Value):
         if self.formless:
             s = sp.Dummy("s", positive=True)
             return sp.Integral(self.F.subs(self.delta, s), (s, 0, self.delta))
+        if self.tabulated:
+            return self.F.at_order(-1)
         return integral(self.F, self.delta)
 
     def phi(self, n: int) -> sp.Expr:
@@ -105,6 +110,20 @@ class ContactLaw(Value):
         return value.xreplace(
             {s: delta ** (n - 1) * self.at(delta, n) / slope for s, n in orders.items()}
         )
+
+    @property
+    def tabulated(self) -> bool:
+        """True if F goes through given points, so that its third derivative jumps there."""
+        return isinstance(self.F, Tabulated)
+
+    @property
+    def points(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Compressions and forces of a law made by `table`; both empty for another law."""
+        if not self.tabulated:
+            return (), ()
+        rows = [tuple(map(float, point.split())) for point in self.F.points.split(",")]
+        compressions, forces = zip(*rows, strict=True)
+        return compressions, forces
 
     @property
     def formless(self) -> bool:
@@ -253,6 +272,8 @@ class Law(ContactLaw):
     parameters: tuple[sp.Expr, ...] = field(init=False, default=(), compare=False)
 
     def __repr__(self) -> str:
+        if self.tabulated:
+            return "Law.table({}, {})".format(*self.points)
         if self.name:
             return f"named({', '.join(map(repr, (self.name, *self.parameters)))})"
         return f"Law(F={self.F}, delta={self.delta})"
@@ -269,7 +290,38 @@ class Law(ContactLaw):
         if self.slope().is_zero:
             raise InputError(f"F is {shorten(self.F)}: a force that depends on δ is wanted")
 
+    @classmethod
+    def table(cls, compressions: Sequence[Any], forces: Sequence[Any]) -> Law:
+        """Make a law through points, such as measured ones, of any number of four or more.
+
+        F, F′ and F″ are continuous and F grows (`lwa.base.splines`); below the first point F is a
+        power, beyond the last one the law is refused. ``points`` are compressions and forces. The
+        third derivative is not known: theories of an order that needs it are refused.
+
+        Raises `lwa.InputError` unless both rows are numbers, positive and ascending.
+
+        >>> law = Law.table([1, 2, 3, 4], [1, 4, 9, 16])
+        >>> law.at(sp.Rational(1, 2)).n(15)
+        0.250000000000000
+        """
+        rows = []
+        for name, row in (("compressions", compressions), ("forces", forces)):
+            numbers = [finite(x, f"{name} number {i}") for i, x in enumerate(row, start=1)]
+            if len(numbers) < 4:
+                raise InputError(f"{name} holds {len(numbers)} numbers: four or more are wanted")
+            for low, high in pairwise((0.0, *numbers)):
+                if not high > low:
+                    raise InputError(f"{name} has {high:g} after {low:g}: it must rise from 0")
+            rows.append(numbers)
+        if len(rows[0]) != len(rows[1]):
+            sizes = f"{len(rows[0])} compressions and {len(rows[1])} forces"
+            raise InputError(f"{sizes}: equally many are wanted")
+        points = ", ".join(f"{d!r} {F!r}" for d, F in zip(*rows, strict=True))
+        return _remembered(cls(Tabulated.of(DELTA, points)), "table")
+
     def replaced(self, new: Mapping[sp.Symbol, sp.Expr]) -> ContactLaw:
+        if self.tabulated:
+            return self
         if self.name:
             return named(self.name, *(x.xreplace(dict(new)) for x in self.parameters))
         for symbol in self.symbols:

@@ -47,6 +47,9 @@ if TYPE_CHECKING:
 WIDTH_DIGITS = 15
 """Digits of a width or a profile, unless the caller asks for others."""
 
+TABLE_DIGITS = 6
+"""Digits of a width or a profile under a law from a table."""
+
 _MOST_DIGITS = 200
 _PLACES = 64  # between 0 and B, at which existence is decided for a law that is no power
 
@@ -238,7 +241,7 @@ class BackgroundWave(Value):
         """Full width at half maximum of the rise of strain, force or velocity, a length in x.
 
         Without load under a power law the width is the compact wave's closed form, else a number of
-        ``digits`` digits, times D for a spacing that is a symbol.
+        ``digits`` digits (six under a law from a table), times D for a spacing that is a symbol.
 
         Raises `lwa.InputError` for other symbols, `lwa.NoSolitaryWave` without a wave.
 
@@ -248,6 +251,9 @@ class BackgroundWave(Value):
         B = self._read_rise(B)
         if self._unloaded:
             return CompactWave.canonical(self.cell, self.law.exponent).fwhm(quantity)
+        if self.law.tabulated:
+            width = self.numeric().fwhm(float(self.p0), float(B), quantity)
+            return sp.Float(width, TABLE_DIGITS)
         width = self._flank(B, digits).fwhm(known_quantity(quantity))
         return sp.Float(width, digits) * self.unit
 
@@ -266,6 +272,9 @@ class BackgroundWave(Value):
         place = self.in_unit(xi)
         if place.free_symbols:
             raise InputError(f"xi is {shorten(xi)}: a number, in D, is wanted")
+        if self.law.tabulated:
+            strain = self.numeric().profile(float(place), float(self.p0), float(B))
+            return sp.Float(strain, TABLE_DIGITS)
         flank = self._flank(B, digits)
         with mpmath.workdps(digits + 10):
             return sp.Float(flank.strain(abs(mpmath_number(place))), digits)
@@ -284,6 +293,8 @@ class BackgroundWave(Value):
 
         ``language`` as in `lwa.TravelingWave.code`; arguments as in `lwa.wave.functions`.
         """
+        if self.law.tabulated:
+            raise InputError("the law is a table: it has no source text in other languages")
         from lwa.wave.functions import loaded_code  # here, for a quick start of the others
 
         forms = {"speed": self.speed(), "time_scale": self.time_scale}
@@ -316,8 +327,9 @@ class BackgroundWave(Value):
 
     def _free(self, *values: sp.Expr) -> set[sp.Symbol]:
         """The symbols in the values and in the chain, except the `unit`."""
-        all_values = (*values, self.p0, self.I, self.force(self.p0 + sp.S.One, 1))
-        return set().union(*(v.free_symbols for v in all_values)) - {self.unit}
+        p = sp.Dummy("p", positive=True)
+        all_values = (*values, self.p0, self.I, self.force(p, 1))
+        return set().union(*(v.free_symbols for v in all_values)) - {self.unit, p}
 
     @cached_property
     def _functions(self) -> tuple[Function, Function, Function]:

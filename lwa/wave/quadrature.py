@@ -35,7 +35,8 @@ _END = 4.0  # the largest |t|: s or 1 - s is 6e-38 there
 _WINDOW = 20  # places of an end correction
 _NEAR, _FAR = -1.7, -_END  # first t of widths, where v = 2e-4 B, and of profiles
 _STEEPEST = 1.0  # largest d ln s between the nodes of an end correction at the foot
-_CONVERGED = 1e-8  # difference to half as many nodes; twice as many err 2^20 times less
+CLOSE = 1e-8  # difference to half as many nodes; twice as many err 2^20 times less
+CLOSE_OF_TABLES = 1e-5  # the same where F‴ jumps, and the rule errs by about as much
 _LEAST = 1e-3  # size below which profiles are right to the absolute error of this size
 _PLACES = 16  # nodes through which results are interpolated
 
@@ -119,12 +120,15 @@ class Quadrature:
     """Speeds, half widths and profiles of the waves J v′² = v² (Q(B) - Q(v)), for flat arrays.
 
     samples : function of an array of strains; returns F′, F″ and J/F′, arrays of its shape.
+    close : difference to half as many nodes at which a result is taken; `CLOSE`,
+        or `CLOSE_OF_TABLES`.
 
     Methods take arrays of p0 and B of one shape, and raise `lwa.InputError` for a wave that the
     finest grid does not resolve.
     """
 
     samples: Callable[[Array], tuple[Array, Array, Array]]
+    close: float = CLOSE
 
     def squares(self, p0: Array, B: Array) -> Array:
         """The squares V² = Q(B): 2 ∫(1-s) F′ ds, or F′(p0) + B ∫(1-s)² F″ ds for small waves."""
@@ -204,7 +208,7 @@ class Quadrature:
                 found = compute(grid(steps, start), rise, *nodes)
                 rough = compute(grid(steps // 2, start), rise, *(x[:, ::2] for x in nodes))
                 size = np.maximum(np.abs(found), _LEAST)
-                good = (np.abs(found - rough) <= _CONVERGED * size).all(axis=1)
+                good = (np.abs(found - rough) <= self.close * size).all(axis=1)
             result = result if result.size else np.empty((len(p0), *found.shape[1:]))
             result[left[good]] = found[good]
             left = left[~good]

@@ -13,6 +13,7 @@ import math
 from collections import deque
 from collections.abc import Iterable, Iterator
 from concurrent.futures import Future
+from contextlib import contextmanager
 from itertools import islice
 from typing import Any, Literal, overload
 
@@ -73,7 +74,7 @@ def simulate(
         raise SceneError(f"scene is {shorten(scene)}: a Scene is wanted")
     _check(scene, one_of(method, COMPILED + METHODS, "method"), step)
     rtol, atol = between(rtol, "rtol", 1e-13, 1e-2), between(atol, "atol", 1e-13, 1e-2)
-    with np.errstate(over="ignore", invalid="ignore"):  # the result is checked
+    with np.errstate(over="ignore", invalid="ignore"), _table_named(scene):
         motion = motion_of(scene)
         if method in COMPILED:
             from validation.lattice.engine import follow  # start-up: numba takes its time
@@ -82,9 +83,21 @@ def simulate(
         else:
             run = integrate(motion, method, rtol, atol, progress)
         sums = [float(np.sum(getattr(run, name))) for name in _FINITE]
-    if not all(map(math.isfinite, (run.energy_drift, *sums))):
-        raise IntegrationError("the motion overflows: choose other units")
+        if not all(map(math.isfinite, (run.energy_drift, *sums))):
+            raise IntegrationError("the motion overflows: choose other units")
     return run
+
+
+@contextmanager
+def _table_named(scene: Scene) -> Iterator[None]:
+    """Name the last point of a law from a table in a failure: the force is NaN beyond the point."""
+    try:
+        yield
+    except IntegrationError as error:
+        if scene.law is None or not scene.law.tabulated:
+            raise
+        last = scene.law.points[0][-1]
+        raise IntegrationError(f"{error}; the law's table ends at compression {last:g}") from None
 
 
 def _check(scene: Scene, method: str, step: float | None) -> None:

@@ -19,6 +19,8 @@ All keys but ``duration`` and ``chain.cell`` are optional::
     cell = ["ball", "ball"]       # names of beads, in Hertz contact; or masses, and for them alone
     k = 1.5                       #   the exponent, which masses need,
     law = "hertz2:1,2"            #   or a law of `lwa.law.named` in its place, with parameters,
+                                  #   or "table:law.csv", with columns compression and force
+                                  #   (in a file that was written {compression = […], force = […]}),
     stiffnesses = [1.0, 2.0]      #   A of each contact or one for all (1 if not given),
     spacings = 1.0                #   likewise the neighbours' distance (speeds are in sites if not)
     repeat = 19                   # of the cell, 1 if not given
@@ -73,10 +75,10 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
-from lwa.base.exact import shorten
+from lwa.base.exact import InputError, shorten
 from lwa.base.files import load
 from lwa.base.tables import Reader, Table, among, each, entries, place, places, table
-from lwa.law import NAMES, ContactLaw, read_law
+from lwa.law import NAMES, ContactLaw, Law, read_law
 from lwa.spheres.beads import (
     CHAIN,
     FILE,
@@ -89,7 +91,7 @@ from lwa.spheres.beads import (
 )
 from lwa.spheres.hertz import Material, Sphere, stiffness
 from validation.scenes.checks import SceneError, finite, positive
-from validation.scenes.columns import check_span, columns
+from validation.scenes.columns import MeasuredFile, check_span, columns
 from validation.scenes.forcing import DAMPINGS, Damping, Drive
 from validation.scenes.scene import Scene
 
@@ -103,6 +105,7 @@ _TABLES = {  # that a file may leave out
     "sensors": ("beads", "contacts"),
 }
 _NUMBERS = ("samples", "gravity", "precompression")
+_POINTS = ("compression", "force")  # keys of a law's table
 KEYS: Mapping[str, Sequence[str]] = {"file": FILE, "chain": CHAIN, **_TABLES}
 """Keys of a file, and of each of its tables."""
 
@@ -206,7 +209,7 @@ def _chain(
     else:
         masses = found.masses * found.repeat
         key = found.given.one("k", "law")
-        law = {key: found.given.read(key, finite if key == "k" else read_law)}
+        law = {key: found.given.read(key, finite if key == "k" else _law)}
         stiffnesses = found.by_contact(found.stiffnesses) or [1.0] * (n - 1)
         spacings = tuple(found.by_contact(found.spacings))
     for defect in defects:
@@ -218,6 +221,24 @@ def _chain(
         elif not row:
             raise SceneError(f"{defect.path('like')} names a bead in a chain of masses")
     return row, {"masses": masses, "stiffnesses": stiffnesses, "spacings": spacings} | law
+
+
+def _law(value: Any, name: str) -> ContactLaw:
+    """Read a law: by name, as "table:FILE", or as a table of its points."""
+    if isinstance(value, dict):
+        given = Table(value, name, _POINTS)
+        return Law.table(*(given.read(key, each(positive)) for key in _POINTS))
+    if not (isinstance(value, str) and value.startswith("table:")):
+        return read_law(value, name)
+    file = MeasuredFile.read(value.removeprefix("table:").strip())
+    try:
+        # "compression_value" and "force_value" are the names that `lwa-validate law` writes
+        ending = "_value" * (f"{_POINTS[0]}_value" in file.names)
+        return Law.table(*(file.column(key + ending).tolist() for key in _POINTS))
+    except InputError as error:
+        raise SceneError(
+            str(error) if str(file.path) in str(error) else f"{file.path}: {error}"
+        ) from None
 
 
 def _wall(given: Table, row: Sequence[Sphere], materials: Mapping[str, Material]) -> float:
@@ -251,7 +272,7 @@ def document(source: Scene) -> dict[str, Any]:
     """Return the content of a scene's file, for JSON; `scene` reads an equal scene."""
     P = period(source.masses, source.stiffnesses, source.spacings, whole=True)
     chain: dict[str, Any] = {"cell": list(source.masses[:P])}
-    chain |= {"k": source.k} if source.law is None else {"law": _law_text(source.law)}
+    chain |= {"k": source.k} if source.law is None else {"law": _law_content(source.law)}
     if source.size > P:
         chain["repeat"] = source.size // P
     for name in ("stiffnesses", "spacings"):
@@ -285,8 +306,10 @@ def document(source: Scene) -> dict[str, Any]:
     return result
 
 
-def _law_text(law: ContactLaw) -> str:
-    """Return a law as text, such as "hertz2:1,2"; `SceneError` for a law that no text names."""
+def _law_content(law: ContactLaw) -> str | dict[str, list[float]]:
+    """Return a law as text, such as "hertz2:1,2", or the points of a table; else `SceneError`."""
+    if law.tabulated:
+        return {key: list(row) for key, row in zip(_POINTS, law.points, strict=True)}
     if not (law.name and all(x.is_Rational for x in law.parameters)):
         raise SceneError(f"law is {law.text}: a file holds the laws {', '.join(NAMES)}")
     return law.text
