@@ -104,7 +104,7 @@ class Shock(Value):
         Raises `lwa.InputError` for symbols, and where nothing was measured: powers beyond k = 10
         without load, unequal beads beyond c₋ = 2 c₊.
         """
-        demand_numbers(self.ratio.free_symbols | self.behind.free_symbols, "numbers are wanted")
+        demand_numbers(self._free, "numbers are wanted")
         behind, jump = float(self.behind), float(abs(self.behind - self.ahead))
         if self._gain.is_negative:  # a rarefaction leaves nothing that oscillates
             return Estimate(behind, 0.0)
@@ -158,7 +158,7 @@ class Shock(Value):
         The keys are "behind", "plateau", "trailing_speed", "dispersion" and "doubling" (of
         `leading_speed`), "peak" and "peak_force". Unknown errors and those of symbols are left out.
         """
-        if self.ratio.free_symbols | self.behind.free_symbols or self.kind == "rarefaction":
+        if self._free or self.kind == "rarefaction":
             return {}
         found: dict[str, float] = {}
         with suppress(InputError):
@@ -236,6 +236,7 @@ class Shock(Value):
         """
         if not (self.law.homogeneous and self.ahead.is_zero):
             raise InputError("the series in k - 1 are of a power law without load: ahead = 0")
+        demand_numbers(self._free, "the series are summed for numbers")
         velocity, k = self._pulse.velocity * self._field.time_scale, self.law.exponent
         return wave_of_velocity(expand(self.cell, ORDER, k=k), velocity)
 
@@ -243,13 +244,13 @@ class Shock(Value):
     def series_speed(self) -> Resummed:
         """Speed of `wave`, with the error of the doubling rule."""
         k = self.law.exponent
-        share = float((k - 1) / (k + 1)) * self._velocity_error
+        share = self._velocity_error * float((k - 1) / (k + 1))
         return self.wave.speed.widened(bounds.RULE_SPEED + share)
 
     @property
     def series_force(self) -> Estimate:
         """Peak force F of `wave`, with the error of the doubling rule."""
-        share = float(2 / (1 + 1 / self.law.exponent)) * self._velocity_error
+        share = self._velocity_error * float(2 / (1 + 1 / self.law.exponent))
         return Estimate(float(self.wave.F), 0.0).widened(bounds.RULE_FORCE + share)
 
     @property
@@ -267,6 +268,11 @@ class Shock(Value):
     def _toda(self) -> bool:
         """True for equal beads under Toda's law."""
         return self.cell.uniform and bool(waves.Pulse(self._field, self._gained).toda)
+
+    @property
+    def _free(self) -> set[sp.Symbol]:
+        """Symbols of the law and the strains, and of the spacing unless the law is a power."""
+        return {*self.ratio.free_symbols, *self.behind.free_symbols, *self.law.symbols}
 
     @cached_property
     def _gained(self) -> sp.Expr:
