@@ -100,27 +100,3 @@ def test_a_chain_of_spheres_has_hertz_and_metres(capsys, spheres):
     assert status == 0
     assert "frequency ω/(2π) = 8101." in out
     assert "below the load F0 = 6.278" in out
-
-
-def test_a_file_with_a_load_takes_no_other(capsys, spheres):
-    status, out, err = run(capsys, *spheres, "--precompression", "10")
-    assert (status, out) == (2, "")
-    assert "the file has a precompression of 20: give no other load" in err
-
-
-@pytest.mark.parametrize(
-    ("options", "words"),
-    [
-        ((), "background or precompression"),
-        (("--background", "1", "--precompression", "1"), "background or precompression"),
-        (("--background", "1", "--wavenumber", "4"), "0 … pi"),
-        (("--background", "1", "--wavenumber", "pi*2"), "wavenumber is 'pi*2'"),
-        (("--background", "1", "--branch", "up"), "branch is 'up'"),
-        (("--background", "1", "--detuning", "1", "--frequency", "1"), "both given"),
-        (("--precompression", "1", "--masses", "1,1/2", "--k", "2", "--detuning", "-1"), "below"),
-    ],
-)
-def test_bad_input_is_one_line(capsys, options, words):
-    status, out, err = run(capsys, "envelope", *options)
-    assert (status, out, err.count("\n")) == (2, "", 1)
-    assert words in err

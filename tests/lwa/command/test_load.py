@@ -193,28 +193,3 @@ def test_bands_in_si(capsys):
     assert "band 1" in out
     symbolic = result(capsys, "dispersion", "--precompression", "F0")
     assert "band_edges_value" not in symbolic
-
-
-BAD = [
-    (("derive", "--law", "toda"), "one of power"),
-    (("derive", "--law", "hertz2:1+1"), "hertz2's a"),
-    (("derive", "--law", "general", "--k", "2"), "one of them"),
-    (("derive", "--law", "general", "--format", "numpy"), "power laws"),
-    (("wave", "--law", "hertz2"), "--background"),
-    (("wave", "--background", "1", "--closure", "linear"), "canonical field"),
-    (("wave", "--background", "1", "--precompression", "1"), "both given"),
-    (("wave", "--background", "1", "--force", "1"), "goes with --precompression"),
-    (("wave", "--precompression", "1", "--force", "2", "--format", "c"), "for any force"),
-    (("wave", "--background", "1", "--law", "hertz2:1,B"), "'B': the name means the peak strain"),
-    (("derive", "--law", "hertz2:delta,1"), "'delta': the name means the compression"),
-    (("wave", "--k", "3/2", "--precompression", "2", "--force", "1"), "only B > 0"),
-    (("dispersion", "--precompression", "-1"), "must be positive"),
-]
-
-
-@pytest.mark.parametrize(("arguments", "reason"), BAD)
-def test_bad_input_is_one_line(capsys, arguments, reason):
-    status, out, err = run(capsys, *arguments)
-    assert (status, out) == (2, "")
-    assert err.count("\n") == 1
-    assert reason in err

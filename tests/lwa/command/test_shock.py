@@ -95,18 +95,3 @@ def test_a_piston_and_a_rarefaction(capsys):
     falls = result(capsys, *EQUAL, "--behind", "1", "--ahead", "2")
     assert falls["kind"] == "rarefaction"
     assert "peak_value" not in falls
-
-
-@pytest.mark.parametrize(
-    ("options", "words"),
-    [
-        ((), "--behind or --piston"),
-        (("--behind", "1", "--piston", "1"), "--behind or --piston"),
-        (("--behind", "1", "--ahead", "1"), "there is no shock"),
-        (("--piston", "-1"), "velocity is -1: it must be positive"),
-    ],
-)
-def test_refusals_are_one_line(capsys, options, words):
-    status, out, err = run(capsys, *EQUAL, *options)
-    assert (status, out, err.count("\n")) == (2, "", 1)
-    assert words in err

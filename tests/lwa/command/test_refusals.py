@@ -1,0 +1,189 @@
+"""Bad input of the command `lwa`: one line that names the value, status 2, nothing else."""
+
+import json
+import os
+import random
+import re
+
+import pytest
+
+from tests.lwa.command.answers import run
+
+SPHERES = """
+[materials]
+steel = {E = 193e9, nu = 0.3}
+ptfe = {E = 1.46e9, nu = 0.46}
+[beads]
+heavy = {mass = 0.45e-3, radius = 2.38e-3, material = "steel"}
+light = {mass = 0.123e-3, radius = 2.38e-3, material = "ptfe"}
+[chain]
+cell = ["heavy", "light"]
+"""
+MASSES = {"cell": [1, 1], "k": 1.5, "stiffnesses": 2, "spacings": 0.5, "repeat": 19}
+
+
+def refused(capsys, words, *arguments):
+    status, out, err = run(capsys, *arguments)
+    assert (status, out, err.count("\n")) == (2, "", 1)
+    assert err.startswith("lwa: ")
+    assert words in err
+
+
+LINES = [
+    ("explain", "No such command"),
+    ("derive --nonsense", "--nonsense"),
+    ("derive --k 0", "k is 0"),
+    ("derive --k __import__('os').system('true')", 'k is "__import__'),
+    ("derive --masses 1,2,3", "--closure full"),
+    ("derive --stiffnesses 1", "1 stiffnesses for 2 masses"),
+    ("derive --order 2.5", "order is 5/2"),
+    ("derive --closure none", "'none'"),
+    ("derive --field center", "field is 'center'"),
+    ("derive --closure full --branch optical", "the optical branch"),
+    ("derive --format c", "'c'"),
+    ("derive --masses m1,b12", "'b12' has a meaning"),
+    ("derive --law toda", "one of power"),
+    ("derive --law hertz2:1+1", "hertz2's a"),
+    ("derive --law general --k 2", "one of them"),
+    ("derive --law general --format numpy", "power laws"),
+    ("derive --law hertz2:delta,1", "'delta': the name means the compression"),
+    ("dispersion --masses kappa,1", "'kappa' has a meaning"),
+    ("dispersion --precompression -1", "must be positive"),
+    ("wave --k 29000", "exponents from 1/100 to 1000"),
+    ("wave --k 3 --masses 1,100", "a compact wave needs"),
+    ("wave --k V_s", "'V_s': the name means the speed"),
+    ("wave --masses m1,ξ", "'ξ' has a meaning of its own in the output of `lwa wave`"),
+    ("wave --order 3", "order is 3"),
+    ("wave --law hertz2", "--background"),
+    ("wave --background 1 --law hertz2:L,1", "'L' has a meaning"),
+    ("wave --background 1 --law hertz2:1,B", "'B': the name means the peak strain"),
+    ("wave --background 1 --closure linear", "canonical field"),
+    ("wave --background 1 --precompression 1", "both given"),
+    ("wave --background 1 --force 1", "goes with --precompression"),
+    ("wave --background 2 --law magnetic:4,1", "a pole before it"),
+    ("wave --precompression 1 --force 2 --format c", "for any force"),
+    ("wave --k 3/2 --precompression 2 --force 1", "only B > 0"),
+    ("wave --spheres none.toml", "No such file"),
+    ("expansion --k 1", "k is 1"),
+    ("expansion --order 100", "order is 100"),
+    ("expansion --force 1", "--force goes with --spheres"),
+    ("strike --velocity 1", "--spheres"),
+    ("envelope", "background or precompression"),
+    ("envelope --background 1 --precompression 1", "background or precompression"),
+    ("envelope --background 1 --wavenumber 4", "0 … pi"),
+    ("envelope --background 1 --wavenumber pi*2", "wavenumber is 'pi*2'"),
+    ("envelope --background 1 --wavenumber chi", "'chi' has a meaning"),
+    ("envelope --background 1 --wavenumber q --masses q", "wavenumber 'q'"),
+    ("envelope --background 1 --branch up", "branch is 'up'"),
+    ("envelope --background 1 --detuning 1 --frequency 1", "both given"),
+    ("envelope --precompression 1 --masses 1,1/2 --k 2 --detuning -1", "below"),
+    ("envelope --law polynomial:1/2,-1/4 --masses 1 --background 3", "F′ is -2.75"),
+    ("shock", "--behind or --piston"),
+    ("shock --behind 1 --piston 1", "--behind or --piston"),
+    ("shock --behind 1 --ahead 1", "there is no shock"),
+    ("shock --piston -1", "velocity is -1"),
+]
+
+
+@pytest.mark.parametrize(("line", "words"), LINES, ids=[line for line, _ in LINES])
+def test_lines_are_refused(capsys, line, words):
+    refused(capsys, words, *line.split())
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "more", "words"),
+    [
+        ("", "", ("--masses", "m1,m2"), "--masses and --spheres are both given"),
+        ("", "", ("--force", "1 N"), "force is '1 N': an integer, a decimal"),
+        ("", "", ("--force", "1", "--format", "c"), "--format c is for any force"),
+        ('"light"]', '"light", "heavy"]', (), "the cell has 3 masses"),
+        ('"light"]', '"ligth"]', (), "chain.cell number 2 is 'ligth': did you mean light"),
+        ("[chain]", "[chains]", (), "spheres.toml: chains is unknown: did you mean chain"),
+        ("cell =", "k = 1.5\ncell =", (), "chain.k is given, but named beads are in Hertz contact"),
+        ("0.3", "0.6", (), "materials.steel.nu is 0.6: Poisson's ratio lies between -1 and 1/2"),
+        ("193e9", "nan", (), "materials.steel.E is nan: a finite number is wanted"),
+        ("[chain]", "precompression = 1\n[chain]", (), "beads.precompression is 1: a table"),
+        ("[chain]", "[chain", (), "spheres.toml: not TOML"),
+    ],
+)
+def test_files_of_spheres_are_refused(capsys, tmp_path, old, new, more, words):
+    file = tmp_path / "spheres.toml"
+    file.write_text(SPHERES.replace(old, new))
+    refused(capsys, words, "wave", "--spheres", str(file), *more)
+
+
+@pytest.mark.parametrize(
+    ("chain", "more", "words"),
+    [
+        ({"cell": []}, "wave", "chain.cell is empty"),
+        ({"cell": [1, -1]}, "wave", "chain.cell number 2 is -1"),
+        ({"stiffnesses": [1, 2, 3]}, "wave", "chain.stiffnesses holds 3"),
+        ({"law": "hertz2"}, "wave", "chain has both k and law"),
+        ({"mass": 1}, "wave", "chain.mass is unknown"),
+        ({}, "wave --precompression 1", "the file has a precompression of 2"),
+        ({}, "envelope --precompression 1", "the file has a precompression of 2"),
+        ({}, "wave --force 1", "only B > 0 has a wave"),
+        ({}, "strike", "velocity or drop"),
+        ({}, "strike --velocity 1 --drop 1", "velocity or drop"),
+        ({}, "strike --velocity v", "velocity is v: a number is wanted"),
+        ({}, "strike --drop -1", "drop is -1: it must be positive"),
+        ({"cell": [1, 2]}, "strike --velocity 1", "equal beads"),
+    ],
+)
+def test_scenes_are_refused(capsys, tmp_path, chain, more, words):
+    file = tmp_path / "scene.json"
+    file.write_text(json.dumps({"precompression": 2.0, "chain": MASSES | chain}))
+    command, *options = more.split()
+    refused(capsys, words, command, "--spheres", str(file), *options)
+
+
+def test_unreadable_files_are_refused(capsys, tmp_path):
+    os.mkfifo(tmp_path / "pipe.toml")
+    for name, words in (
+        ("pipe.toml", "only regular files are read"),
+        ("spheres.txt", "a list of spheres is a file ending in .toml or .json"),
+        ("a" * 300 + ".toml", "File name too long"),
+    ):
+        refused(capsys, words, "wave", "--spheres", str(tmp_path / name))
+
+
+NUMBERS = ("1", "2", "1/2", "3/2", "0.45", "1e-3", "7", "m", "0", "-1", "nan", "1e400", "x y", "é")
+LAWS = ("hertz2:1,2", "exponential", "magnetic:4,1", "polynomial:-1/2,0", "general", "toda")
+OPTIONS = {
+    "derive": ("law", "closure", "field", "order"),
+    "wave": ("law", "spacing", "force", "background", "precompression"),
+    "dispersion": ("spacing", "precompression", "order"),
+    "expansion": ("order",),
+    "envelope": ("law", "background", "precompression", "wavenumber", "detuning"),
+    "shock": ("law", "behind", "ahead", "piston"),
+}
+WORDS = {
+    "law": LAWS,
+    "closure": ("full", "linear", "half"),
+    "field": ("first", "center"),
+    "order": ("1", "2", "4", "0", "2.5"),
+    "masses": ("1", "1,1/2", "3,1", "m1,m2", "1,2,3", "1,0", "1,x y"),
+    "wavenumber": ("pi", "pi/3", "0", "1e-6", "4", "q", "2"),
+    "detuning": ("1/1000", "-1/100", "1", "nu"),
+}
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_random_lines_answer_or_are_refused(capsys, seed):
+    """No traceback, no NaN and no complex number; JSON is JSON, text within 100 columns."""
+    draw = random.Random(seed)
+    for _ in range(15):
+        command = draw.choice([*OPTIONS])
+        style = draw.choice(("json", "text", "latex"))
+        arguments = [command, "--format", style]
+        for name in ("k", "masses", *OPTIONS[command]):
+            if draw.random() < 0.4:
+                arguments += [f"--{name}", draw.choice(WORDS.get(name, NUMBERS))]
+        status, out, err = run(capsys, *arguments)
+        if status:
+            assert (status, out, err.count("\n")) == (2, "", 1), arguments
+        elif style == "json":
+            json.loads(out, parse_constant=pytest.fail)
+        elif style == "text":
+            assert not re.search(r"\bnan\b|\bzoo\b", out), arguments
+            assert max(map(len, out.splitlines())) <= 100, arguments
