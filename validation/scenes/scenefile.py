@@ -1,65 +1,12 @@
 """Files of scenes, TOML or JSON: `read_scene` reads a file, `document` returns its content.
 
-All keys but ``duration`` and ``chain.cell`` are optional::
-
-    duration = 1e-3               # of the simulation
-    samples = 2001                # of the sensors, from 0 to the duration; 1001 if not given
-    units = "SI"                  # labels of results; results of named beads are in SI anyway
-    gravity = 9.81                # towards the wall; the chain is in equilibrium under its weight
-    precompression = 2.0          # constant force on bead 1, towards the wall: in equilibrium every
-                                  #   contact carries it, besides the beads above
-    [materials.steel]             # any name
-    E = 193e9                     # Young's modulus
-    nu = 0.3                      # Poisson's ratio
-    [beads.ball]                  # any name
-    mass = 0.45e-3
-    radius = 2.38e-3
-    material = "steel"
-    [chain]
-    cell = ["ball", "ball"]       # names of beads, in Hertz contact; or masses, and for them alone
-    k = 1.5                       #   the exponent, which masses need,
-    law = "hertz2:1,2"            #   or a law of `lwa.law.named` in its place, with parameters,
-                                  #   or "table:law.csv", with columns compression and force
-                                  #   (in a file that was written {compression = […], force = […]}),
-    stiffnesses = [1.0, 2.0]      #   A of each contact or one for all (1 if not given),
-    spacings = 1.0                #   likewise the neighbours' distance (speeds are in sites if not)
-    repeat = 19                   # of the cell, 1 if not given
-    [[defects]]                   # one table for each, at most one at a place
-    bead = 10
-    like = "ball"                 # another bead in its place; or mass = 2.0
-    [[defects]]
-    contact = 3
-    stiffness = 2.0
-    [wall]                        # behind the last bead; gravity and precompression need it
-    material = "steel"            # or stiffness = 2.0
-    [striker]
-    velocity = 1.37               # of bead 1
-    [damping]                     # of every contact: one of
-    contact = 0.1                 #   γ in γ dδ/dt,
-    kuwabara_kono = 0.1           #   γ in γ δ^{k-1} dδ/dt,
-    restitution = 0.9             #   the coefficient of restitution of two beads
-    [drive]                       # of bead 1, in place of a striker: one of
-    velocity = 1.0                #   the constant velocity of a piston,
-    amplitude = 1e-6              #   y = amplitude sin(2π frequency t),
-    frequency = 5e3
-    ramp = 1e-3                   #   which grows to its size within this time,
-    file = "shaker.csv"           #   or two columns, time and displacement (lists in JSON:
-    time = [0.0, 1.0, 2.0, 3.0]   #   these)
-    displacement = [0, 1, 1, 0]
-    [start]                       # instead of a striker; from bead 1 on, the others at 0
-    velocities = [1.0, 1.0]
-    displacements = [0.1, 0.1]    # from the equilibrium
-    overlap = true                # they press beads into each other that carry nothing at rest
-    [sensors]
-    beads = [15, 34]
-    contacts = [15]               # contact 15 joins beads 15 and 16, the last one bead and wall;
-                                  #   or "all"
+The file ``keys.toml`` beside this module lists all keys with examples; `lwa-validate run --keys`
+prints the list.
 
 Beads and contacts are counted from 1, as in the paper and on the command line (a `Scene` counts
 from 0). Stiffnesses are as many as the cell has beads, the last one joining it to the next cell,
-or as many as the whole chain has contacts; spacings likewise. Units of named beads are SI, of
-masses and stiffnesses any that agree. A file with a key ``scene``, such as `lwa-validate run --out`
-writes, holds the scene under that key.
+or as many as the whole chain has contacts; spacings likewise. A file with a key ``scene``, such as
+`lwa-validate run --out` writes, holds the scene under that key.
 
 Unknown keys are refused, and every fault is one line that names the key. A written file holds
 masses and stiffnesses, not the materials that they came from; the scene read from it is equal.
@@ -100,7 +47,7 @@ _TABLES = {  # that a file may leave out
     "wall": ("material", "stiffness"),
     "damping": DAMPINGS,
     "drive": ("velocity", "amplitude", "frequency", "ramp", "file", "time", "displacement"),
-    "striker": ("velocity",),
+    "striker": ("velocity", "like"),
     "start": ("velocities", "displacements", "overlap"),
     "sensors": ("beads", "contacts"),
 }
@@ -126,7 +73,12 @@ def scene(content: Any) -> Scene:
     }
     materials = read_materials(file)
     beads = read_beads(file, materials)
-    defects = file.read("defects", _defects, ())
+    defects = [*file.read("defects", _defects, ())]
+    if "like" in (striker := tables["striker"]):
+        if any(defect.entries.get("bead") == 1 for defect in defects):
+            raise SceneError("striker.like and defects name bead 1: one of them is wanted")
+        other = {"bead": 1, "like": striker.entries["like"]}
+        defects.append(Table(other, "striker", ("bead", "like")))
     row, chain = _chain(read_row(file, beads), beads, defects)
     n, start, sensors = len(chain["masses"]), tables["start"], tables["sensors"]
     wall = _wall(tables["wall"], row, materials) if "wall" in file else None

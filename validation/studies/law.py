@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import click
@@ -20,11 +20,11 @@ from lwa.command.options import quantities, quantity
 from lwa.spheres.beads import spheres as read_spheres
 from validation.pictures import Curve, Panel
 from validation.pulses.pulse import Measured
-from validation.report.command import option, study
+from validation.report.command import column_option, option, study
 from validation.report.result import Report
 from validation.report.table import Column, Table
 from validation.scenes.chains import numeric_cell
-from validation.scenes.checks import SceneError, integer
+from validation.scenes.checks import SceneError, integer, one_of
 from validation.scenes.columns import columns
 from validation.waves.contact_law import Medium, fit_power, free_law, weights
 
@@ -47,6 +47,13 @@ _NOTE = (
     option("--spacing", callback=quantity, says="Distance between bead centers; by default 1."),
     option("--spheres", metavar="FILE", says="File of a cell of spheres, in place of --masses."),
     option("--material", metavar="NAME", says="Material in this file whose modulus E is wanted."),
+    option(
+        "--of",
+        default="contact",
+        type=click.Choice(("contact", "bead")),
+        says="Where the sensors sit; the force of a bead is the mean of its two contacts'.",
+    ),
+    column_option(),
     option("--degree", default=3, says="Degree of the free law's polynomial ln V(ln F)."),
 )
 def law(
@@ -55,11 +62,17 @@ def law(
     spacing: Any = None,
     spheres: str | None = None,
     material: str | None = None,
+    of: str = "contact",
+    renamed: Mapping[str, str] | None = None,
     degree: int = 3,
 ) -> Report:
-    """Contact law from pulses. DATA, a CSV file, has the columns force (peak contact force) and
-    speed. Columns force_error and speed_error, if both are there, are standard deviations that
-    weight the pulses.
+    """Contact law from pulses. DATA, a CSV file, has the columns force (peak force) and speed.
+    Columns force_error and speed_error, if both are there, are standard deviations that weight the
+    pulses. Units in the header are read.
+
+    of: "contact", or "bead" for forces of equal beads; the free law divides them by the share of a
+    contact's force that a bead feels at the fitted k. From k = 1.9 on the force of a bead has two
+    humps, of which either may be the higher: time pulses at contacts then.
 
     Peak contact forces and speeds are in the units of the masses and the spacing, by default those
     of unit mass and spacing; with spheres they are in N and m/s. ``k_value``, ``A_value`` and, of
@@ -68,20 +81,21 @@ def law(
     ``force_value``, ``force_error_value``.
     """
     degree = integer(degree, "degree", 1, 6)
-    force, speed, weight = _pulses(data, degree + 3)
+    force, speed, weight = _pulses(data, degree + 3, renamed)
     content: dict[str, Any] = {}
     if spheres is None:
         cell = Cell(numeric_cell(masses or (1,)).masses, spacing=1 if spacing is None else spacing)
     else:
         content = load(spheres, "a list of spheres", lambda x: entries(x, "the file"))
         cell = Cell.of_spheres(read_spheres(content))
-    medium = Medium.of(cell)
+    medium = Medium.of(cell, one_of(of, ("contact", "bead"), "of"))
     fit = fit_power(medium, force, speed, weight)
     numbers = {"k": fit.k, "A": fit.A}
     if material is not None:
         if spheres is None:
             raise SceneError("material is given: its E needs --spheres")
         numbers["E"] = _modulus(content, material, fit.hertz)
+    measured, force = force, force / float(medium.share(fit.k.value))
     compression, error = free_law(medium, force, speed, degree, weight=weight)
     power_law = fit.A.value * compression**fit.k.value
     forces = map(Measured, force.tolist(), (force + error).tolist())
@@ -97,7 +111,7 @@ def law(
             Table(_POWER, tuple(numbers.items())),
             Table(_FREE, rows, "rows", "free law F(δ)"),
         ),
-        panels=(_speeds(force, speed), Panel("compression", "contact force", laws, "xy")),
+        panels=(_speeds(measured, speed), Panel("compression", "contact force", laws, "xy")),
         notes=(f"One power is {'enough' if fit.one_power else 'not enough'}: {bend}.", _NOTE),
         data={f"{name}_value": number.value for name, number in numbers.items()}
         | {f"{name}_error_value": number.error for name, number in numbers.items()}
@@ -116,9 +130,11 @@ def _speeds(force: Array, speed: Array) -> Panel:
     return Panel("peak contact force", "speed", curves, "xy")
 
 
-def _pulses(data: str, least: int) -> tuple[Array, Array, Array | None]:
+def _pulses(
+    data: str, least: int, renamed: Mapping[str, str] | None
+) -> tuple[Array, Array, Array | None]:
     """Read ``least`` or more pulses; return rising forces, speeds and weights (None if none)."""
-    read = columns(data, "force", "speed", optional=("force_error", "speed_error"))
+    read = columns(data, "force", "speed", optional=("force_error", "speed_error"), renamed=renamed)
     order = np.argsort(read["force"])
     force, speed, *deviations = (values[order] for values in read.values())
     if len(force) < least or not (force[0] > 0 and speed.min() > 0):

@@ -31,7 +31,7 @@ from validation.report.table import plain
 from validation.scenes import scenefile
 from validation.scenes.checks import SceneError
 
-EXAMPLES = ("paper", "vertical", "precompressed", "defect", "trimer")
+EXAMPLES = ("paper", "vertical", "precompressed", "defect", "trimer", "striker")
 """Names of the examples of scene files."""
 
 _NOTE = "{} at each sensor, in {} units. ±: difference to a less accurate run."
@@ -86,9 +86,15 @@ def report(recording: Recording, every: bool = False) -> Report:
     )
 
 
-def _print_example(context: click.Context, given: click.Parameter, name: str | None) -> None:
-    if name is not None and not context.resilient_parsing:  # completion parses resiliently
-        click.echo(example(name), nl=False)
+def keys() -> str:
+    """Return the list of the keys of a scene file, with examples."""
+    return (resources.files("validation.scenes") / "keys.toml").read_text(encoding="utf-8")
+
+
+def _print(context: click.Context, given: click.Parameter, name: Any) -> None:
+    """Print the file of an option, an example or the keys, and end the command."""
+    if name and not context.resilient_parsing:  # completion parses resiliently
+        click.echo(keys() if given.name == "keys" else example(name), nl=False)
         context.exit()
 
 
@@ -145,8 +151,16 @@ _RTOL = "Relative tolerance. Errors are differences to a run with 1000 times thi
         flag_value=EXAMPLES[0],
         is_eager=True,
         expose_value=False,
-        callback=_print_example,
+        callback=_print,
         says="Print an example of a scene file, by default the paper's chain.",
+    ),
+    option(
+        "--keys",
+        is_flag=True,
+        is_eager=True,
+        expose_value=False,
+        callback=_print,
+        says="Print all keys of a scene file, with examples.",
     ),
     output_option(
         "--out",

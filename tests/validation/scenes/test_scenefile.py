@@ -4,7 +4,6 @@ import copy
 import json
 import os
 import re
-import textwrap
 import tomllib
 
 import pytest
@@ -20,6 +19,7 @@ from validation.scenes.chains import STEEL
 from validation.scenes.scene import Scene, SceneError
 from validation.scenes.scenefile import document, read_scene, scene
 from validation.studies.paper import chain_scene
+from validation.studies.run import keys
 
 # The experiment of Porter et al. (2008), standing upright: SI units.
 PAPER = """
@@ -95,9 +95,11 @@ def test_every_other_key():
     )
 
 
-def test_the_modules_own_example_holds_every_key():
-    example = scenefile.__doc__.partition("::\n")[2].partition("\nBeads and contacts are")[0]
-    content = tomllib.loads(textwrap.dedent(example))
+def test_the_list_of_keys_holds_every_key():
+    """The list reads as a scene once the keys that exclude each other are taken out."""
+    text = keys()
+    assert text.isascii()
+    content = tomllib.loads(text)
     assert set(content) == set(scenefile.KEYS["file"])
     for name in ("chain", "striker", "start", "sensors"):
         assert set(content[name]) == set(scenefile.KEYS[name])
@@ -412,3 +414,42 @@ def test_a_drive_is_read_from_a_file(tmp_path):
             scene(chain)
     with pytest.raises(SceneError, match=r"^none.csv: No such file"):
         scene(chain | {"drive": {"file": "none.csv"}})
+
+
+STRUCK = {
+    "duration": 1e-3,
+    "materials": {"steel": {"E": 193e9, "nu": 0.3}},
+    "beads": {
+        "ball": {"mass": 0.45e-3, "radius": 2.38e-3, "material": "steel"},
+        "light": {"mass": 0.2e-3, "radius": 1e-3, "material": "PTFE"},
+    },
+    "chain": {"cell": ["ball"], "repeat": 5},
+}
+
+
+def test_a_striker_like_another_bead_is_a_defect_of_bead_1():
+    struck = scene(STRUCK | {"striker": {"velocity": 1.0, "like": "light"}})
+    defects = [{"bead": 1, "like": "light"}]
+    assert struck == scene(STRUCK | {"striker": {"velocity": 1.0}, "defects": defects})
+    assert struck.masses[:2] == (0.2e-3, 0.45e-3)
+    assert struck.stiffnesses[0] != struck.stiffnesses[1]
+
+
+@pytest.mark.parametrize(
+    ("changed", "named"),
+    [
+        ({"striker": {"velocity": 1.0, "like": "wood"}}, "striker.like is 'wood'"),
+        ({"striker": {"like": "light"}}, "striker.velocity is missing"),
+        (
+            {"striker": {"velocity": 1, "like": "light"}, "defects": [{"bead": 1, "mass": 1.0}]},
+            "striker.like and defects",
+        ),
+        (
+            {"striker": {"velocity": 1, "like": "light"}, "chain": {"cell": [1], "k": 1.5}},
+            "striker.like names a bead in a chain of masses",
+        ),
+    ],
+)
+def test_bad_strikers_are_refused(changed, named):
+    with pytest.raises(SceneError, match=named):
+        scene(STRUCK | changed)

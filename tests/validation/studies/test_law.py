@@ -15,7 +15,7 @@ from validation.scenes.scene import SceneError
 from validation.studies import paper
 from validation.studies.law import law
 from validation.studies.run import example
-from validation.waves.contact_law import Medium, fit_power, free_law, weights
+from validation.waves.contact_law import Medium, bead_share, fit_power, free_law, weights
 from validation.waves.solver import exact_wave
 
 FORCES = np.geomspace(0.1, 10, 12)
@@ -113,6 +113,32 @@ def test_the_error_of_exact_data_covers_rounding(chain, tmp_path):
     for name, value in (("k", 3.4), ("A", 1.0)):
         assert abs(found[f"{name}_value"] - value) <= found[f"{name}_error_value"] < 1e-9
     assert found["k_error_value"] > 0
+
+
+def test_forces_of_beads_give_the_law_of_the_contacts(tmp_path):
+    """Struck chains, k = 1.3 and 1.5, at contacts and in beads: 0.707 of the force at 3/2."""
+    file = tmp_path / "pulses.csv"
+    for k in (1.3, 1.5):
+        rows, power = [], (k - 1) / (k + 1)
+        for v in np.geomspace(0.1, 2, 8):
+            scene = Scene(
+                masses=(1,) * 80, stiffnesses=(1,) * 79, k=k, velocities=(v,), samples=2,
+                bead_sensors=(40, 60), contact_sensors=(40,), duration=90 / v**power,
+            )  # fmt: skip
+            run = simulate(scene, rtol=1e-8)
+            first, second = (measure(run.signal("bead", i)) for i in (40, 60))
+            rows.append((first.peak, 20 / (second.arrival - first.arrival)))
+            share = first.peak / measure(run.signal("contact", 40)).peak
+        assert share == pytest.approx(float(bead_share()(k)), rel=2e-3)
+        assert k != 1.5 or share == pytest.approx(0.707, abs=2e-3)
+        np.savetxt(file, rows, delimiter=",", header="force,speed", comments="")
+        found = law(str(file), of="bead").document()
+        assert found["k_value"] == pytest.approx(k, rel=2e-3)
+        assert found["A_value"] == pytest.approx(1, rel=5e-3)
+        assert law(str(file)).document()["A_value"] > 1.05  # taken for forces of contacts
+        last = found["rows"][-1]
+        assert last["force_value"] == pytest.approx(rows[-1][0] / share, rel=2e-3)
+        assert last["force_value"] == pytest.approx(last["compression_value"] ** k, rel=0.02)
 
 
 @pytest.mark.parametrize("scale", [1e-8, 0.9055, 1e8])
@@ -230,6 +256,10 @@ def test_the_command(capsys, tmp_path, chain):
         ("force,speed\n" + "1,fast\n" * 9, {}, "column speed, line 2: 'fast'"),
         ("force,speed\n" + "-1,2\n" * 9, {}, "positive force and speed"),
         ("force,speed\n" + "1,2\n" * 9, {"masses": (1, 2, 3)}, "the cell has 3 beads"),
+        ("force,speed\n" + "1,2\n" * 9, {"masses": (1, 2), "of": "bead"}, "of is bead"),
+        ("force,speed\n" + "1,2\n" * 9, {"of": "wall"}, "of is 'wall'"),
+        ("force (N),speed (cm/s)\n" + "1,2\n" * 9, {}, "column speed is in 'cm/s'"),
+        ("F,speed\n" + "1,2\n" * 9, {"renamed": {"F": "force"}}, "column is 'F'"),
         ("force,speed\n" + "1,2\n" * 9, {"masses": (sp.Symbol("m"),)}, "mass is m"),
     ],
 )
