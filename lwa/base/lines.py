@@ -21,11 +21,12 @@ class _Words(textwrap.TextWrapper):
 def wrapped(line: str, width: int, more: str = "", words: bool = False) -> list[str]:
     """Break a line into lines of at most ``width`` characters; all but the last end in ``more``.
 
-    Further lines are indented by eight columns more. With ``words`` a line also breaks at spaces.
+    Further lines are indented by eight columns more. With ``words`` a line also breaks at spaces,
+    and within longer numbers.
     """
     start = line[: len(line) - len(line.lstrip())]
     wrapper = (_Words if words else _Wrapper)(
-        width - len(more), subsequent_indent=f"{start}        ", break_long_words=False
+        width - len(more), subsequent_indent=f"{start}        ", break_long_words=words
     )
     *lines, last = wrapper.wrap(line) or [""]
     return [*(part + more for part in lines), last]

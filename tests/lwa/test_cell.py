@@ -1,12 +1,11 @@
 """The periodic cell: shares, effective stiffness, refusals."""
 
-import numpy as np
 import pytest
 import sympy as sp
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lwa import Cell, Dimer, Dispersion, InputError, homogenize, k
+from lwa import Cell, Dimer, Dispersion, InputError, homogenize
 from lwa.cell import RESERVED
 from tests.identity import same
 
@@ -29,13 +28,6 @@ def test_shares_make_all_contact_forces_equal():
         # A_i c_i^k = A_eff, at numbers: sympy does not merge the powers of a sum
         numbers = {A1: 2, A2: 3, A3: 5, k: sp.Rational(3, 2)}
         assert abs(sp.N((A * c**k / cell.stiffness(k) - 1).subs(numbers), 40)) < 1e-35
-
-
-def test_equal_contacts_have_shares_one():
-    A = sp.Symbol("A", positive=True)
-    cell = Cell([1, 2], stiffnesses=[A, A])
-    assert cell.shares() == (1, 1)
-    assert cell.stiffness() == A
 
 
 def test_a_cell_is_a_value():
@@ -82,22 +74,6 @@ def test_exponents_and_numbers_out_of_range_are_refused():
             Dispersion(Cell([1, 1], [1, 2]), exponent)
     with pytest.raises(InputError, match="digits"):
         homogenize(Cell([1, "1e999"]), 10)
-
-
-def test_numpy_integers_are_integers():
-    four = np.int64(4)
-    assert homogenize(Dimer(1, 2), four) == homogenize(Dimer(1, 2), 4)
-    assert Dimer(1, 2, N=np.int8(2)) == Dimer(1, 2, N=2)
-    assert Dispersion(Cell([1])).acoustic(four) == Dispersion(Cell([1])).acoustic(4)
-    assert homogenize(Dimer(1, 2)).pde.in_field({np.int64(2): 1}).k == k
-    for wrong in (True, 4.0, np.float64(4), "4"):
-        with pytest.raises(InputError, match="order"):
-            homogenize(Dimer(1, 2), wrong)
-
-
-def test_the_refusal_of_three_masses_names_the_full_closure():
-    with pytest.raises(InputError, match='closure="full"'):
-        homogenize(Cell([1, 2, 3]))
 
 
 def test_names_of_one_symbol_only():

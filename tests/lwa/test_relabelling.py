@@ -52,31 +52,6 @@ def test_the_canonical_equation_is_the_same_from_every_particle(masses, n):
     }
 
 
-@given(st.lists(values, min_size=2, max_size=4))
-@settings(max_examples=10)
-def test_backwards_the_even_orders_change_sign(masses):
-    cell = Cell(masses)
-    pde, again = canonical(cell, 7), canonical(reflected(cell), 7)
-    for n, found in pde.coefficients.items():
-        sign = 1 if n % 2 else -1
-        assert dict(found) == {jet: sign * c for jet, c in again.coefficients[n].items()}
-
-
-def test_from_m2_the_full_closure_describes_another_field_of_the_same_wave():
-    one, two = (
-        homogenize(Dimer(*masses), 4, closure="full").pde for masses in (("m1", "m2"), ("m2", "m1"))
-    )
-    m1, m2 = one.cell.masses
-    assert one.I == two.I
-    assert sp.cancel(one.G - two.G) != 0
-    # α = (1-b)(b-1/2) leads from each of them to the canonical field, b = m1/M or m2/M
-    fields = []
-    for pde, b in ((one, m1 / (m1 + m2)), (two, m2 / (m1 + m2))):
-        fields.append(pde.in_field({2: (1 - b) * (b - sp.Rational(1, 2))}))
-    assert sp.cancel(fields[0].G - fields[1].G) == 0
-    assert sp.cancel(fields[0].H - fields[1].H) == 0
-
-
 def test_the_linear_closure_depends_on_the_labels():
     """β D → √10/10 for m2 → 0, but √6/4 for m1 → 0, which is the same chain (k = 3/2)."""
     wave = homogenize(Dimer("m1", "m2"), k="3/2").pde.traveling_wave()

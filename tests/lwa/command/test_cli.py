@@ -57,12 +57,6 @@ def test_low_orders_have_no_G(capsys):
     assert "order 2" in out
 
 
-def test_optical_branch(capsys):
-    found = result(capsys, "derive", "--branch", "optical", "--order", "2")
-    assert found["lambda"] == "-m1/m2"
-    assert found["G"] is None
-
-
 def test_wave_json(capsys):
     found = result(capsys, "wave", "--k", "3/2", "--masses", "1,1")
     assert found["beta"] == "sqrt(10)/(5*D)"
@@ -75,18 +69,6 @@ def test_wave_json(capsys):
     for name in ("a", "mu", "eta", "sigma", "s", "B", "width", "speed"):
         assert isinstance(found[name], str)
         assert isinstance(found[f"{name}_value"], float)
-
-
-def test_wave_json_in_a_length_unit(capsys):
-    one = result(capsys, "wave", "--k", "3/2", "--masses", "0.45,0.123")
-    mm = result(capsys, "wave", "--k", "3/2", "--masses", "0.45,0.123", "--spacing", "4.76")
-    assert mm["width_value"] == pytest.approx(4.76 * one["width_value"], rel=1e-15)
-
-
-def test_symbols_have_no_values(capsys):
-    found = result(capsys, "wave", "--k", "q", "--masses", "c,b")
-    assert not [name for name in found if name.endswith("_value")]
-    assert "q" in found["beta"]
 
 
 def test_amplitudes_out_of_range_have_no_value_but_a_logarithm(capsys):
@@ -145,14 +127,6 @@ def test_canonical_field(capsys):
     found = result(capsys, "wave", *chain)
     assert found["speed_factor"] == "2/(k*(k + 1))"
     assert "Abs" not in found["p"]
-
-
-def test_text_of_the_wave(capsys):
-    status, out, _ = run(capsys, "wave", "--k", "3/2", "--masses", "1,1")
-    assert status == 0
-    assert "β = sqrt(10)/(5*D) ≈ 0.632455532033676 D^-1" in out
-    assert "p = 4/5" in out
-    assert "the other root, p = 4/3" in out
 
 
 def test_expansion(capsys):
@@ -308,34 +282,6 @@ def test_spheres_in_a_program_are_a_wave_as_any_other(capsys, spheres):
         assert modules[0][name]() == modules[1][name]()
     at = result(capsys, "wave", "--spheres", spheres(), "--force", "10")
     assert modules[0]["speed_at_force"](10.0) == pytest.approx(at["speed_value"], rel=1e-14)
-
-
-def test_letters_of_other_commands_are_free(capsys):
-    for command in ("derive --masses p,q --k n", "wave --masses b1,c --stiffnesses A,1"):
-        status, out, _ = run(capsys, *command.split(), "--closure", "full")
-        assert status == 0
-        assert command.split()[2].split(",")[1] in out
-
-
-def test_conservative_is_decided_at_any_order(capsys):
-    for order in "1234":
-        status, out, _ = run(capsys, "derive", "--order", order, "--format", "json")
-        assert status == 0
-        assert json.loads(out)["conservative"] is False
-
-
-def test_units_are_printed_near_k_one(capsys):
-    status, out, _ = run(capsys, "wave", "--k", "1.000000001", "--masses", "1,2")
-    assert status == 0
-    assert "k = 1000000001/1000000000" in out
-    assert re.findall(r"≈ \S+ (D\S*)", " ".join(out.split())) == [
-        "D^-1",
-        "D",
-        "D",
-        "D",
-        "D",
-        "D^-2",
-    ]
 
 
 @pytest.mark.parametrize(

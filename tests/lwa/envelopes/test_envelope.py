@@ -14,7 +14,6 @@ from lwa import (
     Cell,
     Dimer,
     InputError,
-    Law,
     LoadedChain,
     Material,
     Power,
@@ -24,7 +23,7 @@ from lwa import (
     general,
     shock,
 )
-from lwa.law import DELTA, named
+from lwa.law import named
 from lwa.linear.bands import Bands
 from tests.identity import same
 
@@ -249,15 +248,6 @@ def test_exact_numbers_are_those_of_floats(cell, kappa):
         assert not chain.nonlinearity.has(sp.Float)
 
 
-def test_symbols_first_or_numbers_first():
-    chain = envelope(Cell([m1, m2], [1, 8], 1), HERTZ, background="p0")
-    values = {"m1": 3, "m2": "1/2", "p0": "1/5"}
-    late = chain.nonlinearity.xreplace(
-        {s: sp.sympify(values[s.name]) for s in chain.nonlinearity.free_symbols}
-    )
-    assert float(late) == pytest.approx(float(chain.at(**values).numeric().nonlinearity), rel=1e-12)
-
-
 def test_units_of_real_spheres():
     """Cut-offs of aluminium and steel beads of 19.05 mm at 20 N, by arithmetic: √(2 K2/m) and
     √(2 K2 (1/m1 + 1/m2)), the bands of Boechler et al., PRL 104, 244302 (2010)."""
@@ -412,10 +402,3 @@ def test_frequencies_and_their_derivatives_are_those_of_the_bands(masses, stiffn
     assert float(ours.group_velocity) == pytest.approx(slope[1], abs=1e-9 * omega[-1])
     bend = (slope[2] - slope[0]) / 2e-4
     assert float(ours.dispersion) == pytest.approx(bend, abs=1e-4 * omega[-1])
-
-
-def test_a_law_of_its_own():
-    """δ + a δ² + b δ³ without load is K2 = 1, K3 = a, K4 = b."""
-    a, b = sp.symbols("a b", real=True)
-    found = envelope(Cell([1]), Law(DELTA + a * DELTA**2 + b * DELTA**3, DELTA), background=0)
-    assert same(found.nonlinearity, 8 * (3 * b / 2 - 2 * a**2))

@@ -76,13 +76,6 @@ def test_the_canonical_field_is_variational_at_third_order_for_every_cell(cell):
     assert same(pde.H, 2 * pde.I * (k - 1))
 
 
-def test_the_linear_closure_is_not_variational():
-    pde = homogenize(Dimer("m1", "m2")).pde
-    assert not pde.variational
-    with pytest.raises(InputError, match="no energy"):
-        pde.energy_density(x**2, x)
-
-
 def test_a_redefinition_of_the_field_is_variational_at_fifth_order():
     """φ̃ = φ + b(1-b)(1-2b)²/8 D⁴ φ_4x: to this order φ̃² is the mean of squares of the w_i."""
     center = homogenize(Dimer(m1, m2), 6, closure="full", field="center").pde
@@ -124,16 +117,3 @@ def test_the_optical_branch_conserves_neither_momentum_nor_energy():
     assert not pde.variational
     with pytest.raises(InputError, match="acoustic"):
         pde.in_field({2: 1})
-
-
-@pytest.mark.parametrize("order", [1, 2, 3, 4, 5])
-def test_conservation_laws_do_not_depend_on_the_order(order):
-    """Below D^{k+3} there is nothing to tell by: what stands there decides."""
-    for cell, kind, conservative, variational in (
-        (Dimer(1, 2), {}, False, False),
-        (Dimer(1, 1), {}, True, True),
-        (Dimer(1, 2), {"closure": "full"}, True, False),
-        (Dimer(1, 2), {"closure": "full", "field": "center"}, True, True),
-    ):
-        pde = homogenize(cell, order, **kind).pde
-        assert (pde.conservative, pde.variational) == (conservative, variational)

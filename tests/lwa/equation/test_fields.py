@@ -52,18 +52,6 @@ def test_a_shift_and_its_inverse_cancel():
     same(there.in_field({2: -alpha, 4: alpha**2, 6: -(alpha**3)}), pde, 8)
 
 
-def test_a_shift_of_the_origin_changes_nothing():
-    # φ(x) = u(x + hD) = Σ (hD)^n ∂^n u / n! obeys the same equation
-    pde = homogenize(Dimer(2, 1), 7, closure="full").pde
-    h = sp.Rational(1, 3)
-    same(pde.in_field({n: h**n / sp.factorial(n) for n in range(1, 8)}), pde, 7)
-
-
-def test_the_linear_chain_does_not_see_the_field():
-    pde = homogenize(Dimer(m1, m2), 8, k=1).pde
-    same(pde.in_field({2: alpha, 3: alpha**2}), pde, 8)
-
-
 def test_bad_shifts():
     pde = homogenize(Dimer(1, 2)).pde
     with pytest.raises(InputError, match="n is 0"):

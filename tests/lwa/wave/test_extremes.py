@@ -158,27 +158,6 @@ def test_a_force_next_to_the_load(excess):
         assert float(found.subs(D, 1)) == pytest.approx(expected, rel=float(excess) + 1e-13)
 
 
-def test_arrays_without_numbers_are_refused():
-    background = background_wave(CHAIN, law=Power("3/2")).numeric()
-    wave = homogenize(Cell(["m1", "m2"])).pde.traveling_wave().numeric()
-    for bad in ("x", 10**400, [1.0, None], float("inf")):
-        for call in (
-            lambda x: background.speed(x, 1.0),
-            lambda x: background.fwhm(1.0, x),
-            lambda x: background.profile(x, 1.0, 1.0),
-            lambda x: wave.beta(x, 1.0),
-            lambda x: wave.speed(1.5, 1.0, x),
-        ):
-            with pytest.raises(InputError):
-                call(bad)
-
-
-def test_a_closed_form_at_a_huge_mass_ratio():
-    wave = homogenize(Cell(["m1", "m2"])).pde.traveling_wave()
-    heavy = wave.at(omega=10**300, k="3/2", m1=1, D=1)
-    assert float(heavy.beta) == pytest.approx(np.sqrt(6) / 4, rel=1e-14)  # the limit ω → ∞
-
-
 def test_linear_waves_are_no_waves_of_kdv():
     """At k = 1, and where F″ = 0, waves of small amplitude have no width of their own."""
     for law, p0 in ((Power(1), 1), (named("polynomial", 0, 1), 0)):

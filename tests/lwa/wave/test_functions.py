@@ -11,7 +11,7 @@ import mpmath
 import numpy as np
 import pytest
 import sympy as sp
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from lwa import Cell, Dimer, InputError, NoSolitaryWave, canonical_wave, homogenize
@@ -288,37 +288,6 @@ def test_any_name_at_once(language, tmp_path, request):
     unit = np.eye(n)
     assert [found["beta"](*row) for row in unit] == [i + 1 for i in range(n)]
     assert found["profile"](*unit[n // 2]) == 2 * (n // 2 + 1)
-
-
-names = st.one_of(st.sampled_from(NAMES), st.text("aB_7μ .'\n", max_size=6))
-
-
-@given(st.lists(names, min_size=4, max_size=4, unique=True), st.booleans())
-@settings(max_examples=4)
-def test_a_name_changes_nothing_but_itself(drawn, assume_positive):
-    symbols = [sp.Symbol(name, positive=assume_positive or None) for name in drawn]
-    k, m1, m2, D = symbols
-    try:
-        wave = canonical_wave(Dimer(m1, m2, spacing=D), k)
-    except InputError:  # a name that means something else
-        return
-    values = (1.5, 2.0, 3.0, 0.5)
-    found, expected = namespace(wave), plain()
-    for call in (lambda f: f["profile"](0.1, 2.0, *values), lambda f: f["fwhm_force"](*values)):
-        # sums are in another order under other names
-        assert call(found) == pytest.approx(call(expected), rel=1e-15)
-
-
-def namespace(wave):
-    """The names that the wave's code defines, run by Python."""
-    found = {}
-    exec(wave.code("numpy"), found)
-    return found
-
-
-@cache
-def plain():
-    return namespace(canonical_wave(Dimer("m1", "m2")))
 
 
 def test_renamed_symbols_are_listed_in_comments():

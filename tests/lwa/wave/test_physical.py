@@ -101,14 +101,6 @@ def test_units(cell, D, k, F, scales):
             assert close(other[f"{quantity} time"], one[f"{quantity} time"] * time)
 
 
-def test_the_linear_chains_sound_speed_as_k_tends_to_one():
-    """Springs in series: P D √(1 / (M Σ 1/A_i))."""
-    m1, m2, A1, A2, D, k = sp.symbols("m1 m2 A1 A2 D k", positive=True)
-    speed = canonical_wave(Cell([m1, m2], [A1, A2], D), k).at_force(7).speed
-    sound = 2 * D / sp.sqrt((m1 + m2) * (1 / A1 + 1 / A2))
-    assert same(speed.subs(k, 1), sound)
-
-
 def test_equal_spheres_by_hand():
     """The theory's c² = (2/(k+1)) A^{1/k} F^{(k-1)/k} D²/m, 4/5 of it at k = 3/2."""
     m, A, D, F = sp.symbols("m A D F", positive=True)

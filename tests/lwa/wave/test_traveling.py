@@ -84,14 +84,6 @@ def test_complex_roots_do_occur_and_leave_beta_real():
     assert wave.reduction().a == -2
 
 
-@given(exponents)
-def test_uniform_chain_roots(k):
-    roots = WAVE.at(k=k, m1=1, m2=1).roots
-    k = sp.Rational(k.numerator, k.denominator)
-    assert set(roots) == {2 / (k + 1), 2 / k}
-    assert WAVE.at(k=k, m1=3, m2=3).speed_factor == 2 / (k * (k + 1))
-
-
 @given(exponents, masses, masses)
 def test_fwhm_is_where_the_profile_falls_to_half(k, m1, m2):
     wave = wave_at(k, m1, m2)
@@ -103,13 +95,6 @@ def test_fwhm_is_where_the_profile_falls_to_half(k, m1, m2):
             assert abs(value - mpmath.mpf(1) / 2) < mpmath.mpf(10) ** -35
 
 
-def test_profile_has_compact_support():
-    wave = WAVE.at(k="3/2", m1=1, m2=1, D=1)
-    assert wave.profile(0, 2) == 2
-    assert wave.profile(wave.width / 2 + 1, 2) == 0
-    assert wave.profile(-wave.width, 2) == 0
-
-
 @given(exponents, masses, masses)
 def test_speed_and_amplitude_are_inverse(k, m1, m2):
     wave = wave_at(k, m1, m2)
@@ -117,14 +102,6 @@ def test_speed_and_amplitude_are_inverse(k, m1, m2):
     with mpmath.workdps(40):
         back = number(wave.amplitude(wave.speed(3)))
         assert abs(back / 3 - 1) < mpmath.mpf(10) ** -30
-
-
-def test_results_in_any_length_unit():
-    mm = WAVE.at(k="3/2", m1=2, m2=1, D="4.76")
-    one = WAVE.at(k="3/2", m1=2, m2=1, D=1)
-    assert mm.fwhm("force") == one.fwhm("force") * sp.Rational("4.76")
-    assert mm.sites == one.sites
-    assert mm.speed_factor == one.speed_factor
 
 
 def test_symbols_without_assumptions_do_as_well():
