@@ -139,6 +139,8 @@ def _pulses(
     force, speed, *deviations = (values[order] for values in read.values())
     if len(force) < least or not (force[0] > 0 and speed.min() > 0):
         raise SceneError(f"{data}: at least {least} pulses of positive force and speed are wanted")
+    if (different := len(np.unique(force))) < least - 2:
+        raise SceneError(f"{data}: {different} different forces: {least - 2} or more are wanted")
     if not deviations:
         return force, speed, None
     if len(deviations) != 2 or not min(map(np.min, deviations)) > 0:

@@ -40,6 +40,8 @@ _EXPONENTS = ("5/4", "3/2", "2", "5/2", "3", "4")  # at which R of unequal beads
 _DRAWS = 1000  # of the coefficients of ln V, for the errors
 _STEPS = 60  # of ln F, at which the free law is integrated
 _HERTZ = 1.5
+LEAST, MOST = 1.01, 4.0  # k: below, speeds do not depend on force; beyond, R is not known
+LARGEST = 700.0  # |ln A|, at most
 _NEAR = 1.2  # times 80 sites, over which the pulse must lead
 
 
@@ -64,6 +66,9 @@ class Medium:
         """
         if cell.size > 2:
             raise SceneError(f"the cell has {cell.size} beads: one or two are wanted")
+        for name, value in (("spacing", cell.spacing), *(("mass", m) for m in cell.masses)):
+            if not value.is_number:
+                raise SceneError(f"{name} is {value}: a number is wanted")
         if sensors == "bead" and not cell.uniform:
             raise SceneError("of is bead: the beads differ, and so do their forces")
         ratio = speed_ratio(sp.Rational(cell.masses[-1] / cell.masses[0]))
@@ -163,6 +168,9 @@ def fit_power(medium: Medium, force: Array, speed: Array, weight: Array | None =
     x, y = np.log(force), np.log(speed)
     (slope, constant), middle = _fit(x, y, 1, weight)
     k, log_A = _exponent(slope), medium.log_stiffness(slope, constant - slope * middle)
+    if not LEAST <= k[0] <= MOST:
+        wanted = f"laws with k from {LEAST:g} to {MOST:g} are read"
+        raise SceneError(f"k is {k[0]:.3g} by the best fit: {wanted}")
     sixth = (_HERTZ - 1) / (2 * _HERTZ)
     (hertz,), _ = _fit(x, y - sixth * x, 0, weight)
     (curvature, *_), _ = _fit(x, y, 2, weight)
@@ -170,6 +178,8 @@ def fit_power(medium: Medium, force: Array, speed: Array, weight: Array | None =
     def stiffness(log_A: Array, k: float) -> Measured:
         log = _interval(log_A)
         error = log.error + k * medium.ratio_error  # A ~ R^{-k}
+        if not abs(log.value) + error < LARGEST:
+            raise SceneError(f"A is e^({log}) by the best fit: this is no number of a computer")
         return Measured(math.exp(log.value), math.exp(log.value + error))
 
     return PowerFit(
@@ -215,6 +225,10 @@ def free_law(
     x = np.log(force)
     rows, middle = _fit(x, np.log(speed), degree, weight)
     grid = np.linspace(x.max(), x.min(), _STEPS)
+    k = _exponent(polynomial.polyval(grid - middle, polynomial.polyder(rows[::-1, 0])))
+    if not LEAST <= k.min() <= k.max() <= MOST:
+        wanted = f"laws with k from {LEAST:g} to {MOST:g} are read; a lower degree may do"
+        raise SceneError(f"k is {k.min():.3g} … {k.max():.3g} at degree {degree}: {wanted}")
     log_delta = _integrated(medium, rows[::-1], grid, middle)
     at = scipy.interpolate.CubicSpline(grid[::-1], log_delta[::-1])
     steepness = 1 / at(x, 1)[:, 0]  # d ln F/d ln δ
@@ -237,7 +251,8 @@ def _integrated(medium: Medium, rows: Array, grid: Array, middle: float) -> Arra
         """Return d ln δ/d ln F."""
         S, step = log_S(x)[0], 1e-4
         change = (log_S(x + step)[0] - log_S(x - step)[0]) / (2 * step)
-        share = np.minimum(np.exp(S + log_delta - x), 1 - 1e-6)  # S δ/F = 2/(k+1) of a power
+        # S δ/F = 2/(k+1) of a power; draws of noisy data may reach 1, where the slope is ∞
+        share = np.minimum(np.exp(S + log_delta - x), 2 / (1 + LEAST))
         return np.asarray(change / 2 * share / (1 - share))
 
     # Downwards from the strongest pulse, where δ = 2 F/((k+1) S): upwards is unstable.

@@ -246,6 +246,9 @@ def test_the_command(capsys, tmp_path, chain):
     assert "One power is enough" in ended(capsys, cli.main, "law", data, *options)[1]
 
 
+ROWS = "".join(f"{n},{n}\n" for n in range(1, 9))
+
+
 @pytest.mark.parametrize(
     ("text", "options", "named"),
     [
@@ -255,12 +258,14 @@ def test_the_command(capsys, tmp_path, chain):
         ("force,speed\n1,2\n", {}, "at least 6 pulses"),
         ("force,speed\n" + "1,fast\n" * 9, {}, "column speed, line 2: 'fast'"),
         ("force,speed\n" + "-1,2\n" * 9, {}, "positive force and speed"),
-        ("force,speed\n" + "1,2\n" * 9, {"masses": (1, 2, 3)}, "the cell has 3 beads"),
-        ("force,speed\n" + "1,2\n" * 9, {"masses": (1, 2), "of": "bead"}, "of is bead"),
+        ("force,speed\n" + ROWS, {"masses": (1, 2), "of": "bead"}, "of is bead"),
         ("force,speed\n" + "1,2\n" * 9, {"of": "wall"}, "of is 'wall'"),
         ("force (N),speed (cm/s)\n" + "1,2\n" * 9, {}, "column speed is in 'cm/s'"),
         ("F,speed\n" + "1,2\n" * 9, {"renamed": {"F": "force"}}, "column is 'F'"),
-        ("force,speed\n" + "1,2\n" * 9, {"masses": (sp.Symbol("m"),)}, "mass is m"),
+        ("force,speed\n" + "1,2\n" * 9, {}, "1 different forces"),
+        ("force,speed\n" + ROWS, {"masses": (1, 2, 3)}, "the cell has 3 beads"),
+        ("force,speed\n" + ROWS, {"masses": (sp.Symbol("m"),)}, "mass is m"),
+        ("force,speed\n" + ROWS, {"spacing": sp.Symbol("D")}, "spacing is D"),
     ],
 )
 def test_bad_files_are_refused_in_one_line(tmp_path, text, options, named):
