@@ -259,7 +259,7 @@ ROWS = "".join(f"{n},{n}\n" for n in range(1, 9))
         ("force,speed\n" + "1,fast\n" * 9, {}, "column speed, line 2: 'fast'"),
         ("force,speed\n" + "-1,2\n" * 9, {}, "positive force and speed"),
         ("force,speed\n" + ROWS, {"masses": (1, 2), "of": "bead"}, "of is bead"),
-        ("force,speed\n" + "1,2\n" * 9, {"of": "wall"}, "of is 'wall'"),
+        ("force,speed\n" + ROWS, {"of": "wall"}, "of is 'wall'"),
         ("force (N),speed (cm/s)\n" + "1,2\n" * 9, {}, "column speed is in 'cm/s'"),
         ("F,speed\n" + "1,2\n" * 9, {"renamed": {"F": "force"}}, "column is 'F'"),
         ("force,speed\n" + "1,2\n" * 9, {}, "1 different forces"),
