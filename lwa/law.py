@@ -188,6 +188,8 @@ class ContactLaw(Value):
 
         Raises `lwa.InputError` for a force beyond the law's reach, and for symbols.
         """
+        if self.formless:
+            raise InputError(f"law is {self.text}: the strain under a force needs an expression")
         share = force / cell.stiffnesses[0]
         free = share.free_symbols | self.F.free_symbols - {self.delta}
         demand_numbers(free, f"the load under the law {self.text} needs numbers")

@@ -272,7 +272,9 @@ class Shock(Value):
     @property
     def _free(self) -> set[sp.Symbol]:
         """Symbols of the law and the strains, and of the spacing unless the law is a power."""
-        return {*self.ratio.free_symbols, *self.behind.free_symbols, *self.law.symbols}
+        scaled = set() if self.law.homogeneous else self.cell.spacing.free_symbols
+        strains = self.ratio.free_symbols | self.behind.free_symbols
+        return {*strains, *self.law.symbols, *scaled}
 
     @cached_property
     def _gained(self) -> sp.Expr:
