@@ -12,9 +12,9 @@ PARTS = [
     re.findall(r"file: (\w+)", part)
     for part in (BOOK / "_toc.yml").read_text().split("caption:")[1:]
 ]
-CHAPTERS = [page for part in PARTS[:3] for page in part if page != "map"]
+CHAPTERS = [page for part in PARTS[:3] for page in part if page not in ("map", "modes_proof")]
 LABORATORY = [page for page in PARTS[3] if page not in ("recipes", "commands")]
-PAGES = ["intro", "map", "open", *CHAPTERS, *LABORATORY]
+PAGES = ["intro", "map", "modes_proof", "open", *CHAPTERS, *LABORATORY]
 FRAME = ("Exercises",)
 """Sections without results: the frame of a chapter."""
 
@@ -81,7 +81,7 @@ def test_a_chapter_has_its_frame(page):
     assert 2 <= sum("hide-cell" in options for options, _ in cells(page)) <= 3
 
 
-@pytest.mark.parametrize("page", [*CHAPTERS, *LABORATORY, "map", "open"])
+@pytest.mark.parametrize("page", [*CHAPTERS, *LABORATORY, "map", "modes_proof", "open"])
 def test_the_checks_are_one_folded_line(page):
     assert len(re.findall(FOLDED_CHECKS, prose(page), re.MULTILINE)) == 1
     assert "remove-cell" in list(cells(page))[-1][0], "the checks are not hidden"
