@@ -95,12 +95,15 @@ class Contact:
             stored = np.diff(self.energy(d)) - self.force(d)[0] * np.diff(d)
             return float(stored[0]) - energy
 
-        low, step = start, 1e-3  # first a bracket, in growing steps
-        while step > 1e-12 * max(low, 1e-3):  # towards a pole in ever smaller steps
+        low, step, below = start, 1e-3, -energy  # first a bracket, in growing steps
+        while step > 1e-12 * max(low, 1e-3):  # towards a pole or a barrier in ever smaller steps
             above = excess(low + step)
             if above > 0:
                 return float(scipy.optimize.brentq(excess, low, low + step))
-            low, step = (low + step, 1.5 * step) if np.isfinite(above) else (low, step / 2)
+            if np.isfinite(above) and above > below:
+                low, step, below = low + step, 1.5 * step, above
+            else:
+                step /= 2
         return low
 
     @property
