@@ -5,7 +5,25 @@ import sympy as sp
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lwa import Cell, Dimer, Dispersion, InputError, homogenize
+from lwa import (
+    Cell,
+    Dimer,
+    Dispersion,
+    Evolution,
+    InputError,
+    LoadedChain,
+    Power,
+    background_wave,
+    canonical_wave,
+    envelope,
+    expand,
+    general,
+    homogenize,
+    piston,
+    pulse_of_strike,
+    shock,
+    transmitted_force,
+)
 from lwa.cell import RESERVED
 from tests.identity import same
 
@@ -103,3 +121,35 @@ def test_omega_replaces_a_mass():
     ):
         with pytest.raises(InputError):
             cell.at(**values)
+
+
+HERTZ = Power("3/2")
+
+
+@pytest.mark.parametrize("wrong", [3, "m", None, [1, 2], HERTZ])
+@pytest.mark.parametrize(
+    "call",
+    [
+        homogenize,
+        canonical_wave,
+        expand,
+        background_wave,
+        Dispersion,
+        lambda x: envelope(x, HERTZ, background=1),
+        lambda x: shock(x, HERTZ, 2, 1),
+        lambda x: piston(x, HERTZ, 1),
+        lambda x: pulse_of_strike(x, 1, velocity=1),
+        lambda x: LoadedChain(x, HERTZ, 1),
+        lambda x: Evolution(x, HERTZ),
+        lambda x: transmitted_force(1, x, Cell([1])),
+        lambda x: transmitted_force(1, Cell([1]), x),
+        lambda x: canonical_wave(Cell([1]), law=general() if x in (None, HERTZ) else x),
+        lambda x: canonical_wave(Cell([1], spacing=1), "3/2").plot(x or 0),
+        lambda x: homogenize(Cell([1])).pde.in_field(x),
+        lambda x: shock(Cell([1]), "power" if x is HERTZ else x, 2, 1),
+    ],
+)
+def test_anything_else_than_a_cell_or_a_law_is_refused_in_one_line(call, wrong):
+    with pytest.raises(InputError) as refused:
+        call(wrong)
+    assert "\n" not in str(refused.value)
