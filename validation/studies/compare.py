@@ -18,7 +18,7 @@ from validation.lattice.cost import RunProgress, silent
 from validation.lattice.simulate import simulate
 from validation.pictures import Curve, Panel
 from validation.pulses.noisy import noisy_pulse
-from validation.pulses.pulse import Measured, MeasureError, derived
+from validation.pulses.pulse import Measured, MeasureError
 from validation.pulses.sensors import READINGS, Instrument, record, static_forces, tracks
 from validation.pulses.signals import high_passed
 from validation.report.command import column_option, option, study
@@ -89,7 +89,7 @@ def compare(
     run, label, t = simulation.run, simulation.run.label, simulation.run.time
     rows: list[tuple[Any, ...]] = []
     curves: list[Curve] = []
-    shift, first = 0.0, ""
+    shift, first, start = 0.0, "", Measured(0.0, 0.0)
     seen = zip(simulation.sensors, tracks(run, 1, through), strict=True)
     for i, (reading, track) in enumerate(seen):
         if (force := records.forces.get(reading.name)) is None:
@@ -98,9 +98,11 @@ def compare(
             raise SceneError(f"{reading.name}: {reading.missing}")
         pulse = dict(records.pulses[reading.name])
         if not first:
-            first = reading.name
-            shift = reading.numbers["arrival"].value - pulse["arrival"].value
-        pulse["arrival"] = derived(lambda t, by=shift: t + by, pulse["arrival"])
+            first, start = reading.name, pulse["arrival"]
+            shift = reading.numbers["arrival"].value - start.value
+        arrival = pulse["arrival"]
+        error = arrival.error if reading.name == first else math.hypot(arrival.error, start.error)
+        pulse["arrival"] = Measured(arrival.value + shift, arrival.value + shift + error)
         for name, quantity in _LABELS.items():
             ours, theirs = reading.numbers[name], pulse[name]
             less = theirs.value - ours.value
