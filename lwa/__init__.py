@@ -43,6 +43,12 @@ if TYPE_CHECKING:
     from lwa.law import general as general
     from lwa.linear.dispersion import Dispersion as Dispersion
     from lwa.linear.dispersion import LoadedChain as LoadedChain
+    from lwa.links.lattice import Lattice as Lattice
+    from lwa.links.lattice import Link as Link
+    from lwa.links.lattice import Resonator as Resonator
+    from lwa.links.packings import hexagonal as hexagonal
+    from lwa.links.wave import LatticeWave as LatticeWave
+    from lwa.links.wave import lattice_wave as lattice_wave
     from lwa.shocks.riemann import Shock as Shock
     from lwa.shocks.riemann import piston as piston
     from lwa.shocks.riemann import shock as shock

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import Field, fields
 from typing import Any, ClassVar
 
 import numpy as np
+import sympy as sp
 from numpy.typing import ArrayLike, NDArray
 
 from lwa.base.exact import InputError, shorten
@@ -30,6 +31,15 @@ def finite(values: ArrayLike, name: str) -> Array:
             f"{name} is {array[~np.isfinite(array)].flat[0]}: finite numbers are wanted"
         )
     return array
+
+
+def function_of(x: sp.Symbol, value: sp.Expr) -> Callable[[Array], Array]:
+    """Compile an expression in a symbol to a function of arrays."""
+    # NumPy has no integers of more than 63 bits.
+    long = {q: sp.Float(q, 17) for q in value.atoms(sp.Rational) if q.p.bit_length() > 53}
+    function = sp.lambdify(x, value.xreplace(long), "numpy")
+
+    return lambda at: np.broadcast_to(np.asarray(function(at), np.float64), at.shape)
 
 
 class ArrayValue:

@@ -10,7 +10,7 @@ import numpy as np
 import sympy as sp
 from numpy.typing import ArrayLike
 
-from lwa.base.arrays import Array, finite
+from lwa.base.arrays import Array, finite, function_of
 from lwa.base.exact import InputError, demand_numbers, number
 from lwa.base.frozen import Value
 from lwa.base.quantities import (
@@ -90,7 +90,7 @@ class NumericBackground(Value):
         I = Dispersion(self.cell, self.law.exponent).I * D**2
         slope, bend = (self.law.of_strain(_STRAIN, D, n) for n in (1, 2))
         demand_numbers((I.free_symbols | slope.free_symbols) - {_STRAIN}, "numbers are wanted")
-        value, F1, F2 = number(I), _compiled(slope), _compiled(bend)
+        value, F1, F2 = number(I), function_of(_STRAIN, slope), function_of(_STRAIN, bend)
         close = CLOSE_OF_TABLES if self.law.tabulated else CLOSE
         return Quadrature(lambda p: (F1(p), F2(p), np.full(p.shape, value)), close)
 
@@ -141,12 +141,3 @@ def _by_block(function: Callable[[Array, Array], Array], p0: Array, B: Array) ->
 def _slope(p: Array, F1: Array) -> Array:
     """The slope F′, derivative of the force by the strain."""
     return F1
-
-
-def _compiled(value: sp.Expr) -> Callable[[Array], Array]:
-    """Compile an expression in the strain to a function of arrays."""
-    # NumPy has no integers of more than 63 bits.
-    long = {x: sp.Float(x, 17) for x in value.atoms(sp.Rational) if x.p.bit_length() > 53}
-    function = sp.lambdify(_STRAIN, value.xreplace(long), "numpy")
-
-    return lambda p: np.broadcast_to(np.asarray(function(p), np.float64), p.shape)

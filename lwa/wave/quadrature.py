@@ -29,11 +29,12 @@ from lwa.base.arrays import Array
 from lwa.base.exact import InputError
 
 Rate = Callable[[Array, Array], Array]
+Samples = Callable[[Array], tuple[Array, Array, Array]]
 
 _STEPS = (20, 28, 56, 112)  # nodes per unit of t, tried one after the other; 20 for no force
 _END = 4.0  # the largest |t|: s or 1 - s is 6e-38 there
 _WINDOW = 20  # places of an end correction
-_NEAR, _FAR = -1.7, -_END  # first t of widths, where v = 2e-4 B, and of profiles
+_NEAR, _FAR = -1.7, -3.0  # first t of widths, where v = 2e-4 B, and of profiles, 2e-14 B
 _STEEPEST = 1.0  # largest d ln s between the nodes of an end correction at the foot
 CLOSE = 1e-8  # difference to half as many nodes; twice as many err 2^20 times less
 CLOSE_OF_TABLES = 1e-5  # the same where F‴ jumps, and the rule errs by about as much
@@ -127,7 +128,7 @@ class Quadrature:
     finest grid does not resolve.
     """
 
-    samples: Callable[[Array], tuple[Array, Array, Array]]
+    samples: Samples
     close: float = CLOSE
 
     def squares(self, p0: Array, B: Array) -> Array:

@@ -1,0 +1,1 @@
+"""Any lattice: links with laws of their own, resonators, farther neighbours, packings."""

@@ -1,0 +1,270 @@
+"""Lattices of particles and links with laws of their own, and their static states.
+
+A cell of P particles repeats with the period P·D. A link pushes its two particles apart with the
+force factor · F(δ). Along a lattice of mean strain p the compressions of a link of the range r are
+
+    δ = cosine · (r D p + w_i - w_j),
+
+where the displacements w inside the cell minimise the energy. The mean force F(p), the momentum
+that passes a place per time, is the sum over the links of a cell of cosine · r · factor · F(δ) / P.
+Links in series, from each particle to the next, all carry the force F: each compression, and their
+mean, is an explicit function of the force. Other lattices are solved in numbers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from functools import cached_property
+from math import pi
+from typing import Any, Self
+
+import numpy as np
+import sympy as sp
+
+from lwa.base.arrays import function_of
+from lwa.base.exact import (
+    InputError,
+    demand_numbers,
+    integer,
+    number,
+    positive,
+    read_exact,
+    shorten,
+)
+from lwa.base.frozen import Value
+from lwa.cell import Cell, check_distinct
+from lwa.law import ContactLaw, Power, for_cell
+from lwa.links.bloch import Graph, acoustic, solved, solved_exactly
+from lwa.links.statics import Statics
+
+_NO_LOAD = 1e-9  # stiffness of a lattice of springs 1 that carries no load, but for rounding
+
+
+@dataclass(frozen=True)
+class Link(Value):
+    """A link between the particles i < j, which count on into the next cells.
+
+    law : force F(δ). factor : number or symbol that multiplies F.
+    cosine : cosine of the link's angle with the lattice; its compression is the difference of the
+        particles' displacements times the cosine.
+
+    Raises `lwa.InputError` for a link to itself and for values that are not positive.
+    """
+
+    i: int
+    j: int
+    law: ContactLaw
+    factor: sp.Expr = sp.S.One
+    cosine: sp.Expr = sp.S.One
+
+    def __post_init__(self) -> None:
+        i, j = (integer(x, "a link's particle", 0) for x in (self.i, self.j))
+        if i >= j:
+            raise InputError(f"link ({i}, {j}): the second particle must come after the first")
+        if not isinstance(self.law, ContactLaw):
+            raise InputError(f"link ({i}, {j}): its law is {shorten(self.law)}, no contact law")
+        for name in ("factor", "cosine"):
+            object.__setattr__(self, name, positive(getattr(self, name), f"link's {name}"))
+
+    def compression(self, force: sp.Expr) -> sp.Expr:
+        """The compression δ at which the link pushes with this force along the lattice."""
+        if force.is_zero:
+            return sp.S.Zero
+        return self.law.compression(Cell((1,)), force / (self.factor * self.cosine))
+
+
+@dataclass(frozen=True)
+class Resonator(Value):
+    """A mass on a linear spring inside a particle; the resonator carries no static load."""
+
+    bead: int
+    mass: sp.Expr
+    stiffness: sp.Expr
+
+    def __post_init__(self) -> None:
+        integer(self.bead, "a resonator's bead", 0)
+        for name in ("mass", "stiffness"):
+            object.__setattr__(self, name, positive(getattr(self, name), f"resonator's {name}"))
+
+
+@dataclass(frozen=True)
+class Static(Value):
+    """A lattice at rest under a mean force: mean strain, and compression δ of each link."""
+
+    force: sp.Expr
+    strain: sp.Expr
+    compressions: tuple[sp.Expr, ...]
+
+
+@dataclass(frozen=True)
+class Lattice(Value):
+    """A periodic lattice of particles and links.
+
+    masses, links, resonators : of one cell. spacing : period of the cell over its particles.
+
+    Raises `lwa.InputError` for values that are not positive, a particle without a link to the
+    others, and links without a path of load from cell to cell.
+
+    >>> from lwa import Lattice, Link, Power
+    >>> pair = Lattice([1, 1], [Link(0, 1, Power("3/2"), "A"), Link(1, 2, Power(1), "B")])
+    >>> pair.static("F").strain
+    F/(2*B) + F**(2/3)/(2*A**(2/3))
+    """
+
+    masses: tuple[sp.Expr, ...]
+    links: tuple[Link, ...]
+    resonators: tuple[Resonator, ...] = ()
+    spacing: sp.Expr = sp.S.One
+
+    def __post_init__(self) -> None:
+        masses = tuple(positive(m, f"mass {n}") for n, m in enumerate(_listed(self.masses), 1))
+        object.__setattr__(self, "masses", masses)
+        object.__setattr__(self, "spacing", positive(self.spacing, "spacing"))
+        for name, kind in (("links", Link), ("resonators", Resonator)):
+            items = _listed(getattr(self, name))
+            if wrong := [x for x in items if not isinstance(x, kind)]:
+                raise InputError(f"{name} hold {shorten(wrong[0])}: a {kind.__name__} is wanted")
+            object.__setattr__(self, name, items)
+        if not masses or not self.links:
+            raise InputError("a lattice needs at least one mass and one link")
+        places = [link.i for link in self.links] + [x.bead for x in self.resonators]
+        if max(places) >= self.size:
+            raise InputError(f"particle {max(places)}: the cell has particles 0 to {self.size - 1}")
+        check_distinct((*self.symbols, *(self.spacing.free_symbols - {*self.symbols})))
+        self._check_paths()
+
+    @classmethod
+    def of_cell(cls, cell: Cell, law: ContactLaw) -> Self:
+        """The chain of a cell whose contacts share a law."""
+        for_cell(law, cell)
+        links = (Link(i, i + 1, law, A) for i, A in enumerate(cell.stiffnesses))
+        return cls(cell.masses, tuple(links), (), cell.spacing)
+
+    @property
+    def size(self) -> int:
+        """The number P of particles in a cell, resonators not counted."""
+        return len(self.masses)
+
+    @cached_property
+    def mass(self) -> sp.Expr:
+        """The mean mass per particle, with the resonators'."""
+        return sp.Add(*self.masses, *(x.mass for x in self.resonators)) / self.size
+
+    @property
+    def symbols(self) -> tuple[sp.Symbol, ...]:
+        """The symbols of masses, links and resonators, by name."""
+        values = [*self.masses]
+        values += [x for link in self.links for x in (link.factor, link.cosine, *link.law.symbols)]
+        values += [x for r in self.resonators for x in (r.mass, r.stiffness)]
+        return tuple(sorted(set().union(*(x.free_symbols for x in values)), key=str))
+
+    @property
+    def in_series(self) -> bool:
+        """True if each particle has one link, to the next particle."""
+        return self._graph(sp.sympify).in_series
+
+    @property
+    def exact(self) -> bool:
+        """True for links in series whose laws are powers: all results are closed forms."""
+        return self.in_series and all(isinstance(link.law, Power) for link in self.links)
+
+    @property
+    def alike(self) -> bool:
+        """True for equal particles, with equal links from each one to the next."""
+        links = {(x.law, x.factor, x.cosine) for x in self.links}
+        return self.in_series and len({*self.masses}) == len(links) == 1
+
+    def static(self, force: Any) -> Static:
+        """The lattice at rest under a mean force: exact in series, else in floats."""
+        force = read_exact(force, "force")
+        mean = self.mean_compression(force)
+        if self.in_series:
+            compressions = tuple(link.compression(force) for link in self.links)
+        else:
+            found = self.statics.compressions(np.array(float(mean)))
+            compressions = tuple(map(sp.Float, found))
+        return Static(force, mean / self.spacing, compressions)
+
+    def mean_compression(self, force: sp.Expr) -> sp.Expr:
+        """The mean compression D p per spacing under a mean force."""
+        if self.in_series:
+            parts = (link.compression(force) / link.cosine for link in self.links)
+            return sp.Add(*parts) / self.size
+        demand_numbers(force.free_symbols, "numbers are wanted")
+        return sp.Float(self.statics.mean_compression(float(force))) if force else sp.S.Zero
+
+    def energy(self, force: sp.Expr) -> sp.Expr:
+        """The energy per particle of links in series under a force."""
+        pairs = ((x, x.compression(force)) for x in self.links)
+        return sp.Add(*(x.factor * x.law.energy.subs(x.law.delta, d) for x, d in pairs)) / self.size
+
+    def stiffness(self, force: sp.Expr) -> sp.Expr:
+        """The slope dF/d(D p) of links in series under a force."""
+        springs = zip(self.links, self._springs(force), strict=True)
+        return self.size / sp.Add(*(1 / (K * link.cosine**2) for link, K in springs))
+
+    def _springs(self, force: sp.Expr) -> list[sp.Expr]:
+        """The spring constants of the links under a force."""
+        pairs = zip(self.links, self.static(force).compressions, strict=True)
+        return [link.factor * link.law.at(delta, 1) for link, delta in pairs]
+
+    def dispersion(self, force: Any) -> sp.Expr:
+        """Coefficient I in Ω² = c² (q² - I q⁴ + …) of the lattice linearised under a mean force.
+
+        Resonators count by their mass only (`lwa.links.wave`). The result is a closed form in the
+        spring constants.
+        """
+        springs = [sp.Symbol(f"K{n}", positive=True) for n, _ in enumerate(self.links, 1)]
+        found = acoustic(
+            self._graph(sp.sympify), np.array(springs), np.array(self.masses), solved_exactly
+        )
+        constants = self._springs(read_exact(force, "force"))
+        reduced = sp.factor(sp.cancel(found.dispersion)) * self.spacing**2
+        return reduced.xreplace(dict(zip(springs, constants, strict=True)))
+
+    @property
+    def resonance_sum(self) -> sp.Expr:
+        """The sum R of m_r²/k_r over the resonators, per particle."""
+        return sp.Add(*(x.mass**2 / x.stiffness for x in self.resonators)) / self.size
+
+    def resonance(self, resonator: Resonator) -> float:
+        """The frequency ω0 of a resonator against its bead."""
+        parts = 1 / resonator.mass + 1 / self.masses[resonator.bead]
+        return number(sp.sqrt(resonator.stiffness * parts))
+
+    def antiresonances(self, count: int) -> list[float]:
+        """Speeds ω0 D/(2πn), n = 1 … count, at which a chain with one resonator has no tail."""
+        (resonator,) = self.resonators
+        ring = self.resonance(resonator) * number(self.spacing) / (2 * pi)
+        return [ring / n for n in range(1, count + 1)]
+
+    @cached_property
+    def statics(self) -> Statics:
+        """Static states in floats; raises `lwa.InputError` for symbols."""
+        demand_numbers(self.symbols, "numbers are wanted")
+        x = sp.Symbol("delta", positive=True)
+        forces = (tuple(link.factor * link.law.at(x, n) for n in range(3)) for link in self.links)
+        compiled = (tuple(function_of(x, f) for f in triple) for triple in forces)
+        masses = np.array([float(m) for m in self.masses])
+        return Statics(self._graph(float), masses, tuple(compiled))
+
+    def _graph(self, kind: Callable[[sp.Expr], Any]) -> Graph:
+        return Graph(self.size, tuple((x.i, x.j, kind(x.cosine)) for x in self.links))
+
+    def _check_paths(self) -> None:
+        """Raise `lwa.InputError` unless the links join all particles and carry a load."""
+        graph = self._graph(lambda cosine: 1.0)
+        if np.linalg.matrix_rank(graph.incidence) < self.size - 1:
+            raise InputError("the links leave a particle of the cell free")
+        springs, masses = np.ones(len(self.links)), np.ones(self.size)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            stiffness = acoustic(graph, springs, masses, solved).stiffness
+        if stiffness < _NO_LOAD:
+            raise InputError("the links carry no load from cell to cell")
+
+
+def _listed(values: Any) -> tuple[Any, ...]:
+    if isinstance(values, str) or not isinstance(values, Iterable):
+        raise InputError(f"a list is wanted, not {shorten(values)}")
+    return tuple(values)

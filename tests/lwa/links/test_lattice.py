@@ -1,0 +1,164 @@
+"""Lattices: static states, the Bloch coefficient, closed forms with symbols, refusals."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+import sympy as sp
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from lwa import (
+    Cell,
+    Dimer,
+    InputError,
+    Lattice,
+    Law,
+    Link,
+    Power,
+    Resonator,
+    hexagonal,
+    lattice_wave,
+)
+from lwa.law import DELTA, named
+from lwa.linear.dispersion import Dispersion
+
+HERTZ = Power("3/2")
+SQUARED = Power(2)
+A, C, F = sp.symbols("A C F", positive=True)
+
+
+def springs_of(*ends):
+    return [Link(i, j, Power(1), factor) for i, j, factor in ends]
+
+
+def numeric_dispersion(masses, springs, q=0.02):
+    """I by Ω²(q) of the dynamical matrix at q and q/2: Ω²/q² = c² (1 - I q² + O(q⁴))."""
+    P, found = len(masses), []
+    for kappa in (q, q / 2, q / 4):
+        K = np.zeros((P, P), complex)
+        for i, j, spring in springs:
+            b = np.zeros(P, complex)
+            b[i] += 1
+            b[j % P] -= np.exp(1j * kappa * (j - i))
+            K += spring * np.outer(b.conj(), b)
+        root = 1 / np.sqrt(np.array(masses))
+        found.append(np.linalg.eigvalsh(root[:, None] * K * root)[0] / kappa**2)
+    # c² = f - f₂ q² + f₄ q⁴: two steps of Richardson's extrapolation
+    once = [(4 * b - a) / 3 for a, b in pairwise(found)]
+    c2 = (16 * once[1] - once[0]) / 15
+    slopes = [(c2 - f) / (c2 * k**2) for f, k in zip(found, (q, q / 2), strict=False)]
+    return (4 * slopes[1] - slopes[0]) / 3, c2
+
+
+springs = st.floats(0.2, 5)
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.data())
+def test_the_coefficient_is_that_of_the_bloch_branch(data):
+    """Random cells of P = 1 … 4 particles with links of range 1 … 3, against eigenvalues."""
+    P = data.draw(st.integers(1, 4))
+    ends = [(i, i + 1, data.draw(springs)) for i in range(P)]
+    for _ in range(data.draw(st.integers(0, 3))):
+        i = data.draw(st.integers(0, P - 1))
+        ends.append((i, i + data.draw(st.integers(1, 3)), data.draw(springs)))
+    masses = [data.draw(springs) for _ in range(P)]
+    lattice = Lattice(masses, springs_of(*ends))
+    I, c2 = numeric_dispersion(masses, ends)
+    found = lattice.statics.samples(np.array(1.0))
+    assert found[2] == pytest.approx(I, rel=1e-5, abs=1e-5)  # differences of 1e-10 over q² = 1e-5
+    assert found[0] / float(lattice.mass) == pytest.approx(c2, rel=1e-9)
+
+
+def test_chains_have_the_coefficient_of_their_cell():
+    for cell in (Cell((1,)), Dimer(3, 1), Dimer("1/2", 2, N=2, stiffnesses=(1, 4, 2))):
+        lattice = Lattice.of_cell(cell, Power("5/2"))
+        found = lattice.dispersion(1) / cell.spacing**2
+        assert float(found) == pytest.approx(float(Dispersion(cell, "5/2").I), rel=1e-13)
+
+
+def test_the_coefficient_of_a_pair_in_closed_form():
+    m1, m2, K1, K2 = sp.symbols("m1 m2 K1 K2", positive=True)
+    pair = Lattice([m1, m2], springs_of((0, 1, K1), (1, 2, K2)))
+    M = m1 + m2
+    expected = (K1**2 + K2**2) * M**2 + 2 * K1 * K2 * (m1**2 - 4 * m1 * m2 + m2**2)
+    assert sp.cancel(pair.dispersion(1) - expected / (3 * (K1 + K2) ** 2 * M**2)) == 0
+
+
+def test_neighbours_of_range_r():
+    """J = F′ I = Σ r⁴ F_r′/12 and F′ = Σ r² F_r′."""
+    K = {1: 3, 2: 5, 4: 7}
+    lattice = Lattice([1], springs_of(*((0, r, k) for r, k in K.items())))
+    fourth, second = (sum(r**n * k for r, k in K.items()) for n in (4, 2))
+    assert lattice.dispersion(1) == sp.Rational(fourth, 12 * second)
+
+
+def test_hertz_and_linear_contacts_in_turn():
+    """V² = 2A^{2/3}C (5A^{2/3}F² + 4C F^{5/3}) / (5 (A^{2/3}F + C F^{2/3})²)."""
+    pair = Lattice([1, 1], [Link(0, 1, HERTZ, A), Link(1, 2, Power(1), C)])
+    a = A ** sp.Rational(2, 3)
+    top = 2 * a * C * (5 * a * F**2 + 4 * C * F ** sp.Rational(5, 3))
+    expected = top / (5 * (a * F + C * F ** sp.Rational(2, 3)) ** 2)
+    wave = lattice_wave(pair, F)
+    assert sp.simplify(wave.speed**2 / expected) == 1
+    assert wave.sound_speed == 0
+    at = {A: 2, C: 3, F: sp.Rational(5, 4)}
+    number = lattice_wave(Lattice([1, 1], [Link(0, 1, HERTZ, 2), Link(1, 2, Power(1), 3)]), "5/4")
+    assert float(number.speed) == pytest.approx(float(wave.speed.subs(at)), rel=1e-14)
+    assert number._rate == pytest.approx(float(number.speed), rel=1e-14)  # by quadrature
+
+
+@pytest.mark.parametrize("force", ["1/1000", "1", "40"])
+def test_static_states_balance(force):
+    """The links of a cell that are not in series: forces in equilibrium, mean force as asked."""
+    law = named("hertz2", 1, "1/2")
+    ends = [(0, 1, HERTZ), (1, 2, law), (2, 3, SQUARED), (0, 2, law), (1, 4, HERTZ)]
+    lattice = Lattice([1, 2, 3], [Link(i, j, law, 2) for i, j, law in ends])
+    state = lattice.static(force)
+    forces = [2 * law.at(x, 0) for (_, _, law), x in zip(ends, state.compressions, strict=True)]
+    net = np.zeros(3)
+    for (i, j, _), f in zip(ends, forces, strict=True):
+        net[i] -= f
+        net[j % 3] += f
+    F = float(sp.Rational(force))
+    assert np.abs(net).max() < 1e-13 * F
+    assert sum((j - i) * f for (i, j, _), f in zip(ends, forces, strict=True)) / 3 == pytest.approx(
+        F, rel=1e-13
+    )
+
+
+def test_slopes_are_those_of_the_force():
+    """F′ and F″ of a lattice that is not in series, against differences of F."""
+    lattice = Lattice([1, 2], [Link(0, 1, HERTZ), Link(1, 2, SQUARED, 3), Link(0, 2, HERTZ, "1/2")])
+    statics, e, h = lattice.statics, 0.7, 1e-4
+    below, here, above = statics.force(np.array([e - h, e, e + h]))
+    F1, F2, *_ = statics.samples(np.array(e))
+    assert (above - below) / (2 * h) == pytest.approx(F1, rel=1e-7)  # h² and rounding/h
+    assert (above - 2 * here + below) / h**2 == pytest.approx(F2, rel=1e-6)
+
+
+def test_bad_lattices_are_refused():
+    good, soft = Link(0, 1, HERTZ), Law(DELTA - DELTA**2)
+    for build, reason in (
+        (lambda: Link(1, 1, HERTZ), "second particle"),
+        (lambda: Link(0, 1, "3/2"), "no contact law"),
+        (lambda: Link(0, 1, HERTZ, -1), "must be positive"),
+        (lambda: Link(0.5, 1, HERTZ), "integer"),
+        (lambda: Resonator(0, 1, 0), "must be positive"),
+        (lambda: Lattice([], [good]), "at least one mass"),
+        (lambda: Lattice([1], []), "at least one mass and one link"),
+        (lambda: Lattice([1], [HERTZ]), "a Link is wanted"),
+        (lambda: Lattice([1], "ab"), "list"),
+        (lambda: Lattice([0], [good]), "must be positive"),
+        (lambda: Lattice([1], [Link(1, 2, HERTZ)]), "particles 0 to 0"),
+        (lambda: Lattice([1], [good], [Resonator(1, 1, 1)]), "particles 0 to 0"),
+        (lambda: Lattice([1, 1], [Link(0, 2, HERTZ)]), "free"),
+        (lambda: Lattice([1, 1], [good]), "carry no load"),
+        (lambda: hexagonal(HERTZ, "up"), "direction"),
+        (lambda: Lattice([1, 1], [good, Link(1, 2, soft)]).static(1), "reach"),
+        (lambda: Lattice([1], [Link(0, 1, soft), Link(0, 2, soft)]).static(9), "reach"),
+        (lambda: Lattice(["m"], [good, Link(0, 2, HERTZ)]).static(1), "has no value"),
+    ):
+        with pytest.raises(InputError, match=reason):
+            build()

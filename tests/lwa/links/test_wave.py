@@ -1,0 +1,207 @@
+"""Waves of any lattice: the chains of one law, rarefactions, resonators, packings, refusals."""
+
+import math
+
+import mpmath
+import numpy as np
+import pytest
+import sympy as sp
+
+from lwa import (
+    Cell,
+    InputError,
+    Lattice,
+    Law,
+    Link,
+    NoSolitaryWave,
+    Power,
+    PrecompressedWave,
+    Resonator,
+    canonical_wave,
+    hexagonal,
+    lattice_wave,
+)
+from lwa.law import DELTA, named
+
+HERTZ = Power("3/2")
+LAWS = (named("hertz2", 1, "1/2"), named("exponential", "1/2"), named("magnetic", 4, 3))
+
+
+def random_chain(seed):
+    """A cell of 1 … 4 particles, a law, a peak force and a load."""
+    draw = np.random.default_rng(seed)
+    P = int(draw.integers(1, 5))
+    masses = [round(x, 3) for x in np.exp(draw.uniform(-1.5, 1.5, P))]
+    F = sp.Rational(str(round(draw.uniform(0.5, 3), 2)))
+    if seed % 3:
+        A = [round(x, 3) for x in np.exp(draw.uniform(-1.5, 1.5, P))]
+        law, loads = Power(str(round(draw.uniform(1.05, 5), 2))), ["0", "1/100", "1/2", "5/4"]
+    else:
+        A, law, loads = [2] * P, LAWS[seed // 3 % 3], ["1/10", "1/2"]
+    load = F * sp.Rational(str(draw.choice(loads)))
+    return Cell(masses, A, "3/2"), law, max(F, load), min(F, load)
+
+
+@pytest.mark.parametrize("seed", range(50))
+def test_a_chain_of_one_law_is_the_canonical_wave(seed):
+    cell, law, F, load = random_chain(seed)
+    found = lattice_wave(Lattice.of_cell(cell, law), F, load)
+    if isinstance(law, Power):
+        known = canonical_wave(cell, law.k).at_force(F, precompression=load)
+    else:
+        known = PrecompressedWave(cell, law, F, load)
+    pairs = [(found.speed, known.speed), (found.strain, known.strain)]
+    for quantity in ("strain", "force", "velocity"):
+        for extent in ("length", "time"):
+            pairs += [(found.fwhm(quantity, extent), known.fwhm(quantity, extent))]
+    if load:
+        pairs.append((found.sound_speed, known.sound_speed))
+    for new, old in pairs:
+        assert float(new) == pytest.approx(float(sp.N(old, 20)), rel=1e-12)
+
+
+def test_a_profile_has_its_own_width():
+    pair = Lattice([1, 2], [Link(0, 1, HERTZ), Link(1, 2, Power(3))], spacing="1/2")
+    wave = lattice_wave(pair, 2, 1)
+    for quantity, peak in (("force", 1), ("strain", wave.strain), ("velocity", wave.bead_velocity)):
+        half = float(wave.fwhm(quantity)) / 2
+        found = wave.along([0.0, half, -half], quantity)
+        assert found == pytest.approx(float(peak) * np.array([1, 0.5, 0.5]), rel=1e-12)
+    one, other = (wave.fwhm("strain", link=n) for n in (0, 1))
+    # δ ∝ F^{2/3} and F^{1/3}: the weaker power of the force has the broader top
+    assert one < other
+    assert float(wave.fwhm("force", link=1)) == pytest.approx(float(wave.fwhm("force")), rel=1e-12)
+
+
+def test_links_of_the_second_neighbours_carry_their_own_force():
+    """The compression of a link of range 2 is twice the mean's; its force is narrower."""
+    wave = lattice_wave(Lattice([1], [Link(0, 1, HERTZ), Link(0, 2, HERTZ, "1/4")]), 2, 1)
+    strain = float(wave.fwhm("strain"))
+    assert float(wave.fwhm("strain", link=1)) == pytest.approx(strain, rel=1e-12)
+    assert float(wave.fwhm("force", link=1)) < strain
+
+
+def test_a_rarefaction_wave():
+    """Laws that soften have waves whose strain falls; the same wave by `PrecompressedWave`."""
+    cell, law = Cell([1, 2], spacing=1), Power("1/2")
+    found = lattice_wave(Lattice.of_cell(cell, law), "1/2", 1)
+    known = PrecompressedWave(cell, law, "1/2", 1)
+    assert found.strain < 0
+    assert float(found.speed) == pytest.approx(float(known.speed), rel=1e-13)
+    assert float(found.fwhm("strain")) == pytest.approx(float(known.fwhm("strain")), rel=1e-12)
+
+
+# --- resonators and packings --------------------------------------------------------------------
+
+
+def test_a_stiff_resonator_is_a_heavier_bead():
+    """R = m_r²/k_r → 0: speed and width of the chain with the mass m + m_r; the rest is linear."""
+    plain = lattice_wave(Lattice(["3/2"], [Link(0, 1, HERTZ)]), 1)
+    widths = []
+    for k in (10**4, 10**6):
+        wave = lattice_wave(Lattice([1], [Link(0, 1, HERTZ)], [Resonator(0, "1/2", k)]), 1)
+        assert float(wave.speed) == pytest.approx(float(plain.speed), rel=1e-14)
+        widths.append(float(wave.fwhm()) / float(plain.fwhm()) - 1)
+    assert widths[0] / widths[1] == pytest.approx(100, rel=1e-2)
+    assert widths[0] > 0
+
+
+def test_the_width_with_resonators_obeys_its_integral():
+    """(F′I + R V⁴) v′² = m̄V² v² - 2W of F = δ²: ξ = ∫ √(J/(Q(1) - Q(v))) dv/v by mpmath."""
+    lattice = Lattice([1], [Link(0, 1, Power(2))], [Resonator(0, "1/2", 20)])
+    square = 2 / mpmath.mpf(3)  # m̄V² = 2W/B², W = δ³/3
+    R = mpmath.mpf(1) / 80
+    J = lambda v: 2 * v / 12 + R * (square / 1.5) ** 2  # noqa: E731
+    # v = 1 - t² takes the root out of the peak
+    rate = lambda t: 2 * mpmath.sqrt(J(1 - t * t) / square) / (1 - t * t)  # noqa: E731
+    width = 2 * mpmath.quad(rate, [0, mpmath.sqrt(0.5)])
+    assert float(lattice_wave(lattice, 1).fwhm("strain")) == pytest.approx(float(width), rel=1e-12)
+
+
+def test_slow_resonators_are_refused_and_antiresonances_are_given():
+    def chain(stiffness):
+        return Lattice([1], [Link(0, 1, HERTZ)], [Resonator(0, 1, stiffness)], spacing=2)
+
+    lattice = chain(8)  # ω0 = 4
+    speeds = lattice.antiresonances(3)
+    assert speeds == pytest.approx([4 * 2 / (2 * math.pi * n) for n in (1, 2, 3)], rel=1e-14)
+    rate = math.sqrt(4 / 5 / 2)  # V/D of spheres of the mass 2 with A = 1
+    least = (1.2 * 2 * math.pi * rate) ** 2 / 2
+    assert lattice_wave(chain(str(round(least * 1.01, 6))), 1).speed > 0
+    with pytest.raises(InputError, match="resonator"):
+        lattice_wave(chain(str(round(least * 0.99, 6))), 1)
+
+
+def test_plane_waves_of_hexagonal_packings():
+    """Across: A_eff = 2A(√3/2)^{k+1}, a√3/2 apart. Along: 2A(½)^{k+1}, and A of range 2."""
+    a = math.sqrt(3) / 2
+    across = lattice_wave(hexagonal(HERTZ, "across"), 1)
+    chain = canonical_wave(Cell([1], [str(2 * a**2.5)], str(a)), "3/2").at_force(1)
+    assert float(across.speed) == pytest.approx(float(chain.speed), rel=1e-14)
+    assert float(across.fwhm()) == pytest.approx(float(chain.fwhm()), rel=1e-12)
+    along = lattice_wave(hexagonal(HERTZ, "along"), 1)
+    near, far = Link(0, 1, HERTZ, str(2 * 0.5**2.5)), Link(0, 2, HERTZ)
+    same = lattice_wave(Lattice([1], [near, far], spacing="1/2"), 1)
+    assert float(along.speed) == pytest.approx(float(same.speed), rel=1e-13)
+    assert float(along.fwhm()) == pytest.approx(float(same.fwhm()), rel=1e-12)
+    other = hexagonal(named("hertz2", 1, 1), "across", mass=2, diameter=3)
+    assert other.static(1).compressions[0] == pytest.approx(
+        float(named("hertz2", 1, 1).compression(Cell([1]), 1 / sp.sqrt(3))), rel=1e-14
+    )
+
+
+# --- errors and refusals ------------------------------------------------------------------------
+
+
+def test_waves_that_do_not_exist_and_bad_forces():
+    soft = Lattice([1, 1], [Link(0, 1, named("polynomial", "-1/2", 0)), Link(1, 2, Power(1))])
+    chain = Lattice([1], [Link(0, 1, HERTZ)])
+    attracting = Law(-DELTA / 50)
+    attracted = Lattice([1], [Link(0, 1, HERTZ), Link(0, 3, attracting)])
+    for call, error, reason in (
+        (lambda: lattice_wave(chain, 1, 1), NoSolitaryWave, "no wave"),
+        (lambda: lattice_wave(chain, -1), InputError, "positive"),
+        (lambda: lattice_wave(chain, 1, -1), InputError, "positive"),
+        (lambda: lattice_wave(chain, "1/2", 1), NoSolitaryWave, "stiffen"),
+        (lambda: lattice_wave(soft, "2/5", "1/5"), NoSolitaryWave, "stiffen"),
+        (
+            lambda: lattice_wave(attracted, 2, 1),
+            NoSolitaryWave,
+            "I is not positive",
+        ),
+        (lambda: lattice_wave(chain, "F").fwhm(), InputError, "has no value"),
+        (lambda: lattice_wave(chain, 1).fwhm("colour"), InputError, "quantity"),
+        (lambda: lattice_wave(chain, 1).fwhm(extent="colour"), InputError, "extent"),
+        (lambda: lattice_wave(chain, 1).fwhm(link=1), InputError, "link"),
+        (lambda: lattice_wave(chain, 1).along(["x"]), InputError, "xi|x is"),
+    ):
+        with pytest.raises(error, match=reason):
+            call()
+
+
+def test_errors_are_nan_where_nothing_was_measured():
+    three = Lattice([1, 2, 3], [Link(n, n + 1, HERTZ) for n in range(3)])
+    hard = Lattice([1, 1], [Link(0, 1, HERTZ), Link(1, 2, Power(3))])
+    heard = Lattice([1], [Link(0, 1, HERTZ)], [Resonator(0, 1, 1000)])
+    for lattice, F, load in ((three, 2, 1), (hard, 9, 1), (heard, 2, 1)):
+        wave = lattice_wave(lattice, F, load)
+        assert math.isnan(wave.speed_error)
+        assert math.isnan(wave.fwhm_error())
+    bare = lattice_wave(hard, 1)
+    assert bare.speed_error > 0
+    assert math.isnan(bare.fwhm_error())
+    alike = lattice_wave(Lattice([1] * 3, [Link(n, n + 1, HERTZ) for n in range(3)]), 1)
+    # exact waves: 5.6 % in the force's width, 1.2 % in the speed
+    assert 0.056 < alike.fwhm_error() / float(alike.fwhm()) < 30 * 0.056
+    assert 0.0122 < alike.speed_error / float(alike.speed) < 30 * 0.0122
+
+
+def test_errors_vanish_with_the_wave():
+    pair = Lattice([1, 1], [Link(0, 1, HERTZ), Link(1, 2, Power(3))])
+    found = []
+    for F in ("1.02", "1.01"):
+        wave = lattice_wave(pair, F, 1)
+        found.append((wave.speed_error, wave.fwhm_error() / float(wave.fwhm())))
+    (s1, w1), (s2, w2) = found
+    assert w1 / w2 == pytest.approx(2, rel=0.02)
+    assert s1 / s2 == pytest.approx(4, rel=0.04)  # the error of an excess that vanishes itself
