@@ -12,7 +12,7 @@ from functools import cache
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from scipy.integrate import DOP853
 
 from lwa.base.arrays import Array
@@ -47,8 +47,8 @@ def scheme_of(contact: Contact) -> Scheme:
 def _scheme(power: int) -> Scheme:
     """Return the coefficients of steps in which time runs as x, and as x^``power``."""
     both = zip(_coefficients(1), _coefficients(power), strict=True)
-    times, drifts, rows, errors, error_drifts = map(np.stack, both)
-    return Scheme(times, drifts, rows, errors, error_drifts, power)
+    times, rows, errors = map(np.stack, both)
+    return Scheme(times, rows, errors, power)
 
 
 @cache
@@ -66,17 +66,25 @@ def _pace(q: int) -> Array:
 
 
 def _coefficients(q: int) -> tuple[Array, ...]:
-    """Return the arrays of `Scheme` for t = x^q: a right-hand side f becomes f dt/dx."""
+    """Return the arrays of `Scheme` for t = x^q: a right-hand side f becomes f dt/dx.
+
+    The pair is applied to the difference to a motion under constant forces f_0, which is exact.
+    """
     c, a = _tableau()
-    speeds = a * _pace(q)
-    moments = speeds @ speeds
+    speeds, t = a * _pace(q), c**q
     errors = np.zeros((2, DENSE))
     errors[:, : STEP + 1] = DOP853.E3, DOP853.E5
     errors *= _pace(q)
-    rows = np.stack((moments, speeds), axis=1)
-    ends = np.stack((errors @ speeds, errors), axis=1)
-    rows, ends = (np.pad(x, ((0, 0), (0, 0), (0, COLUMNS - DENSE))) for x in (rows, ends))
-    return c**q, speeds.sum(axis=1), rows, ends, errors.sum(axis=1)
+    rows = _balanced(speeds @ speeds, t * t / 2), _balanced(speeds, t)
+    ends = _balanced(errors @ speeds, 0), _balanced(errors, 0)
+    zeros = (0, 0), (0, 0), (0, COLUMNS - DENSE)
+    return t, *(np.pad(np.stack(pair, axis=1), zeros) for pair in (rows, ends))
+
+
+def _balanced(weights: Array, total: ArrayLike) -> Array:
+    """Change the first column of weights so that the rows have given sums."""
+    weights[:, 0] += total - weights.sum(axis=1)
+    return weights
 
 
 @cache
@@ -120,23 +128,24 @@ class StepPath:
         y, v = np.empty((2, len(rows), len(time)))
         for row, q in enumerate((1, self.scheme.power)):
             at = np.flatnonzero(kind == row)
-            y[:, at], v[:, at] = self._moved(n[at], time[at], rows, row, q)
+            y[:, at], v[:, at] = self._moved(n[at], time[at], rows, q)
         if self.drive is not None and 0 in beads:
             y[0], v[0], _ = self.drive.at(time)
         return y, v
 
     def _moved(
-        self, n: NDArray[np.int_], time: Array, rows: NDArray[np.int_], row: int, q: int
+        self, n: NDArray[np.int_], time: Array, rows: NDArray[np.int_], q: int
     ) -> tuple[Array, Array]:
-        """Return the motion in steps with numbers ``n``, (S,), of one row of the scheme."""
+        """Return the motion in steps with numbers ``n``, (S,), in which time runs as x^q."""
         begin, h, _ = self.steps.step[n].T
         x = ((time - begin) / h).clip(0.0, 1.0) ** (1 / q)
         speeds = np.vander(x, len(_interpolant()), increasing=True) @ _interpolant() * _pace(q)
-        moments = speeds @ self.scheme.rows[row, :, 1, :DENSE]
+        t, a = x**q, _tableau()[1] * _pace(q)
+        moments, speeds = _balanced(speeds @ a, t * t / 2), _balanced(speeds, t)
         force = self.steps.force[n]
         push = (force[:, rows] - force[:, rows + 1]) * self.inverse[rows, None]
         y, v = self.steps.start[n][:, rows].T
-        moved = h * speeds.sum(axis=1) * v + h * h * np.einsum("sj,sbj->bs", moments, push)
+        moved = h * t * v + h * h * np.einsum("sj,sbj->bs", moments, push)
         return y + moved, v + h * np.einsum("sj,sbj->bs", speeds, push)
 
 

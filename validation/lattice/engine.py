@@ -60,7 +60,7 @@ from validation.lattice.schemes import SCHEMES, Pair
 from validation.lattice.signal import recorded, sampled
 from validation.scenes.checks import positive
 
-_WEAK = 0.01  # least energy of the response in units of the energy that sets the tolerance
+_WEAK = 0.1  # least energy of the response in units of the energy that sets the tolerance
 _POINTS = 8  # nodes of the quadrature at a kink
 _NOISE = sys.float_info.epsilon  # in units of the greatest value: a bead that moves less is still
 _BETWEEN_REPORTS = 5e7  # bead evaluations between two reports of progress: some tenths of a second
@@ -159,7 +159,8 @@ def _plan(motion: Motion, method: str, rtol: float, step: float | None) -> tuple
         [end],
     )
     if drive is not None:
-        longest = min(longest, drive.longest_step)
+        # Beside a wall no motion has an error that would bound the step.
+        longest = min(longest, drive.longest_step / (8 if motion.size == 1 else 1))
         stops += [t for t in (drive.ramp, *drive.time) if 0 < t < end]
     if isinstance(scheme, Pair):
         most = step_limit(motion.scene, method, end / min(scales.time, longest))

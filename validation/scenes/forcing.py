@@ -127,7 +127,7 @@ class Drive:
 
     def _check_size(self) -> None:
         """Raise `SceneError` if the acceleration overflows."""
-        amplitude, w = self._harmonic
+        amplitude, w = self.oscillation
         pace = 1 / self.ramp if self.ramp else 0.0
         largest = abs(amplitude) * (w * w + 60 * pace * pace)
         if self.time:
@@ -146,7 +146,7 @@ class Drive:
         return CubicSpline(self.time, self.displacement)
 
     @property
-    def _harmonic(self) -> tuple[float, float]:
+    def oscillation(self) -> tuple[float, float]:
         """Amplitude and angular frequency 2π · frequency of a harmonic drive."""
         return self.amplitude or 0.0, 2 * math.pi * (self.frequency or 0.0)
 
@@ -156,7 +156,7 @@ class Drive:
             return self.velocity * t, self.velocity + 0 * t, 0 * t
         if self.time:
             return tuple(self._spline(t, order) for order in range(3))
-        amplitude, w = self._harmonic
+        amplitude, w = self.oscillation
         s = np.minimum(t / self.ramp, 1.0) if self.ramp else 1.0
         pace = np.where(s < 1, 1 / self.ramp, 0.0) if self.ramp else 0.0
         # s³ (10 - 15 s + 6 s²) has two derivatives that vanish at both ends
@@ -178,18 +178,13 @@ class Drive:
         return np.zeros(1), np.array([[0.0, self.velocity or 0.0, 0.0, 0.0]])
 
     @property
-    def oscillation(self) -> tuple[float, float]:
-        """Amplitude and angular frequency 2π · frequency of a harmonic drive; 0 without."""
-        return self._harmonic
-
-    @property
     def fastest(self) -> float:
         """Approximate greatest speed of the bead."""
         if self.velocity is not None:
             return abs(self.velocity)
         if self.time:
             return float(np.abs(self._spline(self.time, 1)).max())
-        amplitude, w = self._harmonic
+        amplitude, w = self.oscillation
         return abs(amplitude) * w
 
     @property

@@ -135,7 +135,7 @@ class Plan(NamedTuple):
     stops: Array
 
 
-_COUNTS = ("steps", "tries", "evaluations", "front", "stored", "stop", "warped")
+_COUNTS = ("steps", "tries", "evaluations", "front", "stored", "stop", "warped", "interval")
 _REALS = ("t", "h", "planned", "energy", "work", "lost", "response")
 _PROGRESS = np.dtype([(name, int) for name in _COUNTS] + [(name, float) for name in _REALS])
 
@@ -148,8 +148,9 @@ def initial_progress(plan: Plan, front: int, energy: float) -> Any:
     short. steps, tries : numbers of steps made and tried. evaluations : sum, over all evaluations
     of the forces, of the number of beads moved. front : first bead ahead of the motion. stored :
     number of stored knots. stop : number of the next of ``plan.stops``. warped : 1 if the next step
-    begins where a damped contact closes, otherwise 0. work, lost : ∫ v (F - static force) dt of a
-    driven bead, and dissipated energy. response : greatest of the values of ``energy`` on the way.
+    begins where a damped contact closes, otherwise 0. interval : number of the interval of the
+    drive's motion. work, lost : ∫ v (F - static force) dt of a driven bead, and dissipated energy.
+    response : greatest of the values of ``energy`` on the way.
     """
     now = np.zeros(1, _PROGRESS)[0]
     now["front"], now["h"], now["energy"] = front, plan.h, energy

@@ -55,7 +55,7 @@ def _add_up(
 
 
 @summed
-def _squared_error(sums: Array, inverse: Array, hi: int) -> float:
+def squared_error(sums: Array, inverse: Array, hi: int) -> float:
     """Return the sum of squares of the beads' errors, in units of the tolerances."""
     total = 0.0
     for i in range(index(hi)):
@@ -108,7 +108,7 @@ def _attempt(chain: Chain, beads: Beads, plan: Plan, t: float, h: float, hi: int
     if near > 0 and plan.scheme.points.shape[1] > 0:
         _correct_kinks(chain, beads, plan, h, hi)
     missed = (h * _integral(ends[2], beads.power[1]) - beads.given[3]) / plan.energy
-    return math.sqrt(_squared_error(sums, inverse, hi) + missed * missed)
+    return math.sqrt(squared_error(sums, inverse, hi) + missed * missed)
 
 
 @summed
@@ -132,7 +132,10 @@ def _correct_kinks(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) ->
             speed, later = v[i] - v[i + 1], next_v[i] - next_v[i + 1]
             # A kink outside the step counts if the quintic may be trusted there.
             steady = min(speed / later, later / speed) > _STEADY
-            kick = h * chain.A[i] * power(chain, most) * max(inverse[i], inverse[i + 1])
+            impulse = h * chain.A[i] * power(chain, most)
+            kick = impulse * max(inverse[i], inverse[i + 1])
+            if i == 0 and chain.drive.driven:  # the work of its force, too, must not err
+                kick += impulse * max(abs(v[0]), abs(next_v[0])) * plan.v / plan.energy
             if kick > _SLIGHT * plan.v and (within or steady):
                 _correct_contact(chain, beads, plan, h, i)
 

@@ -1,0 +1,180 @@
+"""Damped contacts: their forces, their states, closed or open, and the changes of these.
+
+A damped contact is closed while δ > 0 and its force, elastic and damping force together, is
+positive. Its force has a kink, or jumps, where it closes or opens. Within a step a contact remains
+closed or open, as it was at the beginning, so that its force is smooth; a step in which this is
+wrong for a force that matters must end at the change.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from lwa.base.arrays import Array
+from validation.lattice.kernel.arrays import Beads, Chain, Plan
+from validation.lattice.kernel.compiled import ONE, call, index, part, summed
+from validation.lattice.kernel.force import NEGLIGIBLE, power
+from validation.lattice.kernel.kinks import Quintic, fitted_compression, quintic
+
+_SLIGHT = 0.5  # least impulse of a contact whose change matters, in units of the tolerance
+_PLACES = 16  # places in a step at which a contact is looked at for its first change
+_TOUCH = 1e-14  # in units of the greatest compression: contacts as near as this touch
+
+
+def _loop(value: Any, resistance: Any) -> Any:
+    """Compile a loop over contacts with the force A value(d) + c resistance(d) dδ/dt.
+
+    least : compressions below it are 0. none : bound of compressions and forces of closed contacts,
+    0, or -∞ for contacts that pull.
+    """
+
+    @part
+    def loop(chain: Chain, beads: Beads, f: Array, hi: int, least: float, none: float) -> None:
+        A, rest, load, c = chain.A, chain.rest, chain.load, chain.c
+        y, v, closed, changed = beads.next_y, beads.next_v, beads.contacts[0], beads.contacts[1]
+        most, heat = beads.contacts[2], beads.contacts[3]
+        for i in range(index(hi)):
+            x, rate = rest[i] + y[i] - y[i + ONE], v[i] - v[i + ONE]
+            d = x if x > least else 0.0
+            drag, on = c[i] * resistance(chain, d) * rate, closed[i]
+            n = A[i] * value(chain, d) + drag
+            active = 1.0 if (x > none) & (n > none) else 0.0
+            f[i + ONE] = (n if on > 0.5 else 0.0) - load[i]
+            heat[i] = on * drag * rate
+            changed[i] += abs(active - on)
+            n = abs(n) if (on > 0.5) | (x > 0.0) else 0.0
+            most[i] = n if n > most[i] else most[i]
+
+    return loop
+
+
+_one = part(lambda chain, d: 1.0)
+_hertz = part(lambda chain, d: d * np.sqrt(d))
+_any = part(lambda chain, d: d**chain.k)
+_hertz_contact = _loop(_hertz, _one)
+_hertz_root = _loop(_hertz, part(lambda chain, d: np.sqrt(d)))
+_hertz_quartic = _loop(_hertz, part(lambda chain, d: np.sqrt(np.sqrt(d))))
+_linear = _loop(part(lambda chain, d: d), _one)
+_power_contact = _loop(_any, _one)
+_power = _loop(_any, part(lambda chain, d: d**chain.p))
+_generated = _loop(part(lambda chain, d: call(chain.force, d)), _one)
+
+
+@summed
+def _total(row: Array, hi: int) -> float:
+    """Return the sum of the first ``hi`` entries."""
+    total = 0.0
+    for i in range(index(hi)):
+        total += row[i]
+    return total
+
+
+@part
+def damped_forces(chain: Chain, beads: Beads, plan: Plan, s: int, hi: int) -> None:
+    """Compute forces and powers of stage s at ``next_y`` and ``next_v``."""
+    f, least = beads.force[s], NEGLIGIBLE * plan.deepest
+    none = 0.0
+    if chain.pulls:
+        least = none = -math.inf
+    if chain.generated:
+        _generated(chain, beads, f, hi, least, none)
+    elif chain.k == 1.0:
+        _linear(chain, beads, f, hi, least, none)
+    elif chain.k == 1.5 and chain.p == 0.0:
+        _hertz_contact(chain, beads, f, hi, least, none)
+    elif chain.k == 1.5 and chain.p == 0.5:
+        _hertz_root(chain, beads, f, hi, least, none)
+    elif chain.k == 1.5 and chain.p == 0.25:
+        _hertz_quartic(chain, beads, f, hi, least, none)
+    elif chain.p == 0.0:
+        _power_contact(chain, beads, f, hi, least, none)
+    else:
+        _power(chain, beads, f, hi, least, none)
+    beads.power[0, s] = _total(beads.contacts[3], hi)
+    beads.power[1, s] = beads.next_v[0] * f[1] if chain.drive.driven else 0.0
+
+
+@part
+def _active(chain: Chain, i: int, d: float, rate: float) -> bool:
+    """Return True if contact i pushes at a compression d > 0 and a rate dδ/dt."""
+    if chain.pulls:
+        return True
+    if not d > 0.0:
+        return False
+    if chain.generated:
+        return bool(chain.A[i] * call(chain.force, d) + chain.c[i] * rate > 0.0)
+    return bool(chain.A[i] * d ** (chain.k - chain.p) + chain.c[i] * rate > 0.0)
+
+
+@part
+def settle(chain: Chain, beads: Beads, plan: Plan, hi: int) -> bool:
+    """Give every contact its state at the beads' present motion; return True if one closes."""
+    closing = False
+    for i in range(hi):
+        d, rate = chain.rest[i] + beads.y[i] - beads.y[i + 1], beads.v[i] - beads.v[i + 1]
+        touching = abs(d) <= _TOUCH * plan.deepest and rate > 0.0
+        closed = chain.A[i] > 0.0 and (touching or _active(chain, i, d, rate))
+        closing = closing or (closed and beads.contacts[0, i] == 0.0)
+        beads.contacts[0, i] = 1.0 if closed else 0.0
+    return closing
+
+
+@part
+def _right(chain: Chain, closed: bool, i: int, p: Quintic, h: float, x: float) -> bool:
+    """Return True if contact i is in the state ``closed`` at the place x of a step."""
+    slope = p[1] + x * (2 * p[2] + x * (3 * p[3] + x * (4 * p[4] + x * 5 * p[5])))
+    return _active(chain, i, quintic(p, x), slope / h) == closed
+
+
+@part
+def _place(chain: Chain, beads: Beads, i: int, h: float, last: int) -> float:
+    """Return the place x in a step where contact i first opens or closes; 1 without one."""
+    p, _ = fitted_compression(chain, beads, h, last, i)
+    closed = beads.contacts[0, i] > 0.5
+    low = 0.0
+    for m in range(1, _PLACES + 1):
+        high = m / _PLACES
+        if not _right(chain, closed, i, p, h, high):
+            for _ in range(50):
+                middle = (low + high) / 2
+                if _right(chain, closed, i, p, h, middle):
+                    low = middle
+                else:
+                    high = middle
+            return high
+        low = high
+    return 1.0
+
+
+@part
+def first_change(chain: Chain, beads: Beads, plan: Plan, h: float, last: int, hi: int) -> float:
+    """Return the share of the step up to the first change of a contact that matters; 1 without.
+
+    h : the step. last : the stage at its end.
+    """
+    place = 1.0
+    least = _SLIGHT * plan.v / h
+    for i in range(hi):
+        if beads.contacts[1, i] > 0.5:
+            force = beads.contacts[2, i] * max(chain.inverse[i], chain.inverse[i + 1])
+            if i == 0 and chain.drive.driven:  # its work, too, is wrong
+                force += beads.contacts[2, i] * abs(beads.v[0]) * plan.v / plan.energy
+            if force > least:
+                x = _place(chain, beads, i, h, last)
+                # The state of the contact is wrong from x on, with at most this force.
+                if (1.0 - x) * force > least and 1.0 - x > 1e-12:
+                    place = min(place, x + 0.5 * least / force)
+    return place
+
+
+@part
+def stored(chain: Chain, i: int, d: float) -> float:
+    """Return the elastic energy of contact i at a compression d > 0, and 0 for d ≤ 0."""
+    if not d > 0.0:
+        return 0.0
+    if chain.generated:
+        return float(chain.A[i] * call(chain.energy, d))
+    return float(chain.A[i] * power(chain, d) * d / (chain.k + 1.0))
