@@ -159,15 +159,15 @@ class ContactLaw(Value):
         for name in sorted(filter(_PHI.fullmatch, cell_names | names)):
             raise InputError(f"{name!r} means φ_{name[3:]} of the law here: use another name")
 
-    def check_strain(self, p: sp.Expr, cell: Cell) -> None:
+    def check_strain(self, p: sp.Expr, cell: Cell, sound: bool = False) -> None:
         """Raise `lwa.InputError` unless F is real up to the strain p and grows there, F′ > 0.
 
         Nothing is refused while symbols are left, except a spacing, which is taken to be 1, nor at
-        p = 0, where F′ may vanish.
+        p = 0, where F′ may vanish unless there must be ``sound``.
         """
         D = cell.spacing
         delta = (D * p).xreplace({D: sp.S.One} if D.is_Symbol else {})
-        if self.homogeneous or self.formless or delta.is_zero:
+        if self.homogeneous or self.formless or (delta.is_zero and not sound):
             return
         for power_ in self.F.atoms(sp.Pow):
             start, end = (power_.base.subs(self.delta, x) for x in (0, delta))

@@ -337,7 +337,7 @@ def envelope(
     else:
         read = positive if law.homogeneous else signed  # powers only push
         static = cell.spacing * read(background, "background")
-        law.check_strain(static / cell.spacing, cell)
+        law.check_strain(static / cell.spacing, cell, sound=True)
     kappa = signed(wavenumber, "wavenumber")
     own = dict.fromkeys((s.name for s in (*cell.symbols, *law.symbols)), "a property of the chain")
     check_names(kappa, "wavenumber", taken=own)

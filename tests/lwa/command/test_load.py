@@ -123,6 +123,14 @@ def test_a_wave_under_load_in_a_program(capsys, load, law):
         assert module["speed_at_force"](5.0) == pytest.approx(at["speed_value"], rel=1e-13)
 
 
+def test_small_waves_of_a_softening_chain_in_a_program(capsys):
+    options = ("wave", "--k", "1/2", "--masses", "1", "--background", "1", "--spacing", "1")
+    module = {}
+    exec(run(capsys, *options, "--format", "numpy")[1], module)
+    kdv = background_wave(Cell([1], spacing=1), 1, law=Power("1/2")).kdv
+    assert module["kdv_width"](-0.5) == pytest.approx(float(kdv.width("-1/2")), rel=1e-14)
+
+
 def test_a_wave_under_load_in_another_language(capsys):
     options = ("--law", "hertz2", "--background", "p0", "--format", "fortran")
     status, out, err = run(capsys, "wave", *options)

@@ -77,6 +77,8 @@ LINES = [
     ("envelope --background 1 --branch up", "branch is 'up'"),
     ("envelope --background 1 --detuning 1 --frequency 1", "both given"),
     ("envelope --precompression 1 --masses 1,1/2 --k 2 --detuning -1", "below"),
+    ("envelope --law hertz2:1,2 --background 0 --masses 1", "F′ is 0"),
+    ("envelope --law general --precompression 1", "law is general"),
     ("envelope --law polynomial:1/2,-1/4 --masses 1 --background 3", "F′ is -2.75"),
     ("shock", "--behind or --piston"),
     ("shock --behind 1 --piston 1", "--behind or --piston"),
