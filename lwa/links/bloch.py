@@ -18,7 +18,7 @@ from math import factorial
 from typing import Any, NamedTuple
 
 import numpy as np
-import sympy as sp
+from sympy.polys.matrices import DomainMatrix
 
 Solver = Callable[[Any, Any], Any]
 
@@ -78,9 +78,14 @@ def solved(matrix: Any, right: Any) -> Any:
 
 
 def solved_exactly(matrix: Any, right: Any) -> Any:
-    """Solve a linear system of SymPy expressions."""
-    found = sp.Matrix(matrix).LUsolve(sp.Matrix(right))
-    return np.array([sp.cancel(x) for x in found])
+    """Solve a linear system in SymPy's field of fractions of polynomials."""
+    field = right[0].field.to_domain()
+    rows = [[field.convert(x) for x in row] for row in matrix]
+    column = [[field.convert(x)] for x in right]
+    found = DomainMatrix(rows, matrix.shape, field).lu_solve(
+        DomainMatrix(column, (len(column), 1), field)
+    )
+    return np.array([row[0] for row in found.to_list()])
 
 
 def acoustic(graph: Graph, springs: Any, masses: Any, solve: Solver) -> Branch:

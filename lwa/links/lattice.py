@@ -38,6 +38,7 @@ from lwa.law import ContactLaw, Power, for_cell
 from lwa.links.bloch import Graph, acoustic, solved, solved_exactly
 from lwa.links.statics import Statics
 
+_MOST_SYMBOLIC = 4  # particles; a form with all symbols of five takes minutes
 _NO_LOAD = 1e-9  # stiffness of a lattice of springs 1 that carries no load, but for rounding
 
 
@@ -212,16 +213,25 @@ class Lattice(Value):
     def dispersion(self, force: Any) -> sp.Expr:
         """Coefficient I in Ω² = c² (q² - I q⁴ + …) of the lattice linearised under a mean force.
 
-        Resonators count by their mass only (`lwa.links.wave`). The result is a closed form in the
-        spring constants.
+        Resonators count by their mass only (`lwa.links.wave`). Symbols, for links in series of
+        up to four particles, give a closed form in the spring constants.
         """
-        springs = [sp.Symbol(f"K{n}", positive=True) for n, _ in enumerate(self.links, 1)]
-        found = acoustic(
-            self._graph(sp.sympify), np.array(springs), np.array(self.masses), solved_exactly
-        )
-        constants = self._springs(read_exact(force, "force"))
-        reduced = sp.factor(sp.cancel(found.dispersion)) * self.spacing**2
-        return reduced.xreplace(dict(zip(springs, constants, strict=True)))
+        force = read_exact(force, "force")
+        if not force.free_symbols.union(self.symbols):
+            e = np.array(number(self.mean_compression(force)))
+            return sp.Float(float(self.statics.samples(e)[2])) * self.spacing**2
+        if self.size > _MOST_SYMBOLIC:
+            raise InputError(f"a cell of {self.size} particles: numbers are wanted")
+        # Masses, spring constants and cosines as elements of a field of fractions.
+        links = self.links
+        values = [*self.masses, *self._springs(force), *(link.cosine for link in links)]
+        letters = {v: sp.Dummy() for v in values if not v.is_Rational}
+        domain = sp.QQ.frac_field(*letters.values())
+        x = np.array([domain.from_sympy(letters.get(v, v)) for v in values])
+        masses, springs, cosines = np.split(x, [self.size, self.size + len(links)])
+        graph = Graph(self.size, [(a.i, a.j, c) for a, c in zip(links, cosines, strict=True)])
+        I = acoustic(graph, springs, masses, solved_exactly).dispersion
+        return domain.to_sympy(I).xreplace({x: v for v, x in letters.items()}) * self.spacing**2
 
     @property
     def resonance_sum(self) -> sp.Expr:

@@ -74,7 +74,7 @@ def test_the_coefficient_is_that_of_the_bloch_branch(data):
 def test_chains_have_the_coefficient_of_their_cell():
     for cell in (Cell((1,)), Dimer(3, 1), Dimer("1/2", 2, N=3, stiffnesses=(1, 4, 2, 3))):
         lattice = Lattice.of_cell(cell, Power(1))
-        found = lattice.dispersion(1) / cell.spacing**2
+        found = sp.cancel(lattice.dispersion(1) / cell.spacing**2)
         assert float(found) == pytest.approx(float(Dispersion(cell, 1).I), rel=1e-13)
 
 
@@ -91,7 +91,7 @@ def test_neighbours_of_range_r():
     K = {1: 3, 2: 5, 4: 7}
     lattice = Lattice([1], springs_of(*((0, r, k) for r, k in K.items())))
     fourth, second = (sum(r**n * k for r, k in K.items()) for n in (4, 2))
-    assert lattice.dispersion(1) == sp.Rational(fourth, 12 * second)
+    assert float(lattice.dispersion(1)) == pytest.approx(fourth / (12 * second), rel=1e-15)
 
 
 def test_hertz_and_linear_contacts_in_turn():

@@ -54,7 +54,7 @@ def test_a_chain_of_one_law_is_the_canonical_wave(seed):
     rise, waves = known.strain, known.background if load else known.wave.on_background(0)
     numeric, p0 = waves.numeric(), float(waves.p0)
     for quantity in ("strain", "force", "velocity"):
-        pairs.append((found.fwhm(quantity), numeric.fwhm(p0, float(rise), quantity)))
+        pairs += [(found.fwhm(quantity), numeric.fwhm(p0, float(rise), quantity))]
     pairs.append((found.fwhm("force", "time") * found.speed, found.fwhm("force")))
     if seed < 6:  # by mpmath
         pairs.append((found.fwhm("force", "time"), known.fwhm("force", "time")))
