@@ -190,7 +190,7 @@ class Shock(Value):
     def _edge_errors(self) -> dict[str, float]:
         """Errors of El's edges, by the doubling rule of equal beads under the same law."""
         chain = replace(self, cell=Cell((1,), spacing=self.cell.spacing))
-        ratio = chain.leading_speed("dispersion") / chain.leading_speed("doubling")
+        ratio = chain.leading_speed("doubling") / chain.leading_speed("dispersion")
         off, rho = abs(float(ratio) - 1), chain._pulse.stiffening
         r, uniform = float(self.ratio), self.cell.uniform
         found = {"dispersion": bounds.leading_error(off, rho, r, uniform)}

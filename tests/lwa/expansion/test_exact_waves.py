@@ -16,13 +16,18 @@ from lwa import Cell, InputError, expand
 from lwa.command.cli import main
 
 POINTS = 4096
-NAMES = ("c2", "strain", "force", "velocity")
+WIDTHS = ("strain", "force", "velocity")
+DAMPINGS = ("linear", "kuwabara_kono")
+NAMES = ("c2", "c", "peak_velocity", "momentum", "kinetic", "energy", "effective_mass")
 EXPONENTS = ("1.1", "3/2", "2", "4", "8", "9.5", "12", "20")
 
 
 @cache
 def lattice(k):
-    """c² and widths of the wave of equal beads whose force peaks at 1; ξ and its forces."""
+    """Values by name of the wave of equal beads whose force peaks at 1; ξ and its forces.
+
+    The velocity is the force's mean over one site, over c: c² s' = F(ξ - ½) - F(ξ + ½).
+    """
     half = max(4.0, 8 / np.sqrt(k - 1))
     xi = np.linspace(-half, half, POINTS, endpoint=False)
     q = np.pi * np.fft.fftfreq(POINTS, 1 / POINTS) / half
@@ -46,13 +51,25 @@ def lattice(k):
             below, above = (middle, above) if inside else (below, middle)
         return 2 * below
 
-    widths = (width(spectrum) for spectrum in (np.fft.fft(strain), force, mean * force))
-    values = dict(zip(NAMES, (c2, *widths), strict=True))
-    return values, xi, np.fft.fftshift(np.maximum(strain, 0) ** k)
+    spectra, step, c = (np.fft.fft(strain), force, mean * force), xi[1] - xi[0], np.sqrt(c2)
+    velocity, push = np.fft.ifft(mean * force).real / c, np.maximum(strain, 0) ** k
+    kinetic, elastic = step * (velocity @ velocity) / 2, step * (strain @ push) / (k + 1)
+    momentum, energy = step * velocity.sum(), kinetic + elastic
+    rate = c * np.fft.ifft(1j * q * spectra[0]).real ** 2 * step
+    rest = velocity.max(), momentum, kinetic, energy, momentum**2 / (2 * energy)
+    values = dict(zip(NAMES, (c2, c, *rest), strict=True))
+    values |= dict(zip(WIDTHS, map(width, spectra), strict=True))
+    losses = rate.sum(), np.maximum(strain, 0) ** (k - 1) @ rate
+    values |= dict(zip(DAMPINGS, losses, strict=True))
+    assert kinetic / elastic == pytest.approx((k + 1) / 2)  # the virial theorem
+    return values, xi, np.fft.fftshift(push)
 
 
 def series(expansion):
-    return dict(zip(NAMES, (expansion.c2, *map(expansion.fwhm, NAMES[1:])), strict=True))
+    """Series of all quantities of `lattice`, by the same names."""
+    found = {name: getattr(expansion, name) for name in NAMES}
+    found |= {name: expansion.fwhm(name) for name in WIDTHS}
+    return found | {name: expansion.dissipation(name) for name in DAMPINGS}
 
 
 @pytest.mark.slow
@@ -83,10 +100,11 @@ def test_up_to_k_four_no_sum_is_refused(k):
 
 
 @pytest.mark.parametrize("k", ["9.5", "20"])
-def test_from_k_nine_and_a_half_every_sum_is_refused(k):
-    for row in series(expand(Cell([1]), 10, k=k)).values():
+def test_from_k_nine_and_a_half_speed_and_widths_are_refused(k):
+    rows = series(expand(Cell([1]), 10, k=k))
+    for name in ("c2", *WIDTHS):
         with pytest.raises(InputError, match="no sum at k"):
-            row.at()
+            rows[name].at()
 
 
 def test_the_command_prints_no_refused_sum(capsys):
