@@ -202,8 +202,11 @@ class Lattice(Value):
 
     def stiffness(self, force: sp.Expr) -> sp.Expr:
         """The slope dF/d(D p) of links in series under a force."""
-        springs = zip(self.links, self._springs(force), strict=True)
-        return self.size / sp.Add(*(1 / (K * link.cosine**2) for link, K in springs))
+        springs = self._springs(force)
+        if any(K.is_zero for K in springs):
+            return sp.S.Zero
+        pairs = zip(self.links, springs, strict=True)
+        return self.size / sp.Add(*(1 / (K * link.cosine**2) for link, K in pairs))
 
     def _springs(self, force: sp.Expr) -> list[sp.Expr]:
         """The spring constants of the links under a force."""

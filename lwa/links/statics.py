@@ -22,7 +22,8 @@ _RIGID = 1e8  # ratio of spring constants
 _REACH = -100, 40  # powers of 2 between which the mean compression under a force is sought
 _PARTS = 65  # places between two bounds, of which the next bounds are neighbours
 _BOLDEST = 3.0  # largest step of ln δ
-_LEAST = 1e-14  # least mean compression of a network over the largest
+_LARGEST = 1e6  # compression of a link in series over the least that it may have at first
+_LEAST = 1e-14  # least mean compression over the largest of a wave
 
 Function = Callable[[Array], Array]
 
@@ -49,10 +50,12 @@ class Statics:
     def _series(self, e: Array) -> Array:
         """Newton's method for links that carry one force f, in ln f and the ln δ of the links.
 
-        Logarithms keep the digits of a compression that is far smaller than the mean.
+        Logarithms keep the digits of a compression that is far smaller than the mean. A step to
+        where a law does not rise, as beyond a pole, is halved in the logarithm.
         """
         spans, total = self.graph.spans, self.graph.size * e
-        delta = np.broadcast_to(e[..., None] * spans, (*e.shape, len(spans)))
+        delta = e[..., None] * spans
+        before = delta / _LARGEST
         with np.errstate(all="ignore"):
             for _ in range(_MOST):
                 force, springs = self.values(delta, 0), self.values(delta, 1)
@@ -60,7 +63,10 @@ class Statics:
                 missing = total - ((delta - logs * gain) / spans).sum(axis=-1)
                 mean = missing / (gain / spans).sum(axis=-1)
                 step = (mean[..., None] - logs) * gain / delta
-                delta = delta * np.exp(np.clip(step, -_BOLDEST, _BOLDEST))
+                outside = ~((force > 0) & (springs > 0))
+                step = np.where(outside, np.log(before / delta) / 2, step)
+                step = np.where(np.isfinite(step), np.clip(step, -_BOLDEST, _BOLDEST), 0.0)
+                before, delta = np.where(outside, before, delta), delta * np.exp(step)
                 if not np.any(np.abs(step) > _ROUNDING):
                     break
         return delta
@@ -96,8 +102,8 @@ class Statics:
 
     def samples(self, e: Array) -> tuple[Array, Array, Array, Array]:
         """F′, F″, I and the shares dδ/de of the links at mean compressions, lengths in spacings."""
-        if not self.graph.in_series:
-            # Far below the largest e a link's compression may be a rounding error of e.
+        if self.graph.size > 1:
+            # Far below the largest e a compression, or a force, may be a rounding error.
             e = np.maximum(e, _LEAST * np.max(e))
         delta = self.compressions(e)
         springs, size = self.values(delta, 1), self.graph.size

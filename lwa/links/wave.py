@@ -164,16 +164,14 @@ class LatticeWave(Value):
     @cached_property
     def sound_speed(self) -> sp.Expr:
         """The speed dx/dt of long small waves ahead of the wave."""
-        if self.lattice.exact:
-            stiffness = self.lattice.stiffness(self.precompression)
-        else:
-            stiffness = sp.Float(self._ahead)
-        return self.lattice.spacing * sp.sqrt(stiffness / self.lattice.mass)
+        return self.lattice.spacing * sp.sqrt(self._stiffness_ahead / self.lattice.mass)
 
     @cached_property
-    def _ahead(self) -> float:
+    def _stiffness_ahead(self) -> sp.Expr:
+        if self.lattice.in_series:
+            return self.lattice.stiffness(self.precompression)
         p0, B = self._ends
-        return float(self._static(p0 + _FOOT * B)[0][0])
+        return sp.Float(float(self._static(p0 + _FOOT * B)[0][0]))
 
     @property
     def bead_velocity(self) -> sp.Expr:
@@ -221,7 +219,7 @@ class LatticeWave(Value):
         """The measured rule of this kind of lattice, and Δ."""
         p0, B = self._ends
         delta = log(self._static(p0 + B)[0][0] / self._square)
-        lattice, bare = self.lattice, self._ahead < 1e-6 * self._square
+        lattice, bare = self.lattice, number(self._stiffness_ahead) < 1e-6 * self._square
         if lattice.resonators and not (bare and lattice.size == 1):
             rule = _NONE
         elif lattice.alike:
@@ -236,7 +234,9 @@ class LatticeWave(Value):
     def speed_error(self) -> float:
         """Bound on the error of the speed; NaN where no lattice of this kind was measured."""
         rule, delta = self._rule
-        share = 1 - self._ahead / self._square  # of V² that the wave adds to the sound's
+        share = (
+            1 - number(self._stiffness_ahead) / self._square
+        )  # of V² that the wave adds to the sound's
         return rule.excess * delta * share / 2 * number(self.speed)
 
     def fwhm_error(self, quantity: str = "force", extent: str = "length") -> float:
