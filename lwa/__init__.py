@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from lwa.expansion.physical import transmitted_force as transmitted_force
     from lwa.expansion.radiation import Radiation as Radiation
     from lwa.expansion.series import EpsilonSeries as EpsilonSeries
-    from lwa.law import ContactLaw as ContactLaw
+    from lwa.force import ContactLaw as ContactLaw
     from lwa.law import Law as Law
     from lwa.law import Power as Power
     from lwa.law import general as general

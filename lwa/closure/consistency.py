@@ -24,7 +24,7 @@ from lwa.closure.ansatz import linear
 from lwa.closure.fields import in_field
 from lwa.closure.slaving import full
 from lwa.closure.solution import Solution
-from lwa.law import ContactLaw
+from lwa.force import ContactLaw
 
 BRANCHES = ("acoustic", "optical")
 CLOSURES = ("linear", "full")

@@ -17,7 +17,8 @@ from lwa.base.files import load
 from lwa.base.tables import among, finite
 from lwa.cell import Cell, D
 from lwa.command.options import given
-from lwa.law import ContactLaw, Power, read_law, refuse_two_laws
+from lwa.force import ContactLaw
+from lwa.law import Power, read_law, refuse_two_laws
 from lwa.spheres.beads import Row, opened, period, read_beads, read_materials, read_row
 from lwa.spheres.hertz import EXPONENT
 

@@ -22,7 +22,7 @@ from lwa.base import latex
 from lwa.base.exact import InputError, power, read_exact, signed
 from lwa.base.frozen import Value
 from lwa.cell import Cell, substitution
-from lwa.law import ContactLaw, for_cell
+from lwa.force import ContactLaw, for_cell
 from lwa.linear.dispersion import Dispersion
 
 

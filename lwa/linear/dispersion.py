@@ -26,7 +26,8 @@ from lwa.base import latex
 from lwa.base.exact import InputError, demand_numbers, integer, one_of, positive
 from lwa.base.frozen import Value
 from lwa.cell import Cell, exponent, read_cell, substitution
-from lwa.law import ContactLaw, Power, for_cell
+from lwa.force import ContactLaw, for_cell
+from lwa.law import Power
 from lwa.linear.bloch import BRANCHES, Bloch
 
 if TYPE_CHECKING:

@@ -34,7 +34,8 @@ from lwa.base.exact import (
 )
 from lwa.base.frozen import Value
 from lwa.cell import Cell, check_distinct
-from lwa.law import ContactLaw, Power, for_cell
+from lwa.force import ContactLaw, for_cell
+from lwa.law import Power
 from lwa.links.bloch import Graph, acoustic, solved, solved_exactly
 from lwa.links.statics import Statics
 

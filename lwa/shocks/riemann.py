@@ -29,7 +29,7 @@ from lwa.cell import Cell
 from lwa.expansion.approximants import Resummed
 from lwa.expansion.expand import expand
 from lwa.expansion.physical import ORDER, ExpandedWave, wave_of_velocity
-from lwa.law import ContactLaw, for_cell
+from lwa.force import ContactLaw, for_cell
 from lwa.shocks import bounds, edges, waves
 from lwa.shocks.convexity import demand_one_sign
 from lwa.wave.background import BackgroundWave

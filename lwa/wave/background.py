@@ -36,7 +36,8 @@ from lwa.base.quantities import (
     refusal_under_power,
 )
 from lwa.cell import RESERVED, Cell, check_names
-from lwa.law import ContactLaw, Power, for_cell, substituted
+from lwa.force import ContactLaw, for_cell, substituted
+from lwa.law import Power
 from lwa.linear.dispersion import Dispersion
 from lwa.wave.closed import CompactWave
 from lwa.wave.profile import Flank, Function, compiled, mpmath_number

@@ -17,7 +17,8 @@ from lwa.base.exact import one_of
 from lwa.base.quantities import QUANTITIES, strain_power
 from lwa.cell import Cell
 from lwa.code import LANGUAGES, Function, Local
-from lwa.law import ContactLaw, Power
+from lwa.force import ContactLaw
+from lwa.law import Power
 from lwa.wave.closed import CompactWave
 
 _XI = sp.Dummy("xi", real=True)

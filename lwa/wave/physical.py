@@ -25,7 +25,8 @@ from lwa.base.exact import InputError, evaluated, number, one_of, positive, powe
 from lwa.base.frozen import Value
 from lwa.base.quantities import NoSolitaryWave, known_extent, known_quantity, strain_power
 from lwa.cell import Cell, check_names
-from lwa.law import ContactLaw, Power, for_cell, substituted
+from lwa.force import ContactLaw, for_cell, substituted
+from lwa.law import Power
 from lwa.wave.background import WIDTH_DIGITS, BackgroundWave, taken_names
 from lwa.wave.closed import CompactWave
 

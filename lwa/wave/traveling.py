@@ -10,7 +10,8 @@ from lwa.base.exact import InputError, number, read_exact, shorten
 from lwa.base.quantities import strain_power
 from lwa.cell import Cell
 from lwa.cell import k as symbol_k
-from lwa.law import ContactLaw, Power, for_cell, refuse_two_laws
+from lwa.force import ContactLaw, for_cell
+from lwa.law import Power, refuse_two_laws
 from lwa.wave.background import BackgroundWave
 from lwa.wave.closed import CompactWave
 from lwa.wave.physical import PhysicalWave, PrecompressedWave

@@ -23,7 +23,7 @@ from lwa.base import splines
 from lwa.base.arrays import Array
 from lwa.base.exact import shorten
 from lwa.base.splines import read_spline
-from lwa.law import ContactLaw
+from lwa.force import ContactLaw
 from validation.scenes.checks import SceneError
 
 

@@ -25,7 +25,8 @@ from typing import Any
 from lwa.base.exact import InputError, shorten
 from lwa.base.files import load
 from lwa.base.tables import Reader, Table, among, each, entries, place, places, table
-from lwa.law import NAMES, ContactLaw, Law, read_law
+from lwa.force import ContactLaw
+from lwa.law import NAMES, Law, read_law
 from lwa.spheres.beads import (
     CHAIN,
     FILE,
