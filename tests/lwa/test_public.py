@@ -18,7 +18,7 @@ OTHERS = re.compile(
     r"|fmpq|fmpq_mpoly|fmpq_mpoly_ctx|NDArray|ArrayLike|Fraction|Decimal|NamedTuple|int|float|bool|str|tuple|list|dict|set|object"
     # of derivations from within, and names of types alone: found in the modules of lwa
     r"|JetAlgebra|Partition|Term|CoefficientRing|Powers|Model|Solution|Jet"
-    r"|Array|Quantity|NumericBackground"
+    r"|Array|Quantity|NumericBackground|Statics?"
 )
 
 
