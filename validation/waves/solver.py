@@ -36,6 +36,7 @@ from validation.waves.resonances import special_waves
 from validation.waves.solution import NoWave, converged, solve
 
 FALLEN = 38.0  # e-foldings of a wave on a background from its flanks to L
+LIGHTEST = 1e-12  # background over the peak strain, at least: a lighter one does not show
 SHALLOWEST = 1e-4  # rise of a wave on a background over the peak strain, at least
 LESS = 0.125  # step of the background from wave to wave, at k > 3 on small backgrounds
 STEEP = 3.0  # k above which the theory's wave is too wide to start from
@@ -66,8 +67,10 @@ def exact_wave(masses: Sequence[Any], k: Any, *, background: Any = 0) -> ExactWa
     if len(given) not in (1, 2):
         raise SceneError(f"{len(given)} masses: exact waves are found for a cell of 1 or 2 beads")
     k = between(k, "k", 1.01, 8, "exact waves are found for k from 1.01 to 8")
-    wanted = f"one from 0 to 1 - {SHALLOWEST:g} of the peak compression is wanted"
+    wanted = f"0, or one from {LIGHTEST:g} to 1 - {SHALLOWEST:g} of the peak compression, is wanted"
     p0 = between(background, "background", 0, 1 - SHALLOWEST, wanted)
+    if p0:
+        between(background, "background", LIGHTEST, 1, wanted)
     if given[0] == given[-1]:
         wave = _uniform(k, p0)
         return replace(wave, masses=(given[0], given[0]), c2=wave.c2 / given[0])

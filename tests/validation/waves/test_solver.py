@@ -370,6 +370,7 @@ def test_the_report_holds_every_number_of_a_wave(hertz):
         ([1, 0.5], {"k": 5.5}, "k is 5.5"),
         ([1], {"background": -0.1}, "background is -0.1"),
         ([1], {"background": 1}, "background is 1"),
+        ([1], {"background": 1e-300}, "background is 1e-300"),
         ([1], {"background": "1/2"}, "background is '1/2'"),
         ([1, 0.5], {"background": 0.1}, "background is 0.1"),
     ],
