@@ -17,7 +17,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from math import pi
-from typing import Any, Self
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 import sympy as sp
@@ -90,8 +90,7 @@ class Resonator(Value):
             object.__setattr__(self, name, positive(getattr(self, name), f"resonator's {name}"))
 
 
-@dataclass(frozen=True)
-class Static(Value):
+class Static(NamedTuple):
     """A lattice at rest under a mean force: mean strain, and compression δ of each link."""
 
     force: sp.Expr

@@ -69,7 +69,7 @@ class Statics:
                 before, delta = np.where(outside, before, delta), delta * np.exp(step)
                 if not np.any(np.abs(step) > _ROUNDING):
                     break
-        return delta
+        return np.asarray(delta)
 
     def _network(self, e: Array) -> Array:
         """Newton's method for the displacements inside the cell, damped: no contact is lost."""

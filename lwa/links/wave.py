@@ -23,14 +23,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 from math import log, nan, pi, sqrt
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import sympy as sp
 from numpy.typing import ArrayLike
 
 from lwa.base.arrays import Array, finite
-from lwa.base.exact import InputError, demand_numbers, integer, number, read_exact
+from lwa.base.exact import InputError, demand_numbers, integer, number, positive, read_exact
 from lwa.base.frozen import Value
 from lwa.base.quantities import (
     NOT_RISING,
@@ -43,22 +43,16 @@ from lwa.links.lattice import Lattice
 from lwa.wave.quadrature import CLOSE, CLOSE_OF_TABLES, Quadrature, Samples
 
 _FASTEST = 1.2  # least ω0 D/(2πV) of a resonator at which the relation holds; measured
+_BARE = 1 - 1e-6  # part of V² that the wave adds to the sound's from which there is no load
 _FOOT = 1e-40  # part of the rise at which the sound ahead of the wave is computed
 
 
-class Rule(NamedTuple):
-    """Measured bounds: errors of V² - c0² and of widths are at most these parts of Δ."""
-
-    excess: float
-    width: float
-    largest: float  # Δ up to which waves were measured
-
-
-_LIKE = Rule(0.1, 0.15, 1.8)  # equal particles and nearest links, with and without a load
-_FARTHER = Rule(0.1, 0.3, 1.2)  # one particle a cell, links to farther ones
-_PAIR = Rule(0.5, 0.8, 0.3)  # two unlike masses or links under a load
-_BARE_PAIR = Rule(0.16, nan, 1.8)  # two unlike masses or links without a load
-_NONE = Rule(nan, nan, nan)
+# Measured bounds: errors of V² - c0² and of widths in parts of Δ, and Δ up to which they hold.
+_ALIKE = 0.1, 0.15, 1.8  # equal particles and nearest links, with and without a load
+_FARTHER = 0.1, 0.3, 1.2  # one particle a cell, links to farther ones
+_LOADED_PAIR = 0.5, 0.8, 0.3  # two unlike masses or links under a load
+_BARE_PAIR = 0.16, nan, 1.8  # two unlike masses or links without a load
+_NONE = nan, nan, nan
 
 
 @dataclass(frozen=True)
@@ -78,11 +72,10 @@ class LatticeWave(Value):
     precompression: sp.Expr
 
     def __post_init__(self) -> None:
-        for name in ("force", "precompression"):
-            value = read_exact(getattr(self, name), name)
-            if value.is_negative or (name == "force" and value.is_zero):
-                raise InputError(f"{name} is {value}: it must be positive")
-            object.__setattr__(self, name, value)
+        load = read_exact(self.precompression, "precompression")
+        load = load if load.is_zero else positive(load, "precompression")
+        object.__setattr__(self, "precompression", load)
+        object.__setattr__(self, "force", positive(self.force, "force"))
         if self.force == self.precompression:
             raise NoSolitaryWave(f"force and precompression are both {self.force}: no wave")
         if not self.lattice.exact or not self._free:
@@ -215,34 +208,28 @@ class LatticeWave(Value):
         return ratio * number(self.strain if quantity == "strain" else self.bead_velocity)
 
     @cached_property
-    def _rule(self) -> tuple[Rule, float]:
-        """The measured rule of this kind of lattice, and Δ."""
+    def _bounds(self) -> tuple[float, float]:
+        """Bounds on the relative errors of the speed and of widths, NaN where none was measured."""
         p0, B = self._ends
         delta = log(self._static(p0 + B)[0][0] / self._square)
-        lattice, bare = self.lattice, number(self._stiffness_ahead) < 1e-6 * self._square
-        if lattice.resonators and not (bare and lattice.size == 1):
+        added = 1 - number(self._stiffness_ahead) / self._square  # of V² to the sound's
+        lattice, bare, rule = self.lattice, added > _BARE, _NONE
+        if lattice.alike or lattice.size == 1:
+            rule = _ALIKE if lattice.alike else _FARTHER
+        elif lattice.size == 2:
+            rule = _BARE_PAIR if bare else _LOADED_PAIR
+        if delta > rule[2] or (lattice.resonators and not (bare and lattice.size == 1)):
             rule = _NONE
-        elif lattice.alike:
-            rule = _LIKE
-        elif lattice.size == 1:
-            rule = _FARTHER
-        else:
-            rule = (_BARE_PAIR if bare else _PAIR) if lattice.size == 2 else _NONE
-        return (rule if delta <= rule.largest else _NONE), delta
+        return rule[0] * delta * added / 2, rule[1] * delta
 
     @property
     def speed_error(self) -> float:
         """Bound on the error of the speed; NaN where no lattice of this kind was measured."""
-        rule, delta = self._rule
-        share = (
-            1 - number(self._stiffness_ahead) / self._square
-        )  # of V² that the wave adds to the sound's
-        return rule.excess * delta * share / 2 * number(self.speed)
+        return self._bounds[0] * number(self.speed)
 
     def fwhm_error(self, quantity: str = "force", extent: str = "length") -> float:
         """Bound on the error of a width of the mean; NaN where no such lattice was measured."""
-        rule, delta = self._rule
-        return rule.width * delta * number(self.fwhm(quantity, extent))
+        return self._bounds[1] * number(self.fwhm(quantity, extent))
 
 
 def lattice_wave(lattice: Lattice, force: Any = "F", precompression: Any = 0) -> LatticeWave:
