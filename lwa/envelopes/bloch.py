@@ -70,7 +70,6 @@ def cell_mode(
         mode.slope * rate,
         mode.curvature * rate,
         mode.cubic * rate / (mass * unit**2),
-        [sp.sympify(x) / (mass * unit) for x in mode.second],
         [sp.sympify(x) / (mass * unit) for x in mode.mean],
         [sp.sympify(x) / mass for x in mode.size],
         [sp.sympify(x) / sp.sqrt(mass) for x in mode.shape],

@@ -49,7 +49,7 @@ class Mode:
     square : x = ω².
     slope, curvature : dω²/dκ, and ω d²ω/dκ².
     cubic : 2ωχ.
-    second, mean, size : e2, e0 and |d|² of each contact.
+    mean, size : e0 and |d|² of each contact.
     shape : φ of each bead, positive for the bead with the largest displacement.
     """
 
@@ -57,7 +57,6 @@ class Mode:
     slope: Any
     curvature: Any
     cubic: Any
-    second: Any
     mean: Any
     size: Any
     shape: Any
@@ -134,8 +133,6 @@ class Contacts:
         size = np.diagonal(products)
         rest = numbers.inverse(self.secular(z * z, 4 * x))
         G = self.strains(z * z) @ rest @ self.strains(1 / (z * z)).T
-        d = (B @ projector)[:, bead]
-        second = -G @ (K3 * d * d / projector[bead, bead])
         force = (c * K3 * size).sum() * 2 / c.sum() * (speed / (speed - 1))
         mean = c * (-2 * K3 * size + force)
         cubic = (3 * K4 * size**2 + 2 * K3 * size * mean).sum() - 2 * K3 @ (G * products.T**2) @ K3
@@ -145,7 +142,6 @@ class Contacts:
             -2 * sine * real(1 / first),
             real(bend / 2 - square / (4 * x)),
             real(cubic),
-            [numbers.complex(e) for e in second],
             [real(e) for e in mean],
             [real(e) for e in size],
             [numbers.complex(e) / unit for e in projector[:, bead]],

@@ -74,10 +74,7 @@ class Envelope(Value):
         return replace(self, floats=True)
 
     def at(self, **values: Any) -> Envelope:
-        """The envelope for these values of the named symbols, and of ω = m2/m1 by ``omega``.
-
-        Raises `lwa.InputError` for a name that does not occur or a value that cannot be meant.
-        """
+        """The envelope for these values of the named symbols, and of ω = m2/m1 by ``omega``."""
         cell, law, compression, wavenumber = substituted(
             values, self.cell, self.law, self.compression, self.wavenumber
         )
@@ -112,11 +109,6 @@ class Envelope(Value):
     def nonlinearity(self) -> sp.Expr:
         """Nonlinear coefficient χ: the amplitude Ψ raises the frequency by χ|Ψ|²."""
         return self._tidy(self._mode.cubic / (2 * self.frequency))
-
-    @cached_property
-    def second_harmonic(self) -> tuple[sp.Expr, ...]:
-        """Factor e2 for each contact: its second harmonic is A² e2 e^{2i(κn - ωt)} + c.c."""
-        return self._each(self._mode.second)
 
     @cached_property
     def mean_strain(self) -> tuple[sp.Expr, ...]:
@@ -215,8 +207,9 @@ class Breather(Value):
         one_of(self.kind, KINDS, "kind")
         if self.detuning.is_number and self.detuning >= 1:
             self._refuse("a frequency is positive, and the detuning below 1")
-        if self._square.is_number and not self._square > 0:
-            side, sign = ("below", "> 0") if self.envelope.nonlinearity < 0 else ("above", "< 0")
+        if self._square.is_positive is False:
+            below = self.envelope.nonlinearity.is_negative
+            side, sign = ("below", "> 0") if below else ("above", "< 0")
             self._refuse(f"{self.kind} breathers lie {side} f0, at values {sign}")
         part = self.detuning / self.opening_detuning
         if part.is_number and part > 1:
@@ -247,7 +240,11 @@ class Breather(Value):
     @cached_property
     def _square(self) -> sp.Expr:
         """Square a² of the envelope's amplitude."""
-        return sp.powsimp(sp.factor(self._shift * self.detuning / self.envelope.nonlinearity))
+        return sp.powsimp(self._factored(self._shift * self.detuning / self.envelope.nonlinearity))
+
+    def _factored(self, value: sp.Expr) -> sp.Expr:
+        """The value with its factors, unless Δ is a surd, for which SymPy would take minutes."""
+        return value if self.detuning.is_irrational else sp.factor(value)
 
     @cached_property
     def amplitude(self) -> tuple[sp.Expr, ...]:
@@ -258,7 +255,7 @@ class Breather(Value):
     def width(self) -> sp.Expr:
         """Width 1/b, in cells, of the envelope sech(bn) or tanh(bn)."""
         ratio = self.envelope.dispersion / (self._shift * self.detuning)
-        return sp.sqrt(sp.factor(-ratio if self.kind == KINDS[0] else ratio))
+        return sp.sqrt(self._factored(-ratio if self.kind == KINDS[0] else ratio))
 
     @cached_property
     def opening_detuning(self) -> sp.Expr:
