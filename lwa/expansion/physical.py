@@ -168,10 +168,10 @@ class Strike(Value):
     def force(self) -> Estimate:
         """Peak force of a contact."""
         value, log = float(self.wave.F), math.log(float(self.mass) / self._effective_mass)
-        # Measured: b ln²(m_s/m_eff), b = 3 % for strikers heavier than m_eff and 11 % for lighter
+        # Measured: b ln²(m_s/m_eff), b = 3 % for strikers heavier than m_eff and 13 % for lighter
         # ones, and 0.7 % from m_eff to 2 beads.
         measured = sp.Rational(5, 4) <= self.chain.k <= sp.Rational(5, 2)
-        error = max(0.007, (0.03 if log > 0 else 0.11) * log**2) if measured else math.nan
+        error = max(0.007, (0.03 if log > 0 else 0.13) * log**2) if measured else math.nan
         return Estimate(value, value * error)
 
     @property

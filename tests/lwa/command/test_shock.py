@@ -81,17 +81,29 @@ def test_a_wall_at_a_speed_in_si(capsys, tmp_path):
 
 
 def test_symbols_text_and_latex(capsys):
-    status, out, _ = run(capsys, "--behind", "p", "--k", "k", "--masses", "m")
-    assert status == 0
-    assert "velocity of the wall" in out
+    for options in (
+        ("--behind", "p", "--k", "k", "--masses", "m"),
+        ("--behind", "2", "--ahead", "1", "--k", "3/2"),  # two masses that are symbols
+    ):
+        status, out, _ = run(capsys, *options)
+        assert status == 0
+        assert "velocity of the wall" in out
     status, out, _ = run(capsys, *EQUAL, "--behind", "2", "--ahead", "1", "--format", "latex")
     assert status == 0
     assert "v_{p} &= " in out
 
 
 def test_a_piston_and_a_rarefaction(capsys):
+    """The error is that of the strain if the velocity is given, and the other way round."""
     found = result(capsys, *EQUAL, "--piston", "1", "--ahead", "1")
     assert found["plateau_value"] == pytest.approx(1)
+    assert found["behind_error_value"] > 0
+    assert "plateau_error_value" not in found
+    bare = result(capsys, *EQUAL, "--behind", "1")
+    assert bare["mean_strain_value"] == 0.9884
+    assert bare["plateau_error_value"] > 0.0146 * bare["plateau_value"]  # 0.9884^{-5/4}
+    assert "behind_error_value" not in bare
+    assert any("go on oscillating" in note for note in bare["notes"])
     falls = result(capsys, *EQUAL, "--behind", "1", "--ahead", "2")
     assert falls["kind"] == "rarefaction"
     assert "peak_value" not in falls

@@ -10,13 +10,14 @@ from lwa import (
     Dimer,
     Dispersion,
     InputError,
+    Law,
     Power,
     background_wave,
     expand,
     piston,
     shock,
 )
-from lwa.law import named
+from lwa.law import DELTA, named
 from lwa.shocks import edges
 from lwa.shocks.waves import Pulse
 from tests.identity import same
@@ -25,6 +26,8 @@ from tests.lwa.expansion.test_exact_waves import lattice
 EQUAL = Cell([1], spacing=1)
 HERTZ = Power("3/2")
 TODA = named("exponential", 1)
+BENT = named("polynomial", "1/2", "-1/4")  # F″ = 1 - 3δ/2
+WAVY = Law(2 * DELTA + sp.sin(DELTA), DELTA)  # F″ = -sin δ
 
 
 # --- exact ---
@@ -140,6 +143,22 @@ def test_small_jumps_are_those_of_kdv(law):
     for far, near in zip(*errors, strict=True):
         assert near < 0.02
         assert near < 0.6 * far + 1e-12
+
+
+@pytest.mark.parametrize(
+    ("law", "ahead"),
+    [(HERTZ, 1), (Power("1/2"), 1), (named("hertz2", 1, 1), 1), (named("magnetic", 3, 1), 0)],
+    ids=["hertz", "root", "hertz2", "magnets"],
+)
+def test_the_rule_keeps_twenty_digits_at_any_jump(law, ahead):
+    """s₊/c₊ - 1 is 2/3 of the jump of sound for r → 1; to 20 digits it is lost below 1e-20."""
+    for digits in (6, 9, 12, 30):
+        jump = sp.Rational(-1 if law == Power("1/2") else 1, 10**digits)
+        found = shock(EQUAL, law, ahead + jump, ahead)
+        c = sp.N(found.sound(ahead), 50)
+        sound = sp.N(found.sound(ahead + jump), 50) / c - 1
+        assert abs(found.leading_speed() / c - 1 - 2 * sound / 3) < abs(sound) ** 2 + 1e-19
+        assert found.peak - ahead == pytest.approx(2 * jump, rel=1e-5, abs=1e-19)
 
 
 def test_hard_spheres():
@@ -262,6 +281,19 @@ def test_si_units():
         (lambda: shock(EQUAL, HERTZ, 2, 1).leading_speed("el"), "rule is 'el': dispersion or"),
         (lambda: shock(EQUAL, Power("k"), "p", 1).kind, "kind depends on symbols"),
         (lambda: shock(EQUAL, Power(1), 1, 0), "a front without load wants k > 1"),
+        (lambda: shock(EQUAL, 2, 1), "law is 2"),
+        (lambda: shock([1], HERTZ, 2, 1), "cell is"),
+        (lambda: shock(EQUAL, BENT, 1), "changes its sign at the strain 0.66667"),
+        (lambda: shock(EQUAL, BENT, "1/3", 1), "changes its sign at the strain 0.66667"),
+        (lambda: shock(EQUAL, BENT, "1/2").peak, "changes its sign at the strain 0.66667"),
+        (lambda: shock(EQUAL, WAVY, 5, 1), "changes its sign at the strain 3.1"),
+        (lambda: shock(EQUAL, named("polynomial", -1, 0), "3/5"), "F′ is -0.2000"),
+        (lambda: shock(EQUAL, named("magnetic", 3, 1), 2), "a pole before it"),
+        (lambda: shock(EQUAL, named("lennard-jones", 1), 2), "a pole before it"),
+        (lambda: shock(Dimer("a", "b"), HERTZ, 2, 1).leading_speed("dispersion"), "has no value"),
+        (lambda: shock(Dimer(1, 2), HERTZ, 2, 1).trailing_speed, "known for equal beads"),
+        (lambda: shock(Dimer(1, 2), HERTZ, 9**4, 1).mean_strain, "the mean strain is not known"),
+        (lambda: shock(EQUAL, Power(11), 1).mean_strain, "k is beyond 10"),
         (lambda: shock(Cell(["m"]), HERTZ, 1, 0).wave, "has no value: sums of series"),
         (lambda: piston(Cell(["m"]), TODA, 1), "has no value: numbers are wanted"),
     ],
