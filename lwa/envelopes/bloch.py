@@ -21,7 +21,7 @@ from lwa.force import ContactLaw
 ROUNDING = 1e-7  # a force on a mode, relative to the largest, that counts as none
 SOUND = 1e-5  # 1 - (c_g/c_0)² from which on floats give the mean flow to six digits (1e-11/SOUND)
 
-MOST_SYMBOLS = 5  # with which exact coefficients take seconds
+MOST_SYMBOLS = 5  # beyond which exact coefficients take seconds; unlike contacts count as three
 
 K2, K3, K4 = sp.symbols("K2 K3 K4", positive=True)
 """Coefficients of the force K2 δ + K3 δ² + K4 δ³ on top of the load, under `lwa.general()`."""
@@ -60,7 +60,8 @@ def cell_mode(
     if floats:
         mode = sample.mode()
     else:
-        if len(set().union(*(x.free_symbols for x in numbers))) > MOST_SYMBOLS:
+        unlike = len(set(c)) > 1 and not sp.cos(wavenumber).is_Rational
+        if len(set().union(*(x.free_symbols for x in numbers))) + 3 * unlike > MOST_SYMBOLS:
             announced("the envelope's equation in these symbols")
         contacts = Contacts(np.array(masses), np.array(c), s, t)
         mode = exact_mode(contacts, wavenumber, branch, sample.bead, lambda x: _sampled(cell, x))

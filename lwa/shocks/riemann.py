@@ -296,6 +296,13 @@ def _tidy(value: sp.Expr) -> sp.Expr:
     return factor.n(edges.SHOCK_DIGITS) * rest
 
 
+def _read(law: Any, cell: Cell) -> ContactLaw:
+    """Read a law with an expression."""
+    if for_cell(law, cell).formless:
+        raise InputError(f"law is {law.text}: a front between two strains needs an expression")
+    return for_cell(law, cell)
+
+
 def shock(cell: Cell, law: ContactLaw, behind: Any, ahead: Any = 0) -> Shock:
     """The front of a chain whose strain is ``behind`` on its left and ``ahead`` on its right.
 
@@ -311,7 +318,7 @@ def shock(cell: Cell, law: ContactLaw, behind: Any, ahead: Any = 0) -> Shock:
     """
     if not isinstance(cell, Cell):
         raise InputError(f"cell is {shorten(cell)}: a Cell such as Cell([1]) is wanted")
-    law = for_cell(law, cell)
+    law = _read(law, cell)
     strains = {name: read_exact(p, name) for name, p in (("behind", behind), ("ahead", ahead))}
     for name, p in strains.items():
         if law.homogeneous and p.is_negative:
@@ -336,6 +343,6 @@ def piston(cell: Cell, law: ContactLaw, velocity: Any, ahead: Any = 0) -> Shock:
     >>> piston(Cell([1], spacing=1), Power(3), "v").behind
     sqrt(2)*3**(3/4)*sqrt(v)/3
     """
-    field = BackgroundWave(cell, for_cell(law, cell), read_exact(ahead, "ahead"))
+    field = BackgroundWave(cell, _read(law, cell), read_exact(ahead, "ahead"))
     gained = positive(velocity, "velocity") / field.time_scale
     return shock(cell, law, waves.strain(field, gained), field.p0)

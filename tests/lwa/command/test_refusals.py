@@ -81,6 +81,7 @@ LINES = [
     ("envelope --law general --precompression 1", "law is general"),
     ("envelope --law polynomial:1/2,-1/4 --masses 1 --background 3", "F′ is -2.75"),
     ("shock", "--behind or --piston"),
+    ("shock --law general --behind 1", "law is general"),
     ("shock --behind 1 --piston 1", "--behind or --piston"),
     ("shock --behind 1 --ahead 1", "there is no shock"),
     ("shock --piston -1", "velocity is -1"),
