@@ -17,10 +17,10 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from numpy.polynomial import chebyshev
+from numpy.polynomial import Chebyshev
+from numpy.polynomial.chebyshev import chebvander
 from numpy.typing import ArrayLike
 
 from lwa.base.arrays import Array
@@ -83,7 +83,9 @@ def noisy_pulse(time: ArrayLike, values: ArrayLike, base: float | None = None) -
             )
         base, drift = float(np.mean(calm)), noise / math.sqrt(len(calm))
     near = (t >= rise - _BESIDE * width) & (t <= fall + _BESIDE * width)
-    numbers = _Fit(t[near], f[near] - base, noise, drift).numbers()
+    fit, covariance = _fitted(t[near], f[near] - base, noise)
+    covariance[0, 0] += drift**2
+    numbers = _numbers(fit, covariance)
     if noise > _LOUDEST * numbers["peak"].value:
         share = noise / numbers["peak"].value
         raise MeasureError(f"the noise is {share:.1%} of the peak: at most {_LOUDEST:.0%} is read")
@@ -111,64 +113,54 @@ def _place(t: Array, f: Array) -> tuple[float, float]:
     return float(t[below[after - 1]]), float(t[below[after]])
 
 
-class _Fit:
-    """A polynomial in time through samples, in units of half their time from their middle."""
-
-    def __init__(self, t: Array, f: Array, noise: float, drift: float) -> None:
-        self.middle, self.half = (t[0] + t[-1]) / 2, (t[-1] - t[0]) / 2
-        u, n = (t - self.middle) / self.half, len(t)
-        highest = min(_HIGHEST, n // 2)
-        Q, R = np.linalg.qr(chebyshev.chebvander(u, highest))
-        parts = Q.T @ f  # coefficients of orthonormal polynomials
-        left = np.sum((f - Q @ parts) ** 2)
-        squares = left + np.append(np.cumsum(parts[:0:-1] ** 2)[::-1], 0.0)  # by degree
-        degrees = np.arange(min(_LOWEST, highest), highest + 1)
-        rounding = n * (np.finfo(float).eps * np.abs(f).max()) ** 2
-        score = n * np.log(squares[degrees] + rounding) + np.log(n) * (degrees + 1)
-        degree = min(int(degrees[np.argmin(score)]) + _MARGIN, highest)
-        size = degree + 1
-        self.c = np.linalg.solve(R[:size, :size], parts[:size])
-        # The residuals are larger than the noise where no polynomial follows the pulse.
-        scatter = np.fmax(noise, math.sqrt((squares[degree] + rounding) / (n - size)))
-        root = scatter * np.linalg.inv(R[:size, :size])
-        self.covariance = root @ root.T
-        self.covariance[0, 0] += drift**2
-
-    def numbers(self) -> dict[str, Measured]:
-        """Return arrival, peak and FWHM with their errors."""
-        c, slope = self.c, np.asarray(chebyshev.chebder(self.c))
-        tops = _inside(slope)
-        if not len(tops):
-            raise MeasureError("the pulse has no maximum between its flanks")
-        top = float(tops[np.argmax(chebyshev.chebval(tops, c))])
-        peak = float(chebyshev.chebval(top, c))
-        sides = _inside(np.append(c[0] - peak / 2, c[1:]))
-        if not (sides.min(initial=2.0) < top < sides.max(initial=-2.0)):
-            raise MeasureError("the pulse does not fall to half its peak on both sides")
-        rise, fall = sides[sides < top].max(), sides[sides > top].min()
-        # Derivatives by c, from f(top) = peak, f'(top) = 0 and f(rise) = f(fall) = peak/2.
-        unit = np.eye(len(c))
-        of_peak, *of_sides = (chebyshev.chebval(x, unit) for x in (top, rise, fall))
-        steep = chebyshev.chebval((rise, fall), slope)
-        early, late = (
-            (of_peak / 2 - of_side) / s for of_side, s in zip(of_sides, steep, strict=True)
-        )
-        bend = chebyshev.chebval(top, chebyshev.chebder(slope))
-        of_arrival = -np.asarray(chebyshev.chebval(top, chebyshev.chebder(unit))) / bend
-        return {
-            "arrival": self._measured(self.middle + self.half * top, self.half * of_arrival),
-            "peak": self._measured(peak, of_peak),
-            "fwhm": self._measured(self.half * (fall - rise), self.half * (late - early)),
-        }
-
-    def _measured(self, value: float, gradient: Any) -> Measured:
-        """Return a number with the error that the covariance of the coefficients gives."""
-        error = math.sqrt(float(gradient @ self.covariance @ gradient))
-        return Measured(float(value), float(value) + error)
+def _fitted(t: Array, f: Array, noise: float) -> tuple[Chebyshev, Array]:
+    """Fit a polynomial to samples; return it and the covariance of its Chebyshev coefficients."""
+    n, u = len(t), 2 * (t - t[0]) / (t[-1] - t[0]) - 1
+    highest = min(_HIGHEST, n // 2)
+    Q = np.linalg.qr(chebvander(u, highest)).Q
+    parts = Q.T @ f  # coefficients of orthonormal polynomials
+    rounding = n * (np.finfo(float).eps * np.abs(f).max()) ** 2
+    left = np.sum((f - Q @ parts) ** 2) + rounding
+    squares = left + np.append(np.cumsum(parts[:0:-1] ** 2)[::-1], 0.0)  # residuals by degree
+    score = n * np.log(squares) + np.log(n) * np.arange(highest + 1)
+    lowest = min(_LOWEST, highest)
+    degree = min(lowest + int(np.argmin(score[lowest:])) + _MARGIN, highest)
+    # The residuals are larger than the noise where no polynomial follows the pulse.
+    variance = np.fmax(noise**2, squares[degree] / (n - degree - 1))
+    basis = chebvander(u, degree)
+    return Chebyshev.fit(t, f, degree), variance * np.linalg.inv(basis.T @ basis)
 
 
-def _inside(series: ArrayLike) -> Array:
-    """Return the real zeros of a Chebyshev series between -1 and 1."""
-    roots = np.asarray(chebyshev.chebroots(np.asarray(series, float)))
-    real = roots.real[np.abs(roots.imag) < 1e-9]
-    return np.asarray(real[np.abs(real) <= 1])
+def _numbers(fit: Chebyshev, covariance: Array) -> dict[str, Measured]:
+    """Return arrival, peak and FWHM of the polynomial with their errors."""
+    slope = fit.deriv()
+    tops = _inside(slope)
+    if not len(tops):
+        raise MeasureError("the pulse has no maximum between its flanks")
+    top = tops[np.argmax(fit(tops))]
+    sides = _inside(fit - fit(top) / 2)
+    if not sides.min(initial=np.inf) < top < sides.max(initial=-np.inf):
+        raise MeasureError("the pulse does not fall to half its peak on both sides")
+    rise, fall = sides[sides < top].max(), sides[sides > top].min()
+    # Gradients by the coefficients, from f(top) = peak, f'(top) = 0, f(rise) = f(fall) = peak/2.
+    basis = [Chebyshev.basis(j, fit.domain) for j in range(len(fit))]
+    of_peak, of_rise, of_fall = (np.array([b(t) for b in basis]) for t in (top, rise, fall))
+    early, late = (of_peak / 2 - of_rise) / slope(rise), (of_peak / 2 - of_fall) / slope(fall)
+    of_arrival = -np.array([b.deriv()(top) for b in basis]) / slope.deriv()(top)
+    numbers = {
+        "arrival": (top, of_arrival),
+        "peak": (fit(top), of_peak),
+        "fwhm": (fall - rise, late - early),
+    }
+    return {
+        name: Measured(float(x), float(x + math.sqrt(gradient @ covariance @ gradient)))
+        for name, (x, gradient) in numbers.items()
+    }
+
+
+def _inside(series: Chebyshev) -> Array:
+    """Return the real zeros of a polynomial between the first sample and the last."""
+    roots = series.roots()
+    first, last = series.domain
+    real = roots.real[np.abs(roots.imag) < 1e-9 * (last - first)]
+    return np.asarray(real[(real >= first) & (real <= last)])
