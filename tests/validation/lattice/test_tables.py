@@ -8,7 +8,9 @@ import pytest
 from lwa.law import Law, named
 from tests.commands import ended
 from validation import Scene, cli, simulate
+from validation.lattice import laws
 from validation.lattice.cost import IntegrationError
+from validation.lattice.laws import Contact
 from validation.scenes import scenefile
 from validation.scenes.scene import SceneError
 
@@ -47,6 +49,17 @@ def test_methods_agree_on_the_table():
 def test_a_contact_beyond_the_last_point_ends_the_run(method):
     with pytest.raises(IntegrationError, match=r"table ends at compression 4$"):
         simulate(chain(Law.table(PLACES, FORCES), velocity=30.0), method=method, rtol=1e-5)
+
+
+def test_the_compiled_functions_are_those_of_numpy():
+    """F, F′ and energy below, at and between the points; NaN beyond the last one, 0 where open."""
+    contact = Contact(1.0, Law.table(PLACES, FORCES))
+    places = np.concatenate(([-1.0, 0.0, 1e-4], PLACES, np.geomspace(2e-3, 3.9, 50), [4.1]))
+    wanted = contact.force(places), contact.stiffness(places), contact.energy(places)
+    for compiled, values in zip(laws._machine_code(contact.law), wanted, strict=True):
+        found = np.array([compiled.ctypes(d) for d in places])
+        assert np.isnan(found[-1])
+        np.testing.assert_allclose(found, values, rtol=1e-13)
 
 
 SCENE = """

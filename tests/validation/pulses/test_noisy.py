@@ -58,6 +58,18 @@ def test_bias_is_a_third_of_the_scatter_and_the_error_one_standard_deviation(sig
     assert np.all((within >= 0.6) & (within <= 0.8)), within
 
 
+def test_a_short_lead_leaves_the_base_uncertain(signals):
+    """With some 20 samples before the pulse the base errs as much as the fit of the peak."""
+    t, pulse = record(signals["equal", "contact"])
+    t = t[t > pulse.rise - 3 * pulse.fwhm - 40 * (t[1] - t[0])]
+    rng, clean = np.random.default_rng(8), signals["equal", "contact"](t)
+    within = 0
+    for _ in range(COPIES):
+        peak = noisy_pulse(t, clean + 0.005 * pulse.peak * rng.normal(size=len(t))).numbers["peak"]
+        within += abs(peak.value - pulse.peak) < peak.error
+    assert 0.6 <= within / COPIES <= 0.8
+
+
 @pytest.mark.parametrize("share", [0.002, 0.005, 0.02])
 def test_peak_and_width_of_unlike_beads(signals, share):
     """A contact of two unlike beads, whose force has a second hump."""
