@@ -1,0 +1,118 @@
+"""Exact waves and struck lattices of unlike links, resonators and packings, beside the theory."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+import sympy as sp
+
+from book.studies import links as exactly
+from book.studies import struck as blows
+from lwa import Lattice, Link, Power, Resonator, lattice_wave
+from tests.commands import ended
+from validation import exact_wave
+
+HERTZ = Power("3/2")
+CHAIN = Lattice((1,), (Link(0, 1, HERTZ),))
+
+
+@pytest.mark.parametrize("size", [1, 2])
+def test_equal_links_have_the_wave_of_equal_beads(size):
+    """Both systems of equations, against the solver of equal beads under a load."""
+    lattice = Lattice((1,) * size, tuple(Link(i, i + 1, HERTZ) for i in range(size)))
+    known = exact_wave([1], 1.5, background=0.5)  # strain 1/2 ahead, 1 at the peak
+    wave = exactly.exact(lattice, 1.0, 0.5**1.5)
+    assert wave.square == pytest.approx(known.c2, rel=1e-9)  # tails of 1e-7 on the ring
+    assert wave.fwhm == pytest.approx(known.fwhm(wave.of), rel=1e-6)
+    assert wave.of == ("strain" if size == 1 else "force")
+
+
+def test_second_neighbours_by_newton_and_in_a_packing():
+    """Along its rows a packing is a chain of range 2, with factors 2 · 2^{-5/2} and 1."""
+    lattice = Lattice((1,), (Link(0, 1, HERTZ, 2.0**-1.5), Link(0, 2, HERTZ)))
+    force = 1e-6 * (2.0**-1.5 + 2**2.5)  # at the compression 1e-4 of a layer
+    wave = exactly.exact(lattice, force, 0.0)
+    pace = math.sqrt(wave.square)
+    seen = blows.packing("along", 1e-4 * pace / blows.STRIKE, pace)
+    assert seen.speed == pytest.approx(pace * (seen.peak / 1e-4) ** 0.25, rel=3e-5)
+    assert seen.fwhm == pytest.approx(wave.fwhm, rel=3e-5)  # it still changes a little
+
+
+def test_a_varying_dispersion_is_seen_and_a_constant_one_is_wrong(capsys):
+    status, out, err = ended(capsys, exactly.links.main, "--case", "dispersion", "--format", "json")
+    assert (status, err) == (0, "")
+    rows = json.loads(out)["rows"]
+    errors = [row["fwhm_error_value"] for row in rows]
+    assert all(-0.25 < row["constant_error_value"] < -0.15 for row in rows)
+    assert np.divide(errors[1:], errors[:-1]) == pytest.approx(0.5, abs=0.08)  # linear in ε
+
+
+@pytest.mark.parametrize("epsilon", [0.05, 0.0125])
+def test_the_width_of_the_theory_is_its_quadrature(epsilon):
+    """The dispersion (K1² - K1 K2 + K2²)/(3 (K1 + K2)²) of two springs, with SciPy's quadrature."""
+
+    def dispersion(F):
+        K1, K2 = 1 / (1 + F / 2), 1 / (1 - 2 * (0.25 + epsilon) * F)
+        return (K1**2 - K1 * K2 + K2**2) / (3 * (K1 + K2) ** 2)
+
+    lattice = exactly.varying(sp.Rational(str(epsilon)))
+    width = float(lattice_wave(lattice, force=1).fwhm("force"))
+    assert width == pytest.approx(exactly.series_width(epsilon, dispersion), rel=1e-8)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("study", "findings"), [(exactly.links, 25), (blows.struck, 34)])
+def test_all_cases_keep_their_bounds(study, findings):
+    report = study()
+    assert (report.ok, len(report.findings)) == (True, findings)
+
+
+@pytest.mark.parametrize("study", [exactly.links, blows.struck])
+def test_another_case_is_refused(capsys, study):
+    status, out, err = ended(capsys, study.main, "--case", "other")
+    assert (status, out, err.count("\n")) == (2, "", 1)
+    assert "case" in err
+
+
+def test_a_struck_chain_of_equal_beads():
+    """The lattice's own wave: c² and FWHM of the contact force of the exact one."""
+    wave, known = lattice_wave(CHAIN, 1), exact_wave([1], 1.5)
+    seen = blows.chain(CHAIN, float(wave.bead_velocity) / blows.STRIKE, float(wave.speed))
+    assert seen.peak == pytest.approx(1, abs=1e-3)
+    assert seen.speed == pytest.approx(known.c * seen.peak ** (1 / 6), rel=1e-6)
+    assert seen.fwhm == pytest.approx(known.fwhm("force"), rel=1e-4)
+    assert abs(seen.decay) < 1e-7
+
+
+def test_stiff_resonators_are_masses():
+    """The speed falls by √(1 + m_r) and the width stays; both up to (ω0/(2πV))^-2."""
+    stiff = blows.resonant("1", 10.0)
+    (resonator,) = stiff.resonators
+    assert isinstance(resonator, Resonator)
+    wave = lattice_wave(stiff, 1)
+    seen = blows.chain(stiff, float(wave.bead_velocity) / blows.STRIKE, float(wave.speed))
+    known = exact_wave([1], 1.5)
+    assert seen.speed == pytest.approx(known.c * seen.peak ** (1 / 6) / math.sqrt(2), rel=1e-3)
+    assert seen.fwhm == pytest.approx(known.fwhm("force"), rel=2e-3)
+    assert seen.ringing < 1e-5
+
+
+@pytest.mark.parametrize("direction", ["across", "along"])
+def test_beads_of_a_packing_have_six_neighbours(direction):
+    layer, i, j, gap = blows.hexagons(direction)
+    inside = (layer > 1) & (layer < layer.max() - 1)
+    assert np.all(np.bincount([*i, *j])[inside] == 6)
+    assert np.hypot(*gap) == pytest.approx(1, abs=1e-12)
+    assert len(np.unique(np.round([i, j, *gap], 9), axis=1).T) == len(i)
+    assert set(layer[j] - layer[i]) == ({0, 1} if direction == "across" else {1, 2})
+
+
+def test_a_packing_across_its_rows_is_a_chain():
+    """Small strains: the speed of a chain of 2 (√3/2)^{5/2} times the stiffness, in layers."""
+    known, strain = exact_wave([1], 1.5), 1e-4
+    A = 2 * math.sqrt(0.75) ** 2.5
+    pace = known.c * math.sqrt(A) * (strain * math.sqrt(0.75)) ** 0.25
+    seen = blows.packing("across", strain * math.sqrt(0.75) * pace / blows.STRIKE, pace)
+    assert seen.speed == pytest.approx(known.c * math.sqrt(A) * seen.peak**0.25, rel=1e-4)
+    assert seen.fwhm == pytest.approx(known.fwhm("strain"), rel=1e-4)
