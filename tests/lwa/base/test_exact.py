@@ -37,10 +37,6 @@ def test_other_numbers():
     assert read_exact(Fraction(1, 3), "x") == sp.Rational(1, 3)
 
 
-def test_names_become_positive_symbols():
-    assert read_exact("m_1", "x") == sp.Symbol("m_1", positive=True)
-
-
 @pytest.mark.parametrize(
     "value",
     [
@@ -74,11 +70,6 @@ def test_text_is_read_or_refused_and_never_evaluated(text):
 def test_positive_refuses_what_is_not(value):
     with pytest.raises(InputError, match="positive"):
         positive(value, "mass")
-
-
-def test_positive_takes_irrational_numbers_and_symbols():
-    assert positive(sp.sqrt(2), "mass") == sp.sqrt(2)
-    assert positive(sp.Symbol("m"), "mass") == sp.Symbol("m")
 
 
 @given(st.fractions(min_value="1/99", max_value=100, max_denominator=99), st.integers(-9, 9))

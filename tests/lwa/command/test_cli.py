@@ -39,24 +39,6 @@ def test_derive_json(capsys):
     assert found["vanishing"] == [2]
 
 
-def test_derive_json_with_numbers(capsys):
-    found = result(capsys, "derive", "--k", "1.5", "--masses", "1,1", "--order", "6")
-    assert (found["G"], found["I"]) == ("-D**2/96", "D**2/12")
-    assert found["defect"] == []
-    assert found["conservative"] is True
-    assert {term["order"] for term in found["terms"]} == {3, 5}
-
-
-def test_low_orders_have_no_G(capsys):
-    found = result(capsys, "derive", "--order", "2")
-    assert found["G"] is found["H"] is found["I"] is None
-    assert found["terms"] == []
-    assert found["ansatz"] == {"1": "1", "2": "m1/(m1 + m2)"}
-    status, out, _ = run(capsys, "derive", "--order", "1")
-    assert status == 0
-    assert "order 2" in out
-
-
 def test_wave_json(capsys):
     found = result(capsys, "wave", "--k", "3/2", "--masses", "1,1")
     assert found["beta"] == "sqrt(10)/(5*D)"

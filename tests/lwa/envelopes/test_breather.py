@@ -5,7 +5,6 @@ import pytest
 import sympy as sp
 
 from lwa import Cell, Dimer, InputError, Power, envelope
-from lwa.envelopes.schrodinger import HELD
 from lwa.law import named
 from tests.identity import same
 
@@ -93,16 +92,6 @@ def test_contacts_open_at_the_opening_load():
         assert float(nu / found.opening_detuning) == pytest.approx(1, rel=1e-9)
         safe = envelope(cell, law, precompression=load * sp.Float(closed)).numeric()
         assert safe.breather(detuning=nu * sp.Rational(9, 10)).kind == "bright"
-
-
-def test_opening_loads_in_symbols():
-    symbols = envelope(Dimer(m1, m2), Power("k"), precompression="F0")
-    loads = [symbols.breather(detuning="nu", kind="bright").opening_load(h) for h in HELD]
-    values = {"F0": 3, "k": 1.5, "nu": 0.01}
-    plain = envelope(Dimer(1, "1/2"), HERTZ, precompression=3).breather(detuning="1/100")
-    for held, load in zip(HELD, loads, strict=True):
-        number = load.subs({x: values[x.name] for x in load.free_symbols})
-        assert float(number) == pytest.approx(float(plain.opening_load(held)), rel=1e-12)
 
 
 def test_contacts_that_pull_do_not_open():
