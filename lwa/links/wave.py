@@ -14,8 +14,10 @@ hence J = F′ I. Resonators follow the acceleration, a term u_tt²: J = F′ I 
 m_r²/k_r per length and I without the resonators. Their tails vanish at V = ω0 D/(2πn) (Kevrekidis,
 Stefanov and Xu, Lett. Math. Phys. 106, 1067 (2016)), ω0² = k_r (1/m_r + 1/m).
 
-Errors are bounds on measured differences to exact and struck waves (`book/studies/links.py`) in
-units of the amplitude Δ = ln(F′(p0+B)/V̂²), which vanishes with B/p0, and without load with k - 1.
+Errors are bounds on measured differences to exact and struck waves (`book/studies/links.py`,
+`book/studies/struck.py`) in units of the amplitude Δ = ln(F′(p0+B)/V̂²), which vanishes with B/p0,
+and without load with k - 1. Strongly unlike contacts driven hard have widths 20 to 34 % too small
+and squared speeds up to 6 % off: there, and without load, the width of a pair has no bound: NaN.
 """
 
 from __future__ import annotations
@@ -218,13 +220,14 @@ class LatticeWave(Value):
             rule = _ALIKE if lattice.alike else _FARTHER
         elif lattice.size == 2:
             rule = _BARE_PAIR if bare else _LOADED_PAIR
-        if delta > rule[2] or (lattice.resonators and not (bare and lattice.size == 1)):
+        heard = lattice.resonators and not (bare and lattice.alike and lattice.size == 1)
+        if delta > rule[2] or heard or B < 0:
             rule = _NONE
         return rule[0] * delta * added / 2, rule[1] * delta
 
     @property
     def speed_error(self) -> float:
-        """Bound on the error of the speed; NaN where no lattice of this kind was measured."""
+        """Bound on the error of the speed; NaN where no such wave was measured, as for B < 0."""
         return self._bounds[0] * number(self.speed)
 
     def fwhm_error(self, quantity: str = "force", extent: str = "length") -> float:

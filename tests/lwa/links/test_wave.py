@@ -191,6 +191,8 @@ def test_errors_are_nan_where_nothing_was_measured():
         wave = lattice_wave(lattice, F, load)
         assert math.isnan(wave.speed_error)
         assert math.isnan(wave.fwhm_error())
+    falling = lattice_wave(Lattice([1], [Link(0, 1, Power("1/2"))]), "1/2", 1)
+    assert math.isnan(falling.speed_error)
     bare = lattice_wave(hard, 1)
     assert bare.speed_error > 0
     assert math.isnan(bare.fwhm_error())
