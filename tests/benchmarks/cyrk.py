@@ -66,7 +66,7 @@ def prepared(task: Task, method: str) -> Solve:
         solution = nbsolve2_ivp(
             motion.address,
             (0.0, float(times[-1])),
-            Motion(task.scene).start,
+            Motion(task.scene).start[: 2 * task.scene.size],
             method=method,
             args=constants(task),
             t_eval=times,

@@ -48,8 +48,7 @@ class Located(scipy.integrate.DOP853):  # type: ignore[misc]
     def _overlaps(self, state: Array) -> tuple[Array, Array]:
         """Overlap of every contact, and its rate."""
         n = self.motion.size
-        v = np.append(state[n:], 0.0)[: len(self.motion.rest) + 1]
-        return self.motion.compression(state[:n]), v[:-1] - v[1:]
+        return self.motion.compression(state[:n]), self.motion.rate(state[n : 2 * n])
 
     def _kink(self, t: float, y: Array, f: Array) -> float | None:
         """The time of the first change of sign of an overlap in the step from t; None without."""

@@ -40,7 +40,7 @@ from validation.lattice.cost import (
     step_limit,
 )
 from validation.lattice.damped import COLUMNS, scheme_of, step_recorder
-from validation.lattice.equations import ForcedMotion, Motion
+from validation.lattice.equations import Motion
 from validation.lattice.kernel.advance import advance
 from validation.lattice.kernel.arrays import (
     MARGIN,
@@ -81,7 +81,7 @@ def follow(
         run, response = _integrated(motion, method, rtol, step, progress)
         if not 0 < response < _WEAK * motion.scales.energy:
             return run
-        motion = ForcedMotion(motion.scene, response)
+        motion = Motion(motion.scene, response)
 
 
 def _integrated(
@@ -108,19 +108,15 @@ def _integrated(
                 check_steps(method, int(now["tries"]), most, t, end)
             if t == end or now["stored"] == len(recorder.store[0]):
                 now["stored"] = recorder.take(int(now["stored"]))
-    paid: tuple[float, ...] = ()
-    if len(motion.start) > 2 * n:
-        accelerating = motion.masses[0] * (beads.v[0] ** 2 - motion.start[n] ** 2) / 2
-        work = float(now["work"] + accelerating) if motion.scene.drive else 0.0
-        paid = float(now["lost"]), work
-    state = np.concatenate((beads.y[:n], beads.v[:n], paid))
+    accelerating = motion.masses[0] * (beads.v[0] ** 2 - motion.start[n] ** 2) / 2
+    work = now["work"] + accelerating if motion.scene.drive else 0.0
+    state = np.concatenate((beads.y[:n], beads.v[:n], (now["lost"], work)))
     if not np.isfinite(state).all():
         raise IntegrationError(f"the motion overflows: a step of {plan.h:g} is too long")
     run = finished(
         motion,
         state,
         {"time": time} | recorded(motion, needed, recorder.y, recorder.v),
-        motion.balance(state),
         steps=int(now["steps"]),
         evaluations=int(now["tries"]) * stages,
         bead_evaluations=int(now["evaluations"]),

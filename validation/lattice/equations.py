@@ -44,14 +44,18 @@ class Scales:
 
 
 class Motion:
-    """The time derivative of a scene's state (y_0 … y_{n-1}, v_0 … v_{n-1}), and its invariants.
+    """The time derivative of a scene's state, and its invariants.
+
+    The state is (y_0 … y_{n-1}, v_0 … v_{n-1}, dissipated energy, work of the drive).
 
     start : initial state. loaded : True with gravity or precompression. rest, load : static
-    compressions and forces of the contacts. contact : law of the contacts.
+    compressions and forces of the contacts. contact : law of the contacts. response : greatest
+    energy of the motion, if it is known; by default the initial energy and an estimate of the
+    energy that a drive gives.
     """
 
-    def __init__(self, scene: Scene) -> None:
-        n, damping = scene.size, scene.damping
+    def __init__(self, scene: Scene, response: float | None = None) -> None:
+        n, damping, self.response = scene.size, scene.damping, response
         wall = () if scene.wall is None else (scene.wall,)
         self.scene, self.size, self.k = scene, n, scene.k
         self.masses, self.stiffnesses = np.array(scene.masses), np.array(scene.stiffnesses + wall)
@@ -71,9 +75,11 @@ class Motion:
                 self.load = self.force(self.rest)
             for name, values in (("compression", self.rest), ("force", self.load)):
                 _check_range(f"static {name}", values.min(), values.max())
-        self.start = np.zeros(2 * n)
+        self.start = np.zeros(2 * n + 2)
         self.start[: len(scene.displacements)] = scene.displacements
         self.start[n : n + len(scene.velocities)] = scene.velocities
+        if scene.drive is not None:
+            self.start[0], self.start[n], _ = scene.drive.at(0.0)
 
     def rate(self, v: Array) -> Array:
         """Return the rates dδ_i/dt of the compressions at velocities of shape (n,) or (n, S)."""
@@ -91,12 +97,21 @@ class Motion:
         return np.asarray((self.stiffnesses * self.contact.force(compression).T).T)
 
     def __call__(self, time: float, state: Array) -> Array:
-        y, v = state[: self.size], state[self.size :]
-        excess = self.force(self.compression(y)) - self.load
-        push = np.zeros(self.size)
-        push[: len(excess)] = -excess
-        push[1:] += excess[: self.size - 1]
-        return np.concatenate((v, push / self.masses))
+        n, drive, given, work = self.size, self.scene.drive, 0.0, 0.0
+        y, v = state[: 2 * n].reshape(2, n).copy()
+        if drive is not None:
+            y[0], v[0], given = drive.at(time)
+        compression, rate = self.compression(y), self.rate(v)
+        elastic = self.force(compression)
+        force = self.contact.damped(elastic, self.damping, compression, rate)
+        push = np.zeros(n)
+        push[: len(force)] = self.load - force
+        push[1:] += (force - self.load)[: n - 1]
+        acceleration = push / self.masses
+        if drive is not None:
+            acceleration[0] = given
+            work = v[0] * (self.masses[0] * given - push[0])
+        return np.concatenate((v, acceleration, (((force - elastic) * rate).sum(), work)))
 
     def energy(self, state: Array) -> float:
         """Return kinetic and elastic energy less the static forces' work; 0 in equilibrium."""
@@ -105,21 +120,12 @@ class Motion:
         stored = self.stiffnesses * energies - self.load * (compression - self.rest)
         return float(self.masses @ v**2 / 2 + stored.sum())
 
-    def balance(self, state: Array) -> float:
-        """Return `energy` plus dissipated energy less a drive's work, conserved in exact motion."""
-        return self.energy(state)
-
     @property
     def free_energy(self) -> float:
         """Initial energy of the contacts and of the beads that are not driven."""
         driven = self.scene.drive is not None
         given = self.masses[0] * self.start[self.size] ** 2 / 2 if driven else 0.0
         return float(self.energy(self.start) - given)
-
-    @property
-    def drive_energy(self) -> float:
-        """Energy that a drive can give to a bead, 0 without a drive."""
-        return 0.0
 
     def momentum_drift(self, end: Array) -> float | None:
         """Return the momentum's change up to ``end`` divided by Σ m|v|; None with wall or drive."""
@@ -134,7 +140,10 @@ class Motion:
     @np.errstate(all="ignore")
     def scales(self) -> Scales:
         """Characteristic scales; raises `SceneError` if a scale over- or underflows."""
-        energy, n, A = self.energy(self.start) + self.drive_energy, self.size, self.stiffnesses
+        energy, n, A = self.response, self.size, self.stiffnesses
+        if energy is None:
+            fastest = 0.0 if self.scene.drive is None else self.scene.drive.fastest
+            energy = self.energy(self.start) + float(self.masses.mean() * fastest * fastest)
         deepest = at_rest = self.rest.max(initial=0.0) if self.loaded else 0.0
         stiffest = A.max(initial=0.0)
         pressed = self.compression(self.start[:n]).max(initial=0.0) > deepest
@@ -162,53 +171,6 @@ class Motion:
             _check_range("velocity", v)
             rounding = np.finfo(float).eps * at_rest / y
         return Scales(energy, float(deepest), float(y), float(v), float(time), float(rounding))
-
-
-class ForcedMotion(Motion):
-    """The time derivative of (y, v, dissipated energy, drive's work), for damping or a drive."""
-
-    def __init__(self, scene: Scene, response: float | None = None) -> None:
-        super().__init__(scene)
-        self.response = response
-        self.start = np.append(self.start, (0.0, 0.0))
-        if scene.drive is not None:
-            self.start[0], self.start[self.size], _ = scene.drive.at(0.0)
-
-    @property
-    def drive_energy(self) -> float:
-        drive = self.scene.drive
-        if self.response is not None:
-            return self.response - self.energy(self.start)
-        return 0.0 if drive is None else float(self.masses.mean() * drive.fastest * drive.fastest)
-
-    def __call__(self, time: float, state: Array) -> Array:
-        n, drive, work = self.size, self.scene.drive, 0.0
-        y, v = state[:n].copy(), state[n : 2 * n].copy()
-        acceleration = np.zeros(n)
-        if drive is not None:
-            y[0], v[0], acceleration[0] = drive.at(time)
-        compression, rate = self.compression(y), self.rate(v)
-        elastic, load = self.force(compression), self.load
-        force = self.contact.damped(elastic, self.damping, compression, rate)
-        push = np.zeros(n)
-        push[: len(force)] = load - force
-        push[1:] += (force - load)[: n - 1]
-        free = slice(0 if drive is None else 1, None)
-        acceleration[free] = push[free] / self.masses[free]
-        if drive is not None:
-            work = v[0] * (self.masses[0] * acceleration[0] - push[0])
-        return np.concatenate((v, acceleration, (((force - elastic) * rate).sum(), work)))
-
-    def balance(self, state: Array) -> float:
-        gained = self.energy(state) - self.energy(self.start)
-        dissipated, work = state[2 * self.size :]
-        return float(self.scales.energy + gained + dissipated - work)
-
-
-def motion_of(scene: Scene) -> Motion:
-    """Return the equations of motion of a scene, a `ForcedMotion` with damping or a drive."""
-    forced = scene.damping is not None or scene.drive is not None
-    return ForcedMotion(scene) if forced else Motion(scene)
 
 
 def _check_range(name: str, *values: float) -> None:

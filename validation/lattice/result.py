@@ -158,27 +158,22 @@ class Run(Records):
 
 
 def finished(
-    motion: Motion,
-    end: Array,
-    records: dict[str, Array],
-    energy: float,
-    *,
-    steps: int,
-    **fields: Any,
+    motion: Motion, end: Array, records: dict[str, Array], *, steps: int, **fields: Any
 ) -> Run:
-    """Return the `Run` of a motion with the final state ``end`` and the final ``energy``.
+    """Return the `Run` of a motion with the final state ``end``.
 
     fields : further fields of the `Run`.
     """
-    n, before = motion.size, motion.scales.energy
+    n, scale = motion.size, motion.scales.energy
     displacements, velocities = end[:n].copy(), end[n : 2 * n].copy()
     arrays: dict[str, Any] = records | {"displacements": displacements, "velocities": velocities}
     for array in arrays.values():
         array.setflags(write=False)
-    dissipated, work = map(float, end[2 * n :] if len(end) > 2 * n else (0, 0))
+    dissipated, work = map(float, end[2 * n :])
+    drift = motion.energy(end) - motion.energy(motion.start) + dissipated - work
     return Run(
         scene=motion.scene,
-        energy_drift=(energy - before) / before if before else 0.0,
+        energy_drift=drift / scale if scale else 0.0,
         momentum_drift=motion.momentum_drift(end),
         step=motion.scene.duration / steps,
         dissipated=dissipated,

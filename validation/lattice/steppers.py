@@ -9,6 +9,7 @@ import numpy as np
 import scipy
 from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
+from scipy.interpolate import BPoly
 
 from lwa.base.arrays import Array
 from validation.lattice.cost import (
@@ -30,31 +31,21 @@ _COEFFICIENTS = {"DOP853": 8, "RK45": 5, "RK23": 4, "LSODA": 13}
 
 
 @dataclass(frozen=True, eq=False)
-class NodePath:
-    """Motion in each step as a polynomial through Chebyshev points; a `signal.Path`.
+class StepsPath:
+    """Motion in each step as a polynomial; a `signal.Path`.
 
-    time : (N + 1,), ends of the N steps. beads : (B,), numbers of the beads. state : (N, P, 2, B),
-    displacements and velocities at P Chebyshev points of the second kind in each step.
+    time : (N + 1,), ends of the N steps. beads : (B,), numbers of the beads. motion : displacements
+    and velocities (2, B) as a polynomial in each step.
     """
 
     time: Array
     beads: NDArray[np.int_]
-    state: Array
+    motion: BPoly
 
     def __call__(self, beads: Beads, time: Array) -> tuple[Array, Array]:
         """Return displacements and velocities (beads, S) at times (S,) within the run."""
-        step = np.searchsorted(self.time[1:-1], time, side="right")
-        x = 2 * (time - self.time[step]) / np.diff(self.time)[step] - 1
-        degree = self.state.shape[1] - 1
-        # Interpolation by way of the Chebyshev coefficients, whose matrix is well conditioned.
-        at_points = chebyshev.chebvander(chebyshev.chebpts2(degree + 1), degree)
-        weights = chebyshev.chebvander(x, degree) @ np.linalg.inv(at_points)
-        weights[x == -1] = np.eye(degree + 1)[0]  # free of rounding: touching beads press nothing
-        state = self.state[..., np.searchsorted(self.beads, beads)]
-        y, v = sum(
-            (weights[:, p] * state[step, p].T.swapaxes(0, 1) for p in range(degree + 1)),
-            np.zeros((2, len(beads), len(time))),
-        )
+        chosen = self.motion.c[..., np.searchsorted(self.beads, beads)]
+        y, v = np.moveaxis(BPoly.construct_fast(chosen, self.time)(time), 0, 2)
         return y, v
 
 
@@ -62,10 +53,10 @@ def integrate(motion: Motion, method: str, rtol: float, atol: float, progress: R
     """Integrate a scene with one of `METHODS`; the arguments are those of `simulate`."""
     scales, end, n = motion.scales, motion.scene.duration, motion.size
     y, v, drive = scales.displacement, scales.velocity, motion.scene.drive
-    energies = [scales.energy or 1.0] * (len(motion.start) - 2 * n)  # dissipated, and work
+    energy = scales.energy or 1.0
     longest = math.inf if drive is None else drive.longest_step
     most = step_limit(motion.scene, method, end / min(scales.time, longest))
-    jacobian = (2 * n) ** 2 * 8 if method == "LSODA" else 0  # bytes; the others need none
+    jacobian = (2 * n + 2) ** 2 * 8 if method == "LSODA" else 0  # bytes; the others need none
     check_memory(motion.scene, method, 4, jacobian)
     stepper = getattr(scipy.integrate, method)(
         motion,
@@ -73,13 +64,14 @@ def integrate(motion: Motion, method: str, rtol: float, atol: float, progress: R
         motion.start,
         end,
         rtol=rtol,
-        atol=atol * np.append(np.repeat([y, v], n), energies),
+        atol=atol * np.repeat([y, v, energy], [n, n, 2]),
         max_step=longest,
         first_step=min(1e-3 * y / v, end),  # SciPy's own guess depends on the units
     )
     time, beads = sampled(motion)
+    watched = beads if len(beads) else np.zeros(1, int)
+    moving = watched[watched < n]
     nodes = (1 + chebyshev.chebpts2(_COEFFICIENTS[method])) / 2
-    moving = beads[beads < n]
     ends, states = [0.0], []
     with progress() as display:
         while stepper.status == "running":
@@ -87,20 +79,20 @@ def integrate(motion: Motion, method: str, rtol: float, atol: float, progress: R
             message = stepper.step()
             if stepper.status == "failed":
                 raise IntegrationError(f"integration stopped at t = {stepper.t:g}: {message}")
-            if len(beads):
-                state = stepper.dense_output()(ends[-1] + nodes * (stepper.t - ends[-1]))
-                states.append(np.zeros((len(nodes), 2, len(beads))))
-                states[-1][..., : len(moving)] = state.T[:, : 2 * n].reshape(-1, 2, n)[..., moving]
+            state = stepper.dense_output()(ends[-1] + nodes * (stepper.t - ends[-1]))
+            states.append(np.zeros((len(nodes), 2, len(watched))))
+            states[-1][..., : len(moving)] = state.T[:, : 2 * n].reshape(-1, 2, n)[..., moving]
             ends.append(stepper.t)
             display(stepper.t / end)
-    nothing = np.zeros((len(ends) - 1, len(nodes), 2, 0))
-    path = NodePath(np.array(ends), beads, np.array(states) if states else nothing)
-    records = {"time": time} | recorded(motion, beads, *path(beads, time))
+    # Bernstein's basis has no rounding at a step's beginning: touching beads press nothing there.
+    basis = BPoly(np.eye(len(nodes))[:, None], [0, 1])(nodes)
+    coefficients = np.tensordot(np.linalg.inv(basis), np.array(states), (1, 1))
+    path = StepsPath(np.array(ends), watched, BPoly(coefficients, ends))
+    records = {"time": time} | recorded(motion, watched, *path(watched, time))
     return finished(
         motion,
         stepper.y,
         records,
-        motion.balance(stepper.y),
         steps=len(ends) - 1,
         evaluations=stepper.nfev,
         bead_evaluations=stepper.nfev * n,

@@ -11,7 +11,7 @@ import pytest
 
 from lwa.law import named
 from tests.validation.lattice.forced import follow
-from validation.lattice.equations import ForcedMotion
+from validation.lattice.equations import Motion
 from validation.lattice.simulate import simulate
 from validation.scenes.forcing import Damping, Drive
 from validation.scenes.scene import Scene
@@ -73,7 +73,7 @@ def drawn(seed):
     )  # fmt: skip
     if drive is not None:
         scene = replace(scene, drive=Drive(velocity=size))
-    time = ForcedMotion(scene).scales.time
+    time = Motion(scene).scales.time
     end = cycles * (time if np.isfinite(time) else 1)
     made = motion[drive](end) if drive is not None else None
     return replace(scene, duration=end, drive=made)
@@ -82,7 +82,7 @@ def drawn(seed):
 def units(scene, found):
     """Scales of length, velocity and energy of the response."""
     energy = found.energy.max()
-    scales = ForcedMotion(scene, energy if energy > 0 else None).scales
+    scales = Motion(scene, energy if energy > 0 else None).scales
     free = slice(scene.drive is not None, None)
     speed = max(scales.velocity, np.abs(found.v[:, free]).max(initial=0))
     return max(scales.displacement, scales.compression), speed, energy if energy > 0 else 1.0

@@ -55,7 +55,8 @@ def test_the_end_of_a_collision_is_located():
     s = 1 / (k + 1)
     deepest = (reduced / (2 * s)) ** s
     duration = 2 * deepest * math.sqrt(math.pi) * math.gamma(1 + s) / math.gamma(0.5 + s)
-    stepper = Located(Motion(scene), 0.0, np.array([0.0, 0, 1, 0]), 9.0, rtol=2.5e-14, atol=1e-15)
+    motion = Motion(scene)
+    stepper = Located(motion, 0.0, motion.start, 9.0, rtol=2.5e-14, atol=1e-15)
     while not stepper.events:
         assert stepper.step() is None
     assert stepper.t == pytest.approx(duration, rel=1e-12)
