@@ -139,6 +139,8 @@ class Law(ContactLaw):
         """
         rows = []
         for name, row in (("compressions", compressions), ("forces", forces)):
+            if isinstance(row, str) or not hasattr(row, "__iter__"):
+                raise InputError(f"{name} is {shorten(row)}: numbers in a row are wanted")
             numbers = [finite(x, f"{name} number {i}") for i, x in enumerate(row, start=1)]
             if len(numbers) < 4:
                 raise InputError(f"{name} holds {len(numbers)} numbers: four or more are wanted")

@@ -123,6 +123,7 @@ def test_a_shock_is_that_of_the_law_it_was_made_of():
     ("compressions", "forces", "named_value"),
     [
         ((1, 2, 3), (1, 2, 3), "compressions holds 3"),
+        (5, (1, 2, 3, 4), "compressions is 5"),
         ((1, 2, 3, 4), (1, 2, 3, 4, 5), "4 compressions and 5 forces"),
         ((1, 2, 2, 4), (1, 2, 3, 4), "compressions has 2 after 2"),
         ((1, 2, 3, 4), (1, 3, 2, 4), "forces has 2 after 3"),

@@ -24,8 +24,8 @@ from numpy.polynomial.chebyshev import chebvander
 from numpy.typing import ArrayLike
 
 from lwa.base.arrays import Array
-from validation.pulses.pulse import Measured, MeasureError
-from validation.pulses.signals import Sampled
+from validation.pulses.pulse import Measured, MeasureError, derived
+from validation.pulses.signals import samples
 
 _BESIDE = 0.3  # widths in front of the rise and behind the fall that the fit takes in
 _BEFORE = 3.0  # widths between the samples of the noise and the rise
@@ -64,8 +64,9 @@ def noisy_pulse(time: ArrayLike, values: ArrayLike, base: float | None = None) -
     >>> noisy_pulse(t, np.exp(-9 * t**2) + noise).numbers["fwhm"]  # √(4 ln 2)/3
     0.554 ± 2e-03
     """
-    record = Sampled(time, values)
-    t, f = record.times, np.asarray(record(record.times))
+    t, f = samples(time, values)
+    size = float(np.abs(f).max()) or 1.0  # so that squares neither over- nor underflow
+    f, base = f / size, None if base is None else base / size
     rise, fall = _place(t, f - (f[:_CALM].mean() if base is None else base))
     width = fall - rise
     if (few := int(np.count_nonzero((t > rise) & (t < fall)))) < _FEWEST:
@@ -89,17 +90,19 @@ def noisy_pulse(time: ArrayLike, values: ArrayLike, base: float | None = None) -
     if noise > _LOUDEST * numbers["peak"].value:
         share = noise / numbers["peak"].value
         raise MeasureError(f"the noise is {share:.1%} of the peak: at most {_LOUDEST:.0%} is read")
-    return NoisyPulse(numbers, base, noise)
+    numbers["peak"] = derived(lambda peak: peak * size, numbers["peak"])
+    return NoisyPulse(numbers, base * size, noise * size)
 
 
 def _place(t: Array, f: Array) -> tuple[float, float]:
     """Return about the times at which the first pulse rises and falls through half of its peak."""
     # Fourth differences of a smooth pulse are small; those of white noise have the variance 70 σ².
     noise = np.median(np.abs(np.diff(f, 4))) / (0.6745 * math.sqrt(70)) if len(f) > 4 else 0.0
-    if not (highest := f.max()) > 0:
-        raise MeasureError("no pulse is in the record: its signal is nowhere positive")
-    count = min(max(1, math.ceil((noise / (_SMOOTH * highest)) ** 2)), len(f))
+    highest = max(f.max(), np.finfo(float).tiny)
+    count = math.ceil(min(max(1.0, (noise / (_SMOOTH * highest)) ** 2), len(f)))
     g = np.convolve(f, np.full(count, 1 / count), "same")
+    if not g.max() > 0:
+        raise MeasureError("no pulse is in the record: its signal is nowhere positive")
     start = int(np.argmax(g > g.max() / 2))
     end = start + int(np.argmax(np.append(g[start:] < _LOW * g.max(), True)))
     top = start + int(np.argmax(g[start:end]))

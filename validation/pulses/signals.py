@@ -36,19 +36,25 @@ class Signal(Protocol):
     def __call__(self, time: ArrayLike, /) -> Array: ...
 
 
+def samples(time: ArrayLike, values: ArrayLike) -> tuple[Array, Array]:
+    """Return sample times and values as arrays (S,), at least four; `MeasureError` for others."""
+    try:
+        t, f = np.array(time, float), np.array(values, float)
+        if f.size < 4 or not f.shape == t.shape == (f.size,):
+            raise ValueError(f"the shapes are {t.shape} and {f.shape}")
+    except (TypeError, ValueError) as reason:
+        wanted = "time and signal must be equally long rows of at least 4 numbers"
+        raise MeasureError(f"{wanted}: {reason}") from None
+    if not np.isfinite((t, f)).all() or np.any(np.diff(t) <= 0):
+        raise MeasureError("time and signal must be finite, and time must increase")
+    return t, f
+
+
 class Sampled:
     """The cubic spline through samples, as a `Signal`."""
 
     def __init__(self, time: ArrayLike, values: ArrayLike) -> None:
-        try:
-            self.times, f = np.array(time, float), np.array(values, float)
-            if f.size < 4 or not f.shape == self.times.shape == (f.size,):
-                raise ValueError(f"the shapes are {self.times.shape} and {f.shape}")
-        except (TypeError, ValueError) as reason:
-            wanted = "time and signal must be equally long rows of at least 4 numbers"
-            raise MeasureError(f"{wanted}: {reason}") from None
-        if not np.isfinite((self.times, f)).all() or np.any(np.diff(self.times) <= 0):
-            raise MeasureError("time and signal must be finite, and time must increase")
+        self.times, f = samples(time, values)
         self._spline = scipy.interpolate.CubicSpline(self.times, f)
 
     def __call__(self, time: ArrayLike, /) -> Array:

@@ -96,17 +96,17 @@ class MeasuredFile:
         if unit and unit not in known:
             wanted = f"one of {', '.join(known)} is wanted"
             raise SceneError(f"{self.path}: column {name} is in {shorten(unit)}: {wanted}")
-        values = np.empty(len(self.lines))
+        values, size = np.empty(len(self.lines)), known.get(unit, 1.0)
         for i, (line, row) in enumerate(self.lines):
             entry = row[at].strip() if at < len(row) else ""
             try:
-                values[i] = float(entry.replace(self.decimal, "."))
+                values[i] = float(entry.replace(self.decimal, ".")) * size
             except ValueError:
                 values[i] = np.nan
             if not np.isfinite(values[i]):
                 fault = f"column {name}, line {line}: {shorten(entry)} is no finite number"
                 raise SceneError(f"{self.path}: {fault}")
-        return values * known.get(unit, 1.0)
+        return values
 
 
 def columns(
