@@ -58,10 +58,10 @@ if TYPE_CHECKING:
     from lwa.theory import Theory as Theory
     from lwa.theory import homogenize as homogenize
     from lwa.wave.background import BackgroundWave as BackgroundWave
-    from lwa.wave.background import KdV as KdV
     from lwa.wave.background import background_wave as background_wave
     from lwa.wave.closed import CompactWave as CompactWave
     from lwa.wave.closed import Reduction as Reduction
+    from lwa.wave.kdv import KdV as KdV
     from lwa.wave.numeric import NumericWave as NumericWave
     from lwa.wave.physical import PhysicalWave as PhysicalWave
     from lwa.wave.physical import PrecompressedWave as PrecompressedWave

@@ -50,8 +50,7 @@ class Envelope(Value):
     compression : mean static compression of the contacts.
     branch : 0 is the acoustic branch, 1 the lowest optical one.
 
-    Time and length have the cell's units. Frequencies are in radians per unit of time, for spheres
-    in SI in rad/s.
+    Units are those of the cell; frequencies are in radians per unit of time.
     """
 
     cell: Cell
@@ -141,9 +140,7 @@ class Envelope(Value):
         """The standing envelope of a frequency, or of the detuning Δ = 1 - frequency/ω.
 
         frequency : in radians per unit of time.
-        kind : "bright" or "dark", for symbols that leave the kind open.
-
-        Raises `lwa.InputError` as `lwa.Breather` does.
+        kind : "bright" or "dark", for symbols that leave the kind open. Errors are `Breather`'s.
         """
         if (frequency is None) == (detuning is None):
             raise InputError("frequency or detuning: one of the two is wanted")
