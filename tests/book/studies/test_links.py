@@ -39,6 +39,16 @@ def test_second_neighbours_by_newton_and_in_a_packing():
     assert seen.fwhm == pytest.approx(wave.fwhm, rel=3e-5)  # it still changes a little
 
 
+def test_the_theory_of_unlike_links_is_the_limit_of_weak_waves():
+    """Both errors fall in proportion to the wave, which no error of an equation would do."""
+    lattice = Lattice((1, 1), (Link(0, 1, HERTZ), Link(1, 2, Power(3))))
+    rows = [exactly.Chain("", lattice, 1 + rise, 1.0).cells("") for rise in (0.02, 0.04)]
+    for key, most in (("excess error", 0.002), ("fwhm error", 0.0025)):
+        near, far = (row[key] for row in rows)
+        assert -most < near < 0
+        assert far / near == pytest.approx(2, rel=0.06)
+
+
 def test_a_varying_dispersion_is_seen_and_a_constant_one_is_wrong(capsys):
     status, out, err = ended(capsys, exactly.links.main, "--case", "dispersion", "--format", "json")
     assert (status, err) == (0, "")
