@@ -95,9 +95,14 @@ def test_a_step_that_is_too_long_is_not_silent():
         simulate(scene, method="SRKN14", step=20.0)
 
 
-def test_a_scene_that_fails_among_many_is_raised_in_its_place():
+def test_a_scene_that_fails_among_many_is_returned_or_raised_in_its_place():
     scenes = CHAIN, replace(CHAIN, velocities=(1e200,)), CHAIN
+    first, failure, last = simulate_many(scenes, errors="return", workers=2)
+    assert isinstance(failure, SceneError)
+    assert first == last == simulate(CHAIN)
     runs = simulate_many(scenes, workers=2)
-    assert next(runs) == simulate(CHAIN)
+    assert next(runs) == first
     with pytest.raises(SceneError, match="energy"):
         next(runs)
+    with pytest.raises(SceneError, match=r"^errors is 'x'"):
+        next(simulate_many(scenes, errors="x"))
