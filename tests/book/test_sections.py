@@ -101,6 +101,22 @@ def test_statements_are_theorems_rules_or_conjectures():
             assert title.startswith(("Theorem", "Rule", "Conjecture")), f"{page}: {title}"
 
 
+def test_paragraphs_are_short():
+    """At most 110 words, formulas counted as one; tables and lists apart."""
+    for page in BOOK.glob("*.md"):
+        text = re.sub(r"^```.*?^```$", "", prose(page.stem), flags=re.DOTALL | re.MULTILINE)
+        text = re.sub(r"\$\$.*?\$\$", "", text, flags=re.DOTALL)
+        for part in re.split(r"\n\s*\n", text):
+            words = re.sub(r"\$[^$]*\$", "x", part).split()
+            assert len(words) <= 110 or part.startswith(("|", "- ", "---", ":::")), part[:80]
+
+
+@pytest.mark.parametrize("page", CHAPTERS)
+def test_a_chapter_says_what_it_needs(page):
+    text = (BOOK / f"{page}.md").read_text(encoding="utf-8")
+    assert re.search(r"^\*Needs: .*\. About \d+ minutes\.\*$", text, re.MULTILINE)
+
+
 def test_every_letter_has_one_meaning():
     """No symbol stands twice in the first column of the table."""
     table = prose("symbols").partition("## Index")[0]
