@@ -247,10 +247,13 @@ class Lattice(Value):
         return number(sp.sqrt(resonator.stiffness * parts))
 
     def antiresonances(self, count: int) -> list[float]:
-        """Speeds ω0 D/(2πn), n = 1 … count, at which a chain with one resonator has no tail."""
-        (resonator,) = self.resonators
-        ring = self.resonance(resonator) * number(self.spacing) / (2 * pi)
-        return [ring / n for n in range(1, count + 1)]
+        """Speeds ω0 D/(2πn), n = 1 … count, of each resonator, at which the wave has no tail.
+
+        They are known for one particle a cell.
+        """
+        unit = number(self.spacing) / (2 * pi)
+        rings = (unit * self.resonance(resonator) for resonator in self.resonators)
+        return [ring / n for ring in rings for n in range(1, count + 1)]
 
     @cached_property
     def statics(self) -> Statics:
