@@ -165,11 +165,17 @@ class Answer:
     def _length_unit(self, value: sp.Expr) -> str:
         if not self.spacing.is_Symbol or self.spacing not in value.free_symbols:
             return ""
-        # exponent of a power of D, d ln(value)/d ln D
-        power = sp.nsimplify(sp.cancel(value.diff(self.spacing) * self.spacing / value))
-        if not power.is_number or power.is_zero:
+        # exponent of a power of D, from the values at D = 1, 2 and 3: SymPy is slow beside surds
+        one, *others = (
+            evaluated(value.xreplace({self.spacing: sp.Integer(n)}), 20) for n in (1, 2, 3)
+        )
+        if not (one.is_real and one):
             return ""
-        return f" {self.spacing}" if power == 1 else f" {self.spacing}^{power}"
+        first, second = (sp.log(v / one, n).n(15) for n, v in enumerate(others, start=2))
+        if not (first.is_real and abs(first - second) < 1e-12):
+            return ""
+        power = sp.Rational(str(first)).limit_denominator(10**4)
+        return "" if not power else f" {self.spacing}" if power == 1 else f" {self.spacing}^{power}"
 
     # --- LaTeX ------------------------------------------------------------------------------
 
