@@ -142,6 +142,16 @@ def test_the_work_of_a_piston_against_a_wall(k, damping):
     assert run.work == pytest.approx(stored + run.dissipated, abs=2e-9 * stored)
 
 
+@pytest.mark.parametrize(("n", "mass", "rtol"), [(2, 1.0, 1e-6), (4, 0.2, 1e-10)])
+def test_the_work_of_a_shaken_bead_whose_contact_opens(n, mass, rtol):
+    """The drive's speed changes within the steps in which its contact opens and closes."""
+    scene = Scene(
+        masses=(1.0,) + (mass,) * (n - 1), stiffnesses=(1.0,) * (n - 1), wall=1, k=1.5,
+        duration=60, drive=Drive(amplitude=0.5, frequency=0.3, ramp=3),
+    )  # fmt: skip
+    assert abs(simulate(scene, rtol=rtol).energy_drift) < 5 * rtol
+
+
 def test_the_error_is_that_of_the_response():
     """A fast drive leaves the chain; a slow collision behind it is as accurate as without it."""
     damped = dict(k=1.5, duration=80.0, damping=Damping("kuwabara_kono", 0.1))
