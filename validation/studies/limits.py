@@ -66,17 +66,14 @@ class Comparison:
         return self.theory_value / self.lattice.value - 1
 
     @property
-    def printed(self) -> tuple[str, str]:
-        """The quantity in short, and k, or the name of a result of all exponents."""
+    def cells(self) -> tuple[object, ...]:
+        """Cells of the table's row, among them k or the name of a result of all exponents."""
         quantity, _, result = self.quantity.partition(": ")
         kind = "order" if result.startswith("order") else "→ 1"
         name = "n, F_m ∝ V_s^n" if quantity == _EXPONENT else quantity
-        return name, kind if self.k is None else str(self.k)
-
-    @property
-    def compared(self) -> tuple[Measured, float, float, bool]:
-        """The lattice's number, the theory's error, its bound, and if the error is within it."""
-        return self.lattice, self.error, self.bound, self.finding.ok
+        exact = self.k, self.omega, self.theory, self.theory_value
+        compared = self.lattice, self.error, self.bound, self.finding.ok
+        return self.quantity, name, kind if self.k is None else str(self.k), *exact, *compared
 
     @property
     def finding(self) -> Finding:
@@ -127,9 +124,7 @@ def limits(progress: Progress[Case] = iter) -> Report:
 def report(rows: Sequence[Comparison]) -> Report:
     """Return a comparison's table, findings, and panels of the errors as functions of k - 1."""
     findings = tuple(row.finding for row in rows)
-    cells = tuple(
-        (r.quantity, *r.printed, r.k, r.omega, r.theory, r.theory_value, *r.compared) for r in rows
-    )
+    cells = tuple(row.cells for row in rows)
     return Report(
         "The theory's limits on the lattice",
         (Table(_COLUMNS, cells, "rows", by="omega", heads=_CHAINS, note=_NOTE),),

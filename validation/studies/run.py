@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -102,13 +101,6 @@ SUFFIXES = (".json", ".csv")
 RECORDS = tuple(name for name in Records.__dataclass_fields__ if name != "scene")
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class Stored(Records):
-    """Records of a run as read from a file, with the JSON ``document`` of its result."""
-
-    document: Mapping[str, Any]
-
-
 def store(run: Run, document: Mapping[str, Any], file: Path) -> None:
     """Write a run and the document of its result; only a complete file replaces an old one."""
     with replacing(file) as new, new.open("wb") as stream:
@@ -121,16 +113,16 @@ def store(run: Run, document: Mapping[str, Any], file: Path) -> None:
             stream.write(json.dumps({**document, "records": records}).encode())
 
 
-def load(path: str | Path) -> Stored:
-    """Read a .json file written by `lwa-validate run --out`.
+def load(path: str | Path) -> Records:
+    """Read the records from a .json file written by `lwa-validate run --out`.
 
     Raises `SceneError`, in one line, for a file that cannot be read or was written otherwise.
     """
     document = files.load(path, "a stored run", dict)
     try:
-        records = document.pop("records")
+        records = document["records"]
         arrays = {name: np.array(records[f"{name}_value"], float) for name in RECORDS}
-        return Stored(scenefile.scene(document["scene"]), document=document, **arrays)
+        return Records(scenefile.scene(document["scene"]), **arrays)
     except (KeyError, TypeError, ValueError):
         raise SceneError(f"{path}: not what `lwa-validate run --out` writes") from None
 

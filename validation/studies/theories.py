@@ -12,6 +12,7 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
+from itertools import chain
 from statistics import median
 from typing import Any
 
@@ -81,19 +82,21 @@ class Place:
     """Predictions of all theories at one k and ω, beside the lattice's values.
 
     kind : `SOLITARY` or `STRUCK_CHAIN`, the origin of ``truth``, the lattice's `QUANTITIES`.
-    errors : theory/truth - 1 by theory and by `QUANTITIES`; no entry for a theory without a wave.
-    estimates : of |error| by the theory itself, where it has them. missing : reasons, in place of
-    errors. seconds : CPU time of derivation and evaluation, by theory.
+    rows : for each theory ``theory``, its name; ``error_value``, theory/truth - 1 by `QUANTITIES`,
+    or None and the reason ``missing``; ``estimate_value`` of |error| by the theory itself, where it
+    has one; ``seconds``, CPU time of derivation and evaluation.
     """
 
     k: sp.Rational
     omega: sp.Rational
     kind: str
     truth: Mapping[str, Measured]
-    errors: Mapping[str, Mapping[str, float]]
-    estimates: Mapping[str, Mapping[str, float]]
-    missing: Mapping[str, str]
-    seconds: Mapping[str, float]
+    rows: Sequence[Mapping[str, Any]]
+
+    @property
+    def errors(self) -> dict[str, Mapping[str, float]]:
+        """theory/truth - 1 by theory and by `QUANTITIES`, without theories that have no wave."""
+        return {row["theory"]: row["error_value"] for row in self.rows if row["error_value"]}
 
     def row(self, name: str) -> tuple[object, ...]:
         """Return the table row of one of `QUANTITIES`; None for a theory without a wave."""
@@ -102,23 +105,13 @@ class Place:
 
     def document(self) -> dict[str, Any]:
         """Return the values of the lattice and a row for each theory, for JSON."""
-        rows = [
-            {
-                "theory": theory,
-                "error_value": self.errors.get(theory),
-                "estimate_value": self.estimates.get(theory),
-                "seconds": seconds,
-                "missing": self.missing.get(theory),
-            }
-            for theory, seconds in self.seconds.items()
-        ]
         return {
             "k": self.k,
             "omega": self.omega,
             "truth": self.kind,
             "truth_value": {name: number.value for name, number in self.truth.items()},
             "truth_error_value": {name: number.error for name, number in self.truth.items()},
-            "rows": rows,
+            "rows": self.rows,
         }
 
 
@@ -140,8 +133,11 @@ def ladder(places: Sequence[Place]) -> Report:
 
     JSON: ``theories``, each with ``k``, ``omega``, ``truth``, and ``rows`` of the theories.
     """
-    seconds = {name: [p.seconds[name] for p in places if name in p.errors] for name in THEORIES}
-    costs = ", ".join(f"{name} {1e3 * median(s):.3g}" for name, s in seconds.items() if s)
+    seconds: dict[str, list[float]] = {}
+    for row in chain.from_iterable(place.rows for place in places):
+        if row["error_value"]:
+            seconds.setdefault(row["theory"], []).append(row["seconds"])
+    costs = ", ".join(f"{name} {1e3 * median(s):.3g}" for name, s in seconds.items())
     rows = tuple(place.row(name) for name in QUANTITIES for place in places)
     note = f"{_NOTE}\nMedian cost of derivation and evaluation (ms of CPU): {costs}."
     title = "Theories against true waves"
@@ -183,16 +179,24 @@ def place(k: sp.Rational, omega: sp.Rational, kind: str = SOLITARY) -> Place:
             raise MeasureError(pulse.missing)
         values = [pulse.numbers[name] for name in ("width", "strain_width", "speed")]
     truth = dict(zip(QUANTITIES, values, strict=True))
-    errors, estimates, missing, seconds = {}, {}, {}, {}
+    rows = []
     for theory, predict in THEORIES.items():
-        start = time.process_time()
+        start, error, estimate, missing = time.process_time(), None, None, None
         try:
             numbers, shares = predict(k, omega)
             off = (x / true.value - 1 for x, true in zip(numbers, values, strict=True))
-            errors[theory] = dict(zip(QUANTITIES, off, strict=True))
-            if shares:
-                estimates[theory] = dict(zip(QUANTITIES, shares, strict=True))
+            error = dict(zip(QUANTITIES, off, strict=True))
+            estimate = dict(zip(QUANTITIES, shares, strict=True)) if shares else None
         except (InputError, NoSolitaryWave) as reason:
-            missing[theory] = str(reason)
-        seconds[theory] = time.process_time() - start
-    return Place(k, omega, kind, truth, errors, estimates, missing, seconds)
+            missing = str(reason)
+        seconds = time.process_time() - start
+        rows.append(
+            {
+                "theory": theory,
+                "error_value": error,
+                "estimate_value": estimate,
+                "seconds": seconds,
+                "missing": missing,
+            }
+        )
+    return Place(k, omega, kind, truth, rows)

@@ -11,37 +11,18 @@ from scipy.special import erf
 from lwa import Dimer
 from lwa.linear.dispersion import Dispersion
 from validation.lattice.simulate import simulate
-from validation.pulses.pulse import MeasureError, derived, first_pulse, pulses
+from validation.pulses.pulse import MeasureError, first_pulse, pulses
 from validation.pulses.sensors import record, tracks
 from validation.pulses.signals import Sampled
 from validation.scenes.chains import struck
 from validation.scenes.scene import Scene
 from validation.scenes.scenefile import scene
-from validation.studies.paper import chain_scene, paper
+from validation.studies.paper import chain_scene
 from validation.studies.run import example, report
 
 
 def numbers(found):
     return {s.name: s.numbers for s in found.sensors}
-
-
-def test_the_experiment_of_the_paper():
-    """The numbers of the study `paper`, from a record that holds the wall's echo too."""
-    rows = {name: number for name, _, number, *_ in paper().tables[0].rows}
-    found = record(chain_scene(1.37, 38, (15, 34), 0.0, 2e-3))
-    here, speed = numbers(found), found.speeds[0]
-    assert speed.name == "bead 15 → 34"
-
-    def same(one, other, unit=1.0):
-        assert abs(unit * one.value - other.value) <= unit * one.error + other.error
-
-    same(speed.numbers["speed"], rows["speed V_s"])
-    for bead in (15, 34):
-        same(here[f"bead {bead}"]["peak"], rows[f"peak bead force F_{bead}"])
-    widths = [here[f"bead {bead}"]["fwhm"] for bead in (15, 34)]
-    same(derived(lambda *w: sum(w) / 2, *widths), rows["FWHM of bead force in time"], 1e6)
-    sites = speed.numbers["speed_sites"].value
-    assert sites == pytest.approx(speed.numbers["speed"].value / 4.76e-3, rel=1e-12)
 
 
 def test_before_the_blow_all_forces_are_static():

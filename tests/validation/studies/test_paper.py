@@ -116,13 +116,6 @@ def test_the_picture_shows_the_measured_peaks(result):
         assert peak == pytest.approx(incident.max(), rel=1e-3)
 
 
-def test_at_rest_the_forces_are_the_weights_above():
-    """Bead 15 has 14 beads on it."""
-    scene = chain_scene(1e-12, 38, (15, 34), 9.81, 1e-6)
-    above = 9.81 * (np.sum(scene.masses[:14]) + scene.masses[14] / 2)
-    assert simulate(scene).bead_force[0, 0] == pytest.approx(above, rel=1e-13)
-
-
 def test_the_weight_is_no_part_of_the_pulse(capsys):
     """The static forces, 0.3 and 0.6 % of the peaks, are subtracted."""
     options = ("--gravity", "--beads", "20", "--sensors", "8,14", "--format", "json")
@@ -168,12 +161,6 @@ def test_text_csv_page_and_json_hold_the_same_numbers():
     page = report._repr_html_()
     assert page.count("<tr>") == 1 + len(lines)
     assert page.count("<svg") == 1
-
-
-def test_the_help_is_one_paragraph(capsys):
-    with pytest.raises(SystemExit):
-        main(["paper", "--help"])
-    assert "Parameters" not in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(

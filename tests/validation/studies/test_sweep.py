@@ -6,7 +6,6 @@ import json
 import os
 import signal
 import socket
-import subprocess
 import sys
 import time
 from concurrent.futures import BrokenExecutor, ThreadPoolExecutor
@@ -20,7 +19,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lwa import InputError
-from tests.commands import ended, small_disk, started
+from tests.commands import ended, started
 from validation import cli
 from validation.lattice.threads import cluster
 from validation.pulses.pulse import Measured
@@ -144,15 +143,6 @@ def test_two_sweeps_do_not_write_one_file(tmp_path):
     assert not file.exists()
 
 
-def test_a_full_disk_keeps_finished_points(content, tmp_path):
-    file = tmp_path / "s.jsonl"
-    finished = content[: content.rfind(b"{")]
-    file.write_bytes(finished)
-    with small_disk(len(finished) + 100), pytest.raises(OSError, match="File too large"):
-        sweep(KS, OMEGAS, file=file, **QUICK)
-    assert file.read_bytes().startswith(finished)
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("blow", [signal.SIGINT, signal.SIGKILL])
 def test_a_process_that_is_stopped_goes_on(tmp_path, blow):
@@ -209,31 +199,6 @@ def test_a_cluster_that_loses_a_worker_loses_no_point(reference, tmp_path):
     assert numbers(found) == reference
 
 
-SCHEDULER = """if True:
-    from distributed import LocalCluster
-    with LocalCluster(n_workers=1, processes=False, protocol="tcp://",
-                      dashboard_address=None) as local:
-        print(local.scheduler_address, flush=True)
-        input()
-"""
-
-
-@pytest.mark.slow
-@with_dask
-def test_a_killed_scheduler_ends_the_sweep_with_one_line(tmp_path):
-    file = tmp_path / "s.jsonl"
-    with started(sys.executable, "-c", SCHEDULER, stdin=subprocess.PIPE) as local:
-        address = local.stdout.readline().strip()
-        command = (*SWEEP, "--k", "5/4:3:20", "--file", str(file), "--cluster", address)
-        with started(*command) as running:
-            while not file.exists() and running.poll() is None:
-                time.sleep(0.1)
-            local.kill()
-            out, err = running.communicate()
-    assert (running.returncode, out, err.count("\n")) == (2, "", 1), err
-    assert "workers are gone" in err
-
-
 @with_dask
 @pytest.mark.parametrize("answer", [None, b"", b"HTTP/1.0 400 Bad Request\r\n\r\n" * 9])
 def test_an_address_without_a_scheduler_is_refused(answer):
@@ -258,14 +223,6 @@ def test_an_address_without_a_scheduler_is_refused(answer):
             pass
         if serving:
             serving.result(timeout=20)
-
-
-@with_dask
-def test_a_cluster_without_workers_is_refused():
-    with local_cluster(n_workers=0, processes=False) as local:
-        address = local.scheduler_address
-        with pytest.raises(InputError, match=r"^cluster is "), cluster(address, 0.4):
-            pass
 
 
 def test_without_dask_the_extra_is_named(monkeypatch):
