@@ -223,7 +223,9 @@ class LatticeWave(Value):
         heard = lattice.resonators and not (bare and lattice.alike and lattice.size == 1)
         if delta > rule[2] or heard or B < 0:
             rule = _NONE
-        return rule[0] * delta * added / 2, rule[1] * delta
+        # Measured in parts of the lattice's value: x of that is x/(1 - x) of the theory's.
+        excess, width = (part * delta / (1 - part * delta) for part in rule[:2])
+        return excess * added / 2, width
 
     @property
     def speed_error(self) -> float:
