@@ -18,7 +18,7 @@ from lwa import Dimer, TravelingWave, canonical_wave, homogenize
 from validation.lattice.result import Run
 from validation.lattice.simulate import twice
 from validation.pictures import Curve, Panel
-from validation.pulses.pulse import Measured, compared, derived
+from validation.pulses.pulse import Measured, compared
 from validation.pulses.sensors import Train
 from validation.report.command import study
 from validation.report.result import Report
@@ -93,7 +93,8 @@ def widths() -> Report:
     ``average_error_value``, ``error_value`` {closure: {line: …}}, ``reproduced``.
     """
     beads = tuple(range(4, BEADS - 2))  # of PTFE and of steel in turn
-    numbers, waves = compared(_numbers, *twice(recorded_chain(beads), *TOLERANCES)), _waves()
+    runs, waves = twice(recorded_chain(beads), *TOLERANCES), _waves()
+    numbers = compared(_numbers, *runs, rtol=TOLERANCES[0])
 
     def theory(quantity: str, force: Measured, in_time: bool) -> Lines:
         return {
@@ -107,7 +108,9 @@ def widths() -> Report:
     definitions = []
     for reading, (pulses, quantity) in READINGS.items():
         force = numbers["contacts' force" if pulses == "contacts" else "F_m"]
-        sites = derived(lambda width, V: width * V / DIAMETER, numbers[pulses], numbers["speed"])
+        width, V = numbers[pulses], numbers["speed"]
+        length = width.value * V.value / DIAMETER  # both errors: they may cancel by chance
+        sites = Measured(length, length * (1 + width.relative_error + V.relative_error))
         for average, in_time in ((numbers[pulses], True), (sites, False)):
             errors = {
                 closure: {line: width / average.value - 1 for line, width in lines.items()}

@@ -301,7 +301,7 @@ def test_an_output_that_takes_nothing_is_no_result(capsys, scene_file):
 
 
 def test_a_failing_integrator_prints_one_line(capsys, scene_file):
-    text = SCENE.replace("k = 1.5", "k = 40").replace("0.5", "0.6").replace("10,", "100,")
+    text = SCENE.replace("k = 1.5", "k = 300").replace("0.5", "0.6").replace("10,", "100,")
     scene_file.write_text(text.replace("= 30", "= 60"))
     options = ("--method", "SRKN14", "--rtol", "1e-5")
     status, out, err = run(capsys, "run", str(scene_file), *options)

@@ -38,7 +38,7 @@ Instrument = Callable[[Signal], Signal]
 """A function from a force to the reading of the force by an instrument."""
 
 TOLERANCE = 1e-10  # default tolerance of the accurate run
-LESS = 1e3  # tolerance of the less accurate run over that of the accurate one
+LESS = 10.0  # tolerance of the less accurate run over that of the accurate one
 _ROUNDING = 10  # rounding of the static compression over rtol; with more, steps follow the noise
 READINGS = ("arrival", "peak", "fwhm")  # names of the numbers of a pulse
 SPEEDS = ("speed_sites", "speed")  # in sites per time, and in length per time
@@ -102,7 +102,7 @@ def record(
     options, and errors raised, are those of `validation.simulate`.
     Raises `SceneError` where rounding hides the motion at this tolerance.
     """
-    rtol = between(rtol, "rtol", 1e-13, 1e-2 / LESS)
+    rtol = between(rtol, "rtol", 1e-13, 1e-5)
     motion = Motion(scene)
     if (lost := motion.scales.rounding) > _ROUNDING * rtol:
         raise SceneError(

@@ -44,7 +44,7 @@ FARTHEST = 2.0  # step in k from wave to wave above
 NEAR = 1e-7  # relative difference from a special mass ratio: ratios are given in seven digits
 PERIODS = np.array([1.0, 1.1, 1.2, 1.3])  # half periods tried for a tail, over the ample one
 ROUGH = 0.4  # points on which a tail is found to a digit, over those that resolve a wave
-ROUNDING = 1e-12  # relative error of a solitary wave's numbers: a strain's, over its slope
+ROUNDING = 1e-13  # relative error of a solitary wave's numbers: a strain's, over its slope
 
 
 def exact_wave(masses: Sequence[Any], k: Any, *, background: Any = 0) -> ExactWave:
@@ -67,7 +67,7 @@ def exact_wave(masses: Sequence[Any], k: Any, *, background: Any = 0) -> ExactWa
     if len(given) not in (1, 2):
         raise SceneError(f"{len(given)} masses: exact waves are found for a cell of 1 or 2 beads")
     k = between(k, "k", 1.01, 8, "exact waves are found for k from 1.01 to 8")
-    wanted = f"0, or one from {LIGHTEST:g} to 1 - {SHALLOWEST:g} of the peak compression, is wanted"
+    wanted = f"0 or {LIGHTEST:g} … 1 - {SHALLOWEST:g} of the peak compression is wanted"
     p0 = between(background, "background", 0, 1 - SHALLOWEST, wanted)
     if p0:
         between(background, "background", LIGHTEST, 1, wanted)
