@@ -79,7 +79,7 @@ class _Announcement(Listener):
 
     def on_start(self, event: Event) -> None:
         """Print the message; numba calls this method before it compiles a function."""
-        if event.data["dispatcher"].__name__ == "advance" and sys.stderr.isatty():
+        if event.data["dispatcher"].__name__.startswith("advance") and sys.stderr.isatty():
             print("the engine is compiled for this machine, once", file=sys.stderr, flush=True)
 
     def on_end(self, event: Event) -> None:
