@@ -162,7 +162,8 @@ class Strike(Value):
         k, m = self.chain.k, self._effective_mass
         w = 2 * float(self.mass * self.velocity) / (float(self.mass) + m)
         unit = self.chain.energy.at().value
-        return ExpandedWave(self.chain, (m * w**2 / (2 * unit)) ** float(k / (k + 1)))
+        power = float(k / (k + 1))  # w² may be beyond a double where F is not
+        return ExpandedWave(self.chain, (m / (2 * unit)) ** power * w ** (2 * power))
 
     @property
     def force(self) -> Estimate:
