@@ -72,7 +72,7 @@ def _first_peak(time: np.ndarray, values: np.ndarray) -> tuple[float, float]:
 def trailing_edge(front: Shock, chain: Driven) -> float:
     """The place over time where the line through the lower half of the envelope reaches p₋."""
     rise = float(front.ahead) - np.diff(chain.displacements) - float(front.behind)
-    tops = scipy.signal.find_peaks(rise)[0]
+    tops = scipy.signal.find_peaks(rise, height=0)[0]
     place, rise = (tops + 0.5) / chain.time, rise[tops]
     part = np.digitize(place, np.linspace(place.min(), place.max(), 120))
     envelope = np.array([(place[part == i].mean(), rise[part == i].max()) for i in np.unique(part)])

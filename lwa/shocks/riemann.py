@@ -23,7 +23,15 @@ import sympy as sp
 
 from lwa.base import latex
 from lwa.base.estimate import Estimate
-from lwa.base.exact import InputError, demand_numbers, one_of, positive, read_exact, shorten
+from lwa.base.exact import (
+    InputError,
+    demand_numbers,
+    evaluated,
+    one_of,
+    positive,
+    read_exact,
+    shorten,
+)
 from lwa.base.frozen import Value
 from lwa.cell import Cell
 from lwa.expansion.approximants import Resummed
@@ -34,6 +42,7 @@ from lwa.shocks import bounds, edges, waves
 from lwa.shocks.convexity import demand_one_sign
 from lwa.wave.background import BackgroundWave
 
+_LONGEST = 600  # bits of exact powers; SymPy fails from 1024 on
 RULES = ("dispersion", "doubling")  # El's leading edge; the solitary wave with beads at 2 v_p
 
 
@@ -75,7 +84,7 @@ class Shock(Value):
         """Speed of sound dx/dt on the strain p; 0 without load under a power law."""
         field = self._field.on(read_exact(p, "p"))
         bare = self.law.homogeneous and field.p0.is_zero
-        return sp.S.Zero if bare else field.sound_speed * field.time_scale
+        return sp.S.Zero if bare else self._written(field.sound_speed * field.time_scale)
 
     @cached_property
     def ratio(self) -> sp.Expr:
@@ -279,7 +288,17 @@ class Shock(Value):
     @cached_property
     def _gained(self) -> sp.Expr:
         """Velocity v_p as du/dτ, in the units of the wave equation."""
-        return waves.velocity(self._field, self.behind)
+        return self._written(waves.velocity(self._field, self.behind))
+
+    def _written(self, value: sp.Expr) -> sp.Expr:
+        """Evaluate a number whose exact powers run to hundreds of digits, as those of k = 2.77."""
+        k, strains = self.law.exponent, (self.behind, self.ahead)
+        numbers = [x for x in (k, *strains) if x.is_Rational]
+        digits = sum(int(part).bit_length() for x in numbers for part in (x.p, x.q))
+        terms = int(k.p) + int(k.q) if k.is_Rational else 1
+        if value.free_symbols or not self.law.homogeneous or digits * terms < _LONGEST:
+            return value
+        return evaluated(value, 3 * edges.SHOCK_DIGITS)
 
     @cached_property
     def _gain(self) -> sp.Expr:

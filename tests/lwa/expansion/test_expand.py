@@ -270,15 +270,6 @@ def test_linear_closure_gives_the_leading_term_only() -> None:
 # --- summed ---
 
 
-def test_sums_of_symbols_are_refused() -> None:
-    with pytest.raises(InputError, match="omega"):
-        expand(Dimer(1, OMEGA), 2).c2.at("3/2")
-    with pytest.raises(InputError, match="k"):
-        wave("equal").c2.at("k")
-    with pytest.raises(InputError, match="k is 1"):
-        wave("equal").c2.at(1)
-
-
 def test_sum_near_k_1_is_the_partial_sum() -> None:
     k = sp.Rational(1001, 1000)
     for quantity in QUANTITIES:
@@ -299,30 +290,6 @@ def test_pade_agrees_with_its_series() -> None:
         assert [again.coeff(epsilon, n) for n in range(L + M + 1)] == list(
             series.coefficients[: L + M + 1]
         )
-
-
-def test_an_approximant_beyond_the_series_is_refused() -> None:
-    with pytest.raises(InputError, match="order 4"):
-        wave("equal").c2.pade("k", 3, 3)
-
-
-@pytest.mark.parametrize("order", [0, -1, True, 2.0, float("nan"), "2"])
-def test_bad_orders_are_refused(order: object) -> None:
-    with pytest.raises(InputError, match="order is"):
-        expand(Cell([1]), order)  # type: ignore[arg-type]
-
-
-def test_other_bad_input_is_refused() -> None:
-    with pytest.raises(InputError, match="cell is"):
-        expand([1, 2], 2)  # type: ignore[arg-type]
-    with pytest.raises(InputError, match="quantity is"):
-        wave("equal").fwhm("speed")
-    with pytest.raises(InputError, match="contact is 2"):
-        wave("dimer").log_force(2)
-    with pytest.raises(InputError, match="3 symbolic ratios in a cell of 4 this takes more"):
-        expand(Cell(["a", "b", "c", "d"]), 12)
-    with pytest.raises(InputError, match="11 symbolic ratios"):
-        expand(Cell([f"a{i}" for i in range(12)]), 2)
 
 
 def test_radiation_falls_exponentially_and_vanishes_for_equal_beads() -> None:

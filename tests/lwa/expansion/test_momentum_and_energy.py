@@ -100,13 +100,6 @@ def test_the_long_wave_has_the_lattice_s_momentum_as_k_tends_to_1(cell):
     assert near == pytest.approx(far / 2, rel=0.02)  # the next order in k - 1
 
 
-def test_dissipation_of_other_kinds_or_unlike_contacts_is_refused():
-    with pytest.raises(InputError, match="kind is 'quadratic': linear or kuwabara_kono"):
-        expand(Cell([1]), 2).dissipation("quadratic")
-    with pytest.raises(InputError, match="D1 is derived for equal contacts"):
-        expand(Cell([1, 1], [1, 2]), 2).dissipation("kuwabara_kono")
-
-
 # --- collisions ---
 
 

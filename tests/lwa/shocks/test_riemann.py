@@ -161,6 +161,19 @@ def test_the_rule_keeps_twenty_digits_at_any_jump(law, ahead):
         assert found.peak - ahead == pytest.approx(2 * jump, rel=1e-5, abs=1e-19)
 
 
+@pytest.mark.parametrize(
+    ("k", "behind", "ahead"), [("2.77", 1, 0), ("2.38", "36.3", 1), ("4.99", "0.785", "0.1")]
+)
+def test_a_long_exponent_is_a_number_of_twenty_digits(k, behind, ahead):
+    """Exact powers of 277/100 hold integers beyond a float, at which SymPy stopped or hung."""
+    found = shock(EQUAL, Power(k), behind, ahead)
+    k, p, q = (float(sp.Rational(x)) for x in (k, behind, ahead))
+    v = 2 * k**0.5 * (p ** ((k + 1) / 2) - q ** ((k + 1) / 2)) / (k + 1)
+    assert float(found.plateau) == pytest.approx(v, rel=1e-13)
+    assert float(found.rise * found.leading_speed()) == pytest.approx(2 * v, rel=1e-13)
+    assert {"doubling", "peak", "peak_force", "plateau"} <= {*found.errors}
+
+
 def test_hard_spheres():
     """The peak of the canonical wave tends to the strain behind it for k → ∞, and s₊/c₋ to 4/k."""
     found = shock(EQUAL, Power(1000), 1, 0)
