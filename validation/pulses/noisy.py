@@ -2,11 +2,13 @@
 
 The noise is the standard deviation σ of the samples before the pulse. The first pulse is located in
 a moving mean, and a polynomial is fitted to the samples of `1 + 2 _BESIDE` widths (FWHM) about the
-pulse: arrival, peak and FWHM are those of the polynomial. Of all degrees the fit takes the best by
-Schwarz's criterion (Ann. Statist. 6, 461, 1978) and `_MARGIN` more: the criterion stops where a
-bias is as large as the scatter. With the margin the bias of peak and FWHM is below a third of their
-scatter for the pulses of chains of equal beads, and at most about half of it for a bead's force
-that is flat on top.
+pulse: arrival, peak and FWHM are those of the polynomial. The degree is the best by Schwarz's
+criterion (Ann. Statist. 6, 461, 1978) and `_MARGIN` more, as the criterion stops where a bias is as
+large as the scatter.
+
+Measured by draws, with noise of 0.2 to 2 % of the peak and 30 or 60 samples a width, at contacts
+and beads of chains of equal, 1:1 and 2:1 beads: the bias of each number is below a third of its
+scatter (0.4 at a flat top), and 57 to 80 % of the errors cover.
 
 Errors are one standard deviation, for white noise. To first order a number changes by g·δc with the
 coefficients c of the polynomial, whose covariance C is that of least squares: the error is √(gᵀCg).
@@ -28,10 +30,10 @@ from validation.pulses.pulse import Measured, MeasureError, derived
 from validation.pulses.signals import samples
 
 _BESIDE = 0.3  # widths in front of the rise and behind the fall that the fit takes in
-_BEFORE = 3.0  # widths between the samples of the noise and the rise
+_BEFORE = 2.0  # widths between the samples of the noise and the rise
 _CALM = 10  # fewest samples that show the noise
 _FEWEST = 16  # samples above half the peak; with fewer a fit that follows the noise is biased
-_LOWEST, _HIGHEST, _MARGIN = 6, 40, 4  # degrees of the polynomial
+_LOWEST, _HIGHEST, _MARGIN = 6, 40, 8  # degrees of the polynomial
 _SMOOTH = 0.01  # noise of the moving mean over the peak
 _LOW = 0.45  # share of the peak below which a pulse has fallen, so that noise at half is no end
 _LOUDEST = 0.05  # greatest noise over the peak, for which the pulse is located
@@ -62,7 +64,7 @@ def noisy_pulse(time: ArrayLike, values: ArrayLike, base: float | None = None) -
     >>> t = np.linspace(-3, 3, 601)
     >>> noise = 0.01 * np.random.default_rng(0).normal(size=601)
     >>> noisy_pulse(t, np.exp(-9 * t**2) + noise).numbers["fwhm"]  # √(4 ln 2)/3
-    0.554 ± 2e-03
+    0.555 ± 2e-03
     """
     t, f = samples(time, values)
     size = float(np.abs(f).max()) or 1.0  # so that squares neither over- nor underflow

@@ -61,7 +61,7 @@ def test_bias_is_a_third_of_the_scatter_and_the_error_one_standard_deviation(sig
 def test_a_short_lead_leaves_the_base_uncertain(signals):
     """With some 20 samples before the pulse the base errs as much as the fit of the peak."""
     t, pulse = record(signals["equal", "contact"])
-    t = t[t > pulse.rise - 3 * pulse.fwhm - 40 * (t[1] - t[0])]
+    t = t[t > pulse.rise - 2 * pulse.fwhm - 40 * (t[1] - t[0])]
     rng, clean = np.random.default_rng(8), signals["equal", "contact"](t)
     within = 0
     for _ in range(COPIES):
@@ -71,12 +71,11 @@ def test_a_short_lead_leaves_the_base_uncertain(signals):
 
 
 @pytest.mark.parametrize("share", [0.002, 0.005, 0.02])
-def test_peak_and_width_of_unlike_beads(signals, share):
+def test_unlike_beads(signals, share):
     """A contact of two unlike beads, whose force has a second hump."""
     (values, errors), true = draws(signals["dimer", "contact"], share)
-    bias = np.abs(values.mean(axis=0) - true) / values.std(axis=0)
-    assert np.all(bias[1:] < 1 / 3)
-    within = np.mean(np.abs(values - true) < errors, axis=0)[1:]
+    assert np.all(np.abs(values.mean(axis=0) - true) < values.std(axis=0) / 3)
+    within = np.mean(np.abs(values - true) < errors, axis=0)
     assert np.all((within >= 0.6) & (within <= 0.8)), within
 
 
@@ -107,7 +106,7 @@ def test_the_first_pulse_counts_and_the_base_may_be_known():
     ("t", "f", "named"),
     [
         (np.arange(200.0), np.exp(-(((np.arange(200) - 100) / 5.0) ** 2)), "9 samples"),
-        (np.arange(200.0), np.exp(-(((np.arange(200) - 30) / 12.0) ** 2)), "0 samples lie 3"),
+        (np.arange(200.0), np.exp(-(((np.arange(200) - 30) / 12.0) ** 2)), "0 samples lie 2"),
         (np.arange(200.0), np.exp(-(((np.arange(200) - 199) / 12.0) ** 2)), "back"),
         (np.arange(200.0), np.zeros(200), "no pulse"),
         (np.arange(3.0), np.zeros(3), "at least 4 numbers"),
@@ -117,7 +116,7 @@ def test_the_first_pulse_counts_and_the_base_may_be_known():
             np.arange(400.0),
             np.exp(-(((np.arange(400) - 300) / 12.0) ** 2))
             + 0.07 * np.random.default_rng(2).normal(size=400),
-            "the noise is 6.7%",
+            "the noise is 6.6%",
         ),
     ],
 )
