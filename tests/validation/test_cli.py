@@ -37,13 +37,6 @@ def run(capsys, *arguments):
     return ended(capsys, cli.main, *arguments)
 
 
-def test_paper_text(capsys):
-    status, out, err = run(capsys, "paper")
-    assert (status, err) == (0, "")
-    assert out.startswith("38 beads, steel (the striker, 1.37 m/s)")
-    assert "steel wall, no gravity; sensors in beads 15 and 34" in " ".join(out.split())
-
-
 def shown(capsys, found, *arguments):
     """Status and outputs of a study with this result."""
 
@@ -436,12 +429,6 @@ def test_every_study_is_a_command():
         assert found.name == name
         assert {"--format", "--plot"} <= {o for p in found.params for o in p.opts}
     assert cli.validate.get_command(context, "nothing") is None
-
-
-@pytest.mark.parametrize("name", ["accuracy", "figures", "limits"])
-def test_the_help_of_a_long_command_states_its_duration(name):
-    _, summary = cli.STUDIES[name]
-    assert re.search(r"\(.*(minutes?|seconds)\)\.$", summary)
 
 
 @pytest.mark.parametrize("cases", [[1], [1, 2, 3]])

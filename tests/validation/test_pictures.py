@@ -7,10 +7,8 @@ from matplotlib.colors import same_color
 from matplotlib.figure import Figure
 
 from lwa import InputError
-from tests.commands import small_disk
 from validation.pictures import SUFFIXES, Curve, Map, Panel, figure
 from validation.report.result import Report
-from validation.studies import limits
 
 SIGNATURES = {".png": b"\x89PNG", ".pdf": b"%PDF", ".svg": b"<?xml"}
 X = np.array([1.0, 2.0, 3.0])
@@ -49,11 +47,6 @@ def test_a_logarithmic_axis_of_few_decades_has_plain_numbers(most, labels):
     assert {tick.get_text() for tick in axes.get_xticklabels()} >= labels
     assert not any(tick.get_text() for tick in axes.get_xticklabels(minor=True))
     assert any("10^" in tick.get_text() for tick in axes.get_yticklabels())  # too large for that
-
-
-def test_marks_are_hollow_and_show_the_curves_below(report):
-    (line,) = report.figure().axes[0].lines
-    assert line.get_markerfacecolor() == "none"
 
 
 def test_colours_marks_and_bars():
@@ -100,22 +93,3 @@ def test_a_panel_is_drawn_into_axes_that_are_given(report):
     pyplot.close(own.figure)
     with pytest.raises(InputError, match="this result has no picture"):
         Report("none").plot()
-
-
-def test_the_limits_picture_shows_every_quantity_at_every_k(limits_rows):
-    left, right = limits.report(limits_rows).figure().axes
-    for axes in (left, right):
-        bars = [c for c in axes.containers if c.has_yerr]
-        assert len(bars) == 4
-        assert all(len(c.lines[0].get_xdata()) == 3 for c in bars)
-
-
-def test_a_full_disk_is_one_line_and_leaves_the_old_picture(tmp_path):
-    report = Report("one", panels=(Panel("x", "y", (Curve("c", range(9), range(9)),)),))
-    for file in (tmp_path / f"picture{suffix}" for suffix in SUFFIXES):
-        file.write_bytes(b"old")
-        with small_disk(1000), pytest.raises(ValueError, match="is not written: ") as refused:
-            report.save(file)
-        assert str(refused.value) == f"{file} is not written: File too large"
-        assert file.read_bytes() == b"old"
-    assert len([*tmp_path.iterdir()]) == len(SUFFIXES)

@@ -130,7 +130,9 @@ def test_a_strike_in_si(capsys, scene):
         found["speed_value"]
     )
     high = result(capsys, "strike", "--spheres", file, "--drop", "1e308")
-    assert high["force_value"] / found["force_value"] == pytest.approx(1e308**0.6 * 2**0.6, rel=1e-10)
+    assert high["force_value"] / found["force_value"] == pytest.approx(
+        1e308**0.6 * 2**0.6, rel=1e-10
+    )
     heavy = ("strike", "--spheres", file, "--velocity", "1", "--mass", "2e-3")
     assert "further pulses" in result(capsys, *heavy)["notes"][0]
     status, out, _ = run(capsys, *heavy)

@@ -47,12 +47,6 @@ def test_a_solitary_wave_agrees_with_newtons_method(k, omega):
         assert numbers[name].error < 1e-5
 
 
-def test_the_published_width_of_the_uniform_hertz_chain():
-    width = at(HERTZ, 1)["width"]
-    assert abs(width.value - 1.411928) <= width.error + 5e-7  # published to six decimals
-    assert width.error < 5e-6
-
-
 def test_a_pulse_decays_but_for_the_special_ratio():
     # what a pulse leaves behind vanishes at the ratio as the square of the distance from it
     near = at(HERTZ, SPECIAL)["decay"]

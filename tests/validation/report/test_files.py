@@ -3,12 +3,10 @@
 import errno
 import os
 import re
-import tempfile
 
 import pytest
 
 from lwa import InputError
-from lwa.base.files import content
 from validation.report.files import output_file, replacing
 
 
@@ -43,15 +41,6 @@ def test_places_that_cannot_take_a_file(tmp_path):
         assert re.fullmatch(message, refusal(tmp_path, name)), name
 
 
-@pytest.mark.parametrize("number", [errno.EACCES, errno.ENOSPC, errno.EROFS, errno.EDQUOT])
-def test_a_folder_that_takes_no_file(tmp_path, monkeypatch, number):
-    def refuse(**_):
-        raise OSError(number, os.strerror(number))
-
-    monkeypatch.setattr(tempfile, "TemporaryFile", refuse)
-    assert refusal(tmp_path, "p.svg") == f"it cannot be written, {os.strerror(number)}"
-
-
 @pytest.mark.parametrize(
     "fault", [OSError(errno.ENOSPC, "full"), KeyboardInterrupt(), ValueError()]
 )
@@ -70,19 +59,6 @@ def test_a_failure_while_writing_leaves_the_old_file(tmp_path, fault, name):
         fail()
     assert (file.read_text(), list(tmp_path.iterdir())) == ("old", [file])
     assert wanted is not InputError or str(caught.value).endswith("is not written: full")
-
-
-def test_the_content_of_a_regular_file_only(tmp_path):
-    (tmp_path / "s").write_bytes(b"12345")
-    os.mkfifo(tmp_path / "pipe")
-    assert content(tmp_path / "s", 5) == b"12345"
-    for name, most, message in (
-        ("s", 4, "more than 4 bytes, the most that is read"),
-        ("pipe", 9, "only regular files are read"),
-        (".", 9, "only regular files are read"),
-    ):
-        with pytest.raises(InputError, match=f"^{message}$"):
-            content(tmp_path / name, most)
 
 
 def test_a_link_keeps_its_target_and_a_file_its_mode(tmp_path):

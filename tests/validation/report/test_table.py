@@ -18,7 +18,6 @@ from validation.report.table import (
     Finding,
     Table,
     aligned,
-    bounds,
     brief,
     findings_table,
     plain,
@@ -95,11 +94,6 @@ def test_a_table_without_labels_is_for_programs():
     assert silent.csv() == "k\n1\n"
 
 
-def test_columns_line_up():
-    lines = aligned((("a", "long header"), ("first row", "1"), ("b", "23"))).splitlines()
-    assert lines == ["a          long header", "first row            1", "b                   23"]
-
-
 CELLS = st.lists(
     st.lists(st.text("aω±", min_size=1, max_size=9), min_size=4, max_size=4), min_size=1
 )
@@ -173,7 +167,3 @@ def test_findings_in_lines_and_in_a_document():
     assert written["drift_value"] == 1e-12
     assert [f["ok"] for f in written["findings"]] == [True, False]
     assert written["findings"][1]["least_value"] is None
-
-
-def test_bounds_are_written_shortly():
-    assert [bounds(*b) for b in ((0, 0), (1, math.inf), (-math.inf, 1))] == ["0", "≥ 1", "≤ 1"]

@@ -1,7 +1,5 @@
 """Speed against error: errors fall, costs are as defined, and the contract is kept."""
 
-import csv
-import io
 import json
 import math
 
@@ -112,23 +110,6 @@ def test_the_document_holds_the_contract(report):
     assert {cost["task"] for cost in result["costs"]} == {"exact", "experiment"}
     exact, experiment = result["references"]
     assert (exact["task"], exact["peak"], experiment["task"]) == ("exact", 1.0, "experiment")
-
-
-def test_text_csv_and_notebook_agree_with_the_json(report):
-    printed = report.text()
-    assert printed.startswith("Speed against error\n\nexact\n")
-    assert "\nCPU time (ms) for the peak force to  1e-04  1e-06  1e-08  1e-10\n" in printed
-    assert f"\n{OURS}  " in printed
-    document = report.document()
-    for line, row in zip(csv.DictReader(io.StringIO(report.csv())), document["rows"], strict=True):
-        assert (line["task"], line["method"]) == (row["task"], row["method"])
-        assert float(line["seconds"]) == row["seconds"]
-    page = report._repr_html_()
-    assert "<svg" in page
-    panel, _ = report.panels
-    assert [curve.label for curve in panel.curves] == list(
-        dict.fromkeys(row["method"] for row in document["rows"] if row["task"] == "exact")
-    )
 
 
 def test_a_task_that_does_not_exist_is_named(capsys):

@@ -6,7 +6,6 @@ Lengths in D; m1 = A = D = 1.
 import math
 from contextlib import suppress
 
-import mpmath as mp
 import numpy as np
 import pytest
 import scipy
@@ -112,20 +111,6 @@ def collision_fwhm(k):
     n = k + 1
     share = scipy.special.betaincc(1 / n, 0.5, 0.5 ** (n / k))
     return 2 * scipy.special.beta(1 / n, 0.5) / n * share
-
-
-def test_two_linear_springs_touch_for_half_a_period():
-    assert contact_time(1.0, 1.0) == pytest.approx(math.pi / math.sqrt(2), rel=1e-14)
-    # of a half sine, between the angles π/6 and 5π/6
-    assert collision_fwhm(1.0) == pytest.approx(2 * math.pi / 3, rel=1e-14)
-
-
-@pytest.mark.parametrize("k", [1.5, 20.0])
-def test_a_collision_is_an_incomplete_beta_function(k):
-    """∫ dδ / √(1 - δ^n) from d to 1 is ∫ x^{1/n - 1} (1 - x)^{-1/2} dx / n from d^n, by x = δ^n."""
-    n = k + 1
-    found = float(2 * mp.betainc(1 / n, 0.5, 0.5 ** (n / k), 1) / n)
-    assert collision_fwhm(k) == pytest.approx(found, rel=1e-13)
 
 
 @pytest.mark.parametrize("omega", [1.0, 0.3])
