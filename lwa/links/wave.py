@@ -52,7 +52,7 @@ _FOOT = 1e-40  # part of the rise at which the sound ahead of the wave is comput
 # Measured bounds: errors of V² - c0² and of widths in parts of Δ, and Δ up to which they hold.
 _ALIKE = 0.1, 0.15, 1.8  # equal particles and nearest links, with and without a load
 _FARTHER = 0.1, 0.3, 1.2  # one particle a cell, links to farther ones
-_LOADED_PAIR = 0.6, 1.0, 0.3  # two unlike masses or links under a load
+_LOADED_PAIR = 0.5, 0.8, 0.3  # two unlike masses or links under a load
 _BARE_PAIR = 0.16, nan, 1.8  # two unlike masses or links without a load
 _NONE = nan, nan, nan
 
