@@ -26,7 +26,6 @@ from lwa.base.estimate import Estimate
 from lwa.base.exact import (
     InputError,
     demand_numbers,
-    evaluated,
     one_of,
     positive,
     read_exact,
@@ -42,7 +41,6 @@ from lwa.shocks import bounds, edges, waves
 from lwa.shocks.convexity import demand_one_sign
 from lwa.wave.background import BackgroundWave
 
-_LONGEST = 600  # bits of exact powers; SymPy fails from 1024 on
 RULES = ("dispersion", "doubling")  # El's leading edge; the solitary wave with beads at 2 v_p
 
 
@@ -84,7 +82,11 @@ class Shock(Value):
         """Speed of sound dx/dt on the strain p; 0 without load under a power law."""
         field = self._field.on(read_exact(p, "p"))
         bare = self.law.homogeneous and field.p0.is_zero
-        return sp.S.Zero if bare else self._written(field.sound_speed * field.time_scale)
+        return (
+            sp.S.Zero
+            if bare
+            else waves.written(field.sound_speed * field.time_scale, *self._numbers)
+        )
 
     @cached_property
     def ratio(self) -> sp.Expr:
@@ -103,7 +105,7 @@ class Shock(Value):
         >>> shock(Cell([1], spacing=1), Power("3/2"), "p", 0).plateau
         2*sqrt(6)*p**(5/4)/5
         """
-        return _tidy(self._gained * self._field.time_scale)
+        return waves.tidy(self._gained * self._field.time_scale)
 
     @cached_property
     def mean_strain(self) -> Estimate:
@@ -139,8 +141,9 @@ class Shock(Value):
         """
         if self._gain.is_negative:
             return self.sound(self.behind)
+        self._demand_pulse()
         edge = edges.trailing(self.cell, self.ratio)
-        return _tidy(sp.expand(self.sound(self.behind) * edge))
+        return waves.tidy(sp.expand(self.sound(self.behind) * edge))
 
     def leading_speed(self, rule: str = "doubling") -> sp.Expr:
         """Speed s₊ of the leading pulse by "doubling", or of the leading edge by El's "dispersion".
@@ -157,8 +160,19 @@ class Shock(Value):
         if self._gain.is_negative:
             return self.sound(self.ahead)
         if rule == "doubling":
-            return _tidy(self._pulse.speed * self._field.time_scale)
-        return _tidy(self.sound(self.ahead) * edges.leading(self._field.linear, self.ratio))
+            return waves.tidy(self._pulse.speed * self._field.time_scale)
+        self._demand_pulse()
+        return waves.tidy(self.sound(self.ahead) * edges.leading(self._field.linear, self.ratio))
+
+    def _demand_pulse(self) -> None:
+        """Refuse an inflection of F within the leading pulse, by which the edges' errors go."""
+        if not (self._free or self.law.homogeneous):
+            _ = self._equal._pulse
+
+    @property
+    def _equal(self) -> Shock:
+        """The front in a chain of equal beads under the same law."""
+        return replace(self, cell=Cell((1,), spacing=self.cell.spacing))
 
     @cached_property
     def errors(self) -> dict[str, float]:
@@ -198,7 +212,7 @@ class Shock(Value):
 
     def _edge_errors(self) -> dict[str, float]:
         """Errors of El's edges, by the doubling rule of equal beads under the same law."""
-        chain = replace(self, cell=Cell((1,), spacing=self.cell.spacing))
+        chain = self._equal
         ratio = chain.leading_speed("doubling") / chain.leading_speed("dispersion")
         off, rho = abs(float(ratio) - 1), chain._pulse.stiffening
         r, uniform = float(self.ratio), self.cell.uniform
@@ -224,18 +238,18 @@ class Shock(Value):
     @property
     def rise(self) -> sp.Expr:
         """Rise B = 2 v_p/s₊ of u_x in the leading pulse, by the doubling rule."""
-        return _tidy(self._pulse.rise)
+        return waves.tidy(self._pulse.rise)
 
     @property
     def peak(self) -> sp.Expr:
         """Strain of a contact at the peak of the leading pulse, by the doubling rule."""
-        return _tidy(self.ahead + self._pulse.contact_rise)
+        return waves.tidy(self.ahead + self._pulse.contact_rise)
 
     @property
     def peak_force(self) -> sp.Expr:
         """Contact force A F at the peak of the leading pulse, in the units of the cell."""
         stiffness = self.cell.stiffness(self.law.exponent)
-        return _tidy(stiffness * self.law.at(self.cell.spacing * self.peak))
+        return waves.tidy(stiffness * self.law.at(self.cell.spacing * self.peak))
 
     @cached_property
     def wave(self) -> ExpandedWave:
@@ -288,31 +302,17 @@ class Shock(Value):
     @cached_property
     def _gained(self) -> sp.Expr:
         """Velocity v_p as du/dτ, in the units of the wave equation."""
-        return self._written(waves.velocity(self._field, self.behind))
+        return waves.written(waves.velocity(self._field, self.behind), *self._numbers)
 
-    def _written(self, value: sp.Expr) -> sp.Expr:
-        """Evaluate a number whose exact powers run to hundreds of digits, as those of k = 2.77."""
-        k, strains = self.law.exponent, (self.behind, self.ahead)
-        numbers = [x for x in (k, *strains) if x.is_Rational]
-        digits = sum(int(part).bit_length() for x in numbers for part in (x.p, x.q))
-        terms = int(k.p) + int(k.q) if k.is_Rational else 1
-        if value.free_symbols or not self.law.homogeneous or digits * terms < _LONGEST:
-            return value
-        return evaluated(value, 3 * edges.SHOCK_DIGITS)
+    @property
+    def _numbers(self) -> tuple[sp.Expr, ...]:
+        return self.law.exponent, self.behind, self.ahead
 
     @cached_property
     def _gain(self) -> sp.Expr:
         """Difference c₋ - c₊, negative for a rarefaction; symbols are taken to mean a shock."""
         # simplified: only then is its sign known beside symbols such as D
         return sp.simplify(self.sound(self.behind) - self.sound(self.ahead))
-
-
-def _tidy(value: sp.Expr) -> sp.Expr:
-    """Combine powers, and evaluate the numeric factor of a result that is not in closed form."""
-    if not value.has(sp.Float):
-        return sp.powsimp(value)
-    factor, rest = value.as_independent(*value.free_symbols, as_Add=False)
-    return factor.n(edges.SHOCK_DIGITS) * rest
 
 
 def _read(law: Any, cell: Cell) -> ContactLaw:

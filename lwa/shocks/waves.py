@@ -33,6 +33,8 @@ from lwa.base.frozen import Value
 from lwa.shocks.edges import SHOCK_DIGITS
 from lwa.wave.background import BackgroundWave
 
+_LONGEST = 600  # bits of exact powers; SymPy fails from 1024 on
+
 
 def velocity(field: BackgroundWave, p: sp.Expr) -> sp.Expr:
     """Velocity du/dτ that the beads gain while the strain rises from p0 to p, ∫ √F′ dp.
@@ -82,6 +84,24 @@ def _rising_root(rising: sp.Expr, x: sp.Symbol, lost: int = 0) -> sp.Expr:
     if root is None:
         raise InputError("the law does not reach the strain that belongs to this velocity")
     return sp.Float(root, SHOCK_DIGITS + lost)
+
+
+def tidy(value: sp.Expr) -> sp.Expr:
+    """Combine powers, and evaluate the numeric factor of a result that is not in closed form."""
+    if not value.has(sp.Float):
+        return sp.powsimp(value)
+    factor, rest = value.as_independent(*value.free_symbols, as_Add=False)
+    return factor.n(SHOCK_DIGITS) * rest
+
+
+def written(value: sp.Expr, k: sp.Expr, *strains: sp.Expr) -> sp.Expr:
+    """Evaluate a number whose exact powers run to hundreds of digits, as those of k = 2.77."""
+    numbers = [x for x in (k, *strains) if x.is_Rational]
+    bits = sum(int(part).bit_length() for x in numbers for part in (x.p, x.q))
+    terms = int(k.p) + int(k.q) if k.is_Rational else 1
+    if value.free_symbols or k == 1 or bits * terms < _LONGEST:  # k is 1 unless the law is a power
+        return value
+    return evaluated(value, 3 * SHOCK_DIGITS)
 
 
 @dataclass(frozen=True)

@@ -299,6 +299,7 @@ def test_si_units():
         (lambda: shock(EQUAL, BENT, 1), "changes its sign at the strain 0.66667"),
         (lambda: shock(EQUAL, BENT, "1/3", 1), "changes its sign at the strain 0.66667"),
         (lambda: shock(EQUAL, BENT, "1/2").peak, "changes its sign at the strain 0.66667"),
+        (lambda: shock(EQUAL, BENT, "1/2").leading_speed("dispersion"), "changes its sign"),
         (lambda: shock(EQUAL, WAVY, 5, 1), "changes its sign at the strain 3.1"),
         (lambda: shock(EQUAL, named("polynomial", -1, 0), "3/5"), "F′ is -0.2000"),
         (lambda: shock(EQUAL, named("magnetic", 3, 1), 2), "a pole before it"),
