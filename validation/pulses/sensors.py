@@ -7,6 +7,7 @@ the difference, and at least the tolerance of the first run.
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Callable, Container, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
@@ -111,12 +112,15 @@ def record(
         )
     run, check = twice(scene, rtol, LESS * rtol, method=method, progress=progress)
     pairs = tuple(zip(tracks(run, 1, through), tracks(check, 2, through), strict=True))
-    neighbours = (two for two in pairwise(pairs) if two[0][0].kind == two[1][0].kind)
-    return Recording(
-        run,
-        tuple(reading for pair in pairs for reading in _readings(pair, every, rtol)),
-        tuple(_speed(*two, rtol) for two in neighbours),
-    )
+    firsts = [next(_readings(pair, False, rtol)) for pair in pairs]
+    speeds = []
+    for (one, (at, _)), (other, (there, _)) in pairwise(zip(firsts, pairs, strict=True)):
+        if one.kind == other.kind:
+            apart = {name: abs(there.place[name] - place) for name, place in at.place.items()}
+            # Errors of both arrivals are added: in the less accurate speed they may cancel.
+            speeds.append(speed_between(one, other, apart, operator.add))
+    found = (reading for pair in pairs for reading in _readings(pair, True, rtol))
+    return Recording(run, tuple(found if every else firsts), tuple(speeds))
 
 
 def tracks(run: Run, every: int = 1, through: Instrument | None = None) -> tuple[Track, ...]:
@@ -176,25 +180,26 @@ def readings(pulse: Pulse) -> dict[str, float]:
     return {name: getattr(pulse, name) for name in READINGS}
 
 
-def _speed(start: tuple[Track, Track], end: tuple[Track, Track], rtol: float) -> Reading:
-    """Measure the speed of the first pulse between two sensors, each with a track in both runs."""
-    (first, _), (second, _) = start, end
-    reading = partial(Reading, first.kind, (first.number, second.number), static=first.static)
-    try:
-        arrivals = [[track.first.arrival for track in pair] for pair in (start, end)]
-    except MeasureError:
+def speed_between(
+    first: Reading,
+    second: Reading,
+    distances: Mapping[str, float],
+    total: Callable[[float, float], float],
+) -> Reading:
+    """Return the speeds of the pulse from one sensor to the next.
+
+    distances : of the sensors, by the names `SPEEDS`. total : error of a time between two arrivals
+    as a function of the errors of both.
+    """
+    reading = partial(Reading, first.kind, (*first.places, *second.places), static=first.static)
+    if first.missing or second.missing:
         return reading({}, missing="one of the two has no pulse")
-    # The errors of both arrivals are added: in the less accurate speed they may cancel.
-    late = sum(max(abs(fine - coarse), rtol * fine) for fine, coarse in arrivals)
-    numbers = {}
-    try:
-        for unit, at in first.place.items():
-            V = speed(first.first, second.first, abs(second.place[unit] - at))
-            apart = second.first.arrival - first.first.arrival
-            numbers[unit] = Measured(V, V * (1 + late / apart))
-    except MeasureError as reason:
-        return reading({}, missing=str(reason))
-    return reading(numbers)
+    start, end = first.numbers["arrival"], second.numbers["arrival"]
+    if not (time := end.value - start.value) > 0:
+        return reading({}, missing="a speed needs a later second arrival")
+    error = total(start.error, end.error) / time
+    speeds = {name: distance / time for name, distance in distances.items()}
+    return reading({name: Measured(V, V * (1 + error)) for name, V in speeds.items()})
 
 
 @dataclass(frozen=True)

@@ -14,8 +14,8 @@ from lwa.base.arrays import Array
 from lwa.base.exact import shorten
 from validation.pictures import Curve, Panel
 from validation.pulses.noisy import noisy_pulse
-from validation.pulses.pulse import Measured, MeasureError
-from validation.pulses.sensors import SPEEDS, Reading
+from validation.pulses.pulse import MeasureError
+from validation.pulses.sensors import SPEEDS, Reading, speed_between
 from validation.report.command import column_option, option, study
 from validation.report.readings import reading_tables
 from validation.report.result import Report
@@ -67,7 +67,12 @@ def pulses(
     found = [_reading(s, time, force) for s, force in zip(sensors, forces, strict=True)]
     neighbours = (two for two in pairwise(found) if two[0].kind == two[1].kind)
     labels = ("arrival (s)", "peak (N)", "FWHM (s)") if si else ("arrival", "peak", "FWHM")
-    speeds = [_speed(*two, apart) for two in neighbours]
+    speeds = []
+    for one, other in neighbours:
+        sites = abs(other.places[0] - one.places[0])
+        ways = (sites,) if apart is None else (sites, sites * apart)
+        distances = dict(zip(SPEEDS, ways, strict=False))
+        speeds.append(speed_between(one, other, distances, math.hypot))  # independent noise
     tables, missing = reading_tables(found, speeds, labels, si)
     rows = zip(found, forces, strict=True)
     curves = tuple(Curve(r.name, time, f, f"C{i}-") for i, (r, f) in enumerate(rows))
@@ -105,19 +110,3 @@ def _reading(sensor: _Sensor, time: Array, force: Array) -> Reading:
     except MeasureError as error:
         return Reading(sensor.kind, (sensor.number,), {}, math.nan, str(error))
     return Reading(sensor.kind, (sensor.number,), pulse.numbers, pulse.base)
-
-
-def _speed(first: Reading, second: Reading, distance: float | None) -> Reading:
-    """Return the speed from one sensor to the next."""
-    places = (*first.places, *second.places)
-    if first.missing or second.missing:
-        return Reading(first.kind, places, {}, math.nan, "one of the two has no pulse")
-    start, end = first.numbers["arrival"], second.numbers["arrival"]
-    if not (late := end.value - start.value) > 0:
-        missing = "a speed needs a later arrival at the second sensor"
-        return Reading(first.kind, places, {}, math.nan, missing)
-    sites = abs(places[1] - places[0]) / late
-    error = math.hypot(start.error, end.error) / late  # independent noise
-    sizes = (sites,) if distance is None else (sites, sites * distance)
-    numbers = (Measured(speed, speed * (1 + error)) for speed in sizes)
-    return Reading(first.kind, places, dict(zip(SPEEDS, numbers, strict=False)), math.nan)
