@@ -248,3 +248,17 @@ def test_a_drive_from_rows_is_the_motion_that_they_sample():
                   bead_sensors=(0,))  # fmt: skip
     run = simulate(scene)
     assert run.bead_displacement[0] == pytest.approx(0.1 * run.time**3 / 400, abs=1e-13)
+
+
+@pytest.mark.parametrize("method", ["DOP853", "LSODA"])
+def test_scipys_methods_are_references_of_forced_scenes(method):
+    """A chain under load, whose damped contacts stay closed: motion, work and dissipated energy."""
+    scene = Scene(
+        masses=(1, 0.5, 1), stiffnesses=(1, 2), wall=1, k=1.5, precompression=1, duration=10,
+        damping=Damping("contact", 0.1), drive=Drive(amplitude=0.1, frequency=0.2, ramp=3),
+    )  # fmt: skip
+    ours, theirs = (simulate(scene, method=m, rtol=1e-10, atol=1e-10) for m in ("RKN86", method))
+    for name in ("displacements", "velocities", "dissipated", "work"):
+        # some hundred steps of LSODA, each with its error
+        np.testing.assert_allclose(getattr(theirs, name), getattr(ours, name), atol=3e-8)
+    assert min(ours.dissipated, ours.work) > 1e-3
