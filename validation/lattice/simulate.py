@@ -13,7 +13,6 @@ import math
 from collections import deque
 from collections.abc import Iterable, Iterator
 from concurrent.futures import Future
-from contextlib import contextmanager
 from itertools import islice
 from typing import Any, Literal, overload
 
@@ -74,29 +73,23 @@ def simulate(
         raise SceneError(f"scene is {shorten(scene)}: a Scene is wanted")
     _check(scene, one_of(method, COMPILED + METHODS, "method"), step)
     rtol, atol = between(rtol, "rtol", 1e-13, 1e-2), between(atol, "atol", 1e-13, 1e-2)
-    with np.errstate(over="ignore", invalid="ignore"), _table_named(scene):
-        motion = Motion(scene)
-        if method in COMPILED:
-            from validation.lattice.engine import follow  # start-up: numba takes its time
-
-            run = follow(motion, method, rtol, step, progress)
-        else:
-            run = integrate(motion, method, rtol, atol, progress)
-        sums = [float(np.sum(getattr(run, name))) for name in _FINITE]
-        if not all(map(math.isfinite, (run.energy_drift, *sums))):
-            raise IntegrationError("the motion overflows: choose other units")
-    return run
-
-
-@contextmanager
-def _table_named(scene: Scene) -> Iterator[None]:
-    """Name the last point of a law from a table in a failure: the force is NaN beyond the point."""
     try:
-        yield
+        with np.errstate(over="ignore", invalid="ignore"):
+            motion = Motion(scene)
+            if method in COMPILED:
+                from validation.lattice.engine import follow  # start-up: numba takes its time
+
+                run = follow(motion, method, rtol, step, progress)
+            else:
+                run = integrate(motion, method, rtol, atol, progress)
+            sums = [float(np.sum(getattr(run, name))) for name in _FINITE]
+        if all(map(math.isfinite, (run.energy_drift, *sums))):
+            return run
+        raise IntegrationError("the motion overflows: choose other units")
     except IntegrationError as error:
         if scene.law is None or not scene.law.tabulated:
             raise
-        last = scene.law.points[0][-1]
+        last = scene.law.points[0][-1]  # the force is NaN beyond the point
         raise IntegrationError(f"{error}; the law's table ends at compression {last:g}") from None
 
 

@@ -65,12 +65,6 @@ def test_every_law_and_every_sensor_agree_with_dop853(k):
         np.testing.assert_allclose(run.bead_displacement[:, -1], run.displacements, atol=1e-14)
 
 
-def test_lsoda_agrees_with_dop853():
-    scene = loaded(1.5, samples=31)
-    one, other = (simulate(scene, rtol=1e-11, atol=1e-11, method=m) for m in ("LSODA", "DOP853"))
-    np.testing.assert_allclose(one.contact_force, other.contact_force, atol=1e-8)
-
-
 def test_the_splitting_can_be_reversed_in_time():
     """A palindrome: the way back differs by rounding only, however long the step."""
     method = "SRKN14"
