@@ -256,14 +256,8 @@ def test_a_result_that_cannot_be_written_leaves_the_old_one(capsys, folder, scen
     assert {file.name for file in folder.iterdir()} == {"scene.toml", name}
 
 
-LONG = "a" * 300
-
-
 BAD_OUTPUTS = [
-    *(
-        ("run", "scene.toml", "--out", f"{name}.json")
-        for name in (LONG, "scene.toml/o", "no/o", "folder", "pipe")
-    ),
+    ("run", "scene.toml", "--out", "pipe.json"),
     ("run", "scene.toml", "--plot", "folder.svg"),
     ("paper", "--plot", "no/o.svg"),
     ("sweep", "--file", "pipe.jsonl"),
