@@ -42,7 +42,11 @@ def random_chain(seed):
     return Cell(masses, A, "3/2"), law, max(F, load), min(F, load)
 
 
-@pytest.mark.parametrize("seed", range(50))
+LONG = (2, 10, *range(18, 50))
+SEEDS = [pytest.param(seed, marks=pytest.mark.slow) if seed in LONG else seed for seed in range(50)]
+
+
+@pytest.mark.parametrize("seed", SEEDS)
 def test_a_chain_of_one_law_is_the_canonical_wave(seed):
     cell, law, F, load = random_chain(seed)
     found = lattice_wave(Lattice.of_cell(cell, law), F, load)

@@ -145,7 +145,7 @@ def test_float64_is_the_quadrature_of_many_digits(law, load, rise):
         (Power("11/10"), 0, 1),
         (Power("11/10"), 0.01, 1),
         (Power(5), 0.5, 1),
-        (named("lennard-jones", 1), 0, 0.9),
+        pytest.param(named("lennard-jones", 1), 0, 0.9, marks=pytest.mark.slow),
     ],
     ids=str,
 )

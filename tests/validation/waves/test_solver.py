@@ -257,7 +257,9 @@ def test_a_wave_equals_its_pickle():
     assert copy != wave.times(2)
 
 
-@pytest.mark.parametrize(("k", "unit"), [(1.5, 1e-6), (3.0, 7.0)])
+@pytest.mark.parametrize(
+    ("k", "unit"), [(1.5, 1e-6), pytest.param(3.0, 7.0, marks=pytest.mark.slow)]
+)
 def test_units_of_mass_and_relabelling(k, unit):
     """c² ∝ 1/m; m1 ↔ m2 is the mirror image, contact 0 for contact 1; bead 1 for bead 0."""
     special = resonances(k, 2)[-1]
@@ -282,7 +284,13 @@ def test_a_ratio_in_seven_digits_is_the_special_ratio(specials, off):
 
 
 @pytest.mark.parametrize(
-    ("omega", "k"), [(0.3428457811 * (1 + 2e-7), 1.5), (0.6, 1.5), (1 / 0.6, 1.5), (0.3, 1.1)]
+    ("omega", "k"),
+    [
+        (0.3428457811 * (1 + 2e-7), 1.5),
+        (0.6, 1.5),
+        (1 / 0.6, 1.5),
+        pytest.param(0.3, 1.1, marks=pytest.mark.slow),
+    ],
 )
 def test_a_ratio_without_a_solitary_wave_names_the_tail_and_the_ways_on(omega, k):
     with pytest.raises(NoWave) as caught:
