@@ -5,17 +5,10 @@ from __future__ import annotations
 import re
 import textwrap
 
-
-class _Wrapper(textwrap.TextWrapper):
-    """Line breaker that works after commas and operators, but not within or after **."""
-
-    wordsep_re = re.compile(r"((?<=[,+-])\s+|(?<=[^*/][*/])(?![*/]))")
-
-
-class _Words(textwrap.TextWrapper):
-    """Line breaker that works at spaces, and within a longer word after an operator."""
-
-    wordsep_re = re.compile(r"(\s+|(?<=[^*/][*/])(?![*/\s]))")
+# Places of a break: after commas and operators, but not within or after **
+_IN_CODE = re.compile(r"((?<=[,+-])\s+|(?<=[^*/][*/])(?![*/]))")
+# Places of a break: spaces, and within a longer word after an operator
+_IN_TEXT = re.compile(r"(\s+|(?<=[^*/][*/])(?![*/\s]))")
 
 
 def wrapped(line: str, width: int, more: str = "", words: bool = False) -> list[str]:
@@ -25,8 +18,8 @@ def wrapped(line: str, width: int, more: str = "", words: bool = False) -> list[
     and within longer numbers.
     """
     start = line[: len(line) - len(line.lstrip())]
-    wrapper = (_Words if words else _Wrapper)(
-        width - len(more), subsequent_indent=f"{start}        ", break_long_words=words
-    )
+    indent = f"{start}        "
+    wrapper = textwrap.TextWrapper(width - len(more), "", indent, break_long_words=words)
+    wrapper.wordsep_re = _IN_TEXT if words else _IN_CODE
     *lines, last = wrapper.wrap(line) or [""]
     return [*(part + more for part in lines), last]
