@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from functools import partial
 from typing import Any
 
 import click
@@ -103,38 +102,35 @@ def _front(chain: ChainInput, front: riemann.Shock, sought: str) -> Answer:
     errors = {**front.errors}
     errors.pop("plateau" if sought == "behind" else "behind", None)
 
-    def row(key: str, label: str, read: Any, error: str, unit: str = "m/s") -> Row:
-        value = attempt(read)
+    def row(key: str, label: str, unit: str = "m/s") -> Row:
+        name, _, rule = key.partition(".")
+        value = attempt(front.leading_speed, rule) if rule else attempt(getattr, front, name)
         closed = isinstance(value, sp.Expr) and not value.has(sp.Float)
-        bound = errors.get(error, math.nan)
+        bound = errors.get(rule or name, math.nan)
         return Row(key, label, value, unit, expression=closed, error=bound)
 
-    kind = attempt(lambda: front.kind)
+    kind = attempt(getattr, front, "kind")
     head = {"kind": None if isinstance(kind, InputError) else kind}
     rows: list[Row | str] = [
         chain.text,
-        row("behind", "strain behind", lambda: front.behind, "behind", ""),
+        row("behind", "strain behind", ""),
         Row("ahead", "strain ahead", front.ahead),
     ]
-    mean = attempt(lambda: front.mean_strain)
+    mean = attempt(getattr, front, "mean_strain")
     if isinstance(mean, Estimate):
         rows.append(Row("mean_strain", "mean strain near the wall", mean))
     rows += [
         "",
         f"{head['kind'] or 'front'}, speeds dx/dt:",
-        row("plateau", "velocity of the wall", lambda: front.plateau, "plateau"),
-        row("trailing_speed", "trailing edge", lambda: front.trailing_speed, "trailing_speed"),
+        row("plateau", "velocity of the wall"),
+        row("trailing_speed", "trailing edge"),
+        *(row(f"leading_speed.{rule}", f"leading edge, {rule}") for rule in riemann.RULES),
     ]
-    for rule in riemann.RULES:
-        label = f"leading edge, {rule}"
-        rows.append(row(f"leading_speed.{rule}", label, partial(front.leading_speed, rule), rule))
     if kind != "rarefaction":
-        peak = "peak strain, doubling"
-        rows.append(row("peak", peak, lambda: front.peak, "peak", ""))
-        force = "peak force, doubling"
-        rows.append(row("peak_force", force, lambda: front.peak_force, "peak_force", "N"))
+        rows.append(row("peak", "peak strain, doubling", ""))
+        rows.append(row("peak_force", "peak force, doubling", "N"))
         if front.law.homogeneous and front.ahead.is_zero and not front.behind.free_symbols:
-            speed, force = attempt(lambda: front.series_speed), attempt(lambda: front.series_force)
+            speed, force = (attempt(getattr, front, f"series_{x}") for x in ("speed", "force"))
             rows.append(Row("series.speed", "leading pulse, series", speed, unit="m/s"))
             rows.append(Row("series.force", "peak force, series", force, unit="N"))
     faults = (row.value for row in rows if isinstance(row, Row))

@@ -54,8 +54,7 @@ def leading(chain: Dispersion, r: sp.Expr) -> sp.Expr:
     _demand_sound(r)
     if chain.cell.uniform:
         return sp.sqrt(r * (r - 1)) / sp.acosh(sp.sqrt(r))
-    demand_numbers(r.free_symbols, "the edge of unequal beads wants numbers")
-    demand_numbers(chain.I.free_symbols, "the edge of unequal beads wants numbers")
+    demand_numbers((r + chain.I).free_symbols, "the edge of unequal beads wants numbers")
     with mpmath.workdps(SHOCK_DIGITS + 10):
         f = _edge(chain, r)
         q = mpmath.acosh(mpmath.polyval(_trace(chain), -(f**2)) / 2) / chain.cell.size

@@ -23,14 +23,7 @@ import sympy as sp
 
 from lwa.base import latex
 from lwa.base.estimate import Estimate
-from lwa.base.exact import (
-    InputError,
-    demand_numbers,
-    one_of,
-    positive,
-    read_exact,
-    shorten,
-)
+from lwa.base.exact import InputError, demand_numbers, one_of, positive, read_exact, shorten
 from lwa.base.frozen import Value
 from lwa.cell import Cell
 from lwa.expansion.approximants import Resummed
@@ -81,12 +74,9 @@ class Shock(Value):
     def sound(self, p: Any) -> sp.Expr:
         """Speed of sound dx/dt on the strain p; 0 without load under a power law."""
         field = self._field.on(read_exact(p, "p"))
-        bare = self.law.homogeneous and field.p0.is_zero
-        return (
-            sp.S.Zero
-            if bare
-            else waves.written(field.sound_speed * field.time_scale, *self._numbers)
-        )
+        if self.law.homogeneous and field.p0.is_zero:
+            return sp.S.Zero
+        return waves.written(field.sound_speed * field.time_scale, *self._numbers)
 
     @cached_property
     def ratio(self) -> sp.Expr:
@@ -184,13 +174,9 @@ class Shock(Value):
         if self._free or self.kind == "rarefaction":
             return {}
         found: dict[str, float] = {}
-        with suppress(InputError):
-            found |= self._plateau_errors()
-        with suppress(InputError):
-            found |= self._pulse_errors()
-        if self.ahead or not self.law.homogeneous:
+        for errors in (self._plateau_errors, self._pulse_errors, self._edge_errors):
             with suppress(InputError):
-                found |= self._edge_errors()
+                found |= errors()
         return found
 
     def _plateau_errors(self) -> dict[str, float]:
@@ -220,9 +206,8 @@ class Shock(Value):
         with suppress(InputError):
             exact = chain._pulse.toda and uniform
             error = 0.0 if exact else bounds.trailing_error(off)
-            found["trailing_speed"] = error * abs(
-                float(self.sound(self.behind) / self.trailing_speed)
-            )
+            share = float(self.sound(self.behind) / self.trailing_speed)
+            found["trailing_speed"] = error * abs(share)
         return found
 
     @cached_property
