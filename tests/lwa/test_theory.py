@@ -25,11 +25,6 @@ def test_senseless_arguments_are_refused(arguments, words):
         homogenize(Dimer("m1", "m2"), **arguments)
 
 
-def test_a_cell_is_wanted():
-    with pytest.raises(InputError, match="Dimer"):
-        homogenize((1, 2))
-
-
 def test_floats_enter_as_their_decimals():
     assert (
         homogenize(Dimer(0.45, 0.123), k=1.5).pde.I

@@ -11,7 +11,7 @@ import sympy as sp
 from lwa import Dimer, Material, Sphere, homogenize
 from lwa.base import latex
 from lwa.spheres import hertz
-from tests.lwa.command.answers import result, run
+from tests.lwa.command.answers import STEEL_AND_PTFE, result, run
 
 SYMBOLS = {s.name: s for s in homogenize(Dimer("m1", "m2")).pde.H.free_symbols}
 
@@ -134,18 +134,6 @@ def test_dispersion(capsys):
     status, out, _ = run(capsys, "dispersion")
     assert status == 0
     assert "κ^4: -(m1**2 - m1*m2 + m2**2)/(3*(m1 + m2)**2)" in out
-
-
-STEEL_AND_PTFE = """
-[materials]
-steel = {E = 193e9, nu = 0.3}
-ptfe = {E = 1.46e9, nu = 0.46}
-[beads]
-heavy = {mass = 0.45e-3, radius = 2.38e-3, material = "steel"}
-light = {mass = 0.123e-3, radius = 2.38e-3, material = "ptfe"}
-[chain]
-cell = ["heavy", "light"]
-"""
 
 
 @pytest.fixture

@@ -7,18 +7,8 @@ import re
 
 import pytest
 
-from tests.lwa.command.answers import run
+from tests.lwa.command.answers import STEEL_AND_PTFE, run
 
-SPHERES = """
-[materials]
-steel = {E = 193e9, nu = 0.3}
-ptfe = {E = 1.46e9, nu = 0.46}
-[beads]
-heavy = {mass = 0.45e-3, radius = 2.38e-3, material = "steel"}
-light = {mass = 0.123e-3, radius = 2.38e-3, material = "ptfe"}
-[chain]
-cell = ["heavy", "light"]
-"""
 MASSES = {"cell": [1, 1], "k": 1.5, "stiffnesses": 2, "spacings": 0.5, "repeat": 19}
 
 
@@ -111,7 +101,7 @@ def test_lines_are_refused(capsys, line, words):
 )
 def test_files_of_spheres_are_refused(capsys, tmp_path, old, new, more, words):
     file = tmp_path / "spheres.toml"
-    file.write_text(SPHERES.replace(old, new))
+    file.write_text(STEEL_AND_PTFE.replace(old, new))
     refused(capsys, words, "wave", "--spheres", str(file), *more)
 
 

@@ -72,19 +72,6 @@ def test_the_command_in_si_units(tmp_path, capsys):
     assert "peak contact force 50" in out
 
 
-@pytest.mark.parametrize(
-    ("options", "message"),
-    [
-        (("--force", "1"), "--force goes with --spheres"),
-        (("--spheres", "none.toml", "--masses", "1"), "--masses and --spheres are both given"),
-    ],
-)
-def test_what_the_command_refuses(capsys, options, message):
-    status, out, err = ended(capsys, main, "expansion", *options)
-    assert (status, out, err.count("\n")) == (2, "", 1)
-    assert message in err
-
-
 @pytest.mark.parametrize("F", [0, -1, "F", float("nan")])
 def test_only_positive_forces_are_accepted(F):
     with pytest.raises(InputError, match=r"^force is "):

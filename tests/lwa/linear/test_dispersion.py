@@ -343,7 +343,6 @@ def two(**names):
         (lambda: Dispersion(Cell([1, "m2"])).branches(1), "'m2' has no value"),
         (lambda: Dispersion(Cell([1, 2], [1, 2]), "k").band_edges(), "'k' has no value"),
         (lambda: Dispersion(Cell(["1e200", "1e-200"])).branches(1), "the range of a float"),
-        (lambda: Dispersion([1, 2]), "cell is "),
         (lambda: Dispersion(Cell([1]), 0), "k is 0"),
     ],
 )

@@ -235,6 +235,7 @@ def test_numpy_broadcasts_and_takes_integers(functions_of):
     assert large == pytest.approx(found["beta"](k=2, m1=1, m2=np.array([1, 10]), D=3), rel=1e-15)
 
 
+@pytest.mark.slow
 def test_statements_have_as_many_lines_as_fortran_takes():
     """Standard Fortran has at most 255 continuation lines; six unlike contacts take more."""
     cell = Cell([f"m{i}" for i in range(6)], [f"A{i}" for i in range(6)])
@@ -343,15 +344,9 @@ def test_numbers():
         assert f" {text}" in LANGUAGES[language]([Function("f", "f", (), value)]).module([])
 
 
-def test_refusals(capsys):
-    with pytest.raises(
-        InputError, match="language is 'rust': one of numpy, c, fortran, javascript"
-    ):
+def test_refusals():
+    with pytest.raises(InputError, match="language is 'rust': one of numpy"):
         wave_of("paper").code("rust")
-    with pytest.raises(SystemExit) as ended:
-        main(["derive", "--format", "c"])
-    assert ended.value.code == 2
-    assert capsys.readouterr().err.count("\n") == 1
     with pytest.raises(NoSolitaryWave):
         wave_of("paper").at(k=3, m1=1, m2=100).code("c")
 

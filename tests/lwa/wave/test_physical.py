@@ -9,7 +9,7 @@ import sympy as sp
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lwa import Cell, Dimer, InputError, NoSolitaryWave, canonical_wave, homogenize
+from lwa import Cell, Dimer, InputError, canonical_wave, homogenize
 from lwa.base.quantities import QUANTITIES
 from tests.identity import same
 
@@ -140,17 +140,3 @@ def test_refused_forces(F, words):
     wave = homogenize(Dimer("m1", "m2"), k="q").pde.traveling_wave()
     with pytest.raises(InputError, match=f"^{words}"):
         wave.at_force(F)
-
-
-def test_refused_values():
-    answer = canonical_wave(Cell(["m"]), "3/2").at_force()
-    with pytest.raises(InputError, match=r"^extent is 'space': length or time is wanted"):
-        answer.fwhm("force", "space")
-    with pytest.raises(InputError, match=r"^quantity is 'bead'"):
-        answer.fwhm("bead")
-    with pytest.raises(InputError, match=r"^F is 0: it must be positive"):
-        answer.at(F=0)
-    with pytest.raises(InputError, match="'A' is not among"):
-        answer.at(A=1)
-    with pytest.raises(NoSolitaryWave, match="k > 1"):
-        canonical_wave(Cell(["m"])).at_force().at(k=1)

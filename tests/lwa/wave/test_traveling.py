@@ -16,6 +16,7 @@ masses = st.fractions(min_value="1/50", max_value=50, max_denominator=50)
 exponents = st.fractions(min_value="21/20", max_value=6, max_denominator=20)
 
 WAVE = homogenize(Dimer("m1", "m2")).pde.traveling_wave()
+IN_UNITS = canonical_wave(Cell(["m"]), "3/2").at_force()
 
 
 def number(value):
@@ -129,17 +130,23 @@ def test_no_wave_is_an_error_that_says_why(k, m1, m2, words):
         homogenize(Dimer(m1, m2), k=k).pde.traveling_wave()
 
 
-def test_refused_values():
-    with pytest.raises(InputError, match="'m3' is not among"):
-        WAVE.at(m3=1)
-    with pytest.raises(InputError, match="m1 is -1"):
-        WAVE.at(m1=-1)
-    with pytest.raises(InputError, match="quantity"):
-        WAVE.fwhm("bead")
-    with pytest.raises(InputError, match="root is 2"):
-        WAVE.reduction(2)
-    with pytest.raises(InputError, match="V is 0"):
-        WAVE.amplitude(0)
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda: WAVE.at(m3=1), "'m3' is not among"),
+        (lambda: WAVE.at(m1=-1), "m1 is -1"),
+        (lambda: WAVE.fwhm("bead"), "quantity"),
+        (lambda: WAVE.reduction(2), "root is 2"),
+        (lambda: WAVE.amplitude(0), "V is 0"),
+        (lambda: IN_UNITS.fwhm("bead"), "quantity is 'bead'"),
+        (lambda: IN_UNITS.at(F=0), "F is 0"),
+        (lambda: IN_UNITS.at(A=1), "'A' is not among"),
+        (lambda: canonical_wave(Cell(["m"])).at_force().at(k=1), "k > 1"),
+    ],
+)
+def test_refused_values(call, words):
+    with pytest.raises((InputError, NoSolitaryWave), match=words):
+        call()
 
 
 @pytest.mark.parametrize(
