@@ -179,10 +179,10 @@ def Dimer(
     return Cell(masses, stiffnesses=tuple(stiffnesses), spacing=spacing)
 
 
-def read_cell(value: Any, name: str = "cell") -> Cell:
+def read_cell(value: Any) -> Cell:
     """Return a cell; raise `lwa.InputError` for anything else."""
     if not isinstance(value, Cell):
-        raise InputError(f"{name} is {shorten(value)}: a Cell such as Dimer(m1, m2) is wanted")
+        raise InputError(f"cell is {shorten(value)}: a Cell such as Dimer(m1, m2) is wanted")
     return value
 
 

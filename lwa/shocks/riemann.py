@@ -201,11 +201,10 @@ class Shock(Value):
         chain = self._equal
         ratio = chain.leading_speed("doubling") / chain.leading_speed("dispersion")
         off, rho = abs(float(ratio) - 1), chain._pulse.stiffening
-        r, uniform = float(self.ratio), self.cell.uniform
-        found = {"dispersion": bounds.leading_error(off, rho, r, uniform)}
+        error = bounds.leading_error(off, rho, float(self.ratio), self.cell.uniform)
+        found = {"dispersion": error}
         with suppress(InputError):
-            exact = chain._pulse.toda and uniform
-            error = 0.0 if exact else bounds.trailing_error(off)
+            error = 0.0 if self._toda else bounds.trailing_error(off)
             share = float(self.sound(self.behind) / self.trailing_speed)
             found["trailing_speed"] = error * abs(share)
         return found
@@ -302,9 +301,10 @@ class Shock(Value):
 
 def _read(law: Any, cell: Cell) -> ContactLaw:
     """Read a law with an expression."""
-    if for_cell(law, cell).formless:
-        raise InputError(f"law is {law.text}: a front between two strains needs an expression")
-    return for_cell(law, cell)
+    contact = for_cell(law, cell)
+    if contact.formless:
+        raise InputError(f"law is {contact.text}: a front between two strains needs an expression")
+    return contact
 
 
 def shock(cell: Cell, law: ContactLaw, behind: Any, ahead: Any = 0) -> Shock:
@@ -320,8 +320,6 @@ def shock(cell: Cell, law: ContactLaw, behind: Any, ahead: Any = 0) -> Shock:
     >>> round(front.leading_speed() / front.sound(1), 4), round(front.peak.n(), 4)
     (0.8543, 1.7480)
     """
-    if not isinstance(cell, Cell):
-        raise InputError(f"cell is {shorten(cell)}: a Cell such as Cell([1]) is wanted")
     law = _read(law, cell)
     strains = {name: read_exact(p, name) for name, p in (("behind", behind), ("ahead", ahead))}
     for name, p in strains.items():
