@@ -1,8 +1,7 @@
 """Static states of a lattice in floats: compressions, F′, F″ and I at any mean compression.
 
 The displacements w inside a cell minimise the energy at a mean compression e = D p per spacing.
-By the stationarity
-of the energy F″ is the sum over the links of f″ (dδ/de)³ / P.
+The energy is stationary there, hence F″ is the sum over the links of f″ (dδ/de)³ / P.
 """
 
 from __future__ import annotations
