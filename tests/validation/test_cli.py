@@ -3,7 +3,6 @@
 import json
 import os
 import re
-import sys
 import tomllib
 from dataclasses import replace
 from pathlib import Path
@@ -25,8 +24,6 @@ from validation.scenes.checks import SceneError
 from validation.scenes.scenefile import document, read_scene, scene
 from validation.studies.limits import report
 from validation.studies.run import EXAMPLES, example
-
-COMMAND = Path(sys.executable).with_name("lwa-validate")
 
 
 def toml(text):

@@ -171,18 +171,8 @@ def test_unlike_beads_without_a_solitary_wave_get_a_note(capsys):
 def test_bands_in_si(capsys):
     """ω of the diatomic chain's band edges, √(2K/m), with K = (3/2) A^{2/3} F0^{1/3}."""
     heavy, light, A, F0 = 0.45e-3, 0.123e-3, 1e9, 2.0
-    found = result(
-        capsys,
-        "dispersion",
-        "--masses",
-        f"{heavy},{light}",
-        "--stiffnesses",
-        "1e9,1e9",
-        "--spacing",
-        "0.00476",
-        "--precompression",
-        "2",
-    )
+    options = ("--stiffnesses", "1e9,1e9", "--spacing", "0.00476", "--precompression", "2")
+    found = result(capsys, "dispersion", "--masses", f"{heavy},{light}", *options)
     K = 1.5 * A ** (2 / 3) * F0 ** (1 / 3)
     edges = [
         [0, math.sqrt(2 * K / heavy)],

@@ -177,11 +177,7 @@ def test_waves_that_do_not_exist_and_bad_forces():
         (lambda: lattice_wave(chain, 1, -1), InputError, "positive"),
         (lambda: lattice_wave(chain, "1/2", 1), NoSolitaryWave, "stiffen"),
         (lambda: lattice_wave(soft, "2/5", "1/5"), NoSolitaryWave, "stiffen"),
-        (
-            lambda: lattice_wave(attracted, 2, 1),
-            NoSolitaryWave,
-            "I is not positive",
-        ),
+        (lambda: lattice_wave(attracted, 2, 1), NoSolitaryWave, "I is not positive"),
         (lambda: lattice_wave(chain, "F").fwhm(), InputError, "has no value"),
         (lambda: lattice_wave(chain, 1).fwhm("colour"), InputError, "quantity"),
         (lambda: lattice_wave(chain, 1).fwhm(extent="colour"), InputError, "extent"),
