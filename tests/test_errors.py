@@ -228,6 +228,10 @@ def test_the_errors_of_a_shock(name):
     assert {*tight} <= {*found}
 
 
+def test_the_trailing_edge_of_a_toda_chain_is_exact():
+    assert shock(EQUAL, named("exponential", 1), "3/10", 0).errors["trailing_speed"] == 0
+
+
 def test_the_velocity_of_a_wall_has_the_error_of_the_strain():
     """k = 3 without load: a wall that is 33 % faster makes the mean strain p₋."""
     front = shock(EQUAL, Power(3), 1)
