@@ -55,7 +55,7 @@ def test_the_error_falls_with_the_tolerance(method):
 @pytest.mark.parametrize("name", TASKS)
 @pytest.mark.slow
 def test_rtol_is_the_error_of_the_peak_force(name):
-    """The error is at most 1.5 rtol, in the median 0.02 rtol at least where contacts open: errors
+    """The error is at most 1.5 rtol, in the median 0.005 rtol at least where contacts open: errors
     vary tenfold from one tolerance to the next, as steps meet the kinks elsewhere. On closed
     contacts the higher order is better than the lower one's estimate."""
     task = TASKS[name]()
@@ -65,7 +65,7 @@ def test_rtol_is_the_error_of_the_peak_force(name):
         for rtol in 10.0 ** np.arange(-11, -3, 0.4)
     ]
     assert max(shares) < 1.5
-    assert (0 if name == "precompressed" else 1 / 50) < np.median(shares) < 1
+    assert (0 if name == "precompressed" else 1 / 200) < np.median(shares) < 1
 
 
 # Costs
