@@ -35,6 +35,7 @@ _FREE = (
     Column("force", "force", error=True),
     Column("", "of the power law", format=".6g"),
 )
+_UNITS = "A bead's mass or the distance is 1 as none is given: see --masses, --spacing, --spheres."
 _NOTE = (
     "±: 95 % intervals by the scatter of the data; the long-wave theory's own error in the free "
     "law is not included. Its compression is that of a contact."
@@ -112,7 +113,11 @@ def law(
             Table(_FREE, rows, "rows", "free law F(δ)"),
         ),
         panels=(_speeds(measured, speed), Panel("compression", "contact force", laws, "xy")),
-        notes=(f"One power is {'enough' if fit.one_power else 'not enough'}: {bend}.", _NOTE),
+        notes=(
+            f"One power is {'enough' if fit.one_power else 'not enough'}: {bend}.",
+            *([] if spheres or (masses and spacing) else [_UNITS]),
+            _NOTE,
+        ),
         data={f"{name}_value": number.value for name, number in numbers.items()}
         | {f"{name}_error_value": number.error for name, number in numbers.items()}
         | {

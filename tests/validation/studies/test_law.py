@@ -215,6 +215,18 @@ def test_the_modulus_of_ptfe_comes_back_from_the_papers_chain(tmp_path):
     assert found["E_value"] == pytest.approx(1.46e9, rel=0.005)
 
 
+def test_units_that_were_not_given_are_said(tmp_path, chain):
+    """Without masses and a distance the law is in their units, and a note says so."""
+    file = tmp_path / "pulses.csv"
+    rows = zip(FORCES, speeds(chain, 1.5, 0.7), strict=True)
+    file.write_text("force,speed\n" + "".join(f"{f},{v}\n" for f, v in rows))
+    said = [
+        any("--masses" in note for note in law(str(file), **given).notes)
+        for given in ({}, {"masses": (2,)}, {"masses": (2,), "spacing": 3})
+    ]
+    assert said == [True, True, False]
+
+
 def written(tmp_path, text):
     file = tmp_path / "data.csv"
     file.write_text(text)
