@@ -120,12 +120,14 @@ class Pictured(ABC):
 
 
 def svg(panels: Sequence[Panel]) -> str:
-    """Return the figure of the panels as an SVG element; empty without panels."""
+    """Return the figure of the panels as an SVG element, named by its axes; empty without panels."""
     if not panels:
         return ""
     drawn = io.StringIO()
     figure(panels).savefig(drawn, format="svg")
-    return drawn.getvalue()[drawn.getvalue().index("<svg") :]
+    label = escape("; ".join(f"{panel.y} over {panel.x}" for panel in panels))
+    picture = drawn.getvalue().partition("<svg")[2]
+    return f'<svg role="img" aria-label="{label}"{picture}'
 
 
 def figure(panels: Sequence[Panel]) -> Figure:
