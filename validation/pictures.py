@@ -120,7 +120,7 @@ class Pictured(ABC):
 
 
 def svg(panels: Sequence[Panel]) -> str:
-    """Return the figure of the panels as an SVG element, named by its axes; empty without panels."""
+    """Return the figure of the panels as an SVG element named by its axes, or an empty text."""
     if not panels:
         return ""
     drawn = io.StringIO()
