@@ -26,7 +26,7 @@ class Estimate(Value):
         return (self * (1 / other.value)).widened(other.error / other.value)
 
     def widened(self, relative: float) -> Self:
-        """The same value with a further error, relative to the value."""
+        """Return an estimate of this value with a further error, relative to the value."""
         return replace(self, error=self.error + abs(self.value) * relative)
 
     def latex(self) -> str:
