@@ -44,6 +44,7 @@ def known_extent(extent: str) -> str:
 
 
 NOT_RISING = "F′ is not positive and finite from p0 to p0 + B"
+VANISHING = "F′ is 0 between p0 and p0 + B, or so small that its terms cancel to 0"
 NOT_STIFFENING = "the law does not stiffen towards p0 + B: a smaller wave would be as fast"
 
 

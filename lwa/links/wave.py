@@ -35,8 +35,6 @@ from lwa.base.arrays import Array, finite
 from lwa.base.exact import InputError, demand_numbers, integer, number, positive, read_exact
 from lwa.base.frozen import Value
 from lwa.base.quantities import (
-    NOT_RISING,
-    NOT_STIFFENING,
     NoSolitaryWave,
     known_extent,
     known_quantity,
@@ -92,9 +90,8 @@ class LatticeWave(Value):
         """Raise an error for numbers without a wave."""
         at = f"precompression = {self.precompression}, force = {self.force}"
         p0, B = self._ends
-        rises, stiffens = self._quadrature(self._static).conditions(p0, B)[:, 0]
-        if not (rises and stiffens):
-            raise NoSolitaryWave(f"{at}: {NOT_STIFFENING if rises else NOT_RISING}")
+        if reason := self._quadrature(self._static).refusals(p0, B)[0]:
+            raise NoSolitaryWave(f"{at}: {reason}")
         if not np.all(self._samples(p0 + B * np.linspace(0.01, 1, 100))[2] > 0):
             raise NoSolitaryWave(f"{at}: I is not positive from the load to the peak")
         for resonator in self.lattice.resonators:

@@ -31,6 +31,7 @@ from lwa.base.quantities import (
     NOT_RISING,
     NOT_STIFFENING,
     RISE,
+    VANISHING,
     NoSolitaryWave,
     known_quantity,
     refusal_under_power,
@@ -171,9 +172,12 @@ class BackgroundWave(Value):
         flank = self._flank(B, WIDTH_DIGITS)
         with mpmath.workdps(30):
             rise = mpmath_number(flank.B)
-            slopes = [flank.F1(rise * i / _PLACES) for i in range(_PLACES + 1)]
-            if not all(mpmath.im(x) == 0 and 0 < x < mpmath.inf for x in slopes):
+            # At p0 itself the slope may be 0: without a load, as that of a power.
+            slopes = [flank.F1(rise * i / _PLACES) for i in range(1, _PLACES + 1)]
+            if not all(mpmath.im(x) == 0 and 0 <= x < mpmath.inf for x in slopes):
                 return NOT_RISING
+            if not all(slopes):
+                return VANISHING
         with mpmath.workdps(flank.working_digits):
             rise = mpmath_number(flank.B)
             Q = [flank.Q(rise * i / _PLACES) for i in range(1, _PLACES + 1)]

@@ -5,17 +5,16 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, partial
+from typing import Any
 
 import numpy as np
 import sympy as sp
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from lwa.base.arrays import Array, finite, function_of
 from lwa.base.exact import InputError, demand_numbers, number
 from lwa.base.frozen import Value
 from lwa.base.quantities import (
-    NOT_RISING,
-    NOT_STIFFENING,
     NoSolitaryWave,
     known_quantity,
     refusal_under_power,
@@ -106,8 +105,8 @@ class NumericBackground(Value):
                 exists = (base >= 0) & (sign * rise > 0) & (base + rise > 0)
                 unit = np.ldexp(0.5, np.frexp(np.maximum(base, base + rise))[1])  # rounds nothing
         else:
-            rises, stiffens = _by_block(self._rule.conditions, base, rise)
-            exists = rises & stiffens
+            reasons = _by_block(self._rule.refusals, base, rise)
+            exists = reasons == ""
         if not np.all(exists):
             i = int(np.argmin(exists))
             start, height = base.flat[i], rise.flat[i]
@@ -115,7 +114,7 @@ class NumericBackground(Value):
                 excess = self.law.exponent - 1
                 reason = refusal_under_power(excess, sp.Float(start), sp.Float(height))
             else:
-                reason = NOT_STIFFENING if rises.flat[i] else NOT_RISING
+                reason = reasons.flat[i]
             raise NoSolitaryWave(f"p0 = {start}, B = {height}: {reason}")
         return base / unit, rise / unit, unit
 
@@ -130,7 +129,9 @@ def _rescaled(square: Array, unit: Array, excess: sp.Expr) -> Array:
         return np.asarray(np.ldexp(square * np.exp2(part), whole.astype(int)))
 
 
-def _by_block(function: Callable[[Array, Array], Array], p0: Array, B: Array) -> Array:
+def _by_block(
+    function: Callable[[Array, Array], NDArray[Any]], p0: Array, B: Array
+) -> NDArray[Any]:
     """Apply a function of two flat arrays to blocks of broadcast ones; results may have rows."""
     base, rise = p0.ravel(), B.ravel()
     starts = range(0, max(len(base), 1), _BLOCK)

@@ -24,9 +24,11 @@ from functools import cache
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from lwa.base.arrays import Array
 from lwa.base.exact import InputError
+from lwa.base.quantities import NOT_RISING, NOT_STIFFENING, VANISHING
 
 Rate = Callable[[Array, Array], Array]
 Samples = Callable[[Array], tuple[Array, Array, Array]]
@@ -180,15 +182,19 @@ class Quadrature:
 
         return self._converged(compute, p0, B, start=_FAR)
 
-    def conditions(self, p0: Array, B: Array) -> Array:
-        """Test two conditions, a row each: 0 < F′ < ∞; B Q′(B) > 0 and Q(v) < Q(B) below B."""
+    def refusals(self, p0: Array, B: Array) -> NDArray[np.str_]:
+        """Reasons why there are no waves, "" for a wave: 0 < F′ < ∞, BQ′(B) > 0, Q(v) < Q(B)."""
         g = grid(_STEPS[0], _FAR)
         with np.errstate(all="ignore"):
             F1, F2, _ = self.samples(g.strains(p0, B))
             ends = [F2 @ (2 * g.s * g.y2 * g.ds), F2 @ (g.y2**2 * g.ds)]  # Q′(B), (Q(B) - Q(0))/B
             rises = B[:, None] * np.column_stack([F2 @ g.kernel.T, *ends])
-        slopes = (F1 > 0).all(axis=1) & np.isfinite(F1[:, -1])
-        return np.stack([slopes, (rises > 0).all(axis=1)])
+        missed = {
+            NOT_RISING: ~(F1 >= 0).all(axis=1) | ~np.isfinite(F1[:, -1]),
+            VANISHING: (F1 == 0).any(axis=1),
+            NOT_STIFFENING: ~(rises > 0).all(axis=1),
+        }
+        return np.select(list(missed.values()), list(missed), "")
 
     def _converged(
         self,

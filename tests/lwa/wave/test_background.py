@@ -14,6 +14,7 @@ from lwa import (
     Cell,
     Dimer,
     InputError,
+    Law,
     Material,
     NoSolitaryWave,
     Power,
@@ -23,7 +24,7 @@ from lwa import (
     general,
     homogenize,
 )
-from lwa.law import named
+from lwa.law import DELTA, named
 from tests.identity import same
 
 CHAIN = Cell([1], spacing=1)
@@ -295,6 +296,26 @@ def test_waves_exist_on_the_stiffening_side_only():
             wave.numeric().speed([load, load], float(sp.Rational(rise)))
     with pytest.raises(NoSolitaryWave, match="no sound"):
         _ = compression(load=0).kdv
+
+
+def test_a_law_that_begins_as_a_power_has_waves_without_a_load():
+    """V² = 2W(B)/B² at any B, and the widths of both rules."""
+    wave = background_wave(CHAIN, 0, law=named("hertz2", 1, 1))
+    for B in map(sp.Rational, ("1e-30", "1e-3", "1")):
+        square = 2 * (B ** sp.Rational(5, 2) / 5 + B ** sp.Rational(7, 2) / 7) * 2 / B**2
+        assert abs(sp.N(wave.speed(B) ** 2 / square, 30) - 1) < 1e-14
+        assert wave.numeric().speed_squared(0, float(B)) == pytest.approx(float(square), rel=1e-14)
+        assert float(wave.fwhm(B)) == pytest.approx(wave.numeric().fwhm(0, float(B)), rel=1e-12)
+
+
+def test_a_slope_whose_terms_cancel_is_not_called_negative():
+    """1 - cos δ is 0 in 16 digits below 1e-8, in 30 below 1e-15; the wave is that of δ³/6."""
+    law = Law(DELTA - sp.sin(DELTA))
+    wave = background_wave(CHAIN, 0, law=law)
+    assert float(wave.speed("1e-3")) == pytest.approx(math.sqrt(1 / 12) * 1e-3, rel=1e-6)
+    for call in (lambda: wave.speed("1e-20"), lambda: wave.numeric().speed(0, 1e-3)):
+        with pytest.raises(NoSolitaryWave, match="cancel"):
+            call()
 
 
 def test_bad_arguments_are_refused():
