@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 import sympy as sp
 from numpy.typing import ArrayLike, NDArray
+from sympy.core.function import AppliedUndef
 
 from lwa.base.exact import InputError, shorten
 
@@ -34,7 +35,12 @@ def finite(values: ArrayLike, name: str) -> Array:
 
 
 def function_of(x: sp.Symbol, value: sp.Expr) -> Callable[[Array], Array]:
-    """Compile an expression in a symbol to a function of arrays."""
+    """Compile an expression in a symbol to a function of arrays.
+
+    Raises `lwa.InputError` for a function without an expression, such as the law `general`.
+    """
+    if value.has(AppliedUndef):
+        raise InputError(f"{shorten(value)} has no expression: floats need one")
     # NumPy has no integers of more than 63 bits.
     long = {q: sp.Float(q, 17) for q in value.atoms(sp.Rational) if q.p.bit_length() > 53}
     function = sp.lambdify(x, value.xreplace(long), "numpy")

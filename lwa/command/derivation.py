@@ -135,7 +135,7 @@ def _ansatz(theory: Theory) -> list[Row | str]:
         rows += [
             "w = λ (u + Σ b_n D^n ∂_x^n u), the linear part of the second particle's field",
             f"  λ = {theory.amplitude_ratio}",
-            *(Row(f"ansatz.{n}", f"b{n}", b, digits=False) for n, b in theory.ansatz.items()),
+            *(Row(f"ansatz.{n}", f"b{n}", b, digits=0) for n, b in theory.ansatz.items()),
             "",
         ]
     for i, series in theory.slaved.items():

@@ -74,7 +74,7 @@ def _linear(chain: Dispersion, order: int, loaded: LoadedChain | None) -> Answer
     rows += [
         "",
         f"about the load {loaded.precompression}, law {loaded.law.F}:",
-        Row("precompression", "", loaded.precompression, digits=False),
+        Row("precompression", "", loaded.precompression, digits=0),
         Row("spring_constants", "spring constants", loaded.spring_constants),
         Row("sound_speed", "sound speed dx/dt", loaded.sound_speed),
         *_bands_text(bands),
@@ -201,7 +201,7 @@ def _envelope(chain: ChainInput, equation: Envelope, breather: Breather | None) 
         "u = Ψ(X, T) U e^{i(κ n - ω t)} + c.c., Σ m |U|² = 1, n and κ per cell",
         "i Ψ_T + ½ ω'' Ψ_XX = χ |Ψ|² Ψ",
         "",
-        Row("wavenumber", "κ", equation.wavenumber, digits=False),
+        Row("wavenumber", "κ", equation.wavenumber, digits=0),
         Row("frequency", f"frequency {name}", equation.frequency / turn, "Hz"),
         Row("group_velocity", "dω/dκ", equation.group_velocity, "cells/s"),
         Row("dispersion", "ω''", equation.dispersion, "cells²/s"),

@@ -14,6 +14,7 @@ from typing import Any
 
 import click
 import sympy as sp
+from sympy.core.function import AppliedUndef
 
 from lwa.base import latex
 from lwa.base.estimate import Estimate
@@ -22,7 +23,7 @@ from lwa.base.frozen import Shown
 from lwa.base.lines import wrapped
 from lwa.expansion.approximants import Resummed
 
-PRINTED_DIGITS = 15  # significant digits of a printed number, all of them correct
+PRINTED_DIGITS = 15  # significant digits of a printed number that is exact
 WIDTH = 100  # columns of text
 FRACTION = 24  # characters of a fraction beyond which text has its digits alone
 LONG = 160  # characters of an exact number beyond which text has its digits alone
@@ -37,7 +38,7 @@ class Row:
     key : name in JSON; "fwhm.force" is the entry "force" of "fwhm". Not in JSON where empty.
     label : name in text; not in text where empty.
     unit : unit of the value for a chain in SI.
-    digits : False for a value that is printed without its digits.
+    digits : digits that are printed; 0 for a value that is printed without.
     expression : True if JSON has the expression besides its digits.
     error : bound of the error of an expression, relative; NaN for none that is stated.
     """
@@ -46,7 +47,7 @@ class Row:
     label: str
     value: Any
     unit: str = ""
-    digits: bool = True
+    digits: int = PRINTED_DIGITS
     expression: bool = True
     error: float = math.nan
 
@@ -87,7 +88,8 @@ class Answer:
         ones = {s: sp.Integer(-1 if s.is_negative else 1) for s in letters}
         if self.spacing.is_Symbol:
             ones[self.spacing] = sp.S.One
-        return value.xreplace(ones)
+        # a derivative by D, of a law without an expression, at D = 1
+        return value.subs(ones) if value.has(sp.Derivative) else value.xreplace(ones)
 
     # --- JSON -------------------------------------------------------------------------------
 
@@ -144,19 +146,20 @@ class Answer:
             return f": {row.value}"
         if isinstance(row.value, Estimate):
             return f" = {summed(row.value, unit, self.orders)}"
-        digits = significant(row.error) if row.error > 0 else PRINTED_DIGITS
-        text = ", ".join(self._number_text(x, row.digits, digits) for x in _parts(row.value))
+        digits = significant(row.error) if row.error > 0 else row.digits
+        text = ", ".join(self._number_text(x, digits) for x in _parts(row.value))
         if row.error > 0 and (number := as_float(self.plain(row.value))):
             text += f" ± {abs(number) * row.error:.1e}{self._length_unit(row.value)}"
         return f" = {text}{unit}"
 
-    def _number_text(self, value: sp.Expr, both: bool, digits: int) -> str:
-        """The value and, if ``both``, its digits; a short fraction, or symbols, without digits."""
+    def _number_text(self, value: sp.Expr, digits: int) -> str:
+        """The value and its ``digits``, if any; a short fraction, or symbols, without digits."""
         if self.si:
-            return approximate(value, digits)
+            return approximate(value, digits or PRINTED_DIGITS)
         plain, written = self.plain(value), str(value)
         short = plain.is_Rational and len(written) <= FRACTION
-        if not both or short or value.free_symbols - {self.spacing}:
+        unknown = value.free_symbols - {self.spacing} or value.has(AppliedUndef)
+        if not digits or short or unknown:
             return written
         number = sp.sstr(evaluated(plain, digits), full_prec=False) + self._length_unit(value)
         long = plain.has(sp.Float) or plain.is_Rational or len(written) > LONG

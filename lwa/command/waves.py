@@ -27,7 +27,7 @@ from lwa.command.options import (
 from lwa.command.rows import Answer, Row, attempt
 from lwa.spheres.hertz import EXPONENT
 from lwa.theory import Theory, homogenize
-from lwa.wave.background import BackgroundWave
+from lwa.wave.background import WIDTH_DIGITS, BackgroundWave
 from lwa.wave.physical import PrecompressedWave
 from lwa.wave.traveling import TravelingWave
 
@@ -177,8 +177,8 @@ def _compact(theory: Theory, wave: TravelingWave, style: str) -> Answer:
         Row("B", "B", wave.amplitude()),
         Row("speed", "V_s", wave.speed()),
         f"  F_m ∝ V_s^({wave.force_exponent});  dx/dt = V_s · {wave.time_scale}",
-        Row("speed_factor", "", wave.speed_factor, digits=False),
-        Row("time_scale", "", wave.time_scale, digits=False),
+        Row("speed_factor", "", wave.speed_factor, digits=0),
+        Row("time_scale", "", wave.time_scale, digits=0),
         Row("log_B", "", log_B, expression=False),
         "",
         "v = z^p, integrating factor z^a: z'' = μ z^η - σ z",
@@ -245,14 +245,16 @@ def _on_background(theory: Theory, wave: BackgroundWave) -> Answer:
         FIELDS[theory.closure.field],
         f"u_x = p0 + v(ξ), ξ = x - V_s τ, p0 = {wave.p0}; v rises by B",
         "",
-        Row("background", "", wave.p0, digits=False),
-        Row("I", "", wave.I, digits=False),
-        Row("speed", "V_s", wave.speed(), digits=False),
-        Row("time_scale", "dx/dt over V_s", wave.time_scale, digits=False),
+        Row("background", "", wave.p0, digits=0),
+        Row("I", "", wave.I, digits=0),
+        Row("speed", "V_s", wave.speed(), digits=0),
+        Row("time_scale", "dx/dt over V_s", wave.time_scale, digits=0),
     ]
     if speed is not None:
         rows.append(Row("speed", "V_s at B = 1", speed, expression=False))
-    rows += _fwhm_rows("fwhm", "FWHM of the {} at B = 1", widths, expression=False)
+    rows += _fwhm_rows(
+        "fwhm", "FWHM of the {} at B = 1", widths, expression=False, digits=WIDTH_DIGITS
+    )
     shown: list[Shown] = [wave]
     try:
         kdv = wave.kdv
@@ -284,13 +286,12 @@ def _at_one(wave: BackgroundWave) -> tuple[sp.Expr | None, dict[str, sp.Expr]]:
         wave = wave.at(**{D.name: 1})
     try:
         speed = wave.speed(1)
-        if speed.free_symbols - {wave.cell.spacing}:
-            return None, {}
-        return speed, {q: wave.fwhm(1, q) for q in QUANTITIES}
-    except NoSolitaryWave:
+    except (NoSolitaryWave, InputError):
         return None, {}
-    except InputError:
-        return speed, {}
+    if speed.free_symbols - {wave.cell.spacing}:
+        return None, {}
+    widths = {q: attempt(wave.fwhm, 1, q) for q in QUANTITIES}
+    return speed, {q: x for q, x in widths.items() if not isinstance(x, InputError)}
 
 
 def _precompressed(chain: ChainInput, theory: Theory, wave: PrecompressedWave) -> Answer:
@@ -315,6 +316,7 @@ def _precompressed(chain: ChainInput, theory: Theory, wave: PrecompressedWave) -
     ]
     for key, label, extent, unit in WIDTHS:
         if not isinstance(widths := attempt(_fwhm, wave, extent), InputError):  # no symbols
-            rows += _fwhm_rows(key, label, widths, unit=unit, expression=False)
+            settings = {"unit": unit, "expression": False, "digits": WIDTH_DIGITS}
+            rows += _fwhm_rows(key, label, widths, **settings)
     notes = hertz_note(chain, wave.force)
     return Answer(chain_json(theory), rows, chain.si, theory.cell.spacing, [wave], notes)

@@ -54,7 +54,7 @@ class NumericBackground(Value):
 
     def speed_squared(self, p0: ArrayLike, B: ArrayLike) -> Array:
         """Square V² = Q(B) of the speed; for power laws to k = 5 good to 8 ulps at any p0/B."""
-        p0, B, unit = self._waves(p0, B)
+        p0, B, unit = self.scaled(p0, B)
         square = _by_block(self._rule.squares, p0, B)
         return (_rescaled(square, unit, self.law.exponent - 1) if self.law.homogeneous else square)[
             ()
@@ -67,14 +67,14 @@ class NumericBackground(Value):
     def fwhm(self, p0: ArrayLike, B: ArrayLike, quantity: str = "strain") -> Array:
         """Full width at half maximum of the rise of "strain", "force" or "velocity"."""
         force = known_quantity(quantity) == "force"
-        p0, B, _ = self._waves(p0, B)
+        p0, B, _ = self.scaled(p0, B)
         half_widths = partial(self._rule.half_widths, rate=_slope if force else None)
         return 2 * _by_block(half_widths, p0, B)[()]
 
     def profile(self, xi: ArrayLike, p0: float, B: float) -> Array:
         """Strain v(ξ) of one wave at the places ξ, right to 1e-9 of the larger of v and B/1000."""
         places = np.abs(finite(xi, "xi"))
-        base, rise, unit = self._waves(p0, B)
+        base, rise, unit = self.scaled(p0, B)
         if base.ndim:
             raise InputError("p0 or B is an array: a profile is that of one wave")
         ratio = self._rule.profile(base[None], rise[None], places.ravel())
@@ -93,8 +93,11 @@ class NumericBackground(Value):
         close = CLOSE_OF_TABLES if self.law.tabulated else CLOSE
         return Quadrature(lambda p: (F1(p), F2(p), np.full(p.shape, value)), close)
 
-    def _waves(self, p0: ArrayLike, B: ArrayLike) -> tuple[Array, Array, Array]:
-        """Return p0/unit, B/unit and unit, broadcast; unit is 1, or a power of two for δ^k."""
+    def scaled(self, p0: ArrayLike, B: ArrayLike) -> tuple[Array, Array, Array]:
+        """Return p0/unit, B/unit and unit, broadcast; unit is 1, or a power of two for δ^k.
+
+        Raises `lwa.NoSolitaryWave` where there is no wave.
+        """
         base, rise = np.broadcast_arrays(finite(p0, "p0"), finite(B, "B"))
         if not np.all(rise):
             raise InputError("B is 0: a wave rises or falls by B")

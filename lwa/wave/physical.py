@@ -27,7 +27,7 @@ from lwa.base.quantities import NoSolitaryWave, known_extent, known_quantity, st
 from lwa.cell import Cell, check_names
 from lwa.force import ContactLaw, for_cell, substituted
 from lwa.law import Power
-from lwa.wave.background import WIDTH_DIGITS, BackgroundWave, taken_names
+from lwa.wave.background import BackgroundWave, taken_names
 from lwa.wave.closed import CompactWave
 
 if TYPE_CHECKING:
@@ -271,7 +271,7 @@ class PrecompressedWave(Value):
         if known_extent(extent) == "length":
             return length
         # In units of D, where D is a symbol: SymPy does not follow terms with symbols that cancel.
-        return length / (evaluated(waves.in_unit(self.speed), WIDTH_DIGITS) * waves.unit)
+        return length / (evaluated(waves.in_unit(self.speed), 15) * waves.unit)
 
     def at(self, **values: Any) -> PrecompressedWave:
         """Substitute values for symbols, as `lwa.TravelingWave.at`."""

@@ -221,10 +221,8 @@ class Quadrature:
             left = left[~good]
             if not len(left):
                 return result
-        raise InputError(
-            f"p0 = {p0[left[0]]:.6g}, B = {B[left[0]]:.6g}: the law changes too much over the wave "
-            "for float64; `lwa.BackgroundWave` computes with more digits"
-        )
+        at = f"p0 = {p0[left[0]]:.6g}, B = {B[left[0]]:.6g}"
+        raise InputError(f"{at}: the law changes too much over the wave for float64")
 
 
 def _lengths(g: Grid, B: Array, F2: Array, J: Array) -> Array:
