@@ -13,7 +13,7 @@ mean, is an explicit function of the force. Other lattices are solved in numbers
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from math import pi
@@ -36,10 +36,10 @@ from lwa.base.frozen import Value
 from lwa.cell import Cell, check_distinct
 from lwa.force import ContactLaw, for_cell
 from lwa.law import Power
-from lwa.links.bloch import Graph, acoustic, solved, solved_exactly
+from lwa.linear.dispersion import Dispersion
+from lwa.links.bloch import Graph, acoustic
 from lwa.links.statics import Statics
 
-_MOST_SYMBOLIC = 4  # particles; a form with all symbols of five takes minutes
 _NO_LOAD = 1e-9  # stiffness of a lattice of springs 1 that carries no load, but for rounding
 
 
@@ -163,7 +163,7 @@ class Lattice(Value):
     @property
     def in_series(self) -> bool:
         """True if each particle has one link, to the next particle."""
-        return self._graph(sp.sympify).in_series
+        return self._graph.in_series
 
     @property
     def exact(self) -> bool:
@@ -216,25 +216,18 @@ class Lattice(Value):
     def dispersion(self, force: Any) -> sp.Expr:
         """Coefficient I in Ω² = c² (q² - I q⁴ + …) of the lattice linearised under a mean force.
 
-        Resonators count by their mass only (`lwa.links.wave`). Symbols, for links in series of
-        up to four particles, give a closed form in the spring constants.
+        Resonators do not count (`lwa.links.wave`). Symbols, for links in series, give a closed form
+        in the spring constants.
         """
         force = read_exact(force, "force")
         if not force.free_symbols.union(self.symbols):
             e = np.array(number(self.mean_compression(force)))
             return sp.Float(float(self.statics.samples(e)[2])) * self.spacing**2
-        if self.size > _MOST_SYMBOLIC:
-            raise InputError(f"a cell of {self.size} particles: numbers are wanted")
-        # Masses, spring constants and cosines as elements of a field of fractions.
-        links = self.links
-        values = [*self.masses, *self._springs(force), *(link.cosine for link in links)]
-        letters = {v: sp.Dummy() for v in values if not v.is_Rational}
-        domain = sp.QQ.frac_field(*letters.values())
-        x = np.array([domain.from_sympy(letters.get(v, v)) for v in values])
-        masses, springs, cosines = np.split(x, [self.size, self.size + len(links)])
-        graph = Graph(self.size, [(a.i, a.j, c) for a, c in zip(links, cosines, strict=True)])
-        I = acoustic(graph, springs, masses, solved_exactly).dispersion
-        return domain.to_sympy(I).xreplace({x: v for v, x in letters.items()}) * self.spacing**2
+        springs = self._springs(force)
+        along = [K * link.cosine**2 for K, link in zip(springs, self.links, strict=True)]
+        letters = {sp.Dummy(positive=True): x for x in (*self.masses, *along)}
+        masses, stiffnesses = tuple(letters)[: self.size], tuple(letters)[self.size :]
+        return Dispersion(Cell(masses, stiffnesses), 1).I.xreplace(letters) * self.spacing**2
 
     @property
     def resonance_sum(self) -> sp.Expr:
@@ -263,20 +256,21 @@ class Lattice(Value):
         forces = (tuple(link.factor * link.law.at(x, n) for n in range(3)) for link in self.links)
         compiled = (tuple(function_of(x, f) for f in triple) for triple in forces)
         masses = np.array([float(m) for m in self.masses])
-        return Statics(self._graph(float), masses, tuple(compiled))
+        graph = Graph(self.size, tuple((x.i, x.j, float(x.cosine)) for x in self.links))
+        return Statics(graph, masses, tuple(compiled))
 
-    def _graph(self, kind: Callable[[sp.Expr], Any]) -> Graph:
-        return Graph(self.size, tuple((x.i, x.j, kind(x.cosine)) for x in self.links))
+    @property
+    def _graph(self) -> Graph:
+        """The links without their angles."""
+        return Graph(self.size, tuple((x.i, x.j, 1.0) for x in self.links))
 
     def _check_paths(self) -> None:
         """Raise `lwa.InputError` unless the links join all particles and carry a load."""
-        graph = self._graph(lambda cosine: 1.0)
-        if np.linalg.matrix_rank(graph.incidence) < self.size - 1:
+        if np.linalg.matrix_rank(self._graph.incidence) < self.size - 1:
             raise InputError("the links leave a particle of the cell free")
-        springs, masses = np.ones(len(self.links)), np.ones(self.size)
-        with np.errstate(invalid="ignore", divide="ignore"):
-            stiffness = acoustic(graph, springs, masses, solved).stiffness
-        if stiffness < _NO_LOAD:
+        with np.errstate(all="ignore"):
+            branch = acoustic(self._graph, np.ones(len(self.links)), np.ones(self.size))
+        if branch.stiffness < _NO_LOAD:
             raise InputError("the links carry no load from cell to cell")
 
 

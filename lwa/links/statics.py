@@ -109,7 +109,7 @@ class Statics:
         with np.errstate(all="ignore"):
             # A link that is so much stiffer is rigid for I, whose solution loses as many digits.
             soft = np.minimum(springs, _RIGID * np.abs(springs).min(axis=-1, keepdims=True))
-            stiffness, dispersion, shares = acoustic(self.graph, soft, self.masses, solved)
+            stiffness, dispersion, shares = acoustic(self.graph, soft, self.masses)
             if self.graph.in_series:
                 stiffness = size / (1 / (springs * self.graph.spans**2)).sum(axis=-1)
                 shares = stiffness[..., None] / (springs * self.graph.spans)

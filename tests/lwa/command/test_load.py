@@ -20,6 +20,15 @@ def test_derive_any_law(capsys):
     assert found["conservative"] is True
 
 
+@pytest.mark.parametrize("spacing", ["D", "1"])
+def test_a_wave_under_a_law_without_an_expression(capsys, spacing):
+    options = ("wave", "--law", "general", "--masses", "1", "--spacing", spacing)
+    found = result(capsys, *options, "--background", "1")
+    assert found["kdv"]["sound_speed"].startswith("sqrt(")
+    assert "fwhm_value" not in found
+    assert run(capsys, *options, "--background", "1")[0] == 0
+
+
 def test_derive_a_named_law(capsys):
     found = result(capsys, "derive", "--law", "hertz2:1,1/2", "--masses", "1", "--order", "6")
     assert found["law"] == "delta**(5/2)/2 + delta**(3/2)"
