@@ -1,10 +1,8 @@
-"""Types of NumPy arrays, a reader of arrays, and values that hold arrays."""
+"""The type of an array of numbers, a reader of arrays, and compiled expressions."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import Field, fields
-from typing import Any, ClassVar
+from collections.abc import Callable
 
 import numpy as np
 import sympy as sp
@@ -46,31 +44,3 @@ def function_of(x: sp.Symbol, value: sp.Expr) -> Callable[[Array], Array]:
     function = sp.lambdify(x, value.xreplace(long), "numpy")
 
     return lambda at: np.broadcast_to(np.asarray(function(at), np.float64), at.shape)
-
-
-class ArrayValue:
-    """Base of frozen dataclasses with array fields (``eq=False``): equal if all fields are equal.
-
-    A copy and a pickle of such a value compare equal to it.
-    """
-
-    __dataclass_fields__: ClassVar[dict[str, Field[Any]]]
-
-    def __eq__(self, other: object) -> bool:
-        if type(other) is not type(self):
-            return NotImplemented
-        names = (field.name for field in fields(self) if field.compare)
-        return all(_same(getattr(self, name), getattr(other, name)) for name in names)
-
-    def __hash__(self) -> int:
-        values = (getattr(self, field.name) for field in fields(self))
-        return hash(tuple(value for value in values if isinstance(value, int | float | str)))
-
-
-def _same(a: Any, b: Any) -> bool:
-    """Equality of arrays (NaN equals NaN), of mappings of arrays, or of anything else."""
-    if isinstance(a, Mapping) and isinstance(b, Mapping):
-        return a.keys() == b.keys() and all(_same(a[key], b[key]) for key in a)
-    if isinstance(a, np.ndarray):
-        return np.array_equal(a, b, equal_nan=a.dtype.kind == "f")
-    return bool(a == b)

@@ -8,8 +8,9 @@ agree by chance, so that the error is the largest difference among the approxima
 
 The series of equal beads sums well. The difference that unlike beads make is summed apart, since
 its terms grow from the first on where masses are nearly equal. If every approximant has a pole, the
-series is only asymptotic: the sum ends before the smallest term, whose size is the error. A series
-whose later windows spread more is called asymptotic too. The error by radiation
+series is only asymptotic: the sum ends before the first term that is smaller than the next, and the
+error is `LEFT_OUT` times that term. A series whose later windows spread more is called asymptotic
+too. The error by radiation
 (`lwa.expansion.radiation`) is added.
 """
 
@@ -17,6 +18,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import mpmath
 import sympy as sp
@@ -34,6 +36,13 @@ SAFETY = 3.5
 Measured on 3,564 sums of equal beads, k = 1.05 … 3.5, orders 6 … 16, against the lattice's waves:
 at 2 the error misses 116 sums (the speed at k = 2.05 … 2.75 by up to 1.7), at 3 it misses 49, at
 3.5 none; the median of error over deviation is 20.
+"""
+
+LEFT_OUT = 1.5
+"""Ratio of the error estimate to the first term that is left out of an asymptotic series.
+
+Measured on 278 sums of dimers, c² and widths at k = 1.1 … 1.75 and m2/m1 = 0.4 … 0.95, against the
+pulses of struck chains: at 1 the error misses 21 widths by up to 18 %, at 1.5 none.
 """
 
 TERM_DIGITS = 60
@@ -136,12 +145,14 @@ def _sum(a: Sequence[mpmath.mpf], epsilon: mpmath.mpf) -> Resummed:
 
 
 def _truncated(a: Sequence[mpmath.mpf], epsilon: mpmath.mpf) -> Resummed:
-    """Sum up to the smallest term, or of all terms if the last is the smallest."""
+    """Sum up to the first term that is smaller than the next, or of all terms if there is none."""
+    # A later term may be small by chance, next to a change of sign: the first growth decides.
     terms = [x * epsilon**n for n, x in enumerate(a)]
-    least = min((n for n, term in enumerate(terms) if term), key=lambda n: abs(terms[n]))
+    pairs = enumerate(pairwise(map(abs, terms)))
+    least = next((n for n, (x, y) in pairs if 0 < x < y), len(terms) - 1)
     grows = least < len(terms) - 1
     end = least if grows else least + 1
-    return Resummed(mpmath.fsum(terms[:end]), abs(terms[least]), end - 1, grows)
+    return Resummed(mpmath.fsum(terms[:end]), LEFT_OUT * abs(terms[least]), end - 1, grows)
 
 
 def _approximants(terms: Sequence[arb]) -> list[mpmath.mpf]:

@@ -16,8 +16,8 @@ exponentially small in 1/ε where K_0 is large. R is computed with log F = φ_0 
 terms in X = √ε ξ (`lwa.Expansion.log_force`, φ_0 = -X²/(4I)), and is the largest value for a few
 K_0 nearby, since the integral vanishes at the mass ratios without a tail.
 
-`Radiation.relative`, a bound on the relative error of c² and the widths, was fitted to exact waves
-of dimers with tails from 1e-9 to 0.1 and to pulses of struck chains. It is measured, not proved.
+`Radiation.relative`, a bound on the relative error of c², was fitted to exact waves of dimers with
+tails from 1e-9 to 0.1 and to pulses of struck chains. It is measured, not proved.
 """
 
 from __future__ import annotations
@@ -68,7 +68,11 @@ class Radiation(Value):
     quartic: float
 
     def relative(self, k: float) -> float:
-        """Bound on the relative error of c², widths, momentum and energy at this k."""
+        """Relative error of c², widths, momentum and energy at this k that no order removes.
+
+        A bound for c²; widths near a resonance are off by up to three times as much, which the
+        error of their asymptotic series covers (`lwa.expansion.approximants`).
+        """
         if self.contrast <= 0:
             return 0.0
         return float(self.contrast * self.amplitude(k) ** POWER)

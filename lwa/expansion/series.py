@@ -60,21 +60,16 @@ class EpsilonSeries(Value):
         """Radiation, which `at` adds to the error; None for symbols and for equal beads."""
         return radiation(self.cell, self.k)
 
-    def partial_sum(self, k: Any = None) -> sp.Expr:
-        """The exact sum of all terms; a number or symbol k replaces the series' own symbol k.
-
-        >>> from lwa import Cell, expand
-        >>> expand(Cell([1]), 2).c2.partial_sum("3/2")
-        17/20
-        """
-        series = self._for(k)
-        terms = (a * series._epsilon**n for n, a in enumerate(series.coefficients))
-        return series._unit * sp.Add(*terms)
-
     def pade(self, k: Any, numerator: int, denominator: int) -> sp.Expr:
-        """The exact Padé approximant [numerator/denominator] in ε; k as in `partial_sum`, or None.
+        """The exact Padé approximant [numerator/denominator] in ε; [n/0] is the sum to ε^n.
+
+        k : a number or symbol in place of the series' own symbol k; None leaves it as it is.
 
         Raises `lwa.InputError` where the series is too short, or has no such approximant.
+
+        >>> from lwa import Cell, expand
+        >>> expand(Cell([1]), 2).c2.pade("3/2", 2, 0)
+        17/20
         """
         series = self._for(k)
         degrees = integer(numerator, "numerator", 0), integer(denominator, "denominator", 0)

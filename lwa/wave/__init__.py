@@ -1,1 +1,1 @@
-"""Traveling waves: closed forms, NumPy functions, waves in physical units and under load, plots."""
+"""Traveling waves: closed forms, NumPy functions, waves in physical units and under load, code."""

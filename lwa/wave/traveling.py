@@ -1,4 +1,4 @@
-"""The traveling wave of a chain: closed forms, units, loads, floats, plots and source text."""
+"""The traveling wave of a chain: closed forms, units, loads, floats and source text."""
 
 from __future__ import annotations
 
@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import sympy as sp
 
-from lwa.base.exact import InputError, number, read_exact, shorten
-from lwa.base.quantities import strain_power
+from lwa.base.exact import InputError, read_exact, shorten
 from lwa.cell import Cell
 from lwa.cell import k as symbol_k
 from lwa.force import ContactLaw, for_cell
@@ -21,7 +20,7 @@ if TYPE_CHECKING:
 
 
 class TravelingWave(CompactWave):
-    """The compact traveling wave of a chain, with units, loads, floats, plots and source text."""
+    """The compact traveling wave of a chain, with units, loads, floats and source text."""
 
     def at_force(
         self, F: Any = "F", of: str = "contact", *, precompression: Any = 0
@@ -47,29 +46,6 @@ class TravelingWave(CompactWave):
         if of != "contact":
             raise InputError(f"of is {shorten(of)}: under a load it is the force of a contact")
         return PrecompressedWave(waves.cell, waves.law, F, load)
-
-    def plot(self, ax: Any = None) -> Any:
-        """Draw strain and contact force along the chain on Matplotlib's axes, by default new ones.
-
-        Returns the axes. Raises `lwa.InputError` unless k and the masses are numbers.
-        """
-        import numpy as np  # start-up: `lwa wave` does without
-
-        if ax is None:
-            from matplotlib import pyplot  # start-up: only a figure needs it
-
-            ax = pyplot.figure().add_subplot()
-        elif not hasattr(ax, "plot"):
-            raise InputError(f"ax is {shorten(ax)}: Matplotlib's axes are wanted")
-        k, beta = number(self.k), number(self.beta * self.D)
-        phase = np.linspace(-0.6, 0.6, 501) * np.pi
-        arch = np.where(np.abs(phase) < np.pi / 2, np.cos(phase), 0.0)
-        for quantity in ("strain", "force"):
-            exponent = 2 * strain_power(quantity, k) / (k - 1)
-            ax.plot(phase / beta, arch**exponent, label=quantity)
-        ax.set(xlabel="ξ/D", ylabel="over its peak", title=f"compact wave, k = {self.k}")
-        ax.legend()
-        return ax
 
     def on_background(self, p0: Any = "p0") -> BackgroundWave:
         """Return the waves of this chain on a strain p0; this wave must be the canonical field's.

@@ -144,7 +144,6 @@ HERTZ = Power("3/2")
         lambda x: transmitted_force(1, x, Cell([1])),
         lambda x: transmitted_force(1, Cell([1]), x),
         lambda x: canonical_wave(Cell([1]), law=general() if x in (None, HERTZ) else x),
-        lambda x: canonical_wave(Cell([1], spacing=1), "3/2").plot(x or 0),
         lambda x: homogenize(Cell([1])).pde.in_field(x),
         lambda x: shock(Cell([1]), "power" if x is HERTZ else x, 2, 1),
     ],

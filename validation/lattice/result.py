@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from lwa.base.arrays import Array, ArrayValue
+from lwa.base.arrays import Array
 from validation.lattice.equations import Motion
 from validation.lattice.signal import Path, SensorSignal, signal
 from validation.pictures import Curve, Map, Panel, Pictured
@@ -30,7 +30,7 @@ _FINEST = 1000  # places, and times, of a map
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Records(ArrayValue, Pictured):
+class Records(Pictured):
     """Records of the sensors of a scene; S is the number of samples.
 
     Forces are total: the static force of gravity and precompression is included.

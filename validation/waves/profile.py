@@ -19,7 +19,7 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike, NDArray
 
-from lwa.base.arrays import Array, ArrayValue
+from lwa.base.arrays import Array
 from lwa.base.quantities import QUANTITIES, strain_power
 from validation.pictures import Curve, Panel, Pictured
 from validation.pulses.pulse import highest_pulse
@@ -34,7 +34,7 @@ OUTSIDE = 0.6  # share of the half period at which a dimer's pulse has ended and
 
 
 @dataclass(frozen=True, eq=False)
-class ExactWave(ArrayValue, Pictured):
+class ExactWave(Pictured):
     """A traveling wave of the lattice as a function of ξ = x - ct, accurate to rounding; A = D = 1.
 
     masses : (m1, m2). k : exponent. c2 : c², the square of the speed dx/dt.

@@ -107,15 +107,3 @@ def test_where_contacts_peak_one_after_the_other_a_bead_has_no_peak_force():
 def test_bad_arguments_are_refused(call, words):
     with pytest.raises(InputError, match=words):
         call()
-
-
-def test_a_picture():
-    from matplotlib import pyplot
-
-    wave = canonical_wave(Cell([1]), "3/2")
-    ax = wave.plot()
-    assert wave.plot(ax) is ax
-    sites, strain = ax.lines[0].get_data()
-    assert strain.max() == 1
-    assert np.ptp(sites[strain > 0]) == pytest.approx(np.pi * np.sqrt(5 / 2), rel=0.01)
-    pyplot.close("all")

@@ -1,6 +1,5 @@
-"""The result of a run: its pictures, columns and energy, and its pickle."""
+"""The result of a run: its pictures, columns and energy."""
 
-import pickle
 from dataclasses import replace
 
 import numpy as np
@@ -42,15 +41,6 @@ def test_a_notebook_shows_a_run_and_a_program_its_columns():
         "time", "bead 1 force", "bead 1 displacement", "bead 1 velocity", "contact 2 force",
         "contact 2 compression",
     ]  # fmt: skip
-
-
-def test_a_run_equals_its_pickle_and_no_other_run():
-    watched = replace(THREE, contact_sensors=(0,))
-    run = simulate(watched)
-    copy = pickle.loads(pickle.dumps(run))
-    assert copy == run
-    assert hash(copy) == hash(run)
-    assert run != simulate(replace(watched, duration=2.9))
 
 
 def test_energy_over_time_is_a_record_with_sensors_at_all_beads():

@@ -1,7 +1,6 @@
 """Exact waves: against each other's discretisation, published numbers, theory and the lattice."""
 
 import json
-import pickle
 import re
 from dataclasses import replace
 from itertools import combinations, pairwise
@@ -247,14 +246,6 @@ def test_the_strain_at_the_half_period_bounds_the_error_of_c2(hertz):
         assert 1.5 < (1 - wave.c2 / hertz.c2) / wave.end_strain < 2
         assert wave.times(3).end_strain == pytest.approx(wave.end_strain, rel=1e-3)
     assert hertz.end_strain < 1e-15
-
-
-def test_a_wave_equals_its_pickle():
-    wave = exact_wave([1], 1.5)
-    copy = pickle.loads(pickle.dumps(wave))
-    assert copy == wave
-    assert hash(copy) == hash(wave)
-    assert copy != wave.times(2)
 
 
 @pytest.mark.parametrize(
