@@ -135,7 +135,7 @@ def _at_force(wave: ExpandedWave, si: bool) -> Answer:
     for key, label, extent, unit in WIDTHS:
         for q in QUANTITIES:
             width = attempt(wave.fwhm, q, extent)
-            rows.append(Row(f"{key}.{q}", label.format(q), width, unit=unit))
+            rows.append(Row(f"{key}.{q}", f"FWHM of the {q}{label}", width, unit=unit))
     return Answer({}, rows, si, shown=[wave])
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 import click
@@ -24,11 +23,12 @@ from lwa.command.options import (
     given,
     theory_options,
 )
-from lwa.command.rows import Answer, Row, attempt
+from lwa.command.rows import PRINTED_DIGITS, Answer, Row, attempt
 from lwa.spheres.hertz import EXPONENT
 from lwa.theory import Theory, homogenize
 from lwa.wave.background import WIDTH_DIGITS, BackgroundWave
-from lwa.wave.physical import PrecompressedWave
+from lwa.wave.closed import CompactWave
+from lwa.wave.physical import PhysicalWave, PrecompressedWave
 from lwa.wave.traveling import TravelingWave
 
 # Bound of `lwa.Radiation` on c² and the widths from which on a note is printed: for dimers of
@@ -39,11 +39,8 @@ RADIATES = 0.05
 # spheres is then a tenth of their radius R, a/R = √(δ/2R), where Hertz (1882) wants a ≪ R.
 HERTZIAN = 0.01
 
-WIDTHS = (
-    ("fwhm", "FWHM of the {}", "length", "m"),
-    ("fwhm_time", "FWHM of the {} in time", "time", "s"),
-)
-"""Key, label, extent and unit of the widths of a wave with units."""
+WIDTHS = (("fwhm", "", "length", "m"), ("fwhm_time", " in time", "time", "s"))
+"""Key, end of the label, extent and unit of the widths of a wave with units."""
 
 
 @click.command()
@@ -65,7 +62,8 @@ def wave(
     and N. With --background or --precompression the wave in a chain under load, in the canonical
     field (--closure full --field center), and its Korteweg-de Vries limit for small amplitudes.
 
-    A programming language as --format gives the source of functions that compute the wave.
+    A programming language as --format gives the source of functions that compute the wave without
+    load.
 
     Without --force the floats in JSON are those at B = 1 (speed) and at V_s = 1 (B, mu), with D as
     the unit of length if D is a symbol. `speed` is V_s = dx/dτ, and dx/dt with --force.
@@ -82,8 +80,9 @@ def wave(
     loaded = load is not None and not (law.homogeneous and load.is_zero)
     if loaded:
         _demand_canonical(options)
-    if style in LANGUAGES and force is not None:
-        raise InputError(f"--format {style} is for any force: --force goes with text, json, latex")
+    if style in LANGUAGES and (loaded or force is not None):
+        fault = "of a chain without load" if loaded else "for any force: --force goes with text"
+        raise InputError(f"--format {style} is {fault}")
     peak = read_exact("F", "force") if force is None else force
     theory = homogenize(cell, law=law, **options)
     if not loaded:
@@ -93,17 +92,12 @@ def wave(
         elif force is None and not spheres:
             _compact(theory, compact, style).print(style)
         else:
-            _at_force(chain, theory, compact, peak).print(style)
+            _at_force(chain, theory, compact.at_force(peak)).print(style)
     elif precompression is not None:
         pressed = PrecompressedWave(cell, law, peak, precompression)
-        if style in LANGUAGES:
-            click.echo(pressed.background.code(style))
-        else:
-            _precompressed(chain, theory, pressed).print(style)
+        _at_force(chain, theory, pressed).print(style)
     elif force is not None:
         raise InputError("--force goes with --precompression, a force; --background is a strain")
-    elif style in LANGUAGES:
-        click.echo(BackgroundWave(cell, law, background).code(style))
     else:
         _on_background(theory, BackgroundWave(cell, law, background)).print(style)
 
@@ -150,14 +144,6 @@ def hertz_note(chain: ChainInput, force: sp.Expr) -> list[str]:
     ]
 
 
-def _fwhm(wave: Any, *extent: str) -> dict[str, sp.Expr]:
-    return {quantity: wave.fwhm(quantity, *extent) for quantity in QUANTITIES}
-
-
-def _fwhm_rows(key: str, label: str, widths: Mapping[str, sp.Expr], **settings: Any) -> list[Row]:
-    return [Row(f"{key}.{q}", label.format(q), x, **settings) for q, x in widths.items()]
-
-
 def _compact(theory: Theory, wave: TravelingWave, style: str) -> Answer:
     """Rows of the compact wave of any amplitude: speed V_s by peak strain B, and B by V_s."""
     first, second = (wave.reduction(root) for root in (0, 1))
@@ -173,7 +159,7 @@ def _compact(theory: Theory, wave: TravelingWave, style: str) -> Answer:
         "",
         Row("beta", "β", wave.beta),
         Row("width", "width π/β", wave.width),
-        *_fwhm_rows("fwhm", "FWHM of the {}", _fwhm(wave)),
+        *(Row(f"fwhm.{q}", f"FWHM of the {q}", wave.fwhm(q)) for q in QUANTITIES),
         Row("B", "B", wave.amplitude()),
         Row("speed", "V_s", wave.speed()),
         f"  F_m ∝ V_s^({wave.force_exponent});  dx/dt = V_s · {wave.time_scale}",
@@ -193,47 +179,68 @@ def _compact(theory: Theory, wave: TravelingWave, style: str) -> Answer:
 _REDUCTION = ("p", "a", "mu", "eta", "sigma", "s")  # of the paper's v = z^p
 
 
-def _at_force(chain: ChainInput, theory: Theory, wave: TravelingWave, F: sp.Expr) -> Answer:
-    """Rows of the compact wave of peak contact force F, with B its peak strain and speed dx/dt."""
-    at = wave.at_force(F)
+def _at_force(chain: ChainInput, theory: Theory, at: PhysicalWave | PrecompressedWave) -> Answer:
+    """Rows of the wave of a peak contact force F, without or under a load, with speeds dx/dt."""
+    notes = hertz_note(chain, at.force)
+    shown: list[Shown] = [at]
+    field: BackgroundWave | CompactWave
+    if isinstance(at, PrecompressedWave):
+        field, ahead, peak = at.background, "under a load", "rise of the"
+        more = [
+            Row("precompression", "static force F0", at.precompression, "N"),
+            Row("background", "static strain p0", at.background.p0),
+            Row("static_compression", "static compression", at.static_compression, "m"),
+            Row("sound_speed", "speed of sound dx/dt", at.sound_speed, "m/s"),
+        ]
+    else:
+        field, ahead, peak = at.wave, "without load", "peak"
+        more = [
+            Row("beta", "", at.wave.beta, "1/m"),
+            Row("width", "", at.wave.width, "m"),
+            Row("speed_factor", "", at.wave.speed_factor),
+        ]
+        notes = [*radiation_note(chain.cell, at.wave.k), *notes]
+        shown = [at.wave, at]
     rows: list[Row | str] = [
-        f"closure {theory.closure.name}; {FIELDS[theory.closure.field]}",
-        f"contact force F = A δ^k, k = {theory.k}; an endless chain without load",
-        *_chain_rows(chain),
+        f"endless chain {ahead}; closure {theory.closure.name}; {FIELDS[theory.closure.field]}",
+        *(_chain_rows(chain) if chain.si else [chain_text(theory)]),
         "",
         Row("force", "peak contact force F", at.force, "N"),
-        Row("strain", "peak strain B", at.strain),
+        Row("B", f"{peak} strain B", at.strain),
+        Row("strain", "", at.strain),
         Row("compression", "", at.compression, "m"),
-        Row("compressions", "peak compression", at.compressions, unit="m"),
+        Row("compressions", f"{peak} compression", at.compressions, unit="m"),
         Row("speed", "speed dx/dt", at.speed, "m/s"),
         Row("bead_velocity", "peak velocity of the beads", at.bead_velocity, "m/s"),
-        *(
-            row
-            for key, label, extent, unit in WIDTHS
-            for row in _fwhm_rows(key, label, _fwhm(at, extent), unit=unit)
-        ),
-        Row("beta", "", wave.beta, "1/m"),
-        Row("width", "", wave.width, "m"),
-        Row("speed_factor", "", wave.speed_factor),
-        Row("time_scale", "", wave.time_scale, "m/s"),
-        Row("B", "", at.strain),
-        Row("V_s", "", wave.speed(at.strain)),
+        *_width_rows(at),
+        Row("V_s", "", field.speed(at.strain)),
+        Row("time_scale", "", field.time_scale, "m/s"),
+        *more,
     ]
-    notes = [*radiation_note(theory.cell, wave.k), *hertz_note(chain, at.force)]
-    return Answer(chain_json(theory), rows, chain.si, wave.D, [wave, at], notes)
+    return Answer(chain_json(theory), rows, chain.si, theory.cell.spacing, shown, notes)
 
 
-def _chain_rows(chain: ChainInput) -> list[Row]:
-    """Rows of masses, stiffnesses and spacing; only text if not in SI, as JSON's head has them."""
+def _width_rows(at: PhysicalWave | PrecompressedWave) -> list[Row]:
+    """Rows of the widths, under a load in floats; [] there for symbols."""
+    exact = isinstance(at, PhysicalWave)
+    digits = PRINTED_DIGITS if exact else WIDTH_DIGITS
+    return [
+        Row(f"{key}.{q}", f"FWHM of the {q}{label}", width, unit, digits, exact)
+        for key, label, extent, unit in WIDTHS
+        for q in QUANTITIES
+        if not isinstance(width := attempt(at.fwhm, q, extent), InputError)
+    ]
+
+
+def _chain_rows(chain: ChainInput) -> list[Row | str]:
+    """Rows of masses, stiffnesses and spacing in SI."""
     cell, k = chain.cell, chain.law.exponent if chain.law.homogeneous else EXPONENT
-    named = (
-        ("masses", "masses", cell.masses, "kg"),
-        ("stiffnesses", "A", cell.stiffnesses, f"N/m^({k})"),
-        ("spacing", "spacing D", cell.spacing, "m"),
-    )
-    if chain.si:
-        return [Row(*parts) for parts in named]
-    return [Row("", label, value) for _, label, value, _ in named]
+    return [
+        f"contact force A F, F = {chain.law.F}",
+        Row("masses", "masses", cell.masses, "kg"),
+        Row("stiffnesses", "A", cell.stiffnesses, f"N/m^({k})"),
+        Row("spacing", "spacing D", cell.spacing, "m"),
+    ]
 
 
 def _on_background(theory: Theory, wave: BackgroundWave) -> Answer:
@@ -252,9 +259,9 @@ def _on_background(theory: Theory, wave: BackgroundWave) -> Answer:
     ]
     if speed is not None:
         rows.append(Row("speed", "V_s at B = 1", speed, expression=False))
-    rows += _fwhm_rows(
-        "fwhm", "FWHM of the {} at B = 1", widths, expression=False, digits=WIDTH_DIGITS
-    )
+    for q, width in widths.items():
+        label = f"FWHM of the {q} at B = 1"
+        rows.append(Row(f"fwhm.{q}", label, width, digits=WIDTH_DIGITS, expression=False))
     shown: list[Shown] = [wave]
     try:
         kdv = wave.kdv
@@ -292,31 +299,3 @@ def _at_one(wave: BackgroundWave) -> tuple[sp.Expr | None, dict[str, sp.Expr]]:
         return None, {}
     widths = {q: attempt(wave.fwhm, 1, q) for q in QUANTITIES}
     return speed, {q: x for q, x in widths.items() if not isinstance(x, InputError)}
-
-
-def _precompressed(chain: ChainInput, theory: Theory, wave: PrecompressedWave) -> Answer:
-    """Rows of the wave under a static force: rises of strain and compression, speeds dx/dt."""
-    rows: list[Row | str] = [
-        f"contact force F = A δ^k, k = {theory.k}" if chain.si else chain_text(theory),
-        FIELDS[theory.closure.field],
-        *(_chain_rows(chain) if chain.si else []),
-        "",
-        Row("precompression", "static force F0", wave.precompression, "N"),
-        Row("force", "peak contact force F, in all", wave.force, "N"),
-        Row("background", "static strain p0", wave.background.p0),
-        Row("static_compression", "static compression", wave.static_compression, "m"),
-        Row("B", "rise of the strain B", wave.strain),
-        Row("compression", "rise of the compression", wave.compression, "m"),
-        Row("compressions", "rise by contact", wave.compressions, unit="m"),
-        Row("V_s", "V_s", wave.background.speed(wave.strain)),
-        Row("time_scale", "dx/dt over V_s", wave.background.time_scale, "m/s"),
-        Row("speed", "speed dx/dt", wave.speed, "m/s"),
-        Row("sound_speed", "speed of sound dx/dt", wave.sound_speed, "m/s"),
-        Row("bead_velocity", "peak velocity of the beads", wave.bead_velocity, "m/s"),
-    ]
-    for key, label, extent, unit in WIDTHS:
-        if not isinstance(widths := attempt(_fwhm, wave, extent), InputError):  # no symbols
-            settings = {"unit": unit, "expression": False, "digits": WIDTH_DIGITS}
-            rows += _fwhm_rows(key, label, widths, **settings)
-    notes = hertz_note(chain, wave.force)
-    return Answer(chain_json(theory), rows, chain.si, theory.cell.spacing, [wave], notes)

@@ -15,7 +15,6 @@ that is no power are computed in float64 (`lwa.wave.quadrature`).
 
 from __future__ import annotations
 
-from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Self
@@ -211,22 +210,6 @@ class BackgroundWave(Value):
         from lwa.wave.loaded import NumericBackground  # start-up: it loads NumPy
 
         return NumericBackground(self.cell, self.law)
-
-    def code(self, language: str) -> str:
-        """Speeds, small waves and τ/t as functions in a program's source text.
-
-        ``language`` as in `lwa.TravelingWave.code`; arguments as in `lwa.wave.functions`.
-        """
-        if self.law.tabulated:
-            raise InputError("the law is a table: it has no source text in other languages")
-        from lwa.wave.functions import loaded_code  # here, for a quick start of the others
-
-        forms = {"speed": self.speed(), "time_scale": self.time_scale}
-        with suppress(NoSolitaryWave):
-            kdv = self.kdv
-            forms |= {"sound_speed": kdv.sound_speed, "kdv_speed": kdv.speed()}
-            forms["kdv_width"] = kdv.width()
-        return loaded_code(self.cell, self.law, self.p0, forms, language)
 
     def on(self, p0: Any) -> Self:
         """The waves of the same chain on another static strain p0."""

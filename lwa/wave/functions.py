@@ -1,4 +1,4 @@
-"""Source text of programs: a wave's β, widths, speed, amplitude and profile as plain functions.
+"""Source text of programs: functions for β, widths, speed, amplitude and profile of compact waves.
 
 The formulas are written in forms that keep their digits in floating point: relative errors are
 1e-14, with three ill-conditioned exceptions. The amplitude's exponent 2/(k-1) makes each rounding
@@ -9,22 +9,19 @@ profile is right to 1e-14 B at a ξ off by 1e-14 ξ.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import sympy as sp
 
 from lwa.base.exact import one_of
 from lwa.base.quantities import QUANTITIES, strain_power
-from lwa.cell import Cell
 from lwa.code import LANGUAGES, Function, Local
-from lwa.force import ContactLaw
 from lwa.law import Power
 from lwa.wave.closed import CompactWave
 
 _XI = sp.Dummy("xi", real=True)
 _B, _V, _F = (sp.Dummy(name, positive=True) for name in ("B", "V_s", "F"))
-_FALL = sp.Dummy("B", negative=True)
-_ARGUMENTS = (_XI, _B, _FALL, _V, _F)  # that are no symbols of the chain
+_ARGUMENTS = (_XI, _B, _V, _F)  # that are no symbols of the chain
 
 _LONGEST_SUM = 64  # terms of a sum in one statement; Fortran takes 256 lines
 _SHIFT, _INSIDE = (sp.Dummy(name, real=True) for name in ("k_2", "h"))
@@ -34,19 +31,6 @@ _TITLE = (
     "xi = x - V_s tau, |xi| <= pi/(2 beta), written by lwa. There is one where",
     "k > 1, G + H + I > 0 and V_s^2 > 0, which is not checked here.",
 )
-_LOADED_TITLE = (
-    "Waves u_x = p0 + v(xi), xi = x - V_s tau, whose strain rises from p0 by B,",
-    "written by lwa. They exist where V_s^2 > 0 grows with B, which is not checked.",
-)
-_DOCS = {
-    "strain": "B of the wave whose contact force peaks at F",
-    "speed_at_force": "dx/dt, in m/s for a chain in SI, of the wave whose force peaks at F",
-    "time_scale": "tau/t: dx/dt = V_s tau/t",
-    "speed": "V_s = dx/dtau; loses digits as B/p0 falls: kdv_speed is for small B",
-    "sound_speed": "V_s of long small waves",
-    "kdv_speed": "V_s of a small wave",
-    "kdv_width": "L of a small wave v = B sech^2(xi/L)",
-}
 
 
 class Functions(dict[str, Function]):
@@ -69,13 +53,6 @@ class Functions(dict[str, Function]):
         self[name] = Function(name, doc, arguments, value, local)
         return self[name].call
 
-    def define_at_force(self, cell: Cell, k: sp.Expr, p0: sp.Expr = sp.S.Zero) -> None:
-        """Define functions of the peak contact force F: the strain's rise B and the speed dx/dt."""
-        strain = Power(k).compression(cell, _F) / cell.spacing - p0
-        rise = self.define("strain", _DOCS["strain"], strain)
-        speed = self["speed"].call.subs({_B: rise, _FALL: rise}) * self["time_scale"].call
-        self.define("speed_at_force", _DOCS["speed_at_force"], speed)
-
     def source(self, language: str, title: Sequence[str]) -> str:
         """The source text in one of the `LANGUAGES`; raises `lwa.InputError` for others."""
         writer = LANGUAGES[one_of(language, LANGUAGES, "language")]
@@ -91,23 +68,6 @@ def in_order(*parts: sp.Expr) -> tuple[sp.Symbol, ...]:
 def wave_code(wave: CompactWave, language: str) -> str:
     """The source text of `wave_functions`."""
     return wave_functions(wave).source(language, _TITLE)
-
-
-def loaded_code(
-    cell: Cell, law: ContactLaw, p0: sp.Expr, forms: Mapping[str, sp.Expr], language: str
-) -> str:
-    """The source text of a wave under load: closed forms, and under a power its speed at a force.
-
-    forms : expressions by their names in `_DOCS`; B is the rise of the strain. Arguments: B, F,
-    the symbols of p0, the law, the masses, the stiffnesses and the spacing.
-    """
-    functions = Functions(p0, *law.symbols, *cell.masses, *cell.stiffnesses, cell.spacing)
-    for name, value in forms.items():
-        rise = {s: _FALL if s.is_negative else _B for s in value.free_symbols if s.name == "B"}
-        functions.define(name, _DOCS[name], value.xreplace(rise))
-    if law.homogeneous:
-        functions.define_at_force(cell, law.exponent, p0)
-    return functions.source(language, _LOADED_TITLE)
 
 
 def wave_functions(wave: CompactWave) -> Functions:
@@ -133,7 +93,7 @@ def wave_functions(wave: CompactWave) -> Functions:
         width = 2 * sp.atan(sp.sqrt(2 ** (x + 1) * sp.sinh(x * sp.log(2)))) / beta
         define(f"fwhm_{quantity}", f"Full width at half maximum of the {quantity}", width)
     value = sp.sqrt(f) * _B ** ((k - 1) / 2)
-    define("speed", "V_s = dx/dtau of the wave whose strain peaks at B", value, variables)
+    speed = define("speed", "V_s = dx/dtau of the wave whose strain peaks at B", value, variables)
     # ln f = 2 arsinh((f-1)/(2√f)) keeps its digits as f → 1, that is as k → 1
     value = _V ** (2 / (k - 1)) * sp.exp(-2 * sp.asinh(excess / (2 * sp.sqrt(f))) / (k - 1))
     define("amplitude", "B, the peak strain of the wave of speed V_s", value, variables)
@@ -141,8 +101,11 @@ def wave_functions(wave: CompactWave) -> Functions:
     value = _B * sp.sin((_INSIDE + sp.Abs(_INSIDE)) / 2) ** (2 / (k - 1))
     inside = ((_INSIDE, sp.pi / 2 - sp.Abs(beta * _XI)),)
     define("profile", "v at xi, 0 outside of the support", value, inside)
-    define("time_scale", _DOCS["time_scale"], cell.time_scale(k))
-    functions.define_at_force(cell, k)
+    scale = define("time_scale", "tau/t: dx/dt = V_s tau/t", cell.time_scale(k))
+    value = Power(k).compression(cell, _F) / cell.spacing
+    strain = define("strain", "B of the wave whose contact force peaks at F", value)
+    doc = "dx/dt, in m/s for a chain in SI, of the wave whose force peaks at F"
+    define("speed_at_force", doc, speed.subs(_B, strain) * scale)
     return functions
 
 

@@ -6,7 +6,6 @@ import pytest
 import sympy as sp
 
 from lwa import Cell, Dimer, Power, background_wave, canonical_wave, general, homogenize
-from lwa.law import named
 from tests.lwa.command.answers import result, run
 
 
@@ -98,54 +97,6 @@ def test_wave_in_forces(capsys):
     status, out, _ = run(capsys, "wave", *options, "--precompression", "3", "--force", "10")
     assert status == 0
     assert f"{sp.N(wave.speed, 15)}"[:16] in out
-
-
-@pytest.mark.parametrize(
-    ("law", "load"),
-    [
-        (("--k", "3/2"), ("--precompression", "1/2")),
-        (("--law", "hertz2:1,1/3"), ("--background", "1/2")),
-    ],
-)
-def test_a_wave_under_load_in_a_program(capsys, load, law):
-    """Functions of B and F against the closed forms in 30 digits."""
-    chain = ("--masses", "1,3", "--spacing", "1", *law)
-    status, out, err = run(capsys, "wave", *chain, *load, "--format", "numpy")
-    assert (status, err) == (0, "")
-    module = {}
-    exec(out, module)  # our own output, which is what is on trial
-    power = law[0] == "--k"
-    cell = Cell([1, 3], spacing=1)
-    contact = Power("3/2") if power else named("hertz2", 1, "1/3")
-    p0 = contact.compression(cell, sp.S.Half) if load[0] == "--precompression" else "1/2"
-    wave = background_wave(cell, p0, law=contact)
-    for B in ("1/3", "7/2"):
-        assert module["speed"](float(sp.Rational(B))) == pytest.approx(
-            float(sp.N(wave.speed(B), 30)), rel=1e-13
-        )
-        kdv = float(sp.N(wave.kdv.width(B), 30))
-        assert module["kdv_width"](float(sp.Rational(B))) == pytest.approx(kdv, rel=1e-14)
-    assert module["time_scale"]() == pytest.approx(float(wave.time_scale), rel=1e-15)
-    assert ("speed_at_force" in module) == power
-    if power:
-        at = result(capsys, "wave", *chain, *load, "--force", "5")
-        assert module["speed_at_force"](5.0) == pytest.approx(at["speed_value"], rel=1e-13)
-
-
-def test_small_waves_of_a_softening_chain_in_a_program(capsys):
-    options = ("wave", "--k", "1/2", "--masses", "1", "--background", "1", "--spacing", "1")
-    module = {}
-    exec(run(capsys, *options, "--format", "numpy")[1], module)
-    kdv = background_wave(Cell([1], spacing=1), 1, law=Power("1/2")).kdv
-    assert module["kdv_width"](-0.5) == pytest.approx(float(kdv.width("-1/2")), rel=1e-14)
-
-
-def test_a_wave_under_load_in_another_language(capsys):
-    options = ("--law", "hertz2", "--background", "p0", "--format", "fortran")
-    status, out, err = run(capsys, "wave", *options)
-    assert (status, err) == (0, "")
-    assert "kdv_width" in out
-    assert "tau/t" in out
 
 
 @pytest.mark.parametrize(

@@ -51,7 +51,7 @@ LINES = [
     ("wave --background 1 --precompression 1", "both given"),
     ("wave --background 1 --force 1", "goes with --precompression"),
     ("wave --background 2 --law magnetic:4,1", "a pole before it"),
-    ("wave --precompression 1 --force 2 --format c", "for any force"),
+    ("wave --precompression 1 --format c", "without load"),
     ("wave --k 3/2 --precompression 2 --force 1", "only B > 0"),
     ("wave --spheres none.toml", "No such file"),
     ("expansion --k 1", "k is 1"),
