@@ -120,12 +120,13 @@ def test_two_commands_print_the_same_value():
 
 def of_figures(chains, moduli, **options):
     speeds = {N: figures.chain_speed(N, **options) for N in chains}
-    found = {(N, name): getattr(s, name) for N, s in speeds.items() for name in ("speed", "force")}
+    found = {(N, name): s[name] for N, s in speeds.items() for name in ("speed", "force")}
     for E in moduli:
-        scaling = figures.scaling(E, **options)
-        found |= {(E, "V", i): number for i, number in enumerate(scaling.speeds)}
-        found |= {(E, "F", i): number for i, number in enumerate(scaling.forces)}
-        found[E, "exponent"] = scaling.exponent
+        s = figures.scaling(E, **options)
+        for values, errors in ((s.speed, s.speed_error), (s.force, s.force_error)):
+            for value, error in zip(values, errors, strict=True):
+                found[E, len(found)] = Measured(value, value + error)
+        found[E, "exponent"] = s.exponent
     return found
 
 

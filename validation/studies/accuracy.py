@@ -12,9 +12,10 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import partial
-from itertools import groupby, takewhile
+from itertools import takewhile
 from statistics import median
 from typing import Any, TypeVar
 
@@ -73,13 +74,6 @@ class Task:
         """
         (track,) = tracks(run)
         return highest_pulse(track.force)
-
-    def errors(self, run: Run, truth: Pulse) -> dict[str, float]:
-        """Return the relative error of each of `READINGS`; ∞ if the run shows no pulse."""
-        try:
-            return relative_errors(self.read(run), truth)
-        except MeasureError:
-            return dict.fromkeys(READINGS, math.inf)
 
 
 def relative_errors(pulse: Pulse, truth: Pulse) -> dict[str, float]:
@@ -162,26 +156,6 @@ CASES = tuple(
 """k, ω and the kind of truth of each place of the ladder of theories."""
 
 
-@dataclass(frozen=True)
-class Timing:
-    """Error and CPU time of one run.
-
-    method : name of the integrator. setting : tolerance. errors : relative error of each of
-    `READINGS`; infinite without a pulse. seconds : CPU time.
-    """
-
-    task: str
-    method: str
-    setting: float
-    errors: Mapping[str, float]
-    seconds: float
-
-    @property
-    def error(self) -> float:
-        """Largest relative error of arrival, peak force and FWHM, compared with the true pulse."""
-        return max(self.errors.values())
-
-
 T = TypeVar("T")
 
 
@@ -196,29 +170,35 @@ def timed(run: Callable[[], T]) -> tuple[T, float]:
             return result, median(taken)
 
 
-def cost(rows: Iterable[Timing], wanted: float) -> float:
+def cost(runs: Iterable[tuple[float, float]], wanted: float) -> float:
     """Return the least CPU time at which a method's peak force errs by ``wanted`` at most; else ∞.
 
-    rows : runs of one method. All costlier runs must be as accurate: a single run may be accurate
-    by chance, when its steps happen to end where contacts open.
+    runs : relative error of the peak force and CPU time of each run of one method. All costlier
+    runs must be as accurate: a single run may be accurate by chance, when its steps happen to end
+    where contacts open.
     """
-    costly = sorted(rows, key=lambda row: -row.seconds)
-    good = takewhile(lambda row: row.errors["peak"] <= wanted, costly)
-    return min((row.seconds for row in good), default=math.inf)
+    costly = sorted(runs, key=lambda run: -run[1])
+    good = takewhile(lambda run: run[0] <= wanted, costly)
+    return min((seconds for _, seconds in good), default=math.inf)
 
 
-def runs(
-    name: str, task: Task, truth: Pulse, methods: Mapping[str, Sequence[float]]
-) -> Iterator[Timing]:
-    """Run a task by each method at each tolerance; yield the `Timing` of each run."""
-    for method, tolerances in methods.items():
-        integrator = method.split()[-1]
-        if method in COMPILED:
-            simulate(task.scene, rtol=1e-3, method=integrator)  # compiles
-        for rtol in tolerances:
-            once = partial(simulate, task.scene, rtol=rtol, atol=rtol, method=integrator)
-            run, seconds = timed(once)
-            yield Timing(name, method, rtol, task.errors(run, truth), seconds)
+def timings(
+    task: Task, truth: Pulse, method: str, tolerances: Iterable[float]
+) -> Iterator[tuple[float, dict[str, float], float]]:
+    """Run a task by one method; yield each tolerance with the run's errors and CPU time in seconds.
+
+    The errors are relative, by the names `READINGS`; ∞ if the run shows no pulse.
+    """
+    integrator = method.split()[-1]
+    if method in COMPILED:
+        simulate(task.scene, rtol=1e-3, method=integrator)  # compiles
+    for rtol in tolerances:
+        once = partial(simulate, task.scene, rtol=rtol, atol=rtol, method=integrator)
+        run, seconds = timed(once)
+        errors = dict.fromkeys(READINGS, math.inf)
+        with suppress(MeasureError):
+            errors = relative_errors(task.read(run), truth)
+        yield rtol, errors, seconds
 
 
 _RUNS = ("task", "method", "setting", "error", *(f"{name}_error" for name in READINGS), "seconds")
@@ -263,13 +243,13 @@ def accuracy(
         task = TASKS[name]()
         truth = task.truth or task.read(simulate(task.scene, rtol=FINEST))
         references.append((name, *readings(truth).values()))
-        timings = runs(name, task, truth, methods)
-        for method, group in groupby(timings, lambda timing: timing.method):
-            ts = list(group)
-            rows += [(name, method, t.setting, t.error, *t.errors.values(), t.seconds) for t in ts]
-            spent.append((name, method, *(cost(ts, error) for error in WANTED)))
-            good = [t for t in ts if math.isfinite(t.error)]
-            curves.append(Curve(method, [t.error for t in good], [t.seconds for t in good]))
+        for method, tolerances in methods.items():
+            found = [*timings(task, truth, method, tolerances)]
+            rows += [(name, method, r, max(e.values()), *e.values(), s) for r, e, s in found]
+            peaks = [(errors["peak"], seconds) for _, errors, seconds in found]
+            spent.append((name, method, *(cost(peaks, error) for error in WANTED)))
+            largest = [max(errors.values()) for _, errors, _ in found]
+            curves.append(Curve(method, largest, [seconds for *_, seconds in found]))
         # the cheapest at the smallest error first; methods that do not attain it last
         costs += sorted(spent, key=lambda line: line[:1:-1])
         panels.append(Panel(*_AXES, tuple(curves), "xy", name))

@@ -33,39 +33,21 @@ FORMED = 0.1  # difference from the last peak, over it, within which a pulse cou
 MODULI = (1.46e9, 0.6e9)  # of PTFE, in Pa: dynamic, as in the paper, and nominal static
 
 
-class Speed(NamedTuple):
-    """Pulse of an N:1 chain far from the striker, and the canonical theory's speed at its force.
-
-    width : FWHM of the highest hump of a steel bead's force, times the speed, in beads. decay :
-    fall of ln force per bead. formation : beads from the striker to the start of a cell from which
-    on all peaks at starts of cells are within `FORMED` of the last one.
-    """
-
-    N: int
-    speed: Measured
-    force: Measured
-    width: Measured
-    decay: Measured
-    formation: int
-    theory: float
-
-
 class Scaling(NamedTuple):
     """Figure 3a, speed as a function of peak force, for one Young's modulus of PTFE.
 
-    E : the modulus, in Pa. exponent : e of V_s ~ F_m^e, by least squares. speeds, forces : V_s and
-    F_m = (F_15 + F_34)/2 at each drop height. theory : speed of the canonical wave at each F_m.
+    E : the modulus, in Pa. exponent : e of V_s ~ F_m^e, by least squares. speed, force : V_s and
+    F_m = (F_15 + F_34)/2 at each drop height, with their errors. theory : speed of the canonical
+    wave at each F_m.
     """
 
     E: float
     exponent: Measured
-    speeds: Sequence[Measured]
-    forces: Sequence[Measured]
-    theory: Sequence[float]
-
-
-def _values(numbers: Sequence[Measured], part: str = "value") -> list[float]:
-    return [getattr(number, part) for number in numbers]
+    speed: list[float]
+    speed_error: list[float]
+    force: list[float]
+    force_error: list[float]
+    theory: list[float]
 
 
 def _ends(values: Sequence[float]) -> str:
@@ -115,22 +97,18 @@ def figures(
     ``forces``: ``N``, ``beads``, ``time_value``, ``force_value``.
     """
     records = {N: forces(N) for N in progress([*RECORDED])}
-    speeds = [chain_speed(N) for N in progress(chains)]
-    scalings = [scaling(E, heights) for E in progress(moduli)]
-    first = tuple((*s, s.theory / s.speed.value - 1) for s in speeds)
-    second = []
-    for s in scalings:
-        parts = [_values(row, part) for row in (s.speeds, s.forces) for part in ("value", "error")]
-        second.append((*s[:2], *parts, s.theory))
+    speeds = {N: chain_speed(N) for N in progress(chains)}
+    rows = tuple((N, *s.values(), s["theory"] / s["speed"].value - 1) for N, s in speeds.items())
+    scalings = tuple(scaling(E, heights) for E in progress(moduli))
     title = _SCALINGS_TITLE.format(heights[0], heights[-1])
-    table = Table(_SCALINGS, tuple(second), "scalings", title=title)
+    table = Table(_SCALINGS, scalings, "scalings", title=title)
     data = [
         {"N": N, "beads": RECORDED[N], "time_value": run.time, "force_value": run.bead_force}
         for N, run in records.items()
     ]
     return Report(
         "",
-        (Table(_SPEEDS, first, "speeds", title=_SPEEDS_TITLE), table),
+        (Table(_SPEEDS, rows, "speeds", title=_SPEEDS_TITLE), table),
         panels=(*(_forces_panel(N, run) for N, run in records.items()), _scaling_panel(scalings)),
         data={"scaling": table.document()[0], "forces": data},
     )
@@ -148,9 +126,8 @@ def _scaling_panel(scalings: Sequence[Scaling]) -> Panel:
     curves = []
     for i, row in enumerate(scalings):
         label = f"E = {row.E / 1e9:g} GPa: exponent {row.exponent.value:.4f}"
-        forces = _values(row.forces)
-        curves.append(Curve(label, forces, _values(row.speeds), f"C{i}{'os'[i]}"))
-        curves.append(Curve("theory, $F_m^{1/6}$", forces, row.theory, f"C{i}-"))
+        curves.append(Curve(label, row.force, row.speed, f"C{i}{'os'[i]}"))
+        curves.append(Curve("theory, $F_m^{1/6}$", row.force, row.theory, f"C{i}-"))
     return Panel("peak force $F_m$ (N)", "speed $V_s$ (m/s)", tuple(curves), "xy")
 
 
@@ -160,8 +137,13 @@ def forces(N: int) -> Run:
     return simulate(recorded_chain(RECORDED[N], N=N), rtol=rtol, atol=rtol)
 
 
-def chain_speed(N: int, tolerances: tuple[float, float] = TOLERANCES) -> Speed:
-    """Measure the N:1 chain's leading pulse far from the striker.
+def chain_speed(N: int, tolerances: tuple[float, float] = TOLERANCES) -> dict[str, Any]:
+    """Measure the N:1 chain's leading pulse far from the striker, beside the theory.
+
+    ``speed``, ``force``, and ``width``, FWHM of the highest hump of a steel bead's force, times the
+    speed, in beads; ``decay``, fall of ln force per bead; ``formation``, beads from the striker to
+    the start of a cell from which on all peaks at starts of cells are within `FORMED` of the last
+    one; ``theory``, speed of the canonical wave with this force.
 
     The pulse is timed between two steel beads, at least three periods and 18 beads apart, by its
     front at a tenth of the peak: at large N the pulse has several humps, and the highest is not
@@ -193,9 +175,9 @@ def chain_speed(N: int, tolerances: tuple[float, float] = TOLERANCES) -> Speed:
 
     scene = recorded_chain(starts, N=N, beads=max(BEADS, (before + across + 3) * period))
     found = compared(numbers, *twice(scene, *tolerances), tolerances[0])
-    V, force, width, decay, formation = found.values()
-    wave = PhysicalWave(canonical_wave(chain_cell(N), HERTZ), force.value, "bead")
-    return Speed(N, V, force, width, decay, int(formation.value), float(wave.speed))
+    wave = PhysicalWave(canonical_wave(chain_cell(N), HERTZ), found["force"].value, "bead")
+    theory = {"formation": int(found["formation"].value), "theory": float(wave.speed)}
+    return found | theory
 
 
 def scaling(
@@ -212,7 +194,10 @@ def scaling(
         compared(lambda train: {"V_s": train.speed, "F_m": train.peak}, *pair, tolerances[0])
         for pair in zip(fine, coarse, strict=True)
     ]
-    speeds, forces = ([pair[name] for pair in pairs] for name in ("V_s", "F_m"))
+    V, F = ([pair[name] for pair in pairs] for name in ("V_s", "F_m"))
+    (speed, speed_error), (force, force_error) = (
+        ([number.value for number in row], [number.error for number in row]) for row in (V, F)
+    )
     wave = canonical_wave(chain_cell(ptfe=ptfe), HERTZ)
-    theory = [float(wave.at_force(force.value, of="bead").speed) for force in forces]
-    return Scaling(E, exponent(forces, speeds), speeds, forces, theory)
+    theory = [float(wave.at_force(peak, of="bead").speed) for peak in force]
+    return Scaling(E, exponent(F, V), speed, speed_error, force, force_error, theory)

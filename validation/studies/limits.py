@@ -12,7 +12,7 @@ With m1 ≫ m2 the light beads only pass the force on: a uniform chain of spacin
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import sympy as sp
@@ -38,48 +38,6 @@ PLACES = (4, 6, 8)  # supports run
 # rtol and atol of chains with one mass and with two. Light beads set the step, far below the needs
 # of the pulse at the same tolerance.
 TOLERANCES = {1: (1e-9, 1e-9), 2: (1e-7, 1e-6)}
-
-
-@dataclass(frozen=True)
-class Comparison:
-    """Theory and lattice in one quantity.
-
-    k : None for a result of all exponents. omega : 0 for the limit ω → 0.
-    bound : largest expected |theory/lattice - 1|.
-    """
-
-    quantity: str
-    k: sp.Rational | None
-    omega: sp.Rational
-    theory: sp.Expr
-    lattice: Measured
-    bound: float
-
-    @property
-    def theory_value(self) -> float:
-        """The theory's value of the quantity, as a float."""
-        return float(sp.N(self.theory, 17))
-
-    @property
-    def error(self) -> float:
-        """Relative error of the theory: theory/lattice - 1."""
-        return self.theory_value / self.lattice.value - 1
-
-    @property
-    def cells(self) -> tuple[object, ...]:
-        """Cells of the table's row, among them k or the name of a result of all exponents."""
-        quantity, _, result = self.quantity.partition(": ")
-        kind = "order" if result.startswith("order") else "→ 1"
-        name = "n, F_m ∝ V_s^n" if quantity == _EXPONENT else quantity
-        exact = self.k, self.omega, self.theory, self.theory_value
-        compared = self.lattice, self.error, self.bound, self.finding.ok
-        return self.quantity, name, kind if self.k is None else str(self.k), *exact, *compared
-
-    @property
-    def finding(self) -> Finding:
-        """The error with its bound and the lattice's own error, as a finding."""
-        error = self.lattice.relative_error
-        return Finding(self.quantity, self.error, -self.bound, self.bound, error)
 
 
 _COLUMNS = (
@@ -108,6 +66,7 @@ of error/(k-1)^n as k → 1. ±: change of the lattice's number over the last
 stretch, and the rounding of its seven digits, which JSON does not have."""
 
 Case = tuple[sp.Rational, sp.Rational, float]  # k, ω and B of one run
+Row = tuple[tuple[Any, ...], Finding]  # cells below `_COLUMNS`, and the error as a finding
 
 
 @study()
@@ -118,49 +77,12 @@ def limits(progress: Progress[Case] = iter) -> Report:
     0 for the limit), ``theory`` (exact), ``theory_value``, ``lattice_value``,
     ``lattice_error_value``, ``error_value`` (theory over lattice - 1), ``bound_value``, ``ok``.
     """
-    return report(compare(progress))
-
-
-def report(rows: Sequence[Comparison]) -> Report:
-    """Return a comparison's table, findings, and panels of the errors as functions of k - 1."""
-    findings = tuple(row.finding for row in rows)
-    cells = tuple(row.cells for row in rows)
-    return Report(
-        "The theory's limits on the lattice",
-        (Table(_COLUMNS, cells, "rows", by="omega", heads=_CHAINS, note=_NOTE),),
-        findings,
-        tuple(_panel(rows, omega) for omega in (EQUAL, LIGHT)),
-        width=80,
-    )
-
-
-def _panel(rows: Sequence[Comparison], omega: sp.Rational) -> Panel:
-    """Return the panel of |error| as a function of k - 1, beside its leading power."""
-    epsilon = np.geomspace(float(EXPONENTS[-1] - 1) / 2, float(EXPONENTS[0] - 1), 2)
-    curves = []
-    for i, (quantity, law) in enumerate(LEADING_POWERS.items()):
-        points = [
-            (row.k - 1, abs(row.error), row.lattice.relative_error)
-            for row in rows
-            if (row.quantity, row.omega) == (quantity, omega) and row.k is not None
-        ]
-        x, y, error = zip(*points, strict=True)
-        power = abs(float(law.coefficient)) * epsilon**law.order
-        curves.append(Curve(quantity, x, y, f"C{i}{'osD^'[i]}", error))
-        # Dashes, as two quantities share their leading order.
-        curves.append(Curve("", epsilon, power, f"C{i}{('-', '--', '-.', ':')[i]}"))
-    title = f"m2/m1 = {omega}; lines: leading order"
-    return Panel("k - 1", "|theory/lattice - 1|", tuple(curves), "xy", title)
-
-
-def compare(progress: Progress[Case] = iter) -> list[Comparison]:
-    """Measure all waves on the lattice and compare them with the theory."""
     cases = [(k, EQUAL, B) for k in EXPONENTS for B in AMPLITUDES]
     cases += [(k, LIGHT, 1.0) for k in EXPONENTS]
     cases += [(EXPONENTS[0], omega, 1.0) for omega in LIMIT if omega != LIGHT]
     waves = {(k, omega): theory_at(k, omega) for k, omega, _ in cases}
     lattice = {case: lattice_wave(waves[case[:2]], case[2]) for case in progress(cases)}
-    rows: list[Comparison] = []
+    rows: list[Row] = []
     for omega in (EQUAL, LIGHT):
         theory = [theory_values(waves[k, omega]) for k in EXPONENTS]
         for quantity in QUANTITIES:
@@ -171,9 +93,57 @@ def compare(progress: Progress[Case] = iter) -> list[Comparison]:
         # The lattice scales exactly; the ± is that of speeds and forces that still settle.
         pulses = [lattice[k, EQUAL, B] for B in AMPLITUDES]
         power = exponent([p["speed"] for p in pulses], [p["force"] for p in pulses])
-        theory_power = waves[k, EQUAL].force_exponent
-        rows.append(Comparison(_EXPONENT, k, EQUAL, theory_power, power, 1e-5))
-    return rows
+        rows.append(_row(_EXPONENT, k, EQUAL, waves[k, EQUAL].force_exponent, power, 1e-5))
+    cells, findings = zip(*rows, strict=True)
+    return Report(
+        "The theory's limits on the lattice",
+        (Table(_COLUMNS, cells, "rows", by="omega", heads=_CHAINS, note=_NOTE),),
+        findings,
+        tuple(_panel(rows, omega) for omega in (EQUAL, LIGHT)),
+        width=80,
+    )
+
+
+def _row(
+    quantity: str,
+    k: sp.Rational | None,
+    omega: sp.Rational,
+    theory: sp.Expr,
+    lattice: Measured,
+    bound: float,
+) -> Row:
+    """Compare theory and lattice in one quantity.
+
+    k : None for a result of all exponents. omega : 0 for the limit ω → 0.
+    bound : largest expected |theory/lattice - 1|.
+    """
+    value = float(sp.N(theory, 17))
+    error = value / lattice.value - 1
+    finding = Finding(quantity, error, -bound, bound, lattice.relative_error)
+    name, _, result = quantity.partition(": ")
+    name = "n, F_m ∝ V_s^n" if quantity == _EXPONENT else name
+    kind = ("order" if result.startswith("order") else "→ 1") if k is None else str(k)
+    numbers = value, lattice, error, bound, finding.ok
+    return (quantity, name, kind, k, omega, theory, *numbers), finding
+
+
+def _panel(rows: Sequence[Row], omega: sp.Rational) -> Panel:
+    """Return the panel of |error| as a function of k - 1, beside its leading power."""
+    epsilon = np.geomspace(float(EXPONENTS[-1] - 1) / 2, float(EXPONENTS[0] - 1), 2)
+    curves = []
+    for i, (quantity, law) in enumerate(LEADING_POWERS.items()):
+        points = [
+            (k - 1, abs(finding.value), finding.error)
+            for (name, _, _, k, ratio, *_), finding in rows
+            if (name, ratio) == (quantity, omega) and k is not None
+        ]
+        x, y, error = zip(*points, strict=True)
+        power = abs(float(law.coefficient)) * epsilon**law.order
+        curves.append(Curve(quantity, x, y, f"C{i}{'osD^'[i]}", error))
+        # Dashes, as two quantities share their leading order.
+        curves.append(Curve("", epsilon, power, f"C{i}{('-', '--', '-.', ':')[i]}"))
+    title = f"m2/m1 = {omega}; lines: leading order"
+    return Panel("k - 1", "|theory/lattice - 1|", tuple(curves), "xy", title)
 
 
 def lattice_wave(
@@ -237,17 +207,13 @@ def _numbers(run: Run, wave: TravelingWave, place: int) -> dict[str, float]:
 
 def quantity_rows(
     quantity: str, omega: sp.Rational, theory: list[sp.Expr], lattice: list[Measured]
-) -> list[Comparison]:
+) -> list[Row]:
     """Compare a quantity at each k, and the order and coefficient of its error as ε → 0."""
     law = LEADING_POWERS[quantity]
     epsilon = np.array([float(k - 1) for k in EXPONENTS])
-    rows = [
-        Comparison(quantity, k, omega, t, value, law.bound(k))
-        for k, t, value in zip(EXPONENTS, theory, lattice, strict=True)
-    ]
+    numbers = np.array([float(sp.N(value, 17)) for value in theory])
     # The coefficient holds at ω = 1 and ω → 0; between them it depends on ω.
     slack = 0.0 if omega == 1 else 20 * float(omega)
-    numbers = np.array([row.theory_value for row in rows])
 
     def order(*values: float) -> float:
         return float(np.polyfit(np.log(epsilon), np.log(np.abs(numbers / values - 1)), 1)[0])
@@ -262,13 +228,16 @@ def quantity_rows(
     orders, coefficients = derived(order, *lattice), derived(coefficient, *lattice)
     bound = law.coefficient_bound + slack
     return [
-        *rows,
-        Comparison(power, None, omega, sp.Integer(law.order), orders, law.order_bound),
-        Comparison(limit, None, omega, law.coefficient, coefficients, bound),
+        *(
+            _row(quantity, k, omega, value, measured, law.bound(k))
+            for k, value, measured in zip(EXPONENTS, theory, lattice, strict=True)
+        ),
+        _row(power, None, omega, sp.Integer(law.order), orders, law.order_bound),
+        _row(limit, None, omega, law.coefficient, coefficients, bound),
     ]
 
 
-def _limit_rows(waves: list[dict[str, Measured]]) -> Iterator[Comparison]:
+def _limit_rows(waves: list[dict[str, Measured]]) -> Iterator[Row]:
     """Compare theory and lattice in the limit ω → 0 at the first k, linearly extrapolated in ω."""
     k = EXPONENTS[0]
     symbols = homogenize(Dimer("m1", "m2", spacing=1), k=k).pde.traveling_wave()
@@ -276,7 +245,5 @@ def _limit_rows(waves: list[dict[str, Measured]]) -> Iterator[Comparison]:
     for quantity, theory in theory_values(symbols).items():
         coarse, middle, fine = (wave[quantity].value for wave in waves)
         limit = Measured((4 * fine - middle) / 3, (4 * middle - coarse) / 3)
-        at_zero = sp.simplify(theory.subs({m1: 1, m2: 0}))
-        yield Comparison(
-            quantity, k, sp.Integer(0), at_zero, limit, LEADING_POWERS[quantity].bound(k)
-        )
+        at_zero, bound = sp.simplify(theory.subs({m1: 1, m2: 0})), LEADING_POWERS[quantity].bound(k)
+        yield _row(quantity, k, sp.Integer(0), at_zero, limit, bound)

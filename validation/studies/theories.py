@@ -10,9 +10,8 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from functools import partial
-from itertools import chain
+from itertools import chain, product
 from statistics import median
 from typing import Any
 
@@ -21,7 +20,7 @@ import sympy as sp
 from lwa import Cell, InputError, NoSolitaryWave, expand
 from lwa.expansion.series import EpsilonSeries
 from validation.pictures import Curve, Panel
-from validation.pulses.pulse import Measured, MeasureError
+from validation.pulses.pulse import MeasureError
 from validation.pulses.steady import STRETCH, point
 from validation.report.result import Report
 from validation.report.table import Column, Table
@@ -77,49 +76,23 @@ SOLITARY, STRUCK_CHAIN = "solitary wave", "struck chain"
 HERTZ = sp.Rational(3, 2)
 
 
-@dataclass(frozen=True)
-class Place:
-    """Predictions of all theories at one k and ω, beside the lattice's values.
+Place = Mapping[str, Any]
+"""Predictions of all theories at one k and ω, beside the lattice's values, as in JSON.
 
-    kind : `SOLITARY` or `STRUCK_CHAIN`, the origin of ``truth``, the lattice's `QUANTITIES`.
-    rows : for each theory ``theory``, its name; ``error_value``, theory/truth - 1 by `QUANTITIES`,
-    or None and the reason ``missing``; ``estimate_value`` of |error| by the theory itself, where it
-    has one; ``seconds``, CPU time of derivation and evaluation.
-    """
-
-    k: sp.Rational
-    omega: sp.Rational
-    kind: str
-    truth: Mapping[str, Measured]
-    rows: Sequence[Mapping[str, Any]]
-
-    @property
-    def errors(self) -> dict[str, Mapping[str, float]]:
-        """theory/truth - 1 by theory and by `QUANTITIES`, without theories that have no wave."""
-        return {row["theory"]: row["error_value"] for row in self.rows if row["error_value"]}
-
-    def row(self, name: str) -> tuple[object, ...]:
-        """Return the table row of one of `QUANTITIES`; None for a theory without a wave."""
-        errors = (self.errors.get(theory, {}).get(name) for theory in THEORIES)
-        return name, self.k, self.omega, self.truth[name], self.kind, *errors
-
-    def document(self) -> dict[str, Any]:
-        """Return the values of the lattice and a row for each theory, for JSON."""
-        return {
-            "k": self.k,
-            "omega": self.omega,
-            "truth": self.kind,
-            "truth_value": {name: number.value for name, number in self.truth.items()},
-            "truth_error_value": {name: number.error for name, number in self.truth.items()},
-            "rows": self.rows,
-        }
+``k``, ``omega``; ``truth``, `SOLITARY` or `STRUCK_CHAIN`, the origin of the lattice's `QUANTITIES`,
+``truth_value`` and ``truth_error_value``; ``rows``, for each theory ``theory``, its name;
+``error_value``, theory/truth - 1 by `QUANTITIES`, or None and the reason ``missing``;
+``estimate_value`` of |error| by the theory itself, where it has one; ``seconds``, CPU time of
+derivation and evaluation.
+"""
 
 
 _COLUMNS = (
     Column("quantity"),
     Column("k", "k"),
     Column("omega", "m2/m1", format=lambda omega: f"{float(omega):.4g}"),
-    Column("truth", "truth", format=".6g", error=True),
+    Column("truth_value", "truth", format=".6g"),
+    Column("truth_error_value", "±", format=".0e"),
     Column("truth", "by", format=lambda kind: kind.split()[0]),
     *(Column(f"error_value.{theory}", theory, format="+.1e") for theory in THEORIES),
 )
@@ -131,26 +104,30 @@ Truth: the solitary wave or, where there is none, the pulse of a struck chain.""
 def ladder(places: Sequence[Place]) -> Report:
     """Return the table of the theories' errors, and a picture of |error| of the force's width.
 
-    JSON: ``theories``, each with ``k``, ``omega``, ``truth``, and ``rows`` of the theories.
+    JSON: ``theories``, the places.
     """
     seconds: dict[str, list[float]] = {}
-    for row in chain.from_iterable(place.rows for place in places):
+    for row in chain.from_iterable(place["rows"] for place in places):
         if row["error_value"]:
             seconds.setdefault(row["theory"], []).append(row["seconds"])
     costs = ", ".join(f"{name} {1e3 * median(s):.3g}" for name, s in seconds.items())
-    rows = tuple(place.row(name) for name in QUANTITIES for place in places)
+    rows = []
+    for name, p in product(QUANTITIES, places):
+        truth = p["truth_value"][name], p["truth_error_value"][name], p["truth"]
+        off = [row["error_value"] and row["error_value"][name] for row in p["rows"]]
+        rows.append((name, p["k"], p["omega"], *truth, *off))
     note = f"{_NOTE}\nMedian cost of derivation and evaluation (ms of CPU): {costs}."
     title = "Theories against true waves"
-    equal = [(p.k - 1, p) for p in places if p.omega == 1]
-    dimers = [(p.omega, p) for p in places if p.omega != 1 and p.k == HERTZ]
+    equal = [(p["k"] - 1, p) for p in places if p["omega"] == 1]
+    dimers = [(p["omega"], p) for p in places if p["omega"] != 1 and p["k"] == HERTZ]
     return Report(
         "",
-        (Table(_COLUMNS, rows, "", title, note, by="quantity", heads=_HEADS),),
+        (Table(_COLUMNS, tuple(rows), "", title, note, by="quantity", heads=_HEADS),),
         panels=(
             _panel("k - 1", "theories, equal beads", equal),
             _panel("m2/m1", "theories, dimers, k = 3/2", dimers),
         ),
-        data={"theories": [p.document() for p in places]},
+        data={"theories": places},
     )
 
 
@@ -158,9 +135,9 @@ def _panel(axis: str, title: str, places: Sequence[tuple[sp.Rational, Place]]) -
     """Return the panel of |error| of the force's width, as a function of k - 1 or ω."""
     curves = []
     for i, (theory, mark) in enumerate(zip(THEORIES, "osD^v<>Pd", strict=True)):
-        errors = [(x, abs(p.errors[theory]["force"])) for x, p in places if theory in p.errors]
-        if errors:
-            x, y = zip(*sorted(errors), strict=True)
+        errors = ((x, p["rows"][i]["error_value"]) for x, p in places)
+        if points := sorted((x, abs(error["force"])) for x, error in errors if error):
+            x, y = zip(*points, strict=True)
             curves.append(Curve(theory, x, y, f"C{i}{mark}-"))
     return Panel(axis, "|error| of the FWHM of the force", tuple(curves), "xy", title)
 
@@ -172,31 +149,29 @@ def place(k: sp.Rational, omega: sp.Rational, kind: str = SOLITARY) -> Place:
     """
     if kind == SOLITARY:
         wave = measured(exact_wave((1.0,) if omega == 1 else (1.0, float(omega)), float(k)))
-        values = [wave[name] for name in ("fwhm force", "fwhm strain", "c")]
+        truth = [wave[name] for name in ("fwhm force", "fwhm strain", "c")]
     else:
         pulse = point(k, omega, STRETCH)
         if pulse.missing:
             raise MeasureError(pulse.missing)
-        values = [pulse.numbers[name] for name in ("width", "strain_width", "speed")]
-    truth = dict(zip(QUANTITIES, values, strict=True))
+        truth = [pulse.numbers[name] for name in ("width", "strain_width", "speed")]
     rows = []
     for theory, predict in THEORIES.items():
-        start, error, estimate, missing = time.process_time(), None, None, None
+        row = dict.fromkeys(("error_value", "estimate_value", "missing"))
+        start = time.process_time()
         try:
             numbers, shares = predict(k, omega)
-            off = (x / true.value - 1 for x, true in zip(numbers, values, strict=True))
-            error = dict(zip(QUANTITIES, off, strict=True))
-            estimate = dict(zip(QUANTITIES, shares, strict=True)) if shares else None
+            off = (x / true.value - 1 for x, true in zip(numbers, truth, strict=True))
+            row["error_value"] = dict(zip(QUANTITIES, off, strict=True))
+            row["estimate_value"] = shares and dict(zip(QUANTITIES, shares, strict=True))
         except (InputError, NoSolitaryWave) as reason:
-            missing = str(reason)
-        seconds = time.process_time() - start
-        rows.append(
-            {
-                "theory": theory,
-                "error_value": error,
-                "estimate_value": estimate,
-                "seconds": seconds,
-                "missing": missing,
-            }
-        )
-    return Place(k, omega, kind, truth, rows)
+            row["missing"] = str(reason)
+        rows.append({"theory": theory, **row, "seconds": time.process_time() - start})
+    return {
+        "k": k,
+        "omega": omega,
+        "truth": kind,
+        "truth_value": {q: x.value for q, x in zip(QUANTITIES, truth, strict=True)},
+        "truth_error_value": {q: x.error for q, x in zip(QUANTITIES, truth, strict=True)},
+        "rows": rows,
+    }

@@ -9,7 +9,6 @@ from lwa import InputError
 from validation.pictures import Curve, Panel
 from validation.report.result import Report
 from validation.report.table import Column, Finding, Table
-from validation.studies.limits import report
 
 PART = Report(
     "a part",
@@ -19,29 +18,17 @@ PART = Report(
 )
 
 
-def test_limits(limits_rows):
-    found = json.loads(json.dumps(report(limits_rows).document(), allow_nan=False))
-    assert found["ok"] is True
-    assert len(found["rows"]) == len(limits_rows)
-    for row, written in zip(limits_rows, found["rows"], strict=True):
-        assert written["lattice_value"] == row.lattice.value
-        assert written["lattice_error_value"] == row.lattice.error
-        error = written["theory_value"] / written["lattice_value"] - 1
-        assert written["error_value"] == pytest.approx(error, rel=1e-12)
-        assert abs(written["error_value"]) <= written["bound_value"]
-    shown = report(limits_rows).text()
-    assert shown.count("  ok") == len(limits_rows)
-    assert shown.endswith("24 checks: all hold")
-    assert "FAILS" not in shown
-
-
-def test_a_failing_row_is_shown(limits_rows):
-    first, *others = limits_rows
-    broken = report([dataclasses.replace(first, bound=1e-6), *others])
-    assert not broken.ok
-    assert broken.document()["ok"] is broken.document()["rows"][0]["ok"] is False
-    assert broken.text().count("FAILS") == 2  # in the table, and alone below it
-    assert broken.text().endswith("24 checks: 1 of 24 fail")
+@pytest.mark.parametrize("high", [1.0, 0.1])
+def test_findings_of_a_document(high):
+    """Beside a table, text shows only those that fail."""
+    report = dataclasses.replace(PART, findings=(*PART.findings, Finding("loss", 0.5, high=high)))
+    ok = high > 0.5
+    document = json.loads(json.dumps(report.document(), allow_nan=False))
+    assert document["ok"] is report.ok is ok
+    assert [row["ok"] for row in document["findings"]] == [True, ok]
+    assert report.text().count("FAILS") == (not ok)
+    assert "drift" not in report.text()
+    assert report.text().endswith("2 checks: " + ("all hold" if ok else "1 of 2 fail"))
 
 
 def test_csv_is_the_first_table_with_rows():
