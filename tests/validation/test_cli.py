@@ -129,7 +129,8 @@ def test_a_stored_run_is_loaded_and_runs_again(capsys, folder, scene_file):
     assert last["peak_value"] is None
     assert last["missing"].startswith("the pulse is not wholly")
     again = load_run("again.json")
-    assert again == found
+    assert again.scene == found.scene
+    np.testing.assert_equal(again.columns(), found.columns())
     assert repr(found).startswith("Records(20 beads, 19 contacts, k = 1.5; duration 20; 4 sensors")
     legend = found.figure().axes[0].get_legend()
     assert [text.get_text() for text in legend.get_texts()] == [
