@@ -19,6 +19,7 @@ from lwa.algebra.jets import GradedSeries
 from lwa.algebra.model import Model
 from lwa.base.exact import InputError
 from lwa.base.progress import Progress
+from lwa.closure.slaving import full
 from lwa.closure.solution import Solution
 
 
@@ -28,8 +29,8 @@ def linear(model: Model, order: int, progress: Progress[int] = iter) -> Solution
     Raises `lwa.InputError` for cells of more than two particles, which the ansatz does not cover.
     """
     size = model.cell.size
-    if size == 1 and model.branch == "acoustic":
-        return _uniform(model, order, progress)
+    if size == 1 and model.branch == "acoustic":  # the one equation is the wave equation
+        return full(model, order, progress=progress)
     if size != 2:
         raise InputError(
             f"the cell has {size} masses: the linear closure's {model.branch} branch wants two; "
@@ -91,17 +92,6 @@ def _optical(model: Model, order: int, progress: Progress[int]) -> Solution:
     solution = _solution(b, first, second)
     E = (algebra.one, *(k * e for e in solution.acceleration[1:]))
     return replace(solution, acceleration=E)
-
-
-def _uniform(model: Model, order: int, progress: Progress[int]) -> Solution:
-    # One particle per cell: nothing is slaved, and the one equation is the wave equation.
-    algebra = model.algebra(max(order - 1, 1))
-    k = model.ring.exponent(algebra.context)
-    force, E = Force(algebra, k), GradedSeries(algebra, k, [algebra.zero])
-    for n in progress(range(1, order)):
-        force.append(algebra.r[n] * fmpq(1, factorial(n + 1)))  # (u(x + D) - u(x))/D
-        E.append(-force.increment(-1, n))
-    return _solution([], E, E)
 
 
 def _solution(b: list[fmpq_mpoly], first: GradedSeries, second: GradedSeries) -> Solution:

@@ -14,7 +14,7 @@ from dataclasses import replace
 import sympy as sp
 from flint import fmpq_mpoly
 
-from lwa.algebra.contact import Force, SeriesPowers
+from lwa.algebra.contact import SeriesPowers
 from lwa.algebra.jets import GradedSeries, Monomial
 from lwa.algebra.model import Model
 from lwa.base.exact import InputError
@@ -114,12 +114,7 @@ class _Change:
     def _of_strain(self, coefficient: fmpq_mpoly, degree: fmpq_mpoly, size: int) -> Series:
         """The series of coefficient · (1 + X)^degree, where 1 + X = u_x/φ_x."""
         X = [self.inverse[n] * self.algebra.r[n] for n in range(1, size)]
-        if not self.algebra.phi:  # (1 + X)^e = 1 + e Φ
-            strain = Force(self.algebra, degree)
-            for X_n in X:
-                strain.append(X_n)
-            return [coefficient, *(coefficient * degree * Phi_n for Phi_n in tuple(strain.Phi)[1:])]
-        # The coefficient depends on p too: Taylor's series in p X, with p^m ∂_p^m coefficient.
+        # Taylor's series in p X, with p^m ∂_p^m coefficient: the φ_n depend on p too.
         slopes = [coefficient]
         for m in range(size - 1):
             slopes.append(self.algebra.dp(slopes[-1], degree - m))
