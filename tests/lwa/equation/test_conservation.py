@@ -5,7 +5,6 @@ import sympy as sp
 
 from lwa import Cell, Dimer, InputError, homogenize
 from lwa.equation.terms import Jet
-from tests.identity import same
 
 x = sp.Symbol("x")
 m1, m2 = sp.symbols("m1 m2", positive=True)
@@ -55,25 +54,6 @@ def test_the_canonical_field_is_in_conservation_form_at_every_order():
 def test_the_first_field_of_the_full_closure_conserves_momentum_up_to_third_order_only():
     assert homogenize(Dimer("m1", "m2"), 4, closure="full").pde.conservative
     assert not homogenize(Dimer("m1", "m2"), 6, closure="full").pde.conservative
-
-
-@pytest.mark.parametrize(
-    "cell",
-    [
-        Dimer("m1", "m2"),
-        Dimer("m1", "m2", stiffnesses=("A1", "A2")),
-        Cell(["m1", "m1", "m2"]),
-        Cell(["m1", "m2", "m3"]),
-        Cell([1, 2, 3, 4], stiffnesses=[1, 2, 3, 4]),
-    ],
-    ids=str,
-)
-def test_the_canonical_field_is_variational_at_third_order_for_every_cell(cell):
-    pde = homogenize(cell, 4, closure="full", field="center").pde
-    k = pde.k
-    assert pde.variational
-    assert same(pde.G, pde.I * (k - 1) * (k - 2) / 2)
-    assert same(pde.H, 2 * pde.I * (k - 1))
 
 
 def test_a_redefinition_of_the_field_is_variational_at_fifth_order():

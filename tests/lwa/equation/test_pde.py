@@ -18,15 +18,6 @@ def test_conservation_form_agrees_with_the_euler_operator(masses, conservative):
     assert (value == 0) == conservative == pde.conservative
 
 
-def test_the_conservation_condition_of_the_third_order():
-    # G/(k-2) = (H - (k-1)I)/2 makes the equation a conservation law
-    for masses, holds in (((1, 1), True), ((2, 1), False)):
-        pde = homogenize(Dimer(*masses), order=4).pde
-        k = pde.k
-        condition = pde.G / (k - 2) - (pde.H - (k - 1) * pde.I) / 2
-        assert (sp.cancel(condition) == 0) == holds == pde.conservative
-
-
 def test_right_side_of_the_linear_chain_is_its_symbol():
     a = sp.Symbol("a")
     pde = homogenize(Cell(["m"]), order=7, k=1).pde
