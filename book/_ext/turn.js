@@ -15,9 +15,8 @@
       this.w[0] = v;
       if (start) this.u.forEach((_, i) => (this.u[i] = start(i)));
       this.contact = new Float64Array(n - 1);
-      this.fast = Math.max(Math.pow((wall ? 4 : 1) * v * v, 1 / (k + 1)) + p0, 1e-3); // a compression of the scene
-      const stiff = k * Math.pow(this.fast, k - 1) * 2 * (1 + 1 / omega);
-      this.step = 0.12 / Math.sqrt(stiff);
+      const most = Math.max(Math.pow((wall ? 4 : 1) * v * v, 1 / (k + 1)) + p0, 1e-3); // a compression of the scene
+      this.step = 0.12 / Math.sqrt(2 * k * Math.pow(most, k - 1) * (1 + 1 / omega));
       this.forces();
     }
 
@@ -54,71 +53,68 @@
       const first = this.arrivals.length;
       for (let i = first; i < Math.min(first + 9, this.n - 2); i++) {
         const trail = (this.trails[i] ||= {best: {time: 0, force: 0}, bead: 0, past: []});
+        const [before, last] = trail.past.slice(-2);
         const now = [this.time, this.contact[i] - this.load];
-        const {last, before} = trail;
-        if (before && before[1] < last[1] && now[1] <= last[1] && last[1] > trail.best.force) {
-          const curve = now[1] - 2 * last[1] + before[1];
+        if (last && before[1] < last[1] && now[1] <= last[1] && last[1] > trail.best.force) {
           const slope = (now[1] - before[1]) / 2;
-          const ahead = -slope / curve; // in steps
+          const ahead = slope / (2 * last[1] - now[1] - before[1]); // in steps
           trail.best = {time: last[0] + ahead * (last[0] - before[0]), force: last[1] + (slope * ahead) / 2};
         }
         trail.bead = Math.max(trail.bead, (this.contact[i] + this.contact[i + 1]) / 2); // of bead i + 1
-        Object.assign(trail, {before: last, last: now});
         trail.past.push(now);
       }
       const least = 0.4 * (first ? this.arrivals[first - 1].force : 0.02 * this.v);
-      const {best, before, last, past} = this.trails[first] || {};
-      if (!best || best.force < least || last[1] > best.force / 2) return;
+      const {best, past} = this.trails[first] || {};
+      if (!best || best.force < least || past.at(-1)[1] > best.force / 2) return;
       const crossing = ([t0, f0], [t1, f1]) => t0 + ((best.force / 2 - f0) / (f1 - f0)) * (t1 - t0);
       const up = Math.max(past.findIndex(row => row[1] > best.force / 2), 1);
-      this.arrivals.push({...best, width: crossing(before, last) - crossing(past[up - 1], past[up])});
+      this.arrivals.push({...best, width: crossing(...past.slice(-2)) - crossing(past[up - 1], past[up])});
       if (this.arrivals.length === 13) this.arch = this.theory();
     }
 
-    // The theory's wave at the mean peak force of two neighbouring contacts, from where they peak.
+    // The theory's wave at the mean peak force of the contacts 11 and 12, from bead 12 between them on.
     theory() {
       const [a, b] = this.arrivals.slice(-2);
       const force = (a.force + b.force) / 2 + this.load;
       const values = [this.k, 1, 1, this.omega, 1];
       const speed = this.load > 0 ? f.loaded_speed(force, this.load, ...values) : f.pulse_speed(force, ...values);
-      return {force, speed, place: this.arrivals.length - 1, time: (a.time + b.time) / 2, profile: profile(this.k, this.p0, this.omega, force)};
+      const wave = profile(this.k, this.p0, this.omega, force);
+      return {force, speed, at: x => wave(x - 12 - speed * (this.time - (a.time + b.time) / 2))};
     }
 
     // Speed of the lattice's pulse in sites per unit of time, between like contacts.
     speed() {
-      const n = this.arrivals.length - 1;
-      if (n < 18) return NaN;
-      const last = n - (n % 2);
-      return (last - 12) / (this.arrivals[last].time - this.arrivals[12].time);
+      const last = 2 * Math.floor((this.arrivals.length - 1) / 2);
+      return last < 18 ? NaN : (last - 12) / (this.arrivals[last].time - this.arrivals[12].time);
     }
   }
 
-  // Length in xi from the middle of the wave, where its strain has risen by B, to a rise v: the
-  // quadrature of lwaFormulas.gradient with v = B/cosh^2 s, by the midpoint rule.
-  function place(v, B, p0, k, omega) {
-    const h = Math.acosh(Math.sqrt(B / v)) / 200;
-    let sum = 0;
-    for (let s = h / 2; s < 200 * h; s += h) {
-      const here = B / Math.cosh(s) ** 2;
-      sum += (2 * h * Math.tanh(s) * here) / f.gradient(here, B, p0, k, 1, omega);
+  // Row of a table at x, linear between its rows, which are sorted by their first number.
+  function between(rows, x) {
+    const after = rows.findIndex(row => row[0] >= x);
+    if (after < 1) return rows[0][0] === x ? rows[0] : null;
+    const [low, high] = [rows[after - 1], rows[after]];
+    return low.map((value, i) => value + ((x - low[0]) / (high[0] - low[0])) * (high[i] - value));
+  }
+
+  // Rows [xi, v] of a wave under load from its middle on, v the rise of the strain, B at the middle:
+  // the quadrature of lwaFormulas.gradient with v = B/cosh^2 s, by the midpoint rule.
+  function flank(B, p0, k, omega) {
+    const [rows, h] = [[[0, B]], 0.005];
+    for (let s = h / 2; s < 5; s += h) {
+      const v = B / Math.cosh(s) ** 2;
+      const xi = rows.at(-1)[0] + (2 * h * Math.tanh(s) * v) / f.gradient(v, B, p0, k, 1, omega);
+      rows.push([xi, B / Math.cosh(s + h / 2) ** 2]);
     }
-    return sum;
+    return rows;
   }
 
   // Dynamic force of the theory's wave over xi, 0 at its middle; peak contact force F, load in it.
   function profile(k, p0, omega, F) {
     const B = Math.pow(F, 1 / k) - p0;
     if (p0 === 0) return xi => Math.pow(Math.max(f.profile(xi, B, k, 1, omega, 1), 0), k);
-    const table = Array.from({length: 120}, (_, i) => {
-      const v = B / Math.cosh(i / 24) ** 2;
-      return [place(v, B, p0, k, omega), Math.pow(p0 + v, k) - Math.pow(p0, k)];
-    });
-    return xi => {
-      const j = table.findIndex(row => row[0] > Math.abs(xi));
-      if (j < 1) return 0;
-      const [[x0, y0], [x1, y1]] = [table[j - 1], table[j]];
-      return y0 + ((y1 - y0) * (Math.abs(xi) - x0)) / (x1 - x0);
-    };
+    const rows = flank(B, p0, k, omega);
+    return xi => Math.pow(p0 + (between(rows, Math.abs(xi))?.[1] ?? 0), k) - Math.pow(p0, k);
   }
 
   function root(g, low, high) { // of a function that rises
@@ -135,6 +131,7 @@
 
   const calm = matchMedia("(prefers-reduced-motion: reduce)").matches;
   const LATTICE = "#56B4E9", THEORY = "#D55E00", GHOST = "#9a9a9a";
+  const same = x => x;
 
   // A canvas cleared for drawing: pen, width and height in CSS pixels.
   function sheet(canvas, shape = 4.5) {
@@ -174,11 +171,8 @@
     if (ghost) bars(ghost, GHOST + "66");
     bars(chain, LATTICE);
     if (chain.arch) {
-      const {speed, place: from, time, profile: wave} = chain.arch;
-      const middle = from + speed * (chain.time - time);
-      const points = [];
-      for (let i = -0.5; i < chain.n - 0.5; i += 0.05) if (wave(i - middle) > 2e-3 * top) points.push([x(i), y(wave(i - middle))]);
-      line(pen, points, THEORY);
+      const places = Array.from({length: 20 * chain.n}, (_, i) => i / 20 - 0.5).filter(i => chain.arch.at(i) > 2e-3 * top);
+      line(pen, places.map(i => [x(i), y(chain.arch.at(i))]), THEORY);
     }
     const moved = chain.wall ? 0 : 0.17 / Math.max(...chain.u.map((u, i) => Math.abs(u - (chain.u[i + 1] ?? u))), 0.02);
     const edge = getComputedStyle(document.documentElement).getPropertyValue("--pst-color-text-base") || "#333";
@@ -191,21 +185,20 @@
     return {pen, x, y, base};
   }
 
-  // The frame of a thing that moves: canvas, sliders, button; `begin(values, old)` starts a scene,
-  // `draw(scene, canvas)` shows it, `next(scene)` advances it by one picture and returns false at
-  // its end, `tell(scene)` is the line below.
-  function moving(home, label, sliders, {begin, draw, next, tell}) {
+  // The frame of a thing that moves: `begin(values, old)` starts a scene, `draw(scene, canvas)` shows
+  // it, `next(scene)` advances it by one picture, false at its end, `tell(scene)` is the line below.
+  function moving(home, label, sliders, {begin = values => ({...values}), draw, next = () => true, tell}) {
     const canvas = element("canvas", {role: "img", "aria-label": label});
     const output = element("output", {"aria-live": "polite"});
     const button = element("button", {type: "button"}, calm ? "Play" : "Pause");
     const panel = element("div", {class: "lwa-panel"}, button);
     const values = {};
     let scene, playing = !calm, due = 0;
-    const refresh = () => { draw(scene, canvas); output.textContent = tell(scene); };
     const restart = old => {
       scene = home.scene = begin(values, old);
       for (let i = 0; !playing && i < 240 && next(scene); i++);
-      refresh();
+      draw(scene, canvas);
+      output.textContent = tell(scene);
     };
     function frame() {
       if (!playing) return;
@@ -218,12 +211,10 @@
       requestAnimationFrame(frame);
     }
     for (const [name, text, low, high, step, meaning, start] of sliders) {
-      const given = name in home.dataset ? Number(home.dataset[name]) : meaning(start);
-      values[name] = given;
+      const given = (values[name] = name in home.dataset ? Number(home.dataset[name]) : meaning(start));
       if ("plain" in home.dataset) continue;
       const value = element("span", {}, given.toPrecision(3));
-      const at = root(x => meaning(x) - given, low, high);
-      const slider = element("input", {type: "range", min: low, max: high, step, value: at, "aria-label": text, "data-slider": name});
+      const slider = element("input", {type: "range", min: low, max: high, step, value: root(x => meaning(x) - given, low, high), "aria-label": text, "data-slider": name});
       slider.addEventListener("input", () => {
         values[name] = meaning(Number(slider.value));
         value.textContent = values[name].toPrecision(3);
@@ -243,17 +234,15 @@
     frame();
   }
 
-  const same = x => x;
-  const STRUCK = [
-    ["omega", "mass ratio ω", -1.7, 0, 0.01, x => 10 ** x, Math.log10(0.2733)],
-    ["k", "exponent k", 1.1, 3, 0.05, same, 1.5],
-    ["p0", "load: static compression p₀", 0, 0.5, 0.01, same, 0],
-    ["v", "velocity of the blow", 0.2, 2, 0.05, same, 1],
-  ];
-
   // Scale and clock stay while a slider moves; the chain as it was before runs along in grey.
   function struckIn(home) {
-    moving(home, "A row of forty beads, bars of the force in each contact, the pulse before the last change in grey, and the theory's wave as a line", STRUCK, {
+    const sliders = [
+      ["omega", "mass ratio ω", -1.7, 0, 0.01, x => 10 ** x, Math.log10(0.2733)],
+      ["k", "exponent k", 1.1, 3, 0.05, same, 1.5],
+      ["p0", "load: static compression p₀", 0, 0.5, 0.01, same, 0],
+      ["v", "velocity of the blow", 0.2, 2, 0.05, same, 1],
+    ];
+    moving(home, "A row of forty beads, bars of the force in each contact, the pulse before the last change in grey, and the theory's wave as a line", sliders, {
       begin(values, old) {
         const chain = new Chain(values);
         const probe = new Chain(values);
@@ -265,8 +254,7 @@
         return {given: {...values}, before, ghost: before ? new Chain(before) : null, chain, scale, pace: old?.pace || pace};
       },
       next({chain, ghost, pace}) {
-        chain.advance(pace);
-        ghost?.advance(pace);
+        for (const each of [chain, ghost]) each?.advance(pace);
         return chain.arrivals.length <= chain.n - 4 && chain.time < 4000 * pace;
       },
       draw: ({chain, ghost, scale}, canvas) => show(canvas, chain, scale, ghost),
@@ -313,8 +301,7 @@
   // counted by the passages of the middle light bead through its place.
   function breatherIn(home) {
     const [k, omega, n] = [1.5, 0.5, 121];
-    const K = k; // F' at the compression 1
-    const bottom = Math.sqrt((2 * K) / omega);
+    const bottom = Math.sqrt((2 * k) / omega); // F' = k at the compression 1
     moving(home, "Displacement of each bead of a loaded chain over its place, and the envelope of the theory", [["nu", "detuning 1 - f/f₀", 0.001, 0.015, 0.0005, same, 0.004]], {
       begin({nu}) {
         const [U, b] = [Math.sqrt((32 * nu) / (k * (k - 1))), Math.sqrt((8 * nu * (1 - omega)) / omega)];
@@ -350,8 +337,6 @@
   // The arch of the theory over the beads, at rest: equal beads, peak strain 1.
   function archIn(home) {
     moving(home, "One arch of a power of a cosine over a row of beads", [["k", "exponent k", 1.1, 4, 0.05, same, 1.5]], {
-      begin: ({k}) => ({k}),
-      next: () => true,
       draw({k}, canvas) {
         const [pen, width, height] = sheet(canvas, 6);
         const [x, y] = [xi => (xi / 14 + 0.5) * width, v => height - 26 - v * (height - 40)];
@@ -378,9 +363,9 @@
   }
 
   // Numbers of a blow on spheres in SI units, by the lattice and by each theory, at contact 80. A
-  // given force fixes the unit of length, which the lattice's force depends on. `series` has rows of
-  // mass ratio, width in sites and its error.
-  function calculate({a, b, radiusA, radiusB, load, blow, kind}, series = []) {
+  // given force fixes the unit of length, which the lattice's force depends on. lwaSeries: rows of
+  // ln omega, width in sites and its error, NaN where the series refuses a value.
+  function calculate({a, b, radiusA, radiusB, load, blow, kind}) {
     if (!(radiusA > 0 && radiusB > 0 && blow > 0 && load >= 0)) return {refused: "Radii and the blow must be positive, the load not negative."};
     if (kind === "force" && blow <= load) return {refused: "The peak force must exceed the load."};
     const [one, two] = [f.materials[a], f.materials[b]];
@@ -404,30 +389,21 @@
     const theories = {};
     if (load > 0) {
       const speed = f.loaded_speed(F, load, ...values);
-      const [p0, B] = [still / D, Math.pow(F / A, 2 / 3) / D - still / D];
-      theories["canonical wave"] = {speed, width: (2 * D * place(Math.pow((F + load) / (2 * A), 2 / 3) / D - p0, B, p0, 1.5, omega)) / speed};
+      const [p0, whole, half] = [load, F, (F + load) / 2].map(force => Math.pow(force / A, 2 / 3) / D);
+      const falling = flank(whole - p0, p0, 1.5, omega).map(([xi, v]) => [-v, xi]);
+      theories["canonical wave"] = {speed, width: (2 * D * between(falling, p0 - half)[1]) / speed};
     } else {
       theories["canonical wave"] = {speed: f.pulse_speed(F, ...values), width: f.pulse_time(F, ...values)};
       theories["paper's closure"] = {speed: f.paper_speed(F, ...values), width: f.paper_time(F, ...values)};
-      const light = Math.min(omega, 1 / omega);
-      const after = series.findIndex(([w]) => w >= light * (1 - 1e-9)); // rows by rising ratio
-      const [low, high] = [series[Math.max(after - 1, 0)], series[after]];
-      if (!low || !high) theories["series in k − 1"] = {refused: "no value below ω = 0.01"};
-      else if (!low[1] || !high[1]) theories["series in k − 1"] = {refused: "refuses a value at this mass ratio"};
-      else {
-        const part = high === low ? 0 : Math.log(light / low[0]) / Math.log(high[0] / low[0]);
-        const [sites, error] = [1, 2].map(i => low[i] + part * (high[i] - low[i]));
-        theories["series in k − 1"] = {width: (sites * D) / lattice.speed, error: error / sites};
-      }
+      const row = between(lwaSeries, Math.log(Math.min(omega, 1 / omega))) ?? [];
+      theories["series in k − 1"] = row[1] ? {width: (row[1] * D) / lattice.speed, error: row[2] / row[1]} : {refused: "refuses a value at this mass ratio"};
     }
-    const [R, E] = [(radiusA * radiusB) / D, 1 / ((1 - one.nu ** 2) / one.E + (1 - two.nu ** 2) / two.E)];
-    const pressure = Math.cbrt((6 * F * E * E) / (Math.PI ** 3 * R * R)); // in the middle of the contact
+    const pressure = (1.5 * Math.cbrt(F * A * A) * D) / (Math.PI * radiusA * radiusB); // in the middle of the contact
     const beads = found.beads.map(force => newton * force);
     return {m1, m2, A, omega, F, v, beads, decay: found.decay, growth: found.growth, pressure, sound: load > 0 ? f.sound_speed(load, ...values) : 0, lattice, theories};
   }
 
   function calculatorIn(home) {
-    const series = JSON.parse(document.getElementById("lwa-series").textContent);
     const choice = (names, chosen) => element("select", {}, ...names.map(([value, text = value]) => element("option", value === chosen ? {value, selected: ""} : {value}, text)));
     const number = (value, step) => element("input", {type: "number", min: 0, value, step});
     const solids = Object.keys(f.materials).map(name => [name]);
@@ -451,7 +427,7 @@
       const value = (name, input) => (input.type === "number" ? input.value * (name.startsWith("radius") ? 1e-3 : 1) : input.value);
       const given = Object.fromEntries(Object.entries(fields).map(([name, [, input]]) => [name, value(name, input)]));
       output.replaceChildren();
-      const found = calculate(given, series);
+      const found = calculate(given);
       if (found.refused) return text("refused", found.refused);
       const {F, v, beads, omega, A, sound, lattice, theories, decay, growth, pressure} = found;
       text("force", `peak force of a contact (the mean of two neighbours): ${F.toPrecision(4)} N, after a blow with ${v.toPrecision(4)} m/s`);
@@ -469,6 +445,6 @@
     update();
   }
 
-  window.lwaTurn = {Chain, profile, calculate};
+  window.lwaTurn = {Chain, calculate};
   for (const [name, make] of Object.entries({chain: struckIn, shock: shockIn, breather: breatherIn, arch: archIn, calculator: calculatorIn})) document.querySelectorAll(`.lwa-${name}`).forEach(make);
 })();

@@ -135,8 +135,7 @@ window.addEventListener("load", async () => {
     const mean = turns && (turns.at(-1) - turns[0]) / (turns.length - 1);
     if (turns) report.breather = {nu, rate: 2 * Math.PI / mean};
   }
-  const rows = document.getElementById("lwa-series");
-  if (rows) {
+  if (document.querySelector(".lwa-calculator")) {
     const beads = {a: "steel 316", b: "PTFE", radiusA: 2.38e-3, radiusB: 2.38e-3};
     report.blows = [
       {load: 0, blow: 1.37, kind: "velocity"}, {load: 2, blow: 1.37, kind: "velocity"},
@@ -147,7 +146,7 @@ window.addEventListener("load", async () => {
       {load: 0, blow: -1, kind: "velocity"},
       {load: 0, blow: 1, kind: "velocity", radiusB: 7.5e-3},
       {load: 0, blow: 1, kind: "velocity", b: "steel 316", radiusB: 2.2e-3},
-    ].map(blow => [blow, lwaTurn.calculate({...beads, ...blow}, JSON.parse(rows.textContent))]);
+    ].map(blow => [blow, lwaTurn.calculate({...beads, ...blow})]);
   }
   const answer = await fetch("/probe", {method: "POST", body: JSON.stringify(report)});
   const next = await answer.text();

@@ -55,51 +55,47 @@ def opened(width, mode="light"):
     return visited(HTML, PAGES, width, mode)
 
 
-def test_every_page_was_read(visit):
+def found(pages, finding):
+    """Pages with a finding."""
+    return {page: report[finding] for page, report in pages.items() if report[finding]}
+
+
+@pytest.mark.parametrize(
+    "finding",
+    ["errors", "unrendered", "merrors", "raw", "broken", "unshown", "silent", "unnamed"],
+)
+def test_no_page_has_this_fault(visit, finding):
     assert set(visit.pages) == set(PAGES)
-    assert not [page for page, report in visit.pages.items() if report["errors"]]
+    assert not found(visit.pages, finding)
 
 
-def test_all_mathematics_is_typeset(visit):
+def test_mathematics_pictures_and_addresses(visit):
     for page, report in visit.pages.items():
-        found = report["unrendered"] + report["merrors"] + report["raw"]
-        assert not found, f"{page}: {found}"
-        assert report["mathjax"] or not report["math"]
-    equations = {page: report["rendered"] for page, report in visit.pages.items()}
-    for chapter in CHAPTERS[1:9]:
-        assert equations[f"{chapter}.html"] > 4
-
-
-def test_every_picture_is_there(visit):
-    assert not {page: r["broken"] for page, r in visit.pages.items() if r["broken"]}
-    assert not [page for page, r in visit.pages.items() if r["unshown"]]
-    assert sum(report["images"] for report in visit.pages.values()) > 2 * len(
-        PAGES
-    )  # logo, dark too
+        assert report["mathjax"] or not report["math"], page
+    assert all(visit.pages[f"{chapter}.html"]["rendered"] > 4 for chapter in CHAPTERS[1:9])
+    assert sum(report["images"] for report in visit.pages.values()) > 2 * len(PAGES)  # logos
     assert not visit.missing
+    assert not visit.foreign
 
 
 @pytest.mark.parametrize("mode", ["light", "dark"])
 @pytest.mark.parametrize("width", [PHONE, WINDOW])
 def test_nothing_is_cut_or_faint(width, mode):
     pages = opened(width, mode).pages
-    assert not {page: r["faint"] for page, r in pages.items() if r["faint"]}
-    assert not {page: r["cut"] for page, r in pages.items() if r["cut"]}
-    assert not {page: r["crumbled"] for page, r in pages.items() if r["crumbled"]}
-    assert not [page for page, r in pages.items() if r["wider"]]
+    faults = ("faint", "cut", "crumbled", "wider")
+    assert not {fault: there for fault in faults if (there := found(pages, fault))}
 
 
 def test_every_public_name_is_documented_and_no_private_one():
-    found = set()
+    documented = set()
     for page in PAGES:
         names = re.findall(r'<dt class="sig[^>]* id="([^"]*)"', (HTML / page).read_text())
         assert not [name for name in names if re.search(r"\._", name)]
         assert not names or page.startswith("api_")
-        found |= {name.rpartition(".")[2] for name in names}
-        found |= set(
-            re.findall(r'sig-name descname"><span class="pre">(\w+)<', (HTML / page).read_text())
-        )
-    assert {*lwa.__all__, *validation.__all__} - found <= {"hertz"}  # a module
+        documented |= {name.rpartition(".")[2] for name in names}
+        signature = r'sig-name descname"><span class="pre">(\w+)<'
+        documented |= set(re.findall(signature, (HTML / page).read_text()))
+    assert {*lwa.__all__, *validation.__all__} - documented <= {"hertz"}  # a module
 
 
 def test_the_interface_is_documented_without_generic_text():
@@ -261,16 +257,12 @@ def test_the_chain_on_the_page_is_the_chain_of_python(visit):
     assert abs(of_page["force"] / pulses[0].peak - 1) < 2e-3
 
 
-def test_controls_have_names(visit):
-    """Canvases and sliders are named for screen readers."""
-    for page in ("intro.html", "play.html", "calculator.html"):
-        assert not visit.pages[page]["unnamed"]
+def test_the_script_is_small_and_loaded_where_it_is_used(visit):
     assert visit.pages["play.html"]["sliders"] == 4
-    script = HTML / "_static" / "turn.js"
-    assert script.stat().st_size < 32_000
+    assert (HTML / "_static" / "turn.js").stat().st_size < 32_000
     for page in PAGES:
-        turns = 'class="lwa-' in (HTML / page).read_text()
-        assert ("turn.js" in (HTML / page).read_text()) == turns, page
+        text = (HTML / page).read_text()
+        assert ("turn.js" in text) == ('class="lwa-' in text), page
 
 
 def test_a_page_is_small(visit):
@@ -281,74 +273,51 @@ def test_a_page_is_small(visit):
         assert len(text) + sum(file.stat().st_size for file in pictures) < 2_500_000, page
 
 
-def test_pictures_have_alternative_texts(visit):
-    assert not {page: r["silent"] for page, r in visit.pages.items() if r["silent"]}
+LINE = f'<pre style="%s">{"long " * 100}</pre>'
+CELL = '<td><span class="pre" style="overflow-wrap: %s">crumbs</span></td>'
+ROW = f"<div style='overflow: auto'><table style='width: 80px'><tr>{CELL}<td>{'long' * 20}</td>"
+PICTURE = '<div style="overflow: hidden"><svg width="%d" height="9"></svg></div>'
+FAULTS = [
+    (r'<span class="math">\(x\)</span>', "unrendered", True),
+    (r"<p>\(x\)</p>", "raw", True),
+    ("<p>$$x$$</p>", "raw", True),
+    ('<span class="math"><mjx-merror>x</mjx-merror></span>', "merrors", True),
+    ('<img src="nowhere.png">', "broken", True),
+    ('<img src="https://example.org/picture.png">', "broken", True),
+    ("<pre>&lt;Figure size 650x520 with 1 Axes&gt;</pre>", "unshown", True),
+    ('<svg width="9" height="9"></svg>', "silent", True),
+    ('<div role="img">x</div>', "unnamed", True),
+    (LINE % "", "cut", True),
+    (LINE % "", "wider", True),
+    (LINE % "overflow-x: hidden", "cut", True),
+    (LINE % "overflow-x: hidden", "wider", False),
+    (LINE % "overflow-x: auto", "cut", False),
+    (LINE % "max-width: 100%; overflow-x: auto", "cut", False),
+    (PICTURE % 900, "cut", True),
+    (PICTURE % 300, "cut", False),
+    ('<p style="color: #999">words</p>', "faint", True),
+    ('<p style="color: #222">words</p>', "faint", False),
+    (ROW % "anywhere", "crumbled", True),  # neither cut nor wider than the page
+    (ROW % "normal", "crumbled", False),
+]
+"""Body of a page at the width of a phone, a finding, and whether the finding is made."""
 
 
-def test_no_request_leaves_the_machine(visit):
-    assert not visit.foreign
+@pytest.fixture(scope="module")
+def faulty(tmp_path_factory):
+    """Visit to a page for each body."""
+    folder = tmp_path_factory.mktemp("faults")
+    for i, (body, _, _) in enumerate(FAULTS):
+        (folder / f"{i}.html").write_text(SMALLEST % body)
+    return visited(folder, [f"{i}.html" for i in range(len(FAULTS))], PHONE)
 
 
-@pytest.mark.parametrize(
-    ("body", "key"),
-    [
-        (r'<span class="math">\(x\)</span>', "unrendered"),
-        (r"<p>\(x\)</p>", "raw"),
-        ("<p>$$x$$</p>", "raw"),
-        (
-            '<span class="math"><mjx-container><mjx-merror>x</mjx-merror></mjx-container></span>',
-            "merrors",
-        ),
-        ('<img src="nowhere.png">', "broken"),
-        ("<pre>&lt;Figure size 650x520 with 1 Axes&gt;</pre>", "unshown"),
-        ('<svg width="9" height="9"></svg>', "silent"),
-        ('<div role="img">x</div>', "unnamed"),
-    ],
-)
-def test_a_fault_of_a_page_is_found(tmp_path, body, key):
-    (tmp_path / "page.html").write_text(SMALLEST % body)
-    seen = visited(tmp_path, ["page.html"])
-    assert seen.pages["page.html"][key]
-    assert ("/nowhere.png" in seen.missing) == (key == "broken")
+@pytest.mark.parametrize("i", range(len(FAULTS)), ids=[fault[1] for fault in FAULTS])
+def test_a_fault_of_a_page_is_found(faulty, i):
+    _, finding, made = FAULTS[i]
+    assert bool(faulty.pages[f"{i}.html"][finding]) == made
 
 
-@pytest.mark.parametrize(
-    "style", ["", "overflow-x: hidden", "overflow-x: auto", "max-width: 100%; overflow-x: auto"]
-)
-def test_a_cut_line_is_found(tmp_path, style):
-    """Only what scrolls by itself, within the page, is whole."""
-    line = f'<pre style="{style}">{"long " * 100}</pre>'
-    (tmp_path / "page.html").write_text(SMALLEST % line)
-    seen = visited(tmp_path, ["page.html"], PHONE).pages["page.html"]
-    assert bool(seen["cut"]) == ("auto" not in style)
-    assert seen["wider"] == (not style)
-
-
-@pytest.mark.parametrize("color", ["#999", "#222"])
-def test_faint_text_is_found(tmp_path, color):
-    (tmp_path / "page.html").write_text(SMALLEST % f'<p style="color: {color}">words</p>')
-    seen = visited(tmp_path, ["page.html"]).pages["page.html"]
-    assert seen["faint"] == (["words"] if color == "#999" else [])
-
-
-@pytest.mark.parametrize("wrap", ["anywhere", "normal"])
-def test_a_word_of_one_letter_a_line_is_found(tmp_path, wrap):
-    """Such a word is neither cut nor wider than the page: no other check finds it."""
-    cell = f'<td><span class="pre" style="overflow-wrap: {wrap}">crumbs</span></td>'
-    row = f"<table style='width: 80px'><tr>{cell}<td>{'long' * 20}</td></tr></table>"
-    (tmp_path / "page.html").write_text(SMALLEST % f'<div style="overflow: auto">{row}</div>')
-    seen = visited(tmp_path, ["page.html"], PHONE).pages["page.html"]
-    assert seen["crumbled"] == (["crumbs"] if wrap == "anywhere" else [])
-
-
-@pytest.mark.parametrize("width", [300, 900])
-def test_a_cut_picture_is_found(tmp_path, width):
-    picture = f'<div style="overflow: hidden"><svg width="{width}" height="9"></svg></div>'
-    (tmp_path / "page.html").write_text(SMALLEST % picture)
-    seen = visited(tmp_path, ["page.html"], PHONE).pages["page.html"]
-    assert bool(seen["cut"]) == (width > PHONE)
-
-
-def test_a_request_is_found(tmp_path):
-    (tmp_path / "page.html").write_text(SMALLEST % '<img src="https://example.org/picture.png">')
-    assert visited(tmp_path, ["page.html"]).foreign == ["https://example.org/picture.png"]
+def test_requests_are_found(faulty):
+    assert "/nowhere.png" in faulty.missing
+    assert faulty.foreign == ["https://example.org/picture.png"]
