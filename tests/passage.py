@@ -13,7 +13,7 @@ from validation.scenes.scene import Scene
 @dataclass(frozen=True)
 class Passage:
     """speed in sites per time; fwhm of the force, in sites, force and strain at the second
-    contact; the run's drifts and evaluations."""
+    contact; the run's drifts."""
 
     speed: Measured
     fwhm: Measured
@@ -21,7 +21,6 @@ class Passage:
     strain: Measured
     energy_drift: float
     momentum_drift: float
-    evaluations: int
 
 
 def passage(scene: Scene, rtol: float = 1e-6) -> Passage:
@@ -39,7 +38,6 @@ def passage(scene: Scene, rtol: float = 1e-6) -> Passage:
         **compared(numbers, run, check),
         energy_drift=run.energy_drift,
         momentum_drift=run.momentum_drift or 0.0,
-        evaluations=run.evaluations,
     )
 
 

@@ -16,9 +16,7 @@ from lwa.base.arrays import Array
 from validation.lattice.equations import Motion
 from validation.lattice.kernel.arrays import Chain, Knots
 from validation.lattice.kernel.samples import interpolate
-from validation.lattice.laws import Contact
 from validation.lattice.signal import Beads
-from validation.scenes.forcing import Drive
 
 BUFFER = 2**18  # numbers that the engine stores between two calls of `take`
 _MOST_BYTES = 2**28  # bytes of the motion that a run keeps
@@ -28,15 +26,13 @@ _MOST_BYTES = 2**28  # bytes of the motion that a run keeps
 class KnotPath:
     """A `validation.lattice.signal.Path` through knots (`validation.lattice.kernel.samples`).
 
-    contact : law of the contacts. points : nodes and weights of the quadrature at kinks.
-    drive : motion of bead 0.
+    points : nodes and weights of the quadrature at kinks.
     """
 
-    contact: Contact
+    motion: Motion
     chain: Chain
     points: Array
     knots: Knots
-    drive: Drive | None
 
     @property
     def time(self) -> Array:
@@ -45,7 +41,7 @@ class KnotPath:
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         """Restore a pickled path: a law's machine code has another address in each process."""
-        chain = state["chain"]._replace(**state["contact"].addresses)
+        chain = state["chain"]._replace(**state["motion"].contact.addresses)
         self.__dict__.update(state | {"chain": chain})
 
     def __call__(self, beads: Beads, time: Array) -> tuple[Array, Array]:
@@ -54,8 +50,8 @@ class KnotPath:
         step = np.searchsorted(self.time[1:-1], time, side="right")
         y, v = np.empty((2, len(rows), len(time)))
         interpolate(self.chain, self.points, self.knots, rows, time, step, y, v)
-        if self.drive is not None and 0 in beads:
-            y[0], v[0], _ = self.drive.at(time)
+        if self.motion.scene.drive is not None and 0 in beads:
+            y[0], v[0], _ = self.motion.scene.drive.at(time)
         return y, v
 
 
@@ -119,6 +115,6 @@ def knot_recorder(
     knots = Knots(np.empty(most), np.empty((most, len(watched), 3)), watched)
 
     def path(*arrays: Any) -> KnotPath:
-        return KnotPath(motion.contact, chain, scheme.points, Knots(*arrays), motion.scene.drive)
+        return KnotPath(motion, chain, scheme.points, Knots(*arrays))
 
     return Recorder(knots, path, 1, needed, time)

@@ -163,10 +163,8 @@ def _table_function(points: str, order: int) -> Callable[[float], Any]:
         x0, h, y0, chord = pieces[0, i], pieces[1, i], pieces[2, i], pieces[3, i]
         d, e, stored = pieces[4, i], pieces[5, i], pieces[6, i]
         g, slope, _ = log_force(x, x0, h, y0, chord, d, e)
-        if order == 0:
-            return math.exp(g)
-        if order == 1:
-            return math.exp(g - x) * slope
+        if order >= 0:
+            return math.exp(g - order * x) * slope**order
         if i == 0:
             return math.exp(g + x) / (slope + 1.0)
         half = (x - x0) / 2

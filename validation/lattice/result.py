@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -9,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from lwa.base.arrays import Array
+from validation.lattice.cost import IntegrationError
 from validation.lattice.equations import Motion
 from validation.lattice.signal import Path, SensorSignal, signal
 from validation.pictures import Curve, Map, Panel, Pictured
@@ -123,8 +125,7 @@ class Run(Records):
     energy_drift : change of the energy above equilibrium divided by its initial value (0 if this is
         0).
     momentum_drift : change of the momentum divided by Σ m|v| at the end; None with a wall or drive.
-    evaluations : number of evaluations of the equations of motion.
-    bead_evaluations : sum over these evaluations of the number of beads that moved.
+    bead_evaluations : sum over all evaluations of the forces of the number of beads that moved.
     step : mean step.
     path : motion of the beads near sensors throughout the run, for `signal`.
     dissipated, work : energy that damped contacts have turned into heat, and work of the drive.
@@ -134,7 +135,6 @@ class Run(Records):
     velocities: Array
     energy_drift: float
     momentum_drift: float | None
-    evaluations: int
     bead_evaluations: int
     step: float
     path: Path | None = field(default=None, compare=False)
@@ -162,20 +162,25 @@ def finished(
 ) -> Run:
     """Return the `Run` of a motion with the final state ``end``.
 
-    fields : further fields of the `Run`.
+    fields : further fields of the `Run`. Raises `IntegrationError` if a number is not finite.
     """
     n, scale = motion.size, motion.scales.energy
     displacements, velocities = end[:n].copy(), end[n : 2 * n].copy()
     arrays: dict[str, Any] = records | {"displacements": displacements, "velocities": velocities}
-    for array in arrays.values():
-        array.setflags(write=False)
     dissipated, work = map(float, end[2 * n :])
     drift = motion.energy(end) - motion.energy(motion.start) + dissipated - work
+    step = motion.scene.duration / steps
+    if not math.isfinite(drift + sum(float(np.sum(array)) for array in arrays.values())):
+        raise IntegrationError(
+            f"the motion overflows: choose other units, or a step of {step:g} is too long"
+        )
+    for array in arrays.values():
+        array.setflags(write=False)
     return Run(
         scene=motion.scene,
         energy_drift=drift / scale if scale else 0.0,
         momentum_drift=motion.momentum_drift(end),
-        step=motion.scene.duration / steps,
+        step=step,
         dissipated=dissipated,
         work=work,
         **arrays,

@@ -22,36 +22,33 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 import numpy as np
+from numpy.typing import NDArray
 
 from lwa.base.arrays import Array
 
-Row = tuple[Fraction, ...]
+Exact = NDArray[np.object_]
+"""Arrays of fractions."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Pair:
     """Coefficients of an embedded Runge–Kutta–Nyström pair; b is the last row of a.
 
-    order, lower : orders of the two solutions. rows : a. speeds : b'. low, low_speeds : b and b' of
-    the solution of lower order.
+    order, lower : orders of the two solutions. a : (S, S). speeds : b'. low, low_speeds : b and b'
+    of the solution of lower order. All coefficients are fractions.
     """
 
     order: int
     lower: int
-    rows: tuple[Row, ...]
-    speeds: Row
-    low: Row
-    low_speeds: Row
+    a: Exact
+    speeds: Exact
+    low: Exact
+    low_speeds: Exact
 
     @property
     def stages(self) -> int:
         """Number of evaluations of the forces per step."""
-        return len(self.rows) - 1
-
-    @property
-    def nodes(self) -> tuple[float, ...]:
-        """Nodes c of the stages."""
-        return tuple(float(np.sqrt(float(2 * sum(row)))) for row in self.rows)
+        return len(self.a) - 1
 
     def arrays(self, width: int) -> tuple[Array, Array, Array]:
         """Return the coefficients as float arrays: nodes c, matrix a, and the three rows b', e, e'.
@@ -59,21 +56,18 @@ class Pair:
         b' is `speeds`; e = b - `low` and e' = b' - `low_speeds` give the error estimates. The
         columns of the last two arrays are filled with zeros up to a multiple of ``width``.
         """
-        b, b_speeds, low, low_speeds = map(
-            np.array, (self.rows[-1], self.speeds, self.low, self.low_speeds)
-        )
-        a, ends = np.array(self.rows), np.array([b_speeds, b - low, b_speeds - low_speeds])
-        zeros = ((0, 0), (0, -len(b) % width))
-        nodes, a, ends = np.array(self.nodes), a.astype(float), ends.astype(float)
-        return nodes, np.pad(a, zeros), np.pad(ends, zeros)
+        ends = np.stack((self.speeds, self.a[-1] - self.low, self.speeds - self.low_speeds))
+        zeros = ((0, 0), (0, -len(self.a) % width))
+        a, ends = (np.pad(rows.astype(float), zeros) for rows in (self.a, ends))
+        return np.sqrt((2 * self.a.sum(axis=1)).astype(float)), a, ends
 
 
 def _pair(order: int, lower: int, rows: str, *ends: str) -> Pair:
     """Read the rows of a, and b', b and b' of lower order, one a line, without trailing zeros."""
-    table = [tuple(map(Fraction, row.split())) for row in ("", *rows.strip().splitlines(), *ends)]
+    table = [row.split() for row in ("", *rows.strip().splitlines(), *ends)]
     size = len(table) - len(ends)
-    full = [row + (Fraction(0),) * (size - len(row)) for row in table]
-    return Pair(order, lower, tuple(full[:size]), *full[size:])
+    full = np.array([[*map(Fraction, row), *[Fraction(0)] * (size - len(row))] for row in table])
+    return Pair(order, lower, full[:size], *full[size:])
 
 
 RKN86 = _pair(

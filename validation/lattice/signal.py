@@ -23,9 +23,6 @@ _REGULA_FALSI = 9  # iterations, which leave less than 1e-12 of a step of the in
 
 _QUANTITIES = {"contact": ("force", "compression"), "bead": ("force", "displacement", "velocity")}
 
-RECORDS = ("contact_force", "compression", "bead_force", "bead_displacement", "bead_velocity")
-"""Names of the records of a run."""
-
 Beads = Sequence[int] | NDArray[np.int_]
 """Numbers of beads."""
 

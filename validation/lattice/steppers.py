@@ -94,7 +94,6 @@ def integrate(motion: Motion, method: str, rtol: float, atol: float, progress: R
         stepper.y,
         records,
         steps=len(ends) - 1,
-        evaluations=stepper.nfev,
         bead_evaluations=stepper.nfev * n,
         path=path,
     )

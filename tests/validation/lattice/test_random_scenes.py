@@ -12,8 +12,8 @@ from validation.lattice.cost import IntegrationError
 from validation.lattice.equations import Motion
 from validation.lattice.simulate import simulate
 from validation.scenes.scene import Scene
+from validation.studies.run import RECORDS
 
-RECORDS = ("contact_force", "compression", "bead_force", "bead_displacement", "bead_velocity")
 STATES = ("displacements", "velocities")
 
 

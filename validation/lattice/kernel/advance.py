@@ -64,27 +64,29 @@ def _built(sources: int) -> Any:
         """
         until, pair = now.tries + tries, len(plan.scheme.nodes) > 0
         stages = max(len(plan.scheme.nodes), len(plan.scheme.drifts)) - 1
-        if now.tries == 0:
-            contact_forces(chain, beads, plan, beads.y, ZERO, plan.size)
-        if now.stored == 0:
-            store_knot(chain, beads, plan, knots, now, plan.size)
-        while now.t < plan.end and now.tries < until and now.stored < len(knots.time):
+        moved, hi = now.tries == 0, plan.size
+        while True:
+            # The forces are compiled into each place that calls them, and take the most time there.
+            if moved and (pair or len(knots.watched) > 0):
+                contact_forces(chain, beads, plan, beads.y, ZERO, hi)
+                beads.power[1, 0] = beads.v[0] * beads.force[0, 1] if chain.drive.driven else 0.0
+                store_knot(chain, beads, knots, now)
+            if not (now.t < plan.end and now.tries < until and now.stored < len(knots.time)):
+                return now.t, sources
             hi = moving(now)
             now.tries += 1
             now.evaluations += stages * hi
             h, later = cut(plan, now)
-            if not pair and later < plan.end:
-                later = (now.steps + 1) * h
-            if not pair:
+            moved = True
+            if pair:
+                moved = accepted(chain, beads, plan, now, h, hi)
+            else:
                 _split(chain, beads, plan, h, hi)
-            elif not accepted(chain, beads, plan, now, h, hi):
-                continue
-            now.steps += 1
-            now.t = later
-            now.stop += 1 if later == plan.stops[now.stop] else 0
-            follow(beads, plan, now)
-            store_knot(chain, beads, plan, knots, now, hi)
-        return now.t, sources
+            if moved:
+                now.steps += 1
+                now.t = later
+                now.stop += 1 if later == plan.stops[now.stop] else 0
+                follow(beads, plan, now)
 
     return advance
 

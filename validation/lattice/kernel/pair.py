@@ -42,7 +42,6 @@ def _add_up(
     sums: Array, q: Any, force: Array, row: Array, scale: float, stages: int, hi: int
 ) -> None:
     """Compute a weighted sum of forces, sums[q] = scale Σ_j row[j] force[j], 0 ≤ j < ``stages``."""
-    sums[q, ZERO] = 0.0
     for first in range(0, stages, WIDTH):
         a, b, c = scale * row[first], scale * row[first + 1], scale * row[first + 2]
         d, e = scale * row[first + 3], scale * row[first + 4]
@@ -92,7 +91,6 @@ def _attempt(chain: Chain, beads: Beads, plan: Plan, t: float, h: float, hi: int
         next_v[i] = v[i] + (sums[ONE, i] - sums[ONE, i + ONE]) * inverse[i]
     if drive.driven:
         next_v[0] = speed
-        _, _, beads.given[0] = drive_motion(drive, n, t)
     beads.given[2] = beads.given[3] = 0.0
     # Mark contacts that open or close within the step or near it, with a force that matters.
     # A compression δ changes a velocity by at most h A δ^k/m in a step.
@@ -209,8 +207,7 @@ def accepted(chain: Chain, beads: Beads, plan: Plan, now: Any, h: float, hi: int
         beads.y[i], beads.v[i] = beads.next_y[i], beads.next_v[i]
     now.work += h * _integral(plan.scheme.ends[0], beads.power[1]) + beads.given[2]
     now.response = max(now.response, now.energy + now.work)
-    contact_forces(chain, beads, plan, beads.y, ZERO, hi)
-    beads.power[1, 0] = beads.v[0] * beads.force[0, 1] if chain.drive.driven else 0.0
+    beads.given[0] = beads.given[1]
     grow = h * min(_GROWTH, _SAFETY * max(error, 1e-9) ** root)
     now.h, now.planned = min(plan.longest, max(grow, now.planned)), 0.0
     return True

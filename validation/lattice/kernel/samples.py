@@ -17,10 +17,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lwa.base.arrays import Array
-from validation.lattice.kernel.arrays import Beads, Chain, Knots, Plan
-from validation.lattice.kernel.compiled import SOURCES, ZERO, cached, part
-from validation.lattice.kernel.drive import drive_motion, interval
-from validation.lattice.kernel.force import contact_forces, power, stiffness
+from validation.lattice.kernel.arrays import Beads, Chain, Knots
+from validation.lattice.kernel.compiled import SOURCES, cached, part
+from validation.lattice.kernel.force import power, stiffness
 from validation.lattice.kernel.kinks import (
     NEAR,
     NONE,
@@ -35,19 +34,17 @@ Four = tuple[float, float, float, float]
 
 
 @part
-def store_knot(chain: Chain, beads: Beads, plan: Plan, knots: Knots, now: Any, hi: int) -> None:
+def store_knot(chain: Chain, beads: Beads, knots: Knots, now: Any) -> None:
     """Store the present motion of the watched beads as the next knot."""
     if len(knots.watched) == 0:
         return
-    if len(plan.scheme.nodes) == 0:  # a splitting leaves no forces of the step's end
-        contact_forces(chain, beads, plan, beads.y, ZERO, hi)
     knots.time[now.stored] = now.t
     for q in range(len(knots.watched)):
         j, state = knots.watched[q], knots.state[now.stored, q]
         force = beads.force[0, j] - beads.force[0, j + 1]
         state[0], state[1], state[2] = beads.y[j], beads.v[j], force * chain.inverse[j]
         if j == 0 and chain.drive.driven:
-            _, _, state[2] = drive_motion(chain.drive, interval(chain.drive, now.t), now.t)
+            state[2] = beads.given[0]
     now.stored += 1
 
 
