@@ -203,7 +203,7 @@ def scaled(chain, length, mass, **options):
     other |= {"velocities": [v * length / time for v in chain["velocities"]]}
     other |= {"duration": chain["duration"] * time}
     run = simulate(Scene(**other), **options)
-    return run.velocities * time / length, run.evaluations
+    return run.velocities * time / length, run.bead_evaluations
 
 
 @settings(max_examples=15)
@@ -212,7 +212,7 @@ def test_units_of_mass_and_time_do_not_matter(chain, q):
     """Powers of two leave every digit of every step as it is."""
     velocities, evaluations = scaled(chain, 1.0, 4.0**q)
     run = simulate(Scene(**chain))
-    assert evaluations == run.evaluations
+    assert evaluations == run.bead_evaluations
     assert np.array_equal(velocities, run.velocities)
 
 
@@ -233,7 +233,7 @@ def test_sensors_change_nothing_and_cost_nothing(method):
     assert np.array_equal(seen.displacements, plain.displacements)
     assert plain.contact_force.shape == plain.bead_velocity.shape == (0, 1001)
     # only the three evaluations a step of SciPy's interpolant come on top
-    assert plain.evaluations <= seen.evaluations < 1.3 * plain.evaluations
+    assert plain.bead_evaluations <= seen.bead_evaluations < 1.3 * plain.bead_evaluations
     assert seen.contact_force.shape == seen.bead_force.shape == (3, 1001)
     every = simulate(
         replace(chain, contact_sensors=range(11), bead_sensors=range(12)), method=method
