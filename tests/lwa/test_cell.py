@@ -48,13 +48,6 @@ def test_shares_make_all_contact_forces_equal():
         assert abs(sp.N((A * c**k / cell.stiffness(k) - 1).subs(numbers), 40)) < 1e-35
 
 
-def test_a_cell_is_a_value():
-    assert Dimer(1, 2) == Cell((1, 2))
-    assert hash(Dimer(1, 2)) == hash(Cell([1, 2]))
-    with pytest.raises(AttributeError):
-        Dimer(1, 2).masses = (1, 1)
-
-
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [

@@ -90,15 +90,16 @@ def test_a_table_is_a_value():
     assert law.replaced({}) == law
 
 
-@pytest.mark.parametrize(("p0", "B"), [(0.1, 2.0), (1.0, 1.0), (1.0, 4.0), (0.5, 0.01)])
-@pytest.mark.parametrize("quantity", ["strain", "force"])
-def test_waves_are_those_of_the_law_it_was_made_of(p0, B, quantity):
+@pytest.mark.parametrize(("p0", "B"), [(0.1, 2.0), (1.0, 4.0), (0.5, 0.01)])
+def test_waves_are_those_of_the_law_it_was_made_of(p0, B):
     """F = δ^{3/2} + δ^{5/2} at 80 points: its waves, by the law itself, to 3e-5."""
     law = named("hertz2", 1, 1)
     ours = background_wave(CHAIN, p0, law=table(lambda d: d**1.5 + d**2.5, count=80))
     exact = background_wave(CHAIN, p0, law=law)
     assert float(ours.speed(B)) == pytest.approx(float(exact.speed(B)), rel=1e-6)
-    assert float(ours.fwhm(B, quantity)) == pytest.approx(float(exact.fwhm(B, quantity)), rel=3e-5)
+    for quantity in ("strain", "force"):
+        width = float(exact.fwhm(B, quantity))
+        assert float(ours.fwhm(B, quantity)) == pytest.approx(width, rel=3e-5)
     assert float(ours.profile(0.7, B)) == pytest.approx(float(exact.profile(0.7, B)), rel=3e-5)
     assert float(ours.kdv.nonlinearity) == pytest.approx(float(exact.kdv.nonlinearity), rel=5e-3)
 
@@ -150,7 +151,5 @@ def test_beyond_the_last_point_and_beyond_the_second_derivative_is_refused():
             compute("3/5")
     with pytest.raises(InputError, match="higher derivatives"):
         law.slope(3)
-    with pytest.raises(InputError, match="no source text"):
-        wave.code("numpy")
     theory = homogenize(CHAIN, law=law, order=4)  # in φ_2, φ_3, as under any law
     assert "phi3" in str(theory.pde.G)

@@ -1,18 +1,13 @@
 """The jet algebra against calculus on a concrete function."""
 
-from math import factorial
-
-import mpmath
 import pytest
 import sympy as sp
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lwa.algebra.contact import Force
 from lwa.algebra.jets import JetAlgebra
-from tests.lwa.series import rational, taylor
 
-x, h = sp.symbols("x h")
+x = sp.Symbol("x")
 BASE = sp.exp(x) + sp.Rational(1, 3) * sp.exp(3 * x)  # any smooth positive base p
 
 
@@ -64,31 +59,3 @@ def test_other_expressions_have_no_antiderivative():
     assert algebra.antiderivative(r[2] ** 2, k) is None
     assert algebra.antiderivative(r[1] ** 3, k) is None
     assert algebra.antiderivative(r[1] * r[2], k) is None  # exact only with k r_1^3/2 beside it
-
-
-@pytest.mark.parametrize("exponent", [sp.Rational(3, 2), -2])
-def test_power_series_against_mpmath(exponent):
-    """(1 + X)^k and its shift, order by order, against Taylor series at 40 digits."""
-    order = 6
-    algebra = JetAlgebra((), weight=order)
-    k = algebra.context.constant(0) + rational(sp.Rational(exponent))
-    power = Force(algebra, k)
-    for n in range(1, order + 1):
-        power.append(algebra.r[n] * rational(sp.Rational(1, factorial(n + 1))))
-    with mpmath.workdps(60):
-        p = sp.lambdify(x, BASE, "mpmath")
-        # ∫ p over [x, x + D], over D, is p (1 + Σ r_n D^n/(n+1)!)
-        antiderivative = sp.lambdify(x, sp.integrate(BASE, x), "mpmath")
-        e = mpmath.mpf(sp.Rational(exponent).p) / sp.Rational(exponent).q
-
-        def force(D, shift):
-            start = shift * D
-            return ((antiderivative(start + D) - antiderivative(start)) / D) ** e
-
-        for shift in (0, -2):
-            series = taylor(lambda D, s=shift: force(D, s), order)
-            for n in range(1, order + 1):
-                found = power.Phi[n] + (power.increment(shift, n) if shift else algebra.zero)
-                value = sp.N(at_zero(algebra, found), 60) * sp.N(exponent, 60)
-                expected = series[n] / p(mpmath.mpf(0)) ** e
-                assert abs(mpmath.mpf(value) - expected) < mpmath.mpf(10) ** -30

@@ -9,13 +9,14 @@ import mpmath
 import numpy as np
 import pytest
 import sympy as sp
+from flint import fmpq
 
 from lwa import Cell, Dimer, InputError, homogenize
 from lwa.base.quantities import QUANTITIES
 from lwa.cell import k as symbol_k
 from lwa.expansion.expand import Expansion, expand
 from lwa.expansion.observables import Observables, shares_model
-from lwa.expansion.pulse import log_term
+from lwa.expansion.pulse import exp_term, logarithm, power, product
 from lwa.law import DELTA, Law, Power, general, named
 from tests.identity import same
 
@@ -168,33 +169,20 @@ def test_leading_width_is_the_theorys(cell: Cell) -> None:
 
 def jets(series: list, top: int, derivative) -> dict[int, list]:
     """i → ∂^{i-1} s / s as a list over t^n, s = e^{-Z²/4} Σ S_n t^n."""
-    size = len(series)
-    zero = 0 * series[0]
-    inverse = [1 + zero]
-    for n in range(1, size):
-        inverse.append(-sum((series[j] * inverse[n - j] for j in range(1, n + 1)), zero))
-    found, row = {}, series
+    inverse, found, row = power(series, fmpq(-1)), {}, series
     for i in range(2, top + 1):
-        row = [zero, *(derivative(S) for S in row[:-1])]
+        row = [0 * series[0], *(derivative(S) for S in row[:-1])]
         found[i] = product(row, inverse)
     return found
 
 
-def product(a: list, b: list) -> list:
-    zero = 0 * a[0]
-    return [sum((a[j] * b[n - j] for j in range(n + 1)), zero) for n in range(len(a))]
-
-
-def power_of_slope(wave, log: list, share: sp.Rational) -> list:
+def power_of_slope(wave, log: list, share: fmpq) -> list:
     """s^{share (k-1)} as a series in t; log s = -Z²/4 + Σ log_n t^n, k - 1 = I³ t²."""
-    size, zero = len(log), wave.zero
-    exponent = [zero, zero] + [
-        wave.epsilon * int(share.p) * (log[n] - (wave.Z**2 / 4 if n == 0 else 0)) / int(share.q)
-        for n in range(size - 2)
-    ]
-    result = [1 + zero]
-    for n in range(1, size):
-        result.append(sum((j * exponent[j] * result[n - j] for j in range(1, n + 1)), zero) / n)
+    whole = [log[0] - wave.Z**2 / 4, *log[1:]]
+    exponent = [wave.zero, wave.zero, *(wave.epsilon * share * term for term in whole[:-2])]
+    result: list = []
+    for _ in exponent:
+        result.append(exp_term(exponent, result))
     return result
 
 
@@ -205,9 +193,7 @@ def residual_order(cell: Cell, closure: str, terms: int) -> int:
     wave = Observables(shares_model(cell, symbol_k), terms + 2).wave
     size = order + 3
     slope = [*wave.fields.slope[0]][:size]
-    log: list = []
-    for _ in slope:
-        log.append(log_term(slope, log))
+    log = logarithm(slope)
     jet = jets(slope, order + 2, wave.derivative)
     gamma = wave.gamma[:size]
     epsilon_powers = [wave.epsilon**n for n in range(size)]
@@ -221,7 +207,7 @@ def residual_order(cell: Cell, closure: str, terms: int) -> int:
                 rows[2 * n] = rows[2 * n] + epsilon_powers[n] * int(c.p) / int(c.q)
         return rows
 
-    minus_half = power_of_slope(wave, log, sp.Rational(-1, 2))
+    minus_half = power_of_slope(wave, log, fmpq(-1, 2))
     lean = product(minus_half, minus_half)  # s^{1-k}
     kinetic = product(product(gamma, lean), jet[2])  # k V² u'' / u_x^k
     total = [wave.zero] * size
