@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from lwa import hertz
+
 BOOK = Path(__file__).parents[2] / "book"
 PARTS = [
     re.findall(r"file: (\w+)", part)
@@ -21,7 +23,7 @@ FRAME = ("Exercises",)
 FOLDED_CHECKS = r"^:::\{dropdown\} What was checked$"
 
 TAGS = {"the paper's", "known", "new here"}
-LINES = 5100
+LINES = 4600
 COLUMN, FOLDED = 88, 85
 """Lines of Markdown at most; characters of visible code, and of the code of a solution."""
 
@@ -118,6 +120,11 @@ def test_paragraphs_are_short():
 def test_a_chapter_says_what_it_needs(page):
     text = (BOOK / f"{page}.md").read_text(encoding="utf-8")
     assert re.search(r"^\*Needs: .*\. About \d+ minutes\.\*$", text, re.MULTILINE)
+
+
+def test_the_named_materials_are_listed():
+    (listed,) = re.findall(r"`Material.named` knows (.*?) \|", prose("api"))
+    assert re.split(r", | and ", listed) == list(hertz.MATERIALS)
 
 
 def test_every_letter_has_one_meaning():
