@@ -81,7 +81,8 @@ def simulate(
         if scene.law is None or not scene.law.tabulated:
             raise
         last = scene.law.points[0][-1]  # the force is NaN beyond the point
-        raise IntegrationError(f"{error}; the law's table ends at compression {last:g}") from None
+        fault = f"the law's table ends at compression {last:g}, too early for this motion"
+        raise IntegrationError(f"{fault}: {error}") from None
 
 
 def _check(scene: Scene, method: str, step: float | None) -> None:

@@ -63,11 +63,14 @@ def read_scene(path: str | Path) -> Scene:
 
     Raises `SceneError`, in one line, for a file that cannot be read or is not a scene.
     """
-    return load(path, "a scene", scene)
+    return load(path, "a scene", partial(scene, folder=Path(path).parent))
 
 
-def scene(content: Any) -> Scene:
-    """Return the scene of a parsed file; `SceneError` for unknown keys and invalid values."""
+def scene(content: Any, folder: Path = Path()) -> Scene:
+    """Return the scene of a parsed file; `SceneError` for unknown keys and invalid values.
+
+    folder : folder of the measured files that the content names.
+    """
     file = opened(content)
     tables = {
         name: file.read(name, table(keys), Table({}, name, keys)) for name, keys in _TABLES.items()
@@ -80,7 +83,7 @@ def scene(content: Any) -> Scene:
             raise SceneError("striker.like and defects name bead 1: one of them is wanted")
         other = {"bead": 1, "like": striker.entries["like"]}
         defects.append(Table(other, "striker", ("bead", "like")))
-    row, chain = _chain(read_row(file, beads), beads, defects)
+    row, chain = _chain(read_row(file, beads), beads, defects, folder)
     n, start, sensors = len(chain["masses"]), tables["start"], tables["sensors"]
     wall = _wall(tables["wall"], row, materials) if "wall" in file else None
     velocities = start.read("velocities", each(finite), ())
@@ -98,7 +101,7 @@ def scene(content: Any) -> Scene:
         displacements=start.read("displacements", each(finite), ()),
         velocities=velocities,
         damping=_damping(tables["damping"]) if "damping" in file else None,
-        drive=_drive(tables["drive"], duration) if "drive" in file else None,
+        drive=_drive(tables["drive"], duration, folder) if "drive" in file else None,
         bead_sensors=sensors.read("beads", _sensors(n), ()),
         contact_sensors=sensors.read("contacts", _sensors(n - (wall is None)), ()),
     )
@@ -144,7 +147,7 @@ def _defect(value: Any, name: str) -> Table:
 
 
 def _chain(
-    found: Row, beads: Mapping[str, Sphere], defects: Sequence[Table]
+    found: Row, beads: Mapping[str, Sphere], defects: Sequence[Table], folder: Path
 ) -> tuple[list[Sphere], dict[str, Any]]:
     """Return the named beads (none in a chain of masses), and the chain's fields of the `Scene`."""
     n = found.size
@@ -162,7 +165,7 @@ def _chain(
     else:
         masses = found.masses * found.repeat
         key = found.given.one("k", "law")
-        law = {key: found.given.read(key, finite if key == "k" else _law)}
+        law = {key: found.given.read(key, finite if key == "k" else partial(_law, folder))}
         stiffnesses = found.by_contact(found.stiffnesses) or [1.0] * (n - 1)
         spacings = tuple(found.by_contact(found.spacings))
     for defect in defects:
@@ -176,14 +179,14 @@ def _chain(
     return row, {"masses": masses, "stiffnesses": stiffnesses, "spacings": spacings} | law
 
 
-def _law(value: Any, name: str) -> ContactLaw:
+def _law(folder: Path, value: Any, name: str) -> ContactLaw:
     """Read a law: by name, as "table:FILE", or as a table of its points."""
     if isinstance(value, dict):
         given = Table(value, name, _POINTS)
         return Law.table(*(given.read(key, each(positive)) for key in _POINTS))
     if not (isinstance(value, str) and value.startswith("table:")):
         return read_law(value, name)
-    file = MeasuredFile.read(value.removeprefix("table:").strip())
+    file = MeasuredFile.read(folder / value.removeprefix("table:").strip())
     try:
         # "compression_value" and "force_value" are the names that `lwa-validate law` writes
         ending = "_value" * (f"{_POINTS[0]}_value" in file.names)
@@ -207,17 +210,17 @@ def _damping(given: Table) -> Damping:
     return Damping(kind, given.entries[kind])
 
 
-def _drive(given: Table, duration: float) -> Drive:
+def _drive(given: Table, duration: float, folder: Path) -> Drive:
     """Read the motion of bead 1; the key ``file`` names a CSV file of its time and displacement."""
     numbers = {key: value for key, value in given.entries.items() if key != "file"}
-    return Drive(**numbers | given.read("file", partial(_motion, duration=duration), {}))
+    return Drive(**numbers | given.read("file", partial(_motion, folder, duration), {}))
 
 
-def _motion(value: Any, name: str, duration: float) -> dict[str, Any]:
+def _motion(folder: Path, duration: float, value: Any, name: str) -> dict[str, Any]:
     if not isinstance(value, str):
         raise SceneError(f"{name} is {shorten(value)}: the name of a CSV file is wanted")
-    motion = columns(value, "time", "displacement")
-    check_span(value, motion["time"], duration)
+    motion = columns(folder / value, "time", "displacement")
+    check_span(folder / value, motion["time"], duration)
     return motion
 
 

@@ -407,11 +407,13 @@ def test_damping_and_drive_are_read_and_written(key, table):
     assert scene(document(read)) == read
 
 
-def test_a_drive_is_read_from_a_file(tmp_path):
-    path = tmp_path / "shaker.csv"
+def test_a_drive_is_read_from_a_file_beside_the_scene(tmp_path):
+    path, file = tmp_path / "shaker.csv", tmp_path / "scene.json"
     chain = {"duration": 1, "chain": {"cell": [1, 2], "k": 1.5}, "drive": {"file": str(path)}}
     path.write_text("time (s),displacement (m)\n0,0\n0.5,1e-3\n1,2e-3\n2,0\n")
     assert scene(chain).drive.displacement == (0, 1e-3, 2e-3, 0)
+    file.write_text(json.dumps(chain | {"drive": {"file": path.name}}))
+    assert read_scene(file) == scene(chain)
     for content in ("0,1\n", "time,displacement\n0,x\n", ""):
         path.write_text(content)
         with pytest.raises(SceneError, match=r"shaker.csv: (one )?column"):
