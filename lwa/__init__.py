@@ -35,7 +35,6 @@ if TYPE_CHECKING:
     from lwa.expansion.physical import graded_force as graded_force
     from lwa.expansion.physical import pulse_of_strike as pulse_of_strike
     from lwa.expansion.physical import transmitted_force as transmitted_force
-    from lwa.expansion.radiation import Radiation as Radiation
     from lwa.expansion.series import EpsilonSeries as EpsilonSeries
     from lwa.force import ContactLaw as ContactLaw
     from lwa.law import Law as Law

@@ -31,7 +31,7 @@ from lwa.wave.closed import CompactWave
 from lwa.wave.physical import PhysicalWave, PrecompressedWave
 from lwa.wave.traveling import TravelingWave
 
-# Bound of `lwa.Radiation` on c² and the widths from which on a note is printed: for dimers of
+# Error by radiation (`lwa.expansion.radiation`) from which on a note is printed: for dimers of
 # spheres m2/m1 = 0.06 … 0.73.
 RADIATES = 0.05
 
@@ -115,12 +115,11 @@ def _demand_canonical(options: dict[str, Any]) -> None:
 
 def radiation_note(cell: Cell, k: sp.Expr) -> list[str]:
     """Note on the radiation of unlike beads; [] if its bound is below `RADIATES`."""
-    if k.free_symbols or cell.uniform:
+    if any(x.free_symbols for x in (k, *cell.masses, *cell.stiffnesses)):
         return []
-    from lwa.expansion.radiation import radiation  # here, for a quick start of the others
+    from lwa.expansion.radiation import radiated  # start-up: it loads NumPy
 
-    bound = radiation(cell, k)
-    lost = bound.relative(float(k)) if bound else 0.0
+    lost = radiated(cell, k)
     if lost < RADIATES:
         return []
     return [

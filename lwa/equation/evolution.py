@@ -21,7 +21,7 @@ import sympy as sp
 from lwa.base import latex
 from lwa.base.exact import InputError, power, read_exact, signed
 from lwa.base.frozen import Value
-from lwa.cell import Cell, substitution
+from lwa.cell import Cell
 from lwa.force import ContactLaw, for_cell
 from lwa.linear.dispersion import Dispersion
 
@@ -50,11 +50,6 @@ class Evolution(Value):
         return Dispersion(self.cell, self.law.exponent).I * self.cell.spacing**2
 
     @property
-    def field(self) -> dict[int, sp.Expr]:
-        """Mapping n → α_n for the field φ + Σ α_n D^n ∂_x^n φ, φ canonical (`lwa.PDE.in_field`)."""
-        return {2: self.I / (2 * self.cell.spacing**2)}
-
-    @property
     def time_scale(self) -> sp.Expr:
         """The ratio τ/t of the equation's time to the chain's."""
         return self.cell.time_scale(self.law.exponent)
@@ -62,16 +57,6 @@ class Evolution(Value):
     def force(self, p: Any, n: int = 0) -> sp.Expr:
         """The n-th derivative F^{(n)}(p) in the units of the equation; the energy W for n = -1."""
         return self.law.of_strain(signed(p, "p"), self.cell.spacing, n)
-
-    def energy_density(self, strain: sp.Expr, velocity: sp.Expr, x: sp.Symbol) -> sp.Expr:
-        """Energy density ½ u_τ² + ½ I u_xτ² + W(u_x) for u_x and u_τ as functions of x."""
-        kinetic = velocity**2 + self.I * velocity.diff(x) ** 2
-        return kinetic / 2 + self.law.of_strain(strain, self.cell.spacing, -1)
-
-    def frequency(self, q: Any, p0: Any) -> sp.Expr:
-        """Frequency Ω = c0 q/√(1 + I q²) in τ of small waves of wavenumber q, c0 = √F′(p0)."""
-        q = signed(q, "q")
-        return sp.sqrt(self.force(p0, 1)) * q / sp.sqrt(1 + self.I * q**2)
 
     def speed(self, B: Any, p0: Any = 0) -> sp.Expr:
         """Speed V = dx/dτ of the wave whose strain rises from p0 to p0 + B."""
@@ -89,11 +74,6 @@ class Evolution(Value):
         k = self.law.exponent
         shape = sp.sech((k - 1) * signed(xi, "xi") / (2 * sp.sqrt(self.I)))
         return read_exact(B, "B") * power(shape, 2 / (k - 1))
-
-    def at(self, **values: Any) -> Evolution:
-        """The equation for these values of the named symbols, and of ω = m2/m1 by ``omega``."""
-        new = substitution(values, self.cell, more=self.law.symbols)
-        return Evolution(self.cell.replaced(new), self.law.replaced(new))
 
     def latex_rows(self) -> list[str]:
         equation = r"(1 - I \partial_x^2) u_{\tau\tau} = \partial_x F(u_{x})"

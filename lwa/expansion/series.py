@@ -13,7 +13,6 @@ from lwa.base.frozen import Value
 from lwa.cell import Cell, exponent
 from lwa.expansion.approximants import Resummed, pade, resum
 from lwa.expansion.observables import equal_beads
-from lwa.expansion.radiation import Radiation, radiation
 
 SHOWN = 3
 """Terms of a series in LaTeX."""
@@ -55,11 +54,6 @@ class EpsilonSeries(Value):
         """The highest power of ε in the sum."""
         return len(self.coefficients) - 1
 
-    @property
-    def radiation(self) -> Radiation | None:
-        """Radiation, which `at` adds to the error; None for symbols and for equal beads."""
-        return radiation(self.cell, self.k)
-
     def pade(self, k: Any, numerator: int, denominator: int) -> sp.Expr:
         """The exact Padé approximant [numerator/denominator] in ε; [n/0] is the sum to ε^n.
 
@@ -90,8 +84,10 @@ class EpsilonSeries(Value):
         demand_numbers(symbols, "a sum needs numbers")
         if not series.k > 1:
             raise InputError(f"k is {series.k}: the expansion in k - 1 is summed for k > 1")
-        base = equal_beads(self.quantity, self.order) if series.radiation else ()
-        lost = series.radiation.relative(float(series.k)) if series.radiation else 0.0
+        from lwa.expansion.radiation import radiated  # start-up: it loads NumPy
+
+        base = () if self.cell.uniform else equal_beads(self.quantity, self.order)
+        lost = radiated(self.cell, series.k)
         total = resum(series.coefficients, series._epsilon, base, series._unit, lost)
         if not total.error < total.value:
             more = "higher orders do not help" if total.asymptotic else "a higher order may help"
