@@ -144,7 +144,6 @@ window.addEventListener("load", async () => {
       {load: 200, blow: 0.01, kind: "velocity"},
       {load: 0, blow: 1, kind: "velocity", radiusB: 3e-4},
       {load: 0, blow: -1, kind: "velocity"},
-      {load: 0, blow: 1, kind: "velocity", radiusB: 7.5e-3},
       {load: 0, blow: 1, kind: "velocity", b: "steel 316", radiusB: 2.2e-3},
     ].map(blow => [blow, lwaTurn.calculate({...beads, ...blow})]);
   }

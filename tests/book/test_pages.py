@@ -23,7 +23,6 @@ from lwa import (
     canonical_wave,
     envelope,
     expand,
-    hertz,
     homogenize,
     piston,
 )
@@ -50,8 +49,8 @@ def visit():
 
 
 def opened(width, mode="light"):
-    missing = [page for page in PAGES if not (HTML / page).is_file()]
-    assert not missing, f"the book is not built: {missing[0]} is missing in {HTML}"
+    for page in PAGES:
+        assert (HTML / page).is_file(), f"the book is not built: {page} is missing in {HTML}"
     return visited(HTML, PAGES, width, mode)
 
 
@@ -119,13 +118,7 @@ def test_every_page_with_cells_has_a_notebook():
             )
 
 
-def paper_spheres():
-    """Steel and PTFE beads as the calculator weighs them: radius and density."""
-    R = sp.Rational("2.38e-3")
-    return [
-        Sphere(4 * sp.pi.n(30) / 3 * R**3 * sp.Rational(m.density), R, Material(E=m.E, nu=m.nu))
-        for m in (hertz.MATERIALS["steel 316"], hertz.MATERIALS["PTFE"])
-    ]
+SPHERES = [Sphere.solid("2.38e-3", Material.named(name)) for name in ("steel 316", "PTFE")]
 
 
 def numbers(text):
@@ -135,7 +128,7 @@ def numbers(text):
 
 def lattice_of(blow, found):
     """Pulse of a hundred beads at contact 80 by the engine: peak, width, speed, forces of beads."""
-    load, cell = blow["load"], Cell.of_spheres(paper_spheres())
+    load, cell = blow["load"], Cell.of_spheres(SPHERES)
     before_the_echo = 92 * 4.76e-3 / found["lattice"]["speed"]
     scene = Scene.of_cell(
         cell, 50, "3/2", velocities=(found["v"],), duration=before_the_echo, samples=20001,
@@ -146,9 +139,7 @@ def lattice_of(blow, found):
     pulses = [measure(run.time, force - force[0]) for force in run.contact_force]
     times = sum(p.arrival for p in pulses[2:]) - sum(p.arrival for p in pulses[:2])
     beads = [measure(run.time, force - force[0]).peak + force[0] for force in run.bead_force]
-    peak, width = (
-        (p + q) / 2 for p, q in ((pulses[2].peak, pulses[3].peak), (pulses[2].fwhm, pulses[3].fwhm))
-    )
+    peak, width = (sum(p.peak for p in pulses[2:]) / 2, sum(p.fwhm for p in pulses[2:]) / 2)
     return peak, width, 80 * 4.76e-3 / times, beads
 
 
@@ -161,8 +152,7 @@ def test_the_calculator_prints_what_it_computes(visit):
     assert shown["speed"] == [float(f"{found['lattice']['speed']:.4g}")]
     assert shown["width"] == [float(f"{1e6 * found['lattice']['width']:.4g}")]
     assert shown["pressure"][1] == pytest.approx(shown["pressure"][0] / 1.6, rel=1e-2)
-    E = [1e9 * x / (1 - nu**2) for x, nu in ((193, 0.3), (1.46, 0.46))]
-    modulus, R = 1 / sum(1 / e for e in E), 1.19e-3
+    modulus, R = 1 / ((1 - 0.3**2) / 193e9 + (1 - 0.46**2) / 1.46e9), 1.19e-3
     highest = 1e-6 * (6 * found["F"] * modulus**2 / (math.pi**3 * R**2)) ** (1 / 3)
     assert shown["pressure"][0] == pytest.approx(highest, rel=5e-3)
     theories = {text.partition(":")[0]: text for name, text in told if name == "theory"}
@@ -175,7 +165,7 @@ def test_the_calculator_prints_what_it_computes(visit):
 def test_the_calculator_with_and_without_load(visit, n):
     """Theories by the same closed forms, the beads of the page against the validated lattice."""
     blow, found = visit.pages["calculator.html"]["blows"][n]
-    load, cell = blow["load"], Cell.of_spheres(paper_spheres())
+    load, cell = blow["load"], Cell.of_spheres(SPHERES)
     loads = {"precompression": sp.Rational(load)} if load else {}
     closed = {"canonical wave": canonical_wave(cell, "3/2")}
     if not load:
@@ -195,11 +185,12 @@ def test_the_calculator_with_and_without_load(visit, n):
 
 def test_the_series_of_the_calculator_is_interpolated_well(visit):
     """Between the ratios of its table the width differs from the series by less than 0.5 %."""
-    _, found = visit.pages["calculator.html"]["blows"][10]
-    theory = found["theories"]["series in k − 1"]
-    total = (
-        expand(Dimer(1, sp.Rational(round(1e6 * found["omega"]), 10**6)), 8).fwhm("force").at("3/2")
+    _, found = visit.pages["calculator.html"]["blows"][9]
+    theory, ratio = (
+        found["theories"]["series in k − 1"],
+        sp.Rational(round(1e6 * found["omega"]), 10**6),
     )
+    total = expand(Dimer(1, ratio), 8).fwhm("force").at("3/2")
     sites = theory["width"] * found["lattice"]["speed"] / 4.58e-3
     assert abs(sites / float(total.value) - 1) < 5e-3
     assert abs(theory["error"] / float(total.error / total.value) - 1) < 0.2
@@ -207,15 +198,13 @@ def test_the_series_of_the_calculator_is_interpolated_well(visit):
 
 def test_the_calculator_refuses_by_name(visit):
     """Equal beads have the theory's error; weak blows, extreme ratios and bad input have none."""
-    blows = [found for _, found in visit.pages["calculator.html"]["blows"][5:10]]
-    equal, weak, light, negative, heavy = blows
+    equal, weak, light, negative = (row[1] for row in visit.pages["calculator.html"]["blows"][5:9])
     error = equal["theories"]["canonical wave"]["width"] / equal["lattice"]["width"] - 1
     assert 0.05 < error < 0.08
     assert abs(equal["beads"][0] / equal["F"] - 0.707) < 3e-3
     assert abs(weak["growth"]) > 0.1
     assert "mass ratio" in light["refused"]
     assert "positive" in negative["refused"]
-    assert "refused" in heavy or heavy["omega"] > 1
 
 
 def test_a_harder_blow_is_seen_to_run_faster(visit):
@@ -231,12 +220,8 @@ def test_presets_shock_and_breather(visit):
     """Each thing that moves shows the numbers of the theory beside it."""
     assert visit.pages["exact.html"]["presets"] == [0.3428, 0.6]
     seen = visit.pages["shocks.html"]["shock"]
-    rule = piston(
-        Cell([1], spacing=1),
-        Power("3/2"),
-        sp.Rational(str(seen["v"])),
-        ahead=sp.Rational(str(seen["p0"])),
-    )
+    v, ahead = (sp.Rational(str(seen[name])) for name in ("v", "p0"))
+    rule = piston(Cell([1], spacing=1), Power("3/2"), v, ahead=ahead)
     assert seen["edge"] == pytest.approx(float(rule.leading_speed()), rel=1e-9)
     assert 1.85 < seen["fastest"] / seen["v"] < 2  # from below, as the train grows
     seen = visit.pages["modes.html"]["breather"]
