@@ -2,9 +2,9 @@
 
     python -m pytest tests/benchmarks/bench_closure.py
 
-wants pytest-benchmark and symengine, and Maxima where it is installed. All is derived for the
-dimer with k and the mass ratio as symbols; order N of the ansatz reaches D^{k+N-1}, and the table
-of each has the ratios to its fastest entry in parentheses. "kernel" is the derivation alone, in
+wants pytest-benchmark and symengine. All is derived for the dimer with k and the mass ratio as
+symbols; order N of the ansatz reaches D^{k+N-1}, and the table of each has the ratios to its
+fastest entry in parentheses. "kernel" is the derivation alone, in
 polynomials; "converted" is `homogenize` with all coefficients of the wave equation in SymPy. The
 peers derive the linear closure (see `peers`) and are held against lwa's outside the timed part.
 SymPy forgets what it has cached before each round: nobody derives the same thing twice. No wall
@@ -14,7 +14,6 @@ time is asserted. ``--benchmark-json`` writes the number of terms at the highest
 from __future__ import annotations
 
 import importlib
-import shutil
 from collections.abc import Callable
 
 import pytest
@@ -79,15 +78,6 @@ def test_symengine(benchmark: BenchmarkFixture, order: int) -> None:
     pytest.importorskip("symengine", reason="SymEngine is not installed")
     derived = benchmark(peers.derive, importlib.import_module("symengine"), order)
     benchmark.extra_info["terms"] = _checked(derived, order)
-
-
-@peers_orders
-def test_maxima(benchmark: BenchmarkFixture, order: int) -> None:
-    if shutil.which("maxima") is None:
-        pytest.skip("Maxima is not installed")
-    with peers.Maxima() as maxima:
-        benchmark.pedantic(maxima.derive, (order,), rounds=10)
-        benchmark.extra_info["terms"] = _checked(maxima.result(), order)
 
 
 def _checked(derived: peers.Derived, order: int) -> int:

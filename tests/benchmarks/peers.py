@@ -21,14 +21,9 @@ stands as ± 2k b_{n+1}; E_n is then read off the first.
 
 from __future__ import annotations
 
-import re
-import subprocess
 from math import factorial
-from pathlib import Path
 from types import ModuleType
 from typing import Any
-
-import sympy as sp
 
 Derived = tuple[list[Any], list[Any]]
 """E_0 … E_{order-1} and b_0 … b_order."""
@@ -71,50 +66,3 @@ def derive(cas: ModuleType, order: int) -> Derived:
         V.append([expand(v + k * Z[n])])
         E.append([expand((first + 2 * k * X[n]) / (2 * k * b))])
     return [rungs[0] for rungs in E], ansatz
-
-
-class Maxima:
-    """A running Maxima that has read peers.mac, so that its start is not timed.
-
-    A question and its answer take 0.1 ms besides the calculation. (Maxima's own clock ticks only
-    every 10 ms in some of its builds.)
-    """
-
-    def __init__(self) -> None:
-        self._process = subprocess.Popen(
-            ["maxima", "--very-quiet"],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            text=True,
-        )
-        self._ask(f'load("{Path(__file__).with_suffix(".mac")}")')
-
-    def __enter__(self) -> Maxima:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self._process.communicate("quit();\n")
-
-    def derive(self, order: int) -> None:
-        """The derivation, whose result stays inside."""
-        self._ask(f"derived: derive({order})")
-
-    def result(self) -> Derived:
-        """Result of `derive`, in SymPy."""
-        text = self._ask("print(string(expand(ratdisrep(derived))))").replace("\\\n", "")
-        E, ansatz = sp.sympify(re.sub(r"r\[(\d+)\]", r"r\1", text))
-        return E, ansatz
-
-    def _ask(self, statement: str) -> str:
-        assert self._process.stdin
-        assert self._process.stdout
-        self._process.stdin.write(f'{statement}$ print("answered")$\n')
-        self._process.stdin.flush()
-        answer = ""
-        for line in self._process.stdout:
-            if line.strip() == "answered":
-                if "-- an error" in answer:
-                    break
-                return answer
-            answer += line
-        raise RuntimeError(f"Maxima did not take {statement!r}: {answer}")

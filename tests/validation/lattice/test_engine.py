@@ -110,7 +110,7 @@ def test_a_late_push_from_far_behind_is_part_of_the_record():
 @pytest.mark.parametrize("method", COMPILED)
 def test_the_peak_force_of_the_560_beads(method):
     """0.29635394421 at contact 480 and t = 499.87256149: by located kinks and by small steps of the
-    splitting (`tests/benchmarks/located.py`); DOP853 is compared on fewer beads below."""
+    splitting; located kinks are compared on fewer beads in `test_located`."""
     scene = struck(560, duration=510.0, contact_sensors=(480,), samples=10201)
     run = simulate(scene, method=method, rtol=1e-7)
     pulse = measure(run.time, run.contact_force[0])
