@@ -4,90 +4,114 @@ import numpy as np
 import pytest
 import scipy
 
-from validation import Scene, simulate
+from validation import simulate
 from validation.pulses.noisy import noisy_pulse
 from validation.pulses.pulse import MeasureError, first_pulse
 from validation.pulses.signals import Piecewise, Sampled, high_passed
+from validation.scenes.chains import chain_scene
 
-COPIES = 200
 NUMBERS = ("arrival", "peak", "fwhm")
+STATIC = 1.5
 
 
 @pytest.fixture(scope="module")
 def signals():
-    """Forces of the struck chains of equal beads and of 1:1 cells, at a contact and in a bead."""
+    """Dynamic forces of beads of the paper's 1:1 and 2:1 columns, by column and bead."""
     found = {}
-    for name, cell in (("equal", (1.0,)), ("dimer", (1.0, 0.27))):
-        masses = (cell * 80)[:80]
-        scene = Scene(
-            masses=masses, stiffnesses=(1.0,) * 79, k=1.5, velocities=(1.0,), duration=90.0,
-            contact_sensors=(40,), bead_sensors=(40,), samples=2,
-        )  # fmt: skip
-        run = simulate(scene)
-        found |= {(name, kind): run.signal(kind, 40) for kind in ("contact", "bead")}
+    for N in (1, 2):
+        run = simulate(chain_scene(1.37, 38, (8, 16, 24), 0.0, 1.2e-3, N))
+        found |= {(N, i + 1): run.signal("bead", i) for i in run.scene.bead_sensors}
     return found
 
 
-def record(signal, samples=70):
-    """Sample times with so many samples a width, as at 1 MHz for 70 µs, and the pulse itself."""
+def record(signal, samples=None):
+    """Sample times, with so many samples a width or at 1 MHz, and the pulse itself."""
     pulse = first_pulse(signal)
-    start, end = pulse.arrival - 8 * pulse.fwhm, pulse.arrival + 4 * pulse.fwhm
-    return np.arange(max(start, 0), min(end, 90), pulse.fwhm / samples), pulse
+    start, end = pulse.arrival - 5 * pulse.fwhm, pulse.arrival + 3 * pulse.fwhm
+    return np.arange(start, end, pulse.fwhm / samples if samples else 1e-6), pulse
 
 
-def draws(signal, share, static=0.0):
-    """Numbers and errors, (2, draws, 3), and the true numbers."""
-    t, pulse = record(signal)
-    rng, clean = np.random.default_rng(3), static + signal(t)
-    rows = []
-    for _ in range(COPIES):
-        noisy = noisy_pulse(t, clean + share * pulse.peak * rng.normal(size=len(t)))
-        rows.append([(noisy.numbers[name].value, noisy.numbers[name].error) for name in NUMBERS])
-    true = np.array([getattr(pulse, name) for name in NUMBERS])
-    return np.moveaxis(np.array(rows), 2, 0), true
+def quality(signal, share, copies, samples=None):
+    """Biases and errors over the scatter, and shares of the errors that cover, each (3,)."""
+    t, pulse = record(signal, samples)
+    rng, step, rows = np.random.default_rng(3), t[1] - t[0], []
+    for _ in range(copies):
+        at = t + rng.random() * step
+        clean = STATIC + np.where(at > 0, signal(np.clip(at, 0, 1.2e-3)), 0.0)
+        noisy = noisy_pulse(at, clean + share * pulse.peak * rng.normal(size=len(t))).numbers
+        rows.append([(noisy[name].value, noisy[name].error) for name in NUMBERS])
+    values, errors = np.moveaxis(np.array(rows), 2, 0)
+    off, scatter = values - [getattr(pulse, name) for name in NUMBERS], values.std(axis=0)
+    within = np.mean(np.abs(off) < errors, axis=0)
+    return np.abs(off.mean(axis=0)) / scatter, np.median(errors, axis=0) / scatter, within
 
 
-@pytest.mark.parametrize("share", [0.002, 0.005, 0.02])
-@pytest.mark.parametrize("kind", ["contact", "bead"])
-def test_bias_is_a_third_of_the_scatter_and_the_error_one_standard_deviation(signals, kind, share):
-    """All three numbers; 68 % are expected within the error, 60 … 80 leave 2.5 spreads."""
-    (values, errors), true = draws(signals["equal", kind], share, static=1.5)
-    assert np.abs(values.mean(axis=0) - true).max() > 0
-    assert np.all(np.abs(values.mean(axis=0) - true) < values.std(axis=0) / 3)
-    within = np.mean(np.abs(values - true) < errors, axis=0)
-    assert np.all((within >= 0.6) & (within <= 0.8)), within
+SHARES = [0.002, 0.005, 0.02]
+
+
+@pytest.mark.parametrize("share", SHARES)
+@pytest.mark.parametrize("place", [(1, 16), (2, 8), (2, 16)])
+def test_errors_are_one_standard_deviation(signals, place, share):
+    """A third of the scatter and 60 … 80 %, by 50 copies: with two spreads of these more."""
+    bias, _, within = quality(signals[place], share, 50)
+    assert np.all(bias < 1 / 3 + 2 / np.sqrt(50))
+    assert np.all((within > 0.6 - 0.13) & (within < 0.8 + 0.11)), within
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("share", SHARES)
+@pytest.mark.parametrize("place", [(N, bead) for N in (1, 2) for bead in (8, 16, 24)])
+def test_errors_of_200_copies_are_one_standard_deviation(signals, place, share):
+    """One spread of the share of 200 copies is 3 %."""
+    bias, _, within = quality(signals[place], share, 200)
+    assert np.all(bias < 1 / 3), bias
+    assert np.all((within > 0.57) & (within < 0.83)), within
+
+
+@pytest.mark.parametrize("place", [(2, 8), (2, 16)])
+def test_too_few_samples_make_errors_larger(signals, place):
+    """17 samples a width of a pulse with ripples: errors cover, and are 30 times too large at most.
+
+    Mended: a bias of twice the scatter, and 24 % covered.
+    """
+    bias, error, within = quality(signals[place], 0.002, 50, 17)
+    assert np.all(bias < np.maximum(error, 1) / 3)
+    assert np.all(within > 0.6)
+    assert np.all(error < 30)
+
+
+def test_the_arrival_of_two_equal_humps_is_uncertain_by_their_distance():
+    t, rng, covered = np.arange(-20, 10, 0.03), np.random.default_rng(5), 0
+    f = np.exp(-((t - 1) ** 2)) + np.exp(-((t + 1) ** 2))
+    later = abs(t[np.argmax(f)])
+    for _ in range(60):
+        noisy = noisy_pulse(t, f + 0.02 * rng.normal(size=len(t))).numbers["arrival"]
+        covered += abs(noisy.value - later) < noisy.error
+    assert covered > 0.45 * 60  # half of the copies have the other hump as the higher one
 
 
 def test_a_short_lead_leaves_the_base_uncertain(signals):
-    """With some 20 samples before the pulse the base errs as much as the fit of the peak."""
-    t, pulse = record(signals["equal", "contact"])
-    t = t[t > pulse.rise - 2 * pulse.fwhm - 40 * (t[1] - t[0])]
-    rng, clean = np.random.default_rng(8), signals["equal", "contact"](t)
-    within = 0
-    for _ in range(COPIES):
+    """With some 20 samples before the pulse the base errs more than the fit of the peak."""
+    t, pulse = record(signals[1, 24], 300)
+    t = t[t > pulse.rise - 2 * pulse.fwhm - 72 * (t[1] - t[0])]
+    rng, clean = np.random.default_rng(8), signals[1, 24](t)
+    within, copies = 0, 100
+    for _ in range(copies):
         peak = noisy_pulse(t, clean + 0.005 * pulse.peak * rng.normal(size=len(t))).numbers["peak"]
         within += abs(peak.value - pulse.peak) < peak.error
-    assert 0.6 <= within / COPIES <= 0.8
+    assert 0.55 <= within / copies <= 0.85
 
 
-@pytest.mark.parametrize("share", [0.002, 0.005, 0.02])
-def test_unlike_beads(signals, share):
-    """A contact of two unlike beads, whose force has a second hump."""
-    (values, errors), true = draws(signals["dimer", "contact"], share)
-    assert np.all(np.abs(values.mean(axis=0) - true) < values.std(axis=0) / 3)
-    within = np.mean(np.abs(values - true) < errors, axis=0)
-    assert np.all((within >= 0.6) & (within <= 0.8)), within
-
-
-@pytest.mark.parametrize("kind", ["contact", "bead"])
-def test_a_record_without_noise_gives_the_pulse_of_the_signal(signals, kind):
-    """From 16 samples a width on, to 1e-3 of the width; with 70 to 1e-9."""
-    for samples, bound in ((17, 1e-4), (70, 1e-10)):
-        t, pulse = record(signals["equal", kind], samples)
-        found = noisy_pulse(t, 2.0 + signals["equal", kind](t))
-        assert found.base == pytest.approx(2.0, rel=1e-12)
-        for name, size in zip(NUMBERS, (pulse.fwhm, pulse.peak, pulse.fwhm), strict=True):
-            assert abs(found.numbers[name].value - getattr(pulse, name)) < bound * size
+@pytest.mark.parametrize(("samples", "bound"), [(17, 1e-3), (70, 1e-6)])
+def test_a_record_without_noise_gives_the_pulse_of_the_signal(signals, samples, bound):
+    """The error covers what the spline does not resolve."""
+    t, pulse = record(signals[1, 24], samples)
+    found = noisy_pulse(t, STATIC + np.where(t > 0, signals[1, 24](np.maximum(t, 0)), 0))
+    assert found.base == pytest.approx(STATIC, rel=1e-12)
+    for name, size in zip(NUMBERS, (pulse.fwhm, pulse.peak, pulse.fwhm), strict=True):
+        number = found.numbers[name]
+        assert abs(number.value - getattr(pulse, name)) < min(number.error, bound * size)
+        assert number.error < 300 * bound * size
 
 
 def test_the_first_pulse_counts_and_the_base_may_be_known():
@@ -97,7 +121,7 @@ def test_the_first_pulse_counts_and_the_base_may_be_known():
     found = noisy_pulse(t, f + noise + 0.7).numbers
     known = noisy_pulse(t, f + noise + 0.7, 0.7).numbers
     for numbers in (found, known):
-        assert abs(numbers["arrival"].value - 8) < 4 * numbers["arrival"].error < 0.02
+        assert abs(numbers["arrival"].value - 8) < 4 * numbers["arrival"].error < 0.04
         width = 2 * np.sqrt(np.log(2))
         assert abs(numbers["fwhm"].value - width) < 4 * numbers["fwhm"].error < 0.05
 
@@ -116,7 +140,7 @@ def test_the_first_pulse_counts_and_the_base_may_be_known():
             np.arange(400.0),
             np.exp(-(((np.arange(400) - 300) / 12.0) ** 2))
             + 0.07 * np.random.default_rng(2).normal(size=400),
-            "the noise is 6.6%",
+            "the noise is 6",
         ),
     ],
 )
