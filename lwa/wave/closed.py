@@ -31,29 +31,6 @@ from lwa.base.quantities import RISE, SPEED, NoSolitaryWave, strain_power
 from lwa.cell import Cell, exponent, read_cell, substitution
 from lwa.linear.dispersion import Dispersion
 
-_RATIOS = sp.symbols("g h", cls=sp.Dummy)
-"""Symbols of G/I and H/I."""
-
-
-def strain_equation(p: sp.Expr, G: sp.Expr, H: sp.Expr, I: sp.Expr) -> dict[str, sp.Expr]:
-    """Coefficients by name in the wave's equation for z, v = z^p, with r_n = ∂^n z / z:
-
-    V² z^p p r_1 = z^{kp} (linear · r_1 + cubic · r_1³ + product · r_1 r_2 + third · r_3).
-    """
-    given = (p, G, H, I)
-    domain = sp.QQ[tuple(set().union(*(x.free_symbols for x in given)))]
-    p, G, H, I = map(domain.from_sympy, given)
-    _, r1, r2, r3 = sp.ring("r1:4", domain)
-
-    def derivative(X: Any) -> Any:  # ∂(z^p X) / z^p, since ∂r_n = r_{n+1} - r_1 r_n
-        return p * r1 * X + X.diff(r1) * (r2 - r1**2) + X.diff(r2) * (r3 - r1 * r2)
-
-    v1 = p * r1
-    v2 = derivative(v1)
-    equation = v1 + G * v1**3 + H * v1 * v2 + I * derivative(v2)
-    monomials = {"linear": r1, "cubic": r1**3, "product": r1 * r2, "third": r3}
-    return {name: domain.to_sympy(equation.coeff(x)) for name, x in monomials.items()}
-
 
 @dataclass(frozen=True)
 class Reduction(Value):
@@ -232,37 +209,26 @@ class CompactWave(Value):
     @cached_property
     def roots(self) -> tuple[sp.Expr, sp.Expr]:
         """The two p for which v = z^p removes z_ξ³; the paper's is the first."""
-        p, equation = self._equation
-        A, B, C = self._coefficients(equation["cubic"] / p, p)
-        root = _root(factored(B**2 - 4 * A * C)).replace(sp.Abs, lambda x: x)
-        return (sp.together((-B - root) / (2 * A)), sp.together((-B + root) / (2 * A)))
-
-    @cached_property
-    def _equation(self) -> tuple[sp.Symbol, dict[str, sp.Expr]]:
-        """The symbol p, and `strain_equation` divided by I with symbols for G/I and H/I."""
-        p = sp.Dummy("p")
-        return p, strain_equation(p, _RATIOS[0], _RATIOS[1], sp.S.One)
-
-    def _coefficients(self, value: sp.Expr, p: sp.Symbol) -> list[sp.Expr]:
-        """Coefficients of a polynomial in p, highest power first, with the wave's G/I and H/I."""
-        ratios = dict(zip(_RATIOS, self._ratios, strict=True))
-        polynomial = sp.Poly(sp.cancel(value), p)
-        return [factored(c.xreplace(ratios)) for c in polynomial.all_coeffs()]
+        _, h = self._ratios
+        total = self.coefficient_sum * self.D**2 / self.I  # 1 + G/I + H/I
+        A, B = factored(total), factored(h + 3)
+        root = _root(factored(B**2 - 8 * A)).replace(sp.Abs, lambda x: x)
+        return (sp.together((B - root) / (2 * A)), sp.together((B + root) / (2 * A)))
 
     def reduction(self, root: int = 0, V: Any = SPEED) -> Reduction:
         """Reduction to z'' = μ z^η - σ z for one of the `roots` p (0: the paper's, 1: the other).
 
-        For such a p the equation is V² z^p p r_1 = z^{kp} p (r_1 + I r_3 + q r_1 r_2). Since
-        ∂(z^e r_2) = z^e (r_3 + (e - 1) r_1 r_2), the factor z^a, kp + a = e = q/I + 1, makes it
-        a total derivative; integrated once it is the equation of z.
+        With r_n = ∂^n z / z and such a p the strain's equation is
+
+            V² z^p r_1 = z^{kp} (r_1 + I r_3 + I q r_1 r_2),    q = 3 (p - 1) + p H/I.
+
+        Since ∂(z^e r_2) = z^e (r_3 + (e - 1) r_1 r_2), the factor z^a, kp + a = e = q + 1, makes
+        it a total derivative; integrated once it is the equation of z.
         """
         if root not in (0, 1):
             raise InputError(f"root is {shorten(root)}: 0 or 1 is wanted")
-        symbol, equation = self._equation
-        e = equation["product"] / equation["third"] + 1
-        slope, constant = self._coefficients(e, symbol)
         p = self.roots[root]
-        a = factored(slope - self.k) * p + constant
+        a = factored(3 + self._ratios[1] - self.k) * p - 2  # 1 - kp + 3 (p - 1) + p H/I
         mu, eta = positive(V, "V") ** 2 / (self.I * (p + a)), 1 + p - self.k * p
         sigma = 1 / (self.I * (self.k * p + a))
         return Reduction(self.k, p, a, mu, eta, sigma, 2 / (1 - eta))

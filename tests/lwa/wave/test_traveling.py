@@ -9,7 +9,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from lwa import Cell, Dimer, InputError, NoSolitaryWave, canonical_wave, homogenize
-from lwa.wave.closed import _FORMULAS, strain_equation
+from lwa.wave.closed import _FORMULAS
 from tests.identity import same
 
 masses = st.fractions(min_value="1/50", max_value=50, max_denominator=50)
@@ -31,18 +31,20 @@ def wave_at(k, m1, m2):
         return None
 
 
-def test_the_strain_equation_by_the_chain_rule():
-    """v^k [v'/v + G (v'/v)³ + H v' v''/v² + I v'''/v] with v = z^p, by SymPy's own calculus."""
-    x = sp.Symbol("x")
-    p, G, H, I = sp.symbols("p G H I")
-    z = sp.exp(2 * x) + 3 * x + 5
-    v = z**p
-    v1, v2, v3 = (v.diff(x, n) / v for n in (1, 2, 3))
-    expected = v1 + G * v1**3 + H * v1 * v2 + I * v3
-    r1, r2, r3 = (z.diff(x, n) / z for n in (1, 2, 3))
-    c = strain_equation(p, G, H, I)
-    found = c["linear"] * r1 + c["cubic"] * r1**3 + c["product"] * r1 * r2 + c["third"] * r3
-    assert same(found.subs(x, 0), expected.subs(x, 0))
+def test_a_root_removes_the_cube_and_z_to_the_a_makes_a_derivative():
+    """v/v [v′/v + G (v′/v)³ + H v′v″/v² + I v‴/v], v = z^p, by SymPy's own calculus."""
+    x, z = sp.Symbol("x"), sp.Function("z")
+    for root in (0, 1):
+        wave = WAVE.at(k="7/4", m1=3, m2=2, D=1)
+        found = wave.reduction(root)
+        v = z(x) ** found.p
+        v1, v2, v3 = (sp.expand(v.diff(x, n) / v) for n in (1, 2, 3))
+        terms = v1 + wave.G * v1**3 + wave.H * v1 * v2 + wave.I * v3
+        r1, r2, r3 = (z(x).diff(x, n) / z(x) for n in (1, 2, 3))
+        e = wave.k * found.p + found.a
+        expected = found.p * (r1 + wave.I * (r3 + (e - 1) * r1 * r2))
+        rest = sp.expand(terms - expected).subs(z(x), sp.exp(2 * x) + 3 * x + 5).doit()
+        assert abs(sp.N(rest.subs(x, 0), 30)) < 1e-25
 
 
 @given(exponents, masses, masses, st.integers(0, 1))
