@@ -37,9 +37,11 @@ class ChainInput:
 
     @property
     def text(self) -> str:
-        """One line of text with the masses and the contact law of the chain."""
-        masses = ", ".join(map(str, self.cell.masses))
-        return f"masses {masses}; contact force A F, F = {self.law.F}"
+        """One line of text with the masses, the contacts and the spacing of the chain."""
+        law, cell = self.law, self.cell
+        force = f"A δ^k, k = {law.exponent}" if law.homogeneous else f"A F, F = {law.F}"
+        masses, A = (", ".join(map(str, x)) for x in (cell.masses, cell.stiffnesses))
+        return f"masses {masses}; contact force {force}, A = {A}; spacing D = {cell.spacing}"
 
     def load(self, background: sp.Expr | None, precompression: sp.Expr | None) -> sp.Expr | None:
         """Static force of the file or of the options; raises `lwa.InputError` for two loads."""

@@ -9,7 +9,7 @@ import click
 import sympy as sp
 
 from lwa.base.exact import InputError
-from lwa.command.chain import take_chain
+from lwa.command.chain import ChainInput, take_chain
 from lwa.command.options import STYLES, theory_options
 from lwa.command.rows import Answer, Row, Values
 from lwa.equation.terms import Jet, Terms, by_order
@@ -40,21 +40,6 @@ def chain_json(theory: Theory) -> dict[str, Any]:
     }
 
 
-def chain_text(theory: Theory) -> str:
-    """The chain and its contact law on one line."""
-    law, cell = theory.law, theory.cell
-    force = f"A δ^k, k = {law.exponent}" if law.homogeneous else f"A F({law.delta}), F = {law.F}"
-    return (
-        f"masses {listed(cell.masses)}; contact force F = {force}, "
-        f"A = {listed(cell.stiffnesses)}; spacing D = {cell.spacing}"
-    )
-
-
-def listed(values: tuple[sp.Expr, ...]) -> str:
-    """The values, separated by commas."""
-    return ", ".join(map(str, values))
-
-
 @click.command()
 @theory_options((*STYLES, "numpy"))
 def derive(style: str, **options: Any) -> None:
@@ -71,10 +56,10 @@ def derive(style: str, **options: Any) -> None:
     if style == "numpy":
         click.echo(_source(theory))
     else:
-        _answer(theory).print(style)
+        _answer(chain, theory).print(style)
 
 
-def _answer(theory: Theory) -> Answer:
+def _answer(chain: ChainInput, theory: Theory) -> Answer:
     """Rows of a derivation."""
     head: Values = {
         **chain_json(theory),
@@ -93,7 +78,7 @@ def _answer(theory: Theory) -> Answer:
         "conservative": theory.pde.conservative,
     }
     rows = [
-        chain_text(theory),
+        chain.text,
         f"closure {theory.closure.name}, {theory.closure.model.branch} branch, to "
         f"D^{theory.order}; τ = t·{theory.pde.time_scale}",
         FIELDS[theory.closure.field],

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -9,7 +10,6 @@ import sympy as sp
 
 from lwa.base.exact import InputError
 from lwa.command.chain import ChainInput, take_chain
-from lwa.command.derivation import listed
 from lwa.command.options import (
     BACKGROUND,
     PRECOMPRESSION,
@@ -53,33 +53,33 @@ def dispersion(order: int, style: str, precompression: sp.Expr | None, **options
     if precompression is not None:
         law = law if given("k") else Power(EXPONENT)
         loaded = LoadedChain(chain.cell, law, precompression)
-    _linear(Dispersion(chain.cell, law.exponent), order, loaded).print(style)
+    _linear(replace(chain, law=law), order, loaded).print(style)
 
 
-def _linear(chain: Dispersion, order: int, loaded: LoadedChain | None) -> Answer:
+def _linear(chain: ChainInput, order: int, loaded: LoadedChain | None) -> Answer:
     """Answer with the series Ω²(κ) of the acoustic and, for two particles, the optical branch."""
-    cell = chain.cell
+    linear = Dispersion(chain.cell, chain.law.exponent)
     rows: list[Row | str] = [
-        f"masses {listed(cell.masses)}, A = {listed(cell.stiffnesses)}; Ω²(κ), κ = qD and Ω/D the "
-        "frequency in τ",
+        chain.text,
+        "Ω²(κ), κ = qD and Ω/D the frequency in τ",
         "",
     ]
     head: Values = {"acoustic": None, "optical": None}
-    for name, series in chain.series(order).items():
+    for name, series in linear.series(order).items():
         head[name] = {str(n): str(c) for n, c in series.items()}
         rows += [f"{name}:", *(f"  {f'κ^{n}' if n else '1'}: {c}" for n, c in series.items())]
     if loaded is None:
-        return Answer(head, rows, shown=[chain])
+        return Answer(head, rows, shown=[linear])
     bands = _bands(loaded)
     rows += [
         "",
-        f"about the load {loaded.precompression}, law {loaded.law.F}:",
+        f"about the load {loaded.precompression}:",
         Row("precompression", "", loaded.precompression, digits=0),
         Row("spring_constants", "spring constants", loaded.spring_constants),
         Row("sound_speed", "sound speed dx/dt", loaded.sound_speed),
         *_bands_text(bands),
     ]
-    return Answer(head | bands, rows, spacing=cell.spacing, shown=[chain, loaded])
+    return Answer(head | bands, rows, spacing=chain.cell.spacing, shown=[linear, loaded])
 
 
 def _bands(loaded: LoadedChain) -> Values:

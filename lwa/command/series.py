@@ -12,13 +12,8 @@ import sympy as sp
 from lwa.base.exact import InputError
 from lwa.base.quantities import QUANTITIES
 from lwa.cell import k
-from lwa.command.chain import take_chain
-from lwa.command.derivation import listed
-from lwa.command.options import (
-    FORCE,
-    SPHERES,
-    series_options,
-)
+from lwa.command.chain import ChainInput, take_chain
+from lwa.command.options import FORCE, SPHERES, series_options
 from lwa.command.rows import Answer, Row, Values, attempt
 from lwa.command.waves import WIDTHS, radiation_note
 from lwa.expansion.approximants import Resummed
@@ -48,7 +43,7 @@ def expansion(order: int, style: str, force: sp.Expr | None, **options: Any) -> 
         raise InputError("--force goes with --spheres: other chains have no units")
     chain = take_chain(options)
     expanded = expand(chain.cell, order, law=chain.law)
-    answer = _answer(expanded, chain.without_load())
+    answer = _answer(chain, expanded)
     if spheres and chain.cell.spacing.is_number:
         wave = ExpandedWave(expanded, sp.S.One if force is None else force)
         answer = replace(answer, parts={"physical": _at_force(wave, chain.si)})
@@ -66,9 +61,9 @@ _LABELS = {
 }
 
 
-def _answer(expanded: Expansion, notes: list[str]) -> Answer:
+def _answer(chain: ChainInput, expanded: Expansion) -> Answer:
     """Rows of the coefficients, and of the sums where k and the cell are numbers."""
-    cell = expanded.cell
+    cell, notes = expanded.cell, chain.without_load()
     widths = {q: expanded.fwhm(q) for q in QUANTITIES}
     series = {"c2": expanded.c2} | {f"fwhm.{q}": width for q, width in widths.items()}
     series |= {"momentum": expanded.momentum, "energy": expanded.energy}
@@ -84,8 +79,8 @@ def _answer(expanded: Expansion, notes: list[str]) -> Answer:
         "energy": _series_json(expanded.energy),
     }
     rows: list[Row | str] = [
-        f"masses {listed(cell.masses)}; F = A δ^k, A = {listed(cell.stiffnesses)}; ε = k - 1; peak "
-        "force 1 on the first contact, lengths in D",
+        chain.text,
+        "ε = k - 1; peak force 1 on the first contact, lengths in D",
         "",
     ]
     for key, part in series.items():

@@ -13,7 +13,7 @@ from lwa.base.quantities import QUANTITIES, NoSolitaryWave
 from lwa.cell import Cell
 from lwa.code import LANGUAGES
 from lwa.command.chain import ChainInput, take_chain
-from lwa.command.derivation import FIELDS, chain_json, chain_text, listed
+from lwa.command.derivation import FIELDS, chain_json
 from lwa.command.options import (
     BACKGROUND,
     FORCE,
@@ -90,7 +90,7 @@ def wave(
         if style in LANGUAGES:
             click.echo(compact.code(style))
         elif force is None and not spheres:
-            _compact(theory, compact, style).print(style)
+            _compact(chain, theory, compact, style).print(style)
         else:
             _at_force(chain, theory, compact.at_force(peak)).print(style)
     elif precompression is not None:
@@ -99,7 +99,7 @@ def wave(
     elif force is not None:
         raise InputError("--force goes with --precompression, a force; --background is a strain")
     else:
-        _on_background(theory, BackgroundWave(cell, law, background)).print(style)
+        _on_background(chain, theory, BackgroundWave(cell, law, background)).print(style)
 
 
 def _demand_canonical(options: dict[str, Any]) -> None:
@@ -143,7 +143,7 @@ def hertz_note(chain: ChainInput, force: sp.Expr) -> list[str]:
     ]
 
 
-def _compact(theory: Theory, wave: TravelingWave, style: str) -> Answer:
+def _compact(chain: ChainInput, theory: Theory, wave: TravelingWave, style: str) -> Answer:
     """Rows of the compact wave of any amplitude: speed V_s by peak strain B, and B by V_s."""
     first, second = (wave.reduction(root) for root in (0, 1))
     head = chain_json(theory)
@@ -152,8 +152,8 @@ def _compact(theory: Theory, wave: TravelingWave, style: str) -> Answer:
         head["roots"] = [{name: str(getattr(r, name)) for name in _REDUCTION} for r in pair]
     log_B = -sp.log(wave.speed_factor) / (wave.k - 1)
     rows: list[Row | str] = [
-        f"masses {listed(theory.cell.masses)}; k = {wave.k}; closure {theory.closure.name}; "
-        + FIELDS[theory.closure.field],
+        chain.text,
+        f"closure {theory.closure.name}; {FIELDS[theory.closure.field]}",
         "v = u_x = B cos^(2/(k-1))(β ξ), ξ = x - V_s τ, on |ξ| ≤ π/(2β)",
         "",
         Row("beta", "β", wave.beta),
@@ -202,7 +202,7 @@ def _at_force(chain: ChainInput, theory: Theory, at: PhysicalWave | Precompresse
         shown = [at.wave, at]
     rows: list[Row | str] = [
         f"endless chain {ahead}; closure {theory.closure.name}; {FIELDS[theory.closure.field]}",
-        *(_chain_rows(chain) if chain.si else [chain_text(theory)]),
+        *(_chain_rows(chain) if chain.si else [chain.text]),
         "",
         Row("force", "peak contact force F", at.force, "N"),
         Row("B", f"{peak} strain B", at.strain),
@@ -242,12 +242,12 @@ def _chain_rows(chain: ChainInput) -> list[Row | str]:
     ]
 
 
-def _on_background(theory: Theory, wave: BackgroundWave) -> Answer:
+def _on_background(chain: ChainInput, theory: Theory, wave: BackgroundWave) -> Answer:
     """Rows of the waves on the strain p0, with V_s a function of the rise B of the strain."""
     head = chain_json(theory)
     speed, widths = _at_one(wave)
     rows: list[Row | str] = [
-        chain_text(theory),
+        chain.text,
         FIELDS[theory.closure.field],
         f"u_x = p0 + v(ξ), ξ = x - V_s τ, p0 = {wave.p0}; v rises by B",
         "",
