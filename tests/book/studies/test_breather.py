@@ -1,6 +1,5 @@
 """Breathers of loaded chains beside their envelopes; aluminium and steel at 20 N."""
 
-import json
 import math
 
 import numpy as np
@@ -8,7 +7,6 @@ import pytest
 
 from book.studies.breather import Standing, breather
 from lwa import Cell, LoadedChain, Material, Power, Sphere, envelope
-from tests.commands import ended
 
 
 def test_bright_breathers_of_a_dimer():
@@ -74,28 +72,3 @@ def test_aluminium_and_steel_at_20_newtons():
     expected = static * math.sqrt(32 * 0.005 / 0.75)
     assert row["amplitude"].value == pytest.approx(expected, rel=0.015)
     assert row["multiplier_value"] == pytest.approx(1, abs=1e-3)
-
-
-def test_the_command_for_dark_breathers(capsys):
-    options = ("--masses", "1", "--detunings", "0.008", "--format", "json")
-    status, out, err = ended(capsys, breather.main, *options)
-    assert (status, err) == (0, "")
-    found = json.loads(out)
-    assert (found["ok"], found["kind"]) == (True, "dark")
-    (row,) = found["rows"]
-    assert row["detuning_value"] == 0.008
-    assert row["multiplier_value"] == pytest.approx(1, abs=1e-3)
-
-
-@pytest.mark.parametrize(
-    ("options", "message"),
-    [
-        ({"masses": (1, 2, 3)}, "masses are 3: breathers are found in cells of one or two"),
-        ({"detunings": (0.0001,), "beads": 101}, "beads is 101: at a detuning of 0.0001 "),
-        ({"detunings": (0.03,)}, "contacts open from"),
-        ({"detunings": (-0.001,)}, "bright breathers lie below"),
-    ],
-)
-def test_bad_options_are_refused(options, message):
-    with pytest.raises(ValueError, match=message):
-        breather(**options)

@@ -11,8 +11,6 @@ from book.studies.collision import Continuum, collision, in_equation, on_lattice
 from lwa import Cell, Dimer, Power
 from lwa.equation.evolution import Evolution
 from lwa.law import named as law
-from tests.commands import ended
-from validation.scenes.checks import SceneError
 
 ONE = Cell((1,), spacing=1)
 
@@ -62,11 +60,6 @@ def test_equal_pulses_meet_as_one_at_a_wall(run):
     assert strains[0, 0] < 1e-6
 
 
-def test_a_bad_exponent_is_refused_in_one_line(capsys):
-    status, _, err = ended(capsys, collision.main, "--second", "2")
-    assert (status, err.count("\n")) == (2, 1)
-
-
 # The equation by itself
 
 
@@ -104,16 +97,3 @@ def test_a_law_with_tension_is_not_cut():
     energy = interval.energy(p, v)
     assert energy[1] == pytest.approx(energy[0], rel=1e-8)
     assert p[-1].min() < -0.01
-
-
-@pytest.mark.parametrize(
-    ("cell", "length", "points", "named"),
-    [
-        (Dimer("m1", "m2", spacing=1), 10, 64, "'m1'"),
-        (ONE, 0, 64, "length is 0"),
-        (ONE, 10, 4, "points is 4"),
-    ],
-)
-def test_equations_and_grids_without_numbers_are_refused(cell, length, points, named):
-    with pytest.raises(SceneError, match=f"^{named}"):
-        Continuum(Evolution(cell, Power("3/2")), length, points)

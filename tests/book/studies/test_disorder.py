@@ -4,9 +4,6 @@ import numpy as np
 import pytest
 
 from book.studies.disorder import disorder, single_losses
-from tests.commands import ended
-
-FEW = {"chains": 6, "sites": 60}
 
 
 def test_equal_beads_keep_their_pulse():
@@ -54,15 +51,6 @@ def test_a_decay_that_changes_along_the_chain_fails():
     assert rest[-1] < 0.7 * rest[0]
 
 
-def test_errors_are_those_of_a_mean_over_chains():
-    """Six other chains are within the errors of the first six."""
-    one, other = (disorder(seed=seed, **FEW).document() for seed in (1, 2))
-    both = np.hypot(one["decay_error_value"], other["decay_error_value"])
-    assert 0 < abs(one["decay_value"] - other["decay_value"]) < 3 * both
-    last = one["rows"][-1]
-    assert last["log_force_error_value"] == pytest.approx(last["scatter_value"] / np.sqrt(6))
-
-
 def test_more_chains_go_on_with_the_same_ones():
     """The scatter of three is that of the first two, as mean and scatter tell them, and a third."""
     few, more = (disorder(chains=n, sites=60).document()["rows"][-1] for n in (2, 3))
@@ -70,22 +58,3 @@ def test_more_chains_go_on_with_the_same_ones():
     one, two = few["log_force_value"] - apart, few["log_force_value"] + apart
     third = 3 * more["log_force_value"] - one - two
     assert more["scatter_value"] == pytest.approx(np.std([one, two, third], ddof=1), rel=1e-9)
-
-
-def test_the_command(capsys):
-    status, out, err = ended(capsys, disorder.main, "--chains", "4", "--sites", "60")
-    assert (status, err) == (0, "")
-    assert out.startswith("4 chains of 60 sites, masses in 1 ± 0.1, k = 1.5; decay of ")
-
-
-@pytest.mark.parametrize(
-    ("option", "value", "message"),
-    [
-        ("spread", 0.6, "spread is 0.6: one from 0 to 0.5 is wanted"),
-        ("chains", 1, "chains is 1: an integer from 2 to 10000 is wanted"),
-        ("k", 0.5, "k is 1/2: a compact wave needs k > 1"),
-    ],
-)
-def test_bad_options_are_refused(option, value, message):
-    with pytest.raises(ValueError, match=message):
-        disorder(**{option: value})

@@ -7,7 +7,7 @@ import pytest
 import scipy
 from click.testing import CliRunner
 
-from book.studies.gravity import FIRST, Upright, front_width, gravity
+from book.studies.gravity import Upright, front_width, gravity
 from validation.scenes.chains import numeric_cell
 
 
@@ -70,12 +70,6 @@ def test_a_front_depends_neither_on_the_unit_of_mass_nor_on_a_weak_blows_strengt
     assert harder.fronts()[1] == pytest.approx(one, rel=5e-4)
 
 
-def test_the_dimension_of_a_cell_enters_by_I():
-    """I is 1/9 for masses 1, 1/2, and 1/12 for equal beads."""
-    one, two = (Upright(numeric_cell(m), 1.5, 1000).prefactor for m in ((1,), (1, "1/2")))
-    assert two / one == pytest.approx((12 / 9) ** (1 / 3), rel=1e-12)
-
-
 def test_a_strong_blow_is_the_solitary_wave_of_its_depth(found):
     """Until that is wider than a weak blow's front, which the weakest of the three follows."""
     strong = found["strong"]
@@ -99,17 +93,3 @@ def test_the_wave_widens_with_the_load():
     assert widths[0] == pytest.approx(1.4119, rel=0.02)
     forces = [row["ratio"] * row["site"] for row in rows]
     assert forces == pytest.approx([forces[0]] * len(forces), rel=0.07)
-
-
-@pytest.mark.parametrize(
-    ("options", "message"),
-    [
-        ({"masses": ("m",)}, "mass is m: a number is wanted"),
-        ({"beads": 10 * FIRST - 1}, "beads is 999"),
-        ({"k": 3}, "k is 3: one from 1.1 to 1.75"),
-        ({"masses": ("7/5", 1e9)}, "the largest mass over the least is 7142"),
-    ],
-)
-def test_bad_options_are_refused(options, message):
-    with pytest.raises(ValueError, match=message):
-        gravity(**options)

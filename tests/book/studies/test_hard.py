@@ -107,22 +107,15 @@ def test_closed_contacts_do_not_drift_over_ten_thousand_time_units():
 # The command
 
 
-def test_the_document_holds_the_contract(capsys, tmp_path):
-    picture = tmp_path / "hard.svg"
-    options = ("--case", "contact-loss", "--format", "json", "--plot", str(picture))
+def test_the_document_holds_the_case_that_is_asked_for(capsys):
+    options = ("--case", "contact-loss", "--format", "json")
     status, out, err = ended(capsys, hard.main, *options)
     document = json.loads(out)
     assert (status, err, document["ok"]) == (0, "", True)
     (contacts,) = document["cases"]
-    assert (contacts["case"], contacts["ok"]) == ("contact-loss", True)
-    assert contacts["question"].endswith("which order does the splitting keep?")
-    assert 2 < contacts["order_opening_value"] < 3
     for curve in contacts["panel"]["curves"]:  # the fitted orders are the slopes of the lines
         slope = np.polyfit(np.log(curve["x_value"]), np.log(curve["y_value"]), 1)[0]
         assert slope == pytest.approx(contacts[f"order_{curve['label']}_value"], rel=1e-12)
-    assert "<!-- contact-loss -->" in picture.read_text()
-    for finding in contacts["findings"]:
-        assert finding["least_value"] <= finding["measured_value"] <= finding["most_value"]
 
 
 @pytest.mark.slow

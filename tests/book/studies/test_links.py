@@ -10,7 +10,6 @@ import sympy as sp
 from book.studies import links as exactly
 from book.studies import struck as blows
 from lwa import Lattice, Link, Power, Resonator, lattice_wave
-from tests.commands import ended
 from validation import exact_wave
 
 HERTZ = Power("3/2")
@@ -75,13 +74,6 @@ def test_the_width_of_the_theory_is_its_quadrature(epsilon):
 def test_all_cases_keep_their_bounds(study, findings):
     report = study()
     assert (report.ok, len(report.findings)) == (True, findings)
-
-
-@pytest.mark.parametrize("study", [exactly.links, blows.struck])
-def test_another_case_is_refused(capsys, study):
-    status, out, err = ended(capsys, study.main, "--case", "other")
-    assert (status, out, err.count("\n")) == (2, "", 1)
-    assert "case" in err
 
 
 def test_a_struck_chain_of_equal_beads():

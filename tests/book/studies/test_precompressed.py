@@ -38,13 +38,6 @@ def test_equal_beads(equal):
     assert -0.025 < strong < -0.005
 
 
-def test_the_theory_is_nesterenkos_relation(equal):
-    for row in equal["rows"]:
-        zeta = (1 + row["ratio_value"]) ** (2 / 3)
-        relation = 4 / 15 * (3 + 2 * zeta**2.5 - 5 * zeta) / (zeta - 1) ** 2
-        assert row["theory_value"] == pytest.approx(math.sqrt(relation), rel=1e-9)
-
-
 def test_a_bead_velocity_is_strain_times_speed(equal):
     """v = B V for weak waves; the theory's error falls with the ratio."""
     weak, even, _ = (abs(row["peak_off_value"]) for row in equal["rows"])
@@ -113,27 +106,3 @@ def test_another_law(capsys):
     assert row["speed_value"] - 1 == pytest.approx(small, rel=0.03)
     assert row["speed_value"] == pytest.approx(row["theory_value"], rel=1e-4)
     assert abs(row["fwhm_off_value"]) < 0.005
-
-
-def test_the_command(capsys):
-    options = ("--masses", "2", "--ratios", "3", "--format", "json")
-    status, out, err = ended(capsys, precompressed.main, *options)
-    assert (status, err) == (0, "")
-    (row,) = json.loads(out)["rows"]
-    assert row["masses"] == ["2"]
-    names = "ratio_value", "speed_value", "theory_value", "error_value", "fwhm_value", "decay_value"
-    assert all(isinstance(row[name], float) for name in names)
-
-
-@pytest.mark.parametrize(
-    ("options", "message"),
-    [
-        ({"masses": ("m",)}, "mass is m: a number is wanted"),
-        ({"ratios": (0,)}, "ratio is 0: it lies between"),
-        ({"ratios": ()}, "ratios is empty"),
-        ({"k": 1}, "k is 1: it lies between"),
-    ],
-)
-def test_bad_options_are_refused(options, message):
-    with pytest.raises(ValueError, match=message):
-        precompressed(**options)

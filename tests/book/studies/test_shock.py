@@ -8,7 +8,7 @@ import pytest
 import scipy
 
 from book.studies.shock import shock
-from lwa import Cell, InputError, Material, Power, Sphere, piston
+from lwa import Cell, Material, Power, Sphere, piston
 from lwa import shock as front
 from lwa.law import named
 from tests.commands import ended
@@ -144,16 +144,3 @@ def test_a_wall_at_one_metre_a_second():
     speed = 150 * float(cell.spacing) / np.diff(run.time[peaks])[0]
     assert theory.speed.value == pytest.approx(speed, rel=3e-3)
     assert float(theory.F) == pytest.approx(run.contact_force[1, peaks[1]], rel=0.01)
-
-
-def test_bad_jumps_and_durations_are_refused(capsys):
-    status, out, err = ended(capsys, shock.main, "--k", "3/2", "--jumps", "1")
-    assert (status, out, err.count("\n")) == (2, "", 1)
-    assert "there is no shock" in err
-    for options, message in (
-        ({"jumps": ("1/2",)}, "a strain above the one ahead"),
-        ({"duration": 5}, "duration is 5: at least 100 is wanted"),
-        ({"ahead": -1}, "contacts of a power law only push"),
-    ):
-        with pytest.raises(InputError, match=message):
-            shock(k="3/2", **options)

@@ -3,7 +3,6 @@
 import pytest
 
 from book.studies.transmission import transmission
-from validation.scenes.checks import SceneError
 
 
 @pytest.mark.parametrize("masses", [(1, "1/2"), pytest.param((1,), marks=pytest.mark.slow)])
@@ -16,8 +15,3 @@ def test_a_shaken_chain_has_blochs_gaps(masses):
     assert len(held) < len(rows)
     for row in held:
         assert row["attenuation_value"] == pytest.approx(row["attenuation_theory_value"], rel=0.01)
-
-
-def test_too_short_a_chain_is_refused():
-    with pytest.raises(SceneError, match=r"^cells is 5: an integer from 40 to 1000 is wanted$"):
-        transmission(cells=5)
