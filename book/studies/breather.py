@@ -51,7 +51,7 @@ from validation.report.command import EXPONENT, option, study
 from validation.report.result import Report
 from validation.report.table import Column, Finding, Table, percent
 from validation.scenes.chains import numeric_cell
-from validation.scenes.checks import SceneError, between, integer, positive
+from validation.scenes.checks import SceneError, between, integer
 from validation.waves import newton
 
 HARMONICS = 5  # H
@@ -64,10 +64,7 @@ DETUNINGS = "0.0005,0.001,0.002"
 # Widths 1/b in half a chain. Free ends change the amplitude by about 4e^{-2w} of bright, 4e^{-w} of
 # dark envelopes: 3e-6 and 1e-5. In a much longer chain a dark one is hardly held in its place.
 _WIDE = {"bright": 7.0, "dark": 13.0}
-_HALF, _DIP = (
-    2 * np.arccosh(2),
-    2 * np.arctanh(0.5),
-)  # full widths of sech and tanh at half, over 1/b
+_HALF, _DIP = 2 * np.arccosh(2), 2 * np.arctanh(0.5)  # full widths of sech, tanh at half, over 1/b
 _BOUND = 4.0  # error of the theory's amplitude over Δ, at most
 _FEWER = 0.75  # beads of the chain that gives the errors, over those of the chain that counts
 
@@ -134,16 +131,6 @@ class PressedChain:
     stiffnesses: Array
     k: float
     load: float
-
-    def __post_init__(self) -> None:
-        for name in ("masses", "stiffnesses"):
-            values = [positive(x, name) for x in getattr(self, name)]
-            object.__setattr__(self, name, np.array(values))
-        beads, contacts = len(self.masses), len(self.stiffnesses)
-        if beads - contacts not in (0, 1):
-            wanted = "one between two beads, and one more for a wall, are wanted"
-            raise SceneError(f"stiffnesses are {contacts} of {beads} beads: {wanted}")
-        positive(self.load, "load")
 
     @cached_property
     def rest(self) -> Array:
@@ -243,29 +230,28 @@ def orbit(
 ) -> Orbit:
     """Return the orbit with a given frequency, found by Newton's method.
 
-    frequency : ω, in radians per unit of time. harmonics : H, number of harmonics.
+    frequency : ω > 0, in radians per unit of time. harmonics : H, number of harmonics, at least 1.
     start : displacements at t = 0, (N,), for a start with one harmonic, or coefficients (N, H + 1).
 
     Raises `NoOrbit` if Newton's method does not converge, or converges to the state of rest.
     """
-    omega, H = positive(frequency, "frequency"), integer(harmonics, "harmonics", 1, 100)
     given = np.asarray(start, float)
-    a = np.zeros((len(chain.masses), H + 1))
+    a = np.zeros((len(chain.masses), harmonics + 1))
     if given.ndim == 1:
         a[:, 1] = given
     else:
-        a[:, : given.shape[1]] = given[:, : H + 1]
+        a[:, : given.shape[1]] = given[:, : harmonics + 1]
     least, before = SMALL * np.abs(a).max(), math.inf
     for _ in range(MOST_STEPS):
-        step, fault = _newton_step(chain, omega, a)
+        step, fault = _newton_step(chain, frequency, a)
         # Rounding stops the fall. The step does not measure convergence, as a wide orbit is
         # easily shifted along the chain.
         if fault < CLOSE * chain.load and fault > before / 4:
-            return Orbit(chain, omega, a)
+            return Orbit(chain, frequency, a)
         a, before = a - step, fault
         if not least < np.abs(a).max() < LARGE * chain.rest.max():
             break
-    raise NoOrbit(f"frequency is {omega:.8g}: Newton's method finds no orbit from this start")
+    raise NoOrbit(f"frequency is {frequency:.8g}: Newton's method finds no orbit from this start")
 
 
 def continued(begin: Orbit, frequency: float) -> Orbit:
@@ -279,8 +265,8 @@ def continued(begin: Orbit, frequency: float) -> Orbit:
             start = start + share * (start - older.coefficients)
         return orbit(begin.chain, omega, start, start.shape[1] - 1)
 
-    end = positive(frequency, "frequency")
-    return newton.continued(begin, begin.frequency, end, abs(end - begin.frequency) / 4, at)
+    first_step = abs(frequency - begin.frequency) / 4
+    return newton.continued(begin, begin.frequency, frequency, first_step, at)
 
 
 def _cosines(a: Array, phase: Array) -> Array:

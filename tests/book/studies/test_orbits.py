@@ -23,7 +23,7 @@ def dimer(beads, wall=False):
 
 def test_two_beads_swing_as_quadrature_says():
     """One degree of freedom, y = u_1 - u_2: μ ÿ = -(F - F0), its period by its energy."""
-    chain = PressedChain([1.0, 0.5], [2.0], HERTZ, 1.0)
+    chain = PressedChain(np.array([1.0, 0.5]), np.array([2.0]), HERTZ, 1.0)
     rest, mass, top = chain.rest[0], 1 / 3, 0.3
 
     def stored(y):
