@@ -49,13 +49,6 @@ def test_any_wavenumber_and_cell_in_numbers(capsys):
     assert edge["breather_frequency_value"] == pytest.approx(0.999 * edge["frequency_value"])
 
 
-def test_a_load_that_is_a_decimal_gives_decimals(capsys):
-    options = ("--masses", "1,1/2", "--law", "hertz2:1,1", "--precompression", "1")
-    status, out, _ = run(capsys, "envelope", *options, "--detuning", "1/1000")
-    assert status == 0
-    assert "largest displacement by bead = 0, 0.0917765382018969\n" in out
-
-
 SPHERES = """
 precompression = 20
 [materials]

@@ -251,12 +251,13 @@ def test_a_law_without_closed_forms():
     assert float(piston(EQUAL, law, found.plateau.n(25), 1).behind) == pytest.approx(2, rel=1e-12)
 
 
-def test_the_opposite_jump_is_a_rarefaction():
-    found = shock(EQUAL, HERTZ, 1, 2)
+@pytest.mark.parametrize("cell", [EQUAL, Cell(["m"])], ids=str)
+def test_the_opposite_jump_is_a_rarefaction(cell):
+    found = shock(cell, HERTZ, 1, 2)
     assert found.kind == "rarefaction"
     assert found.trailing_speed == found.sound(found.behind)
     assert found.leading_speed() == found.leading_speed("dispersion") == found.sound(found.ahead)
-    assert found.plateau < 0
+    assert found.plateau.subs({"m": 1, "D": 1}) < 0
 
 
 # --- units ---
@@ -309,9 +310,3 @@ def test_si_units():
 def test_limits_are_refused(make, message):
     with pytest.raises(InputError, match=message):
         make()
-
-
-def test_a_rarefaction_is_one_where_masses_and_spacing_are_symbols() -> None:
-    found = shock(Cell(["m"]), HERTZ, 1, 2)
-    assert found.kind == "rarefaction"
-    assert found.leading_speed() == found.sound(2)

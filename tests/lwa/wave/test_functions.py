@@ -2,8 +2,6 @@
 
 import keyword
 import re
-import subprocess
-import sys
 from functools import cache, partial
 from itertools import product
 
@@ -11,8 +9,6 @@ import mpmath
 import numpy as np
 import pytest
 import sympy as sp
-from hypothesis import given
-from hypothesis import strategies as st
 
 from lwa import Cell, Dimer, InputError, NoSolitaryWave, canonical_wave, homogenize
 from lwa.code import LANGUAGES, Function
@@ -299,15 +295,6 @@ def test_renamed_symbols_are_listed_in_comments():
     assert "symbol" not in wave.code("c")
 
 
-def test_python_is_clean(tmp_path):
-    for name in WAVES:
-        (tmp_path / f"{name}.py").write_text(code_of(name, "numpy") + "\n")
-    style = ["--isolated", "--preview", "--select=E,W,F", "--ignore=E226", "--line-length=79"]
-    command = [sys.executable, "-m", "ruff", "check", "--no-cache", *style, tmp_path]
-    found = subprocess.run(command, text=True, capture_output=True, check=False, timeout=120)
-    assert found.returncode == 0, found.stdout
-
-
 @pytest.mark.parametrize("language", LANGUAGES)
 def test_lines_are_short_and_brackets_close(language):
     for name in WAVES:
@@ -316,32 +303,14 @@ def test_lines_are_short_and_brackets_close(language):
         assert source.count("(") == source.count(")")
 
 
-@given(st.lists(st.sampled_from(["a*b", "m1**2", "(", ")", "x/y", "f(x, y)", "c"]), max_size=60))
-def test_wrapping_changes_nothing_but_spaces(parts):
-    line = "    return (" + " + ".join(parts) + ")"
-    lines = LANGUAGES["fortran"].wrapped(line)
-    assert all(row.endswith(" &") for row in lines[:-1])
-    assert all(len(row) < 80 for row in lines)
-    joined = "".join(row.removesuffix(" &").strip() for row in lines)
-    assert joined.replace(" ", "") == line.replace(" ", "")
-
-
-def test_numbers():
-    wave = canonical_wave(Dimer(10**30, "1/3"))
-    found = {}
-    for language, text in (("c", "1.0/3.0"), ("fortran", "1d0/3d0"), ("numpy", "1/3")):
-        source = LANGUAGES[language]([Function("f", "f", (), sp.Rational(1, 3))]).module([])
-        assert text in source
+def test_numbers_of_any_size():
+    """Masses beyond 2^63 are exact, numbers beyond a double refused."""
+    wave, found = canonical_wave(Dimer(10**30, "1/3")), {}
     exec(wave.code("numpy"), found)
     assert found["beta"](1.5, 1) == pytest.approx(float(wave.at(k=1.5, D=1).beta), rel=1e-14)
     for number in (10**400, sp.Rational(1, 10**400)):
         with pytest.raises(InputError, match="beyond"):
             canonical_wave(Dimer("m1", "m2", spacing=number)).code("c")
-    thirds = {"c": "2.0/3.0", "fortran": "1.5d0", "numpy": "1.5"}
-    values = {"c": sp.Rational(2, 3)}
-    for language, text in thirds.items():
-        value = values.get(language, sp.Rational(3, 2))
-        assert f" {text}" in LANGUAGES[language]([Function("f", "f", (), value)]).module([])
 
 
 def test_refusals():
