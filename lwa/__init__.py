@@ -40,6 +40,7 @@ if TYPE_CHECKING:
     from lwa.law import Law as Law
     from lwa.law import Power as Power
     from lwa.law import general as general
+    from lwa.linear.bands import Bands as Bands
     from lwa.linear.dispersion import Dispersion as Dispersion
     from lwa.linear.dispersion import LoadedChain as LoadedChain
     from lwa.links.lattice import Lattice as Lattice

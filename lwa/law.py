@@ -91,8 +91,9 @@ class Power(ContactLaw):
 class Law(ContactLaw):
     """A law F(δ) given by a SymPy expression and its symbol ``delta`` of the compression.
 
-    Laws of one F are equal, whether `named` made them or not. Raises `lwa.InputError` if F′ = 0,
-    and for text, which is not evaluated.
+    name, parameters : those of `named`; laws of one F are equal, whatever their names.
+
+    Raises `lwa.InputError` if F′ = 0, and for text, which is not evaluated.
 
     >>> x = sp.Symbol("x", positive=True)
     >>> Law(x + x**2, x).phi(2)
@@ -101,8 +102,8 @@ class Law(ContactLaw):
 
     F: sp.Expr
     delta: sp.Symbol = DELTA
-    name: str = field(init=False, default="", compare=False)
-    parameters: tuple[sp.Expr, ...] = field(init=False, default=(), compare=False)
+    name: str = field(default="", compare=False)
+    parameters: tuple[sp.Expr, ...] = field(default=(), compare=False)
 
     def __repr__(self) -> str:
         if self.tabulated:
@@ -152,7 +153,7 @@ class Law(ContactLaw):
             sizes = f"{len(rows[0])} compressions and {len(rows[1])} forces"
             raise InputError(f"{sizes}: equally many are wanted")
         points = ", ".join(f"{d!r} {F!r}" for d, F in zip(*rows, strict=True))
-        return _remembered(cls(Tabulated.of(DELTA, points)), "table")
+        return cls(Tabulated.of(DELTA, points), name="table")
 
     def replaced(self, new: Mapping[sp.Symbol, sp.Expr]) -> ContactLaw:
         if self.tabulated:
@@ -170,7 +171,7 @@ def general() -> Law:
     >>> general().F
     F(delta)
     """
-    return _remembered(Law(sp.Function("F")(DELTA)), "general")
+    return Law(sp.Function("F")(DELTA), name="general")
 
 
 def refuse_two_laws(k: Any, law: ContactLaw) -> None:
@@ -224,14 +225,9 @@ def named(name: str, *parameters: Any) -> ContactLaw:
         for value, place in zip(given, places, strict=True)
     ]
     force = build(*values)
-    return force if isinstance(force, ContactLaw) else _remembered(Law(force), name, *values)
-
-
-def _remembered(law: Law, name: str, *parameters: sp.Expr) -> Law:
-    """Give a new law its name and parameters."""
-    object.__setattr__(law, "name", name)
-    object.__setattr__(law, "parameters", parameters)
-    return law
+    if isinstance(force, ContactLaw):
+        return force
+    return Law(force, name=name, parameters=tuple(values))
 
 
 def read_law(value: Any, name: str) -> ContactLaw:

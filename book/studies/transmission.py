@@ -64,7 +64,7 @@ def transmission(
     """
     cell, frequencies = numeric_cell(masses), integer(frequencies, "frequencies", 4, 1000)
     cells = integer(cells, "cells", 40, 1000)
-    edges = LoadedChain(cell, Power(str(k)), 1).band_edges()
+    edges = LoadedChain(cell, Power(str(k)), 1).bands.edges()
     omegas = np.linspace(_LOWEST, 1.2, frequencies) * edges.max()
     clear = np.abs(omegas[:, None] / edges.ravel()[edges.ravel() > 0] - 1).min(axis=1) > _MARGIN
     scenes = [shaken(cell, k, cells, omega) for omega in omegas[clear]]

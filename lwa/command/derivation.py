@@ -12,7 +12,7 @@ from lwa.base.exact import InputError
 from lwa.command.chain import ChainInput, take_chain
 from lwa.command.options import STYLES, theory_options
 from lwa.command.rows import Answer, Row, Values
-from lwa.equation.terms import Jet, Terms, by_order
+from lwa.equation.terms import Terms, by_order
 from lwa.theory import Theory, homogenize
 from lwa.wave.functions import Functions
 
@@ -125,15 +125,10 @@ def _ansatz(theory: Theory) -> list[Row | str]:
         ]
     for i, series in theory.slaved.items():
         w = i == 1  # the second particle's field, whose linear part is the ansatz
-        nonlinear = {n: W.without(_is_linear) if w else W for n, W in series.items()}
-        if lines := by_order(nonlinear, "D^{}"):
+        if lines := by_order(series, "D^{}", linear=not w):
             name = "nonlinear terms of w" if w else f"field of particle {i + 1}, less u"
             rows += [f"{name}:", *lines, ""]
     return rows
-
-
-def _is_linear(jet: Jet) -> bool:
-    return not jet.t and sum(e for _, e in jet.x) <= 1
 
 
 def _consistency_text(theory: Theory) -> list[str]:

@@ -89,13 +89,13 @@ def _bands(loaded: LoadedChain) -> Values:
     D = 1.0 if loaded.cell.spacing.is_Symbol else float(loaded.cell.spacing)
     places = [float(sp.pi) * i / (PLACES * loaded.cell.size * D) for i in range(PLACES + 1)]
     return {
-        "band_edges_value": loaded.band_edges().tolist(),
-        "gaps_value": loaded.gaps().tolist(),
+        "band_edges_value": loaded.bands.edges().tolist(),
+        "gaps_value": loaded.bands.gaps().tolist(),
         "branches_value": [
             {
                 "wavenumber": q,
-                "frequencies": loaded.branches(q).tolist(),
-                "group_velocities": loaded.group_velocity(q).tolist(),
+                "frequencies": loaded.bands.branches(q).tolist(),
+                "group_velocities": loaded.bands.group_velocity(q).tolist(),
             }
             for q in places
         ],

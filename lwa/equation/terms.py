@@ -143,13 +143,6 @@ class Terms(Shown, Mapping[Jet, sp.Expr]):
         """LaTeX of the sum of the terms, in one row."""
         return [latex.total((self[jet], self.latex(jet)) for jet in self)]
 
-    def without(self, left_out: Callable[[Jet], bool]) -> Terms:
-        """The terms except those of the jets for which ``left_out`` is true."""
-        raw = {jet: c for jet, c in self._raw.items() if not left_out(jet)}
-        rest = Terms(self._model, raw, self.power, self._divisor)
-        rest._converted, rest._written = self._converted, self._written
-        return rest
-
     @property
     def base(self) -> int:
         """Order of the derivative in the jets' denominators: 1 (u_x) or 0 (u)."""
@@ -194,11 +187,15 @@ def terms(
     return Terms(closure.model, ordered, power, divisor)
 
 
-def by_order(coefficients: Mapping[int, Terms], form: str) -> list[str]:
-    """Lines of text with the terms of each order n, under the heading ``form.format(n)``."""
+def by_order(coefficients: Mapping[int, Terms], form: str, linear: bool = True) -> list[str]:
+    """Lines of text with the terms of each order n, under the heading ``form.format(n)``.
+
+    linear : False leaves out the terms that are linear in one jet.
+    """
     lines = []
     for n, found in coefficients.items():
-        rows = [f"    {found.text(jet)}: {found.written(jet)}" for jet in found]
+        jets = [jet for jet in found if linear or jet.t or sum(e for _, e in jet.x) > 1]
+        rows = [f"    {found.text(jet)}: {found.written(jet)}" for jet in jets]
         lines += [f"  {form.format(n)}:", *rows] if rows else []
     return lines
 

@@ -29,7 +29,11 @@ class Bands(NamedTuple):
     length: float = 1.0
 
     def branches(self, q: ArrayLike) -> Array:
-        """Frequencies at wavenumbers of any shape, ascending along a new last axis of length P."""
+        """Frequencies at wavenumbers of any shape, ascending along a new last axis of length P.
+
+        Their errors are 1e-15 of the largest. Raises `lwa.InputError` for wavenumbers that are not
+        finite.
+        """
         B, _ = self._strains(q)
         return np.linalg.svd(B, compute_uv=False)[..., ::-1].astype(float) * self.rate
 

@@ -12,7 +12,6 @@ relation and series, `lwa.linear.bands` computes frequencies and group velocitie
 
 from __future__ import annotations
 
-from abc import abstractmethod
 from dataclasses import dataclass
 from functools import cached_property
 from math import comb
@@ -31,9 +30,6 @@ from lwa.law import Power
 from lwa.linear.bloch import BRANCHES, Bloch
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from lwa.base.arrays import Array
     from lwa.linear.bands import Bands
 
 _KAPPA = sp.Symbol("kappa")
@@ -42,37 +38,8 @@ MOST_TERMS = 200_000
 """Terms of the longest series (estimate of `Dispersion._length`); it takes about half a minute."""
 
 
-class _Banded(Value):
-    """Base of chains with bands in floats; masses, stiffnesses and the exponent must be numbers."""
-
-    @property
-    @abstractmethod
-    def _bands(self) -> Bands:
-        """The bands in the units of the chain."""
-
-    def branches(self, wavenumber: ArrayLike) -> Array:
-        """Frequencies at wavenumbers of any shape, ascending along a new last axis of length P.
-
-        Their errors are 1e-15 of the largest. Raises `lwa.InputError` for wavenumbers that are not
-        finite, and for symbols.
-        """
-        return self._bands.branches(wavenumber)
-
-    def group_velocity(self, wavenumber: ArrayLike) -> Array:
-        """Slopes of the frequency by branch; where branches touch, towards larger wavenumbers."""
-        return self._bands.group_velocity(wavenumber)
-
-    def band_edges(self) -> Array:
-        """Band edges (min, max) of each branch, shape (P, 2)."""
-        return self._bands.edges()
-
-    def gaps(self) -> Array:
-        """Edges (from, to) of the gaps between bands, shape (P - 1, 2); equal for closed gaps."""
-        return self._bands.gaps()
-
-
 @dataclass(frozen=True)
-class Dispersion(_Banded):
+class Dispersion(Value):
     """The dispersion relation Ω(κ) of the linear chain with a cell's masses and strain shares.
 
     Ω is the frequency in τ times D and κ the wavenumber times D. In time t the frequency is
@@ -181,7 +148,8 @@ class Dispersion(_Banded):
             raise InputError(f"{what} needs a cell of 2 masses, not {self.cell.size}")
 
     @cached_property
-    def _bands(self) -> Bands:
+    def bands(self) -> Bands:
+        """The bands in floats, Ω by κ; raises `lwa.InputError` for symbols."""
         import numpy as np  # start-up: `import lwa` does not load it
 
         from lwa.linear.bands import Bands
@@ -195,7 +163,7 @@ class Dispersion(_Banded):
 
 
 @dataclass(frozen=True)
-class LoadedChain(_Banded):
+class LoadedChain(Value):
     """The linear chain about a static load, the same force F0 in all contacts.
 
     Frequencies and speeds are in the units of the cell, s⁻¹ and m/s in SI. About the load contact i
@@ -246,8 +214,9 @@ class LoadedChain(_Banded):
         return springs.time_scale(1) / springs.spacing
 
     @cached_property
-    def _bands(self) -> Bands:
+    def bands(self) -> Bands:
+        """The bands in floats, in the units of the cell; raises `lwa.InputError` for symbols."""
         D = self.cell.spacing
         length = sp.S.One if D.is_Symbol else D
         demand_numbers(self._rate.free_symbols | length.free_symbols, "bands want numbers")
-        return self.springs._bands._replace(rate=float(self._rate), length=float(length))
+        return self.springs.bands._replace(rate=float(self._rate), length=float(length))

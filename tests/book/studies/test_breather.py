@@ -62,7 +62,7 @@ def test_aluminium_and_steel_at_20_newtons():
     steel = Sphere("28.84e-3", "9.525e-3", Material("193e9", "0.3"))
     aluminium = Sphere("9.75e-3", "9.525e-3", Material("73.5e9", "0.33"))
     cell = Cell.of_spheres([steel, aluminium])
-    edges = np.array(LoadedChain(cell, Power("3/2"), 20).band_edges(), float) / (2e3 * math.pi)
+    edges = np.array(LoadedChain(cell, Power("3/2"), 20).bands.edges(), float) / (2e3 * math.pi)
     assert edges.ravel() == pytest.approx([0, 4.711, 8.101, 9.371], abs=6e-4)
     theory = envelope(cell, Power("3/2"), precompression=20).breather(detuning="1/200")
     row = Standing(cell, 1.5, theory, 40, load=20.0).row()

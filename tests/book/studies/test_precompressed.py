@@ -73,7 +73,7 @@ def test_why_dimers_are_worse(radiating):
     speed = found["speed"] * wave.sound
 
     def resonance(q):
-        return chain.branches(q)[-1] - speed * q
+        return chain.bands.branches(q)[-1] - speed * q
 
     q = scipy.optimize.brentq(resonance, 0.1, np.pi)
     light = run.bead_velocity[1] - run.bead_velocity[0]  # a contact's rate: no long waves
@@ -83,7 +83,7 @@ def test_why_dimers_are_worse(radiating):
     step = run.time[1] - run.time[0]
     frequency = 2 * np.pi * np.argmax(spectrum) / (2**17 * step)
     assert frequency == pytest.approx(speed * q, rel=1e-3)
-    assert frequency > 1.003 * chain.band_edges()[1, 0]  # not where the branch is flat
+    assert frequency > 1.003 * chain.bands.edges()[1, 0]  # not where the branch is flat
 
 
 def test_another_exponent():

@@ -356,7 +356,7 @@ def test_frequencies_and_their_derivatives_are_those_of_the_bands(masses, stiffn
     """ω and c_g of `LoadedChain`, of κ per cell; ω″ by their differences, to the step squared."""
     P = len(masses)
     cell, branch = Cell(masses, stiffnesses[:P], 1), n % P
-    bands = LoadedChain(cell, HERTZ, 2)
+    bands = LoadedChain(cell, HERTZ, 2).bands
     omega = bands.branches(kappa / P)
     assume(np.min(np.abs(np.delete(omega, branch) - omega[branch])) > 0.1)
     options = {"precompression": 2, "wavenumber": kappa, "branch": branch}

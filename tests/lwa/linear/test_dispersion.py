@@ -74,7 +74,7 @@ def test_uniform_chain():
     assert chain.acoustic(20) == cosine
     number = Dispersion(Cell([3]))
     kappa = np.linspace(-4, 4, 101)
-    assert np.allclose(number.branches(kappa)[:, 0], 2 * abs(np.sin(kappa / 2)), 0, ROUNDING)
+    assert np.allclose(number.bands.branches(kappa)[:, 0], 2 * abs(np.sin(kappa / 2)), 0, ROUNDING)
 
 
 # --- series -------------------------------------------------------------------------------------
@@ -195,7 +195,7 @@ def test_long_waves_keep_their_digits():
     chain = Dispersion(Cell([1, 3, 2], stiffnesses=[1, 2, 3]))
     kappa = np.array([1e-8, 1e-6, 1e-4])
     series = kappa * (1 - float(chain.I) * kappa**2 / 2)
-    assert np.all(abs(chain.branches(kappa)[:, 0] - series) < 1e-15)
+    assert np.all(abs(chain.bands.branches(kappa)[:, 0] - series) < 1e-15)
 
 
 @given(cells(sizes=(2, 3, 4, 5)), st.floats(0, 6))
@@ -207,11 +207,11 @@ def test_one_chain_many_cells(cell, kappa):
         same = Dispersion(other)
         assert same.trace == chain.trace
         assert same.acoustic(8) == chain.acoustic(8)
-        assert np.allclose(same.branches(kappa), chain.branches(kappa), 0, 2e-13)
+        assert np.allclose(same.bands.branches(kappa), chain.bands.branches(kappa), 0, 2e-13)
     double = Dispersion(Cell(cell.masses * 2, stiffnesses=cell.stiffnesses * 2))
     assert double.acoustic(8) == chain.acoustic(8)
-    folded = chain.branches([kappa, kappa + np.pi / cell.size]).ravel()
-    assert np.allclose(double.branches(kappa), np.sort(folded), 0, 2e-13)
+    folded = chain.bands.branches([kappa, kappa + np.pi / cell.size]).ravel()
+    assert np.allclose(double.bands.branches(kappa), np.sort(folded), 0, 2e-13)
 
 
 def test_equal_masses_unfold():
@@ -220,9 +220,9 @@ def test_equal_masses_unfold():
     assert chain.optical(12) == cosine | {0: 4}  # 2 + 2 cos κ, the chain's branch seen from π
     kappa = np.linspace(0, np.pi / 2, 30)
     expected = np.stack([2 * np.sin(kappa / 2), 2 * np.cos(kappa / 2)], axis=-1)
-    assert np.allclose(chain.branches(kappa), expected, 0, ROUNDING)
+    assert np.allclose(chain.bands.branches(kappa), expected, 0, ROUNDING)
     for P in (2, 3, 4, 8):
-        assert np.allclose(np.diff(Dispersion(Cell([1] * P)).gaps()), 0, 0, ROUNDING)
+        assert np.allclose(np.diff(Dispersion(Cell([1] * P)).bands.gaps()), 0, 0, ROUNDING)
 
 
 def high_precision(cell, kappa, branch):
@@ -258,9 +258,9 @@ def test_group_velocity_is_the_derivative_to_all_digits(cell):
             for branch in range(cell.size):
                 slope = mpmath.diff(lambda q, j=branch: high_precision(cell, q, j), kappa)
                 omega = high_precision(cell, kappa, branch)
-                assert abs(chain.branches(kappa)[branch] - omega) < ROUNDING
+                assert abs(chain.bands.branches(kappa)[branch] - omega) < ROUNDING
                 # vectors carry the rounding over the distance to the next branch, here above 0.1
-                assert abs(chain.group_velocity(kappa)[branch] - slope) < 10 * ROUNDING
+                assert abs(chain.bands.group_velocity(kappa)[branch] - slope) < 10 * ROUNDING
 
 
 @pytest.mark.parametrize("P", [1, 2, 3, 4, 8, 30])
@@ -268,37 +268,37 @@ def test_group_velocity_at_kinks_is_the_slope_to_the_right(P):
     """The uniform chain folded into the cell: branches touch at κ = 0 and π/P."""
     chain = Dispersion(Cell([1] * P))
     for kappa in (0.0, np.pi / P):
-        omega = chain.branches(kappa)
+        omega = chain.bands.branches(kappa)
         # Ω = 2|sin(q/2)| has the slopes ± cos(q/2): of two that touch the lower one falls
         slope = np.sqrt(abs(1 - (omega / 2) ** 2))
         sign = np.ones(P)
         sign[0 if kappa else 1 :: 2] = -1  # at κ = 0 the lowest one starts upwards
         # at the top the slope is zero and 1 - Ω²/4 a rounding error, of which √ is taken
-        assert np.allclose(chain.group_velocity(kappa), sign * slope, 0, 1e-7)
+        assert np.allclose(chain.bands.group_velocity(kappa), sign * slope, 0, 1e-7)
 
 
 def test_a_narrow_gap_is_no_kink():
     chain = Dispersion(Cell([1, "1.0000001"]))
     kappa = [0.0, np.pi / 2]
     # at the edges of a gap of 7e-8 the vectors are good to 1e-16/7e-8
-    assert np.allclose(chain.group_velocity(kappa), [[1, 0], [0, 0]], 0, 1e-7)
+    assert np.allclose(chain.bands.group_velocity(kappa), [[1, 0], [0, 0]], 0, 1e-7)
 
 
 @given(cells(sizes=(1, 2, 3, 4, 5)))
 @settings(max_examples=10)
 def test_bands(cell):
     chain = Dispersion(cell)
-    edges, gaps = chain.band_edges(), chain.gaps()
+    edges, gaps = chain.bands.edges(), chain.bands.gaps()
     assert edges.shape == (cell.size, 2)
     assert gaps.shape == (cell.size - 1, 2)
-    inside = chain.branches(np.linspace(-7, 7, 301))
+    inside = chain.bands.branches(np.linspace(-7, 7, 301))
     assert np.all(inside >= edges[:, 0] - ROUNDING)
     assert np.all(inside <= edges[:, 1] + ROUNDING)
     assert np.all(np.diff(gaps) > -ROUNDING)
     # a zone is crossed in one direction, lowest branch upwards
     half = np.linspace(0, np.pi / cell.size, 50)
     direction = (-1.0) ** np.arange(cell.size)
-    assert np.all(np.diff(chain.branches(half), axis=0) * direction > -ROUNDING)
+    assert np.all(np.diff(chain.bands.branches(half), axis=0) * direction > -ROUNDING)
 
 
 # --- refusals -----------------------------------------------------------------------------------
@@ -311,18 +311,18 @@ def two(**names):
 @pytest.mark.parametrize(
     ("call", "words"),
     [
-        (lambda: two().branches(float("nan")), "wavenumber is nan"),
-        (lambda: two().group_velocity("0.1"), "wavenumber is '0.1'"),
-        (lambda: two().branches([[1], [2, 3]]), "wavenumber is"),
+        (lambda: two().bands.branches(float("nan")), "wavenumber is nan"),
+        (lambda: two().bands.group_velocity("0.1"), "wavenumber is '0.1'"),
+        (lambda: two().bands.branches([[1], [2, 3]]), "wavenumber is"),
         (lambda: two().acoustic(0), "order is 0"),
         (lambda: two().optical(2.0), r"order is 2\.0"),
         (lambda: two().acoustic(10000), "order is 10000: .* lower order"),
         (lambda: Dispersion(Cell(["a", "b"], ["d", "e"])).acoustic(10000), "lower order"),
         (lambda: Dispersion(Cell([1, 2, 3])).optical(4), "needs a cell of 2 masses, not 3"),
         (lambda: two().amplitude_ratio(4, "up"), "branch is 'up'"),
-        (lambda: Dispersion(Cell([1, "m2"])).branches(1), "'m2' has no value"),
-        (lambda: Dispersion(Cell([1, 2], [1, 2]), "k").band_edges(), "'k' has no value"),
-        (lambda: Dispersion(Cell(["1e200", "1e-200"])).branches(1), "the range of a float"),
+        (lambda: Dispersion(Cell([1, "m2"])).bands.branches(1), "'m2' has no value"),
+        (lambda: Dispersion(Cell([1, 2], [1, 2]), "k").bands.edges(), "'k' has no value"),
+        (lambda: Dispersion(Cell(["1e200", "1e-200"])).bands.branches(1), "the range of a float"),
         (lambda: Dispersion(Cell([1]), 0), "k is 0"),
     ],
 )
@@ -336,6 +336,8 @@ def test_a_wavenumber_of_many_turns_is_as_good_as_any(kappa):
     chain = Dispersion(Cell([1, 2, 3]))
     with mpmath.workdps(400):  # 1e308 has its own place in the zone
         turn = mpmath.mpf(kappa) % (2 * mpmath.pi)
-        for branch, omega in enumerate(chain.branches(kappa)):
+        for branch, omega in enumerate(chain.bands.branches(kappa)):
             assert abs(omega - high_precision(chain.cell, turn, branch)) < ROUNDING
-    assert np.allclose(chain.group_velocity(kappa), chain.group_velocity(float(turn)), 0, 1e-13)
+    assert np.allclose(
+        chain.bands.group_velocity(kappa), chain.bands.group_velocity(float(turn)), 0, 1e-13
+    )

@@ -14,11 +14,11 @@ def test_one_bead_a_cell():
     K = 1.5 * 5 ** (2 / 3) * 3 ** (1 / 3)
     q = np.array([0.5, 7.0, 20.0])
     omega = 2 * np.sqrt(K / 2) * np.sin(q / 20)
-    assert chain.branches(q)[:, 0] == pytest.approx(omega, rel=1e-14)
+    assert chain.bands.branches(q)[:, 0] == pytest.approx(omega, rel=1e-14)
     slope = np.sqrt(K / 2) * np.cos(q / 20) / 10
-    assert chain.group_velocity(q)[:, 0] == pytest.approx(slope, rel=1e-13)
+    assert chain.bands.group_velocity(q)[:, 0] == pytest.approx(slope, rel=1e-13)
     assert float(chain.sound_speed) == pytest.approx(0.1 * np.sqrt(K / 2), rel=1e-14)
-    assert chain.gaps().shape == (0, 2)
+    assert chain.bands.gaps().shape == (0, 2)
 
 
 def test_the_eigenvalues_of_a_ring_of_unlike_contacts():
@@ -39,9 +39,9 @@ def test_the_eigenvalues_of_a_ring_of_unlike_contacts():
     omega2 = np.linalg.eigvals(-np.array(rows) / inertia[:, None]).real
     expected = np.sort(np.sqrt(np.maximum(omega2, 0)))
     q = 2 * np.pi * np.arange(cells) / size
-    found = np.sort(chain.branches(q).ravel())
+    found = np.sort(chain.bands.branches(q).ravel())
     assert found == pytest.approx(expected, abs=1e-4)  # √ of the differences' 1e-9 at ω = 0
-    edges = chain.band_edges()
+    edges = chain.bands.edges()
     assert np.all(edges[:, 0] <= edges[:, 1])
 
 
@@ -57,13 +57,13 @@ def test_another_law():
     chain = LoadedChain(Cell([1], [3], 1), law, 6)
     # (e^{2δ} - 1)/2 = 2, and A F′ = 3 e^{2δ}
     assert float(chain.spring_constants[0]) == pytest.approx(15, rel=1e-14)
-    assert chain.band_edges()[0, 1] == pytest.approx(2 * np.sqrt(15), rel=1e-13)
+    assert chain.bands.edges()[0, 1] == pytest.approx(2 * np.sqrt(15), rel=1e-13)
 
 
 def test_bad_arguments_are_refused():
     for make, reason in (
         (lambda: LoadedChain(Cell([1]), Power("3/2"), 0), "positive"),
-        (lambda: LoadedChain(Cell(["m"]), Power("3/2"), 1).band_edges(), "has no value"),
+        (lambda: LoadedChain(Cell(["m"]), Power("3/2"), 1).bands.edges(), "has no value"),
         (lambda: LoadedChain(Cell([1, 1], [1, 2]), general(), 1), "shares"),
     ):
         with pytest.raises(InputError, match=reason):
