@@ -114,11 +114,9 @@ class BackgroundWave(Value):
 
     def stiffness(self, v: sp.Expr) -> sp.Expr:
         """The square Q(v) of the speed of the wave that rises by v."""
-        return sp.powsimp(self._stiffness(v))
-
-    def _stiffness(self, v: sp.Expr) -> sp.Expr:
         linear_part = self.force(self.p0, -1) + self.force(self.p0) * v
-        return 2 * (self.force(sp.expand(self.p0 + v), -1) - linear_part) / v**2
+        rise = self.force(sp.expand(self.p0 + v), -1) - linear_part
+        return sp.powsimp(2 * rise / v**2)
 
     def speed(self, B: Any = None) -> sp.Expr:
         """Speed V = dx/dτ of the wave whose strain rises from p0 to p0 + B (default: a symbol B).

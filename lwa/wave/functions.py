@@ -23,10 +23,9 @@ _XI = sp.Dummy("xi", real=True)
 _B, _V, _F = (sp.Dummy(name, positive=True) for name in ("B", "V_s", "F"))
 _ARGUMENTS = (_XI, _B, _V, _F)  # that are no symbols of the chain
 
-_LONGEST_SUM = 64  # terms of a sum in one statement; Fortran takes 256 lines
 _SHIFT, _INSIDE = (sp.Dummy(name, real=True) for name in ("k_2", "h"))
 
-_TITLE = (
+TITLE = (
     "The compact traveling wave v = u_x = B cos^m(beta xi), m = 2/(k - 1),",
     "xi = x - V_s tau, |xi| <= pi/(2 beta), written by lwa. There is one where",
     "k > 1, G + H + I > 0 and V_s^2 > 0, which is not checked here.",
@@ -63,11 +62,6 @@ class Functions(dict[str, Function]):
 def in_order(*parts: sp.Expr) -> tuple[sp.Symbol, ...]:
     """Symbols of the parts, in the order of the parts and by name within a part."""
     return tuple(dict.fromkeys(s for part in parts for s in sorted(part.free_symbols, key=str)))
-
-
-def wave_code(wave: CompactWave, language: str) -> str:
-    """The source text of `wave_functions`."""
-    return wave_functions(wave).source(language, _TITLE)
 
 
 def wave_functions(wave: CompactWave) -> Functions:
@@ -112,27 +106,19 @@ def wave_functions(wave: CompactWave) -> Functions:
 def _stable(ratio: sp.Expr, k: sp.Expr, local: dict[sp.Expr, sp.Symbol]) -> sp.Expr:
     """Rewrite the sums of a rational expression in powers of k - 2, in which less cancels.
 
-    New variables for powers A^{1/k} and for pieces of long sums are added to ``local``.
+    New variables for powers A^{1/k} are added to ``local``.
     """
-
-    def variable(value: sp.Expr, name: str) -> sp.Symbol:
-        symbol = sp.Dummy(f"{name}_{len(local)}", positive=name == "r" or None)
-        return local.setdefault(value, symbol)
+    if not k.is_Symbol:
+        return ratio
 
     def root(power: sp.Pow) -> sp.Expr:
         n, _ = (power.exp * k).as_coeff_Mul()
-        return variable(power.base ** (power.exp / n), "r") ** n
+        symbol = sp.Dummy(f"r_{len(local)}", positive=True)
+        return local.setdefault(power.base ** (power.exp / n), symbol) ** n
 
     def about_two(total: sp.Expr) -> sp.Expr:
         terms = sp.Poly(total.subs(k, _SHIFT + 2), _SHIFT).terms()
         return sp.Add(*(sp.factor(c) * _SHIFT**n for (n,), c in terms))
 
-    def in_pieces(total: sp.Expr) -> sp.Expr:
-        starts = range(0, len(total.args), _LONGEST_SUM)
-        pieces = (sp.Add(*total.args[i : i + _LONGEST_SUM]) for i in starts)
-        return sp.Add(*(variable(piece, "sum") for piece in pieces))
-
-    if k.is_Symbol:
-        ratio = ratio.replace(lambda e: e.is_Pow and e.exp.has(k), root)
-        ratio = ratio.replace(lambda e: e.is_Add and e.has(k) and not (e - k).is_number, about_two)
-    return ratio.replace(lambda e: e.is_Add and len(e.args) > _LONGEST_SUM, in_pieces)
+    ratio = ratio.replace(lambda e: e.is_Pow and e.exp.has(k), root)
+    return ratio.replace(lambda e: e.is_Add and e.has(k) and not (e - k).is_number, about_two)

@@ -56,9 +56,9 @@ class NumericBackground(Value):
         """Square V² = Q(B) of the speed; for power laws to k = 5 good to 8 ulps at any p0/B."""
         p0, B, unit = self.scaled(p0, B)
         square = _by_block(self._rule.squares, p0, B)
-        return (_rescaled(square, unit, self.law.exponent - 1) if self.law.homogeneous else square)[
-            ()
-        ]
+        if self.law.homogeneous:
+            square = _rescaled(square, unit, self.law.exponent - 1)
+        return square[()]
 
     def speed(self, p0: ArrayLike, B: ArrayLike) -> Array:
         """Speed V = dx/dτ."""
@@ -66,10 +66,9 @@ class NumericBackground(Value):
 
     def fwhm(self, p0: ArrayLike, B: ArrayLike, quantity: str = "strain") -> Array:
         """Full width at half maximum of the rise of "strain", "force" or "velocity"."""
-        force = known_quantity(quantity) == "force"
+        rate = (lambda p, F1: F1) if known_quantity(quantity) == "force" else None
         p0, B, _ = self.scaled(p0, B)
-        half_widths = partial(self._rule.half_widths, rate=_slope if force else None)
-        return 2 * _by_block(half_widths, p0, B)[()]
+        return 2 * _by_block(partial(self._rule.half_widths, rate=rate), p0, B)[()]
 
     def profile(self, xi: ArrayLike, p0: float, B: float) -> Array:
         """Strain v(ξ) of one wave at the places ξ, right to 1e-9 of the larger of v and B/1000."""
@@ -140,8 +139,3 @@ def _by_block(
     starts = range(0, max(len(base), 1), _BLOCK)
     parts = [function(base[i : i + _BLOCK], rise[i : i + _BLOCK]) for i in starts]
     return np.concatenate(parts, axis=-1).reshape((*parts[0].shape[:-1], *p0.shape))
-
-
-def _slope(p: Array, F1: Array) -> Array:
-    """The slope F′, derivative of the force by the strain."""
-    return F1

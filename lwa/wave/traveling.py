@@ -78,9 +78,9 @@ class TravelingWave(CompactWave):
         Arguments and accuracy are those of `lwa.wave.functions`. Raises `lwa.InputError` for
         another language, and for numbers beyond a double.
         """
-        from lwa.wave.functions import wave_code  # start-up
+        from lwa.wave.functions import TITLE, wave_functions  # start-up
 
-        return wave_code(self, language)
+        return wave_functions(self).source(language, TITLE)
 
 
 def canonical_wave(

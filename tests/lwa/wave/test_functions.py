@@ -1,7 +1,6 @@
 """Generated functions, run in their own languages, against 50 digits."""
 
 import keyword
-import re
 from functools import cache, partial
 from itertools import product
 
@@ -229,15 +228,6 @@ def test_numpy_broadcasts_and_takes_integers(functions_of):
     assert np.all((v == 0) == outside)
     large = found["beta"](k=2, m1=10**12, m2=np.array([10**12, 10**13]), D=3)  # 10^26: no int64
     assert large == pytest.approx(found["beta"](k=2, m1=1, m2=np.array([1, 10]), D=3), rel=1e-15)
-
-
-@pytest.mark.slow
-def test_statements_have_as_many_lines_as_fortran_takes():
-    """Standard Fortran has at most 255 continuation lines; six unlike contacts take more."""
-    cell = Cell([f"m{i}" for i in range(6)], [f"A{i}" for i in range(6)])
-    source = canonical_wave(cell, 3).code("fortran")
-    statements = re.findall(r"(?:.*&\n)*.*\n", source)
-    assert max(statement.count("\n") for statement in statements) <= 256
 
 
 def test_arguments_have_one_order_in_all_languages():
