@@ -181,12 +181,12 @@ def _kinks(motion: Motion, path: Path, contact: int) -> Array:
         return np.asarray(_compressions(motion, beads, path(beads, t)[0])[0])
 
     d = compression(time)
-    step = np.flatnonzero(d[1:] * d[:-1] < 0)
+    step = np.flatnonzero(np.sign(d[1:]) * np.sign(d[:-1]) < 0)  # d itself over- or underflows
     a, b, f, g = time[step], time[step + 1], d[step], d[step + 1]
     for _ in range(_REGULA_FALSI if len(step) else 0):  # the Illinois variant
         c = b - g * (b - a) / np.where(g == f, 1.0, g - f)
         h = compression(c)
-        beyond = h * g < 0
+        beyond = np.sign(h) * np.sign(g) < 0
         a, f = np.where(beyond, b, a), np.where(beyond, g, f / 2)
         b, g = c, h
     return np.asarray(b[(b > time[step]) & (b < time[step + 1])])

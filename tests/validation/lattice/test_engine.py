@@ -2,15 +2,10 @@
 
 import math
 from dataclasses import replace
-from itertools import pairwise
 
-import numba
 import numpy as np
 import pytest
-import scipy
 
-from validation.lattice.kernel.arrays import Chain
-from validation.lattice.kernel.kinks import kink_integrals
 from validation.lattice.schemes import SCHEMES
 from validation.lattice.simulate import COMPILED, simulate, simulate_many
 from validation.pulses.pulse import measure
@@ -93,20 +88,6 @@ def test_the_energy_of_a_long_run_of_the_splitting_is_bounded():
     assert late < 2 * early < 0.05
 
 
-def test_a_late_push_from_far_behind_is_part_of_the_record():
-    """A heavy striker's chain of three masses: contacts push back long after the pulse has passed.
-
-    The peaks at both contacts are those of SciPy's DOP853 at 1e-11."""
-    masses = [0.3 if i % 3 == 2 else 1.0 for i in range(150)]
-    masses[0] = 20.0
-    scene = Scene(
-        masses=masses, stiffnesses=(1.0,) * 149, k=1.5, duration=190, velocities=(1,),
-        contact_sensors=(116, 119), samples=9001,
-    )  # fmt: skip
-    peaks = simulate(scene).contact_force.max(axis=1)
-    assert peaks == pytest.approx([1.11428, 1.11143], abs=1e-5)
-
-
 @pytest.mark.parametrize("method", COMPILED)
 def test_the_peak_force_of_the_560_beads(method):
     """0.29635394421 at contact 480 and t = 499.87256149: by located kinks and by small steps of the
@@ -149,52 +130,6 @@ def test_beads_that_meet_after_a_long_flight(k):
         assert abs(back.energy_drift) < 30 * rtol
 
 
-@pytest.mark.parametrize("seed", range(3))
-def test_chains_that_fly_apart_and_meet(seed):
-    random = np.random.default_rng(seed)
-    n = 2 + seed % 4
-    scene = Scene(
-        masses=random.uniform(0.3, 3.0, n), stiffnesses=random.uniform(1.0, 10.0, n - 1),
-        k=(1.2, 1.5, 2.5)[seed % 3], velocities=random.uniform(-1.0, 1.0, n),
-        displacements=np.sort(random.uniform(0.0, 8.0, n)), duration=10.0,
-    )  # fmt: skip
-    exact = simulate(scene, method="DOP853", rtol=1e-13, atol=1e-13)
-    for rtol in 10.0 ** np.arange(-11, -4, 0.5):
-        run = simulate(scene, rtol=rtol)
-        # each meeting doubles an error or so
-        assert run.velocities == pytest.approx(exact.velocities, abs=100 * rtol), rtol
-
-
-@numba.njit
-def integrals(chain, points, p, z):
-    """The kernel's integrals from the root to z; only compiled functions call the kernel."""
-    return kink_integrals(chain, points, p, z)
-
-
-@pytest.mark.parametrize("k", [1.5])
-@pytest.mark.parametrize(("root", "q"), [(-0.6, 1.0), (0.3, 1.0), (0.3, -1.0), (1.7, -1.0)])
-def test_the_integrals_of_a_force_with_a_kink(k, root, q):
-    """∫ p_+^k and ∫ (1 - u) p_+^k over a step, against SciPy's quadrature."""
-    chain = Chain(*np.zeros((5, 1)), k, False, 0, 0, 0, False, 0.0, None)
-    coefficients = q * np.array([1.0, 0.2, -0.1, 0.05, 0.02])
-    u, w = scipy.special.roots_jacobi(8, 0.0, k)
-    points = np.stack(((1 + u) / 2, w / 2 ** (k + 1)))
-
-    def force(u):
-        return max((u - root) * np.polyval(coefficients[::-1], u), 0.0) ** k
-
-    p = (root, *coefficients.tolist())
-    (far, speed), (near, start) = (integrals(chain, points, p, z) for z in (1.0, 0.0))
-    ends = sorted((0.0, min(max(root, 0.0), 1.0), 1.0))
-    parts = [(a, b) for a, b in pairwise(ends) if b > a]
-    once, twice = (
-        sum(scipy.integrate.quad(f, a, b, epsabs=1e-12)[0] for a, b in parts)
-        for f in (force, lambda u: (1 - u) * force(u))
-    )
-    assert speed - start == pytest.approx(once, rel=1e-8)
-    assert far - near - start == pytest.approx(twice, rel=1e-8)
-
-
 def test_the_kinks_reduce_the_order():
     """Contacts that open leave h^{k+1} = h^{5/2} of order 6, in the mean over many steps."""
     scene = struck(100, duration=60.0, contact_sensors=(50,), samples=2401)
@@ -221,39 +156,23 @@ def test_the_work_of_a_drive_begins_with_the_first_force():
         assert abs(simulate(scene, rtol=rtol).energy_drift) < 0.1 * rtol  # 0.6 without
 
 
-def test_beads_at_rest_ahead_of_the_front_cost_nothing():
-    """The beads moved in a run, counted: as many in a chain of 10⁴ beads as in one of 300."""
-    short, long = (
-        simulate(struck(n, 1.0, duration=130, samples=2), rtol=1e-4).bead_evaluations
-        for n in (300, 10000)
-    )
-    assert short == long
-
-
 def test_many_scenes_run_as_single_ones_and_are_taken_lazily():
     scenes = [struck(40, 1.0, duration=d, contact_sensors=(20,)) for d in np.linspace(10, 40, 30)]
     taken = []
-
-    def generated():
-        for scene in scenes:
-            taken.append(scene)
-            yield scene
-
-    runs = simulate_many(generated(), rtol=1e-7, workers=2)
+    runs = simulate_many((taken.append(scene) or scene for scene in scenes), rtol=1e-7, workers=2)
     first = next(runs)
     assert len(taken) < 20
     for scene, run in zip(scenes, (first, *runs), strict=True):
         alone = simulate(scene, rtol=1e-7)
         assert run.scene is scene
         assert np.array_equal(run.contact_force, alone.contact_force)
-        assert np.array_equal(run.displacements, alone.displacements)
 
 
-def test_rounding_noise_in_a_start_is_no_front():
-    """Beads with a velocity of 1e-17 count as beads at rest ahead of the front."""
-    chain = struck(200, 1.0, contact_sensors=(100,), duration=150.0, samples=301)
-    noisy = replace(chain, velocities=(1.0, *((-1) ** i * 1e-17 for i in range(199))))
-    a, b = (simulate(scene, method="SRKN14") for scene in (chain, noisy))
-    assert a.contact_force.max() > 0.5
-    assert a.bead_evaluations == b.bead_evaluations
-    assert np.abs(a.contact_force - b.contact_force).max() < 1e-9
+@pytest.mark.parametrize("method", COMPILED)
+def test_beads_at_rest_ahead_of_the_front_cost_nothing(method):
+    """As many beads are moved in 10⁴ as in 300, and where beads at rest hold rounding noise."""
+    short, long = (struck(n, 1.0, duration=130, samples=2) for n in (300, 10000))
+    noisy = replace(short, velocities=(1.0, *((-1) ** i * 1e-17 for i in range(299))))
+    runs = [simulate(scene, method=method, rtol=1e-4) for scene in (short, long, noisy)]
+    assert len({run.bead_evaluations for run in runs}) == 1
+    assert np.abs(runs[2].velocities - runs[0].velocities).max() < 1e-9
