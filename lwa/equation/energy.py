@@ -1,4 +1,4 @@
-"""Conserved quantities of the wave equation: momentum, energy, and the potential behind them.
+"""Conserved quantities of the wave equation: momentum and energy.
 
 Letters: D is the spacing, P the number of particles of a cell, m̂_i a mass fraction, C_i the strain
 share of a contact; p = u_x is the strain, r_n = ∂_x^n p / p (`lwa.algebra.jets`); E_n, a polynomial
@@ -6,13 +6,6 @@ in the r_n, is the term of the wave equation u_ττ = u_x^k Σ_{n≥1} D^{n-1} E
 
 **Momentum.** The momentum ∫ u_τ dx is conserved if every order has a flux, a polynomial F_n with
 u_x^k E_n = ∂_x (u_x^k F_n).
-
-**Potential.** The equation is variational, u_ττ = -δV/δu, if every order is minus the variational
-derivative of a density V_n. An order of degree k in u with the flux F_n has one candidate for V_n
-up to derivatives, u_x^{k+1} F_n / (k+1) (Euler's theorem on homogeneous functions). The test is
-whether this candidate gives E_n back. Then u_τ²/2 + V is the density of a conserved energy. The
-variational derivative of V = p^{k+1} f follows from ∂V/∂u_x = p^k ((k+1) f - Σ r_n ∂f/∂r_n) and
-∂V/∂(∂_x^{n+1} u) = p^k ∂f/∂r_n.
 
 **Energy of the chain.** Let w_i be the field of particle i, C_i p (1 + X_i) the strain of contact
 i, F the force in the units of the wave equation (p^k/k for a power) and W its energy, W′ = F. The
@@ -48,40 +41,11 @@ from lwa.base.exact import InputError
 from lwa.closure.consistency import Closure
 
 
-def flux(closure: Closure, n: int) -> fmpq_mpoly | None:
-    """The flux F_n, u_x^k E_n = ∂_x (u_x^k F_n), n ≥ 2; None if order n is no derivative."""
+def conservative(closure: Closure) -> bool:
+    """True if every order n ≥ 2 has a flux F_n, u_x^k E_n = ∂_x (u_x^k F_n)."""
     algebra = closure.algebra
     k = closure.model.ring.exponent(algebra.context)
-    return algebra.antiderivative(closure.acceleration[n], k)
-
-
-def variational(closure: Closure, n: int, density: fmpq_mpoly | None) -> bool:
-    """True if order n is minus a variational derivative; ``density`` is its flux F_n.
-
-    False for an order without a flux, and for an order with jets of the velocity.
-    """
-    algebra = closure.algebra
-    k = closure.model.ring.exponent(algebra.context)
-    E = closure.acceleration[n]
-    if density is None or algebra.velocity_slopes(E):
-        return False
-    return bool(_variational_derivative(algebra, k, density, n - 1) == -(k + 1) * E)
-
-
-def _variational_derivative(
-    algebra: JetAlgebra, k: fmpq_mpoly, density: fmpq_mpoly, n: int
-) -> fmpq_mpoly:
-    """The derivative p^{-k} Σ_j (-∂_x)^j ∂V/∂(∂_x^j u) of V = p^{k+1} f, f of weight n."""
-    slopes = [algebra.slope(density, j) for j in range(1, n + 1)]
-    first = (k + 1) * density
-    for j, slope in enumerate(slopes, start=1):
-        first = first - algebra.r[j] * slope
-    total = algebra.zero
-    for j, part in enumerate([first, *slopes], start=1):
-        for _ in range(j):
-            part = -algebra.dx(part, k)
-        total = total + part
-    return total
+    return all(algebra.antiderivative(E, k) is not None for E in closure.acceleration[2:])
 
 
 def energy(closure: Closure) -> tuple[JetAlgebra, list[fmpq_mpoly]]:

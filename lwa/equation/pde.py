@@ -20,12 +20,11 @@ from functools import cached_property
 from typing import Any, ClassVar
 
 import sympy as sp
-from flint import fmpq_mpoly
 
 from lwa.base import latex
 from lwa.base.exact import InputError, integer, power, read_exact, shorten
 from lwa.closure.consistency import OfClosure
-from lwa.equation.energy import energy, flux, variational
+from lwa.equation.energy import conservative, energy
 from lwa.equation.terms import ENERGY, Jet, Terms, base_order, by_order, terms
 from lwa.wave.traveling import TravelingWave
 
@@ -149,37 +148,12 @@ class PDE(OfClosure):
         """The n whose order D^{k+n} (optical: D^n) vanishes identically."""
         return tuple(n for n, of_order in self.coefficients.items() if not of_order)
 
-    @property
-    def _at_least_to_third_order(self) -> PDE:
-        """The equation to D^{k+3}, the first order that may lack a flux or a potential."""
-        return self if self.closure.order >= 4 else PDE(self.closure.anew(order=4))
-
-    @cached_property
-    def _fluxes(self) -> dict[int, fmpq_mpoly | None]:
-        """Mapping from n ≥ 2 to the flux F_n, u_x^k E_n = ∂_x (u_x^k F_n), or to None."""
-        return {n: flux(self.closure, n) for n in self.coefficients} if self.acoustic else {}
-
     @cached_property
     def conservative(self) -> bool:
         """True if all orders, D^{k+3} at least, are ∂_x of a flux: ∫ u_τ dx is conserved."""
-        return self.acoustic and None not in self._at_least_to_third_order._fluxes.values()
-
-    @cached_property
-    def variational(self) -> bool:
-        """True if the equation has a potential: u_ττ = -δV/δu, up to order D^{k+3} at least.
-
-        Then u_τ²/2 + V is the density of the conserved `energy`.
-
-        Raises `lwa.InputError` for laws that are no power.
-        """
-        if not self.law.homogeneous:
-            raise InputError(
-                "a potential is found by Euler's theorem on homogeneous functions, which needs a "
-                "power law; `energy` is there for every law"
-            )
-        pde = self._at_least_to_third_order
-        fluxes = pde._fluxes.items()
-        return bool(fluxes) and all(variational(pde.closure, n, F) for n, F in fluxes)
+        if not self.acoustic:
+            return False
+        return conservative(self.closure if self.closure.order >= 4 else self.closure.anew(order=4))
 
     @cached_property
     def energy(self) -> Mapping[int, Terms]:

@@ -90,7 +90,6 @@ def test_the_closure_comes_to_the_same_equation(k, P):
     pde = homogenize(chain, 4, k=k, closure="full", field="center").pde
     I = -sp.Rational(2, P) * least(masses, shares)
     k = pde.k
-    assert pde.variational
     assert pde.I == I
     assert sp.expand(pde.G - I * (k - 1) * (k - 2) / 2) == 0
     assert sp.expand(pde.H - 2 * I * (k - 1)) == 0
