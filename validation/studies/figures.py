@@ -76,19 +76,20 @@ _SCALINGS = (
     Column("force_error_value"),
     Column("theory_value", "V_s theory", "m/s", format=_ends),
 )
-_SCALINGS_TITLE = "V_s ~ F_m^e over drop heights {:g} … {:g} m; the paper fits e = 0.1666"
+_SCALINGS_TITLE = (
+    f"V_s ~ F_m^e over drop heights {HEIGHTS[0]:g} … {HEIGHTS[-1]:g} m; the paper fits e = 0.1666"
+)
 
 
 @study()
 def figures(
     chains: Sequence[int] = CHAINS,
     moduli: Sequence[float] = MODULI,
-    heights: Sequence[float] = HEIGHTS,
     progress: Progress[Any] = iter,
 ) -> Report:
     """The paper's figures: force records, N:1 chains, force against speed (ten seconds).
 
-    chains: N of the N:1 chains. moduli: of PTFE, in Pa. heights: of the striker's drops, in m.
+    chains: N of the N:1 chains. moduli: of PTFE, in Pa.
 
     ``speeds``: ``N``, ``formation``, and ``speed``, ``force``, ``width``, ``decay`` and ``theory``,
     each ``_value``; ``scalings``:
@@ -99,9 +100,8 @@ def figures(
     records = {N: forces(N) for N in progress([*RECORDED])}
     speeds = {N: chain_speed(N) for N in progress(chains)}
     rows = tuple((N, *s.values(), s["theory"] / s["speed"].value - 1) for N, s in speeds.items())
-    scalings = tuple(scaling(E, heights) for E in progress(moduli))
-    title = _SCALINGS_TITLE.format(heights[0], heights[-1])
-    table = Table(_SCALINGS, scalings, "scalings", title=title)
+    scalings = tuple(scaling(E) for E in progress(moduli))
+    table = Table(_SCALINGS, scalings, "scalings", title=_SCALINGS_TITLE)
     data = [
         {"N": N, "beads": RECORDED[N], "time_value": run.time, "force_value": run.bead_force}
         for N, run in records.items()
@@ -180,15 +180,11 @@ def chain_speed(N: int, tolerances: tuple[float, float] = TOLERANCES) -> dict[st
     return found | theory
 
 
-def scaling(
-    E: float,
-    heights: Sequence[float] = HEIGHTS,
-    tolerances: tuple[float, float] = TOLERANCES,
-) -> Scaling:
+def scaling(E: float, tolerances: tuple[float, float] = TOLERANCES) -> Scaling:
     """Compute figure 3a for a Young's modulus of PTFE."""
     ptfe = replace(PTFE_BEAD, material=replace(PTFE, E=E))
     # A striker dropped from the height h has the velocity √(2gh).
-    drops = [recorded_chain(SENSORS, math.sqrt(2 * GRAVITY * h), ptfe=ptfe) for h in heights]
+    drops = [recorded_chain(SENSORS, math.sqrt(2 * GRAVITY * h), ptfe=ptfe) for h in HEIGHTS]
     fine, coarse = ([*map(Train.of, simulate_many(drops, rtol=rtol))] for rtol in tolerances)
     pairs = [
         compared(lambda train: {"V_s": train.speed, "F_m": train.peak}, *pair, tolerances[0])

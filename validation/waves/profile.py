@@ -79,17 +79,8 @@ class ExactWave(Pictured):
 
     @property
     def solitary(self) -> bool:
-        """True if tail, residual and the strain left at L are all below `TOLERANCE`."""
-        return max(self.tail, self.residual, self.end_strain) < TOLERANCE
-
-    @cached_property
-    def end_strain(self) -> float:
-        """Strain of a wave of equal masses at L, divided by the peak strain; 0 for a dimer."""
-        if self.omega != 1:
-            return 0.0
-        # The profile is shifted to be 0 at L; by (*) at q = 0 the strain is ∫ (1-|s|) F(L-s) ds/c².
-        even = self._strains[0]
-        return float(abs(self.even[0] / (self.c2 * self.masses[0]) - even[0]) / even.sum())
+        """True if tail and residual are below `TOLERANCE`."""
+        return max(self.tail, self.residual) < TOLERANCE
 
     def times(self, s: float) -> ExactWave:
         """Return the wave with all strains, the background's too, multiplied by s; c² ~ s^{k-1}."""
