@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from validation.lattice.result import Run
-from validation.lattice.simulate import twice
+from validation.lattice.simulate import simulate, twice
 from validation.pulses.pulse import Measured, compared, derived, highest_pulse, speed
 from validation.scenes.scene import Scene
 
@@ -44,3 +45,18 @@ def passage(scene: Scene, rtol: float = 1e-6) -> Passage:
 def ratio(measured: Measured, expected: float) -> Measured:
     """measured / expected - 1, with its error."""
     return derived(lambda value: value / expected - 1, measured)
+
+
+def peaks(
+    masses: Sequence[float],
+    stiffnesses: Sequence[float],
+    k: float,
+    sensors: Sequence[int],
+    duration: float,
+) -> list[float]:
+    """Largest forces at contacts of a chain whose first bead has velocity 1."""
+    scene = Scene(
+        masses=tuple(masses), stiffnesses=tuple(stiffnesses), k=k, duration=duration,
+        velocities=(1,), contact_sensors=sensors, samples=20001,
+    )  # fmt: skip
+    return [force.max() for force in simulate(scene).contact_force]

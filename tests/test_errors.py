@@ -34,6 +34,7 @@ from lwa.expansion.approximants import resum
 from lwa.law import named
 from tests.driven import drive, trailing_edge
 from tests.lwa.expansion.test_exact_waves import lattice, series
+from tests.passage import peaks
 from validation import Scene, measure, simulate
 
 LOOSE = 30
@@ -137,14 +138,6 @@ def test_the_error_of_a_width_near_resonance(k, mass):
 
 
 # --- collisions ---
-
-
-def peaks(masses, stiffnesses, k, sensors, duration):
-    scene = Scene(
-        masses=tuple(masses), stiffnesses=tuple(stiffnesses), k=k, duration=duration,
-        velocities=(1,), contact_sensors=sensors, samples=20001,
-    )  # fmt: skip
-    return [force.max() for force in simulate(scene).contact_force]
 
 
 @pytest.mark.parametrize(

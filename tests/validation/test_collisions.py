@@ -4,15 +4,7 @@ import numpy as np
 import pytest
 
 from lwa import Cell, InputError, graded_force, transmitted_force
-from validation import Scene, simulate
-
-
-def peaks(masses, stiffnesses, k, sensors, duration):
-    scene = Scene(
-        masses=tuple(masses), stiffnesses=tuple(stiffnesses), k=k, duration=duration,
-        velocities=(1,), contact_sensors=sensors, samples=20001,
-    )  # fmt: skip
-    return [force.max() for force in simulate(scene).contact_force]
+from tests.passage import peaks
 
 
 @pytest.mark.parametrize("what", ["stiffness", "mass", "radius"])

@@ -1,7 +1,5 @@
 """The paper's experiment on the lattice: exact scaling, closed loops, published numbers."""
 
-import csv
-import io
 import json
 
 import numpy as np
@@ -11,7 +9,7 @@ from lwa import InputError, homogenize
 from tests.commands import ended
 from validation.cli import main
 from validation.lattice.simulate import simulate
-from validation.scenes.chains import DIAMETER, PTFE_BEAD, STEEL_BEAD, chain_scene
+from validation.scenes.chains import DIAMETER, PTFE_BEAD, STEEL_BEAD
 from validation.studies.paper import SOURCES, chain_cell, paper, recorded_chain
 
 
@@ -26,19 +24,6 @@ def rows(result):
 
 def lattice(result):
     return {name: row["lattice_value"] for name, row in rows(result).items()}
-
-
-def test_the_chain_is_the_papers():
-    scene = chain_scene(1.37, 38, (15, 34), 0.0, 1e-3)
-    assert scene.size == 38
-    assert scene.masses[0] == float(STEEL_BEAD.mass)  # the striker
-    assert scene.masses[23] == float(PTFE_BEAD.mass)  # bead 24
-    assert set(zip(scene.masses, scene.masses[1:], strict=False)) == {
-        (float(STEEL_BEAD.mass), float(PTFE_BEAD.mass)),
-        (float(PTFE_BEAD.mass), float(STEEL_BEAD.mass)),
-    }
-    assert scene.velocities == (1.37,)
-    assert scene.bead_sensors == (14, 33)
 
 
 def test_every_number_has_its_error_and_its_theory(result):
@@ -141,7 +126,7 @@ def test_momentum_reaches_the_wave(result):
     assert momentum == pytest.approx(float(STEEL_BEAD.mass) * 1.37, rel=1e-12)
 
 
-def test_text_csv_page_and_json_hold_the_same_numbers():
+def test_text_and_json_hold_the_same_numbers():
     report = paper(beads=20, sensors=(8, 15))
     found = json.loads(json.dumps(report.document(), allow_nan=False))
     assert (found["beads"], found["sensors"]) == (20, [8, 15])
@@ -152,15 +137,6 @@ def test_text_csv_page_and_json_hold_the_same_numbers():
     assert shown.splitlines()[0].startswith("20 beads, steel (the striker, 1.37 m/s) and PTFE")
     assert shown.count("  set") == 2  # what fixes the amplitude agrees by construction
     assert "F_15" in shown
-    lines = list(csv.DictReader(io.StringIO(report.csv())))
-    for row, written in zip(lines, found["rows"], strict=True):
-        assert row["quantity"] == written["quantity"]
-        assert float(row["lattice_value"]) == written["lattice_value"]
-        for source, error in written["error_value"].items():
-            assert float(row[f"error_value.{source}"]) == error
-    page = report._repr_html_()
-    assert page.count("<tr>") == 1 + len(lines)
-    assert page.count("<svg") == 1
 
 
 @pytest.mark.parametrize(
