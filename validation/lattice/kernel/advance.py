@@ -82,6 +82,8 @@ def _built(sources: int) -> Any:
                 moved = accepted(chain, beads, plan, now, h, hi)
             else:
                 _split(chain, beads, plan, h, hi)
+                # no sum of steps: equal steps are rounded to one side, 1e-10 after 1e5 of them
+                later = (now.steps + 1) * h if later < plan.end else later
             if moved:
                 now.steps += 1
                 now.t = later
