@@ -37,6 +37,10 @@ def test_the_decay_is_the_mean_loss_at_single_beads(spread, chains, share):
     assert found["decay_value"] > 5 * found["decay_error_value"]
     last, first = found["rows"][-1], found["rows"][0]
     line = found["theory_value"] * (first["site"] - last["site"])
+    e, loss = (np.array([one[f"{n}_value"] for one in found["single"]]) for n in ("excess", "loss"))
+    sides = [np.polynomial.Polynomial.fit(abs(e[s]), loss[s], 4) for s in (e < 0, e > 0)]
+    mean = sum(side.integ(lbnd=0)(spread) for side in sides) / (2 * spread)
+    assert found["theory_value"] == pytest.approx(mean, rel=1e-6)
     assert last["theory_value"] == pytest.approx(line, rel=1e-12)
 
 
