@@ -62,15 +62,11 @@ cell = ["heavy", "light"]
 """
 
 
-@pytest.fixture
-def spheres(tmp_path):
+def test_a_chain_of_spheres_has_hertz_and_metres(capsys, tmp_path):
+    """Aluminium and steel of 19.05 mm at 20 N: Hertz's contact and Bloch's edges by hand."""
     file = tmp_path / "spheres.toml"
     file.write_text(SPHERES)
-    return ("envelope", "--spheres", str(file))
-
-
-def test_a_chain_of_spheres_has_hertz_and_metres(capsys, spheres):
-    """Aluminium and steel of 19.05 mm at 20 N: Hertz's contact and Bloch's edges by hand."""
+    spheres = ("envelope", "--spheres", str(file))
     compliance = (1 - 0.33**2) / 73.5e9 + (1 - 0.3**2) / 193e9
     A = 4 / 3 * math.sqrt(9.525e-3 / 2) / compliance
     K2, static = 1.5 * A ** (2 / 3) * 20 ** (1 / 3), (20 / A) ** (2 / 3)

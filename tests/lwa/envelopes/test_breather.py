@@ -47,19 +47,6 @@ def test_the_gap_breather_of_a_dimer():
     assert same(found.opening_detuning, k * (k - 1) / 32)
 
 
-def test_units_of_a_breather():
-    """Displacements scale as the static compression; detunings, in cells, do not change."""
-    plain = envelope(Dimer(1, "1/2"), HERTZ, precompression=1).breather(detuning="1/500")
-    real = envelope(Dimer("1/100", "1/200", stiffnesses=("1e9", "1e9")), HERTZ, precompression=20)
-    found = real.breather(frequency=float(real.frequency) * (1 - 1 / 500))
-    ratio = (20 / 1e9) ** (2 / 3)
-    assert float(found.amplitude[1] / plain.amplitude[1]) == pytest.approx(ratio, rel=1e-9)
-    assert float(found.width) == pytest.approx(float(plain.width), rel=1e-9)
-    floats = real.numeric().breather(detuning="1/500")
-    assert floats.opening_detuning.is_Float
-    assert float(floats.opening_detuning) == pytest.approx(3 / 128, rel=1e-9)
-
-
 def test_where_contacts_open_a_breather_is_refused_with_the_number():
     chain = envelope(Dimer(1, "1/2"), HERTZ, precompression=8)
     edge = chain.breather(detuning="3/128")
