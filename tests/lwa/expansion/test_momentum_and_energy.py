@@ -22,24 +22,30 @@ def wave(k="3/2", force=1, cell=EQUAL):
 
 
 def test_hertz_s_numbers():
-    """Six digits of the theory notes: computed outside the project."""
+    """Digits of the theory notes, and of the exact wave: computed outside the project."""
     one = wave()
-    sums = one.energy, one.momentum, one.dissipation("linear"), one.dissipation("kuwabara_kono")
-    for sum_, known in zip(sums, (1.046516, 1.652067, 1.110266, 0.791307), strict=True):
-        assert sum_.value == pytest.approx(known, abs=1e-6)
-    assert one.expansion.effective_mass.at().value == pytest.approx(1.3040, abs=1e-4)
+    for sum_, known, digits in (
+        (one.energy, 1.046516, 6), (one.momentum, 1.652067, 6), (one.effective_mass, 1.3040, 4),
+        (one.dissipation("linear"), 1.110266, 6), (one.dissipation("kuwabara_kono"), 0.791307, 6),
+        (one.speed, 0.905515776419, 12), (one.fwhm("force"), 1.411928348539, 12),
+    ):  # fmt: skip
+        assert abs(sum_.value - known) < sum_.error + 10**-digits
+        assert sum_.error < 1e-4
 
 
 def test_units_and_forces_enter_as_dimensions_demand():
     """E ~ F δ, P ~ m δ/t, D0 ~ δ²/t, D1 ~ δ^{k+1}/t with δ = (F/A)^{1/k}, t = √(m δ/F)."""
-    k, m, A, F = 1.5, 4.0, 8.0, 27.0
+    k, m, A, F, D = 1.5, 4.0, 8.0, 27.0, 3.0
     delta = (F / A) ** (1 / k)
     t = np.sqrt(m * delta / F)
     one, other = wave(), wave(force=27, cell=Cell([4], [8], 3))
     for read, unit in (
         (lambda w: w.energy, F * delta),
         (lambda w: w.momentum, m * delta / t),
-        (lambda w: w.expansion.effective_mass.at(), m),
+        (lambda w: w.effective_mass, m),
+        (lambda w: w.speed, D / t),
+        (lambda w: w.fwhm("velocity"), D),
+        (lambda w: w.fwhm("force", "time"), t),
         (lambda w: w.dissipation("linear"), delta**2 / t),
         (lambda w: w.dissipation("kuwabara_kono"), delta ** (k + 1) / t),
     ):

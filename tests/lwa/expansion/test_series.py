@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import copy
-import pickle
 from fractions import Fraction
 
 import numpy as np
@@ -14,7 +12,6 @@ from hypothesis import strategies as st
 
 from lwa import Cell, Dimer, ExpandedWave, InputError, expand, pulse_of_strike
 from lwa.base.exact import signed
-from lwa.base.quantities import QUANTITIES
 from lwa.expansion.radiation import parameters
 from tests.identity import same
 
@@ -87,35 +84,6 @@ def test_an_unlike_contacts_radiation_counts_in_the_error() -> None:
 
 
 # --- values ---
-
-CHAINS = {
-    "equal": (lambda: expand(Cell([1]), 3)),
-    "dimer": (lambda: expand(Cell([1, "1/3"]), 2, k="6/5")),
-    "symbols": (lambda: expand(Dimer("m1", "m2"), 2)),
-    "contacts": (lambda: expand(Cell([1, 2], ["A", 3]), 1)),
-}
-
-
-@pytest.mark.parametrize("name", CHAINS)
-def test_equal_expansions_and_series_are_equal_and_pickle(name: str) -> None:
-    one, same = CHAINS[name](), CHAINS[name]()
-    values = [one, *(one.fwhm(q) for q in QUANTITIES), one.c2, one.momentum]
-    again = [same, *(same.fwhm(q) for q in QUANTITIES), same.c2, same.momentum]
-    assert values == again
-    assert [*map(hash, values)] == [*map(hash, again)]
-    assert len({*values}) == len(values)
-    assert [pickle.loads(pickle.dumps(v)) for v in values] == values
-    assert [copy.deepcopy(v) for v in values] == values
-    # What an expansion has computed stays behind.
-    assert len(pickle.dumps(one)) == len(pickle.dumps(CHAINS[name]()))
-    assert all("\n" not in repr(v) and len(repr(v)) < 250 for v in values)
-    if one.numeric:
-        assert pickle.loads(pickle.dumps(one.c2.at())) == same.c2.at()
-
-
-def test_expansions_differ_by_order_and_k() -> None:
-    cell = Cell([1, 2])
-    assert len({expand(cell, 1), expand(cell, 2), expand(cell, 1, k=2), expand(cell, 1)}) == 3
 
 
 def test_a_long_series_has_a_short_repr_and_latex() -> None:
