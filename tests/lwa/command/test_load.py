@@ -51,6 +51,8 @@ def test_wave_on_a_background(capsys):
     for quantity, width in found["fwhm_value"].items():
         expected = wave.fwhm(1, quantity) / wave.cell.spacing
         assert width == pytest.approx(float(expected), rel=1e-14)
+    _, out, _ = run(capsys, "wave", "--k", "3/2", "--masses", "1,3", "--background", "1/10")
+    assert "FWHM of the strain at B = 1 = 2.67192774562 D\n" in out  # twelve digits are right
     kdv = wave.kdv
     assert found["kdv"] == {
         "sound_speed": str(kdv.sound_speed),

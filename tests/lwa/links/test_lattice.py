@@ -83,7 +83,13 @@ def test_the_coefficient_of_a_pair_in_closed_form():
     pair = Lattice([m1, m2], springs_of((0, 1, K1), (1, 2, K2)))
     M = m1 + m2
     expected = (K1**2 + K2**2) * M**2 + 2 * K1 * K2 * (m1**2 - 4 * m1 * m2 + m2**2)
-    assert sp.cancel(pair.dispersion(1) - expected / (3 * (K1 + K2) ** 2 * M**2)) == 0
+    expected /= 3 * (K1 + K2) ** 2 * M**2
+    assert sp.cancel(pair.dispersion(1) - expected) == 0
+    inclined = [Link(0, 1, Power(1), 3, "1/2"), Link(1, 2, Power(1), 5)]
+    at = {m1: 1, m2: 2, K1: sp.Rational(3, 4), K2: 5}  # a spring counts by its cosine squared
+    for m in (m1, 1):
+        found = Lattice([m, 2], inclined).dispersion(1).subs(at)
+        assert float(found) == pytest.approx(float(expected.subs(at)), rel=1e-14)
 
 
 def test_neighbours_of_range_r():
