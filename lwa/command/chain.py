@@ -1,7 +1,7 @@
 """The chain of a command, from its options or from a file.
 
 A file is a scene of `lwa-validate run`, or the part of one that describes spheres. Entries such as
-length, striker, wall, defects and sensors do not enter the theory.
+length, wall, defects and sensors do not enter the theory.
 """
 
 from __future__ import annotations
@@ -14,12 +14,12 @@ import sympy as sp
 
 from lwa.base.exact import InputError
 from lwa.base.files import load
-from lwa.base.tables import among, finite
+from lwa.base.tables import Table, among, finite, table
 from lwa.cell import Cell, D
 from lwa.command.options import given
 from lwa.force import ContactLaw
 from lwa.law import Power, read_law, refuse_two_laws
-from lwa.spheres.beads import Row, opened, period, read_beads, read_materials, read_row
+from lwa.spheres.beads import STRIKER, Row, opened, period, read_beads, read_materials, read_row
 from lwa.spheres.hertz import EXPONENT
 
 
@@ -28,12 +28,15 @@ class ChainInput:
     """A chain as the options of a command or a file describe it.
 
     precompression : static force of the chain, 0 for none. si : True if the numbers are in SI.
+    velocity, mass : of the striker, where the file names them.
     """
 
     cell: Cell
     law: ContactLaw
     precompression: sp.Expr = sp.S.Zero
     si: bool = False
+    velocity: sp.Expr | None = None
+    mass: sp.Expr | None = None
 
     @property
     def text(self) -> str:
@@ -85,13 +88,20 @@ def read_chain(path: str | Path) -> ChainInput:
 
 def _chain(content: Any) -> ChainInput:
     file = opened(content)
-    row = read_row(file, read_beads(file, read_materials(file)))
+    beads = read_beads(file, read_materials(file))
+    row = read_row(file, beads)
+    striker = file.read("striker", table(STRIKER), Table({}, "striker", STRIKER))
+    velocity = sp.Rational(str(striker.read("velocity", finite, 0.0))) or None
+    mass = striker.read("like", among(beads)).mass if "like" in striker else None
     force = sp.Rational(str(file.read("precompression", finite, 0.0)))
     if force < 0:
         raise InputError(f"precompression is {force}: it must not be negative")
     if row.spheres:
-        return ChainInput(Cell.of_spheres(row.spheres), Power(EXPONENT), force, True)
-    return ChainInput(*_of_masses(row), force, file.read("units", among({"SI": True}), False))
+        return ChainInput(
+            Cell.of_spheres(row.spheres), Power(EXPONENT), force, True, velocity, mass
+        )
+    si = file.read("units", among({"SI": True}), False)
+    return ChainInput(*_of_masses(row), force, si, velocity, mass)
 
 
 def _of_masses(row: Row) -> tuple[Cell, ContactLaw]:

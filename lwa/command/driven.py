@@ -20,9 +20,9 @@ from lwa.shocks import riemann
 
 @click.command()
 @spheres_option(required=True)
-@value("--velocity", "Velocity of the striker; in m/s if the chain is in SI.")
+@value("--velocity", "Velocity of the striker, in m/s in SI.  [default: that in the file]")
 @value("--drop", "Height from which the striker falls, in m, in place of --velocity.")
-@value("--mass", "Mass of the striker; in kg if the chain is in SI.  [default: that of a bead]")
+@value("--mass", "Mass of the striker, in kg in SI.  [default: that in the file, or of a bead]")
 @style_option()
 def strike(
     spheres: str,
@@ -33,12 +33,15 @@ def strike(
 ) -> None:
     """Leading pulse of a chain of equal beads that a mass strikes: force, speed and width.
 
-    Needs --spheres, and --velocity or --drop. Units are those of the file; the width is that of a
-    contact's force.
+    Needs --spheres, and --velocity or --drop unless the file has a striker. Units are those of the
+    file; the width is that of a contact's force.
     """
     chain = take_chain({"spheres": spheres})
     cell, law = chain.cell, chain.law
-    mass = cell.masses[0] if mass is None else mass
+    if velocity is None and drop is None:
+        velocity = chain.velocity
+    if mass is None:
+        mass = chain.mass or cell.masses[0]
     pulse = pulse_of_strike(cell, mass, velocity, drop=drop, k=law.exponent)
     rows: list[Row | str] = [
         f"chain of equal beads; F = A δ^k, k = {law.exponent}",

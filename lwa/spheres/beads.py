@@ -44,6 +44,9 @@ FILE = (
 CHAIN = ("cell", "k", "law", "stiffnesses", "spacings", "repeat")
 """Keys of the table ``chain``; beads with names have ``cell`` and ``repeat`` alone."""
 
+STRIKER = ("velocity", "like")
+"""Keys of the table ``striker``: the velocity of bead 1, and the bead that it is like."""
+
 
 def opened(content: Any) -> Table:
     """Return the table of a parsed file; `lwa.InputError` for unknown keys."""

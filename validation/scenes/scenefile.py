@@ -30,6 +30,7 @@ from lwa.law import NAMES, Law, read_law
 from lwa.spheres.beads import (
     CHAIN,
     FILE,
+    STRIKER,
     Row,
     opened,
     period,
@@ -48,7 +49,7 @@ _TABLES = {  # that a file may leave out
     "wall": ("material", "stiffness"),
     "damping": DAMPINGS,
     "drive": ("velocity", "amplitude", "frequency", "ramp", "file", "time", "displacement"),
-    "striker": ("velocity", "like"),
+    "striker": STRIKER,
     "start": ("velocities", "displacements", "overlap"),
     "sensors": ("beads", "contacts"),
 }

@@ -140,6 +140,23 @@ def test_a_strike_in_si(capsys, scene):
     assert "peak contact force = " in out
 
 
+def test_the_striker_of_a_file_is_the_default(capsys, scene):
+    """Its velocity, and the mass of the bead that it is like; options replace them."""
+    heavy = {"heavy": BEADS["beads"]["ball"] | {"mass": 0.9e-3}}
+    chain = without_load(BEADS) | {"beads": BEADS["beads"] | heavy}
+    file = scene(chain | {"striker": {"velocity": 1.25, "like": "heavy"}})
+    named = result(capsys, "strike", "--spheres", file)
+    slower = result(capsys, "strike", "--spheres", file, "--velocity", "1", "--mass", "1e-3")
+    file = scene(chain)
+    given = ("strike", "--spheres", file, "--velocity", "1.25", "--mass", "9e-4")
+    assert named["force_value"] == result(capsys, *given)["force_value"]
+    given = ("strike", "--spheres", file, "--velocity", "1", "--mass", "1e-3")
+    assert slower["force_value"] == result(capsys, *given)["force_value"]
+    file = scene(chain | {"striker": {"velocity": 1, "like": "wood"}})
+    status, _, err = run(capsys, "strike", "--spheres", file)
+    assert (status, err.count("\n"), "striker.like is 'wood'" in err) == (2, 1, True)
+
+
 def test_a_blow_beyond_hertzs_contact_has_a_note(capsys, scene):
     """a/R = √(δ/2R) is 1/10 where the compression is 1/100 of the spacing."""
     file = scene(without_load(BEADS))
