@@ -130,6 +130,29 @@ def test_beads_that_meet_after_a_long_flight(k):
         assert abs(back.energy_drift) < 30 * rtol
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize(("stiffness", "error"), [(1.0, 1e-6), (1e-4, 1e-3)])
+def test_the_splitting_resolves_a_light_bead(stiffness, error):
+    """A bead of mass 1/1000 rattles between heavy ones; its motion sets the step.
+
+    In weak contacts a step of the heavy beads' is too long to see an opening well.
+    """
+    heavy, contacts = (1.0,) * 10, (1.0,) * 9
+    scene = Scene(
+        masses=(*heavy, 1e-3, *heavy), stiffnesses=(*contacts, stiffness, stiffness, *contacts),
+        k=1.5, velocities=(1.0,), contact_sensors=(9, 10, 13), samples=4001,
+        # The weaker the contacts, the longer the heavy beads take to exchange their momentum.
+        duration=30.0 + 8 * (stiffness**-0.4 - 1),
+    )  # fmt: skip
+    exact = simulate(scene, method="DOP853", rtol=1e-12, atol=1e-12)
+    closed = exact.compression[:2] > 0
+    assert np.count_nonzero(closed[:, 1:] & ~closed[:, :-1]) >= 10  # it rattles
+    run = simulate(scene, method="SRKN14", rtol=1e-6)
+    off = np.abs(run.contact_force - exact.contact_force).max()
+    assert off < error * exact.contact_force.max()
+    assert abs(run.energy_drift) < 1e-4
+
+
 def test_the_kinks_reduce_the_order():
     """Contacts that open leave h^{k+1} = h^{5/2} of order 6, in the mean over many steps."""
     scene = struck(100, duration=60.0, contact_sensors=(50,), samples=2401)

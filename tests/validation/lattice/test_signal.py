@@ -74,14 +74,6 @@ def test_a_signal_is_as_good_as_the_run_between_any_samples():
     assert force(np.linspace(0, 6, 20001)).max() == pytest.approx(deepest**k, rel=1e-7)
 
 
-@pytest.mark.parametrize("method", ["RKN86", "DOP853"])
-def test_a_signal_survives_a_pickle(method):
-    run = simulate(LINEAR, method=method)
-    again = pickle.loads(pickle.dumps(run))
-    t = np.linspace(0, 17, 100)
-    assert np.array_equal(again.signal("contact", 0)(t), run.signal("contact", 0)(t))
-
-
 def test_the_law_of_a_pickled_run_finds_its_machine_code_in_another_process(tmp_path):
     """A law's machine code lies elsewhere there: a call of the old address ended the process."""
     law = named("exponential", 1)

@@ -26,23 +26,16 @@ def chain(law, velocity=1.0):
     )  # fmt: skip
 
 
-@pytest.mark.parametrize("method", METHODS)
-def test_a_chain_moves_as_under_the_law_that_made_the_table(method):
+@pytest.mark.parametrize(("method", "rtol"), [("RKN86", 1e-9), ("SRKN14", 1e-5)])
+def test_a_chain_moves_as_under_the_law_that_made_the_table(method, rtol):
     """F = δ^{3/2} + δ^{5/2}, which the table of 60 points follows to 1e-5; energy on the books."""
-    rtol = 1e-5 if method == "SRKN14" else 1e-9
-    ours, exact = (
-        simulate(chain(law), method=method, rtol=rtol)
-        for law in (Law.table(PLACES, FORCES), named("hertz2", 1, 1))
-    )
-    size = exact.contact_force.max()
-    assert np.abs(ours.contact_force - exact.contact_force).max() < 2e-4 * size
-    assert abs(ours.energy_drift) < (1e-5 if method == "SRKN14" else 1e-6)
-
-
-def test_methods_agree_on_the_table():
-    law = Law.table(PLACES, FORCES)
-    ours, scipys = (simulate(chain(law), method=m, rtol=1e-9) for m in ("RKN86", "DOP853"))
-    assert np.abs(ours.contact_force - scipys.contact_force).max() < 1e-6
+    ours = simulate(chain(Law.table(PLACES, FORCES)), method=method, rtol=rtol)
+    laws = named("hertz2", 1, 1), Law.table(PLACES, FORCES)
+    law, table = (simulate(chain(law), method="DOP853").contact_force for law in laws)
+    size = law.max()
+    assert np.abs(ours.contact_force - law).max() < 2e-4 * size
+    assert np.abs(ours.contact_force - table).max() < 1e3 * rtol
+    assert abs(ours.energy_drift) < 1e3 * rtol
 
 
 @pytest.mark.parametrize("method", METHODS)
