@@ -1,15 +1,14 @@
 """Every page of a folder, opened in Chromium from a server of this machine.
 
 The server adds a script to each page. It waits until the page and its mathematics are there, sends
-back what it sees, and goes on to the next page. No other name than 127.0.0.1 resolves, and
-Chromium's own log of the network lists the addresses that the pages requested. At the width of a
+back what it sees, and goes on to the next page. No other name than 127.0.0.1 resolves, and what a
+page requests from elsewhere violates the policy that the server sends with it. At the width of a
 phone the pages are opened in a frame, as a window cannot be that narrow.
 """
 
 from __future__ import annotations
 
 import json
-import re
 import shutil
 import subprocess
 import tempfile
@@ -40,11 +39,19 @@ FLAGS = (
     "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1",
 )
 
+POLICY = "default-src 'self' 'unsafe-inline' 'unsafe-eval' data: blob:"
+EVENTS = """
+[window.faults, window.foreign] = [[], []];
+addEventListener("error", e => faults.push(e.message));
+addEventListener("securitypolicyviolation", e => foreign.push(e.blockedURI));
+"""
+
 PROBE = r"""<script>
 window.addEventListener("load", async () => {
   const errors = [...window.faults];
   const typeset = window.MathJax && MathJax.startup ? MathJax.startup.promise : null;
   if (typeset) await typeset.catch(error => errors.push(String(error)));
+  await new Promise(done => setTimeout(done, 50)); // for events on their way
   for (const image of document.images) image.loading = "eager";
   for (const details of document.querySelectorAll("details")) details.open = true;
   await Promise.all([...document.images].map(image => image.decode().catch(() => 0)));
@@ -105,12 +112,13 @@ window.addEventListener("load", async () => {
     silent: [...body.querySelectorAll("img, svg:not([aria-hidden])")]
       .filter(i => !i.alt && !i.getAttribute("aria-label") && !i.closest("button"))
       .map(i => i.src || i.outerHTML),
-    unnamed: [...body.querySelectorAll("canvas, input, select, [role=img]")]
+    unnamed: [...body.querySelectorAll("canvas, input, select, [role=img]:not(svg)")]
       .filter(e => !e.getAttribute("aria-label") && !e.closest("label")).map(e => e.outerHTML),
     sliders: body.querySelectorAll("input[type=range]").length,
     calculator: [...body.querySelectorAll(".lwa-calculator [data-name]")]
       .map(e => [e.dataset.name, e.textContent]),
     errors: errors,
+    foreign: window.foreign,
   };
   if (window.lwaTurn) {
     const chain = new lwaTurn.Chain();
@@ -157,15 +165,10 @@ window.addEventListener("load", async () => {
 
 @dataclass
 class Visit:
-    """Reports of the pages, by their paths, and requests to the network.
-
-    missing : paths that the server does not have.
-    foreign : addresses outside this machine that a page tried to reach.
-    """
+    """Reports of the pages, by their paths, and paths that the server does not have."""
 
     pages: dict[str, dict[str, object]] = field(default_factory=dict)
     missing: list[str] = field(default_factory=list)
-    foreign: list[str] = field(default_factory=list)
 
 
 class _Server(ThreadingHTTPServer):
@@ -178,10 +181,6 @@ class _Server(ThreadingHTTPServer):
         self.progress = threading.Event()
         super().__init__(("127.0.0.1", 0), partial(_Handler, directory=str(folder)))
 
-    @property
-    def origin(self) -> str:
-        return f"http://127.0.0.1:{self.server_address[1]}"
-
 
 class _Handler(SimpleHTTPRequestHandler):
     server: _Server
@@ -193,11 +192,8 @@ class _Handler(SimpleHTTPRequestHandler):
             return self._send(f'<iframe src="/{page}" width="{width}" height="900"></iframe>')
         if path.suffix != ".html" or not path.is_file():
             return super().do_GET()
-        faults = "window.faults = []; addEventListener('error', e => faults.push(e.message));"
-        mode = faults + "".join(
-            f'localStorage.{name} = "{self.server.mode}";' for name in ("mode", "theme")
-        )
-        text = path.read_text().replace("<head>", f"<head><script>{mode}</script>", 1)
+        modes = "".join(f'localStorage.{n} = "{self.server.mode}";' for n in ("mode", "theme"))
+        text = path.read_text().replace("<head>", f"<head><script>{EVENTS}{modes}</script>", 1)
         self._send(text.replace("</body>", PROBE + "</body>"))
 
     def _send(self, text: str) -> None:
@@ -205,6 +201,7 @@ class _Handler(SimpleHTTPRequestHandler):
         self.send_response(200)
         self.send_header("Content-Type", "text/html; charset=utf-8")
         self.send_header("Content-Length", str(len(page)))
+        self.send_header("Content-Security-Policy", POLICY)
         self.end_headers()
         self.wfile.write(page)
 
@@ -251,10 +248,9 @@ def visited(
     if width is not None:
         first = f"{FRAME}{width}{first}"
     with tempfile.TemporaryDirectory() as home, _served(folder, rest, visit, mode) as server:
-        log = Path(home, "net-log.json")
-        options = (f"--user-data-dir={home}/profile", f"--log-net-log={log}")
+        origin = f"http://127.0.0.1:{server.server_address[1]}"
         browser = subprocess.Popen(
-            [chromium, *FLAGS, *options, server.origin + first],
+            [chromium, *FLAGS, f"--user-data-dir={home}", origin + first],
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
         )
@@ -267,21 +263,4 @@ def visited(
         finally:
             browser.terminate()
             browser.wait(30)
-        visit.foreign = sorted(_asked(log.read_text(), server.origin))
     return visit
-
-
-def _asked(log: str, origin: str) -> set[str]:
-    """Addresses outside the server that its pages requested, by Chromium's log.
-
-    The log has one event a line. Requests of the browser's own (its updates) have another initiator
-    than the page.
-    """
-    of_pages = [line for line in log.splitlines() if f'"initiator":"{origin}"' in line]
-    urls = {
-        url for line in of_pages for url in re.findall(r'"url":"((?:http|ws)s?://[^"]*)"', line)
-    }
-    own = {url for url in urls if url.startswith(origin + "/")}
-    if not own:
-        raise AssertionError("Chromium's log holds no request of the pages")
-    return urls - own
