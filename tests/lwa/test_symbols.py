@@ -16,6 +16,7 @@ from lwa import (
     Law,
     background_wave,
     canonical_wave,
+    expand,
     homogenize,
 )
 from lwa.cell import RESERVED
@@ -24,7 +25,7 @@ from lwa.wave.numeric import NumericWave
 
 OURS = """
 mu0 mu1 c0 c1 a0 a1 k D B V_s tau lambda p a mu eta sigma s m z v G H I X x u w omega kappa r1 s1
-s0 Z x0 x1 xi epsilon t alpha beta q math b1 phi2 p0 F
+s0 Z x0 x1 y P M gamma math k0 xi epsilon t alpha beta q math b1 phi2 p0 F
 """
 """Names that the derivations, the paper or the printed results use."""
 
@@ -75,6 +76,9 @@ def results(m1, m2, k, D, alpha):
     yield "canonical", canonical_wave(Cell((m1, m1, m2), spacing=D), k).fwhm("force")
     numeric = NumericWave(wave)
     yield "numeric", sp.Float(float(numeric.beta(1.4, 0.2)), 17)
+    series = expand(Cell((m1, 1, m2)), 1, k=k)
+    yield from (("c2", series.c2.pade(None, 1, 0)), ("E", series.energy.pade(None, 0, 1)))
+    yield "width", series.fwhm("velocity").pade(None, 0, 1)
 
 
 NEUTRAL = {role: sp.Symbol(f"role_{role}", positive=True) for role in ROLES}

@@ -109,18 +109,6 @@ def test_virial_theorem(name: str) -> None:
         assert same(left, right)
 
 
-def test_momentum_is_mass_times_speed_times_the_displacement_left_behind() -> None:
-    """Equal beads, by quadrature of the strain at k = 1.01."""
-    k, expansion = 1.01, wave("equal")
-    strain = contact(CELLS["equal"], expansion, 0, 4, mpmath.mpf(k))
-    xi = np.linspace(-60, 60, 601)
-    displacement = np.trapezoid([float(strain(mpmath.mpf(x))) for x in xi], xi)
-    c = float(sp.sqrt(expansion.c2.pade(sp.Rational(101, 100), 4, 0)))
-    momentum = expansion.momentum.at(sp.Rational(101, 100))
-    # What is cut off is ε^5 of it.
-    assert abs(c * displacement / momentum.value - 1) < 1e-9
-
-
 @pytest.mark.parametrize("size", [2, 3])
 def test_equal_beads_in_any_cell_are_the_uniform_chain(size: int) -> None:
     one, many = wave("equal"), expand(Cell([1] * size), 4)
@@ -255,14 +243,6 @@ def test_linear_closure_gives_the_leading_term_only() -> None:
 
 
 # --- summed ---
-
-
-def test_sum_near_k_1_is_the_partial_sum() -> None:
-    k = sp.Rational(1001, 1000)
-    for quantity in QUANTITIES:
-        series = wave("dimer").fwhm(quantity)
-        summed, partial = series.at(k), float(series.pade(k, series.order, 0))
-        assert abs(summed.value - partial) <= summed.error + 1e-12 * partial
 
 
 def test_pade_agrees_with_its_series() -> None:

@@ -7,8 +7,6 @@ from fractions import Fraction
 import numpy as np
 import pytest
 import sympy as sp
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from lwa import Cell, Dimer, ExpandedWave, InputError, expand, pulse_of_strike
 from lwa.base.exact import signed
@@ -120,41 +118,6 @@ def test_at_gives_symbols_their_values() -> None:
 
 
 # --- symbols ---
-
-OURS = (
-    *["X", "Z", "t", "y", "c0", "c1", "mu0", "mu1", "k0", "a0", "a1", "epsilon"],
-    *["xi", "I", "P", "M", "gamma", "p", "lambda", "math", "c", "omega", "x0"],
-)
-
-named = st.builds(
-    lambda name, assumptions: sp.Symbol(name, **assumptions),
-    st.sampled_from(OURS),
-    st.sampled_from([{}, {"positive": True}]),
-)
-
-
-@given(names=st.lists(named, min_size=3, max_size=3, unique_by=lambda s: s.name), place=named)
-@settings(max_examples=2)
-def test_no_name_is_captured(names: list[sp.Symbol], place: sp.Symbol) -> None:
-    """The names of two masses and k change nothing but the names."""
-    plain = [sp.Symbol(f"n{i}", **s._assumptions_orig) for i, s in enumerate(names)]
-    values = dict(zip(plain, (2, 5, sp.Rational(3, 2)), strict=True))
-    values |= dict(zip(names, (2, 5, sp.Rational(3, 2)), strict=True))
-    values |= {sp.Symbol("free"): sp.Rational(1, 7)}
-    ours, theirs = (expand(Cell([a, 1, b]), 1, k=k) for a, b, k in (names, plain))
-    free = sp.Symbol("free")
-    pairs = [(ours.c2.pade(None, 1, 0), theirs.c2.pade(None, 1, 0))]
-    pairs += [(ours.fwhm("velocity").pade(None, 0, 1), theirs.fwhm("velocity").pade(None, 0, 1))]
-    mine = {place: free}
-    if place.name in {s.name for s in names}:
-        with pytest.raises(InputError, match=f"^{place.name} names"):
-            ours.log_force(1, place.name)
-    else:
-        logs = ours.log_force(1, place), theirs.log_force(1, free)
-        pairs += [(logs[0][n].xreplace(mine), logs[1][n]) for n in logs[1]]
-    for a, b in pairs:
-        assert a.free_symbols <= {*names, free}
-        assert abs(sp.N(a.xreplace(values) / b.xreplace(values), 40) - 1) < 1e-35
 
 
 def test_a_place_is_real_and_a_mass_called_like_it_is_refused() -> None:

@@ -115,33 +115,7 @@ def test_acoustic_series_satisfies_the_relation(cell):
     assert total == [2 * x * (-1) ** (n // 2) * (n % 2 == 0) for n, x in enumerate(cosine)]
 
 
-def test_symbols_and_numbers_give_the_same_series():
-    names = ["m1", "m2", "m3", "A1", "A2", "A3"]
-    numbers = [2, 3, 5, 7, 11, 13]
-    symbols = dict(zip(sp.symbols(names, positive=True), numbers, strict=True))
-    for P, order in ((2, 4), (3, 4)):
-        symbolic = Dispersion(Cell(names[:P], stiffnesses=names[3 : 3 + P]))
-        plain = Dispersion(Cell(numbers[:P], stiffnesses=numbers[3 : 3 + P]))
-        pairs = [(symbolic.acoustic(order), plain.acoustic(order)), (symbolic.trace, plain.trace)]
-        if P == 2:
-            pairs.append((symbolic.optical(order), plain.optical(order)))
-            pairs += [
-                (symbolic.amplitude_ratio(order, branch), plain.amplitude_ratio(order, branch))
-                for branch in ("acoustic", "optical")
-            ]
-        for ours, theirs in pairs:
-            assert {n: sp.sympify(c).subs(symbols) for n, c in ours.items()} == theirs
-
-
 # --- against the wave equation ------------------------------------------------------------------
-
-
-@given(cells(), st.sampled_from([1, sp.Rational(1, 3)]))
-@settings(max_examples=10)
-def test_I_is_the_wave_equation_s(cell, k):
-    # k = 1 and 1/3: A^{-1/k} is rational
-    pde = homogenize(cell, 4, k=k, closure="full", field="center").pde
-    assert Dispersion(cell, k).I * cell.spacing**2 == pde.I
 
 
 @pytest.mark.parametrize("field", ["first", "center"])
