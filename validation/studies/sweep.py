@@ -182,19 +182,16 @@ def _values(given: str | Iterable[Any], name: str) -> tuple[Rational, ...]:
 def measured(
     ks: Axis,
     omegas: Axis,
-    stretch: int = STRETCH,
-    file: PointFile | None = None,
-    workers: AbstractContextManager[Executor] | None = None,
-    progress: Progress[Key] = iter,
+    stretch: int,
+    file: PointFile | None,
+    workers: AbstractContextManager[Executor],
+    progress: Progress[Key],
 ) -> list[Point]:
-    """Measure the points of a grid that are not yet in the file; the arguments are as in `sweep`.
-
-    workers: opens an executor, by default of threads.
-    """
+    """Measure the points of a grid that are not yet in the file, by the executor of ``workers``."""
     with file.locked() if file else nullcontext():
         points = file.read() if file else {}
         missing = [key for key in product(ks, omegas) if key not in points]
-        with workers or threads() as executor:
+        with workers as executor:
             futures = [executor.submit(point, *key, stretch) for key in missing]
             try:
                 for _, future in zip(progress(missing), as_completed(futures), strict=True):

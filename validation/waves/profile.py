@@ -89,8 +89,8 @@ class ExactWave(Pictured):
 
     def strain(self, xi: ArrayLike, contact: int = 0) -> Array:
         """Strain a(ξ) of the contacts behind beads m1 (contact 0), or b(ξ) of the others (1)."""
-        at = np.asarray(xi, float)
-        return self._behind(-at if contact % 2 else at)
+        at = np.asarray(xi, float) * (-1 if contact % 2 else 1)
+        return np.where(self._ended(at), 0.0, self._sum(at, *self._strains))
 
     def force(self, xi: ArrayLike, contact: int = 0) -> Array:
         """Force F_a(ξ) or F_b(ξ) of a contact, above the static force."""
@@ -147,11 +147,6 @@ class ExactWave(Pictured):
         quantity: Callable[[ArrayLike], Array] = getattr(self, name)
         return quantity
 
-    def odd_strain(self, start: float) -> float:
-        """Largest |o| on start ≤ |ξ| ≤ L, o(ξ) = (a(ξ) - a(-ξ))/2 the odd part of the strain a."""
-        outside = np.linspace(start, self.half_period, 2 * self.samples)
-        return summit(lambda x: np.abs(self.strain(x) - self.strain(-x)) / 2, outside)[1]
-
     @cached_property
     def _strains(self) -> tuple[Array, Array]:
         """Fourier coefficients of e and o."""
@@ -162,9 +157,6 @@ class ExactWave(Pictured):
         e[0] = e[1::2].sum() - e[2::2].sum()  # the strain is 0 at L
         o[-1] = 0
         return e, o
-
-    def _behind(self, xi: Array) -> Array:
-        return np.where(self._ended(xi), 0.0, self._sum(xi, *self._strains))
 
     def _velocity(self, xi: ArrayLike, bead: int) -> Array:
         """Velocity up to a constant: the integral of v' = (force ahead - force behind)/(m c)."""
@@ -194,7 +186,10 @@ def at_unit_force(
     even, odd = newton.coefficients(problem.forces(forces))
     wave = ExactWave(masses, problem.k, c2, problem.L, even, odd, 0.0, 0.0, problem.p0)
     wave = wave.times(1 / (problem.p0 + wave.peak("strain")[1]))
-    tail = 0.0 if problem.uniform else wave.odd_strain(OUTSIDE * problem.L)
+    tail = 0.0
+    if not problem.uniform:
+        outside = np.linspace(OUTSIDE * problem.L, problem.L, 2 * wave.samples)
+        _, tail = summit(lambda x: np.abs(wave.strain(x) - wave.strain(-x)) / 2, outside)
     xi = newton.periodic_grid(wave.half_period, 2 * problem.n)
     even, odd = newton.coefficients(wave.force(xi))
     again = replace(wave, even=even, odd=odd)
