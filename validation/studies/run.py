@@ -97,6 +97,7 @@ def _print(context: click.Context, given: click.Parameter, name: Any) -> None:
         context.exit()
 
 
+_PRINTED: dict[str, Any] = {"is_eager": True, "expose_value": False, "callback": _print}
 SUFFIXES = (".json", ".csv")
 RECORDS = tuple(name for name in Records.__dataclass_fields__ if name != "scene")
 
@@ -141,17 +142,13 @@ _RTOL = "Relative tolerance. Errors are differences to a run with 1000 times thi
         type=click.Choice(EXAMPLES),
         is_flag=False,
         flag_value=EXAMPLES[0],
-        is_eager=True,
-        expose_value=False,
-        callback=_print,
+        **_PRINTED,
         says="Print an example of a scene file, by default the paper's chain.",
     ),
     option(
         "--keys",
         is_flag=True,
-        is_eager=True,
-        expose_value=False,
-        callback=_print,
+        **_PRINTED,
         says="Print all keys of a scene file, with examples.",
     ),
     output_option(
