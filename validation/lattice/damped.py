@@ -72,8 +72,9 @@ def _coefficients(q: int) -> tuple[Array, ...]:
     """
     c, a = _tableau()
     speeds, t = a * _pace(q), c**q
-    errors = np.zeros((2, DENSE))
-    errors[:, : STEP + 1] = DOP853.E3, DOP853.E5
+    errors = np.zeros((3, DENSE))
+    errors[:2, : STEP + 1] = DOP853.E3, DOP853.E5
+    errors[2] = 4**4 * 3**3 / 7**7 * DOP853.D[3]  # the greatest x^4 (1 - x)^3, times F_6
     errors *= _pace(q)
     rows = _balanced(speeds @ speeds, t * t / 2), _balanced(speeds, t)
     ends = _balanced(errors @ speeds, 0), _balanced(errors, 0)
@@ -87,18 +88,17 @@ def _balanced(weights: Array, total: ArrayLike) -> Array:
     return weights
 
 
-@cache
-def _interpolant() -> Array:
-    """Return the interpolant's weights of the stages, polynomials in x: (powers, stages)."""
+def _interpolant(x: Array) -> Array:
+    """Return the interpolant's weights of the stages at places x of a step, (S, `DENSE`).
+
+    It is x (F_0 + (1 - x) (F_1 + x (F_2 + … + x F_6))), with the row F_n of weights.
+    """
     _, a = _tableau()
     first, last = np.eye(DENSE)[[0, STEP]]
-    terms = [a[STEP], first - a[STEP], 2 * a[STEP] - first - last, *DOP853.D]
-    zero = np.zeros((1, DENSE))
-    total = np.zeros((1, DENSE))
-    for n in reversed(range(len(terms))):  # x (F0 + (1 - x) (F1 + x (F2 + …)))
-        total[0] += terms[n]
-        times_x = np.concatenate((zero, total))
-        total = times_x if n % 2 == 0 else np.concatenate((total, zero)) - times_x
+    rows = [a[STEP], first - a[STEP], 2 * a[STEP] - first - last, *DOP853.D]
+    total, x = np.zeros(DENSE), x[:, None]
+    for n in reversed(range(len(rows))):
+        total = (rows[n] + total) * (x if n % 2 == 0 else 1 - x)
     return total
 
 
@@ -139,7 +139,7 @@ class StepPath:
         """Return the motion in steps with numbers ``n``, (S,), in which time runs as x^q."""
         begin, h, _ = self.steps.step[n].T
         x = ((time - begin) / h).clip(0.0, 1.0) ** (1 / q)
-        speeds = np.vander(x, len(_interpolant()), increasing=True) @ _interpolant() * _pace(q)
+        speeds = _interpolant(x) * _pace(q)
         t, a = x**q, _tableau()[1] * _pace(q)
         moments, speeds = _balanced(speeds @ a, t * t / 2), _balanced(speeds, t)
         force = self.steps.force[n]

@@ -204,7 +204,7 @@ def _start(motion: Motion, padded: int, stages: int) -> Beads:
     n = motion.size
     y, v, next_y, next_v = np.zeros((4, padded + 1))
     y[:n], v[:n] = motion.start[:n], motion.start[n : 2 * n]
-    sums, contacts = np.zeros((2, 4, padded + 1))
+    sums, contacts = np.zeros((6, padded + 1)), np.zeros((3, padded + 1))
     force, power, given = np.zeros((stages, padded + 1)), np.zeros((2, stages)), np.zeros(4)
     if motion.scene.drive is not None:
         given[0] = motion.scene.drive.at(0.0)[2]

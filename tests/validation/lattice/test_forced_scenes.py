@@ -19,11 +19,6 @@ from validation.scenes.scene import Scene
 TOLERANCES = (1e-7, 1e-9, 1e-11)
 SAMPLES = 13
 MOST = 100  # error over rtol and amplification
-BETWEEN_STEPS = {352: 303}
-"""Seeds whose error is greater, as measured: at 1e-9 a step's estimate for a light, strongly damped
-bead (m = 0.036, rate of decay 31) passes through 0, the next step is 4.5 decay times long, and the
-interpolant errs at the sample within it. The motion at the other samples errs by less than rtol,
-and at 1e-13 that of all samples by 4."""
 
 
 def drawn(seed):
@@ -122,10 +117,18 @@ def errors(seed, tolerances=TOLERANCES):
 
 
 # Seeds of every damping and drive, of laws that pull and that open, whose references are quick.
-@pytest.mark.parametrize("seed", [0, 4, 8, 10, 14, 20, 36, 50, 75, 93])
-def test_a_few_forced_scenes(seed):
+FEW = [(seed, 1e-9) for seed in (0, 4, 8, 10, 14, 20, 36, 50, 75, 93)]
+# A sample within a step of 4.5 decay times of a light bead. The step's own estimate is near 0: the
+# interpolant errs by 303 unless its error is estimated, too.
+FEW += [(352, 1e-9)]
+# A contact opens for a quarter of a step, between two stages: unseen, an error of 175.
+FEW += [(130, 1e-7)]
+
+
+@pytest.mark.parametrize(("seed", "rtol"), FEW)
+def test_a_few_forced_scenes(seed, rtol):
     """Without a 95 % rule here: each is within 10 times rtol × amplification, and on its books."""
-    _, ((error, _, drift),) = errors(seed, (1e-9,))
+    _, ((error, _, drift),) = errors(seed, (rtol,))
     assert error < 10
     assert drift < 10
 
@@ -133,13 +136,8 @@ def test_a_few_forced_scenes(seed):
 @pytest.mark.slow
 @pytest.mark.parametrize("batch", range(10))
 def test_many_forced_scenes(batch):
-    """95 % are within 10 times rtol × amplification, all within 100; the books within 10 rtol.
-
-    One known scene (`BETWEEN_STEPS`) is within 1.1 times its measured error.
-    """
-    seeds = range(batch, 400, 10)
-    found = np.array([errors(seed)[1] for seed in seeds])
+    """95 % are within 10 times rtol × amplification, all within 100; the books within 10 rtol."""
+    found = np.array([errors(seed)[1] for seed in range(batch, 400, 10)])
     assert (found[..., 0] > 10).sum() <= 0.05 * found[..., 0].size
-    bounds = [1.1 * BETWEEN_STEPS[seed] if seed in BETWEEN_STEPS else MOST for seed in seeds]
-    assert (found[..., 0].max(axis=1) < bounds).all()
+    assert found[..., 0].max() < MOST
     assert found[..., 2].max() < 10

@@ -61,11 +61,12 @@ class Beads(NamedTuple):
 
     y, v : displacements and velocities. next_y, next_v : those after the step that is tried.
     force : (stages, padded + 1), force on each bead from behind, less the static force, by stage.
-    sums : (4, padded + 1), sums over stages. Row 0: intermediate results. Row 1: impulse of each
-        contact in a step. Rows 2 and 3: error estimates of each contact's moment and impulse.
-    contacts : (4, padded + 1), of damped contacts. Row 0: 1 if it is closed, 0 if open. Row 1:
-        number of a step's stages in which that is wrong. Row 2: greatest force in a step. Row 3:
-        dissipated power.
+    sums : (6, padded + 1), sums over stages. Row 0: intermediate results. Row 1: impulse of each
+        contact in a step. Rows 2 and 3: error estimates of each contact's moment and impulse. Rows
+        4 and 5: displacements and velocities within a step of damped contacts.
+    contacts : (3, padded + 1), of damped contacts. Row 0: 1 if it is closed, 0 if open. Row 1:
+        number of a step's stages in which that is wrong, or nearly so. Row 2: greatest force in a
+        step.
     power : (2, stages), power that all contacts dissipate, and power of the drive.
     given : (4,), accelerations of a driven bead at the step's ends; what kinks add to its work, and
         to the work's error.
@@ -136,7 +137,7 @@ class Plan(NamedTuple):
 
 
 _COUNTS = ("steps", "tries", "evaluations", "front", "stored", "stop", "warped", "interval")
-_REALS = ("t", "h", "planned", "energy", "work", "lost", "response")
+_REALS = ("t", "h", "planned", "restart", "energy", "work", "lost", "response")
 _PROGRESS = np.dtype([(name, int) for name in _COUNTS] + [(name, float) for name in _REALS])
 
 
@@ -148,10 +149,11 @@ def initial_progress(plan: Plan, front: int, energy: float) -> Any:
     short. steps, tries : numbers of steps made and tried. evaluations : sum, over all evaluations
     of the forces, of the number of beads moved. front : first bead ahead of the motion. stored :
     number of stored knots. stop : number of the next of ``plan.stops``. warped : 1 if the next step
-    begins where a damped contact closes, otherwise 0. interval : number of the interval of the
+    begins where a damped contact closes, otherwise 0. restart : longest step of this kind, by the
+    error of the last one. interval : number of the interval of the
     drive's motion. work, lost : ∫ v (F - static force) dt of a driven bead, and dissipated energy.
     response : greatest of the values of ``energy`` on the way.
     """
     now = np.zeros(1, _PROGRESS)[0]
-    now["front"], now["h"], now["energy"] = front, plan.h, energy
+    now["front"], now["h"], now["restart"], now["energy"] = front, plan.h, plan.h, energy
     return now
