@@ -20,19 +20,26 @@ def reading_tables(
 
     labels : of arrival, peak and FWHM. si : True for results in SI units. every : True for a column
     with the number of the pulse at its sensor.
+
+    The table of the sensors, which is the CSV, also holds the speeds of the first pulses from the
+    sensor before; they are not printed twice.
     """
     pulse_columns = (
         *(Column("", "sensor"), Column("kind"), Column("number")),
         *[Column("pulse", "pulse")] * every,
         *(*_measured(READINGS, labels), Column("static_force_value"), Column("missing")),
+        *(Column(name, error=True) for name in SPEEDS),
     )
     speed_columns = (
         *(Column("", "speed"), Column("kind"), Column("from"), Column("to")),
         *_measured(SPEEDS, ("sites/s", "m/s") if si else ("sites/time", "length/time")),
         Column("missing"),
     )
+    arriving = {(speed.kind, speed.places[1], 1): _numbers(speed, SPEEDS) for speed in speeds}
+    nothing = [None] * len(SPEEDS)
     pulses = tuple(
         (*_place(r), *[r.pulse] * every, *_numbers(r, READINGS), r.static, r.missing)
+        + tuple(arriving.get((r.kind, *r.places, r.pulse), nothing))
         for r in sensors
     )
     times = tuple((*_place(r), *_numbers(r, SPEEDS), r.missing) for r in speeds)

@@ -52,7 +52,8 @@ def pulses(
     sensor, "force". Beads and contacts are counted from 1. Units in the header are read: results
     are then in SI, else in the file's own units. A distance without a unit is in m, or in those.
 
-    ``sensors`` and ``speeds`` as of `validation.studies.run`, the static force from the record.
+    ``sensors`` and ``speeds`` as of `validation.studies.run`, the static force from the record. A
+    sensor has the speeds from the sensor before as well, so that the CSV holds all numbers.
     """
     one_of(of, _KINDS, "of")
     apart = None if distance is None else amount(str(distance), "distance", LENGTH)
