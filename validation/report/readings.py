@@ -35,11 +35,12 @@ def reading_tables(
         *_measured(SPEEDS, ("sites/s", "m/s") if si else ("sites/time", "length/time")),
         Column("missing"),
     )
-    arriving = {(speed.kind, speed.places[1], 1): _numbers(speed, SPEEDS) for speed in speeds}
-    nothing = [None] * len(SPEEDS)
+    arriving = {f"{r.kind} {r.places[1]}": _numbers(r, SPEEDS) for r in speeds}
     pulses = tuple(
-        (*_place(r), *[r.pulse] * every, *_numbers(r, READINGS), r.static, r.missing)
-        + tuple(arriving.get((r.kind, *r.places, r.pulse), nothing))
+        (
+            *(*_place(r), *[r.pulse] * every, *_numbers(r, READINGS), r.static, r.missing),
+            *(arriving[r.name] if r.pulse == 1 and r.name in arriving else (None, None)),
+        )
         for r in sensors
     )
     times = tuple((*_place(r), *_numbers(r, SPEEDS), r.missing) for r in speeds)

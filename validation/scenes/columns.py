@@ -1,6 +1,6 @@
 """Columns of measured files: CSV with a header that names each column and its unit.
 
-The header is the first line that is neither empty nor begins with #. "force (mN)" or "force [mN]"
+The header is the first line that is neither empty nor begins with #. "Force (mN)" or "force [mN]"
 names the column "force" and its unit: values are returned in SI. Values of a column without a unit
 are returned as they are. A header with a semicolon is separated by semicolons, and numbers below it
 may have decimal commas; any other header is separated by commas.
@@ -32,6 +32,7 @@ _UNITS: Mapping[str, Mapping[str, float]] = {
     **dict.fromkeys(("speed", "speed_error", "velocity"), _SPEED),
 }  # by the last word of a column's name
 LONGEST = 100  # times the simulated time that a record may last
+_SENSOR = re.compile(r"(?:(bead|contact) )?(?:([1-9]\d{0,8}) )?(dynamic )?force")
 _HEADER = re.compile(r"\s*(.*?)\s*(?:\(([^()]*)\)|\[([^][]*)\])?\s*")  # name, (unit) or [unit]
 
 
@@ -39,7 +40,8 @@ _HEADER = re.compile(r"\s*(.*?)\s*(?:\(([^()]*)\)|\[([^][]*)\])?\s*")  # name, (
 class MeasuredFile:
     """Names, units and texts of the columns of a file; `read` makes one, `column` reads numbers.
 
-    names, units : of the columns, in the order of the file; "" for a column without a unit.
+    names, units : of the columns, in the order of the file; names in lower case, "" for a column
+    without a unit.
     """
 
     path: Path
@@ -51,6 +53,8 @@ class MeasuredFile:
     @classmethod
     def read(cls, path: str | Path, renamed: Mapping[str, str] | None = None) -> MeasuredFile:
         """Read a file. ``renamed``: headers, with or without their unit, by the new names.
+
+        Upper and lower case are alike, but for headers that differ in nothing else.
 
         Raises `SceneError`, in one line, for a file that cannot be read, and for a header in
         ``renamed`` that the file does not have once.
@@ -74,13 +78,23 @@ class MeasuredFile:
             names.append(name)
             units.append((brackets[0] or brackets[1] or "").strip().replace("μ", "µ"))
         for name, old in (renamed or {}).items():
-            places = [i for i, entry in enumerate(header) if old in (entry.strip(), names[i])]
+            known = list(zip(map(str.strip, header), names, strict=True))
+            places = [i for i, both in enumerate(known) if old in both]
+            # A header in another case will do, unless "t" and "T" are both there.
+            alike = [i for i, both in enumerate(known) if old.lower() in map(str.lower, both)]
+            places = places or alike
             if len(places) != 1:
                 found = shorten(header)
                 raise SceneError(f"{path}: one column {old} is wanted, the header has {found}")
-            names = ["" if known == name else known for known in names]
+            names = ["" if other.lower() == name.lower() else other for other in names]
             names[places[0]] = name
-        return cls(Path(path), tuple(names), tuple(units), tuple(rows[1:]), ",."[mark == ","])
+        return cls(
+            Path(path),
+            tuple(name.lower() for name in names),
+            tuple(units),
+            tuple(rows[1:]),
+            ",."[mark == ","],
+        )
 
     def column(self, name: str) -> Array:
         """Return the values of a column, (N,), in SI if the header names a unit.
@@ -119,12 +133,46 @@ def columns(
 
     Raises `SceneError` as `MeasuredFile` does, and for new names that none of the columns has.
     """
-    for name in renamed or {}:
-        if name not in (known := (*wanted, *optional)):
-            raise SceneError(f"column is {shorten(name)}: one of {', '.join(known)} is wanted")
+    refuse_unknown(renamed, (*wanted, *optional))
     file = MeasuredFile.read(path, renamed)
     present = (name for name in optional if name in file.names)
     return {name: file.column(name) for name in (*wanted, *present)}
+
+
+def refuse_unknown(renamed: Mapping[str, str] | None, known: Sequence[str]) -> None:
+    """Refuse a new name of a column that is not among the known ones."""
+    for name in renamed or {}:
+        if name.lower() not in known:
+            raise SceneError(f"column is {shorten(name)}: one of {', '.join(known)} is wanted")
+
+
+@dataclass(frozen=True)
+class SensorColumn:
+    """A column with the force of a sensor, such as "bead 15 force"."""
+
+    name: str
+    kind: str  # "bead" or "contact"
+    number: int | None  # counted from 1; None for the only sensor of a file
+    dynamic: bool  # True without the static force
+
+
+def sensor_columns(file: MeasuredFile, of: str = "contact") -> list[SensorColumn]:
+    """Return the columns of sensors, beads first.
+
+    of : kind of the sensors whose names do not say it.
+
+    Raises `SceneError` for two columns of one sensor, and for several of which one has no number.
+    """
+    named = [(name, match) for name in file.names if (match := _SENSOR.fullmatch(name))]
+    sensors = [
+        SensorColumn(n, m[1] or of, int(m[2]) if m[2] else None, bool(m[3])) for n, m in named
+    ]
+    if len(sensors) > 1 and (without := [s.name for s in sensors if s.number is None]):
+        raise SceneError(f"{file.path}: {shorten(without[0])} has no number: several are there")
+    if len({(sensor.kind, sensor.number) for sensor in sensors}) < len(sensors):
+        names = shorten([sensor.name for sensor in sensors])
+        raise SceneError(f"{file.path}: two columns of {names} are of one sensor")
+    return sorted(sensors, key=lambda sensor: sensor.kind)
 
 
 def amount(text: str, name: str, units: Mapping[str, float]) -> float:

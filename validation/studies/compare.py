@@ -6,7 +6,6 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import partial
-from itertools import product
 from typing import Any
 
 import click
@@ -25,7 +24,14 @@ from validation.report.command import column_option, option, study
 from validation.report.result import Report
 from validation.report.table import Column, Table
 from validation.scenes.checks import SceneError
-from validation.scenes.columns import TIME, amount, check_span, columns
+from validation.scenes.columns import (
+    TIME,
+    MeasuredFile,
+    amount,
+    check_span,
+    refuse_unknown,
+    sensor_columns,
+)
 from validation.scenes.scene import Scene
 from validation.scenes.scenefile import read_scene
 
@@ -141,20 +147,19 @@ class _Records:
         static = static_forces(chain)
         if not static:
             raise SceneError("the scene names no sensors")
-        prefixes = {f"{name} ": name for name in static}
-        if len(static) == 1:
-            prefixes |= {"": next(iter(static))}
-        kinds = ("force", "dynamic force")
-        optional = [prefix + kind for prefix in prefixes for kind in kinds]
-        samples = columns(file, "time", optional=optional, renamed=renamed)
-        time, forces = samples["time"], dict[str, Array]()
+        measured = MeasuredFile.read(file, renamed)
+        time, forces, used = measured.column("time"), dict[str, Array](), ["time"]
         check_span(file, time, chain.duration)
-        for (prefix, name), kind in product(prefixes.items(), kinds):
-            if name not in forces and (force := samples.get(prefix + kind)) is not None:
-                forces[name] = force - (static[name] if kind == "force" else 0)
+        for sensor in sensor_columns(measured):
+            name = f"{sensor.kind} {sensor.number}"
+            if sensor.number is None and len(static) == 1:
+                (name,) = static
+            if name in static:
+                used.append(sensor.name)
+                forces[name] = measured.column(sensor.name) - (not sensor.dynamic) * static[name]
         if not forces:
-            names = " or ".join(f"{prefix}force" for prefix in prefixes)
-            raise SceneError(f"{file}: no column is {names}")
+            raise SceneError(f"{file}: no column is {' or '.join(f'{n} force' for n in static)}")
+        refuse_unknown(renamed, used)
         try:
             pulses = {name: noisy_pulse(time, f, 0.0).numbers for name, f in forces.items()}
         except MeasureError as error:

@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Mapping
-from dataclasses import dataclass
 from itertools import pairwise
 
 import click
 
 from lwa.base.arrays import Array
-from lwa.base.exact import shorten
 from validation.pictures import Curve, Panel
 from validation.pulses.noisy import noisy_pulse
 from validation.pulses.pulse import MeasureError
@@ -20,9 +17,15 @@ from validation.report.command import column_option, option, study
 from validation.report.readings import reading_tables
 from validation.report.result import Report
 from validation.scenes.checks import SceneError, one_of
-from validation.scenes.columns import LENGTH, MeasuredFile, amount
+from validation.scenes.columns import (
+    LENGTH,
+    MeasuredFile,
+    SensorColumn,
+    amount,
+    refuse_unknown,
+    sensor_columns,
+)
 
-_SENSOR = re.compile(r"(?:(bead|contact) )?(?:([1-9]\d{0,8}) )?(?:dynamic )?force")
 _KINDS = ("bead", "contact")
 _NOTE = (
     "First pulse at each sensor, in {} units; forces are counted from the static force, the mean "
@@ -59,55 +62,36 @@ def pulses(
     apart = None if distance is None else amount(str(distance), "distance", LENGTH)
     file = MeasuredFile.read(records, renamed)
     time, si = file.column("time"), any(file.units)
-    sensors = sorted(_sensors(file, of), key=lambda sensor: sensor.kind)
+    sensors = sensor_columns(file, of)
     if not sensors:
         raise SceneError(f"{records}: no column is the force of a sensor, such as contact 15 force")
-    if unknown := set(renamed or ()) - {"time"} - {sensor.column for sensor in sensors}:
-        raise SceneError(f"column is {shorten(unknown.pop())}: time or a sensor's force is wanted")
-    forces = [file.column(sensor.column) for sensor in sensors]
-    found = [_reading(s, time, force) for s, force in zip(sensors, forces, strict=True)]
-    neighbours = (two for two in pairwise(found) if two[0].kind == two[1].kind)
+    refuse_unknown(renamed, ["time", *(sensor.name for sensor in sensors)])
+    found, curves = [], []
+    for i, sensor in enumerate(sensors):
+        force = file.column(sensor.name)
+        found.append(_reading(sensor, time, force))
+        curves.append(Curve(found[i].name, time, force, f"C{i}-"))
     labels = ("arrival (s)", "peak (N)", "FWHM (s)") if si else ("arrival", "peak", "FWHM")
     speeds = []
-    for one, other in neighbours:
+    for one, other in pairwise(found):
+        if one.kind != other.kind:
+            continue
         sites = abs(other.places[0] - one.places[0])
         ways = (sites,) if apart is None else (sites, sites * apart)
         distances = dict(zip(SPEEDS, ways, strict=False))
         speeds.append(speed_between(one, other, distances, math.hypot))  # independent noise
     tables, missing = reading_tables(found, speeds, labels, si)
-    rows = zip(found, forces, strict=True)
-    curves = tuple(Curve(r.name, time, f, f"C{i}-") for i, (r, f) in enumerate(rows))
     units = (" (s)", " (N)") if si else ("", "")
-    panel = Panel(f"time{units[0]}", f"force{units[1]}", curves, legend_above=True)
+    panel = Panel(f"time{units[0]}", f"force{units[1]}", tuple(curves), legend_above=True)
     notes = (missing, _NOTE.format("SI" if si else "the file's own"))
     return Report(str(records), tables, panels=(panel,), notes=notes)
 
 
-@dataclass(frozen=True)
-class _Sensor:
-    """A sensor with the name of its column."""
-
-    kind: str
-    number: int  # of the bead or contact, counted from 1
-    column: str
-
-
-def _sensors(file: MeasuredFile, of: str) -> list[_Sensor]:
-    """Return the sensors of a file; a column without a number is the only one."""
-    named = [(match, name) for name in file.names if (match := _SENSOR.fullmatch(name))]
-    sensors = [_Sensor(m[1] or of, int(m[2] or 1), name) for m, name in named]
-    if len(named) > 1 and (without := [name for match, name in named if not match[2]]):
-        raise SceneError(f"{file.path}: {shorten(without[0])} has no number: several are there")
-    if len({(sensor.kind, sensor.number) for sensor in sensors}) < len(sensors):
-        names = shorten([sensor.column for sensor in sensors])
-        raise SceneError(f"{file.path}: two columns of {names} are of one sensor")
-    return sensors
-
-
-def _reading(sensor: _Sensor, time: Array, force: Array) -> Reading:
-    """Measure the first pulse at a sensor."""
+def _reading(sensor: SensorColumn, time: Array, force: Array) -> Reading:
+    """Measure the first pulse at a sensor; the only one of a file is number 1."""
+    place = (sensor.number or 1,)
     try:
         pulse = noisy_pulse(time, force)
     except MeasureError as error:
-        return Reading(sensor.kind, (sensor.number,), {}, math.nan, str(error))
-    return Reading(sensor.kind, (sensor.number,), pulse.numbers, pulse.base)
+        return Reading(sensor.kind, place, {}, math.nan, str(error))
+    return Reading(sensor.kind, place, pulse.numbers, pulse.base)

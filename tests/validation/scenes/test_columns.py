@@ -61,6 +61,14 @@ def test_a_column_is_renamed_with_or_without_its_unit(tmp_path):
         assert (found["time"].tolist(), found["force"].tolist()) == ([1e-3], [2.0])
 
 
+def test_names_are_compared_without_regard_to_case(tmp_path):
+    file = written(tmp_path, "Time (ms),FORCE,T,t\n1,2,3,4\n")
+    found = columns(file, "time", "force")
+    assert (found["time"].tolist(), found["force"].tolist()) == ([1e-3], [2.0])
+    for header, value in (("t", 4.0), ("T", 3.0), ("force", 2.0)):
+        assert columns(file, "time", renamed={"time": header})["time"].tolist() == [value]
+
+
 @pytest.mark.parametrize(
     ("text", "renamed", "named"),
     [

@@ -135,7 +135,7 @@ def test_the_damping_comes_back_from_noisy_peaks(files, tmp_path, kind, true, gu
         ({"damping": True}, "damping is to be fitted"),
         ({"time_constant": "1 h"}, "time_constant is '1 h'"),
         ({"time_constant": "1e-9"}, "time_constant is 1e-09"),
-        ({"renamed": {"contact 5 force": "x"}}, "column is 'contact 5 force'"),
+        ({"renamed": {"contact 5 force": "contact 4 force"}}, "column is 'contact 5 force'"),
     ],
 )
 def test_bad_options_are_refused(files, options, named):
