@@ -12,7 +12,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cache
+from itertools import accumulate
 from math import factorial
+from operator import mul
 
 from flint import fmpq, fmpq_mpoly
 
@@ -22,11 +24,13 @@ from lwa.algebra.jets import GradedSeries, JetAlgebra
 class Force:
     """The series X and Φ of a contact, to which terms are appended order by order.
 
-    The law is that of the algebra, with its parameters φ_m, or else the power p^k.
+    The law is that of the algebra, with its parameters φ_m, or else the power p^k, whose φ_m are
+    (k-1) … (k-m+1).
     """
 
     def __init__(self, algebra: JetAlgebra, k: fmpq_mpoly) -> None:
-        self.k, self.phi = k, algebra.phi
+        factors = (k - j for j in range(1, algebra.weight + 1))
+        self.phi = algebra.phi or [algebra.zero, *accumulate(factors, mul, initial=algebra.one)]
         self.X: list[fmpq_mpoly] = [algebra.zero]
         self.Phi = GradedSeries(algebra, k, [algebra.zero])
         self._slope = GradedSeries(algebra, k, [algebra.r[1]])
@@ -37,21 +41,8 @@ class Force:
     def nonlinear(self) -> fmpq_mpoly:
         """The nonlinear part Φ_n - X_n of the next order n, known from X_1 … X_{n-1}."""
         if self._nonlinear is None:
-            n = len(self.X)
-            self._nonlinear = self._powers.sum(self.phi, n) if self.phi else self._binomial(n)
+            self._nonlinear = self._powers.sum(self.phi, len(self.X))
         return self._nonlinear
-
-    def _binomial(self, n: int) -> fmpq_mpoly:
-        """Φ_n - X_n of the power law, (1 + X)^k = 1 + k Φ."""
-        # Y = (1 + X)^k obeys n Y_n = Σ_{j=1..n} (k j - (n - j)) X_j Y_{n-j} (from X Y' = k X' Y).
-        # With Y_0 = 1 and Y_n = k Φ_n this is, free of divisions by k,
-        # Φ_n = X_n + ((k + 1)/n) Σ_{j<n} j X_j Φ_{n-j} - Σ_{j<n} X_j Φ_{n-j}.
-        plain = weighted = self.Phi[0]
-        for j in range(1, n):
-            product = self.X[j] * self.Phi[n - j]
-            plain = plain + product
-            weighted = weighted + j * product
-        return (self.k + 1) * weighted / n - plain
 
     def append(self, X_n: fmpq_mpoly) -> None:
         """Append the next term X_n to X, and Φ_n to Φ."""
