@@ -183,7 +183,7 @@ def envelope(
     load = {"background": background, "precompression": chain.load(background, precompression)}
     equation = schrodinger.envelope(cell, chain.law, **load, wavenumber=wavenumber, branch=place)
     symbols = {*cell.symbols, *equation.compression.free_symbols, *wavenumber.free_symbols}
-    if not symbols - {cell.spacing} and (cell.size > 2 or not sp.cos(wavenumber).is_Rational):
+    if not symbols - {cell.spacing} and not sp.cos(wavenumber).is_Rational:
         equation = equation.numeric()  # exact results want a frequency that is algebraic
     breather = None
     if frequency is not None or detuning is not None:

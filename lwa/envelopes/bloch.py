@@ -215,18 +215,12 @@ def _in_cosine(polynomial: sp.Expr, cosine: sp.Expr) -> sp.Expr:
 
 
 def _roots(relation: Any, cosine: sp.Expr) -> list[tuple[sp.Expr, sp.Poly]]:
-    """Roots x of T(x) = 2 cos κ with their irreducible polynomials."""
+    """Roots x of T(x) = 2 cos κ, of degree 1 or 2, with their irreducible polynomials."""
     pairs: list[tuple[sp.Expr, sp.Poly]] = []
     for factor, count in sp.factor_list(_in_cosine(relation.numer.as_expr(), cosine))[1]:
         if X in factor.free_symbols:
             polynomial = sp.Poly(factor, X, field=True)
-            try:
-                roots = sp.roots(polynomial) if polynomial.degree() < 3 else polynomial.real_roots()
-            except (NotImplementedError, sp.PolynomialError):
-                raise InputError(
-                    "the frequency has no exact form at this wavenumber: numeric() gives floats"
-                ) from None
-            pairs += count * [(x, polynomial) for x in roots]
+            pairs += count * [(x, polynomial) for x in sp.roots(polynomial)]
     return pairs
 
 
@@ -238,15 +232,14 @@ def exact_mode(
     sampled: Callable[[sp.Expr], float],
     generic: bool = False,
 ) -> Mode:
-    """The mode of a branch in exact numbers, in sin κ/2 and cos κ/2 unless cos κ is rational.
+    """The mode of a branch of one or two beads, in sin κ/2 and cos κ/2 unless cos κ is rational.
 
     bead : index of the bead whose φ is positive. sampled : function that gives a float of an
     expression, its symbols replaced by sample numbers; the roots are ordered by these floats.
     generic : True to derive the mode with symbols for all numbers, which are put in at the end:
     a pole at the frequency 2ω that no force drives cancels then.
 
-    Raises `lwa.InputError` where the frequency has no exact form, and where the second harmonic is
-    a mode that the mode drives.
+    Raises `lwa.InputError` where the second harmonic is a mode that the mode drives.
     """
     P, cosine, phase = len(contacts.masses), sp.cos(wavenumber), sp.exp(sp.I * wavenumber)
     sine = sp.sqrt(1 - cosine**2)

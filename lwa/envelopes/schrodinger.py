@@ -312,8 +312,8 @@ def envelope(
     branch : "acoustic", "optical" or the number of the branch from 0; by default 0 for equal beads,
         else 1.
 
-    Results are exact for cells of one or two beads, in symbols and at any wavenumber, and for cells
-    of numbers where cos κ is rational; they are floats through `numeric` for any cell of numbers.
+    Results are exact for cells of one or two beads, in symbols and at any wavenumber, unless they
+    are `numeric`; they are floats for other cells, of numbers.
 
     Raises `lwa.InputError` for other arguments, and unless F′ > 0 at the strain. Results raise it
     where branches touch, at zero frequency, where the mode drives a mode of twice its frequency,
@@ -347,4 +347,4 @@ def envelope(
             f"branch is {shorten(branch)}: a cell of {cell.size} has as many branches, "
             "counted from 0"
         )
-    return Envelope(cell, law, static, kappa, number)
+    return Envelope(cell, law, static, kappa, number, floats=cell.size > 2)
