@@ -239,6 +239,8 @@ def test_the_chain_on_the_page_is_the_chain_of_python(visit):
     speed = 22 / (pulses[1].arrival - pulses[0].arrival)
     assert abs(of_page["speed"] / speed - 1) < 2e-3
     assert abs(of_page["force"] / pulses[0].peak - 1) < 2e-3
+    # the theory's line is over the bars, contact i at i + 1/2, after 22 sites at its own speed
+    assert abs(of_page["line"] - of_page["bars"] - 0.5) < 1
 
 
 def test_the_script_is_small_and_loaded_where_it_is_used(visit):
