@@ -22,7 +22,6 @@ from lwa import Cell
 from lwa.base import splines
 from lwa.base.arrays import Array
 from lwa.base.exact import shorten
-from lwa.base.splines import read_spline
 from lwa.force import ContactLaw
 from validation.scenes.checks import SceneError
 
@@ -149,7 +148,7 @@ def _table_function(points: str, order: int) -> Callable[[float], Any]:
     """Return F, F′ or the energy (order -1) of a table as a function that Numba compiles."""
     from numba import njit  # start-up
 
-    spline, log_force = read_spline(points), njit(splines.log_force)
+    spline, log_force = splines.read_spline(points), njit(splines.log_force)
     pieces, firsts, end = spline.pieces, spline.pieces[0, 1:].copy(), spline.end
     nodes, weights = splines.NODES, splines.WEIGHTS
 
@@ -183,8 +182,6 @@ def _evaluated(law: ContactLaw) -> Iterator[None]:
     try:
         with np.errstate(all="ignore"):
             yield
-    except SceneError:
-        raise
     except Exception:
         text = "a force with an energy in elementary functions is wanted"
         raise SceneError(f"law is {shorten(law.text)}: {text}") from None

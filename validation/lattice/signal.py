@@ -140,20 +140,14 @@ class SensorSignal:
         t = np.asarray(time, float)
         inside = (t >= 0) & (t <= self.times[-1])
         values = np.full(t.shape, np.nan)
-        values[inside] = self._values(t[inside])
-        return values
-
-    def _values(self, time: Array) -> Array:
-        """Return the values (S,) at times (S,) within the run."""
-        y, v = self.path(self._beads, time)
-        row = self.number - self._beads[0]
-        if self.quantity in ("displacement", "velocity"):
-            return np.asarray((y if self.quantity == "displacement" else v)[row])
+        y, v = self.path(self._beads, t[inside])
         compressions = _compressions(self.motion, self._beads, y)
-        if self.quantity == "compression":
-            return np.asarray(compressions[row])
-        forces = _forces(self.motion, self._beads, compressions, v)
-        return np.asarray(forces[self.kind == "bead"][row])
+        rows = {"compression": compressions, "displacement": y, "velocity": v}
+        if self.quantity == "force":
+            forces, means = _forces(self.motion, self._beads, compressions, v)
+            rows["force"] = means if self.kind == "bead" else forces
+        values[inside] = rows[self.quantity][self.number - self._beads[0]]
+        return values
 
 
 def signal(motion: Motion, path: Path, kind: str, number: int, quantity: str) -> SensorSignal:

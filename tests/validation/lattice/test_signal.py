@@ -87,8 +87,13 @@ def test_the_law_of_a_pickled_run_finds_its_machine_code_in_another_process(tmp_
     assert float(other.stdout) == run.signal("contact", 0)(0.5) > 0
 
 
-def test_a_missing_sensor_or_quantity_is_refused():
+def test_a_missing_sensor_or_quantity_is_refused(monkeypatch):
     run = simulate(LINEAR)
+    monkeypatch.setattr("validation.lattice.knots._MOST_BYTES", 0)
+    long = simulate(LINEAR)
+    np.testing.assert_array_equal(long.bead_velocity, run.bead_velocity)
+    with pytest.raises(SceneError, match="too many steps to keep the motion"):
+        long.signal("contact", 0)
     for arguments, message in (
         (("contact", 1), "number is 1: the scene has no sensor at this contact"),
         (("bead", 0, "compression"), "no bead has a compression: contact: force, compression; .*"),
