@@ -14,16 +14,15 @@ c₋ = 2 c₊ (Venakides, Deift & Oba, Comm. Pure Appl. Math. 44, 1171 (1991)).
 from __future__ import annotations
 
 import math
-from bisect import bisect_right
+
+import numpy as np
 
 RESTING = 2.0
 """c₋/c₊ up to which the beads at the wall come to rest beside it (a theorem for Toda's law)."""
 
 # Mean strain over p₋ of contacts ten and more from the wall, by k, for powers without load
-_MEANS = {
-    1.0: 1.0, 1.5: 0.9884, 2.0: 0.9687, 2.5: 0.9173, 3.0: 0.8671, 4.0: 0.7924, 5.0: 0.7424,
-    7.0: 0.6805, 10.0: 0.6302,
-}  # fmt: skip
+_EXPONENTS = (1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 7.0, 10.0)
+_MEANS = (1.0, 0.9884, 0.9687, 0.9173, 0.8671, 0.7924, 0.7424, 0.6805, 0.6302)
 MEAN_ERROR = 0.005
 """Error of `mean_of_power` by the interpolation, over p₋."""
 
@@ -50,13 +49,7 @@ def mean_error(r: float) -> float:
 
 def mean_of_power(k: float) -> float:
     """Mean strain over p₋ behind the front of a power law without load; NaN beyond k = 10."""
-    knots = [*_MEANS]
-    if not knots[0] <= k <= knots[-1]:
-        return math.nan
-    i = min(bisect_right(knots, k), len(knots) - 1)
-    low, high = knots[i - 1], knots[i]
-    share = (k - low) / (high - low)
-    return (1 - share) * _MEANS[low] + share * _MEANS[high]
+    return float(np.interp(k, _EXPONENTS, _MEANS, math.nan, math.nan))
 
 
 def leading_error(off: float, rho: float, r: float, uniform: bool) -> float:
