@@ -11,8 +11,9 @@ E of one material.
 **Any law** F(δ) = W'(δ). In the long-wave theory S = m̄ V²/(R D²) is 2 W/δ², δ the peak
 compression. ln V is a polynomial of ln F, and R = R(k) with the local exponent k.
 
-Errors are 95 % intervals. The size of the noise is estimated from the residuals; standard
-deviations of the data, if known, only weight the data.
+Errors are 95 % intervals. The size of the noise is estimated from the residuals. Standard
+deviations of the data, if known, weight the data, and the noise is at least theirs: the residuals
+of few pulses may be small by chance.
 """
 
 from __future__ import annotations
@@ -196,14 +197,17 @@ def _fit(x: Array, y: Array, degree: int, weight: Array | None) -> tuple[Array, 
     """Fit a polynomial in x - middle; return coefficients (degree + 1, 1 + draws) and middle."""
     w = np.ones_like(x) if weight is None else weight
     middle = float(np.average(x, weights=w**2))  # slope and constant are uncorrelated about it
-    best, covariance = np.polyfit(x - middle, y, degree, w=w, cov=True)
+    best, covariance = np.polyfit(x - middle, y, degree, w=w, cov="unscaled")
+    freedom = len(x) - degree - 1
+    scatter = np.sum((w * (y - np.polyval(best, x - middle))) ** 2) / freedom
+    covariance = covariance * (scatter if weight is None else max(scatter, 1.0))
     # On data without scatter the rounding of ln F, of ln V and of the fit is left.
     rounding = 2 * np.finfo(float).eps * (1 + np.abs(x) + np.abs(y))
     change = np.linalg.pinv(w[:, np.newaxis] * np.vander(x - middle, degree + 1)) * w
     largest = np.abs(change) @ rounding
     # Coefficients, highest first, of the best fit, then draws from their distribution: Student's t
     # with the scatter of the residuals.
-    shape, freedom = covariance + np.outer(largest, largest), len(x) - degree - 1
+    shape = covariance + np.outer(largest, largest)
     noise = scipy.stats.multivariate_t(None, shape, freedom, allow_singular=True)
     draws = noise.rvs(_DRAWS, random_state=0).reshape(_DRAWS, degree + 1)
     return np.vstack((best, best + draws)).T, middle

@@ -80,6 +80,9 @@ def test_known_errors_weight_the_pulses(chain):
     assert np.std(weighted) < np.std(plain) / 3
     free = [free_law(chain, force, speed, weight=w)[1] / force for w in (weight, None)]
     assert np.median(free[0][::2]) < np.median(free[1][::2]) / 2
+    weight = weights(FORCES, exact, noise * FORCES, noise * exact)
+    error = fit_power(chain, FORCES, exact, weight).k.error  # residuals of 0 do not hide the noise
+    assert np.std(weighted) < error < 2.5 * np.std(weighted)
     even = fit_power(chain, force, speed, np.full_like(force, 7.0))
     assert even.k.value == pytest.approx(fit_power(chain, force, speed).k.value, rel=1e-12)
 
