@@ -80,11 +80,6 @@ class ExpandedWave(Value):
         """Kinetic and elastic energy."""
         return self._at_force(self.expansion.energy, self.expansion.k + 1)
 
-    @property
-    def effective_mass(self) -> Resummed:
-        """Effective mass P²/(2E) of momentum P and energy E, independent of the force."""
-        return self.expansion.effective_mass.at()
-
     def dissipation(self, kind: str) -> Resummed:
         """Energy lost per contact, divided by the damping constant; see `Expansion.dissipation`."""
         k = self.expansion.k

@@ -38,20 +38,6 @@ def test_the_defect_is_the_difference_between_both_equations():
     assert set(theory.defect[3]) == {Jet(((2, 3),)), Jet(((2, 1), (3, 1)))}
 
 
-def test_amplitude_ratios_are_all_the_uniform_motions():
-    """m1 ü = 2s and m2 λ ü = -2s, s the force of a contact: m2 λ s + m1 s = 0 for the ratios only.
-
-    s is odd in the strain (λ - 1) u and vanishes with it alone: where a power (λ - 1)^k would do.
-    """
-    m1, m2 = sp.symbols("m1 m2", positive=True)
-    lam = sp.Symbol("lam")
-    branches = ("acoustic", "optical")
-    found = {homogenize(Dimer(m1, m2), 1, branch=branch).amplitude_ratio for branch in branches}
-    for s in (lam - 1, (lam - 1) ** 3):
-        assert set(sp.solve(m2 * lam * s + m1 * s, lam)) == found
-    assert homogenize(Dimer(3, 5), branch="optical").amplitude_ratio == sp.Rational(-3, 5)
-
-
 def test_one_mass_has_no_optical_branch():
     with pytest.raises(InputError, match="1 masses"):
         homogenize(Cell([1]), branch="optical")

@@ -3,7 +3,7 @@
 import pytest
 import sympy as sp
 
-from lwa import Cell, D, Dimer, InputError, homogenize
+from lwa import D, Dimer, InputError, homogenize
 from tests.lwa.equation.test_conservation import at_a_point, variational_derivative
 
 x = sp.Symbol("x")
@@ -16,15 +16,6 @@ def test_conservation_form_agrees_with_the_euler_operator(masses, conservative):
     # at a polynomial with all jets alive: an expression that vanishes does so for any field
     value = at_a_point(variational_derivative(pde.right_side(u, x), u, 4).subs(D, 1), u)
     assert (value == 0) == conservative == pde.conservative
-
-
-def test_right_side_of_the_linear_chain_is_its_symbol():
-    a = sp.Symbol("a")
-    pde = homogenize(Cell(["m"]), order=7, k=1).pde
-    symbol = sp.expand(pde.right_side(sp.exp(a * x), x) / sp.exp(a * x))
-    # (e^{aD} - 2 + e^{-aD})/D² = Σ 2 a^{2n} D^{2n-2}/(2n)!
-    expected = sum(2 * a ** (2 * n) * D ** (2 * n - 2) / sp.factorial(2 * n) for n in (1, 2, 3))
-    assert sp.expand(symbol - expected) == 0
 
 
 def test_G_H_I_need_order_four_and_the_acoustic_branch():
