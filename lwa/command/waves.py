@@ -245,7 +245,6 @@ def _chain_rows(chain: ChainInput) -> list[Row | str]:
 def _on_background(chain: ChainInput, theory: Theory, wave: BackgroundWave) -> Answer:
     """Rows of the waves on the strain p0, with V_s a function of the rise B of the strain."""
     head = chain_json(theory)
-    speed, widths = _at_one(wave)
     rows: list[Row | str] = [
         chain.text,
         FIELDS[theory.closure.field],
@@ -255,12 +254,8 @@ def _on_background(chain: ChainInput, theory: Theory, wave: BackgroundWave) -> A
         Row("I", "", wave.I, digits=0),
         Row("speed", "V_s", wave.speed(), digits=0),
         Row("time_scale", "dx/dt over V_s", wave.time_scale, digits=0),
+        *_rows_at_one(wave),
     ]
-    if speed is not None:
-        rows.append(Row("speed", "V_s at B = 1", speed, expression=False))
-    for q, width in widths.items():
-        label = f"FWHM of the {q} at B = 1"
-        rows.append(Row(f"fwhm.{q}", label, width, digits=WIDTH_DIGITS, expression=False))
     shown: list[Shown] = [wave]
     try:
         kdv = wave.kdv
@@ -282,8 +277,8 @@ def _on_background(chain: ChainInput, theory: Theory, wave: BackgroundWave) -> A
     return Answer(head, rows, spacing=wave.cell.spacing, shown=shown)
 
 
-def _at_one(wave: BackgroundWave) -> tuple[sp.Expr | None, dict[str, sp.Expr]]:
-    """Speed and widths of the wave of B = 1; (None, {}) without a wave or with symbols.
+def _rows_at_one(wave: BackgroundWave) -> list[Row]:
+    """Rows of the speed and the widths at B = 1; [] without such a wave or with symbols.
 
     A spacing that is a symbol is the unit of length; beside a law that is no power it is 1.
     """
@@ -293,8 +288,14 @@ def _at_one(wave: BackgroundWave) -> tuple[sp.Expr | None, dict[str, sp.Expr]]:
     try:
         speed = wave.speed(1)
     except (NoSolitaryWave, InputError):
-        return None, {}
+        return []
     if speed.free_symbols - {wave.cell.spacing}:
-        return None, {}
-    widths = {q: attempt(wave.fwhm, 1, q) for q in QUANTITIES}
-    return speed, {q: x for q, x in widths.items() if not isinstance(x, InputError)}
+        return []
+    return [
+        Row("speed", "V_s at B = 1", speed, expression=False),
+        *(
+            Row(f"fwhm.{q}", f"FWHM of the {q} at B = 1", width, "", WIDTH_DIGITS, False)
+            for q in QUANTITIES
+            if not isinstance(width := attempt(wave.fwhm, 1, q), InputError)
+        ),
+    ]
