@@ -1,13 +1,13 @@
 """The README's picture: the paper's beads, the pulse that runs down them, the theory on top.
 
-A chain of steel and PTFE beads is struck at 1.37 m/s, as in Porter et al. 2008. Drawn are the
-beads, displaced more than they are, and the force in each contact. The line is the theory's wave:
-its height is that of the bead forces' mean, its place that of the lattice at the first moment, and
-from there it runs at its own speed.
+A chain of steel and PTFE beads is struck at 1.37 m/s, as in Porter et al. 2008. The picture shows
+the beads, their displacements enlarged, and the force in each contact. The line is the theory's
+wave. Its peak is the mean peak force of the beads. It starts at the place of the lattice's pulse at
+the first moment, and runs at its own speed.
 
     python book/picture.py
 
-draws `chain.png`, which the README shows; what is drawn stands in the file as text.
+draws `chain.png`, which the README shows; the numbers of the picture stand in the file as text.
 """
 
 from __future__ import annotations
@@ -31,19 +31,19 @@ HERE = Path(__file__).parent
 STEEL = Sphere("0.45e-3", "2.38e-3", Material(E="193e9", nu="0.3"))
 PTFE = Sphere("0.123e-3", "2.38e-3", Material(E="1.46e9", nu="0.46"))
 PAIRS, FIRST, LAST, FRAMES = 20, 11, 31, 21
-"""Cells, the beads between which the pulse is shown, both of PTFE, and moments on the way."""
+"""Cells; first and last bead of the pulse's way, both of PTFE; number of moments on the way."""
 
 LARGER = 60
-"""How much larger than they are the displacements are drawn."""
+"""Factor by which the picture enlarges displacements."""
 
 
 @dataclass(frozen=True, eq=False)
 class Passage:
-    """What the lattice did and what the theory says of it.
+    """Motion of the lattice and place of the theory's wave at a few moments.
 
-    times : of the moments, each a site of the pulse after the one before.
-    force, displacement : of contacts and beads at these moments, in N and in D.
-    places : where the theory's wave is, in D, the first bead at 0.
+    times : the moments; between two of them the pulse advances by a site.
+    force, displacement : forces of contacts and displacements of beads then, in N and in D.
+    places : places of the theory's wave then, in D, the first bead at 0.
     """
 
     times: Array
@@ -55,14 +55,14 @@ class Passage:
 
     @property
     def numbers(self) -> dict[str, list[float] | float]:
-        """What is drawn, to five digits."""
+        """Numbers of the picture, to five digits."""
         values = {"time": self.times, "force": self.force, "place": self.places}
         rounded = {name: [float(f"{x:.5g}") for x in v.ravel()] for name, v in values.items()}
         return rounded | {"speed": float(f"{float(self.theory.speed):.5g}")}
 
 
 def passage() -> Passage:
-    """The pulse's way through the chain, at moments equally far from each other."""
+    """Integrate the chain and evaluate the theory at equally spaced moments."""
     cell = Cell.of_spheres([STEEL, PTFE])
     beads, D = range(2 * PAIRS), 2 * 2.38e-3
     scene = Scene.of_cell(

@@ -1,4 +1,4 @@
-"""The pulse of a struck dimer chain of masses 1 and ω, as several pages measure it.
+"""Measurement of the pulse of a struck dimer chain of masses 1 and ω.
 
 Units: the heavy bead's mass, A and D are 1. Bead 0 is struck with velocity 1. The pulse is read by
 `validation.pulses.steady`: the speed belongs to the force at the place of the width, although both

@@ -1,4 +1,4 @@
-"""A table for people, as the book's pages show one."""
+"""Tables of the book's pages."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ def table(
 ) -> Report:
     """Rows under heads; a head may come with the format of its column."""
     pairs = [head if isinstance(head, tuple) else (head, "") for head in heads]
-    # here, not by the column: what is None has a form as well
+    # formatted here and not by the column, because a form may print None
     shown = (
         tuple(
             form(cell) if callable(form) else cell
@@ -27,5 +27,5 @@ def table(
 
 
 def percent(digits: int = 1) -> Callable[[float | None], str]:
-    """How a ratio less one is written; a dash where there is none."""
+    """Return a format of a ratio less one, in percent; a dash stands for None."""
     return lambda value: "–" if value is None else f"{100 * value:+.{digits}f} %"

@@ -1,4 +1,4 @@
-"""Docstrings are plain text with formulas in Unicode: this makes reStructuredText of them.
+"""Conversion of docstrings, plain text with formulas in Unicode, to reStructuredText.
 
 What they use, and nothing else: paragraphs, "Parameters" with a line of dashes, ``name : text`` in
 aligned lines, indented blocks (formulas), doctests, and `names` or ``code`` between backticks. All
@@ -33,7 +33,7 @@ _TITLE = re.compile(r"(?<!\S)\\\*([A-Z][^*]*)\\\*")
 
 
 def converted(lines: list[str]) -> list[str]:
-    """The lines of a docstring, indentation removed, as reStructuredText."""
+    """Convert the lines of a docstring to reStructuredText, without their indentation."""
     result: list[str] = []
     for block in _blocks(lines):
         result += [*_block(block), ""]
@@ -81,7 +81,7 @@ def _entries(block: list[str]) -> Iterator[str]:
 
 
 def _text(text: str) -> str:
-    """Text with its code as literals and nothing else that means something to docutils."""
+    """Escape a text for docutils, with its code as literals."""
     parts: list[str] = []
     last = 0
     for match in _CODE.finditer(text):
@@ -112,7 +112,7 @@ class Names(SphinxDirective):
 
 
 def _public(name: str) -> Iterator[str]:
-    """The name itself, or the names that a package exports, its modules aside."""
+    """Return the name itself, or the names that a package exports, without its modules."""
     if "." in name:
         yield name
         return
@@ -168,7 +168,7 @@ def _modules(package: str) -> Iterator[str]:
 
 
 class StudyDocumenter(FunctionDocumenter):
-    """A study is documented as the function that it is."""
+    """Document a study as a function."""
 
     objtype = "study"
     directivetype = "function"
@@ -198,7 +198,7 @@ def _plain(
     signature: str | None,
     back: str,
 ) -> tuple[str | None, str] | None:
-    """A signature without the type of what shows progress, which is no caller's."""
+    """Remove the type of the progress function, which callers do not pass, from a signature."""
     return (_PROGRESS.sub("", signature), back) if signature else None
 
 

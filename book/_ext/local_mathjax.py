@@ -20,11 +20,11 @@ WHEEL = "sphinx_mathjax_offline-0.0.2-py3-none-any.whl"
 SHA256 = "206418155b2ff2f57496fb8501fdccae3da978e53031ff296c73729ba16062c4"
 INSIDE = "sphinx-mathjax-offline/static/mathjax/"
 WANTED = ("tex-chtml-full.js", "output/chtml/fonts/", "a11y/", "sre/")
-"""TeX in, HTML out with its fonts, and what the reader's menu can switch on."""
+"""Files of MathJax: TeX input, HTML output with its fonts, parts that the menu can load."""
 
 
 def fetched(folder: Path) -> Path:
-    """The wheel, downloaded into the folder unless it is there."""
+    """Return the wheel, downloaded into the folder unless it is there."""
     wheel = folder / WHEEL
     if not wheel.exists():
         pip = (sys.executable, "-m", "pip", "--quiet", "--disable-pip-version-check")
