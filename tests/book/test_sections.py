@@ -92,6 +92,12 @@ def test_the_checks_are_one_folded_line(page):
     assert "remove-cell" in list(cells(page))[-1][0], "the checks are not hidden"
 
 
+def test_tests_and_programs_that_pages_name_are_there():
+    named = {x for page in PAGES for x in re.findall(r"`((?:tests|book)/[\w/.]+)`", prose(page))}
+    assert len(named) > 5
+    assert not [name for name in named if not (BOOK.parent / name).exists()]
+
+
 @pytest.mark.parametrize("page", PAGES)
 def test_visible_code_fits_the_column(page):
     for options, code in cells(page):
