@@ -56,19 +56,18 @@ class NoisyPulse:
     """First pulse of a record, each number with one standard deviation as its error.
 
     numbers : arrival, peak above ``base``, fwhm, by these names.
-    base : mean of the samples before the pulse. noise : their standard deviation, NaN where the
-        record has too few of them; the errors are then from the residuals of the fit.
+    base : mean of the samples before the pulse, unless it was given.
     """
 
     numbers: Mapping[str, Measured]
     base: float
-    noise: float
 
 
 def noisy_pulse(time: ArrayLike, values: ArrayLike, base: float | None = None) -> NoisyPulse:
     """Measure the first pulse of a record with noise, sample times and values (S,).
 
-    base : the value without a pulse, if it is known; by default the mean before the pulse.
+    base : the value without a pulse, if it is known; by default the mean before the pulse. With a
+    known base the record may begin at its pulse: the noise is then that of the residuals.
 
     Raises `MeasureError` for a record without a whole pulse, with fewer than 16 samples above half
     of its peak, and with noise above 5 % of the peak.
@@ -104,7 +103,7 @@ def noisy_pulse(time: ArrayLike, values: ArrayLike, base: float | None = None) -
         share = noise / numbers["peak"].value
         raise MeasureError(f"the noise is {share:.1%} of the peak: at most {_LOUDEST:.0%} is read")
     numbers["peak"] = derived(lambda peak: peak * size, numbers["peak"])
-    return NoisyPulse(numbers, base * size, noise * size)
+    return NoisyPulse(numbers, base * size)
 
 
 def _place(t: Array, f: Array) -> tuple[float, float]:

@@ -21,7 +21,7 @@ from numpy.typing import ArrayLike
 
 from lwa.base.arrays import Array
 from validation.pulses.signals import MeasureError as MeasureError
-from validation.pulses.signals import Sampled, Signal
+from validation.pulses.signals import Signal, sampled
 
 Source = TypeVar("Source")
 
@@ -29,6 +29,7 @@ FEWEST = 8  # samples above half the peak; a record with fewer is too coarse
 _POINTS = 4  # grid points in each smooth interval
 _DEGREE = 10  # of the interpolant about a peak, over half an interval: error about 1e-16
 _NOISE = 1e-6  # of the largest |signal|: less may be rounding, or a spline's overshoot
+_LEAST = 0.01  # smallest prominence of a pulse over the highest peak
 _PARTLY = "the pulse is not wholly in the record:"
 
 
@@ -61,24 +62,29 @@ def measure(time: ArrayLike | Signal, values: ArrayLike | None = None) -> Pulse:
     >>> round(pulse.peak, 6), round(pulse.fwhm, 6)
     (1.0, 1.0)
     """
-    signal = _signal(time, values)
-    return dense(signal, highest_pulse(signal))
+    if values is not None:
+        signal: Signal = sampled(cast(ArrayLike, time), values)
+    elif callable(time):
+        signal = time
+    else:
+        raise MeasureError("values are missing: they are wanted beside the sample times")
+    pulse = highest_pulse(signal)
+    inside = np.count_nonzero((signal.times > pulse.rise) & (signal.times < pulse.fall))
+    if values is not None and inside < FEWEST:
+        few = f"{inside} samples lie above half the pulse's peak"
+        raise MeasureError(f"{few}: at least {FEWEST} are wanted")
+    return pulse
 
 
-def pulses(
-    time: ArrayLike | Signal, values: ArrayLike | None = None, least: float = 0.01
-) -> list[Pulse]:
-    """Measure all pulses of a signal, or of samples, in the order of their arrivals.
+def pulses(signal: Signal) -> list[Pulse]:
+    """Measure all pulses of a signal, in the order of their arrivals.
 
-    time, values : as in `measure`.
-    least : smallest prominence of a pulse (height above its surroundings) over the highest peak.
-
-    A pulse with a flank that does not fall to half its peak, as when two overlap, is left out.
+    A pulse has a prominence (height above its surroundings) of `_LEAST` of the highest peak. If one
+    of its flanks does not fall to half its peak, as when two overlap, it is left out.
     Raises `MeasureError` for a record without any pulse.
     """
-    signal = _signal(time, values)
-    grid, whole = _Grid(signal), []
-    tops, _ = scipy.signal.find_peaks(grid.f, height=0.0, prominence=least * grid.f.max())
+    grid, whole = _Grid(signal), list[Pulse]()
+    tops, _ = scipy.signal.find_peaks(grid.f, height=0.0, prominence=_LEAST * grid.f.max())
     for top in tops.tolist():
         higher = np.flatnonzero(grid.f > grid.f[top])
         place = int(np.searchsorted(higher, top))
@@ -88,25 +94,7 @@ def pulses(
             whole += grid.pulses(start, stop)
     if not whole:
         raise MeasureError("no pulse is in the record")
-    return [dense(signal, pulse) for pulse in whole]
-
-
-def _signal(time: ArrayLike | Signal, values: ArrayLike | None) -> Signal:
-    """Return a signal as it is, or the spline through samples."""
-    if values is not None:
-        return Sampled(cast(ArrayLike, time), values)
-    if callable(time):
-        return time
-    raise MeasureError("values are missing: they are wanted beside the sample times")
-
-
-def dense(signal: Signal, pulse: Pulse) -> Pulse:
-    """Return a pulse; raise `MeasureError` if fewer than `FEWEST` samples exceed half its peak."""
-    inside = np.count_nonzero((signal.times > pulse.rise) & (signal.times < pulse.fall))
-    if isinstance(signal, Sampled) and inside < FEWEST:
-        few = f"{inside} samples lie above half the pulse's peak"
-        raise MeasureError(f"{few}: at least {FEWEST} are wanted")
-    return pulse
+    return whole
 
 
 def highest_pulse(signal: Signal, end: float = math.inf) -> Pulse:

@@ -31,7 +31,7 @@ from validation.pulses.pulse import (
     pulses,
     speed,
 )
-from validation.pulses.signals import Piecewise, Sampled, Signal
+from validation.pulses.signals import Piecewise, Signal, sampled
 from validation.scenes.checks import SceneError, between
 from validation.scenes.scene import Scene
 
@@ -138,7 +138,7 @@ def tracks(run: Run, every: int = 1, through: Instrument | None = None) -> tuple
         length = [float(np.interp(site, range(len(x)), x))] if scene.spacings else []
         place = dict(zip(SPEEDS, (site, *length), strict=False))
         force: Signal = (
-            Sampled(run.time[::every], samples[::every])
+            sampled(run.time[::every], samples[::every])
             if run.path is None
             else run.signal(kind, i)
         )

@@ -50,18 +50,6 @@ def samples(time: ArrayLike, values: ArrayLike) -> tuple[Array, Array]:
     return t, f
 
 
-class Sampled:
-    """The cubic spline through samples, as a `Signal`."""
-
-    def __init__(self, time: ArrayLike, values: ArrayLike) -> None:
-        self.times, f = samples(time, values)
-        self._spline = scipy.interpolate.CubicSpline(self.times, f)
-
-    def __call__(self, time: ArrayLike, /) -> Array:
-        """Return the spline's values at any times within the record."""
-        return np.asarray(self._spline(time))
-
-
 @dataclass(frozen=True)
 class Piecewise:
     """A function that is smooth between increasing ``times``, as a `Signal`."""
@@ -72,6 +60,12 @@ class Piecewise:
     def __call__(self, time: ArrayLike, /) -> Array:
         """Return the function's values."""
         return self.function(time)
+
+
+def sampled(time: ArrayLike, values: ArrayLike) -> Piecewise:
+    """Return the cubic spline through samples; `MeasureError` for others than `samples` takes."""
+    t, f = samples(time, values)
+    return Piecewise(t, scipy.interpolate.CubicSpline(t, f))
 
 
 def high_passed(signal: Signal, time_constant: float) -> Piecewise:

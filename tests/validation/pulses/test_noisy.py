@@ -7,7 +7,7 @@ import scipy
 from validation import simulate
 from validation.pulses.noisy import noisy_pulse
 from validation.pulses.pulse import MeasureError, first_pulse
-from validation.pulses.signals import Piecewise, Sampled, high_passed
+from validation.pulses.signals import Piecewise, high_passed, sampled
 from validation.scenes.chains import chain_scene
 
 NUMBERS = ("arrival", "peak", "fwhm")
@@ -102,6 +102,17 @@ def test_a_short_lead_leaves_the_base_uncertain(signals):
     assert 0.55 <= within / copies <= 0.85
 
 
+def test_a_record_that_begins_at_its_pulse_has_the_noise_of_its_residuals(signals):
+    t, pulse = record(signals[1, 24])
+    t = t[t > pulse.rise - 0.7 * pulse.fwhm]
+    rng, clean, within = np.random.default_rng(4), signals[1, 24](t), 0
+    for _ in range(60):
+        noise = 0.005 * pulse.peak * rng.normal(size=len(t))
+        peak = noisy_pulse(t, clean + noise, 0.0).numbers["peak"]
+        within += abs(peak.value - pulse.peak) < peak.error < 0.01 * pulse.peak
+    assert 0.5 < within / 60 < 0.9
+
+
 @pytest.mark.parametrize(("samples", "bound"), [(17, 1e-3), (70, 1e-6)])
 def test_a_record_without_noise_gives_the_pulse_of_the_signal(signals, samples, bound):
     """The error covers what the spline does not resolve."""
@@ -169,6 +180,6 @@ def test_the_papers_amplifier_lowers_a_pulse_by_the_stated_shares():
         t = np.linspace(0, 12 * width, 3001)
         phase = (t - 6 * width) * 2 * np.arccos(0.5 ** (1 / 6)) / width
         f = np.where(np.abs(phase) < np.pi / 2, np.cos(phase) ** 6, 0)
-        pulse = first_pulse(high_passed(Sampled(t, f), 1e-3))
+        pulse = first_pulse(high_passed(sampled(t, f), 1e-3))
         assert -0.05 < pulse.peak - 1 < -0.03
         assert -0.033 < pulse.fwhm / width - 1 < -0.019

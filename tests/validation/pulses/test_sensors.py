@@ -13,7 +13,7 @@ from lwa.linear.dispersion import Dispersion
 from validation.lattice.simulate import simulate
 from validation.pulses.pulse import MeasureError, first_pulse, pulses
 from validation.pulses.sensors import record, tracks
-from validation.pulses.signals import Sampled
+from validation.pulses.signals import sampled
 from validation.scenes.chains import struck
 from validation.scenes.scene import Scene
 from validation.scenes.scenefile import scene
@@ -90,12 +90,12 @@ def test_the_first_pulse_is_not_the_highest_one():
         return height * np.exp(-4 * (t - at) ** 2)
 
     small, first, echo = pulse(0.4, 1), pulse(1.0, 4), pulse(1.5, 8)
-    found = first_pulse(Sampled(t, small + first + echo))
+    found = first_pulse(sampled(t, small + first + echo))
     assert (found.arrival, found.peak) == pytest.approx((4, 1), rel=1e-6)
     assert found.fwhm == pytest.approx(math.sqrt(math.log(2)), rel=1e-6)
     with pytest.raises(MeasureError, match="nowhere positive"):
-        first_pulse(Sampled(t, -first))
-    every = pulses(Sampled(t, small + first + echo))
+        first_pulse(sampled(t, -first))
+    every = pulses(sampled(t, small + first + echo))
     assert [p.peak for p in every] == pytest.approx([0.4, 1.0, 1.5], rel=1e-6)
 
 

@@ -11,7 +11,7 @@ import sympy as sp
 from validation.lattice.simulate import simulate
 from validation.pulses import steady
 from validation.pulses.pulse import leading_pulses
-from validation.pulses.signals import Sampled
+from validation.pulses.signals import sampled
 from validation.pulses.steady import QUANTITIES, STRETCH, point
 from validation.scenes.chains import struck
 from validation.scenes.scene import Scene
@@ -117,10 +117,10 @@ def test_the_pulse_that_overtakes_is_another_one():
 def test_the_leading_pulse_is_not_a_later_and_higher_one():
     time = np.linspace(0, 20, 2001)
     first, second = np.exp(-((time - 5) ** 2)), 2 * np.exp(-((time - 12) ** 2))
-    (pulse,) = leading_pulses(Sampled(time, first + second), 1.5)
+    (pulse,) = leading_pulses(sampled(time, first + second), 1.5)
     assert pulse.arrival == pytest.approx(5, abs=1e-6)
     # two humps are one pulse while the compression between them stays above a quarter
-    two_humps = Sampled(time, first + np.exp(-((time - 7) ** 2)))
+    two_humps = sampled(time, first + np.exp(-((time - 7) ** 2)))
     (pulse,) = leading_pulses(two_humps, 1.5, (0.25,))
     assert pulse.fall > 8
 
