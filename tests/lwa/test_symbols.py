@@ -76,7 +76,7 @@ def results(m1, m2, k, D, alpha):
     yield "canonical", canonical_wave(Cell((m1, m1, m2), spacing=D), k).fwhm("force")
     numeric = NumericWave(wave)
     yield "numeric", sp.Float(float(numeric.beta(1.4, 0.2)), 17)
-    series = expand(Cell((m1, 1, m2)), 1, k=k)
+    series = expand(Cell((m1, m2)), 1, k=k)
     yield from (("c2", series.c2.pade(None, 1, 0)), ("E", series.energy.pade(None, 0, 1)))
     yield "width", series.fwhm("velocity").pade(None, 0, 1)
 
