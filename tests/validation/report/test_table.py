@@ -163,7 +163,9 @@ def test_findings_in_lines_and_in_a_document():
     lines = findings_table(found).text()
     assert [line.split()[-1] for line in lines.splitlines()] == ["holds", "ok", "FAILS"]
     assert "5 ± 5e-01" in lines
-    written = json.loads(json.dumps(Report("", findings=found).document(), allow_nan=False))
+    report = Report("", findings=found)
+    assert lines in report.text()  # without a table, all of them
+    written = json.loads(json.dumps(report.document(), allow_nan=False))
     assert written["drift_value"] == 1e-12
     assert [f["ok"] for f in written["findings"]] == [True, False]
     assert written["findings"][1]["least_value"] is None

@@ -15,6 +15,7 @@ from validation.pulses.steady import STRETCH, point
 from validation.studies.theories import HERTZ, QUANTITIES, STRUCK_CHAIN, THEORIES, ladder, place
 from validation.waves.solution import solve
 from validation.waves.solver import exact_wave
+from validation.waves.theory import theory_at
 
 WIDTHS = ("strain", "force", "velocity")
 
@@ -110,6 +111,9 @@ def test_ladder_in_all_forms(places):
     rows = {row["theory"]: row for row in document["rows"]}
     assert list(rows) == list(THEORIES)
     errors = {theory: abs(row["error_value"]["force"]) for theory, row in rows.items()}
+    speed = float(theory_at("11/10", 1).at_force(1).speed)
+    off = speed / document["truth_value"]["speed"] - 1
+    assert rows["linear closure"]["error_value"]["speed"] == pytest.approx(off, rel=1e-9)
     # For equal beads all closures are one theory; each order of the series is better.
     assert errors["linear closure"] == pytest.approx(errors["full closure"], rel=1e-9)
     rising = [errors[name] for name in THEORIES if name.startswith("ε")]
