@@ -63,7 +63,7 @@ class Beads(NamedTuple):
     force : (stages, padded + 1), force on each bead from behind, less the static force, by stage.
     sums : (6, padded + 1), sums over stages. Row 0: intermediate results. Row 1: impulse of each
         contact in a step. Rows 2 and 3: error estimates of each contact's moment and impulse. Rows
-        4 and 5: displacements and velocities within a step of damped contacts.
+        4 and 5: displacements and velocities at the end of a step of damped contacts.
     contacts : (3, padded + 1), of damped contacts. Row 0: 1 if it is closed, 0 if open. Row 1:
         number of a step's stages in which that is wrong, or nearly so. Row 2: greatest force in a
         step.

@@ -58,16 +58,20 @@ def _loop(value: Any, resistance: Any) -> Any:
     return loop
 
 
-_one = part(lambda chain, d: 1.0)
-_hertz = part(lambda chain, d: d * np.sqrt(d))
-_any = part(lambda chain, d: d**chain.k)
-_hertz_contact = _loop(_hertz, _one)
-_hertz_root = _loop(_hertz, part(lambda chain, d: np.sqrt(d)))
-_hertz_quartic = _loop(_hertz, part(lambda chain, d: np.sqrt(np.sqrt(d))))
-_linear = _loop(part(lambda chain, d: d), _one)
-_power_contact = _loop(_any, _one)
-_power = _loop(_any, part(lambda chain, d: d**chain.p))
-_generated = _loop(part(lambda chain, d: call(chain.force, d)), _one)
+@part
+def _fourth_root(chain: Chain, d: float) -> float:
+    """Return d^p for the dampings of linear and Hertz contacts, p = 0, 1/4 or 1/2."""
+    root = np.sqrt(d)
+    other = np.sqrt(root) if chain.p == 0.25 else 1.0
+    return root if chain.p == 0.5 else other
+
+
+# A power takes ten times as long as roots.
+_hertz = _loop(part(lambda chain, d: d * (np.sqrt(d) if chain.k == 1.5 else 1.0)), _fourth_root)
+_any = _loop(
+    part(lambda chain, d: call(chain.force, d) if chain.generated else d**chain.k),
+    part(lambda chain, d: 1.0 if chain.p == 0.0 else d**chain.p),
+)
 
 
 @part
@@ -77,20 +81,10 @@ def damped_forces(chain: Chain, beads: Beads, plan: Plan, s: int, lo: int, hi: i
     none = 0.0
     if chain.pulls:
         least = none = -math.inf
-    if chain.generated:
-        lost = _generated(chain, beads, f, lo, hi, least, none)
-    elif chain.k == 1.0:
-        lost = _linear(chain, beads, f, lo, hi, least, none)
-    elif chain.k == 1.5 and chain.p == 0.0:
-        lost = _hertz_contact(chain, beads, f, lo, hi, least, none)
-    elif chain.k == 1.5 and chain.p == 0.5:
-        lost = _hertz_root(chain, beads, f, lo, hi, least, none)
-    elif chain.k == 1.5 and chain.p == 0.25:
-        lost = _hertz_quartic(chain, beads, f, lo, hi, least, none)
-    elif chain.p == 0.0:
-        lost = _power_contact(chain, beads, f, lo, hi, least, none)
+    if not chain.generated and (chain.k == 1.0 or chain.k == 1.5):
+        lost = _hertz(chain, beads, f, lo, hi, least, none)
     else:
-        lost = _power(chain, beads, f, lo, hi, least, none)
+        lost = _any(chain, beads, f, lo, hi, least, none)
     beads.power[0, s] = lost
     beads.power[1, s] = beads.next_v[0] * f[1] if chain.drive.driven else 0.0
 

@@ -137,19 +137,8 @@ def _interpolated(
     tolerances.
     """
     first, last, more = watched[0], watched[-1], DENSE - STEP
-    within = Beads(
-        beads.y,
-        beads.v,
-        beads.sums[4],
-        beads.sums[5],
-        beads.force,
-        beads.sums,
-        beads.contacts,
-        beads.power,
-        beads.given,
-    )
     for s in range(STEP + 1, DENSE):  # each stage needs the forces on one bead more than the next
-        _stage(chain, within, plan, now, s, h, max(0, first - more), min(hi, last + more))
+        _stage(chain, beads, plan, now, s, h, max(0, first - more), min(hi, last + more))
     rows, size = plan.scheme.errors[now.warped, 2], max(0, min(hi, last) - first)
     _add_up(beads, TWO, rows, h * h / plan.y, h / plan.v, DENSE, first, first + size)
     return math.sqrt(squared_error(beads.sums[:, first:], chain.inverse[first:], size)) / _ALLOWED
@@ -158,14 +147,14 @@ def _interpolated(
 @part
 def _accept(chain: Chain, beads: Beads, plan: Plan, now: Any, h: float, hi: int) -> None:
     """Move the beads to the end of a step, and add up its work and dissipated energy."""
-    y, next_y = beads.y, beads.next_y
+    y, next_y = beads.y, beads.sums[4]
     beads.given[0] = beads.given[1]
     for i in range(hi):
         if beads.contacts[0, i] < 0.5:  # an open contact turns what it still stores into heat
             now.lost += stored(chain, i, chain.rest[i] + y[i] - y[i + 1])
             now.lost -= stored(chain, i, chain.rest[i] + next_y[i] - next_y[i + 1])
     for i in range(index(hi)):
-        y[i], beads.v[i] = next_y[i], beads.next_v[i]
+        y[i], beads.v[i] = next_y[i], beads.sums[5, i]
     for s in range(STEP):
         weight = h * plan.scheme.rows[now.warped, STEP, 1, s]
         now.lost += weight * beads.power[0, s]
@@ -229,6 +218,8 @@ def _built(sources: int) -> Any:
                 _stage(chain, beads, plan, now, s, h, 0, hi)
             error = _error(chain, beads, plan, now.warped, h, hi)
             place = first_change(chain, beads, plan, h, STEP, hi)
+            for i in range(index(hi) + ONE):  # the interpolant's stages use `next_y` and `next_v`
+                beads.sums[4, i], beads.sums[5, i] = beads.next_y[i], beads.next_v[i]
             if watching and error <= 1.0 and place == 1.0:
                 error = max(error, _interpolated(chain, beads, plan, steps.watched, now, h, hi))
             # An error is O(x^8), or O(x^6) by the lower order, and x = t^{1/q}.
