@@ -55,20 +55,6 @@ def test_help_has_a_short_name(capsys, arguments):
 
 
 @pytest.mark.parametrize(
-    "arguments",
-    [
-        ["derive", "--order", "９"],
-        ["derive", "--order", "1_0"],
-        ["wave", "--masses", "1,２"],
-    ],
-)
-def test_digits_are_those_of_ascii_everywhere(capsys, arguments):
-    status, out, err = run(capsys, *arguments)
-    assert (status, out, err.count("\n")) == (2, "", 1)
-    assert f"{arguments[1][2:]} is " in err
-
-
-@pytest.mark.parametrize(
     ("words", "offered"),
     [
         ("lwa derive --law h", "hertz2"),
