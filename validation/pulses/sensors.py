@@ -67,6 +67,7 @@ class Recording:
     """A run, the pulses at the sensors, and the speeds from each sensor to the next."""
 
     run: Run
+    tracks: tuple[Track, ...]  # dynamic forces at the sensors
     sensors: tuple[Reading, ...]
     speeds: tuple[Reading, ...]
 
@@ -120,7 +121,8 @@ def record(
             # Errors of both arrivals are added: in the less accurate speed they may cancel.
             speeds.append(speed_between(one, other, apart, operator.add))
     found = (reading for pair in pairs for reading in _readings(pair, True, rtol))
-    return Recording(run, tuple(found if every else firsts), tuple(speeds))
+    fine = tuple(track for track, _ in pairs)
+    return Recording(run, fine, tuple(found if every else firsts), tuple(speeds))
 
 
 def tracks(run: Run, every: int = 1, through: Instrument | None = None) -> tuple[Track, ...]:

@@ -92,12 +92,11 @@ def compare(
     if damping:
         chain, fitted = _damped(chain, records, through)
     simulation = record(chain, through=through, progress=run_progress)
-    run, label, t = simulation.run, simulation.run.label, simulation.run.time
+    label, t = simulation.run.label, simulation.run.time
     rows: list[tuple[Any, ...]] = []
     curves: list[Curve] = []
     shift, first, start = 0.0, "", Measured(0.0, 0.0)
-    seen = zip(simulation.sensors, tracks(run, 1, through), strict=True)
-    for i, (reading, track) in enumerate(seen):
+    for i, (reading, track) in enumerate(zip(simulation.sensors, simulation.tracks, strict=True)):
         if (force := records.forces.get(reading.name)) is None:
             continue
         if reading.missing:

@@ -21,7 +21,7 @@ from lwa.base import files
 from validation.lattice.cost import RunProgress
 from validation.lattice.result import Records, Run
 from validation.lattice.simulate import COMPILED, METHODS
-from validation.pulses.sensors import TOLERANCE, Recording, record
+from validation.pulses.sensors import LESS, TOLERANCE, Recording, record
 from validation.report.command import option, output_option, study
 from validation.report.files import replacing
 from validation.report.readings import reading_tables
@@ -132,7 +132,7 @@ _METHODS = click.Choice((*COMPILED, *METHODS))
 _INTEGRATOR = f"Integrator: {' and '.join(COMPILED)} are compiled, the others SciPy's."
 _SHOWN = example(EXAMPLES[0]).replace("\n\n", "\n")
 _EPILOG = f"\b\nA scene file, in SI units if its beads are of materials:\n{_SHOWN}"
-_RTOL = "Relative tolerance. Errors are differences to a run with 1000 times this tolerance."
+_RTOL = f"Relative tolerance. Errors are differences to a run with {LESS:g} times this tolerance."
 
 
 @study(

@@ -10,7 +10,8 @@ import sympy as sp
 from lwa import Cell
 from lwa.law import Law
 from tests.commands import ended
-from validation import Scene, cli, measure, simulate, simulate_many
+from validation import cli, measure, simulate, simulate_many
+from validation.scenes.chains import struck
 from validation.scenes.scene import SceneError
 from validation.studies import paper
 from validation.studies.law import law
@@ -24,6 +25,18 @@ FORCES = np.geomspace(0.1, 10, 12)
 @pytest.fixture(scope="module")
 def chain():
     return Medium.of(Cell((2,), spacing=3))
+
+
+@pytest.fixture
+def saved(tmp_path):
+    """Write rows to a file; return its name."""
+
+    def save(rows, header="force,speed"):
+        file = tmp_path / "pulses.csv"
+        np.savetxt(file, rows, delimiter=",", header=header, comments="")
+        return str(file)
+
+    return save
 
 
 def speeds(chain, k, A, force=FORCES):
@@ -87,58 +100,45 @@ def test_known_errors_weight_the_pulses(chain):
     assert even.k.value == pytest.approx(fit_power(chain, force, speed).k.value, rel=1e-12)
 
 
-def test_errors_in_a_file_come_in_two_positive_columns(tmp_path, chain):
-    force, speed = FORCES, speeds(chain, 1.5, 1.0)
-    file = tmp_path / "pulses.csv"
-    for columns, header in (
-        ((force, speed, force), "force,speed,force_error"),
-        ((force, speed, 0 * force, speed), "force,speed,force_error,speed_error"),
+def test_errors_in_a_file_come_in_two_positive_columns(saved, chain):
+    force, speed, names = FORCES, speeds(chain, 1.5, 1.0), "force,speed,force_error,speed_error"
+    for rows, header in (
+        (np.c_[force, speed, force], "force,speed,force_error"),
+        (np.c_[force, speed, 0 * force, speed], names),
     ):
-        np.savetxt(file, np.transpose(columns), delimiter=",", header=header, comments="")
         with pytest.raises(SceneError, match="together, and positive"):
-            law(str(file))
-    np.savetxt(
-        file,
-        np.transpose((force, speed, force / 100, speed / 100)),
-        delimiter=",",
-        header="force,speed,force_error,speed_error",
-        comments="",
-    )
-    assert law(str(file), masses=(2,), spacing=3).data["k_value"] == pytest.approx(1.5, rel=1e-9)
+            law(saved(rows, header))
+    file = saved(np.c_[force, speed, force / 100, speed / 100], names)
+    assert law(file, masses=(2,), spacing=3).data["k_value"] == pytest.approx(1.5, rel=1e-9)
 
 
-def test_the_error_of_exact_data_covers_rounding(chain, tmp_path):
+def test_the_error_of_exact_data_covers_rounding(saved):
     """It was 0. The speeds are those of exact waves at a k where R is interpolated."""
-    file = tmp_path / "pulses.csv"
     V = exact_wave([1], 3.4).c * FORCES ** (2.4 / 6.8)
-    np.savetxt(file, np.c_[FORCES, V], delimiter=",", header="force,speed", comments="")
-    found = law(str(file)).data
+    found = law(saved(np.c_[FORCES, V])).data
     for name, value in (("k", 3.4), ("A", 1.0)):
         assert abs(found[f"{name}_value"] - value) <= found[f"{name}_error_value"] < 1e-9
     assert found["k_error_value"] > 0
 
 
-def test_forces_of_beads_give_the_law_of_the_contacts(tmp_path):
+def test_forces_of_beads_give_the_law_of_the_contacts(saved):
     """Struck chains, k = 1.3 and 1.5, at contacts and in beads: 0.707 of the force at 3/2."""
-    file = tmp_path / "pulses.csv"
     for k in (1.3, 1.5):
         rows, power = [], (k - 1) / (k + 1)
         for v in np.geomspace(0.1, 2, 8):
-            scene = Scene(
-                masses=(1,) * 80, stiffnesses=(1,) * 79, k=k, velocities=(v,), samples=2,
-                bead_sensors=(40, 60), contact_sensors=(40,), duration=90 / v**power,
-            )  # fmt: skip
+            sensors = {"bead_sensors": (40, 60), "contact_sensors": (40,), "samples": 2}
+            scene = struck((1,), 80, k, velocities=(v,), duration=90 / v**power, **sensors)
             run = simulate(scene, rtol=1e-8)
             first, second = (measure(run.signal("bead", i)) for i in (40, 60))
             rows.append((first.peak, 20 / (second.arrival - first.arrival)))
             share = first.peak / measure(run.signal("contact", 40)).peak
         assert share == pytest.approx(float(bead_share()(k)), rel=2e-3)
         assert k != 1.5 or share == pytest.approx(0.707, abs=2e-3)
-        np.savetxt(file, rows, delimiter=",", header="force,speed", comments="")
-        found = law(str(file), of="bead").document()
+        file = saved(rows)
+        found = law(file, of="bead").document()
         assert found["k_value"] == pytest.approx(k, rel=2e-3)
         assert found["A_value"] == pytest.approx(1, rel=5e-3)
-        assert law(str(file)).document()["A_value"] > 1.05  # taken for forces of contacts
+        assert law(file).document()["A_value"] > 1.05  # taken for forces of contacts
         last = found["rows"][-1]
         assert last["force_value"] == pytest.approx(rows[-1][0] / share, rel=2e-3)
         assert last["force_value"] == pytest.approx(last["compression_value"] ** k, rel=0.02)
@@ -182,13 +182,11 @@ def test_any_law_comes_back_from_22_struck_chains(text):
     """Pulses of chains of equal beads; the free law knows nothing of how the law is made."""
     d, F = sp.Symbol("d", positive=True), LAWS[text]
     law = Law(sp.sympify(text, locals={"d": d}, rational=True), d)
+    options = {"k": math.nan, "law": law, "samples": 2, "contact_sensors": (45, 75)}
     scenes = [
-        Scene(
-            masses=(1,) * 90, stiffnesses=(1,) * 89, law=law, velocities=(v,), samples=2,
-            contact_sensors=(45, 75), duration=150 / math.sqrt(F(v**0.8) / v**0.8),
-        )
+        struck((1,), 90, velocities=(v,), duration=150 / math.sqrt(F(v**0.8) / v**0.8), **options)
         for v in np.geomspace(0.03, 3, 22)
-    ]  # fmt: skip
+    ]
     rows = []
     for run in simulate_many(scenes, rtol=1e-7):
         first, second = (measure(run.signal("contact", i)) for i in (45, 75))
@@ -201,7 +199,7 @@ def test_any_law_comes_back_from_22_struck_chains(text):
 
 
 @pytest.mark.slow
-def test_the_modulus_of_ptfe_comes_back_from_the_papers_chain(tmp_path):
+def test_the_modulus_of_ptfe_comes_back_from_the_papers_chain(saved, tmp_path):
     """Twelve drop heights; timed between beads of one kind, 16 and 34, as unlike peaks do not."""
     rows = []
     for height in np.geomspace(0.02, 1.2, 12):
@@ -209,42 +207,28 @@ def test_the_modulus_of_ptfe_comes_back_from_the_papers_chain(tmp_path):
         run = simulate(scene, rtol=1e-8)
         contacts = paper.Train.of(run, "contact")
         rows.append((contacts.peak, paper.Train.of(run).speed))
-    data, beads = tmp_path / "data.csv", tmp_path / "beads.toml"
-    np.savetxt(data, rows, delimiter=",", header="force (N),speed (m/s)", comments="")
+    beads = tmp_path / "beads.toml"
     beads.write_text(example("paper"))
-    found = law(str(data), spheres=str(beads), material="ptfe").document()
+    file = saved(rows, "force (N),speed (m/s)")
+    found = law(file, spheres=str(beads), material="ptfe").document()
     assert found["k_value"] == pytest.approx(1.5, rel=1e-6)
     # The pulse is the steady one to some tenths of a percent of its speed; E goes as V³.
     assert found["E_value"] == pytest.approx(1.46e9, rel=0.005)
 
 
-def test_units_that_were_not_given_are_said(tmp_path, chain):
+def test_units_that_were_not_given_are_said(saved, chain):
     """Without masses and a distance the law is in their units, and a note says so."""
-    file = tmp_path / "pulses.csv"
-    rows = zip(FORCES, speeds(chain, 1.5, 0.7), strict=True)
-    file.write_text("force,speed\n" + "".join(f"{f},{v}\n" for f, v in rows))
+    file = saved(np.c_[FORCES, speeds(chain, 1.5, 0.7)])
     said = [
-        any("--masses" in note for note in law(str(file), **given).notes)
+        any("--masses" in note for note in law(file, **given).notes)
         for given in ({}, {"masses": (2,)}, {"masses": (2,), "spacing": 3})
     ]
     assert said == [True, True, False]
 
 
-def written(tmp_path, text):
-    file = tmp_path / "data.csv"
-    file.write_text(text)
-    return str(file)
-
-
-def test_a_folder_in_place_of_a_file_is_named(tmp_path):
-    with pytest.raises(SceneError, match=f"^{tmp_path}: only regular files are read"):
-        law(tmp_path)
-
-
-def test_the_command(capsys, tmp_path, chain):
+def test_the_command(capsys, saved, tmp_path, chain):
     V = speeds(chain, 1.5, 1.0) * (1 + 1e-6 * np.random.default_rng(3).normal(size=len(FORCES)))
-    rows = "\n".join(f"{F!r},{v!r}" for F, v in zip(FORCES.tolist(), V.tolist(), strict=True))
-    data, picture = written(tmp_path, f"force (N),speed (m/s)\n{rows}\n"), tmp_path / "law.svg"
+    data, picture = saved(np.c_[FORCES, V], "force (N),speed (m/s)"), tmp_path / "law.svg"
     options = ("--masses", "2", "--spacing", "3")
     status, out, err = ended(
         capsys, cli.main, "law", data, *options, "--format", "json", "--plot", str(picture)
@@ -284,6 +268,8 @@ ROWS = "".join(f"{n},{n}\n" for n in range(1, 9))
     ],
 )
 def test_bad_files_are_refused_in_one_line(tmp_path, text, options, named):
+    file = tmp_path / "data.csv"
+    file.write_text(text)
     with pytest.raises(SceneError, match=named) as refused:
-        law(written(tmp_path, text), **options)
+        law(file, **options)
     assert "\n" not in str(refused.value)
