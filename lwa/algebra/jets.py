@@ -20,6 +20,7 @@ on p: p dφ_n/dp = φ_{n+1} + (n-1) φ_n - φ_n φ_2. For δ^k they are (k-1) �
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from functools import cache
 from math import factorial
 from typing import NamedTuple
 
@@ -218,7 +219,8 @@ class GradedSeries:
     ) -> None:
         self.algebra, self.exponent = algebra, exponent
         self._derivatives = [[f_n] for f_n in terms]
-        self._velocity_slopes: dict[int, list[tuple[int, fmpq_mpoly]]] = {}
+        # Derivatives of each f_n by the velocity jets, as `JetAlgebra.velocity_slopes` has them
+        self.velocity_slopes = cache(lambda n: algebra.velocity_slopes(self[n]))
 
     def __len__(self) -> int:
         return len(self._derivatives)
@@ -245,9 +247,3 @@ class GradedSeries:
         while len(derivatives) <= j:
             derivatives.append(self.algebra.dx(derivatives[-1], self.exponent))
         return derivatives[j]
-
-    def velocity_slopes(self, n: int) -> list[tuple[int, fmpq_mpoly]]:
-        """Derivatives of the coefficient f_n by velocity jets, computed once."""
-        if n not in self._velocity_slopes:
-            self._velocity_slopes[n] = self.algebra.velocity_slopes(self[n])
-        return self._velocity_slopes[n]

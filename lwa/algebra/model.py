@@ -36,11 +36,6 @@ class Model(Value):
         """Exponent of a power law; local exponent 1 + φ_2 = d ln(δ F′)/d ln δ of another law."""
         return self.law.exponent if self.law.homogeneous else 1 + phi_symbol(2)
 
-    @property
-    def time_scale(self) -> sp.Expr:
-        """The ratio τ/t of the equation's time to the chain's, on the acoustic branch."""
-        return self.cell.time_scale(self.law.exponent)
-
     @cached_property
     def ring(self) -> CoefficientRing:
         """The ring of the coefficients.

@@ -45,7 +45,7 @@ class PDE(OfClosure):
     def time_scale(self) -> sp.Expr:
         """The ratio τ/t of the equation's time to the chain's."""
         if self.acoustic:
-            return self.closure.model.time_scale
+            return self.cell.time_scale(self.law.exponent)
         # w = λu strains each contact by (λ - 1)u, and 1 - λ = M/m2.
         m1, m2 = self.cell.masses
         stretch = power(self.cell.mass / m2, self.k)
