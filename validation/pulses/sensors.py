@@ -8,7 +8,7 @@ the difference, and at least the tolerance of the first run.
 from __future__ import annotations
 
 import operator
-from collections.abc import Callable, Container, Iterator, Mapping
+from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from itertools import pairwise
@@ -114,15 +114,11 @@ def record(
     run, check = twice(scene, rtol, LESS * rtol, method=method, progress=progress)
     pairs = tuple(zip(tracks(run, 1, through), tracks(check, 2, through), strict=True))
     firsts = [next(_readings(pair, False, rtol)) for pair in pairs]
-    speeds = []
-    for (one, (at, _)), (other, (there, _)) in pairwise(zip(firsts, pairs, strict=True)):
-        if one.kind == other.kind:
-            apart = {name: abs(there.place[name] - place) for name, place in at.place.items()}
-            # Errors of both arrivals are added: in the less accurate speed they may cancel.
-            speeds.append(speed_between(one, other, apart, operator.add))
-    found = (reading for pair in pairs for reading in _readings(pair, True, rtol))
     fine = tuple(track for track, _ in pairs)
-    return Recording(run, fine, tuple(found if every else firsts), tuple(speeds))
+    # Errors of both arrivals are added: in the less accurate speed they may cancel.
+    speeds = speeds_between(firsts, [track.place for track in fine], operator.add)
+    found = (reading for pair in pairs for reading in _readings(pair, True, rtol))
+    return Recording(run, fine, tuple(found if every else firsts), speeds)
 
 
 def tracks(run: Run, every: int = 1, through: Instrument | None = None) -> tuple[Track, ...]:
@@ -182,26 +178,33 @@ def readings(pulse: Pulse) -> dict[str, float]:
     return {name: getattr(pulse, name) for name in READINGS}
 
 
-def speed_between(
-    first: Reading,
-    second: Reading,
-    distances: Mapping[str, float],
+def speeds_between(
+    sensors: Sequence[Reading],
+    places: Sequence[Mapping[str, float]],
     total: Callable[[float, float], float],
-) -> Reading:
-    """Return the speeds of the pulse from one sensor to the next.
+) -> tuple[Reading, ...]:
+    """Return the speeds of the pulse from each sensor to the next one of its kind.
 
-    distances : of the sensors, by the names `SPEEDS`. total : error of a time between two arrivals
-    as a function of the errors of both.
+    places : of the sensors along the chain, by the names `SPEEDS`. total : error of a time between
+    two arrivals as a function of the errors of both.
     """
-    reading = partial(Reading, first.kind, (*first.places, *second.places), static=first.static)
-    if first.missing or second.missing:
-        return reading({}, missing="one of the two has no pulse")
-    start, end = first.numbers["arrival"], second.numbers["arrival"]
-    if not (time := end.value - start.value) > 0:
-        return reading({}, missing="a speed needs a later second arrival")
-    error = total(start.error, end.error) / time
-    speeds = {name: distance / time for name, distance in distances.items()}
-    return reading({name: Measured(V, V * (1 + error)) for name, V in speeds.items()})
+
+    def leg(first: Reading, second: Reading, distances: Mapping[str, float]) -> Reading:
+        reading = partial(Reading, first.kind, (*first.places, *second.places), static=first.static)
+        if first.missing or second.missing:
+            return reading({}, missing="one of the two has no pulse")
+        start, end = first.numbers["arrival"], second.numbers["arrival"]
+        if not (time := end.value - start.value) > 0:
+            return reading({}, missing="a speed needs a later second arrival")
+        error = total(start.error, end.error) / time
+        speeds = {name: distance / time for name, distance in distances.items()}
+        return reading({name: Measured(V, V * (1 + error)) for name, V in speeds.items()})
+
+    return tuple(
+        leg(one, other, {name: abs(there[name] - at[name]) for name in at})
+        for (one, at), (other, there) in pairwise(zip(sensors, places, strict=True))
+        if one.kind == other.kind
+    )
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from itertools import pairwise
 
 import click
 
@@ -12,7 +11,7 @@ from lwa.base.arrays import Array
 from validation.pictures import Curve, Panel
 from validation.pulses.noisy import noisy_pulse
 from validation.pulses.pulse import MeasureError
-from validation.pulses.sensors import SPEEDS, Reading, speed_between
+from validation.pulses.sensors import SPEEDS, Reading, speeds_between
 from validation.report.command import column_option, option, study
 from validation.report.readings import reading_tables
 from validation.report.result import Report
@@ -72,14 +71,9 @@ def pulses(
         found.append(_reading(sensor, time, force))
         curves.append(Curve(found[i].name, time, force, f"C{i}-"))
     labels = ("arrival (s)", "peak (N)", "FWHM (s)") if si else ("arrival", "peak", "FWHM")
-    speeds = []
-    for one, other in pairwise(found):
-        if one.kind != other.kind:
-            continue
-        sites = abs(other.places[0] - one.places[0])
-        ways = (sites,) if apart is None else (sites, sites * apart)
-        distances = dict(zip(SPEEDS, ways, strict=False))
-        speeds.append(speed_between(one, other, distances, math.hypot))  # independent noise
+    lengths = dict(zip(SPEEDS, (1.0,) if apart is None else (1.0, apart), strict=False))
+    places = [{name: r.places[0] * size for name, size in lengths.items()} for r in found]
+    speeds = speeds_between(found, places, math.hypot)  # independent noise
     tables, missing = reading_tables(found, speeds, labels, si)
     units = (" (s)", " (N)") if si else ("", "")
     panel = Panel(f"time{units[0]}", f"force{units[1]}", tuple(curves), legend_above=True)
