@@ -40,7 +40,8 @@ class Functions(dict[str, Function]):
 
     def __init__(self, *parts: sp.Expr) -> None:
         super().__init__()
-        self.symbols = in_order(*parts)
+        ordered = (s for part in parts for s in sorted(part.free_symbols, key=str))
+        self.symbols = tuple(dict.fromkeys(ordered))
 
     def define(self, name: str, doc: str, value: sp.Basic, local: Local = ()) -> sp.Expr:
         """Add a function and return a call of it; ``local`` has variables that it may use."""
@@ -57,11 +58,6 @@ class Functions(dict[str, Function]):
         writer = LANGUAGES[one_of(language, LANGUAGES, "language")]
         used = set().union(*(function.arguments for function in self.values()))
         return writer(list(self.values()), [s for s in _ARGUMENTS if s in used]).module(title)
-
-
-def in_order(*parts: sp.Expr) -> tuple[sp.Symbol, ...]:
-    """Symbols of the parts, in the order of the parts and by name within a part."""
-    return tuple(dict.fromkeys(s for part in parts for s in sorted(part.free_symbols, key=str)))
 
 
 def wave_functions(wave: CompactWave) -> Functions:

@@ -12,7 +12,7 @@ import sympy as sp
 from lwa import Cell, Dimer, InputError, NoSolitaryWave, canonical_wave, homogenize
 from lwa.code import LANGUAGES, Function
 from lwa.command.cli import main
-from lwa.wave.functions import in_order, wave_functions
+from lwa.wave.functions import wave_functions
 from tests.lwa.code.compilers import PROGRAMS, compiled, in_node
 
 in_every_language = pytest.mark.parametrize(
@@ -66,7 +66,7 @@ def exact(value):
 def points(name):
     """(name → number, k, G + H + I, V²/B^{k-1}) where there is a wave, from its equation."""
     wave = wave_of(name)
-    symbols = in_order(wave.k, *wave.cell.masses, *wave.cell.stiffnesses, wave.D)
+    symbols = wave_functions_of(name).symbols
     names = [symbol.name for symbol in symbols]
     numbers = sp.lambdify(symbols, [wave.k, wave.G, wave.H, wave.I], "mpmath")
     rows = []
