@@ -1,7 +1,7 @@
 """Pulses of measured records: a spline fitted to noisy samples, and errors from the noise.
 
 The noise is the standard deviation σ of the samples before the pulse. The first pulse is located in
-a moving mean, and a spline of degree 5 with equidistant knots is fitted to the samples about it, by
+a moving mean, and a spline of degree 5 is fitted to the samples about it, by
 least squares: arrival, peak and FWHM are those of the spline. The number of its coefficients is the
 best by Schwarz's criterion (Ann. Statist. 6, 461, 1978) times `_FINER`, and at least `_MORE` more:
 where the criterion stops a bias is as large as the scatter.
@@ -130,7 +130,8 @@ def _place(t: Array, f: Array) -> tuple[float, float]:
 
 def _fitted(t: Array, f: Array, count: int) -> BSpline:
     """Fit a spline of so many coefficients to samples."""
-    inner = np.linspace(t[0], t[-1], count - _DEGREE + 1)
+    # Equally many samples lie between neighbouring knots, so that gaps in a record do no harm.
+    inner = np.interp(np.linspace(0, len(t) - 1, count - _DEGREE + 1), np.arange(len(t)), t)
     knots = np.pad(inner, _DEGREE, mode="edge")
     return make_lsq_spline(t, f, knots, _DEGREE)
 

@@ -90,6 +90,17 @@ def test_the_arrival_of_two_equal_humps_is_uncertain_by_their_distance():
     assert covered > 0.45 * 60  # half of the copies have the other hump as the higher one
 
 
+def test_samples_may_come_at_any_times():
+    """Times of a Poisson process, which leaves gaps."""
+    rng, within = np.random.default_rng(6), 0
+    for _ in range(60):
+        t = np.sort(rng.uniform(-10, 5, 400))
+        f = np.exp(-(t**2)) + 0.01 * rng.normal(size=len(t))
+        peak = noisy_pulse(t, f).numbers["peak"]
+        within += abs(peak.value - 1) < peak.error < 0.1
+    assert 0.5 < within / 60 < 0.85
+
+
 def test_a_short_lead_leaves_the_base_uncertain(signals):
     """With some 20 samples before the pulse the base errs more than the fit of the peak."""
     t, pulse = record(signals[1, 24], 300)
