@@ -103,7 +103,8 @@ def test_integrating_factor_and_the_equation_of_z(wave):
 
 def test_both_roots_give_the_short_beta(wave):
     for root in (0, 1):
-        assert same(wave.reduction(root).beta ** 2, wave.beta**2)
+        found = wave.reduction(root)
+        assert same(found.sigma * (1 - found.eta) ** 2 / 4, wave.beta**2)
 
 
 def test_the_page_wide_beta_of_hertz_contacts(wave):
@@ -150,8 +151,9 @@ def test_amplitude_of_the_paper_agrees_with_direct_insertion(wave):
     numbers = dict(k="8/5", m1=2, m2=3, D=1)
     at = wave.at(**numbers)
     for root in (0, 1):
-        ratio = at.reduction(root, V=2).B / at.amplitude(2)
-        assert abs(sp.N(ratio, 50) - 1) < 1e-40
+        found = at.reduction(root, V=2)
+        printed = (found.mu / (at.beta**2 * found.s * (found.s - 1))) ** (1 / (at.k - 1))
+        assert abs(sp.N(printed / at.amplitude(2), 50) - 1) < 1e-40
 
 
 def test_the_wave_solves_the_equation_at_fifty_digits(wave):

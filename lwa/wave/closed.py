@@ -38,26 +38,16 @@ class Reduction(Value):
 
     p, a : powers of the substitution and of the integrating factor z^a.
     mu, eta, sigma : μ = V² / (I (p + a)), η = 1 + p - kp, σ = 1 / (I (kp + a)).
-    s : power 2 / (1 - η) of the cosine in z.
+    s : power 2 / (1 - η) of the cosine in z. With either root β = √σ (1 - η) / 2 and
+        B^{k-1} = μ / (β² s (s - 1)).
     """
 
-    k: sp.Expr
     p: sp.Expr
     a: sp.Expr
     mu: sp.Expr
     eta: sp.Expr
     sigma: sp.Expr
     s: sp.Expr
-
-    @property
-    def beta(self) -> sp.Expr:
-        """The wavenumber √σ (1 - η) / 2 of the cosine, `CompactWave.beta` for either root."""
-        return sp.sqrt(self.sigma) * (1 - self.eta) / 2
-
-    @property
-    def B(self) -> sp.Expr:
-        """The amplitude (μ/(β² s (s-1)))^{1/(k-1)}, `CompactWave.amplitude` for either root."""
-        return (self.mu / (self.beta**2 * self.s * (self.s - 1))) ** (1 / (self.k - 1))
 
     def latex_rows(self) -> list[str]:
         values = {name: getattr(self, name) for name in _FORMULAS}
@@ -231,7 +221,7 @@ class CompactWave(Value):
         a = factored(3 + self._ratios[1] - self.k) * p - 2  # 1 - kp + 3 (p - 1) + p H/I
         mu, eta = positive(V, "V") ** 2 / (self.I * (p + a)), 1 + p - self.k * p
         sigma = 1 / (self.I * (self.k * p + a))
-        return Reduction(self.k, p, a, mu, eta, sigma, 2 / (1 - eta))
+        return Reduction(p, a, mu, eta, sigma, 2 / (1 - eta))
 
     def at(self, **values: Any) -> Self:
         """Substitute numbers (or other symbols) for the named symbols, and for ω = m2/m1.

@@ -73,9 +73,9 @@ def test_the_paper_s_beta_and_B_equal_the_short_forms(k, m1, m2, root):
     assume(wave is not None)
     with mpmath.workdps(50):
         found = wave.reduction(root, V=2)
-        beta, short = number(found.beta), number(wave.beta)
-        assert min(abs(beta - short), abs(beta + short)) < abs(short) * mpmath.mpf(10) ** -38
-        s, mu = number(found.s), number(found.mu)
+        sigma, eta, s, mu = map(number, (found.sigma, found.eta, found.s, found.mu))
+        short = number(wave.beta)
+        assert abs(sigma * (1 - eta) ** 2 / 4 / short**2 - 1) < mpmath.mpf(10) ** -38
         # B^{k-1}, whose own power 1/(k-1) may overflow
         ratio = mu / (short**2 * s * (s - 1))
         assert abs(ratio / (4 / number(wave.speed_factor)) - 1) < mpmath.mpf(10) ** -36
