@@ -392,7 +392,6 @@ def test_the_progress_bar_appears_before_the_first_case_ends(cases):
 LAW = "force,speed\n" + "".join(f"{2.0**n},{500 * 2 ** (n / 6)}\n" for n in range(8))
 TEXTS = {  # commands and the characters of their longest line, at most
     "paper": 80,
-    "limits": 80,
     "exact --background 1/2": 100,
     "resonances --count 2": 100,
     "sweep --k 3/2 --omega 1/10,1/2,1": 100,
@@ -403,16 +402,13 @@ TEXTS = {  # commands and the characters of their longest line, at most
     "pulses run.csv": 100,
     "law law.csv --masses 0.45e-3 --spacing 4.76e-3": 100,
 }
-SLOW_TEXTS = {"figures": 100, "accuracy --task uniform": 100}
 
 
-@pytest.mark.parametrize(
-    "texts", [TEXTS, pytest.param(SLOW_TEXTS, marks=pytest.mark.slow)], ids=["fast", "slow"]
-)
-def test_texts_fit_a_terminal(capsys, folder, texts):
+def test_texts_fit_a_terminal(capsys, folder):
+    """The texts of limits, figures and accuracy: in the tests of these studies."""
     (folder / "law.csv").write_text(LAW)
     (folder / "scene.toml").write_text(example("paper"))
-    for line, width in texts.items():
+    for line, width in TEXTS.items():
         status, out, _ = run(capsys, *line.split())
         assert status == 0, line
         assert max(map(len, out.splitlines())) <= width, line

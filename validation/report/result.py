@@ -6,13 +6,12 @@ import io
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from textwrap import fill
 from typing import Any
 
 from lwa.base.exact import InputError
 from validation.pictures import Panel, Pictured, svg
 from validation.report.files import replacing
-from validation.report.table import WIDTH, Finding, Table, findings_table, paragraphs, plain
+from validation.report.table import WIDTH, Finding, Table, findings_table, paragraphs, plain, wrap
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,10 +67,7 @@ class Report(Pictured):
 
     def text(self) -> str:
         """The report as plain text."""
-        title, *notes = (
-            "\n".join(fill(line, self.width, break_long_words=False) for line in text.splitlines())
-            for text in (self.title, *self.notes)
-        )
+        title, *notes = (wrap(text, self.width) for text in (self.title, *self.notes))
         tables = (table.text(self.width) for table in self._printed_tables())
         return "\n\n".join(filter(None, (title, *tables, *notes, self.verdict)))
 

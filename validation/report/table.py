@@ -9,6 +9,7 @@ import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from html import escape
+from textwrap import fill
 from typing import Any
 
 import numpy as np
@@ -135,7 +136,7 @@ class Table:
     def text(self, width: int = WIDTH) -> str:
         """The table as text in lines of a width; empty without column labels or rows."""
         parts = [f"{head}\n{aligned(lines, width)}".lstrip("\n") for head, lines in self.parts()]
-        blocks = self.title, "\n\n".join(parts), self.note
+        blocks = wrap(self.title, width), "\n\n".join(parts), wrap(self.note, width)
         return "\n".join(filter(None, blocks)) if parts else ""
 
     def html(self) -> str:
@@ -251,6 +252,11 @@ def aligned(lines: Lines, width: float = math.inf) -> str:
         )
         texts.append("\n".join("  ".join(row).rstrip() for row in cells))
     return "\n\n".join(texts)
+
+
+def wrap(text: str, width: int) -> str:
+    """Break the lines of a text that are longer than a width."""
+    return "\n".join(fill(line, width, break_long_words=False) for line in text.splitlines())
 
 
 def brief(number: Measured, digits: int = 7) -> str:

@@ -94,6 +94,7 @@ def report():
 
 def test_the_document_holds_the_contract(report):
     result = json.loads(json.dumps(report.document(), allow_nan=False))
+    assert max(map(len, report.text().splitlines())) <= 100
     for row in result["rows"]:
         assert row["error"] == max(row[f"{name}_error"] for name in READINGS) < 0.1
         assert row["seconds"] > 0

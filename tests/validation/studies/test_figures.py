@@ -117,6 +117,7 @@ def test_text_and_csv_hold_the_numbers(whole, document):
     shown = whole.text()
     assert "E of PTFE (GPa)" in shown
     assert "\n0.6 " in shown
+    assert max(map(len, shown.splitlines())) <= 100
     rows = csv.DictReader(io.StringIO(whole.csv()))
     numbers = [{name: float(value) for name, value in row.items()} for row in rows]
     assert numbers == document["speeds"]

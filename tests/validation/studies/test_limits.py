@@ -89,6 +89,7 @@ def test_all_hold(report):
         assert row["error_value"] == row["theory_value"] / row["lattice_value"] - 1
         assert abs(row["error_value"]) <= row["bound_value"]
     assert report.text().count("  ok") == 47
+    assert max(map(len, report.text().splitlines())) <= 80
 
 
 @pytest.mark.parametrize("k", EXPONENTS)

@@ -132,6 +132,7 @@ def test_ladder_in_all_forms(places):
             if row["estimate_value"]:  # an estimate bounds the error
                 assert abs(row["error_value"][name]) <= row["estimate_value"][name] + 1e-13
     printed = report.text()
+    assert max(map(len, printed.splitlines())) <= 100
     assert printed.count("theory over truth - 1") == len(QUANTITIES)
     assert "(ms of CPU): linear closure " in printed
 
