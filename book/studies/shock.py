@@ -117,8 +117,10 @@ class Driven:
 
     def scene(self) -> Scene:
         """Build the scene, with sensors near the piston and along the leading pulse's path."""
-        cell, reach = self.theory.cell.size, self._fastest * self.duration
-        places = np.linspace(*SPAN, CONTACTS) * reach
+        # Not beyond the pulse: the canonical wave of a steep law is too fast.
+        rule, _ = self.theories["doubling"]
+        reach = self.duration * min(self._fastest, 1.03 * rule if rule else math.inf)
+        places, cell = np.linspace(*SPAN, CONTACTS) * reach, self.theory.cell.size
         distances = {cell * round(place / cell) for place in places} - {NEAR}
         return self._scene(self.duration, (NEAR, *sorted(distances)), SAMPLES)
 

@@ -54,7 +54,7 @@ def transmission(
     cells: int = 80,
     progress: Progress[Any] = iter,
 ) -> Report:
-    """Transmission and attenuation of a shaken chain under load. Takes a minute.
+    """Transmission and attenuation of a shaken chain under load (fifteen seconds).
 
     ``rows``: ``frequency_value`` (Ω), ``transmission_value`` (amplitude in cell 3 over that of the
     drive), ``attenuation_value`` (per cell, -ln of the ratio of amplitudes) and
