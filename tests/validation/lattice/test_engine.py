@@ -198,4 +198,4 @@ def test_beads_at_rest_ahead_of_the_front_cost_nothing(method):
     noisy = replace(short, velocities=(1.0, *((-1) ** i * 1e-17 for i in range(299))))
     runs = [simulate(scene, method=method, rtol=1e-4) for scene in (short, long, noisy)]
     assert len({run.bead_evaluations for run in runs}) == 1
-    assert np.abs(runs[2].velocities - runs[0].velocities).max() < 1e-9
+    assert np.abs(runs[2].velocities - runs[0].velocities).max() < 1e-8  # of an error of 1e-4

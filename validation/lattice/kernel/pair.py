@@ -25,7 +25,6 @@ from validation.lattice.kernel.kinks import (
     quintic,
 )
 
-_STEADY = 0.5  # for a kink outside the step: least ratio of the closing speeds at the step's ends
 _SLIGHT = 10.0  # least effect of a contact that is corrected, in units of the tolerance
 # Step-size control of Hairer, Nørsett and Wanner, Solving Ordinary Differential Equations I, II.4.
 # An error scales as h^{lower + 1}. The next step is _SAFETY times the step with an error equal to
@@ -104,7 +103,9 @@ def _attempt(chain: Chain, beads: Beads, plan: Plan, t: float, h: float, hi: int
         sums[ZERO, i + ONE] = most if kinked else 0.0
         near += 1 if kinked else 0
     if near > 0 and plan.scheme.points.shape[1] > 0:
-        _correct_kinks(chain, beads, plan, h, hi)
+        for i in range(hi):
+            if sums[0, i + 1] > 0.0:
+                _correct_contact(chain, beads, plan, h, i)
     missed = (h * _integral(ends[2], beads.power[1]) - beads.given[3]) / plan.energy
     return math.sqrt(squared_error(sums, inverse, hi) + missed * missed)
 
@@ -116,26 +117,6 @@ def _integral(row: Array, power: Array) -> float:
     for s in range(len(row)):
         total += row[s] * power[s]
     return total
-
-
-@part
-def _correct_kinks(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) -> None:
-    """Correct a step at the contacts that are marked by a compression above 0 in sums[0]."""
-    y, v, next_y, next_v = beads.y, beads.v, beads.next_y, beads.next_v
-    inverse, rest = chain.inverse, chain.rest
-    for i in range(hi):
-        most = beads.sums[0, i + 1]
-        if most > 0.0:
-            within = (rest[i] + y[i] - y[i + 1]) * (rest[i] + next_y[i] - next_y[i + 1]) < 0.0
-            speed, later = v[i] - v[i + 1], next_v[i] - next_v[i + 1]
-            # A kink outside the step counts if the quintic may be trusted there.
-            steady = min(speed / later, later / speed) > _STEADY
-            impulse = h * chain.A[i] * power(chain, most)
-            kick = impulse * max(inverse[i], inverse[i + 1])
-            if i == 0 and chain.drive.driven:  # the work of its force, too, must not err
-                kick += impulse * max(abs(v[0]), abs(next_v[0])) * plan.v / plan.energy
-            if kick > _SLIGHT * plan.v and (within or steady):
-                _correct_contact(chain, beads, plan, h, i)
 
 
 @part
