@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from tests.validation.lattice.test_random_scenes import drawn
@@ -81,6 +81,7 @@ values = st.sampled_from(("k", "duration", "wall", "gravity", "precompression"))
     st.sampled_from(["RKN86", "DOP853", "LSODA", "SRKN14"]),
 )
 @settings(max_examples=50)
+@example(16851, {"displacements": 6.6e302}, {"wall": 4.8e-194}, "SRKN14")
 def test_any_scene_gives_finite_numbers_or_one_line(seed, factors, changed, method):
     """Random scenes in which some values are of any size that floats have."""
     with pytest.MonkeyPatch.context() as patch:
