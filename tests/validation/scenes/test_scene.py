@@ -19,14 +19,6 @@ from validation.scenes.scene import Scene, SceneError
 GOOD = dict(masses=(1, 2, 3), stiffnesses=(1, 1), k=1.5, duration=1.0)
 
 
-def test_a_scene_is_a_value():
-    scene = Scene(**GOOD)
-    assert scene == Scene(**GOOD)
-    assert hash(scene) == hash(Scene(**GOOD))
-    with pytest.raises(dataclasses.FrozenInstanceError):
-        scene.k = 2.0
-
-
 NAN, X = float("nan"), sp.Symbol("x", positive=True)
 OPEN = Law(sp.Piecewise((X, X < 1)), X)
 PAIRED = {"k": math.nan}  # a scene without k, for a law
