@@ -118,8 +118,7 @@ class StepPath:
     @property
     def time(self) -> Array:
         """The ends of the steps."""
-        step = self.steps.step
-        return np.append(step[:, 0], step[-1, 0] + step[-1, 1])
+        return np.append(self.steps.step[:, 0], self.steps.step[-1, 3])
 
     def __call__(self, beads: Beads, time: Array) -> tuple[Array, Array]:
         """Return displacements and velocities (beads, S) at times (S,) within the run."""
@@ -137,7 +136,7 @@ class StepPath:
         self, n: NDArray[np.int_], time: Array, rows: NDArray[np.int_], q: int
     ) -> tuple[Array, Array]:
         """Return the motion in steps with numbers ``n``, (S,), in which time runs as x^q."""
-        begin, h, _ = self.steps.step[n].T
+        begin, h, _, _ = self.steps.step[n].T
         x = ((time - begin) / h).clip(0.0, 1.0) ** (1 / q)
         speeds = _interpolant(x) * _pace(q)
         t, a = x**q, _tableau()[1] * _pace(q)
@@ -156,7 +155,7 @@ def step_recorder(
     watched = np.array(sorted({j + m for j in needed.tolist() for m in (0, 1)}), int)
     most, count = 2 + BUFFER // (DENSE * len(watched) + 1), len(watched)
     steps = Steps(
-        np.empty((most, 3)), np.empty((most, count, 2)), np.empty((most, count, DENSE)), watched
+        np.empty((most, 4)), np.empty((most, count, 2)), np.empty((most, count, DENSE)), watched
     )
 
     def path(*arrays: Any) -> StepPath:

@@ -50,9 +50,9 @@ class Scheme(NamedTuple):
 class Steps(NamedTuple):
     """The motion of W watched beads in up to C steps.
 
-    step : (C, 3), time, length, and 0 or 1 for the row of `Scheme`. start : (C, W, 2), displacement
-    and velocity. force : (C, W, `DENSE`), of the contacts behind the beads, by stage. watched :
-    (W,), increasing numbers of the beads.
+    step : (C, 4), beginning, length, 0 or 1 for the row of `Scheme`, and end, which is not quite
+    the sum of the first two. start : (C, W, 2), displacement and velocity. force : (C, W, `DENSE`),
+    of the contacts behind the beads, by stage. watched : (W,), increasing numbers of the beads.
     """
 
     step: Array
@@ -162,10 +162,10 @@ def _accept(chain: Chain, beads: Beads, plan: Plan, now: Any, h: float, hi: int)
 
 
 @part
-def _store(beads: Beads, steps: Steps, now: Any, h: float) -> None:
+def _store(beads: Beads, steps: Steps, now: Any, h: float, end: float) -> None:
     """Store a step at the watched beads."""
     step = steps.step[now.stored]
-    step[0], step[1], step[2] = now.t, h, now.warped
+    step[0], step[1], step[2], step[3] = now.t, h, now.warped, end
     for q in range(len(steps.watched)):
         j = steps.watched[q]
         steps.start[now.stored, q, 0], steps.start[now.stored, q, 1] = beads.y[j], beads.v[j]
@@ -236,7 +236,7 @@ def _built(sources: int) -> Any:
                     beads.force[1:] = 0.0  # overflows must not last
                 continue
             if watching:
-                _store(beads, steps, now, h)
+                _store(beads, steps, now, h, later)
             _accept(chain, beads, plan, now, h, hi)
             now.response = max(now.response, now.energy + now.work - now.lost)
             now.steps += 1
