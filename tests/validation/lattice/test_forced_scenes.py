@@ -121,8 +121,9 @@ FEW = [(seed, 1e-9) for seed in (0, 4, 8, 10, 14, 20, 36, 50, 75, 93)]
 # A sample within a step of 4.5 decay times of a light bead. The step's own estimate is near 0: the
 # interpolant errs by 303 unless its error is estimated, too.
 FEW += [(352, 1e-9)]
-# A contact opens for a quarter of a step, between two stages: unseen, an error of 175.
-FEW += [(130, 1e-7)]
+# A contact opens, and another one closes, for a part of a step, between two stages: unseen, errors
+# of 175 and 1e5.
+FEW += [(130, 1e-7), (5497, 1e-9)]
 
 
 @pytest.mark.parametrize(("seed", "rtol"), FEW)

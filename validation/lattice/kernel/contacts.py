@@ -20,9 +20,11 @@ from validation.lattice.kernel.force import NEGLIGIBLE, power
 from validation.lattice.kernel.kinks import Quintic, fitted_compression, quintic
 
 _SLIGHT = 0.5  # least impulse of a contact whose change matters, in units of the tolerance
-# A closed contact may open and close again between two stages, which are up to 0.27 steps apart. A
-# parabola that touches 0 there has 0.12 of its force at an earlier stage, at the stage next to it.
+# A contact may change and change back between two stages, which are up to 0.27 steps apart. The
+# force, if it is a parabola that touches 0 there, has at the stage next to it 0.12 of its value at
+# an earlier stage; a gap that closes there would close at the rate at the stage before it.
 _WEAK = 0.2  # closed contacts with less, in units of the greatest force, are looked at
+_NEAR = 0.3  # open contacts that would close within this share of a step are looked at
 _PLACES = 16  # places in a step at which a contact is looked at for its first change
 _TOUCH = 1e-14  # in units of the greatest compression: contacts as near as this touch
 
@@ -31,12 +33,20 @@ def _loop(value: Any, resistance: Any) -> Any:
     """Compile a loop over contacts with the force A value(d) + c resistance(d) dδ/dt.
 
     least : compressions below it are 0. none : bound of compressions and forces of closed contacts,
-    0, or -∞ for contacts that pull. The loop returns the dissipated power.
+    0, or -∞ for contacts that pull. reach : time within which a gap may close. The loop returns the
+    dissipated power.
     """
 
     @summed
     def loop(
-        chain: Chain, beads: Beads, f: Array, lo: int, hi: int, least: float, none: float
+        chain: Chain,
+        beads: Beads,
+        f: Array,
+        lo: int,
+        hi: int,
+        least: float,
+        none: float,
+        reach: float,
     ) -> float:
         A, rest, load, c = chain.A, chain.rest, chain.load, chain.c
         y, v, closed, changed = beads.next_y, beads.next_v, beads.contacts[0], beads.contacts[1]
@@ -48,8 +58,9 @@ def _loop(value: Any, resistance: Any) -> Any:
             n = A[i] * value(chain, d) + drag
             f[i + ONE] = (n if on > 0.5 else 0.0) - load[i]
             lost += on * drag * rate
-            # 0 as well if the force is weak: the contact may have opened between two stages.
-            active = 1.0 if (x > none) & (n > none + on * _WEAK * past) else 0.0
+            gap = (on < 0.5) & (x <= none)
+            pushes = gap | (n > none + on * _WEAK * past)
+            active = 1.0 if (x + (1.0 - on) * reach * rate > none) & pushes else 0.0
             changed[i] += abs(active - on)
             n = abs(n) if (on > 0.5) | (x > 0.0) else 0.0
             most[i] = n if n > past else past
@@ -75,16 +86,18 @@ _any = _loop(
 
 
 @part
-def damped_forces(chain: Chain, beads: Beads, plan: Plan, s: int, lo: int, hi: int) -> None:
-    """Compute forces and powers of stage s at ``next_y`` and ``next_v``."""
+def damped_forces(
+    chain: Chain, beads: Beads, plan: Plan, s: int, h: float, lo: int, hi: int
+) -> None:
+    """Compute forces and powers of stage s of a step h at ``next_y`` and ``next_v``."""
     f, least = beads.force[s], NEGLIGIBLE * plan.deepest
     none = 0.0
     if chain.pulls:
         least = none = -math.inf
     if not chain.generated and (chain.k == 1.0 or chain.k == 1.5):
-        lost = _hertz(chain, beads, f, lo, hi, least, none)
+        lost = _hertz(chain, beads, f, lo, hi, least, none, _NEAR * h)
     else:
-        lost = _any(chain, beads, f, lo, hi, least, none)
+        lost = _any(chain, beads, f, lo, hi, least, none, _NEAR * h)
     beads.power[0, s] = lost
     beads.power[1, s] = beads.next_v[0] * f[1] if chain.drive.driven else 0.0
 
@@ -116,10 +129,15 @@ def settle(chain: Chain, beads: Beads, plan: Plan, hi: int) -> bool:
 
 
 @part
+def _slope(p: Quintic, x: float) -> float:
+    """Return the derivative at x of the quintic with coefficients p."""
+    return p[1] + x * (2 * p[2] + x * (3 * p[3] + x * (4 * p[4] + x * 5 * p[5])))
+
+
+@part
 def _right(chain: Chain, closed: bool, i: int, p: Quintic, h: float, x: float) -> bool:
     """Return True if contact i is in the state ``closed`` at the place x of a step."""
-    slope = p[1] + x * (2 * p[2] + x * (3 * p[3] + x * (4 * p[4] + x * 5 * p[5])))
-    return _active(chain, i, quintic(p, x), slope / h) == closed
+    return _active(chain, i, quintic(p, x), _slope(p, x) / h) == closed
 
 
 @part
@@ -148,6 +166,21 @@ def _place(
 
 
 @part
+def _unseen(chain: Chain, beads: Beads, i: int, h: float, last: int) -> float:
+    """Return the greatest force in a step of contact i, which is open at all stages."""
+    p, _ = fitted_compression(chain, beads, h, last, i)
+    most = 0.0
+    for m in range(1, _PLACES):
+        x = m / _PLACES
+        d = quintic(p, x)
+        if d > 0.0:
+            elastic = call(chain.force, d) if chain.generated else power(chain, d)
+            drag = d**chain.p * _slope(p, x) / h
+            most = max(most, abs(chain.A[i] * elastic + chain.c[i] * drag))
+    return most
+
+
+@part
 def first_change(chain: Chain, beads: Beads, plan: Plan, h: float, last: int, hi: int) -> float:
     """Return the share of the step up to the first change of a contact that matters; 1 without.
 
@@ -157,9 +190,12 @@ def first_change(chain: Chain, beads: Beads, plan: Plan, h: float, last: int, hi
     least = _SLIGHT * plan.v / h
     for i in range(hi):
         if beads.contacts[1, i] > 0.5:
-            force = beads.contacts[2, i] * max(chain.inverse[i], chain.inverse[i + 1])
+            most = beads.contacts[2, i]
+            if most == 0.0:  # a gap
+                most = _unseen(chain, beads, i, h, last)
+            force = most * max(chain.inverse[i], chain.inverse[i + 1])
             if i == 0 and chain.drive.driven:  # its work, too, is wrong
-                force += beads.contacts[2, i] * abs(beads.v[0]) * plan.v / plan.energy
+                force += most * abs(beads.v[0]) * plan.v / plan.energy
             if force > least:
                 x = _place(chain, beads, i, h, last, place, max(0.1 * least / force, 1e-15))
                 # The state of the contact is wrong from x on, with at most this force.

@@ -99,7 +99,7 @@ def _stage(
     if chain.drive.driven:
         next_y[0], next_v[0], a = drive_motion(chain.drive, now.interval, now.t + drift)
         beads.given[1] = a if s == STEP else beads.given[1]
-    damped_forces(chain, beads, plan, s, lo, hi)
+    damped_forces(chain, beads, plan, s, h, lo, hi)
 
 
 @part
@@ -189,7 +189,7 @@ def _begin(chain: Chain, beads: Beads, plan: Plan, now: Any, hi: int) -> None:
         now.h = min(now.h, now.restart)
     for i in range(index(hi)):
         beads.next_y[i], beads.next_v[i] = beads.y[i], beads.v[i]
-    damped_forces(chain, beads, plan, 0, 0, hi)
+    damped_forces(chain, beads, plan, 0, 0.0, 0, hi)
 
 
 def _built(sources: int) -> Any:
