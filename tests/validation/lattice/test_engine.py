@@ -185,7 +185,7 @@ def test_a_driven_bead_that_leaves_its_contact_counts_with_its_acceleration():
     scene = Scene(
         masses=(1, 1), stiffnesses=(1,), k=1.5, duration=1, samples=301, contact_sensors=(0,)
     )
-    for duration, amplitude in product(np.linspace(2, 9, 15), (0.3, 1, 3)):
+    for duration, amplitude in product(np.linspace(2, 9, 7), (1, 3)):
         drive = Drive(amplitude=amplitude, frequency=0.15)
         driven = replace(scene, duration=float(duration), drive=drive)
         exact = simulate(driven, method="DOP853", rtol=1e-13, atol=1e-13)
