@@ -187,10 +187,3 @@ def _derivatives(B, beta, m, phase):
     """v = B cos^m(βξ) and its first three derivatives at βξ = phase, by mpmath's Taylor series."""
     series = mpmath.taylor(lambda t: mpmath.cos(t) ** m, phase, 3)
     return [B * beta**n * mpmath.factorial(n) * c for n, c in enumerate(series)]
-
-
-def test_where_G_plus_H_plus_I_is_not_positive_there_is_no_wave(wave):
-    from lwa import NoSolitaryWave
-
-    with pytest.raises(NoSolitaryWave, match="G\\+H\\+I"):
-        wave.at(k=3, m1=1, m2=100)

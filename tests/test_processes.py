@@ -91,13 +91,6 @@ def test_a_program_says_its_name_and_version(program):
     assert ended(*program, "--version") == (0, f"{name} {__version__}\n", "")
 
 
-def test_a_refusal_is_in_utf_8_whatever_the_locale():
-    environment = os.environ | {"PYTHONIOENCODING": "cp1252"}
-    status, out, err = ended(*LWA, "--κ", env=environment, encoding="utf-8")
-    assert (status, out, err.count("\n")) == (2, "", 1)
-    assert "--κ" in err
-
-
 def test_a_full_disk_is_one_line():
     with open("/dev/full", "w") as full:
         status, _, err = ended(*VERSION, capture_output=False, stdout=full, stderr=subprocess.PIPE)

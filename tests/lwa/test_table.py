@@ -13,7 +13,6 @@ from lwa import Cell, InputError, background_wave, homogenize, shock
 from lwa.base.quantities import NoSolitaryWave
 from lwa.base.splines import ForceSpline
 from lwa.law import DELTA, Law, named
-from lwa.wave.background import BackgroundWave
 
 CHAIN = Cell([1], spacing=1)
 
@@ -102,15 +101,6 @@ def test_waves_are_those_of_the_law_it_was_made_of(p0, B):
         assert float(ours.fwhm(B, quantity)) == pytest.approx(width, rel=3e-5)
     assert float(ours.profile(0.7, B)) == pytest.approx(float(exact.profile(0.7, B)), rel=3e-5)
     assert float(ours.kdv.nonlinearity) == pytest.approx(float(exact.kdv.nonlinearity), rel=5e-3)
-
-
-def test_under_a_power_it_is_the_power():
-    ours, exact = (
-        BackgroundWave(CHAIN, law, 1) for law in (table(lambda d: d**1.5), named("power", "3/2"))
-    )
-    # the units of a power are F/k: the table's strain energy is k times as large
-    assert float(ours.speed(2)) == pytest.approx(1.5**0.5 * float(exact.speed(2)), rel=1e-9)
-    assert float(ours.fwhm(2)) == pytest.approx(float(exact.fwhm(2)), rel=3e-5)
 
 
 def test_a_shock_is_that_of_the_law_it_was_made_of():

@@ -178,26 +178,22 @@ def residuals(theory, equation=None):
 
 
 @pytest.mark.parametrize(
-    ("cell", "field"),
+    ("k", "cell", "field"),
     [
-        (Cell([1]), "first"),
-        (Cell([3, 1], stiffnesses=[1, 8]), "first"),
-        (Cell([3, 1], stiffnesses=[1, 8]), "center"),
-        (Cell([1, 1, 4], stiffnesses=[1, 8, 27]), "center"),
+        (3, Cell([1]), "first"),
+        (3, Cell([3, 1], stiffnesses=[1, 8]), "first"),
+        (3, Cell([3, 1], stiffnesses=[1, 8]), "center"),
+        (3, Cell([1, 1, 4], stiffnesses=[1, 8, 27]), "center"),
+        (1, Cell([2, 1]), "first"),
+        (5, Cell([2, 1]), "first"),
     ],
     ids=str,
 )
-def test_every_equation_of_motion_is_satisfied(cell, field):
+def test_every_equation_of_motion_is_satisfied(k, cell, field):
     # order 7 reaches D^{k+6}, where jets of the velocity stand in the fields and the wave equation
-    theory = homogenize(cell, 7, k=3, closure="full", field=field)
+    theory = homogenize(cell, 7, k=k, closure="full", field=field)
     assert theory.defect == {}
     assert residuals(theory) == [[0] * 7] * cell.size
-
-
-@pytest.mark.parametrize("k", [1, 5])
-def test_every_equation_of_motion_is_satisfied_at_other_exponents(k):
-    theory = homogenize(Cell([2, 1]), 7, k=k, closure="full")
-    assert residuals(theory) == [[0] * 7] * 2
 
 
 @pytest.mark.parametrize(

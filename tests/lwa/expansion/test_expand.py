@@ -119,14 +119,6 @@ def test_equal_beads_in_any_cell_are_the_uniform_chain(size: int) -> None:
     assert many.energy.coefficients == one.energy.coefficients
 
 
-def test_mirrored_dimer_has_the_same_speed_and_contacts() -> None:
-    a, b = expand(Dimer(1, OMEGA), 2), expand(Dimer(OMEGA, 1), 2)
-    for x, y in zip(a.c2.coefficients, b.c2.coefficients, strict=True):
-        assert same(x, y)
-    for x, y in zip(a.fwhm("force").coefficients, b.fwhm("force").coefficients, strict=True):
-        assert same(x, y)
-
-
 def test_first_correction_of_a_dimer_is_a_closed_form() -> None:
     """w_1(ω); at ω = 1 and ω → 0 both are those of chains of equal beads."""
     w_1 = expand(Dimer(1, OMEGA), 1).fwhm("force").coefficients[1]

@@ -54,6 +54,21 @@ def test_units_and_forces_enter_as_dimensions_demand():
         assert read(other).error == pytest.approx(unit * read(one).error, rel=1e-12)
 
 
+def test_the_error_of_a_time_is_that_of_width_and_speed():
+    found = wave(force=3)
+    width, time = found.fwhm(), found.fwhm("strain", "time")
+    shares = width.error / width.value + found.speed.error / found.speed.value
+    assert time.error == pytest.approx(time.value * shares, rel=1e-12)
+
+
+@pytest.mark.parametrize("force", [0, -1, "F", float("nan")])
+def test_only_positive_forces_are_accepted(force):
+    with pytest.raises(InputError, match=r"^force is "):
+        wave(force=force)
+    with pytest.raises(InputError, match="spacing is D: a number is wanted"):
+        wave(cell=Cell([1]))
+
+
 def damped_speeds(kind, gamma, k=1.5, beads=80):
     """Speeds of a pulse between contacts 20, 22, … of a damped chain, by SciPy."""
 

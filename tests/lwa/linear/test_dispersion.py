@@ -5,7 +5,6 @@ value is good to some 1e-16 of the largest, which for these cells is below 20.
 """
 
 from fractions import Fraction
-from math import factorial
 
 import mpmath
 import numpy as np
@@ -65,16 +64,6 @@ def test_the_trace_is_the_determinant_of_the_chain(cell, k):
     exact = DomainMatrix.from_Matrix(matrix).to_field()
     determinant = exact.domain.to_sympy(exact.det())
     assert sp.cancel(determinant * sp.prod(c) - trace + z + 1 / z) == 0
-
-
-def test_uniform_chain():
-    chain = Dispersion(Cell(["m"], stiffnesses=["A"]), "k")
-    assert chain.trace == {0: 2, 1: -1}  # Ω² = 2 - 2 cos κ = 4 sin²(κ/2)
-    cosine = {n: sp.Rational(-2 * (-1) ** (n // 2), factorial(n)) for n in range(2, 21, 2)}
-    assert chain.acoustic(20) == cosine
-    number = Dispersion(Cell([3]))
-    kappa = np.linspace(-4, 4, 101)
-    assert np.allclose(number.bands.branches(kappa)[:, 0], 2 * abs(np.sin(kappa / 2)), 0, ROUNDING)
 
 
 # --- series -------------------------------------------------------------------------------------
@@ -186,17 +175,6 @@ def test_one_chain_many_cells(cell, kappa):
     assert double.acoustic(8) == chain.acoustic(8)
     folded = chain.bands.branches([kappa, kappa + np.pi / cell.size]).ravel()
     assert np.allclose(double.bands.branches(kappa), np.sort(folded), 0, 2e-13)
-
-
-def test_equal_masses_unfold():
-    chain = Dispersion(Cell([7, 7]))
-    cosine = {n: sp.Rational(2 * (-1) ** (n // 2), factorial(n)) for n in range(0, 13, 2)}
-    assert chain.optical(12) == cosine | {0: 4}  # 2 + 2 cos κ, the chain's branch seen from π
-    kappa = np.linspace(0, np.pi / 2, 30)
-    expected = np.stack([2 * np.sin(kappa / 2), 2 * np.cos(kappa / 2)], axis=-1)
-    assert np.allclose(chain.bands.branches(kappa), expected, 0, ROUNDING)
-    for P in (2, 3, 4, 8):
-        assert np.allclose(np.diff(Dispersion(Cell([1] * P)).bands.gaps()), 0, 0, ROUNDING)
 
 
 def high_precision(cell, kappa, branch):

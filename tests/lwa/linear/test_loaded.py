@@ -8,19 +8,6 @@ from lwa.law import general, named
 from lwa.linear.dispersion import LoadedChain
 
 
-def test_one_bead_a_cell():
-    """ω = 2 √(K/m) |sin(qD/2)|."""
-    chain = LoadedChain(Cell([2], [5], "1/10"), Power("3/2"), 3)
-    K = 1.5 * 5 ** (2 / 3) * 3 ** (1 / 3)
-    q = np.array([0.5, 7.0, 20.0])
-    omega = 2 * np.sqrt(K / 2) * np.sin(q / 20)
-    assert chain.bands.branches(q)[:, 0] == pytest.approx(omega, rel=1e-14)
-    slope = np.sqrt(K / 2) * np.cos(q / 20) / 10
-    assert chain.bands.group_velocity(q)[:, 0] == pytest.approx(slope, rel=1e-13)
-    assert float(chain.sound_speed) == pytest.approx(0.1 * np.sqrt(K / 2), rel=1e-14)
-    assert chain.bands.gaps().shape == (0, 2)
-
-
 def test_the_eigenvalues_of_a_ring_of_unlike_contacts():
     """Eight cells in a ring, linearised by differences of the force."""
     masses, stiffnesses, k, F0 = (1.0, 2.0, 0.5), (1.0, 3.0, 2.0), 1.5, 0.7

@@ -9,8 +9,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lwa import (
-    Cell,
-    Dimer,
     InputError,
     Lattice,
     Law,
@@ -21,7 +19,6 @@ from lwa import (
     lattice_wave,
 )
 from lwa.law import DELTA, named
-from lwa.linear.dispersion import Dispersion
 
 HERTZ = Power("3/2")
 SQUARED = Power(2)
@@ -71,13 +68,6 @@ def test_the_coefficient_is_that_of_the_bloch_branch(data):
     assert found[0] / float(lattice.mass) == pytest.approx(c2, rel=1e-9)
 
 
-def test_chains_have_the_coefficient_of_their_cell():
-    for cell in (Cell((1,)), Dimer(3, 1), Dimer("1/2", 2, N=3, stiffnesses=(1, 4, 2, 3))):
-        lattice = Lattice.of_cell(cell, Power(1))
-        found = sp.cancel(lattice.dispersion(1) / cell.spacing**2)
-        assert float(found) == pytest.approx(float(Dispersion(cell, 1).I), rel=1e-13)
-
-
 def test_the_coefficient_of_a_pair_in_closed_form():
     m1, m2, K1, K2 = sp.symbols("m1 m2 K1 K2", positive=True)
     pair = Lattice([m1, m2], springs_of((0, 1, K1), (1, 2, K2)))
@@ -90,14 +80,6 @@ def test_the_coefficient_of_a_pair_in_closed_form():
     for m in (m1, 1):
         found = Lattice([m, 2], inclined).dispersion(1).subs(at)
         assert float(found) == pytest.approx(float(expected.subs(at)), rel=1e-14)
-
-
-def test_neighbours_of_range_r():
-    """J = F′ I = Σ r⁴ F_r′/12 and F′ = Σ r² F_r′."""
-    K = {1: 3, 2: 5, 4: 7}
-    lattice = Lattice([1], springs_of(*((0, r, k) for r, k in K.items())))
-    fourth, second = (sum(r**n * k for r, k in K.items()) for n in (4, 2))
-    assert float(lattice.dispersion(1)) == pytest.approx(fourth / (12 * second), rel=1e-15)
 
 
 def test_hertz_and_linear_contacts_in_turn():

@@ -21,7 +21,6 @@ from lwa.law import DELTA, named
 from lwa.shocks import edges
 from lwa.shocks.waves import Pulse
 from tests.identity import same
-from tests.lwa.expansion.test_exact_waves import lattice
 
 EQUAL = Cell([1], spacing=1)
 HERTZ = Power("3/2")
@@ -125,39 +124,29 @@ def test_a_pulse_is_the_lattices_own_to_the_next_order_in_k_minus_1():
 # --- limits ---
 
 
-@pytest.mark.parametrize("law", [HERTZ, Power("1/2"), TODA], ids=["hertz", "root", "toda"])
-def test_small_jumps_are_those_of_kdv(law):
-    """The edges stand -1 and 2/3 of the jump of c off c₊ for r → 1, and the leading pulse at 2.
-
-    Under k = 1/2 sound is faster on a lower strain: the strain of its shocks falls.
-    """
-    errors, sign = [], -1 if law == Power("1/2") else 1
-    for jump in (sign * sp.Rational(1, 50), sign * sp.Rational(1, 100)):
-        found = shock(EQUAL, law, 1 + jump, 1)
-        c, step = found.sound(found.ahead), found.sound(found.behind) - found.sound(found.ahead)
-        edges = [found.trailing_speed, found.leading_speed("dispersion"), found.leading_speed()]
-        numbers = [float((s - c) / step) for s in edges] + [
-            float(x / jump) for x in (found.rise, found.peak - 1)
-        ]
-        errors.append([abs(n - x) for n, x in zip(numbers, (-1, 2 / 3, 2 / 3, 2, 2), strict=True)])
-    for far, near in zip(*errors, strict=True):
-        assert near < 0.02
-        assert near < 0.6 * far + 1e-12
-
-
 @pytest.mark.parametrize(
     ("law", "ahead"),
     [(HERTZ, 1), (Power("1/2"), 1), (named("hertz2", 1, 1), 1), (named("magnetic", 3, 1), 0)],
     ids=["hertz", "root", "hertz2", "magnets"],
 )
-def test_the_rule_keeps_twenty_digits_at_any_jump(law, ahead):
-    """s₊/c₊ - 1 is 2/3 of the jump of sound for r → 1; to 20 digits it is lost below 1e-20."""
+def test_small_jumps_are_those_of_kdv_to_twenty_digits(law, ahead):
+    """The edges stand -1 and 2/3 of the jump of c off c₊ for r → 1, and the leading pulse at 2.
+
+    To 20 digits a speed is c₊ below jumps of 1e-20. Under k = 1/2 sound is faster on a lower
+    strain: the strain of its shocks falls.
+    """
     for digits in (6, 9, 12, 30):
         jump = sp.Rational(-1 if law == Power("1/2") else 1, 10**digits)
         found = shock(EQUAL, law, ahead + jump, ahead)
         c = sp.N(found.sound(ahead), 50)
         sound = sp.N(found.sound(ahead + jump), 50) / c - 1
-        assert abs(found.leading_speed() / c - 1 - 2 * sound / 3) < abs(sound) ** 2 + 1e-19
+        for speed, part in (
+            (found.leading_speed(), sp.Rational(2, 3)),
+            (found.leading_speed("dispersion"), sp.Rational(2, 3)),
+            (found.trailing_speed, -1),
+        ):
+            assert abs(sp.N(speed, 60) / c - 1 - part * sound) < abs(sound) ** 2 + 1e-19
+        assert found.rise == pytest.approx(2 * jump, rel=1e-5, abs=1e-19)
         assert found.peak - ahead == pytest.approx(2 * jump, rel=1e-5, abs=1e-19)
 
 
@@ -174,15 +163,6 @@ def test_a_long_exponent_is_a_number_of_twenty_digits(k, behind, ahead):
     assert {"doubling", "peak", "peak_force", "plateau"} <= {*found.errors}
 
 
-def test_hard_spheres():
-    """The peak of the canonical wave tends to the strain behind it for k → ∞, and s₊/c₋ to 4/k."""
-    found = shock(EQUAL, Power(1000), 1, 0)
-    assert float(found.peak) == pytest.approx(1, abs=0.01)
-    assert float(1000 * found.leading_speed() / found.sound(found.behind)) == pytest.approx(
-        4, rel=0.01
-    )
-
-
 # --- the lattice's own wave ---
 
 
@@ -195,14 +175,6 @@ def test_the_series_in_k_minus_1_has_beads_at_twice_the_wall():
     assert peak == pytest.approx(2 * float(found.plateau), rel=1e-12)
     assert wave.speed.value / float(found.sound(found.behind)) == pytest.approx(0.8477, abs=1e-4)
     assert float(wave.F) ** (2 / 3) == pytest.approx(1.7277, abs=1e-4)
-
-
-def test_peak_velocity_of_the_exact_wave():
-    """The velocity is the mean of the force over a site, over c; the force is found by Fourier."""
-    values, xi, force = lattice(1.5)
-    inside = scipy.interpolate.CubicSpline(xi, force).integrate(-0.5, 0.5)
-    found = expand(EQUAL, 10, k="3/2").peak_velocity.at()
-    assert abs(found.value - inside / values["c2"] ** 0.5) < found.error < 1e-3
 
 
 # --- other cells and laws ---
@@ -274,11 +246,6 @@ def test_si_units():
     assert ratio == pytest.approx(scale / 1.5**0.5, rel=1e-9)
     peak = 1e9 * (float(found.peak) / 200) ** 1.5
     assert float(found.peak_force) == pytest.approx(peak, rel=1e-9)
-    speeds = [
-        piston(cell, HERTZ, v).wave.speed.value
-        for cell, v in ((EQUAL, 1), (real, scale / 1.5**0.5))
-    ]
-    assert speeds[1] / speeds[0] == pytest.approx(scale / 1.5**0.5, rel=1e-9)
 
 
 @pytest.mark.parametrize(

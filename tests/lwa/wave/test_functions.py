@@ -285,14 +285,6 @@ def test_renamed_symbols_are_listed_in_comments():
     assert "symbol" not in wave.code("c")
 
 
-@pytest.mark.parametrize("language", LANGUAGES)
-def test_lines_are_short_and_brackets_close(language):
-    for name in WAVES:
-        source = code_of(name, language)
-        assert max(map(len, source.splitlines())) < 80
-        assert source.count("(") == source.count(")")
-
-
 def test_numbers_of_any_size():
     """Masses beyond 2^63 are exact, numbers beyond a double refused."""
     wave, found = canonical_wave(Dimer(10**30, "1/3")), {}

@@ -62,6 +62,7 @@ def test_arrays_broadcast():
     beta = NUMERIC.beta(k, w)
     assert beta.shape == (2, 3)
     assert beta[1, 1] == NUMERIC.beta(1.5, 1.0)
+    assert 1e9 < NUMERIC.log_amplitude(1 + 1e-9, 1.0, V=2.0) < np.inf
 
 
 def test_missing_waves_raise_or_are_nan_on_request():
@@ -86,11 +87,6 @@ def test_bad_input():
         WAVE.at(k="3/2").numeric()
     with pytest.raises(InputError, match="missing"):
         WAVE.numeric(missing="zero")
-
-
-def test_amplitudes_beyond_float_have_finite_logarithms():
-    assert np.isfinite(NUMERIC.log_amplitude(1 + 1e-9, 1.0, V=2.0))
-    assert NUMERIC.log_amplitude(1 + 1e-9, 1.0, V=2.0) > 1e9
 
 
 def test_any_cell_of_two_masses_that_are_symbols():

@@ -67,20 +67,6 @@ def test_z_obeys_its_equation_for_either_root_even_complex_ones(k, m1, m2, root)
         assert abs(terms[0] - terms[1] + terms[2]) < mpmath.mpf(10) ** -38 * max(map(abs, terms))
 
 
-@given(exponents, masses, masses, st.integers(0, 1))
-def test_the_paper_s_beta_and_B_equal_the_short_forms(k, m1, m2, root):
-    wave = wave_at(k, m1, m2)
-    assume(wave is not None)
-    with mpmath.workdps(50):
-        found = wave.reduction(root, V=2)
-        sigma, eta, s, mu = map(number, (found.sigma, found.eta, found.s, found.mu))
-        short = number(wave.beta)
-        assert abs(sigma * (1 - eta) ** 2 / 4 / short**2 - 1) < mpmath.mpf(10) ** -38
-        # B^{k-1}, whose own power 1/(k-1) may overflow
-        ratio = mu / (short**2 * s * (s - 1))
-        assert abs(ratio / (4 / number(wave.speed_factor)) - 1) < mpmath.mpf(10) ** -36
-
-
 def test_complex_roots_do_occur_and_leave_beta_real():
     wave = WAVE.at(k=3, m1=1, m2=2)
     assert not any(sp.N(root).is_real for root in wave.roots)
