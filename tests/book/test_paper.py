@@ -5,12 +5,12 @@ from pathlib import Path
 
 import sympy as sp
 
-from lwa import Cell, Dimer, canonical_wave, homogenize
+from lwa import Cell, canonical_wave
 from validation import exact_wave
 
 BOOK = Path(__file__).parents[2] / "book"
 TEXT = (BOOK / "paper" / "paper.md").read_text(encoding="utf-8")
-m1, m2, D = sp.symbols("m1 m2 D", positive=True)
+D = sp.Symbol("D", positive=True)
 
 
 def test_the_sources_are_listed():
@@ -27,13 +27,6 @@ def test_the_widths():
 def test_the_inverse_width_of_equal_spheres():
     assert r"$\sqrt{10}/(5D)$" in TEXT
     assert canonical_wave(Cell([1]), "3/2").beta == sp.sqrt(10) / (5 * D)
-
-
-def test_the_defect_of_the_linear_ansatz():
-    theory = homogenize(Dimer(m1, m2), order=4)
-    assert list(theory.defect) == [3]
-    assert all(sp.simplify(term.subs(m2, m1)) == 0 for term in dict(theory.defect[3]).values())
-    assert homogenize(Dimer(m1, m2), order=4, closure="full").defect == {}
 
 
 def test_the_paper_has_two_pages():

@@ -15,7 +15,6 @@ from validation.pulses.pulse import (
     Pulse,
     compared,
     derived,
-    exponent,
     measure,
     speed,
 )
@@ -117,16 +116,6 @@ def test_a_measured_number_carries_its_error():
     assert str(Measured(1.5, 1.5)) == "1.5 ± 0"
     assert str(Measured(4.350971956738e-4, 4.350971959e-4)) == "0.0004350971957 ± 2e-13"
     assert str(Measured(0.0, 1e-20)) == "0.000000000000 ± 1e-20"
-
-
-def test_an_exponent_carries_the_errors_of_both_rows():
-    """Errors of a common sign, which leave a fit as it is, count in full."""
-    x = [Measured(n, n) for n in (1.0, 2.0, 5.0)]
-    y = [Measured(3 * n.value**1.75, 3.03 * n.value**1.75) for n in x]
-    found = exponent(x, y)
-    assert found.value == pytest.approx(1.75, rel=1e-13)
-    logs = np.log([1, 2, 5]) - np.log(10) / 3
-    assert found.error == pytest.approx(0.01 * np.abs(logs).sum() / (logs @ logs), rel=1e-9)
 
 
 @pytest.mark.parametrize(

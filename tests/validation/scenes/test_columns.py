@@ -14,28 +14,21 @@ def written(tmp_path, text, encoding="utf-8"):
 
 
 @pytest.mark.parametrize(
-    ("unit", "size"),
-    [("s", 1), ("ms", 1e-3), ("µs", 1e-6), ("\u03bcs", 1e-6), ("us", 1e-6), ("ns", 1e-9)],
-)
-@pytest.mark.parametrize("brackets", ["()", "[]"])
-def test_units_of_time_are_read(tmp_path, unit, size, brackets):
-    file = written(tmp_path, f"time {brackets[0]}{unit}{brackets[1]},force\n1,2\n3,4\n")
-    assert columns(file, "time")["time"] == pytest.approx([size, 3 * size], rel=1e-15)
-    assert columns(file, "force")["force"].tolist() == [2, 4]
-
-
-@pytest.mark.parametrize(
     ("column", "size"),
     [
+        *(("time (s)", 1), ("time [ms]", 1e-3), ("time (µs)", 1e-6), ("time [\u03bcs]", 1e-6)),
+        *(("time (us)", 1e-6), ("time [ns]", 1e-9)),
         *(("bead 15 force (N)", 1), ("bead 15 dynamic force (mN)", 1e-3), ("force (kN)", 1e3)),
         *(("displacement (m)", 1), ("displacement(mm)", 1e-3), ("displacement [ µm ]", 1e-6)),
         *(("speed (m/s)", 1), ("speed (km/s)", 1e3), ("speed_error (mm/s)", 1e-3)),
     ],
 )
-def test_units_of_other_quantities_are_read(tmp_path, column, size):
+def test_units_are_read(tmp_path, column, size):
     name = column.partition("(")[0].partition("[")[0].strip()
-    file = written(tmp_path, f"{column}\n7\n")
-    assert columns(file, name)[name] == pytest.approx([7 * size], rel=1e-15)
+    file = written(tmp_path, f"{column},strain\n7,2\n")
+    found = columns(file, name, "strain")
+    assert found[name] == pytest.approx([7 * size], rel=1e-15)
+    assert found["strain"].tolist() == [2]
 
 
 @pytest.mark.parametrize(

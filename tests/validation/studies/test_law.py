@@ -67,16 +67,6 @@ def test_a_power_law_is_recovered_from_its_speeds(chain, k, A):
     assert np.all(error < 1e-5 * FORCES)
 
 
-def test_k_is_within_its_error_in_95_of_100_draws_of_1_percent_noise(chain):
-    rng, exact = np.random.default_rng(2), speeds(chain, 1.5, 1.0)
-    hits = 0
-    for _ in range(100):
-        force, speed = (1 + 0.01 * rng.normal(size=(2, len(FORCES)))) * (FORCES, exact)
-        fit = fit_power(chain, force, speed)
-        hits += abs(fit.k.value - 1.5) <= fit.k.error
-    assert hits >= 95
-
-
 def test_known_errors_weight_the_pulses(chain):
     """Every second pulse has twenty times the noise: with weights k errs less, within its error."""
     rng, exact = np.random.default_rng(3), speeds(chain, 1.5, 1.0)

@@ -140,10 +140,3 @@ def test_bad_records_are_refused(tmp_path, header, options, named):
         pulses(noisy(tmp_path, header), **options)
     assert named in str(refused.value)
     assert "\n" not in str(refused.value)
-
-
-def test_the_command_refuses_a_new_name_without_a_header(capsys, tmp_path):
-    file = noisy(tmp_path, "time,1 force,2 force")
-    status, out, err = ended(capsys, cli.main, "pulses", file, "--column", "time")
-    assert (status, out, err.count("\n")) == (2, "", 1)
-    assert "column is 'time'" in err
