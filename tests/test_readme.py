@@ -31,6 +31,7 @@ def test_the_python_example(capsys):
     assert len(expected) == example.count("print(")
 
 
+@pytest.mark.slow
 def test_the_python_example_passes_a_users_type_checker(tmp_path):
     """mypy --strict, but for SymPy itself, which has no types."""
     (example,) = re.findall(r"```python\n(.*?)```", README, re.DOTALL)

@@ -148,14 +148,11 @@ def spheres(tmp_path):
     return write
 
 
-def dimer(A):
-    return Dimer("0.45e-3", "0.123e-3", stiffnesses=(A, A), spacing="4.76e-3")
-
-
 def test_spheres_at_a_force_are_in_si_units(capsys, spheres):
     steel, ptfe = Material("193e9", "0.3"), Material("1.46e9", "0.46")
     A = hertz.stiffness(Sphere(1, "2.38e-3", steel), Sphere(1, "2.38e-3", ptfe))
-    wave = homogenize(dimer(A), k="3/2").pde.traveling_wave().at_force(10)
+    cell = Dimer("0.45e-3", "0.123e-3", stiffnesses=(A, A), spacing="4.76e-3")
+    wave = homogenize(cell, k="3/2").pde.traveling_wave().at_force(10)
     found = result(capsys, "wave", "--spheres", spheres(), "--force", "10")
     for name in ("strain", "compression", "speed", "bead_velocity", "force"):
         assert found[f"{name}_value"] == float(getattr(wave, name))

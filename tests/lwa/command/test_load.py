@@ -53,6 +53,9 @@ def test_wave_on_a_background(capsys):
         assert width == pytest.approx(float(expected), rel=1e-14)
     _, out, _ = run(capsys, "wave", "--k", "3/2", "--masses", "1,3", "--background", "1/10")
     assert "FWHM of the strain at B = 1 = 2.67192774562 D\n" in out  # twelve digits are right
+    options = ("--masses", "1", "--background", "p0", "--format", "latex")
+    _, out, _ = run(capsys, "wave", *options)
+    assert all(part in out for part in (r"V_{s} &= ", r"c_{0} &= ", "p_{0} &= p_{0}"))
     kdv = wave.kdv
     assert found["kdv"] == {
         "sound_speed": str(kdv.sound_speed),
@@ -99,24 +102,6 @@ def test_wave_in_forces(capsys):
     status, out, _ = run(capsys, "wave", *options, "--precompression", "3", "--force", "10")
     assert status == 0
     assert f"{sp.N(wave.speed, 15)}"[:16] in out
-
-
-@pytest.mark.parametrize(
-    ("options", "parts"),
-    [
-        (("--background", "p0"), (r"V_{s} &= ", r"c_{0} &= ", "p_{0} &= p_{0}")),
-        (
-            ("--precompression", "1", "--force", "2", "--k", "3/2"),
-            ("F_{0} &= 1", r"\frac{dx}{dt} &= "),
-        ),
-        (("--force", "f"), ("{dt} &= ", "F &= f")),
-    ],
-)
-def test_waves_in_latex(capsys, options, parts):
-    status, out, err = run(capsys, "wave", "--format", "latex", "--masses", "1", *options)
-    assert (status, err) == (0, "")
-    assert out.startswith("\\begin{align}\n")
-    assert all(part in out for part in parts)
 
 
 def test_unlike_beads_without_a_solitary_wave_get_a_note(capsys):

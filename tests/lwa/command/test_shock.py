@@ -7,7 +7,7 @@ import sympy as sp
 
 from lwa import Cell, Power, piston, shock
 from tests.identity import same
-from tests.lwa.command.answers import result, run
+from tests.lwa.command.answers import STEEL_AND_PTFE, result, run
 
 EQUAL = ("shock", "--masses", "1", "--spacing", "1", "--k", "3/2")
 
@@ -57,11 +57,7 @@ def test_a_wall_at_a_speed_in_si(capsys, tmp_path):
     """Steel beads of 4.76 mm, a wall at 1 m/s: the pulse's speed and force are those of the lattice
     that SI scales, v ~ c p and F ~ A (D p)^k."""
     file = tmp_path / "beads.toml"
-    file.write_text(
-        "[materials]\nsteel = {E = 193e9, nu = 0.3}\n"
-        '[beads]\nball = {mass = 0.45e-3, radius = 2.38e-3, material = "steel"}\n'
-        '[chain]\ncell = ["ball"]\nrepeat = 40\n'
-    )
+    file.write_text(STEEL_AND_PTFE.replace('"heavy", "light"', '"heavy"'))
     found = result(capsys, "shock", "--spheres", str(file), "--piston", "1")
     assert found["plateau_value"] == pytest.approx(1)
     A, m, D = 193e9 / (1 - 0.3**2) / 3 * math.sqrt(2 * 2.38e-3), 0.45e-3, 2 * 2.38e-3

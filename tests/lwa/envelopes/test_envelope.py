@@ -75,12 +75,6 @@ def test_a_dimer_at_any_wavenumber():
             assert value == pytest.approx(float(expected), rel=1e-10)
 
 
-def test_mean_flow_of_equal_beads():
-    """By hand, with the flow: e0 = -8 K3/(K2 m) at every κ."""
-    found = envelope(Cell([m1]), general(), background=0, wavenumber=q)
-    assert same(found.mean_strain[0], -8 * K3 / (K2 * m1))
-
-
 # --- limits ---
 
 

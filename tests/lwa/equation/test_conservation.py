@@ -3,7 +3,7 @@
 import pytest
 import sympy as sp
 
-from lwa import Cell, Dimer, InputError, homogenize
+from lwa import Cell, D, Dimer, InputError, homogenize
 from lwa.equation.terms import Jet
 
 x = sp.Symbol("x")
@@ -86,17 +86,30 @@ def test_orders_with_jets_of_the_velocity():
     enters = {n: any(jet.t for jet in found) for n, found in center.coefficients.items() if found}
     assert enters == {3: False, 5: False, 7: True}
     # as products of two of u_xτ, u_xxτ, u_xxxτ
-    assert {jet.t for jet in first.coefficients[5] if jet.t} == {
-        ((1, 2),),
-        ((1, 1), (2, 1)),
-        ((2, 2),),
-        ((1, 1), (3, 1)),
-        ((2, 1), (3, 1)),
-    }
+    found = [jet.t for jet in first.coefficients[5] if jet.t]
+    assert {sum(e for _, e in jet) for jet in found} == {2}
+    assert {i for jet in found for i, _ in jet} == {1, 2, 3}
 
 
 def test_the_optical_branch_does_not_conserve_momentum():
     pde = homogenize(Dimer("m1", "m2"), branch="optical").pde
     assert not pde.conservative
-    with pytest.raises(InputError, match="acoustic"):
-        pde.in_field({2: 1})
+    for call in (lambda: pde.in_field({2: 1}), pde.traveling_wave):
+        with pytest.raises(InputError, match="acoustic"):
+            call()
+
+
+@pytest.mark.parametrize(("masses", "conservative"), [((1, 1), True), ((3, 1), False)])
+def test_conservation_form_agrees_with_the_euler_operator(masses, conservative):
+    pde = homogenize(Dimer(*masses), order=4, k=3).pde
+    u = sp.Function("u")(x)
+    # at a polynomial with all jets alive: an expression that vanishes does so for any field
+    value = at_a_point(variational_derivative(pde.right_side(u, x), u, 4).subs(D, 1), u)
+    assert (value == 0) == conservative == pde.conservative
+
+
+def test_closed_forms_need_order_four_and_equal_contacts_in_the_linear_closure():
+    with pytest.raises(InputError, match="from order 4 on"):
+        homogenize(Dimer(1, 2), order=3).pde.G  # noqa: B018
+    with pytest.raises(InputError, match="stiffnesses"):
+        homogenize(Dimer(1, 1, stiffnesses=(1, 2)), k=2).pde.traveling_wave()

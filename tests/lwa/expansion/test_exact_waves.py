@@ -86,25 +86,17 @@ def test_these_are_the_waves_of_newtons_method(k):
 @pytest.mark.parametrize("order", [2, 10])
 @pytest.mark.parametrize("k", EXPONENTS)
 def test_a_sum_is_right_within_its_error_or_refused(k, order):
+    """At order 10 none is refused up to k = 4, and speed and widths are from k = 9.5 on."""
     values, _, _ = lattice(float(sp.Rational(k)))
-    for name, row in series(expand(Cell([1]), order, k=k)).items():
+    rows = series(expand(Cell([1]), order, k=k))
+    for name, row in list(rows.items()):
         with suppress(InputError):
             found = row.at()
             assert 0 < found.error < found.value
             assert abs(found.value - values[name]) < found.error
-
-
-@pytest.mark.parametrize("k", ["1.1", "4"])
-def test_up_to_k_four_no_sum_is_refused(k):
-    assert all(row.at().value > 0 for row in series(expand(Cell([1]), 10, k=k)).values())
-
-
-@pytest.mark.parametrize("k", ["9.5", "20"])
-def test_from_k_nine_and_a_half_speed_and_widths_are_refused(k):
-    rows = series(expand(Cell([1]), 10, k=k))
-    for name in ("c2", *WIDTHS):
-        with pytest.raises(InputError, match="no sum at k"):
-            rows[name].at()
+            del rows[name]
+    assert not rows or order < 10 or sp.Rational(k) > 4
+    assert {"c2", *WIDTHS} <= {*rows} or order < 10 or sp.Rational(k) < 9.5
 
 
 def test_the_command_prints_no_refused_sum(capsys):

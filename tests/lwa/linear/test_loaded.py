@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lwa import Cell, InputError, Power, canonical_wave
+from lwa import Cell, InputError, Power
 from lwa.law import general, named
 from lwa.linear.dispersion import LoadedChain
 
@@ -30,13 +30,6 @@ def test_the_eigenvalues_of_a_ring_of_unlike_contacts():
     assert found == pytest.approx(expected, abs=1e-4)  # √ of the differences' 1e-9 at ω = 0
     edges = chain.bands.edges()
     assert np.all(edges[:, 0] <= edges[:, 1])
-
-
-def test_the_sound_is_that_of_the_waves_on_the_load():
-    cell = Cell([1, 3], [2, 7], "1/2")
-    wave = canonical_wave(cell, "5/2").at_force(4, precompression=3)
-    chain = LoadedChain(cell, Power("5/2"), 3)
-    assert float(chain.sound_speed) == pytest.approx(float(wave.sound_speed), rel=1e-14)
 
 
 def test_another_law():

@@ -98,18 +98,6 @@ def test_a_rarefaction_wave():
 # --- resonators and packings --------------------------------------------------------------------
 
 
-def test_a_stiff_resonator_is_a_heavier_bead():
-    """R = m_r²/k_r → 0: speed and width of the chain with the mass m + m_r; the rest is linear."""
-    plain = lattice_wave(Lattice(["3/2"], [Link(0, 1, HERTZ)]), 1)
-    widths = []
-    for k in (10**4, 10**6):
-        wave = lattice_wave(Lattice([1], [Link(0, 1, HERTZ)], [Resonator(0, "1/2", k)]), 1)
-        assert float(wave.speed) == pytest.approx(float(plain.speed), rel=1e-14)
-        widths.append(float(wave.fwhm()) / float(plain.fwhm()) - 1)
-    assert widths[0] / widths[1] == pytest.approx(100, rel=1e-2)
-    assert widths[0] > 0
-
-
 def test_the_width_with_resonators_obeys_its_integral():
     """(F′I + R V⁴) v′² = m̄V² v² - 2W of F = δ²: ξ = ∫ √(J/(Q(1) - Q(v))) dv/v by mpmath."""
     lattice = Lattice([1], [Link(0, 1, Power(2))], [Resonator(0, "1/2", 20)])
@@ -119,7 +107,9 @@ def test_the_width_with_resonators_obeys_its_integral():
     # v = 1 - t² takes the root out of the peak
     rate = lambda t: 2 * mpmath.sqrt(J(1 - t * t) / square) / (1 - t * t)  # noqa: E731
     width = 2 * mpmath.quad(rate, [0, mpmath.sqrt(0.5)])
-    assert float(lattice_wave(lattice, 1).fwhm("strain")) == pytest.approx(float(width), rel=1e-12)
+    wave = lattice_wave(lattice, 1)
+    assert float(wave.speed) == pytest.approx(2 / 3, rel=1e-14)  # m̄ = 3/2
+    assert float(wave.fwhm("strain")) == pytest.approx(float(width), rel=1e-12)
 
 
 def test_slow_resonators_are_refused_and_antiresonances_are_given():

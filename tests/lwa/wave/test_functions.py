@@ -1,7 +1,7 @@
 """Generated functions, run in their own languages, against 50 digits."""
 
 import keyword
-from functools import cache, partial
+from functools import cache
 from itertools import product
 
 import mpmath
@@ -85,26 +85,37 @@ def sp_or_mp(value):
 
 
 @pytest.fixture(scope="module")
-def functions_of(tmp_path_factory):
-    """(wave, language) → name → the function, called by the names of its arguments."""
+def run_in(tmp_path_factory):
+    """(language, source, functions) → name → the function of numbers."""
     processes = []
 
-    @cache
-    def load(name, language):
-        functions, source = functions_in(name), code_of(name, language)
+    def load(language, source, functions):
         if language in ("c", "fortran"):
-            found = compiled(source, language, functions, tmp_path_factory.mktemp("code"))
-        elif language == "javascript":
+            return compiled(source, language, functions, tmp_path_factory.mktemp("code"))
+        if language == "javascript":
             node, found = in_node(source, functions)
             processes.append(node)
-        else:
-            found = {}
-            exec(source, found)  # our own output
-        return {f.name: by_name(found[f.name], f) for f in functions}
+            return found
+        found = {}
+        exec(source, found)  # our own output
+        return found
 
     yield load
     for node in processes:
         node.communicate(timeout=30)
+
+
+@pytest.fixture(scope="module")
+def functions_of(run_in):
+    """(wave, language) → name → the function, called by the names of its arguments."""
+
+    @cache
+    def load(name, language):
+        functions = functions_in(name)
+        found = run_in(language, code_of(name, language), functions)
+        return {f.name: by_name(found[f.name], f) for f in functions}
+
+    return load
 
 
 def by_name(call, function):
@@ -254,7 +265,7 @@ NAMES = [
 
 
 @in_every_language
-def test_any_name_at_once(language, tmp_path, request):
+def test_any_name_at_once(language, run_in):
     """One function of all names: Σ n s_n distinguishes each from every other."""
     symbols = [sp.Symbol(name) for name in dict.fromkeys(NAMES)]
     n = len(symbols)
@@ -263,15 +274,7 @@ def test_any_name_at_once(language, tmp_path, request):
         Function("beta", "Σ n s_n", tuple(symbols), total),
         Function("profile", "twice", tuple(symbols), 2 * sp.Function("beta")(*symbols)),
     ]
-    source = LANGUAGES[language](functions).module(["names"])
-    if language in ("c", "fortran"):
-        found = compiled(source, language, functions, tmp_path)
-    elif language == "javascript":
-        node, found = in_node(source, functions)
-        request.addfinalizer(partial(node.communicate, timeout=30))
-    else:
-        found = {}
-        exec(source, found)
+    found = run_in(language, LANGUAGES[language](functions).module(["names"]), functions)
     unit = np.eye(n)
     assert [found["beta"](*row) for row in unit] == [i + 1 for i in range(n)]
     assert found["profile"](*unit[n // 2]) == 2 * (n // 2 + 1)

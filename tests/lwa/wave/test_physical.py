@@ -81,25 +81,6 @@ def test_widths_in_time_are_widths_in_space_over_the_speed(cell, D, k, F):
             assert close(found[f"{quantity} time"] * found["c"], found[f"{quantity} length"])
 
 
-@given(cells, reals, exponents, reals, st.tuples(reals, reals, reals, reals))
-def test_units(cell, D, k, F, scales):
-    """Masses, stiffnesses, lengths and forces in other units: the powers are those of mechanics."""
-    with mpmath.workdps(40):
-        m, A, length, force = scales
-        masses, stiffnesses = [m * x for x in cell[0]], [A * x for x in cell[1]]
-        one = values(*cell, D, k, F)
-        other = values(masses, stiffnesses, length * D, k, force * F)
-        delta = (force / A) ** (1 / k)
-        time = mpmath.sqrt(m * delta / force)
-        assert close(other["delta"], one["delta"] * delta)
-        assert close(other["B"], one["B"] * delta / length)
-        assert close(other["c"], one["c"] * length / time)
-        assert close(other["v"], one["v"] * delta / time)
-        for quantity in QUANTITIES:
-            assert close(other[f"{quantity} length"], one[f"{quantity} length"] * length)
-            assert close(other[f"{quantity} time"], one[f"{quantity} time"] * time)
-
-
 def test_equal_spheres_by_hand():
     """The theory's c² = (2/(k+1)) A^{1/k} F^{(k-1)/k} D²/m, 4/5 of it at k = 3/2."""
     m, A, D, F = sp.symbols("m A D F", positive=True)
