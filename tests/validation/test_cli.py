@@ -270,6 +270,7 @@ BAD = [
     ("limits", "extra"),
     ("exact", "--masses", "1,0.2733"),
     ("resonances", "--count", "0"),
+    ("accuracy", "--task", "tea"),
     ("pulses", "records.csv", "--column", "time"),
     ("nothing",),
     ("--nothing",),

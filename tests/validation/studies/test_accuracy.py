@@ -79,10 +79,6 @@ def test_a_cost_counts_only_if_all_longer_runs_are_as_accurate():
 # The command
 
 
-def command(capsys, *arguments):
-    return ended(capsys, cli.main, "accuracy", *arguments)
-
-
 OURS, THEIRS = COMPILED[0], "SciPy DOP853"
 METHODS_OF_TWO = {OURS: (1e-6, 1e-8), THEIRS: (1e-6, 1e-8)}
 
@@ -105,17 +101,15 @@ def test_the_document_holds_the_contract(report):
     assert (exact["task"], exact["peak"], experiment["task"]) == ("exact", 1.0, "experiment")
 
 
-def test_a_task_that_does_not_exist_is_named(capsys):
-    status, out, err = command(capsys, "--task", "dimer", "--task", "tea")
-    assert (status, out, err.count("\n")) == (2, "", 1)
-    assert "'tea'" in err
+def test_a_task_that_does_not_exist_is_named():
     with pytest.raises(InputError, match=r"^task is 'tea'"):
-        accuracy(["tea"])
+        accuracy(["dimer", "tea"])
 
 
 @pytest.mark.slow
 def test_the_command_with_every_method(capsys):
-    status, out, _ = command(capsys, "--task", "exact", "--task", "theory", "--format", "json")
+    options = "--task", "exact", "--task", "theory", "--format", "json"
+    status, out, _ = ended(capsys, cli.main, "accuracy", *options)
     result = json.loads(out)
     assert status == 0
     assert {row["method"] for row in result["rows"]} == set(METHODS)
