@@ -13,16 +13,9 @@ from tests.validation.lattice.test_random_scenes import drawn
 from validation.lattice import cost
 from validation.lattice.simulate import METHODS, simulate
 from validation.pulses.sensors import record
+from validation.scenes.chains import struck
 from validation.scenes.scene import Scene, SceneError
 from validation.studies.run import RECORDS
-
-
-def struck(n, omega=1.0, k=1.5, **rest):
-    return Scene(
-        masses=(1.0, omega) * (n // 2), stiffnesses=(1.0,) * (n - 1), k=k,
-        **({"velocities": (1.0,), "duration": 25.0} | rest),
-    )  # fmt: skip
-
 
 PRESSED = Scene(
     masses=(1, 0.3, 2), stiffnesses=(1, 2), wall=1, k=1.5, precompression=1, duration=50,
@@ -37,7 +30,7 @@ def watched(what, **options):
 
 
 @pytest.mark.parametrize(("method", "rtol"), [("RKN86", 1e-13), *((m, 1e-7) for m in METHODS)])
-@pytest.mark.parametrize("what", [struck(20, 0.01), PRESSED])
+@pytest.mark.parametrize("what", [struck((1, 0.01), 20, duration=25), PRESSED])
 def test_adaptive_methods_stay_far_below_the_limit_of_their_steps(method, what, rtol, monkeypatch):
     """A limit of a fifth is kept as well."""
     monkeypatch.setattr(cost, "_DENSEST", cost._DENSEST // 5)
@@ -48,7 +41,7 @@ def test_adaptive_methods_stay_far_below_the_limit_of_their_steps(method, what, 
 
 def test_a_compiled_run_looks_up_on_the_way(monkeypatch):
     """A run in parts gives the same bits as a run in one go."""
-    scene = struck(60, 0.3, duration=60.0, contact_sensors=(50,))
+    scene = struck((1, 0.3), 60, duration=60.0, contact_sensors=(50,))
     whole = watched(scene, method="SRKN14")
     monkeypatch.setattr("validation.lattice.engine._BETWEEN_REPORTS", 1e4)
     parts = watched(scene, method="SRKN14")
@@ -66,7 +59,7 @@ def test_a_run_can_be_interrupted(method):
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        simulate(struck(20), method=method, progress=lambda: nullcontext(interrupt))
+        simulate(PRESSED, method=method, progress=lambda: nullcontext(interrupt))
 
 
 sizes = st.builds(lambda m, e: m * 10.0**e, st.floats(1, 9.99), st.integers(-320, 307))

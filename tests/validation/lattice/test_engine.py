@@ -10,9 +10,12 @@ import pytest
 from validation.lattice.schemes import SCHEMES
 from validation.lattice.simulate import COMPILED, simulate, simulate_many
 from validation.pulses.pulse import measure
+from validation.scenes.chains import struck
 from validation.scenes.forcing import Drive
 from validation.scenes.scene import Scene
 from validation.studies.run import RECORDS
+
+DIMER = 1.0, 0.2733
 
 
 def loaded(k, duration=8.0, **rest):
@@ -24,12 +27,6 @@ def loaded(k, duration=8.0, **rest):
         contact_sensors=range(n), bead_sensors=range(n), duration=duration,
     )  # fmt: skip
     return Scene(**{**scene, **rest})
-
-
-def struck(n, omega=0.2733, k=1.5, **rest):
-    """A dimer whose first bead strikes with velocity 1."""
-    masses = (1.0, omega) * (n // 2)
-    return Scene(masses=masses, stiffnesses=(1.0,) * (n - 1), k=k, velocities=(1.0,), **rest)
 
 
 @pytest.mark.parametrize(("method", "steps"), [("RKN86", (80, 64, 50)), ("SRKN14", (48, 42, 38))])
@@ -93,7 +90,7 @@ def test_the_energy_of_a_long_run_of_the_splitting_is_bounded():
 def test_the_peak_force_of_the_560_beads(method):
     """0.29635394421 at contact 480 and t = 499.87256149: by located kinks and by small steps of the
     splitting; located kinks are compared on fewer beads in `test_located`."""
-    scene = struck(560, duration=510.0, contact_sensors=(480,), samples=10201)
+    scene = struck(DIMER, 560, duration=510.0, contact_sensors=(480,), samples=10201)
     run = simulate(scene, method=method, rtol=1e-7)
     pulse = measure(run.time, run.contact_force[0])
     assert pulse.peak == pytest.approx(0.29635394421, rel=1e-6)
@@ -156,7 +153,7 @@ def test_the_splitting_resolves_a_light_bead(stiffness, error):
 
 def test_the_kinks_reduce_the_order():
     """Contacts that open leave h^{k+1} = h^{5/2} of order 6, in the mean over many steps."""
-    scene = struck(100, duration=60.0, contact_sensors=(50,), samples=2401)
+    scene = struck(DIMER, 100, duration=60.0, contact_sensors=(50,), samples=2401)
 
     def peak(step):
         run = simulate(scene, method="SRKN14", step=step)
@@ -197,7 +194,7 @@ def test_a_driven_bead_that_leaves_its_contact_counts_with_its_acceleration():
 
 
 def test_many_scenes_run_as_single_ones_and_are_taken_lazily():
-    scenes = [struck(40, 1.0, duration=d, contact_sensors=(20,)) for d in np.linspace(10, 40, 30)]
+    scenes = [struck((1,), 40, duration=d, contact_sensors=(20,)) for d in np.linspace(10, 40, 30)]
     taken = []
     runs = simulate_many((taken.append(scene) or scene for scene in scenes), rtol=1e-7, workers=2)
     first = next(runs)
@@ -211,7 +208,7 @@ def test_many_scenes_run_as_single_ones_and_are_taken_lazily():
 @pytest.mark.parametrize("method", COMPILED)
 def test_beads_at_rest_ahead_of_the_front_cost_nothing(method):
     """As many beads are moved in 10⁴ as in 300, and where beads at rest hold rounding noise."""
-    short, long = (struck(n, 1.0, duration=130, samples=2) for n in (300, 10000))
+    short, long = (struck((1,), n, duration=130, samples=2) for n in (300, 10000))
     noisy = replace(short, velocities=(1.0, *((-1) ** i * 1e-17 for i in range(299))))
     runs = [simulate(scene, method=method, rtol=1e-4) for scene in (short, long, noisy)]
     assert len({run.bead_evaluations for run in runs}) == 1

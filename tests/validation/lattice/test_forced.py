@@ -61,15 +61,6 @@ def test_the_energy_lost_is_the_energy_dissipated(kind):
     np.testing.assert_allclose(force(run.time), run.contact_force[1], atol=1e-14)
 
 
-def test_without_damping_no_bit_changes():
-    scene = pair(1.5)
-    assert np.array_equal(
-        simulate(replace(scene, damping=None)).velocities, simulate(scene).velocities
-    )
-    weak = simulate(pair(1.5, damping=Damping("contact", 1e-12)))
-    assert weak.velocities == pytest.approx(simulate(scene).velocities, abs=1e-8)
-
-
 @pytest.mark.parametrize(("kind", "ledger"), [("contact", "linear"), ("kuwabara_kono",) * 2])
 def test_the_slowing_down_of_a_pulse(kind, ledger):
     """V, or 1/V, changes linearly along the chain, as the expansion's dissipation says: to first
@@ -91,19 +82,6 @@ def test_the_slowing_down_of_a_pulse(kind, ledger):
     assert abs(errors[1]) < 0.75 * abs(errors[0])
 
 
-def test_a_piston_makes_a_wave_behind_which_beads_move_at_its_speed():
-    scene = Scene(
-        masses=(1,) * 60, stiffnesses=(1,) * 59, k=1.5, duration=60, drive=Drive(velocity=0.3),
-        bead_sensors=(0, 5), contact_sensors=(20,),
-    )  # fmt: skip
-    run = simulate(scene, **TIGHT)
-    assert run.bead_displacement[0] == pytest.approx(0.3 * run.time, abs=1e-13)
-    assert run.bead_velocity[1, -300:].mean() == pytest.approx(0.3, rel=0.01)
-    assert run.work > 0
-    assert abs(run.energy_drift) < 1e-11
-    assert run.momentum_drift is None
-
-
 @pytest.mark.parametrize("method", ["RKN86", "DOP853"])
 @pytest.mark.parametrize(
     "forcing",
@@ -118,14 +96,8 @@ def test_a_scene_at_rest_stays_at_rest(forcing, method):
         masses=(1, 1), stiffnesses=(1,), k=1.5, duration=3, bead_sensors=(0, 1), **forcing
     )
     run = simulate(scene, method=method)
-    for values in (
-        run.bead_displacement,
-        run.velocities,
-        run.energy_drift,
-        run.dissipated,
-        run.work,
-    ):
-        assert not np.any(values)
+    for name in ("bead_displacement", "velocities", "energy_drift", "dissipated", "work"):
+        assert not np.any(getattr(run, name)), name
 
 
 @pytest.mark.parametrize("k", [1, 1.5, 3])
@@ -225,16 +197,6 @@ def test_a_piston_is_a_wall_in_a_moving_frame(law):
     assert one == pytest.approx(other, abs=1e-8)
 
 
-def test_a_driven_toda_chain_keeps_its_ledger():
-    scene = Scene(
-        masses=(1,) * 20, stiffnesses=(1,) * 19, wall=1, law=named("exponential", 1), duration=40,
-        damping=Damping("contact", 0.1), drive=Drive(amplitude=0.2, frequency=0.2, ramp=20),
-    )  # fmt: skip
-    run = simulate(scene)
-    assert run.dissipated > 0.01
-    assert abs(run.energy_drift) < 1e-8
-
-
 def test_a_shaken_linear_bead_oscillates_with_the_exact_amplitude():
     """One free bead between the driven bead and a wall, k = 1: y = a κ/(2κ - w²) sin(wt), in steady
     motion, with a resonant part that a long ramp does not excite."""
@@ -260,6 +222,7 @@ def test_a_drive_from_rows_is_the_motion_that_they_sample():
                   bead_sensors=(0,))  # fmt: skip
     run = simulate(scene)
     assert run.bead_displacement[0] == pytest.approx(0.1 * run.time**3 / 400, abs=1e-13)
+    assert run.momentum_drift is None
 
 
 @pytest.mark.parametrize("method", ["DOP853", "LSODA"])

@@ -60,20 +60,6 @@ def test_samples_are_values_of_the_signals(method):
             assert (np.diff(signal.times) > 0).all()
 
 
-def test_a_signal_is_as_good_as_the_run_between_any_samples():
-    """Peak of the contact force of two beads, in closed form, though there are two samples only."""
-    k, deepest = 1.5, (2.5 / 4) ** 0.4
-    run = simulate(
-        Scene(
-            masses=(1, 1), stiffnesses=(1,), k=k, velocities=(1,), duration=6, samples=2,
-            contact_sensors=(0,)
-        ),
-        rtol=1e-10,
-    )  # fmt: skip
-    force = run.signal("contact", 0)
-    assert force(np.linspace(0, 6, 20001)).max() == pytest.approx(deepest**k, rel=1e-7)
-
-
 def test_the_law_of_a_pickled_run_finds_its_machine_code_in_another_process(tmp_path):
     """A law's machine code lies elsewhere there: a call of the old address ended the process."""
     law = named("exponential", 1)
