@@ -19,16 +19,7 @@ import pytest
 import scipy
 import sympy as sp
 
-from lwa import (
-    Cell,
-    Dimer,
-    InputError,
-    Power,
-    expand,
-    pulse_of_strike,
-    shock,
-    transmitted_force,
-)
+from lwa import Cell, Dimer, InputError, Power, expand, pulse_of_strike, shock, transmitted_force
 from lwa.expansion import radiation
 from lwa.expansion.approximants import resum
 from lwa.law import named

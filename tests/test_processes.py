@@ -19,7 +19,6 @@ import pytest
 
 from lwa import __version__
 from lwa.base.errors import INTERRUPTED
-from lwa.command.terminal import CLOSED
 from tests.commands import started
 
 LWA = (sys.executable, "-m", "lwa")
@@ -91,21 +90,8 @@ def test_a_program_says_its_name_and_version(program):
     assert ended(*program, "--version") == (0, f"{name} {__version__}\n", "")
 
 
-def test_a_full_disk_is_one_line():
-    with open("/dev/full", "w") as full:
-        status, _, err = ended(*VERSION, capture_output=False, stdout=full, stderr=subprocess.PIPE)
-    assert (status, err) == (2, "lwa: the output: No space left on device\n")
-
-
 def test_without_any_output_the_status_is_left():
     assert ended(f"{' '.join(VERSION)} >&- 2>&-", shell=True) == (2, "", "")
-
-
-def test_a_reader_that_stops_early_is_no_failed_comparison():
-    with started(*VERSION) as process:
-        process.stdout.close()
-        assert process.stderr.read() == ""
-        assert process.wait() == CLOSED
 
 
 # Ctrl-C

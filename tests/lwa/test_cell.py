@@ -1,9 +1,7 @@
-"""The periodic cell: shares, effective stiffness, refusals."""
+"""The periodic cell: equal forces, N:1 dimers, refusals."""
 
 import pytest
 import sympy as sp
-from hypothesis import given
-from hypothesis import strategies as st
 
 from lwa import (
     Cell,
@@ -26,15 +24,6 @@ from lwa import (
 )
 from lwa.cell import RESERVED
 from tests.identity import same
-
-positive_fractions = st.fractions(min_value="1/100", max_value=100, max_denominator=100)
-
-
-@given(st.lists(positive_fractions, min_size=1, max_size=5))
-def test_fractions_sum_to_one(masses):
-    cell = Cell(masses)
-    assert sum(cell.fractions) == 1
-    assert cell.mass == sum(sp.Rational(m.numerator, m.denominator) for m in masses)
 
 
 def test_shares_make_all_contact_forces_equal():

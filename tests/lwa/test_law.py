@@ -118,10 +118,7 @@ def force(law, strain):
     return total
 
 
-LAWS = [
-    named("hertz2", 2, "1/3"),
-    Law(y**3 / (1 + y), y),
-]
+LAWS = [named("hertz2", 2, "1/3"), Law(y**3 / (1 + y), y)]
 
 
 @pytest.mark.parametrize("law", LAWS, ids=lambda law: str(law.F))
@@ -171,10 +168,7 @@ def test_the_energy_of_a_law_without_form_is_conserved(cell, field):
     k = closure.model.ring.exponent(algebra.context)
     E, e = GradedSeries(algebra, k), GradedSeries(algebra, k + 1)
     old = closure.model.algebra(closure.algebra.weight, velocity=True, rest=True)
-    for row, source, terms in (
-        (E, closure.algebra, closure.acceleration),
-        (e, old, density),
-    ):
+    for row, source, terms in ((E, closure.algebra, closure.acceleration), (e, old, density)):
         for term in terms:
             row.append(algebra.embed(term, source))
     for n in range(1, order - 1):

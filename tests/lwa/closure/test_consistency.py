@@ -4,7 +4,6 @@ import pytest
 import sympy as sp
 
 from lwa import Cell, Dimer, InputError, homogenize
-from lwa.equation.terms import Jet
 
 
 @pytest.mark.parametrize("branch", ["acoustic", "optical"])
@@ -24,18 +23,6 @@ def test_the_defect_vanishes_at_equal_masses_only():
     for terms in theory.defect.values():
         for coefficient in terms.values():
             assert sp.cancel(coefficient.subs(m1, m2)) == 0
-
-
-def test_the_defect_is_the_difference_between_both_equations():
-    theory = homogenize(Dimer("m1", "m2"), order=4)
-    m1, m2 = theory.cell.masses
-    k, b = theory.k, m1 / (m1 + m2)
-    G2 = (k - 1) * (k - 2) * (b**2 - 8 * b + 4) / 6
-    H2 = (k - 1) * (sp.Rational(5, 3) - 3 * b)
-    terms = theory.pde.coefficients[3]
-    assert sp.cancel(terms[((2, 3),)] - theory.defect[3][((2, 3),)] - G2) == 0
-    assert sp.cancel(terms[((2, 1), (3, 1))] - theory.defect[3][((2, 1), (3, 1))] - H2) == 0
-    assert set(theory.defect[3]) == {Jet(((2, 3),)), Jet(((2, 1), (3, 1)))}
 
 
 def test_one_mass_has_no_optical_branch():

@@ -243,10 +243,7 @@ def test_spheres_in_a_program_are_in_si(capsys, spheres):
     assert module["fwhm_force"]() == pytest.approx(at["fwhm_value"]["force"], rel=1e-14)
 
 
-@pytest.mark.parametrize(
-    "options",
-    ["", "--k 1", "--k 3/2 --masses 1,2", "--k 1.000000001"],
-)
+@pytest.mark.parametrize("options", ["", "--k 1", "--k 3/2 --masses 1,2", "--k 1.000000001"])
 def test_powers_of_the_full_closure_are_written_once(capsys, options):
     """u_x^(k-1), u_x^(-1), never a sum of numbers, nor a power 0 or 1."""
     for style, power in (("text", r"\^\(([^)]*)\)"), ("latex", r"u_\{x\}\^\{([^}]*)\}")):

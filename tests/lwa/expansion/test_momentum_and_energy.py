@@ -4,15 +4,7 @@ import numpy as np
 import pytest
 import scipy
 
-from lwa import (
-    Cell,
-    Dimer,
-    ExpandedWave,
-    InputError,
-    canonical_wave,
-    expand,
-    pulse_of_strike,
-)
+from lwa import Cell, Dimer, ExpandedWave, InputError, canonical_wave, expand, pulse_of_strike
 
 EQUAL = Cell([1], spacing=1)
 

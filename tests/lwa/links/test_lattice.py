@@ -8,16 +8,7 @@ import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lwa import (
-    InputError,
-    Lattice,
-    Law,
-    Link,
-    Power,
-    Resonator,
-    hexagonal,
-    lattice_wave,
-)
+from lwa import InputError, Lattice, Law, Link, Power, Resonator, hexagonal, lattice_wave
 from lwa.law import DELTA, named
 
 HERTZ = Power("3/2")

@@ -303,6 +303,7 @@ def test_bad_arguments_are_refused():
         (lambda: background_wave(Cell([1]), law=Power("k")).numeric(), "has no value"),
         (lambda: numeric_wave("3/2").speed(math.nan, 1.0), "finite"),
         (lambda: canonical_wave(Cell([1]), 2).at_force(1, precompression=-1), "positive"),
+        (lambda: PrecompressedWave(CHAIN, named("polynomial", -1, 0), 2, 1).speed, "not reach"),
         (lambda: homogenize(Dimer(1, 2)).pde.traveling_wave().on_background(1), "canonical"),
     ):
         with pytest.raises(InputError, match=reason):
@@ -310,15 +311,8 @@ def test_bad_arguments_are_refused():
 
 
 def test_in_space_and_time():
-    """Force, strain and speed in units agree with those of the theory, for unlike contacts too."""
+    """Without load, and in symbols; tests/lwa/links has the numbers of unlike contacts."""
     cell = Dimer(2, 1, stiffnesses=[3, 5], spacing="1/2")
-    wave = canonical_wave(cell, "3/2").at_force(7, precompression=2)
-    ahead, peak = wave.background.p0, wave.background.p0 + wave.strain
-    for strain, force in ((ahead, 2), (peak, 7)):
-        carried = cell.stiffness("3/2") * (cell.spacing * strain) ** sp.Rational(3, 2)
-        assert float(carried) == pytest.approx(force, rel=1e-14)
-    length, time = (wave.fwhm("force", extent) for extent in ("length", "time"))
-    assert float(length / time) == pytest.approx(float(wave.speed), rel=1e-13)
     light = canonical_wave(cell, "3/2").at_force(7, precompression="1e-30")
     free = canonical_wave(cell, "3/2").at_force(7)
     assert float(light.speed) == pytest.approx(float(free.speed), rel=1e-12)
@@ -326,12 +320,3 @@ def test_in_space_and_time():
     symbolic = canonical_wave(Cell(["m"], ["A"]), "3/2").at_force("F", precompression="F0")
     numbers = symbolic.at(m=2, A=3, F=7, F0=2, D=1)
     assert numbers == canonical_wave(Cell([2], [3], 1), "3/2").at_force(7, precompression=2)
-
-
-def test_another_law_in_units():
-    law = named("hertz2", 1, "1/2")
-    wave = PrecompressedWave(Cell([1], [3], 1), law, 2, 1)
-    assert abs(3 * law.at(wave.static_compression) - 1) < 1e-30
-    assert wave.speed > wave.sound_speed
-    with pytest.raises(InputError, match="does not reach"):
-        _ = PrecompressedWave(CHAIN, named("polynomial", -1, 0), 2, 1).speed

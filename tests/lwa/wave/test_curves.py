@@ -4,15 +4,7 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from lwa import (
-    Cell,
-    Dimer,
-    InputError,
-    Material,
-    Sphere,
-    canonical_wave,
-    homogenize,
-)
+from lwa import Cell, Dimer, InputError, Material, Sphere, canonical_wave, homogenize
 from tests.identity import same
 
 STEEL = Material.named("steel 316")

@@ -11,9 +11,9 @@ import sympy as sp
 
 from lwa import Cell, Dimer, InputError, NoSolitaryWave, canonical_wave, homogenize
 from lwa.code import LANGUAGES, Function
-from lwa.command.cli import main
 from lwa.wave.functions import wave_functions
 from tests.lwa.code.compilers import PROGRAMS, compiled, in_node
+from tests.lwa.command.answers import run
 
 in_every_language = pytest.mark.parametrize(
     "language",
@@ -307,18 +307,15 @@ def test_refusals():
 
 @pytest.mark.parametrize("language", ["numpy", "c"])
 def test_the_command_prints_the_same(language, capsys):
-    with pytest.raises(SystemExit) as ended:
-        main(["wave", "--k", "3/2", "--masses", "1,math", "--format", language])
-    assert ended.value.code == 0
+    arguments = ("wave", "--k", "3/2", "--masses", "1,math", "--format", language)
     wave = homogenize(Dimer(1, "math"), k="3/2").pde.traveling_wave()
-    assert capsys.readouterr().out == wave.code(language) + "\n"
+    assert run(capsys, *arguments) == (0, wave.code(language) + "\n", "")
 
 
 def test_a_theory_with_awkward_names_is_a_module(capsys):
-    with pytest.raises(SystemExit):
-        main(["derive", "--masses", "math,coefficients", "--format", "numpy"])
+    _, out, _ = run(capsys, "derive", "--masses", "math,coefficients", "--format", "numpy")
     found = {}
-    exec(capsys.readouterr().out, found)
+    exec(out, found)
     plain = homogenize(Dimer("m1", "m2")).pde
     values = {"k": sp.Rational(7, 4), "m1": 2, "m2": 3, "D": sp.S.Half}
     expected = plain.H.xreplace({s: sp.sympify(values[s.name]) for s in plain.H.free_symbols})
