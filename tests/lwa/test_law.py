@@ -139,24 +139,6 @@ def test_the_equal_chain_is_the_difference_of_shifted_fields(law):
     assert any(found[2::2])
 
 
-def test_the_canonical_equation_of_a_law_without_form():
-    """u_ττ = ∂_x [F(u_x) + I (F′ u_xxx + ½ F″ u_xx²)], and its energy."""
-    cell = Dimer("m1", "m2", spacing=1)
-    pde = homogenize(cell, law=general(), closure="full", field="center").pde
-    u, F = sp.Function("u")(x), sp.Function("F")
-    p, d = u.diff(x), sp.Dummy("d", positive=True)
-    slope, bend = (F(d).diff(d, n).subs(d, p) for n in (1, 2))
-    I = Dispersion(cell).I
-    flux = F(p) + I * (slope * u.diff(x, 3) + bend * u.diff(x, 2) ** 2 / 2)
-    for form in (lambda s: s**4 + s**2, lambda s: sp.exp(2 * s)):
-        difference = (flux.diff(x) - pde.right_side(u, x)).replace(F, form).doit()
-        assert sp.simplify(difference) == 0
-    assert pde.I == I
-    assert pde.conservative
-    assert set(pde.energy[2]) == {(((2, 2),), ())}  # F′ u_xx² alone
-    assert sp.cancel(pde.energy[2][((2, 2),)] + I / 2) == 0
-
-
 @pytest.mark.parametrize("field", ["first", "center"])
 @pytest.mark.parametrize("cell", [Dimer(3, 1), Cell([1, 2, 3])])
 def test_the_energy_of_a_law_without_form_is_conserved(cell, field):

@@ -23,8 +23,13 @@ def run(capsys, *arguments):
     return ended(capsys, main, *arguments)
 
 
+def said(capsys, *arguments):
+    """The standard output of a call that succeeds."""
+    status, out, err = run(capsys, *arguments)
+    assert (status, err) == (0, "")
+    return out
+
+
 def result(capsys, *arguments):
     """The JSON of a call that succeeds."""
-    status, out, err = run(capsys, *arguments, "--format", "json")
-    assert (status, err) == (0, "")
-    return json.loads(out)
+    return json.loads(said(capsys, *arguments, "--format", "json"))

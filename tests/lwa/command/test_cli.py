@@ -11,7 +11,7 @@ import sympy as sp
 from lwa import Dimer, Material, Sphere, homogenize
 from lwa.base import latex
 from lwa.spheres import hertz
-from tests.lwa.command.answers import STEEL_AND_PTFE, result, run
+from tests.lwa.command.answers import STEEL_AND_PTFE, result, run, said
 
 SYMBOLS = {s.name: s for s in homogenize(Dimer("m1", "m2")).pde.H.free_symbols}
 
@@ -63,17 +63,16 @@ def test_amplitudes_out_of_range_have_no_value_but_a_logarithm(capsys):
 def test_latex_is_that_of_the_results(capsys):
     """Rows of the objects; a formula in p, H and I stands only beside H and I."""
     for masses, wide in (("m1,m2", True), ("1,1", False)):
-        _, out, _ = run(capsys, "derive", "--masses", masses, "--format", "latex")
+        out = said(capsys, "derive", "--masses", masses, "--format", "latex")
         theory = homogenize(Dimer(*masses.split(",")))
         assert out == latex.align(theory.latex_rows()) + "\n"
-        _, out, _ = run(capsys, "wave", "--masses", masses, "--format", "latex")
+        out = said(capsys, "wave", "--masses", masses, "--format", "latex")
         assert (r"\frac{p H}{I}" in out) == wide
         assert "H &=" in out
 
 
 def test_text_of_the_paper(capsys):
-    status, out, _ = run(capsys, "derive", "--order", "4")
-    assert status == 0
+    out = said(capsys, "derive", "--order", "4")
     for line in (
         "  λ = 1",
         "  b2 = m1/(m1 + m2)",
@@ -92,8 +91,7 @@ def test_full_closure(capsys):
     assert found["conservative"] is False
     assert any(term["jet_t"] for term in found["terms"])
     assert {term["particle"] for term in found["slaved"]} == {2}
-    status, out, _ = run(capsys, "derive", "--closure", "full", "--order", "6")
-    assert status == 0
+    out = said(capsys, "derive", "--closure", "full", "--order", "6")
     assert "u_x^(-1) u_2xτ u_3xτ" in out
     assert "see --field center" in out
 
@@ -120,8 +118,7 @@ def test_expansion(capsys):
     assert abs(found["c2_value"] - 0.819959) < found["error_estimate"]
     symbolic = result(capsys, "expansion", "--masses", "m1,m2", "--order", "2")
     assert "c2_value" not in symbolic
-    status, out, _ = run(capsys, "expansion", "--k", "2", "--masses", "1", "--order", "3")
-    assert status == 0
+    out = said(capsys, "expansion", "--k", "2", "--masses", "1", "--order", "3")
     assert "±" in out
     assert "c² = Σ a_n ε^n" in out
 
@@ -131,8 +128,7 @@ def test_dispersion(capsys):
     assert found["acoustic"] == {"2": "1", "4": "-7/48", "6": "-59/5760"}
     assert found["optical"]["0"] == "16/3"
     assert result(capsys, "dispersion", "--masses", "1,2,3")["optical"] is None
-    status, out, _ = run(capsys, "dispersion")
-    assert status == 0
+    out = said(capsys, "dispersion")
     assert "κ^4: -(m1**2 - m1*m2 + m2**2)/(3*(m1 + m2)**2)" in out
 
 
@@ -165,8 +161,7 @@ def test_spheres_at_a_force_are_in_si_units(capsys, spheres):
     assert found["compressions_value"] == [found["compression_value"]] * 2
     assert (found["B_value"], found["spacing_value"]) == (found["strain_value"], 0.00476)
     assert (found["units"]["speed"], found["units"]["fwhm_time"]) == ("m/s", "s")
-    status, out, _ = run(capsys, "wave", "--spheres", spheres(), "--force", "10")
-    assert status == 0
+    out = said(capsys, "wave", "--spheres", spheres(), "--force", "10")
     for line in ("  spacing D = 0.00476 m", "  masses = 0.00045, 0.000123 kg"):
         assert line in out.splitlines()
     assert f"speed dx/dt = {found['speed_value']:.10f}"[:22] in out
@@ -206,18 +201,8 @@ def test_spheres_without_a_force_have_one_in_symbols(capsys, spheres):
     assert not {"speed_value", "force_value", "fwhm_time_value"} & set(found)
     speed = sp.sympify(found["speed"]).subs("F", 10)
     assert float(speed) == pytest.approx(at["speed_value"], rel=1e-15)
-    status, out, _ = run(capsys, "wave", "--spheres", spheres())
-    assert status == 0
+    out = said(capsys, "wave", "--spheres", spheres())
     assert "·F**(1/6) m/s" in out
-
-
-def test_unequal_contacts_are_compressed_unequally(capsys, spheres):
-    file = spheres('["heavy", "light"]', '["heavy", "heavy", "light"]')
-    chain = ("--closure", "full", "--field", "center")
-    found = result(capsys, "wave", "--spheres", file, "--force", "3", *chain)
-    for A, delta in zip(found["stiffnesses_value"], found["compressions_value"], strict=True):
-        assert A * delta**1.5 == pytest.approx(3, rel=1e-14)
-    assert found["compression_value"] == pytest.approx(sum(found["compressions_value"]) / 3)
 
 
 def test_a_force_in_the_cells_own_units(capsys):
@@ -233,8 +218,7 @@ def test_a_force_in_the_cells_own_units(capsys):
 
 
 def test_spheres_in_a_program_are_in_si(capsys, spheres):
-    status, out, _ = run(capsys, "wave", "--spheres", spheres(), "--format", "numpy")
-    assert status == 0
+    out = said(capsys, "wave", "--spheres", spheres(), "--format", "numpy")
     module = {}
     exec(out, module)  # our own output, which is what is on trial
     at = result(capsys, "wave", "--spheres", spheres(), "--force", "10")
@@ -248,8 +232,7 @@ def test_powers_of_the_full_closure_are_written_once(capsys, options):
     """u_x^(k-1), u_x^(-1), never a sum of numbers, nor a power 0 or 1."""
     for style, power in (("text", r"\^\(([^)]*)\)"), ("latex", r"u_\{x\}\^\{([^}]*)\}")):
         arguments = ("derive", "--closure", "full", "--order", "5", *options.split())
-        status, out, _ = run(capsys, *arguments, "--format", style)
-        assert status == 0
+        out = said(capsys, *arguments, "--format", style)
         powers = [p for p in re.findall(power, out) if "/" not in p and "D" not in p]
         assert powers
         assert all(re.fullmatch(r"-?[2-9]|-1|-?k(/2)?([+-]\d+)?", p) for p in powers)
@@ -264,6 +247,5 @@ def test_powers_of_the_full_closure_are_written_once(capsys, options):
     ],
 )
 def test_long_exponents_are_printed(capsys, command):
-    status, out, err = run(capsys, *command.split())
-    assert (status, err) == (0, "")
+    out = said(capsys, *command.split())
     assert max(map(len, out.splitlines())) <= 100

@@ -53,28 +53,6 @@ def test_the_energy_is_conserved_to_the_order_of_its_closure(cell, order, k, kin
     assert order_of_the_drift(pde) > order - 1 - 1e-2  # of the slope between two D
 
 
-def test_the_energy_of_another_field_is_not_conserved():
-    """Momentum alone, or the canonical field's energy in another field, is not conserved."""
-    first = homogenize(Dimer(3, 1), 4, k="3/2", closure="full").pde
-    center = homogenize(Dimer(3, 1), 4, k="3/2", closure="full", field="center").pde
-
-    class Mixed:
-        cell, right_side = first.cell, staticmethod(first.right_side)
-        energy_density = staticmethod(center.energy_density)
-
-    assert order_of_the_drift(Mixed) == pytest.approx(2, abs=1e-2)
-
-
-def test_the_velocity_leaves_the_energy_where_the_equation_is_variational():
-    m1, m2 = sp.symbols("m1 m2", positive=True)
-    b = m1 / (m1 + m2)
-    center = homogenize(Dimer(m1, m2), 6, closure="full", field="center").pde
-    pde = center.in_field({4: b * (1 - b) * (1 - 2 * b) ** 2 / 8})
-    assert not any(jet.t for n in (2, 4) for jet in pde.energy[n])
-    # and in the canonical field it does not: u_xxτ² stands in it
-    assert ((2, 2),) in {jet.t for jet in center.energy[4]}
-
-
 def test_only_the_full_closure_has_an_energy():
     linear, optical = (homogenize(Dimer(3, 1), branch=name).pde for name in ("acoustic", "optical"))
     for pde in (linear, linear.in_field({2: 1}), optical):

@@ -31,22 +31,6 @@ def wave_at(k, m1, m2):
         return None
 
 
-def test_a_root_removes_the_cube_and_z_to_the_a_makes_a_derivative():
-    """v/v [v′/v + G (v′/v)³ + H v′v″/v² + I v‴/v], v = z^p, by SymPy's own calculus."""
-    x, z = sp.Symbol("x"), sp.Function("z")
-    for root in (0, 1):
-        wave = WAVE.at(k="7/4", m1=3, m2=2, D=1)
-        found = wave.reduction(root)
-        v = z(x) ** found.p
-        v1, v2, v3 = (sp.expand(v.diff(x, n) / v) for n in (1, 2, 3))
-        terms = v1 + wave.G * v1**3 + wave.H * v1 * v2 + wave.I * v3
-        r1, r2, r3 = (z(x).diff(x, n) / z(x) for n in (1, 2, 3))
-        e = wave.k * found.p + found.a
-        expected = found.p * (r1 + wave.I * (r3 + (e - 1) * r1 * r2))
-        rest = sp.expand(terms - expected).subs(z(x), sp.exp(2 * x) + 3 * x + 5).doit()
-        assert abs(sp.N(rest.subs(x, 0), 30)) < 1e-25
-
-
 @given(exponents, masses, masses, st.integers(0, 1))
 def test_z_obeys_its_equation_for_either_root_even_complex_ones(k, m1, m2, root):
     """z = v^{1/p} put into z'' = μ z^η - σ z, at 50 digits."""
