@@ -37,9 +37,6 @@ def holds(error, deviation, doubt=0.0):
     return deviation <= error + doubt and error <= LOOSE * (deviation + doubt)
 
 
-# --- sums of the series in k - 1 ---
-
-
 def sums(exponents, orders):
     """Errors and deviations, over the value, of the sums of all quantities of equal beads."""
     every, found = series(expand(Cell([1]), max(orders))), []
@@ -128,9 +125,6 @@ def test_the_error_of_a_width_near_resonance(k, mass):
     assert holds(width.error, abs(width.value - struck_dimer(k, mass)[1]))
 
 
-# --- collisions ---
-
-
 @pytest.mark.parametrize(
     ("k", "mass"),
     [
@@ -164,8 +158,6 @@ def test_the_error_behind_an_interface(k, mass, stiffness, between):
     found = transmitted_force(before, *cells, k)
     assert holds(found.error, abs(found.value - behind))
 
-
-# --- shocks ---
 
 # Cell, law, strains behind and ahead; the results whose error is tested for being too large: a
 # deviation may also pass through zero.

@@ -32,8 +32,6 @@ def ended(*command, **options):
     return done.returncode, done.stdout, done.stderr
 
 
-# What is loaded
-
 NUMBERS = "numpy scipy matplotlib numba"
 STEPS = {
     "import lwa, lwa.__main__, validation.__main__": f"sympy click tqdm {NUMBERS}",
@@ -75,9 +73,6 @@ def test_the_last_statement_loads_scipy(loaded):
     assert "scipy.optimize" in loaded[list(STEPS)[-1]].split()
 
 
-# How a process begins and ends
-
-
 @pytest.mark.parametrize(
     "program",
     [("lwa",), ("lwa-validate",), (sys.executable, "-m", "validation")],
@@ -92,9 +87,6 @@ def test_a_program_says_its_name_and_version(program):
 
 def test_without_any_output_the_status_is_left():
     assert ended(f"{' '.join(VERSION)} >&- 2>&-", shell=True) == (2, "", "")
-
-
-# Ctrl-C
 
 
 QUICK = "import signal\ndef main(): print(signal.getsignal(signal.SIGINT).__name__)"

@@ -29,9 +29,6 @@ k, m1, m2, q, p0 = sp.symbols("k m1 m2 q p0", positive=True)
 HERTZ = Power("3/2")
 
 
-# --- closed forms (theory notes, section 13) ---
-
-
 def test_equal_beads_at_any_wavenumber():
     found = envelope(Cell([1]), general(), background=0, wavenumber=q)
     s, cot = sp.sin(q / 2), sp.cot(q / 2)
@@ -75,9 +72,6 @@ def test_a_dimer_at_any_wavenumber():
             assert value == pytest.approx(float(expected), rel=1e-10)
 
 
-# --- limits ---
-
-
 @pytest.mark.parametrize(
     "cell", [Cell([2], [3], 1), Dimer(1, "1/3", spacing=1)], ids=["equal", "dimer"]
 )
@@ -95,9 +89,6 @@ def test_long_waves_have_the_envelope_of_kdv(cell):
         errors.append(float(chi / ours - 1))
     assert abs(errors[1]) < 2e-3
     assert errors[1] == pytest.approx(errors[0] / 4, rel=0.02)
-
-
-# --- the lattice ---
 
 
 def lattice_shift(springs, kappa, frequency, phi, flow, A, harmonics=5):
@@ -165,9 +156,6 @@ def test_plane_waves_of_random_cells_on_the_lattice(P):
     assert (4 * shifts[1] - shifts[0]) / 3 == pytest.approx(1, abs=1e-4)
 
 
-# --- exact and floats ---
-
-
 @pytest.mark.parametrize(
     ("cell", "kappa"),
     [
@@ -201,9 +189,6 @@ def test_units_of_real_spheres():
     load = envelope(cell, HERTZ, precompression=20)
     static = envelope(cell, HERTZ, background=load.compression / cell.spacing)
     assert float(static.nonlinearity) == pytest.approx(float(load.nonlinearity), rel=1e-9)
-
-
-# --- refusals ---
 
 
 @pytest.mark.parametrize(

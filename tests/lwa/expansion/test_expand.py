@@ -133,9 +133,6 @@ def test_first_correction_of_a_dimer_is_a_closed_form() -> None:
     assert same(w_1.subs(OMEGA, 1 / OMEGA), w_1)
 
 
-# --- the same theory ---
-
-
 def jets(series: list, top: int, derivative) -> dict[int, list]:
     """i → ∂^{i-1} s / s as a list over t^n, s = e^{-Z²/4} Σ S_n t^n."""
     inverse, found, row = power(series, fmpq(-1)), {}, series
@@ -220,9 +217,6 @@ def test_linear_closure_gives_the_leading_term_only() -> None:
     dimer = Cell([1, 3])
     assert residual_order(dimer, "linear", 1) >= 4
     assert residual_order(dimer, "linear", 3) < 6
-
-
-# --- summed ---
 
 
 def test_pade_agrees_with_its_series() -> None:

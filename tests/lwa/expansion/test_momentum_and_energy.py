@@ -114,9 +114,6 @@ def test_the_long_wave_has_the_lattice_s_momentum_as_k_tends_to_1(cell):
     assert near == pytest.approx(far / 2, rel=0.02)  # the next order in k - 1
 
 
-# --- collisions ---
-
-
 def test_a_strike_in_si_units_and_by_its_drop():
     """F ~ v^{2k/(k+1)} (m^k A)^{1/(k+1)}, as dimensions demand; a drop h gives √(2 g h)."""
     one = pulse_of_strike(EQUAL, 1, 1)

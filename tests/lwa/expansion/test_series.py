@@ -13,8 +13,6 @@ from lwa.base.exact import signed
 from lwa.expansion.radiation import parameters
 from tests.identity import same
 
-# --- k ---
-
 
 def test_a_series_of_a_number_k_is_summed_there_only() -> None:
     """c² of one bead and one contact A scales as A^{1/k}."""
@@ -81,9 +79,6 @@ def test_an_unlike_contacts_radiation_counts_in_the_error() -> None:
     assert errors[1] == pytest.approx((errors[0] + errors[2]) / 2, rel=1e-3)
 
 
-# --- values ---
-
-
 def test_a_series_and_its_sum_show_in_a_notebook() -> None:
     widths = expand(Cell([1]), 12).fwhm("force")
     assert len(repr(widths)) < 120
@@ -113,9 +108,6 @@ def test_at_gives_symbols_their_values() -> None:
         wave.at(m3=1)
 
 
-# --- symbols ---
-
-
 def test_a_place_is_real_and_a_mass_called_like_it_is_refused() -> None:
     assert signed("xi", "xi") == sp.Symbol("xi", real=True)
     assert signed("3/2", "xi") == sp.Rational(3, 2)
@@ -124,9 +116,6 @@ def test_a_place_is_real_and_a_mass_called_like_it_is_refused() -> None:
         wave.log_force()
     Y = sp.Symbol("Y", real=True)
     assert wave.log_force(X="Y")[0] == -(Y**2) / (4 * wave.I)
-
-
-# --- size ---
 
 
 DIMER, ONE = Cell([1, 2]), Cell([1])

@@ -95,9 +95,6 @@ def test_a_rarefaction_wave():
     assert float(found.fwhm("strain")) == pytest.approx(float(known.fwhm("strain")), rel=1e-12)
 
 
-# --- resonators and packings --------------------------------------------------------------------
-
-
 def test_the_width_with_resonators_obeys_its_integral():
     """(F′I + R V⁴) v′² = m̄V² v² - 2W of F = δ²: ξ = ∫ √(J/(Q(1) - Q(v))) dv/v by mpmath."""
     lattice = Lattice([1], [Link(0, 1, Power(2))], [Resonator(0, "1/2", 20)])
@@ -147,9 +144,6 @@ def test_plane_waves_of_hexagonal_packings():
     assert other.static(1).compressions[0] == pytest.approx(
         float(named("hertz2", 1, 1).compression(Cell([1]), 1 / sp.sqrt(3))), rel=1e-14
     )
-
-
-# --- errors and refusals ------------------------------------------------------------------------
 
 
 def test_waves_that_do_not_exist_and_bad_forces():

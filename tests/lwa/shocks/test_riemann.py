@@ -29,9 +29,6 @@ BENT = named("polynomial", "1/2", "-1/4")  # F″ = 1 - 3δ/2
 WAVY = Law(2 * DELTA + sp.sin(DELTA), DELTA)  # F″ = -sin δ
 
 
-# --- exact ---
-
-
 def test_edges_of_equal_beads_solve_els_equations():
     """∫ (1 - f′)/f dκ up to the edge of `lwa.shocks.edges` is ln r, likewise at imaginary κ."""
     kappa, r = sp.symbols("kappa r", positive=True)
@@ -121,9 +118,6 @@ def test_a_pulse_is_the_lattices_own_to_the_next_order_in_k_minus_1():
         assert abs(float(contact)) < float(k - 1)
 
 
-# --- limits ---
-
-
 @pytest.mark.parametrize(
     ("law", "ahead"),
     [(HERTZ, 1), (Power("1/2"), 1), (named("hertz2", 1, 1), 1), (named("magnetic", 3, 1), 0)],
@@ -163,9 +157,6 @@ def test_a_long_exponent_is_a_number_of_twenty_digits(k, behind, ahead):
     assert {"doubling", "peak", "peak_force", "plateau"} <= {*found.errors}
 
 
-# --- the lattice's own wave ---
-
-
 def test_the_series_in_k_minus_1_has_beads_at_twice_the_wall():
     """Hertz without load: the rule on the exact wave gives 0.8477 c₋ and 1.7277 p₋, where the
     driven lattice has 0.8487 and 1.7360 (theory notes, section 14)."""
@@ -175,9 +166,6 @@ def test_the_series_in_k_minus_1_has_beads_at_twice_the_wall():
     assert peak == pytest.approx(2 * float(found.plateau), rel=1e-12)
     assert wave.speed.value / float(found.sound(found.behind)) == pytest.approx(0.8477, abs=1e-4)
     assert float(wave.F) ** (2 / 3) == pytest.approx(1.7277, abs=1e-4)
-
-
-# --- other cells and laws ---
 
 
 @pytest.mark.parametrize(("k", "behind", "ahead"), [("3/2", "7/5", 1), (3, "1/10", "1e-6")])
@@ -230,9 +218,6 @@ def test_the_opposite_jump_is_a_rarefaction(cell):
     assert found.trailing_speed == found.sound(found.behind)
     assert found.leading_speed() == found.leading_speed("dispersion") == found.sound(found.ahead)
     assert found.plateau.subs({"m": 1, "D": 1}) < 0
-
-
-# --- units ---
 
 
 def test_si_units():

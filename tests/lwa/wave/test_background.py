@@ -43,9 +43,6 @@ def numeric_wave(k):
     return compression(law=k).numeric()
 
 
-# --- limits -------------------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize("cell", [Cell([1]), Dimer("m1", "m2"), Dimer(3, 1, N=2)])
 def test_without_load_the_wave_is_the_compact_wave(cell):
     compact = canonical_wave(cell, "3/2")
@@ -90,8 +87,6 @@ def test_kdv_in_closed_form():
     left = v.diff(t) + 3 * v.diff(x) + 2 * v * v.diff(x) / 5 + v.diff(x, 3) / 7
     assert abs(left.subs({x: 1, t: sp.Rational(1, 3)}).n(30)) < 1e-25
 
-
-# --- the wave's own equation --------------------------------------------------------------------
 
 WAVES = [
     (Power("3/2"), 1, "1/2"),
@@ -177,9 +172,6 @@ def test_arrays_broadcast():
     assert numeric.profile([1e3, 1e9], 0.0, 1.0).tolist() == [0.0, 0.0]
 
 
-# --- published and exact ------------------------------------------------------------------------
-
-
 def test_nesterenkos_relation_for_equal_spheres():
     """As Daraio, Nesterenko, Herbold and Jin print it, Phys. Rev. E 73, 026610 (2006), eqs. 3–5.
 
@@ -242,9 +234,6 @@ def test_the_lattices_own_wave_of_fermi_pasta_ulam_and_tsingou(alpha, beta):
     (w1, e1), (w2, e2) = found
     assert math.log(e1 / e2) / math.log(w2 / w1) == pytest.approx(4, abs=0.12)
     assert e2 > 1e-9  # above rounding
-
-
-# --- rarefaction, existence, units --------------------------------------------------------------
 
 
 def test_waves_exist_on_the_stiffening_side_only():
