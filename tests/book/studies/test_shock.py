@@ -1,8 +1,5 @@
 """Chains driven by a piston, beside the plateau, the edges and the leading pulse of the theory."""
 
-import json
-import math
-
 import numpy as np
 import pytest
 import scipy
@@ -10,8 +7,6 @@ import scipy
 from book.studies.shock import shock
 from lwa import Cell, Material, Power, Sphere, piston
 from lwa import shock as front
-from lwa.law import named
-from tests.commands import ended
 from validation import Drive, Scene, simulate
 
 
@@ -31,42 +26,6 @@ def test_plateau_speed_and_peak_of_three_laws():
     assert abs(hertz["canonical_error_value"]["peak"]) < 0.003
     assert -0.012 < hertz["dispersion_error_value"]["speed"] < -0.009  # El's edge is too slow
     assert square["dispersion_error_value"]["speed"] < -0.02
-
-
-@pytest.mark.slow
-def test_three_laws_and_three_jumps_at_2500_units():
-    """The findings hold plateaus to 0.5 %, Toda's pulse to 0.1 % and the others' to 0.6 %."""
-    found = shock()
-    rows = found.document()["rows"]
-    assert (found.ok, len(rows), len(found.findings)) == (True, 9, 27)
-    for row in rows:
-        off = {name: abs(row["doubling_error_value"][name]) for name in ("speed", "peak")}
-        toda = row["law"] == "Toda"
-        assert off["speed"] < (1e-5 if toda else 1e-3)
-        assert off["peak"] < (5e-5 if toda else 4e-3)
-
-
-def test_hertz_without_load_by_the_series():
-    """s₊ 0.8487 c₋ and peak strain 1.7360 p₋ at 2,500 units; the plateau is 1.2 % below p₋."""
-    found = shock(k="3/2", ahead=0, jumps=(1,), duration=600)
-    assert found.ok
-    (row,) = found.document()["rows"]
-    assert row["speed_value"] / math.sqrt(1.5) == pytest.approx(0.8487, abs=3e-4)
-    assert row["peak_value"] == pytest.approx(1.7360, abs=2e-3)
-    assert -0.003 < row["doubling_error_value"]["speed"] < 0
-    assert -0.006 < row["doubling_error_value"]["peak"] < 0
-    assert row["plateau_error_value"] == pytest.approx(-0.012, abs=1e-3)
-    assert row["dispersion_value"]["speed"] is None
-
-
-def test_a_dimer_has_els_edge_and_no_rule(capsys):
-    options = "--k", "3/2", "--masses", "1,1/2", "--jumps", "2", "--duration", "300"
-    status, out, err = ended(capsys, shock.main, *options, "--format", "json")
-    assert (status, err) == (0, "")
-    (row,) = json.loads(out)["rows"]
-    assert row["doubling_value"] == row["canonical_value"] == {"speed": None, "peak": None}
-    assert abs(row["dispersion_error_value"]["speed"]) < 0.02
-    assert abs(row["plateau_error_value"]) < 0.005
 
 
 @pytest.mark.parametrize(("k", "most"), [(12, 2e-5), (48, 1e-9)])
@@ -98,36 +57,6 @@ def test_a_wall_that_recedes_makes_the_fan():
         errors.append(np.abs(strains / theory - 1).max())
     assert errors[0] < 0.02
     assert errors[1] < 0.6 * errors[0]
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("law", "behind", "least", "most"),
-    [
-        (named("exponential", "1/2"), 2, -0.02, 0.02),
-        (Power("3/2"), 2, -0.04, -0.02),
-        (Power("3/2"), 3, -0.1, -0.08),
-    ],
-)
-def test_els_trailing_edge_and_its_limit(law, behind, least, most):
-    """s₋ over the place x/t at which the line through the envelope's lower half ends, less 1."""
-    cell, end = Cell([1], spacing=1), 1500.0
-    found = front(cell, law, behind, 1)
-    edge = 2 * float(found.sound(1)) - float(found.sound(behind))  # as given up to r = 1.3
-    n = int(1.06 * float(found.leading_speed()) * end) + 40
-    scene = Scene(
-        masses=(1.0,) * n, stiffnesses=(1.0,) * (n - 1), wall=1.0, law=law,
-        precompression=float(law.at(found.ahead)), duration=end,
-        drive=Drive(velocity=float(found.plateau)),
-    )  # fmt: skip
-    strain = 1 - np.diff(simulate(scene, rtol=1e-7).displacements)
-    tops = scipy.signal.find_peaks(strain)[0]
-    place, rise = (tops + 0.5) / end, strain[tops] - behind
-    part = np.digitize(place, np.linspace(place.min(), place.max(), 120))
-    envelope = np.array([(place[part == i].mean(), rise[part == i].max()) for i in np.unique(part)])
-    height = envelope[:, 1] / rise.max()
-    slope, offset = np.polyfit(*envelope[(height > 0.15) & (height < 0.5)].T, 1)
-    assert least < edge / (-offset / slope) - 1 < most
 
 
 def test_a_wall_at_one_metre_a_second():

@@ -62,13 +62,6 @@ def test_the_profile_is_the_exact_waves():
     assert np.abs(force(xi / np.sqrt(20)) - wave.force(top + xi)).max() < 0.05**5
 
 
-@pytest.mark.parametrize(("k", "bound"), [("3/2", 1e-6), ("2", 1e-4)])
-def test_the_equal_chain_reaches_hertz(k, bound):
-    """From order 10 on; that the estimates bound the errors: `tests/lwa/expansion`."""
-    for name, value in true(k, "1")[1].items():
-        assert series("1", 10)[name].at(k).value == pytest.approx(value, rel=bound)
-
-
 @pytest.mark.parametrize(
     ("k", "omega"),
     [("21/20", "1/20"), pytest.param("11/10", "1/5", marks=pytest.mark.slow)],

@@ -131,18 +131,6 @@ def test_the_special_ratios_are_the_published_ones(specials):
     assert longer == pytest.approx(ratios, rel=1e-10)
 
 
-def test_from_one_special_ratio_to_the_next_the_light_bead_oscillates_once_more(specials):
-    """Extrema of its distance from the middle between its neighbours: two more each time."""
-    counts = []
-    for wave in specials:
-        xi = np.linspace(-wave.half_period, wave.half_period, 8001)
-        off = (wave.strain(xi - 0.5) - wave.strain(xi + 0.5, 1)) / 2
-        seen = np.abs(off) > 1e-6  # rounding aside
-        turns = np.diff(np.sign(np.diff(off))) != 0
-        counts.append(int(np.count_nonzero(turns & seen[1:-1])))
-    assert counts == [4, 6, 8]
-
-
 def test_the_tail_changes_from_none_to_some_through_a_special_ratio(specials):
     """Near it the tail is proportional to the distance, and the wave is never called solitary."""
     omega, off = specials[0].omega, np.array([-1e-4, -1e-5, 1e-5, 1e-4])
