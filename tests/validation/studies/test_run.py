@@ -11,20 +11,6 @@ from validation.scenes.scene import Scene
 from validation.studies.run import report
 
 
-@pytest.fixture(scope="module")
-def report_of_run():
-    return report(record(struck((1, 0.5), 20, duration=20, contact_sensors=(4, 8, 18))))
-
-
-def test_a_notebook_shows_the_tables_and_the_forces(report_of_run):
-    shown = report_of_run._repr_html_()
-    assert shown.count("<table>") == 2
-    assert "<td>contact 5 → 9</td>" in shown
-    assert "<svg" in shown
-    (panel,) = report_of_run.panels
-    assert [curve.label for curve in panel.curves] == ["contact 5", "contact 9", "contact 19"]
-
-
 def test_many_sensors_are_drawn_as_a_map():
     """A legend of so many curves would fill the picture."""
     sensors = {"contact_sensors": (18, *range(18)), "bead_sensors": (4, 9)}

@@ -5,8 +5,6 @@ import math
 import pytest
 
 from lwa import Cell, Power, background_wave
-from tests.commands import ended
-from validation import cli
 from validation.waves.solver import exact_wave
 
 THEORY = background_wave(Cell([1], spacing=1), law=Power("3/2"))
@@ -55,10 +53,3 @@ def test_a_weak_wave_is_the_one_of_korteweg_and_de_vries():
     for large, small in zip(*errors, strict=True):
         assert abs(small) < 1e-3
         assert large / small == pytest.approx(10, rel=0.1)
-
-
-def test_the_command(capsys):
-    status, out, _ = ended(capsys, cli.main, "exact", "--background", "1/2")
-    assert status == 0
-    assert "background strain 0.5: strains and forces are above it" in out
-    assert "c² = 1.22241250264" in out
