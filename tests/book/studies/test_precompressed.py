@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import scipy
 
-from book.studies.precompressed import Wave, precompressed
+from book.studies.precompressed import CHAINS, RATIOS, Wave, precompressed
 from lwa import Cell, Power
 from lwa.linear.dispersion import LoadedChain
 from tests.commands import ended
@@ -36,6 +36,13 @@ def test_equal_beads(equal):
     assert -1e-4 < weak < 0
     assert -1e-3 < even < 10 * weak / 3
     assert -0.025 < strong < -0.005
+
+
+def test_the_strongest_waves_of_all_default_chains_are_measured():
+    """A wave in a fourth default chain, of four beads, fell apart: the command had no output."""
+    found = rows(ratios=RATIOS[-1:])
+    assert [row["masses"] for row in found] == [[str(m) for m in masses] for masses in CHAINS]
+    assert all(abs(row["error_value"]) < 0.025 for row in found)
 
 
 def test_a_bead_velocity_is_strain_times_speed(equal):

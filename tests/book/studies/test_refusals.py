@@ -25,6 +25,7 @@ BAD = [
     ("precompressed --masses m", "mass is m: a number is wanted"),
     ("precompressed --ratios 0", "ratio is 0: it lies between"),
     ("precompressed --k 1", "k is 1: it lies between"),
+    ("precompressed --masses 1,1,1,1/4 --ratios 30", "masses 1, 1, 1, 1/4, ratio 30: the pulse"),
     ("shock --k 3/2 --jumps 1", "there is no shock"),
     ("shock --k 3/2 --jumps 1/2", "a strain above the one ahead"),
     ("shock --k 3/2 --duration 5", "duration is 5: at least 100 is wanted"),
