@@ -13,6 +13,7 @@ import signal
 import subprocess
 import sys
 import termios
+from importlib.metadata import version
 from pathlib import Path
 
 import pytest
@@ -82,7 +83,8 @@ def test_a_program_says_its_name_and_version(program):
     if len(program) == 1:
         program = (str(Path(sys.executable).with_name(program[0])),)
     name = "lwa-validate" if "valid" in program[-1] else "lwa"
-    assert ended(*program, "--version") == (0, f"{name} {__version__}\n", "")
+    assert ended(*program, "--version") == (0, f"{name} {version('lwa')}\n", "")
+    assert __version__ == version("lwa")
 
 
 def test_without_any_output_the_status_is_left():

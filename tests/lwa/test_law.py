@@ -3,6 +3,7 @@ nonlinear part is compared with the chain's difference equation, expanded indepe
 
 import pickle
 from fractions import Fraction
+from math import factorial
 
 import pytest
 import sympy as sp
@@ -11,6 +12,7 @@ from lwa import Cell, Dimer, Dispersion, InputError, Law, Power, general, homoge
 from lwa.algebra.jets import GradedSeries
 from lwa.equation.energy import energy
 from lwa.law import NAMES, named, read_law
+from tests.lwa.series import exponential, fraction, product
 
 x = sp.Symbol("x")
 y = sp.Symbol("y", positive=True)
@@ -97,24 +99,14 @@ def test_the_linear_law_is_k_1(branch):
             homogenize(Dimer(2, 1), law=general(), branch=branch)
 
 
-def series(value, order):
-    return [Fraction(value), *[Fraction(0)] * order]
-
-
-def times(a, b):
-    return [sum(a[j] * b[n - j] for j in range(n + 1)) for n in range(len(a))]
-
-
 def force(law, strain):
     """The law at a strain that is a series in D, by Taylor's theorem."""
-    rest = [Fraction(0), *strain[1:]]
-    total, power, factorial = series(0, len(rest) - 1), series(1, len(rest) - 1), 1
-    for m in range(len(rest)):
-        factorial *= max(m, 1)
-        value = sp.Rational(law.at(sp.Rational(strain[0]), m))
-        slope = Fraction(int(value.p), int(value.q)) / factorial
+    order, rest = len(strain) - 1, [Fraction(0), *strain[1:]]
+    total, power = [Fraction(0)] * (order + 1), exponential(0, order)
+    for m in range(order + 1):
+        slope = fraction(sp.Rational(law.at(sp.Rational(strain[0]), m))) / factorial(m)
         total = [t + slope * p for t, p in zip(total, power, strict=True)]
-        power = times(power, rest)
+        power = product(power, rest, order)
     return total
 
 
@@ -126,7 +118,7 @@ def test_the_equal_chain_is_the_difference_of_shifted_fields(law):
     """[F((u(x+D) - u)/D) - F((u - u(x-D))/D)]/D at x = 0, D only in the shifts, to D^4."""
     order = 6
     jets = [0, 4, 1, -2, 3, 1, -1, 2, 5]  # ∂^n u at 0; u_x = 4 has a rational root
-    ahead = [Fraction(jets[n + 1], int(sp.factorial(n + 1))) for n in range(order)]
+    ahead = [Fraction(jets[n + 1], factorial(n + 1)) for n in range(order)]
     behind = [(-1) ** n * term for n, term in enumerate(ahead)]
     pairs = zip(force(law, ahead), force(law, behind), strict=True)
     expected = [a - b for a, b in pairs][1:]

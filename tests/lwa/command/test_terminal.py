@@ -1,12 +1,10 @@
 """Between a command and its user: encodings, closed and full outputs, completion, digits."""
 
 from contextlib import redirect_stdout
-from importlib.metadata import version
 
 import pytest
 from click.testing import CliRunner
 
-import lwa
 from lwa.command import cli
 from lwa.command.terminal import CLOSED
 from tests.commands import closed_pipe, encoded, full_disk, unwritable
@@ -39,11 +37,6 @@ def test_an_output_that_takes_nothing_is_no_result(capsys):
     with redirect_stdout(None):
         status, _, err = run(capsys, *WAVE)
     assert (status, err.count("\n")) == (2, 1)
-
-
-def test_the_version(capsys):
-    assert lwa.__version__ == version("lwa")
-    assert run(capsys, "--version")[1] == f"lwa {lwa.__version__}\n"
 
 
 @pytest.mark.parametrize("arguments", [[], ["wave"]])
