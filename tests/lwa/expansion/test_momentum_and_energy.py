@@ -133,10 +133,6 @@ def test_a_strike_in_si_units_and_by_its_drop():
     assert dropped.force.value == pytest.approx(same.force.value, rel=1e-12)
 
 
-def test_beyond_the_measured_exponents_a_strike_has_no_error():
-    assert np.isnan(pulse_of_strike(EQUAL, 1, 1, k="6/5").force.error)
-
-
 @pytest.mark.parametrize("mass", [-1, "m"])
 def test_impossible_strikers_are_refused(mass):
     with pytest.raises(InputError, match=f"mass is {mass}"):

@@ -1,4 +1,4 @@
-"""Waves of any lattice: the chains of one law, rarefactions, resonators, packings, refusals."""
+"""Waves of any lattice: the chains of one law, rarefactions, resonators, packings, their errors."""
 
 import math
 
@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import sympy as sp
 
+from book.studies.links import exact
 from lwa import (
     Cell,
     InputError,
@@ -196,3 +197,40 @@ def test_errors_vanish_with_the_wave():
     (s1, w1), (s2, w2) = found
     assert w1 / w2 == pytest.approx(2, rel=0.02)
     assert s1 / s2 == pytest.approx(4, rel=0.04)  # the error of an excess that vanishes itself
+
+
+CUBIC = Power(3)
+
+
+def pair(law, factor=1):
+    return Lattice([1, 1], [Link(0, 1, HERTZ), Link(1, 2, law, factor)])
+
+
+def chain(law, second=None):
+    farther = [] if second is None else [Link(0, 2, law, second)]
+    return Lattice([1], [Link(0, 1, law), *farther])
+
+
+@pytest.mark.parametrize(
+    ("lattice", "force", "load"),
+    [
+        *((pair(CUBIC), force, 1.0) for force in (1.02, 1.5, 3.0)),
+        (pair(HERTZ, 8), 3.0, 1.0),
+        (pair(Power(6)), 2.0, 1.0),
+        (pair(Power(1)), 1.5, 1.0),
+        (pair(Power(1), 3), 1.2, 1.0),
+        (chain(HERTZ), 1.0, 0.0),
+        (chain(HERTZ), 1.5, 1.0),
+        (chain(CUBIC), 1.0, 0.0),
+        (chain(HERTZ, "1/4"), 1.2, 1.0),
+        (chain(HERTZ, "1/4"), 3.0, 1.0),
+        (chain(HERTZ, "1/4"), 1.0, 0.0),
+    ],
+    ids=str,
+)
+def test_errors_cover_the_exact_wave(lattice, force, load):
+    known, wave = exact(lattice, force, load), lattice_wave(lattice, force, load)
+    missed = abs(float(wave.speed) - math.sqrt(known.square))
+    assert missed < wave.speed_error < 30 * missed
+    missed = abs(float(wave.fwhm(known.of)) - known.fwhm)
+    assert missed < wave.fwhm_error(known.of) < 30 * missed
